@@ -18,11 +18,11 @@ from puck_tables.cli.options import (
     TIME,
     Vector,
     body_options,
+    chosen_puck,
     deliver,
     json_option,
     output_options,
     prepare_outputs,
-    puck_given,
     puck_options,
 )
 from puck_tables.cli.scene_run import files_read, scene_options, scene_tables
@@ -153,22 +153,22 @@ def aim(
     read = (pressure, targets_file)
     prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=read)
     with one_question() if targets_file is None else nullcontext():
-        puck = puck_given(radius, height, friction, gravity, delta, decel, pressure, gyration)
+        puck = chosen_puck(radius, height, friction, gravity, delta, decel, pressure, gyration)
         where = targets[0] if targets_file is None else _read_targets(targets_file)
-        found: Any = puck.aim(
+        result: Any = puck.aim(
             where, spin=w0, speed=speed, stop_time=stop_time, max_speed=max_speed,
             max_spin=max_spin, count=8 if count is None else count,
         )  # fmt: skip
-    something = found.launch_spin.size > 0
-    deliver(found, output, plot if something else None, overwrite)
+    something = result.launch_spin.size > 0
+    deliver(result, output, plot if something else None, overwrite)
     if plot is not None and not something:
         click.echo(f"no picture: there is nothing to draw in {plot}", err=True)
     if as_json:
-        click.echo(json.dumps(found.summary()))
+        click.echo(json.dumps(result.summary()))
     else:
         told = any(x is not None for x in (radius, height, friction, delta, decel))
         note = "" if told else "   (defaults: see --help for a real puck)"
-        click.echo(_report(found, note) if targets_file is None else _in_short(found, note))
+        click.echo(_report(result, note) if targets_file is None else _in_short(result, note))
 
 
 def _read_targets(path: Path) -> FloatArray:
@@ -200,31 +200,32 @@ def _puck_line(puck: Puck, note: str) -> str:
     )
 
 
-def _in_short(found: Aims, note: str) -> str:
+def _in_short(result: Aims, note: str) -> str:
     """How many launches there are, and how well they do."""
-    first, *others = found.explain().splitlines()
-    lines = [_puck_line(found.puck, note), f"answer  {first.rstrip('.')}", *others]
+    first, *others = result.explain().splitlines()
+    lines = [_puck_line(result.puck, note), f"answer  {first.rstrip('.')}", *others]
     return "\n".join(lines)
 
 
-def _report(found: Aim, note: str) -> str:
+def _report(result: Aim, note: str) -> str:
     """The answer, and the launches line by line."""
-    x, y = found.target
+    x, y = result.target
     text = [
-        _puck_line(found.puck, note),
+        _puck_line(result.puck, note),
         f"target  ({x:g}, {y:g}) m",
-        f"answer  {found.answer}",
+        f"answer  {result.answer}",
     ]
-    if found.launch_spin.size:
+    if result.launch_spin.size:
         text.append(
             f"\n{'w0 rad/s':>13} {'v0 x m/s':>12} {'v0 y m/s':>12} {'speed m/s':>12}"
             f" {'heading deg':>11} {'phi deg':>8} {'time s':>12} {'miss m':>7}"
         )
-    for n in range(found.launch_spin.size):
-        degrees = [math.degrees(a) for a in (found.launch_heading[n], found.launch_slip_angle[n])]
+    for n in range(result.launch_spin.size):
+        degrees = [math.degrees(a) for a in (result.launch_heading[n], result.launch_slip_angle[n])]
         text.append(
-            f"{found.launch_spin[n]:>13.6g} {found.launch_vx[n]:>12.6g} {found.launch_vy[n]:>12.6g}"
-            f" {found.launch_speed[n]:>12.6g} {degrees[0]:>11.5f} {degrees[1]:>8.3f}"
-            f" {found.stop_time[n]:>12.6g} {found.miss[n]:>7.0e}"
+            f"{result.launch_spin[n]:>13.6g} {result.launch_vx[n]:>12.6g} "
+            f"{result.launch_vy[n]:>12.6g}"
+            f" {result.launch_speed[n]:>12.6g} {degrees[0]:>11.5f} {degrees[1]:>8.3f}"
+            f" {result.stop_time[n]:>12.6g} {result.miss[n]:>7.0e}"
         )
     return "\n".join(text)

@@ -13,10 +13,10 @@ from puck_tables.cli.options import (
     NumberParam,
     RangeParam,
     deliver,
+    note,
     output_options,
     prepare_outputs,
     progress,
-    told,
 )
 
 from puck_tables.errors import InputError
@@ -92,25 +92,25 @@ def asperity(
         raise InputError(f"--speeds asks for {count} speeds: at most {MAX_SPEEDS}")
     asked = np.linspace(*speeds) if isinstance(speeds, tuple) else np.atleast_1d(speeds)
     with progress("speeds") as show:
-        curve = asperity_curve(support, asked, show)
-    deliver(curve, output, plot, overwrite)
+        result = asperity_curve(support, asked, show)
+    deliver(result, output, plot, overwrite)
     if law is not None:
-        curve.law().to_csv(law, overwrite)
-        told(law)
+        result.law().to_csv(law, overwrite)
+        note(law)
     if output is None and law is None and plot is None:
-        click.echo(encode(curve.dataset()).decode(), nl=False)
-    click.echo(_summary(curve), err=True)
+        click.echo(encode(result.dataset()).decode(), nl=False)
+    click.echo(_summary(result), err=True)
 
 
-def _summary(curve: AsperityCurve) -> str:
-    support = curve.asperity
+def _summary(result: AsperityCurve) -> str:
+    support = result.asperity
     text = (
-        f"a/b = {support.slope:.4g}, Coulomb's force {curve.crude[0]:.4g} N; leaves the crest "
+        f"a/b = {support.slope:.4g}, Coulomb's force {result.crude[0]:.4g} N; leaves the crest "
         f"above V0 = {support.lift_speed:.4g} m/s"
     )
-    if curve.leaps > MOST_LEAPS:
+    if result.leaps > MOST_LEAPS:
         text += (
-            f"\nbetween {curve.leaps} of {curve.held_speed.size - 1} neighbouring speeds the force "
-            "leaps: it varies faster than they show; give more speeds, or lower ones"
+            f"\nbetween {result.leaps} of {result.held_speed.size - 1} neighbouring speeds the "
+            "force leaps: it varies faster than they show; give more speeds, or lower ones"
         )
     return text

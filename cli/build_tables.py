@@ -8,7 +8,7 @@ from typing import Any
 import click
 from puck_tables.cli.completion import laws
 from puck_tables.cli.info import describe
-from puck_tables.cli.options import FILE, NUMBER, prepare_outputs, printable, progress, told
+from puck_tables.cli.options import FILE, NUMBER, note, prepare_outputs, printable, progress
 
 from puck_tables.errors import InputError
 
@@ -78,7 +78,7 @@ def build_tables(
         raise InputError("--speed-law does not go with --pressure: it is under uniform pressure")
     if speed_law is not None and cells is not None:
         raise InputError("--cells does not go with --speed-law: give --accuracy")
-    of, stem, words = _asked(kind, pressure, speed_law)
+    of, stem, words = _wanted(kind, pressure, speed_law)
     path = Path(f"{stem}.h5") if output is None else output
     if path.suffix.lower() != ".h5":
         raise InputError(f"{path}: a table is an HDF5 file: give a name that ends in .h5")
@@ -91,11 +91,11 @@ def build_tables(
 
         table = Table.build(of, accuracy, progress=show, **grid)
         saved = table.save(path, overwrite, " ".join(["puck build-tables", *words, *given]))
-    told(path)
+    note(path)
     click.echo(printable(describe(saved)))
 
 
-def _asked(kind: str, pressure: str | None, speed_law: Path | None) -> tuple[Any, str, list[str]]:
+def _wanted(kind: str, pressure: str | None, speed_law: Path | None) -> tuple[Any, str, list[str]]:
     """What a table is wanted of, a name for its file, and the options that said so."""
     if speed_law is not None:
         from puck_tables.contact.speed_law import SpeedLaw

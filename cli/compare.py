@@ -15,10 +15,10 @@ from puck_tables.cli.options import (
     deliver,
     explain_option,
     json_option,
+    note,
     output_options,
     prepare_outputs,
     reported,
-    told,
 )
 
 if TYPE_CHECKING:
@@ -96,43 +96,43 @@ def compare(
         checked_page(report)
     from puck_tables.reference.comparison import compare as compared
 
-    found = compared(
+    result = compared(
         files, case, columns=columns, unit=unit, angle_unit=angle_unit, up=up, puck=puck,
         launch_time=launch_time, thresholds=thresholds, steps=steps,
     )  # fmt: skip
-    deliver(found, output, plot, overwrite)
+    deliver(result, output, plot, overwrite)
     if report is not None:
         from puck_tables.plot.comparison_page import save_page
 
-        save_page(found, report, overwrite)
-        told(report)
-    reported(found, explain, as_json, in_words)
+        save_page(result, report, overwrite)
+        note(report)
+    reported(result, explain, as_json, in_words)
 
 
-def in_words(found: Comparison) -> str:
+def in_words(result: Comparison) -> str:
     """The numbers of every run in a table, and what they say."""
     from puck_tables.io.columns import COLUMNS
 
-    answer = found.answer
+    answer = result.answer
     lines = [
         f"case {answer.case.label}: {answer.case.title}",
-        f"exact: {found.whose}{answer.end} after {found.end_time:.9g} s, known to "
+        f"exact: {result.whose}{answer.end} after {result.end_time:.9g} s, known to "
         f"{answer.time_bound:.1e} s and {answer.place_bound:.1e} m",
-        f"rest counts from {', '.join(map(str, found.thresholds))} on; errors: theirs less exact",
+        f"rest counts from {', '.join(map(str, result.thresholds))} on; errors: theirs less exact",
         "",
     ]
-    width = max(4, *(len(run.log.name) for run in found.runs))
+    width = max(4, *(len(run.log.name) for run in result.runs))
     units = [COLUMNS[name].unit for name in _SHORT]
     heads = [f"{word} {'' if unit == '1' else unit}".rstrip()
              for word, unit in zip(_SHORT.values(), units, strict=True)]  # fmt: skip
     lines.append(f"{'file':<{width}} " + " ".join(f"{head:>14}" for head in heads))
-    for run, row in zip(found.runs, found.rows(), strict=True):
+    for run, row in zip(result.runs, result.rows(), strict=True):
         cells = (f"{row[name]:.6g}" if math.isfinite(row[name]) else "-" for name in _SHORT)
         lines.append(f"{run.log.name:<{width}} " + " ".join(f"{cell:>14}" for cell in cells))
-    if untold := found.untold():
+    if untold := result.untold():
         lines += ["", "not told:", *(f"  {one}" for one in untold)]
-    if fallen := found.convergence():
+    if fallen := result.convergence():
         lines += ["", "as the step falls:", *(f"  {name}: {what}" for name, what in fallen.items())]
-    if truths := found.truths():
+    if truths := result.truths():
         lines += ["", "truth and not error:", *(f"  {one}" for one in truths)]
     return "\n".join(lines)

@@ -13,8 +13,8 @@ def scenes(context: click.Context, param: click.Parameter, begun: str) -> list[C
     from puck_tables.scene.library import shipped_scenes
 
     named = shipped_scenes().items()
-    found = [CompletionItem(name, help=title) for name, title in named if name.startswith(begun)]
-    return found if param.metavar is None else [*found, CompletionItem(begun, type="file")]
+    result = [CompletionItem(name, help=title) for name, title in named if name.startswith(begun)]
+    return result if param.metavar is None else [*result, CompletionItem(begun, type="file")]
 
 
 def cases(context: click.Context, param: click.Parameter, begun: str) -> list[CompletionItem]:
@@ -26,5 +26,5 @@ def cases(context: click.Context, param: click.Parameter, begun: str) -> list[Co
 
 def laws(context: click.Context, param: click.Parameter, begun: str) -> list[CompletionItem]:
     """Names of pressure laws, and files."""
-    found = [CompletionItem(name) for name in _LAWS if name.startswith(begun)]
-    return [*found, CompletionItem(begun, type="file")]
+    result = [CompletionItem(name) for name in _LAWS if name.startswith(begun)]
+    return [*result, CompletionItem(begun, type="file")]

@@ -6,7 +6,7 @@ import webbrowser
 from pathlib import Path
 
 import click
-from puck_tables.cli.options import FILE, prepare_outputs, told
+from puck_tables.cli.options import FILE, note, prepare_outputs
 
 from puck_tables.errors import InputError, OutputError
 
@@ -35,7 +35,7 @@ def explore(output: Path | None, overwrite: bool) -> None:
             raise InputError(f"{output}: the explorer is a page: call it FILE.html")
         prepare_outputs(others=(output,), overwrite=overwrite)
         write_bytes(output, explorer_page().encode(), overwrite)
-        told(output)
+        note(output)
         return
     folder = user_cache()
     if folder is None:
@@ -48,6 +48,6 @@ def explore(output: Path | None, overwrite: bool) -> None:
         raise OutputError(f"{folder}: {error.strerror or error}: give -o FILE.html") from None
     page = folder / "explorer.html"
     write_bytes(page, explorer_page().encode(), overwrite=True)
-    told(page)
+    note(page)
     if not webbrowser.open(page.as_uri()):
         click.echo("No browser could be opened: open that file in one.", err=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import click
-from puck_tables.cli.options import FILE, NUMBER, body_options, prepare_outputs, puck_given, told
+from puck_tables.cli.options import FILE, NUMBER, body_options, chosen_puck, note, prepare_outputs
 
 
 @click.command()
@@ -48,8 +48,8 @@ def export(
     parts = checked_request(language, what, tol)
     checked_ending(output, language)
     prepare_outputs(inputs=(pressure,), others=(output,), overwrite=overwrite)
-    puck = puck_given(None, None, None, None, None, None, pressure, gyration)
+    puck = chosen_puck(None, None, None, None, None, None, pressure, gyration)
     source = export_source(language, parts, tol, puck)
     source.save(output, overwrite)
     click.echo(repr(source), err=True)
-    told(output)
+    note(output)

@@ -18,11 +18,11 @@ from puck_tables.cli.options import (
     deliver,
     explain_option,
     json_option,
+    note,
     output_options,
     prepare_outputs,
     progress,
     reported,
-    told,
 )
 from puck_tables.cli.track_options import read_all, track_options
 
@@ -201,7 +201,7 @@ def fit(
                 fixed[name] = value
     tracks = read_all(files, how)
     with progress("fitting") as show:
-        found = find(
+        result = find(
             tracks, puck, free=wanted, fixed=fixed,
             prior=_pairs(prior, "--prior", "VALUE:SIGMA"),
             bounds=_pairs(bound, "--bound", "LOW:HIGH"),
@@ -217,10 +217,10 @@ def fit(
             hold_out=_held(hold_out), progress=show,
         )  # fmt: skip
     if is_json and output is not None:
-        found.save(output, overwrite)
-        told(output)
-    deliver(found, None if is_json else output, plot, overwrite)
-    reported(found, explain, as_json, report)
+        result.save(output, overwrite)
+        note(output)
+    deliver(result, None if is_json else output, plot, overwrite)
+    reported(result, explain, as_json, report)
 
 
 def _names(text: str, option: str, like: str) -> list[str]:
@@ -243,15 +243,15 @@ def _named(texts: tuple[str, ...], option: str) -> dict[str, str]:
     ------
     InputError
     """
-    found: dict[str, str] = {}
+    result: dict[str, str] = {}
     for text in texts:
         name, equals, value = text.partition("=")
         if not equals or not name.strip() or not value.strip():
             raise InputError(f"{option} '{text}' must be NAME=VALUE, like friction=0.2")
-        if name.strip() in found:
+        if name.strip() in result:
             raise InputError(f"{option} names {name.strip()} twice: give it once")
-        found[name.strip()] = value.strip()
-    return found
+        result[name.strip()] = value.strip()
+    return result
 
 
 _UNITS = {
@@ -280,13 +280,13 @@ def _pairs(texts: tuple[str, ...], option: str, form: str) -> dict[str, tuple[fl
     ------
     InputError
     """
-    found = {}
+    result = {}
     for name, text in _named(texts, option).items():
         parts = text.split(":")
         if len(parts) != 2:
             raise InputError(f"{option} {name}={text} must be {name}={form}, like {name}=0.2:0.05")
-        found[name] = _number(parts[0], option, name), _number(parts[1], option, name)
-    return found
+        result[name] = _number(parts[0], option, name), _number(parts[1], option, name)
+    return result
 
 
 def _noise(text: str | None) -> tuple[float, float | None] | None:

@@ -12,22 +12,22 @@ if TYPE_CHECKING:
 _DIGITS = 9  # after the point: more are written with a power of ten
 
 
-def report(found: Fit) -> str:
+def report(result: Fit) -> str:
     """What was found, plainly first, then the numbers."""
-    lines = [_plainly(found), ""]
-    for name, number in found.numbers.items():
+    lines = [_plainly(result), ""]
+    for name, number in result.numbers.items():
         if number.how != "known":
             lines.append(f"{name:<15} {_shown(number)}")
     known = [
-        f"{name} {number.value:g}{_unit(number)}" for name, number in found.numbers.items()
+        f"{name} {number.value:g}{_unit(number)}" for name, number in result.numbers.items()
         if number.how == "known"
     ]  # fmt: skip
     lines += [
         f"{'taken as known':<15} {', '.join(known)}",
-        f"{'pressure':<15} {found.puck.body.law.name}",
+        f"{'pressure':<15} {result.puck.body.law.name}",
     ]
-    lines += [f"{'correlation':<15} {text}" for text in _correlations(found)]
-    for launch in found.launches:
+    lines += [f"{'correlation':<15} {text}" for text in _correlations(result)]
+    for launch in result.launches:
         v, w = launch.numbers, launch.numbers["launch_spin"]
         lines += [
             f"\nlaunch of {launch.name}, at {launch.time:g} s",
@@ -35,9 +35,9 @@ def report(found: Fit) -> str:
             f"{_errors(v['launch_x'], v['launch_y'])}",
             f"{'  velocity':<15} ({launch.velocity[0]:.6g}, {launch.velocity[1]:.6g}) m/s "
             f"{_errors(v['launch_vx'], v['launch_vy'])}",
-            f"{'  spin':<15} {_spin(found, w)}",
+            f"{'  spin':<15} {_spin(result, w)}",
         ]
-    for one in found.impacts:
+    for one in result.impacts:
         degrees = math.degrees(one.wall) % 360.0
         what = f"{one.partner}" if one.partner else "a wall"
         lines += [
@@ -48,34 +48,34 @@ def report(found: Fit) -> str:
         ]
         if one.mass_ratio is not None and one.mass_ratio.how != "known":
             lines.append(f"{'  mass ratio':<15} {_shown(one.mass_ratio)}")
-    angled = any(film.angle is not None for film in found.estimate.problem.films)
-    how = ["given" if known else "from the residuals" for known in found.noise_known[:2]]
-    noise = f"places {1e3 * found.noise[0]:.3g} mm ({how[0]})"
+    angled = any(film.angle is not None for film in result.estimate.problem.films)
+    how = ["given" if known else "from the residuals" for known in result.noise_known[:2]]
+    noise = f"places {1e3 * result.noise[0]:.3g} mm ({how[0]})"
     if angled:
-        noise += f", angles {1e3 * found.noise[1]:.3g} mrad ({how[1]})"
-    if found.jitter:
-        how_stamps = "given" if found.noise_known.jitter else "from the residuals"
-        noise += f", time stamps {1e3 * found.jitter:.3g} ms ({how_stamps})"
+        noise += f", angles {1e3 * result.noise[1]:.3g} mrad ({how[1]})"
+    if result.jitter:
+        how_stamps = "given" if result.noise_known.jitter else "from the residuals"
+        noise += f", time stamps {1e3 * result.jitter:.3g} ms ({how_stamps})"
     lines += [
         "",
         f"{'noise':<15} {noise}",
-        f"{'chi^2':<15} {found.chi2:.5g} for {found.degrees} degrees of freedom",
-        f"{'left out':<15} {100.0 * found.outliers:.3g} % of the observations, as outliers",
-        *_cut_off(found),
-        f"{'residuals':<15} probability of such a pattern by chance: runs {found.runs:.2g}, "
-        f"drift {found.drift:.2g}",
+        f"{'chi^2':<15} {result.chi2:.5g} for {result.degrees} degrees of freedom",
+        f"{'left out':<15} {100.0 * result.outliers:.3g} % of the observations, as outliers",
+        *_left_out(result),
+        f"{'residuals':<15} probability of such a pattern by chance: runs {result.runs:.2g}, "
+        f"drift {result.drift:.2g}",
     ]
-    if speeds := found.estimate.problem.spec.speeds:
-        fewer = found.constant_chi2 - found.chi2
+    if speeds := result.estimate.problem.spec.speeds:
+        fewer = result.constant_chi2 - result.chi2
         lines += [
             "", f"{'slip speeds':<15} {', '.join(f'{u:g}' for u in speeds)} m/s, of friction_0 and "
             f"so on; chi^2 is {fewer:.4g} less than with one friction for {len(speeds) - 1} more "
             "numbers",
         ]  # fmt: skip
-    if found.laws:
-        lines += ["", *_laws(found)]
-    if found.held_out is not None:
-        held = found.held_out
+    if result.laws:
+        lines += ["", *_laws(result)]
+    if result.held_out is not None:
+        held = result.held_out
         lines += [
             "",
             f"{'held out':<15} {held.z_place.size + held.z_angle.size} observations of "
@@ -86,40 +86,40 @@ def report(found: Fit) -> str:
     return "\n".join(lines)
 
 
-def _cut_off(found: Fit) -> list[str]:
+def _left_out(result: Fit) -> list[str]:
     """Frames at either end that are no free motion."""
     return [
         f"{'cut off':<15} the first {first} and the last {last} frames of {name}: no free motion"
-        for name, first, last in found.left_out
+        for name, first, last in result.left_out
         if first or last
     ]
 
 
-def _plainly(found: Fit) -> str:
+def _plainly(result: Fit) -> str:
     """What was found and what was not, in sentences."""
-    sentences = [f"{found.cut_off}."] if found.cut_off else []
-    friction, tilt = found.numbers["friction"], found.numbers["delta"]
+    sentences = [f"{result.cut_off}."] if result.cut_off else []
+    friction, tilt = result.numbers["friction"], result.numbers["delta"]
     if friction.determined:
         sentences.append(
             f"The friction coefficient is {_rounded(friction)}: sliding without spin the puck "
-            f"would lose {found['decel'].value:.4g} m/s each second."
+            f"would lose {result['decel'].value:.4g} m/s each second."
         )
-    elif found["decel"].determined:
-        sentences.append(f"The puck would slide to rest at {_rounded(found['decel'])}.")
+    elif result["decel"].determined:
+        sentences.append(f"The puck would slide to rest at {_rounded(result['decel'])}.")
     if tilt.determined and tilt.how != "known":
         sentences.append(
             f"Its dimensionless height is {_rounded(tilt)}: so much friction tips its load forward."
         )
-    sentences += [*found.blind, *found.remarks]
-    if found.complaints:
-        sentences += [text if text.endswith("?") else f"{text}." for text in found.complaints]
-        angled = any(film.angle is not None for film in found.estimate.problem.films)
+    sentences += [*result.blind, *result.remarks]
+    if result.complaints:
+        sentences += [text if text.endswith("?") else f"{text}." for text in result.complaints]
+        angled = any(film.angle is not None for film in result.estimate.problem.films)
         said = "Or the radius, the unit of the angles or the way they turn is not as said."
         sentences.append(
             "So this may be no freely sliding puck, or not all of its motion: look at --plot, and "
             "give --since and --until if a hand or a wall touches it."
-            + ("" if found.misfit else " Or speed changes its friction, or air slows it, too.")
-            + (f" {said}" if angled and not found.misfit else "")
+            + ("" if result.misfit else " Or speed changes its friction, or air slows it, too.")
+            + (f" {said}" if angled and not result.misfit else "")
         )
     return "\n".join(sentences)
 
@@ -161,18 +161,18 @@ def _shown(number: Number) -> str:
     return f"{_rounded(number)}{interval}{how}{follows}"
 
 
-def _spin(found: Fit, spin: Number) -> str:
+def _spin(result: Fit, spin: Number) -> str:
     """A launch spin, as it is taken where whole turns from frame to frame are open."""
-    films = found.estimate.problem.films
+    films = result.estimate.problem.films
     half = min((math.pi / film.usual_step for film in films if film.angle is not None), default=0.0)
     if spin.determined or abs(spin.value) > half:
         return _shown(spin)
     return f"{spin.value:.5g} rad/s if it turns less than half a turn a frame; not determined"
 
 
-def _correlations(found: Fit) -> list[str]:
+def _correlations(result: Fit) -> list[str]:
     """Of each two numbers that were found."""
-    table = found.correlation()
+    table = result.correlation()
     names = list(table)
     return [
         f"{one} and {other}: {table[one][other]:.3f}"
@@ -181,11 +181,11 @@ def _correlations(found: Fit) -> list[str]:
     ]  # fmt: skip
 
 
-def _laws(found: Fit) -> list[str]:
+def _laws(result: Fit) -> list[str]:
     """The laws compared, line by line."""
-    best = found.laws[0]
+    best = result.laws[0]
     lines = [f"{'law':<18} {'chi^2':>10} {'more':>9} {'unknowns':>9} {'weight':>8}  found"]
-    for law in found.laws:
+    for law in result.laws:
         numbers = ", ".join(f"{name} {value:.4g}" for name, value in law.numbers.items())
         lines.append(
             f"{law.name:<18} {law.chi2:>10.5g} {law.chi2 - best.chi2:>9.4g} {law.unknowns:>9} "

@@ -9,10 +9,10 @@ from puck_tables.cli.options import (
     FILE,
     NUMBER,
     body_options,
+    chosen_puck,
     deliver,
     output_options,
     prepare_outputs,
-    puck_given,
     puck_options,
 )
 
@@ -53,7 +53,7 @@ def limit_surface(
     puck limit-surface --delta 0 --pressure ring --plot surface.png
     """  # noqa: D301 - click reads the backspace
     prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=(pressure,))
-    puck = puck_given(
+    puck = chosen_puck(
         radius, height, friction, gravity, delta, decel, pressure, gyration, mass=mass
     )
     surface = puck.limit_surface(points)

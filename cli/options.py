@@ -243,7 +243,7 @@ def reported(result: Any, explain: bool, as_json: bool, in_words: Callable[[Any]
         click.echo(printable(in_words(result)))
 
 
-def puck_given(
+def chosen_puck(
     radius: float | None,
     height: float | None,
     friction: float | None,

@@ -86,19 +86,19 @@ def reference(
     if epsilon is not None and friction:
         raise InputError("--epsilon and --friction both choose the ratios: give one of them")
     prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=(times,))
-    found: Any
+    result: Any
     with one_question():
         if over:
             from puck_tables.reference.floor_friction import floor_friction
 
-            found = floor_friction(case, epsilon)
+            result = floor_friction(case, epsilon)
         else:
             from puck_tables.reference.answer import reference_case
 
-            found = reference_case(case, **frames)
-    deliver(found, output, plot, overwrite)
+            result = reference_case(case, **frames)
+    deliver(result, output, plot, overwrite)
     words = _friction if over else report
-    reported(found, explain, False, _with_columns if as_json else words)
+    reported(result, explain, False, _with_columns if as_json else words)
 
 
 def _listed(as_json: bool) -> str:
@@ -111,12 +111,12 @@ def _listed(as_json: bool) -> str:
     return "\n".join(f"{case.name:<{width}}  {case.version}  {case.title}" for case in CASES)
 
 
-def _with_columns(found: Answer | FloorFriction) -> str:
+def _with_columns(result: Answer | FloorFriction) -> str:
     """The summary and the columns of a file as one JSON object."""
     from puck_tables.io.json import encode
 
-    columns = json.loads(encode(found.dataset()))["columns"]
-    return json.dumps({**found.summary(), "columns": columns}, allow_nan=False)
+    columns = json.loads(encode(result.dataset()))["columns"]
+    return json.dumps({**result.summary(), "columns": columns}, allow_nan=False)
 
 
 def report(answer: Answer) -> str:
@@ -131,18 +131,20 @@ def report(answer: Answer) -> str:
     return "\n".join(f"{name:<12} {text}" for name, text in lines.items())
 
 
-def _friction(found: FloorFriction) -> str:
+def _friction(result: FloorFriction) -> str:
     """A few rows of force and torque over ε."""
     head = f"{'v/(r w)':>12} {'r w/v':>12} {'F along/fN':>14} {'F across/fN':>14} {'M/(fNr)':>14}"
-    step = max(1, found.epsilon.size // 20)
+    step = max(1, result.epsilon.size // 20)
     rows = [
-        f"{found.epsilon[n]:>12.6g} {found.slip_ratio[n]:>12.6g} {found.share_along[n]:>14.10f} "
-        f"{found.share_across[n]:>14.10f} {found.share_torque[n]:>14.10f}"
-        for n in range(0, found.epsilon.size, step)
+        f"{result.epsilon[n]:>12.6g} {result.slip_ratio[n]:>12.6g} {result.share_along[n]:>14.10f} "
+        f"{result.share_across[n]:>14.10f} {result.share_torque[n]:>14.10f}"
+        for n in range(0, result.epsilon.size, step)
     ]
-    what = f"{found.case.label}: on the floor, fN = {found.load:.6g} N, r = {found.puck.radius:g} m"
+    what = (
+        f"{result.case.label}: on the floor, fN = {result.load:.6g} N, r = {result.puck.radius:g} m"
+    )
     if step > 1:
         rows.append(
-            f"one row in {step} of {found.epsilon.size}: -o FILE saves all, --json prints them"
+            f"one row in {step} of {result.epsilon.size}: -o FILE saves all, --json prints them"
         )
     return "\n".join([what, head, *rows])

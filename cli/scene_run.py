@@ -259,8 +259,8 @@ def _inputs(scene: Scene) -> dict[str, str]:
     parts: dict[str, list[str]] = {}
     for entry in entries(scene):
         part, dot, name = entry.path.partition(".")
-        told = dot or part not in ("title", "gravity")  # above all, and of each puck
-        if is_dataclass(entry.value) or not told:  # its entries follow
+        note = dot or part not in ("title", "gravity")  # above all, and of each puck
+        if is_dataclass(entry.value) or not note:  # its entries follow
             continue
         if entry.value != entry.default and entry.value is not None:
             unit = f" {entry.kind.unit}" if entry.kind.unit else ""

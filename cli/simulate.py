@@ -17,6 +17,7 @@ from puck_tables.cli.options import (
     Times,
     Vector,
     body_options,
+    chosen_puck,
     deliver,
     explain_option,
     filmed,
@@ -25,7 +26,6 @@ from puck_tables.cli.options import (
     output_options,
     prepare_outputs,
     printable,
-    puck_given,
     puck_options,
     reported,
     table_option,
@@ -136,9 +136,9 @@ def simulate(
             inputs=(table_path, pressure, fit_path),
         )  # fmt: skip
         if fit_path is not None:
-            puck, velocity, w0, unknown = _fitted(ctx, fit_path, track)
+            puck, velocity, w0, unknown = _from_fit(ctx, fit_path, track)
         elif v0 is not None:
-            puck = puck_given(
+            puck = chosen_puck(
                 radius, height, friction, gravity, delta, decel, pressure, gyration, mass
             )
             velocity = v0
@@ -164,7 +164,7 @@ def simulate(
     reported(run, explain, as_json, in_words)
 
 
-def _fitted(
+def _from_fit(
     ctx: click.Context, path: Path, track: str | None
 ) -> tuple[Puck, tuple[float, float], float, tuple[str, ...]]:
     """The puck and the launch of a fit, which no option contradicts, and what it left open.

@@ -13,16 +13,16 @@ from puck_tables.cli.options import (
     RangeParam,
     Vector,
     body_options,
+    chosen_puck,
     explain_option,
     output_options,
     progress,
-    puck_given,
     puck_options,
     table_option,
     tables_named,
 )
 from puck_tables.cli.scene_run import files_read, scene_options, scene_tables, summary_of_map
-from puck_tables.cli.sweep_options import Whole, laws_given, samples_checked, spreads_given
+from puck_tables.cli.sweep_options import Whole, chosen_laws, chosen_spreads, samples_checked
 
 from puck_tables.accuracy.methods import METHODS
 from puck_tables.errors import InputError
@@ -138,11 +138,11 @@ def sweep(
             if random is None:
                 ends: Any = one.sweep(progress=show, **whole.how)
             else:
-                drawn = spreads_given(spreads, None, one.unit_of)
+                drawn = chosen_spreads(spreads, None, one.unit_of)
                 ends = one.sample(random, seed or 0, drawn, progress=show, **whole.how)
         whole.deliver(ends, summary_of_map(ends))
         return
-    drawn = spreads_given(spreads, ARGUMENTS, lambda name: COLUMNS[COLUMN[name]].unit)
+    drawn = chosen_spreads(spreads, ARGUMENTS, lambda name: COLUMNS[COLUMN[name]].unit)
     if v0 is not None and numbers["speed"] is not None:
         raise InputError("--v0 and --speed clash: both give the launch velocity")
     for name, option in ARGUMENTS.items():
@@ -151,7 +151,7 @@ def sweep(
     whole.refuse_outputs((table_path, *pressure))
     given = {ARGUMENTS[name]: value for name, value in numbers.items() if value is not None} | drawn
     ranged = {name: value for name, value in given.items() if isinstance(value, tuple | list)}
-    laws = laws_given(pressure)
+    laws = chosen_laws(pressure)
     if random is not None and (ranged or len(laws) > 1):
         first = next(iter(ranged), "pressure")
         raise InputError(
@@ -194,7 +194,7 @@ _OF_PUCK = ("radius", "height", "friction", "gravity", "delta", "decel", "gyrati
 def _puck(given: dict[str, Any], laws: list[str]) -> Puck:
     """The puck, with the lowest number of each range, and the middle of each spread."""
     alone: dict[str, Any] = {name: _first(given.get(name)) for name in _OF_PUCK}
-    return puck_given(**alone, pressure=laws[0])
+    return chosen_puck(**alone, pressure=laws[0])
 
 
 def _first(value: Any) -> float | None:

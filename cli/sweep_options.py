@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 from puck_tables.cli.endings import last_words
-from puck_tables.cli.options import deliver, explained, prepare_outputs, printable, told
+from puck_tables.cli.options import deliver, explained, note, prepare_outputs, printable
 
 from puck_tables.errors import InputError, OutputError
 
@@ -22,7 +22,7 @@ SUMMED = 1_000_000  # samples (of each puck) of a store that are summed up unask
 _RINGS = re.compile(r"annulus:([^:]*):([^:]*):([0-9]{1,10})")
 
 
-def spreads_given(
+def chosen_spreads(
     spreads: Iterable[str], names: Mapping[str, str] | None, unit_of: Callable[[str], str]
 ) -> dict[str, Spread]:
     """Spreads by what scatters.
@@ -83,7 +83,7 @@ def samples_checked(
     return found
 
 
-def laws_given(pressure: tuple[str, ...]) -> list[str]:
+def chosen_laws(pressure: tuple[str, ...]) -> list[str]:
     """Pressure laws, annulus:START:STOP:COUNT as so many of them.
 
     Raises
@@ -211,7 +211,7 @@ class Whole:
         from puck_tables.bulk.summary import Summary
 
         if self.stored and self.output is not None:
-            told(self.output)
+            note(self.output)
             last_words[:] = last_words[:1]
         else:
             deliver(result, self.output, None, self.overwrite)

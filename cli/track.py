@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import click
-from puck_tables.cli.options import FILE, output_options, prepare_outputs, printable, told
+from puck_tables.cli.options import FILE, note, output_options, prepare_outputs, printable
 from puck_tables.cli.track_options import read_all, track_options
 
 
@@ -48,13 +48,13 @@ def track(
         from puck_tables.io.formats import save
 
         save(dataset(tracks), output, overwrite)
-        told(output)
+        note(output)
     if plot is not None:
         from puck_tables.plot.style import save_figure
         from puck_tables.plot.track_figure import draw
 
         save_figure(draw(tracks), plot, overwrite)
-        told(plot)
+        note(plot)
     for one in tracks:
         click.echo(printable("\n".join(described(one))))
     if said := marks_of_one(tracks):

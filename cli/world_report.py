@@ -97,11 +97,11 @@ def _pucks(run: Run) -> list[str]:
             0.0 if abs(way) < unseen else way for way in (*end, math.dist(end, start_of(piece)))
         )
         shown = name if len(name) <= wide else name[: wide - 3] + "..."
-        rows.append(f"{shown:<{wide}} {x:>12.6g} {y:>12.6g} {moved:>10.4g}  {_fate(run, number)}")
+        rows.append(f"{shown:<{wide}} {x:>12.6g} {y:>12.6g} {moved:>10.4g}  {_ending(run, number)}")
     return rows
 
 
-def _fate(run: Run, number: int) -> str:
+def _ending(run: Run, number: int) -> str:
     """What became of a puck."""
     name, stop = run.names[number], float(run.stop_times[number])
     for event in run.events:
@@ -162,13 +162,13 @@ def _heat(run: Run) -> str:
              "heat_impact": "impacts"}  # fmt: skip
     heats = {words: last[name] if abs(last[name]) > unseen else 0.0
              for name, words in names.items()}  # fmt: skip
-    told = ", ".join(
+    note = ", ".join(
         f"{heat:.6g} J {words}" for words, heat in heats.items()
         if heat or words in ("floor", "impacts")
     )  # fmt: skip
     rounding = run.energy_residual < _ROUNDING
     missed = f"under {_ROUNDING:g}" if rounding else f"{run.energy_residual:.1e}"
-    return f"{told}; ledger misses {missed} of it"
+    return f"{note}; ledger misses {missed} of it"
 
 
 def _error(run: Run) -> str:

@@ -35,7 +35,7 @@ def work_digest(**what: Any) -> str:
     >>> work_digest(tol=1e-8, w0=np.arange(3)) == work_digest(tol=1e-8, w0=np.arange(3.0))
     False
     """
-    text = json.dumps([what, program()], sort_keys=True, default=_told_apart)
+    text = json.dumps([what, program()], sort_keys=True, default=_apart)
     return hashlib.sha256(text.encode()).hexdigest()
 
 
@@ -53,7 +53,7 @@ def program() -> tuple[str, ...]:
     return source_digest(), *runs, platform.machine(), platform.processor(), sys.version
 
 
-def _told_apart(value: Any) -> Any:
+def _apart(value: Any) -> Any:
     """An array as a digest of all that it is; whatever else JSON does not know is refused."""
     if isinstance(value, np.ndarray | np.generic):
         array = np.asarray(value)

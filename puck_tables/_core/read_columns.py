@@ -82,7 +82,7 @@ class Numbers:
 
 
 def numbers_of(
-    given: str | Path | Sequence[Sequence[float]], columns: Sequence[InputColumn], needed: int,
+    entries: str | Path | Sequence[Sequence[float]], columns: Sequence[InputColumn], needed: int,
     most: int, name: str = "",
 ) -> Numbers:  # fmt: skip
     r"""Columns of numbers, given as rows or in a text file of any separator and decimal mark.
@@ -114,11 +114,11 @@ def numbers_of(
     ...     numbers_of(file, (SPEED, FRICTION), 2, 1000).rows.tolist()
     [[0.0, 0.3], [0.5, 0.2]]
     """
-    if not isinstance(given, str | Path):
-        return Numbers(_checked(given, columns, needed, name), ("",) * len(columns))
-    content = _content(given, most)
+    if not isinstance(entries, str | Path):
+        return Numbers(_checked(entries, columns, needed, name), ("",) * len(columns))
+    content = _content(entries, most)
     read = _read if len(content) <= _KEPT else _read.__wrapped__
-    return read(str(given), content, tuple(columns), needed)
+    return read(str(entries), content, tuple(columns), needed)
 
 
 @lru_cache(maxsize=16)  # a scene asks for its law again and again
@@ -225,10 +225,10 @@ def _content(path: str | Path, most: int) -> bytes:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
 
 
-def _checked(given: Any, columns: Sequence[InputColumn], needed: int, name: str) -> FloatArray:
+def _checked(entries: Any, columns: Sequence[InputColumn], needed: int, name: str) -> FloatArray:
     """Rows that somebody gave."""
     try:
-        rows = np.array([[float(cell) for cell in row] for row in given])
+        rows = np.array([[float(cell) for cell in row] for row in entries])
     except (TypeError, ValueError, OverflowError):
         rows = np.empty((0, 0))
     if rows.ndim != 2 or not needed <= rows.shape[1] <= len(columns) or not np.isfinite(rows).all():

@@ -66,7 +66,7 @@ def read_part(kind: type[T], data: Any, path: str, reading: Reading) -> T | None
         same = type(data) is kind or specs(type(data)).keys() == specs(kind).keys()
         if same and "_checked" in vars(data):  # it, or one with verbs besides
             return data
-        data = given_in(data, specs(kind))
+        data = entries_in(data, specs(kind))
     if not isinstance(data, Mapping):
         reading.fault(path or kind.__name__.lower(), data, f"a table or a {kind.__name__}")
         return None
@@ -97,7 +97,7 @@ def mark_checked(part: Any) -> None:
     object.__setattr__(part, "_checked", True)
 
 
-def given_in(part: Any, known: Mapping[str, Any]) -> dict[str, Any]:
+def entries_in(part: Any, known: Mapping[str, Any]) -> dict[str, Any]:
     """The values of a dataclass by their names in tables; what is left at its default is left out.
 
     Fields that are not ``known`` are told of, whatever they hold.
@@ -123,10 +123,10 @@ def read_values(
             reading.errors.append(f"{prefix}{called}: no such entry (there are: {near})")
     values: dict[str, Any] = {}
     for name, spec in known.items():
-        given = _given(data, name, known)
-        if given is not MISSING and not (given is None and spec.default is None):
+        entries = _entry(data, name, known)
+        if entries is not MISSING and not (entries is None and spec.default is None):
             values[spec.name] = _read(
-                spec.metadata["kind"], given, prefix + in_tables(name), reading, spec.default
+                spec.metadata["kind"], entries, prefix + in_tables(name), reading, spec.default
             )
         elif spec.default is MISSING and spec.default_factory is MISSING:
             what: Kind = spec.metadata["kind"]
@@ -135,12 +135,12 @@ def read_values(
     return values if len(reading.errors) == before else None
 
 
-def _given(data: Mapping[str, Any], name: str, known: Mapping[str, Any]) -> Any:
+def _entry(data: Mapping[str, Any], name: str, known: Mapping[str, Any]) -> Any:
     """What stands under a name; a list where both a part and a list of parts have that name."""
     plain = in_tables(name)
     if name != plain and name not in data:
-        given = data.get(plain, MISSING)
-        return given if _items(given) is not None else MISSING
+        entries = data.get(plain, MISSING)
+        return entries if _items(entries) is not None else MISSING
     if name + LISTED in known and _items(data.get(name)) is not None:
         return MISSING
     return data.get(name, MISSING)
@@ -210,8 +210,8 @@ def _named(kind: Kind, value: Any, path: str, reading: Reading) -> Any:
 def _rows(kind: Kind, value: Any, path: str, reading: Reading) -> tuple[tuple[float, ...], ...]:
     """A table of numbers, as it may stand in a CSV file, or what can be one: a law with points."""
     try:
-        given = value.as_rows() if hasattr(value, "as_rows") else value
-        rows = np.array(given, dtype=np.float64)
+        entries = value.as_rows() if hasattr(value, "as_rows") else value
+        rows = np.array(entries, dtype=np.float64)
     except PuckError as error:
         reading.errors.append(f"{path}: {error}")
         return ()

@@ -66,8 +66,8 @@ def real_view(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
 
     Examples
     --------
-    >>> given = np.ones(3)
-    >>> real_view("w0", given, "rad/s") is given
+    >>> entries = np.ones(3)
+    >>> real_view("w0", entries, "rad/s") is entries
     True
     """
     if type(values) is np.ndarray and values.dtype == np.float64:

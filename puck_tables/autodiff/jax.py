@@ -44,7 +44,7 @@ def _found_jvp(kind: host.PuckKind, primals: Any, tangents: Any) -> Any:
     return _found(arguments, kind), jnp.einsum("...rc,...c->...r", jacobian, moved)
 
 
-def _joined(velocity: Any, *others: Any) -> Any:
+def _merged(velocity: Any, *others: Any) -> Any:
     """Arguments (…, columns) in double precision."""
     arrays = [jnp.asarray(one) for one in (velocity, *others)]
     if not jax.config.read("jax_enable_x64") or any(array.dtype == jnp.float32 for array in arrays):
@@ -87,7 +87,7 @@ def stop(
     ...     float(jax.grad(lambda w: stop((1.0, 0.0), w)[1])(5.0).round(6))
     0.420792
     """
-    return _found(_joined(velocity, spin, delta, decel, radius), host.PuckKind(pressure, gyration))
+    return _found(_merged(velocity, spin, delta, decel, radius), host.PuckKind(pressure, gyration))
 
 
 def states(
@@ -119,5 +119,5 @@ def states(
     >>> x.round(6).tolist()
     [1.590682, 2.213952]
     """
-    joined = _joined(velocity, spin, delta, decel, radius, time)
+    joined = _merged(velocity, spin, delta, decel, radius, time)
     return _found(joined, host.PuckKind(pressure, gyration))

@@ -51,7 +51,7 @@ def _slopes(arguments: Any, kind: host.PuckKind) -> Any:
     return torch.from_numpy(found).to(arguments.device)
 
 
-def _joined(velocity: Any, *others: Any) -> Any:
+def _merged(velocity: Any, *others: Any) -> Any:
     """Arguments (…, columns) in double precision."""
     for one in (velocity, *others):
         if isinstance(one, torch.Tensor) and one.is_floating_point() and one.dtype != torch.float64:
@@ -94,7 +94,7 @@ def stop(
     0.420792
     """
     kind = host.PuckKind(pressure, gyration)
-    return _Found.apply(_joined(velocity, spin, delta, decel, radius), kind)
+    return _Found.apply(_merged(velocity, spin, delta, decel, radius), kind)
 
 
 def states(
@@ -124,5 +124,5 @@ def states(
     >>> round(states((1.0, 0.0), 5.0, 2.0)[0].item(), 6)
     1.590682
     """
-    joined = _joined(velocity, spin, delta, decel, radius, time)
+    joined = _merged(velocity, spin, delta, decel, radius, time)
     return _Found.apply(joined, host.PuckKind(pressure, gyration))

@@ -26,7 +26,7 @@ class Blocks:
     @property
     def box(self) -> tuple[int, ...]:
         """How many items along each axis."""
-        cut, inner = self._cut
+        cut, inner = self._blocked
         if cut < 0:
             return self.shape
         length = self.shape[cut]
@@ -34,7 +34,7 @@ class Blocks:
         return *(1 for _ in self.shape[:cut]), -(-length // parts), *self.shape[cut + 1 :]
 
     @property
-    def _cut(self) -> tuple[int, int]:
+    def _blocked(self) -> tuple[int, int]:
         """The axis that is cut, −1 for none, and how many items the axes behind it have."""
         inner = 1
         for axis in reversed(range(len(self.shape))):
@@ -55,11 +55,11 @@ class Blocks:
 
     def place(self, block: int) -> tuple[int, ...]:
         """Which block it is along each axis."""
-        found = []
+        result = []
         for n in reversed(self.grid):
             block, rest = divmod(block, n)
-            found.append(rest)
-        return tuple(reversed(found))
+            result.append(rest)
+        return tuple(reversed(result))
 
     def slices(self, block: int) -> tuple[slice, ...]:
         """Its box."""

@@ -160,8 +160,8 @@ def spread_named(text: str, unit: str = "") -> Spread:
         raise InputError(
             f"'{text}' is no spread: write normal:MEAN:DEVIATION or uniform:LOW:HIGH{hint}"
         ) from None
-    found: Spread = KINDS[name](first, second)
-    return found
+    result: Spread = KINDS[name](first, second)
+    return result
 
 
 def checked_samples(count: int, seed: int) -> None:

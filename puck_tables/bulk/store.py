@@ -126,14 +126,14 @@ class Store:
         """
         self.place.refuse_lost()
         start, stop = self.blocks.run(block)
-        found = self._kept(block)
-        if found is None:
-            found = self.work.columns_of(stop - start)
+        result = self._kept(block)
+        if result is None:
+            result = self.work.columns_of(stop - start)
             for begin in range(start, stop, self.work.part):
-                self.work.filled(found, begin, min(begin + self.work.part, stop), start)
+                self.work.filled(result, begin, min(begin + self.work.part, stop), start)
                 keep_on()
-            self._keep(block, found)
-        return Tally.of(found[self.work.code], start)
+            self._keep(block, result)
+        return Tally.of(result[self.work.code], start)
 
     def _kept(self, block: int) -> Columns | None:
         """The columns of a block, flat, if this work made all its files and they are whole."""
@@ -142,7 +142,7 @@ class Store:
         if self.place.content(self._mark_key(block)) != self._mark(block, ends):
             return None
         box, (start, stop) = (*self.blocks.slices(block), ...), self.blocks.run(block)
-        found: Columns = {}
+        result: Columns = {}
         for key, (name, array) in zip(keys, self._arrays.items(), strict=True):
             content = self.place.content(key)
             if content is None:
@@ -154,15 +154,15 @@ class Store:
                 return None
             finally:
                 del self._files[key]
-            found[name] = values.reshape((stop - start, *self.work.columns.get(name, ())))
-        return found
+            result[name] = values.reshape((stop - start, *self.work.columns.get(name, ())))
+        return result
 
-    def _keep(self, block: int, found: Columns) -> None:
+    def _keep(self, block: int, result: Columns) -> None:
         box = self.blocks.slices(block)
         shape = tuple(one.stop - one.start for one in box)
         ends: list[bytes | None] = []
         for name, array in self._arrays.items():
-            array[(*box, ...)] = found[name].reshape((*shape, *found[name].shape[1:]))
+            array[(*box, ...)] = result[name].reshape((*shape, *result[name].shape[1:]))
             key = self._key(name, block)
             content = memoryview(self._files.pop(key).as_numpy_array())
             self.place.put(key, content)
@@ -192,7 +192,7 @@ class Store:
         InputError
             If a block is missing or damaged.
         """
-        found = self.work.columns_of(self.work.size)
+        result = self.work.columns_of(self.work.size)
         for block in range(self.blocks.count):
             one = self._kept(block)
             if one is None:
@@ -202,9 +202,9 @@ class Store:
                 )
             start, stop = self.blocks.run(block)
             for name, values in one.items():
-                found[name][start:stop] = values
+                result[name][start:stop] = values
         return {
-            name: one.reshape((*self.work.shape, *one.shape[1:])) for name, one in found.items()
+            name: one.reshape((*self.work.shape, *one.shape[1:])) for name, one in result.items()
         }
 
 
@@ -234,18 +234,18 @@ def by_threads(store: Store, threads: int | None, progress: Progress | None) -> 
     return sum(tallies.values(), Tally({}, {}))
 
 
-def _covers(found: Any, wanted: Any) -> bool:
+def _covers(result: Any, wanted: Any) -> bool:
     """Whether all that is wanted is there, perhaps with attributes of others."""
-    if isinstance(found, dict) and isinstance(wanted, dict):
-        return all(key in found and _covers(found[key], one) for key, one in wanted.items())
-    return bool(found == wanted)
+    if isinstance(result, dict) and isinstance(wanted, dict):
+        return all(key in result and _covers(result[key], one) for key, one in wanted.items())
+    return bool(result == wanted)
 
 
-def _is_whole(found: bytes | None, wanted: bytes) -> bool:
-    if found is None or found == wanted:
-        return found is not None
+def _is_whole(result: bytes | None, wanted: bytes) -> bool:
+    if result is None or result == wanted:
+        return result is not None
     try:
-        return _covers(json.loads(found), json.loads(wanted))
+        return _covers(json.loads(result), json.loads(wanted))
     except (ValueError, RecursionError):  # no labels, but an axis
         return False
 

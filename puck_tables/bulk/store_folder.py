@@ -189,14 +189,14 @@ def taken(path: Path, digest: str, overwrite: bool, start: Content) -> Place:
     with _renaming(path) as aside:
         if not os.path.lexists(path) and os.path.lexists(beside):
             beside.rename(path)  # it was replacing another when it was killed
-        found = _at(path, path)
-        if found is not None and found.digest != digest and not overwrite:
+        result = _at(path, path)
+        if result is not None and result.digest != digest and not overwrite:
             raise InputError(
                 f"{path} holds other work: give the arguments, files and program that it was "
                 "begun with, another name, or --overwrite (overwrite=True) to replace it"
             )
         new = _at(path, beside)
-        goes_on = found is None or found.digest == digest
+        goes_on = result is None or result.digest == digest
         if new is not None and (goes_on or new.digest != digest):
             if overwrite:
                 aside(beside)
@@ -206,7 +206,9 @@ def taken(path: Path, digest: str, overwrite: bool, start: Content) -> Place:
                     "--overwrite (overwrite=True) to stop it"
                 )
             new = None
-        place = (found if goes_on else new) or _made(path, path if found is None else beside, start)
+        place = (result if goes_on else new) or _made(
+            path, path if result is None else beside, start
+        )
         place.hold()
     remove_dead(place.folder)
     return place
@@ -295,7 +297,7 @@ def _unwritten(path: Path, error: OSError) -> OutputError:
 def _digest_in(root: bytes | None) -> str | None:
     """What a store says that it is."""
     try:
-        found = json.loads(root or b"")["attributes"][DIGEST]
+        result = json.loads(root or b"")["attributes"][DIGEST]
     except (ValueError, KeyError, TypeError):
         return None
-    return found if isinstance(found, str) else None
+    return result if isinstance(result, str) else None

@@ -68,8 +68,8 @@ class Summary:
 
     def covariance(self, names: Sequence[str] | None = None) -> FloatArray:
         """Covariance (n, n) of these columns, of all without ``names``; SI units."""
-        found: FloatArray = np.atleast_2d(np.cov(self._rows(names)))
-        return found
+        result: FloatArray = np.atleast_2d(np.cov(self._rows(names)))
+        return result
 
     def quantiles(
         self, shares: npt.ArrayLike = (0.025, 0.25, 0.5, 0.75, 0.975)
@@ -141,15 +141,15 @@ class Summary:
 
     def rows(self, names: Sequence[str], label: str = "", wide: int = _WIDE) -> list[str]:
         """Means, deviations and quantiles of columns, as a table; none of less than two samples."""
-        found = []
+        result = []
         for name in names:
             own = self.counted(name)
             own = own[np.isfinite(own)]
             if own.size > 1:
                 numbers = (own.mean(), own.std(ddof=1), *np.quantile(own, _SHARES))
                 words = "".join(f"{number:>13.6g}" for number in numbers)
-                found.append(f"{label + name:<{wide}}{words}")
-        return found
+                result.append(f"{label + name:<{wide}}{words}")
+        return result
 
     def chances(self, regions: Sequence[npt.ArrayLike]) -> list[str]:
         """How its places hang together, and the chances of regions, in words."""

@@ -72,7 +72,7 @@ def _kind(puck: Puck) -> tuple[dict[str, Any], float, float]:
     return {"pressure": law, "gyration": puck.gyration}, law.delta_max, 1e-11
 
 
-def _launched(puck: Puck) -> FloatArray:
+def _integrated(puck: Puck) -> FloatArray:
     """The launches of a kind of puck: of others three heights, for each must be prepared."""
     launches = np.array(_LAUNCHES)
     kind, tallest, _ = _kind(puck)
@@ -91,17 +91,17 @@ def _found(puck: Puck, launches: FloatArray) -> Stops:
 
 
 def _stops(puck: Puck) -> Cases:
-    launches = _launched(puck)
-    found = _found(puck, launches)
+    launches = _integrated(puck)
+    result = _found(puck, launches)
     answers = (
-        found.stop_time, found.stop_x, found.stop_y, found.path_length, found.body_angle,
+        result.stop_time, result.stop_x, result.stop_y, result.path_length, result.body_angle,
     )  # fmt: skip
     rows = np.column_stack([launches, *answers])
     return rows.shape[1], tuple(rows.ravel().tolist())
 
 
 def _turns(puck: Puck) -> Cases:
-    launches = _launched(puck)
+    launches = _integrated(puck)
     generic = (launches[:, 2] != 0.0) & (launches[:, :2] != 0.0).any(axis=1)
     launches = launches[generic][: 3 if _kind(puck)[0] else 7]
     rows = np.column_stack([launches, _found(puck, launches).turn_angle])
@@ -111,7 +111,7 @@ def _turns(puck: Puck) -> Cases:
 def _states(puck: Puck) -> Cases:
     rows: list[float] = []
     kind, _, tol = _kind(puck)
-    launches = _launched(puck)
+    launches = _integrated(puck)
     whole = _found(puck, launches).stop_time
     for n, share in _moments()[: len(launches) + 1 if kind else None]:
         vx, vy, spin, delta, decel, radius = launches[n].tolist()

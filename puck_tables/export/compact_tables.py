@@ -134,8 +134,8 @@ def spline_fit(
     --------
     >>> xi = np.linspace(0.0, 1.0, 101)[None, :, None, None]
     >>> wave = np.cos(3.0 * xi) * (1.0 + heights()[:, None] ** 2) * np.ones((2, 1, 1, 1))
-    >>> found = spline_fit(wave, 1e-6)
-    >>> found.cells, found.degree, found.powers, found.rows
+    >>> result = spline_fit(wave, 1e-6)
+    >>> result.cells, result.degree, result.powers, result.rows
     ((6, 6), 5, 2, [0, 11, 22])
     """
     fits = _Fits(values, error)
@@ -145,13 +145,13 @@ def spline_fit(
     for degree in degrees:
         tried = [fits.cells_to_try(group, degree) for group in groups]
         for quantum in fits.quanta(degree):
-            found = [
+            result = [
                 fits.shortest(group, degree, cells, quantum)
                 for group, cells in zip(groups, tried, strict=True)
             ]
-            parts = [numbers for group in found for numbers in group]
+            parts = [numbers for group in result for numbers in group]
             cost = sum(map(_signs, parts)) * (degree + 1.0) ** haste
-            if all(found) and (best is None or cost < best[0]):
+            if all(result) and (best is None or cost < best[0]):
                 cells = tuple(len(numbers) - degree for numbers in parts)
                 best = cost, SplineFit(cells, degree, quantum, np.concatenate(parts))
     if best is None:
@@ -177,11 +177,11 @@ def spline_fits(values: FloatArray, error: float) -> list[SplineFit]:
     best: list[SplineFit] = []
     for degree in DEGREES:
         try:
-            found = [spline_fit(side[None], error, degrees=[degree]) for side in values]
+            result = [spline_fit(side[None], error, degrees=[degree]) for side in values]
         except AccuracyError:
             continue
-        if not best or _cost(found) < _cost(best):
-            best = found
+        if not best or _cost(result) < _cost(best):
+            best = result
     if not best:
         raise AccuracyError(_OUT_OF_REACH.format(error))
     return best
@@ -251,9 +251,9 @@ class _Fits:
                 self._is_good(degree, quantum * numbers, side)
                 for numbers, side in zip(whole, group, strict=True)
             ):
-                found = [numbers.astype(np.int64) for numbers in whole]
-                if not best or sum(map(_signs, found)) < sum(map(_signs, best)):
-                    best = found
+                result = [numbers.astype(np.int64) for numbers in whole]
+                if not best or sum(map(_signs, result)) < sum(map(_signs, best)):
+                    best = result
         return best
 
     def _solution(self, degree: int, cells: int) -> tuple[FloatArray, FloatArray]:
@@ -268,8 +268,8 @@ class _Fits:
         """Whether a spline of one side is within the error at all nodes and heights."""
         matrix, _ = self._solution(degree, len(coefficients) - degree)
         got = np.tensordot(matrix, coefficients, axes=1)
-        found = np.einsum("npf,ph->nhf", got, self._at_heights)
-        return bool(np.abs(found - self._values[side]).max() <= self._error)
+        result = np.einsum("npf,ph->nhf", got, self._at_heights)
+        return bool(np.abs(result - self._values[side]).max() <= self._error)
 
 
 def _signs(numbers: npt.NDArray[np.int64]) -> int:

@@ -75,14 +75,14 @@ def law_tables(kind: Puck, parts: tuple[str, ...], tol: float) -> Tables:
 def _fit_within(
     values: LawValues, parts: tuple[str, ...], tol: float
 ) -> dict[str, SplineFit | list[SplineFit]]:
-    found: dict[str, SplineFit | list[SplineFit]] = {}
+    result: dict[str, SplineFit | list[SplineFit]] = {}
     if "resultants" in parts:
-        found["PATCH"] = spline_fit(values.patch, PATCH_SHARE * tol)
+        result["PATCH"] = spline_fit(values.patch, PATCH_SHARE * tol)
     if parts != ("resultants",):
-        found["STOP"] = spline_fit(values.stops, LAW_STOP_SHARE * tol, haste=2)
+        result["STOP"] = spline_fit(values.stops, LAW_STOP_SHARE * tol, haste=2)
     if "state" in parts:
         try:
-            found["ORBIT"] = spline_fits(values.limit_motions.parts, ORBIT_SHARE * tol)
+            result["ORBIT"] = spline_fits(values.limit_motions.parts, ORBIT_SHARE * tol)
         except AccuracyError:
             raise AccuracyError(
                 f"states of such pucks cannot be exported at tol {tol:g}, for their limit ratio "
@@ -92,8 +92,8 @@ def _fit_within(
             ) from None
         of_heights = values.limit_motions.of_heights
         polynomials = height_polynomials(of_heights, len(of_heights)).T
-        found["CONSTANTS"] = fit_constants(polynomials, LAW_CONSTANT_SHARE * tol)
-    return found
+        result["CONSTANTS"] = fit_constants(polynomials, LAW_CONSTANT_SHARE * tol)
+    return result
 
 
 def _written(

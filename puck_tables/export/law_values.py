@@ -166,14 +166,14 @@ class LawValues:
     def stops(self) -> FloatArray:
         """T, along, across/δ, path length and body angle (sides, nodes, heights, 5)."""
         accuracy = max(_FINEST, _SHARE * self.tol)
-        found = []
+        result = []
         for puck in self.pucks:
             friction = puck.body.friction(0.1 * accuracy)
             section = friction.for_motion(puck.gyration)
             stops = stops_at(puck.body, friction, section, self.phi.ravel(), accuracy)[:, :5]
             stops[:, 2] /= puck.delta
-            found.append(stops.reshape(*self.phi.shape, 5))
-        return np.stack(found, axis=2)
+            result.append(stops.reshape(*self.phi.shape, 5))
+        return np.stack(result, axis=2)
 
     @cached_property
     def limit_motions(self) -> LimitMotions:
@@ -251,7 +251,7 @@ def _limit_motions(
             rtol=_STEP, atol=_STEP, dense_output=True,
         ).sol  # fmt: skip
 
-        def found(z: FloatArray) -> FloatArray:
+        def result(z: FloatArray) -> FloatArray:
             u, heading = way(sign * z).reshape(2, HEIGHTS, -1).swapaxes(1, 2)
             towards = -1.0 if fast else 1.0
             if ahead:
@@ -261,7 +261,7 @@ def _limit_motions(
             regular = (heading - sign * z[:, None] / rate * turning) / shares * rate / unit
             return np.stack([c, regular], axis=-1)
 
-        return found
+        return result
 
     parts = [part_at(part) for part in range(4)]
     z = np.linspace(0.0, _LAST, _TRIED)

@@ -287,18 +287,18 @@ def _needed(
     functions: Mapping[str, ast.FunctionDef], public: Sequence[str]
 ) -> dict[str, ast.FunctionDef]:
     """Those that these call, each after what it calls."""
-    found: dict[str, ast.FunctionDef] = {}
+    result: dict[str, ast.FunctionDef] = {}
 
     def add(name: str) -> None:
         node = functions[name]
         for one in ast.walk(node):
             if isinstance(one, ast.Name) and one.id in functions and one.id != name:
                 add(one.id)
-        found.setdefault(name, node)
+        result.setdefault(name, node)
 
     for name in public:
         add(name)
-    return found
+    return result
 
 
 def _title(

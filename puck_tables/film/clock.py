@@ -54,8 +54,8 @@ def seconds(where: str, texts: Sequence[str]) -> FloatArray:
 
 def _nanos(where: str, text: str) -> int:
     """A time in whole nanoseconds: doubles hold no fraction of a second since 1970 to 1e-8."""
-    if (found := _DATE.fullmatch(text)) is not None:
-        date, clock, part, zone = found.groups()
+    if (result := _DATE.fullmatch(text)) is not None:
+        date, clock, part, zone = result.groups()
         try:
             whole = int(np.datetime64(f"{date}T{clock}", "s").astype(np.int64))
         except ValueError:
@@ -63,8 +63,8 @@ def _nanos(where: str, text: str) -> int:
         if zone not in (None, "Z"):
             sign, digits = (-1 if zone[0] == "-" else 1), zone[1:].replace(":", "")
             whole -= sign * (3600 * int(digits[:2]) + 60 * int(digits[2:]))
-    elif (found := _CLOCK.fullmatch(text)) is not None:
-        hours, minutes, secs, part = found.groups()
+    elif (result := _CLOCK.fullmatch(text)) is not None:
+        hours, minutes, secs, part = result.groups()
         whole = 3600 * int(hours or 0) + 60 * int(minutes) + int(secs)
     else:
         raise InputError(f"{where}: '{text:.40}' is no time as in the rows before")

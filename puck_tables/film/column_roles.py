@@ -55,10 +55,10 @@ def layout_of(path: str | Path, form: TextForm, columns: str | None) -> Layout:
         return _deeplabcut(path, header)
     names = header[-1]
     layout = _named(names, _owners(header)) if len(header) > 1 else _named(names)
-    found = {name.lower() for name in names}
-    if found >= _TRACKPY:
+    result = {name.lower() for name in names}
+    if result >= _TRACKPY:
         layout.kind, layout.pixels = "trackpy table", True
-    if "frame_idx" in found and {"track", "instance.score"} & found:
+    if "frame_idx" in result and {"track", "instance.score"} & result:
         layout.kind, layout.pixels, layout.jointed, layout.likely = "SLEAP table", True, True, None
     return layout
 

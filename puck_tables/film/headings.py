@@ -69,8 +69,8 @@ Heading(role='', puck='', unit=''))
     if "{" in name:  # v_{x}, θ_{r}: Tracker's names of what it derives from places
         return Heading("")
     tokens = _CAMEL.sub(" ", name)
-    found = [(m.group(), m.start(), m.end()) for m in _TOKEN.finditer(tokens)]
-    lowered = [word.lower() for word, _, _ in found]
+    result = [(m.group(), m.start(), m.end()) for m in _TOKEN.finditer(tokens)]
+    lowered = [word.lower() for word, _, _ in result]
     roles = [_ROLE.get(word, "") for word in lowered]
     if lowered and all(word in _ID or word in _FILLING for word in lowered) and (
         set(lowered) & _ID
@@ -92,17 +92,17 @@ Heading(role='', puck='', unit=''))
         unit = unit or "s"
     if not unit and role in _KIND:
         for n in kept:
-            last = n == len(found) - 1
+            last = n == len(result) - 1
             if (found_unit := known(lowered[n], _KIND[role])) and (last or found_unit == "px"):
                 unit = found_unit
                 kept.remove(n)
                 break
     if any(lowered[n] in _OTHER for n in kept):
         return Heading("")
-    return Heading(role, _joined(tokens, [found[n] for n in kept]), unit)
+    return Heading(role, _merged(tokens, [result[n] for n in kept]), unit)
 
 
-def _joined(text: str, words: Sequence[tuple[str, int, int]]) -> str:
+def _merged(text: str, words: Sequence[tuple[str, int, int]]) -> str:
     """Words as they stood, with what was between neighbours."""
     joined, end = "", 0
     for word, start, stop in words:
@@ -151,15 +151,15 @@ def on_a_line(names: Sequence[str], read: Sequence[Heading]) -> list[Heading] | 
     >>> on_a_line(["t", "x", "h"], headings(["t", "x", "h"]))
     """
     words = [{word.lower() for word in _TOKEN.findall(name)} for name in names]
-    found = list(read)
+    result = list(read)
     told = {one.role for one in read} & {"x", "y"}
     named = [n for n, one in enumerate(read) if not one.role and words[n] & {*_ALONG}]
     if not told and len(named) == 1:
         n = named[0]
-        found[n] = heading(re.sub("|".join(_ALONG), "x", names[n], flags=re.IGNORECASE))
-        told = {found[n].role} & {"x"}
+        result[n] = heading(re.sub("|".join(_ALONG), "x", names[n], flags=re.IGNORECASE))
+        told = {result[n].role} & {"x"}
     other = [
-        n for n, one in enumerate(found)
+        n for n, one in enumerate(result)
         if not one.role and words[n] and not words[n] & (_OTHER | _RATES)
     ]  # fmt: skip
-    return found if len(told) == 1 and not other else None
+    return result if len(told) == 1 and not other else None

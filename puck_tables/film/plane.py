@@ -65,7 +65,7 @@ class Plane:
         >>> plane_of(square).place(np.array([[50.0, 25.0]])).round(9).tolist()
         [[0.5, 0.25]]
         """
-        x, y, depth = self._carried(pixels)
+        x, y, depth = self._repeated(pixels)
         if (depth <= 0.0).any():
             u, v = pixels[np.flatnonzero(depth <= 0.0)[0]]
             raise InputError(
@@ -76,13 +76,13 @@ class Plane:
 
     def angle(self, pixels: FloatArray, angle: FloatArray) -> FloatArray:
         """Angles (n,) on the floor of directions (cos, sin) in the picture at points (n, 2)."""
-        x, y, depth = self._carried(pixels)
+        x, y, depth = self._repeated(pixels)
         cos, sin = np.cos(angle), np.sin(angle)
         dx, dy, dd = (row[0] * cos + row[1] * sin for row in self.matrix)
         turned: FloatArray = np.arctan2(dy * depth - y * dd, dx * depth - x * dd)
         return turned
 
-    def _carried(self, pixels: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def _repeated(self, pixels: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         u, v = pixels[:, 0], pixels[:, 1]
         x, y, depth = (row[0] * u + row[1] * v + row[2] for row in self.matrix)
         return x, y, depth

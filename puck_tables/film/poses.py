@@ -240,11 +240,11 @@ def _order(tracks: Any) -> list[str] | None:
 
 def _names(file: Any, key: str, count: int, what: str) -> list[str]:
     """The names of tracks or nodes, or numbers where there are none."""
-    found = [
+    result = [
         " ".join((one.decode(errors="replace") if isinstance(one, bytes) else str(one)).split())
         for one in (np.asarray(file[key]).ravel().tolist() if key in file else ())
     ]
-    return found if len(found) == count and all(found) else [f"{what} {n}" for n in range(count)]
+    return result if len(result) == count and all(result) else [f"{what} {n}" for n in range(count)]
 
 
 def _scores(file: Any, shape: tuple[int, ...]) -> FloatArray | None:

@@ -85,18 +85,18 @@ def _steps(track: Track) -> list[str]:
     steps = np.diff(track.time)
     usual = float(np.median(steps))
     wide = np.flatnonzero(steps > _GAP * usual)
-    found = []
+    result = []
     if wide.size:
         at = wide[np.argmax(steps[wide])]
-        found.append(
+        result.append(
             f"{_count(wide.size, 'gap')} in its times, the longest of {steps[at]:.4g} s after "
             f"{track.time[at]:.6g} s"
         )
     even = steps[steps <= _GAP * usual]
     jitter = float(np.sqrt(np.mean((even / usual - 1.0) ** 2)))
     if jitter > _JITTER:
-        found.append(f"times from frame to frame vary by {100.0 * jitter:.3g} % (rms), kept so")
-    return found
+        result.append(f"times from frame to frame vary by {100.0 * jitter:.3g} % (rms), kept so")
+    return result
 
 
 def _leaps(track: Track) -> list[str]:

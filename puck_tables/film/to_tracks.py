@@ -86,7 +86,7 @@ class ReaderOptions:
             )
 
 
-def settled(path: str | Path, film: Film, how: ReaderOptions) -> tuple[Track, ...]:
+def to_si(path: str | Path, film: Film, how: ReaderOptions) -> tuple[Track, ...]:
     """The tracks of a film.
 
     Raises
@@ -98,7 +98,7 @@ def settled(path: str | Path, film: Film, how: ReaderOptions) -> tuple[Track, ..
     --------
     >>> marks = {"": np.array([[0.0, 1.0], [2.0, 1.0]])}
     >>> film = Film("table", [TrackedBody("", marks, frame=np.array([0.0, 1.0]))], unit="cm")
-    >>> settled("a.csv", film, ReaderOptions(fps=50.0))[0].place.tolist()
+    >>> to_si("a.csv", film, ReaderOptions(fps=50.0))[0].place.tolist()
     [[0.0, 0.01], [0.02, 0.01]]
     """
     notes = [film.kind, *film.notes]

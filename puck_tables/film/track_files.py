@@ -15,7 +15,7 @@ from puck_tables.film.film import Film
 from puck_tables.film.plane import Marks
 from puck_tables.film.puck_track import Track
 from puck_tables.film.text_tables import film_of_table
-from puck_tables.film.to_tracks import ReaderOptions, settled
+from puck_tables.film.to_tracks import ReaderOptions, to_si
 
 
 def read_tracks(
@@ -94,7 +94,7 @@ def read_tracks(
         film = film_of(path, columns)
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
-    return settled(path, film, how)
+    return to_si(path, film, how)
 
 
 def film_of(path: str | Path, columns: str | None = None) -> Film:

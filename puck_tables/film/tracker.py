@@ -165,17 +165,17 @@ def _film(path: str, content: bytes) -> Film:
     masses = [
         (one, _texts(one)) for one in _items(_property(root, "tracks")) if _kind(one) == _MASS
     ]
-    found = {name.get("name", "").strip(): _marks(path, mass) for mass, name in masses}
-    found = {name: marks for name, marks in found.items() if marks}
-    if not found:
+    result = {name.get("name", "").strip(): _marks(path, mass) for mass, name in masses}
+    result = {name: marks for name, marks in result.items() if marks}
+    if not result:
         raise InputError(f"{path} holds no point mass that was marked in a frame")
     texts = _texts(root)
     start, step, duration, begin = _clock(path, root)
-    frames = _frames(path, found, step)
+    frames = _frames(path, result, step)
     film = Film("file of Tracker", [], known(texts.get("length_unit", ""), "length"), y_down=False)
     pictures = {
         name: np.array([marks.get(n, (math.nan, math.nan)) for n in frames])
-        for name, marks in found.items()
+        for name, marks in result.items()
     }
     axes = _axes(path, root)
     plain = all(scale == 1.0 for *_, scale in axes.values())
@@ -259,9 +259,9 @@ def _marks(path: str, mass: Element) -> dict[int, tuple[float, float]]:
     }
 
 
-def _frames(path: str, found: dict[str, dict[int, tuple[float, float]]], step: int) -> list[int]:
+def _frames(path: str, result: dict[str, dict[int, tuple[float, float]]], step: int) -> list[int]:
     """All frames in which a mark is or should be."""
-    marked = {frame for marks in found.values() for frame in marks}
+    marked = {frame for marks in result.values() for frame in marks}
     first, last = min(marked), max(marked)
     return sorted(marked | set(range(first, last + 1, step)))
 

@@ -97,18 +97,18 @@ class Certainty:
     @property
     def errors(self) -> FloatArray:
         """Standard errors (m,), infinite of what is not determined, NaN on the end of a range."""
-        found = self.spread * np.sqrt(np.diag(self.covariance))
-        found[np.flatnonzero(self.pinned)] = np.nan
-        return np.where(self.undetermined, np.inf, found)
+        result = self.spread * np.sqrt(np.diag(self.covariance))
+        result[np.flatnonzero(self.pinned)] = np.nan
+        return np.where(self.undetermined, np.inf, result)
 
     @property
     def correlation(self) -> FloatArray:
         """Correlations (m, m), NaN with what is not determined."""
         root = self.errors
         with np.errstate(invalid="ignore"):
-            found: FloatArray = self.spread**2 * self.covariance / np.outer(root, root)
-        found[~np.isfinite(root), :] = found[:, ~np.isfinite(root)] = np.nan
-        return found
+            result: FloatArray = self.spread**2 * self.covariance / np.outer(root, root)
+        result[~np.isfinite(root), :] = result[:, ~np.isfinite(root)] = np.nan
+        return result
 
 
 class OtherMinimum(NamedTuple):
@@ -177,9 +177,9 @@ def certainty_of(
     )  # fmt: skip
 
 
-def pinned_of(found: Estimate, certainty: Certainty) -> tuple[int, ...]:
+def pinned_of(result: Estimate, certainty: Certainty) -> tuple[int, ...]:
     """Which unknowns that are seen lie on the end of their range: −1 the lower, 1 the upper."""
-    low, high = found.problem.limits
+    low, high = result.problem.limits
     errors = certainty.errors
     seen = np.isfinite(errors)
     near, deviations = (
@@ -189,18 +189,21 @@ def pinned_of(found: Estimate, certainty: Certainty) -> tuple[int, ...]:
     on = []
     for end in (low, high):
         width = np.minimum(_ON_BOUND * np.maximum(np.abs(end), 1.0), deviations)
-        on.append(seen & np.isfinite(end) & (np.abs(found.x - end) <= np.maximum(near, width)))
+        on.append(seen & np.isfinite(end) & (np.abs(result.x - end) <= np.maximum(near, width)))
     return tuple(np.where(on[0], -1, on[1].astype(int)).tolist())
 
 
-def widened(found: Estimate, certainty: Certainty) -> Certainty:
+def widened(result: Estimate, certainty: Certainty) -> Certainty:
     """The same of a model that does not fit: what is left of it is no independent noise.
 
     To the covariance is added what leaving out a part of the frames at a time does to the unknowns,
     as the jackknife counts it: of halves, of quarters and of eighths.
     """
-    problem, plausible = found.problem, certainty.plausible
-    slopes, rows = found.jacobian * plausible * found.kept[:, None], found.residuals * found.kept
+    problem, plausible = result.problem, certainty.plausible
+    slopes, rows = (
+        result.jacobian * plausible * result.kept[:, None],
+        result.residuals * result.kept,
+    )
     slopes[:, np.flatnonzero(certainty.pinned)] = 0.0
     square = slopes.T @ slopes + np.eye(plausible.size)
     covariance = certainty.covariance
@@ -228,14 +231,14 @@ class Interval:
     profiled: bool
 
 
-def interval_of(found: Estimate, certainty: Certainty, k: int) -> Interval:
+def interval_of(result: Estimate, certainty: Certainty, k: int) -> Interval:
     """The 95 % interval of an unknown.
 
     Both ends of the quadratic one are tried; where the likelihood there is not that of a parabola
     the ends are searched for.
     """
-    x, error = float(found.x[k]), math.sqrt(float(certainty.covariance[k, k]))
-    low, high = (float(ends[k]) for ends in found.problem.limits)
+    x, error = float(result.x[k]), math.sqrt(float(certainty.covariance[k, k]))
+    low, high = (float(ends[k]) for ends in result.problem.limits)
     if certainty.undetermined[k]:
         return Interval(low, high, False)
     if certainty.widened and not certainty.pinned[k]:
@@ -244,7 +247,7 @@ def interval_of(found: Estimate, certainty: Certainty, k: int) -> Interval:
     ends, profiled = [], False
     for side, limit in ((-1.0, low), (1.0, high)):
         end, searched = _end(
-            found, certainty, k, side, x + side * certainty.quantile * error, limit
+            result, certainty, k, side, x + side * certainty.quantile * error, limit
         )
         ends.append(end)
         profiled |= searched
@@ -252,7 +255,7 @@ def interval_of(found: Estimate, certainty: Certainty, k: int) -> Interval:
 
 
 def _end(
-    found: Estimate, certainty: Certainty, k: int, side: float, guess: float, limit: float
+    result: Estimate, certainty: Certainty, k: int, side: float, guess: float, limit: float
 ) -> tuple[float, bool]:
     """One end, and whether it is not the guess.
 
@@ -260,12 +263,12 @@ def _end(
     one: a likelihood may level off below what bounds anything.  Between two values the end is
     sought by false position; a value that stays the second time counts half (Illinois).
     """
-    x0, start, wanted = float(found.x[k]), found.x, certainty.quantile
+    x0, start, wanted = float(result.x[k]), result.x, certainty.quantile
     near, far = (x0, -wanted), (math.nan, math.inf)  # value, and how far its root is off
     at, last = side * min(side * guess, side * limit), 0.0
     for n in range(_SEARCHES):
-        cost, moved = profile_point(found, certainty, k, at, start)
-        deviations = math.sqrt(max(cost - found.chi2, 0.0)) - wanted
+        cost, moved = profile_point(result, certainty, k, at, start)
+        deviations = math.sqrt(max(cost - result.chi2, 0.0)) - wanted
         if n == 0 and at == guess and abs(deviations) < 0.5 * _PARABOLIC * wanted:
             return guess, False
         if abs(deviations) < 0.25 * _PARABOLIC * wanted or (deviations < 0.0 and at == limit):
@@ -291,7 +294,7 @@ def _end(
 
 
 def profile_point(
-    found: Estimate, certainty: Certainty, k: int, at: float, start: FloatArray
+    result: Estimate, certainty: Certainty, k: int, at: float, start: FloatArray
 ) -> tuple[float, FloatArray]:
     """The least χ² with an unknown held at a value, and the other unknowns there."""
     moved = start.copy()
@@ -299,12 +302,12 @@ def profile_point(
     if variance > 0.0:
         moved += certainty.covariance[:, k] / variance * (at - start[k])
     moved[k] = at
-    starts = [(found.problem, moved)]
-    if any(film.angle is None for film in found.problem.films):
+    starts = [(result.problem, moved)]
+    if any(film.angle is None for film in result.problem.films):
         # without angles a motion with hardly any spin may be another minimum
-        spins = [n for n, (_, name) in enumerate(found.problem.names) if name == "launch_spin"]
+        spins = [n for n, (_, name) in enumerate(result.problem.names) if name == "launch_spin"]
         slow = moved.copy()
         slow[spins] *= _HARDLY
-        starts.append((found.problem, slow))
-    (best, cost), *_ = multi_start(starts, FROM_BESIDE, kept=found.kept, held=k)
+        starts.append((result.problem, slow))
+    (best, cost), *_ = multi_start(starts, FROM_BESIDE, kept=result.kept, held=k)
     return 2.0 * cost, best

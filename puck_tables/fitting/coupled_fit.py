@@ -95,15 +95,15 @@ def couple(
             fits.append((_rise(slides, best, whole), best))
     least = min(rise for rise, _ in fits)
     near = [fit for fit in fits if fit[0] < least + _EQUAL]
-    rise, found = min(near, key=lambda fit: (_unlikely(fit[1]), fit[0]))
-    conditions = slides.x.size - found.x.size
+    rise, result = min(near, key=lambda fit: (_unlikely(fit[1]), fit[0]))
+    conditions = slides.x.size - result.x.size
     if chi_square_tail(max(rise, 0.0), max(conditions, 1)) < _BY_CHANCE:
         return replace(slides, minima=tuple(ways[:_TRIED])), (
             "The slides are not joined at the impacts: one law of impact for all of them, with "
             f"states that match, would raise chi^2 by {rise:.4g} for {conditions} "
             f"condition{'' if conditions == 1 else 's'}"
         )
-    return replace(found, minima=(*found.minima, *_gripping(found))), ""
+    return replace(result, minima=(*result.minima, *_gripping(result))), ""
 
 
 def _deepest(group: list[CoupledFit], known: Known) -> Estimate:
@@ -111,32 +111,32 @@ def _deepest(group: list[CoupledFit], known: Known) -> Estimate:
     if len(group) == 1:
         return estimate(group[0].problem, group[0].start, known)
     walked = multi_start([(one.problem, one.start) for one in group], _WALK, ROBUST, _RIVAL)
-    found = estimate(group[0].problem, walked[0][0], known)
-    return replace(found, minima=tuple(x for x, cost in walked if cost < walked[0][1] + _RIVAL))
+    result = estimate(group[0].problem, walked[0][0], known)
+    return replace(result, minima=tuple(x for x, cost in walked if cost < walked[0][1] + _RIVAL))
 
 
-def _gripping(found: Estimate) -> list[FloatArray]:
+def _gripping(result: Estimate) -> list[FloatArray]:
     """Unknowns near which rims that slide may grip instead; with angles it is seen that they do."""
-    problem = found.problem
+    problem = result.problem
     names = [name for _, name in problem.names]
     rubs = [names.index(name) for name in ("rim_friction", "pair_friction") if name in names]
     if not rubs or all(film.angle is not None for film in problem.films):
         return []
-    x = found.x.copy()
+    x = result.x.copy()
     x[rubs] = np.minimum(_HARDER * x[rubs], problem.limits[1][rubs])
     return [x]
 
 
-def _unlikely(found: Estimate) -> int:
+def _unlikely(result: Estimate) -> int:
     """Of forms of one law: friction where rims slide, 0, before tangential restitution, 1.
 
     Last is a friction that no impact tells, as all rims grip.
     """
-    problem = found.problem
+    problem = result.problem
     if not {"rim_friction", "pair_friction"} & {*problem.spec.free}:
         return 1
-    numbers = problem.numbers_at(found.x)
-    for impact_spec, impact in zip(problem.impact_specs, problem.slides(found.x)[1], strict=True):
+    numbers = problem.numbers_at(result.x)
+    for impact_spec, impact in zip(problem.impact_specs, problem.slides(result.x)[1], strict=True):
         friction = problem.spec.rims(numbers, impact_spec.wall < 0).friction
         if abs(impact.ratio) >= (1.0 - _STEP) * friction:
             return 0
@@ -170,43 +170,43 @@ def _through(wall: WallLine, x: float, y: float) -> bool:
     return abs(deviations) <= _SAME * max(abs(x), abs(y), abs(wall.distance))
 
 
-def _rise(slides: Estimate, found: Estimate, whole: CoupledFit) -> float:
+def _rise(slides: Estimate, result: Estimate, whole: CoupledFit) -> float:
     """By how much χ² is larger, over the frames of all slides, with the noise of these."""
     noise = slides.problem.noise
     apart = _frame_squares(slides.problem, slides.x)
-    together = _frame_squares(found.problem.with_noise(noise, found.x, found.kept), found.x)
+    together = _frame_squares(result.problem.with_noise(noise, result.x, result.kept), result.x)
     rise = 0.0
     for n, (film, squares) in enumerate(zip(slides.problem.films, apart, strict=True)):
         track = whole.pieces[n]
-        places = np.searchsorted(found.problem.films[track].frame, film.frame)
+        places = np.searchsorted(result.problem.films[track].frame, film.frame)
         rise += float((together[track][places] - squares).sum())
     return rise
 
 
 def _frame_squares(problem: Problem, x: FloatArray) -> list[FloatArray]:
     """Squares of the residuals of each frame, an outlier as the farthest that is none."""
-    rows, found = problem.residuals(x), []
+    rows, result = problem.residuals(x), []
     for film, (one, two, turn) in zip(problem.films, problem.each(), strict=True):
         squares = np.minimum(rows[one] ** 2 + rows[two] ** 2, FARTHEST_PLACE)
         if film.angle is not None:
             squares[np.isfinite(film.angle)] += np.minimum(rows[turn] ** 2, FARTHEST**2)
-        found.append(squares)
-    return found
+        result.append(squares)
+    return result
 
 
 def impacts_coupled(
-    found: Estimate, certainty: Certainty, numbers: dict[str, Number]
+    result: Estimate, certainty: Certainty, numbers: dict[str, Number]
 ) -> tuple[Impact, ...]:
     """The impacts of a joint fit."""
-    problem = found.problem
+    problem = result.problem
 
     def ratios(x: FloatArray) -> FloatArray:
         return np.array([impact.ratio for impact in problem.slides(x)[1]])
 
-    slopes = _slopes(found, certainty, ratios)
+    slopes = _slopes(result, certainty, ratios)
     first = problem.films[0].start
     impacts = []
-    impact_states = problem.slides(found.x)[1]
+    impact_states = problem.slides(result.x)[1]
     for impact_spec, impact, slope in zip(problem.impact_specs, impact_states, slopes, strict=True):
         pair = impact_spec.wall < 0
         names = list(OF_PAIRS if pair else OF_WALLS)
@@ -258,15 +258,15 @@ def _key(match_: ImpactMatch) -> tuple[int, ...]:
     return tuple(kink.piece for kink in match_.kinks_of_slides)
 
 
-def _slopes(found: Estimate, certainty: Certainty, of: Values) -> FloatArray:
+def _slopes(result: Estimate, certainty: Certainty, of: Values) -> FloatArray:
     """The derivatives of numbers to the unknowns, (numbers, m)."""
     columns = []
-    low, high = found.problem.limits
-    for k in range(found.x.size):
-        step = _STEP * max(abs(float(found.x[k])), float(certainty.plausible[k]) * 1e-2)
+    low, high = result.problem.limits
+    for k in range(result.x.size):
+        step = _STEP * max(abs(float(result.x[k])), float(certainty.plausible[k]) * 1e-2)
         ends, values = [], []
         for side in (1.0, -1.0):
-            moved = found.x.copy()
+            moved = result.x.copy()
             moved[k] = min(max(moved[k] + side * step, low[k]), high[k])
             ends.append(moved[k])
             values.append(of(moved))

@@ -103,9 +103,9 @@ def estimate(
     return Estimate(problem, x, kept, rows, problem.jacobian(x))
 
 
-def only_outliers(found: Estimate) -> bool:
+def only_outliers(result: Estimate) -> bool:
     """Whether all frames that an estimate leaves out are strays."""
-    return np.array_equal(found.kept, _kept(found.problem, found.residuals, True))
+    return np.array_equal(result.kept, _kept(result.problem, result.residuals, True))
 
 
 def _kept(problem: Problem, rows: FloatArray, strict: bool) -> npt.NDArray[np.bool_]:
@@ -147,12 +147,12 @@ def _noise(
         return problem.noise, problem.jitter
     if problem.jitter > 0.0 or not known.jitter:
         return _jittery(problem, x, kept, known)
-    found = list(problem.noise)
+    result = list(problem.noise)
     for kind, free in enumerate(_freedoms(problem, rows, slopes, kept)):
         if not known[kind] and free > 1.0:
             mine = problem.kinds[kept] == kind
-            found[kind] *= math.sqrt(float(np.sum(rows[kept][mine] ** 2)) / free)
-    return (found[0], found[1]), problem.jitter
+            result[kind] *= math.sqrt(float(np.sum(rows[kept][mine] ** 2)) / free)
+    return (result[0], result[1]), problem.jitter
 
 
 def _freedoms(
@@ -167,12 +167,12 @@ def _freedoms(
     ]
 
 
-def freedom(found: Estimate, known: Known) -> float:
+def freedom(result: Estimate, known: Known) -> float:
     """Of the kinds of residuals that told their noise, how many the fewest are; inf if none did."""
-    every = _freedoms(found.problem, found.residuals, found.jacobian, found.kept)
+    every = _freedoms(result.problem, result.residuals, result.jacobian, result.kept)
     told = [
         free for kind, free in enumerate(every)
-        if not known[kind] and (found.problem.kinds[found.kept] == kind).any()
+        if not known[kind] and (result.problem.kinds[result.kept] == kind).any()
     ]  # fmt: skip
     return min(told, default=math.inf)
 

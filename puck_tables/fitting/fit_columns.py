@@ -19,11 +19,11 @@ _FRAMES = (
 )  # fmt: skip
 
 
-def frames_of(found: Estimate) -> dict[str, Variable]:
+def frames_of(result: Estimate) -> dict[str, Variable]:
     """Columns of all frames: what was seen, the model, and whether it counts."""
-    problem, kept = found.problem, found.kept
+    problem, kept = result.problem, result.kept
     rows: dict[str, list[Any]] = {name: [] for name in _FRAMES}
-    parts = zip(problem.films, problem.paths(found.x), problem.each(), strict=True)
+    parts = zip(problem.films, problem.paths(result.x), problem.each(), strict=True)
     for n, (film, path, (x, _, turn)) in enumerate(parts):
         angle = np.full(film.time.size, np.nan) if film.angle is None else film.angle
         counts = np.zeros(film.time.size, np.int8)

@@ -194,9 +194,9 @@ class FitSpec:
             numbers["inner"] = float(puck.body.law.name.partition(":")[2])
         return {**numbers, **self.impact_at, **{n: v for n, v in self.fixed.items() if n in PUCK}}
 
-    def scales(self, found: Mapping[str, Any]) -> tuple[Any, Any, Any]:
+    def scales(self, result: Mapping[str, Any]) -> tuple[Any, Any, Any]:
         """J, δ and r of what is found; of complex numbers, too."""
-        all_of = {**self.known(), **found}
+        all_of = {**self.known(), **result}
         if self.speeds:  # that of a puck about to stop
             all_of["friction"] = all_of[NODES[0]]
         decel = all_of["decel"] if self.uses_decel else all_of["friction"] * all_of["gravity"]
@@ -205,9 +205,9 @@ class FitSpec:
         friction = decel / all_of["gravity"]
         return decel, 2.0 * friction * all_of["height"] / all_of["radius"], all_of["radius"]
 
-    def slopes(self, found: Mapping[str, float], name: str) -> tuple[float, float, float]:
+    def slopes(self, result: Mapping[str, float], name: str) -> tuple[float, float, float]:
         """The derivatives of J, δ and r to one that is found, by the complex step."""
-        complex_values = {**found, name: found[name] + 1j * _TINY}
+        complex_values = {**result, name: result[name] + 1j * _TINY}
         return tuple(  # type: ignore[return-value]
             float((value + 0j).imag) / _TINY for value in self.scales(complex_values)
         )
@@ -254,28 +254,28 @@ class FitSpec:
             )
         return replace(self, free=tuple(free), impact_at=impact_at)
 
-    def rims(self, found: Mapping[str, float], pair: bool) -> Rims:
+    def rims(self, result: Mapping[str, float], pair: bool) -> Rims:
         """How rims meet, of two pucks or of one and a wall."""
         defaults = OF_PAIRS if pair else OF_WALLS
-        numbers = {**defaults, **self.fixed, **found}
+        numbers = {**defaults, **self.fixed, **result}
         values = [numbers[name] for name in defaults]
         mass = values[3] if pair else math.inf
         return Rims(values[0], values[1], values[2], mass)
 
-    def readout(self, found: Mapping[str, float]) -> float:
+    def readout(self, result: Mapping[str, float]) -> float:
         """The time in which a picture is read, s."""
-        return {**self.fixed, **found}.get("readout", 0.0)
+        return {**self.fixed, **result}.get("readout", 0.0)
 
     def changes_motion(self, name: str) -> bool:
         """Whether a parameter is none of the scales."""
         return name in _KIND or name in NODES
 
-    def moving(self, found: Mapping[str, float], tall: bool) -> Moving:
+    def moving(self, result: Mapping[str, float], tall: bool) -> Moving:
         """What moves the puck."""
-        decel, delta, radius = self.scales(found)
-        numbers = {**self.known(), **found}
+        decel, delta, radius = self.scales(result)
+        numbers = {**self.known(), **result}
         pressure: Any = self.puck.body.law
-        if "inner" in found or "inner" in self.fixed:
+        if "inner" in result or "inner" in self.fixed:
             pressure = f"annulus:{numbers['inner']!r}"
         motions = unit_motions_of(pressure, numbers["gyration"], tall)
         by_speed = None

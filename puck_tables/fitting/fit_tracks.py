@@ -151,8 +151,8 @@ def fit(
     >>> path = puck.states((2.0, 0.5), 40.0, t)
     >>> noise = np.random.default_rng(1).normal(0.0, 3e-4, (120, 2))
     >>> track = Track(t, np.stack([path.x, path.y], axis=1) + noise, path.orientation, "film")
-    >>> found = fit(track, Puck(radius=0.0381))
-    >>> round(found["friction"].value, 3), round(found["height"].value, 3)
+    >>> result = fit(track, Puck(radius=0.0381))
+    >>> round(result["friction"].value, 3), round(result["height"].value, 3)
     (0.15, 0.025)
     """
     instance("puck", puck, Puck)

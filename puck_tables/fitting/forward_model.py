@@ -122,14 +122,14 @@ def _path(
         at = rows[..., : s.size]
         within = rows[..., s.size :].reshape(*rows.shape[:-1], s.size, _POINTS.size)
         integral = np.cumsum((within * weights).sum(axis=-1), axis=-1)
-        found: FloatArray = at / (1.0 + c * s) ** 2 + 2.0 * c * integral
-        return found
+        result: FloatArray = at / (1.0 + c * s) ** 2 + 2.0 * c * integral
+        return result
 
     if want == _PATH:
         return dragged(path), slope
-    found = dragged(slope)
-    found[-1] = slope[-1, :, : s.size] * np.exp(-c * times)
-    return dragged(path), found
+    result = dragged(slope)
+    result[-1] = slope[-1, :, : s.size] * np.exp(-c * times)
+    return dragged(path), result
 
 
 def _by_speed(
@@ -150,18 +150,18 @@ def _by_speed(
         )
 
     at = np.array([*velocity, spin, moving.decel, moving.delta, moving.radius])
-    found, rate = path(at)
+    result, rate = path(at)
     if want != _SLOPES:
-        return found, rate[None]
+        return result, rate[None]
     out = np.zeros((7, 3, times.size))
     scale = max(abs(at[0]), abs(at[1]), moving.radius * abs(spin))
     steps = {VX: scale, VY: scale, SPIN: scale / moving.radius, DELTA: 1.0, RADIUS: moving.radius}
     for k, size in steps.items():
         step = np.zeros(6)
         step[k] = _SPEED_STEP * size
-        out[k] = (path(at + step)[0] - found) / step[k]
+        out[k] = (path(at + step)[0] - result) / step[k]
     out[TIME] = rate
-    return found, out
+    return result, out
 
 
 def _dry_friction(
@@ -213,5 +213,5 @@ def _turned(turn: FloatArray, unit: float, radius: float, unit_motion: FloatArra
     """x, y and body angle (…, 3, n) from natural ones, in a unit of length."""
     whole = np.zeros((3, 3))
     whole[:2, :2], whole[2, 2] = turn, 1.0 / radius
-    found: FloatArray = (unit * whole) @ unit_motion
-    return found
+    result: FloatArray = (unit * whole) @ unit_motion
+    return result

@@ -20,7 +20,7 @@ _SLACK = 3  # frames
 _MOSTLY = 0.7  # of them are outliers
 
 
-def trimmed(found: Estimate, uncut: tuple[Observations, ...]) -> tuple[Observations, ...]:
+def trimmed(result: Estimate, uncut: tuple[Observations, ...]) -> tuple[Observations, ...]:
     """The tracks without what lies at their ends and is not of the motion.
 
     What is off there is left out where something touches the puck (:mod:`.first_touch`); else it is
@@ -29,47 +29,47 @@ def trimmed(found: Estimate, uncut: tuple[Observations, ...]) -> tuple[Observati
     ``uncut``: the tracks with all frames.
     """
     films = []
-    problem = found.problem
-    decel = problem.spec.scales(problem.numbers_at(found.x))[0]
+    problem = result.problem
+    decel = problem.spec.scales(problem.numbers_at(result.x))[0]
     hidden = math.sqrt(2.0 * FARTHEST * problem.noise[0] / decel)
     for film, whole, (x, _, _) in zip(problem.films, uncut, problem.each(), strict=True):
-        out = ~found.kept[x] & (problem.kinds[x] != UNSEEN)
+        out = ~result.kept[x] & (problem.kinds[x] != UNSEEN)
         ends = [_foreign(out), _foreign(out[::-1])]
-        beside = math.ceil(min(hidden / film.usual_step, _BESIDE * (out.size - sum(ends))))
+        close = math.ceil(min(hidden / film.usual_step, _BESIDE * (out.size - sum(ends))))
         for n, before in enumerate(ends):
             edge = before if n == 0 else out.size - before
             at = int(np.searchsorted(whole.frame, film.frame[min(edge, out.size - 1)]))
             at += edge == out.size
-            ends[n] = before + beside if before and _ends(whole, at, beside, n == 0) else 0
+            ends[n] = before + close if before and _ends(whole, at, close, n == 0) else 0
         inner = np.arange(film.time.size)
         chosen = (inner >= ends[0]) & (inner < out.size - ends[1])
         same = bool(chosen.all()) or chosen.sum() < FEWEST + 2
         films.append(film if same else film.part(chosen))
-    same = all(a is b for a, b in zip(films, found.problem.films, strict=True))
-    return found.problem.films if same else tuple(films)
+    same = all(a is b for a, b in zip(films, result.problem.films, strict=True))
+    return result.problem.films if same else tuple(films)
 
 
-def _ends(whole: Observations, at: int, beside: int, first: bool) -> bool:
+def _ends(whole: Observations, at: int, close: int, first: bool) -> bool:
     """Whether the free motion begins, or ends, about a frame since something touches the puck."""
     rests = rests_from(whole, noise_of([whole])[0])
     if not whole.cuttable[0 if first else 1] or (first and at >= rests - FEWEST):
         return False
-    if first_touch(whole, at - beside - _SLACK, at + beside + _SLACK) is not None:
+    if first_touch(whole, at - close - _SLACK, at + close + _SLACK) is not None:
         return True
     count = whole.time.size
     foreign, free = ((0, at), (at, count)) if first else ((at, count), (0, at))
     return pushed(whole, *foreign) and not pushed(whole, *free)
 
 
-def is_clean(found: Estimate, excess: float = 1.2, chance: float = 0.01) -> bool:
+def is_clean(result: Estimate, excess: float = 1.2, chance: float = 0.01) -> bool:
     """Whether what is left of a track is noise, no more than that of a smooth motion."""
-    return _excess(found) < excess and min(runs(found), drift(found)) > chance
+    return _excess(result) < excess and min(runs(result), drift(result)) > chance
 
 
-def _excess(found: Estimate) -> float:
+def _excess(result: Estimate) -> float:
     """The residuals over those of any smooth motion; 1 where these are not known."""
-    smooth = noise_of(list(found.problem.films))[0]
-    size = found.problem.noise[0] * math.sqrt(found.chi2 / max(found.degrees, 1))
+    smooth = noise_of(list(result.problem.films))[0]
+    size = result.problem.noise[0] * math.sqrt(result.chi2 / max(result.degrees, 1))
     return size / smooth if smooth > 0.0 else 1.0
 
 
@@ -92,5 +92,5 @@ def _foreign(out: npt.NDArray[np.bool_]) -> int:
     counts = np.cumsum(out)
     sizes = np.arange(1, out.size + 1)
     blocks = out & (counts >= _MOSTLY * sizes) & (sizes >= _FEWEST_OUT)
-    found = np.flatnonzero(blocks)
-    return int(found[-1]) + 1 if found.size else 0
+    result = np.flatnonzero(blocks)
+    return int(result[-1]) + 1 if result.size else 0

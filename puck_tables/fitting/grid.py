@@ -30,13 +30,13 @@ def step_of(*columns: FloatArray) -> float:
     >>> step_of(x), round(step_of(0.5 * np.round(2.0 * x), 0.0 * x), 9)
     (0.0, 0.5)
     """
-    found = [np.unique(column[np.isfinite(column)]) for column in columns]
-    gaps = np.concatenate([np.diff(values) for values in found])
+    result = [np.unique(column[np.isfinite(column)]) for column in columns]
+    gaps = np.concatenate([np.diff(values) for values in result])
     if gaps.size < _FEWEST:
         return 0.0
     # values that are one to rounding of the file are no step
-    gaps = gaps[gaps > 1e-9 * max(float(np.ptp(values)) for values in found)]
-    repeated = any(1 < one.size < column.size for one, column in zip(found, columns, strict=True))
+    gaps = gaps[gaps > 1e-9 * max(float(np.ptp(values)) for values in result)]
+    repeated = any(1 < one.size < column.size for one, column in zip(result, columns, strict=True))
     if not gaps.size or not (repeated or gaps.max() > 1.5 * gaps.min()):  # it goes on evenly
         return 0.0
     near = gaps[gaps < 1.5 * gaps.min()]
@@ -44,7 +44,7 @@ def step_of(*columns: FloatArray) -> float:
     size = np.round(gaps / step)
     step = float((gaps * size).sum() / (size * size).sum())
     deviations = np.concatenate([
-        np.diff(values) / step - np.round(np.diff(values) / step) for values in found
+        np.diff(values) / step - np.round(np.diff(values) / step) for values in result
     ])  # fmt: skip
     return step if np.abs(deviations).max() < _OFF else 0.0
 

@@ -28,7 +28,7 @@ _SCALES = {"friction", "gravity", "height", "radius", "decel"}
 
 
 def not_identifiable(
-    found: Estimate,
+    result: Estimate,
     certainty: Certainty,
     lost: tuple[str, ...],
     rivals: tuple[OtherMinimum, ...] = (),
@@ -40,7 +40,7 @@ def not_identifiable(
     that fit about as well; ``unsigned``: tracks that the opposite spin fits as well.
     """
     sentences = []
-    marked = any(film.angle is not None for film in found.problem.films)
+    marked = any(film.angle is not None for film in result.problem.films)
     sentences += [minimum_sentence(minimum, marked) for minimum in rivals[:_TOLD_ALL]]
     if others := len(rivals[_TOLD_ALL:]):
         more = "motion of another spin fits" if others == 1 else "motions of other spins fit"
@@ -50,25 +50,25 @@ def not_identifiable(
             "That many turns a frame fit better may well be the floor: where friction changes with "
             "the slip speed, as on an air table, it is no Coulomb floor."
         )
-    sentences += [mirror_sentence(found.problem.films[n].name) for n in unsigned]
+    sentences += [mirror_sentence(result.problem.films[n].name) for n in unsigned]
     seen: set[frozenset[int]] = set()
-    covered = {found.problem.names[k][1] for k in np.flatnonzero(certainty.undetermined)}
+    covered = {result.problem.names[k][1] for k in np.flatnonzero(certainty.undetermined)}
     for name in lost:
         if name not in covered and not (rivals and name != "delta"):
-            remedy = _remedy(found, [name], [(-1, name)])
+            remedy = _remedy(result, [name], [(-1, name)])
             sentences.append(f"{name} is not determined: {_ALIKE}. {remedy}")
     for direction in certainty.blind:
         members = [int(k) for k in np.argsort(-np.abs(direction)) if abs(direction[k]) > _MEMBER]
         if frozenset(members) in seen:
             continue
-        names = [_name(found.problem, k) for k in members]
-        shared = [found.problem.names[k][1] for k in members if found.problem.names[k][0] == -1]
+        names = [_name(result.problem, k) for k in members]
+        shared = [result.problem.names[k][1] for k in members if result.problem.names[k][0] == -1]
         if len(names) == 1:
             told = f"{names[0]} is not determined: {_ALIKE}"
         else:
             told = f"{' and '.join(names)} are not determined one by one: the tracks look alike " \
-                f"when {_together(found.problem, certainty, members)}"  # fmt: skip
-        remedy = _remedy(found, shared, [found.problem.names[k] for k in members])
+                f"when {_together(result.problem, certainty, members)}"  # fmt: skip
+        remedy = _remedy(result, shared, [result.problem.names[k] for k in members])
         sentences.append(f"{told}. {remedy}")
         seen.add(frozenset(members))
     return tuple(sentences)
@@ -120,15 +120,15 @@ def _together(problem: Problem, certainty: Certainty, members: list[int]) -> str
     return " and ".join(words) + " with it"
 
 
-def _remedy(found: Estimate, shared: list[str], members: list[tuple[int, str]]) -> str:
+def _remedy(result: Estimate, shared: list[str], members: list[tuple[int, str]]) -> str:
     """What would tell, tried out on the film that it would give."""
     if len(shared) > 1 and set(shared) <= _SCALES:
         return f"Measure one of them otherwise and fix it or give a prior: {' or '.join(shared)}."
     if any(key[0] < -1 or key[1] in OF_IMPACTS for key in members):
         return "Fix it, or give it a prior."
-    now = _errors(found.problem, found.x, members)
+    now = _errors(result.problem, result.x, members)
     told: list[str] = []
-    for words, problem, x in _other_films(found):
+    for words, problem, x in _other_films(result):
         others = _errors(problem, x, members)
         enough = (others < _TOLD) & (others < _BETTER * now)
         if enough.all() and not any(one in words for one in told):
@@ -138,11 +138,11 @@ def _remedy(found: Estimate, shared: list[str], members: list[tuple[int, str]]) 
     return "Fix it, or give it a prior."
 
 
-def _other_films(found: Estimate) -> list[tuple[str, Problem, FloatArray]]:
+def _other_films(result: Estimate) -> list[tuple[str, Problem, FloatArray]]:
     """Films that could have been made instead, each with its unknowns."""
-    values, launches = found.problem.numbers_at(found.x), found.problem.launches(found.x)
+    values, launches = result.problem.numbers_at(result.x), result.problem.launches(result.x)
     problem = replace(
-        found.problem, spec=found.problem.spec.alone(), weights=(), impact_specs=(), walls=(),
+        result.problem, spec=result.problem.spec.alone(), weights=(), impact_specs=(), walls=(),
         rests=(),
     )  # fmt: skip
     x = problem.unknowns(values, launches)

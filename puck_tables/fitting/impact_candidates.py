@@ -53,31 +53,31 @@ def candidates_of(slides: Estimate) -> list[FloatArray]:
     for one in decels:
         mine: list[tuple[float, FloatArray]] = []
         for tilt in deltas:
-            found = {**numbers, **numbers_with(spec, one, tilt)}
-            values = np.clip([found[name] for name in spec.free], low, high).tolist()
-            found = dict(zip(spec.free, values, strict=True))
-            options = [_spins_of(slides, n, found) for n in range(len(problem.films))]
+            result = {**numbers, **numbers_with(spec, one, tilt)}
+            values = np.clip([result[name] for name in spec.free], low, high).tolist()
+            result = dict(zip(spec.free, values, strict=True))
+            options = [_spins_of(slides, n, result) for n in range(len(problem.films))]
             for chosen in product(*options):
                 launches = np.array([launch for _, launch in chosen])
                 cost = sum(cost for cost, _ in chosen)
-                mine.append((cost, problem.unknowns(found, launches)))
+                mine.append((cost, problem.unknowns(result, launches)))
         ranked += sorted(mine, key=lambda way: way[0])[:_EACH]
     ranked.sort(key=lambda way: way[0])
     return [slides.x, *(x for _, x in ranked)]
 
 
-def _spins_of(slides: Estimate, n: int, found: dict[str, float]) -> list[Option]:
+def _spins_of(slides: Estimate, n: int, result: dict[str, float]) -> list[Option]:
     """Launches of a slide, with what they cost, for numbers of the puck that are held."""
     problem = slides.problem
     launch = problem.launches(slides.x)[n]
     film = problem.films[n]
     if film.angle is not None or problem.spinless[n] or (problem.rests and problem.rests[n]):
         return [(0.0, launch)]
-    radius = problem.spec.scales(found)[2]
+    radius = problem.spec.scales(result)[2]
     speed = max(math.hypot(launch[2], launch[3]), _LEAST_SPEED)
     # of few frames no spin but an absurd one is seen
     moderate = {"launch_spin": (0.0, _MODERATE * speed / radius)}
-    fixed, priors = {**problem.spec.fixed, **found}, {**moderate, **problem.spec.priors}
+    fixed, priors = {**problem.spec.fixed, **result}, {**moderate, **problem.spec.priors}
     held = replace(problem.spec, free=(), fixed=fixed, priors=priors)
     few = np.zeros(film.time.size, bool)
     few[np.linspace(0, film.time.size - 1, _FRAMES).astype(int)] = True

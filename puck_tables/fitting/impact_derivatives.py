@@ -56,7 +56,7 @@ class SlidesInSequence(Protocol):
     def estimated_walls(self, x: FloatArray) -> tuple[WallLine, ...]:
         """The walls, of which some are found."""
 
-    def moving(self, found: dict[str, float]) -> Moving:
+    def moving(self, result: dict[str, float]) -> Moving:
         """How the puck moves with such numbers."""
 
     def slides(self, x: FloatArray) -> tuple[list[list[Slide]], list[ImpactState]]:
@@ -87,26 +87,26 @@ def slopes_of_slides(problem: SlidesInSequence, x: FloatArray) -> list[list[Floa
 
 def _first(problem: SlidesInSequence, n: int, size: int) -> FloatArray:
     """Of the first slide of a track."""
-    found = np.zeros((7, size))
+    result = np.zeros((7, size))
     for k, name in enumerate(LAUNCH):
         if (n, name) in problem.names:
-            found[1 + k, problem.names.index((n, name))] = 1.0
+            result[1 + k, problem.names.index((n, name))] = 1.0
     straight = problem.films[n].straight
     if straight is not None:
         for main in (1 + straight.main, 3 + straight.main):
-            found[main + 1 - 2 * straight.main] = straight.slope * found[main]
+            result[main + 1 - 2 * straight.main] = straight.slope * result[main]
     row = problem.films[n].row
     if row is not None and "readout" in problem.spec.free:
-        found[0, problem.spec.free.index("readout")] = row[0]
-    return found
+        result[0, problem.spec.free.index("readout")] = row[0]
+    return result
 
 
 def _to_state(
     problem: SlidesInSequence, x: FloatArray, slide: Slide, slopes: FloatArray, time: float
 ) -> tuple[FloatArray, FloatArray]:
     """The derivatives (6, m) of a slide's state at a moment, and how fast it changes (6,)."""
-    found = problem.numbers_at(x)
-    moving = problem.moving(found)
+    result = problem.numbers_at(x)
+    moving = problem.moving(result)
     by_launch = np.eye(6)
     for k in range(2, 5) if slopes[3:6].any() else ():
         step = _STEP * max(abs(float(slide.launch[k])), _LEAST)
@@ -123,12 +123,12 @@ def _to_state(
     for k, name in enumerate(problem.spec.free):
         if name in OF_IMPACTS or name == "readout":
             continue
-        step = _STEP * max(abs(found[name]), _LEAST)
+        step = _STEP * max(abs(result[name]), _LEAST)
         if problem.spec.changes_motion(name):
             step = _CURVE_STEP
         low, high = problem.spec.limits(name)
-        values = [min(max(found[name] + side * step, low), high) for side in (1.0, -1.0)]
-        ends = [state_at(problem.moving({**found, name: value}), slide, time) for value in values]
+        values = [min(max(result[name] + side * step, low), high) for side in (1.0, -1.0)]
+        ends = [state_at(problem.moving({**result, name: value}), slide, time) for value in values]
         out[:, k] += (ends[0] - ends[1]) / (values[0] - values[1])
     return out, speed
 
@@ -146,9 +146,9 @@ def _through(
         for side in (1.0, -1.0):
             moved = x.copy()
             moved[k] += side * step
-            found = problem.numbers_at(moved)
+            result = problem.numbers_at(moved)
             wall = None if pair else problem.estimated_walls(moved)[impact_spec.wall]
-            means.append((side * step, problem.spec.scales(found)[2], found, wall))
+            means.append((side * step, problem.spec.scales(result)[2], result, wall))
         later = 0.0
         if impact.touches:
             gaps = [
@@ -158,11 +158,11 @@ def _through(
             approach = 0.5 * (gaps[0][1] + gaps[1][1])
             later = (gaps[0][0] - gaps[1][0]) / (2.0 * step * approach) if approach > 0.0 else 0.0
         ends = []
-        for by, radius, found, wall in means:
-            gyration = {**problem.spec.known(), **found}["gyration"]
+        for by, radius, result, wall in means:
+            gyration = {**problem.spec.known(), **result}["gyration"]
             states = _shifted(impact, before, k, by, later)
             ends.append(
-                after_impact(states, radius, gyration, problem.spec.rims(found, pair), wall)[0]
+                after_impact(states, radius, gyration, problem.spec.rims(result, pair), wall)[0]
             )
         for out, one, two in zip(slopes, *ends, strict=True):
             out[0, k], out[1:, k] = later, (one - two) / (2.0 * step)

@@ -66,7 +66,7 @@ def matched_impacts(
 ) -> list[ImpactMatch]:
     """The impacts that slides show, in the order of time; ``x``: their unknowns."""
     kinks_of_slides = [
-        _bend(problem, x, n) for n in range(len(pieces) - 1)
+        _kink(problem, x, n) for n in range(len(pieces) - 1)
         if pieces[n].track == pieces[n + 1].track and pieces[n].slide + 1 == pieces[n + 1].slide
     ]  # fmt: skip
     radius = problem.spec.scales(problem.numbers_at(x))[2]
@@ -96,10 +96,10 @@ def _apart(one: Kink, two: Kink) -> float:
     return math.hypot(*(one.before[:2] - two.before[:2]))
 
 
-def _bend(problem: Problem, x: FloatArray, n: int) -> Kink:
+def _kink(problem: Problem, x: FloatArray, n: int) -> Kink:
     """Between piece ``n`` and the next."""
-    launches, found = problem.launches(x), problem.numbers_at(x)
-    moving = problem.moving(found)
+    launches, result = problem.launches(x), problem.numbers_at(x)
+    moving = problem.moving(result)
     first = problem.films[0].start
     one, two = problem.films[n], problem.films[n + 1]
     slides = [Slide(film.start - first, launches[k]) for k, film in ((n, one), (n + 1, two))]
@@ -121,8 +121,8 @@ def _bend(problem: Problem, x: FloatArray, n: int) -> Kink:
 
 def _numbers(problem: Problem, x: FloatArray) -> tuple[float, float]:
     """Radius of the puck and its radius of gyration over it."""
-    found = problem.numbers_at(x)
-    return problem.spec.scales(found)[2], {**problem.spec.known(), **found}["gyration"]
+    result = problem.numbers_at(x)
+    return problem.spec.scales(result)[2], {**problem.spec.known(), **result}["gyration"]
 
 
 def _of_wall(problem: Problem, x: FloatArray, kink: Kink) -> ImpactMatch | None:
@@ -244,7 +244,7 @@ def coupled(
     if grip and len(matches) > 1:
         ways += [other for other in [spec.coupled(sizes, False)] if other.free != ways[0].free]
     launches = problem.launches(x)[[chain[0] for chain in chains]]
-    found = []
+    result = []
     for one in ways:
         tied = Problem(
             one, tuple(tracks), problem.noise, problem.tall,
@@ -256,24 +256,24 @@ def coupled(
             low, high = one.limits(name)
             values[name] = min(max(values[name], low), high)
         start = tied.unknowns(values, launches, tuple(starts))
-        found.append(CoupledFit(tied, start, tuple(home[n] for n in range(len(pieces)))))
-    return found
+        result.append(CoupledFit(tied, start, tuple(home[n] for n in range(len(pieces)))))
+    return result
 
 
 def _begin(spec: FitSpec, matches: list[ImpactMatch]) -> dict[str, float]:
     """Values of the numbers of impacts to begin with."""
-    found = {}
+    result = {}
     for names, count in ((OF_WALLS, 1), (OF_PAIRS, 2)):
         mine = [match_ for match_ in matches if len(match_.kinks_of_slides) == count]
         if not mine:
             continue
         e, mu, turned, *mass = names
-        found[e] = float(np.median([match_.restitution for match_ in mine]))
-        found[mu] = max(abs(match_.ratio) for match_ in mine)  # rims that grip rub less
-        found[turned] = float(np.median([match_.grip for match_ in mine])) - 1.0
+        result[e] = float(np.median([match_.restitution for match_ in mine]))
+        result[mu] = max(abs(match_.ratio) for match_ in mine)  # rims that grip rub less
+        result[turned] = float(np.median([match_.grip for match_ in mine])) - 1.0
         if mass:
-            found[mass[0]] = float(np.median([match_.mass for match_ in mine]))
-    return {name: spec.start.get(name, value) for name, value in found.items()}
+            result[mass[0]] = float(np.median([match_.mass for match_ in mine]))
+    return {name: spec.start.get(name, value) for name, value in result.items()}
 
 
 def _wall(match_: ImpactMatch, radius: float) -> WallLine:

@@ -52,14 +52,14 @@ def kinks(film: Observations, noise: float) -> list[int]:
     jump = np.hypot(*(change - _around(change)).T)
     error = noise * math.sqrt(48.0 / _WINDOW**3) / film.usual_step
     high = max(_USUAL * float(np.median(jump)), _NOISY * error)
-    found = []
+    result = []
     for n, size in enumerate(jump.tolist()):
         near = jump[max(0, n - _WINDOW) : n + _WINDOW + 1]
         top = max(0, n - _WINDOW) + np.flatnonzero(near >= _TOP * near.max())
         highest = n == int(top[top.size // 2])
         if highest and size > max(high, _LEAST * float(speed[n])):
-            found.append(n + _WINDOW - 1)
-    ends = [-1, *found, count - 1]
+            result.append(n + _WINDOW - 1)
+    ends = [-1, *result, count - 1]
     return [
         ends[k] for k in range(1, len(ends) - 1)
         if _jumps(film, noise, ends[k - 1] + 1, ends[k] + 1, ends[k + 1] + 1)
@@ -85,11 +85,11 @@ def _around(change: FloatArray) -> FloatArray:
     count = len(change)
     out = np.empty_like(change)
     for n in range(count):
-        beside = np.r_[
+        close = np.r_[
             max(0, n - 3 * _WINDOW) : max(0, n - _WINDOW),
             min(count, n + _WINDOW + 1) : min(count, n + 3 * _WINDOW + 1),
         ]
-        out[n] = np.median(change[beside], axis=0)
+        out[n] = np.median(change[close], axis=0)
     return out
 
 

@@ -50,19 +50,19 @@ def initial_estimate(problem: Problem, known: Known, refit: bool) -> Estimate:
         for film, rest in zip(problem.films, rests, strict=True)
     ]
     minima = [minima_of(part) for part in parts]
-    found = estimate(problem, _joint_start(problem, parts, minima), known)
+    result = estimate(problem, _joint_start(problem, parts, minima), known)
     if len(parts) == 1:
-        found = replace(found, minima=tuple(minima[0]))
-    found = _lifted(found, known)
+        result = replace(result, minima=tuple(minima[0]))
+    result = _lifted(result, known)
     if not refit:
-        return found
-    found = _trimmed(found, problem, known)
-    if len(parts) == 1 and not is_clean(found, NOISY, NO_PATTERN):
-        found = _of_a_part(problem, known) or found
-    if only_outliers(found):
-        return found
+        return result
+    result = _trimmed(result, problem, known)
+    if len(parts) == 1 and not is_clean(result, NOISY, NO_PATTERN):
+        result = _of_a_part(problem, known) or result
+    if only_outliers(result):
+        return result
     # frames that are off together are good ones: what the model cannot follow is not hidden
-    return replace(estimate(found.problem, found.x, known, strict=True), minima=found.minima)
+    return replace(estimate(result.problem, result.x, known, strict=True), minima=result.minima)
 
 
 def _with_room(problem: Problem) -> Problem:
@@ -90,19 +90,19 @@ def _with_room(problem: Problem) -> Problem:
     )
 
 
-def _trimmed(found: Estimate, problem: Problem, known: Known) -> Estimate:
+def _trimmed(result: Estimate, problem: Problem, known: Known) -> Estimate:
     """The same without frames at the ends that are no free motion, the smaller part of each track.
 
     What they did to the fit may have hidden more of them.
     """
     for _ in range(_TRIMS):
-        films = trimmed(found, problem.films)
+        films = trimmed(result, problem.films)
         lost = (2 * part.time.size < film.time.size
                 for part, film in zip(films, problem.films, strict=True))  # fmt: skip
-        if films == found.problem.films or any(lost):
+        if films == result.problem.films or any(lost):
             break
-        found = initial_estimate(problem.with_films(films), known, refit=False)
-    return found
+        result = initial_estimate(problem.with_films(films), known, refit=False)
+    return result
 
 
 def _of_a_part(problem: Problem, known: Known) -> Estimate | None:
@@ -111,24 +111,24 @@ def _of_a_part(problem: Problem, known: Known) -> Estimate | None:
     They may lead the fit of all frames so far away that none of these is seen to be foreign.
     """
     for part in without_ends(problem.films[0]):
-        found = initial_estimate(problem.with_films((part,)), known, refit=False)
-        found = _trimmed(found, problem, known)
-        if is_clean(found):
-            return found
+        result = initial_estimate(problem.with_films((part,)), known, refit=False)
+        result = _trimmed(result, problem, known)
+        if is_clean(result):
+            return result
     return None
 
 
-def _lifted(found: Estimate, known: Known) -> Estimate:
+def _lifted(result: Estimate, known: Known) -> Estimate:
     """The same with part of the base lifted, where δ seems to be above that of full contact."""
-    problem = found.problem
+    problem = result.problem
     law = problem.spec.puck.body.law
-    delta = problem.spec.scales(problem.numbers_at(found.x))[1]
+    delta = problem.spec.scales(problem.numbers_at(result.x))[1]
     if problem.tall or not law.can_lift or delta < _LIFTS:
-        return found
-    certainty = certainty_of(found.jacobian[found.kept], plausible_for(problem, found.x))
+        return result
+    certainty = certainty_of(result.jacobian[result.kept], plausible_for(problem, result.x))
     if certainty.undetermined[: len(problem.spec.free)].count(True):
-        return found
-    return estimate(replace(problem, tall=True), found.x, known)
+        return result
+    return estimate(replace(problem, tall=True), result.x, known)
 
 
 def _joint_start(

@@ -105,14 +105,14 @@ def _refuse_still(film: Observations) -> None:
     _refuse_within(film, place if math.isfinite(place) else 0.0)
 
 
-def refuse_wobbling(found: Estimate, certainty: Certainty) -> None:
+def refuse_wobbling(result: Estimate, certainty: Certainty) -> None:
     """Refuse a track of a puck that goes nowhere beyond what any slide leaves of its places.
 
     Raises
     ------
     InputError
     """
-    problem = found.problem
+    problem = result.problem
     for n, film in enumerate(problem.films):
         speeds = [(n, name) for name in ("launch_vx", "launch_vy")]
         lost = [certainty.undetermined[k] for k, key in enumerate(problem.names) if key in speeds]
@@ -236,18 +236,18 @@ def checked_speeds(given: Any, between: Any) -> tuple[float, ...]:
     return speeds
 
 
-def refuse_faster(speeds: tuple[float, ...], found: Estimate) -> None:
+def refuse_faster(speeds: tuple[float, ...], result: Estimate) -> None:
     """Refuse slip speeds that end below those of the tracks.
 
     Raises
     ------
     InputError
     """
-    problem = found.problem
-    radius = problem.spec.scales(problem.numbers_at(found.x))[2]
+    problem = result.problem
+    radius = problem.spec.scales(problem.numbers_at(result.x))[2]
     fastest = max(
         math.hypot(vx, vy) + radius * abs(spin)
-        for _, _, vx, vy, spin, _ in problem.launches(found.x).tolist()
+        for _, _, vx, vy, spin, _ in problem.launches(result.x).tolist()
     )
     if fastest > speeds[-1]:
         raise InputError(
@@ -256,15 +256,15 @@ def refuse_faster(speeds: tuple[float, ...], found: Estimate) -> None:
         )
 
 
-def refuse_opening(found: Estimate) -> None:
+def refuse_opening(result: Estimate) -> None:
     """Refuse a puck so tall, for the largest friction that was found, that its base opens.
 
     Raises
     ------
     InputError
     """
-    problem = found.problem
-    numbers = problem.numbers_at(found.x)
+    problem = result.problem
+    numbers = problem.numbers_at(result.x)
     law = problem.spec.speed_law(numbers)
     _, delta, _ = problem.spec.scales(numbers)
     largest = float(delta * law.largest(law.top_speed) / law(0.0))

@@ -66,12 +66,12 @@ def compare(
     score = chi2 + 2.0 * unknowns
     weight = np.exp(-0.5 * (score - score.min()))
     weight /= weight.sum()
-    found = [
+    result = [
         LawScore(name, float(c), int(m), float(w), one.problem.numbers_at(one.x))
         for name, c, m, w, one in zip(names, chi2, unknowns, weight, again, strict=True)
     ]
     order = np.argsort(score, kind="stable")
-    return tuple(found[k] for k in order)
+    return tuple(result[k] for k in order)
 
 
 def variants_of(spec: FitSpec, names: Any) -> dict[str, FitSpec]:
@@ -100,11 +100,11 @@ def _variant(spec: FitSpec, name: str) -> FitSpec:
     return replace(spec, puck=replace(spec.puck, pressure=law), free=free, fixed=fixed)
 
 
-def chi2_under(found: Estimate, noise: tuple[float, float]) -> float:
+def chi2_under(result: Estimate, noise: tuple[float, float]) -> float:
     """χ² under a noise, of all frames, with no residual beyond the farthest."""
-    rows = found.problem.with_noise(noise, found.x, found.kept).residuals(found.x)
-    total = float(np.sum(rows[found.problem.kinds == PRIOR] ** 2))
-    for x, y, turn in found.problem.each():
+    rows = result.problem.with_noise(noise, result.x, result.kept).residuals(result.x)
+    total = float(np.sum(rows[result.problem.kinds == PRIOR] ** 2))
+    for x, y, turn in result.problem.each():
         place = rows[x] ** 2 + rows[y] ** 2
         total += float(np.minimum(place, FARTHEST_PLACE).sum())
         total += float(np.minimum(rows[turn] ** 2, FARTHEST**2).sum())

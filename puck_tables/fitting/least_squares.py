@@ -73,22 +73,22 @@ def minimise(
     if how.loss != "linear":  # far from the minimum all residuals are large, none an outlier
         scale = max(scale, 2.0 * problem.usual(residuals(inside)))
     while True:
-        found: Any = least_squares(
+        result: Any = least_squares(
             residuals, inside, jacobian, bounds=(low, high), x_scale="jac", loss=how.loss,
             f_scale=scale, max_nfev=how.evaluations, ftol=how.tolerance, xtol=how.tolerance,
             gtol=1e-12,
         )  # fmt: skip
-        beyond = (found.x < limits[0]) | (found.x > limits[1])
+        beyond = (result.x < limits[0]) | (result.x > limits[1])
         if beyond.any():  # it ran away: the rest is sought with these on their ends
             low, high = (np.where(beyond, ends, near)
                          for ends, near in zip(limits, (low, high), strict=True))  # fmt: skip
-            inside = _inside(np.clip(found.x, *limits), low, high)
+            inside = _inside(np.clip(result.x, *limits), low, high)
             continue
         if scale <= how.scale:
-            whole[moved] = np.clip(found.x, *limits)
-            return whole, float(found.cost)
-        inside = _inside(found.x, low, high)
-        scale = max(how.scale, min(0.25 * scale, 2.0 * problem.usual(found.fun)))
+            whole[moved] = np.clip(result.x, *limits)
+            return whole, float(result.cost)
+        inside = _inside(result.x, low, high)
+        scale = max(how.scale, min(0.25 * scale, 2.0 * problem.usual(result.fun)))
 
 
 def _astray(problem: Problem, x: FloatArray) -> str:

@@ -50,7 +50,7 @@ class _Reading(NamedTuple):
     fits: bool = True
 
 
-def misfit(found: Estimate, problem: Problem, known: Known, speeds: bool) -> str:
+def misfit(result: Estimate, problem: Problem, known: Known, speeds: bool) -> str:
     """A sentence that says which other reading fits far better; empty if none does.
 
     A floor is named before angles or a radius that fit about as well.
@@ -63,14 +63,14 @@ def misfit(found: Estimate, problem: Problem, known: Known, speeds: bool) -> str
     speeds : whether a friction over slip speed does not fit, either
     """
     floor = _may_change(problem.spec) and not speeds
-    told = [one for one in (_by_drag(found, problem, known), _by_speed(found, problem)) if one] \
+    told = [one for one in (_by_drag(result, problem, known), _by_speed(result, problem)) if one] \
         if floor else []  # fmt: skip
     if len(told) == 2 and told[1].gain < told[0].gain + _BETTER:  # more numbers fit a little better
         del told[1]
     told = sorted(told, key=lambda one: -one.gain)[:1]
-    told += _otherwise(found, problem, known)
+    told += _otherwise(result, problem, known)
     air = _may_change(problem.spec) and not any(one.fits for one in told)
-    if air and (words := _by_air(found, problem, known)):
+    if air and (words := _by_air(result, problem, known)):
         return words
     best = max((one.gain for one in told), default=0.0)
     near = sorted((one for one in told if one.gain > best - _ALIKE), key=lambda one: not one.floor)
@@ -80,7 +80,7 @@ def misfit(found: Estimate, problem: Problem, known: Known, speeds: bool) -> str
     return ""
 
 
-def _otherwise(found: Estimate, problem: Problem, known: Known) -> list[_Reading]:
+def _otherwise(result: Estimate, problem: Problem, known: Known) -> list[_Reading]:
     """The angles, or the radius, read otherwise, if one of these fits far better."""
     best, given = _Reading("", math.log(_FAR)), problem.spec.known()["radius"]
     for words, other, scale in _others(problem):
@@ -88,7 +88,7 @@ def _otherwise(found: Estimate, problem: Problem, known: Known) -> list[_Reading
             one = initial_estimate(other, known, refit=False)
         except InputError:  # such a puck, or such a track, there is not
             continue
-        gain = _size(found, 1.0) - _size(one, scale)
+        gain = _size(result, 1.0) - _size(one, scale)
         radius = one.problem.spec.scales(one.problem.numbers_at(one.x))[2]
         found_radius = "radius" in other.spec.free and "radius" not in problem.spec.free
         same = found_radius and abs(radius / given - 1.0) < _NEAR
@@ -97,13 +97,13 @@ def _otherwise(found: Estimate, problem: Problem, known: Known) -> list[_Reading
     return [best] if best.words else []
 
 
-def _tells(found: Estimate, other: Estimate, noise: float) -> float:
+def _tells(result: Estimate, other: Estimate, noise: float) -> float:
     """By how much smaller residuals are of another floor; 0 where that tells nothing.
 
     It leaves far less, or no more than noise where one friction leaves more than that.  Where air
     or a floor changes in a way that no few numbers tell it may still leave more than noise.
     """
-    gain = _size(found, 1.0) - _size(other, 1.0)
+    gain = _size(result, 1.0) - _size(other, 1.0)
     left = float(np.median(_deviations(other)[0])) / noise
     clean = gain > _LITTLE and left < _CLEAN
     fits = (gain > math.log(_FAR) or clean) and _fits(other, noise)
@@ -119,14 +119,14 @@ def _dragged(problem: Problem) -> Problem:
     return replace(problem, spec=replace(spec, free=(*spec.free, "drag"), bounds=bounds))
 
 
-def _by_drag(found: Estimate, problem: Problem, known: Known) -> _Reading | None:
+def _by_drag(result: Estimate, problem: Problem, known: Known) -> _Reading | None:
     """Drag of speed and spin alike, if that fits far better."""
     other = _dragged(problem)
     try:
         one = initial_estimate(other, known, refit=False)
     except InputError:
         return None
-    gain = _tells(found, one, problem.noise[0])
+    gain = _tells(result, one, problem.noise[0])
     words = f"with drag besides friction: find it, too (--free {','.join(other.spec.free)})"
     return _Reading(words, gain, True, _fits(one, problem.noise[0])) if gain else None
 
@@ -138,17 +138,17 @@ def _may_change(spec: FitSpec) -> bool:
     return uniform and not named and not spec.speeds and "friction" in spec.free
 
 
-def _by_speed(found: Estimate, problem: Problem) -> _Reading | None:
+def _by_speed(result: Estimate, problem: Problem) -> _Reading | None:
     """A friction over slip speed, if that fits far better."""
     try:
-        other = tried(found)
+        other = tried(result)
     except InputError:  # hardly any friction, at no speed
         return None
-    gain = _tells(found, other, problem.noise[0])
+    gain = _tells(result, other, problem.noise[0])
     spec, numbers = other.problem.spec, other.problem.numbers_at(other.x)
     speeds = spec.speeds
     values = [numbers[name] for name in NODES[: len(speeds)]]
-    usual = found.problem.numbers_at(found.x)["friction"]
+    usual = result.problem.numbers_at(result.x)["friction"]
     if max(values) > _MOST * usual or min(values) < _LEAST * usual:  # such a law fits noise
         return None
     told = ", ".join(f"{f:.2g} at {u:g} m/s" for u, f in zip(speeds, values, strict=True))
@@ -159,14 +159,14 @@ def _by_speed(found: Estimate, problem: Problem) -> _Reading | None:
     return _Reading(words, gain, True, _fits(other, problem.noise[0])) if gain else None
 
 
-def _by_air(found: Estimate, problem: Problem, known: Known) -> str:
+def _by_air(result: Estimate, problem: Problem, known: Known) -> str:
     """A sentence where places alone are those of another floor, and angles are not.
 
     Air slows the centre, and hardly the spin.
     """
     if len(problem.films) > 1 or problem.films[0].angle is None:
         return ""
-    spec, spin = problem.spec, float(found.problem.launches(found.x)[0, 4])
+    spec, spin = problem.spec, float(result.problem.launches(result.x)[0, 4])
     spec = spec.spinning(spin)
     films = tuple(replace(film, angle=None) for film in problem.films)
     blind = replace(problem.with_films(films), spec=spec)
@@ -203,12 +203,12 @@ def _others(problem: Problem) -> Iterator[tuple[str, Problem, float]]:
         yield words, replace(problem, spec=wider), 1.0
 
 
-def _size(found: Estimate, scale: float) -> float:
+def _size(result: Estimate, scale: float) -> float:
     """The logarithm of the usual size of residuals, that of angles in units of ``scale``.
 
     Angles that nothing explains are as far off in any unit.
     """
-    places, angles = _deviations(found)
+    places, angles = _deviations(result)
     if angles.size and float(np.median(angles)) < _BY_CHANCE:
         angles = angles / scale
     sizes = [size for size in (places, angles) if size.size]
@@ -227,9 +227,9 @@ def _explained(tried: Estimate) -> bool:
     return not angles.size or float(np.median(angles)) < _BY_CHANCE
 
 
-def _deviations(found: Estimate) -> tuple[FloatArray, FloatArray]:
+def _deviations(result: Estimate) -> tuple[FloatArray, FloatArray]:
     """How far places (m) and angles (rad) are off."""
-    films, deviations = found.problem.films, found.problem.deviations(found.x)
+    films, deviations = result.problem.films, result.problem.deviations(result.x)
     angles = [np.empty(0)] + [
         np.abs(one[TURN, np.isfinite(film.angle)]) for film, one in zip(films, deviations,
         strict=True) if film.angle is not None

@@ -119,8 +119,8 @@ def _cost(rows: FloatArray, scale: float) -> float:
 
 def _apart(walkers: list[_Walker]) -> list[_Walker]:
     """Those that no deeper one has met."""
-    found: list[_Walker] = []
+    result: list[_Walker] = []
     for one in walkers:
-        if all(np.abs(one.x - other.x).max() > _APART * np.abs(other.x).max() for other in found):
-            found.append(one)
-    return found
+        if all(np.abs(one.x - other.x).max() > _APART * np.abs(other.x).max() for other in result):
+            result.append(one)
+    return result

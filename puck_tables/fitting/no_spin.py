@@ -17,12 +17,12 @@ _SPIN = "launch_spin"
 _SCALES = ("friction", "decel")
 
 
-def without_spin(found: Estimate, numbers: dict[str, Number], known: Known) -> tuple[str, ...]:
+def without_spin(result: Estimate, numbers: dict[str, Number], known: Known) -> tuple[str, ...]:
     """A sentence on the friction if no puck spun; none where it is told, or they did.
 
     The commonest film shows a slide without marks: its friction hangs on the spin that nobody saw.
     """
-    problem = found.problem
+    problem = result.problem
     spec = problem.spec
     (*scale, _) = (*(name for name in _SCALES if name in spec.free), "")
     if (
@@ -39,8 +39,8 @@ def without_spin(found: Estimate, numbers: dict[str, Number], known: Known) -> t
         )
     except InputError:  # too few frames
         return ()
-    noise = found.problem.noise
-    if chi2_under(still, noise) > chi2_under(found, noise) + RISE:
+    noise = result.problem.noise
+    if chi2_under(still, noise) > chi2_under(result, noise) + RISE:
         return ()
     plausible = plausible_for(still.problem, still.x)
     degrees = freedom(still, known)

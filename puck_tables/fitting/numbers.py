@@ -85,8 +85,8 @@ class EstimatedLaunch(NamedTuple):
 
 def plausible_for(problem: Problem, x: FloatArray) -> FloatArray:
     """What is plausible for every unknown (m,): of scales their own size."""
-    found, launches = problem.numbers_at(x), problem.launches(x)
-    radius = problem.spec.scales(found)[2]
+    result, launches = problem.numbers_at(x), problem.launches(x)
+    radius = problem.spec.scales(result)[2]
     sizes = []
     for track, name in problem.names:
         if name == "readout" and problem.read_within is not None:
@@ -95,7 +95,7 @@ def plausible_for(problem: Problem, x: FloatArray) -> FloatArray:
         if track == -1:
             least = _LEAST.get(name)
             sizes.append(
-                problem.spec.plausible(name) if least is None else max(abs(found[name]), least)
+                problem.spec.plausible(name) if least is None else max(abs(result[name]), least)
             )
             continue
         if track < -1:
@@ -115,7 +115,7 @@ def plausible_for(problem: Problem, x: FloatArray) -> FloatArray:
 
 
 def numbers_of(
-    found: Estimate,
+    result: Estimate,
     certainty: Certainty,
     rivals: tuple[OtherMinimum, ...] = (),
     unsigned: tuple[int, ...] = (),
@@ -125,12 +125,12 @@ def numbers_of(
     ``rivals``: other summits of the likelihood; what they differ in, or do not tell, is not
     determined; ``unsigned``: tracks that do not tell which way the puck spins.
     """
-    problem, x = found.problem, found.x
+    problem, x = result.problem, result.x
     spec, errors = problem.spec, certainty.errors
     values = problem.numbers_at(x)
     puck: dict[str, Number] = {}
     for k, name in enumerate(spec.free):
-        interval, error = interval_of(found, certainty, k), float(errors[k])
+        interval, error = interval_of(result, certainty, k), float(errors[k])
         width = interval.high - interval.low
         if interval.profiled:  # the likelihood is no parabola: half of its width
             error = max(error, width / (2.0 * certainty.reach))
@@ -177,7 +177,7 @@ def numbers_of(
         number = quadratic(value, error, PUCK[name].unit, FOLLOWS, certainty.reach)
         ends = _follows(problem, x, name, slope, puck)
         if ends is None and profiled and name == "height" and math.isfinite(error):
-            ends = _profiled(found, certainty, name)
+            ends = _profiled(result, certainty, name)
             if ends is not None and ends.profiled:
                 half = 0.5 * (ends.high - ends.low)
                 number = number._replace(error=half / certainty.reach, profiled=True)
@@ -186,19 +186,19 @@ def numbers_of(
         puck[name] = number._replace(low=max(number.low, PUCK[name].low))
     puck = {name: puck[name] for name in PUCK if name in puck}
     unsure = {*unsigned, *(n for minimum in rivals for n in minimum.tracks)}
-    return puck, _launches(found, certainty, unsure)
+    return puck, _launches(result, certainty, unsure)
 
 
 def _launches(
-    found: Estimate, certainty: Certainty, unsure: Collection[int]
+    result: Estimate, certainty: Certainty, unsure: Collection[int]
 ) -> tuple[EstimatedLaunch, ...]:
     """The launches of all slides; those after an impact follow from the first.
 
     ``unsure``: tracks of which motions of different spins fit as well.
     """
-    problem, errors = found.problem, certainty.errors
+    problem, errors = result.problem, certainty.errors
     plausible = dict(zip(problem.names, certainty.plausible.tolist(), strict=True))
-    slides, slopes = problem.slides(found.x)[0], slopes_of_slides(problem, found.x)
+    slides, slopes = problem.slides(result.x)[0], slopes_of_slides(problem, result.x)
     launches = []
     for n, film in enumerate(problem.films):
         for m, slide in enumerate(slides[n]):
@@ -244,26 +244,26 @@ def _follows(
     return Interval(min(ends), max(ends), False)
 
 
-def _profiled(found: Estimate, certainty: Certainty, name: str) -> Interval | None:
+def _profiled(result: Estimate, certainty: Certainty, name: str) -> Interval | None:
     """The interval of height by the profile likelihood, with height in place of δ as an unknown.
 
     None where δ is not found, or more is known of it than the tracks tell.
     """
-    problem = found.problem
+    problem = result.problem
     spec = problem.spec
     if "delta" not in spec.free or "delta" in spec.priors or "delta" in spec.bounds:
         return None
     k = spec.free.index("delta")
-    values = {**spec.known(), **problem.numbers_at(found.x)}
+    values = {**spec.known(), **problem.numbers_at(result.x)}
     height = _derived(spec.scales(values), values)[name]
     other = replace(spec, free=tuple(name if one == "delta" else one for one in spec.free))
     moved = replace(problem, spec=other)
-    x = found.x.copy()
+    x = result.x.copy()
     x[k] = height
     rows, slopes = moved.residuals_and_jacobian(x)
-    there = replace(found, problem=moved, x=x, residuals=rows, jacobian=slopes, minima=())
+    there = replace(result, problem=moved, x=x, residuals=rows, jacobian=slopes, minima=())
     plausible = plausible_for(moved, x)
-    own = certainty_of(slopes[found.kept], plausible, certainty.degrees)
+    own = certainty_of(slopes[result.kept], plausible, certainty.degrees)
     return interval_of(there, own, k)
 
 

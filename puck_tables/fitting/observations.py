@@ -194,11 +194,11 @@ def noise_of(films: list[Observations]) -> tuple[float, float]:
     along = [_spread([one[:, k] for one in places if k < one.shape[1]]) for k in range(2)]
     known = [one for one in along if math.isfinite(one)]
     place = math.sqrt(sum(one * one for one in known) / len(known)) if known else math.nan
-    found = place, _spread(angles)
+    result = place, _spread(angles)
     least = (max(film.steps[kind] for film in films) * ROUNDED for kind in range(2))
     one, other = (
         float(np.fmax(noise, step)) if step else noise
-        for noise, step in zip(found, least, strict=True)
+        for noise, step in zip(result, least, strict=True)
     )
     return one, other
 
@@ -218,8 +218,8 @@ def wrapped(angle: FloatArray) -> FloatArray:
     >>> wrapped(np.array([7.0])).round(3).tolist()
     [0.717]
     """
-    found: FloatArray = angle - 2.0 * math.pi * np.round(angle / (2.0 * math.pi))
-    return found
+    result: FloatArray = angle - 2.0 * math.pi * np.round(angle / (2.0 * math.pi))
+    return result
 
 
 def rests_from(film: Observations, spread: float) -> int:

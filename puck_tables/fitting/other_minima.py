@@ -48,7 +48,7 @@ _TO_OTHERS = ((3, 6), (12, 3))  # steps, and how many starts then go on
 
 
 def other_minima(
-    found: Estimate, certainty: Certainty, excess: float = 1.0
+    result: Estimate, certainty: Certainty, excess: float = 1.0
 ) -> tuple[OtherMinimum, ...]:
     """Other summits whose χ² is higher by less than :data:`RISE`.
 
@@ -57,80 +57,80 @@ def other_minima(
     ``excess``: the residuals over the noise that frames beside each other show, by which turns are
     judged.
     """
-    problem = found.problem
+    problem = result.problem
     marked = any(film.angle is not None for film in problem.films)
     apart = not problem.impact_specs
     signed = marked or not apart  # a wall tells a motion from its mirror image
     single = len(problem.films) == 1
     if problem.spec.speeds:
         return ()
-    starts = list(found.minima)
+    starts = list(result.minima)
     if not starts and apart and single:
         starts = minima_of(problem)
     if not marked and apart:
-        starts += _of_other_spins(found)
-    starts += _of_other_turns(found)
+        starts += _of_other_spins(result)
+    starts += _of_other_turns(result)
     # few residuals tell their noise badly, and χ² with it
     far = max(certainty.quantile / Z95, 1.0) ** 2
     rivals: list[OtherMinimum] = []
-    summits = [(found.x, *_known(found, certainty))]
+    summits = [(result.x, *_known(result, certainty))]
     for start in starts:
-        x, cost = minimise(problem, start, SQUARES, found.kept)
-        rise = 2.0 * cost - found.chi2
+        x, cost = minimise(problem, start, SQUARES, result.kept)
+        rise = 2.0 * cost - result.chi2
         deviations = [
             (np.abs(_words(x, signed) - _words(one, signed)) > far)[seen]
             for one, seen, far in summits
         ]
         most = far * RISE / (excess**2 if marked else 1.0)
-        if is_slow(problem, x) and not is_slow(problem, found.x):
-            most = most_of_slow(far * found.chi2, excess)
+        if is_slow(problem, x) and not is_slow(problem, result.x):
+            most = most_of_slow(far * result.chi2, excess)
         if rise < most and all(one.any() for one in deviations):
             # what one motion tells another may not: each summit is as wide as it is
             rows, slopes = problem.residuals_and_jacobian(x)
             x = np.where(slopes.any(axis=0), x, start)  # what does nothing stays where it was
-            there = replace(found, x=x, residuals=rows, jacobian=slopes, minima=())
+            there = replace(result, x=x, residuals=rows, jacobian=slopes, minima=())
             plausible = plausible_for(problem, x)
-            own = certainty_of(slopes[found.kept], plausible, certainty.degrees)
+            own = certainty_of(slopes[result.kept], plausible, certainty.degrees)
             summits.append((x, *_known(there, own)))
-            rivals.append(OtherMinimum(there, own, rise, _spun_otherwise(found, x, certainty)))
+            rivals.append(OtherMinimum(there, own, rise, _spun_otherwise(result, x, certainty)))
     return tuple(rivals)
 
 
-def taken(found: Estimate, rivals: tuple[OtherMinimum, ...], excess: float) -> OtherMinimum | None:
+def taken(result: Estimate, rivals: tuple[OtherMinimum, ...], excess: float) -> OtherMinimum | None:
     """The motion that is taken in place of an estimate; None if that is.
 
     Of one that ran away any that did not is taken, of those that fit about as well.
     ``excess``: its residuals over the noise of smooth motions.
     """
-    if not found.chi2 > 0.0:
+    if not result.chi2 > 0.0:
         return None
-    problem = found.problem
-    if ran_away(problem, found.x):
+    problem = result.problem
+    if ran_away(problem, result.x):
         near = [one for one in rivals if not ran_away(problem, one.estimate.x)]
         return min(near, key=lambda one: one.rise, default=None)
     motions = [
-        Judged(is_slow(problem, x), excess**2 * (found.chi2 + rise), excess * math.sqrt(
-            max(1.0 + rise / found.chi2, 0.0)))
-        for x, rise in ((found.x, 0.0), *((one.estimate.x, one.rise) for one in rivals))
+        Judged(is_slow(problem, x), excess**2 * (result.chi2 + rise), excess * math.sqrt(
+            max(1.0 + rise / result.chi2, 0.0)))
+        for x, rise in ((result.x, 0.0), *((one.estimate.x, one.rise) for one in rivals))
     ]  # fmt: skip
     first = preferred(motions)
     if not motions[first].slow:
         for k, motion in enumerate(motions):
-            x = rivals[k - 1].estimate.x if k else found.x
+            x = rivals[k - 1].estimate.x if k else result.x
             other = on_another_floor(problem, x) if motion.slow else None
             if other is not None:
-                there, cost = minimise(*other, SQUARES, found.kept)
-                size = excess * math.sqrt(2.0 * cost / found.chi2)
+                there, cost = minimise(*other, SQUARES, result.kept)
+                size = excess * math.sqrt(2.0 * cost / result.chi2)
                 one = Judged(is_slow(other[0], there), excess**2 * 2.0 * cost, size)
                 if preferred([one, motions[first]]) == 0:
                     return rivals[k - 1] if k else None
     return rivals[first - 1] if first else None
 
 
-def _spun_otherwise(found: Estimate, x: FloatArray, certainty: Certainty) -> tuple[int, ...]:
+def _spun_otherwise(result: Estimate, x: FloatArray, certainty: Certainty) -> tuple[int, ...]:
     """Tracks that spin otherwise: with angles by whole turns, else by more than their errors."""
-    problem = found.problem
-    change = np.abs(problem.launches(x)[:, 4] - problem.launches(found.x)[:, 4])
+    problem = result.problem
+    change = np.abs(problem.launches(x)[:, 4] - problem.launches(result.x)[:, 4])
     errors = _APART * np.sqrt(np.diag(certainty.covariance))
     tracks = []
     for n, film in enumerate(problem.films):
@@ -142,36 +142,36 @@ def _spun_otherwise(found: Estimate, x: FloatArray, certainty: Certainty) -> tup
     return tuple(tracks)
 
 
-def _of_other_turns(found: Estimate) -> list[FloatArray]:
+def _of_other_turns(result: Estimate) -> list[FloatArray]:
     """Unknowns near other summits of tracks with angles: whole turns more from frame to frame."""
-    problem = found.problem
+    problem = result.problem
     starts = []
     for k, (n, name) in enumerate(problem.names):
         if name != _SPIN or problem.films[n].angle is None:
             continue
         turn = 2.0 * half_turns(problem.films[n])
         for way in (-turn, turn):
-            x = found.x
+            x = result.x
             for _ in range(_MORE_TURNS):  # as long as they are near
                 x = x.copy()
                 x[k] += way
                 within = problem.limits[0][k] <= x[k] <= problem.limits[1][k]
-                if not (within and _near(found, x, [])):
+                if not (within and _near(result, x, [])):
                     break
                 starts.append(x)
     return starts
 
 
-def _of_other_spins(found: Estimate) -> list[FloatArray]:
+def _of_other_spins(result: Estimate) -> list[FloatArray]:
     """Unknowns near other summits of tracks without angles, by spins of which a path may be.
 
     All tracks without spin, at the ratio that all motions tend to, or mirrored.
     """
-    problem = found.problem
+    problem = result.problem
     if _SPIN in problem.spec.fixed or all(problem.spinless):
         return []
-    launches = problem.launches(found.x)
-    numbers = problem.numbers_at(found.x)
+    launches = problem.launches(result.x)
+    numbers = problem.numbers_at(result.x)
     decel, delta, radius = problem.spec.scales(numbers)
     speed = np.hypot(launches[:, 2], launches[:, 3])
     limit = _LIMIT * speed / radius
@@ -189,16 +189,16 @@ def _of_other_spins(found: Estimate) -> list[FloatArray]:
         ]
         found_numbers = numbers_with(problem.spec, decel * shares[1] / shares[0], tilt)
         starts.append(problem.unknowns({**numbers, **found_numbers}, other))
-    walked = multi_start([(problem, x) for x in starts], _TO_OTHERS, minimum=RISE, kept=found.kept)
-    return [x for x, cost in walked if 2.0 * cost < found.chi2 + 2.0 * RISE]
+    walked = multi_start([(problem, x) for x in starts], _TO_OTHERS, minimum=RISE, kept=result.kept)
+    return [x for x, cost in walked if 2.0 * cost < result.chi2 + 2.0 * RISE]
 
 
-def mirrored(found: Estimate, certainty: Certainty) -> tuple[int, ...]:
+def mirrored(result: Estimate, certainty: Certainty) -> tuple[int, ...]:
     """Tracks without angles that the opposite spin fits as well.
 
     Where the tilt is free it hardly differs from its least there, to which it then falls.
     """
-    problem, low, high = found.problem, *found.problem.limits
+    problem, low, high = result.problem, *result.problem.limits
     tilts = [k for k, (_, name) in enumerate(problem.names) if name in ("delta", "height")]
     errors = np.sqrt(np.diag(certainty.covariance))
     alike = []
@@ -206,31 +206,31 @@ def mirrored(found: Estimate, certainty: Certainty) -> tuple[int, ...]:
         if name != _SPIN or problem.films[n].angle is not None:
             continue
         for least in (True, False) if tilts else (False,):
-            x = found.x.copy()
+            x = result.x.copy()
             x[k] = -x[k]
             if not low[k] <= x[k] <= high[k]:
                 continue
             if least:
                 x[tilts] = low[tilts]
-            if not _near(found, x, tilts if least else []):
+            if not _near(result, x, tilts if least else []):
                 continue
-            there, cost = minimise(problem, x, SQUARES, found.kept)
+            there, cost = minimise(problem, x, SQUARES, result.kept)
             if (
-                there[k] * found.x[k] < 0.0 and abs(there[k] - found.x[k]) > Z95 * errors[k]
-                and 2.0 * cost < found.chi2 + RISE
+                there[k] * result.x[k] < 0.0 and abs(there[k] - result.x[k]) > Z95 * errors[k]
+                and 2.0 * cost < result.chi2 + RISE
             ):  # fmt: skip
                 alike.append(n)
                 break
     return tuple(alike)
 
 
-def _near(found: Estimate, x: FloatArray, held: list[int]) -> bool:
+def _near(result: Estimate, x: FloatArray, held: list[int]) -> bool:
     """Whether χ² may come near that of the estimate, by what is linear in the unknowns."""
-    problem = found.problem
-    few = compact(problem, *problem.residuals_and_jacobian(x), found.kept)
+    problem = result.problem
+    few = compact(problem, *problem.residuals_and_jacobian(x), result.kept)
     q, _ = np.linalg.qr(np.delete(few.slopes, held, axis=1))
     left = few.rows - q @ (few.rows @ q)
-    return float(left @ left) < found.chi2 + 2.0 * EXCLUDED
+    return float(left @ left) < result.chi2 + 2.0 * EXCLUDED
 
 
 def _words(x: FloatArray, signed: bool) -> FloatArray:
@@ -238,9 +238,9 @@ def _words(x: FloatArray, signed: bool) -> FloatArray:
     return x if signed else np.abs(x)
 
 
-def _known(found: Estimate, certainty: Certainty) -> tuple[npt.NDArray[np.bool_], FloatArray]:
+def _known(result: Estimate, certainty: Certainty) -> tuple[npt.NDArray[np.bool_], FloatArray]:
     """Which numbers of the puck, and whether its spin, a summit tells; how far off another is."""
-    names = found.problem.names
+    names = result.problem.names
     spec = np.array([track == -1 or name == _SPIN for track, name in names], bool)
     seen = spec & ~np.array(certainty.undetermined, bool)
     return seen, _APART * np.sqrt(np.diag(certainty.covariance))

@@ -37,7 +37,7 @@ def outliers_of(
     """
     if far.sum() < _FEW:
         return far
-    found = far.copy()
+    result = far.copy()
     usual = np.stack([
         np.median(deviations[max(0, n - _AROUND) : n + _AROUND + 1], axis=0) for n in
         range(len(deviations))
@@ -49,8 +49,8 @@ def outliers_of(
             stop < len(deviations) and not _leaps(deviations, stop),
         )
         if stop - start >= _FEW and any(ends):
-            found[start:stop] &= ~together[start:stop]
-    return found
+            result[start:stop] &= ~together[start:stop]
+    return result
 
 
 def _intervals(together: npt.NDArray[np.bool_]) -> list[tuple[int, int]]:
@@ -65,5 +65,5 @@ def _leaps(deviations: FloatArray, at: int) -> bool:
     """Whether residuals leap between two frames, and not those beside."""
     ways = np.linalg.norm(np.diff(deviations[max(0, at - 3) : at + 3], axis=0), axis=1)
     middle = at - max(0, at - 3) - 1
-    beside = np.delete(ways, middle)
-    return bool(ways[middle] > max(_LEAP, _MORE * float(np.median(beside))))
+    close = np.delete(ways, middle)
+    return bool(ways[middle] > max(_LEAP, _MORE * float(np.median(close))))

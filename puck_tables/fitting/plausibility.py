@@ -37,11 +37,11 @@ def doubts(
     'A height of 10 m is 385 times the radius, as no puck is'
     """
     said = []
-    found = {
+    result = {
         name: one for name, one in numbers.items()
         if one.how != KNOWN and one.determined and math.isfinite(one.value)
     }  # fmt: skip
-    friction, height, own = (found.get(name) for name in ("friction", "height", "radius"))
+    friction, height, own = (result.get(name) for name in ("friction", "height", "radius"))
     if friction is not None and (friction.low > _GRIP or friction.high < _SLICK):
         than = "more" if friction.low > _GRIP else "less"
         said.append(
@@ -59,13 +59,13 @@ def doubts(
             f"A radius of {own.value:.3g} m was found where {radius:.3g} m was said: the scale, or "
             "the unit of the angles, may be wrong"
         )
-    gyration = found.get("gyration")
+    gyration = result.get("gyration")
     if gyration is not None and gyration.low > 1.0:
         said.append(
             f"A radius of gyration of {gyration.value:.3g} r is that of no body within its rim: "
             "the radius, or the unit of the angles, may be wrong"
         )
-    ratio = found.get("mass_ratio")
+    ratio = result.get("mass_ratio")
     if ratio is not None and not 1.0 / _HEAVIER < ratio.value < _HEAVIER:
         said.append(f"A mass ratio of {ratio.value:.3g} is that of no two pucks of one size")
     for one in launches:

@@ -79,53 +79,53 @@ class Problem(Unknowns):
             kinds.append(np.where(turn, ANGLE, UNSEEN)[self._angled(film)])
         return np.concatenate([*kinds, np.full(len(self.priors), PRIOR)]).astype(np.int64)
 
-    def moving(self, found: NumbersOf) -> Moving:
+    def moving(self, result: NumbersOf) -> Moving:
         """What moves the puck."""
-        return self.spec.moving(found, self.tall)
+        return self.spec.moving(result, self.tall)
 
     def slides(self, x: FloatArray) -> tuple[list[list[Slide]], list[ImpactState]]:
         """The slides of each track, in their order, and the impacts between them.
 
         Times are those after the start of the first track.
         """
-        found = self.numbers_at(x)
+        result = self.numbers_at(x)
         slides = [
-            [Slide(self._begin(n, found), launch)] for n, launch in enumerate(self.launches(x))
+            [Slide(self._begin(n, result), launch)] for n, launch in enumerate(self.launches(x))
         ]
         impacts = []
         if self.impact_specs:
-            moving, walls = self.moving(found), self.estimated_walls(x)
-            gyration = {**self.spec.known(), **found}["gyration"]
+            moving, walls = self.moving(result), self.estimated_walls(x)
+            gyration = {**self.spec.known(), **result}["gyration"]
         for impact_spec in self.impact_specs:
             wall = None if impact_spec.wall < 0 else walls[impact_spec.wall]
             before = tuple(slides[n][-1] for n in impact_spec.films)
             impact = impact_at(
-                moving, gyration, self.spec.rims(found, wall is None), impact_spec, before, wall
+                moving, gyration, self.spec.rims(result, wall is None), impact_spec, before, wall
             )
             for n, slide in zip(impact_spec.films, impact.after, strict=True):
                 slides[n].append(slide)
             impacts.append(impact)
         return slides, impacts
 
-    def _begin(self, n: int, found: NumbersOf) -> float:
+    def _begin(self, n: int, result: NumbersOf) -> float:
         """When a track begins, s after the start of the first."""
         film = self.films[n]
-        late = 0.0 if film.row is None else self.spec.readout(found) * float(film.row[0])
+        late = 0.0 if film.row is None else self.spec.readout(result) * float(film.row[0])
         return film.start - self.films[0].start + late
 
-    def _times(self, n: int, found: NumbersOf) -> FloatArray:
+    def _times(self, n: int, result: NumbersOf) -> FloatArray:
         """The times of a track's frames after its first: lines of a picture are read in turn."""
         film = self.films[n]
         if film.row is None:
             return film.time
-        late: FloatArray = self.spec.readout(found) * (film.row - film.row[0])
+        late: FloatArray = self.spec.readout(result) * (film.row - film.row[0])
         return film.time + late
 
     def _parts(
-        self, n: int, found: NumbersOf, slides: list[Slide]
+        self, n: int, result: NumbersOf, slides: list[Slide]
     ) -> list[tuple[slice, FloatArray, Slide]]:
         """The frames of each slide of a track, their times after its launch, and the slide."""
-        times = self._times(n, found)
+        times = self._times(n, result)
         if len(slides) == 1:
             return [(slice(0, times.size), times, slides[0])]
         since = np.array([slide.since - slides[0].since for slide in slides])
@@ -145,14 +145,14 @@ class Problem(Unknowns):
         return self._along(x, rates_of, False)
 
     def _along(self, x: FloatArray, of: Along, placed: bool) -> list[FloatArray]:
-        found = self.numbers_at(x)
-        moving, (slides, _) = self.moving(found), self.slides(x)
+        result = self.numbers_at(x)
+        moving, (slides, _) = self.moving(result), self.slides(x)
         tracks = []
         for n, track in enumerate(slides):
             parts = [
                 of(moving, slide.launch[2:4], float(slide.launch[4]), times)
                 + (slide.launch[[0, 1, 5], None] if placed else 0.0)
-                for _, times, slide in self._parts(n, found, track)
+                for _, times, slide in self._parts(n, result, track)
             ]
             tracks.append(parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1))
         return tracks
@@ -216,18 +216,18 @@ class Problem(Unknowns):
 
     def residuals_and_jacobian(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Both, from the same motions."""
-        found = self.numbers_at(x)
-        moving, (slides, _) = self.moving(found), self.slides(x)
+        result = self.numbers_at(x)
+        moving, (slides, _) = self.moving(result), self.slides(x)
         follow = slopes_of_slides(self, x) if self.impact_specs else []
         out = np.zeros((self.kinds.size, x.size))
-        scales = {name: np.array(self.spec.slopes(found, name)) for name in self.spec.free}
+        scales = {name: np.array(self.spec.slopes(result, name)) for name in self.spec.free}
         spots = {key: k for k, key in enumerate(self.names)}
         row, paths = 0, []
         for n, film in enumerate(self.films):
             path = np.empty((3, film.time.size))
             paths.append(path)
             whole = np.zeros((3, film.time.size, x.size))
-            for m, (frames, times, slide) in enumerate(self._parts(n, found, slides[n])):
+            for m, (frames, times, slide) in enumerate(self._parts(n, result, slides[n])):
                 velocity, spin = slide.launch[2:4], float(slide.launch[4])
                 path[:, frames], slopes = path_with_slopes(moving, velocity, spin, times)
                 path[:, frames] += slide.launch[[0, 1, 5], None]
@@ -235,7 +235,7 @@ class Problem(Unknowns):
                 for name in self.spec.free:
                     k = spots[-1, name]
                     if self.spec.changes_motion(name):
-                        block[:, :, k] = self._by_difference(found, name, times, slide)
+                        block[:, :, k] = self._by_difference(result, name, times, slide)
                     else:
                         block[:, :, k] = np.einsum("k,kan->an", scales[name], slopes[3:TIME])
                     if name == "readout" and film.row is not None:
@@ -277,14 +277,14 @@ class Problem(Unknowns):
             block[:, :, spots[push]] += straight.slope * slopes[(VY, VX)[straight.main]]
 
     def _by_difference(
-        self, found: NumbersOf, name: str, times: FloatArray, slide: Slide
+        self, result: NumbersOf, name: str, times: FloatArray, slide: Slide
     ) -> FloatArray:
         """The derivative of a path to what changes the curve itself."""
         low, high = self.spec.limits(name)
-        ends = [min(max(found[name] + s * _CURVE_STEP, low), high) for s in (-1.0, 1.0)]
+        ends = [min(max(result[name] + s * _CURVE_STEP, low), high) for s in (-1.0, 1.0)]
         path: list[FloatArray] = []
         for value in ends:
-            moving = self.moving({**found, name: value})
+            moving = self.moving({**result, name: value})
             path.append(path_of(moving, slide.launch[2:4], float(slide.launch[4]), times))
         slope: FloatArray = (path[1] - path[0]) / (ends[1] - ends[0])
         return slope
@@ -298,13 +298,13 @@ class Problem(Unknowns):
 
     def each(self) -> list[tuple[slice, slice, slice]]:
         """Where the residuals of each track stand: along x, along y, angles."""
-        found, row = [], 0
+        result, row = [], 0
         for film in self.films:
             n, angles = film.time.size, int(self._angled(film).sum())
             ends = row + n, row + 2 * n, row + 2 * n + angles
-            found.append((slice(row, ends[0]), slice(ends[0], ends[1]), slice(ends[1], ends[2])))
+            result.append((slice(row, ends[0]), slice(ends[0], ends[1]), slice(ends[1], ends[2])))
             row = ends[2]
-        return found
+        return result
 
     def with_noise(
         self, noise: tuple[float, float], x: FloatArray,

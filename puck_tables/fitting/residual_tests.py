@@ -33,13 +33,13 @@ def chi_square_tail(value: float, degrees: int) -> float:
     return float(gammaincc(0.5 * degrees, 0.5 * value))
 
 
-def runs(found: Estimate) -> float:
+def runs(result: Estimate) -> float:
     """The probability of so few or so many changes of sign along the frames (Wald and Wolfowitz).
 
     Of all tracks, x, y and angles together.
     """
     deviations, variance = 0.0, 0.0
-    for rows in _series(found):
+    for rows in _series(result):
         above = rows > 0.0
         n, plus = above.size, int(above.sum())
         minus = n - plus
@@ -54,41 +54,41 @@ def runs(found: Estimate) -> float:
     return math.erfc(abs(deviations) / math.sqrt(2.0 * variance))
 
 
-def drift(found: Estimate) -> float:
+def drift(result: Estimate) -> float:
     """The probability that means over eighths of the tracks are so far from 0 by chance."""
     total, degrees = 0.0, 0
-    for rows in _series(found):
+    for rows in _series(result):
         for part in np.array_split(rows, min(_PARTS, rows.size)):
             total += part.sum() ** 2 / part.size
             degrees += 1
-    scale = max(found.chi2 / max(found.degrees, 1), 1e-300)
-    return chi_square_tail(total / scale, max(degrees - found.x.size, 1)) if degrees else 1.0
+    scale = max(result.chi2 / max(result.degrees, 1), 1e-300)
+    return chi_square_tail(total / scale, max(degrees - result.x.size, 1)) if degrees else 1.0
 
 
-def excess_of(found: Estimate, smooth: tuple[float, float]) -> float:
+def excess_of(result: Estimate, smooth: tuple[float, float]) -> float:
     """The residuals over the noise (m, rad) that no model judged; 1 where that is not known."""
-    size = math.sqrt(found.chi2 / max(found.degrees, 1))
+    size = math.sqrt(result.chi2 / max(result.degrees, 1))
     return max((
-        size * own / other for own, other in zip(found.problem.noise, smooth, strict=True)
+        size * own / other for own, other in zip(result.problem.noise, smooth, strict=True)
         if math.isfinite(other) and other > 0.0
     ), default=1.0)  # fmt: skip
 
 
-def misfits(found: Estimate, known: Known, smooth: tuple[float, float]) -> tuple[str, ...]:
+def misfits(result: Estimate, known: Known, smooth: tuple[float, float]) -> tuple[str, ...]:
     """Signs that a model does not fit; ``smooth``: the noise (m, rad) that no model judged."""
     told = []
-    noise, chi2, degrees = found.problem.noise, found.chi2, max(found.degrees, 1)
-    size = max(float(np.ptp(film.place, axis=0).max()) for film in found.problem.films)
+    noise, chi2, degrees = result.problem.noise, result.chi2, max(result.degrees, 1)
+    size = max(float(np.ptp(film.place, axis=0).max()) for film in result.problem.films)
     # smaller residuals are the errors of what is computed
     seen = noise[0] > _COMPUTED * size
-    excess = excess_of(found, smooth)
+    excess = excess_of(result, smooth)
     given = any(known[:2])
     if seen and not given and excess > NOISY:
         told.append(f"The residuals are {excess:.3g} times what smooth tracks would leave")
     if given and chi2 / degrees > 1.0 + 5.0 * math.sqrt(2.0 / degrees):
         told.append(f"The residuals are {math.sqrt(chi2 / degrees):.3g} times the noise given")
-    by_chance = min(runs(found), drift(found))
-    if seen and by_chance < NO_PATTERN and not hidden(found):
+    by_chance = min(runs(result), drift(result))
+    if seen and by_chance < NO_PATTERN and not hidden(result):
         told.append(
             "The residuals are no noise, they have a pattern (probability by chance "
             f"{by_chance:.1g})"
@@ -96,39 +96,41 @@ def misfits(found: Estimate, known: Known, smooth: tuple[float, float]) -> tuple
     return tuple(told)
 
 
-def hidden(found: Estimate) -> bool:
+def hidden(result: Estimate) -> bool:
     """Whether residuals are no more than rounding leaves, which is no noise."""
-    films, noise = found.problem.films, found.problem.noise
+    films, noise = result.problem.films, result.problem.noise
     steps = [max(film.steps[kind] for film in films) for kind in range(2)]
     angled = any(film.angle is not None for film in films)
-    size = math.sqrt(found.chi2 / max(found.degrees, 1))
+    size = math.sqrt(result.chi2 / max(result.degrees, 1))
     within = [
         step > 0.0 and size * own < _ROUNDED * step for step, own in zip(steps, noise, strict=True)
     ]
     return within[0] or (angled and within[1])
 
 
-def may_misfit(found: Estimate, known: Known, smooth: tuple[float, float]) -> bool:
+def may_misfit(result: Estimate, known: Known, smooth: tuple[float, float]) -> bool:
     """Whether a model may not fit, or what is left is no noise.
 
     Below what is complained of that may bias numbers by far.
     """
-    if any(any(film.steps) for film in found.problem.films):
+    if any(any(film.steps) for film in result.problem.films):
         return True
-    hardly = excess_of(found, smooth) > _MAY_NOISY or min(runs(found), drift(found)) < _MAY_PATTERN
-    return hardly or bool(misfits(found, known, smooth))
+    hardly = (
+        excess_of(result, smooth) > _MAY_NOISY or min(runs(result), drift(result)) < _MAY_PATTERN
+    )
+    return hardly or bool(misfits(result, known, smooth))
 
 
-def no_answer(found: Estimate, known: Known, smooth: tuple[float, float]) -> str:
+def no_answer(result: Estimate, known: Known, smooth: tuple[float, float]) -> str:
     """A sentence where no motion comes near the tracks, and nothing is determined; else none."""
-    size = max(float(np.ptp(film.place, axis=0).max()) for film in found.problem.films)
-    usual = math.sqrt(found.chi2 / max(found.degrees, 1))
-    times = max(excess_of(found, smooth), usual if any(known[:2]) else 0.0)
-    angled = any(film.angle is not None for film in found.problem.films)
-    if times > _NOWHERE and usual * found.problem.noise[0] > _FAR * size:
+    size = max(float(np.ptp(film.place, axis=0).max()) for film in result.problem.films)
+    usual = math.sqrt(result.chi2 / max(result.degrees, 1))
+    times = max(excess_of(result, smooth), usual if any(known[:2]) else 0.0)
+    angled = any(film.angle is not None for film in result.problem.films)
+    if times > _NOWHERE and usual * result.problem.noise[0] > _FAR * size:
         far = f"the nearest is {times:.3g} times the noise off"
-    elif angled and usual * found.problem.noise[1] > _ANY:
-        far = f"angles are {usual * found.problem.noise[1]:.2g} rad off the nearest"
+    elif angled and usual * result.problem.noise[1] > _ANY:
+        far = f"angles are {usual * result.problem.noise[1]:.2g} rad off the nearest"
     else:
         return ""
     return (
@@ -138,21 +140,21 @@ def no_answer(found: Estimate, known: Known, smooth: tuple[float, float]) -> str
     )
 
 
-def lengthways(found: Estimate) -> float:
+def lengthways(result: Estimate) -> float:
     """The spread of residuals along the motion over that across it, less what chance may do.
 
     Of frames that move, by three standard errors of such a ratio; 1 of too few.
     """
     along, across = [], []
-    deviations, rates = found.problem.deviations(found.x), found.problem.rates(found.x)
-    films = found.problem.films
+    deviations, rates = result.problem.deviations(result.x), result.problem.rates(result.x)
+    films = result.problem.films
     for film, (x, _, _), one, rate in zip(
-        films, found.problem.each(), deviations, rates, strict=True
+        films, result.problem.each(), deviations, rates, strict=True
     ):
         if film.straight is not None:
             continue
         speed = np.hypot(rate[0], rate[1])
-        moving = found.kept[x] & (speed > _MOVING * speed.max(initial=0.0))
+        moving = result.kept[x] & (speed > _MOVING * speed.max(initial=0.0))
         ahead = rate[:2, moving] / speed[moving]
         along.append((one[:2, moving] * ahead).sum(axis=0))
         across.append(one[0, moving] * ahead[1] - one[1, moving] * ahead[0])
@@ -163,11 +165,11 @@ def lengthways(found: Estimate) -> float:
     return ratio * (1.0 - 3.0 / math.sqrt(one.size))
 
 
-def _series(found: Estimate) -> list[FloatArray]:
+def _series(result: Estimate) -> list[FloatArray]:
     """Residuals that count, frame after frame."""
     return [
         rows
-        for part in found.problem.each()
+        for part in result.problem.each()
         for where in part
-        if (rows := found.residuals[where][found.kept[where]]).size
+        if (rows := result.residuals[where][result.kept[where]]).size
     ]

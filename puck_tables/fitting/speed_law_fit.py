@@ -19,32 +19,34 @@ _LEAST = 0.02  # of the largest friction of a line: the smallest
 _SHARES = (0.0, 0.08, 0.3, 1.0)  # of the fastest slip
 
 
-def over_speeds(found: Estimate, speeds: tuple[float, ...], between: str, known: Known) -> Estimate:
+def over_speeds(
+    result: Estimate, speeds: tuple[float, ...], between: str, known: Known
+) -> Estimate:
     """The estimate with a friction coefficient for each slip speed, from that of one for all."""
-    moved, start = _begun(found.problem, found.x, speeds)
+    moved, start = _begun(result.problem, result.x, speeds)
     lines, _ = minimise(moved, start, LOOSE)
     spec = replace(moved.spec, between=between)
     return estimate(replace(moved, spec=spec), lines, known)
 
 
-def tried(found: Estimate) -> Estimate:
+def tried(result: Estimate) -> Estimate:
     """About what a law over slip speed leaves of the frames of an estimate."""
-    problem = found.problem
+    problem = result.problem
     films = []
     for film in problem.films:
         few = np.zeros(film.time.size, bool)
         few[np.linspace(0, film.time.size - 1, _FRAMES).astype(int)] = True
         films.append(film.part(few))
-    radius = problem.spec.scales(problem.numbers_at(found.x))[2]
-    _, _, vx, vy, spin, _ = problem.launches(found.x).T
+    radius = problem.spec.scales(problem.numbers_at(result.x))[2]
+    _, _, vx, vy, spin, _ = problem.launches(result.x).T
     top = float((np.hypot(vx, vy) + radius * np.abs(spin)).max())
     speeds = tuple(float(f"{1.1 * top * share:.2g}") for share in _SHARES)
     fewer = problem.with_films(tuple(films))
-    moved, start = _begun(fewer, found.x, speeds)
+    moved, start = _begun(fewer, result.x, speeds)
     lines, _ = minimise(moved, start, LOOSE)
     smooth = replace(moved, spec=replace(moved.spec, between="cubic"))
     x, _ = minimise(smooth, lines, LOOSE)
-    return replace(found, problem=smooth, x=x, minima=())
+    return replace(result, problem=smooth, x=x, minima=())
 
 
 def _begun(
@@ -64,8 +66,8 @@ def _begun(
     if line is None:
         return moved, start
     there, _ = minimise(*line, LOOSE)
-    found, gravity = line[0].numbers_at(there), problem.spec.known()["gravity"]
-    values = found["friction"] + found["drag"] / gravity * np.array(speeds)
+    result, gravity = line[0].numbers_at(there), problem.spec.known()["gravity"]
+    values = result["friction"] + result["drag"] / gravity * np.array(speeds)
     values = np.maximum(values, _LEAST * values.max())
     numbers.update(dict(zip(NODES, values.tolist(), strict=False)))
     if "delta" in numbers:  # of the same height
@@ -76,10 +78,10 @@ def _begun(
 
 
 def law_over(
-    found: Estimate, covariance: FloatArray, at: FloatArray
+    result: Estimate, covariance: FloatArray, at: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """The friction coefficient at slip speeds (n,) m/s, and its standard errors (n,)."""
-    spec, numbers = found.problem.spec, found.problem.numbers_at(found.x)
+    spec, numbers = result.problem.spec, result.problem.numbers_at(result.x)
     count = len(spec.speeds)
     slopes = np.zeros((at.size, count))
     for k, name in enumerate(spec.free[:count]):

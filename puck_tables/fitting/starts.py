@@ -77,8 +77,8 @@ def minima_of(problem: Problem) -> list[FloatArray]:
             launch[5] = whole[np.isfinite(whole)][0]
             whole = whole[few]
         pieces = replace(problem, films=(part,), whole=(whole,))
-        found = {**_any(spec), **numbers_with(spec, guess.decel, guess.delta)}
-        starts.append((pieces, pieces.unknowns(found, launch[None])))
+        result = {**_any(spec), **numbers_with(spec, guess.decel, guess.delta)}
+        starts.append((pieces, pieces.unknowns(result, launch[None])))
     more = _given(problem, place, velocity)
     if turning is not None and not turning.sure:
         blind = replace(problem, films=(replace(film, angle=None),))
@@ -130,8 +130,8 @@ def _deepest(
     if len(rivals) == 1:
         return rivals
     polished = sorted((minimise(problem, one, LOOSE) for one in rivals), key=lambda one: one[1])
-    found = [one for one, _ in polished]
-    return in_order(problem, found) if marked else found
+    result = [one for one, _ in polished]
+    return in_order(problem, result) if marked else result
 
 
 def slowing_of(film: Observations, spread: float) -> float:
@@ -168,15 +168,15 @@ def robust_parabola(time: FloatArray, place: FloatArray, start: int, stop: int) 
     t, p = time[start:stop], place[start:stop]
     powers = np.stack([np.ones(t.size), t, t * t], axis=1)[:, : min(3, max(1, t.size - 1))]
     weights = np.ones(t.size)
-    found = np.zeros((3, 2))
+    result = np.zeros((3, 2))
     for _ in range(6):
         root = np.sqrt(weights)[:, None]
         coefficients = np.linalg.lstsq(powers * root, p * root, rcond=None)[0]
         deviations = np.hypot(*(p - powers @ coefficients).T)
         spread = max(float(np.median(deviations)), 1e-9 * float(np.abs(p).max()), 1e-150)
         weights = 1.0 / (1.0 + (deviations / (2.0 * spread)) ** 2) ** 2
-    found[: len(coefficients)] = coefficients
-    return found
+    result[: len(coefficients)] = coefficients
+    return result
 
 
 def _guesses(
@@ -191,7 +191,7 @@ def _guesses(
     places = (film.place[chosen] - film.place[0]) @ ahead.T
     size = float(np.abs(places).max()) + problem.noise[0]
     motions = problem.moving(_any(spec)).motions
-    found = []
+    result = []
     spins = [(0.0, 0)] if problem.spinless[0] else _spins(spec, turning, speed, radius, rests)
     for spin, turns in spins:
         slip = math.hypot(speed, radius * spin) or 1.0
@@ -227,15 +227,15 @@ def _guesses(
         finer = scores(decels, _FINER_SHARE)
         for n, k in enumerate(finer.argmin(axis=1).tolist()):
             decel, height = float(decels[n, k]), float(heights[n])
-            found.append(_Guess(decel, height, spin, turns, float(finer[n, k])))
-    found.sort(key=lambda guess: guess.score)
+            result.append(_Guess(decel, height, spin, turns, float(finer[n, k])))
+    result.sort(key=lambda guess: guess.score)
     if turning is not None:
-        best = {guess.turns: guess for guess in reversed(found)}
-        kept = found[:_KEPT]
+        best = {guess.turns: guess for guess in reversed(result)}
+        kept = result[:_KEPT]
         return kept + [guess for guess in best.values() if guess not in kept]
     # without angles every spin is a chance, with the height that suits it
     nearest: dict[float, _Guess] = {}
-    for guess in found:
+    for guess in result:
         nearest.setdefault(guess.spin, guess)
     return list(nearest.values())[:_KEPT_BLIND]
 
@@ -281,8 +281,8 @@ def _any(spec: FitSpec) -> NumbersOf:
 
 def _scales(spec: FitSpec, slowing: float) -> tuple[FloatArray, FloatArray]:
     """Heights δ to try (n,), each with a range of J (n, m)."""
-    found = _any(spec)
-    decel, delta, _ = spec.scales(found)
+    result = _any(spec)
+    decel, delta, _ = spec.scales(result)
     decel_free = {"friction", "decel", "gravity"} & {*spec.free}
     decels = np.append(slowing * _DECELS, decel) if decel_free else np.array([decel])
     heights = {delta}
@@ -298,21 +298,21 @@ def _scales(spec: FitSpec, slowing: float) -> tuple[FloatArray, FloatArray]:
 
 def numbers_with(spec: FitSpec, decel: float, delta: float) -> NumbersOf:
     """The free numbers, of those that J and δ follow from, which mean these."""
-    found, others = {}, _any(spec)
+    result, others = {}, _any(spec)
     gravity = {**spec.known(), **others}["gravity"]
     if "friction" in others:
-        found["friction"] = decel / gravity
+        result["friction"] = decel / gravity
     elif "decel" in others:
-        found["decel"] = decel
+        result["decel"] = decel
     elif "gravity" in others:
-        found["gravity"] = decel / spec.known()["friction"]
+        result["gravity"] = decel / spec.known()["friction"]
     if "delta" in others:
-        found["delta"] = delta
+        result["delta"] = delta
     elif "height" in others:
-        others.update(found)
+        others.update(result)
         radius, gravity = spec.scales(others)[2], {**spec.known(), **others}["gravity"]
-        found["height"] = 0.5 * delta * radius * gravity / decel
-    for name in found:
+        result["height"] = 0.5 * delta * radius * gravity / decel
+    for name in result:
         low, high = spec.limits(name)
-        found[name] = min(max(found[name], low), high)
-    return found
+        result[name] = min(max(result[name], low), high)
+    return result

@@ -120,7 +120,7 @@ def likeliest(
         (math.log(_LEAST * usual), math.log(_MOST * usual)) if k == 2
         else (begin[k] - 3.0, begin[k] + 3.0) for k in free
     ]  # fmt: skip
-    found = begin.copy()
-    found[free] = minimize(cost, begin[free], method="L-BFGS-B", bounds=bounds).x
-    place, angle, stamp = np.exp(found).tolist()
+    result = begin.copy()
+    result[free] = minimize(cost, begin[free], method="L-BFGS-B", bounds=bounds).x
+    place, angle, stamp = np.exp(result).tolist()
     return (place, angle), jitter if known.jitter else stamp

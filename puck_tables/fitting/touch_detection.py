@@ -104,9 +104,9 @@ def _gain(
     left, count, slopes = 0.0, 0, []
     for side in sides:
         order = 2 if side.size >= _CURVED else 1
-        found, deviations = _near(time[side], film.place[side], order)
+        result, deviations = _near(time[side], film.place[side], order)
         left, count = left + deviations, count + order + 1
-        slopes.append((found[1], 192.0 if order == 2 else 12.0, side.size, found[order]))
+        slopes.append((result[1], 192.0 if order == 2 else 12.0, side.size, result[order]))
     both = np.concatenate(sides)
     one = _near(time[both], film.place[both], count - 1)[1]
     left, one = left / noise**2, one / noise**2
@@ -127,9 +127,9 @@ def _near(time: FloatArray, place: FloatArray, order: int) -> tuple[FloatArray, 
     """Coefficients of the nearest polynomial, and the squares that are left."""
     scale = float(np.abs(time).max())
     powers = np.vander(time / scale, order + 1, increasing=True)
-    found = np.linalg.lstsq(powers, place, rcond=None)[0]
-    left = place - powers @ found
-    return found / scale ** np.arange(order + 1.0)[:, None], float((left**2).sum())
+    result = np.linalg.lstsq(powers, place, rcond=None)[0]
+    left = place - powers @ result
+    return result / scale ** np.arange(order + 1.0)[:, None], float((left**2).sum())
 
 
 def _spikes(place: FloatArray, noise: float) -> npt.NDArray[np.bool_]:

@@ -127,8 +127,8 @@ class PlainMotions(UnitMotions):
         launches[4:] = 1.0
         which = np.repeat(np.arange(count), frames)
         table = StopTable.shipped()
-        found = looked_up(table, looked_up_launches(table, launches), which, tau.ravel())
-        return found.reshape(STATE_ROWS, count, frames)
+        result = looked_up(table, looked_up_launches(table, launches), which, tau.ravel())
+        return result.reshape(STATE_ROWS, count, frames)
 
     def with_variations(self, phi: float, delta: float, tau: FloatArray) -> FloatArray:
         """By the slopes of the stop table."""
@@ -245,23 +245,23 @@ class TallMotions(IntegratedMotions):
             return self._plain.with_variations(phi, delta, tau)
         out = np.zeros((4, 3, tau.size))
         for height, weight, slope in _heights(delta):
-            found = _with_variations(phi, self.variations(height), tau)
-            out[:BY_DELTA] += weight * found[:BY_DELTA]
-            out[BY_DELTA] += slope * found[PATH]
+            result = _with_variations(phi, self.variations(height), tau)
+            out[:BY_DELTA] += weight * result[:BY_DELTA]
+            out[BY_DELTA] += slope * result[PATH]
         return out
 
 
 def _heights(delta: float) -> list[tuple[float, float, float]]:
     """Four heights around δ, their weights in the cubic through them, and these by δ."""
     first = min(max(int(delta / HEIGHT_STEP) - 1, 0), round(HIGHEST / HEIGHT_STEP) - 3)
-    place, found = delta / HEIGHT_STEP - first, []
+    place, result = delta / HEIGHT_STEP - first, []
     for k in range(4):
         others = [m for m in range(4) if m != k]
         below = math.prod(k - m for m in others)
         weight = math.prod(place - m for m in others) / below
         slope = sum(math.prod(place - m for m in others if m != n) for n in others) / below
-        found.append((round((first + k) * HEIGHT_STEP, 9), weight, slope / HEIGHT_STEP))
-    return found
+        result.append((round((first + k) * HEIGHT_STEP, 9), weight, slope / HEIGHT_STEP))
+    return result
 
 
 @lru_cache(maxsize=64)

@@ -76,13 +76,13 @@ class Unknowns:
 
         That of a readout, unless it or bounds are given: a picture is read before the next one.
         """
-        found = []
+        result = []
         for k, (_, name) in enumerate(self.names):
             if name in self.spec.priors:
-                found.append((k, *self.spec.priors[name]))
+                result.append((k, *self.spec.priors[name]))
             elif name == "readout" and self.read_within is not None:
-                found.append((k, 0.5 * self.read_within, 0.5 * self.read_within))
-        return tuple(found)
+                result.append((k, 0.5 * self.read_within, 0.5 * self.read_within))
+        return tuple(result)
 
     @property
     def read_within(self) -> float | None:
@@ -117,14 +117,14 @@ class Unknowns:
         return out
 
     def unknowns(
-        self, found: NumbersOf, launches: FloatArray, walls: tuple[WallLine, ...] = ()
+        self, result: NumbersOf, launches: FloatArray, walls: tuple[WallLine, ...] = ()
     ) -> FloatArray:
         """The vector of unknowns from what they mean."""
         order = list(LAUNCH)
         values = []
         for track, name in self.names:
             if track == -1:
-                values.append(found[name])
+                values.append(result[name])
             elif track < -1:
                 values.append(walls[_WALL - track][list(WALL).index(name)])
             else:
@@ -133,13 +133,13 @@ class Unknowns:
 
     def estimated_walls(self, x: FloatArray) -> tuple[WallLine, ...]:
         """All walls, given or found."""
-        found: list[WallLine] = []
+        result: list[WallLine] = []
         at = len(self.names) - len(WALL) * self.walls.count(None)
         for wall in self.walls:
             if wall is None:
                 wall, at = WallLine(*x[at : at + len(WALL)].tolist()), at + len(WALL)
-            found.append(wall)
-        return tuple(found)
+            result.append(wall)
+        return tuple(result)
 
     def within(self, x: FloatArray) -> FloatArray:
         """The same, with the height of the tallest puck that moves so: all higher ones do, too."""

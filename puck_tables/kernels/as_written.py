@@ -87,8 +87,8 @@ def spline_slopes(
     (31.0, 42.0, 3.0, 4.0)
     """
     rows = c[k : k + len(weights) * width * powers].reshape(len(weights), powers, width).tolist()
-    found = [_by_powers(row, s, width, powers) for row in rows]
-    values, slopes = ([one[n] for one in found] for n in (0, 1))
+    result = [_by_powers(row, s, width, powers) for row in rows]
+    values, slopes = ([one[n] for one in result] for n in (0, 1))
     return (*_weighted(weights, values), *_weighted(weights, slopes))
 
 

@@ -140,9 +140,9 @@ def piled(
     while rows[i] > size:
         i -= 1
     disc = disc_sums(alpha, beta, size)
-    piece = min(i + 1, count - 1)
-    slope = rows[2 * count + 1 + piece]
-    height = rows[count + piece] + slope * size
+    part = min(i + 1, count - 1)
+    slope = rows[2 * count + 1 + part]
+    height = rows[count + part] + slope * size
     cone = (
         cone_sums(alpha, beta, size, _far(alpha, beta * size))
         if size > rows[i]

@@ -116,9 +116,9 @@ class Door:
         here.as_written, here.until = True, begin + self._allowed - self.spent
         try:
             with np.errstate(all="ignore"):
-                found = self._at_first(*args)
-            if not _is_complex(found):
-                return found
+                result = self._at_first(*args)
+            if not _is_complex(result):
+                return result
         except (OutOfPatience, ArithmeticError, ValueError, TypeError) as error:
             if isinstance(error, PuckError):
                 raise
@@ -139,12 +139,12 @@ class Door:
 
 def _called(door: Door) -> set[Any]:
     """The function behind a door, and all kernels that it calls."""
-    found: set[Any] = set()
+    result: set[Any] = set()
     waiting: list[Any] = [door.py_func]
     while waiting:
         function = waiting.pop()
-        if function not in found:
-            found.add(function)
+        if function not in result:
+            result.add(function)
             cells = (cell.cell_contents for cell in function.__closure__ or ())
             names = (function.__globals__.get(name) for name in function.__code__.co_names)
             for one in (*cells, *names):
@@ -152,7 +152,7 @@ def _called(door: Door) -> set[Any]:
                     waiting.append(one.py_func)
                 elif callable(one) and one in behind:
                     waiting.append(one)
-    return found
+    return result
 
 
 def _arrays(values: tuple[Any, ...]) -> Iterator[Any]:
@@ -169,11 +169,11 @@ def _put_back(before: list[tuple[Any, Any]]) -> None:
         array[...] = copy
 
 
-def _is_complex(found: Any) -> bool:
+def _is_complex(result: Any) -> bool:
     """Whether a number is complex, or one of a tuple."""
-    if isinstance(found, tuple):
-        return any(_is_complex(one) for one in found)
-    return isinstance(found, complex)
+    if isinstance(result, tuple):
+        return any(_is_complex(one) for one in result)
+    return isinstance(result, complex)
 
 
 def _from_numba() -> Any:

@@ -27,7 +27,7 @@ def _split(x: float) -> tuple[float, float]:
 
 
 @inlined
-def _joined(e: float, m: float, s: float) -> float:
+def _merged(e: float, m: float, s: float) -> float:
     """The logarithm from s = m/(2 + m)."""
     z = s * s
     w = z * z
@@ -43,7 +43,7 @@ def _joined(e: float, m: float, s: float) -> float:
 def log_of(x: float) -> float:
     """Ln of a normal number, x ≥ 2.3e-308."""
     e, m = _split(x)
-    return _joined(e, m, m / (2.0 + m))
+    return _merged(e, m, m / (2.0 + m))
 
 
 @inlined
@@ -55,9 +55,9 @@ def logs_of(x: float, y: float, z: float) -> tuple[float, float, float]:
     dx, dy, dz = 2.0 + mx, 2.0 + my, 2.0 + mz
     one = 1.0 / (dx * dy * dz)
     return (
-        _joined(ex, mx, mx * (one * (dy * dz))),
-        _joined(ey, my, my * (one * (dx * dz))),
-        _joined(ez, mz, mz * (one * (dx * dy))),
+        _merged(ex, mx, mx * (one * (dy * dz))),
+        _merged(ey, my, my * (one * (dx * dz))),
+        _merged(ez, mz, mz * (one * (dx * dy))),
     )
 
 

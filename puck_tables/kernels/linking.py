@@ -62,14 +62,14 @@ class Behind(Library):  # type: ignore[misc]
 
     def finalize(self) -> None:
         """Optimise all of it together."""
-        found: dict[Any, None] = {}
+        result: dict[Any, None] = {}
         waiting: list[Any] = list(self._linking_libraries)  # type: ignore[has-type]
         while waiting:
             library = waiting.pop(0)
-            if library not in found:
-                found[library] = None
+            if library not in result:
+                result[library] = None
                 waiting += library._linking_libraries if isinstance(library, Pasted) else []
-        self._linking_libraries = list(found)
+        self._linking_libraries = list(result)
         super().finalize()
 
 

@@ -35,7 +35,7 @@ def read_settings() -> None:
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")
         import numba  # noqa: F401 - it reads them as it is imported
-    found = (_NOT_UNDERSTOOD.match(str(one.message)) for one in said)
-    _unusable.update(match[1] for match in found if match)
+    result = (_NOT_UNDERSTOOD.match(str(one.message)) for one in said)
+    _unusable.update(match[1] for match in result if match)
     for name in sorted(_unusable):
         raise InputError(f"{name}={os.environ.get(name)}: numba cannot use it; leave it out")

@@ -169,7 +169,7 @@ def _segment(offset: float, rule: FloatArray) -> tuple[float, float, float, floa
 
 
 @inner
-def _settled(
+def _steady(
     ratio: float, fast: bool, delta: float, lines: FloatArray, gauss: FloatArray,
     room: FloatArray, sums: FloatArray, chord: FloatArray,
 ) -> bool:  # fmt: skip
@@ -208,8 +208,8 @@ def _by_arrays(
 ) -> int:  # fmt: skip
     """What :func:`fill_balances` fills, thirty times slower, by arrays with rules of their own."""
     patience(1)
-    found, chord = balanced(SlipDirection(ratio, fast), np.full(ratio.size, delta))
-    out[:] = np.column_stack([*found, *chord])
+    result, chord = balanced(SlipDirection(ratio, fast), np.full(ratio.size, delta))
+    out[:] = np.column_stack([*result, *chord])
     return 0
 
 
@@ -244,10 +244,10 @@ def fill_balances(
                 chord[i] = 3.0 * (out[n - 1, at] - out[n - 2, at]) + out[n - 3, at]
             jump = abs(chord[0] - out[n - 1, OFFSET]) + abs(chord[1] - out[n - 1, BEARING])
             if jump < 0.1 * (1.0 - out[n - 1, OFFSET]):
-                done = _settled(ratio[n], fast[n], delta, lines, gauss, room, sums, chord)
+                done = _steady(ratio[n], fast[n], delta, lines, gauss, room, sums, chord)
         if not done:
             chord[0], chord[1] = guess[0, n], guess[1, n]
-            done = _settled(ratio[n], fast[n], delta, lines, gauss, room, sums, chord)
+            done = _steady(ratio[n], fast[n], delta, lines, gauss, room, sums, chord)
         solved = min(solved + 1, _NEIGHBOURS) if done else 0
         lost += 0 if done else 1
         out[n, OFFSET], out[n, BEARING] = chord[0], chord[1]

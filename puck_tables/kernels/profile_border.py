@@ -65,7 +65,7 @@ def _panel_to(a: float, place: float, gap: float) -> float:
 
 
 @inlined
-def _bends(
+def _slope_changes(
     radii: FloatArray, places: FloatArray, pieces: FloatArray, turns: FloatArray, border: Border
 ) -> tuple[int, int]:
     """Where the pressure bends along a border, ascending, and its piece from there on.
@@ -159,7 +159,7 @@ def border_sums(
     places, pieces = room[: 2 * count], room[2 * count : 4 * count]
     wa, wb = room[4 * count : 4 * count + _NODES], room[4 * count + _NODES : 4 * count + 2 * _NODES]
     rest = room[4 * count + 2 * _NODES :]
-    bends, piece = _bends(radii, places, pieces, rest, border)
+    bends, piece = _slope_changes(radii, places, pieces, rest, border)
     x, y, tx, ty, radius = border.x, border.y, border.tx, border.ty, border.radius
     c = alpha / beta if alpha < _FARTHEST * beta else _FARTHEST
     ahead, aside = (c - y) * ty - x * tx, (c - y) * tx + x * ty

@@ -63,8 +63,8 @@ def _rows_of(typing: Any, block: Any, row: Any, count: Any, n: Any) -> Any:
             parts.append(builder.load(builder.gep(data, [at], inbounds=True)))
         return context.make_tuple(builder, signature.return_type, parts)
 
-    found: Any = types.UniTuple(types.float64, rows)  # type: ignore[no-untyped-call]
-    return found(block, row, count, n), build
+    result: Any = types.UniTuple(types.float64, rows)  # type: ignore[no-untyped-call]
+    return result(block, row, count, n), build
 
 
 def _into_rows(typing: Any, block: Any, row: Any, n: Any, values: Any) -> Any:

@@ -36,7 +36,7 @@ _SAME_PIECE = 0.05  # of half a smooth piece: so far it may be taken beyond its 
 
 
 @inlined
-def _piece(breaks: FloatArray, u: float) -> int:
+def _part(breaks: FloatArray, u: float) -> int:
     """The cubic piece in which a speed lies; the last one goes on."""
     low, high = 0, len(breaks) - 1
     while high - low > 1:
@@ -157,14 +157,14 @@ def _centre_inside(
         )
         if half <= 0.0:
             continue
-        k = _piece(breaks, rim * ((1.0 - s) + 2.0 * s * math.sin(0.5 * middle) ** 2))
+        k = _part(breaks, rim * ((1.0 - s) + 2.0 * s * math.sin(0.5 * middle) ** 2))
         rule = _rule(middle, half, branch, smooth, rules)
         for i in range(rule[0], rule[1]):
             tau = middle + half * _GAUSS[i]
             h, g = math.sin(0.5 * tau), math.cos(0.5 * tau)
             c, sin_tau = 1.0 - 2.0 * h * h, 2.0 * h * g
             R = (1.0 - s) + 2.0 * s * h * h
-            k = _piece(breaks, rim * R) if smooth else k
+            k = _part(breaks, rim * R) if smooth else k
             weight = half * _WEIGHTS[i] * _value(pieces, k, rim * R) * sin_tau
             root = math.sqrt((R + 1.0 - s) * (R + 1.0 + s))
             if R < _TINY:
@@ -233,7 +233,7 @@ def _centre_outside(
         if half <= 0.0:
             continue
         step = reach * math.cos(middle)
-        far, near = _piece(breaks, centre + step), _piece(breaks, centre - step)
+        far, near = _part(breaks, centre + step), _part(breaks, centre - step)
         rule = _rule(middle, half, branch, smooth, rules)
         for i in range(rule[0], rule[1]):
             tau = middle + half * _GAUSS[i]
@@ -242,7 +242,7 @@ def _centre_outside(
             weight = half * _WEIGHTS[i] * sin_tau
             step = reach * c
             if smooth:  # next to slip zero rounding may put a node into the next piece
-                far, near = _piece(breaks, centre + step), _piece(breaks, centre - step)
+                far, near = _part(breaks, centre + step), _part(breaks, centre - step)
             f_far, f_near, slope = _both(pieces, far, near, centre, step)
             slope *= centre
             # T² = (2 ± κc)² − κ², by factors that do not cancel for κ, c → 1

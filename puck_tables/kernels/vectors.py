@@ -113,11 +113,11 @@ def _spline_polynomials(
                 for row in range(rows):
                     at = ir.Constant(args[1].type, (row * top + power) * count + part)
                     pointer = builder.gep(data, [builder.add(args[1], at)])
-                    found = builder.load(builder.bitcast(pointer, lanes.as_pointer()), align=8)
+                    result = builder.load(builder.bitcast(pointer, lanes.as_pointer()), align=8)
                     if total is None:
-                        total = builder.fmul(found, weight[row], flags=_rounding())
+                        total = builder.fmul(result, weight[row], flags=_rounding())
                     else:
-                        total = times_plus(found, weight[row], total)
+                        total = times_plus(result, weight[row], total)
                 if power == top - 1:
                     value = total
                 else:
@@ -129,8 +129,8 @@ def _spline_polynomials(
                 slopes.append(builder.extract_element(slope, at))
         return context.make_tuple(builder, signature.return_type, [*values, *slopes])
 
-    found: Any = types.UniTuple(types.float64, 2 * count)  # type: ignore[no-untyped-call]
-    return found(c, k, weights, s, width, powers), build
+    result: Any = types.UniTuple(types.float64, 2 * count)  # type: ignore[no-untyped-call]
+    return result(c, k, weights, s, width, powers), build
 
 
 spline_polynomials: Any = intrinsic(prefer_literal=True)(_spline_polynomials)
@@ -167,7 +167,7 @@ def _rows_first(slopes: bool, c: Any, k: Any, weights: Any, s: Any, width: Any, 
         rows = len(signature.args[2])
         weight = [everywhere(builder.extract_value(args[2], row)) for row in range(rows)]
         variable = everywhere(args[3])
-        found: list[list[Any]] = [[], []]
+        result: list[list[Any]] = [[], []]
         for part in range(0, count, side):
             totals = [None, None]
             for row in range(rows):
@@ -180,15 +180,15 @@ def _rows_first(slopes: bool, c: Any, k: Any, weights: Any, s: Any, width: Any, 
                 totals[0] = times_plus(value, weight[row], totals[0])
                 if slopes:
                     totals[1] = times_plus(slope, weight[row], totals[1])
-            for total, numbers in zip(totals, found, strict=True):
+            for total, numbers in zip(totals, result, strict=True):
                 for lane in range(side if total else 0):
                     at = ir.Constant(ir.IntType(32), lane)
                     numbers.append(builder.extract_element(total, at))
-        return context.make_tuple(builder, signature.return_type, [*found[0], *found[1]])
+        return context.make_tuple(builder, signature.return_type, [*result[0], *result[1]])
 
     each = 2 * count if slopes else count
-    found: Any = types.UniTuple(types.float64, each)  # type: ignore[no-untyped-call]
-    return found(c, k, weights, s, width, powers), build
+    result: Any = types.UniTuple(types.float64, each)  # type: ignore[no-untyped-call]
+    return result(c, k, weights, s, width, powers), build
 
 
 def _spline_values(

@@ -9,7 +9,7 @@ from typing import Any, Self
 
 from puck_tables._core.fields import Unsaid, of
 from puck_tables._core.own_folder import say
-from puck_tables._core.reading import Reading, given_in, mark_checked, read_values
+from puck_tables._core.reading import Reading, entries_in, mark_checked, read_values
 from puck_tables._core.real import positive, real
 from puck_tables.contact.laws import HOMOGENEOUS, Law
 from puck_tables.errors import InputError
@@ -58,7 +58,7 @@ class PuckSpec:
 
     def __post_init__(self) -> None:
         reading = Reading([], None)
-        values = read_values(type(self), given_in(self, {}), "", reading)
+        values = read_values(type(self), entries_in(self, {}), "", reading)
         if values is None:
             raise InputError("; ".join(reading.errors))
         for name, value in values.items():

@@ -42,7 +42,7 @@ _LAST, _TAIL_STEP = 1e-4, 0.25
 
 
 @inlined
-def _off_lines(u: float, section: FloatArray) -> float:
+def _to_next_line(u: float, section: FloatArray) -> float:
     """How far in u the nearest line is."""
     nearest = math.inf
     for row in range(0, section.shape[0], 2):
@@ -112,7 +112,7 @@ def advance(
         variation_rates(z, y, section, work[0])
         h = end - z
         rate = abs(work[0, U])
-        longest = min(_SHARE * _off_lines(y[U], section) + _NEAREST, _LONGEST)
+        longest = min(_SHARE * _to_next_line(y[U], section) + _NEAREST, _LONGEST)
         if rate * h > longest:
             h = longest / rate
         for stage in range(1, _STAGES):

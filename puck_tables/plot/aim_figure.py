@@ -21,20 +21,24 @@ if TYPE_CHECKING:
     from puck_tables.motion.puck_spec import PuckSpec
 
 
-def draw(found: Aim) -> Figure:
+def draw(result: Aim) -> Figure:
     """The paths of launches to their target, and their speeds against their spins."""
     figure = canvas(10.0, 4.4)
     paths, launches = figure.subplots(1, 2, width_ratios=(1.7, 1.0))
-    colours = draw_on(paths, found)
-    for sense in (found.launch_spin <= 0.0, found.launch_spin >= 0.0):
+    colours = draw_on(paths, result)
+    for sense in (result.launch_spin <= 0.0, result.launch_spin >= 0.0):
         launches.plot(
-            found.launch_spin[sense], found.launch_speed[sense], color=GREY, linewidth=0.8, zorder=1
+            result.launch_spin[sense],
+            result.launch_speed[sense],
+            color=GREY,
+            linewidth=0.8,
+            zorder=1,
         )
     launches.scatter(
-        found.launch_spin, found.launch_speed, c=colours.to_rgba(found.launch_spin), zorder=2
+        result.launch_spin, result.launch_speed, c=colours.to_rgba(result.launch_spin), zorder=2
     )
-    x, y = found.target
-    caption(figure, launches, found.puck, f"launches that stop at ({x:g}, {y:g}) m")
+    x, y = result.target
+    caption(figure, launches, result.puck, f"launches that stop at ({x:g}, {y:g}) m")
     return figure
 
 
@@ -46,7 +50,7 @@ def caption(figure: Figure, launches: Axes, puck: PuckSpec, answer: str) -> None
     titled(figure, words)
 
 
-def draw_on(paths: Axes, found: Aim) -> ScalarMappable:
+def draw_on(paths: Axes, result: Aim) -> ScalarMappable:
     """The paths alone, coloured by spin; the colours.
 
     Raises
@@ -54,27 +58,27 @@ def draw_on(paths: Axes, found: Aim) -> ScalarMappable:
     InputError
         If there is no launch to draw.
     """
-    if found.launch_spin.size == 0:
-        raise InputError(f"there is nothing to draw: {found.answer}")
+    if result.launch_spin.size == 0:
+        raise InputError(f"there is nothing to draw: {result.answer}")
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import LinearSegmentedColormap, Normalize
 
-    largest = float(np.abs(found.launch_spin).max()) or 1.0
+    largest = float(np.abs(result.launch_spin).max()) or 1.0
     ramp = LinearSegmentedColormap.from_list("spin", [BLUE, "#303030", ORANGE])
     colours = ScalarMappable(Normalize(-largest, largest), ramp)
     shares = np.linspace(0.0, 1.0, 200)
     states = states_at(
-        found.launch_velocity[:, None, :], found.launch_spin[:, None],
-        found.stop_time[:, None] * shares, **found.puck.arguments(),
+        result.launch_velocity[:, None, :], result.launch_spin[:, None],
+        result.stop_time[:, None] * shares, **result.puck.arguments(),
     )  # fmt: skip
-    for n, spin in enumerate(found.launch_spin):
+    for n, spin in enumerate(result.launch_spin):
         paths.plot(states.x[n], states.y[n], color=colours.to_rgba(spin), linewidth=1.3)
     paths.plot(0.0, 0.0, **LAUNCH)
-    paths.plot(*found.target, "x", color="black", markersize=8, markeredgewidth=1.8, zorder=5)
-    outwards = 1 if found.target[0] >= 0.0 else -1  # labels stand clear of the paths
+    paths.plot(*result.target, "x", color="black", markersize=8, markeredgewidth=1.8, zorder=5)
+    outwards = 1 if result.target[0] >= 0.0 else -1  # labels stand clear of the paths
     for text, place, side in (
         ("launch", (0.0, 0.0), -outwards),
-        ("target", found.target, outwards),
+        ("target", result.target, outwards),
     ):
         paths.annotate(
             text, place, xytext=(9 * side, -3), textcoords="offset points", fontsize=9,

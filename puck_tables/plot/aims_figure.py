@@ -16,17 +16,17 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def draw(found: Aims) -> Figure:
+def draw(result: Aims) -> Figure:
     """The targets, and speeds of launches against their spins."""
     figure = canvas(10.0, 4.6)
     targets, launches = figure.subplots(1, 2, width_ratios=(1.5, 1.0))
-    draw_on(targets, found)
-    launches.scatter(found.launch_spin, found.launch_speed, c=found.stop_time, s=8, cmap=ramp())
-    caption(figure, launches, found.puck, found.answer)
+    draw_on(targets, result)
+    launches.scatter(result.launch_spin, result.launch_speed, c=result.stop_time, s=8, cmap=ramp())
+    caption(figure, launches, result.puck, result.answer)
     return figure
 
 
-def draw_on(axes: Axes, found: Aims) -> None:
+def draw_on(axes: Axes, result: Aims) -> None:
     """The targets alone, coloured by the stop time of a launch to them.
 
     Raises
@@ -34,13 +34,13 @@ def draw_on(axes: Axes, found: Aims) -> None:
     InputError
         If there is no launch to draw.
     """
-    if found.launch_spin.size == 0:
-        raise InputError(f"there is nothing to draw: {found.answer}")
-    missed = found.target[found.launches == 0]
+    if result.launch_spin.size == 0:
+        raise InputError(f"there is nothing to draw: {result.answer}")
+    missed = result.target[result.launches == 0]
     if missed.size:
-        words = f"no launch ({len(missed)} of {counted(found.launches.size, 'target')})"
+        words = f"no launch ({len(missed)} of {counted(result.launches.size, 'target')})"
         axes.plot(*missed.T, "x", color=GREY, markersize=4, label=words)
-    marks = axes.scatter(found.target_x, found.target_y, c=found.stop_time, s=12, cmap=ramp())
+    marks = axes.scatter(result.target_x, result.target_y, c=result.stop_time, s=12, cmap=ramp())
     axes.plot(0.0, 0.0, **LAUNCH, label="launch")
     figure = axes.get_figure()
     assert figure is not None

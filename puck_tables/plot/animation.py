@@ -144,14 +144,14 @@ def _film_of_several(run: Run) -> Animation:
     sudden = np.concatenate([[event.time for event in run.events], *kinks])
     sudden = sudden[(sudden > 0.0) & (sudden <= run.end_time)]
     times = [np.linspace(0.0, run.end_time, _STATES), sudden, np.nextafter(sudden, -np.inf)]
-    seen = run(np.unique(np.concatenate(times)))
+    in_view = run(np.unique(np.concatenate(times)))
     gone = dict.fromkeys(run.names, math.inf)
     gone |= {event.puck: event.time for event in run.events if event.what in ("pocket", "edge")}
     names = ("x", "y", "orientation", "vx", "vy", "spin")
     bodies = [
         (
             name, piece.radius, piece.colour, bool(piece.path),
-            _stacked(seen.time, *(seen[number][column] for column in names)),
+            _stacked(in_view.time, *(in_view[number][column] for column in names)),
         )
         for number, (name, piece) in enumerate(zip(run.names, pieces, strict=True))
     ]  # fmt: skip

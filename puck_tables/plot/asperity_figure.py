@@ -16,37 +16,37 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def draw(curve: AsperityCurve) -> Figure:
+def draw(result: AsperityCurve) -> Figure:
     """Greatest force, mean force and phase of landing against the speed."""
-    support = curve.asperity
+    support = result.asperity
     title = (
         f"a = {support.amplitude:.4g} m, 2πb = {2.0 * np.pi * support.length:.4g} m, "
         f"|Y| = {support.load:.4g} N, m = {support.mass:.4g} kg: V₀ = {support.lift_speed:.4g} m/s"
     )
-    return panels_drawn(Picture(title, _panels(curve), 3.4))
+    return panels_drawn(Picture(title, _panels(result), 3.4))
 
 
-def draw_on(axes: Axes, curve: AsperityCurve) -> None:
+def draw_on(axes: Axes, result: AsperityCurve) -> None:
     """The greatest force alone."""
-    draw_panel(axes, _panels(curve)[0])
+    draw_panel(axes, _panels(result)[0])
 
 
-def _panels(curve: AsperityCurve) -> list[Panel]:
-    support = curve.asperity
-    scaled = curve.held_speed / support.lift_speed
+def _panels(result: AsperityCurve) -> list[Panel]:
+    support = result.asperity
+    scaled = result.held_speed / support.lift_speed
     unit = support.load * support.slope
-    coulomb = PlotLine(scaled, curve.crude / unit, "Coulomb, |Y| a/b", dashed=True)
+    coulomb = PlotLine(scaled, result.crude / unit, "Coulomb, |Y| a/b", dashed=True)
     across = "speed V/V₀  (above 1 the point leaves the crests)"
     return [
         Panel(across, "greatest force / (|Y| a/b)", [
-            PlotLine(scaled, curve.greatest / unit, "held speed:\n−Y + m(a/b²)V² cos θ", leap=1.0),
-            PlotLine(scaled, curve.undriven / unit, "not driven:\nexact λ", leap=1.0), coulomb,
+            PlotLine(scaled, result.greatest / unit, "held speed:\n−Y + m(a/b²)V² cos θ", leap=1.0),
+            PlotLine(scaled, result.undriven / unit, "not driven:\nexact λ", leap=1.0), coulomb,
         ], "greatest force in contact (none where the point only hops)"),
         Panel(across, "mean force / (|Y| a/b)", [
-            PlotLine(scaled, curve.mean / unit, "mean, with\nall landings", leap=LEAP), coulomb,
+            PlotLine(scaled, result.mean / unit, "mean, with\nall landings", leap=LEAP), coulomb,
         ], "mean force: what landings lose; never above Coulomb's"),
         Panel(across, "landing θ₁ / rad", [
-            PlotLine(scaled, curve.landing_phase, "lands at θ₁,\nthen slides", leap=1.0),
+            PlotLine(scaled, result.landing_phase, "lands at θ₁,\nthen slides", leap=1.0),
             PlotLine(scaled, steepest(scaled), "greatest force\non a rise, θ*", dashed=True),
         ], "on the next rise: trough 0, steepest slope π/2, crest π"),
     ]  # fmt: skip

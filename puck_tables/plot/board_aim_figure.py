@@ -21,7 +21,7 @@ _MOST = 8  # other launches whose headings are shown
 _ARROW = 4.0  # radii of the striker
 
 
-def draw(found: BoardAim) -> Figure:
+def draw(result: BoardAim) -> Figure:
     """The board with the ways of the first launch on it, and close-ups as of any run.
 
     Raises
@@ -29,22 +29,22 @@ def draw(found: BoardAim) -> Figure:
     InputError
         If there is no launch to draw.
     """
-    run = _first(found)
+    run = _first(result)
     title = (
-        f"{found.scene.title or 'Board'}: {found.puck} {found.where}\n"
-        f"{found.striker} sent off at {found.launch_speed[0]:.4g} m/s, "
-        f"{math.degrees(found.launch_heading[0]):.2f}°, "
-        f"{found.launch_spin[0]:.4g} rad/s{_others(found)}"
+        f"{result.scene.title or 'Board'}: {result.puck} {result.where}\n"
+        f"{result.striker} sent off at {result.launch_speed[0]:.4g} m/s, "
+        f"{math.degrees(result.launch_heading[0]):.2f}°, "
+        f"{result.launch_spin[0]:.4g} rad/s{_others(result)}"
     )
     figure = pucks_figure.draw(run, title)
     for panel in figure.axes:
-        _mark(panel, found)
+        _mark(panel, result)
     return figure
 
 
-def _others(found: BoardAim) -> str:
+def _others(result: BoardAim) -> str:
     """What is told of the other launches."""
-    others = len(found) - 1
+    others = len(result) - 1
     if not others:
         return ""
     return f"; grey: {counted(min(others, _MOST), 'other launch', 'other launches')}" + (
@@ -52,26 +52,26 @@ def _others(found: BoardAim) -> str:
     )
 
 
-def draw_on(axes: Axes, found: BoardAim) -> None:
+def draw_on(axes: Axes, result: BoardAim) -> None:
     """The board alone."""
-    pucks_figure.draw_on(axes, _first(found))
-    _mark(axes, found)
+    pucks_figure.draw_on(axes, _first(result))
+    _mark(axes, result)
 
 
-def _first(found: BoardAim) -> Any:
-    if not len(found):
-        raise InputError(f"there is nothing to draw: {found.answer}")
-    return found.run(0)
+def _first(result: BoardAim) -> Any:
+    if not len(result):
+        raise InputError(f"there is nothing to draw: {result.answer}")
+    return result.run(0)
 
 
-def _mark(axes: Axes, found: BoardAim) -> None:
+def _mark(axes: Axes, result: BoardAim) -> None:
     """The target, and the headings of the other launches."""
     axes.plot(
-        *found.target, "x", color="black", markersize=9, markeredgewidth=1.8, zorder=8,
+        *result.target, "x", color="black", markersize=9, markeredgewidth=1.8, zorder=8,
     )  # fmt: skip
     others = slice(1, _MOST + 1)
-    x, y, radius = found.start
-    for heading in np.asarray(found.launch_heading)[others].tolist():
+    x, y, radius = result.start
+    for heading in np.asarray(result.launch_heading)[others].tolist():
         far = _ARROW * radius
         axes.annotate(
             "", (x + far * math.cos(heading), y + far * math.sin(heading)), (x, y), zorder=2,

@@ -148,8 +148,8 @@ def _box(ends: SceneEnds, film: Animation) -> Box:
     radius = max(piece.radius for piece in ends.scene.pucks) if ends.scene.pucks else 0.0
 
     def sides(name: str) -> tuple[float, float]:
-        found: FloatArray = ends.columns[name]
-        return float(np.nanmin(found)) - radius, float(np.nanmax(found)) + radius
+        result: FloatArray = ends.columns[name]
+        return float(np.nanmin(result)) - radius, float(np.nanmax(result)) + radius
 
     (west, east), (south, north) = sides("x"), sides("y")
     return min(left, west), max(right, east), min(low, south), max(top, north)

@@ -21,71 +21,71 @@ _LABELLED = 8  # curves: a legend of more hides the picture
 _EXACT: dict[str, Any] = {"color": "black", "linewidth": 1.6}
 
 
-def draw(found: Comparison) -> Figure:
+def draw(result: Comparison) -> Figure:
     """Paths, speeds and ε of runs and of the exact motion, and errors over time."""
     figure = canvas(11.0, 9.6)
     panels = figure.subplots(3, 2)
-    draw_on(panels[0, 0], found)
-    _draw_speeds(panels[0, 1], found)
-    _draw_ratio(panels[1, 0], found)
-    _draw_errors(panels[1, 1], found, "place", "error of the place / m")
-    _draw_errors(panels[2, 0], found, "speed", "error of the velocity / m/s")
-    _draw_errors(panels[2, 1], found, "spin", "error of the spin / rad/s")
-    titled(figure, f"{found.answer.case.label}: {found.answer.case.title}")
+    draw_on(panels[0, 0], result)
+    _draw_speeds(panels[0, 1], result)
+    _draw_ratio(panels[1, 0], result)
+    _draw_errors(panels[1, 1], result, "place", "error of the place / m")
+    _draw_errors(panels[2, 0], result, "speed", "error of the velocity / m/s")
+    _draw_errors(panels[2, 1], result, "spin", "error of the spin / rad/s")
+    titled(figure, f"{result.answer.case.label}: {result.answer.case.title}")
     return figure
 
 
-def _colours(found: Comparison) -> list[tuple[float, float, float] | str]:
+def _colours(result: Comparison) -> list[tuple[float, float, float] | str]:
     """Light to dark with a falling step."""
-    count = len(found.runs)
+    count = len(result.runs)
     return [COLORS[0]] if count == 1 else [shaded(n / (count - 1)) for n in range(count)]
 
 
-def _exact(found: Comparison) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    times = np.linspace(0.0, found.end_time, _CURVE)
-    return times, states_of(found.answer(times), found.puck)
+def _exact(result: Comparison) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    times = np.linspace(0.0, result.end_time, _CURVE)
+    return times, states_of(result.answer(times), result.puck)
 
 
-def draw_on(axes: Axes, found: Comparison) -> None:
+def draw_on(axes: Axes, result: Comparison) -> None:
     """The paths."""
-    _, exact = _exact(found)
+    _, exact = _exact(result)
     axes.plot(exact["x"], exact["y"], label="exact", **_EXACT)
-    for run, colour in zip(found.runs, _colours(found), strict=True):
-        name = run.log.name if len(found.runs) <= _LABELLED else None
+    for run, colour in zip(result.runs, _colours(result), strict=True):
+        name = run.log.name if len(result.runs) <= _LABELLED else None
         axes.plot(run.log.x, run.log.y, color=colour, linewidth=1.0, label=name)
     no_rounding(axes)
     axes.set_xlabel("x / m")
     axes.set_ylabel("y / m")
     axes.grid(color="#e4e4e4", linewidth=0.6)
-    if len(found.runs) > _LABELLED:
-        noted(axes, f"{len(found.runs)} runs, the first light and the last dark")
+    if len(result.runs) > _LABELLED:
+        noted(axes, f"{len(result.runs)} runs, the first light and the last dark")
     legend_below(axes)
 
 
-def _draw_speeds(axes: Axes, found: Comparison) -> None:
-    times, exact = _exact(found)
-    radius = found.answer.pieces[found.puck or 0].radius
-    speed, rim, _ = slip_over(found.answer.floor, exact).sizes(radius)
+def _draw_speeds(axes: Axes, result: Comparison) -> None:
+    times, exact = _exact(result)
+    radius = result.answer.pieces[result.puck or 0].radius
+    speed, rim, _ = slip_over(result.answer.floor, exact).sizes(radius)
     axes.plot(times, speed, label="v over the floor", **_EXACT)
     axes.plot(times, rim, linestyle="--", label="r|ω|", **_EXACT)
-    for run, colour in zip(found.runs, _colours(found), strict=True):
+    for run, colour in zip(result.runs, _colours(result), strict=True):
         if run.seen_speed is not None and run.seen_rim is not None:
             axes.plot(run.time, run.seen_speed, color=colour, linewidth=1.0)
             axes.plot(run.time, run.seen_rim, color=colour, linewidth=1.0, linestyle="--")
     axes.set_ylabel("m/s")
-    _over_time(axes, found)
+    _over_time(axes, result)
     axes.legend(frameon=False, fontsize=8)
 
 
-def _draw_ratio(axes: Axes, found: Comparison) -> None:
-    times, exact = _exact(found)
-    radius = found.answer.pieces[found.puck or 0].radius
-    epsilon, _ = ratios(slip_over(found.answer.floor, exact), radius)
+def _draw_ratio(axes: Axes, result: Comparison) -> None:
+    times, exact = _exact(result)
+    radius = result.answer.pieces[result.puck or 0].radius
+    epsilon, _ = ratios(slip_over(result.answer.floor, exact), radius)
     axes.plot(times, epsilon, label="exact", **_EXACT)
-    for run, colour in zip(found.runs, _colours(found), strict=True):
+    for run, colour in zip(result.runs, _colours(result), strict=True):
         if run.seen_epsilon is not None:
             axes.plot(run.time, run.seen_epsilon, color=colour, linewidth=1.0)
-    limit, rest = found.answer.limit_epsilon, found.exact_rest
+    limit, rest = result.answer.limit_epsilon, result.exact_rest
     if limit is not None and np.isfinite(limit):
         axes.axhline(limit, color=GREY, linewidth=0.8, label="limit at the stop")
     if rest is not None:
@@ -97,13 +97,13 @@ def _draw_ratio(axes: Axes, found: Comparison) -> None:
         if finite.max() > 1.3 * top:
             noted(axes, f"it goes up to {finite.max():.3g}")
     axes.set_ylabel("ε = v/(rω)")
-    _over_time(axes, found)
+    _over_time(axes, result)
     axes.legend(frameon=False, fontsize=8)
 
 
-def _draw_errors(axes: Axes, found: Comparison, name: str, label: str) -> None:
+def _draw_errors(axes: Axes, result: Comparison, name: str, label: str) -> None:
     drawn = False
-    for run, colour in zip(found.runs, _colours(found), strict=True):
+    for run, colour in zip(result.runs, _colours(result), strict=True):
         row = getattr(run, name)
         if row is not None and (np.abs(row) > 0.0).any():
             axes.plot(run.time, np.abs(row), color=colour, linewidth=1.0)
@@ -114,10 +114,10 @@ def _draw_errors(axes: Axes, found: Comparison, name: str, label: str) -> None:
         axes.text(0.5, 0.5, "none, or not in the file", ha="center", transform=axes.transAxes,
                   color=GREY)  # fmt: skip
     axes.set_ylabel(label)
-    _over_time(axes, found)
+    _over_time(axes, result)
 
 
-def _over_time(axes: Axes, found: Comparison) -> None:
-    axes.set_xlim(0.0, 1.15 * found.end_time)
+def _over_time(axes: Axes, result: Comparison) -> None:
+    axes.set_xlim(0.0, 1.15 * result.end_time)
     axes.set_xlabel("time / s")
     axes.grid(color="#e4e4e4", linewidth=0.6)

@@ -39,7 +39,7 @@ def checked_page(path: Path) -> None:
     require_matplotlib()
 
 
-def save_page(found: Comparison, path: Path, overwrite: bool = False) -> None:
+def save_page(result: Comparison, path: Path, overwrite: bool = False) -> None:
     """Write the page, whole or not at all.
 
     Raises
@@ -50,39 +50,39 @@ def save_page(found: Comparison, path: Path, overwrite: bool = False) -> None:
         If the file exists (without ``overwrite``) or cannot be written.
     """
     checked_page(path)
-    write_bytes(path, page(found).encode(), overwrite)
+    write_bytes(path, page(result).encode(), overwrite)
 
 
-def page(found: Comparison) -> str:
+def page(result: Comparison) -> str:
     """The page as HTML."""
-    case, answer = found.answer.case, found.answer
+    case, answer = result.answer.case, result.answer
     picture = io.StringIO()
-    draw(found).savefig(picture, format="svg", metadata={"Date": None})
+    draw(result).savefig(picture, format="svg", metadata={"Date": None})
     svg = picture.getvalue()
     svg = svg[svg.index("<svg") :]
-    rows = found.rows()
+    rows = result.rows()
     names = list(rows[0])
     head = "".join(f"<th>{escape(_titled(name))}</th>" for name in names)
     body = "".join(
         f"<tr><td>{escape(run.log.name)}</td>"
         + "".join(f"<td>{_written(row[name])}</td>" for name in names) + "</tr>"
-        for run, row in zip(found.runs, rows, strict=True)
+        for run, row in zip(result.runs, rows, strict=True)
     )  # fmt: skip
     lines = "".join(
         f"<tr><td>{escape(name)}</td><td>{escape(told)}</td></tr>"
         for name, told in lines_of(answer).items()
     )
-    last = states_of(answer([found.end_time]), found.puck)
-    which = f"The puck {escape(found.whose)}" if found.whose else "It "
-    exact = f"{which}ends after {found.end_time:.12g} s ({escape(answer.end)})"
+    last = states_of(answer([result.end_time]), result.puck)
+    which = f"The puck {escape(result.whose)}" if result.whose else "It "
+    exact = f"{which}ends after {result.end_time:.12g} s ({escape(answer.end)})"
     exact += f" at ({last['x'][0]:.12g}, {last['y'][0]:.12g}) m"
     exact += f", known to {answer.time_bound:.1e} s and {answer.place_bound:.1e} m."
     fallen = "".join(
-        f"<li>{escape(words)}: {escape(what)}</li>" for words, what in found.convergence().items()
+        f"<li>{escape(words)}: {escape(what)}</li>" for words, what in result.convergence().items()
     )
-    untold = "".join(f"<li>{escape(one)}</li>" for one in found.untold())
-    truths = "".join(f"<li>{escape(one)}</li>" for one in found.truths())
-    met = escape(", ".join(map(str, found.thresholds)))
+    untold = "".join(f"<li>{escape(one)}</li>" for one in result.untold())
+    truths = "".join(f"<li>{escape(one)}</li>" for one in result.truths())
+    met = escape(", ".join(map(str, result.thresholds)))
     return (
         f"<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'>"
         f"<title>{escape(case.label)}</title><style>{_STYLE}</style></head><body>"

@@ -27,36 +27,38 @@ _FINE = 400  # points of a curve: smooth at any size of print
 _NARROW = 5.0  # times as long as wide: a path that is shown in scales of its own
 
 
-def draw(found: Fit) -> Figure:
+def draw(result: Fit) -> Figure:
     """Paths, residuals over time, pulls, and profile curves of the puck's numbers."""
-    free = found.estimate.problem.spec.free
-    names = [n for n in free if found.numbers[n].determined]
+    free = result.estimate.problem.spec.free
+    names = [n for n in free if result.numbers[n].determined]
     figure = canvas(11.0, 7.0)
     grid = figure.add_gridspec(2, 6)
-    draw_on(figure.add_subplot(grid[0, :3]), found)
-    _draw_residuals(figure.add_subplot(grid[0, 3:]), found)
-    _draw_pulls(figure.add_subplot(grid[1, :2]), found)
+    draw_on(figure.add_subplot(grid[0, :3]), result)
+    _draw_residuals(figure.add_subplot(grid[0, 3:]), result)
+    _draw_pulls(figure.add_subplot(grid[1, :2]), result)
     if names:
-        speeds = found.estimate.problem.spec.speeds
+        speeds = result.estimate.problem.spec.speeds
         # friction over slip speed has a panel of its own, for all of its numbers
         shown = [name for name in names if not (speeds and name in NODES)][:3]
         shown = (shown or names)[: 2 if speeds else 3]
         inner = grid[1, 2:].subgridspec(1, len(shown) + bool(speeds))
         if speeds:
-            _draw_friction(figure.add_subplot(inner[0, len(shown)]), found)
+            _draw_friction(figure.add_subplot(inner[0, len(shown)]), result)
         for n, name in enumerate(shown):
-            _draw_profile(figure.add_subplot(inner[0, n]), found, name)
-    told = [f"{name} = {_in_words(found.numbers[name])}" for name in names]
+            _draw_profile(figure.add_subplot(inner[0, n]), result, name)
+    told = [f"{name} = {_in_words(result.numbers[name])}" for name in names]
     told += [f"{name} is not determined" for name in free if name not in names]
-    titled(figure, "; ".join([*told, f"chi² per degree {found.chi2 / max(found.degrees, 1):.3g}"]))
+    titled(
+        figure, "; ".join([*told, f"chi² per degree {result.chi2 / max(result.degrees, 1):.3g}"])
+    )
     return figure
 
 
-def draw_on(paths: Axes, found: Fit) -> None:
+def draw_on(paths: Axes, result: Fit) -> None:
     """The paths alone."""
-    problem, x = found.estimate.problem, found.estimate.x
+    problem, x = result.estimate.problem, result.estimate.x
     moving, (slides, hits) = problem.moving(problem.numbers_at(x)), problem.slides(x)
-    whole, told = {film.name: film for film in found.uncut}, set[str]()
+    whole, told = {film.name: film for film in result.uncut}, set[str]()
 
     def once(words: str) -> str | None:
         """A label, if nothing bears it yet."""
@@ -72,7 +74,7 @@ def draw_on(paths: Axes, found: Fit) -> None:
                     *before.place[foreign].T, "+", color=GREY, markersize=5,
                     label=once("cut off"),
                 )  # fmt: skip
-        counts = found.estimate.kept[problem.each()[n][0]]
+        counts = result.estimate.kept[problem.each()[n][0]]
         colour = COLORS[n % len(COLORS)]
         paths.plot(
             *film.place[counts].T, "o", color=colour, markersize=4, fillstyle="none",
@@ -105,9 +107,9 @@ def draw_on(paths: Axes, found: Fit) -> None:
     legend_below(paths)
 
 
-def _draw_residuals(panel: Axes, found: Fit) -> None:
+def _draw_residuals(panel: Axes, result: Fit) -> None:
     """What was seen less the model, over the time since the launch."""
-    estimate = found.estimate
+    estimate = result.estimate
     shown = np.clip(-estimate.residuals, -6.0, 6.0)
     for film, parts in zip(estimate.problem.films, estimate.problem.each(), strict=True):
         times = [film.time, film.time]
@@ -126,15 +128,15 @@ def _draw_residuals(panel: Axes, found: Fit) -> None:
         xlabel="time since the launch / s",
         ylabel="residual / noise (6 at most)",
         ylim=(-6.5, 6.5),
-        title=f"runs p = {found.runs:.2g}, drift p = {found.drift:.2g}",
+        title=f"runs p = {result.runs:.2g}, drift p = {result.drift:.2g}",
     )
     legend_below(panel)
 
 
-def _draw_pulls(panel: Axes, found: Fit) -> None:
+def _draw_pulls(panel: Axes, result: Fit) -> None:
     """How often residuals have each size, beside the normal distribution."""
-    seen = found.estimate.problem.kinds < 2
-    pulls = np.clip(-found.estimate.residuals[seen], -6.0, 6.0)
+    in_view = result.estimate.problem.kinds < 2
+    pulls = np.clip(-result.estimate.residuals[in_view], -6.0, 6.0)
     edges = np.linspace(-6.0, 6.0, 37)
     panel.hist(pulls, edges.tolist(), density=True, color=BLUE, alpha=0.6)
     z = np.linspace(-6.0, 6.0, 200)
@@ -142,31 +144,31 @@ def _draw_pulls(panel: Axes, found: Fit) -> None:
     panel.set(xlabel="residual / noise", ylabel="density", title=f"{pulls.size} residuals")
 
 
-def _draw_friction(panel: Axes, found: Fit) -> None:
+def _draw_friction(panel: Axes, result: Fit) -> None:
     """The friction coefficient over slip speed, with its 95 % band."""
-    nodes, values, errors = found.friction_over()
-    fine, value, error = found.friction_over(np.linspace(0.0, float(nodes[-1]), 200))
-    wide = found.certainty.quantile * error
+    nodes, values, errors = result.friction_over()
+    fine, value, error = result.friction_over(np.linspace(0.0, float(nodes[-1]), 200))
+    wide = result.certainty.quantile * error
     panel.fill_between(fine, value - wide, value + wide, color=BLUE, alpha=0.25, linewidth=0.0)
     panel.plot(fine, value, color=BLUE)
-    panel.errorbar(nodes, values, found.certainty.quantile * errors, fmt="o", color=BLUE)
+    panel.errorbar(nodes, values, result.certainty.quantile * errors, fmt="o", color=BLUE)
     panel.set(xlabel="slip speed / m/s", title="friction, 95 %")
 
 
-def _draw_profile(panel: Axes, found: Fit, name: str) -> None:
+def _draw_profile(panel: Axes, result: Fit, name: str) -> None:
     """By how much χ² rises when one number is held elsewhere."""
-    k = found.estimate.problem.spec.free.index(name)
-    values, rises = found.profile(name, _POINTS, _REACH)
-    number = found.numbers[name]
+    k = result.estimate.problem.spec.free.index(name)
+    values, rises = result.profile(name, _POINTS, _REACH)
+    number = result.numbers[name]
     fine = np.linspace(values[0], values[-1], 100)
     panel.plot(values, rises, "o", color=BLUE, markersize=3)
     powers = monotone_cubic(values, rises) if values[-1] > values[0] else rises[:1, None]
     part = np.clip(np.searchsorted(values, fine, "right") - 1, 0, len(powers) - 1)
     panel.plot(fine, polyval(fine - values[part], powers[part].T, tensor=False), color=BLUE)
-    error = float(found.certainty.errors[k])
+    error = float(result.certainty.errors[k])
     if math.isfinite(error):
         panel.plot(fine, ((fine - number.value) / error) ** 2, ":", color=GREY)
-    panel.axhline(found.certainty.quantile**2, color=ORANGE, linewidth=0.8)
+    panel.axhline(result.certainty.quantile**2, color=ORANGE, linewidth=0.8)
     for end in (number.low, number.high):
         panel.axvline(end, color=ORANGE, linewidth=0.8)
     unit = "" if number.unit == "1" else f" / {number.unit}"

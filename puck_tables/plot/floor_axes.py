@@ -92,7 +92,7 @@ def _strips(floor: Floor, box: Box) -> list[Shade]:
     centre = across[0] * middle[0] + across[1] * middle[1]
     along = across[0] * middle[1] - across[1] * middle[0]
     ends = [centre - half, *strips.borders, centre + half]
-    highest, found = max(strips.friction) or 1.0, []
+    highest, result = max(strips.friction) or 1.0, []
     for low, high, friction in zip(ends, ends[1:], strips.friction, strict=False):
         low, high = max(low, centre - half), min(high, centre + half)
         if low >= high:
@@ -103,8 +103,8 @@ def _strips(floor: Floor, box: Box) -> list[Shade]:
                          (low, along + half))
         ]  # fmt: skip
         shade = 0.97 - 0.22 * friction / highest
-        found.append(Shade(friction, corners, (0.0, 0.0), 0.0, (shade, shade, shade), False))
-    return found
+        result.append(Shade(friction, corners, (0.0, 0.0), 0.0, (shade, shade, shade), False))
+    return result
 
 
 def motion_said(floor: Floor) -> str:

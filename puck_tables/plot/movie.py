@@ -154,14 +154,14 @@ def _filmed(film: Animation, kind: str) -> bytes:
     slowed = shown / film.end_time if film.end_time > 0.0 else 1.0
     stage = _Stage(film, slowed)
     screen = canvas(*stage.size)
-    image = screen.figimage(stage.seen_at(0.0))
+    image = screen.figimage(stage.in_view(0.0))
     writer = (PillowWriter if kind == ".gif" else FFMpegWriter)(fps=_PICTURES)
     try:
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / f"movie{kind}"
             with writer.saving(screen, str(path), _DOTS):
                 for time in [*times.tolist(), *[film.end_time] * _HELD]:
-                    image.set_data(stage.seen_at(time))
+                    image.set_data(stage.in_view(time))
                     writer.grab_frame()
             return path.read_bytes()
     except (OSError, CalledProcessError) as error:  # no room for it, or ffmpeg fails
@@ -203,13 +203,13 @@ class _Stage:
             [], [], linestyle="", marker="o", markersize=9, fillstyle="none", color=RED
         )[0]
 
-    def seen_at(self, time: float) -> Any:
+    def in_view(self, time: float) -> Any:
         """The picture at a time, array (high, wide, 4) of bytes."""
         parts = zip(self.film.bodies, self._discs, self._trails, self._marks, strict=True)
         for body, disc, trail, mark in parts:
-            seen = min(time, body.gone)
-            x, y, angle = between(body.knots, np.array([seen]))[0].tolist()
-            trail.set_data(*np.vstack([path_of(body, seen), (x, y)]).T)
+            in_view = min(time, body.gone)
+            x, y, angle = between(body.knots, np.array([in_view]))[0].tolist()
+            trail.set_data(*np.vstack([path_of(body, in_view), (x, y)]).T)
             disc.set_center((x, y))
             rim = x + body.radius * math.cos(angle), y + body.radius * math.sin(angle)
             mark.set_data([x, rim[0]], [y, rim[1]])

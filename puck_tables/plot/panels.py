@@ -78,15 +78,15 @@ def draw(picture: Picture) -> Figure:
 
 def draw_panel(axes: Axes, panel: Panel) -> None:
     """Draw the curves of a panel on given axes."""
-    for number, curve in enumerate(panel.lines):
-        look = _style(curve, number)
-        leaps = np.flatnonzero(np.abs(np.diff(curve.y)) > curve.leap)
-        x = np.insert(curve.x, leaps + 1, np.nan)
-        y = np.insert(curve.y, leaps + 1, np.nan)
-        axes.plot(x, y, label=curve.label or None, **look)
+    for number, line in enumerate(panel.lines):
+        look = _style(line, number)
+        leaps = np.flatnonzero(np.abs(np.diff(line.y)) > line.leap)
+        x = np.insert(line.x, leaps + 1, np.nan)
+        y = np.insert(line.y, leaps + 1, np.nan)
+        axes.plot(x, y, label=line.label or None, **look)
         beside = np.union1d(leaps, leaps + 1)
         axes.plot(
-            curve.x[beside], curve.y[beside], linestyle="", marker=".", markersize=4,
+            line.x[beside], line.y[beside], linestyle="", marker=".", markersize=4,
             color=look["color"],
         )  # fmt: skip
     axes.set_xlabel(panel.x_label)
@@ -99,19 +99,19 @@ def draw_panel(axes: Axes, panel: Panel) -> None:
     low, high = axes.get_ylim()
     if low < 0.0 < high:
         axes.axhline(0.0, color=GREY, linewidth=0.8, zorder=1)
-    if any(curve.label for curve in panel.lines):
+    if any(line.label for line in panel.lines):
         axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
 
 
-def _style(curve: PlotLine, number: int) -> dict[str, Any]:
+def _style(line: PlotLine, number: int) -> dict[str, Any]:
     """How matplotlib is to draw a curve, the ``number``-th of its panel."""
-    if curve.dashed:
+    if line.dashed:
         return {"color": GREY, "linestyle": "--", "linewidth": 1.2}
     color: Any = COLORS[number % len(COLORS)]
-    if curve.shade is not None:
-        color = shaded(curve.shade)
-    if curve.marker:
-        face = "white" if curve.hollow else color
-        return {"color": color, "linestyle": "", "marker": curve.marker, "markersize": 8,
+    if line.shade is not None:
+        color = shaded(line.shade)
+    if line.marker:
+        face = "white" if line.hollow else color
+        return {"color": color, "linestyle": "", "marker": line.marker, "markersize": 8,
                 "markerfacecolor": face, "zorder": 3}  # fmt: skip
     return {"color": color, "linewidth": 1.8}

@@ -164,11 +164,11 @@ def _draw_lines(
     axes: Axes, lines: Sequence[Wall | Edge], box: Box, label: str, **style: Any
 ) -> int:
     """Walls or edges, the first that is in sight with the label; how many are in sight."""
-    seen = 0
+    in_view = 0
     for line in lines:
-        words = "" if seen else label
-        seen += _draw_line(axes, line.point, line.normal, box, label=words, **style)
-    return seen
+        words = "" if in_view else label
+        in_view += _draw_line(axes, line.point, line.normal, box, label=words, **style)
+    return in_view
 
 
 def _draw_line(

@@ -73,8 +73,8 @@ def draw_on(panel: Axes, samples: Summary) -> None:
     left = samples.ended - np.count_nonzero(counts)
     x, y = x[counts], y[counts]
     sides = [_sides(samples, name) for name in samples.place]
-    seen = _inside(x, y, sides)
-    x, y = x[seen], y[seen]
+    in_view = _inside(x, y, sides)
+    x, y = x[in_view], y[in_view]
     cloud = cloud_of(x, y)
     bare = np.ones(x.size, np.bool_)
     if cloud is not None:
@@ -91,8 +91,8 @@ def draw_on(panel: Axes, samples: Summary) -> None:
     panel.set_xlabel(COLUMNS[samples.place[0]].axis)
     panel.set_ylabel(COLUMNS[samples.place[1]].axis)
     notes = [f"{left} of {samples.ended} samples left play"] if left else []
-    if not seen.all():
-        notes.append(f"{np.count_nonzero(~seen)} of {seen.size} samples lie outside")
+    if not in_view.all():
+        notes.append(f"{np.count_nonzero(~in_view)} of {in_view.size} samples lie outside")
     if notes:
         noted(panel, "; ".join(notes))
     legend_below(panel, 4)

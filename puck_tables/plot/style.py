@@ -175,9 +175,9 @@ def may_replace(path: str | Path, overwrite: bool = False) -> bool:
     with contextlib.suppress(OSError), open(path, "rb") as file:
         size = file.seek(0, os.SEEK_END)
         file.seek(0)
-        found = file.read(_LOOKED_AT)
+        result = file.read(_LOOKED_AT)
         file.seek(max(file.tell(), size - _LOOKED_AT))
-        return sign in found + file.read() or not size
+        return sign in result + file.read() or not size
     return False
 
 

@@ -31,13 +31,13 @@ def titled(figure: Figure, text: str) -> None:
     >>> figure.get_suptitle().count(chr(10)) > 0
     True
     """
-    _fitted(figure.suptitle(text, parse_math=False), _ROOM * figure.bbox.width)
+    _shrunk(figure.suptitle(text, parse_math=False), _ROOM * figure.bbox.width)
 
 
 def noted(axes: Axes, text: str) -> None:
     """Write above a panel what is not seen in it."""
     words = axes.set_title(text, fontsize=9, loc="left", parse_math=False)
-    _fitted(words, width_of(axes))
+    _shrunk(words, width_of(axes))
 
 
 def counted(count: int, one: str, many: str = "") -> str:
@@ -51,7 +51,7 @@ def counted(count: int, one: str, many: str = "") -> str:
     return f"{count} {one if count == 1 else many or one + 's'}"
 
 
-def out_of_sight(there: Sequence[Sequence[Any]], seen: Sequence[Sequence[Any]]) -> str:
+def out_of_sight(there: Sequence[Sequence[Any]], in_view: Sequence[Sequence[Any]]) -> str:
     """How many of each kind, the first entry, are there and not seen, in words.
 
     Examples
@@ -59,7 +59,7 @@ def out_of_sight(there: Sequence[Sequence[Any]], seen: Sequence[Sequence[Any]]) 
     >>> out_of_sight([("wall",), ("edge",), ("edge",)], [("edge",)])
     'out of sight: 1 wall, 1 edge'
     """
-    unseen = Counter(one[0] for one in there) - Counter(one[0] for one in seen)
+    unseen = Counter(one[0] for one in there) - Counter(one[0] for one in in_view)
     words = ", ".join(counted(count, kind) for kind, count in unseen.items())
     return f"out of sight: {words}" if words else ""
 
@@ -102,11 +102,11 @@ def legend_below(
 def _entries(where: Axes | Figure) -> tuple[list[Any], list[str]]:
     """What is labelled in a panel, or in all panels of a figure, each label once."""
     panels: list[Any] = [where] if hasattr(where, "get_legend_handles_labels") else where.axes
-    found: dict[str, Any] = {}
+    result: dict[str, Any] = {}
     for panel in panels:
         for handle, label in zip(*panel.get_legend_handles_labels(), strict=True):
-            found.setdefault(label, handle)
-    return list(found.values()), list(found)
+            result.setdefault(label, handle)
+    return list(result.values()), list(result)
 
 
 def shortened(name: str) -> str:
@@ -128,7 +128,7 @@ def as_they_stand(legend: Legend) -> None:
         text.set_parse_math(False)
 
 
-def _fitted(text: Text, room: float) -> None:
+def _shrunk(text: Text, room: float) -> None:
     """Break a text into lines that are not wider than ``room``, pixels."""
 
     def fits(words: str) -> bool:

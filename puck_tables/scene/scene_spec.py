@@ -12,7 +12,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.fields import Unsaid, of, specs
-from puck_tables._core.reading import Range, Reading, given_in, read_values
+from puck_tables._core.reading import Range, Reading, entries_in, read_values
 from puck_tables._core.real import instance
 from puck_tables.errors import InputError
 from puck_tables.motion.body import STANDARD_GRAVITY
@@ -78,7 +78,7 @@ class SceneSpec:
     ranges: Mapping[str, FloatArray] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        tables, ranges, before = given_in(self, {}), self.ranges, None
+        tables, ranges, before = entries_in(self, {}), self.ranges, None
         if isinstance(ranges, Ranges):  # of the scene of which this one is a changed copy
             before, ranges = ranges.parts["gravity"], ranges.of_the_same(self._parts())
         else:

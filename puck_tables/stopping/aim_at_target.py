@@ -97,7 +97,7 @@ class _Family:
     distance: float
     decel: float
     curve: LaunchFamily
-    found: dict[float, tuple[float, ...]] = field(default_factory=dict)  # what stands at a u
+    result: dict[float, tuple[float, ...]] = field(default_factory=dict)  # what stands at a u
 
     @property
     def scales(self) -> FloatArray:
@@ -107,9 +107,9 @@ class _Family:
 
     def at(self, u: float) -> tuple[float, float, float, float]:
         """Speed, rim speed, stop time, and arg(X + iY) for ω > 0."""
-        if u not in self.found:
-            self.found[u] = tuple((self.curve.rows(np.array([u]))[0] + self.scales).tolist())
-        speed, rim, time, deflection = self.found[u]
+        if u not in self.result:
+            self.result[u] = tuple((self.curve.rows(np.array([u]))[0] + self.scales).tolist())
+        speed, rim, time, deflection = self.result[u]
         return speed, rim, time, deflection
 
     def all_where(self, quantity: int, value: float) -> list[float]:
@@ -134,7 +134,7 @@ class _Family:
             return None
         row += slopes * step
         row[quantity] = wanted
-        self.found[u + step] = tuple((row + self.scales).tolist())
+        self.result[u + step] = tuple((row + self.scales).tolist())
         return float(u + step)
 
     def extreme(self, quantity: int) -> tuple[float, float]:
@@ -256,17 +256,17 @@ def _found(given: Aim, launches: list[tuple[float, float, float, float]], answer
     rows = np.array(sorted(launches)).reshape(-1, 4)
     if not answer:
         answer = f"{len(rows)} launch{'' if len(rows) == 1 else 'es'}"
-    found = replace(
+    result = replace(
         given, launch_velocity=rows[:, 1:3], launch_spin=rows[:, 0], stop_time=rows[:, 3],
         answer=answer,
     )  # fmt: skip
     puck = given.puck
     same = [np.full(len(rows), value) for value in (puck.delta, puck.decel, puck.radius)]
-    launched = np.stack([*found.launch_velocity.T, found.launch_spin, *same])
+    launched = np.stack([*result.launch_velocity.T, result.launch_spin, *same])
     if not fits(launched, puck.body.longest).all():
         raise InputError(TOO_LARGE)
-    target = np.array(found.target)
-    return replace(found, miss=misses(puck, target, found.launch_velocity, found.launch_spin))
+    target = np.array(result.target)
+    return replace(result, miss=misses(puck, target, result.launch_velocity, result.launch_spin))
 
 
 def _on_the_spot(

@@ -123,11 +123,11 @@ class Aims(LaunchColumns):
         if not self.launch_spin.size:
             return text
         some = np.unique(np.linspace(0, self.launch_spin.size - 1, _TRIED).astype(np.int64))
-        off = misses(
+        error = misses(
             self.puck, self._places[some], self.launch_velocity[some], self.launch_spin[some],
             self.threads,
         )  # fmt: skip
-        return f"{text}\n{some.size} of them, integrated, end at most {off.max():.1g} m off."
+        return f"{text}\n{some.size} of them, integrated, end at most {error.max():.1g} m off."
 
     def summary(self) -> dict[str, Any]:
         """The launches with what went in, and the units of all, ready for JSON."""
@@ -186,16 +186,16 @@ def aim(
             f"target ({far[0]:g}, {far[1]:g}) m is too far for floating point: use larger units"
         )
     search = _Search(puck, wished, bounds, count)
-    found: dict[int, FloatArray] = {}
+    result: dict[int, FloatArray] = {}
     flat = places.reshape(-1, 2), wanted.reshape(-1), distance.reshape(-1)
 
     def work(start: int, stop: int) -> None:
         rows = search.launches(*(one[start:stop] for one in flat))
         rows[:, _OF] += start
-        found[start] = rows
+        result[start] = rows
 
     run_chunks(work, distance.size, _CHUNK, threads)
-    rows = np.concatenate([np.empty((0, _LAUNCH)), *(found[start] for start in sorted(found))])
+    rows = np.concatenate([np.empty((0, _LAUNCH)), *(result[start] for start in sorted(result))])
     wish = {} if wished is None else {wished: wanted}
     return Aims(
         puck, places, rows[:, _OF].astype(np.int64), rows[:, [_VX, _VY]], rows[:, _SPIN].copy(),
@@ -251,9 +251,9 @@ class _Search:
             both = [away[which], sense * turning, speed * np.cos(heading), speed * np.sin(heading),
                     time]  # fmt: skip
             rows.append(np.stack(both, axis=1)[chosen])
-        found = np.concatenate(rows) + 0.0  # no negative zero
-        self._refuse_too_large(found)
-        return found[np.lexsort((found[:, _SPIN], found[:, _OF]))]
+        result = np.concatenate(rows) + 0.0  # no negative zero
+        self._refuse_too_large(result)
+        return result[np.lexsort((result[:, _SPIN], result[:, _OF]))]
 
     def _logs(self, scales: FloatArray, wanted: FloatArray) -> tuple[npt.NDArray[Any], FloatArray]:
         """Of which target, and ln v, ln r|ω|, ln t₀ and arg Z, of all launches that are wished."""
@@ -307,11 +307,11 @@ class _Search:
     def _on_the_spot(self, n: int, wanted: float) -> FloatArray:
         """Launches to a target where the puck lies."""
         wish = {} if self.wished is None else {self.wished: float(wanted)}
-        found = aim_at(
+        result = aim_at(
             self.puck, (0.0, 0.0), **{**_NO_WISH, **wish}, max_speed=None, max_spin=None, count=1
         )
-        rows = np.zeros((found.launch_spin.size, _LAUNCH))
-        rows[:, _OF], rows[:, _SPIN], rows[:, _TIME] = n, found.launch_spin, found.stop_time
+        rows = np.zeros((result.launch_spin.size, _LAUNCH))
+        rows[:, _OF], rows[:, _SPIN], rows[:, _TIME] = n, result.launch_spin, result.stop_time
         return rows
 
     def _refuse_too_large(self, rows: FloatArray) -> None:

@@ -50,29 +50,29 @@ def _plain_logs(u: float, section: FloatArray) -> tuple[float, float, float, flo
 
 
 @inlined
-def _in_piece(quantity: int, u: float, pieces: FloatArray) -> float:
+def _in_part(quantity: int, u: float, limits: FloatArray) -> float:
     """A quantity from the piece in which u is."""
-    first, above = 0, pieces.shape[0]
+    first, above = 0, limits.shape[0]
     while above - first > 1:
         middle = (first + above) // 2
-        if pieces[middle, 0] <= u:
+        if limits[middle, 0] <= u:
             first = middle
         else:
             above = middle
-    t = (u - pieces[first, 0]) * pieces[first, 1]
+    t = (u - limits[first, 0]) * limits[first, 1]
     at, value = 2 + POWERS * quantity, 0.0
     for power in range(POWERS - 1, -1, -1):
-        value = value * t + pieces[first, at + power]
+        value = value * t + limits[first, at + power]
     return value
 
 
 @inner
 def _above(
-    u: float, quantity: int, wanted: float, section: FloatArray, pieces: FloatArray
+    u: float, quantity: int, wanted: float, section: FloatArray, limits: FloatArray
 ) -> float:
     """How much a quantity is above a value."""
-    if pieces.shape[0] > 0:
-        return _in_piece(quantity, u, pieces) - wanted
+    if limits.shape[0] > 0:
+        return _in_part(quantity, u, limits) - wanted
     speed, rim, time, _, _ = _plain_logs(u, section)
     if quantity == SPEED:
         return speed - wanted
@@ -81,7 +81,7 @@ def _above(
 
 @inner
 def _root(
-    quantity: int, wanted: float, low: float, high: float, section: FloatArray, pieces: FloatArray
+    quantity: int, wanted: float, low: float, high: float, section: FloatArray, limits: FloatArray
 ) -> float:
     """The u between two where a quantity has a value, by Chandrupatla's method.
 
@@ -89,15 +89,15 @@ def _root(
     """
     a, b = low, high
     at_a, at_b = (
-        _above(a, quantity, wanted, section, pieces),
-        _above(b, quantity, wanted, section, pieces),
+        _above(a, quantity, wanted, section, limits),
+        _above(b, quantity, wanted, section, limits),
     )
     if (at_a > 0.0) == (at_b > 0.0):
         return a if abs(at_a) < abs(at_b) else b
     share = 0.5
     for _ in range(_STEPS):
         x = a + share * (b - a)
-        here = _above(x, quantity, wanted, section, pieces)
+        here = _above(x, quantity, wanted, section, limits)
         if (here > 0.0) == (at_a > 0.0):
             c, at_c = a, at_a
         else:
@@ -118,19 +118,19 @@ def _root(
 
 
 @kernel
-def fill_logs(u: FloatArray, section: FloatArray, pieces: FloatArray, out: FloatArray) -> None:
+def fill_logs(u: FloatArray, section: FloatArray, limits: FloatArray, out: FloatArray) -> None:
     """Ln v, ln r|ω|, ln t₀ and arg Z for ω > 0 at ``u`` (n,) into ``out`` (n, 4); −∞ slides.
 
     ``section``: of a plain puck, :func:`puck_tables.stopping.stop_splines.at_height`;
-    ``pieces`` (m, 26): of any other; none of a plain one.
+    ``limits`` (m, 26): of any other; none of a plain one.
     """
     for n in range(u.size):
         patience(1)
         if u[n] == -math.inf:
             out[n, SPEED], out[n, RIM], out[n, TIME], out[n, BEND] = SLIDE, u[n], SLIDE, 0.0
-        elif pieces.shape[0] > 0:
+        elif limits.shape[0] > 0:
             for quantity in range(LOGS):
-                out[n, quantity] = _in_piece(quantity, u[n], pieces)
+                out[n, quantity] = _in_part(quantity, u[n], limits)
         else:
             out[n, SPEED], out[n, RIM], out[n, TIME], along, left = _plain_logs(u[n], section)
             out[n, BEND] = math.atan2(left, along)
@@ -139,7 +139,7 @@ def fill_logs(u: FloatArray, section: FloatArray, pieces: FloatArray, out: Float
 @kernel
 def fill_roots(
     quantity: int, wanted: FloatArray, low: FloatArray, high: FloatArray, section: FloatArray,
-    pieces: FloatArray, out: FloatArray,
+    limits: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
     """The u (n,) between ``low`` and ``high`` (n,) where a quantity has ``wanted`` (n,)."""
     for n in range(wanted.size):
@@ -147,4 +147,4 @@ def fill_roots(
         if low[n] == high[n]:
             out[n] = low[n]
         else:
-            out[n] = _root(quantity, wanted[n], low[n], high[n], section, pieces)
+            out[n] = _root(quantity, wanted[n], low[n], high[n], section, limits)

@@ -62,10 +62,10 @@ def stop_arrays(
     launches = launches_of(_pairs(vx, vy), spin, delta, decel, radius)
     launches.refuse_bad()
     solver.prepare_for(launches, 1)
-    found, status = solver.all(launches.matrix)
+    result, status = solver.all(launches.matrix)
     if status.any():
         raise InputError(TOO_LARGE)
-    time, x, y, length, turn, body = found.reshape((6, *launches.shape))
+    time, x, y, length, turn, body = result.reshape((6, *launches.shape))
     return time, x, y, length, turn, body
 
 
@@ -100,11 +100,11 @@ def state_arrays(
     >>> x.round(6).tolist()
     [1.590682, 0.0]
     """
-    found = states(
+    result = states(
         _pairs(vx, vy), spin, time, delta=delta, decel=decel, radius=radius,
         pressure=pressure, gyration=gyration,
     )  # fmt: skip
-    return found.x, found.y, found.orientation, found.vx, found.vy, found.spin
+    return result.x, result.y, result.orientation, result.vx, result.vy, result.spin
 
 
 def _pairs(vx: npt.ArrayLike, vy: npt.ArrayLike) -> FloatArray:

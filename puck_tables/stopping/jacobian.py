@@ -81,8 +81,8 @@ class Differentiated:
         Examples
         --------
         >>> from puck_tables import Puck
-        >>> found = Puck.similar().stop((1.0, 0.0), 5.0, jacobian=True)
-        >>> float(found.derivative("stop_x", "spin").round(6))
+        >>> result = Puck.similar().stop((1.0, 0.0), 5.0, jacobian=True)
+        >>> float(result.derivative("stop_x", "spin").round(6))
         0.420792
         """
         places = []
@@ -131,8 +131,9 @@ class Differentiated:
         Examples
         --------
         >>> from puck_tables import Puck
-        >>> found = Puck.similar().stop((1.0, 0.0), 5.0, jacobian=True)
-        >>> out = found.spread([[1e-4, 0.0, 0.0], [0.0, 1e-4, 0.0], [0.0, 0.0, 1e-2]], samples=5000)
+        >>> result = Puck.similar().stop((1.0, 0.0), 5.0, jacobian=True)
+        >>> out = result.spread([[1e-4, 0.0, 0.0], [0.0, 1e-4, 0.0], [0.0, 0.0, 1e-2]],
+        samples=5000)
         >>> out.deviation.round(4).tolist()  # s, m, m, m, rad
         [0.0716, 0.0481, 0.0224, 0.0483, 0.3751]
         >>> bool(out.is_linear)

@@ -126,8 +126,8 @@ def _find_fixed(room: FloatArray, constants: FloatArray) -> None:
     for n in range(PART):
         delta = row_of(room, DELTA, n)
         s = 2.0 * delta * delta - 1.0
-        found = spline_polynomials(constants, 0, (1.0,), s, _CONSTANTS, CONSTANT_HEIGHTS)
-        into_line(room, PUT * BLOCK + _WITH_SLOPES * n, found)
+        result = spline_polynomials(constants, 0, (1.0,), s, _CONSTANTS, CONSTANT_HEIGHTS)
+        into_line(room, PUT * BLOCK + _WITH_SLOPES * n, result)
     turn_lines(room, _WITH_SLOPES, FOUND)
     for n in range(PART):
         speed, slip = row_of(room, V0, n), row_of(room, U0, n)
@@ -138,10 +138,10 @@ def _find_fixed(room: FloatArray, constants: FloatArray) -> None:
         into_row(room, V0, n, speed / slip)
         into_row(room, A0, n, rim / slip)
         into_row(room, ONE_V, n, slip / speed)
-        delta, found = row_of(room, DELTA, n), rows_of(room, FOUND, _WITH_SLOPES, n)
+        delta, result = row_of(room, DELTA, n), rows_of(room, FOUND, _WITH_SLOPES, n)
         kappa, h0, k = row_of(room, _KAPPA, n), row_of(room, _H0, n), 4.0 * delta
-        c0, c0_tilt, k_tilt = found[0], k * found[4], k * found[5]
-        h0_tilt = found[2] + delta * (k * found[6])
+        c0, c0_tilt, k_tilt = result[0], k * result[4], k * result[5]
+        h0_tilt = result[2] + delta * (k * result[6])
         # 1/A, 1/B and h₁, and derivatives by δ of A, B and h₁
         d2 = delta * delta
         below, inverse = 36.0 + 4.0 * d2, 1.0 / (36.0 + 4.0 * d2)
@@ -168,14 +168,14 @@ def find_facts(
     find_functions(room, states, rates, states[:0], cells)
     for n in range(PART):
         c, s, delta = row_of(room, V0, n), row_of(room, A0, n), row_of(room, DELTA, n)
-        share, found = row_of(room, SHARE, n), rows_of(room, FOUND, SECTION_WIDTH, n)
+        share, result = row_of(room, SHARE, n), rows_of(room, FOUND, SECTION_WIDTH, n)
         is_fast = row_of(room, FAST, n) > 0.0
         fixed = rows_of(room, FIXED, FIXED_ROWS, n)
         log_near, log_far, _ = logs_of(max(share, TINY), 2.0 - share, 1.0)
-        coefficients = coefficients_at(is_fast, share, log_near, log_far, delta, fixed, found)
-        gap, below = pole_at(is_fast, share, fixed, found)
+        coefficients = coefficients_at(is_fast, share, log_near, log_far, delta, fixed, result)
+        gap, below = pole_at(is_fast, share, fixed, result)
         rate, u0 = gap * (-fixed[KAPPA] / below), 1.0 / (c * s)
-        deflection = turn_rate(rate, c, s, delta, 1.0 / found[1], found)
+        deflection = turn_rate(rate, c, s, delta, 1.0 / result[1], result)
         into_rows(room, U0, n, (u0, u0 / rate, below * -fixed[ONE_KAPPA]))
         far = 1.0 if abs(gap) > _NEAR_LIMIT else 0.0
         here = (
@@ -186,7 +186,7 @@ def find_facts(
         speed, spin = row_of(room, UNIT, n), row_of(room, SPIN, n)
         east, north = direction(row_of(room, EAST, n), row_of(room, NORTH, n), speed)
         around = 1.0 if spin >= 0.0 else -1.0
-        own = stop_by_speeds(c, s, 1.0, c, s, delta, of_stop(found, delta))
+        own = stop_by_speeds(c, s, 1.0, c, s, delta, of_stop(result, delta))
         x, y = rotated(own[4], around * own[8], east, north)
         x1, y1 = rotated(c * own[6] - s * own[5], around * (c * own[10] - s * own[9]), east, north)
         x4, y4 = rotated(own[7], around * own[11], east, north)

@@ -174,7 +174,7 @@ class LaunchFamily:
         it may have been printed.
         """
         u, levels = self.u, self.values[:, quantity]
-        found: list[tuple[Indices, Any, Any]] = [(np.empty(0, np.int64), 0.0, 0.0)]
+        result: list[tuple[Indices, Any, Any]] = [(np.empty(0, np.int64), 0.0, 0.0)]
         finite = np.isfinite(values)
         values = np.where(finite, values, 0.0)
         least, largest = values.min(initial=math.inf), values.max(initial=-math.inf)
@@ -184,9 +184,9 @@ class LaunchFamily:
             past = values - SLIDE
             behind = past * (levels[0] - values)
             slides = (np.abs(past) <= _SLACK) | ((np.abs(past) <= _ROUNDED) & (behind < 0.0))
-            found.append((np.flatnonzero(finite & slides), -math.inf, -math.inf))
+            result.append((np.flatnonzero(finite & slides), -math.inf, -math.inf))
             between = np.flatnonzero(finite & ~slides & (behind > 0.0))
-            found.append((between, -LARGEST_U, u[0]))
+            result.append((between, -LARGEST_U, u[0]))
         for first, last in pairwise(self._turns(levels)):
             bottom, top = sorted((levels[first], levels[last]))
             if top < least or bottom > largest:
@@ -197,15 +197,15 @@ class LaunchFamily:
             at = np.searchsorted(own, sign * values, side="left" if up else "right")
             inside = np.flatnonzero(finite & (at > 0) & (at < own.size))
             after = first + at[inside]
-            found.append((inside, u[after - 1], u[after]))
+            result.append((inside, u[after - 1], u[after]))
         for turn in self._turns(levels)[1:-1]:
             error = levels[turn] - values
             beyond = error * (levels[turn] - levels[turn - 1]) <= 0.0
             short = np.flatnonzero(finite & beyond & (np.abs(error) <= _ROUNDED))
-            found.append((short, u[turn], u[turn]))
-        which = np.concatenate([one for one, _, _ in found])
+            result.append((short, u[turn], u[turn]))
+        which = np.concatenate([one for one, _, _ in result])
         low, high = (
-            np.concatenate([np.broadcast_to(row[end], row[0].shape) for row in found])
+            np.concatenate([np.broadcast_to(row[end], row[0].shape) for row in result])
             for end in (1, 2)
         )
         return which, low, high
@@ -367,16 +367,16 @@ def _pieces(
     )
     known = np.concatenate([level, slope * width[:, None]])
     blind = ~np.isfinite(slope[1]).all(axis=1)
-    found = np.zeros((POWERS, width.size, LOGS))
+    result = np.zeros((POWERS, width.size, LOGS))
     for rows, chosen in (([0, 1, 2, 3, 4, 5], ~blind), ([0, 1, 2, 3, 5], blind)):
         at = _POWERS_AT[rows][:, : len(rows)]
         one = known[rows][:, chosen]
-        found[: len(rows), chosen] = np.linalg.solve(at, one.reshape(len(rows), -1)).reshape(
+        result[: len(rows), chosen] = np.linalg.solve(at, one.reshape(len(rows), -1)).reshape(
             one.shape
         )
     pieces = np.empty((width.size, PIECE))
     pieces[:, 0], pieces[:, 1] = u[:-1], 1.0 / width
-    pieces[:, 2:] = found.transpose(1, 2, 0).reshape(width.size, -1)
+    pieces[:, 2:] = result.transpose(1, 2, 0).reshape(width.size, -1)
     fit = np.ones(width.size, bool)
     for share in (0.25, 0.75):
         there = u[:-1][blind] + share * width[blind]

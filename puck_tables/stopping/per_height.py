@@ -330,14 +330,14 @@ class SolverPerHeight:
     @property
     def selections(self) -> tuple[Selection, ...]:
         """What was selected for the tolerance: for plain heights, and for the others."""
-        found = [] if self._plain_selection is None else [self._plain_selection]
+        result = [] if self._plain_selection is None else [self._plain_selection]
         for looked in (True, False):
             solvers = [
                 one for one in self._sections.values() if (one.method is Method.LOOK_UP) == looked
             ]
             if solvers:
-                found.append(self._of_sections(solvers))
-        return tuple(found)
+                result.append(self._of_sections(solvers))
+        return tuple(result)
 
     def _of_sections(self, solvers: list[StopSolver]) -> Selection:
         """What was selected for heights that are not plain, and their largest error."""
@@ -416,20 +416,20 @@ def integration_of(body: UnitPuck, tol: float, method: Method | None = None) -> 
             source.coarser(setting.accuracy).coefficients,
         )
         finer = stepping.finer(2.0, 0.01, FINEST_LOCAL)
-        found, by_finer, by_coarse = (
+        result, by_finer, by_coarse = (
             Integration(NO_COLUMNS, *how, selection.method, longest=body.longest)
             for how in ((cut, stepping), (cut, finer), (coarse, stepping))
         )
-        answer = found.all(probes)[0][:3]
+        answer = result.all(probes)[0][:3]
         steps, friction = (
             2.0 * float(np.abs(answer - other.all(probes)[0][:3]).max())
             for other in (by_finer, by_coarse)
         )
-        return found, ErrorEstimate(steps + 2.0 * unseen_tail(stepping), friction / 8.0)
+        return result, ErrorEstimate(steps + 2.0 * unseen_tail(stepping), friction / 8.0)
 
     finer = partial(refined, tol=tol, friction=source.next_accuracy)
-    found, error, _ = close_enough(source.first(selection), attempt, finer, tol, "these pucks")
-    return replace(found, error=error.total)
+    result, error, _ = close_enough(source.first(selection), attempt, finer, tol, "these pucks")
+    return replace(result, error=error.total)
 
 
 def _probes(body: UnitPuck) -> FloatArray:

@@ -25,19 +25,19 @@ def all_looked_up(
 ) -> FloatArray:  # fmt: skip
     """States (6, n) of plain launches, with headings from x; derivatives into ``slopes``."""
     if which.size == launches.size == 1 and moments.size <= CHUNK and slopes is None:
-        found = table.states_of_one(launches, moments)
-        if found is not None:
-            heading = found[HEADING]
+        result = table.states_of_one(launches, moments)
+        if result is not None:
+            heading = result[HEADING]
             heading += directions(launches.vx, launches.vy)
-            return found
+            return result
     if which.size:
         pucks = table.pucks(launches, threads)
-        found = looked_up(table, pucks, which, moments, threads)
+        result = looked_up(table, pucks, which, moments, threads)
         if slopes is not None:
-            fill_state_slopes(table, pucks, which, moments, found, slopes, threads)
+            fill_state_slopes(table, pucks, which, moments, result, slopes, threads)
         turned = directions(pucks[0], pucks[1])
-        found[HEADING] += turned[which] if which.size > 1 else turned
-        return found
+        result[HEADING] += turned[which] if which.size > 1 else turned
+        return result
     from puck_tables.stopping.state_lookup import PUCK_ROWS, fill_states_at
 
     out, splines, bad = np.empty((STATE_ROWS, moments.size)), table.state_coefficients, [0]
@@ -59,20 +59,20 @@ def all_looked_up(
 
 def fill_state_slopes(
     table: StopTable, pucks: FloatArray, which: npt.NDArray[np.int64], moments: FloatArray,
-    found: FloatArray, out: FloatArray, threads: int | None = None,
+    result: FloatArray, out: FloatArray, threads: int | None = None,
 ) -> None:  # fmt: skip
-    """Derivatives of the states ``found`` (6, n) of plain ``pucks`` (20, m) into ``out`` (n, 6, 7).
+    """Derivatives of states ``result`` (6, n) of plain ``pucks`` (20, m) into ``out`` (n, 6, 7).
 
     Those that :func:`puck_tables.stopping.state_values.looked_up` found at ``moments`` (n,);
     ``which``: (n,), (1,), or (0,), where each puck has one moment.
     """
-    seen = np.ascontiguousarray(found)
+    seen = np.ascontiguousarray(result)
     _fill_slopes(table, pucks, which, moments, seen, out, 0, moments.size, threads)
 
 
 def _fill_slopes(
     table: StopTable, pucks: FloatArray, which: npt.NDArray[np.int64], moments: FloatArray,
-    found: FloatArray, out: FloatArray, begin: int, end: int, threads: int | None,
+    result: FloatArray, out: FloatArray, begin: int, end: int, threads: int | None,
 ) -> None:  # fmt: skip
     """The same from ``begin`` to ``end``, of which the first puck is where ``which`` is (0,)."""
     from puck_tables.stopping.state_jacobian import fill_state_jacobians
@@ -81,7 +81,7 @@ def _fill_slopes(
     generic, pure, slopes = pucks, _pure(pucks), table.slopes
     if pure is not None:
         moments, out = moments[begin:end], out[begin:end]
-        generic, found = _away_from_pure(table, pucks, pure, which, moments, found[:, begin:end])
+        generic, result = _away_from_pure(table, pucks, pure, which, moments, result[:, begin:end])
         begin, end = 0, moments.size
     if which.size == end - begin == 1 and pucks.shape[1] == 1:
         which = which[:0]  # a moment of its own, of which all is found in one call
@@ -102,7 +102,7 @@ def _fill_slopes(
 
     def work(start: int, stop: int) -> None:
         fill_state_jacobians(
-            *known, facts, which, moments, found, begin + start, begin + stop, slopes.states,
+            *known, facts, which, moments, result, begin + start, begin + stop, slopes.states,
             slopes.rates, section, streamed, out,
         )  # fmt: skip
 
@@ -122,7 +122,7 @@ def _pure(pucks: FloatArray) -> npt.NDArray[np.bool_] | None:
 
 def _away_from_pure(
     table: StopTable, pucks: FloatArray, pure: npt.NDArray[np.bool_],
-    which: npt.NDArray[np.int64], moments: FloatArray, found: FloatArray,
+    which: npt.NDArray[np.int64], moments: FloatArray, result: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:  # fmt: skip
     """What is known of ``pucks`` and their states, of a neighbour where a motion is pure.
 
@@ -133,7 +133,7 @@ def _away_from_pure(
     beside = np.ones((LAUNCH_COLUMNS, int(pure.sum())))
     beside[0], beside[1] = np.maximum((speed / unit)[pure], _TINY), 0.0
     beside[2], beside[3] = np.maximum((rim / unit)[pure], _TINY), pucks[3, pure]
-    generic, seen = pucks.copy(), found.copy()
+    generic, seen = pucks.copy(), result.copy()
     generic[:, pure] = table.pucks(launches_in(beside))
     each = np.broadcast_to(which, moments.shape) if which.size else np.arange(moments.size)
     here = np.flatnonzero(pure[each])

@@ -72,14 +72,14 @@ class Population:
         if self.dims:
             places = np.unravel_index(np.arange(start, stop), self.shape)
             index = dict(zip(self.dims, places, strict=True))
-        found: dict[str, Any] = {}
+        result: dict[str, Any] = {}
         for name, array in self.values.items():
             over = self.over[name]
-            found[name] = array[tuple(index[dim] for dim in over)] if over else array[()]
+            result[name] = array[tuple(index[dim] for dim in over)] if over else array[()]
         for name, spread in self.spreads.items():
-            found[name] = spread.drawn(name, self.seed, start, stop)
-            refuse_outside(name, found[name], f"samples of {name}")
-        return found
+            result[name] = spread.drawn(name, self.seed, start, stop)
+            refuse_outside(name, result[name], f"samples of {name}")
+        return result
 
     def of_pucks(self) -> Population:
         """What of them determines the puck, over as few dimensions as it needs."""
@@ -155,7 +155,7 @@ def ranged(given: Mapping[str, Any], laws: Any) -> Population:
     >>> ranged({"spin": [0.0, 1.0], "speed": 1.0}, "uniform").axes
     {'launch_spin': array([0., 1.])}
     """
-    values, over, found = _values(given, laws)
+    values, over, result = _values(given, laws)
     for name, array in values.items():
         if array.ndim > 1 or array.size == 0:
             raise InputError(f"{name} must be a number or a list of numbers")
@@ -164,7 +164,7 @@ def ranged(given: Mapping[str, Any], laws: Any) -> Population:
             over[name] = (COLUMN[name],) if values[name].ndim else ()
     dims = tuple(COLUMN[name] for name in COLUMN if over.get(name))
     shape = tuple(values[_ARGUMENT[dim]].size for dim in dims)
-    return Population(dims, shape, values, over, found)
+    return Population(dims, shape, values, over, result)
 
 
 def drawn(given: Mapping[str, Any], laws: Any, count: int, seed: int) -> Population:
@@ -182,13 +182,13 @@ def drawn(given: Mapping[str, Any], laws: Any, count: int, seed: int) -> Populat
             "normal:5:0.2"
         )
     others = {name: one for name, one in given.items() if name not in spreads}
-    values, over, found = _values(others, laws)
+    values, over, result = _values(others, laws)
     for name, array in values.items():
         if array.ndim:
             raise InputError(f"{name} must be one number or a spread: samples have no ranges")
         over[name] = ()
     refuse_clashes([*values, *spreads])
-    return Population((SAMPLE,), (count,), values, over, found, spreads, seed)
+    return Population((SAMPLE,), (count,), values, over, result, spreads, seed)
 
 
 def labelled(launches: Any, given: Mapping[str, Any], laws: Any) -> Population:
@@ -223,7 +223,7 @@ def labelled(launches: Any, given: Mapping[str, Any], laws: Any) -> Population:
             raise InputError(f"{name} of the dataset is in {unit}: it must be in {expected}")
     if not numbers or 0 in sizes.values():
         raise InputError(f"the dataset has no launches: give it variables of {known}")
-    values, over, found = _values({**given, **numbers}, laws)
+    values, over, result = _values({**given, **numbers}, laws)
     for name, array in values.items():
         if name in numbers:
             over[name] = tuple(map(str, arrays[COLUMN[name]].dims))
@@ -231,7 +231,7 @@ def labelled(launches: Any, given: Mapping[str, Any], laws: Any) -> Population:
             raise InputError(f"{name} must be one number beside a dataset: put lists into it")
         else:
             over[name] = ()
-    return Population(tuple(sizes), tuple(sizes.values()), values, over, found)
+    return Population(tuple(sizes), tuple(sizes.values()), values, over, result)
 
 
 def _values(
@@ -239,21 +239,21 @@ def _values(
 ) -> tuple[dict[str, FloatArray], dict[str, tuple[str, ...]], tuple[str | Law, ...]]:
     refuse_clashes(given)
     values: dict[str, FloatArray] = {}
-    found: tuple[Any, ...] = (laws,)
+    result: tuple[Any, ...] = (laws,)
     if isinstance(laws, list | tuple | np.ndarray):
-        found = tuple(laws)
-        if not 1 <= len(found) <= MOST_LAWS:
+        result = tuple(laws)
+        if not 1 <= len(result) <= MOST_LAWS:
             raise InputError(
-                f"a list of {len(found)} pressure laws: give 1 to {MOST_LAWS}, each is a kind of "
+                f"a list of {len(result)} pressure laws: give 1 to {MOST_LAWS}, each is a kind of "
                 "puck of its own that takes about a second to prepare"
             )
-        values["pressure"] = np.arange(float(len(found)))
+        values["pressure"] = np.arange(float(len(result)))
     for name, value in given.items():
         if isinstance(value, Spread):
             raise InputError(f"{name} is a spread: give it to sample, not to sweep")
         values[name] = finite_array(name, value, COLUMNS[COLUMN[name]].unit)
         refuse_outside(name, values[name], name)
-    return values, {"pressure": ()}, found
+    return values, {"pressure": ()}, result
 
 
 def refuse_clashes(names: Any) -> None:

@@ -239,7 +239,7 @@ def look_up_launch(
 @inlined
 def fill_state(
     launch: FloatArray, time: float, side: int, double_share: float,
-    left: float, log_left: float, found: FloatArray, out: FloatArray,
+    left: float, log_left: float, result: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
     """One state from what was found at its place; side −1: at rest, the launch, or φ constant."""
     known = launch[LAUNCH_COLUMNS:]
@@ -254,7 +254,7 @@ def fill_state(
         out[HEADING] = known[TURN] if left == 0.0 else 0.0
         return
     around = 1.0 if spin > 0.0 else -1.0
-    fall = left * known[T_LAUNCH] / found[0]
+    fall = left * known[T_LAUNCH] / result[0]
     slip = known[SLIP] * fall
     small, large = 0.5 * double_share, 1.0 - 0.5 * double_share
     norm = slip / math.sqrt(small * small + large * large)
@@ -262,19 +262,19 @@ def fill_state(
     speed, rim = norm * speed, norm * rim
     heading = 0.0
     if delta > 0.0:
-        regular = _heading(side, double_share, delta, known[TURNING], found[4])
+        regular = _heading(side, double_share, delta, known[TURNING], result[4])
         heading = around * (known[TURNING] * math.log(fall) + regular - known[HEADING0])
     cosine, sine = math.cos(heading), math.sin(heading)
     # the way that is left, along and across the new heading
-    along = found[1] * slip / decel * speed
-    across = around * delta * found[2] * rim / decel * speed
+    along = result[1] * slip / decel * speed
+    across = around * delta * result[2] * rim / decel * speed
     east, north = vx / known[SPEED0], vy / known[SPEED0]
     ahead = along * cosine - across * sine
     aside = along * sine + across * cosine
     out[PUCK_X] = x - (ahead * east - aside * north)
     out[PUCK_Y] = y - (ahead * north + aside * east)
     out[HEADING] = heading
-    out[ORIENTATION] = body - around * found[3] * (slip / decel) * (rim / radius)
+    out[ORIENTATION] = body - around * result[3] * (slip / decel) * (rim / radius)
     out[SPEED], out[SPIN] = speed, around * rim / radius
 
 
@@ -294,24 +294,24 @@ def place_in_time(puck: FloatArray, time: float) -> tuple[int, float, float, flo
 @inlined
 def functions_at(
     stops: FloatArray, curve: FloatArray, side: int, double_share: float, s: float,
-    sums: FloatArray, found: FloatArray,
+    sums: FloatArray, result: FloatArray,
 ) -> None:  # fmt: skip
-    """T, along, across, body angle, S/δ into ``found`` (5,)."""
+    """T, along, across, body angle, S/δ into ``result`` (5,)."""
     xi = place_of_share(double_share)
-    found[0], found[1], found[2] = _stop_functions(stops, side, xi, s, sums)
+    result[0], result[1], result[2] = _stop_functions(stops, side, xi, s, sums)
     _similarity_sums(curve, side, xi, sums, 2)
-    found[3], found[4] = _polynomial(sums, BODY_SUM, s), _polynomial(sums, TURN_SUM, s)
+    result[3], result[4] = _polynomial(sums, BODY_SUM, s), _polynomial(sums, TURN_SUM, s)
 
 
 @inlined
 def look_up_state(
     puck: FloatArray, time: float, stops: FloatArray, curve: FloatArray, time_inverse: FloatArray,
-    sums: FloatArray, found: FloatArray, out: FloatArray,
+    sums: FloatArray, result: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
-    """One of :func:`fill_states`; ``sums`` (40,) and ``found`` (5,) are room to work."""
+    """One of :func:`fill_states`; ``sums`` (40,) and ``result`` (5,) are room to work."""
     side, xi, y, left, log = place_in_time(puck, time)
     if side >= 0:
         s = 2.0 * puck[3] * puck[3] - 1.0
         y = min(y * inverse_sum(time_inverse, side, xi, s, sums), 1.0)
-        functions_at(stops, curve, side, y, s, sums, found)
-    fill_state(puck, time, side, y, left, log, found, out)
+        functions_at(stops, curve, side, y, s, sums, result)
+    fill_state(puck, time, side, y, left, log, result, out)

@@ -80,8 +80,8 @@ def fill_section(delta: float, states: FloatArray, rates: FloatArray, out: Float
     of_state, of_rate, flat = states.reshape(-1), rates.reshape(-1), out.reshape(-1)
     for row in range(flat.size // SECTION_WIDTH):
         patience(1)
-        found = _functions(of_state, of_rate, row, (1.0,), delta)
-        into_line(flat, SECTION_WIDTH * row, found)
+        result = _functions(of_state, of_rate, row, (1.0,), delta)
+        into_line(flat, SECTION_WIDTH * row, result)
 
 
 @inlined
@@ -100,8 +100,8 @@ def _each_by_itself(
     """The functions of places from the table."""
     for n in range(begin, end):
         cell, weights = int(row_of(room, _FIRST, n)), basis(row_of(room, _INSIDE, n))
-        found = _functions(states, rates, cell, weights, row_of(room, DELTA, n))
-        into_line(room, PUT * BLOCK + SECTION_WIDTH * n, found)
+        result = _functions(states, rates, cell, weights, row_of(room, DELTA, n))
+        into_line(room, PUT * BLOCK + SECTION_WIDTH * n, result)
 
 
 @inlined
@@ -117,8 +117,8 @@ def _of_one_height(
         _each_by_itself(room, states, rates, begin, end)
         return
     for row in range(count):
-        found = _functions(states, rates, near + row, (1.0,), row_of(room, DELTA, begin))
-        into_line(room, _NEAR * BLOCK + SECTION_WIDTH * row, found)
+        result = _functions(states, rates, near + row, (1.0,), row_of(room, DELTA, begin))
+        into_line(room, _NEAR * BLOCK + SECTION_WIDTH * row, result)
     for n in range(begin, end):
         cell, weights = int(row_of(room, _FIRST, n)), basis(row_of(room, _INSIDE, n))
         first = _NEAR * BLOCK + SECTION_WIDTH * (cell - near)
@@ -143,8 +143,8 @@ def find_functions(
     if section.size:
         for n in range(PART):
             cell, weights = int(row_of(room, _FIRST, n)), basis(row_of(room, _INSIDE, n))
-            found = weighted_rows(section, SECTION_WIDTH * cell, weights, SECTION_WIDTH)
-            into_line(room, PUT * BLOCK + SECTION_WIDTH * n, found)
+            result = weighted_rows(section, SECTION_WIDTH * cell, weights, SECTION_WIDTH)
+            into_line(room, PUT * BLOCK + SECTION_WIDTH * n, result)
         turn_lines(room, SECTION_WIDTH, FOUND)
         return
     alike = 0
@@ -162,14 +162,14 @@ def find_functions(
 
 
 @inlined
-def of_stop(found: Numbers, delta: float) -> Numbers:
+def of_stop(result: Numbers, delta: float) -> Numbers:
     """What :func:`puck_tables.stopping.stop_jacobian.stop_by_speeds` reads; of the path nothing."""
     k = 4.0 * delta
     return (
-        found[_T], found[_ALONG], found[_ACROSS], found[_BODY], 0.0,
-        found[_D + _T], found[_D + _ALONG], found[_D + _ACROSS], found[_D + _BODY], 0.0,
-        k * found[_BY_S + _T], k * found[_BY_S + _ALONG], k * found[_BY_S + _ACROSS],
-        k * found[_BY_S + _BODY], 0.0,
+        result[_T], result[_ALONG], result[_ACROSS], result[_BODY], 0.0,
+        result[_D + _T], result[_D + _ALONG], result[_D + _ACROSS], result[_D + _BODY], 0.0,
+        k * result[_BY_S + _T], k * result[_BY_S + _ALONG], k * result[_BY_S + _ACROSS],
+        k * result[_BY_S + _BODY], 0.0,
     )  # fmt: skip
 
 

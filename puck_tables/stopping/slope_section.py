@@ -100,8 +100,8 @@ def stop_slopes_of(body: UnitPuck, launches: FloatArray, threads: int | None = N
     --------
     >>> from puck_tables.motion.body import body_of
     >>> launches = np.array([[1.0], [0.0], [0.0], [2.0], [1.0], [1.0]])
-    >>> found = stop_slopes_of(body_of("uniform", 2.0, 0.5**0.5), launches)
-    >>> found[0, 1].round(6).tolist()  # x of a slide: v²/2J
+    >>> result = stop_slopes_of(body_of("uniform", 2.0, 0.5**0.5), launches)
+    >>> result[0, 1].round(6).tolist()  # x of a slide: v²/2J
     [1.0, 0.0, 0.0, 0.0, -0.5, 0.0]
     """
     from puck_tables.stopping.section_lookup import fill_section_jacobians

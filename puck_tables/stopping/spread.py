@@ -98,10 +98,10 @@ class ResultSpread:
         if self.sampled_covariance is None:
             return "linear, by the Jacobian; samples=10000 or so would say whether to trust it"
         good = int(np.count_nonzero(self.is_linear))
-        off = float(np.abs(self.ratio - 1.0).max())
+        error = float(np.abs(self.ratio - 1.0).max())
         return (
             f"linear, by the Jacobian, and by {self.samples} samples, whose deviations differ by "
-            f"at most {100.0 * off:.3g} %: the linear one is to be trusted for {good} of "
+            f"at most {100.0 * error:.3g} %: the linear one is to be trusted for {good} of "
             f"{self.is_linear.size} launches"
         )
 
@@ -161,8 +161,8 @@ def spread_of(
             tried = np.repeat(arguments[:, n : n + 1], part, axis=1)
             tried[which] += roots[n] @ drawn.standard_normal((len(which), part))
             _refuse_outside(tried, columns, highest)
-            off = again(tried) - middle
-            total, squares, done = total + off.sum(axis=1), squares + off @ off.T, done + part
+            error = again(tried) - middle
+            total, squares, done = total + error.sum(axis=1), squares + error @ error.T, done + part
         shift[n] = total / samples
         sampled[n] = (squares - samples * np.outer(shift[n], shift[n])) / (samples - 1)
     return ResultSpread(

@@ -124,27 +124,27 @@ def _find_rates(room: FloatArray) -> None:
     """How fast Q, u and the heading change where the states are."""
     for n in range(PART):
         is_fast, share = row_of(room, FAST, n) > 0.0, row_of(room, SHARE, n)
-        fixed, found = rows_of(room, FIXED, FIXED_ROWS, n), rows_of(room, FOUND, SECTION_WIDTH, n)
+        fixed, result = rows_of(room, FIXED, FIXED_ROWS, n), rows_of(room, FOUND, SECTION_WIDTH, n)
         left, delta = row_of(room, LEFT, n), row_of(room, DELTA, n)
         small, large = 0.5 * share, 1.0 - 0.5 * share
         norm = 1.0 / math.sqrt(small * small + large * large)
         cosine, sine = norm * (small if is_fast else large), norm * (large if is_fast else small)
-        t, to_go = found[_T], (left if left > 0.0 else 1.0) * row_of(room, _T0, n)
-        t_slope = sine * (cosine * cosine) * found[_T_SLOPE]
-        gap, below = pole_at(is_fast, share, fixed, found)
+        t, to_go = result[_T], (left if left > 0.0 else 1.0) * row_of(room, _T0, n)
+        t_slope = sine * (cosine * cosine) * result[_T_SLOPE]
+        gap, below = pole_at(is_fast, share, fixed, result)
         # all that is divided by in one division: T − ρ T_u is this over what ρ has below it
         way = t * below + fixed[KAPPA] * (gap * t_slope)
         one, other = to_go * t, below * way
-        inverse = 1.0 / ((one * found[_ALONG]) * other)
+        inverse = 1.0 / ((one * result[_ALONG]) * other)
         one_along = inverse * (one * other)
-        inverse *= found[_ALONG]
+        inverse *= result[_ALONG]
         one_below, one_way = inverse * (one * way), below * (below * (inverse * one))
         inverse *= other
         pole = -fixed[KAPPA] * one_below
         rate = gap * pole
         rates = (
             cosine, sine, to_go * (to_go * inverse), t * (t * inverse), t_slope, one_way, gap,
-            pole, turn_rate(rate, cosine, sine, delta, one_along, found),
+            pole, turn_rate(rate, cosine, sine, delta, one_along, result),
         )  # fmt: skip
         into_rows(room, _RATES, n, rates)
 
@@ -230,7 +230,7 @@ def _change(
 @inlined
 def _state_slopes(
     left: float, delta: float, around: float, launch_row: Numbers, h0: float, here: Numbers,
-    stop: Numbers, found: Numbers, moving: Numbers, coefficients: Numbers, directions: Numbers,
+    stop: Numbers, result: Numbers, moving: Numbers, coefficients: Numbers, directions: Numbers,
 ) -> Numbers:  # fmt: skip
     """A state and its derivatives in natural units, along x and y, six rows of six.
 
@@ -240,7 +240,7 @@ def _state_slopes(
     speed0, rim0, t0, one_speed, u0, begun, _ = launch_row
     cosine, sine, slip, one_slip, t_slope, one_way, gap, pole, deflection = moving
     k = 1.0 if left > 0.0 else 0.0  # at rest that of the stop alone
-    from_stop, rate = of_stop(found, delta), gap * pole
+    from_stop, rate = of_stop(result, delta), gap * pole
     speed, rim = slip * cosine, slip * sine
     own = stop_by_speeds(speed, rim, slip, cosine, sine, delta, from_stop)
     ex, ey = directions

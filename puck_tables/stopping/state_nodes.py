@@ -62,23 +62,23 @@ class InverseSolution:
         place = np.broadcast_to(nodes[None, :, None], shape).copy()
         low, high = np.zeros(shape), np.ones(shape)
         before, off_before = np.full(shape, np.nan), np.full(shape, np.nan)
-        found = np.zeros(shape, np.bool_)
+        result = np.zeros(shape, np.bool_)
         for _ in range(_LOOKS):
-            off = self._log_y(place, with_time) - target
-            low, high = np.where(off < 0.0, place, low), np.where(off < 0.0, high, place)
+            error = self._log_y(place, with_time) - target
+            low, high = np.where(error < 0.0, place, low), np.where(error < 0.0, high, place)
             with np.errstate(divide="ignore", invalid="ignore"):
-                slope = (off - off_before) / (place - before)
+                slope = (error - off_before) / (place - before)
                 usual = 8.0 * (1.0 - place) / (place * (2.0 - place))  # were the ratio a constant
                 slope = np.where(np.isfinite(slope), slope, usual)
-                following = place - off / slope
+                following = place - error / slope
             inside = (slope > 0.0) & (low < following) & (following < high)
             following = np.where(inside, following, 0.5 * (low + high))
-            found |= np.abs(off) <= _ROUNDING * (1.0 - target)
-            found |= ~((low < following) & (following < high))
-            if found.all():
+            result |= np.abs(error) <= _ROUNDING * (1.0 - target)
+            result |= ~((low < following) & (following < high))
+            if result.all():
                 break
-            before, off_before = place, np.where(found, off_before, off)
-            place = np.where(found, place, following)
+            before, off_before = place, np.where(result, off_before, error)
+            place = np.where(result, place, following)
         ratios = np.ones((2, self.cells + 1, HEIGHTS))
         ratios[:, :-1] = np.exp(4.0 * np.log(place * (2.0 - place)) - target)
         return ratios
@@ -98,7 +98,7 @@ class InverseSolution:
         fast = np.where(large, log_n + np.log1p(2.0 * power), moderate)
         return np.asarray(np.where(_FAST, -self.fast * fast, -self.slow * log_n) / self.kappa)
 
-    def orbit(self, with_time: bool) -> FloatArray:
+    def splined(self, with_time: bool) -> FloatArray:
         """2w/y, T, along, across, body angle, and the heading's regular part at the nodes.
 
         (2, cells + 1, heights, 6).

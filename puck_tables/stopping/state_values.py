@@ -35,11 +35,11 @@ def refuse_times(moments: FloatArray) -> None:
 
 def directions(vx: FloatArray, vy: FloatArray) -> FloatArray:
     """Of launches, 0 for those without speed."""
-    found: FloatArray = np.arctan2(vy, vx)
+    result: FloatArray = np.arctan2(vy, vx)
     # only where vx is zero may both be, or minus zero
     if (vx.item() == 0.0) if vx.size == 1 else not vx.all():
-        found[(vx == 0.0) & (vy == 0.0)] = 0.0
-    return found
+        result[(vx == 0.0) & (vy == 0.0)] = 0.0
+    return result
 
 
 def looked_up_launches(

@@ -71,7 +71,7 @@ class States(Differentiated, Result):
     radius: FloatArray
     explanation: str = ""
     _jacobian: FloatArray | None = None
-    _asked: tuple[FloatArray, npt.NDArray[np.int64]] | None = None  # launches (6, m), and which
+    _wanted: tuple[FloatArray, npt.NDArray[np.int64]] | None = None  # launches (6, m), and which
     _table: StopTable | None = None
     _kind: StopSettings | None = None
 
@@ -134,8 +134,8 @@ class States(Differentiated, Result):
 
     @property
     def _arguments(self) -> FloatArray:  # type: ignore[override]
-        assert self._asked is not None
-        launched, which = self._asked
+        assert self._wanted is not None
+        launched, which = self._wanted
         each = _each(which, self.time.size)
         return np.concatenate([launched[:, each], self.time.reshape(1, -1)])
 
@@ -249,11 +249,11 @@ def states(
 
     Examples
     --------
-    >>> found = states((1.0, 0.0), 5.0, [2.0, 0.0, 99.0])
-    >>> found.x.round(6).tolist(), found.spin.round(6).tolist()
+    >>> result = states((1.0, 0.0), 5.0, [2.0, 0.0, 99.0])
+    >>> result.x.round(6).tolist(), result.spin.round(6).tolist()
     ([1.590682, 0.0, 2.213952], [2.426862, 5.0, 0.0])
-    >>> found = states((1.0, 0.0), 5.0, 2.0, jacobian=True)
-    >>> float(found.derivative("x", "delta").round(6))
+    >>> result = states((1.0, 0.0), 5.0, 2.0, jacobian=True)
+    >>> float(result.derivative("x", "delta").round(6))
     0.029301
     """
     checked_threads(threads)

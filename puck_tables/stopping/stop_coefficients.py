@@ -44,8 +44,8 @@ class StopCoefficients(Table):
     @cached_property
     def stop_coefficients(self) -> FloatArray:
         """T, along, across as the kernels of curve_lookup read them."""
-        found = by_power(self._sides([0, 1, 2]), STOP_POWERS)
-        return in_rows(found, STOP_ROW, power_first=True)
+        result = by_power(self._sides([0, 1, 2]), STOP_POWERS)
+        return in_rows(result, STOP_ROW, power_first=True)
 
     @cached_property
     def similarity_coefficients(self) -> FloatArray:

@@ -87,7 +87,7 @@ def stop_functions(slopes: FloatArray, first: int, weights: Numbers, delta: floa
 
 @inlined
 def stop_by_speeds(
-    speed: float, rim: float, slip: float, c: float, s: float, delta: float, found: Numbers
+    speed: float, rim: float, slip: float, c: float, s: float, delta: float, result: Numbers
 ) -> Numbers:
     """Time, z/v, way and body angle and their derivatives by v, a ≥ 0 and δ, five rows of four.
 
@@ -95,11 +95,11 @@ def stop_by_speeds(
     first column holds z/v.
     """
     c2, sc2 = c * c, s * c * c
-    t, dt, t_tilt = found[T], found[D + T], found[BY_HEIGHT + T]
-    x, dx, x_tilt = found[ALONG], found[D + ALONG], found[BY_HEIGHT + ALONG]
-    y, dy, y_tilt = found[ACROSS], found[D + ACROSS], found[BY_HEIGHT + ACROSS]
-    w, dw, w_tilt = found[WAY], found[D + WAY], found[BY_HEIGHT + WAY]
-    b, db, b_tilt = found[TURNED], found[D + TURNED], found[BY_HEIGHT + TURNED]
+    t, dt, t_tilt = result[T], result[D + T], result[BY_HEIGHT + T]
+    x, dx, x_tilt = result[ALONG], result[D + ALONG], result[BY_HEIGHT + ALONG]
+    y, dy, y_tilt = result[ACROSS], result[D + ACROSS], result[BY_HEIGHT + ACROSS]
+    w, dw, w_tilt = result[WAY], result[D + WAY], result[BY_HEIGHT + WAY]
+    b, db, b_tilt = result[TURNED], result[D + TURNED], result[BY_HEIGHT + TURNED]
     return (
         slip * t, c * (t - s * dt), s * t + c2 * dt, slip * t_tilt,
         slip * x, slip * (x + c2 * (x - s * dx)), speed * (s * x + c2 * dx), speed * slip * x_tilt,
@@ -216,13 +216,13 @@ def fill_stop_jacobians(
         place_block(room, count, slopes, STOP_ROW)
         for n in range(count):
             first, tilt = int(row_of(room, FIRST, n)), row_of(room, DELTA, n)
-            found = stop_functions(flat, first, basis(row_of(room, INSIDE, n)), tilt)
-            into_rows(room, _FOUND, n, found)
+            result = stop_functions(flat, first, basis(row_of(room, INSIDE, n)), tilt)
+            into_rows(room, _FOUND, n, result)
         for n in range(count):
             speed, slip = row_of(room, SPEED, n), row_of(room, SLIP, n)
             c, s = speed / slip, abs(row_of(room, EDGE, n)) / slip
-            found = rows_of(room, _FOUND, STOP_FOUND, n)
-            own = stop_by_speeds(c, s, 1.0, c, s, row_of(room, DELTA, n), found)
+            result = rows_of(room, _FOUND, STOP_FOUND, n)
+            own = stop_by_speeds(c, s, 1.0, c, s, row_of(room, DELTA, n), result)
             placed = placed_stop(
                 row_of(room, VX, n), row_of(room, VY, n), row_of(room, SPIN, n),
                 row_of(room, DECEL, n), row_of(room, RADIUS, n), speed, slip, own,

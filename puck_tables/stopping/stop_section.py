@@ -162,12 +162,12 @@ class StopSection(SectionTable):
     @classmethod
     def fields(cls, attributes: dict[str, Any], arrays: dict[str, FloatArray]) -> dict[str, Any]:
         """Its puck, from a file."""
-        found = super().fields(attributes, arrays)
+        result = super().fields(attributes, arrays)
         gyration, error = attributes["gyration"], attributes["friction_error"]
-        body_of(found["law"], attributes["delta"], gyration)
+        body_of(result["law"], attributes["delta"], gyration)
         if not 0.0 <= error <= COARSEST:
             raise ValueError("its error of the friction is none")
-        return found | {"gyration": gyration, "friction_error": error}
+        return result | {"gyration": gyration, "friction_error": error}
 
 
 @lru_cache(maxsize=64)
@@ -186,8 +186,8 @@ def stop_section_for(body: UnitPuck, accuracy: float) -> StopSection:
 
     Examples
     --------
-    >>> found = stop_section_for(body_of("uniform", 2.0, 0.5**0.5), 1e-5)
-    >>> float(found.spline.at(np.array([0.5]))[0, 0].round(4)), found.error <= 1e-5
+    >>> result = stop_section_for(body_of("uniform", 2.0, 0.5**0.5), 1e-5)
+    >>> float(result.spline.at(np.array([0.5]))[0, 0].round(4)), result.error <= 1e-5
     (1.1458, True)
     """
     if body.table is not None:  # one's own
@@ -249,7 +249,7 @@ def stop_section(body: UnitPuck, accuracy: float, progress: Progress | None = No
     measured = replace(spline.accuracy, promised=5, at_second=6 * (body.delta,))
     axis = LawAxis(lines[::-1], spline.cells, ends_too=True)
     return StopSection(
-        axis.joined(spline.values), law=body.law, delta=body.delta, cotangents=lines[::-1],
+        axis.concatenated(spline.values), law=body.law, delta=body.delta, cotangents=lines[::-1],
         gyration=body.gyration, friction_error=_SHARE_OF_FRICTION * error.total,
         tolerance=accuracy, accuracy=measured,
     )  # fmt: skip

@@ -62,10 +62,10 @@ def section_rows(sides: FloatArray, powers: int) -> FloatArray:
     """
     times = by_power(sides[..., 0], powers)  # power, node, side
     places = by_power(sides[..., 1:], powers - 1)
-    found = np.zeros((2, times.shape[1], powers, WIDTH))
-    found[..., 0] = times.transpose(2, 1, 0)
-    found[:, :, :-1, 1:3] = places.transpose(2, 1, 0, 3)
-    return aligned(found.reshape(2, -1, powers * WIDTH))
+    result = np.zeros((2, times.shape[1], powers, WIDTH))
+    result[..., 0] = times.transpose(2, 1, 0)
+    result[:, :, :-1, 1:3] = places.transpose(2, 1, 0, 3)
+    return aligned(result.reshape(2, -1, powers * WIDTH))
 
 
 def inverse_splines(curve: InverseSolution, with_time: bool) -> FloatArray:
@@ -76,7 +76,7 @@ def inverse_splines(curve: InverseSolution, with_time: bool) -> FloatArray:
 
 def inverse_solution_splines(curve: InverseSolution, with_time: bool) -> FloatArray:
     """The functions of an orbit over the place by time or Q: (power, node, side, function)."""
-    return by_power(curve.orbit(with_time))
+    return by_power(curve.splined(with_time))
 
 
 def at_height(cut: FloatArray, delta: float) -> FloatArray:
@@ -89,8 +89,8 @@ def at_height(cut: FloatArray, delta: float) -> FloatArray:
     2
     """
     powers = cut.reshape(2, -1, STOP_POWERS, WIDTH)
-    found = np.zeros_like(powers[:, :, 0])
+    result = np.zeros_like(powers[:, :, 0])
     for power in range(STOP_POWERS - 1, -1, -1):
-        found = found * (2.0 * delta**2 - 1.0) + powers[:, :, power]
-    found[..., 2] *= delta
-    return np.ascontiguousarray(found.reshape(2, -1))
+        result = result * (2.0 * delta**2 - 1.0) + powers[:, :, power]
+    result[..., 2] *= delta
+    return np.ascontiguousarray(result.reshape(2, -1))

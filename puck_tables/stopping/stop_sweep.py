@@ -31,7 +31,7 @@ DEFAULT_SPIN = np.linspace(-4.0, 4.0, 41)
 
 def sweep(puck: Any, given: Mapping[str, Any], launches: Any, *, how: SweepOptions) -> Result:
     """Stops of all combinations of numbers: :meth:`puck_tables.Puck.sweep`."""
-    numbers = numbers_given(puck, given)
+    numbers = numbers_of(puck, given)
     if launches is None:
         if not {"spin", "speed", "vx", "vy"} & numbers.keys():
             numbers |= {"spin": DEFAULT_SPIN, "speed": DEFAULT_SPEED}
@@ -53,12 +53,12 @@ def sample(
 ) -> Result:
     """Stops of launches that scatter: :meth:`puck_tables.Puck.sample`."""
     checked_samples(count, seed)
-    numbers = numbers_given(puck, given)
+    numbers = numbers_of(puck, given)
     laws = numbers.pop("pressure", puck.pressure)
     return how.done(drawn(_whole(puck, numbers, numbers), laws, count, seed), puck)
 
 
-def numbers_given(puck: Any, given: Mapping[str, Any]) -> dict[str, Any]:
+def numbers_of(puck: Any, given: Mapping[str, Any]) -> dict[str, Any]:
     """What was given, by the names of arguments; a velocity by its components."""
     numbers = {name: value for name, value in given.items() if value is not None}
     if "velocity" in numbers:

@@ -117,16 +117,16 @@ class StopValues(StopCoefficients):
             doubtful, bad, mark = fill(*launches.part(0, size), rows, time, both, both[1:], 2)
             mark = int(mark) % (1 << 64)
         else:
-            found = []
+            result = []
 
             def work(start: int, stop: int) -> None:
                 x, y = both[2 * start : 2 * stop], both[2 * start + 1 : 2 * stop]
                 part = launches.part(start, stop)
-                found.append((start, *fill(*part, rows, time[start:stop], x, y, 2)))
+                result.append((start, *fill(*part, rows, time[start:stop], x, y, 2)))
 
             in_chunks(work, size, threads)
-            _, doubtful, bad, _ = map(sum, zip(*found, strict=True))
-            mark = smallest_mark((at, mark) for at, _, _, mark in found)
+            _, doubtful, bad, _ = map(sum, zip(*result, strict=True))
+            mark = smallest_mark((at, mark) for at, _, _, mark in result)
         if bad:
             launches.refuse_bad()
         return time, place, doubtful, mark

@@ -271,7 +271,7 @@ def friction_section(law: Law, delta: float, accuracy: float = DEFAULT_ACCURACY)
     )
     assert spline.accuracy is not None
     return FrictionSection(
-        LawAxis(cotangents, spline.cells).joined(spline.values), law=law, delta=delta,
+        LawAxis(cotangents, spline.cells).concatenated(spline.values), law=law, delta=delta,
         cotangents=cotangents, tolerance=accuracy,
         accuracy=replace(spline.accuracy, at_second=3 * (delta,)),
     )  # fmt: skip

@@ -40,7 +40,7 @@ def lines_of(law: Law, delta: float) -> tuple[float, ...]:
     (0.8, 1.0)
     """
     singular = singular_lines(law, delta)
-    bend = _sharpest_bend(delta) if law.can_lift else 0.0
+    bend = _sharpest_corner(delta) if law.can_lift else 0.0
     return tuple(sorted([*singular, *([1.0 / math.tan(bend)] if bend > 0.0 else [])]))
 
 
@@ -112,7 +112,7 @@ def opening_angle(delta: float) -> float:
             high = middle
 
 
-def _sharpest_bend(delta: float) -> float:
+def _sharpest_corner(delta: float) -> float:
     """Where just below π/4 the ratios of a puck next to tipping bend most; 0 for lower ones.
 
     They are analytic there, but towards the fold of the balance (δ = 3.9638) on a scale that

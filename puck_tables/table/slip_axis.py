@@ -101,7 +101,7 @@ class LawAxis:
         """Values at the nodes (size, …) from each line outwards, (sides, cells + 1, …)."""
         return values[self.numbers]
 
-    def joined(self, by_side: FloatArray) -> FloatArray:
+    def concatenated(self, by_side: FloatArray) -> FloatArray:
         """The way back."""
         values = np.empty((self.size, *by_side.shape[2:]))
         values[self.numbers] = by_side

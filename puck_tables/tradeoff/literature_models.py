@@ -57,7 +57,7 @@ def fill_limit_surface(phi: FloatArray, out: FloatArray) -> None:
         out[2, n] = (8.0 / 9.0) * w
 
 
-def fitted_pade(phi: FloatArray, resultants: FloatArray) -> tuple[float, float]:
+def pade_at_best(phi: FloatArray, resultants: FloatArray) -> tuple[float, float]:
     """The a and b with the least worst error at given angles.
 
     Parameters
@@ -69,7 +69,7 @@ def fitted_pade(phi: FloatArray, resultants: FloatArray) -> tuple[float, float]:
     --------
     >>> from puck_tables import resultants
     >>> phi = np.linspace(0.0, np.pi / 2, 200)
-    >>> [round(x, 3) for x in fitted_pade(phi, np.stack(resultants(phi, 0.0)))]
+    >>> [round(x, 3) for x in pade_at_best(phi, np.stack(resultants(phi, 0.0)))]
     [0.724, 1.516]
     """
     from scipy.optimize import minimize_scalar

@@ -23,7 +23,7 @@ from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.tradeoff import resultant_methods, state_methods, stop_methods
 from puck_tables.tradeoff.call_overhead import CallCost, measured_doors
 from puck_tables.tradeoff.contender import Contender, Ready
-from puck_tables.tradeoff.literature_models import PADE_MATCHED, fitted_pade, pade_limit_ratio
+from puck_tables.tradeoff.literature_models import PADE_MATCHED, pade_at_best, pade_limit_ratio
 from puck_tables.tradeoff.machine import Machine, measured_machine
 from puck_tables.tradeoff.truth import Points, golden_starts, random_points
 
@@ -155,7 +155,7 @@ def measure(quick: bool = False, progress: Progress | None = None) -> TradeOff:
             costs[n, repeat] = _seconds(ready, count) / (count * ready.items)
         step()
     stops, stop_ns, peak_bytes = _growth(_QUICK_SWEEP if quick else _LARGEST_SWEEP)
-    a, b = fitted_pade(flat.phi, flat.resultants)
+    a, b = pade_at_best(flat.phi, flat.resultants)
     return TradeOff(
         tuple(
             _measured(contender, ready, seconds, cost, machine)

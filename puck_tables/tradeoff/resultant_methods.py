@@ -29,7 +29,7 @@ from puck_tables.tradeoff.literature_models import (
     PADE_MATCHED,
     fill_limit_surface,
     fill_pade,
-    fitted_pade,
+    pade_at_best,
 )
 from puck_tables.tradeoff.machine import HARD
 from puck_tables.tradeoff.truth import Points
@@ -173,7 +173,7 @@ def _outsiders(task: ResultantTask, contender: Callable[..., Contender]) -> Iter
     yield contender("Pade, slopes matched", "", lambda: PADE_MATCHED, pade, outsider=True)
     flat = task.flat_truth
     yield contender(
-        "Pade, fitted", "", lambda: fitted_pade(flat.phi, flat.resultants), pade, outsider=True
+        "Pade, fitted", "", lambda: pade_at_best(flat.phi, flat.resultants), pade, outsider=True
     )
     yield contender(
         "limit surface", "", lambda: None,

@@ -22,7 +22,7 @@ from puck_tables.stopping.lookup import WIDTH, stops_kernel
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.tradeoff.contender import Contender, Ready
-from puck_tables.tradeoff.literature_models import PADE_MATCHED, as_table, fitted_pade
+from puck_tables.tradeoff.literature_models import PADE_MATCHED, as_table, pade_at_best
 from puck_tables.tradeoff.machine import HARD
 from puck_tables.tradeoff.scipy_methods import PATCH_GRID, SCIPY_SETTINGS, patch_script, scipy_stop
 from puck_tables.tradeoff.truth import Points, Starts
@@ -72,13 +72,13 @@ def contenders(task: StopTask) -> Iterator[Contender]:
     for powers, thinning in _CUTS:
         yield Contender(
             QUESTION, LOOK_UP.name, f"powers={powers} thinning={thinning}",
-            partial(_fresh_cut, task.stops, powers, thinning, np.float64),
+            partial(_fresh_section, task.stops, powers, thinning, np.float64),
             partial(_looked_up, task, powers),
         )  # fmt: skip
     for powers, thinning in ((5, 3), (7, 1)):
         yield Contender(
             QUESTION, LOOK_UP.name + ", float32", f"powers={powers} thinning={thinning}",
-            partial(_fresh_cut, task.stops, powers, thinning, np.float32),
+            partial(_fresh_section, task.stops, powers, thinning, np.float32),
             partial(_looked_up, task, powers),
         )  # fmt: skip
     for scheme in INTEGRATED:
@@ -94,7 +94,7 @@ def contenders(task: StopTask) -> Iterator[Contender]:
     yield from _outsiders(task)
 
 
-def _fresh_cut(stops: StopTable, powers: int, thinning: int, dtype: type) -> FloatArray:
+def _fresh_section(stops: StopTable, powers: int, thinning: int, dtype: type) -> FloatArray:
     return aligned(StopTable(stops.values).thinned(powers, thinning).astype(dtype))
 
 
@@ -206,6 +206,6 @@ def _outsiders(task: StopTask) -> Iterator[Contender]:
     yield modelled("Pade, slopes matched", lambda: as_table("pade", *PADE_MATCHED))
     yield modelled(
         "Pade, fitted",
-        lambda: as_table("pade", *fitted_pade(task.flat.phi, task.flat.resultants)),
+        lambda: as_table("pade", *pade_at_best(task.flat.phi, task.flat.resultants)),
     )
     yield modelled("limit surface", lambda: as_table("limit surface"))
