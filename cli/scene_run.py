@@ -80,7 +80,7 @@ def scene_tables(
     from puck_tables.scene.library import find_scene
 
     source = click.core.ParameterSource.DEFAULT
-    given = {
+    fields = {
         name: value
         for name, value in ctx.params.items()
         if ctx.get_parameter_source(name) is not source
@@ -88,9 +88,9 @@ def scene_tables(
     }
     tables = {} if scene is None else find_scene(scene)
     if scene is None:
-        tables = _default_tables(given)
+        tables = _default_tables(fields)
     named = dict.fromkeys(scattering, "--spread")
-    for name, value in given.items():
+    for name, value in fields.items():
         if name in SCALED and scene is None:
             continue
         flag = next(p.opts[0] for p in ctx.command.params if p.name == name)
@@ -146,8 +146,8 @@ def _of_each(tables: dict[str, Any], words: str) -> str:
     return re.sub(r"\b(?<!\.)(puck(?=\.)|launch\b)", _first_of, words)
 
 
-def _first_of(found: re.Match[str]) -> str:
-    return "puck[0]" if found[1] == "puck" else "puck[0].launch"
+def _first_of(matched: re.Match[str]) -> str:
+    return "puck[0]" if matched[1] == "puck" else "puck[0].launch"
 
 
 def _as_text(value: Any) -> str:
@@ -165,28 +165,28 @@ def files_read(scene: str | None, tables: dict[str, Any]) -> list[str]:
     return [*([] if scene is None else [scene]), *files_named(tables)]
 
 
-def _default_tables(given: dict[str, Any]) -> dict[str, Any]:
+def _default_tables(fields: dict[str, Any]) -> dict[str, Any]:
     """The puck in natural units of the other commands, as dimensions: f = J/g, h = δ r/2f."""
     from puck_tables.motion.body import STANDARD_GRAVITY
 
-    real = [name for name in ("height", "friction", "gravity") if name in given]
-    scaled = [name for name in SCALED if name in given]
+    real = [name for name in ("height", "friction", "gravity") if name in fields]
+    scaled = [name for name in SCALED if name in fields]
     if real and scaled:
         raise InputError(f"--{real[0]} and --{scaled[0]} clash: give the real or the scaled puck")
     tables: dict[str, Any] = {"puck": {"radius": 1.0}, "launch": {"velocity": [0.0, 0.0]}}
     if real:
         return tables
     for name in scaled:
-        if isinstance(given[name], tuple | list):
+        if isinstance(fields[name], tuple | list):
             raise InputError(f"--{name} cannot range in a scene: let puck.height range (--set)")
-    radius = given.get("radius", 1.0)
+    radius = fields.get("radius", 1.0)
     if isinstance(radius, tuple | list) or not radius > 0.0:
         raise InputError("--radius must be a number greater than 0 m")
-    friction = given.get("decel", DEFAULT_DECEL) / STANDARD_GRAVITY
+    friction = fields.get("decel", DEFAULT_DECEL) / STANDARD_GRAVITY
     if not friction > 0.0:
         raise InputError("--decel must be greater than 0 m/s^2")
     tables["puck"]["friction"] = friction
-    tables["puck"]["height"] = given.get("delta", DEFAULT_DELTA) * radius / (2.0 * friction)
+    tables["puck"]["height"] = fields.get("delta", DEFAULT_DELTA) * radius / (2.0 * friction)
     return tables
 
 

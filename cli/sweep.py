@@ -149,8 +149,10 @@ def sweep(
         if option in drawn and numbers.get(name) is not None:
             raise InputError(f"--{name} and --spread {name}=... clash: both give it")
     whole.refuse_outputs((table_path, *pressure))
-    given = {ARGUMENTS[name]: value for name, value in numbers.items() if value is not None} | drawn
-    ranged = {name: value for name, value in given.items() if isinstance(value, tuple | list)}
+    chosen = {
+        ARGUMENTS[name]: value for name, value in numbers.items() if value is not None
+    } | drawn
+    ranged = {name: value for name, value in chosen.items() if isinstance(value, tuple | list)}
     laws = chosen_laws(pressure)
     if random is not None and (ranged or len(laws) > 1):
         first = next(iter(ranged), "pressure")
@@ -160,7 +162,7 @@ def sweep(
     if (
         plot is not None
         and random is None
-        and given.keys() & {"spin", "speed"} | ({"spin"} if v0 is not None else set())
+        and chosen.keys() & {"spin", "speed"} | ({"spin"} if v0 is not None else set())
         and not ranged
         and len(laws) == 1
     ):
@@ -170,11 +172,11 @@ def sweep(
         )
     sizes = [one[2] if isinstance(one, tuple) else len(one) for one in ranged.values()]
     whole.refuse_memory([*sizes, len(laws)], random)
-    puck = _puck(given, laws)
-    launch = {name: _values(value) for name, value in given.items() if name not in _OF_PUCK}
-    launch |= {name: _values(value) for name, value in given.items()
+    puck = _puck(chosen, laws)
+    launch = {name: _values(value) for name, value in chosen.items() if name not in _OF_PUCK}
+    launch |= {name: _values(value) for name, value in chosen.items()
                if name in _OF_PUCK and not isinstance(value, float)}  # fmt: skip
-    if "radius" in launch and not given.keys() & set(REAL):  # similar pucks stay similar
+    if "radius" in launch and not chosen.keys() & set(REAL):  # similar pucks stay similar
         launch |= {name: launch.get(name, getattr(puck, name)) for name in ("delta", "decel")}
     launch |= {} if v0 is None else {"velocity": v0}
     launch |= {} if len(laws) == 1 else {"pressure": laws}
@@ -191,9 +193,9 @@ def sweep(
 _OF_PUCK = ("radius", "height", "friction", "gravity", "delta", "decel", "gyration")
 
 
-def _puck(given: dict[str, Any], laws: list[str]) -> Puck:
+def _puck(chosen: dict[str, Any], laws: list[str]) -> Puck:
     """The puck, with the lowest number of each range, and the middle of each spread."""
-    alone: dict[str, Any] = {name: _first(given.get(name)) for name in _OF_PUCK}
+    alone: dict[str, Any] = {name: _first(chosen.get(name)) for name in _OF_PUCK}
     return chosen_puck(**alone, pressure=laws[0])
 
 
@@ -217,10 +219,10 @@ def _table_of_stops(path: Path) -> ResultantTable | StopTable:
     return table
 
 
-def _values(given: Any) -> Any:
+def _values(chosen: Any) -> Any:
     import numpy as np
 
-    return np.linspace(*given) if isinstance(given, tuple) else given
+    return np.linspace(*chosen) if isinstance(chosen, tuple) else chosen
 
 
 def _summary(stops: Any) -> str:

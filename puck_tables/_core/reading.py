@@ -97,15 +97,15 @@ def mark_checked(part: Any) -> None:
     object.__setattr__(part, "_checked", True)
 
 
-def entries_in(part: Any, known: Mapping[str, Any]) -> dict[str, Any]:
+def entries_in(part: Any, names: Mapping[str, Any]) -> dict[str, Any]:
     """The values of a dataclass by their names in tables; what is left at its default is left out.
 
-    Fields that are not ``known`` are told of, whatever they hold.
+    Fields that are not ``names`` are told of, whatever they hold.
     """
     return {
         name: getattr(part, spec.name)
         for name, spec in specs(type(part)).items()
-        if name not in known or getattr(part, spec.name) is not spec.default
+        if name not in names or getattr(part, spec.name) is not spec.default
     }
 
 
@@ -113,17 +113,17 @@ def read_values(
     kind: type, data: Mapping[str, Any], path: str, reading: Reading
 ) -> dict[str, Any] | None:
     """The values of a dataclass by field from a table; None if something in it is wrong."""
-    known = specs(kind)
+    names = specs(kind)
     prefix = f"{path}." if path else ""
     before = len(reading.errors)
     for name in data:
-        if name not in known and name + LISTED not in known:
-            near = ", ".join(dict.fromkeys(map(in_tables, known)))
+        if name not in names and name + LISTED not in names:
+            near = ", ".join(dict.fromkeys(map(in_tables, names)))
             called = name[:60] if isinstance(name, str) and name.isprintable() else _shown(name)
             reading.errors.append(f"{prefix}{called}: no such entry (there are: {near})")
     values: dict[str, Any] = {}
-    for name, spec in known.items():
-        entries = _entry(data, name, known)
+    for name, spec in names.items():
+        entries = _entry(data, name, names)
         if entries is not MISSING and not (entries is None and spec.default is None):
             values[spec.name] = _read(
                 spec.metadata["kind"], entries, prefix + in_tables(name), reading, spec.default
@@ -135,13 +135,13 @@ def read_values(
     return values if len(reading.errors) == before else None
 
 
-def _entry(data: Mapping[str, Any], name: str, known: Mapping[str, Any]) -> Any:
+def _entry(data: Mapping[str, Any], name: str, names: Mapping[str, Any]) -> Any:
     """What stands under a name; a list where both a part and a list of parts have that name."""
     plain = in_tables(name)
     if name != plain and name not in data:
         entries = data.get(plain, MISSING)
         return entries if _items(entries) is not None else MISSING
-    if name + LISTED in known and _items(data.get(name)) is not None:
+    if name + LISTED in names and _items(data.get(name)) is not None:
         return MISSING
     return data.get(name, MISSING)
 

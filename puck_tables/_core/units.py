@@ -55,7 +55,7 @@ EXAMPLES = {"velocity": "m/s", "spin": "rad/s", "length": "m", "time": "s", "ang
 _NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
 
 
-def known(text: str, kind: str) -> str:
+def unit_word(text: str, kind: str) -> str:
     """The usual name of a unit, '' if there is none.
 
     Parameters
@@ -65,7 +65,7 @@ def known(text: str, kind: str) -> str:
 
     Examples
     --------
-    >>> known("Seconds", "time"), known("pixels", "length"), known("m", "time")
+    >>> unit_word("Seconds", "time"), unit_word("pixels", "length"), unit_word("m", "time")
     ('s', 'px', '')
     """
     wanted = text.strip().lower()
@@ -83,7 +83,7 @@ def factor(unit: str, kind: str) -> float:
     return _KINDS[kind][1][unit]
 
 
-def unit_given(name: str, text: str, kind: str) -> str:
+def unit_named(name: str, text: str, kind: str) -> str:
     """The usual name of a unit that is asked for.
 
     Raises
@@ -93,13 +93,13 @@ def unit_given(name: str, text: str, kind: str) -> str:
 
     Examples
     --------
-    >>> unit_given("unit", "cms", "length")
+    >>> unit_named("unit", "cms", "length")
     Traceback (most recent call last):
     ...
     puck_tables.errors.InputError: unit = 'cms' is not known, did you mean 'cm'? Known: m, dm, cm, \
 mm, um, km, in, ft, yd, px
     """
-    found = known(text, kind) if isinstance(text, str) else ""
+    found = unit_word(text, kind) if isinstance(text, str) else ""
     if not found:
         names = [one for line in _KINDS[kind][0].values() for one in line.split()]
         near = get_close_matches(str(text).lower(), names, 1, 0.7)
@@ -129,7 +129,7 @@ def quantity(text: str, unit: str) -> float | None:
     size = unit_size(found[2], KIND_OF[unit]) if found and unit in KIND_OF else None
     if found is None or size is None:
         return None
-    if known(found[2], "angle") == "deg":
+    if unit_word(found[2], "angle") == "deg":
         return math.radians(float(found[1]))
     return float(Decimal(found[1]) * Decimal(repr(size)))  # 25.4mm is 0.0254 to the last bit
 
@@ -176,7 +176,7 @@ def pixel_size(scale: str | float) -> float:
         found = re.fullmatch(rf"\s*({_NUMBER})\s*([^\s/0-9]*)\s*(?:/\s*(?:px|pixel)\s*)?", scale)
         if found is None or not found[2]:
             raise InputError(f"{what}, got '{scale:.40}'")
-        unit = unit_given("the unit of scale", found[2], "length")
+        unit = unit_named("the unit of scale", found[2], "length")
         if unit == PIXEL:
             raise InputError(f"{what}, got '{scale:.40}': a length, not pixels")
         size = float(found[1]) * _METRES[unit]
@@ -199,7 +199,7 @@ def unit_in(heading: str) -> str:
     ('cm', 'mm', '')
     """
     words = re.findall(r"[^\W_]+|°", heading)
-    return known(words[-1], "length") if len(words) > 1 else ""
+    return unit_word(words[-1], "length") if len(words) > 1 else ""
 
 
 def parted(text: str) -> tuple[str, str]:
@@ -258,7 +258,7 @@ def is_unit(text: str) -> bool:
     (True, True, False)
     """
     bare = text.strip().strip("[]()<>").strip()
-    return bool(known(bare, "length")) or any(unit_size(bare, kind) for kind in EXAMPLES)
+    return bool(unit_word(bare, "length")) or any(unit_size(bare, kind) for kind in EXAMPLES)
 
 
 def unit_size(unit: str, kind: str) -> float | None:
@@ -306,7 +306,7 @@ def unit_size(unit: str, kind: str) -> float | None:
         above = unit_size(found[1], "length" if kind == "velocity" else "angle")
         below = unit_size(found[2], "time")
         return None if above is None or below is None else above / below
-    name = known(text, kind)
+    name = unit_word(text, kind)
     return None if not name or name == PIXEL else factor(name, kind)
 
 

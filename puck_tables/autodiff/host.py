@@ -28,7 +28,7 @@ class PuckKind(NamedTuple):
 PLAIN = PuckKind()
 
 
-def found(arguments: Any, kind: PuckKind, jacobian: bool) -> Any:
+def by_arguments(arguments: Any, kind: PuckKind, jacobian: bool) -> Any:
     """Stops or states of arguments (…, 6) or (…, 7), the order of the columns of Jacobians.
 
     Raises
@@ -37,33 +37,33 @@ def found(arguments: Any, kind: PuckKind, jacobian: bool) -> Any:
 
     Examples
     --------
-    >>> found(np.array([1.0, 0.0, 5.0, 0.5, 1.0, 1.0]), PLAIN, False).stop_time.round(6)
+    >>> by_arguments(np.array([1.0, 0.0, 5.0, 0.5, 1.0, 1.0]), PLAIN, False).stop_time.round(6)
     np.float64(3.962992)
     """
-    given = np.asarray(arguments, np.float64)
+    inputs = np.asarray(arguments, np.float64)
     how: dict[str, Any] = {
-        "delta": given[..., 3], "decel": given[..., 4], "radius": given[..., 5],
+        "delta": inputs[..., 3], "decel": inputs[..., 4], "radius": inputs[..., 5],
         "pressure": kind.pressure, "gyration": kind.gyration, "jacobian": jacobian,
     }  # fmt: skip
-    if given.shape[-1] == len(LAUNCH_NAMES):
-        return stop(given[..., :2], given[..., 2], tol=_TOL, **how)
-    return states(given[..., :2], given[..., 2], given[..., 6], **how)
+    if inputs.shape[-1] == len(LAUNCH_NAMES):
+        return stop(inputs[..., :2], inputs[..., 2], tol=_TOL, **how)
+    return states(inputs[..., :2], inputs[..., 2], inputs[..., 6], **how)
 
 
 def values(arguments: Any, kind: PuckKind) -> Array:
     """Results (…, rows) of arguments (…, columns)."""
-    result = found(arguments, kind, jacobian=False)
+    result = by_arguments(arguments, kind, jacobian=False)
     return np.stack([getattr(result, name) for name in result.JACOBIAN_ROWS], axis=-1)
 
 
-def slopes(given: Any, kind: PuckKind) -> Array:
-    """Jacobians (…, rows, columns) of arguments ``given`` (…, columns).
+def slopes(inputs: Any, kind: PuckKind) -> Array:
+    """Jacobians (…, rows, columns) of arguments ``inputs`` (…, columns).
 
     The path of pure spin, which grows like |v|, has slope 0 here: a number is needed even where it
     is multiplied by 0.
     """
-    arguments = np.asarray(given, np.float64)
-    jacobian: Array = found(arguments, kind, jacobian=True).jacobian
+    arguments = np.asarray(inputs, np.float64)
+    jacobian: Array = by_arguments(arguments, kind, jacobian=True).jacobian
     if jacobian.shape[-2] == len(STOP_NAMES):
         spins = (arguments[..., 0] == 0.0) & (arguments[..., 1] == 0.0)
         jacobian[spins, STOP_NAMES.index("path_length"), :2] = 0.0

@@ -180,7 +180,7 @@ def _wait_for_workers(client: Any, otherwise: str) -> None:
 
 
 @contextlib.contextmanager
-def client_of(given: str) -> Iterator[Any]:
+def client_of(name_or_place: str) -> Iterator[Any]:
     """A client of a cluster, which is closed again, as is a cluster of one's own.
 
     Parameters
@@ -192,7 +192,7 @@ def client_of(given: str) -> Iterator[Any]:
     ClusterError
         If the scheduler cannot be reached, or has no workers.
     """
-    where = checked_address(given)
+    where = checked_address(name_or_place)
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
     with contextlib.ExitStack() as stack, warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -209,9 +209,9 @@ def client_of(given: str) -> Iterator[Any]:
                 address, security=security, timeout=_REACH, set_as_default=False
             )
         except (OSError, TimeoutError, ValueError) as error:
-            raise _no_scheduler(given, error) from None
+            raise _no_scheduler(name_or_place, error) from None
         stack.enter_context(client)
-        _wait_for_workers(client, f": start some with 'dask worker {given}'")
+        _wait_for_workers(client, f": start some with 'dask worker {name_or_place}'")
         yield client
 
 

@@ -235,7 +235,7 @@ def _sides(values: FloatArray) -> tuple[float, float]:
     return low - room, high + room
 
 
-def checked_regions(given: Any) -> None:
+def checked_regions(entries: Any) -> None:
     """Refuse regions that are none, before any work.
 
     Raises
@@ -246,5 +246,5 @@ def checked_regions(given: Any) -> None:
     --------
     >>> checked_regions([(0.0, 0.0, 1.0)])
     """
-    for region in given:
+    for region in entries:
         inside_of(region, np.zeros(1), np.zeros(1))

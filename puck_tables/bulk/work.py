@@ -86,20 +86,20 @@ class Work(ABC):
 
     def columns_of(self, items: int) -> Columns:
         """Room for the columns of so many items."""
-        found: Columns = {name: np.empty((items, *one)) for name, one in self.columns.items()}
-        return found | {self.code: np.empty(items, np.int8)}
+        arrays: Columns = {name: np.empty((items, *one)) for name, one in self.columns.items()}
+        return arrays | {self.code: np.empty(items, np.int8)}
 
     def virtual(self) -> Columns:
         """Columns of the whole shape that take no memory: for their labels."""
-        found: Columns = {
+        arrays: Columns = {
             name: np.broadcast_to(np.nan, (*self.shape, *one)) for name, one in self.columns.items()
         }
-        return found | {self.code: np.broadcast_to(np.int8(0), self.shape)}
+        return arrays | {self.code: np.broadcast_to(np.int8(0), self.shape)}
 
-    def filled(self, found: Columns, start: int, stop: int, first: int = 0) -> None:
+    def filled(self, arrays: Columns, start: int, stop: int, first: int = 0) -> None:
         """Put the columns of some items in their places among those from ``first`` on."""
         for name, values in self.of(start, stop).items():
-            found[name][start - first : stop - first] = values
+            arrays[name][start - first : stop - first] = values
 
 
 @dataclass(frozen=True)
@@ -119,10 +119,10 @@ class Tally:
         Tally(counts={0: 1, 2: 2}, first={0: 10, 2: 11})
         """
         flat = codes.ravel()
-        found = [(code, flat == code) for code in np.unique(flat).tolist()]
+        arrays = [(code, flat == code) for code in np.unique(flat).tolist()]
         return cls(
-            {code: int(np.count_nonzero(mine)) for code, mine in found},
-            {code: start + int(np.argmax(mine)) for code, mine in found},
+            {code: int(np.count_nonzero(mine)) for code, mine in arrays},
+            {code: start + int(np.argmax(mine)) for code, mine in arrays},
         )
 
     def __add__(self, other: Tally) -> Tally:
@@ -144,12 +144,12 @@ def in_memory(work: Work, threads: int | None, progress: Progress | None) -> Res
     """
     refuse_no_threads(threads)
     tell = work.prepared(threads, progress)
-    found = work.columns_of(work.size)
+    arrays = work.columns_of(work.size)
     run_chunks(
-        lambda start, stop: work.filled(found, start, stop), work.size, work.part, threads, tell
+        lambda start, stop: work.filled(arrays, start, stop), work.size, work.part, threads, tell
     )
-    work.checked(Tally.of(found[work.code]))
-    shaped = {name: one.reshape((*work.shape, *one.shape[1:])) for name, one in found.items()}
+    work.checked(Tally.of(arrays[work.code]))
+    shaped = {name: one.reshape((*work.shape, *one.shape[1:])) for name, one in arrays.items()}
     return work.result(shaped)
 
 

@@ -82,7 +82,7 @@ def _integrated(puck: Puck) -> FloatArray:
     return launches
 
 
-def _found(puck: Puck, launches: FloatArray) -> Stops:
+def _looked_up(puck: Puck, launches: FloatArray) -> Stops:
     kind, _, tol = _kind(puck)
     return stop(
         launches[:, :2], launches[:, 2], delta=launches[:, 3], decel=launches[:, 4],
@@ -92,7 +92,7 @@ def _found(puck: Puck, launches: FloatArray) -> Stops:
 
 def _stops(puck: Puck) -> Cases:
     launches = _integrated(puck)
-    result = _found(puck, launches)
+    result = _looked_up(puck, launches)
     answers = (
         result.stop_time, result.stop_x, result.stop_y, result.path_length, result.body_angle,
     )  # fmt: skip
@@ -104,7 +104,7 @@ def _turns(puck: Puck) -> Cases:
     launches = _integrated(puck)
     generic = (launches[:, 2] != 0.0) & (launches[:, :2] != 0.0).any(axis=1)
     launches = launches[generic][: 3 if _kind(puck)[0] else 7]
-    rows = np.column_stack([launches, _found(puck, launches).turn_angle])
+    rows = np.column_stack([launches, _looked_up(puck, launches).turn_angle])
     return rows.shape[1], tuple(rows.ravel().tolist())
 
 
@@ -112,7 +112,7 @@ def _states(puck: Puck) -> Cases:
     rows: list[float] = []
     kind, _, tol = _kind(puck)
     launches = _integrated(puck)
-    whole = _found(puck, launches).stop_time
+    whole = _looked_up(puck, launches).stop_time
     for n, share in _moments()[: len(launches) + 1 if kind else None]:
         vx, vy, spin, delta, decel, radius = launches[n].tolist()
         thrown = Puck.similar(delta=delta, decel=decel, radius=radius, **kind)

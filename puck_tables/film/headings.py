@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from puck_tables._core.units import known, parted, unit_given
+from puck_tables._core.units import parted, unit_named, unit_word
 
 _WORDS = {
     "time": "t time times zeit temps tiempo tempo tijd tid czas время 时间 時間 timestamp "
@@ -83,17 +83,17 @@ Heading(role='', puck='', unit=''))
     kept = [
         n for n, one in enumerate(lowered) if one not in _FILLING and roles[n] != role
     ]  # fmt: skip
-    unit = known(unit_text, _KIND[role]) if role in _KIND else ""
+    unit = unit_word(unit_text, _KIND[role]) if role in _KIND else ""
     if unit_text and not unit and role in _KIND:
         if text.rstrip().endswith("]"):
-            unit_given(f"the unit of the column '{text.strip():.40}'", unit_text, _KIND[role])
+            unit_named(f"the unit of the column '{text.strip():.40}'", unit_text, _KIND[role])
         return heading(f"{name} {unit_text}")  # 'x (red)'
     if role == "time" and lowered[at] in ("seconds", "secs"):
         unit = unit or "s"
     if not unit and role in _KIND:
         for n in kept:
             last = n == len(result) - 1
-            if (found_unit := known(lowered[n], _KIND[role])) and (last or found_unit == "px"):
+            if (found_unit := unit_word(lowered[n], _KIND[role])) and (last or found_unit == "px"):
                 unit = found_unit
                 kept.remove(n)
                 break

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from puck_tables._core.safe_read import read_whole
-from puck_tables._core.units import factor, unit_given
+from puck_tables._core.units import factor, unit_named
 from puck_tables.errors import InputError
 from puck_tables.film.film import Film, TrackedBody
 
@@ -58,7 +58,7 @@ def film_of_columns(path: str | Path, columns: Mapping[str, Quantity]) -> Film:
             except _WRONG:
                 raise InputError(f"{path}: its column {name} does not hold numbers") from None
             unit = columns[name].unit
-            units[name] = unit_given(f"{path}: the unit of {name}", unit, kind) if unit else ""
+            units[name] = unit_named(f"{path}: the unit of {name}", unit, kind) if unit else ""
     names = [str(one) for one in columns["name"].values] if "name" in columns else []
     size = numbers["time"].size
     rows = {one.shape for one in numbers.values()} | ({(len(names),)} if names else set())

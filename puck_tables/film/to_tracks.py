@@ -11,7 +11,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import instance, positive, real
-from puck_tables._core.units import PIXEL, factor, pixel_size, unit_given
+from puck_tables._core.units import PIXEL, factor, pixel_size, unit_named
 from puck_tables.errors import InputError
 from puck_tables.film.angles import direction
 from puck_tables.film.film import Film, TrackedBody
@@ -48,9 +48,9 @@ class ReaderOptions:
         if self.fps is not None:
             put("fps", positive("fps", self.fps, "frames a second"))
         if self.unit is not None:
-            put("unit", unit_given("unit", self.unit, "length"))
+            put("unit", unit_named("unit", self.unit, "length"))
         if self.angle_unit is not None:
-            put("angle_unit", unit_given("angle_unit", self.angle_unit, "angle"))
+            put("angle_unit", unit_named("angle_unit", self.angle_unit, "angle"))
         if self.scale is not None:
             put("size", pixel_size(self.scale))
         if self.likelihood is not None:
@@ -104,16 +104,16 @@ def to_si(path: str | Path, film: Film, how: ReaderOptions) -> tuple[Track, ...]
     notes = [film.kind, *film.notes]
     scale = _Scale(path, film, how, notes)
     tracks = []
-    known: list[str] = []
+    there: list[str] = []
     for body in film.bodies:
         time, body_notes = _times(path, film, body, how)
         for mark, centre in _pucks(path, film, body, how).items():
             puck = " ".join(filter(None, (body.name, mark)))
-            known.append(puck)
+            there.append(puck)
             if how.pucks is not None and not {puck, body.name, mark} & set(how.pucks):
                 continue
             name = f"{Path(path).name}{f': {puck}' if puck else ''}"
-            place, angle, hidden_notes = _seen(path, film, body, centre, how, scale)
+            place, angle, hidden_notes = _visible(path, film, body, centre, how, scale)
             rows = np.flatnonzero(~np.isnan(time))
             if (lost := np.flatnonzero(np.isnan(time) & np.isfinite(place).all(axis=1))).size:
                 raise InputError(
@@ -128,7 +128,7 @@ def to_si(path: str | Path, film: Film, how: ReaderOptions) -> tuple[Track, ...]
             except InputError as error:
                 raise InputError(f"{name}: {error}{_others(film, how)}") from None
             tracks.append(track)
-    _refuse_unknown(path, how.pucks, known)
+    _refuse_unknown(path, how.pucks, there)
     if not tracks:
         raise InputError(f"{path} holds no puck")
     return tuple(tracks)
@@ -140,12 +140,12 @@ def _others(film: Film, how: ReaderOptions) -> str:
     return "; or say which pucks to read with pucks (--pucks)" if many else ""
 
 
-def _refuse_unknown(path: str | Path, wanted: Sequence[str] | None, known: Sequence[str]) -> None:
-    words = {part for name in known for part in (name, *name.split(" ", 1))}
+def _refuse_unknown(path: str | Path, wanted: Sequence[str] | None, there: Sequence[str]) -> None:
+    words = {part for name in there for part in (name, *name.split(" ", 1))}
     for name in wanted or ():
         if name not in words:
-            near = get_close_matches(name, known, 1)
-            listed = ", ".join(known[:8]) + (", ..." if len(known) > 8 else "")
+            near = get_close_matches(name, there, 1)
+            listed = ", ".join(there[:8]) + (", ..." if len(there) > 8 else "")
             raise InputError(
                 f"{path} has no puck '{name}'"
                 + (f", did you mean '{near[0]}'?" if near else ".")
@@ -217,8 +217,8 @@ class _Scale:
             scaled: FloatArray = points * [self.size, -self.size if self.down else self.size]
             return scaled
         result = np.full(points.shape, np.nan)
-        known = np.isfinite(points).all(axis=1)
-        result[known] = self.plane.place(points[known])
+        there = np.isfinite(points).all(axis=1)
+        result[there] = self.plane.place(points[there])
         return result
 
     def angle(self, points: FloatArray, angle: FloatArray) -> FloatArray:
@@ -268,10 +268,10 @@ def _stamped(film: Film) -> float:
     Such times are stamps of a clock: as dates do, they mean nothing but the time between them.
     """
     times = [body.time[~np.isnan(body.time)] for body in film.bodies if body.time is not None]
-    known = np.concatenate(times) if times else np.empty(0)
-    if not known.size or not abs(known.min()) > _STAMPED * np.ptp(known) > 0.0:
+    there = np.concatenate(times) if times else np.empty(0)
+    if not there.size or not abs(there.min()) > _STAMPED * np.ptp(there) > 0.0:
         return 0.0
-    return float(known.min())
+    return float(there.min())
 
 
 def _pucks(
@@ -301,7 +301,7 @@ def _pucks(
     return {name: [name] for name in names}
 
 
-def _seen(
+def _visible(
     path: str | Path,
     film: Film,
     body: TrackedBody,
@@ -343,10 +343,10 @@ def _seen(
     if angle is None:
         return place, None, notes
     middle: FloatArray = np.mean([points[mark] for mark in centre], axis=0)
-    known = np.isfinite(middle).all(axis=1)
-    angle = np.where(known, angle, np.nan)
+    there = np.isfinite(middle).all(axis=1)
+    angle = np.where(there, angle, np.nan)
     turned = np.full(angle.shape, np.nan)
-    turned[known] = scale.angle(middle[known], angle[known])
+    turned[there] = scale.angle(middle[there], angle[there])
     return place, turned, notes
 
 

@@ -32,7 +32,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.safe_read import read_whole
 from puck_tables._core.text import encoding_of
-from puck_tables._core.units import known
+from puck_tables._core.units import unit_word
 from puck_tables.errors import InputError
 from puck_tables.film.film import Film, TrackedBody
 
@@ -172,7 +172,9 @@ def _film(path: str, content: bytes) -> Film:
     texts = _texts(root)
     start, step, duration, begin = _clock(path, root)
     frames = _frames(path, result, step)
-    film = Film("file of Tracker", [], known(texts.get("length_unit", ""), "length"), y_down=False)
+    film = Film(
+        "file of Tracker", [], unit_word(texts.get("length_unit", ""), "length"), y_down=False
+    )
     pictures = {
         name: np.array([marks.get(n, (math.nan, math.nan)) for n in frames])
         for name, marks in result.items()

@@ -128,8 +128,8 @@ def _kept(problem: Problem, rows: FloatArray, strict: bool) -> npt.NDArray[np.bo
 
 def _out(deviations: FloatArray, most: float, strict: bool) -> npt.NDArray[np.bool_]:
     """Frames whose residuals (n, k) are too large."""
-    far: npt.NDArray[np.bool_] = (deviations**2).sum(axis=1) > most
-    return outliers_of(deviations, far, most) if strict else far
+    outlying: npt.NDArray[np.bool_] = (deviations**2).sum(axis=1) > most
+    return outliers_of(deviations, outlying, most) if strict else outlying
 
 
 def _wide(deviations: list[FloatArray], usual: float) -> float:

@@ -20,7 +20,7 @@ from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.held_out import HeldOut, predicted, split
 from puck_tables.fitting.identifiability import not_identifiable
 from puck_tables.fitting.impact_matching import Line
-from puck_tables.fitting.impacts import SlideIndex, cut
+from puck_tables.fitting.impacts import SlideIndex, slides_apart
 from puck_tables.fitting.initial_estimate import initial_estimate
 from puck_tables.fitting.inputs import (
     begin_noise,
@@ -179,7 +179,7 @@ def fit(
     pieces: tuple[SlideIndex, ...] = ()
     rests: tuple[bool, ...] = ()
     if impacts:
-        films, pieces, rests = cut(films, begin[0])
+        films, pieces, rests = slides_apart(films, begin[0])
     problem = Problem(spec.alone(), films, (begin[0], begin[1]), rests=rests)
     problem = replace(problem, jitter=_begin_jitter(problem, begin[0], stamps))
     held = None if hold_out is None else _held(hold_out)
@@ -187,37 +187,37 @@ def fit(
         split(films, held, begin[0])
     steps = 1 + len(laws) + (hold_out is not None)
     say = progress or (lambda done, total: None)
-    found = slides = initial_estimate(problem, known, refit=True)
+    best = slides = initial_estimate(problem, known, refit=True)
     untied = ""
     if impacts:
-        found, untied = couple(slides, pieces, uncut, spec, lines, known)
-    constant = found
+        best, untied = couple(slides, pieces, uncut, spec, lines, known)
+    constant = best
     if speeds:
-        refuse_faster(speeds, found)
-        found = over_speeds(found, speeds, between, known)
-        refuse_opening(found)
+        refuse_faster(speeds, best)
+        best = over_speeds(best, speeds, between, known)
+        refuse_opening(best)
     say(1, steps)
-    certainty = _certainty(found, known)
-    refuse_wobbling(found, certainty)
-    excess = max(excess_of(found, judged), 1.0)
-    rivals = other_minima(found, certainty, excess)
-    other = taken(found, rivals, excess)
+    certainty = _certainty(best, known)
+    refuse_wobbling(best, certainty)
+    excess = max(excess_of(best, judged), 1.0)
+    rivals = other_minima(best, certainty, excess)
+    other = taken(best, rivals, excess)
     if other is not None:
-        found = replace(estimate(found.problem, other.estimate.x, known), minima=found.minima)
-        certainty = _certainty(found, known)
-        rivals = other_minima(found, certainty, max(excess_of(found, judged), 1.0))
-    unsigned = mirrored(found, certainty)
-    if any(certainty.pinned) or may_misfit(found, known, judged):
-        certainty = widened(found, certainty)
+        best = replace(estimate(best.problem, other.estimate.x, known), minima=best.minima)
+        certainty = _certainty(best, known)
+        rivals = other_minima(best, certainty, max(excess_of(best, judged), 1.0))
+    unsigned = mirrored(best, certainty)
+    if any(certainty.pinned) or may_misfit(best, known, judged):
+        certainty = widened(best, certainty)
     # bounds that the caller gives may keep every motion away: that is said of the bound
     held_off = any(
-        found.problem.names[k][1] in spec.bounds for k in np.flatnonzero(certainty.pinned)
+        best.problem.names[k][1] in spec.bounds for k in np.flatnonzero(certainty.pinned)
     )
-    nowhere = "" if held_off else no_answer(found, known, judged)
-    astray = nowhere or ran_away(found.problem, found.x)
+    nowhere = "" if held_off else no_answer(best, known, judged)
+    astray = nowhere or ran_away(best.problem, best.x)
     seen, certainty = certainty, certainty.lost() if astray else certainty
-    numbers, launches = numbers_of(found, certainty, rivals, unsigned)
-    lost = tuple(n for n in found.problem.spec.free if not numbers[n].determined)
+    numbers, launches = numbers_of(best, certainty, rivals, unsigned)
+    lost = tuple(n for n in best.problem.spec.free if not numbers[n].determined)
     scores: tuple[LawScore, ...] = ()
     if laws:
 
@@ -230,41 +230,41 @@ def fit(
         say(1 + len(laws), steps)
     predictions = None
     if held is not None:
-        predictions = _held_out(found, held, known)
+        predictions = _held_out(best, held, known)
         say(steps, steps)
-    blind = () if nowhere else without_spin(found, numbers, known)
-    blind += (f"{astray}.",) if astray else not_identifiable(found, seen, lost, rivals, unsigned)
+    blind = () if nowhere else without_spin(best, numbers, known)
+    blind += (f"{astray}.",) if astray else not_identifiable(best, seen, lost, rivals, unsigned)
     impact_states: tuple[Impact, ...] = ()
-    if found.problem.impact_specs:
-        impact_states = impacts_coupled(found, certainty, numbers)
+    if best.problem.impact_specs:
+        impact_states = impacts_coupled(best, certainty, numbers)
     elif impacts:
         names = [film.name for film in uncut]
-        impact_states = impacts_apart(found, pieces, certainty, names)
-    left_out = _left_out((*films, *uncut), found.problem.films)
+        impact_states = impacts_apart(best, pieces, certainty, names)
+    left_out = _left_out((*films, *uncut), best.problem.films)
     result = Fit(
         given=puck,
         numbers=numbers,
         launches=launches,
-        chi2=found.chi2,
-        degrees=found.degrees,
-        noise=found.problem.noise,
-        jitter=found.problem.jitter,
+        chi2=best.chi2,
+        degrees=best.degrees,
+        noise=best.problem.noise,
+        jitter=best.problem.jitter,
         noise_known=known,
         smooth_noise=judged,
-        outliers=found.outliers,
-        runs=runs(found),
-        drift=drift(found),
+        outliers=best.outliers,
+        runs=runs(best),
+        drift=drift(best),
         left_out=left_out,
-        cut_off=_cut_off(slides, problem, known, left_out),
+        cut_off=_trimmed_ends(slides, problem, known, left_out),
         blind=blind,
         astray=astray,
         laws=scores,
         held_out=predictions,
         impacts=impact_states,
         untied=untied,
-        not_met=not_met(impact_states, found.problem, lines) if impacts else (),
-        constant_chi2=chi2_under(constant, found.problem.noise) if speeds else math.nan,
-        estimate=found,
+        not_met=not_met(impact_states, best.problem, lines) if impacts else (),
+        constant_chi2=chi2_under(constant, best.problem.noise) if speeds else math.nan,
+        estimate=best,
         certainty=certainty,
         uncut=uncut,
     )
@@ -282,17 +282,17 @@ def _begin_jitter(problem: Problem, noise: float, stamps: float | None) -> float
     return _JITTER * noise / max(speed, 1e-9)
 
 
-def _certainty(found: Estimate, known: Known) -> Certainty:
+def _certainty(best: Estimate, known: Known) -> Certainty:
     """How well the unknowns of an estimate are known."""
-    degrees = freedom(found, known)
+    degrees = freedom(best, known)
     if degrees < _JUDGED:
         raise InputError(
-            f"{found.residuals.size} observations of {found.x.size} unknowns are too few to judge "
+            f"{best.residuals.size} observations of {best.x.size} unknowns are too few to judge "
             "the noise of each kind by: give the noise, or more frames"
         )
-    plausible = plausible_for(found.problem, found.x)
-    certainty = certainty_of(found.jacobian[found.kept], plausible, degrees)
-    return replace(certainty, pinned=pinned_of(found, certainty))
+    plausible = plausible_for(best.problem, best.x)
+    certainty = certainty_of(best.jacobian[best.kept], plausible, degrees)
+    return replace(certainty, pinned=pinned_of(best, certainty))
 
 
 def _left_out(
@@ -309,13 +309,13 @@ def _left_out(
     )  # fmt: skip
 
 
-def _cut_off(
-    found: Estimate, problem: Problem, known: Known, left_out: tuple[tuple[str, int, int], ...]
+def _trimmed_ends(
+    best: Estimate, problem: Problem, known: Known, left_out: tuple[tuple[str, int, int], ...]
 ) -> str:
     """A sentence where many frames are left out at the ends, and what they would change."""
     said = [
         f"{first} frames at the start and {last} at the end of {name}"
-        for (name, first, last), film in zip(left_out, found.problem.films, strict=False)
+        for (name, first, last), film in zip(left_out, best.problem.films, strict=False)
         if first + last > _MUCH * (first + last + film.time.size)
     ]
     if not said:
@@ -326,7 +326,7 @@ def _cut_off(
         f"{name} {value:.4g}" for name, value in kept.problem.numbers_at(kept.x).items()
     )  # fmt: skip
     more = kept.problem.noise[0] * math.sqrt(kept.chi2 / max(kept.degrees, 1))
-    more /= found.problem.noise[0] * math.sqrt(found.chi2 / max(found.degrees, 1)) or 1.0
+    more /= best.problem.noise[0] * math.sqrt(best.chi2 / max(best.degrees, 1)) or 1.0
     return (
         f"{' and '.join(said)} are left out: something seems to touch the puck there. With all "
         f"frames (--keep-all, keep_all=True) it would be {numbers or 'as known'}, residuals "
@@ -340,13 +340,13 @@ def _held(hold_out: Any) -> float | tuple[str, ...]:
     return tuple(names) if isinstance(names, list | tuple) else real("hold_out", names, "1")
 
 
-def _held_out(found: Estimate, wanted: float | tuple[str, ...], known: Known) -> HeldOut:
+def _held_out(best: Estimate, wanted: float | tuple[str, ...], known: Known) -> HeldOut:
     """The later part of tracks, predicted from the rest."""
-    problem = found.problem
+    problem = best.problem
     films, later = split(problem.films, wanted, problem.noise[0])
     fewer = problem.with_films(films)
     if problem.impact_specs or problem.spec.speeds:
-        part = estimate(fewer, found.x, known)
+        part = estimate(fewer, best.x, known)
     else:
         part = initial_estimate(fewer, known, refit=False)
     return predicted(part, _certainty(part, known), problem.films, later)

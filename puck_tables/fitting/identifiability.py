@@ -31,21 +31,21 @@ def not_identifiable(
     result: Estimate,
     certainty: Certainty,
     lost: tuple[str, ...],
-    rivals: tuple[OtherMinimum, ...] = (),
+    minima: tuple[OtherMinimum, ...] = (),
     unsigned: tuple[int, ...] = (),
 ) -> tuple[str, ...]:
     """A sentence for each direction that the tracks do not see.
 
-    ``lost``: numbers of the puck that are not determined, by whatever; ``rivals``: other motions
+    ``lost``: numbers of the puck that are not determined, by whatever; ``minima``: other motions
     that fit about as well; ``unsigned``: tracks that the opposite spin fits as well.
     """
     sentences = []
     marked = any(film.angle is not None for film in result.problem.films)
-    sentences += [minimum_sentence(minimum, marked) for minimum in rivals[:_TOLD_ALL]]
-    if others := len(rivals[_TOLD_ALL:]):
+    sentences += [minimum_sentence(minimum, marked) for minimum in minima[:_TOLD_ALL]]
+    if others := len(minima[_TOLD_ALL:]):
         more = "motion of another spin fits" if others == 1 else "motions of other spins fit"
         sentences.append(f"{others} more {more} about as well.")
-    if marked and any(minimum.rise < -(Z95**2) for minimum in rivals):
+    if marked and any(minimum.rise < -(Z95**2) for minimum in minima):
         sentences.append(
             "That many turns a frame fit better may well be the floor: where friction changes with "
             "the slip speed, as on an air table, it is no Coulomb floor."
@@ -54,7 +54,7 @@ def not_identifiable(
     seen: set[frozenset[int]] = set()
     covered = {result.problem.names[k][1] for k in np.flatnonzero(certainty.undetermined)}
     for name in lost:
-        if name not in covered and not (rivals and name != "delta"):
+        if name not in covered and not (minima and name != "delta"):
             remedy = _remedy(result, [name], [(-1, name)])
             sentences.append(f"{name} is not determined: {_ALIKE}. {remedy}")
     for direction in certainty.blind:

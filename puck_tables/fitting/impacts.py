@@ -103,7 +103,7 @@ def _velocity(film: Observations, start: int, stop: int) -> FloatArray:
     return velocity
 
 
-def cut(
+def slides_apart(
     films: tuple[Observations, ...], noise: float
 ) -> tuple[tuple[Observations, ...], tuple[SlideIndex, ...], tuple[bool, ...]]:
     """The tracks cut at their kinks, which pieces they are, and whether the puck rests in each.

@@ -176,37 +176,36 @@ def refuse_tipping(spec: FitSpec, films: tuple[Observations, ...], noise: float)
         )
 
 
-def checked_jitter(given: Any) -> float | None:
+def checked_jitter(raw: Any) -> float | None:
     """The standard deviation of time stamps, s; None if it is to be found, 0 if there is none.
 
     Raises
     ------
     InputError
     """
-    if given is None:
+    if raw is None:
         return 0.0
-    if isinstance(given, str):
-        if given != FIND:
-            raise InputError(f"jitter must be a time in s, or '{FIND}', got '{given}'")
+    if isinstance(raw, str):
+        if raw != FIND:
+            raise InputError(f"jitter must be a time in s, or '{FIND}', got '{raw}'")
         return None
-    return positive("jitter", given, "s")
+    return positive("jitter", raw, "s")
 
 
-def checked_rows(given: Any) -> tuple[float, float] | None:
+def checked_rows(raw: Any) -> tuple[float, float] | None:
     """Y of the first and the last line of a picture, m.
 
     Raises
     ------
     InputError
     """
-    if given is None:
+    if raw is None:
         return None
     try:
-        first, last = given
+        first, last = raw
     except (TypeError, ValueError):
         raise InputError(
-            "rows must be y in m of the first and of the last line of the picture, got "
-            f"{given!r:.40}"
+            f"rows must be y in m of the first and of the last line of the picture, got {raw!r:.40}"
         ) from None
     first, last = real("the first of rows", first, "m"), real("the last of rows", last, "m")
     if first == last:
@@ -214,7 +213,7 @@ def checked_rows(given: Any) -> tuple[float, float] | None:
     return first, last
 
 
-def checked_speeds(given: Any, between: Any) -> tuple[float, ...]:
+def checked_speeds(raw: Any, between: Any) -> tuple[float, ...]:
     """Slip speeds at which friction is found, m/s, none where it does not depend on them.
 
     Raises
@@ -223,11 +222,11 @@ def checked_speeds(given: Any, between: Any) -> tuple[float, ...]:
     """
     if between not in KINDS:
         raise InputError(f"between must be {' or '.join(KINDS)}, got {between!r:.40}")
-    if given is None:
+    if raw is None:
         return ()
-    if isinstance(given, str) or not isinstance(given, Iterable):
-        raise InputError(f"the slip speeds must be a list of speeds in m/s, got {given!r:.40}")
-    speeds = tuple(real("a slip speed", value, "m/s") for value in given)
+    if isinstance(raw, str) or not isinstance(raw, Iterable):
+        raise InputError(f"the slip speeds must be a list of speeds in m/s, got {raw!r:.40}")
+    speeds = tuple(real("a slip speed", value, "m/s") for value in raw)
     if not 2 <= len(speeds) <= MOST_NODES or speeds[0] != 0.0 or (np.diff(speeds) <= 0.0).any():
         raise InputError(
             f"the slip speeds must be 2 to {MOST_NODES} speeds in m/s that ascend from 0, got "
@@ -275,17 +274,17 @@ def refuse_opening(result: Estimate) -> None:
         )
 
 
-def checked_walls(given: Any) -> tuple[Line, ...]:
+def checked_walls(raw: Any) -> tuple[Line, ...]:
     """Walls, each by two points (x, y) m on it.
 
     Raises
     ------
     InputError
     """
-    if isinstance(given, str) or not isinstance(given, Sequence):
+    if isinstance(raw, str) or not isinstance(raw, Sequence):
         raise InputError("walls must be a list, each wall two points ((x, y), (x, y)) on it in m")
     lines = []
-    for wall in given:
+    for wall in raw:
         try:
             (ax, ay), (bx, by) = wall
         except (TypeError, ValueError):
@@ -302,20 +301,20 @@ def checked_walls(given: Any) -> tuple[Line, ...]:
     return tuple(lines)
 
 
-def checked_noise(given: Any) -> tuple[tuple[float | None, float | None], tuple[bool, bool]]:
+def checked_noise(raw: Any) -> tuple[tuple[float | None, float | None], tuple[bool, bool]]:
     """The noise as given, and which of it was.
 
     Raises
     ------
     InputError
     """
-    if given is None:
+    if raw is None:
         return (None, None), (False, False)
     try:
-        place, angle = given
+        place, angle = raw
     except (TypeError, ValueError):
         raise InputError(
-            f"noise must be (metres, radians), None for what is to be estimated, got {given!r:.40}"
+            f"noise must be (metres, radians), None for what is to be estimated, got {raw!r:.40}"
         ) from None
     checked: list[float | None] = []
     for value, what, unit in ((place, "places", "m"), (angle, "angles", "rad")):

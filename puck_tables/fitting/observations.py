@@ -254,9 +254,9 @@ class Turning:
     angle: FloatArray
     sure: bool
 
-    def with_more(self, turns: int, time: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def with_more(self, full_turns: int, time: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Rates (w,) and angles (n,) if the body makes so many more turns from frame to frame."""
-        more = 2.0 * math.pi * turns
+        more = 2.0 * math.pi * full_turns
         return self.rate + more / self.step, self.angle + more * np.round(time / self.step)
 
 

@@ -17,7 +17,7 @@ _LEAP, _MORE = 6.0, 3.0  # standard deviations, and times the way between frames
 
 
 def outliers_of(
-    deviations: FloatArray, far: npt.NDArray[np.bool_], limit: float
+    deviations: FloatArray, outlying: npt.NDArray[np.bool_], limit: float
 ) -> npt.NDArray[np.bool_]:
     """Which of the frames that are far off are strays (n,).
 
@@ -35,14 +35,14 @@ def outliers_of(
     >>> np.flatnonzero(outliers_of(deviations, np.abs(deviations[:, 0]) > 4.0, 16.0)).tolist()
     [7]
     """
-    if far.sum() < _FEW:
-        return far
-    result = far.copy()
+    if outlying.sum() < _FEW:
+        return outlying
+    result = outlying.copy()
     usual = np.stack([
         np.median(deviations[max(0, n - _AROUND) : n + _AROUND + 1], axis=0) for n in
         range(len(deviations))
     ])  # fmt: skip
-    together = far & (((deviations - usual) ** 2).sum(axis=1) <= limit)
+    together = outlying & (((deviations - usual) ** 2).sum(axis=1) <= limit)
     for start, stop in _intervals(together):
         ends = (
             start > 0 and not _leaps(deviations, start),

@@ -116,14 +116,14 @@ def _range(name: str) -> str:
     return f"from {kind.low:g} to {kind.high:g}"
 
 
-def prior_of(name: str, given: Any) -> tuple[float, float]:
+def prior_of(name: str, pair: Any) -> tuple[float, float]:
     """A value and its standard deviation.
 
     Raises
     ------
     InputError
     """
-    value, spread = _pair(name, given, "prior", "value and a standard deviation")
+    value, spread = _pair(name, pair, "prior", "value and a standard deviation")
     if not spread > 0.0:
         raise InputError(
             f"the prior of {name} needs a standard deviation > 0, got {spread:g}: to hold {name} "
@@ -132,14 +132,14 @@ def prior_of(name: str, given: Any) -> tuple[float, float]:
     return in_range(name, value), spread
 
 
-def bounds_of(name: str, given: Any) -> tuple[float, float]:
+def bounds_of(name: str, pair: Any) -> tuple[float, float]:
     """The least and the largest value.
 
     Raises
     ------
     InputError
     """
-    low, high = _pair(name, given, "bounds", "least and a largest value")
+    low, high = _pair(name, pair, "bounds", "least and a largest value")
     if not low < high:
         raise InputError(f"the bounds of {name} must ascend, got {low:g} and {high:g}")
     if high <= ALL[name].low or low >= ALL[name].high:
@@ -150,10 +150,10 @@ def bounds_of(name: str, given: Any) -> tuple[float, float]:
     return low, high
 
 
-def _pair(name: str, given: Any, what: str, words: str) -> tuple[float, float]:
+def _pair(name: str, pair: Any, what: str, words: str) -> tuple[float, float]:
     try:
-        first, second = given
+        first, second = pair
     except (TypeError, ValueError):
-        raise InputError(f"the {what} of {name} must be a {words}, got {given!r:.40}") from None
+        raise InputError(f"the {what} of {name} must be a {words}, got {pair!r:.40}") from None
     unit = ALL[name].unit
     return real(f"the {what} of {name}", first, unit), real(f"the {what} of {name}", second, unit)

@@ -79,8 +79,8 @@ _SIDE = _TABLE.size // 2
 
 
 @inlined
-def cone_sums(alpha: float, beta: float, size: float, far: float) -> Four:
-    """Under a cone of a radius > 0, times that radius; ``far``: ln(βa/α) where that is > 0."""
+def cone_sums(alpha: float, beta: float, size: float, farthest: float) -> Four:
+    """Under a cone of a radius > 0, times that radius; ``farthest``: ln(βa/α) where that is > 0."""
     rim = beta * size
     q = (rim - alpha) / (rim + alpha)
     place = math.sqrt(abs(q)) * _SPANS
@@ -93,7 +93,7 @@ def cone_sums(alpha: float, beta: float, size: float, far: float) -> Four:
     cube, fourth = square * size, square * square
     if q > 0.0:
         ratio = alpha / rim
-        more = ratio * ratio * ratio * far
+        more = ratio * ratio * ratio * farthest
         e, ye, xe = e + more * FAR[0], ye + ratio * more * FAR[1], xe + ratio * more * FAR[2]
         moment += ratio * ratio * more * FAR[3]
     return cube * e, fourth * ye, fourth * xe, size * fourth * moment

@@ -56,7 +56,7 @@ def panels_for(boxes: list[Box]) -> tuple[Figure, list[Axes]]:
 
 def finished(figure: Figure, panels: list[Axes], boxes: list[Box], title: str) -> None:
     """What is labelled in the first panel below all, the title, and the height that all takes."""
-    legend_below(figure, LEGEND_ROW, given=panels[0].get_legend_handles_labels())
+    legend_below(figure, LEGEND_ROW, shown=panels[0].get_legend_handles_labels())
     titled(figure, title)
     under = sum(one.get_window_extent().height for one in figure.legends) / figure.dpi
     lines = figure.get_suptitle().count("\n") + 1

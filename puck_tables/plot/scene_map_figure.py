@@ -68,7 +68,7 @@ def draw(stops: Map) -> Figure:
     if not panels.flat[0].lines and (end > CARRIED_ROUND).any():
         curves.append(Patch(facecolor="white", edgecolor="black", hatch=_HATCH))
         words.append("not at rest at the end")
-    legend_below(figure, _LEGEND_ROW, given=(curves, words))
+    legend_below(figure, _LEGEND_ROW, shown=(curves, words))
     titled(figure, stops.title + (f" at {at}" if at else ""))
     return figure
 

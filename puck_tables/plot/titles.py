@@ -73,16 +73,16 @@ def width_of(axes: Axes) -> float:
 
 def legend_below(
     where: Axes | Figure, columns: int = 3, down: float = 0.16,
-    given: tuple[list[Any], list[str]] | None = None,
+    shown: tuple[list[Any], list[str]] | None = None,
 ) -> None:  # fmt: skip
     """A legend under a panel or a figure, where nothing is drawn, of as many columns as fit.
 
-    ``down``: how far below its panel, in heights of it; ``given``: handles and labels, if not those
+    ``down``: how far below its panel, in heights of it; ``shown``: handles and labels, if not those
     of the panels.
     """
     from matplotlib.axes import Axes
 
-    handles, labels = given or _entries(where)
+    handles, labels = shown or _entries(where)
     if not labels:
         return
     entries: dict[str, Any] = {"handles": handles, "labels": [shortened(label) for label in labels]}

@@ -96,7 +96,7 @@ class _Family:
 
     distance: float
     decel: float
-    curve: LaunchFamily
+    family: LaunchFamily
     result: dict[float, tuple[float, ...]] = field(default_factory=dict)  # what stands at a u
 
     @property
@@ -108,27 +108,27 @@ class _Family:
     def at(self, u: float) -> tuple[float, float, float, float]:
         """Speed, rim speed, stop time, and arg(X + iY) for ω > 0."""
         if u not in self.result:
-            self.result[u] = tuple((self.curve.rows(np.array([u]))[0] + self.scales).tolist())
+            self.result[u] = tuple((self.family.rows(np.array([u]))[0] + self.scales).tolist())
         speed, rim, time, deflection = self.result[u]
         return speed, rim, time, deflection
 
     def all_where(self, quantity: int, value: float) -> list[float]:
         """All u where a quantity of the curve has a value; −∞ is a slide without spin."""
         wanted = value - float(self.scales[quantity])
-        _, *ends = self.curve.brackets(quantity, np.array([wanted]))
+        _, *ends = self.family.brackets(quantity, np.array([wanted]))
         roots = []
         for low, high in zip(*(one.tolist() for one in ends), strict=True):
             u = low if low == high else self._looked_up(quantity, wanted, low, high)
-            roots.append(self.curve.searched(quantity, wanted, low, high) if u is None else u)
+            roots.append(self.family.searched(quantity, wanted, low, high) if u is None else u)
         return sorted(set(roots))
 
     def _looked_up(self, quantity: int, wanted: float, low: float, high: float) -> float | None:
         """A root looked up, put right by one integration; None where that is no way."""
-        near = self.curve.near(quantity, wanted, low, high)
+        near = self.family.near(quantity, wanted, low, high)
         if near is None:
             return None
         u, slopes = near
-        row = self.curve.rows(np.array([u]))[0]
+        row = self.family.rows(np.array([u]))[0]
         step = (wanted - row[quantity]) / slopes[quantity]
         if not abs(step) < _SMALL_STEP:
             return None
@@ -139,7 +139,7 @@ class _Family:
 
     def extreme(self, quantity: int) -> tuple[float, float]:
         """The greatest speed or the least time of all, and the rim speed there."""
-        u, value = self.curve.extreme(quantity)
+        u, value = self.family.extreme(quantity)
         return value + float(self.scales[quantity]), self.at(u)[RIM]
 
     def ranges(self, fastest: float, widest: float) -> list[tuple[float, float]]:
@@ -166,10 +166,10 @@ def aim_at(
     refuse_both(spin=spin, speed=speed, stop_time=stop_time)
     fastest, widest = checked_bounds(max_speed, max_spin, count)
     none = np.empty(0)
-    given = Aim(puck, (x, y), np.empty((0, 2)), none, none, none, "")
+    aim = Aim(puck, (x, y), np.empty((0, 2)), none, none, none, "")
     distance = math.hypot(x, y)
     if distance == 0.0:
-        return _on_the_spot(given, spin, speed, stop_time)
+        return _on_the_spot(aim, spin, speed, stop_time)
     if distance == math.inf:
         raise InputError(f"target ({x:g}, {y:g}) m is too far for floating point: use larger units")
     family = _Family(distance, J, launch_family_of(puck.body))
@@ -201,7 +201,7 @@ def aim_at(
         for sense in senses if u > -math.inf else (1.0,):
             heading = bearing - sense * deflection
             launches.append((sense * turning, v * math.cos(heading), v * math.sin(heading), time))
-    return _found(given, launches, answer)
+    return _with_launches(aim, launches, answer)
 
 
 def refuse_both(**wishes: object) -> str | None:
@@ -251,16 +251,16 @@ def _met(family: _Family, quantity: int, wanted: float, radius: float) -> tuple[
     )
 
 
-def _found(given: Aim, launches: list[tuple[float, float, float, float]], answer: str) -> Aim:
+def _with_launches(aim: Aim, launches: list[tuple[float, float, float, float]], answer: str) -> Aim:
     """The aim with its launches (ω, vx, vy, stop time), each integrated for its miss."""
     rows = np.array(sorted(launches)).reshape(-1, 4)
     if not answer:
         answer = f"{len(rows)} launch{'' if len(rows) == 1 else 'es'}"
     result = replace(
-        given, launch_velocity=rows[:, 1:3], launch_spin=rows[:, 0], stop_time=rows[:, 3],
+        aim, launch_velocity=rows[:, 1:3], launch_spin=rows[:, 0], stop_time=rows[:, 3],
         answer=answer,
     )  # fmt: skip
-    puck = given.puck
+    puck = aim.puck
     same = [np.full(len(rows), value) for value in (puck.delta, puck.decel, puck.radius)]
     launched = np.stack([*result.launch_velocity.T, result.launch_spin, *same])
     if not fits(launched, puck.body.longest).all():
@@ -269,23 +269,21 @@ def _found(given: Aim, launches: list[tuple[float, float, float, float]], answer
     return replace(result, miss=misses(puck, target, result.launch_velocity, result.launch_spin))
 
 
-def _on_the_spot(
-    given: Aim, spin: float | None, speed: float | None, stop_time: float | None
-) -> Aim:
+def _on_the_spot(aim: Aim, spin: float | None, speed: float | None, stop_time: float | None) -> Aim:
     """The target is where the puck lies: pure spin stays there, ¾ r|ω|/J for a plain puck."""
-    puck = given.puck
+    puck = aim.puck
     factor = puck.body.spin_time
     if spin is not None:
         wanted = real("spin", spin, "rad/s")
         time = _moderate(puck.radius * abs(wanted) / puck.decel * factor, wanted)
-        return _found(given, [(wanted, 0.0, 0.0, time)], "")
+        return _with_launches(aim, [(wanted, 0.0, 0.0, time)], "")
     if stop_time is not None:
         time = positive("stop_time", stop_time, "s")
         turning = _moderate(time / factor * puck.decel / puck.radius, time)
-        return _found(given, [(s * turning, 0.0, 0.0, time) for s in (-1.0, 1.0)], "")
+        return _with_launches(aim, [(s * turning, 0.0, 0.0, time) for s in (-1.0, 1.0)], "")
     if speed is not None:
-        return _found(given, [], "no launch with speed comes to rest where it began")
-    return _found(given, [], "the target is where the puck lies: any spin alone stays there")
+        return _with_launches(aim, [], "no launch with speed comes to rest where it began")
+    return _with_launches(aim, [], "the target is where the puck lies: any spin alone stays there")
 
 
 def _moderate(number: float, cause: float) -> float:

@@ -213,7 +213,7 @@ class _Search:
     count: int
 
     @cached_property
-    def curve(self) -> LaunchFamily:
+    def family(self) -> LaunchFamily:
         return launch_family_of(self.puck.body)
 
     @property
@@ -259,24 +259,24 @@ class _Search:
         """Of which target, and ln v, ln r|ω|, ln t₀ and arg Z, of all launches that are wished."""
         if self.wished is None:
             which, u = self._sampled(scales)
-            return which, self.curve.looked_up(u) + scales[which]
+            return which, self.family.looked_up(u) + scales[which]
         quantity = _QUANTITIES[self.wished]
         with np.errstate(divide="ignore"):
             log = np.log(np.abs(wanted))
         log += math.log(self.puck.radius) if quantity == RIM else 0.0
         values = log - scales[:, quantity]
-        which, u = self.curve.roots(quantity, values)
+        which, u = self.family.roots(quantity, values)
         none = np.bincount(which, minlength=wanted.size) == 0
         if quantity == RIM:
             still = np.flatnonzero(wanted == 0.0)
             none[still] = False
             which, u = np.append(which, still), np.append(u, np.full(still.size, -math.inf))
         else:
-            best = self.curve.extreme(quantity)[1]
+            best = self.family.extreme(quantity)[1]
             none &= (values > best) != (quantity == SPEED)
         if none.any():
             raise InputError(BEYOND)
-        logs = self.curve.looked_up(u) + scales[which]
+        logs = self.family.looked_up(u) + scales[which]
         logs[:, quantity] = log[which]
         return which, logs
 
@@ -288,13 +288,13 @@ class _Search:
             return np.repeat(np.arange(n), one.size), np.tile(one, n)
         ends: list[set[float]] = [{-math.inf, math.inf} for _ in range(n)]
         for quantity, limit in zip((SPEED, RIM), limits.tolist(), strict=True):
-            of, u = self.curve.roots(quantity, limit - scales[:, quantity])
+            of, u = self.family.roots(quantity, limit - scales[:, quantity])
             for target, end in zip(of.tolist(), u.tolist(), strict=True):
                 ends[target].add(end)
         intervals = [list(pairwise(sorted(one))) for one in ends]
         middles = np.array([between(*one) for some in intervals for one in some])
         sizes = [len(some) for some in intervals]
-        logs = self.curve.looked_up(middles) + np.repeat(scales, sizes, axis=0)
+        logs = self.family.looked_up(middles) + np.repeat(scales, sizes, axis=0)
         allowed = np.all(logs[:, [SPEED, RIM]] <= limits, axis=1)
         inside = iter(allowed.tolist())
         us = [

@@ -86,7 +86,7 @@ class LaunchFamily:
     body: UnitPuck
     u: FloatArray = field(repr=False)
     values: FloatArray = field(repr=False)
-    pieces: FloatArray = field(repr=False)
+    limits: FloatArray = field(repr=False)
     fit: npt.NDArray[np.bool_] = field(repr=False)
 
     def rows(self, u: FloatArray) -> FloatArray:
@@ -94,7 +94,7 @@ class LaunchFamily:
         return np.column_stack(_logs(u, _stops(self.body, u)))
 
     @cached_property
-    def _cut(self) -> FloatArray:
+    def _section(self) -> FloatArray:
         if self.body.is_plain:
             return at_height(StopTable.shipped().thinned(), self.body.delta)
         return np.empty((2, WIDTH))
@@ -103,9 +103,9 @@ class LaunchFamily:
         """Where the curve is looked up (n,): not far out, nor where its pieces do not fit it."""
         if self.body.is_plain:
             return np.abs(u) <= LARGEST_U
-        starts = self.pieces[:, 0]
+        starts = self.limits[:, 0]
         piece = np.searchsorted(starts, u, side="right") - 1
-        last = starts[-1] + 1.0 / self.pieces[-1, 1]
+        last = starts[-1] + 1.0 / self.limits[-1, 1]
         inside: npt.NDArray[np.bool_] = (piece >= 0) & (u <= last) & self.fit[np.maximum(piece, 0)]
         return inside
 
@@ -114,7 +114,7 @@ class LaunchFamily:
         slides = u == -math.inf
         inside = self.is_tabulated(u)
         out = np.empty((u.size, LOGS))
-        fill_logs(np.where(inside | slides, u, 0.0), self._cut, self.pieces, out)
+        fill_logs(np.where(inside | slides, u, 0.0), self._section, self.limits, out)
         others = ~inside & ~slides
         if others.any():
             out[others] = self.rows(u[others])
@@ -130,7 +130,7 @@ class LaunchFamily:
         # brackets end where pieces do
         inside = (low == high) | self.is_tabulated(0.5 * low + 0.5 * high)
         first = np.where(inside, low, high)
-        fill_roots(quantity, wanted, first, high, self._cut, self.pieces, out)
+        fill_roots(quantity, wanted, first, high, self._section, self.limits, out)
         for n in np.flatnonzero(~inside):
             out[n] = self.searched(quantity, wanted[n], low[n], high[n])
         order = np.lexsort((out, which))
@@ -150,7 +150,7 @@ class LaunchFamily:
         ends = np.array([low]), np.array([high])
         if not self.is_tabulated(0.5 * (ends[0] + ends[1])).all():
             return None
-        fill_roots(quantity, np.array([wanted]), *ends, self._cut, self.pieces, out)
+        fill_roots(quantity, np.array([wanted]), *ends, self._section, self.limits, out)
         about = out + np.array([-0.5, 0.5]) * _DIFFERENCE
         if not self.is_tabulated(about).all():
             return None
@@ -266,13 +266,13 @@ def launch_family_of(body: UnitPuck) -> LaunchFamily:
         fresh = np.zeros(u.size - 1, bool)
         both = n + np.arange(n.size)
         fresh[both], fresh[both + 1] = True, True
-    pieces, fit = _pieces(body, u, values, slopes, middles)
+    limits, fit = _pieces(body, u, values, slopes, middles)
     turns = np.unique(_turns(u, values[:, :BEND], slopes[:, :BEND]))
     more = np.concatenate([ends, turns])
     u = np.concatenate([u, more])
     values = np.concatenate([values[:, :BEND], _values(body, more)])
     order = np.argsort(u, kind="stable")
-    return LaunchFamily(body, u[order], values[order], pieces, fit)
+    return LaunchFamily(body, u[order], values[order], limits, fit)
 
 
 def _first_nodes(body: UnitPuck) -> FloatArray:
@@ -374,9 +374,9 @@ def _pieces(
         result[: len(rows), chosen] = np.linalg.solve(at, one.reshape(len(rows), -1)).reshape(
             one.shape
         )
-    pieces = np.empty((width.size, PIECE))
-    pieces[:, 0], pieces[:, 1] = u[:-1], 1.0 / width
-    pieces[:, 2:] = result.transpose(1, 2, 0).reshape(width.size, -1)
+    limits = np.empty((width.size, PIECE))
+    limits[:, 0], limits[:, 1] = u[:-1], 1.0 / width
+    limits[:, 2:] = result.transpose(1, 2, 0).reshape(width.size, -1)
     fit = np.ones(width.size, bool)
     for share in (0.25, 0.75):
         there = u[:-1][blind] + share * width[blind]
@@ -384,6 +384,6 @@ def _pieces(
             np.column_stack(_logs(there, _stops(body, there))),
             np.empty((there.size, LOGS)),
         )
-        fill_logs(there, np.empty((2, WIDTH)), pieces, guess)
+        fill_logs(there, np.empty((2, WIDTH)), limits, guess)
         fit[blind] &= (np.abs(guess - truth) <= _FITTED).all(axis=1)
-    return pieces, fit
+    return limits, fit

@@ -138,7 +138,7 @@ class Population:
 _ARGUMENT = {column: name for name, column in COLUMN.items()}
 
 
-def ranged(given: Mapping[str, Any], laws: Any) -> Population:
+def ranged(chosen: Mapping[str, Any], laws: Any) -> Population:
     """Launches for all combinations of numbers and lists of them.
 
     Parameters
@@ -155,7 +155,7 @@ def ranged(given: Mapping[str, Any], laws: Any) -> Population:
     >>> ranged({"spin": [0.0, 1.0], "speed": 1.0}, "uniform").axes
     {'launch_spin': array([0., 1.])}
     """
-    values, over, result = _values(given, laws)
+    values, over, result = _values(chosen, laws)
     for name, array in values.items():
         if array.ndim > 1 or array.size == 0:
             raise InputError(f"{name} must be a number or a list of numbers")
@@ -167,7 +167,7 @@ def ranged(given: Mapping[str, Any], laws: Any) -> Population:
     return Population(dims, shape, values, over, result)
 
 
-def drawn(given: Mapping[str, Any], laws: Any, count: int, seed: int) -> Population:
+def drawn(chosen: Mapping[str, Any], laws: Any, count: int, seed: int) -> Population:
     """Launches of which some numbers are drawn.
 
     Raises
@@ -175,13 +175,13 @@ def drawn(given: Mapping[str, Any], laws: Any, count: int, seed: int) -> Populat
     InputError
         If none is.
     """
-    spreads = {name: one for name, one in given.items() if isinstance(one, Spread)}
+    spreads = {name: one for name, one in chosen.items() if isinstance(one, Spread)}
     if not spreads:
         raise InputError(
             "samples need a spread: give one number or more as a spread, such as a spin of "
             "normal:5:0.2"
         )
-    others = {name: one for name, one in given.items() if name not in spreads}
+    others = {name: one for name, one in chosen.items() if name not in spreads}
     values, over, result = _values(others, laws)
     for name, array in values.items():
         if array.ndim:
@@ -191,7 +191,7 @@ def drawn(given: Mapping[str, Any], laws: Any, count: int, seed: int) -> Populat
     return Population((SAMPLE,), (count,), values, over, result, spreads, seed)
 
 
-def labelled(launches: Any, given: Mapping[str, Any], laws: Any) -> Population:
+def labelled(launches: Any, chosen: Mapping[str, Any], laws: Any) -> Population:
     """Launches of an xarray.Dataset: its coordinates and variables, over its dimensions.
 
     Parameters
@@ -214,7 +214,7 @@ def labelled(launches: Any, given: Mapping[str, Any], laws: Any) -> Population:
     numbers = {
         _ARGUMENT[name]: np.asarray(one.values) for name, one in arrays.items() if name in _ARGUMENT
     }
-    twice = [name for name in numbers if name in given]
+    twice = [name for name in numbers if name in chosen]
     if twice:
         raise InputError(f"{twice[0]} stands in the dataset and is given, too: give one of them")
     for name, one in arrays.items():
@@ -223,7 +223,7 @@ def labelled(launches: Any, given: Mapping[str, Any], laws: Any) -> Population:
             raise InputError(f"{name} of the dataset is in {unit}: it must be in {expected}")
     if not numbers or 0 in sizes.values():
         raise InputError(f"the dataset has no launches: give it variables of {known}")
-    values, over, result = _values({**given, **numbers}, laws)
+    values, over, result = _values({**chosen, **numbers}, laws)
     for name, array in values.items():
         if name in numbers:
             over[name] = tuple(map(str, arrays[COLUMN[name]].dims))
@@ -235,9 +235,9 @@ def labelled(launches: Any, given: Mapping[str, Any], laws: Any) -> Population:
 
 
 def _values(
-    given: Mapping[str, Any], laws: Any
+    chosen: Mapping[str, Any], laws: Any
 ) -> tuple[dict[str, FloatArray], dict[str, tuple[str, ...]], tuple[str | Law, ...]]:
-    refuse_clashes(given)
+    refuse_clashes(chosen)
     values: dict[str, FloatArray] = {}
     result: tuple[Any, ...] = (laws,)
     if isinstance(laws, list | tuple | np.ndarray):
@@ -248,7 +248,7 @@ def _values(
                 "puck of its own that takes about a second to prepare"
             )
         values["pressure"] = np.arange(float(len(result)))
-    for name, value in given.items():
+    for name, value in chosen.items():
         if isinstance(value, Spread):
             raise InputError(f"{name} is a spread: give it to sample, not to sweep")
         values[name] = finite_array(name, value, COLUMNS[COLUMN[name]].unit)

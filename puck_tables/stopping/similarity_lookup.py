@@ -122,7 +122,7 @@ def end_logs(side: int, double_share: float) -> tuple[float, float]:
 
 @inlined
 def _log_n(side: int, double_share: float, c0: float, kappa: float, delta: float,
-           curve: float, log_time: float) -> float:  # fmt: skip
+           nodes: float, log_time: float) -> float:  # fmt: skip
     """ln|N|, or with log_time = 0 the same of Q alone."""
     slow, fast, _ = end_rates(delta)
     log_plus, log_minus = end_logs(side, double_share)
@@ -130,7 +130,7 @@ def _log_n(side: int, double_share: float, c0: float, kappa: float, delta: float
     return (
         math.log(abs((c - c0) / c0))
         - kappa * (log_plus / slow + log_minus / fast - log_time)
-        + curve
+        + nodes
     )
 
 
@@ -179,7 +179,7 @@ def _heading(side: int, double_share: float, delta: float, turning: float, part:
 
 @inlined
 def look_up_launch(
-    launch: FloatArray, stops: FloatArray, curve: FloatArray, turn_inverse: FloatArray,
+    launch: FloatArray, stops: FloatArray, nodes: FloatArray, turn_inverse: FloatArray,
     constants: FloatArray, turn_share: float, sums: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
     """All that is known of a launch (6,): vx, vy, ω, δ, J, r, into ``out`` (14,).
@@ -195,7 +195,7 @@ def look_up_launch(
     s = 2.0 * delta * delta - 1.0
     side, xi = slip_place(speed, rim)
     t, along, across = _stop_functions(stops, side, xi, s, sums)
-    _similarity_sums(curve, side, xi, sums, 4)
+    _similarity_sums(nodes, side, xi, sums, 4)
     body, length = _polynomial(sums, BODY_SUM, s), _polynomial(sums, LENGTH_SUM, s)
     r, part = _polynomial(sums, CURVE_SUM, s), _polynomial(sums, TURN_SUM, s)
     if rim == 0.0:
@@ -230,7 +230,7 @@ def look_up_launch(
         log_share = math.log(turn_share)
         end, xi, y = _inverse_place(sign, log_n + kappa * log_share, kappa, delta)
         share = min(y * inverse_sum(turn_inverse, end, xi, s, sums), 1.0)
-        _similarity_sums(curve, end, place_of_share(share), sums, 2)
+        _similarity_sums(nodes, end, place_of_share(share), sums, 2)
         part = _polynomial(sums, TURN_SUM, s)
         turn = turning * log_share + _heading(end, share, delta, turning, part) - heading
         out[TURN] = turn if edge > 0.0 else -turn
@@ -293,19 +293,19 @@ def place_in_time(puck: FloatArray, time: float) -> tuple[int, float, float, flo
 
 @inlined
 def functions_at(
-    stops: FloatArray, curve: FloatArray, side: int, double_share: float, s: float,
+    stops: FloatArray, nodes: FloatArray, side: int, double_share: float, s: float,
     sums: FloatArray, result: FloatArray,
 ) -> None:  # fmt: skip
     """T, along, across, body angle, S/δ into ``result`` (5,)."""
     xi = place_of_share(double_share)
     result[0], result[1], result[2] = _stop_functions(stops, side, xi, s, sums)
-    _similarity_sums(curve, side, xi, sums, 2)
+    _similarity_sums(nodes, side, xi, sums, 2)
     result[3], result[4] = _polynomial(sums, BODY_SUM, s), _polynomial(sums, TURN_SUM, s)
 
 
 @inlined
 def look_up_state(
-    puck: FloatArray, time: float, stops: FloatArray, curve: FloatArray, time_inverse: FloatArray,
+    puck: FloatArray, time: float, stops: FloatArray, nodes: FloatArray, time_inverse: FloatArray,
     sums: FloatArray, result: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
     """One of :func:`fill_states`; ``sums`` (40,) and ``result`` (5,) are room to work."""
@@ -313,5 +313,5 @@ def look_up_state(
     if side >= 0:
         s = 2.0 * puck[3] * puck[3] - 1.0
         y = min(y * inverse_sum(time_inverse, side, xi, s, sums), 1.0)
-        functions_at(stops, curve, side, y, s, sums, result)
+        functions_at(stops, nodes, side, y, s, sums, result)
     fill_state(puck, time, side, y, left, log, result, out)

@@ -190,21 +190,21 @@ def _find_coefficients(room: FloatArray) -> None:
 
 @inlined
 def _change(
-    u0: float, late: float, tilt: float, gone: Numbers, rates: Numbers, here: Numbers,
+    u0: float, elapsed: float, tilt: float, gone: Numbers, rates: Numbers, here: Numbers,
     coefficients: Numbers, own: Numbers,
 ) -> Numbers:  # fmt: skip
     """How a state changes with its launch: what is left of x, y, body angle; vx, vy, rω.
 
-    ``u0``: of u at the launch; ``late``: of its stop; ``tilt``: of δ.
+    ``u0``: of u at the launch; ``elapsed``: of its stop; ``tilt``: of δ.
     """
     speed, rim, cosine, sine, one_slip, ex, ey, fx, fy = gone
     t, t_slope, t_tilt, rate, one_way, h0, deflection, begun = rates
     flown, raised, turn_slope, turned = coefficients
     _, _, turn0, _, far0, is_far = here
     if tilt == 0.0:
-        w, y = late * one_slip, flown * u0
+        w, y = elapsed * one_slip, flown * u0
     else:
-        w, y = late * one_slip - t_tilt, raised
+        w, y = elapsed * one_slip - t_tilt, raised
     u = (t * y - rate * w) * one_way
     log_q = (w - t_slope * y) * one_way
     turn = h0 * log_q + turn_slope * u

@@ -27,7 +27,7 @@ class InverseSolution:
     """Functions and constants of a stop table at its heights, from its coefficients."""
 
     def __init__(
-        self, cells: int, constants: FloatArray, stops: FloatArray, curve: FloatArray
+        self, cells: int, constants: FloatArray, stops: FloatArray, places: FloatArray
     ) -> None:
         delta = heights()
         self.delta, self.cells = delta, cells
@@ -36,10 +36,10 @@ class InverseSolution:
         self.c0, self.kappa, turning, self.quarter = constants @ powers
         self.turning = delta * turning
         stops = stops.reshape(2, -1, STOP_POWERS, 3)
-        curve = curve[..., : 4 * HEIGHTS].reshape(2, -1, 4, HEIGHTS)
+        places = places[..., : 4 * HEIGHTS].reshape(2, -1, 4, HEIGHTS)
         self.splines = np.concatenate([
             np.einsum("sipf,ph->fsih", stops, powers[:STOP_POWERS]),
-            np.einsum("sifp,ph->fsih", curve, powers[:HEIGHTS]),
+            np.einsum("sifp,ph->fsih", places, powers[:HEIGHTS]),
         ])  # fmt: skip
 
     def at(self, function: int, xi: FloatArray) -> FloatArray:

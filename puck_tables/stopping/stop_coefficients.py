@@ -73,12 +73,12 @@ class StopCoefficients(Table):
     @cached_property
     def time_inverse(self) -> FloatArray:
         """From the time that is left to the slip ratio."""
-        return inverse_splines(self._curve, with_time=True)
+        return inverse_splines(self._inverse, with_time=True)
 
     @cached_property
     def turn_inverse(self) -> FloatArray:
         """From Q to the slip ratio."""
-        return inverse_splines(self._curve, with_time=False)
+        return inverse_splines(self._inverse, with_time=False)
 
     @cached_property
     def slopes(self) -> Slopes:
@@ -93,7 +93,7 @@ class StopCoefficients(Table):
     @cached_property
     def state_coefficients(self) -> FloatArray:
         """What :mod:`puck_tables.stopping.state_lookup` reads."""
-        values = inverse_solution_splines(self._curve, with_time=True)
+        values = inverse_solution_splines(self._inverse, with_time=True)
         padded = np.zeros((*values.shape[:3], ORBIT_WIDTH))
         padded[..., : values.shape[3]] = values
         return side_by_side(padded)
@@ -101,11 +101,11 @@ class StopCoefficients(Table):
     @cached_property
     def turn_coefficients(self) -> FloatArray:
         """The heading's regular part over the place by Q, (2, cells + 3, 12)."""
-        parts = inverse_solution_splines(self._curve, with_time=False)[..., REGULAR:]
+        parts = inverse_solution_splines(self._inverse, with_time=False)[..., REGULAR:]
         return in_rows(parts, TURN_STEP * TURN_POWERS, power_first=True)
 
     @cached_property
-    def _curve(self) -> InverseSolution:
+    def _inverse(self) -> InverseSolution:
         return InverseSolution(
             self.axis.cells, self.constants, self.stop_coefficients, self.similarity_coefficients
         )
@@ -116,7 +116,7 @@ class StopCoefficients(Table):
         return np.stack([values[: n + 1], values[: n - 1 : -1]])
 
     @cached_property
-    def _cuts(self) -> dict[tuple[int, int], FloatArray]:
+    def _thinned_tables(self) -> dict[tuple[int, int], FloatArray]:
         return {}
 
     def thinned(self, powers: int = STOP_POWERS, thinning: int = 1) -> FloatArray:
@@ -131,8 +131,8 @@ class StopCoefficients(Table):
         -------
         array (2, cells/thinning + 3, powers × WIDTH)
         """
-        if (powers, thinning) in self._cuts:
-            return self._cuts[powers, thinning]
+        if (powers, thinning) in self._thinned_tables:
+            return self._thinned_tables[powers, thinning]
         kept = section_rows(self._sides([0, 1, 2], thinning), powers)
-        self._cuts[powers, thinning] = kept
+        self._thinned_tables[powers, thinning] = kept
         return kept

@@ -123,12 +123,12 @@ class StopSection(SectionTable):
         friction = body.friction(max(0.01 * allowed, FINEST_ACCURACY))
         section, counts = friction.for_motion(body.gyration), np.array([1.0] * 5 + [_TURN])
 
-        def off(phi: FloatArray) -> FloatArray:
+        def apart(phi: FloatArray) -> FloatArray:
             truth = stops_at(body, friction, section, phi, 0.1 * allowed)
             missed: FloatArray = (self.spline.at(phi) - truth) * _factors(phi) * counts
             return missed
 
-        return self.judged(off, "integration", points, allowed, allowed, progress)
+        return self.judged(apart, "integration", points, allowed, allowed, progress)
 
     # the record of the kind
 
@@ -266,8 +266,8 @@ def _error_of_friction(body: UnitPuck, friction: FrictionSection, accuracy: floa
         stops_at(body, friction, friction.for_motion(body.gyration, coarser), phi, 0.1 * accuracy)
         for coarser in (False, True)
     )
-    off = np.abs(whole - half) * _factors(phi)
-    return 2.0 * float(off[:, _COUNTED].max()) / _COARSER_BY
+    apart = np.abs(whole - half) * _factors(phi)
+    return 2.0 * float(apart[:, _COUNTED].max()) / _COARSER_BY
 
 
 def _factors(phi: FloatArray) -> FloatArray:

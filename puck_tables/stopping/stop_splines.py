@@ -68,18 +68,18 @@ def section_rows(sides: FloatArray, powers: int) -> FloatArray:
     return aligned(result.reshape(2, -1, powers * WIDTH))
 
 
-def inverse_splines(curve: InverseSolution, with_time: bool) -> FloatArray:
+def inverse_splines(solution: InverseSolution, with_time: bool) -> FloatArray:
     """From the time that is left, or from Q, to the slip ratio, (2, cells + 3, 9)."""
-    ratios = curve.ratios(with_time)
+    ratios = solution.ratios(with_time)
     return np.ascontiguousarray(by_power(ratios).transpose(2, 1, 0))
 
 
-def inverse_solution_splines(curve: InverseSolution, with_time: bool) -> FloatArray:
+def inverse_solution_splines(solution: InverseSolution, with_time: bool) -> FloatArray:
     """The functions of an orbit over the place by time or Q: (power, node, side, function)."""
-    return by_power(curve.splined(with_time))
+    return by_power(solution.splined(with_time))
 
 
-def at_height(cut: FloatArray, delta: float) -> FloatArray:
+def at_height(rows: FloatArray, delta: float) -> FloatArray:
     """T, along and δ · across at one height, (2, (cells + 3) × WIDTH): of no power any more.
 
     Examples
@@ -88,7 +88,7 @@ def at_height(cut: FloatArray, delta: float) -> FloatArray:
     >>> at_height(Table.shipped("stops").thinned(), 0.5).shape[0]
     2
     """
-    powers = cut.reshape(2, -1, STOP_POWERS, WIDTH)
+    powers = rows.reshape(2, -1, STOP_POWERS, WIDTH)
     result = np.zeros_like(powers[:, :, 0])
     for power in range(STOP_POWERS - 1, -1, -1):
         result = result * (2.0 * delta**2 - 1.0) + powers[:, :, power]

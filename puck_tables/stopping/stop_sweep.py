@@ -29,9 +29,9 @@ DEFAULT_SPEED = np.linspace(0.0, 2.0, 41)
 DEFAULT_SPIN = np.linspace(-4.0, 4.0, 41)
 
 
-def sweep(puck: Any, given: Mapping[str, Any], launches: Any, *, how: SweepOptions) -> Result:
+def sweep(puck: Any, chosen: Mapping[str, Any], launches: Any, *, how: SweepOptions) -> Result:
     """Stops of all combinations of numbers: :meth:`puck_tables.Puck.sweep`."""
-    numbers = numbers_of(puck, given)
+    numbers = numbers_of(puck, chosen)
     if launches is None:
         if not {"spin", "speed", "vx", "vy"} & numbers.keys():
             numbers |= {"spin": DEFAULT_SPIN, "speed": DEFAULT_SPEED}
@@ -49,18 +49,18 @@ def sweep(puck: Any, given: Mapping[str, Any], launches: Any, *, how: SweepOptio
 
 
 def sample(
-    puck: Any, count: int, seed: int, given: Mapping[str, Any], *, how: SweepOptions
+    puck: Any, count: int, seed: int, chosen: Mapping[str, Any], *, how: SweepOptions
 ) -> Result:
     """Stops of launches that scatter: :meth:`puck_tables.Puck.sample`."""
     checked_samples(count, seed)
-    numbers = numbers_of(puck, given)
+    numbers = numbers_of(puck, chosen)
     laws = numbers.pop("pressure", puck.pressure)
     return how.done(drawn(_whole(puck, numbers, numbers), laws, count, seed), puck)
 
 
-def numbers_of(puck: Any, given: Mapping[str, Any]) -> dict[str, Any]:
+def numbers_of(puck: Any, chosen: Mapping[str, Any]) -> dict[str, Any]:
     """What was given, by the names of arguments; a velocity by its components."""
-    numbers = {name: value for name, value in given.items() if value is not None}
+    numbers = {name: value for name, value in chosen.items() if value is not None}
     if "velocity" in numbers:
         if {"speed", "heading", "vx", "vy"} & numbers.keys():
             raise InputError(

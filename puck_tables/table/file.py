@@ -131,10 +131,10 @@ def encode(table: Record, command: str) -> bytes:
             write(name, values, units="1", long_name=long_name, max_error=largest)
             for dimension, axis_name in enumerate(table.axes):
                 file[name].dims[dimension].attach_scale(file[axis_name])
-        for name, axis in table.curve.items():
+        for name, axis in table.profile.items():
             write_axis(name, axis)
-        if table.curve:
-            argument, function = table.curve
+        if table.profile:
+            argument, function = table.profile
             file[argument].make_scale(argument)
             file[function].dims[0].attach_scale(file[argument])
         file.attrs.update(attributes)
@@ -287,7 +287,7 @@ def _refuse_unusable(table: Record, arrays: dict[str, FloatArray]) -> None:
     if any(table.metadata.get(name) != value for name, value in known.items()):
         raise TableError(f"{table.source} was made by a recipe that this program does not know")
     low, high, finest = table.bounds
-    fixed = table.axes | table.curve
+    fixed = table.axes | table.profile
     if not (
         all(np.allclose(arrays[n], a.values, rtol=_SAME, atol=_SAME) for n, a in fixed.items())
         and np.all((table.values >= low) & (table.values <= high))

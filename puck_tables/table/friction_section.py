@@ -133,12 +133,12 @@ class FrictionSection(SectionTable):
         """
         allowed = min(self.tolerance, COARSEST)
 
-        def off(phi: FloatArray) -> FloatArray:
+        def apart(phi: FloatArray) -> FloatArray:
             missed: FloatArray = self.ratios(phi) - friction_ratios(self.law, phi, self.delta)
             return missed
 
         at_nodes = max(allowed, _NODE_ERROR)
-        return self.judged(off, "the law", points, allowed, at_nodes, progress)
+        return self.judged(apart, "the law", points, allowed, at_nodes, progress)
 
     # the record of the kind
 

@@ -73,7 +73,7 @@ class LawTable(Table):
         return {"n_phi": len(self.values), "profile_rows": rows}
 
     @property
-    def curve(self) -> dict[str, Axis]:
+    def profile(self) -> dict[str, Axis]:
         """A tabulated law."""
         if self.law.profile is None:
             return {}

@@ -100,7 +100,7 @@ class Record(ABC):
         return {}
 
     @property
-    def curve(self) -> dict[str, Axis]:
+    def profile(self) -> dict[str, Axis]:
         """An argument and a function of it besides, or nothing."""
         return {}
 

@@ -249,7 +249,7 @@ class SpeedValues(Table):
         }  # fmt: skip
 
     @property
-    def curve(self) -> dict[str, Axis]:
+    def profile(self) -> dict[str, Axis]:
         """How often each patch was halved along its two axes."""
         halvings = np.log2(self.cells / COARSEST_CELLS) @ [16.0, 1.0]
         return {

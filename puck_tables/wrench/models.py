@@ -149,13 +149,13 @@ def _fit(order: int, section: FloatArray, unit: float, radius: float) -> Surface
     # points count by the angle that they cover, seen from the middle of the scaled curve
     weight = np.sqrt(np.abs(np.gradient(np.arctan2(torque / top, force))))
 
-    def off(parameters: FloatArray) -> FloatArray:
+    def missed(parameters: FloatArray) -> FloatArray:
         a, b, cross = [*parameters, 2.0][:3]
         return np.asarray(weight * (1.0 / _gauge(force / a, torque / b, cross) - 1.0))
 
     start, low = [1.0, top, 2.0][:count], [0.1, 0.1 * top, 0.0][:count]
     high = [10.0, 10.0 * top, _MOST_CROSS][:count]
-    found = least_squares(off, start, bounds=(low, high), xtol=1e-14, ftol=1e-14, gtol=1e-14).x
+    found = least_squares(missed, start, bounds=(low, high), xtol=1e-14, ftol=1e-14, gtol=1e-14).x
     a, b, cross = [float(x) for x in [*found, 2.0][:3]]
     error = float(np.abs(1.0 / _gauge(force / a, torque / b, cross) - 1.0).max())
     by_force, by_torque = SurfaceModel(order, a, b, cross, error, 0.0).twist(force, torque)

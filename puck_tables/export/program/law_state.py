@@ -56,25 +56,25 @@ def constant(row: int, s: float) -> float:
     return CONSTANTS_QUANTUM * total
 
 
-def limit_motion_at(piece: int, xi: float, s: float, out_row: Out) -> None:
+def limit_motion_at(branch: int, xi: float, s: float, out_row: Out) -> None:
     """C less its limit, on pieces 0 and 2 share exp(z); and the regular part of the heading."""
-    powers: int = ORBIT_POWERS[piece]
+    powers: int = ORBIT_POWERS[branch]
     look_up(  # at least one: compilers see that all they read is set
-        ORBIT, ORBIT_ROWS[piece], ORBIT_CELLS[piece], ORBIT_DEGREE, powers if powers > 1 else 1, 2,
-        ORBIT_QUANTA[piece], xi, s, out_row,
+        ORBIT, ORBIT_ROWS[branch], ORBIT_CELLS[branch], ORBIT_DEGREE, powers if powers > 1 else 1,
+        2, ORBIT_QUANTA[branch], xi, s, out_row,
     )  # fmt: skip
 
 
-def way_to(xi: float) -> float:
+def heading_of(xi: float) -> float:
     """z, the way from theta = 0 in units of 1/rate."""
     x: float = END * xi
     return REACH * x * x / (1.0 - x)
 
 
-def error_of(piece: int, xi: float, s: float, wanted: float, f: Out) -> float:
+def error_of(branch: int, xi: float, s: float, wanted: float, f: Out) -> float:
     """How far a place is from the launch: c, or before theta = 0 the log of the share."""
-    limit_motion_at(piece, xi, s, f)
-    return f[0] - wanted if piece == 1 or piece == 3 else log(f[0] / wanted) - way_to(xi)
+    limit_motion_at(branch, xi, s, f)
+    return f[0] - wanted if branch == 1 or branch == 3 else log(f[0] / wanted) - heading_of(xi)
 
 
 def heading_at(end: int, theta: float, rate: float, delta: float, s: float, part: float) -> float:
@@ -92,15 +92,15 @@ def know(delta: float, time: float, launch: Out) -> None:
     fast: int = 1 if c > limit else 0
     start: float = constant(START + fast, s)
     ahead: int = 1 if (c < start if fast == 1 else c > start) else 0
-    piece: int = 2 * fast + ahead
+    branch: int = 2 * fast + ahead
     wanted: float = c - limit
     if ahead == 0:
         wanted = launch[SHARE] if launch[SIDE] == fast else 2.0 - launch[SHARE]
         wanted = wanted if wanted > SMALLEST else SMALLEST
     last: float = 0.0
     xi: float = 1.0
-    was: float = error_of(piece, last, s, wanted, f)
-    error: float = error_of(piece, xi, s, wanted, f)
+    was: float = error_of(branch, last, s, wanted, f)
+    error: float = error_of(branch, xi, s, wanted, f)
     beyond: float = 0.0
     if was * error > 0.0:  # beside the table: at the end that is nearer, or where it goes on
         xi = last if abs(was) < abs(error) else xi
@@ -109,7 +109,7 @@ def know(delta: float, time: float, launch: Out) -> None:
     n: int = 0
     while n < SEARCH and abs(error) > 1e-3 * TOLERANCE:  # the Illinois rule
         now: float = xi - (xi - last) * (error / (error - was))
-        here: float = error_of(piece, now, s, wanted, f)
+        here: float = error_of(branch, now, s, wanted, f)
         if here * error < 0.0:
             last = xi
             was = error
@@ -118,10 +118,10 @@ def know(delta: float, time: float, launch: Out) -> None:
         xi = now
         error = here
         n = n + 1
-    limit_motion_at(piece, xi, s, f)
+    limit_motion_at(branch, xi, s, f)
     end: int = 2 if ahead == 1 else fast
     rate: float = constant(RATE + end, s)
-    theta: float = (way_to(xi) + beyond) / rate
+    theta: float = (heading_of(xi) + beyond) / rate
     theta = -theta if ahead == 1 else theta
     launch[SIGN] = fast
     launch[LOG_N] = theta
