@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from puck_tables._core.lazy import beside_the_package, lazily, lead_up
+from puck_tables._core.lazy import lazily, lead_up, with_neighbours
 from puck_tables._version import __version__
 
 if TYPE_CHECKING:
@@ -82,7 +82,7 @@ if TYPE_CHECKING:
     from puck_tables.wrench.friction_hold import Hold
     from puck_tables.wrench.surface import LimitSurface
 
-beside_the_package(__name__, __file__)
+with_neighbours(__name__, __file__)
 
 _HOMES = {
     "AccuracyError": "errors",

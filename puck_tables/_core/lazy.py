@@ -72,7 +72,7 @@ def above(name: str) -> Any:
     return getattr(import_module(_ABOVE[name]), name)
 
 
-def beside_the_package(package: str, file: str) -> None:
+def with_neighbours(package: str, file: str) -> None:
     """Load cli/ and tables/ where they lie beside a package, not in it: in a clone.
 
     Python there takes the package's folder, whatever is installed.

@@ -20,7 +20,7 @@ except ImportError:
     ) from None
 
 
-class _Found(torch.autograd.Function):
+class _Stops(torch.autograd.Function):
     @staticmethod
     def forward(arguments: Any, kind: host.PuckKind) -> Any:
         found = host.values(arguments.numpy(force=True), kind)
@@ -94,7 +94,7 @@ def stop(
     0.420792
     """
     kind = host.PuckKind(pressure, gyration)
-    return _Found.apply(_merged(velocity, spin, delta, decel, radius), kind)
+    return _Stops.apply(_merged(velocity, spin, delta, decel, radius), kind)
 
 
 def states(
@@ -125,4 +125,4 @@ def states(
     1.590682
     """
     joined = _merged(velocity, spin, delta, decel, radius, time)
-    return _Found.apply(joined, host.PuckKind(pressure, gyration))
+    return _Stops.apply(joined, host.PuckKind(pressure, gyration))

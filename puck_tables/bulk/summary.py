@@ -179,7 +179,7 @@ def head(wide: int = _WIDE) -> str:
     return f"{'':<{wide}}{'mean':>13}{'deviation':>13}{'2.5 %':>13}{'50 %':>13}{'97.5 %':>13}"
 
 
-def chance_of(hits: int, samples: int) -> Chance:
+def chance_of(in_region: int, samples: int) -> Chance:
     """The chance that so many hits speak for.
 
     Examples
@@ -187,12 +187,12 @@ def chance_of(hits: int, samples: int) -> Chance:
     >>> [round(one, 4) for one in chance_of(50, 100)]
     [0.5, 0.4038, 0.5962]
     """
-    share, z = hits / samples, _SIGMAS
+    share, z = in_region / samples, _SIGMAS
     scale = 1.0 / (1.0 + z * z / samples)
     middle = scale * (share + z * z / (2 * samples))
     half = scale * z * math.sqrt(share * (1.0 - share) / samples + (z / (2 * samples)) ** 2)
-    low = 0.0 if hits == 0 else max(0.0, middle - half)  # but for rounding
-    return Chance(share, low, 1.0 if hits == samples else min(1.0, middle + half))
+    low = 0.0 if in_region == 0 else max(0.0, middle - half)  # but for rounding
+    return Chance(share, low, 1.0 if in_region == samples else min(1.0, middle + half))
 
 
 def inside_of(region: npt.ArrayLike, x: FloatArray, y: FloatArray) -> Bins:

@@ -200,12 +200,12 @@ def fit(
     certainty = _certainty(best, known)
     refuse_wobbling(best, certainty)
     excess = max(excess_of(best, judged), 1.0)
-    rivals = other_minima(best, certainty, excess)
-    other = taken(best, rivals, excess)
+    other_fits = other_minima(best, certainty, excess)
+    other = taken(best, other_fits, excess)
     if other is not None:
         best = replace(estimate(best.problem, other.estimate.x, known), minima=best.minima)
         certainty = _certainty(best, known)
-        rivals = other_minima(best, certainty, max(excess_of(best, judged), 1.0))
+        other_fits = other_minima(best, certainty, max(excess_of(best, judged), 1.0))
     unsigned = mirrored(best, certainty)
     if any(certainty.pinned) or may_misfit(best, known, judged):
         certainty = widened(best, certainty)
@@ -216,7 +216,7 @@ def fit(
     nowhere = "" if held_off else no_answer(best, known, judged)
     astray = nowhere or ran_away(best.problem, best.x)
     seen, certainty = certainty, certainty.lost() if astray else certainty
-    numbers, launches = numbers_of(best, certainty, rivals, unsigned)
+    numbers, launches = numbers_of(best, certainty, other_fits, unsigned)
     lost = tuple(n for n in best.problem.spec.free if not numbers[n].determined)
     scores: tuple[LawScore, ...] = ()
     if laws:
@@ -233,7 +233,7 @@ def fit(
         predictions = _held_out(best, held, known)
         say(steps, steps)
     blind = () if nowhere else without_spin(best, numbers, known)
-    blind += (f"{astray}.",) if astray else not_identifiable(best, seen, lost, rivals, unsigned)
+    blind += (f"{astray}.",) if astray else not_identifiable(best, seen, lost, other_fits, unsigned)
     impact_states: tuple[Impact, ...] = ()
     if best.problem.impact_specs:
         impact_states = impacts_coupled(best, certainty, numbers)

@@ -61,8 +61,8 @@ def candidates_of(slides: Estimate) -> list[FloatArray]:
                 launches = np.array([launch for _, launch in chosen])
                 cost = sum(cost for cost, _ in chosen)
                 mine.append((cost, problem.unknowns(result, launches)))
-        ranked += sorted(mine, key=lambda way: way[0])[:_EACH]
-    ranked.sort(key=lambda way: way[0])
+        ranked += sorted(mine, key=lambda option: option[0])[:_EACH]
+    ranked.sort(key=lambda option: option[0])
     return [slides.x, *(x for _, x in ranked)]
 
 

@@ -225,7 +225,7 @@ def coupled(
         ends += [problem.films[one.piece + 1].time[-1] for one in match_.kinks_of_slides]
         number = -1
         if len(match_.kinks_of_slides) == 1:
-            given = _given_wall(known, kink, radius)
+            given = _wall_at(known, kink, radius)
             if given is None or given[0] not in numbers:
                 if given is not None:
                     numbers[given[0]] = len(walls)
@@ -282,7 +282,7 @@ def _wall(match_: ImpactMatch, radius: float) -> WallLine:
     return WallLine(match_.toward, float(match_.kinks_of_slides[0].before[:2] @ normal) + radius)
 
 
-def _given_wall(lines: dict[int, Line], kink: Kink, radius: float) -> tuple[int, WallLine] | None:
+def _wall_at(lines: dict[int, Line], kink: Kink, radius: float) -> tuple[int, WallLine] | None:
     """The given wall that a puck touched, and its number; None if it was none of them."""
     best: tuple[float, int, WallLine] | None = None
     for n, (one, two) in lines.items():

@@ -117,12 +117,12 @@ def plausible_for(problem: Problem, x: FloatArray) -> FloatArray:
 def numbers_of(
     result: Estimate,
     certainty: Certainty,
-    rivals: tuple[OtherMinimum, ...] = (),
+    other_fits: tuple[OtherMinimum, ...] = (),
     unsigned: tuple[int, ...] = (),
 ) -> tuple[dict[str, Number], tuple[EstimatedLaunch, ...]]:
     """All numbers of the puck, and of each launch.
 
-    ``rivals``: other summits of the likelihood; what they differ in, or do not tell, is not
+    ``other_fits``: other summits of the likelihood; what they differ in, or do not tell, is not
     determined; ``unsigned``: tracks that do not tell which way the puck spins.
     """
     problem, x = result.problem, result.x
@@ -135,7 +135,7 @@ def numbers_of(
         if interval.profiled:  # the likelihood is no parabola: half of its width
             error = max(error, width / (2.0 * certainty.reach))
         low, high = interval.low, interval.high
-        for minimum in rivals:
+        for minimum in other_fits:
             there = interval_of(minimum.estimate, minimum.certainty, k)
             if (
                 not interval.low <= minimum.numbers[name] <= interval.high
@@ -185,7 +185,7 @@ def numbers_of(
             number = number._replace(low=ends.low, high=ends.high)
         puck[name] = number._replace(low=max(number.low, PUCK[name].low))
     puck = {name: puck[name] for name in PUCK if name in puck}
-    unsure = {*unsigned, *(n for minimum in rivals for n in minimum.tracks)}
+    unsure = {*unsigned, *(n for minimum in other_fits for n in minimum.tracks)}
     return puck, _launches(result, certainty, unsure)
 
 

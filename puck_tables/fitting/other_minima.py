@@ -72,7 +72,7 @@ def other_minima(
     starts += _of_other_turns(result)
     # few residuals tell their noise badly, and χ² with it
     far = max(certainty.quantile / Z95, 1.0) ** 2
-    rivals: list[OtherMinimum] = []
+    other_fits: list[OtherMinimum] = []
     summits = [(result.x, *_known(result, certainty))]
     for start in starts:
         x, cost = minimise(problem, start, SQUARES, result.kept)
@@ -92,11 +92,13 @@ def other_minima(
             plausible = plausible_for(problem, x)
             own = certainty_of(slopes[result.kept], plausible, certainty.degrees)
             summits.append((x, *_known(there, own)))
-            rivals.append(OtherMinimum(there, own, rise, _spun_otherwise(result, x, certainty)))
-    return tuple(rivals)
+            other_fits.append(OtherMinimum(there, own, rise, _spun_otherwise(result, x, certainty)))
+    return tuple(other_fits)
 
 
-def taken(result: Estimate, rivals: tuple[OtherMinimum, ...], excess: float) -> OtherMinimum | None:
+def taken(
+    result: Estimate, other_fits: tuple[OtherMinimum, ...], excess: float
+) -> OtherMinimum | None:
     """The motion that is taken in place of an estimate; None if that is.
 
     Of one that ran away any that did not is taken, of those that fit about as well.
@@ -106,25 +108,25 @@ def taken(result: Estimate, rivals: tuple[OtherMinimum, ...], excess: float) -> 
         return None
     problem = result.problem
     if ran_away(problem, result.x):
-        near = [one for one in rivals if not ran_away(problem, one.estimate.x)]
+        near = [one for one in other_fits if not ran_away(problem, one.estimate.x)]
         return min(near, key=lambda one: one.rise, default=None)
     motions = [
         Judged(is_slow(problem, x), excess**2 * (result.chi2 + rise), excess * math.sqrt(
             max(1.0 + rise / result.chi2, 0.0)))
-        for x, rise in ((result.x, 0.0), *((one.estimate.x, one.rise) for one in rivals))
+        for x, rise in ((result.x, 0.0), *((one.estimate.x, one.rise) for one in other_fits))
     ]  # fmt: skip
     first = preferred(motions)
     if not motions[first].slow:
         for k, motion in enumerate(motions):
-            x = rivals[k - 1].estimate.x if k else result.x
+            x = other_fits[k - 1].estimate.x if k else result.x
             other = on_another_floor(problem, x) if motion.slow else None
             if other is not None:
                 there, cost = minimise(*other, SQUARES, result.kept)
                 size = excess * math.sqrt(2.0 * cost / result.chi2)
                 one = Judged(is_slow(other[0], there), excess**2 * 2.0 * cost, size)
                 if preferred([one, motions[first]]) == 0:
-                    return rivals[k - 1] if k else None
-    return rivals[first - 1] if first else None
+                    return other_fits[k - 1] if k else None
+    return other_fits[first - 1] if first else None
 
 
 def _spun_otherwise(result: Estimate, x: FloatArray, certainty: Certainty) -> tuple[int, ...]:

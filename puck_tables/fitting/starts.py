@@ -79,7 +79,7 @@ def minima_of(problem: Problem) -> list[FloatArray]:
         pieces = replace(problem, films=(part,), whole=(whole,))
         result = {**_any(spec), **numbers_with(spec, guess.decel, guess.delta)}
         starts.append((pieces, pieces.unknowns(result, launch[None])))
-    more = _given(problem, place, velocity)
+    more = _from_known(problem, place, velocity)
     if turning is not None and not turning.sure:
         blind = replace(problem, films=(replace(film, angle=None),))
         by_angle = by_place(problem, blind, minima_of(blind)[:_BLIND])
@@ -87,7 +87,7 @@ def minima_of(problem: Problem) -> list[FloatArray]:
     return _deepest(problem, multi_start(starts, FROM_AFAR, ROBUST, _RIVAL), more)
 
 
-def _given(problem: Problem, place: FloatArray, velocity: FloatArray) -> list[FloatArray]:
+def _from_known(problem: Problem, place: FloatArray, velocity: FloatArray) -> list[FloatArray]:
     """The unknowns at which the caller wants to begin."""
     start = problem.spec.start
     if not start:

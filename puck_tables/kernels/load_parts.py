@@ -143,93 +143,96 @@ def _stretched(turn: float, gap: float) -> tuple[float, float]:
 
 
 @inlined
-def _point(piece: BorderPart, sine: float) -> tuple[float, float]:
+def _point(border: BorderPart, sine: float) -> tuple[float, float]:
     """The point at an angle θ."""
-    if piece.radius == 0.0:
-        return piece.x + piece.size * sine * piece.tx, piece.y + piece.size * sine * piece.ty
-    part = piece.size * sine
-    ahead = piece.radius * (1.0 - 2.0 * part * part)
-    aside = 2.0 * piece.radius * part * math.sqrt((1.0 - part) * (1.0 + part))
-    x, y = piece.x + ahead * piece.tx, piece.y + ahead * piece.ty
-    return x - aside * piece.ty, y + aside * piece.tx
+    if border.radius == 0.0:
+        return border.x + border.size * sine * border.tx, border.y + border.size * sine * border.ty
+    part = border.size * sine
+    ahead = border.radius * (1.0 - 2.0 * part * part)
+    aside = 2.0 * border.radius * part * math.sqrt((1.0 - part) * (1.0 + part))
+    x, y = border.x + ahead * border.tx, border.y + ahead * border.ty
+    return x - aside * border.ty, y + aside * border.tx
 
 
 @inlined
-def _from_touch(alpha: float, beta: float, piece: BorderPart, sine: float) -> float:
+def _from_touch(alpha: float, beta: float, border: BorderPart, sine: float) -> float:
     """How far an end of a piece at the rim is from where a ray touches the base, by √(1 − ρ²)."""
-    x, y = _point(piece, sine)
+    x, y = _point(border, sine)
     ux, uy = alpha - beta * y, beta * x
-    return abs(x * uy - y * ux) / (piece.depth * math.sqrt(max(ux * ux + uy * uy, 1e-300)))
+    return abs(x * uy - y * ux) / (border.depth * math.sqrt(max(ux * ux + uy * uy, 1e-300)))
 
 
 @inlined
 def _line_node(
-    alpha: float, beta: float, piece: BorderPart, u0: float, v0: float, sine: float, cosine: float,
+    alpha: float, beta: float, border: BorderPart, u0: float, v0: float, sine: float, cosine: float,
     turn: float, law: int,
 ) -> tuple[Sums, float]:  # fmt: skip
     """The integrands by θ, the angle ``turn`` behind one where the slip is (u0, v0)."""
     c2, s2 = cosine_sine_of(0.5 * turn)
     c1, s1 = 1.0 - 2.0 * s2 * s2, 2.0 * s2 * c2
-    gone = 2.0 * beta * piece.size * s2 * (cosine * c2 - sine * s2)
-    at, q = piece.size * (sine * c1 + cosine * s1), piece.depth * max(cosine * c1 - sine * s1, 0.0)
+    gone = 2.0 * beta * border.size * s2 * (cosine * c2 - sine * s2)
+    at, q = (
+        border.size * (sine * c1 + cosine * s1),
+        border.depth * max(cosine * c1 - sine * s1, 0.0),
+    )
     return loaded_at(
-        alpha, beta, piece.x + at * piece.tx, piece.y + at * piece.ty, u0 - gone * piece.ty,
-        v0 + gone * piece.tx, u0 * piece.tx + v0 * piece.ty, q, law,
+        alpha, beta, border.x + at * border.tx, border.y + at * border.ty, u0 - gone * border.ty,
+        v0 + gone * border.tx, u0 * border.tx + v0 * border.ty, q, law,
     ), q  # fmt: skip
 
 
 @inlined
 def _arc_node(
-    alpha: float, beta: float, piece: BorderPart, u0: float, v0: float, sine: float, cosine: float,
+    alpha: float, beta: float, border: BorderPart, u0: float, v0: float, sine: float, cosine: float,
     turn: float, law: int,
 ) -> tuple[Sums, float]:  # fmt: skip
     """The same of a round one; the angle from the one point to the other by its quarter."""
     c2, s2 = cosine_sine_of(0.5 * turn)
     c1, s1 = 1.0 - 2.0 * s2 * s2, 2.0 * s2 * c2
     leg = max(cosine * c1 - sine * s1, 0.0)
-    sb, sa = piece.size * sine, piece.size * (sine * c1 + cosine * s1)
-    rest, full = (1.0 - piece.size) * (1.0 + piece.size), piece.size * piece.size
+    sb, sa = border.size * sine, border.size * (sine * c1 + cosine * s1)
+    rest, full = (1.0 - border.size) * (1.0 + border.size), border.size * border.size
     cb, ca = math.sqrt(rest + full * cosine * cosine), math.sqrt(rest + full * leg * leg)
     ca = max(ca, 1e-300)  # 0 at the end of a circle that touches the rim
-    quarter = 2.0 * piece.size * s2 * (cosine * c2 - sine * s2) / (ca + cb)
-    gone = 4.0 * beta * piece.radius * quarter / (1.0 + quarter * quarter)
+    quarter = 2.0 * border.size * s2 * (cosine * c2 - sine * s2) / (ca + cb)
+    gone = 4.0 * beta * border.radius * quarter / (1.0 + quarter * quarter)
     c3, s3 = ca * cb - sa * sb, sa * cb + ca * sb  # of the mean of both
-    u = u0 - gone * (c3 * piece.tx - s3 * piece.ty)
-    v = v0 - gone * (c3 * piece.ty + s3 * piece.tx)
+    u = u0 - gone * (c3 * border.tx - s3 * border.ty)
+    v = v0 - gone * (c3 * border.ty + s3 * border.tx)
     c4, s4 = 1.0 - 2.0 * sa * sa, 2.0 * sa * ca
-    dx = piece.radius * (c4 * piece.tx - s4 * piece.ty)
-    dy = piece.radius * (c4 * piece.ty + s4 * piece.tx)
-    q = math.sqrt(piece.spare + piece.depth * piece.depth * leg * leg)
+    dx = border.radius * (c4 * border.tx - s4 * border.ty)
+    dy = border.radius * (c4 * border.ty + s4 * border.tx)
+    q = math.sqrt(border.spare + border.depth * border.depth * leg * leg)
     return loaded_at(
-        alpha, beta, piece.x + dx, piece.y + dy, u, v, v * dx - u * dy, q, law
-    ), 2.0 * piece.size * leg / ca  # fmt: skip
+        alpha, beta, border.x + dx, border.y + dy, u, v, v * dx - u * dy, q, law
+    ), 2.0 * border.size * leg / ca  # fmt: skip
 
 
 @inlined
 def _grazed(
-    alpha: float, beta: float, piece: BorderPart, half: float, c: float, tangent: float
+    alpha: float, beta: float, border: BorderPart, half: float, c: float, tangent: float
 ) -> tuple[float, float]:
     """Where a ray from C, ``tangent`` radii of it away, touches a circle, and 1 − p² is least.
 
     By θ, and how far from there 1 − p² vanishes.
     """
     whole = math.sin(half)
-    sine = math.copysign(whole, whole * math.cos(half)) / piece.size
+    sine = math.copysign(whole, whole * math.cos(half)) / border.size
     if abs(sine) >= 1.0:
         return 0.0, math.inf
-    x, y = _point(piece, sine)
+    x, y = _point(border, sine)
     ux, uy = alpha - beta * y, beta * x
     place = min(abs(x * ux + y * uy) / math.sqrt(max(ux * ux + uy * uy, 1e-300)), 1.0)
     gap = 2.0 * (1.0 - place) * tangent / math.sqrt(max((c - place) * (c + place), 1e-300))
-    cosine, part = math.sqrt((1.0 - sine) * (1.0 + sine)), piece.size * sine
+    cosine, part = math.sqrt((1.0 - sine) * (1.0 + sine)), border.size * sine
     return angle_of(sine, cosine), 0.5 * math.sqrt(gap * (1.0 - part * part)) / (
-        piece.size * cosine
+        border.size * cosine
     )
 
 
 @inner
 def _along(
-    alpha: float, beta: float, piece: BorderPart, low: float, high: float, across: float,
+    alpha: float, beta: float, border: BorderPart, low: float, high: float, across: float,
     apart: float, seam: float, one: float, one_gap: float, two: float, two_gap: float, law: int,
 ) -> Sums:  # fmt: skip
     """A piece between two sines of θ; across + i apart is the sine of θ at C.
@@ -240,11 +243,11 @@ def _along(
     sine, cosine, _, sinh = _inverse_sine(across, apart)
     middle, off = angle_of(sine, cosine), _inverse_sinh(sinh)
     scale = min(off, _WIDEST)
-    x, y = _point(piece, sine)
+    x, y = _point(border, sine)
     u0, v0 = alpha - beta * y, beta * x
-    tx, ty = piece.tx, piece.ty  # along the piece
-    if piece.radius > 0.0:
-        tx, ty = (piece.y - y) / piece.radius, (x - piece.x) / piece.radius
+    tx, ty = border.tx, border.ty  # along the piece
+    if border.radius > 0.0:
+        tx, ty = (border.y - y) / border.radius, (x - border.x) / border.radius
     along = u0 * tx + v0 * ty
     if abs(along) < _ON * beta:
         u0, v0 = u0 + (_ON * beta - along) * tx, v0 + (_ON * beta - along) * ty
@@ -253,12 +256,12 @@ def _along(
     # what is singular: where rays touch the base, at its rim and unseen, and the ends of pieces
     first, last = -0.5 * math.pi - middle, 0.5 * math.pi - middle
     first_gap, last_gap, touch, touch_gap = seam, seam, 0.0, math.inf
-    if piece.spare > 0.0:  # C is next to both ends of a whole circle
+    if border.spare > 0.0:  # C is next to both ends of a whole circle
         other = math.sqrt(min(-first, last) ** 2 + off * off)
         first_gap, last_gap = min(seam, other), min(seam, other)
     elif alpha >= beta:
-        first_gap = min(seam, _from_touch(alpha, beta, piece, -1.0))
-        last_gap = min(seam, _from_touch(alpha, beta, piece, 1.0))
+        first_gap = min(seam, _from_touch(alpha, beta, border, -1.0))
+        last_gap = min(seam, _from_touch(alpha, beta, border, 1.0))
     if _INSIDE * beta < alpha < beta:
         c, whole = beta / alpha, u0 * u0 + v0 * v0
         down = whole * (2.0 * c * c - 1.0) - (u0 - v0) * (u0 + v0)
@@ -275,25 +278,26 @@ def _along(
         size = min(_panel_to(a, first, first_gap), _panel_to(a, last, last_gap))
         size = min(size, _panel_to(a, one, one_gap), _panel_to(a, two, two_gap))
         size = max(min(size, _LONGEST, _panel_to(a, touch, touch_gap)), _SHORTEST)
-        if piece.radius > 0.0:
+        if border.radius > 0.0:
             grown = exp_of(a)
             size = min(
-                size, _inverse_sinh(0.5 * (grown - 1.0 / grown) + _ROUND / (piece.size * scale)) - a
+                size,
+                _inverse_sinh(0.5 * (grown - 1.0 / grown) + _ROUND / (border.size * scale)) - a,
             )
         if size > 0.5 * (end - a):
             size = end - a if size >= end - a else 0.5 * (end - a)
         grown = 0.5 * scale * exp_of(a + 0.5 * size)
         fallen = 0.25 * scale * scale / grown
-        if piece.radius == 0.0:
+        if border.radius == 0.0:
             for i in range(_NODE.size):
                 grows = exp_of(0.5 * size * _NODE[i])
                 falls = 1.0 / grows
                 weight = 0.5 * size * _WEIGHT[i]
                 rise, fall = grown * grows, fallen * falls
-                here, by = _line_node(alpha, beta, piece, u0, v0, sine, cosine, rise - fall, law)
+                here, by = _line_node(alpha, beta, border, u0, v0, sine, cosine, rise - fall, law)
                 sums = added(sums, weight * (rise + fall) * by, here)
                 rise, fall = grown * falls, fallen * grows
-                here, by = _line_node(alpha, beta, piece, u0, v0, sine, cosine, rise - fall, law)
+                here, by = _line_node(alpha, beta, border, u0, v0, sine, cosine, rise - fall, law)
                 sums = added(sums, weight * (rise + fall) * by, here)
         else:
             for i in range(_NODE.size):
@@ -301,10 +305,10 @@ def _along(
                 falls = 1.0 / grows
                 weight = 0.5 * size * _WEIGHT[i]
                 rise, fall = grown * grows, fallen * falls
-                here, by = _arc_node(alpha, beta, piece, u0, v0, sine, cosine, rise - fall, law)
+                here, by = _arc_node(alpha, beta, border, u0, v0, sine, cosine, rise - fall, law)
                 sums = added(sums, weight * (rise + fall) * by, here)
                 rise, fall = grown * falls, fallen * grows
-                here, by = _arc_node(alpha, beta, piece, u0, v0, sine, cosine, rise - fall, law)
+                here, by = _arc_node(alpha, beta, border, u0, v0, sine, cosine, rise - fall, law)
                 sums = added(sums, weight * (rise + fall) * by, here)
         a = a + size if size < end - a else end
     return sums
@@ -324,9 +328,9 @@ def loaded_line(
     c = alpha / beta if alpha < _FARTHEST * beta else _FARTHEST
     apart = c * tx - off
     apart = apart if abs(apart) > _ON else _ON
-    piece = BorderPart(x0, y0, tx, ty, 0.0, half, half, 0.0)
+    border = BorderPart(x0, y0, tx, ty, 0.0, half, half, 0.0)
     return _along(
-        alpha, beta, piece, begin / half, (begin + length) / half, c * ty / half, apart / half,
+        alpha, beta, border, begin / half, (begin + length) / half, c * ty / half, apart / half,
         math.inf, 0.0, math.inf, 0.0, math.inf, law,
     )  # fmt: skip
 
@@ -350,15 +354,15 @@ def loaded_arc(
     turn, root = 0.5 * math.atan2(aside, ahead), 2.0 * size * math.sqrt(max(ratio, 1e-6))
     # no root is of the angle of a circle as the sine of its half is
     far = 1.0 / size if spare == 0.0 else math.sqrt(room / max(span, _ON))
-    piece = BorderPart(cx, cy, tx, ty, radius, size, math.sqrt(min(room, span)), spare)
+    border = BorderPart(cx, cy, tx, ty, radius, size, math.sqrt(min(room, span)), spare)
     one, one_gap, two, two_gap = 0.0, math.inf, 0.0, math.inf
     if ratio > 1.0:
         tangent = math.sqrt((ratio - 1.0) * (ratio + 1.0))
         off = 0.5 * math.atan2(tangent, 1.0)
-        one, one_gap = _grazed(alpha, beta, piece, turn + off, c, tangent)
-        two, two_gap = _grazed(alpha, beta, piece, turn - off, c, tangent)
+        one, one_gap = _grazed(alpha, beta, border, turn + off, c, tangent)
+        two, two_gap = _grazed(alpha, beta, border, turn - off, c, tangent)
     across, apart = math.sin(turn) * (ratio + 1.0) / root, math.cos(turn) * (ratio - 1.0) / root
     seam = _inverse_sinh(math.sqrt(max((far - 1.0) * (far + 1.0), 0.0)))
     return _along(
-        alpha, beta, piece, -1.0, 1.0, across, apart, seam, one, one_gap, two, two_gap, law
+        alpha, beta, border, -1.0, 1.0, across, apart, seam, one, one_gap, two, two_gap, law
     )

@@ -182,7 +182,7 @@ def aim_at(
         senses = (math.copysign(1.0, wanted),)
         us = [-math.inf]
         if wanted != 0.0:
-            us = _found_roots(family.all_where(RIM, math.log(abs(wanted)) + math.log(r)))
+            us = _roots(family.all_where(RIM, math.log(abs(wanted)) + math.log(r)))
     elif speed is not None:
         us, answer = _met(family, SPEED, positive("speed", speed, "m/s"), r)
     elif stop_time is not None:
@@ -224,7 +224,7 @@ def checked_bounds(
     )
 
 
-def _found_roots(us: list[float]) -> list[float]:
+def _roots(us: list[float]) -> list[float]:
     """The same, refused where there is none though there must be one."""
     if not us:
         raise InputError(BEYOND)
@@ -236,7 +236,7 @@ def _met(family: _Family, quantity: int, wanted: float, radius: float) -> tuple[
     us = family.all_where(quantity, math.log(wanted))
     best, log_rim = family.extreme(quantity)
     if us or (math.log(wanted) > best) != (quantity == SPEED):
-        return _found_roots(us), ""
+        return _roots(us), ""
     spin = "no spin"
     if log_rim > -math.inf:
         spin = f"a spin of {_number(log_rim - math.log(radius)):.9g} rad/s either way"
@@ -314,7 +314,7 @@ def _out_of_bounds(
             spin = 0.0 if u == -math.inf else _number(log_rim - math.log(radius))
             taken.append(f"{_number(log_speed):.9g} m/s and {spin:.9g} rad/s")
         return f"the launch asked for takes {' or '.join(taken)}: out of the bounds"
-    roots = _found_roots(family.all_where(SPEED, math.log(fastest)))
+    roots = _roots(family.all_where(SPEED, math.log(fastest)))
     log_rim = min(family.at(u)[RIM] for u in roots)
     return (
         f"no launch stops {family.distance:g} m away with at most {fastest:g} m/s and "

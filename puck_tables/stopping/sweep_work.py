@@ -82,18 +82,18 @@ class StopWork(Work):
         """Make the solvers of all pucks there are."""
         heights = self._heights()
         wanted = {
-            kind: int(np.count_nonzero(self._solver(kind).needs_preparation(found)))
-            for kind, (found, _) in heights.items()
+            kind: int(np.count_nonzero(self._solver(kind).needs_preparation(sought)))
+            for kind, (sought, _) in heights.items()
         }
         first = HEIGHT_COST * sum(wanted.values())
         total, before = first + self.size, 0
-        for kind, (found, counts) in heights.items():
+        for kind, (sought, counts) in heights.items():
 
             def on_heights(done: int, _: int, before: int = before) -> None:
                 if progress is not None:
                     progress(before + HEIGHT_COST * done, total)
 
-            self._solver(kind).prepare(found, counts, threads, on_heights)
+            self._solver(kind).prepare(sought, counts, threads, on_heights)
             before += HEIGHT_COST * wanted[kind]
 
         def on_stops(done: int, _: int) -> None:
@@ -109,7 +109,7 @@ class StopWork(Work):
         """
         pucks = self.launches.of_pucks()
         each = self.size // pucks.size
-        found: dict[Kind, dict[float, int]] = {}
+        sought: dict[Kind, dict[float, int]] = {}
         for start in range(0, pucks.size, _SLAB):
             stop = min(start + _SLAB, pucks.size)
             numbers = self._rows(pucks.at(start, stop), stop - start)
@@ -121,26 +121,26 @@ class StopWork(Work):
                     plain = delta[~other]
                     heights = np.append(heights, plain[0])
                     counts = np.append(counts, plain.size)
-                mine_found = found.setdefault(kind, {})
+                mine_found = sought.setdefault(kind, {})
                 for height, count in zip(heights.tolist(), counts.tolist(), strict=True):
                     mine_found[height] = mine_found.get(height, 0) + each * count
-                self._refuse_many(found)
+                self._refuse_many(sought)
         return {
             kind: (np.array(list(one)), np.array(list(one.values()), np.int64))
-            for kind, one in found.items()
+            for kind, one in sought.items()
         }
 
-    def _refuse_many(self, found: Mapping[Kind, Mapping[float, int]]) -> None:
+    def _refuse_many(self, sought: Mapping[Kind, Mapping[float, int]]) -> None:
         """Refuse more pucks than can be prepared."""
         wanted = 0
-        for kind, one in found.items():
+        for kind, one in sought.items():
             heights = np.array(list(one))
             others = heights[self._solver(kind).needs_preparation(heights)]
             refuse_many(others)
             wanted += others.size
-        if max(wanted, len(found)) > MOST_HEIGHTS:
+        if max(wanted, len(sought)) > MOST_HEIGHTS:
             raise InputError(
-                f"{max(wanted, len(found))} different pucks or more (of pressure, gyration, delta) "
+                f"{max(wanted, len(sought))} different pucks or more (of pressure, gyration, delta) "
                 f"are too many, each takes about a second to prepare: give at most {MOST_HEIGHTS}"
             )
 
@@ -205,8 +205,8 @@ class StopWork(Work):
             out, status = np.empty((len(OUTPUTS), stop - start)), np.empty(stop - start, np.int8)
             for kind, mine in kinds:
                 out[:, mine], status[mine] = self._solver(kind).all(numbers[:6, mine])
-        found: Columns = {COLUMN[name]: one[name] for name in self.launches.spreads}
-        return found | dict(zip(OUTPUTS, out, strict=True)) | {self.code: status}
+        sought: Columns = {COLUMN[name]: one[name] for name in self.launches.spreads}
+        return sought | dict(zip(OUTPUTS, out, strict=True)) | {self.code: status}
 
     @property
     def identity(self) -> Mapping[str, Any]:

@@ -49,7 +49,7 @@ def holds(puck: PuckSpec, force: npt.ArrayLike, torque: npt.ArrayLike) -> Hold:
     fx, fy, moment = broadcast(force_x=forces[..., 0], force_y=forces[..., 1], torque=turning)
     rows = np.stack([one.ravel() for one in (fx, fy, moment)])
     regions = regions_of(SceneSpec(puck))
-    dry = dry_in(regions, 0)
+    coefficients = dry_in(regions, 0)
     # wrenches over their largest number, then over their largest force: no square, and no force of
     # a torque over the radius, leaves floating point
     largest = np.abs(rows).max(axis=0)
@@ -59,10 +59,10 @@ def holds(puck: PuckSpec, force: npt.ArrayLike, torque: npt.ArrayLike) -> Hold:
     unit = np.maximum(np.abs(rows[:2]).max(axis=0), np.abs(rows[2]) / puck.radius)
     unit = np.where(acts, unit, 1.0)
     share, heat = np.empty(unit.size), np.empty(unit.size)
-    _fill(dry, puck.radius, dry.load * rows / unit, share, heat)
+    _fill(coefficients, puck.radius, coefficients.load * rows / unit, share, heat)
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
-        margin = np.where(acts, dry.load / unit / share / largest, np.inf)
-        held = (1.0 / margin - 1.0) * heat <= SLACK * dry.load
+        margin = np.where(acts, coefficients.load / unit / share / largest, np.inf)
+        held = (1.0 / margin - 1.0) * heat <= SLACK * coefficients.load
     return Hold(held.reshape(fx.shape), margin.reshape(fx.shape))
 
 
@@ -75,8 +75,12 @@ def _forces(force: npt.ArrayLike) -> FloatArray:
 
 
 @allocating
-def _fill(dry: Dry, radius: float, rows: FloatArray, share: FloatArray, heat: FloatArray) -> None:
+def _fill(
+    coefficients: Dry, radius: float, rows: FloatArray, share: FloatArray, heat: FloatArray
+) -> None:
     """The shares of wrenches (3, n), and the power of friction in their slip."""
     for n in range(rows.shape[1]):
         patience(1)
-        share[n], heat[n], _, _, _ = demand(dry, radius, rows[0, n], rows[1, n], rows[2, n], False)
+        share[n], heat[n], _, _, _ = demand(
+            coefficients, radius, rows[0, n], rows[1, n], rows[2, n], False
+        )
