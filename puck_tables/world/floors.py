@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import cache, partial
 
 import numpy as np
 
@@ -19,7 +20,7 @@ from puck_tables.scene.ground import NO_GROUND
 from puck_tables.scene.ingredients import BySpeed, Regions, Surface, floor_velocity
 from puck_tables.scene.orthotropic import is_elliptic
 from puck_tables.scene.pieces import Piece
-from puck_tables.scene.regions import SLICE_SHARE, alone, axes_of, of_one_shape
+from puck_tables.scene.regions import SLICE_SHARE, alone, axes_of, of_one_shape, plain_cut
 from puck_tables.scene.scene import Scene
 from puck_tables.scene.zones import ground_of
 from puck_tables.table.friction_section import FINEST_ACCURACY
@@ -92,7 +93,11 @@ def regions_of(scene: Scene, pieces: list[Piece], floors: FloatArray, fastest: f
         0.0 if piece.path else normal_on(scene, piece) * friction for piece, friction in places
     ])  # fmt: skip
     cuts = none[: len(places)]
-    if not all(has_closed_forms(*one) for one in places):
+    if all(has_closed_forms(*one) for one in places):
+        if floors[:, 2].any():  # those that are integrated ask for friction often
+            cut = cache(partial(plain_cut, scene.run.tol))
+            cuts = np.stack([cut(height) for height in delta[: len(places)].tolist()])
+    else:
         accuracy = max(SLICE_SHARE * scene.run.tol, FINEST_ACCURACY)
         bodies = [replace(piece, friction=friction).body for piece, friction in places]
         cuts = of_one_shape([body.friction(accuracy).cut for body in bodies])

@@ -17,8 +17,7 @@ from puck_tables.world.floors import law_goes_to, slip_of_rim
 from puck_tables.world.game import Game, Whole
 from puck_tables.world.layout import LIGHTNESS, RADIUS
 from puck_tables.world.prepare import with_law_up_to
-
-SURE = 1.0 - 1e-9  # of the last slip that a friction law knows: whoever is faster comes beyond
+from puck_tables.world.touching import SURE
 
 
 def refuse_too_fast(game: Game, scene: Scene, name: str, i: int, state: FloatArray) -> None:

@@ -34,7 +34,6 @@ from puck_tables.world.works import (
     PULL_WORK,
     RIM_HEAT,
     SUPPORT_WORK,
-    WORK_COLUMNS,
     worked,
 )
 
@@ -54,7 +53,7 @@ def ledger(world: World) -> dict[str, float]:
     discs, flights = flights_of(game)
     energies = _kinetic(game, discs[:, None], flights)
     known = free[discs] & (game.history[: len(discs), 1] != PATH)
-    booked = _booked(game, world._books)
+    booked = _booked(game)
     over = flights - _drift(game, len(discs))
     slips = _kinetic(game, discs[:, None], over)
     lost = float((energies[known, 0] - energies[known, 1]).sum())
@@ -90,14 +89,14 @@ def ledger(world: World) -> dict[str, float]:
     }  # fmt: skip
 
 
-def _booked(game: g.Game, books: list[FloatArray]) -> list[float]:
+def _booked(game: g.Game) -> list[float]:
     """What was booked of all that were integrated, up to where their flights ended."""
     history = game.history[: game.counts[g.N_HISTORY]]
     ends = np.full(len(history) + 1, float(game.clock[0]))  # the last of what has NO_FLIGHT
     for disc in range(len(game.discs)):
         mine = np.flatnonzero(history[:, 0] == disc)
         ends[mine[:-1]] = history[mine[1:], 2 + START]
-    rows = np.vstack([np.zeros((0, WORK_COLUMNS)), *books])
+    rows = game.works[: game.counts[g.N_WORKS]]
     booked: list[float] = worked(rows, ends[rows[:, FLIGHT].astype(np.int64)]).tolist()
     return booked
 

@@ -7,6 +7,8 @@ the duration.
 
 from __future__ import annotations
 
+import math
+
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 
@@ -68,3 +70,24 @@ def jerk_on(piece: FloatArray) -> float:
         c3, c4, c5 = _bends(piece, i)
         total += 6.0 * abs(c3) + 24.0 * abs(c4) + 60.0 * abs(c5)
     return total / piece[DURATION] ** 3
+
+
+@inlined
+def bounds_of(piece: FloatArray) -> tuple[float, float]:
+    """The largest speed and acceleration of the place on a piece, at most.
+
+    By the control points of both as polynomials of Bernstein, between which they stay.
+    """
+    h = piece[DURATION]
+    vx0, vy0, ax0, ay0 = piece[FIRST + 3], piece[FIRST + 4], piece[FIRST + 6], piece[FIRST + 7]
+    vx1, vy1, ax1, ay1 = piece[FIRST + 12], piece[FIRST + 13], piece[FIRST + 15], piece[FIRST + 16]
+    ux0, uy0 = vx0 + 0.25 * h * ax0, vy0 + 0.25 * h * ay0
+    ux1, uy1 = vx1 - 0.25 * h * ax1, vy1 - 0.25 * h * ay1
+    mx = vx0 + 0.5 * (h * ax0 + _bends(piece, 0)[0] / h)
+    my = vy0 + 0.5 * (h * ay0 + _bends(piece, 1)[0] / h)
+    speed = max(math.hypot(vx0, vy0), math.hypot(ux0, uy0), math.hypot(mx, my))
+    bend = max(math.hypot(ax0, ay0), 4.0 / h * math.hypot(mx - ux0, my - uy0))
+    return (
+        max(speed, math.hypot(ux1, uy1), math.hypot(vx1, vy1)),
+        max(bend, 4.0 / h * math.hypot(ux1 - mx, uy1 - my), math.hypot(ax1, ay1)),
+    )
