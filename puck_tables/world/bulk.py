@@ -12,7 +12,7 @@ from puck_tables.kernels.compile import kernel, patience
 from puck_tables.scene.friction import VX
 from puck_tables.world.course import COURSE_COLUMNS, LENGTH, trace
 from puck_tables.world.departures import Room, room_for
-from puck_tables.world.engine import EVERYBODY, FULL, NOBODY, PAUSED, REACHED, advance
+from puck_tables.world.engine import EVERYBODY, FULL, NOBODY, PAUSED, PUSHING, REACHED, advance
 from puck_tables.world.flight import GONE, START, moves_until, state_at
 from puck_tables.world.game import COUNTS, N_IMPACTS, N_PIECES, Game, Whole
 from puck_tables.world.layout import RADIUS
@@ -22,6 +22,7 @@ from puck_tables.world.prepare import fastest, scales_of
 from puck_tables.world.works import WORK_COLUMNS
 
 _LOOKS = 6  # at a course before its end: at Q/2J, Q/4J, ...
+MOST_ROWS = 1 << 16  # of events and flights, and of steps: 60 MB
 END_COLUMNS = 6  # of a puck: its state at the end
 
 
@@ -133,6 +134,9 @@ def follow_all(
     in_slices(work, runs)
     full = np.flatnonzero(ends.how == FULL)
     while full.size:
+        if rows > MOST_ROWS:
+            ends.how[full] = PUSHING
+            break
         rows *= 4
         mine = _own(game, rows)
         for run in full:

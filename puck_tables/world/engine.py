@@ -73,7 +73,8 @@ from puck_tables.world.meeting import are_apart, next_crossing, next_meeting, re
 from puck_tables.world.quiet import quieten
 from puck_tables.world.touching import find_touching, is_integrated, outruns_law, press_somewhere
 
-REACHED, FULL, CROWDED, TANGLED, PAUSED, PUSHING, OFF_TABLE = range(7)  # how a call ends
+# how a call ends
+REACHED, FULL, CROWDED, TANGLED, PAUSED, PUSHING, OFF_TABLE, TOO_SHORT = range(8)
 
 NOBODY, EVERYBODY, THOSE_LEFT = -1, -2, -3
 SLOW = 1e-6  # of the scale of speeds: an impact that only what pushes brings about
@@ -237,7 +238,10 @@ def _whole_groups(game: Game, count: int, room: Room) -> None:
 
 @inlined
 def _take_off_all(game: Game, t: float, room: Room) -> int:
-    """New flights of all that are concerned and not driven; FULL: not yet of all."""
+    """New flights of all that are concerned and not driven; how it ended.
+
+    FULL: not yet of all; TOO_SHORT: no step is short enough to follow one.
+    """
     for j in range(game.discs.shape[0]):
         driven = game.drives[j, 0] < game.drives[j, 1]
         if room.marks[j] != CONCERNED or game.kinds[j] == GONE or driven:
@@ -246,7 +250,7 @@ def _take_off_all(game: Game, t: float, room: Room) -> int:
             if lacks_pieces(game):
                 return FULL
             if not integrate(game, j, t, room):
-                return TANGLED
+                return TOO_SHORT
         else:
             take_off(game, j, t, room)
         room.marks[j] = SENT

@@ -192,7 +192,9 @@ def _lay_out(game: Game, i: int, model: Model, state: FloatArray, tol: float, de
 
 @inlined
 def _write_piece(model: Model, begin: float, h: float, row: FloatArray, desk: Desk) -> None:
-    """A step as a piece of the path."""
+    """A step as a piece of the path; the rates at its ends are kept."""
+    for n in range(ROW):
+        desk.ends[0, n], desk.ends[1, n] = desk.stages[0, n], desk.stages[STAGES - 1, n]
     row[BEGINS], row[DURATION] = begin, h
     for end in range(2):
         state = desk.y if end == 0 else desk.new
@@ -305,11 +307,18 @@ def _times_as_long(error: float, tol: float, implicit: bool) -> float:
 
 
 @inlined
+def _piece_for(coarse: float, h: float) -> float:
+    """How long a piece may be, where one over h was wrong by so many times what it may be."""
+    return h * max(0.2, _SAFE * coarse**-0.2) if coarse > 0.0 else math.inf
+
+
+@inlined
 def _is_carried(stretch: Stretch, t: float, h: float, desk: Desk) -> tuple[float, bool]:
     """How long of a step at rest over h the floor holds the puck, and whether it loses it."""
-    slips = lost(stretch, t, h, desk.y, desk.scale, desk.stages, desk.trial)
-    step(stretch, t, min(slips, h), desk.y, desk.scale, desk.stages, desk.new)
-    return min(slips, h), slips < math.inf
+    slips = lost(stretch, t, h, desk.y, desk.scale, desk.stages, desk.new)
+    length = min(slips, h)
+    step(stretch, t, length, desk.y, desk.scale, desk.stages, desk.new)
+    return length, slips < math.inf
 
 
 @inlined
@@ -322,6 +331,14 @@ def _go_on_from(model: Model, tol: float, desk: Desk) -> None:
     follow_scales(desk.scale, tol, model.body, desk.y)
 
 
+@inlined
+def _put_down(model: Model, state: FloatArray, desk: Desk) -> None:
+    """Where it rests, in the laboratory, into ``state`` (6,)."""
+    to_laboratory(model, desk.y, 1.0)
+    for n in range(GIVEN):
+        state[n] = desk.y[n]
+
+
 @inner
 def follow_alone(
     game: Game, i: int, t: float, state: FloatArray, desk: Desk
@@ -332,14 +349,14 @@ def follow_alone(
     uncounted.  Where it rests for good there are none, until inf; ``state`` (6,) is moved to rest.
     """
     model, dry = _model_of(game, i), dry_under(game.regions, game.discs, i)
-    y, new, stages, ends, leaning = desk.y, desk.new, desk.stages, desk.ends, desk.leaning
+    y, new, stages, leaning = desk.y, desk.new, desk.stages, desk.leaning
     speed, unit, radius = game.pace[0], game.pace[0] / game.pace[1], model.body.radius
-    tol, drive, free = max(game.pace[2], FINEST), model.forces.drive, model.hold.kind == FREE
+    tol, drive = max(game.pace[2], FINEST), model.forces.drive
     _lay_out(game, i, model, state, tol, desk)
     slow = max(1.0, 2.0 * model.body.inertia / (model.body.mass * radius * radius))
     straight, horizon = _LAST * math.sqrt(tol) * speed, _horizon(game, model, t)
     now, passed, h, count, mode, way = t, 0.0, _BEGIN * unit, 0, SLIDES, NO_WAY
-    settle, known, stiff, over = True, False, False, False
+    settle, known, stiff, over, rests = True, False, False, False, False
     while now < horizon and count < LONGEST and not over:
         patience(1)
         rows = rows_passed(drive, 0, len(drive), now)
@@ -349,12 +366,13 @@ def follow_alone(
             mode, way = SLIDES, NO_WAY
             if dry.load > 0.0 and q <= REST * speed:
                 y[VX] = y[VY] = y[SPIN] = 0.0
-                rests = Stretch(model, dry, leaning, rows, CARRIED, way, 0.0, UNIFORM, 0.0)
-                mode, stiff, q = from_standstill(rests, speed, now, y, stages)
-                if mode == CARRIED:
-                    if not _swings(model, dry) and rests_on(model, dry, leaning, rows, y):
-                        break
-                    h = target - now
+                at_rest = Stretch(model, dry, leaning, rows, CARRIED, way, 0.0, UNIFORM, 0.0)
+                mode, stiff, q = from_standstill(at_rest, speed, now, y, stages)
+                rests = mode == CARRIED and not _swings(model, dry)
+                rests = rests and rests_on(model, dry, leaning, rows, y)
+                if rests:
+                    break
+                h = target - now if mode == CARRIED else h
         newton = max(_NEWTON * tol, _FINEST_NEWTON) if stiff and mode == SLIDES else 0.0
         stretch = Stretch(model, dry, leaning, rows, mode, way, newton, UNIFORM, 0.0)
         if settle or not known:
@@ -378,24 +396,21 @@ def follow_alone(
                 return False, now, count
             continue
         stuck, length = cut_short(stretch, now, whole, y, desk.scale, stages, new)
-        slips = False
         if not math.isfinite(new[VX]):  # a shorter implicit step, which was not solved
             h = 0.25 * length
             continue
+        slips = False
         if mode == CARRIED:
             length, slips = _is_carried(stretch, now, length, desk)
         landed = landed and stuck == NOTHING and not slips
-        for n in range(ROW):
-            ends[0, n], ends[1, n] = stages[0, n], stages[STAGES - 1, n]
         piece = game.pieces[game.counts[N_PIECES] + count]
         _write_piece(model, now, length, piece, desk)
         coarse = _misfit(stretch, now, length, piece, tol, desk)
-        if coarse > 1.0 and length > _BRIEF * unit:
-            h = length * max(0.2, _SAFE * coarse**-0.2)
+        longest = _piece_for(coarse, length) if length > _BRIEF * unit else math.inf
+        if coarse > 1.0 and longest < length:
+            h = longest
             continue
-        h = whole * grows
-        if coarse > 0.0:
-            h = min(h, length * _SAFE * coarse**-0.2)
+        h = min(whole * grows, longest)
         over = _comes_over(game, i, desk)
         if length > _SHORTEST * unit:
             _write_work(game, now, length, count, desk)
@@ -407,10 +422,8 @@ def follow_alone(
         if mode == SLIDES:
             stiff = _is_stiff(model, dry.load, newton > 0.0, length, q, slip_rate(radius, stages))
         settle = landed or slips or mode == STOPS or (q <= REST * speed and q < before)
-        known = not settle and free
+        known = not settle and model.hold.kind == FREE
     if count > 0 and now > t:
         return True, now, count
-    to_laboratory(model, y, 1.0)
-    for n in range(GIVEN):
-        state[n] = y[n]
-    return True, math.inf, 0
+    _put_down(model, state, desk)
+    return rests, math.inf, 0

@@ -78,16 +78,25 @@ def bounds_of(piece: FloatArray) -> tuple[float, float]:
 
     By the control points of both as polynomials of Bernstein, between which they stay.
     """
-    h = piece[DURATION]
+    h, speed, bend = piece[DURATION], 0.0, 0.0
+    x3, x4, _ = _bends(piece, 0)
+    y3, y4, _ = _bends(piece, 1)
     vx0, vy0, ax0, ay0 = piece[FIRST + 3], piece[FIRST + 4], piece[FIRST + 6], piece[FIRST + 7]
     vx1, vy1, ax1, ay1 = piece[FIRST + 12], piece[FIRST + 13], piece[FIRST + 15], piece[FIRST + 16]
-    ux0, uy0 = vx0 + 0.25 * h * ax0, vy0 + 0.25 * h * ay0
-    ux1, uy1 = vx1 - 0.25 * h * ax1, vy1 - 0.25 * h * ay1
-    mx = vx0 + 0.5 * (h * ax0 + _bends(piece, 0)[0] / h)
-    my = vy0 + 0.5 * (h * ay0 + _bends(piece, 1)[0] / h)
-    speed = max(math.hypot(vx0, vy0), math.hypot(ux0, uy0), math.hypot(mx, my))
-    bend = max(math.hypot(ax0, ay0), 4.0 / h * math.hypot(mx - ux0, my - uy0))
-    return (
-        max(speed, math.hypot(ux1, uy1), math.hypot(vx1, vy1)),
-        max(bend, 4.0 / h * math.hypot(ux1 - mx, uy1 - my), math.hypot(ax1, ay1)),
-    )
+    for vx, vy in (
+        (vx0, vy0),
+        (vx0 + 0.25 * h * ax0, vy0 + 0.25 * h * ay0),
+        (vx0 + 0.5 * (h * ax0 + x3 / h), vy0 + 0.5 * (h * ay0 + y3 / h)),
+        (vx1 - 0.25 * h * ax1, vy1 - 0.25 * h * ay1),
+        (vx1, vy1),
+    ):
+        speed = max(speed, math.hypot(vx, vy))
+    square = h * h
+    for ax, ay in (
+        (ax0, ay0),
+        (ax0 + 2.0 * x3 / square, ay0 + 2.0 * y3 / square),
+        (ax0 + 4.0 * (x3 + x4) / square, ay0 + 4.0 * (y3 + y4) / square),
+        (ax1, ay1),
+    ):
+        bend = max(bend, math.hypot(ax, ay))
+    return speed, bend

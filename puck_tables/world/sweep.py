@@ -46,6 +46,7 @@ ENDS = (
     "refused",
     "unsolved",
     "faster than a table of restitution goes",
+    "no step is short enough",
 )
 TIME_UP, REFUSED, UNSOLVED = 1, 4, 5
 _LAUNCH = re.compile(r"(?:puck\[(\d+)\]\.)?launch\.(velocity\[[01]\]|spin)")
@@ -363,7 +364,7 @@ class _Case:
             starts[:, numbers.index(int(one[1] or 0)), _PARTS.index(one[2])] = values
         discs = self.place[numbers]
         ends = follow_all(self.game, self.first, discs, starts, self.until)
-        for run in np.flatnonzero(ends.how == PUSHING):  # groups are sent off one by one
+        for run in np.flatnonzero(ends.how == PUSHING):  # or of which much has to be kept
             self._run(
                 {path: float(values[run]) for path, values in launches.items()}, int(run), ends
             )
@@ -378,7 +379,7 @@ class _Case:
         return out, status
 
     def _run(self, numbers: Mapping[str, float], run: int, ends: Ends) -> None:
-        """A run in which pucks push each other, or are integrated."""
+        """A run in which pucks push each other, or in which very much happens."""
         world = World(self.scene.at(numbers))
         try:
             world.advance(self.until)

@@ -30,6 +30,7 @@ from puck_tables.world.engine import (
     PUSHING,
     REACHED,
     THOSE_LEFT,
+    TOO_SHORT,
     advance,
     lacks_rows,
 )
@@ -394,6 +395,11 @@ class World:
                     )
         if how == OFF_TABLE:
             return self._off_table()
+        if how == TOO_SHORT:
+            return (
+                f"at {self.time:.6g} s no step is short enough to follow a puck that is "
+                "integrated: ask for a shorter run.time"
+            )
         return g.TOGETHER.format(time=self.time)
 
     def _off_table(self) -> str:
