@@ -71,7 +71,12 @@ from puck_tables.world.impact import (
 from puck_tables.world.layout import EDGE, KIND, LIGHTNESS, ON_FLOOR, OVERHANG, POCKET, RADIUS
 from puck_tables.world.meeting import are_apart, next_crossing, next_meeting, rest_together
 from puck_tables.world.quiet import quieten
-from puck_tables.world.touching import find_touching, is_integrated, outruns_law, press_somewhere
+from puck_tables.world.touching import (
+    find_touching,
+    is_integrated,
+    press_somewhere,
+    sets_off_too_fast,
+)
 
 # how a call ends
 REACHED, FULL, CROWDED, TANGLED, PAUSED, PUSHING, OFF_TABLE, TOO_SHORT = range(8)
@@ -217,7 +222,9 @@ def _go_on(game: Game, t: float, count: int, room: Room) -> int:
         _whole_groups(game, count, room)
     pushes = press_somewhere(game, count, t, room)
     for j in range(game.discs.shape[0]):
-        pushes = pushes or (room.marks[j] == CONCERNED and outruns_law(game, j, room.states[j]))
+        pushes = pushes or (
+            room.marks[j] == CONCERNED and sets_off_too_fast(game, j, room.states[j])
+        )
     return PUSHING if pushes else _take_off_all(game, t, room)
 
 

@@ -18,7 +18,6 @@ from puck_tables.scene.by_speed import NO_LAW, law_up_to
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ground import NO_GROUND
 from puck_tables.scene.ingredients import BySpeed, Regions, Surface, floor_velocity
-from puck_tables.scene.orthotropic import is_elliptic
 from puck_tables.scene.pieces import Piece
 from puck_tables.scene.regions import SLICE_SHARE, alone, axes_of, of_one_shape, plain_cut
 from puck_tables.scene.scene import Scene
@@ -129,11 +128,3 @@ def fastest_rim(pieces: list[Piece], states: FloatArray, surface: Surface) -> fl
         for way in () if piece.path else ways:
             most = max(most, slip_of_rim(piece.radius, surface, way))
     return most
-
-
-def law_goes_to(regions: Regions) -> float:
-    """Up to which slip of a rim friction is known, m/s."""
-    law = regions.by_speed
-    if law.normal == 0.0 or is_elliptic(law.table):
-        return math.inf
-    return float(law.table[int(law.table[0])])

@@ -7,6 +7,7 @@ The engine says when contacts press; here those that do become groups, each is f
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -245,9 +246,9 @@ def _with_rows(game: Game, name: str, count: int, rows: FloatArray) -> Game:
     """With rows at the end of its pieces or works, of which so many are counted there."""
     first, there = int(game.counts[count]), getattr(game, name)
     if first + len(rows) > len(there):
-        more = np.zeros((first + 2 * len(rows), rows.shape[1]))
-        more[:first], there = there[:first], more
-        game = game._replace(**{name: more})
+        more: dict[str, Any] = {name: np.zeros((first + 2 * len(rows), rows.shape[1]))}
+        more[name][:first], there = there[:first], more[name]
+        game = game._replace(**more)
     there[first : first + len(rows)] = rows
     game.counts[count] = first + len(rows)
     return game

@@ -3,8 +3,9 @@
 The equations are those of one puck (:mod:`puck_tables.scene.equations`), by steps of order 8, or of
 Radau IIA where the direction of the slip settles much faster than the slip changes.  Each step is a
 piece of its path, and as long as a polynomial of degree five is as good as the promise.  A
-path ends where the puck rests for good, where its rim has come over a border of the floor, at a
-horizon, and after so many steps; whatever else meets it is found on the path.
+path ends where the puck rests for good, where its rim has come over a border of the floor or slips
+faster than a friction law goes, at a horizon, and after so many steps; whatever else meets it is
+found on the path.
 """
 
 from __future__ import annotations
@@ -55,7 +56,7 @@ from puck_tables.scene.step_size import follow_scales, up_to_the_stop
 from puck_tables.scene.steps import WIDE, accelerations, step
 from puck_tables.world import works
 from puck_tables.world.alone import rows_passed
-from puck_tables.world.footing import dry_under, moves_along, room_on_floor
+from puck_tables.world.footing import dry_under, moves_along, outruns_law, room_on_floor
 from puck_tables.world.game import N_HISTORY, N_PIECES, N_WORKS, Game
 from puck_tables.world.layout import (
     ACROSS,
@@ -263,13 +264,18 @@ def _misfit(
 
 
 @inlined
-def _comes_over(game: Game, i: int, desk: Desk) -> bool:
-    """Whether the rim has come over a border on a step, or left it: there friction changes."""
+def _leads_off(game: Game, i: int, desk: Desk) -> bool:
+    """Whether a step has led to where there is another friction, or none is known.
+
+    The rim has come over a border, or left it, or it slips faster than a law goes.
+    """
+    y, radius = desk.new, game.discs[i, RADIUS]
+    if outruns_law(game.regions, radius, y[VX], y[VY], y[SPIN]):
+        return True
     if game.discs.shape[1] == LIES:
         return False
-    over = _OVER * game.discs[i, RADIUS]
-    before = room_on_floor(game.regions, game.discs, i, desk.y) + over
-    return before > 0.0 > room_on_floor(game.regions, game.discs, i, desk.new) + over
+    before = room_on_floor(game.regions, game.discs, i, desk.y) + _OVER * radius
+    return before > 0.0 > room_on_floor(game.regions, game.discs, i, y) + _OVER * radius
 
 
 @inlined
@@ -393,7 +399,7 @@ def follow_alone(
         if not error <= tol:
             h = whole * grows
             if h < _SHORTEST * unit:
-                return False, now, count
+                break
             continue
         stuck, length = cut_short(stretch, now, whole, y, desk.scale, stages, new)
         if not math.isfinite(new[VX]):  # a shorter implicit step, which was not solved
@@ -411,7 +417,7 @@ def follow_alone(
             h = longest
             continue
         h = min(whole * grows, longest)
-        over = _comes_over(game, i, desk)
+        over = _leads_off(game, i, desk)
         if length > _SHORTEST * unit:
             _write_work(game, now, length, count, desk)
             count += 1

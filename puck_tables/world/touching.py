@@ -7,10 +7,9 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, patience
 from puck_tables.scene.friction import X, Y
-from puck_tables.scene.orthotropic import is_elliptic
 from puck_tables.world.departures import CONCERNED, LOOKED_AT, NOT_CONCERNED, Room, locate
 from puck_tables.world.flight import GONE, PLACE_X, PLACE_Y, STILL, drifts
-from puck_tables.world.footing import over_floor, slips
+from puck_tables.world.footing import outruns_law, over_floor, slips
 from puck_tables.world.game import (
     Game,
 )
@@ -36,7 +35,6 @@ from puck_tables.world.layout import (
 from puck_tables.world.meeting import HARDLY, normal_to
 
 TOUCH = 1e-12  # of the radius: a gap as small is none
-SURE = 1.0 - 1e-9  # of the last slip that a friction law knows: whoever is faster comes beyond
 BLUR = 1e-15  # of the time since the start, at full speed: another
 
 
@@ -125,14 +123,11 @@ def press_somewhere(game: Game, count: int, t: float, room: Room) -> bool:
 
 
 @inlined
-def outruns_law(game: Game, i: int, state: FloatArray) -> bool:
+def sets_off_too_fast(game: Game, i: int, state: FloatArray) -> bool:
     """Whether its rim slips faster than the friction law of the floor is known."""
-    law = game.regions.by_speed
-    if law.normal == 0.0 or is_elliptic(law.table) or game.discs[i, LIGHTNESS] == 0.0:
-        return False
     ux, uy, w = over_floor(game.surface, state)
-    slip = math.hypot(ux, uy) + game.discs[i, RADIUS] * abs(w)
-    return slip >= SURE * law.table[int(law.table[0])]
+    free = game.discs[i, LIGHTNESS] > 0.0
+    return free and outruns_law(game.regions, game.discs[i, RADIUS], ux, uy, w)
 
 
 @inlined

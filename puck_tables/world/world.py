@@ -380,6 +380,11 @@ class World:
 
     def _failure(self, how: int) -> str:
         """Why it does not go on, in words."""
+        if how == TOO_SHORT:
+            return (
+                f"at {self.time:.6g} s no step is short enough to follow a puck that is "
+                "integrated: ask for a shorter run.time"
+            )
         radii = np.array([piece.radius for piece in pieces_of(self.scene)])
         places = self.state()[:, :2]
         for number, piece in enumerate(pieces_of(self.scene)):
@@ -395,11 +400,6 @@ class World:
                     )
         if how == OFF_TABLE:
             return self._off_table()
-        if how == TOO_SHORT:
-            return (
-                f"at {self.time:.6g} s no step is short enough to follow a puck that is "
-                "integrated: ask for a shorter run.time"
-            )
         return g.TOGETHER.format(time=self.time)
 
     def _off_table(self) -> str:
