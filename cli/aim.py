@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from puck_tables.stopping.aim import Aim
     from puck_tables.stopping.aims import Aims
 
-_LARGEST_FILE = 1 << 30
+_LARGEST_FILE = 1 << 30  # bytes: more is no file of targets, and would fill the memory
 
 
 @click.command()
@@ -173,7 +173,8 @@ def aim(
 
 def _read_targets(path: Path) -> FloatArray:
     """Places (n, 2) from a file."""
-    from puck_tables._core.columns import X, Y, numbers_of
+    from puck_tables._core.columns import numbers_of
+    from puck_tables._core.quantities import X, Y
 
     return numbers_of(path, (X, Y), 2, _LARGEST_FILE).rows
 

@@ -10,8 +10,8 @@ import click
 from puck_tables.cli.options import (
     FILE,
     LENGTH,
-    Number,
-    Range,
+    NumberParam,
+    RangeParam,
     deliver,
     output_options,
     prepare_outputs,
@@ -24,17 +24,20 @@ from puck_tables.errors import InputError
 if TYPE_CHECKING:
     from puck_tables.chetaev.asperity_forces import AsperityCurve
 
+# speeds, and times the lift speed up to which: enough for a smooth curve beyond it
 DEFAULT_COUNT, DEFAULT_TOP = 501, 2.5
-MAX_SPEEDS = 1_000_000
+MAX_SPEEDS = 1_000_000  # each a row of the answer
 MOST_LEAPS = 5  # more are no single steps of the force
 
 
 @click.command()
 @click.option("--amplitude", type=LENGTH, default=1e-6, show_default=True, help="a in m.")
 @click.option("--wavelength", type=LENGTH, default=2e-5, show_default=True, help="2 pi b in m.")
-@click.option("--load", type=Number("N"), default=1.0, show_default=True, help="-Y in N.")
-@click.option("--mass", type=Number("kg"), help="m in kg.  [default: the load is its weight]")
-@click.option("--speeds", type=Range("m/s"), help="In m/s.  [default: 0 to 2.5 V0 in 501 steps]")
+@click.option("--load", type=NumberParam("N"), default=1.0, show_default=True, help="-Y in N.")
+@click.option("--mass", type=NumberParam("kg"), help="m in kg.  [default: the load is its weight]")
+@click.option(
+    "--speeds", type=RangeParam("m/s"), help="In m/s.  [default: 0 to 2.5 V0 in 501 steps]"
+)
 @click.option(
     "-o",
     "--output",

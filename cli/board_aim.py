@@ -20,7 +20,7 @@ def aim_on_board(
     output: Path | None, plot: Path | None, overwrite: bool,
 ) -> None:  # fmt: skip
     """An aim on a board, to the end of its command."""
-    from puck_tables.scene.scene import Scene
+    from puck_tables.world.scene import Scene
 
     scene = Scene.from_tables(tables, source)
     with progress("searches") as show:

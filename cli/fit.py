@@ -13,7 +13,7 @@ from puck_tables.cli.options import (
     LENGTH,
     NUMBER,
     TIME,
-    Number,
+    NumberParam,
     body_options,
     deliver,
     explain_option,
@@ -38,9 +38,9 @@ from puck_tables.errors import InputError
 )
 @click.option("--friction", type=NUMBER, help="Coulomb coefficient f, if known.")
 @click.option(
-    "--mass", type=Number("kg"), help="Mass in kg (for energies of what is simulated later)."
+    "--mass", type=NumberParam("kg"), help="Mass in kg (for energies of what is simulated later)."
 )
-@click.option("--gravity", type=NUMBER, help="Gravity in m/s^2.  [default: 9.80665]")
+@click.option("--gravity", type=NumberParam("m/s^2"), help="Gravity in m/s^2.  [default: 9.80665]")
 @body_options()
 @click.option(
     "--free",
@@ -257,16 +257,15 @@ def _named(given: tuple[str, ...], option: str) -> dict[str, str]:
 _UNITS = {
     "place": "m", "radius": "m", "height": "m", "launch_x": "m", "launch_y": "m", "angle": "rad",
     "launch_angle": "rad", "launch_vx": "m/s", "launch_vy": "m/s", "launch_spin": "rad/s",
-    "u": "m/s",
+    "u": "m/s", "gravity": "m/s^2", "decel": "m/s^2",
 }  # fmt: skip
 
 
 def _number(text: str, option: str, name: str) -> float:
-    from puck_tables._core.units import quantity
+    from puck_tables._core.units import measured
 
     try:
-        measured = quantity(text, _UNITS.get(name, ""))
-        number = float(text) if measured is None else measured
+        number = measured(text, _UNITS.get(name, ""))
     except ValueError:
         number = math.nan
     if not math.isfinite(number):
@@ -304,10 +303,10 @@ def _noise(text: str | None) -> tuple[float, float | None] | None:
 
 
 def _jitter(text: str | None) -> float | str | None:
-    from puck_tables._core.units import quantity
+    from puck_tables._core.units import measured
 
     try:
-        return text if text is None else quantity(text, "s") or float(text)
+        return text if text is None else measured(text, "s")
     except ValueError:
         return text
 

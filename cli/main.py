@@ -15,7 +15,7 @@ import sys
 from typing import Any
 
 import click
-from puck_tables.cli import start
+from puck_tables.cli import endings
 from puck_tables.cli.aim import aim
 from puck_tables.cli.asperity import asperity
 from puck_tables.cli.build_tables import build_tables
@@ -72,9 +72,9 @@ class PuckGroup(click.Group):
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command."""
-        at_start = [one for one in start.ENDINGS if signal.getsignal(one) is start.end_at_once]
+        at_start = [one for one in endings.ENDINGS if signal.getsignal(one) is endings.end_at_once]
         for one in at_start:
-            signal.signal(one, start.interrupt)
+            signal.signal(one, endings.interrupt)
         try:
             result = super().invoke(ctx)
             if sys.stdout is not None:
@@ -101,11 +101,11 @@ class PuckGroup(click.Group):
             click.echo("Error: not enough memory: ask for fewer points", err=True)
             ctx.exit(1)
         except KeyboardInterrupt:
-            click.echo(start.last_words[-1](), err=True)
-            ctx.exit(128 + start.received)
+            click.echo(endings.last_words[-1](), err=True)
+            ctx.exit(128 + endings.received)
         finally:
             for one in at_start:
-                signal.signal(one, start.end_at_once)
+                signal.signal(one, endings.end_at_once)
 
 
 def _told(error: OSError) -> str:
@@ -138,7 +138,7 @@ def _drop(stream: Any) -> None:
 def main() -> None:
     """Motion of a flat puck that slides and spins under dry friction, until it stops."""
     watchers[:] = [said_first]
-    del start.last_words[1:]
+    del endings.last_words[1:]
 
 
 _ALL = (

@@ -27,12 +27,13 @@ if TYPE_CHECKING:
 Command = TypeVar("Command", bound=Callable[..., Any])
 Progress = Callable[[int, int], None]
 
+# dimensionless, m/s²: of a puck that nothing is said of, as the library has it
 DEFAULT_DELTA, DEFAULT_DECEL = 0.5, 1.0
-MAX_COUNT = 1_000_000_000
+MAX_COUNT = 1_000_000_000  # values of a range
 QUIET_TIME, BETWEEN_LINES = 2.0, 10.0  # s, where stderr is no terminal
 
 
-class Number(click.ParamType):
+class NumberParam(click.ParamType):
     """A finite number, in an SI unit; another unit may stand behind it."""
 
     name = "number"
@@ -45,7 +46,7 @@ class Number(click.ParamType):
         return finite(str(value), self, param, ctx, self.unit)
 
 
-class Vector(Number):
+class Vector(NumberParam):
     """Two finite numbers: X,Y."""
 
     name = "X,Y"
@@ -60,7 +61,7 @@ class Vector(Number):
         return tuple(finite(part, self, param, ctx, self.unit) for part in parts)
 
 
-class Range(Number):
+class RangeParam(NumberParam):
     """A number, START:STOP:COUNT or A,B,...; a tuple of three for a range, a list for several."""
 
     name = "NUMBER|START:STOP:COUNT|A,B,..."
@@ -91,7 +92,7 @@ class Range(Number):
         return start, stop, int(parts[2])
 
 
-class Times(Number):
+class Times(NumberParam):
     """Times in seconds with commas, or START:STOP:COUNT."""
 
     name = "T1,T2,...|START:STOP:COUNT"
@@ -101,7 +102,7 @@ class Times(Number):
         if ":" not in str(value):
             parts = str(value).split(",")
             return tuple(finite(part, self, param, ctx, self.unit) for part in parts)
-        start, stop, count = Range(self.unit).convert(value, param, ctx)
+        start, stop, count = RangeParam(self.unit).convert(value, param, ctx)
         if count > 10_000_000:
             self.fail(f"'{value}' asks for too many states: at most 1e7", param, ctx)
         return tuple(start + (stop - start) * i / (count - 1) for i in range(count))
@@ -109,13 +110,10 @@ class Times(Number):
 
 def finite(text: str, kind: click.ParamType, param: Any, ctx: Any, unit: str = "") -> float:
     """A finite number, in an SI unit where another stands behind it, or click's error."""
-    from puck_tables._core.units import SHOWN, quantity
+    from puck_tables._core.units import SHOWN, measured
 
     try:
-        measured = quantity(text, unit)
-        if measured is None and ("_" in text or not text.isascii()):
-            raise ValueError
-        number = float(text) if measured is None else measured
+        number = measured(text, unit)
     except ValueError:
         example = f", or one with a unit as {SHOWN[unit]}" if unit else ""
         kind.fail(f"'{text}' is not a number{example}", param, ctx)
@@ -126,11 +124,11 @@ def finite(text: str, kind: click.ParamType, param: Any, ctx: Any, unit: str = "
 
 HUGE = 10.0  # m, of a real puck: millimetres were meant
 
-NUMBER, LENGTH, SPEED, SPIN, TIME = map(Number, ("", "m", "m/s", "rad/s", "s"))
+NUMBER, LENGTH, SPEED, SPIN, TIME = map(NumberParam, ("", "m", "m/s", "rad/s", "s"))
 FILE = click.Path(readable=False, path_type=Path)
 
 
-def puck_options(mass: bool, kind: type[Number] = Number) -> Callable[[Command], Command]:
+def puck_options(mass: bool, kind: type[NumberParam] = NumberParam) -> Callable[[Command], Command]:
     """The puck and the floor: by δ and J, or by dimensions and friction; numbers of one kind."""
     options = [
         click.option(
@@ -144,12 +142,12 @@ def puck_options(mass: bool, kind: type[Number] = Number) -> Callable[[Command],
             help="Height h of the puck in m, twice that of its centre of mass; with --friction.",
         ),
         click.option("--friction", type=kind(), help="Coulomb coefficient f; with --height."),
-        click.option("--gravity", type=kind(), help="Gravity in m/s^2.  [default: 9.80665]"),
-        click.option("--decel", type=kind(), help="J = f g in m/s^2 instead.  [default: 1]"),
+        click.option("--gravity", type=kind("m/s^2"), help="Gravity in m/s^2.  [default: 9.80665]"),
+        click.option("--decel", type=kind("m/s^2"), help="J = f g in m/s^2 instead.  [default: 1]"),
     ]
     if mass:
         options.insert(
-            4, click.option("--mass", type=Number("kg"), help="Mass in kg (energies, forces).")
+            4, click.option("--mass", type=NumberParam("kg"), help="Mass in kg (energies, forces).")
         )
 
     def decorate(command: Command) -> Command:
@@ -160,7 +158,9 @@ def puck_options(mass: bool, kind: type[Number] = Number) -> Callable[[Command],
     return decorate
 
 
-def body_options(kind: type[Number] = Number, many: bool = False) -> Callable[[Command], Command]:
+def body_options(
+    kind: type[NumberParam] = NumberParam, many: bool = False
+) -> Callable[[Command], Command]:
     """The kind of puck: how it presses on the floor and how its mass is spread.
 
     ``kind``: of the radius of gyration; ``many``: whether several laws may be given.

@@ -9,7 +9,7 @@ from puck_tables.cli.completion import scenes
 from puck_tables.cli.options import printable
 
 if TYPE_CHECKING:
-    from puck_tables.scene.scene import Scene
+    from puck_tables.world.scene import Scene
 
 
 @click.group()
@@ -47,7 +47,7 @@ def show(name: str) -> None:
 def fields() -> None:
     """List every entry that a scene may have: what is allowed, its default, what it is."""
     from puck_tables._core.fields import described
-    from puck_tables.scene.scene import Scene
+    from puck_tables.world.scene import Scene
 
     for path, allowed, text in described(Scene):
         click.echo(f"{path:<24} {allowed:<44} {text}".rstrip())
@@ -57,9 +57,9 @@ def fields() -> None:
 @click.argument("name", metavar="FILE|NAME", shell_complete=scenes)
 def check(name: str) -> None:
     """Check a scene: every error at once, or what it holds and how it would be run."""
-    from puck_tables.scene.scene import Scene
-    from puck_tables.scene.sweep import axes_of
     from puck_tables.world.outcome import ways_of
+    from puck_tables.world.scene import Scene
+    from puck_tables.world.scene_ends import axes_of
 
     whole = Scene.load(name)
     plan = ways_of(whole) if whole.is_board else _plan(whole)

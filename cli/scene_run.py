@@ -18,19 +18,18 @@ from puck_tables.errors import InputError
 if TYPE_CHECKING:
     from puck_tables.bulk.finish import Stored
     from puck_tables.result import TimedResult
-    from puck_tables.scene.outcome import Event, SceneRun
-    from puck_tables.scene.sample import SceneSample
-    from puck_tables.scene.scene import Scene
-    from puck_tables.scene.sweep import SceneMap
-    from puck_tables.world.sweep import WorldMap
+    from puck_tables.scene.run import Event, Run
+    from puck_tables.world.map import Map
+    from puck_tables.world.sample import Sample
+    from puck_tables.world.scene import Scene
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
 PATHS = {
     "v0": "launch.velocity", "w0": "launch.spin", "speed": "launch.velocity[0]",
     "radius": "puck.radius", "height": "puck.height", "mass": "puck.mass",
-    "friction": "puck.friction", "gravity": "gravity", "frames": "run.frames",
-    "tol": "run.tol",
+    "friction": "puck.friction", "gravity": "gravity", "frames": "frames",
+    "tol": "tol",
 }  # fmt: skip
 KEPT = (
     "times", "explain", "as_json", "output", "plot", "movie", "overwrite", "threads", "cluster",
@@ -42,7 +41,6 @@ INSTEAD = {  # of options that no scene has
     "heading": "launch.velocity has it", "pressure": "--set puck.pressure=NAME has it",
     "gyration": "--set puck.gyration=NUMBER has it",
 }  # fmt: skip
-_AT = {"impact": "wall", "contact": "wall", "edge": "edge", "overhang": "edge"}
 MOST_PARTS = 16  # of a scene in a report
 
 
@@ -130,6 +128,8 @@ def _refuse_one_for_all(tables: dict[str, Any], flag: str, path: str, value: str
     InputError
     """
     pucks, own = tables.get("puck"), _of_each(tables, path)
+    if isinstance(pucks, list) and path == "puck.gravity":
+        raise InputError(f"{flag}: all pucks of a scene have its gravity: write --gravity {value}")
     if isinstance(pucks, list) and own != path:
         last = len(pucks) - 1
         more = f", and so on to puck[{last}] for all of them" if last > 0 else ""
@@ -215,14 +215,14 @@ def run_scene(
     tables: dict[str, Any], source: str, times: tuple[float, ...] | None
 ) -> tuple[TimedResult, Callable[[Any], str]]:
     """One run of a scene with its states at some times, and what tells of it in words."""
-    from puck_tables.scene.scene import Scene
+    from puck_tables.world.scene import Scene
 
     scene = Scene.from_tables(tables, source)
     run: Any = scene.simulate(times)
     return run, report_of_several if scene.is_board else report
 
 
-def report(run: SceneRun) -> str:
+def report(run: Run) -> str:
     """A scene run and what went in, each with its unit."""
     last = run.last
     lines = {
@@ -238,7 +238,7 @@ def report(run: SceneRun) -> str:
         "heat": f"{_joule(last['heat_dry'])} dry, {_joule(last['heat_viscous'])} viscous, "
         f"{_joule(last['heat_impact'])} impacts; ledger misses {run.energy_residual:.1e} of it",
         "error": _error(run),
-        "model": run.plan.model + (f", {run.steps} steps" if run.steps else ""),
+        "model": run.model + (f", {run.steps} steps" if run.steps else ""),
     }
     if any(event.what == "overhang" for event in run.events):
         from puck_tables.scene.plan import OVERHANG
@@ -259,11 +259,13 @@ def _inputs(scene: Scene) -> dict[str, str]:
     parts: dict[str, list[str]] = {}
     for entry in entries(scene):
         part, dot, name = entry.path.partition(".")
-        if is_dataclass(entry.value):  # its entries follow
+        told = dot or part not in ("title", "gravity")  # above all, and of each puck
+        if is_dataclass(entry.value) or not told:  # its entries follow
             continue
-        if dot and entry.value != entry.default and entry.value is not None:
+        if entry.value != entry.default and entry.value is not None:
             unit = f" {entry.kind.unit}" if entry.kind.unit else ""
-            parts.setdefault(part, []).append(f"{name} {_written(entry.value)}{unit}")
+            words = f"{name} {_written(entry.value)}{unit}".lstrip()
+            parts.setdefault(part, []).append(words)
     lines = {part: ", ".join(told_of) for part, told_of in parts.items()}
     most = list(lines)[:MOST_PARTS]
     return {part: lines[part] for part in most} | (
@@ -292,10 +294,10 @@ def _friction(scene: Scene) -> str:
     return words + ("; part of the base may lift" if max(scene.heights) > 1.0 else "")
 
 
-def _error(run: SceneRun) -> str:
+def _error(run: Run) -> str:
     """The estimate, and what tol means here; a word where it could not be kept."""
     time = run.speed_scale / run.rate_scale if run.rate_scale > 0.0 else 0.0
-    place, tol = run.speed_scale * time, run.scene.run.tol
+    place, tol = run.speed_scale * time, run.scene.tol
     words = f"about {run.error_estimate * time:.1e} s, {run.error_estimate * place:.1e} m; "
     if run.error_estimate > tol:
         known = "a finer table of its friction law" if run.scene.floor.law else "finer steps"
@@ -307,41 +309,39 @@ def _joule(energy: float) -> str:
     return f"{energy + 0.0:.6g} J"  # a zero without its sign
 
 
-def _event(scene: Scene, event: Event) -> str:
+def _event(event: Event) -> str:
     """What happened, and at which wall, edge, border, patch or strip."""
-    at, number = _AT.get(event.what), event.which
-    if event.what in ("entry", "exit"):
-        borders = 0 if scene.floor.strips is None else len(scene.floor.strips.borders)
-        at, number = ("border", number) if number < borders else ("patch", number - borders)
-    elif scene.floor.strips is not None and at is None:
-        at = "strip"
-    return event.what if at is None else f"{event.what} ({at} {number})"
+    return event.what if event.partner == "floor" else f"{event.what} ({event.partner})"
 
 
-def _events(run: SceneRun) -> str:
+def _events(run: Run) -> str:
     if not run.events:
         return "none"
-    told_of = [f"{_event(run.scene, event)} at {event.time:.6g} s" for event in run.events[:6]]
+    told_of = [f"{_event(event)} at {event.time:.6g} s" for event in run.events[:6]]
     more = len(run.events) - 6
     return ", ".join(told_of) + (f" and {more} more" if more > 0 else "")
 
 
-def summary_of_map(stops: SceneMap | SceneSample | WorldMap | Stored) -> str:
+def summary_of_map(ends: Map | Sample | Stored) -> str:
     """A map or samples of a scene in one line, and one for each way in which runs have no end."""
     from puck_tables.bulk.finish import Stored
     from puck_tables.bulk.work import Tally
+    from puck_tables.world.map import Map
 
-    work: Any = stops.work if isinstance(stops, Stored) else stops
-    tally = stops.tally if isinstance(stops, Stored) else Tally.of(stops.end)
+    work: Any = ends.work if isinstance(ends, Stored) else ends
+    tally = ends.tally if isinstance(ends, Stored) else Tally.of(ends.end)
     spreads = getattr(work, "spreads", None)  # of samples: no axes, no one model
-    if spreads is None:
-        ranged = " x ".join(f"{name} ({values.size})" for name, values in work.axes.items())
-    else:
+    if spreads:
         ranged = ", ".join(f"{path} {one}" for path, one in spreads.items())
+    else:
+        ranged = " x ".join(f"{name} ({values.size})" for name, values in work.axes.items())
     counts = ", ".join(f"{count} {work.meanings[code]}" for code, count in tally.counts.items())
-    lines = work.without_end(tally) if isinstance(stops, Stored) else stops.without_end()
-    model = "" if isinstance(stops, Stored) or spreads is not None else f"; {stops.model}"
-    estimate = getattr(stops, "error_estimate", None)  # of a map in memory over one puck
-    if estimate is not None:
-        model += f"; error <= {estimate:.1e} (Q/J, Q²/J) in the runs that were checked"
+    lines = work.without_end(tally) if isinstance(ends, Stored) else ends.without_end()
+    model = ""
+    if isinstance(ends, Map):
+        model = f"; {ends.model}"
+        if ends.error_estimate is not None:
+            model += (
+                f"; error <= {ends.error_estimate:.1e} (Q/J, Q²/J) in the runs that were checked"
+            )
     return "\n".join([f"{work.scene.title or 'scene'} over {ranged}: {counts}{model}", *lines])

@@ -10,7 +10,7 @@ from puck_tables.cli.options import (
     FILE,
     MAX_COUNT,
     NUMBER,
-    Range,
+    RangeParam,
     Vector,
     body_options,
     explain_option,
@@ -41,13 +41,15 @@ REAL = ("height", "friction", "gravity")
 
 
 @click.command()
-@click.option("--w0", type=Range("rad/s"), help="Launch spin in rad/s.")
-@click.option("--speed", type=Range("m/s"), help="Launch speed in m/s, along x without --heading.")
-@click.option("--heading", type=Range("rad"), help="Direction of the launch from x, in rad.")
+@click.option("--w0", type=RangeParam("rad/s"), help="Launch spin in rad/s.")
+@click.option(
+    "--speed", type=RangeParam("m/s"), help="Launch speed in m/s, along x without --heading."
+)
+@click.option("--heading", type=RangeParam("rad"), help="Direction of the launch from x, in rad.")
 @click.option("--v0", type=Vector("m/s"), help="One launch velocity in m/s instead of --speed.")
-@click.option("--delta", type=Range(), help="delta = 2 f h / r.  [default: 0.5]")
-@puck_options(mass=False, kind=Range)
-@body_options(kind=Range, many=True)
+@click.option("--delta", type=RangeParam(), help="delta = 2 f h / r.  [default: 0.5]")
+@puck_options(mass=False, kind=RangeParam)
+@body_options(kind=RangeParam, many=True)
 @click.option(
     "--random", type=click.IntRange(2, MAX_COUNT), metavar="COUNT",
     help="Samples instead of ranges: so many launches whose numbers scatter.",
@@ -56,7 +58,7 @@ REAL = ("height", "friction", "gravity")
 @click.option(
     "--spread", "spreads", multiple=True, metavar="NAME=SPREAD",
     help="How a number scatters: w0=normal:5:0.2, speed=uniform:0.9:1.1; in scenes "
-    "launch.spin=...; as often as needed.",
+    "launch.spin=...; numbers may have units, w0=normal:50rpm:2rpm; as often as needed.",
 )  # fmt: skip
 @click.option(
     "--inside", "regions", multiple=True, metavar="X,Y,R|X1,Y1,X2,Y2",
@@ -119,23 +121,28 @@ def sweep(
 
     Each delta above 1, or with another --pressure or --gyration, takes about a second to prepare.
     """  # noqa: D301, E501 - click reads the backspace
+    from puck_tables.io.columns import COLUMNS
+    from puck_tables.stopping.population import COLUMN
+
     is_scene = scene is not None or bool(changes)
     inside = samples_checked(random, seed, spreads, regions, "launch.spin" if is_scene else "w0")
     whole = Whole(threads, cluster, output, plot, overwrite, explain, inside)
-    drawn = spreads_given(spreads, None if is_scene else ARGUMENTS)
     if is_scene:
-        tables = scene_tables(ctx, scene, changes, scattering=drawn)
+        scattering = [one.partition("=")[0].strip() for one in spreads]
+        tables = scene_tables(ctx, scene, changes, scattering=scattering)
         whole.refuse_outputs(files_read(scene, tables))
-        from puck_tables.scene.scene import Scene
+        from puck_tables.world.scene import Scene
 
         with progress("runs") as show:
             one = Scene.from_tables(tables)
             if random is None:
                 ends: Any = one.sweep(progress=show, **whole.how)
             else:
+                drawn = spreads_given(spreads, None, one.unit_of)
                 ends = one.sample(random, seed or 0, drawn, progress=show, **whole.how)
         whole.deliver(ends, summary_of_map(ends))
         return
+    drawn = spreads_given(spreads, ARGUMENTS, lambda name: COLUMNS[COLUMN[name]].unit)
     if v0 is not None and numbers["speed"] is not None:
         raise InputError("--v0 and --speed clash: both give the launch velocity")
     for name, option in ARGUMENTS.items():

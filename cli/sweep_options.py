@@ -4,28 +4,31 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
+from puck_tables.cli.endings import last_words
 from puck_tables.cli.options import deliver, explained, prepare_outputs, printable, told
-from puck_tables.cli.start import last_words
 
 from puck_tables.errors import InputError, OutputError
 
 if TYPE_CHECKING:
     from puck_tables.bulk.spreads import Spread
 
-SUMMED = 1_000_000  # samples of a store that are summed up unasked: some 200 MB
+SUMMED = 1_000_000  # samples (of each puck) of a store that are summed up unasked: some 200 MB
 _RINGS = re.compile(r"annulus:([^:]*):([^:]*):([0-9]{1,10})")
 
 
-def spreads_given(spreads: Iterable[str], names: Mapping[str, str] | None) -> dict[str, Spread]:
+def spreads_given(
+    spreads: Iterable[str], names: Mapping[str, str] | None, unit_of: Callable[[str], str]
+) -> dict[str, Spread]:
     """Spreads by what scatters.
 
-    ``names``: the arguments by the names that are allowed; None: any, as they are.
+    ``names``: the arguments by the names that are allowed; None: any, as they are; ``unit_of``:
+    the unit of each.
 
     Raises
     ------
@@ -43,7 +46,7 @@ def spreads_given(spreads: Iterable[str], names: Mapping[str, str] | None) -> di
         argument = name if names is None else names[name]
         if argument in found:
             raise InputError(f"--spread {name} is given twice")
-        found[argument] = spread_named(text)
+        found[argument] = spread_named(text, unit_of(argument))
     return found
 
 
@@ -57,7 +60,7 @@ def samples_checked(
     ------
     InputError
     """
-    from puck_tables._core.units import quantity
+    from puck_tables._core.units import measured
     from puck_tables.bulk.summary import checked_regions
 
     alone = {"--seed": seed is not None, "--spread": spreads, "--inside": regions}
@@ -73,12 +76,7 @@ def samples_checked(
     found = []
     for region in regions:
         try:
-            found.append(
-                tuple(
-                    float(part) if (size := quantity(part, "m")) is None else size
-                    for part in region.split(",")
-                )
-            )
+            found.append(tuple(measured(part, "m") for part in region.split(",")))
         except ValueError:
             raise InputError(f"--inside {region}: write X,Y,R or X1,Y1,X2,Y2, in m") from None
     checked_regions(found)
@@ -218,7 +216,8 @@ class Whole:
         else:
             deliver(result, self.output, None, self.overwrite)
         kept = isinstance(result, Stored)
-        summed = kept and result.is_sample and (bool(self.regions) or result.work.size <= SUMMED)
+        many = kept and result.work.size * max(1, len(getattr(result.work, "names", ()))) > SUMMED
+        summed = kept and result.is_sample and (bool(self.regions) or not many)
         drawn = result.load() if summed or (kept and self.plot is not None) else result
         deliver(drawn, None, self.plot, self.overwrite)
         if self.output is None and self.plot is None and not isinstance(result, Summary):

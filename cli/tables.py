@@ -13,7 +13,7 @@ from puck_tables.errors import InputError
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from puck_tables.table.store import Entry
+    from puck_tables.table.store import KeptTable
 
 
 @click.command()
@@ -61,7 +61,7 @@ def _remove(paths: list[Path]) -> None:
         click.echo("nothing is kept: nothing to remove")
 
 
-def _lines(entries: list[Entry]) -> str:
+def _lines(entries: list[KeptTable]) -> str:
     titles = ("name", "holds", "pressure", "accuracy", "kB", "made", "state", "range")
     rows = [titles]
     for entry in entries:

@@ -10,7 +10,7 @@ import click
 from puck_tables.cli.options import FILE, deliver, output_options, prepare_outputs, progress
 
 if TYPE_CHECKING:
-    from puck_tables.accuracy.front import Measured
+    from puck_tables.accuracy.front import MeasuredMethod
     from puck_tables.tradeoff.engine import TradeOff
 
 
@@ -83,7 +83,7 @@ def report(measured: TradeOff) -> str:
     return "\n".join(lines)
 
 
-def _line(method: Measured) -> str:
+def _line(method: MeasuredMethod) -> str:
     spread = f"{min(999.0, 100.0 * method.ns_spread / method.ns):.0f}%"
     limit = f"{method.ns / method.limit_ns:.1f}" if method.limit_ns else "-"
     return (

@@ -11,7 +11,7 @@ from puck_tables.cli.options import FILE, printable, progress, tables_named
 if TYPE_CHECKING:
     from puck_tables.table.check import CheckReport
 
-FAILED = 3
+FAILED = 3  # exit status: 1 and 2 are those of errors and of wrong usage
 
 
 @click.command()

@@ -6,14 +6,14 @@ import math
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from puck_tables.world.outcome import WorldRun
+    from puck_tables.scene.run import Run
 
 MOST_PUCKS, MOST_IMPACTS, MOST_NAMES = 40, 6, 6  # of a report
 _WIDEST = 24  # signs of a name in the table
 _ROUNDING = 1e-14  # of energies
 
 
-def report(run: WorldRun) -> str:
+def report(run: Run) -> str:
     """What happened in two sentences; a table of pucks; impacts, energies, and how sure it is."""
     from puck_tables.scene.plan import EMPIRICAL, OVERHANG
     from puck_tables.world.outcome import ways_of
@@ -38,7 +38,7 @@ def report(run: WorldRun) -> str:
     return "\n\n".join(parts)
 
 
-def plainly(run: WorldRun) -> str:
+def plainly(run: Run) -> str:
     """How it ends and who leaves the board."""
     from puck_tables.world.agreement import pieces_of
 
@@ -79,7 +79,7 @@ def _counted(count: int, noun: str) -> str:
     return f"{count or 'no'} {noun}{'' if count == 1 else 's'}"
 
 
-def _pucks(run: WorldRun) -> list[str]:
+def _pucks(run: Run) -> list[str]:
     """A line for each puck: where it ends, how far from its start, and when."""
     from puck_tables.world.agreement import pieces_of, start_of
 
@@ -90,7 +90,8 @@ def _pucks(run: WorldRun) -> list[str]:
         if number == MOST_PUCKS:
             rows.append(f"and {len(run.names) - MOST_PUCKS} more (-o FILE saves all)")
             break
-        end = float(run.last["x"][number]), float(run.last["y"][number])
+        last = run.last_of(number)
+        end = last["x"], last["y"]
         unseen = 1e-9 * piece.radius  # what rounding leaves
         x, y, moved = (
             0.0 if abs(way) < unseen else way for way in (*end, math.dist(end, start_of(piece)))
@@ -100,7 +101,7 @@ def _pucks(run: WorldRun) -> list[str]:
     return rows
 
 
-def _fate(run: WorldRun, number: int) -> str:
+def _fate(run: Run, number: int) -> str:
     """What became of a puck."""
     name, stop = run.names[number], float(run.stop_times[number])
     for event in run.events:
@@ -110,12 +111,13 @@ def _fate(run: WorldRun, number: int) -> str:
     if run.scene.pucks and run.scene.pucks[number].path:
         return "driven"
     if stop > run.end_time:
-        speed = math.hypot(run.last["vx"][number], run.last["vy"][number])
+        last = run.last_of(number)
+        speed = math.hypot(last["vx"], last["vy"])
         return f"moves, {speed:.4g} m/s"
     return f"stops at {stop:.6g} s" if stop > 0.0 else "never moved"
 
 
-def _impacts(run: WorldRun) -> list[str]:
+def _impacts(run: Run) -> list[str]:
     """The first impacts, a line each."""
     impacts = [event for event in run.events if event.what == "impact"]
     rows = [
@@ -126,7 +128,7 @@ def _impacts(run: WorldRun) -> list[str]:
     return rows + ([f"and {_counted(more, 'impact')} more"] if more > 0 else [])
 
 
-def _scene(run: WorldRun) -> str:
+def _scene(run: Run) -> str:
     scene = run.scene
     parts = {
         "puck": len(run.names), "wall": len(scene.walls), "post": len(scene.posts),
@@ -136,40 +138,40 @@ def _scene(run: WorldRun) -> str:
     return f"{scene.title or 'without a title'}: {counted}"
 
 
-def _energy(run: WorldRun) -> str:
+def _energy(run: Run) -> str:
     """What was given, and what the pucks still have or took along when they left play."""
-    given = run.kinetic_energy + run.work_driven + run.work_given + run.work_support
-    words = f"{run.kinetic_energy:.6g} J given by launches"
-    if run.work_driven != 0.0:
-        words += f", {run.work_driven:.6g} J by driven bodies"
-    if run.work_given != 0.0:
-        words += f", {run.work_given:.6g} J by slope and forces"
-    if run.work_support != 0.0:
-        words += f", {run.work_support:.6g} J by what moves under or leads the pucks"
-    left = given - run.heat_floor - run.heat_rims - run.heat_impact
-    if abs(left) > 1e-9 * abs(given):
+    last = run.last
+    works = {
+        "by driven bodies": last["work_driven"], "by slope and forces": last["work_given"],
+        "by what moves under or leads the pucks": last["work_support"],
+    }  # fmt: skip
+    words = f"{last['energy_given']:.6g} J given by launches"
+    words += "".join(f", {work:.6g} J {by}" for by, work in works.items() if work != 0.0)
+    left = sum(run.last_of(name)["kinetic_energy"] for name in run.names) + last["energy_gone"]
+    if abs(left) > 1e-9 * abs(last["energy_given"] + sum(works.values())):
         words += f"; {left:.6g} J left, or gone with who left play"
     return words
 
 
-def _heat(run: WorldRun) -> str:
-    """What floor, rims and impacts took; what is no more than rounding is told as 0."""
-    from puck_tables.scene.parts import Drag
-
-    works = abs(run.work_driven) + abs(run.work_given) + abs(run.work_support)
-    unseen = _ROUNDING * (run.kinetic_energy + works)
-    floor, rims, impacts = (
-        heat if abs(heat) > unseen else 0.0
-        for heat in (run.heat_floor, run.heat_rims, run.heat_impact)
-    )
-    pushing = f"{rims:.6g} J rims, " if rims else ""
+def _heat(run: Run) -> str:
+    """What floor, drag, rims and impacts took; what is no more than rounding is told as 0."""
+    last = run.last
+    works = sum(abs(last[name]) for name in ("work_driven", "work_given", "work_support"))
+    unseen = _ROUNDING * (last["energy_given"] + works)
+    names = {"heat_dry": "floor", "heat_viscous": "drag", "heat_rims": "rims",
+             "heat_impact": "impacts"}  # fmt: skip
+    heats = {words: last[name] if abs(last[name]) > unseen else 0.0
+             for name, words in names.items()}  # fmt: skip
+    told = ", ".join(
+        f"{heat:.6g} J {words}" for words, heat in heats.items()
+        if heat or words in ("floor", "impacts")
+    )  # fmt: skip
     rounding = run.energy_residual < _ROUNDING
     missed = f"under {_ROUNDING:g}" if rounding else f"{run.energy_residual:.1e}"
-    braked = "floor" if run.scene.drag == Drag() else "floor and drag"
-    return f"{floor:.6g} J {braked}, {pushing}{impacts:.6g} J impacts; ledger misses {missed} of it"
+    return f"{told}; ledger misses {missed} of it"
 
 
-def _error(run: WorldRun) -> str:
+def _error(run: Run) -> str:
     """What the end may be wrong by, and where nobody can know it."""
     from puck_tables.world.agreement import pieces_of
 

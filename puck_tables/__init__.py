@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from puck_tables._core.lazy import beside_the_package, lazily
+from puck_tables._core.lazy import beside_the_package, lazily, lead_up
 from puck_tables._version import __version__
 
 if TYPE_CHECKING:
@@ -47,7 +47,6 @@ if TYPE_CHECKING:
     from puck_tables.reference.friction import FloorFriction, floor_friction
     from puck_tables.result import Result
     from puck_tables.scene.driven import path_along
-    from puck_tables.scene.outcome import SceneRun
     from puck_tables.scene.parts import (
         Constraint,
         Drag,
@@ -58,27 +57,27 @@ if TYPE_CHECKING:
         Launch,
         Orthotropic,
         Patch,
-        Run,
         Strips,
         Wall,
     )
-    from puck_tables.scene.pieces import Arc, Piece, Pocket, Post, Rim
+    from puck_tables.scene.pieces import Arc, Pocket, Post, Rim
     from puck_tables.scene.restitution import Plastic, RestitutionTable, Viscoelastic
-    from puck_tables.scene.scene import Scene
-    from puck_tables.scene.sweep import SceneMap
+    from puck_tables.scene.run import Run
     from puck_tables.stopping.aim import Aim
     from puck_tables.stopping.aims import Aims
     from puck_tables.stopping.array_functions import state_arrays, stop_arrays
-    from puck_tables.stopping.sample import StopSample
     from puck_tables.stopping.states import States, states
+    from puck_tables.stopping.stop_map import StopMap, StopSample
     from puck_tables.stopping.stops import Stops, stop
-    from puck_tables.stopping.sweep import StopMap
     from puck_tables.table.check import CheckReport
     from puck_tables.table.store import table_for
     from puck_tables.table.table import Table
     from puck_tables.trajectory import Trajectory
     from puck_tables.warming import warm_up
     from puck_tables.world.aimed import BoardAim
+    from puck_tables.world.map import Map
+    from puck_tables.world.sample import Sample
+    from puck_tables.world.scene import Piece, Scene
     from puck_tables.world.world import World
     from puck_tables.wrench.holds import Hold
     from puck_tables.wrench.surface import LimitSurface
@@ -112,12 +111,13 @@ _HOMES = {
     "Launch": "scene.parts",
     "Law": "contact.laws",
     "LimitSurface": "wrench.surface",
+    "Map": "world.map",
     "MissingExtraError": "errors",
     "Normal": "bulk.spreads",
     "Orthotropic": "scene.parts",
     "OutputError": "errors",
     "Patch": "scene.parts",
-    "Piece": "scene.pieces",
+    "Piece": "world.scene",
     "Plastic": "scene.restitution",
     "Pocket": "scene.pieces",
     "Post": "scene.pieces",
@@ -127,15 +127,14 @@ _HOMES = {
     "RestitutionTable": "scene.restitution",
     "Result": "result",
     "Rim": "scene.pieces",
-    "Run": "scene.parts",
-    "Scene": "scene.scene",
-    "SceneMap": "scene.sweep",
-    "SceneRun": "scene.outcome",
+    "Sample": "world.sample",
+    "Scene": "world.scene",
+    "Run": "scene.run",
     "Source": "export.source",
     "SpeedLaw": "contact.speed_law",
     "States": "stopping.states",
-    "StopMap": "stopping.sweep",
-    "StopSample": "stopping.sample",
+    "StopMap": "stopping.stop_map",
+    "StopSample": "stopping.stop_map",
     "Stops": "stopping.stops",
     "StribeckLaw": "contact.friction_laws",
     "Strips": "scene.parts",
@@ -196,6 +195,7 @@ __all__ = [
     "Launch",
     "Law",
     "LimitSurface",
+    "Map",
     "MissingExtraError",
     "Normal",
     "Orthotropic",
@@ -212,9 +212,8 @@ __all__ = [
     "Result",
     "Rim",
     "Run",
+    "Sample",
     "Scene",
-    "SceneMap",
-    "SceneRun",
     "Source",
     "SpeedLaw",
     "States",
@@ -255,3 +254,12 @@ __all__ = [
 ]
 
 __getattr__, __dir__ = lazily(__name__, _HOMES)
+lead_up({
+    "FrictionSection": "puck_tables.table.friction_section",
+    "ResultantTable": "puck_tables.table.resultant_table",
+    "SpeedTable": "puck_tables.table.speed_table",
+    "StopSection": "puck_tables.stopping.stop_section",
+    "StopTable": "puck_tables.stopping.stop_table",
+    "draw": "puck_tables.plot.drawn",
+    "save_movie": "puck_tables.plot.movie",
+})  # fmt: skip

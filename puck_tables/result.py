@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from html import escape
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from puck_tables._core.real import instance
+from puck_tables._core.lazy import above
 from puck_tables.io.dataset import Dataset
 from puck_tables.io.formats import save
 
@@ -65,7 +64,6 @@ class Result:
         ...     print(Path(folder, "run.csv").read_text()[:17])
         time[s],x[m],y[m]
         """
-        instance("path", path, str, Path)
         save(self.dataset(), path, overwrite)
 
     def plot(
@@ -100,19 +98,7 @@ class Result:
         >>> len(Puck.similar().simulate((1.0, 0.0), 5.0).plot().axes)
         3
         """
-        style: Any = import_module("puck_tables.plot.style")  # pictures stand above results
-        style.require_matplotlib()
-        if path is not None:
-            style.checked_kind(path)
-        module: Any = import_module(f"puck_tables.plot.{self.picture}")
-        figure: Figure
-        if ax is None:
-            figure = module.draw(self)
-        else:
-            module.draw_on(ax, self)
-            figure = ax.get_figure(root=True)  # type: ignore[assignment]
-        if path is not None:
-            style.save_figure(figure, path, overwrite)
+        figure: Figure = above("draw")(self, path, ax, overwrite)
         return figure
 
     def to_xarray(self) -> xarray.Dataset:
@@ -196,9 +182,7 @@ class TimedResult(Result):
         ...     print(Path(folder, "run.html").read_text()[:15])
         <!DOCTYPE html>
         """
-        instance("path", path, str, Path)
-        module: Any = import_module("puck_tables.plot.movie")  # movies stand above results
-        module.save_movie(self, path, overwrite)
+        above("save_movie")(self, path, overwrite)
 
 
 def _equal(one: Any, two: Any) -> bool:

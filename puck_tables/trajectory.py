@@ -20,9 +20,9 @@ from puck_tables.motion.contact import contact_of
 from puck_tables.motion.frame import Frame, frame_of
 from puck_tables.motion.friction import source_of
 from puck_tables.motion.limits import regime_of
-from puck_tables.motion.run import GENERIC, Run, solve
+from puck_tables.motion.puck_spec import PUCK_UNITS, PuckSpec
+from puck_tables.motion.run import GENERIC, MotionRun, solve
 from puck_tables.motion.state import LENGTH, PSI, THETA, T, U, X, Y
-from puck_tables.puck import PUCK_UNITS, Puck
 from puck_tables.result import TimedResult
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.table import refuse_other_kind
@@ -37,9 +37,9 @@ SCALARS = {  # and their units
     "energy_residual": "1", "method": "", "steps": "1", "error_estimate": "1",
     "launch_velocity": "m/s", "launch_spin": "rad/s",
 }  # fmt: skip
-DEFAULT_TOL = 1e-9
-DEFAULT_FRAMES = 101
-MAX_FRAMES = 1_000_000
+DEFAULT_TOL = 1e-9  # of Q/J, Q²/J
+DEFAULT_FRAMES = 101  # a hundred steps: smooth in a picture
+MAX_FRAMES = 1_000_000  # more is a slip of the hand
 _LARGEST_U = 700.0  # of ln tan φ; beyond, φ is π/2
 LOOK_UP_FRAMES = 10_000  # from here on states are looked up: 0.2 µs each instead of 4
 
@@ -73,7 +73,7 @@ class Trajectory(TimedResult):
     motion there.
     """
 
-    puck: Puck
+    puck: PuckSpec
     launch_velocity: tuple[float, float]
     launch_spin: float
     regime: str
@@ -103,7 +103,7 @@ class Trajectory(TimedResult):
     spin: FloatArray = field(repr=False)
     slip_speed: FloatArray = field(repr=False)
     slip_angle: FloatArray = field(repr=False)
-    motion: Run = field(repr=False, compare=False)
+    motion: MotionRun = field(repr=False, compare=False)
 
     picture: ClassVar[str] = "trajectory"
 
@@ -121,6 +121,7 @@ class Trajectory(TimedResult):
 
         Examples
         --------
+        >>> from puck_tables import Puck
         >>> Puck.similar().simulate((1.0, 0.0), 5.0, frames=1)([2.0, 0.0]).x.round(6).tolist()
         [1.590682, 0.0]
         """
@@ -157,6 +158,7 @@ class Trajectory(TimedResult):
 
         Examples
         --------
+        >>> from puck_tables import Puck
         >>> Puck.similar().simulate((1.0, 0.0)).summary()["stop_position"]
         [0.5, 0.0]
         """
@@ -178,7 +180,7 @@ class Trajectory(TimedResult):
 
 
 def simulate(
-    puck: Puck, velocity: npt.ArrayLike, spin: float, *, frames: int | None,
+    puck: PuckSpec, velocity: npt.ArrayLike, spin: float, *, frames: int | None,
     times: npt.ArrayLike | None, tol: float, method: str | None, exact: bool,
     table: ResultantTable | None,
 ) -> Trajectory:  # fmt: skip
@@ -254,7 +256,7 @@ def _refuse_too_large(frame: Frame, body: Body, energy: float, decel: float) -> 
 
 
 def _integrated(
-    run: Run, frame: Frame, moments: FloatArray, stop_time: float
+    run: MotionRun, frame: Frame, moments: FloatArray, stop_time: float
 ) -> dict[str, FloatArray]:
     """States of a motion in natural units as the columns of a trajectory."""
     q, natural = run.states(frame.natural_times(moments, stop_time))
@@ -268,7 +270,7 @@ def _integrated(
 
 
 def _looked_up(
-    puck: Puck, launch: tuple[float, float], spin: float, moments: FloatArray, stop_time: float
+    puck: PuckSpec, launch: tuple[float, float], spin: float, moments: FloatArray, stop_time: float
 ) -> dict[str, FloatArray]:
     """The same by look-up: cheaper for many states."""
     from puck_tables.stopping.states import states

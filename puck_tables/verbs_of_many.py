@@ -3,26 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from importlib import import_module
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy.typing as npt
 
 from puck_tables._core.executor import Progress
 from puck_tables.errors import InputError
+from puck_tables.motion.puck_spec import PuckSpec
 
 if TYPE_CHECKING:
     import xarray
 
     from puck_tables.contact.laws import Law
-    from puck_tables.stopping.sample import StopSample
-    from puck_tables.stopping.sweep import StopMap
+    from puck_tables.stopping.stop_map import StopMap, StopSample
     from puck_tables.table.table import Table
 
 
-class VerbsOfMany:
-    """Questions about many launches, verbs of a :class:`puck_tables.Puck`."""
+@dataclass(frozen=True)
+class VerbsOfMany(PuckSpec):
+    """A puck, and the questions about many launches of it; :class:`puck_tables.Puck` has all."""
 
     def sweep(
         self,
@@ -105,16 +106,17 @@ class VerbsOfMany:
         >>> Puck(0.04, friction=0.1).sweep(0.0, 1.0, friction=[0.1, 0.2]).stop_x.round(4).tolist()
         [0.5099, 0.2549]
         """
+        from puck_tables.stopping.sweep import SweepOptions, sweep
+
         given = {
             "spin": spin, "speed": speed, "velocity": velocity, "heading": heading,
             "radius": radius, "height": height, "friction": friction, "gravity": gravity,
             "delta": delta, "decel": decel, "gyration": gyration, "pressure": pressure,
         }  # fmt: skip
-        how = verb("stopping.sweep", "How")(
-            tol, method, table, threads, chunk, progress, store, cluster, overwrite
+        how = SweepOptions(
+            tol, method, cast(Any, table), threads, chunk, progress, store, cluster, overwrite
         )
-        stops: StopMap = verb("stopping.sweep", "sweep")(self, given, launches, how=how)
-        return stops
+        return cast("StopMap", sweep(self, given, launches, how=how))
 
     def sample(
         self,
@@ -164,31 +166,14 @@ class VerbsOfMany:
         >>> round(found.mean()["stop_time"], 3), found.chance((2.2, -0.16, 0.1)).value > 0.5
         (3.961, True)
         """
-        known = {*verb("stopping.population", "COLUMN"), "velocity"}
+        from puck_tables.stopping.population import COLUMN
+        from puck_tables.stopping.sweep import SweepOptions, sample
+
+        known = {*COLUMN, "velocity"}
         unknown = [name for name in numbers if name not in known]
         if unknown:
             raise InputError(f"{unknown[0]} is no number of a launch: give {', '.join(known)}")
-        how = verb("stopping.sweep", "How")(
-            tol, method, table, threads, chunk, progress, store, cluster, overwrite
+        how = SweepOptions(
+            tol, method, cast(Any, table), threads, chunk, progress, store, cluster, overwrite
         )
-        found: StopSample = verb("stopping.sweep", "sample")(self, count, seed, numbers, how=how)
-        return found
-
-
-def verb(module: str, name: str) -> Any:
-    """What answers a question about a puck stands above it, and is loaded when it is asked."""
-    path = f"puck_tables.{module}"
-    return getattr(import_module(path), name)  # waits for whoever imports it just now
-
-
-def refuse_frictionless(puck: Any) -> None:
-    """Refuse what asks for the stop of a puck that nothing brakes.
-
-    Raises
-    ------
-    InputError
-    """
-    if puck.friction == 0.0:
-        raise InputError(
-            "a puck with friction = 0 never stops: give friction > 0, or put it into a Scene"
-        )
+        return cast("StopSample", sample(self, count, seed, numbers, how=how))

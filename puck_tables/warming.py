@@ -9,11 +9,10 @@ from puck_tables.bulk.spreads import Normal
 from puck_tables.kernels.patience import compiled_at_once
 from puck_tables.puck import Puck
 from puck_tables.scene.parts import Floor, Launch, Wall
-from puck_tables.scene.pieces import Piece
-from puck_tables.scene.scene import Scene
+from puck_tables.world.scene import Piece, Scene
 
 _PUCKS = [Puck(0.04, 0.02, 0.15), Puck(0.04, 0.02, 0.15, pressure="ring")]
-_LAUNCH = (1.0, 0.2), 5.0
+_LAUNCH = (1.0, 0.2), 5.0  # m/s, rad/s: any that is neither pure sliding nor pure spin
 
 
 def _motions() -> None:
@@ -88,5 +87,5 @@ def warm_up() -> None:
     with compiled_at_once():
         for number, (what, ask) in enumerate(_PARTS, 1):
             if sys.stderr is not None:
-                print(f"warming up, {number} of {len(_PARTS)}: {what}", file=sys.stderr)
+                sys.stderr.write(f"warming up, {number} of {len(_PARTS)}: {what}\n")
             ask()

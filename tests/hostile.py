@@ -218,7 +218,6 @@ def _of_scenes() -> dict[str, Door]:
             "point": TWO, "normal": TWO, "restitution": 0.5, "tangential": 0.0, "friction": 0.1}),
         "Constraint": (pt.Constraint, {
             "kind": "blade", "angle": 0.0, "reach": 0.0, "velocity": TWO, "side_slip": 0.1}),
-        "Run": (pt.Run, {"time": 1.0, "frames": 3, "tol": 1e-6}),
         "Orthotropic": (pt.Orthotropic, {"friction": (0.1, 0.2), "direction": 0.1}),
         "Strips": (pt.Strips, {"borders": (0.0,), "friction": (0.1, 0.2), "direction": 0.1}),
         "Patch": (pt.Patch, {"friction": 0.1, "centre": TWO, "radius": 0.1, "corners": ()}),
@@ -237,7 +236,7 @@ def _of_scenes() -> dict[str, Door]:
             "puck": puck(), "floor": pt.Floor(), "launch": pt.Launch(TWO), "drag": pt.Drag(),
             "lateral": pt.Lateral(), "force": pt.Force(), "pucks": (), "walls": (), "posts": (),
             "arcs": (), "pockets": (), "edges": (), "rims": (), "constraint": None,
-            "run": pt.Run(), "title": "", "ranges": {}}),
+            "time": 1.0, "frames": 3, "tol": 1e-6, "title": "", "ranges": {}}),
         "Scene.load": (pt.Scene.load, {"name": "incline"}),
         "Scene.from_tables": (pt.Scene.from_tables, {
             "tables": {"puck": {"radius": 1.0}}, "source": "a"}),

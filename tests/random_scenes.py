@@ -71,7 +71,7 @@ def draw(seed: int, folder: Path | None = None, *, smooth: bool = False) -> dict
         floor["strips"] = {
             "borders": [-0.5, 0.7], "friction": frictions, "direction": rng.uniform(-3.0, 3.0),
         }  # fmt: skip
-    scene["run"] = {"time": float(rng.uniform(1.0, 6.0)), "frames": 7}
+    scene |= {"time": float(rng.uniform(1.0, 6.0)), "frames": 7}
     return scene
 
 

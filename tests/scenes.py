@@ -5,15 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from puck_tables import Scene, SceneMap, SceneRun
+from puck_tables import Map, Run, Scene
 
 
-def simulate_scene(tables: Any, times: Any = None) -> SceneRun:
+def simulate_scene(tables: Any, times: Any = None) -> Run:
     """A run of a scene: its tables, itself, or the name of one that is shipped."""
     return made(tables).simulate(times)
 
 
-def sweep_scene(tables: Any, **how: Any) -> SceneMap:
+def sweep_scene(tables: Any, **how: Any) -> Map:
     """The map over its ranges."""
     return made(tables).sweep(**how)
 

@@ -11,13 +11,14 @@ from any_puck import stops_by_truth
 from pucks import aim, simulate, sweep
 from test_any_puck import PUCKS, launch, starts
 
+import puck_tables as pt
 from puck_tables import law_of, states, stop
 from puck_tables.contact.laws import HOMOGENEOUS
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.motion.body import body_of
 from puck_tables.motion.friction import section_friction
 from puck_tables.stopping.exact import integrated_stops
-from puck_tables.stopping.per_height import MANY
+from puck_tables.stopping.per_height import ALONE, MANY
 from puck_tables.stopping.stop_section import stop_section_for
 
 QUICK = [PUCKS[2], PUCKS[6]]
@@ -200,3 +201,23 @@ def test_how_far_headings_turn(law: str, delta: float) -> None:
     ]
     for found, tol in ((told[0], 1e-6), (told[1], 1e-8)):
         assert np.abs(found - told[2]).max() < 2000.0 * tol
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_few_launches_stop_where_many_do(seed: int):
+    """Few are each tried themselves, many by a setting for all: to the tolerance it is the same."""
+    rng = np.random.default_rng(seed)
+    law = ["ring", f"annulus:{rng.uniform(0.2, 0.9):.3f}"][seed]
+    puck = pt.Puck(rng.uniform(0.02, 0.1), 0.01, rng.uniform(0.1, 0.5), pressure=law)
+    v, w = rng.uniform(-1.0, 1.0, (ALONE + 1, 2)), rng.uniform(-40.0, 40.0, ALONE + 1)
+    v[0], w[1], w[2], v[2] = 0.0, 0.0, 0.0, 0.0
+    few, many = puck.stop(v[:5], w[:5], tol=1e-8), puck.stop(v, w, tol=1e-8)
+    slip = np.hypot(np.hypot(*v[:5].T), puck.radius * w[:5])
+    allowed = 2e-8 * slip / puck.decel
+    assert (np.abs(few.stop_time - many.stop_time[:5]) <= allowed).all()
+    off = np.hypot(*(few.stop_position - many.stop_position[:5]).T)
+    assert (off <= allowed * slip).all()
+    for name in ("path_length", "body_angle", "turn_angle"):
+        one, other = getattr(few, name), getattr(many, name)[:5]
+        np.testing.assert_allclose(one, other, rtol=1e-5, atol=1e-9)
+    assert "measured" in few.explain()

@@ -81,9 +81,9 @@ def test_a_patch_that_touches_the_rim_from_inside():
 @pytest.mark.parametrize("pressure", LAWS)
 def test_a_border_between_equal_frictions_is_none(pressure):
     puck = pt.Puck(0.04, height=0.02, friction=0.2, mass=0.2, pressure=pressure)
-    launch, run = pt.Launch((1.2, 0.1), 30.0), pt.Run(tol=1e-7)
+    launch = pt.Launch((1.2, 0.1), 30.0)
     ends = [
-        pt.Scene(puck, pt.Floor(slope=0.02, strips=strips), launch, run=run).simulate([0.0])
+        pt.Scene(puck, pt.Floor(slope=0.02, strips=strips), launch, tol=1e-7).simulate([0.0])
         for strips in (None, pt.Strips((0.15,), (0.2, 0.2)))
     ]
     unit = ends[0].speed_scale ** 2 / ends[0].rate_scale

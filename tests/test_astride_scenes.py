@@ -35,7 +35,7 @@ def apart(scene: pt.Scene, share: float = 0.97) -> float:
 
 @pytest.mark.parametrize("floor", FLOORS)
 def test_a_crossing_is_that_of_scipy(floor):
-    scene = pt.Scene(PUCK, FLOORS[floor][0], LAUNCH, run=pt.Run(time=0.6))
+    scene = pt.Scene(PUCK, FLOORS[floor][0], LAUNCH, time=0.6)
     run = scene.simulate()
     assert [event.what for event in run.events] == FLOORS[floor][1]
     assert run.energy_residual <= 1e-10
@@ -56,12 +56,12 @@ def test_a_puck_that_starts_or_stays_astride(launch):
 def test_fast_crossings_at_once_are_those_of_scipy(pressure):
     """In a step from one kink of friction to the next; also where a hole meets a border."""
     puck = pt.Puck(0.04, height=0.02, mass=0.2, friction=0.1, pressure=pressure)
-    floor, run = pt.Floor(strips=pt.Strips((0.2,), (0.1, 0.06))), pt.Run(time=0.2, tol=1e-9)
+    floor, time = pt.Floor(strips=pt.Strips((0.2,), (0.1, 0.06))), 0.2
     speed, spins = (1.699, -0.0072), [20.621, -40.0]
-    found = pt.Scene(puck, floor, pt.Launch(speed, spins), run=run).sweep()
+    found = pt.Scene(puck, floor, pt.Launch(speed, spins), time=time, tol=1e-9).sweep()
     for n, spin in enumerate(spins):
-        scene = pt.Scene(puck, floor, pt.Launch(speed, spin), run=run)
-        truth = Motion(scene).states(scene, np.array([run.time]))[:, -1]
+        scene = pt.Scene(puck, floor, pt.Launch(speed, spin), time=time, tol=1e-9)
+        truth = Motion(scene).states(scene, np.array([time]))[:, -1]
         unit = (speed[0] ** 2 + (0.04 * spin) ** 2) / (0.1 * 9.81)
         assert np.hypot(found.x[n] - truth[0], found.y[n] - truth[1]) <= 1e-9 * unit
 
@@ -76,7 +76,7 @@ def test_the_rim_meets_a_border_a_radius_before_the_centre():
 def test_a_spin_walks_along_the_border():
     floor = pt.Floor(strips=pt.Strips((0.0,), (0.78, 0.67)))
     puck = pt.Puck(radius=1.0, gravity=10.0)
-    run = pt.Scene(puck, floor, pt.Launch(spin=20.0), run=pt.Run(time=1e-6)).simulate([1e-6])
+    run = pt.Scene(puck, floor, pt.Launch(spin=20.0), time=1e-6).simulate([1e-6])
     assert abs(run.vy[0]) == pytest.approx(1e-6 * 0.3501408748, rel=1e-6)
 
 
@@ -114,7 +114,7 @@ def test_what_holds_at_rest(height, at, downhill):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if gain(middle) < 0.0 else (low, middle)
     for slope, holds in ((low - 1e-3, True), (high + 1e-3, False)):
-        scene = pt.Scene(puck, pt.Floor(slope, downhill, strips=floor), run=pt.Run(time=1e-3))
+        scene = pt.Scene(puck, pt.Floor(slope, downhill, strips=floor), time=1e-3)
         run = scene.simulate([0.0])
         assert (run.end == "at rest") == holds, slope
 
@@ -139,7 +139,7 @@ def test_what_is_refused(puck, floor, words):
 
 def test_many_launches_are_the_runs_one_by_one():
     floor = pt.Floor(patches=[ROUND])
-    scene = pt.Scene(PUCK, floor, pt.Launch((1.5, 0.3), [20.0, -40.0]), run=pt.Run(tol=1e-6))
+    scene = pt.Scene(PUCK, floor, pt.Launch((1.5, 0.3), [20.0, -40.0]), tol=1e-6)
     ends = scene.sweep()
     one = scene.at({"launch.spin": -40.0}).simulate()
     assert ends.columns["x"][1] == one.last["x"]
@@ -153,7 +153,7 @@ def test_a_long_free_flight_steps_over_no_part_of_a_crossing(corners):
     ends = []
     for start in (-3.0, 0.0, 0.1):
         launch = pt.Launch((0.5, 0.0), 20.0, (start, 0.0))
-        run = pt.Scene(smooth, pt.Floor(patches=[patch]), launch, run=pt.Run(time=8.0)).simulate()
+        run = pt.Scene(smooth, pt.Floor(patches=[patch]), launch, time=8.0).simulate()
         assert run.energy_residual < 1e-11
         entry = run.events[0].time
         ends.append([run.events[1].time - entry, run.events[1].x, run.events[1].y])

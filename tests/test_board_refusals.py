@@ -7,8 +7,8 @@ import tomllib
 import pytest
 
 import puck_tables as pt
-from puck_tables.scene.entries import as_toml
 from puck_tables.scene.restitution import restitution_law
+from puck_tables.scene.scene_text import as_toml
 
 PUCK = pt.Piece(0.03, friction=0.1, name="puck", launch=pt.Launch((1.0, 0.0)))
 OTHER = pt.Piece(0.03, friction=0.1, name="other", launch=pt.Launch(position=(0.3, 0.0)))
@@ -62,7 +62,7 @@ def test_points_that_are_none_are_refused():
 
 
 @pytest.mark.parametrize(("more", "words"), [
-    ({"floor": pt.Floor(turning=1.0), "run": pt.Run(time=1.0)}, "not for a moving floor"),
+    ({"floor": pt.Floor(turning=1.0), "time": 1.0}, "not for a moving floor"),
     ({"pucks": [pt.Piece(0.03, friction=0.1, constraint=pt.Constraint("rail"), name="led",
                          launch=pt.Launch((1.0, 0.0))), OTHER]}, "striker led is led by a rail"),
 ])  # fmt: skip

@@ -11,7 +11,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 import puck_tables as pt
-from puck_tables._core.columns import X, Y, numbers_of
+from puck_tables._core.columns import numbers_of
+from puck_tables._core.quantities import X, Y
 from puck_tables.contact.laws import law_of
 from puck_tables.errors import InputError
 from puck_tables.reference.log import times_in
@@ -31,8 +32,9 @@ NAMES = {
 LENGTHS = {"m": 1.0, "mm": 1e-3, "cm": 0.01, "in": 0.0254, "um": 1e-6}
 UNITS: dict[str, dict[str, float]] = {
     "speed": {"m/s": 1.0, "mm/s": 1e-3, "cm/s": 0.01, "m s^-1": 1.0, "mm/min": 1e-3 / 60.0,
-              "km/h": 1.0 / 3.6, "in/s": 0.0254},
-    "f": {"": 1.0, "-": 1.0, "1": 1.0, "%": 0.01}, "e": {"": 1.0, "1": 1.0, "%": 0.01},
+              "km/h": 1.0 / 3.6, "in/s": 0.0254, "mph": 0.44704, "knots": 1852.0 / 3600.0},
+    "f": {"": 1.0, "-": 1.0, "1": 1.0, "%": 0.01, "permille": 1e-3},
+    "e": {"": 1.0, "1": 1.0, "%": 0.01},
     "r": LENGTHS, "p": {"kPa": 1.0, "Pa": 1.0, "": 1.0}, "t": {"s": 1.0, "ms": 1e-3, "min": 60.0},
     "x": LENGTHS, "y": LENGTHS, "angle": {"rad": 1.0, "deg": np.pi / 180.0, "turn": 2.0 * np.pi},
     "fx": {"N": 1.0, "mN": 1e-3, "kN": 1e3}, "fy": {"N": 1.0, "mN": 1e-3},
@@ -128,8 +130,8 @@ def test_a_law_of_millimetres_stops_where_one_of_metres_does(tmp_path: Path):
         ]
         (tmp_path / f"{name}.csv").write_text("\n".join([f"Sliding speed ({unit}),COF", *rows]))
         floor = pt.Floor(law=str(tmp_path / f"{name}.csv"))
-        launch, run = pt.Launch((0.8, 0.0), 10.0), pt.Run(tol=1e-4)
-        scene = pt.Scene(pt.Puck(0.04, 0.02), floor, launch=launch, run=run)
+        launch = pt.Launch((0.8, 0.0), 10.0)
+        scene = pt.Scene(pt.Puck(0.04, 0.02), floor, launch=launch, tol=1e-4)
         stops.append(scene.simulate().last["x"])
     assert_allclose(stops[1:], stops[0], rtol=1e-6)
 
@@ -165,7 +167,7 @@ def test_speeds_that_begin_above_0_and_speeds_given_twice(
 @pytest.mark.parametrize(
     ("content", "said"),
     [
-        ("speed [knots],mu\n0,.1\n1,.2\n", r"the unit of its column 'speed \[knots\]', a speed"),
+        ("speed [bar],mu\n0,.1\n1,.2\n", r"of its column 'speed \[bar\]' \(speed\) is not"),
         ("speed rpm,mu\n0,.1\n1,.2\n", "the unit of its column 'speed rpm'"),
         ("speed [ms],mu\n0,.1\n1,.2\n", "the unit of its column"),
         ("v,friction force [N]\n0,.1\n1,.2\n", "it is a pure number"),
@@ -184,6 +186,96 @@ def test_what_is_doubtful_is_refused(content: str, said: str, tmp_path: Path):
     path.write_text(content)
     with pytest.raises(InputError, match=said):
         pt.SpeedLaw.from_csv(path)
+
+
+KNOWN = {"law": "v,mu", "restitution": "v,e", "profile": "rho,W", "force": "t,Fx,Fy",
+         "path": "t,x,y"}  # fmt: skip
+ROWS = "0,0,0,0\n.5,.5,.5,.5\n1,1,1,1\n"
+
+
+def of_width(count: int) -> str:
+    return "".join(",".join(row.split(",")[:count]) + "\n" for row in ROWS.split())
+
+
+@pytest.mark.parametrize("kind", KNOWN)
+def test_columns_that_are_not_read_are_named(
+    kind: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    rng = np.random.default_rng(17)
+    names, path = KNOWN[kind].split(","), tmp_path / f"{kind}.csv"
+    strange = "".join(chr(97 + n) for n in rng.integers(0, 26, 9))
+    at = int(rng.integers(len(names) + 1))
+    path.write_text(",".join([*names[:at], strange, *names[at:]]) + "\n" + of_width(len(names) + 1))
+    read_as(kind, path)
+    assert f"{path}: column '{strange}' not read" in capsys.readouterr().err
+    path.write_text(f"{KNOWN[kind]}\n{of_width(len(names))}")
+    read_as(kind, path)
+    assert "not read" not in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("kind", "heads"),
+    [
+        ("law", ["rpm,mu", "Hz,mu", "deg/s,COF", "N,mu", "1/s,f", "rpm,wert", "kHz,wert"]),
+        ("restitution", ["rpm,e", "Hz,e", "(rad/s),e"]),
+        ("force", ["frame,Fx,Fy", "Frame no,Fx,Fy", "image,Fx [N],Fy [N]"]),
+        ("path", ["frame,x,y", "Bild,x [mm],y [mm]", "frames,x,y"]),
+        ("profile", ["diameter,W", "diameter [N],W"]),
+        ("law", ["v,mu x 10^2", "v,mu*1000", "v,mu (x100)", "v [10^-3 m/s],mu", "v,10^3 mu",
+                 "v,mu/100", "v,mu (100)", "v,mu \u00d71000", "v,mu \u00b7 10\u00b2", "v,1000 mu",
+                 "v x 1000,mu", "v,mu (0.01)", "v,COF [1e-2]", "v,mu_x100"]),
+        ("force", ["t,Fx x 10^3,Fy", "t*1000,Fx,Fy"]),
+    ],
+)  # fmt: skip
+def test_headings_of_another_quantity_or_with_a_factor_are_refused(
+    kind: str, heads: list[str], tmp_path: Path
+):
+    for n, head in enumerate(heads):
+        path = tmp_path / f"{n}.csv"
+        path.write_text(f"{head}\n{of_width(head.count(',') + 1)}")
+        with pytest.raises(InputError, match=r"must hold the co|is not known|factor|needs a"):
+            read_as(kind, path)
+    if "frame" in heads[0]:
+        (tmp_path / "a.csv").write_text(f"{heads[0]}\n{of_width(3)}")
+        with pytest.raises(InputError, match="of frames write their times, frame / frames"):
+            read_as(kind, tmp_path / "a.csv")
+
+
+def test_percent_and_units_alone_are_read_and_doubts_are_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    rng = np.random.default_rng(18)
+    heads = ["v,mu%", "v,mu [%]", "v,COF (in %)", "v,mu percent", "v,mu in %", "m/s,mu (per cent)"]
+    for n, head in enumerate(heads):
+        f = rng.uniform(0.2, 0.3, 3).round(4)
+        rows = "".join(f"{v},{100 * one:.6g}\n" for v, one in enumerate(f))
+        (tmp_path / f"{n}.csv").write_text(f"{head}\n{rows}")
+        assert_allclose(pt.SpeedLaw.from_csv(tmp_path / f"{n}.csv").values, f, rtol=1e-6)
+    assert "percent" not in capsys.readouterr().err
+    (tmp_path / "a.csv").write_text(f"mm/s,mu\n{rows}")
+    law = pt.SpeedLaw.from_csv(tmp_path / "a.csv")
+    assert_allclose(law.speeds, [0.0, 0.001, 0.002])
+    assert f"{tmp_path / 'a.csv'}: its friction coefficients go up to" in capsys.readouterr().err
+    (tmp_path / "b.csv").write_text("fast,slow\n0,.1\n1,.2\n")
+    pt.SpeedLaw.from_csv(tmp_path / "b.csv")
+    assert "its columns 'fast', 'slow' are taken as v [m/s], f" in capsys.readouterr().err
+
+
+def test_a_profile_over_the_diameter_and_one_of_another_rim(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    radii = np.append(0.0, np.cumsum(np.random.default_rng(19).uniform(1.0, 9.0, 4)))
+    rim = radii[-1] * 1e-3
+    for head, size in (("r [mm],p", 1.0), ("diameter [mm],p", 2.0), ("Durchmesser (cm),p", 0.2)):
+        path = tmp_path / f"{size}.csv"
+        rows = "".join(f"{size * r:.12g},{9 - n}\n" for n, r in enumerate(radii))
+        path.write_text(f"{head}\n{rows}")
+        assert_allclose(law_of(str(path)).profile[0], radii / radii[-1], rtol=1e-9)  # type: ignore[index]
+        said = f"{path.name} ends at {rim:g} m: pucks of another radius"
+        pt.Puck(rim, pressure=str(path))
+        assert said not in capsys.readouterr().err
+        pt.Puck(1.3 * rim, pressure=str(path))
+        assert said in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("way", ["names", "units below", "a comment", "none", "under a title"])

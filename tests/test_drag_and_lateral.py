@@ -14,10 +14,10 @@ MASS, RADIUS = 0.2, 0.05
 INERTIA = 0.5 * MASS * RADIUS**2
 
 
-def run_of(times=None, *, velocity=(0.0, 0.0), spin=0.0, friction=0.0, run=None, **more):
+def run_of(times=None, *, velocity=(0.0, 0.0), spin=0.0, friction=0.0, **more):
     puck = pt.Puck(RADIUS, friction=friction, mass=MASS)
     launch = pt.Launch(velocity, spin)
-    return pt.Scene(puck, launch=launch, run=run or pt.Run(), **more).simulate(times)
+    return pt.Scene(puck, launch=launch, **more).simulate(times)
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.1])
@@ -26,7 +26,7 @@ def test_quadratic_drag_of_the_spin(friction):
     c, spin = 2e-6, 80.0
     drag = pt.Drag(spinning_quadratic=c)
     if friction == 0.0:
-        run = run_of(spin=spin, drag=drag, run=pt.Run(time=2.0))
+        run = run_of(spin=spin, drag=drag, time=2.0)
         fall = 1.0 + c * spin * 2.0 / INERTIA
         assert run.last["spin"] == pytest.approx(spin / fall, rel=1e-10)
         assert run.last["orientation"] == pytest.approx(INERTIA / c * math.log(fall), rel=1e-10)
@@ -46,7 +46,7 @@ def test_quadratic_drag_of_the_spin(friction):
 def test_a_stiff_quadratic_drag_settles():
     """A wake that takes the speed within a millionth of the run: v = v₀/(1 + c v₀ t/m)."""
     drag = pt.Drag(quadratic=2e5, spinning_quadratic=1e3)
-    run = run_of(velocity=(1.0, 0.0), spin=5.0, drag=drag, run=pt.Run(time=1.0))
+    run = run_of(velocity=(1.0, 0.0), spin=5.0, drag=drag, time=1.0)
     assert run.last["x"] == pytest.approx(MASS / 2e5 * math.log1p(1e6), rel=1e-6)
     assert run.last["spin"] == pytest.approx(5.0 / (1.0 + 1e3 * 5.0 / INERTIA), rel=1e-6)
 
@@ -59,12 +59,12 @@ def test_several_pucks_feel_drag_and_lateral_force_as_one_does(friction):
     for across in ({}, {"lateral": lateral}):
         one = run_of(
             times, velocity=(1.0, 0.2), spin=-60.0, friction=friction, drag=drag,
-            run=pt.Run(time=0.4), **across,
+            time=0.4, **across,
         )  # fmt: skip
         launch = pt.Launch((1.0, 0.2), -60.0)
         piece = pt.Piece(RADIUS, friction=friction, mass=MASS, launch=launch)
         far = pt.Piece(RADIUS, friction=friction, mass=MASS, launch=pt.Launch(position=(0.0, 9.0)))
-        board = pt.Scene(pucks=[piece, far], drag=drag, run=pt.Run(time=0.4), **across)
+        board = pt.Scene(pucks=[piece, far], drag=drag, time=0.4, **across)
         many = board.simulate(times)
         for name in ("x", "y", "orientation", "spin"):
             unit = 1.0 / RADIUS if name in ("orientation", "spin") else 1.0
@@ -76,11 +76,11 @@ def test_several_pucks_feel_drag_and_lateral_force_as_one_does(friction):
 def test_turns_without_end_are_refused_by_name():
     """For k/r > 1/√2 the spin outlives the sliding, v → 0, and F/(m v) turns the way."""
     puck = pt.Puck(0.06, friction=0.05, gyration=2.0)
-    launch, run = pt.Launch((0.3, 0.0), 5.0), pt.Run(tol=1e-6)
+    launch = pt.Launch((0.3, 0.0), 5.0)
     with pytest.raises(pt.InputError, match=r"a million steps .* lateral.speed_exponent is below"):
-        pt.Scene(puck, launch=launch, lateral=pt.Lateral(0.1), run=run).simulate()
-    with_speed = pt.Scene(puck, launch=launch, lateral=pt.Lateral(0.1, 1.0), run=run).simulate()
-    without = pt.Scene(puck, launch=launch, run=run).simulate()
+        pt.Scene(puck, launch=launch, lateral=pt.Lateral(0.1), tol=1e-6).simulate()
+    with_speed = pt.Scene(puck, launch=launch, lateral=pt.Lateral(0.1, 1.0), tol=1e-6).simulate()
+    without = pt.Scene(puck, launch=launch, tol=1e-6).simulate()
     assert with_speed.end_time == pytest.approx(without.end_time, rel=1e-6)
 
 
@@ -89,7 +89,7 @@ def test_a_lateral_force_in_proportion_to_the_speed_is_a_circle_and_does_no_work
     times = np.array([0.5, 2.0, 5.0])
     for spin, sign in ((3.0, 1.0), (-0.001, -1.0), (0.0, 0.0)):
         lateral = pt.Lateral(strength, speed_exponent=1.0)
-        run = run_of(times, velocity=(0.6, 0.0), spin=spin, lateral=lateral, run=pt.Run(time=5.0))
+        run = run_of(times, velocity=(0.6, 0.0), spin=spin, lateral=lateral, time=5.0)
         assert run.x == pytest.approx(
             0.6 / turn * np.sin(turn * times) if sign else 0.6 * times, abs=1e-9
         )
@@ -106,7 +106,7 @@ def test_where_the_spin_turns_round_the_force_jumps_to_the_other_side():
     rate = strength / MASS
     run = run_of(
         [1.5 * turns], velocity=(0.5, 0.0), spin=spin, lateral=pt.Lateral(strength, 1.0),
-        force=pt.Force(torque=torque), run=pt.Run(time=2.0 * turns),
+        force=pt.Force(torque=torque), time=2.0 * turns,
     )  # fmt: skip
     heading = rate * turns
     x = 2 * math.sin(heading) - math.sin(0.5 * heading)

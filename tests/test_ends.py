@@ -42,7 +42,7 @@ LONG = {
         "bulk.store", ["sweep", "--speed", "0:2:5000", "--w0", "0:5:5000", "-o", "m.zarr"]
     ),
     "scenes": (
-        "scene.sweep",
+        "world.map",
         ["sweep", "--scene", "incline", "--set", "launch.spin=0:80:900000", "-o", "m.h5"],
     ),
     "aim": ("stopping.aim", ["aim", "--target", "2,0.1", "--count", "9000", "-o", "a.csv"]),

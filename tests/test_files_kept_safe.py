@@ -6,14 +6,18 @@ import os
 import subprocess
 import sys
 import threading
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 from puck_tables.cli.main import main
 
+import puck_tables as pt
 from puck_tables._core.safe_write import check_target, write_bytes
-from puck_tables.errors import OutputError
+from puck_tables.errors import OutputError, PuckError
 
 PUCK = [sys.executable, "-m", "puck_tables.cli.main"]
 SCENE = """
@@ -201,3 +205,22 @@ def test_nothing_that_a_terminal_obeys_comes_from_files(folder: Path):
         assert "\x1b" not in ended.output
         assert "\x07" not in ended.output
         assert "x1b[31m" in ended.output, arguments
+
+
+def test_names_that_no_file_can_have_get_a_sentence_at_every_writer():
+    rng = np.random.default_rng(71)
+    run, law = pt.Puck.similar().simulate((1.0, 0.0), frames=2), pt.SpeedLaw([0.0, 1.0], [0.1, 0.2])
+    doors: list[tuple[Callable[[Any], object], str]] = [
+        (run.plot, ".png"), (run.movie, ".html"), (run.save, ".h5"),
+        (run.save, ".csv"), (law.to_csv, ".csv"), (check_target, ""),
+    ]  # fmt: skip
+    for write, ending in doors:
+        long = "".join(chr(97 + n) for n in rng.integers(0, 26, rng.integers(300, 400)))
+        names = (long, f"{long}/a", "x/" * 3000 + "a", "a\0")
+        for name in names[: 1 if write == run.plot else 4]:  # it draws first
+            with pytest.raises(PuckError, match="cannot write"):
+                write(f"{name}{ending}")
+        for wrong in (f"a{ending}".encode(), int(rng.integers(9)), 2.5, [f"a{ending}"]):
+            with pytest.raises(PuckError, match=r"path must be a str or a Path, got a "):
+                write(wrong)
+    assert not [*Path().glob("a*"), *Path().glob(".puck*")]

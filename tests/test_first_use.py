@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import io
 import subprocess
 import sys
+import threading
+import time
 
 import numpy as np
 import pytest
+
+from puck_tables._core.own_folder import say
 
 # a question for every public door that computes
 DOORS = {
@@ -75,3 +80,22 @@ def test_eight_threads_may_use_any_door_first(door: str) -> None:
 def test_eight_threads_may_use_different_doors_first(seed: int) -> None:
     drawn = np.random.default_rng(seed).choice(list(DOORS.values()), 8)
     assert failures(drawn.tolist()) == ""
+
+
+def test_lines_of_many_threads_do_not_run_together(monkeypatch: pytest.MonkeyPatch) -> None:
+    written: list[str] = []
+
+    class Recorder(io.StringIO):
+        def write(self, text: str, /) -> int:
+            written.append(text)
+            time.sleep(1e-4)  # another thread's turn
+            return len(text)
+
+    monkeypatch.setattr(sys, "stderr", Recorder())
+    lines = [f"line {n % 8} of {n % 3} in {__name__}" for n in range(48)]
+    threads = [threading.Thread(target=say, args=(line,)) for line in lines]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert sorted(written) == sorted({f"{line}\n" for line in lines})

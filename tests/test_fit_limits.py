@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 
+import film_judge
 import numpy as np
 import pytest
 from film_judge import G
 from rarely import few
 
 import puck_tables as pt
+from puck_tables.fitting.saved import puck_and_launch
 
 NOISE = (0.3e-3, 5e-3)
 
@@ -78,3 +80,55 @@ def test_a_law_that_the_film_does_not_tell_runs_nowhere(seed):
     for name, number in found.numbers.items():
         assert math.isfinite(number.value), name
         assert not name.startswith("friction_") or 0.0 < number.value <= 10.0
+
+
+def far_spun(seed: int) -> pt.Track:
+    """A film without angles of a puck that spins ever so fast: v = v0 (1 - t/T)^(3/4)."""
+    rng = np.random.default_rng([35, 1, seed])
+    times, speed = np.arange(60) / rng.uniform(60.0, 120.0), rng.uniform(0.5, 2.0)
+    end, heading = rng.uniform(1.1, 3.0) * times[-1], rng.uniform(0.0, 2.0 * math.pi)
+    way = speed * end / 1.75 * (1.0 - (1.0 - times / end) ** 1.75)
+    place = np.outer(way, [math.cos(heading), math.sin(heading)])
+    return pt.Track(times, place + 2e-4 * rng.normal(size=(60, 2)), None, "far")
+
+
+@pytest.mark.parametrize("seed", few(1, [4, *range(4), *range(5, 10)]))
+def test_a_fit_that_runs_away_is_no_answer(seed, tmp_path):
+    """More spin and more friction look alike without end."""
+    track = far_spun(seed)
+    found = pt.fit(track, pt.Puck(radius=0.04))
+    fastest = np.hypot(*np.diff(track.place, axis=0).T).max() / np.diff(track.time).max()
+    launch = found.launch()
+    assert abs(launch.spin) * 0.04 <= 101.0 * fastest
+    assert math.hypot(*launch.velocity) <= 10.1 * fastest
+    if not found.astray:
+        assert found["friction"].value < 10.0
+        return
+    assert found.astray in " ".join(found.blind) and "runs away" in found.astray
+    assert not any(number.determined for number in found.numbers.values() if number.how == "found")
+    with pytest.raises(pt.InputError, match="nothing to simulate"):
+        found.simulate()
+    found.save(tmp_path / "fit.json")
+    with pytest.raises(pt.InputError, match="nothing to play"):
+        puck_and_launch(tmp_path / "fit.json")
+    bound = pt.fit(track, pt.Puck(radius=0.04), bounds={"launch_spin": (-60.0, 60.0)})
+    assert not bound.astray and abs(bound.launch().spin) <= 60.0
+
+
+@pytest.mark.parametrize("seed", few(3, range(40)))
+def test_places_on_a_grid_are_no_noise_and_that_is_said(seed):
+    rng = np.random.default_rng([35, 6, seed])
+    radius, friction = rng.uniform(0.02, 0.05), rng.uniform(0.05, 0.4)
+    velocity, spin = np.array([rng.uniform(0.8, 2.0), rng.uniform(-0.3, 0.3)]), 0.0
+    spin = rng.uniform(0.4, 1.5) * rng.choice([-1.0, 1.0]) * velocity[0] / radius
+    times = np.linspace(0.0, rng.uniform(0.6, 1.3) * velocity[0] / (friction * G), 110)
+    true = film_judge.path(tuple(velocity), spin, friction * G, 0.4, radius, times)
+    place = true[:2].T + 1e-4 * rng.normal(size=(110, 2))
+    step = rng.uniform(2e-3, 10e-3)
+    found = pt.fit(pt.Track(times, step * np.round(place / step)), pt.Puck(radius=radius))
+    assert any(f"rounded to {step:.3g} m" in text for text in found.remarks), found.remarks
+    number = found["friction"]
+    assert not number.determined or abs(number.value - friction) < 4.0 * number.error
+    assert not any("no noise" in text for text in found.complaints)
+    fine = pt.fit(pt.Track(times, 1e-5 * np.round(place / 1e-5)), pt.Puck(radius=radius))
+    assert not any("rounded" in text for text in fine.remarks)

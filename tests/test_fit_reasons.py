@@ -97,3 +97,25 @@ def test_what_impacts_tell_keeps_its_error_where_the_tilt_is_at_its_end(seed):
         assert abs(number.value - truth) < 5.0 * number.error
     for launch in found.launches:
         assert all(math.isfinite(one.error) for one in launch.numbers.values())
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("seed", few(1, range(8)))
+@pytest.mark.parametrize("spinning", [False, True])
+def test_what_slows_a_puck_is_named_before_jitter_radius_or_a_hand(seed, spinning):
+    """Air, v' = -c v^2, that leaves the spin; or drag of speed and spin alike, v' = -c v."""
+    rng = np.random.default_rng([35, 8, seed])
+    times, speed = np.arange(120) / 60.0, rng.uniform(1.5, 3.0)
+    spin, drag = rng.uniform(5.0, 12.0) * rng.choice([-1.0, 1.0]), rng.uniform(0.1, 0.3)
+    if spinning:
+        way, angle = (one * -np.expm1(-drag * times) / drag for one in (speed, spin))
+    else:
+        way, angle = np.log1p(drag * speed * times) / drag, spin * times
+    place = np.outer(way, np.array(way_of(rng, 1.0)))
+    place += NOISE[0] * rng.normal(size=place.shape)
+    track = pt.Track(times, place, angle + NOISE[1] * rng.normal(size=times.size))
+    found = pt.fit(track, pt.Puck(radius=0.04))
+    assert found.complaints
+    told = ("--free", "--slip-speeds") if spinning else ("as air does",)
+    assert any(words in found.misread for words in told), found.misread
+    assert not any("jitter" in text for text in found.remarks)

@@ -89,7 +89,7 @@ def test_a_law_of_rows_means_the_same_in_a_fit_and_in_a_scene(seed):
     assert np.all(np.abs(f - values)[told] < 4.0 * errors[told])
     floor = pt.Floor(law=np.column_stack([speeds, values]).tolist())
     run = pt.Scene(
-        pt.Puck(RADIUS), floor, pt.Launch(velocity, spin=spin), run=pt.Run(tol=1e-5)
+        pt.Puck(RADIUS), floor, pt.Launch(velocity, spin=spin), tol=1e-5
     ).simulate()  # fmt: skip
     states = run(np.minimum(TIMES, run.end_time))
     assert np.abs(np.stack([states.x, states.y]) - path[:2]).max() < 1e-4

@@ -41,7 +41,7 @@ def scene(law, **more):
 def test_a_sliding_puck_takes_the_time_and_the_way_of_the_integral_over_the_speed(name):
     law, f = LAWS[name]
     tol = 1e-9 if name == "gauss" else 1e-7
-    tables = scene(law, launch={"velocity": [0.9, 0.0]}, run={"tol": tol})
+    tables = scene(law, launch={"velocity": [0.9, 0.0]}, tol=tol)
     run = pt.Scene.from_tables(tables).simulate()
     bends = [0.001, 0.01, 0.1, 0.3]
     brake = lambda v: STANDARD_GRAVITY * f(v)  # noqa: E731
@@ -75,7 +75,7 @@ def test_sliding_and_spinning_by_a_law_is_the_motion_by_quadrature(name, tol):
     truth = solve_ivp(
         rates, (0.0, 0.3), start, "DOP853", times, rtol=1e-11, atol=1e-12, max_step=0.05
     ).y
-    run = pt.Scene.from_tables(scene(law, run={"tol": tol})).simulate(times)
+    run = pt.Scene.from_tables(scene(law, tol=tol)).simulate(times)
     for column, row in zip(("x", "y", "orientation", "vx", "vy", "spin"), truth, strict=True):
         unit = 0.94 if column in ("x", "y", "vx", "vy") else 0.94 / radius
         assert run.columns[column] == pytest.approx(row, abs=tol * unit)
@@ -98,7 +98,7 @@ def test_a_table_of_a_law_is_as_good_as_it_says_and_survives_a_file(name, tmp_pa
 
 
 def test_a_whole_power_without_an_offset_is_viscous():
-    tables = scene(pt.PowerLaw(0.5, 1.0), run={"time": 0.4}, puck={"radius": 0.04})
+    tables = scene(pt.PowerLaw(0.5, 1.0), time=0.4, puck={"radius": 0.04})
     run = pt.Scene.from_tables(tables).simulate()
     left = math.exp(-0.5 * STANDARD_GRAVITY * 0.4)
     assert run.last["vx"] == pytest.approx(0.8 * left, rel=1e-9)
@@ -109,7 +109,7 @@ def test_a_whole_power_without_an_offset_is_viscous():
 def test_a_slip_that_grows_beyond_the_first_table_is_followed():
     """Down a slope, f = a u: v′ = g sin β − a g cos β v, far above the launch."""
     law, slope, a = pt.PowerLaw(0.001, 1.0), 0.5, 0.001
-    tables = scene(law, launch={"velocity": [0.01, 0.0]}, run={"time": 3.0, "tol": 1e-7})
+    tables = scene(law, launch={"velocity": [0.01, 0.0]}, time=3.0, tol=1e-7)
     tables["floor"]["slope"] = slope
     rate = a * STANDARD_GRAVITY * math.cos(slope)
     most = math.tan(slope) / a
@@ -122,11 +122,11 @@ def test_a_slip_that_grows_beyond_the_first_table_is_followed():
 
 
 def test_numbers_of_a_law_are_ranges():
-    tables = scene({**STRIBECK, "static": "0.2:0.3:2"}, run={"tol": 1e-5})
+    tables = scene({**STRIBECK, "static": "0.2:0.3:2"}, tol=1e-5)
     swept = pt.Scene.from_tables(tables).sweep()
     assert list(swept.axes) == ["floor.law.static"]
     for static, time in zip((0.2, 0.3), swept.end_time, strict=True):
-        one = pt.Scene.from_tables(scene({**STRIBECK, "static": static}, run={"tol": 1e-5}))
+        one = pt.Scene.from_tables(scene({**STRIBECK, "static": static}, tol=1e-5))
         assert one.simulate().end_time == pytest.approx(time, abs=1e-4)
     assert swept.to_xarray().floor_law_static.values.tolist() == [0.2, 0.3]
 
@@ -157,3 +157,16 @@ def test_a_law_in_python_is_checked_where_it_is_used():
         pt.Table.build(pt.PowerLaw(0.1, -0.5), top_speed=1.0)
     with pytest.raises(pt.InputError, match="needs top_speed"):
         pt.Table.build(pt.CurlingLaw(0.1, 1.0))
+
+
+def test_a_law_of_points_may_be_that_of_a_floor_and_one_of_lines_says_what_to_write():
+    rng = np.random.default_rng(31)
+    speeds = np.append(0.0, np.cumsum(rng.uniform(0.5, 2.0, 6)))
+    law = pt.SpeedLaw(speeds, rng.uniform(0.1, 0.3, 7))
+    by_law, by_rows = (
+        pt.Scene(pt.Puck(0.04), pt.Floor(law=one), launch=pt.Launch((0.5, 0.0)))
+        for one in (law, [*zip(law.speeds, law.values, strict=True)])
+    )
+    assert by_law == by_rows
+    with pytest.raises(pt.InputError, match=r"floor.law: a linear SpeedLaw .* law\(u\)\)"):
+        pt.Scene(pt.Puck(0.04), pt.Floor(law=pt.SpeedLaw(speeds, law.values, "linear")))

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from rarely import few
 
-from puck_tables._core.own_folder import make_private, refuse_shared, say
+from puck_tables._core.own_folder import _said, make_private, refuse_shared
 from puck_tables._core.sources import source_digest
 from puck_tables.errors import InputError
 from puck_tables.kernels import kept_code
@@ -161,7 +161,7 @@ def test_the_users_cache_is_judged_alike(tmp_path: Path, monkeypatch: pytest.Mon
 
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     tmp_path.chmod(0o777)
-    say.cache_clear()
+    _said.clear()
     said: list[str] = []
     monkeypatch.setattr(store, "say", said.append)
     assert store.table_for("ring", 1e-4).tolerance == 1e-4

@@ -118,7 +118,7 @@ def test_scenes_hold_what_holds(height: float, ratio: float):
         run = simulate_scene({
             "puck": {"radius": 1.0, "height": height, "friction": 0.2, "mass": puck.mass},
             "force": {"constant": [0.8 * size, 0.6 * size], "torque": ratio * size},
-            "run": {"time": 1e-3},
+            "time": 1e-3,
         })  # fmt: skip
         assert run.end == end
 

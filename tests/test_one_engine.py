@@ -62,7 +62,7 @@ def test_a_far_post_changes_nothing(first: int, tmp_path: Path):
         scene = Scene.from_tables(alone)
         now, before = ends_of(Scene.from_tables(alone | POST)), ends_of(scene)
         run = scene.simulate()
-        before[:, 3] += scene.run.tol * run.speed_scale**2 / run.rate_scale
+        before[:, 3] += scene.tol * run.speed_scale**2 / run.rate_scale
         assert apart(now, before).max() < 1.0, seed
         compared += 1
     assert compared > 0.7 * BLOCK

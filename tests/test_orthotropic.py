@@ -119,7 +119,7 @@ def test_a_motion_is_that_of_scipy_with_friction_of_the_grid():
 
 
 def test_a_scene_with_equal_friction_stops_where_the_plain_puck_does():
-    run = scene((0.2, 0.2), run={"tol": 1e-11}).simulate()
+    run = scene((0.2, 0.2), tol=1e-11).simulate()
     stop = pt.Puck(RADIUS, 0.02, 0.2).stop((0.8, 0.3), 30.0)
     assert run.end_time == pytest.approx(float(stop.stop_time), abs=2e-10)
     assert [run.last["x"], run.last["y"]] == pytest.approx(stop.stop_position, abs=1e-10)
@@ -172,7 +172,7 @@ def test_the_floor_holds_what_lies_in_its_ellipse(downhill):
     steepest = 1.0 / math.hypot(along / 0.1, across / 0.3)
     for share, stays in ((0.999, True), (1.001, False)):
         floor = {"slope": math.atan(share * steepest), "downhill": downhill}
-        run = scene(launch={"spin": 0.0}, floor=floor, run={"time": 0.3}).simulate()
+        run = scene(launch={"spin": 0.0}, floor=floor, time=0.3).simulate()
         assert (run.end == "at rest") is stays
         assert (run.last["x"] == 0.0) is stays
 

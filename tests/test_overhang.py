@@ -48,8 +48,7 @@ def slide(seed: int) -> tuple[Puck, Launch, list[Edge], list[tuple[float, int]],
 
 def overhangs(run: Any) -> list[tuple[float, int]]:
     told = [event for event in run.events if event.what == "overhang"]
-    numbers = [int(e.partner[5:]) if hasattr(e, "partner") else e.which for e in told]
-    return [(event.time, number) for event, number in zip(told, numbers, strict=True)]
+    return [(event.time, int(event.partner[5:])) for event in told]
 
 
 @pytest.mark.parametrize("several", [False, True])

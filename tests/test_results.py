@@ -24,7 +24,7 @@ from puck_tables.errors import ContactError, InputError, OutputError
 from puck_tables.io.columns import COLUMNS
 from puck_tables.io.formats import FORMATS
 from puck_tables.result import Result
-from puck_tables.tradeoff.doors import Door
+from puck_tables.tradeoff.doors import CallCost
 from puck_tables.tradeoff.engine import TradeOff
 from puck_tables.tradeoff.machine import Machine
 
@@ -59,7 +59,7 @@ RESULTS: dict[str, Callable[[], Result]] = {
     "asperity": lambda: asperity_curve(Asperity(1.0, 4.0, 1.0, 1.0), np.linspace(0.0, 9.0, 30)),
     "trade-off": lambda: TradeOff(
         shipped_front(), COUNTS, COUNTS * 1.0, COUNTS * 1.0,
-        (Door("stop", "all six", 1, 1, 2e4),), {"truth": 1.5},
+        (CallCost("stop", "all six", 1, 1, 2e4),), {"truth": 1.5},
         Machine({"processor": "one"}, 1.0, 1.0), 1, 1.0,
     ),
 }  # fmt: skip

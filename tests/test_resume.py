@@ -17,7 +17,8 @@ from puck_tables import Scene, Table, profile_law
 from puck_tables._core import digest as kept_work
 from puck_tables._core.digest import work_digest
 from puck_tables.errors import InputError
-from puck_tables.scene.sweep import SceneWork
+from puck_tables.scene.entries import set_path
+from puck_tables.world.runs import Runs
 
 pytest.importorskip("zarr")
 W0 = np.linspace(0.1, 5.0, 7)
@@ -99,7 +100,7 @@ def scene_of(folder: Path) -> dict[str, Any]:
         },
         "floor": {"slope": "0.01:0.05:3"},
         "force": {"over_time": str(folder / "force.csv")},
-        "launch": {"velocity": [0.5, 0.1], "spin": 3.0}, "run": {"tol": 1e-4},
+        "launch": {"velocity": [0.5, 0.1], "spin": 3.0}, "tol": 1e-4,
     }  # fmt: skip
 
 
@@ -107,22 +108,22 @@ def edited(name: str, text: str) -> Callable[[dict[str, Any], Path], None]:
     return lambda scene, folder: (folder / name).write_text(text) and None
 
 
-def put(part: str, name: str, value: Any) -> Callable[[dict[str, Any], Path], None]:
-    return lambda scene, folder: scene[part].__setitem__(name, value)
+def put(path: str, value: Any) -> Callable[[dict[str, Any], Path], None]:
+    return lambda scene, folder: set_path(scene, path, value)
 
 
 SCENE_CHANGES = {
     "the force": edited("force.csv", "t,Fx,Fy\n0,0.01,0\n9,0,0.0001\n"),
     "the profile": edited("profile.csv", "0,1\n1,0.6\n"),
-    "a range": put("floor", "slope", "0.01:0.06:3"),
-    "the friction": put("puck", "friction", 0.16),
-    "the radius": put("puck", "radius", 0.05),
-    "the mass": put("puck", "mass", 0.3),
-    "the spin": put("launch", "spin", 3.0000001),
-    "the velocity": put("launch", "velocity", [0.5, 0.2]),
-    "the tolerance": put("run", "tol", 1e-5),
-    "a time": put("run", "time", 100.0),
-    "a file in place of another": put("force", "over_time", ""),
+    "a range": put("floor.slope", "0.01:0.06:3"),
+    "the friction": put("puck.friction", 0.16),
+    "the radius": put("puck.radius", 0.05),
+    "the mass": put("puck.mass", 0.3),
+    "the spin": put("launch.spin", 3.0000001),
+    "the velocity": put("launch.velocity", [0.5, 0.2]),
+    "the tolerance": put("tol", 1e-5),
+    "a time": put("time", 100.0),
+    "a file in place of another": put("force.over_time", ""),
 }
 
 
@@ -160,7 +161,7 @@ def test_a_file_that_changes_while_it_is_swept_ends_the_sweep(tmp_path: Path):
 
     with pytest.raises(InputError, match=r"was changed while it was swept .*force\.csv"):
         sweep_scene(scene, chunk=1, threads=1, progress=changes)
-    work = SceneWork(Scene.from_tables(scene_of(tmp_path)), 1)
+    work = Runs(Scene.from_tables(scene_of(tmp_path)), 1)
     sent = pickle.dumps(work)
     edited("force.csv", "t,Fx,Fy\n0,0.03,0\n9,0,0\n")(scene, tmp_path)
     with pytest.raises(InputError, match="was changed while it was swept"):  # nor on a worker

@@ -16,7 +16,7 @@ SPINS = list(np.linspace(-20.0, 20.0, 8))  # all of them are checked
 def scene(tol: float) -> pt.Scene:
     return pt.Scene(
         pt.Puck(0.04, friction=0.1), pt.Floor(slope=0.05), pt.Launch((1.0, 0.3), spin=SPINS),
-        walls=[pt.Wall((0.3, 0.0), normal=(-1.0, 0.0), restitution=0.6)], run=pt.Run(tol=tol),
+        walls=[pt.Wall((0.3, 0.0), normal=(-1.0, 0.0), restitution=0.6)], tol=tol,
     )  # fmt: skip
 
 

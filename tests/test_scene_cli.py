@@ -89,7 +89,7 @@ def test_refusals_are_one_clear_sentence(arguments, words):
 
 
 def test_above_the_friction_angle_the_run_ends_at_the_time_asked():
-    steep = ("--set", "floor.slope=0.5", "--set", "run.time=3")
+    steep = ("--set", "floor.slope=0.5", "--set", "time=3")
     result = puck("simulate", "--scene", "incline", *steep)
     assert "time is up after 3 s" in result.stdout
 

@@ -30,7 +30,7 @@ def test_a_wall_that_a_step_would_leap(tol: float, tmp_path: Path) -> None:
         "puck": {"radius": 0.01}, "launch": {"velocity": [1.0, 0.2], "position": [0.01, 0.0]},
         "force": forces(tmp_path, [[0, -4, 0], [10, 10 * slope - 4, 0]]),
         "wall": [{"point": [0, 0], "normal": [1, 0], "restitution": 0.5}],
-        "run": {"time": 1.9, "tol": tol},
+        "time": 1.9, "tol": tol,
     })  # fmt: skip
     roots = np.roots([slope / 6.0, -2.0, 1.0])
     assert events(run, "impact")[0] == pytest.approx(min(roots[roots > 0]), rel=1e-12)
@@ -70,7 +70,7 @@ def test_the_rim_slides_and_then_rolls_along_a_wall(friction: float) -> None:
     }  # fmt: skip
     run = simulate_scene({
         "puck": {"radius": r, "mass": m}, "launch": {"velocity": [v0, 0.0], "position": [0.0, r]},
-        "force": {"constant": [0.0, -push]}, "wall": [wall], "run": {"time": 2.0 * stick + 1.0},
+        "force": {"constant": [0.0, -push]}, "wall": [wall], "time": 2.0 * stick + 1.0,
     }, [0.5 * stick])  # fmt: skip
     brake = friction * push / m
     assert run.columns["vx"][0] == pytest.approx(v0 - brake * 0.5 * stick, rel=1e-9)
@@ -89,7 +89,7 @@ def test_oblique_rebounds_end_as_leaning_begins(restitution: float) -> None:
     wall = {"point": [0.0, 0.0], "normal": [0.0, 1.0], "restitution": restitution}
     run = simulate_scene({
         "puck": {"radius": r, "mass": m}, "launch": {"velocity": [0.7, -vn], "position": [0.0, r]},
-        "force": {"constant": [0.0, -push]}, "wall": [wall], "run": {"time": 60.0},
+        "force": {"constant": [0.0, -push]}, "wall": [wall], "time": 60.0,
     })  # fmt: skip
     ends = 2.0 * restitution * vn * m / push / (1.0 - restitution)
     assert events(run, "contact")[0] == pytest.approx(ends, rel=1e-5)  # where it is summed up
@@ -111,7 +111,7 @@ def test_a_wedge_holds_a_puck_that_is_pushed_into_it(friction: float, restitutio
              "restitution": restitution}
             for s in (1, -1)
         ],
-        "run": {"time": 4.0},
+        "time": 4.0,
     })  # fmt: skip
     assert run.last["x"] == pytest.approx(-r / math.sin(half), rel=1e-12)
     assert abs(run.last["y"]) < 1e-14
@@ -130,7 +130,7 @@ def test_a_rough_corner_stops_a_spin() -> None:
     run = simulate_scene({
         "puck": {"radius": r, "mass": m, "friction": 0.0},
         "launch": {"velocity": [0.0, 0.0], "spin": spin, "position": [r, r]},
-        "force": {"constant": [-4.0, -3.0]}, "wall": walls, "run": {"time": 0.05},
+        "force": {"constant": [-4.0, -3.0]}, "wall": walls, "time": 0.05,
     })  # fmt: skip
     # the spin pushes it along the walls: u = −rω at both, so friction is (0, +μN₁) and (−μN₂, 0)
     # in the frame of each wall; N₁ = 4 + s μ N₂ and N₂ = 3 − s μ N₁ with one sign s
@@ -146,7 +146,7 @@ def test_a_blade_grips_the_floor_it_stands_on() -> None:
     run = simulate_scene({
         "puck": {"radius": 0.1, "friction": 0.3}, "floor": {"turning": 1.0},
         "launch": {"velocity": [0.0, 0.5], "spin": 1.0, "position": [0.5, 0.0]},
-        "constraint": {"kind": "blade"}, "run": {"time": 1.0},
+        "constraint": {"kind": "blade"}, "time": 1.0,
     })  # fmt: skip
     assert run.events[0].what == "stick" and run.events[0].time == 0.0
     assert run.last["x"] == pytest.approx(0.5 * math.cos(1.0), rel=1e-11)

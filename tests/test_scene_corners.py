@@ -25,7 +25,7 @@ def in_a_corner(tol: float) -> dict[str, Any]:
             },
             {"point": [0.0, 1.0], "normal": [0.0, -1.0], "restitution": 0.7},
         ],
-        "run": {"time": 5.0, "tol": tol},
+        "time": 5.0, "tol": tol,
     }  # fmt: skip
 
 
@@ -67,7 +67,7 @@ def test_a_rim_that_leans_slides_back_and_then_on(seed: int) -> None:
     run = simulate_scene({
         "puck": {"radius": radius, "mass": mass}, "wall": [wall],
         "launch": {"velocity": turned(speed, 0.0), "spin": spin},
-        "force": {"constant": turned(pull, -push)}, "run": {"time": 1.0, "frames": 1},
+        "force": {"constant": turned(pull, -push)}, "time": 1.0, "frames": 1,
     })  # fmt: skip
     inertia = 0.5 * mass * radius**2
     slip, most = -speed - radius * spin, mu * push
@@ -106,7 +106,7 @@ def test_a_slip_that_steps_blur_comes_to_rest_on_a_rough_wall() -> None:
                 "friction": 1.0,
             },
         ],
-        "run": {"time": 3.0, "tol": 1e-12},
+        "time": 3.0, "tol": 1e-12,
     })  # fmt: skip
     assert run.end == "at rest" and run.steps < 2000
     assert run.error_estimate <= 1e-9
@@ -130,7 +130,7 @@ def test_what_happens_at_once_within_stiff_steps_leaves_an_estimate() -> None:
                 "friction": 0.3,
             },
         ],
-        "run": {"time": 3.0, "tol": 1e-12},
+        "time": 3.0, "tol": 1e-12,
     })  # fmt: skip
     assert run.end == "at rest" and run.error_estimate <= 1e-8
 
@@ -194,7 +194,7 @@ def cushions(seed: int) -> dict[str, Any]:
             "velocity": (rng.normal(size=2) * rng.choice([0.3, 1.0, 2.0])).tolist(),
             "spin": float(rng.choice([0.0, 30.0, -60.0])),
         },
-        "wall": walls, "run": {"time": 4.0},
+        "wall": walls, "time": 4.0,
     }  # fmt: skip
 
 
@@ -205,7 +205,7 @@ def _estimates_hold(seeds: range) -> None:
     for seed in seeds:
         scene, runs = cushions(seed), []
         for tol in (1e-6, 1e-10):
-            scene["run"] = {"time": 4.0, "tol": tol}
+            scene |= {"time": 4.0, "tol": tol}
             runs.append(simulate_scene(scene, times))
         coarse, fine = runs
         unit = fine.speed_scale / fine.rate_scale

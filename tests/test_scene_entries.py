@@ -17,22 +17,23 @@ from puck_tables import Puck
 from puck_tables._core.fields import described, of
 from puck_tables.errors import InputError, PuckError
 from puck_tables.scene import parts
-from puck_tables.scene.entries import as_toml, set_path, tables_of
+from puck_tables.scene.entries import set_path, tables_of
 from puck_tables.scene.library import shipped_scenes
 from puck_tables.scene.plan import ingredients, plan_for
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_text import as_toml
+from puck_tables.world.scene import Scene
 
 FREE: dict[str, Any] = {
     "puck": {"radius": 0.04, "height": 0.03, "mass": 0.2, "friction": 0.2},
     "launch": {"velocity": [0.8, 0.3], "spin": 30.0},
 }
-MOVING = {"floor": {"turning": 2.0, "centre": [0.1, 0.2]}, "run": {"time": 0.5}}
+MOVING = {"floor": {"turning": 2.0, "centre": [0.1, 0.2]}, "time": 0.5}
 GRAINED = {"floor": {"orthotropic": {"friction": [0.2, 0.3]}}}
 STRIBECK = {"kind": "stribeck", "static": 0.3, "kinetic": 0.1, "speed": 0.2}
-BY_NAME = {"floor": {"law": STRIBECK}, "run": {"tol": 1e-5}}
-BY_CURLING = {"floor": {"law": {"kind": "curling", "a": 0.01, "b": 0.1}}, "run": {"tol": 1e-5}}
+BY_NAME = {"floor": {"law": STRIBECK}, "tol": 1e-5}
+BY_CURLING = {"floor": {"law": {"kind": "curling", "a": 0.01, "b": 0.1}}, "tol": 1e-5}
 BY_POWER = {
-    "floor": {"law": {"kind": "power", "a": 0.1, "exponent": 1.0, "b": 0.1}}, "run": {"tol": 1e-5},
+    "floor": {"law": {"kind": "power", "a": 0.1, "exponent": 1.0, "b": 0.1}}, "tol": 1e-5,
 }  # fmt: skip
 STRIPS = {"floor": {"strips": {"borders": [0.03], "friction": [0.2, 0.1]}}}
 ROUND = {"floor": {"patch": [{"friction": 0.1, "centre": [0.15, 0.05], "radius": 0.05}]}}
@@ -41,7 +42,7 @@ POLYGON = {"floor": {"patch": [
 ]}}  # fmt: skip
 WALL = {"wall": [{"point": [0.1, 0.0], "normal": [-1.0, 0.1], "tangential": 0.2}]}
 EDGE = {"edge": [{"point": [0.05, 0.0], "normal": [-1.0, 0.0]}]}
-HELD = {"launch": {"velocity": None}, "run": {"time": 0.5}}
+HELD = {"launch": {"velocity": None}, "time": 0.5}
 RAIL = {**HELD, "constraint": {"kind": "rail", "velocity": [0.0, 0.1]}}
 PIVOT = {**HELD, "constraint": {"kind": "pivot", "reach": 0.02}}
 BLADE = {**HELD, "constraint": {"kind": "blade"}, "launch": {"velocity": [0.8, 0.0]}}
@@ -103,7 +104,7 @@ CASES: dict[str, tuple[dict[str, Any], Any]] = {
     "constraint.reach": (PIVOT, 0.03),
     "constraint.velocity": (RAIL, [0.0, 0.3]),
     "constraint.side_slip": ({**BLADE, **HELD}, 0.1),
-    "run.time": ({}, 0.1),
+    "time": ({}, 0.1),
 }
 FILES = {
     "floor.law": ({"puck": {"friction": 0.0}}, "speed,f\n0,0.2\n5,0.1\n"),
@@ -132,7 +133,7 @@ RIM = {"puck": "a", "partner": "b", "restitution": 0.9, "tangential": 0.1, "fric
 BOARD: dict[str, Any] = {
     "launch.time": None, "puck[0].name": None, "puck[0].colour": None,
     "puck[0].radius": 0.025, "puck[0].height": 0.0, "puck[0].friction": 0.3, "puck[0].mass": 0.2,
-    "puck[0].gravity": 3.7, "puck[0].gyration": 0.9, "puck[0].pressure": "ring",
+    "puck[0].gravity": None, "puck[0].gyration": 0.9, "puck[0].pressure": "ring",
     "puck[0].launch.velocity": [1.4, 0.0], "puck[0].launch.spin": 10.0,
     "puck[0].launch.position": [0.005, 0.01], "puck[0].launch.orientation": 1.0,
     "puck[0].launch.time": 0.5, "puck[0].restitution": 0.5, "puck[0].tangential": -0.5,
@@ -153,7 +154,7 @@ BOARD: dict[str, Any] = {
 # how a puck of it is led, where that matters to an entry
 LED = {"kind": {"kind": "rail"}, "angle": {"kind": "rail"}, "velocity": {"kind": "rail"},
        "reach": {"kind": "pivot", "reach": 0.02}, "side_slip": {"kind": "blade"}}  # fmt: skip
-NO_PHYSICS = {"title", "run.frames", "run.tol", "floor.law.kind"}
+NO_PHYSICS = {"title", "frames", "tol", "floor.law.kind"}
 
 
 def whole(more: dict[str, Any]) -> dict[str, Any]:
@@ -177,7 +178,7 @@ def test_the_cases_below_are_all_entries() -> None:
 def test_every_entry_of_a_board_changes_the_motion(path: str) -> None:
     board = {**ON_BOARD, "rim": [RIM]} if path.startswith("rim") else ON_BOARD
     if ".constraint." in path:
-        board = copy.deepcopy(board) | {"run": {"time": 0.3}}
+        board = copy.deepcopy(board) | {"time": 0.3}
         board["puck"][2] |= {
             "constraint": LED[path.rpartition(".")[2]], "force": {"constant": [40.0, 10.0]},
             "launch": {"position": [0.0, 0.3], "spin": 10.0},
@@ -206,7 +207,7 @@ def test_every_file_changes_the_motion(path: str, tmp_path: Path) -> None:
     file.write_text(text)
     changed = whole(tables)
     set_path(changed, path, str(file))
-    assert end_of(changed) != end_of(whole({**tables, "run": {"time": 1.0}}))
+    assert end_of(changed) != end_of(whole({**tables, "time": 1.0}))
 
 
 @dataclass(frozen=True)
@@ -300,14 +301,14 @@ def test_a_scene_made_from_dataclasses_is_checked_like_a_file() -> None:
                 parts.Edge((0.0, 0.0), normal=(0.0, 1.0)),  # type: ignore[list-item]
             ],
             force=parts.Force(constant=np.ma.array([1.0, 2.0], mask=[False, True])),
-            run=None,  # type: ignore[arg-type]
+            drag=None,  # type: ignore[arg-type]
         )
     lines = [line.strip() for line in str(caught.value).splitlines()]
     assert lines[0] == "scene: 9 errors"
     for said in (
         "puck.radius = -1.0: must be a number > 0 m", "puck.height = nan:", "puck.pressure = 7:",
         "launch.velocity = array(", "launch.spin = True", "wall[0].normal = (1.0,)",
-        "wall[1] = Edge(", "force.constant[1] = masked:", "run = None: must be a table",
+        "wall[1] = Edge(", "force.constant[1] = masked:", "drag = None: must be a table",
     ):  # fmt: skip
         assert any(line.startswith(said) for line in lines), (said, lines)
 

@@ -82,7 +82,7 @@ def test_json_and_report_carry_inputs_and_units() -> None:
     text = CliRunner().invoke(main, ["simulate", "--scene", "air-hockey"]).stdout
     for part in (
         "launch     velocity (2, 1.3) m/s, spin -30 rad/s", "drag       sliding 0.006 kg/s",
-        "wall[3]    point (0, 1) m", "run        time 10 s",
+        "wall[3]    point (0, 1) m", "time       10 s",
     ):  # fmt: skip
         assert part in text
 

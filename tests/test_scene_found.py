@@ -21,7 +21,7 @@ def test_a_wedge_of_two_walls_holds_what_is_pressed_into_it(degrees):
         }
         for s in (1, -1)
     ]
-    scene = {"puck": {"radius": r}, "floor": {"slope": 0.1}, "wall": walls, "run": {"time": 1.0}}
+    scene = {"puck": {"radius": r}, "floor": {"slope": 0.1}, "wall": walls, "time": 1.0}
     run = simulate_scene(scene)
     assert (abs(run.last["x"]), abs(run.last["vx"])) <= (1e-12, 1e-12)
     assert run.energy_residual < 1e-8
@@ -31,12 +31,12 @@ def test_a_wedge_of_two_walls_holds_what_is_pressed_into_it(degrees):
 def test_tol_is_kept_however_the_mass_is_spread(gyration):
     scene = {
         "puck": {"radius": 0.04, "gyration": gyration, "friction": 0.1}, "floor": {"slope": 0.02},
-        "launch": {"velocity": [1.0, 0.0], "spin": 50.0}, "run": {"frames": 1, "tol": 1e-12},
+        "launch": {"velocity": [1.0, 0.0], "spin": 50.0}, "frames": 1, "tol": 1e-12,
     }  # fmt: skip
     unit = math.hypot(1.0, 2.0) / (0.1 * 9.80665)
     exact = simulate_scene(scene).end_time
     for tol in (1e-6, 1e-9):
-        scene["run"]["tol"] = tol
+        scene["tol"] = tol
         assert abs(simulate_scene(scene).end_time - exact) <= tol * unit
 
 
@@ -71,7 +71,7 @@ def test_a_law_that_jumps_is_tabulated_in_bounded_time(tmp_path):
     (tmp_path / "law.csv").write_text("0,0.1\n0.24,0.12\n0.25,0\n0.3,0\n0.31,0.2\n0.6,0.2\n")
     run = simulate_scene({
         "puck": {"radius": 0.04}, "floor": {"law": str(tmp_path / "law.csv")},
-        "launch": {"velocity": [0.4, 0.0], "spin": 3.0}, "run": {"time": 1.5, "tol": 1e-6},
+        "launch": {"velocity": [0.4, 0.0], "spin": 3.0}, "time": 1.5, "tol": 1e-6,
     })  # fmt: skip
     assert run.energy_residual < 1e-6
 

@@ -26,7 +26,7 @@ def test_every_error_at_once() -> None:
         "launch": {"spin": True, "position": [0.0, "here"]},
         "wall": [{"point": [1.0, 0.0], "normal": [0.0, 1.0], "restitution": 2.0}, 7],
         "constraint": {"kind": "glue"},
-        "run": {"tol": float("nan")},
+        "tol": float("nan"),
         "extra": {},
     })  # fmt: skip
     lines = text.splitlines()
@@ -42,7 +42,7 @@ def test_every_error_at_once() -> None:
         "wall[0].restitution = 2.0: must be a number >= 0 and <= 1",
         "wall[1] = 7: must be a table",
         "constraint.kind = 'glue': must be one of rail, pivot, blade",
-        "run.tol = nan: must be a number >= 1e-12 and <= 0.01",
+        "tol = nan: must be a number >= 1e-12 and <= 0.01",
         "extra: no such entry",
     ):
         assert any(line.strip().startswith(expected) for line in lines[1:]), (expected, text)
@@ -56,8 +56,8 @@ def test_every_error_at_once() -> None:
         ({"floor": {"strips": {"borders": [0.0], "friction": [0.1]}}}, "must be one number more"),
         ({"floor": {"strips": {"borders": [1.0, 0.0], "friction": [1, 1, 1]}}}, "must ascend"),
         ({"floor": {"strips": {"borders": [], "friction": [0.1]}}}, "must be one number more"),
-        ({"run": {"frames": 2.5}}, "run.frames = 2.5: must be a whole number"),
-        ({"run": {"time": 0.0}}, "run.time = 0.0: must be a number > 0 s"),
+        ({"frames": 2.5}, "frames = 2.5: must be a whole number"),
+        ({"time": 0.0}, "time = 0.0: must be a number > 0 s"),
         ({"wall": [{"point": [0, 0], "normal": [0, 0]}]}, "wall[0].normal = [0.0, 0.0]: must have"),
         ({"wall": [{"point": [0.01, 0], "normal": [-1, 0]}]}, "reaches through it by 0.03 m"),
         ({"edge": [{"point": [-1, 0], "normal": [-1, 0]}]}, "is beyond it by 1 m"),

@@ -11,7 +11,7 @@ from pucks import simulate
 from scenes import simulate_scene
 
 from puck_tables import resultants
-from puck_tables.scene.outcome import SceneRun
+from puck_tables.scene.run import Run
 
 G = 9.80665
 
@@ -20,14 +20,14 @@ def scene(**parts: Any) -> dict[str, Any]:
     """A puck of 1 m and 1 kg on f = 0.2, launched along x, and what else there is."""
     whole: dict[str, Any] = {
         "puck": {"radius": 1.0, "friction": 0.2},
-        "launch": {"velocity": [3.0, 0.0]}, "run": {"tol": 1e-11},
+        "launch": {"velocity": [3.0, 0.0]}, "tol": 1e-11,
     }  # fmt: skip
     for part, values in parts.items():
         whole[part] = {**whole.get(part, {}), **values} if isinstance(values, dict) else values
     return whole
 
 
-def event(run: SceneRun, what: str, count: int = 0) -> float:
+def event(run: Run, what: str, count: int = 0) -> float:
     return [e[0] for e in run.events if e[1] == what][count]
 
 
@@ -48,9 +48,7 @@ def test_up_an_incline_and_down_again() -> None:
     turn, top = 3.0 / up, 4.5 / up
     times = np.array([0.5 * turn, turn, turn + 0.5, turn + 2.0])
     launch = {"velocity": [-3.0, 0.0]}
-    run = simulate_scene(
-        scene(floor={"slope": slope}, launch=launch, run={"time": turn + 2.0}), times
-    )
+    run = simulate_scene(scene(floor={"slope": slope}, launch=launch, time=turn + 2.0), times)
     late = times[2:] - turn
     assert np.abs(run.columns["x"][2:] - (0.5 * down * late**2 - top)).max() <= 1e-9
     assert np.abs(run.columns["vx"][2:] - down * late).max() <= 1e-9
@@ -77,11 +75,11 @@ def test_position_is_constant_to_the_bit_after_rest() -> None:
 def test_just_above_the_threshold_it_slides_for_ever() -> None:
     slope = math.atan(0.2) + 1e-9
     pull = G * (math.sin(slope) - 0.2 * math.cos(slope))
-    run = simulate_scene(scene(floor={"slope": slope}, run={"time": 100.0}))
+    run = simulate_scene(scene(floor={"slope": slope}, time=100.0))
     assert run.end == "time is up" and run.end_time == 100.0
     assert run.last["vx"] == pytest.approx(3.0 + 100.0 * pull, abs=3e-9)
     still = simulate_scene(
-        scene(floor={"slope": slope}, launch={"velocity": [0.0, 0.0]}, run={"time": 100.0})
+        scene(floor={"slope": slope}, launch={"velocity": [0.0, 0.0]}, time=100.0)
     )
     assert still.end == "time is up"
     assert still.last["x"] == pytest.approx(0.5e4 * pull, rel=1e-6)
@@ -156,7 +154,8 @@ def test_a_rail_that_is_led_across_the_floor_lets_no_puck_rest(tol: float) -> No
     run = simulate_scene(
         scene(
             launch={"velocity": [3.0, 0.004], "spin": 0.5},
-            run={"tol": tol, "time": 9.0},
+            tol=tol,
+            time=9.0,
             constraint={"kind": "rail", "velocity": [0.0, 0.004]},
         )
     )
@@ -172,7 +171,8 @@ def test_a_puck_follows_the_pivot_that_pulls_it_slowly(tol: float) -> None:
     run = simulate_scene(
         scene(
             puck={"radius": 0.1},
-            run={"tol": tol, "time": 200.0},
+            tol=tol,
+            time=200.0,
             launch={"velocity": [speed, -reach * 6.0], "spin": 6.0},
             constraint={"kind": "pivot", "reach": reach, "velocity": [speed, 0.0]},
         )
@@ -220,7 +220,7 @@ def test_a_blade_on_ice_goes_in_circles() -> None:
     run = simulate_scene(
         scene(
             puck={"friction": 0.0}, launch={"spin": 2.0}, constraint={"kind": "blade"},
-            run={"time": 4.0},
+            time=4.0,
         ),
         [1.0, 2.5],
     )  # fmt: skip
@@ -239,7 +239,7 @@ def test_a_turntable_carries_up_to_its_limit(side: float) -> None:
         scene(
             floor={"turning": turning},
             launch={"velocity": [0.0, turning * place], "spin": turning, "position": [place, 0.0]},
-            run={"time": 3.0},
+            time=3.0,
         ),
         [1.0, 2.0, 3.0],
     )
@@ -276,7 +276,7 @@ def test_a_triangle_of_force_moves_and_stops_it(tmp_path: Any) -> None:
 def test_quadratic_drag(friction: float) -> None:
     """m v′ = −c v² − f m g: v0/(1 + c v0 t/m), or atan(v0 k)/(k f g) with k² = c/(m f g)."""
     drag, mass, v0 = 0.3, 0.2, 3.0
-    tables = scene(drag={"quadratic": drag}, run={"time": 2.0}, puck={"friction": friction})
+    tables = scene(drag={"quadratic": drag}, time=2.0, puck={"friction": friction})
     tables["puck"]["mass"] = mass
     run = simulate_scene(tables)
     if friction == 0.0:

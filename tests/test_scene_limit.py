@@ -53,7 +53,7 @@ def test_slips_that_go_straight_next_to_the_limit(gap: float, side: float) -> No
         assert run.end == "at rest"
         assert run.end_time == pytest.approx(-q0 / rate, rel=1e-12 / gap + 1e-9)
     else:
-        scene["run"] = {"time": 3.0}
+        scene |= {"time": 3.0}
         run = simulate_scene(scene)
         q = math.hypot(run.last["vx"], run.last["spin"])
         known = 3.0 * f * G * 2e-11  # what the table leaves open of friction, over 3 s
@@ -70,9 +70,9 @@ def test_friction_that_turns_while_forces_change(tmp_path: Path) -> None:
             "puck": {"radius": 0.04, "height": 0.02, "mass": 0.2, "friction": 0.3},
             "force": {"over_time": str(path)}, "launch": launch,
         }  # fmt: skip
-        best = simulate_scene({**scene, "run": {"tol": 1e-12}})
+        best = simulate_scene({**scene, "tol": 1e-12})
         for tol in (1e-4, 4.64e-7, 2.2e-7, 1e-9):
-            run = simulate_scene({**scene, "run": {"tol": tol}})
+            run = simulate_scene({**scene, "tol": tol})
             time = run.speed_scale / run.rate_scale
             assert abs(run.end_time - best.end_time) <= tol * time
             off = math.hypot(run.last["x"] - best.last["x"], run.last["y"] - best.last["y"])
@@ -88,7 +88,7 @@ def test_rest_as_the_force_reaches_what_friction_holds(tmp_path: Path) -> None:
         "puck": {"radius": 0.01, "friction": 0.1},
         "launch": {"velocity": [1.0, 0.3], "position": [0.01, 0.0]},
         "wall": [{"point": [0, 0], "normal": [1, 0], "restitution": 0.5}],
-        "force": {"over_time": str(path)}, "run": {"time": 3.0},
+        "force": {"over_time": str(path)}, "time": 3.0,
     })  # fmt: skip
     slips = (0.1 * G + 3.0) / 1.71864406779661
     assert [event.what for event in run.events][-2:] == ["stick", "slip"]
@@ -106,7 +106,7 @@ def test_a_pivot_at_the_centre_of_a_turntable(tol: float) -> None:
         "puck": {"radius": 0.1, "friction": 0.2},
         "floor": {"turning": turning, "centre": [reach, 0]},
         "launch": {"spin": spin}, "constraint": {"kind": "pivot", "reach": reach},
-        "run": {"time": 1.0, "tol": tol},
+        "time": 1.0, "tol": tol,
     })  # fmt: skip
     assert run.end == "carried by the floor"
     rests = (turning - spin) / rate
@@ -120,12 +120,12 @@ def test_tol_is_of_the_slip_on_a_fast_belt(tol: float) -> None:
     scene: dict[str, Any] = {
         "puck": {"radius": 0.05, "height": 0.02, "friction": 0.3},
         "launch": {"velocity": slip, "spin": 0.1},
-        "wall": [{"point": [0, -10], "normal": [0, 1]}], "run": {"tol": 1e-11, "time": 0.01},
+        "wall": [{"point": [0, -10], "normal": [0, 1]}], "tol": 1e-11, "time": 0.01,
     }  # fmt: skip
     still = simulate_scene(scene)
     scene["floor"] = {"velocity": [belt, 0.0]}
     scene["launch"]["velocity"] = [belt + slip[0], slip[1]]
-    scene["run"]["tol"] = tol
+    scene["tol"] = tol
     run = simulate_scene(scene)
     time = run.speed_scale / run.rate_scale
     rounding = belt * 1e-15
@@ -166,10 +166,10 @@ def _estimates(scenes: Iterable[dict[str, Any]], tols: tuple[float, ...]) -> lis
     """Errors of scenes over their own estimates."""
     shares = []
     for scene in scenes:
-        scene["run"]["tol"] = 1e-12
+        scene["tol"] = 1e-12
         best = simulate_scene(scene)
         for tol in tols:
-            scene["run"]["tol"] = tol
+            scene["tol"] = tol
             run = simulate_scene(scene)
             speed, rate = run.speed_scale, run.rate_scale
             error = max(
@@ -198,7 +198,7 @@ def _crossing(seed: int) -> dict[str, Any]:
             "velocity": rng.normal(size=2).tolist(), "position": rng.uniform(-1, 1, 2).tolist(),
             "spin": float(rng.choice([0.0, 1.0, -3.0])) / radius,
         },
-        "run": {"time": rng.uniform(0.5, 4.0), "frames": 2},
+        "time": rng.uniform(0.5, 4.0), "frames": 2,
     }  # fmt: skip
 
 
@@ -216,7 +216,7 @@ def test_no_estimate_is_too_small(tmp_path: Path) -> None:
 def test_an_implicit_step_to_equal_speeds_that_is_not_solved(seed: int, tmp_path: Path) -> None:
     """Next to φ = π/4 the ratios of a coarse table bend within 1e-8."""
     scene = draw(seed, tmp_path)
-    scene["run"]["tol"] = 1e-2
+    scene["tol"] = 1e-2
     assert simulate_scene(scene).end == "at rest"
 
 
@@ -225,7 +225,7 @@ def test_a_slip_that_begins_below_what_steps_tell(tmp_path: Path) -> None:
     """Along a smooth cushion on a turntable; it began, was cut at once and began again for ever."""
     scene, ends = draw(42407, tmp_path), []
     for tol in (1e-6, 1e-7):
-        scene["run"]["tol"] = tol
+        scene["tol"] = tol
         ends.append(simulate_scene(scene))
     assert ends[1].steps < 5000
     assert ends[1].last["x"] == pytest.approx(ends[0].last["x"], abs=1e-6)
@@ -247,7 +247,7 @@ def test_a_force_that_sets_in_beyond_what_friction_holds(share: float, tmp_path:
     run = simulate_scene({
         "puck": {"radius": radius, "mass": mass, "friction": f},
         "launch": {"velocity": [0.1, 0.02], "spin": 2.0}, "force": {"over_time": str(force)},
-        "run": {"time": 1.5},
+        "time": 1.5,
     })  # fmt: skip
     assert [event.what for event in run.events][:2] == ["stick", "slip"]
     assert run.events[1].time == pytest.approx(0.3, rel=1e-12)

@@ -41,7 +41,7 @@ def test_impulses_of_a_rough_wall(friction: float) -> None:
             "friction": friction}  # fmt: skip
     run = simulate_scene(
         scene(
-            wall=[wall], run={"time": 1.0},
+            wall=[wall], time=1.0,
             puck={"mass": 2.0, "radius": 0.3, "friction": 0.0},
             launch={"velocity": [1.0, 2.0], "spin": 4.0},
         )

@@ -12,7 +12,7 @@ def test_the_judge_knows_a_puck_that_dips_into_a_wall_and_comes_back():
         "puck": {"radius": 0.01, "mass": 1.0, "gyration": 0.7, "friction": 0.0},
         "launch": {"velocity": [1.0, 0.2], "spin": 0.0, "position": [0.01, 0.0]},
         "wall": [{"point": [0.0, 0.0], "normal": [1.0, 0.0], "restitution": 0.5}],
-        "run": {"time": 1.9, "frames": 1},
+        "time": 1.9, "frames": 1,
         "drive": [[0.0, -4.0, 0.0, 0.0], [10.0, 55.0478678698, 0.0, 0.0]],
     }  # fmt: skip
     events = lines_judge.truth(scene)[2]

@@ -13,7 +13,8 @@ import xarray
 
 import puck_tables as pt
 from puck_tables.errors import InputError
-from puck_tables.scene.entries import as_toml, tables_of
+from puck_tables.scene.entries import tables_of
+from puck_tables.scene.scene_text import as_toml
 
 PUCK = pt.Puck(radius=0.04, height=0.02, friction=0.15, mass=0.2)
 LAUNCH = pt.Launch((0.8, 0.1), spin=20.0)
@@ -128,7 +129,7 @@ def test_rows_stand_where_a_file_may_be_named(tmp_path: Path) -> None:
         by_speed = str(tmp_path / "law.csv") if named else law
         scene = pt.Scene(
             PUCK, pt.Floor(law=by_speed), LAUNCH, force=pt.Force(over_time=over_time),  # type: ignore[arg-type]
-            run=pt.Run(tol=1e-5),
+            tol=1e-5,
         )  # fmt: skip
         assert named or pt.Scene.from_tables(tables_of(scene)) == scene
         ends.append(scene.simulate([0.0]).last)
@@ -161,7 +162,7 @@ def test_a_puck_without_friction_is_for_scenes() -> None:
     for ask in (puck.simulate, puck.stop):
         with pytest.raises(pt.InputError, match="a puck with friction = 0 never stops"):
             ask((1.0, 0.0))
-    run = pt.Scene(puck, launch=LAUNCH, run=pt.Run(time=2.0)).simulate()
+    run = pt.Scene(puck, launch=LAUNCH, time=2.0).simulate()
     assert run.last["x"] == pytest.approx(1.6, rel=1e-12)
 
 

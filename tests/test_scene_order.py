@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate._ivp import dop853_coefficients as published
 
-from puck_tables import Drag, Floor, Launch, Puck, Run, Scene
+from puck_tables import Drag, Floor, Launch, Puck, Scene
 from puck_tables.scene import explicit
 
 COARSE, FINE = 1e-5, 1e-11
@@ -19,7 +19,7 @@ def braked(tol: float) -> Scene:
     """Pulled down a slope without friction against a drag by the square of the speed."""
     return Scene(
         Puck(0.04, friction=0.0, mass=0.2), floor=Floor(slope=0.5, downhill=0.0),
-        drag=Drag(quadratic=0.1), run=Run(time=4.0, tol=tol),
+        drag=Drag(quadratic=0.1), time=4.0, tol=tol,
     )  # fmt: skip
 
 
@@ -34,7 +34,7 @@ def stopping(tol: float) -> Scene:
     """One that slides and spins till it stops on a slope."""
     return Scene(
         Puck(0.04, 0.02, friction=0.15, mass=0.2), floor=Floor(slope=0.1),
-        launch=Launch((0.8, 0.5), spin=10.0), drag=Drag(sliding=0.02), run=Run(tol=tol),
+        launch=Launch((0.8, 0.5), spin=10.0), drag=Drag(sliding=0.02), tol=tol,
     )  # fmt: skip
 
 
@@ -83,6 +83,6 @@ def test_a_slip_stops_within_a_few_steps() -> None:
     cut = stopping(1e-9)
     before = Scene(
         cut.puck, floor=cut.floor, launch=cut.launch, drag=cut.drag,
-        run=Run(time=whole.end_time * (1.0 - 1e-3), tol=1e-9),
+        time=whole.end_time * (1.0 - 1e-3), tol=1e-9,
     ).simulate([])  # fmt: skip
     assert whole.steps - before.steps < 12  # by halves it would be 25

@@ -13,7 +13,7 @@ from verdicts import judged, known
 def test_the_judge_sums_rebounds_on_a_slope():
     scene = {
         "puck": {"radius": 0.04, "friction": 0.1}, "floor": {"slope": 0.4},
-        "launch": {"velocity": [0.5, 0.0]}, "run": {"time": 3.0},
+        "launch": {"velocity": [0.5, 0.0]}, "time": 3.0,
         "wall": [{"point": [0.2, 0.0], "normal": [-1.0, 0.0], "restitution": 0.9}],
     }  # fmt: skip
     found = truth(scene)
@@ -36,7 +36,7 @@ def test_the_judge_lets_a_leaning_rim_feel_friction(restitution):
             "point": [0.2, 0.0], "normal": [-1.0, 0.0], "restitution": restitution,
             "tangential": 0.0, "friction": mu,
         }],
-        "run": {"time": 8.0},
+        "time": 8.0,
     }  # fmt: skip
     early, late = truth(scene, np.array([4.0, 8.0]))["states"]
     if restitution < 0.5:  # it leans by then: all normal impulses are what the force has given

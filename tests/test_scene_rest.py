@@ -28,7 +28,7 @@ def scene(force: float, torque: float, **parts: Any) -> dict[str, Any]:
         },
         "floor": {**parts.pop("floor", {})},
         "force": {"constant": [0.8 * force, 0.6 * force], "torque": torque},
-        "run": {"time": 1e-3},
+        "time": 1e-3,
         **parts,
     }
 
@@ -102,7 +102,7 @@ def test_a_torque_that_grows_slips_and_follows_its_law(tmp_path: Any) -> None:
     """Spin alone: slips at (2/3) f N r, then I ω′ = T − (2/3) f N r."""
     path = tmp_path / "torque.csv"
     np.savetxt(path, [[0, 0, 0, 0], [2, 0, 0, 2]], delimiter=",")
-    whole = scene(0.0, 0.0) | {"force": {"over_time": str(path)}, "run": {"time": 1.5}}
+    whole = scene(0.0, 0.0) | {"force": {"over_time": str(path)}, "time": 1.5}
     run = simulate_scene(whole)
     assert run.events[0][1] == "stick" and run.events[1][1] == "slip"
     assert run.events[1][0] == pytest.approx(2.0 / 3.0, rel=1e-9)
@@ -114,11 +114,11 @@ def test_a_force_that_grows_beside_a_torque(tmp_path: Any) -> None:
     """The slow start of a slip whose direction turns: no steps without number."""
     path = tmp_path / "force.csv"
     np.savetxt(path, [[0, 0, 0, 0.3], [1, 1.2, 0.1, 0.3]], delimiter=",")
-    whole = scene(0.0, 0.0, height=1.0) | {"force": {"over_time": str(path)}, "run": {"time": 1.0}}
+    whole = scene(0.0, 0.0, height=1.0) | {"force": {"over_time": str(path)}, "time": 1.0}
     run = simulate_scene(whole)
     assert run.steps < 20_000
     assert run.energy_residual < 1e-9
-    finest = simulate_scene({**whole, "run": {"time": 1.0, "tol": 1e-11}})
+    finest = simulate_scene({**whole, "time": 1.0, "tol": 1e-11})
     speed = abs(finest.last["vx"])
     for name in ("vx", "vy", "spin"):
         assert abs(run.last[name] - finest.last[name]) <= 1e-8 * speed

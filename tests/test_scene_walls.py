@@ -47,7 +47,7 @@ def leaning_rim(restitution: float, tangential: float, tol: float) -> Any:
         "force": {"constant": [0.7, -1.5]},
         "wall": [{"point": [0, 0], "normal": [0, 1], "restitution": restitution,
                   "tangential": tangential}],
-        "run": {"time": 4.0, "tol": tol, "frames": 1},
+        "time": 4.0, "tol": tol, "frames": 1,
     })  # fmt: skip
 
 
@@ -90,7 +90,7 @@ def test_a_turning_floor_carries_no_puck_into_a_wall(rim: dict[str, float], tol:
         "puck": {"radius": 0.1, "friction": 0.2}, "floor": {"turning": 0.77},
         "launch": {"velocity": [0.844, -0.148], "spin": 16.0, "position": [0.0, 0.3]},
         "force": {"constant": [-0.82, -2.8]}, "wall": [wall],
-        "run": {"time": 3.0, "tol": tol},
+        "time": 3.0, "tol": tol,
     }, np.linspace(0.0, 3.0, 301))  # fmt: skip
     assert run.columns["y"].min() >= 0.1 - 1e-13
     assert run.end == "time is up"  # it leans, and the floor slips under it
@@ -103,7 +103,7 @@ def test_a_floor_that_leads_off_a_wall_carries_a_puck_off() -> None:
     run = simulate_scene({
         "puck": {"radius": 0.1, "friction": 0.5}, "floor": {"turning": 1.0, "centre": [0.0, 1.0]},
         "launch": {"velocity": [0.9, 0.0], "spin": 1.0, "position": [0.0, 0.1]},
-        "wall": [{"point": [0.0, 0.0], "normal": [0.0, 1.0]}], "run": {"time": 1.0},
+        "wall": [{"point": [0.0, 0.0], "normal": [0.0, 1.0]}], "time": 1.0,
     })  # fmt: skip
     assert run.end == "carried by the floor"
     assert run.last["x"] == pytest.approx(0.9 * math.sin(1.0), rel=1e-9)
@@ -147,7 +147,7 @@ def test_a_tilted_air_hockey_table_ends_at_rest(slope: float, downhill: float) -
     scene: dict[str, Any] = dict(find_scene("air-hockey"))
     scene["puck"]["friction"] = 0.01
     scene["floor"] = {**scene.get("floor", {}), "slope": slope, "downhill": downhill}
-    scene["run"] = {**scene.get("run", {}), "time": 60.0, "frames": 1, "tol": 1e-6}
+    scene |= {"time": 60.0, "frames": 1, "tol": 1e-6}
     assert simulate_scene(scene).end == "at rest"
 
 
@@ -161,7 +161,7 @@ def test_rough_walls_hold_a_puck_in_their_corner(tol: float) -> None:
         "puck": {"radius": 0.05, "friction": 0.1},
         "launch": {"velocity": [0, -0.5], "spin": 10.0, "position": [0.4, 0.6]},
         "force": {"constant": [-1.5, -1.0]}, "wall": walls,
-        "run": {"time": 3.0, "tol": tol, "frames": 1},
+        "time": 3.0, "tol": tol, "frames": 1,
     })  # fmt: skip
     assert run.end == "at rest" and run.steps < 2000
 
@@ -170,7 +170,7 @@ def test_a_puck_that_leaves_a_wall_keeps_its_distance_to_it() -> None:
     """Pulled off at once after an impact without restitution; each impact is at its wall."""
     run = simulate_scene({
         "puck": {"radius": 0.1}, "launch": {"velocity": [0.3, -1.0], "position": [0.0, 0.5]},
-        "force": {"constant": [0.0, 1.0]}, "run": {"time": 8.0},
+        "force": {"constant": [0.0, 1.0]}, "time": 8.0,
         "wall": [
             {"point": [0.0, 0.0], "normal": [0.0, 1.0], "restitution": 0.0},
             {"point": [0.0, 1.0], "normal": [0.0, -1.0], "restitution": 0.0},
@@ -178,7 +178,7 @@ def test_a_puck_that_leaves_a_wall_keeps_its_distance_to_it() -> None:
     })  # fmt: skip
     for event in run.events:
         if event.what in ("impact", "contact"):
-            gap = event.y - 0.1 if event.which == 0 else 0.9 - event.y
+            gap = event.y if event.partner == "wall 0" else 1.0 - event.y
             assert abs(gap) <= 1e-14
     assert run.last["y"] == pytest.approx(0.9, abs=1e-14)
 
@@ -196,11 +196,11 @@ def test_walls_without_restitution_catch_a_puck_at_once(half: float, rim: dict[s
     run = simulate_scene({
         "puck": {"radius": 0.02, "mass": 0.5, "friction": 0.1}, "wall": walls,
         "launch": {"velocity": [1.0, 0.3], "spin": 30.0, "position": [-0.5, 0.0]},
-        "force": {"constant": [5.0, 0.0]}, "run": {"time": 5.0},
+        "force": {"constant": [5.0, 0.0]}, "time": 5.0,
     })  # fmt: skip
-    assert [(event.what, event.which) for event in run.events[:2]] == [
-        ("contact", 0),
-        ("contact", 1),
+    assert [(event.what, event.partner) for event in run.events[:2]] == [
+        ("contact", "wall 0"),
+        ("contact", "wall 1"),
     ]
     assert [event.what for event in run.events[2:]] == ["stick"] and run.end == "at rest"
     assert run.last["x"] == pytest.approx(1.0 - 0.02 / math.sin(half), rel=1e-12)
@@ -211,7 +211,7 @@ def test_walls_without_restitution_catch_a_puck_at_once(half: float, rim: dict[s
 def test_what_a_turning_floor_loses_before_it_meets_a_wall(tol: float) -> None:
     slope, downhill, turning, centre = 0.2731, 2.957796, 1.8737, np.array([-0.777424, 0.116109])
     run = simulate_scene({
-        "puck": {"radius": 0.062, "friction": 0.5}, "run": {"time": 2.4, "tol": tol},
+        "puck": {"radius": 0.062, "friction": 0.5}, "time": 2.4, "tol": tol,
         "floor": {
             "slope": slope, "downhill": downhill, "turning": turning,
             "centre": centre.tolist(),

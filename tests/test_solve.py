@@ -11,14 +11,14 @@ from pucks import simulate
 from puck_tables import Puck, Table, stop
 from puck_tables.accuracy import methods
 from puck_tables.accuracy.front import select, shipped_front
-from puck_tables.accuracy.methods import INTEGRATORS, METHODS, Method, Scheme, Source
+from puck_tables.accuracy.methods import INTEGRATORS, METHODS, FrictionForm, Method, Scheme
 from puck_tables.contact.laws import HOMOGENEOUS
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.motion.body import body_of, plain_up_to
 from puck_tables.motion.frame import frame_of
 from puck_tables.motion.friction import FullContact, Sections, closed_form_friction, source_of
 from puck_tables.motion.run import integrated
-from puck_tables.motion.solve import Estimate, Setting, close_enough, refined
+from puck_tables.motion.solve import ErrorEstimate, Setting, close_enough, refined
 from puck_tables.motion.steppers import TABLEAUS, Stepping
 from puck_tables.motion.tableaus import DORMAND_PRINCE, RK4, tableau_of
 
@@ -26,9 +26,9 @@ from puck_tables.motion.tableaus import DORMAND_PRINCE, RK4, tableau_of
 def test_the_loop_ends_at_the_first_setting_that_is_good_enough():
     tried: list[int] = []
 
-    def attempt(n: int) -> tuple[str, Estimate]:
+    def attempt(n: int) -> tuple[str, ErrorEstimate]:
         tried.append(n)
-        return f"result {n}", Estimate(0.6 * 10.0**-n, 0.3 * 10.0**-n, 0.05 * 10.0**-n)
+        return f"result {n}", ErrorEstimate(0.6 * 10.0**-n, 0.3 * 10.0**-n, 0.05 * 10.0**-n)
 
     result, error, setting = close_enough(1, attempt, lambda n, _: n + 1, 1e-3, "it")
     assert (result, setting, tried) == ("result 3", 3, [1, 2, 3])
@@ -36,8 +36,8 @@ def test_the_loop_ends_at_the_first_setting_that_is_good_enough():
 
 
 def test_what_no_setting_reaches_is_refused_with_what_can_be_asked():
-    def attempt(n: int) -> tuple[None, Estimate]:
-        return None, Estimate(1e-6, 2e-6)
+    def attempt(n: int) -> tuple[None, ErrorEstimate]:
+        return None, ErrorEstimate(1e-6, 2e-6)
 
     with pytest.raises(AccuracyError, match=r"tol = 1e-09 is out of reach for it.*6e-06 or more"):
         close_enough(1, attempt, lambda n, _: n + 1 if n < 4 else None, 1e-9, "it")
@@ -45,18 +45,20 @@ def test_what_no_setting_reaches_is_refused_with_what_can_be_asked():
 
 def test_what_errs_most_is_refined():
     setting = Setting(Stepping(DORMAND_PRINCE, 0.0, 1e-6), 1e-7)
-    by_friction = refined(setting, Estimate(1e-9, 1e-8), 1e-9, lambda a: 0.1 * a)
+    by_friction = refined(setting, ErrorEstimate(1e-9, 1e-8), 1e-9, lambda a: 0.1 * a)
     assert by_friction.accuracy == pytest.approx(1e-8)
     assert by_friction.stepping is setting.stepping
-    assert refined(setting, Estimate(1e-9, 1e-8), 1e-9, lambda a: None) is None
-    by_steps = refined(setting, Estimate(1e-8, 1e-9), 1e-9, lambda a: 0.1 * a)
+    assert refined(setting, ErrorEstimate(1e-9, 1e-8), 1e-9, lambda a: None) is None
+    by_steps = refined(setting, ErrorEstimate(1e-8, 1e-9), 1e-9, lambda a: 0.1 * a)
     assert by_steps.accuracy == setting.accuracy
     assert by_steps.stepping.local == pytest.approx(1e-7)
     fixed = Setting(Stepping(RK4, 10.0, 1.0), 1e-7)
-    finer = refined(fixed, Estimate(1e-7, 0.0), 1e-7 / 4.0, lambda a: None)
+    finer = refined(fixed, ErrorEstimate(1e-7, 0.0), 1e-7 / 4.0, lambda a: None)
     assert finer.stepping.steps == 17.0  # order 4: an eighth of the error is wanted
     for stepping in (Stepping(RK4, 4096.0, 1.0), Stepping(DORMAND_PRINCE, 0.0, 1e-15)):
-        assert refined(Setting(stepping, 0.0), Estimate(1e-7, 0.0), 1e-9, lambda a: None) is None
+        assert (
+            refined(Setting(stepping, 0.0), ErrorEstimate(1e-7, 0.0), 1e-9, lambda a: None) is None
+        )
 
 
 def test_a_motion_that_the_table_is_too_coarse_for_goes_by_closed_forms():
@@ -116,7 +118,7 @@ def test_methods_are_named_once():
             stop((1.0, 0.0), 1.0, method=name)
         with pytest.raises(InputError, match="method must be one of rk4, adaptive"):
             simulate((1.0, 0.0), 1.0, method=name)
-    taken = select("stop", 1e-4, (Scheme(Method.RK4, Source.TABLE),))
+    taken = select("stop", 1e-4, (Scheme(Method.RK4, FrictionForm.TABLE),))
     assert taken.scheme.name == "rk4, table"
 
 

@@ -17,6 +17,7 @@ from puck_tables.cli.main import main
 from pucks import simulate
 
 import puck_tables as pt
+from puck_tables._core.own_folder import _said
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.cache import cache_folder
 from puck_tables.stopping import stop_section
@@ -30,7 +31,7 @@ def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The folder of kept tables: an own one for each test."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.setattr("sys.platform", "linux")
-    store.say.cache_clear()
+    _said.clear()
     stop_section.stop_section_for.cache_clear()  # other tests have asked for the same
     return tmp_path / "cache" / "puck-tables" / "tables"
 

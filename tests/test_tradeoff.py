@@ -23,12 +23,12 @@ from puck_tables.stopping.exact import exact_stops
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.tradeoff import engine, resultant_methods, stop_methods
 from puck_tables.tradeoff.bicubic import fill_graded, graded_coefficients
-from puck_tables.tradeoff.doors import Door, measured_doors
+from puck_tables.tradeoff.doors import CallCost, measured_doors
 from puck_tables.tradeoff.machine import measured_machine
 from puck_tables.tradeoff.models import PADE_MATCHED, as_table, pade_limit_ratio
 from puck_tables.tradeoff.truth import Points, known_starts, random_points
 
-DOORS = (Door("stop", "all six", 1, 1, 2e4), Door("stop", "all six", 1, 10**6, 75.0))
+DOORS = (CallCost("stop", "all six", 1, 1, 2e4), CallCost("stop", "all six", 1, 10**6, 75.0))
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +46,7 @@ def measured() -> engine.TradeOff:
 def test_errors_are_properties_of_the_ways_and_ship_as_measured():
     """Every look-up and every fifth contender measured again: the same to the digits shipped."""
     points = random_points(40)
-    task = stop_methods.Task(known_starts(), points, Table.shipped(), Table.shipped("stops"))
+    task = stop_methods.StopTask(known_starts(), points, Table.shipped(), Table.shipped("stops"))
     known = {(method.question, method.name): method for method in shipped_front()}
     count = 0
     for number, contender in enumerate(stop_methods.contenders(task)):
@@ -67,7 +67,7 @@ def test_errors_of_resultants_ship_as_measured():
     points = random_points(4000)
     flat = points.delta == 0.0
     flat_points = Points(points.phi[flat], points.delta[flat], points.resultants[:, flat])
-    task = resultant_methods.Task(points, flat_points)
+    task = resultant_methods.ResultantTask(points, flat_points)
     known = {method.name: method for method in shipped_front() if method.question == "resultants"}
     for contender in resultant_methods.contenders(task):
         if contender.method in ("quadratic in delta", "bicubic, graded", "limit surface"):
@@ -224,7 +224,7 @@ def test_refusals_come_before_the_work(tmp_path: Path, monkeypatch: pytest.Monke
 def test_every_round_runs_every_way(monkeypatch: pytest.MonkeyPatch):
     """The engine itself, on two methods and small sizes."""
 
-    def few(task: resultant_methods.Task):
+    def few(task: resultant_methods.ResultantTask):
         for contender in all_contenders(task):
             if contender.method in ("closed forms", "limit surface"):
                 yield contender

@@ -12,9 +12,10 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from puck_tables.cli.main import main
-from puck_tables.cli.options import Number, Range, Times, Vector
+from puck_tables.cli.options import NumberParam, RangeParam, Times, Vector
 
 import puck_tables as pt
+from puck_tables.bulk.spreads import spread_named
 from puck_tables.contact.laws import law_of
 from puck_tables.errors import InputError
 
@@ -43,18 +44,18 @@ def test_fields_and_files_take_units(tmp_path: Path):
         )}  # fmt: skip
         text, value = ({name: one[n] for name, one in written.items()} for n in (0, 1))
         (tmp_path / "a.toml").write_text(
-            f"[puck]\nradius = '{text['radius']}'\nheight = '{text['height']}'\n"
+            f"time = '{text['time']}'\n[puck]\n"
+            f"radius = '{text['radius']}'\nheight = '{text['height']}'\n"
             f"mass = '{text['mass']}'\nfriction = 0.05\n"
             f"[launch]\nvelocity = ['{text['vx']}', '{text['vy']}']\nspin = '{text['spin']}'\n"
             f"position = ['{text['x']}', 0.0]\n[floor]\ndownhill = '{text['downhill']}'\n"
-            f"[run]\ntime = '{text['time']}'\n"
         )
         scene = pt.Scene.load(tmp_path / "a.toml")
         puck = pt.Puck(text["radius"], text["height"], 0.05, text["mass"])
         assert puck == scene.puck
         found = (
             puck.radius, puck.height, puck.mass, *scene.launch.velocity, scene.launch.spin,
-            scene.launch.position[0], scene.floor.downhill, scene.run.time,
+            scene.launch.position[0], scene.floor.downhill, scene.time,
         )  # fmt: skip
         assert found == pytest.approx(list(value.values()), rel=1e-12)
     ranged = pt.Scene(pt.Puck("4cm", 0.0, 0.1), launch=pt.Launch((1.0, 0.0), "10rpm:20rpm:3"))
@@ -77,15 +78,35 @@ def test_options_take_units_and_lists():
     for unit in UNITS:
         for _ in range(10):
             (a, first), (b, second) = drawn(rng, unit), drawn(rng, unit, 3.0, 4.0)
-            assert Number(unit).convert(a, None, None) == pytest.approx(first, rel=1e-12)
+            assert NumberParam(unit).convert(a, None, None) == pytest.approx(first, rel=1e-12)
             assert Vector(unit).convert(f"{a},{b}", None, None) == pytest.approx((first, second))
-            assert Range(unit).convert(f"{b},{a},{b}", None, None) == pytest.approx(
+            assert RangeParam(unit).convert(f"{b},{a},{b}", None, None) == pytest.approx(
                 [second, first, second]
             )
-            assert Range(unit).convert(f"{a}:{b}:3", None, None) == pytest.approx(
+            assert RangeParam(unit).convert(f"{a}:{b}:3", None, None) == pytest.approx(
                 (first, second, 3)
             )
             assert Times(unit).convert(f"{a},{b}", None, None) == pytest.approx((first, second))
+
+
+def test_spreads_take_units():
+    rng = np.random.default_rng(55)
+    for unit in UNITS:
+        (a, first), (b, second) = drawn(rng, unit), drawn(rng, unit, 3.0, 4.0)
+        found = spread_named(f"uniform:{a}:{b}", unit)
+        assert (found.low, found.high) == pytest.approx((first, second), rel=1e-12)
+        assert spread_named(f"normal:{b}:{a}", unit).deviation == pytest.approx(first, rel=1e-12)
+        with pytest.raises(InputError, match=r"is no spread: .* with a unit as"):
+            spread_named(f"normal:{a}:3 foo", unit)
+    text, value = drawn(rng, "rad/s", 3.0, 4.0)
+    how = ["sweep", "--random", "3", "--seed", "3", "--spread"]
+    for scene, name in (([], "w0"), (["--scene", "incline"], "launch.spin")):
+        means = []
+        for spread in (f"normal:{text}:0.1", f"normal:{value!r}:0.1"):
+            ended = CliRunner().invoke(main, [*how, f"{name}={spread}", *scene])
+            assert ended.exit_code == 0, ended.output
+            means.append(ended.stdout)
+        assert means[0] == means[1]
 
 
 @pytest.mark.thorough

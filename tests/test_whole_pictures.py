@@ -15,11 +15,24 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from scenes import sweep_scene
 
-from puck_tables import InputError, Launch, Normal, Piece, Post, Puck, Scene, Track, Uniform, Wall
+from puck_tables import (
+    InputError,
+    Launch,
+    Map,
+    Normal,
+    Piece,
+    Post,
+    Puck,
+    Scene,
+    Track,
+    Uniform,
+    Wall,
+)
 from puck_tables._core.colours import LEAST_CONTRAST, contrast, on_white
-from puck_tables.plot import board_map, floor, sample, scene_map, style, tradeoff
+from puck_tables.plot import board_ends, floor, sample, scene_map, style, tradeoff
 from puck_tables.plot.film import PALETTE, colour_of
-from puck_tables.world.sweep import ENDS, TIME_UP, WorldMap
+from puck_tables.scene.loop import OVER_EDGE
+from puck_tables.scene.outcome import ENDS
 
 LONG = "Of a title that goes on and on, as of whoever names all that there is in a scene, " * 3
 WORD = "x" * 150 + " " + "W" * 300
@@ -35,7 +48,7 @@ def drawn_ends(figure: Figure) -> tuple[int, int]:
     return stay, left
 
 
-def a_map(pucks: int, rng: np.random.Generator, shape: tuple[int, ...]) -> WorldMap:
+def a_map(pucks: int, rng: np.random.Generator, shape: tuple[int, ...]) -> Map:
     """A map with ends of all kinds, drawn: of pucks in play, of such that left, and none."""
     pieces = [
         Piece(0.03, friction=0.1, name=f"{n} {WORD[: 40 * n]}", launch=Launch(position=(n, 0.0)))
@@ -49,8 +62,9 @@ def a_map(pucks: int, rng: np.random.Generator, shape: tuple[int, ...]) -> World
     columns = {name: rng.normal(size=(*shape, pucks)) for name in ("x", "y")}
     columns["in_play"] = rng.integers(0, 2, (*shape, pucks)).astype(float)
     for values in columns.values():
-        values[end > TIME_UP] = np.nan
-    return WorldMap(scene, tuple(piece.name for piece in pieces), columns, end)
+        values[end > OVER_EDGE] = np.nan
+    names = tuple(piece.name for piece in pieces)
+    return Map(scene=scene, names=names, columns=columns, end=end)
 
 
 @pytest.mark.parametrize("pucks", [1, 3, 11])
@@ -58,7 +72,7 @@ def test_every_end_of_a_board_is_drawn_or_counted(pucks: int) -> None:
     rng = np.random.default_rng(pucks)
     ends = a_map(pucks, rng, (17, 13))
     figure = ends.plot()
-    ended = int((ends.end <= TIME_UP).sum())
+    ended = int((ends.end <= OVER_EDGE).sum())
     stay, left = drawn_ends(figure)
     assert stay == (ends.columns["in_play"] == 1.0).sum()
     assert stay + left == ended * pucks
@@ -67,7 +81,7 @@ def test_every_end_of_a_board_is_drawn_or_counted(pucks: int) -> None:
     assert sum(counts) == ended * pucks
     note = figure.axes[0].get_title("left")
     assert f"{ends.end.size - ended} of {ends.end.size} runs without an end" in note
-    ends.end[...] = TIME_UP + 1
+    ends.end[...] = OVER_EDGE + 1
     with pytest.raises(InputError, match="nothing to draw"):
         ends.plot()
 
@@ -77,7 +91,7 @@ def test_a_close_up_tells_what_lies_outside() -> None:
     for name in ("x", "y"):
         ends.columns[name][3:] *= 1e-3  # but three runs
     ends.columns["x"][np.isfinite(ends.columns["x"])] += 40.0  # far along a sheet
-    ends.columns["in_play"][ends.end <= TIME_UP] = 1.0
+    ends.columns["in_play"][ends.end <= OVER_EDGE] = 1.0
     figure = ends.plot()
     assert len(figure.axes) == 2
     x, y = (ends.columns[name].ravel() for name in ("x", "y"))
@@ -216,7 +230,7 @@ def of_a_scene() -> Iterator[Any]:
                              "friction": [0.1 + 0.012345 * n for n in range(12)]}},
         "wall": [{"point": [9.0, 0.0], "normal": [-1.0, 0.0]}],
         "launch": {"velocity": [1.0, 0.2]}, "drag": {"sliding": 0.01},
-        "force": {"constant": [0.01, 0.0], "torque": 1e-5}, "run": {"tol": 1e-6},
+        "force": {"constant": [0.01, 0.0], "torque": 1e-5}, "tol": 1e-6,
     }  # fmt: skip
     yield Scene.from_tables(tables).simulate()
     ranged = {**tables, "launch": {"velocity": ["0.5:1:2", 0.2], "spin": [3.0, 1.0, 2.0]}}
@@ -251,7 +265,7 @@ def test_every_colour_is_seen_on_white() -> None:
     fixed += [on_white(colour_of(n)) for n in range(3 * len(PALETTE))]
     fixed += [on_white(f"#{n:06x}") for n in rng.integers(0, 1 << 24, 200).tolist()]
     assert min(map(contrast, [*fixed, on_white("white")])) >= LEAST_CONTRAST
-    assert board_map.on_white("#0072b2") == "#0072b2"  # what is seen stays
+    assert board_ends.on_white("#0072b2") == "#0072b2"  # what is seen stays
 
 
 def test_contrast_is_that_of_the_standard() -> None:

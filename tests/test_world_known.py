@@ -219,14 +219,14 @@ def test_a_driven_disc_hits_and_is_not_moved():
     assert event.time == pytest.approx(0.32, abs=1e-12)
     assert event.approach == pytest.approx(1.0, abs=1e-12)
     assert run["mallet"]["x"][-1] == pytest.approx(0.8)
-    assert run.work_driven == pytest.approx(2 * 0.1 * 1.0 * 1.0, rel=0.5)
+    assert run.last["work_driven"] == pytest.approx(2 * 0.1 * 1.0 * 1.0, rel=0.5)
     assert run.energy_residual < 1e-12
 
 
 def test_air_hockey_without_dry_friction_is_in_closed_form():
     drag = pt.Drag(sliding=0.006, quadratic=0.002, spinning=1e-6)
     one = piece(0, 0, (2.0, 1.0), 30.0, friction=0.0, mass=0.03)
-    run = pt.Scene(pucks=[one], drag=drag, run=pt.Run(time=3.0)).simulate([0.0, 1.0, 3.0])
+    run = pt.Scene(pucks=[one], drag=drag, time=3.0).simulate([0.0, 1.0, 3.0])
     assert run.end == "time is up"
     rate, wake, speed = 0.2, 0.002 / 0.03, math.hypot(2.0, 1.0)
     grown = (1 - np.exp(-rate * run.time)) / rate

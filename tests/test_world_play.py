@@ -41,7 +41,7 @@ def test_a_mallet_pushes_until_it_stops():
     )
     run = scene.simulate()
     assert run.last["x"][1] == pytest.approx(0.18 + 0.5 / J, abs=1e-9)
-    assert [event.what for event in run.events] == ["impact", "contact"]
+    assert [event.what for event in run.events] == ["impact", "contact", "stick"]
 
 
 def test_two_equal_pucks_that_stick_slide_as_one():
@@ -71,12 +71,12 @@ def test_a_stack_on_a_slope_rests_against_its_cushion():
 
 
 def test_a_slope_with_drag_is_that_of_one_puck():
-    floor, drag, run = pt.Floor(slope=0.2, downhill=1.0), pt.Drag(0.05, 0.01, 1e-5), pt.Run(1.0)
+    floor, drag = pt.Floor(slope=0.2, downhill=1.0), pt.Drag(0.05, 0.01, 1e-5)
     launch = pt.Launch((1.0, 0.3), 30.0)
     puck = {"radius": 0.04, "height": 0.02, "friction": 0.15, "mass": 0.2}
-    one = pt.Scene(pt.Puck(**puck), floor, launch, drag=drag, run=run).simulate()
+    one = pt.Scene(pt.Puck(**puck), floor, launch, drag=drag, time=1.0).simulate()
     many = pt.Scene(
-        pucks=[pt.Piece(**puck, launch=launch)], floor=floor, drag=drag, run=run
+        pucks=[pt.Piece(**puck, launch=launch)], floor=floor, drag=drag, time=1.0
     ).simulate()
     for name in ("x", "y", "vx", "vy", "spin", "orientation"):
         assert many.last[name][0] == pytest.approx(one.last[name], abs=5e-9), name
@@ -178,7 +178,7 @@ def test_the_plan_says_how_each_puck_is_moved():
         "1 puck looked up from impact to impact (puck 0)",
         "1 puck integrated from impact to impact: no closed forms (puck 1)",
     ]
-    slope = pt.Scene(pucks=[piece(0, 0, friction=0.0)], floor=pt.Floor(0.1), run=pt.Run(0.1))
+    slope = pt.Scene(pucks=[piece(0, 0, friction=0.0)], floor=pt.Floor(0.1), time=0.1)
     assert slope.simulate().explain().startswith("1 puck integrated from impact to impact: slope\n")
 
 

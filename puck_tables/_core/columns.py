@@ -12,69 +12,33 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache, partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.beginning import refuse_no_text, refuse_others
 from puck_tables._core.header import header_of
-from puck_tables._core.safe_read import read_whole
-from puck_tables._core.text import (
-    HEAD,
-    MINUS,
-    Look,
-    encoding_of,
-    is_row,
-    look_at,
-    number,
-    read_columns,
+from puck_tables._core.own_folder import say
+from puck_tables._core.quantities import (
+    ALL,
+    FRICTION,
+    Column,
+    is_frame,
+    known_as,
+    measures,
+    unit_of,
+    with_names,
 )
-from puck_tables._core.units import EXAMPLES, bracketed, is_unit, unit_behind, unit_size
+from puck_tables._core.safe_read import read_whole
+from puck_tables._core.text import HEAD, MINUS, Look, encoding_of, is_row, look_at, number
+from puck_tables._core.text_rows import read_columns
+from puck_tables._core.units import EXAMPLES, unit_size
 from puck_tables.errors import InputError
 
+_SHOWN = 8  # headings in a message
+_HIGH_FRICTION = 5.0  # of a table: no dry surface has it, percent do
 _KEPT = 1 << 16  # bytes of a file whose numbers are kept
-_TOKEN = re.compile(r"[^\W\d_]+")
-_ERRORS = {"std", "sd", "se", "sem", "sigma", "err", "error", "errors", "var", "uncertainty",
-           "unsicherheit", "fehler"}  # fmt: skip
-
-
-class Column(NamedTuple):
-    """A column that may be wanted.
-
-    ``name``: in messages; ``words``: by which a heading is known, the first as an example;
-    ``kind``: of its unit, see :func:`puck_tables._core.units.unit_size`.
-    """
-
-    name: str
-    words: str
-    kind: str
-
-    @property
-    def written(self) -> str:
-        """A heading as somebody may write it."""
-        word, unit = self.words.split()[0], EXAMPLES.get(self.kind)
-        return f"{word} [{unit}]" if unit else word
-
-
-TIME = Column("time", "t time times zeit temps tiempo tempo tijd sec secs seconds", "time")
-X = Column("x", "x xpos posx xcoord", "length")
-Y = Column("y", "y ypos posy ycoord", "length")
-ANGLE = Column("angle", "angle theta θ phi φ orientation rotation winkel", "angle")
-SPEED = Column(
-    "speed", "v u speed speeds velocity velocities geschwindigkeit vitesse velocidad", "velocity"
-)
-FRICTION = Column(
-    "friction coefficient", "f mu µ μ cof coef coeff coefficient friction reibwert reibzahl "
-    "reibungszahl reibungskoeffizient", "ratio",
-)  # fmt: skip
-RESTITUTION = Column("restitution", "e cor restitution", "ratio")
-RADIUS = Column("radius", "r radius radii rho ρ x radial", "radius")
-PRESSURE = Column("pressure", "p pressure w load stress druck pression", "any")
-FORCE_X = Column("force along x", "Fx fx forcex xforce", "force")
-FORCE_Y = Column("force along y", "Fy fy forcey yforce", "force")
-TORQUE = Column("torque", "torque moment m mz tz tau drehmoment", "torque")
-_ALL = (TIME, X, Y, ANGLE, SPEED, FRICTION, RESTITUTION, RADIUS, PRESSURE, FORCE_X, FORCE_Y, TORQUE)
 
 
 @dataclass(frozen=True)
@@ -142,6 +106,7 @@ def numbers_of(
 
     Examples
     --------
+    >>> from puck_tables._core.quantities import FRICTION, SPEED
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     file = Path(folder, "law.csv")
@@ -163,7 +128,7 @@ def _read(path: str, content: bytes, columns: tuple[Column, ...], needed: int) -
     refuse_others(path, head)
     refuse_no_text(path, head)
     look = look_at(path, head)
-    header = header_of(look, lambda cells: all(_known(cell, columns) for cell in cells[:needed]))
+    header = header_of(look, lambda cells: all(known_as(cell, columns) for cell in cells[:needed]))
     headings = header[-1] if header and sum(map(bool, header[-1])) > 1 else []  # a title is none
     if look.header and 1 < len(look.header[-1]) < look.width:
         raise InputError(
@@ -172,12 +137,14 @@ def _read(path: str, content: bytes, columns: tuple[Column, ...], needed: int) -
         )
     if not headings:
         _refuse_unit_in_words(path, look, columns)
+    headings = with_names(headings, columns)
     taken = _taken(path, look, headings, columns, needed)
     sizes, units = [], []
     for column, n in taken.items():
-        unit, size = _unit(path, headings[n] if headings else "", column)
+        unit, size = unit_of(path, headings[n] if headings else "", column)
         sizes.append(size)
         units.append(unit)
+    _tell_unread(path, [text for n, text in enumerate(headings) if n not in taken.values()])
     found, _ = read_columns(path, look, list(taken.values()), (), content)
     rows = np.column_stack([found[n] for n in taken.values()]) * sizes
     rows.flags.writeable = False
@@ -189,7 +156,23 @@ def _read(path: str, content: bytes, columns: tuple[Column, ...], needed: int) -
         if np.isinf(rows[row, column]):
             raise InputError(f"{where}: its {name} is too large a number")
         raise InputError(f"{where}: it has no {name}: every row needs one")
+    for n, (column, unit) in enumerate(zip(taken, units, strict=True)):
+        if column is FRICTION and not unit and len(rows) and rows[:, n].max() > _HIGH_FRICTION:
+            say(
+                f"{path}: its friction coefficients go up to {rows[:, n].max():.6g}, more than dry "
+                "surfaces have: if they are percent write mu [%] over them"
+            )
     return numbers
+
+
+def _tell_unread(path: str, headings: Sequence[str]) -> None:
+    """Say which columns of a file were not read."""
+    if headings:
+        names = ", ".join(
+            repr(text[:40]) if text else "one without a name" for text in headings[:_SHOWN]
+        )
+        more = f" and {len(headings) - _SHOWN} more" if len(headings) > _SHOWN else ""
+        say(f"{path}: column{'s' if len(headings) > 1 else ''} {names}{more} not read")
 
 
 def list_of(path: str | Path, column: Column, most: int) -> FloatArray | None:
@@ -204,6 +187,7 @@ def list_of(path: str | Path, column: Column, most: int) -> FloatArray | None:
 
     Examples
     --------
+    >>> from puck_tables._core.quantities import TIME
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     file = Path(folder, "a.txt")
@@ -225,7 +209,7 @@ def list_of(path: str | Path, column: Column, most: int) -> FloatArray | None:
         return None
     if not np.isfinite(found := np.array(numbers, float)).all():
         return None
-    return found * _unit(str(path), heading, column)[1]
+    return found * unit_of(str(path), heading, column)[1]
 
 
 def _content(path: str | Path, most: int) -> bytes:
@@ -263,7 +247,7 @@ def _taken(
     path: str, look: Look, headings: Sequence[str], columns: Sequence[Column], needed: int
 ) -> dict[Column, int]:
     """Where the columns stand that are wanted, in the order in which they are."""
-    known = [_known(text, columns) for text in headings]
+    known = [known_as(text, columns) for text in headings]
     for column in columns:
         if known.count(column) > 1:
             both = ", ".join(f"'{headings[n]:.40}'" for n, one in enumerate(known) if one == column)
@@ -272,57 +256,19 @@ def _taken(
     if all(column in known for column in columns[:needed]):
         return {column: known.index(column) for column in columns if column in known}
     fits = needed <= look.width <= len(columns)
-    strange = [
-        text for n, text in enumerate(headings)
-        if known[n] not in (None, columns[n] if n < len(columns) else None)
-        or (known[n] is None and _known(text, _ALL))
-    ]  # fmt: skip
+    strange = any(known) or any(known_as(text, ALL) or measures(text) for text in headings)
+    said = ", ".join(f"'{text:.40}'" for text in headings[:_SHOWN])
     if fits and not strange:
+        if headings:
+            taken = ", ".join(one.written for one in columns[: look.width])
+            say(f"{path}: its columns {said} are taken as {taken}")
         return dict(zip(columns, range(look.width), strict=False))
-    said = ", ".join(f"'{text:.40}'" for text in headings[:8]) or f"{look.width}, without names"
+    frames = any(map(is_frame, headings))
+    hint = "; of frames write their times, frame / frames a second" if frames else ""
     raise InputError(
         f"{path} must hold the columns {_listed(columns, needed)}: name them so (its columns are "
-        f"{said})"
+        f"{said or f'{look.width}, without names'}){hint}"
     )
-
-
-def _known(text: str, columns: Sequence[Column]) -> Column | None:
-    """Which of several columns a heading names."""
-    tokens = [token.lower() for token in _TOKEN.findall(bracketed(text)[0])]
-    if _ERRORS & set(tokens):
-        return None
-    for token in ["".join(tokens), *reversed(tokens)]:  # the last says what it is: 'slip speed'
-        for column in columns:
-            if token in column.words.lower().split():
-                return column
-    return None
-
-
-def _unit(path: str, text: str, column: Column) -> tuple[str, float]:
-    """The unit in a heading as it is written, and its size.
-
-    Raises
-    ------
-    InputError
-        If it is none of the column's kind: what stands in brackets, or behind the name and is one
-        of another kind.
-    """
-    name, unit = bracketed(text)
-    words = bool(unit) and column.kind in ("ratio", "radius") and not text.rstrip().endswith("]")
-    if words and not is_unit(unit) and unit_size(unit, column.kind) is None:
-        unit = ""  # 'COF (dynamic)'
-    unit = unit or unit_behind(name, column.kind)
-    other = column.kind in EXAMPLES and any(unit_behind(name, kind) for kind in EXAMPLES)
-    if not (unit or other):
-        return "", 1.0
-    size = unit_size(unit, column.kind) if unit else None
-    if size is None:
-        example = EXAMPLES.get(column.kind)
-        what = f"write one such as {example}" if example else "it is a pure number"
-        raise InputError(
-            f"{path}: the unit of its column '{text:.40}', a {column.name}, is not known: {what}"
-        )
-    return unit, size
 
 
 def _refuse_unit_in_words(path: str, look: Look, columns: Sequence[Column]) -> None:

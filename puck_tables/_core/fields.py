@@ -14,6 +14,20 @@ from functools import lru_cache
 from typing import Any
 
 
+class Unsaid(float):
+    """A number that a part was not given but has: its default, or what the whole gave it.
+
+    It stays so in copies and pickles; any sum of it is a plain number.
+
+    Examples
+    --------
+    >>> Unsaid(9.8) == 9.8, type(Unsaid(9.8) + 1.0)
+    (True, <class 'float'>)
+    """
+
+    __slots__ = ()
+
+
 @dataclass(frozen=True)
 class Kind:
     """What a field takes.

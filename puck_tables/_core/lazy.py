@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 NEEDED = ("numpy", "numba", "scipy", "h5py", "click")
+_ABOVE: dict[str, str] = {}  # modules by the names of functions in them, as the package tells
 _ROOT = Path(__file__).resolve().parent.parent.parent
 _CLONE = _ROOT if (_ROOT / "pyproject.toml").is_file() else None
 
@@ -53,6 +54,22 @@ def lazily(
         return value
 
     return get, lambda: sorted({*vars(sys.modules[package]), *homes})
+
+
+def lead_up(homes: Mapping[str, str]) -> None:
+    """Tell in which modules the functions are that lower rooms ask for without knowing them."""
+    _ABOVE.update(homes)
+
+
+def above(name: str) -> Any:
+    """A function that stands above whoever asks for it: pictures stand above what they show.
+
+    Examples
+    --------
+    >>> above("draw").__name__
+    'draw'
+    """
+    return getattr(import_module(_ABOVE[name]), name)
 
 
 def beside_the_package(package: str, file: str) -> None:

@@ -9,15 +9,20 @@ from __future__ import annotations
 import os
 import stat
 import sys
-from functools import cache
+import threading
 from pathlib import Path
 
+_said: set[str] = set()
+_saying = threading.Lock()
 
-@cache
+
 def say(text: str) -> None:
-    """A sentence on stderr, once."""
-    if sys.stderr is not None:
-        print(text, file=sys.stderr)
+    """A sentence on stderr, once; those of several threads do not run together."""
+    with _saying:
+        if text in _said or sys.stderr is None:
+            return
+        _said.add(text)
+        sys.stderr.write(f"{text}\n")
 
 
 def user_cache() -> Path | None:

@@ -17,7 +17,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.colours import is_colour, meant
 from puck_tables._core.fields import LISTED, Kind, in_tables, specs
 from puck_tables._core.real import shown
-from puck_tables._core.units import SHOWN, quantity
+from puck_tables._core.units import SHOWN, measured, quantity
 from puck_tables.errors import PuckError
 
 T = TypeVar("T")
@@ -62,9 +62,10 @@ def _shown(value: Any) -> str:
 
 def read_part(kind: type[T], data: Any, path: str, reading: Reading) -> T | None:
     """A dataclass from a table, or from an unchecked one; None if something in it is wrong."""
-    if type(data) is kind and "_checked" in vars(data):
-        return data
     if isinstance(data, kind):
+        same = type(data) is kind or specs(type(data)).keys() == specs(kind).keys()
+        if same and "_checked" in vars(data):  # it, or one with verbs besides
+            return data
         data = given_in(data, specs(kind))
     if not isinstance(data, Mapping):
         reading.fault(path or kind.__name__.lower(), data, f"a table or a {kind.__name__}")
@@ -207,9 +208,13 @@ def _named(kind: Kind, value: Any, path: str, reading: Reading) -> Any:
 
 
 def _rows(kind: Kind, value: Any, path: str, reading: Reading) -> tuple[tuple[float, ...], ...]:
-    """A table of numbers, as it may stand in a CSV file."""
+    """A table of numbers, as it may stand in a CSV file, or what can be one: a law with points."""
     try:
-        rows = np.array(value, dtype=np.float64)
+        given = value.as_rows() if hasattr(value, "as_rows") else value
+        rows = np.array(given, dtype=np.float64)
+    except PuckError as error:
+        reading.errors.append(f"{path}: {error}")
+        return ()
     except (TypeError, ValueError, OverflowError):
         rows = np.empty(0)
     if np.ma.is_masked(value) or rows.ndim != 2 or not rows.size or not np.isfinite(rows).all():
@@ -249,12 +254,12 @@ def _number(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -
         except PuckError as error:
             reading.errors.append(f"{path}: {error}")
         return value  # type: ignore[return-value]  # a law in place of a number
-    if isinstance(value, str) and (measured := quantity(value, kind.unit)) is not None:
-        value = measured
+    if isinstance(value, str) and (found := quantity(value, kind.unit)) is not None:
+        value = found
     if isinstance(value, str) and reading.ranges is not None:
         match = RANGE.fullmatch(value.strip())
         try:
-            start, stop = (_measured(match[n], kind) for n in (1, 2))  # type: ignore[index]
+            start, stop = (measured(match[n], kind.unit) for n in (1, 2))  # type: ignore[index]
             count = int(match[3])  # type: ignore[index]
         except (TypeError, ValueError):
             reading.fault(
@@ -296,12 +301,6 @@ def _listed(kind: Kind, items: list[Any], path: str, reading: Reading) -> float:
     if reading.ranges is not None and len(reading.errors) == before:
         reading.ranges[path] = Range(numbers[0], numbers[-1], len(numbers), tuple(numbers))
     return numbers[0]
-
-
-def _measured(text: str, kind: Kind) -> float:
-    """A number, perhaps with a unit."""
-    found = quantity(text, kind.unit)
-    return float(text) if found is None else found
 
 
 def _one(kind: Kind, value: Any = None) -> str:

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from puck_tables._core.parts import forget, hold, new_part, remove_dead_once
+from puck_tables._core.real import instance
 from puck_tables.errors import OutputError
 
 
@@ -38,6 +39,8 @@ def check_target(path: str | Path, overwrite: bool = False) -> Path:
 
     Raises
     ------
+    InputError
+        If it is no name.
     OutputError
         If the file exists (without ``overwrite``), is a folder, or its folder is missing or
         cannot be written.
@@ -49,6 +52,7 @@ def check_target(path: str | Path, overwrite: bool = False) -> Path:
     ...
     puck_tables.errors.OutputError: cannot write /nowhere/a.csv: the folder /nowhere does not exist
     """
+    instance("path", path, str, Path)
     try:
         target = Path(os.path.realpath(path))  # a link is followed, not replaced
         folder = target.parent

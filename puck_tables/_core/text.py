@@ -1,32 +1,22 @@
-"""Tables of numbers in text files of any encoding, separator and decimal mark, block by block."""
+"""How a table of numbers in a text file is written: encoding, separator, decimal mark, header."""
 
 from __future__ import annotations
 
 import codecs
 import contextlib
 import csv
-import io
 import re
-import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import IO, Any
 
-import numpy as np
-
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.safe_read import opened
 from puck_tables.errors import InputError
 
-LARGEST = 1 << 32  # bytes of a text file
 HEAD = 1 << 18  # bytes from which encoding, separator and header are told
-_BLOCK = 1 << 22  # characters read at a time
-_LINE = 1 << 16  # characters of a line
 _SAMPLE, _HEADER_ROWS = 100, 20
-_COMMENTS = ("#", "%", "//")
+COMMENTS = ("#", "%", "//")
 _MISSING = {"", "nan", "na", "n/a", "none", "null", "-", "--", "nil", "?", "<na>"}
-_POINT = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
+POINT = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _COMMA = re.compile(r"[-+]?(?:[0-9]+,[0-9]*|,[0-9]+)(?:[eE][-+]?[0-9]+)?")
 # thousands in groups: with a decimal mark, in two groups or more, or by what is no decimal mark
 _GROUPED = re.compile(
@@ -34,7 +24,7 @@ _GROUPED = re.compile(
     r"|(?:\.[0-9]{3}){2,}|(?:['\u2019 \u00a0\u2009\u202f][0-9]{3})+(?:[.,][0-9]*)?)"
 )
 _THOUSANDS = re.compile(r"[-+]?[1-9][0-9]{0,2}(?:\.[0-9]{3})+")  # or with a decimal point
-_THOUSAND = re.compile(r"[-+]?[1-9][0-9]{0,2},[0-9]{3}")  # or with a decimal comma
+THOUSAND = re.compile(r"[-+]?[1-9][0-9]{0,2},[0-9]{3}")  # or with a decimal comma
 MINUS = "\N{MINUS SIGN}"  # of typesetters
 _SEPARATORS = ("\t", ";", ",", "|", None)  # the last: blanks
 
@@ -83,7 +73,7 @@ def look_at(path: str | Path, head: bytes) -> Look:
     for n, line in enumerate(lines):
         if n == 0 and (told := re.fullmatch(r"sep=(.)\s*", line)):
             separator = told[1]
-        elif line.lstrip().startswith(_COMMENTS):
+        elif line.lstrip().startswith(COMMENTS):
             said.append(line.strip())
         elif line.strip(" \t;,|"):
             numbered.append((n, line))
@@ -96,7 +86,7 @@ def look_at(path: str | Path, head: bytes) -> Look:
     rows = [split(line, chosen) for line in sample]
     if chosen is None:
         rows = [whole_names(row) for row in rows]
-    _refuse_groups(path, rows)
+    refuse_groups(path, rows)
     comma = any(_COMMA.fullmatch(cell) for row in rows for cell in row)
     names = [n for n, row in enumerate(rows[:_HEADER_ROWS]) if _is_names(row)]
     start = names[-1] + 1 if names else 0
@@ -172,7 +162,7 @@ def number(cell: str, comma: bool) -> float | None:
     >>> number("0,5", True), number("0.25", True), number("1.234", True), number("red", False)
     (0.5, 0.25, None, None)
     """
-    if _POINT.fullmatch(cell) and not (comma and _THOUSANDS.fullmatch(cell)):
+    if POINT.fullmatch(cell) and not (comma and _THOUSANDS.fullmatch(cell)):
         return float(cell)
     if comma and _COMMA.fullmatch(cell):
         return float(cell.replace(",", "."))
@@ -187,7 +177,7 @@ def is_row(line: str) -> bool:
     >>> is_row("0,1"), is_row("# by hand"), is_row(";;")
     (True, False, False)
     """
-    return bool(line.strip(" \t;,|\0\r\n")) and not line.lstrip().startswith(_COMMENTS)
+    return bool(line.strip(" \t;,|\0\r\n")) and not line.lstrip().startswith(COMMENTS)
 
 
 def _filled(row: Sequence[str]) -> int:
@@ -205,7 +195,7 @@ def whole_names(row: list[str]) -> list[str]:
     """
     whole: list[str] = []
     for cell in row:
-        if whole and re.fullmatch(r"[\[(].*[\])]", cell) and not _POINT.fullmatch(whole[-1]):
+        if whole and re.fullmatch(r"[\[(].*[\])]", cell) and not POINT.fullmatch(whole[-1]):
             whole[-1] += " " + cell
         else:
             whole.append(cell)
@@ -216,7 +206,7 @@ def _is_data(row: Sequence[str]) -> bool:
     """Whether a row holds numbers rather than names."""
     filled = [cell for cell in row if cell]
     numbers = [
-        cell for cell in filled if _POINT.fullmatch(cell) or _COMMA.fullmatch(cell)
+        cell for cell in filled if POINT.fullmatch(cell) or _COMMA.fullmatch(cell)
     ]  # fmt: skip
     return bool(numbers) and 2 * len(numbers) >= len(filled)
 
@@ -225,12 +215,12 @@ def _is_names(row: Sequence[str]) -> bool:
     """Whether a row holds two names or more, and no numbers."""
     filled = [cell for cell in row if cell]
     return len(filled) > 1 and not any(
-        _POINT.fullmatch(cell) or _COMMA.fullmatch(cell) or cell.lower() in _MISSING
+        POINT.fullmatch(cell) or _COMMA.fullmatch(cell) or cell.lower() in _MISSING
         for cell in filled
     )  # fmt: skip
 
 
-def _refuse_groups(path: str | Path, rows: Sequence[Sequence[str]]) -> None:
+def refuse_groups(path: str | Path, rows: Sequence[Sequence[str]]) -> None:
     """Refuse a table whose numbers have thousands separators.
 
     Raises
@@ -278,172 +268,3 @@ def _separator(path: str | Path, lines: Sequence[str]) -> str | None:
             "decimal marks, too; save it with semicolons between the columns"
         )
     return best[2]
-
-
-def read_columns(
-    path: str | Path, look: Look, numbers: Sequence[int], texts: Sequence[int],
-    content: bytes | None = None,
-) -> tuple[dict[int, FloatArray], dict[int, tuple[Any, list[str]]]]:  # fmt: skip
-    r"""Columns of a table, without its header, comments and empty lines.
-
-    Parameters
-    ----------
-    path : the file
-    look : how it is written
-    numbers, texts : which columns, from 0
-    content : of the file, if it has been read
-
-    Returns
-    -------
-    numbers : dict of ndarray (n,)
-    texts : dict of (codes ndarray (n,), list of the texts that they stand for)
-
-    Raises
-    ------
-    InputError
-        If a cell of a column of numbers is a text, or a row has too few cells or too many.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     file, content = Path(folder, "a.csv"), b"t,x\n0,3\n1,\n"
-    ...     _ = file.write_bytes(content)
-    ...     read_columns(file, look_at(file, content), [1], [])[0][1].tolist()
-    [3.0, nan]
-    """
-    parts: list[FloatArray] = []
-    codes: dict[int, list[Any]] = {column: [] for column in texts}
-    words: dict[int, dict[str, int]] = {column: {} for column in texts}
-    raw = opened(path, LARGEST) if content is None else io.BytesIO(content)
-    with raw, io.TextIOWrapper(raw, look.encoding, "replace") as file:
-        line = 1
-        for _ in range(look.skip):
-            file.readline(_LINE)
-            line += 1
-        for block in _blocks(path, file):
-            fast = _fast(block, look, numbers, texts)
-            found, cells = fast or _slow(path, block, look, numbers, texts, line)
-            for column in texts:
-                known = words[column]
-                codes[column].append(
-                    np.array([known.setdefault(one, len(known)) for one in cells[column]], int)
-                )
-            parts.append(found)
-            line += block.count("\n")
-    whole = np.concatenate(parts) if parts else np.empty((0, len(numbers)))
-    coded = {
-        column: np.concatenate([np.zeros(0, int), *parts_of]) for column, parts_of in codes.items()
-    }
-    return (
-        {column: whole[:, n] for n, column in enumerate(numbers)},
-        {column: (code, list(words[column])) for column, code in coded.items()},
-    )
-
-
-def _blocks(path: str | Path, file: IO[str]) -> Iterator[str]:
-    """The rest of a file in blocks of whole lines."""
-    while block := file.read(_BLOCK):
-        if not block.endswith("\n"):
-            rest = file.readline(_LINE)
-            if len(rest) >= _LINE:
-                raise InputError(f"{path} has a line of more than {_LINE} characters: no table")
-            block += rest
-        yield block.replace(MINUS, "-")
-
-
-def _fast(
-    block: str, look: Look, numbers: Sequence[int], texts: Sequence[int]
-) -> tuple[FloatArray, dict[int, list[str]]] | None:
-    """Rows of a block whose columns of numbers hold nothing else; None for any other."""
-    separator = look.separator
-    if texts and separator is None:
-        return None
-    count = block.count("\n") + (not block.endswith("\n"))
-    if '"' in block or any(sign in block for sign in _COMMENTS):
-        return None
-    if separator is not None and block.count(separator) != count * (_written(look) - 1):
-        return None
-    text = block.replace(",", ".") if look.comma else block
-    if separator is not None:  # nothing between two separators
-        empty, filled = separator + separator, f"{separator}nan{separator}"
-        if empty in text:
-            text = text.replace(empty, filled).replace(empty, filled)
-        text = text.replace(separator + "\n", separator + "nan\n")
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of blocks without rows
-            found = np.loadtxt(
-                io.StringIO(text), delimiter=separator, comments=None, ndmin=2,
-                usecols=None if separator is None else numbers,
-            )  # fmt: skip
-            cells = {
-                column: np.loadtxt(
-                    io.StringIO(block), str, delimiter=separator, comments=None, ndmin=1,
-                    usecols=column,
-                ) for column in texts
-            }  # fmt: skip
-    except ValueError:
-        return None
-    if found.shape[0] != count or (look.comma and "." in block):
-        return None
-    if any(one.size != count for one in cells.values()):
-        return None
-    if separator is None:
-        return (found[:, list(numbers)], {}) if found.shape[1] == look.width else None
-    return found, {column: [text.strip() for text in one.tolist()] for column, one in cells.items()}
-
-
-def _written(look: Look) -> int:
-    """Cells in a line as it is written, with those behind a last separator."""
-    return max(len(row) for row in look.rows)
-
-
-def _slow(
-    path: str | Path, block: str, look: Look, numbers: Sequence[int], texts: Sequence[int],
-    line: int,
-) -> tuple[FloatArray, dict[int, list[str]]]:  # fmt: skip
-    """Rows of a block with gaps, texts or comments, or a sentence on what is wrong in them."""
-    rows = []
-    pointed, doubtful = False, ""
-    cells: dict[int, list[str]] = {column: [] for column in texts}
-    for n, text in enumerate(block.split("\n"), start=line):
-        if not is_row(text):
-            continue
-        row = split(text, look.separator)
-        while len(row) > look.width and not row[-1]:
-            row.pop()
-        if len(row) != look.width:
-            raise InputError(
-                f"{path}, line {n}: {len(row)} cells where other rows have {look.width}: columns "
-                "must be equally long, leave cells empty where there is none"
-            )
-        values = [number(row[column], look.comma) for column in numbers]
-        if None in values:
-            column = numbers[values.index(None)]
-            _refuse_groups(f"{path}, line {n}, column {column + 1}", [[row[column]]])
-            if look.comma and _POINT.fullmatch(row[column]):
-                raise InputError(
-                    f"{path}, line {n}, column {column + 1}: '{row[column]:.30}' has a point, "
-                    "other numbers a comma: save the table with one decimal mark and no thousands "
-                    "separators"
-                )
-            raise InputError(
-                f"{path}, line {n}, column {column + 1}: '{row[column]:.30}' is no number"
-                + (f" with {'a comma' if look.comma else 'a point'} as its decimal mark"
-                   if row[column][:1].isdigit() else "")
-                + "; leave cells empty where there is none"
-            )  # fmt: skip
-        for column in numbers if look.comma else ():
-            pointed = pointed or bool(_POINT.fullmatch(row[column]) and "." in row[column])
-            if not doubtful and _THOUSAND.fullmatch(row[column]):
-                doubtful = f"line {n}, column {column + 1}: '{row[column]}'"
-        rows.append(values)
-        for column in texts:
-            cells[column].append(row[column])
-    if pointed and doubtful:
-        raise InputError(
-            f"{path}, {doubtful} has a comma, other numbers a point: save the table with one "
-            "decimal mark and no thousands separators"
-        )
-    return np.array(rows, dtype=np.float64).reshape(len(rows), len(numbers)), cells

@@ -36,18 +36,22 @@ _FORCES = {"N": 1.0, "mN": 1e-3, "uN": 1e-6, "µN": 1e-6, "μN": 1e-6, "cN": 1e-
            "MN": 1e6, "newton": 1.0, "newtons": 1.0, "kgf": 9.80665, "gf": 9.80665e-3,
            "lbf": 4.4482216152605}  # fmt: skip
 _RATIOS = dict.fromkeys(("1", "-", "–", "—", "dimensionless", "unitless", "ratio", "none"), 1.0)
-_RATIOS |= dict.fromkeys(("%", "percent", "prozent"), 0.01)
+_RATIOS |= dict.fromkeys(("%", "percent", "per cent", "prozent"), 0.01)
+_RATIOS |= dict.fromkeys(("‰", "permille", "per mille", "promille"), 1e-3) | {"ppm": 1e-6}
+_SPEEDS = dict.fromkeys(("knot", "knots", "kt", "kts", "kn"), 1852.0 / 3600.0) | {"mph": 0.44704}
 _WHOLE = {
     "mps": "m/s", "rpm": "turn/min", "rps": "turn/s", "mmps": "mm/s", "mms": "mm/s", "cmps": "cm/s",
     "cms": "cm/s", "kmh": "km/h", "kmph": "km/h", "kph": "km/h",
 }  # fmt: skip
+_ACCELERATIONS = dict.fromkeys(("g", "g0", "gn"), 9.80665)
 _MASSES = {"kg": 1.0, "g": 1e-3, "mg": 1e-6, "t": 1e3, "lb": 0.45359237, "oz": 0.028349523125}
 KIND_OF = {"m": "length", "m/s": "velocity", "rad": "angle", "rad/s": "spin", "s": "time",
+           "m/s^2": "acceleration",
            "N": "force", "N m": "torque", "kg": "mass"}  # fmt: skip
 SHOWN = {"m": "25mm", "m/s": "2km/h", "rad": "45deg", "rad/s": "30rpm", "s": "40ms", "kg": "20g",
-         "N": "5mN", "N m": "5 mN m"}  # fmt: skip
+         "m/s^2": "1.62 m/s^2", "N": "5mN", "N m": "5 mN m"}  # fmt: skip
 EXAMPLES = {"velocity": "m/s", "spin": "rad/s", "length": "m", "time": "s", "angle": "rad",
-            "force": "N", "torque": "N m"}  # fmt: skip
+            "force": "N", "torque": "N m", "acceleration": "m/s^2"}  # fmt: skip
 _NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
 
 
@@ -128,6 +132,25 @@ def quantity(text: str, unit: str) -> float | None:
     if known(found[2], "angle") == "deg":
         return math.radians(float(found[1]))
     return float(Decimal(found[1]) * Decimal(repr(size)))  # 25.4mm is 0.0254 to the last bit
+
+
+def measured(text: str, unit: str) -> float:
+    """A number in an SI unit, or with another unit behind it.
+
+    Raises
+    ------
+    ValueError
+        If it is none.
+
+    Examples
+    --------
+    >>> measured("1e-3", "m"), measured("2mm", "m")
+    (0.001, 0.002)
+    """
+    found = quantity(text, unit)
+    if found is None and ("_" in text or not text.isascii()):  # which float() takes
+        raise ValueError(text)
+    return float(text) if found is None else found
 
 
 def pixel_size(scale: str | float) -> float:
@@ -244,8 +267,8 @@ def unit_size(unit: str, kind: str) -> float | None:
     Parameters
     ----------
     unit : as somebody wrote it
-    kind : length, time, angle, velocity, spin, force, torque, mass; ratio: a pure number; radius: a
-        length or a pure number; any: whatever it is, of size 1
+    kind : length, time, angle, velocity, spin, acceleration, force, torque, mass; ratio: a pure
+        number; radius: a length or a pure number; any: whatever it is, of size 1
 
     Examples
     --------
@@ -271,6 +294,10 @@ def unit_size(unit: str, kind: str) -> float | None:
         size = None if parts is None else unit_size(parts[1], "force")
         arm = None if parts is None else unit_size(parts[2], "length")
         return None if size is None or arm is None else size * arm
+    if kind == "acceleration":
+        return _acceleration(text)
+    if kind == "velocity" and text in _SPEEDS:
+        return _SPEEDS[text]
     if kind in ("velocity", "spin"):
         found = re.fullmatch(r"(.+?)\s*(?:/|\s+per\s+)\s*(.+)", text)
         found = found or re.fullmatch(r"(\S+?)(?:\s+|\*|·|\.)?(s)\^?(?:-1|⁻¹|−1)", text)
@@ -281,3 +308,29 @@ def unit_size(unit: str, kind: str) -> float | None:
         return None if above is None or below is None else above / below
     name = known(text, kind)
     return None if not name or name == PIXEL else factor(name, kind)
+
+
+def _acceleration(text: str) -> float | None:
+    """A unit of acceleration in m/s², None if it is none.
+
+    Examples
+    --------
+    >>> _acceleration("cm/s^2"), _acceleration("ft s⁻²"), _acceleration("m/s")
+    (0.01, 0.3048, None)
+    """
+    if text in _ACCELERATIONS:
+        return _ACCELERATIONS[text]
+    if above_below := re.fullmatch(r"(.+)(?:/|\s+per\s+)(.+)", text):  # km/h/s
+        speed = unit_size(above_below[1], "velocity")
+        seconds = unit_size(above_below[2], "time")
+        if speed is not None and seconds is not None:
+            return speed / seconds
+    found = re.fullmatch(
+        r"(.+?)\s*(?:/|\s+per\s+)\s*\(?(.+?)\s*(?:(?:\^|\*\*)?2|²|squared)\)?", text
+    )
+    found = found or re.fullmatch(
+        r"(\S+?)(?:\s+|\*|·|\.|⋅)?(s)(?:\^|\*\*)?\(?(?:[-−]2|⁻²)\)?", text
+    )
+    above = unit_size(found[1], "length") if found else None
+    below = unit_size(found[2], "time") if found else None
+    return None if above is None or below is None else above / below**2

@@ -15,16 +15,16 @@ from dataclasses import dataclass, fields
 from functools import cache, lru_cache
 from importlib.resources import files
 
-from puck_tables.accuracy.methods import INTEGRATED, LOOK_UP, MEASURED, Method, Scheme, Source
+from puck_tables.accuracy.methods import INTEGRATED, LOOK_UP, MEASURED, FrictionForm, Method, Scheme
 from puck_tables.errors import AccuracyError, TableError
 
-COARSEST, FINEST = 0.01, 1e-13
+COARSEST, FINEST = 0.01, 1e-13  # of Q/J, Q²/J: looser nobody measured; finer is rounding
 MARGIN = 1.5  # errors are measured at a thousand starts: others may be a little worse
 UNITS = "of Q/J (times) and Q^2/J (places)"
 
 
 @dataclass(frozen=True)
-class Measured:
+class MeasuredMethod:
     """One method of answering a question, measured.
 
     ``question``: resultants (three at a point), stop, trajectory, state.  ``method`` and
@@ -98,7 +98,7 @@ def named(method: str, setting: str) -> str:
     return f"{method} ({setting})" if setting else method
 
 
-def front_from_csv(text: str) -> tuple[Measured, ...]:
+def front_from_csv(text: str) -> tuple[MeasuredMethod, ...]:
     """The front from what ``puck tradeoff -o front.csv`` saved.
 
     Raises
@@ -112,19 +112,21 @@ def front_from_csv(text: str) -> tuple[Measured, ...]:
     ()
     """
     kinds = {"str": str, "int": int, "float": float}
-    readers = {field.name: kinds[str(field.type)] for field in fields(Measured)}
+    readers = {field.name: kinds[str(field.type)] for field in fields(MeasuredMethod)}
     try:
         rows = [
             {name.partition("[")[0]: value for name, value in row.items()}
             for row in csv.DictReader(io.StringIO(text))
         ]
-        return tuple(Measured(**{n: read(row[n]) for n, read in readers.items()}) for row in rows)
+        return tuple(
+            MeasuredMethod(**{n: read(row[n]) for n, read in readers.items()}) for row in rows
+        )
     except (KeyError, TypeError, ValueError):
         raise TableError("the measured front is damaged: install the package anew") from None
 
 
 @cache
-def shipped_front() -> tuple[Measured, ...]:
+def shipped_front() -> tuple[MeasuredMethod, ...]:
     """What came with the package.
 
     Examples
@@ -139,7 +141,7 @@ def shipped_front() -> tuple[Measured, ...]:
     return front_from_csv(text)
 
 
-def pareto(rows: Iterable[Measured]) -> list[Measured]:
+def pareto(rows: Iterable[MeasuredMethod]) -> list[MeasuredMethod]:
     """Those that no other beats in both error and cost, the cheapest first.
 
     Examples
@@ -148,7 +150,7 @@ def pareto(rows: Iterable[Measured]) -> list[Measured]:
     >>> all(a.error > b.error for a, b in zip(front[:-1], front[1:]))
     True
     """
-    front: list[Measured] = []
+    front: list[MeasuredMethod] = []
     for row in sorted(rows, key=lambda row: (row.ns, row.error)):
         if not front or row.error < front[-1].error:
             front.append(row)
@@ -188,7 +190,7 @@ def select(
     best = max(FINEST, min(off.values()))
     if not best <= tol <= COARSEST:
         names = " / ".join(_told_scheme(scheme, own_table) for scheme in schemes)
-        exact = Scheme(Method.ADAPTIVE, Source.CLOSED_FORMS)
+        exact = Scheme(Method.ADAPTIVE, FrictionForm.CLOSED_FORMS)
         hint = "" if exact in schemes else "; integration with closed forms reaches 1e-13"
         raise AccuracyError(
             f"tol must be from {_up(best)} (the best of {names}) to {COARSEST:g}, in units of Q/J "
@@ -227,7 +229,7 @@ def _told_scheme(scheme: Scheme, own_table: tuple[str, float] | None) -> str:
     return f"{scheme.method}, the table {own_table[0]}"
 
 
-def _told(row: Measured, own_table: tuple[str, float] | None) -> str:
+def _told(row: MeasuredMethod, own_table: tuple[str, float] | None) -> str:
     return named(_told_scheme(MEASURED[row.method], own_table), row.setting)
 
 

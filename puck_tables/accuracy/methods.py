@@ -41,7 +41,7 @@ METHODS = tuple(Method)
 INTEGRATORS = tuple(method for method in Method if method is not Method.LOOK_UP)
 
 
-class Source(StrEnum):
+class FrictionForm(StrEnum):
     """Where the friction of an integration comes from."""
 
     TABLE = "table"
@@ -54,12 +54,12 @@ class Scheme(NamedTuple):
 
     Examples
     --------
-    >>> Scheme(Method.RK4, Source.TABLE).name, Scheme(Method.LOOK_UP).name
+    >>> Scheme(Method.RK4, FrictionForm.TABLE).name, Scheme(Method.LOOK_UP).name
     ('rk4, table', 'look-up')
     """
 
     method: Method
-    source: Source | None = None
+    source: FrictionForm | None = None
 
     @property
     def name(self) -> str:
@@ -71,7 +71,7 @@ LOOK_UP = Scheme(Method.LOOK_UP)
 INTEGRATED = tuple(
     Scheme(method, source)
     for method in INTEGRATORS
-    for source in (Source.TABLE, Source.CLOSED_FORMS)
+    for source in (FrictionForm.TABLE, FrictionForm.CLOSED_FORMS)
 )
 MEASURED = {scheme.name: scheme for scheme in (LOOK_UP, *INTEGRATED)}
 
@@ -98,13 +98,14 @@ def method_named(name: str | None, among: Iterable[Method] = METHODS) -> Method 
 
 
 def schemes_of(
-    methods: Iterable[Method], sources: Iterable[Source] = (Source.TABLE, Source.CLOSED_FORMS)
+    methods: Iterable[Method],
+    sources: Iterable[FrictionForm] = (FrictionForm.TABLE, FrictionForm.CLOSED_FORMS),
 ) -> tuple[Scheme, ...]:
     """The measured schemes of these methods, the integrators with friction from these sources.
 
     Examples
     --------
-    >>> [scheme.name for scheme in schemes_of([Method.RK4], [Source.TABLE])]
+    >>> [scheme.name for scheme in schemes_of([Method.RK4], [FrictionForm.TABLE])]
     ['rk4, table']
     """
     wanted, allowed = set(methods), {None, *sources}

@@ -15,20 +15,20 @@ from puck_tables.stopping.stops import stop
 Array = npt.NDArray[np.float64]
 
 ROWS = {len(LAUNCH_NAMES): len(STOP_NAMES), len(MOMENT_NAMES): len(STATE_NAMES)}
-_TOL = 2e-10
+_TOL = 2e-10  # of Q/J, Q²/J: twice the error of the stop table, so that it is taken
 
 
-class Kind(NamedTuple):
+class PuckKind(NamedTuple):
     """What is not differentiated: pressure law and radius of gyration, as of a Puck."""
 
     pressure: str | Law = "uniform"
     gyration: float = HOMOGENEOUS
 
 
-PLAIN = Kind()
+PLAIN = PuckKind()
 
 
-def found(arguments: Any, kind: Kind, jacobian: bool) -> Any:
+def found(arguments: Any, kind: PuckKind, jacobian: bool) -> Any:
     """Stops or states of arguments (…, 6) or (…, 7), the order of the columns of Jacobians.
 
     Raises
@@ -50,13 +50,13 @@ def found(arguments: Any, kind: Kind, jacobian: bool) -> Any:
     return states(given[..., :2], given[..., 2], given[..., 6], **how)
 
 
-def values(arguments: Any, kind: Kind) -> Array:
+def values(arguments: Any, kind: PuckKind) -> Array:
     """Results (…, rows) of arguments (…, columns)."""
     result = found(arguments, kind, jacobian=False)
     return np.stack([getattr(result, name) for name in result.JACOBIAN_ROWS], axis=-1)
 
 
-def slopes(given: Any, kind: Kind) -> Array:
+def slopes(given: Any, kind: PuckKind) -> Array:
     """Jacobians (…, rows, columns) of arguments ``given`` (…, columns).
 
     The path of pure spin, which grows like |v|, has slope 0 here: a number is needed even where it

@@ -25,7 +25,7 @@ except ImportError:
 
 
 @partial(jax.custom_jvp, nondiff_argnums=(1,))
-def _found(arguments: Any, kind: host.Kind) -> Any:
+def _found(arguments: Any, kind: host.PuckKind) -> Any:
     rows = host.ROWS[arguments.shape[-1]]
     shape = jax.ShapeDtypeStruct((*arguments.shape[:-1], rows), np.float64)
     return jax.pure_callback(
@@ -34,7 +34,7 @@ def _found(arguments: Any, kind: host.Kind) -> Any:
 
 
 @_found.defjvp
-def _found_jvp(kind: host.Kind, primals: Any, tangents: Any) -> Any:
+def _found_jvp(kind: host.PuckKind, primals: Any, tangents: Any) -> Any:
     (arguments,), (moved,) = primals, tangents
     rows, columns = host.ROWS[arguments.shape[-1]], arguments.shape[-1]
     shape = jax.ShapeDtypeStruct((*arguments.shape[:-1], rows, columns), np.float64)
@@ -87,7 +87,7 @@ def stop(
     ...     float(jax.grad(lambda w: stop((1.0, 0.0), w)[1])(5.0).round(6))
     0.420792
     """
-    return _found(_joined(velocity, spin, delta, decel, radius), host.Kind(pressure, gyration))
+    return _found(_joined(velocity, spin, delta, decel, radius), host.PuckKind(pressure, gyration))
 
 
 def states(
@@ -120,4 +120,4 @@ def states(
     [1.590682, 2.213952]
     """
     joined = _joined(velocity, spin, delta, decel, radius, time)
-    return _found(joined, host.Kind(pressure, gyration))
+    return _found(joined, host.PuckKind(pressure, gyration))

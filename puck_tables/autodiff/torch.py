@@ -22,7 +22,7 @@ except ImportError:
 
 class _Found(torch.autograd.Function):
     @staticmethod
-    def forward(arguments: Any, kind: host.Kind) -> Any:
+    def forward(arguments: Any, kind: host.PuckKind) -> Any:
         found = host.values(arguments.numpy(force=True), kind)
         return torch.from_numpy(found).to(arguments.device)
 
@@ -46,7 +46,7 @@ class _Found(torch.autograd.Function):
         return torch.einsum("...rc,...c->...r", slopes, moved)
 
 
-def _slopes(arguments: Any, kind: host.Kind) -> Any:
+def _slopes(arguments: Any, kind: host.PuckKind) -> Any:
     found = host.slopes(arguments.numpy(force=True), kind)
     return torch.from_numpy(found).to(arguments.device)
 
@@ -93,7 +93,7 @@ def stop(
     >>> round(spin.grad.item(), 6)
     0.420792
     """
-    kind = host.Kind(pressure, gyration)
+    kind = host.PuckKind(pressure, gyration)
     return _Found.apply(_joined(velocity, spin, delta, decel, radius), kind)
 
 
@@ -125,4 +125,4 @@ def states(
     1.590682
     """
     joined = _joined(velocity, spin, delta, decel, radius, time)
-    return _Found.apply(joined, host.Kind(pressure, gyration))
+    return _Found.apply(joined, host.PuckKind(pressure, gyration))

@@ -42,7 +42,7 @@ except ImportError:
         '--cluster (cluster=) needs dask and distributed: pip install "puck-tables[cluster]"'
     ) from None
 
-MOST_WORKERS = 1024
+MOST_WORKERS = 1024  # processes of one machine: more is a slip of the hand
 _REACH, _PATIENCE = 5.0, 10.0  # s to reach a scheduler, to find a worker
 _SILENT, _QUIET = 5.0, 2.0  # s without a block until the scheduler is asked, and it may be silent
 _AHEAD = 4  # blocks given to each thread of the workers

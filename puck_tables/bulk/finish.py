@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,7 +14,7 @@ from puck_tables._core.executor import Progress
 from puck_tables._core.memory import check_memory
 from puck_tables._core.real import checked_progress, instance, shown
 from puck_tables.bulk.work import Tally, Work, in_memory
-from puck_tables.errors import InputError
+from puck_tables.errors import InputError, OutputError
 from puck_tables.io.dataset import Dataset
 from puck_tables.io.formats import STORE
 from puck_tables.result import Result
@@ -111,6 +112,12 @@ def finish(
     instance("store", store, str, Path)
     if Path(store).suffix.lower() != STORE:
         raise InputError(f"{store}: a store must have the ending {STORE}")
+    try:
+        os.fsencode(store)
+        if "\0" in str(store):
+            raise ValueError("embedded null byte")
+    except ValueError as error:
+        raise OutputError(f"cannot write {store}: {error}") from None
     from puck_tables.bulk.store import Store, by_threads
 
     if cluster is None:

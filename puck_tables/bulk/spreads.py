@@ -14,9 +14,10 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import real, shown
+from puck_tables._core.units import SHOWN, measured
 from puck_tables.errors import InputError
 
-_LARGEST_SEED = 1 << 64
+_LARGEST_SEED = 1 << 64  # a seed is kept in files as an integer of 64 bits
 _AT_ONCE = 4  # numbers a step of the counter gives
 
 
@@ -135,8 +136,10 @@ class Uniform(Spread):
 KINDS = {"normal": Normal, "uniform": Uniform}
 
 
-def spread_named(text: str) -> Spread:
+def spread_named(text: str, unit: str = "") -> Spread:
     """The spread that a text such as 'normal:5:0.2' names.
+
+    ``unit``: the SI unit of what scatters; another may stand behind each number.
 
     Raises
     ------
@@ -144,17 +147,18 @@ def spread_named(text: str) -> Spread:
 
     Examples
     --------
-    >>> spread_named("uniform:0.9:1.1")
-    Uniform(low=0.9, high=1.1)
+    >>> spread_named("uniform:0.9:1.1"), spread_named("normal:30rpm:1rpm", "rad/s").mean > 3.14
+    (Uniform(low=0.9, high=1.1), True)
     """
     name, *numbers = text.split(":")
     try:
-        if name not in KINDS or len(numbers) != 2 or "_" in text or not text.isascii():
+        if name not in KINDS or len(numbers) != 2:
             raise ValueError
-        first, second = map(float, numbers)
+        first, second = (measured(number, unit) for number in numbers)
     except ValueError:
+        hint = f", numbers or with a unit as {SHOWN[unit]}" if unit in SHOWN else ""
         raise InputError(
-            f"'{text}' is no spread: write normal:MEAN:DEVIATION or uniform:LOW:HIGH"
+            f"'{text}' is no spread: write normal:MEAN:DEVIATION or uniform:LOW:HIGH{hint}"
         ) from None
     found: Spread = KINDS[name](first, second)
     return found

@@ -14,7 +14,9 @@ from puck_tables._core.real import finite_array, listed, shown
 from puck_tables.errors import InputError
 
 _SIGMAS = 1.959963984540054  # of a 95 % interval
-_MOST_BINS = 4096
+_MOST_BINS = 4096  # along one axis of a picture: finer than any screen
+_SHARES = (0.025, 0.5, 0.975)  # of the quantiles of a table: the median, and 95 % of all
+_WIDE = 14  # signs of its first column
 Bins = npt.NDArray[np.bool_]
 
 
@@ -37,6 +39,10 @@ class Summary:
     summed: tuple[str, ...]
     place: tuple[str, str]
 
+    def counted(self, name: str) -> FloatArray:
+        """A column (samples,), NaN where it does not count."""
+        return np.asarray(getattr(self, name), np.float64).ravel()
+
     def _rows(self, names: Sequence[str] | None = None) -> FloatArray:
         known = ", ".join(self.summed)
         names = self.summed if names is None else listed("names", names, "columns")
@@ -45,7 +51,7 @@ class Summary:
         for name in names:
             if not isinstance(name, str) or name not in self.summed:
                 raise InputError(f"{shown(name)} is no column of samples: there are {known}")
-        rows = np.stack([np.asarray(getattr(self, name), np.float64).ravel() for name in names])
+        rows = np.stack([self.counted(name) for name in names])
         kept = rows[:, np.isfinite(rows).all(axis=0)]
         if kept.shape[1] < 2:
             raise InputError("fewer than two samples have an end: there is nothing to sum up")
@@ -58,7 +64,7 @@ class Summary:
 
     def mean(self) -> dict[str, float]:
         """Means by column, SI units."""
-        return dict(zip(self.summed, self._rows().mean(axis=1).tolist(), strict=True))
+        return {name: float(self._rows((name,))[0].mean()) for name in self.summed}
 
     def covariance(self, names: Sequence[str] | None = None) -> FloatArray:
         """Covariance (n, n) of these columns, of all without ``names``; SI units."""
@@ -78,8 +84,9 @@ class Summary:
         wanted = finite_array("shares", shares, "1")
         if wanted.ndim > 1 or not wanted.size or not ((wanted >= 0.0) & (wanted <= 1.0)).all():
             raise InputError("shares of quantiles must be numbers from 0 to 1")
-        found = np.quantile(self._rows(), wanted, axis=1)
-        return {name: np.asarray(found[..., n]) for n, name in enumerate(self.summed)}
+        return {
+            name: np.asarray(np.quantile(self._rows((name,))[0], wanted)) for name in self.summed
+        }
 
     def density(
         self, bins: int = 100, extent: npt.ArrayLike | None = None
@@ -123,36 +130,53 @@ class Summary:
         InputError
             If the region is none of these, or empty.
         """
-        inside = inside_of(region, *self._rows(self.place))
-        return chance_of(int(np.count_nonzero(inside)), inside.size)
+        inside = inside_of(region, *(self.counted(name) for name in self.place))
+        if self.ended < 2:
+            self._rows(self.place)
+        return chance_of(int(np.count_nonzero(inside)), self.ended)
 
     def summary(self, regions: Sequence[npt.ArrayLike] = ()) -> str:
         """Means, deviations and quantiles in a table, and the chances of regions; lines of text."""
-        regions = listed("regions", regions, "regions")
-        mean, rows = self.mean(), self._rows()
-        shares = self.quantiles()
-        lines = [f"{'':<14}{'mean':>13}{'deviation':>13}{'2.5 %':>13}{'50 %':>13}{'97.5 %':>13}"]
-        for name, row in zip(self.summed, rows, strict=True):
-            low, _, middle, _, high = shares[name].tolist()
-            numbers = (mean[name], float(row.std(ddof=1)), low, middle, high)
-            lines.append(f"{name:<14}" + "".join(f"{number:>13.6g}" for number in numbers))
-        across, along = (self.summed.index(name) for name in self.place)
-        tied = np.corrcoef(rows[across], rows[along])[0, 1] if self._scatters else math.nan
-        if math.isfinite(tied):
+        return "\n".join([head(), *self.rows(self.summed), *self.chances(regions)])
+
+    def rows(self, names: Sequence[str], label: str = "", wide: int = _WIDE) -> list[str]:
+        """Means, deviations and quantiles of columns, as a table; none of less than two samples."""
+        found = []
+        for name in names:
+            own = self.counted(name)
+            own = own[np.isfinite(own)]
+            if own.size > 1:
+                numbers = (own.mean(), own.std(ddof=1), *np.quantile(own, _SHARES))
+                words = "".join(f"{number:>13.6g}" for number in numbers)
+                found.append(f"{label + name:<{wide}}{words}")
+        return found
+
+    def chances(self, regions: Sequence[npt.ArrayLike]) -> list[str]:
+        """How its places hang together, and the chances of regions, in words."""
+        lines, places = [], np.stack([self.counted(name) for name in self.place])
+        places = places[:, np.isfinite(places).all(axis=0)]
+        if places.shape[1] > 1 and (places.std(axis=1) > 0.0).all():
+            tied = float(np.corrcoef(*places)[0, 1])
             lines.append(f"correlation of {self.place[0]} and {self.place[1]}: {tied:.4g}")
-        for region in regions:
+        for region in listed("regions", regions, "regions"):
             one = self.chance(region)
             words = ", ".join(f"{number:g}" for number in np.ravel(region))
             lines.append(
                 f"ends inside ({words}) m with a chance of {one.value:.6g} "
                 f"(95 %: {one.low:.6g} to {one.high:.6g})"
             )
-        return "\n".join(lines)
+        return lines
 
-    @property
-    def _scatters(self) -> bool:
-        x, y = self._rows(self.place)
-        return bool(x.std() > 0.0 and y.std() > 0.0)
+
+def head(wide: int = _WIDE) -> str:
+    """The head of the table of a summary.
+
+    Examples
+    --------
+    >>> head(2).split()
+    ['mean', 'deviation', '2.5', '%', '50', '%', '97.5', '%']
+    """
+    return f"{'':<{wide}}{'mean':>13}{'deviation':>13}{'2.5 %':>13}{'50 %':>13}{'97.5 %':>13}"
 
 
 def chance_of(hits: int, samples: int) -> Chance:

@@ -28,12 +28,12 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import broadcast, finite_array, instance, positive, real
 from puck_tables.errors import AccuracyError, InputError
 
-_TOL = 1e-13
+_TOL = 1e-13  # of a step, relative: near to what doubles hold
 _LARGEST_TURN = 0.25  # of θ in one step of sliding, so that no dip of λ is stepped over
-_LOOKS = 6
+_LOOKS = 6  # looks a step for a change of sign: a step is smooth
 _GAP_STEPS = 1_000_000  # flights that hardly leave the crest take that many
-_NOISE = 2.0**-53
-MAX_ARCS = 100_000
+_NOISE = 2.0**-53  # relative rounding of a double: a gap below it is none
+MAX_ARCS = 100_000  # slides and flights: then it is refused by name
 
 
 @dataclass(frozen=True)
@@ -141,7 +141,7 @@ class Asperity:
         return exact, self.load + bend, np.full(place.shape, self.load)
 
 
-class Arc(NamedTuple):
+class SlideOrFlight(NamedTuple):
     """One stretch of a motion: its kind, ``slide`` or ``fly``, when and how it begins, in SI units.
 
     ``loss`` is the energy lost by the landing at its start, J.
@@ -178,7 +178,7 @@ class AsperityMotion:
     vx: FloatArray = field(repr=False)
     vy: FloatArray = field(repr=False)
     multiplier: FloatArray = field(repr=False)
-    arcs: tuple[Arc, ...] = field(repr=False)
+    arcs: tuple[SlideOrFlight, ...] = field(repr=False)
     lost: float
     energy_residual: float
 
@@ -263,16 +263,16 @@ def asperity_motion(
     )
 
 
-def _contact(asperity: Asperity, time: float, x: float, vx: float, loss: float) -> Arc:
+def _contact(asperity: Asperity, time: float, x: float, vx: float, loss: float) -> SlideOrFlight:
     """The arc that begins at a place of the support with a velocity along it."""
     kind = "slide" if asperity._press(x, vx) > 0.0 else "fly"
     y, vy = float(asperity._height(x)), float(asperity._incline(x)) * vx
-    return Arc(kind, time, x, y, vx, vy, loss)
+    return SlideOrFlight(kind, time, x, y, vx, vy, loss)
 
 
 def _fly(
-    asperity: Asperity, arc: Arc, wanted: FloatArray, end: float
-) -> tuple[Arc | None, FloatArray]:
+    asperity: Asperity, arc: SlideOrFlight, wanted: FloatArray, end: float
+) -> tuple[SlideOrFlight | None, FloatArray]:
     """Until the landing, and the states at the times wanted before it."""
     ax, ay = asperity.pull / asperity.mass, -asperity.load / asperity.mass
     flown = landing(asperity, arc, end - arc.time)
@@ -293,7 +293,7 @@ def _fly(
     return _contact(asperity, down, x, along, lost), states
 
 
-def landing(asperity: Asperity, arc: Arc, longest: float) -> float:
+def landing(asperity: Asperity, arc: SlideOrFlight, longest: float) -> float:
     """How long a flight that begins on the support lasts; infinite beyond ``longest``, s.
 
     The gap below the point is convex while the numerator of λ is negative, and its second
@@ -329,7 +329,7 @@ def landing(asperity: Asperity, arc: Arc, longest: float) -> float:
     )
 
 
-def _rising(asperity: Asperity, arc: Arc, ax: float) -> float:
+def _rising(asperity: Asperity, arc: SlideOrFlight, ax: float) -> float:
     """A time until which the gap of a flight only grows."""
     t = asperity.length / max(abs(arc.vx), math.sqrt(abs(ax) * asperity.length), 1e-300)
     t = min(t, math.sqrt(asperity.mass * asperity.length / asperity.load))
@@ -344,8 +344,8 @@ def _rising(asperity: Asperity, arc: Arc, ax: float) -> float:
 
 
 def _slide(
-    asperity: Asperity, arc: Arc, wanted: FloatArray, end: float
-) -> tuple[Arc | None, FloatArray]:
+    asperity: Asperity, arc: SlideOrFlight, wanted: FloatArray, end: float
+) -> tuple[SlideOrFlight | None, FloatArray]:
     """Until λ falls to 0, and the states at the times wanted before that."""
     from scipy.integrate import DOP853, solve_ivp
 
@@ -384,7 +384,7 @@ def _slide(
         return None, states
     off_x, off_vx = (float(value) for value in at(before, start, leave))
     y, vy = float(asperity._height(off_x)), float(asperity._incline(off_x)) * off_vx
-    return Arc("fly", leave, off_x, y, off_vx, vy, 0.0), states
+    return SlideOrFlight("fly", leave, off_x, y, off_vx, vy, 0.0), states
 
 
 def _lift(asperity: Asperity, at: Any, state: FloatArray, start: float, solver: Any) -> float:

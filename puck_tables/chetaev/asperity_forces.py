@@ -32,20 +32,20 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import checked_progress, finite_array, instance, shown
-from puck_tables.chetaev.asperity import Arc, Asperity, landing
+from puck_tables.chetaev.asperity import Asperity, SlideOrFlight, landing
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.result import Result
 
 CURVES = ("crude", "greatest", "undriven", "mean", "landing_phase", "flights_per_period")
-_FLIGHTS = 4000
-_LONGEST_CYCLE, _SAME_PHASE = 40, 1e-11
+_FLIGHTS = 4000  # landings without a period: then the mean is that of the later half
+_LONGEST_CYCLE, _SAME_PHASE = 40, 1e-11  # landings, rad: so far back the same phase is looked for
 LEAP = 0.2  # of Coulomb's force: by so much the mean force at neighbouring speeds may differ
 MAX_SPEED = 1e3  # of V₀: beyond it a flight passes a million periods and its landing is chance
 
 
-class Round(NamedTuple):
+class HopCycle(NamedTuple):
     """What happens between two departures at θ₀ when the speed is held, in dimensionless terms.
 
     ``landing`` is the phase θ₁ ∈ (−π, π] after which the point slides (NaN if it does not fly or
@@ -240,7 +240,7 @@ def greatest_force(w: float, first: float, slope: float = 0.0) -> float:
     return float(force.max())
 
 
-def held_round(w: float) -> Round:
+def held_round(w: float) -> HopCycle:
     """Flights and landings at a held speed, w = (V/V₀)², from a departure at θ₀ on.
 
     Examples
@@ -253,7 +253,7 @@ def held_round(w: float) -> Round:
     (False, 3.141592654)
     """
     if w <= 1.0:
-        return Round(math.nan, True, 0, 1, 0.0)
+        return HopCycle(math.nan, True, 0, 1, 0.0)
     # a, b, V = 1, so that time is phase: the load is then 1/w
     unit = Asperity(1.0, 1.0, 1.0 / w, 1.0)
     start = math.pi - math.acos(1.0 / w)
@@ -262,7 +262,7 @@ def held_round(w: float) -> Round:
     jumps = list[float]()
     while len(jumps) < _FLIGHTS:
         incline = math.sin(phases[-1])
-        arc = Arc("fly", 0.0, phases[-1], -math.cos(phases[-1]), 1.0, incline, 0.0)
+        arc = SlideOrFlight("fly", 0.0, phases[-1], -math.cos(phases[-1]), 1.0, incline, 0.0)
         lengths.append(landing(unit, arc, math.inf))
         late = phases[-1] + lengths[-1]
         jumps.append((math.sin(late) - (incline - lengths[-1] / w)) ** 2)
@@ -277,7 +277,7 @@ def held_round(w: float) -> Round:
     return _round(w, math.nan, lengths[half:], jumps[half:])
 
 
-def _round(w: float, landed: float, lengths: list[float], jumps: list[float]) -> Round:
+def _round(w: float, landed: float, lengths: list[float], jumps: list[float]) -> HopCycle:
     periods = max(round(math.fsum(lengths) / (2.0 * math.pi)), 1)
     mean = w * math.fsum(jumps) / (4.0 * math.pi * periods)
-    return Round(landed, not math.isnan(landed), len(jumps), periods, mean)
+    return HopCycle(landed, not math.isnan(landed), len(jumps), periods, mean)

@@ -24,11 +24,11 @@ from puck_tables.chetaev.system import (
 )
 from puck_tables.errors import AccuracyError, InputError
 
-FINEST, COARSEST = 1e-13, 1e-2
+FINEST, COARSEST = 1e-13, 1e-2  # relative: finer is rounding, looser is no answer
 _ADMISSIBLE = 1e-9  # of the speeds, at the start
-_RANK = 1e-9
+_RANK = 1e-9  # of the largest singular value: smaller ones are those of dependent constraints
 _PROBE, _PROBE_SLACK = 1e-6, 1e-3  # difference quotient that judges the derivative at the start
-_WORKS = 3
+_WORKS = 3  # works that are integrated along with the motion
 
 
 @dataclass(frozen=True)

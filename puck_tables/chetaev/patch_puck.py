@@ -29,7 +29,7 @@ from puck_tables.chetaev.motion import checked_tol
 from puck_tables.chetaev.system import ConstrainedSystem
 from puck_tables.errors import InputError
 
-MAX_RINGS = 256
+MAX_RINGS = 256  # 4 n² points: 262,144
 MOST_PASSED, MOST_TURN = 1e6, 1e3  # patches times rad; rad
 # Q of the start at which the rest of the motion is taken as one at constant deceleration
 _LAST = 1e-7

@@ -33,7 +33,7 @@ OfState = Callable[[FloatArray, FloatArray, float], npt.ArrayLike]
 
 # Below this share of its own length a constraint is a combination of the others.
 _INDEPENDENT = 1e-6
-_COMPLEX_STEP = 1e-30
+_COMPLEX_STEP = 1e-30  # its square vanishes beside 1: the derivative has no rounding
 
 
 @dataclass(frozen=True)

@@ -5,16 +5,17 @@ from typing import TYPE_CHECKING
 from puck_tables._core.lazy import lazily
 
 if TYPE_CHECKING:
+    from puck_tables.contact.closed_form import is_full_contact
     from puck_tables.contact.one_sided import loaded_share
     from puck_tables.contact.one_sided import resultants as one_sided_resultants
     from puck_tables.contact.opening import critical_delta
-    from puck_tables.contact.resultants import Resultants, is_full_contact
+    from puck_tables.contact.resultants import Resultants
     from puck_tables.contact.speed_quadrature import speed_resultants
 
 _HOMES = {
     "Resultants": "resultants",
     "critical_delta": "opening",
-    "is_full_contact": "resultants",
+    "is_full_contact": "closed_form",
     "loaded_share": "one_sided",
     "one_sided_resultants": "one_sided:resultants",
     "speed_resultants": "speed_quadrature",

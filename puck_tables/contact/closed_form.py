@@ -21,8 +21,15 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.contact.integrals import PatchIntegrals, slip_direction
-from puck_tables.contact.resultants import Resultants, moment_balance
+from puck_tables._core.real import broadcast
+from puck_tables.contact.integrals import PatchIntegrals, checked_phi, slip_direction
+from puck_tables.contact.resultants import (
+    CONTACT_SLACK,
+    Resultants,
+    checked_delta,
+    moment_balance,
+    pressure_tilt,
+)
 
 ShapeIntegrals = Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray, FloatArray]]
 
@@ -134,3 +141,36 @@ def by_closed_form(phi: npt.ArrayLike, delta: npt.ArrayLike) -> Resultants:
     0.375
     """
     return moment_balance(integrals(phi), slip_direction(phi), delta)
+
+
+def is_full_contact(phi: npt.ArrayLike, delta: npt.ArrayLike) -> npt.NDArray[np.bool_]:
+    """Whether the whole base stays loaded: where the linear pressure law is nowhere negative.
+
+    Parameters
+    ----------
+    phi : array_like, radians, in [−π/2, π/2]
+    delta : array_like
+        Dimensionless height δ = 2fh/r ≥ 0, broadcast against ``phi``.
+
+    Returns
+    -------
+    array of bool, of the broadcast shape
+
+    Raises
+    ------
+    InputError
+        If an angle or a height is not finite or outside its range.
+
+    References
+    ----------
+    Salnikova, Treschev, Gallyamov 2012, Prop. 4: full contact at every φ exactly when δ ≤ 1.
+
+    Examples
+    --------
+    >>> is_full_contact([0.0, np.pi / 4], 1.1).tolist()  # the limit at π/4 is δ = 1.15914
+    [False, True]
+    """
+    angle, height = broadcast(phi=checked_phi(phi), delta=checked_delta(delta))
+    direction = slip_direction(angle)
+    rho = moment_balance(integrals(angle), direction, height)
+    return np.asarray(pressure_tilt(rho, direction, height) <= 1.0 + CONTACT_SLACK)

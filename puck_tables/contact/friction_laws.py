@@ -21,6 +21,7 @@ from puck_tables._core.real import finite_array, positive, real
 from puck_tables.contact.law_pieces import pieces_of_function
 from puck_tables.errors import InputError
 
+# below, f is too steep at rest for a table; above, it is a step
 _LEAST_EXPONENT, _LARGEST_EXPONENT = 0.5, 8.0
 _SMOOTH = 6.0  # a table of degree 5 sees no singularity of this power and above
 _LARGEST_TOP = 1e100  # m/s

@@ -12,7 +12,7 @@ of height δ/(4⟨x²⟩) under uniform pressure.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache, partial
 from itertools import count
 from pathlib import Path
@@ -21,8 +21,9 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.columns import PRESSURE, RADIUS, numbers_of
+from puck_tables._core.columns import numbers_of
 from puck_tables._core.own_folder import say
+from puck_tables._core.quantities import PRESSURE, RADIUS
 from puck_tables._core.real import broadcast, instance, real_array, shown
 from puck_tables._core.safe_write import as_utf8
 from puck_tables._core.units import unit_size
@@ -44,9 +45,9 @@ _LEAST_STEP = 1e-12  # between the radii of a profile
 _LEAST_SPREAD = 2.5e-7  # root mean square, of the radius at which its load stands
 _TIP = 1e-5  # the least radius that matters there
 _MOST_BENDS, _STRAIGHT = 40, 1e-12  # the latter of the largest pressure
-_SECANTS = 14
+_SECANTS = 14  # steps; then it is halved, which always ends
 _LARGEST = 1e-5  # a limit ratio above 1e5 is none: there the two rates agree to rounding
-MAX_PROFILE_BYTES = 1 << 24
+MAX_PROFILE_BYTES = 1 << 24  # bytes: more is no profile
 _PROBES = np.linspace(0.0, 0.5 * np.pi, 33)  # rad, where two laws of one name are told apart
 HOMOGENEOUS = 0.5**0.5  # radius of gyration over r of a homogeneous cylinder about its axis
 THINNEST = 1.0 - 1e-6  # inner radius of the thinnest washer; beyond it take the ring
@@ -66,6 +67,8 @@ class Law:
         From slip angles to :class:`PatchIntegrals`.
     profile : pair of arrays (n,), optional
         Radii and pressures of a tabulated law, which its name does not say.
+    rim : m, optional
+        The radius of the rim that its file says.
 
     Examples
     --------
@@ -77,6 +80,7 @@ class Law:
     edges: tuple[float, ...]
     integrals: Callable[[npt.ArrayLike], PatchIntegrals]
     profile: tuple[FloatArray, FloatArray] | None = field(default=None, repr=False)
+    rim: float | None = field(default=None, repr=False)
 
     def __eq__(self, other: object) -> bool:
         """Whether name and edges are the same, and the profile, or the integrals without one."""
@@ -219,7 +223,8 @@ def law_of(text: str) -> Law:
         return _washer(inner)
     if not text.lower().endswith(".csv"):
         raise InputError(f"no pressure law is called {shown(text)}: choose {NAMES}")
-    return profile_law(*_read(text), name=as_utf8(Path(text).name))
+    radii, pressure, rim = _read(text)
+    return replace(profile_law(radii, pressure, as_utf8(Path(text).name)), rim=rim)
 
 
 @lru_cache(maxsize=64)
@@ -294,15 +299,15 @@ def _edges(radii: FloatArray, pressure: FloatArray) -> tuple[float, ...]:
     return tuple(np.union1d(ends, radii[1:-1][sharp]).tolist())
 
 
-def _read(path: str) -> tuple[FloatArray, FloatArray]:
-    """Radii in units of the last, and pressures, from a CSV file."""
+def _read(path: str) -> tuple[FloatArray, FloatArray, float | None]:
+    """Radii in units of the last, pressures, and the last radius in m, if its unit is said."""
     numbers = numbers_of(path, (RADIUS, PRESSURE), 2, MAX_PROFILE_BYTES)
     numbers.refuse_unless_ascending("the radii")
     radii, pressure = numbers.rows.T
     if (unit := numbers.units[0]) and unit_size(unit, "ratio") is None and radii[-1] > 0.0:
         say(f"{path}: its last radius, {radii[-1]:g} m, is taken as that of the rim")
-        radii = radii / radii[-1]
-    return radii, pressure
+        return radii / radii[-1], pressure, float(radii[-1])
+    return radii, pressure, None
 
 
 _NAMED: dict[str, Callable[[npt.ArrayLike], PatchIntegrals]] = {

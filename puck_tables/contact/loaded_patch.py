@@ -28,7 +28,7 @@ from puck_tables._core.arrays import FloatArray
 BoolArray = npt.NDArray[np.bool_]
 
 SEGMENT_RULE = np.stack(np.polynomial.legendre.leggauss(20))  # nodes and weights on [−1, 1]
-_GAUSS_2 = 3.0**-0.5
+_GAUSS_2 = 3.0**-0.5  # node of Gauss's rule of two points, exact up to degree 3
 
 
 def _tanh_sinh(nodes: int, reach: float) -> tuple[FloatArray, FloatArray]:

@@ -36,16 +36,16 @@ from puck_tables.contact.opening import critical_delta
 from puck_tables.contact.resultants import Resultants, checked_delta, moment_balance
 from puck_tables.errors import AccuracyError, ContactError
 
-TIPPING_DELTA = 4.0
+TIPPING_DELTA = 4.0  # δ/4 is the lever of the load as it slides: at 1 it has reached the rim
 # The cusp of the balance: (φ, δ) = (π/4 − 0.00500, 3.96380), rounded towards safety.
 FOLD_DELTA = 3.9637
 _FOLD_ANGLES = (0.25 * np.pi - 0.00502, 0.25 * np.pi)
 
-_CHUNK = 64
-_STEPS = 60
+_CHUNK = 64  # points at once: their rules fit the cache
+_STEPS = 60  # of Newton's method: then another guess is tried
 _SETTLED = 1e-7  # a step of that size leaves an error of its square
-_EASY_DELTA = 3.9
-_FOLLOWED = 33
+_EASY_DELTA = 3.9  # dimensionless: up to it the guess leads to the solution
+_FOLLOWED = 33  # heights from there to the wanted one: each is a good guess for the next
 _MAX_TURN = 0.3  # radians a step
 
 
@@ -193,12 +193,34 @@ def balance(phi: FloatArray, delta: FloatArray) -> tuple[Resultants, Chord]:
             f"at phi = {phi[folded][0]:g}, delta = {delta[folded][0]:g} the balance of moments has "
             f"more than one solution: for every phi it has one up to delta = {FOLD_DELTA:g}"
         )
-    values, chords = np.empty((3, len(phi))), np.empty((2, len(phi)))
-    for start in range(0, len(phi), _CHUNK):
+    return balanced(slip_direction(phi), delta)
+
+
+def balanced(direction: SlipDirection, delta: FloatArray) -> tuple[Resultants, Chord]:
+    """As :func:`balance`, of slip directions at which the balance is unique.
+
+    Parameters
+    ----------
+    direction : SlipDirection
+    delta : array (n,), 0 < δ
+
+    Raises
+    ------
+    AccuracyError
+        If it is not solved.
+
+    Examples
+    --------
+    >>> rho, _ = balanced(slip_direction(np.array([0.9])), np.array([2.0]))
+    >>> float(rho.spin[0].round(7))
+    0.8430539
+    """
+    values, chords = np.empty((3, delta.size)), np.empty((2, delta.size))
+    for start in range(0, delta.size, _CHUNK):
         part = slice(start, start + _CHUNK)
-        direction = slip_direction(phi[part])
-        chords[:, part] = _solved(direction, delta[part])
-        values[:, part] = _resultants(direction, delta[part], Chord(*chords[:, part]))
+        some = SlipDirection(direction.ratio[part], direction.fast_spin[part])
+        chords[:, part] = _solved(some, delta[part])
+        values[:, part] = _resultants(some, delta[part], Chord(*chords[:, part]))
     return Resultants(*values), Chord(*chords)
 
 

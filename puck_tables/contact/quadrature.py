@@ -25,7 +25,7 @@ from puck_tables.contact.pressure import UNIFORM, PressureLaw
 # has a branch point at any distance from the end, and every panel stays as far from it as it is
 # long, so the error is below rounding at every φ.
 _PANELS = 32
-_GAUSS_NODES = 14
+_GAUSS_NODES = 14  # of Gauss's rule a panel
 
 
 def _graded_rule() -> tuple[FloatArray, FloatArray]:
@@ -39,7 +39,7 @@ def _graded_rule() -> tuple[FloatArray, FloatArray]:
 
 FROM_END, WEIGHT = _graded_rule()
 _SIN, _COS = np.cos(FROM_END), np.sin(FROM_END)
-_CHUNK = 64
+_CHUNK = 64  # points at once: their rules fit the cache
 
 
 def integrals(phi: npt.ArrayLike, law: PressureLaw = UNIFORM) -> PatchIntegrals:

@@ -19,12 +19,10 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import broadcast, real_array
+from puck_tables._core.real import real_array
 from puck_tables.contact.integrals import (
     PatchIntegrals,
     SlipDirection,
-    checked_phi,
-    slip_direction,
 )
 from puck_tables.errors import InputError
 
@@ -62,6 +60,7 @@ def moment_balance(p: PatchIntegrals, direction: SlipDirection, delta: npt.Array
     Examples
     --------
     >>> from puck_tables.contact import quadrature
+    >>> from puck_tables.contact.integrals import slip_direction
     >>> phi = np.pi / 2
     >>> rho = moment_balance(quadrature.integrals(phi), slip_direction(phi), 1.0)
     >>> float(rho.parallel.round(14)), float(rho.spin.round(14))
@@ -93,6 +92,7 @@ def pressure_tilt(rho: Resultants, direction: SlipDirection, delta: npt.ArrayLik
     Examples
     --------
     >>> from puck_tables.contact import closed_form
+    >>> from puck_tables.contact.integrals import slip_direction
     >>> rho = moment_balance(closed_form.integrals(0.0), slip_direction(0.0), 1.0)
     >>> float(pressure_tilt(rho, slip_direction(0.0), 1.0))
     1.0
@@ -117,38 +117,3 @@ def checked_delta(delta: npt.ArrayLike) -> FloatArray:
             f"(and at most {MAX_DELTA:g}), got {height[~allowed].flat[0]}"
         )
     return height
-
-
-def is_full_contact(phi: npt.ArrayLike, delta: npt.ArrayLike) -> npt.NDArray[np.bool_]:
-    """Whether the whole base stays loaded: where the linear pressure law is nowhere negative.
-
-    Parameters
-    ----------
-    phi : array_like, radians, in [−π/2, π/2]
-    delta : array_like
-        Dimensionless height δ = 2fh/r ≥ 0, broadcast against ``phi``.
-
-    Returns
-    -------
-    array of bool, of the broadcast shape
-
-    Raises
-    ------
-    InputError
-        If an angle or a height is not finite or outside its range.
-
-    References
-    ----------
-    Salnikova, Treschev, Gallyamov 2012, Prop. 4: full contact at every φ exactly when δ ≤ 1.
-
-    Examples
-    --------
-    >>> is_full_contact([0.0, np.pi / 4], 1.1).tolist()  # the limit at π/4 is δ = 1.15914
-    [False, True]
-    """
-    from puck_tables.contact.closed_form import integrals
-
-    angle, height = broadcast(phi=checked_phi(phi), delta=checked_delta(delta))
-    direction = slip_direction(angle)
-    rho = moment_balance(integrals(angle), direction, height)
-    return np.asarray(pressure_tilt(rho, direction, height) <= 1.0 + CONTACT_SLACK)

@@ -13,8 +13,9 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.columns import FRICTION, SPEED, numbers_of
+from puck_tables._core.columns import numbers_of
 from puck_tables._core.monotone import from_rest, monotone_cubic
+from puck_tables._core.quantities import FRICTION, SPEED
 from puck_tables._core.real import finite_array, instance, positive, real, shown
 from puck_tables._core.safe_write import write_bytes
 from puck_tables.errors import InputError
@@ -94,6 +95,21 @@ class SpeedLaw:
     def top_speed(self) -> float:
         """The last speed, m/s; nothing is known beyond it."""
         return float(np.asarray(self.speeds)[-1])
+
+    def as_rows(self) -> FloatArray:
+        """Rows (k, 2) of speed and f, of which ``floor.law`` of a scene makes the same law.
+
+        Raises
+        ------
+        InputError
+            If it is one of straight lines: a floor's is cubic between its rows.
+        """
+        if self.kind != "cubic":
+            raise InputError(
+                f"a {self.kind} SpeedLaw is none of a floor, whose law is cubic between its points:"
+                " give its values at more of them, as SpeedLaw(u, law(u))"
+            )
+        return np.stack([np.asarray(self.speeds), np.asarray(self.values)], axis=1)
 
     @cached_property
     def coefficients(self) -> FloatArray:

@@ -45,16 +45,16 @@ from puck_tables.errors import ContactError, InputError
 
 SpeedFunction = Callable[[FloatArray], npt.ArrayLike]
 
-_GAUSS_NODES = 12
+_GAUSS_NODES = 12  # of Gauss's rule a panel
 _NODE, _WEIGHT = np.polynomial.legendre.leggauss(_GAUSS_NODES)
 # Panels halved towards τ = 0, where for s → 1 a root has its branch point.
 _EDGES = np.append(0.5 ** np.arange(34), 0.0)[::-1]
 _HIGHEST = 1e100  # 2h/r: its square is still a number
-_DEFAULT_BREAKS = 16
-_CHUNK = 64
+_DEFAULT_BREAKS = 16  # halvings of the speed at which a function that names none is cut
+_CHUNK = 64  # points at once: their rules fit the cache
 _LEAST_STEP = 1e-5  # relative, of the difference quotient that stands for f′ as φ → 0
 _SERIES = np.array([1.0 / np.prod(np.arange(2.0, 2 * k + 4)) * (-1.0) ** k for k in range(11)])
-CONTACT_SLACK = 1e-9
+CONTACT_SLACK = 1e-9  # of the tilt: rounding of an input that just does not lift
 
 
 def speed_integrals(

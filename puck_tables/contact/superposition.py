@@ -27,7 +27,7 @@ _SHARES /= _SHARES.sum()
 # and farther from there than half their width they are analytic
 _FAR_NODES, _FAR_SHARES = np.polynomial.legendre.leggauss(14)
 _FAR_NODES, _FAR_SHARES = 0.5 * (1.0 + _FAR_NODES), 0.5 * _FAR_SHARES
-_CHUNK = 64
+_CHUNK = 64  # points at once: their rules fit the cache
 
 
 def disc_integrals(phi: npt.ArrayLike, radius: FloatArray) -> FloatArray:

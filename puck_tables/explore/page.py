@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from puck_tables.export.source import export_source
 
-TOL = 1e-6
+TOL = 1e-6  # of Q/J, Q²/J: finer than a screen shows
 _SCRIPTS = ("model.js", "draw.js", "hands.js")
 
 

@@ -38,7 +38,7 @@ _LAUNCHES: Sequence[tuple[float, ...]] = (
 )
 _SHARES = (0.0, 0.1, 0.5, 0.9, 0.99)  # of the stop time
 _ANGLES = (-0.5 * math.pi, -0.25 * math.pi, -0.3, 0.0, 0.8, 1.4)
-_HEIGHTS = (0.0, 1.0)
+_HEIGHTS = (0.0, 1.0)  # dimensionless: both ends of the tables
 
 
 def cases_of(functions: Sequence[str], tol: float, kind: Puck | None = None) -> dict[str, Cases]:

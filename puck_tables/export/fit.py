@@ -29,6 +29,7 @@ CELLS = (*range(4, 28), *range(28, 48, 2), *range(48, 97, 4))
 # Of the error asked for: of the functions of a stop, and of the curve and its inverse, so that what
 # is made of all of them keeps it (measured, tests/test_export_error.py).
 STOP_SHARE, CURVE_SHARE, CONSTANT_SHARE = 0.5, 0.3, 0.02
+# the same under another pressure law
 LAW_STOP_SHARE, ORBIT_SHARE, PATCH_SHARE, LAW_CONSTANT_SHARE = 0.42, 0.48, 0.22, 0.05
 _POWERS = 0.65  # of a share: what dropped powers may take
 # quanta that are tried, of the largest that rounding alone would allow; cells beyond the fewest

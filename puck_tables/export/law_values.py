@@ -36,8 +36,8 @@ from puck_tables.puck import Puck
 from puck_tables.stopping.axes import heights
 from puck_tables.stopping.stop_section import stops_at
 
-NODES, HEIGHTS = 385, 14
-REACH = 16.0
+NODES, HEIGHTS = 385, 14  # a side and over δ, to which the splines of a file are fitted
+REACH = 16.0  # of z, the scale along an orbit
 TURN_UNIT = 1.5  # of headings: they take less of the error than places on the orbits do
 _FINEST, _SHARE = 2e-11, 0.02  # of stops; of the error asked for
 _LAST, _STEP = 40.0, 1e-13  # the largest z that is followed, and the local error

@@ -32,7 +32,7 @@ from puck_tables.export.program import (
 from puck_tables.export.tables import law_tables, plain_tables
 from puck_tables.puck import Puck
 
-FINEST, COARSEST = 1e-9, 1e-2
+FINEST, COARSEST = 1e-9, 1e-2  # of Q/J, Q²/J: finer the stop table is not; looser is no answer
 # What can be asked for: the modules of it, and the functions that its user calls.
 PARTS: dict[str, tuple[tuple[ModuleType, ...], tuple[str, ...]]] = {
     "stop": ((places, stop), ("stop",)),

@@ -18,8 +18,8 @@ _OPERATORS: Mapping[type[ast.AST], tuple[str, int]] = {
     ast.Lt: ("<", 5), ast.LtE: ("<=", 5), ast.Gt: (">", 5), ast.GtE: (">=", 5), ast.Add: ("+", 6),
     ast.Sub: ("-", 6), ast.Mult: ("*", 7), ast.Div: ("/", 7),
 }  # fmt: skip
-_UNARY, _ATOM = 8, 9
-_LINE = 96
+_UNARY, _ATOM = 8, 9  # how tightly operators bind, the tightest last
+_LINE = 96  # characters
 
 
 class Braces(ABC):

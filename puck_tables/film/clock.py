@@ -15,7 +15,7 @@ _DATE = re.compile(
     r"(Z|[+-][0-9]{2}:?[0-9]{2})?"
 )
 _CLOCK = re.compile(r"(?:([0-9]{1,3}):)?([0-9]{1,2}):([0-9]{1,2})(?:[.,]([0-9]{1,9}))?")
-_NANO = 1e-9
+_NANO = 1e-9  # s
 
 
 def is_clock(text: str) -> bool:

@@ -13,7 +13,7 @@ Flags = npt.NDArray[np.bool_]
 
 
 @dataclass
-class Body:
+class TrackedBody:
     """The rows of one body: a puck, or marks of which each is one.
 
     Parameters
@@ -63,7 +63,7 @@ class Film:
     """
 
     kind: str
-    bodies: list[Body]
+    bodies: list[TrackedBody]
     unit: str = ""
     angle_unit: str = ""
     y_down: bool | None = None

@@ -7,12 +7,13 @@ from pathlib import Path
 import numpy as np
 
 from puck_tables._core.safe_read import read_whole
-from puck_tables._core.text import look_at, read_columns
+from puck_tables._core.text import look_at
+from puck_tables._core.text_rows import read_columns
 from puck_tables._core.units import PIXEL, factor, unit_in
 from puck_tables.errors import InputError
 from puck_tables.film.plane import Marks, Plane, plane_of
 
-_LARGEST = 1 << 20
+_LARGEST = 1 << 20  # bytes: a file of marks has some hundred
 
 
 def plane_from(marks: Marks) -> Plane:

@@ -24,7 +24,7 @@ from puck_tables.errors import InputError
 
 Marks = str | Path | Sequence[Sequence[float]]
 
-_FEWEST = 4
+_FEWEST = 4  # points: fewer leave a camera open
 _FLAT = 1e-4  # triangles of marks, of the square of their extent, that are as good as a line
 
 

@@ -22,10 +22,11 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
-from puck_tables.film.film import Body, Film
-from puck_tables.film.saved import Column, film_of_columns
+from puck_tables.film.film import Film, TrackedBody
+from puck_tables.film.saved import Quantity, film_of_columns
 
 _LARGEST = 1 << 27  # numbers in a file, a gigabyte
+# of 1, as DeepLabCut and SLEAP tell it: their own default below which a point is hidden
 _LIKELY = 0.6
 _DIMS = ("track", "xy", "node", "frame")
 
@@ -72,7 +73,7 @@ def film_of_hdf5(path: str | Path) -> Film:
     )
 
 
-def _columns(path: str | Path, file: Any) -> dict[str, Column]:
+def _columns(path: str | Path, file: Any) -> dict[str, Quantity]:
     """The columns of a file that this program saved."""
     columns = {}
     for name, one in file.items():
@@ -80,7 +81,7 @@ def _columns(path: str | Path, file: Any) -> dict[str, Column]:
             if one.size > _LARGEST:
                 raise InputError(f"{path}: its column {name} holds more than {_LARGEST} numbers")
             values = one.asstr()[()] if one.dtype.kind == "O" else one[()]
-            columns[name] = Column(values, str(one.attrs["units"]))
+            columns[name] = Quantity(values, str(one.attrs["units"]))
     return columns
 
 
@@ -116,7 +117,7 @@ def _deeplabcut(path: str | Path, table: Any) -> Film:
             mark: np.column_stack([values, mine[mark, "y"]])
             for (mark, role), values in mine.items() if role == "x"
         }  # fmt: skip
-        body = Body(owner, marks, frame=frames)
+        body = TrackedBody(owner, marks, frame=frames)
         body.likelihoods = {mark: v for (mark, role), v in mine.items() if role == "likelihood"}
         film.bodies.append(body)
     return film
@@ -219,7 +220,7 @@ def _sleap(path: str | Path, file: Any) -> Film:
     scores = _scores(file, values.shape)
     for n, name in enumerate(names):
         marks = {node: values[n, :, k, :].T.copy() for k, node in enumerate(nodes)}
-        body = Body(name, marks, frame=frames)
+        body = TrackedBody(name, marks, frame=frames)
         if scores is not None:
             body.likelihoods = {node: scores[n, k] for k, node in enumerate(nodes)}
         film.bodies.append(body)

@@ -8,11 +8,12 @@ from pathlib import Path
 
 from puck_tables._core.beginning import HDF5, ZIP, beginning, refuse_no_text
 from puck_tables._core.real import instance
-from puck_tables._core.text import LARGEST, encoding_of
+from puck_tables._core.text import encoding_of
+from puck_tables._core.text_rows import LARGEST
 from puck_tables.errors import InputError
 from puck_tables.film.film import Film
 from puck_tables.film.plane import Marks
-from puck_tables.film.settle import How, settled
+from puck_tables.film.settle import ReaderOptions, settled
 from puck_tables.film.tables import film_of_table
 from puck_tables.film.track import Track
 
@@ -86,7 +87,9 @@ def read_tracks(
     instance("columns", columns, str, type(None))
     if "\0" in str(path):
         raise InputError("path must be the name of a file, it holds a NUL")
-    how = How(fps, unit, scale, angle_unit, y_down, marks, centre, toward, likelihood, pucks)
+    how = ReaderOptions(
+        fps, unit, scale, angle_unit, y_down, marks, centre, toward, likelihood, pucks
+    )
     try:
         film = film_of(path, columns)
     except OSError as error:

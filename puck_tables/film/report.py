@@ -11,7 +11,7 @@ from puck_tables.film.track import Track
 from puck_tables.io.dataset import Dataset, variable
 
 _GAP = 1.5  # of the usual time from frame to frame
-_JITTER = 0.01
+_JITTER = 0.01  # of a frame: less is rounding of stamps
 _LEAP = 6.0  # of what it moves in frames near by
 _NEAR = 7  # frames
 

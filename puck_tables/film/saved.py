@@ -16,7 +16,7 @@ import numpy as np
 from puck_tables._core.safe_read import read_whole
 from puck_tables._core.units import factor, unit_given
 from puck_tables.errors import InputError
-from puck_tables.film.film import Body, Film
+from puck_tables.film.film import Film, TrackedBody
 
 _LARGEST = 1 << 29  # bytes of JSON
 _NEEDED = ("time", "x", "y")
@@ -24,14 +24,14 @@ _KINDS = {"time": "time", "x": "length", "y": "length", "orientation": "angle"}
 _WRONG = (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError)
 
 
-class Column(NamedTuple):
+class Quantity(NamedTuple):
     """Values (n,) and their unit, '' where the file does not say it."""
 
     values: Any
     unit: str
 
 
-def film_of_columns(path: str | Path, columns: Mapping[str, Column]) -> Film:
+def film_of_columns(path: str | Path, columns: Mapping[str, Quantity]) -> Film:
     """The film in columns of these names.
 
     Raises
@@ -42,7 +42,7 @@ def film_of_columns(path: str | Path, columns: Mapping[str, Column]) -> Film:
     Examples
     --------
     >>> columns = {"time": ([0, 1], "s"), "x": ([0, 2], "m"), "y": ([0, None], "m")}
-    >>> film = film_of_columns("a.h5", {name: Column(*one) for name, one in columns.items()})
+    >>> film = film_of_columns("a.h5", {name: Quantity(*one) for name, one in columns.items()})
     >>> film.unit, film.bodies[0].marks[""].tolist()
     ('m', [[0.0, 0.0], [2.0, nan]])
     """
@@ -75,7 +75,7 @@ def film_of_columns(path: str | Path, columns: Mapping[str, Column]) -> Film:
     for owner in dict.fromkeys(owners.tolist()):
         mine = owners == owner
         place = np.column_stack([numbers["x"][mine], numbers["y"][mine]])
-        body = Body(owner, {"": place}, time=numbers["time"][mine])
+        body = TrackedBody(owner, {"": place}, time=numbers["time"][mine])
         if "orientation" in numbers:
             body.angles[""] = numbers["orientation"][mine]
         film.bodies.append(body)
@@ -110,13 +110,13 @@ def film_of_json(path: str | Path) -> Film:
         whole = json.loads(content) if len(rows) < 2 else {}
         if isinstance(whole.get("columns"), dict):
             columns = {
-                name: Column(one["values"], str(one.get("unit") or ""))
+                name: Quantity(one["values"], str(one.get("unit") or ""))
                 for name, one in whole["columns"].items() if name in (*_KINDS, "name")
             }  # fmt: skip
         else:
             first = rows[0] if rows else {}
             columns = {
-                name: Column([row.get(name) for row in rows], "")
+                name: Quantity([row.get(name) for row in rows], "")
                 for name in first if name in (*_KINDS, "name")
             }  # fmt: skip
     except _WRONG:

@@ -14,7 +14,7 @@ from puck_tables._core.real import instance, positive, real
 from puck_tables._core.units import PIXEL, factor, pixel_size, unit_given
 from puck_tables.errors import InputError
 from puck_tables.film.angles import direction
-from puck_tables.film.film import Body, Film
+from puck_tables.film.film import Film, TrackedBody
 from puck_tables.film.marks_file import plane_from
 from puck_tables.film.plane import Marks, Plane
 from puck_tables.film.track import Track
@@ -25,7 +25,7 @@ _SLOW = 1.0  # s between frames: more, and times are hardly in seconds
 
 
 @dataclass(frozen=True)
-class How:
+class ReaderOptions:
     """What the reader of a file says of it; see :func:`puck_tables.film.reading.read_tracks`."""
 
     fps: float | None = None
@@ -86,7 +86,7 @@ class How:
             )
 
 
-def settled(path: str | Path, film: Film, how: How) -> tuple[Track, ...]:
+def settled(path: str | Path, film: Film, how: ReaderOptions) -> tuple[Track, ...]:
     """The tracks of a film.
 
     Raises
@@ -97,8 +97,8 @@ def settled(path: str | Path, film: Film, how: How) -> tuple[Track, ...]:
     Examples
     --------
     >>> marks = {"": np.array([[0.0, 1.0], [2.0, 1.0]])}
-    >>> film = Film("table", [Body("", marks, frame=np.array([0.0, 1.0]))], unit="cm")
-    >>> settled("a.csv", film, How(fps=50.0))[0].place.tolist()
+    >>> film = Film("table", [TrackedBody("", marks, frame=np.array([0.0, 1.0]))], unit="cm")
+    >>> settled("a.csv", film, ReaderOptions(fps=50.0))[0].place.tolist()
     [[0.0, 0.01], [0.02, 0.01]]
     """
     notes = [film.kind, *film.notes]
@@ -134,7 +134,7 @@ def settled(path: str | Path, film: Film, how: How) -> tuple[Track, ...]:
     return tuple(tracks)
 
 
-def _others(film: Film, how: How) -> str:
+def _others(film: Film, how: ReaderOptions) -> str:
     """A hint where one puck of many spoils all."""
     many = len(film.bodies) > 1 and how.pucks is None
     return "; or say which pucks to read with pucks (--pucks)" if many else ""
@@ -156,7 +156,7 @@ def _refuse_unknown(path: str | Path, wanted: Sequence[str] | None, known: Seque
 class _Scale:
     """From the unit and the axes of a file to metres with y to the left of x."""
 
-    def __init__(self, path: str | Path, film: Film, how: How, notes: list[str]) -> None:
+    def __init__(self, path: str | Path, film: Film, how: ReaderOptions, notes: list[str]) -> None:
         if how.unit is not None and film.unit not in ("", how.unit, PIXEL):
             raise InputError(
                 f"{path} gives places in {film.unit}: leave unit = '{how.unit}' out"
@@ -201,7 +201,7 @@ class _Scale:
             notes.append("y grows downwards in the file: y, and angles, are turned over")
 
     @staticmethod
-    def _radians(path: str | Path, film: Film, how: How) -> float:
+    def _radians(path: str | Path, film: Film, how: ReaderOptions) -> float:
         if film.angle_unit and how.angle_unit not in (None, film.angle_unit):
             raise InputError(f"{path} gives angles in {film.angle_unit}: leave angle_unit out")
         unit = film.angle_unit or how.angle_unit
@@ -229,7 +229,9 @@ class _Scale:
         return -turned if self.down else turned
 
 
-def _times(path: str | Path, film: Film, body: Body, how: How) -> tuple[FloatArray, list[str]]:
+def _times(
+    path: str | Path, film: Film, body: TrackedBody, how: ReaderOptions
+) -> tuple[FloatArray, list[str]]:
     """Times in s, and what they are from."""
     size = len(next(iter(body.marks.values())))
     for clock in (body.frame, body.time):
@@ -273,7 +275,7 @@ def _stamped(film: Film) -> float:
 
 
 def _pucks(
-    path: str | Path, film: Film, body: Body, how: How
+    path: str | Path, film: Film, body: TrackedBody, how: ReaderOptions
 ) -> dict[str, Sequence[str]]:  # fmt: skip
     """The pucks of a body by name, with the marks in whose middle each has its centre."""
     names = list(body.marks)
@@ -300,7 +302,12 @@ def _pucks(
 
 
 def _seen(
-    path: str | Path, film: Film, body: Body, centre: Sequence[str], how: How, scale: _Scale
+    path: str | Path,
+    film: Film,
+    body: TrackedBody,
+    centre: Sequence[str],
+    how: ReaderOptions,
+    scale: _Scale,
 ) -> tuple[FloatArray, FloatArray | None, list[str]]:
     """Place and angle of a puck with NaN where it was not seen."""
     used = [*centre, *([how.toward] if how.toward else [])]
@@ -343,7 +350,7 @@ def _seen(
     return place, turned, notes
 
 
-def _angle_column(path: str | Path, body: Body, centre: Sequence[str]) -> FloatArray | None:
+def _angle_column(path: str | Path, body: TrackedBody, centre: Sequence[str]) -> FloatArray | None:
     """The angles that are of a puck."""
     if not body.angles:
         return None

@@ -8,15 +8,16 @@ from typing import Any
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.text import Look, look_at, number, read_columns
+from puck_tables._core.text import Look, look_at, number
+from puck_tables._core.text_rows import read_columns
 from puck_tables._core.units import factor
 from puck_tables.errors import InputError
 from puck_tables.film.clock import is_clock, seconds
-from puck_tables.film.film import Body, Film, Flags
+from puck_tables.film.film import Film, Flags, TrackedBody
 from puck_tables.film.headings import Heading
 from puck_tables.film.layout import Layout, example, layout_of, name_of
 
-MOST_PUCKS = 10_000
+MOST_PUCKS = 10_000  # in one file: more is a column of another meaning
 _YES = {"true", "yes", "y", "t", "ja", "j", "oui", "si", "sí", "wahr", "ok"}
 _NO = {"false", "no", "n", "f", "nein", "non", "falsch", ""}
 _SHOWN, _HIDDEN = (
@@ -163,7 +164,7 @@ def _rows(
 def _body(
     path: str | Path, name: str, columns: dict[int, Heading], values: dict[int, FloatArray],
     words: dict[int, Any], rows: Any, along: bool,
-) -> Body:  # fmt: skip
+) -> TrackedBody:  # fmt: skip
     """One body from its columns and rows; ``along``: places along x or y alone, the other is 0."""
     found: dict[tuple[str, str], FloatArray] = {}
     units: dict[str, str] = {}
@@ -193,7 +194,7 @@ def _body(
                 f"puck that goes along {role} alone with - for what else there is"
             )
         marks[mark] = np.column_stack([where, other] if role == "x" else [other, where])
-    body = Body(name, marks, seen=seen)
+    body = TrackedBody(name, marks, seen=seen)
     clocks = {}
     for (role, _), value in found.items():
         if role in clocks:

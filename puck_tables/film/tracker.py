@@ -34,12 +34,12 @@ from puck_tables._core.safe_read import read_whole
 from puck_tables._core.text import encoding_of
 from puck_tables._core.units import known
 from puck_tables.errors import InputError
-from puck_tables.film.film import Body, Film
+from puck_tables.film.film import Film, TrackedBody
 
 _LARGEST = 1 << 26  # bytes of a .trk, or of all in an archive
-_LARGEST_ARCHIVE = 1 << 32
-_MOST_MEMBERS = 10_000
-_MOST_FRAMES = 10_000_000
+_LARGEST_ARCHIVE = 1 << 32  # bytes: more is no archive of Tracker, or one made to fill the memory
+_MOST_MEMBERS = 10_000  # files in it: the same
+_MOST_FRAMES = 10_000_000  # of a film: a day at 100 Hz
 _PANEL, _MASS = "TrackerPanel", "PointMass"
 
 
@@ -183,7 +183,7 @@ def _film(path: str, content: bytes) -> Film:
         film.unit, film.y_down = "px", True
         film.notes.append("no scale was chosen in Tracker: its axes are not used")
     numbers = np.array(frames, dtype=np.float64)
-    body = Body("", pictures if plain else {
+    body = TrackedBody("", pictures if plain else {
         name: _world(numbers, points, axes) for name, points in pictures.items()
     }, frame=numbers)  # fmt: skip
     if duration is not None:

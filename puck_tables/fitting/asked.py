@@ -218,6 +218,14 @@ class Asked:
         priors = {name: one for name, one in self.priors.items() if name not in OF_IMPACTS}
         return replace(self, free=own, priors=priors, met={})
 
+    def spinning(self, spin: float) -> Asked:
+        """The same with the launch spin (rad/s) held."""
+        priors, bounds, start = {**self.priors}, {**self.bounds}, {**self.start}
+        for given in (priors, bounds, start):
+            given.pop("launch_spin", None)
+        fixed = {**self.fixed, "launch_spin": spin}
+        return replace(self, fixed=fixed, priors=priors, bounds=bounds, start=start)
+
     def joined(self, sizes: Collection[int], grips: bool) -> Asked:
         """The same with the numbers of the impacts that there are.
 

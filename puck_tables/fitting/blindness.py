@@ -194,7 +194,7 @@ def _errors(problem: Problem, x: FloatArray, members: list[tuple[int, str]]) -> 
 
 
 def _marked(film: Seen) -> Seen:
-    return replace(film, angle=np.zeros(film.time.size))
+    return replace(film, angle=np.zeros(film.time.size), counts=None)
 
 
 def _longer(film: Seen) -> Seen:
@@ -202,5 +202,5 @@ def _longer(film: Seen) -> Seen:
     return replace(
         film, time=film.usual_step * np.arange(float(count)), place=np.zeros((count, 2)),
         angle=None if film.angle is None else np.zeros(count), frame=np.arange(count),
-        row=None if film.row is None else np.resize(film.row, count),
+        row=None if film.row is None else np.resize(film.row, count), counts=None,
     )  # fmt: skip

@@ -12,8 +12,10 @@ from puck_tables.fitting.least_squares import LOOSE, minimise
 from puck_tables.fitting.parameters import NODES
 from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.timing import Known
+from puck_tables.fitting.turns import on_another_floor
 
 _FRAMES = 80  # that tell whether such a law may be the reason of a misfit
+_LEAST = 0.02  # of the largest friction of a line: the smallest
 _SHARES = (0.0, 0.08, 0.3, 1.0)  # of the fastest slip
 
 
@@ -26,7 +28,7 @@ def over_speeds(found: Estimate, speeds: tuple[float, ...], between: str, known:
 
 
 def tried(found: Estimate) -> Estimate:
-    """About what a law of lines over slip speed leaves of the frames of an estimate."""
+    """About what a law over slip speed leaves of the frames of an estimate."""
     problem = found.problem
     films = []
     for film in problem.films:
@@ -39,8 +41,10 @@ def tried(found: Estimate) -> Estimate:
     speeds = tuple(float(f"{1.1 * top * share:.2g}") for share in _SHARES)
     fewer = problem.with_films(tuple(films))
     moved, start = _begun(fewer, found.x, speeds)
-    x, _ = minimise(moved, start, LOOSE)
-    return replace(found, problem=moved, x=x, minima=())
+    lines, _ = minimise(moved, start, LOOSE)
+    smooth = replace(moved, asked=replace(moved.asked, between="cubic"))
+    x, _ = minimise(smooth, lines, LOOSE)
+    return replace(found, problem=smooth, x=x, minima=())
 
 
 def _begun(
@@ -48,10 +52,39 @@ def _begun(
 ) -> tuple[Problem, FloatArray]:
     """A problem of lines between slip speeds, with the friction of an estimate at each.
 
+    Where drag besides friction is nearer to the tracks, which is a line, it is that of the line.
     Where f is the same at all speeds the slopes of a cubic jump: lines lead away from there.
     """
     asked = problem.asked.over(speeds, "linear")
-    numbers = problem.found(x)
+    numbers, launches = problem.found(x), problem.launches(x)
     numbers.update({name: numbers["friction"] for name in asked.free if name in NODES})
-    moved = replace(problem, asked=asked, weights=())
-    return moved, moved.unknowns(numbers, problem.launches(x), problem.found_walls(x))
+    moved = replace(problem, asked=asked, weights=(), tall=False)
+    start = moved.unknowns(numbers, launches, problem.found_walls(x))
+    line = None if problem.meetings else on_another_floor(problem, x)
+    if line is None:
+        return moved, start
+    there, _ = minimise(*line, LOOSE)
+    found, gravity = line[0].found(there), problem.asked.known()["gravity"]
+    values = found["friction"] + found["drag"] / gravity * np.array(speeds)
+    values = np.maximum(values, _LEAST * values.max())
+    numbers.update(dict(zip(NODES, values.tolist(), strict=False)))
+    if "delta" in numbers:  # of the same height
+        numbers["delta"] = min(numbers["delta"] * values[0] / numbers["friction"], 1.0)
+    other = moved.unknowns(numbers, line[0].launches(there))
+    near = [float((moved.residuals(one) ** 2).sum()) for one in (start, other)]
+    return moved, other if near[1] < near[0] else start
+
+
+def law_over(
+    found: Estimate, covariance: FloatArray, at: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """The friction coefficient at slip speeds (n,) m/s, and its standard errors (n,)."""
+    asked, numbers = found.problem.asked, found.problem.found(found.x)
+    count = len(asked.speeds)
+    slopes = np.zeros((at.size, count))
+    for k, name in enumerate(asked.free[:count]):
+        step = 1e-4 * numbers[name]
+        ends = [asked.speed_law({**numbers, name: numbers[name] + by})(at) for by in (step, -step)]
+        slopes[:, k] = (ends[0] - ends[1]) / (2.0 * step)
+    spread = np.einsum("ni,ik,nk->n", slopes, covariance[:count, :count], slopes)
+    return np.asarray(asked.speed_law(numbers)(at)), np.sqrt(spread)

@@ -17,7 +17,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.abreast import FROM_BESIDE, abreast
 from puck_tables.fitting.estimate import Estimate
-from puck_tables.fitting.problem import Found
+from puck_tables.fitting.unknowns import Found
 
 Z95 = 1.959963984540054
 BLIND = 2.0  # plausible ranges per standard deviation

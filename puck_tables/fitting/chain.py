@@ -7,23 +7,55 @@ numbers of the rims.  Each link is a difference of its own, and the chain is the
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.fitting.joined import Hit, Meeting, Slide, gap_of, state_at, struck
+from puck_tables.fitting.asked import Asked
+from puck_tables.fitting.joined import Hit, Meeting, Slide, Wall, gap_of, state_at, struck
+from puck_tables.fitting.launched import Moving
 from puck_tables.fitting.parameters import LAUNCH, OF_IMPACTS
-
-if TYPE_CHECKING:
-    from puck_tables.fitting.problem import Problem
+from puck_tables.fitting.seen import Seen
 
 _STEP, _CURVE_STEP = 1e-6, 1e-4  # of a scale; of what changes the curve itself
 _LEAST = 1e-2
 _INSTANT = 1e-6  # s
 
 
-def slopes_of_slides(problem: Problem, x: FloatArray) -> list[list[FloatArray]]:
+class Chained(Protocol):
+    """What is read of a :class:`puck_tables.fitting.problem.Problem`, which stands above."""
+
+    @property
+    def asked(self) -> Asked:
+        """What is to be found of the puck."""
+
+    @property
+    def films(self) -> tuple[Seen, ...]:
+        """The tracks."""
+
+    @property
+    def meetings(self) -> tuple[Meeting, ...]:
+        """Impacts, in the order of time."""
+
+    @property
+    def names(self) -> tuple[tuple[int, str], ...]:
+        """(track, name) of every unknown."""
+
+    def found(self, x: FloatArray) -> dict[str, float]:
+        """The numbers of the puck."""
+
+    def found_walls(self, x: FloatArray) -> tuple[Wall, ...]:
+        """The walls, of which some are found."""
+
+    def moving(self, found: dict[str, float]) -> Moving:
+        """How the puck moves with such numbers."""
+
+    def slides(self, x: FloatArray) -> tuple[list[list[Slide]], list[Hit]]:
+        """The slides of each track, and the impacts between them."""
+
+
+def slopes_of_slides(problem: Chained, x: FloatArray) -> list[list[FloatArray]]:
     """The derivatives of each slide of each track (7, m): since when, then its launch.
 
     Parameters
@@ -43,7 +75,7 @@ def slopes_of_slides(problem: Problem, x: FloatArray) -> list[list[FloatArray]]:
     return slopes
 
 
-def _first(problem: Problem, n: int, size: int) -> FloatArray:
+def _first(problem: Chained, n: int, size: int) -> FloatArray:
     """Of the first slide of a track."""
     found = np.zeros((7, size))
     for k, name in enumerate(LAUNCH):
@@ -60,7 +92,7 @@ def _first(problem: Problem, n: int, size: int) -> FloatArray:
 
 
 def _to_state(
-    problem: Problem, x: FloatArray, slide: Slide, slopes: FloatArray, time: float
+    problem: Chained, x: FloatArray, slide: Slide, slopes: FloatArray, time: float
 ) -> tuple[FloatArray, FloatArray]:
     """The derivatives (6, m) of a slide's state at a moment, and how fast it changes (6,)."""
     found = problem.found(x)
@@ -92,7 +124,7 @@ def _to_state(
 
 
 def _through(
-    problem: Problem, x: FloatArray, meeting: Meeting, hit: Hit,
+    problem: Chained, x: FloatArray, meeting: Meeting, hit: Hit,
     before: list[tuple[FloatArray, FloatArray]],
 ) -> list[FloatArray]:  # fmt: skip
     """The derivatives (7, m) of the slides after an impact."""

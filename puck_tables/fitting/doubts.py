@@ -5,13 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.numbers import KNOWN, FoundLaunch, Number
+from puck_tables.fitting.parameters import ALL, LAUNCH, WALL
+from puck_tables.fitting.problem import Problem
+from puck_tables.fitting.seen import Seen
 
 _GRIP, _SLICK = 5.0, 1e-4  # friction coefficients of dry surfaces are smaller, and larger
 _TALL = 8.0  # radii: pucks are lower
 _OTHER = 3.0  # times the radius that was given
 _FAST, _FAST_RIM = 100.0, 300.0  # m/s: no puck on a film slides, or turns, faster
 _HEAVIER = 100.0  # times the other puck
+_AT_END = 1e-3  # of the width of a range
 _UNITS = "the unit of the places, or of the times, the scale or the frames a second may be wrong"
 
 
@@ -73,3 +78,32 @@ def doubts(
                 "angles or of the times may be wrong, or it turns by whole turns less"
             )
     return tuple(said)
+
+
+def rounded(film: Seen) -> list[str]:
+    """A sentence for what is rounded more coarsely than its noise is."""
+    return [
+        f"{what} of {film.name} are rounded to {step:.3g} {unit}, which is no noise where the puck "
+        "is slow: frames in which one stays at a value and comes back, or ends there, count as "
+        "two, and errors are widened by what parts of the frames do to the numbers. Better give "
+        "them as they were measured"
+        for what, step, unit in zip(("Places", "Angles"), film.steps, ("m", "rad"), strict=True)
+        if step
+    ]
+
+
+def ran_away(problem: Problem, x: FloatArray) -> str:
+    """A sentence where a launch lies on the end of what the film leaves it; else none."""
+    for (track, name), value, low, high in zip(problem.names, x, *problem.limits, strict=True):
+        if name in problem.asked.bounds or name not in (*LAUNCH, *WALL) or low == -math.inf:
+            continue
+        if min(value - low, high - value) <= _AT_END * (high - low):
+            kind = ALL.get(name) or WALL[name]
+            of = f" of {problem.films[track].name}" if track >= 0 else ""
+            return (
+                f"Nothing is determined: the fit runs away, {kind.words}{of} to {value:.3g} "
+                f"{kind.unit}, the end of what is looked for, as nobody would believe: the tracks "
+                "look alike all the way, or another law moves this puck. What would tell: angle "
+                f"marks on the puck, or bounds of {name}, or its value, if it is known"
+            )
+    return ""

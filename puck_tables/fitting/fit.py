@@ -21,6 +21,7 @@ from puck_tables.fitting.certainty import (
     pinned_of,
     widened,
 )
+from puck_tables.fitting.doubts import ran_away
 from puck_tables.fitting.estimate import Estimate, estimate, freedom
 from puck_tables.fitting.fitted import fitted
 from puck_tables.fitting.given import (
@@ -218,7 +219,8 @@ def fit(
         found.problem.names[k][1] in asked.bounds for k in np.flatnonzero(certainty.pinned)
     )
     nowhere = "" if held_off else no_answer(found, known, judged)
-    seen, certainty = certainty, certainty.lost() if nowhere else certainty
+    astray = nowhere or ran_away(found.problem, found.x)
+    seen, certainty = certainty, certainty.lost() if astray else certainty
     numbers, launches = numbers_of(found, certainty, rivals, unsigned)
     lost = tuple(n for n in found.problem.asked.free if not numbers[n].determined)
     scores: tuple[LawScore, ...] = ()
@@ -235,6 +237,8 @@ def fit(
     if held is not None:
         predictions = _held_out(found, held, known)
         say(steps, steps)
+    blind = () if nowhere else without_spin(found, numbers, known)
+    blind += (f"{astray}.",) if astray else blind_spots(found, seen, lost, rivals, unsigned)
     hits: tuple[Impact, ...] = ()
     if found.problem.meetings:
         hits = impacts_joined(found, certainty, numbers)
@@ -257,12 +261,8 @@ def fit(
         drift=drift(found),
         left_out=left_out,
         cut_off=_cut_off(slides, problem, known, left_out),
-        blind=(nowhere,)
-        if nowhere
-        else (
-            *without_spin(found, numbers, known),
-            *blind_spots(found, seen, lost, rivals, unsigned),
-        ),
+        blind=blind,
+        astray=astray,
         laws=scores,
         held_out=predictions,
         impacts=hits,
@@ -274,7 +274,7 @@ def fit(
         uncut=uncut,
     )
     if result.complaints:
-        result = replace(result, misread=misread(slides, problem, known))
+        result = replace(result, misread=misread(slides, problem, known, bool(speeds)))
     return result
 
 

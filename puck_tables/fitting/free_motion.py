@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.fitting.estimate import FARTHEST, Estimate
+from puck_tables.fitting.problem import UNSEEN
 from puck_tables.fitting.residual_tests import drift, runs
 from puck_tables.fitting.seen import FEWEST, Seen, noise_of, rests_from
 from puck_tables.fitting.touched import pushed, touched
@@ -32,7 +33,7 @@ def trimmed(found: Estimate, uncut: tuple[Seen, ...]) -> tuple[Seen, ...]:
     decel = problem.asked.scales(problem.found(found.x))[0]
     hidden = math.sqrt(2.0 * FARTHEST * problem.noise[0] / decel)
     for film, whole, (x, _, _) in zip(problem.films, uncut, problem.each(), strict=True):
-        out = ~found.kept[x]
+        out = ~found.kept[x] & (problem.kinds[x] != UNSEEN)
         ends = [_foreign(out), _foreign(out[::-1])]
         beside = math.ceil(min(hidden / film.usual_step, _BESIDE * (out.size - sum(ends))))
         for n, before in enumerate(ends):

@@ -26,7 +26,7 @@ class How(NamedTuple):
     tolerance: float
 
 
-_FAR = 1e3  # ends that are farther would only bend the steps towards a minimum
+_FAR = 1e3  # ends that are farther, and those of launches, would only bend steps to a minimum
 
 LOOSE = How("cauchy", 3.0, 40, 1e-4)
 ROBUST = How("cauchy", 3.0, 30, 1e-4)
@@ -45,8 +45,11 @@ def minimise(
 
     moved = np.array([k for k in range(x.size) if k != held], np.int64)
     whole = x.copy()
-    limits = tuple(ends[moved] for ends in problem.limits)
-    low, high = (np.where(np.abs(ends) < _FAR, ends, np.copysign(np.inf, ends)) for ends in limits)
+    limits = [ends[moved] for ends in problem.limits]
+    low, high = (
+        np.where(_near(ends, problem, moved), ends, far)
+        for ends, far in zip(limits, (-np.inf, np.inf), strict=True)
+    )
     inside = _inside(x[moved], low, high)
     latest: dict[bytes, FloatArray] = {}
 
@@ -75,6 +78,12 @@ def minimise(
             f_scale=scale, max_nfev=how.evaluations, ftol=how.tolerance, xtol=how.tolerance,
             gtol=1e-12,
         )  # fmt: skip
+        beyond = (found.x < limits[0]) | (found.x > limits[1])
+        if beyond.any():  # it ran away: the rest is sought with these on their ends
+            low, high = (np.where(beyond, ends, near)
+                         for ends, near in zip(limits, (low, high), strict=True))  # fmt: skip
+            inside = _inside(np.clip(found.x, *limits), low, high)
+            continue
         if scale <= how.scale:
             whole[moved] = np.clip(found.x, *limits)
             return whole, float(found.cost)
@@ -89,6 +98,16 @@ def _astray(problem: Problem, x: FloatArray) -> str:
         "the fit is led astray, to a motion that cannot be computed"
         f"{f' ({told})' if told else ''}: give bounds or a prior of what it finds, or find less"
     )
+
+
+def _near(
+    ends: FloatArray, problem: Problem, moved: npt.NDArray[np.int64]
+) -> npt.NDArray[np.bool_]:
+    """Ends that count from the first: of the puck, and bounds that are given."""
+    given = [problem.names[k][0] == -1 or problem.names[k][1] in problem.asked.bounds
+             for k in moved]  # fmt: skip
+    near: npt.NDArray[np.bool_] = (np.abs(ends) < _FAR) & np.array(given, bool)
+    return near
 
 
 def _inside(x: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -32,22 +33,56 @@ _ANGLES = (
     (1.0 / _DEGREE, "if angles were in rad, not in degrees: say their unit"),
 )
 _MOST_DRAG = 20.0  # over the time of a film
-_DRAG = "with drag besides friction"
 _BETTER = math.log(1.2)  # more numbers always fit a little better
+_ALIKE = math.log(1.5)  # readings that fit about as well
+_MUCH = math.log(3.0)  # so much smaller residuals tell, though they are no noise yet
+_LITTLE, _CLEAN = math.log(1.1), 1.4  # less than that is no reason; times the noise of a place
 _MOST, _LEAST = 10.0, 1e-3  # times one friction for all speeds: laws that some floor has
 _HELD = ("launch_spin", "launch_angle")  # what is said of these is said of the angles as they are
 
 
-def misread(found: Estimate, problem: Problem, known: Known) -> str:
+class _Reading(NamedTuple):
+    """What else may be: in words, by how much smaller residuals are, if a floor, if it fits."""
+
+    words: str
+    gain: float
+    floor: bool = False
+    fits: bool = True
+
+
+def misread(found: Estimate, problem: Problem, known: Known, speeds: bool) -> str:
     """A sentence that says which other reading fits far better; empty if none does.
+
+    A floor is named before angles or a radius that fit about as well.
 
     Parameters
     ----------
     found : the estimate of slides that do not fit
     problem : what was asked, with all frames
     known : whether the noise of places, of angles and of time stamps is
+    speeds : whether a friction over slip speed does not fit, either
     """
-    told, best, given = "", math.log(_FAR), problem.asked.known()["radius"]
+    floor = _may_change(problem.asked) and not speeds
+    told = [one for one in (_by_drag(found, problem, known), _by_speed(found, problem)) if one] \
+        if floor else []  # fmt: skip
+    if len(told) == 2 and told[1].gain < told[0].gain + _BETTER:  # more numbers fit a little better
+        del told[1]
+    told = sorted(told, key=lambda one: -one.gain)[:1]
+    told += _otherwise(found, problem, known)
+    air = _may_change(problem.asked) and not any(one.fits for one in told)
+    if air and (words := _by_air(found, problem, known)):
+        return words
+    best = max((one.gain for one in told), default=0.0)
+    near = sorted((one for one in told if one.gain > best - _ALIKE), key=lambda one: not one.floor)
+    if near:
+        words = f"{near[0].words}{f'; or {near[1].words}' if len(near) > 1 else ''}"
+        return f"Residuals would be {math.exp(near[0].gain):.2g} times smaller {words}"
+    return ""
+
+
+def _otherwise(found: Estimate, problem: Problem, known: Known) -> list[_Reading]:
+    """The angles, or the radius, read otherwise, if one of these fits far better."""
+    best, given = _Reading("", math.log(_FAR)), problem.asked.known()["radius"]
     for words, other, scale in _others(problem):
         try:
             one = fitted(other, known, refit=False)
@@ -57,13 +92,43 @@ def misread(found: Estimate, problem: Problem, known: Known) -> str:
         radius = one.problem.asked.scales(one.problem.found(one.x))[2]
         found_radius = "radius" in other.asked.free and "radius" not in problem.asked.free
         same = found_radius and abs(radius / given - 1.0) < _NEAR
-        if gain > best and not same and _fits(one, problem.noise[0]):
-            told = f"Residuals would be {math.exp(gain):.2g} times smaller " + words.format(radius)
-            best = gain
-    if _may_change(problem.asked):
-        far = best + _BETTER if told else best
-        told = _by_speed(found, far, problem.noise[0]) or told
-    return told
+        if gain > best.gain and not same and _fits(one, problem.noise[0]):
+            best = _Reading(words.format(radius), gain)
+    return [best] if best.words else []
+
+
+def _tells(found: Estimate, other: Estimate, noise: float) -> float:
+    """By how much smaller residuals are of another floor; 0 where that tells nothing.
+
+    It leaves far less, or no more than noise where one friction leaves more than that.  Where air
+    or a floor changes in a way that no few numbers tell it may still leave more than noise.
+    """
+    gain = _size(found, 1.0) - _size(other, 1.0)
+    left = float(np.median(_off(other)[0])) / noise
+    clean = gain > _LITTLE and left < _CLEAN
+    fits = (gain > math.log(_FAR) or clean) and _fits(other, noise)
+    return gain if fits or (gain > _MUCH and _explained(other)) else 0.0
+
+
+def _dragged(problem: Problem) -> Problem:
+    """The same with drag besides friction."""
+    asked = problem.asked
+    # from a speed e^20 times as slow, or as fast, at the end nothing is told any more
+    most = _MOST_DRAG / max(float(film.time[-1]) for film in problem.films)
+    bounds = {**asked.bounds, "drag": (-most, most)}
+    return replace(problem, asked=replace(asked, free=(*asked.free, "drag"), bounds=bounds))
+
+
+def _by_drag(found: Estimate, problem: Problem, known: Known) -> _Reading | None:
+    """Drag of speed and spin alike, if that fits far better."""
+    other = _dragged(problem)
+    try:
+        one = fitted(other, known, refit=False)
+    except InputError:
+        return None
+    gain = _tells(found, one, problem.noise[0])
+    words = f"with drag besides friction: find it, too (--free {','.join(other.asked.free)})"
+    return _Reading(words, gain, True, _fits(one, problem.noise[0])) if gain else None
 
 
 def _may_change(asked: Asked) -> bool:
@@ -73,25 +138,50 @@ def _may_change(asked: Asked) -> bool:
     return uniform and not named and not asked.speeds and "friction" in asked.free
 
 
-def _by_speed(found: Estimate, best: float, noise: float) -> str:
-    """A sentence on a friction over slip speed, if that fits far better than ``best``."""
+def _by_speed(found: Estimate, problem: Problem) -> _Reading | None:
+    """A friction over slip speed, if that fits far better."""
     try:
         other = tried(found)
     except InputError:  # hardly any friction, at no speed
-        return ""
-    gain = _size(found, 1.0) - _size(other, 1.0)
-    if not (gain > best and _fits(other, noise)):
-        return ""
+        return None
+    gain = _tells(found, other, problem.noise[0])
     asked, numbers = other.problem.asked, other.problem.found(other.x)
     speeds = asked.speeds
     values = [numbers[name] for name in NODES[: len(speeds)]]
     usual = found.problem.found(found.x)["friction"]
     if max(values) > _MOST * usual or min(values) < _LEAST * usual:  # such a law fits noise
-        return ""
+        return None
     told = ", ".join(f"{f:.2g} at {u:g} m/s" for u, f in zip(speeds, values, strict=True))
+    words = (
+        f"with a friction over slip speed ({told}): find it (--slip-speeds "
+        f"{','.join(f'{u:g}' for u in speeds)})"
+    )
+    return _Reading(words, gain, True, _fits(other, problem.noise[0])) if gain else None
+
+
+def _by_air(found: Estimate, problem: Problem, known: Known) -> str:
+    """A sentence where places alone are those of another floor, and angles are not.
+
+    Air slows the centre, and hardly the spin.
+    """
+    if len(problem.films) > 1 or problem.films[0].angle is None:
+        return ""
+    asked, spin = problem.asked, float(found.problem.launches(found.x)[0, 4])
+    asked = asked.spinning(spin)
+    films = tuple(replace(film, angle=None) for film in problem.films)
+    blind = replace(problem.with_films(films), asked=asked)
+    try:
+        one = fitted(blind, known, refit=False)
+        others = [tried(one), fitted(_dragged(blind), known, refit=False)]
+    except InputError:
+        return ""
+    if not any(_tells(one, other, problem.noise[0]) for other in others):
+        return ""
     return (
-        f"Residuals would be {math.exp(gain):.2g} times smaller with a friction over slip speed "
-        f"({told}): find it (--slip-speeds {','.join(f'{u:g}' for u in speeds)})"
+        "Without its angles the track is that of a puck under drag, or friction over slip speed, "
+        "and with them it is not: what slows it hardly brakes its spin, as air does. A fit has no "
+        "such drag, a scene has (drag.sliding, drag.quadratic); what slows it is found without "
+        f"angles (--fix launch_spin={spin:.4g} and --free or --slip-speeds)"
     )
 
 
@@ -111,14 +201,6 @@ def _others(problem: Problem) -> Iterator[tuple[str, Problem, float]]:
         words = "with a radius of {:.3g} m: is " + f"{asked.puck.radius:g} m right?"
         wider = replace(asked, free=(*asked.free, "radius"))
         yield words, replace(problem, asked=wider), 1.0
-    if _may_change(asked):
-        # from a speed e^20 times as slow, or as fast, at the end nothing is told any more
-        most = _MOST_DRAG / max(float(film.time[-1]) for film in problem.films)
-        bounds = {**asked.bounds, "drag": (-most, most)}
-        dragged = replace(asked, free=(*asked.free, "drag"), bounds=bounds)
-        free = ",".join(dragged.free)
-        words = f"{_DRAG}: find it, too (--free {free})"
-        yield words, replace(problem, asked=dragged), 1.0
 
 
 def _size(found: Estimate, scale: float) -> float:
@@ -136,9 +218,13 @@ def _size(found: Estimate, scale: float) -> float:
 
 def _fits(tried: Estimate, noise: float) -> bool:
     """Whether places are about as far off as their noise, and angles are explained."""
-    places, angles = _off(tried)
-    told = not angles.size or float(np.median(angles)) < _BY_CHANCE
-    return told and float(np.median(places)) < _AS_NOISE * noise
+    return _explained(tried) and float(np.median(_off(tried)[0])) < _AS_NOISE * noise
+
+
+def _explained(tried: Estimate) -> bool:
+    """Whether angles are explained."""
+    angles = _off(tried)[1]
+    return not angles.size or float(np.median(angles)) < _BY_CHANCE
 
 
 def _off(found: Estimate) -> tuple[FloatArray, FloatArray]:

@@ -20,13 +20,13 @@ from functools import lru_cache
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.accuracy.methods import Source
+from puck_tables.accuracy.methods import FrictionForm
 from puck_tables.contact.laws import Law, law_of
 from puck_tables.motion.body import body_of, plain_up_to
 from puck_tables.motion.frame import frame_of
 from puck_tables.motion.friction import Friction, section_friction
 from puck_tables.motion.limits import log_ratio
-from puck_tables.motion.run import Run, at_constant_slip, integrated
+from puck_tables.motion.run import MotionRun, at_constant_slip, integrated
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPIN, STATE_ROWS, T
 from puck_tables.motion.steppers import Stepping
 from puck_tables.motion.tableaus import DORMAND_PRINCE
@@ -36,7 +36,8 @@ from puck_tables.stopping.stop_table import StopTable
 from puck_tables.stopping.varied import Varied, natural_states, varied_by
 from puck_tables.table.flow_section import flow_at_one_height, flow_of_table
 from puck_tables.table.friction_section import section_of_table
-from puck_tables.table.resultant_table import ResultantTable, full_contact
+from puck_tables.table.resultant_table import ResultantTable
+from puck_tables.table.resultant_values import full_contact
 
 HEIGHT_STEP = 0.05
 HIGHEST = 3.9
@@ -194,7 +195,7 @@ class LawCurve(IntegratedCurve):
             cut = section.for_motion(self._gyration)
             if len(self._kept) >= _KEPT:
                 self._kept.pop(next(iter(self._kept)))
-            self._kept[delta] = Friction(Source.TABLE, delta, cut, section.tolerance)
+            self._kept[delta] = Friction(FrictionForm.TABLE, delta, cut, section.tolerance)
         return self._kept[delta]
 
     def flow(self, delta: float) -> Varied:
@@ -313,7 +314,7 @@ def _varied(phi: float, friction: Varied, tau: FloatArray) -> FloatArray:
     return np.stack([own[0], own[5], cosine * own[3] - sine * own[1], own[4]])
 
 
-def _run(speed: float, rim: float, friction: Friction) -> Run:
+def _run(speed: float, rim: float, friction: Friction) -> MotionRun:
     if rim <= 1e-12:
         return at_constant_slip("C0", -math.inf, friction)
     if speed <= 1e-12:

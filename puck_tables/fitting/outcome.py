@@ -15,17 +15,26 @@ from puck_tables._core.real import instance
 from puck_tables._core.safe_write import write_bytes
 from puck_tables._version import __version__
 from puck_tables.errors import InputError
+from puck_tables.fitting.by_speed import law_over
 from puck_tables.fitting.certainty import Certainty, profile_point
-from puck_tables.fitting.doubts import doubts
+from puck_tables.fitting.doubts import doubts, rounded
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.held_out import HeldOut
 from puck_tables.fitting.laws import LawScore
 from puck_tables.fitting.numbers import FoundLaunch, Number
-from puck_tables.fitting.residual_tests import lengthways, misfits
+from puck_tables.fitting.residual_tests import NO_PATTERN, lengthways, misfits
 from puck_tables.fitting.seen import Seen
 from puck_tables.fitting.tied import Impact
 from puck_tables.fitting.timing import Known
-from puck_tables.io.dataset import Dataset, Variable, variable
+from puck_tables.fitting.written import (
+    frames_of,
+    impact_told,
+    launch_told,
+    numbers_told,
+    told,
+    without_nan,
+)
+from puck_tables.io.dataset import Dataset
 from puck_tables.io.formats import FORMATS, ending_of
 from puck_tables.puck import Puck
 from puck_tables.result import Result
@@ -48,7 +57,8 @@ class Fit(Result):
     of the observations that are left out; ``left_out``: (track, frames at its start, at its end)
     that are no free motion; ``cut_off``: a sentence where these are many, with what they would
     change; ``runs``, ``drift``: probabilities of residuals so patterned by chance;
-    ``blind``: a sentence for each thing that the tracks do not tell; ``laws``: :class:`LawScore` of
+    ``blind``: a sentence for each thing that the tracks do not tell; ``astray``: why nobody would
+    believe what was found, empty where somebody may; ``laws``: :class:`LawScore` of
     those compared, best
     first; ``held_out``: how well frames that were held out are predicted;
     ``impacts``: :class:`Impact` of those looked for; ``untied``: why they do not join the slides,
@@ -84,6 +94,7 @@ class Fit(Result):
     certainty: Certainty = field(repr=False)
     uncut: tuple[Seen, ...] = field(default=(), repr=False)
     misread: str = ""
+    astray: str = ""
 
     picture: ClassVar[str] = "fit"
 
@@ -145,9 +156,12 @@ class Fit(Result):
         Raises
         ------
         InputError
-            If there is no such track, or the puck was found with drag: then only a scene has it.
+            If there is no such track, or nobody would believe what was found, or the puck was found
+            with drag: then only a scene has it.
         """
         launch = self.launch(track)
+        if self.astray:
+            raise InputError(f"{self.astray}: there is nothing to simulate")
         if self.estimate.problem.asked.speeds:
             raise InputError(
                 "the puck was found with friction over slip speed, which a free puck has not: put "
@@ -178,6 +192,11 @@ class Fit(Result):
         return tuple(found)
 
     @property
+    def doubts(self) -> list[str]:
+        """What was found that nobody would believe."""
+        return list(doubts(self.numbers, self.launches, self.given.radius))
+
+    @property
     def remarks(self) -> tuple[str, ...]:
         """What to know of the numbers before they are used."""
         problem = self.estimate.problem
@@ -193,6 +212,7 @@ class Fit(Result):
                     "without spin. If it spun, friction may be up to 1.6 times as much "
                     "(bounds or a start of launch_spin look for that)"
                 )
+        said += [text for film in problem.films for text in rounded(film)]
         for k, side in enumerate(self.certainty.pinned):
             if side:
                 end, way = problem.limits[side > 0][k], "above" if side > 0 else "below"
@@ -202,8 +222,9 @@ class Fit(Result):
                     "and intervals of the rest, may mislead"
                 )
         said += self.not_met
-        said += doubts(self.numbers, self.launches, self.given.radius)
-        if self.jitter == 0.0 and self.noise[0] > 0.0:
+        said += self.doubts
+        # stamps that jitter leave no drift, as another law does
+        if self.jitter == 0.0 and self.noise[0] > 0.0 and self.drift > NO_PATTERN:
             ratio = lengthways(self.estimate)
             if ratio > _LENGTHWAYS:
                 said.append(
@@ -256,42 +277,30 @@ class Fit(Result):
         puck = self.puck.described()
         summary: dict[str, Any] = {
             "kind": KIND, "source": f"puck-tables {__version__}", "puck": puck, "drag": self.drag,
-            "numbers": {name: _told(number) for name, number in self.numbers.items()},
-            "launches": [
-                {
-                    "track": one.name, "time": one.time, "place": list(one.place),
-                    "velocity": list(one.velocity), "spin": one.spin, "angle": one.angle,
-                    "numbers": {name: _told(number) for name, number in one.numbers.items()},
-                }
-                for one in self.launches
-            ],
+            "numbers": {name: told(number) for name, number in self.numbers.items()},
+            "launches": [launch_told(one) for one in self.launches],
             "correlation": self.correlation(), "chi2": self.chi2, "degrees": self.degrees,
             "noise": list(self.noise), "noise_given": list(self.noise_known[:2]),
             "jitter": self.jitter, "jitter_given": self.noise_known.jitter,
             "outliers": self.outliers, "left_out": [list(one) for one in self.left_out],
             "cut_off": self.cut_off,
             "runs": self.runs, "drift": self.drift,
-            "not_determined": list(self.blind), "remarks": list(self.remarks),
+            "not_determined": list(self.blind), "astray": self.astray, "doubts": self.doubts,
+            "remarks": list(self.remarks),
             "complaints": list(self.complaints),
             "laws": [one._asdict() for one in self.laws],
             "held_out": None,
             "slip_speeds": list(self.estimate.problem.asked.speeds),
             "between": self.estimate.problem.asked.between,
-            "constant_chi2": self.constant_chi2, "untied": self.untied, "impacts": [
-                {
-                    **one._asdict(), "place": list(one.place),
-                    "restitution": _told(one.restitution), "rim": _told(one.rim),
-                    "mass_ratio": None if one.mass_ratio is None else _told(one.mass_ratio),
-                }
-                for one in self.impacts
-            ],
+            "constant_chi2": self.constant_chi2, "untied": self.untied,
+            "impacts": [impact_told(one) for one in self.impacts],
         }  # fmt: skip
         if self.held_out is not None:
             summary["held_out"] = {
                 "tracks": list(self.held_out.tracks), "rms": self.held_out.rms,
                 "rms_by_chance": list(self.held_out.chance), "inside": self.held_out.inside,
             }  # fmt: skip
-        cleaned: dict[str, Any] = _without_nan(summary)
+        cleaned: dict[str, Any] = without_nan(summary)
         return cleaned
 
     def correlation(self) -> dict[str, dict[str, float]]:
@@ -358,59 +367,21 @@ class Fit(Result):
         InputError
             If one friction for all slip speeds was found, or a speed is outside the law.
         """
-        asked, x = self.estimate.problem.asked, self.estimate.x
+        asked = self.estimate.problem.asked
         if not asked.speeds:
             raise InputError("one friction for all slip speeds was found: give slip_speeds to fit")
         at = np.array(asked.speeds) if speed is None else np.asarray(speed, float)
-        numbers = self.estimate.problem.found(x)
-        value = asked.speed_law(numbers)(at)
-        count = len(asked.speeds)
-        slopes = np.zeros((at.size, count))
-        for k, name in enumerate(asked.free[:count]):
-            step = 1e-4 * numbers[name]
-            ends = [
-                asked.speed_law({**numbers, name: numbers[name] + by})(at) for by in (step, -step)
-            ]
-            slopes[:, k] = (ends[0] - ends[1]) / (2.0 * step)
-        spread = np.einsum("ni,ik,nk->n", slopes, self.certainty.covariance[:count, :count], slopes)
-        return at, value, np.sqrt(spread)
+        return at, *law_over(self.estimate, self.certainty.covariance, at)
 
     def dataset(self) -> Dataset:
         """Frames with what was seen, the model and the residuals; the rest as attributes."""
-        problem, kept = self.estimate.problem, self.estimate.kept
-        rows: dict[str, list[Any]] = {name: [] for name in (
-            "track", "frame", "time", "seen_x", "seen_y", "seen_angle", "fit_x", "fit_y",
-            "fit_angle", "counts_place", "counts_angle",
-        )}  # fmt: skip
-        parts = zip(problem.films, problem.paths(self.estimate.x), problem.each(), strict=True)
-        for n, (film, path, (x, _, turn)) in enumerate(parts):
-            angle = np.full(film.time.size, np.nan) if film.angle is None else film.angle
-            counts = np.zeros(film.time.size, np.int8)
-            counts[np.isfinite(angle)] = kept[turn]
-            values = (
-                np.full(film.time.size, n), film.frame, film.start + film.time,
-                film.place[:, 0], film.place[:, 1], angle, path[0], path[1], path[2],
-                kept[x].astype(np.int8), counts,
-            )  # fmt: skip
-            for name, value in zip(rows, values, strict=True):
-                rows[name].append(value)
-        columns: dict[str, Variable] = {
-            name: variable(name, np.concatenate(values), ("observation",))
-            for name, values in rows.items()
-        }
-        told = {
-            name: number for name, number in self.numbers.items() if math.isfinite(number.value)
-        }
-        columns["number_name"] = variable("number_name", list(told), ("number",))
-        for what in ("value", "error", "low", "high"):
-            of_all = np.array([getattr(number, what) for number in told.values()])
-            columns[f"number_{what}"] = variable(f"number_{what}", of_all, ("number",))
         attributes = {
             "title": "A puck found from tracks", "chi2": self.chi2, "degrees": self.degrees,
             "noise": list(self.noise), "outliers": self.outliers, "runs": self.runs,
             "drift": self.drift, **self.puck.described(),
         }  # fmt: skip
         texts = {"summary": (json.dumps(self.summary()), "all that was found, as JSON")}
+        columns = {**frames_of(self.estimate), **numbers_told(self.numbers)}
         return Dataset({}, columns, attributes, texts)
 
     def save(self, path: str | Path, overwrite: bool = False) -> None:
@@ -428,20 +399,3 @@ class Fit(Result):
             return
         ending_of(path, FORMATS)
         super().save(path, overwrite)
-
-
-def _told(number: Number) -> dict[str, Any]:
-    return {**number._asdict(), "determined": number.determined, "at_bound": number.at_bound}
-
-
-def _without_nan(value: Any) -> Any:
-    """The same with None for what is no number: JSON has none."""
-    if isinstance(value, dict):
-        return {name: _without_nan(one) for name, one in value.items()}
-    if isinstance(value, list | tuple):
-        return [_without_nan(one) for one in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    if isinstance(value, np.bool_):
-        return bool(value)
-    return value

@@ -29,23 +29,19 @@ from puck_tables.fitting.launched import (
     path_with_slopes,
     rates_of,
 )
-from puck_tables.fitting.parameters import LAUNCH, WALL
+from puck_tables.fitting.parameters import LAUNCH
 from puck_tables.fitting.seen import Seen, Straight, wrapped
 from puck_tables.fitting.timing import weights_of
+from puck_tables.fitting.unknowns import Found, Unknowns
 
-Found = dict[str, float]
 X, Y, TURN = range(3)  # of a path
-PLACE, ANGLE, PRIOR, UNSEEN = range(4)  # kinds of residuals; across a line there are none
+PLACE, ANGLE, PRIOR, UNSEEN = range(4)  # kinds of residuals; of what does not count there are none
 _CURVE_STEP = 1e-4
-_DRAGGED = 100.0  # drag times the length of a film
-_MOTION = ("launch_vx", "launch_vy", "launch_spin")
 LAUNCH_NAMES = tuple(LAUNCH)
-_ACROSS = (("launch_y", "launch_vy"), ("launch_x", "launch_vx"))  # of lines that x, or y, tells
-_WALL = -2  # the first wall in names, the next is one less
 
 
 @dataclass(frozen=True, eq=False)
-class Problem:
+class Problem(Unknowns):
     """What least squares are asked.
 
     Parameters
@@ -74,142 +70,14 @@ class Problem:
     weights: tuple[FloatArray, ...] = ()
 
     @cached_property
-    def launch_names(self) -> tuple[tuple[str, ...], ...]:
-        """The unknowns of each launch."""
-        return tuple(
-            tuple(
-                name for name in LAUNCH
-                if name not in self.asked.fixed
-                and (name != "launch_angle" or film.angle is not None)
-                and not (rests and name in _MOTION)
-                and not (spinless and name == "launch_spin")
-                and (film.straight is None or name not in _ACROSS[film.straight.main])
-            )
-            for film, rests, spinless in zip(
-                self.films, self.rests or [False] * len(self.films), self.spinless, strict=True
-            )
-        )  # fmt: skip
-
-    @cached_property
-    def spinless(self) -> tuple[bool, ...]:
-        """Which tracks are taken for slides without spin: those along a line, without angles.
-
-        Unless something is said of their spin.
-        """
-        asked = self.asked
-        said = any("launch_spin" in one for one in (asked.fixed, asked.priors, asked.bounds,
-                                                    asked.start))  # fmt: skip
-        return tuple(
-            not said and film.straight is not None and film.angle is None for film in self.films
-        )
-
-    @cached_property
-    def names(self) -> tuple[tuple[int, str], ...]:
-        """(track, name) of every unknown; −1 for the puck, −2 for the first wall, and so on."""
-        launches = [(n, name) for n, names in enumerate(self.launch_names) for name in names]
-        walls = [
-            (_WALL - n, name) for n, wall in enumerate(self.walls) if wall is None for name in WALL
-        ]
-        return (*((-1, name) for name in self.asked.free), *launches, *walls)
-
-    @cached_property
     def kinds(self) -> npt.NDArray[np.int64]:
         """What kind each residual is of."""
-        kinds = []
+        kinds: list[npt.NDArray[np.int64]] = []
         for film in self.films:
-            kinds += [PLACE] * film.time.size
-            kinds += [PLACE if film.straight is None else UNSEEN] * film.time.size
-            kinds += [ANGLE] * int(self._angled(film).sum())
-        return np.array(kinds + [PRIOR] * len(self.priors), np.int64)
-
-    @cached_property
-    def priors(self) -> tuple[tuple[int, float, float], ...]:
-        """(unknown, value, standard deviation).
-
-        That of a readout, unless it or bounds are given: a picture is read before the next one.
-        """
-        found = []
-        for k, (_, name) in enumerate(self.names):
-            if name in self.asked.priors:
-                found.append((k, *self.asked.priors[name]))
-            elif name == "readout" and self.read_within is not None:
-                found.append((k, 0.5 * self.read_within, 0.5 * self.read_within))
-        return tuple(found)
-
-    @property
-    def read_within(self) -> float | None:
-        """The usual time between two frames, s, None where readout has a prior or bounds."""
-        if "readout" in (*self.asked.priors, *self.asked.bounds):
-            return None
-        return min(film.usual_step for film in self.films)
-
-    @cached_property
-    def limits(self) -> tuple[FloatArray, FloatArray]:
-        """The range of each unknown: no δ higher than motions of such a puck are known."""
-        pairs = np.array([self.asked.limits(name) for _, name in self.names]).reshape(-1, 2)
-        for k, (_, name) in enumerate(self.names):
-            if name == "delta":
-                pairs[k, 1] = min(pairs[k, 1], self.asked.highest(self.tall))
-            elif name in ("friction", "decel"):
-                pairs[k, 1] = min(pairs[k, 1], self.asked.steepest(name))
-            elif name == "drag":  # more leaves nothing, or all there is, of a speed
-                most = _DRAGGED / max(float(film.time[-1]) for film in self.films)
-                pairs[k] = max(pairs[k, 0], -most), min(pairs[k, 1], most)
-        return pairs[:, 0], pairs[:, 1]
-
-    def found(self, x: FloatArray) -> Found:
-        """The numbers of the puck that are found."""
-        return dict(zip(self.asked.free, x[: len(self.asked.free)].tolist(), strict=True))
-
-    def launches(self, x: FloatArray) -> FloatArray:
-        """The launch (6,) of each track: x, y, vx, vy, spin, angle; (tracks, 6)."""
-        out = np.empty((len(self.films), len(LAUNCH)))
-        out[:] = [self.asked.fixed.get(name, 0.0) for name in LAUNCH]
-        order = list(LAUNCH)
-        for k, (track, name) in enumerate(self.names):
-            if track >= 0:
-                out[track, order.index(name)] = x[k]
-        for row, film in zip(out, self.films, strict=True):
-            if film.straight is not None:
-                main, point = film.straight.main, film.straight.point
-                other = 1 - main
-                row[other] = point[other] + film.straight.slope * (row[main] - point[main])
-                row[2 + other] = film.straight.slope * row[2 + main]
-        return out
-
-    def unknowns(
-        self, found: Found, launches: FloatArray, walls: tuple[Wall, ...] = ()
-    ) -> FloatArray:
-        """The vector of unknowns from what they mean."""
-        order = list(LAUNCH)
-        values = []
-        for track, name in self.names:
-            if track == -1:
-                values.append(found[name])
-            elif track < -1:
-                values.append(walls[_WALL - track][list(WALL).index(name)])
-            else:
-                values.append(launches[track, order.index(name)])
-        return np.array(values, float)
-
-    def found_walls(self, x: FloatArray) -> tuple[Wall, ...]:
-        """All walls, given or found."""
-        found: list[Wall] = []
-        at = len(self.names) - len(WALL) * self.walls.count(None)
-        for wall in self.walls:
-            if wall is None:
-                wall, at = Wall(*x[at : at + len(WALL)].tolist()), at + len(WALL)
-            found.append(wall)
-        return tuple(found)
-
-    def within(self, x: FloatArray) -> FloatArray:
-        """The same, with the height of the tallest puck that moves so: all higher ones do, too."""
-        delta, highest = self.asked.scales(self.found(x))[1], self.asked.highest(self.tall)
-        if "height" not in self.asked.free or not delta > highest:
-            return x
-        lower = x.copy()
-        lower[self.asked.free.index("height")] *= highest / delta
-        return lower
+            x, y, turn = counting_of(film)
+            kinds += [np.where(x, PLACE, UNSEEN), np.where(y, PLACE, UNSEEN)]
+            kinds.append(np.where(turn, ANGLE, UNSEEN)[self._angled(film)])
+        return np.concatenate([*kinds, np.full(len(self.priors), PRIOR)]).astype(np.int64)
 
     def moving(self, found: Found) -> Moving:
         """What moves the puck."""
@@ -323,10 +191,11 @@ class Problem:
                 -1, *[1] * (off.ndim - 1)
             )
         straight = self.films[n].straight
-        if straight is not None:
-            if not self.weights:  # which lie along the motion
-                rows[X] = straight.way[0] * rows[X] + straight.way[1] * rows[Y]
-            rows[Y] = 0.0
+        if straight is not None and not self.weights:  # which lie along the motion
+            rows[X] = straight.way[0] * rows[X] + straight.way[1] * rows[Y]
+        if straight is not None or self.films[n].counts is not None:
+            counts = counting_of(self.films[n])
+            rows *= counts.reshape(3, -1, *[1] * (off.ndim - 2))
         return np.concatenate([rows[X], rows[Y], rows[TURN, angled]])
 
     def usual(self, rows: FloatArray) -> float:
@@ -449,6 +318,15 @@ class Problem:
     def with_films(self, films: tuple[Seen, ...]) -> Problem:
         """The same of other frames, before anything is known of their motion."""
         return replace(self, films=films, whole=(), weights=())
+
+
+def counting_of(film: Seen) -> npt.NDArray[np.bool_]:
+    """Whether x, or what lies along a line, y, and angle of each frame count (3, n)."""
+    counts = np.ones((3, film.time.size), bool) if film.counts is None else film.counts.T.copy()
+    if film.straight is not None:
+        counts[X] = counts[film.straight.main]
+        counts[Y] = False
+    return counts
 
 
 Along = Callable[[Moving, FloatArray, float, FloatArray], FloatArray]

@@ -16,6 +16,7 @@ _MAY_NOISY, _MAY_PATTERN = 1.3, 0.01  # the same, where that is hardly seen
 _COMPUTED = 1e-7  # of the path: residuals of tracks that were computed, not seen
 _NOWHERE, _FAR, _ANY = 20.0, 1e-3, 0.5  # times the noise; of the path; rad
 _PARTS = 8
+_ROUNDED = 0.45  # of a step: residuals of what is rounded, and of some noise
 _MOVING, _ENOUGH = 0.1, 20  # of the greatest speed; frames
 
 
@@ -87,7 +88,7 @@ def misfits(found: Estimate, known: Known, smooth: tuple[float, float]) -> tuple
     if given and chi2 / degrees > 1.0 + 5.0 * math.sqrt(2.0 / degrees):
         told.append(f"The residuals are {math.sqrt(chi2 / degrees):.3g} times the noise given")
     by_chance = min(runs(found), drift(found))
-    if seen and by_chance < NO_PATTERN:
+    if seen and by_chance < NO_PATTERN and not hidden(found):
         told.append(
             "The residuals are no noise, they have a pattern (probability by chance "
             f"{by_chance:.1g})"
@@ -95,8 +96,25 @@ def misfits(found: Estimate, known: Known, smooth: tuple[float, float]) -> tuple
     return tuple(told)
 
 
+def hidden(found: Estimate) -> bool:
+    """Whether residuals are no more than rounding leaves, which is no noise."""
+    films, noise = found.problem.films, found.problem.noise
+    steps = [max(film.steps[kind] for film in films) for kind in range(2)]
+    angled = any(film.angle is not None for film in films)
+    size = math.sqrt(found.chi2 / max(found.degrees, 1))
+    within = [
+        step > 0.0 and size * own < _ROUNDED * step for step, own in zip(steps, noise, strict=True)
+    ]
+    return within[0] or (angled and within[1])
+
+
 def may_misfit(found: Estimate, known: Known, smooth: tuple[float, float]) -> bool:
-    """Whether a model may not fit: below what is complained of it may bias numbers by far."""
+    """Whether a model may not fit, or what is left is no noise.
+
+    Below what is complained of that may bias numbers by far.
+    """
+    if any(any(film.steps) for film in found.problem.films):
+        return True
     hardly = excess_of(found, smooth) > _MAY_NOISY or min(runs(found), drift(found)) < _MAY_PATTERN
     return hardly or bool(misfits(found, known, smooth))
 

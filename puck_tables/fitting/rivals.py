@@ -23,6 +23,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.abreast import abreast
 from puck_tables.fitting.certainty import Z95, Certainty, Rival, certainty_of
 from puck_tables.fitting.compact import compact
+from puck_tables.fitting.doubts import ran_away
 from puck_tables.fitting.estimate import FARTHEST, Estimate
 from puck_tables.fitting.least_squares import SQUARES, minimise
 from puck_tables.fitting.numbers import plausible_for
@@ -96,11 +97,15 @@ def rivals_of(found: Estimate, certainty: Certainty, excess: float = 1.0) -> tup
 def taken(found: Estimate, rivals: tuple[Rival, ...], excess: float) -> Rival | None:
     """The motion that is taken in place of an estimate; None if that is.
 
+    Of one that ran away any that did not is taken, of those that fit about as well.
     ``excess``: its residuals over the noise of smooth motions.
     """
     if not found.chi2 > 0.0:
         return None
     problem = found.problem
+    if ran_away(problem, found.x):
+        near = [one for one in rivals if not ran_away(problem, one.estimate.x)]
+        return min(near, key=lambda one: one.rise, default=None)
     motions = [
         Judged(is_slow(problem, x), excess**2 * (found.chi2 + rise), excess * math.sqrt(
             max(1.0 + rise / found.chi2, 0.0)))

@@ -21,7 +21,7 @@ def puck_and_launch(
 ) -> tuple[Puck, tuple[float, float], float, tuple[str, ...]]:
     """The puck, velocity (m/s) and spin (rad/s) of a track in a file of ``puck fit -o fit.json``.
 
-    And sentences on what its tracks did not determine.
+    And sentences on what its tracks did not determine, and on what is hard to believe.
 
     Parameters
     ----------
@@ -31,7 +31,8 @@ def puck_and_launch(
     Raises
     ------
     InputError
-        If the file is none of a fit, has no such track, or its puck has drag.
+        If the file is none of a fit, has no such track, its puck has drag or friction over slip
+        speed, or nobody would believe what was found.
     """
     told = f"{path}: no file of puck fit (.json)"
     try:
@@ -50,9 +51,17 @@ def puck_and_launch(
         chosen = launches[_chosen(list(launches), track, path)]
         velocity = one_velocity(chosen["velocity"])
         spin = real("spin", chosen["spin"], "rad/s")
-        unknown = tuple(str(sentence) for sentence in data["not_determined"])
+        unknown = tuple(str(one) for one in (*data["not_determined"], *data["doubts"]))
+        astray, speeds = str(data["astray"]), [*data["slip_speeds"]]
     except (KeyError, TypeError, AttributeError):
         raise InputError(told) from None
+    if astray:
+        raise InputError(f"{path}: {astray}: there is nothing to play")
+    if speeds:
+        raise InputError(
+            f"{path}: this puck was found with friction over slip speed, which a free puck has "
+            "not: make a scene of it, with that law"
+        )
     if drag != 0.0:
         raise InputError(
             f"{path}: this puck was found with drag of {drag:.3g}/s, which a free puck has not: "

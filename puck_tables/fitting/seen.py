@@ -12,6 +12,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.film.track import Track
+from puck_tables.fitting.grid import ROUNDED, coarse, counting, step_of
 
 FEWEST = 4  # frames of a track
 _ALIKE = 0.1  # of the usual time between frames
@@ -49,7 +50,8 @@ class Seen:
     or None where there never is; ``frame`` (n,): numbers in the track; ``row`` (n,): how far down
     the picture, 0 at its first line and 1 at its last, or None; ``straight``: the line along which
     alone places are told, or None; ``cuttable``: whether frames at its start, and at its end, may
-    be none of the free motion.
+    be none of the free motion; ``steps``: to which places (m) and angles (rad) are rounded, 0 where
+    noise hides that; ``counts`` (n, 3): whether x, y and angle count where they are, or None.
     """
 
     name: str
@@ -61,6 +63,8 @@ class Seen:
     row: FloatArray | None = None
     straight: Straight | None = None
     cuttable: tuple[bool, bool] = (True, True)
+    steps: tuple[float, float] = (0.0, 0.0)
+    counts: npt.NDArray[np.bool_] | None = None
 
     def part(self, chosen: npt.NDArray[np.bool_]) -> Seen:
         """Some of the frames; the first of them is the new start."""
@@ -70,6 +74,7 @@ class Seen:
             place=self.place[chosen], frame=self.frame[chosen],
             angle=None if self.angle is None else self.angle[chosen],
             row=None if self.row is None else self.row[chosen],
+            counts=None if self.counts is None else self.counts[chosen],
         )  # fmt: skip
 
     @property
@@ -109,11 +114,29 @@ def seen_in(
     if angle is not None and not np.isfinite(angle).any():
         angle = None
     time = track.time[chosen]
-    return Seen(
+    return _on_grid(Seen(
         track.name, float(time[0]), time - time[0], track.place[chosen], angle,
         np.flatnonzero(chosen), straight=_straight(track.place[chosen]),
         cuttable=(since == -math.inf and not keep_all, until == math.inf and not keep_all),
-    )  # fmt: skip
+    ))  # fmt: skip
+
+
+def _on_grid(film: Seen) -> Seen:
+    """The same with what is to be known of its rounding."""
+    place, angle = noise_of([film])
+    steps = [coarse(step_of(*film.place.T), place), 0.0]
+    if film.angle is not None:
+        steps[1] = coarse(step_of(film.angle), angle)
+    if not any(steps):
+        return film
+    counts = np.ones((film.time.size, 3), bool)
+    for k in range(2):
+        if steps[0]:
+            counts[:, k] = counting(film.place[:, k])
+    if steps[1] and film.angle is not None:
+        known = np.isfinite(film.angle)
+        counts[known, 2] = counting(film.angle[known])
+    return replace(film, steps=(steps[0], steps[1]), counts=counts)
 
 
 def _straight(place: FloatArray) -> Straight | None:
@@ -147,7 +170,8 @@ def _straight(place: FloatArray) -> Straight | None:
 def noise_of(films: list[Seen]) -> tuple[float, float]:
     """The spread of places (m) and angles (rad) about smooth motions, by their third differences.
 
-    No model of the puck is in it, so it can judge one.  NaN where too few frames follow each other.
+    No model of the puck is in it, so it can judge one.  Of what is rounded it is no less than that
+    leaves, however slow the puck is.  NaN where too few frames follow each other.
 
     Examples
     --------
@@ -170,7 +194,13 @@ def noise_of(films: list[Seen]) -> tuple[float, float]:
     along = [_spread([one[:, k] for one in places if k < one.shape[1]]) for k in range(2)]
     known = [one for one in along if math.isfinite(one)]
     place = math.sqrt(sum(one * one for one in known) / len(known)) if known else math.nan
-    return place, _spread(angles)
+    found = place, _spread(angles)
+    least = (max(film.steps[kind] for film in films) * ROUNDED for kind in range(2))
+    one, other = (
+        float(np.fmax(noise, step)) if step else noise
+        for noise, step in zip(found, least, strict=True)
+    )
+    return one, other
 
 
 def _spread(thirds: list[FloatArray]) -> float:

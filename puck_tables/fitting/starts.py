@@ -23,9 +23,10 @@ from puck_tables.fitting.abreast import FROM_AFAR, ROBUST, abreast
 from puck_tables.fitting.asked import Asked
 from puck_tables.fitting.least_squares import LOOSE, minimise
 from puck_tables.fitting.parameters import LAUNCH
-from puck_tables.fitting.problem import Found, Problem
+from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.seen import Seen, Turning, rests_from, turning_of
 from puck_tables.fitting.turns import by_place, half_turns, in_order
+from puck_tables.fitting.unknowns import Found
 
 _SHARE, _FEW = 0.25, 6  # of the moving frames, and at least: the parabola
 _MOST_TURNS = 3

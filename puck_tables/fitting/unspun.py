@@ -30,16 +30,11 @@ def without_spin(found: Estimate, numbers: dict[str, Number], known: Known) -> t
         or all(problem.spinless) or any(film.angle is not None for film in problem.films)
     ):  # fmt: skip
         return ()
-    priors = {name: one for name, one in asked.priors.items() if name != _SPIN}
-    bounds = {name: one for name, one in asked.bounds.items() if name != _SPIN}
-    start = {name: one for name, one in asked.start.items() if name != _SPIN}
-    fixed = {**asked.fixed, _SPIN: 0.0}
-    held = replace(asked, fixed=fixed, priors=priors, bounds=bounds, start=start)
     low, high = asked.bounds.get(_SPIN, (0.0, 0.0))
     if not low <= 0.0 <= high:
         return ()
     try:
-        still = fitted(replace(problem, asked=held, weights=()), known, refit=False)
+        still = fitted(replace(problem, asked=asked.spinning(0.0), weights=()), known, refit=False)
     except InputError:  # too few frames
         return ()
     noise = found.problem.noise

@@ -87,13 +87,9 @@ class Dataset:
         """
         main = max(self.columns.values(), key=lambda one: len(one.dims))
         dims, shape = main.dims, np.shape(main.values)
-        axes = [self.axes[name] for name in dims if name in self.axes]
-        grids = np.meshgrid(*(axis.readable() for axis in axes), indexing="ij") if axes else []
-        named = [name for name in dims if name in self.axes]
-        whole = {
-            name: (axis, grid.ravel()) for name, axis, grid in zip(named, axes, grids, strict=True)
-        }
-        for name, column in self.columns.items():
+        axes = {name: self.axes[name] for name in dims if name in self.axes}
+        whole = {}
+        for name, column in {**axes, **self.columns}.items():
             if set(column.dims) <= set(dims):
                 sizes = [
                     size if dim in column.dims else 1 for dim, size in zip(dims, shape, strict=True)

@@ -10,6 +10,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from puck_tables._core.real import instance
 from puck_tables._core.safe_write import write_bytes
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset
@@ -24,13 +25,14 @@ def ending_of(path: str | Path, allowed: Any) -> str:
     Raises
     ------
     InputError
-        If it is none of those allowed.
+        If it is none of those allowed, or no name.
 
     Examples
     --------
     >>> ending_of("run.csv", FORMATS)
     '.csv'
     """
+    instance("path", path, str, Path)
     ending = Path(path).suffix.lower()
     if ending not in allowed:
         raise InputError(

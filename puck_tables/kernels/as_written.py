@@ -18,6 +18,9 @@ from puck_tables._core.arrays import FloatArray
 BLOCK = 136  # numbers in a row of a block: rows a power of two apart would share cache lines
 LINE = 8  # numbers in a line of the cache
 
+# kernels that only kernels call, and whether they are pasted into every caller
+behind: dict[Any, bool] = {}
+
 
 def as_written() -> bool:
     """Whether kernels are to run as they are written."""

@@ -23,7 +23,7 @@ from puck_tables.kernels.compile import inlined, inner, summed
 from puck_tables.kernels.elementary import cosine_sine_of
 from puck_tables.kernels.load_parts import loaded_line
 
-_NODES = 16
+_NODES = 16  # of Gauss's rule a panel
 _NODE, _WEIGHT = np.polynomial.legendre.leggauss(_NODES)
 _FAR = 2.0  # radii from which on the centre of rotation is no trouble for Gauss's rule
 _PANEL = 2.4  # the length of a panel over its distance from the centre of rotation

@@ -18,7 +18,7 @@ from puck_tables.kernels.load_rim import loaded_rim, loaded_whole
 # of the whole disc; up to a ratio of the two rates few steps are exact to rounding
 _full_integrals: Any = inlined(closed_form.shape_integrals)
 _few_integrals: Any = inlined(closed_form.shape_integrals_with(4))
-_FEW = 0.99
+_FEW = 0.99  # of the smaller rate over the larger: up to it few steps do
 
 
 @inlined

@@ -7,7 +7,7 @@ import gc
 from collections.abc import Callable, Iterator
 from functools import partial
 from types import FunctionType
-from typing import Any
+from typing import Any, Protocol
 
 import numba
 from numba import types
@@ -17,7 +17,7 @@ from numba.core.registry import cpu_target
 from numba.core.typing.typeof import typeof_impl
 
 from puck_tables.kernels import as_written, blocks, vectors
-from puck_tables.kernels.doors import Door, behind
+from puck_tables.kernels.as_written import behind
 from puck_tables.kernels.kept_code import KeptCode
 from puck_tables.kernels.linking import LinkedAtDoors
 from puck_tables.kernels.patience import patience
@@ -51,6 +51,21 @@ _intrinsics: dict[Any, Any] = {patience: vectors.patience} | {
     if hasattr(one, "_defn") and hasattr(as_written, name)
 }
 _dispatchers: dict[tuple[Any, bool], Any] = {}
+
+
+class Door(Protocol):
+    """What is read of a :class:`puck_tables.kernels.doors.Door`, which stands above."""
+
+    py_func: Any
+    counts: bool
+    fuses: bool
+
+    @property
+    def compiled(self) -> Any:
+        """Numba's object for it."""
+
+    def way_for(self, *args: Any) -> Callable[..., Any]:
+        """What to call with such arguments."""
 
 
 @contextlib.contextmanager

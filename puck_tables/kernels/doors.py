@@ -17,30 +17,34 @@ import numpy as np
 
 from puck_tables._core.own_folder import say
 from puck_tables.errors import PuckError
-from puck_tables.kernels.as_written import as_written
+from puck_tables.kernels.as_written import as_written, behind
 from puck_tables.kernels.cache import is_any_kept
 from puck_tables.kernels.numba_settings import read_settings
 from puck_tables.kernels.patience import AT_FIRST, OutOfPatience, here
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-
-# kernels that only kernels call, and whether they are pasted into every caller
-behind: dict[Any, bool] = {}
-
 _PER_INSTRUCTION = 5e-4  # s, to compile an instruction of Python; of some machine
+_TO_LOAD_NUMBA = 0.6  # s, of such a machine
 _SAID = 1.0  # s; what takes less is not worth a sentence
+_WORTH = 0.25  # of the time of compiling that is tried without: so little is lost where it ends so
+_WORTH_OF_ARRAYS = 2.0  # of it where arrays answer, which mostly are done by then
 _importing = threading.RLock()
 
 
 class Door:
     """A kernel that Python calls.
 
-    ``counts``: references to arrays; ``fuses``: a·b + c is rounded once where the machine can.
+    ``counts``: references to arrays; ``fuses``: a·b + c is rounded once where the machine can;
+    ``arrays``: what runs at first in place of the function as it is written.
     """
 
-    def __init__(self, function: Callable[..., Any], counts: bool, fuses: bool) -> None:
+    def __init__(
+        self, function: Callable[..., Any], counts: bool, fuses: bool,
+        arrays: Callable[..., Any] | None = None,
+    ) -> None:  # fmt: skip
         update_wrapper(self, function)
+        self._at_first = arrays or function
         self.py_func, self.counts, self.fuses = function, counts, fuses
         self.spent = 0.0  # s of computing, as it is written
         self._ready: Any = None
@@ -77,10 +81,11 @@ class Door:
 
     @property
     def _allowed(self) -> float:
-        """How long it may run as it is written, s; where one question is asked, much longer."""
-        if here.kept_first or is_any_kept(self.py_func):
+        """How long it may run as it is written, s: the longer, the longer compiling takes."""
+        if is_any_kept(self.py_func):
             return AT_FIRST
-        return max(AT_FIRST, 0.25 * self.seconds)
+        worth = _WORTH if self._at_first is self.py_func else _WORTH_OF_ARRAYS
+        return max(AT_FIRST, worth * self.seconds)
 
     def _keeps(self, args: tuple[Any, ...]) -> bool:
         """Whether compiled code for such arguments is there, in this process or on disk."""
@@ -89,10 +94,16 @@ class Door:
 
     def _compile(self, *args: Any) -> Callable[..., Any]:
         if self.seconds > _SAID and not self._keeps(args):
-            name = f"{self.py_func.__module__}.{self.py_func.__qualname__}"
-            say(f"compiling {name} for this machine, once: about {self.seconds:.2g} s")
+            say(self._announcement)
         code: Callable[..., Any] = _from_numba().code_for(self, args)
         return code
+
+    @cached_property
+    def _announcement(self) -> str:
+        """What is said before it is compiled: the same by whichever thread."""
+        name = f"{self.py_func.__module__}.{self.py_func.__qualname__}"
+        wait = self.seconds + (0.0 if "numba" in sys.modules else _TO_LOAD_NUMBA)
+        return f"compiling {name} for this machine, once: about {wait:.2g} s"
 
     def _try(self, *args: Any) -> Any:
         """Run it as it is written while patience lasts, or else compiled from the same arguments.
@@ -105,7 +116,7 @@ class Door:
         here.as_written, here.until = True, begin + self._allowed - self.spent
         try:
             with np.errstate(all="ignore"):
-                found = self.py_func(*args)
+                found = self._at_first(*args)
             if not _is_complex(found):
                 return found
         except (OutOfPatience, ArithmeticError, ValueError, TypeError) as error:
@@ -200,6 +211,19 @@ def kernel(function: Function) -> Function:
 def allocating(function: Function) -> Function:
     """A function for the compiler that makes arrays; it calls kernels that return numbers only."""
     return _door(function, counts=True)
+
+
+def arrays_at_first(arrays: Callable[..., Any]) -> Callable[[Function], Function]:
+    """A kernel as :func:`allocating`; until compiling it pays, arrays answer in its place.
+
+    ``arrays``: takes what the kernel takes, and fills the same outputs with NumPy.
+    """
+
+    def door(function: Function) -> Function:
+        made: Any = arrays if as_written() else Door(function, True, False, arrays)
+        return made
+
+    return door
 
 
 def look_up(function: Function) -> Function:

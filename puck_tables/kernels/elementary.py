@@ -10,11 +10,12 @@ from __future__ import annotations
 from puck_tables.kernels.compile import bits_of, inlined, number_of
 
 _SHIFT = 6755399441055744.0  # 1.5 × 2⁵²: a number added to it is rounded to an integer
-_SHIFT_BITS = 0x4338000000000000
+_SHIFT_BITS = 0x4338000000000000  # bits of the number above
 _HALF_ROOT = 0x3FE6A09E667F3BCD  # bits of √½
-_ONE = 0x3FF0000000000000
+_ONE = 0x3FF0000000000000  # bits of 1.0
+# ln 2 in two parts: the first has room to be multiplied exactly
 _LN2_HIGH, _LN2_LOW = 6.93147180369123816490e-01, 1.90821492927058770002e-10
-_LEAST = -708.0
+_LEAST = -708.0  # exp of less is subnormal
 
 
 @inlined

@@ -36,10 +36,10 @@ _WIDEST = 3.0  # of the map about C
 _FARTHEST = 20.0  # radii: a C farther away is as good as there
 _INSIDE = 0.4  # radii: of a C closer to the centre no ray all but touches the base
 _ON = 1e-14  # radii: a C as close is not on a border
-_THIRD = 1.0 / 3.0
+_THIRD = 1.0 / 3.0  # a product is quicker than a quotient
 
 
-class Piece(NamedTuple):
+class BorderPiece(NamedTuple):
     """A piece of a border.
 
     Straight from (x, y) on along (tx, ty), by ``size`` sin θ; with a radius of a circle about (x,
@@ -143,7 +143,7 @@ def _stretched(turn: float, gap: float) -> tuple[float, float]:
 
 
 @inlined
-def _point(piece: Piece, sine: float) -> tuple[float, float]:
+def _point(piece: BorderPiece, sine: float) -> tuple[float, float]:
     """The point at an angle θ."""
     if piece.radius == 0.0:
         return piece.x + piece.size * sine * piece.tx, piece.y + piece.size * sine * piece.ty
@@ -155,7 +155,7 @@ def _point(piece: Piece, sine: float) -> tuple[float, float]:
 
 
 @inlined
-def _off_touch(alpha: float, beta: float, piece: Piece, sine: float) -> float:
+def _off_touch(alpha: float, beta: float, piece: BorderPiece, sine: float) -> float:
     """How far an end of a piece at the rim is from where a ray touches the base, by √(1 − ρ²)."""
     x, y = _point(piece, sine)
     ux, uy = alpha - beta * y, beta * x
@@ -164,7 +164,7 @@ def _off_touch(alpha: float, beta: float, piece: Piece, sine: float) -> float:
 
 @inlined
 def _line_node(
-    alpha: float, beta: float, piece: Piece, u0: float, v0: float, sine: float, cosine: float,
+    alpha: float, beta: float, piece: BorderPiece, u0: float, v0: float, sine: float, cosine: float,
     turn: float, law: int,
 ) -> tuple[Sums, float]:  # fmt: skip
     """The integrands by θ, the angle ``turn`` behind one where the slip is (u0, v0)."""
@@ -180,7 +180,7 @@ def _line_node(
 
 @inlined
 def _arc_node(
-    alpha: float, beta: float, piece: Piece, u0: float, v0: float, sine: float, cosine: float,
+    alpha: float, beta: float, piece: BorderPiece, u0: float, v0: float, sine: float, cosine: float,
     turn: float, law: int,
 ) -> tuple[Sums, float]:  # fmt: skip
     """The same of a round one; the angle from the one point to the other by its quarter."""
@@ -207,7 +207,7 @@ def _arc_node(
 
 @inlined
 def _grazed(
-    alpha: float, beta: float, piece: Piece, half: float, c: float, tangent: float
+    alpha: float, beta: float, piece: BorderPiece, half: float, c: float, tangent: float
 ) -> tuple[float, float]:
     """Where a ray from C, ``tangent`` radii of it away, touches a circle, and 1 − p² is least.
 
@@ -229,8 +229,8 @@ def _grazed(
 
 @inner
 def _along(
-    alpha: float, beta: float, piece: Piece, low: float, high: float, across: float, apart: float,
-    seam: float, one: float, one_gap: float, two: float, two_gap: float, law: int,
+    alpha: float, beta: float, piece: BorderPiece, low: float, high: float, across: float,
+    apart: float, seam: float, one: float, one_gap: float, two: float, two_gap: float, law: int,
 ) -> Sums:  # fmt: skip
     """A piece between two sines of θ; across + i apart is the sine of θ at C.
 
@@ -324,7 +324,7 @@ def loaded_line(
     c = alpha / beta if alpha < _FARTHEST * beta else _FARTHEST
     apart = c * tx - off
     apart = apart if abs(apart) > _ON else _ON
-    piece = Piece(x0, y0, tx, ty, 0.0, half, half, 0.0)
+    piece = BorderPiece(x0, y0, tx, ty, 0.0, half, half, 0.0)
     return _along(
         alpha, beta, piece, begin / half, (begin + length) / half, c * ty / half, apart / half,
         math.inf, 0.0, math.inf, 0.0, math.inf, law,
@@ -350,7 +350,7 @@ def loaded_arc(
     turn, root = 0.5 * math.atan2(aside, ahead), 2.0 * size * math.sqrt(max(ratio, 1e-6))
     # no root is of the angle of a circle as the sine of its half is
     far = 1.0 / size if spare == 0.0 else math.sqrt(room / max(span, _ON))
-    piece = Piece(cx, cy, tx, ty, radius, size, math.sqrt(min(room, span)), spare)
+    piece = BorderPiece(cx, cy, tx, ty, radius, size, math.sqrt(min(room, span)), spare)
     one, one_gap, two, two_gap = 0.0, math.inf, 0.0, math.inf
     if ratio > 1.0:
         tangent = math.sqrt((ratio - 1.0) * (ratio + 1.0))

@@ -17,6 +17,7 @@ from collections.abc import Iterator
 
 AT_FIRST = 1.5  # s of computing of each kernel
 FEW = 64  # items; more are compiled for at once
+A_MOTION = 4  # items: an integrated motion takes so much longer than a look-up
 
 
 class OutOfPatience(BaseException):

@@ -24,7 +24,7 @@ from puck_tables.kernels.circle_arcs import arc_to
 from puck_tables.kernels.compile import inlined, inner, summed
 from puck_tables.kernels.elementary import angle_of, cosine_sine_of
 
-_NODES = 24
+_NODES = 24  # of Gauss's rule an arc
 _NODE, _WEIGHT = np.polynomial.legendre.leggauss(_NODES)
 _LEGENDRE = np.ascontiguousarray(
     (np.polynomial.legendre.legvander(_NODE, _NODES - 1) * _WEIGHT[:, None]).T

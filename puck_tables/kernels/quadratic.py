@@ -33,10 +33,10 @@ from puck_tables.kernels.section_spline import (
 )
 from puck_tables.kernels.spline import basis, cell_at, side_and_eta
 
-TERMS = 5
+TERMS = 5  # of the ratios over δ (table.fit.height_terms)
 NO_COLUMNS = np.empty((2, 0, TERMS))  # closed forms; read-only like those of a table
 NO_COLUMNS.flags.writeable = False
-_BLOCK = 128
+_BLOCK = 128  # points at once: their numbers fit the first cache
 _QUARTER = 0.25 * np.pi
 _HALF_ROOT = math.sqrt(0.5)
 

@@ -27,8 +27,8 @@ from puck_tables.kernels.spline import basis, cell_at, row_sums
 # larger φ (cos, sin), 1/extent, and the same in all rows: the square of the gyration radius over r,
 # and 1 for a plain puck.
 LINE_COS, LINE_SIN, LINE, UPPER_COS, UPPER_SIN, INVERSE_EXTENT, INERTIA, PLAIN = range(8)
-HEADER = 8
-RATIOS = 3
+HEADER = 8  # the eight above
+RATIOS = 3  # 1/ρ_∥, ρ_⊥/ρ_∥ and ρ_ω/ρ_∥
 FLOWS = 6  # functions of a section that also holds the derivatives of the ratios by the height
 _LEAST = 0.5  # cells from a line: nearer the quotient of slopes is 0/0
 

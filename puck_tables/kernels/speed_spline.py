@@ -30,10 +30,10 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel, patience, weighted_rows
 from puck_tables.kernels.spline import cell_at
 
-DONE, TOO_FAST = 0, 1
-DEGREE = 5
-EDGE_POWER, CORNER_POWER = 2, 3
-_ROUNDING = 1.0 + 1e-12
+DONE, TOO_FAST = 0, 1  # what a look-up ends as
+DEGREE = 5  # of the patches
+EDGE_POWER, CORNER_POWER = 2, 3  # of the grading of nodes at edges, and at corners of the law
+_ROUNDING = 1.0 + 1e-12  # a speed so little above the last is the last
 
 
 def packed(

@@ -15,7 +15,8 @@ from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.singular_lines import refuse_height
 from puck_tables.table.store import friction_for
 
-STANDARD_GRAVITY = 9.80665
+STANDARD_GRAVITY = 9.80665  # m/s², by the third General Conference on Weights and Measures, 1901
+# k/r: beyond, motions have stops too steep for splines and steps
 SMALLEST_GYRATION, LARGEST_GYRATION = 0.1, 10.0
 _FULL_CONTACT = 1.0  # δ up to which a plain puck lies on its whole base in every motion
 

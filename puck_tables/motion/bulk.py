@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating, patience
+from puck_tables.kernels.patience import A_MOTION
 from puck_tables.kernels.quadratic import cut as cut_table
 from puck_tables.kernels.quadratic import room_for_cut
 from puck_tables.motion.equations import at_constant_angle
@@ -20,7 +21,7 @@ from puck_tables.motion.tableaus import Tableau
 
 OVERFLOW = 2  # index of solvers.STATUS_MEANINGS
 
-_STEP_LIMIT = 100_000
+_STEP_LIMIT = 100_000  # more is a motion that does not end
 
 
 @allocating
@@ -41,7 +42,7 @@ def fill_stops(
     are of; both are empty for closed forms.
     One launch never influences another, so any cutting into chunks gives the same bits.
     """
-    patience(launches.shape[1])
+    patience(A_MOTION * launches.shape[1])
     by_table = columns.size > 0
     cut = room_for_cut(columns) if by_table else section
     cut_delta = -1.0

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from puck_tables.accuracy.methods import Source
+from puck_tables.accuracy.methods import FrictionForm
 from puck_tables.contact.one_sided import loaded_share
 from puck_tables.kernels.section_spline import LINE
 from puck_tables.motion.body import Body
-from puck_tables.motion.run import GENERIC, Run
+from puck_tables.motion.run import GENERIC, MotionRun
 from puck_tables.motion.state import T, U
 from puck_tables.table.singular_lines import opening_angle
 
@@ -30,7 +30,7 @@ class Contact:
     closes: float | None = None
 
 
-def contact_of(body: Body, regime: str, run: Run) -> Contact:
+def contact_of(body: Body, regime: str, run: MotionRun) -> Contact:
     """What carries load along a motion: the share grows with φ, and φ is monotonic in time.
 
     Examples
@@ -43,7 +43,7 @@ def contact_of(body: Body, regime: str, run: Run) -> Contact:
     >>> round(contact_of(body, "C0", run).least, 6)
     0.647743
     """
-    if run.friction.source is not Source.SECTION or regime == "A":
+    if run.friction.source is not FrictionForm.SECTION or regime == "A":
         return Contact()
     opening = opening_angle(body.delta) if body.law.can_lift else 0.0
     if opening == 0.0:

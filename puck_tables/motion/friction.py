@@ -16,7 +16,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import rounded_up
 from puck_tables.accuracy.front import COARSEST, UNITS, Selection, named, select
-from puck_tables.accuracy.methods import INTEGRATORS, Method, Scheme, Source, schemes_of
+from puck_tables.accuracy.methods import INTEGRATORS, FrictionForm, Method, Scheme, schemes_of
 from puck_tables.contact.closed_form import by_closed_form
 from puck_tables.contact.integrals import SlipDirection
 from puck_tables.contact.resultants import CONTACT_SLACK, pressure_tilt
@@ -25,7 +25,7 @@ from puck_tables.kernels.closed_form import outside_full_contact
 from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.motion.body import Body
 from puck_tables.motion.limits import LIMIT_WIDTH, limit_log_ratio
-from puck_tables.motion.solve import Estimate, Setting
+from puck_tables.motion.solve import ErrorEstimate, Setting
 from puck_tables.motion.steppers import stepping_of
 from puck_tables.table.friction_section import FINEST_ACCURACY
 from puck_tables.table.resultant_table import ResultantTable
@@ -35,17 +35,17 @@ FINEST_TOL = 1e-11  # of a motion whose friction is a section
 TABLE_FACTOR = 5.0  # an error of the friction enters a stop at most so many times
 # Looser, a step of a very tall puck leaps over the bend below φ = π/4, and no estimate sees it.
 LOOSEST_LOCAL = 1e-7
-_ROUNDING = 1e-15
+_ROUNDING = 1e-15  # of Q/J: of elementary functions
 _FROM_FRICTION = 20.0  # tol that surely goes with an error of the friction
-_SECTION_WIDTH = 1e-12
-_HIGHEST_CLOSED = 2.0
+_SECTION_WIDTH = 1e-12  # of u: nearer to the limit angle a section cannot tell
+_HIGHEST_CLOSED = 2.0  # δ: from there on some of the base lifts in every motion but pure spin
 
 
 @dataclass(frozen=True)
 class Friction:
     """What the integrator reads at one δ, see :mod:`puck_tables.motion.equations`; its error."""
 
-    source: Source
+    source: FrictionForm
     delta: float
     cut: FloatArray = field(repr=False)
     error: float
@@ -59,7 +59,7 @@ def closed_form_friction(delta: float) -> Friction:
     >>> closed_form_friction(0.5).error
     0.0
     """
-    return Friction(Source.CLOSED_FORMS, delta, NO_SECTION, 0.0)
+    return Friction(FrictionForm.CLOSED_FORMS, delta, NO_SECTION, 0.0)
 
 
 def table_friction(delta: float, table: ResultantTable) -> Friction:
@@ -75,7 +75,7 @@ def table_friction(delta: float, table: ResultantTable) -> Friction:
     >>> table_friction(0.5, ResultantTable.shipped()).error
     2e-11
     """
-    return Friction(Source.TABLE, delta, table.section(delta), table.tolerance)
+    return Friction(FrictionForm.TABLE, delta, table.section(delta), table.tolerance)
 
 
 @lru_cache(maxsize=64)
@@ -104,7 +104,7 @@ def section_friction(body: Body, accuracy: float, coarser: bool = False) -> Fric
             f"{body.law.name}: give tol (--tol) of {finest:g} or more"
         ) from None
     cut = found.for_motion(body.gyration, coarser)
-    return Friction(Source.SECTION, body.delta, cut, found.error)
+    return Friction(FrictionForm.SECTION, body.delta, cut, found.error)
 
 
 class FrictionSource(ABC):
@@ -137,7 +137,7 @@ class FrictionSource(ABC):
         """The setting of the integrator and the accuracy of the friction to begin with."""
 
     @abstractmethod
-    def told(self, selection: Selection, setting: Setting, error: Estimate) -> Selection:
+    def told(self, selection: Selection, setting: Setting, error: ErrorEstimate) -> Selection:
         """What was taken in the end, with its error."""
 
     @abstractmethod
@@ -194,15 +194,15 @@ class FullContact(FrictionSource):
 
     def first(self, selection: Selection) -> Setting:
         """As selected; an accuracy of 0 are closed forms, else it is that of the table."""
-        exact = self.exact or selection.scheme.source is Source.CLOSED_FORMS
+        exact = self.exact or selection.scheme.source is FrictionForm.CLOSED_FORMS
         accuracy = 0.0 if exact else ResultantTable.shipped().tolerance
         if self.table is not None:
             accuracy = self.table.tolerance
         return Setting(stepping_of(selection), accuracy)
 
-    def told(self, selection: Selection, setting: Setting, error: Estimate) -> Selection:
+    def told(self, selection: Selection, setting: Setting, error: ErrorEstimate) -> Selection:
         """More than what was selected."""
-        source = Source.TABLE if setting.accuracy else Source.CLOSED_FORMS
+        source = FrictionForm.TABLE if setting.accuracy else FrictionForm.CLOSED_FORMS
         scheme = Scheme(selection.method, source)
         more = f"This motion needed more: {named(scheme.name, setting.words)}."
         return Selection(
@@ -256,7 +256,7 @@ class Sections(FrictionSource):
                 "pressure law, with another radius of gyration or delta above 1, got "
                 f"{tol:g}"
             )
-        schemes = schemes_of([method or Method.ADAPTIVE], [Source.CLOSED_FORMS])
+        schemes = schemes_of([method or Method.ADAPTIVE], [FrictionForm.CLOSED_FORMS])
         return select(question, tol, schemes)
 
     def first(self, selection: Selection) -> Setting:
@@ -264,9 +264,12 @@ class Sections(FrictionSource):
         accuracy = max(0.5 * selection.tol, FINEST_ACCURACY)
         return Setting(stepping_of(selection, LOOSEST_LOCAL), accuracy)
 
-    def told(self, selection: Selection, setting: Setting, error: Estimate) -> Selection:
+    def told(self, selection: Selection, setting: Setting, error: ErrorEstimate) -> Selection:
         """The setting in the end, and what was measured."""
-        scheme, spline = Scheme(selection.method, Source.SECTION), self._spline(setting.accuracy)
+        scheme, spline = (
+            Scheme(selection.method, FrictionForm.SECTION),
+            self._spline(setting.accuracy),
+        )
         explanation = (
             f"Asked: an error of at most {selection.tol:.3g} {UNITS}.\n"
             f"Taken: {named(scheme.name, setting.words)}.\n"
@@ -363,6 +366,8 @@ def integration_selected(
 def _selected(
     question: str, tol: float, method: Method | None, own: tuple[str, float] | None, exact: bool
 ) -> Selection:
-    sources = (Source.CLOSED_FORMS,) if exact else (Source.TABLE, Source.CLOSED_FORMS)
+    sources = (
+        (FrictionForm.CLOSED_FORMS,) if exact else (FrictionForm.TABLE, FrictionForm.CLOSED_FORMS)
+    )
     methods = INTEGRATORS if method is None else (method,)
     return select(question, tol, schemes_of(methods, sources), own)

@@ -32,13 +32,13 @@ from puck_tables.motion.state import PSI, SIZE, WORK, T, U, X, Y
 from puck_tables.motion.steppers import AT_EVENT, ROWS, estimated, step
 from puck_tables.motion.tableaus import Tableau
 
-TURN_SHARE = 1e-3
+TURN_SHARE = 1e-3  # of Q₀: beyond, the heading turns on without end
 TURN_Z = 1.0 - TURN_SHARE**0.25
 
-STOPPED, STEP_LIMIT = 0, 1
+STOPPED, STEP_LIMIT = 0, 1  # how an integration ends
 
-_NEAR_CROSSING = 0.5
-_CROSSING_FLOOR = 4.0
+_NEAR_CROSSING = 0.5  # of u, from where on steps shrink towards a singular line
+_CROSSING_FLOOR = 4.0  # over steps: the shortest step over the longest
 
 
 @inlined

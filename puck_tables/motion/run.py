@@ -23,15 +23,15 @@ from puck_tables.motion.frame import direction
 from puck_tables.motion.friction import Friction, FrictionSource
 from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import STOPPED, TURN_SHARE, integrate, states_at
-from puck_tables.motion.solve import FINEST_LOCAL, Estimate, Setting, close_enough, refined
+from puck_tables.motion.solve import FINEST_LOCAL, ErrorEstimate, Setting, close_enough, refined
 from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, WORK, T, U, X, Y
 from puck_tables.motion.steppers import Stepping
 from puck_tables.motion.tableaus import DORMAND_PRINCE, Tableau
 
 GENERIC = ("B", "C")  # regimes that are integrated; the others are elementary
 
-_FINEST_TWIN = 4e-15
-_STEP_LIMIT = 20_000
+_FINEST_TWIN = 4e-15  # of a step: below, rounding is all that two runs differ by
+_STEP_LIMIT = 20_000  # room for so many is made; more is a motion that does not end
 _SAFETY = 1.5  # states between the moments compared
 _ROUNDING = 1e-14  # of a motion as long as Q/J
 _UNSEEN_SHARE = 0.1  # of the error of a section: two coarse ones may err alike
@@ -40,7 +40,7 @@ _COARSER_BY = 4.0  # half as many cells are 16 times as bad; a quarter of that i
 
 
 @dataclass
-class Run:
+class MotionRun:
     """Step ends (z, state) from launch to stop; ``stop`` is the state there, its ψ the turn."""
 
     friction: Friction
@@ -68,7 +68,7 @@ class Run:
 def solve(
     source: FrictionSource, regime: str, speed: float, rim: float, tol: float,
     method: Method | None = None,
-) -> tuple[Run, Selection]:  # fmt: skip
+) -> tuple[MotionRun, Selection]:  # fmt: skip
     """The motion of a launch with speed v and rim speed r|ω| in natural units, and how it was got.
 
     Raises
@@ -107,7 +107,7 @@ def solve(
     return run, selection
 
 
-def at_constant_slip(regime: str, u: float, friction: Friction) -> Run:
+def at_constant_slip(regime: str, u: float, friction: Friction) -> MotionRun:
     """A motion in elementary functions, u = ln(r|ω|/v) throughout.
 
     Examples
@@ -126,10 +126,12 @@ def at_constant_slip(regime: str, u: float, friction: Friction) -> Run:
         energy = kinetic_energy(1.0, u, inertia(friction.cut))
         residual = abs(stop[WORK] - energy) / energy
     rate = -turned[PSI] / math.log(TURN_SHARE)
-    return Run(friction, DORMAND_PRINCE, np.zeros(1), start, stop, rate, residual, 0, math.inf)
+    return MotionRun(
+        friction, DORMAND_PRINCE, np.zeros(1), start, stop, rate, residual, 0, math.inf
+    )
 
 
-def integrated(u: float, friction: Friction, stepping: Stepping) -> Run:
+def integrated(u: float, friction: Friction, stepping: Stepping) -> MotionRun:
     """A motion by one setting of the integrator, its error not known.
 
     Raises
@@ -157,7 +159,7 @@ def integrated(u: float, friction: Friction, stepping: Stepping) -> Run:
         )
     rates = np.empty(SIZE)  # at z = 0, dz = −d ln Q/4
     derivatives(0.0, y[count - 1], friction.cut, friction.delta, rates)
-    return Run(
+    return MotionRun(
         friction,
         stepping.tableau,
         z=z[:count].copy(),
@@ -172,7 +174,7 @@ def integrated(u: float, friction: Friction, stepping: Stepping) -> Run:
 
 def _attempt(
     source: FrictionSource, u: float, tol: float, setting: Setting
-) -> tuple[Run, Estimate]:
+) -> tuple[MotionRun, ErrorEstimate]:
     """A motion by one setting, and its error: by a run of higher accuracy, and by its friction.
 
     Where the error of the friction is known the stop is compared; else whole motions are, also with
@@ -184,12 +186,12 @@ def _attempt(
     if coarser is None:
         finer = integrated(u, friction, stepping.finer(2.0, 0.1, _FINEST_TWIN))
         difference = float(np.abs(run.stop[T : X + 2] - finer.stop[T : X + 2]).max())
-        return run, Estimate(difference + 0.01 * tol, friction.error)
+        return run, ErrorEstimate(difference + 0.01 * tol, friction.error)
     finer = integrated(u, friction, stepping.finer(2.0, 0.01, FINEST_LOCAL))
     by_steps = _SAFETY * (apart(run, finer) + unseen_tail(stepping))
     by_friction = apart(run, integrated(u, coarser, stepping)) / _COARSER_BY
     rounding = _ROUNDING * max(1.0, float(run.stop[T]))
-    return run, Estimate(by_steps, by_friction + _UNSEEN_SHARE * friction.error, rounding)
+    return run, ErrorEstimate(by_steps, by_friction + _UNSEEN_SHARE * friction.error, rounding)
 
 
 def unseen_tail(stepping: Stepping) -> float:
@@ -203,7 +205,7 @@ def unseen_tail(stepping: Stepping) -> float:
     return (2.0 * stepping.steps) ** -4.0 if stepping.fixed else 0.01 * stepping.local
 
 
-def apart(one: Run, other: Run) -> float:
+def apart(one: MotionRun, other: MotionRun) -> float:
     """How far two motions of a launch are apart: at the stop, and at moments of the first."""
     speed, rim = _speeds((1.0 - one.z) ** 4, one.y[:, U])
     # where the speeds change most, errors of the time count most

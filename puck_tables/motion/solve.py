@@ -12,10 +12,11 @@ from puck_tables.motion.steppers import Stepping
 Result = TypeVar("Result")
 AnySetting = TypeVar("AnySetting")
 
+# of a step, and steps: beyond, rounding grows as steps get finer
 FINEST_LOCAL, MOST_STEPS = 1e-15, 4096
 
 
-class Estimate(NamedTuple):
+class ErrorEstimate(NamedTuple):
     """The error of a result: by the steps of the integrator, by its friction, and the rest."""
 
     by_steps: float
@@ -43,11 +44,11 @@ class Setting(NamedTuple):
 
 def close_enough(
     setting: AnySetting,
-    attempt: Callable[[AnySetting], tuple[Result, Estimate]],
-    finer: Callable[[AnySetting, Estimate], AnySetting | None],
+    attempt: Callable[[AnySetting], tuple[Result, ErrorEstimate]],
+    finer: Callable[[AnySetting, ErrorEstimate], AnySetting | None],
     tol: float,
     of: str,
-) -> tuple[Result, Estimate, AnySetting]:
+) -> tuple[Result, ErrorEstimate, AnySetting]:
     """Compute with finer and finer settings until the estimated error is within the tolerance.
 
     Parameters
@@ -69,7 +70,7 @@ def close_enough(
 
     Examples
     --------
-    >>> halves = lambda n: (n, Estimate(0.5**n, 0.0))
+    >>> halves = lambda n: (n, ErrorEstimate(0.5**n, 0.0))
     >>> close_enough(1, halves, lambda n, error: n + 1, 0.1, "halves")[0]
     4
     """
@@ -87,7 +88,7 @@ def close_enough(
 
 
 def refined(
-    setting: Setting, error: Estimate, tol: float, friction: Callable[[float], float | None]
+    setting: Setting, error: ErrorEstimate, tol: float, friction: Callable[[float], float | None]
 ) -> Setting | None:
     """The next setting of a motion: better friction where that errs most, else finer steps.
 

@@ -7,8 +7,8 @@ body angle, speed and spin.
 
 from __future__ import annotations
 
-SIZE = 8
+SIZE = 8  # numbers of a state
 U, PSI, T, X, Y, THETA, LENGTH, WORK = range(SIZE)
 
-STATE_ROWS = 6
+STATE_ROWS = 6  # numbers of a state of a puck
 PUCK_X, PUCK_Y, HEADING, ORIENTATION, SPEED, SPIN = range(STATE_ROWS)

@@ -11,13 +11,14 @@ from puck_tables.io.columns import COLUMNS
 from puck_tables.plot.style import BLUE, GREY, LAUNCH, ORANGE, canvas
 from puck_tables.plot.words import titled
 from puck_tables.stopping.aim import Aim
+from puck_tables.stopping.states import states as states_at
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.cm import ScalarMappable
     from matplotlib.figure import Figure
 
-    from puck_tables.puck import Puck
+    from puck_tables.motion.puck_spec import PuckSpec
 
 
 def draw(found: Aim) -> Figure:
@@ -37,7 +38,7 @@ def draw(found: Aim) -> Figure:
     return figure
 
 
-def told(figure: Figure, launches: Axes, puck: Puck, answer: str) -> None:
+def told(figure: Figure, launches: Axes, puck: PuckSpec, answer: str) -> None:
     """Label the panel of speeds against spins, and say above all what is drawn, of which puck."""
     launches.set(xlabel=COLUMNS["launch_spin"].axis, ylabel=COLUMNS["launch_speed"].axis)
     launches.set_ylim(bottom=0.0)
@@ -62,9 +63,9 @@ def draw_on(paths: Axes, found: Aim) -> ScalarMappable:
     ramp = LinearSegmentedColormap.from_list("spin", [BLUE, "#303030", ORANGE])
     colours = ScalarMappable(Normalize(-largest, largest), ramp)
     shares = np.linspace(0.0, 1.0, 200)
-    states = found.puck.states(
+    states = states_at(
         found.launch_velocity[:, None, :], found.launch_spin[:, None],
-        found.stop_time[:, None] * shares,
+        found.stop_time[:, None] * shares, **found.puck.arguments(),
     )  # fmt: skip
     for n, spin in enumerate(found.launch_spin):
         paths.plot(states.x[n], states.y[n], color=colours.to_rgba(spin), linewidth=1.3)

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.chetaev.asperity_forces import LEAP, AsperityCurve
-from puck_tables.plot.panels import Curve, Panel, Picture, draw_panel
+from puck_tables.plot.panels import Panel, Picture, PlotCurve, draw_panel
 from puck_tables.plot.panels import draw as panels_drawn
 
 if TYPE_CHECKING:
@@ -35,19 +35,19 @@ def _panels(curve: AsperityCurve) -> list[Panel]:
     support = curve.asperity
     scaled = curve.held_speed / support.lift_speed
     unit = support.load * support.slope
-    coulomb = Curve(scaled, curve.crude / unit, "Coulomb, |Y| a/b", dashed=True)
+    coulomb = PlotCurve(scaled, curve.crude / unit, "Coulomb, |Y| a/b", dashed=True)
     across = "speed V/V₀  (above 1 the point leaves the crests)"
     return [
         Panel(across, "greatest force / (|Y| a/b)", [
-            Curve(scaled, curve.greatest / unit, "held speed:\n−Y + m(a/b²)V² cos θ", leap=1.0),
-            Curve(scaled, curve.undriven / unit, "not driven:\nexact λ", leap=1.0), coulomb,
+            PlotCurve(scaled, curve.greatest / unit, "held speed:\n−Y + m(a/b²)V² cos θ", leap=1.0),
+            PlotCurve(scaled, curve.undriven / unit, "not driven:\nexact λ", leap=1.0), coulomb,
         ], "greatest force in contact (none where the point only hops)"),
         Panel(across, "mean force / (|Y| a/b)", [
-            Curve(scaled, curve.mean / unit, "mean, with\nall landings", leap=LEAP), coulomb,
+            PlotCurve(scaled, curve.mean / unit, "mean, with\nall landings", leap=LEAP), coulomb,
         ], "mean force: what landings lose; never above Coulomb's"),
         Panel(across, "landing θ₁ / rad", [
-            Curve(scaled, curve.landing_phase, "lands at θ₁,\nthen slides", leap=1.0),
-            Curve(scaled, steepest(scaled), "greatest force\non a rise, θ*", dashed=True),
+            PlotCurve(scaled, curve.landing_phase, "lands at θ₁,\nthen slides", leap=1.0),
+            PlotCurve(scaled, steepest(scaled), "greatest force\non a rise, θ*", dashed=True),
         ], "on the next rise: trough 0, steepest slope π/2, crest π"),
     ]  # fmt: skip
 

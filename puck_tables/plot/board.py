@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from puck_tables.plot.film import Body, Box, Film
+from puck_tables.plot.film import Animation, Box, MovingDisc
 from puck_tables.plot.floor import Box as Sight
 from puck_tables.plot.floor import draw_floor
 from puck_tables.plot.style import GREY, RED
@@ -33,7 +33,7 @@ def size_of(box: Box) -> tuple[float, float]:
     return wide, max(wide * shape, _LOW)
 
 
-def draw_board(axes: Axes, film: Film) -> None:
+def draw_board(axes: Axes, film: Animation) -> None:
     """The floor, and all that stands still, each kind labelled once, to scale."""
     from matplotlib.patches import Arc, Circle
 
@@ -69,7 +69,7 @@ def draw_board(axes: Axes, film: Film) -> None:
         axes.plot(line.x, line.y, zorder=1, **looks, **label(line.kind))
 
 
-def disc(body: Body, x: float, y: float, **looks: Any) -> Circle:
+def disc(body: MovingDisc, x: float, y: float, **looks: Any) -> Circle:
     """A disc at a place, to scale; one that is driven is hatched."""
     from matplotlib.patches import Circle
 

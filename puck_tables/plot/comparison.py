@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_CURVE = 600
-_LABELLED = 8
+_CURVE = 600  # points of a curve: smooth at any size of print
+_LABELLED = 8  # curves: a legend of more hides the picture
 _EXACT: dict[str, Any] = {"color": "black", "linewidth": 1.6}
 
 

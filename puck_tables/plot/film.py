@@ -19,13 +19,12 @@ from puck_tables._core.colours import brightness, on_white
 from puck_tables.plot.scene import states_drawn
 from puck_tables.plot.words import out_of_sight
 from puck_tables.result import TimedResult
-from puck_tables.scene.outcome import SceneRun
 from puck_tables.scene.parts import Floor
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.run import Run
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.trajectory import Trajectory
 from puck_tables.world.agreement import frictions_under, pieces_of
 from puck_tables.world.drive import rows_of
-from puck_tables.world.outcome import WorldRun
 
 # dark and light by turns, so that neighbours differ in grey as well (Okabe and Ito)
 PALETTE = (
@@ -40,7 +39,7 @@ _DARK = 0.45  # brightness: a mark on it is white
 Box = tuple[float, float, float, float]  # left, right, low, high, m
 
 
-class Body(NamedTuple):
+class MovingDisc(NamedTuple):
     """A disc and its way: knots (n, 7) of t, x, y, angle, vx, vy, spin; ``gone`` s, or inf."""
 
     name: str
@@ -61,7 +60,7 @@ class Body(NamedTuple):
         return "white" if brightness(self.colour) < _DARK and not self.driven else "black"
 
 
-class Line(NamedTuple):
+class StraightPart(NamedTuple):
     """A straight part of the board: a wall or an edge, m."""
 
     kind: str
@@ -69,7 +68,7 @@ class Line(NamedTuple):
     y: tuple[float, float]
 
 
-class Round(NamedTuple):
+class RoundPart(NamedTuple):
     """A round part of the board: a post, an arc or a pocket; angles in rad."""
 
     kind: str
@@ -89,15 +88,15 @@ class Happening(NamedTuple):
     y: float
 
 
-class Film(NamedTuple):
+class Animation(NamedTuple):
     """All that is shown."""
 
     title: str
     end: str
     end_time: float
-    bodies: list[Body]
-    lines: list[Line]
-    rounds: list[Round]
+    bodies: list[MovingDisc]
+    lines: list[StraightPart]
+    rounds: list[RoundPart]
     happenings: list[Happening]
     box: Box
     floor: Floor
@@ -105,7 +104,7 @@ class Film(NamedTuple):
     hidden: str = ""  # walls and edges out of sight, in words
 
 
-def film_of(result: TimedResult) -> Film:
+def film_of(result: TimedResult) -> Animation:
     """The film of a run of a scene of one or several pucks, or of a trajectory.
 
     Examples
@@ -123,7 +122,9 @@ def film_of(result: TimedResult) -> Film:
         return _film(
             "Puck", "at rest", run.stop_time, [("puck", run.puck.radius, "", False, states)]
         )
-    if isinstance(result, SceneRun):
+    if isinstance(result, Run) and result.scene.is_board:
+        return _film_of_several(result)
+    if isinstance(result, Run):
         columns = states_drawn(result)
         names = ("time", "x", "y", "orientation", "vx", "vy", "spin")
         states = _stacked(*(columns[name] for name in names))
@@ -134,12 +135,10 @@ def film_of(result: TimedResult) -> Film:
         return _film(
             result.scene.title, result.end, result.end_time, [body], happenings, result.scene
         )
-    if isinstance(result, WorldRun):
-        return _film_of_several(result)
     raise TypeError(f"{type(result).__name__} has no film")
 
 
-def _film_of_several(run: WorldRun) -> Film:
+def _film_of_several(run: Run) -> Animation:
     scene, pieces = run.scene, pieces_of(run.scene)
     kinks = [rows_of(piece.path)[:, 0] for piece in pieces if piece.path]
     sudden = np.concatenate([[event.time for event in run.events], *kinks])
@@ -152,7 +151,7 @@ def _film_of_several(run: WorldRun) -> Film:
     bodies = [
         (
             name, piece.radius, piece.colour, bool(piece.path),
-            _stacked(seen.time, *(seen.columns[column][:, number] for column in names)),
+            _stacked(seen.time, *(seen[number][column] for column in names)),
         )
         for number, (name, piece) in enumerate(zip(run.names, pieces, strict=True))
     ]  # fmt: skip
@@ -170,8 +169,8 @@ def _stacked(*columns: FloatArray) -> FloatArray:
 
 def _film(
     title: str, end: str, end_time: float, bodies: list[tuple[str, float, str, bool, FloatArray]],
-    happenings: list[Happening] | None = None, scene: Scene | None = None,
-) -> Film:  # fmt: skip
+    happenings: list[Happening] | None = None, scene: SceneSpec | None = None,
+) -> Animation:  # fmt: skip
     """A film of bodies by name, radius, colour, whether driven, and states close to each other."""
     rounds = [] if scene is None else _rounds(scene)
     box = _sight(bodies, rounds)
@@ -181,11 +180,13 @@ def _film(
     unseen = min(_UNSEEN[0] * size, _UNSEEN[1] * smallest)
     lines = _lines(planes, box)
     colours = (colour_of(number) for number in range(len(bodies)))
-    return Film(
+    return Animation(
         title, end, end_time,
         [
-            Body(name, radius, colour or next(colours), driven, _knots(states, radius, unseen),
-                 math.inf)
+            MovingDisc(
+                name, radius, colour or next(colours), driven, _knots(states, radius, unseen),
+                math.inf,
+            )
             for name, radius, colour, driven, states in bodies
         ],
         lines, rounds, happenings or [], box, Floor() if scene is None else scene.floor,
@@ -193,7 +194,7 @@ def _film(
     )  # fmt: skip
 
 
-def _frictions(scene: Scene) -> tuple[float, ...]:
+def _frictions(scene: SceneSpec) -> tuple[float, ...]:
     """All coefficients of the floor under its pucks."""
     under = (frictions_under(scene, piece) for piece in pieces_of(scene))
     return tuple(friction for one in under for friction in one)
@@ -238,7 +239,7 @@ def between(knots: FloatArray, times: FloatArray) -> FloatArray:
     )
 
 
-def path_of(body: Body, until: float = math.inf) -> FloatArray:
+def path_of(body: MovingDisc, until: float = math.inf) -> FloatArray:
     """Places of a body so close that lines between them are its way, array (n, 2)."""
     knots = body.knots[: np.searchsorted(body.knots[:, 0], until, side="right")]
     starts, ends = knots[:-1, 0], knots[1:, 0]
@@ -273,13 +274,13 @@ def _leaps(states: FloatArray) -> npt.NDArray[np.bool_]:
     return np.asarray(at_once & (np.abs(np.diff(rates, axis=0)) > 1e-9 * scale).any(axis=1))
 
 
-def _rounds(scene: Scene) -> list[Round]:
-    posts = [Round("post", *post.point, post.radius) for post in scene.posts]
-    arcs = [Round("arc", *arc.point, arc.radius, arc.start, arc.span) for arc in scene.arcs]
-    return [*posts, *arcs, *(Round("pocket", *one.point, one.radius) for one in scene.pockets)]
+def _rounds(scene: SceneSpec) -> list[RoundPart]:
+    posts = [RoundPart("post", *post.point, post.radius) for post in scene.posts]
+    arcs = [RoundPart("arc", *arc.point, arc.radius, arc.start, arc.span) for arc in scene.arcs]
+    return [*posts, *arcs, *(RoundPart("pocket", *one.point, one.radius) for one in scene.pockets)]
 
 
-def _sight(bodies: list[tuple[str, float, str, bool, FloatArray]], rounds: list[Round]) -> Box:
+def _sight(bodies: list[tuple[str, float, str, bool, FloatArray]], rounds: list[RoundPart]) -> Box:
     """What ways and round parts of the board cover."""
     low = np.min(
         [states[:, 1:3].min(axis=0) - radius for _, radius, _, _, states in bodies], axis=0
@@ -293,7 +294,7 @@ def _sight(bodies: list[tuple[str, float, str, bool, FloatArray]], rounds: list[
     return float(low[0]), float(high[0]), float(low[1]), float(high[1])
 
 
-def _half_planes(scene: Scene) -> list[tuple[str, FloatArray]]:
+def _half_planes(scene: SceneSpec) -> list[tuple[str, FloatArray]]:
     """Walls and edges as unit normals into the field, and places along them."""
     planes = []
     for kind, lines in (("wall", scene.walls), ("edge", scene.edges)):
@@ -323,7 +324,7 @@ def _with_corners(box: Box, planes: list[FloatArray]) -> Box:
     return float(left - margin), float(right + margin), float(low - margin), float(high + margin)
 
 
-def _lines(planes: list[tuple[str, FloatArray]], box: Box) -> list[Line]:
+def _lines(planes: list[tuple[str, FloatArray]], box: Box) -> list[StraightPart]:
     """The parts of walls and edges that are in sight and border the field."""
     left, right, low, high = box
     sides: list[Any] = [(1.0, 0.0, left), (-1.0, 0.0, -right), (0.0, 1.0, low), (0.0, -1.0, -high)]
@@ -345,5 +346,5 @@ def _lines(planes: list[tuple[str, FloatArray]], box: Box) -> list[Line]:
         if start < end:
             ends = np.array([start, end])
             x, y = at * nx - ends * ny, at * ny + ends * nx
-            found.append(Line(kind, (float(x[0]), float(x[1])), (float(y[0]), float(y[1]))))
+            found.append(StraightPart(kind, (float(x[0]), float(x[1])), (float(y[0]), float(y[1]))))
     return found

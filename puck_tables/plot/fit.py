@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 _POINTS = 9  # of a profile curve
 _REACH = 3.0  # standard errors to either side of it
-_FINE = 400
+_FINE = 400  # points of a curve: smooth at any size of print
 _NARROW = 5.0  # times as long as wide: a path that is shown in scales of its own
 
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_SPEEDS, _SPINS = 9, 13
+_SPEEDS, _SPINS = 9, 13  # launches along both axes: as many as cells can hold a number
 _ACROSS = 3  # panels in a row
 _WIDEST = 2.0  # times the launch's own
 _RIM = 3.0  # rω/v at the end of the spins, at least

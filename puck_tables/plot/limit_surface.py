@@ -9,14 +9,14 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.plot.style import COLORS, GREY, canvas
 from puck_tables.plot.words import legend_below, titled
-from puck_tables.wrench.models import Model
+from puck_tables.wrench.models import SurfaceModel
 from puck_tables.wrench.surface import LimitSurface
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_ARROWS = 13
+_ARROWS = 13  # along the curve: more run into each other
 
 
 def draw(surface: LimitSurface) -> Figure:
@@ -70,7 +70,7 @@ def draw_on(axes: Axes, surface: LimitSurface) -> None:
     legend_below(axes, down=0.12)
 
 
-def _section(model: Model) -> tuple[FloatArray, FloatArray]:
+def _section(model: SurfaceModel) -> tuple[FloatArray, FloatArray]:
     """The curve on which a model's gauge is 1."""
     angle = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 361)
     force, torque = model.a * np.cos(angle), model.b * np.sin(angle)

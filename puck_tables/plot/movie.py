@@ -17,7 +17,7 @@ from puck_tables._core.safe_write import check_target, write_bytes
 from puck_tables.errors import MissingExtraError, OutputError
 from puck_tables.io.formats import ending_of
 from puck_tables.plot import board
-from puck_tables.plot.film import Body, Film, between, film_of, path_of
+from puck_tables.plot.film import Animation, MovingDisc, between, film_of, path_of
 from puck_tables.plot.floor import Box as Sight
 from puck_tables.plot.floor import motion_said, shades_of
 from puck_tables.plot.style import RED, canvas, may_replace, require_matplotlib
@@ -89,7 +89,7 @@ def save_movie(result: TimedResult, path: str | Path, overwrite: bool = False) -
     write_bytes(path, content, may_replace(path, overwrite))
 
 
-def page(film: Film) -> str:
+def page(film: Animation) -> str:
     """One HTML page with the film in it: it loads nothing and needs no server.
 
     Examples
@@ -124,11 +124,11 @@ def page(film: Film) -> str:
     return template.replace("/*film*/null", text)
 
 
-def _title(film: Film) -> str:
+def _title(film: Animation) -> str:
     return f"{film.title or 'Scene'}: {film.end} after {film.end_time:.4g} s"
 
 
-def _body(body: Body) -> dict[str, Any]:
+def _body(body: MovingDisc) -> dict[str, Any]:
     return {
         **body._asdict(),
         "gone": body.gone if math.isfinite(body.gone) else None,
@@ -145,7 +145,7 @@ def _motion(floor: Floor) -> dict[str, Any] | None:
     return {name: getattr(floor, name) for name in names} | {"words": words} if words else None
 
 
-def _filmed(film: Film, kind: str) -> bytes:
+def _filmed(film: Animation, kind: str) -> bytes:
     """The bytes of a GIF or an MP4."""
     from matplotlib.animation import FFMpegWriter, PillowWriter
 
@@ -171,7 +171,7 @@ def _filmed(film: Film, kind: str) -> bytes:
 class _Stage:
     """A picture of a film at any time: the board is drawn once, and what moves on it anew."""
 
-    def __init__(self, film: Film, slowed: float) -> None:
+    def __init__(self, film: Animation, slowed: float) -> None:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
 
         self.film, self.slowed = film, slowed

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Curve:
+class PlotCurve:
     """A curve, or points if it has a ``marker`` (``hollow`` or not).
 
     ``shade`` from 0 to 1 gives its place in a family of curves, light to dark; without it colours
@@ -45,7 +45,7 @@ class Panel:
 
     x_label: str
     y_label: str
-    curves: Sequence[Curve]
+    curves: Sequence[PlotCurve]
     title: str = ""
     x_ticks: dict[float, str] | None = None
 
@@ -64,7 +64,7 @@ def draw(picture: Picture) -> Figure:
 
     Examples
     --------
-    >>> line = Curve(np.array([0.0, 1.0]), np.array([0.0, 2.0]), "twice")
+    >>> line = PlotCurve(np.array([0.0, 1.0]), np.array([0.0, 2.0]), "twice")
     >>> len(draw(Picture("A line", [Panel("x / m", "y / m", [line])])).axes)
     1
     """
@@ -103,7 +103,7 @@ def draw_panel(axes: Axes, panel: Panel) -> None:
         axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
 
 
-def _look(curve: Curve, number: int) -> dict[str, Any]:
+def _look(curve: PlotCurve, number: int) -> dict[str, Any]:
     """How matplotlib is to draw a curve, the ``number``-th of its panel."""
     if curve.dashed:
         return {"color": GREY, "linestyle": "--", "linewidth": 1.2}

@@ -12,16 +12,16 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.plot.floor import Box, draw_floor
 from puck_tables.plot.style import BLUE, GREY, LAUNCH, ORANGE, RED, STOP
 from puck_tables.plot.words import legend_below, noted, out_of_sight
-from puck_tables.scene.outcome import SceneRun
 from puck_tables.scene.parts import Edge, Wall
 from puck_tables.scene.plan import acting
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.run import Run
+from puck_tables.scene.scene_spec import SceneSpec
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-_PUCKS_DRAWN = 12
+_PUCKS_DRAWN = 12  # outlines along a track: more run into each other
 # ingredients that are seen in the plane; others are named above it
 _DRAWN = (
     "slope",
@@ -40,7 +40,7 @@ _PURPLE = "#8b2fa0"
 _LEGEND_ROW = 4  # entries
 
 
-def draw_plane(axes: Axes, run: SceneRun, columns: dict[str, FloatArray]) -> None:
+def draw_plane(axes: Axes, run: Run, columns: dict[str, FloatArray]) -> None:
     """Draw the plane of a run; ``columns``: its states close to each other, (n,) by name."""
     scene, radius = run.scene, run.scene.puck.radius
     x, y = columns["x"], columns["y"]
@@ -79,7 +79,7 @@ def _box(x: FloatArray, y: FloatArray, margin: float) -> Box:
     return Box(middle[0] - wide, middle[0] + wide, middle[1] - high, middle[1] + high)
 
 
-def _draw_pucks(axes: Axes, scene: Scene, columns: dict[str, FloatArray]) -> None:
+def _draw_pucks(axes: Axes, scene: SceneSpec, columns: dict[str, FloatArray]) -> None:
     """The puck at some places of its path, with a mark on it, or the blade that leads it."""
     from matplotlib.patches import Circle
 
@@ -105,7 +105,7 @@ def _draw_pucks(axes: Axes, scene: Scene, columns: dict[str, FloatArray]) -> Non
 
 
 def _draw_constraint(
-    axes: Axes, scene: Scene, columns: dict[str, FloatArray], box: Box, end_time: float
+    axes: Axes, scene: SceneSpec, columns: dict[str, FloatArray], box: Box, end_time: float
 ) -> None:
     """The rail at the launch, or the pivot with its way."""
     hold, start = scene.constraint, scene.launch.position
@@ -125,7 +125,7 @@ def _draw_constraint(
     axes.plot(*at, "P", color=_PURPLE, markersize=8, zorder=5, linestyle="", label=words)
 
 
-def _draw_pulls(axes: Axes, scene: Scene, x: FloatArray, y: FloatArray, box: Box) -> str:
+def _draw_pulls(axes: Axes, scene: SceneSpec, x: FloatArray, y: FloatArray, box: Box) -> str:
     """Slope and constant force as arrows in corners that the path leaves free; what else pulls."""
     pulls = []
     if scene.floor.slope > 0.0:

@@ -9,10 +9,10 @@ import numpy as np
 
 from puck_tables.plot.board import disc, draw_board, show
 from puck_tables.plot.board_panels import LEGEND_ROW, close_up, finished, panels_for
-from puck_tables.plot.film import Body, Box, Film, between, film_of, path_of
+from puck_tables.plot.film import Animation, Box, MovingDisc, between, film_of, path_of
 from puck_tables.plot.style import GREY, RED
 from puck_tables.plot.words import legend_below, noted
-from puck_tables.world.outcome import WorldRun
+from puck_tables.scene.run import Run
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _NAMED = 8  # pucks: more are told apart by colour alone
 
 
-def draw(run: WorldRun, title: str = "") -> Figure:
+def draw(run: Run, title: str = "") -> Figure:
     """The board with all ways on it, and a close-up of the impacts where pucks are small.
 
     The whole motion is drawn, whatever states the run has: it is run again.
@@ -38,14 +38,14 @@ def draw(run: WorldRun, title: str = "") -> Figure:
     return figure
 
 
-def draw_on(axes: Axes, run: WorldRun) -> None:
+def draw_on(axes: Axes, run: Run) -> None:
     """The board alone."""
     film = film_of(run)
     _draw_film(axes, film, film.box)
     legend_below(axes, LEGEND_ROW // 2)
 
 
-def _draw_film(axes: Axes, film: Film, box: Box) -> None:
+def _draw_film(axes: Axes, film: Animation, box: Box) -> None:
     draw_board(axes, film)
     few = _named(film) > 0
     for body in film.bodies:
@@ -65,7 +65,7 @@ def _draw_film(axes: Axes, film: Film, box: Box) -> None:
     show(axes, box)
 
 
-def _draw_body(axes: Axes, body: Body, label: str) -> None:
+def _draw_body(axes: Axes, body: MovingDisc, label: str) -> None:
     """Its way, its outline at the start, and itself at the end, with a mark that turns with it."""
     path = path_of(body, body.gone)
     hidden = " " if label.startswith("_") else ""  # such labels stand in no legend
@@ -94,7 +94,7 @@ def _draw_body(axes: Axes, body: Body, label: str) -> None:
         )  # fmt: skip
 
 
-def _explain_looks(axes: Axes, film: Film) -> None:
+def _explain_looks(axes: Axes, film: Animation) -> None:
     """What outlines, fillings and hatches mean, as far as they are in the picture."""
     from matplotlib.patches import Circle
 
@@ -109,12 +109,12 @@ def _explain_looks(axes: Axes, film: Film) -> None:
         axes.add_patch(Circle((math.nan, math.nan), label=words, **look))
 
 
-def _named(film: Film) -> int:
+def _named(film: Animation) -> int:
     """How many pucks are named in the legend."""
     return len(film.bodies) if len(film.bodies) <= _NAMED else 0
 
 
-def _close_up(film: Film) -> list[Box]:
+def _close_up(film: Animation) -> list[Box]:
     """Around impacts and ends, where pucks are too small to be seen."""
     places = [(one.x, one.y) for one in film.happenings]
     if places:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from puck_tables.plot import pucks, scene
+from puck_tables.plot import run as picture
 from puck_tables.plot.style import (
     BLUE,
     COLORS,
@@ -20,7 +20,6 @@ from puck_tables.plot.style import (
 )
 from puck_tables.plot.words import noted, titled
 from puck_tables.reference.answer import Answer
-from puck_tables.world.outcome import WorldRun
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -78,10 +77,7 @@ def _tame(panel: Axes, epsilon: np.ndarray) -> None:
 
 def draw_on(axes: Axes, answer: Answer) -> None:
     """The plane to scale: floor and walls, the pucks, and their ways."""
-    if isinstance(answer.run, WorldRun):
-        pucks.draw_on(axes, answer.run)
-    else:
-        scene.draw_on(axes, answer.run)
+    picture.draw_on(axes, answer.run)
 
 
 def _draw_path(axes: Axes, answer: Answer, whole: Answer) -> None:

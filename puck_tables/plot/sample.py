@@ -24,11 +24,12 @@ _WIDTHS = (1, 2, 3, 4, 6, 8, 11, 16)  # of these cells: deviations of what smoot
 _NEAR, _SHARE = 800.0, 0.125  # samples that it takes together, at least; of all of them
 _COVERED = 0.02  # of the largest density: where there is less, each sample is drawn
 _TAIL, _ALONE = 5e-4, 1.5  # of the samples beyond each side of the map; samples, at least
-_HELD = (0.95, 0.5)  # of the samples inside the lines
+HELD = 0.95  # of the samples inside the outer line
+_HELD = (HELD, 0.5)
 _FLAT = 2e-3  # a cloud thinner than this over its length is seen as a line
 _FEW = 50  # samples have no density
 _LIGHT = 0.15  # of the ramp: less is not seen on white
-_SHARES = (0.025, 0.5, 0.975)
+_SHARES = (0.025, 0.5, 0.975)  # of the samples: the median, and what 95 % lie between
 
 
 class Cloud(NamedTuple):
@@ -42,6 +43,14 @@ class Cloud(NamedTuple):
     density: FloatArray
     at_samples: FloatArray
 
+    @property
+    def middles(self) -> FloatArray:
+        """X and y of the middles of the cells, (2, n, n) m."""
+        at = self.corners
+        return np.asarray(
+            0.25 * (at[:, 1:, 1:] + at[:, :-1, 1:] + at[:, 1:, :-1] + at[:, :-1, :-1])
+        )
+
 
 def draw(samples: Any) -> Figure:
     """The density of the ends, with the lines that hold 50 and 95 %; two histograms beside it."""
@@ -50,17 +59,19 @@ def draw(samples: Any) -> Figure:
     draw_on(figure.add_subplot(grid[:, :2]), samples)
     for n, name in enumerate(samples.shown):
         _histogram(figure.add_subplot(grid[n, 2]), samples, name)
-    lost = np.size(getattr(samples, samples.place[0])) - samples.ended
+    lost = np.size(samples.counted(samples.place[0])) - samples.ended
     without = f" and {lost} without an end" if lost else ""
-    titled(figure, f"{samples.ended} samples{without}: {samples.drawn_words}")
+    whose = f" of {samples.whose}" if getattr(samples, "whose", "") else ""  # of several pucks
+    titled(figure, f"{samples.ended} samples{whose}{without}: {samples.drawn_words}")
     return figure
 
 
 def draw_on(panel: Axes, samples: Summary) -> None:
     """The density alone, and every sample where it is low."""
-    x, y = (np.asarray(getattr(samples, name), np.float64).ravel() for name in samples.place)
-    ended = np.isfinite(x) & np.isfinite(y)
-    x, y = x[ended], y[ended]
+    x, y = (samples.counted(name) for name in samples.place)
+    counts = np.isfinite(x) & np.isfinite(y)
+    left = samples.ended - np.count_nonzero(counts)
+    x, y = x[counts], y[counts]
     sides = [_sides(samples, name) for name in samples.place]
     seen = _inside(x, y, sides)
     x, y = x[seen], y[seen]
@@ -79,8 +90,11 @@ def draw_on(panel: Axes, samples: Summary) -> None:
     no_rounding(panel)
     panel.set_xlabel(COLUMNS[samples.place[0]].axis)
     panel.set_ylabel(COLUMNS[samples.place[1]].axis)
+    notes = [f"{left} of {samples.ended} samples left play"] if left else []
     if not seen.all():
-        noted(panel, f"{np.count_nonzero(~seen)} of {seen.size} samples lie outside")
+        notes.append(f"{np.count_nonzero(~seen)} of {seen.size} samples lie outside")
+    if notes:
+        noted(panel, "; ".join(notes))
     legend_below(panel, 4)
 
 
@@ -98,12 +112,10 @@ def _draw_density(panel: Axes, cloud: Cloud) -> None:
     levels = np.quantile(cloud.at_samples, [1.0 - held for held in _HELD])
     if not 0.0 < levels[0] < levels[1]:
         return
-    corners = cloud.corners
-    middles = 0.25 * (
-        corners[:, 1:, 1:] + corners[:, :-1, 1:] + corners[:, 1:, :-1] + corners[:, :-1, :-1]
-    )
     colours = (GREY, ORANGE)
-    panel.contour(*middles, cloud.density, levels=levels, colors=colours, linewidths=1.2, zorder=3)
+    panel.contour(
+        *cloud.middles, cloud.density, levels=levels, colors=colours, linewidths=1.2, zorder=3
+    )
     for held, colour in zip(_HELD, colours, strict=True):
         panel.plot([], [], color=colour, linewidth=1.2, label=f"holds {100 * held:.0f} %")
 
@@ -164,7 +176,7 @@ def _tail(count: int) -> float:
 
 def _sides(samples: Summary, name: str) -> tuple[float, float]:
     """From where to where a map goes: all but a few samples far away."""
-    tail = _tail(samples.ended)
+    tail = _tail(int(np.isfinite(samples.counted(name)).sum()))
     least, low, high, most = samples.quantiles((0.0, tail, 1.0 - tail, 1.0))[name].tolist()
     room = 0.1 * (high - low) or max(1e-3 * abs(low), 1e-9)
     near = 3.0 * room  # what is as near as this is shown too
@@ -182,7 +194,7 @@ def _inside(
 
 
 def _histogram(panel: Axes, samples: Any, name: str) -> None:
-    values = np.asarray(getattr(samples, name)).ravel()
+    values = samples.counted(name)
     values = values[np.isfinite(values)]
     low, high = float(values.min()), float(values.max())
     largest = max(abs(low), abs(high))

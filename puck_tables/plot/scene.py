@@ -11,7 +11,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.plot.plane import draw_plane
 from puck_tables.plot.style import BLUE, GREEN, GREY, ORANGE, RED, canvas
 from puck_tables.plot.words import legend_below, noted, titled
-from puck_tables.scene.outcome import SceneRun
+from puck_tables.scene.run import Run
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,11 +27,11 @@ _ENERGIES = {
     "work_support": ("work of supports", GREY),
 }
 _STATES = 2000  # of the picture, at least
-_STATES_A_TURN, _MOST_STATES = 60, 50_000
+_STATES_A_TURN, _MOST_STATES = 60, 50_000  # points a turn of the puck, and of a picture at the most
 _EVENTS_DRAWN = 60  # as lines over time
 
 
-def draw(run: SceneRun) -> Figure:
+def draw(run: Run) -> Figure:
     """The path among all that is in the plane; speeds; and the energy ledger.
 
     The whole motion is drawn, with every event, whatever states the run has: it is run again.
@@ -59,12 +59,12 @@ def draw(run: SceneRun) -> Figure:
     return figure
 
 
-def draw_on(axes: Axes, run: SceneRun) -> None:
+def draw_on(axes: Axes, run: Run) -> None:
     """The plane alone."""
     draw_plane(axes, run, states_drawn(run))
 
 
-def states_drawn(run: SceneRun) -> dict[str, FloatArray]:
+def states_drawn(run: Run) -> dict[str, FloatArray]:
     """States of a run so close that lines between them are its curves, before and after events."""
     scene = run.scene
     turns = (
@@ -80,7 +80,7 @@ def states_drawn(run: SceneRun) -> dict[str, FloatArray]:
     return dict(run(times).columns)
 
 
-def _draw_events(axes: Axes, run: SceneRun) -> None:
+def _draw_events(axes: Axes, run: Run) -> None:
     """Thin lines at what happens, as long as there are not too many; else how many there are."""
     events = [e for e in run.events if e.what != "edge"]
     if len(events) > _EVENTS_DRAWN:

@@ -12,7 +12,7 @@ from puck_tables.plot.style import BLUE, GREEN, ORANGE, RED, canvas, draw_over, 
 from puck_tables.plot.words import legend_below, noted, titled
 from puck_tables.scene.loop import CARRIED_ROUND
 from puck_tables.scene.outcome import ENDS
-from puck_tables.scene.sweep import SceneMap
+from puck_tables.world.map import Map
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,16 +24,19 @@ _MAPS = {
     "y": "end y / m",
     "orientation": "orientation at the end / rad",
     "heat_dry": "heat of dry friction / J",
+    "impacts": "impacts",
 }
+_PANELS = 5  # of these, beside how it ends
 _LOOKS = (
     (BLUE, "o"), (GREEN, "^"), ("#6f9a25", "o"), (ORANGE, "D"), (RED, "v"), ("#555555", "x"),
-    ("#8b2fa0", "x"), ("black", "x"), ("#119eae", "x"), ("#a8840f", "x"), ("#939393", "x"),
+    ("#8b2fa0", "x"), ("black", "x"), ("#119eae", "x"), ("#c2185b", "x"), ("#7a4b2a", "x"),
+    ("#3f51b5", "x"), ("#a8840f", "x"), ("#939393", "x"),
 )  # fmt: skip
 _HATCH = "///"
 _LEGEND_ROW = 5  # entries
 
 
-def draw(stops: SceneMap) -> Figure:
+def draw(stops: Map) -> Figure:
     """Maps when two numbers range, curves when one does or has few values.
 
     The last panel says how each run ends, by colour, and so do the marks on curves; a run without
@@ -46,17 +49,18 @@ def draw(stops: SceneMap) -> Figure:
     figure = canvas(12.0, 7.6)
     panels = figure.subplots(2, 3, sharex=True)
     place, at = _middle(stops)
-    columns = [stops.columns[name][place] for name in _MAPS]
+    shown = [name for name in _MAPS if name in stops.columns][:_PANELS]
+    columns = [stops.columns[name][place] for name in shown]
     axes, (end, *columns) = in_order(_last_two(stops), stops.end[place], *columns)
     labels = {name: _label(stops, name) for name in axes}
-    for panel, text, values in zip(panels.flat, _MAPS.values(), columns, strict=False):
-        draw_over(figure, panel, axes, labels, values, text)
+    for panel, name, values in zip(panels.flat, shown, columns, strict=False):
+        draw_over(figure, panel, axes, labels, values, _MAPS[name])
         if panel.lines:
             _mark_ends(panel, axes, values, end)
         else:
             _hatch(panel, axes, end)
     curves, words = panels.flat[0].get_legend_handles_labels()
-    _draw_ends(panels.flat[len(_MAPS)], axes, labels, end)
+    _draw_ends(panels.flat[_PANELS], axes, labels, end)
     for code in np.unique(end).tolist():
         color, marker = _LOOKS[code]
         curves.append(Line2D([], [], color=color, marker=marker, linestyle=""))
@@ -65,11 +69,11 @@ def draw(stops: SceneMap) -> Figure:
         curves.append(Patch(facecolor="white", edgecolor="black", hatch=_HATCH))
         words.append("not at rest at the end")
     legend_below(figure, _LEGEND_ROW, given=(curves, words))
-    titled(figure, (stops.scene.title or "Scene") + (f" at {at}" if at else ""))
+    titled(figure, stops.title + (f" at {at}" if at else ""))
     return figure
 
 
-def draw_on(axes: Axes, stops: SceneMap) -> None:
+def draw_on(axes: Axes, stops: Map) -> None:
     """How each run ends, by colour; with more than two ranges at the middle of the first ones."""
     place, at = _middle(stops)
     ranged, (end,) = in_order(_last_two(stops), stops.end[place])
@@ -78,7 +82,7 @@ def draw_on(axes: Axes, stops: SceneMap) -> None:
         noted(axes, f"at {at}")
 
 
-def _middle(stops: SceneMap) -> tuple[tuple[int, ...], str]:
+def _middle(stops: Map) -> tuple[tuple[int, ...], str]:
     """Where all ranges but the last two are held, and that in words."""
     fixed = {name: stops.axes[name].size // 2 for name in list(stops.axes)[:-2]}
     words = (
@@ -89,11 +93,11 @@ def _middle(stops: SceneMap) -> tuple[tuple[int, ...], str]:
     return tuple(fixed.values()), ", ".join(words)
 
 
-def _last_two(stops: SceneMap) -> dict[str, Any]:
+def _last_two(stops: Map) -> dict[str, Any]:
     return {name: stops.axes[name] for name in list(stops.axes)[-2:]}
 
 
-def _label(stops: SceneMap, name: str) -> str:
+def _label(stops: Map, name: str) -> str:
     unit = stops.scene.unit_of(name)
     return f"{name} / {unit}" if unit else name
 

@@ -11,7 +11,7 @@ from puck_tables.io.columns import COLUMNS
 from puck_tables.plot.style import FEW, canvas, draw_over, in_order
 from puck_tables.plot.words import legend_below, noted, titled
 from puck_tables.stopping.solvers import OUTPUTS
-from puck_tables.stopping.sweep import StopMap
+from puck_tables.stopping.stop_map import StopMap
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

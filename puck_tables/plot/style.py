@@ -165,8 +165,13 @@ def may_replace(path: str | Path, overwrite: bool = False) -> bool:
     (False, True)
     """
     sign = _SIGNS.get(Path(path).suffix.lower())
-    if overwrite or sign is None or not Path(path).is_file():
+    if overwrite or sign is None:
         return overwrite
+    try:
+        if not Path(path).is_file():
+            return False
+    except OSError:  # a name that is too long
+        return False
     with contextlib.suppress(OSError), open(path, "rb") as file:
         size = file.seek(0, os.SEEK_END)
         file.seek(0)

@@ -15,7 +15,7 @@ from puck_tables.plot.words import counted, legend_below, titled
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_LABELLED = 12
+_LABELLED = 12  # marks: a legend of more hides the picture
 
 
 def draw(tracks: Sequence[Track]) -> Figure:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from puck_tables.accuracy.front import Measured, pareto
+from puck_tables.accuracy.front import MeasuredMethod, pareto
 from puck_tables.plot.style import BLUE, COLORS, GREY, canvas
 from puck_tables.plot.words import titled
 from puck_tables.tradeoff.engine import TradeOff
@@ -20,7 +20,7 @@ _TITLES = {
     "stop": "stop of a launch (time and place)",
     "state": "state at a moment",
 }
-_LOWEST = 1e-16
+_LOWEST = 1e-16  # the least error drawn, rounding: a logarithm has no 0
 _PAPER = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.4}
 _PIXELS = 100.0 / 72.0  # of a point, as long as the figure is not saved
 _MORE_COLORS = (*COLORS, "#7a5c00", "#00838a", "#a0527a", "#4f4f9a", "#6a8f00")
@@ -51,7 +51,7 @@ def draw_on(axes: Axes, measured: TradeOff, question: str = "stop") -> None:
     _draw(axes, _TITLES[question], group)
 
 
-def _draw(axes: Axes, title: str, group: list[Measured]) -> None:
+def _draw(axes: Axes, title: str, group: list[MeasuredMethod]) -> None:
     front = pareto(one for one in group if not one.outsider)
     axes.plot(
         [_error(one) for one in front], [one.ns for one in front],
@@ -86,7 +86,7 @@ def _draw(axes: Axes, title: str, group: list[Measured]) -> None:
 
 
 def _name(
-    axes: Axes, method: str, own: list[Measured], color: str,
+    axes: Axes, method: str, own: list[MeasuredMethod], color: str,
     taken: list[tuple[float, float, float, float]],
 ) -> None:  # fmt: skip
     """The name of a method near its line, where no other name stands; boxes in pixels."""
@@ -125,7 +125,7 @@ def _name(
     )
 
 
-def _error(one: Measured) -> float:
+def _error(one: MeasuredMethod) -> float:
     return max(one.error, _LOWEST) if np.isfinite(one.error) else 1.0
 
 

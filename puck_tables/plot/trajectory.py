@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_PUCKS_DRAWN = 9
-_STATES_DRAWN = 1001
+_PUCKS_DRAWN = 9  # outlines along a path: more run into each other
+_STATES_DRAWN = 1001  # points of a path: smooth at any size of print
 
 
 def draw(run: Trajectory) -> Figure:

@@ -14,18 +14,17 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.io.columns import derived, following
 from puck_tables.io.dataset import Dataset, Variable, variable
-from puck_tables.puck import Puck
-from puck_tables.reference.cases import TOL, Case, case_named
+from puck_tables.motion.puck_spec import PuckSpec
+from puck_tables.reference.cases import TOL, ReferenceCase, case_named
 from puck_tables.reference.floor import on_the_floor, ratios, slip_over
 from puck_tables.reference.moments import frame_times
 from puck_tables.result import Result
 from puck_tables.scene.entries import tables_of
-from puck_tables.scene.outcome import SceneRun
 from puck_tables.scene.parts import Floor
-from puck_tables.scene.pieces import Piece
+from puck_tables.scene.pieces import PieceSpec
+from puck_tables.scene.run import Run
 from puck_tables.scene.zones import zones_of
 from puck_tables.world.agreement import pieces_of
-from puck_tables.world.outcome import WorldRun
 
 STATE = ("x", "y", "orientation", "vx", "vy", "spin")
 ON_FLOOR = ("slip_speed", "epsilon", "slip_ratio", "floor_fx", "floor_fy", "floor_torque")
@@ -49,8 +48,8 @@ class Answer(Result):
     None.  Called with times it gives the states there.
     """
 
-    case: Case
-    run: SceneRun | WorldRun
+    case: ReferenceCase
+    run: Run
     time: FloatArray
     columns: Mapping[str, FloatArray] = field(repr=False)
 
@@ -92,10 +91,10 @@ class Answer(Result):
     @property
     def names(self) -> tuple[str, ...]:
         """Of the pucks, in their order; none of a single one."""
-        return self.run.names if isinstance(self.run, WorldRun) else ()
+        return self.run.names if self.run.scene.pucks else ()
 
     @property
-    def pieces(self) -> tuple[Piece, ...]:
+    def pieces(self) -> tuple[PieceSpec, ...]:
         """The pucks."""
         return pieces_of(self.run.scene)
 
@@ -117,7 +116,7 @@ class Answer(Result):
     @property
     def speed_scale(self) -> float:
         """Q of the launch, m/s."""
-        if isinstance(self.run, SceneRun):
+        if not self.names:
             return self.run.speed_scale
         return max(
             float(
@@ -131,15 +130,13 @@ class Answer(Result):
     @property
     def rate_scale(self) -> float:
         """J, m/s²."""
-        if isinstance(self.run, SceneRun):
+        if not self.names:
             return self.run.rate_scale
         return max(one.decel for one in self.pieces)
 
     @property
     def share_bound(self) -> float:
         """What times, places and speeds may be wrong by, in units of Q/J, Q²/J and Q."""
-        if isinstance(self.run, SceneRun):
-            return _STATES * max(self.run.error_estimate, TOL)
         length = self.speed_scale**2 / self.rate_scale
         return _STATES * max(self.run.end_error / length, TOL)
 
@@ -169,7 +166,7 @@ class Answer(Result):
         return None if puck is None else puck.limit_epsilon
 
     @property
-    def puck_at_end(self) -> Puck | None:
+    def puck_at_end(self) -> PuckSpec | None:
         """The one puck with the friction that it stops on; None: its base lies on several.
 
         None, too, where friction depends on the slip or several pucks are there.
@@ -211,7 +208,7 @@ class Answer(Result):
 
     def end_time_of(self, puck: int | None) -> float:
         """When it ends for one of several pucks, s; None: the single one."""
-        if puck is None or not isinstance(self.run, WorldRun):
+        if puck is None:
             return self.end_time
         return min(float(self.run.stop_times[puck]), self.end_time)
 

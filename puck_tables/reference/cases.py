@@ -13,12 +13,12 @@ from difflib import get_close_matches
 from typing import Any, NamedTuple
 
 from puck_tables.errors import InputError
-from puck_tables.scene.scene import Scene
+from puck_tables.world.scene import Scene
 
 TOL = 1e-11  # of Q/J and Q²/J
 
 
-class Case(NamedTuple):
+class ReferenceCase(NamedTuple):
     """A motion to be held against.
 
     ``name``, ``version``; ``title``: a line; ``tests``: what an engine gets wrong in it, in a
@@ -47,7 +47,7 @@ class Case(NamedTuple):
         """
         tables = deepcopy(dict(self.tables))
         tables["title"] = self.title
-        tables["run"] = {**tables.get("run", {}), "tol": TOL}
+        tables["tol"] = TOL
         return Scene.from_tables(tables, f"case {self.name}")
 
 
@@ -57,18 +57,18 @@ _STONE = {**_DISC, "restitution": 0.9, "tangential": 0.0, "rim": 0.1}
 _DOWN = -0.5 * math.pi  # along −y
 
 
-def _thrown(ratio: float) -> Case:
+def _thrown(ratio: float) -> ReferenceCase:
     """A flat disc at 0.5 m/s with a rim that is ``ratio`` times as fast."""
-    return Case(
+    return ReferenceCase(
         f"slide-spin-{ratio:g}", 1, f"Flat disc, rim {ratio:g} times as fast as its centre",
         "sliding and spinning brake each other: two separate frictions stop at two moments",
         {"puck": _DISC, "launch": {"velocity": [0.5, 0.0], "spin": ratio * 0.5 / 0.05}},
     )  # fmt: skip
 
 
-def _tall(delta: float, more: str) -> Case:
+def _tall(delta: float, more: str) -> ReferenceCase:
     """A cylinder as high as δ = 2 f h/r says: with f = 0.5, h = δ r."""
-    return Case(
+    return ReferenceCase(
         f"tall-{delta:g}", 1, f"Cylinder with delta = {delta:g}: it presses harder in front",
         f"the pressure tilts and the path bends{more}",
         {"puck": {**_TALL, "height": delta * 0.05},
@@ -76,31 +76,31 @@ def _tall(delta: float, more: str) -> Case:
     )  # fmt: skip
 
 
-def _incline(name: str, over: float, words: str, tests: str, time: float | None) -> Case:
+def _incline(name: str, over: float, words: str, tests: str, time: float | None) -> ReferenceCase:
     """A spinning disc sent across and up a slope whose tangent is ``over`` times f."""
     tables: dict[str, Any] = {
         "puck": _DISC, "floor": {"slope": math.atan(over * 0.2), "downhill": _DOWN},
         "launch": {"velocity": [0.5, 0.3], "spin": 20.0},
     }  # fmt: skip
     if time is not None:
-        tables["run"] = {"time": time}
-    return Case(f"incline-{name}", 1, f"Spinning disc on a slope {words}", tests, tables)
+        tables |= {"time": time}
+    return ReferenceCase(f"incline-{name}", 1, f"Spinning disc on a slope {words}", tests, tables)
 
 
 def _astride(
     name: str, title: str, tests: str, puck: dict[str, Any], borders: list[float],
     friction: list[float], direction: float, launch: dict[str, Any],
-) -> Case:  # fmt: skip
+) -> ReferenceCase:  # fmt: skip
     """A puck that lies on several strips at once, at least for a while."""
     strips = {"borders": borders, "friction": friction, "direction": direction}
-    return Case(
+    return ReferenceCase(
         f"astride-{name}", 1, title, tests,
         {"puck": puck, "floor": {"strips": strips}, "launch": launch},
     )  # fmt: skip
 
 
 CASES = (
-    Case(
+    ReferenceCase(
         "coin", 1, "Masterjohn's coin: a quarter dollar that slides and spins",
         "the ratio v/(r w) at a finite spin is not yet that of the limit",
         {
@@ -109,11 +109,11 @@ CASES = (
             "launch": {"velocity": [0.2, 0.0], "spin": 12.0},
         },
     ),
-    Case(
+    ReferenceCase(
         "spin", 1, "Flat disc that only spins", "torque 2/3 f m g r, stop after 3/4 r w/(f g)",
         {"puck": _DISC, "launch": {"velocity": [0.0, 0.0], "spin": 20.0}},
     ),
-    Case(
+    ReferenceCase(
         "slide", 1, "Flat disc that only slides", "force f m g, stop after v/(f g)",
         {"puck": _DISC, "launch": {"velocity": [1.0, 0.0]}},
     ),
@@ -121,7 +121,7 @@ CASES = (
     _tall(0.5, ""),
     _tall(1.0, "; in a pure slide the rear edge would just carry nothing"),
     _tall(2.0, "; at first part of the base carries nothing"),
-    Case(
+    ReferenceCase(
         "annulus", 1, "Washer with a hole half as wide",
         "friction and inertia of a ring: another limit of v/(r w)",
         {
@@ -133,17 +133,17 @@ CASES = (
     _incline("at", 1.0, "of just its friction",
              "spin uses up friction; what is left at the end is a slide of constant speed", 1.5),
     _incline("above", 1.5, "that does not hold it", "it slides off ever faster", 1.0),
-    Case(
+    ReferenceCase(
         "belt", 1, "Spinning disc set on a belt",
         "friction against a moving floor: its slip starts along the belt",
         {"puck": _DISC, "floor": {"velocity": [0.5, 0.0]},
          "launch": {"velocity": [0.0, 0.2], "spin": 20.0}},
     ),
-    Case(
+    ReferenceCase(
         "turntable", 1, "Disc set on a turntable that throws it off",
         "a floor whose velocity differs from place to place, and turns",
         {"puck": _DISC, "floor": {"turning": 4.0},
-         "launch": {"velocity": [0.0, 0.0], "position": [0.2, 0.0]}, "run": {"time": 1.0}},
+         "launch": {"velocity": [0.0, 0.0], "position": [0.2, 0.0]}, "time": 1.0},
     ),
     _astride(
         "spin", "Flat disc that spins on the border of two frictions",
@@ -163,7 +163,7 @@ CASES = (
         _DISC, [0.1, 0.16], [0.15, 0.4, 0.1], 0.0,
         {"velocity": [0.75, 0.1], "spin": -20.0},
     ),
-    Case(
+    ReferenceCase(
         "rebound", 1, "Spinning disc off a cushion",
         "restitution 0.8; the rim stops on the cushion or rubs with 0.2 of the impulse",
         {
@@ -172,7 +172,7 @@ CASES = (
                       "tangential": 0.0, "friction": 0.2}],
         },
     ),
-    Case(
+    ReferenceCase(
         "take-out", 1, "Spinning disc hits another that lies",
         "restitution 0.9, rims with friction 0.1, then two motions to their stops",
         {
@@ -187,7 +187,7 @@ CASES = (
 )  # fmt: skip
 
 
-def case_named(name: str) -> Case:
+def case_named(name: str) -> ReferenceCase:
     """The case of a name.
 
     Raises

@@ -16,7 +16,7 @@ from puck_tables.io.dataset import Dataset, Variable, variable
 from puck_tables.reference.answer import Answer, reference_case
 from puck_tables.reference.convergence import verdict
 from puck_tables.reference.log import LogHow, read_log
-from puck_tables.reference.measure import Measured, measured
+from puck_tables.reference.measure import MeasuredRun, measured
 from puck_tables.reference.threshold import Rest, Threshold, exact_rest, threshold_of, usual
 from puck_tables.result import Result
 
@@ -50,7 +50,7 @@ class Comparison(Result):
 
     answer: Answer
     puck: int | None
-    runs: tuple[Measured, ...]
+    runs: tuple[MeasuredRun, ...]
     thresholds: tuple[Threshold, ...]
     exact_rest: Rest | None
 
@@ -78,7 +78,7 @@ class Comparison(Result):
         """The numbers of each run, by the names of columns."""
         return [self._row(one) for one in self.runs]
 
-    def _row(self, run: Measured) -> dict[str, float]:
+    def _row(self, run: MeasuredRun) -> dict[str, float]:
         exact, seen = run.exact_rest, run.rest
         both = exact is not None and seen is not None
         nan = math.nan

@@ -17,13 +17,13 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.puck import Puck
+from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.scene.floor_forces import friction_at
 from puck_tables.scene.parts import Floor
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 
 
-class Slip(NamedTuple):
+class SlipVelocity(NamedTuple):
     """Velocity and spin relative to the floor, arrays: m/s, m/s, rad/s."""
 
     vx: FloatArray
@@ -36,37 +36,38 @@ class Slip(NamedTuple):
         Examples
         --------
         >>> one = np.ones(1)
-        >>> [size.round(4).item() for size in Slip(3.0 * one, 0.0 * one, -2.0 * one).sizes(2.0)]
+        >>> slip = SlipVelocity(3.0 * one, 0.0 * one, -2.0 * one)
+        >>> [size.round(4).item() for size in slip.sizes(2.0)]
         [3.0, 4.0, 5.0]
         """
         speed, rim = np.hypot(self.vx, self.vy), radius * np.abs(self.spin)
         return speed, rim, np.hypot(speed, rim)
 
 
-def slip_over(floor: Floor, states: Mapping[str, FloatArray]) -> Slip:
+def slip_over(floor: Floor, states: Mapping[str, FloatArray]) -> SlipVelocity:
     """Of states ``x``, ``y``, ``vx``, ``vy``, ``spin`` over a floor that may move.
 
     Examples
     --------
     >>> state = {name: np.ones(1) for name in ("x", "y", "vx", "vy", "spin")}
     >>> slip_over(Floor(velocity=(1.0, 0.0), turning=2.0), state)
-    Slip(vx=array([2.]), vy=array([-1.]), spin=array([-1.]))
+    SlipVelocity(vx=array([2.]), vy=array([-1.]), spin=array([-1.]))
     """
     (bx, by), (cx, cy), turning = floor.velocity, floor.centre, floor.turning
-    return Slip(
+    return SlipVelocity(
         states["vx"] - bx + turning * (states["y"] - cy),
         states["vy"] - by - turning * (states["x"] - cx),
         states["spin"] - turning,
     )
 
 
-def ratios(slip: Slip, radius: float) -> tuple[FloatArray, FloatArray]:
+def ratios(slip: SlipVelocity, radius: float) -> tuple[FloatArray, FloatArray]:
     """ε = v/(r|ω|) of the papers, and r|ω|/v; both NaN at rest, where there is no ratio.
 
     Examples
     --------
     >>> one = np.ones(1)
-    >>> ratios(Slip(one, 0.0 * one, 2.0 * one), 1.0)
+    >>> ratios(SlipVelocity(one, 0.0 * one, 2.0 * one), 1.0)
     (array([0.5]), array([2.]))
     """
     speed, rim, _ = slip.sizes(radius)
@@ -75,7 +76,7 @@ def ratios(slip: Slip, radius: float) -> tuple[FloatArray, FloatArray]:
 
 
 def wrench(
-    puck: Puck, phi: FloatArray, slope: float = 0.0
+    puck: PuckSpec, phi: FloatArray, slope: float = 0.0
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Force along the slip and to its left, N, and torque, N m, that a puck passes on.
 
@@ -87,6 +88,7 @@ def wrench(
 
     Examples
     --------
+    >>> from puck_tables import Puck
     >>> _, _, torque = wrench(Puck(0.05, friction=0.2, mass=0.1, gravity=9.81), np.array([np.pi/2]))
     >>> (torque / (0.2 * 0.1 * 9.81 * 0.05)).round(12).tolist()          # 2/3 of f m g r
     [0.666666666667]
@@ -114,12 +116,13 @@ def is_one_friction(floor: Floor) -> bool:
 
 
 def on_the_floor(
-    puck: Puck, scene: Scene, states: Mapping[str, FloatArray]
+    puck: PuckSpec, scene: SceneSpec, states: Mapping[str, FloatArray]
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Force along x and y, N, and torque, N m, of a puck of a scene on the floor, state by state.
 
     Examples
     --------
+    >>> from puck_tables import Puck, Scene
     >>> puck = Puck(0.05, friction=0.5, mass=0.1, gravity=10.0)
     >>> moves = {name: np.zeros(2) for name in ("x", "y", "vx", "vy", "spin")}
     >>> moves["vx"][0] = 1.0
@@ -146,7 +149,9 @@ def on_the_floor(
     )
 
 
-def _by_ratios(puck: Puck, slip: Slip, slope: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _by_ratios(
+    puck: PuckSpec, slip: SlipVelocity, slope: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Force along x and y and torque of a puck that slips on one friction."""
     speed, rim, _ = slip.sizes(puck.radius)
     phi = np.arctan2(rim, speed) * np.where(slip.spin < 0.0, -1.0, 1.0)

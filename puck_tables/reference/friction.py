@@ -13,14 +13,14 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import real_array
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset, variable
-from puck_tables.puck import Puck
-from puck_tables.reference.cases import Case, case_named
+from puck_tables.motion.puck_spec import PuckSpec
+from puck_tables.reference.cases import ReferenceCase, case_named
 from puck_tables.reference.floor import is_one_friction, wrench
 from puck_tables.result import Result
 from puck_tables.world.agreement import pieces_of
 
 USUAL = np.geomspace(0.01, 100.0, 81)
-BOUND = 1e-11
+BOUND = 1e-11  # of a share: what the file promises
 COLUMNS = (
     "slip_ratio", "slip_angle", "share_along", "share_across", "share_torque", "force_along",
     "force_across", "floor_torque",
@@ -37,8 +37,8 @@ class FloorFriction(Result):
     counter-clockwise: with the other sense the force across and the torque change sign.
     """
 
-    case: Case
-    puck: Puck
+    case: ReferenceCase
+    puck: PuckSpec
     slope: float
     epsilon: FloatArray
     slip_ratio: FloatArray

@@ -11,9 +11,11 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.beginning import beginning, refuse_no_text
-from puck_tables._core.columns import TIME, list_of
+from puck_tables._core.columns import list_of
+from puck_tables._core.quantities import TIME
 from puck_tables._core.real import instance, real
-from puck_tables._core.text import LARGEST, Look, look_at, read_columns
+from puck_tables._core.text import Look, look_at
+from puck_tables._core.text_rows import LARGEST, read_columns
 from puck_tables._core.units import EXAMPLES, parted, unit_size
 from puck_tables.errors import InputError
 from puck_tables.film.headings import heading

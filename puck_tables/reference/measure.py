@@ -20,7 +20,7 @@ _STEP_OFF = 3.0  # steps of J: what an engine may be off by after the first of t
 
 
 @dataclass(frozen=True)
-class Measured:
+class MeasuredRun:
     """A run and its errors: theirs less the exact.
 
     Over ``time`` (n,) s, up to the end of the case: ``dx``, ``dy`` m, ``place`` = hypot m,
@@ -64,7 +64,7 @@ class Measured:
 def measured(
     log: Log, answer: Answer, puck: int | None, thresholds: tuple[Threshold, ...],
     step: float | None = None,
-) -> Measured:  # fmt: skip
+) -> MeasuredRun:  # fmt: skip
     """Hold a run against the answer.
 
     Parameters
@@ -128,7 +128,7 @@ def measured(
             if rest is not None and answer.end == "at rest":
                 end = states_of(answer([end_time]), puck)
                 stop_place = math.dist((log.x[-1], log.y[-1]), (end["x"][0], end["y"][0]))
-    return Measured(
+    return MeasuredRun(
         log, log.step if step is None else step, time, dx, dy, np.hypot(dx, dy), angle, speed,
         spin, seen_speed, seen_rim, seen_epsilon, exact_epsilon, rest, exact_rest, stop_place, why,
     )  # fmt: skip

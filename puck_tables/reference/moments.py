@@ -14,7 +14,7 @@ from puck_tables.errors import InputError
 from puck_tables.reference.log import times_in
 from puck_tables.trajectory import MAX_FRAMES, checked_times
 
-FRAMES = 101
+FRAMES = 101  # moments of a case
 
 
 def frame_times(

@@ -11,11 +11,11 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.units import unit_size
 from puck_tables.errors import InputError
 from puck_tables.reference.answer import Answer
-from puck_tables.reference.floor import Slip, slip_over
+from puck_tables.reference.floor import SlipVelocity, slip_over
 
 _USUAL = 0.01  # of Q at the launch
 _NO_SPIN = 1e-9  # of Q at the launch
-_LOOKS, _ROUNDS = 513, 6
+_LOOKS, _ROUNDS = 513, 6  # angles looked at, and rounds that narrow down by as much
 
 
 class Threshold(NamedTuple):
@@ -30,7 +30,7 @@ class Threshold(NamedTuple):
         ]
         return f"{name} < {self.value:.6g} {unit}"
 
-    def excess(self, slip: Slip, radius: float) -> FloatArray:
+    def excess(self, slip: SlipVelocity, radius: float) -> FloatArray:
         """How far above the threshold, over it: -1 at rest."""
         speed, rim, q = slip.sizes(radius)
         size = {"speed": speed, "spin": rim / radius, "slip": q}[self.of]

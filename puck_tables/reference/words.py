@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from puck_tables.puck import Puck
+from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.reference.answer import Answer
 from puck_tables.scene.entries import units_of
 from puck_tables.scene.parts import Launch
@@ -56,14 +56,14 @@ def lines_of(answer: Answer) -> dict[str, str]:
     return lines
 
 
-def _puck(puck: Puck) -> str:
+def _puck(puck: PuckSpec) -> str:
     """Its numbers; of pressure and gyration those that are not the usual ones."""
     told = (
         f"r = {_digits(puck.radius)} m, height {_digits(puck.height)} m (centre of mass at "
         f"{_digits(0.5 * puck.height)} m), f = {_digits(puck.friction)}, "
         f"g = {_digits(puck.gravity)} m/s^2, m = {_digits(puck.mass)} kg, delta = {puck.delta:.6g}"
     )
-    usual = Puck(puck.radius)
+    usual = PuckSpec(puck.radius)
     if puck.pressure != usual.pressure:
         told += f", pressure {puck.body.law.name}"
     if puck.gyration != usual.gyration:

@@ -15,14 +15,14 @@ from puck_tables.scene.orthotropic import LEAST_RATIO
 from puck_tables.scene.parts import Edge, Floor, Rows, Wall
 
 if TYPE_CHECKING:
-    from puck_tables.scene.scene import Scene
+    from puck_tables.scene.scene_spec import SceneSpec
 
 _SMALLEST, _LARGEST = 1e-100, 1e100
 _MOST_ROWS = 60  # of a tabulated pressure astride: each row adds to the cost of a look
 _GRIPS = 1000.0  # the largest coefficient that a rim may come over
 
 
-def disagreements(scene: Scene) -> list[str]:
+def disagreements(scene: SceneSpec) -> list[str]:
     """What is wrong between fields that are each in range."""
     faults = []
     for name, value in (("radius", scene.puck.radius), ("mass", scene.puck.mass)):
@@ -32,8 +32,8 @@ def disagreements(scene: Scene) -> list[str]:
                 "use other units"
             )
     faults += floor_faults(scene)
-    if not scene.run.frames.is_integer():
-        faults.append(f"run.frames = {scene.run.frames:g}: must be a whole number")
+    if not scene.frames.is_integer():
+        faults.append(f"frames = {scene.frames:g}: must be a whole number")
     lines: list[tuple[str, Wall | Edge]] = [(f"wall[{i}]", w) for i, w in enumerate(scene.walls)]
     lines += [(f"edge[{i}]", edge) for i, edge in enumerate(scene.edges)]
     for name, line in lines:
@@ -56,7 +56,7 @@ def disagreements(scene: Scene) -> list[str]:
     return faults + misfits(scene.launch, hold, scene.floor, "")
 
 
-def floor_faults(scene: Scene) -> list[str]:
+def floor_faults(scene: SceneSpec) -> list[str]:
     """What is wrong with the friction of the floor, under the puck."""
     faults = []
     for name, there in (("strips", scene.floor.strips), ("patch", scene.floor.patches)):
@@ -70,7 +70,7 @@ def floor_faults(scene: Scene) -> list[str]:
     return faults + _bad_rows(scene) + _bad_axes(scene)
 
 
-def _bad_astride(scene: Scene) -> list[str]:
+def _bad_astride(scene: SceneSpec) -> list[str]:
     """Why friction is not known where the base lies on several of the floor."""
     floor, law = scene.floor, scene.puck.body.law
     if floor.strips is None and not floor.patches:
@@ -118,7 +118,7 @@ def bad_strips(floor: Floor) -> list[str]:
     return faults
 
 
-def _bad_axes(scene: Scene) -> list[str]:
+def _bad_axes(scene: SceneSpec) -> list[str]:
     """What is wrong with friction that depends on the direction."""
     floor, puck, two = scene.floor, scene.puck, scene.floor.orthotropic
     if two is None:
@@ -147,7 +147,7 @@ def _bad_axes(scene: Scene) -> list[str]:
     return faults
 
 
-def _bad_rows(scene: Scene) -> list[str]:
+def _bad_rows(scene: SceneSpec) -> list[str]:
     """What is wrong with tables that stand in the scene; those in files are read when it runs."""
     faults = []
     law, force = scene.floor.law, scene.force.over_time
@@ -181,7 +181,7 @@ def law_of_rows(rows: Rows) -> SpeedLaw:
     return SpeedLaw(speeds, values)
 
 
-def launch_velocity(scene: Scene) -> tuple[float, float]:
+def launch_velocity(scene: SceneSpec) -> tuple[float, float]:
     """The velocity of the centre at the launch, as the constraint allows it."""
     return allowed_velocity(scene.launch, scene.constraint, scene.floor)
 

@@ -15,7 +15,7 @@ from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.scene.agreement import launch_velocity, law_of_rows
 from puck_tables.scene.ingredients import BySpeed
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.table.speed_build import FINEST_ACCURACY
 from puck_tables.table.speed_table import SpeedTable
 from puck_tables.table.store import table_for
@@ -30,7 +30,7 @@ _FLAT = 8.0  # times its own scale goes the first table of a launch from rest
 _one_at_a_time = threading.Lock()  # the threads of a sweep need the same table
 
 
-def friction_by_speed(scene: Scene, normal: float, reach: float) -> tuple[BySpeed, FloatArray]:
+def friction_by_speed(scene: SceneSpec, normal: float, reach: float) -> tuple[BySpeed, FloatArray]:
     """Friction as the loop reads it, and the largest of it, N (1,).
 
     ``normal``: N; ``reach``: how many times farther than it seems to need the table of a law by
@@ -50,7 +50,7 @@ def friction_by_speed(scene: Scene, normal: float, reach: float) -> tuple[BySpee
     return BySpeed(table.compiled, height_ratio, normal, 1.0), np.array([normal * largest])
 
 
-def law_up_to(scene: Scene, fastest: float, reach: float) -> tuple[SpeedTable, float]:
+def law_up_to(scene: SceneSpec, fastest: float, reach: float) -> tuple[SpeedTable, float]:
     """The table of a friction law that holds for such slips of the rim, m/s, and the largest f.
 
     Raises
@@ -80,12 +80,12 @@ def _first_top(law: SpeedLaw | FrictionLaw, fastest: float) -> float:
     return float(2.0 ** math.ceil(math.log2(room)))
 
 
-def law_error(scene: Scene) -> float:
+def law_error(scene: SceneSpec) -> float:
     """How wrong friction by slip speed may be, in units of the largest."""
-    return max(LAW_SHARE * scene.run.tol, FINEST_ACCURACY)
+    return max(LAW_SHARE * scene.tol, FINEST_ACCURACY)
 
 
-def speed_law(scene: Scene) -> SpeedLaw | FrictionLaw:
+def speed_law(scene: SceneSpec) -> SpeedLaw | FrictionLaw:
     """The friction law of a scene that has one, by name, or from its file or rows.
 
     Raises
@@ -101,12 +101,12 @@ def speed_law(scene: Scene) -> SpeedLaw | FrictionLaw:
     return law_of_rows(law)
 
 
-def law_name(scene: Scene) -> str:
+def law_name(scene: SceneSpec) -> str:
     """The friction law of a scene in a message.
 
     Examples
     --------
-    >>> from puck_tables import Floor, Puck
+    >>> from puck_tables import Floor, Puck, Scene
     >>> law_name(Scene(Puck(1.0), Floor(law=[[0.0, 0.1], [1.0, 0.2]])))
     'floor.law'
     """
@@ -116,7 +116,9 @@ def law_name(scene: Scene) -> str:
     return law if isinstance(law, str) else "floor.law"
 
 
-def _law_table(law: SpeedLaw | FrictionLaw, scene: Scene, top: float, share: float) -> SpeedTable:
+def _law_table(
+    law: SpeedLaw | FrictionLaw, scene: SceneSpec, top: float, share: float
+) -> SpeedTable:
     """The table of a friction law that the scene's tolerance asks for.
 
     Raises
@@ -140,8 +142,8 @@ def _law_table(law: SpeedLaw | FrictionLaw, scene: Scene, top: float, share: flo
         if isinstance(law, SpeedLaw):
             bends, smoother = "its corners", "a law with fewer points"
         raise AccuracyError(
-            f"tol = {scene.run.tol:g} is out of reach of a table of {law_name(scene)}, with "
-            f"{bends}: give run.tol (or --tol) of {finest:g} or more, or {smoother}"
+            f"tol = {scene.tol:g} is out of reach of a table of {law_name(scene)}, with "
+            f"{bends}: give a tol (or --tol) of {finest:g} or more, or {smoother}"
         ) from None
 
 
@@ -154,7 +156,7 @@ def _kept_table(of: FrictionLaw | Points, accuracy: float, top: float) -> SpeedT
     return table_for(SpeedLaw(speeds, values), accuracy)
 
 
-def slip_at_launch(scene: Scene) -> tuple[float, float, float]:
+def slip_at_launch(scene: SceneSpec) -> tuple[float, float, float]:
     """Velocity of the centre and rim speed relative to the floor at the launch, m/s."""
     floor, (x, y) = scene.floor, scene.launch.position
     vx, vy = launch_velocity(scene)

@@ -10,44 +10,88 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.friction_laws import FrictionLaw
+from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.scene.agreement import launch_velocity
 from puck_tables.scene.bulk import ENDS_COLUMNS
 from puck_tables.scene.by_speed import FARTHER, FARTHEST
-from puck_tables.scene.entries import BATCH, LAUNCH
+from puck_tables.scene.entries import BATCH, LAUNCH, launch_paths
 from puck_tables.scene.equations import SIZE
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.loop import AT_REST, CARRIED_AWAY, NOT_FINITE, OVER_EDGE, TIME_UP
 from puck_tables.scene.outcome import LEDGER, NO_END, ledger
-from puck_tables.scene.plan import Plan, plan_for
+from puck_tables.scene.plan import plan_for
 from puck_tables.scene.prepare import Prepared, prepare
-from puck_tables.scene.scene import Scene
-from puck_tables.scene.simulate import is_endless
+from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.scene.simulate import FAILURES, is_endless
+from puck_tables.stopping.stops import stop
 
 STATE = (VX, VY, SPIN, X, Y, THETA)  # where the numbers of LAUNCH stand in a state
-RESULTS = (*LEDGER[1:], "impacts", "energy_residual", "end_time")
+RESULTS = (*LEDGER[1:], "in_play", "impacts", "energy_residual", "end_time")
 
 
 class Case:
-    """A scene of which only the launch still varies."""
+    """A scene of which only the launch still varies.
 
-    def __init__(self, scene: Scene) -> None:
-        self.scene, self.plan = scene, plan_for(scene)
-        self.by_look_up = self.plan.plain and scene.run.time is None
-        if self.by_look_up:
-            self.plan = Plan("free pucks: stop look-up", True, self.plan.why)
+    ``model``, ``explanation``: the model that is taken, and why.
+
+    Raises
+    ------
+    InputError
+        If no model holds for it.
+    """
+
+    def __init__(self, scene: SceneSpec) -> None:
+        plan = plan_for(scene)
+        by_look_up = plan.plain and scene.time is None
+        self.scene, self.explanation = scene, plan.why
+        self.model = "free pucks: stop look-up" if by_look_up else plan.model
         self.endless = is_endless(scene)
-        self.prepared: Prepared | None = None if self.by_look_up else prepare(scene)
+        self.prepared: Prepared | None = None if by_look_up else prepare(scene)
+
+    @staticmethod
+    def names(scene: SceneSpec) -> tuple[str, ...]:
+        """None: its results have no dimension of pucks."""
+        return ()
+
+    @staticmethod
+    def columns(scene: SceneSpec) -> dict[str, tuple[int, ...]]:
+        """What is known of an end, by name, and its shape."""
+        return dict.fromkeys(RESULTS, ())
+
+    @staticmethod
+    def launches(scene: SceneSpec, path: str) -> tuple[str, ...]:
+        """The numbers of the launch that an axis changes, if nothing has to be checked for them."""
+        moves = path.startswith("launch.position") or path == BATCH
+        fixed = moves and bool(scene.walls or scene.edges)
+        if path not in (*LAUNCH, BATCH) or scene.constraint is not None or fixed:
+            return ()
+        return launch_paths(path) if path == BATCH else (path,)
+
+    @staticmethod
+    def advice(scene: SceneSpec, code: int) -> str:
+        """What to do about runs that have no end."""
+        if code == NO_END:
+            return "none by a thousand times its time scale, it may never stop; give a time"
+        if code == NOT_FINITE and scene.floor.law:
+            return "its rim slips faster than the friction law goes; give the law more speeds"
+        return FAILURES[code].partition(": ")[2] or FAILURES[code]
 
     def ends(
         self, launches: Mapping[str, FloatArray], count: int
-    ) -> tuple[FloatArray, npt.NDArray[np.int8]]:
-        """Results (m, count) and how it ended."""
+    ) -> tuple[dict[str, FloatArray], npt.NDArray[np.int8]]:
+        """Results (count,) and how it ended.
+
+        Raises
+        ------
+        InputError
+            If one of these launches is no launch of this scene.
+        """
         scene = self.scene
         states = np.zeros((count, SIZE))
         states[:, [X, Y]], states[:, THETA] = scene.launch.position, scene.launch.orientation
         states[:, [VX, VY]], states[:, SPIN] = launch_velocity(scene), scene.launch.spin
         for path, values in launches.items():
-            states[:, list(STATE) if path == BATCH else STATE[LAUNCH.index(path)]] = values
+            states[:, STATE[LAUNCH.index(path)]] = values
         mass = scene.puck.mass
         inertia = mass * (scene.puck.gyration * scene.puck.radius) ** 2
         with np.errstate(over="ignore"):  # of launches that leave floating point
@@ -62,7 +106,7 @@ class Case:
         else:
             self.prepared.follow_all(states, rows, status)
             self._farther(states, rows, status)
-            if scene.run.time is None:
+            if scene.time is None:
                 status[status == TIME_UP] = NO_END
         rows[:, status > OVER_EDGE] = np.nan  # how it failed stands in ``end``
         last = dict(zip(LEDGER[:-1], rows[:-1], strict=True))
@@ -73,8 +117,10 @@ class Case:
         with np.errstate(all="ignore"):  # runs that failed are not a number
             missing, largest = ledger(last, energy)
             residual = missing / np.where(largest > 0.0, largest, 1.0)
-        results = [last[name] for name in LEDGER[1:]]
-        return np.stack([*results, rows[-1], residual, last["time"]]), status
+        in_play = np.where(status < OVER_EDGE, 1.0, np.where(status == OVER_EDGE, 0.0, np.nan))
+        last |= {"in_play": in_play, "impacts": rows[-1], "energy_residual": residual}
+        last["end_time"] = last.pop("time")
+        return last, status
 
     def _farther(self, states: FloatArray, rows: FloatArray, status: npt.NDArray[np.int8]) -> None:
         """Those that slip faster than the table of a friction law by name, by one that goes on."""
@@ -91,7 +137,7 @@ class Case:
     def _look_up(self, states: FloatArray, rows: FloatArray, status: npt.NDArray[np.int8]) -> None:
         belt = self.scene.floor.velocity
         velocities, spins = states[:, [VX, VY]] - belt, states[:, SPIN]
-        stops = self.scene.puck.stop(velocities, spins, tol=self.scene.run.tol)
+        stops = stop(velocities, spins, **self.scene.puck.arguments(), tol=self.scene.tol)
         rows[...] = 0.0
         last = dict(zip(LEDGER[:-1], rows[:-1], strict=True))
         last["time"][:] = stops.stop_time
@@ -106,15 +152,8 @@ class Case:
         status[:] = np.where(stops.status == 0, CARRIED_AWAY if any(belt) else AT_REST, NOT_FINITE)
 
 
-def is_launch(path: str, scene: Scene) -> bool:
-    """Whether a range only changes the launch, and nothing has to be checked or fixed to it."""
-    moves = path.startswith("launch.position") or path == BATCH
-    fixed = moves and bool(scene.walls or scene.edges)
-    return path in (*LAUNCH, BATCH) and scene.constraint is None and not fixed
-
-
-def told_apart(scene: Scene) -> dict[str, Any]:
+def told_apart(puck: PuckSpec) -> dict[str, Any]:
     """What tells a pressure law that is given as an object from another."""
-    law = scene.puck.body.law
+    law = puck.body.law
     ratios = np.stack(law.friction(np.linspace(0.0, 0.5 * np.pi, 99), 0.0))
     return {"name": law.name, "edges": law.edges, "profile": law.profile, "friction": ratios}

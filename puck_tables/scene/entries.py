@@ -1,24 +1,17 @@
-"""The entries of a scene one by one: what they are, and the scene as tables and as TOML again."""
+"""The entries of a scene one by one: what they are, and the scene as tables again."""
 
 from __future__ import annotations
 
 import dataclasses
-import json
 import re
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.fields import Kind, in_tables, specs
+from puck_tables._core.fields import Kind, Unsaid, in_tables, specs
 from puck_tables._core.real import finite_array, shown
-from puck_tables._core.safe_write import as_utf8
 from puck_tables.errors import InputError
-
-if TYPE_CHECKING:
-    from puck_tables.scene.scene import Scene
-
 
 BATCH = "launch"  # the axis of many launches
 # what a launch is, in the order of the columns of a batch
@@ -85,7 +78,7 @@ def entries(part: Any, prefix: str = "") -> Iterator[Entry]:
                 yield from entries(value, f"{path}.")
 
 
-def units_of(scene: Scene) -> dict[str, str]:
+def units_of(scene: Any) -> dict[str, str]:
     """Units of the entries of a scene by path, all walls or edges under one.
 
     Examples
@@ -102,7 +95,7 @@ def units_of(scene: Scene) -> dict[str, str]:
     }
 
 
-def entry_at(scene: Scene, path: str) -> Entry:
+def entry_at(scene: Any, path: str) -> Entry:
     """The entry of a path, or of the list of numbers that the path leads into.
 
     Examples
@@ -121,7 +114,8 @@ def entry_at(scene: Scene, path: str) -> Entry:
 def tables_of(part: Any) -> dict[str, Any]:
     """A scene as nested tables that :meth:`puck_tables.Scene.from_tables` takes, without ranges.
 
-    What is left out stays out, and so does a number without bound.
+    What is left out stays out, and so does a number without bound, and a gravity that a puck was
+    not given.
 
     Examples
     --------
@@ -132,12 +126,16 @@ def tables_of(part: Any) -> dict[str, Any]:
     tables: dict[str, Any] = {}
     for name, spec in specs(type(part)).items():
         value = _plain(getattr(part, spec.name))
-        if value is not None and value != [] and not (isinstance(value, float) and value == np.inf):
+        unsaid = isinstance(value, Unsaid) and value == spec.default
+        if not (
+            unsaid or value is None or value == [] or (type(value) is float and value == np.inf)
+        ):
             tables[in_tables(name)] = value
-    if "gravity" in tables and "puck" in tables:  # a scene whose pucks have its own
+    if "gravity" in tables and "puck" in tables:  # a scene that gave it to its pucks
         pucks = tables["puck"]
         for puck in pucks if isinstance(pucks, list) else [pucks]:
-            puck.pop("gravity", None)
+            if isinstance(puck.get("gravity"), Unsaid):
+                del puck["gravity"]
     return tables
 
 
@@ -149,33 +147,6 @@ def _plain(value: Any) -> Any:
         return [_plain(one) for one in value]
     read = dataclasses.is_dataclass(value) and bool(specs(type(value)))
     return tables_of(value) if read else value
-
-
-def as_toml(scene: Scene) -> str:
-    """A scene as the text of a scene file, with its ranges.
-
-    A pressure law or friction law that is a function stands there by its name.
-
-    Examples
-    --------
-    >>> from puck_tables import Puck, Scene
-    >>> scene = Scene(Puck(0.04), ranges={"puck.height": np.array([0.0, 0.5, 1.0])})
-    >>> as_toml(scene).splitlines()[:5]
-    ['title = ""', '', '[puck]', 'radius = 0.04', 'height = "0.0:1.0:3"']
-    """
-    tables = tables_of(scene)
-    for path, values in scene.ranges.items():
-        for entry, column in columns_of(path, values):
-            set_path(tables, entry, column.tolist() if is_batch(path) else _range(column))
-    return "\n".join(_lines(tables, "")).lstrip("\n") + "\n"
-
-
-def _range(values: FloatArray) -> str | list[float]:
-    """As 'START:STOP:COUNT' where that gives the same numbers."""
-    first, last = float(values[0]), float(values[-1])
-    if values.size > 1 and np.array_equal(values, np.linspace(first, last, values.size)):
-        return f"{first!r}:{last!r}:{values.size}"
-    return [float(value) for value in values]
 
 
 def columns_of(path: str, values: Any) -> list[tuple[str, Any]]:
@@ -241,32 +212,3 @@ def set_path(tables: dict[str, Any], path: str, value: Any) -> None:
                 f"{path}: the scene has no such entry to set; 'puck scene fields' lists what may "
                 "be; of a list each part has its number (puck[0], wall[1]), and stands in a file"
             ) from None
-
-
-def _lines(table: Mapping[str, Any], path: str) -> Iterator[str]:
-    """A table line by line: its own entries first, for what follows a header belongs to it."""
-    inner = {name: value for name, value in table.items() if _holds_tables(value)}
-    for name, value in table.items():
-        if name not in inner:
-            yield f"{name} = {_value(value)}"
-    for name, value in inner.items():
-        for part in value if isinstance(value, list) else [value]:
-            header = f"{path}{name}"
-            yield f"\n[[{header}]]" if isinstance(value, list) else f"\n[{header}]"
-            yield from _lines(part, f"{header}.")
-
-
-def _holds_tables(value: Any) -> bool:
-    return isinstance(value, dict) or (
-        isinstance(value, list) and bool(value) and isinstance(value[0], dict)
-    )
-
-
-def _value(value: Any) -> str:
-    """A number, a text or a list of them; a TOML text escapes like one of JSON."""
-    if isinstance(value, list):
-        return f"[{', '.join(map(_value, value))}]"
-    if isinstance(value, int | float | np.number):
-        return repr(float(value))
-    value = value if isinstance(value, str) else str(value.name)
-    return json.dumps(as_utf8(value), ensure_ascii=False).replace("\x7f", "\\u007f")

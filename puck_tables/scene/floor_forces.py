@@ -9,7 +9,7 @@ from puck_tables.kernels.compile import kernel, patience
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y, dry_friction
 from puck_tables.scene.ingredients import Regions, dry_in, put_at
 from puck_tables.scene.regions import regions_of
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 
 
 @kernel
@@ -27,7 +27,7 @@ def _forces(
         out[n, 0], out[n, 1], out[n, 2] = fx, fy, torque
 
 
-def friction_at(scene: Scene, states: FloatArray) -> FloatArray:
+def friction_at(scene: SceneSpec, states: FloatArray) -> FloatArray:
     """Force and torque of the floor on the one puck of a scene.
 
     A base over several frictions feels each under its own part, wherever it lies.
@@ -48,7 +48,7 @@ def friction_at(scene: Scene, states: FloatArray) -> FloatArray:
 
     Examples
     --------
-    >>> from puck_tables import Floor, Puck, Strips
+    >>> from puck_tables import Floor, Puck, Scene, Strips
     >>> halves = Floor(strips=Strips((0.0,), (0.78, 0.67)))
     >>> spins = np.array([[0.0, 0.0, 0.0, 0.0, 0.0, 20.0]])
     >>> force = friction_at(Scene(Puck(1.0, gravity=10.0), halves), spins)

@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.columns import FORCE_X, FORCE_Y, TIME, TORQUE, numbers_of
+from puck_tables._core.columns import numbers_of
+from puck_tables._core.quantities import FORCE_X, FORCE_Y, TIME, TORQUE
 from puck_tables.kernels.compile import inlined
 from puck_tables.scene.parts import Rows
 
 if TYPE_CHECKING:
-    from puck_tables.scene.scene import Scene
+    from puck_tables.scene.scene_spec import SceneSpec
 
 
 MAX_DRIVE = 1 << 26  # bytes of a file of forces
@@ -46,7 +47,7 @@ class Forces(NamedTuple):
     by_spin: float
 
 
-def forces_of(scene: Scene) -> Forces:
+def forces_of(scene: SceneSpec) -> Forces:
     """The forces of a scene.
 
     Raises

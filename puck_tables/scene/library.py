@@ -15,7 +15,7 @@ from puck_tables._core.fields import in_tables, specs
 from puck_tables._core.safe_read import read_whole
 from puck_tables.errors import InputError
 from puck_tables.scene.entries import entries
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 
 MAX_FILE = 1 << 20
 _PARTS = 50  # of a dotted key
@@ -23,7 +23,7 @@ _POINT = re.compile(r"(?<!\.)\.(?!\.)")
 MAX_NAMED = 1 << 26  # bytes of a file that a scene names
 FILES = tuple(
     (in_tables(part), name, spec.metadata["kind"])
-    for part, whole in specs(Scene).items()
+    for part, whole in specs(SceneSpec).items()
     if whole.metadata["kind"].part is not None
     for name, spec in specs(whole.metadata["kind"].part).items()
     if spec.metadata["kind"].file is not None
@@ -162,7 +162,7 @@ def read_scene(path: str | Path) -> dict[str, Any]:
     return tables
 
 
-def files_of(scene: Scene) -> dict[str, str]:
+def files_of(scene: SceneSpec) -> dict[str, str]:
     """What stands in the files that a scene names, by the path of the entry that names them.
 
     Raises
@@ -172,7 +172,7 @@ def files_of(scene: Scene) -> dict[str, str]:
 
     Examples
     --------
-    >>> from puck_tables.puck import Puck
+    >>> from puck_tables import Puck, Scene
     >>> files_of(Scene(Puck(0.04)))
     {}
     """

@@ -86,7 +86,7 @@ from puck_tables.scene.patches import (
     look_at_patches,
     region_at,
 )
-from puck_tables.scene.records import framed, noted
+from puck_tables.scene.records import BEFORE, framed, noted
 from puck_tables.scene.settle import (
     bounced,
     departed,
@@ -141,7 +141,7 @@ def follow(
     """Run a scene from the state ``start`` (10,) in the laboratory.
 
     ``frames`` (n,): ascending times for ``rows`` (n + 1, 15), the last of them the end; ``events``
-    (m, 13); ``desk``: to work on, see
+    (m, 16); ``desk``: to work on, see
     :func:`puck_tables.scene.desk.desk_for`.
 
     Returns
@@ -462,6 +462,9 @@ def follow(
             mode = SLIDES
             to_laboratory(model, y, 1.0)
             before = kinetic_energy(body, y)
+            for row in range(count, min(count + 2, len(events))):  # of its image, too
+                for i in range(3):
+                    events[row, BEFORE + i] = y[VX + i]
             rest_time = bounced(
                 bounds, contacts, which, image, body, y, t, floor_velocity(surface, y[X], y[Y]),
                 ask.speed, unit, ask.tolerance,

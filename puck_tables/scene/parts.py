@@ -1,7 +1,7 @@
 """The parts of a scene besides its puck: plain records of what a user says.
 
 Numbers are in SI units, angles in radians, counter-clockwise positive.  They are checked when a
-:class:`puck_tables.scene.scene.Scene` is made of them.
+:class:`puck_tables.Scene` is made of them.
 """
 
 from __future__ import annotations
@@ -83,7 +83,8 @@ class Floor:
         file="",
         kinds=NAMED,
         doc="CSV or rows of slip speed and f (m/s, or the unit in the heading; a cubic between "
-        "that rises and falls only where they do), or a law by name, in place of friction",
+        "that rises and falls only where they do), a SpeedLaw, or a law by name, in place of "
+        "friction",
         acts="friction law",
     )
 
@@ -246,12 +247,3 @@ class Constraint:
     side_slip: float = of(
         "number", 0.0, "m/s", doc="of the blade over the floor, to its left", acts=""
     )
-
-
-@dataclass(frozen=True)
-class Run:
-    """How long, how close, how often."""
-
-    time: float | None = of("number", None, "s", low=0.0, above=True, doc="until rest if left out")
-    frames: float = of("number", 101.0, low=1.0, high=1e6, doc="states to save")
-    tol: float = of("number", 1e-9, low=1e-12, high=1e-2, doc="error wanted, of Q/J and Q^2/J")

@@ -1,6 +1,6 @@
 """What stands on a board besides straight cushions: several pucks, posts, arcs and pockets.
 
-Plain records, checked when a :class:`puck_tables.scene.scene.Scene` is made of them.
+Plain records, checked when a :class:`puck_tables.Scene` is made of them.
 """
 
 from __future__ import annotations
@@ -12,43 +12,14 @@ from typing import Any
 import numpy as np
 
 from puck_tables._core.fields import of
-from puck_tables.puck import Puck
+from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.scene.parts import Constraint, Force, Launch, Rows
 from puck_tables.scene.restitution import Restitution, restitution_of
 
 
 @dataclass(frozen=True)
-class Piece(Puck):
-    """One of several pucks: a puck with a name, a place or a launch, and a rim that others meet.
-
-    Parameters
-    ----------
-    radius, height, friction, mass, gravity, pressure, gyration
-        As :class:`puck_tables.Puck`.
-    name, colour : in reports and pictures
-        A colour is '#rrggbb' or a name of CSS, such as 'steelblue'.
-    launch : Launch
-        Its place, and how it is sent; left out it lies at rest until it is hit.  Before
-        ``launch.time`` it lies at its place.  Velocities (n, 2) are many launches, of one puck of
-        a scene: an axis of its sweep.
-    restitution, tangential, rim : impacts with other pucks
-        e, 0 to 1, or a law by which it falls with the speed of approach, see
-        :mod:`puck_tables.scene.restitution`; tangential restitution, −1 smooth, 0 the rims stop on
-        each other, 1 their slip reverses; Coulomb's coefficient of the rims, which limits the
-        tangential impulse.  Where two pucks meet the smaller of each counts, of restitutions at
-        that speed; cushions have their own; a :class:`Rim` of a pair comes before both.
-    path : rows or CSV of t, x, y and perhaps the angle
-        A body that is driven there, straight between the rows, such as a mallet: pucks bounce off
-        it, and nothing stops it.  :func:`puck_tables.path_along` makes rows of a function.
-    force, constraint : Force and Constraint, optional
-        What acts on this puck alone, and what leads it.
-
-    Examples
-    --------
-    >>> striker = Piece(0.0206, friction=0.1, name="striker", launch=Launch((3.0, 0.0)))
-    >>> striker.name, striker.rim
-    ('striker', inf)
-    """
+class PieceSpec(PuckSpec):
+    """The numbers of one of several pucks; :class:`puck_tables.Piece` adds the verbs of a puck."""
 
     name: str = of("text", "")
     colour: str = of("colour", "", doc="in pictures and movies")

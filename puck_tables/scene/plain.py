@@ -3,30 +3,39 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.scene.agreement import launch_velocity
-from puck_tables.scene.outcome import LEDGER, Event, SceneRun, ledger_residual
+from puck_tables.scene.one_run import NAME, partner_of, run_of
+from puck_tables.scene.outcome import LEDGER
 from puck_tables.scene.plan import Plan, free_velocity
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.run import Event, Run
+from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.trajectory import simulate as trajectory
 
 
-def run_plain(scene: Scene, needed: Scene, plan: Plan, times: FloatArray | None) -> SceneRun:
+def run_plain(scene: SceneSpec, needed: SceneSpec, plan: Plan, times: FloatArray | None,
+    simulated: Callable[..., Run],
+) -> Run:  # fmt: skip
     """Run it as a free puck in the frame of the floor; on a belt the floor's work is m b·Δv.
 
     ``needed``: the scene without what the puck does not reach.
     """
     free, velocity, spin = needed.puck, free_velocity(needed), needed.launch.spin
-    free_run = free.simulate(velocity, spin, frames=1, tol=scene.run.tol)
+    free_run = trajectory(
+        free, velocity, spin, frames=1, times=None, tol=scene.tol, method=None, exact=False,
+        table=None,
+    )  # fmt: skip
     length = free_run.stop_time
-    limit = scene.run.time
+    limit = scene.time
     moves = any(scene.floor.velocity)
     stops = limit is None or length <= limit
     end_time = length if limit is None or (stops and not moves) else limit
-    moments = np.linspace(0.0, end_time, int(scene.run.frames)) if times is None else times
+    moments = np.linspace(0.0, end_time, int(scene.frames)) if times is None else times
     if moves or not stops:
         moments = moments[moments <= end_time]
     run = free_run(np.append(moments, end_time))
@@ -68,17 +77,12 @@ def run_plain(scene: Scene, needed: Scene, plan: Plan, times: FloatArray | None)
         scene.launch.position[0] + run.stop_position[0] + belt[0] * length,
         scene.launch.position[1] + run.stop_position[1] + belt[1] * length,
     )
-    return SceneRun(
-        scene=scene,
-        plan=plan,
-        end="time is up" if not stops else ("carried by the floor" if moves else "at rest"),
-        end_time=float(end_time),
-        events=[Event(length, "stick", 0, *stop_place)] if stops else [],
-        energy_residual=max(run.energy_residual, ledger_residual(whole, energy)),
-        error_estimate=run.error_estimate,
-        speed_scale=math.hypot(*velocity, scene.puck.radius * spin),
-        rate_scale=free.decel,
-        steps=run.steps,
-        last={name: float(column[-1]) for name, column in whole.items()},
-        columns={name: column[:-1] for name, column in whole.items()},
-    )
+    exact = {
+        "energy_residual": run.energy_residual, "error_estimate": run.error_estimate,
+        "speed_scale": math.hypot(*velocity, scene.puck.radius * spin), "rate_scale": free.decel,
+        "steps": run.steps, "simulated": simulated,
+    }  # fmt: skip
+    end = "time is up" if not stops else ("carried by the floor" if moves else "at rest")
+    stick = Event(length, "stick", NAME, partner_of("stick", 0, scene), *stop_place)
+    events = [stick] if stops else []
+    return run_of(scene, plan, end, float(end_time), events, whole, energy, exact)

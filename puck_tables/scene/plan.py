@@ -18,10 +18,12 @@ from puck_tables._core.fields import specs
 from puck_tables.errors import PuckError
 from puck_tables.motion.body import is_plain
 from puck_tables.motion.friction import FINEST_TOL
+from puck_tables.motion.limits import regime
 from puck_tables.scene.agreement import distance, launch_velocity
 from puck_tables.scene.entries import entries
 from puck_tables.scene.floor_patches import distances
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.stopping.stops import stop
 
 OVERHANG = (
     "a rim comes over an edge; until its centre does, a puck is carried as if none of it hung in "
@@ -45,10 +47,12 @@ class Plan:
 
 # what the motion of a free puck on a level floor takes into account, and what makes a scene one of
 # many pucks, which :mod:`puck_tables.world` runs
-FREE = ("title", "puck", "launch", "run", "puck[]", "post", "arc", "pocket", "rim")
+FREE = (
+    "title", "puck", "launch", "time", "frames", "tol", "puck[]", "post", "arc", "pocket", "rim",
+)  # fmt: skip
 
 
-def ingredients(scene: Scene) -> list[str]:
+def ingredients(scene: SceneSpec) -> list[str]:
     """What acts beside dry friction on a level floor that moves steadily or not at all.
 
     Raises
@@ -58,14 +62,14 @@ def ingredients(scene: Scene) -> list[str]:
 
     Examples
     --------
-    >>> from puck_tables import Floor, Launch, Puck
+    >>> from puck_tables import Floor, Launch, Puck, Scene
     >>> ingredients(Scene(Puck(1.0, friction=0.1), Floor(slope=0.2), Launch((1.0, 0.0), 5.0)))
     ['slope']
     """
     there = acting(scene)
     puck = scene.puck
     plain = is_plain(puck.pressure, puck.gyration, puck.delta)
-    if not plain and scene.run.tol < FINEST_TOL:
+    if not plain and scene.tol < FINEST_TOL:
         there.append("a tolerance finer than for free pucks of this kind")
     floor = scene.floor
     own = floor.strips is not None or bool(floor.law) or floor.orthotropic is not None
@@ -74,7 +78,7 @@ def ingredients(scene: Scene) -> list[str]:
     return there
 
 
-def acting(scene: Scene) -> list[str]:
+def acting(scene: SceneSpec) -> list[str]:
     """What a scene says that acts, in its order.
 
     Raises
@@ -84,7 +88,7 @@ def acting(scene: Scene) -> list[str]:
 
     Examples
     --------
-    >>> from puck_tables import Drag, Puck
+    >>> from puck_tables import Drag, Puck, Scene
     >>> acting(Scene(Puck(1.0), drag=Drag(sliding=0.1)))
     ['drag']
     """
@@ -112,13 +116,13 @@ def _mute(kind: Any, name: str, path: str) -> list[str]:
     return [one for inner in specs(part) for one in _mute(part, inner, f"{path}.{inner}")]
 
 
-def free_velocity(scene: Scene) -> tuple[float, float]:
+def free_velocity(scene: SceneSpec) -> tuple[float, float]:
     """The launch velocity in the frame of the floor, m/s."""
     vx, vy = launch_velocity(scene)
     return vx - scene.floor.velocity[0], vy - scene.floor.velocity[1]
 
 
-def out_of_reach(scene: Scene) -> Scene:
+def out_of_reach(scene: SceneSpec) -> SceneSpec:
     """The scene without the walls, edges and borders that its puck, then free, never meets."""
     strips, patches = scene.floor.strips, scene.floor.patches
     if not (scene.walls or scene.edges or strips or patches) or any(scene.floor.velocity):
@@ -126,7 +130,7 @@ def out_of_reach(scene: Scene) -> Scene:
     bare = _without_boundaries(scene)
     if ingredients(bare):
         return scene
-    stopped = bare.puck.stop(free_velocity(bare), bare.launch.spin)
+    stopped = stop(free_velocity(bare), bare.launch.spin, **bare.puck.arguments())
     way = float(stopped.path_length) * (1.0 + 1e-6)
     place, radius = scene.launch.position, scene.puck.radius
     room = [distance(wall, place) - radius for wall in scene.walls]
@@ -139,7 +143,7 @@ def out_of_reach(scene: Scene) -> Scene:
     return bare if way < min(room) else scene
 
 
-def _without_boundaries(scene: Scene) -> Scene:
+def _without_boundaries(scene: SceneSpec) -> SceneSpec:
     """The scene with the friction of the region in which the puck starts."""
     strips, friction = scene.floor.strips, scene.puck.friction
     if strips is None and not scene.floor.patches:
@@ -157,12 +161,12 @@ def _without_boundaries(scene: Scene) -> Scene:
     )  # fmt: skip
 
 
-def plan_for(scene: Scene) -> Plan:
+def plan_for(scene: SceneSpec) -> Plan:
     """The plan for one run.
 
     Examples
     --------
-    >>> from puck_tables import Launch, Puck
+    >>> from puck_tables import Launch, Puck, Scene
     >>> plan_for(Scene(Puck(1.0, friction=0.1), launch=Launch((1.0, 0.0)))).model
     'closed form: pure translation'
     """
@@ -188,7 +192,15 @@ def plan_for(scene: Scene) -> Plan:
                 f"about {'forty' if piled else 'ten'} times the cost of a step elsewhere."
             )
         return Plan(model, False, why)
-    kind = scene.puck.regime(free_velocity(scene), scene.launch.spin)
+    puck = scene.puck
+    kind = regime(
+        free_velocity(scene),
+        scene.launch.spin,
+        puck.delta,
+        puck.radius,
+        puck.pressure,
+        puck.gyration,
+    )
     frame = "in the frame of the belt" if any(scene.floor.velocity) else "a free puck, level floor"
     if kind in _NAMES:
         model = f"closed form: {_NAMES[kind]}"
@@ -202,5 +214,5 @@ def plan_for(scene: Scene) -> Plan:
     return Plan(model, True, why)
 
 
-def _moving(scene: Scene) -> list[str]:
+def _moving(scene: SceneSpec) -> list[str]:
     return ["moving floor"] if any(scene.floor.velocity) else []

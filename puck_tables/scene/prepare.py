@@ -39,7 +39,7 @@ from puck_tables.scene.leaning import LEAN_COLUMNS
 from puck_tables.scene.loop import follow
 from puck_tables.scene.regions import friction_error, regions_of
 from puck_tables.scene.rest import excess_at_rest
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.zones import zones_of
 
 LOCAL_SHARE = 0.01  # of the error wanted, per step and in units of the scales
@@ -70,7 +70,7 @@ class Prepared:
     model: Model
     regions: Regions
     bounds: Boundaries
-    scene: Scene
+    scene: SceneSpec
     state: FloatArray
     ask: Ask
     speed: float
@@ -109,7 +109,7 @@ class Prepared:
             part = out[:, start:stop].copy()
             follow_many(
                 self.model, self.regions, self.bounds, asks[start:stop],
-                self.scene.run.time is not None, self.ask.tolerance, STEP_LIMIT, MAX_EVENTS,
+                self.scene.time is not None, self.ask.tolerance, STEP_LIMIT, MAX_EVENTS,
                 states[start:stop], starts[start:stop], part, status[start:stop],
             )  # fmt: skip
             out[:, start:stop] = part
@@ -129,7 +129,7 @@ class Prepared:
         return _asks(self.scene, self.model, self.regions, states)
 
 
-def prepare(scene: Scene, last_time: float | None = None, reach: float = 1.0) -> Prepared:
+def prepare(scene: SceneSpec, last_time: float | None = None, reach: float = 1.0) -> Prepared:
     """The loop's arguments; on a moving floor a run goes on to ``last_time``.
 
     ``reach``: of the table of a friction law, see :mod:`puck_tables.scene.by_speed`.
@@ -154,18 +154,18 @@ def prepare(scene: Scene, last_time: float | None = None, reach: float = 1.0) ->
     state[[X, Y]], state[THETA] = scene.launch.position, scene.launch.orientation
     state[[VX, VY]], state[SPIN] = launch_velocity(scene), scene.launch.spin
     asks = _asks(scene, model, regions, state[None, :])[0]
-    until, to_the_end = scene.run.time, True
+    until, to_the_end = scene.time, True
     if until is None:
         to_the_end = moves and bool(last_time)
         until = last_time if to_the_end and last_time else float(asks[0])
-    tolerance = max(LOCAL_SHARE * scene.run.tol, FINEST_LOCAL)
+    tolerance = max(LOCAL_SHARE * scene.tol, FINEST_LOCAL)
     ask = Ask(until, to_the_end, tolerance, asks[2:], float(asks[1]), STEP_LIMIT, 0.0, AS_IT_COMES)
     speed, rate, _ = _scales(scene, model, regions, state[None, :])
     bounds = _bounds(scene)
     return Prepared(model, regions, bounds, scene, state, ask, float(speed[0]), float(rate[0]))
 
 
-def _bounds(scene: Scene) -> Boundaries:
+def _bounds(scene: SceneSpec) -> Boundaries:
     """Walls (moved in by the radius), edges and borders as lines n·x = c."""
     walls, edges = [], []
     for wall in scene.walls:
@@ -188,7 +188,7 @@ def _line(point: tuple[float, float], normal: tuple[float, float]) -> tuple[floa
     return nx, ny, nx * point[0] + ny * point[1]
 
 
-def _asks(scene: Scene, model: Model, regions: Regions, states: FloatArray) -> FloatArray:
+def _asks(scene: SceneSpec, model: Model, regions: Regions, states: FloatArray) -> FloatArray:
     """Time limit, scale of speeds and scales of the state for launches (n, 10); (n, 12)."""
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         speed, rate, floor = _scales(scene, model, regions, states)
@@ -197,13 +197,13 @@ def _asks(scene: Scene, model: Model, regions: Regions, states: FloatArray) -> F
         length = speed * time
         slow = max(1.0, 2.0 * scene.puck.gyration**2)  # by as much longer a spin takes to brake
         # what rounding leaves of places far out, and of what a fast floor does
-        ulp = 4e-16 / max(LOCAL_SHARE * scene.run.tol, FINEST_LOCAL)
+        ulp = 4e-16 / max(LOCAL_SHARE * scene.tol, FINEST_LOCAL)
         turning = abs(scene.floor.turning)
         place = np.maximum(length, ulp * (np.hypot(states[:, X], states[:, Y]) + floor * time))
         swift = np.maximum(speed, ulp * turning * floor * time)
         angle = np.maximum(length / radius, ulp * turning * time)
         energy = mass * speed * (speed + floor)
-        until = scene.run.time
+        until = scene.time
         asks: FloatArray = np.stack([
             np.full_like(speed, until) if until is not None
             else DEFAULT_TIME * _slowest(scene, model, regions, speed, rate),
@@ -220,7 +220,7 @@ def _asks(scene: Scene, model: Model, regions: Regions, states: FloatArray) -> F
 
 
 def _scales(
-    scene: Scene, model: Model, regions: Regions, states: FloatArray
+    scene: SceneSpec, model: Model, regions: Regions, states: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Scales of the slip and of what changes it, and the speed of the floor; (n,) of launches.
 
@@ -246,13 +246,13 @@ def _scales(
     rate = np.max([pull / puck.mass, turning * ground, speed * turning], axis=0)
     still = speed == 0.0
     speed[still] = np.where(rate[still] > 0.0, np.sqrt(rate[still] * puck.radius), 1.0)
-    run = 1.0 if scene.run.time is None else scene.run.time
+    run = 1.0 if scene.time is None else scene.time
     rate = np.where(rate > 0.0, rate, speed / run)
     return speed, rate, ground
 
 
 def _slowest(
-    scene: Scene, model: Model, regions: Regions, speed: FloatArray, rate: FloatArray
+    scene: SceneSpec, model: Model, regions: Regions, speed: FloatArray, rate: FloatArray
 ) -> FloatArray:
     """In what time, at most, a motion of this scene should come to rest, s (n,).
 

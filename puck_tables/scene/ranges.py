@@ -4,44 +4,30 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.fields import specs
 from puck_tables._core.reading import MAX_COUNT, Range, Reading, read_values
 from puck_tables.errors import InputError
 from puck_tables.scene.entries import LAUNCH, is_batch
 from puck_tables.scene.parts import Launch
 
-if TYPE_CHECKING:
-    from puck_tables.scene.scene import Scene
-
 
 class Ranges(dict[str, Any]):
     """Ranges, and the parts of the scene that they are of."""
 
-    def __init__(self, axes: Mapping[str, FloatArray], scene: Scene) -> None:
+    def __init__(self, axes: Mapping[str, FloatArray], parts: Mapping[str, Any]) -> None:
         super().__init__(axes)
-        known = specs(type(scene)).items()
-        self.parts = {table: getattr(scene, spec.name) for table, spec in known}
+        self.parts = parts
 
     def __reduce__(self) -> Any:
-        return Ranges.again, (dict(self), self.parts)
+        return Ranges, (dict(self), self.parts)
 
-    @staticmethod
-    def again(axes: dict[str, FloatArray], parts: dict[str, Any]) -> Ranges:
-        """The same, from a pickle."""
-        ranges = Ranges.__new__(Ranges)
-        ranges.update(axes)
-        ranges.parts = parts
-        return ranges
-
-    def of_the_same(self, scene: Scene) -> dict[str, FloatArray]:
+    def of_the_same(self, parts: Mapping[str, Any]) -> dict[str, FloatArray]:
         """Without those of parts that another scene has replaced."""
-        known = specs(type(scene)).items()
-        kept = [name for name, spec in known if getattr(scene, spec.name) is self.parts.get(name)]
+        kept = [name for name, part in parts.items() if part is self.parts.get(name)]
         return {path: one for path, one in self.items() if re.split(r"[.\[]", path)[0] in kept}
 
 

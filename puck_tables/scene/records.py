@@ -8,7 +8,8 @@ from puck_tables.scene.equations import ROW, SECOND, SIZE, rates, to_laboratory
 from puck_tables.scene.ingredients import CARRIED, Model, Stretch
 
 FRAME_COLUMNS = ROW + 3  # time, state, λ, carried, heat of impacts
-EVENT_COLUMNS = 3 + SIZE  # time, what, which, state
+EVENT_COLUMNS = 3 + SIZE + 3  # time, what, which, state; velocities before an impact
+BEFORE = 3 + SIZE
 
 
 @inlined

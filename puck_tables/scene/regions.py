@@ -16,7 +16,7 @@ from puck_tables.scene.by_speed import NO_LAW, friction_by_speed, law_error
 from puck_tables.scene.ground import NO_GROUND
 from puck_tables.scene.ingredients import BySpeed, Regions
 from puck_tables.scene.parts import Orthotropic
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.zones import ground_of, zones_of
 from puck_tables.table.friction_section import FINEST_ACCURACY
 from puck_tables.table.resultant_table import ResultantTable
@@ -26,7 +26,7 @@ CLOSED_FORM_ERROR, TABLE_ERROR = 1e-14, 2e-11
 SLICE_SHARE = 0.1  # of the error wanted
 
 
-def regions_of(scene: Scene, reach: float = 1.0) -> Regions:
+def regions_of(scene: SceneSpec, reach: float = 1.0) -> Regions:
     """Friction ratios in every region at the height that it has, or by slip speed.
 
     ``reach``: see :func:`puck_tables.scene.by_speed.friction_by_speed`.
@@ -51,7 +51,7 @@ def regions_of(scene: Scene, reach: float = 1.0) -> Regions:
     heights = scene.heights
     load = normal * np.array(scene.frictions)
     if all(is_plain(puck.pressure, puck.gyration, delta) for delta in heights):
-        cuts = np.stack([plain_cut(scene.run.tol, delta) for delta in heights])
+        cuts = np.stack([plain_cut(scene.tol, delta) for delta in heights])
         return _under_zones(scene, normal, load, np.array(heights), cuts)
     accuracy = friction_error(scene)
     # how the mass is spread stands in the equations of the scene, not in its friction
@@ -62,8 +62,8 @@ def regions_of(scene: Scene, reach: float = 1.0) -> Regions:
         if error.reachable is None:
             raise
         raise AccuracyError(
-            f"tol = {scene.run.tol:g} is out of reach under the pressure law {puck.pressure}: give "
-            f"run.tol (or --tol) of {rounded_up(error.reachable / SLICE_SHARE):g} or more"
+            f"tol = {scene.tol:g} is out of reach under the pressure law {puck.pressure}: give "
+            f"a tol (or --tol) of {rounded_up(error.reachable / SLICE_SHARE):g} or more"
         ) from None
     return _under_zones(scene, normal, load, np.array(heights), of_one_shape(slices))
 
@@ -79,7 +79,7 @@ def alone(load: FloatArray, delta: FloatArray, cuts: FloatArray, by_speed: BySpe
 
 
 def _under_zones(
-    scene: Scene, normal: float, load: FloatArray, delta: FloatArray, cuts: FloatArray
+    scene: SceneSpec, normal: float, load: FloatArray, delta: FloatArray, cuts: FloatArray
 ) -> Regions:
     """Friction in every zone, on every patch, and astride a patch, of that on strips and patches.
 
@@ -99,7 +99,7 @@ def _under_zones(
     )  # fmt: skip
 
 
-def friction_error(scene: Scene) -> float:
+def friction_error(scene: SceneSpec) -> float:
     """How wrong the friction ratios of :func:`regions_of` may be."""
     puck = scene.puck
     if scene.floor.law:
@@ -107,8 +107,8 @@ def friction_error(scene: Scene) -> float:
     if scene.floor.orthotropic is not None:
         return CLOSED_FORM_ERROR
     if all(is_plain(puck.pressure, puck.gyration, delta) for delta in scene.heights):
-        return CLOSED_FORM_ERROR if scene.run.tol < EXACT_BELOW else TABLE_ERROR
-    return max(SLICE_SHARE * scene.run.tol, FINEST_ACCURACY)
+        return CLOSED_FORM_ERROR if scene.tol < EXACT_BELOW else TABLE_ERROR
+    return max(SLICE_SHARE * scene.tol, FINEST_ACCURACY)
 
 
 def plain_cut(tol: float, delta: float) -> FloatArray:

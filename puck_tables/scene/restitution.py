@@ -17,14 +17,15 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.columns import RESTITUTION, SPEED, numbers_of
+from puck_tables._core.columns import numbers_of
 from puck_tables._core.fields import of
 from puck_tables._core.monotone import from_rest, monotone_cubic
+from puck_tables._core.quantities import RESTITUTION, SPEED
 from puck_tables._core.real import finite_array, real
 from puck_tables._core.safe_read import is_number
 from puck_tables.errors import InputError
+from puck_tables.scene.restitution_at import PLASTIC, TABLE, VISCOELASTIC, restitution_at
 
-VISCOELASTIC, PLASTIC, TABLE = range(3)
 MAX_BYTES = 1 << 24
 
 
@@ -57,8 +58,6 @@ class Restitution:
         >>> Plastic(0.1)([0.05, 0.2]).round(6).tolist()
         [1.0, 0.930626]
         """
-        from puck_tables.scene.restitution_at import restitution_at  # compiled
-
         speeds = finite_array("speed", speed, "m/s")
         if (speeds < 0.0).any():
             raise InputError(f"speed = {speeds.min():g} m/s must not be negative")

@@ -6,8 +6,8 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inner
-from puck_tables.scene.restitution import PLASTIC, VISCOELASTIC
 
+VISCOELASTIC, PLASTIC, TABLE = range(3)  # the first number of a law
 BEYOND = -1.0  # the answer where a table has ended
 
 

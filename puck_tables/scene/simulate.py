@@ -25,16 +25,18 @@ from puck_tables.scene.loop import (
     TIME_UP,
     UNDECIDED,
 )
-from puck_tables.scene.outcome import ENDS, EVENTS, LEDGER, Event, SceneRun, ledger_residual
+from puck_tables.scene.one_run import events_of, run_of
+from puck_tables.scene.outcome import ENDS, LEDGER
 from puck_tables.scene.plain import run_plain
 from puck_tables.scene.plan import Plan, ingredients, out_of_reach, plan_for
 from puck_tables.scene.prepare import MAX_EVENTS, Prepared, Twin, prepare
 from puck_tables.scene.records import EVENT_COLUMNS, FRAME_COLUMNS
 from puck_tables.scene.regions import friction_error
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.run import Run
+from puck_tables.scene.scene_spec import SceneSpec
 
 
-def simulate(scene: Scene, times: npt.ArrayLike | None = None) -> SceneRun:
+def simulate(scene: SceneSpec, times: npt.ArrayLike | None = None) -> Run:
     """A run of a scene, as :meth:`puck_tables.Scene.simulate` has it."""
     whole = scene.single()
     moments = None if times is None else _checked(times)
@@ -42,7 +44,7 @@ def simulate(scene: Scene, times: npt.ArrayLike | None = None) -> SceneRun:
     needed = out_of_reach(whole)
     plan = plan_for(needed)
     if plan.plain:
-        run = run_plain(whole, needed, plan, moments)
+        run = run_plain(whole, needed, plan, moments, simulate)
     else:
         run = _integrated(whole, plan, moments)
     return replace(run, files=files)
@@ -58,9 +60,9 @@ PROBES = 7  # states on the way that are compared too
 MOST_IN_VAIN = 2  # finer tolerances in a row that do not halve the estimate
 
 FAILURES = {
-    STEP_LIMIT: "no end after a million steps, at {time:.6g} s: ask for a shorter run.time",
+    STEP_LIMIT: "no end after a million steps, at {time:.6g} s: ask for a shorter time",
     EVENT_LIMIT: "100000 events by {time:.6g} s: they crowd together without end (rebounds, or a "
-    "border); move the launch, or end the run before with run.time",
+    "border); move the launch, or end the run before with a time",
     NOT_FINITE: "the motion leaves floating point at {time:.6g} s: use other units",
     UNDECIDED: "it meets two lines at the same moment, and what follows depends on which is first: "
     "move the launch, or a wall",
@@ -74,9 +76,9 @@ def _checked(times: npt.ArrayLike) -> FloatArray:
     return moments
 
 
-def is_endless(scene: Scene) -> bool:
+def is_endless(scene: SceneSpec) -> bool:
     """Whether a scene has no friction and says neither where nor when it ends."""
-    return scene.run.time is None and not scene.edges and "no dry friction" in ingredients(scene)
+    return scene.time is None and not scene.edges and "no dry friction" in ingredients(scene)
 
 
 class _Followed(NamedTuple):
@@ -99,55 +101,44 @@ def _followed(
     rows = np.empty((len(times) + 1, FRAME_COLUMNS))
     found, at_once = prepared.follow(times, rows, events, twin, order)
     how, end_time, count, steps, reached, wrong = found
+    how, end_time = int(how), float(end_time)  # as written they may be of NumPy
     return _Followed(how, end_time, count, steps, wrong, at_once, rows[:reached], rows[reached])
 
 
-def _integrated(scene: Scene, plan: Plan, times: FloatArray | None) -> SceneRun:
+def _integrated(scene: SceneSpec, plan: Plan, times: FloatArray | None) -> Run:
     """Run it at a tolerance of which a coarser twin tells that the error asked is kept."""
     if is_endless(scene):
         raise InputError(
-            "nothing brings this scene to rest (puck.friction is 0): give run.time, or friction"
+            "nothing brings this scene to rest (puck.friction is 0): give a time, or friction"
         )
     prepared, run, estimate, events = _close_enough(scene, times)
     columns = columns_of(np.vstack([run.states, run.last]), prepared)
     energy = kinetic(prepared.state[[VX, VY, SPIN]], prepared)
-    return SceneRun(
-        scene=scene,
-        plan=plan,
-        end=ENDS[run.how],
-        end_time=run.end_time,
-        events=sorted(
-            (
-                Event(float(e[0]), EVENTS[int(e[1])], int(e[2]), float(e[3 + X]), float(e[3 + Y]))
-                for e in events
-            ),
-            key=lambda event: event.time,  # a rim may come over two edges on one step
-        ),
-        energy_residual=ledger_residual(columns, float(energy)),
-        error_estimate=estimate,
-        speed_scale=prepared.speed,
-        rate_scale=prepared.rate,
-        steps=run.steps,
-        last={name: float(column[-1]) for name, column in columns.items()},
-        columns={name: column[:-1] for name, column in columns.items()},
-    )
+    exact = {
+        "error_estimate": estimate, "speed_scale": prepared.speed, "rate_scale": prepared.rate,
+        "steps": run.steps, "simulated": simulate,
+    }  # fmt: skip
+    return run_of(
+        scene, plan, ENDS[run.how], run.end_time, events_of(events, scene), columns, float(energy),
+        exact,
+    )  # fmt: skip
 
 
 def _close_enough(
-    scene: Scene, times: FloatArray | None
+    scene: SceneSpec, times: FloatArray | None
 ) -> tuple[Prepared, _Followed, float, FloatArray]:
     """The scene at the coarsest tolerance that keeps the one asked, its run, estimate and events.
 
     Where finer steps help no more, rounding or what is known of friction has the last word.
     """
-    asked = scene.run.tol
+    asked = scene.tol
     last = None if times is None or not times.size else float(times[-1])
     room = np.empty((MAX_EVENTS, EVENT_COLUMNS))
     found: list[tuple[Prepared, _Followed, float, FloatArray]] = []
     in_vain, trials, tol, doubt = 0, 0, asked, 0.0
     while True:
         try:
-            finer = replace(scene, run=replace(scene.run, tol=tol))
+            finer = replace(scene, tol=tol)
             prepared, run, estimate, doubt = _within_law(finer, last, times, room)
         except AccuracyError:  # a friction law is known no better
             if not found:
@@ -168,7 +159,7 @@ def _close_enough(
         raise InputError(_met_at_once(scene, run.at_once))
     for coarser in (10.0 * asked, 100.0 * asked):  # finer steps may only add up rounding
         if found[-1][2] > asked and coarser <= COARSEST and not scene.floor.law:
-            near = replace(scene, run=replace(scene.run, tol=coarser))
+            near = replace(scene, tol=coarser)
             prepared, run, estimate, doubt = _within_law(near, last, times, room)
             if estimate < found[-1][2] and doubt <= asked:
                 found.append((prepared, run, estimate, room[: run.events].copy()))
@@ -180,7 +171,7 @@ class _BeyondLaw(InputError):
 
 
 def _within_law(
-    scene: Scene, last: float | None, times: FloatArray | None, room: FloatArray
+    scene: SceneSpec, last: float | None, times: FloatArray | None, room: FloatArray
 ) -> tuple[Prepared, _Followed, float, float]:
     """The scene, its run, estimate and doubt; the table of a law by name goes on as is needed."""
     reach, grown = 1.0, ""
@@ -192,7 +183,7 @@ def _within_law(
                 raise
             raise InputError(
                 f"{grown}, where friction by this law tilts the pressure so much that part of the "
-                "base would lift: a slip that grows may never stop; give a shorter run.time, or "
+                "base would lift: a slip that grows may never stop; give a shorter time, or "
                 "less that drives it"
             ) from error
         try:
@@ -204,7 +195,7 @@ def _within_law(
             reach *= FARTHER
 
 
-def _met_at_once(scene: Scene, at_once: FloatArray) -> str:
+def _met_at_once(scene: SceneSpec, at_once: FloatArray) -> str:
     """Why a run has no end: it is not known which of two lines is first."""
     _, when, *numbers = at_once.tolist()
     walls = len(scene.walls)
@@ -214,7 +205,7 @@ def _met_at_once(scene: Scene, at_once: FloatArray) -> str:
     return (
         f"the puck meets {one} and {other} at the same moment, {when:.10g} s, and what follows "
         "depends on which of them is first: move the launch, or one of them, or end the run before "
-        "with run.time"
+        "with a time"
     )
 
 
@@ -230,10 +221,10 @@ def _estimated(
     first = _followed(prepared, np.empty(0), events)
     _refuse_failed(prepared, first)
     if times is None:
-        times = np.linspace(0.0, first.end_time, int(prepared.scene.run.frames))
+        times = np.linspace(0.0, first.end_time, int(prepared.scene.frames))
     probes = first.end_time * np.arange(1, PROBES + 1) / (PROBES + 1)
     hits, unit = _hits(events, first), prepared.speed / prepared.rate
-    near = prepared.scene.run.tol * unit
+    near = prepared.scene.tol * unit
     trials: list[tuple[Twin | None, int]] = [(twin, AS_IT_COMES) for twin in TWINS]
     if first.at_once[0] > 0.0:
         trials += [(None, FIRST_BY_NUMBER), (None, LAST_BY_NUMBER)]
@@ -300,18 +291,18 @@ def _refuse_failed(prepared: Prepared, run: _Followed) -> None:
     if how == TIME_UP and not to_the_end and run.last[LEDGER.index("carried")]:
         raise InputError(
             f"after {end_time:.4g} s the floor still carries the puck towards a wall, an edge, a "
-            "border or a patch, and it may slip there again; give run.time"
+            "border or a patch, and it may slip there again; give a time"
         )
     if how == STEP_LIMIT and scene.lateral.strength != 0.0 and scene.lateral.speed_exponent < 1.0:
         raise InputError(
             f"a million steps by {end_time:.6g} s: the slower a puck that still spins, the faster "
             "a lateral force turns its way if lateral.speed_exponent is below 1; give one from 1 "
-            "on, or end the run before with run.time"
+            "on, or end the run before with a time"
         )
-    if how in (TIME_UP, STEP_LIMIT) and scene.run.time is None and not to_the_end:
+    if how in (TIME_UP, STEP_LIMIT) and scene.time is None and not to_the_end:
         long = "a million steps" if how == STEP_LIMIT else "a thousand times what friction takes"
         raise InputError(
-            f"the puck still moves after {end_time:.4g} s, {long}: it may never stop; give run.time"
+            f"the puck still moves after {end_time:.4g} s, {long}: it may never stop; give a time"
         )
     if how == NOT_FINITE and scene.floor.law:  # a state beyond the law is never reached
         law = speed_law(scene)
@@ -322,7 +313,7 @@ def _refuse_failed(prepared: Prepared, run: _Followed) -> None:
             )
         raise _BeyondLaw(
             f"at {end_time:.6g} s the rim slips {FARTHEST:g} times faster than at the launch, "
-            "beyond the table of the friction law: give a shorter run.time, or more friction"
+            "beyond the table of the friction law: give a shorter time, or more friction"
         )
     if how in FAILURES:
         raise PuckError(FAILURES[how].format(time=end_time))

@@ -21,7 +21,7 @@ from puck_tables.scene.ground import (
     PATCH_COLUMNS,
     Ground,
 )
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 
 # columns of a line at which the rim comes over a border or leaves it: its normal, its place, the
 # number of the border, and −1 or 1: it is met on the way there or on the way on
@@ -37,12 +37,12 @@ class Zones(NamedTuple):
     last: npt.NDArray[np.int64]
 
 
-def zones_of(scene: Scene) -> Zones:
+def zones_of(scene: SceneSpec) -> Zones:
     """The zones of the floor of a scene; one where it has no strips.
 
     Examples
     --------
-    >>> from puck_tables import Floor, Puck, Strips
+    >>> from puck_tables import Floor, Puck, Scene, Strips
     >>> floor = Floor(strips=Strips((0.1, 0.15), (0.3, 0.1, 0.2)))
     >>> zones = zones_of(Scene(Puck(0.04), floor))
     >>> zones.lines[:, 2].round(2).tolist()
@@ -65,12 +65,12 @@ def zones_of(scene: Scene) -> Zones:
     return Zones(lines, first, last)
 
 
-def ground_of(scene: Scene, normal: float) -> FloatArray:
+def ground_of(scene: SceneSpec, normal: float) -> FloatArray:
     """All frictions of the floor of a scene, for its puck, packed; ``normal``: N.
 
     Examples
     --------
-    >>> from puck_tables import Floor, Puck, Strips
+    >>> from puck_tables import Floor, Puck, Scene, Strips
     >>> floor = Floor(strips=Strips((0.1,), (0.3, 0.1)))
     >>> ground_of(Scene(Puck(0.04), floor), 2.0)[13:16].tolist()
     [0.1, 0.6, 0.2]

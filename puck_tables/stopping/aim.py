@@ -15,7 +15,7 @@ from puck_tables._core.real import finite_array, positive, real, shown
 from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS as VARIABLES
 from puck_tables.io.dataset import Dataset, variable
-from puck_tables.puck import PUCK_UNITS, Puck
+from puck_tables.motion.puck_spec import PUCK_UNITS, PuckSpec
 from puck_tables.stopping.aim_lookup import RIM, SPEED, TIME
 from puck_tables.stopping.aimed import Aimed
 from puck_tables.stopping.launch_curve import LaunchCurve, launch_curve
@@ -27,9 +27,9 @@ COLUMNS = (
     "launch_spin", "launch_vx", "launch_vy", "launch_speed", "launch_heading", "launch_slip_angle",
     "stop_time", "miss",
 )  # fmt: skip
-MAX_COUNT = 10_000
-SLACK = 1e-12
-_LEAST_LOG, _LARGEST_LOG = -708.0, 709.0
+MAX_COUNT = 10_000  # launches of an answer: each a row
+SLACK = 1e-12  # relative: a bound as printed is met
+_LEAST_LOG, _LARGEST_LOG = -708.0, 709.0  # exp of them is still a number
 _SMALL_STEP = 1e-6  # of u, after which what a step leaves is less than rounding
 BEYOND = (
     "that takes a launch whose ratio of spin to speed is beyond 1e-260 to 1e260: "
@@ -50,7 +50,7 @@ class Aim(Aimed):
     ``answer`` is one sentence: what was found, or why nothing can be.
     """
 
-    puck: Puck
+    puck: PuckSpec
     target: tuple[float, float]
     launch_velocity: FloatArray
     launch_spin: FloatArray
@@ -157,7 +157,7 @@ class _Family:
 
 
 def aim_at(
-    puck: Puck, target: npt.ArrayLike, *, spin: float | None, speed: float | None,
+    puck: PuckSpec, target: npt.ArrayLike, *, spin: float | None, speed: float | None,
     stop_time: float | None, max_speed: float | None, max_spin: float | None, count: int,
 ) -> Aim:  # fmt: skip
     """Launches after which a puck comes to rest at one target: :meth:`puck_tables.Puck.aim`."""

@@ -21,13 +21,13 @@ from puck_tables.kernels.spline import basis
 from puck_tables.stopping.lookup import WIDTH, slip_place
 
 SPEED, RIM, TIME, BEND = range(4)
-LOGS = 4
+LOGS = 4  # ln v, ln r
 SLIDE = 0.5 * math.log(2.0)  # ln v = ln t₀ of the slide without spin
 POWERS = 6  # of a piece
 PIECE = 2 + LOGS * POWERS  # where it begins, 1/width, then the powers of each quantity, ascending
 NO_PIECES = np.empty((0, PIECE))
 _NARROW = 1e-14  # of u, how narrow a bracket gets
-_STEPS = 200
+_STEPS = 200  # of a root at most
 
 
 @inlined

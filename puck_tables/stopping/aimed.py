@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.puck import Puck
+from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.result import Result
 
 
 class Aimed(Result):
     """Launches of a ``puck``: velocities (n, 2) m/s and spins (n,) rad/s, and what follows."""
 
-    puck: Puck
+    puck: PuckSpec
     launch_velocity: FloatArray
     launch_spin: FloatArray
 

@@ -17,7 +17,7 @@ from puck_tables._core.real import broadcast, checked_threads, finite_array
 from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS as VARIABLES
 from puck_tables.io.dataset import Dataset, variable
-from puck_tables.puck import PUCK_UNITS, Puck
+from puck_tables.motion.puck_spec import PUCK_UNITS, PuckSpec
 from puck_tables.stopping.aim import (
     BEYOND,
     COLUMNS,
@@ -40,9 +40,9 @@ _CHUNK = 4096  # targets that a thread takes at a time
 _TRIED = 100  # launches that are integrated to tell how well they do
 _QUANTITIES = {"spin": RIM, "speed": SPEED, "stop_time": TIME}
 _UNITS = {"spin": "rad/s", "speed": "m/s", "stop_time": "s"}
-_LARGEST_LOG = 708.0
+_LARGEST_LOG = 708.0  # exp of it is still a number
 _OF, _SPIN, _VX, _VY, _TIME = range(5)
-_LAUNCH = 5
+_LAUNCH = 5  # columns: vx, vy, ω, time, miss
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -57,7 +57,7 @@ class Aims(Aimed):
     :class:`Aim` at one target: with the reason where there is no launch.
     """
 
-    puck: Puck
+    puck: PuckSpec
     target: FloatArray
     target_index: npt.NDArray[np.int64]
     launch_velocity: FloatArray
@@ -151,9 +151,9 @@ _NO_WISH: dict[str, Any] = dict.fromkeys(_QUANTITIES)
 
 
 def aim(
-    puck: Puck, target: npt.ArrayLike, *, spin: npt.ArrayLike | None, speed: npt.ArrayLike | None,
-    stop_time: npt.ArrayLike | None, max_speed: float | None, max_spin: float | None, count: int,
-    threads: int | None,
+    puck: PuckSpec, target: npt.ArrayLike, *, spin: npt.ArrayLike | None,
+    speed: npt.ArrayLike | None, stop_time: npt.ArrayLike | None, max_speed: float | None,
+    max_spin: float | None, count: int, threads: int | None,
 ) -> Aim | Aims:  # fmt: skip
     """Launches after which a puck comes to rest at targets: :meth:`puck_tables.Puck.aim`."""
     checked_threads(threads)
@@ -207,7 +207,7 @@ def aim(
 class _Search:
     """Launches to many targets: ``wished`` picks some of each family, within ``bounds``."""
 
-    puck: Puck
+    puck: PuckSpec
     wished: str | None
     bounds: tuple[float, float]
     count: int

@@ -24,9 +24,9 @@ from numpy.polynomial import chebyshev
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 
-HEIGHTS = 9
+HEIGHTS = 9  # nodes over δ: the polynomials through them err by 5e-12
 CONSTANT_HEIGHTS = 14  # for what depends on δ alone; next to the limit its error is magnified
-MAX_CELLS = 1 << 16
+MAX_CELLS = 1 << 16  # of an axis: more is a damaged file
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -48,24 +49,26 @@ from puck_tables.stopping.exact import end_values, exact_stops
 from puck_tables.stopping.launches import launches_in
 from puck_tables.stopping.lookup import CURVE_ROW
 from puck_tables.stopping.node_equations import missed_by_curve, missed_by_stops
-from puck_tables.stopping.stop_table import STOPS, StopTable
+from puck_tables.stopping.stop_values import STOPS, StopValues
 from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import Goal, built
 from puck_tables.table.check import Check, CheckReport, compared
-from puck_tables.table.table import Progress
+from puck_tables.table.record import Progress
 
 _GOAL = Goal(1e-10, 1e-11, "in units of Q/J and Q^2/J", 0.62, 1 << 12)
-_CHUNK = 64
-NAMES = StopTable.quantities
+_CHUNK = 64  # launches at once, of integrations
+K = TypeVar("K", bound=StopValues)  # the kind that is made
+NAMES = StopValues.quantities
+# launches drawn; heights, both ends and between nodes
 _RANDOM, _CURVE_HEIGHTS = 1500, (0.0, 0.05, 0.3, 0.62, 0.9, 0.99, 1.0)
-_REFINED = 3
+_REFINED = 3  # places looked at in a cell
 _NODES = chebyshev.chebpts1(14)
 # How many times the tolerance an equation between several values may be off.
 EQUATION_FACTOR = 4.0
 # largest error × cells⁴ of stops and of the curve, about twice what was measured, and the errors of
 # the polynomials in δ²
 _CEILING, _POLYNOMIAL = 1.6, 5e-12
-_CURVE_CEILING, _CURVE_POLYNOMIAL = 10.0, 2e-10
+_CURVE_CEILING, _CURVE_POLYNOMIAL = 10.0, 2e-10  # of the curve
 
 
 def launch_points(
@@ -114,7 +117,7 @@ def launches_at(u: FloatArray, delta: FloatArray) -> FloatArray:
     return np.stack([cosine, 0.0 * k, sine, delta, one, one])
 
 
-def looked_up(table: StopTable, u: FloatArray, delta: FloatArray) -> FloatArray:
+def looked_up(table: StopValues, u: FloatArray, delta: FloatArray) -> FloatArray:
     """T, X, Y, path length and body angle as the table gives them, (n, 5).
 
     Examples
@@ -130,18 +133,22 @@ def looked_up(table: StopTable, u: FloatArray, delta: FloatArray) -> FloatArray:
 
 
 def tabulated(
-    accuracy: float | None = None, cells: int | None = None, progress: Progress | None = None
-) -> StopTable:
+    kind: type[K],
+    accuracy: float | None = None,
+    cells: int | None = None,
+    progress: Progress | None = None,
+) -> K:
     """A table of stops, see :meth:`puck_tables.Table.build`."""
-    return built(lambda n: tabulate(SlipAxis(n), progress), measured, _GOAL, accuracy, cells)
+    return built(lambda n: tabulate(kind, SlipAxis(n), progress), measured, _GOAL, accuracy, cells)
 
 
-def tabulate(axis: SlipAxis, progress: Progress | None = None) -> StopTable:
+def tabulate(kind: type[K], axis: SlipAxis, progress: Progress | None = None) -> K:
     """The node values of a stop table, without a measured accuracy.
 
     Examples
     --------
-    >>> tabulate(SlipAxis(8)).values[8, :, 0].round(6).tolist()[::4]  # T at π/4
+    >>> from puck_tables.stopping.stop_table import StopTable
+    >>> tabulate(StopTable, SlipAxis(8)).values[8, :, 0].round(6).tolist()[::4]  # T at π/4
     [0.948026, 0.967044, 0.98618]
     """
     delta = heights()
@@ -155,7 +162,7 @@ def tabulate(axis: SlipAxis, progress: Progress | None = None) -> StopTable:
 
     run_chunks(work, u.size, _CHUNK, None, progress)
     shaped = stops.reshape(inner.size, HEIGHTS, 5)
-    values = np.empty((axis.size, HEIGHTS, len(StopTable.functions)))
+    values = np.empty((axis.size, HEIGHTS, len(StopValues.functions)))
     large = 1.0 / np.hypot(1.0, np.exp(-np.abs(inner)))
     small = large * np.exp(-np.abs(inner))
     cosine = np.where(inner > 0.0, small, large)[:, None]
@@ -170,15 +177,16 @@ def tabulate(axis: SlipAxis, progress: Progress | None = None) -> StopTable:
         parts = regular_parts(axis, float(one))
         values[:, j, 5] = limits(float(one)).kappa * parts[:, 0]
         values[:, j, 6] = parts[:, 1] / one
-    return StopTable(values)
+    return kind(values)
 
 
-def measured(table: StopTable) -> Accuracy:
+def measured(table: StopValues) -> Accuracy:
     """Errors of a table against the integrator and, for the curve, against quadrature.
 
     Examples
     --------
-    >>> measured(tabulate(SlipAxis(16))).worst < 2e-5
+    >>> from puck_tables.stopping.stop_table import StopTable
+    >>> measured(tabulate(StopTable, SlipAxis(16))).worst < 2e-5
     True
     """
     u, delta = launch_points(table.axis, _RANDOM, seed=20)
@@ -206,7 +214,7 @@ def measured(table: StopTable) -> Accuracy:
     return replace(stops, **both, order=order)
 
 
-def _curve_between(table: StopTable, function: int, delta: float) -> FloatArray:
+def _curve_between(table: StopValues, function: int, delta: float) -> FloatArray:
     """κR or S at the nodes of an axis three times as fine, as the table's splines give them."""
     c = table.curve_coefficients.reshape(2, -1, CURVE_ROW)[:, :, function * HEIGHTS :][
         :, :, :HEIGHTS
@@ -222,7 +230,7 @@ def _curve_between(table: StopTable, function: int, delta: float) -> FloatArray:
     return values * (delta if function == TURN_SUM else 1.0)
 
 
-def judged(table: StopTable, progress: Progress | None) -> CheckReport:
+def judged(table: StopValues, progress: Progress | None) -> CheckReport:
     """The report of :meth:`StopTable.validate`."""
 
     def step(done: int) -> None:
@@ -249,7 +257,7 @@ def judged(table: StopTable, progress: Progress | None) -> CheckReport:
 
 
 def _equations(
-    table: StopTable, rng: np.random.Generator, count: int, allowed: float, by_curve: float
+    table: StopValues, rng: np.random.Generator, count: int, allowed: float, by_curve: float
 ) -> list[Check]:
     delta = rng.random(count)
     start = rng.choice([-1.0, 1.0], count) * np.exp(rng.uniform(-9.0, 3.5, count))
@@ -300,7 +308,7 @@ def _in_every_cell(axis: SlipAxis, rng: np.random.Generator) -> tuple[FloatArray
     return u.ravel(), delta.ravel()
 
 
-def _at_nodes(table: StopTable) -> list[Check]:
+def _at_nodes(table: StopValues) -> list[Check]:
     """All node values in the equations they satisfy, see ``node_equations``."""
     axis = table.axis
     slow = np.log(np.maximum(ratio_at(np.arange(axis.cells + 1) / axis.cells), 1e-300))
@@ -318,7 +326,7 @@ def _at_nodes(table: StopTable) -> list[Check]:
     ]
 
 
-def _along_curve(table: StopTable, u: FloatArray, delta: FloatArray) -> FloatArray:
+def _along_curve(table: StopValues, u: FloatArray, delta: FloatArray) -> FloatArray:
     """Ln Q and ψ by the table, each up to a function of δ, (2, n)."""
     known = table.known(launches_at(u, delta))
     log_q = known[LOG_N] / known[KAPPA] - np.log(known[T_LAUNCH])
@@ -332,7 +340,7 @@ def _integrals(values: npt.NDArray[np.inexact]) -> npt.NDArray[np.inexact]:
     return chebyshev.chebval(np.append(_NODES, 1.0), primitive).T
 
 
-def _elementary(table: StopTable, allowed: float) -> list[Check]:
+def _elementary(table: StopValues, allowed: float) -> list[Check]:
     """T, X, path and body angle of pure sliding and pure spin; T and X + iY of the limit motion."""
     delta = np.linspace(0.0, 1.0, 41)
     checks = []

@@ -30,7 +30,7 @@ from puck_tables.contact.closed_form import shape_integrals
 from puck_tables.stopping.axes import SlipAxis, ratio_at
 
 _NEAR_LIMIT = 0.15  # half width in u of the neighbourhood of u₀ that is treated by polynomials
-_DEGREE = 23
+_DEGREE = 23  # of the polynomials within that width
 _GAUSS_NODES, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(10)
 
 

@@ -38,7 +38,7 @@ SECTION_WIDTH = 2 * STATE_WIDTH + RATE_WIDTH
 
 # rows of a block: what is known of a launch: its puck, its place on the curve in natural units
 EAST, NORTH, SPIN, DELTA, DECEL, RADIUS, ONE_TIME, SLIP, UNIT, BEND = range(10)
-LAUNCHED, LAUNCHED_ROWS = 10, 7
+LAUNCHED, LAUNCHED_ROWS = 10, 7  # the first row, and how many: of the launch itself
 V0, A0, T0, ONE_V, U0, BEGUN, ONE_POLE = range(LAUNCHED, LAUNCHED + LAUNCHED_ROWS)
 # of its height: constants of the curve, their derivatives by δ, and factors of what is at its ends
 FIXED, FIXED_ROWS = 17, 15
@@ -46,7 +46,7 @@ KAPPA, H0, C0, K_TILT, H0_TILT, C0_TILT, ONE_KAPPA = range(7)
 LOG_SLOW, LOG_FAST, TILT_SLOW, TILT_FAST, TURN_SLOW, TURN_FAST, BEND_SLOW, BEND_FAST = range(7, 15)
 # what was where it began, and its stop
 HERE, HERE_ROWS = 32, 6
-STOP, STOP_ROWS = 38, 11
+STOP, STOP_ROWS = 38, 11  # the first row, and how many: of its stop
 FACTS = STOP + STOP_ROWS
 # where a state is, what stands there, and its derivatives
 MOMENT, LEFT, TURNED, SHARE, FAST, _FIRST, _INSIDE = range(FACTS, FACTS + 7)

@@ -36,7 +36,7 @@ _SMALLEST_SHARE = 1e-300  # of the slower motion; less is a limit reached long b
 # rows of what is known of a launch
 TIME, STOP_X, STOP_Y, LENGTH, BODY, TURN = range(6)
 SLIP, SPEED0, T_LAUNCH, LOG_N, SIGN_N, HEADING0, KAPPA, TURNING = range(6, 14)
-LAUNCH_ROWS = 14
+LAUNCH_ROWS = 14  # the fourteen above
 LAUNCH_COLUMNS = 6  # vx, vy, ω, δ, J, r
 
 

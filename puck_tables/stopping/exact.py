@@ -9,15 +9,16 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import run_chunks
 from puck_tables.kernels.compile import allocating, patience
+from puck_tables.kernels.patience import A_MOTION
 from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.motion.equations import at_constant_angle
 from puck_tables.motion.path import STOPPED, integrate
 from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, T, U, X, Y
 from puck_tables.motion.tableaus import DORMAND_PRINCE, DORMAND_PRINCE_8, Tableau
 
-_LOCAL_TOLERANCE = 2e-14
-_STEP_LIMIT = 100_000
-_CHUNK = 64
+_LOCAL_TOLERANCE = 2e-14  # of a step: 1e-15 of the stop
+_STEP_LIMIT = 100_000  # more is a motion that does not end
+_CHUNK = 64  # motions that a thread takes at once
 
 
 @allocating
@@ -26,7 +27,7 @@ def _fill_exact_stops(
     tolerance: float, out: FloatArray,
 ) -> None:  # fmt: skip
     """T, X, Y, path, body angle, turn of launches at u, δ into ``out`` (n, 6); NaN: no stop."""
-    patience(u.size)
+    patience(A_MOTION * u.size)
     no_z, no_y = np.empty(0), np.empty((0, SIZE))
     start, result = np.zeros(SIZE), np.empty(SIZE + 1)
     for n in range(u.size):

@@ -16,7 +16,7 @@ from puck_tables.contact.laws import Law
 from puck_tables.errors import InputError
 from puck_tables.motion.body import Body
 from puck_tables.stopping.launches import Launches, in_chunks, launches_in
-from puck_tables.stopping.spread import Spread, spread_of
+from puck_tables.stopping.spread import ResultSpread, spread_of
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
 
@@ -28,7 +28,7 @@ MOMENT_NAMES = (*LAUNCH_NAMES, "time")
 Bodies = dict[float, Body]  # by height
 
 
-class Kind(NamedTuple):
+class StopSettings(NamedTuple):
     """Pressure law and radius of gyration of pucks, and how their stops were asked for."""
 
     pressure: str | Law
@@ -50,7 +50,7 @@ class Differentiated:
     _jacobian: FloatArray | None = None
     _arguments: FloatArray
     _table: StopTable | None = None
-    _kind: Kind | None = None  # where not all are plain
+    _kind: StopSettings | None = None  # where not all are plain
 
     @property
     def jacobian(self) -> FloatArray:
@@ -102,7 +102,7 @@ class Differentiated:
         *,
         samples: int = 0,
         seed: int = 0,
-    ) -> Spread:
+    ) -> ResultSpread:
         """How the results scatter when the launches do: covariance in, covariance out.
 
         Parameters

@@ -49,16 +49,16 @@ from puck_tables.stopping.stop_splines import at_height
 from puck_tables.stopping.stop_table import StopTable
 
 LARGEST_U = 600.0  # beyond, ratios of spin to speed leave floating point
-SECTION_ACCURACY = 5e-10
-_LOCAL = 1e-12
-_PLAIN_LOCAL = 2e-13
-_SCANNED, _SPACING = 36.0, 0.25
-_RESOLVED = 1e-8
-_FITTED = 1e-10
-_NARROWEST = 1e-7
+SECTION_ACCURACY = 5e-10  # of friction: what answers are good to, 1e-9, with a margin of two
+_LOCAL = 1e-12  # of a step, where friction is a section
+_PLAIN_LOCAL = 2e-13  # of a step, with closed forms
+_SCANNED, _SPACING = 36.0, 0.25  # of u: beyond, nodes are far; and between nodes
+_RESOLVED = 1e-8  # of logarithms: how far a cubic may be off in the middle
+_FITTED = 1e-10  # of logarithms, what a look-up is good to
+_NARROWEST = 1e-7  # of u between nodes: next to a line it does not get smooth
 _NEAR_LIMIT = 1e-3  # of |ρ_∥ − σ|: the derivatives are 0/0 at the limit of the motion
 _DIFFERENCE = 1e-4  # of u, over which a slope is told from a table
-_SLACK = 1e-12
+_SLACK = 1e-12  # of logarithms: rounding
 _ROUNDED = 1e-9  # values closer than this to the slide's are rounding
 
 _AT = np.array([0.0, 0.5, 1.0])[:, None]
@@ -96,7 +96,7 @@ class LaunchCurve:
     @cached_property
     def _cut(self) -> FloatArray:
         if self.body.is_plain:
-            return at_height(StopTable.shipped(), self.body.delta)
+            return at_height(StopTable.shipped().cut(), self.body.delta)
         return np.empty((2, WIDTH))
 
     def is_tabulated(self, u: FloatArray) -> npt.NDArray[np.bool_]:

@@ -10,7 +10,7 @@ from puck_tables.stopping.stop_jacobian import Numbers, direction
 
 # what is differentiated
 STATE_X, STATE_Y, STATE_TURNED, STATE_VX, STATE_VY, STATE_SPIN = range(6)
-STATES, STATE_COLUMNS = 6, 7
+STATES, STATE_COLUMNS = 6, 7  # what is differentiated, and by how many: the launch and time
 OWN_STATES = STATES * 6  # of each: itself; by v, v across, rω, δ, time
 PLACED_STATES = STATES * STATE_COLUMNS
 

@@ -17,7 +17,7 @@ from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
 from puck_tables.kernels.compile import BLOCK, inlined, into_row, kernel, patience
 
-COLUMNS = 6
+COLUMNS = 6  # numbers of a launch
 VX, VY, SPIN, DELTA, DECEL, RADIUS = range(COLUMNS)  # rows of a block of launches
 CHUNK = 1 << 15  # launches that a thread takes at a time
 COPIED = 1 << 14  # launches up to which a copy costs nothing that counts

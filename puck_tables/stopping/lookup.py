@@ -49,7 +49,7 @@ from puck_tables.stopping.launches import (
 FIRST, INSIDE, SLIP, EDGE, SPEED = range(COLUMNS, COLUMNS + 5)
 PLACED = COLUMNS + 5
 _TIME, _X, _Y, _ROWS = range(PLACED, PLACED + 4)
-STOP_POWERS = 8
+STOP_POWERS = 8  # of s, a cache line
 STOP_ROW = 3 * STOP_POWERS  # for states: three functions by eight powers, whole cache lines
 CURVE_ROW = 40  # four functions by nine powers, padded to whole cache lines
 WIDTH = 4  # functions side by side, as many as fit into a register: T, along, across and nothing

@@ -8,15 +8,15 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.motion.friction import source_of
-from puck_tables.puck import Puck
+from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.stopping.exact import integrated_stops
 from puck_tables.stopping.launch_curve import SECTION_ACCURACY, cosine_of
 
-_CHECK_LOCAL = 1e-11
+_CHECK_LOCAL = 1e-11  # of a step: finer than an answer, and another than it was found with
 
 
 def misses(
-    puck: Puck, target: FloatArray, velocity: FloatArray, spin: FloatArray,
+    puck: PuckSpec, target: FloatArray, velocity: FloatArray, spin: FloatArray,
     threads: int | None = None,
 ) -> FloatArray:  # fmt: skip
     """How far from its target (n, 2) or (2,) the integrated motion of each launch ends, (n,) m.
@@ -26,6 +26,7 @@ def misses(
 
     Examples
     --------
+    >>> from puck_tables import Puck
     >>> puck = Puck.similar(delta=0.0)
     >>> slide = np.array([[1.0, 0.0]]), np.zeros(1)  # stops after half a metre
     >>> misses(puck, np.array([0.5, 0.1]), *slide).round(9).tolist()

@@ -22,7 +22,7 @@ from puck_tables.kernels.elementary import exp_of, log_of
 ORBIT_WIDTH = 8  # 2w/y, T, along, across; body angle, G and nothing
 TURN_STEP, TURN_POWERS = 4, 3  # of one function: powers m, m + 4, m + 8 of s, m = 0 … 3
 SHARE, TIME_FACTOR, ALONG, ACROSS, BODY_FACTOR, REGULAR = range(6)
-TINY = 1e-300
+TINY = 1e-300  # its logarithm is a number
 
 
 @inlined

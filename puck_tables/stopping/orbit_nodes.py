@@ -7,8 +7,6 @@ stands there; what it is see :mod:`puck_tables.stopping.curve_lookup` and
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import numpy.typing as npt
 
@@ -19,27 +17,26 @@ from puck_tables.stopping.curve_lookup import end_rates
 from puck_tables.stopping.lookup import STOP_POWERS
 from puck_tables.stopping.orbit import TINY
 
-if TYPE_CHECKING:
-    from puck_tables.stopping.stop_coefficients import StopCoefficients
-
 _TIME, _ALONG, _ACROSS, _BODY, _TURN, _LENGTH, _CURVE = range(7)
 _FAST = np.array([False, True])[:, None, None]  # the side of r|ω| > v
-_ROUNDING = 2e-16
+_ROUNDING = 2e-16  # of a double
 _LOOKS = 100  # at most
 
 
-class Curve:
-    """Functions and constants of a stop table at its heights."""
+class OrbitCurve:
+    """Functions and constants of a stop table at its heights, from its coefficients."""
 
-    def __init__(self, table: StopCoefficients) -> None:
+    def __init__(
+        self, cells: int, constants: FloatArray, stops: FloatArray, curve: FloatArray
+    ) -> None:
         delta = heights()
-        self.delta, self.cells = delta, table.axis.cells
+        self.delta, self.cells = delta, cells
         self.slow, self.fast, self.spin_turn = end_rates(delta)  # type: ignore[arg-type]
-        powers = (2.0 * delta * delta - 1.0) ** np.arange(table.constants.shape[1])[:, None]
-        self.c0, self.kappa, turning, self.quarter = table.constants @ powers
+        powers = (2.0 * delta * delta - 1.0) ** np.arange(constants.shape[1])[:, None]
+        self.c0, self.kappa, turning, self.quarter = constants @ powers
         self.turning = delta * turning
-        stops = table.stop_coefficients.reshape(2, -1, STOP_POWERS, 3)
-        curve = table.curve_coefficients[..., : 4 * HEIGHTS].reshape(2, -1, 4, HEIGHTS)
+        stops = stops.reshape(2, -1, STOP_POWERS, 3)
+        curve = curve[..., : 4 * HEIGHTS].reshape(2, -1, 4, HEIGHTS)
         self.splines = np.concatenate([
             np.einsum("sipf,ph->fsih", stops, powers[:STOP_POWERS]),
             np.einsum("sifp,ph->fsih", curve, powers[:HEIGHTS]),

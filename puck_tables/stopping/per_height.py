@@ -21,7 +21,14 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import Progress, run_chunks
 from puck_tables._core.real import real
 from puck_tables.accuracy.front import COARSEST, UNITS, Selection, select
-from puck_tables.accuracy.methods import INTEGRATED, LOOK_UP, Method, Scheme, Source, method_named
+from puck_tables.accuracy.methods import (
+    INTEGRATED,
+    LOOK_UP,
+    FrictionForm,
+    Method,
+    Scheme,
+    method_named,
+)
 from puck_tables.contact.laws import Law, law_of
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import AccuracyError, InputError
@@ -30,11 +37,12 @@ from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.motion.body import Body, body_of, plain_up_to
 from puck_tables.motion.friction import Sections, integration_selected
 from puck_tables.motion.run import unseen_tail
-from puck_tables.motion.solve import FINEST_LOCAL, Estimate, Setting, close_enough, refined
+from puck_tables.motion.solve import FINEST_LOCAL, ErrorEstimate, Setting, close_enough, refined
 from puck_tables.motion.steppers import stepping_of
 from puck_tables.stopping.launches import Launches, launches_in
 from puck_tables.stopping.solvers import (
     OUTPUTS,
+    EachAlone,
     First,
     Integration,
     LookUp,
@@ -43,16 +51,18 @@ from puck_tables.stopping.solvers import (
     StopSolver,
 )
 from puck_tables.stopping.stop_section import FINEST_SECTION, stop_section_for
-from puck_tables.stopping.stop_table import UPPER_DELTA, StopTable
+from puck_tables.stopping.stop_table import StopTable
+from puck_tables.stopping.stop_values import UPPER_DELTA
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.table import refuse_other_kind
 
 AnyTable = ResultantTable | StopTable | None
 
+ALONE = 32  # launches of one height up to which each is tried itself
 MANY = 300  # launches of one height from which on a stop section costs less than integrating them
-MOST_HEIGHTS = 500
+MOST_HEIGHTS = 500  # each takes about a second to prepare
 HEIGHT_COST = 2000  # launches that take as long as the preparation of a height
-_PROBES = 40
+_PROBES = 40  # launches over all φ, besides those next to lines
 
 
 class SolverPerHeight:
@@ -116,9 +126,12 @@ class SolverPerHeight:
 
     def prepare(
         self, delta: FloatArray, each: npt.ArrayLike = 1, threads: int | None = None,
-        progress: Progress | None = None,
+        progress: Progress | None = None, alone: int = 0,
     ) -> None:  # fmt: skip
         """Make what launches of heights ``delta`` (n,) need, of each of them so many.
+
+        Up to ``alone`` of one height are each tried themselves: for what is asked once, not in
+        blocks.
 
         Raises
         ------
@@ -150,7 +163,7 @@ class SolverPerHeight:
         def work(start: int, stop: int) -> None:
             for height, count in zip(heights[start:stop], counts[start:stop], strict=True):
                 body = body_of(law, float(height), self._gyration, self._law_table)
-                self._sections[body.delta] = self._made(body, int(count))
+                self._sections[body.delta] = self._made(body, int(count), alone)
 
         run_chunks(work, heights.size, 1, threads, progress)
 
@@ -191,14 +204,14 @@ class SolverPerHeight:
             self._plain, self._plain_source = _shipped_look_up(selection)
             return
         columns = NO_COLUMNS
-        self._plain_source = Source.CLOSED_FORMS
-        if table is not None or selection.scheme.source is Source.TABLE:
+        self._plain_source = FrictionForm.CLOSED_FORMS
+        if table is not None or selection.scheme.source is FrictionForm.TABLE:
             resultants = table or ResultantTable.shipped()
             columns, self._plain_source = resultants.columns, resultants.source
         stepping = stepping_of(selection)
         self._plain = Integration(columns, NO_SECTION, stepping, selection.method, selection.error)
 
-    def _made(self, body: Body, launches: int) -> StopSolver:
+    def _made(self, body: Body, launches: int, alone: int) -> StopSolver:
         """A solver for the launches of one height that is not plain."""
         look_up = self._wanted is Method.LOOK_UP
         if look_up or (not self._wanted and launches >= MANY and self.tol >= FINEST_SECTION):
@@ -208,6 +221,9 @@ class SolverPerHeight:
             except AccuracyError:  # functions too steep for a spline: not so for the integrator
                 if look_up:
                     raise
+        if launches <= alone:
+            taken = Sections(body).selected("trajectory", self.tol, self._wanted)
+            return EachAlone(body, self.tol, taken.method)
         return integration_of(body, self.tol, self._wanted)
 
     def prepare_for(self, launches: Launches, threads: int | None) -> None:
@@ -229,7 +245,7 @@ class SolverPerHeight:
             return
         launches.refuse_bad()
         self.checked_range(delta)
-        self.prepare(delta, launches.size // max(delta.size, 1), threads)
+        self.prepare(delta, launches.size // max(delta.size, 1), threads, alone=ALONE)
 
     def first(self, launches: Launches, threads: int | None) -> First:
         """Stop times, places, status and mark of launches, and the rest if it costs no more.
@@ -326,7 +342,7 @@ class SolverPerHeight:
     def _of_sections(self, solvers: list[StopSolver]) -> Selection:
         """What was selected for heights that are not plain, and their largest error."""
         error = max(solver.error for solver in solvers)
-        scheme = Scheme(solvers[0].method, Source.SECTION)
+        scheme = Scheme(solvers[0].method, FrictionForm.SECTION)
         what = "height" if len(solvers) == 1 else "heights"
         few_or_many = f"less than {MANY}"
         if scheme.method is Method.LOOK_UP:
@@ -393,7 +409,7 @@ def integration_of(body: Body, tol: float, method: Method | None = None) -> Inte
     source, probes = Sections(body), _probes(body)
     selection = source.selected("stop", tol, method)
 
-    def attempt(setting: Setting) -> tuple[Integration, Estimate]:
+    def attempt(setting: Setting) -> tuple[Integration, ErrorEstimate]:
         stepping = setting.stepping
         cut, coarse = source.friction(setting.accuracy).cut, source.coarser(setting.accuracy).cut
         finer = stepping.finer(2.0, 0.01, FINEST_LOCAL)
@@ -406,7 +422,7 @@ def integration_of(body: Body, tol: float, method: Method | None = None) -> Inte
             2.0 * float(np.abs(answer - other.all(probes)[0][:3]).max())
             for other in (by_finer, by_coarse)
         )
-        return found, Estimate(steps + 2.0 * unseen_tail(stepping), friction / 8.0)
+        return found, ErrorEstimate(steps + 2.0 * unseen_tail(stepping), friction / 8.0)
 
     finer = partial(refined, tol=tol, friction=source.next_accuracy)
     found, error, _ = close_enough(source.first(selection), attempt, finer, tol, "these pucks")

@@ -35,7 +35,7 @@ CLASHES = (
 OF_PUCK = ("pressure", "gyration", "gravity", "decel", "friction", "height", "radius", "delta")
 _ABOVE_ZERO = ("gyration", "gravity", "decel", "friction", "radius")
 _NOT_BELOW_ZERO = ("height", "delta", "speed")
-MOST_LAWS = 100
+MOST_LAWS = 100  # each needs tables of its own
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,10 +24,11 @@ from puck_tables.table.slip_axis import graded, sides_of
 from puck_tables.table.slip_spline import SlipSpline
 
 MANY = 3000  # launches of one height from which on splines cost less than integrating each
-SPLINE_ERROR = 3e-8
+SPLINE_ERROR = 3e-8  # of Q, J, r: a third of what derivatives are promised to
+# a side, doubled between: finer costs more than integrating
 _COARSEST_CELLS, _FINEST_CELLS = 32, 512
 _NEAR = 0.25  # of a side in ξ, 1/256 of it in φ: what may be too steep
-_CHUNK = 1 << 13
+_CHUNK = 1 << 13  # launches that a thread takes at once
 
 
 class SlopeSection(NamedTuple):

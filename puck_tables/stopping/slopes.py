@@ -39,7 +39,7 @@ RATE_WIDTH = 4  # slopes of the first four
 _TIME, _ALONG, _ACROSS, _BODY, _LENGTH = range(STOP_FUNCTIONS)
 _NEAR_LIMIT = 0.02  # of ρ: nearer the quotient is nearly 0/0
 _SLOW_NODES, _FAST_NODES = (6, 12), (24, 36)  # of 282: farther, the quotient keeps its digits
-_CELLS = 282
+_CELLS = 282  # a side, of the file
 _DIFFERENCE = np.array([1.0 / 280.0, -4.0 / 105.0, 0.2, -0.8, 0.0, 0.8, -0.2, 4.0 / 105.0,
                         -1.0 / 280.0])  # fmt: skip
 

@@ -16,17 +16,24 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import in_slices, run_chunks
 from puck_tables.accuracy.methods import Method
+from puck_tables.motion.body import Body
+from puck_tables.motion.frame import frame_of
+from puck_tables.motion.friction import source_of
+from puck_tables.motion.limits import regime_of
+from puck_tables.motion.run import solve
+from puck_tables.motion.state import LENGTH, PSI, THETA, T, X, Y
 from puck_tables.motion.steppers import Stepping
 from puck_tables.stopping.launches import Launches, fits, in_chunks, launches_in
 from puck_tables.stopping.lookup import STOP_POWERS
 from puck_tables.stopping.stop_section import StopSection
-from puck_tables.stopping.stop_table import OTHERS, StopTable
+from puck_tables.stopping.stop_table import StopTable
+from puck_tables.stopping.stop_values import OTHERS
 
 Status = npt.NDArray[np.int8]
 
 OUTPUTS = ("stop_time", "stop_x", "stop_y", *OTHERS)
 STATUS_MEANINGS = ("stopped", "step_limit", "overflow")
-_INTEGRATED_CHUNK = 64
+_INTEGRATED_CHUNK = 64  # motions that a thread takes at once
 _OVERFLOW = STATUS_MEANINGS.index("overflow")
 
 
@@ -192,6 +199,46 @@ class Integration(StopSolver):
             run_chunks(work, launches.shape[1], _INTEGRATED_CHUNK, threads)
         if self.longest > 2.0:
             mark_too_large(out, status, launches, self.longest)
+        return out, status
+
+
+@dataclass
+class EachAlone(StopSolver):
+    """Stops of few launches of one height, each integrated as finely as it needs itself.
+
+    So a first question waits for no measurement of what other launches would need.
+    ``tol``: of each; ``error``: the largest of those that were answered.
+    """
+
+    body: Body
+    tol: float
+    method: Method
+    error: float = 0.0
+
+    @property
+    def work(self) -> dict[str, Any]:
+        """The tolerance: each launch has its own setting."""
+        return {"by": self.method, "tol": self.tol}
+
+    def all(self, launches: FloatArray, threads: int | None = 1) -> tuple[FloatArray, Status]:
+        """All of the outputs (6, n) and status (n,)."""
+        out, status = np.zeros((len(OUTPUTS), launches.shape[1])), np.zeros(launches.shape[1], "i1")
+        source = source_of(self.body)
+        mark_too_large(out, status, launches, self.body.longest)
+        for n in np.flatnonzero(status == 0):
+            vx, vy, spin, _, decel, radius = launches[:, n].tolist()
+            frame = frame_of((vx, vy), spin, decel, radius)
+            if frame.slip == 0.0:
+                continue
+            regime = regime_of(frame.speed, frame.rim, source.limit, source.limit_width)
+            run, _ = solve(source, regime, frame.speed, frame.rim, self.tol, self.method)
+            stop = run.stop
+            out[0, n] = stop[T] * frame.time
+            out[1:3, n] = frame.place(stop[X], stop[Y])
+            out[3, n] = stop[LENGTH] * frame.length
+            out[4, n] = frame.side * stop[PSI]
+            out[5, n] = frame.side * stop[THETA] * (frame.length / frame.radius)
+            self.error = max(self.error, run.error)
         return out, status
 
 

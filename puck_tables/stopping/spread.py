@@ -19,16 +19,16 @@ from puck_tables.errors import InputError
 
 Again = Callable[[FloatArray], FloatArray]
 
-_SYMMETRIC = 1e-9
-_MOST_SAMPLES = 10**9
-_AT_ONCE = 1 << 20
+_SYMMETRIC = 1e-9  # relative: rounding of a covariance as printed
+_MOST_SAMPLES = 10**9  # launches: more is refused by name
+_AT_ONCE = 1 << 20  # samples in memory
 _TRUSTED = 0.05  # of a deviation
 _NOISE = 4.0  # deviations of what samples themselves scatter by
 _LOWEST = {"delta": 0.0, "decel": 0.0, "radius": 0.0, "time": 0.0}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Spread:
+class ResultSpread:
     """How results scatter when launches do.
 
     Parameters
@@ -110,7 +110,7 @@ def spread_of(
     names: tuple[str, ...], columns: tuple[str, ...], jacobian: FloatArray, arguments: FloatArray,
     again: Again, covariance: npt.ArrayLike, of: Sequence[str], samples: int, seed: int,
     highest: float,
-) -> Spread:  # fmt: skip
+) -> ResultSpread:  # fmt: skip
     """The spread of results.
 
     Parameters
@@ -144,7 +144,7 @@ def spread_of(
     scattered = jacobian[..., which] @ root
     linear = scattered @ np.swapaxes(scattered, -1, -2)
     if not samples:
-        return Spread(names, linear)
+        return ResultSpread(names, linear)
     count = arguments.shape[1]
     if samples * count > _MOST_SAMPLES:
         raise InputError(
@@ -165,7 +165,7 @@ def spread_of(
             total, squares, done = total + off.sum(axis=1), squares + off @ off.T, done + part
         shift[n] = total / samples
         sampled[n] = (squares - samples * np.outer(shift[n], shift[n])) / (samples - 1)
-    return Spread(
+    return ResultSpread(
         names, linear, samples, sampled.reshape(linear.shape), shift.reshape(linear.shape[:-1])
     )
 

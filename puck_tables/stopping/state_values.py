@@ -18,7 +18,7 @@ from puck_tables.motion.state import STATE_ROWS, T
 from puck_tables.stopping.launches import CHUNK, in_chunks, launches_in
 from puck_tables.stopping.stop_table import StopTable
 
-TOL = 1e-9
+TOL = 1e-9  # of Q/J, Q²/J, as a look-up of plain pucks is good to
 
 
 def refuse_times(moments: FloatArray) -> None:

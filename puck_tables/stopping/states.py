@@ -30,7 +30,7 @@ from puck_tables.stopping.jacobian import (
     MOMENT_NAMES,
     STATE_NAMES,
     Differentiated,
-    Kind,
+    StopSettings,
     integrated_jacobians,
 )
 from puck_tables.stopping.launches import Launches, fits, launches_of
@@ -43,7 +43,8 @@ from puck_tables.stopping.state_values import (
     looked_up,
     refuse_times,
 )
-from puck_tables.stopping.stop_table import UPPER_DELTA, StopTable
+from puck_tables.stopping.stop_table import StopTable
+from puck_tables.stopping.stop_values import UPPER_DELTA
 from puck_tables.table.table import refuse_other_kind
 
 TOO_LARGE = (
@@ -72,7 +73,7 @@ class States(Differentiated, Result):
     _jacobian: FloatArray | None = None
     _asked: tuple[FloatArray, npt.NDArray[np.int64]] | None = None  # launches (6, m), and which
     _table: StopTable | None = None
-    _kind: Kind | None = None
+    _kind: StopSettings | None = None
 
     picture: ClassVar[str] = "places"
     JACOBIAN_ROWS: ClassVar[tuple[str, ...]] = STATE_NAMES
@@ -304,7 +305,7 @@ def states(
         return _states(found, moments, launches, which, shape, told)
     return _states(
         found, moments, launches, which, shape, told, slopes.reshape(*shape, *slopes.shape[1:]),
-        (launches.matrix, which), table, Kind(pressure, gyration) if bodies else None,
+        (launches.matrix, which), table, StopSettings(pressure, gyration) if bodies else None,
     )  # fmt: skip
 
 

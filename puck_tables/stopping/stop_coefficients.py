@@ -19,6 +19,7 @@ from puck_tables.stopping.axes import (
 from puck_tables.stopping.curve import limits
 from puck_tables.stopping.lookup import CURVE_ROW, STOP_POWERS, STOP_ROW
 from puck_tables.stopping.orbit import ORBIT_WIDTH, REGULAR, TURN_POWERS, TURN_STEP
+from puck_tables.stopping.orbit_nodes import OrbitCurve
 from puck_tables.stopping.slopes import Slopes, slopes_of
 from puck_tables.stopping.stop_splines import (
     by_power,
@@ -72,12 +73,12 @@ class StopCoefficients(Table):
     @cached_property
     def time_inverse(self) -> FloatArray:
         """From the time that is left to the slip ratio."""
-        return inverse_splines(self, with_time=True)
+        return inverse_splines(self._curve, with_time=True)
 
     @cached_property
     def turn_inverse(self) -> FloatArray:
         """From Q to the slip ratio."""
-        return inverse_splines(self, with_time=False)
+        return inverse_splines(self._curve, with_time=False)
 
     @cached_property
     def slopes(self) -> Slopes:
@@ -92,7 +93,7 @@ class StopCoefficients(Table):
     @cached_property
     def orbit_coefficients(self) -> FloatArray:
         """What :mod:`puck_tables.stopping.orbit_lookup` reads."""
-        values = orbit_splines(self, with_time=True)
+        values = orbit_splines(self._curve, with_time=True)
         padded = np.zeros((*values.shape[:3], ORBIT_WIDTH))
         padded[..., : values.shape[3]] = values
         return side_by_side(padded)
@@ -100,8 +101,14 @@ class StopCoefficients(Table):
     @cached_property
     def turn_coefficients(self) -> FloatArray:
         """The heading's regular part over the place by Q, (2, cells + 3, 12)."""
-        parts = orbit_splines(self, with_time=False)[..., REGULAR:]
+        parts = orbit_splines(self._curve, with_time=False)[..., REGULAR:]
         return in_rows(parts, TURN_STEP * TURN_POWERS, power_first=True)
+
+    @cached_property
+    def _curve(self) -> OrbitCurve:
+        return OrbitCurve(
+            self.axis.cells, self.constants, self.stop_coefficients, self.curve_coefficients
+        )
 
     def _sides(self, functions: list[int], thinning: int = 1) -> FloatArray:
         """Some functions at the nodes (2, cells + 1, heights, functions), from k = 0 to k = 1."""

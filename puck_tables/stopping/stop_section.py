@@ -25,23 +25,23 @@ from puck_tables.errors import AccuracyError
 from puck_tables.motion.body import Body, body_of
 from puck_tables.motion.friction import LOOSEST_LOCAL
 from puck_tables.motion.path import TURN_SHARE
-from puck_tables.motion.solve import Estimate, close_enough
+from puck_tables.motion.solve import ErrorEstimate, close_enough
 from puck_tables.stopping.exact import integrated_stops
 from puck_tables.table.check import CheckReport
 from puck_tables.table.friction_section import FINEST_ACCURACY, FrictionSection
+from puck_tables.table.record import Progress
 from puck_tables.table.section_table import SectionTable
 from puck_tables.table.slip_axis import GRADING_POWER, LawAxis, sides_of
 from puck_tables.table.slip_spline import slip_spline
 from puck_tables.table.store import kept_section
-from puck_tables.table.table import Progress
 
 FINEST_SECTION = 1e-10  # as fine as stops are looked up; beyond, they are integrated
-DEFAULT_ACCURACY = 1e-8
+DEFAULT_ACCURACY = 1e-8  # of Q²/J: the default tol of stops
 _COUNTED = slice(0, 5)  # the turn, until Q has fallen to 1/1000, is what it is
 _TURN = 0.01  # its errors count a hundredth
-_FINEST_CELLS = 1024
-_SAMPLE = 48
-_COARSER_BY = 8.0
+_FINEST_CELLS = 1024  # a side
+_SAMPLE = 48  # launches at which it is held against an integration
+_COARSER_BY = 8.0  # half as many cells are 16 times as bad; half of that is believed
 _SHARE_OF_FRICTION, _SHARE_OF_SPLINE = 0.3, 0.6  # of the accuracy
 _LARGEST = 1e4  # of a value
 
@@ -219,12 +219,12 @@ def stop_section(body: Body, accuracy: float, progress: Progress | None = None) 
     section behind them contributes, against one of half as many cells.
     """
 
-    def attempt(of_friction: float) -> tuple[FrictionSection, Estimate]:
+    def attempt(of_friction: float) -> tuple[FrictionSection, ErrorEstimate]:
         friction = body.friction(of_friction)
         error = _error_of_friction(body, friction, accuracy)
-        return friction, Estimate(0.0, error / _SHARE_OF_FRICTION)
+        return friction, ErrorEstimate(0.0, error / _SHARE_OF_FRICTION)
 
-    def finer(of_friction: float, error: Estimate) -> float | None:
+    def finer(of_friction: float, error: ErrorEstimate) -> float | None:
         if of_friction <= FINEST_ACCURACY:
             return None
         return max(0.1 * of_friction, FINEST_ACCURACY)

@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray, aligned
 from puck_tables.stopping.axes import HEIGHTS, height_polynomials
 from puck_tables.stopping.lookup import STOP_POWERS, WIDTH
-from puck_tables.stopping.orbit_nodes import Curve
+from puck_tables.stopping.orbit_nodes import OrbitCurve
 from puck_tables.table.fit import clamped_coefficients
-
-if TYPE_CHECKING:
-    from puck_tables.stopping.stop_coefficients import StopCoefficients
 
 
 def by_power(nodes: FloatArray, powers: int = HEIGHTS) -> FloatArray:
@@ -73,29 +68,29 @@ def cut_rows(sides: FloatArray, powers: int) -> FloatArray:
     return aligned(found.reshape(2, -1, powers * WIDTH))
 
 
-def inverse_splines(table: StopCoefficients, with_time: bool) -> FloatArray:
+def inverse_splines(curve: OrbitCurve, with_time: bool) -> FloatArray:
     """From the time that is left, or from Q, to the slip ratio, (2, cells + 3, 9)."""
-    ratios = Curve(table).ratios(with_time)
+    ratios = curve.ratios(with_time)
     return np.ascontiguousarray(by_power(ratios).transpose(2, 1, 0))
 
 
-def orbit_splines(table: StopCoefficients, with_time: bool) -> FloatArray:
+def orbit_splines(curve: OrbitCurve, with_time: bool) -> FloatArray:
     """The functions of an orbit over the place by time or Q: (power, node, side, function)."""
-    return by_power(Curve(table).orbit(with_time))
+    return by_power(curve.orbit(with_time))
 
 
-def at_height(table: StopCoefficients, delta: float) -> FloatArray:
+def at_height(cut: FloatArray, delta: float) -> FloatArray:
     """T, along and δ · across at one height, (2, (cells + 3) × WIDTH): of no power any more.
 
     Examples
     --------
     >>> from puck_tables import Table
-    >>> at_height(Table.shipped("stops"), 0.5).shape[0]
+    >>> at_height(Table.shipped("stops").cut(), 0.5).shape[0]
     2
     """
-    cut = table.cut().reshape(2, -1, STOP_POWERS, WIDTH)
-    found = np.zeros_like(cut[:, :, 0])
+    powers = cut.reshape(2, -1, STOP_POWERS, WIDTH)
+    found = np.zeros_like(powers[:, :, 0])
     for power in range(STOP_POWERS - 1, -1, -1):
-        found = found * (2.0 * delta**2 - 1.0) + cut[:, :, power]
+        found = found * (2.0 * delta**2 - 1.0) + powers[:, :, power]
     found[..., 2] *= delta
     return np.ascontiguousarray(found.reshape(2, -1))

@@ -18,7 +18,7 @@ from puck_tables.stopping.jacobian import (
     LAUNCH_NAMES,
     STOP_NAMES,
     Differentiated,
-    Kind,
+    StopSettings,
     refuse_rest,
     stop_jacobians,
 )
@@ -28,7 +28,7 @@ from puck_tables.stopping.solvers import OUTPUTS, STATUS_MEANINGS
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
 
-DEFAULT_TOL = 1e-8
+DEFAULT_TOL = 1e-8  # of Q/J, Q²/J
 _LAUNCHES = ("launch_vx", "launch_vy", "launch_spin", "delta")
 
 
@@ -53,7 +53,7 @@ class Stops(Differentiated, Result):
 
     def __init__(
         self, solver: SolverPerHeight, launches: Launches, threads: int | None,
-        jacobian: FloatArray | None, table: StopTable | None, kind: Kind | None,
+        jacobian: FloatArray | None, table: StopTable | None, kind: StopSettings | None,
     ) -> None:  # fmt: skip
         time, place, status, self._mark, self._rest = solver.first(launches, threads)
         self._solver: SolverPerHeight | None = solver
@@ -250,5 +250,5 @@ def stop(
     if jacobian:
         plain, bodies = solver.kinds(launches.matrix[3])
         slopes = stop_jacobians(launches, plain, bodies, own or StopTable.shipped(), threads)
-        kind = Kind(pressure, gyration, tol, method, table) if bodies else None
+        kind = StopSettings(pressure, gyration, tol, method, table) if bodies else None
     return Stops(solver, launches, threads, slopes, own, kind)

@@ -1,30 +1,26 @@
-"""Maps of stops over ranges of whatever a launch or a puck has, and samples of stops."""
+"""Stops over ranges of whatever a launch or a puck has, and of launches that scatter."""
 
 from __future__ import annotations
 
 from collections.abc import Container, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
 from puck_tables._core.executor import Progress
 from puck_tables._core.memory import check_memory
+from puck_tables._core.own_folder import say
 from puck_tables._core.real import one_velocity
 from puck_tables.bulk.finish import check_part, finish
 from puck_tables.bulk.spreads import checked_samples
-from puck_tables.bulk.work import Columns
 from puck_tables.errors import InputError
-from puck_tables.io.columns import derived, following
-from puck_tables.io.dataset import Dataset, variable
 from puck_tables.result import Result
-from puck_tables.stopping.population import COLUMN, Population, drawn, labelled, law_name, ranged
-from puck_tables.stopping.solvers import OUTPUTS
+from puck_tables.stopping.population import COLUMN, Population, drawn, labelled, ranged
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.stopping.sweep_work import StopWork
 from puck_tables.table.resultant_table import ResultantTable
-from puck_tables.verbs_of_many import refuse_frictionless
 
 # Arrays, the encoded HDF5 file and working copies; as text (CSV) much more.
 BYTES_PER_LAUNCH, BYTES_PER_ROW = 160, 850
@@ -33,58 +29,7 @@ DEFAULT_SPEED = np.linspace(0.0, 2.0, 41)
 DEFAULT_SPIN = np.linspace(-4.0, 4.0, 41)
 
 
-class StopMap(Result):
-    """Stops over a grid of launches.
-
-    ``axes`` maps the ranged quantities, in the order of the arrays' dimensions ``dims``, to their
-    values, by the names of columns: ``launch_speed`` (m/s), ``launch_spin`` (rad/s),
-    ``launch_heading`` (rad), ``radius``, ``height`` (m), ``friction``, ``gravity``, ``decel``
-    (m/s²), ``delta``, ``gyration`` (1), ``pressure`` (numbers of ``laws``).  ``fixed`` holds what
-    is one number for all.
-
-    Arrays: ``stop_time`` s, ``stop_x``, ``stop_y`` m from the launch, ``path_length`` m,
-    ``turn_angle`` rad (until Q has fallen to 1/1000; integrated, to a hundred times the tolerance),
-    ``body_angle`` rad, ``status`` (0: stopped), and what was given one by one.  ``method`` says how
-    ('look-up', 'integrated', or both where pucks differ), ``table`` with which table,
-    ``selections`` what was selected for the tolerance.
-    """
-
-    picture: ClassVar[str] = "stop_map"
-
-    def __init__(self, work: StopWork, columns: Columns) -> None:
-        launches = work.launches
-        self.dims, self.axes, self.fixed = launches.dims, launches.axes, launches.fixed
-        self.laws = tuple(map(law_name, launches.laws))
-        self.tol, self.method, self.table = work.tol, work.method, work.source
-        self.selections, self._explanation = work.selections, work.explain()
-        self._own = work.labelled(columns)
-
-    def __getattr__(self, name: str) -> Any:
-        """A column: of the stops, what was given one by one, or what follows from others."""
-        if name.startswith("_"):
-            raise AttributeError(name)
-        if name in self._own.columns:
-            return self._own.columns[name].values
-        return following(self, name)
-
-    def __repr__(self) -> str:
-        ranged = " x ".join(f"{name} ({n})" for name, n in zip(self.dims, self.status.shape,
-                                                               strict=True))  # fmt: skip
-        return f"{type(self).__name__}({ranged or 'one launch'}, by {self.method})"
-
-    def explain(self) -> str:
-        """Which method was taken, and why."""
-        return self._explanation
-
-    def dataset(self) -> Dataset:
-        """The stops over what was ranged; the rest as attributes."""
-        own = self._own
-        values = {name: one.values for name, one in own.columns.items() if name in OUTPUTS}
-        more = {name: variable(name, one, self.dims) for name, one in derived(values).items()}
-        return Dataset(own.axes, {**own.columns, **more}, own.attributes)
-
-
-def sweep(puck: Any, given: Mapping[str, Any], launches: Any, *, how: How) -> Result:
+def sweep(puck: Any, given: Mapping[str, Any], launches: Any, *, how: SweepOptions) -> Result:
     """Stops of all combinations of numbers: :meth:`puck_tables.Puck.sweep`."""
     numbers = numbers_given(puck, given)
     if launches is None:
@@ -97,10 +42,15 @@ def sweep(puck: Any, given: Mapping[str, Any], launches: Any, *, how: How) -> Re
     laws = numbers.pop("pressure", puck.pressure)
     names = {*numbers, *(argument for argument, column in COLUMN.items()
                          if column in launches.variables)}  # fmt: skip
+    read = set(COLUMN.values())
+    if unread := [str(name) for name in launches.data_vars if name not in read]:
+        say(f"launches: variables not read: {', '.join(unread)[:400]}")
     return how.done(labelled(launches, _whole(puck, numbers, names), laws), puck)
 
 
-def sample(puck: Any, count: int, seed: int, given: Mapping[str, Any], *, how: How) -> Result:
+def sample(
+    puck: Any, count: int, seed: int, given: Mapping[str, Any], *, how: SweepOptions
+) -> Result:
     """Stops of launches that scatter: :meth:`puck_tables.Puck.sample`."""
     checked_samples(count, seed)
     numbers = numbers_given(puck, given)
@@ -123,7 +73,7 @@ def numbers_given(puck: Any, given: Mapping[str, Any]) -> dict[str, Any]:
 def _whole(puck: Any, numbers: Mapping[str, Any], names: Container[str]) -> dict[str, Any]:
     """The numbers given, of arguments of these names, and what else a launch needs."""
     if "friction" not in names:
-        refuse_frictionless(puck)
+        puck.refuse_frictionless()
     whole: dict[str, Any] = {}
     if not any(name in names for name in ("speed", "vx", "vy")):
         whole["speed"] = 1.0
@@ -150,7 +100,7 @@ def _of(names: Container[str]) -> list[str]:
 
 
 @dataclass(frozen=True)
-class How:
+class SweepOptions:
     """How stops are computed, and where they go: arguments of :meth:`puck_tables.Puck.sweep`."""
 
     tol: float

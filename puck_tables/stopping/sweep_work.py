@@ -22,14 +22,15 @@ from puck_tables.stopping.per_height import (
 )
 from puck_tables.stopping.population import COLUMN, Population, law_name
 from puck_tables.stopping.solvers import OUTPUTS, STATUS_MEANINGS
+from puck_tables.stopping.stop_map import StopMap, StopSample
 
 if TYPE_CHECKING:
     from puck_tables.accuracy.front import Selection
     from puck_tables.stopping.per_height import AnyTable
 
-PART = 1 << 13
+PART = 1 << 13  # launches that a thread takes at once
 BLOCKS = (1 << 14, 1 << 18), (1 << 8, 1 << 13)  # launches; the latter where one takes long
-_SLAB = 1 << 20
+_SLAB = 1 << 20  # pucks whose heights are sorted at once
 Kind = tuple[int, float]  # number of the pressure law, radius of gyration
 
 
@@ -241,10 +242,10 @@ class StopWork(Work):
 
     def result(self, columns: Columns) -> Result:
         """A map, or samples."""
-        from puck_tables.stopping.sample import StopSample
-        from puck_tables.stopping.sweep import StopMap
-
-        return (StopSample if self.launches.spreads else StopMap)(self, columns)
+        return (StopSample if self.launches.spreads else StopMap)(
+            self.launches, self.tol, self.method, self.source, self.selections, self.explain(),
+            self.labelled(columns),
+        )  # fmt: skip
 
     @property
     def method(self) -> str:

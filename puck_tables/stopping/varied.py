@@ -28,10 +28,10 @@ from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, T, U, X, Y
 from puck_tables.motion.tableaus import DORMAND_PRINCE
 from puck_tables.table.flow_section import FlowSection, flow_of_table, flow_section
 
-LOCAL = 1e-10
-_TINY = 1e-25
-_STEP_LIMIT = 20_000
-_CHUNK = 16
+LOCAL = 1e-10  # of a step: derivatives are promised to 1e-7
+_TINY = 1e-25  # for a cos φ or sin φ that is divided by
+_STEP_LIMIT = 20_000  # more is a motion that does not end
+_CHUNK = 16  # motions that a thread takes at once
 _AT_LINE = 3e-6  # nearer to a line that is the limit the derivative is not known to 1e-7
 _POWERS = np.array([1.0, 2.0, 2.0, 2.0, 2.0])  # of Q
 _STOP = [T, X, Y, LENGTH, THETA]

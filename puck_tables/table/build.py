@@ -14,7 +14,7 @@ from puck_tables.table.table import Table
 AnyTable = TypeVar("AnyTable", bound=Table)
 
 COARSEST = 0.01  # what a table may promise at most
-_LEAST_CELLS = 8
+_LEAST_CELLS = 8  # a side
 
 
 @dataclass(frozen=True)

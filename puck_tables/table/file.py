@@ -20,7 +20,7 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -30,13 +30,10 @@ from puck_tables._core.safe_write import as_utf8, write_bytes
 from puck_tables._version import __version__
 from puck_tables.errors import OutputError, TableError
 from puck_tables.table.accuracy import Accuracy
-
-if TYPE_CHECKING:
-    from puck_tables.table.table import Axis, Table
-
+from puck_tables.table.record import Axis, Record, kind_named
 
 FORMAT, FORMAT_VERSION = "puck-tables", "3.0"
-MAX_FILE_BYTES = 1 << 31
+MAX_FILE_BYTES = 1 << 31  # bytes: more is no table
 _SEAL = b"\npuck-tables sha256 "
 
 # what every kind of table says of itself, besides its recipe
@@ -74,7 +71,7 @@ def sealed(content: bytes) -> bytes:
     return content + _SEAL + hashlib.sha256(content).hexdigest().encode() + b"\n"
 
 
-def save(table: Table, path: str | Path, overwrite: bool, command: str) -> Table:
+def save(table: Record, path: str | Path, overwrite: bool, command: str) -> Record:
     """Write a table, see :meth:`puck_tables.Table.save`."""
     if table.accuracy is None or not np.all(np.isfinite(table.values)):
         raise OutputError(
@@ -90,7 +87,7 @@ def save(table: Table, path: str | Path, overwrite: bool, command: str) -> Table
     return written
 
 
-def encode(table: Table, command: str) -> bytes:
+def encode(table: Record, command: str) -> bytes:
     """The bytes of the file of a table with a measured accuracy, sealed."""
     import h5py
 
@@ -145,7 +142,7 @@ def encode(table: Table, command: str) -> bytes:
     return sealed(buffer.getvalue())
 
 
-def _recipe(table: Table) -> dict[str, Any]:
+def _recipe(table: Record) -> dict[str, Any]:
     """What determines the values of a table."""
     maps = {name: text for name, text in table.words.items() if name not in _SAID}
     return {
@@ -181,7 +178,7 @@ def read_content(path: str | Path) -> bytes:
         raise TableError(f"cannot read {path}: {error.strerror or error}") from None
 
 
-def decode(content: bytes, source: str, kinds: tuple[str, ...]) -> Table:
+def decode(content: bytes, source: str, kinds: tuple[str, ...]) -> Record:
     """The table in the bytes of a file, of one of these kinds.
 
     Raises
@@ -223,10 +220,8 @@ def decode(content: bytes, source: str, kinds: tuple[str, ...]) -> Table:
         ) from None
 
 
-def _read(content: bytes, source: str, kinds: tuple[str, ...]) -> Table:
+def _read(content: bytes, source: str, kinds: tuple[str, ...]) -> Record:
     import h5py
-
-    from puck_tables.table.table import kind_named
 
     with h5py.File(io.BytesIO(content), "r") as file:
         attributes: dict[str, Any] = {
@@ -285,7 +280,7 @@ def _refuse_format(attributes: dict[str, Any], source: str) -> None:
         )
 
 
-def _refuse_unusable(table: Table, arrays: dict[str, FloatArray]) -> None:
+def _refuse_unusable(table: Record, arrays: dict[str, FloatArray]) -> None:
     """Refuse a file whose digest is right but whose numbers this program cannot use."""
     recipe = _recipe(table)
     known = {**recipe, "recipe_digest": recipe_digest(recipe)}

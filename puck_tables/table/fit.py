@@ -66,7 +66,7 @@ def half_clamped_coefficients(values: FloatArray) -> FloatArray:
     return np.asarray(clamped - np.multiply.outer(nowhere, jump), dtype=np.float64)
 
 
-_ROOT = -2.0 + 3.0**0.5
+_ROOT = -2.0 + 3.0**0.5  # of 1 + 4x + x² = 0
 _JUMP = (1.0, -4.0, 6.0, -4.0, 1.0)  # of the third derivative at the last inner knots
 
 

@@ -23,19 +23,19 @@ from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import COARSEST
 from puck_tables.table.check import CheckReport
 from puck_tables.table.fit import height_terms
+from puck_tables.table.record import Progress
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.section_table import SectionTable
 from puck_tables.table.singular_lines import lines_of, opening_angle
 from puck_tables.table.slip_axis import GRADING_POWER, LawAxis, sides_of
 from puck_tables.table.slip_spline import slip_spline
-from puck_tables.table.table import Progress
 from puck_tables.table.tall_friction import tall_resultants
 
 DEFAULT_ACCURACY, FINEST_ACCURACY = 1e-9, 5e-13  # truth itself is good to 1e-13
 _LARGEST, _ROUNDING = 1e3, 1e-12  # of a ratio
 _NODE_ERROR = 1e-10  # how well the law is known at a node
 _CONSTANT = 1e-3  # no section is better than so many times cells⁻⁴
-AT_THE_LIMIT = 1e-6
+AT_THE_LIMIT = 1e-6  # relative: so close to it, a section says that motions tend there
 _FULL_CONTACT = 1.0  # δ up to which the whole base is loaded in every motion
 
 

@@ -15,8 +15,9 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.laws import Law, law_of, profile_law
 from puck_tables.errors import InputError
 from puck_tables.table.oddities import odd_nodes
+from puck_tables.table.record import Axis
 from puck_tables.table.slip_axis import LawAxis
-from puck_tables.table.table import Axis, Table
+from puck_tables.table.table import Table
 
 _RADIUS, _PRESSURE = "profile_radius", "profile_pressure"
 

@@ -8,7 +8,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 
 _ORDER, _APART = 4, 5  # of the differences; beyond so many nodes they do not share one
-_NOTHING = 1e-13
+_NOTHING = 1e-13  # relative: differences of rounding are not odd
 
 
 def odd_nodes(values: FloatArray, axes: tuple[int, ...], count: int) -> npt.NDArray[np.int64]:

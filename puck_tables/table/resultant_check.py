@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -15,11 +16,12 @@ from puck_tables.contact.resultants import Resultants, moment_balance
 from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import COARSEST, Goal, built
 from puck_tables.table.check import Check, CheckReport, compared
-from puck_tables.table.resultant_table import HEIGHTS, ResultantTable, full_contact
+from puck_tables.table.record import Progress
+from puck_tables.table.resultant_values import HEIGHTS, ResultantValues, full_contact
 from puck_tables.table.slip_axis import LawAxis
-from puck_tables.table.table import Progress
 
 Tell = Callable[[int], None]
+K = TypeVar("K", bound=ResultantValues)  # the kind that is made
 
 # where truth is closed forms, and where it is quadrature
 _EXACT = Goal(2e-11, 1e-13, "an absolute error of the dimensionless resultants", 1.2, 1 << 16)
@@ -34,11 +36,12 @@ _NODE = 1e-10  # how well nodes under a law of quadrature are known
 
 
 def tabulated(
+    kind: type[K],
     law: Law,
     accuracy: float | None = None,
     cells: int | None = None,
     progress: Progress | None = None,
-) -> ResultantTable:
+) -> K:
     """The table of a law, see :meth:`puck_tables.Table.build`."""
     probes = _PROBES if law.can_lift else _FEW_PROBES
 
@@ -55,27 +58,28 @@ def tabulated(
 
     tell = telling(probes)
 
-    def at(cells: int) -> ResultantTable:
+    def at(cells: int) -> K:
         nonlocal tell
         tell = telling(LawAxis(law.edges, cells).size + probes)
-        return tabulate(law, cells, tell)
+        return tabulate(kind, law, cells, tell)
 
     goal = _EXACT if law.can_lift else _BY_QUADRATURE
     return built(at, lambda table: _measured(table, probes, tell), goal, accuracy, cells)
 
 
-def tabulate(law: Law, cells: int, tell: Tell | None = None) -> ResultantTable:
+def tabulate(kind: type[K], law: Law, cells: int, tell: Tell | None = None) -> K:
     """The node values of a table, without a measured accuracy.
 
     Examples
     --------
     >>> from puck_tables.contact.laws import law_of
-    >>> tabulate(law_of("annulus:0.5"), 8).values.shape
+    >>> from puck_tables.table.resultant_table import ResultantTable
+    >>> tabulate(ResultantTable, law_of("annulus:0.5"), 8).values.shape
     (33, 4, 3)
     """
     phi = LawAxis(law.edges, cells).nodes()
     heights = np.linspace(0.0, full_contact(law), HEIGHTS)
-    return ResultantTable(_truth(law, phi[:, None], heights, tell), law=law)
+    return kind(_truth(law, phi[:, None], heights, tell), law=law)
 
 
 def _truth(law: Law, phi: FloatArray, delta: FloatArray, tell: Tell | None = None) -> FloatArray:
@@ -90,7 +94,7 @@ def _truth(law: Law, phi: FloatArray, delta: FloatArray, tell: Tell | None = Non
     return np.concatenate(parts)
 
 
-def _measured(table: ResultantTable, probes: int, tell: Tell | None) -> Accuracy:
+def _measured(table: ResultantValues, probes: int, tell: Tell | None) -> Accuracy:
     """The errors of a table against its law."""
     phi, delta = adversarial_points(table, probes, seed=2012)
     truth = _truth(table.law, phi, delta, tell).T
@@ -103,7 +107,7 @@ def _measured(table: ResultantTable, probes: int, tell: Tell | None) -> Accuracy
 
 
 def adversarial_points(
-    table: ResultantTable, count: int, seed: int | None
+    table: ResultantValues, count: int, seed: int | None
 ) -> tuple[FloatArray, FloatArray]:
     """Points where a table is worst, and random ones.
 
@@ -122,7 +126,8 @@ def adversarial_points(
     Examples
     --------
     >>> from puck_tables.contact.laws import law_of
-    >>> phi, delta = adversarial_points(tabulate(law_of("uniform"), 8), 100, seed=1)
+    >>> from puck_tables.table.resultant_table import ResultantTable
+    >>> phi, delta = adversarial_points(tabulate(ResultantTable, law_of("uniform"), 8), 100, seed=1)
     >>> bool(np.abs(phi).min() == 0.0 and delta.max() == 1.0)
     True
     """
@@ -148,7 +153,7 @@ def adversarial_points(
     return rng.choice([-1.0, 1.0], phi.size) * phi, table.delta_max * share
 
 
-def judged(table: ResultantTable, progress: Progress | None, points: int | None) -> CheckReport:
+def judged(table: ResultantValues, progress: Progress | None, points: int | None) -> CheckReport:
     """The report of :meth:`ResultantTable.validate`."""
     uniform = table.law.can_lift
     count = (40_000 if uniform else 3000) if points is None else points
@@ -226,7 +231,7 @@ def elementary_entries(delta: FloatArray) -> tuple[FloatArray, FloatArray, Resul
     return np.repeat([0.0, 0.25 * np.pi, 0.5 * np.pi], delta.size), np.tile(delta, 3), rho
 
 
-def _identities(table: ResultantTable, rng: np.random.Generator, allowed: float) -> list[Check]:
+def _identities(table: ResultantValues, rng: np.random.Generator, allowed: float) -> list[Check]:
     """Identities of full contact under uniform pressure, all from the table alone.
 
     With p_a = ρ_∥(φ, 0), p_d = ρ_ω(φ, 0)/2 and p_b = ρ_⊥/(δ ρ_∥):

@@ -1,50 +1,18 @@
-"""The table of friction resultants in full contact, under any pressure law.
-
-Held are ρ_∥, ρ_⊥, ρ_ω at the nodes of φ and at four heights; splined are the friction ratios 1/ρ_∥,
-ρ_⊥/ρ_∥, ρ_ω/ρ_∥, because in full contact they are polynomials of degree 2 in δ under every law:
-five columns over φ are the whole table (:mod:`puck_tables.kernels.quadratic`), and its section at
-one height is three.
-"""
+"""The table of friction resultants: built from its pressure law, and judged by it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any, Self
 
-import numpy as np
-import numpy.typing as npt
-
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import broadcast
-from puck_tables.contact.integrals import checked_phi
 from puck_tables.contact.laws import Law, law_of
-from puck_tables.contact.resultants import Resultants, checked_delta
-from puck_tables.errors import InputError
 from puck_tables.table.check import CheckReport
-from puck_tables.table.fit import height_terms, sided_coefficients
-from puck_tables.table.law_table import LawTable
-from puck_tables.table.slip_axis import GRADING_POWER
-from puck_tables.table.table import KINDS, Axis, Progress
-
-HEIGHTS = 4
-_UNIFORM = "uniform"
-_LARGEST = 1e3  # of a resultant: 64 stands in an extreme profile
-_FINEST = 0.1  # no table is better than so many times cells⁻⁴
-_INTERPRETATION = (
-    "Friction on a puck of radius r, height h, mass m sliding with speed v and spin omega "
-    "on a rough plane, Coulomb coefficient f, weight N = m g, whole base loaded by the "
-    "named pressure law, tilted linearly by the moment balance. "
-    "phi = atan2(r omega, v), delta = 2 f h / r. "
-    "Force on the puck: -f N cos(phi) parallel along its velocity, -f N sin(phi) cos(phi) "
-    "perpendicular across it (to the left), torque -(f N r / 2) sin(phi) spin about the "
-    "vertical. Even in phi. Salnikova, Treschev, Gallyamov 2012, sections 3 and 6."
-)
+from puck_tables.table.record import KINDS, Progress
+from puck_tables.table.resultant_values import ResultantValues
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ResultantTable(LawTable):
+class ResultantTable(ResultantValues):
     """Friction resultants under a pressure law, 0 ≤ δ ≤ 4⟨x²⟩, with the spline through them.
 
     Parameters
@@ -53,146 +21,6 @@ class ResultantTable(LawTable):
         ρ_∥, ρ_⊥, ρ_ω at the nodes of ``axis`` and at δ = 0, ⅓, ⅔ and 1 of ``delta_max``.
     law : Law
     """
-
-    kind = "resultants"
-    algorithm = "integrals of the law; friction ratios splined on its sides; 2"
-    functions: ClassVar[Mapping[str, str]] = {
-        "parallel": "friction resultant along the velocity, rho_parallel",
-        "perpendicular": "friction resultant across the velocity, rho_perpendicular",
-        "spin": "friction torque about the vertical, rho_omega",
-    }
-    second = "delta"
-    quantities = tuple(functions)
-    words: ClassVar[Mapping[str, str]] = {
-        "title": "Friction resultants of a sliding, spinning puck",
-        "interpretation": _INTERPRETATION,
-        "method": "integrals of the pressure law over the base: uniform 2e-15, others 1e-13",
-        "phi_map": (
-            "sides in the order of phi, two for each edge of the load: phi_e = atan(1/edge), "
-            f"tan(phi - phi_e) = extent xi^{GRADING_POWER}, xi = i/n from phi_e, xi = 1 at phi = 0,"
-            " pi/2 or half way to the next line; cubic splines in xi with zero slope at xi = 0 and "
-            "at phi = 0 and pi/2, else not-a-knot"
-        ),
-        "delta_map": "delta = delta_max j/3; polynomials of degree 2",
-        "splined": "1/parallel, perpendicular/parallel, spin/parallel",
-    }
-
-    @property
-    def lines_at(self) -> tuple[float, ...]:
-        """Where the centre of rotation crosses an edge of the load."""
-        return self.law.edges
-
-    @cached_property
-    def delta_max(self) -> float:
-        """The largest δ: contact is full at every φ up to it."""
-        return full_contact(self.law)
-
-    @property
-    def heights(self) -> FloatArray:
-        """δ at the nodes."""
-        return np.linspace(0.0, self.delta_max, HEIGHTS)
-
-    @cached_property
-    def columns(self) -> FloatArray:
-        """What :mod:`puck_tables.kernels.quadratic` reads, fitted at first use; read-only."""
-        terms = height_terms(self.values, self.heights)
-        fitted = np.ascontiguousarray(sided_coefficients(self.axis.by_side(terms), True) / 6.0)
-        fitted.flags.writeable = False
-        return fitted
-
-    def section(self, delta: float) -> FloatArray:
-        """The friction ratios at one height, as :mod:`puck_tables.kernels.section_spline` reads.
-
-        Raises
-        ------
-        InputError
-            If δ is outside the range of the table, or it is not of uniform pressure.
-        """
-        from puck_tables.kernels.quadratic import cut, room_for_cut
-
-        height = float(self.checked_range(delta))
-        out = room_for_cut(self.columns)
-        cut(self.columns, height, out)
-        return out
-
-    def checked_range(self, delta: npt.ArrayLike, law: str = _UNIFORM) -> FloatArray:
-        """``delta`` as an array, refused outside the range of the table.
-
-        Parameters
-        ----------
-        delta : dimensionless heights
-        law : the pressure law that friction is wanted under
-
-        Raises
-        ------
-        InputError
-            If a height is not finite, negative or above the largest of the table, or the table is
-            of another law.
-        """
-        if self.law.name != law:
-            self.refuse_other(law_of(law))
-        height = checked_delta(delta)
-        if not np.all(height <= self.delta_max):
-            raise InputError(
-                f"delta = {height[height > self.delta_max].flat[0]!s} is outside this table "
-                f"(pressure law {law}: 0 <= delta <= {self.delta_max:g}): beyond, the whole base "
-                "does not stay loaded at every phi; where it does, use the closed forms (--exact)"
-            )
-        return height
-
-    def refuse_other(self, law: Law) -> None:
-        """Refuse to be the table of another pressure law.
-
-        Raises
-        ------
-        InputError
-        """
-        mine, other = (one.profile for one in (self.law, law))
-        same = mine is None or (other is not None and np.array_equal(mine, other))
-        if not (same and (self.law.name, self.law.edges) == (law.name, law.edges)):
-            raise InputError(
-                f"{self.source} is a table under the pressure law {self.law.name}, not "
-                f"{law.name}{'' if self.law.name != law.name else ' as it is now'}: give a table "
-                "of that law"
-            )
-
-    def resultants(self, phi: npt.ArrayLike, delta: npt.ArrayLike) -> Resultants:
-        """Interpolated resultants ρ_∥, ρ_⊥, ρ_ω.
-
-        Parameters
-        ----------
-        phi : array_like, radians, in [−π/2, π/2]
-        delta : array_like, dimensionless, in [0, delta_max]
-            Broadcast against ``phi``.
-
-        Returns
-        -------
-        Resultants
-            Dimensionless arrays of the broadcast shape; ``accuracy`` says how exact.
-
-        Raises
-        ------
-        InputError
-            If an argument is not finite or outside its range; nothing is extrapolated.
-
-        Notes
-        -----
-        Cubic splines in φ times polynomials of degree 2 in δ.  The resultants: Salnikova, Treschev,
-        Gallyamov 2012, section 6.
-
-        Examples
-        --------
-        >>> float(ResultantTable.shipped().resultants(0.0, 0.5).perpendicular.round(12))
-        0.125
-        """
-        from puck_tables.kernels.quadratic import fill_resultants
-
-        height = self.checked_range(delta, self.law.name)
-        angle, height = broadcast(phi=checked_phi(phi), delta=height)
-        out = np.empty((3, angle.size))
-        phi_, delta_ = (np.ascontiguousarray(axis).reshape(-1) for axis in (angle, height))
-        fill_resultants(self.columns, np.array(self.axis.sides), phi_, delta_, out)
-        return Resultants(*(row.reshape(angle.shape) for row in out))
 
     def validate(self, progress: Progress | None = None, points: int | None = None) -> CheckReport:
         """Judge the table by the law itself, under uniform pressure also by independent routes.
@@ -220,59 +48,14 @@ class ResultantTable(LawTable):
 
         return judged(self, progress, points)
 
-    # the record of the kind
-
     @classmethod
     def is_of(cls, of: object) -> bool:
         """Pressure laws and their names."""
         return isinstance(of, Law) or (isinstance(of, str) and of not in KINDS)
 
     @classmethod
-    def built(cls, of: Any, accuracy: float | None = None, **how: Any) -> ResultantTable:
+    def built(cls, of: Any, accuracy: float | None = None, **how: Any) -> Self:
         """A table under a pressure law, see :meth:`puck_tables.Table.build`."""
         from puck_tables.table.resultant_check import tabulated
 
-        return tabulated(of if isinstance(of, Law) else law_of(of), accuracy, **how)
-
-    @property
-    def grid(self) -> str:
-        """How many nodes it has, in words."""
-        return f"{len(self.values)} phi x {HEIGHTS} delta nodes"
-
-    @property
-    def valid_range(self) -> str:
-        """Where it holds, in words."""
-        return f"|phi| <= pi/2, 0 <= delta <= {self.delta_max:g}; refused outside"
-
-    @property
-    def axes(self) -> dict[str, Axis]:
-        """Slip angle and height."""
-        return {
-            "phi": Axis(self.axis.nodes(), "rad", "slip angle atan2(r omega, v)"),
-            "delta": Axis(self.heights, "1", "dimensionless height 2 f h / r"),
-        }
-
-    @property
-    def bounds(self) -> tuple[float, float, float]:
-        """Of the values and of the accuracy."""
-        return 0.0, _LARGEST, _FINEST / self.axis.cells**4
-
-    @classmethod
-    def shapes(cls, attributes: dict[str, Any]) -> dict[str, tuple[int, ...]]:
-        """Shapes of the arrays of a file with these attributes.
-
-        Examples
-        --------
-        >>> ResultantTable.shapes({"n_phi": 33, "profile_rows": 0})["spin"]
-        (33, 4)
-        """
-        shapes = super().shapes(attributes)
-        functions = dict.fromkeys(cls.functions, (*shapes["phi"], HEIGHTS))
-        return {"phi": shapes["phi"], "delta": (HEIGHTS,), **functions, **{
-            name: shape for name, shape in shapes.items() if name not in ("phi", *functions)
-        }}  # fmt: skip
-
-
-def full_contact(law: Law) -> float:
-    """The height up to which contact is full under a law, as tables have it: twelve digits."""
-    return float(f"{law.delta_max:.12g}")
+        return tabulated(cls, of if isinstance(of, Law) else law_of(of), accuracy, **how)

@@ -13,9 +13,9 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.table.check import Check, CheckReport, compared
 from puck_tables.table.law_table import LawTable
+from puck_tables.table.record import Axis, Progress
 from puck_tables.table.singular_lines import singular_lines
 from puck_tables.table.slip_spline import SlipSpline
-from puck_tables.table.table import Axis, Progress
 
 _SAME = 1e-9  # of lines
 

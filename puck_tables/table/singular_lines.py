@@ -20,7 +20,7 @@ from puck_tables.errors import ContactError
 from puck_tables.table.tall_friction import tall_resultants
 
 _SAME_LINE = 1e-12  # radians
-_SHARP_DELTA = 3.6
+_SHARP_DELTA = 3.6  # from there on the bend below φ = π/4 is a line of its own
 
 
 def lines_of(law: Law, delta: float) -> tuple[float, ...]:

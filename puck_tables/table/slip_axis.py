@@ -23,8 +23,8 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 
-GRADING_POWER = 4
-MAX_CELLS = 1 << 16
+GRADING_POWER = 4  # of ξ: nodes crowd at a line, where derivatives end
+MAX_CELLS = 1 << 16  # a side: more is a damaged file
 
 
 class Side(NamedTuple):

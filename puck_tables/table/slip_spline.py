@@ -34,7 +34,7 @@ from puck_tables.table.slip_axis import Side, graded
 
 Functions = Callable[[FloatArray], FloatArray]  # of φ (n,), as (n, functions)
 
-COARSEST_CELLS, FINEST_CELLS = 16, 2048
+COARSEST_CELLS, FINEST_CELLS = 16, 2048  # a side, doubled between
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -20,16 +21,18 @@ from puck_tables.kernels.speed_quadrature import COARSE, FINE, fill_integrals
 from puck_tables.kernels.speed_spline import fill_patch
 from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import COARSEST
+from puck_tables.table.record import Progress
 from puck_tables.table.speed_fit import missed_by_half, quintic_coefficients
-from puck_tables.table.speed_grid import COARSEST_CELLS, HALVINGS, Patch, breaks_of, patches_of
-from puck_tables.table.speed_table import SpeedTable
-from puck_tables.table.table import Progress
+from puck_tables.table.speed_grid import COARSEST_CELLS, HALVINGS, SlipPatch, breaks_of, patches_of
+from puck_tables.table.speed_values import SpeedValues
 
 Law = SpeedLaw | FrictionLaw | SpeedFunction
 
-DEFAULT_ACCURACY = 1e-6
-FINEST_ACCURACY = 1e-13
-MAX_NODES = 2_000_000
+K = TypeVar("K", bound=SpeedValues)  # the kind that is made
+
+DEFAULT_ACCURACY = 1e-6  # of f
+FINEST_ACCURACY = 1e-13  # of f: finer is rounding
+MAX_NODES = 2_000_000  # more is an accuracy out of reach
 _ORDER = 64.0  # to the power 6, of what half the nodes miss: the spline's own share
 _ALSO = 0.2  # of what the other axis misses: refined too
 _NEXT = 0.03  # of the largest error: refined in the same round
@@ -43,7 +46,7 @@ _AT_ONCE = 20_000  # nodes between two looks whether to go on: some 0.1 s
 class _Filled:
     """One patch with its node values, and how good the spline through them is."""
 
-    def __init__(self, patch: Patch, law: Law, unit: float, number: int, rules: int):
+    def __init__(self, patch: SlipPatch, law: Law, unit: float, number: int, rules: int):
         self._law, self._unit, self._rules = law, unit, rules
         self.patch = patch
         self.cells = [COARSEST_CELLS, COARSEST_CELLS]
@@ -139,12 +142,13 @@ class _Filled:
 
 
 def tabulated(
+    kind: type[K],
     law: Law,
     accuracy: float | None = None,
     top_speed: float | None = None,
     scale: float | None = None,
     progress: Progress | None = None,
-) -> SpeedTable:
+) -> K:
     """Friction with a coefficient that depends on the slip speed, in full contact, tabulated.
 
     The grid is cut at the corners of the law, and every patch is as fine as it needs.
@@ -165,7 +169,8 @@ def tabulated(
 
     Examples
     --------
-    >>> table = tabulated(SpeedLaw([0.0, 0.5, 1.0, 3.0], [0.3, 0.22, 0.2, 0.25]), 1e-8)
+    >>> from puck_tables.table.speed_table import SpeedTable
+    >>> table = tabulated(SpeedTable, SpeedLaw([0.0, 0.5, 1.0, 3.0], [0.3, 0.22, 0.2, 0.25]), 1e-8)
     >>> table.accuracy.worst < 1e-8, table.top
     (True, 3.0)
     """
@@ -212,7 +217,7 @@ def tabulated(
     kept = law if isinstance(law, SpeedLaw | FrictionLaw) else None
     cells = np.array([part.cells for part in parts], np.int64)
     values = np.concatenate([part.values.reshape(-1, 4) for part in parts])
-    return SpeedTable(
+    return kind(
         values, breaks=breaks, cells=cells, largest_f=largest, law=kept, tolerance=accuracy,
         accuracy=_measured(parts),
     )  # fmt: skip
@@ -271,7 +276,7 @@ def truth_at(
     return out.reshape(*np.shape(ratio), 4)
 
 
-def _probes(rng: np.random.Generator, patch: Patch) -> tuple[FloatArray, FloatArray]:
+def _probes(rng: np.random.Generator, patch: SlipPatch) -> tuple[FloatArray, FloatArray]:
     """Points of a patch, ξ and ζ: anywhere, and next to all edges and corners."""
     share = rng.random((2, _PROBES))
     near = rng.random((2, _PROBES)) ** 6

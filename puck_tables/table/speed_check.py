@@ -12,16 +12,16 @@ from puck_tables.errors import InputError
 from puck_tables.table.build import COARSEST
 from puck_tables.table.check import Check, CheckReport, compared
 from puck_tables.table.oddities import odd_nodes
+from puck_tables.table.record import Progress
 from puck_tables.table.speed_build import largest_f
-from puck_tables.table.speed_table import SpeedTable
-from puck_tables.table.table import Progress
+from puck_tables.table.speed_values import SpeedValues
 
 IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
 
 
 def judged(
-    table: SpeedTable, law: SpeedFunction | None, points: int, progress: Progress | None
+    table: SpeedValues, law: SpeedFunction | None, points: int, progress: Progress | None
 ) -> CheckReport:
     """The report of :meth:`SpeedTable.validate`."""
     if law is None:
@@ -65,7 +65,7 @@ def judged(
     return CheckReport(table.source, table.tolerance, tuple(checks))
 
 
-def oddest(table: SpeedTable, count: int) -> IntArray:
+def oddest(table: SpeedValues, count: int) -> IntArray:
     """Nodes that fit their neighbours least: patch, ξ and ζ number, (n, 3).
 
     About ``count`` of all patches that have equally many cells.
@@ -78,13 +78,13 @@ def oddest(table: SpeedTable, count: int) -> IntArray:
     return np.concatenate(found)
 
 
-def _places(table: SpeedTable, nodes: IntArray) -> FloatArray:
+def _places(table: SpeedValues, nodes: IntArray) -> FloatArray:
     """ξ and ζ of nodes (n, 3)."""
     return np.asarray((nodes[:, 1:] / table.cells[nodes[:, 0]]).T)
 
 
 def _slips(
-    table: SpeedTable, patches: IntArray, places: FloatArray
+    table: SpeedValues, patches: IntArray, places: FloatArray
 ) -> tuple[FloatArray, BoolArray, FloatArray]:
     """Ratio, side and Q of the slip at places (2, n) in patches (n,)."""
     ratio, fast, Q = np.empty(patches.size), np.empty(patches.size, bool), np.empty(patches.size)

@@ -12,7 +12,8 @@ from puck_tables.kernels.speed_spline import DEGREE
 
 # the B-splines, times 120
 _AT_NODE = (1.0, 26.0, 66.0, 26.0, 1.0)
-_BAND = 6
+_BAND = 6  # bands of the matrix beside its diagonal
+# half-way between nodes
 _AT_MIDDLE = (1.0 / 32, 237.0 / 32, 1682.0 / 32, 1682.0 / 32, 237.0 / 32, 1.0 / 32)
 
 

@@ -29,7 +29,7 @@ _SAME = 1e-9  # two corners as near as this to each other are one
 
 
 @dataclass(frozen=True)
-class Patch:
+class SlipPatch:
     """A part of the plane of slips on which the integrals are smooth.
 
     Parameters
@@ -84,7 +84,7 @@ def edge_power(slab: int, part: int, fast: bool) -> int:
     return CORNER_POWER if part == slab and not fast else EDGE_POWER
 
 
-def patches_of(breaks: FloatArray, grade: int = 1) -> tuple[Patch, ...]:
+def patches_of(breaks: FloatArray, grade: int = 1) -> tuple[SlipPatch, ...]:
     """The patches between breaks, in the order in which compiled code numbers them.
 
     Examples
@@ -93,7 +93,7 @@ def patches_of(breaks: FloatArray, grade: int = 1) -> tuple[Patch, ...]:
     8
     """
     return tuple(
-        Patch(breaks, slab, part, fast, grade)
+        SlipPatch(breaks, slab, part, fast, grade)
         for fast in (False, True)
         for slab in range(len(breaks) - 1)
         for part in range(slab + 2 if slab > 0 else 1)

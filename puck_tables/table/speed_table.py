@@ -1,66 +1,18 @@
-"""A table of friction with a coefficient that depends on the slip speed, and its look-up."""
+"""The table of friction by slip speed: built from its friction law, and judged by it."""
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping
-from dataclasses import KW_ONLY, dataclass, field
-from functools import cached_property
-from typing import Any, ClassVar
+from dataclasses import dataclass
+from typing import Any, Self
 
-import numpy as np
-import numpy.typing as npt
-
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import broadcast
-from puck_tables.contact.friction_laws import NAMED, FrictionLaw, law_of_numbers
-from puck_tables.contact.integrals import PatchIntegrals, checked_phi, slip_direction
-from puck_tables.contact.resultants import Resultants, moment_balance, pressure_tilt
 from puck_tables.contact.speed_law import SpeedLaw
-from puck_tables.contact.speed_quadrature import (
-    checked_height_ratio,
-    checked_speed,
-    fastest,
-    refuse_lifting,
-)
-from puck_tables.errors import InputError
-from puck_tables.kernels.speed_spline import DONE, fill_speed, packed
 from puck_tables.table.check import CheckReport
-from puck_tables.table.speed_fit import quintic_coefficients
-from puck_tables.table.speed_grid import COARSEST_CELLS, HALVINGS, Patch, patch_count, patches_of
-from puck_tables.table.table import Axis, Progress, Table
-
-IntArray = npt.NDArray[np.int64]
-
-MAX_POINTS = 2000  # of a law in a file: HDF5 keeps no longer attribute
-_LARGEST = 10.0  # of a value, over the largest f and u f'
-# how many nodes are compared with the law as a file is read, and how well that is known
-_FINEST = 5e-14  # no table is better
-_INTERPRETATION = (
-    "Friction on a puck of radius r, height h, mass m sliding with speed v and spin omega on a "
-    "rough plane whose coefficient f depends on the local slip speed u by the law in law_speeds, "
-    "law_values, law_kind; weight N = m g, uniform pressure tilted linearly by the moment balance. "
-    "phi = atan2(r omega, v), Q = hypot(v, r omega), slip directions (e_x, e_y) in units of r: "
-    "cos(phi) p_a = mean of f e_x, sin(phi) p_b = mean of f e_y x, sin(phi) p_d = mean of f (x e_y "
-    "- y e_x), cos(phi) p_e = mean of f (x e_y - y e_x) y, p_c = p_b - p_d. With g = 2h/r, D = 1 - "
-    "g^2 sin^2(phi) p_b p_c: force -N cos(phi) p_a/D along the velocity, -N sin(phi) cos(phi) g "
-    "p_a p_b/D across it (to the left), torque -N r sin(phi) (p_d + g^2 cos^2(phi) p_a p_b p_e/D). "
-    "A law by name has its numbers in law_values. Even in phi. Salnikova, Treschev, Gallyamov "
-    "2012, section 5, with f inside the integrals."
-)
-_MAP = (
-    "U = v + r|omega|, W = |v - r|omega||; patches between the breaks b_k of U and W, for r|omega| "
-    "< v and then for >, slab of U after slab. U <= b_1: U = b_1 xi^g, W = U zeta^4, g = 6/"
-    "exponent rounded up for a Stribeck exponent that is no whole number, else 1. b_k <= U <= "
-    "b_k+1: U = b_k + (b_k+1 - b_k) xi^p; W = b_1/2 zeta^4, then W = b_l - (b_l - left end)(1 - "
-    "zeta)^p up to b_k, p = 2 (3 where r|omega| < v and l = k); last U, W = b_k + (b_k+1 - b_k)(xi,"
-    " zeta). Nodes uniform in xi and zeta, zeta fastest; quintic not-a-knot splines in both. Cells "
-    f"= {COARSEST_CELLS} 2^halvings; halvings of a patch = 16 along xi + along zeta"
-)
+from puck_tables.table.record import Progress
+from puck_tables.table.speed_values import SpeedValues
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SpeedTable(Table):
+class SpeedTable(SpeedValues):
     """The friction integrals at all slips of one law f(|u|), for pucks of every height.
 
     Parameters
@@ -80,149 +32,6 @@ class SpeedTable(Table):
     -----
     Errors are those of cos φ p_a, sin φ p_b, sin φ p_d and cos φ p_e in units of ``largest_f``.
     """
-
-    _: KW_ONLY
-    breaks: FloatArray
-    cells: IntArray = field(repr=False)
-    largest_f: float
-    law: SpeedLaw | FrictionLaw | None = None
-
-    kind = "speed"
-    algorithm = (
-        "one integral over circles about the centre of rotation; quintic splines in patches; 2"
-    )
-    functions: ClassVar[Mapping[str, str]] = {
-        "p_a": "mean of f e_x, over cos(phi)",
-        "p_b": "mean of f e_y x, over sin(phi)",
-        "p_d": "mean of f (x e_y - y e_x), over sin(phi)",
-        "p_e": "mean of f (x e_y - y e_x) y, over cos(phi)",
-    }
-    second = "v + r|omega|"
-    errors = "errors over the largest f"
-    quantities = ("cos p_a", "sin p_b", "sin p_d", "cos p_e")
-    words: ClassVar[Mapping[str, str]] = {
-        "title": "Friction of a sliding, spinning puck whose coefficient depends on the slip speed",
-        "interpretation": _INTERPRETATION,
-        "method": "quadrature over circles about the centre of rotation, 1e-14",
-        "map": _MAP,
-    }
-    entries: ClassVar[Mapping[str, type]] = {
-        "law_kind": str, "law_speeds": str, "law_values": str, "breaks": str, "nodes": int,
-        "patches": int, "largest_f": float,
-    }  # fmt: skip
-
-    @property
-    def top(self) -> float:
-        """The fastest slip v + r|ω| of the table, m/s."""
-        return float(self.breaks[-1])
-
-    @cached_property
-    def patches(self) -> tuple[Patch, ...]:
-        """Its patches, in the order of ``cells``."""
-        return patches_of(self.breaks, self._grade)
-
-    @property
-    def _grade(self) -> int:
-        """See :class:`puck_tables.table.speed_grid.Patch`."""
-        return 1 if self.law is None else self.law.grade
-
-    @cached_property
-    def compiled(self) -> FloatArray:
-        """As :func:`puck_tables.kernels.speed_spline.packed` has it."""
-        splines = [quintic_coefficients(values) for values in self.by_patch()]
-        return packed(self.breaks, self.cells, splines, self._grade)
-
-    def by_patch(self) -> list[FloatArray]:
-        """Node values of every patch, (ξ nodes, ζ nodes, 4)."""
-        sizes = (self.cells + 1).prod(axis=1)
-        parts = np.split(self.values, np.cumsum(sizes)[:-1])
-        shapes = (self.cells + 1).tolist()
-        return [part.reshape(u, w, 4) for part, (u, w) in zip(parts, shapes, strict=True)]
-
-    def integrals(self, phi: npt.ArrayLike, speed: npt.ArrayLike) -> PatchIntegrals:
-        """The interpolated integrals, see :func:`puck_tables.contact.speed_quadrature`.
-
-        Parameters
-        ----------
-        phi : array_like, radians, in [−π/2, π/2]
-        speed : array_like, m/s
-            Q = hypot(v, rω), broadcast against ``phi``; v + r|ω| within the table.
-
-        Raises
-        ------
-        InputError
-            If an argument is out of range; nothing is extrapolated.
-        """
-        angle, Q = broadcast(phi=checked_phi(phi), speed=checked_speed(speed))
-        direction = slip_direction(angle)
-        out = np.empty((4, angle.size))
-        status = fill_speed(
-            self.compiled, np.ravel(direction.ratio), np.ravel(direction.fast_spin),
-            np.ravel(Q).copy(), out,
-        )  # fmt: skip
-        if status != DONE:
-            raise InputError(
-                f"the fastest slip v + r|omega| = {float(fastest(direction, Q).max()):g} m/s is "
-                f"outside this table (0 to {self.top:g} m/s)"
-            )
-        a, b, d, e = (row.reshape(angle.shape) for row in out)
-        return PatchIntegrals(a, b, b - d, d, e)
-
-    def resultants(
-        self, phi: npt.ArrayLike, speed: npt.ArrayLike, height_ratio: float = 0.0
-    ) -> Resultants:
-        """Interpolated friction.
-
-        Parameters
-        ----------
-        phi : array_like, radians, in [−π/2, π/2]
-        speed : array_like, m/s
-            Q = hypot(v, rω), broadcast against ``phi``; v + r|ω| within the table.
-        height_ratio : float
-            2h/r ≥ 0; times a constant f it is δ.
-
-        Returns
-        -------
-        Resultants
-            F_∥/(N cos φ), F_⊥/(N sin φ cos φ) and 2M/(N r sin φ), f included.
-
-        Raises
-        ------
-        InputError
-            If an argument is out of range; nothing is extrapolated.
-        ContactError
-            If part of the base would have to be pulled down.
-
-        Examples
-        --------
-        >>> from puck_tables import Table
-        >>> table = Table.build(lambda u: 0.2 + 0.1 * u, accuracy=1e-4, top_speed=2.0)
-        >>> float(table.resultants(0.0, 1.0).parallel.round(4))  # a puck that only slides: f(v)
-        0.3
-        """
-        g = checked_height_ratio(height_ratio)
-        p = self.integrals(phi, speed)
-        direction = slip_direction(np.broadcast_to(checked_phi(phi), p.a.shape))
-        rho = moment_balance(p, direction, g)
-        refuse_lifting(pressure_tilt(rho, direction, g), g)
-        return rho
-
-    def refuse_height(self, height_ratio: float) -> None:
-        """Refuse a puck part of whose base would lift anywhere in the table.
-
-        Raises
-        ------
-        ContactError
-        """
-        cells = self.cells.tolist()
-        tilts = []
-        for patch, values, (u, w) in zip(self.patches, self.by_patch(), cells, strict=True):
-            xi, zeta = np.arange(u + 1)[:, None] / u, np.arange(w + 1) / w
-            direction, _ = patch.place(xi, zeta)
-            a, b, d, e = np.moveaxis(values, -1, 0)
-            rho = moment_balance(PatchIntegrals(a, b, b - d, d, e), direction, height_ratio)
-            tilts.append(pressure_tilt(rho, direction, height_ratio).max())
-        refuse_lifting(np.array(tilts), height_ratio)
 
     def validate(
         self, progress: Progress | None = None, points: int = 2000, law: Any = None
@@ -261,117 +70,14 @@ class SpeedTable(Table):
 
         return judged(self, self.law if law is None else law, points, progress)
 
-    # the record of the kind
-
     @classmethod
     def is_of(cls, of: object) -> bool:
         """Friction laws over the slip speed: points or functions."""
         return isinstance(of, SpeedLaw) or callable(of)
 
     @classmethod
-    def built(cls, of: Any, accuracy: float | None = None, **how: Any) -> SpeedTable:
+    def built(cls, of: Any, accuracy: float | None = None, **how: Any) -> Self:
         """A table of a friction law, see :meth:`puck_tables.Table.build`."""
         from puck_tables.table.speed_build import tabulated
 
-        return tabulated(of, accuracy, **how)
-
-    @property
-    def grid(self) -> str:
-        """How many nodes it has, in words."""
-        return f"{len(self.values)} nodes in {len(self.cells)} patches"
-
-    @property
-    def valid_range(self) -> str:
-        """Where it holds, in words."""
-        return f"|phi| <= pi/2, 0 <= v + r|omega| <= {self.top:g} m/s; refused outside"
-
-    @property
-    def axes(self) -> dict[str, Axis]:
-        """The numbers of the nodes."""
-        return {"node": Axis(np.arange(float(len(self.values))), "1", "node of a patch")}
-
-    @property
-    def parameters(self) -> dict[str, int | float | str]:
-        """The law and the grid."""
-        assert self.law is not None
-        if isinstance(self.law, FrictionLaw):
-            speeds, values = [0.0, self.top], self.law.numbers
-        else:
-            speeds = np.asarray(self.law.speeds).tolist()
-            values = np.asarray(self.law.values).tolist()
-        return {
-            "law_kind": self.law.kind,
-            "law_speeds": json.dumps(speeds), "law_values": json.dumps(values),
-            "breaks": json.dumps(self.breaks.tolist()), "nodes": len(self.values),
-            "patches": len(self.cells), "largest_f": self.largest_f,
-        }  # fmt: skip
-
-    @property
-    def curve(self) -> dict[str, Axis]:
-        """How often each patch was halved along its two axes."""
-        halvings = np.log2(self.cells / COARSEST_CELLS) @ [16.0, 1.0]
-        return {
-            "patch": Axis(np.arange(float(len(self.cells))), "1", "patch"),
-            "halvings": Axis(halvings, "1", "16 times those along xi, and those along zeta"),
-        }
-
-    @property
-    def bounds(self) -> tuple[float, float, float]:
-        """Of the values, each a mean of f, of u f', or of both; and of the accuracy."""
-        assert self.law is not None
-        largest = _LARGEST * (self.law.largest(self.top) + self.law.steepest(self.top))
-        return -largest, largest, _FINEST
-
-    @classmethod
-    def shapes(cls, attributes: dict[str, Any]) -> dict[str, tuple[int, ...]]:
-        """Shapes of the arrays of a file with these attributes.
-
-        Examples
-        --------
-        >>> SpeedTable.shapes({"nodes": 500, "patches": 2})["p_d"]
-        (500,)
-        """
-        nodes, patches = (attributes["nodes"],), (attributes["patches"],)
-        functions = dict.fromkeys(cls.functions, nodes)
-        return {"node": nodes, **functions, "patch": patches, "halvings": patches}
-
-    @classmethod
-    def fields(cls, attributes: dict[str, Any], arrays: dict[str, FloatArray]) -> dict[str, Any]:
-        """Law and grid of a file."""
-        breaks, speeds, values = (
-            np.array(json.loads(attributes[name]), np.float64)
-            for name in ("breaks", "law_speeds", "law_values")
-        )
-        kind = attributes["law_kind"]
-        law: SpeedLaw | FrictionLaw
-        if kind in NAMED:
-            law, top = law_of_numbers(kind, values.tolist()), float(speeds[-1])
-        else:
-            law = SpeedLaw(speeds, values, kind)
-            top = law.top_speed if np.array_equal(law.speeds, speeds) else np.nan
-        codes = np.clip(np.nan_to_num(arrays["halvings"]), 0.0, 255.0).astype(np.int64)
-        cells = COARSEST_CELLS << np.minimum(np.stack([codes // 16, codes % 16], axis=-1), HALVINGS)
-        if not (
-            breaks.ndim == 1 and breaks.size > 1 and breaks[0] == 0.0
-            and np.all(np.diff(breaks) > 0.0) and breaks[-1] <= top
-            and attributes["patches"] == patch_count(breaks)
-            and (cells + 1).prod(axis=1).sum() == attributes["nodes"]
-        ):  # fmt: skip
-            raise ValueError("its patches are not those of its law")
-        largest = attributes["largest_f"]
-        return {"breaks": breaks, "cells": cells, "largest_f": largest, "law": law}
-
-    @property
-    def unsaveable(self) -> str | None:
-        """A law that is a function, or of too many points."""
-        if self.law is None:
-            return (
-                "the friction law of this table is a function, which a file cannot hold: give the "
-                "law as a SpeedLaw of points"
-            )
-        if isinstance(self.law, SpeedLaw) and np.size(self.law.speeds) > MAX_POINTS:
-            return (
-                f"the friction law has {np.size(self.law.speeds)} points: a file holds "
-                f"{MAX_POINTS}; give it with fewer"
-            )
-        return None
+        return tabulated(cls, of, accuracy, **how)

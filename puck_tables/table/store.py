@@ -34,10 +34,11 @@ from puck_tables.errors import InputError, OutputError, TableError
 from puck_tables.table.file import read_content, recipe_digest
 from puck_tables.table.friction_section import FrictionSection, friction_section
 from puck_tables.table.law_table import is_named
+from puck_tables.table.record import Progress
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.singular_lines import refuse_height
 from puck_tables.table.speed_table import SpeedTable
-from puck_tables.table.table import Progress, Table
+from puck_tables.table.table import Table
 
 AnyTable = TypeVar("AnyTable", bound=Table)
 
@@ -356,7 +357,7 @@ def remove(path: Path) -> None:
         raise OutputError(f"cannot remove {path}: {error.strerror or error}") from None
 
 
-class Entry(NamedTuple):
+class KeptTable(NamedTuple):
     """A table file in a list: its metadata in short; the blanks of a damaged one are None."""
 
     name: str
@@ -370,7 +371,7 @@ class Entry(NamedTuple):
     whole: bool
 
 
-def shipped_and_kept() -> list[Entry]:
+def shipped_and_kept() -> list[KeptTable]:
     """The table files that come along, and those kept in the user's cache.
 
     Examples
@@ -384,7 +385,7 @@ def shipped_and_kept() -> list[Entry]:
     return shipped + [entry for path in kept_files() if (entry := _kept(path)) is not None]
 
 
-def _kept(path: Path) -> Entry | None:
+def _kept(path: Path) -> KeptTable | None:
     """None if another process has just removed it."""
     try:
         date = datetime.fromtimestamp(path.stat().st_mtime, UTC).isoformat(timespec="seconds")
@@ -392,15 +393,15 @@ def _kept(path: Path) -> Entry | None:
     except FileNotFoundError:
         return None
     except TableError:
-        return Entry(path.name, str(path.parent), None, None, None, None, 0, date, False)
+        return KeptTable(path.name, str(path.parent), None, None, None, None, 0, date, False)
 
 
-def _entry(name: str, place: str, content: bytes, date: str) -> Entry:
+def _entry(name: str, place: str, content: bytes, date: str) -> KeptTable:
     try:
         table = Table.read(content, name)
     except TableError:
-        return Entry(name, place, None, None, None, None, len(content), date, False)
-    return Entry(
+        return KeptTable(name, place, None, None, None, None, len(content), date, False)
+    return KeptTable(
         name, place, table.kind, table.pressure_law, table.valid_range, table.tolerance,
         len(content), table.metadata["created"], True,
     )  # fmt: skip

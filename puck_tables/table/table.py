@@ -7,44 +7,22 @@ tables are built, saved, read and refused is the same for all.
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from abc import abstractmethod
+from dataclasses import dataclass
 from functools import cache
-from importlib import import_module
 from importlib.resources import files
 from pathlib import Path
-from typing import Any, ClassVar, NamedTuple, Self, cast
+from typing import Any, Self, cast
 
-from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import instance, shown
 from puck_tables.errors import InputError
 from puck_tables.table import file
-from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.check import CheckReport
-
-Progress = Callable[[int, int], None]
-
-# where every kind of table is at home
-KINDS = {
-    "resultants": "puck_tables.table.resultant_table:ResultantTable",
-    "stops": "puck_tables.stopping.stop_table:StopTable",
-    "speed": "puck_tables.table.speed_table:SpeedTable",
-    "friction section": "puck_tables.table.friction_section:FrictionSection",
-    "stop section": "puck_tables.stopping.stop_section:StopSection",
-}
-
-
-class Axis(NamedTuple):
-    """An axis in a file: its values and what they are."""
-
-    values: FloatArray
-    units: str
-    long_name: str
+from puck_tables.table.record import KINDS, Progress, Record, kind_named
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Table(ABC):
+class Table(Record):
     """A table: build one, save it, load it, ask it, judge it.
 
     Parameters
@@ -68,33 +46,6 @@ class Table(ABC):
     >>> float(table.resultants(0.0, 1.0).perpendicular.round(6)), table.validate().passed
     (0.25, True)
     """
-
-    values: FloatArray
-    tolerance: float = field(default=0.0, kw_only=True)
-    accuracy: Accuracy | None = field(default=None, kw_only=True)
-    metadata: dict[str, Any] = field(default_factory=dict, kw_only=True)
-    source: str = field(default="memory", kw_only=True)
-
-    # the record of a kind, as its files have it
-    kind: ClassVar[str]
-    algorithm: ClassVar[str]
-    functions: ClassVar[Mapping[str, str]]  # names, and what they are
-    second: ClassVar[str]  # the second axis, in words for a report
-    errors: ClassVar[str] = "absolute errors"  # what they are, in such words
-    quantities: ClassVar[tuple[str, ...]]  # what has them
-    words: ClassVar[Mapping[str, str]]  # title, interpretation, method, maps of the axes
-    entries: ClassVar[Mapping[str, type]]  # what determines the values besides
-
-    def __post_init__(self) -> None:
-        values = self.values.view()
-        values.flags.writeable = False
-        object.__setattr__(self, "values", values)
-
-    def __repr__(self) -> str:
-        return (
-            f"<Table of {self.kind}: {self.pressure_law} pressure, {self.grid}, "
-            f"to {self.tolerance:g}, {self.source}>"
-        )
 
     @classmethod
     def build(cls, of: Any = "uniform", accuracy: float | None = None, **how: Any) -> Self:
@@ -253,74 +204,6 @@ class Table(ABC):
         says of itself is no yardstick.
         """
 
-    # what a kind says
-
-    @classmethod
-    @abstractmethod
-    def is_of(cls, of: object) -> bool:
-        """Whether tables of this kind are built of such a thing."""
-
-    @classmethod
-    @abstractmethod
-    def built(cls, of: Any, accuracy: float | None, **how: Any) -> Self:
-        """Such a table, see :meth:`build`."""
-
-    @property
-    def pressure_law(self) -> str:
-        """The name of the pressure law."""
-        return "uniform"
-
-    @property
-    @abstractmethod
-    def grid(self) -> str:
-        """How many nodes it has, in words."""
-
-    @property
-    @abstractmethod
-    def valid_range(self) -> str:
-        """Where it holds, in words; beyond it look-ups are refused."""
-
-    @property
-    @abstractmethod
-    def axes(self) -> dict[str, Axis]:
-        """The axes of the functions, in their order."""
-
-    @property
-    def parameters(self) -> dict[str, int | float | str]:
-        """What determines the values besides the record: the values of ``entries``."""
-        return {}
-
-    @property
-    def curve(self) -> dict[str, Axis]:
-        """An argument and a function of it besides, or nothing."""
-        return {}
-
-    @property
-    @abstractmethod
-    def bounds(self) -> tuple[float, float, float]:
-        """Between which two numbers all values lie, and what no such table is better than."""
-
-    @classmethod
-    @abstractmethod
-    def shapes(cls, attributes: dict[str, Any]) -> dict[str, tuple[int, ...]]:
-        """Shapes of the arrays of a file with these attributes: axes, functions, curve."""
-
-    @classmethod
-    @abstractmethod
-    def fields(cls, attributes: dict[str, Any], arrays: dict[str, FloatArray]) -> dict[str, Any]:
-        """What the constructor needs besides the values, from a file.
-
-        Raises
-        ------
-        ValueError
-            If there is no such table.
-        """
-
-    @property
-    def unsaveable(self) -> str | None:
-        """Why no file can hold the table, in a sentence; None where one can."""
-        return None
-
 
 def refuse_other_kind(table: Table | None, *kinds: type[Table]) -> None:
     """Refuse a table, if one is given, that is not of these kinds.
@@ -331,7 +214,7 @@ def refuse_other_kind(table: Table | None, *kinds: type[Table]) -> None:
 
     Examples
     --------
-    >>> refuse_other_kind(Table.shipped("stops"), kind_named("resultants"))
+    >>> refuse_other_kind(Table.shipped("stops"), type(Table.shipped()))
     Traceback (most recent call last):
     ...
     puck_tables.errors.InputError: table must be a Table of resultants, got one of stops
@@ -342,19 +225,6 @@ def refuse_other_kind(table: Table | None, *kinds: type[Table]) -> None:
         raise InputError(f"table must be a Table of {wanted}, got {got}")
 
 
-def kind_named(name: str) -> type[Table]:
-    """The class of a kind.
-
-    Examples
-    --------
-    >>> kind_named("stops").__name__
-    'StopTable'
-    """
-    module, _, found = KINDS[name].partition(":")
-    kind: type[Table] = getattr(import_module(module), found)
-    return kind
-
-
 @cache
 def _shipped(kind: str) -> Any:
     place = files("puck_tables.tables").joinpath(f"{kind}.h5")
@@ -362,4 +232,6 @@ def _shipped(kind: str) -> Any:
         raise InputError(
             f"no table of {shown(kind)} comes along: there are 'resultants' and 'stops'"
         )
-    return kind_named(kind).read(place.read_bytes(), f"default table of {kind}")
+    return cast("type[Table]", kind_named(kind)).read(
+        place.read_bytes(), f"default table of {kind}"
+    )

@@ -11,7 +11,7 @@ from puck_tables.kernels.spline import basis, cell_at, row_sums, side_and_eta
 from puck_tables.table.fit import clamped_coefficients
 from puck_tables.table.resultant_table import ResultantTable
 
-_BLOCK = 128
+_BLOCK = 128  # points at once
 
 
 def graded_coefficients(table: ResultantTable) -> FloatArray:

@@ -18,11 +18,11 @@ from puck_tables.stopping.stops import stop
 _ROUNDS, _AT_LEAST = 5, 0.02  # a batch is asked so often, and so many seconds
 _LONG = 0.3  # s, of which one more call tells enough
 _AIM_LARGEST = 5  # power of ten
-_STEP = 2
+_STEP = 2  # powers of two from one size to the next
 
 
 @dataclass(frozen=True)
-class Door:
+class CallCost:
     """What one call costs: ``ns`` for each of ``batch`` questions, on ``threads`` threads."""
 
     name: str
@@ -71,7 +71,7 @@ class _Questions:
         )  # fmt: skip
 
 
-def measured_doors(largest: int) -> tuple[Door, ...]:
+def measured_doors(largest: int) -> tuple[CallCost, ...]:
     """Cost of every door for batches of 1, 100, … 10^largest questions, by one thread and by all.
 
     Examples
@@ -97,7 +97,7 @@ def measured_doors(largest: int) -> tuple[Door, ...]:
         for power in sorted({*range(0, top, _STEP), top}):
             for threads in sorted({1, usable_cores()}):
                 seconds = _median(door(10**power, threads))
-                found.append(Door(name, outputs, threads, 10**power, 1e9 * seconds / 10**power))
+                found.append(CallCost(name, outputs, threads, 10**power, 1e9 * seconds / 10**power))
     return tuple(found)
 
 

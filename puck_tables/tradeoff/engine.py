@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.accuracy.front import Measured
+from puck_tables.accuracy.front import MeasuredMethod
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.kernels.patience import compiled_at_once
 from puck_tables.motion.limits import limit_ratio
@@ -22,18 +22,18 @@ from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.tradeoff import resultant_methods, state_methods, stop_methods
 from puck_tables.tradeoff.contender import Contender, Ready
-from puck_tables.tradeoff.doors import Door, measured_doors
+from puck_tables.tradeoff.doors import CallCost, measured_doors
 from puck_tables.tradeoff.machine import Machine, measured_machine
 from puck_tables.tradeoff.models import PADE_MATCHED, fitted_pade, pade_limit_ratio
 from puck_tables.tradeoff.truth import Points, known_starts, random_points
 
 Progress = Callable[[int, int], None]
 
-REPEATS, QUICK_REPEATS = 25, 5
-_POINTS, _QUICK_POINTS = 4000, 1000
+REPEATS, QUICK_REPEATS = 25, 5  # of a measurement, of which the least time counts
+_POINTS, _QUICK_POINTS = 4000, 1000  # at which errors are looked for
 _LARGEST_SWEEP, _QUICK_SWEEP = 8, 6  # powers of ten
 _LARGEST_BATCH, _QUICK_BATCH = 7, 6  # of a door
-_CHUNK = 10_000
+_CHUNK = 10_000  # points a call
 _POWERS, _THINNING = 6, 2  # the look-up that growth is measured with
 _SHORTEST = 1e-3  # s; below it a round repeats the run
 
@@ -47,11 +47,11 @@ class TradeOff(Result):
     rω/v at the stop of a flat puck by name; the ``machine``; ``repeats``; ``seconds`` it all took.
     """
 
-    methods: tuple[Measured, ...]
+    methods: tuple[MeasuredMethod, ...]
     stops: FloatArray
     stop_ns: FloatArray
     peak_bytes: FloatArray
-    doors: tuple[Door, ...]
+    doors: tuple[CallCost, ...]
     limit_ratios: dict[str, float]
     machine: Machine
     repeats: int
@@ -68,7 +68,7 @@ class TradeOff(Result):
 
     def dataset(self) -> Dataset:
         """Methods with their errors and costs; the growth of a sweep; the machine as attributes."""
-        names = [field.name for field in fields(Measured)]
+        names = [field.name for field in fields(MeasuredMethod)]
         columns = {
             name: variable(name, _values(self.methods, name), ("contender",)) for name in names
         }
@@ -96,7 +96,7 @@ class TradeOff(Result):
         })  # fmt: skip
 
 
-def _values(rows: tuple[Measured, ...] | tuple[Door, ...], name: str) -> Any:
+def _values(rows: tuple[MeasuredMethod, ...] | tuple[CallCost, ...], name: str) -> Any:
     values = [getattr(row, name) for row in rows]
     return values if isinstance(values[0], str) else np.asarray(values)
 
@@ -129,9 +129,9 @@ def measure(quick: bool = False, progress: Progress | None = None) -> TradeOff:
     flat = Points(points.phi[chosen], points.delta[chosen], points.resultants[:, chosen])
     table, stop_table = ResultantTable.shipped(), StopTable.shipped()
     contenders: list[Contender] = [
-        *resultant_methods.contenders(resultant_methods.Task(points, flat)),
-        *stop_methods.contenders(stop_methods.Task(known_starts(), flat, table, stop_table)),
-        *state_methods.contenders(state_methods.Task(table, stop_table)),
+        *resultant_methods.contenders(resultant_methods.ResultantTask(points, flat)),
+        *stop_methods.contenders(stop_methods.StopTask(known_starts(), flat, table, stop_table)),
+        *state_methods.contenders(state_methods.StateTask(table, stop_table)),
     ]
     total, done = 2 * len(contenders) + repeats, 0
 
@@ -189,11 +189,11 @@ def _seconds(ready: Ready, count: int) -> float:
 
 def _measured(
     contender: Contender, ready: Ready, build: float, costs: FloatArray, machine: Machine
-) -> Measured:
+) -> MeasuredMethod:
     error = np.maximum(ready.time_error, ready.place_error)
     low, middle, high = 1e9 * np.quantile(costs, [0.25, 0.5, 0.75])
     limit_ns, limit = machine.limit(ready.work, ready.traffic)
-    return Measured(
+    return MeasuredMethod(
         contender.question, contender.method, contender.setting, int(contender.outsider),
         error=float(error.max()), median_error=float(np.median(error)),
         time_error=float(ready.time_error.max()), place_error=float(ready.place_error.max()),

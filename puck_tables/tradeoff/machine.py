@@ -16,7 +16,7 @@ from puck_tables._version import __version__
 from puck_tables.kernels.compile import kernel, patience
 
 _WORKING_SET = 1 << 14  # doubles: 128 kB, what tables and blocks of the look-ups are held in
-_ROUNDS = 400
+_ROUNDS = 400  # of the loop that is timed
 HARD = 8.0  # adds or products that a division or a root counts for
 
 

@@ -32,8 +32,9 @@ from puck_tables.tradeoff.truth import Points
 Fill = Callable[[FloatArray, FloatArray, FloatArray], object]  # phi, delta, out (3, n)
 
 QUESTION = "resultants"
-SCATTERED = 40_000
+SCATTERED = 40_000  # points timed
 QUADRATIC, BICUBIC, UNIFORM = "quadratic in delta", "bicubic, graded", "bicubic, uniform"
+# along φ, doubled, and those of the table that comes along
 _NODES = (17, 33, 65, 129, 257, 513, 991, 2049)
 _POINT_TRAFFIC = 40.0  # bytes: φ, δ in, three numbers out
 # adds and products of one point: φ to η (two roots, one division), weights, last division
@@ -41,7 +42,7 @@ _PLACE_WORK = 22.0 + 3.0 * HARD + 16.0
 _AGM_WORK = 14.0 + 2.0 * HARD  # a step; a root and a division
 
 
-class Task:
+class ResultantTask:
     """Points to answer at: scattered ones for the clock, judged ones for the error."""
 
     def __init__(self, truth: Points, flat_truth: Points) -> None:
@@ -71,7 +72,7 @@ class Task:
 
 
 def _tabulated(size: int) -> ResultantTable:
-    return tabulate(law_of("uniform"), size // 2)
+    return tabulate(ResultantTable, law_of("uniform"), size // 2)
 
 
 _SIDES = np.array(_tabulated(9).axis.sides)
@@ -105,7 +106,7 @@ def _quadrature(phi: FloatArray, delta: FloatArray, out: FloatArray) -> None:
     out[:] = moment_balance(quadrature.integrals(phi), slip_direction(phi), delta)
 
 
-def contenders(task: Task) -> Iterator[Contender]:
+def contenders(task: ResultantTask) -> Iterator[Contender]:
     """All methods to the resultants."""
 
     def contender(
@@ -153,7 +154,7 @@ def contenders(task: Task) -> Iterator[Contender]:
     yield from _outsiders(task, contender)
 
 
-def _outsiders(task: Task, contender: Callable[..., Contender]) -> Iterator[Contender]:
+def _outsiders(task: ResultantTask, contender: Callable[..., Contender]) -> Iterator[Contender]:
     for size in ((100, 9), (400, 17), (1600, 17)):
         yield contender(
             "scipy NdBSpline", f"nodes={size[0]}x{size[1]}", partial(_scipy_spline, *size),

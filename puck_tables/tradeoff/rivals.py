@@ -20,10 +20,10 @@ SCIPY_SETTINGS = (
     ("DOP853", 1e-6, 1e-10),
     ("DOP853", 1e-11, 1e-13),
 )
-PATCH_GRID = (20, 40)
+PATCH_GRID = (20, 40)  # radial and angular patches
 _END = 1e-8  # of Q, where the integration is called finished
-_PATCH_END = 1e-3
-_MOST_CALLS = 20_000
+_PATCH_END = 1e-3  # of Q₀, at which it counts as at rest
+_MOST_CALLS = 20_000  # of the right-hand side: then it is given up
 
 
 class _Trembles(Exception):

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.accuracy.methods import LOOK_UP, Method, Scheme, Source
+from puck_tables.accuracy.methods import LOOK_UP, FrictionForm, Method, Scheme
 from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import integrate, states_at
@@ -23,13 +23,13 @@ from puck_tables.tradeoff.rivals import rates
 Run = Callable[[], FloatArray]  # x, y of every moment of every puck (pucks, moments, 2)
 
 QUESTION = "state"
-DELTA = 0.5
-_PUCKS, _MOMENTS, _SCIPY_PUCKS = 40, 100, 4
-_LOCAL = (1e-6, 1e-8, 1e-10, 1e-12)
-_FINEST = 2e-14
+DELTA = 0.5  # dimensionless: that of a puck that nothing is said of
+_PUCKS, _MOMENTS, _SCIPY_PUCKS = 40, 100, 4  # and moments of each; of scipy, which is slow, fewer
+_LOCAL = (1e-6, 1e-8, 1e-10, 1e-12)  # of a step: the settings measured
+_FINEST = 2e-14  # of a step: truth
 
 
-class Task:
+class StateTask:
     """Pucks, moments (as shares of their stop times) and where they are then.
 
     The judge is the integrator with closed forms at its finest, with a step of its own to every
@@ -102,7 +102,7 @@ class Task:
         return run
 
 
-def contenders(task: Task) -> Iterator[Contender]:
+def contenders(task: StateTask) -> Iterator[Contender]:
     """All methods to a state."""
 
     def contender(
@@ -120,8 +120,8 @@ def contenders(task: Task) -> Iterator[Contender]:
     stops = task.stops
     tables = (stops.launch_coefficients, stops.orbit_coefficients, stops.turn_coefficients)
     yield contender(LOOK_UP.name, "", task.looked_up, sum(table.nbytes for table in tables))
-    for source in (Source.TABLE, Source.CLOSED_FORMS):
-        method, exact = Scheme(Method.ADAPTIVE, source).name, source is Source.CLOSED_FORMS
+    for source in (FrictionForm.TABLE, FrictionForm.CLOSED_FORMS):
+        method, exact = Scheme(Method.ADAPTIVE, source).name, source is FrictionForm.CLOSED_FORMS
         for local in _LOCAL:
             size = 0 if exact else task.table.columns.nbytes
             yield contender(

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray, aligned
-from puck_tables.accuracy.methods import INTEGRATED, LOOK_UP, Source
+from puck_tables.accuracy.methods import INTEGRATED, LOOK_UP, FrictionForm
 from puck_tables.kernels.quadratic import NO_COLUMNS, room_for_cut
 from puck_tables.kernels.quadratic import cut as cut_table
 from puck_tables.kernels.section_spline import NO_SECTION
@@ -29,21 +29,23 @@ from puck_tables.tradeoff.rivals import PATCH_GRID, SCIPY_SETTINGS, patch_script
 from puck_tables.tradeoff.truth import Points, Starts
 
 QUESTION, TRAJECTORY = "stop", "trajectory"
-SCATTERED = 40_000
-DELTA = 0.5
+SCATTERED = 40_000  # launches timed
+DELTA = 0.5  # dimensionless: that of a puck that nothing is said of
 _CUTS = ((2, 6), (3, 6), (4, 6), (5, 3), (6, 2), (6, 1), (7, 1))  # powers, thinning
+# fixed: the settings measured
 _STEPS = (5, 6, 8, 10, 12, 16, 20, 24, 32, 48, 64, 96, 128, 192, 256)
 _STEPS_EXACT = (512, 1024)  # where the table's own error would show
+# of a step: the settings measured
 _LOCAL = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12)
-_LOCAL_EXACT = (1e-13, 2e-14)
+_LOCAL_EXACT = (1e-13, 2e-14)  # of a step, with closed forms only
 _EASY = 16  # starts that outsiders are judged at, none of them adversarial
 # adds and products of one launch: speeds and place (four roots, two divisions), weights, result
 _LAUNCH_WORK = 30.0 + 7.0 * HARD + 16.0 + 20.0
 _LAUNCH_TRAFFIC = 72.0  # bytes: six numbers in, three out
-_STEP_LIMIT = 100_000
+_STEP_LIMIT = 100_000  # more is a motion that does not end
 
 
-class Task:
+class StopTask:
     """Launches: scattered ones for the clock, those of the truth for the error."""
 
     def __init__(
@@ -66,7 +68,7 @@ class Task:
         self.flat_starts = truth.some(truth.delta == 0.0)
 
 
-def contenders(task: Task) -> Iterator[Contender]:
+def contenders(task: StopTask) -> Iterator[Contender]:
     """All methods to a stop, and to a trajectory with its steps recorded."""
     for powers, thinning in _CUTS:
         yield Contender(
@@ -81,7 +83,7 @@ def contenders(task: Task) -> Iterator[Contender]:
             partial(_looked_up, task, powers),
         )  # fmt: skip
     for scheme in INTEGRATED:
-        exact, tableau = scheme.source is Source.CLOSED_FORMS, TABLEAUS[scheme.method]
+        exact, tableau = scheme.source is FrictionForm.CLOSED_FORMS, TABLEAUS[scheme.method]
         if tableau.e.any():
             for local in _LOCAL + (_LOCAL_EXACT if exact else ()):
                 stepping = Stepping(tableau, 0.0, local)
@@ -97,7 +99,7 @@ def _fresh_cut(stops: StopTable, powers: int, thinning: int, dtype: type) -> Flo
     return aligned(StopTable(stops.values).cut(powers, thinning).astype(dtype))
 
 
-def _looked_up(task: Task, powers: int, coefficients: object) -> Ready:
+def _looked_up(task: StopTask, powers: int, coefficients: object) -> Ready:
     assert isinstance(coefficients, np.ndarray)
     fill = stops_kernel(powers)
 
@@ -116,7 +118,7 @@ def _looked_up(task: Task, powers: int, coefficients: object) -> Ready:
 
 
 def _integrations(
-    task: Task, method: str, setting: str, stepping: Stepping, exact: bool
+    task: StopTask, method: str, setting: str, stepping: Stepping, exact: bool
 ) -> Iterator[Contender]:
     def coefficients() -> FloatArray:
         return NO_COLUMNS if exact else task.table.columns
@@ -166,7 +168,7 @@ def _integrations(
     yield Contender(TRAJECTORY, method, setting, coefficients, trajectory)
 
 
-def _outsiders(task: Task) -> Iterator[Contender]:
+def _outsiders(task: StopTask) -> Iterator[Contender]:
     def rival(method: str, setting: str, stop_of: Callable[..., FloatArray]) -> Contender:
         def ready(_: object) -> Ready:
             easy = task.easy.launches()

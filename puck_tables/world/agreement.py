@@ -15,8 +15,8 @@ from puck_tables.scene.by_speed import law_name, speed_law
 from puck_tables.scene.forces import drive_of
 from puck_tables.scene.holds import misfits
 from puck_tables.scene.parts import Drag, Edge, Force, Launch, Wall
-from puck_tables.scene.pieces import Piece
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.pieces import PieceSpec
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.drive import rows_of
 
 TOUCH = 1e-12  # of the radius: pucks that overlap less touch
@@ -25,12 +25,12 @@ TABLE_ERROR = 1e-9  # of looked-up states: of places in Q²/J, of velocities in 
 _SMALLEST, _LARGEST = 1e-100, 1e100
 
 
-def pieces_of(scene: Scene) -> tuple[Piece, ...]:
+def pieces_of(scene: SceneSpec) -> tuple[PieceSpec, ...]:
     """The pucks of a scene; a single one with its launch.
 
     Examples
     --------
-    >>> from puck_tables import Pocket, Puck
+    >>> from puck_tables import Pocket, Puck, Scene
     >>> pieces_of(Scene(Puck(0.04), pockets=[Pocket((1.0, 0.0), 0.1)]))[0].radius
     0.04
     """
@@ -38,85 +38,64 @@ def pieces_of(scene: Scene) -> tuple[Piece, ...]:
         return scene.pucks
     puck = scene.puck
     return (
-        Piece(
+        PieceSpec(
             puck.radius, puck.height, puck.friction, puck.mass, puck.gravity, puck.pressure,
             puck.gyration, launch=scene.launch, force=scene.force, constraint=scene.constraint,
         ),
     )  # fmt: skip
 
 
-def called(piece: Piece, number: int) -> str:
+def called(piece: PieceSpec, number: int) -> str:
     """A puck in a message, a table and a legend.
 
     Examples
     --------
+    >>> from puck_tables import Piece
     >>> called(Piece(0.1, name="striker"), 3), called(Piece(0.1), 3)
     ('striker', 'puck 3')
     """
     return piece.name or f"puck {number}"
 
 
-def number_of(puck: int | str, names: tuple[str, ...]) -> int:
-    """The number of a puck, from its name or number.
-
-    Raises
-    ------
-    InputError
-        If there is no such puck.
-
-    Examples
-    --------
-    >>> number_of("man", ("striker", "man")), number_of(0, ("striker", "man"))
-    (1, 0)
-    """
-    if isinstance(puck, str) and puck in names:
-        return names.index(puck)
-    if isinstance(puck, int | np.integer) and 0 <= puck < len(names) and puck is not True:
-        return int(puck)
-    shown = ", ".join(names[:8]) + (", ..." if len(names) > 8 else "")
-    near = get_close_matches(str(puck), names, 1, 0.6)
-    meant = f" (did you mean {near[0]!r}?)" if near else ""
-    raise InputError(f"no puck {puck!r}{meant}: there are {len(names)}, {shown}")
-
-
-def refuse_endless(scene: Scene) -> None:
+def refuse_endless(scene: SceneSpec) -> None:
     """Refuse a run that has no end of its own and is given none.
 
     Raises
     ------
     InputError
     """
-    if scene.run.time is not None:
+    if scene.time is not None:
         return
     floor = scene.floor
     if any(floor.velocity) or floor.turning != 0.0:
-        raise InputError("on a floor that moves nothing comes to rest: give run.time")
+        raise InputError("on a floor that moves nothing comes to rest: give a time")
     for number, piece in enumerate(pieces_of(scene)):
         if 0.0 in frictions_under(scene, piece) and not piece.path:
             if floor.law:
                 raise InputError(
                     f"{law_name(scene)}: its friction is 0 at slip zero, so that nothing comes to "
-                    "rest: give run.time"
+                    "rest: give a time"
                 )
             raise InputError(
                 f"nothing brings {called(piece, number)} to rest (its friction is 0): give "
-                "run.time, or friction"
+                "a time, or friction"
             )
         hold = piece.constraint
         if hold is not None and (any(hold.velocity) or hold.side_slip != 0.0):
             raise InputError(
                 f"the {hold.kind} of {called(piece, number)} moves, so it never comes to rest: "
-                "give run.time"
+                "give a time"
             )
 
 
-def frictions_under(scene: Scene, piece: Piece, fastest: float = 0.0) -> tuple[float, ...]:
+def frictions_under(scene: SceneSpec, piece: PieceSpec, fastest: float = 0.0) -> tuple[float, ...]:
     """Coulomb's coefficients under a puck: on each strip of the floor, then on each patch.
 
     Where they depend on the slip the largest, up to slips of ``fastest`` m/s: at 0 that at rest.
 
     Examples
     --------
+    >>> from puck_tables import Piece, Scene
     >>> frictions_under(Scene(pucks=[Piece(0.1, friction=0.2)]), Piece(0.1, friction=0.2))
     (0.2,)
     """
@@ -129,31 +108,31 @@ def frictions_under(scene: Scene, piece: Piece, fastest: float = 0.0) -> tuple[f
     return (*base, *(patch.friction for patch in floor.patches))
 
 
-def has_closed_forms(piece: Piece, friction: float) -> bool:
+def has_closed_forms(piece: PieceSpec, friction: float) -> bool:
     """Whether closed forms hold for a friction of a puck, or it is 0."""
     delta = 2.0 * friction * piece.height / piece.radius
     return friction == 0.0 or is_plain(piece.pressure, piece.gyration, delta)
 
 
-def flight_error(scene: Scene) -> float:
+def flight_error(scene: SceneSpec) -> float:
     """What flights may be wrong by, in units of Q²/J and Q; below that of tables none is looked up.
 
     Examples
     --------
-    >>> from puck_tables import Run
+    >>> from puck_tables import Piece, Scene
     >>> men = [Piece(0.1, friction=0.2)]
-    >>> [flight_error(Scene(pucks=men, run=Run(tol=tol))) for tol in (1e-6, 1e-11)]
+    >>> [flight_error(Scene(pucks=men, tol=tol)) for tol in (1e-6, 1e-11)]
     [1e-09, 1e-11]
     """
-    return min(TABLE_ERROR, scene.run.tol)
+    return min(TABLE_ERROR, scene.tol)
 
 
-def is_integrated(scene: Scene, piece: Piece, friction: float) -> bool:
+def is_integrated(scene: SceneSpec, piece: PieceSpec, friction: float) -> bool:
     """Whether the motion of a puck is integrated, on this friction, also while nothing touches it.
 
     Examples
     --------
-    >>> from puck_tables import Floor
+    >>> from puck_tables import Floor, Piece, Scene
     >>> is_integrated(Scene(pucks=[Piece(0.1)], floor=Floor(slope=0.1)), Piece(0.1), 0.1)
     True
     """
@@ -166,7 +145,7 @@ def is_integrated(scene: Scene, piece: Piece, friction: float) -> bool:
     return not piece.path and (rough or turns or more)
 
 
-def disagreements(scene: Scene) -> list[str]:
+def disagreements(scene: SceneSpec) -> list[str]:
     """What is wrong between fields that are each in range."""
     pieces = pieces_of(scene)
     faults = [*_not_here(scene), *_bad_floors(scene, pieces)]
@@ -181,8 +160,8 @@ def disagreements(scene: Scene) -> list[str]:
         if not _SMALLEST < math.hypot(*line.normal) < _LARGEST:
             faults.append(f"{path}.normal = {list(line.normal)}: must have a direction")
     faults += _strange_rims(scene)
-    if not scene.run.frames.is_integer():
-        faults.append(f"run.frames = {scene.run.frames:g}: must be a whole number")
+    if not scene.frames.is_integer():
+        faults.append(f"frames = {scene.frames:g}: must be a whole number")
     if faults:
         return faults
     return [
@@ -191,7 +170,7 @@ def disagreements(scene: Scene) -> list[str]:
     ]  # fmt: skip
 
 
-def _not_here(scene: Scene) -> Iterator[str]:
+def _not_here(scene: SceneSpec) -> Iterator[str]:
     """What a scene of several pucks does not take."""
     if not scene.pucks:
         return
@@ -203,7 +182,7 @@ def _not_here(scene: Scene) -> Iterator[str]:
             yield f"{name}: each of several pucks has its own, puck[0].{name}"
 
 
-def _bad_floors(scene: Scene, pieces: tuple[Piece, ...]) -> Iterator[str]:
+def _bad_floors(scene: SceneSpec, pieces: tuple[PieceSpec, ...]) -> Iterator[str]:
     """What is wrong with the friction of the floor, and whose base it does not fit."""
     found: dict[str, list[str]] = {}
     for number, piece in enumerate(pieces):
@@ -214,7 +193,7 @@ def _bad_floors(scene: Scene, pieces: tuple[Piece, ...]) -> Iterator[str]:
         yield fault if len(names) == slides else f"{', '.join(names)}: {fault}"
 
 
-def _of_one(scene: Scene, piece: Piece, path: str) -> Iterator[str]:
+def _of_one(scene: SceneSpec, piece: PieceSpec, path: str) -> Iterator[str]:
     """What is wrong with one of them."""
     for name, value in (("radius", piece.radius), ("mass", piece.mass)):
         if not _SMALLEST <= value <= _LARGEST:
@@ -251,7 +230,7 @@ def _of_one(scene: Scene, piece: Piece, path: str) -> Iterator[str]:
         )
 
 
-def _strange_rims(scene: Scene) -> Iterator[str]:
+def _strange_rims(scene: SceneSpec) -> Iterator[str]:
     """What is wrong with the rims of pairs."""
     pieces = pieces_of(scene)
     known = {piece.name for piece in pieces} | {piece.colour for piece in pieces}
@@ -276,7 +255,7 @@ def _strange_rims(scene: Scene) -> Iterator[str]:
                 )
 
 
-def _overlaps(pieces: tuple[Piece, ...]) -> Iterator[str]:
+def _overlaps(pieces: tuple[PieceSpec, ...]) -> Iterator[str]:
     """Pucks that overlap at the start."""
     places = np.array([start_of(piece) for piece in pieces])
     radii = np.array([piece.radius for piece in pieces])
@@ -289,7 +268,7 @@ def _overlaps(pieces: tuple[Piece, ...]) -> Iterator[str]:
             )
 
 
-def start_of(piece: Piece) -> tuple[float, float]:
+def start_of(piece: PieceSpec) -> tuple[float, float]:
     """Where a puck is at first."""
     if piece.path:
         rows = rows_of(piece.path)
@@ -297,7 +276,7 @@ def start_of(piece: Piece) -> tuple[float, float]:
     return piece.launch.position
 
 
-def _out_of_bounds(scene: Scene, pieces: tuple[Piece, ...]) -> Iterator[str]:
+def _out_of_bounds(scene: SceneSpec, pieces: tuple[PieceSpec, ...]) -> Iterator[str]:
     """Pucks that start in a cushion or a hole."""
     for number, piece in enumerate(pieces):
         place, name = start_of(piece), called(piece, number)
@@ -305,7 +284,7 @@ def _out_of_bounds(scene: Scene, pieces: tuple[Piece, ...]) -> Iterator[str]:
             yield f"{path}: {name} at {list(place)} {what} by {depth:.3g} m: move one of them"
 
 
-def _driven_through(scene: Scene, pieces: tuple[Piece, ...]) -> Iterator[str]:
+def _driven_through(scene: SceneSpec, pieces: tuple[PieceSpec, ...]) -> Iterator[str]:
     """Paths of driven bodies that lead through what stands, at rest at their start or later."""
     for number, piece in enumerate(pieces):
         if not piece.path:
@@ -336,7 +315,7 @@ def _driven_through(scene: Scene, pieces: tuple[Piece, ...]) -> Iterator[str]:
 
 
 def in_the_way(
-    scene: Scene, place: tuple[float, float], radius: float, holes: bool
+    scene: SceneSpec, place: tuple[float, float], radius: float, holes: bool
 ) -> Iterator[tuple[str, str, float]]:
     """What keeps a puck from lying at a place: its path, how, and by how much, m.
 
@@ -344,7 +323,7 @@ def in_the_way(
 
     Examples
     --------
-    >>> from puck_tables import Wall
+    >>> from puck_tables import Piece, Scene, Wall
     >>> board = Scene(pucks=[Piece(0.1)], walls=[Wall((0.0, 0.5), normal=(0.0, -1.0))])
     >>> list(in_the_way(board, (0.0, 0.45), 0.1, holes=True))[0][:2]
     ('wall[0]', 'reaches through it')
@@ -365,7 +344,7 @@ def in_the_way(
             yield path, what, -gap
 
 
-def _wide_pockets(scene: Scene) -> Iterator[str]:
+def _wide_pockets(scene: SceneSpec) -> Iterator[str]:
     """Pockets wider than the board between two facing walls."""
     for k, pocket in enumerate(scene.pockets):
         for number, wall in enumerate(scene.walls):

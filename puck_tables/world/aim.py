@@ -12,7 +12,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import Progress
 from puck_tables._core.real import checked_progress, finite_array, positive, real, shown
 from puck_tables.errors import InputError
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import pieces_of, start_of
 from puck_tables.world.aimed import BoardAim, aimed
 from puck_tables.world.launches import effort_for, good, headings_for, take_sample
@@ -81,7 +81,7 @@ class Found(NamedTuple):
 
 
 def aim(
-    scene: Scene, target: npt.ArrayLike | None, *, puck: int | str | None,
+    scene: SceneSpec, target: npt.ArrayLike | None, *, puck: int | str | None,
     striker: int | str | None, pocket: int | str | None, hits: int | str | None,
     spin: npt.ArrayLike | None, speed: float | None, max_speed: float | None,
     max_spin: float | None, max_impacts: int, count: int, progress: Progress | None,
@@ -129,7 +129,9 @@ def aim(
     )  # fmt: skip
 
 
-def _answer(scene: Scene, wanted: Target, limit: str, most: int, runs: int, left_out: int) -> str:
+def _answer(
+    scene: SceneSpec, wanted: Target, limit: str, most: int, runs: int, left_out: int
+) -> str:
     """What is said where nothing was found: that it is a search, no proof."""
     words = (
         f"no launch {limit} with at most {most} impact{'' if most == 1 else 's'} found among "
@@ -144,7 +146,7 @@ def _answer(scene: Scene, wanted: Target, limit: str, most: int, runs: int, left
 
 
 def _searches(
-    scene: Scene, wanted: Target, spin: npt.ArrayLike | None, speed: float | None,
+    scene: SceneSpec, wanted: Target, spin: npt.ArrayLike | None, speed: float | None,
     max_speed: float | None, max_spin: float | None,
 ) -> list[Search]:  # fmt: skip
     """One for each spin, or one over spins."""
@@ -175,7 +177,7 @@ def _searches(
     return [Search(real("spin", one, "rad/s"), None, _LEAST * fastest, fastest) for one in spins]
 
 
-def _plenty(scene: Scene, wanted: Target) -> float:
+def _plenty(scene: SceneSpec, wanted: Target) -> float:
     """A speed that is surely enough: three times that which slides the whole way.
 
     Raises

@@ -17,9 +17,10 @@ from puck_tables.result import Result
 from puck_tables.scene.entries import tables_of
 from puck_tables.scene.library import files_of
 from puck_tables.scene.outcome import column_of, scene_texts
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.run import Run
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import called, pieces_of, start_of
-from puck_tables.world.outcome import WorldRun
+from puck_tables.world.simulate import simulate
 from puck_tables.world.targets import Target
 
 _LAUNCH = ("launch_spin", "launch_vx", "launch_vy", "launch_speed", "launch_heading")
@@ -33,7 +34,7 @@ class BoardAim(Result):
     Arrays (n,), the least sensitive first: ``launch_spin`` rad/s, ``launch_vx``, ``launch_vy``,
     ``launch_speed`` m/s, ``launch_heading`` rad; of a run of the whole board with each:
     ``stop_time`` s, ``miss`` m (of a pocket 0: it falls in), ``end_error`` m, as
-    :class:`puck_tables.world.outcome.WorldRun` has it, ``impacts`` that lead there, and ``courses``
+    :class:`puck_tables.Run` has it, ``impacts`` that lead there, and ``courses``
     in words.  Of a target: ``per_degree``, ``per_percent`` m, how far the end moves per degree of
     heading and per cent of speed.  Of a pocket: ``heading_width`` rad and ``speed_width`` m/s (or
     ``spin_width`` rad/s), the intervals through the launch from which the puck falls in.
@@ -41,7 +42,7 @@ class BoardAim(Result):
     ``answer``: what was found, or why nothing can be; ``limit``: how far was looked.
     """
 
-    scene: Scene
+    scene: SceneSpec
     puck: str
     striker: str
     target: tuple[float, float]
@@ -79,7 +80,7 @@ class BoardAim(Result):
                 return *start_of(piece), piece.radius
         raise InputError(f"no puck {self.striker!r}")
 
-    def board(self, number: int = 0) -> Scene:
+    def board(self, number: int = 0) -> SceneSpec:
         """The scene with a launch that was found.
 
         Raises
@@ -92,7 +93,7 @@ class BoardAim(Result):
         names = ("launch_vx", "launch_vy", "launch_spin")
         return _sent(self.scene, self.striker, *(float(self.columns[n][number]) for n in names))
 
-    def run(self, number: int = 0) -> WorldRun:
+    def run(self, number: int = 0) -> Run:
         """The run of the whole board with a launch that was found.
 
         Raises
@@ -100,8 +101,7 @@ class BoardAim(Result):
         InputError
             If there is no such launch.
         """
-        run: Any = self.board(number).simulate()
-        return run
+        return simulate(self.board(number))
 
     def explain(self) -> str:
         """What was found, and how it was looked for."""
@@ -134,7 +134,7 @@ class BoardAim(Result):
 
 
 def aimed(
-    scene: Scene, wanted: Target, answer: str, starts: FloatArray | None = None,
+    scene: SceneSpec, wanted: Target, answer: str, starts: FloatArray | None = None,
     margins: FloatArray | None = None, *, of_spin: bool = False, count: int = 1, limit: str = "",
 ) -> BoardAim:  # fmt: skip
     """The result of launches vx, vy, spin (n, 3), the best of them run forward.
@@ -159,7 +159,7 @@ def aimed(
     for n in order.tolist():
         if len(kept) == count:
             break
-        run: Any = _sent(scene, names[wanted.striker], *starts[n].tolist()).simulate([0.0])
+        run = simulate(_sent(scene, names[wanted.striker], *starts[n].tolist()), [0.0])
         miss = _miss(run, wanted)
         if miss is None:
             continue
@@ -188,7 +188,7 @@ def aimed(
     )  # fmt: skip
 
 
-def _sent(scene: Scene, striker: str, vx: float, vy: float, spin: float) -> Scene:
+def _sent(scene: SceneSpec, striker: str, vx: float, vy: float, spin: float) -> SceneSpec:
     """The board with a launch of the striker."""
     pieces = pieces_of(scene)
     number = next(n for n, piece in enumerate(pieces) if called(piece, n) == striker)
@@ -196,17 +196,18 @@ def _sent(scene: Scene, striker: str, vx: float, vy: float, spin: float) -> Scen
     return scene.at({f"{path}.velocity": [vx, vy], f"{path}.spin": spin})
 
 
-def _miss(run: WorldRun, wanted: Target) -> float | None:
+def _miss(run: Run, wanted: Target) -> float | None:
     """How far from the target a run ends, m; None where the puck falls, or not where it is to."""
     name = run.names[wanted.puck]
     fallen = [e.partner for e in run.events if e.puck == name and e.what in ("pocket", "edge")]
     if wanted.pocket >= 0:
         return 0.0 if fallen == [f"pocket {wanted.pocket}"] else None
-    place = float(run.last["x"][wanted.puck]), float(run.last["y"][wanted.puck])
+    last = run.last_of(wanted.puck)
+    place = last["x"], last["y"]
     return None if fallen else math.dist(place, wanted.place)
 
 
-def _course(run: WorldRun, puck: str) -> list[str]:
+def _course(run: Run, puck: str) -> list[str]:
     """The impacts that led a puck where it ends, in words."""
     concerned, course = {puck}, []
     for event in reversed(run.events):

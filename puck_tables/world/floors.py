@@ -18,9 +18,9 @@ from puck_tables.scene.by_speed import NO_LAW, law_up_to
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ground import NO_GROUND
 from puck_tables.scene.ingredients import BySpeed, Regions, Surface, floor_velocity
-from puck_tables.scene.pieces import Piece
+from puck_tables.scene.pieces import PieceSpec
 from puck_tables.scene.regions import SLICE_SHARE, alone, axes_of, of_one_shape, plain_cut
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.zones import ground_of
 from puck_tables.table.friction_section import FINEST_ACCURACY
 from puck_tables.world.agreement import frictions_under, has_closed_forms, is_integrated
@@ -28,17 +28,17 @@ from puck_tables.world.agreement import frictions_under, has_closed_forms, is_in
 INTEGRATED, NOT_HELD = 1.0, 2.0  # see :mod:`puck_tables.world.layout`
 
 
-def normal_on(scene: Scene, piece: Piece) -> float:
+def normal_on(scene: SceneSpec, piece: PieceSpec) -> float:
     """The force that presses a puck on the floor, N."""
     return piece.mass * piece.gravity * math.cos(scene.floor.slope)
 
 
-def has_several(scene: Scene) -> bool:
+def has_several(scene: SceneSpec) -> bool:
     """Whether a base may lie on several frictions of a floor."""
     return scene.floor.strips is not None or bool(scene.floor.patches)
 
 
-def floors_of(scene: Scene, pieces: list[Piece], fastest: float) -> FloatArray:
+def floors_of(scene: SceneSpec, pieces: list[PieceSpec], fastest: float) -> FloatArray:
     """Deceleration, δ, and whether it is integrated, of every puck at every place of the floor.
 
     Astride the largest of them.  ``fastest``: a slip to which a friction law is looked at, m/s.
@@ -56,14 +56,16 @@ def floors_of(scene: Scene, pieces: list[Piece], fastest: float) -> FloatArray:
     return np.array(rows)
 
 
-def _row(scene: Scene, piece: Piece, friction: float, how: float) -> list[float]:
+def _row(scene: SceneSpec, piece: PieceSpec, friction: float, how: float) -> list[float]:
     if piece.path:
         return [0.0, 0.0, 0.0]
     decel = friction * piece.gravity * math.cos(scene.floor.slope)
     return [decel, 2.0 * friction * piece.height / piece.radius, how]
 
 
-def regions_of(scene: Scene, pieces: list[Piece], floors: FloatArray, fastest: float) -> Regions:
+def regions_of(
+    scene: SceneSpec, pieces: list[PieceSpec], floors: FloatArray, fastest: float
+) -> Regions:
     """The dry friction of every puck everywhere: closed forms, or tables if one needs them.
 
     ``fastest``: the fastest slip of a rim for which a friction law is to hold, m/s.
@@ -94,10 +96,10 @@ def regions_of(scene: Scene, pieces: list[Piece], floors: FloatArray, fastest: f
     cuts = none[: len(places)]
     if all(has_closed_forms(*one) for one in places):
         if floors[:, 2].any():  # those that are integrated ask for friction often
-            cut = cache(partial(plain_cut, scene.run.tol))
+            cut = cache(partial(plain_cut, scene.tol))
             cuts = np.stack([cut(height) for height in delta[: len(places)].tolist()])
     else:
-        accuracy = max(SLICE_SHARE * scene.run.tol, FINEST_ACCURACY)
+        accuracy = max(SLICE_SHARE * scene.tol, FINEST_ACCURACY)
         bodies = [replace(piece, friction=friction).body for piece, friction in places]
         cuts = of_one_shape([body.friction(accuracy).cut for body in bodies])
     ground = NO_GROUND
@@ -117,7 +119,7 @@ def slip_of_rim(radius: float, surface: Surface, state: list[float]) -> float:
     return math.hypot(state[VX] - sx, state[VY] - sy) + radius * abs(state[SPIN] - turning)
 
 
-def fastest_rim(pieces: list[Piece], states: FloatArray, surface: Surface) -> float:
+def fastest_rim(pieces: list[PieceSpec], states: FloatArray, surface: Surface) -> float:
     """The fastest in states (n, 6) and in launches to come, of all that slide, m/s."""
     most = 0.0
     for piece, state in zip(pieces, states.tolist(), strict=True):

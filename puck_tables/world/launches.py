@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import pieces_of, start_of
 from puck_tables.world.game import Whole
 from puck_tables.world.shots import NO_COURSE, Landings, Shots
@@ -39,7 +39,7 @@ def effort_for(shots: Shots) -> Effort:
     return _FULL if len(pieces_of(shots.scene)) <= _CROWD else _MANY
 
 
-class Sample(NamedTuple):
+class TriedLaunches(NamedTuple):
     """Launches (n, 2) with their rows (n,), and where they land; ordered by row and heading."""
 
     launches: FloatArray
@@ -47,7 +47,7 @@ class Sample(NamedTuple):
     landings: Landings
 
 
-def headings_for(scene: Scene, striker: int, count: int) -> FloatArray:
+def headings_for(scene: SceneSpec, striker: int, count: int) -> FloatArray:
     """Headings all around, rad, and closer ones towards pucks and posts that look small."""
     step = 2.0 * math.pi / count
     parts = [np.arange(count) * step]
@@ -68,14 +68,14 @@ def headings_for(scene: Scene, striker: int, count: int) -> FloatArray:
 
 def take_sample(
     shots: Shots, headings: FloatArray, seconds: FloatArray, most: int, effort: Effort
-) -> Sample:
+) -> TriedLaunches:
     """Launches of all headings at all speeds (or spins), and more between courses that differ.
 
     ``most``: impacts that a course may have.
     """
     launches = np.stack(np.meshgrid(headings, seconds), axis=2).reshape(-1, 2)
     rows = np.repeat(np.arange(len(seconds)), len(headings))
-    sample = Sample(launches, rows, shots.land(launches))
+    sample = TriedLaunches(launches, rows, shots.land(launches))
     left = effort.more
     for _ in range(_ROUNDS):
         gaps = _gaps(sample, most)[: left // 3]
@@ -86,7 +86,7 @@ def take_sample(
     return sample
 
 
-def _gaps(sample: Sample, most: int) -> Whole:
+def _gaps(sample: TriedLaunches, most: int) -> Whole:
     """Where the course changes from a launch to the next heading, those of few impacts first."""
     landings = sample.landings
     first, wide = _neighbours(sample)
@@ -98,7 +98,7 @@ def _gaps(sample: Sample, most: int) -> Whole:
     return found[np.lexsort((-wide[found], lengths[found]))]
 
 
-def _next(sample: Sample) -> Whole:
+def _next(sample: TriedLaunches) -> Whole:
     """The launch of the next heading in the same row, the last one's is the first."""
     after = np.arange(1, len(sample.rows) + 1)
     starts = np.flatnonzero(np.diff(sample.rows, prepend=-1))
@@ -106,13 +106,13 @@ def _next(sample: Sample) -> Whole:
     return after
 
 
-def _neighbours(sample: Sample) -> tuple[FloatArray, FloatArray]:
+def _neighbours(sample: TriedLaunches) -> tuple[FloatArray, FloatArray]:
     """Which have a next one, and how far it is, rad."""
     wide = (sample.launches[_next(sample), 0] - sample.launches[:, 0]) % (2.0 * math.pi)
     return wide > 0.0, wide
 
 
-def _with_more(shots: Shots, sample: Sample, gaps: Whole) -> Sample:
+def _with_more(shots: Shots, sample: TriedLaunches, gaps: Whole) -> TriedLaunches:
     """The sample with three launches more in each of these gaps."""
     _, wide = _neighbours(sample)
     shares = np.array([0.25, 0.5, 0.75])
@@ -123,7 +123,7 @@ def _with_more(shots: Shots, sample: Sample, gaps: Whole) -> Sample:
     launches = np.vstack([sample.launches, more])
     rows = np.concatenate([sample.rows, np.repeat(sample.rows[gaps], 3)])
     order = np.lexsort((launches[:, 0], rows))
-    return Sample(launches[order], rows[order], landings.at(order))
+    return TriedLaunches(launches[order], rows[order], landings.at(order))
 
 
 def good(landings: Landings, most: int, asked: bool) -> FloatArray:

@@ -11,7 +11,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
 from puck_tables.scene.by_speed import FARTHER, law_name, speed_law
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.departures import CONCERNED, Room
 from puck_tables.world.floors import slip_of_rim
 from puck_tables.world.footing import SURE, law_goes_to
@@ -20,7 +20,7 @@ from puck_tables.world.layout import LIGHTNESS, RADIUS
 from puck_tables.world.prepare import with_law_up_to
 
 
-def refuse_too_fast(game: Game, scene: Scene, name: str, i: int, state: FloatArray) -> None:
+def refuse_too_fast(game: Game, scene: SceneSpec, name: str, i: int, state: FloatArray) -> None:
     """Refuse a strike beyond what rows of the friction law of the floor say.
 
     Raises
@@ -37,7 +37,7 @@ def refuse_too_fast(game: Game, scene: Scene, name: str, i: int, state: FloatArr
 
 
 def with_law_for(
-    game: Game, room: Room, scene: Scene, order: Whole, names: Sequence[str], time: float
+    game: Game, room: Room, scene: SceneSpec, order: Whole, names: Sequence[str], time: float
 ) -> Game:
     """The game with friction that is known at all slips of those that set off now.
 

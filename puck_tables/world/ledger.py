@@ -1,4 +1,4 @@
-"""Where the energy of several pucks went: floor, rims, impacts; what drives, pulls and carries."""
+"""Where the energy of pucks went over time: floor, drag, rims, impacts; what drives and carries."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.holds import allowed_velocity
 from puck_tables.scene.ingredients import BLADE, FREE, floor_velocity
 from puck_tables.scene.parts import Floor
-from puck_tables.scene.pieces import Piece
+from puck_tables.scene.pieces import PieceSpec
 from puck_tables.world import game as g
 from puck_tables.world.agreement import pieces_of
-from puck_tables.world.flight import DRIFT_X, DRIFT_Y, PATH, START
+from puck_tables.world.flight import DAMPED, DRIFT_X, DRIFT_Y, PATH, START
 from puck_tables.world.holds import edge_of
 from puck_tables.world.layout import (
     HOLD,
@@ -25,7 +25,7 @@ from puck_tables.world.layout import (
     RADIUS,
     TURNABILITY,
 )
-from puck_tables.world.record import flights_of, states_at
+from puck_tables.world.record import flight_rows, flights_of, states_at
 from puck_tables.world.works import (
     DRAG_HEAT,
     DRIVE_WORK,
@@ -40,68 +40,97 @@ from puck_tables.world.works import (
 if TYPE_CHECKING:
     from puck_tables.world.world import World
 
+Moments = tuple[FloatArray, FloatArray]  # when, s, ascending, and how much, J
 
-def ledger(world: World) -> dict[str, float]:
-    """Kinetic energy given by launches, heats, and works of driven bodies, forces and supports, J.
 
-    Of motions that are looked up the heat of the floor is what the flights lose; of those that are
-    integrated heats and works are integrated with them; that of impacts comes from their impulses.
-    ``energy_residual``: what is missing, as a share of the largest entry.
+def energies_of(world: World, times: FloatArray) -> dict[str, FloatArray]:
+    """Kinetic energy of every puck (times, pucks), and heats and works until then (times,), J.
+
+    ``energy_given`` by launches, ``energy_gone`` with who left play.  Of motions that are looked up
+    the heat of the floor is what the flights lose; of those that are integrated heats and works are
+    integrated with them; that of impacts comes from their impulses.
     """
     game = world._game
     free = game.discs[:, LIGHTNESS] > 0.0
     discs, flights = flights_of(game)
-    energies = _kinetic(game, discs[:, None], flights)
-    known = free[discs] & (game.history[: len(discs), 1] != PATH)
-    booked = _booked(game)
-    over = flights - _drift(game, len(discs))
-    slips = _kinetic(game, discs[:, None], over)
-    lost = float((energies[known, 0] - energies[known, 1]).sum())
-    floor = float((slips[known, 0] - slips[known, 1]).sum())
-    support = floor - lost + booked[SUPPORT_WORK]  # of a belt, on what is looked up
-    floor += booked[FLOOR_HEAT] + booked[DRAG_HEAT]
+    drift = _drift(game, len(discs))
+    energies, slips = (_kinetic(game, discs[:, None], one) for one in (flights, flights - drift))
+    kinds = game.history[: len(discs), 1]
+    known = free[discs] & (kinds != PATH)
+    rows = flight_rows(game, times)
+    states = states_at(game, times)
+    everyone = np.arange(len(game.discs))
+    now = _kinetic(game, everyone, states)
+    over = _kinetic(game, everyone, states - drift[rows, 0])
+    lost = _lost(discs, rows, known, energies, now)
+    damped = known & (kinds == DAMPED)
+    drag = _lost(discs, rows, damped, slips, over)
+    dry = _lost(discs, rows, known & ~damped, slips, over)
+    booked = _booked(game, times)
     events = game.events[: game.counts[g.N_EVENTS]]
-    impacts = float(events[:, g.LOST].sum())
-    count = len(game.discs)
-    floor_of = world.scene.floor
-    given = sum(_launched(piece, floor_of) for piece in pieces_of(world.scene))  # rims may grip
-    given += sum(
-        _given(game, row, discs, energies) for row in events[events[:, g.WHAT] == g.STRUCK]
-    )
-    driven = sum(_driven(game, row) for row in events[events[:, g.WHAT] == g.IMPACT])
-    driven = float(driven + booked[DRIVE_WORK])
-    support += _led(game, events, discs, flights)
-    forces, rims = booked[PULL_WORK], booked[RIM_HEAT]
-    gone = sum(
-        energies[_before(game, row, discs), 1]
-        for row in events if row[g.WHAT] in (g.POCKETED, g.OVER_EDGE)
-    )  # fmt: skip
-    everyone = np.arange(count)
-    now = states_at(game, game.clock)[0]
-    left = float(_kinetic(game, everyone, now)[free].sum()) + gone
-    entries = [given, floor, rims, impacts, driven, forces, support, left]
-    largest = max(map(abs, entries))
-    missing = abs(given + driven + forces + support - floor - rims - impacts - left)
+    hits = events[events[:, g.WHAT] == g.IMPACT]
+    struck = events[events[:, g.WHAT] == g.STRUCK]
+    gone = events[np.isin(events[:, g.WHAT], (g.POCKETED, g.OVER_EDGE))]
+    floor = world.scene.floor
+    first = sum(_launched(piece, floor) for piece in pieces_of(world.scene))  # rims may grip
+    given = np.array([_given(game, row, discs, energies) for row in struck])
+    driven = np.array([_driven(game, row) for row in hits])
+    taken = np.array([energies[_before(game, row, discs), 1] for row in gone])
     return {
-        "kinetic_energy": given, "heat_floor": floor, "heat_rims": rims, "heat_impact": impacts,
-        "work_driven": driven, "work_given": forces, "work_support": support,
-        "energy_residual": missing / largest if largest else 0.0,
+        "kinetic_energy": now,
+        "energy_given": first + _until(times, (struck[:, g.TIME], given)),
+        "energy_gone": _until(times, (gone[:, g.TIME], taken)),
+        "work_given": booked[PULL_WORK],
+        "work_driven": booked[DRIVE_WORK] + _until(times, (hits[:, g.TIME], driven)),
+        # of a belt, on what is looked up
+        "work_support": booked[SUPPORT_WORK] + dry + drag - lost
+        + _until(times, _led(game, hits, discs, flights)),
+        "heat_dry": dry + booked[FLOOR_HEAT],
+        "heat_viscous": drag + booked[DRAG_HEAT],
+        "heat_rims": booked[RIM_HEAT],
+        "heat_impact": _until(times, (events[:, g.TIME], events[:, g.LOST])),
     }  # fmt: skip
 
 
-def _booked(game: g.Game) -> list[float]:
-    """What was booked of all that were integrated, up to where their flights ended."""
+def _lost(
+    discs: g.Whole, rows: g.Whole, which: g.Whole, energies: FloatArray, now: FloatArray
+) -> FloatArray:
+    """What some flights lost of an energy (flights, 2) until moments with ``rows``, (times,).
+
+    ``now``: the energy then (times, discs).
+    """
+    whole = np.where(which, energies[:, 0] - energies[:, 1], 0.0)
+    total = np.zeros(len(rows))
+    for disc in range(rows.shape[1]):
+        mine = np.flatnonzero(discs == disc)
+        before = np.concatenate([[0.0], np.cumsum(whole[mine])])
+        row = rows[:, disc]
+        total += before[np.searchsorted(mine, row)]
+        total += np.where(which[row], energies[row, 0] - now[:, disc], 0.0)
+    return total
+
+
+def _until(times: FloatArray, moments: Moments) -> FloatArray:
+    """The sum of what came until each time."""
+    when, values = moments
+    order = np.argsort(when, kind="stable")
+    sums = np.concatenate([[0.0], np.cumsum(values[order])])
+    found: FloatArray = sums[np.searchsorted(when[order], times, side="right")]
+    return found
+
+
+def _booked(game: g.Game, times: FloatArray) -> FloatArray:
+    """The ledger (6, times) of all that were integrated, J; a row ends where its flight does."""
     history = game.history[: game.counts[g.N_HISTORY]]
     ends = np.full(len(history) + 1, float(game.clock[0]))  # the last of what has NO_FLIGHT
     for disc in range(len(game.discs)):
         mine = np.flatnonzero(history[:, 0] == disc)
         ends[mine[:-1]] = history[mine[1:], 2 + START]
     rows = game.works[: game.counts[g.N_WORKS]]
-    booked: list[float] = worked(rows, ends[rows[:, FLIGHT].astype(np.int64)]).tolist()
-    return booked
+    return worked(rows, ends[rows[:, FLIGHT].astype(np.int64)], times)
 
 
-def _launched(piece: Piece, floor: Floor) -> float:
+def _launched(piece: PieceSpec, floor: Floor) -> float:
     """The kinetic energy with which a puck is launched at the start, J."""
     launch = piece.launch
     if piece.path or launch.time > 0.0:  # driven, or struck later
@@ -127,13 +156,12 @@ def _drift(game: g.Game, flights: int) -> FloatArray:
     return drift
 
 
-def _led(game: g.Game, events: FloatArray, discs: g.Whole, flights: FloatArray) -> float:
-    """The work of constraints that move, or that grip a floor that moves, in impacts.
+def _led(game: g.Game, hits: FloatArray, discs: g.Whole, flights: FloatArray) -> Moments:
+    """The works of constraints that move, or that grip a floor that moves, in impacts.
 
     What a disc gets beside the impulses of its contacts is the constraint's; A V is as before.
     """
-    work = 0.0
-    hits = events[events[:, g.WHAT] == g.IMPACT]
+    times, works = [], []
     for disc in np.flatnonzero(game.discs[:, HOLD] != FREE):
         mass = 1.0 / game.discs[disc, LIGHTNESS]
         mine = hits[(hits[:, g.WHO] == disc) | (hits[:, g.PARTNER] == disc)]
@@ -156,8 +184,9 @@ def _led(game: g.Game, events: FloatArray, discs: g.Whole, flights: FloatArray) 
                 across = np.array([-1.0, 1.0]) * edge_of(game.discs[disc], before)[::-1]
                 floor = floor_velocity(game.surface, *before[:2].tolist())[:2]
                 along = floor + game.discs[disc, HOLD_VX] * across
-            work += float(got @ along)
-    return work
+            times.append(float(time))
+            works.append(float(got @ along))
+    return np.array(times), np.array(works)
 
 
 def _before(game: g.Game, row: FloatArray, discs: g.Whole) -> int:

@@ -3,9 +3,9 @@
 The equations are those of one puck (:mod:`puck_tables.scene.equations`), by steps of order 8, or of
 Radau IIA where the direction of the slip settles much faster than the slip changes.  Each step is a
 piece of its path, and as long as a polynomial of degree five is as good as the promise.  A
-path ends where the puck rests for good, where its rim has come over a border of the floor or slips
-faster than a friction law goes, at a horizon, and after so many steps; whatever else meets it is
-found on the path.
+path ends where the puck comes to rest on the floor or leaves that rest, where its rim has come over
+a border of the floor or slips faster than a friction law goes, at a horizon, and after so many
+steps; whatever else meets it is found on the path.
 """
 
 from __future__ import annotations
@@ -369,14 +369,15 @@ def follow_alone(
         target = min(drive[rows, 0], horizon) if rows < len(drive) else horizon
         q = slip_speed(radius, y)
         if settle:
-            mode, way = SLIDES, NO_WAY
+            before, mode, way = mode, SLIDES, NO_WAY
             if dry.load > 0.0 and q <= REST * speed:
                 y[VX] = y[VY] = y[SPIN] = 0.0
                 at_rest = Stretch(model, dry, leaning, rows, CARRIED, way, 0.0, UNIFORM, 0.0)
                 mode, stiff, q = from_standstill(at_rest, speed, now, y, stages)
                 rests = mode == CARRIED and not _swings(model, dry)
                 rests = rests and rests_on(model, dry, leaning, rows, y)
-                if rests:
+                turns = (mode == CARRIED) != (before == CARRIED)
+                if rests or (turns and count > 0 and now > t):
                     break
                 h = target - now if mode == CARRIED else h
         newton = max(_NEWTON * tol, _FINEST_NEWTON) if stiff and mode == SLIDES else 0.0
@@ -424,10 +425,10 @@ def follow_alone(
         passed += length
         now = target if landed else t + passed
         _go_on_from(model, tol, desk)
-        before, q = q, slip_speed(radius, y)
+        larger, q = q, slip_speed(radius, y)
         if mode == SLIDES:
             stiff = _is_stiff(model, dry.load, newton > 0.0, length, q, slip_rate(radius, stages))
-        settle = landed or slips or mode == STOPS or (q <= REST * speed and q < before)
+        settle = landed or slips or mode == STOPS or (q <= REST * speed and q < larger)
         known = not settle and model.hold.kind == FREE
     if count > 0 and now > t:
         return True, now, count

@@ -13,8 +13,8 @@ from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.holds import allowed_velocity
 from puck_tables.scene.ingredients import RAIL, Surface, floor_velocity, hold_of
 from puck_tables.scene.parts import Wall
-from puck_tables.scene.pieces import Arc, Piece, Post
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.pieces import Arc, PieceSpec, Post
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.world import layout
 from puck_tables.world.agreement import flight_error, pieces_of, start_of
@@ -51,7 +51,7 @@ ROWS = 256  # of events and flights at first
 STEP_SHARE = 1e-2  # of what a flight may be wrong by, of each step where it is integrated
 
 
-def order_of(scene: Scene) -> Whole:
+def order_of(scene: SceneSpec) -> Whole:
     """The numbers of the pucks in the order in which the engine has them.
 
     It depends on where they are, not on how they are numbered: so no bit of a result does.
@@ -69,7 +69,7 @@ def shipped_curves() -> Curves:
     )  # fmt: skip
 
 
-def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
+def game_of(scene: SceneSpec, order: Whole) -> tuple[Game, Room]:
     """The engine's arrays at the start of a scene, and room to work in with the states then.
 
     Nothing has taken off yet: EVERYBODY is to look ahead.
@@ -176,7 +176,7 @@ def _hang_over(game: Game, i: int, state: FloatArray) -> None:
             game.counts[N_EVENTS] += 1
 
 
-def with_law_up_to(game: Game, scene: Scene, order: Whole, fastest: float) -> Game:
+def with_law_up_to(game: Game, scene: SceneSpec, order: Whole, fastest: float) -> Game:
     """With the table of a friction law by name for slips of the rim up to ``fastest``, m/s."""
     pieces = [pieces_of(scene)[number] for number in order]
     floors = floors_of(scene, pieces, fastest)
@@ -250,7 +250,7 @@ def _strongest(game: Game) -> float:
     return most
 
 
-def _pull_on(scene: Scene, piece: Piece, inertia: float) -> tuple[float, float, float]:
+def _pull_on(scene: SceneSpec, piece: PieceSpec, inertia: float) -> tuple[float, float, float]:
     """Accelerations by the slope and the constant forces, m/s², rad/s²."""
     floor, (fx, fy) = scene.floor, piece.force.constant
     pull = piece.gravity * math.sin(floor.slope)
@@ -261,14 +261,14 @@ def _pull_on(scene: Scene, piece: Piece, inertia: float) -> tuple[float, float, 
     )
 
 
-def _hold_on(piece: Piece) -> tuple[float, ...]:
+def _hold_on(piece: PieceSpec) -> tuple[float, ...]:
     """The constraint of a puck, with the place of a rail along its normal."""
     hold, (x, y) = hold_of(piece.constraint, piece.launch), piece.launch.position
     place = hold.ax * x + hold.ay * y if hold.kind == RAIL else 0.0
     return (*hold, place)
 
 
-def _obstacles(scene: Scene, called: dict[object, float], makes: FloatArray) -> FloatArray:
+def _obstacles(scene: SceneSpec, called: dict[object, float], makes: FloatArray) -> FloatArray:
     """Rows of :mod:`puck_tables.world.layout`: what stands, edges twice, then borders."""
 
     def rim(cushion: Wall | Post | Arc) -> list[float]:
@@ -296,7 +296,7 @@ def _obstacles(scene: Scene, called: dict[object, float], makes: FloatArray) -> 
     return np.column_stack([found, makes])
 
 
-def obstacle_names(scene: Scene) -> list[str]:
+def obstacle_names(scene: SceneSpec) -> list[str]:
     """What the rows of the obstacles are called, in their order."""
     lists = (("wall", scene.walls), ("post", scene.posts), ("arc", scene.arcs),
              ("pocket", scene.pockets), ("edge", scene.edges), ("edge", scene.edges),
@@ -304,7 +304,7 @@ def obstacle_names(scene: Scene) -> list[str]:
     return [f"{name} {number}" for name, ones in lists for number in range(len(ones))]
 
 
-def borders_of(scene: Scene) -> tuple[float, ...]:
+def borders_of(scene: SceneSpec) -> tuple[float, ...]:
     """The borders of its strips."""
     return scene.floor.strips.borders if scene.floor.strips is not None else ()
 

@@ -15,13 +15,19 @@ def states_at(game: Game, times: FloatArray) -> FloatArray:
 
     One that has left play stays where it left.
     """
+    rows = flight_rows(game, times)
+    moments = np.repeat(np.asarray(times, np.float64), len(game.discs))
+    return _states(game, rows.ravel(), moments).reshape(len(times), len(game.discs), 6)
+
+
+def flight_rows(game: Game, times: FloatArray) -> Whole:
+    """On which flights the discs are, rows of the history, array (times, discs)."""
     discs, starts = _flights(game)
     rows = np.empty((len(times), len(game.discs)), np.int64)
     for i in range(len(game.discs)):
         mine = np.flatnonzero(discs == i)
         rows[:, i] = mine[np.searchsorted(starts[mine[1:]], times, side="right")]
-    moments = np.repeat(np.asarray(times, np.float64), len(game.discs))
-    return _states(game, rows.ravel(), moments).reshape(len(times), len(game.discs), 6)
+    return rows
 
 
 def flights_of(game: Game) -> tuple[Whole, FloatArray]:

@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.scene.pieces import Piece
+from puck_tables.scene.pieces import PieceSpec
 from puck_tables.scene.restitution import Restitution, restitution_law
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import CUSHIONS, pieces_of
 
 
-def _laws_of(scene: Scene, first: int) -> tuple[FloatArray, dict[object, float]]:
+def _laws_of(scene: SceneSpec, first: int) -> tuple[FloatArray, dict[object, float]]:
     """The numbers of all laws of restitution, from a place on, and what number calls each."""
     laws: list[FloatArray] = [np.zeros(0)]
     called: dict[object, float] = {}
@@ -36,7 +36,7 @@ def number_for(given: float | str | Restitution | None, called: dict[object, flo
     return called[given.numbers.tobytes() if isinstance(given, Restitution) else given]
 
 
-def _restitutions(scene: Scene) -> Iterator[float | str | Restitution]:
+def _restitutions(scene: SceneSpec) -> Iterator[float | str | Restitution]:
     """All restitutions of a scene."""
     parts: tuple[Any, ...] = (
         *pieces_of(scene), *scene.walls, *scene.posts, *scene.arcs, *scene.rims
@@ -47,7 +47,7 @@ def _restitutions(scene: Scene) -> Iterator[float | str | Restitution]:
 
 
 def rims_of(
-    scene: Scene, pieces: list[Piece]
+    scene: SceneSpec, pieces: list[PieceSpec]
 ) -> tuple[FloatArray, FloatArray, FloatArray, dict[object, float]]:
     """The array of :mod:`puck_tables.world.rims`; which kinds of rims discs and obstacles have.
 
@@ -84,16 +84,17 @@ def rims_of(
     return rims, makes[: len(pieces)], makes[len(pieces) :], called
 
 
-def _is(piece: Piece, side: str, named: set[str]) -> bool:
+def _is(piece: PieceSpec, side: str, named: set[str]) -> bool:
     """Whether a side of a rim means a puck: its name, or else its colour."""
     return piece.name == side if side in named else bool(side) and piece.colour == side
 
 
-def rule_of(scene: Scene) -> str:
+def rule_of(scene: SceneSpec) -> str:
     """By which law pucks meet, in words.
 
     Examples
     --------
+    >>> from puck_tables import Piece, Scene
     >>> print(rule_of(Scene(pucks=[Piece(0.1, restitution="plastic:0.1")])))
     impacts by Walton's law: of two pucks the smaller of each number counts, a cushion has its own
     restitution plastic:0.1 at the speed of approach: Thornton 1997, Journal of Applied Mechanics 64

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import keep_on
 from puck_tables.errors import PuckError
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import frictions_under, is_integrated, pieces_of
 from puck_tables.world.bulk import follow_all
 from puck_tables.world.course import FATE, LENGTH, PASSES, PRINT, trace
@@ -57,7 +57,7 @@ class Shots:
 
     Parameters
     ----------
-    scene : Scene
+    scene : SceneSpec
         Without ranges.
     striker, puck : numbers of the puck that is sent, and of the one whose end is looked for
     through : number of a puck that is to be hit on the way, or −1
@@ -68,12 +68,12 @@ class Shots:
     """
 
     def __init__(
-        self, scene: Scene, striker: int, puck: int, through: int, most: int,
+        self, scene: SceneSpec, striker: int, puck: int, through: int, most: int,
         velocities: Callable[[FloatArray], FloatArray], patient: bool = False,
     ) -> None:  # fmt: skip
         self.scene, self.striker, self.velocities = scene, striker, velocities
         self._path = f"puck[{striker}].launch" if scene.pucks else "launch"
-        self.until = math.inf if scene.run.time is None else scene.run.time
+        self.until = math.inf if scene.time is None else scene.time
         order = order_of(scene)
         self._game, room = game_of(scene, order)
         self._first, place = room.states.copy(), np.argsort(order)
@@ -116,7 +116,7 @@ class Shots:
             x, y, *(courses[:, column] for column in (PRINT, LENGTH, FATE, PASSES))
         )  # fmt: skip
 
-    def board(self, start: FloatArray) -> Scene:
+    def board(self, start: FloatArray) -> SceneSpec:
         """The board with a launch vx, vy, spin (3,)."""
         vx, vy, spin = start.tolist()
         return self.scene.at({f"{self._path}.velocity": [vx, vy], f"{self._path}.spin": spin})
@@ -149,7 +149,7 @@ class Shots:
         """How near to a target is on it, m: the tolerance of the scene at a speed, m/s."""
         piece = pieces_of(self.scene)[self.striker]
         reach = speed * speed / piece.decel if piece.decel > 0.0 else piece.radius
-        return self.scene.run.tol * max(reach, piece.radius)
+        return self.scene.tol * max(reach, piece.radius)
 
     def sensitivities(self, starts: FloatArray) -> FloatArray:
         """How far the end moves per degree of heading and per cent of speed, (n, 2) m.

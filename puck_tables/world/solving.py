@@ -9,7 +9,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.world.game import Whole
-from puck_tables.world.launches import Sample
+from puck_tables.world.launches import TriedLaunches
 from puck_tables.world.shots import Landings, Shots
 
 Which = np.ndarray
@@ -33,7 +33,7 @@ class Roots(NamedTuple):
 
 
 def stops_at(
-    shots: Shots, sample: Sample, fine: Which, target: tuple[float, float], close: float,
+    shots: Shots, sample: TriedLaunches, fine: Which, target: tuple[float, float], close: float,
     low: float, high: float,
 ) -> Roots:  # fmt: skip
     """All launches found that end at a target to ``close`` m.
@@ -50,7 +50,7 @@ def stops_at(
     return _merged(_newton(shots, starts, landings, place, close, low, high), high - low)
 
 
-def _grid(sample: Sample) -> tuple[Whole, FloatArray]:
+def _grid(sample: TriedLaunches) -> tuple[Whole, FloatArray]:
     """Launches whose heading all rows have, (rows, headings), and these headings."""
     rows = int(sample.rows[-1]) + 1
     values, counts = np.unique(sample.launches[:, 0], return_counts=True)
@@ -59,7 +59,7 @@ def _grid(sample: Sample) -> tuple[Whole, FloatArray]:
     return kept.reshape(rows, -1), common
 
 
-def _in_cells(sample: Sample, fine: Which, place: FloatArray) -> FloatArray:
+def _in_cells(sample: TriedLaunches, fine: Which, place: FloatArray) -> FloatArray:
     """Starts in cells of four launches of one course whose ends surround the target."""
     grid, _ = _grid(sample)
     if grid.shape[0] < 2 or grid.shape[1] < 3:
@@ -86,7 +86,7 @@ def _in_cells(sample: Sample, fine: Which, place: FloatArray) -> FloatArray:
 
 
 def _beside(
-    shots: Shots, sample: Sample, fine: Which, place: FloatArray, low: float, high: float
+    shots: Shots, sample: TriedLaunches, fine: Which, place: FloatArray, low: float, high: float
 ) -> FloatArray:
     """Starts where courses change, or close to it, by the slopes at launches themselves."""
     grid, common = _grid(sample)

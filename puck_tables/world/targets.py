@@ -11,15 +11,15 @@ import numpy.typing as npt
 from puck_tables._core.real import finite_array
 from puck_tables.errors import InputError
 from puck_tables.scene.parts import Floor, Force
-from puck_tables.scene.pieces import Piece
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.pieces import PieceSpec
+from puck_tables.scene.run import number_of
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import (
     TOUCH,
     called,
     disagreements,
     has_closed_forms,
     in_the_way,
-    number_of,
     pieces_of,
     refuse_endless,
     start_of,
@@ -41,14 +41,14 @@ class Target(NamedTuple):
     place: tuple[float, float]
     pocket: int
 
-    def obstacle(self, scene: Scene) -> int:
+    def obstacle(self, scene: SceneSpec) -> int:
         """The pocket as the engine calls it."""
         return -1 - obstacle_names(scene).index(f"pocket {self.pocket}")
 
 
 def target_of(
-    scene: Scene, target: npt.ArrayLike | None, pocket: int | str | None, puck: int | str | None,
-    striker: int | str | None, hits: int | str | None,
+    scene: SceneSpec, target: npt.ArrayLike | None, pocket: int | str | None,
+    puck: int | str | None, striker: int | str | None, hits: int | str | None,
 ) -> Target:  # fmt: skip
     """The numbers of what a caller names.
 
@@ -87,7 +87,7 @@ def target_of(
     return Target(sent, aimed, through, (x, y), -1)
 
 
-def _striker(pieces: tuple[Piece, ...], names: tuple[str, ...], given: int | str | None) -> int:
+def _striker(pieces: tuple[PieceSpec, ...], names: tuple[str, ...], given: int | str | None) -> int:
     """The puck that is named, or the one that the scene sends off."""
     if given is None:
         moving = [
@@ -120,7 +120,7 @@ def _striker(pieces: tuple[Piece, ...], names: tuple[str, ...], given: int | str
 
 
 def _puck(
-    pieces: tuple[Piece, ...], names: tuple[str, ...], given: int | str | None, striker: int
+    pieces: tuple[PieceSpec, ...], names: tuple[str, ...], given: int | str | None, striker: int
 ) -> int:
     """The puck that is named, or the only one that can be meant."""
     others = [n for n, piece in enumerate(pieces) if n != striker and not piece.path]
@@ -137,7 +137,7 @@ def _puck(
 
 
 def _refuse_driven(
-    pieces: tuple[Piece, ...], names: tuple[str, ...], number: int, what: str
+    pieces: tuple[PieceSpec, ...], names: tuple[str, ...], number: int, what: str
 ) -> None:
     if pieces[number].path:
         raise InputError(
@@ -145,7 +145,7 @@ def _refuse_driven(
         )
 
 
-def _pocket(scene: Scene, given: int | str) -> int:
+def _pocket(scene: SceneSpec, given: int | str) -> int:
     """The number of a pocket, from itself or from 'pocket 2'."""
     count = len(scene.pockets)
     if not count:
@@ -157,7 +157,7 @@ def _pocket(scene: Scene, given: int | str) -> int:
 
 
 def _refuse_where_nothing_lies(
-    scene: Scene, place: tuple[float, float], radius: float, name: str
+    scene: SceneSpec, place: tuple[float, float], radius: float, name: str
 ) -> None:
     """Refuse a place in a cushion, a post, a pocket or over an edge."""
     for path, what, depth in in_the_way(scene, place, radius, holes=True):
@@ -168,7 +168,7 @@ def _refuse_where_nothing_lies(
         )
 
 
-def lying_there(scene: Scene, target: Target) -> str:
+def lying_there(scene: SceneSpec, target: Target) -> str:
     """Who lies so close to the target that it would have to be moved away; '' if nobody does."""
     pieces = pieces_of(scene)
     radius = pieces[target.puck].radius
@@ -180,7 +180,7 @@ def lying_there(scene: Scene, target: Target) -> str:
     return ""
 
 
-def without_pocket(scene: Scene, target: Target) -> Scene | None:
+def without_pocket(scene: SceneSpec, target: Target) -> SceneSpec | None:
     """The board without the pocket aimed at, None if none is.
 
     Launches that stop where its middle was fall in, also where few do.
@@ -191,7 +191,7 @@ def without_pocket(scene: Scene, target: Target) -> Scene | None:
     return replace(scene, pockets=left)
 
 
-def out_of_reach(scene: Scene, target: Target, speed: float, spin: float) -> str:
+def out_of_reach(scene: SceneSpec, target: Target, speed: float, spin: float) -> str:
     """Why no launch up to a speed and spin can exist, in words; '' where that is not known.
 
     Friction takes at least f m g times the way that the mean slip of the base goes, and that is no

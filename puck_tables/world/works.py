@@ -38,16 +38,31 @@ def write_work(
         row[HALFWAY + i] = halfway[i]
 
 
-def worked(rows: FloatArray, ends: FloatArray) -> FloatArray:
-    """The ledger (6,) of rows of works, each of whose flights ended at ``ends`` (rows,), J.
+def worked(rows: FloatArray, ends: FloatArray, times: FloatArray) -> FloatArray:
+    """The ledger (6, times) at ascending times of rows whose flights ended at ``ends`` (rows,), J.
 
     Examples
     --------
     >>> row = np.zeros((1, WORK_COLUMNS))
     >>> row[0, [DURATION, DONE, BEGUN, ENDED, HALFWAY]] = 2.0, 4.0, 1.0, 3.0, 1.5
-    >>> worked(row, np.array([1.0]))[0].item(), worked(row, np.array([9.0]))[0].item()
-    (1.5, 4.0)
+    >>> worked(row, np.array([1.5]), np.array([1.0, 9.0]))[0].tolist()
+    [1.5, 2.625]
     """
+    first = rows[:, START]
+    last = np.minimum(first + rows[:, DURATION], ends)
+    order = np.argsort(last, kind="stable")
+    done = np.cumsum(_part(rows, ends)[order], axis=0)
+    total = np.vstack([np.zeros(LEDGER), done])[np.searchsorted(last[order], times, side="right")]
+    begin, end = np.searchsorted(times, first, "right"), np.searchsorted(times, last, "left")
+    counts = np.maximum(end - begin, 0)  # of times that lie within a row
+    row = np.repeat(np.arange(len(rows)), counts)
+    at = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts - begin, counts)
+    np.add.at(total, at, _part(rows[row], times[at]))
+    return np.ascontiguousarray(total.T)
+
+
+def _part(rows: FloatArray, ends: FloatArray) -> FloatArray:
+    """What each row works until its end, (rows, 6)."""
     h = rows[:, DURATION]
     share = np.where(h > 0.0, (ends - rows[:, START]) / np.where(h > 0.0, h, 1.0), 1.0)
     s, h = np.clip(share, 0.0, 1.0)[:, None], h[:, None]
@@ -56,5 +71,5 @@ def worked(rows: FloatArray, ends: FloatArray) -> FloatArray:
     part = done * s * s * (3.0 - 2.0 * s) + h * s * (1.0 - s) * (begun * (1.0 - s) - ended * s)
     bend = halfway - 0.5 * done - 0.125 * h * (begun - ended)
     part = part + 16.0 * bend * (s * (1.0 - s)) ** 2
-    whole: FloatArray = np.where(s < 1.0, part, done).sum(axis=0)
+    whole: FloatArray = np.where(s < 1.0, part, done)
     return whole

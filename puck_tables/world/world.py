@@ -4,21 +4,22 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array, instance, real
+from puck_tables._core.real import finite_array, real
 from puck_tables.errors import InputError, PuckError
 from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.holds import misfits
 from puck_tables.scene.ingredients import FREE, floor_velocity
 from puck_tables.scene.parts import Launch
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.run import Event, number_of
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import game as g
-from puck_tables.world.agreement import called, number_of, pieces_of
+from puck_tables.world.agreement import called, pieces_of
 from puck_tables.world.departures import room_for
 from puck_tables.world.engine import (
     CROWDED,
@@ -55,31 +56,6 @@ CROWD = 1e-7  # of Q/J: 2000 events in less are a crowd
 CROWDED_PUSHES, PUSHED_IN = 3000, 1e-3  # and so many new groups that push, in that share of Q/J
 
 
-class Meeting(NamedTuple):
-    """What happened: when (s), what, to which puck, with whom.
-
-    An impact; a contact, which lasts; pocket or edge, where it leaves play; a launch; overhang,
-    where its rim comes over an edge (it is carried as if nothing of it hung in the air).
-
-    ``x``, ``y`` m: where; ``approach``, ``slip`` m/s: how fast the rims came together and slid on
-    each other before the first impact of this moment; ``impulse``, ``rub`` N s: along the line from
-    the puck to its partner and 90° to the left of it; ``lost`` J: kinetic energy lost, of several
-    impacts at one moment right in sum only.
-    """
-
-    time: float
-    what: str
-    puck: str
-    partner: str
-    x: float
-    y: float
-    approach: float
-    slip: float
-    impulse: float
-    rub: float
-    lost: float
-
-
 class World:
     """Pucks on a board, from now on.
 
@@ -89,7 +65,7 @@ class World:
 
     Parameters
     ----------
-    scene : Scene
+    scene : SceneSpec
         Without ranges.
 
     Raises
@@ -109,8 +85,9 @@ class World:
     [0.0, 0.803867]
     """
 
-    def __init__(self, scene: Scene) -> None:
-        instance("scene", scene, Scene)
+    def __init__(self, scene: SceneSpec) -> None:
+        if not isinstance(scene, SceneSpec):
+            raise InputError(f"scene must be a Scene, got a {type(scene).__name__}")
         self.scene = scene.single()
         self._order = order_of(self.scene)
         self._game, self._room = game_of(self.scene, self._order)
@@ -205,7 +182,7 @@ class World:
         states: FloatArray = states_at(self._game, times)[:, self._place]
         return states
 
-    def advance(self, duration: float) -> list[Meeting]:
+    def advance(self, duration: float) -> list[Event]:
         """Let time pass; what happened in it.
 
         Parameters
@@ -239,7 +216,7 @@ class World:
         if (self._game.kinds == DAMPED).any():
             raise InputError("pucks without dry friction never come to rest: give a duration")
 
-    def events_since(self, time: float) -> list[Meeting]:
+    def events_since(self, time: float) -> list[Event]:
         """What happened from a time on."""
         moment = real("time", time, "s")
         times = self._game.events[: self._game.counts[g.N_EVENTS], g.TIME]
@@ -425,10 +402,10 @@ class World:
             more[name] = np.vstack([part, np.zeros((max(few, len(part)), part.shape[1]))])
         self._game = self._game._replace(**more)
 
-    def _events(self, first: int) -> list[Meeting]:
+    def _events(self, first: int) -> list[Event]:
         rows = self._game.events[first : self._game.counts[g.N_EVENTS]]
         return [
-            Meeting(
+            Event(
                 float(row[g.TIME]), g.EVENTS[int(row[g.WHAT])], self._name(row[g.WHO]),
                 self._name(row[g.PARTNER]), *row[[g.AT_X, g.AT_Y]].tolist(),
                 *row[[g.APPROACH, g.SLIDE, g.PUSH, g.RUB, g.LOST]].tolist(),

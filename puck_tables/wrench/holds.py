@@ -19,10 +19,10 @@ from puck_tables.kernels.compile import allocating, patience
 from puck_tables.scene.ingredients import Dry, dry_in
 from puck_tables.scene.regions import regions_of
 from puck_tables.scene.rest import SLACK, demand
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 
 if TYPE_CHECKING:
-    from puck_tables.puck import Puck
+    from puck_tables.motion.puck_spec import PuckSpec
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +40,7 @@ class Hold:
         return bool(self.held)
 
 
-def holds(puck: Puck, force: npt.ArrayLike, torque: npt.ArrayLike) -> Hold:
+def holds(puck: PuckSpec, force: npt.ArrayLike, torque: npt.ArrayLike) -> Hold:
     """Whether friction holds a puck, as :meth:`puck_tables.Puck.holds` has it."""
     if puck.friction == 0.0:
         raise InputError("a puck with friction = 0 holds nothing: give friction > 0")
@@ -48,7 +48,7 @@ def holds(puck: Puck, force: npt.ArrayLike, torque: npt.ArrayLike) -> Hold:
     turning = finite_array("torque", torque, "N m")
     fx, fy, moment = broadcast(force_x=forces[..., 0], force_y=forces[..., 1], torque=turning)
     rows = np.stack([one.ravel() for one in (fx, fy, moment)])
-    regions = regions_of(Scene(puck))
+    regions = regions_of(SceneSpec(puck))
     dry = dry_in(regions, 0)
     # wrenches over their largest number, then over their largest force: no square, and no force of
     # a torque over the radius, leaves floating point

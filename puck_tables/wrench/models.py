@@ -25,7 +25,7 @@ _MOST_CROSS = 6.0  # B/√(A C) of a convex form
 
 
 @dataclass(frozen=True)
-class Model:
+class SurfaceModel:
     """A form fitted to a limit surface.
 
     Parameters
@@ -84,7 +84,7 @@ class Model:
 
         Examples
         --------
-        >>> Model(2, 2.0, 1.0, 2.0, 0.0, 0.0).gauge(1.0, 0.0).item()
+        >>> SurfaceModel(2, 2.0, 1.0, 2.0, 0.0, 0.0).gauge(1.0, 0.0).item()
         0.5
         """
         return _gauge(*self._scaled(force, torque), self.cross)
@@ -96,7 +96,7 @@ class Model:
 
         Examples
         --------
-        >>> v, w = Model(2, 2.0, 1.0, 2.0, 0.0, 0.0).twist(1.0, 0.5)
+        >>> v, w = SurfaceModel(2, 2.0, 1.0, 2.0, 0.0, 0.0).twist(1.0, 0.5)
         >>> float(w / v)
         2.0
         """
@@ -110,7 +110,7 @@ def _gauge(f: FloatArray, m: FloatArray, cross: float) -> FloatArray:
     return np.asarray((f**4 + cross * f**2 * m**2 + m**4) ** 0.25)
 
 
-def ellipsoid(curve: FloatArray, unit: float, radius: float) -> Model:
+def ellipsoid(curve: FloatArray, unit: float, radius: float) -> SurfaceModel:
     """The best ellipsoid, by least squares of the radial error.
 
     Parameters
@@ -129,7 +129,7 @@ def ellipsoid(curve: FloatArray, unit: float, radius: float) -> Model:
     return _fitted(2, curve, unit, radius)
 
 
-def quartic(curve: FloatArray, unit: float, radius: float) -> Model:
+def quartic(curve: FloatArray, unit: float, radius: float) -> SurfaceModel:
     """The best convex polynomial of order 4, by least squares of the radial error.
 
     Examples
@@ -142,7 +142,7 @@ def quartic(curve: FloatArray, unit: float, radius: float) -> Model:
     return _fitted(4, curve, unit, radius)
 
 
-def _fitted(order: int, curve: FloatArray, unit: float, radius: float) -> Model:
+def _fitted(order: int, curve: FloatArray, unit: float, radius: float) -> SurfaceModel:
     force, torque, normal_force, normal_torque = curve
     top = float(np.max(np.abs(torque)))
     count = 2 if order == 2 else 3
@@ -158,7 +158,7 @@ def _fitted(order: int, curve: FloatArray, unit: float, radius: float) -> Model:
     found = least_squares(off, start, bounds=(low, high), xtol=1e-14, ftol=1e-14, gtol=1e-14).x
     a, b, cross = [float(x) for x in [*found, 2.0][:3]]
     error = float(np.abs(1.0 / _gauge(force / a, torque / b, cross) - 1.0).max())
-    by_force, by_torque = Model(order, a, b, cross, error, 0.0).twist(force, torque)
+    by_force, by_torque = SurfaceModel(order, a, b, cross, error, 0.0).twist(force, torque)
     turn = np.arctan2(by_torque, by_force) - np.arctan2(normal_torque, normal_force)
     turned = float(np.abs(np.arctan2(np.sin(turn), np.cos(turn))).max())
-    return Model(order, a * unit, b * unit * radius, cross, error, turned)
+    return SurfaceModel(order, a * unit, b * unit * radius, cross, error, turned)

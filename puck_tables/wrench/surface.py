@@ -25,12 +25,12 @@ from puck_tables.errors import InputError
 from puck_tables.io.columns import following
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.result import Result
-from puck_tables.wrench.models import Model, ellipsoid, quartic
+from puck_tables.wrench.models import SurfaceModel, ellipsoid, quartic
 
 if TYPE_CHECKING:
-    from puck_tables.puck import Puck
+    from puck_tables.motion.puck_spec import PuckSpec
 
-LEAST, MOST = 5, 1_000_001
+LEAST, MOST = 5, 1_000_001  # points of a curve
 _FINE = 1441  # angles for what does not depend on how many were asked for
 _STEP = 1e-5  # rad, of differences for the normals
 _COLUMNS = ("force_x", "force_y", "torque", "normal_force", "normal_torque")
@@ -55,7 +55,7 @@ class LimitSurface(Result):
         What planar pushing takes for the surface, fitted to it, with their errors.
     """
 
-    puck: Puck
+    puck: PuckSpec
     slip_angle: FloatArray
     force_x: FloatArray
     force_y: FloatArray
@@ -90,12 +90,12 @@ class LimitSurface(Result):
         return np.stack([np.hypot(along, across), turning, *_normals(law, delta, phi)])
 
     @cached_property
-    def ellipsoid(self) -> Model:
+    def ellipsoid(self) -> SurfaceModel:
         """The best ellipsoid (F/a)² + (M/b)² = 1, by least squares of the radial error."""
         return ellipsoid(self._curve, self.unit_force, self.puck.radius)
 
     @cached_property
-    def quartic(self) -> Model:
+    def quartic(self) -> SurfaceModel:
         """The best convex polynomial of order 4, A F⁴ + B F² M² + C M⁴ = 1, likewise."""
         return quartic(self._curve, self.unit_force, self.puck.radius)
 
@@ -138,7 +138,7 @@ class LimitSurface(Result):
         })  # fmt: skip
 
 
-def limit_surface(puck: Puck, count: int) -> LimitSurface:
+def limit_surface(puck: PuckSpec, count: int) -> LimitSurface:
     """The limit surface of a puck, as :meth:`puck_tables.Puck.limit_surface` has it."""
     number = real("n", count, "points")
     if not (number == int(number) and LEAST <= number <= MOST):

@@ -27,7 +27,7 @@ SCENES: dict[str, dict[str, Any]] = {
     "free puck, by the loop of scenes": {},
     "slope": {"floor": {"slope": 0.03}},
     "belt": {"floor": {"velocity": [0.2, 0.1]}},
-    "turntable": {"floor": {"turning": 0.5}, "run": {"time": 2.0}},
+    "turntable": {"floor": {"turning": 0.5}, "time": 2.0},
     "strips": {"floor": {"strips": {"borders": [0.2, 0.4], "friction": [0.1, 0.05, 0.1]}}},
     "drag": {"drag": {"sliding": 0.05, "spinning": 1e-6}},
     "force": {"force": {"constant": [0.01, 0.0]}},
@@ -93,7 +93,7 @@ def test_crossings(measure: Any, pressure: str, floor: str, tol: float) -> None:
     """Of launches that all go on beyond what lies there."""
     import numpy as np
 
-    parts = {"floor": FLOORS[floor], "run": {"tol": tol}, "puck": {**PUCK, "pressure": pressure}}
+    parts = {"floor": FLOORS[floor], "tol": tol, "puck": {**PUCK, "pressure": pressure}}
     prepared = prepare(Scene.from_tables({**whole({}, velocity=[1.5, 0.0]), **parts}))
     rng, count = np.random.default_rng(3), 200
     states = np.tile(prepared.state, (count, 1))

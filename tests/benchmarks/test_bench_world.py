@@ -160,7 +160,7 @@ def hockey() -> pt.Scene:
         for nx, ny in ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
     ]
     return pt.Scene(pucks=[puck, *mallets], walls=walls, drag=pt.Drag(sliding=0.002),
-                    run=pt.Run(time=60.0))  # fmt: skip
+                    time=60.0)  # fmt: skip
 
 
 @HOCKEY

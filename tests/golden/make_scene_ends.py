@@ -24,9 +24,7 @@ UNKNOWN = 1e-6  # m: what is stated to be further off is nobody's to judge
 def ends_of(scene: Scene) -> np.ndarray:
     """Rows (pucks, 4): x, y, m; the end's time, s; the error that is stated of x and y, m."""
     run = scene.simulate()
-    error = getattr(run, "end_error", None)
-    if error is None:
-        error = run.error_estimate * run.speed_scale**2 / run.rate_scale
+    error = run.end_error
     places = [np.atleast_1d(run.last[name]) for name in ("x", "y")]
     return np.column_stack(np.broadcast_arrays(*places, run.end_time, error))
 

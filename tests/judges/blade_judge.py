@@ -60,7 +60,7 @@ def draw(seed: int, index: int) -> dict[str, Any]:
             "constant": (friction * weight * rng.choice([0.2, 0.6]) * rng.normal(size=2)).tolist(),
             "torque": float(rng.choice([0.0, 0.2]) * friction * weight * radius * rng.normal()),
         },
-        "run": {"time": 4.0 * unit, "frames": 1},
+        "time": 4.0 * unit, "frames": 1,
     }  # fmt: skip
     acts = ["force"]
     if index % 3 == 1:
@@ -106,7 +106,7 @@ class Skate:
         e, _ = self.axes(z)
         z[P] = (np.array(launch["velocity"]) - self.ground(z)) @ e
         self.launch = z * np.array([1.0, 1.0, 1.0, 1.0 + change[0], 1.0 + change[1], 1.0])
-        self.until = scene["run"]["time"]
+        self.until = scene["time"]
         self.speed, self.rate = self.slip(z), self.load / self.m
 
     def axes(self, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

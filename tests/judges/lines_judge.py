@@ -43,7 +43,8 @@ def draw(seed: int, index: int) -> dict[str, Any]:
             "velocity": [speed * math.cos(heading), speed * math.sin(heading)],
             "spin": float(rng.choice([0.0, 1.0, -3.0])) * speed / radius,
         },
-        "run": {"time": span, "frames": 1},
+        "time": span,
+        "frames": 1,
         "drive": rows.tolist(),
     }
     if rng.random() < 0.3:
@@ -53,7 +54,7 @@ def draw(seed: int, index: int) -> dict[str, Any]:
     for _ in range(int(rng.choice([0, 0, 1, 2]))):  # lines that the path, were it free, just grazes
         place, velocity = free_state(scene, span * rng.uniform(0.05, 1.0))
         n = np.array([-velocity[1], velocity[0]]) / np.hypot(*velocity)
-        bend = free_state(scene, scene["run"]["time"])[0] - place
+        bend = free_state(scene, scene["time"])[0] - place
         n *= math.copysign(1.0, n @ bend) * rng.choice([1.0, 1.0, -1.0])
         depth = span * speed * rng.choice([-1.0, 1.0]) * 10.0 ** rng.uniform(-9.0, -1.0)
         line = {"point": (place + depth * n).tolist(), "normal": n.tolist()}
@@ -99,7 +100,7 @@ def draw(seed: int, index: int) -> dict[str, Any]:
 def free_state(scene: dict[str, Any], when: float) -> tuple[np.ndarray, np.ndarray]:
     """Place and velocity of the same puck without lines."""
     bare = {key: part for key, part in scene.items() if key not in ("wall", "edge")}
-    bare["floor"], bare["run"] = {}, {"time": float(when)}
+    bare["floor"], bare["time"] = {}, float(when)
     state = truth(bare)[5]
     return state[:2], state[2:4]
 
@@ -121,7 +122,7 @@ def truth(scene: dict[str, Any], shift: float = 0.0, turn: float = 0.0) -> tuple
     how, when, count, extent, fastest = follow(
         puck["mass"], puck["mass"] * (puck["gyration"] * puck["radius"]) ** 2, puck["radius"],
         np.array(scene["drive"]), np.array([*force.get("constant", (0.0, 0.0)), 0.0]),
-        scene["run"]["time"], walls, edges, borders, start, events,
+        scene["time"], walls, edges, borders, start, events,
     )  # fmt: skip
     return how, when, events[:count], extent, fastest, start
 
@@ -142,7 +143,7 @@ def prepared(seed: int, index: int) -> dict[str, Any]:
     how, _, events, *_ = truth(scene)
     if how in (SETTLES, MANY):
         keep = events[min(len(events) - 1, 300), 0]
-        scene["run"]["time"] = float(0.999 * keep)
+        scene["time"] = float(0.999 * keep)
     return scene
 
 
@@ -174,11 +175,13 @@ def certain(scene: dict[str, Any], tol: float) -> tuple[np.ndarray, np.ndarray, 
 def verdict(scene: dict[str, Any], tol: float, folder: Path) -> tuple[str, str, int]:
     """'right', 'missed', 'invented', 'late' or 'refused', in words, and the number of events."""
     events, spread, sure = certain(scene, tol)
-    span = scene["run"]["time"]
+    span = scene["time"]
     run, words = engine(scene, tol, folder)
     if run is None:
         return "refused", words, sure
-    found = [(e.time, WORDS[e.what], e.which) for e in run.events if e.what in WORDS]
+    found = [
+        (e.time, WORDS[e.what], int(e.partner.split()[-1])) for e in run.events if e.what in WORDS
+    ]
     events[:, 2] = _borders(scene, events)
     complete = sure == len(events)
     for i in range(sure):

@@ -147,7 +147,7 @@ def draw(seed: int, index: int) -> dict[str, Any]:
                 launch["spin"] = float(rng.choice([-1.0, 1.0]) * speed / radius)
         scene["constraint"] = hold
     scene["launch"] = launch
-    scene["run"] = {"time": float(duration), "frames": 1}
+    scene |= {"time": float(duration), "frames": 1}
     return scene
 
 

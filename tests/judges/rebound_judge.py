@@ -87,7 +87,7 @@ def draw(seed: int, index: int) -> dict[str, Any]:
     scene["wall"] = [wall]
     hit = math.hypot(speed, math.sqrt(2.0 * rate * gap))
     settle = 2.0 * hit / rate / (1.0 - restitution)
-    scene["run"] = {"time": float(1.3 * (hit / rate + min(settle, 60.0))), "frames": 1}
+    scene |= {"time": float(1.3 * (hit / rate + min(settle, 60.0))), "frames": 1}
     return scene
 
 

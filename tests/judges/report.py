@@ -26,7 +26,7 @@ def arguments(words: str, tols: list[float]) -> argparse.Namespace:
 def written(scene: dict[str, Any], folder: Path, **run: Any) -> dict[str, Any]:
     """A scene as the engine takes it: rows of ``drive`` in a file."""
     whole = {key: part for key, part in scene.items() if key not in ("drive", "class", "limit")}
-    whole["run"] = {**scene.get("run", {}), **run}
+    whole |= run
     if scene.get("drive"):
         path = folder / "drive.csv"
         rows = [",".join(repr(float(cell)) for cell in row) for row in scene["drive"]]

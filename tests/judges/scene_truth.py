@@ -423,7 +423,7 @@ def truth(
         float(np.abs(world.pull[2] + rows[:, 2]).max()) / (m * r),
     )
     speed = max(slip, math.sqrt(sharp * r) * 0.1, 1e-12)
-    until = scene["run"]["time"]
+    until = scene["time"]
     length = max(speed * speed / sharp if sharp > 0.0 else speed * until, 1e-3 * r)
     frames = np.array([]) if frames is None else np.asarray(frames, float)
     states, events = np.full((len(frames), 7), np.nan), np.empty((most, 5))

@@ -91,19 +91,19 @@ def draw(seed: int, index: int) -> dict[str, Any]:
         rows[1, 1:] = share * limit * [1.0, 1.0, radius]
         scene["drive"] = rows.tolist()
         scene["launch"] = {}
-        scene["run"] = {"time": 2.0 * span, "frames": 1}
+        scene |= {"time": 2.0 * span, "frames": 1}
         return scene
     pull = share * limit
     scene["force"] = {"constant": pull[:2].tolist(), "torque": float(pull[2] * radius)}
     if kind == "starts":
         scene["launch"] = {}
-        scene["run"] = {"time": span, "frames": 1}
+        scene |= {"time": span, "frames": 1}
         return scene
     size = abs(1.0 - share) * friction * 9.80665 * span
     slip = n + 0.5 * rng.normal(size=3)
     slip *= size / np.linalg.norm(slip)
     scene["launch"] = {"velocity": slip[:2].tolist(), "spin": float(slip[2] / radius)}
-    scene["run"] = {"time": 20.0 * span, "frames": 1}
+    scene |= {"time": 20.0 * span, "frames": 1}
     return scene
 
 
@@ -233,7 +233,7 @@ def truth(scene: dict[str, Any], second: bool = False) -> dict[str, Any]:
         launch = scene["launch"]
         u = np.array([*launch["velocity"], launch["spin"] * scene["puck"]["radius"]])
         size = float(np.linalg.norm(u))
-        rests, way = method(scene, slider, 0.0, np.zeros(3), u, size, scene["run"]["time"])
+        rests, way = method(scene, slider, 0.0, np.zeros(3), u, size, scene["time"])
         return {
             "stick": rests, "slip": None, "way": way * turn, "time": rests,
             "length": size * rests,

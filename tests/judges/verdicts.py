@@ -18,7 +18,7 @@ def known(
     scene: dict[str, Any], frames: int = 6, nudges: int = 2, limit: int = 300_000
 ) -> dict[str, Any] | None:
     """Truth at some moments, its scales, and how it amplifies; None: the judge gives up."""
-    times = scene["run"]["time"] * np.linspace(0.13, 1.0, frames)
+    times = scene["time"] * np.linspace(0.13, 1.0, frames)
     best = truth(scene, times, limit=limit)
     if best["end"] == "over the edge":
         times = best["time"] * np.linspace(0.13, 1.0, frames)[:-1]

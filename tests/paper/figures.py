@@ -20,7 +20,7 @@ from paper.shapes import SPIN, ends_against_spin
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.closed_form import by_closed_form, integrals
 from puck_tables.motion.limits import limit_angle
-from puck_tables.plot.panels import Curve, Panel, Picture
+from puck_tables.plot.panels import Panel, Picture, PlotCurve
 from puck_tables.puck import Puck
 
 FAMILY = (0.0, 0.25, 0.5, 0.75, 1.0)
@@ -42,7 +42,7 @@ def limit_angles() -> Picture:
     >>> limit_angles().panels[0].curves[0].y[[0, -1]].round(6).tolist()
     [0.992314, 0.975465]
     """
-    curve = Curve(HEIGHTS, limit_angle(HEIGHTS))
+    curve = PlotCurve(HEIGHTS, limit_angle(HEIGHTS))
     return Picture(
         "Slip angle at the stop of every puck that slides and spins (Fig. 2)",
         [Panel("height δ = 2fh/r", "limit angle φ₀ / rad", [curve])],
@@ -61,7 +61,7 @@ def paths(delta: float = 1.0) -> Picture:
     curves = []
     for speed, spin in LAUNCHES:
         run = Puck.similar(delta=delta).simulate((speed, 0.0), spin, exact=True, frames=400)
-        curves.append(Curve(run.x, run.y, f"v = {speed:g}, ω = {spin:g} ({run.regime})"))
+        curves.append(PlotCurve(run.x, run.y, f"v = {speed:g}, ω = {spin:g} ({run.regime})"))
     return Picture(
         f"Paths of the centre: counter-clockwise spin bends them right (Fig. 3; δ = {delta:g})",
         [
@@ -85,7 +85,7 @@ def stops_against_spin(delta: float = 1.0) -> Picture:
     """
     labels = ("time $t_0$ / √(r/J)", "place $x_0$ / r", "place $y_0$ / r")
     curves = [
-        Curve(SPIN, values, label)
+        PlotCurve(SPIN, values, label)
         for label, values in zip(labels, ends_against_spin(simulate, delta), strict=True)
     ]
     return Picture(
@@ -96,7 +96,7 @@ def stops_against_spin(delta: float = 1.0) -> Picture:
 
 def ratio_against_time(
     radius: float, height: float, friction: float, duration: float, frames: int = 400
-) -> tuple[float, list[Curve]]:
+) -> tuple[float, list[PlotCurve]]:
     """ε = rω/v against time (s) of a real puck, for launches that all stop after ``duration``.
 
     Returns its δ and the curves, the last one the limit ratio.
@@ -116,10 +116,10 @@ def ratio_against_time(
         times = duration * (1.0 - np.linspace(1.0, 0.0, frames, endpoint=False) ** 2)
         run = puck.simulate((speed, 0.0), spin, exact=True, times=times)
         label = f"v = {speed:.2g} m/s, ω = {spin:.2g} rad/s"
-        curves.append(Curve(run.time, radius * run.spin / run.speed, label))
+        curves.append(PlotCurve(run.time, radius * run.spin / run.speed, label))
     ends = np.array([0.0, duration])
     limit = puck.limit_ratio
-    curves.append(Curve(ends, np.full(2, limit), f"limit {limit:.3f}", dashed=True))
+    curves.append(PlotCurve(ends, np.full(2, limit), f"limit {limit:.3f}", dashed=True))
     return puck.delta, curves
 
 
@@ -133,8 +133,8 @@ def steel_puck() -> Picture:
     """
     delta, curves = ratio_against_time(0.030, 0.019, 0.2, 0.52)
     early = [
-        Curve(c.x[c.x <= 0.44], c.y[c.x <= 0.44], c.label) for c in curves[:-1]
-    ] + [Curve(np.array([0.0, 0.44]), curves[-1].y, curves[-1].label, dashed=True)]  # fmt: skip
+        PlotCurve(c.x[c.x <= 0.44], c.y[c.x <= 0.44], c.label) for c in curves[:-1]
+    ] + [PlotCurve(np.array([0.0, 0.44]), curves[-1].y, curves[-1].label, dashed=True)]  # fmt: skip
     label = "ε = rω/v"
     return Picture(
         f"Steel puck, 60 mm × 19 mm, in theory (Fig. 5; f = 0.2 assumed: δ = {delta:.3f})",
@@ -170,14 +170,14 @@ def patch_integrals() -> Picture:
     [1.0, 0.25, 0.0, 0.25, -0.25]
     """
     p = integrals(PHI)._asdict()
-    curves = [Curve(PHI, values, f"$p_{name}$") for name, values in p.items()]
+    curves = [PlotCurve(PHI, values, f"$p_{name}$") for name, values in p.items()]
     return Picture(
         "The five integrals of the contact patch, uniform pressure (Fig. 7)",
         [Panel(PHI_LABEL, "dimensionless", curves, x_ticks=QUARTER_TICKS)],
     )
 
 
-def family(function: Callable[[float], FloatArray]) -> list[Curve]:
+def family(function: Callable[[float], FloatArray]) -> list[PlotCurve]:
     """A function of φ at five heights, light to dark.
 
     Examples
@@ -185,7 +185,7 @@ def family(function: Callable[[float], FloatArray]) -> list[Curve]:
     >>> [curve.label for curve in family(lambda delta: 0.0 * PHI)][:2]
     ['δ = 0', 'δ = 0.25']
     """
-    return [Curve(PHI, function(delta), f"δ = {delta:g}", shade=delta) for delta in FAMILY]
+    return [PlotCurve(PHI, function(delta), f"δ = {delta:g}", shade=delta) for delta in FAMILY]
 
 
 def pressure_reserves() -> Picture:
@@ -252,11 +252,11 @@ def phase_portrait(delta: float = 1.0) -> Picture:
     attractors, repellers = np.array([-limit, limit]), np.array([-end, 0.0, end])
     right = np.array([-0.5 * (limit + end), 0.5 * limit])
     curves = [
-        Curve(phi, slip_angle_rate(by_closed_form, phi, delta), "rate dφ/dτ"),
-        Curve(right, 0.0 * right, "φ grows", marker=">"),
-        Curve(-right, 0.0 * right, "φ falls", marker="<"),
-        Curve(attractors, 0.0 * attractors, "attracts: ±φ₀", marker="o"),
-        Curve(repellers, 0.0 * repellers, "repels: 0, ±π/2", marker="o", hollow=True),
+        PlotCurve(phi, slip_angle_rate(by_closed_form, phi, delta), "rate dφ/dτ"),
+        PlotCurve(right, 0.0 * right, "φ grows", marker=">"),
+        PlotCurve(-right, 0.0 * right, "φ falls", marker="<"),
+        PlotCurve(attractors, 0.0 * attractors, "attracts: ±φ₀", marker="o"),
+        PlotCurve(repellers, 0.0 * repellers, "repels: 0, ±π/2", marker="o", hollow=True),
     ]
     ticks = {-end: "-π/2", -limit: "-φ₀", 0.0: "0", limit: "φ₀", end: "π/2"}
     return Picture(

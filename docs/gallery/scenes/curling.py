@@ -16,7 +16,7 @@ ice = pt.Floor(law=pt.CurlingLaw(a=0.00200985, b=0.06385782, c=0.00626286))
 curl = pt.Lateral(strength=0.0082 * 19.96, speed_exponent=0.2)
 figure, axes = plt.subplots(layout="constrained")
 for lateral, name in ((curl, "with the lateral force"), (pt.Lateral(), "friction alone")):
-    shot = pt.Scene(stone, ice, pt.Launch((2.4, 0.0), 1.57), lateral=lateral, run=pt.Run(tol=1e-6))
+    shot = pt.Scene(stone, ice, pt.Launch((2.4, 0.0), 1.57), lateral=lateral, tol=1e-6)
     run = shot.simulate()
     axes.plot(run.x, run.y, label=f"{name}: {run.last['y']:.2g} m aside")
 axes.set(xlabel="along the sheet / m", ylabel="across / m", title="Spin counter-clockwise")

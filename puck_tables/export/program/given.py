@@ -16,6 +16,7 @@ Rows = Sequence[int]  # where the rows of each side begin, and where all end; ho
 
 # tables of one error: cells, degree, powers, quantum and numbers
 STOP: Numbers = ()
+# all numbers here stand for those that a file is written with
 STOP_CELLS, STOP_DEGREE, STOP_POWERS = 1, 1, 1
 STOP_QUANTUM = 1.0
 CURVE: Numbers = ()
@@ -36,7 +37,7 @@ TALLEST, STEEP, SPIN_TIME, LONGEST = 1.0, 2.0, 0.75, 2.0
 BORDERS: Numbers = ()
 ORIGINS: Numbers = ()
 SCALES: Numbers = ()
-SIDES = 4
+SIDES = 4  # pieces of φ between singular lines
 STOP_ROWS: Rows = ()
 PATCH: Numbers = ()
 PATCH_ROWS: Rows = ()

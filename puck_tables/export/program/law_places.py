@@ -31,7 +31,7 @@ from puck_tables.export.program.given import (
 from puck_tables.export.program.places import look_up
 from puck_tables.export.program.stop import STOP_FUNCTIONS
 
-PATCH_FUNCTIONS = 3
+PATCH_FUNCTIONS = 3  # ρ_∥, ρ_⊥, ρ_ω
 
 
 def look_beside(

@@ -45,7 +45,7 @@ from puck_tables.export.program.stop import stop_functions
 # of the height alone: limit of c; c at theta = 0 of both orbits; rates and turnings over
 # delta/TALLEST in pure sliding, in pure spin and at the limit
 LIMIT, START, RATE, TURN = 0, 1, 3, 6
-SEARCH = 60
+SEARCH = 60  # steps of the Illinois rule at most
 
 
 def constant(row: int, s: float) -> float:

@@ -6,11 +6,11 @@ from math import nan, sqrt
 
 from puck_tables.export.program.given import LONGEST, TALLEST, Numbers, Out, room
 
-MOST_WEIGHTS, WIDEST = 8, 70
+MOST_WEIGHTS, WIDEST = 8, 70  # room for any degree, and for any row, that a file is written with
 LARGEST = 8e307  # of places, and of places over radii
 # of a measured launch
 SLIP, SPEED, RIM, EAST, NORTH, SIDE, SHARE, AROUND = 0, 1, 2, 3, 4, 5, 6, 7
-MEASURED = 8
+MEASURED = 8  # the eight above
 
 
 def refused(out: Out, size: int, code: int) -> int:

@@ -7,7 +7,7 @@ from math import cos, pi, sin, sqrt
 from puck_tables.export.program.given import TALLEST, Out, room
 from puck_tables.export.program.places import refused
 
-MOST_STEPS = 9
+MOST_STEPS = 9  # of the arithmetic-geometric mean, each of which doubles its digits
 HALF_PI = 0.5 * pi
 
 

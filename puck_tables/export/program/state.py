@@ -41,12 +41,12 @@ from puck_tables.export.program.places import (
 )
 from puck_tables.export.program.stop import ACROSS, ALONG, BODY, TIME, stop_functions, stopped
 
-SMALLEST = 1e-300
+SMALLEST = 1e-300  # its reciprocal is still a number
 TURN_SHARE = 1e-3  # of Q: where the turn of a heading is read off
-ROUNDS = 12
+ROUNDS = 12  # of Newton's method at most
 # beside what is measured of a launch
 KAPPA, TURNING, LOG_N, SIGN, HEADING, T_LAUNCH = 8, 9, 10, 11, 12, 13
-KNOWN = 14
+KNOWN = 14  # with the six above
 # of a place on the curve
 THERE_SIDE, THERE_SHARE, REGULAR = 0, 1, 2
 

@@ -31,7 +31,7 @@ from puck_tables.export.program.places import (
 
 # of the functions of a stop
 TIME, ALONG, ACROSS, LENGTH, BODY = 0, 1, 2, 3, 4
-STOP_FUNCTIONS = 5
+STOP_FUNCTIONS = 5  # T, X, Y, path, body angle
 
 
 def table_at(side: int, share: float, delta: float, f: Out) -> None:

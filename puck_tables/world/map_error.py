@@ -3,47 +3,40 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 
 import numpy as np
-import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import PuckError
-from puck_tables.scene.entries import BATCH, LAUNCH
 from puck_tables.scene.loop import OVER_EDGE
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.simulate import simulate
+from puck_tables.world.scene_ends import SceneEnds
 
 CHECKED = 8  # runs
 
 
-def largest_error(
-    scene: Scene, axes: Mapping[str, FloatArray], columns: Mapping[str, FloatArray],
-    end: npt.NDArray[np.int8],
-) -> float:  # fmt: skip
-    """The largest error found in the ends of a map, times in units of Q/J, places in Q²/J.
+def largest_error(ends: SceneEnds) -> float:
+    """The largest error found in the ends of a scene, times in units of Q/J, places in Q²/J.
 
     Of :data:`CHECKED` runs that have an end, spread evenly: how far a run alone is from it, and the
     error estimate of that.  NaN where none has an end.
 
     Examples
     --------
-    >>> from puck_tables import Launch, Puck
+    >>> from puck_tables import Launch, Puck, Scene
     >>> scene = Scene(Puck(0.04, friction=0.2), launch=Launch((1.0, 0.0), spin=[0.0, 5.0]))
-    >>> found = scene.sweep()
-    >>> largest_error(scene, found.axes, found.columns, found.end) <= scene.run.tol
+    >>> largest_error(scene.sweep()) <= scene.tol
     True
     """
-    valid = np.flatnonzero(end.ravel() <= OVER_EDGE)
+    valid = np.flatnonzero(ends.end.ravel() <= OVER_EDGE)
     worst = math.nan
     places = np.linspace(0, max(len(valid) - 1, 0), min(CHECKED, len(valid))).astype(int)
     for number in valid[places].tolist():
-        one = _scene_of(scene, axes, np.unravel_index(number, end.shape))
+        one = ends.scene.at(ends.numbers(number))
         try:
-            run = one.simulate([])
+            run = simulate(one, [])
         except PuckError:  # its own end is in doubt
             return math.inf
-        last = {name: float(columns[name].ravel()[number]) for name in ("x", "y", "end_time")}
+        last = {name: float(ends.columns[name].ravel()[number]) for name in ("x", "y", "end_time")}
         far = math.hypot(run.last["x"] - last["x"], run.last["y"] - last["y"])
         late = abs(run.end_time - last["end_time"])
         unit = run.speed_scale / max(run.rate_scale, 1e-300)
@@ -55,14 +48,3 @@ def largest_error(
 def _share(error: float, scale: float) -> float:
     """An error in units of a scale; where nothing moves both are 0."""
     return error / scale if scale > 0.0 else (math.inf if error > 0.0 else 0.0)
-
-
-def _scene_of(scene: Scene, axes: Mapping[str, FloatArray], place: tuple[np.intp, ...]) -> Scene:
-    """The scene of one run."""
-    changed: dict[str, float] = {}
-    for (path, values), i in zip(axes.items(), place, strict=True):
-        if path == BATCH:
-            changed |= zip(LAUNCH, scene.ranges[BATCH][i].tolist(), strict=True)
-        else:
-            changed[path] = float(values[i])
-    return scene.at(changed)

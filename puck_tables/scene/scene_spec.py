@@ -1,4 +1,4 @@
-"""A scene: a puck, a floor, a launch, and whatever acts on it."""
+"""What a scene says: a puck, a floor, a launch, and whatever acts on it."""
 
 from __future__ import annotations
 
@@ -6,20 +6,17 @@ import math
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from importlib import import_module
-from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.fields import of, specs
+from puck_tables._core.fields import Unsaid, of, specs
 from puck_tables._core.reading import Range, Reading, given_in, read_values
 from puck_tables._core.real import instance
 from puck_tables.errors import InputError
 from puck_tables.motion.body import STANDARD_GRAVITY
-from puck_tables.puck import Puck
-from puck_tables.scene.agreement import disagreements
+from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.scene.entries import columns_of, entry_at, is_batch, set_path, tables_of
 from puck_tables.scene.parts import (
     Constraint,
@@ -29,64 +26,35 @@ from puck_tables.scene.parts import (
     Force,
     Lateral,
     Launch,
-    Run,
     Wall,
 )
-from puck_tables.scene.pieces import Arc, Piece, Pocket, Post, Rim
+from puck_tables.scene.pieces import Arc, PieceSpec, Pocket, Post, Rim
 from puck_tables.scene.ranges import Ranges, batch_of, launch_rows, owner_of, refuse_twice
 from puck_tables.scene.restitution import Restitution
-from puck_tables.scene.verbs import SceneVerbs
 
 MAX_RUNS = 1_000_000_000  # of one sweep
 
 
 @dataclass(frozen=True, eq=False)
-class Scene(SceneVerbs):
-    """A puck on a floor, its launch, and whatever acts on it: checked when it is made.
+class SceneSpec:
+    """What a scene says, part by part, each checked; :class:`puck_tables.Scene` adds its verbs.
 
-    Parts may also be tables.  Numbers may be numpy scalars; where a number stands a list, an array
-    or a text 'START:STOP:COUNT' is a range, a dimension of :meth:`sweep`.  Such a number stands at
-    its first value (its last, where no puck can have the first), its values in ``ranges``.  Many
-    launches at once are velocities (n, 2), see :class:`puck_tables.Launch`: their range is
-    ``launch``, rows of vx, vy, spin, x, y, orientation.
-
-    Parameters
-    ----------
-    puck : Puck
-    floor, launch, drag, lateral, force, run, title : optional
-        As :mod:`puck_tables.scene.parts` has them.
-    walls, edges : sequences of Wall, of Edge, optional
-    pucks, posts, arcs, pockets, rims : sequences, optional
-        As :mod:`puck_tables.scene.pieces` has them.
-    constraint : Constraint, optional
-    gravity : m/s², > 0, optional
-        Of all its pucks; left out, each has its own.
-    ranges : mapping, optional
-        Values of numbers that take several, by path, such as ``{"puck.height": [0.0, 0.01]}``.  A
-        changed copy (:func:`dataclasses.replace`) keeps those of the parts that it keeps.
-
-    Raises
-    ------
-    InputError
-        If anything is wrong: every error with its path, its value and what is allowed.
+    What computes takes this class: it stands below all that can be asked of a scene.  Whether the
+    parts go together is checked by :class:`puck_tables.Scene`.
 
     Examples
     --------
-    >>> puck = Puck(radius=0.04, friction=0.1)
-    >>> scene = Scene(puck, Floor(slope=0.05), Launch((1.0, 0.0), spin=20.0))
-    >>> round(scene.simulate().end_time, 6)
-    2.329592
-    >>> Scene(puck, launch=Launch(spin=[0.0, 5.0])).ranges["launch.spin"].tolist()
+    >>> SceneSpec(PuckSpec(0.04), launch=Launch(spin=[0.0, 5.0])).ranges["launch.spin"].tolist()
     [0.0, 5.0]
     """
 
-    puck: Puck = of("part", None, part=Puck)
+    puck: PuckSpec = of("part", None, part=PuckSpec)
     floor: Floor = of("part", Floor(), part=Floor)
     launch: Launch = of("part", Launch(), part=Launch)
     drag: Drag = of("part", Drag(), part=Drag)
     lateral: Lateral = of("part", Lateral(), part=Lateral)
     force: Force = of("part", Force(), part=Force)
-    pucks: tuple[Piece, ...] = of("parts", (), part=Piece, table="puck[]")
+    pucks: tuple[PieceSpec, ...] = of("parts", (), part=PieceSpec, table="puck[]")
     walls: tuple[Wall, ...] = of("parts", (), part=Wall, table="wall")
     posts: tuple[Post, ...] = of("parts", (), part=Post, table="post")
     arcs: tuple[Arc, ...] = of("parts", (), part=Arc, table="arc")
@@ -94,7 +62,7 @@ class Scene(SceneVerbs):
     edges: tuple[Edge, ...] = of("parts", (), part=Edge, table="edge")
     rims: tuple[Rim, ...] = of("parts", (), part=Rim, table="rim")
     constraint: Constraint | None = of("part", None, part=Constraint)
-    run: Run = of("part", Run(), part=Run)
+    title: str = of("text", "")
     gravity: float | None = of(
         "number",
         None,
@@ -102,15 +70,17 @@ class Scene(SceneVerbs):
         acts="",
         low=0.0,
         above=True,
-        doc="of all pucks; left out: each has its own",
+        doc="of all pucks; left out: that of the pucks",
     )
-    title: str = of("text", "")
+    time: float | None = of("number", None, "s", low=0.0, above=True, doc="until rest if left out")
+    frames: float = of("number", 101.0, low=1.0, high=1e6, doc="states to save")
+    tol: float = of("number", 1e-9, low=1e-12, high=1e-2, doc="error wanted, of Q/J and Q^2/J")
     ranges: Mapping[str, FloatArray] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         tables, ranges, before = given_in(self, {}), self.ranges, None
         if isinstance(ranges, Ranges):  # of the scene of which this one is a changed copy
-            before, ranges = ranges.parts["gravity"], ranges.of_the_same(self)
+            before, ranges = ranges.parts["gravity"], ranges.of_the_same(self._parts())
         else:
             refuse_twice(type(self), tables, ranges)
         if ranges:  # as if they stood where their numbers are
@@ -121,7 +91,7 @@ class Scene(SceneVerbs):
         self._fill(tables, "scene", before)
 
     @classmethod
-    def from_tables(cls, tables: Mapping[str, Any], source: str = "scene") -> Scene:
+    def from_tables(cls, tables: Mapping[str, Any], source: str = "scene") -> Self:
         """A scene from nested tables, as a TOML file gives them; walls stand under ``wall``.
 
         ``source``: its name, for messages.
@@ -133,7 +103,7 @@ class Scene(SceneVerbs):
 
         Examples
         --------
-        >>> Scene.from_tables({"puck": {"radius": 0.04, "height": "0:0.01:2"}}).ranges
+        >>> SceneSpec.from_tables({"puck": {"radius": 0.04, "height": "0:0.01:2"}}).ranges
         {'puck.height': array([0.  , 0.01])}
         """
         if not isinstance(tables, Mapping):
@@ -141,23 +111,6 @@ class Scene(SceneVerbs):
         scene = object.__new__(cls)
         scene._fill(tables, source)
         return scene
-
-    @classmethod
-    def load(cls, name: str | Path) -> Scene:
-        """A scene from a TOML file, or one that is shipped, by its name.
-
-        Raises
-        ------
-        InputError
-            If there is neither, or anything in it is wrong.
-
-        Examples
-        --------
-        >>> Scene.load("incline").title
-        'Puck on an incline'
-        """
-        find: Any = import_module("puck_tables.scene.library").find_scene
-        return cls.from_tables(find(str(name)), str(name))
 
     def __eq__(self, other: object) -> bool:
         """Whether both say the same, ranges included."""
@@ -178,7 +131,7 @@ class Scene(SceneVerbs):
 
         Examples
         --------
-        >>> Scene(Puck(1.0, friction=0.1)).frictions
+        >>> SceneSpec(PuckSpec(1.0, friction=0.1)).frictions
         (0.1,)
         """
         strips = self.floor.strips
@@ -191,13 +144,13 @@ class Scene(SceneVerbs):
 
         Examples
         --------
-        >>> Scene(Puck(0.5, 1.0, 0.1)).heights
+        >>> SceneSpec(PuckSpec(0.5, 1.0, 0.1)).heights
         [0.4]
         """
         puck = self.puck
         return [2.0 * friction * puck.height / puck.radius for friction in self.frictions]
 
-    def single(self) -> Scene:
+    def single(self) -> Self:
         """Itself, if no number of it is a range.
 
         Raises
@@ -211,24 +164,25 @@ class Scene(SceneVerbs):
             )
         return self
 
-    def alone(self, puck: Puck) -> Scene:
+    def alone(self, puck: PuckSpec) -> Self:
         """A puck alone on its floor, as long and as close; what does not fit is not looked for.
 
         Examples
         --------
-        >>> board = Scene(pucks=[Piece(0.5, friction=0.1)])
+        >>> board = SceneSpec(pucks=[PieceSpec(0.5, friction=0.1)])
         >>> board.alone(board.pucks[0]).frictions
         (0.1,)
         """
         scene = object.__new__(type(self))
         for spec in specs(type(self)).values():
             object.__setattr__(scene, spec.name, spec.default)
-        for name, part in (("puck", puck), ("floor", self.floor), ("run", self.run)):
-            object.__setattr__(scene, name, part)
+        object.__setattr__(scene, "puck", puck)
+        for name in ("floor", "gravity", "time", "tol"):
+            object.__setattr__(scene, name, getattr(self, name))
         object.__setattr__(scene, "ranges", {})
         return scene
 
-    def at(self, numbers: Mapping[str, Any]) -> Scene:
+    def at(self, numbers: Mapping[str, Any]) -> Self:
         """The scene without ranges, with other numbers, by path.
 
         Raises
@@ -238,7 +192,7 @@ class Scene(SceneVerbs):
 
         Examples
         --------
-        >>> Scene(Puck(0.04)).at({"launch.spin": 5.0}).launch.spin
+        >>> SceneSpec(PuckSpec(0.04)).at({"launch.spin": 5.0}).launch.spin
         5.0
         """
         if not isinstance(numbers, Mapping):
@@ -253,7 +207,7 @@ class Scene(SceneVerbs):
 
         Examples
         --------
-        >>> Scene(Puck(0.04)).unit_of("launch.position[1]")
+        >>> SceneSpec(PuckSpec(0.04)).unit_of("launch.position[1]")
         'm'
         """
         instance("path", path, str)
@@ -265,22 +219,24 @@ class Scene(SceneVerbs):
 
         Examples
         --------
-        >>> Scene(Puck(0.04)).is_board
+        >>> SceneSpec(PuckSpec(0.04)).is_board
         False
         """
         more = self.pucks or self.posts or self.arcs or self.pockets or self.rims
         by_speed = any(isinstance(wall.restitution, str | Restitution) for wall in self.walls)
         return bool(more) or by_speed
 
+    def _parts(self) -> dict[str, Any]:
+        """Its parts by the tables that they stand in."""
+        known = specs(type(self)).items()
+        return {table: getattr(self, spec.name) for table, spec in known}
+
     def _disagreements(self) -> list[str]:
-        """What is wrong between its parts."""
-        if self.is_board:
-            faults: list[str] = import_module("puck_tables.world.agreement").disagreements(self)
-            return faults
-        return disagreements(self)
+        """What is wrong between its parts: known to :class:`puck_tables.Scene`."""
+        return []
 
     def _fill(self, tables: Mapping[str, Any], source: str, before: float | None = None) -> None:
-        """Check all that is given, and take it; pucks may have the gravity ``before``."""
+        """Check all that is given, and take it; pucks may have got the gravity ``before``."""
         found: dict[str, Range] = {}
         reading = Reading([], found)
         values = read_values(type(self), tables, "", reading)
@@ -293,7 +249,7 @@ class Scene(SceneVerbs):
             )
         reading.errors.extend(_puck_or_pucks(values))
         if values is not None and not reading.errors:
-            reading.errors.extend(_give_gravity(values, before))
+            reading.errors.extend(_give_gravity(values, found, before))
         if values is None or reading.errors:
             raise _refusal(reading.errors, source)
         for spec in specs(type(self)).values():
@@ -304,7 +260,7 @@ class Scene(SceneVerbs):
             number = re.match(r"puck\[(\d+)\]", owner)
             launch = self.pucks[int(number[1])].launch if number else self.launch
             axes = {owner: launch_rows(launch, batch, owner), **axes}
-        object.__setattr__(self, "ranges", Ranges(axes, self))
+        object.__setattr__(self, "ranges", Ranges(axes, self._parts()))
         if not axes and (faults := self._disagreements()):  # else they are up to each run
             raise _refusal(faults, source)
 
@@ -324,20 +280,42 @@ def _puck_or_pucks(values: Mapping[str, Any] | None) -> Iterator[str]:
         yield "puck and pucks: give one puck with its launch, or a list of pucks"
 
 
-def _give_gravity(values: dict[str, Any], before: float | None) -> Iterator[str]:
-    """Give all pucks the gravity of the scene, if it has one; those that have another are told."""
-    gravity = values.get("gravity")
-    if gravity is None:
-        return
-    for name, path in (("puck", "puck"), ("pucks", "puck[{}]")):
-        given = values.get(name) or ()
-        pucks = (given,) if name == "puck" and given else given
-        for number, puck in enumerate(pucks):
-            if puck.gravity not in (STANDARD_GRAVITY, gravity, before):
+def _give_gravity(
+    values: dict[str, Any], ranges: Mapping[str, Range], before: float | None
+) -> Iterator[str]:
+    """Give all pucks the gravity of the scene, if it has one; what contradicts it is told."""
+    gravity, several = values.get("gravity"), bool(values.get("pucks"))
+    if gravity is not None or before is not None:
+        _weigh(values, STANDARD_GRAVITY if gravity is None else gravity)
+    pucks = values["pucks"] if several else (values["puck"],)
+    for number, puck in enumerate(pucks):
+        path = f"puck[{number}].gravity" if several else "puck.gravity"
+        said = path if path in ranges else f"{path} = {puck.gravity:g}"
+        if gravity is None:
+            if several and (path in ranges or puck.gravity != pucks[0].gravity):
                 yield (
-                    f"{path.format(number)}.gravity = {puck.gravity:g}: the scene's gravity, "
-                    f"{gravity:g} m/s^2, is that of all its pucks: leave one of them out"
+                    f"{said}, where puck[0] has {pucks[0].gravity:g} m/s^2: pucks of one scene "
+                    f"have one gravity, write it once above all, as gravity = {puck.gravity:g}, "
+                    "and for no puck"
                 )
-        heavy = tuple(replace(puck, gravity=gravity) for puck in pucks)
-        if heavy:
-            values[name] = heavy[0] if name == "puck" else heavy
+                return
+        elif not isinstance(puck.gravity, Unsaid) and (
+            path in ranges or "gravity" in ranges or puck.gravity != gravity
+        ):
+            yield (
+                f"{said}: the scene's gravity, {gravity:g} m/s^2, is that of all its pucks: leave "
+                "one of them out"
+            )
+
+
+def _weigh(values: dict[str, Any], gravity: float) -> None:
+    """Give a gravity to all pucks that were not given one."""
+
+    def heavy(puck: PuckSpec) -> PuckSpec:
+        if puck.gravity == gravity or not isinstance(puck.gravity, Unsaid):
+            return puck
+        return replace(puck, gravity=Unsaid(gravity))
+
+    if values.get("puck"):
+        values["puck"] = heavy(values["puck"])
+    values["pucks"] = tuple(map(heavy, values.get("pucks") or ()))

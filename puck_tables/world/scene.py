@@ -1,49 +1,159 @@
-"""All that can be asked of a scene.
+"""The scene, and what can be asked of it.
 
-What answers stands above the scene, and is loaded when it is asked.
+What answers stands below, and is loaded when it is asked: importing the scene stays light.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from importlib import import_module
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Self
 
 import numpy.typing as npt
 
 from puck_tables._core.executor import Progress
+from puck_tables._core.fields import of
+from puck_tables.puck import Puck
+from puck_tables.scene.agreement import disagreements
+from puck_tables.scene.library import find_scene
+from puck_tables.scene.pieces import PieceSpec
+from puck_tables.scene.scene_spec import SceneSpec
 
 if TYPE_CHECKING:
     from puck_tables.bulk.spreads import Spread
-    from puck_tables.scene.outcome import SceneRun
-    from puck_tables.scene.sample import SceneSample
-    from puck_tables.scene.sweep import SceneMap
+    from puck_tables.scene.run import Run
     from puck_tables.world.aimed import BoardAim
+    from puck_tables.world.map import Map
+    from puck_tables.world.sample import Sample
     from puck_tables.world.world import World
 
 
-class SceneVerbs:
-    """Questions to a :class:`puck_tables.Scene`, which has these verbs."""
+@dataclass(frozen=True)
+class Piece(PieceSpec, Puck):
+    """One of several pucks: a puck with a name, a place or a launch, and a rim that others meet.
 
-    def simulate(self, times: npt.ArrayLike | None = None) -> SceneRun:
+    Parameters
+    ----------
+    radius, height, friction, mass, gravity, pressure, gyration
+        As :class:`puck_tables.Puck`.
+    name, colour : in reports and pictures
+        A colour is '#rrggbb' or a name of CSS, such as 'steelblue'.
+    launch : Launch
+        Its place, and how it is sent; left out it lies at rest until it is hit.  Before
+        ``launch.time`` it lies at its place.  Velocities (n, 2) are many launches, of one puck of
+        a scene: an axis of its sweep.
+    restitution, tangential, rim : impacts with other pucks
+        e, 0 to 1, or a law by which it falls with the speed of approach, see
+        :mod:`puck_tables.scene.restitution`; tangential restitution, −1 smooth, 0 the rims stop on
+        each other, 1 their slip reverses; Coulomb's coefficient of the rims, which limits the
+        tangential impulse.  Where two pucks meet the smaller of each counts, of restitutions at
+        that speed; cushions have their own; a :class:`Rim` of a pair comes before both.
+    path : rows or CSV of t, x, y and perhaps the angle
+        A body that is driven there, straight between the rows, such as a mallet: pucks bounce off
+        it, and nothing stops it.  :func:`puck_tables.path_along` makes rows of a function.
+    force, constraint : Force and Constraint, optional
+        What acts on this puck alone, and what leads it.
+
+    Examples
+    --------
+    >>> from puck_tables import Launch
+    >>> striker = Piece(0.0206, friction=0.1, name="striker", launch=Launch((3.0, 0.0)))
+    >>> striker.name, striker.rim
+    ('striker', inf)
+    """
+
+
+@dataclass(frozen=True, eq=False)
+class Scene(SceneSpec):
+    """A puck on a floor, its launch, and whatever acts on it: checked when it is made.
+
+    Parts may also be tables.  Numbers may be numpy scalars; where a number stands a list, an array
+    or a text 'START:STOP:COUNT' is a range, a dimension of :meth:`sweep`.  Such a number stands at
+    its first value (its last, where no puck can have the first), its values in ``ranges``.  Many
+    launches at once are velocities (n, 2), see :class:`puck_tables.Launch`: their range is
+    ``launch``, rows of vx, vy, spin, x, y, orientation.
+
+    Parameters
+    ----------
+    puck : Puck
+    floor, launch, drag, lateral, force, title : optional
+        As :mod:`puck_tables.scene.parts` has them.
+    walls, edges : sequences of Wall, of Edge, optional
+    pucks, posts, arcs, pockets, rims : sequences, optional
+        As :mod:`puck_tables.scene.pieces` has them.
+    constraint : Constraint, optional
+    time : s, > 0, optional
+        How long; left out, until rest.
+    frames, tol : optional
+        How many states to save; the error wanted, of Q/J and Q²/J.
+    gravity : m/s², > 0, optional
+        Of all its pucks.  Left out, it is what the pucks have: one, where there are several.
+    ranges : mapping, optional
+        Values of numbers that take several, by path, such as ``{"puck.height": [0.0, 0.01]}``.  A
+        changed copy (:func:`dataclasses.replace`) keeps those of the parts that it keeps.
+
+    Raises
+    ------
+    InputError
+        If anything is wrong: every error with its path, its value and what is allowed.
+
+    Examples
+    --------
+    >>> from puck_tables import Floor, Launch
+    >>> puck = Puck(radius=0.04, friction=0.1)
+    >>> scene = Scene(puck, Floor(slope=0.05), Launch((1.0, 0.0), spin=20.0))
+    >>> round(scene.simulate().end_time, 6)
+    2.329592
+    >>> Scene(puck, launch=Launch(spin=[0.0, 5.0])).ranges["launch.spin"].tolist()
+    [0.0, 5.0]
+    """
+
+    puck: Puck = of("part", None, part=Puck)
+    pucks: tuple[Piece, ...] = of("parts", (), part=Piece, table="puck[]")
+
+    def _disagreements(self) -> list[str]:
+        """What is wrong between its parts."""
+        if self.is_board:
+            from puck_tables.world.agreement import disagreements as of_board
+
+            return of_board(self)
+        return disagreements(self)
+
+    @classmethod
+    def load(cls, name: str | Path) -> Self:
+        """A scene from a TOML file, or one that is shipped, by its name.
+
+        Raises
+        ------
+        InputError
+            If there is neither, or anything in it is wrong.
+
+        Examples
+        --------
+        >>> Scene.load("incline").title
+        'Puck on an incline'
+        """
+        return cls.from_tables(find_scene(str(name)), str(name))
+
+    def simulate(self, times: npt.ArrayLike | None = None) -> Run:
         """Run it, from the launch to the end.
 
         Parameters
         ----------
         times : array_like, s, ≥ 0, ascending, optional
-            When to save states; else ``run.frames`` of them from the launch to the end.
+            When to save states; else ``frames`` of them from the launch to the end.
 
         Returns
         -------
-        SceneRun
+        Run
             States beyond the end of the run are left out, except at rest.
 
         Raises
         ------
         InputError
             If a number of it is a range, or it has not ended after a thousand times its time scale
-            and gives no ``run.time``.
+            and gives no ``time``.
         PuckError
             If the motion leaves floating point, or too many events crowd together.
 
@@ -59,8 +169,13 @@ class SceneVerbs:
         >>> run.end, round(run.end_time, 6)
         ('at rest', 2.253703)
         """
-        run: SceneRun = _answers(self, "simulate").simulate(self, times)
-        return run
+        if self.is_board:
+            from puck_tables.world.simulate import simulate as on_board
+
+            return on_board(self, times)
+        from puck_tables.scene.simulate import simulate
+
+        return simulate(self, times)
 
     def sweep(
         self,
@@ -71,7 +186,7 @@ class SceneVerbs:
         store: str | Path | None = None,
         cluster: str | None = None,
         overwrite: bool = False,
-    ) -> SceneMap:
+    ) -> Map:
         """Run it for all combinations of the numbers in it that are ranges.
 
         Parameters
@@ -84,8 +199,9 @@ class SceneVerbs:
 
         Returns
         -------
-        SceneMap
-            A run that has no end, or that is refused, is named in :meth:`SceneMap.without_end`.
+        Map
+            A run that has no end, or that is refused, is named in :meth:`Map.without_end`.  Of a
+            list of ``pucks`` its columns have a last dimension over them.
 
         Raises
         ------
@@ -99,11 +215,13 @@ class SceneVerbs:
         >>> Scene(puck, launch=Launch(velocities, spin=[0.0, 9.0])).sweep().y.round(6).tolist()
         [0.0, 2.056068]
         """
-        stops: SceneMap = _answers(self, "sweep").sweep(
+        from puck_tables.world.runs import sweep
+
+        ends: Map = sweep(
             self, threads=threads, chunk=chunk, progress=progress, store=store, cluster=cluster,
             overwrite=overwrite,
         )  # fmt: skip
-        return stops
+        return ends
 
     def sample(
         self,
@@ -117,7 +235,7 @@ class SceneVerbs:
         store: str | Path | None = None,
         cluster: str | None = None,
         overwrite: bool = False,
-    ) -> SceneSample:
+    ) -> Sample:
         """Run it with numbers that scatter.
 
         Parameters
@@ -129,13 +247,14 @@ class SceneVerbs:
 
         Returns
         -------
-        SceneSample
-            With the summaries of :meth:`puck_tables.Puck.sample`.
+        Sample
+            With the summaries of :meth:`puck_tables.Puck.sample`; of a list of ``pucks`` those of
+            each, ``sample.of("red").mean()``, and how often it leaves play.
 
         Raises
         ------
         InputError
-            If nothing scatters, what does is no number of the scene, or it is a board.
+            If nothing scatters, or what does is no number of the scene.
 
         Examples
         --------
@@ -144,8 +263,17 @@ class SceneVerbs:
         >>> found = scene.sample(1000, 7, {"launch.velocity[0]": Normal(1.0, 0.01)})
         >>> round(found.mean()["x"], 3)
         0.51
+        >>> from puck_tables import Launch, Piece
+        >>> cue = Piece(0.03, friction=0.1, name="cue", launch=Launch((1.0, 0.0)))
+        >>> red = Piece(0.03, friction=0.1, name="red", launch=Launch(position=(0.3, 0.0)))
+        >>> spreads = {"puck[0].launch.velocity[1]": Normal(0.0, 0.01)}
+        >>> found = Scene(pucks=[cue, red]).sample(100, 7, spreads)
+        >>> round(found.of("red").mean()["x"], 3)
+        0.569
         """
-        found: SceneSample = import_module("puck_tables.scene.sample").sample(
+        from puck_tables.world.runs import sample
+
+        found: Sample = sample(
             self, count, seed, spreads, threads=threads, chunk=chunk, progress=progress,
             store=store, cluster=cluster, overwrite=overwrite,
         )  # fmt: skip
@@ -165,8 +293,9 @@ class SceneVerbs:
         >>> Scene(pucks=[Piece(0.03, friction=0.1)]).world()
         World(1 pucks, 0 moving, at 0 s)
         """
-        world: World = import_module("puck_tables.world.world").World(self)
-        return world
+        from puck_tables.world.world import World
+
+        return World(self)
 
     def aim(
         self,
@@ -228,14 +357,10 @@ class SceneVerbs:
         >>> found.courses, found.launch_speed.round(6).tolist()
         (('cue - red',), [1.23967])
         """
-        found: BoardAim = import_module("puck_tables.world.aim").aim(
+        from puck_tables.world.aim import aim
+
+        return aim(
             self, target, puck=puck, striker=striker, pocket=pocket, hits=hits, spin=spin,
             speed=speed, max_speed=max_speed, max_spin=max_spin, max_impacts=max_impacts,
             count=count, progress=progress,
         )  # fmt: skip
-        return found
-
-
-def _answers(scene: Any, question: str) -> Any:
-    """The module that answers: of boards another one than of one puck."""
-    return import_module(f"puck_tables.{'world' if scene.is_board else 'scene'}.{question}")

@@ -1,4 +1,4 @@
-"""Picture of a sweep of several pucks: where each of them ends, on the board."""
+"""Picture of many runs of several pucks: where each of them ends, on the board."""
 
 from __future__ import annotations
 
@@ -11,21 +11,25 @@ from puck_tables._core.colours import on_white
 from puck_tables.errors import InputError
 from puck_tables.plot.board import draw_board, show
 from puck_tables.plot.board_panels import close_up, finished, panels_for
-from puck_tables.plot.film import Box, Film, film_of
+from puck_tables.plot.film import Animation, Box, film_of
+from puck_tables.plot.sample import HELD, cloud_of
 from puck_tables.plot.style import GREY
 from puck_tables.plot.words import counted, legend_below, noted
-from puck_tables.world.sweep import TIME_UP, WorldMap
+from puck_tables.scene.loop import OVER_EDGE
+from puck_tables.world.sample import Sample
+from puck_tables.world.scene_ends import SceneEnds
+from puck_tables.world.simulate import simulate
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_NAMED = 8
+_NAMED = 8  # pucks: a legend of more hides the picture
 _MOST_ENDS = (0.02, 0.98)  # of the ends stand in a close-up
 _BOARD = ("wall", "edge", "post", "arc", "pocket", "floor")  # what may range and is drawn once
 
 
-def draw(ends: WorldMap) -> Figure:
+def draw(ends: SceneEnds) -> Figure:
     """The ends of all runs as points in the colours of the pucks, crosses where they left play.
 
     Raises
@@ -44,12 +48,14 @@ def draw(ends: WorldMap) -> Figure:
         inside = (x >= box[0]) & (x <= box[1]) & (y >= box[2]) & (y <= box[3])
         beyond = int((np.isfinite(x) & ~inside).sum())
         noted(axes, f"close-up; {beyond} of {np.isfinite(x).sum()} ends lie outside")
-    title = f"{ends.scene.title or 'Scene'}: ends of {counted(ends.end.size, 'run')}"
+    title = f"{ends.title}: ends of {counted(ends.end.size, 'run')}"
+    if isinstance(ends, Sample):
+        title += f", {ends.drawn_words}"
     finished(figure, panels, boxes, title)
     return figure
 
 
-def draw_on(axes: Axes, ends: WorldMap) -> None:
+def draw_on(axes: Axes, ends: SceneEnds) -> None:
     """The board alone.
 
     Raises
@@ -63,14 +69,15 @@ def draw_on(axes: Axes, ends: WorldMap) -> None:
     legend_below(axes)
 
 
-def _board(ends: WorldMap) -> Film:
-    if not (ends.end <= TIME_UP).any():
+def _board(ends: SceneEnds) -> Animation:
+    ended = np.flatnonzero(ends.end.ravel() <= OVER_EDGE)
+    if not ended.size:
         told = ends.told or ("no run has an end",)
         raise InputError(f"there is nothing to draw: {'; '.join(told)}")
-    return film_of(ends.an_example())
+    return film_of(simulate(ends.scene.at(ends.numbers(int(ended[0])))))
 
 
-def _draw(axes: Axes, ends: WorldMap, film: Film, box: Box) -> None:
+def _draw(axes: Axes, ends: SceneEnds, film: Animation, box: Box) -> None:
     """The board, and every end on it."""
     draw_board(axes, film)
     named = len(ends.names) <= _NAMED
@@ -87,6 +94,12 @@ def _draw(axes: Axes, ends: WorldMap, film: Film, box: Box) -> None:
                 color=on_white(body.colour), zorder=3, rasterized=True,
                 label=(" " * words.startswith("_") + words) if named and count else None,
             )  # fmt: skip
+        if isinstance(ends, Sample):
+            _hold(axes, x[playing > 0.0], y[playing > 0.0], body.line)
+    if isinstance(ends, Sample):
+        axes.plot(
+            [], [], color=GREY, linewidth=1.0, label=f"holds {100 * HELD:.0f} % of a puck in play"
+        )
     for stays, marker in ((True, "."), (False, "x")):
         if not named and total[stays]:
             words = f"{total[stays]} {'in' if stays else 'left'} play"
@@ -94,11 +107,23 @@ def _draw(axes: Axes, ends: WorldMap, film: Film, box: Box) -> None:
     show(axes, box)
 
 
-def _note(axes: Axes, ends: WorldMap, film: Film) -> None:
+def _hold(axes: Axes, x: FloatArray, y: FloatArray, colour: str) -> None:
+    """A line around most of the places of a puck that stays in play, where they are a cloud."""
+    cloud = cloud_of(x, y)
+    if cloud is None:
+        return
+    level = np.quantile(cloud.at_samples, 1.0 - HELD)
+    if level > 0.0:
+        axes.contour(
+            *cloud.middles, cloud.density, levels=[level], colors=[colour], linewidths=1.0, zorder=4
+        )
+
+
+def _note(axes: Axes, ends: SceneEnds, film: Animation) -> None:
     """Say above the board what is not on it."""
-    lost = int((ends.end > TIME_UP).sum())
+    lost = ends.end.size - ends.ended
     notes = [f"{lost} of {counted(ends.end.size, 'run')} without an end"] if lost else []
-    if any(path.startswith(_BOARD) for path in ends.scene.ranges):
+    if any(path.startswith(_BOARD) for path in ends.ranging):
         notes.append("the board is that of the first run")
     if film.hidden:
         notes.append(film.hidden)
@@ -106,7 +131,7 @@ def _note(axes: Axes, ends: WorldMap, film: Film) -> None:
         noted(axes, "; ".join(notes))
 
 
-def _close_up(ends: WorldMap, film: Film) -> list[Box]:
+def _close_up(ends: SceneEnds, film: Animation) -> list[Box]:
     """Around most of the ends, where pucks are too small to be seen."""
     there = ends.columns["in_play"] > 0.0  # NaN: no end
     if not there.any():
@@ -117,7 +142,7 @@ def _close_up(ends: WorldMap, film: Film) -> list[Box]:
     return close_up(_box(ends, film), np.stack(middle, axis=1), radius)
 
 
-def _box(ends: WorldMap, film: Film) -> Box:
+def _box(ends: SceneEnds, film: Animation) -> Box:
     """What shows the board and all ends."""
     left, right, low, top = film.box
     radius = max(piece.radius for piece in ends.scene.pucks) if ends.scene.pucks else 0.0

@@ -1,0 +1,151 @@
+"""What the heading of a column of numbers says: which it is, and its unit."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from puck_tables._core.units import EXAMPLES, bracketed, is_unit, unit_behind, unit_size
+from puck_tables.errors import InputError
+
+_TOKEN = re.compile(r"[^\W\d_]+")
+_ERRORS = {"std", "sd", "se", "sem", "sigma", "err", "error", "errors", "var", "uncertainty",
+           "unsicherheit", "fehler"}  # fmt: skip
+_FRAMES = {"frame", "frames", "framenumber", "frameno", "bild", "image", "slice"}
+_DIAMETERS = {"diameter", "diametre", "diam", "dia", "durchmesser"}
+_FREQUENCIES = {"hz", "khz", "mhz", "1/s", "s^-1", "s-1", "fps"}
+# numbers by which a heading says that its own are to be multiplied
+_FACTOR = re.compile(
+    r"[*×·⋅]\s*\d|\d\s*[*×·⋅]|(?<=[\s(\[_])x\s*\d{2,}|\d{2,}\s*x\b|\b10\s*(?:\^|\*\*|[⁰¹²³⁴-⁹⁻])"
+    r"|\b1\s*e\s*[-+]?\d|/\s*10+\b|\bper\s+10+\b|[(\[]\s*(?:10+|\d*\.\d+)\s*[)\]]|^\s*10+\s|\bin\s+10+\b"
+    r"|\bthousandths?\b|\bhundredths?\b", re.IGNORECASE,
+)  # fmt: skip
+
+
+class Column(NamedTuple):
+    """A column that may be wanted.
+
+    ``name``: in messages; ``words``: by which a heading is known, the first as an example;
+    ``kind``: of its unit, see :func:`puck_tables._core.units.unit_size`.
+    """
+
+    name: str
+    words: str
+    kind: str
+
+    @property
+    def written(self) -> str:
+        """A heading as somebody may write it."""
+        word, unit = self.words.split()[0], EXAMPLES.get(self.kind)
+        return f"{word} [{unit}]" if unit else word
+
+
+TIME = Column("time", "t time times zeit temps tiempo tempo tijd sec secs seconds", "time")
+X = Column("x", "x xpos posx xcoord", "length")
+Y = Column("y", "y ypos posy ycoord", "length")
+ANGLE = Column("angle", "angle theta θ phi φ orientation rotation winkel", "angle")
+SPEED = Column(
+    "speed", "v u speed speeds velocity velocities geschwindigkeit vitesse velocidad", "velocity"
+)
+FRICTION = Column(
+    "friction coefficient", "f mu µ μ cof coef coeff coefficient friction reibwert reibzahl "
+    "reibungszahl reibungskoeffizient", "ratio",
+)  # fmt: skip
+RESTITUTION = Column("restitution", "e cor restitution", "ratio")
+RADIUS = Column("radius", f"r radius radii rho ρ x radial {' '.join(_DIAMETERS)}", "radius")
+PRESSURE = Column("pressure", "p pressure w load stress druck pression", "any")
+FORCE_X = Column("force along x", "Fx fx forcex xforce", "force")
+FORCE_Y = Column("force along y", "Fy fy forcey yforce", "force")
+TORQUE = Column("torque", "torque moment m mz tz tau drehmoment", "torque")
+ALL = (TIME, X, Y, ANGLE, SPEED, FRICTION, RESTITUTION, RADIUS, PRESSURE, FORCE_X, FORCE_Y, TORQUE)
+
+
+def known_as(text: str, columns: Sequence[Column]) -> Column | None:
+    """Which of several columns a heading names."""
+    tokens = _tokens(text)
+    if _ERRORS & set(tokens):
+        return None
+    for token in ["".join(tokens), *reversed(tokens)]:  # the last says what it is: 'slip speed'
+        for column in columns:
+            if token in column.words.lower().split():
+                return column
+    return None
+
+
+def measures(text: str) -> bool:
+    """Whether a heading is a unit, or is of frames: what it measures is then known."""
+    bare = text.strip("[]() ")
+    return is_unit(bare) or bare.lower() in _FREQUENCIES or is_frame(text)
+
+
+def is_frame(text: str) -> bool:
+    """Whether a heading is of numbers of frames.
+
+    Examples
+    --------
+    >>> is_frame("Frame no"), is_frame("t [s]")
+    (True, False)
+    """
+    return bool(_FRAMES & set(_tokens(text)))
+
+
+def _tokens(text: str) -> list[str]:
+    """The words of the name in a heading."""
+    return [token.lower() for token in _TOKEN.findall(bracketed(text)[0])]
+
+
+def with_names(headings: Sequence[str], columns: Sequence[Column]) -> list[str]:
+    """Headings of which those that are a unit alone, 'mm/s', have the name of what it measures."""
+    named = {known_as(text, columns) for text in headings}
+    whole = []
+    for text in headings:
+        bare = text.strip("[]() ")
+        fits = [
+            one for one in columns
+            if one not in named and one.kind != "any" and unit_size(bare, one.kind) is not None
+        ]  # fmt: skip
+        if bare and len(fits) == 1 and known_as(text, columns) is None:
+            named.add(fits[0])
+            text = f"{fits[0].words.split()[0]} [{bare}]"
+        whole.append(text)
+    return whole
+
+
+def unit_of(path: str, text: str, column: Column) -> tuple[str, float]:
+    """The unit in a heading as it is written, and its size.
+
+    Raises
+    ------
+    InputError
+        If it is none of the column's kind: what stands in brackets, or behind the name and is one
+        of another kind; or if there is a factor beside it.
+    """
+    if column.kind != "any" and (factor := _FACTOR.search(text)):
+        raise InputError(
+            f"{path}: its column '{text:.40}' has a factor, '{factor[0].strip()}': write the "
+            f"numbers themselves under '{column.written}'"
+        )
+    name, unit = bracketed(text)
+    if column.kind == "ratio" and (sign := re.search("[%‰]", text)):
+        unit = sign[0]  # also 'mu%', 'COF (in %)'
+    words = bool(unit) and column.kind in ("ratio", "radius") and not text.rstrip().endswith("]")
+    if words and not is_unit(unit) and unit_size(unit, column.kind) is None:
+        unit = ""  # 'COF (dynamic)'
+    unit = unit or unit_behind(name, column.kind)
+    other = column.kind in EXAMPLES and any(unit_behind(name, kind) for kind in EXAMPLES)
+    across = column.kind == "radius" and bool(_DIAMETERS & set(_tokens(text)))
+    if across and unit_size(unit, "length") is None:
+        raise InputError(
+            f"{path}: its column '{text:.40}' needs a unit of length, such as [mm], or give radii"
+        )
+    if not (unit or other):
+        return "", 1.0
+    size = unit_size(unit, column.kind) if unit else None
+    if size is None:
+        example = EXAMPLES.get(column.kind)
+        what = f"write one such as {example}" if example else "it is a pure number"
+        raise InputError(
+            f"{path}: the unit of its column '{text:.40}' ({column.name}) is not known: {what}"
+        )
+    return unit, 0.5 * size if across else size

@@ -1,0 +1,105 @@
+"""Maps over a scene: how and where it ends, for all combinations of the numbers that range."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.errors import InputError
+from puck_tables.io.dataset import Dataset, Variable
+from puck_tables.scene.entries import is_batch, launch_paths
+from puck_tables.scene.library import files_of
+from puck_tables.scene.outcome import plain_name
+from puck_tables.world.map_error import largest_error
+from puck_tables.world.scene_ends import SceneEnds, axes_of, number_along
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Map(SceneEnds):
+    """Ends of a scene over its ranges.
+
+    ``scene``: with its ranges; ``names``: of its pucks, none where it has one ``puck``;
+    ``columns``: arrays of the shape of ``axes`` by name, of several pucks with the pucks last
+    (``x``, ``in_play``, …), units as everywhere, NaN for a run without an end, each also an
+    attribute; ``map["red"]``: those of one puck, ``map.of("red")`` the map of it.  ``end``: how
+    each run ends, an index of ``meanings``; ``model``: what was taken for the first run that is
+    valid; ``files``: what stands in the files that the scene names, by path.
+    """
+
+    @property
+    def picture(self) -> str:  # type: ignore[override]
+        """The module that draws it."""
+        return "board_ends" if self.names else "scene_map"
+
+    @property
+    def axes(self) -> dict[str, FloatArray]:
+        """What ranges, by path; many launches by their numbers from 0 on."""
+        return axes_of(self.scene)
+
+    @property
+    def ranging(self) -> tuple[str, ...]:
+        """The numbers of the scene that differ between its runs, by path."""
+        return tuple(self.scene.ranges)
+
+    def __repr__(self) -> str:
+        ranged = " x ".join(f"{path} ({values.size})" for path, values in self.axes.items())
+        return f"Map({self.title} over {ranged}, {self.model})"
+
+    def numbers(self, run: int) -> dict[str, float]:
+        """The numbers of the scene in a run, counted from 0 with the last range fastest, by path.
+
+        Examples
+        --------
+        >>> from puck_tables import Launch, Puck, Scene
+        >>> ranges = {"puck.friction": [0.1, 0.2], "launch.spin": [0.0, 3.0]}
+        >>> scene = Scene(Puck(0.04), launch=Launch((1.0, 0.0)), ranges=ranges)
+        >>> scene.sweep().numbers(2)
+        {'puck.friction': 0.2, 'launch.spin': 0.0}
+        """
+        found: dict[str, float] = {}
+        place = np.unravel_index(run, self.end.shape)
+        for (path, values), i in zip(self.scene.ranges.items(), place, strict=True):
+            if is_batch(path):
+                found |= zip(launch_paths(path), values[i].tolist(), strict=True)
+            else:
+                found[path] = float(values[i])
+        return found
+
+    @cached_property
+    def error_estimate(self) -> float | None:
+        """The largest error of a few runs, each done again alone, with twins; in Q/J and Q²/J.
+
+        None for boards, whose runs alone say how far their ends may be off.
+
+        Raises
+        ------
+        InputError
+            If a file that the scene names has changed since the sweep.
+        """
+        if self.scene.is_board:
+            return None
+        if files_of(self.scene) != self.files:
+            raise InputError("a file that the scene names has changed since: sweep it again")
+        return largest_error(self)
+
+    def along(self) -> tuple[tuple[str, ...], dict[str, Variable], dict[str, Variable]]:
+        """Dimensions, axes, and the numbers of many launches."""
+        dims = tuple(plain_name(path) for path in self.axes)
+        axes, columns = {}, {}
+        for path, values in self.axes.items():
+            axis = plain_name(path)
+            axes[axis] = number_along(self.scene, path, values, axis)
+            if is_batch(path):
+                for one, row in zip(launch_paths(path), self.scene.ranges[path].T, strict=True):
+                    if one not in self.axes:
+                        columns[plain_name(one)] = number_along(self.scene, one, row, axis)
+        return dims, axes, columns
+
+    def dataset(self) -> Dataset:
+        """The results over what ranges; the scene and its files as texts."""
+        found, error = super().dataset(), self.error_estimate
+        more = {"model": self.model} | ({} if error is None else {"error_estimate": error})
+        return replace(found, attributes={**found.attributes, **more})

@@ -1,0 +1,339 @@
+"""Many runs of a scene: over its ranges, or with numbers that are drawn; where and how each ends.
+
+Runs that differ in nothing but launches are done together, by the engine that the scene asks for.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.digest import files_named, refuse_changed
+from puck_tables._core.executor import Progress
+from puck_tables._core.memory import check_memory
+from puck_tables._core.real import instance
+from puck_tables.bulk.finish import check_part, finish
+from puck_tables.bulk.spreads import Spread, checked_samples
+from puck_tables.bulk.work import Columns, Tally, Work
+from puck_tables.contact.laws import Law
+from puck_tables.errors import InputError
+from puck_tables.io.dataset import Dataset
+from puck_tables.scene.case import Case, told_apart
+from puck_tables.scene.entries import is_batch, launch_paths, tables_of
+from puck_tables.scene.library import files_of
+from puck_tables.scene.loop import OVER_EDGE
+from puck_tables.scene.outcome import ENDS, REFUSED, plain_name
+from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.world.agreement import pieces_of
+from puck_tables.world.board_case import BoardCase
+from puck_tables.world.map import Map
+from puck_tables.world.sample import Sample
+from puck_tables.world.scene_ends import SceneEnds, axes_of
+
+FEWEST, MOST = 1 << 6, 1 << 13  # runs kept together in a store
+_COPIES = 4  # of the columns: as made, in their shape, and what follows from them
+
+
+def sweep(
+    scene: SceneSpec, *, threads: int | None, chunk: int, progress: Progress | None,
+    store: str | Path | None, cluster: str | None, overwrite: bool,
+) -> Any:  # fmt: skip
+    """The map over a scene, as :meth:`puck_tables.Scene.sweep` has it."""
+    return _done(Runs(scene, chunk), threads, progress, store, cluster, overwrite)
+
+
+def sample(
+    scene: SceneSpec, count: int, seed: int, spreads: Mapping[str, Spread], *, threads: int | None,
+    chunk: int, progress: Progress | None, store: str | Path | None, cluster: str | None,
+    overwrite: bool,
+) -> Any:  # fmt: skip
+    """Samples of a scene, as :meth:`puck_tables.Scene.sample` has it."""
+    checked_samples(count, seed)
+    instance("spreads", spreads, Mapping)
+    work = DrawnRuns(scene, chunk, None, count, seed, dict(spreads))
+    return _done(work, threads, progress, store, cluster, overwrite)
+
+
+def _done(
+    work: Runs, threads: int | None, progress: Progress | None, store: str | Path | None,
+    cluster: str | None, overwrite: bool,
+) -> Any:  # fmt: skip
+    if store is None:
+        work.refuse_memory()
+    return finish(work, threads, progress, store, cluster, overwrite)
+
+
+class Runs(Work):
+    """The runs of a scene over its ranges.
+
+    Raises
+    ------
+    InputError
+        If nothing ranges.
+    """
+
+    code = "end"
+    meanings = ENDS
+    spreads: Mapping[str, Spread] = {}
+
+    def __init__(
+        self, scene: SceneSpec, part: int, read: dict[str, str] | None = None,
+        axes: Mapping[str, FloatArray] | None = None, shape: tuple[int, ...] | None = None,
+    ) -> None:  # fmt: skip
+        check_part(part)
+        self.scene, self.part = scene, part
+        self.axes = axes_of(scene) if axes is None else axes
+        if not self.axes:
+            own = "puck[0].launch.spin" if scene.pucks else "launch.spin"
+            raise InputError(
+                "no number of the scene is a range: write one as 'START:STOP:COUNT' or as a list "
+                f"(such as {own} = '0:10:101')"
+            )
+        self.shape = tuple(values.size for values in self.axes.values()) if shape is None else shape
+        self._kind: type[Case] | type[BoardCase] = BoardCase if scene.is_board else Case
+        self.names, self.columns = self._kind.names(scene), self._kind.columns(scene)
+        self.block = min(MOST, max(FEWEST, self.size // 64))
+        self._whole, self.files = tables_of(scene), files_of(scene)
+        self._read = files_named(self._whole) if read is None else read
+        self._inner = {one for path in self.axes for one in self._kind.launches(scene, path)}
+        self._case = lru_cache(maxsize=8)(self._made)
+
+    def __reduce__(self) -> Any:
+        return Runs, (self.scene, self.part, self._read)
+
+    @property
+    def identity(self) -> Mapping[str, Any]:
+        """The scene, its ranges, and what stands in the files that it names."""
+        pucks = [
+            {**table, "pressure": told_apart(puck)} if isinstance(puck.pressure, Law) else table
+            for puck, table in zip(pieces_of(self.scene), self._tables, strict=True)
+        ]
+        ranges = list(self.scene.ranges.items())
+        return {"scene": {**self._whole, "puck": pucks}, "axes": ranges, "files": self._read}
+
+    @property
+    def _tables(self) -> list[dict[str, Any]]:
+        pucks = self._whole["puck"]
+        return pucks if isinstance(pucks, list) else [pucks]
+
+    def refuse_memory(self) -> None:
+        """Refuse what would not fit in memory.
+
+        Raises
+        ------
+        InputError
+        """
+        check_memory(self.shape, 8 * _COPIES * sum(math.prod(one) for one in self.columns.values()))
+
+    def numbers(self, start: int, stop: int) -> dict[str, FloatArray]:
+        """What differs between runs, by path, of some of them."""
+        places = np.unravel_index(np.arange(start, stop), self.shape)
+        found: dict[str, FloatArray] = {}
+        for (path, values), place in zip(self.scene.ranges.items(), places, strict=True):
+            if is_batch(path):
+                found |= zip(launch_paths(path), values[place].T, strict=True)
+            else:
+                found[path] = values[place]
+        return found
+
+    def along(self, run: int) -> dict[str, float]:
+        """Where a run is along the axes."""
+        place = np.unravel_index(run, self.shape)
+        axes = zip(self.axes.items(), place, strict=True)
+        return {path: float(values[i]) for (path, values), i in axes}
+
+    def _made(self, numbers: tuple[tuple[str, float], ...]) -> Case | BoardCase | InputError:
+        try:
+            return self._kind(self.scene.at(dict(numbers)))
+        except InputError as error:
+            return error
+
+    def of(self, start: int, stop: int) -> Columns:
+        """The ends of some runs.
+
+        Raises
+        ------
+        InputError
+            If a file that the scene names was changed meanwhile.
+        """
+        numbers, count = self.numbers(start, stop), stop - start
+        outer = {path: values.tolist() for path, values in numbers.items()
+                 if path not in self._inner}  # fmt: skip
+        keys = list(zip(*outer.values(), strict=True)) or [()] * count
+        found: Columns = {n: np.full((count, *one), np.nan) for n, one in self.columns.items()}
+        found[self.code] = np.full(count, REFUSED, np.int8)
+        begin = 0
+        while begin < count:  # runs that differ in nothing but launches, together
+            last = begin + 1
+            while last < count and keys[last] == keys[begin]:
+                last += 1
+            part = {path: values[begin:last] for path, values in numbers.items()}
+            self._together(tuple(zip(outer, keys[begin], strict=True)), part, found, begin, last)
+            begin = last
+        refuse_changed(self._whole, self._read)
+        return found
+
+    def _together(
+        self, fixed: tuple[tuple[str, float], ...], numbers: Mapping[str, FloatArray],
+        found: Columns, start: int, stop: int,
+    ) -> None:  # fmt: skip
+        """Ends of runs that differ in nothing but launches, of which one may not be allowed."""
+        launches = {path: values for path, values in numbers.items() if path in self._inner}
+        case = self._case(fixed)
+        try:
+            if isinstance(case, InputError):  # perhaps by the launch that the scene itself has
+                ends, end = self._alone(numbers) if stop - start == 1 and launches else ({}, None)
+            else:
+                ends, end = case.ends(launches, stop - start)
+        except InputError:
+            ends, end = {}, None
+        if end is None and launches and stop - start > 1:
+            for i in range(stop - start):
+                one = {path: values[i : i + 1] for path, values in numbers.items()}
+                self._together(fixed, one, found, start + i, start + i + 1)
+        elif end is not None:
+            for name, values in ends.items():
+                found[name][start:stop] = values
+            found[self.code][start:stop] = end
+
+    def _alone(self, numbers: Mapping[str, FloatArray]) -> Any:
+        """The end of one run, in a case of its own."""
+        one = self.scene.at({path: float(values[0]) for path, values in numbers.items()})
+        return self._kind(one).ends({}, 1)
+
+    def _refusal(self, run: int) -> str:
+        """Why a run is refused."""
+        try:
+            return str(self._alone(self.numbers(run, run + 1)))
+        except InputError as error:
+            return str(error)
+
+    def checked(self, tally: Tally) -> None:
+        """Refuse runs none of which has an end."""
+        if any(code <= OVER_EDGE for code in tally.counts):
+            return
+        if set(tally.counts) == {REFUSED}:
+            refusal = self._refusal(tally.first[REFUSED])
+            raise InputError(f"every run of this sweep is refused, the first: {refusal}")
+        raise InputError("\n  ".join(["no run of this sweep has an end", *self.without_end(tally)]))
+
+    def without_end(self, tally: Tally) -> list[str]:
+        """A line for each way in which runs have no end: how many, the first, and what to do."""
+        lines = []
+        for code, count in tally.counts.items():
+            if code > OVER_EDGE:
+                first = tally.first[code]
+                at = ", ".join(f"{path} = {one:.10g}" for path, one in self.along(first).items())
+                refused = code == REFUSED
+                advice = self._refusal(first) if refused else self._kind.advice(self.scene, code)
+                lines.append(
+                    f"{count} of {self.size} runs: {ENDS[code]}; the first at {at}: {advice}"
+                )
+        return lines
+
+    def _first(self, tally: Tally) -> Case | BoardCase:
+        """The case of the first run that is not refused."""
+        first = min(run for code, run in tally.first.items() if code != REFUSED)
+        numbers = {path: float(one[0]) for path, one in self.numbers(first, first + 1).items()}
+        case = self._case(tuple(at for at in numbers.items() if at[0] not in self._inner))
+        return self._kind(self.scene.at(numbers)) if isinstance(case, InputError) else case
+
+    def explain(self, tally: Tally) -> str:
+        """The model of the first run that is valid, and why."""
+        return self._first(tally).explanation
+
+    def labelled(self, columns: Columns) -> Dataset:
+        """The ends with names, axes and units; the scene and its files as texts."""
+        return self._result(columns, "", "", ()).labelled()
+
+    def result(self, columns: Columns) -> SceneEnds:
+        """The map, or the samples."""
+        tally = Tally.of(columns[self.code])
+        case = self._first(tally)
+        told = tuple(self.without_end(tally))
+        return self._result(columns, case.model, case.explanation, told)
+
+    def _result(
+        self, columns: Columns, model: str, explanation: str, told: tuple[str, ...]
+    ) -> SceneEnds:
+        kept = dict(columns)
+        end = kept.pop(self.code)
+        return Map(
+            scene=self.scene, names=self.names, columns=kept, end=end, model=model,
+            explanation=explanation, told=told, files=self.files,
+        )  # fmt: skip
+
+
+class DrawnRuns(Runs):
+    """The runs of a scene of which some numbers are drawn.
+
+    Raises
+    ------
+    InputError
+        If nothing scatters, or what does is no number of the scene.
+    """
+
+    is_sample = True
+
+    def __init__(
+        self, scene: SceneSpec, part: int, read: dict[str, str] | None, count: int, seed: int,
+        spreads: Mapping[str, Spread],
+    ) -> None:  # fmt: skip
+        if scene.ranges:
+            raise InputError(
+                f"samples have no ranges: give {', '.join(scene.ranges)} one number or a spread"
+            )
+        if not spreads or not all(isinstance(one, Spread) for one in spreads.values()):
+            own = "puck[0].launch.spin" if scene.pucks else "launch.spin"
+            raise InputError(
+                f"samples need a spread: say what scatters, such as {own}=normal:5:0.2"
+            )
+        self.spreads, self.seed = spreads, seed
+        middle = {path: one.of(np.array([0.5])).item() for path, one in spreads.items()}
+        try:
+            scene.at(middle)  # what is no number of the scene is refused here
+        except InputError as error:
+            raise InputError(f"samples: in the middle of what is drawn, {error}") from None
+        super().__init__(scene, part, read, {path: np.zeros(0) for path in spreads}, (count,))
+        self.columns = {**{plain_name(path): () for path in spreads}, **self.columns}
+
+    def __reduce__(self) -> Any:
+        return DrawnRuns, (
+            self.scene, self.part, self._read, self.size, self.seed, self.spreads
+        )  # fmt: skip
+
+    @property
+    def identity(self) -> Mapping[str, Any]:
+        """The scene, and what is drawn."""
+        drawn = {path: str(one) for path, one in self.spreads.items()}
+        return {**super().identity, "drawn": drawn, "seed": self.seed, "count": self.size}
+
+    def numbers(self, start: int, stop: int) -> dict[str, FloatArray]:
+        """What is drawn, by path, for some samples."""
+        return {path: one.drawn(path, self.seed, start, stop) for path, one in self.spreads.items()}
+
+    def along(self, run: int) -> dict[str, float]:
+        """What was drawn for a sample."""
+        return {path: float(one[0]) for path, one in self.numbers(run, run + 1).items()}
+
+    def of(self, start: int, stop: int) -> Columns:
+        """The ends of some samples, and what was drawn."""
+        drawn = {plain_name(path): one for path, one in self.numbers(start, stop).items()}
+        return {**super().of(start, stop), **drawn}
+
+    def _result(
+        self, columns: Columns, model: str, explanation: str, told: tuple[str, ...]
+    ) -> SceneEnds:
+        kept = dict(columns)
+        end = kept.pop(self.code)
+        return Sample(
+            scene=self.scene, names=self.names, columns=kept, end=end, model=model,
+            explanation=explanation, told=told, files=self.files, spreads=self.spreads,
+            seed=self.seed,
+        )  # fmt: skip

@@ -1,0 +1,150 @@
+"""What many runs of a scene give, over its ranges or of samples: how and where each ends."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.io.columns import derived
+from puck_tables.io.dataset import Dataset, Variable, variable
+from puck_tables.result import Result
+from puck_tables.scene.entries import entry_at, is_batch
+from puck_tables.scene.loop import OVER_EDGE
+from puck_tables.scene.outcome import ENDS, column_of, scene_texts
+from puck_tables.scene.run import number_of
+from puck_tables.scene.scene_spec import SceneSpec
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class SceneEnds(Result):
+    """How and where the runs of a scene end; a :class:`Map` or a :class:`Sample`.
+
+    ``names``: of the pucks, none where the scene has one ``puck``; ``columns``: arrays by name, of
+    the shape of the runs, of several pucks with the pucks last, NaN for a run without an end;
+    ``end``: how each ends, an index of ``meanings``; ``model``, and ``explanation`` why it was
+    taken, of the first run that is valid; ``told``: what :meth:`without_end` says; ``files``: what
+    stands in the files that the scene names, by path; ``whose``: the puck that it is of.
+    """
+
+    scene: SceneSpec
+    names: tuple[str, ...]
+    columns: Mapping[str, FloatArray] = field(repr=False)
+    end: npt.NDArray[np.int8] = field(repr=False)
+    model: str = ""
+    explanation: str = ""
+    told: tuple[str, ...] = ()
+    files: Mapping[str, str] = field(default_factory=dict)
+    whose: str = ""
+
+    meanings: ClassVar[tuple[str, ...]] = ENDS
+
+    def __getattr__(self, name: str) -> FloatArray:
+        """A column by its name."""
+        return column_of(self, name)
+
+    def __getitem__(self, puck: int | str) -> dict[str, FloatArray]:
+        """The columns of one puck, by its name or number.
+
+        Raises
+        ------
+        InputError
+            If there is no such puck.
+        """
+        number = number_of(puck, self.names or (self.whose or "puck",))
+        return {
+            name: values[..., number] if values.ndim > self.end.ndim else values
+            for name, values in self.columns.items()
+        }
+
+    def of(self, puck: int | str) -> Any:
+        """The same of one puck alone, by its name or number.
+
+        Raises
+        ------
+        InputError
+            If there is no such puck.
+        """
+        own = self[puck]
+        whose = self.names[number_of(puck, self.names)] if self.names else self.whose
+        return replace(self, names=(), columns=own, whose=whose)
+
+    @property
+    def title(self) -> str:
+        """Of the scene, and which puck of it."""
+        return (self.scene.title or "Scene") + (f", {self.whose}" if self.whose else "")
+
+    @property
+    def ended(self) -> int:
+        """How many runs have an end."""
+        return int(np.count_nonzero(self.end <= OVER_EDGE))
+
+    def numbers(self, run: int) -> dict[str, float]:
+        """What is special to a run, counted from 0 with the last range fastest, by path."""
+        raise NotImplementedError
+
+    def along(self) -> tuple[tuple[str, ...], dict[str, Variable], dict[str, Variable]]:
+        """Dimensions, axes, and columns that say what is special to the runs."""
+        raise NotImplementedError
+
+    def labelled(self) -> Dataset:
+        """The columns with names, axes and units; the scene and its files as texts."""
+        dims, axes, columns = self.along()
+        if self.names:
+            axes["puck"] = variable("puck", np.arange(len(self.names)), ("puck",))
+            columns["name"] = variable("name", list(self.names), ("puck",))
+        drawn = {name: values for name, values in self.columns.items() if name not in columns}
+        columns |= self._over(drawn, dims)
+        columns["end"] = variable("end", self.end, dims, ENDS)
+        return Dataset(axes, columns, {"title": self.title}, scene_texts(self.scene, self.files))
+
+    def dataset(self) -> Dataset:
+        """The ends and what follows from them; the scene and its files as texts."""
+        found = self.labelled()
+        more = self._over(derived(self.columns), found.columns["end"].dims)
+        return replace(found, columns={**found.columns, **more})
+
+    def _over(
+        self, columns: Mapping[str, FloatArray], dims: tuple[str, ...]
+    ) -> dict[str, Variable]:
+        """Columns over the runs, and perhaps the pucks."""
+        return {
+            name: variable(name, one, (*dims, "puck") if one.ndim > len(dims) else dims)
+            for name, one in columns.items()
+        }
+
+    def explain(self) -> str:
+        """The model that was taken, and why."""
+        return self.explanation
+
+    def without_end(self) -> list[str]:
+        """A line for each way in which runs have no end: how many, the first, and what to do."""
+        return list(self.told)
+
+
+def axes_of(scene: SceneSpec) -> dict[str, FloatArray]:
+    """What ranges in a scene, by path; many launches by their numbers from 0 on.
+
+    Examples
+    --------
+    >>> from puck_tables import Launch, Puck, Scene
+    >>> axes_of(Scene(Puck(1.0), launch=Launch([[1.0, 0.0], [2.0, 0.0]])))
+    {'launch': array([0., 1.])}
+    """
+    return {
+        path: np.arange(float(len(values))) if is_batch(path) else values
+        for path, values in scene.ranges.items()
+    }
+
+
+def number_along(scene: SceneSpec, path: str, values: FloatArray, axis: str) -> Variable:
+    """Numbers of the scene along an axis."""
+    if is_batch(path):
+        return Variable(values, (axis,), "1", "number of the launch")
+    doc = entry_at(scene, path).doc
+    text = f"{path} of the scene" + (f", {doc}" if doc else "")
+    return Variable(values, (axis,), scene.unit_of(path) or "1", text)
