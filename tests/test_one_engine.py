@@ -72,7 +72,7 @@ def test_pucks_that_never_press_are_not_sent_off_one_by_one(monkeypatch: pytest.
     """Whatever acts on them: only groups leave compiled code."""
     monkeypatch.setattr(groups, "push_on", lambda *_: pytest.fail("a group was sent off"))
     rng = np.random.default_rng(8530)
-    wall = pt.Wall((0.3, 0.0), (-1.0, 0.0), restitution=0.8, friction=0.2)
+    wall = pt.Wall((0.3, 0.0), normal=(-1.0, 0.0), restitution=0.8, friction=0.2)
     for _ in range(5):
         fast = pt.Launch(tuple(rng.normal(size=2).tolist()), float(rng.normal() * 30.0))
         slow = pt.Launch(tuple((0.1 * rng.normal(size=2)).tolist()), 0.0, (-0.5, 0.6))
