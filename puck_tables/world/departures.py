@@ -9,6 +9,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel
+from puck_tables.scene.equations import ROW
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ingredients import floor_velocity
 from puck_tables.scene.patches import ASTRIDE, INSIDE, OUTSIDE
@@ -70,7 +71,7 @@ from puck_tables.world.impact import (
     SUM_T,
 )
 from puck_tables.world.layout import EDGE_NUMBER, LIES, RADIUS, A
-from puck_tables.world.lone import LONGEST, Desk, desk_for_one, follow_alone
+from puck_tables.world.lone import DESK_ROWS, LONGEST, follow_alone
 from puck_tables.world.paths import DURATION, FIRST, bounds_of
 from puck_tables.world.paths import START as BEGINS
 
@@ -91,7 +92,7 @@ class Room(NamedTuple):
     work: FloatArray
     one: FloatArray
     two: FloatArray
-    lone: Desk
+    lone: FloatArray
 
 
 def room_for(discs: int) -> Room:
@@ -101,7 +102,7 @@ def room_for(discs: int) -> Room:
         np.zeros((discs, 6)), np.zeros((discs, 6)), np.zeros(discs, np.int64),
         np.zeros(discs, np.int64), np.zeros((contacts, 2), np.int64),
         np.zeros((contacts, CONTACT_COLUMNS)), np.zeros(ROOM), np.zeros(6), np.zeros(6),
-        desk_for_one(),
+        np.zeros((DESK_ROWS, ROW)),
     )  # fmt: skip
 
 

@@ -213,7 +213,7 @@ def _follow(
     for first, last in shared.reels[members]:
         if first < last:  # what drives may turn where its piece ends
             horizon = min(horizon, float(shared.films[first, [BEGINS, DURATION]].sum()))
-    alone, nothing = not len(contacts), np.zeros((len(members), 0, PIECE_COLUMNS))
+    nothing = np.zeros((len(members), 0, PIECE_COLUMNS))
     jump, idle = np.zeros(LEDGER), np.zeros((0, WORK_COLUMNS))
     for _ in range(_TRIES):
         desk = desk_for(len(members), len(contacts), int((discs[:, HOLD] != FREE).sum()))
@@ -222,7 +222,7 @@ def _follow(
         if how == UNSOLVED:
             break
         contacts, modes = contacts[modes != APART], modes[modes != APART]
-        if not (alone or len(contacts)):
+        if not len(contacts):
             return contacts, t, nothing, jump, idle
         if (doings == HELD).all() and not (jumps or swings):
             return contacts, math.inf, nothing, jump, idle

@@ -13,8 +13,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, patience
 from puck_tables.scene.equations import (
@@ -49,11 +47,10 @@ from puck_tables.scene.ingredients import (
     floor_velocity,
     is_astride,
 )
-from puck_tables.scene.leaning import LEAN_COLUMNS
 from puck_tables.scene.moments import NOTHING, REST, cut_short, goes_straight, lost, rests_on
 from puck_tables.scene.standstill import from_standstill
 from puck_tables.scene.step_size import follow_scales, up_to_the_stop
-from puck_tables.scene.steps import WIDE, accelerations, step
+from puck_tables.scene.steps import accelerations, step
 from puck_tables.world import works
 from puck_tables.world.alone import rows_passed
 from puck_tables.world.footing import dry_under, moves_along, outruns_law, room_on_floor
@@ -103,12 +100,12 @@ _PLACE, _RATE = 1.0 / 24.0, 0.144  # its places are off by so much d h² at most
 
 
 class Desk(NamedTuple):
-    """Arrays to work in.
+    """Where to work: rows of one array, for each array that comes from Python costs its call.
 
     Rates of the stages of a step (13, 12), and at its start and end (2, 12) and middle (1, 12);
-    states at its start, its end and in between (12,); scales of a state (10,); a place on a piece
-    (9,); the energies that came half way, those of a step, and powers at its start and end (4, 6);
-    the walls that it leans on: none (0, 5).
+    states at its start, its end and in between (12,); scales of a state; a place on a piece; powers
+    at the start, the energies of a step, powers at its end, and the energies half way (4, …); the
+    walls that it leans on: none (0, …).
     """
 
     stages: FloatArray
@@ -123,12 +120,18 @@ class Desk(NamedTuple):
     leaning: FloatArray
 
 
-def desk_for_one() -> Desk:
-    """A desk for any lone puck."""
+_ENDS, _MIDDLE, _STATES = STAGES, STAGES + 2, STAGES + 3
+_BOOKS = _STATES + 5
+DESK_ROWS = _BOOKS + 4
+
+
+@inlined
+def _desk_on(rows: FloatArray) -> Desk:
+    """A desk on rows (25, 12)."""
     return Desk(
-        np.zeros((STAGES, ROW)), np.zeros((2, ROW)), np.zeros((1, ROW)), np.zeros(WIDE),
-        np.zeros(WIDE), np.zeros(WIDE), np.zeros(SIZE), np.zeros(9), np.zeros((4, works.LEDGER)),
-        np.zeros((0, LEAN_COLUMNS)),
+        rows[:STAGES], rows[_ENDS:_MIDDLE], rows[_MIDDLE:_STATES], rows[_STATES],
+        rows[_STATES + 1], rows[_STATES + 2], rows[_STATES + 3], rows[_STATES + 4],
+        rows[_BOOKS:DESK_ROWS], rows[:0],
     )  # fmt: skip
 
 
@@ -347,14 +350,15 @@ def _put_down(model: Model, state: FloatArray, desk: Desk) -> None:
 
 @inner
 def follow_alone(
-    game: Game, i: int, t: float, state: FloatArray, desk: Desk
+    game: Game, i: int, t: float, state: FloatArray, work: FloatArray
 ) -> tuple[bool, float, int]:  # fmt: skip
     """Follow a disc from its state at t: whether it can be, until when, and by how many pieces.
 
     They stand after all pieces that there are, and what they did to the energies after all works,
     uncounted.  Where it rests for good there are none, until inf; ``state`` (6,) is moved to rest.
+    ``work`` (25, 12): to work on.
     """
-    model, dry = _model_of(game, i), dry_under(game.regions, game.discs, i)
+    model, dry, desk = _model_of(game, i), dry_under(game.regions, game.discs, i), _desk_on(work)
     y, new, stages, leaning = desk.y, desk.new, desk.stages, desk.leaning
     speed, unit, radius = game.pace[0], game.pace[0] / game.pace[1], model.body.radius
     tol, drive = max(game.pace[2], FINEST), model.forces.drive
