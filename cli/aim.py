@@ -33,8 +33,8 @@ from puck_tables.kernels.patience import one_question
 if TYPE_CHECKING:
     from puck_tables._core.arrays import FloatArray
     from puck_tables.puck import Puck
-    from puck_tables.stopping.aim import Aim
-    from puck_tables.stopping.aims import Aims
+    from puck_tables.stopping.aim_at_target import Aim
+    from puck_tables.stopping.aim_at_targets import Aims
 
 _LARGEST_FILE = 1 << 30  # bytes: more is no file of targets, and would fill the memory
 
@@ -173,8 +173,8 @@ def aim(
 
 def _read_targets(path: Path) -> FloatArray:
     """Places (n, 2) from a file."""
-    from puck_tables._core.columns import numbers_of
     from puck_tables._core.quantities import X, Y
+    from puck_tables._core.read_columns import numbers_of
 
     return numbers_of(path, (X, Y), 2, _LARGEST_FILE).rows
 

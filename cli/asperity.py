@@ -74,8 +74,8 @@ def asperity(
         raise InputError("--plot needs a range: give --speeds START:STOP:COUNT")
     import numpy as np
 
-    from puck_tables.chetaev.asperity import Asperity
     from puck_tables.chetaev.asperity_forces import asperity_curve
+    from puck_tables.chetaev.wavy_support import Asperity
     from puck_tables.io.csv import encode
     from puck_tables.motion.body import STANDARD_GRAVITY
 

@@ -22,7 +22,7 @@ last_words: list[Callable[[], str]] = [lambda: "Interrupted: nothing more was wr
 def end_at_once(number: int, frame: FrameType | None) -> None:
     """What Ctrl-C does while nothing runs yet, or any more."""
     os.write(2, f"{last_words[-1]()}\n".encode())
-    if parts := sys.modules.get("puck_tables._core.parts"):
+    if parts := sys.modules.get("puck_tables._core.partial_files"):
         parts.remove_own()
     os._exit(128 + number)  # as shells count
 

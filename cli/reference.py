@@ -26,7 +26,7 @@ from puck_tables.kernels.patience import one_question
 
 if TYPE_CHECKING:
     from puck_tables.reference.answer import Answer
-    from puck_tables.reference.friction import FloorFriction
+    from puck_tables.reference.floor_friction import FloorFriction
 
 
 @click.command()
@@ -89,7 +89,7 @@ def reference(
     found: Any
     with one_question():
         if over:
-            from puck_tables.reference.friction import floor_friction
+            from puck_tables.reference.floor_friction import floor_friction
 
             found = floor_friction(case, epsilon)
         else:
@@ -121,7 +121,7 @@ def _with_columns(found: Answer | FloorFriction) -> str:
 
 def report(answer: Answer) -> str:
     """A case and its answer."""
-    from puck_tables.reference.words import lines_of
+    from puck_tables.reference.case_text import lines_of
 
     lines = lines_of(answer)
     lines["frames"] = (

@@ -339,9 +339,6 @@ def summary_of_map(ends: Map | Sample | Stored) -> str:
     lines = work.without_end(tally) if isinstance(ends, Stored) else ends.without_end()
     model = ""
     if isinstance(ends, Map):
-        model = f"; {ends.model}"
-        if ends.error_estimate is not None:
-            model += (
-                f"; error <= {ends.error_estimate:.1e} (Q/J, Q²/J) in the runs that were checked"
-            )
+        error = f"{ends.error_estimate:.1e} (Q/J, Q²/J)"
+        model = f"; {ends.model}; error <= {error} in the runs that were checked"
     return "\n".join([f"{work.scene.title or 'scene'} over {ranged}: {counts}{model}", *lines])

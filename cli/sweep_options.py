@@ -175,7 +175,7 @@ class Whole:
 
     def _kept(self) -> str:
         """What is said when the sweep is ended."""
-        from puck_tables.bulk.place import beside_of
+        from puck_tables.bulk.store_folder import beside_of
 
         if self.output is not None and self.output.exists():
             if beside_of(Path(os.path.realpath(self.output))).exists():
@@ -194,7 +194,7 @@ class Whole:
         InputError
         """
         from puck_tables._core.memory import check_memory
-        from puck_tables.stopping.sweep import BYTES_PER_LAUNCH, BYTES_PER_ROW
+        from puck_tables.stopping.stop_sweep import BYTES_PER_LAUNCH, BYTES_PER_ROW
 
         shape = tuple(n for n in sizes if n > 1) if samples is None else (samples,)
         if self.stored:

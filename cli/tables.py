@@ -13,7 +13,7 @@ from puck_tables.errors import InputError
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from puck_tables.table.store import KeptTable
+    from puck_tables.table.table_cache import KeptTable
 
 
 @click.command()
@@ -33,18 +33,18 @@ def tables(as_json: bool, names: tuple[str, ...], clean: bool) -> None:
     """  # noqa: D301 - click reads the backspace
     if clean + bool(names) + as_json > 1:
         raise InputError("--json, --remove and --clean clash: give one of them")
-    from puck_tables.table import store
+    from puck_tables.table import table_cache
 
     if names:
-        kept = {path.name: path for path in store.kept_files()}
+        kept = {path.name: path for path in table_cache.kept_files()}
         for name in names:
             if name not in kept:
                 raise InputError(f"no table {name} is kept: 'puck tables' lists those that are")
         _remove([kept[name] for name in dict.fromkeys(names)])
     elif clean:
-        _remove([*store.kept_files(), *store.leftovers()])
+        _remove([*table_cache.kept_files(), *table_cache.leftovers()])
     else:
-        entries = store.shipped_and_kept()
+        entries = table_cache.shipped_and_kept()
         if as_json:
             click.echo(json.dumps([entry._asdict() for entry in entries]))
         else:
@@ -52,10 +52,10 @@ def tables(as_json: bool, names: tuple[str, ...], clean: bool) -> None:
 
 
 def _remove(paths: list[Path]) -> None:
-    from puck_tables.table import store
+    from puck_tables.table import table_cache
 
     for path in paths:
-        store.remove(path)
+        table_cache.remove(path)
         click.echo(f"removed {click.format_filename(path)}")
     if not paths:
         click.echo("nothing is kept: nothing to remove")

@@ -51,7 +51,7 @@ def track(
         told(output)
     if plot is not None:
         from puck_tables.plot.style import save_figure
-        from puck_tables.plot.track import draw
+        from puck_tables.plot.track_figure import draw
 
         save_figure(draw(tracks), plot, overwrite)
         told(plot)

@@ -11,7 +11,7 @@ import click
 from puck_tables.cli.options import FILE, NUMBER
 
 if TYPE_CHECKING:
-    from puck_tables.film.track import Track
+    from puck_tables.film.puck_track import Track
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -75,8 +75,8 @@ def read_all(files: Iterable[Path], how: Mapping[str, Any]) -> list[Track]:
     Raises
     ------
     InputError
-        As :func:`puck_tables.film.reading.read_tracks`.
+        As :func:`puck_tables.film.track_files.read_tracks`.
     """
-    from puck_tables.film.reading import read_tracks
+    from puck_tables.film.track_files import read_tracks
 
     return [track for file in files for track in read_tracks(file, **how)]

@@ -11,7 +11,7 @@ from puck_tables.cli.options import FILE, deliver, output_options, prepare_outpu
 
 if TYPE_CHECKING:
     from puck_tables.accuracy.front import MeasuredMethod
-    from puck_tables.tradeoff.engine import TradeOff
+    from puck_tables.tradeoff.measurement import TradeOff
 
 
 @click.command()
@@ -32,7 +32,7 @@ def tradeoff(quick: bool, outputs: tuple[Path, ...], plot: Path | None, overwrit
     puck tradeoff -o tradeoff.h5 -o tradeoff.csv --plot tradeoff.png
     """  # noqa: D301 - click reads the backspace
     prepare_outputs(*outputs, plot=plot, overwrite=overwrite)
-    from puck_tables.tradeoff.engine import measure
+    from puck_tables.tradeoff.measurement import measure
 
     with progress("measuring") as show:
         measured = measure(quick, show)

@@ -35,16 +35,16 @@ if TYPE_CHECKING:
         TableError,
     )
     from puck_tables.export.source import Source, export_source
-    from puck_tables.film.reading import read_tracks
-    from puck_tables.film.track import Track
+    from puck_tables.film.puck_track import Track
+    from puck_tables.film.track_files import read_tracks
     from puck_tables.fitting.fit import fit
     from puck_tables.fitting.forecast import Camera, Forecast, fisher
     from puck_tables.fitting.outcome import Fit
-    from puck_tables.kernels.closed_form import resultants
+    from puck_tables.kernels.closed_form_kernel import resultants
     from puck_tables.puck import Puck
     from puck_tables.reference.answer import Answer, reference_case
     from puck_tables.reference.comparison import Comparison, compare
-    from puck_tables.reference.friction import FloorFriction, floor_friction
+    from puck_tables.reference.floor_friction import FloorFriction, floor_friction
     from puck_tables.result import Result
     from puck_tables.scene.driven import path_along
     from puck_tables.scene.parts import (
@@ -63,15 +63,15 @@ if TYPE_CHECKING:
     from puck_tables.scene.pieces import Arc, Pocket, Post, Rim
     from puck_tables.scene.restitution import Plastic, RestitutionTable, Viscoelastic
     from puck_tables.scene.run import Run
-    from puck_tables.stopping.aim import Aim
-    from puck_tables.stopping.aims import Aims
+    from puck_tables.stopping.aim_at_target import Aim
+    from puck_tables.stopping.aim_at_targets import Aims
     from puck_tables.stopping.array_functions import state_arrays, stop_arrays
     from puck_tables.stopping.states import States, states
     from puck_tables.stopping.stop_map import StopMap, StopSample
     from puck_tables.stopping.stops import Stops, stop
     from puck_tables.table.check import CheckReport
-    from puck_tables.table.store import table_for
     from puck_tables.table.table import Table
+    from puck_tables.table.table_cache import table_for
     from puck_tables.trajectory import Trajectory
     from puck_tables.warming import warm_up
     from puck_tables.world.aimed import BoardAim
@@ -79,15 +79,15 @@ if TYPE_CHECKING:
     from puck_tables.world.sample import Sample
     from puck_tables.world.scene import Piece, Scene
     from puck_tables.world.world import World
-    from puck_tables.wrench.holds import Hold
+    from puck_tables.wrench.friction_hold import Hold
     from puck_tables.wrench.surface import LimitSurface
 
 beside_the_package(__name__, __file__)
 
 _HOMES = {
     "AccuracyError": "errors",
-    "Aim": "stopping.aim",
-    "Aims": "stopping.aims",
+    "Aim": "stopping.aim_at_target",
+    "Aims": "stopping.aim_at_targets",
     "Answer": "reference.answer",
     "Arc": "scene.pieces",
     "BoardAim": "world.aimed",
@@ -102,10 +102,10 @@ _HOMES = {
     "Edge": "scene.parts",
     "Fit": "fitting.outcome",
     "Floor": "scene.parts",
-    "FloorFriction": "reference.friction",
+    "FloorFriction": "reference.floor_friction",
     "Force": "scene.parts",
     "Forecast": "fitting.forecast",
-    "Hold": "wrench.holds",
+    "Hold": "wrench.friction_hold",
     "InputError": "errors",
     "Lateral": "scene.parts",
     "Launch": "scene.parts",
@@ -140,7 +140,7 @@ _HOMES = {
     "Strips": "scene.parts",
     "Table": "table.table",
     "TableError": "errors",
-    "Track": "film.track",
+    "Track": "film.puck_track",
     "Trajectory": "trajectory",
     "Uniform": "bulk.spreads",
     "Viscoelastic": "scene.restitution",
@@ -152,19 +152,19 @@ _HOMES = {
     "export_source": "export.source",
     "fisher": "fitting.forecast",
     "fit": "fitting.fit",
-    "floor_friction": "reference.friction",
+    "floor_friction": "reference.floor_friction",
     "law_of": "contact.laws",
     "motion": "",
     "path_along": "scene.driven",
     "profile_law": "contact.laws",
-    "read_tracks": "film.reading",
+    "read_tracks": "film.track_files",
     "reference_case": "reference.answer",
-    "resultants": "kernels.closed_form",
+    "resultants": "kernels.closed_form_kernel",
     "state_arrays": "stopping.array_functions",
     "states": "stopping.states",
     "stop": "stopping.stops",
     "stop_arrays": "stopping.array_functions",
-    "table_for": "table.store",
+    "table_for": "table.table_cache",
     "warm_up": "warming",
 }
 

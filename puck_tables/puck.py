@@ -13,13 +13,13 @@ import numpy.typing as npt
 from puck_tables.verbs_of_many import VerbsOfMany
 
 if TYPE_CHECKING:
-    from puck_tables.stopping.aim import Aim
-    from puck_tables.stopping.aims import Aims
+    from puck_tables.stopping.aim_at_target import Aim
+    from puck_tables.stopping.aim_at_targets import Aims
     from puck_tables.stopping.states import States
     from puck_tables.stopping.stops import Stops
     from puck_tables.table.table import Table
     from puck_tables.trajectory import Trajectory
-    from puck_tables.wrench.holds import Hold
+    from puck_tables.wrench.friction_hold import Hold
     from puck_tables.wrench.surface import LimitSurface
 
 
@@ -318,7 +318,7 @@ class Puck(VerbsOfMany):
         >>> many.launches.tolist(), many.launch_spin.round(6).tolist()
         ([2, 0], [-1.981038, 1.981038])
         """
-        from puck_tables.stopping.aims import aim
+        from puck_tables.stopping.aim_at_targets import aim
 
         self.refuse_frictionless()
         return aim(
@@ -389,6 +389,6 @@ class Puck(VerbsOfMany):
         >>> bool(puck.holds((0.9, 0.0))), float(puck.holds((0.0, 0.0), 0.5).margin.round(6))
         (True, 1.333333)
         """
-        from puck_tables.wrench.holds import holds
+        from puck_tables.wrench.friction_hold import holds
 
         return holds(self, force, torque)

@@ -106,7 +106,7 @@ class VerbsOfMany(PuckSpec):
         >>> Puck(0.04, friction=0.1).sweep(0.0, 1.0, friction=[0.1, 0.2]).stop_x.round(4).tolist()
         [0.5099, 0.2549]
         """
-        from puck_tables.stopping.sweep import SweepOptions, sweep
+        from puck_tables.stopping.stop_sweep import SweepOptions, sweep
 
         given = {
             "spin": spin, "speed": speed, "velocity": velocity, "heading": heading,
@@ -167,7 +167,7 @@ class VerbsOfMany(PuckSpec):
         (3.961, True)
         """
         from puck_tables.stopping.population import COLUMN
-        from puck_tables.stopping.sweep import SweepOptions, sample
+        from puck_tables.stopping.stop_sweep import SweepOptions, sample
 
         known = {*COLUMN, "velocity"}
         unknown = [name for name in numbers if name not in known]

@@ -37,7 +37,7 @@ def answers(table: Table) -> np.ndarray:
     if table.kind == "stops":
         rim, one = np.tan(phi), np.ones(phi.size)
         launches = np.stack([np.cos(phi), 0.0 * one, np.sin(phi), share, one, one])
-        from puck_tables.stopping.launches import launches_in
+        from puck_tables.stopping.launch_arrays import launches_in
 
         time, place, _, _ = table.stops(launches_in(launches))
         known = table.known(launches)[3:6] + 0.0 * rim

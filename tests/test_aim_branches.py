@@ -15,7 +15,7 @@ from puck_tables.contact.laws import HOMOGENEOUS
 from puck_tables.errors import InputError
 from puck_tables.motion.body import body_of
 from puck_tables.stopping.aim_lookup import RIM, SPEED, TIME
-from puck_tables.stopping.launch_curve import launch_curve
+from puck_tables.stopping.launch_family import launch_curve
 
 U = np.linspace(-6.0, 4.0, 401)
 

@@ -15,10 +15,10 @@ from puck_tables.contact.laws import HOMOGENEOUS
 from puck_tables.errors import AccuracyError, ContactError, InputError
 from puck_tables.motion import elementary_stop_time, limit_angle, limit_ratio, regime
 from puck_tables.motion.body import body_of
-from puck_tables.motion.friction import section_friction
-from puck_tables.motion.run import integrated
+from puck_tables.motion.friction_source import section_friction
 from puck_tables.motion.steppers import Stepping
 from puck_tables.motion.tableaus import DORMAND_PRINCE, RK4
+from puck_tables.motion.unit_motion import integrated
 from puck_tables.table.friction_section import friction_section
 from puck_tables.table.singular_lines import opening_angle
 from puck_tables.table.slip_axis import graded

@@ -16,7 +16,7 @@ from puck_tables import law_of, states, stop
 from puck_tables.contact.laws import HOMOGENEOUS
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.motion.body import body_of
-from puck_tables.motion.friction import section_friction
+from puck_tables.motion.friction_source import section_friction
 from puck_tables.stopping.exact import integrated_stops
 from puck_tables.stopping.per_height import ALONE, MANY
 from puck_tables.stopping.stop_section import stop_section_for

@@ -20,7 +20,7 @@ from scipy.integrate import solve_ivp
 from puck_tables import Edge, Floor, InputError, Launch, Piece, Post, Scene, Trajectory, Wall
 from puck_tables._core.colours import brightness, is_colour
 from puck_tables.errors import MissingExtraError, OutputError
-from puck_tables.plot.film import PALETTE, between, colour_of, film_of
+from puck_tables.plot.animation import PALETTE, between, colour_of, film_of
 from puck_tables.plot.movie import page
 from puck_tables.plot.style import RED
 from puck_tables.puck import Puck

@@ -118,6 +118,13 @@ def test_what_stands_far_away_changes_no_map_and_no_sample(pucks: int):
     assert near.columns["in_play"].all() and away.ended == 20
 
 
+def test_a_map_of_a_board_says_how_far_its_runs_may_be_off():
+    ends = shot(ranges={"puck[0].launch.spin": [0.0, 4.0, 9.0]}).sweep()
+    assert 0.0 < ends.error_estimate < 1e-6
+    ends.columns["x"][1, 0] += 1e-3  # the cue of one run
+    assert ends.of("cue").error_estimate > 1e-4 and ends.of("red").error_estimate < 1e-6
+
+
 def test_a_puck_over_an_edge_rests_nowhere():
     edge = pt.Edge((0.5, 0.0), normal=(-1.0, 0.0))
     scene = Scene(pt.Puck(0.04, friction=0.1), launch=pt.Launch((1.0, 0.0)), edges=[edge])

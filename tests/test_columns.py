@@ -11,8 +11,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 import puck_tables as pt
-from puck_tables._core.columns import numbers_of
 from puck_tables._core.quantities import X, Y
+from puck_tables._core.read_columns import numbers_of
 from puck_tables.contact.laws import law_of
 from puck_tables.errors import InputError
 from puck_tables.reference.log import times_in

@@ -31,13 +31,18 @@ LONG = {
         "table.resultant_check", ["build-tables", "--cells", "60000", "-o", "n.h5"]
     ),
     "build stops": (
-        "stopping.check", ["build-tables", "--kind", "stops", "--accuracy", "1e-11", "-o", "n.h5"]
+        "stopping.stop_check",
+        ["build-tables", "--kind", "stops", "--accuracy", "1e-11", "-o", "n.h5"]
     ),
     "build law": (
         "table.resultant_check", ["build-tables", "--pressure", "hill.csv", "-o", "n.h5"]
     ),
-    "validate": ("stopping.check", ["validate", str(files("puck_tables.tables") / "stops.h5")]),
-    "sweep": ("stopping.sweep", ["sweep", "--speed", "0:2:5000", "--w0", "0:5:5000", "-o", "m.h5"]),
+    "validate": (
+        "stopping.stop_check", ["validate", str(files("puck_tables.tables") / "stops.h5")]
+    ),
+    "sweep": (
+        "stopping.stop_sweep", ["sweep", "--speed", "0:2:5000", "--w0", "0:5:5000", "-o", "m.h5"]
+    ),
     "sweep to a store": (
         "bulk.store", ["sweep", "--speed", "0:2:5000", "--w0", "0:5:5000", "-o", "m.zarr"]
     ),
@@ -45,8 +50,10 @@ LONG = {
         "world.map",
         ["sweep", "--scene", "incline", "--set", "launch.spin=0:80:900000", "-o", "m.h5"],
     ),
-    "aim": ("stopping.aim", ["aim", "--target", "2,0.1", "--count", "9000", "-o", "a.csv"]),
-    "tradeoff": ("tradeoff.engine", ["tradeoff", "-o", "t.h5"]),
+    "aim": (
+        "stopping.aim_at_target", ["aim", "--target", "2,0.1", "--count", "9000", "-o", "a.csv"]
+    ),
+    "tradeoff": ("tradeoff.measurement", ["tradeoff", "-o", "t.h5"]),
 }  # fmt: skip
 
 

@@ -87,7 +87,7 @@ def test_places_too_small_for_floating_point_are_zero():
 
 def test_no_jump_where_one_cell_meets_the_next():
     table = pt.Table.shipped("stops")
-    from puck_tables.stopping.check import looked_up
+    from puck_tables.stopping.stop_check import looked_up
 
     ratio = table.axis.ratio()[1::9]
     u = np.concatenate([np.log(ratio), -np.log(ratio)])

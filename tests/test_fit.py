@@ -14,7 +14,7 @@ from puck_tables.fitting.compact import compact
 from puck_tables.fitting.launched import Moving, path_of, path_with_slopes
 from puck_tables.fitting.natural import curve_of
 from puck_tables.fitting.problem import ANGLE, PLACE, PRIOR
-from puck_tables.plot.fit import draw
+from puck_tables.plot.fit_figure import draw
 
 RADIUS, DECEL, DELTA = 0.0381, 0.15 * film_judge.G, 0.2
 VELOCITY, SPIN = (1.9, 0.6), 60.0

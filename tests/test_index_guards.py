@@ -17,12 +17,12 @@ from puck_tables.kernels.section_spline import fill_section
 from puck_tables.kernels.speed_spline import fill_speed
 from puck_tables.kernels.spline import cell_at
 from puck_tables.motion.body import body_of
-from puck_tables.stopping.curve_lookup import LAUNCH_COLUMNS, LAUNCH_ROWS
-from puck_tables.stopping.known import fill_known
-from puck_tables.stopping.launches import launches_in
+from puck_tables.stopping.launch_arrays import launches_in
+from puck_tables.stopping.launch_lookup import fill_known
 from puck_tables.stopping.lookup import stops_kernel
-from puck_tables.stopping.orbit_lookup import PUCK_ROWS, fill_orbit_states
 from puck_tables.stopping.section_lookup import fill_section_stops
+from puck_tables.stopping.similarity_lookup import LAUNCH_COLUMNS, LAUNCH_ROWS
+from puck_tables.stopping.state_lookup import PUCK_ROWS, fill_orbit_states
 from puck_tables.table.friction_section import friction_section
 from puck_tables.table.resultant_check import tabulate
 from puck_tables.table.resultant_table import ResultantTable

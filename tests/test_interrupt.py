@@ -61,7 +61,7 @@ def test_while_a_command_runs(then):
 
 @pytest.mark.thorough
 def test_a_resumable_sweep_says_that_it_goes_on_even_when_it_is_deaf(tmp_path):
-    code = AT_IMPORT.format(name="puck_tables.stopping.curve_lookup", then=DEAF)
+    code = AT_IMPORT.format(name="puck_tables.stopping.similarity_lookup", then=DEAF)
     pytest.importorskip("zarr")
     words = ["sweep", "--w0", "0:1:11", "-o", "m.zarr"]
     done = interrupted(code, *words, folder=tmp_path)

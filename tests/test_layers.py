@@ -51,14 +51,14 @@ ROOMS = {
 }
 DOORS = {
     "numba": {
-        "kernels.blocks",
+        "kernels.register_blocks",
         "kernels.compiled",
         "kernels.kept_code",
         "kernels.linking",
         "kernels.numba_settings",
         "kernels.vectors",
     },
-    "llvmlite": {"kernels.blocks", "kernels.linking", "kernels.vectors"},
+    "llvmlite": {"kernels.register_blocks", "kernels.linking", "kernels.vectors"},
     "h5py": {"film.poses", "io.hdf5", "table.file"},
     "xarray": {"io.frames"},
     "pandas": {"io.frames"},
@@ -70,7 +70,7 @@ DOORS = {
     "scipy": {
         "bulk.spreads",
         "chetaev",
-        "export.fit",
+        "export.compact_tables",
         "export.law_values",
         "fitting",
         "stopping",

@@ -17,9 +17,9 @@ import numpy as np
 import pytest
 
 from puck_tables import Puck
-from puck_tables._core import parts
+from puck_tables._core import partial_files
 from puck_tables._core.safe_write import write_bytes
-from puck_tables.bulk import place
+from puck_tables.bulk import store_folder
 from puck_tables.errors import InputError, OutputError, PuckError
 from puck_tables.stopping.sweep_work import StopWork
 
@@ -64,7 +64,7 @@ SLOW = """
 import random, sys, time
 sys.path.insert(0, {tests!r})
 from test_one_store import PUCK, grid
-from puck_tables.bulk.place import Place
+from puck_tables.bulk.store_folder import Place
 from puck_tables.errors import PuckError
 draw, put = random.Random({seed}), Place.put
 def slow(self, key, content):
@@ -198,7 +198,7 @@ def test_what_is_refused_has_replaced_nothing(
     more: dict[str, Any] = {
         "too large": {"speed": np.linspace(1e160, 1e161, 9)}, "no table is so good": {"tol": 1e-30},
     }  # fmt: skip
-    put, of, calls = place.Place.put, StopWork.of, itertools.count()
+    put, of, calls = store_folder.Place.put, StopWork.of, itertools.count()
 
     def full(self: Any, key: str, content: bytes) -> None:
         if next(calls) > 3:
@@ -212,7 +212,7 @@ def test_what_is_refused_has_replaced_nothing(
 
     with monkeypatch.context() as patch:
         if why == "a full disk":
-            patch.setattr(place.Place, "put", full)
+            patch.setattr(store_folder.Place, "put", full)
         if why == "in the middle":
             patch.setattr(StopWork, "of", refusing)
         with pytest.raises(PuckError):
@@ -251,7 +251,7 @@ def test_a_store_that_replaces_another_goes_on_beside_it(
 def test_a_store_killed_between_two_renames_is_found_again(tmp_path: Path):
     store = tmp_path / "m.zarr"
     PUCK.sweep(**grid(0), store=store)
-    store.rename(place.beside_of(store))
+    store.rename(store_folder.beside_of(store))
     with pytest.raises(InputError, match="holds other work"):
         PUCK.sweep(**grid(1), store=store)
     assert refuse_wrong(store, True) == 0
@@ -351,11 +351,11 @@ def test_a_link_is_followed_and_stays(there: str, tmp_path: Path):
 
 def test_parts_of_the_dead_are_removed_and_no_others(tmp_path: Path):
     """The living hold theirs; what is not called so, or is no file of one's own, stays."""
-    held = [parts.new_part(tmp_path) for _ in range(3)]
-    dead = [parts.new_part(tmp_path) for _ in range(3)]
+    held = [partial_files.new_part(tmp_path) for _ in range(3)]
+    dead = [partial_files.new_part(tmp_path) for _ in range(3)]
     for path in (*held, *dead):
         path.mkdir() if path in (held[0], dead[0]) else path.write_text("x")
-        parts.forget(path)
+        partial_files.forget(path)
     (dead[0] / "inside").write_text("x")
     theirs = [tmp_path / name for name in (".puck-1.part", "x.part", ".puck-0123456789abcdef")]
     for path in theirs:
@@ -363,7 +363,7 @@ def test_parts_of_the_dead_are_removed_and_no_others(tmp_path: Path):
     link = tmp_path / ".puck-0123456789abcdef.part"
     link.symlink_to(theirs[0])
     code = (
-        "import os, sys; from puck_tables._core.parts import hold\n"
+        "import os, sys; from puck_tables._core.partial_files import hold\n"
         "for name in sys.argv[1:]: hold(os.open(name, os.O_RDONLY))\n"
         "print('held', flush=True); sys.stdin.read()"
     )
@@ -376,7 +376,7 @@ def test_parts_of_the_dead_are_removed_and_no_others(tmp_path: Path):
         stay = [*held, *theirs, link, tmp_path / "a.txt"]
         assert names(tmp_path) == sorted(path.name for path in stay)
         living.kill()
-    parts.remove_dead(tmp_path)
+    partial_files.remove_dead(tmp_path)
     assert names(tmp_path) == sorted(path.name for path in stay[3:])
 
 

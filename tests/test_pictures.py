@@ -18,8 +18,8 @@ from pucks import simulate, sweep
 from rarely import few
 from scenes import simulate_scene, sweep_scene
 
-from puck_tables.chetaev.asperity import Asperity
 from puck_tables.chetaev.asperity_forces import asperity_curve
+from puck_tables.chetaev.wavy_support import Asperity
 from puck_tables.errors import InputError, OutputError
 from puck_tables.motion import limit_ratio
 from puck_tables.plot import style

@@ -25,7 +25,7 @@ from puck_tables import (
 )
 from puck_tables.reference.answer import Answer
 from puck_tables.reference.cases import CASES
-from puck_tables.reference.floor import on_the_floor
+from puck_tables.reference.floor_reaction import on_the_floor
 
 ASTRIDE = ("astride-spin", "astride-crossing", "astride-stop")
 _SHORT = 0.003  # s: friction bends, too, where the centre of rotation comes over a border

@@ -11,7 +11,7 @@ from click.testing import CliRunner
 from puck_tables.cli.main import main
 
 from puck_tables import floor_friction, reference_case
-from puck_tables.reference.words import lines_of
+from puck_tables.reference.case_text import lines_of
 
 
 @pytest.mark.parametrize(

@@ -18,11 +18,11 @@ from puck_tables.contact.opening import critical_delta
 from puck_tables.contact.pressure import GALIN, HERTZ
 from puck_tables.contact.resultants import moment_balance
 from puck_tables.errors import InputError
-from puck_tables.motion.friction import table_friction
-from puck_tables.table.fit import clamped_coefficients, height_terms
+from puck_tables.motion.friction_source import table_friction
 from puck_tables.table.resultant_check import adversarial_points, tabulate
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.slip_axis import LawAxis
+from puck_tables.table.spline_fit import clamped_coefficients, height_terms
 from puck_tables.tradeoff.bicubic import not_a_knot_coefficients
 
 QUARTER, HALF = 0.25 * math.pi, 0.5 * math.pi

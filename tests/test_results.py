@@ -24,9 +24,9 @@ from puck_tables.errors import ContactError, InputError, OutputError
 from puck_tables.io.columns import COLUMNS
 from puck_tables.io.formats import FORMATS
 from puck_tables.result import Result
-from puck_tables.tradeoff.doors import CallCost
-from puck_tables.tradeoff.engine import TradeOff
+from puck_tables.tradeoff.call_overhead import CallCost
 from puck_tables.tradeoff.machine import Machine
+from puck_tables.tradeoff.measurement import TradeOff
 
 PUCK = Puck.similar(delta=0.8)
 SCENE = {

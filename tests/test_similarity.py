@@ -15,10 +15,10 @@ from puck_tables import Table, states, stop
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.motion import limit_ratio
 from puck_tables.stopping.axes import SlipAxis, heights
-from puck_tables.stopping.check import launch_points, launches_at, looked_up, tabulate
-from puck_tables.stopping.curve import limits, regular_slopes
-from puck_tables.stopping.curve_lookup import STOP_X, STOP_Y
 from puck_tables.stopping.exact import end_values, exact_stops
+from puck_tables.stopping.similarity import limits, regular_slopes
+from puck_tables.stopping.similarity_lookup import STOP_X, STOP_Y
+from puck_tables.stopping.stop_check import launch_points, launches_at, looked_up, tabulate
 from puck_tables.stopping.stop_table import StopTable
 
 

@@ -16,11 +16,16 @@ from puck_tables.contact.laws import HOMOGENEOUS
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.motion.body import body_of, plain_up_to
 from puck_tables.motion.frame import frame_of
-from puck_tables.motion.friction import FullContact, Sections, closed_form_friction, source_of
-from puck_tables.motion.run import integrated
+from puck_tables.motion.friction_source import (
+    FullContact,
+    Sections,
+    closed_form_friction,
+    source_of,
+)
 from puck_tables.motion.solve import ErrorEstimate, Setting, close_enough, refined
 from puck_tables.motion.steppers import TABLEAUS, Stepping
 from puck_tables.motion.tableaus import DORMAND_PRINCE, RK4, tableau_of
+from puck_tables.motion.unit_motion import integrated
 
 
 def test_the_loop_ends_at_the_first_setting_that_is_good_enough():

@@ -17,7 +17,7 @@ from puck_tables.contact import speed_resultants
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.speed_quadrature import speed_integrals
 from puck_tables.errors import AccuracyError, ContactError, InputError, OutputError
-from puck_tables.kernels.speed_quadrature import FINE, fill_integrals
+from puck_tables.kernels.speed_quadrature_kernel import FINE, fill_integrals
 from puck_tables.kernels.speed_spline import speed_ratios
 from puck_tables.table import speed_build
 from puck_tables.table.speed_build import _Filled

@@ -21,7 +21,7 @@ from puck_tables._core.own_folder import _said
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.cache import cache_folder
 from puck_tables.stopping import stop_section
-from puck_tables.table import store
+from puck_tables.table import table_cache
 
 RADII = np.linspace(0.0, 1.0, 5)
 
@@ -40,13 +40,13 @@ def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def builds(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """The laws that were tabulated."""
     names: list[str] = []
-    true = store.ResultantTable.built
+    true = table_cache.ResultantTable.built
 
     def counted(of: pt.Law, *given: object, **named: object) -> pt.Table:
         names.append(of.name)
         return true(of, *given, **named)
 
-    monkeypatch.setattr(store.ResultantTable, "built", counted)
+    monkeypatch.setattr(table_cache.ResultantTable, "built", counted)
     return names
 
 
@@ -94,7 +94,7 @@ def test_a_profile_is_its_values_not_its_name(
 
 def test_a_table_of_other_sources_is_not_todays(builds: list[str], monkeypatch: pytest.MonkeyPatch):
     pt.table_for("ring", accuracy=1e-4)
-    monkeypatch.setattr(store, "source_digest", lambda *folders: "another version")
+    monkeypatch.setattr(table_cache, "source_digest", lambda *folders: "another version")
     pt.table_for("ring", accuracy=1e-4)
     assert len(builds) == 2
 
@@ -187,21 +187,21 @@ def test_no_home_at_all(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("XDG_CACHE_HOME", "relative")  # void by the specification
     monkeypatch.setattr("os.path.expanduser", lambda path: path)
-    assert store.tables_folder() is None
+    assert table_cache.tables_folder() is None
     assert pt.table_for("ring", accuracy=1e-4).tolerance == 1e-4
-    assert store.kept_files() == []
+    assert table_cache.kept_files() == []
     assert list(tmp_path.iterdir()) == []
 
 
 def test_where_each_system_keeps_them(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("sys.platform", "darwin")
-    assert store.tables_folder() == Path.home() / "Library/Caches/puck-tables/tables"
+    assert table_cache.tables_folder() == Path.home() / "Library/Caches/puck-tables/tables"
     monkeypatch.setattr("sys.platform", "win32")
     monkeypatch.setenv("LOCALAPPDATA", "/app")
-    assert store.tables_folder() == Path("/app/puck-tables/tables")
+    assert table_cache.tables_folder() == Path("/app/puck-tables/tables")
     monkeypatch.setattr("sys.platform", "linux")
     monkeypatch.delenv("XDG_CACHE_HOME")
-    assert store.tables_folder() == Path.home() / ".cache/puck-tables/tables"
+    assert table_cache.tables_folder() == Path.home() / ".cache/puck-tables/tables"
 
 
 @pytest.mark.thorough
@@ -244,18 +244,18 @@ def test_progress_is_told():
 
 def test_the_friction_of_a_tall_puck_is_kept(kept: Path, monkeypatch: pytest.MonkeyPatch):
     built: list[float] = []
-    true = store.friction_section
+    true = table_cache.friction_section
 
     def counted(law: pt.Law, delta: float, accuracy: float) -> pt.Table:
         built.append(delta)
         return true(law, delta, accuracy)
 
-    monkeypatch.setattr(store, "friction_section", counted)
-    store.friction_for.cache_clear()  # other tests have asked for the same
+    monkeypatch.setattr(table_cache, "friction_section", counted)
+    table_cache.friction_for.cache_clear()  # other tests have asked for the same
     first = simulate((1.0, 0.0), 5.0, delta=1.5, tol=1e-5)
     times = len(built)
     assert times == len(list(kept.iterdir())) > 0
-    store.friction_for.cache_clear()  # as in another process
+    table_cache.friction_for.cache_clear()  # as in another process
     again = simulate((1.0, 0.0), 5.0, delta=1.5, tol=1e-5)
     assert len(built) == times
     assert again.stop_time == first.stop_time
@@ -264,9 +264,9 @@ def test_the_friction_of_a_tall_puck_is_kept(kept: Path, monkeypatch: pytest.Mon
     assert other.stop_time != first.stop_time
     listed = puck("tables").stdout
     assert listed.count("friction section") == len(list(kept.iterdir()))
-    monkeypatch.setattr(store, "MOST_SECTIONS", 3)
+    monkeypatch.setattr(table_cache, "MOST_SECTIONS", 3)
     for delta in (1.1, 1.2, 1.3):
-        store.friction_for(pt.law_of("uniform"), delta, 1e-4)
+        table_cache.friction_for(pt.law_of("uniform"), delta, 1e-4)
     assert sorted(path.name[:8] for path in kept.iterdir()) == ["tall-1.1", "tall-1.2", "tall-1.3"]
     simulate((1.0, 0.0), 5.0, delta=0.5, pressure="ring", tol=1e-5)
     assert "ring" not in puck("tables").stdout  # made in no time

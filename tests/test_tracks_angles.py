@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from puck_tables import InputError
 from puck_tables.film.angles import direction, unwrap
-from puck_tables.film.track import Track
+from puck_tables.film.puck_track import Track
 
 
 def wrapped(angle: np.ndarray) -> np.ndarray:

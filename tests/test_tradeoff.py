@@ -17,26 +17,26 @@ from puck_tables import Table, resultants
 from puck_tables.accuracy.front import shipped_front
 from puck_tables.errors import OutputError
 from puck_tables.kernels.section_spline import NO_SECTION
-from puck_tables.motion.bulk import fill_stops
+from puck_tables.motion.bulk_stops import fill_stops
 from puck_tables.motion.tableaus import DORMAND_PRINCE, RK4
 from puck_tables.stopping.exact import exact_stops
 from puck_tables.stopping.stop_table import StopTable
-from puck_tables.tradeoff import engine, resultant_methods, stop_methods
+from puck_tables.tradeoff import measurement, resultant_methods, stop_methods
 from puck_tables.tradeoff.bicubic import fill_graded, graded_coefficients
-from puck_tables.tradeoff.doors import CallCost, measured_doors
+from puck_tables.tradeoff.call_overhead import CallCost, measured_doors
+from puck_tables.tradeoff.literature_models import PADE_MATCHED, as_table, pade_limit_ratio
 from puck_tables.tradeoff.machine import measured_machine
-from puck_tables.tradeoff.models import PADE_MATCHED, as_table, pade_limit_ratio
 from puck_tables.tradeoff.truth import Points, known_starts, random_points
 
 DOORS = (CallCost("stop", "all six", 1, 1, 2e4), CallCost("stop", "all six", 1, 10**6, 75.0))
 
 
 @pytest.fixture(scope="module")
-def measured() -> engine.TradeOff:
+def measured() -> measurement.TradeOff:
     """A result as the engine gives it, with the methods that ship."""
     machine = replace(measured_machine(), description={"processor": "any", "cores": "1"})
     sizes = np.array([1e3, 1e4])
-    return engine.TradeOff(
+    return measurement.TradeOff(
         shipped_front(), sizes, np.array([20.0, 15.0]), np.array([1e5, 1e6]), DOORS,
         {"truth": 1.531, "limit surface": np.inf}, machine, 25, 80.0,
     )  # fmt: skip
@@ -113,7 +113,7 @@ def test_closed_forms_beside_the_singular_angle_do_not_depend_on_the_block():
 def test_vectors_of_the_look_up_are_the_plain_sums():
     """Hand-made vector code against NumPy, double and single, at every number of powers."""
     table = StopTable(Table.shipped("stops").values[::6])
-    from puck_tables.stopping.launches import launches_of
+    from puck_tables.stopping.launch_arrays import launches_of
     from puck_tables.stopping.lookup import WIDTH, slip_place, stops_kernel
 
     launch = launches_of((0.6, 0.1), 0.9, 0.7, 1.0, 1.0).part(0, 1)
@@ -171,7 +171,7 @@ def test_models_of_the_literature():
     assert out[:2, 0] == pytest.approx([1.0, 0.5], abs=1e-9)  # pure sliding is right in any model
 
 
-def test_files(measured: engine.TradeOff, tmp_path: Path):
+def test_files(measured: measurement.TradeOff, tmp_path: Path):
     measured.save(tmp_path / "t.h5")
     with xarray.open_dataset(tmp_path / "t.h5", engine="h5netcdf") as data:
         assert data["error"].dims == ("contender",)
@@ -190,7 +190,7 @@ def test_files(measured: engine.TradeOff, tmp_path: Path):
 
 
 @pytest.mark.thorough
-def test_picture_and_report(measured: engine.TradeOff, tmp_path: Path):
+def test_picture_and_report(measured: measurement.TradeOff, tmp_path: Path):
     measured.plot(tmp_path / "t.png")
     assert (tmp_path / "t.png").stat().st_size > 50_000
     text = report(measured)
@@ -230,13 +230,15 @@ def test_every_round_runs_every_way(monkeypatch: pytest.MonkeyPatch):
                 yield contender
 
     all_contenders = resultant_methods.contenders
-    monkeypatch.setattr(engine.resultant_methods, "contenders", few)
-    monkeypatch.setattr(engine.stop_methods, "contenders", lambda task: iter(()))
-    monkeypatch.setattr(engine.state_methods, "contenders", lambda task: iter(()))
-    monkeypatch.setattr(engine, "_QUICK_SWEEP", 4)
-    monkeypatch.setattr(engine, "_QUICK_BATCH", 2)
+    monkeypatch.setattr(measurement.resultant_methods, "contenders", few)
+    monkeypatch.setattr(measurement.stop_methods, "contenders", lambda task: iter(()))
+    monkeypatch.setattr(measurement.state_methods, "contenders", lambda task: iter(()))
+    monkeypatch.setattr(measurement, "_QUICK_SWEEP", 4)
+    monkeypatch.setattr(measurement, "_QUICK_BATCH", 2)
     seen: list[tuple[int, int]] = []
-    result = engine.measure(quick=True, progress=lambda done, total: seen.append((done, total)))
+    result = measurement.measure(
+        quick=True, progress=lambda done, total: seen.append((done, total))
+    )
     assert [method.method for method in result.methods] == ["closed forms", "limit surface"]
     assert seen[-1][0] == seen[-1][1]
     assert result.methods[0].error <= 1e-14 < result.methods[1].error

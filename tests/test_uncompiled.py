@@ -18,7 +18,7 @@ import pytest
 
 import puck_tables as pt
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels import as_written, blocks, doors, vectors
+from puck_tables.kernels import as_written, doors, register_blocks, vectors
 from puck_tables.kernels.compile import inner, kernel, patience
 from puck_tables.kernels.doors import Door
 from puck_tables.kernels.patience import here, one_question
@@ -347,11 +347,11 @@ def test_operations_on_vectors_are_those_of_compiled_code(single: bool):
 def test_bits_and_rows_are_those_of_compiled_code():
     @kernel
     def there_and_back(number: float, block: FloatArray) -> tuple[Any, ...]:
-        blocks.into_row(block, 1, 5, number)
-        blocks.into_rows(block, 2, 5, (number, 2.0 * number))
+        register_blocks.into_row(block, 1, 5, number)
+        register_blocks.into_rows(block, 2, 5, (number, 2.0 * number))
         bits = vectors.bits_of(number)
-        rows = blocks.rows_of(block, 1, 3, 5)
-        return bits, vectors.number_of(bits + 1), blocks.row_of(block, 1, 5), rows
+        rows = register_blocks.rows_of(block, 1, 3, 5)
+        return bits, vectors.number_of(bits + 1), register_blocks.row_of(block, 1, 5), rows
 
     for number in (1.0, -2.5e-300, 0.1):
         block, other = np.zeros(4 * as_written.BLOCK), np.zeros(4 * as_written.BLOCK)
@@ -366,8 +366,8 @@ def test_bits_and_rows_are_those_of_compiled_code():
 def test_lines_and_squares_are_those_of_compiled_code():
     @kernel
     def moved(source: FloatArray, out: FloatArray) -> None:
-        blocks.into_line(out, 3, (source[0], source[1], 7.0, source[2]))
-        blocks.turn_square(source, 1, 9, out, 8, 5)
+        register_blocks.into_line(out, 3, (source[0], source[1], 7.0, source[2]))
+        register_blocks.turn_square(source, 1, 9, out, 8, 5)
 
     source, out, other = np.arange(40.0), np.zeros(40), np.zeros(40)
     moved(source, out)

@@ -29,8 +29,15 @@ from puck_tables import (
     Wall,
 )
 from puck_tables._core.colours import LEAST_CONTRAST, contrast, on_white
-from puck_tables.plot import board_ends, floor, sample, scene_map, style, tradeoff
-from puck_tables.plot.film import PALETTE, colour_of
+from puck_tables.plot import (
+    board_ends_figure,
+    floor_axes,
+    sample_figure,
+    scene_map_figure,
+    style,
+    tradeoff_figure,
+)
+from puck_tables.plot.animation import PALETTE, colour_of
 from puck_tables.scene.loop import OVER_EDGE
 from puck_tables.scene.outcome import ENDS
 
@@ -114,7 +121,7 @@ def test_the_lines_about_a_cloud_hold_what_they_say_however_thin_it_is(ratio: fl
     for count in (1000, 20000):
         own = gaussian(rng, count, ratio)
         far = np.sqrt(np.einsum("in,ij,jn->n", own, np.linalg.inv(np.cov(own)), own))
-        cloud = sample.cloud_of(own[0] + 3.0, own[1])
+        cloud = sample_figure.cloud_of(own[0] + 3.0, own[1])
         assert cloud is not None
         for held in (0.5, 0.95):
             inside = cloud.at_samples > np.quantile(cloud.at_samples, 1.0 - held)
@@ -147,9 +154,9 @@ def test_every_sample_is_in_sight_or_counted() -> None:
         mesh = next(c for c in panel.collections if isinstance(c, QuadMesh))
         single = next(line for line in panel.lines if line.get_label() == "single samples")
         shown = np.isfinite(found.stop_x) & (np.abs(found.stop_y) < 10.0)
-        cloud = sample.cloud_of(found.stop_x[shown], found.stop_y[shown])
+        cloud = sample_figure.cloud_of(found.stop_x[shown], found.stop_y[shown])
         assert cloud is not None and mesh.get_array() is not None
-        bare = cloud.at_samples < sample._COVERED * cloud.density.max()
+        bare = cloud.at_samples < sample_figure._COVERED * cloud.density.max()
         assert len(single.get_xdata()) == bare.sum() and shown.sum() == 400 - lost - far
 
 
@@ -205,7 +212,7 @@ def of_a_puck() -> Iterator[Any]:
 
 
 def of_tracks() -> Iterator[Any]:
-    from puck_tables.plot.track import draw
+    from puck_tables.plot.track_figure import draw
 
     time, place = np.arange(9.0), np.random.default_rng(1).normal(size=(9, 2))
     place[3] = np.nan
@@ -258,14 +265,20 @@ def test_what_is_out_of_sight_is_said() -> None:
 def test_every_colour_is_seen_on_white() -> None:
     rng = np.random.default_rng(4)
     shares = np.linspace(0.0, 1.0, 20)
-    fixed = [style.BLUE, style.GREY, *style.COLORS, floor._MOVING, *tradeoff._MORE_COLORS]
-    fixed += [colour for colour, _ in scene_map._LOOKS]
+    fixed = [
+        style.BLUE,
+        style.GREY,
+        *style.COLORS,
+        floor_axes._MOVING,
+        *tradeoff_figure._MORE_COLORS,
+    ]
+    fixed += [colour for colour, _ in scene_map_figure._LOOKS]
     fixed += [to_hex(style.shaded(share)) for share in shares]
     fixed += [to_hex(style.ramp()(share)) for share in shares]
     fixed += [on_white(colour_of(n)) for n in range(3 * len(PALETTE))]
     fixed += [on_white(f"#{n:06x}") for n in rng.integers(0, 1 << 24, 200).tolist()]
     assert min(map(contrast, [*fixed, on_white("white")])) >= LEAST_CONTRAST
-    assert board_ends.on_white("#0072b2") == "#0072b2"  # what is seen stays
+    assert board_ends_figure.on_white("#0072b2") == "#0072b2"  # what is seen stays
 
 
 def test_contrast_is_that_of_the_standard() -> None:

@@ -57,17 +57,17 @@ def built_once(of: str, cells: int) -> StopTable:
 @pytest.fixture(autouse=True)
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An own folder, and little work: what is done there has tests of its own."""
-    from puck_tables.tradeoff import engine
-    from puck_tables.tradeoff.doors import CallCost
+    from puck_tables.tradeoff import measurement
+    from puck_tables.tradeoff.call_overhead import CallCost
     from puck_tables.tradeoff.machine import Machine
 
     machine = Machine({"processor": "any"}, 1e9, 1e9)
-    measured = engine.TradeOff(
+    measured = measurement.TradeOff(
         shipped_front(), np.array([1e3]), np.array([20.0]), np.array([1e5]),
         (CallCost("stop", "all six", 1, 1, 2e4),), {"truth": 1.531},
         machine, 25, 80.0,
     )  # fmt: skip
-    monkeypatch.setattr(engine, "measure", lambda quick, show: measured)
+    monkeypatch.setattr(measurement, "measure", lambda quick, show: measured)
     monkeypatch.setattr(
         StopTable, "built", lambda of, accuracy, cells, progress: built_once(of, cells)
     )

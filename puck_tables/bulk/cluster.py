@@ -26,8 +26,8 @@ from typing import Any
 from puck_tables._core.digest import program
 from puck_tables._core.executor import Progress
 from puck_tables._core.waiting import watched
-from puck_tables.bulk.place import beside_of
 from puck_tables.bulk.store import Store
+from puck_tables.bulk.store_folder import beside_of
 from puck_tables.bulk.work import Tally, Work, same_program
 from puck_tables.errors import ClusterError, InputError, MissingExtraError
 

@@ -22,7 +22,7 @@ from puck_tables._core.executor import Progress, keep_on, run_chunks
 from puck_tables._core.own_folder import say
 from puck_tables._version import __version__
 from puck_tables.bulk.blocks import Blocks
-from puck_tables.bulk.place import DIGEST, joined, taken
+from puck_tables.bulk.store_folder import DIGEST, joined, taken
 from puck_tables.bulk.work import Columns, Tally, Work, refuse_no_threads
 from puck_tables.errors import InputError, MissingExtraError
 from puck_tables.io.dataset import Variable

@@ -5,20 +5,20 @@ from typing import TYPE_CHECKING
 from puck_tables._core.lazy import lazily
 
 if TYPE_CHECKING:
-    from puck_tables.chetaev.asperity import Asperity, AsperityMotion, asperity_motion
     from puck_tables.chetaev.asperity_forces import AsperityCurve, asperity_curve
     from puck_tables.chetaev.motion import ConstrainedMotion, constrained_motion
     from puck_tables.chetaev.patch_puck import patch_stop, patch_system
     from puck_tables.chetaev.system import ConstrainedSystem
+    from puck_tables.chetaev.wavy_support import Asperity, AsperityMotion, asperity_motion
 
 _HOMES = {
-    "Asperity": "asperity",
+    "Asperity": "wavy_support",
     "AsperityCurve": "asperity_forces",
-    "AsperityMotion": "asperity",
+    "AsperityMotion": "wavy_support",
     "ConstrainedMotion": "motion",
     "ConstrainedSystem": "system",
     "asperity_curve": "asperity_forces",
-    "asperity_motion": "asperity",
+    "asperity_motion": "wavy_support",
     "constrained_motion": "motion",
     "patch_stop": "patch_puck",
     "patch_system": "patch_puck",

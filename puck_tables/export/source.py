@@ -16,28 +16,28 @@ from puck_tables._core.real import instance, listed, real, shown
 from puck_tables._core.safe_write import write_bytes
 from puck_tables._version import __version__
 from puck_tables.errors import AccuracyError, InputError
-from puck_tables.export.cases import cases_of
+from puck_tables.export.check_vectors import cases_of
+from puck_tables.export.exported_tables import law_tables, plain_tables
 from puck_tables.export.languages import LANGUAGES
 from puck_tables.export.licence import LICENCE
 from puck_tables.export.program import (
-    check,
-    given,
+    intrinsics,
     law_places,
     law_state,
     places,
-    resultants,
-    state,
+    resultant_formulas,
+    self_check,
+    state_along,
     stop,
 )
-from puck_tables.export.tables import law_tables, plain_tables
 from puck_tables.puck import Puck
 
 FINEST, COARSEST = 1e-9, 1e-2  # of Q/J, Q²/J: finer the stop table is not; looser is no answer
 # What can be asked for: the modules of it, and the functions that its user calls.
 PARTS: dict[str, tuple[tuple[ModuleType, ...], tuple[str, ...]]] = {
     "stop": ((places, stop), ("stop",)),
-    "state": ((places, stop, state), ("stop", "state", "turn")),
-    "resultants": ((places, resultants), ("resultants",)),
+    "state": ((places, stop, state_along), ("stop", "state", "turn")),
+    "resultants": ((places, resultant_formulas), ("resultants",)),
 }
 _MISSES = {
     "stop": "stop_misses", "state": "state_misses", "turn": "turn_misses",
@@ -226,12 +226,15 @@ def _text(
 ) -> str:  # fmt: skip
     """The whole file."""
     language, by_law = LANGUAGES[key], not kind.body.has_closed_forms
-    modules = [one for one in (places, stop, state, resultants) if one in _modules(parts)]
+    wanted = _modules(parts)
+    modules = [one for one in (places, stop, state_along, resultant_formulas) if one in wanted]
     if by_law:
-        modules += [law_places] + [law_state] * (state in modules)
+        modules += [law_places] + [law_state] * (state_along in modules)
     public = list(dict.fromkeys(name for part in parts for name in PARTS[part][1]))
     misses = [_MISSES[name] for name in public]
-    functions = {node.name: node for module in [*modules, check] for node in _functions(module)}
+    functions = {
+        node.name: node for module in [*modules, self_check] for node in _functions(module)
+    }
     functions["self_test"] = _self_test(misses)
     functions = _needed(functions, [*public, "self_test"])
     if by_law:  # room for the lines of the law
@@ -245,7 +248,9 @@ def _text(
     arrays |= tables
     numbers |= constants
     for module in modules:
-        numbers |= {n: v for n, v in vars(module).items() if n.isupper() and n not in vars(given)}
+        numbers |= {
+            n: v for n, v in vars(module).items() if n.isupper() and n not in vars(intrinsics)
+        }
     whole = _Whole({n: v for n, v in numbers.items() if isinstance(v, int)})
     functions = {name: whole.visit(node) for name, node in functions.items()}
     used = {

@@ -7,7 +7,7 @@ from itertools import combinations
 
 import numpy as np
 
-from puck_tables.film.track import Track
+from puck_tables.film.puck_track import Track
 
 _KEPT = 0.05  # of their distance, by which it varies
 _MOVED = 2.0  # times their distance: how far they go

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.film.track import Track
+from puck_tables.film.puck_track import Track
 from puck_tables.io.dataset import Dataset, variable
 
 _GAP = 1.5  # of the usual time from frame to frame

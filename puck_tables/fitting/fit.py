@@ -11,7 +11,7 @@ import numpy as np
 
 from puck_tables._core.real import instance, real
 from puck_tables.errors import InputError
-from puck_tables.film.track import Track
+from puck_tables.film.puck_track import Track
 from puck_tables.fitting.asked import Asked
 from puck_tables.fitting.blindness import blind_spots
 from puck_tables.fitting.by_speed import over_speeds

@@ -14,7 +14,7 @@ from puck_tables._core.real import instance, positive, real
 from puck_tables.contact.speed_law import KINDS
 from puck_tables.errors import InputError
 from puck_tables.film.pairs import marks_of_one
-from puck_tables.film.track import Track
+from puck_tables.film.puck_track import Track
 from puck_tables.fitting.asked import Asked
 from puck_tables.fitting.certainty import Certainty
 from puck_tables.fitting.estimate import Estimate

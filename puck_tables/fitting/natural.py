@@ -24,18 +24,18 @@ from puck_tables.accuracy.methods import FrictionForm
 from puck_tables.contact.laws import Law, law_of
 from puck_tables.motion.body import body_of, plain_up_to
 from puck_tables.motion.frame import frame_of
-from puck_tables.motion.friction import Friction, section_friction
+from puck_tables.motion.friction_source import Friction, section_friction
 from puck_tables.motion.limits import log_ratio
-from puck_tables.motion.run import MotionRun, at_constant_slip, integrated
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPIN, STATE_ROWS, T
 from puck_tables.motion.steppers import Stepping
 from puck_tables.motion.tableaus import DORMAND_PRINCE
+from puck_tables.motion.unit_motion import MotionRun, at_constant_slip, integrated
 from puck_tables.stopping.plain_states import fill_state_slopes
 from puck_tables.stopping.state_values import known_pucks, looked_up
 from puck_tables.stopping.stop_table import StopTable
-from puck_tables.stopping.varied import Varied, natural_states, varied_by
-from puck_tables.table.flow_section import flow_at_one_height, flow_of_table
+from puck_tables.stopping.variational import Varied, natural_states, varied_by
 from puck_tables.table.friction_section import section_of_table
+from puck_tables.table.friction_slopes import flow_at_one_height, flow_of_table
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.resultant_values import full_contact
 

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
-from puck_tables.film.track import Track
+from puck_tables.film.puck_track import Track
 from puck_tables.fitting.grid import ROUNDED, coarse, counting, step_of
 
 FEWEST = 4  # frames of a track

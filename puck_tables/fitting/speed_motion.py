@@ -15,7 +15,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.kernels.compile import allocating, kernel, patience
-from puck_tables.kernels.speed_quadrature import FINE, integrals_at
+from puck_tables.kernels.speed_quadrature_kernel import FINE, integrals_at
 
 _STEP, _STEPS = 0.08, 220
 _REST = 1e-7  # of the slip at the launch

@@ -16,7 +16,7 @@ from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import cpu_target
 from numba.core.typing.typeof import typeof_impl
 
-from puck_tables.kernels import as_written, blocks, vectors
+from puck_tables.kernels import as_written, register_blocks, vectors
 from puck_tables.kernels.as_written import behind
 from puck_tables.kernels.kept_code import KeptCode
 from puck_tables.kernels.linking import LinkedAtDoors
@@ -46,7 +46,7 @@ event.register("numba:compile", _Announcer())  # type: ignore[no-untyped-call]
 # what numba cannot write, by what stands for it in Python
 _intrinsics: dict[Any, Any] = {patience: vectors.patience} | {
     getattr(as_written, name): one
-    for module in (blocks, vectors)
+    for module in (register_blocks, vectors)
     for name, one in vars(module).items()
     if hasattr(one, "_defn") and hasattr(as_written, name)
 }

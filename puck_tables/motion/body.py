@@ -13,7 +13,7 @@ from puck_tables.errors import InputError
 from puck_tables.table.friction_section import FrictionSection, section_of_table
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.singular_lines import refuse_height
-from puck_tables.table.store import friction_for
+from puck_tables.table.table_cache import friction_for
 
 STANDARD_GRAVITY = 9.80665  # m/s², by the third General Conference on Weights and Measures, 1901
 # k/r: beyond, motions have stops too steep for splines and steps

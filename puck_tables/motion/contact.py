@@ -11,8 +11,8 @@ from puck_tables.accuracy.methods import FrictionForm
 from puck_tables.contact.one_sided import loaded_share
 from puck_tables.kernels.section_spline import LINE
 from puck_tables.motion.body import Body
-from puck_tables.motion.run import GENERIC, MotionRun
 from puck_tables.motion.state import T, U
+from puck_tables.motion.unit_motion import GENERIC, MotionRun
 from puck_tables.table.singular_lines import opening_angle
 
 
@@ -36,8 +36,8 @@ def contact_of(body: Body, regime: str, run: MotionRun) -> Contact:
     Examples
     --------
     >>> from puck_tables.motion.body import body_of
-    >>> from puck_tables.motion.friction import source_of
-    >>> from puck_tables.motion.run import solve
+    >>> from puck_tables.motion.friction_source import source_of
+    >>> from puck_tables.motion.unit_motion import solve
     >>> body = body_of("uniform", 2.0, 0.5**0.5)
     >>> run, _ = solve(source_of(body), "C0", 1.0, 0.0, 1e-6)
     >>> round(contact_of(body, "C0", run).least, 6)

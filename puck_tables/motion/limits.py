@@ -14,7 +14,7 @@ from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
 from puck_tables.contact.laws import limit_ratio as law_limit_ratio
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import ContactError
-from puck_tables.kernels.closed_form import friction_ratios, resultants
+from puck_tables.kernels.closed_form_kernel import friction_ratios, resultants
 from puck_tables.kernels.compile import kernel
 from puck_tables.motion.body import checked_gyration
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating, inlined, inner, patience
-from puck_tables.motion.equations import (
+from puck_tables.motion.equations_of_motion import (
     at_constant_angle,
     crossed_line,
     derivatives,
@@ -92,7 +92,7 @@ def integrate(
     tolerance : the local error then allowed per step
     place_unit : what errors of the place are measured in, 1 for Q₀²/J; a launch of nearly pure spin
         moves by that times cos φ only
-    cut, delta : friction at this δ, see :mod:`puck_tables.motion.equations`
+    cut, delta : friction at this δ, see :mod:`puck_tables.motion.equations_of_motion`
     step_limit : the most steps
     z_path, y_path : arrays (n,), (n, 8) for the step ends, or empty when nobody wants them
     result : array (8 + 1): the state at the stop (its ψ: the turn), energy residual

@@ -10,7 +10,12 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel, patience
-from puck_tables.motion.equations import at_constant_angle, crossed_line, ratios_at, slip_ratio
+from puck_tables.motion.equations_of_motion import (
+    at_constant_angle,
+    crossed_line,
+    ratios_at,
+    slip_ratio,
+)
 from puck_tables.motion.path import TURN_Z, end_of_steps, q_of, step_length
 from puck_tables.motion.state import LENGTH, PSI, THETA, T, U, X, Y
 
@@ -19,7 +24,7 @@ State = tuple[float, float, float, float, float, float, float]  # u, ψ, t, x, y
 
 @inlined
 def _rates(z: float, u: float, psi: float, cut: FloatArray, delta: float) -> State:
-    """The equations of motion, see :mod:`puck_tables.motion.equations`."""
+    """The equations of motion, see :mod:`puck_tables.motion.equations_of_motion`."""
     k, fast, cosine, sine = slip_ratio(u)
     inverse, across, spin = ratios_at(k, fast, cut, delta)
     left = 1.0 - z
@@ -60,7 +65,7 @@ def to_stop(
     ----------
     u : start value, finite
     steps : about how many steps to take
-    cut, delta : friction at this δ, see :mod:`puck_tables.motion.equations`
+    cut, delta : friction at this δ, see :mod:`puck_tables.motion.equations_of_motion`
     state, result : arrays (8,), (8 + 1): work space, and the state at the stop (its ψ: the turn)
     """
     y = (u, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)

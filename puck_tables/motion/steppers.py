@@ -9,7 +9,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.accuracy.front import Selection
 from puck_tables.accuracy.methods import Method
 from puck_tables.kernels.compile import inlined, inner
-from puck_tables.motion.equations import derivatives
+from puck_tables.motion.equations_of_motion import derivatives
 from puck_tables.motion.state import SIZE
 from puck_tables.motion.tableaus import DORMAND_PRINCE, DORMAND_PRINCE_8, RK4, Tableau
 

@@ -1,14 +1,14 @@
 """How one motion changes with its launch, its height and its spread of mass: variational equations.
 
-Along a motion dy/dz = F(u, ψ; δ, k) (:mod:`puck_tables.motion.equations`) a small change of a
-parameter p changes the state at the same z by y_p,
+Along a motion dy/dz = F(u, ψ; δ, k) (:mod:`puck_tables.motion.equations_of_motion`) a small change
+of a parameter p changes the state at the same z by y_p,
 
     dy_p/dz = (∂F/∂y) y_p + ∂F/∂p,
 
 which is integrated beside the motion itself.  For p = u₀, the slip at the launch, it begins with
 u_p = 1; for δ and the radius of gyration k with 0.  Nothing is differenced: ∂F needs the
-derivatives of the friction ratios by u and δ (:mod:`puck_tables.table.flow_section`), k only stands
-in r ω' = −(r²/2k²) J sin φ ρ_ω.
+derivatives of the friction ratios by u and δ (:mod:`puck_tables.table.friction_slopes`), k only
+stands in r ω' = −(r²/2k²) J sin φ ρ_ω.
 
 All is linear in y_p, so what is small next to pure sliding and pure spin keeps its digits.  Next to
 a line of the friction, where the derivative by u is known badly, steps are as short as the distance
@@ -151,7 +151,7 @@ def vary(
     ----------
     z_path : array (n,), where the steps of the motion end
     u : ln(rω/v) at the launch
-    cut : six functions, see :meth:`puck_tables.table.flow_section.FlowSection.for_slopes`
+    cut : six functions, see :meth:`puck_tables.table.friction_slopes.FlowSection.for_slopes`
     path : array (n, 28), or empty where nobody wants it
     stop : array (28,)
     work : room (8, 28)

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from puck_tables.plot.film import Animation, Box, MovingDisc
-from puck_tables.plot.floor import Box as Sight
-from puck_tables.plot.floor import draw_floor
+from puck_tables.plot.animation import Animation, Box, MovingDisc
+from puck_tables.plot.floor_axes import Box as Sight
+from puck_tables.plot.floor_axes import draw_floor
 from puck_tables.plot.style import GREY, RED
 
 if TYPE_CHECKING:

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.plot.animation import Box
 from puck_tables.plot.board import size_of
-from puck_tables.plot.film import Box
 from puck_tables.plot.style import canvas
-from puck_tables.plot.words import legend_below, titled
+from puck_tables.plot.titles import legend_below, titled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

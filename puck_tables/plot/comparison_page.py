@@ -11,11 +11,11 @@ from puck_tables._core.safe_write import write_bytes
 from puck_tables._version import __version__
 from puck_tables.io.columns import COLUMNS
 from puck_tables.io.formats import ending_of
-from puck_tables.plot.comparison import draw
+from puck_tables.plot.comparison_figure import draw
 from puck_tables.plot.style import require_matplotlib
+from puck_tables.reference.case_text import lines_of
 from puck_tables.reference.comparison import Comparison
 from puck_tables.reference.threshold import states_of
-from puck_tables.reference.words import lines_of
 
 _STYLE = (
     "body{font:16px/1.5 system-ui,sans-serif;max-width:62em;margin:2em auto;padding:0 1em}"

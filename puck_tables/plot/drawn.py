@@ -19,7 +19,7 @@ def draw(result: Result, path: str | Path | None, ax: Axes | None, overwrite: bo
     require_matplotlib()
     if path is not None:
         checked_kind(path)
-    module: Any = import_module(f"puck_tables.plot.{result.picture}")
+    module: Any = import_module(f"puck_tables.plot.{result.picture}_figure")
     figure: Figure
     if ax is None:
         figure = module.draw(result)

@@ -17,11 +17,11 @@ from puck_tables._core.safe_write import check_target, write_bytes
 from puck_tables.errors import MissingExtraError, OutputError
 from puck_tables.io.formats import ending_of
 from puck_tables.plot import board
-from puck_tables.plot.film import Animation, MovingDisc, between, film_of, path_of
-from puck_tables.plot.floor import Box as Sight
-from puck_tables.plot.floor import motion_said, shades_of
+from puck_tables.plot.animation import Animation, MovingDisc, between, film_of, path_of
+from puck_tables.plot.floor_axes import Box as Sight
+from puck_tables.plot.floor_axes import motion_said, shades_of
 from puck_tables.plot.style import RED, canvas, may_replace, require_matplotlib
-from puck_tables.plot.words import titled
+from puck_tables.plot.titles import titled
 from puck_tables.result import TimedResult
 from puck_tables.scene.parts import Floor
 

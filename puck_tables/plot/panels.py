@@ -10,7 +10,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.plot.style import COLORS, GREY, canvas, shaded
-from puck_tables.plot.words import titled
+from puck_tables.plot.titles import titled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -16,8 +16,8 @@ from puck_tables.io.columns import derived, following
 from puck_tables.io.dataset import Dataset, Variable, variable
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.reference.cases import TOL, ReferenceCase, case_named
-from puck_tables.reference.floor import on_the_floor, ratios, slip_over
-from puck_tables.reference.moments import frame_times
+from puck_tables.reference.floor_reaction import on_the_floor, ratios, slip_over
+from puck_tables.reference.frame_times import frame_times
 from puck_tables.result import Result
 from puck_tables.scene.entries import tables_of
 from puck_tables.scene.parts import Floor

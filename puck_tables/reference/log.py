@@ -11,17 +11,17 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.beginning import beginning, refuse_no_text
-from puck_tables._core.columns import list_of
 from puck_tables._core.quantities import TIME
+from puck_tables._core.read_columns import list_of
 from puck_tables._core.real import instance, real
 from puck_tables._core.text import Look, look_at
 from puck_tables._core.text_rows import LARGEST, read_columns
 from puck_tables._core.units import EXAMPLES, parted, unit_size
 from puck_tables.errors import InputError
+from puck_tables.film.column_roles import headed, name_of
 from puck_tables.film.headings import heading
-from puck_tables.film.layout import headed, name_of
 from puck_tables.reference.attitude import turned
-from puck_tables.reference.headings import LogHeading, log_heading
+from puck_tables.reference.log_headings import LogHeading, log_heading
 
 _SLOW = 1.0  # s between rows: more, and times are hardly in seconds
 _FEWEST = 3  # rows that are compared

@@ -10,7 +10,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.reference.answer import Answer
-from puck_tables.reference.floor import ratios, slip_over
+from puck_tables.reference.floor_reaction import ratios, slip_over
 from puck_tables.reference.log import Log
 from puck_tables.reference.threshold import Rest, Threshold, rest_of_rows, states_of, why_no_rest
 

@@ -11,7 +11,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.units import unit_size
 from puck_tables.errors import InputError
 from puck_tables.reference.answer import Answer
-from puck_tables.reference.floor import SlipVelocity, slip_over
+from puck_tables.reference.floor_reaction import SlipVelocity, slip_over
 
 _USUAL = 0.01  # of Q at the launch
 _NO_SPIN = 1e-9  # of Q at the launch

@@ -117,7 +117,8 @@ class Case:
         with np.errstate(all="ignore"):  # runs that failed are not a number
             missing, largest = ledger(last, energy)
             residual = missing / np.where(largest > 0.0, largest, 1.0)
-        in_play = np.where(status < OVER_EDGE, 1.0, np.where(status == OVER_EDGE, 0.0, np.nan))
+        in_play = (status != OVER_EDGE).astype(np.float64)
+        in_play[status > OVER_EDGE] = np.nan
         last |= {"in_play": in_play, "impacts": rows[-1], "energy_residual": residual}
         last["end_time"] = last.pop("time")
         return last, status

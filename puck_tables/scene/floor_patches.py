@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.columns import numbers_of
 from puck_tables._core.quantities import X, Y
+from puck_tables._core.read_columns import numbers_of
 from puck_tables.errors import InputError
 
 if TYPE_CHECKING:

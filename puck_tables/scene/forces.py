@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.columns import numbers_of
 from puck_tables._core.quantities import FORCE_X, FORCE_Y, TIME, TORQUE
+from puck_tables._core.read_columns import numbers_of
 from puck_tables.kernels.compile import inlined
 from puck_tables.scene.parts import Rows
 

@@ -17,7 +17,7 @@ import math
 
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.kernels.speed_spline import speed_ratios
-from puck_tables.motion.equations import ratios_at
+from puck_tables.motion.equations_of_motion import ratios_at
 from puck_tables.scene.astride import astride_friction
 from puck_tables.scene.ingredients import BySpeed, Dry, is_astride
 from puck_tables.scene.orthotropic import ellipse_in, elliptic_friction, is_elliptic

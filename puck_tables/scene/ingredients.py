@@ -53,7 +53,7 @@ class Regions(NamedTuple):
     """Dry friction in every region of the floor: f N, δ, and the friction ratios at that δ.
 
     ``load``, ``delta``: arrays (regions,); ``cuts``: (regions, …), see
-    :func:`puck_tables.motion.equations.ratios_at`; ``by_speed`` takes the place of all.
+    :func:`puck_tables.motion.equations_of_motion.ratios_at`; ``by_speed`` takes the place of all.
     ``astride`` (regions,): where the base lies on several frictions of the ``ground``, see
     :mod:`puck_tables.scene.astride`; there load and δ are the largest of them.  A run has its own
     ground, in which it says where the base is.

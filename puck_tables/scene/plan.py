@@ -17,7 +17,7 @@ from typing import Any
 from puck_tables._core.fields import specs
 from puck_tables.errors import PuckError
 from puck_tables.motion.body import is_plain
-from puck_tables.motion.friction import FINEST_TOL
+from puck_tables.motion.friction_source import FINEST_TOL
 from puck_tables.motion.limits import regime
 from puck_tables.scene.agreement import distance, launch_velocity
 from puck_tables.scene.entries import entries

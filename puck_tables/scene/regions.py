@@ -11,7 +11,7 @@ from puck_tables._core.real import rounded_up
 from puck_tables.errors import AccuracyError
 from puck_tables.kernels.section_spline import HEADER, RATIOS
 from puck_tables.motion.body import body_of, is_plain
-from puck_tables.motion.friction import closed_form_friction, table_friction
+from puck_tables.motion.friction_source import closed_form_friction, table_friction
 from puck_tables.scene.by_speed import NO_LAW, friction_by_speed, law_error
 from puck_tables.scene.ground import NO_GROUND
 from puck_tables.scene.ingredients import BySpeed, Regions

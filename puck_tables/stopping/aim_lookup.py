@@ -1,6 +1,6 @@
 """The launches that stop at one distance, looked up, compiled: values on their curve, and roots.
 
-What :mod:`puck_tables.stopping.launch_curve` integrates is read here off a table.  Of a plain puck
+What :mod:`puck_tables.stopping.launch_family` integrates is read here off a table.  Of a plain puck
 that is the stop table cut down to one height: with T = ``time``, X = cos φ · along and
 Y = sin φ cos φ · across, J = D = 1,
 

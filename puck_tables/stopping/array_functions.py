@@ -14,7 +14,7 @@ from puck_tables._core.real import broadcast, finite_array, real
 from puck_tables.accuracy.methods import Method
 from puck_tables.contact.laws import HOMOGENEOUS, Law
 from puck_tables.errors import InputError
-from puck_tables.stopping.launches import launches_of
+from puck_tables.stopping.launch_arrays import launches_of
 from puck_tables.stopping.per_height import SolverPerHeight
 from puck_tables.stopping.states import TOO_LARGE, states
 from puck_tables.stopping.stop_section import FINEST_SECTION

@@ -11,7 +11,7 @@ from puck_tables._core.executor import run_chunks
 from puck_tables.kernels.compile import allocating, patience
 from puck_tables.kernels.patience import A_MOTION
 from puck_tables.kernels.section_spline import NO_SECTION
-from puck_tables.motion.equations import at_constant_angle
+from puck_tables.motion.equations_of_motion import at_constant_angle
 from puck_tables.motion.path import STOPPED, integrate
 from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, T, U, X, Y
 from puck_tables.motion.tableaus import DORMAND_PRINCE, DORMAND_PRINCE_8, Tableau
@@ -56,7 +56,7 @@ def integrated_stops(
     ----------
     u : array (n,), ln(rω/v), infinite for pure sliding (−) and pure spin (+)
     delta : array (n,)
-    cut : friction, see :mod:`puck_tables.motion.equations`
+    cut : friction, see :mod:`puck_tables.motion.equations_of_motion`
     tolerance : local error of a step
     place_unit : array (n,) or 1, what local errors of the place are measured in
         With cos φ places next to pure spin, all as small as that, keep their digits.

@@ -15,7 +15,7 @@ from puck_tables._core.real import shown
 from puck_tables.contact.laws import Law
 from puck_tables.errors import InputError
 from puck_tables.motion.body import Body
-from puck_tables.stopping.launches import Launches, in_chunks, launches_in
+from puck_tables.stopping.launch_arrays import Launches, in_chunks, launches_in
 from puck_tables.stopping.spread import ResultSpread, spread_of
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
@@ -212,7 +212,7 @@ def integrated_jacobians(
     ``which`` (n,): of ``launches`` (6, m), at ``moments`` (n,).
     """
     from puck_tables.stopping.launch_frame import fill_placed_states
-    from puck_tables.stopping.varied import natural_states, varied_of
+    from puck_tables.stopping.variational import natural_states, varied_of
 
     frictions = {height: varied_of(body) for height, body in bodies.items()}
     order = np.argsort(which, kind="stable")

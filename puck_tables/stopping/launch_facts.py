@@ -19,9 +19,11 @@ from puck_tables.kernels.compile import (
     spline_polynomials,
 )
 from puck_tables.kernels.elementary import logs_of
-from puck_tables.stopping import curve_lookup
+from puck_tables.stopping import similarity_lookup
 from puck_tables.stopping.axes import CONSTANT_HEIGHTS
-from puck_tables.stopping.curve_flow import (
+from puck_tables.stopping.launch_frame import rotated
+from puck_tables.stopping.similarity_lookup import LAUNCH_COLUMNS
+from puck_tables.stopping.similarity_rates import (
     A0,
     CURVE,
     CURVE_TILT,
@@ -62,9 +64,7 @@ from puck_tables.stopping.curve_flow import (
     turn_lines,
     turn_rate,
 )
-from puck_tables.stopping.curve_lookup import LAUNCH_COLUMNS
-from puck_tables.stopping.launch_frame import rotated
-from puck_tables.stopping.orbit import TINY
+from puck_tables.stopping.state_splines import TINY
 from puck_tables.stopping.stop_jacobian import direction, stop_by_speeds
 
 _NEAR_LIMIT = 0.05  # of c − c₀
@@ -76,15 +76,25 @@ _OF_PUCK = tuple(
     (row, row if row < LAUNCH_COLUMNS else LAUNCH_COLUMNS + known)
     for row, known in zip(
         (EAST, NORTH, SPIN, DELTA, DECEL, RADIUS, ONE_TIME, SLIP, UNIT),
-        (0, 0, 0, 0, 0, 0, curve_lookup.TIME, curve_lookup.SLIP, curve_lookup.SPEED0),
+        (
+            0,
+            0,
+            0,
+            0,
+            0,
+            0,
+            similarity_lookup.TIME,
+            similarity_lookup.SLIP,
+            similarity_lookup.SPEED0,
+        ),
         strict=True,
     )
 )
 _OF_NEIGHBOUR = (
-    (V0, LAUNCH_COLUMNS + curve_lookup.SPEED0), (A0, SPIN), (ONE_V, RADIUS),
-    (U0, LAUNCH_COLUMNS + curve_lookup.SLIP), (T0, LAUNCH_COLUMNS + curve_lookup.T_LAUNCH),
-    (_KAPPA, LAUNCH_COLUMNS + curve_lookup.KAPPA),
-    (_H0, LAUNCH_COLUMNS + curve_lookup.TURNING),
+    (V0, LAUNCH_COLUMNS + similarity_lookup.SPEED0), (A0, SPIN), (ONE_V, RADIUS),
+    (U0, LAUNCH_COLUMNS + similarity_lookup.SLIP), (T0, LAUNCH_COLUMNS +
+    similarity_lookup.T_LAUNCH), (_KAPPA, LAUNCH_COLUMNS + similarity_lookup.KAPPA),
+    (_H0, LAUNCH_COLUMNS + similarity_lookup.TURNING),
 )  # fmt: skip
 
 
@@ -200,8 +210,9 @@ def fill_launch_facts(
 ) -> None:  # fmt: skip
     """All that derivatives of states need of launches, into ``out`` (49, m).
 
-    ``pucks`` (20, m), see :func:`puck_tables.stopping.known.fill_known`; ``natural``: the same, but
-    with others beside them in place of exact pure motions; ``constants`` (14, 4), powers ascending.
+    ``pucks`` (20, m), see :func:`puck_tables.stopping.launch_lookup.fill_known`; ``natural``: the
+    same, but with others beside them in place of exact pure motions; ``constants`` (14, 4), powers
+    ascending.
     """
     patience(pucks.shape[1])
     cells, fixed = float(states.shape[1] - 3), constants.reshape(-1)

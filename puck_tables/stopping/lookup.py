@@ -32,7 +32,7 @@ from puck_tables.kernels.compile import (
     spline_values,
 )
 from puck_tables.kernels.spline import basis
-from puck_tables.stopping.launches import (
+from puck_tables.stopping.launch_arrays import (
     COLUMNS,
     DECEL,
     DELTA,
@@ -158,10 +158,10 @@ def stops_kernel(powers: int) -> Callable[..., tuple[int, int, int]]:
     """The compiled look-up for stop tables of so many powers of 2δ² − 1.
 
     The function (vx, vy, step, spin, delta, decel, radius, coefficients, time, x, y, apart): stop
-    time, x, y of launches (see :class:`puck_tables.stopping.launches.Launches`) into ``time`` (n,)
-    and every ``apart``-th place of ``x`` and ``y``.  Returns of how many launches Q²/J or Q²/(J r)
-    may be too large, how many are no launches, and their mark.  Coefficients: array (2 sides,
-    cells + 3, powers × :data:`WIDTH`), powers ascending, functions T, along, across.
+    time, x, y of launches (see :class:`puck_tables.stopping.launch_arrays.Launches`) into ``time``
+    (n,) and every ``apart``-th place of ``x`` and ``y``.  Returns of how many launches Q²/J or
+    Q²/(J r) may be too large, how many are no launches, and their mark.  Coefficients: array (2
+    sides, cells + 3, powers × :data:`WIDTH`), powers ascending, functions T, along, across.
 
     In blocks of three loops: places (vectorised), functions (in the lanes of registers,
     :func:`puck_tables.kernels.compile.spline_values`), results (vectorised).  The number of powers

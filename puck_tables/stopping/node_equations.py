@@ -1,7 +1,8 @@
 """The equations that stops and the curve satisfy, at every node of a stop table at once.
 
-Along a motion everything goes with ln Q, du/d ln Q = −ρ(u) (:mod:`puck_tables.stopping.curve`).
-What is left of time, way and angle gives, with N as there, s = sin φ, c = cos φ and dψ/d ln Q = h,
+Along a motion everything goes with ln Q, du/d ln Q = −ρ(u)
+(:mod:`puck_tables.stopping.similarity`). What is left of time, way and angle gives, with N as
+there, s = sin φ, c = cos φ and dψ/d ln Q = h,
 
     T − ρ T_u = N/ρ_∥,        (2 + i h) Z − ρ Z_u = c N/ρ_∥   (Z = X + iY),
     2 L − ρ L_u = c N/ρ_∥,    2 Θ − ρ Θ_u = s N/ρ_∥ ,
@@ -21,7 +22,7 @@ from puck_tables.contact import closed_form
 from puck_tables.contact.integrals import PatchIntegrals, SlipDirection
 from puck_tables.contact.resultants import moment_balance
 from puck_tables.stopping.axes import SlipAxis, heights, ratio_at
-from puck_tables.stopping.curve import limits, regular_slopes
+from puck_tables.stopping.similarity import limits, regular_slopes
 
 # measured: at most 67 and 1440 times cells⁻⁴ is missed by right values
 _MISSED, _MISSED_BY_CURVE, _ROUNDING = 150.0, 3000.0, 1e-10

@@ -35,11 +35,11 @@ from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.quadratic import NO_COLUMNS
 from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.motion.body import Body, body_of, plain_up_to
-from puck_tables.motion.friction import Sections, integration_selected
-from puck_tables.motion.run import unseen_tail
+from puck_tables.motion.friction_source import Sections, integration_selected
 from puck_tables.motion.solve import FINEST_LOCAL, ErrorEstimate, Setting, close_enough, refined
 from puck_tables.motion.steppers import stepping_of
-from puck_tables.stopping.launches import Launches, launches_in
+from puck_tables.motion.unit_motion import unseen_tail
+from puck_tables.stopping.launch_arrays import Launches, launches_in
 from puck_tables.stopping.solvers import (
     OUTPUTS,
     EachAlone,

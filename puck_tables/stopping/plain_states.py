@@ -7,8 +7,8 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.motion.state import HEADING, SPIN, STATE_ROWS
-from puck_tables.stopping.curve_lookup import LAUNCH_COLUMNS, SLIP, SPEED0
-from puck_tables.stopping.launches import CHUNK, DELTA, Launches, in_chunks, launches_in
+from puck_tables.stopping.launch_arrays import CHUNK, DELTA, Launches, in_chunks, launches_in
+from puck_tables.stopping.similarity_lookup import LAUNCH_COLUMNS, SLIP, SPEED0
 from puck_tables.stopping.state_values import directions, looked_up, refuse_times
 from puck_tables.stopping.stop_table import StopTable
 
@@ -38,7 +38,7 @@ def all_looked_up(
         turned = directions(pucks[0], pucks[1])
         found[HEADING] += turned[which] if which.size > 1 else turned
         return found
-    from puck_tables.stopping.orbit_lookup import PUCK_ROWS, fill_orbit_states
+    from puck_tables.stopping.state_lookup import PUCK_ROWS, fill_orbit_states
 
     out, orbit, bad = np.empty((STATE_ROWS, moments.size)), table.orbit_coefficients, [0]
 
@@ -88,13 +88,13 @@ def _fill_slopes(
     known = pucks, natural, table.height_constants
     facts, section = np.empty((0, 0)), np.empty((2, 0, 0))
     if which.size:
-        from puck_tables.stopping.curve_flow import FACTS
         from puck_tables.stopping.launch_facts import fill_launch_facts
+        from puck_tables.stopping.similarity_rates import FACTS
 
         facts = np.empty((FACTS, pucks.shape[1]))
         fill_launch_facts(*known, slopes.states, slopes.rates, facts)
     if end - begin >= _MANY and (pucks[DELTA] == pucks[DELTA, 0]).all():
-        from puck_tables.stopping.curve_flow import SECTION_WIDTH, fill_section
+        from puck_tables.stopping.similarity_rates import SECTION_WIDTH, fill_section
 
         section = np.empty((*slopes.states.shape[:2], SECTION_WIDTH))
         fill_section(pucks[DELTA, 0].item(), slopes.states, slopes.rates, section)

@@ -1,6 +1,6 @@
 """Derivatives of stops of one kind of puck: splines over the slip angle, or each launch by itself.
 
-What is splined are the derivatives in natural units (:func:`puck_tables.stopping.varied
+What is splined are the derivatives in natural units (:func:`puck_tables.stopping.variational
 .natural_stops`): a launch costs a look-up and the way back to SI units, once a second or two were
 spent on the splines.  They carry broken powers of φ at both ends, by one smaller than those of the
 stop, and may be too steep there, or next to a line of the friction, for any spline: launches in
@@ -18,7 +18,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import run_chunks
 from puck_tables.motion.body import Body
-from puck_tables.stopping.varied import natural_stops, varied_of
+from puck_tables.stopping.variational import natural_stops, varied_of
 from puck_tables.table.singular_lines import lines_of
 from puck_tables.table.slip_axis import graded, sides_of
 from puck_tables.table.slip_spline import SlipSpline
@@ -35,7 +35,7 @@ class SlopeSection(NamedTuple):
     """Twenty functions of φ, and in which cells (sides, cells) they are good.
 
     Time, along, to the left, path, body angle, by four columns of
-    :func:`puck_tables.stopping.varied.natural_stops` each.
+    :func:`puck_tables.stopping.variational.natural_stops` each.
     """
 
     cut: FloatArray

@@ -1,6 +1,6 @@
 """Slopes of what a stop table holds, over the slip angle: exact at the nodes, splines between.
 
-With s = sin φ, c = cos φ, u = ln tan φ, and ρ, N, h of :mod:`puck_tables.stopping.curve`, the
+With s = sin φ, c = cos φ, u = ln tan φ, and ρ, N, h of :mod:`puck_tables.stopping.similarity`, the
 equations of motion say what the derivatives by u are, M = N/ρ_∥, H = h/(δ s):
 
     T_u = (T − M)/ρ,    α_u = (2α − δ² s² H β − M)/ρ + s² α,    β_u = (2β + H α)/ρ − (c² − s²) β,
@@ -28,8 +28,8 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray, aligned
 from puck_tables.contact.closed_form import shape_integrals
 from puck_tables.stopping.axes import HEIGHTS, SlipAxis, height_polynomials, heights, ratio_at
-from puck_tables.stopping.curve import limits, regular_slopes
-from puck_tables.table.fit import clamped_coefficients
+from puck_tables.stopping.similarity import limits, regular_slopes
+from puck_tables.table.spline_fit import clamped_coefficients
 
 STOP_FUNCTIONS = 5  # T, along, across, body, length; then the slopes of each
 STOP_WIDTH = 12  # all, padded to whole registers

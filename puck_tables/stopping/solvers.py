@@ -18,12 +18,12 @@ from puck_tables._core.executor import in_slices, run_chunks
 from puck_tables.accuracy.methods import Method
 from puck_tables.motion.body import Body
 from puck_tables.motion.frame import frame_of
-from puck_tables.motion.friction import source_of
+from puck_tables.motion.friction_source import source_of
 from puck_tables.motion.limits import regime_of
-from puck_tables.motion.run import solve
 from puck_tables.motion.state import LENGTH, PSI, THETA, T, X, Y
 from puck_tables.motion.steppers import Stepping
-from puck_tables.stopping.launches import Launches, fits, in_chunks, launches_in
+from puck_tables.motion.unit_motion import solve
+from puck_tables.stopping.launch_arrays import Launches, fits, in_chunks, launches_in
 from puck_tables.stopping.lookup import STOP_POWERS
 from puck_tables.stopping.stop_section import StopSection
 from puck_tables.stopping.stop_table import StopTable
@@ -183,7 +183,7 @@ class Integration(StopSolver):
 
     def all(self, launches: FloatArray, threads: int | None = 1) -> tuple[FloatArray, Status]:
         """All of the outputs (6, n) and status (n,)."""
-        from puck_tables.motion.bulk import fill_stops
+        from puck_tables.motion.bulk_stops import fill_stops
 
         out = np.empty((len(OUTPUTS), launches.shape[1]))
         status = np.empty(launches.shape[1], np.int8)

@@ -1,9 +1,9 @@
 """Derivatives of states by look-up, compiled.
 
 In natural units (Q = J = r = 1 at the launch, spin positive, start along x) a motion is a place u
-on the curve of :mod:`puck_tables.stopping.curve`, du/d ln Q = −ρ, and ln Q − g(u, δ) stays the same
-along it, g_u = −1/ρ.  The time that is left is Q T(u, δ).  So a change of slip angle or height,
-with changes of u at the launch, and of its stop time t₀, changes the state at the time t by
+on the curve of :mod:`puck_tables.stopping.similarity`, du/d ln Q = −ρ, and ln Q − g(u, δ) stays the
+same along it, g_u = −1/ρ.  The time that is left is Q T(u, δ).  So a change of slip angle or
+height, with changes of u at the launch, and of its stop time t₀, changes the state at the time t by
 
     δu = (T Y − ρ W)/M,    δ ln Q = (W − T_u Y)/M,    M = T − ρ T_u,
     W = δt₀/Q − T_δ δδ,    Y = ρ [δu/ρ (launch) + (g_δ − g_δ(launch)) δδ] .
@@ -41,7 +41,9 @@ from puck_tables.kernels.compile import (
 )
 from puck_tables.kernels.elementary import cosine_sine_of, exp_of, logs_of
 from puck_tables.motion import state
-from puck_tables.stopping.curve_flow import (
+from puck_tables.stopping.launch_facts import fetch, fill_up, find_facts
+from puck_tables.stopping.launch_frame import PLACED_STATES, placed_state, rotated
+from puck_tables.stopping.similarity_rates import (
     BEND,
     C0_TILT,
     CURVE,
@@ -88,10 +90,8 @@ from puck_tables.stopping.curve_flow import (
     pole_at,
     turn_rate,
 )
-from puck_tables.stopping.launch_facts import fetch, fill_up, find_facts
-from puck_tables.stopping.launch_frame import PLACED_STATES, placed_state, rotated
-from puck_tables.stopping.orbit import TINY
-from puck_tables.stopping.orbit_lookup import gather
+from puck_tables.stopping.state_lookup import gather
+from puck_tables.stopping.state_splines import TINY
 from puck_tables.stopping.stop_jacobian import BY_HEIGHT, Numbers, T, row_by_row, stop_by_speeds
 
 # rows of a block for what is found on the way
@@ -311,10 +311,10 @@ def fill_state_jacobians(
     """Derivatives of states into ``out`` (n, 6, 7).
 
     At ``times`` (n,) ≥ 0, from ``begin`` to ``end``, as in
-    :func:`puck_tables.stopping.orbit_lookup.fill_orbit_states`, whose ``states`` (6, n) are needed;
+    :func:`puck_tables.stopping.state_lookup.fill_orbit_states`, whose ``states`` (6, n) are needed;
     of pucks ``which`` of ``facts`` (49, m), or, where ``which`` is empty, of ``pucks``, see
     :func:`puck_tables.stopping.launch_facts.fill_launch_facts`.  ``section``: that of
-    :func:`puck_tables.stopping.curve_flow.fill_section` where all have one height, or empty.
+    :func:`puck_tables.stopping.similarity_rates.fill_section` where all have one height, or empty.
     Derivatives of x, y, body angle, vx, vy, ω by vx, vy, ω, δ, J, r, time; from the stop on those
     of the stop.
     """

@@ -11,11 +11,11 @@ from puck_tables._core.real import finite_array
 from puck_tables.errors import InputError
 from puck_tables.motion.body import Body
 from puck_tables.motion.frame import frame_of
-from puck_tables.motion.friction import source_of
+from puck_tables.motion.friction_source import source_of
 from puck_tables.motion.limits import regime_of
-from puck_tables.motion.run import solve
 from puck_tables.motion.state import STATE_ROWS, T
-from puck_tables.stopping.launches import CHUNK, in_chunks, launches_in
+from puck_tables.motion.unit_motion import solve
+from puck_tables.stopping.launch_arrays import CHUNK, in_chunks, launches_in
 from puck_tables.stopping.stop_table import StopTable
 
 TOL = 1e-9  # of Q/J, Q²/J, as a look-up of plain pucks is good to
@@ -52,7 +52,7 @@ def looked_up(
     threads: int | None = None,
 ) -> FloatArray:  # fmt: skip
     """States (6, n) of plain ``pucks`` (20, m), ``which`` (n,) or (1,) at ``moments`` (n,)."""
-    from puck_tables.stopping.orbit_lookup import fill_orbit_states
+    from puck_tables.stopping.state_lookup import fill_orbit_states
 
     out, orbit, bad = np.empty((STATE_ROWS, moments.size)), table.orbit_coefficients, [0]
     if moments.size <= CHUNK:

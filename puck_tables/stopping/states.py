@@ -33,7 +33,7 @@ from puck_tables.stopping.jacobian import (
     StopSettings,
     integrated_jacobians,
 )
-from puck_tables.stopping.launches import Launches, fits, launches_of
+from puck_tables.stopping.launch_arrays import Launches, fits, launches_of
 from puck_tables.stopping.per_height import refuse_many
 from puck_tables.stopping.plain_states import all_looked_up, fill_state_slopes
 from puck_tables.stopping.state_values import (
@@ -233,11 +233,11 @@ def states(
     Notes
     -----
     All motions of a puck of height δ are one curve, up to rotation, reflection and scale; the time
-    that is left says where on it a state stands (:mod:`puck_tables.stopping.curve_lookup`).
+    that is left says where on it a state stands (:mod:`puck_tables.stopping.similarity_lookup`).
 
     Derivatives follow from that curve by the chain rule, of other than plain pucks from variational
     equations; nothing is differenced (:mod:`puck_tables.stopping.state_jacobian`,
-    :mod:`puck_tables.stopping.varied`).  In units of Q, J, r of the launch they err by at
+    :mod:`puck_tables.stopping.variational`).  In units of Q, J, r of the launch they err by at
     most 1e-7 until Q has fallen to 1/1000, for launches of any slip angle.  Towards the stop the
     direction turns without end, and the velocity is that of a moment as far off as the stop time
     may be, 1e-10 Q/J.  At the stop and after it they are those of the stop, and of velocities 0.

@@ -16,11 +16,11 @@ from puck_tables.stopping.axes import (
     height_polynomials,
     heights,
 )
-from puck_tables.stopping.curve import limits
 from puck_tables.stopping.lookup import CURVE_ROW, STOP_POWERS, STOP_ROW
-from puck_tables.stopping.orbit import ORBIT_WIDTH, REGULAR, TURN_POWERS, TURN_STEP
-from puck_tables.stopping.orbit_nodes import OrbitCurve
+from puck_tables.stopping.similarity import limits
 from puck_tables.stopping.slopes import Slopes, slopes_of
+from puck_tables.stopping.state_nodes import OrbitCurve
+from puck_tables.stopping.state_splines import ORBIT_WIDTH, REGULAR, TURN_POWERS, TURN_STEP
 from puck_tables.stopping.stop_splines import (
     by_power,
     cut_rows,
@@ -92,7 +92,7 @@ class StopCoefficients(Table):
 
     @cached_property
     def orbit_coefficients(self) -> FloatArray:
-        """What :mod:`puck_tables.stopping.orbit_lookup` reads."""
+        """What :mod:`puck_tables.stopping.state_lookup` reads."""
         values = orbit_splines(self._curve, with_time=True)
         padded = np.zeros((*values.shape[:3], ORBIT_WIDTH))
         padded[..., : values.shape[3]] = values

@@ -34,7 +34,7 @@ from puck_tables.kernels.compile import (
     weighted_rows,
 )
 from puck_tables.kernels.spline import basis
-from puck_tables.stopping.launches import (
+from puck_tables.stopping.launch_arrays import (
     DECEL,
     DELTA,
     RADIUS,

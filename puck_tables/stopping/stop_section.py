@@ -23,17 +23,17 @@ from puck_tables.accuracy.front import COARSEST
 from puck_tables.contact.laws import Law
 from puck_tables.errors import AccuracyError
 from puck_tables.motion.body import Body, body_of
-from puck_tables.motion.friction import LOOSEST_LOCAL
+from puck_tables.motion.friction_source import LOOSEST_LOCAL
 from puck_tables.motion.path import TURN_SHARE
 from puck_tables.motion.solve import ErrorEstimate, close_enough
 from puck_tables.stopping.exact import integrated_stops
 from puck_tables.table.check import CheckReport
 from puck_tables.table.friction_section import FINEST_ACCURACY, FrictionSection
-from puck_tables.table.record import Progress
+from puck_tables.table.metadata import Progress
 from puck_tables.table.section_table import SectionTable
 from puck_tables.table.slip_axis import GRADING_POWER, LawAxis, sides_of
 from puck_tables.table.slip_spline import slip_spline
-from puck_tables.table.store import kept_section
+from puck_tables.table.table_cache import kept_section
 
 FINEST_SECTION = 1e-10  # as fine as stops are looked up; beyond, they are integrated
 DEFAULT_ACCURACY = 1e-8  # of Q²/J: the default tol of stops

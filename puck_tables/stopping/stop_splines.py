@@ -7,8 +7,8 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray, aligned
 from puck_tables.stopping.axes import HEIGHTS, height_polynomials
 from puck_tables.stopping.lookup import STOP_POWERS, WIDTH
-from puck_tables.stopping.orbit_nodes import OrbitCurve
-from puck_tables.table.fit import clamped_coefficients
+from puck_tables.stopping.state_nodes import OrbitCurve
+from puck_tables.table.spline_fit import clamped_coefficients
 
 
 def by_power(nodes: FloatArray, powers: int = HEIGHTS) -> FloatArray:

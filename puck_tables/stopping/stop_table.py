@@ -7,7 +7,7 @@ from typing import Any, Self
 
 from puck_tables.stopping.stop_values import StopValues
 from puck_tables.table.check import CheckReport
-from puck_tables.table.record import Progress
+from puck_tables.table.metadata import Progress
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -20,7 +20,7 @@ class StopTable(StopValues):
         At the nodes of φ (ascending) and of δ (:func:`puck_tables.stopping.axes.heights`):
         ``time`` T; ``along`` X/cos φ; ``across`` Y/(δ sin φ cos φ); ``length`` path/cos φ; ``body``
         angle/sin φ (all: :mod:`puck_tables.stopping.lookup`); ``curve`` κR; ``turn`` S/δ
-        (:mod:`puck_tables.stopping.curve`).
+        (:mod:`puck_tables.stopping.similarity`).
 
     Notes
     -----
@@ -43,7 +43,7 @@ class StopTable(StopValues):
             resultants by direct quadrature; against elementary values at φ = 0, π/2 and at the
             limit angle.
         """
-        from puck_tables.stopping.check import judged
+        from puck_tables.stopping.stop_check import judged
 
         return judged(self, progress)
 
@@ -55,6 +55,6 @@ class StopTable(StopValues):
     @classmethod
     def built(cls, of: Any, accuracy: float | None = None, **how: Any) -> Self:
         """A table of stops, see :meth:`puck_tables.Table.build`."""
-        from puck_tables.stopping.check import tabulated
+        from puck_tables.stopping.stop_check import tabulated
 
         return tabulated(cls, accuracy, **how)

@@ -15,8 +15,7 @@ from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
 from puck_tables.motion.state import STATE_ROWS
 from puck_tables.stopping.axes import HEIGHTS, heights
-from puck_tables.stopping.curve_lookup import LAUNCH_COLUMNS
-from puck_tables.stopping.launches import (
+from puck_tables.stopping.launch_arrays import (
     CHUNK,
     Launches,
     fits,
@@ -25,9 +24,10 @@ from puck_tables.stopping.launches import (
     launches_in,
 )
 from puck_tables.stopping.lookup import STOP_POWERS, stops_kernel
-from puck_tables.stopping.orbit_lookup import PUCK_ROWS
+from puck_tables.stopping.similarity_lookup import LAUNCH_COLUMNS
+from puck_tables.stopping.state_lookup import PUCK_ROWS
 from puck_tables.stopping.stop_coefficients import StopCoefficients
-from puck_tables.table.record import Axis
+from puck_tables.table.metadata import Axis
 
 UPPER_DELTA = 1.0  # above, part of the base may lift
 OTHERS = ("path_length", "turn_angle", "body_angle")
@@ -104,7 +104,7 @@ class StopValues(StopCoefficients):
         Examples
         --------
         >>> from puck_tables import Table
-        >>> from puck_tables.stopping.launches import launches_of
+        >>> from puck_tables.stopping.launch_arrays import launches_of
         >>> launch = launches_of((1.0, 0.0), 5.0, 1.0, 1.0, 1.0)
         >>> time, place, _, _ = Table.shipped("stops").stops(launch)
         >>> time.round(6).tolist(), place.round(6).tolist()
@@ -184,7 +184,7 @@ class StopValues(StopCoefficients):
             If one of them is no launch, or, where all is asked, too large for floating point.
         """
         from puck_tables.motion.path import TURN_SHARE
-        from puck_tables.stopping.known import fill_known
+        from puck_tables.stopping.launch_lookup import fill_known
 
         out = np.empty((rows, stop - start))
         doubtful, bad = fill_known(
@@ -211,7 +211,7 @@ class StopValues(StopCoefficients):
 
     @cached_property
     def _of_one(self) -> tuple[Callable[..., int], tuple[FloatArray, ...]]:
-        from puck_tables.stopping.known import fill_states_of_one
+        from puck_tables.stopping.launch_lookup import fill_states_of_one
 
         return fill_states_of_one, (
             self.cut(), self.launch_coefficients, self.turn_coefficients, self.constants,

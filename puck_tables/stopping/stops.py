@@ -22,7 +22,7 @@ from puck_tables.stopping.jacobian import (
     refuse_rest,
     stop_jacobians,
 )
-from puck_tables.stopping.launches import Launches, launches_in, launches_of
+from puck_tables.stopping.launch_arrays import Launches, launches_in, launches_of
 from puck_tables.stopping.per_height import SolverPerHeight
 from puck_tables.stopping.solvers import OUTPUTS, STATUS_MEANINGS
 from puck_tables.stopping.stop_table import StopTable
@@ -216,7 +216,7 @@ def stop(
     Notes
     -----
     Derivatives come from splines of their own (:mod:`puck_tables.stopping.slopes`), those of other
-    than plain pucks from variational equations (:mod:`puck_tables.stopping.varied`) or, where
+    than plain pucks from variational equations (:mod:`puck_tables.stopping.variational`) or, where
     launches of one height are many, splines through these, whatever the method of the stop: in
     units of Q, J, r of the launch they are wrong by at most 1e-7 at any slip angle.  On φ = 0 and
     π/2, where stops carry broken powers of |φ|, they are the derivatives from both sides; only the

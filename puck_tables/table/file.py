@@ -30,7 +30,7 @@ from puck_tables._core.safe_write import as_utf8, write_bytes
 from puck_tables._version import __version__
 from puck_tables.errors import OutputError, TableError
 from puck_tables.table.accuracy import Accuracy
-from puck_tables.table.record import Axis, Record, kind_named
+from puck_tables.table.metadata import Axis, Record, kind_named
 
 FORMAT, FORMAT_VERSION = "puck-tables", "3.0"
 MAX_FILE_BYTES = 1 << 31  # bytes: more is no table

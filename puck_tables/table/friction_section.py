@@ -22,13 +22,13 @@ from puck_tables.kernels.section_spline import LINE
 from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import COARSEST
 from puck_tables.table.check import CheckReport
-from puck_tables.table.fit import height_terms
-from puck_tables.table.record import Progress
+from puck_tables.table.metadata import Progress
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.section_table import SectionTable
 from puck_tables.table.singular_lines import lines_of, opening_angle
 from puck_tables.table.slip_axis import GRADING_POWER, LawAxis, sides_of
 from puck_tables.table.slip_spline import slip_spline
+from puck_tables.table.spline_fit import height_terms
 from puck_tables.table.tall_friction import tall_resultants
 
 DEFAULT_ACCURACY, FINEST_ACCURACY = 1e-9, 5e-13  # truth itself is good to 1e-13

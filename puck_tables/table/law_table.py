@@ -14,8 +14,8 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.laws import Law, law_of, profile_law
 from puck_tables.errors import InputError
+from puck_tables.table.metadata import Axis
 from puck_tables.table.oddities import odd_nodes
-from puck_tables.table.record import Axis
 from puck_tables.table.slip_axis import LawAxis
 from puck_tables.table.table import Table
 

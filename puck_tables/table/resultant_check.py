@@ -16,7 +16,7 @@ from puck_tables.contact.resultants import Resultants, moment_balance
 from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import COARSEST, Goal, built
 from puck_tables.table.check import Check, CheckReport, compared
-from puck_tables.table.record import Progress
+from puck_tables.table.metadata import Progress
 from puck_tables.table.resultant_values import HEIGHTS, ResultantValues, full_contact
 from puck_tables.table.slip_axis import LawAxis
 

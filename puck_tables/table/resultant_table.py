@@ -7,7 +7,7 @@ from typing import Any, Self
 
 from puck_tables.contact.laws import Law, law_of
 from puck_tables.table.check import CheckReport
-from puck_tables.table.record import KINDS, Progress
+from puck_tables.table.metadata import KINDS, Progress
 from puck_tables.table.resultant_values import ResultantValues
 
 

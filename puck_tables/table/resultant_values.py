@@ -22,10 +22,10 @@ from puck_tables.contact.integrals import checked_phi
 from puck_tables.contact.laws import Law, law_of
 from puck_tables.contact.resultants import Resultants, checked_delta
 from puck_tables.errors import InputError
-from puck_tables.table.fit import height_terms, sided_coefficients
 from puck_tables.table.law_table import LawTable
-from puck_tables.table.record import Axis
+from puck_tables.table.metadata import Axis
 from puck_tables.table.slip_axis import GRADING_POWER
+from puck_tables.table.spline_fit import height_terms, sided_coefficients
 
 HEIGHTS = 4  # nodes of δ in a file
 _UNIFORM = "uniform"

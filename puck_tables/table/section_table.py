@@ -13,7 +13,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.table.check import Check, CheckReport, compared
 from puck_tables.table.law_table import LawTable
-from puck_tables.table.record import Axis, Progress
+from puck_tables.table.metadata import Axis, Progress
 from puck_tables.table.singular_lines import singular_lines
 from puck_tables.table.slip_spline import SlipSpline
 

@@ -29,8 +29,8 @@ from puck_tables.kernels.section_spline import (
     fill_section,
 )
 from puck_tables.table.accuracy import Accuracy
-from puck_tables.table.fit import sided_coefficients
 from puck_tables.table.slip_axis import Side, graded
+from puck_tables.table.spline_fit import sided_coefficients
 
 Functions = Callable[[FloatArray], FloatArray]  # of φ (n,), as (n, functions)
 

@@ -17,11 +17,11 @@ from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.contact.speed_quadrature import SpeedFunction, speed_integrals
 from puck_tables.errors import AccuracyError
-from puck_tables.kernels.speed_quadrature import COARSE, FINE, fill_integrals
+from puck_tables.kernels.speed_quadrature_kernel import COARSE, FINE, fill_integrals
 from puck_tables.kernels.speed_spline import fill_patch
 from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import COARSEST
-from puck_tables.table.record import Progress
+from puck_tables.table.metadata import Progress
 from puck_tables.table.speed_fit import missed_by_half, quintic_coefficients
 from puck_tables.table.speed_grid import COARSEST_CELLS, HALVINGS, SlipPatch, breaks_of, patches_of
 from puck_tables.table.speed_values import SpeedValues

@@ -11,8 +11,8 @@ from puck_tables.contact.speed_quadrature import SpeedFunction, speed_integrals
 from puck_tables.errors import InputError
 from puck_tables.table.build import COARSEST
 from puck_tables.table.check import Check, CheckReport, compared
+from puck_tables.table.metadata import Progress
 from puck_tables.table.oddities import odd_nodes
-from puck_tables.table.record import Progress
 from puck_tables.table.speed_build import largest_f
 from puck_tables.table.speed_values import SpeedValues
 

@@ -7,7 +7,7 @@ from typing import Any, Self
 
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.table.check import CheckReport
-from puck_tables.table.record import Progress
+from puck_tables.table.metadata import Progress
 from puck_tables.table.speed_values import SpeedValues
 
 

@@ -25,7 +25,7 @@ from puck_tables.contact.speed_quadrature import (
 )
 from puck_tables.errors import InputError
 from puck_tables.kernels.speed_spline import DONE, fill_speed, packed
-from puck_tables.table.record import Axis
+from puck_tables.table.metadata import Axis
 from puck_tables.table.speed_fit import quintic_coefficients
 from puck_tables.table.speed_grid import (
     COARSEST_CELLS,

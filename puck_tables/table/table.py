@@ -18,7 +18,7 @@ from puck_tables._core.real import instance, shown
 from puck_tables.errors import InputError
 from puck_tables.table import file
 from puck_tables.table.check import CheckReport
-from puck_tables.table.record import KINDS, Progress, Record, kind_named
+from puck_tables.table.metadata import KINDS, Progress, Record, kind_named
 
 
 @dataclass(frozen=True, eq=False, repr=False)

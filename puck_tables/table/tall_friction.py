@@ -1,7 +1,7 @@
 """Friction of a tall puck over many slip angles, by compiled truth.
 
 What :func:`puck_tables.contact.one_sided.resultants` computes with arrays, point by point with
-:mod:`puck_tables.kernels.one_sided`: a section of a new puck needs thousands of them.
+:mod:`puck_tables.kernels.one_sided_kernel`: a section of a new puck needs thousands of them.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def tall_resultants(phi: FloatArray, delta: float) -> Resultants:
     opened = np.flatnonzero(delta > critical_delta(phi))
 
     def work(start: int, stop: int) -> None:
-        from puck_tables.kernels.one_sided import FOUND, SPIN, fill_balances
+        from puck_tables.kernels.one_sided_kernel import FOUND, SPIN, fill_balances
 
         some = opened[start:stop]
         ratio, fast = direction.ratio[some], direction.fast_spin[some]

@@ -8,8 +8,8 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.closed_form import by_closed_form
 from puck_tables.kernels.compile import allocating, kernel, patience
 from puck_tables.kernels.spline import basis, cell_at, row_sums, side_and_eta
-from puck_tables.table.fit import clamped_coefficients
 from puck_tables.table.resultant_table import ResultantTable
+from puck_tables.table.spline_fit import clamped_coefficients
 
 _BLOCK = 128  # points at once
 

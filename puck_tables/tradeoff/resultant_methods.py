@@ -14,7 +14,7 @@ from puck_tables.contact import closed_form, quadrature
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.laws import law_of
 from puck_tables.contact.resultants import moment_balance
-from puck_tables.kernels.closed_form import _fill as fill_closed_form
+from puck_tables.kernels.closed_form_kernel import _fill as fill_closed_form
 from puck_tables.kernels.quadratic import fill_resultants
 from puck_tables.table.resultant_check import tabulate
 from puck_tables.table.resultant_table import ResultantTable
@@ -25,8 +25,13 @@ from puck_tables.tradeoff.bicubic import (
     uniform_coefficients,
 )
 from puck_tables.tradeoff.contender import Contender, Ready
+from puck_tables.tradeoff.literature_models import (
+    PADE_MATCHED,
+    fill_limit_surface,
+    fill_pade,
+    fitted_pade,
+)
 from puck_tables.tradeoff.machine import HARD
-from puck_tables.tradeoff.models import PADE_MATCHED, fill_limit_surface, fill_pade, fitted_pade
 from puck_tables.tradeoff.truth import Points
 
 Fill = Callable[[FloatArray, FloatArray, FloatArray], object]  # phi, delta, out (3, n)

@@ -14,11 +14,11 @@ from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import integrate, states_at
 from puck_tables.motion.state import SIZE, STATE_ROWS
 from puck_tables.motion.tableaus import DORMAND_PRINCE
-from puck_tables.stopping.launches import launches_in
+from puck_tables.stopping.launch_arrays import launches_in
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.tradeoff.contender import Contender, Ready
-from puck_tables.tradeoff.rivals import rates
+from puck_tables.tradeoff.scipy_methods import rates
 
 Run = Callable[[], FloatArray]  # x, y of every moment of every puck (pucks, moments, 2)
 
@@ -72,7 +72,7 @@ class StateTask:
 
     def looked_up(self) -> Run:
         """Every moment from the stop table."""
-        from puck_tables.stopping.orbit_lookup import fill_orbit_states
+        from puck_tables.stopping.state_lookup import fill_orbit_states
 
         which = np.repeat(np.arange(_PUCKS), _MOMENTS)
         moments, out = self.times.ravel(), np.empty((STATE_ROWS, _PUCKS * _MOMENTS))

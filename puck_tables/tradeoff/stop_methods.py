@@ -12,20 +12,20 @@ from puck_tables.accuracy.methods import INTEGRATED, LOOK_UP, FrictionForm
 from puck_tables.kernels.quadratic import NO_COLUMNS, room_for_cut
 from puck_tables.kernels.quadratic import cut as cut_table
 from puck_tables.kernels.section_spline import NO_SECTION
-from puck_tables.motion.bulk import fill_stops
+from puck_tables.motion.bulk_stops import fill_stops
 from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import integrate
 from puck_tables.motion.state import SIZE
 from puck_tables.motion.steppers import TABLEAUS, Stepping
 from puck_tables.motion.tableaus import RK4
-from puck_tables.stopping.launches import launches_in
+from puck_tables.stopping.launch_arrays import launches_in
 from puck_tables.stopping.lookup import WIDTH, stops_kernel
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.tradeoff.contender import Contender, Ready
+from puck_tables.tradeoff.literature_models import PADE_MATCHED, as_table, fitted_pade
 from puck_tables.tradeoff.machine import HARD
-from puck_tables.tradeoff.models import PADE_MATCHED, as_table, fitted_pade
-from puck_tables.tradeoff.rivals import PATCH_GRID, SCIPY_SETTINGS, patch_script, scipy_stop
+from puck_tables.tradeoff.scipy_methods import PATCH_GRID, SCIPY_SETTINGS, patch_script, scipy_stop
 from puck_tables.tradeoff.truth import Points, Starts
 
 QUESTION, TRAJECTORY = "stop", "trajectory"

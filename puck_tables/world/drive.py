@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.columns import numbers_of
 from puck_tables._core.quantities import ANGLE, TIME, X, Y
+from puck_tables._core.read_columns import numbers_of
 from puck_tables.errors import InputError
 from puck_tables.scene.parts import Rows
 from puck_tables.world.paths import DURATION, FIRST, PIECE_COLUMNS, START

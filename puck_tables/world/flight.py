@@ -1,7 +1,8 @@
 """Where a disc is between two events: its flight, known as a whole from its start.
 
-A flight is a row: what :mod:`puck_tables.stopping.curve_lookup` knows of a launch, when and where
-it starts, until when it holds, and two bounds, of its speed and of its acceleration.  Of its kinds
+A flight is a row: what :mod:`puck_tables.stopping.similarity_lookup` knows of a launch, when and
+where it starts, until when it holds, and two bounds, of its speed and of its acceleration.  Of its
+kinds
 
 - STILL is at rest, GONE has left play;
 - LOOKED_UP is the motion of a plain puck, looked up;
@@ -29,7 +30,8 @@ from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED
 from puck_tables.motion.state import SPIN as PUCK_SPIN
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.ingredients import Surface, floor_velocity
-from puck_tables.stopping.curve_lookup import (
+from puck_tables.stopping.lookup import CURVE_ROW
+from puck_tables.stopping.similarity_lookup import (
     LAUNCH_COLUMNS,
     LAUNCH_ROWS,
     LENGTH,
@@ -39,7 +41,6 @@ from puck_tables.stopping.curve_lookup import (
     know_launch,
     look_up_state,
 )
-from puck_tables.stopping.lookup import CURVE_ROW
 from puck_tables.world.layout import (
     DAMPING,
     DECEL,

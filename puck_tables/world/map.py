@@ -69,18 +69,16 @@ class Map(SceneEnds):
         return found
 
     @cached_property
-    def error_estimate(self) -> float | None:
-        """The largest error of a few runs, each done again alone, with twins; in Q/J and Q²/J.
+    def error_estimate(self) -> float:
+        """The largest error of a few runs, each done again alone and estimated; in Q/J and Q²/J.
 
-        None for boards, whose runs alone say how far their ends may be off.
+        Of several pucks it grows with every impact, see :class:`puck_tables.scene.run.Run`.
 
         Raises
         ------
         InputError
             If a file that the scene names has changed since the sweep.
         """
-        if self.scene.is_board:
-            return None
         if files_of(self.scene) != self.files:
             raise InputError("a file that the scene names has changed since: sweep it again")
         return largest_error(self)
@@ -100,6 +98,6 @@ class Map(SceneEnds):
 
     def dataset(self) -> Dataset:
         """The results over what ranges; the scene and its files as texts."""
-        found, error = super().dataset(), self.error_estimate
-        more = {"model": self.model} | ({} if error is None else {"error_estimate": error})
+        found = super().dataset()
+        more = {"model": self.model, "error_estimate": self.error_estimate}
         return replace(found, attributes={**found.attributes, **more})

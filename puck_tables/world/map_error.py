@@ -10,6 +10,7 @@ from puck_tables.errors import PuckError
 from puck_tables.scene.loop import OVER_EDGE
 from puck_tables.scene.simulate import simulate
 from puck_tables.world.scene_ends import SceneEnds
+from puck_tables.world.simulate import simulate as on_board
 
 CHECKED = 8  # runs
 
@@ -33,12 +34,14 @@ def largest_error(ends: SceneEnds) -> float:
     for number in valid[places].tolist():
         one = ends.scene.at(ends.numbers(number))
         try:
-            run = simulate(one, [])
+            run = on_board(one, []) if one.is_board else simulate(one, [])
         except PuckError:  # its own end is in doubt
             return math.inf
-        last = {name: float(ends.columns[name].ravel()[number]) for name in ("x", "y", "end_time")}
-        far = math.hypot(run.last["x"] - last["x"], run.last["y"] - last["y"])
-        late = abs(run.end_time - last["end_time"])
+        place = np.unravel_index(number, ends.end.shape)
+        alone = run.last_of(ends.whose) if ends.whose else run.last
+        x, y = (ends.columns[name][place] - alone[name] for name in ("x", "y"))
+        far = float(np.max(np.hypot(x, y)))  # of the puck that is off most
+        late = abs(run.end_time - float(ends.columns["end_time"][place]))
         unit = run.speed_scale / max(run.rate_scale, 1e-300)
         error = max(_share(late, unit), _share(far, run.speed_scale * unit))
         worst = max(error + run.error_estimate, worst if worst == worst else 0.0)

@@ -97,7 +97,8 @@ class Runs(Work):
             )
         self.shape = tuple(values.size for values in self.axes.values()) if shape is None else shape
         self._kind: type[Case] | type[BoardCase] = BoardCase if scene.is_board else Case
-        self.names, self.columns = self._kind.names(scene), self._kind.columns(scene)
+        self.names, self._found = self._kind.names(scene), self._kind.columns(scene)
+        self.columns: Mapping[str, tuple[int, ...]] = self._found
         self.block = min(MOST, max(FEWEST, self.size // 64))
         self._whole, self.files = tables_of(scene), files_of(scene)
         self._read = files_named(self._whole) if read is None else read
@@ -166,8 +167,8 @@ class Runs(Work):
         outer = {path: values.tolist() for path, values in numbers.items()
                  if path not in self._inner}  # fmt: skip
         keys = list(zip(*outer.values(), strict=True)) or [()] * count
-        found: Columns = {n: np.full((count, *one), np.nan) for n, one in self.columns.items()}
-        found[self.code] = np.full(count, REFUSED, np.int8)
+        found: Columns = {name: np.empty((count, *one)) for name, one in self._found.items()}
+        found[self.code] = np.empty(count, np.int8)
         begin = 0
         while begin < count:  # runs that differ in nothing but launches, together
             last = begin + 1
@@ -197,10 +198,10 @@ class Runs(Work):
             for i in range(stop - start):
                 one = {path: values[i : i + 1] for path, values in numbers.items()}
                 self._together(fixed, one, found, start + i, start + i + 1)
-        elif end is not None:
-            for name, values in ends.items():
-                found[name][start:stop] = values
-            found[self.code][start:stop] = end
+            return
+        for name in self._found:
+            found[name][start:stop] = np.nan if end is None else ends[name]
+        found[self.code][start:stop] = REFUSED if end is None else end
 
     def _alone(self, numbers: Mapping[str, FloatArray]) -> Any:
         """The end of one run, in a case of its own."""
@@ -301,7 +302,7 @@ class DrawnRuns(Runs):
         except InputError as error:
             raise InputError(f"samples: in the middle of what is drawn, {error}") from None
         super().__init__(scene, part, read, {path: np.zeros(0) for path in spreads}, (count,))
-        self.columns = {**{plain_name(path): () for path in spreads}, **self.columns}
+        self.columns = {**{plain_name(path): () for path in spreads}, **self._found}
 
     def __reduce__(self) -> Any:
         return DrawnRuns, (

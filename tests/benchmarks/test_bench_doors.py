@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from puck_tables import Puck, states, stop
-from puck_tables.stopping.launches import CHUNK, launches_of
+from puck_tables.stopping.launch_arrays import CHUNK, launches_of
 from puck_tables.stopping.lookup import STOP_POWERS, stops_kernel
 from puck_tables.stopping.stop_table import StopTable
 

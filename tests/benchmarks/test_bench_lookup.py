@@ -18,7 +18,7 @@ import puck_tables
 from puck_tables.contact import closed_form, quadrature
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.resultants import moment_balance
-from puck_tables.kernels.closed_form import _fill
+from puck_tables.kernels.closed_form_kernel import _fill
 from puck_tables.kernels.quadratic import fill_resultants
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.tradeoff.bicubic import fill_graded, graded_coefficients

@@ -1,7 +1,7 @@
 """Under another pressure law: places beside all lines of it, stops and friction there.
 
 These functions stand in for those of the same names in :mod:`puck_tables.export.program.stop` and
-:mod:`puck_tables.export.program.resultants`; the places are those of
+:mod:`puck_tables.export.program.resultant_formulas`; the places are those of
 :mod:`puck_tables.export.law_values`.
 """
 
@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from math import sqrt
 
-from puck_tables.export.program.given import (
+from puck_tables.export.program.intrinsics import (
     BORDERS,
     ORIGINS,
     PATCH,

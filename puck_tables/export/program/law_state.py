@@ -1,15 +1,15 @@
 """Under another pressure law: places on the two orbits that all motions follow.
 
-These functions stand in for those of the same names in :mod:`puck_tables.export.program.state`.
-The orbits, over the logarithm of the time that is left, are those of
-:mod:`puck_tables.export.law_values`; a launch is found on them by bracketing.
+These functions stand in for those of the same names in
+:mod:`puck_tables.export.program.state_along`. The orbits, over the logarithm of the time that is
+left, are those of :mod:`puck_tables.export.law_values`; a launch is found on them by bracketing.
 """
 
 from __future__ import annotations
 
 from math import exp, log, sqrt
 
-from puck_tables.export.program.given import (
+from puck_tables.export.program.intrinsics import (
     CONSTANTS,
     CONSTANTS_POWERS,
     CONSTANTS_QUANTUM,
@@ -29,7 +29,7 @@ from puck_tables.export.program.given import (
     room,
 )
 from puck_tables.export.program.places import SHARE, SIDE, look_up
-from puck_tables.export.program.state import (
+from puck_tables.export.program.state_along import (
     HEADING,
     LOG_N,
     REGULAR,

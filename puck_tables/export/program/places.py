@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import nan, sqrt
 
-from puck_tables.export.program.given import LONGEST, TALLEST, Numbers, Out, room
+from puck_tables.export.program.intrinsics import LONGEST, TALLEST, Numbers, Out, room
 
 MOST_WEIGHTS, WIDEST = 8, 70  # room for any degree, and for any row, that a file is written with
 LARGEST = 8e307  # of places, and of places over radii

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from puck_tables.export.program.given import (
+from puck_tables.export.program.intrinsics import (
     SPIN_TIME,
     STEEP,
     STOP,

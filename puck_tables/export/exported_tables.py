@@ -1,0 +1,137 @@
+"""The tables of a file: of plain pucks from what comes along, of all others made for them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from math import factorial
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.errors import AccuracyError
+from puck_tables.export.compact_tables import (
+    CONSTANT_SHARE,
+    CURVE_SHARE,
+    LAW_CONSTANT_SHARE,
+    LAW_STOP_SHARE,
+    ORBIT_SHARE,
+    PATCH_SHARE,
+    STOP_SHARE,
+    Fitted,
+    fitted,
+    fitted_apart,
+    fitted_constants,
+    functions_of,
+)
+from puck_tables.export.law_values import REACH, LawValues, law_values
+from puck_tables.puck import Puck
+from puck_tables.stopping.axes import height_polynomials
+from puck_tables.stopping.stop_table import StopTable
+
+Tables = tuple[dict[str, Sequence[float]], dict[str, float]]  # arrays, constants
+
+
+def plain_tables(parts: tuple[str, ...], tol: float) -> Tables:
+    """Homogeneous pucks under uniform pressure: from the stop table that comes along."""
+    constants = {"TALLEST": 1.0, "STEEP": 2.0, "SPIN_TIME": 0.75, "LONGEST": 2.0}
+    if parts == ("resultants",):
+        return {}, constants
+    return _written(_shipped(tol), constants)
+
+
+@lru_cache(maxsize=8)
+def _shipped(tol: float) -> dict[str, Fitted]:
+    table = StopTable.shipped()
+    stops, curve, inverse = functions_of(table)
+    return {
+        "STOP": fitted(stops, STOP_SHARE * tol, haste=2, even=True),
+        "CURVE": fitted(curve, CURVE_SHARE * tol, even=True),
+        "INVERSE": fitted(inverse, CURVE_SHARE * tol, even=True),
+        "CONSTANTS": fitted_constants(table.constants, CONSTANT_SHARE * tol),
+    }
+
+
+def law_tables(kind: Puck, parts: tuple[str, ...], tol: float) -> Tables:
+    """Any other kind of puck: its stops are integrated for it."""
+    values = law_values(kind.body.law, kind.gyration, tol)
+    sides = values.extents.size
+    constants = {
+        "TALLEST": values.tallest, "STEEP": 2.0 / values.tallest**2,
+        "SPIN_TIME": values.spin_time, "LONGEST": values.longest, "SIDES": sides,
+    }  # fmt: skip
+    tables, constants = _written(_fitted_to(values, parts, tol), constants)
+    way = np.where(np.arange(sides) % 2, -1.0, 1.0)
+    lines = {
+        "BORDERS": _short(values.borders), "ORIGINS": _short(values.origins),
+        "SCALES": _short(way / values.extents),
+    }  # fmt: skip
+    if "state" in parts:
+        constants |= {"REACH": REACH, "END": values.orbits.end}
+        lines["RATE_UNITS"] = values.orbits.rate_units
+    return lines | tables, constants
+
+
+def _fitted_to(
+    values: LawValues, parts: tuple[str, ...], tol: float
+) -> dict[str, Fitted | list[Fitted]]:
+    found: dict[str, Fitted | list[Fitted]] = {}
+    if "resultants" in parts:
+        found["PATCH"] = fitted(values.patch, PATCH_SHARE * tol)
+    if parts != ("resultants",):
+        found["STOP"] = fitted(values.stops, LAW_STOP_SHARE * tol, haste=2)
+    if "state" in parts:
+        try:
+            found["ORBIT"] = fitted_apart(values.orbits.pieces, ORBIT_SHARE * tol)
+        except AccuracyError:
+            raise AccuracyError(
+                f"states of such pucks cannot be exported at tol {tol:g}, for their limit ratio "
+                "lies next to 0, infinity or an edge of the load at some height: ask for a larger "
+                "tol, for stops and resultants alone (--what stop,resultants), or for another "
+                "radius of gyration"
+            ) from None
+        of_heights = values.orbits.of_heights
+        polynomials = height_polynomials(of_heights, len(of_heights)).T
+        found["CONSTANTS"] = fitted_constants(polynomials, LAW_CONSTANT_SHARE * tol)
+    return found
+
+
+def _written(fits: Mapping[str, Fitted | list[Fitted]], constants: Mapping[str, float]) -> Tables:
+    """Numbers and constants of tables as the programs call them.
+
+    Of a table whose sides have cells of their own, where the rows of each begin and end; of tables
+    apart, where the numbers of each begin, their cells, powers and quanta.
+    """
+    numbers: dict[str, Sequence[float]] = {}
+    named = dict(constants)
+    for name, table in fits.items():
+        if isinstance(table, list):
+            named[f"{name}_DEGREE"] = table[0].degree
+            sizes = [one.numbers.size for one in table]
+            numbers |= {
+                name: [number for one in table for number in one.numbers.ravel().tolist()],
+                f"{name}_ROWS": [0, *np.cumsum(sizes)[:-1].tolist()],
+                f"{name}_CELLS": [one.cells[0] for one in table],
+                f"{name}_POWERS": [one.powers for one in table],
+                f"{name}_QUANTA": [_quantum(one) for one in table],
+            }
+            continue
+        numbers[name] = table.numbers.ravel().tolist()
+        named |= {
+            f"{name}_DEGREE": table.degree, f"{name}_POWERS": table.powers,
+            f"{name}_QUANTUM": _quantum(table),
+        }  # fmt: skip
+        if len(set(table.cells)) == 1:
+            named[f"{name}_CELLS"] = table.cells[0]
+        numbers[f"{name}_ROWS"] = table.rows
+    return numbers, named
+
+
+def _short(places: FloatArray) -> list[float]:
+    """Numbers that err by less than a launch is told from its neighbours."""
+    return [float(f"{place:.12g}") for place in places]
+
+
+def _quantum(table: Fitted) -> float:
+    """The unit of the numbers of a table, without the factorial of its degree."""
+    return float(f"{table.quantum / factorial(table.degree):.15g}")

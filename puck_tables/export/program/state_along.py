@@ -1,0 +1,248 @@
+"""States on the way, along the one curve that all motions are, and the turn of the heading.
+
+The number N of :mod:`puck_tables.stopping.similarity_lookup` falls along a motion like a power of
+the time that is left; a table tells the slip from it.
+"""
+
+from __future__ import annotations
+
+from math import cos, exp, expm1, log, log1p, sin, sqrt
+
+from puck_tables.export.program.intrinsics import (
+    CONSTANTS,
+    CONSTANTS_POWERS,
+    CONSTANTS_QUANTUM,
+    CURVE,
+    CURVE_CELLS,
+    CURVE_DEGREE,
+    CURVE_POWERS,
+    CURVE_QUANTUM,
+    INVERSE,
+    INVERSE_CELLS,
+    INVERSE_DEGREE,
+    INVERSE_POWERS,
+    INVERSE_QUANTUM,
+    Out,
+    room,
+)
+from puck_tables.export.program.places import (
+    AROUND,
+    EAST,
+    NORTH,
+    RIM,
+    SHARE,
+    SIDE,
+    SLIP,
+    SPEED,
+    look_up,
+    measured,
+    place_of,
+    refused,
+)
+from puck_tables.export.program.stop import ACROSS, ALONG, BODY, TIME, stop_functions, stopped
+
+SMALLEST = 1e-300  # its reciprocal is still a number
+TURN_SHARE = 1e-3  # of Q: where the turn of a heading is read off
+ROUNDS = 12  # of Newton's method at most
+# beside what is measured of a launch
+KAPPA, TURNING, LOG_N, SIGN, HEADING, T_LAUNCH = 8, 9, 10, 11, 12, 13
+KNOWN = 14  # with the six above
+# of a place on the curve
+THERE_SIDE, THERE_SHARE, REGULAR = 0, 1, 2
+
+
+def constant(row: int, s: float) -> float:
+    """One of the numbers of a curve: limit, kappa, turning over delta, ln T at phi = pi/4."""
+    total: float = 0.0
+    for m in range(CONSTANTS_POWERS - 1, -1, -1):
+        total = total * s + CONSTANTS[row * CONSTANTS_POWERS + m]
+    return CONSTANTS_QUANTUM * total
+
+
+def slow_rate(delta: float) -> float:
+    """How fast pure sliding is left."""
+    return 0.5 + 0.125 * delta * delta
+
+
+def fast_rate(delta: float) -> float:
+    """How fast pure spin is left."""
+    return (9.0 + 4.0 * delta * delta) / (36.0 + 4.0 * delta * delta)
+
+
+def regular_heading(
+    side: int, double_share: float, delta: float, turning: float, part: float
+) -> float:
+    """The heading, but for its part that goes with ln Q."""
+    small: float = log(double_share)
+    large: float = log1p(1.0 - double_share)
+    plus: float = large if side == 1 else small
+    minus: float = small if side == 1 else large
+    spin_turn: float = 9.0 * delta / (36.0 + 4.0 * delta * delta)
+    return (
+        turning / slow_rate(delta) * plus
+        + (turning - spin_turn) / fast_rate(delta) * minus
+        + delta * part
+    )
+
+
+def curve_at(side: int, share: float, s: float, found: Out) -> None:
+    """The regular parts of ln N and of the heading."""
+    look_up(
+        CURVE, side * (CURVE_CELLS + CURVE_DEGREE) * CURVE_POWERS * 2, CURVE_CELLS, CURVE_DEGREE,
+        CURVE_POWERS, 2, CURVE_QUANTUM, place_of(share), s, found,
+    )  # fmt: skip
+
+
+def know(delta: float, time: float, known: Out) -> None:
+    """What the curve says of a measured launch that both slides and spins; ``time``: its T."""
+    c = room(2)
+    s: float = 2.0 * delta * delta - 1.0
+    side: int = int(known[SIDE])
+    share: float = known[SHARE]
+    curve_at(side, share, s, c)
+    if share < SMALLEST:
+        share = SMALLEST
+    limit: float = constant(0, s)
+    kappa: float = constant(1, s)
+    turning: float = delta * constant(2, s)
+    small: float = log(share)
+    large: float = log1p(1.0 - share)
+    plus: float = large if side == 1 else small
+    minus: float = small if side == 1 else large
+    place: float = 1.0 - share if side == 1 else share - 1.0
+    gap: float = abs((place - limit) / limit)
+    if gap < SMALLEST:
+        gap = SMALLEST
+    known[KAPPA] = kappa
+    known[TURNING] = turning
+    known[SIGN] = 1.0 if place > limit else -1.0
+    known[LOG_N] = (
+        log(gap)
+        - kappa * (plus / slow_rate(delta) + minus / fast_rate(delta))
+        + kappa * (log(time) - constant(3, s))
+        + c[0]
+    )
+    known[HEADING] = regular_heading(side, share, delta, turning, c[1])
+    known[T_LAUNCH] = time
+
+
+def arrive(known: Out, delta: float, log_left: float, place: Out, f: Out) -> None:
+    """The place on the curve and the functions of a stop there, from the time that is left."""
+    c = room(2)
+    s: float = 2.0 * delta * delta - 1.0
+    sign: float = known[SIGN]
+    log_n: float = known[LOG_N] + known[KAPPA] * log_left
+    side: int = 0 if sign < 0.0 and log_n >= 0.0 else 1
+    log_y: float = 0.0
+    if side == 0:
+        log_y = -slow_rate(delta) / known[KAPPA] * log_n
+    elif sign > 0.0 and log_n > 1.0:
+        log_y = -fast_rate(delta) / known[KAPPA] * (log_n + log1p(2.0 * exp(-log_n)))
+    else:
+        log_y = -fast_rate(delta) / known[KAPPA] * log1p(1.0 + sign * exp(log_n))
+    y: float = exp(log_y)
+    rest: float = -expm1(0.25 * log_y)
+    xi: float = 1.0 - sqrt(rest if rest > 0.0 else 0.0)
+    look_up(
+        INVERSE, side * (INVERSE_CELLS + INVERSE_DEGREE) * INVERSE_POWERS, INVERSE_CELLS,
+        INVERSE_DEGREE, INVERSE_POWERS, 1, INVERSE_QUANTUM, xi, s, c,
+    )  # fmt: skip
+    share: float = y * c[0]
+    if share > 1.0:
+        share = 1.0
+    if share < SMALLEST:
+        share = SMALLEST
+    stop_functions(side, share, delta, f)
+    curve_at(side, share, s, c)
+    place[THERE_SIDE] = side
+    place[THERE_SHARE] = share
+    place[REGULAR] = regular_heading(side, share, delta, known[TURNING], c[1])
+
+
+def state(
+    vx: float, vy: float, spin: float, delta: float, decel: float, radius: float, time: float,
+    out: Out,
+) -> int:  # fmt: skip
+    """Place x m, y m, body angle rad, velocity vx, vy m/s and spin rad/s at a time, into out[6].
+
+    The launch is that of stop(); time s >= 0 after it, at rest from the stop on.  Errors: the
+    tolerance times Q^2/J (place), Q^2/(J r) (angle), Q (velocity) and Q/r (spin) of the launch.
+    Returns 0, 1 or 2 as stop() does.
+    """
+    known = room(KNOWN)
+    f = room(5)
+    g = room(5)
+    end = room(5)
+    place = room(3)
+    code: int = measured(vx, vy, spin, delta, decel, radius, known)
+    if not (time - time == 0.0 and time >= 0.0):
+        code = 1
+    if code != 0:
+        return refused(out, 6, code)
+    stop_functions(int(known[SIDE]), known[SHARE], delta, f)
+    stopped(known, f, delta, decel, radius, end)
+    left: float = 1.0 - time / end[0] if time < end[0] else 0.0
+    if left == 0.0 or known[SPEED] == 0.0 or known[RIM] == 0.0 or time == 0.0:
+        done: float = (1.0 - left) * (1.0 + left)
+        out[0] = end[1] * done
+        out[1] = end[2] * done
+        out[2] = end[4] * done
+        out[3] = left * vx
+        out[4] = left * vy
+        out[5] = left * spin
+        return 0
+    slip: float = known[SLIP]
+    around: float = known[AROUND]
+    size: float = slip / decel * slip
+    know(delta, f[TIME], known)
+    arrive(known, delta, log1p(-(time / end[0])), place, g)
+    fall: float = left * known[T_LAUNCH] / g[TIME]
+    small: float = 0.5 * place[THERE_SHARE]
+    large: float = 1.0 - small
+    unit: float = fall / sqrt(small * small + large * large)
+    now: float = unit * (small if place[THERE_SIDE] == 1.0 else large)
+    turn: float = unit * (large if place[THERE_SIDE] == 1.0 else small)
+    heading: float = 0.0
+    if delta > 0.0:
+        heading = around * (known[TURNING] * log(fall) + place[REGULAR] - known[HEADING])
+    cosine: float = cos(heading)
+    sine: float = sin(heading)
+    east: float = (cosine * known[EAST] - sine * known[NORTH]) / known[SPEED]
+    north: float = (cosine * known[NORTH] + sine * known[EAST]) / known[SPEED]
+    ahead: float = size * fall * now * g[ALONG]
+    aside: float = size * around * delta * turn * now * g[ACROSS]
+    out[0] = end[1] - (ahead * east - aside * north)
+    out[1] = end[2] - (ahead * north + aside * east)
+    out[2] = end[4] - size / radius * around * fall * turn * g[BODY]
+    out[3] = slip * now * east
+    out[4] = slip * now * north
+    out[5] = slip / radius * around * turn
+    return 0
+
+
+def turn(
+    vx: float, vy: float, spin: float, delta: float, decel: float, radius: float, out: Out
+) -> int:
+    """How far the heading turns until Q has fallen to 1/1000, rad, into out[1].
+
+    For delta > 0 it turns on without end.  The launch is that of stop(), the error the tolerance in
+    rad, the code as there.
+    """
+    known = room(KNOWN)
+    g = room(5)
+    place = room(3)
+    code: int = measured(vx, vy, spin, delta, decel, radius, known)
+    if code != 0:
+        return refused(out, 1, code)
+    out[0] = 0.0
+    if known[SPEED] == 0.0 or known[RIM] == 0.0 or delta == 0.0:
+        return 0
+    stop_functions(int(known[SIDE]), known[SHARE], delta, g)
+    know(delta, g[TIME], known)
+    left: float = TURN_SHARE
+    for _ in range(ROUNDS):  # T changes little: each round takes an error to a tenth or less
+        arrive(known, delta, log(left), place, g)
+        left = TURN_SHARE * g[TIME] / known[T_LAUNCH]
+    heading: float = known[TURNING] * log(TURN_SHARE) + place[REGULAR] - known[HEADING]
+    out[0] = known[AROUND] * heading
+    return 0

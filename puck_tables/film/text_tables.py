@@ -1,0 +1,245 @@
+"""Films in text files: wide (a column a puck) and long (a row a puck), with any header."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.text import Look, look_at, number
+from puck_tables._core.text_rows import read_columns
+from puck_tables._core.units import factor
+from puck_tables.errors import InputError
+from puck_tables.film.clock import is_clock, seconds
+from puck_tables.film.column_roles import Layout, example, layout_of, name_of
+from puck_tables.film.film import Film, Flags, TrackedBody
+from puck_tables.film.headings import Heading
+
+MOST_PUCKS = 10_000  # in one file: more is a column of another meaning
+_YES = {"true", "yes", "y", "t", "ja", "j", "oui", "si", "sí", "wahr", "ok"}
+_NO = {"false", "no", "n", "f", "nein", "non", "falsch", ""}
+_SHOWN, _HIDDEN = (
+    {"visible", "seen", "shown", "detected"},
+    {"hidden", "occluded", "lost", "missing"},
+)
+
+
+def film_of_table(path: str | Path, head: bytes, columns: str | None) -> Film:
+    r"""The film in a text file.
+
+    Parameters
+    ----------
+    path : the file
+    head : how it begins
+    columns : headings for its columns with commas, in place of those in the file
+
+    Raises
+    ------
+    InputError
+        If it is no table, has no header where none is given, or columns that do not fit.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file, content = Path(folder, "a.csv"), b"t,red_x [cm],red_y [cm]\n0,3,1\n1,4,1\n"
+    ...     _ = file.write_bytes(content)
+    ...     film = film_of_table(file, content, None)
+    >>> film.unit, film.bodies[0].marks["red"].tolist()
+    ('cm', [[3.0, 1.0], [4.0, 1.0]])
+    """
+    look = look_at(path, head)
+    layout = layout_of(path, look, columns)
+    for n, (body, one) in enumerate(layout.columns):
+        cells = {row[n].lower() for row in look.rows if n < len(row)}
+        if not one.role and cells & _HIDDEN and cells <= _SHOWN | _HIDDEN:
+            layout.columns[n] = (body, Heading("seen"))  # whatever it is called
+    wanted = [n for n, (_, one) in enumerate(layout.columns) if one.role]
+    if not {one.role for _, one in layout.columns} & {"x", "y"}:
+        names = ", ".join(name_of(look, n) for n in range(min(look.width, 8)))
+        raise InputError(
+            f"{path} has no columns x and y that are known by their names (they are {names:.90}): "
+            f"say what they are, such as columns='{example(look.width)}' (--columns), of a puck on "
+            "a line with x alone"
+        )
+    texts = [n for n in wanted if _holds_text(look, n, layout.columns[n][1])]
+    values, words = read_columns(path, look, [n for n in wanted if n not in texts], texts)
+    for n in texts:
+        body, one = layout.columns[n]
+        if one.role == "time":
+            codes, named = words.pop(n)
+            values[n] = seconds(f"{path}, column {n + 1}", named)[codes]
+            layout.columns[n] = (body, one._replace(unit="s"))
+    film = Film(layout.kind, [], jointed=layout.jointed, likely=layout.likely)
+    if unused := [n for n in range(look.width) if n not in wanted and layout.kind == "table"]:
+        names = ", ".join(name_of(look, n) for n in unused[:8])
+        film.notes.append(f"column{'' if len(unused) == 1 else 's'} {names} left out")
+    if any(one.role == "step" for _, one in layout.columns):
+        film.notes.append("times summed from steps, each since the row before")
+    if layout.along:
+        film.notes.append("places along one line, the other coordinate is 0")
+    film.unit, film.angle_unit, film.timed = _units(path, layout)
+    if layout.pixels:
+        film.unit = film.unit or "px"
+        film.y_down = True if film.unit == "px" else None
+    rows = _rows(path, layout, values, words)
+    apart = list(dict.fromkeys(body for body, _ in layout.columns if body))
+    for name, chosen in rows.items():
+        for body in apart or [name]:
+            mine = {
+                n: one for n, (whose, one) in enumerate(layout.columns)
+                if one.role and whose in ("", body)
+            }  # fmt: skip
+            found = _body(path, body, mine, values, words, chosen, layout.along)
+            if found.marks:
+                film.bodies.append(found)
+    return film
+
+
+def _holds_text(look: Look, column: int, what: Heading) -> bool:
+    """Whether a column of ids or flags holds texts, or one of times those of a clock."""
+    cells = [row[column] for row in look.rows if column < len(row)]
+    if what.role == "time":
+        return any(map(is_clock, cells))
+    if what.role not in ("id", "seen", "hidden"):
+        return False
+    return any(number(cell, look.comma) is None for cell in cells) or not any(cells)
+
+
+def _units(path: str | Path, layout: Layout) -> tuple[str, str, bool]:
+    """Units of places and angles, and whether that of times is named."""
+    headed = [one for _, one in layout.columns]
+    said = []
+    for roles in (("x", "y"), ("angle",)):
+        units = {one.unit for one in headed if one.role in roles}
+        if len(units) > 1:
+            raise InputError(
+                f"{path}: its columns {' and '.join(roles)} are not all in one unit "
+                f"({', '.join(unit or 'none said' for unit in sorted(units))}): name all with "
+                "columns (--columns)"
+            )
+        said.append(units.pop() if units else "")
+    timed = all(one.unit for one in headed if one.role in ("time", "step"))
+    return said[0], said[1], timed
+
+
+def _rows(
+    path: str | Path, layout: Layout, values: dict[int, FloatArray], words: dict[int, Any]
+) -> dict[str, Any]:
+    """Which rows are of which puck, by its name: all of them where no column says whose they are.
+
+    Rows of a puck are put in the order of their frames or times: a long table has none.
+    """
+    told = []
+    for whose in (n for n, (_, one) in enumerate(layout.columns) if one.role == "id"):
+        if whose in words:
+            codes, names = words[whose]
+        else:
+            numbers, codes = np.unique(values[whose], return_inverse=True, equal_nan=True)
+            names = [f"{one:.15g}" for one in numbers]
+        if not len(names) == codes.size > 1:  # else it numbers the rows
+            told.append((len(names), whose in words, codes, names))
+    if not told:
+        return {"": slice(None)}
+    *_, codes, names = max(told, key=lambda one: one[:2])  # who tells most apart, best by name
+    if len(names) > MOST_PUCKS:
+        raise InputError(
+            f"{path} has {len(names)} pucks, at most {MOST_PUCKS} are read: leave out what is none"
+        )
+    by = next(
+        (n for role in ("frame", "time") for n, (_, one) in enumerate(layout.columns)
+         if one.role == role), None,
+    )  # fmt: skip
+    order = np.argsort(codes, kind="stable") if by is None else np.lexsort((values[by], codes))
+    ends = np.cumsum(np.bincount(codes, minlength=len(names)))
+    starts = np.concatenate([[0], ends[:-1]])
+    return {
+        name: order[start:end] for name, start, end in zip(names, starts, ends, strict=True)
+        if name != "nan"
+    }  # fmt: skip
+
+
+def _body(
+    path: str | Path, name: str, columns: dict[int, Heading], values: dict[int, FloatArray],
+    words: dict[int, Any], rows: Any, along: bool,
+) -> TrackedBody:  # fmt: skip
+    """One body from its columns and rows; ``along``: places along x or y alone, the other is 0."""
+    found: dict[tuple[str, str], FloatArray] = {}
+    units: dict[str, str] = {}
+    seen: dict[str, Flags] = {}
+    for n, one in columns.items():
+        if one.role in ("seen", "hidden"):
+            flags = _flags(path, n, one.role, values, words)[rows]
+            seen[one.puck] = seen[one.puck] & flags if one.puck in seen else flags
+        elif one.role != "id":
+            if (one.role, one.puck) in found:
+                raise InputError(
+                    f"{path} has two columns '{one.role}' of one puck: name its columns apart, or "
+                    "with columns (--columns)"
+                )
+            found[one.role, one.puck] = values[n][rows]
+            units[one.role] = one.unit
+    marks = {}
+    for role, mark in found:
+        if role not in ("x", "y"):
+            continue
+        where = found[role, mark]
+        other = found.get(("y" if role == "x" else "x", mark), 0.0 * where if along else None)
+        if other is None:
+            raise InputError(
+                f"{path} has a column {role} {f'of {mark} ' if mark else ''}without its "
+                f"{'y' if role == 'x' else 'x'}: name its columns with columns (--columns), of a "
+                f"puck that goes along {role} alone with - for what else there is"
+            )
+        marks[mark] = np.column_stack([where, other] if role == "x" else [other, where])
+    body = TrackedBody(name, marks, seen=seen)
+    clocks = {}
+    for (role, _), value in found.items():
+        if role in clocks:
+            raise InputError(
+                f"{path} has two columns of {role}: read the pucks one by one, with - in columns "
+                "(--columns) for those of others"
+            )
+        if role in ("frame", "time", "step"):
+            clocks[role] = value
+    body.frame, body.time = clocks.get("frame"), clocks.get("time")
+    if body.time is not None:
+        body.time = body.time * factor(units["time"] or "s", "time")
+    elif "step" in clocks:
+        steps = clocks["step"] * factor(units["step"] or "s", "time")
+        body.time = np.concatenate([[0.0], np.cumsum(steps[1:])])
+    body.angles = {mark: value for (role, mark), value in found.items() if role == "angle"}
+    body.likelihoods = {
+        mark: value for (role, mark), value in found.items() if role == "likelihood"
+    }
+    return body
+
+
+def _flags(
+    path: str | Path, column: int, role: str, values: dict[int, FloatArray], words: dict[int, Any]
+) -> Flags:
+    """Whether the puck is seen, row by row, from a column of flags."""
+    if column in words:
+        codes, texts = words[column]
+        shown = []
+        for text in texts:
+            low = text.lower()
+            if low not in _SHOWN | _HIDDEN | _YES | _NO | {"0", "1"}:
+                raise InputError(
+                    f"{path}, column {column + 1}: '{text:.30}' does not say whether the puck is "
+                    "seen: write 1 or 0, true or false"
+                )
+            yes = low in _YES | {"1"}
+            shown.append(low in _SHOWN or (low not in _HIDDEN and yes == (role == "seen")))
+        by_row: Flags = np.array(shown, bool)[codes]
+        return by_row
+    flags = values[column]
+    if not np.isin(flags[~np.isnan(flags)], (0.0, 1.0)).all():
+        raise InputError(
+            f"{path}, column {column + 1}: flags of what is seen must be 0 or 1; leave the column "
+            "out with - in columns (--columns)"
+        )
+    result: Flags = flags == 1.0 if role == "seen" else flags != 1.0
+    return result

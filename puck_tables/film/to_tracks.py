@@ -1,0 +1,372 @@
+"""From what a file holds to tracks in SI: times, units, axes, marks, and what was not seen."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from pathlib import Path
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.real import instance, positive, real
+from puck_tables._core.units import PIXEL, factor, pixel_size, unit_given
+from puck_tables.errors import InputError
+from puck_tables.film.angles import direction
+from puck_tables.film.film import Film, TrackedBody
+from puck_tables.film.marks_file import plane_from
+from puck_tables.film.plane import Marks, Plane
+from puck_tables.film.puck_track import Track
+
+_SURE = 1.5  # likelihoods above are no shares of 1, whatever rounding or scoring did
+_STAMPED = 1e3  # lengths of a film: a first time that is later is that of a clock
+_SLOW = 1.0  # s between frames: more, and times are hardly in seconds
+
+
+@dataclass(frozen=True)
+class ReaderOptions:
+    """What a reader says of a file; see :func:`puck_tables.film.track_files.read_tracks`."""
+
+    fps: float | None = None
+    unit: str | None = None
+    scale: str | float | None = None
+    angle_unit: str | None = None
+    y_down: bool | None = None
+    marks: Marks | None = None
+    centre: str | Sequence[str] | None = None
+    toward: str | None = None
+    likelihood: float | None = None
+    pucks: str | Sequence[str] | None = None
+    size: float | None = field(init=False, default=None)  # of a pixel in m
+    plane: Plane | None = field(init=False, default=None)
+
+    def __post_init__(self) -> None:
+        def put(name: str, value: object) -> None:
+            object.__setattr__(self, name, value)
+
+        if self.fps is not None:
+            put("fps", positive("fps", self.fps, "frames a second"))
+        if self.unit is not None:
+            put("unit", unit_given("unit", self.unit, "length"))
+        if self.angle_unit is not None:
+            put("angle_unit", unit_given("angle_unit", self.angle_unit, "angle"))
+        if self.scale is not None:
+            put("size", pixel_size(self.scale))
+        if self.likelihood is not None:
+            likelihood = real("likelihood", self.likelihood, "0 to 1")
+            if not 0.0 <= likelihood <= 1.0:
+                raise InputError(f"likelihood must be 0 to 1, got {likelihood:g}")
+        if self.scale is not None and self.marks is not None:
+            raise InputError("scale and marks both give the size of a pixel: give one of them")
+        if (self.size is not None or self.marks is not None) and self.unit not in (None, PIXEL):
+            which = "scale" if self.marks is None else "marks"
+            raise InputError(f"{which} is for places in pixels: leave unit = '{self.unit}' out")
+        if self.marks is not None:
+            if self.y_down is not None:
+                raise InputError(
+                    "with marks the axes are those in which their places on the floor are given: "
+                    "leave y_down out"
+                )
+            put("plane", plane_from(self.marks))
+        instance("y_down", self.y_down, bool, type(None))
+        instance("toward", self.toward, str, type(None))
+        for name in ("centre", "pucks"):
+            given = getattr(self, name)
+            names = given.split(",") if isinstance(given, str) else given
+            if names is not None:
+                instance(name, names, list, tuple)
+                put(name, [str(one).strip() for one in names])
+                if not names or not all(getattr(self, name)):
+                    raise InputError(f"{name} must be names with commas, got {given!r:.40}")
+        if self.toward is not None and self.centre is None:
+            raise InputError(
+                f"toward = '{self.toward}' needs centre, too: the mark, or the marks, in whose "
+                "middle the centre of the puck lies"
+            )
+
+
+def settled(path: str | Path, film: Film, how: ReaderOptions) -> tuple[Track, ...]:
+    """The tracks of a film.
+
+    Raises
+    ------
+    InputError
+        If something is left open, contradicts, or is no track.
+
+    Examples
+    --------
+    >>> marks = {"": np.array([[0.0, 1.0], [2.0, 1.0]])}
+    >>> film = Film("table", [TrackedBody("", marks, frame=np.array([0.0, 1.0]))], unit="cm")
+    >>> settled("a.csv", film, ReaderOptions(fps=50.0))[0].place.tolist()
+    [[0.0, 0.01], [0.02, 0.01]]
+    """
+    notes = [film.kind, *film.notes]
+    scale = _Scale(path, film, how, notes)
+    tracks = []
+    known: list[str] = []
+    for body in film.bodies:
+        time, body_notes = _times(path, film, body, how)
+        for mark, centre in _pucks(path, film, body, how).items():
+            puck = " ".join(filter(None, (body.name, mark)))
+            known.append(puck)
+            if how.pucks is not None and not {puck, body.name, mark} & set(how.pucks):
+                continue
+            name = f"{Path(path).name}{f': {puck}' if puck else ''}"
+            place, angle, hidden_notes = _seen(path, film, body, centre, how, scale)
+            rows = np.flatnonzero(~np.isnan(time))
+            if (lost := np.flatnonzero(np.isnan(time) & np.isfinite(place).all(axis=1))).size:
+                raise InputError(
+                    f"{path}: row {lost[0] + 1} of its numbers has no time: give it one, or leave "
+                    "its place empty, too"
+                )
+            try:
+                track = Track(
+                    time[rows], place[rows], None if angle is None else angle[rows], name,
+                    (*notes, *body_notes, *hidden_notes),
+                )  # fmt: skip
+            except InputError as error:
+                raise InputError(f"{name}: {error}{_others(film, how)}") from None
+            tracks.append(track)
+    _refuse_unknown(path, how.pucks, known)
+    if not tracks:
+        raise InputError(f"{path} holds no puck")
+    return tuple(tracks)
+
+
+def _others(film: Film, how: ReaderOptions) -> str:
+    """A hint where one puck of many spoils all."""
+    many = len(film.bodies) > 1 and how.pucks is None
+    return "; or say which pucks to read with pucks (--pucks)" if many else ""
+
+
+def _refuse_unknown(path: str | Path, wanted: Sequence[str] | None, known: Sequence[str]) -> None:
+    words = {part for name in known for part in (name, *name.split(" ", 1))}
+    for name in wanted or ():
+        if name not in words:
+            near = get_close_matches(name, known, 1)
+            listed = ", ".join(known[:8]) + (", ..." if len(known) > 8 else "")
+            raise InputError(
+                f"{path} has no puck '{name}'"
+                + (f", did you mean '{near[0]}'?" if near else ".")
+                + f" Its pucks: {listed or 'none with a name'}"
+            )
+
+
+class _Scale:
+    """From the unit and the axes of a file to metres with y to the left of x."""
+
+    def __init__(self, path: str | Path, film: Film, how: ReaderOptions, notes: list[str]) -> None:
+        if how.unit is not None and film.unit not in ("", how.unit, PIXEL):
+            raise InputError(
+                f"{path} gives places in {film.unit}: leave unit = '{how.unit}' out"
+            )  # fmt: skip
+        given = how.unit or (PIXEL if how.size is not None or how.plane is not None else "")
+        if given == PIXEL and film.unit not in ("", PIXEL):
+            raise InputError(f"{path} gives places in {film.unit}: leave scale and marks out")
+        if how.unit not in (None, PIXEL) and film.unit == PIXEL and film.kind == "trackpy table":
+            film.unit = ""  # its user may have turned pixels into something else
+        if film.unit == PIXEL and given not in ("", PIXEL):
+            raise InputError(f"{path} gives places in pixels: give scale or marks instead of unit")
+        unit = given or film.unit
+        if not unit:
+            raise InputError(
+                f"{path} does not say the unit of x and y: give unit (--unit cm), or for pixels "
+                "scale (--scale 0.5mm, the size of a pixel) or marks (--marks)"
+            )
+        if unit == PIXEL and how.size is None and how.plane is None:
+            raise InputError(
+                f"{path} gives places in pixels: give the size of a pixel with scale (--scale "
+                "0.5mm), or four marks on the floor with marks (--marks)"
+            )
+        self.plane = how.plane
+        self.size = factor(unit, "length") if unit != PIXEL else how.size or 1.0
+        down = how.y_down if how.y_down is not None else film.y_down
+        self.down = self.plane is None and (unit == PIXEL if down is None else down)
+        angles = {key for body in film.bodies for key in body.angles}
+        self.radians = self._radians(path, film, how) if angles else 1.0
+        if unit != PIXEL:
+            notes.append(f"places in {unit}")
+        elif how.size is not None:
+            notes.append(f"places in pixels of {how.size * 1e3:.6g} mm")
+        if self.plane is not None:
+            notes.append(
+                f"places in pixels, carried to the floor by {self.plane.count} marks"
+                + (f", which they fit to {self.plane.residual * 1e3:.3g} mm"
+                   if self.plane.residual else "")
+                + ("; y lies to the right of x in the picture: all is seen as in a mirror"
+                   if self.plane.mirrored else "")
+            )  # fmt: skip
+        if self.down:
+            notes.append("y grows downwards in the file: y, and angles, are turned over")
+
+    @staticmethod
+    def _radians(path: str | Path, film: Film, how: ReaderOptions) -> float:
+        if film.angle_unit and how.angle_unit not in (None, film.angle_unit):
+            raise InputError(f"{path} gives angles in {film.angle_unit}: leave angle_unit out")
+        unit = film.angle_unit or how.angle_unit
+        if not unit:
+            raise InputError(
+                f"{path} does not say the unit of its angles: give angle_unit (--angle-unit deg)"
+            )
+        return factor(unit, "angle")
+
+    def place(self, points: FloatArray) -> FloatArray:
+        """Places (n, 2) in m; NaN where a point is."""
+        if self.plane is None:
+            scaled: FloatArray = points * [self.size, -self.size if self.down else self.size]
+            return scaled
+        result = np.full(points.shape, np.nan)
+        known = np.isfinite(points).all(axis=1)
+        result[known] = self.plane.place(points[known])
+        return result
+
+    def angle(self, points: FloatArray, angle: FloatArray) -> FloatArray:
+        """Angles (n,) in rad of a body at points (n, 2)."""
+        turned = angle * self.radians
+        if self.plane is not None:
+            return self.plane.angle(points, turned)
+        return -turned if self.down else turned
+
+
+def _times(
+    path: str | Path, film: Film, body: TrackedBody, how: ReaderOptions
+) -> tuple[FloatArray, list[str]]:
+    """Times in s, and what they are from."""
+    size = len(next(iter(body.marks.values())))
+    for clock in (body.frame, body.time):
+        if clock is not None and np.isinf(clock).any():
+            raise InputError(f"{path} has times or frame numbers that are no numbers")
+    if how.fps is not None:
+        if body.frame is not None:
+            unused = "; its own times are not used" if body.time is not None else ""
+            return body.frame / how.fps, [f"{how.fps:.9g} frames a second, as given{unused}"]
+        if body.time is not None:
+            raise InputError(f"{path} has times and no frame numbers: leave fps (--fps) out")
+        return np.arange(size) / how.fps, [f"each row a frame, {how.fps:.9g} a second, as given"]
+    if body.time is None:
+        what = "frame numbers and no times" if body.frame is not None else "no times"
+        row = "" if body.frame is not None else "; each row is then a frame"
+        raise InputError(f"{path} has {what}: give frames a second with fps (--fps 120){row}")
+    first = _stamped(film)
+    said = [f"times from its first frame on, {first:.15g} s of its clock"] if first else []
+    if film.timed:
+        return body.time - first, said
+    apart = np.diff(body.time[~np.isnan(body.time)])
+    if apart.size and np.median(apart) > _SLOW:
+        raise InputError(
+            f"{path} does not say the unit of its times, and frames would be "
+            f"{np.median(apart):.4g} s apart: say it in the header, or with columns "
+            "(--columns 't [ms],x,y')"
+        )
+    return body.time - first, ["times taken as seconds, of which the file says nothing", *said]
+
+
+def _stamped(film: Film) -> float:
+    """The first time of all bodies, where it is far from 0 for so short a film; 0 elsewhere.
+
+    Such times are stamps of a clock: as dates do, they mean nothing but the time between them.
+    """
+    times = [body.time[~np.isnan(body.time)] for body in film.bodies if body.time is not None]
+    known = np.concatenate(times) if times else np.empty(0)
+    if not known.size or not abs(known.min()) > _STAMPED * np.ptp(known) > 0.0:
+        return 0.0
+    return float(known.min())
+
+
+def _pucks(
+    path: str | Path, film: Film, body: TrackedBody, how: ReaderOptions
+) -> dict[str, Sequence[str]]:  # fmt: skip
+    """The pucks of a body by name, with the marks in whose middle each has its centre."""
+    names = list(body.marks)
+    if how.centre is not None:
+        for name in [*how.centre, *([how.toward] if how.toward else [])]:
+            if name not in names:
+                near = get_close_matches(name, names, 1)
+                hint = f", did you mean '{near[0]}'?" if near else "."
+                raise InputError(
+                    f"{path} has no mark '{name}'{hint} Its marks: {', '.join(names[:8])}"
+                )
+        return {"": how.centre}
+    named = {*names, *(f"{body.name} {mark}" for mark in names)} & {*(how.pucks or ())}
+    if len(names) > 1 and film.jointed and not named:
+        raise InputError(
+            f"{path} has the marks {', '.join(names[:8])}: if they are on one puck, say which is "
+            f"its centre, or which are around it, and where its angle points, with centre and "
+            f"toward (--centre {names[0]} --toward {names[1]}); if each is a puck, name them with "
+            f"pucks (--pucks {','.join(names[:2])})"
+        )
+    if len(names) == 1 and body.name:
+        return {"": names}
+    return {name: [name] for name in names}
+
+
+def _seen(
+    path: str | Path,
+    film: Film,
+    body: TrackedBody,
+    centre: Sequence[str],
+    how: ReaderOptions,
+    scale: _Scale,
+) -> tuple[FloatArray, FloatArray | None, list[str]]:
+    """Place and angle of a puck with NaN where it was not seen."""
+    used = [*centre, *([how.toward] if how.toward else [])]
+    shown = np.ones(len(body.marks[centre[0]]), bool)
+    for mark in used:
+        for name in ("", mark):
+            if name in body.seen:
+                shown &= body.seen[name]
+    notes = []
+    bound = how.likelihood if how.likelihood is not None else film.likely
+    likely = [body.likelihoods[m] for m in {*used, ""} if m in body.likelihoods]
+    if how.likelihood is not None and not likely:
+        raise InputError(f"{path} has no likelihoods: leave likelihood (--likelihood) out")
+    if bound is not None and likely:
+        highest = max(float(one[np.isfinite(one)].max(initial=0.0)) for one in likely)
+        if highest > _SURE:
+            raise InputError(
+                f"{path} has likelihoods of up to {highest:.6g}: they must be 0 to 1; leave their "
+                "column out with - in columns (--columns)"
+            )
+        faint = shown & ~np.all([one >= bound for one in likely], axis=0)
+        shown &= ~faint
+        count = np.count_nonzero(faint)
+        notes.append(
+            f"{count} frame{'' if count == 1 else 's'} less likely than {bound:g} left out"
+        )
+    points = {mark: np.where(shown[:, None], body.marks[mark], np.nan) for mark in used}
+    places = {mark: scale.place(point) for mark, point in points.items()}
+    place: FloatArray = np.mean([places[mark] for mark in centre], axis=0)
+    if how.toward is not None:
+        return place, direction(place, places[how.toward]), notes
+    angle = _angle_column(path, body, centre)
+    if angle is None:
+        return place, None, notes
+    middle: FloatArray = np.mean([points[mark] for mark in centre], axis=0)
+    known = np.isfinite(middle).all(axis=1)
+    angle = np.where(known, angle, np.nan)
+    turned = np.full(angle.shape, np.nan)
+    turned[known] = scale.angle(middle[known], angle[known])
+    return place, turned, notes
+
+
+def _angle_column(path: str | Path, body: TrackedBody, centre: Sequence[str]) -> FloatArray | None:
+    """The angles that are of a puck."""
+    if not body.angles:
+        return None
+    for mark in centre:
+        if mark in body.angles:
+            return body.angles[mark]
+    if len(body.marks) == 1 or len(centre) == len(body.marks):
+        if len(body.angles) > 1 and "" not in body.angles:
+            raise InputError(
+                f"{path} has several columns of angles of one puck ({', '.join(body.angles)}): "
+                "leave all but one out with - in columns (--columns)"
+            )
+        return body.angles.get("", next(iter(body.angles.values())))
+    if "" in body.angles:
+        raise InputError(
+            f"{path} has angles and several pucks: say whose they are, with columns (--columns) "
+            "such as t,red_x,red_y,red_angle"
+        )
+    return None

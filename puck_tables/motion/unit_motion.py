@@ -1,0 +1,235 @@
+"""One motion in natural units: spin positive, start along x, Q₀ = J = r = 1.
+
+The layer between the compiled loop and :mod:`puck_tables.trajectory`: elementary motions, and
+integrated ones as fine as the tolerance asks.  Nobody has measured beforehand how far off a motion
+is for every law and height.  Where friction is a section it is measured on the motion itself, by a
+run of higher accuracy and by one with a coarser section.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.accuracy.front import Selection
+from puck_tables.accuracy.methods import Method
+from puck_tables.errors import PuckError
+from puck_tables.motion.equations_of_motion import (
+    at_constant_angle,
+    derivatives,
+    inertia,
+    kinetic_energy,
+)
+from puck_tables.motion.frame import direction
+from puck_tables.motion.friction_source import Friction, FrictionSource
+from puck_tables.motion.limits import log_ratio
+from puck_tables.motion.path import STOPPED, TURN_SHARE, integrate, states_at
+from puck_tables.motion.solve import FINEST_LOCAL, ErrorEstimate, Setting, close_enough, refined
+from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, WORK, T, U, X, Y
+from puck_tables.motion.steppers import Stepping
+from puck_tables.motion.tableaus import DORMAND_PRINCE, Tableau
+
+GENERIC = ("B", "C")  # regimes that are integrated; the others are elementary
+
+_FINEST_TWIN = 4e-15  # of a step: below, rounding is all that two runs differ by
+_STEP_LIMIT = 20_000  # room for so many is made; more is a motion that does not end
+_SAFETY = 1.5  # states between the moments compared
+_ROUNDING = 1e-14  # of a motion as long as Q/J
+_UNSEEN_SHARE = 0.1  # of the error of a section: two coarse ones may err alike
+_MOMENTS = 16  # at which two motions are compared
+_COARSER_BY = 4.0  # half as many cells are 16 times as bad; a quarter of that is believed
+
+
+@dataclass
+class MotionRun:
+    """Step ends (z, state) from launch to stop; ``stop`` is the state there, its ψ the turn."""
+
+    friction: Friction
+    tableau: Tableau
+    z: FloatArray
+    y: FloatArray
+    stop: FloatArray
+    turn_rate: float
+    energy_residual: float
+    steps: int
+    error: float
+
+    def states(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Q/Q₀ (n,) and states (n, 8) at times; at and after the stop Q = 0."""
+        if not times.any():  # the launch alone, as a report needs it: nothing to compile
+            return np.ones(times.size), np.tile(self.y[0], (times.size, 1))
+        q, y = np.empty(times.size), np.empty((times.size, SIZE))
+        states_at(
+            times, self.z, self.y, self.stop, self.tableau, self.friction.cut,
+            self.friction.delta, q, y,
+        )  # fmt: skip
+        return q, y
+
+
+def solve(
+    source: FrictionSource, regime: str, speed: float, rim: float, tol: float,
+    method: Method | None = None,
+) -> tuple[MotionRun, Selection]:  # fmt: skip
+    """The motion of a launch with speed v and rim speed r|ω| in natural units, and how it was got.
+
+    Raises
+    ------
+    AccuracyError
+        If the tolerance is out of reach.
+    ContactError
+        If part of the base would be lifted on the way, where that is not computed.
+
+    Examples
+    --------
+    >>> from puck_tables.motion.body import body_of
+    >>> from puck_tables.motion.friction_source import source_of
+    >>> run, selection = solve(source_of(body_of("uniform", 0.0, 0.5**0.5)), "B", 1.0, 5.0, 1e-9)
+    >>> round(float(run.stop[T]), 6), selection.scheme.name  # T(φ) of Q/J
+    (0.774875, 'adaptive, table')
+    """
+    selection = source.selected("trajectory", tol, method)
+    u = {"A": -math.inf, "B0": math.inf, "C0": -math.inf}.get(regime) or log_ratio(speed, rim)
+    if regime not in GENERIC:
+        source.refuse(u)
+        friction, at_limit, rounding = source.at_constant_angle(tol)
+        run = at_constant_slip(regime, u, friction)
+        error = (rounding + (at_limit if regime == "D" else 0.0)) * max(1.0, float(run.stop[T]))
+        run.error = error
+        return run, selection
+    # φ moves monotonically to φ₀ and the tilt falls with φ: the smaller of both is the worst
+    source.refuse(min(u, source.limit))
+    attempt = partial(_attempt, source, u, tol)
+    finer = partial(refined, tol=tol, friction=source.next_accuracy)
+    first = source.first(selection)
+    run, estimate, setting = close_enough(first, attempt, finer, tol, "this puck")
+    if setting is not first or not source.is_measured:
+        selection = source.told(selection, setting, estimate)
+    run.error = estimate.total
+    return run, selection
+
+
+def at_constant_slip(regime: str, u: float, friction: Friction) -> MotionRun:
+    """A motion in elementary functions, u = ln(r|ω|/v) throughout.
+
+    Examples
+    --------
+    >>> from puck_tables.motion.friction_source import closed_form_friction
+    >>> float(at_constant_slip("C0", -math.inf, closed_form_friction(0.5)).stop[T])
+    1.0
+    """
+    start, stop, turned = np.zeros((1, SIZE)), np.zeros(SIZE), np.zeros(SIZE)
+    start[0, U] = stop[U] = u
+    residual = 0.0
+    if regime != "A":
+        at_constant_angle(1.0, start[0], 0.0, friction.cut, friction.delta, stop)
+        at_constant_angle(1.0, start[0], TURN_SHARE, friction.cut, friction.delta, turned)
+        stop[PSI] = turned[PSI]
+        energy = kinetic_energy(1.0, u, inertia(friction.cut))
+        residual = abs(stop[WORK] - energy) / energy
+    rate = -turned[PSI] / math.log(TURN_SHARE)
+    return MotionRun(
+        friction, DORMAND_PRINCE, np.zeros(1), start, stop, rate, residual, 0, math.inf
+    )
+
+
+def integrated(u: float, friction: Friction, stepping: Stepping) -> MotionRun:
+    """A motion by one setting of the integrator, its error not known.
+
+    Raises
+    ------
+    PuckError
+        If the stop is not reached.
+
+    Examples
+    --------
+    >>> from puck_tables.motion.friction_source import closed_form_friction
+    >>> from puck_tables.motion.tableaus import RK4
+    >>> run = integrated(0.0, closed_form_friction(1.0), Stepping(RK4, 64.0, 1.0))
+    >>> float(run.stop[T].round(6))
+    0.986476
+    """
+    z, y = np.empty(_STEP_LIMIT), np.empty((_STEP_LIMIT, SIZE))
+    result = np.empty(SIZE + 1)
+    status, count = integrate(
+        u, stepping.tableau, float(stepping.steps), stepping.local, 1.0, friction.cut,
+        friction.delta, _STEP_LIMIT, z, y, result,
+    )  # fmt: skip
+    if status != STOPPED:
+        raise PuckError(
+            f"the integration did not reach the stop in {_STEP_LIMIT} steps: ask for less accuracy"
+        )
+    rates = np.empty(SIZE)  # at z = 0, dz = −d ln Q/4
+    derivatives(0.0, y[count - 1], friction.cut, friction.delta, rates)
+    return MotionRun(
+        friction,
+        stepping.tableau,
+        z=z[:count].copy(),
+        y=y[:count].copy(),
+        stop=result[:SIZE],
+        turn_rate=0.25 * float(rates[PSI]),
+        energy_residual=float(result[SIZE]),
+        steps=count - 1,
+        error=math.inf,
+    )
+
+
+def _attempt(
+    source: FrictionSource, u: float, tol: float, setting: Setting
+) -> tuple[MotionRun, ErrorEstimate]:
+    """A motion by one setting, and its error: by a run of higher accuracy, and by its friction.
+
+    Where the error of the friction is known the stop is compared; else whole motions are, also with
+    one by a coarser section.
+    """
+    stepping, friction = setting.stepping, source.friction(setting.accuracy)
+    run = integrated(u, friction, stepping)
+    coarser = source.coarser(setting.accuracy)
+    if coarser is None:
+        finer = integrated(u, friction, stepping.finer(2.0, 0.1, _FINEST_TWIN))
+        difference = float(np.abs(run.stop[T : X + 2] - finer.stop[T : X + 2]).max())
+        return run, ErrorEstimate(difference + 0.01 * tol, friction.error)
+    finer = integrated(u, friction, stepping.finer(2.0, 0.01, FINEST_LOCAL))
+    by_steps = _SAFETY * (apart(run, finer) + unseen_tail(stepping))
+    by_friction = apart(run, integrated(u, coarser, stepping)) / _COARSER_BY
+    rounding = _ROUNDING * max(1.0, float(run.stop[T]))
+    return run, ErrorEstimate(by_steps, by_friction + _UNSEEN_SHARE * friction.error, rounding)
+
+
+def unseen_tail(stepping: Stepping) -> float:
+    """What two settings of the integrator may miss alike: the last of Q, at constant angle.
+
+    Examples
+    --------
+    >>> unseen_tail(Stepping(DORMAND_PRINCE, 0.0, 1e-8))
+    1e-10
+    """
+    return (2.0 * stepping.steps) ** -4.0 if stepping.fixed else 0.01 * stepping.local
+
+
+def apart(one: MotionRun, other: MotionRun) -> float:
+    """How far two motions of a launch are apart: at the stop, and at moments of the first."""
+    speed, rim = _speeds((1.0 - one.z) ** 4, one.y[:, U])
+    # where the speeds change most, errors of the time count most
+    way = np.cumsum(np.abs(np.diff(speed)) + np.abs(np.diff(rim)))
+    at = 1 + np.unique(np.searchsorted(way, np.linspace(0.02, 0.98, _MOMENTS) * way[-1]))
+    here, speed, rim = one.y[at], speed[at], rim[at]
+    q_there, there = other.states(here[:, T])
+    speed_there, rim_there = _speeds(q_there, there[:, U])
+    off = [
+        (one.stop - other.stop)[T:WORK],
+        *(here - there)[:, [X, Y, THETA, LENGTH]].T,
+        speed - speed_there,
+        rim - rim_there,
+        np.minimum(speed, speed_there) * (here - there)[:, PSI],
+    ]
+    return max(float(np.abs(row).max()) for row in off)
+
+
+def _speeds(q: FloatArray, u: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """V and r|ω| from Q and u."""
+    cosine, sine = direction(u)
+    return q * cosine, q * sine

@@ -1,0 +1,50 @@
+"""Picture of aims: where the targets are, and the launches that lead to them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from puck_tables.errors import InputError
+from puck_tables.io.columns import COLUMNS
+from puck_tables.plot.aim_figure import told
+from puck_tables.plot.style import GREY, LAUNCH, canvas, ramp
+from puck_tables.plot.titles import counted, legend_below
+from puck_tables.stopping.aim_at_targets import Aims
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+
+def draw(found: Aims) -> Figure:
+    """The targets, and speeds of launches against their spins."""
+    figure = canvas(10.0, 4.6)
+    targets, launches = figure.subplots(1, 2, width_ratios=(1.5, 1.0))
+    draw_on(targets, found)
+    launches.scatter(found.launch_spin, found.launch_speed, c=found.stop_time, s=8, cmap=ramp())
+    told(figure, launches, found.puck, found.answer)
+    return figure
+
+
+def draw_on(axes: Axes, found: Aims) -> None:
+    """The targets alone, coloured by the stop time of a launch to them.
+
+    Raises
+    ------
+    InputError
+        If there is no launch to draw.
+    """
+    if found.launch_spin.size == 0:
+        raise InputError(f"there is nothing to draw: {found.answer}")
+    missed = found.target[found.launches == 0]
+    if missed.size:
+        words = f"no launch ({len(missed)} of {counted(found.launches.size, 'target')})"
+        axes.plot(*missed.T, "x", color=GREY, markersize=4, label=words)
+    marks = axes.scatter(found.target_x, found.target_y, c=found.stop_time, s=12, cmap=ramp())
+    axes.plot(0.0, 0.0, **LAUNCH, label="launch")
+    figure = axes.get_figure()
+    assert figure is not None
+    figure.colorbar(marks, ax=axes, label=COLUMNS["stop_time"].axis)
+    axes.set(xlabel=COLUMNS["target_x"].axis, ylabel=COLUMNS["target_y"].axis)
+    axes.set_aspect("equal", adjustable="datalim")
+    legend_below(axes)

@@ -1,0 +1,350 @@
+"""What pictures and movies show of a motion: bodies on their ways, the board, what happens.
+
+The way of a body is a few knots: time, place, angle and their rates.  Between two of them it is the
+cubic polynomial through both (Hermite's), which misses it by less than is seen.  Impacts are knots,
+one just before and one just after.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.colours import brightness, on_white
+from puck_tables.plot.scene_figure import states_drawn
+from puck_tables.plot.titles import out_of_sight
+from puck_tables.result import TimedResult
+from puck_tables.scene.parts import Floor
+from puck_tables.scene.run import Run
+from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.trajectory import Trajectory
+from puck_tables.world.agreement import frictions_under, pieces_of
+from puck_tables.world.drive import rows_of
+
+# dark and light by turns, so that neighbours differ in grey as well (Okabe and Ito)
+PALETTE = (
+    "#0072b2", "#e69f00", "#000000", "#56b4e9", "#d55e00", "#f0e442", "#009e73", "#cc79a7",
+)  # fmt: skip
+_STATES = 1500  # at which a way is known before its knots are chosen
+_UNSEEN = (1e-4, 0.01)  # of the size of what is in sight, and of the smallest radius
+_FAR = 3.0  # sizes of the ways: corners of the board farther off are left out of sight
+
+_DARK = 0.45  # brightness: a mark on it is white
+
+Box = tuple[float, float, float, float]  # left, right, low, high, m
+
+
+class MovingDisc(NamedTuple):
+    """A disc and its way: knots (n, 7) of t, x, y, angle, vx, vy, spin; ``gone`` s, or inf."""
+
+    name: str
+    radius: float
+    colour: str
+    driven: bool
+    knots: FloatArray
+    gone: float
+
+    @property
+    def line(self) -> str:
+        """The colour of its ways, which are seen on white."""
+        return on_white(self.colour)
+
+    @property
+    def mark(self) -> str:
+        """The colour of a mark that is seen on it."""
+        return "white" if brightness(self.colour) < _DARK and not self.driven else "black"
+
+
+class StraightPart(NamedTuple):
+    """A straight part of the board: a wall or an edge, m."""
+
+    kind: str
+    x: tuple[float, float]
+    y: tuple[float, float]
+
+
+class RoundPart(NamedTuple):
+    """A round part of the board: a post, an arc or a pocket; angles in rad."""
+
+    kind: str
+    x: float
+    y: float
+    radius: float
+    start: float = 0.0
+    span: float = 2.0 * math.pi
+
+
+class Happening(NamedTuple):
+    """An impact, or a fall into a pocket or over an edge: when, what, and where."""
+
+    time: float
+    what: str
+    x: float
+    y: float
+
+
+class Animation(NamedTuple):
+    """All that is shown."""
+
+    title: str
+    end: str
+    end_time: float
+    bodies: list[MovingDisc]
+    lines: list[StraightPart]
+    rounds: list[RoundPart]
+    happenings: list[Happening]
+    box: Box
+    floor: Floor
+    frictions: tuple[float, ...]  # all that there are on it
+    hidden: str = ""  # walls and edges out of sight, in words
+
+
+def film_of(result: TimedResult) -> Animation:
+    """The film of a run of a scene of one or several pucks, or of a trajectory.
+
+    Examples
+    --------
+    >>> from puck_tables import Puck
+    >>> film = film_of(Puck.similar().simulate((1.0, 0.0), 5.0))
+    >>> len(film.bodies), film.bodies[0].knots[-1, 1].round(6).item()
+    (1, 2.213952)
+    """
+    if isinstance(result, Trajectory):
+        run = result(np.linspace(0.0, result.stop_time, _STATES))
+        states = _stacked(
+            run.time, run.x, run.y, run.orientation, run.vx, run.vy, run.spin
+        )  # fmt: skip
+        return _film(
+            "Puck", "at rest", run.stop_time, [("puck", run.puck.radius, "", False, states)]
+        )
+    if isinstance(result, Run) and result.scene.is_board:
+        return _film_of_several(result)
+    if isinstance(result, Run):
+        columns = states_drawn(result)
+        names = ("time", "x", "y", "orientation", "vx", "vy", "spin")
+        states = _stacked(*(columns[name] for name in names))
+        happenings = [
+            Happening(e.time, e.what, e.x, e.y) for e in result.events if e.what == "impact"
+        ]
+        body = ("puck", result.scene.puck.radius, "", False, states)
+        return _film(
+            result.scene.title, result.end, result.end_time, [body], happenings, result.scene
+        )
+    raise TypeError(f"{type(result).__name__} has no film")
+
+
+def _film_of_several(run: Run) -> Animation:
+    scene, pieces = run.scene, pieces_of(run.scene)
+    kinks = [rows_of(piece.path)[:, 0] for piece in pieces if piece.path]
+    sudden = np.concatenate([[event.time for event in run.events], *kinks])
+    sudden = sudden[(sudden > 0.0) & (sudden <= run.end_time)]
+    times = [np.linspace(0.0, run.end_time, _STATES), sudden, np.nextafter(sudden, -np.inf)]
+    seen = run(np.unique(np.concatenate(times)))
+    gone = dict.fromkeys(run.names, math.inf)
+    gone |= {event.puck: event.time for event in run.events if event.what in ("pocket", "edge")}
+    names = ("x", "y", "orientation", "vx", "vy", "spin")
+    bodies = [
+        (
+            name, piece.radius, piece.colour, bool(piece.path),
+            _stacked(seen.time, *(seen[number][column] for column in names)),
+        )
+        for number, (name, piece) in enumerate(zip(run.names, pieces, strict=True))
+    ]  # fmt: skip
+    happenings = [
+        Happening(event.time, event.what, event.x, event.y)
+        for event in run.events if event.what in ("impact", "pocket", "edge")
+    ]  # fmt: skip
+    film = _film(scene.title, run.end, run.end_time, bodies, happenings, scene)
+    return film._replace(bodies=[body._replace(gone=gone[body.name]) for body in film.bodies])
+
+
+def _stacked(*columns: FloatArray) -> FloatArray:
+    return np.stack(columns, axis=1)
+
+
+def _film(
+    title: str, end: str, end_time: float, bodies: list[tuple[str, float, str, bool, FloatArray]],
+    happenings: list[Happening] | None = None, scene: SceneSpec | None = None,
+) -> Animation:  # fmt: skip
+    """A film of bodies by name, radius, colour, whether driven, and states close to each other."""
+    rounds = [] if scene is None else _rounds(scene)
+    box = _sight(bodies, rounds)
+    planes = [] if scene is None else _half_planes(scene)
+    box = _with_corners(box, [plane for _, plane in planes])
+    size, smallest = max(box[1] - box[0], box[3] - box[2]), min(body[1] for body in bodies)
+    unseen = min(_UNSEEN[0] * size, _UNSEEN[1] * smallest)
+    lines = _lines(planes, box)
+    colours = (colour_of(number) for number in range(len(bodies)))
+    return Animation(
+        title, end, end_time,
+        [
+            MovingDisc(
+                name, radius, colour or next(colours), driven, _knots(states, radius, unseen),
+                math.inf,
+            )
+            for name, radius, colour, driven, states in bodies
+        ],
+        lines, rounds, happenings or [], box, Floor() if scene is None else scene.floor,
+        () if scene is None else _frictions(scene), out_of_sight(planes, lines),
+    )  # fmt: skip
+
+
+def _frictions(scene: SceneSpec) -> tuple[float, ...]:
+    """All coefficients of the floor under its pucks."""
+    under = (frictions_under(scene, piece) for piece in pieces_of(scene))
+    return tuple(friction for one in under for friction in one)
+
+
+def colour_of(number: int) -> str:
+    """A colour for the ``number``-th puck that has none: of the palette, then lighter, darker.
+
+    Examples
+    --------
+    >>> colour_of(0), colour_of(8)
+    ('#0072b2', '#73b1d5')
+    """
+    plain, turn = PALETTE[number % len(PALETTE)], number // len(PALETTE) % 3
+    towards, share = (255.0, 0.45) if turn == 1 else (0.0, 0.35)
+    parts = [int(plain[n : n + 2], 16) for n in (1, 3, 5)]
+    if turn:
+        parts = [round(part + share * (towards - part)) for part in parts]
+    return "#" + "".join(f"{part:02x}" for part in parts)
+
+
+def between(knots: FloatArray, times: FloatArray) -> FloatArray:
+    """X, y and angle on the way through knots, array (times, 3).
+
+    Examples
+    --------
+    >>> knots = np.array([[0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0], [2.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0]])
+    >>> between(knots, np.array([1.0]))[0, 0].item()
+    0.75
+    """
+    row = np.clip(np.searchsorted(knots[:, 0], times, side="right") - 1, 0, len(knots) - 1)
+    after = np.minimum(row + 1, len(knots) - 1)
+    one, two = knots[row], knots[after]
+    span = (two[:, 0] - one[:, 0])[:, None]
+    share = np.divide(
+        (times - one[:, 0])[:, None], span, out=np.zeros_like(span), where=span > 0.0
+    ).clip(0.0, 1.0)
+    rest = 1.0 - share
+    return np.asarray(
+        rest * rest * ((1.0 + 2.0 * share) * one[:, 1:4] + share * span * one[:, 4:])
+        + share * share * ((3.0 - 2.0 * share) * two[:, 1:4] - rest * span * two[:, 4:])
+    )
+
+
+def path_of(body: MovingDisc, until: float = math.inf) -> FloatArray:
+    """Places of a body so close that lines between them are its way, array (n, 2)."""
+    knots = body.knots[: np.searchsorted(body.knots[:, 0], until, side="right")]
+    starts, ends = knots[:-1, 0], knots[1:, 0]
+    fine = (starts[:, None] + np.linspace(0.0, 1.0, 12) * (ends - starts)[:, None]).ravel()
+    return between(knots, np.append(fine, knots[-1, 0]))[:, :2]
+
+
+def _knots(states: FloatArray, radius: float, unseen: float) -> FloatArray:
+    """As few of the states as tell the others to what is not seen, on a rim the angle included."""
+    sudden = np.flatnonzero(_leaps(states))  # the states just before
+    chosen = {0, len(states) - 1, *sudden.tolist(), *(sudden + 1).tolist()}
+    waiting = list(itertools.pairwise(sorted(chosen)))
+    while waiting:
+        first, last = waiting.pop()
+        if last - first < 2:
+            continue
+        middle = states[first + 1 : last]
+        gap = np.abs(between(states[[first, last]], middle[:, 0]) - middle[:, 1:4])
+        missed = np.hypot(gap[:, 0], gap[:, 1]) + radius * gap[:, 2]
+        if missed.max() > unseen:
+            worst = first + 1 + int(np.argmax(missed))
+            chosen.add(worst)
+            waiting += [(first, worst), (worst, last)]
+    return states[sorted(chosen)]
+
+
+def _leaps(states: FloatArray) -> npt.NDArray[np.bool_]:
+    """Where rates change from one moment to the very next one, as in an impact, array (n - 1,)."""
+    at_once = states[1:, 0] <= np.nextafter(states[:-1, 0], np.inf)
+    rates = states[:, 4:]
+    scale = np.abs(rates).max(axis=0) + 1e-300
+    return np.asarray(at_once & (np.abs(np.diff(rates, axis=0)) > 1e-9 * scale).any(axis=1))
+
+
+def _rounds(scene: SceneSpec) -> list[RoundPart]:
+    posts = [RoundPart("post", *post.point, post.radius) for post in scene.posts]
+    arcs = [RoundPart("arc", *arc.point, arc.radius, arc.start, arc.span) for arc in scene.arcs]
+    return [*posts, *arcs, *(RoundPart("pocket", *one.point, one.radius) for one in scene.pockets)]
+
+
+def _sight(bodies: list[tuple[str, float, str, bool, FloatArray]], rounds: list[RoundPart]) -> Box:
+    """What ways and round parts of the board cover."""
+    low = np.min(
+        [states[:, 1:3].min(axis=0) - radius for _, radius, _, _, states in bodies], axis=0
+    )
+    high = np.max(
+        [states[:, 1:3].max(axis=0) + radius for _, radius, _, _, states in bodies], axis=0
+    )
+    for one in rounds:
+        centre = np.array([one.x, one.y])
+        low, high = np.minimum(low, centre - one.radius), np.maximum(high, centre + one.radius)
+    return float(low[0]), float(high[0]), float(low[1]), float(high[1])
+
+
+def _half_planes(scene: SceneSpec) -> list[tuple[str, FloatArray]]:
+    """Walls and edges as unit normals into the field, and places along them."""
+    planes = []
+    for kind, lines in (("wall", scene.walls), ("edge", scene.edges)):
+        for line in lines:
+            normal = np.array(line.normal) / math.hypot(*line.normal)
+            planes.append((kind, np.append(normal, normal @ np.array(line.point))))
+    return planes
+
+
+def _with_corners(box: Box, planes: list[FloatArray]) -> Box:
+    """The box with the corners and sides of the board in it, but those far away; and a margin."""
+    left, right, low, high = box
+    size = max(right - left, high - low)
+    points = []
+    for n, one in enumerate(planes):
+        middle = np.array([0.5 * (left + right), 0.5 * (low + high)])
+        points.append(middle - (one[:2] @ middle - one[2]) * one[:2])
+        for other in planes[:n]:
+            across = one[0] * other[1] - one[1] * other[0]
+            if abs(across) > 1e-9:
+                points.append(np.linalg.solve(np.array([one[:2], other[:2]]), [one[2], other[2]]))
+    for x, y in points:
+        inside = all(plane[0] * x + plane[1] * y >= plane[2] - 1e-6 * size for plane in planes)
+        if inside and max(left - x, x - right, low - y, y - high) <= _FAR * size:
+            left, right, low, high = min(left, x), max(right, x), min(low, y), max(high, y)
+    margin = 0.03 * max(right - left, high - low)
+    return float(left - margin), float(right + margin), float(low - margin), float(high + margin)
+
+
+def _lines(planes: list[tuple[str, FloatArray]], box: Box) -> list[StraightPart]:
+    """The parts of walls and edges that are in sight and border the field."""
+    left, right, low, high = box
+    sides: list[Any] = [(1.0, 0.0, left), (-1.0, 0.0, -right), (0.0, 1.0, low), (0.0, -1.0, -high)]
+    found = []
+    for kind, plane in planes:
+        nx, ny, at = plane
+        start, end = -math.inf, math.inf
+        others = [other for _, other in planes if other is not plane]
+        for ox, oy, other_at in [*others, *sides]:  # along (-ny, nx) from the foot of the line
+            slope = oy * nx - ox * ny
+            over = other_at - at * (ox * nx + oy * ny)
+            if abs(slope) < 1e-12:
+                inside = over <= 1e-9 * (right - left)
+                start, end = (start, end) if inside else (math.inf, -math.inf)
+            elif slope > 0.0:
+                start = max(start, over / slope)
+            else:
+                end = min(end, over / slope)
+        if start < end:
+            ends = np.array([start, end])
+            x, y = at * nx - ends * ny, at * ny + ends * nx
+            found.append(StraightPart(kind, (float(x[0]), float(x[1])), (float(y[0]), float(y[1]))))
+    return found

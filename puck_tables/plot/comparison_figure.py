@@ -1,0 +1,123 @@
+"""Picture of runs of an engine beside the exact answer: what they show, and their errors."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from puck_tables.plot.style import COLORS, GREY, canvas, no_rounding, shaded
+from puck_tables.plot.titles import legend_below, noted, titled
+from puck_tables.reference.comparison import Comparison
+from puck_tables.reference.floor_reaction import ratios, slip_over
+from puck_tables.reference.threshold import states_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_CURVE = 600  # points of a curve: smooth at any size of print
+_LABELLED = 8  # curves: a legend of more hides the picture
+_EXACT: dict[str, Any] = {"color": "black", "linewidth": 1.6}
+
+
+def draw(found: Comparison) -> Figure:
+    """Paths, speeds and ε of runs and of the exact motion, and errors over time."""
+    figure = canvas(11.0, 9.6)
+    panels = figure.subplots(3, 2)
+    draw_on(panels[0, 0], found)
+    _draw_speeds(panels[0, 1], found)
+    _draw_ratio(panels[1, 0], found)
+    _draw_errors(panels[1, 1], found, "place", "error of the place / m")
+    _draw_errors(panels[2, 0], found, "speed", "error of the velocity / m/s")
+    _draw_errors(panels[2, 1], found, "spin", "error of the spin / rad/s")
+    titled(figure, f"{found.answer.case.label}: {found.answer.case.title}")
+    return figure
+
+
+def _colours(found: Comparison) -> list[tuple[float, float, float] | str]:
+    """Light to dark with a falling step."""
+    count = len(found.runs)
+    return [COLORS[0]] if count == 1 else [shaded(n / (count - 1)) for n in range(count)]
+
+
+def _exact(found: Comparison) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    times = np.linspace(0.0, found.end_time, _CURVE)
+    return times, states_of(found.answer(times), found.puck)
+
+
+def draw_on(axes: Axes, found: Comparison) -> None:
+    """The paths."""
+    _, exact = _exact(found)
+    axes.plot(exact["x"], exact["y"], label="exact", **_EXACT)
+    for run, colour in zip(found.runs, _colours(found), strict=True):
+        name = run.log.name if len(found.runs) <= _LABELLED else None
+        axes.plot(run.log.x, run.log.y, color=colour, linewidth=1.0, label=name)
+    no_rounding(axes)
+    axes.set_xlabel("x / m")
+    axes.set_ylabel("y / m")
+    axes.grid(color="#e4e4e4", linewidth=0.6)
+    if len(found.runs) > _LABELLED:
+        noted(axes, f"{len(found.runs)} runs, the first light and the last dark")
+    legend_below(axes)
+
+
+def _draw_speeds(axes: Axes, found: Comparison) -> None:
+    times, exact = _exact(found)
+    radius = found.answer.pieces[found.puck or 0].radius
+    speed, rim, _ = slip_over(found.answer.floor, exact).sizes(radius)
+    axes.plot(times, speed, label="v over the floor", **_EXACT)
+    axes.plot(times, rim, linestyle="--", label="r|ω|", **_EXACT)
+    for run, colour in zip(found.runs, _colours(found), strict=True):
+        if run.seen_speed is not None and run.seen_rim is not None:
+            axes.plot(run.time, run.seen_speed, color=colour, linewidth=1.0)
+            axes.plot(run.time, run.seen_rim, color=colour, linewidth=1.0, linestyle="--")
+    axes.set_ylabel("m/s")
+    _over_time(axes, found)
+    axes.legend(frameon=False, fontsize=8)
+
+
+def _draw_ratio(axes: Axes, found: Comparison) -> None:
+    times, exact = _exact(found)
+    radius = found.answer.pieces[found.puck or 0].radius
+    epsilon, _ = ratios(slip_over(found.answer.floor, exact), radius)
+    axes.plot(times, epsilon, label="exact", **_EXACT)
+    for run, colour in zip(found.runs, _colours(found), strict=True):
+        if run.seen_epsilon is not None:
+            axes.plot(run.time, run.seen_epsilon, color=colour, linewidth=1.0)
+    limit, rest = found.answer.limit_epsilon, found.exact_rest
+    if limit is not None and np.isfinite(limit):
+        axes.axhline(limit, color=GREY, linewidth=0.8, label="limit at the stop")
+    if rest is not None:
+        axes.axvline(rest.time, color=GREY, linewidth=0.8, linestyle=":", label="threshold met")
+    finite = epsilon[np.isfinite(epsilon)]
+    if finite.size:
+        top = 5.0 * float(np.median(finite))
+        axes.set_ylim(0.0, 1.3 * min(float(finite.max()), top) or 1.0)
+        if finite.max() > 1.3 * top:
+            noted(axes, f"it goes up to {finite.max():.3g}")
+    axes.set_ylabel("ε = v/(rω)")
+    _over_time(axes, found)
+    axes.legend(frameon=False, fontsize=8)
+
+
+def _draw_errors(axes: Axes, found: Comparison, name: str, label: str) -> None:
+    drawn = False
+    for run, colour in zip(found.runs, _colours(found), strict=True):
+        row = getattr(run, name)
+        if row is not None and (np.abs(row) > 0.0).any():
+            axes.plot(run.time, np.abs(row), color=colour, linewidth=1.0)
+            drawn = True
+    if drawn:
+        axes.set_yscale("log", nonpositive="mask")  # an error of 0 is no line downwards
+    else:
+        axes.text(0.5, 0.5, "none, or not in the file", ha="center", transform=axes.transAxes,
+                  color=GREY)  # fmt: skip
+    axes.set_ylabel(label)
+    _over_time(axes, found)
+
+
+def _over_time(axes: Axes, found: Comparison) -> None:
+    axes.set_xlim(0.0, 1.15 * found.end_time)
+    axes.set_xlabel("time / s")
+    axes.grid(color="#e4e4e4", linewidth=0.6)

@@ -1,0 +1,65 @@
+"""Picture of a forecast: how well a film would tell the friction, over speed and spin."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from puck_tables.fitting.forecast import Forecast
+from puck_tables.plot.style import LAUNCH, NO_VALUE, canvas
+from puck_tables.plot.titles import titled
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_SPEEDS, _SPINS = 9, 13  # launches along both axes: as many as cells can hold a number
+_ACROSS = 3  # panels in a row
+_WIDEST = 2.0  # times the launch's own
+_RIM = 3.0  # rω/v at the end of the spins, at least
+
+
+def draw(found: Forecast) -> Figure:
+    """Maps of the standard errors of all numbers."""
+    across = min(len(found.free), _ACROSS)
+    down = -(-len(found.free) // across)
+    figure = canvas(5.2 * across + 0.6, 4.0 * down + 0.4)
+    for n, name in enumerate(found.free, start=1):
+        _draw_map(figure.add_subplot(down, across, n), found, name)
+    camera = found.camera
+    marks = "no angle marks" if camera.angle_noise is None else f"{1e3 * camera.angle_noise:g} mrad"
+    titled(
+        figure, f"{camera.fps:g} frames a second, {1e3 * camera.place_noise:g} mm, {marks}: "
+        + ", ".join(f"{name} ± {found[name]:.2g}" for name in found.free),
+    )  # fmt: skip
+    return figure
+
+
+def draw_on(panel: Axes, found: Forecast) -> None:
+    """The map of the first number alone."""
+    _draw_map(panel, found, found.free[0])
+
+
+def _draw_map(panel: Axes, found: Forecast, name: str) -> None:
+    from matplotlib.colors import LogNorm
+
+    speed = float(np.hypot(*found.velocity))
+    largest_speed = _WIDEST * max(speed, found.puck.radius * abs(found.spin))
+    largest_spin = max(_WIDEST * abs(found.spin), _RIM * speed / found.puck.radius)
+    speeds = np.linspace(0.1, 1.0, _SPEEDS) * largest_speed
+    spins = np.linspace(0.0, largest_spin, _SPINS)
+    errors = found.over(speeds, spins, name)
+    shown = np.where(np.isfinite(errors), errors, np.nan)
+    figure = panel.get_figure(root=True)
+    assert figure is not None
+    if np.isfinite(shown).any():
+        norm = LogNorm(float(np.nanmin(shown)), float(np.nanmax(shown)))
+        mesh = panel.pcolormesh(
+            spins, speeds, shown, norm=norm, shading="nearest", cmap="viridis_r", rasterized=True
+        )
+        figure.colorbar(mesh, ax=panel, label=f"standard error of {name}")
+    panel.set_facecolor(NO_VALUE)
+    panel.plot(abs(found.spin), speed, **LAUNCH)
+    panel.set(xlabel="launch spin / rad/s", ylabel="launch speed / m/s",
+              title=f"{name}; grey: not determined")  # fmt: skip

@@ -1,0 +1,42 @@
+"""Picture of force and torque on the floor over ε = v/(rω)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from puck_tables.plot.style import BLUE, GREEN, ORANGE, canvas
+from puck_tables.plot.titles import noted, titled
+from puck_tables.reference.floor_friction import FloorFriction
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+
+def draw(friction: FloorFriction) -> Figure:
+    """Shares of fN and fNr over ε."""
+    figure = canvas(7.0, 4.6)
+    draw_on(figure.add_subplot(), friction)
+    titled(figure, f"{friction.case.label}: on the floor")
+    return figure
+
+
+def draw_on(axes: Axes, friction: FloorFriction) -> None:
+    """The same on given axes."""
+    order = np.argsort(friction.epsilon)
+    shown = order[(friction.epsilon[order] > 0.0) & np.isfinite(friction.epsilon[order])]
+    for name, colour, label in (
+        ("share_along", BLUE, "F∥/(fN)"), ("share_across", GREEN, "F⊥/(fN)"),
+        ("share_torque", ORANGE, "M/(fNr)"),
+    ):  # fmt: skip
+        row = getattr(friction, name)[shown]
+        axes.plot(friction.epsilon[shown], row, color=colour, label=label,
+                  marker="." if shown.size < 30 else "")  # fmt: skip
+    axes.set_xscale("log")
+    axes.set_xlabel("ε = v/(rω)")
+    if shown.size < order.size:  # the axis is logarithmic
+        noted(axes, f"{order.size - shown.size} of {order.size} without slide or without spin")
+    axes.grid(color="#e4e4e4", linewidth=0.6)
+    axes.legend(frameon=False)

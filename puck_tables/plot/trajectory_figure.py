@@ -1,0 +1,115 @@
+"""Picture of a trajectory: the whole motion, whatever states it has."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from puck_tables.plot.style import BLUE, GREEN, GREY, LAUNCH, ORANGE, STOP, canvas
+from puck_tables.plot.titles import legend_below, titled
+from puck_tables.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_PUCKS_DRAWN = 9  # outlines along a path: more run into each other
+_STATES_DRAWN = 1001  # points of a path: smooth at any size of print
+
+
+def draw(run: Trajectory) -> Figure:
+    """The path with the puck's orientation, and speeds and their ratio against time."""
+    run = _whole(run)
+    figure = canvas(9.5, 7.6)
+    grid = figure.add_gridspec(2, 2, height_ratios=(1.15, 1.0))
+    _draw_path(figure.add_subplot(grid[0, :]), run)
+    speeds = figure.add_subplot(grid[1, 0])
+    speeds.plot(run.time, run.speed, color=BLUE, label="speed v")
+    speeds.plot(run.time, run.puck.radius * run.spin, color=ORANGE, label="rim speed rω")
+    speeds.axhline(0.0, color=GREY, linewidth=0.6)
+    for moment, text in ((run.contact_opens, "base lifts"), (run.contact_closes, "base down")):
+        if moment is not None:
+            speeds.axvline(moment, color=GREY, linestyle=":", linewidth=1.0, label=text)
+    speeds.set_ylabel("m/s")
+    speeds.set_xlabel("time / s")
+    legend_below(speeds)
+    ratio = figure.add_subplot(grid[1, 1], sharex=speeds)
+    moving = run.speed > 0.0
+    if moving.any() and run.launch_spin != 0.0:
+        ratio.plot(run.time[moving], np.tan(run.slip_angle[moving]), color=GREEN)
+        if run.limit_angle < 0.5 * math.pi:
+            _draw_limit(ratio, run, float(np.tan(run.slip_angle[moving]).max()))
+    else:
+        ratio.text(
+            0.5, 0.5, "spin only" if run.launch_spin != 0.0 else "no spin",
+            ha="center", transform=ratio.transAxes, color=GREY,
+        )  # fmt: skip
+    ratio.set_ylabel("rω/v")
+    ratio.set_xlabel("time / s")
+    (vx, vy), puck = run.launch_velocity, run.puck
+    titled(
+        figure,
+        f"v₀ = ({vx:g}, {vy:g}) m/s, ω₀ = {run.launch_spin:g} rad/s, r = {puck.radius:g} m, "
+        f"δ = {puck.delta:.4g}, J = {puck.decel:.4g} m/s²{_kind(run)}",
+    )
+    return figure
+
+
+def draw_on(axes: Axes, run: Trajectory) -> None:
+    """The path alone."""
+    _draw_path(axes, _whole(run))
+
+
+def _whole(run: Trajectory) -> Trajectory:
+    return run(np.linspace(0.0, run.stop_time, _STATES_DRAWN))
+
+
+def _kind(run: Trajectory) -> str:
+    """The kind of puck, and how much of its base is loaded, where there is something to say."""
+    text = ""
+    if run.puck.body.kind:
+        text = f"\n{run.puck.body.kind}"
+    if run.least_loaded_share < 1.0:
+        text += f"\nat the least {100.0 * run.least_loaded_share:.3g} % of the base loaded"
+    return text
+
+
+def _draw_limit(panel: Axes, run: Trajectory, largest: float) -> None:
+    """The ratio that the motion tends to."""
+    limit = math.copysign(math.tan(run.limit_angle), run.launch_spin)
+    panel.axhline(limit, color=GREY, linestyle="--", linewidth=1.0)
+    above = limit > largest
+    panel.annotate(
+        f"limit {limit:.3f}", (0.02, limit), xycoords=("axes fraction", "data"),
+        xytext=(0, -3 if above else 3), va="top" if above else "bottom",
+        textcoords="offset points", color=GREY, fontsize=9,
+    )  # fmt: skip
+
+
+def _draw_path(axes: Axes, run: Trajectory) -> None:
+    from matplotlib.patches import Circle
+
+    axes.plot(run.x, run.y, color=BLUE, linewidth=1.6)
+    extent = max(np.ptp(run.x), np.ptp(run.y))
+    true_size = extent == 0.0 or 0.02 * extent <= run.puck.radius <= 0.12 * extent
+    radius = run.puck.radius if true_size else 0.045 * extent
+    travelled = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(run.x), np.diff(run.y)))])
+    wanted = np.linspace(0.0, travelled[-1], _PUCKS_DRAWN)
+    chosen = np.unique(np.searchsorted(travelled, wanted).clip(0, run.time.size - 1))
+    for index in chosen:
+        x, y, angle = run.x[index], run.y[index], run.orientation[index]
+        axes.add_patch(Circle((x, y), radius, fill=False, color=GREY, linewidth=0.9))
+        axes.plot(
+            [x, x + radius * math.cos(angle)], [y, y + radius * math.sin(angle)],
+            color=ORANGE, linewidth=1.4,
+        )  # fmt: skip
+    axes.plot(run.x[0], run.y[0], **LAUNCH, label="launch")
+    axes.plot(*run.stop_position, **STOP, label="stop")
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.margins(0.12)
+    axes.set_xlabel("x / m")
+    axes.set_ylabel("y / m")
+    axes.set_title("puck to scale" if true_size else "puck not to scale", fontsize=10)
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)

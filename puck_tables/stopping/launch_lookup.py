@@ -1,0 +1,271 @@
+"""What is known of launches, compiled: their stops, and where on the curve of all motions they are.
+
+For many launches at once: see :mod:`puck_tables.stopping.similarity_lookup`, where it is said what
+all of it is.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import (
+    BLOCK,
+    inlined,
+    into_row,
+    look_up,
+    patience,
+    row_of,
+    spline_values,
+)
+from puck_tables.kernels.elementary import log_of
+from puck_tables.kernels.spline import basis
+from puck_tables.motion.path import TURN_SHARE
+from puck_tables.stopping.axes import CONSTANT_HEIGHTS, HEIGHTS
+from puck_tables.stopping.launch_arrays import (
+    DECEL,
+    DELTA,
+    RADIUS,
+    SPIN,
+    VX,
+    VY,
+    fetch_block,
+    fill_constants,
+)
+from puck_tables.stopping.lookup import (
+    EDGE,
+    FIRST,
+    INSIDE,
+    LARGEST,
+    PLACED,
+    SLIP,
+    SPEED,
+    STOP_POWERS,
+    WIDTH,
+    place_block,
+)
+from puck_tables.stopping.similarity_lookup import (
+    LAUNCH_COLUMNS,
+    LAUNCH_ROWS,
+    end_rates,
+    inverse_end_rates,
+)
+from puck_tables.stopping.state_lookup import PUCK_ROWS, fill_orbit_states
+from puck_tables.stopping.state_splines import (
+    TINY,
+    TURN_POWERS,
+    TURN_STEP,
+    cell_of,
+    log_place,
+    place_of_log,
+)
+
+CURVE_WIDTH = 4  # body angle, S/δ, κR, path length
+_ROW, _CURVE_ROW = WIDTH * STOP_POWERS, CURVE_WIDTH * HEIGHTS
+_TURNS_ROW = TURN_STEP * TURN_POWERS
+_REST, _ALL = 3, 6  # rows of what a stop has besides time and place, and with them
+# rows of a block: the functions, those of the height, and what becomes of it
+_F_TIME, _F_ALONG, _F_ACROSS, _F_BODY, _F_TURN, _F_CURVE, _F_LENGTH = range(PLACED, PLACED + 7)
+_C0, _KAPPA, _TURNING, _QUARTER, _S = range(PLACED + 7, PLACED + 12)
+_BEGUN, _SWUNG = PLACED + 12, PLACED + 13
+_OUT = PLACED + 14  # from here on the rows of what is known
+_ROWS = _OUT + LAUNCH_ROWS
+_TIME, _X, _Y, _LENGTH, _BODY, _TURN = range(_OUT, _OUT + 6)
+_Q, _V, _T, _LOG_N, _SIGN_N, _HEADING, _OWN_KAPPA, _OWN_TURNING = range(_OUT + 6, _ROWS)
+
+
+@look_up
+def fill_known(
+    vx: FloatArray, vy: FloatArray, step: int, spin: FloatArray, delta: FloatArray,
+    decel: FloatArray, radius: FloatArray, stops: FloatArray, curve: FloatArray,
+    turns: FloatArray, constants: FloatArray, turn_share: float, out: FloatArray,
+) -> tuple[int, int]:  # fmt: skip
+    """Launches, and what is known of them, into ``out`` (6 + 14, n).
+
+    Or of a stop alone: time, x, y, path length, turn of heading and of the body (6, n); without
+    time and place (3, n).  ``stops`` (2, cells + 3, 8 × 4)
+    is a cut of the stop table, ``curve`` (2, cells + 3, 9 × 4) holds the other functions, ``turns``
+    (2, cells + 3, 12) the heading's regular part over the place by Q; ``constants`` as for
+    :func:`puck_tables.stopping.similarity_lookup.know_launch`.  Returns of how many Q²/J or Q²/(J
+    r) may be too large, and how many are no launches.
+    """
+    patience(out.shape[1])
+    flat, flat_curve, flat_turns = stops.reshape(-1), curve.reshape(-1), turns.reshape(-1)
+    room, is_rest = np.empty(_ROWS * BLOCK), out.shape[0] == _REST
+    cells, log_share = float(stops.shape[1] - 3), math.log(turn_share)
+    fill_constants(vx, vy, spin, delta, decel, radius, out.shape[1], room)
+    doubtful, bad = 0, 0
+    for start in range(0, out.shape[1], BLOCK):
+        count = min(BLOCK, out.shape[1] - start)
+        fetch_block(vx, vy, step, spin, delta, decel, radius, start, count, room)
+        bad += place_block(room, count, stops, _ROW)
+        _find_constants(room, count, constants)
+        for n in range(count):
+            at = int(row_of(room, FIRST, n)) // _ROW * _CURVE_ROW
+            s, weights = row_of(room, _S, n), basis(row_of(room, INSIDE, n))
+            f = spline_values(flat_curve, at, weights, s, CURVE_WIDTH, HEIGHTS)
+            into_row(room, _F_BODY, n, f[0])
+            into_row(room, _F_TURN, n, f[1])
+            into_row(room, _F_CURVE, n, f[2])
+            into_row(room, _F_LENGTH, n, f[3])
+        if is_rest:
+            for n in range(count):
+                into_row(room, _F_TIME, n, 1.0)
+        else:
+            for n in range(count):
+                s, weights = row_of(room, _S, n), basis(row_of(room, INSIDE, n))
+                f = spline_values(flat, int(row_of(room, FIRST, n)), weights, s, WIDTH, STOP_POWERS)
+                into_row(room, _F_TIME, n, f[0])
+                into_row(room, _F_ALONG, n, f[1])
+                into_row(room, _F_ACROSS, n, f[2])
+        doubtful += _find_stops(room, count)
+        _find_places(room, count, cells, log_share)
+        if out.shape[0] > _ALL:
+            _find_numbers(room, count)
+        for n in range(count):
+            s, weights = row_of(room, _S, n), basis(row_of(room, INSIDE, n))
+            s2 = s * s
+            at = int(row_of(room, FIRST, n))
+            f = spline_values(flat_turns, at, weights, s2 * s2, TURN_STEP, TURN_POWERS)
+            into_row(room, _SWUNG, n, (f[0] + f[1] * s) + s2 * (f[2] + f[3] * s))
+        _find_turns(room, count)
+        for row in range(out.shape[0]):
+            if out.shape[0] <= _ALL:
+                first = _OUT + _ALL - out.shape[0] + row
+                first = _TURN if first == _BODY else (_BODY if first == _TURN else first)
+            else:
+                first = row if row < LAUNCH_COLUMNS else row - LAUNCH_COLUMNS + _OUT
+            values, place = room[first * BLOCK : (first + 1) * BLOCK], out[row, start:]
+            for n in range(count):
+                place[n] = values[n]
+    return doubtful, bad
+
+
+@look_up
+def fill_states_of_one(
+    vx: FloatArray, vy: FloatArray, step: int, spin: FloatArray, delta: FloatArray,
+    decel: FloatArray, radius: FloatArray, stops: FloatArray, curve: FloatArray,
+    turns: FloatArray, constants: FloatArray, orbit: FloatArray, moments: FloatArray,
+    out: FloatArray,
+) -> int:  # fmt: skip
+    """States at ``moments`` (n,) of the one launch into ``out`` (6, n).
+
+    The other arguments and the rows are those of :func:`fill_known` and
+    :func:`puck_tables.stopping.state_lookup.fill_orbit_states`, the same to the last bit.  Returns
+    how much of it may have to be refused: 0 if it is good.
+    """
+    puck = np.empty((PUCK_ROWS, 1))
+    doubtful, bad = fill_known(
+        vx, vy, step, spin, delta, decel, radius, stops, curve, turns, constants, TURN_SHARE, puck
+    )
+    which = np.zeros(1, np.int64)
+    late = fill_orbit_states(puck, which, moments, 0, moments.size, orbit, out)
+    return doubtful + bad + late
+
+
+@inlined
+def _find_constants(room: FloatArray, count: int, constants: FloatArray) -> None:
+    """c₀, κ, h₀, ln T(π/4) of the heights."""
+    for n in range(count):
+        tilt = row_of(room, DELTA, n)
+        s, c0, kappa, turning, quarter = 2.0 * tilt * tilt - 1.0, 0.0, 0.0, 0.0, 0.0
+        for m in range(CONSTANT_HEIGHTS - 1, -1, -1):
+            c0, kappa = c0 * s + constants[0, m], kappa * s + constants[1, m]
+            turning, quarter = turning * s + constants[2, m], quarter * s + constants[3, m]
+        into_row(room, _S, n, s)
+        into_row(room, _C0, n, c0)
+        into_row(room, _KAPPA, n, kappa)
+        into_row(room, _TURNING, n, turning * tilt)
+        into_row(room, _QUARTER, n, quarter)
+
+
+@inlined
+def _find_stops(room: FloatArray, count: int) -> int:
+    """Stop time, x, y, path, body angle, Q, T, v; how many may be too large for floating point."""
+    doubtful = 0
+    for n in range(count):
+        vx, vy, rim = row_of(room, VX, n), row_of(room, VY, n), row_of(room, EDGE, n)
+        speed, slip = row_of(room, SPEED, n), row_of(room, SLIP, n)
+        no_spin, still = rim == 0.0, speed == 0.0
+        t = 1.0 if no_spin else (0.75 if still else row_of(room, _F_TIME, n))
+        decel = row_of(room, DECEL, n)
+        scale = slip / decel
+        along = scale * (0.5 if no_spin else row_of(room, _F_ALONG, n))
+        across = row_of(room, _F_ACROSS, n) * (row_of(room, DELTA, n) * rim / decel)
+        length = 0.5 if no_spin else row_of(room, _F_LENGTH, n)
+        body = 0.375 if still else row_of(room, _F_BODY, n)
+        into_row(room, _TIME, n, scale * t)
+        into_row(room, _X, n, along * vx - across * vy)
+        into_row(room, _Y, n, along * vy + across * vx)
+        into_row(room, _LENGTH, n, scale * length * speed)
+        into_row(room, _BODY, n, scale * body * row_of(room, SPIN, n))
+        into_row(room, _Q, n, slip)
+        into_row(room, _V, n, speed)
+        into_row(room, _T, n, t)
+        size = scale * slip
+        usual = (size < LARGEST) & (size < LARGEST * row_of(room, RADIUS, n))
+        doubtful += 0 if usual else 1
+    return doubtful
+
+
+@inlined
+def _find_places(room: FloatArray, count: int, cells: float, log_share: float) -> None:
+    """Where on the curve the launches are, and where they will be when Q has fallen so far."""
+    for n in range(count):
+        speed, rim, tilt = (
+            row_of(room, SPEED, n),
+            abs(row_of(room, EDGE, n)),
+            row_of(room, DELTA, n),
+        )
+        c0, kappa = row_of(room, _C0, n), row_of(room, _KAPPA, n)
+        turning = row_of(room, _TURNING, n)
+        larger, smaller = max(speed, rim), min(speed, rim)
+        # max + min by parts: their sum may overflow
+        ratio = smaller / (larger if larger > 0.0 else 1.0)
+        share = max(2.0 * ratio / (1.0 + ratio), TINY)
+        slow, fast, _ = end_rates(tilt)
+        by_slow, by_fast, spin_turn = inverse_end_rates(tilt)
+        is_fast = rim > speed
+        small, large = log_of(share), log_of(2.0 - share)
+        plus = by_slow * (large if is_fast else small)
+        minus = small if is_fast else large
+        c = 1.0 - share if is_fast else share - 1.0
+        sign = 1.0 if is_fast & (1.0 - share > c0) else -1.0
+        turn_fast = turning * by_fast - spin_turn
+        heading = turning * plus + turn_fast * minus + tilt * row_of(room, _F_TURN, n)
+        by_slip = log_of(max(abs((c - c0) / c0), TINY)) - kappa * (plus + by_fast * minus)
+        by_slip += row_of(room, _F_CURVE, n)
+        ends_fast, log_y = log_place(sign, by_slip + kappa * log_share, kappa, slow, fast)
+        _, xi = place_of_log(log_y)
+        first, inside = cell_of(xi, ends_fast, cells, _TURNS_ROW)
+        swung = turning * log_share + (turn_fast if ends_fast else turning * by_slow) * log_y
+        constant = (speed == 0.0) | (rim == 0.0)
+        into_row(room, FIRST, n, first)
+        into_row(room, INSIDE, n, inside)
+        into_row(room, _BEGUN, n, swung - heading)
+        into_row(room, _LOG_N, n, by_slip)
+        into_row(room, _SIGN_N, n, 0.0 if constant else sign)
+        into_row(room, _HEADING, n, 0.0 if constant else heading)
+
+
+@inlined
+def _find_numbers(room: FloatArray, count: int) -> None:
+    """ln|N|, and the constants of the heights, for states."""
+    for n in range(count):
+        kappa, quarter = row_of(room, _KAPPA, n), row_of(room, _QUARTER, n)
+        log_n = row_of(room, _LOG_N, n) + kappa * (log_of(row_of(room, _T, n)) - quarter)
+        into_row(room, _LOG_N, n, 0.0 if row_of(room, _SIGN_N, n) == 0.0 else log_n)
+        into_row(room, _OWN_KAPPA, n, kappa)
+        into_row(room, _OWN_TURNING, n, row_of(room, _TURNING, n))
+
+
+@inlined
+def _find_turns(room: FloatArray, count: int) -> None:
+    """The turn of the heading until Q has fallen so far."""
+    for n in range(count):
+        rim = row_of(room, EDGE, n)
+        swung = row_of(room, _BEGUN, n) + row_of(room, DELTA, n) * row_of(room, _SWUNG, n)
+        constant = (row_of(room, SPEED, n) == 0.0) | (rim == 0.0)
+        into_row(room, _TURN, n, 0.0 if constant else (swung if rim > 0.0 else -swung))

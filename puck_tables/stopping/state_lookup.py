@@ -1,0 +1,192 @@
+"""States at times, compiled: one look-up on the curve of all motions for each."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import (
+    BLOCK,
+    inlined,
+    into_row,
+    look_up,
+    patience,
+    row_of,
+    spline_values,
+)
+from puck_tables.kernels.elementary import cosine_sine_of, log_of
+from puck_tables.kernels.spline import basis
+from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED, SPIN, STATE_ROWS
+from puck_tables.stopping.axes import HEIGHTS
+from puck_tables.stopping.similarity_lookup import (
+    LAUNCH_COLUMNS,
+    LAUNCH_ROWS,
+    end_rates,
+    inverse_end_rates,
+)
+from puck_tables.stopping.state_splines import ORBIT_WIDTH, TINY, cell_of, log_place, place_of_log
+
+PUCK_ROWS = LAUNCH_COLUMNS + LAUNCH_ROWS
+_ROW = ORBIT_WIDTH * HEIGHTS
+# rows of a block: those of the puck, of its place on the curve, of the functions, of the state
+_VX, _VY, _SPIN, _DELTA, _DECEL, _RADIUS, _TIME, _X, _Y, _, _BODY, _TURN = range(12)
+_Q, _V, _T, _LOG_N, _SIGN_N, _HEADING, _KAPPA, _TURNING = range(12, PUCK_ROWS)
+_MOMENT, _LEFT, _SHARE, _SWUNG, _FAST, _FIRST, _INSIDE = range(PUCK_ROWS, PUCK_ROWS + 7)
+_FOUND = PUCK_ROWS + 7
+_F_SHARE, _F_TIME, _F_ALONG, _F_ACROSS, _F_BODY, _F_TURN = range(_FOUND, _FOUND + 6)
+_OUT = _FOUND + 6
+_ROWS = _OUT + STATE_ROWS
+_TO_X, _TO_Y, _TO_HEADING = _OUT + PUCK_X, _OUT + PUCK_Y, _OUT + HEADING
+_TO_ANGLE, _TO_SPEED, _TO_SPIN = _OUT + ORIENTATION, _OUT + SPEED, _OUT + SPIN
+
+
+@inlined
+def gather(
+    columns: FloatArray, which: npt.NDArray[np.int64], begin: int, start: int, count: int,
+    width: int, held: int, room: FloatArray,
+) -> int:  # fmt: skip
+    """Columns for a block of moments, from ``start`` on, into the first rows of ``room``.
+
+    ``width``: how many moments a block has that is full.
+
+    Columns ``which`` (n,) or (1,); those from ``begin`` on, one after the other, where it is empty.
+    The column that all of the block hold, −1 if not one; ``held``: that of the block before.
+    """
+    first, same = 0, which.size == 1
+    if which.size > 1:
+        first, same = which[start], True
+        for n in range(count):
+            same &= which[start + n] == first
+    elif same:
+        first = which[0]
+    if same and first == held:
+        return held
+    for row in range(columns.shape[0]):
+        values, block = columns[row], room[row * BLOCK : (row + 1) * BLOCK]
+        if same:
+            value = values[first]
+            for n in range(width):
+                block[n] = value
+        elif which.size == 0:
+            own = values[start - begin : start - begin + count]
+            for n in range(count):
+                block[n] = own[n]
+        else:
+            for n in range(count):
+                block[n] = values[which[start + n]]
+    return first if same else -1
+
+
+@look_up
+def fill_orbit_states(
+    pucks: FloatArray, which: npt.NDArray[np.int64], times: FloatArray, begin: int, end: int,
+    orbit: FloatArray, out: FloatArray,
+) -> int:  # fmt: skip
+    """States at ``times`` of ``pucks`` (20, m), see :mod:`puck_tables.stopping.launch_lookup`.
+
+    Of ``times`` (n,) and into ``out`` (6, n) those from ``begin`` to ``end`` alone.  ``which``
+    (n,): puck each of them is of; (1,): all of one; (0,): of puck after puck, the first of which is
+    that at ``begin``.  ``orbit`` (2, cells + 3, 9 × 8).  Rows: x, y, heading from that at the
+    launch, body angle, v, ω; at rest the angles are those of the stop.  Returns how many times are
+    none, or negative.
+    """
+    flat, cells, room = orbit.reshape(-1), float(orbit.shape[1] - 3), np.empty(_ROWS * BLOCK)
+    bad, held = 0, -1
+    for start in range(begin, end, BLOCK):
+        patience(1)
+        count = min(BLOCK, end - start)
+        held = gather(pucks, which, begin, start, count, BLOCK, held, room)
+        moments = times[start : start + count]
+        for n in range(count):
+            into_row(room, _MOMENT, n, moments[n])
+        bad += _find_places(room, count, cells)
+        for n in range(count):
+            tilt, at = row_of(room, _DELTA, n), int(row_of(room, _FIRST, n))
+            s, weights = 2.0 * tilt * tilt - 1.0, basis(row_of(room, _INSIDE, n))
+            f = spline_values(flat, at, weights, s, ORBIT_WIDTH, HEIGHTS)
+            into_row(room, _F_SHARE, n, f[0])
+            into_row(room, _F_TIME, n, f[1])
+            into_row(room, _F_ALONG, n, f[2])
+            into_row(room, _F_ACROSS, n, f[3])
+            into_row(room, _F_BODY, n, f[4])
+            into_row(room, _F_TURN, n, f[5])
+        _find_states(room, count)
+        for row in range(STATE_ROWS):
+            values, place = room[(_OUT + row) * BLOCK :], out[row, start : start + count]
+            for n in range(count):
+                place[n] = values[n]
+    return bad
+
+
+@inlined
+def _find_places(room: FloatArray, count: int, cells: float) -> int:
+    """Where on the curve the states are; how many of the times are none, or negative."""
+    bad = 0
+    for n in range(count):
+        time, tilt = row_of(room, _MOMENT, n), row_of(room, _DELTA, n)
+        bad += 0 if (time >= 0.0) & (time < math.inf) else 1
+        left = 1.0 - time / row_of(room, _TIME, n)
+        left = left if left > 0.0 else 0.0
+        log_left = log_of(max(left, TINY))
+        slow, fast, _ = end_rates(tilt)
+        by_slow, by_fast, spin_turn = inverse_end_rates(tilt)
+        kappa, turning = row_of(room, _KAPPA, n), row_of(room, _TURNING, n)
+        log_n = row_of(room, _LOG_N, n) + kappa * log_left
+        is_fast, log_y = log_place(row_of(room, _SIGN_N, n), log_n, kappa, slow, fast)
+        y, xi = place_of_log(log_y)
+        first, inside = cell_of(xi, is_fast, cells, _ROW)
+        by_slow, by_fast = turning * by_slow, turning * by_fast - spin_turn
+        swung = turning * (log_left + log_of(max(row_of(room, _T, n), TINY)))
+        swung += (by_fast if is_fast else by_slow) * log_y - row_of(room, _HEADING, n)
+        into_row(room, _LEFT, n, left)
+        into_row(room, _SHARE, n, y)
+        into_row(room, _SWUNG, n, swung)
+        into_row(room, _FAST, n, 1.0 if is_fast else 0.0)
+        into_row(room, _FIRST, n, first)
+        into_row(room, _INSIDE, n, inside)
+    return bad
+
+
+@inlined
+def _find_states(room: FloatArray, count: int) -> None:
+    """From functions to states, in the frame of the launch."""
+    for n in range(count):
+        spin, tilt, radius = (
+            row_of(room, _SPIN, n),
+            row_of(room, _DELTA, n),
+            row_of(room, _RADIUS, n),
+        )
+        left, launched = row_of(room, _LEFT, n), row_of(room, _V, n)
+        around = 1.0 if spin > 0.0 else -1.0
+        slip = row_of(room, _Q, n) * (left * row_of(room, _T, n) / row_of(room, _F_TIME, n))
+        share = min(row_of(room, _SHARE, n) * row_of(room, _F_SHARE, n), 1.0)
+        small, large = 0.5 * share, 1.0 - 0.5 * share
+        norm = slip / math.sqrt(small * small + large * large)
+        is_fast = row_of(room, _FAST, n) > 0.0
+        speed = norm * (small if is_fast else large)
+        rim = norm * (large if is_fast else small)
+        turn = around * (row_of(room, _SWUNG, n) + tilt * row_of(room, _F_TURN, n))
+        cosine, sine = cosine_sine_of(turn)
+        decel = row_of(room, _DECEL, n)
+        duration = slip / decel
+        # the way that is left, along and across the new heading
+        along = row_of(room, _F_ALONG, n) * duration * speed
+        across = around * tilt * row_of(room, _F_ACROSS, n) * (rim / decel) * speed
+        one = 1.0 / (launched if launched > 0.0 else 1.0)
+        east, north = row_of(room, _VX, n) * one, row_of(room, _VY, n) * one
+        ahead, aside = along * cosine - across * sine, along * sine + across * cosine
+        x, y, body = row_of(room, _X, n), row_of(room, _Y, n), row_of(room, _BODY, n)
+        turning = around * (rim / radius)
+        turned = row_of(room, _F_BODY, n) * duration * turning
+        done = (1.0 - left) * (1.0 + left)
+        on_curve = (row_of(room, _SIGN_N, n) != 0.0) & (left > 0.0) & (left < 1.0)
+        at_rest = row_of(room, _TURN, n) if left == 0.0 else 0.0
+        into_row(room, _TO_X, n, x - (ahead * east - aside * north) if on_curve else x * done)
+        into_row(room, _TO_Y, n, y - (ahead * north + aside * east) if on_curve else y * done)
+        into_row(room, _TO_HEADING, n, turn if on_curve else at_rest)
+        into_row(room, _TO_ANGLE, n, body - turned if on_curve else body * done)
+        into_row(room, _TO_SPEED, n, speed if on_curve else left * launched)
+        into_row(room, _TO_SPIN, n, turning if on_curve else left * spin)

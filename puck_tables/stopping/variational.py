@@ -1,0 +1,279 @@
+"""Derivatives of stops and states of pucks that no stop table holds, by variational equations.
+
+A launch is integrated in natural units together with its variations
+(:mod:`puck_tables.motion.variation`); rotation, reflection and scale give the rest.  With Q = 1,
+c = cos φ, s = sin φ, and a quantity F = Q^n f(u, δ), u = ln(rω/v),
+
+    ∂F/∂v = n c f − f_u/c,    ∂F/∂(rω) = n s f + f_u/s .
+
+Exact pure sliding and pure spin have the derivatives of launches 1e-25 beside them: the first
+derivatives are continuous there.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.executor import run_chunks
+from puck_tables.errors import AccuracyError, InputError
+from puck_tables.kernels.section_spline import LINE
+from puck_tables.motion.body import Body
+from puck_tables.motion.path import STOPPED, integrate
+from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, T, U, X, Y
+from puck_tables.motion.tableaus import DORMAND_PRINCE
+from puck_tables.table.friction_slopes import FlowSection, flow_of_table, flow_section
+
+LOCAL = 1e-10  # of a step: derivatives are promised to 1e-7
+_TINY = 1e-25  # for a cos φ or sin φ that is divided by
+_STEP_LIMIT = 20_000  # more is a motion that does not end
+_CHUNK = 16  # motions that a thread takes at once
+_AT_LINE = 3e-6  # nearer to a line that is the limit the derivative is not known to 1e-7
+_POWERS = np.array([1.0, 2.0, 2.0, 2.0, 2.0])  # of Q
+_STOP = [T, X, Y, LENGTH, THETA]
+_LEAST_SHARE = 1e-30  # of Q
+
+
+class Varied(NamedTuple):
+    """Friction of one kind of puck as motions and their variations read it.
+
+    ``limits``: ln(rω/v) of lines of the friction that are the limit of its motions, as of a ring
+    with k = r: next to them it has no derivative.
+    """
+
+    delta: float
+    ratios: FloatArray
+    flows: FloatArray
+    limits: tuple[float, ...]
+
+    def refuse_limit(self, speed: FloatArray, rim: FloatArray) -> None:
+        """Refuse launches of these v and r|ω|, arrays, at a line that is the limit.
+
+        Raises
+        ------
+        InputError
+        """
+        for line in self.limits:
+            if (np.abs(rim - np.exp(line) * speed) < _AT_LINE * np.hypot(speed, rim)).any():
+                raise InputError(
+                    f"a launch at r w/v = {np.exp(line):.6g}, the limit of this puck, where its "
+                    "friction has no derivative, is not differentiated: move it by 1e-5, or leave "
+                    "out jacobian=True"
+                )
+
+
+@lru_cache(maxsize=64)
+def varied_of(body: Body) -> Varied:
+    """The friction of a puck.
+
+    Raises
+    ------
+    AccuracyError
+        If its pressure law is too rough for derivatives.
+
+    Examples
+    --------
+    >>> from puck_tables.motion.body import body_of
+    >>> varied_of(body_of("ring", 0.5, 1.0)).delta
+    0.5
+    """
+    if body.table is not None:
+        return varied_by(flow_of_table(body.table, body.delta), body.gyration)
+    try:
+        return varied_by(flow_section(body.law, body.delta), body.gyration)
+    except AccuracyError as error:
+        raise AccuracyError(
+            f"derivatives are out of reach of a puck of delta = {body.delta:g} under the pressure "
+            f"law {body.law.name} (its friction is known to {error.reachable:.1g} only): leave out "
+            "jacobian=True, or take differences"
+        ) from None
+
+
+def varied_by(flow: FlowSection, gyration: float) -> Varied:
+    """The same from a section."""
+    ratios, flows = flow.for_motion(gyration), flow.for_slopes(gyration)
+    limits = np.unique(flows[np.isinf(ratios[:, LINE]), LINE])
+    return Varied(flow.delta, ratios, flows, tuple(limits.tolist()))
+
+
+def natural_stops(friction: Varied, cosine: FloatArray, sine: FloatArray) -> FloatArray:
+    """Stops with Q = J = r = 1 and their derivatives.
+
+    Parameters
+    ----------
+    friction : Varied
+    cosine, sine : arrays (n,), of the slip angle of the launch, ≥ 0, one or the other may be 0
+
+    Returns
+    -------
+    array (n, 5, 5)
+        Rows: time, along, to the left, path, body angle.  Columns: itself, for along and left over
+        v; by v, rω, δ, k/r.
+
+    Examples
+    --------
+    >>> from puck_tables.motion.body import body_of
+    >>> friction = varied_of(body_of("ring", 0.5, 1.0))
+    >>> (natural_stops(friction, np.array([1.0]), np.array([0.0]))[0, 0].round(6) + 0.0).tolist()
+    [1.0, 1.0, 0.0, 0.0, 0.0]
+    """
+    from puck_tables.motion.variation import KEPT, VARIED, fill_varied_stops
+
+    c, s = np.maximum(cosine, _TINY), np.maximum(sine, _TINY)
+    u = np.log(s / c)
+    rows = np.empty((u.size, VARIED))
+
+    def work(start: int, stop: int) -> None:
+        part = slice(start, stop)
+        fill_varied_stops(
+            u[part], c[part], friction.delta, DORMAND_PRINCE, LOCAL, friction.ratios,
+            friction.flows, rows[part],
+        )  # fmt: skip
+
+    run_chunks(work, u.size, _CHUNK)
+    found = rows.reshape(u.size, -1, KEPT)[:, :, _STOP]
+    value, by_u = found[:, 0], found[:, 1]
+    out = np.empty((u.size, 5, 5))
+    out[:, :, 0] = value
+    out[:, 1:3, 0] /= c[:, None]
+    out[:, :, 1] = _POWERS * c[:, None] * value - by_u / c[:, None]
+    out[:, :, 2] = _POWERS * s[:, None] * value + by_u / s[:, None]
+    out[:, :, 3], out[:, :, 4] = found[:, 2], found[:, 3]
+    return out
+
+
+def natural_states(
+    friction: Varied, cosine: float, sine: float, times: FloatArray, local: float = LOCAL
+) -> tuple[FloatArray, FloatArray]:
+    """States of one launch with Q = J = r = 1 at times, and their derivatives.
+
+    Parameters
+    ----------
+    friction : Varied
+    cosine, sine : of the slip angle of the launch, ≥ 0
+    times : array (n,), ≥ 0
+    local : the error of a step
+
+    Returns
+    -------
+    array (n, 6, 6), array (n, 6)
+        Of x, y, body angle, vx, vy, rω: themselves; by v, v across, rω, δ, time; and by k/r.
+
+    Raises
+    ------
+    AccuracyError
+        If the stop is not reached.
+    """
+    from puck_tables.motion.variation import BLOCKS, KEPT, VARIED, fill_varied_states, vary
+
+    c, s = max(cosine, _TINY), max(sine, _TINY)
+    u = float(np.log(s / c))
+    z, y = np.empty(_STEP_LIMIT), np.empty((_STEP_LIMIT, SIZE))
+    result, work, stop = np.empty(SIZE + 1), np.empty((8, VARIED)), np.empty(VARIED)
+    status, count = integrate(
+        u, DORMAND_PRINCE, 0.0, local, c, friction.ratios, friction.delta, _STEP_LIMIT, z, y,
+        result,
+    )  # fmt: skip
+    if status != STOPPED:
+        raise AccuracyError("a motion was too long to be differentiated: leave out jacobian=True")
+    path, ends = np.empty((count, VARIED)), z[:count]
+    vary(ends, u, DORMAND_PRINCE, friction.flows, path, stop, work)
+    moving = times < stop[T]
+    which, moments = _moments(times[moving], ends, path, stop, friction)
+    rows, rates = np.empty((moments.size, VARIED)), np.empty((moments.size, VARIED))
+    fill_varied_states(
+        moments, which, ends, path, stop, DORMAND_PRINCE, friction.flows, rows, rates
+    )
+    out, by_gyration = np.zeros((times.size, 6, 6)), np.zeros((times.size, 6))
+    at_rest = stop.reshape(BLOCKS, KEPT)
+    values, slopes = _physical(at_rest[None], np.zeros(1))
+    out[~moving], by_gyration[~moving] = _by_launch(values, slopes, None, times[~moving], c, s)
+    if moving.any():
+        q = (1.0 - moments) ** 4
+        blocks = rows.reshape(-1, BLOCKS, KEPT)
+        values, slopes = _physical(blocks, q)
+        onward = rates[:, :KEPT]
+        log_q = -4.0 / (1.0 - moments)
+        motion = _velocity_slopes(blocks[:, 0], onward[:, U], onward[:, PSI], q, log_q)
+        by_z = np.stack([onward[:, X], onward[:, Y], onward[:, THETA], *motion], axis=-1)
+        by_time = by_z / onward[:, T, None]
+        slopes = slopes - by_time[:, None, :] * blocks[:, 1:, T, None]  # at the same time
+        out[moving], by_gyration[moving] = _by_launch(values, slopes, by_time, times[moving], c, s)
+    return out, by_gyration
+
+
+def _moments(
+    times: FloatArray, ends: FloatArray, path: FloatArray, stop: FloatArray, friction: Varied
+) -> tuple[npt.NDArray[np.int64], FloatArray]:
+    """The last step end before each time, and z there."""
+    from puck_tables.motion.path import states_at
+
+    which = np.searchsorted(path[:, T], times, side="right") - 1
+    which = np.clip(which, 0, ends.size - 1)
+    states = np.empty((ends.size, SIZE))
+    states[:, : path.shape[1] // 4] = path[:, : path.shape[1] // 4]
+    states[:, SIZE - 1] = 0.0
+    rest = np.zeros(SIZE + 1)
+    rest[:7] = stop[:7]
+    q, y = np.empty(times.size), np.empty((times.size, SIZE))
+    states_at(times, ends, states, rest, DORMAND_PRINCE, friction.ratios, friction.delta, q, y)
+    return which, 1.0 - np.maximum(q, _LEAST_SHARE) ** 0.25
+
+
+def _physical(blocks: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """x, y, body angle, vx, vy, rω (n, 6), and their variations (n, 3, 6), at the same z."""
+    own = blocks[:, 0]
+    cosine, sine, heading = _directions(own)
+    value = np.stack([
+        own[:, X], own[:, Y], own[:, THETA], q * cosine * np.cos(heading),
+        q * cosine * np.sin(heading), q * sine,
+    ], axis=-1)  # fmt: skip
+    slopes = []
+    for p in range(1, blocks.shape[1]):
+        motion = _velocity_slopes(own, blocks[:, p, U], blocks[:, p, PSI], q, 0.0)
+        places = blocks[:, p, X], blocks[:, p, Y], blocks[:, p, THETA]
+        slopes.append(np.stack([*places, *motion], axis=-1))
+    return value, np.stack(slopes, axis=1)
+
+
+def _directions(own: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    u = own[:, U]
+    k = np.exp(-np.abs(u))
+    large = 1.0 / np.sqrt(1.0 + k * k)
+    return np.where(u > 0.0, k * large, large), np.where(u > 0.0, large, k * large), own[:, PSI]
+
+
+def _velocity_slopes(
+    own: FloatArray, du: FloatArray, turn: FloatArray, q: FloatArray, log_q: FloatArray | float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Changes of vx, vy, rω from those of u, of the heading and of ln Q."""
+    cosine, sine, heading = _directions(own)
+    ahead = q * cosine * (log_q - sine**2 * du)
+    aside = q * cosine * turn
+    return (
+        ahead * np.cos(heading) - aside * np.sin(heading),
+        ahead * np.sin(heading) + aside * np.cos(heading),
+        q * sine * (log_q + cosine**2 * du),
+    )
+
+
+def _by_launch(
+    value: FloatArray, slopes: FloatArray, by_time: FloatArray | None, times: FloatArray,
+    c: float, s: float,
+) -> tuple[FloatArray, FloatArray]:  # fmt: skip
+    """Values (n, 6) and their derivatives as :func:`natural_states` has them."""
+    out = np.zeros((times.size, 6, 6))
+    rate = np.zeros((times.size, 6)) if by_time is None else by_time
+    powers = np.array([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])
+    by_slip = powers * value - times[:, None] * rate
+    out[:, :, 0], out[:, :, 5] = value, rate
+    out[:, :, 1] = c * by_slip - slopes[:, 0] / c
+    out[:, :, 3] = s * by_slip + slopes[:, 0] / s
+    out[:, :, 4] = slopes[:, 1]
+    for row in (0, 3):  # across the launch velocity everything turns
+        out[:, row, 2], out[:, row + 1, 2] = -value[:, row + 1] / c, value[:, row] / c
+    return out, np.broadcast_to(slopes[:, 2], (times.size, 6))

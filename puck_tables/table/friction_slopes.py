@@ -1,0 +1,151 @@
+"""Friction of one puck and how it changes with the height, over the slip angle.
+
+What derivatives of motions need besides the friction ratios: their derivatives by δ at the same φ.
+In full contact the ratios are polynomials of degree 2 in δ; in partial contact the balance of
+moments is differentiated (:func:`puck_tables.contact.one_sided.height_slopes`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.contact import one_sided
+from puck_tables.contact.laws import HOMOGENEOUS, Law
+from puck_tables.contact.opening import critical_delta
+from puck_tables.kernels.section_spline import FLOWS, LINE, RATIOS
+from puck_tables.table.friction_section import AT_THE_LIMIT, FrictionSection
+from puck_tables.table.resultant_table import ResultantTable
+from puck_tables.table.singular_lines import lines_of
+from puck_tables.table.slip_axis import sides_of
+from puck_tables.table.slip_spline import SlipSpline, slip_spline
+from puck_tables.table.spline_fit import height_terms
+
+FLOW_ACCURACY = 1e-9  # motions differentiated with it err by at most 1e-8
+
+
+@dataclass(frozen=True, eq=False)
+class FlowSection:
+    """The friction ratios of a puck, then their derivatives by δ, as a spline over φ.
+
+    ``spline``: six functions; ``delta``: the height; ``error``: the largest, of the ratios.
+    """
+
+    spline: SlipSpline = field(repr=False)
+    delta: float
+    error: float
+
+    def for_motion(self, gyration: float) -> FloatArray:
+        """What compiled motions read: the ratios alone, as a friction section gives them."""
+        ratios = SlipSpline(self.spline.sides, self.spline.values[..., :RATIOS], True)
+        cut = ratios.with_inertia(*_inertia(gyration, RATIOS))
+        square = cut[0, 6]
+        limit = np.abs(self.spline.values[:, 0, 2] * (0.5 / square) - 1.0) < AT_THE_LIMIT
+        cut[limit, LINE] = np.inf
+        return cut
+
+    def for_slopes(self, gyration: float) -> FloatArray:
+        """What their derivatives read: all six."""
+        return self.spline.with_inertia(*_inertia(gyration, FLOWS))
+
+
+def _inertia(gyration: float, functions: int) -> tuple[float, FloatArray]:
+    """k²/r², and what the functions are multiplied with: each third by r²/(2k²)."""
+    square = 0.5 if gyration == HOMOGENEOUS else gyration * gyration
+    return square, np.tile([1.0, 1.0, 0.5 / square], functions // RATIOS)
+
+
+@lru_cache(maxsize=64)
+def flow_section(law: Law, delta: float, accuracy: float = FLOW_ACCURACY) -> FlowSection:
+    """Tabulate the friction of one puck with its derivatives by the height.
+
+    Parameters
+    ----------
+    law : Law
+    delta : dimensionless height 2fh/r
+    accuracy : the largest error of a friction ratio
+
+    Raises
+    ------
+    InputError, ContactError
+        If the height is out of range.
+    AccuracyError
+        If the accuracy is out of reach.
+
+    Examples
+    --------
+    >>> from puck_tables.contact.laws import law_of
+    >>> found = flow_section(law_of("ring"), 1.0, 1e-6)
+    >>> (found.spline.at(np.array([0.0]))[0].round(6) + 0.0).tolist()  # 1, δ/4, 1 − δ²/8 …
+    [1.0, 0.25, 0.875, 0.0, 0.25, -0.25]
+    """
+    sides = sides_of(lines_of(law, delta)[::-1])
+    found = slip_spline(lambda phi: flows(law, phi, delta), sides, accuracy, even=True)
+    return FlowSection(found, delta, float(found.error[:RATIOS].max()))
+
+
+def flow_of_table(table: ResultantTable, delta: float) -> FlowSection:
+    """The same from a table of resultants: all that is asked.
+
+    Raises
+    ------
+    InputError
+        If the height is outside the table.
+
+    Examples
+    --------
+    >>> found = flow_of_table(ResultantTable.build("ring", 1e-6), 1.0)
+    >>> (found.spline.at(np.array([0.0]))[0].round(5) + 0.0).tolist()
+    [1.0, 0.25, 0.875, 0.0, 0.25, -0.25]
+    """
+    table.checked_range(delta, table.law.name)
+    values = _with_slopes(height_terms(table.values, table.heights), delta)
+    error = table.tolerance * float(values[:, 0].max() * (1.0 + values[:, :RATIOS].max()))
+    sides, by_side = table.axis.sides, table.axis.by_side(values)
+    return FlowSection(SlipSpline(sides, by_side, True), delta, error)
+
+
+def flow_at_one_height(section: FrictionSection) -> FlowSection:
+    """The same from a friction section, for who asks nothing about other heights: slopes by δ 0.
+
+    Examples
+    --------
+    >>> from puck_tables.contact.laws import law_of
+    >>> from puck_tables.table.friction_section import friction_section
+    >>> flow_at_one_height(friction_section(law_of("ring"), 1.0, 1e-6)).spline.values.shape[2]
+    6
+    """
+    spline = section.spline
+    values = np.concatenate([spline.values, np.zeros_like(spline.values)], axis=2)
+    return FlowSection(SlipSpline(spline.sides, values, True), section.delta, section.error)
+
+
+def _with_slopes(terms: FloatArray, delta: float) -> FloatArray:
+    """Ratios and their derivatives by δ from their polynomials (n, 5), (n, 6)."""
+    a0, a2, b1, c0, c2 = terms.T
+    return np.stack([
+        a0 + a2 * delta**2, b1 * delta, c0 + c2 * delta**2, 2.0 * a2 * delta, b1, 2.0 * c2 * delta
+    ], axis=-1)  # fmt: skip
+
+
+def flows(law: Law, phi: FloatArray, delta: float) -> FloatArray:
+    """The friction ratios at slip angles (n,) by the law, then their derivatives by δ, (n, 6)."""
+    ends = np.array([0.0, law.delta_max])
+    rho = np.stack(law.resultants(phi[:, None], ends), axis=-1)
+    out = _with_slopes(height_terms(rho, ends), delta)
+    if law.can_lift:
+        opened = critical_delta(phi) < delta
+        if opened.any():
+            some = phi[opened], np.full(int(opened.sum()), delta)
+            values, by_height = one_sided.height_slopes(*some)
+            along, across, spin = values
+            by_along, by_across, by_spin = by_height
+            inverse = 1.0 / along
+            ratios = np.stack([inverse, across * inverse, spin * inverse], axis=-1)
+            by = np.stack([-inverse * by_along, by_across, by_spin], axis=-1)
+            by[:, 1:] -= ratios[:, 1:] * by_along[:, None]
+            out[opened] = np.concatenate([ratios, by * inverse[:, None]], axis=-1)
+    return out
