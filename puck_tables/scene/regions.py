@@ -53,7 +53,7 @@ def regions_of(scene: SceneSpec, reach: float = 1.0) -> Regions:
     heights = scene.heights
     load = normal * np.array(scene.frictions)
     if all(is_plain(puck.pressure, puck.gyration, delta) for delta in heights):
-        cuts = np.stack([_plain_cut(scene.tol, delta) for delta in heights])
+        cuts = np.stack([plain_cut(scene.tol, delta) for delta in heights])
         return _under_zones(scene, normal, load, np.array(heights), cuts)
     accuracy = friction_error(scene)
     # how the mass is spread stands in the equations of the scene, not in its friction
@@ -113,7 +113,11 @@ def friction_error(scene: SceneSpec) -> float:
     return max(SLICE_SHARE * scene.tol, FINEST_ACCURACY)
 
 
-def _plain_cut(tol: float, delta: float) -> FloatArray:
+def plain_cut(tol: float, delta: float) -> FloatArray:
+    """The friction ratios of a plain puck, good enough for an error wanted; empty: closed forms.
+
+    From the table, which takes a tenth of the time, unless its errors would show.
+    """
     if tol < EXACT_BELOW:
         return closed_form_friction(delta).coefficients
     return table_friction(delta, ResultantTable.shipped()).coefficients

@@ -74,8 +74,8 @@ def nudged(model: Model, size: float, number: int, scale: FloatArray, y: FloatAr
 
 
 @inlined
-def _accelerations(model: Model, work: FloatArray, row: int) -> tuple[float, float, float]:
-    """Of the centre in the laboratory, and of the spin."""
+def accelerations(model: Model, work: FloatArray, row: int) -> tuple[float, float, float]:
+    """Those of the centre in the laboratory and of the spin, by a row of rates of the state."""
     cx, cy = carried_along(model.surface, work[row, X], work[row, Y])
     return work[row, VX] + cx, work[row, VY] + cy, work[row, SPIN]
 
@@ -126,7 +126,7 @@ def step(
             _put_right(model.hold, model.surface, t + h, new)
         if stretch.leaning.shape[0] > 0:
             level = _LEVEL * scale[VX] * scale[VX] / scale[X]
-            first, last = _accelerations(model, work, 0), _accelerations(model, work, STAGES - 1)
+            first, last = accelerations(model, work, 0), accelerations(model, work, STAGES - 1)
             to_laboratory(model, new, 1.0)
             keep_on(model.body, stretch.leaning, first, last, level, new, SIZE)
             to_laboratory(model, new, -1.0)

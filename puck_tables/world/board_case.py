@@ -12,13 +12,13 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import PuckError
 from puck_tables.scene.entries import is_batch, launch_paths
-from puck_tables.scene.loop import AT_REST, EVENT_LIMIT, OVER_EDGE, TIME_UP
+from puck_tables.scene.loop import AT_REST, EVENT_LIMIT, OVER_EDGE, STEP_LIMIT, TIME_UP
 from puck_tables.scene.outcome import IMPACTS_WITHOUT_END, TOO_FAST, UNSOLVED
 from puck_tables.scene.run import STATE, residual
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import called, pieces_of, refuse_endless
 from puck_tables.world.bulk import Ends, follow_all
-from puck_tables.world.engine import CROWDED, OFF_TABLE, PUSHING, REACHED, TANGLED
+from puck_tables.world.engine import CROWDED, OFF_TABLE, PUSHING, REACHED, TANGLED, TOO_SHORT
 from puck_tables.world.ledger import energies_of
 from puck_tables.world.outcome import ways_of
 from puck_tables.world.prepare import game_of, order_of
@@ -28,7 +28,12 @@ from puck_tables.world.world import World
 
 _LAUNCH = re.compile(r"(?:puck\[(\d+)\]\.)?launch\.(velocity\[[01]\]|spin)")
 _PARTS = ("velocity[0]", "velocity[1]", "spin")
-_ENDS = {CROWDED: EVENT_LIMIT, TANGLED: IMPACTS_WITHOUT_END, OFF_TABLE: TOO_FAST}
+_ENDS = {
+    CROWDED: EVENT_LIMIT,
+    TANGLED: IMPACTS_WITHOUT_END,
+    OFF_TABLE: TOO_FAST,
+    TOO_SHORT: STEP_LIMIT,
+}
 _FAILED = -1  # beside how the engine ends: a run of its own that failed
 
 
@@ -113,7 +118,7 @@ class BoardCase:
             starts[:, numbers.index(number), part] = values
         discs = self.place[np.array(numbers, np.int64)]
         ends = follow_all(self.game, self.first, discs, starts, self.until)
-        for run in np.flatnonzero(ends.how == PUSHING).tolist():  # groups are sent off one by one
+        for run in np.flatnonzero(ends.how == PUSHING).tolist():  # or much happens
             self._run({path: float(values[run]) for path, values in launches.items()}, run, ends)
         return self._columns(ends)
 
@@ -131,7 +136,7 @@ class BoardCase:
         return out, status
 
     def _run(self, numbers: Mapping[str, float], run: int, ends: Ends) -> None:
-        """A run in which pucks push each other, or are integrated."""
+        """A run in which pucks push each other, or in which very much happens."""
         try:
             world = World(self.scene.at(numbers))
             world.advance(self.until)

@@ -12,13 +12,17 @@ from puck_tables.kernels.compile import kernel, patience
 from puck_tables.scene.friction import VX
 from puck_tables.world.course import COURSE_COLUMNS, LENGTH, trace
 from puck_tables.world.departures import Room, room_for
-from puck_tables.world.engine import EVERYBODY, FULL, NOBODY, PAUSED, REACHED, advance
+from puck_tables.world.engine import EVERYBODY, FULL, NOBODY, PAUSED, PUSHING, REACHED, advance
 from puck_tables.world.flight import GONE, START, moves_until, state_at
 from puck_tables.world.game import COUNTS, N_IMPACTS, N_PIECES, Game, Whole
 from puck_tables.world.layout import RADIUS
+from puck_tables.world.lone import LONGEST
+from puck_tables.world.paths import PIECE_COLUMNS
 from puck_tables.world.prepare import fastest, scales_of
+from puck_tables.world.works import WORK_COLUMNS
 
 _LOOKS = 6  # at a course before its end: at Q/2J, Q/4J, ...
+MOST_ROWS = 1 << 16  # of events and flights, and of steps: 60 MB
 END_COLUMNS = 6  # of a puck: its state at the end
 
 
@@ -50,13 +54,14 @@ def _follow_all(
     they may have: a run is given up when there are more.
     """
     patience(launches.shape[0])
-    count = first.shape[0]
+    count, driven = first.shape[0], 0
+    for i in range(count):
+        driven = max(driven, game.drives[i, 1])
     for run in range(launches.shape[0]):
         game.clock[0] = 0.0
         game.pace[0], game.pace[1] = paces[run, 0], paces[run, 1]
         for column in range(COUNTS):
-            if column != N_PIECES:
-                game.counts[column] = 0
+            game.counts[column] = driven if column == N_PIECES else 0
         for i in range(count):
             game.kinds[i], game.group[i] = kinds[i], 0
             for column in range(fresh.shape[1]):
@@ -129,6 +134,9 @@ def follow_all(
     in_slices(work, runs)
     full = np.flatnonzero(ends.how == FULL)
     while full.size:
+        if rows > MOST_ROWS:
+            ends.how[full] = PUSHING
+            break
         rows *= 4
         mine = _own(game, rows)
         for run in full:
@@ -150,13 +158,15 @@ def _paces(game: Game, first: FloatArray, discs: Whole, launches: FloatArray) ->
 
 
 def _own(game: Game, rows: int) -> Game:
-    """A copy to run on, with so many rows for events and flights."""
+    """A copy to run on, with so many rows for events and flights; for paths if there are any."""
+    paths = rows + LONGEST if game.floors[:, 2].any() else 0
+    pieces = np.zeros((paths, PIECE_COLUMNS))
     return game._replace(
         regions=game.regions._replace(ground=game.regions.ground.copy()),
         discs=game.discs.copy(), clock=np.zeros(1), kinds=game.kinds.copy(),
         flights=game.flights.copy(), group=game.group.copy(), held=game.held.copy(),
         next_time=game.next_time.copy(), next_partner=game.next_partner.copy(),
-        pieces=game.pieces.copy(),
+        pieces=np.vstack([game.pieces, pieces]), works=np.zeros((paths, WORK_COLUMNS)),
         events=np.zeros((rows, game.events.shape[1])),
         history=np.zeros((rows, game.history.shape[1])), counts=game.counts.copy(),
         pace=game.pace.copy(),

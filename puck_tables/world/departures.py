@@ -8,11 +8,13 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, inner
+from puck_tables.kernels.compile import inlined, inner, kernel
+from puck_tables.scene.equations import ROW
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ingredients import floor_velocity
 from puck_tables.scene.patches import ASTRIDE, INSIDE, OUTSIDE
 from puck_tables.world.flight import (
+    ANGLE,
     DRIFT_X,
     DRIFT_Y,
     FASTEST,
@@ -21,7 +23,10 @@ from puck_tables.world.flight import (
     GONE,
     LAST_PIECE,
     PATH,
+    PLACE_X,
+    PLACE_Y,
     ROOM,
+    START,
     STILL,
     STRONGEST,
     UNTIL,
@@ -40,6 +45,8 @@ from puck_tables.world.game import (
     N_EVENTS,
     N_HISTORY,
     N_IMPACTS,
+    N_PIECES,
+    N_WORKS,
     NORMAL_X,
     NORMAL_Y,
     OVERHANGS,
@@ -64,12 +71,13 @@ from puck_tables.world.impact import (
     SUM_T,
 )
 from puck_tables.world.layout import EDGE_NUMBER, LIES, RADIUS, A
-from puck_tables.world.paths import DURATION, FIRST
+from puck_tables.world.lone import DESK_ROWS, LONGEST, follow_alone
+from puck_tables.world.paths import DURATION, FIRST, bounds_of
 from puck_tables.world.paths import START as BEGINS
 
 # of a disc while an event is worked on: not concerned, concerned, its contacts are known, was to
-# meet one that is concerned, flies on in a group that pushes
-NOT_CONCERNED, CONCERNED, LOOKED_AT, DISAPPOINTED, PUSHED = range(5)
+# meet one that is concerned, has set off
+NOT_CONCERNED, CONCERNED, LOOKED_AT, DISAPPOINTED, SENT = range(5)
 
 
 class Room(NamedTuple):
@@ -84,6 +92,7 @@ class Room(NamedTuple):
     work: FloatArray
     one: FloatArray
     two: FloatArray
+    lone: FloatArray
 
 
 def room_for(discs: int) -> Room:
@@ -93,6 +102,7 @@ def room_for(discs: int) -> Room:
         np.zeros((discs, 6)), np.zeros((discs, 6)), np.zeros(discs, np.int64),
         np.zeros(discs, np.int64), np.zeros((contacts, 2), np.int64),
         np.zeros((contacts, CONTACT_COLUMNS)), np.zeros(ROOM), np.zeros(6), np.zeros(6),
+        np.zeros((DESK_ROWS, ROW)),
     )  # fmt: skip
 
 
@@ -134,6 +144,48 @@ def stay(game: Game, i: int, t: float, room: Room) -> None:
         state, game.discs[i], game.surface, game.curves, t, room.work, game.flights[i]
     )
     keep_flight(game, i)
+
+
+@kernel
+def fly_along(
+    flight: FloatArray, pieces: FloatArray, first: int, last: int, t: float, until: float
+) -> None:
+    """The flight along pieces from t on, which is known until a time."""
+    flight[START], flight[UNTIL] = t, until
+    flight[FIRST_PIECE], flight[LAST_PIECE] = first, last
+    flight[DRIFT_X] = flight[DRIFT_Y] = flight[FASTEST] = flight[STRONGEST] = 0.0
+    flight[PLACE_X], flight[PLACE_Y] = pieces[first, FIRST], pieces[first, FIRST + 1]
+    flight[ANGLE] = pieces[first, FIRST + 2]
+    for piece in range(first, last):
+        speed, bend = bounds_of(pieces[piece])
+        flight[FASTEST] = max(flight[FASTEST], speed)
+        flight[STRONGEST] = max(flight[STRONGEST], bend)
+
+
+@inlined
+def lacks_pieces(game: Game) -> bool:
+    """Whether one path more may not find room."""
+    return (
+        game.counts[N_PIECES] + LONGEST > game.pieces.shape[0]
+        or game.counts[N_WORKS] + LONGEST > game.works.shape[0]
+    )
+
+
+@inner
+def integrate(game: Game, i: int, t: float, room: Room) -> bool:
+    """The path of a disc alone, from its state; whether it can be followed."""
+    done, until, count = follow_alone(game, i, t, room.states[i], room.lone)
+    game.group[i] = 0
+    if until == math.inf:
+        stay(game, i, t, room)
+    elif done:
+        first = game.counts[N_PIECES]
+        game.counts[N_PIECES] += count
+        game.counts[N_WORKS] += count
+        fly_along(game.flights[i], game.pieces, first, first + count, t, until)
+        game.kinds[i] = PATH
+        keep_flight(game, i)
+    return done
 
 
 @inner

@@ -13,9 +13,12 @@ from puck_tables.world.departures import (
     DISAPPOINTED,
     LOOKED_AT,
     NOT_CONCERNED,
+    SENT,
     Room,
     cross,
     drive_on,
+    integrate,
+    lacks_pieces,
     leave,
     locate,
     note,
@@ -68,9 +71,15 @@ from puck_tables.world.impact import (
 from puck_tables.world.layout import EDGE, KIND, LIGHTNESS, ON_FLOOR, OVERHANG, POCKET, RADIUS
 from puck_tables.world.meeting import are_apart, next_crossing, next_meeting, rest_together
 from puck_tables.world.quiet import quieten
-from puck_tables.world.touching import find_touching, is_integrated, press_somewhere
+from puck_tables.world.touching import (
+    find_touching,
+    is_integrated,
+    press_somewhere,
+    sets_off_too_fast,
+)
 
-REACHED, FULL, CROWDED, TANGLED, PAUSED, PUSHING, OFF_TABLE = range(7)  # how a call ends
+# how a call ends
+REACHED, FULL, CROWDED, TANGLED, PAUSED, PUSHING, OFF_TABLE, TOO_SHORT = range(8)
 
 NOBODY, EVERYBODY, THOSE_LEFT = -1, -2, -3
 SLOW = 1e-6  # of the scale of speeds: an impact that only what pushes brings about
@@ -203,17 +212,20 @@ def _happen(game: Game, i: int, partner: int, t: float, room: Room) -> int:
 
 @inlined
 def _go_on(game: Game, t: float, count: int, room: Room) -> int:
-    """New flights of all that are concerned; PUSHING where some have to be integrated before."""
+    """New flights of all that are concerned.
+
+    PUSHING: some push each other, or slip faster than the friction law is known: before, the caller
+    does what is to be done.
+    """
     game.counts[N_CONTACTS] = count
     if quieten(game, count, room):
         _whole_groups(game, count, room)
     pushes = press_somewhere(game, count, t, room)
     for j in range(game.discs.shape[0]):
-        pushes = pushes or (room.marks[j] == CONCERNED and is_integrated(game, j, room.states[j]))
-    if pushes:
-        return PUSHING
-    _take_off_all(game, t, room)
-    return REACHED
+        pushes = pushes or (
+            room.marks[j] == CONCERNED and sets_off_too_fast(game, j, room.states[j])
+        )
+    return PUSHING if pushes else _take_off_all(game, t, room)
 
 
 @inlined
@@ -232,12 +244,24 @@ def _whole_groups(game: Game, count: int, room: Room) -> None:
 
 
 @inlined
-def _take_off_all(game: Game, t: float, room: Room) -> None:
-    """New flights of all that are concerned, but for those that are driven."""
+def _take_off_all(game: Game, t: float, room: Room) -> int:
+    """New flights of all that are concerned and not driven; how it ended.
+
+    FULL: not yet of all; TOO_SHORT: no step is short enough to follow one.
+    """
     for j in range(game.discs.shape[0]):
         driven = game.drives[j, 0] < game.drives[j, 1]
-        if room.marks[j] == CONCERNED and game.kinds[j] != GONE and not driven:
+        if room.marks[j] != CONCERNED or game.kinds[j] == GONE or driven:
+            continue
+        if is_integrated(game, j, room.states[j]):
+            if lacks_pieces(game):
+                return FULL
+            if not integrate(game, j, t, room):
+                return TOO_SHORT
+        else:
             take_off(game, j, t, room)
+        room.marks[j] = SENT
+    return REACHED
 
 
 @inner
@@ -296,14 +320,15 @@ def advance(game: Game, until: float, struck: int, state: FloatArray, room: Room
     After FULL the caller gives more rows and calls again, after PAUSED it just calls again.
 
     ``struck``: the disc that gets the velocity and spin of ``state`` before; NOBODY; at the start,
-    EVERYBODY looks ahead; after PUSHING, when the groups that push are on their way, THOSE_LEFT.
+    EVERYBODY looks ahead; after FULL, or after PUSHING when the groups that push are on their way,
+    THOSE_LEFT set off.
     """
     count = game.discs.shape[0]
     events = 0
     if struck != NOBODY:
         status = REACHED
         if struck == THOSE_LEFT:
-            _take_off_all(game, game.clock[0], room)
+            status = _take_off_all(game, game.clock[0], room)
         elif struck == EVERYBODY:
             for i in range(count):
                 room.marks[i] = CONCERNED
@@ -335,6 +360,8 @@ def advance(game: Game, until: float, struck: int, state: FloatArray, room: Room
                 game.clock[0] = max(until, game.clock[0])
             return REACHED
         if lacks_rows(game, room):
+            for i in range(count):
+                room.marks[i] = NOT_CONCERNED
             return FULL
         if events == MOST_IN_A_CALL:
             return PAUSED

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import cache, partial
 
 import numpy as np
 
@@ -17,9 +18,8 @@ from puck_tables.scene.by_speed import NO_LAW, law_up_to
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ground import NO_GROUND
 from puck_tables.scene.ingredients import BySpeed, Regions, Surface, floor_velocity
-from puck_tables.scene.orthotropic import is_elliptic
 from puck_tables.scene.pieces import PieceSpec
-from puck_tables.scene.regions import SLICE_SHARE, alone, axes_of, of_one_shape
+from puck_tables.scene.regions import SLICE_SHARE, alone, axes_of, of_one_shape, plain_cut
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.zones import ground_of
 from puck_tables.table.friction_section import FINEST_ACCURACY
@@ -94,7 +94,11 @@ def regions_of(
         0.0 if piece.path else normal_on(scene, piece) * friction for piece, friction in places
     ])  # fmt: skip
     cuts = none[: len(places)]
-    if not all(has_closed_forms(*one) for one in places):
+    if all(has_closed_forms(*one) for one in places):
+        if floors[:, 2].any():  # those that are integrated ask for friction often
+            cut = cache(partial(plain_cut, scene.tol))
+            cuts = np.stack([cut(height) for height in delta[: len(places)].tolist()])
+    else:
         accuracy = max(SLICE_SHARE * scene.tol, FINEST_ACCURACY)
         bodies = [replace(piece, friction=friction).body for piece, friction in places]
         cuts = of_one_shape([body.friction(accuracy).coefficients for body in bodies])
@@ -126,11 +130,3 @@ def fastest_rim(pieces: list[PieceSpec], states: FloatArray, surface: Surface) -
         for way in () if piece.path else ways:
             most = max(most, slip_of_rim(piece.radius, surface, way))
     return most
-
-
-def law_goes_to(regions: Regions) -> float:
-    """Up to which slip of a rim friction is known, m/s."""
-    law = regions.by_speed
-    if law.normal == 0.0 or is_elliptic(law.table):
-        return math.inf
-    return float(law.table[int(law.table[0])])

@@ -30,6 +30,7 @@ from puck_tables.scene.ingredients import (
     Surface,
     floor_velocity,
 )
+from puck_tables.scene.orthotropic import is_elliptic
 from puck_tables.scene.patches import ASTRIDE, INSIDE, OUTSIDE, distance_to
 from puck_tables.world.game import Game
 from puck_tables.world.layout import (
@@ -42,6 +43,8 @@ from puck_tables.world.layout import (
     RADIUS,
     REGION,
 )
+
+SURE = 1.0 - 1e-9  # of the last slip that a friction law knows: whoever is faster comes beyond
 
 
 @inlined
@@ -81,6 +84,21 @@ def dry_under(regions: Regions, discs: FloatArray, i: int) -> Dry:
     elif law.normal > 0.0:
         law = BySpeed(law.table, discs[i, HEIGHT_RATIO], discs[i, NORMAL], 1.0)
     return Dry(regions.load[region], regions.delta[region], regions.cuts[region], law)
+
+
+@inlined
+def law_goes_to(regions: Regions) -> float:
+    """Up to which slip of a rim friction is known, m/s."""
+    law = regions.by_speed
+    if law.normal == 0.0 or is_elliptic(law.table):
+        return math.inf
+    return law.table[int(law.table[0])]
+
+
+@inlined
+def outruns_law(regions: Regions, radius: float, ux: float, uy: float, w: float) -> bool:
+    """Whether a rim slips as fast as friction is known, or faster."""
+    return math.hypot(ux, uy) + radius * abs(w) >= SURE * law_goes_to(regions)
 
 
 @inlined

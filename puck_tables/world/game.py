@@ -43,9 +43,9 @@ HISTORY_COLUMNS = 2 + FLIGHT_COLUMNS  # disc, kind, flight
 # counts
 (
     N_EVENTS, N_HISTORY, N_PIECES, N_HELD, N_LAUNCHES, N_IMPACTS, N_GROUPS, N_LOOKS, N_CONTACTS,
-    N_AT_ONCE,
-) = range(10)  # fmt: skip
-COUNTS = 10
+    N_AT_ONCE, N_WORKS,
+) = range(11)  # fmt: skip
+COUNTS = 11
 
 
 class Game(NamedTuple):
@@ -60,9 +60,10 @@ class Game(NamedTuple):
     (n,): discs of one number push each other, 0: none; ``held`` (…, 2): their contacts.
     ``next_time``, ``next_partner`` (n,).  ``launches`` (…, 5), ascending in time.  ``drives``
     (n, 2): the rows of ``pieces`` along which a disc is driven.  ``hangs`` (n, edges): whether its
-    rim is over an edge.  ``counts``: how many rows of
-    events, history, pieces and held contacts are used, how many launches and what else was done,
-    and the contacts of the event at work.  ``pace`` (3,): the scales of speed, m/s, and
+    rim is over an edge.  ``works``: where the energy of those went who were integrated, see
+    :mod:`puck_tables.world.works`.  ``counts``: how many rows of
+    events, history, pieces, works and held contacts are used, how many launches and what else was
+    done, and the contacts of the event at work.  ``pace`` (3,): the scales of speed, m/s, and
     acceleration, m/s², and the error of a step where motions are integrated, in units of them.
     """
 
@@ -88,5 +89,6 @@ class Game(NamedTuple):
     hangs: Whole
     events: FloatArray
     history: FloatArray
+    works: FloatArray
     counts: Whole
     pace: FloatArray

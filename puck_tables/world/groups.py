@@ -7,6 +7,7 @@ The engine says when contacts press; here those that do become groups, each is f
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -18,25 +19,19 @@ from puck_tables.scene.ingredients import FREE
 from puck_tables.world.departures import (
     CONCERNED,
     NOT_CONCERNED,
-    PUSHED,
+    SENT,
     Room,
+    fly_along,
     keep_flight,
     note,
     stay,
 )
 from puck_tables.world.flight import (
     ANGLE,
-    DRIFT_X,
-    DRIFT_Y,
-    FASTEST,
     FIRST_PIECE,
-    LAST_PIECE,
     PATH,
     PLACE_X,
     PLACE_Y,
-    START,
-    STRONGEST,
-    UNTIL,
 )
 from puck_tables.world.footing import moves_along
 from puck_tables.world.game import (
@@ -48,6 +43,7 @@ from puck_tables.world.game import (
     N_HELD,
     N_HISTORY,
     N_PIECES,
+    N_WORKS,
     TOGETHER,
     Game,
     Whole,
@@ -78,28 +74,24 @@ from puck_tables.world.paths import DURATION, FIRST, PIECE_COLUMNS
 from puck_tables.world.paths import START as BEGINS
 from puck_tables.world.pressing import press
 from puck_tables.world.pushing import follow
-from puck_tables.world.touching import is_integrated
 from puck_tables.world.works import DONE, FLIGHT, LEDGER, NO_FLIGHT, RIM_HEAT, WORK_COLUMNS
 from puck_tables.world.works import START as WORK_START
 
 ROWS = 400  # steps of a group before its flights end for a new look
-_GRACE = 1.5  # times accelerations at the ends of steps, between them
 _TRIES = 100
 LOST_SHARE = 1e-15
 FOR_EVER = 1e9  # s
 
 
-def push_on(game: Game, room: Room, books: list[FloatArray]) -> Game:
-    """Send the groups that push now on their way; marks say who is left to fly alone.
-
-    What that works is added to the books, see :mod:`puck_tables.world.works`.
-    """
+def push_on(game: Game, room: Room) -> Game:
+    """Send the groups that push now on their way; marks say who is left to fly alone."""
     contacts = room.contacts[: game.counts[N_CONTACTS]]
     contacts = contacts[room.rows[: len(contacts), ACTS] > 0.0]
+    held = game.held[: game.counts[N_HELD]]
+    held = held[game.group[held[:, 0]] > 0]  # others have flown alone since
+    held_before = {frozenset(pair) for pair in held.tolist()}
     for i in np.flatnonzero(room.marks == CONCERNED):
         game.group[i] = 0
-    held = game.held[: game.counts[N_HELD]]
-    held_before = {frozenset(pair) for pair in held.tolist()}
     held = held[game.group[held[:, 0]] > 0]
     t, scales = float(game.clock[0]), Scales(*game.pace.tolist())
     films, reels = _driven_now(game, t)
@@ -117,7 +109,7 @@ def push_on(game: Game, room: Room, books: list[FloatArray]) -> Game:
             if room.marks[i] == NOT_CONCERNED and (room.states[i] != before[i]).any():
                 room.marks[i] = CONCERNED
         if not len(kept):
-            _book(books, NO_FLIGHT, t, jump, works)
+            game = _book(game, NO_FLIGHT, t, jump, works)
             continue
         game.counts[N_GROUPS] += 1
         held = np.vstack([held, kept])
@@ -126,25 +118,13 @@ def push_on(game: Game, room: Room, books: list[FloatArray]) -> Game:
             game.group[i] = game.counts[N_GROUPS]
             if game.drives[i, 0] < game.drives[i, 1]:
                 continue  # it stays on its own way
-            room.marks[i] = PUSHED
+            room.marks[i] = SENT
             if t_end == math.inf:
                 stay(game, int(i), t, room)
             else:
                 game = _set_out(game, int(i), t, t_end, ways[place])
             flight = int(game.counts[N_HISTORY]) - 1
-        _book(books, flight, t, jump, works)
-    for i in np.flatnonzero(room.marks == CONCERNED):
-        if is_integrated(game, int(i), room.states[i]):
-            _, t_end, ways, jump, works = _follow(
-                shared, np.array([i]), contacts[:0], room.states, t, scales
-            )
-            room.marks[i] = PUSHED
-            if t_end == math.inf:
-                stay(game, int(i), t, room)
-                game.group[i] = 0
-            else:
-                game = _set_out(game, int(i), t, t_end, ways[0])
-                _book(books, int(game.counts[N_HISTORY]) - 1, t, jump, works)
+        game = _book(game, flight, t, jump, works)
     game.held[: len(held)], game.counts[N_HELD] = held, len(held)
     return game
 
@@ -233,7 +213,7 @@ def _follow(
     for first, last in shared.reels[members]:
         if first < last:  # what drives may turn where its piece ends
             horizon = min(horizon, float(shared.films[first, [BEGINS, DURATION]].sum()))
-    alone, nothing = not len(contacts), np.zeros((len(members), 0, PIECE_COLUMNS))
+    nothing = np.zeros((len(members), 0, PIECE_COLUMNS))
     jump, idle = np.zeros(LEDGER), np.zeros((0, WORK_COLUMNS))
     for _ in range(_TRIES):
         desk = desk_for(len(members), len(contacts), int((discs[:, HOLD] != FREE).sum()))
@@ -242,7 +222,7 @@ def _follow(
         if how == UNSOLVED:
             break
         contacts, modes = contacts[modes != APART], modes[modes != APART]
-        if not (alone or len(contacts)):
+        if not len(contacts):
             return contacts, t, nothing, jump, idle
         if (doings == HELD).all() and not (jumps or swings):
             return contacts, math.inf, nothing, jump, idle
@@ -262,41 +242,33 @@ def _follow(
     raise PuckError(TOGETHER.format(time=t))
 
 
-def _with_pieces(game: Game, rows: FloatArray) -> Game:
-    """With rows of a way at the end of its pieces."""
-    first = int(game.counts[N_PIECES])
-    if first + len(rows) > len(game.pieces):
-        more = np.zeros((first + 2 * len(rows), PIECE_COLUMNS))
-        game = game._replace(pieces=np.vstack([game.pieces[:first], more]))
-    game.pieces[first : first + len(rows)] = rows
-    game.counts[N_PIECES] = first + len(rows)
+def _with_rows(game: Game, name: str, count: int, rows: FloatArray) -> Game:
+    """With rows at the end of its pieces or works, of which so many are counted there."""
+    first, there = int(game.counts[count]), getattr(game, name)
+    if first + len(rows) > len(there):
+        more: dict[str, Any] = {name: np.zeros((first + 2 * len(rows), rows.shape[1]))}
+        more[name][:first], there = there[:first], more[name]
+        game = game._replace(**more)
+    there[first : first + len(rows)] = rows
+    game.counts[count] = first + len(rows)
     return game
 
 
-def _book(
-    books: list[FloatArray], flight: int, t: float, jump: FloatArray, works: FloatArray
-) -> None:
-    """Keep what was booked on a flight from t on, and at its start."""
+def _book(game: Game, flight: int, t: float, jump: FloatArray, works: FloatArray) -> Game:
+    """Keep what was worked on a flight from t on, and at its start."""
     if jump.any():
         row = np.zeros((1, WORK_COLUMNS))
         row[0, WORK_START], row[0, DONE : DONE + LEDGER] = t, jump
         works = np.vstack([row, works])
     works[:, FLIGHT] = flight
-    books.append(works.copy())  # not all the rows that there was room for
+    return _with_rows(game, "works", N_WORKS, works)
 
 
 def _set_out(game: Game, i: int, t: float, t_end: float, rows: FloatArray) -> Game:
     """The flight of a disc along rows of a way, which are kept."""
-    game = _with_pieces(game, rows)
-    last, flight = int(game.counts[N_PIECES]), game.flights[i]
-    speeds = np.hypot(rows[:, [FIRST + VX, FIRST + 9 + VX]], rows[:, [FIRST + VY, FIRST + 9 + VY]])
-    bends = np.hypot(rows[:, [FIRST + 6, FIRST + 15]], rows[:, [FIRST + 7, FIRST + 16]])
-    flight[START], flight[UNTIL] = t, t_end
-    flight[DRIFT_X] = flight[DRIFT_Y] = 0.0
-    flight[PLACE_X], flight[PLACE_Y], flight[ANGLE] = rows[0, FIRST : FIRST + 3]
-    flight[STRONGEST] = _GRACE * bends.max()
-    flight[FASTEST] = float((speeds.max(axis=1) + flight[STRONGEST] * rows[:, DURATION]).max())
-    flight[FIRST_PIECE], flight[LAST_PIECE] = last - len(rows), last
+    game = _with_rows(game, "pieces", N_PIECES, rows)
+    last = int(game.counts[N_PIECES])
+    fly_along(game.flights[i], game.pieces, last - len(rows), last, t, t_end)
     game.kinds[i] = PATH
     keep_flight(game, i)
     return game

@@ -13,12 +13,11 @@ from puck_tables.errors import InputError
 from puck_tables.scene.by_speed import FARTHER, law_name, speed_law
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.departures import CONCERNED, Room
-from puck_tables.world.floors import law_goes_to, slip_of_rim
+from puck_tables.world.floors import slip_of_rim
+from puck_tables.world.footing import SURE, law_goes_to
 from puck_tables.world.game import Game, Whole
 from puck_tables.world.layout import LIGHTNESS, RADIUS
 from puck_tables.world.prepare import with_law_up_to
-
-SURE = 1.0 - 1e-9  # of the last slip that a friction law knows: whoever is faster comes beyond
 
 
 def refuse_too_fast(game: Game, scene: SceneSpec, name: str, i: int, state: FloatArray) -> None:

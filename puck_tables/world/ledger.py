@@ -34,7 +34,6 @@ from puck_tables.world.works import (
     PULL_WORK,
     RIM_HEAT,
     SUPPORT_WORK,
-    WORK_COLUMNS,
     worked,
 )
 
@@ -67,7 +66,7 @@ def energies_of(world: World, times: FloatArray) -> dict[str, FloatArray]:
     damped = known & (kinds == DAMPED)
     drag = _lost(discs, rows, damped, slips, over)
     dry = _lost(discs, rows, known & ~damped, slips, over)
-    booked = _booked(game, world._books, times)
+    booked = _booked(game, times)
     events = game.events[: game.counts[g.N_EVENTS]]
     hits = events[events[:, g.WHAT] == g.IMPACT]
     struck = events[events[:, g.WHAT] == g.STRUCK]
@@ -120,14 +119,14 @@ def _until(times: FloatArray, moments: Moments) -> FloatArray:
     return found
 
 
-def _booked(game: g.Game, books: list[FloatArray], times: FloatArray) -> FloatArray:
+def _booked(game: g.Game, times: FloatArray) -> FloatArray:
     """The ledger (6, times) of all that were integrated, J; a row ends where its flight does."""
     history = game.history[: game.counts[g.N_HISTORY]]
     ends = np.full(len(history) + 1, float(game.clock[0]))  # the last of what has NO_FLIGHT
     for disc in range(len(game.discs)):
         mine = np.flatnonzero(history[:, 0] == disc)
         ends[mine[:-1]] = history[mine[1:], 2 + START]
-    rows = np.vstack([np.zeros((0, WORK_COLUMNS)), *books])
+    rows = game.works[: game.counts[g.N_WORKS]]
     return worked(rows, ends[rows[:, FLIGHT].astype(np.int64)], times)
 
 

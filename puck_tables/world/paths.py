@@ -7,6 +7,8 @@ the duration.
 
 from __future__ import annotations
 
+import math
+
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 
@@ -68,3 +70,33 @@ def jerk_on(piece: FloatArray) -> float:
         c3, c4, c5 = _bends(piece, i)
         total += 6.0 * abs(c3) + 24.0 * abs(c4) + 60.0 * abs(c5)
     return total / piece[DURATION] ** 3
+
+
+@inlined
+def bounds_of(piece: FloatArray) -> tuple[float, float]:
+    """The largest speed and acceleration of the place on a piece, at most.
+
+    By the control points of both as polynomials of Bernstein, between which they stay.
+    """
+    h, speed, bend = piece[DURATION], 0.0, 0.0
+    x3, x4, _ = _bends(piece, 0)
+    y3, y4, _ = _bends(piece, 1)
+    vx0, vy0, ax0, ay0 = piece[FIRST + 3], piece[FIRST + 4], piece[FIRST + 6], piece[FIRST + 7]
+    vx1, vy1, ax1, ay1 = piece[FIRST + 12], piece[FIRST + 13], piece[FIRST + 15], piece[FIRST + 16]
+    for vx, vy in (
+        (vx0, vy0),
+        (vx0 + 0.25 * h * ax0, vy0 + 0.25 * h * ay0),
+        (vx0 + 0.5 * (h * ax0 + x3 / h), vy0 + 0.5 * (h * ay0 + y3 / h)),
+        (vx1 - 0.25 * h * ax1, vy1 - 0.25 * h * ay1),
+        (vx1, vy1),
+    ):
+        speed = max(speed, math.hypot(vx, vy))
+    square = h * h
+    for ax, ay in (
+        (ax0, ay0),
+        (ax0 + 2.0 * x3 / square, ay0 + 2.0 * y3 / square),
+        (ax0 + 4.0 * (x3 + x4) / square, ay0 + 4.0 * (y3 + y4) / square),
+        (ax1, ay1),
+    ):
+        bend = max(bend, math.hypot(ax, ay))
+    return speed, bend

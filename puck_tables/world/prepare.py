@@ -42,8 +42,9 @@ from puck_tables.world.game import (
     Game,
     Whole,
 )
-from puck_tables.world.paths import FIRST
+from puck_tables.world.paths import FIRST, PIECE_COLUMNS
 from puck_tables.world.rim_laws import number_for, rims_of
+from puck_tables.world.works import WORK_COLUMNS
 
 FAR = 1e12  # radii that a puck may slide: its rounding is a thousandth of a radius
 ROWS = 256  # of events and flights at first
@@ -79,7 +80,7 @@ def game_of(scene: SceneSpec, order: Whole) -> tuple[Game, Room]:
     discs, states = np.zeros((count, layout.DISC_COLUMNS + lies)), np.zeros((count, 6))
     surface = Surface(*scene.floor.velocity, *scene.floor.centre, scene.floor.turning)
     spans, tides = np.zeros((count, 2), np.int64), [np.zeros((0, 4))]
-    drives, ways = np.zeros((count, 2), np.int64), [np.zeros((0, 20))]
+    drives, ways = np.zeros((count, 2), np.int64), [np.zeros((0, PIECE_COLUMNS))]
     launches = []
     rims, discs[:, layout.MAKE], makes, called = rims_of(scene, pieces)
     for i, piece in enumerate(pieces):
@@ -142,6 +143,7 @@ def game_of(scene: SceneSpec, order: Whole) -> tuple[Game, Room]:
         hangs=np.zeros((count, len(scene.edges)), np.int64),
         events=np.zeros((ROWS + (8 + len(scene.edges)) * count, EVENT_COLUMNS)),
         history=np.zeros((ROWS + 4 * count, HISTORY_COLUMNS)),
+        works=np.zeros((0, WORK_COLUMNS)),
         counts=np.zeros(COUNTS, np.int64),
         pace=np.array([0.0, 0.0, STEP_SHARE * flight_error(scene)]),
     )

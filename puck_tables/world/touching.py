@@ -9,7 +9,7 @@ from puck_tables.kernels.compile import inlined, inner, patience
 from puck_tables.scene.friction import X, Y
 from puck_tables.world.departures import CONCERNED, LOOKED_AT, NOT_CONCERNED, Room, locate
 from puck_tables.world.flight import GONE, PLACE_X, PLACE_Y, STILL, drifts
-from puck_tables.world.footing import slips
+from puck_tables.world.footing import outruns_law, over_floor, slips
 from puck_tables.world.game import (
     Game,
 )
@@ -25,6 +25,7 @@ from puck_tables.world.layout import (
     DECEL,
     INTEGRATED,
     KIND,
+    LIGHTNESS,
     NO_CUSHION,
     PULL_X,
     PULL_Y,
@@ -119,6 +120,14 @@ def press_somewhere(game: Game, count: int, t: float, room: Room) -> bool:
         if row[ACTS] > 0.0 and opening(game, i, j, t, row, room.states) < least:
             found = True
     return found
+
+
+@inlined
+def sets_off_too_fast(game: Game, i: int, state: FloatArray) -> bool:
+    """Whether its rim slips faster than the friction law of the floor is known."""
+    ux, uy, w = over_floor(game.surface, state)
+    free = game.discs[i, LIGHTNESS] > 0.0
+    return free and outruns_law(game.regions, game.discs[i, RADIUS], ux, uy, w)
 
 
 @inlined

@@ -20,6 +20,7 @@ from puck_tables.scene.run import Event, number_of
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import game as g
 from puck_tables.world.agreement import called, pieces_of
+from puck_tables.world.departures import room_for
 from puck_tables.world.engine import (
     CROWDED,
     EVERYBODY,
@@ -30,6 +31,7 @@ from puck_tables.world.engine import (
     PUSHING,
     REACHED,
     THOSE_LEFT,
+    TOO_SHORT,
     advance,
     lacks_rows,
 )
@@ -39,6 +41,7 @@ from puck_tables.world.holds import response
 from puck_tables.world.impact import FIRST_N, E
 from puck_tables.world.law_range import refuse_too_fast, with_law_for
 from puck_tables.world.layout import HOLD, LIGHTNESS, RADIUS
+from puck_tables.world.lone import LONGEST
 from puck_tables.world.prepare import (
     game_of,
     obstacle_names,
@@ -89,7 +92,6 @@ class World:
         self._order = order_of(self.scene)
         self._game, self._room = game_of(self.scene, self._order)
         self._named()
-        self._books: list[FloatArray] = []  # rows of :mod:`puck_tables.world.works`
         self._advance(0.0, EVERYBODY, self._room.one)
 
     def _named(self) -> None:
@@ -283,6 +285,7 @@ class World:
             struck = NOBODY
             if how == FULL:
                 self._grow()
+                struck = THOSE_LEFT
             elif how == PUSHING:
                 from puck_tables.world.groups import push_on  # compiled where it is needed
 
@@ -293,7 +296,7 @@ class World:
                 if full and self.time - pushes[0] <= PUSHED_IN * unit:
                     raise PuckError(self._failure(CROWDED))
                 pushes.append(self.time)
-                self._game, struck = push_on(self._game, self._room, self._books), THOSE_LEFT
+                self._game, struck = push_on(self._game, self._room), THOSE_LEFT
             elif how == PAUSED and self.time - mark > CROWD * unit:
                 mark = self.time
             else:
@@ -338,10 +341,7 @@ class World:
         regions = parts.pop("regions")
         own = {n: one if n in kept else one.copy() for n, one in parts.items()}
         twin._game = g.Game(regions=regions._replace(ground=regions.ground.copy()), **own)
-        twin._room = self._room._replace(
-            **{name: part.copy() for name, part in self._room._asdict().items()}
-        )
-        twin._books = list(self._books)
+        twin._room = room_for(len(self.names))
         twin._named()
         return twin
 
@@ -357,6 +357,11 @@ class World:
 
     def _failure(self, how: int) -> str:
         """Why it does not go on, in words."""
+        if how == TOO_SHORT:
+            return (
+                f"at {self.time:.6g} s no step is short enough to follow a puck that is "
+                "integrated: ask for a shorter run.time"
+            )
         radii = np.array([piece.radius for piece in pieces_of(self.scene)])
         places = self.state()[:, :2]
         for number, piece in enumerate(pieces_of(self.scene)):
@@ -385,13 +390,16 @@ class World:
         )
 
     def _grow(self) -> None:
-        """Twice the rows for events and flights."""
+        """Twice the rows of what lacks some: events and flights, or pieces of paths and works."""
         if len(self._game.events) > MOST_EVENTS:
             raise PuckError(self._failure(CROWDED))
-        more: dict[str, Any] = {
-            name: np.vstack([part, np.zeros_like(part)])
-            for name, part in (("events", self._game.events), ("history", self._game.history))
-        }
+        few, names = 0, ("events", "history")
+        if not lacks_rows(self._game, self._room):
+            few, names = LONGEST, ("pieces", "works")
+        more: dict[str, Any] = {}
+        for name in names:
+            part = getattr(self._game, name)
+            more[name] = np.vstack([part, np.zeros((max(few, len(part)), part.shape[1]))])
         self._game = self._game._replace(**more)
 
     def _events(self, first: int) -> list[Event]:

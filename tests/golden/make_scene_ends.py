@@ -18,6 +18,7 @@ from puck_tables.scene.library import shipped_scenes
 
 FILE = Path(__file__).resolve().parent / "scene_ends.npz"
 COUNT = 1000
+UNKNOWN = 1e-6  # m: what is stated to be further off is nobody's to judge
 
 
 def ends_of(scene: Scene) -> np.ndarray:
@@ -26,6 +27,14 @@ def ends_of(scene: Scene) -> np.ndarray:
     error = run.end_error
     places = [np.atleast_1d(run.last[name]) for name in ("x", "y")]
     return np.column_stack(np.broadcast_arrays(*places, run.end_time, error))
+
+
+def apart(now: np.ndarray, before: np.ndarray) -> np.ndarray:
+    """The gaps of places over three stated errors."""
+    gaps = np.hypot(*(now - before)[:, :2].T)
+    stated = now[:, 3] + before[:, 3]
+    gaps[np.maximum(now[:, 3], before[:, 3]) > UNKNOWN] = 0.0
+    return gaps / (3.0 * stated + 1e-12)
 
 
 def all_ends() -> dict[str, np.ndarray]:

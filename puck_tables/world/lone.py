@@ -1,0 +1,440 @@
+"""A lone puck whose motion is integrated, from where it sets off until something changes.
+
+The equations are those of one puck (:mod:`puck_tables.scene.equations`), by steps of order 8, or of
+Radau IIA where the direction of the slip settles much faster than the slip changes.  Each step is a
+piece of its path, and as long as a polynomial of degree five is as good as the promise.  A
+path ends where the puck comes to rest on the floor or leaves that rest, where its rim has come over
+a border of the floor or slips faster than a friction law goes, at a horizon, and after so many
+steps; whatever else meets it is found on the path.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import inlined, inner, patience
+from puck_tables.scene.equations import (
+    DRY,
+    FIRST,
+    GIVEN,
+    ROW,
+    SIZE,
+    SUPPORT,
+    VISCOUS,
+    rates,
+    settling_rates,
+    slip_rate,
+    slip_speed,
+    to_laboratory,
+)
+from puck_tables.scene.explicit import HALFWAY_STAGES, STAGES
+from puck_tables.scene.forces import Forces
+from puck_tables.scene.friction import SPIN, THETA, VX, VY, X
+from puck_tables.scene.grading import UNIFORM
+from puck_tables.scene.ingredients import (
+    CARRIED,
+    FREE,
+    NO_WAY,
+    SLIDES,
+    STOPS,
+    Body,
+    Dry,
+    Hold,
+    Model,
+    Stretch,
+    floor_velocity,
+    is_astride,
+)
+from puck_tables.scene.moments import NOTHING, REST, cut_short, goes_straight, lost, rests_on
+from puck_tables.scene.standstill import from_standstill
+from puck_tables.scene.step_size import follow_scales, up_to_the_stop
+from puck_tables.scene.steps import accelerations, step
+from puck_tables.world import works
+from puck_tables.world.alone import rows_passed
+from puck_tables.world.footing import dry_under, moves_along, outruns_law, room_on_floor
+from puck_tables.world.game import N_HISTORY, N_PIECES, N_WORKS, Game
+from puck_tables.world.layout import (
+    ACROSS,
+    BY_SPEED,
+    BY_SPIN,
+    DAMPING,
+    HOLD,
+    HOLD_ANGLE,
+    HOLD_REACH,
+    HOLD_VX,
+    HOLD_VY,
+    HOLD_X,
+    HOLD_Y,
+    LIES,
+    LIGHTNESS,
+    PULL_X,
+    PULL_Y,
+    RADIUS,
+    SPIN_DAMPING,
+    SPIN_WAKE,
+    TURNABILITY,
+    TWIST,
+    WAKE,
+)
+from puck_tables.world.paths import DURATION, on_piece
+from puck_tables.world.paths import FIRST as PLACES
+from puck_tables.world.paths import START as BEGINS
+
+LONGEST = 128  # steps of a path, before it ends for a new look
+FINEST = 3e-14  # error of a step in units of the scales: finer is rounding
+COARSER = 10.0  # times that: of a piece, whose errors do not add up
+_BEGIN = 0.1  # of Q/J: the first step
+_SHORTEST = 1e-16  # of Q/J: shorter steps lead nowhere
+_SAFE = 0.8  # of how long a piece could be, by what the last one missed
+_BRIEF = 1e-6  # of Q/J: on as short a step what a piece misses is rounding
+_NEAR = 0.75  # of the time in which the slip would end, at most, is a step
+_LAST = 0.03  # of the root of the error of a step: slips as small may go straight to their stop
+_STIFF, _MILD, _SLOWLY = 0.8, 0.3, 0.1  # as in :mod:`puck_tables.scene.loop`
+_NEWTON, _FINEST_NEWTON = 1e-3, 1e-15  # of the error of a step: how well implicit ones are solved
+_SWING = 0.05  # rad that a puck at rest on a turntable turns, at most, in a step
+_OVER = 1e-12  # of a radius: beyond a border
+# of a polynomial of degree five that is wrong by d in its second derivative in the middle, over h:
+_PLACE, _RATE = 1.0 / 24.0, 0.144  # its places are off by so much d h² at most, its rates d h
+
+
+class Desk(NamedTuple):
+    """Where to work: rows of one array, for each array that comes from Python costs its call.
+
+    Rates of the stages of a step (13, 12), and at its start and end (2, 12) and middle (1, 12);
+    states at its start, its end and in between (12,); scales of a state; a place on a piece; powers
+    at the start, the energies of a step, powers at its end, and the energies half way (4, …); the
+    walls that it leans on: none (0, …).
+    """
+
+    stages: FloatArray
+    ends: FloatArray
+    middle: FloatArray
+    y: FloatArray
+    new: FloatArray
+    trial: FloatArray
+    scale: FloatArray
+    place: FloatArray
+    books: FloatArray
+    leaning: FloatArray
+
+
+_ENDS, _MIDDLE, _STATES = STAGES, STAGES + 2, STAGES + 3
+_BOOKS = _STATES + 5
+DESK_ROWS = _BOOKS + 4
+
+
+@inlined
+def _desk_on(rows: FloatArray) -> Desk:
+    """A desk on rows (25, 12)."""
+    return Desk(
+        rows[:STAGES], rows[_ENDS:_MIDDLE], rows[_MIDDLE:_STATES], rows[_STATES],
+        rows[_STATES + 1], rows[_STATES + 2], rows[_STATES + 3], rows[_STATES + 4],
+        rows[_BOOKS:DESK_ROWS], rows[:0],
+    )  # fmt: skip
+
+
+@inlined
+def _model_of(game: Game, i: int) -> Model:
+    """All that acts on a disc but dry friction."""
+    disc = game.discs[i]
+    mass, inertia = 1.0 / disc[LIGHTNESS], 1.0 / disc[TURNABILITY]
+    drive = game.tides[game.spans[i, 0] : game.spans[i, 1]]
+    forces = Forces(
+        mass * disc[PULL_X], mass * disc[PULL_Y], inertia * disc[TWIST], drive,
+        mass * disc[DAMPING], inertia * disc[SPIN_DAMPING], mass * disc[WAKE],
+        inertia * disc[SPIN_WAKE], mass * disc[ACROSS], disc[BY_SPEED], disc[BY_SPIN],
+    )  # fmt: skip
+    hold = Hold(
+        int(disc[HOLD]), disc[HOLD_X], disc[HOLD_Y], disc[HOLD_REACH], disc[HOLD_ANGLE],
+        disc[HOLD_VX], disc[HOLD_VY],
+    )  # fmt: skip
+    return Model(Body(mass, inertia, disc[RADIUS]), game.surface, forces, hold)
+
+
+@inlined
+def _is_pulled(model: Model) -> bool:
+    """Whether a force acts that is given."""
+    forces = model.forces
+    return forces.x != 0.0 or forces.y != 0.0 or forces.torque != 0.0 or len(forces.drive) > 0
+
+
+@inlined
+def _swings(model: Model, dry: Dry) -> bool:
+    """Whether what the floor has to do for a puck at rest on it changes as it is carried."""
+    surface = model.surface
+    turns = surface.spin != 0.0 and _is_pulled(model)
+    return turns or (is_astride(dry) and moves_along(surface))
+
+
+@inlined
+def _horizon(game: Game, model: Model, t: float) -> float:
+    """Until when a path is followed: what is pulled or carried may get faster for ever."""
+    hold, rows = model.hold, len(model.forces.drive)
+    pulled = rows > 0 and model.forces.drive[rows - 1, 0] > t
+    pulled = pulled or model.forces.x != 0.0 or model.forces.y != 0.0 or model.forces.torque != 0.0
+    if pulled or moves_along(model.surface) or hold.vx != 0.0 or hold.vy != 0.0:
+        return t + 2.0 * game.pace[0] / game.pace[1]
+    return math.inf
+
+
+@inlined
+def _lay_out(game: Game, i: int, model: Model, state: FloatArray, tol: float, desk: Desk) -> None:
+    """The state at the start, relative to the floor, and the scales of errors."""
+    body, speed = model.body, game.pace[0]
+    length, energy = speed * speed / game.pace[1], body.mass * speed * speed
+    slow = max(1.0, 2.0 * body.inertia / (body.mass * body.radius * body.radius))
+    for n in range(SIZE):
+        desk.y[n] = state[n] if n < GIVEN else 0.0
+        desk.scale[n] = length if n < VX else (speed if n < GIVEN else energy)
+    desk.scale[THETA] = length / body.radius
+    desk.scale[SPIN] = speed / (slow * body.radius)
+    follow_scales(desk.scale, tol, body, desk.y)
+    to_laboratory(model, desk.y, -1.0)
+
+
+@inlined
+def _write_piece(model: Model, begin: float, h: float, row: FloatArray, desk: Desk) -> None:
+    """A step as a piece of the path; the rates at its ends are kept."""
+    for n in range(ROW):
+        desk.ends[0, n], desk.ends[1, n] = desk.stages[0, n], desk.stages[STAGES - 1, n]
+    row[BEGINS], row[DURATION] = begin, h
+    for end in range(2):
+        state = desk.y if end == 0 else desk.new
+        ax, ay, turn = accelerations(model, desk.ends, end)
+        first = PLACES + 9 * end
+        for n in range(3):
+            row[first + n], row[first + 3 + n] = state[n], desk.ends[end, n]
+        row[first + 6], row[first + 7], row[first + 8] = ax, ay, turn
+
+
+@inlined
+def _write_work(game: Game, begin: float, h: float, count: int, desk: Desk) -> None:
+    """What a step, after so many others, did to the energies."""
+    row = game.works[game.counts[N_WORKS] + count]
+    before, done, after, half = desk.books[0], desk.books[1], desk.books[2], desk.books[3]
+    for n in range(GIVEN, SIZE):
+        entry = works.PULL_WORK
+        if n == DRY:
+            entry = works.FLOOR_HEAT
+        elif n == VISCOUS:
+            entry = works.DRAG_HEAT
+        elif n == SUPPORT:
+            entry = works.SUPPORT_WORK
+        before[entry], after[entry] = desk.ends[0, n], desk.ends[1, n]
+        done[entry], half[entry] = desk.new[n] - desk.y[n], desk.trial[n]
+    row[works.FLIGHT] = game.counts[N_HISTORY]
+    works.write_work(row, begin, h, before, done, after, half)
+
+
+@inner
+def _misfit(
+    stretch: Stretch, t: float, h: float, piece: FloatArray, tol: float, desk: Desk
+) -> float:
+    """How wrong a piece is in its middle, over what it may be, and what came half way.
+
+    Of an explicit step by what its acceleration there lacks of what acts; of an implicit one, where
+    friction magnifies that, by half a step.
+    """
+    on_piece(piece, t + 0.5 * h, desk.place)
+    trial, place, scale, model = desk.trial, desk.place, desk.scale, stretch.model
+    largest = 0.0
+    if stretch.newton > 0.0:
+        error = step(stretch, t, 0.5 * h, desk.y, scale, desk.stages, trial)
+        if not error < math.inf:
+            return math.inf
+        to_laboratory(model, trial, 1.0)
+        for n in range(GIVEN):
+            largest = max(largest, abs(place[n] - trial[n]) / scale[n])
+        for n in range(GIVEN, SIZE):
+            trial[n] -= desk.y[n]
+        return largest / (COARSER * tol)
+    for n in range(GIVEN):
+        trial[n] = place[n]
+    to_laboratory(model, trial, -1.0)
+    rates(stretch, t + 0.5 * h, trial, desk.middle, FIRST)
+    acts = accelerations(model, desk.middle, 0)
+    for n in range(3):
+        gap = h * abs(place[6 + n] - acts[n])
+        largest = max(largest, _PLACE * h * gap / scale[n], _RATE * gap / scale[VX + n])
+    for n in range(GIVEN, SIZE):
+        total = 0.0
+        for stage in range(STAGES):
+            total += HALFWAY_STAGES[stage] * desk.stages[stage, n]
+        trial[n] = h * total
+    return largest / (COARSER * tol)
+
+
+@inlined
+def _leads_off(game: Game, i: int, desk: Desk) -> bool:
+    """Whether a step has led to where there is another friction, or none is known.
+
+    The rim has come over a border, or left it, or it slips faster than a law goes.
+    """
+    y, radius = desk.new, game.discs[i, RADIUS]
+    if outruns_law(game.regions, radius, y[VX], y[VY], y[SPIN]):
+        return True
+    if game.discs.shape[1] == LIES:
+        return False
+    before = room_on_floor(game.regions, game.discs, i, desk.y) + _OVER * radius
+    return before > 0.0 > room_on_floor(game.regions, game.discs, i, y) + _OVER * radius
+
+
+@inlined
+def _longest(stretch: Stretch, h: float, q: float, speed: float, desk: Desk) -> float:
+    """A step where the slip is about to end, or may turn; at rest, where what holds it changes."""
+    y, surface, radius = desk.y, stretch.model.surface, stretch.model.body.radius
+    if stretch.mode == SLIDES and stretch.dry.load > 0.0:
+        pull, least = slip_rate(radius, desk.stages), REST * speed
+        h, _ = up_to_the_stop(stretch, h, q, least, pull, _NEAR, _NEAR, y, desk.stages)
+    elif stretch.mode == CARRIED:
+        if surface.spin != 0.0:
+            h = min(h, _SWING / abs(surface.spin))
+        if is_astride(stretch.dry):
+            sx, sy, _ = floor_velocity(surface, y[X], y[X + 1])
+            h = min(h, _SWING * radius / max(math.hypot(sx, sy), 1e-300))
+    return h
+
+
+@inlined
+def _is_stiff(model: Model, load: float, stiff: bool, h: float, q: float, pull: float) -> bool:
+    """Whether the direction of the slip settles much faster than it changes."""
+    damps, turns = settling_rates(model, load)
+    settles = h * (damps + turns / q if q > 0.0 else damps)
+    return pull < _SLOWLY * (damps * q + turns) and settles > (_MILD if stiff else _STIFF)
+
+
+@inlined
+def _times_as_long(error: float, tol: float, implicit: bool) -> float:
+    """By how much a step may be longer, or must be shorter, for its error to be right."""
+    if not error < math.inf:
+        return 0.1
+    if error == 0.0:
+        return 5.0
+    return min(max(0.9 * (tol / error) ** (0.25 if implicit else 0.125), 0.1), 5.0)
+
+
+@inlined
+def _piece_for(coarse: float, h: float) -> float:
+    """How long a piece may be, where one over h was wrong by so many times what it may be."""
+    return h * max(0.2, _SAFE * coarse**-0.2) if coarse > 0.0 else math.inf
+
+
+@inlined
+def _is_carried(stretch: Stretch, t: float, h: float, desk: Desk) -> tuple[float, bool]:
+    """How long of a step at rest over h the floor holds the puck, and whether it loses it."""
+    slips = lost(stretch, t, h, desk.y, desk.scale, desk.stages, desk.new)
+    length = min(slips, h)
+    step(stretch, t, length, desk.y, desk.scale, desk.stages, desk.new)
+    return length, slips < math.inf
+
+
+@inlined
+def _go_on_from(model: Model, tol: float, desk: Desk) -> None:
+    """The end of a step is the start of the next."""
+    for n in range(SIZE):
+        desk.y[n] = desk.new[n]
+    for n in range(ROW):
+        desk.stages[0, n] = desk.ends[1, n]
+    follow_scales(desk.scale, tol, model.body, desk.y)
+
+
+@inlined
+def _put_down(model: Model, state: FloatArray, desk: Desk) -> None:
+    """Where it rests, in the laboratory, into ``state`` (6,)."""
+    to_laboratory(model, desk.y, 1.0)
+    for n in range(GIVEN):
+        state[n] = desk.y[n]
+
+
+@inner
+def follow_alone(
+    game: Game, i: int, t: float, state: FloatArray, work: FloatArray
+) -> tuple[bool, float, int]:  # fmt: skip
+    """Follow a disc from its state at t: whether it can be, until when, and by how many pieces.
+
+    They stand after all pieces that there are, and what they did to the energies after all works,
+    uncounted.  Where it rests for good there are none, until inf; ``state`` (6,) is moved to rest.
+    ``work`` (25, 12): to work on.
+    """
+    model, dry, desk = _model_of(game, i), dry_under(game.regions, game.discs, i), _desk_on(work)
+    y, new, stages, leaning = desk.y, desk.new, desk.stages, desk.leaning
+    speed, unit, radius = game.pace[0], game.pace[0] / game.pace[1], model.body.radius
+    tol, drive = max(game.pace[2], FINEST), model.forces.drive
+    _lay_out(game, i, model, state, tol, desk)
+    slow = max(1.0, 2.0 * model.body.inertia / (model.body.mass * radius * radius))
+    straight, horizon = _LAST * math.sqrt(tol) * speed, _horizon(game, model, t)
+    now, passed, h, count, mode, way = t, 0.0, _BEGIN * unit, 0, SLIDES, NO_WAY
+    settle, known, stiff, over, rests = True, False, False, False, False
+    while now < horizon and count < LONGEST and not over:
+        patience(1)
+        rows = rows_passed(drive, 0, len(drive), now)
+        target = min(drive[rows, 0], horizon) if rows < len(drive) else horizon
+        q = slip_speed(radius, y)
+        if settle:
+            before, mode, way = mode, SLIDES, NO_WAY
+            if dry.load > 0.0 and q <= REST * speed:
+                y[VX] = y[VY] = y[SPIN] = 0.0
+                at_rest = Stretch(model, dry, leaning, rows, CARRIED, way, 0.0, UNIFORM, 0.0)
+                mode, stiff, q = from_standstill(at_rest, speed, now, y, stages)
+                rests = mode == CARRIED and not _swings(model, dry)
+                rests = rests and rests_on(model, dry, leaning, rows, y)
+                turns = (mode == CARRIED) != (before == CARRIED)
+                if rests or (turns and count > 0 and now > t):
+                    break
+                h = target - now if mode == CARRIED else h
+        newton = max(_NEWTON * tol, _FINEST_NEWTON) if stiff and mode == SLIDES else 0.0
+        stretch = Stretch(model, dry, leaning, rows, mode, way, newton, UNIFORM, 0.0)
+        if settle or not known:
+            rates(stretch, now, y, stages, FIRST)
+        settle, known = False, True
+        if mode == SLIDES and dry.load > 0.0 and 0.0 < q <= straight:
+            pull = slip_rate(radius, stages)
+            way, _ = goes_straight(stretch, speed, tol, unit, now, q, pull, slow, y, stages)
+            if way[3] < 0.0:
+                mode, h, newton = STOPS, -q / way[3], 0.0
+                stretch = Stretch(model, dry, leaning, rows, mode, way, newton, UNIFORM, 0.0)
+                rates(stretch, now, y, stages, FIRST)
+        h = _longest(stretch, h, q, speed, desk)
+        landed = now + (1.0 if mode == STOPS else 1.1) * h >= target
+        whole = target - now if landed else h
+        error = step(stretch, now, whole, y, desk.scale, stages, new)
+        grows = _times_as_long(error, tol, newton > 0.0)
+        if not error <= tol:
+            h = whole * grows
+            if h < _SHORTEST * unit:
+                break
+            continue
+        stuck, length = cut_short(stretch, now, whole, y, desk.scale, stages, new)
+        if not math.isfinite(new[VX]):  # a shorter implicit step, which was not solved
+            h = 0.25 * length
+            continue
+        slips = False
+        if mode == CARRIED:
+            length, slips = _is_carried(stretch, now, length, desk)
+        landed = landed and stuck == NOTHING and not slips
+        piece = game.pieces[game.counts[N_PIECES] + count]
+        _write_piece(model, now, length, piece, desk)
+        coarse = _misfit(stretch, now, length, piece, tol, desk)
+        longest = _piece_for(coarse, length) if length > _BRIEF * unit else math.inf
+        if coarse > 1.0 and longest < length:
+            h = longest
+            continue
+        h = min(whole * grows, longest)
+        over = _leads_off(game, i, desk)
+        if length > _SHORTEST * unit:
+            _write_work(game, now, length, count, desk)
+            count += 1
+        passed += length
+        now = target if landed else t + passed
+        _go_on_from(model, tol, desk)
+        larger, q = q, slip_speed(radius, y)
+        if mode == SLIDES:
+            stiff = _is_stiff(model, dry.load, newton > 0.0, length, q, slip_rate(radius, stages))
+        settle = landed or slips or mode == STOPS or (q <= REST * speed and q < larger)
+        known = not settle and model.hold.kind == FREE
+    if count > 0 and now > t:
+        return True, now, count
+    _put_down(model, state, desk)
+    return rests, math.inf, 0
