@@ -130,17 +130,17 @@ class StopWork(Work):
             for kind, one in sought.items()
         }
 
-    def _refuse_many(self, sought: Mapping[Kind, Mapping[float, int]]) -> None:
+    def _refuse_many(self, pucks: Mapping[Kind, Mapping[float, int]]) -> None:
         """Refuse more pucks than can be prepared."""
         wanted = 0
-        for kind, one in sought.items():
+        for kind, one in pucks.items():
             heights = np.array(list(one))
             others = heights[self._solver(kind).needs_preparation(heights)]
             refuse_many(others)
             wanted += others.size
-        if max(wanted, len(sought)) > MOST_HEIGHTS:
+        if max(wanted, len(pucks)) > MOST_HEIGHTS:
             raise InputError(
-                f"{max(wanted, len(sought))} different pucks or more (of pressure, gyration, delta) "
+                f"{max(wanted, len(pucks))} different pucks or more (of pressure, gyration, delta) "
                 f"are too many, each takes about a second to prepare: give at most {MOST_HEIGHTS}"
             )
 
