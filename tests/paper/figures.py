@@ -20,7 +20,7 @@ from paper.shapes import SPIN, ends_against_spin
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.closed_form import by_closed_form, integrals
 from puck_tables.motion.limits import limit_angle
-from puck_tables.plot.panels import Panel, Picture, PlotCurve
+from puck_tables.plot.panels import Panel, Picture, PlotLine
 from puck_tables.puck import Puck
 
 FAMILY = (0.0, 0.25, 0.5, 0.75, 1.0)
@@ -39,10 +39,10 @@ def limit_angles() -> Picture:
 
     Examples
     --------
-    >>> limit_angles().panels[0].curves[0].y[[0, -1]].round(6).tolist()
+    >>> limit_angles().panels[0].lines[0].y[[0, -1]].round(6).tolist()
     [0.992314, 0.975465]
     """
-    curve = PlotCurve(HEIGHTS, limit_angle(HEIGHTS))
+    curve = PlotLine(HEIGHTS, limit_angle(HEIGHTS))
     return Picture(
         "Slip angle at the stop of every puck that slides and spins (Fig. 2)",
         [Panel("height δ = 2fh/r", "limit angle φ₀ / rad", [curve])],
@@ -54,21 +54,21 @@ def paths(delta: float = 1.0) -> Picture:
 
     Examples
     --------
-    >>> x = paths().panels[0].curves[-1].x  # v = 5, ω = 25: 25 times the path of v = 1, ω = 5
+    >>> x = paths().panels[0].lines[-1].x  # v = 5, ω = 25: 25 times the path of v = 1, ω = 5
     >>> float((x[-1] / 25.0).round(6))
     2.257241
     """
-    curves = []
+    lines = []
     for speed, spin in LAUNCHES:
         run = Puck.similar(delta=delta).simulate((speed, 0.0), spin, exact=True, frames=400)
-        curves.append(PlotCurve(run.x, run.y, f"v = {speed:g}, ω = {spin:g} ({run.regime})"))
+        lines.append(PlotLine(run.x, run.y, f"v = {speed:g}, ω = {spin:g} ({run.regime})"))
     return Picture(
         f"Paths of the centre: counter-clockwise spin bends them right (Fig. 3; δ = {delta:g})",
         [
             Panel(
                 "x / r",
                 "y / r  (stretched)",
-                curves,
+                lines,
                 "v in units of √(rJ), ω of √(J/r); type B: launched spin-rich, C: spin-poor",
             )
         ],
@@ -80,35 +80,35 @@ def stops_against_spin(delta: float = 1.0) -> Picture:
 
     Examples
     --------
-    >>> [round(float(curve.y[20]), 6) for curve in stops_against_spin().panels[0].curves]
+    >>> [round(float(curve.y[20]), 6) for curve in stops_against_spin().panels[0].lines]
     [4.000189, 2.257241, -0.308477]
     """
     labels = ("time $t_0$ / √(r/J)", "place $x_0$ / r", "place $y_0$ / r")
-    curves = [
-        PlotCurve(SPIN, values, label)
+    lines = [
+        PlotLine(SPIN, values, label)
         for label, values in zip(labels, ends_against_spin(simulate, delta), strict=True)
     ]
     return Picture(
         f"Stop of a puck launched with v = (1, 0)√(rJ) (Fig. 4; δ = {delta:g})",
-        [Panel("launch spin ω(0) / √(J/r)", "at the stop (dimensionless)", curves)],
+        [Panel("launch spin ω(0) / √(J/r)", "at the stop (dimensionless)", lines)],
     )
 
 
 def ratio_against_time(
     radius: float, height: float, friction: float, duration: float, frames: int = 400
-) -> tuple[float, list[PlotCurve]]:
+) -> tuple[float, list[PlotLine]]:
     """ε = rω/v against time (s) of a real puck, for launches that all stop after ``duration``.
 
     Returns its δ and the curves, the last one the limit ratio.
 
     Examples
     --------
-    >>> delta, curves = ratio_against_time(0.03, 0.019, 0.2, 0.52)
-    >>> round(delta, 6), round(float(curves[-1].y[0]), 6)
+    >>> delta, lines = ratio_against_time(0.03, 0.019, 0.2, 0.52)
+    >>> round(delta, 6), round(float(lines[-1].y[0]), 6)
     (0.253333, 1.526615)
     """
     puck = Puck(radius, height, friction)
-    curves = []
+    lines = []
     for ratio in (6.0, 3.0, 0.75, 0.25):
         trial = puck.simulate((1.0, 0.0), ratio / radius, exact=True, frames=1)
         speed = duration / trial.stop_time  # times are proportional to speeds
@@ -116,11 +116,11 @@ def ratio_against_time(
         times = duration * (1.0 - np.linspace(1.0, 0.0, frames, endpoint=False) ** 2)
         run = puck.simulate((speed, 0.0), spin, exact=True, times=times)
         label = f"v = {speed:.2g} m/s, ω = {spin:.2g} rad/s"
-        curves.append(PlotCurve(run.time, radius * run.spin / run.speed, label))
+        lines.append(PlotLine(run.time, radius * run.spin / run.speed, label))
     ends = np.array([0.0, duration])
     limit = puck.limit_ratio
-    curves.append(PlotCurve(ends, np.full(2, limit), f"limit {limit:.3f}", dashed=True))
-    return puck.delta, curves
+    lines.append(PlotLine(ends, np.full(2, limit), f"limit {limit:.3f}", dashed=True))
+    return puck.delta, lines
 
 
 def steel_puck() -> Picture:
@@ -131,15 +131,15 @@ def steel_puck() -> Picture:
     >>> len(steel_puck().panels)
     2
     """
-    delta, curves = ratio_against_time(0.030, 0.019, 0.2, 0.52)
+    delta, lines = ratio_against_time(0.030, 0.019, 0.2, 0.52)
     early = [
-        PlotCurve(c.x[c.x <= 0.44], c.y[c.x <= 0.44], c.label) for c in curves[:-1]
-    ] + [PlotCurve(np.array([0.0, 0.44]), curves[-1].y, curves[-1].label, dashed=True)]  # fmt: skip
+        PlotLine(c.x[c.x <= 0.44], c.y[c.x <= 0.44], c.label) for c in lines[:-1]
+    ] + [PlotLine(np.array([0.0, 0.44]), lines[-1].y, lines[-1].label, dashed=True)]  # fmt: skip
     label = "ε = rω/v"
     return Picture(
         f"Steel puck, 60 mm × 19 mm, in theory (Fig. 5; f = 0.2 assumed: δ = {delta:.3f})",
         [
-            Panel("time / s", label, curves, "(a) to the stop after 0.52 s"),
+            Panel("time / s", label, lines, "(a) to the stop after 0.52 s"),
             Panel("time / s", label, early, "(b) up to 0.44 s"),
         ],
         height=3.6,
@@ -151,13 +151,13 @@ def rubber_puck() -> Picture:
 
     Examples
     --------
-    >>> float(rubber_puck().panels[0].curves[-1].x[-1])
+    >>> float(rubber_puck().panels[0].lines[-1].x[-1])
     0.38
     """
-    delta, curves = ratio_against_time(0.037, 0.025, 0.6, 0.38)
+    delta, lines = ratio_against_time(0.037, 0.025, 0.6, 0.38)
     return Picture(
         f"Rubber puck, 74 mm × 25 mm, in theory (Fig. 6; f = 0.6 assumed: δ = {delta:.3f})",
-        [Panel("time / s", "ε = rω/v", curves, "to the stop after 0.38 s")],
+        [Panel("time / s", "ε = rω/v", lines, "to the stop after 0.38 s")],
     )
 
 
@@ -166,18 +166,18 @@ def patch_integrals() -> Picture:
 
     Examples
     --------
-    >>> [float(curve.y[0].round(12)) for curve in patch_integrals().panels[0].curves]
+    >>> [float(curve.y[0].round(12)) for curve in patch_integrals().panels[0].lines]
     [1.0, 0.25, 0.0, 0.25, -0.25]
     """
     p = integrals(PHI)._asdict()
-    curves = [PlotCurve(PHI, values, f"$p_{name}$") for name, values in p.items()]
+    lines = [PlotLine(PHI, values, f"$p_{name}$") for name, values in p.items()]
     return Picture(
         "The five integrals of the contact patch, uniform pressure (Fig. 7)",
-        [Panel(PHI_LABEL, "dimensionless", curves, x_ticks=QUARTER_TICKS)],
+        [Panel(PHI_LABEL, "dimensionless", lines, x_ticks=QUARTER_TICKS)],
     )
 
 
-def family(function: Callable[[float], FloatArray]) -> list[PlotCurve]:
+def family(function: Callable[[float], FloatArray]) -> list[PlotLine]:
     """A function of φ at five heights, light to dark.
 
     Examples
@@ -185,7 +185,7 @@ def family(function: Callable[[float], FloatArray]) -> list[PlotCurve]:
     >>> [curve.label for curve in family(lambda delta: 0.0 * PHI)][:2]
     ['δ = 0', 'δ = 0.25']
     """
-    return [PlotCurve(PHI, function(delta), f"δ = {delta:g}", shade=delta) for delta in FAMILY]
+    return [PlotLine(PHI, function(delta), f"δ = {delta:g}", shade=delta) for delta in FAMILY]
 
 
 def pressure_reserves() -> Picture:
@@ -193,14 +193,14 @@ def pressure_reserves() -> Picture:
 
     Examples
     --------
-    >>> [float(curve.y[0]) for curve in pressure_reserves().panels[0].curves]
+    >>> [float(curve.y[0]) for curve in pressure_reserves().panels[0].lines]
     [1.0, 0.9375, 0.75, 0.4375, 0.0]
     """
     label = r"$p_Δ^2 - δ^2\,\cos^2φ\;p_a^2\,(1 + δ^2\,\sin^2φ\;p_b^2)$"
-    curves = family(lambda delta: pressure_reserve(integrals, PHI, delta))
+    lines = family(lambda delta: pressure_reserve(integrals, PHI, delta))
     return Picture(
         "Pressure is positive on the whole base where this function is (Fig. 8)",
-        [Panel(PHI_LABEL, label, curves, x_ticks=QUARTER_TICKS)],
+        [Panel(PHI_LABEL, label, lines, x_ticks=QUARTER_TICKS)],
     )
 
 
@@ -209,7 +209,7 @@ def friction_along_and_spin() -> Picture:
 
     Examples
     --------
-    >>> [float(panel.curves[-1].y[0]) for panel in friction_along_and_spin().panels]
+    >>> [float(panel.lines[-1].y[0]) for panel in friction_along_and_spin().panels]
     [1.0, 0.375]
     """
     along = family(lambda delta: by_closed_form(PHI, delta).parallel)
@@ -229,7 +229,7 @@ def friction_across() -> Picture:
 
     Examples
     --------
-    >>> float(friction_across().panels[0].curves[-1].y[0])
+    >>> float(friction_across().panels[0].lines[-1].y[0])
     0.25
     """
     across = family(lambda delta: by_closed_form(PHI, delta).perpendicular)
@@ -244,24 +244,24 @@ def phase_portrait(delta: float = 1.0) -> Picture:
 
     Examples
     --------
-    >>> phase_portrait().panels[0].curves[3].x.round(6).tolist()  # the attractors
+    >>> phase_portrait().panels[0].lines[3].x.round(6).tolist()  # the attractors
     [-0.975465, 0.975465]
     """
     phi = np.linspace(-0.5 * math.pi, 0.5 * math.pi, 601)
     limit, end = float(limit_angle(delta)), 0.5 * math.pi
     attractors, repellers = np.array([-limit, limit]), np.array([-end, 0.0, end])
     right = np.array([-0.5 * (limit + end), 0.5 * limit])
-    curves = [
-        PlotCurve(phi, slip_angle_rate(by_closed_form, phi, delta), "rate dφ/dτ"),
-        PlotCurve(right, 0.0 * right, "φ grows", marker=">"),
-        PlotCurve(-right, 0.0 * right, "φ falls", marker="<"),
-        PlotCurve(attractors, 0.0 * attractors, "attracts: ±φ₀", marker="o"),
-        PlotCurve(repellers, 0.0 * repellers, "repels: 0, ±π/2", marker="o", hollow=True),
+    lines = [
+        PlotLine(phi, slip_angle_rate(by_closed_form, phi, delta), "rate dφ/dτ"),
+        PlotLine(right, 0.0 * right, "φ grows", marker=">"),
+        PlotLine(-right, 0.0 * right, "φ falls", marker="<"),
+        PlotLine(attractors, 0.0 * attractors, "attracts: ±φ₀", marker="o"),
+        PlotLine(repellers, 0.0 * repellers, "repels: 0, ±π/2", marker="o", hollow=True),
     ]
     ticks = {-end: "-π/2", -limit: "-φ₀", 0.0: "0", limit: "φ₀", end: "π/2"}
     return Picture(
         f"Every generic motion goes to ±φ₀ (Fig. 11; δ = {delta:g}, Q dτ = J dt)",
-        [Panel(PHI_LABEL, "dφ/dτ (dimensionless)", curves, x_ticks=ticks)],
+        [Panel(PHI_LABEL, "dφ/dτ (dimensionless)", lines, x_ticks=ticks)],
     )
 
 

@@ -15,20 +15,20 @@ from paper import figures
 
 def test_stops_of_figure_4_and_paths_of_figure_3():
     for delta in (0.0, 1.0):
-        curves = figures.stops_against_spin(delta).panels[0].curves
+        lines = figures.stops_against_spin(delta).panels[0].lines
         for spin in (1.0, 5.0):
-            at = np.flatnonzero(curves[0].x == spin)[0]
-            found = [float(curve.y[at]) for curve in curves]
+            at = np.flatnonzero(lines[0].x == spin)[0]
+            found = [float(curve.y[at]) for curve in lines]
             assert found == pytest.approx(REFERENCE_RUNS[delta, spin], abs=1e-10)
-    spin_rich = figures.paths().panels[0].curves[-1]  # v = 5, ω = 25
+    spin_rich = figures.paths().panels[0].lines[-1]  # v = 5, ω = 25
     assert spin_rich.x[-1] == pytest.approx(25 * 2.257241156461, abs=1e-7)
     assert spin_rich.y[-1] == pytest.approx(-25 * 0.308477350409, abs=1e-7)
-    labels = [curve.label[-3:] for curve in figures.paths().panels[0].curves]
+    labels = [curve.label[-3:] for curve in figures.paths().panels[0].lines]
     assert set(labels) == {"(B)", "(C)"}
 
 
 def test_limit_angle_of_figure_2():
-    curve = figures.limit_angles().panels[0].curves[0]
+    curve = figures.limit_angles().panels[0].lines[0]
     at = {0.0: 0.992313778946643533, 0.5: 0.987079101411475736, 1.0: 0.975464553235532779}
     for delta, angle in at.items():
         assert curve.y[np.flatnonzero(curve.x == delta)[0]] == pytest.approx(angle, abs=1e-14)
@@ -39,14 +39,14 @@ def test_limit_angle_of_figure_2():
     ("figure", "duration"), [(figures.steel_puck, 0.52), (figures.rubber_puck, 0.38)]
 )
 def test_ratios_of_figures_5_and_6(figure: Callable[[], Any], duration: float):
-    *curves, limit = figure().panels[0].curves
-    for curve in curves:
+    *lines, limit = figure().panels[0].lines
+    for curve in lines:
         assert curve.x[0] == 0.0
         assert duration * 0.9999 < curve.x[-1] < duration
         assert abs(curve.y[-1] / limit.y[0] - 1.0) < 0.01
         assert np.all(np.diff(np.abs(curve.y - limit.y[0])) < 0.0)
     # the launch that the label names stops when it should
-    speed, spin = (float(part.split(" = ")[1].split()[0]) for part in curves[1].label.split(","))
+    speed, spin = (float(part.split(" = ")[1].split()[0]) for part in lines[1].label.split(","))
     radius, height, f = (0.03, 0.019, 0.2) if duration == 0.52 else (0.037, 0.025, 0.6)
     run = simulate(
         (speed, 0.0), spin, radius=radius, delta=2 * f * height / radius, decel=f * 9.80665
@@ -56,14 +56,14 @@ def test_ratios_of_figures_5_and_6(figure: Callable[[], Any], duration: float):
 
 def test_surfaces_of_figures_7_to_10():
     at = lambda curve, phi: float(np.interp(phi, curve.x, curve.y))  # noqa: E731
-    p = figures.patch_integrals().panels[0].curves
+    p = figures.patch_integrals().panels[0].lines
     ends_of = {"a": (1, 1), "b": (1 / 4, 1 / 3), "c": (0, -1 / 3), "d": (1 / 4, 2 / 3),
                "e": (-1 / 4, 0)}  # fmt: skip
     for curve, (first, last) in zip(p, ends_of.values(), strict=True):
         assert (at(curve, 0.0), at(curve, np.pi / 2)) == pytest.approx((first, last), abs=1e-14)
-    reserve = figures.pressure_reserves().panels[0].curves
-    along, spin = (panel.curves for panel in figures.friction_along_and_spin().panels)
-    across = figures.friction_across().panels[0].curves
+    reserve = figures.pressure_reserves().panels[0].lines
+    along, spin = (panel.lines for panel in figures.friction_along_and_spin().panels)
+    across = figures.friction_across().panels[0].lines
     for i, delta in enumerate(figures.FAMILY):
         assert at(reserve[i], 0.0) == pytest.approx(1.0 - delta**2, abs=1e-14)
         assert at(reserve[i], np.pi / 2) == pytest.approx((1.0 + delta**2 / 9) ** 2, abs=1e-14)
@@ -73,7 +73,7 @@ def test_surfaces_of_figures_7_to_10():
 
 
 def test_phase_portrait_of_figure_11():
-    rate, grows, falls, attracts, repels = figures.phase_portrait().panels[0].curves
+    rate, grows, falls, attracts, repels = figures.phase_portrait().panels[0].lines
     for arrows, sign in ((grows, 1.0), (falls, -1.0)):
         assert np.all(sign * np.interp(arrows.x, rate.x, rate.y) > 0.0)
     for points, slope in ((attracts, -1.0), (repels, 1.0)):
