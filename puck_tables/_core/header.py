@@ -14,7 +14,7 @@ def header_of(form: TextForm, names: Callable[[list[str]], bool]) -> list[list[s
 
     Parameters
     ----------
-    look : how it is written
+    form : how it is written
     names : whether cells are names of columns: those of the last comment may be, where there are no
         others
 

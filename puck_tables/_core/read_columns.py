@@ -92,7 +92,7 @@ def numbers_of(
 
     Parameters
     ----------
-    given : name of a file, or rows in SI units
+    entries : name of a file, or rows in SI units
     columns : those that are wanted
     needed : how many of them, the first, must be there
     most : bytes that a file may have

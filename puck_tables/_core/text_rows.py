@@ -39,7 +39,7 @@ def read_columns(
     Parameters
     ----------
     path : the file
-    look : how it is written
+    form : how it is written
     numbers, texts : which columns, from 0
     content : of the file, if it has been read
 

@@ -185,7 +185,7 @@ def client_of(name_or_place: str) -> Iterator[Any]:
 
     Parameters
     ----------
-    given : see :func:`checked_address`
+    name_or_place : see :func:`checked_address`
 
     Raises
     ------

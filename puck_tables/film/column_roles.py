@@ -69,7 +69,7 @@ def headed(path: str | Path, form: TextForm, columns: str | None) -> list[list[s
     Parameters
     ----------
     path : the file, for messages
-    look : how it is written
+    form : how it is written
     columns : names with commas in place of those in the file; empty for '-'
 
     Raises

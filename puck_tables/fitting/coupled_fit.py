@@ -156,12 +156,12 @@ def not_met(impacts: Sequence[Impact], problem: Problem, lines: Sequence[Line]) 
         return ("No impact was found: each track is taken for one slide",)
     if not problem.impact_specs:  # nothing is joined at walls
         return ()
-    impact_at = [wall for wall in problem.walls if wall is not None]
+    walls = [wall for wall in problem.walls if wall is not None]
     return tuple(
         f"No impact was found on the wall through ({ax:g}, {ay:g}) and ({bx:g}, {by:g}): see that "
         "its points are in m, along the axes of the tracks"
         for (ax, ay), (bx, by) in lines
-        if not any(_through(wall, ax, ay) and _through(wall, bx, by) for wall in impact_at)
+        if not any(_through(wall, ax, ay) and _through(wall, bx, by) for wall in walls)
     )
 
 

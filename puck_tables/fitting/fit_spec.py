@@ -59,7 +59,7 @@ class FitSpec:
     bounds : (low, high) by name
     start : values to begin with, besides those that the tracks suggest
     freed : names that are found since they have a prior or bounds
-    met : what is taken of the impacts that there are, by name, where nothing else is said
+    of_impacts : what is taken of the impacts that there are, by name, where nothing else is said
 
     speeds : slip speeds (m/s) at which friction coefficients are found, friction_0 and so on
     between : cubic or linear, f between these speeds
@@ -86,7 +86,7 @@ class FitSpec:
     bounds: Mapping[str, tuple[float, float]]
     start: Mapping[str, float]
     freed: tuple[str, ...] = ()
-    impact_at: Mapping[str, float] = field(default_factory=dict)
+    of_impacts: Mapping[str, float] = field(default_factory=dict)
     speeds: tuple[float, ...] = ()
     between: str = "cubic"
 
@@ -192,7 +192,7 @@ class FitSpec:
         numbers["drag"] = 0.0
         if _is_annulus(puck):
             numbers["inner"] = float(puck.body.law.name.partition(":")[2])
-        return {**numbers, **self.impact_at, **{n: v for n, v in self.fixed.items() if n in PUCK}}
+        return {**numbers, **self.of_impacts, **{n: v for n, v in self.fixed.items() if n in PUCK}}
 
     def scales(self, result: Mapping[str, Any]) -> tuple[Any, Any, Any]:
         """J, δ and r of what is found; of complex numbers, too."""
@@ -216,7 +216,7 @@ class FitSpec:
         """The same without the numbers of impacts: of slides that nothing joins."""
         own = tuple(name for name in self.free if name not in OF_IMPACTS)
         priors = {name: one for name, one in self.priors.items() if name not in OF_IMPACTS}
-        return replace(self, free=own, priors=priors, impact_at={})
+        return replace(self, free=own, priors=priors, of_impacts={})
 
     def spinning(self, spin: float) -> FitSpec:
         """The same with the launch spin (rad/s) held."""
@@ -237,7 +237,7 @@ class FitSpec:
         InputError
             If a number of impacts is named that are not there.
         """
-        free, impact_at = list(self.alone().free), {}
+        free, of_impacts = list(self.alone().free), {}
         named = [name for name in self.free if name in OF_IMPACTS]
         for size, numbers, what in ((1, OF_WALLS, "a wall"), (2, OF_PAIRS, "two pucks")):
             if size not in sizes:
@@ -249,10 +249,10 @@ class FitSpec:
             rub = tangential if grips and friction not in named else friction
             mine = [name for name in numbers if name in (restitution, rub, *named)]
             free += [name for name in mine if name not in self.fixed]
-            impact_at.update(
+            of_impacts.update(
                 {n: v for n, v in numbers.items() if n not in mine and math.isfinite(v)}
             )
-        return replace(self, free=tuple(free), impact_at=impact_at)
+        return replace(self, free=tuple(free), of_impacts=of_impacts)
 
     def rims(self, result: Mapping[str, float], pair: bool) -> Rims:
         """How rims meet, of two pucks or of one and a wall."""

@@ -101,7 +101,7 @@ def impact_at(
     ----------
     moving, gyration : of the pucks; radius of gyration over r
     rims : of what meets
-    meeting : about when
+    impact_spec : about when
     before : the slides of its tracks
     wall : of one track; None of two
 

@@ -229,10 +229,10 @@ def coupled(
             if given is None or given[0] not in numbers:
                 if given is not None:
                     numbers[given[0]] = len(walls)
-                impact_at = given[1] if given else _wall(match_, radius)
+                met_wall = given[1] if given else _wall(match_, radius)
                 number = len(walls)
                 walls.append(given[1] if given else None)
-                starts.append(impact_at)
+                starts.append(met_wall)
             else:
                 number = numbers[given[0]]
         films_met = tuple(home[one.piece] for one in match_.kinks_of_slides)

@@ -57,7 +57,7 @@ def misfit(result: Estimate, problem: Problem, known: Known, speeds: bool) -> st
 
     Parameters
     ----------
-    found : the estimate of slides that do not fit
+    result : the estimate of slides that do not fit
     problem : what was asked, with all frames
     known : whether the noise of places, of angles and of time stamps is
     speeds : whether a friction over slip speed does not fit, either

@@ -27,7 +27,7 @@ _APART = 1e-2  # starts that are nearer have met
 
 def multi_start(
     starts: list[tuple[Problem, FloatArray]], rounds: tuple[tuple[int, int], ...],
-    scale: float = math.inf, minimum: float = 0.0, kept: npt.NDArray[np.bool_] | None = None,
+    scale: float = math.inf, allowance: float = 0.0, kept: npt.NDArray[np.bool_] | None = None,
     held: int | None = None,
 ) -> list[tuple[FloatArray, float]]:  # fmt: skip
     """Unknowns at the deepest minima that starts lead to, and the cost there, the deepest first.
@@ -39,7 +39,7 @@ def multi_start(
     starts : problems of the same residuals, each with unknowns
     rounds : steps, and how many starts go on after them
     scale : s; residuals r count as ½ s² ln(1 + (r/s)²), with s at least twice their median
-    rival : what a start may cost more than the best and goes on, however many do
+    allowance : what a start may cost more than the best and goes on, however many do
     kept : residuals that count, all where it is left out
     held : an unknown that stays
     """
@@ -51,7 +51,7 @@ def multi_start(
                     walker.step()
         walkers.sort(key=lambda one: one.cost)
         walkers = _apart(walkers)
-        near = sum(one.cost < walkers[0].cost + minimum for one in walkers)
+        near = sum(one.cost < walkers[0].cost + allowance for one in walkers)
         walkers = walkers[: max(most, near)]
     return [(walker.x, walker.cost) for walker in walkers]
 

@@ -23,8 +23,8 @@ def outliers_of(
 
     Parameters
     ----------
-    off : (n, k), residuals of each frame in units of the noise
-    far : (n,), whether they are so large that the frame seems to be none of the motion
+    deviations : (n, k), residuals of each frame in units of the noise
+    outlying : (n,), whether they are so large that the frame seems to be none of the motion
     limit : of the square of residuals, from which on they are
 
     Examples

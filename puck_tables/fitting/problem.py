@@ -53,7 +53,7 @@ class Problem(Unknowns):
     whole : angles of each track in one piece (None: only up to whole turns)
     rests : whether the puck of each track rests until it is hit
     walls : that are met, None for those to be found
-    meetings : impacts, in the order of time (s after the start of the first track)
+    impact_specs : impacts, in the order of time (s after the start of the first track)
     jitter : standard deviation of time stamps, s
     weights : what makes residuals of each track's frames independent (n, 3, 3); empty: the noise
     """

@@ -77,7 +77,7 @@ def likeliest(
     ----------
     noise, jitter : to begin with, or as given
     known : which is given
-    off : (3, n), m and rad, NaN where no angle is
+    deviations : (3, n), m and rad, NaN where no angle is
     rates : (3, n)
     kept : (3, n), whether the place along the motion, the angle, the place across it count
     share : of the squares that the unknowns have left

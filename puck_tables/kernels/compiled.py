@@ -54,7 +54,7 @@ _dispatchers: dict[tuple[Any, bool], Any] = {}
 
 
 class KernelDoor(Protocol):
-    """What is read of a :class:`puck_tables.kernels.doors.KernelDoor`, which stands above."""
+    """What is read of a :class:`puck_tables.kernels.doors.Door`, which stands above."""
 
     py_func: Any
     counts: bool

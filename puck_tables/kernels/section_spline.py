@@ -8,7 +8,7 @@ direction of (v, r|ω|),
 
 A section is a matrix with one row a side, in the order of φ: :data:`HEADER` numbers, then the
 B-spline weights over 6 of its functions, node by node.  A plain puck has one line, φ = π/4, and
-extents of 1 (:func:`puck_tables.kernels.quadratic.section`): marked in the header, because then
+extents of 1 (:func:`puck_tables.kernels.quadratic.section_at`): marked in the header, because then
 η⁴ = |r|ω| − v|/(r|ω| + v) keeps more digits.
 """
 

@@ -79,7 +79,7 @@ class LaunchFamily:
     body : Body
     u : array (n,), ascending; between two all three quantities are monotonic
     values : array (n, 3)
-    pieces : array (m, 26), see :mod:`puck_tables.stopping.aim_lookup`; none of a plain puck
+    limits : array (m, 26), see :mod:`puck_tables.stopping.aim_lookup`; none of a plain puck
     fit : array (m,), which of them fit the curve
     """
 

@@ -143,7 +143,7 @@ def ranged(chosen: Mapping[str, Any], laws: Any) -> Population:
 
     Parameters
     ----------
-    given : by the names of arguments: numbers, or lists (n,)
+    chosen : by the names of arguments: numbers, or lists (n,)
     laws : a pressure law, or a list of them
 
     Raises
@@ -197,7 +197,7 @@ def labelled(launches: Any, chosen: Mapping[str, Any], laws: Any) -> Population:
     Parameters
     ----------
     launches : xarray.Dataset with variables named as in results: launch_speed, launch_spin, …
-    given : further numbers
+    chosen : further numbers
 
     Raises
     ------

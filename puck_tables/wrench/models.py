@@ -115,7 +115,7 @@ def ellipsoid(section: FloatArray, unit: float, radius: float) -> SurfaceModel:
 
     Parameters
     ----------
-    curve : array (4, n)
+    section : array (4, n)
         F over ``unit``, M over ``unit·radius``, and the outward normals of that curve.
 
     Examples
