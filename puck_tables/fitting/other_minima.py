@@ -191,7 +191,9 @@ def _of_other_spins(result: Estimate) -> list[FloatArray]:
         ]
         found_numbers = numbers_with(problem.spec, decel * shares[1] / shares[0], tilt)
         starts.append(problem.unknowns({**numbers, **found_numbers}, other))
-    walked = multi_start([(problem, x) for x in starts], _TO_OTHERS, minimum=RISE, kept=result.kept)
+    walked = multi_start(
+        [(problem, x) for x in starts], _TO_OTHERS, allowance=RISE, kept=result.kept
+    )
     return [x for x, cost in walked if 2.0 * cost < result.chi2 + 2.0 * RISE]
 
 
