@@ -16,7 +16,6 @@ from puck_tables.cli.options import (
     SPEED,
     SPIN,
     TIME,
-    Vector,
     body_options,
     chosen_puck,
     deliver,
@@ -26,6 +25,7 @@ from puck_tables.cli.options import (
     puck_options,
 )
 from puck_tables.cli.scene_run import files_read, scene_options, scene_tables
+from puck_tables.cli.values import Vector
 
 from puck_tables.errors import InputError
 from puck_tables.kernels.patience import one_question

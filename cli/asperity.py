@@ -10,14 +10,13 @@ import click
 from puck_tables.cli.options import (
     FILE,
     LENGTH,
-    NumberParam,
-    RangeParam,
     deliver,
     note,
     output_options,
     prepare_outputs,
     progress,
 )
+from puck_tables.cli.values import NumberParam, RangeParam
 
 from puck_tables.errors import InputError
 
@@ -75,7 +74,7 @@ def asperity(
     import numpy as np
 
     from puck_tables.chetaev.asperity_forces import asperity_curve
-    from puck_tables.chetaev.wavy_support import Asperity
+    from puck_tables.chetaev.asperity_shape import Asperity
     from puck_tables.io.csv import encode
     from puck_tables.motion.body import STANDARD_GRAVITY
 

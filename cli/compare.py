@@ -11,7 +11,6 @@ from puck_tables.cli.completion import cases
 from puck_tables.cli.options import (
     FILE,
     TIME,
-    Times,
     deliver,
     explain_option,
     json_option,
@@ -20,6 +19,7 @@ from puck_tables.cli.options import (
     prepare_outputs,
     reported,
 )
+from puck_tables.cli.values import Times
 
 if TYPE_CHECKING:
     from puck_tables.reference.comparison import Comparison

@@ -13,7 +13,6 @@ from puck_tables.cli.options import (
     LENGTH,
     NUMBER,
     TIME,
-    NumberParam,
     body_options,
     deliver,
     explain_option,
@@ -25,6 +24,7 @@ from puck_tables.cli.options import (
     reported,
 )
 from puck_tables.cli.track_options import read_all, track_options
+from puck_tables.cli.values import NumberParam
 
 from puck_tables.errors import InputError
 

@@ -12,7 +12,6 @@ from puck_tables.cli.options import (
     FILE,
     NUMBER,
     TIME,
-    Times,
     deliver,
     explain_option,
     json_option,
@@ -20,6 +19,7 @@ from puck_tables.cli.options import (
     prepare_outputs,
     reported,
 )
+from puck_tables.cli.values import Times
 
 from puck_tables.errors import InputError
 from puck_tables.kernels.patience import one_question

@@ -14,8 +14,6 @@ from puck_tables.cli.options import (
     FILE,
     NUMBER,
     SPIN,
-    Times,
-    Vector,
     body_options,
     chosen_puck,
     deliver,
@@ -31,6 +29,7 @@ from puck_tables.cli.options import (
     table_option,
 )
 from puck_tables.cli.scene_run import files_read, run_scene, scene_options, scene_tables
+from puck_tables.cli.values import Times, Vector
 
 from puck_tables.accuracy.methods import INTEGRATORS
 from puck_tables.errors import InputError

@@ -8,10 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 from puck_tables.cli.options import (
     FILE,
-    MAX_COUNT,
     NUMBER,
-    RangeParam,
-    Vector,
     body_options,
     chosen_puck,
     explain_option,
@@ -23,6 +20,7 @@ from puck_tables.cli.options import (
 )
 from puck_tables.cli.scene_run import files_read, scene_options, scene_tables, summary_of_map
 from puck_tables.cli.sweep_options import Whole, chosen_laws, chosen_spreads, samples_checked
+from puck_tables.cli.values import MAX_COUNT, RangeParam, Vector
 
 from puck_tables.accuracy.methods import METHODS
 from puck_tables.errors import InputError

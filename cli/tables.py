@@ -13,7 +13,7 @@ from puck_tables.errors import InputError
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from puck_tables.table.table_cache import KeptTable
+    from puck_tables.table.table_list import KeptTable
 
 
 @click.command()
@@ -33,7 +33,7 @@ def tables(as_json: bool, names: tuple[str, ...], clean: bool) -> None:
     """  # noqa: D301 - click reads the backspace
     if clean + bool(names) + as_json > 1:
         raise InputError("--json, --remove and --clean clash: give one of them")
-    from puck_tables.table import table_cache
+    from puck_tables.table import table_cache, table_list
 
     if names:
         kept = {path.name: path for path in table_cache.kept_files()}
@@ -44,7 +44,7 @@ def tables(as_json: bool, names: tuple[str, ...], clean: bool) -> None:
     elif clean:
         _remove([*table_cache.kept_files(), *table_cache.leftovers()])
     else:
-        entries = table_cache.shipped_and_kept()
+        entries = table_list.shipped_and_kept()
         if as_json:
             click.echo(json.dumps([entry._asdict() for entry in entries]))
         else:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from puck_tables.cli.main import main
-from puck_tables.cli.options import NumberParam
+from puck_tables.cli.values import NumberParam
 
 import puck_tables as pt
 from puck_tables.scene.entries import tables_of

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from puck_tables.cli.main import main
-from puck_tables.cli.options import NumberParam, RangeParam, Times, Vector
+from puck_tables.cli.values import NumberParam, RangeParam, Times, Vector
 
 import puck_tables as pt
 from puck_tables.bulk.spreads import spread_named

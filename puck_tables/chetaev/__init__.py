@@ -6,13 +6,14 @@ from puck_tables._core.lazy import lazily
 
 if TYPE_CHECKING:
     from puck_tables.chetaev.asperity_forces import AsperityCurve, asperity_curve
+    from puck_tables.chetaev.asperity_shape import Asperity
     from puck_tables.chetaev.motion import ConstrainedMotion, constrained_motion
     from puck_tables.chetaev.patch_puck import patch_stop, patch_system
     from puck_tables.chetaev.system import ConstrainedSystem
-    from puck_tables.chetaev.wavy_support import Asperity, AsperityMotion, asperity_motion
+    from puck_tables.chetaev.wavy_support import AsperityMotion, asperity_motion
 
 _HOMES = {
-    "Asperity": "wavy_support",
+    "Asperity": "asperity_shape",
     "AsperityCurve": "asperity_forces",
     "AsperityMotion": "wavy_support",
     "ConstrainedMotion": "motion",

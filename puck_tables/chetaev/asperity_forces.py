@@ -32,7 +32,8 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import checked_progress, finite_array, instance, shown
-from puck_tables.chetaev.wavy_support import Asperity, SlideOrFlight, landing
+from puck_tables.chetaev.asperity_shape import Asperity
+from puck_tables.chetaev.wavy_support import SlideOrFlight, landing
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset, variable

@@ -25,7 +25,8 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import broadcast, finite_array, instance, positive, real
+from puck_tables._core.real import finite_array, instance, real
+from puck_tables.chetaev.asperity_shape import Asperity
 from puck_tables.errors import AccuracyError, InputError
 
 _TOL = 1e-13  # of a step, relative: near to what doubles hold
@@ -34,111 +35,6 @@ _LOOKS = 6  # looks a step for a change of sign: a step is smooth
 _GAP_STEPS = 1_000_000  # flights that hardly leave the crest take that many
 _NOISE = 2.0**-53  # relative rounding of a double: a gap below it is none
 MAX_ARCS = 100_000  # slides and flights: then it is refused by name
-
-
-@dataclass(frozen=True)
-class Asperity:
-    """The support and the point on it.
-
-    Parameters
-    ----------
-    amplitude : float, a > 0, m
-    length : float, b > 0, m: the wavelength is 2πb
-    load : float, −Y > 0, N
-    mass : float, m > 0, kg
-    pull : float, X, N
-
-    Raises
-    ------
-    InputError
-        If a number is not finite or not positive.
-
-    Examples
-    --------
-    >>> bumps = Asperity(amplitude=1e-6, length=4e-6, load=1.0, mass=0.1)
-    >>> bumps.slope, round(bumps.lift_speed, 6)  # leaves the crest: x′² = −Y b²/(m a)
-    (0.25, 0.012649)
-    """
-
-    amplitude: float
-    length: float
-    load: float
-    mass: float
-    pull: float = 0.0
-
-    def __post_init__(self) -> None:
-        for name, unit in (("amplitude", "m"), ("length", "m"), ("load", "N"), ("mass", "kg")):
-            object.__setattr__(self, name, positive(name, getattr(self, name), unit))
-        object.__setattr__(self, "pull", real("pull", self.pull, "N"))
-
-    @property
-    def slope(self) -> float:
-        """κ = a/b: the steepest slope, and Coulomb's coefficient of the crude law."""
-        return self.amplitude / self.length
-
-    @property
-    def lift_speed(self) -> float:
-        """V₀ = b √(−Y/(m a)), m/s: a point that is not pulled leaves the crest above it."""
-        return self.length * math.sqrt(self.load / (self.mass * self.amplitude))
-
-    def height(self, x: npt.ArrayLike) -> FloatArray:
-        """−a cos(x/b), m, at places x in m."""
-        return np.asarray(self._height(finite_array("x", x, "m")))
-
-    def incline(self, x: npt.ArrayLike) -> FloatArray:
-        """dy/dx of the support, κ sin(x/b), at places x in m."""
-        return np.asarray(self._incline(finite_array("x", x, "m")))
-
-    def press(self, x: npt.ArrayLike, speed: npt.ArrayLike) -> FloatArray:
-        """The numerator of λ, N: negative where the support falls away under a flying point."""
-        return self._pressed(x, speed)[2]
-
-    def _height(self, x: Any) -> Any:
-        return -self.amplitude * np.cos(x / self.length)
-
-    def _incline(self, x: Any) -> Any:
-        return self.slope * np.sin(x / self.length)
-
-    def _press(self, x: Any, speed: Any) -> Any:
-        bend = self.mass * self.amplitude / self.length**2 * speed**2 * np.cos(x / self.length)
-        return self.load + bend + self.pull * self._incline(x)
-
-    def _pressed(
-        self, x: npt.ArrayLike, speed: npt.ArrayLike
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Places, speeds and the press there, checked."""
-        place, rate = broadcast(
-            x=finite_array("x", x, "m"), speed=finite_array("speed", speed, "m/s")
-        )
-        with np.errstate(over="ignore", invalid="ignore"):
-            press = np.asarray(self._press(place, rate))
-        if not np.isfinite(press).all():
-            raise InputError("x and speed give a press too large for floating point")
-        return place, rate, press
-
-    def multipliers(self, x: npt.ArrayLike, speed: npt.ArrayLike) -> tuple[FloatArray, ...]:
-        """λ exact, by its leading terms, and crude, in N.
-
-        Parameters
-        ----------
-        x : array_like, m
-        speed : array_like, x′ in m/s, broadcast
-
-        Returns
-        -------
-        three arrays of the broadcast shape
-            Not cut at 0: where λ < 0 there is no contact.
-
-        Examples
-        --------
-        >>> bumps = Asperity(amplitude=1.0, length=1.0, load=2.0, mass=1.0)
-        >>> [float(lam.round(6)) for lam in bumps.multipliers(np.pi / 4, 1.0)]
-        [1.804738, 2.707107, 2.0]
-        """
-        place, rate, press = self._pressed(x, speed)
-        bend = self.mass * self.amplitude / self.length**2 * rate**2 * np.cos(place / self.length)
-        exact = press / (1.0 + self._incline(place) ** 2)
-        return exact, self.load + bend, np.full(place.shape, self.load)
 
 
 class SlideOrFlight(NamedTuple):

@@ -133,7 +133,7 @@ class Differentiated:
         >>> from puck_tables import Puck
         >>> result = Puck.similar().stop((1.0, 0.0), 5.0, jacobian=True)
         >>> out = result.spread([[1e-4, 0.0, 0.0], [0.0, 1e-4, 0.0], [0.0, 0.0, 1e-2]],
-        samples=5000)
+        ...                     samples=5000)
         >>> out.deviation.round(4).tolist()  # s, m, m, m, rad
         [0.0716, 0.0481, 0.0224, 0.0483, 0.3751]
         >>> bool(out.is_linear)

@@ -10,8 +10,7 @@ cut.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
-from functools import lru_cache, partial
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -36,9 +35,7 @@ from puck_tables.kernels.quadratic import NO_COLUMNS
 from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.motion.body import UnitPuck, body_of, plain_up_to
 from puck_tables.motion.friction_source import Sections, integration_selected
-from puck_tables.motion.solve import FINEST_LOCAL, ErrorEstimate, Setting, close_enough, refined
 from puck_tables.motion.steppers import stepping_of
-from puck_tables.motion.unit_motion import unseen_tail
 from puck_tables.stopping.launch_arrays import Launches, launches_in
 from puck_tables.stopping.solvers import (
     OUTPUTS,
@@ -53,6 +50,7 @@ from puck_tables.stopping.solvers import (
 from puck_tables.stopping.stop_section import FINEST_SECTION, stop_section_for
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.stopping.stop_values import UPPER_DELTA
+from puck_tables.stopping.tried_integration import integration_of
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.table import refuse_other_kind
 
@@ -62,7 +60,6 @@ ALONE = 32  # launches of one height up to which each is tried itself
 MANY = 300  # launches of one height from which on a stop section costs less than integrating them
 MOST_HEIGHTS = 500  # each takes about a second to prepare
 HEIGHT_COST = 2000  # launches that take as long as the preparation of a height
-_PROBES = 40  # launches over all φ, besides those next to lines
 
 
 class SolverPerHeight:
@@ -391,52 +388,3 @@ def refuse_many(heights: FloatArray) -> None:
             f"{heights.size} different delta are too many for such pucks, each takes about a "
             f"second to prepare: give at most {MOST_HEIGHTS}"
         )
-
-
-def integration_of(body: UnitPuck, tol: float, method: Method | None = None) -> Integration:
-    """An integration good for every launch of a puck, tried at both sides of singular lines.
-
-    Raises
-    ------
-    AccuracyError
-        If none is.
-
-    Examples
-    --------
-    >>> integration_of(body_of("ring", 0.5, 1.0), 1e-6).error <= 1e-6
-    True
-    """
-    source, probes = Sections(body), _probes(body)
-    selection = source.selected("stop", tol, method)
-
-    def attempt(setting: Setting) -> tuple[Integration, ErrorEstimate]:
-        stepping = setting.stepping
-        cut, coarse = (
-            source.friction(setting.accuracy).coefficients,
-            source.coarser(setting.accuracy).coefficients,
-        )
-        finer = stepping.finer(2.0, 0.01, FINEST_LOCAL)
-        result, by_finer, by_coarse = (
-            Integration(NO_COLUMNS, *how, selection.method, longest=body.longest)
-            for how in ((cut, stepping), (cut, finer), (coarse, stepping))
-        )
-        answer = result.all(probes)[0][:3]
-        steps, friction = (
-            2.0 * float(np.abs(answer - other.all(probes)[0][:3]).max())
-            for other in (by_finer, by_coarse)
-        )
-        return result, ErrorEstimate(steps + 2.0 * unseen_tail(stepping), friction / 8.0)
-
-    finer = partial(refined, tol=tol, friction=source.next_accuracy)
-    result, error, _ = close_enough(source.first(selection), attempt, finer, tol, "these pucks")
-    return replace(result, error=error.total)
-
-
-def _probes(body: UnitPuck) -> FloatArray:
-    """Launches (6, n) with Q = J = r = 1: anywhere, and next to all lines and both ends."""
-    lines = np.array([0.0, *body.friction(COARSEST).lines, 0.5 * np.pi])
-    near = (lines[:, None] + np.outer([-1.0, 1.0], 10.0 ** -np.arange(1.0, 8.0)).ravel()).ravel()
-    phi = np.concatenate([np.linspace(0.01, 1.56, _PROBES), near])
-    phi = phi[(phi > 0.0) & (phi < 0.5 * np.pi)]
-    one = np.ones(phi.size)
-    return np.stack([np.cos(phi), 0.0 * one, np.sin(phi), body.delta * one, one, one])

@@ -12,6 +12,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import run_chunks
 from puck_tables.contact import closed_form, one_sided
 from puck_tables.contact.integrals import slip_direction
+from puck_tables.contact.loaded_chord import guessed_chord
 from puck_tables.contact.loaded_patch import LINE_RULE, SEGMENT_RULE
 from puck_tables.contact.opening import critical_delta
 from puck_tables.contact.resultants import Resultants, moment_balance
@@ -54,7 +55,7 @@ def tall_resultants(phi: FloatArray, delta: float) -> Resultants:
 
         some = opened[start:stop]
         ratio, fast = direction.ratio[some], direction.fast_spin[some]
-        guess = np.stack(one_sided.guessed_chord(ratio, fast, np.full(some.size, delta)))
+        guess = np.stack(guessed_chord(ratio, fast, np.full(some.size, delta)))
         out = np.empty((some.size, FOUND))
         lost = fill_balances(ratio, fast, delta, guess, LINE_RULE, SEGMENT_RULE, out)
         found[:, some] = out[:, : SPIN + 1].T
