@@ -210,11 +210,7 @@ def _in_short(result: Aims, note: str) -> str:
 def _report(result: Aim, note: str) -> str:
     """The answer, and the launches line by line."""
     x, y = result.target
-    text = [
-        _puck_line(result.puck, note),
-        f"target  ({x:g}, {y:g}) m",
-        f"answer  {result.answer}",
-    ]
+    text = [_puck_line(result.puck, note), f"target  ({x:g}, {y:g}) m", f"answer  {result.answer}"]
     if result.launch_spin.size:
         text.append(
             f"\n{'w0 rad/s':>13} {'v0 x m/s':>12} {'v0 y m/s':>12} {'speed m/s':>12}"

@@ -152,9 +152,7 @@ class AsperityCurve(Result):
 
 
 def asperity_curve(
-    asperity: Asperity,
-    speed: npt.ArrayLike,
-    progress: Callable[[int, int], None] | None = None,
+    asperity: Asperity, speed: npt.ArrayLike, progress: Callable[[int, int], None] | None = None
 ) -> AsperityCurve:
     """Horizontal force of a wavy one-sided support on a point, against its speed.
 

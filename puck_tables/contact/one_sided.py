@@ -23,11 +23,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import broadcast
 from puck_tables.contact import closed_form
-from puck_tables.contact.integrals import (
-    SlipDirection,
-    checked_phi,
-    slip_direction,
-)
+from puck_tables.contact.integrals import SlipDirection, checked_phi, slip_direction
 from puck_tables.contact.loaded_chord import Chord, chord_residual, solved_chord
 from puck_tables.contact.loaded_patch import PatchRule, patch_rule, segment
 from puck_tables.contact.opening import critical_delta

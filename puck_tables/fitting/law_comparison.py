@@ -43,10 +43,7 @@ class LawScore(NamedTuple):
 
 
 def compare(
-    variants: Mapping[str, FitSpec],
-    noise: tuple[float, float],
-    known: Known,
-    fit_law: Fitted,
+    variants: Mapping[str, FitSpec], noise: tuple[float, float], known: Known, fit_law: Fitted
 ) -> tuple[LawScore, ...]:
     """The laws named, best first; ``fit_law`` fits each with a noise, known or not."""
     names, questions = list(variants), list(variants.values())

@@ -12,11 +12,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import broadcast
 from puck_tables.contact import closed_form
 from puck_tables.contact.integrals import checked_phi
-from puck_tables.contact.resultants import (
-    CONTACT_SLACK,
-    Resultants,
-    checked_delta,
-)
+from puck_tables.contact.resultants import CONTACT_SLACK, Resultants, checked_delta
 from puck_tables.errors import ContactError
 from puck_tables.kernels.compile import allocating, inlined, patience
 

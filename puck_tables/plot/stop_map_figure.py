@@ -70,9 +70,7 @@ def _name_laws(panel: Axes, stops: StopMap) -> None:
             axis.set_ticks(range(len(stops.laws)), labels=list(stops.laws))
 
 
-def _sections(
-    stops: StopMap,
-) -> tuple[dict[str, Any], dict[str, float], str, tuple[int, ...]]:
+def _sections(stops: StopMap) -> tuple[dict[str, Any], dict[str, float], str, tuple[int, ...]]:
     """At most two of the axes, what is fixed then, in words, and where.
 
     Raises

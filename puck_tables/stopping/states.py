@@ -15,15 +15,7 @@ from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.motion.body import UnitPuck, body_of, plain_up_to
-from puck_tables.motion.state import (
-    HEADING,
-    ORIENTATION,
-    PUCK_X,
-    PUCK_Y,
-    SPEED,
-    SPIN,
-    STATE_ROWS,
-)
+from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED, SPIN, STATE_ROWS
 from puck_tables.result import Result
 from puck_tables.stopping.jacobian import (
     LAUNCH_NAMES,

@@ -14,12 +14,7 @@ from puck_tables.bulk.work import Columns, Tally, Work
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.result import Result
-from puck_tables.stopping.per_height import (
-    HEIGHT_COST,
-    MOST_HEIGHTS,
-    SolverPerHeight,
-    refuse_many,
-)
+from puck_tables.stopping.per_height import HEIGHT_COST, MOST_HEIGHTS, SolverPerHeight, refuse_many
 from puck_tables.stopping.population import COLUMN, Population, law_name
 from puck_tables.stopping.solvers import OUTPUTS, STATUS_MEANINGS
 from puck_tables.stopping.stop_map import StopMap, StopSample

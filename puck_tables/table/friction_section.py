@@ -264,10 +264,7 @@ def friction_section(law: Law, delta: float, accuracy: float = DEFAULT_ACCURACY)
     """
     cotangents = lines_of(law, delta)
     spline = slip_spline(
-        lambda phi: many_ratios(law, phi, delta),
-        sides_of(cotangents[::-1]),
-        accuracy,
-        even=True,
+        lambda phi: many_ratios(law, phi, delta), sides_of(cotangents[::-1]), accuracy, even=True
     )
     assert spline.accuracy is not None
     return FrictionSection(

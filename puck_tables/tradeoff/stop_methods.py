@@ -205,7 +205,6 @@ def _outsiders(task: StopTask) -> Iterator[Contender]:
 
     yield modelled("Pade, slopes matched", lambda: as_table("pade", *PADE_MATCHED))
     yield modelled(
-        "Pade, fitted",
-        lambda: as_table("pade", *pade_at_best(task.flat.phi, task.flat.resultants)),
+        "Pade, fitted", lambda: as_table("pade", *pade_at_best(task.flat.phi, task.flat.resultants))
     )
     yield modelled("limit surface", lambda: as_table("limit surface"))
