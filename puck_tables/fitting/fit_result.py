@@ -31,7 +31,7 @@ from puck_tables.fitting.law_comparison import LawScore
 from puck_tables.fitting.numbers import EstimatedLaunch, Number
 from puck_tables.fitting.observations import Observations
 from puck_tables.fitting.plausibility import doubts, rounded
-from puck_tables.fitting.residual_tests import NO_PATTERN, lengthways, misfits
+from puck_tables.fitting.residual_tests import JITTERY, NO_PATTERN, lengthways, misfits
 from puck_tables.fitting.speed_law_fit import law_over
 from puck_tables.fitting.timing import Known
 from puck_tables.io.dataset import Dataset
@@ -43,7 +43,6 @@ if TYPE_CHECKING:
     from puck_tables.trajectory import Trajectory
 
 KIND = "puck-tables fit 1"
-_LENGTHWAYS = 1.3
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -226,7 +225,7 @@ class Fit(Result):
         # stamps that jitter leave no drift, as another law does
         if self.jitter == 0.0 and self.noise[0] > 0.0 and self.drift > NO_PATTERN:
             ratio = lengthways(self.estimate)
-            if ratio > _LENGTHWAYS:
+            if ratio > JITTERY:
                 said.append(
                     f"Residuals along the motion are {ratio:.3g} times those across it: the time "
                     "stamps may jitter (--jitter find)"

@@ -11,6 +11,7 @@ from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.timing import Known
 
 NO_PATTERN = 1e-3  # probability of residuals so patterned by chance
+JITTERY = 1.3  # residuals along the motion over those across it: more, and stamps may jitter
 NOISY = 1.5  # times the noise of a smooth motion
 _MAY_NOISY, _MAY_PATTERN = 1.3, 0.01  # the same, where that is hardly seen
 _COMPUTED = 1e-7  # of the path: residuals of tracks that were computed, not seen
