@@ -36,7 +36,7 @@ def test_json_on_stdout_has_the_columns_of_the_file(asked: list[str], tmp_path: 
         ("astride-stop", "borders = [0.1, 0.16] m, strips.friction = [0.15, 0.4, 0.1], "
          "strips.direction = 0 rad"),
         ("take-out", "delta = 0.016, restitution = 0.9, tangential = 0, rim = 0.1"),
-        ("take-out", "m after 0.371608005619 s"),
+        ("take-out", "m after 0.3716080056"),
         ("rebound", "point = [0.2, 0] m, normal = [-1, 0], restitution = 0.8"),
     ],
 )  # fmt: skip

@@ -136,6 +136,7 @@ def test_scenes_run_alike(name: str):
 def patient(monkeypatch: pytest.MonkeyPatch) -> None:
     """Kernels run as they are written at first, in this thread."""
     monkeypatch.setattr(here, "at_once", False)
+    monkeypatch.setattr(here, "kept_first", False)  # another process may have kept some
 
 
 def is_compiled(door: Any) -> bool:

@@ -135,7 +135,8 @@ def _may_change(spec: FitSpec) -> bool:
     """Whether nothing was asked that goes with no friction over slip speed."""
     named = {"drag", "inner", "decel", "gravity"} & {*spec.free, *spec.fixed}
     uniform = spec.puck.body.law.name == "uniform"
-    return uniform and not named and not spec.speeds and "friction" in spec.free
+    lifts = spec.bounds.get("delta", (0.0, 1.0))[0] >= 1.0  # under such laws no base does
+    return uniform and not named and not spec.speeds and not lifts and "friction" in spec.free
 
 
 def _by_speed(result: Estimate, problem: Problem) -> _Reading | None:

@@ -161,7 +161,7 @@ def resultants(phi: npt.ArrayLike, delta: npt.ArrayLike) -> Resultants:
     ([1.0, 0.9], [0.375, 1.333333333333])
     """
     angle, height = broadcast(phi=checked_phi(phi), delta=checked_delta(delta))
-    flat_angle, flat_height = (np.ascontiguousarray(a).reshape(-1) for a in (angle, height))
+    flat_angle, flat_height = (np.array(a).reshape(-1) for a in (angle, height))
     out = np.empty((3, flat_angle.size))
     bad = _fill(flat_angle, flat_height, out)
     if bad >= 0:
