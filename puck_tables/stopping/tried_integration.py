@@ -30,6 +30,7 @@ def integration_of(body: UnitPuck, tol: float, method: Method | None = None) -> 
 
     Examples
     --------
+    >>> from puck_tables.motion.body import body_of
     >>> integration_of(body_of("ring", 0.5, 1.0), 1e-6).error <= 1e-6
     True
     """
