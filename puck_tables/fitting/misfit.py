@@ -73,7 +73,9 @@ def misfit(result: Estimate, problem: Problem, known: Known, speeds: bool) -> st
     if air and (words := _by_air(result, problem, known)):
         return words
     best = max((one.gain for one in told), default=0.0)
-    near = sorted((one for one in told if one.gain > best - _ALIKE), key=lambda one: not one.floor)
+    # sizes and angles are known better than floors: a floor that tells much is named first
+    near = [one for one in told if one.gain > best - _ALIKE or (one.floor and one.gain > _MUCH)]
+    near.sort(key=lambda one: not one.floor)
     if near:
         words = f"{near[0].words}{f'; or {near[1].words}' if len(near) > 1 else ''}"
         return f"Residuals would be {math.exp(near[0].gain):.2g} times smaller {words}"
