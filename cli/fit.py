@@ -280,11 +280,15 @@ def _pairs(texts: tuple[str, ...], option: str, form: str) -> dict[str, tuple[fl
     ------
     InputError
     """
+    from puck_tables._core.units import UNIT_EACH, without_unit
+
     result = {}
     for name, text in _named(texts, option).items():
         parts = text.split(":")
         if len(parts) != 2:
             raise InputError(f"{option} {name}={text} must be {name}={form}, like {name}=0.2:0.05")
+        if bare := without_unit(parts, _UNITS.get(name, "")):
+            raise InputError(f"{option} {name}={text}: {UNIT_EACH.format(bare)}")
         result[name] = _number(parts[0], option, name), _number(parts[1], option, name)
     return result
 

@@ -60,7 +60,7 @@ def samples_checked(
     ------
     InputError
     """
-    from puck_tables._core.units import measured
+    from puck_tables._core.units import UNIT_EACH, measured, without_unit
     from puck_tables.bulk.summary import checked_regions
 
     alone = {"--seed": seed is not None, "--spread": spreads, "--inside": regions}
@@ -76,7 +76,10 @@ def samples_checked(
     found = []
     for region in regions:
         try:
-            found.append(tuple(measured(part, "m") for part in region.split(",")))
+            parts = region.split(",")
+            if bare := without_unit(parts, "m"):
+                raise InputError(f"--inside {region}: {UNIT_EACH.format(bare)}")
+            found.append(tuple(measured(part, "m") for part in parts))
         except ValueError:
             raise InputError(f"--inside {region}: write X,Y,R or X1,Y1,X2,Y2, in m") from None
     checked_regions(found)

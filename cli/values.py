@@ -36,7 +36,7 @@ class Vector(NumberParam):
         parts = str(value).split(",")
         if len(parts) != 2:
             self.fail(f"'{value}' must be two numbers with a comma, like 1,0", param, ctx)
-        return tuple(finite(part, self, param, ctx, self.unit) for part in parts)
+        return tuple(all_finite(parts, self, param, ctx))
 
 
 class RangeParam(NumberParam):
@@ -49,7 +49,7 @@ class RangeParam(NumberParam):
         if isinstance(value, float | tuple | list):
             return value
         if "," in str(value):
-            return [finite(part, self, param, ctx, self.unit) for part in str(value).split(",")]
+            return all_finite(str(value).split(","), self, param, ctx)
         parts = str(value).split(":")
         if len(parts) == 1:
             return finite(parts[0], self, param, ctx, self.unit)
@@ -60,7 +60,7 @@ class RangeParam(NumberParam):
                 param,
                 ctx,
             )
-        start, stop = (finite(part, self, param, ctx, self.unit) for part in parts[:2])
+        start, stop = all_finite(parts[:2], self, param, ctx)
         if not re.fullmatch(r"[0-9]{1,10}", parts[2]) or not 2 <= int(parts[2]) <= MAX_COUNT:
             self.fail(f"the COUNT of '{value}' must be a whole number from 2 to 1e9", param, ctx)
         if not stop > start:
@@ -78,12 +78,20 @@ class Times(NumberParam):
     def convert(self, value: Any, param: Any, ctx: Any) -> Any:
         """Parse a list of times or a range."""
         if ":" not in str(value):
-            parts = str(value).split(",")
-            return tuple(finite(part, self, param, ctx, self.unit) for part in parts)
+            return tuple(all_finite(str(value).split(","), self, param, ctx))
         start, stop, count = RangeParam(self.unit).convert(value, param, ctx)
         if count > 10_000_000:
             self.fail(f"'{value}' asks for too many states: at most 1e7", param, ctx)
         return tuple(start + (stop - start) * i / (count - 1) for i in range(count))
+
+
+def all_finite(parts: list[str], kind: NumberParam, param: Any, ctx: Any) -> list[float]:
+    """Finite numbers that stand beside each other, each with its unit or none of them."""
+    from puck_tables._core.units import UNIT_EACH, without_unit
+
+    if bare := without_unit(parts, kind.unit):
+        kind.fail(UNIT_EACH.format(bare), param, ctx)
+    return [finite(part, kind, param, ctx, kind.unit) for part in parts]
 
 
 def finite(text: str, kind: click.ParamType, param: Any, ctx: Any, unit: str = "") -> float:

@@ -224,7 +224,13 @@ def test_columns_that_are_not_read_are_named(
         ("law", ["v,mu x 10^2", "v,mu*1000", "v,mu (x100)", "v [10^-3 m/s],mu", "v,10^3 mu",
                  "v,mu/100", "v,mu (100)", "v,mu \u00d71000", "v,mu \u00b7 10\u00b2", "v,1000 mu",
                  "v x 1000,mu", "v,mu (0.01)", "v,COF [1e-2]", "v,mu_x100"]),
-        ("force", ["t,Fx x 10^3,Fy", "t*1000,Fx,Fy"]),
+        ("law", ["v,mu (x1e-2)", "v,mu (e-2)", "v^2,mu", "log v,mu", "v/v0,mu", "speed ratio,mu",
+                 "v,1/mu", "v,log mu", "v,mu/mu0", "sqrt(v),mu", "v\u00b2,mu"]),
+        ("restitution", ["v,1-e", "v,e^2", "v^2,e", "ln v,e"]),
+        ("force", ["t,Fx x 10^3,Fy", "t*1000,Fx,Fy", "t,Fx/Fmax,Fy/Fmax", "t/T,Fx,Fy",
+                   "log t,Fx,Fy"]),
+        ("path", ["t,x^2,y", "t,x/r,y", "log t,x,y"]),
+        ("profile", ["r^2,W", "r,log p", "r,cumulative load"]),
     ],
 )  # fmt: skip
 def test_headings_of_another_quantity_or_with_a_factor_are_refused(
@@ -233,7 +239,9 @@ def test_headings_of_another_quantity_or_with_a_factor_are_refused(
     for n, head in enumerate(heads):
         path = tmp_path / f"{n}.csv"
         path.write_text(f"{head}\n{of_width(head.count(',') + 1)}")
-        with pytest.raises(InputError, match=r"must hold the co|is not known|factor|needs a"):
+        with pytest.raises(
+            InputError, match=r"must hold the co|is not known|factor|needs a|not the"
+        ):
             read_as(kind, path)
     if "frame" in heads[0]:
         (tmp_path / "a.csv").write_text(f"{heads[0]}\n{of_width(3)}")

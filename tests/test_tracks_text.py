@@ -320,3 +320,19 @@ def test_stamps_of_a_clock_count_from_the_first_frame(tmp_path: Path, seed: int)
     assert any("times from its first frame on" in note for note in track.notes)
     (plain,) = read(tmp_path, "t [s],x [m],y [m]\n" + "\n".join(f"{3 + t},{t},{t}" for t in steps))
     assert plain.time[0] == 3.0
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_factor_or_a_function_in_a_heading_of_tracks_is_refused(seed: int, tmp_path: Path):
+    rng = np.random.default_rng([36, seed])
+    altered = [
+        "{} (10^-3 {})", "{} (10 {})", "{} (1e-3 {})", "{}/2r [{}]", "log {} [{}]", "{}^2 ({})",
+        "{} (x10 {})",
+    ]  # fmt: skip
+    heads, at = ["t (s)", "x (cm)", "y (cm)"], int(rng.integers(3))
+    name, unit = heads[at].replace(")", "").split(" (")
+    heads[at] = altered[rng.integers(len(altered))].format(name, unit)
+    path = tmp_path / "a.csv"
+    path.write_text(",".join(heads) + "\n0,1,2\n0.1,1.5,2.5\n0.2,1.9,3\n")
+    with pytest.raises(InputError, match="stands in its heading"):
+        read_tracks(path)

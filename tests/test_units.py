@@ -8,6 +8,7 @@ import os
 from pathlib import Path
 from typing import Any
 
+import click
 import numpy as np
 import pytest
 from click.testing import CliRunner
@@ -102,7 +103,7 @@ def test_spreads_take_units():
     how = ["sweep", "--random", "3", "--seed", "3", "--spread"]
     for scene, name in (([], "w0"), (["--scene", "incline"], "launch.spin")):
         means = []
-        for spread in (f"normal:{text}:0.1", f"normal:{value!r}:0.1"):
+        for spread in (f"normal:{text}:0.1rad/s", f"normal:{value!r}:0.1"):
             ended = CliRunner().invoke(main, [*how, f"{name}={spread}", *scene])
             assert ended.exit_code == 0, ended.output
             means.append(ended.stdout)
@@ -147,3 +148,28 @@ def test_names_of_files_that_are_no_text(tmp_path: Path, monkeypatch: pytest.Mon
         made = CliRunner().invoke(main, [*build, "--pressure", name])
         assert made.exit_code == 0, made.stderr
         assert CliRunner().invoke(main, ["info", f"{n}.h5"]).exit_code == 0
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_number_without_a_unit_beside_one_that_has_it_is_refused(seed: int):
+    """In a list, a pair, a range, a spread, as an option, a field and in Python."""
+    rng = np.random.default_rng([36, seed])
+    unit = list(UNITS)[rng.integers(len(UNITS))]
+    parts = [drawn(rng, unit)[0] for _ in range(2)]
+    bare = int(rng.integers(2))
+    parts[bare] = f"{rng.uniform(0.5, 2.0):.3g}"
+    words = f"'{parts[bare]}' has none"
+    for kind, text in ((Vector, "{},{}"), (RangeParam, "{},{}"), (RangeParam, "{}:{}:5")):
+        with pytest.raises(click.BadParameter, match=words):
+            kind(unit).convert(text.format(*parts), None, None)
+    with pytest.raises(InputError, match=words):
+        spread_named("normal:{}:{}".format(*parts), unit)
+    if unit == "m/s":
+        with pytest.raises(InputError, match=words):
+            pt.Scene(pt.Puck(0.04), launch=pt.Launch(tuple(parts)))
+    if unit == "rad/s":
+        for spins in (parts, "{}:{}:3".format(*parts)):
+            with pytest.raises(InputError, match=words):
+                pt.Scene(pt.Puck(0.04), launch=pt.Launch(spin=spins))
+    parts[bare] = "0"  # of any unit
+    assert 0.0 in Vector(unit).convert(",".join(parts), None, None)

@@ -19,8 +19,26 @@ _FREQUENCIES = {"hz", "khz", "mhz", "1/s", "s^-1", "s-1", "fps"}
 _FACTOR = re.compile(
     r"[*×·⋅]\s*\d|\d\s*[*×·⋅]|(?<=[\s(\[_])x\s*\d{2,}|\d{2,}\s*x\b|\b10\s*(?:\^|\*\*|[⁰¹²³⁴-⁹⁻])"
     r"|\b1\s*e\s*[-+]?\d|/\s*10+\b|\bper\s+10+\b|[(\[]\s*(?:10+|\d*\.\d+)\s*[)\]]|^\s*10+\s|\bin\s+10+\b"
-    r"|\bthousandths?\b|\bhundredths?\b", re.IGNORECASE,
+    r"|\bthousandths?\b|\bhundredths?\b|\bx\s*\d*\.?\d+e[-+]?\d|[(\[]\s*e\s*[-+]?\d", re.IGNORECASE,
 )  # fmt: skip
+# what makes of a quantity another one, of which a heading tells
+_FUNCTION = re.compile(
+    r"\^|\*\*|[²³]|\b(?:log|ln|lg|log10|sqrt|exp)\b|\b1\s*[-−/]|\b(?:ratio|normali[sz]ed|cumulative)\b",
+    re.IGNORECASE,
+)  # fmt: skip
+_QUOTIENT = re.compile(r"\w+\s*/\s*\w+")
+
+
+def function_in(name: str) -> str:
+    """What in a heading without its unit makes of its quantity another one; '' if nothing.
+
+    Examples
+    --------
+    >>> function_in("log v"), function_in("1-e"), function_in("slip speed")
+    ('log', '1-', '')
+    """
+    found = _FUNCTION.search(name)
+    return found[0].strip() if found else ""
 
 
 class InputColumn(NamedTuple):
@@ -127,6 +145,17 @@ def unit_of(path: str, text: str, column: InputColumn) -> tuple[str, float]:
             f"numbers themselves under '{column.written}'"
         )
     name, unit = bracketed(text)
+    behind = "" if unit else unit_behind(name, column.kind)
+    bare = name.removesuffix(behind)
+    made = function_in(bare)
+    if not made and column.kind not in ("any", "radius") and not is_unit(bare):  # r/R is a radius
+        quotient = _QUOTIENT.search(bare)
+        made = quotient[0] if quotient else ""
+    if made:
+        raise InputError(
+            f"{path}: its column '{text:.40}' is not the {column.name} itself, for '{made}' "
+            f"stands in it: write that under '{column.written}'"
+        )
     if column.kind == "ratio" and (sign := re.search("[%‰]", text)):
         unit = sign[0]  # also 'mu%', 'COF (in %)'
     words = bool(unit) and column.kind in ("ratio", "radius") and not text.rstrip().endswith("]")

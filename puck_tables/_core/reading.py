@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, dataclass, field
 from difflib import get_close_matches
 from numbers import Real
@@ -17,7 +17,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.colours import is_colour, meant
 from puck_tables._core.fields import LISTED, Kind, in_tables, specs
 from puck_tables._core.real import shown
-from puck_tables._core.units import SHOWN, measured, quantity
+from puck_tables._core.units import SHOWN, UNIT_EACH, measured, quantity, without_unit
 from puck_tables.errors import PuckError
 
 T = TypeVar("T")
@@ -191,7 +191,21 @@ def _read(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -> 
         several = " (or many of them, one for each launch)" if kind.batch else ""
         reading.fault(path, value, kind.allowed() + several)
         return (0.0, 0.0)
+    _refuse_bare(kind, items, path, reading)
     return tuple(_number(kind, item, f"{path}[{i}]", reading, None) for i, item in enumerate(items))
+
+
+def _refuse_bare(kind: Kind, items: Iterable[Any], path: str, reading: Reading) -> None:
+    """Note numbers without a unit beside those that have one."""
+    parts = [part for one in items for part in (_bounds(one) if isinstance(one, str) else [one])]
+    if any(isinstance(one, str) for one in parts) and (bare := without_unit(parts, kind.unit)):
+        reading.errors.append(f"{path}: {UNIT_EACH.format(bare)}")
+
+
+def _bounds(text: str) -> list[str]:
+    """A number, or the ends of a range."""
+    match = RANGE.fullmatch(text.strip())
+    return [text] if match is None else [match[1], match[2]]
 
 
 def _named(kind: Kind, value: Any, path: str, reading: Reading) -> Any:
@@ -258,6 +272,7 @@ def _number(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -
         value = found
     if isinstance(value, str) and reading.ranges is not None:
         match = RANGE.fullmatch(value.strip())
+        _refuse_bare(kind, [value], path, reading)
         try:
             start, stop = (measured(match[n], kind.unit) for n in (1, 2))  # type: ignore[index]
             count = int(match[3])  # type: ignore[index]
@@ -297,6 +312,7 @@ def _listed(kind: Kind, items: list[Any], path: str, reading: Reading) -> float:
         reading.fault(path, items, f"{_one(kind)}, or a list of 1 to {MAX_COUNT} of them")
         return math.nan
     before = len(reading.errors)
+    _refuse_bare(kind, items, path, reading)
     numbers = [_number(kind, n, f"{path}[{i}]", alone, None) for i, n in enumerate(items)]
     if reading.ranges is not None and len(reading.errors) == before:
         reading.ranges[path] = Range(numbers[0], numbers[-1], len(numbers), tuple(numbers))

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable
 from decimal import Decimal
 from difflib import get_close_matches
+from typing import Any
 
 from puck_tables.errors import InputError
 
@@ -151,6 +153,27 @@ def measured(text: str, unit: str) -> float:
     if found is None and ("_" in text or not text.isascii()):  # which float() takes
         raise ValueError(text)
     return float(text) if found is None else found
+
+
+def without_unit(numbers: Iterable[Any], unit: str) -> str:
+    """Which of numbers beside each other has no unit though another has one; '' if all agree.
+
+    '80,50cm/s' may be two numbers in cm/s or the first in m/s: nobody can tell.  0 is 0 in any.
+
+    Examples
+    --------
+    >>> without_unit(["80", "50cm/s"], "m/s"), without_unit(["0", "50cm/s"], "m/s")
+    ('80', '')
+    """
+    written = [str(one).strip() for one in numbers]
+    named = [quantity(one, unit) is not None for one in written]
+    if not any(named):
+        return ""
+    bare = (one for one, has in zip(written, named, strict=True) if not has)
+    return next((one for one in bare if re.fullmatch(_NUMBER, one) and float(one)), "")
+
+
+UNIT_EACH = "give each of these numbers its unit: '{}' has none beside one that has"
 
 
 def pixel_size(scale: str | float) -> float:

@@ -14,7 +14,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import real, shown
-from puck_tables._core.units import SHOWN, measured
+from puck_tables._core.units import SHOWN, UNIT_EACH, measured, without_unit
 from puck_tables.errors import InputError
 
 _LARGEST_SEED = 1 << 64  # a seed is kept in files as an integer of 64 bits
@@ -151,6 +151,8 @@ def spread_named(text: str, unit: str = "") -> Spread:
     (Uniform(low=0.9, high=1.1), True)
     """
     name, *numbers = text.split(":")
+    if bare := without_unit(numbers, unit):
+        raise InputError(f"'{text}': {UNIT_EACH.format(bare)}")
     try:
         if name not in KINDS or len(numbers) != 2:
             raise ValueError

@@ -6,7 +6,9 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
+from puck_tables._core.quantities import function_in
 from puck_tables._core.units import parted, unit_named, unit_word
+from puck_tables.errors import InputError
 
 _WORDS = {
     "time": "t time times zeit temps tiempo tempo tijd tid czas время 时间 時間 timestamp "
@@ -35,6 +37,8 @@ _RATES = {"vx", "vy", "ax", "ay", "a", "dx", "dy"}
 _ALONG = ("position", "pos", "displacement", "distance", "ort", "weg")
 _KIND = {"x": "length", "y": "length", "time": "time", "step": "time", "angle": "angle"}
 _TOKEN = re.compile(r"[^\W\d_]+|\d+|°")
+_DIVIDED = re.compile(r"/\s*\d")
+_MANY = re.compile(r"[x×*·]?\s*\d+(?:\.\d+)?(?:e[-+]?\d+)?\s*(\D+)")  # a number before a unit
 _CAMEL = re.compile(r"(?<=[a-zà-ÿ])(?=[A-Z])")
 
 
@@ -57,7 +61,7 @@ def heading(text: str) -> Heading:
     Raises
     ------
     InputError
-        If it has a unit in square brackets that is none.
+        If it has a unit in square brackets that is none, or a factor or a function.
 
     Examples
     --------
@@ -87,6 +91,9 @@ Heading(role='', puck='', unit=''))
     if unit_text and not unit and role in _KIND:
         if text.rstrip().endswith("]"):
             unit_named(f"the unit of the column '{text.strip():.40}'", unit_text, _KIND[role])
+        many = _MANY.fullmatch(unit_text)
+        if many is not None and unit_word(many[1], _KIND[role]):
+            raise _altered(text, role, unit_text)
         return heading(f"{name} {unit_text}")  # 'x (red)'
     if role == "time" and lowered[at] in ("seconds", "secs"):
         unit = unit or "s"
@@ -99,7 +106,18 @@ Heading(role='', puck='', unit=''))
                 break
     if any(lowered[n] in _OTHER for n in kept):
         return Heading("")
+    divided = _DIVIDED.search(name)
+    if role in _KIND and (other := divided[0] if divided else function_in(name)):
+        raise _altered(text, role, other)
     return Heading(role, _merged(tokens, [result[n] for n in kept]), unit)
+
+
+def _altered(text: str, role: str, other: str) -> InputError:
+    """Why a column is not read whose numbers are a multiple or a function of what it names."""
+    return InputError(
+        f"the column '{text.strip():.40}' is no plain {role}, for '{other}' stands in its heading: "
+        f"write the numbers themselves under '{role}', with their unit"
+    )
 
 
 def _merged(text: str, words: Sequence[tuple[str, int, int]]) -> str:
