@@ -18,9 +18,10 @@ from puck_tables.scene.entries import BATCH, LAUNCH, launch_paths
 from puck_tables.scene.equations import SIZE
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.loop import AT_REST, CARRIED_AWAY, NOT_FINITE, OVER_EDGE, TIME_UP
-from puck_tables.scene.outcome import LEDGER, NO_END, ledger
+from puck_tables.scene.outcome import LEDGER, NO_END
 from puck_tables.scene.plan import plan_for
 from puck_tables.scene.prepare import Prepared, prepare
+from puck_tables.scene.run import ledger
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.simulate import FAILURES, is_endless
 from puck_tables.stopping.stops import stop
@@ -115,7 +116,7 @@ class Case:
         if self.prepared is None:  # nothing is integrated: heat is what else is not there
             last["heat_dry"][:] = energy + last["work_support"] - last["kinetic_energy"]
         with np.errstate(all="ignore"):  # runs that failed are not a number
-            missing, largest = ledger(last, energy)
+            missing, largest = ledger({**last, "energy_given": energy})
             residual = missing / np.where(largest > 0.0, largest, 1.0)
         in_play = (status != OVER_EDGE).astype(np.float64)
         in_play[status > OVER_EDGE] = np.nan

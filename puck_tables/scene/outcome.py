@@ -5,9 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
-
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.io.columns import following
@@ -72,26 +69,3 @@ def scene_texts(scene: SceneSpec, files: Mapping[str, str]) -> dict[str, tuple[s
         for path, text in files.items()
     }
     return {"scene": (as_toml(scene), "the scene as a scene file (TOML)"), **named}
-
-
-def ledger(
-    columns: Mapping[str, FloatArray], start: npt.ArrayLike
-) -> tuple[FloatArray, FloatArray]:
-    """What is missing in the energy ledger, and its largest entry, J, for every element.
-
-    ``start``: the kinetic energy at the launch, J.
-
-    Examples
-    --------
-    >>> names = ("work_given", "work_support", "heat_viscous", "heat_impact")
-    >>> entries = {name: np.zeros(1) for name in names}
-    >>> entries |= {"kinetic_energy": np.ones(1), "heat_dry": np.ones(1) + 1.0}
-    >>> ledger(entries, 4.0)
-    (array([1.]), array([4.]))
-    """
-    gains = [columns[name] for name in ("work_given", "work_support")]
-    names = ("kinetic_energy", "heat_dry", "heat_viscous", "heat_impact")
-    losses = [columns[name] for name in names]
-    missing = np.abs(np.asarray(start) + sum(gains) - sum(losses))
-    entries = np.broadcast_arrays(np.asarray(start), *gains, *losses)
-    return missing, np.max(np.abs(entries), axis=0)

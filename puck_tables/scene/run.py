@@ -259,6 +259,26 @@ class Run(TimedResult):
         return Dataset(axes, columns, attributes, scene_texts(self.scene, self.files))
 
 
+def ledger(columns: Mapping[str, Any]) -> tuple[FloatArray, FloatArray]:
+    """What is missing in the energy ledger, and its largest entry, J, for every element.
+
+    What is not there is 0.
+
+    Examples
+    --------
+    >>> found = {"energy_given": np.full(1, 4.0), "heat_dry": np.full(1, 2.0)}
+    >>> ledger(found | {"kinetic_energy": np.ones(1)})
+    (array([1.]), array([4.]))
+    """
+    energy = np.asarray(columns["kinetic_energy"])
+    given = np.asarray(columns["energy_given"])
+    left = energy.sum(axis=-1) if energy.ndim > given.ndim else energy  # of several pucks
+    gains = [given, *(columns.get(name, 0.0) for name in WORKS)]
+    losses = [left, *(columns.get(name, 0.0) for name in ("energy_gone", *HEATS))]
+    missing = np.abs(sum(gains) - sum(losses))
+    return missing, np.max(np.abs(np.broadcast_arrays(*gains, *losses)), axis=0)
+
+
 def residual(columns: Mapping[str, Any]) -> float:
     """What the energy ledger misses at most, as a share of its largest entry.
 
@@ -268,14 +288,8 @@ def residual(columns: Mapping[str, Any]) -> float:
     >>> residual(moment | {"energy_given": np.ones(1), "heat_dry": np.array([0.5])})
     0.5
     """
-    energy = np.asarray(columns["kinetic_energy"])
-    given = columns["energy_given"]
-    left = energy.sum(axis=-1) if energy.ndim > np.ndim(given) else energy
-    gains = [given, *(columns[name] for name in WORKS)]
-    losses = [left, columns["energy_gone"], *(columns[name] for name in HEATS)]
-    missing = np.abs(sum(gains) - sum(losses))
-    largest = max(float(np.abs(one).max()) for one in (*gains, *losses))
-    return float(missing.max()) / largest if largest > 0.0 else 0.0
+    missing, largest = (float(one.max()) for one in ledger(columns))
+    return missing / largest if largest > 0.0 else 0.0
 
 
 def number_of(puck: int | str, names: Sequence[str]) -> int:

@@ -12,8 +12,6 @@ With c = cos φ, s = sin φ ≥ 0:
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
@@ -24,14 +22,6 @@ from puck_tables.table.resultant_values import HEIGHTS
 from puck_tables.table.slip_axis import LawAxis
 
 PADE_MATCHED = (1.0, 8.0 / 3.0)
-
-
-@dataclass(frozen=True)
-class LimitRatios:
-    """Where rω/v ends: by the model, and in truth."""
-
-    model: float
-    truth: float
 
 
 @kernel

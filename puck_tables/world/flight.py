@@ -21,9 +21,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-import numpy.typing as npt
-
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED
@@ -66,8 +63,6 @@ FLIGHT_COLUMNS = START + 14
 ROOM = CURVE_ROW + 5 + 9  # numbers to work in
 NO_TURN = 0.0
 _SOON = 1e-16  # of the time until rest
-
-Kinds = npt.NDArray[np.int64]
 
 
 class Curves(NamedTuple):

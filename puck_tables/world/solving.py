@@ -19,7 +19,6 @@ _NEAR = 2.0  # steps of the sample that a start may be from what it leads to
 _INSIDE = 1.2  # half steps, of a cell of one course
 _MOST_STARTS = 2000
 _ITERATIONS, _HALVINGS = 30, 8
-_GAIN = 0.9  # of the miss, at least, of a step
 _SAME = 1e-6  # of the ranges: launches closer than this are one
 HEADINGS = 2.0 * math.pi
 
