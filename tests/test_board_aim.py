@@ -193,8 +193,11 @@ def _asked_again(seed: int) -> tuple[int, bool]:
         run = board.at({"puck[0].launch.velocity": velocity, "puck[0].launch.spin": spin}).simulate(
             [0.0]
         )
-        met = [event for event in run.events if event.what == "impact"]
-        if len(run.events) == len(met) == 1 and f"p{puck}" in (met[0].puck, met[0].partner):
+        met = [event for event in run.events if event.what != "stick"]
+        if [event.what for event in met] == ["impact"] and f"p{puck}" in (
+            met[0].puck,
+            met[0].partner,
+        ):
             break
     else:
         return 0, False

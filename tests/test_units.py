@@ -121,7 +121,7 @@ def test_commands_with_units_and_lists_answer_as_the_library_does():
     assert json.loads(shot.stdout)["stop_time"] == pytest.approx(
         expected.stop_time.item(), rel=1e-8
     )
-    listed = f"0,{w},2"
+    listed = f"0,{w},2rad/s"
     ended = CliRunner().invoke(main, ["sweep", "--v0", f"{v},0", "--w0", listed, *real])
     rows = [line.split(",") for line in ended.stdout.splitlines()]
     at = rows[0].index("stop_time[s]")
