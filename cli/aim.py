@@ -32,7 +32,7 @@ from puck_tables.kernels.patience import one_question
 
 if TYPE_CHECKING:
     from puck_tables._core.arrays import FloatArray
-    from puck_tables.puck import Puck
+    from puck_tables.motion.puck_spec import PuckSpec
     from puck_tables.stopping.aim_at_target import Aim
     from puck_tables.stopping.aim_at_targets import Aims
 
@@ -192,7 +192,7 @@ def _refuse_of_scenes(
             raise InputError(f"{name} is for a board: give --scene FILE|NAME, too")
 
 
-def _puck_line(puck: Puck, note: str) -> str:
+def _puck_line(puck: PuckSpec, note: str) -> str:
     kind = f", {puck.body.kind}" if puck.body.kind else ""
     return (
         f"puck    r = {puck.radius:g} m, delta = {puck.delta:.6g}, "

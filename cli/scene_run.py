@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from puck_tables.bulk.finish import Stored
     from puck_tables.result import TimedResult
     from puck_tables.scene.run import Event, Run
+    from puck_tables.scene.scene_spec import SceneSpec
     from puck_tables.world.map import Map
     from puck_tables.world.sample import Sample
-    from puck_tables.world.scene import Scene
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -252,7 +252,7 @@ def report(run: Run) -> str:
     return "\n".join(f"{name:<10} {text}" for name, text in lines.items())
 
 
-def _inputs(scene: Scene) -> dict[str, str]:
+def _inputs(scene: SceneSpec) -> dict[str, str]:
     """What a scene says, a line for each of its parts, without what is left at its default."""
     from puck_tables.scene.entries import entries
 
@@ -279,7 +279,7 @@ def _written(value: Any) -> str:
     return f"{value:.9g}" if isinstance(value, float) else str(value)
 
 
-def _friction(scene: Scene) -> str:
+def _friction(scene: SceneSpec) -> str:
     """Heights and decelerations, one for each strip of floor."""
     normal = scene.puck.gravity * math.cos(scene.floor.slope)
     if scene.floor.law:
