@@ -11,7 +11,7 @@ from puck_tables._core.executor import in_slices
 from puck_tables.kernels.compile import kernel, patience
 from puck_tables.scene.friction import VX
 from puck_tables.world.course import COURSE_COLUMNS, LENGTH, trace
-from puck_tables.world.departures import Room, room_for
+from puck_tables.world.departures import Room, desk_for, room_for
 from puck_tables.world.engine import EVERYBODY, FULL, NOBODY, PAUSED, PUSHING, REACHED, advance
 from puck_tables.world.flight import GONE, START, moves_until, state_at
 from puck_tables.world.game import COUNTS, N_IMPACTS, N_PIECES, Game, Whole
@@ -45,7 +45,7 @@ class Ends(NamedTuple):
 def _follow_all(
     game: Game, fresh: FloatArray, kinds: Whole, flights: FloatArray, first: FloatArray,
     discs: Whole, launches: FloatArray, paces: FloatArray, until: float, watch: Whole, room: Room,
-    ends: Ends,
+    desk: FloatArray | None, ends: Ends,
 ) -> None:  # fmt: skip
     """Runs from the states ``first`` (n, 6), with launches (runs, m, 3) of the ``discs`` (m,).
 
@@ -78,10 +78,10 @@ def _follow_all(
         struck = EVERYBODY
         for look in range(looks, -1, -1):
             part = game.pace[0] / game.pace[1] * 0.5**look if look > 0 else until
-            how = advance(game, min(part, until), struck, room.one, room)
+            how = advance(game, min(part, until), struck, room.one, room, desk)
             struck = NOBODY
             while how == PAUSED:
-                how = advance(game, min(part, until), struck, room.one, room)
+                how = advance(game, min(part, until), struck, room.one, room, desk)
             if watch[0] >= 0:
                 trace(game, watch[0], watch[1], room.shares, room.marks, ends.courses[run])
                 if ends.courses[run, LENGTH] > watch[2]:
@@ -118,7 +118,7 @@ def follow_all(
         np.empty(runs), np.empty(runs, np.int64), np.zeros((runs, COURSE_COLUMNS), np.int64),
     )  # fmt: skip
     paces = _paces(game, first, discs, launches)
-    room, rows = room_for(count), 256 + 16 * count
+    room, desk, rows = room_for(count), desk_for(game), 256 + 16 * count
     mine = _own(game, rows)
 
     def work(start: int, stop: int) -> None:
@@ -128,7 +128,8 @@ def follow_all(
         )  # fmt: skip
         _follow_all(
             mine, game.discs, game.kinds, game.flights, first, discs, launches[start:stop],
-            paces[start:stop], until, np.array(watch), room, part,
+            paces[start:stop], until, np.array(watch), room, desk,
+            part,
         )  # fmt: skip
 
     in_slices(work, runs)
@@ -159,7 +160,7 @@ def _paces(game: Game, first: FloatArray, discs: Whole, launches: FloatArray) ->
 
 def _own(game: Game, rows: int) -> Game:
     """A copy to run on, with so many rows for events and flights; for paths if there are any."""
-    paths = rows + LONGEST if game.floors[:, 2].any() else 0
+    paths = rows + LONGEST if desk_for(game) is not None else 0
     pieces = np.zeros((paths, PIECE_COLUMNS))
     return game._replace(
         regions=game.regions._replace(ground=game.regions.ground.copy()),
