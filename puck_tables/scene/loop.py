@@ -65,6 +65,16 @@ from puck_tables.scene.moments import (
     lost,
     rests_on,
 )
+from puck_tables.scene.outcome import (
+    AT_REST,
+    CARRIED_AWAY,
+    CARRIED_ROUND,
+    EVENT_LIMIT,
+    NOT_FINITE,
+    OVER_EDGE,
+    STEP_LIMIT,
+    TIME_UP,
+)
 from puck_tables.scene.overhang import come_over_edges, look_at_edges
 from puck_tables.scene.patches import (
     ASTRIDE,
@@ -90,10 +100,6 @@ from puck_tables.scene.standstill import from_standstill
 from puck_tables.scene.step_size import follow_scales, up_to_the_stop
 from puck_tables.scene.steps import nudged, step
 
-# how a run ends
-AT_REST, CARRIED_AWAY, CARRIED_ROUND, TIME_UP, OVER_EDGE = range(5)
-STEP_LIMIT, EVENT_LIMIT, NOT_FINITE = range(5, 8)
-UNDECIDED = NOT_FINITE + 1  # by more than one run
 # what happens on the way
 RESTS, SLIPS, LEANS = 0, 1, 3  # and those of boundaries
 COMES_OVER, LEAVES = BORDER, 6  # the rim, a border

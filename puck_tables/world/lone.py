@@ -135,7 +135,7 @@ def _desk_on(rows: FloatArray) -> Desk:
 
 
 @inlined
-def _model_of(game: Game, i: int) -> Model:
+def model_of(game: Game, i: int) -> Model:
     """All that acts on a disc but dry friction."""
     disc = game.discs[i]
     mass, inertia = 1.0 / disc[LIGHTNESS], 1.0 / disc[TURNABILITY]
@@ -357,7 +357,7 @@ def follow_alone(
     uncounted.  Where it rests for good there are none, until inf; ``state`` (6,) is moved to rest.
     ``work`` (25, 12): to work on.
     """
-    model, dry, desk = _model_of(game, i), dry_under(game.regions, game.discs, i), _desk_on(work)
+    model, dry, desk = model_of(game, i), dry_under(game.regions, game.discs, i), _desk_on(work)
     y, new, stages, leaning = desk.y, desk.new, desk.stages, desk.leaning
     speed, unit, radius = game.pace[0], game.pace[0] / game.pace[1], model.body.radius
     tol, drive = max(game.pace[2], FINEST), model.forces.drive
