@@ -54,18 +54,13 @@ def varied(seed: int, folder: Path) -> dict[str, Any]:
 )
 def test_a_far_post_changes_nothing(first: int, tmp_path: Path):
     """It makes the scene one of several bodies; within three errors and what ``tol`` allows."""
-    compared = 0
     for seed in range(first, first + BLOCK):
         alone = varied(seed, tmp_path)
-        if "constraint" in alone and "turning" in alone["floor"]:
-            continue  # refused among several bodies
         scene = Scene.from_tables(alone)
         now, before = ends_of(Scene.from_tables(alone | POST)), ends_of(scene)
         run = scene.simulate()
         before[:, 3] += scene.tol * run.speed_scale**2 / run.rate_scale
         assert apart(now, before).max() < 1.0, seed
-        compared += 1
-    assert compared > 0.7 * BLOCK
 
 
 def told(run: pt.Run, length: float) -> list[tuple[Any, ...]]:

@@ -358,6 +358,7 @@ class World:
         twin = object.__new__(World)
         twin.scene, twin._order = self.scene, self._order
         game, twin._room = game_of(self.scene, self._order)
+        twin._desk = desk_for(game)
         scale = 1.0 + share
         cosine, sine = scale * math.cos(share), scale * math.sin(share)
         turned = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, scale]])
