@@ -81,8 +81,6 @@ def test_a_run_gives_the_same_beside_a_far_post(first: int, tmp_path: Path):
     for seed in range(first, first + (5 if first == 0 else 30)):
         tables = varied(seed, tmp_path)
         tables.pop("wall", None)
-        if "constraint" in tables and "turning" in tables["floor"]:
-            continue
         beside = Scene.from_tables(tables | POST)
         if not {"slope", "law", "strips"} & {*tables["floor"]} and "force" not in tables:
             untimed = {name: one for name, one in tables.items() if name != "time"}
