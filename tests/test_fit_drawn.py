@@ -12,8 +12,6 @@ from drawn_films import KINDS, cut, drawn, summed, wrong
 import puck_tables as pt
 
 UNSEEN = ("drag", "hand", "push")  # a drag, or a soft push, in few frames may look like friction
-
-
 GOOD = ("marked", "unmarked", "straight", "straight unmarked", "fast", "few", "grid")
 
 
@@ -21,7 +19,7 @@ def misleads(film, found: pt.Fit) -> dict[str, float]:
     """What is wrong, but for what a table out of level by so much is said to do, unseen."""
     off = wrong(film, found)
     if film.slope == 0.0 or found.complaints:
-        return {} if film.slope else off
+        return off
     said = any("A level table is taken for granted" in text for text in found.remarks)
     assert said or not off
     return {}
