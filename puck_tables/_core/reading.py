@@ -18,7 +18,7 @@ from puck_tables._core.colours import is_colour, meant
 from puck_tables._core.doubts import question
 from puck_tables._core.fields import LISTED, Kind, in_tables, specs
 from puck_tables._core.real import shown
-from puck_tables._core.units import SHOWN, UNIT_EACH, measured, misread, quantity, without_unit
+from puck_tables._core.units import SHOWN, UNIT_EACH, measured, quantity, unit_meant, without_unit
 from puck_tables.errors import PuckError
 
 T = TypeVar("T")
@@ -329,5 +329,5 @@ def _one(kind: Kind, value: Any = None) -> str:
     words = dataclasses.replace(kind, shape="number").allowed()
     if not (isinstance(value, str) and kind.unit in SHOWN):
         return words
-    why = misread(value[:40])
+    why = unit_meant(value[:40])
     return f"{words}, or with its unit, as '{SHOWN[kind.unit]}'{f' ({why})' if why else ''}"

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.units import SHOWN, UNIT_EACH, misread, quantity, without_unit
+from puck_tables._core.units import SHOWN, UNIT_EACH, quantity, unit_meant, without_unit
 from puck_tables.errors import InputError
 
 _SHOWN = 60  # characters of a value in a message
@@ -105,7 +105,7 @@ def number_in(name: str, text: str, unit: str) -> float:
     """
     found = quantity(text, unit)
     if found is None:
-        why = misread(text) or f"or one with its unit, as '{SHOWN[unit]}'"
+        why = unit_meant(text) or f"or one with its unit, as '{SHOWN[unit]}'"
         raise InputError(f"{name} must be a number{bracketed(unit)}, got {shown(text)}: {why}")
     return found
 

@@ -97,12 +97,12 @@ def _mixed_up(symbol: str) -> bool:
     return symbol in _MEGA or symbol[1:] != symbol[1:].lower()
 
 
-def misread(text: str) -> str:
+def unit_meant(text: str) -> str:
     """Why a unit, perhaps behind a number or over a time, is not read as what it looks like.
 
     Examples
     --------
-    >>> misread("40Mm/s"), misread("Grad"), misread("40 mm")
+    >>> unit_meant("40Mm/s"), unit_meant("Grad"), unit_meant("40 mm")
     ("'Mm' is a megametre: write mm", "'Grad' may be degrees or gradians: write deg (a gradian is \
 0.9 deg)", '')
     """
@@ -148,7 +148,7 @@ mm, um, km, in, ft, yd, px
         names = [one for line in _KINDS[kind][0].values() for one in line.split()]
         near = get_close_matches(str(text).lower(), names, 1, 0.7)
         hint = f", did you mean '{near[0]}'?" if near else "."
-        if why := misread(str(text)[:40]):
+        if why := unit_meant(str(text)[:40]):
             hint = f": {why}."
         raise InputError(
             f"{name} = {text!r:.40} is not known{hint} Known: {', '.join(_KINDS[kind][0])}"

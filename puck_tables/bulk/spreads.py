@@ -22,8 +22,8 @@ from puck_tables._core.units import (
     UNIT_EACH,
     measured,
     measured_kinds,
-    misread,
     quantity,
+    unit_meant,
     without_unit,
 )
 from puck_tables.errors import InputError
@@ -72,7 +72,8 @@ class Spread(ABC):
             for one, kind in zip(values, kinds, strict=True):
                 if not kind and (isinstance(one, str) or one):
                     why = (
-                        misread(str(one)[:40]) or "give both numbers a unit, as '25mm', or neither"
+                        unit_meant(str(one)[:40])
+                        or "give both numbers a unit, as '25mm', or neither"
                     )
                     raise InputError(
                         f"{type(self).__name__}: {shown(one)} has no known unit: {why}"
