@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -43,7 +42,7 @@ def tradeoff(quick: bool, outputs: tuple[Path, ...], plot: Path | None, overwrit
 
 
 def report(measured: TradeOff) -> str:
-    """The front of every question, the outsiders, how cost grows, and the machine."""
+    """The front of every question, the outsiders, and the machine."""
     from puck_tables.accuracy.method_errors import pareto
 
     lines = []
@@ -53,7 +52,7 @@ def report(measured: TradeOff) -> str:
         front = pareto(own)
         lines.append(
             f"{question + ': the front of ' + str(len(own)) + ' methods':<58}"
-            f"{'worst':>8}{'median':>9}{'cost':>9} {'+-':>3}{'x limit':>9}{'bytes':>9}"
+            f"{'worst':>8}{'median':>9}{'cost':>9} {'+-':>3}{'bytes':>9}"
         )
         lines += [_line(method) for method in front]
         outsiders = [method for method in methods if method.outsider]
@@ -62,50 +61,18 @@ def report(measured: TradeOff) -> str:
             lines += [_line(method) for method in outsiders]
         lines.append("")
     lines.append(
-        "limit ratio of a flat puck: "
-        + ", ".join(
-            f"{name} {value:.4g}" if math.isfinite(value) else f"{name} none"
-            for name, value in measured.limit_ratios.items()
-        )
-    )
-    growth = zip(measured.stops, measured.stop_ns, measured.peak_bytes, strict=True)
-    lines.append(
-        "stops in chunks: "
-        + "; ".join(f"{n:.0e}: {ns:.1f} ns, {peak / 2**20:.1f} MiB" for n, ns, peak in growth)
-    )
-    lines += _doors(measured)
-    machine = measured.machine
-    lines.append(
-        ", ".join(f"{name} {text}" for name, text in machine.description.items())
-        + f"; peaks on one thread {machine.flops / 1e9:.3g} Gflop/s, "
-        f"{machine.bandwidth / 1e9:.3g} GB/s; {measured.repeats} rounds, {measured.seconds:.0f} s"
+        ", ".join(f"{name} {text}" for name, text in measured.machine.items())
+        + f"; {measured.repeats} rounds, {measured.seconds:.0f} s"
     )
     return "\n".join(lines)
 
 
 def _line(method: MeasuredMethod) -> str:
     spread = f"{min(999.0, 100.0 * method.ns_spread / method.ns):.0f}%"
-    limit = f"{method.ns / method.limit_ns:.1f}" if method.limit_ns else "-"
     return (
         f"  {method.name:<56}{method.error:>8.1e}{method.median_error:>9.1e}"
-        f"{_duration(method.ns):>9}{spread:>5}{limit:>8}{method.bytes or '-':>9}"
+        f"{_duration(method.ns):>9}{spread:>5}{method.bytes or '-':>9}"
     )
-
-
-def _doors(measured: TradeOff) -> list[str]:
-    """Each door on a line: cost of one question by the size of the batch."""
-    batches = sorted({door.batch for door in measured.doors})
-    lines = ["", f"{'doors: each question of a batch of':<46}" + "".join(
-        f"{f'{batch:.0e}' if batch > 1 else '1':>9}" for batch in batches
-    )]  # fmt: skip
-    rows: dict[tuple[str, str, int], dict[int, float]] = {}
-    for door in measured.doors:
-        rows.setdefault((door.name, door.outputs, door.threads), {})[door.batch] = door.ns
-    for (name, outputs, threads), costs in rows.items():
-        what = f"  {name}: {outputs}, {threads} thread{'' if threads == 1 else 's'}"
-        cells = (_duration(costs[n]) if n in costs else "-" for n in batches)
-        lines.append(f"{what:<46}" + "".join(f"{cell:>9}" for cell in cells))
-    return [*lines, ""]
 
 
 def _duration(ns: float) -> str:

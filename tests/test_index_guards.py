@@ -26,12 +26,7 @@ from puck_tables.stopping.state_lookup import PUCK_ROWS, fill_states_at
 from puck_tables.table.friction_section import friction_section
 from puck_tables.table.resultant_check import tabulate
 from puck_tables.table.resultant_table import ResultantTable
-from puck_tables.tradeoff.bicubic import (
-    fill_graded,
-    fill_uniform,
-    graded_coefficients,
-    uniform_coefficients,
-)
+from puck_tables.tradeoff.bicubic import fill_bicubic, graded_coefficients
 
 WILD = np.array([
     np.nan, -np.nan, np.inf, -np.inf, 1e308, -1e308, 1e19, -1e19, 5e9, -5e9, -1.0, -5e-324, 0.0,
@@ -67,7 +62,7 @@ def look_up_everything() -> None:
                 section_at(c, height, room_for_section(c))
     wild = np.random.default_rng(1).choice(WILD, (2, 11, 19, 3))
     for c in (graded_coefficients(table), wild):
-        fill_graded(c, 1.0, first, second, out)
+        fill_bicubic(c, 1.0, first, second, out)
     speeds = Table.build(SpeedLaw([0.0, 0.5, 2.0], [0.3, 0.2, 0.25]), 1e-2)
     wild_table = speeds.compiled.copy()
     places = wild_table[1:]
@@ -82,7 +77,6 @@ def look_up_everything() -> None:
     )
     for c in (piece.coefficients, hostile):
         fill_section(c, 3, first, fast, out)
-    fill_uniform(uniform_coefficients(9), first, second, np.empty(3), out)
     one = np.ones(n)
     for launches in (
         np.stack([first, second, 0.0 * one, 0.5 * one, one, one]),

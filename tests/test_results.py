@@ -24,8 +24,6 @@ from puck_tables.errors import ContactError, InputError, OutputError
 from puck_tables.io.columns import COLUMNS
 from puck_tables.io.formats import FORMATS
 from puck_tables.result import Result
-from puck_tables.tradeoff.call_overhead import CallCost
-from puck_tables.tradeoff.machine import Machine
 from puck_tables.tradeoff.measurement import TradeOff
 
 PUCK = Puck.similar(delta=0.8)
@@ -57,11 +55,7 @@ RESULTS: dict[str, Callable[[], Result]] = {
     "case of two": lambda: reference_case("take-out"),
     "friction over epsilon": lambda: floor_friction("coin"),
     "asperity": lambda: asperity_curve(Asperity(1.0, 4.0, 1.0, 1.0), np.linspace(0.0, 9.0, 30)),
-    "trade-off": lambda: TradeOff(
-        shipped_errors(), COUNTS, COUNTS * 1.0, COUNTS * 1.0,
-        (CallCost("stop", "all six", 1, 1, 2e4),), {"truth": 1.5},
-        Machine({"processor": "one"}, 1.0, 1.0), 1, 1.0,
-    ),
+    "trade-off": lambda: TradeOff(shipped_errors(), {"processor": "one"}, 1, 1.0),
 }  # fmt: skip
 
 

@@ -38,8 +38,7 @@ from puck_tables.plot import (
     tradeoff_figure,
 )
 from puck_tables.plot.animation import PALETTE, colour_of
-from puck_tables.scene.loop import OVER_EDGE
-from puck_tables.scene.outcome import ENDS
+from puck_tables.scene.outcome import ENDS, LAST_END
 
 LONG = "Of a title that goes on and on, as of whoever names all that there is in a scene, " * 3
 WORD = "x" * 150 + " " + "W" * 300
@@ -69,7 +68,7 @@ def a_map(pucks: int, rng: np.random.Generator, shape: tuple[int, ...]) -> Map:
     columns = {name: rng.normal(size=(*shape, pucks)) for name in ("x", "y")}
     columns["in_play"] = rng.integers(0, 2, (*shape, pucks)).astype(float)
     for values in columns.values():
-        values[end > OVER_EDGE] = np.nan
+        values[end > LAST_END] = np.nan
     names = tuple(piece.name for piece in pieces)
     return Map(scene=scene, names=names, columns=columns, end=end)
 
@@ -79,7 +78,7 @@ def test_every_end_of_a_board_is_drawn_or_counted(pucks: int) -> None:
     rng = np.random.default_rng(pucks)
     ends = a_map(pucks, rng, (17, 13))
     figure = ends.plot()
-    ended = int((ends.end <= OVER_EDGE).sum())
+    ended = int((ends.end <= LAST_END).sum())
     stay, left = drawn_ends(figure)
     assert stay == (ends.columns["in_play"] == 1.0).sum()
     assert stay + left == ended * pucks
@@ -88,7 +87,7 @@ def test_every_end_of_a_board_is_drawn_or_counted(pucks: int) -> None:
     assert sum(counts) == ended * pucks
     note = figure.axes[0].get_title("left")
     assert f"{ends.end.size - ended} of {ends.end.size} runs without an end" in note
-    ends.end[...] = OVER_EDGE + 1
+    ends.end[...] = LAST_END + 1
     with pytest.raises(InputError, match="nothing to draw"):
         ends.plot()
 
@@ -98,7 +97,7 @@ def test_a_close_up_tells_what_lies_outside() -> None:
     for name in ("x", "y"):
         ends.columns[name][3:] *= 1e-3  # but three runs
     ends.columns["x"][np.isfinite(ends.columns["x"])] += 40.0  # far along a sheet
-    ends.columns["in_play"][ends.end <= OVER_EDGE] = 1.0
+    ends.columns["in_play"][ends.end <= LAST_END] = 1.0
     figure = ends.plot()
     assert len(figure.axes) == 2
     x, y = (ends.columns[name].ravel() for name in ("x", "y"))

@@ -153,7 +153,6 @@ def test_a_turntable_holds_who_lies_near_its_middle():
 
 
 @pytest.mark.parametrize(("more", "words"), [
-    ({"floor": pt.Floor(velocity=(0.1, 0.0))}, "on a floor that moves nothing comes to rest"),
     ({"floor": pt.Floor(law=[[0.0, 0.0], [9.0, 0.2]])}, "floor.law: its friction is 0 at slip"),
     ({"floor": pt.Floor(law=[[0.0, 0.1], [0.9, 0.2]])}, "faster than the friction law floor.law"),
     ({"floor": pt.Floor(patches=[pt.Patch(0.1)])}, "give a radius > 0 m, or corners"),

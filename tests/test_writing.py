@@ -11,7 +11,6 @@ from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
 
-import numpy as np
 import pytest
 from click.testing import CliRunner
 from puck_tables.cli.main import main
@@ -58,15 +57,8 @@ def built_once(of: str, cells: int) -> StopTable:
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An own folder, and little work: what is done there has tests of its own."""
     from puck_tables.tradeoff import measurement
-    from puck_tables.tradeoff.call_overhead import CallCost
-    from puck_tables.tradeoff.machine import Machine
 
-    machine = Machine({"processor": "any"}, 1e9, 1e9)
-    measured = measurement.TradeOff(
-        shipped_errors(), np.array([1e3]), np.array([20.0]), np.array([1e5]),
-        (CallCost("stop", "all six", 1, 1, 2e4),), {"truth": 1.531},
-        machine, 25, 80.0,
-    )  # fmt: skip
+    measured = measurement.TradeOff(shipped_errors(), {"processor": "any"}, 25, 80.0)
     monkeypatch.setattr(measurement, "measure", lambda quick, show: measured)
     monkeypatch.setattr(
         StopTable, "built", lambda of, accuracy, cells, progress: built_once(of, cells)

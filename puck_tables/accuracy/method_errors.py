@@ -31,8 +31,7 @@ class MeasuredMethod:
     ``setting`` name it; ``outsider`` is 1 for what is not this program.  Errors are absolute
     and dimensionless: of the resultants, or in units of Q/J (time) and Q²/J (place); ``error`` is
     the worst, ``median_error`` the median over all starts.  ``ns`` is the median cost of one item
-    on one thread in nanoseconds, ``ns_spread`` the distance between the quartiles, ``limit_ns`` the
-    time that the machine's peak (``limit``: arithmetic or memory) would allow, 0 if not counted.
+    on one thread in nanoseconds, ``ns_spread`` the distance between the quartiles.
     """
 
     question: str
@@ -47,8 +46,6 @@ class MeasuredMethod:
     ns_spread: float
     bytes: int
     build_s: float
-    limit_ns: float
-    limit: str
 
     @property
     def scheme(self) -> Scheme | None:

@@ -224,15 +224,6 @@ COLUMNS = {
     "ns_spread": Column("ns", "spread of cost", "distance between the quartiles of the cost"),
     "bytes": Column("1", "bytes", "bytes it keeps"),
     "build_s": Column("s", "time to build", "time to make what it keeps"),
-    "limit_ns": Column("ns", "limit", "time the machine's peak would allow; 0: not counted"),
-    "limit": Column("", "limit", "which peak that is"),
-    "stops": Column("1", "stops", "stops in one sweep"),
-    "stop_ns": Column("ns", "cost of a stop", "cost of one stop by look-up, in chunks"),
-    "peak_bytes": Column("1", "peak memory", "peak memory"),
-    "door": Column("", "door", "question: what is asked for"),
-    "door_batch": Column("1", "batch", "questions in one call"),
-    "door_threads": Column("1", "threads", "threads of one call"),
-    "door_ns": Column("ns", "cost of a question", "cost of one question, all overhead in"),
 }
 
 

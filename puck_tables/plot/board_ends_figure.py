@@ -15,7 +15,7 @@ from puck_tables.plot.board_panels import close_up, finished, panels_for
 from puck_tables.plot.sample_figure import HELD, cloud_of
 from puck_tables.plot.style import GREY
 from puck_tables.plot.titles import counted, legend_below, noted
-from puck_tables.scene.loop import OVER_EDGE
+from puck_tables.scene.outcome import LAST_END
 from puck_tables.world.sample import Sample
 from puck_tables.world.scene_ends import SceneEnds
 from puck_tables.world.simulate import simulate
@@ -70,7 +70,7 @@ def draw_on(axes: Axes, ends: SceneEnds) -> None:
 
 
 def _board(ends: SceneEnds) -> Animation:
-    ended = np.flatnonzero(ends.end.ravel() <= OVER_EDGE)
+    ended = np.flatnonzero(ends.end.ravel() <= LAST_END)
     if not ended.size:
         told = ends.told or ("no run has an end",)
         raise InputError(f"there is nothing to draw: {'; '.join(told)}")

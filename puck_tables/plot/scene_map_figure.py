@@ -10,8 +10,7 @@ import numpy.typing as npt
 
 from puck_tables.plot.style import BLUE, GREEN, ORANGE, RED, canvas, draw_over, edges_of, in_order
 from puck_tables.plot.titles import legend_below, noted, titled
-from puck_tables.scene.loop import CARRIED_ROUND
-from puck_tables.scene.outcome import ENDS
+from puck_tables.scene.outcome import CARRIED_ROUND, ENDS
 from puck_tables.world.map import Map
 
 if TYPE_CHECKING:
@@ -28,9 +27,9 @@ _MAPS = {
 }
 _PANELS = 5  # of these, beside how it ends
 _LOOKS = (
-    (BLUE, "o"), (GREEN, "^"), ("#6f9a25", "o"), (ORANGE, "D"), (RED, "v"), ("#555555", "x"),
-    ("#8b2fa0", "x"), ("black", "x"), ("#119eae", "x"), ("#c2185b", "x"), ("#7a4b2a", "x"),
-    ("#3f51b5", "x"), ("#a8840f", "x"), ("#939393", "x"),
+    (BLUE, "o"), (GREEN, "^"), ("#6f9a25", "o"), (ORANGE, "D"), (RED, "v"), ("#1b4f9c", "v"),
+    ("#555555", "x"), ("#8b2fa0", "x"), ("black", "x"), ("#119eae", "x"), ("#c2185b", "x"),
+    ("#7a4b2a", "x"), ("#3f51b5", "x"), ("#a8840f", "x"), ("#939393", "x"),
 )  # fmt: skip
 _HATCH = "///"
 _LEGEND_ROW = 5  # entries

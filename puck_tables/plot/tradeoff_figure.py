@@ -36,10 +36,9 @@ def draw(measured: TradeOff) -> Figure:
     grid = figure.add_gridspec(3, 1, height_ratios=(1.0, 1.35, 0.75))
     for row, question in enumerate(_TITLES):
         draw_on(figure.add_subplot(grid[row]), measured, question)
-    machine = measured.machine.description
     titled(
         figure,
-        f"error against cost: {machine['processor']}, one thread, "
+        f"error against cost: {measured.machine['processor']}, one thread, "
         f"medians of {measured.repeats} rounds",
     )
     return figure

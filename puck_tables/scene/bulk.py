@@ -15,7 +15,8 @@ from puck_tables.scene.desk import Ask, Desk, desk_for
 from puck_tables.scene.friction import X, Y
 from puck_tables.scene.ground import patches_on
 from puck_tables.scene.ingredients import Model, Regions
-from puck_tables.scene.loop import NOT_FINITE, UNDECIDED, follow
+from puck_tables.scene.loop import follow
+from puck_tables.scene.outcome import NOT_FINITE, UNDECIDED
 from puck_tables.scene.records import EVENT_COLUMNS, FRAME_COLUMNS
 
 ENDS_COLUMNS = FRAME_COLUMNS + 1  # the last row, and the number of bounces

@@ -17,8 +17,15 @@ from puck_tables.scene.by_speed import FARTHER, FARTHEST
 from puck_tables.scene.entries import BATCH, LAUNCH, launch_paths
 from puck_tables.scene.equations import SIZE
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
-from puck_tables.scene.loop import AT_REST, CARRIED_AWAY, NOT_FINITE, OVER_EDGE, TIME_UP
-from puck_tables.scene.outcome import LEDGER, NO_END
+from puck_tables.scene.outcome import (
+    AT_REST,
+    CARRIED_AWAY,
+    LEDGER,
+    NO_END,
+    NOT_FINITE,
+    OVER_EDGE,
+    TIME_UP,
+)
 from puck_tables.scene.plan import plan_for
 from puck_tables.scene.prepare import Prepared, prepare
 from puck_tables.scene.run import ledger

@@ -14,11 +14,16 @@ from puck_tables.scene.scene_text import as_toml
 
 ENDS = (
     "at rest", "carried by the floor", "carried round", "time is up", "over the edge",
-    "step limit", "events crowd together", "not finite", "undecided", "impacts without end",
-    "unsolved", "faster than a table of restitution goes", "no end found", "refused",
+    "in a pocket", "step limit", "events crowd together", "not finite", "undecided",
+    "impacts without end", "unsolved", "faster than a table of restitution goes",
+    "no end found", "refused",
 )  # fmt: skip
-IMPACTS_WITHOUT_END, UNSOLVED, TOO_FAST = range(9, 12)  # of boards, beside the codes of the loop
-NO_END, REFUSED = len(ENDS) - 2, len(ENDS) - 1  # of one of many runs, which go on
+# their places: those of a run that has ended, up to LAST_END; of one that failed; and of one of
+# many, which go on
+AT_REST, CARRIED_AWAY, CARRIED_ROUND, TIME_UP, OVER_EDGE, IN_POCKET = range(6)
+LAST_END = IN_POCKET
+STEP_LIMIT, EVENT_LIMIT, NOT_FINITE, UNDECIDED = range(6, 10)
+IMPACTS_WITHOUT_END, UNSOLVED, TOO_FAST, NO_END, REFUSED = range(10, 15)
 EVENTS = ("stick", "slip", "impact", "contact", "entry", "edge", "exit", "overhang")
 
 # rows of the compiled loop, and what follows from them

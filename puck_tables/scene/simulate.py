@@ -17,16 +17,17 @@ from puck_tables.scene.boundaries import BOUNCES
 from puck_tables.scene.by_speed import FARTHER, FARTHEST, law_name, speed_law
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.library import files_of
-from puck_tables.scene.loop import (
+from puck_tables.scene.loop import LEANS
+from puck_tables.scene.one_run import events_of, run_of
+from puck_tables.scene.outcome import (
+    ENDS,
     EVENT_LIMIT,
-    LEANS,
+    LEDGER,
     NOT_FINITE,
     STEP_LIMIT,
     TIME_UP,
     UNDECIDED,
 )
-from puck_tables.scene.one_run import events_of, run_of
-from puck_tables.scene.outcome import ENDS, LEDGER
 from puck_tables.scene.plain import run_plain
 from puck_tables.scene.plan import Plan, ingredients, out_of_reach, plan_for
 from puck_tables.scene.prepare import MAX_EVENTS, Prepared, Twin, prepare

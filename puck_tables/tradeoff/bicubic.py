@@ -1,12 +1,11 @@
-"""Bicubic tables over φ and δ: what the polynomials of the height and the graded axis are worth."""
+"""The bicubic table over φ and δ on the same nodes: what polynomials of the height are worth."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.contact.closed_form import by_closed_form
-from puck_tables.kernels.compile import allocating, kernel, patience
+from puck_tables.kernels.compile import allocating, patience
 from puck_tables.kernels.spline import basis, cell_at, row_sums, side_and_eta
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.spline_fit import clamped_coefficients
@@ -60,58 +59,8 @@ def not_a_knot_coefficients(values: FloatArray) -> FloatArray:
     return np.asarray(flat, dtype=np.float64).reshape(right.shape)
 
 
-def uniform_coefficients(n_phi: int, n_delta: int = 4) -> FloatArray:
-    """B-spline weights over 36 of the friction ratios on [0, π/2] × [0, 1].
-
-    Parameters
-    ----------
-    n_phi, n_delta : numbers of nodes
-
-    Returns
-    -------
-    array (n_delta + 2, n_phi + 2, 3)
-
-    Examples
-    --------
-    >>> uniform_coefficients(9).shape
-    (6, 11, 3)
-    """
-    phi, delta = np.linspace(0.0, 0.5 * np.pi, n_phi), np.linspace(0.0, 1.0, n_delta)
-    rho = by_closed_form(phi[:, None], delta)
-    along_phi = clamped_coefficients(_ratios(np.stack(rho, axis=-1)))
-    along_delta = not_a_knot_coefficients(np.moveaxis(along_phi, 1, 0))
-    return np.ascontiguousarray(along_delta) / 36.0
-
-
-@kernel
-def fill_uniform(
-    c: FloatArray, phi: FloatArray, delta: FloatArray, sums: FloatArray, out: FloatArray
-) -> None:
-    """ρ_∥, ρ_⊥, ρ_ω at points with 0 ≤ φ ≤ π/2 into ``out`` (3, n); ``sums`` (3,) is work space."""
-    patience(phi.size)
-    cells_delta, cells_phi = c.shape[0] - 3, c.shape[1] - 3
-    scale = cells_phi / (0.5 * np.pi)
-    for n in range(phi.size):
-        p, q = phi[n] * scale, delta[n] * cells_delta
-        i, j = cell_at(p, cells_phi), cell_at(q, cells_delta)
-        a, b, d, e = basis(p - i)
-        v = basis(q - j)
-        for f in range(3):
-            sums[f] = 0.0
-            for m in range(4):
-                sums[f] += v[m] * (
-                    a * c[j + m, i, f]
-                    + b * c[j + m, i + 1, f]
-                    + d * c[j + m, i + 2, f]
-                    + e * c[j + m, i + 3, f]
-                )
-        out[0, n] = 1.0 / sums[0]
-        out[1, n] = sums[1] * out[0, n]
-        out[2, n] = sums[2] * out[0, n]
-
-
 @allocating
-def fill_graded(
+def fill_bicubic(
     coefficients: FloatArray, delta_max: float, phi: FloatArray, delta: FloatArray, out: FloatArray
 ) -> None:
     """ρ_∥, ρ_⊥, ρ_ω at flat arrays of points into ``out`` (3, n); arguments already checked.

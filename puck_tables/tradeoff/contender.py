@@ -1,4 +1,4 @@
-"""What is measured: a method of answering, made ready, with its errors and its work."""
+"""What is measured: a method of answering, made ready, with its errors."""
 
 from __future__ import annotations
 
@@ -13,9 +13,7 @@ class Ready:
     """A method made ready: ``run`` answers ``items`` questions on one thread.
 
     ``time_error`` and ``place_error`` (n,): at every start of the truth; for resultants the first
-    is zero and the second the largest error of the three.  ``bytes`` it keeps; ``work`` (adds and
-    products, hard operations counted :data:`puck_tables.tradeoff.machine.HARD` times) and
-    ``traffic`` (bytes read and written) for one item, 0 where not counted.
+    is zero and the second the largest error of the three.  ``bytes`` it keeps.
     """
 
     run: Callable[[], object]
@@ -23,8 +21,6 @@ class Ready:
     time_error: FloatArray
     place_error: FloatArray
     bytes: int = 0
-    work: float = 0.0
-    traffic: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -77,17 +77,6 @@ def pade_at_best(phi: FloatArray, resultants: FloatArray) -> tuple[float, float]
     return float(a), float(b)
 
 
-def pade_limit_ratio(a: float, b: float) -> float:
-    """Tan φ where ρ_∥ = ρ_ω; the true one is 1.531.  The limit surface has none: ρ_∥ > ρ_ω.
-
-    Examples
-    --------
-    >>> round(pade_limit_ratio(*PADE_MATCHED), 12)
-    4.0
-    """
-    return (b - 4.0 / 3.0) / (4.0 * a / 3.0 - 1.0) if a > 0.75 else float("inf")
-
-
 def as_table(model: str, a: float = 1.0, b: float = 8.0 / 3.0, cells: int = 512) -> ResultantTable:
     """A model as a table of resultants, the same at every δ: so the same loops integrate it.
 

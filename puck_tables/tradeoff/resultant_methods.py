@@ -18,12 +18,7 @@ from puck_tables.kernels.closed_form_kernel import _fill as fill_closed_form
 from puck_tables.kernels.quadratic import fill_resultants
 from puck_tables.table.resultant_check import tabulate
 from puck_tables.table.resultant_table import ResultantTable
-from puck_tables.tradeoff.bicubic import (
-    fill_graded,
-    fill_uniform,
-    graded_coefficients,
-    uniform_coefficients,
-)
+from puck_tables.tradeoff.bicubic import fill_bicubic, graded_coefficients
 from puck_tables.tradeoff.contender import Contender, Ready
 from puck_tables.tradeoff.literature_models import (
     PADE_MATCHED,
@@ -31,20 +26,15 @@ from puck_tables.tradeoff.literature_models import (
     fill_pade,
     pade_at_best,
 )
-from puck_tables.tradeoff.machine import HARD
 from puck_tables.tradeoff.truth import Points
 
 Fill = Callable[[FloatArray, FloatArray, FloatArray], object]  # phi, delta, out (3, n)
 
 QUESTION = "resultants"
 SCATTERED = 40_000  # points timed
-QUADRATIC, BICUBIC, UNIFORM = "quadratic in delta", "bicubic, graded", "bicubic, uniform"
+QUADRATIC, BICUBIC = "quadratic in delta", "bicubic, graded"
 # along φ, doubled, and those of the table that comes along
 _NODES = (17, 33, 65, 129, 257, 513, 991, 2049)
-_POINT_TRAFFIC = 40.0  # bytes: φ, δ in, three numbers out
-# adds and products of one point: φ to η (two roots, one division), weights, last division
-_PLACE_WORK = 22.0 + 3.0 * HARD + 16.0
-_AGM_WORK = 14.0 + 2.0 * HARD  # a step; a root and a division
 
 
 class ResultantTask:
@@ -55,10 +45,7 @@ class ResultantTask:
         self.truth, self.flat_truth = truth, flat_truth
         self.phi, self.delta = rng.uniform(0.0, 0.5 * np.pi, SCATTERED), rng.random(SCATTERED)
 
-    def ready(
-        self, fill: Fill, size: int = 0, work: float = 0.0, traffic: float = 0.0,
-        items: int = SCATTERED, flat: bool = False,
-    ) -> Ready:  # fmt: skip
+    def ready(self, fill: Fill, size: int = 0, items: int = SCATTERED, flat: bool = False) -> Ready:
         """Ready to answer; ``flat``: judged at δ = 0 alone."""
         truth = self.flat_truth if flat else self.truth
         judged = np.empty((3, truth.phi.size))
@@ -66,8 +53,7 @@ class ResultantTask:
         error = truth.errors(judged)
         out = np.empty((3, items))
         phi, delta = self.phi[:items].copy(), self.delta[:items].copy()
-        traffic = traffic + _POINT_TRAFFIC if work else 0.0
-        return Ready(lambda: fill(phi, delta, out), items, 0.0 * error, error, size, work, traffic)
+        return Ready(lambda: fill(phi, delta, out), items, 0.0 * error, error, size)
 
     def judge(self) -> Ready:
         """The truth itself, judged by the closed forms."""
@@ -96,11 +82,7 @@ def _bicubic_coefficients(size: int) -> FloatArray:
 
 
 def _bicubic(c: FloatArray, phi: FloatArray, delta: FloatArray, out: FloatArray) -> None:
-    fill_graded(c, 1.0, phi, delta, out)
-
-
-def _uniform(c: FloatArray, phi: FloatArray, delta: FloatArray, out: FloatArray) -> None:
-    fill_uniform(c, phi, delta, np.empty(3), out)
+    fill_bicubic(c, 1.0, phi, delta, out)
 
 
 def _plain_closed_form(phi: FloatArray, delta: FloatArray, out: FloatArray) -> None:
@@ -124,37 +106,24 @@ def contenders(task: ResultantTask) -> Iterator[Contender]:
         return None
 
     yield contender("direct quadrature", "", nothing, lambda _: task.judge())
-    yield contender("closed forms", "", nothing, lambda _: task.ready(
-        fill_closed_form, work=60.0 + 6.0 * HARD + 5.0 * _AGM_WORK, traffic=0.0))  # fmt: skip
+    yield contender("closed forms", "", nothing, lambda _: task.ready(fill_closed_form))
     yield contender(
         "closed forms, plain NumPy", "", nothing, lambda _: task.ready(_plain_closed_form)
     )
     for size in _NODES:
         yield contender(
             QUADRATIC, f"nodes={size}", partial(_quadratic_columns, size, np.float64),
-            lambda c: task.ready(partial(_quadratic, c), c.nbytes,
-                                 work=_PLACE_WORK + 50.0, traffic=160.0),
+            lambda c: task.ready(partial(_quadratic, c), c.nbytes),
         )  # fmt: skip
     for size in (257, 991):
         yield contender(
             QUADRATIC + ", float32", f"nodes={size}", partial(_quadratic_columns, size, np.float32),
-            lambda c: task.ready(partial(_quadratic, c), c.nbytes,
-                                 work=_PLACE_WORK + 50.0, traffic=80.0),
+            lambda c: task.ready(partial(_quadratic, c), c.nbytes),
         )  # fmt: skip
     for size in (33, 129, 513, 991):
         yield contender(
             BICUBIC, f"nodes={size}x4", partial(_bicubic_coefficients, size),
-            lambda c: task.ready(
-                partial(_bicubic, c),
-                c.nbytes, work=_PLACE_WORK + 136.0, traffic=384.0,
-            ),
-        )  # fmt: skip
-    for size in (65, 257, 1025, 4097):
-        yield contender(
-            UNIFORM, f"nodes={size}x4", partial(uniform_coefficients, size),
-            lambda c: task.ready(
-                partial(_uniform, c), c.nbytes
-            ),
+            lambda c: task.ready(partial(_bicubic, c), c.nbytes),
         )  # fmt: skip
     yield from _outsiders(task, contender)
 

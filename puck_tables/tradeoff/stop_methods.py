@@ -18,12 +18,11 @@ from puck_tables.motion.state import SIZE
 from puck_tables.motion.steppers import TABLEAUS, Stepping
 from puck_tables.motion.tableaus import RK4
 from puck_tables.stopping.launch_arrays import launches_in
-from puck_tables.stopping.lookup import WIDTH, stops_kernel
+from puck_tables.stopping.lookup import stops_kernel
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.tradeoff.contender import Contender, Ready
 from puck_tables.tradeoff.literature_models import PADE_MATCHED, as_table, pade_at_best
-from puck_tables.tradeoff.machine import HARD
 from puck_tables.tradeoff.scipy_methods import PATCH_GRID, SCIPY_SETTINGS, patch_script, scipy_stop
 from puck_tables.tradeoff.truth import Points, Starts
 
@@ -38,9 +37,6 @@ _STEPS_EXACT = (512, 1024)  # where the table's own error would show
 _LOCAL = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12)
 _LOCAL_EXACT = (1e-13, 2e-14)  # of a step, with closed forms only
 _EASY = 16  # starts that outsiders are judged at, none of them adversarial
-# adds and products of one launch: speeds and place (four roots, two divisions), weights, result
-_LAUNCH_WORK = 30.0 + 7.0 * HARD + 16.0 + 20.0
-_LAUNCH_TRAFFIC = 72.0  # bytes: six numbers in, three out
 _STEP_LIMIT = 100_000  # more is a motion that does not end
 
 
@@ -108,11 +104,9 @@ def _looked_up(task: StopTask, powers: int, coefficients: object) -> Ready:
     judged = np.empty((3, task.judged.shape[1]))
     run(task.judged, judged)
     out = np.empty((3, SCATTERED))
-    columns = WIDTH * powers
     return Ready(
         lambda: run(task.scattered, out), SCATTERED, *task.truth.errors(judged),
-        bytes=coefficients.nbytes, work=_LAUNCH_WORK + 8.0 * columns + 2.0 * columns,
-        traffic=_LAUNCH_TRAFFIC + 4.0 * columns * coefficients.itemsize,
+        bytes=coefficients.nbytes,
     )  # fmt: skip
 
 

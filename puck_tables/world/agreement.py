@@ -67,21 +67,21 @@ def refuse_endless(scene: SceneSpec) -> None:
     if scene.time is not None:
         return
     floor = scene.floor
-    if any(floor.velocity) or floor.turning != 0.0:
-        raise InputError("on a floor that moves nothing comes to rest: give a time")
+    moves = any(floor.velocity) or floor.turning != 0.0
     for number, piece in enumerate(pieces_of(scene)):
-        if 0.0 in frictions_under(scene, piece) and not piece.path:
-            if floor.law:
-                raise InputError(
-                    f"{law_name(scene)}: its friction is 0 at slip zero, so that nothing comes to "
-                    "rest: give a time"
-                )
+        grips = any(frictions_under(scene, piece)) or bool(piece.path)
+        if not grips and floor.law:
+            raise InputError(
+                f"{law_name(scene)}: its friction is 0 at slip zero, so that nothing comes to "
+                "rest: give a time"
+            )
+        if not grips and not (scene.edges or scene.pockets):
             raise InputError(
                 f"nothing brings {called(piece, number)} to rest (its friction is 0): give "
                 "a time, or friction"
             )
         hold = piece.constraint
-        if hold is not None and (any(hold.velocity) or hold.side_slip != 0.0):
+        if hold is not None and ((any(hold.velocity) and not moves) or hold.side_slip != 0.0):
             raise InputError(
                 f"the {hold.kind} of {called(piece, number)} moves, so it never comes to rest: "
                 "give a time"
@@ -221,8 +221,6 @@ def _of_one(scene: SceneSpec, piece: PieceSpec, path: str) -> Iterator[str]:
             yield f"{path}.{error}"
     hold, alone = piece.constraint, f"{path}." if scene.pucks else ""
     yield from misfits(piece.launch, hold, scene.floor, alone)
-    if hold is not None and scene.floor.turning != 0.0:
-        yield f"{alone}constraint: among several pucks, posts or arcs not on a floor that turns"
     if hold is not None and any(hold.velocity) and piece.launch.time > 0.0:
         yield (
             f"{path}.launch.time = {piece.launch.time:g}: a {hold.kind} that moves leads it "

@@ -10,20 +10,37 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.errors import PuckError
+from puck_tables.errors import InputError, PuckError
 from puck_tables.scene.entries import is_batch, launch_paths
-from puck_tables.scene.loop import AT_REST, EVENT_LIMIT, OVER_EDGE, STEP_LIMIT, TIME_UP
-from puck_tables.scene.outcome import IMPACTS_WITHOUT_END, TOO_FAST, UNSOLVED
+from puck_tables.scene.outcome import (
+    AT_REST,
+    CARRIED_AWAY,
+    CARRIED_ROUND,
+    ENDS,
+    EVENT_LIMIT,
+    IMPACTS_WITHOUT_END,
+    IN_POCKET,
+    LAST_END,
+    NO_END,
+    OVER_EDGE,
+    STEP_LIMIT,
+    TIME_UP,
+    TOO_FAST,
+    UNSOLVED,
+)
+from puck_tables.scene.parts import Edge
 from puck_tables.scene.run import STATE, residual
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import called, pieces_of, refuse_endless
 from puck_tables.world.bulk import Ends, follow_all
-from puck_tables.world.engine import CROWDED, OFF_TABLE, PUSHING, REACHED, TANGLED, TOO_SHORT
+from puck_tables.world.engine import CROWDED, OFF_TABLE, PUSHING, TANGLED, TOO_SHORT
+from puck_tables.world.footing import moves_along
+from puck_tables.world.lasting import FOR_EVER, LEADS_ON, ROUND
 from puck_tables.world.ledger import energies_of
-from puck_tables.world.outcome import ways_of
+from puck_tables.world.plan import plan_of
 from puck_tables.world.prepare import game_of, order_of
-from puck_tables.world.rim_laws import rule_of
-from puck_tables.world.simulate import MISSED
+from puck_tables.world.reactions import reactions
+from puck_tables.world.simulate import MISSED, columns_of, run_on
 from puck_tables.world.world import World
 
 _LAUNCH = re.compile(r"(?:puck\[(\d+)\]\.)?launch\.(velocity\[[01]\]|spin)")
@@ -33,8 +50,11 @@ _ENDS = {
     TANGLED: IMPACTS_WITHOUT_END,
     OFF_TABLE: TOO_FAST,
     TOO_SHORT: STEP_LIMIT,
+    ROUND: CARRIED_ROUND,
+    FOR_EVER: NO_END,
+    LEADS_ON: NO_END,
 }
-_FAILED = -1  # beside how the engine ends: a run of its own that failed
+_ON_EDGE = 1e-6  # of the radius: who left play there left it over an edge
 
 
 class BoardCase:
@@ -51,9 +71,7 @@ class BoardCase:
     def __init__(self, scene: SceneSpec) -> None:
         self.scene, self.pieces = scene, pieces_of(scene)
         refuse_endless(scene)
-        count = len(self.pieces)
-        self.model = f"{count} puck{'s' if count > 1 else ''} from impact to impact"
-        self.explanation = f"{ways_of(scene)}\n{rule_of(scene)}"
+        self.model, self.explanation = plan_of(scene)
         self.until = math.inf if scene.time is None else scene.time
         order = order_of(scene)
         self.game, room = game_of(scene, order)
@@ -68,7 +86,9 @@ class BoardCase:
     def columns(scene: SceneSpec) -> dict[str, tuple[int, ...]]:
         """What is known of an end, by name, and its shape."""
         each: tuple[int, ...] = (len(scene.pucks),) if scene.pucks else ()
-        found = dict.fromkeys((*STATE, "in_play"), each)
+        found = dict.fromkeys((*STATE, "in_play", "carried"), each)
+        if any(piece.constraint for piece in pieces_of(scene)):
+            found |= dict.fromkeys(("lambda_1", "lambda_2"), each)
         return found | dict.fromkeys(("end_time", "impacts"), ())
 
     @staticmethod
@@ -95,6 +115,8 @@ class BoardCase:
     @staticmethod
     def advice(scene: SceneSpec, code: int) -> str:
         """What to do about runs that have no end."""
+        if code == NO_END:
+            return "none by a hundred times its time scale, it may never stop; give a time"
         return "run it alone, which says what to do"
 
     def ends(
@@ -118,41 +140,74 @@ class BoardCase:
             starts[:, numbers.index(number), part] = values
         discs = self.place[np.array(numbers, np.int64)]
         ends = follow_all(self.game, self.first, discs, starts, self.until)
+        status = self._status(ends)
         for run in np.flatnonzero(ends.how == PUSHING).tolist():  # or much happens
-            self._run({path: float(values[run]) for path, values in launches.items()}, run, ends)
-        return self._columns(ends)
+            numbers_of = {path: float(values[run]) for path, values in launches.items()}
+            status[run] = self._run(numbers_of, run, ends)
+        return self._columns(ends, status), status
 
-    def _columns(self, ends: Ends) -> tuple[dict[str, FloatArray], npt.NDArray[np.int8]]:
-        states = np.concatenate([ends.states, ends.in_play[:, :, None]], axis=2)[:, self.place]
-        moving = (states[:, :, 3:6] != 0.0).any(axis=(1, 2))
-        status = np.where(moving, TIME_UP, AT_REST).astype(np.int8)
-        for how, code in (_ENDS | {_FAILED: UNSOLVED}).items():
+    def _status(self, ends: Ends) -> npt.NDArray[np.int8]:
+        """How each run ends, a place in :data:`puck_tables.scene.outcome.ENDS`."""
+        moves = (ends.states[:, :, 3:6] != 0.0).any(axis=2) & (ends.in_play > 0.0)
+        carried = (ends.carried > 0.0) | ~moves
+        if not moves_along(self.game.surface):
+            carried[:] = False
+        status = np.where(carried.all(axis=1), CARRIED_AWAY, TIME_UP).astype(np.int8)
+        status[~moves.any(axis=1)] = AT_REST
+        if len(self.pieces) == 1:
+            gone, places = ends.in_play[:, 0] == 0.0, ends.states[:, 0, :2]
+            status[gone] = IN_POCKET
+            for edge in self.scene.edges:
+                near = _off(edge, places) <= _ON_EDGE * self.pieces[0].radius
+                status[gone & near] = OVER_EDGE
+        for how, code in _ENDS.items():
             status[ends.how == how] = code
-        each = states if self.scene.pucks else states[:, 0]
-        out = {name: each[..., n] for n, name in enumerate((*STATE, "in_play"))}
+        return status
+
+    def _columns(self, ends: Ends, status: npt.NDArray[np.int8]) -> dict[str, FloatArray]:
+        found = {name: ends.states[..., n] for n, name in enumerate(STATE)}
+        found |= {"in_play": ends.in_play, "carried": ends.carried}
+        if any(piece.constraint for piece in self.pieces):
+            forces = reactions(self.game, ends.time, ends.states, ends.in_play)
+            found |= {"lambda_1": forces[..., 0], "lambda_2": forces[..., 1]}
+        out = {
+            name: values[:, self.place] if self.scene.pucks else values[:, 0]
+            for name, values in found.items()
+        }
         out |= {"end_time": ends.time, "impacts": ends.impacts.astype(np.float64)}
         for values in out.values():
-            values[status > OVER_EDGE] = np.nan
-        return out, status
+            values[status > LAST_END] = np.nan
+        return out
 
-    def _run(self, numbers: Mapping[str, float], run: int, ends: Ends) -> None:
-        """A run in which pucks push each other, or in which very much happens."""
+    def _run(self, numbers: Mapping[str, float], run: int, ends: Ends) -> int:
+        """A run in which pucks push each other, or in which very much happens; how it ends."""
         try:
             world = World(self.scene.at(numbers))
-            world.advance(self.until)
+            end, ends.time[run] = run_on(world, None)
             if world.groups > 0:  # what simulate refuses by its ledger
                 now = energies_of(world, np.array([world.time]))
                 if not residual(now) <= MISSED:
                     raise PuckError
+        except InputError:
+            return NO_END
         except PuckError:
-            ends.how[run] = _FAILED
-            return
-        order, last = np.argsort(self.place), world.state()
-        last[~world.moving, 3:] = 0.0
-        ends.states[run], ends.in_play[run] = last[order], world.in_play[order]
-        ends.time[run] = min(world.last_motion, self.until)
+            return UNSOLVED
+        order, last = np.argsort(self.place), columns_of(world, np.zeros(0), ends.time[run])
+        for n, name in enumerate(STATE):
+            ends.states[run, :, n] = last[name][-1, order]
+        ends.in_play[run], ends.carried[run] = (
+            last["in_play"][-1, order],
+            last["carried"][-1, order],
+        )
         ends.impacts[run] = sum(event.what == "impact" for event in world.events_since(0.0))
-        ends.how[run] = REACHED
+        return ENDS.index(end)
+
+
+def _off(edge: Edge, places: FloatArray) -> FloatArray:
+    """How far places (n, 2) are from an edge, m."""
+    normal = np.array(edge.normal) / math.hypot(*edge.normal)
+    off: FloatArray = (places - edge.point) @ normal
+    return off
 
 
 def _part(path: str) -> tuple[int, int]:

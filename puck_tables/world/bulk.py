@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import in_slices
-from puck_tables.kernels.compile import kernel, patience
+from puck_tables.kernels.compile import inner, kernel, patience
 from puck_tables.scene.friction import VX
 from puck_tables.world.course import COURSE_COLUMNS, LENGTH, trace
-from puck_tables.world.departures import Room, room_for
+from puck_tables.world.departures import Room, desk_for, room_for
 from puck_tables.world.engine import EVERYBODY, FULL, NOBODY, PAUSED, PUSHING, REACHED, advance
 from puck_tables.world.flight import GONE, START, moves_until, state_at
-from puck_tables.world.game import COUNTS, N_IMPACTS, N_PIECES, Game, Whole
+from puck_tables.world.footing import moves_along, over_floor
+from puck_tables.world.game import COUNTS, N_HISTORY, N_IMPACTS, N_PIECES, Game, Whole
+from puck_tables.world.lasting import GOES_ON, at_rest_below, limits_of, next_target, slip_of
 from puck_tables.world.layout import RADIUS
 from puck_tables.world.lone import LONGEST
 from puck_tables.world.paths import PIECE_COLUMNS
@@ -27,29 +30,53 @@ END_COLUMNS = 6  # of a puck: its state at the end
 
 
 class Ends(NamedTuple):
-    """States (runs, pucks, 6) and whether in play (runs, pucks) at the end; end time, impacts, how.
+    """States (runs, pucks, 6) at the end, whether in play, and at rest on the floor, (runs, pucks).
 
-    ``how`` (runs,): as :func:`puck_tables.world.engine.advance` says.  ``courses`` (runs, 4): of
+    End time, impacts, and how it ended.
+
+    ``how`` (runs,): as :func:`puck_tables.world.engine.advance` says, or without a time
+    :func:`puck_tables.world.lasting.next_target`.  ``courses`` (runs, 4): of
     the disc that is watched, see :func:`puck_tables.world.course.trace`.
     """
 
     states: FloatArray
     in_play: FloatArray
+    carried: FloatArray
     time: FloatArray
     impacts: FloatArray
     how: Whole
     courses: Whole
 
 
+@inner
+def _to_the_end(
+    game: Game, until: float, limit: float, given: float, struck: int, room: Room,
+    desk: FloatArray | None, work: FloatArray,
+) -> tuple[int, float]:  # fmt: skip
+    """Run it until a time, or, if that is inf, until nothing more can happen; how, and when."""
+    endless, how, target = until == math.inf, GOES_ON, until
+    if endless:
+        target = limit if game.surface.spin == 0.0 else game.clock[0]
+    while how == GOES_ON:
+        how = advance(game, target, struck, room.one, room, desk)
+        struck = NOBODY
+        while how == PAUSED:
+            how = advance(game, target, struck, room.one, room, desk)
+        if endless and how == REACHED:
+            how, target = next_target(game, limit, given, room, work)
+    return how, target
+
+
 @kernel
 def _follow_all(
     game: Game, fresh: FloatArray, kinds: Whole, flights: FloatArray, first: FloatArray,
-    discs: Whole, launches: FloatArray, paces: FloatArray, until: float, watch: Whole, room: Room,
-    ends: Ends,
+    discs: Whole, launches: FloatArray, paces: FloatArray, until: float, limits: FloatArray,
+    given: float, watch: Whole, room: Room, desk: FloatArray | None, ends: Ends,
 ) -> None:  # fmt: skip
     """Runs from the states ``first`` (n, 6), with launches (runs, m, 3) of the ``discs`` (m,).
 
-    ``paces`` (runs, 2): the scales of each, so that none depends on others.  ``watch`` (3,): the
+    ``paces`` (runs, 2): the scales of each, so that none depends on others; ``limits`` (runs,) and
+    ``given``: see :func:`puck_tables.world.lasting.limits_of`.  ``watch`` (3,): the
     disc whose courses are wanted, −1: none; the one that they are to pass; and how many impacts
     they may have: a run is given up when there are more.
     """
@@ -78,10 +105,10 @@ def _follow_all(
         struck = EVERYBODY
         for look in range(looks, -1, -1):
             part = game.pace[0] / game.pace[1] * 0.5**look if look > 0 else until
-            how = advance(game, min(part, until), struck, room.one, room)
+            how, ended = _to_the_end(
+                game, min(part, until), limits[run], given, struck, room, desk, ends.in_play[run]
+            )
             struck = NOBODY
-            while how == PAUSED:
-                how = advance(game, min(part, until), struck, room.one, room)
             if watch[0] >= 0:
                 trace(game, watch[0], watch[1], room.shares, room.marks, ends.courses[run])
                 if ends.courses[run, LENGTH] > watch[2]:
@@ -93,13 +120,24 @@ def _follow_all(
         for i in range(count):
             kind, flight = game.kinds[i], game.flights[i]
             last = max(last, flight[START], moves_until(kind, flight))
-        ends.time[run], ends.impacts[run] = min(last, until), game.counts[N_IMPACTS]
+        if until == math.inf and moves_along(game.surface):
+            last = at = ended
+        else:
+            last, at = min(last, until), until
+        ends.time[run], ends.impacts[run] = last, game.counts[N_IMPACTS]
         for i in range(count):
+            kind, flight = game.kinds[i], game.flights[i]
+            if kind == GONE and count == 1:  # its run ends as it leaves
+                row = game.history[game.counts[N_HISTORY] - 2]
+                kind, at, flight = int(row[1]), flight[START], row[2:]
             state_at(
-                game.kinds[i], game.flights[i], game.discs[i], game.curves, game.pieces,
-                until, room.work, ends.states[run, i],
+                kind, flight, game.discs[i], game.curves, game.pieces, at, room.work,
+                ends.states[run, i],
             )  # fmt: skip
             ends.in_play[run, i] = 0.0 if game.kinds[i] == GONE else 1.0
+            ux, uy, w = over_floor(game.surface, ends.states[run, i])
+            slip = slip_of(game.discs[i, RADIUS], ux, uy, w)
+            ends.carried[run, i] = ends.in_play[run, i] if slip <= at_rest_below(game) else 0.0
 
 
 def follow_all(
@@ -114,21 +152,25 @@ def follow_all(
     """
     runs, count = len(launches), len(game.discs)
     ends = Ends(
-        np.empty((runs, count, END_COLUMNS)), np.empty((runs, count)), np.empty(runs),
-        np.empty(runs), np.empty(runs, np.int64), np.zeros((runs, COURSE_COLUMNS), np.int64),
+        np.empty((runs, count, END_COLUMNS)), np.empty((runs, count)), np.empty((runs, count)),
+        np.empty(runs), np.empty(runs), np.empty(runs, np.int64),
+        np.zeros((runs, COURSE_COLUMNS), np.int64),
     )  # fmt: skip
     paces = _paces(game, first, discs, launches)
-    room, rows = room_for(count), 256 + 16 * count
+    limits, given = limits_of(game, paces)
+    room, desk, rows = room_for(count), desk_for(game), 256 + 16 * count
     mine = _own(game, rows)
 
     def work(start: int, stop: int) -> None:
         part = Ends(
-            ends.states[start:stop], ends.in_play[start:stop], ends.time[start:stop],
-            ends.impacts[start:stop], ends.how[start:stop], ends.courses[start:stop],
+            ends.states[start:stop], ends.in_play[start:stop], ends.carried[start:stop],
+            ends.time[start:stop], ends.impacts[start:stop], ends.how[start:stop],
+            ends.courses[start:stop],
         )  # fmt: skip
         _follow_all(
             mine, game.discs, game.kinds, game.flights, first, discs, launches[start:stop],
-            paces[start:stop], until, np.array(watch), room, part,
+            paces[start:stop], until, limits[start:stop], given, np.array(watch), room, desk,
+            part,
         )  # fmt: skip
 
     in_slices(work, runs)
@@ -159,7 +201,7 @@ def _paces(game: Game, first: FloatArray, discs: Whole, launches: FloatArray) ->
 
 def _own(game: Game, rows: int) -> Game:
     """A copy to run on, with so many rows for events and flights; for paths if there are any."""
-    paths = rows + LONGEST if game.floors[:, 2].any() else 0
+    paths = rows + LONGEST if desk_for(game) is not None else 0
     pieces = np.zeros((paths, PIECE_COLUMNS))
     return game._replace(
         regions=game.regions._replace(ground=game.regions.ground.copy()),

@@ -58,7 +58,7 @@ from puck_tables.world.group import (
     Scales,
     desk_for,
 )
-from puck_tables.world.impact import ACTS
+from puck_tables.world.impact import ACTS, NX, NY
 from puck_tables.world.layout import (
     HOLD,
     HOLD_VX,
@@ -66,6 +66,7 @@ from puck_tables.world.layout import (
     LIGHTNESS,
     PULL_X,
     PULL_Y,
+    RADIUS,
     REGION,
     TURNABILITY,
     TWIST,
@@ -155,7 +156,8 @@ def _note_contacts(
     if not fresh and abs(lost) > LOST_SHARE * float(_energies(game, before[free], free).sum()):
         fresh = part[:1].tolist()
     for i, j in fresh:
-        x, y = room.states[i, X : Y + 1]
+        row = room.rows[room.contacts[: game.counts[N_CONTACTS]].tolist().index([i, j])]
+        x, y = room.states[i, X : Y + 1] + game.discs[i, RADIUS] * row[[NX, NY]]
         note(game, t, CONTACT, i, j, float(x), float(y))
         game.events[game.counts[N_EVENTS] - 1, LOST] = lost
         lost = 0.0

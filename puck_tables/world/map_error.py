@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from puck_tables.errors import PuckError
-from puck_tables.scene.loop import OVER_EDGE
+from puck_tables.scene.outcome import LAST_END
 from puck_tables.scene.simulate import simulate
 from puck_tables.world.scene_ends import SceneEnds
 from puck_tables.world.simulate import simulate as on_board
@@ -28,7 +28,7 @@ def largest_error(ends: SceneEnds) -> float:
     >>> largest_error(scene.sweep()) <= scene.tol
     True
     """
-    valid = np.flatnonzero(ends.end.ravel() <= OVER_EDGE)
+    valid = np.flatnonzero(ends.end.ravel() <= LAST_END)
     worst = math.nan
     places = np.linspace(0, max(len(valid) - 1, 0), min(CHECKED, len(valid))).astype(int)
     for number in valid[places].tolist():

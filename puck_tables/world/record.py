@@ -17,7 +17,7 @@ def states_at(game: Game, times: FloatArray) -> FloatArray:
     """
     rows = flight_rows(game, times)
     moments = np.repeat(np.asarray(times, np.float64), len(game.discs))
-    return _states(game, rows.ravel(), moments).reshape(len(times), len(game.discs), 6)
+    return states_on(game, rows.ravel(), moments).reshape(len(times), len(game.discs), 6)
 
 
 def flight_rows(game: Game, times: FloatArray) -> Whole:
@@ -38,7 +38,7 @@ def flights_of(game: Game) -> tuple[Whole, FloatArray]:
         mine = np.flatnonzero(discs == i)
         ends[mine[:-1]] = starts[mine[1:]]
     rows = np.repeat(np.arange(len(discs)), 2)
-    return discs, _states(game, rows, np.stack([starts, ends], 1).ravel()).reshape(-1, 2, 6)
+    return discs, states_on(game, rows, np.stack([starts, ends], 1).ravel()).reshape(-1, 2, 6)
 
 
 def _flights(game: Game) -> tuple[Whole, FloatArray]:
@@ -47,7 +47,7 @@ def _flights(game: Game) -> tuple[Whole, FloatArray]:
     return history[:, 0].astype(np.int64), history[:, 2 + START].copy()
 
 
-def _states(game: Game, rows: Whole, times: FloatArray) -> FloatArray:
+def states_on(game: Game, rows: Whole, times: FloatArray) -> FloatArray:
     """States (n, 6) on the flights in these rows at these times."""
     out = np.empty((len(rows), 6))
     _fill(game, rows, times, np.empty(ROOM), out)

@@ -14,19 +14,29 @@ from puck_tables.scene.ingredients import Surface, floor_velocity
 from puck_tables.scene.parts import Floor
 from puck_tables.world import game as g
 from puck_tables.world.flight import GONE, LOOKED_UP, PATH, START, UNTIL
+from puck_tables.world.lasting import at_rest_below, middle_of
 from puck_tables.world.layout import DECEL, INTEGRATED, LIGHTNESS, RADIUS
-from puck_tables.world.record import flights_of, states_at
-
-STUCK = 1e-11  # of the scale of speeds: a slip as small is none; steps end at 1e-12 of it
+from puck_tables.world.record import flights_of, states_at, states_on
 
 Rest = tuple[float, str, int, float, float]  # when, stick or slip, which disc, where
 
 
-def rests_of(game: g.Game) -> Iterator[Rest]:
+def rests_of(game: g.Game) -> list[Rest]:
     """Every stick and slip until now; what an impact or a launch sets off is no slip."""
+    found: list[Rest] = []
+    for rest in _told(game):
+        if rest[1] == "slip" and found and found[-1][:3] == (rest[0], "stick", rest[2]):
+            found.pop()  # it stopped, and was not held
+        else:
+            found.append(rest)
+    return found
+
+
+def _told(game: g.Game) -> Iterator[Rest]:
+    """Every stick and slip until now, also a rest that ends at once, disc by disc."""
     discs, states = flights_of(game)
     flights, kinds = game.history[: len(discs), 2:], game.history[: len(discs), 1]
-    near, now = STUCK * float(game.pace[0]), float(game.clock[0])
+    near, now = at_rest_below(game), float(game.clock[0])
     slips = slips_over(game, discs, states)
     for disc in range(len(game.discs)):
         row = game.discs[disc]
@@ -40,12 +50,16 @@ def rests_of(game: g.Game) -> Iterator[Rest]:
             if kinds[n] == GONE:
                 break
             first, last = slips[n] <= near
+            moves = not (first and last)
+            if kinds[n] == PATH and not moves and start < end:  # perhaps from rest to rest
+                middle = states_on(game, mine[k : k + 1], np.array([min(middle_of(game, n), end)]))
+                moves = bool(slips_over(game, discs[n : n + 1], middle)[0] > near)
             if first and not rested:
                 yield start, "stick", disc, float(states[n, 0, X]), float(states[n, 0, Y])
-            if first and not last and kinds[n] == PATH and start > 0.0:
+            if first and moves and kinds[n] == PATH and start > 0.0:
                 yield start, "slip", disc, float(states[n, 0, X]), float(states[n, 0, Y])
             rested = bool(last)
-            if last and not first:
+            if last and moves:
                 stop = float(flights[n, UNTIL]) if kinds[n] == LOOKED_UP else end
                 place = states_at(game, np.array([min(stop, end)]))[0, disc]
                 yield min(stop, end), "stick", disc, float(place[X]), float(place[Y])

@@ -27,8 +27,7 @@ from puck_tables.io.dataset import Dataset
 from puck_tables.scene.case import Case, told_apart
 from puck_tables.scene.entries import is_batch, launch_paths, tables_of
 from puck_tables.scene.library import files_of
-from puck_tables.scene.loop import OVER_EDGE
-from puck_tables.scene.outcome import ENDS, REFUSED, plain_name
+from puck_tables.scene.outcome import ENDS, LAST_END, REFUSED, plain_name
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import pieces_of
 from puck_tables.world.board_case import BoardCase
@@ -217,7 +216,7 @@ class Runs(Work):
 
     def checked(self, tally: Tally) -> None:
         """Refuse runs none of which has an end."""
-        if any(code <= OVER_EDGE for code in tally.counts):
+        if any(code <= LAST_END for code in tally.counts):
             return
         if set(tally.counts) == {REFUSED}:
             refusal = self._refusal(tally.first[REFUSED])
@@ -228,7 +227,7 @@ class Runs(Work):
         """A line for each way in which runs have no end: how many, the first, and what to do."""
         lines = []
         for code, count in tally.counts.items():
-            if code > OVER_EDGE:
+            if code > LAST_END:
                 first = tally.first[code]
                 at = ", ".join(f"{path} = {one:.10g}" for path, one in self.along(first).items())
                 refused = code == REFUSED
@@ -299,6 +298,8 @@ class DrawnRuns(Runs):
         middle = {path: one.of(np.array([0.5])).item() for path, one in spreads.items()}
         try:
             scene.at(middle)  # what is no number of the scene is refused here
+            for path, one in spreads.items():
+                one.checked_for(path, scene.unit_of(path))
         except InputError as error:
             raise InputError(f"samples: in the middle of what is drawn, {error}") from None
         super().__init__(scene, part, read, {path: np.zeros(0) for path in spreads}, (count,))

@@ -14,8 +14,7 @@ from puck_tables.io.columns import derived
 from puck_tables.io.dataset import Dataset, Variable, variable
 from puck_tables.result import Result
 from puck_tables.scene.entries import entry_at, is_batch
-from puck_tables.scene.loop import OVER_EDGE
-from puck_tables.scene.outcome import ENDS, column_of, scene_texts
+from puck_tables.scene.outcome import ENDS, LAST_END, column_of, scene_texts
 from puck_tables.scene.run import number_of
 from puck_tables.scene.scene_spec import SceneSpec
 
@@ -81,7 +80,7 @@ class SceneEnds(Result):
     @property
     def ended(self) -> int:
         """How many runs have an end."""
-        return int(np.count_nonzero(self.end <= OVER_EDGE))
+        return int(np.count_nonzero(self.end <= LAST_END))
 
     def numbers(self, run: int) -> dict[str, float]:
         """What is special to a run, counted from 0 with the last range fastest, by path."""

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -11,46 +12,69 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import finite_array
 from puck_tables.errors import InputError, PuckError
+from puck_tables.scene.friction import THETA, X, Y
+from puck_tables.scene.ingredients import FREE
 from puck_tables.scene.library import files_of
+from puck_tables.scene.outcome import (
+    AT_REST,
+    CARRIED_AWAY,
+    CARRIED_ROUND,
+    ENDS,
+    IN_POCKET,
+    OVER_EDGE,
+    TIME_UP,
+)
+from puck_tables.scene.regions import friction_error
 from puck_tables.scene.run import STATE, Event, Run, residual
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import game as g
-from puck_tables.world.agreement import flight_error, refuse_endless
+from puck_tables.world.agreement import TABLE_ERROR, flight_error, pieces_of
+from puck_tables.world.footing import moves_along
+from puck_tables.world.lasting import at_rest_below
+from puck_tables.world.layout import HOLD
 from puck_tables.world.ledger import energies_of
-from puck_tables.world.outcome import ways_of
-from puck_tables.world.rests import STUCK, floor_under, rests_of, slips_over
-from puck_tables.world.rim_laws import rule_of
+from puck_tables.world.plan import plan_of
+from puck_tables.world.reactions import reactions
+from puck_tables.world.rests import floor_under, rests_of, slips_over
 from puck_tables.world.world import World
 
+# of check runs: so many times the error of a step, and to which side launches are off
+CHECKS = ((30.0, 1.0), (8.0, -1.0))
+PROBES = 8  # states of one puck that are compared
+LATER = 0.01  # of a run: by so much a check run may end later
+FINER, FINEST = 1 / 30, 1e-12  # of the tolerance before, tried one after the other
+MOST_IN_VAIN = 2  # finer tolerances in a row that do not halve the estimate
 MISSED = 1e-7  # of the ledger, where pucks pushed each other: their impacts were not solved
 
 
 def simulate(scene: SceneSpec, times: npt.ArrayLike | None = None) -> Run:
     """A run of a scene, as :meth:`puck_tables.Scene.simulate` has it."""
-    world = World(scene)
-    refuse_endless(world.scene)
-    files = files_of(scene)
-    world.advance(math.inf if scene.time is None else scene.time)
-    moving = bool(world.moving.any())
-    end_time = world.time if moving else world.last_motion
-    columns = _columns(world, _moments(scene, times, end_time, moving), end_time)
+    files, moments = files_of(scene), None if times is None else _checked(times)
+    world, end, end_time, error = _close_enough(scene, moments)
+    if moments is None:
+        moments = np.linspace(0.0, end_time, int(scene.frames))
+    elif end not in (ENDS[AT_REST], ENDS[OVER_EDGE], ENDS[IN_POCKET]):
+        moments = moments[moments <= end_time]
+    columns = columns_of(world, moments, end_time)
+    if not scene.pucks:
+        columns = {n: one if one.ndim == 1 else one[:, 0] for n, one in columns.items()}
     missed = residual(columns)
     if world.groups > 0 and not missed <= MISSED:
         raise PuckError(g.TOGETHER.format(time=world.time))
     speed, rate = world._game.pace[:2].tolist()
-    ways = ways_of(scene)
+    plan = plan_of(scene)
     return Run(
         simulated=simulate,
-        scene=world.scene,
-        model=", ".join(ways.splitlines()),
-        why=f"{ways}\n{rule_of(scene)}",
-        end=_end(world, moving),
+        scene=scene.single(),
+        model=plan.model,
+        why=plan.why,
+        end=end,
         end_time=end_time,
         names=world.names,
         events=_events(world),
-        stop_times=world.stop_times,
+        stop_times=world.stirs,
         energy_residual=missed,
-        error_estimate=_error(scene, world) * rate / speed**2,
+        error_estimate=error,
         speed_scale=speed,
         rate_scale=rate,
         steps=int(world._game.counts[g.N_PIECES]),
@@ -60,27 +84,56 @@ def simulate(scene: SceneSpec, times: npt.ArrayLike | None = None) -> Run:
     )
 
 
-def _moments(
-    scene: SceneSpec, times: npt.ArrayLike | None, end_time: float, moving: bool
-) -> FloatArray:  # fmt: skip
-    """When states are saved."""
-    if times is None:
-        return np.linspace(0.0, end_time, int(scene.frames))
+def _checked(times: npt.ArrayLike) -> FloatArray:
+    """When states are to be saved."""
     moments = np.atleast_1d(finite_array("times", times, "s"))
     if moments.ndim != 1 or (moments < 0.0).any() or (np.diff(moments) < 0.0).any():
         raise InputError("times must be a list of ascending numbers >= 0 s")
-    return moments[moments <= end_time] if moving else moments
+    return moments
 
 
-def _columns(world: World, moments: FloatArray, end_time: float) -> dict[str, FloatArray]:
-    """States, energies, and what becomes of each puck, over time; the last row is now."""
-    times = np.append(np.minimum(moments, world.time), world.time)
+def run_on(world: World, moments: FloatArray | None) -> tuple[str, float]:
+    """Run it; how and when it ends.
+
+    Without a time until nothing more can happen; on a floor that moves to the last moment that is
+    asked for.
+    """
+    until = world.scene.time
+    if until is None and moves_along(world._game.surface) and moments is not None:
+        until = float(moments[-1]) if moments.size and moments[-1] > 0.0 else None
+    if until is not None:
+        world.advance(until)
+        stirs = world.stirs
+        moving = bool(world.moving.any())
+        end_time = world.time if moving else float(stirs.max())
+        carried = moving and bool((stirs < math.inf).all())
+        end = ENDS[CARRIED_AWAY if carried else TIME_UP if moving else AT_REST]
+    else:
+        end_time, goes_round = world.come_to_rest()
+        carried = bool(world.moving[world.in_play].any())
+        end = ENDS[CARRIED_ROUND if goes_round else CARRIED_AWAY if carried else AT_REST]
+    if len(world.names) == 1 and not world.in_play[0]:
+        fell = world.events_since(0.0)[-1].what == "pocket"
+        return ENDS[IN_POCKET if fell else OVER_EDGE], float(world.stirs[0])
+    return end, end_time
+
+
+def columns_of(world: World, moments: FloatArray, end_time: float) -> dict[str, FloatArray]:
+    """States, energies, and what becomes of each puck, over time; the last row is the end.
+
+    Arrays (times, pucks); energies but kinetic ones are of all together, (times,).
+    """
+    times = np.minimum(np.append(moments, end_time), world.time)
+    alone_gone = len(world.names) == 1 and not world.in_play[0]
+    if alone_gone:  # its run ends as it leaves
+        times = np.minimum(times, np.nextafter(end_time, 0.0))
     states = world.over(times)
-    near = STUCK * float(world._game.pace[0])
+    near = at_rest_below(world._game)
     in_play = np.ones(states.shape[:2])
     for event in world.events_since(0.0):
         if event.what in ("pocket", "edge"):
             in_play[times >= event.time, world.names.index(event.puck)] = 0.0
+    in_play[-1] *= 0.0 if alone_gone else 1.0
     discs = world._place
     slips = slips_over(world._game, np.broadcast_to(discs, in_play.shape).ravel(),
                        states.reshape(-1, 6)).reshape(in_play.shape)  # fmt: skip
@@ -92,23 +145,15 @@ def _columns(world: World, moments: FloatArray, end_time: float) -> dict[str, Fl
         "in_play": in_play, "carried": np.where((slips <= near) & (in_play > 0.0), 1.0, 0.0),
         **energies,
     }  # fmt: skip
-    several = bool(world.scene.pucks)
-    return {n: one if several or one.ndim == 1 else one[:, 0] for n, one in columns.items()}
+    if (world._game.discs[:, HOLD] != FREE).any():
+        order = world._order
+        forces = reactions(world._game, times, states[:, order], in_play[:, order])[:, discs]
+        columns |= {"lambda_1": forces[..., 0], "lambda_2": forces[..., 1]}
+    return columns
 
 
 def _number(row: Any) -> Any:
     return float(row) if np.ndim(row) == 0 else row
-
-
-def _end(world: World, moving: bool) -> str:
-    """How it ends."""
-    if not world.scene.pucks and not world.in_play[0]:
-        return "over the edge" if world.events_since(0.0)[-1].what == "edge" else "in a pocket"
-    if not moving:
-        return "at rest"
-    slips = slips_over(world._game, world._place, world.state())
-    carried = slips <= STUCK * float(world._game.pace[0])
-    return "carried by the floor" if carried[world.in_play].all() else "time is up"
 
 
 def _events(world: World) -> list[Event]:
@@ -121,20 +166,68 @@ def _events(world: World) -> list[Event]:
     return sorted([*world.events_since(0.0), *rests], key=lambda event: event.time)
 
 
-def _error(scene: SceneSpec, world: World) -> float:
-    """How far check runs end whose launches are off by what flights may be wrong by, m.
+class _Done(NamedTuple):
+    """A run: how and when it ended, and what it may be wrong by, in units of Q/J and Q²/J."""
 
-    With the rounding of the look-up, for pucks that could slide far.
+    world: World
+    end: str
+    end_time: float
+    error: float
+
+
+def _done(scene: SceneSpec, moments: FloatArray | None) -> _Done:
+    world = World(scene)
+    end, end_time = run_on(world, moments)
+    return _Done(world, end, end_time, _error(world))
+
+
+def _close_enough(scene: SceneSpec, moments: FloatArray | None) -> _Done:
+    """The run; of one puck again, with finer steps and no look-up, while ``tol`` is not kept.
+
+    Of several launches decide, which nobody knows so well.
     """
-    last = world.state()
-    gaps, own, share = [], world.place_error, flight_error(scene)
-    for scale, turn in ((1.0 + share, share), (1.0 - share, -share)):
-        check = World(scene)
+    best, tol, in_vain = _done(scene, moments), min(scene.tol, TABLE_ERROR), 0
+    alone = len(best.world.names) == 1
+    while alone and best.error > scene.tol and tol > FINEST and in_vain < MOST_IN_VAIN:
+        tol = max(FINER * tol, FINEST)
         try:
-            check.perturb(scale, turn)
-            check.advance(world.time)
+            finer = _done(replace(scene, tol=tol), moments)
+        except PuckError:  # a friction law is known no better
+            break
+        in_vain = 0 if finer.error <= 0.5 * best.error else in_vain + 1
+        best = finer if finer.error < best.error else best
+    return best
+
+
+def _error(world: World) -> float:
+    """How far check runs are from it at the end, and of one puck on the way and in time.
+
+    Their steps are coarser, their launches and what friction is integrated off by what flights may
+    be wrong by.  With the rounding of the look-up, for pucks that could slide far.
+    """
+    pieces = pieces_of(world.scene)
+    speed, rate = world._game.pace[:2].tolist()
+    length, now = speed * speed / rate, world.time
+    radii, alone = np.array([piece.radius for piece in pieces]), len(pieces) == 1
+    probes = now * np.arange(1, PROBES + 1) / PROBES if alone else np.array([now])
+    states, stops, share = world.over(probes), world.stirs, flight_error(world.scene)
+    off = 0.0
+    if world._game.floors[:, 2].any():
+        slides = {(one.height, one.friction, one.pressure): one for one in pieces if not one.path}
+        off = max(friction_error(world.scene.alone(one)) for one in slides.values())
+    gaps = []
+    for coarser, sign in CHECKS:
+        try:
+            check = world.check_run(coarser, sign * share, sign * off)
+            check.advance(now)
+            gap = check.over(probes) - states
+            gaps.append(
+                float((np.hypot(gap[..., X], gap[..., Y]) + radii * np.abs(gap[..., THETA])).max())
+                / length
+            )
+            if alone and stops[0] < math.inf:
+                check.advance(LATER * now)
+                gaps.append(min(abs(check.stirs[0] - stops[0]), LATER * now) * rate / speed)
         except PuckError:  # it meets what has no answer: so nearly did the run
-            gaps.append(float(np.hypot(*np.ptp(last[:, :2], axis=0))))
-            continue
-        gaps.append(float(np.hypot(*(check.state() - last)[:, :2].T).max()))
-    return max(gaps) + own
+            gaps.append(float(np.hypot(*np.ptp(states[-1, :, :2], axis=0))) / length)
+    return max(gaps) + world.place_error / length

@@ -19,8 +19,8 @@ from puck_tables.scene.parts import Launch
 from puck_tables.scene.run import Event, number_of
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import game as g
-from puck_tables.world.agreement import called, pieces_of
-from puck_tables.world.departures import room_for
+from puck_tables.world.agreement import called, pieces_of, refuse_endless
+from puck_tables.world.departures import desk_for, room_for
 from puck_tables.world.engine import (
     CROWDED,
     EVERYBODY,
@@ -35,12 +35,20 @@ from puck_tables.world.engine import (
     advance,
     lacks_rows,
 )
-from puck_tables.world.flight import DAMPED, GONE, START, moves_until
-from puck_tables.world.footing import moves_along
+from puck_tables.world.flight import GONE, START, moves_until
 from puck_tables.world.holds import response
 from puck_tables.world.impact import FIRST_N, E
+from puck_tables.world.lasting import (
+    FOR_EVER,
+    GOES_ON,
+    LEADS_ON,
+    ROUND,
+    limits_of,
+    next_target,
+    stirs,
+)
 from puck_tables.world.law_range import refuse_too_fast, with_law_for
-from puck_tables.world.layout import HOLD, LIGHTNESS, RADIUS
+from puck_tables.world.layout import HOLD, LIGHTNESS, NORMAL, RADIUS
 from puck_tables.world.lone import LONGEST
 from puck_tables.world.prepare import (
     game_of,
@@ -91,6 +99,7 @@ class World:
         self.scene = scene.single()
         self._order = order_of(self.scene)
         self._game, self._room = game_of(self.scene, self._order)
+        self._desk = desk_for(self._game)
         self._named()
         self._advance(0.0, EVERYBODY, self._room.one)
 
@@ -146,6 +155,16 @@ class World:
         """When the last puck came or will come to rest if nothing happens before, s."""
         return float(self.stop_times.max())
 
+    @property
+    def stirs(self) -> FloatArray:
+        """Until when each puck has moved over its floor, or when it left play, array (pucks,), s.
+
+        inf: it still moves; 0: it has lain there since the start.
+        """
+        found = np.empty(len(self.names))
+        stirs(self._game, self._room, found)
+        return found[self._place]
+
     def state(self) -> FloatArray:
         """X, y (m), angle (rad), vx, vy (m/s), spin (rad/s) of every puck now, array (pucks, 6)."""
         return self._states(np.array([self.time]))[0]
@@ -200,21 +219,43 @@ class World:
         span = math.inf if endless else real("duration", duration, "s")
         if not span >= 0.0:
             raise InputError(f"duration must not be negative, got {span:g} s")
-        if span == math.inf:
-            self._refuse_endless()
         before = int(self._game.counts[g.N_EVENTS])
-        until = self.time + span
-        self._advance(until, NOBODY, self._room.one)
-        if until == math.inf:
-            self._game.clock[0] = max(self.time, self.last_motion)
+        if span == math.inf:
+            self.come_to_rest()
+        else:
+            self._advance(self.time + span, NOBODY, self._room.one)
         return self._events(before)
 
-    def _refuse_endless(self) -> None:
-        """Refuse to wait for the end of what has none."""
-        if moves_along(self._game.surface):
-            raise InputError("on a floor that moves nothing comes to rest: give a duration")
-        if (self._game.kinds == DAMPED).any():
-            raise InputError("pucks without dry friction never come to rest: give a duration")
+    def come_to_rest(self) -> tuple[float, bool]:
+        """Let time pass until nothing more can happen; since when that is so, s.
+
+        And whether a floor that turns goes on to carry pucks over the same borders, turn after
+        turn: one whole turn is followed.
+
+        Raises
+        ------
+        InputError, PuckError
+            As :meth:`advance`.
+        """
+        refuse_endless(self.scene)
+        limits, given = limits_of(self._game, self._game.pace[None, :2])
+        ends, how, target = np.empty(len(self.names)), GOES_ON, self.time
+        while how == GOES_ON:
+            self._advance(target, NOBODY, self._room.one)
+            how, target = next_target(self._game, float(limits[0]), given, self._room, ends)
+        if how == FOR_EVER:
+            raise InputError(
+                f"something still moves after {target:.4g} s, a hundred times what friction "
+                "takes: it may never stop; give a time"
+            )
+        if how == LEADS_ON:
+            raise InputError(
+                f"after {target:.4g} s the floor still carries a puck towards a wall, an edge, a "
+                "border or a patch, and it may slip there again; give a time"
+            )
+        if self._game.surface.spin == 0.0:  # it was waited for what may come
+            self._game.clock[0] = target
+        return target, how == ROUND
 
     def events_since(self, time: float) -> list[Event]:
         """What happened from a time on."""
@@ -281,7 +322,10 @@ class World:
             self._grow()
         if struck >= 0:
             set_pace(self._game, state[None] * np.ones((len(self._game.discs), 1)))
-        while (how := advance(self._game, until, struck, state, self._room)) != REACHED:
+        while True:
+            how = advance(self._game, until, struck, state, self._room, self._desk)
+            if how == REACHED:
+                return
             struck = NOBODY
             if how == FULL:
                 self._grow()
@@ -302,25 +346,34 @@ class World:
             else:
                 raise PuckError(self._failure(CROWDED if how == PAUSED else how))
 
-    def perturb(self, scale: float, turn: float) -> None:
-        """Change the launches: their velocities and spins by a factor, their headings by an angle.
+    def check_run(self, coarser: float, share: float, friction: float) -> World:
+        """The same from the start, otherwise: to see how far what errs by so much ends from it.
 
-        To see how much an end depends on them.
+        Parameters
+        ----------
+        coarser : so many times the error of a step
+        share : of their velocities and spins launches are off by so much, and in rad their headings
+        friction : of what is integrated, off by so much
         """
-        scale, turn = real("scale", scale, "1"), real("turn", turn, "rad")
-        cosine, sine = scale * math.cos(turn), scale * math.sin(turn)
+        twin = object.__new__(World)
+        twin.scene, twin._order = self.scene, self._order
+        game, twin._room = game_of(self.scene, self._order)
+        twin._desk = desk_for(game)
+        scale = 1.0 + share
+        cosine, sine = scale * math.cos(share), scale * math.sin(share)
         turned = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, scale]])
-        later = self._game.launches.copy()
-        later[:, g.LAUNCH_VX :] = later[:, g.LAUNCH_VX :] @ turned.T
-        self._game = self._game._replace(launches=later)
-        for number, state in enumerate(self.state()):
-            i = self._place[number]
-            disc = self._game.discs[i]
-            floor = np.array(floor_velocity(self._game.surface, *state[:2].tolist()))
-            slip = state[VX:] - floor
-            if disc[LIGHTNESS] > 0.0 and slip.any() and disc[HOLD] == FREE:
-                velocity = floor + turned @ slip
-                self.strike(number, velocity[:2], float(velocity[2]))
+        game.launches[:, g.LAUNCH_VX :] = game.launches[:, g.LAUNCH_VX :] @ turned.T
+        for disc, state in zip(game.discs, twin._room.states, strict=True):
+            floor = np.array(floor_velocity(game.surface, *state[:2].tolist()))
+            if disc[LIGHTNESS] > 0.0 and disc[HOLD] == FREE:
+                state[VX:] = floor + turned @ (state[VX:] - floor)
+        game.pace[2] *= coarser
+        game.regions.load[:] *= 1.0 + friction
+        game.discs[:, NORMAL] *= 1.0 + friction
+        twin._game = game
+        twin._named()
+        twin._advance(0.0, EVERYBODY, twin._room.one)
+        return twin
 
     @property
     def place_error(self) -> float:
@@ -341,7 +394,7 @@ class World:
         regions = parts.pop("regions")
         own = {n: one if n in kept else one.copy() for n, one in parts.items()}
         twin._game = g.Game(regions=regions._replace(ground=regions.ground.copy()), **own)
-        twin._room = room_for(len(self.names))
+        twin._room, twin._desk = room_for(len(self.names)), desk_for(twin._game)
         twin._named()
         return twin
 

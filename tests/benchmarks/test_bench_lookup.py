@@ -21,7 +21,7 @@ from puck_tables.contact.resultants import moment_balance
 from puck_tables.kernels.closed_form_kernel import _fill
 from puck_tables.kernels.quadratic import fill_resultants
 from puck_tables.table.resultant_table import ResultantTable
-from puck_tables.tradeoff.bicubic import fill_graded, graded_coefficients
+from puck_tables.tradeoff.bicubic import fill_bicubic, graded_coefficients
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -88,12 +88,12 @@ def test_table_bicubic(
 ) -> None:
     out = np.empty((3, POINTS))
     coefficients = graded_coefficients(table)
-    fill_graded(coefficients, 1.0, *points, out)
+    fill_bicubic(coefficients, 1.0, *points, out)
     error = against_closed_form(out, points)
     run(
         measure,
         "the same as a bicubic, kernel",
-        lambda: fill_graded(coefficients, 1.0, *points, out),
+        lambda: fill_bicubic(coefficients, 1.0, *points, out),
         error,
     )
 

@@ -1,0 +1,183 @@
+"""Until when discs move over their floor, and until when a run goes on that is given no time.
+
+At rest on a floor that moves a disc may still come to what sets it off: a border, a cushion, an
+edge.  A belt carries it there or not at all; a turntable comes round again, so that one whole turn
+shows all that will ever happen.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import inlined, inner, kernel
+from puck_tables.world.departures import Room
+from puck_tables.world.engine import REACHED, TOO_SHORT
+from puck_tables.world.flight import (
+    CARRIED,
+    DAMPED,
+    FIRST_PIECE,
+    GONE,
+    LAST_PIECE,
+    LOOKED_UP,
+    PATH,
+    START,
+    UNTIL,
+    state_at,
+)
+from puck_tables.world.footing import over_floor
+from puck_tables.world.game import LAUNCH_TIME, N_EVENTS, N_HISTORY, TIME, Game
+from puck_tables.world.layout import DAMPING, LIGHTNESS, PULL_X, PULL_Y, RADIUS, TURNABILITY
+from puck_tables.world.paths import START as PIECE_START
+
+_STUCK, _WITHIN = 1e-11, 10.0  # of the scale of speeds, and times the error of a step in it
+LONG = 100.0  # times what friction takes, at most: whatever moves then may never stop
+_SLOWEST = 1e-9  # of the largest friction: what brakes less than that does not brake
+_UNKNOWN, _NOT_YET = -2.0, -1.0  # in place of a time
+# of a run without a time, beside how :func:`puck_tables.world.engine.advance` ends
+GOES_ON, ENDED = -1, REACHED
+ROUND, FOR_EVER, LEADS_ON = range(TOO_SHORT + 1, TOO_SHORT + 4)
+
+
+@inlined
+def at_rest_below(game: Game) -> float:
+    """A slip, m/s, that is none: steps end at 1e-12 of the scale; within one less is known."""
+    return max(_STUCK, _WITHIN * game.pace[2]) * game.pace[0]
+
+
+@inlined
+def slip_of(radius: float, ux: float, uy: float, w: float) -> float:
+    """The slip of a velocity and spin over the floor, m/s."""
+    return math.sqrt(ux * ux + uy * uy + (radius * w) ** 2)
+
+
+@inlined
+def _slips_at(game: Game, n: int, t: float, room: Room) -> bool:
+    """Whether the disc of a flight, a row of the history, slips on it at t."""
+    flight = game.history[n]
+    i, state = int(flight[0]), room.one
+    state_at(int(flight[1]), flight[2:], game.discs[i], game.curves, game.pieces, t, room.work,
+             state)  # fmt: skip
+    ux, uy, w = over_floor(game.surface, state)
+    return slip_of(game.discs[i, RADIUS], ux, uy, w) > at_rest_below(game)
+
+
+@inlined
+def middle_of(game: Game, n: int) -> float:
+    """A moment within a path, between two pieces, where its velocities are as good as at its end.
+
+    A path that leads from rest to rest slips there.
+    """
+    flight = game.history[n, 2:]
+    first, last = int(flight[FIRST_PIECE]), int(flight[LAST_PIECE])
+    return game.pieces[(first + last) // 2, PIECE_START]
+
+
+@inner
+def moves_on(game: Game, n: int, end: float, room: Room) -> float:
+    """Until when somebody moves over the floor on a flight that ended so; −inf: not at all."""
+    kind, flight = int(game.history[n, 1]), game.history[n, 2:]
+    start = flight[START]
+    if kind == GONE:
+        return start
+    if kind == LOOKED_UP:
+        return min(flight[UNTIL], end)
+    if kind == DAMPED:
+        return end
+    if kind == PATH:
+        driven = game.discs[int(game.history[n, 0]), LIGHTNESS] == 0.0
+        end = min(end, flight[UNTIL])
+        middle = min(middle_of(game, n), end)
+        if driven or _slips_at(game, n, middle, room) or _slips_at(game, n, start, room):
+            return end
+    return -math.inf
+
+
+@kernel
+def stirs(game: Game, room: Room, out: FloatArray) -> None:
+    """Until when each disc has moved over the floor (n,), or when it left play; inf: it still does.
+
+    0: it has lain there since the start.
+    """
+    now = game.clock[0]
+    for i in range(out.size):
+        out[i], room.before[i, 0] = _UNKNOWN, now
+    for n in range(game.counts[N_HISTORY] - 1, -1, -1):
+        i = int(game.history[n, 0])
+        if out[i] >= 0.0:
+            continue
+        current = out[i] == _UNKNOWN and int(game.history[n, 1]) != GONE
+        end = moves_on(game, n, room.before[i, 0], room)
+        if current and end >= now and game.history[n, 2 + UNTIL] > now:
+            end = math.inf
+        out[i] = max(end, _NOT_YET)
+        room.before[i, 0] = game.history[n, 2 + START]
+    for i in range(out.size):
+        out[i] = max(out[i], 0.0)
+
+
+@kernel
+def next_target(
+    game: Game, limit: float, scheduled: float, room: Room, ends: FloatArray
+) -> tuple[int, float]:
+    """Whether a run without a time goes on from now, and until when; or how it ended, and when.
+
+    FOR_EVER: at the limit somebody still moves over the floor; LEADS_ON: or is carried on to where
+    it may slip; ROUND: the floor carries discs over the same borders again and again.
+    ``scheduled``: when the last launch, force or film is over; ``ends`` (n,): to work in.
+    """
+    now, turning = game.clock[0], abs(game.surface.spin)
+    turn = 2.0 * math.pi / turning if turning > 0.0 else math.inf
+    stirs(game, room, ends)
+    last, pending, carries = 0.0, math.inf, False
+    for i in range(ends.size):
+        last, pending = max(last, ends[i]), min(pending, game.next_time[i])
+        carries = carries or game.kinds[i] in (CARRIED, PATH)
+    count = game.counts[N_EVENTS]
+    happened = game.events[count - 1, TIME] if count > 0 else 0.0
+    if last == math.inf:
+        return (FOR_EVER, now) if now >= limit else (GOES_ON, min(limit, now + turn))
+    if carries and turning > 0.0:
+        turned = max(last, scheduled) + turn
+        if now < turned:
+            return GOES_ON, turned
+        return (ROUND, turned) if happened > last else (ENDED, last)
+    if now < limit:
+        return GOES_ON, limit
+    return (ENDED, max(last, happened)) if pending == math.inf else (LEADS_ON, now)
+
+
+def limits_of(game: Game, paces: FloatArray) -> tuple[FloatArray, float]:
+    """Until when runs without a time are followed, s, and when all that they are given is over.
+
+    LONG times what the least friction takes; ``paces`` (n, 2): their scales of speed and
+    acceleration.
+    """
+    discs, free = game.discs, game.discs[game.discs[:, LIGHTNESS] > 0.0]
+    given = max(
+        float(game.launches[:, LAUNCH_TIME].max(initial=0.0)),
+        float(game.tides[:, 0].max(initial=0.0)),
+        float(game.pieces[: game.drives.max(), :2].sum(axis=1).max(initial=0.0)),
+    )
+    pulls, decels = np.hypot(discs[:, PULL_X], discs[:, PULL_Y]), game.floors[:, 0]
+    brakes = np.abs(decels.reshape(-1, len(discs)) - pulls).ravel()
+    brakes = brakes[(decels > 0.0) & (brakes > _SLOWEST * decels.max())]
+    arms = free[:, LIGHTNESS] / (free[:, TURNABILITY] * free[:, RADIUS] ** 2)  # k²
+    fast = paces[:, 0] + float(_pushed(game).max())
+    times = float((2.0 * arms).max(initial=1.0)) * fast / float(brakes.min(initial=math.inf))
+    drags = free[free[:, DAMPING] > 0.0, DAMPING]
+    times = np.maximum(times, paces[:, 0] / paces[:, 1])
+    times = np.maximum(times, float((1.0 / drags).max(initial=0.0)))
+    return max(float(game.clock[0]), given) + LONG * times, given
+
+
+def _pushed(game: Game) -> FloatArray:
+    """What speed forces over time give every disc at most, m/s."""
+    found = np.zeros(len(game.discs))
+    for i, (first, end) in enumerate(game.spans.tolist()):
+        rows, disc = game.tides[first:end], game.discs[i]
+        strength = np.hypot(rows[:, 1], rows[:, 2]) + np.abs(rows[:, 3]) / disc[RADIUS]
+        found[i] = disc[LIGHTNESS] * np.trapezoid(strength, rows[:, 0])
+    return found

@@ -1,0 +1,95 @@
+"""With what force constraints lead their discs, at moments of the past."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import inlined, kernel, patience
+from puck_tables.scene.equations import (
+    FIRST,
+    GIVEN,
+    LAMBDA,
+    ROW,
+    SIZE,
+    rates,
+    slip_speed,
+    to_laboratory,
+)
+from puck_tables.scene.friction import X, Y
+from puck_tables.scene.ingredients import FREE, NO_WAY, SLIDES, Stretch
+from puck_tables.scene.leaning import LEAN_COLUMNS
+from puck_tables.world.alone import rows_passed
+from puck_tables.world.footing import dry_under, ground_span, lies_to, off_border, step_onto
+from puck_tables.world.game import Game
+from puck_tables.world.lasting import at_rest_below
+from puck_tables.world.layout import HOLD, KIND, LIES, NO_CUSHION, RADIUS
+from puck_tables.world.lone import model_of
+from puck_tables.world.meeting import normal_to
+
+_NEAR = 1e-9  # of the radius: what is as near may press
+
+
+def reactions(game: Game, times: FloatArray, states: FloatArray, in_play: FloatArray) -> FloatArray:
+    """The multipliers λ of every disc (times, discs, 2), N, at states (times, discs, 6).
+
+    ``in_play`` (times, discs): 0 of those that have left.
+
+    0 of what is free, and of what rests: there the floor shares the force, and nobody knows how.
+    NaN where a disc touches another or a cushion, which may press it too.
+    """
+    regions = game.regions._replace(ground=game.regions.ground.copy())
+    own = game._replace(discs=game.discs.copy(), regions=regions)
+    out = np.zeros((len(times), len(game.discs), 2))
+    leaning, work = np.empty((0, LEAN_COLUMNS)), np.empty((1, ROW))
+    _fill(own, times, in_play, states, leaning, np.empty(SIZE), work, out)
+    return out
+
+
+@kernel
+def _fill(
+    game: Game, times: FloatArray, in_play: FloatArray, states: FloatArray,
+    leaning: FloatArray, y: FloatArray, work: FloatArray, out: FloatArray,
+) -> None:  # fmt: skip
+    for i in range(game.discs.shape[0]):
+        if int(game.discs[i, HOLD]) == FREE:
+            continue
+        model, drive = model_of(game, i), game.tides[game.spans[i, 0] : game.spans[i, 1]]
+        first, last = ground_span(game.regions, game.discs, i)
+        for n in range(times.size):
+            patience(1)
+            for k in range(SIZE):
+                y[k] = states[n, i, k] if k < GIVEN else 0.0
+            for number in range(game.discs.shape[1] - LIES):
+                away = off_border(game.regions.ground[first:last], number, y[X], y[Y])
+                game.discs[i, LIES + number] = lies_to(away, game.discs[i, RADIUS])
+            step_onto(game, i)
+            to_laboratory(model, y, -1.0)
+            slips = slip_speed(game.discs[i, RADIUS], y) > at_rest_below(game)
+            if in_play[n, i] == 0.0 or not slips:
+                continue
+            if _touches(game, i, states[n]):
+                out[n, i, 0] = out[n, i, 1] = math.nan
+                continue
+            rows = rows_passed(drive, 0, len(drive), times[n])
+            dry = dry_under(game.regions, game.discs, i)
+            stretch = Stretch(model, dry, leaning, rows, SLIDES, NO_WAY, 0.0, 0.0)
+            rates(stretch, times[n], y, work, FIRST)
+            out[n, i, 0], out[n, i, 1] = work[0, LAMBDA], work[0, LAMBDA + 1]
+
+
+@inlined
+def _touches(game: Game, i: int, states: FloatArray) -> bool:
+    """Whether a disc touches a cushion or another disc, at states (n, 6)."""
+    x, y, radius = states[i, X], states[i, Y], game.discs[i, RADIUS]
+    for k in range(game.obstacles.shape[0]):
+        gap, _, _, there = normal_to(game.obstacles[k], radius, x, y)
+        if there and gap < _NEAR * radius and int(game.obstacles[k, KIND]) < NO_CUSHION:
+            return True
+    for j in range(game.discs.shape[0]):
+        gap = math.hypot(states[j, X] - x, states[j, Y] - y) - radius - game.discs[j, RADIUS]
+        if j != i and gap < _NEAR * radius:
+            return True
+    return False
