@@ -137,12 +137,14 @@ def test_what_is_refused(puck, floor, words):
     assert words in str(caught.value)
 
 
-def test_many_launches_are_the_runs_one_by_one():
+def test_many_launches_end_where_runs_alone_do():
+    """Within ``tol``: a run alone is followed closer where its check runs miss."""
     floor = pt.Floor(patches=[ROUND])
     scene = pt.Scene(PUCK, floor, pt.Launch((1.5, 0.3), [20.0, -40.0]), tol=1e-6)
     ends = scene.sweep()
     one = scene.at({"launch.spin": -40.0}).simulate()
-    assert ends.columns["x"][1] == one.last["x"]
+    allowed = scene.tol * one.speed_scale**2 / one.rate_scale
+    assert abs(ends.columns["x"][1] - one.last["x"]) < allowed
 
 
 @pytest.mark.parametrize("corners", [(), POLYGON.corners])

@@ -54,18 +54,13 @@ def varied(seed: int, folder: Path) -> dict[str, Any]:
 )
 def test_a_far_post_changes_nothing(first: int, tmp_path: Path):
     """It makes the scene one of several bodies; within three errors and what ``tol`` allows."""
-    compared = 0
     for seed in range(first, first + BLOCK):
         alone = varied(seed, tmp_path)
-        if "constraint" in alone and "turning" in alone["floor"]:
-            continue  # refused among several bodies
         scene = Scene.from_tables(alone)
         now, before = ends_of(Scene.from_tables(alone | POST)), ends_of(scene)
         run = scene.simulate()
         before[:, 3] += scene.tol * run.speed_scale**2 / run.rate_scale
         assert apart(now, before).max() < 1.0, seed
-        compared += 1
-    assert compared > 0.7 * BLOCK
 
 
 def told(run: pt.Run, length: float) -> list[tuple[Any, ...]]:
@@ -86,8 +81,6 @@ def test_a_run_gives_the_same_beside_a_far_post(first: int, tmp_path: Path):
     for seed in range(first, first + (5 if first == 0 else 30)):
         tables = varied(seed, tmp_path)
         tables.pop("wall", None)
-        if "constraint" in tables and "turning" in tables["floor"]:
-            continue
         beside = Scene.from_tables(tables | POST)
         if not {"slope", "law", "strips"} & {*tables["floor"]} and "force" not in tables:
             untimed = {name: one for name, one in tables.items() if name != "time"}

@@ -11,7 +11,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating
 from puck_tables.scene.boundaries import DEGREE, Boundaries
 from puck_tables.scene.equations import ROW, SIZE
-from puck_tables.scene.leaps import WORK_ROWS
+from puck_tables.scene.explicit import STAGES
 from puck_tables.scene.settle import Contacts, contacts_for
 from puck_tables.scene.steps import WIDE
 
@@ -63,7 +63,7 @@ class Desk(NamedTuple):
 def desk_for(bounds: Boundaries, patches: int) -> Desk:
     """A desk for a scene with these boundaries and so many patches on its floor."""
     return Desk(
-        np.empty((WORK_ROWS, ROW)), np.empty(ROW), np.empty(DEGREE + 1), np.empty(WIDE),
+        np.empty((STAGES, ROW)), np.empty(ROW), np.empty(DEGREE + 1), np.empty(WIDE),
         np.empty(WIDE), np.empty(WIDE), contacts_for(len(bounds.walls)), np.zeros(4),
         np.zeros(patches, np.int64), np.empty(SIZE), np.zeros(len(bounds.edges), np.bool_),
     )  # fmt: skip

@@ -69,8 +69,8 @@ def explicit_step(
     On entry work[0] is dy/dt at t, on return work[STAGES − 1] that at the end; those between are by
     the variable of the step.  Velocities of a blade are by its own axes, on entry and on return.
     """
-    graded, own = stretch.grade[1] != 0.0, has_axes(stretch)
-    slope, two, three, four = powers_of(stretch.grade)
+    graded, own = stretch.bend != 0.0, has_axes(stretch)
+    slope, two, three, four = powers_of(stretch.bend)
     for stage in range(1, STAGES):
         s = _C[stage]
         moment = t + h * (s * (slope + s * (two + s * (three + s * four))))

@@ -15,7 +15,6 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 from puck_tables.scene.forces import Forces
-from puck_tables.scene.grading import Grade
 from puck_tables.scene.ground import PLACE_X, PLACE_Y
 
 if TYPE_CHECKING:
@@ -147,9 +146,8 @@ class Stretch(NamedTuple):
     have passed; ``mode`` SLIDES, CARRIED (at rest on the floor), STOPS: with the constant relative
     acceleration way[3] times the direction way[:3]; ``newton``: 0 for explicit steps; for implicit
     ones, where the slip settles much faster than it changes, how well to solve their equations, in
-    units of the scales; ``grade``: how the time of explicit ones is graded, see
-    :mod:`puck_tables.scene.grading`; ``leap``: for those from kink to kink of friction at once, how
-    exact they have to be, see :mod:`puck_tables.scene.leaps`; else 0.
+    units of the scales; ``bend``: how the time of explicit ones is graded, see
+    :mod:`puck_tables.scene.grading`.
     """
 
     model: Model
@@ -159,8 +157,7 @@ class Stretch(NamedTuple):
     mode: int
     way: tuple[float, float, float, float]
     newton: float
-    grade: Grade
-    leap: float
+    bend: float
 
 
 def hold_of(hold: Constraint | None, launch: Launch) -> Hold:

@@ -3,11 +3,10 @@
 The pair 8(5,3) (:mod:`puck_tables.scene.explicit`), or Radau IIA where the direction of the slip
 settles much faster than the slip changes (next to the limit of what friction holds).  Next to
 relative rest, where the direction of friction turns within Q over what changes it, a step is at
-most half of that; one that ends with the slip may take more, and is graded, as are those of a base
-on several frictions from one kink of them to the next, which a fast one takes in one
-(:mod:`puck_tables.scene.leaps`).  At the very end a slip stops on a straight
-line.  Every event is found on a real step of the method from the last step end and becomes a step
-end.  Rebounds that die out are a geometric series, of which only the first are taken one by one
+most half of that; one that ends with the slip may take more, and is graded
+(:mod:`puck_tables.scene.grading`).  At the very end a slip stops on a straight line.  Every event
+is found on a real step of the method from the last step end and becomes a step end.  Rebounds that
+die out are a geometric series, of which only the first are taken one by one
 (see :mod:`puck_tables.scene.settle`).
 """
 
@@ -44,15 +43,7 @@ from puck_tables.scene.equations import (
 )
 from puck_tables.scene.explicit import STAGES
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
-from puck_tables.scene.grading import (
-    CLOSEST,
-    UNIFORM,
-    between,
-    left_after,
-    paced,
-    stretched,
-    towards_stop,
-)
+from puck_tables.scene.grading import CLOSEST, left_after, stretched, towards_stop
 from puck_tables.scene.ground import BORDERS as GROUND_BORDERS
 from puck_tables.scene.ingredients import (
     CARRIED,
@@ -66,8 +57,6 @@ from puck_tables.scene.ingredients import (
     floor_velocity,
     is_astride,
 )
-from puck_tables.scene.kinks import next_kink
-from puck_tables.scene.leaps import leap
 from puck_tables.scene.moments import (
     NOTHING,
     REST,
@@ -109,7 +98,7 @@ from puck_tables.scene.settle import (
 )
 from puck_tables.scene.standstill import from_standstill
 from puck_tables.scene.step_size import follow_scales, up_to_the_stop
-from puck_tables.scene.steps import nudged, step, stepped_back
+from puck_tables.scene.steps import nudged, step
 
 # what happens on the way
 RESTS, SLIPS, LEANS = 0, 1, 3  # and those of boundaries
@@ -121,12 +110,6 @@ _NEAR = 0.5  # of the time in which the slip would end, at most, is a step
 _STIFF, _MILD = 0.8, 0.3  # of the time in which a slip settles: longer steps are implicit,
 _SLOWLY = 0.1  # if the slip changes by less than this of itself meanwhile
 _NEWTON, _FINEST_NEWTON = 1e-3, 1e-15  # of the local error: how well implicit steps are solved
-_PACE = 2.7  # times the eighth root of the local error: how far a first step astride comes,
-_FASTEST, _SLOWEST = 0.5, 1e-6  # and how far any; shorter ones are not graded
-_NEAR_KINK, _NEAR_LEAP = 0.01, 1e-4  # of a step to a kink, and a leap: how well it was foreseen
-_WHOLE, _SHORTEST = 1.0, 0.2  # how far a leap comes at first; shorter ones are not tried
-_LEAP = 0.3  # of the slip: what changes it more in a leap is left to steps
-_BACK = 2e-5  # of a step between kinks: so far back from its end the motion is known
 _NUDGE = 0.3  # of its local error: by so much each step of a twin on a blade is put off its way
 _SWING = 0.05  # rad that a carried puck turns, at most, in a step
 
@@ -185,19 +168,14 @@ def follow(
     how = TIME_UP
     h = 1e-2 * min(ask.until, unit)
     reach, closest, swing = _NEAR, CLOSEST, _SWING
-    # astride: how far a step comes between two kinks of friction, when the last was, how close
-    pace, fastest, since, near = min(_PACE * allowed**0.125, _FASTEST), _FASTEST, 0.0, 0.0
-    farthest = _WHOLE  # and in a leap
     halved = False  # the step that ends here is cut in two
     clear = 0.0  # no patch's border is nearer to the rim
     if ask.twin > 0.0:
         h, reach, swing = ask.twin * h, (1.0 + ask.twin) * reach, (1.0 + ask.twin) * swing
         closest *= 1.0 - 0.2 * ask.twin
-        fastest *= 1.0 - 0.2 * ask.twin
-        farthest *= 1.0 - 0.4 * ask.twin
     settle, known = True, False  # whether to look what holds the puck; whether work[0] is there
-    newton, grade, again = 0.0, UNIFORM, False  # again: the step before was too long
-    stretch = Stretch(model, dry, leaning, piece, mode, way, newton, grade, 0.0)
+    newton, again = 0.0, False  # again: the step before was too long
+    stretch = Stretch(model, dry, leaning, piece, mode, way, newton, 0.0)
     count = look_at_edges(bounds.edges, radius, hangs, stretch, t, y, events, count)
     while t < until:
         patience(1)
@@ -208,7 +186,7 @@ def follow(
             target = min(target, calm)
         target = min(target, around)
         if settle and leaning.shape[0] > 0:
-            stretch = Stretch(model, dry, leaning, piece, mode, way, 0.0, UNIFORM, 0.0)
+            stretch = Stretch(model, dry, leaning, piece, mode, way, 0.0, 0.0)
             fx, fy = acting_force(stretch, t, y)
             to_laboratory(model, y, 1.0)
             before = kinetic_energy(body, y)
@@ -226,7 +204,7 @@ def follow(
                 to_laboratory(model, y, -1.0)
                 y[VX] = y[VY] = y[SPIN] = 0.0
                 leaning = contacts.rows[: touching(bounds, contacts)]
-            at_rest = Stretch(model, dry, leaning, piece, CARRIED, NO_WAY, 0.0, UNIFORM, 0.0)
+            at_rest = Stretch(model, dry, leaning, piece, CARRIED, NO_WAY, 0.0, 0.0)
             mode, stiff, q = from_standstill(at_rest, ask.speed, t, y, work)
             if (mode == CARRIED) != resting and (t >= calm or mode != CARRIED):
                 if count == len(events):
@@ -268,10 +246,10 @@ def follow(
             newton = 0.0
             if stiff and mode == SLIDES:
                 newton = max(_NEWTON * ask.tolerance, _FINEST_NEWTON)
-            stretch = Stretch(model, dry, leaning, piece, mode, way, newton, UNIFORM, 0.0)
+            stretch = Stretch(model, dry, leaning, piece, mode, way, newton, 0.0)
             rates(stretch, t, y, work, FIRST)
         settle, known = False, True
-        ends, left = 0.0, math.inf  # 1/s: of the slip; until friction bends
+        ends = 0.0  # 1/s: of the slip
         if mode == SLIDES and dry.load > 0.0:
             pull = slip_rate(radius, work)
             least = REST * ask.speed
@@ -286,27 +264,11 @@ def follow(
                 wrong += (late / unit) ** 2
                 continue
         # a step
-        if mode == SLIDES and newton == 0.0 and is_astride(dry):
-            left = next_kink(regions.ground, radius, surface, y, work[0], near)
-            if ends * left > 1.0:  # it stops before
-                left = 1.0 / ends if ends * (t - since) < 1.0 else math.inf
-        paces = left < math.inf and pace > _SLOWEST
-        free = not held_there and leaning.shape[0] == 0
-        leaps = paces and farthest > _SHORTEST and free and pull * left <= _LEAP * q
-        length = h
-        if paces:
-            length = paced(t - since, left, farthest if leaps else min(pace, fastest))
-        landed = t + (1.0 if again or paces else 1.1) * length >= target  # not what was too long
-        length = target - t if landed else length
-        grade = between(t - since, left, length) if paces else towards_stop(ends * length)
-        exact = allowed if leaps else 0.0
-        stretch = Stretch(model, dry, leaning, piece, mode, way, newton, grade, exact)
-        if leaps and length == left:
-            error, length = leap(stretch, t, length, True, y, scale, work, new)
-            landed, left = t + length >= target, length
-            error = math.inf if landed else error  # the kink came too late: up to the target
-        else:
-            error = step(stretch, t, length, y, scale, work, new)
+        landed = t + (1.0 if again else 1.1) * h >= target  # not what was too long
+        length = target - t if landed else h
+        bend = towards_stop(ends * length)
+        stretch = Stretch(model, dry, leaning, piece, mode, way, newton, bend)
+        error = step(stretch, t, length, y, scale, work, new)
         steps += 1
         if steps > ask.step_limit:
             how = STEP_LIMIT
@@ -316,27 +278,20 @@ def follow(
         for i in range(leaning.shape[0]):
             lifts = max(lifts, leaning[i, NX] * new[SIZE] + leaning[i, NY] * new[SIZE + 1])
         if lifts > ask.tolerance * length_scale and error <= allowed:
-            h, pace = 0.25 * length, 0.25 * pace
-            continue
-        if leaps and not error <= allowed:
-            farthest *= 0.5
+            h = 0.25 * length
             continue
         if not error <= allowed:
             shrink = 0.25 if newton > 0.0 else 0.1
             if error < math.inf:
                 shrink = max(0.1, 0.9 * (allowed / error) ** power)
-            shorter, again = stretched(grade, length, shrink), True
-            h, pace = (h, grade[1] * shrink) if paces else (shorter, pace)
-            if (t + shorter == t and t > 0.0) or shorter < 1e-300:
+            h, again = stretched(bend, length, shrink), True
+            if (t + h == t and t > 0.0) or h < 1e-300:
                 how = NOT_FINITE
                 break
             continue
         again = False
         grows = min(5.0, 5.0 if error == 0.0 else 0.9 * (allowed / error) ** power)
-        if paces and not leaps:
-            pace = max(grade[1] * grows, pace if landed or length == left else 0.0)
-        elif not paces:
-            h = left_after(grade) * stretched(grade, length, grows)
+        h = left_after(bend) * stretched(bend, length, grows)
         stuck, length = cut_short(stretch, t, length, y, scale, work, new)
         if not math.isfinite(new[VX]):  # a shorter implicit step, which was not solved
             h, again = 0.25 * length, True
@@ -345,7 +300,7 @@ def follow(
         cut = landed or stuck != NOTHING
         for i in range(ROW):
             last[i] = work[STAGES - 1, i]
-        happens, which, moment, whole = -1, -1, math.inf, length
+        happens, which, moment = -1, -1, math.inf
         if not unbounded:
             happens, which, moment = first_crossing(
                 bounds, room, region, leans, stretch, t, length, y, scale, work, new, gaps, trial
@@ -369,15 +324,12 @@ def follow(
         halved = ask.twin > 0.0 and cut and not halved
         if halved:
             landed, stuck, happens, length = False, NOTHING, -1, ask.twin * length
-        if paces and happens in (BORDER, _PATCH) and whole - length <= _BACK * whole:
-            stepped_back(whole - length, last, new)
-        elif halved or happens >= 0:
+        if halved or happens >= 0:
             error = step(stretch, t, length, y, scale, work, new)
-            # astride the longer step may have leapt over all; an implicit one is not solved
+            # astride the longer step may have passed over all; an implicit one is not solved
             if not error <= allowed and (is_astride(dry) or not error < math.inf):
                 shrink = max(0.1, 0.9 * (allowed / error) ** power if error < math.inf else 0.1)
-                h, pace = (h, pace * shrink) if paces else (length * shrink, pace)
-                farthest, halved = 0.5 * farthest if leaps else farthest, False
+                h, halved = length * shrink, False
                 continue
             for i in range(ROW):
                 last[i] = work[STAGES - 1, i]
@@ -393,9 +345,6 @@ def follow(
             step(stretch, t, frames[frame] - t, y, scale, work, trial)
             framed(rows[frame], stretch, frames[frame], trial, heat, work)
             frame += 1
-        near = 0.0
-        if length == left or happens in (BORDER, _PATCH):
-            since, near = end, (_NEAR_LEAP if leaps else _NEAR_KINK) * length
         t = end
         for i in range(SIZE):
             y[i] = new[i]
@@ -459,7 +408,6 @@ def follow(
                 which += int(regions.ground[GROUND_BORDERS])
             happens = LEAVES if back else COMES_OVER
             dry = dry_under(regions, region, lies)
-            farthest = farthest if is_astride(dry) else _WHOLE * (1.0 - 0.4 * ask.twin)
             damps, turns = settling_rates(model, dry.load)
             stiff = stiff and dry.load > 0.0
             mode = CARRIED if mode == CARRIED and dry.load > 0.0 else SLIDES
@@ -495,7 +443,7 @@ def follow(
         if happens == EDGE:
             how = OVER_EDGE
             break
-    stretch = Stretch(model, dry, leaning, piece, mode, way, 0.0, UNIFORM, 0.0)
+    stretch = Stretch(model, dry, leaning, piece, mode, way, 0.0, 0.0)
     if how == TIME_UP and mode == CARRIED and moves and ask.to_the_end:
         how = CARRIED_AWAY
     if how == CARRIED_AWAY and around <= t and events[count - 1, 1] == RESTS:  # since then

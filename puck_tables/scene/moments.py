@@ -10,7 +10,6 @@ from puck_tables.scene.cushions import NX, NY, rim_slip
 from puck_tables.scene.equations import SECOND, rates, slip_side, stopping
 from puck_tables.scene.forces import jumps
 from puck_tables.scene.friction import SPIN, VX, VY, size
-from puck_tables.scene.grading import UNIFORM
 from puck_tables.scene.ingredients import (
     CARRIED,
     NO_WAY,
@@ -88,7 +87,7 @@ def rests_on(model: Model, dry: Dry, leaning: FloatArray, piece: int, y: FloatAr
         return True
     for row in range(piece, rows + 1):  # at last what is left when the rows have ended
         at = row if row == rows else max(row, 1)
-        stretch = Stretch(model, dry, leaning, at, CARRIED, NO_WAY, 0.0, UNIFORM, 0.0)
+        stretch = Stretch(model, dry, leaning, at, CARRIED, NO_WAY, 0.0, 0.0)
         if excess_at_rest(stretch, model.forces.drive[min(row, rows - 1), 0], y)[0] > level:
             return False
     return True

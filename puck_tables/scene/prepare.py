@@ -20,7 +20,6 @@ from puck_tables.scene.desk import Ask, desk_for
 from puck_tables.scene.equations import SIZE
 from puck_tables.scene.forces import forces_of, impulse_over_time, strongest
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
-from puck_tables.scene.grading import UNIFORM
 from puck_tables.scene.ground import own_ground, patches_on
 from puck_tables.scene.ingredients import (
     CARRIED,
@@ -267,9 +266,7 @@ def _slowest(
         load = float(regions.load[number])
         if load > 0.0 and not regions.astride[number]:
             dry = dry_in(regions, number)
-            at_rest = Stretch(
-                model, dry, np.empty((0, LEAN_COLUMNS)), 0, CARRIED, NO_WAY, 0.0, UNIFORM, 0.0
-            )
+            at_rest = Stretch(model, dry, np.empty((0, LEAN_COLUMNS)), 0, CARRIED, NO_WAY, 0.0, 0.0)
             excess = abs(float(excess_at_rest(at_rest, 0.0, np.zeros(SIZE))[0]))
             brakes.append(min(excess, load) if math.isfinite(excess) else load)
     slow = max(1.0, 2.0 * puck.gyration**2)

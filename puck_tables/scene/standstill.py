@@ -7,7 +7,6 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inner
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
-from puck_tables.scene.grading import UNIFORM
 from puck_tables.scene.ingredients import (
     CARRIED,
     FREE,
@@ -49,8 +48,6 @@ def from_standstill(
         y[VX], y[VY], y[SPIN] = q * nx, q * ny, q * nw
         return SLIDES, True, q
     y[VX], y[VY], y[SPIN] = q * nx, q * ny, q * nw
-    slips = Stretch(
-        model, stretch.dry, stretch.leaning, stretch.piece, SLIDES, NO_WAY, 0.0, UNIFORM, 0.0
-    )
+    slips = Stretch(model, stretch.dry, stretch.leaning, stretch.piece, SLIDES, NO_WAY, 0.0, 0.0)
     settle_way(slips, t, q, y, work)
     return SLIDES, True, q

@@ -1,4 +1,4 @@
-"""One step in time: of order 8, where the slip settles fast Radau IIA of order 5, or a leap.
+"""One step in time: of order 8, or where the slip settles fast Radau IIA of order 5.
 
 A step ends on the constraint, and off the walls that the puck leans on.
 """
@@ -28,7 +28,6 @@ from puck_tables.scene.ingredients import (
     floor_velocity,
 )
 from puck_tables.scene.leaning import keep_on
-from puck_tables.scene.leaps import leap
 from puck_tables.scene.radau import radau_step
 
 _LEVEL = 1e-12  # of the scale of accelerations: none
@@ -80,17 +79,6 @@ def accelerations(model: Model, work: FloatArray, row: int) -> tuple[float, floa
     return work[row, VX] + cx, work[row, VY] + cy, work[row, SPIN]
 
 
-@inlined
-def stepped_back(back: float, last: FloatArray, new: FloatArray) -> None:
-    """Take the end of a step back, by so little that its rates there are those of before."""
-    for i in range(SIZE):
-        new[i] -= back * last[i]
-    for i in range(VX):
-        new[i] += 0.5 * back * back * last[VX + i]
-    for i in range(2):
-        new[SIZE + i] -= back * (last[i] - 0.5 * back * last[VX + i])
-
-
 @inner
 def step(
     stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
@@ -105,9 +93,7 @@ def step(
     if own:
         by_blade(stretch, y)
         rates_by_blade(stretch, y, work, FIRST)
-    if stretch.leap > 0.0 and h > 0.0:
-        error, _ = leap(stretch, t, h, False, y, scale, work, new)
-    elif implicit:
+    if implicit:
         error = radau_step(stretch, t, h, y, scale, work, new)
     else:
         error = explicit_step(stretch, t, h, y, scale, work, new)

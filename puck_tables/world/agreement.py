@@ -221,8 +221,6 @@ def _of_one(scene: SceneSpec, piece: PieceSpec, path: str) -> Iterator[str]:
             yield f"{path}.{error}"
     hold, alone = piece.constraint, f"{path}." if scene.pucks else ""
     yield from misfits(piece.launch, hold, scene.floor, alone)
-    if hold is not None and scene.floor.turning != 0.0:
-        yield f"{alone}constraint: among several pucks, posts or arcs not on a floor that turns"
     if hold is not None and any(hold.velocity) and piece.launch.time > 0.0:
         yield (
             f"{path}.launch.time = {piece.launch.time:g}: a {hold.kind} that moves leads it "

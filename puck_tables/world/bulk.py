@@ -12,7 +12,7 @@ from puck_tables._core.executor import in_slices
 from puck_tables.kernels.compile import inner, kernel, patience
 from puck_tables.scene.friction import VX
 from puck_tables.world.course import COURSE_COLUMNS, LENGTH, trace
-from puck_tables.world.departures import Room, room_for
+from puck_tables.world.departures import Room, desk_for, room_for
 from puck_tables.world.engine import EVERYBODY, FULL, NOBODY, PAUSED, PUSHING, REACHED, advance
 from puck_tables.world.flight import GONE, START, moves_until, state_at
 from puck_tables.world.footing import moves_along, over_floor
@@ -51,17 +51,17 @@ class Ends(NamedTuple):
 @inner
 def _to_the_end(
     game: Game, until: float, limit: float, given: float, struck: int, room: Room,
-    work: FloatArray,
+    desk: FloatArray | None, work: FloatArray,
 ) -> tuple[int, float]:  # fmt: skip
     """Run it until a time, or, if that is inf, until nothing more can happen; how, and when."""
     endless, how, target = until == math.inf, GOES_ON, until
     if endless:
         target = limit if game.surface.spin == 0.0 else game.clock[0]
     while how == GOES_ON:
-        how = advance(game, target, struck, room.one, room)
+        how = advance(game, target, struck, room.one, room, desk)
         struck = NOBODY
         while how == PAUSED:
-            how = advance(game, target, struck, room.one, room)
+            how = advance(game, target, struck, room.one, room, desk)
         if endless and how == REACHED:
             how, target = next_target(game, limit, given, room, work)
     return how, target
@@ -71,7 +71,7 @@ def _to_the_end(
 def _follow_all(
     game: Game, fresh: FloatArray, kinds: Whole, flights: FloatArray, first: FloatArray,
     discs: Whole, launches: FloatArray, paces: FloatArray, until: float, limits: FloatArray,
-    given: float, watch: Whole, room: Room, ends: Ends,
+    given: float, watch: Whole, room: Room, desk: FloatArray | None, ends: Ends,
 ) -> None:  # fmt: skip
     """Runs from the states ``first`` (n, 6), with launches (runs, m, 3) of the ``discs`` (m,).
 
@@ -106,7 +106,7 @@ def _follow_all(
         for look in range(looks, -1, -1):
             part = game.pace[0] / game.pace[1] * 0.5**look if look > 0 else until
             how, ended = _to_the_end(
-                game, min(part, until), limits[run], given, struck, room, ends.in_play[run]
+                game, min(part, until), limits[run], given, struck, room, desk, ends.in_play[run]
             )
             struck = NOBODY
             if watch[0] >= 0:
@@ -158,7 +158,7 @@ def follow_all(
     )  # fmt: skip
     paces = _paces(game, first, discs, launches)
     limits, given = limits_of(game, paces)
-    room, rows = room_for(count), 256 + 16 * count
+    room, desk, rows = room_for(count), desk_for(game), 256 + 16 * count
     mine = _own(game, rows)
 
     def work(start: int, stop: int) -> None:
@@ -169,7 +169,8 @@ def follow_all(
         )  # fmt: skip
         _follow_all(
             mine, game.discs, game.kinds, game.flights, first, discs, launches[start:stop],
-            paces[start:stop], until, limits[start:stop], given, np.array(watch), room, part,
+            paces[start:stop], until, limits[start:stop], given, np.array(watch), room, desk,
+            part,
         )  # fmt: skip
 
     in_slices(work, runs)
@@ -200,7 +201,7 @@ def _paces(game: Game, first: FloatArray, discs: Whole, launches: FloatArray) ->
 
 def _own(game: Game, rows: int) -> Game:
     """A copy to run on, with so many rows for events and flights; for paths if there are any."""
-    paths = rows + LONGEST if game.floors[:, 2].any() else 0
+    paths = rows + LONGEST if desk_for(game) is not None else 0
     pieces = np.zeros((paths, PIECE_COLUMNS))
     return game._replace(
         regions=game.regions._replace(ground=game.regions.ground.copy()),

@@ -155,7 +155,9 @@ def _is_squeezed(game: Game, t: float, count: int, room: Room) -> bool:
 
 
 @inner
-def _happen(game: Game, i: int, partner: int, t: float, room: Room) -> int:
+def _happen(
+    game: Game, i: int, partner: int, t: float, room: Room, desk: FloatArray | None
+) -> int:  # fmt: skip
     """What comes next for a disc happens; those concerned are marked."""
     discs = game.discs
     for j in range(discs.shape[0]):
@@ -207,11 +209,11 @@ def _happen(game: Game, i: int, partner: int, t: float, room: Room) -> int:
             room.marks[room.contacts[n, 0]] = CONCERNED
             if room.contacts[n, 1] >= 0:
                 room.marks[room.contacts[n, 1]] = CONCERNED
-    return _go_on(game, t, count, room)
+    return _go_on(game, t, count, room, desk)
 
 
 @inlined
-def _go_on(game: Game, t: float, count: int, room: Room) -> int:
+def _go_on(game: Game, t: float, count: int, room: Room, desk: FloatArray | None) -> int:
     """New flights of all that are concerned.
 
     PUSHING: some push each other, or slip faster than the friction law is known: before, the caller
@@ -225,7 +227,7 @@ def _go_on(game: Game, t: float, count: int, room: Room) -> int:
         pushes = pushes or (
             room.marks[j] == CONCERNED and sets_off_too_fast(game, j, room.states[j])
         )
-    return PUSHING if pushes else _take_off_all(game, t, room)
+    return PUSHING if pushes else _take_off_all(game, t, room, desk)
 
 
 @inlined
@@ -244,7 +246,7 @@ def _whole_groups(game: Game, count: int, room: Room) -> None:
 
 
 @inlined
-def _take_off_all(game: Game, t: float, room: Room) -> int:
+def _take_off_all(game: Game, t: float, room: Room, desk: FloatArray | None) -> int:
     """New flights of all that are concerned and not driven; how it ended.
 
     FULL: not yet of all; TOO_SHORT: no step is short enough to follow one.
@@ -253,10 +255,12 @@ def _take_off_all(game: Game, t: float, room: Room) -> int:
         driven = game.drives[j, 0] < game.drives[j, 1]
         if room.marks[j] != CONCERNED or game.kinds[j] == GONE or driven:
             continue
-        if is_integrated(game, j, room.states[j]):
+        if desk is None:
+            take_off(game, j, t, room)
+        elif is_integrated(game, j, room.states[j]):
             if lacks_pieces(game):
                 return FULL
-            if not integrate(game, j, t, room):
+            if not integrate(game, j, t, room, desk):
                 return TOO_SHORT
         else:
             take_off(game, j, t, room)
@@ -265,7 +269,10 @@ def _take_off_all(game: Game, t: float, room: Room) -> int:
 
 
 @inner
-def _send(game: Game, i: int, t: float, vx: float, vy: float, spin: float, room: Room) -> int:
+def _send(
+    game: Game, i: int, t: float, vx: float, vy: float, spin: float, room: Room,
+    desk: FloatArray | None,
+) -> int:  # fmt: skip
     """Give a disc in play another velocity and spin: like an impact from outside."""
     for j in range(game.discs.shape[0]):
         room.marks[j] = NOT_CONCERNED
@@ -283,7 +290,7 @@ def _send(game: Game, i: int, t: float, vx: float, vy: float, spin: float, room:
     for j in range(game.discs.shape[0]):
         with_i = game.group[i] > 0 and game.group[j] == game.group[i]
         room.marks[j] = CONCERNED if j == i or with_i else NOT_CONCERNED
-    return _go_on(game, t, count, room)
+    return _go_on(game, t, count, room, desk)
 
 
 @inner
@@ -314,21 +321,24 @@ def lacks_rows(game: Game, room: Room) -> bool:
 
 
 @kernel
-def advance(game: Game, until: float, struck: int, state: FloatArray, room: Room) -> int:
+def advance(
+    game: Game, until: float, struck: int, state: FloatArray, room: Room, desk: FloatArray | None
+) -> int:  # fmt: skip
     """All that happens up to a time; how it ended.
 
     After FULL the caller gives more rows and calls again, after PAUSED it just calls again.
 
     ``struck``: the disc that gets the velocity and spin of ``state`` before; NOBODY; at the start,
     EVERYBODY looks ahead; after FULL, or after PUSHING when the groups that push are on their way,
-    THOSE_LEFT set off.
+    THOSE_LEFT set off.  ``desk``: to integrate on, see
+    :func:`puck_tables.world.departures.desk_for`; None: nothing is.
     """
     count = game.discs.shape[0]
     events = 0
     if struck != NOBODY:
         status = REACHED
         if struck == THOSE_LEFT:
-            status = _take_off_all(game, game.clock[0], room)
+            status = _take_off_all(game, game.clock[0], room, desk)
         elif struck == EVERYBODY:
             for i in range(count):
                 room.marks[i] = CONCERNED
@@ -337,10 +347,10 @@ def advance(game: Game, until: float, struck: int, state: FloatArray, room: Room
                 return CROWDED
             for i in range(count):
                 room.marks[i] = CONCERNED
-            status = _go_on(game, game.clock[0], contacts, room)
+            status = _go_on(game, game.clock[0], contacts, room, desk)
         else:
             vx, vy, spin = state[VX], state[VY], state[SPIN]
-            status = _send(game, struck, game.clock[0], vx, vy, spin, room)
+            status = _send(game, struck, game.clock[0], vx, vy, spin, room, desk)
         if status != REACHED:
             return status
         _look_again(game, game.clock[0], room)
@@ -373,11 +383,12 @@ def advance(game: Game, until: float, struck: int, state: FloatArray, room: Room
         if launch <= t:
             t, row = launch, game.launches[done]
             status = _send(
-                game, int(row[LAUNCHED]), t, row[LAUNCH_VX], row[LAUNCH_VY], row[LAUNCH_SPIN], room
-            )
+                game, int(row[LAUNCHED]), t, row[LAUNCH_VX], row[LAUNCH_VY], row[LAUNCH_SPIN],
+                room, desk,
+            )  # fmt: skip
             game.counts[N_LAUNCHES] += 1
         else:
-            status = _happen(game, first, game.next_partner[first], t, room)
+            status = _happen(game, first, game.next_partner[first], t, room, desk)
         game.clock[0] = t
         if status != REACHED:
             return status

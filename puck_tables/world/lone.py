@@ -32,7 +32,6 @@ from puck_tables.scene.equations import (
 from puck_tables.scene.explicit import HALFWAY_STAGES, STAGES
 from puck_tables.scene.forces import Forces
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X
-from puck_tables.scene.grading import UNIFORM
 from puck_tables.scene.ingredients import (
     CARRIED,
     FREE,
@@ -376,7 +375,7 @@ def follow_alone(
             before, mode, way = mode, SLIDES, NO_WAY
             if dry.load > 0.0 and q <= REST * speed:
                 y[VX] = y[VY] = y[SPIN] = 0.0
-                at_rest = Stretch(model, dry, leaning, rows, CARRIED, way, 0.0, UNIFORM, 0.0)
+                at_rest = Stretch(model, dry, leaning, rows, CARRIED, way, 0.0, 0.0)
                 mode, stiff, q = from_standstill(at_rest, speed, now, y, stages)
                 rests = mode == CARRIED and not _swings(model, dry)
                 rests = rests and rests_on(model, dry, leaning, rows, y)
@@ -385,7 +384,7 @@ def follow_alone(
                     break
                 h = target - now if mode == CARRIED else h
         newton = max(_NEWTON * tol, _FINEST_NEWTON) if stiff and mode == SLIDES else 0.0
-        stretch = Stretch(model, dry, leaning, rows, mode, way, newton, UNIFORM, 0.0)
+        stretch = Stretch(model, dry, leaning, rows, mode, way, newton, 0.0)
         if settle or not known:
             rates(stretch, now, y, stages, FIRST)
         settle, known = False, True
@@ -394,7 +393,7 @@ def follow_alone(
             way, _ = goes_straight(stretch, speed, tol, unit, now, q, pull, slow, y, stages)
             if way[3] < 0.0:
                 mode, h, newton = STOPS, -q / way[3], 0.0
-                stretch = Stretch(model, dry, leaning, rows, mode, way, newton, UNIFORM, 0.0)
+                stretch = Stretch(model, dry, leaning, rows, mode, way, newton, 0.0)
                 rates(stretch, now, y, stages, FIRST)
         h = _longest(stretch, h, q, speed, desk)
         landed = now + (1.0 if mode == STOPS else 1.1) * h >= target

@@ -19,7 +19,6 @@ from puck_tables.scene.equations import (
     to_laboratory,
 )
 from puck_tables.scene.friction import X, Y
-from puck_tables.scene.grading import UNIFORM
 from puck_tables.scene.ingredients import FREE, NO_WAY, SLIDES, Stretch
 from puck_tables.scene.leaning import LEAN_COLUMNS
 from puck_tables.world.alone import rows_passed
@@ -76,7 +75,7 @@ def _fill(
                 continue
             rows = rows_passed(drive, 0, len(drive), times[n])
             dry = dry_under(game.regions, game.discs, i)
-            stretch = Stretch(model, dry, leaning, rows, SLIDES, NO_WAY, 0.0, UNIFORM, 0.0)
+            stretch = Stretch(model, dry, leaning, rows, SLIDES, NO_WAY, 0.0, 0.0)
             rates(stretch, times[n], y, work, FIRST)
             out[n, i, 0], out[n, i, 1] = work[0, LAMBDA], work[0, LAMBDA + 1]
 

@@ -20,7 +20,7 @@ from puck_tables.scene.run import Event, number_of
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import game as g
 from puck_tables.world.agreement import called, pieces_of, refuse_endless
-from puck_tables.world.departures import room_for
+from puck_tables.world.departures import desk_for, room_for
 from puck_tables.world.engine import (
     CROWDED,
     EVERYBODY,
@@ -99,6 +99,7 @@ class World:
         self.scene = scene.single()
         self._order = order_of(self.scene)
         self._game, self._room = game_of(self.scene, self._order)
+        self._desk = desk_for(self._game)
         self._named()
         self._advance(0.0, EVERYBODY, self._room.one)
 
@@ -321,7 +322,10 @@ class World:
             self._grow()
         if struck >= 0:
             set_pace(self._game, state[None] * np.ones((len(self._game.discs), 1)))
-        while (how := advance(self._game, until, struck, state, self._room)) != REACHED:
+        while True:
+            how = advance(self._game, until, struck, state, self._room, self._desk)
+            if how == REACHED:
+                return
             struck = NOBODY
             if how == FULL:
                 self._grow()
@@ -354,6 +358,7 @@ class World:
         twin = object.__new__(World)
         twin.scene, twin._order = self.scene, self._order
         game, twin._room = game_of(self.scene, self._order)
+        twin._desk = desk_for(game)
         scale = 1.0 + share
         cosine, sine = scale * math.cos(share), scale * math.sin(share)
         turned = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, scale]])
@@ -389,7 +394,7 @@ class World:
         regions = parts.pop("regions")
         own = {n: one if n in kept else one.copy() for n, one in parts.items()}
         twin._game = g.Game(regions=regions._replace(ground=regions.ground.copy()), **own)
-        twin._room = room_for(len(self.names))
+        twin._room, twin._desk = room_for(len(self.names)), desk_for(twin._game)
         twin._named()
         return twin
 
