@@ -102,7 +102,7 @@ def test_what_impacts_tell_keeps_its_error_where_the_tilt_is_at_its_end(seed):
 @pytest.mark.thorough
 @pytest.mark.parametrize("seed", few(1, range(8)))
 @pytest.mark.parametrize("spinning", [
-    pytest.param(False, marks=pytest.mark.xfail(reason="air: 2 of 8 films", strict=False)),
+    False,
     True,
 ])  # fmt: skip
 def test_what_slows_a_puck_is_named_before_jitter_radius_or_a_hand(seed, spinning):
