@@ -11,18 +11,15 @@ from drawn_films import KINDS, cut, drawn, summed, wrong
 
 import puck_tables as pt
 
-UNSEEN = ("drag", "hand", "push")  # a drag, or a soft push, in few frames may look like friction
+# a drag, or a soft push, in few frames may look like friction; three of ten angles like strays
+UNSEEN = ("drag", "hand", "push", "few")
 GOOD = ("marked", "unmarked", "straight", "straight unmarked", "fast", "few", "grid")
 
 
 def misleads(film, found: pt.Fit) -> dict[str, float]:
     """What is wrong, but for what a table out of level by so much is said to do, unseen."""
-    off = wrong(film, found)
-    if film.slope == 0.0 or found.complaints:
-        return off
     said = any("A level table is taken for granted" in text for text in found.remarks)
-    assert said or not off
-    return {}
+    return {} if film.slope and said else wrong(film, found)
 
 
 def cases() -> list[pytest.param]:
