@@ -9,7 +9,7 @@ from puck_tables.cli.completion import scenes
 from puck_tables.cli.options import printable
 
 if TYPE_CHECKING:
-    from puck_tables.world.scene import Scene
+    pass
 
 
 @click.group()
@@ -57,26 +57,14 @@ def fields() -> None:
 @click.argument("name", metavar="FILE|NAME", shell_complete=scenes)
 def check(name: str) -> None:
     """Check a scene: every error at once, or what it holds and how it would be run."""
-    from puck_tables.world.outcome import ways_of
+    from puck_tables.world.plan import plan_of
+    from puck_tables.world.prepare import game_of, order_of
     from puck_tables.world.scene import Scene
     from puck_tables.world.scene_ends import axes_of
 
     whole = Scene.load(name)
-    plan = ways_of(whole) if whole.is_board else _plan(whole)
+    game_of(whole, order_of(whole))  # files and heights
     click.echo(printable(f"{name}: a scene" + (f", {whole.title}" if whole.title else "")))
     for path, values in axes_of(whole).items():
         click.echo(f"ranges        {path} from {values[0]:g} to {values[-1]:g}, {values.size}")
-    click.echo(printable(plan))
-
-
-def _plan(whole: Scene) -> str:
-    """How a scene of one puck would be run, and why."""
-    from puck_tables.scene.by_speed import speed_law
-    from puck_tables.scene.plan import out_of_reach, plan_for
-    from puck_tables.scene.prepare import prepare
-
-    if whole.floor.law:  # its table takes a while
-        speed_law(whole)
-    else:
-        prepare(whole)  # files and heights
-    return plan_for(out_of_reach(whole)).why
+    click.echo(printable(plan_of(whole).why))

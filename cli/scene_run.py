@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Callable, Iterable
-from dataclasses import is_dataclass
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 from puck_tables.cli.completion import scenes
 from puck_tables.cli.options import DEFAULT_DECEL, DEFAULT_DELTA
-from puck_tables.cli.world_report import report as report_of_several
 
 from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
     from puck_tables.bulk.finish import Stored
     from puck_tables.result import TimedResult
-    from puck_tables.scene.run import Event, Run
-    from puck_tables.scene.scene_spec import SceneSpec
     from puck_tables.world.map import Map
     from puck_tables.world.sample import Sample
 
@@ -41,7 +36,6 @@ INSTEAD = {  # of options that no scene has
     "heading": "launch.velocity has it", "pressure": "--set puck.pressure=NAME has it",
     "gyration": "--set puck.gyration=NUMBER has it",
 }  # fmt: skip
-MOST_PARTS = 16  # of a scene in a report
 
 
 def scene_options(command: Command) -> Command:
@@ -211,115 +205,11 @@ def _value(text: str) -> Any:
     return text
 
 
-def run_scene(
-    tables: dict[str, Any], source: str, times: tuple[float, ...] | None
-) -> tuple[TimedResult, Callable[[Any], str]]:
-    """One run of a scene with its states at some times, and what tells of it in words."""
+def run_scene(tables: dict[str, Any], source: str, times: tuple[float, ...] | None) -> TimedResult:
+    """One run of a scene with its states at some times."""
     from puck_tables.world.scene import Scene
 
-    scene = Scene.from_tables(tables, source)
-    run: Any = scene.simulate(times)
-    return run, report_of_several if scene.is_board else report
-
-
-def report(run: Run) -> str:
-    """A scene run and what went in, each with its unit."""
-    last = run.last
-    lines = {
-        "scene": run.scene.title or "without a title",
-        **_inputs(run.scene),
-        "friction": _friction(run.scene),
-        "end": f"{run.end} after {run.end_time:.9g} s",
-        "place": f"({last['x']:.9g}, {last['y']:.9g}) m, body at {last['orientation']:.6g} rad",
-        "motion": f"v = ({last['vx']:.6g}, {last['vy']:.6g}) m/s, w = {last['spin']:.6g} rad/s",
-        "events": _events(run),
-        "energy": f"{last['kinetic_energy']:.6g} J left; work {_joule(last['work_given'])} by "
-        f"forces, {_joule(last['work_support'])} by supports",
-        "heat": f"{_joule(last['heat_dry'])} dry, {_joule(last['heat_viscous'])} viscous, "
-        f"{_joule(last['heat_impact'])} impacts; ledger misses {run.energy_residual:.1e} of it",
-        "error": _error(run),
-        "model": run.model + (f", {run.steps} steps" if run.steps else ""),
-    }
-    if any(event.what == "overhang" for event in run.events):
-        from puck_tables.scene.plan import OVERHANG
-
-        lines["overhang"] = OVERHANG
-    if run.scene.lateral.strength != 0.0:
-        lines["lateral"] += "; empirical: no dry friction over the contact explains it"
-    if run.scene.constraint is not None:
-        reaction = f"({last['lambda_1']:.6g}, {last['lambda_2']:.6g}) N at the end"
-        lines["reaction"] = reaction + ("; at rest the floor shares it" if last["carried"] else "")
-    return "\n".join(f"{name:<10} {text}" for name, text in lines.items())
-
-
-def _inputs(scene: SceneSpec) -> dict[str, str]:
-    """What a scene says, a line for each of its parts, without what is left at its default."""
-    from puck_tables.scene.entries import entries
-
-    parts: dict[str, list[str]] = {}
-    for entry in entries(scene):
-        part, dot, name = entry.path.partition(".")
-        note = dot or part not in ("title", "gravity")  # above all, and of each puck
-        if is_dataclass(entry.value) or not note:  # its entries follow
-            continue
-        if entry.value != entry.default and entry.value is not None:
-            unit = f" {entry.kind.unit}" if entry.kind.unit else ""
-            words = f"{name} {_written(entry.value)}{unit}".lstrip()
-            parts.setdefault(part, []).append(words)
-    lines = {part: ", ".join(told_of) for part, told_of in parts.items()}
-    most = list(lines)[:MOST_PARTS]
-    return {part: lines[part] for part in most} | (
-        {"further": f"{len(lines) - len(most)} parts more"} if len(lines) > len(most) else {}
-    )
-
-
-def _written(value: Any) -> str:
-    if isinstance(value, tuple):
-        return f"({', '.join(map(_written, value))})"
-    return f"{value:.9g}" if isinstance(value, float) else str(value)
-
-
-def _friction(scene: SceneSpec) -> str:
-    """Heights and decelerations, one for each strip of floor."""
-    normal = scene.puck.gravity * math.cos(scene.floor.slope)
-    if scene.floor.law:
-        from puck_tables.scene.by_speed import law_name
-
-        return f"by slip speed, {law_name(scene)}"
-    if scene.floor.orthotropic is not None:
-        decels = ", ".join(f"{f * normal:.6g}" for f in scene.floor.orthotropic.friction)
-        return f"by direction, f N/m = {decels} m/s^2 along its axes"
-    words = f"delta = {', '.join(f'{delta:.4g}' for delta in scene.heights)}, "
-    words += f"f N/m = {', '.join(f'{f * normal:.6g}' for f in scene.frictions)} m/s^2"
-    return words + ("; part of the base may lift" if max(scene.heights) > 1.0 else "")
-
-
-def _error(run: Run) -> str:
-    """The estimate, and what tol means here; a word where it could not be kept."""
-    time = run.speed_scale / run.rate_scale if run.rate_scale > 0.0 else 0.0
-    place, tol = run.speed_scale * time, run.scene.tol
-    words = f"about {run.error_estimate * time:.1e} s, {run.error_estimate * place:.1e} m; "
-    if run.error_estimate > tol:
-        known = "a finer table of its friction law" if run.scene.floor.law else "finer steps"
-        words += f"tol = {tol:g} is out of reach, {known} helps no more; "
-    return words + f"Q = {run.speed_scale:.4g} m/s, J = {run.rate_scale:.4g} m/s^2"
-
-
-def _joule(energy: float) -> str:
-    return f"{energy + 0.0:.6g} J"  # a zero without its sign
-
-
-def _event(event: Event) -> str:
-    """What happened, and at which wall, edge, border, patch or strip."""
-    return event.what if event.partner == "floor" else f"{event.what} ({event.partner})"
-
-
-def _events(run: Run) -> str:
-    if not run.events:
-        return "none"
-    told_of = [f"{_event(event)} at {event.time:.6g} s" for event in run.events[:6]]
-    more = len(run.events) - 6
-    return ", ".join(told_of) + (f" and {more} more" if more > 0 else "")
+    return Scene.from_tables(tables, source).simulate(times)
 
 
 def summary_of_map(ends: Map | Sample | Stored) -> str:

@@ -28,6 +28,7 @@ from puck_tables.cli.options import (
     reported,
     table_option,
 )
+from puck_tables.cli.run_report import report as report_of_scene
 from puck_tables.cli.scene_run import files_read, run_scene, scene_options, scene_tables
 from puck_tables.cli.values import Times, Vector
 
@@ -124,7 +125,7 @@ def simulate(
         states = (0.0,) if output is None and plot is None and times is None else times
         board = isinstance(tables.get("puck"), list)  # quicker by what was compiled before
         with nullcontext() if board else one_question():
-            run, in_words = run_scene(tables, scene or "scene", states)
+            run, in_words = run_scene(tables, scene or "scene", states), report_of_scene
     else:
         if track is not None and fit_path is None:
             raise InputError("--track chooses a track of --fit: give that, too")

@@ -102,4 +102,4 @@ def test_a_folder_that_may_not_be_entered(tmp_path: Path) -> None:
 def test_events_name_where_they_happen() -> None:
     said = CliRunner().invoke(main, ["simulate", "--scene", "wet-patch"]).stdout
     assert "entry (border 0) at " in said and "stick (strip 2) at " in said
-    assert "0 J by supports" in said and "-0 J" not in said
+    assert "J given by launches" in said and "-0 J" not in said

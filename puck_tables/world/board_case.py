@@ -37,10 +37,9 @@ from puck_tables.world.engine import CROWDED, OFF_TABLE, PUSHING, TANGLED, TOO_S
 from puck_tables.world.footing import moves_along
 from puck_tables.world.lasting import FOR_EVER, LEADS_ON, ROUND
 from puck_tables.world.ledger import NAMES, books_of, energies_of, kinetic_of
-from puck_tables.world.outcome import ways_of
+from puck_tables.world.plan import plan_of
 from puck_tables.world.prepare import game_of, order_of
 from puck_tables.world.reactions import reactions
-from puck_tables.world.rim_laws import rule_of
 from puck_tables.world.simulate import MISSED, columns_of, run_on
 from puck_tables.world.world import World
 
@@ -72,9 +71,7 @@ class BoardCase:
     def __init__(self, scene: SceneSpec) -> None:
         self.scene, self.pieces = scene, pieces_of(scene)
         refuse_endless(scene)
-        count = len(self.pieces)
-        self.model = f"{count} puck{'s' if count > 1 else ''} from impact to impact"
-        self.explanation = f"{ways_of(scene)}\n{rule_of(scene)}"
+        self.model, self.explanation = plan_of(scene)
         self.until = math.inf if scene.time is None else scene.time
         order = order_of(scene)
         self.game, room = game_of(scene, order)

@@ -33,10 +33,9 @@ from puck_tables.world.footing import moves_along
 from puck_tables.world.lasting import at_rest_below
 from puck_tables.world.layout import HOLD
 from puck_tables.world.ledger import energies_of
-from puck_tables.world.outcome import ways_of
+from puck_tables.world.plan import plan_of
 from puck_tables.world.reactions import reactions
 from puck_tables.world.rests import floor_under, rests_of, slips_over
-from puck_tables.world.rim_laws import rule_of
 from puck_tables.world.world import World
 
 # of check runs: so many times the error of a step, and to which side launches are off
@@ -63,12 +62,12 @@ def simulate(scene: SceneSpec, times: npt.ArrayLike | None = None) -> Run:
     if world.groups > 0 and not missed <= MISSED:
         raise PuckError(g.TOGETHER.format(time=world.time))
     speed, rate = world._game.pace[:2].tolist()
-    ways = ways_of(scene)
+    plan = plan_of(scene)
     return Run(
         simulated=simulate,
         scene=scene.single(),
-        model=", ".join(ways.splitlines()),
-        why=f"{ways}\n{rule_of(scene)}",
+        model=plan.model,
+        why=plan.why,
         end=end,
         end_time=end_time,
         names=world.names,

@@ -1,41 +1,126 @@
-"""What ``puck simulate`` says of a run of several pucks."""
+"""What ``puck simulate`` says of a run of a scene."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from dataclasses import is_dataclass
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from puck_tables.scene.run import Run
+    from puck_tables.scene.run import Event, Run
+    from puck_tables.scene.scene_spec import SceneSpec
 
+MOST_PARTS = 16  # of a scene in a report
 MOST_PUCKS, MOST_IMPACTS, MOST_NAMES = 40, 6, 6  # of a report
+_EMPIRICAL = "empirical: no dry friction over the contact explains it"
 _WIDEST = 24  # signs of a name in the table
 _ROUNDING = 1e-14  # of energies
 
 
 def report(run: Run) -> str:
-    """What happened in two sentences; a table of pucks; impacts, energies, and how sure it is."""
-    from puck_tables.scene.plan import EMPIRICAL, OVERHANG
-    from puck_tables.world.outcome import ways_of
+    """What happened, what went in, energies, and how sure it is.
 
-    lines = {
-        "scene": _scene(run),
-        "energy": _energy(run),
-        "heat": _heat(run),
-        "error": _error(run),
-        "model": ", ".join(way for way in ways_of(run.scene).splitlines() if way != EMPIRICAL),
-    }
-    if run.scene.lateral.strength != 0.0:
-        lines["lateral"] = EMPIRICAL
+    Of several pucks first two sentences, a table of them and their impacts.
+    """
+    several = bool(run.scene.pucks)
+    lines = _of_all(run) if several else _of_one(run)
+    lines |= {"energy": _energy(run), "heat": _heat(run)}
+    if run.scene.constraint is not None:
+        lines["reaction"] = _reaction(run)
+    steps = f", {run.steps} steps" if run.steps else ""
+    lines |= {"error": _error(run), "model": run.model + steps}
     if any(event.what == "overhang" for event in run.events):
+        from puck_tables.scene.plan import OVERHANG
+
         lines["overhang"] = OVERHANG
-    parts = [
-        plainly(run),
-        "\n".join(_pucks(run)),
-        *(["\n".join(_impacts(run))] if run.impacts else []),
-        "\n".join(f"{name:<8} {text}" for name, text in lines.items()),
-    ]
-    return "\n\n".join(parts)
+    if run.scene.lateral.strength != 0.0:
+        there = [lines["lateral"]] if "lateral" in lines else []
+        lines["lateral"] = "; ".join([*there, _EMPIRICAL])
+    told = "\n".join(f"{name:<10} {text}" for name, text in lines.items())
+    if not several:
+        return told
+    impacts = ["\n".join(_impacts(run))] if run.impacts else []
+    return "\n\n".join([plainly(run), "\n".join(_pucks(run)), *impacts, told])
+
+
+def _of_one(run: Run) -> dict[str, str]:
+    """A scene of one puck, how and where it ends, and what happens on the way."""
+    last = run.last
+    return {
+        "scene": run.scene.title or "without a title",
+        **_inputs(run.scene),
+        "friction": _friction(run.scene),
+        "end": f"{run.end} after {run.end_time:.9g} s",
+        "place": f"({last['x']:.9g}, {last['y']:.9g}) m, body at {last['orientation']:.6g} rad",
+        "motion": f"v = ({last['vx']:.6g}, {last['vy']:.6g}) m/s, w = {last['spin']:.6g} rad/s",
+        "events": _events(run),
+    }
+
+
+def _of_all(run: Run) -> dict[str, str]:
+    """What is on a board."""
+    scene = run.scene
+    parts = {
+        "puck": len(run.names), "wall": len(scene.walls), "post": len(scene.posts),
+        "arc": len(scene.arcs), "pocket": len(scene.pockets), "edge": len(scene.edges),
+    }  # fmt: skip
+    counted = ", ".join(_counted(count, noun) for noun, count in parts.items() if count)
+    return {"scene": f"{scene.title or 'without a title'}: {counted}"}
+
+
+def _inputs(scene: SceneSpec) -> dict[str, str]:
+    """What a scene says, a line for each of its parts, without what is left at its default."""
+    from puck_tables.scene.entries import entries
+
+    parts: dict[str, list[str]] = {}
+    for entry in entries(scene):
+        part, dot, name = entry.path.partition(".")
+        note = dot or part not in ("title", "gravity")  # above all, and of each puck
+        if is_dataclass(entry.value) or not note:  # its entries follow
+            continue
+        if entry.value != entry.default and entry.value is not None:
+            unit = f" {entry.kind.unit}" if entry.kind.unit else ""
+            words = f"{name} {_written(entry.value)}{unit}".lstrip()
+            parts.setdefault(part, []).append(words)
+    lines = {part: ", ".join(told_of) for part, told_of in parts.items()}
+    most = list(lines)[:MOST_PARTS]
+    return {part: lines[part] for part in most} | (
+        {"further": f"{len(lines) - len(most)} parts more"} if len(lines) > len(most) else {}
+    )
+
+
+def _written(value: Any) -> str:
+    if isinstance(value, tuple):
+        return f"({', '.join(map(_written, value))})"
+    return f"{value:.9g}" if isinstance(value, float) else str(value)
+
+
+def _friction(scene: SceneSpec) -> str:
+    """Heights and decelerations, one for each strip of floor."""
+    normal = scene.puck.gravity * math.cos(scene.floor.slope)
+    if scene.floor.law:
+        from puck_tables.scene.by_speed import law_name
+
+        return f"by slip speed, {law_name(scene)}"
+    if scene.floor.orthotropic is not None:
+        decels = ", ".join(f"{f * normal:.6g}" for f in scene.floor.orthotropic.friction)
+        return f"by direction, f N/m = {decels} m/s^2 along its axes"
+    words = f"delta = {', '.join(f'{delta:.4g}' for delta in scene.heights)}, "
+    words += f"f N/m = {', '.join(f'{f * normal:.6g}' for f in scene.frictions)} m/s^2"
+    return words + ("; part of the base may lift" if max(scene.heights) > 1.0 else "")
+
+
+def _event(event: Event) -> str:
+    """What happened, and at which wall, edge, border, patch or strip."""
+    return event.what if event.partner == "floor" else f"{event.what} ({event.partner})"
+
+
+def _events(run: Run) -> str:
+    if not run.events:
+        return "none"
+    told_of = [f"{_event(event)} at {event.time:.6g} s" for event in run.events[:6]]
+    more = len(run.events) - 6
+    return ", ".join(told_of) + (f" and {more} more" if more > 0 else "")
 
 
 def plainly(run: Run) -> str:
@@ -49,11 +134,18 @@ def plainly(run: Run) -> str:
             "Send one off: --set puck[0].launch.velocity=[1,0]"
         )
     left = sum(event.what in ("pocket", "edge") for event in run.events)
-    if run.end == "at rest":
+    if run.end in ("at rest", "over the edge", "in a pocket"):
         rest = count - left
         what = f"{rest or 'none'} of {count} pucks" if left else _counted(count, "puck")
         verb = "comes" if rest == 1 else "come"
         first = f"{what} {verb} to rest after {run.end_time:.4g} s and {impacts}."
+    elif run.end != "time is up":
+        way = "round" if run.end == "carried round" else "along"
+        who = "the puck rests" if count - left == 1 else f"{count - left} pucks rest"
+        first = (
+            f"After {run.end_time:.4g} s and {impacts} {who} on the floor, which carries "
+            f"{'it' if count - left == 1 else 'them'} {way}."
+        )
     else:
         free = [not piece.path for piece in pieces_of(run.scene)]
         moving = int((run.stop_times > run.end_time)[free].sum())
@@ -128,16 +220,6 @@ def _impacts(run: Run) -> list[str]:
     return rows + ([f"and {_counted(more, 'impact')} more"] if more > 0 else [])
 
 
-def _scene(run: Run) -> str:
-    scene = run.scene
-    parts = {
-        "puck": len(run.names), "wall": len(scene.walls), "post": len(scene.posts),
-        "arc": len(scene.arcs), "pocket": len(scene.pockets), "edge": len(scene.edges),
-    }  # fmt: skip
-    counted = ", ".join(_counted(count, noun) for noun, count in parts.items() if count)
-    return f"{scene.title or 'without a title'}: {counted}"
-
-
 def _energy(run: Run) -> str:
     """What was given, and what the pucks still have or took along when they left play."""
     last = run.last
@@ -171,13 +253,31 @@ def _heat(run: Run) -> str:
     return f"{note}; ledger misses {missed} of it"
 
 
+def _reaction(run: Run) -> str:
+    """With what force its constraint leads a puck at the end."""
+    last = run.last
+    words = f"({last['lambda_1']:.6g}, {last['lambda_2']:.6g}) N at the end"
+    return words + ("; at rest the floor shares it" if last["carried"] else "")
+
+
 def _error(run: Run) -> str:
-    """What the end may be wrong by, and where nobody can know it."""
+    """What times and places may be wrong by; where tol could not be kept, or nobody can know."""
     from puck_tables.world.agreement import pieces_of
 
+    time = run.speed_scale / run.rate_scale if run.rate_scale > 0.0 else 0.0
+    tol, several = run.scene.tol, bool(run.scene.pucks)
     if run.end_error > min(piece.radius for piece in pieces_of(run.scene)):
         return (
             "nobody can know the end: launches that differ by 1e-9 end up to "
             f"{run.end_error:.2g} m apart, for every impact multiplies what is not known"
         )
-    return f"about {run.end_error:.1e} m at the end"
+    words = f"about {run.error_estimate * time:.1e} s, {run.end_error:.1e} m; "
+    if run.error_estimate > tol:
+        known = "a finer table of its friction law" if run.scene.floor.law else "finer steps"
+        why = (
+            "impacts multiply what is not known of launches"
+            if several
+            else f"{known} helps no more"
+        )
+        words += f"tol = {tol:g} is out of reach, {why}; "
+    return words + f"Q = {run.speed_scale:.4g} m/s, J = {run.rate_scale:.4g} m/s^2"

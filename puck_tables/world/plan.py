@@ -1,0 +1,129 @@
+"""How the pucks of a scene are moved, why so, and by which law they meet, in words."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from puck_tables._core.fields import specs
+from puck_tables.scene.pieces import PieceSpec
+from puck_tables.scene.plan import EMPIRICAL, acting
+from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.world.agreement import (
+    TABLE_ERROR,
+    called,
+    flight_error,
+    frictions_under,
+    has_closed_forms,
+    is_integrated,
+    pieces_of,
+)
+from puck_tables.world.floors import has_several
+from puck_tables.world.rim_laws import rule_of
+
+_NAMED = 6  # pucks of one way
+_OF_EACH = ("force", "constraint")
+# what makes no motion another one, but where it ends
+_OF_OTHERS = (
+    "title", "puck", "pucks", "launch", "time", "frames", "tol", "gravity", "walls", "edges",
+    "posts", "arcs", "pockets", "rims",
+)  # fmt: skip
+_ON_FLOOR = ("strips", "patches")
+
+
+class Plan(NamedTuple):
+    """``model``: how its pucks are moved, in a line; ``why``: lines of text."""
+
+    model: str
+    why: str
+
+
+def plan_of(scene: SceneSpec) -> Plan:
+    """How the pucks of a scene are moved, and which they are.
+
+    Raises
+    ------
+    PuckError
+        If an entry of the scene does not say what acts with it: it would be left out.
+
+    Examples
+    --------
+    >>> from puck_tables import Floor, Launch, Puck, Scene
+    >>> print(plan_of(Scene(Puck(0.1, friction=0.1), Floor(slope=0.05))).why)
+    1 puck integrated from impact to impact: slope
+    a look-up would be cheaper, but it is of what only dry friction and a belt act on
+    """
+    pieces = pieces_of(scene)
+    ways: dict[str, list[str]] = {}
+    known: dict[tuple[object, ...], str] = {}
+    for number, piece in enumerate(pieces):
+        force, hold = piece.force, piece.constraint
+        key = (
+            piece.radius, piece.height, piece.friction, piece.gravity, str(piece.pressure),
+            piece.gyration, force.constant, force.torque, bool(force.over_time),
+            hold and hold.kind, bool(piece.path),
+        )  # fmt: skip
+        if key not in known:
+            known[key] = _way_of(scene, piece)
+        ways.setdefault(known[key], []).append(called(piece, number))
+    lines = []
+    for way, names in ways.items():
+        shown = ""
+        if len(ways) > 1:
+            more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
+            shown = f" ({', '.join(names[:_NAMED])}{more})"
+        lines.append(f"{len(names)} puck{'s' if len(names) != 1 else ''} {way}{shown}")
+    model = ", ".join(lines)
+    if any("integrated from" in way for way in ways):
+        lines.append(
+            "a look-up would be cheaper, but it is of what only dry friction and a belt act on"
+        )
+    if has_several(scene):
+        piled = any(piece.body.law.profile is not None for piece in pieces)
+        lines.append(
+            "while a base is astride several frictions they are integrated over its parts, about "
+            f"{'forty' if piled else 'ten'} times the cost of a step elsewhere"
+        )
+    if scene.lateral.strength != 0.0:
+        lines.append(EMPIRICAL)
+    if len(pieces) > 1 or scene.walls or scene.posts or scene.arcs:
+        lines.append(rule_of(scene))
+    return Plan(model, "\n".join(lines))
+
+
+def _acting_on(scene: SceneSpec, piece: PieceSpec) -> list[str]:
+    """What acts on a puck beside dry friction on a level floor that moves steadily or not at all.
+
+    Raises
+    ------
+    PuckError
+        As :func:`puck_tables.scene.plan.acting`.
+    """
+    one = scene.alone(piece)
+    for spec in specs(type(scene)).values():
+        name = spec.name
+        if name not in _OF_OTHERS:
+            value = getattr(piece if name in _OF_EACH else scene, name)
+            object.__setattr__(one, name, value)
+    return [what for what in acting(one) if what not in _ON_FLOOR]
+
+
+def _way_of(scene: SceneSpec, piece: PieceSpec) -> str:
+    """How a puck is moved, and why it is not looked up."""
+    acts = _acting_on(scene, piece)
+    if piece.path:
+        return "driven along a path"
+    frictions = frictions_under(scene, piece)
+    integrated = [is_integrated(scene, piece, friction) for friction in frictions]
+    if any(integrated):
+        if not all(has_closed_forms(piece, one) for one in frictions):
+            acts.append("no closed forms")
+        if flight_error(scene) < TABLE_ERROR:
+            acts.append(f"tol below the {TABLE_ERROR:g} of tables")
+        where = "" if all(integrated) else " on some of the floor"
+        return f"integrated from impact to impact{where}: {', '.join(acts)}"
+    if not any(frictions):
+        return "in closed form, without dry friction"
+    way = "looked up from impact to impact"
+    if has_several(scene):
+        way = "looked up from impact or border to the next, integrated where astride"
+    return f"{way}, over the belt" if any(scene.floor.velocity) else way
