@@ -29,7 +29,6 @@ Progress = Callable[[int, int], None]
 # dimensionless, m/s²: of a puck that nothing is said of, as the library has it
 DEFAULT_DELTA, DEFAULT_DECEL = 0.5, 1.0
 QUIET_TIME, BETWEEN_LINES = 2.0, 10.0  # s, where stderr is no terminal
-HUGE = 10.0  # m, of a real puck: millimetres were meant
 
 NUMBER, LENGTH, SPEED, SPIN, TIME = map(NumberParam, ("", "m", "m/s", "rad/s", "s"))
 FILE = click.Path(readable=False, path_type=Path)
@@ -189,9 +188,6 @@ def chosen_puck(
                 "--radius --height --friction (and --gravity)"
             )
         dimensions = {"radius": radius, "height": height, "friction": friction, "gravity": gravity}
-        for name, value in (("radius", radius), ("height", height)):
-            if value is not None and value > HUGE:
-                click.echo(f"a {name} of {value:g} m: lengths are in metres", err=True)
         return Puck(**_only(**dimensions, **kind))
     return Puck.similar(**_only(radius=radius, delta=delta, decel=decel, **kind))
 

@@ -96,13 +96,14 @@ def all_finite(parts: list[str], kind: NumberParam, param: Any, ctx: Any) -> lis
 
 def finite(text: str, kind: click.ParamType, param: Any, ctx: Any, unit: str = "") -> float:
     """A finite number, in an SI unit where another stands behind it, or click's error."""
-    from puck_tables._core.units import SHOWN, measured
+    from puck_tables._core.units import SHOWN, measured, unit_meant
 
     try:
         number = measured(text, unit)
     except ValueError:
+        why = unit_meant(text[:40])
         example = f", or one with a unit as {SHOWN[unit]}" if unit else ""
-        kind.fail(f"'{text}' is not a number{example}", param, ctx)
+        kind.fail(f"'{text}' is not a number{example}{f' ({why})' if why else ''}", param, ctx)
     if not math.isfinite(number):
         kind.fail(f"'{text}' is not a finite number", param, ctx)
     return number

@@ -179,4 +179,4 @@ def test_what_the_floor_and_the_air_took_is_told() -> None:
     more = ("--set", "drag.quadratic=0.01", "--set", "lateral.strength=0.1")
     said = puck("simulate", "--scene", "curling-take-out", *more).stdout
     assert " J floor, " in said and " J drag, " in said
-    assert said.count("empirical, as somebody fitted it") == 1
+    assert said.count("empirical: no dry friction over the contact explains it") == 1

@@ -59,5 +59,5 @@ def test_a_huge_puck_is_asked_for():
     real = ("--height", "0.025", "--friction", "0.1", "--v0", "2,0")
     huge = puck("simulate", "--radius", "38", *real)
     assert huge.exit_code == 0
-    assert huge.stderr.startswith("a radius of 38 m: lengths are in metres")
+    assert huge.stderr.startswith("a radius beyond 10 m: lengths are in metres")
     assert "metres" not in puck("simulate", "--radius", "0.038", *real).stderr

@@ -4,18 +4,32 @@ from __future__ import annotations
 
 import math
 
+import film_judge
 import numpy as np
 import pytest
 from drawn_films import KINDS, cut, drawn, summed, wrong
 
 import puck_tables as pt
 
-UNSEEN = ("drag", "hand")  # a drag, or a soft push, in few frames may look like friction
+UNSEEN = ("drag", "hand", "push")  # a drag, or a soft push, in few frames may look like friction
+
+
+GOOD = ("marked", "unmarked", "straight", "straight unmarked", "fast", "few", "grid")
+
+
+def misleads(film, found: pt.Fit) -> dict[str, float]:
+    """What is wrong, but for what a table out of level by so much is said to do, unseen."""
+    off = wrong(film, found)
+    if film.slope == 0.0 or found.complaints:
+        return {} if film.slope else off
+    said = any("A level table is taken for granted" in text for text in found.remarks)
+    assert said or not off
+    return {}
 
 
 def cases() -> list[pytest.param]:
     """One film of some kinds for every run, one of each with the thorough ones."""
-    quick = ("marked", "fast", "few", "stamps", "air table")
+    quick = ("marked", "fast", "few", "stamps", "air table", "grid", "push", "falling unmarked")
     return [
         pytest.param(kind, seed, marks=[] if seed == 1 and kind in quick else pytest.mark.thorough)
         for kind in KINDS for seed in (1, 3)
@@ -26,16 +40,16 @@ def cases() -> list[pytest.param]:
 def test_nothing_wrong_is_called_determined(kind, seed):
     film = drawn(kind, seed)
     found = pt.fit(film.track, film.puck)
-    assert wrong(film, found) == {}
+    assert misleads(film, found) == {}
     assert cut(film, found) <= 0.1 or found.cut_off
-    if film.foreign == 0:
+    if film.foreign == 0 and not kind.startswith("push"):
         assert cut(film, found) <= 0.02
 
 
 @pytest.mark.nightly
 @pytest.mark.parametrize("kind", KINDS)
-def test_nothing_wrong_is_called_determined_in_308_films(kind):
-    bad, shares = {}, []
+def test_nothing_wrong_is_called_determined_in_550_films(kind):
+    bad, shares, complaints = {}, [], 0
     for seed in range(200, 222):
         film = drawn(kind, seed)
         try:
@@ -45,10 +59,14 @@ def test_nothing_wrong_is_called_determined_in_308_films(kind):
             continue
         shares.append(cut(film, found))
         assert shares[-1] <= 0.1 or found.cut_off
-        if off := wrong(film, found):
+        complaints += bool(found.complaints)
+        if off := misleads(film, found):
             bad[seed] = off
     assert len(bad) <= (kind in UNSEEN), bad
-    assert np.mean(shares) <= (0.05 if kind in ("hand", "wall") else 0.01)
+    if not kind.startswith("push"):
+        assert np.mean(shares) <= (0.05 if kind in ("hand", "wall") else 0.01)
+    if kind in GOOD:
+        assert complaints <= 1
 
 
 @pytest.mark.parametrize("seed", [2, pytest.param(5, marks=pytest.mark.thorough)])
@@ -99,3 +117,38 @@ def test_what_no_motion_comes_near_determines_nothing():
     found = pt.fit(track, pt.Puck(radius=0.04), noise=(1e-4, None))
     assert not found["friction"].determined and "Nothing is determined" in found.blind[0]
     assert not found.launch().numbers["launch_vx"].determined
+
+
+@pytest.mark.parametrize("seed", [1, pytest.param(4, marks=pytest.mark.thorough)])
+def test_a_table_out_of_level_is_named_or_said_with_its_size(seed):
+    """A slide straight down, and one that spins, on a table out of level by half a degree."""
+    rng = np.random.default_rng([35, 1, seed])
+    friction, down = rng.uniform(0.08, 0.2), rng.uniform(0.0, 6.28)
+    decel = friction * film_judge.G
+    for spin, seen, way in ((0.0, 0.5, math.atan2(0.2, 1.5)), (40.0, 0.9, down)):
+        pull = film_judge.G * math.radians(0.5) * np.array([math.cos(way), math.sin(way), 0.0])
+        times = np.linspace(0.0, seen * 1.5 / decel, 120)
+        true = film_judge.path(
+            (1.5, 0.2), spin, decel, 0.3, 0.04, times, besides=lambda t, v, w, pull=pull: pull
+        )
+        track = pt.Track(times, *film_judge.noisy(rng, true, (3e-4, 5e-3)))
+        found = pt.fit(track, pt.Puck(radius=0.04))
+        if spin:
+            assert found.complaints and "out of level by 0." in found.misfit, found.misfit
+            continue
+        (text,) = [text for text in found.remarks if "A level table" in text]
+        change = float(text.split("friction by up to ")[1].split()[0].strip(","))
+        assert change == pytest.approx(math.radians(0.1), rel=0.1)  # a slide straight down
+        number = found["friction"]
+        assert abs(number.value - friction) < 5.5 * change + 4.0 * number.error
+
+
+@pytest.mark.nightly
+def test_errors_of_rounded_places_are_those_of_many_films():
+    away = []
+    for seed in range(600, 680):
+        film = drawn("grid", seed)
+        number = pt.fit(film.track, film.puck)["friction"]
+        if number.determined and not number.at_bound:
+            away.append((number.value - film.truth["friction"]) / number.error)
+    assert 0.6 < math.sqrt(np.mean(np.square(away))) < 1.2

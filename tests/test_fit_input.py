@@ -136,7 +136,8 @@ def test_a_tilt_that_is_computed_to_be_none_is_shown_as_0():
 def test_a_number_that_a_prior_frees_is_named():
     found = pt.fit(TRACK, PUCK, prior={"radius": (0.04, 1e-4)})
     assert "radius is found, too" in found.remarks[0]
-    assert pt.fit(TRACK, PUCK, prior={"friction": (0.2, 0.1)}).remarks == ()
+    asked = pt.fit(TRACK, PUCK, prior={"friction": (0.2, 0.1)})
+    assert not any("is found, too" in text for text in asked.remarks)
 
 
 def test_a_number_on_its_bound_is_named():

@@ -41,6 +41,7 @@ class Kind:
     high: float = math.inf
     above: bool = False  # greater than ``low``, not equal to it
     below: bool = False
+    usual: float = 0.0  # what is larger is questioned, see puck_tables._core.doubts
     choices: tuple[str, ...] = ()
     part: Any = None
     file: str | None = None  # a text that names a file where it ends so

@@ -18,6 +18,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.beginning import refuse_no_text, refuse_others
+from puck_tables._core.doubts import MOST_FRICTION
 from puck_tables._core.header import header_of
 from puck_tables._core.own_folder import say
 from puck_tables._core.quantities import (
@@ -37,7 +38,6 @@ from puck_tables._core.units import EXAMPLES, unit_size
 from puck_tables.errors import InputError
 
 _SHOWN = 8  # headings in a message
-_HIGH_FRICTION = 5.0  # of a table: no dry surface has it, percent do
 _KEPT = 1 << 16  # bytes of a file whose numbers are kept
 
 
@@ -157,7 +157,7 @@ def _read(path: str, content: bytes, columns: tuple[InputColumn, ...], needed: i
             raise InputError(f"{where}: its {name} is too large a number")
         raise InputError(f"{where}: it has no {name}: every row needs one")
     for n, (column, unit) in enumerate(zip(taken, units, strict=True)):
-        if column is FRICTION and not unit and len(rows) and rows[:, n].max() > _HIGH_FRICTION:
+        if column is FRICTION and not unit and len(rows) and rows[:, n].max() > MOST_FRICTION:
             say(
                 f"{path}: its friction coefficients go up to {rows[:, n].max():.6g}, more than dry "
                 "surfaces have: if they are percent write mu [%] over them"

@@ -15,9 +15,10 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.colours import is_colour, meant
+from puck_tables._core.doubts import question
 from puck_tables._core.fields import LISTED, Kind, in_tables, specs
 from puck_tables._core.real import shown
-from puck_tables._core.units import SHOWN, UNIT_EACH, measured, quantity, without_unit
+from puck_tables._core.units import SHOWN, UNIT_EACH, measured, quantity, unit_meant, without_unit
 from puck_tables.errors import PuckError
 
 T = TypeVar("T")
@@ -268,7 +269,8 @@ def _number(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -
         except PuckError as error:
             reading.errors.append(f"{path}: {error}")
         return value  # type: ignore[return-value]  # a law in place of a number
-    if isinstance(value, str) and (found := quantity(value, kind.unit)) is not None:
+    said = isinstance(value, str) and (found := quantity(value, kind.unit)) is not None
+    if said:
         value = found
     if isinstance(value, str) and reading.ranges is not None:
         match = RANGE.fullmatch(value.strip())
@@ -287,6 +289,7 @@ def _number(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -
             reading.fault(path, value, f"a range within: {_one(kind)}")
         else:
             reading.ranges[path] = Range(start, stop, count)
+            question(path, max(start, stop, key=abs), kind.unit, kind.usual)
         return start
     if type(value) not in (float, int) and (
         isinstance(value, bool | np.timedelta64) or not isinstance(value, Real)
@@ -302,6 +305,8 @@ def _number(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -
         if kind.unit == "rad" and kind.holds(math.radians(number)):
             allowed += f" (if degrees are meant write '{number:g}deg')"
         reading.fault(path, value, allowed)
+    elif number != default and not said:
+        question(path, number, kind.unit, kind.usual)
     return number
 
 
@@ -322,5 +327,7 @@ def _listed(kind: Kind, items: list[Any], path: str, reading: Reading) -> float:
 def _one(kind: Kind, value: Any = None) -> str:
     """A number that is allowed, in words; to who wrote a text, how units are written."""
     words = dataclasses.replace(kind, shape="number").allowed()
-    hint = isinstance(value, str) and kind.unit in SHOWN
-    return f"{words}, or with its unit, as '{SHOWN[kind.unit]}'" if hint else words
+    if not (isinstance(value, str) and kind.unit in SHOWN):
+        return words
+    why = unit_meant(value[:40])
+    return f"{words}, or with its unit, as '{SHOWN[kind.unit]}'{f' ({why})' if why else ''}"

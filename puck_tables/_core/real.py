@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables._core.units import SHOWN, UNIT_EACH, quantity, unit_meant, without_unit
 from puck_tables.errors import InputError
 
 _SHOWN = 60  # characters of a value in a message
@@ -33,7 +34,9 @@ def refuse_mask(name: str, values: object) -> None:
 
 
 def real_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
-    """Values as an array of float64; texts, complex numbers and dates are refused.
+    """Values as an array of float64; complex numbers and dates are refused.
+
+    Texts are numbers with their unit, such as '2 km/h', where the unit is one of SI.
 
     Parameters
     ----------
@@ -50,15 +53,61 @@ def real_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
     --------
     >>> real_array("w0", [1, 2], "rad/s")
     array([1., 2.])
+    >>> real_array("velocity", ("36 km/h", 0), "m/s")
+    array([10.,  0.])
     """
     refuse_mask(name, values)
     try:
         array = np.asarray(values)
+        if array.dtype.kind == "U" and unit in SHOWN:
+            return _measured(name, array, unit)
         if array.dtype.kind not in "buif":
             raise TypeError
         return array.astype(np.float64)
+    except InputError:
+        raise
     except (TypeError, ValueError, OverflowError, UserWarning):  # the last: a masked one in a list
         raise InputError(f"{name} must be real numbers{_in(unit)}") from None
+
+
+def _measured(name: str, texts: npt.NDArray[np.str_], unit: str) -> FloatArray:
+    """Numbers, each with its unit, as real_array takes them."""
+    written = texts.ravel().tolist()
+    if bare := without_unit(written, unit):
+        raise InputError(f"{name}: {UNIT_EACH.format(bare)}")
+    numbers = [
+        number_in(name, text, unit) if quantity(text, unit) is not None or not _is_0(text) else 0.0
+        for text in written
+    ]
+    return np.array(numbers).reshape(texts.shape)
+
+
+def _is_0(text: str) -> bool:
+    """Whether a text is 0, which is so in any unit."""
+    try:
+        return float(text) == 0.0
+    except ValueError:
+        return False
+
+
+def number_in(name: str, text: str, unit: str) -> float:
+    """A number with its unit behind it, in an SI unit.
+
+    Raises
+    ------
+    InputError
+        If it is none, or has no unit.
+
+    Examples
+    --------
+    >>> number_in("spin", "30rpm", "rad/s")
+    3.141592653589793
+    """
+    found = quantity(text, unit)
+    if found is None:
+        why = unit_meant(text) or f"or one with its unit, as '{SHOWN[unit]}'"
+        raise InputError(f"{name} must be a number{bracketed(unit)}, got {shown(text)}: {why}")
+    return found
 
 
 def real_view(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
@@ -221,6 +270,8 @@ def real(name: str, value: float, unit: str) -> float:
     """
     if type(value) is float and math.isfinite(value):
         return value
+    if isinstance(value, str) and unit in SHOWN:
+        return number_in(name, value, unit)
     refuse_mask(name, value)
     try:
         # what float() would take all the same: texts, spans of time, lists of one

@@ -29,9 +29,12 @@ _TIMES = {
 _SECONDS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0}
 _ANGLES = {
     "rad": "rad radian radians", "deg": "deg degree degrees ° grad_deg", "turn": "turn turns rev "
-    "revs revolution revolutions",
+    "revs revolution revolutions", "mrad": "mrad milliradian milliradians",
 }  # fmt: skip
-_RADIANS = {"rad": 1.0, "deg": math.pi / 180.0, "turn": 2.0 * math.pi}
+_RADIANS = {"rad": 1.0, "deg": math.pi / 180.0, "turn": 2.0 * math.pi, "mrad": 1e-3}
+_MEGA = {"Mm": "a megametre: write mm", "Ms": "a megasecond: write ms"}
+_GRADS = {"grad", "grads", "gon", "gons", "grade", "grades", "gradian", "gradians"}
+_SYMBOL = 3  # letters: of more, capitals say nothing
 _KINDS = {"length": (_LENGTHS, {**_METRES, PIXEL: math.nan}), "time": (_TIMES, _SECONDS),
           "angle": (_ANGLES, _RADIANS)}  # fmt: skip
 _FORCES = {"N": 1.0, "mN": 1e-3, "uN": 1e-6, "µN": 1e-6, "μN": 1e-6, "cN": 1e-2, "kN": 1e3,
@@ -69,9 +72,48 @@ def unit_word(text: str, kind: str) -> str:
     --------
     >>> unit_word("Seconds", "time"), unit_word("pixels", "length"), unit_word("m", "time")
     ('s', 'px', '')
+    >>> unit_word("MM", "length"), unit_word("Km", "length"), unit_word("Mm", "length")
+    ('mm', 'km', '')
     """
-    wanted = text.strip().lower()
+    wanted = text.strip()
+    if _mixed_up(wanted):
+        return ""
+    wanted = wanted.lower()
     return next((unit for unit, names in _KINDS[kind][0].items() if wanted in names.split()), "")
+
+
+def _mixed_up(symbol: str) -> bool:
+    """Whether capitals and small letters of a symbol say another unit, or none.
+
+    Headings may be in capitals throughout, and words and symbols may begin with one.
+
+    Examples
+    --------
+    >>> [_mixed_up(text) for text in ("MM", "Km", "Milliseconds", "Mm", "mM", "uS")]
+    [False, False, False, True, True, True]
+    """
+    if len(symbol) > _SYMBOL or symbol.isupper():
+        return False
+    return symbol in _MEGA or symbol[1:] != symbol[1:].lower()
+
+
+def unit_meant(text: str) -> str:
+    """Why a unit, perhaps behind a number or over a time, is not read as what it looks like.
+
+    Examples
+    --------
+    >>> unit_meant("40Mm/s"), unit_meant("Grad"), unit_meant("40 mm")
+    ("'Mm' is a megametre: write mm", "'Grad' may be degrees or gradians: write deg (a gradian is \
+0.9 deg)", '')
+    """
+    for word in re.findall(r"[^\W\d_]+", text):
+        if word in _MEGA:
+            return f"'{word}' is {_MEGA[word]}"
+        if word.lower() in _GRADS:
+            return f"'{word}' may be degrees or gradians: write deg (a gradian is 0.9 deg)"
+        if _mixed_up(word) and word.lower() in (*_METRES, *_SECONDS):
+            return f"'{word}' is no unit: write {word.lower()}"
+    return ""
 
 
 def factor(unit: str, kind: str) -> float:
@@ -106,6 +148,8 @@ mm, um, km, in, ft, yd, px
         names = [one for line in _KINDS[kind][0].values() for one in line.split()]
         near = get_close_matches(str(text).lower(), names, 1, 0.7)
         hint = f", did you mean '{near[0]}'?" if near else "."
+        if why := unit_meant(str(text)[:40]):
+            hint = f": {why}."
         raise InputError(
             f"{name} = {text!r:.40} is not known{hint} Known: {', '.join(_KINDS[kind][0])}"
         )
@@ -132,8 +176,22 @@ def quantity(text: str, unit: str) -> float | None:
     if found is None or size is None:
         return None
     if unit_word(found[2], "angle") == "deg":
-        return math.radians(float(found[1]))
-    return float(Decimal(found[1]) * Decimal(repr(size)))  # 25.4mm is 0.0254 to the last bit
+        number = math.radians(float(found[1]))
+    else:
+        number = float(Decimal(found[1]) * Decimal(repr(size)))  # 25.4mm is 0.0254 to the last bit
+    return number
+
+
+def measured_kinds(text: str) -> dict[str, float]:
+    """A number with a unit in each SI unit that it can be of: '5g' may be a mass or not.
+
+    Examples
+    --------
+    >>> measured_kinds("40mm"), measured_kinds("40"), list(measured_kinds("5g"))
+    ({'m': 0.04}, {}, ['m/s^2', 'kg'])
+    """
+    found = {unit: quantity(text, unit) for unit in KIND_OF}
+    return {unit: number for unit, number in found.items() if number is not None}
 
 
 def measured(text: str, unit: str) -> float:
@@ -300,7 +358,9 @@ def unit_size(unit: str, kind: str) -> float | None:
     >>> unit_size("mN", "force"), unit_size("N mm", "torque"), unit_size("%", "ratio")
     (0.001, 0.001, 0.01)
     """
-    text = _WHOLE.get(unit.strip().lower(), unit.strip())
+    text = unit.strip()
+    if text[:2] not in _MEGA:
+        text = _WHOLE.get(text.lower(), text)
     if kind == "any":
         return 1.0
     if kind == "ratio":

@@ -9,12 +9,23 @@ from __future__ import annotations
 import hashlib
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from typing import Any, ClassVar
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables._core.doubts import question_spread
 from puck_tables._core.real import real, shown
-from puck_tables._core.units import SHOWN, UNIT_EACH, measured, without_unit
+from puck_tables._core.units import (
+    KIND_OF,
+    SHOWN,
+    UNIT_EACH,
+    measured,
+    measured_kinds,
+    quantity,
+    unit_meant,
+    without_unit,
+)
 from puck_tables.errors import InputError
 
 _LARGEST_SEED = 1 << 64  # a seed is kept in files as an integer of 64 bits
@@ -23,6 +34,61 @@ _AT_ONCE = 4  # numbers a step of the counter gives
 
 class Spread(ABC):
     """A distribution of a number."""
+
+    unit: ClassVar[str] = ""  # of SI, if its numbers were written with one
+
+    def checked_for(self, name: str, unit: str) -> None:
+        """Refuse it for a number of another unit; say so if it is of a doubtful size.
+
+        Parameters
+        ----------
+        name, unit : of what scatters
+
+        Raises
+        ------
+        InputError
+
+        Examples
+        --------
+        >>> Normal("40mm", "1mm").checked_for("spin", "rad/s")
+        Traceback (most recent call last):
+        ...
+        puck_tables.errors.InputError: spin is in rad/s: its spread is in m
+        """
+        if self.unit and self.unit != unit:
+            raise InputError(f"{name} is in {unit or '1'}: its spread is in {self.unit}")
+        if not self.unit:
+            question_spread(name, *self._widths, unit)
+
+    @property
+    @abstractmethod
+    def _widths(self) -> tuple[float, float]:
+        """Its standard deviation, or its width; the other 0."""
+
+    def _read(self, names: tuple[str, str], values: tuple[Any, Any]) -> tuple[float, float]:
+        """Its two numbers, of which the unit is noted if they have one."""
+        if any(isinstance(one, str) for one in values):
+            kinds = [measured_kinds(one) if isinstance(one, str) else {} for one in values]
+            for one, kind in zip(values, kinds, strict=True):
+                if not kind and (isinstance(one, str) or one):
+                    why = (
+                        unit_meant(str(one)[:40])
+                        or "give both numbers a unit, as '25mm', or neither"
+                    )
+                    raise InputError(
+                        f"{type(self).__name__}: {shown(one)} has no known unit: {why}"
+                    )
+            both = [unit for unit in KIND_OF if all(not kind or unit in kind for kind in kinds)]
+            if len(both) != 1:
+                what = f"may be in {' or '.join(both)}" if both else "are of two kinds"
+                raise InputError(f"{values[0]!r} and {values[1]!r} {what}: write SI units")
+            object.__setattr__(self, "unit", both[0])
+            values = tuple(kind.get(both[0], 0.0) for kind in kinds)  # type: ignore[assignment]
+        first, second = (
+            real(f"the {name}", one, "in the unit of the number")
+            for name, one in zip(names, values, strict=True)
+        )
+        return first, second
 
     @abstractmethod
     def of(self, uniform: FloatArray) -> FloatArray:
@@ -56,7 +122,7 @@ class Normal(Spread):
 
     Parameters
     ----------
-    mean, deviation : in the unit of the number; the standard deviation > 0
+    mean, deviation : in SI units, or texts with their unit; the standard deviation > 0
 
     Raises
     ------
@@ -66,14 +132,16 @@ class Normal(Spread):
     --------
     >>> Normal(5.0, 0.2).of(np.array([0.5])).tolist()
     [5.0]
+    >>> Normal("40mm", "1mm")
+    Normal(mean=0.04, deviation=0.001)
     """
 
     mean: float
     deviation: float
 
     def __post_init__(self) -> None:
-        mean = real("the mean of a normal spread", self.mean, "in the unit of the number")
-        deviation = real("the deviation of a normal spread", self.deviation, "the same unit")
+        names = ("mean of a normal spread", "deviation of a normal spread")
+        mean, deviation = self._read(names, (self.mean, self.deviation))
         if not deviation > 0.0:
             raise InputError(
                 f"the deviation of a normal spread must be greater than 0, got {deviation:g}: "
@@ -89,6 +157,10 @@ class Normal(Spread):
         values: FloatArray = self.mean + self.deviation * ndtri(uniform)
         return values
 
+    @property
+    def _widths(self) -> tuple[float, float]:
+        return self.deviation, 0.0
+
     def __str__(self) -> str:
         return f"normal:{self.mean!r}:{self.deviation!r}"
 
@@ -99,7 +171,7 @@ class Uniform(Spread):
 
     Parameters
     ----------
-    low, high : in the unit of the number, low < high
+    low, high : in SI units, or texts with their unit; low < high
 
     Raises
     ------
@@ -115,8 +187,8 @@ class Uniform(Spread):
     high: float
 
     def __post_init__(self) -> None:
-        low = real("the low end of a uniform spread", self.low, "in the unit of the number")
-        high = real("the high end of a uniform spread", self.high, "the same unit")
+        names = ("low end of a uniform spread", "high end of a uniform spread")
+        low, high = self._read(names, (self.low, self.high))
         if not (high > low and high - low < float("inf")):
             raise InputError(
                 f"a uniform spread must go from a lower to a higher end, got {low:g} to {high:g}: "
@@ -128,6 +200,10 @@ class Uniform(Spread):
     def of(self, uniform: FloatArray) -> FloatArray:
         """Its quantiles."""
         return self.low + (self.high - self.low) * uniform
+
+    @property
+    def _widths(self) -> tuple[float, float]:
+        return 0.0, self.high - self.low
 
     def __str__(self) -> str:
         return f"uniform:{self.low!r}:{self.high!r}"
@@ -163,6 +239,8 @@ def spread_named(text: str, unit: str = "") -> Spread:
             f"'{text}' is no spread: write normal:MEAN:DEVIATION or uniform:LOW:HIGH{hint}"
         ) from None
     result: Spread = KINDS[name](first, second)
+    if all(quantity(number, unit) is not None for number in numbers):
+        object.__setattr__(result, "unit", unit)
     return result
 
 

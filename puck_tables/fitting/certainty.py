@@ -30,7 +30,7 @@ _HARDLY = 0.05
 _ON_BOUND = 1e-4  # of a bound, or of an error: an unknown lies on it
 _OFF_BOUND = 0.5  # errors from a bound: it does not, however small numbers are
 _ROUNDING = 1e-6
-_PARTS = (2, 4, 8)
+_PARTS, _FINE = (2, 4, 8), 16
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +42,8 @@ class Certainty:
     unknowns that one of them moves; ``plausible`` (m,); ``degrees``: how many residuals told the
     noise, infinite where it is known; ``pinned`` (m,): −1 for an unknown on the lower end of its
     range, 1 on the upper: χ² has no minimum there, so that it has no standard error (NaN);
-    ``widened``: whether the covariance is that of a model that does not fit.
+    ``widened``: whether the covariance is that of a model that does not fit; ``narrow``: what it
+    was before anything widened it, None where nothing did.
     """
 
     covariance: FloatArray
@@ -52,6 +53,7 @@ class Certainty:
     degrees: float = math.inf
     pinned: tuple[int, ...] = ()
     widened: bool = False
+    narrow: FloatArray | None = None
 
     def lost(self) -> Certainty:
         """The same where nothing is seen: no motion comes near the tracks."""
@@ -62,6 +64,23 @@ class Certainty:
     def quantile(self) -> float:
         """Half a 95 % interval where the noise is as it was found: that of Student's t."""
         return quantile_of(self.degrees)
+
+    def wider(self, covariance: FloatArray, widened: bool) -> Certainty:
+        """The same with a larger covariance (m, m)."""
+        narrow = self.covariance if self.narrow is None else self.narrow
+        widened |= self.widened
+        return replace(self, covariance=covariance, widened=widened, narrow=narrow)
+
+    def as_seen(self) -> Certainty:
+        """The same before anything widened it."""
+        covariance = self.covariance if self.narrow is None else self.narrow
+        return replace(self, covariance=covariance, narrow=None)
+
+    def ratio(self, k: int) -> float:
+        """By how much the error of an unknown is wider than the likelihood says."""
+        if self.narrow is None or not self.narrow[k, k] > 0.0:
+            return 1.0
+        return math.sqrt(float(self.covariance[k, k] / self.narrow[k, k]))
 
     @property
     def spread(self) -> float:
@@ -199,24 +218,48 @@ def widened(result: Estimate, certainty: Certainty) -> Certainty:
     To the covariance is added what leaving out a part of the frames at a time does to the unknowns,
     as the jackknife counts it: of halves, of quarters and of eighths.
     """
-    problem, plausible = result.problem, certainty.plausible
-    slopes, rows = (
-        result.jacobian * plausible * result.kept[:, None],
-        result.residuals * result.kept,
+    covariance = certainty.covariance + sum(
+        _without_parts(result, certainty, count) for count in _PARTS
     )
+    return certainty.wider(covariance, True)
+
+
+def of_rounded(result: Estimate, certainty: Certainty) -> Certainty:
+    """The same of tracks that are rounded: what is left of them is about independent noise.
+
+    Errors are those that sixteenths of the frames show, where these are larger.
+    """
+    shown = np.diag(_without_parts(result, certainty, _FINE))
+    wider = np.sqrt(np.maximum(shown / np.maximum(np.diag(certainty.covariance), 1e-300), 1.0))
+    return certainty.wider(certainty.covariance * np.outer(wider, wider), False)
+
+
+def shifted_by(result: Estimate, certainty: Certainty, columns: FloatArray) -> FloatArray:
+    """What changes of the residuals (n, k) do to the unknowns (m, k)."""
+    slopes, square = _scaled(result, certainty)
+    changes = np.linalg.solve(square, slopes.T @ columns)
+    return -changes * certainty.plausible[:, None]
+
+
+def _scaled(result: Estimate, certainty: Certainty) -> tuple[FloatArray, FloatArray]:
+    """Derivatives that count in units of what is plausible, and their square, bounded by that."""
+    slopes = result.jacobian * certainty.plausible * result.kept[:, None]
     slopes[:, np.flatnonzero(certainty.pinned)] = 0.0
-    square = slopes.T @ slopes + np.eye(plausible.size)
-    covariance = certainty.covariance
-    for count in _PARTS:
-        changes = []
-        for film in problem.each():
-            parts = zip(*(np.array_split(np.r_[one], count) for one in film), strict=True)
-            for frames in (np.concatenate(part) for part in parts):
-                mine = slopes[frames]
-                changes.append(np.linalg.solve(square - mine.T @ mine, mine.T @ rows[frames]))
-        each = (np.array(changes) - np.mean(changes, axis=0)) * plausible
-        covariance = covariance + (len(each) - 1.0) / len(each) * each.T @ each
-    return replace(certainty, covariance=covariance, widened=True)
+    return slopes, slopes.T @ slopes + np.eye(certainty.plausible.size)
+
+
+def _without_parts(result: Estimate, certainty: Certainty, count: int) -> FloatArray:
+    """The covariance that leaving out a part of the frames at a time shows: the jackknife's."""
+    slopes, square = _scaled(result, certainty)
+    rows, changes = result.residuals * result.kept, []
+    for film in result.problem.each():
+        parts = zip(*(np.array_split(np.r_[one], count) for one in film), strict=True)
+        for frames in (np.concatenate(part) for part in parts):
+            mine = slopes[frames]
+            changes.append(np.linalg.solve(square - mine.T @ mine, mine.T @ rows[frames]))
+    each = (np.array(changes) - np.mean(changes, axis=0)) * certainty.plausible
+    covariance: FloatArray = (len(each) - 1.0) / len(each) * each.T @ each
+    return covariance
 
 
 @dataclass(frozen=True)
@@ -230,20 +273,26 @@ class Interval:
     high: float
     profiled: bool
 
+    def wider(self, value: float, ratio: float, low: float, high: float) -> Interval:
+        """The same, its ends farther from a value by a ratio, within a range."""
+        ends = [value + ratio * (end - value) for end in (self.low, self.high)]
+        return replace(self, low=max(ends[0], low), high=min(ends[1], high))
+
 
 def interval_of(result: Estimate, certainty: Certainty, k: int) -> Interval:
     """The 95 % interval of an unknown.
 
     Both ends of the quadratic one are tried; where the likelihood there is not that of a parabola
-    the ends are searched for.
+    the ends are searched for.  What widens the error widens it, too.
     """
-    x, error = float(result.x[k]), math.sqrt(float(certainty.covariance[k, k]))
     low, high = (float(ends[k]) for ends in result.problem.limits)
+    ratio = certainty.ratio(k)
+    if ratio > 1.0 and not certainty.undetermined[k]:
+        own = interval_of(result, certainty.as_seen(), k)
+        return own.wider(float(result.x[k]), ratio, low, high)
+    x, error = float(result.x[k]), math.sqrt(float(certainty.covariance[k, k]))
     if certainty.undetermined[k]:
         return Interval(low, high, False)
-    if certainty.widened and not certainty.pinned[k]:
-        half = certainty.quantile * error
-        return Interval(max(x - half, low), min(x + half, high), False)
     ends, profiled = [], False
     for side, limit in ((-1.0, low), (1.0, high)):
         end, searched = _end(

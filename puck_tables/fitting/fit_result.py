@@ -30,8 +30,9 @@ from puck_tables.fitting.held_out import HeldOut
 from puck_tables.fitting.law_comparison import LawScore
 from puck_tables.fitting.numbers import EstimatedLaunch, Number
 from puck_tables.fitting.observations import Observations
-from puck_tables.fitting.plausibility import doubts, rounded
+from puck_tables.fitting.plausibility import doubts, rounded, taken_for_granted
 from puck_tables.fitting.residual_tests import JITTERY, NO_PATTERN, lengthways, misfits
+from puck_tables.fitting.side_forces import SideForces
 from puck_tables.fitting.speed_law_fit import law_over
 from puck_tables.fitting.timing import Known
 from puck_tables.io.dataset import Dataset
@@ -57,15 +58,13 @@ class Fit(Result):
     that are no free motion; ``cut_off``: a sentence where these are many, with what they would
     change; ``runs``, ``drift``: probabilities of residuals so patterned by chance;
     ``blind``: a sentence for each thing that the tracks do not tell; ``astray``: why nobody would
-    believe what was found, empty where somebody may; ``laws``: :class:`LawScore` of
-    those compared, best
-    first; ``held_out``: how well frames that were held out are predicted;
-    ``impacts``: :class:`Impact` of those looked for; ``untied``: why they do not join the slides,
-    empty where they do; ``not_met``: a sentence for each wall given on which there is none.
-    ``uncut``: the tracks with frames that are no free motion.
-    ``misfit``: what else the tracks or the radius may be, if that fits far better.
-    ``constant_chi2``: χ² of one friction coefficient for all slip speeds,
-    where one over them was found.
+    believe what was found, empty where somebody may; ``laws``: :class:`LawScore` of those compared,
+    best first; ``held_out``: how well frames that were held out are predicted; ``impacts``:
+    :class:`Impact` of those looked for; ``untied``: why they do not join the slides, empty where
+    they do; ``not_met``: a sentence for each wall given on which there is none.  ``forces``: what a
+    table out of level, drag or air would do to it; ``uncut``: the tracks with frames that are no
+    free motion; ``misfit``: what else tracks, floor or radius may be, if that fits better;
+    ``constant_chi2``: χ² of one friction for all slip speeds, where one over them was found.
     """
 
     given: Puck
@@ -91,6 +90,7 @@ class Fit(Result):
     constant_chi2: float
     estimate: Estimate = field(repr=False)
     certainty: Certainty = field(repr=False)
+    forces: SideForces = field(default=SideForces(), repr=False)
     uncut: tuple[Observations, ...] = field(default=(), repr=False)
     misfit: str = ""
     astray: str = ""
@@ -176,7 +176,7 @@ class Fit(Result):
     @property
     def complaints(self) -> tuple[str, ...]:
         """Signs that the tracks are not those of such a puck."""
-        found = list(misfits(self.estimate, self.noise_known, self.smooth_noise))
+        found = [*misfits(self.estimate, self.noise_known, self.smooth_noise, self.forces.chance)]
         if found:
             found.append(
                 "Standard errors are widened by what parts of the frames do to the numbers: they "
@@ -220,8 +220,7 @@ class Fit(Result):
                     f"best may be {way}. So it has no standard error, and its interval, and errors "
                     "and intervals of the rest, may mislead"
                 )
-        said += self.not_met
-        said += self.doubts
+        said += (*self.not_met, *self.doubts)
         # stamps that jitter leave no drift, as another law does
         if self.jitter == 0.0 and self.noise[0] > 0.0 and self.drift > NO_PATTERN:
             ratio = lengthways(self.estimate)
@@ -230,6 +229,7 @@ class Fit(Result):
                     f"Residuals along the motion are {ratio:.3g} times those across it: the time "
                     "stamps may jitter (--jitter find)"
                 )
+        said += taken_for_granted(self.forces, self.numbers)
         return tuple(f"{text}." for text in said)
 
     def explain(self) -> str:

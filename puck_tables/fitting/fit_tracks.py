@@ -12,7 +12,13 @@ import numpy as np
 from puck_tables._core.real import instance, real
 from puck_tables.errors import InputError
 from puck_tables.film.puck_track import Track
-from puck_tables.fitting.certainty import Certainty, certainty_of, pinned_of, widened
+from puck_tables.fitting.certainty import (
+    Certainty,
+    certainty_of,
+    of_rounded,
+    pinned_of,
+    widened,
+)
 from puck_tables.fitting.coupled_fit import Impact, couple, impacts_apart, impacts_coupled, not_met
 from puck_tables.fitting.estimate import Estimate, estimate, freedom
 from puck_tables.fitting.fit_result import Fit
@@ -44,6 +50,7 @@ from puck_tables.fitting.other_minima import mirrored, other_minima, taken
 from puck_tables.fitting.plausibility import ran_away
 from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.residual_tests import drift, excess_of, may_misfit, no_answer, runs
+from puck_tables.fitting.side_forces import SideForces, side_forces
 from puck_tables.fitting.speed_law_fit import over_speeds
 from puck_tables.fitting.timing import Known
 from puck_tables.puck import Puck
@@ -51,6 +58,7 @@ from puck_tables.puck import Puck
 Progress = Callable[[int, int], None]
 _JUDGED = 2.5  # degrees of freedom that tell the noise of a kind
 _MUCH = 0.1  # of the frames, left out at the ends
+_BIAS = 2.0  # times what a force, to first order, would have done
 _JITTER = 0.3  # times the noise of a place over the speed: to begin with
 
 
@@ -207,16 +215,21 @@ def fit(
         certainty = _certainty(best, known)
         other_fits = other_minima(best, certainty, max(excess_of(best, judged), 1.0))
     unsigned = mirrored(best, certainty)
-    if any(certainty.pinned) or may_misfit(best, known, judged):
-        certainty = widened(best, certainty)
+    forces = side_forces(best, certainty)
     # bounds that the caller gives may keep every motion away: that is said of the bound
     held_off = any(
         best.problem.names[k][1] in spec.bounds for k in np.flatnonzero(certainty.pinned)
     )
+    if held_off:  # no force
+        forces = forces._replace(biases=np.empty((0, 0)))
+    misfits = may_misfit(best, known, judged, forces.chance)
+    certainty = _wider(best, certainty, misfits, forces, bool(unsigned))
     nowhere = "" if held_off else no_answer(best, known, judged)
     astray = nowhere or ran_away(best.problem, best.x)
     seen, certainty = certainty, certainty.lost() if astray else certainty
     numbers, launches = numbers_of(best, certainty, other_fits, unsigned)
+    blind, open_then = ((), ()) if nowhere else without_spin(best, numbers, known)
+    numbers |= {name: numbers[name]._replace(error=math.inf) for name in open_then}
     lost = tuple(n for n in best.problem.spec.free if not numbers[n].determined)
     scores: tuple[LawScore, ...] = ()
     if laws:
@@ -232,7 +245,6 @@ def fit(
     if held is not None:
         predictions = _held_out(best, held, known)
         say(steps, steps)
-    blind = () if nowhere else without_spin(best, numbers, known)
     blind += (f"{astray}.",) if astray else not_identifiable(best, seen, lost, other_fits, unsigned)
     impact_states: tuple[Impact, ...] = ()
     if best.problem.impact_specs:
@@ -266,10 +278,11 @@ def fit(
         constant_chi2=chi2_under(constant, best.problem.noise) if speeds else math.nan,
         estimate=best,
         certainty=certainty,
+        forces=forces,
         uncut=uncut,
     )
     if result.complaints:
-        result = replace(result, misfit=misfit(slides, problem, known, bool(speeds)))
+        result = replace(result, misfit=misfit(slides, problem, known, forces, bool(speeds)))
     return result
 
 
@@ -293,6 +306,23 @@ def _certainty(best: Estimate, known: Known) -> Certainty:
     plausible = plausible_for(best.problem, best.x)
     certainty = certainty_of(best.jacobian[best.kept], plausible, degrees)
     return replace(certainty, pinned=pinned_of(best, certainty))
+
+
+def _wider(
+    best: Estimate, certainty: Certainty, misfits: bool, forces: SideForces, unsigned: bool
+) -> Certainty:
+    """The same where residuals are no independent noise, or nothing tells a floor from a spin."""
+    if misfits or any(certainty.pinned):
+        certainty = widened(best, certainty)
+        if misfits and forces.biases.size:
+            by_force = _BIAS**2 * forces.biases @ forces.biases.T
+            certainty = certainty.wider(certainty.covariance + by_force, True)
+    elif any(any(film.steps) for film in best.problem.films):
+        certainty = of_rounded(best, certainty)
+    if unsigned and forces.by_law.size:  # its slowing alone tells friction from spin
+        by_law = np.outer(forces.by_law, forces.by_law)
+        certainty = certainty.wider(certainty.covariance + by_law, False)
+    return certainty
 
 
 def _left_out(

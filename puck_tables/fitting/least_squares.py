@@ -50,7 +50,7 @@ def minimise(
         np.where(_near(ends, problem, moved), ends, far)
         for ends, far in zip(limits, (-np.inf, np.inf), strict=True)
     )
-    inside = _inside(x[moved], low, high)
+    begun = inside(x[moved], low, high)
     latest: dict[bytes, FloatArray] = {}
 
     def residuals(values: FloatArray) -> FloatArray:
@@ -71,10 +71,10 @@ def minimise(
 
     scale = how.scale
     if how.loss != "linear":  # far from the minimum all residuals are large, none an outlier
-        scale = max(scale, 2.0 * problem.usual(residuals(inside)))
+        scale = max(scale, 2.0 * problem.usual(residuals(begun)))
     while True:
         result: Any = least_squares(
-            residuals, inside, jacobian, bounds=(low, high), x_scale="jac", loss=how.loss,
+            residuals, begun, jacobian, bounds=(low, high), x_scale="jac", loss=how.loss,
             f_scale=scale, max_nfev=how.evaluations, ftol=how.tolerance, xtol=how.tolerance,
             gtol=1e-12,
         )  # fmt: skip
@@ -82,12 +82,12 @@ def minimise(
         if beyond.any():  # it ran away: the rest is sought with these on their ends
             low, high = (np.where(beyond, ends, near)
                          for ends, near in zip(limits, (low, high), strict=True))  # fmt: skip
-            inside = _inside(np.clip(result.x, *limits), low, high)
+            begun = inside(np.clip(result.x, *limits), low, high)
             continue
         if scale <= how.scale:
             whole[moved] = np.clip(result.x, *limits)
             return whole, float(result.cost)
-        inside = _inside(result.x, low, high)
+        begun = inside(result.x, low, high)
         scale = max(how.scale, min(0.25 * scale, 2.0 * problem.usual(result.fun)))
 
 
@@ -110,9 +110,9 @@ def _near(
     return near
 
 
-def _inside(x: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
+def inside(x: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
     """Strictly within bounds, as the method wants its start."""
     width = np.where(np.isfinite(high - low), high - low, np.maximum(1.0, np.abs(x)))
     room = 1e-9 * width
-    inside: FloatArray = np.minimum(np.maximum(x, low + room), high - room)
-    return inside
+    within: FloatArray = np.minimum(np.maximum(x, low + room), high - room)
+    return within

@@ -1,4 +1,4 @@
-"""Why tracks do not fit: their angles, the radius, drag, or a friction over the slip speed.
+"""Why tracks do not fit: angles, radius, drag, air, a slope, or a friction over the slip speed.
 
 Each is tried out: where residuals then are far smaller, about as noise is, that is told.
 """
@@ -19,6 +19,8 @@ from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.initial_estimate import initial_estimate
 from puck_tables.fitting.parameters import NODES
 from puck_tables.fitting.problem import TURN, Problem
+from puck_tables.fitting.residual_tests import NO_PATTERN
+from puck_tables.fitting.side_forces import AIR, SLOPE, SideForces, forced
 from puck_tables.fitting.speed_law_fit import tried
 from puck_tables.fitting.timing import Known
 
@@ -38,19 +40,25 @@ _ALIKE = math.log(1.5)  # readings that fit about as well
 _MUCH = math.log(3.0)  # so much smaller residuals tell, though they are no noise yet
 _LITTLE, _CLEAN = math.log(1.1), 1.4  # less than that is no reason; times the noise of a place
 _MOST, _LEAST = 10.0, 1e-3  # times one friction for all speeds: laws that some floor has
+_STEEPEST = 10.0  # degrees: nobody takes that for a level table
 _HELD = ("launch_spin", "launch_angle")  # what is said of these is said of the angles as they are
 
 
+_Sizes = tuple[FloatArray, FloatArray]  # how far places (m), and angles (rad), are off
+
+
 class _Reading(NamedTuple):
-    """What else may be: in words, by how much smaller residuals are, if a floor, if it fits."""
+    """What else may be: in words, by how much smaller residuals are, if a floor, if it is rough."""
 
     words: str
     gain: float
     floor: bool = False
-    fits: bool = True
+    rough: bool = False
 
 
-def misfit(result: Estimate, problem: Problem, known: Known, speeds: bool) -> str:
+def misfit(
+    result: Estimate, problem: Problem, known: Known, forces: SideForces, speeds: bool
+) -> str:
     """A sentence that says which other reading fits far better; empty if none does.
 
     A floor is named before angles or a radius that fit about as well.
@@ -60,25 +68,30 @@ def misfit(result: Estimate, problem: Problem, known: Known, speeds: bool) -> st
     result : the estimate of slides that do not fit
     problem : what was asked, with all frames
     known : whether the noise of places, of angles and of time stamps is
+    forces : what a slope, drag or air would explain
     speeds : whether a friction over slip speed does not fit, either
     """
-    floor = _may_change(problem.spec) and not speeds
-    told = [one for one in (_by_drag(result, problem, known), _by_speed(result, problem)) if one] \
-        if floor else []  # fmt: skip
-    if len(told) == 2 and told[1].gain < told[0].gain + _BETTER:  # more numbers fit a little better
-        del told[1]
-    told = sorted(told, key=lambda one: -one.gain)[:1]
+    noise, told = problem.noise[0], []
+    if _may_change(problem.spec) and not speeds:
+        drag, law = _by_drag(result, problem, known), _by_speed(result, problem)
+        if drag and law and law.gain < drag.gain + _BETTER:  # more numbers fit a little better
+            law = None
+        told = [one for one in (drag, law) if one]
+    if not speeds and not problem.impact_specs:
+        told += [one for kind in (AIR, SLOPE) if (one := _by_force(result, kind, noise))]
+    told = sorted(told, key=lambda one: -one.gain)[:2]
     told += _otherwise(result, problem, known)
-    air = _may_change(problem.spec) and not any(one.fits for one in told)
-    if air and (words := _by_air(result, problem, known)):
-        return words
     best = max((one.gain for one in told), default=0.0)
     # sizes and angles are known better than floors: a floor that tells much is named first
     near = [one for one in told if one.gain > best - _ALIKE or (one.floor and one.gain > _MUCH)]
-    near.sort(key=lambda one: not one.floor)
+    near.sort(
+        key=lambda one: (not one.floor or (one.rough and one.gain < best - _ALIKE), -one.gain)
+    )
     if near:
         words = f"{near[0].words}{f'; or {near[1].words}' if len(near) > 1 else ''}"
         return f"Residuals would be {math.exp(near[0].gain):.2g} times smaller {words}"
+    if forces.chance < NO_PATTERN:
+        return f"What may leave such a pattern: {forces.words}"
     return ""
 
 
@@ -90,25 +103,24 @@ def _otherwise(result: Estimate, problem: Problem, known: Known) -> list[_Readin
             one = initial_estimate(other, known, refit=False)
         except InputError:  # such a puck, or such a track, there is not
             continue
-        gain = _size(result, 1.0) - _size(one, scale)
+        gain = _size(_deviations(result), 1.0) - _size(_deviations(one), scale)
         radius = one.problem.spec.scales(one.problem.numbers_at(one.x))[2]
         found_radius = "radius" in other.spec.free and "radius" not in problem.spec.free
         same = found_radius and abs(radius / given - 1.0) < _NEAR
-        if gain > best.gain and not same and _fits(one, problem.noise[0]):
+        if gain > best.gain and not same and _near_noise(_deviations(one), problem.noise[0]):
             best = _Reading(words.format(radius), gain)
     return [best] if best.words else []
 
 
-def _tells(result: Estimate, other: Estimate, noise: float) -> float:
+def _gain(result: Estimate, other: _Sizes, noise: float) -> float:
     """By how much smaller residuals are of another floor; 0 where that tells nothing.
 
     It leaves far less, or no more than noise where one friction leaves more than that.  Where air
     or a floor changes in a way that no few numbers tell it may still leave more than noise.
     """
-    gain = _size(result, 1.0) - _size(other, 1.0)
-    left = float(np.median(_deviations(other)[0])) / noise
-    clean = gain > _LITTLE and left < _CLEAN
-    fits = (gain > math.log(_FAR) or clean) and _fits(other, noise)
+    gain = _size(_deviations(result), 1.0) - _size(other, 1.0)
+    clean = gain > _LITTLE and float(np.median(other[0])) / noise < _CLEAN
+    fits = (gain > math.log(_FAR) or clean) and _near_noise(other, noise)
     return gain if fits or (gain > _MUCH and _explained(other)) else 0.0
 
 
@@ -128,9 +140,10 @@ def _by_drag(result: Estimate, problem: Problem, known: Known) -> _Reading | Non
         one = initial_estimate(other, known, refit=False)
     except InputError:
         return None
-    gain = _tells(result, one, problem.noise[0])
+    seen, noise = _deviations(one), problem.noise[0]
+    gain = _gain(result, seen, noise)
     words = f"with drag besides friction: find it, too (--free {','.join(other.spec.free)})"
-    return _Reading(words, gain, True, _fits(one, problem.noise[0])) if gain else None
+    return _Reading(words, gain, True) if gain else None
 
 
 def _may_change(spec: FitSpec) -> bool:
@@ -147,7 +160,8 @@ def _by_speed(result: Estimate, problem: Problem) -> _Reading | None:
         other = tried(result)
     except InputError:  # hardly any friction, at no speed
         return None
-    gain = _tells(result, other, problem.noise[0])
+    seen, noise = _deviations(other), problem.noise[0]
+    gain = _gain(result, seen, noise)
     spec, numbers = other.problem.spec, other.problem.numbers_at(other.x)
     speeds = spec.speeds
     values = [numbers[name] for name in NODES[: len(speeds)]]
@@ -159,33 +173,33 @@ def _by_speed(result: Estimate, problem: Problem) -> _Reading | None:
         f"with a friction over slip speed ({told}): find it (--slip-speeds "
         f"{','.join(f'{u:g}' for u in speeds)})"
     )
-    return _Reading(words, gain, True, _fits(other, problem.noise[0])) if gain else None
+    return _Reading(words, gain, True) if gain else None
 
 
-def _by_air(result: Estimate, problem: Problem, known: Known) -> str:
-    """A sentence where places alone are those of another floor, and angles are not.
-
-    Air slows the centre, and hardly the spin.
-    """
-    if len(problem.films) > 1 or problem.films[0].angle is None:
-        return ""
-    spec, spin = problem.spec, float(result.problem.launches(result.x)[0, 4])
-    spec = spec.spinning(spin)
-    films = tuple(replace(film, angle=None) for film in problem.films)
-    blind = replace(problem.with_films(films), spec=spec)
-    try:
-        one = initial_estimate(blind, known, refit=False)
-        others = [tried(one), initial_estimate(_dragged(blind), known, refit=False)]
-    except InputError:
-        return ""
-    if not any(_tells(one, other, problem.noise[0]) for other in others):
-        return ""
-    return (
-        "Without its angles the track is that of a puck under drag, or friction over slip speed, "
-        "and with them it is not: what slows it hardly brakes its spin, as air does. A fit has no "
-        "such drag, a scene has (drag.sliding, drag.quadratic); what slows it is found without "
-        f"angles (--fix launch_spin={spin:.4g} and --free or --slip-speeds)"
-    )
+def _by_force(result: Estimate, kind: tuple[int, ...], noise: float) -> _Reading | None:
+    """A table out of level, or air, to first order, if that fits far better."""
+    off, force = forced(result, kind)
+    seen = _sizes(result.problem, off)
+    gain = _gain(result, seen, noise)
+    if not gain:
+        return None
+    gravity = {**result.problem.spec.known(), **result.problem.numbers_at(result.x)}["gravity"]
+    slope = math.degrees(math.hypot(*force) / gravity)
+    if kind == AIR:
+        words = (
+            f"if air slowed it, by {force[0]:.2g}/m times the square of its speed (what slows it "
+            "hardly brakes its spin, as air does): a fit has no such drag, a scene has "
+            "(drag.quadratic)"
+        )
+        believed = force[0] > 0.0
+    else:
+        words = (
+            f"with a table out of level by {slope:.2g} degrees, down along "
+            f"{math.degrees(math.atan2(force[1], force[0])) % 360.0:.3g} degrees from x: level it, "
+            "a fit has no slope, a scene has"
+        )
+        believed = slope < _STEEPEST
+    return _Reading(words, gain, True, True) if believed else None
 
 
 def _others(problem: Problem) -> Iterator[tuple[str, Problem, float]]:
@@ -206,12 +220,12 @@ def _others(problem: Problem) -> Iterator[tuple[str, Problem, float]]:
         yield words, replace(problem, spec=wider), 1.0
 
 
-def _size(result: Estimate, scale: float) -> float:
+def _size(seen: _Sizes, scale: float) -> float:
     """The logarithm of the usual size of residuals, that of angles in units of ``scale``.
 
     Angles that nothing explains are as far off in any unit.
     """
-    places, angles = _deviations(result)
+    places, angles = seen
     if angles.size and float(np.median(angles)) < _BY_CHANCE:
         angles = angles / scale
     sizes = [size for size in (places, angles) if size.size]
@@ -219,22 +233,26 @@ def _size(result: Estimate, scale: float) -> float:
     return float(np.average(usual, weights=[size.size for size in sizes]))
 
 
-def _fits(tried: Estimate, noise: float) -> bool:
+def _near_noise(seen: _Sizes, noise: float) -> bool:
     """Whether places are about as far off as their noise, and angles are explained."""
-    return _explained(tried) and float(np.median(_deviations(tried)[0])) < _AS_NOISE * noise
+    return _explained(seen) and float(np.median(seen[0])) < _AS_NOISE * noise
 
 
-def _explained(tried: Estimate) -> bool:
+def _explained(seen: _Sizes) -> bool:
     """Whether angles are explained."""
-    angles = _deviations(tried)[1]
+    angles = seen[1]
     return not angles.size or float(np.median(angles)) < _BY_CHANCE
 
 
-def _deviations(result: Estimate) -> tuple[FloatArray, FloatArray]:
+def _deviations(result: Estimate) -> _Sizes:
     """How far places (m) and angles (rad) are off."""
-    films, deviations = result.problem.films, result.problem.deviations(result.x)
+    return _sizes(result.problem, result.problem.deviations(result.x))
+
+
+def _sizes(problem: Problem, deviations: list[FloatArray]) -> _Sizes:
+    """How far places (m) and angles (rad) are off that deviate by (3, n) of each track."""
     angles = [np.empty(0)] + [
-        np.abs(one[TURN, np.isfinite(film.angle)]) for film, one in zip(films, deviations,
+        np.abs(one[TURN, np.isfinite(film.angle)]) for film, one in zip(problem.films, deviations,
         strict=True) if film.angle is not None
     ]  # fmt: skip
     return np.concatenate([np.hypot(*one[:TURN]) for one in deviations]), np.concatenate(angles)

@@ -264,7 +264,8 @@ def _profiled(result: Estimate, certainty: Certainty, name: str) -> Interval | N
     there = replace(result, problem=moved, x=x, residuals=rows, jacobian=slopes, minima=())
     plausible = plausible_for(moved, x)
     own = certainty_of(slopes[result.kept], plausible, certainty.degrees)
-    return interval_of(there, own, k)
+    ratio = certainty.ratio(k)
+    return interval_of(there, own, k).wider(height, ratio, 0.0, math.inf)
 
 
 def _derived(scales: tuple[float, float, float], numbers: Mapping[str, float]) -> dict[str, float]:

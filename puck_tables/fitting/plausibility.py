@@ -10,12 +10,14 @@ from puck_tables.fitting.numbers import KNOWN, EstimatedLaunch, Number
 from puck_tables.fitting.observations import Observations
 from puck_tables.fitting.parameters import ALL, LAUNCH, WALL
 from puck_tables.fitting.problem import Problem
+from puck_tables.fitting.side_forces import SideForces
 
 _GRIP, _SLICK = 5.0, 1e-4  # friction coefficients of dry surfaces are smaller, and larger
 _TALL = 8.0  # radii: pucks are lower
 _OTHER = 3.0  # times the radius that was given
 _FAST, _FAST_RIM = 100.0, 300.0  # m/s: no puck on a film slides, or turns, faster
 _HEAVIER = 100.0  # times the other puck
+_LEVEL, _UNTOLD = 0.05, 5.0  # degrees of a slope that is told, and that is not
 _AT_END = 1e-3  # of the width of a range
 _UNITS = "the unit of the places, or of the times, the scale or the frames a second may be wrong"
 
@@ -85,10 +87,37 @@ def rounded(film: Observations) -> list[str]:
     return [
         f"{what} of {film.name} are rounded to {step:.3g} {unit}, which is no noise where the puck "
         "is slow: frames in which one stays at a value and comes back, or ends there, count as "
-        "two, and errors are widened by what parts of the frames do to the numbers. Better give "
+        "two, and errors are those that parts of the frames show. Better give "
         "them as they were measured"
         for what, step, unit in zip(("Places", "Angles"), film.steps, ("m", "rad"), strict=True)
         if step
+    ]
+
+
+def taken_for_granted(forces: SideForces, numbers: Mapping[str, Number]) -> list[str]:
+    """A sentence where a table that is hardly out of level would change much, and is not seen to.
+
+    Examples
+    --------
+    >>> friction = Number(0.15, 1e-4, 0.1498, 0.1502, "1", "found")
+    >>> said = taken_for_granted(SideForces(level=0.7, by_slope={"friction": 0.0017}),
+    ...                          {"friction": friction})
+    >>> said[0][:74]
+    'A level table is taken for granted: one out of level by 0.1 degrees would '
+    """
+    if not forces.level > _LEVEL:
+        return []
+    changes = [
+        f"{name} by up to {change:.2g}" for name, change in forces.by_slope.items()
+        if math.isfinite(numbers[name].error) and change > numbers[name].error
+    ]  # fmt: skip
+    if not changes:
+        return []
+    how = f"tell its slope to {forces.level:.2g} degrees alone" if forces.level < _UNTOLD \
+        else "do not tell its slope"  # fmt: skip
+    return [
+        f"A level table is taken for granted: one out of level by 0.1 degrees would change "
+        f"{' and '.join(changes)}, and the tracks {how}"
     ]
 
 

@@ -113,7 +113,7 @@ class Problem(Unknowns):
         late = 0.0 if film.row is None else self.spec.readout(result) * float(film.row[0])
         return film.start - self.films[0].start + late
 
-    def _times(self, n: int, result: NumbersOf) -> FloatArray:
+    def times(self, n: int, result: NumbersOf) -> FloatArray:
         """The times of a track's frames after its first: lines of a picture are read in turn."""
         film = self.films[n]
         if film.row is None:
@@ -125,7 +125,7 @@ class Problem(Unknowns):
         self, n: int, result: NumbersOf, slides: list[Slide]
     ) -> list[tuple[slice, FloatArray, Slide]]:
         """The frames of each slide of a track, their times after its launch, and the slide."""
-        times = self._times(n, result)
+        times = self.times(n, result)
         if len(slides) == 1:
             return [(slice(0, times.size), times, slides[0])]
         since = np.array([slide.since - slides[0].since for slide in slides])
@@ -178,13 +178,11 @@ class Problem(Unknowns):
         return self._residuals(x, self.paths(x))
 
     def _residuals(self, x: FloatArray, paths: list[FloatArray]) -> FloatArray:
-        rows = [
-            self._weighed(n, deviations) for n, deviations in enumerate(self._deviations(paths))
-        ]
+        rows = [self.weighed(n, deviations) for n, deviations in enumerate(self._deviations(paths))]
         rows += [np.array([(x[k] - value) / spread]) for k, value, spread in self.priors]
         return np.concatenate(rows)
 
-    def _weighed(self, n: int, deviations: FloatArray) -> FloatArray:
+    def weighed(self, n: int, deviations: FloatArray) -> FloatArray:
         """What is off (3, n, …) in units of the noise, one frame's x after the other's, …"""
         angled = self._angled(self.films[n])
         if self.weights:
@@ -258,7 +256,7 @@ class Problem(Unknowns):
                 block += np.stack([place_x, place_y, angle])[:, None, :]
                 for which, push in zip((VX, VY, SPIN), pushes, strict=True):
                     block += slopes[which][:, :, None] * push
-            rows = self._weighed(n, whole)
+            rows = self.weighed(n, whole)
             out[row : row + len(rows)] = rows
             row += len(rows)
         for n, (k, _, spread) in enumerate(self.priors):

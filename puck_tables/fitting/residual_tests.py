@@ -75,8 +75,17 @@ def excess_of(result: Estimate, smooth: tuple[float, float]) -> float:
     ), default=1.0)  # fmt: skip
 
 
-def misfits(result: Estimate, known: Known, smooth: tuple[float, float]) -> tuple[str, ...]:
-    """Signs that a model does not fit; ``smooth``: the noise (m, rad) that no model judged."""
+def misfits(
+    result: Estimate, known: Known, smooth: tuple[float, float], explained: float
+) -> tuple[str, ...]:
+    """Signs that a model does not fit.
+
+    Parameters
+    ----------
+    result, known : the estimate, and which noise was given
+    smooth : the noise (m, rad) that no model judged
+    explained : the probability by chance of what a slope, drag or air would explain
+    """
     told = []
     noise, chi2, degrees = result.problem.noise, result.chi2, max(result.degrees, 1)
     size = max(float(np.ptp(film.place, axis=0).max()) for film in result.problem.films)
@@ -88,7 +97,7 @@ def misfits(result: Estimate, known: Known, smooth: tuple[float, float]) -> tupl
         told.append(f"The residuals are {excess:.3g} times what smooth tracks would leave")
     if given and chi2 / degrees > 1.0 + 5.0 * math.sqrt(2.0 / degrees):
         told.append(f"The residuals are {math.sqrt(chi2 / degrees):.3g} times the noise given")
-    by_chance = min(runs(result), drift(result))
+    by_chance = min(runs(result), drift(result), explained)
     if seen and by_chance < NO_PATTERN and not hidden(result):
         told.append(
             "The residuals are no noise, they have a pattern (probability by chance "
@@ -109,17 +118,16 @@ def hidden(result: Estimate) -> bool:
     return within[0] or (angled and within[1])
 
 
-def may_misfit(result: Estimate, known: Known, smooth: tuple[float, float]) -> bool:
-    """Whether a model may not fit, or what is left is no noise.
+def may_misfit(
+    result: Estimate, known: Known, smooth: tuple[float, float], explained: float
+) -> bool:
+    """Whether a model may not fit, or what is left is no noise; as :func:`misfits`.
 
     Below what is complained of that may bias numbers by far.
     """
-    if any(any(film.steps) for film in result.problem.films):
-        return True
-    hardly = (
-        excess_of(result, smooth) > _MAY_NOISY or min(runs(result), drift(result)) < _MAY_PATTERN
-    )
-    return hardly or bool(misfits(result, known, smooth))
+    noisy = excess_of(result, smooth) > _MAY_NOISY
+    pattern = not hidden(result) and min(runs(result), drift(result), explained) < _MAY_PATTERN
+    return noisy or pattern or bool(misfits(result, known, smooth, explained))
 
 
 def no_answer(result: Estimate, known: Known, smooth: tuple[float, float]) -> str:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Self
 
+from puck_tables._core.doubts import MOST_FRICTION, OF_A_PUCK
 from puck_tables._core.fields import Unsaid, of
 from puck_tables._core.own_folder import say
 from puck_tables._core.reading import Reading, entries_in, mark_checked, read_values
@@ -37,11 +38,12 @@ class PuckSpec:
     (0.133333, 0.980665)
     """
 
-    radius: float = of("number", unit="m", low=0.0, above=True, doc="of the base")
+    radius: float = of("number", unit="m", low=0.0, above=True, usual=OF_A_PUCK, doc="of the base")
     height: float = of(
-        "number", 0.0, "m", low=0.0, doc="twice that of its centre of mass; 0: no tilt"
-    )
-    friction: float = of("number", 0.0, low=0.0, doc="Coulomb's coefficient f")
+        "number", 0.0, "m", low=0.0, usual=OF_A_PUCK,
+        doc="twice that of its centre of mass; 0: no tilt",
+    )  # fmt: skip
+    friction: float = of("number", 0.0, low=0.0, usual=MOST_FRICTION, doc="Coulomb's coefficient f")
     mass: float = of("number", 1.0, "kg", low=0.0, above=True)
     gravity: float = of(
         "number", Unsaid(STANDARD_GRAVITY), "m/s^2", low=0.0, above=True, objects=(Unsaid,),

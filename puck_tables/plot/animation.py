@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.colours import brightness, on_white
+from puck_tables.plot.round_parts import RoundPart, rounds_of
 from puck_tables.plot.scene_figure import states_drawn
 from puck_tables.plot.titles import out_of_sight
 from puck_tables.result import TimedResult
@@ -68,17 +69,6 @@ class StraightPart(NamedTuple):
     y: tuple[float, float]
 
 
-class RoundPart(NamedTuple):
-    """A round part of the board: a post, an arc or a pocket; angles in rad."""
-
-    kind: str
-    x: float
-    y: float
-    radius: float
-    start: float = 0.0
-    span: float = 2.0 * math.pi
-
-
 class Happening(NamedTuple):
     """An impact, or a fall into a pocket or over an edge: when, what, and where."""
 
@@ -122,7 +112,7 @@ def film_of(result: TimedResult) -> Animation:
         return _film(
             "Puck", "at rest", run.stop_time, [("puck", run.puck.radius, "", False, states)]
         )
-    if isinstance(result, Run) and result.scene.is_board:
+    if isinstance(result, Run) and result.scene.pucks:
         return _film_of_several(result)
     if isinstance(result, Run):
         columns = states_drawn(result)
@@ -172,7 +162,7 @@ def _film(
     happenings: list[Happening] | None = None, scene: SceneSpec | None = None,
 ) -> Animation:  # fmt: skip
     """A film of bodies by name, radius, colour, whether driven, and states close to each other."""
-    rounds = [] if scene is None else _rounds(scene)
+    rounds = [] if scene is None else rounds_of(scene)
     box = _sight(bodies, rounds)
     planes = [] if scene is None else _half_planes(scene)
     box = _with_corners(box, [plane for _, plane in planes])
@@ -272,12 +262,6 @@ def _leaps(states: FloatArray) -> npt.NDArray[np.bool_]:
     rates = states[:, 4:]
     scale = np.abs(rates).max(axis=0) + 1e-300
     return np.asarray(at_once & (np.abs(np.diff(rates, axis=0)) > 1e-9 * scale).any(axis=1))
-
-
-def _rounds(scene: SceneSpec) -> list[RoundPart]:
-    posts = [RoundPart("post", *post.point, post.radius) for post in scene.posts]
-    arcs = [RoundPart("arc", *arc.point, arc.radius, arc.start, arc.span) for arc in scene.arcs]
-    return [*posts, *arcs, *(RoundPart("pocket", *one.point, one.radius) for one in scene.pockets)]
 
 
 def _sight(bodies: list[tuple[str, float, str, bool, FloatArray]], rounds: list[RoundPart]) -> Box:

@@ -10,6 +10,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.plot.floor_axes import Box, draw_floor
+from puck_tables.plot.round_parts import RoundPart, draw_rounds, rounds_of
 from puck_tables.plot.style import BLUE, GREY, LAUNCH, ORANGE, RED, STOP
 from puck_tables.plot.titles import legend_below, noted, out_of_sight
 from puck_tables.scene.parts import Edge, Wall
@@ -50,6 +51,8 @@ def draw_plane(axes: Axes, run: Run, columns: dict[str, FloatArray]) -> None:
     _draw_pucks(axes, scene, columns)
     walls = _draw_lines(axes, scene.walls, box, "wall", color="black", linewidth=2.5)
     edges = _draw_lines(axes, scene.edges, box, "edge", color=RED, linestyle="--")
+    rounds = [one for one in rounds_of(scene) if _meets(box, one)]
+    draw_rounds(axes, rounds)
     turns = [event for event in run.events if event.what in ("impact", "contact")]
     if turns:
         axes.plot(
@@ -59,8 +62,10 @@ def draw_plane(axes: Axes, run: Run, columns: dict[str, FloatArray]) -> None:
     _draw_constraint(axes, scene, columns, box, run.end_time)
     also = _draw_pulls(axes, scene, x, y, box)
     hidden = out_of_sight(
-        [("wall",)] * len(scene.walls) + [("edge",)] * len(scene.edges),
-        [("wall",)] * walls + [("edge",)] * edges,
+        [("wall",)] * len(scene.walls)
+        + [("edge",)] * len(scene.edges)
+        + [(one.kind,) for one in rounds_of(scene)],
+        [("wall",)] * walls + [("edge",)] * edges + [(one.kind,) for one in rounds],
     )
     if notes := [words for words in (also, hidden) if words]:
         noted(axes, "; ".join(notes))
@@ -77,6 +82,14 @@ def _box(x: FloatArray, y: FloatArray, margin: float) -> Box:
     wide, high = float(np.ptp(x)) / 2 + margin, float(np.ptp(y)) / 2 + margin
     wide, high = 1.05 * max(wide, _SHAPE * high), 1.05 * max(high, wide / _SHAPE)
     return Box(middle[0] - wide, middle[0] + wide, middle[1] - high, middle[1] + high)
+
+
+def _meets(box: Box, part: RoundPart) -> bool:
+    """Whether a round part may be in sight."""
+    x, y = min(max(part.x, box.left), box.right), min(max(part.y, box.low), box.high)
+    corners = [math.hypot(p - part.x, q - part.y) for p in box[:2] for q in box[2:]]
+    inside = part.kind == "arc" and max(corners) < part.radius
+    return math.hypot(x - part.x, y - part.y) <= part.radius and not inside
 
 
 def _draw_pucks(axes: Axes, scene: SceneSpec, columns: dict[str, FloatArray]) -> None:

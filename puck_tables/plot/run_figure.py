@@ -1,4 +1,4 @@
-"""Picture of a run: of one puck its plane, speeds and energies; of a board all ways on it."""
+"""Picture of a run: of one puck its plane, speeds and energies; of several all their ways."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 
 def draw(run: Run) -> Figure:
     """The whole motion, whatever states the run has: it is run again."""
-    return pucks_figure.draw(run) if run.scene.is_board else scene_figure.draw(run)
+    return pucks_figure.draw(run) if run.scene.pucks else scene_figure.draw(run)
 
 
 def draw_on(axes: Axes, run: Run) -> None:
     """The plane or the board alone."""
-    (pucks_figure if run.scene.is_board else scene_figure).draw_on(axes, run)
+    (pucks_figure if run.scene.pucks else scene_figure).draw_on(axes, run)

@@ -22,6 +22,7 @@ _ENERGIES = {
     "kinetic_energy": ("kinetic", BLUE),
     "heat_dry": ("dry friction", ORANGE),
     "heat_viscous": ("drag", GREEN),
+    "heat_rims": ("rims", "#7a4b2a"),
     "heat_impact": ("impacts", RED),
     "work_given": ("work of forces", "#8b2fa0"),
     "work_support": ("work of supports", GREY),

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from puck_tables._core.doubts import OF_A_PUCK
 from puck_tables._core.fields import of
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.scene.parts import Constraint, Force, Launch, Rows
@@ -62,7 +63,7 @@ class Post:
     """A round peg that the rims of pucks bounce off."""
 
     point: tuple[float, float] = of("pair", unit="m", doc="its centre")
-    radius: float = of("number", unit="m", low=0.0, above=True)
+    radius: float = of("number", unit="m", low=0.0, above=True, usual=OF_A_PUCK)
     restitution: float | str | Restitution = restitution_of(1.0)
     tangential: float = of("number", -1.0, low=-1.0, high=1.0, doc="as of a wall")
     friction: float = of("number", math.inf, low=0.0, doc="limits the tangential impulse")

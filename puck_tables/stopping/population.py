@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables._core.doubts import question
 from puck_tables._core.real import finite_array
 from puck_tables.bulk.spreads import Spread
 from puck_tables.contact.laws import Law
@@ -181,6 +182,8 @@ def drawn(chosen: Mapping[str, Any], laws: Any, count: int, seed: int) -> Popula
             "samples need a spread: give one number or more as a spread, such as a spin of "
             "normal:5:0.2"
         )
+    for name, one in spreads.items():
+        one.checked_for(name, COLUMNS[COLUMN[name]].unit)
     others = {name: one for name, one in chosen.items() if name not in spreads}
     values, over, result = _values(others, laws)
     for name, array in values.items():
@@ -251,8 +254,11 @@ def _values(
     for name, value in chosen.items():
         if isinstance(value, Spread):
             raise InputError(f"{name} is a spread: give it to sample, not to sweep")
-        values[name] = finite_array(name, value, COLUMNS[COLUMN[name]].unit)
+        unit = COLUMNS[COLUMN[name]].unit
+        values[name] = finite_array(name, value, unit)
         refuse_outside(name, values[name], name)
+        if (given := values[name]).size:
+            question(name, max(given.min().item(), given.max().item(), key=abs), unit)
     return values, {"pressure": ()}, result
 
 

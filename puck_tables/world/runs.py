@@ -298,6 +298,8 @@ class DrawnRuns(Runs):
         middle = {path: one.of(np.array([0.5])).item() for path, one in spreads.items()}
         try:
             scene.at(middle)  # what is no number of the scene is refused here
+            for path, one in spreads.items():
+                one.checked_for(path, scene.unit_of(path))
         except InputError as error:
             raise InputError(f"samples: in the middle of what is drawn, {error}") from None
         super().__init__(scene, part, read, {path: np.zeros(0) for path in spreads}, (count,))

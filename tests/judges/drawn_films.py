@@ -1,15 +1,14 @@
 """Films that are drawn: pucks, launches, cameras, floors of many kinds, and what is true of them.
 
-Under dry friction of one coefficient motions are those of ``film_judge``; other floors, and drag,
-are summed over the elements of a flat base.
+Under dry friction of one coefficient motions are those of ``film_judge``, with air, a slope or a
+push; other floors, and drag, are summed over the elements of a flat base.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass
 
 import film_judge
 import numpy as np
@@ -19,9 +18,12 @@ import puck_tables as pt
 
 KINDS = (
     "marked", "unmarked", "straight", "straight unmarked", "fast", "few", "stamps",
-    "stamps unmarked", "falling", "rising", "drag", "air table", "hand", "wall",
+    "stamps unmarked", "falling", "rising", "drag", "air table", "hand", "wall", "grid",
+    "grid unmarked", "falling unmarked", "rising unmarked", "drag unmarked", "air", "air unmarked",
+    "sloped", "sloped unmarked", "push", "push unmarked",
 )  # fmt: skip
-MISFITS = ("falling", "rising", "drag", "air table")  # of one friction coefficient
+LAWS = ("falling", "rising", "drag", "air table", "air")  # of no one friction coefficient
+SLOPE = 0.5  # degrees, at most
 
 
 @dataclass(frozen=True)
@@ -29,7 +31,7 @@ class Drawn:
     """A film.
 
     ``truth`` by the name of a number; ``turns`` a frame at the launch; ``foreign``: how many frames
-    a hand or a wall spoils.
+    a hand or a wall spoils; ``friction``: the least and the largest that acts; ``slope``: degrees.
     """
 
     kind: str
@@ -40,18 +42,19 @@ class Drawn:
     turns: float
     noise: tuple[float, float]
     foreign: int
-    how: dict[str, Any] = field(default_factory=dict)
+    friction: tuple[float, float]
+    slope: float = 0.0
 
 
 def drawn(kind: str, seed: int) -> Drawn:
     """The film of a kind and a seed."""
-    rng = np.random.default_rng([KINDS.index(kind), seed])
+    rng, floor = np.random.default_rng([KINDS.index(kind), seed]), kind.removesuffix(" unmarked")
     radius, friction = rng.uniform(0.02, 0.05), math.exp(rng.uniform(math.log(0.04), math.log(0.4)))
     delta, speed, heading = rng.uniform(0.05, 0.8), rng.uniform(0.5, 2.5), rng.uniform(0.0, 6.28)
     noise = 1e-3 * rng.uniform(0.1, 0.6), 1e-3 * rng.uniform(2.0, 10.0)
     fps, ratio, sign = rng.uniform(60.0, 240.0), rng.uniform(0.2, 2.0), rng.choice([-1.0, 1.0])
     seen = rng.uniform(0.5, 1.15)  # of the run
-    if kind in ("falling", "rising", "drag", "air table"):
+    if floor in LAWS:
         delta = 0.0
     if kind == "air table":
         friction, speed, noise = rng.uniform(1e-3, 3e-3), rng.uniform(0.15, 0.5), (3e-5, 2e-3)
@@ -74,21 +77,33 @@ def drawn(kind: str, seed: int) -> Drawn:
         count = int(span * fps) + 1
     times = np.arange(count) / fps
     law: Law | None = None
-    if kind == "falling":
+    if floor == "falling":
         least, scale = friction * rng.uniform(0.3, 0.7), rng.uniform(0.05, 0.5)
         law = lambda u: least + (friction - least) * np.exp(-u / scale)  # noqa: E731
-    elif kind == "rising":
+    elif floor == "rising":
         slope = friction * rng.uniform(0.1, 0.6)
         law = lambda u: friction + slope * u  # noqa: E731
-    elif kind in ("drag", "air table"):
+    elif floor in ("drag", "air table"):
         slope = rng.uniform(0.05, 0.5) / film_judge.G
         law = lambda u: friction + slope * u  # noqa: E731
     velocity = speed * math.cos(heading), speed * math.sin(heading)
+    tilt, besides, foreign, acts = 0.0, None, 0, (friction, friction)
+    if floor == "air":
+        air = rng.uniform(0.03, 0.5)  # 1/m
+        acts = friction, friction + air * speed**2 / film_judge.G
+        besides = lambda t, v, w: (*(-air * math.hypot(*v) * v), 0.0)  # noqa: E731
+    elif floor == "sloped":
+        tilt, down = rng.uniform(0.0, SLOPE), rng.uniform(0.0, 6.28)
+        pull = film_judge.G * math.radians(tilt) * np.array([math.cos(down), math.sin(down), 0.0])
+        besides = lambda t, v, w: pull  # noqa: E731
+    elif floor == "push":
+        besides = pushing(rng, speed, radius, times)
     if law is None:
-        true = film_judge.path(velocity, spin, decel, delta, radius, times)
+        true = film_judge.path(velocity, spin, decel, delta, radius, times, besides=besides)
     else:
         true = summed(velocity, spin, law, radius, times)
-    foreign = 0
+        some = law(np.linspace(0.0, speed + radius * abs(spin), 99))
+        acts = float(some.min()), float(some.max())
     if kind == "hand":  # it pushes with a steady force until it lets go
         foreign = int(rng.uniform(0.08, 0.35) * count)
         back, push = times[:foreign] - times[foreign], rng.uniform(0.2, 1.0) * speed
@@ -100,17 +115,33 @@ def drawn(kind: str, seed: int) -> Drawn:
         at = true[:, count - foreign - 1, None]
         true[:, count - foreign :] = at - rng.uniform(0.3, 0.9) * (true[:, count - foreign :] - at)
     place, angle = film_judge.noisy(rng, true, noise)
-    place += np.array([0.3, -0.1])
+    if floor == "grid":
+        place = (step := rng.uniform(1.0, 20.0) * noise[0]) * np.round(place / step)
     stamps = np.round(times, 3) if kind.startswith("stamps") else times
     marked = not kind.endswith("unmarked")
     track = pt.Track(
         stamps, place + np.array([0.3, -0.1]), angle if marked else None, f"{kind} {seed}"
     )
     truth = {"launch_vx": velocity[0], "launch_vy": velocity[1], "launch_spin": spin}
-    if law is None:
+    if floor not in LAWS:
         truth |= {"friction": friction, "delta": delta}
     turns = abs(spin) / (2.0 * math.pi * fps)
-    return Drawn(kind, seed, track, pt.Puck(radius=radius), truth, turns, noise, foreign)
+    return Drawn(
+        kind, seed, track, pt.Puck(radius=radius), truth, turns, noise, foreign, acts, tilt
+    )
+
+
+def pushing(
+    rng: np.random.Generator, speed: float, radius: float, times: np.ndarray
+) -> film_judge.Besides:
+    """A hand over the puck in 3 to 8 frames somewhere: it pushes, and may turn it."""
+    last = int(rng.integers(3, 9))
+    first = int((0, rng.integers(1, times.size - last - 1), times.size - last - 1)[rng.integers(3)])
+    since, until = times[first], times[first + last]
+    gain = speed * rng.uniform(0.1, 0.6) * rng.choice([-1.0, 1.0]) / (until - since)
+    angle, turned = rng.uniform(0.0, 6.28), rng.choice([0.0, rng.uniform(-1.0, 1.0)])
+    force = gain * np.array([math.cos(angle), math.sin(angle), turned / radius])
+    return lambda t, v, w: force * float(since <= t <= until)
 
 
 Law = Callable[[np.ndarray], np.ndarray]
@@ -119,27 +150,30 @@ Law = Callable[[np.ndarray], np.ndarray]
 def summed(
     velocity: tuple[float, float], spin: float, law: Law, radius: float, times: np.ndarray
 ) -> np.ndarray:
-    """x, y and angle (3, n) of a flat puck whose friction is a law over slip speed."""
-    rho = radius * np.sqrt((np.arange(24) + 0.5) / 24)
-    theta = 2.0 * math.pi * (np.arange(48) + 0.5) / 48
-    px, py = (np.outer(rho, trig).ravel() for trig in (np.cos(theta), np.sin(theta)))
+    """x, y and angle (3, n) of a flat puck whose friction is a law over slip speed.
+
+    Its path is straight: the two halves of the base beside it push to either side alike.
+    """
+    rho = radius * np.sqrt((np.arange(32) + 0.5) / 32)
+    theta = 2.0 * math.pi * (np.arange(64) + 0.5) / 64
+    along, aside = (np.outer(rho, trig).ravel() for trig in (np.cos(theta), np.sin(theta)))
 
     def rates(_: float, z: np.ndarray) -> list[float]:
-        ux, uy = z[3] - z[5] * py, z[4] + z[5] * px
-        u = np.hypot(ux, uy)
+        ahead, across = z[2] - z[3] * aside, z[3] * along
+        u = np.hypot(ahead, across)
         pull = film_judge.G * law(u) / np.maximum(u, 1e-9)
-        turn = -2.0 / radius**2 * np.mean(pull * (px * uy - py * ux))
-        return [*z[3:], -np.mean(pull * ux), -np.mean(pull * uy), turn]
+        turn = -2.0 / radius**2 * np.mean(pull * (along * across - aside * ahead))
+        return [*z[2:], -np.mean(pull * ahead), turn]
 
-    stop = lambda _, z: math.hypot(z[3], z[4], radius * z[5]) - 1e-3  # noqa: E731
+    stop = lambda _, z: math.hypot(z[2], radius * z[3]) - 1e-3  # noqa: E731
     stop.terminal = True
-    start = [0.0, 0.0, 0.0, *velocity, spin]
+    speed = math.hypot(*velocity)
     found = solve_ivp(
-        rates, (0.0, float(times[-1]) + 1e-9), start, "RK45", rtol=1e-6, atol=1e-8,
-        dense_output=True, events=stop,
+        rates, (0.0, float(times[-1]) + 1e-9), [0.0, 0.0, speed, spin], "RK45", rtol=1e-6,
+        atol=1e-8, dense_output=True, events=stop,
     )  # fmt: skip
-    sums: np.ndarray = found.sol(np.minimum(times, found.t[-1]))[:3]
-    return sums
+    way, angle = found.sol(np.minimum(times, found.t[-1]))[:2]
+    return np.stack([*np.outer(np.array(velocity) / speed, way), angle])
 
 
 def wrong(film: Drawn, found: pt.Fit, errors: float = 4.0) -> dict[str, float]:
@@ -147,13 +181,18 @@ def wrong(film: Drawn, found: pt.Fit, errors: float = 4.0) -> dict[str, float]:
     launch = found.launch().numbers
     off = {}
     for name, truth in film.truth.items():
-        if name in launch and film.kind == "hand":  # it begins when the hand lets go
+        if name in launch and film.kind.startswith(("hand", "push")):  # it begins afterwards
             continue
         number = launch[name] if name in launch else found[name]
         if number.determined and not number.at_bound and number.error > 0.0:
             away = abs(number.value - truth) / number.error
             if away > errors:
                 off[name] = away
+    number, (low, high) = found["friction"], film.friction
+    if number.determined and not number.at_bound and "friction" not in film.truth:
+        away = max(low - number.value, number.value - high) / number.error
+        if away > errors:
+            off["friction"] = away
     return off
 
 

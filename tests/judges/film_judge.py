@@ -7,6 +7,8 @@ Motions are integrated in Cartesian velocities over time (DOP853) with the ellip
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from reference import friction
@@ -14,19 +16,23 @@ from scipy.integrate import solve_ivp
 
 G = 9.80665
 _REST = 1e-6  # of Q: slower, it is at rest
+Besides = Callable[[float, np.ndarray, float], Any]
 
 
 def path(
     velocity: tuple[float, float], spin: float, decel: float, delta: float, radius: float,
-    times: np.ndarray, drag: float = 0.0,
+    times: np.ndarray, drag: float = 0.0, besides: Besides | None = None,
 ) -> np.ndarray:  # fmt: skip
-    """x, y and angle (3, n) at times after a launch at the origin."""
+    """x, y and angle (3, n) at times after a launch at the origin.
+
+    ``besides``: what else speeds it up (m/s^2 along x, y, rad/s^2), of time, velocity and spin.
+    """
     slip = math.hypot(*velocity, radius * spin)
 
     def speed(_: float, z: np.ndarray) -> float:
         return math.hypot(z[0], z[1], z[2]) - _REST
 
-    def rates(_: float, z: np.ndarray) -> list[float]:
+    def rates(s: float, z: np.ndarray) -> list[float]:
         if speed(0.0, z) <= -0.5 * _REST:
             return [0.0] * 6
         if abs(z[2]) <= 1e-13 * math.hypot(z[0], z[1]):
@@ -35,7 +41,11 @@ def path(
         else:
             pull = friction(z[0], z[1], z[2], delta)
         c = drag * slip / decel
-        return [pull[k] - c * z[k] for k in range(3)] + list(z[:3])
+        more = (0.0, 0.0, 0.0)
+        if besides is not None:
+            more = besides(s * slip / decel, slip * z[:2], slip * z[2] / radius)
+        units = (decel, decel, decel / radius)
+        return [pull[k] - c * z[k] + more[k] / units[k] for k in range(3)] + list(z[:3])
 
     speed.terminal = True  # type: ignore[attr-defined]
     start = [velocity[0] / slip, velocity[1] / slip, radius * spin / slip, 0.0, 0.0, 0.0]
@@ -43,6 +53,7 @@ def path(
     found = solve_ivp(
         rates, (0.0, scaled[-1] + 1e-9), start, "DOP853", rtol=1e-11, atol=1e-13,
         dense_output=True, events=speed,
+        max_step=np.inf if besides is None else (scaled[-1] + 1e-9) / 150.0,
     )  # fmt: skip
     z = found.sol(np.minimum(scaled, found.t[-1]))
     length = slip * slip / decel
