@@ -67,4 +67,4 @@ def check(name: str) -> None:
     click.echo(printable(f"{name}: a scene" + (f", {whole.title}" if whole.title else "")))
     for path, values in axes_of(whole).items():
         click.echo(f"ranges        {path} from {values[0]:g} to {values[-1]:g}, {values.size}")
-    click.echo(printable(plan_of(whole).why))
+    click.echo(printable(plan_of(whole)[1]))

@@ -153,14 +153,21 @@ def test_a_friction_law_that_changed_is_other_work():
     assert len(digests) == 2
 
 
-def test_a_file_that_changes_while_it_is_swept_ends_the_sweep(tmp_path: Path):
-    scene = scene_of(tmp_path)
+def test_a_file_that_changes_while_it_is_swept_ends_the_sweep(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    scene, once = scene_of(tmp_path), Runs.of
 
-    def changes(done: int, total: int) -> None:
+    def changes(self: Runs, start: int, stop: int) -> Any:
+        """After the first run, whenever the thread that is told of it wakes up."""
+        found = once(self, start, stop)
         edited("force.csv", "t,Fx,Fy\n0,0.02,0\n9,0,0\n")(scene, tmp_path)
+        return found
 
-    with pytest.raises(InputError, match=r"was changed while it was swept .*force\.csv"):
-        sweep_scene(scene, chunk=1, threads=1, progress=changes)
+    with monkeypatch.context() as within:
+        within.setattr(Runs, "of", changes)
+        with pytest.raises(InputError, match=r"was changed while it was swept .*force\.csv"):
+            sweep_scene(scene, chunk=1, threads=1)
     work = Runs(Scene.from_tables(scene_of(tmp_path)), 1)
     sent = pickle.dumps(work)
     edited("force.csv", "t,Fx,Fy\n0,0.03,0\n9,0,0\n")(scene, tmp_path)

@@ -16,9 +16,11 @@ from puck_tables.cli.main import main
 from puck_tables.cli.values import NumberParam, RangeParam, Times, Vector
 
 import puck_tables as pt
+from puck_tables._core.quantities import FRICTION, unit_of
 from puck_tables.bulk.spreads import spread_named
 from puck_tables.contact.laws import law_of
 from puck_tables.errors import InputError
+from puck_tables.film.headings import headings
 
 UNITS: dict[str, dict[str, float]] = {
     "m": {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "um": 1e-6, "ft": 0.3048},
@@ -173,3 +175,17 @@ def test_a_number_without_a_unit_beside_one_that_has_it_is_refused(seed: int):
                 pt.Scene(pt.Puck(0.04), launch=pt.Launch(spin=spins))
     parts[bare] = "0"  # of any unit
     assert 0.0 in Vector(unit).convert(",".join(parts), None, None)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_headings_with_a_factor_or_a_ratio_are_refused(seed: int, tmp_path: Path):
+    rng = np.random.default_rng([39, seed])
+    ten = 10 ** int(rng.integers(1, 4))
+    for name in (f"{ten} x (cm)", f"x*{ten}", f"{ten / 1e4} x", "x/R", "x (Mm)"):
+        with pytest.raises(InputError):
+            headings(["t", name, name.replace("x", "y")])
+    assert headings([f"{ten} x", f"{ten} y", "2 x", "2 y"])[0].puck == str(ten)
+    for name in ("friction ratio", "mu_ratio", "friction fraction", "scaled COF"):
+        with pytest.raises(InputError, match="is not the friction coefficient itself"):
+            unit_of("law.csv", name, FRICTION)
+    assert unit_of("law.csv", "mu [ratio]", FRICTION)[1] == 1.0

@@ -10,7 +10,7 @@ from boards import draw, piece
 from pushing_judge import Judge
 
 import puck_tables as pt
-from puck_tables.scene.run import residual
+from puck_tables.scene.run import HEATS, WORKS, residual
 from puck_tables.world.ledger import energies_of
 
 G = 9.80665
@@ -180,3 +180,27 @@ def test_a_stint_that_is_over_at_once_has_no_heat():
     run = pt.Scene(pucks=pucks).simulate()
     assert run.last["energy_given"] == pytest.approx(0.5 + 0.09, rel=1e-14)
     assert run.energy_residual < 1e-9
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_map_books_what_its_runs_do(seed: int):
+    """Heats, works and energies at the end, of boards with a floor, edge, mallet or rail drawn."""
+    rng = np.random.default_rng([seed, 5036])
+    how: dict[str, float] = {"height": 0.01, "friction": float(rng.uniform(0.1, 0.3))}
+    speeds = rng.uniform(0.3, 2.5, 3).tolist()
+    cue = pt.Piece(0.04, **how, launch=pt.Launch((speeds, 0.1), float(rng.normal(0.0, 9.0))))
+    rail = pt.Constraint("rail", angle=1.5, velocity=(0.2, 0.0)) if seed == 1 else None
+    launch = pt.Launch((0.2, 0.0) if rail else None, position=(0.3, float(rng.uniform(0.0, 0.02))))
+    pucks = [cue, pt.Piece(0.05, **how, launch=launch, constraint=rail)]
+    if seed == 2:
+        pucks.append(pt.Piece(0.05, path=[[0.0, 0.9, 0.0], [1.0, 0.1, 0.0], [2.0, 0.9, 0.0]]))
+    floor = [pt.Floor(slope=0.08), pt.Floor(velocity=(0.05, 0.1)), pt.Floor()][seed]
+    edge = pt.Edge((0.5, 0.0), normal=(-1.0, 0.2))
+    board = pt.Scene(pucks=pucks, floor=floor, edges=[edge] if seed != 2 else [], time=1.2)
+    ends, path = board.sweep(), "puck[0].launch.velocity[0]"
+    assert ends.energy_residual.max() < 1e-9
+    for k, speed in enumerate(speeds):
+        run = board.at({path: speed}).simulate()
+        largest = max(float(np.max(np.abs(run.last[name]))) for name in (*HEATS, *WORKS))
+        for name in (*HEATS, *WORKS, "energy_given", "energy_gone", "kinetic_energy"):
+            np.testing.assert_allclose(ends.columns[name][k], run.last[name], atol=1e-7 * largest)

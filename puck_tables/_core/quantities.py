@@ -23,7 +23,7 @@ _FACTOR = re.compile(
 )  # fmt: skip
 # what makes of a quantity another one, of which a heading tells
 _FUNCTION = re.compile(
-    r"\^|\*\*|[²³]|\b(?:log|ln|lg|log10|sqrt|exp)\b|\b1\s*[-−/]|\b(?:ratio|normali[sz]ed|cumulative)\b",
+    r"\^|\*\*|[²³]|\b(?:log|ln|lg|log10|sqrt|exp)\b|\b1\s*[-−/]|\b(?:ratio|normali[sz]ed|cumulative|fraction|scaled)\b|(?<=_)ratio\b",
     re.IGNORECASE,
 )  # fmt: skip
 _QUOTIENT = re.compile(r"\w+\s*/\s*\w+")
@@ -146,6 +146,8 @@ def unit_of(path: str, text: str, column: InputColumn) -> tuple[str, float]:
         )
     name, unit = bracketed(text)
     behind = "" if unit else unit_behind(name, column.kind)
+    if function_in(behind):  # 'friction ratio': of friction to what?
+        behind = ""
     bare = name.removesuffix(behind)
     made = function_in(bare)
     if not made and column.kind not in ("any", "radius") and not is_unit(bare):  # r/R is a radius

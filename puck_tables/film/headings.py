@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from puck_tables._core.quantities import function_in
-from puck_tables._core.units import parted, unit_named, unit_word
+from puck_tables._core.units import parted, unit_meant, unit_named, unit_word
 from puck_tables.errors import InputError
 
 _WORDS = {
@@ -37,8 +37,12 @@ _RATES = {"vx", "vy", "ax", "ay", "a", "dx", "dy"}
 _ALONG = ("position", "pos", "displacement", "distance", "ort", "weg")
 _KIND = {"x": "length", "y": "length", "time": "time", "step": "time", "angle": "angle"}
 _TOKEN = re.compile(r"[^\W\d_]+|\d+|°")
-_DIVIDED = re.compile(r"/\s*\d")
+_DIVIDED = re.compile(
+    r"/\s*\d|[*×·⋅]\s*\d|\d\s*[*×·⋅]|/\s*(?:\w{1,2}|radius|diameter|length|width|size|max)\s*$"
+)
 _MANY = re.compile(r"[x×*·]?\s*\d+(?:\.\d+)?(?:e[-+]?\d+)?\s*(\D+)")  # a number before a unit
+# a number that is no number of a puck: a power of ten by which places are multiplied
+_TENS = re.compile(r"\s*(10+|\d*\.\d+|\d+e[-+]?\d+)\s+\w")
 _CAMEL = re.compile(r"(?<=[a-zà-ÿ])(?=[A-Z])")
 
 
@@ -91,6 +95,8 @@ Heading(role='', puck='', unit=''))
     if unit_text and not unit and role in _KIND:
         if text.rstrip().endswith("]"):
             unit_named(f"the unit of the column '{text.strip():.40}'", unit_text, _KIND[role])
+        if unit_meant(unit_text):
+            unit_named(f"the unit of the column '{text.strip():.40}'", unit_text, _KIND[role])
         many = _MANY.fullmatch(unit_text)
         if many is not None and unit_word(many[1], _KIND[role]):
             raise _altered(text, role, unit_text)
@@ -100,7 +106,11 @@ Heading(role='', puck='', unit=''))
     if not unit and role in _KIND:
         for n in kept:
             last = n == len(result) - 1
-            if (found_unit := unit_word(lowered[n], _KIND[role])) and (last or found_unit == "px"):
+            if last and unit_meant(result[n][0]):
+                unit_named(f"the unit of '{text.strip():.40}'", result[n][0], _KIND[role])
+            if (found_unit := unit_word(result[n][0], _KIND[role])) and (
+                last or found_unit == "px"
+            ):
                 unit = found_unit
                 kept.remove(n)
                 break
@@ -130,7 +140,7 @@ def _merged(text: str, words: Sequence[tuple[str, int, int]]) -> str:
     return joined
 
 
-def headings(names: Iterable[str]) -> list[Heading]:
+def headings(names: Sequence[str]) -> list[Heading]:
     """The headings of a table; equal ones side by side are numbered, one puck each.
 
     Examples
@@ -139,6 +149,11 @@ def headings(names: Iterable[str]) -> list[Heading]:
     ['', '1', '1', '2', '2']
     """
     read = [heading(name) for name in names]
+    numbers = {one.puck for one in read if one.puck.isdigit()}
+    for name, one in zip(names, read, strict=True):
+        found = _TENS.match(name) if one.role in ("x", "y") else None
+        if found and (len(numbers) == 1 or not found[1].isdigit()):
+            raise _altered(name, one.role, found[1])
     if any(re.match(r"v[_ ]?[xy]\b", name.strip().lower()) for name in names):
         read = [Heading("") if one.puck.lower() == "a" else one for one in read]  # a_x goes with it
     places = [one for one in read if one.role in ("x", "y")]

@@ -66,13 +66,13 @@ class Certainty:
         return quantile_of(self.degrees)
 
     def wider(self, covariance: FloatArray, widened: bool) -> Certainty:
-        """The same with a larger covariance (m, m)."""
+        """With a larger covariance (m, m)."""
         narrow = self.covariance if self.narrow is None else self.narrow
         widened |= self.widened
         return replace(self, covariance=covariance, widened=widened, narrow=narrow)
 
-    def as_seen(self) -> Certainty:
-        """The same before anything widened it."""
+    def observed(self) -> Certainty:
+        """As the film has it, before anything widened it."""
         covariance = self.covariance if self.narrow is None else self.narrow
         return replace(self, covariance=covariance, narrow=None)
 
@@ -288,7 +288,7 @@ def interval_of(result: Estimate, certainty: Certainty, k: int) -> Interval:
     low, high = (float(ends[k]) for ends in result.problem.limits)
     ratio = certainty.ratio(k)
     if ratio > 1.0 and not certainty.undetermined[k]:
-        own = interval_of(result, certainty.as_seen(), k)
+        own = interval_of(result, certainty.observed(), k)
         return own.wider(float(result.x[k]), ratio, low, high)
     x, error = float(result.x[k]), math.sqrt(float(certainty.covariance[k, k]))
     if certainty.undetermined[k]:

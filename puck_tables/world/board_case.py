@@ -29,14 +29,14 @@ from puck_tables.scene.outcome import (
     UNSOLVED,
 )
 from puck_tables.scene.parts import Edge
-from puck_tables.scene.run import STATE, residual
+from puck_tables.scene.run import STATE, ledger, residual
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import called, pieces_of, refuse_endless
 from puck_tables.world.bulk import Ends, follow_all
 from puck_tables.world.engine import CROWDED, OFF_TABLE, PUSHING, TANGLED, TOO_SHORT
 from puck_tables.world.footing import moves_along
 from puck_tables.world.lasting import FOR_EVER, LEADS_ON, ROUND
-from puck_tables.world.ledger import energies_of
+from puck_tables.world.ledger import NAMES, books_of, energies_of, kinetic_of
 from puck_tables.world.plan import plan_of
 from puck_tables.world.prepare import game_of, order_of
 from puck_tables.world.reactions import reactions
@@ -86,10 +86,11 @@ class BoardCase:
     def columns(scene: SceneSpec) -> dict[str, tuple[int, ...]]:
         """What is known of an end, by name, and its shape."""
         each: tuple[int, ...] = (len(scene.pucks),) if scene.pucks else ()
-        found = dict.fromkeys((*STATE, "in_play", "carried"), each)
+        found = dict.fromkeys((*STATE, "in_play", "carried", "kinetic_energy"), each)
         if any(piece.constraint for piece in pieces_of(scene)):
             found |= dict.fromkeys(("lambda_1", "lambda_2"), each)
-        return found | dict.fromkeys(("end_time", "impacts"), ())
+        shared = (*NAMES, "energy_residual", "end_time", "impacts")
+        return found | dict.fromkeys(shared, ())
 
     @staticmethod
     def launches(scene: SceneSpec, path: str) -> tuple[str, ...]:
@@ -167,6 +168,7 @@ class BoardCase:
     def _columns(self, ends: Ends, status: npt.NDArray[np.int8]) -> dict[str, FloatArray]:
         found = {name: ends.states[..., n] for n, name in enumerate(STATE)}
         found |= {"in_play": ends.in_play, "carried": ends.carried}
+        found["kinetic_energy"] = kinetic_of(self.game, ends.states)
         if any(piece.constraint for piece in self.pieces):
             forces = reactions(self.game, ends.time, ends.states, ends.in_play)
             found |= {"lambda_1": forces[..., 0], "lambda_2": forces[..., 1]}
@@ -174,6 +176,9 @@ class BoardCase:
             name: values[:, self.place] if self.scene.pucks else values[:, 0]
             for name, values in found.items()
         }
+        out |= {name: ends.books[:, n] for name, n in NAMES.items()}
+        missing, largest = ledger(out)
+        out["energy_residual"] = missing / np.where(largest > 0.0, largest, 1.0)
         out |= {"end_time": ends.time, "impacts": ends.impacts.astype(np.float64)}
         for values in out.values():
             values[status > LAST_END] = np.nan
@@ -199,6 +204,9 @@ class BoardCase:
             last["in_play"][-1, order],
             last["carried"][-1, order],
         )
+        gone = len(self.pieces) == 1 and not world.in_play[0]
+        when = np.nextafter(ends.time[run], 0.0) if gone else ends.time[run]
+        ends.books[run] = books_of(world, np.array([min(when, world.time)]))[0]
         ends.impacts[run] = sum(event.what == "impact" for event in world.events_since(0.0))
         return ENDS.index(end)
 

@@ -19,6 +19,7 @@ from puck_tables.world.footing import moves_along, over_floor
 from puck_tables.world.game import COUNTS, N_HISTORY, N_IMPACTS, N_PIECES, Game, Whole
 from puck_tables.world.lasting import GOES_ON, at_rest_below, limits_of, next_target, slip_of
 from puck_tables.world.layout import RADIUS
+from puck_tables.world.ledger import BOOK, tally
 from puck_tables.world.lone import LONGEST
 from puck_tables.world.paths import PIECE_COLUMNS
 from puck_tables.world.prepare import fastest, scales_of
@@ -27,6 +28,7 @@ from puck_tables.world.works import WORK_COLUMNS
 _LOOKS = 6  # at a course before its end: at Q/2J, Q/4J, ...
 MOST_ROWS = 1 << 16  # of events and flights, and of steps: 60 MB
 END_COLUMNS = 6  # of a puck: its state at the end
+_JUST = 1e-15  # of a time: before it
 
 
 class Ends(NamedTuple):
@@ -36,7 +38,8 @@ class Ends(NamedTuple):
 
     ``how`` (runs,): as :func:`puck_tables.world.engine.advance` says, or without a time
     :func:`puck_tables.world.lasting.next_target`.  ``courses`` (runs, 4): of
-    the disc that is watched, see :func:`puck_tables.world.course.trace`.
+    the disc that is watched, see :func:`puck_tables.world.course.trace`.  ``books`` (runs, 9):
+    where energy went, see :mod:`puck_tables.world.ledger`; of runs that are watched none.
     """
 
     states: FloatArray
@@ -46,6 +49,7 @@ class Ends(NamedTuple):
     impacts: FloatArray
     how: Whole
     courses: Whole
+    books: FloatArray
 
 
 @inner
@@ -71,7 +75,7 @@ def _to_the_end(
 def _follow_all(
     game: Game, fresh: FloatArray, kinds: Whole, flights: FloatArray, first: FloatArray,
     discs: Whole, launches: FloatArray, paces: FloatArray, until: float, limits: FloatArray,
-    given: float, watch: Whole, room: Room, desk: FloatArray | None, ends: Ends,
+    given: float, watch: Whole, room: Room, desk: FloatArray | None, rows: FloatArray, ends: Ends,
 ) -> None:  # fmt: skip
     """Runs from the states ``first`` (n, 6), with launches (runs, m, 3) of the ``discs`` (m,).
 
@@ -130,6 +134,7 @@ def _follow_all(
             if kind == GONE and count == 1:  # its run ends as it leaves
                 row = game.history[game.counts[N_HISTORY] - 2]
                 kind, at, flight = int(row[1]), flight[START], row[2:]
+                last = at * (1.0 - _JUST)  # before what leaves takes its energy along
             state_at(
                 kind, flight, game.discs[i], game.curves, game.pieces, at, room.work,
                 ends.states[run, i],
@@ -138,6 +143,9 @@ def _follow_all(
             ux, uy, w = over_floor(game.surface, ends.states[run, i])
             slip = slip_of(game.discs[i, RADIUS], ux, uy, w)
             ends.carried[run, i] = ends.in_play[run, i] if slip <= at_rest_below(game) else 0.0
+        if watch[0] < 0:
+            rows[0] = last
+            tally(game, rows[:1], room, rows[1:], ends.books[run : run + 1])
 
 
 def follow_all(
@@ -154,7 +162,7 @@ def follow_all(
     ends = Ends(
         np.empty((runs, count, END_COLUMNS)), np.empty((runs, count)), np.empty((runs, count)),
         np.empty(runs), np.empty(runs), np.empty(runs, np.int64),
-        np.zeros((runs, COURSE_COLUMNS), np.int64),
+        np.zeros((runs, COURSE_COLUMNS), np.int64), np.zeros((runs, BOOK)),
     )  # fmt: skip
     paces = _paces(game, first, discs, launches)
     limits, given = limits_of(game, paces)
@@ -165,12 +173,12 @@ def follow_all(
         part = Ends(
             ends.states[start:stop], ends.in_play[start:stop], ends.carried[start:stop],
             ends.time[start:stop], ends.impacts[start:stop], ends.how[start:stop],
-            ends.courses[start:stop],
+            ends.courses[start:stop], ends.books[start:stop],
         )  # fmt: skip
         _follow_all(
             mine, game.discs, game.kinds, game.flights, first, discs, launches[start:stop],
             paces[start:stop], until, limits[start:stop], given, np.array(watch), room, desk,
-            part,
+            np.empty(1 + len(mine.history) + count), part,
         )  # fmt: skip
 
     in_slices(work, runs)

@@ -39,8 +39,10 @@ from puck_tables.world.game import (
     AT_X,
     AT_Y,
     ENTERS,
+    GOT,
     IMPACT,
     LEAVES,
+    LED,
     LOST,
     N_EVENTS,
     N_HISTORY,
@@ -60,6 +62,7 @@ from puck_tables.world.game import (
     Game,
     Whole,
 )
+from puck_tables.world.holds import work_of_hold
 from puck_tables.world.impact import (
     CONTACT_COLUMNS,
     FIRST_N,
@@ -70,7 +73,7 @@ from puck_tables.world.impact import (
     SUM_N,
     SUM_T,
 )
-from puck_tables.world.layout import EDGE_NUMBER, LIES, RADIUS, A
+from puck_tables.world.layout import EDGE_NUMBER, LIES, LIGHTNESS, RADIUS, A, kinetic
 from puck_tables.world.lone import DESK_ROWS, LONGEST, follow_alone
 from puck_tables.world.paths import DURATION, FIRST, bounds_of
 from puck_tables.world.paths import START as BEGINS
@@ -226,6 +229,22 @@ def note(game: Game, t: float, what: int, who: int, partner: int, x: float, y: f
 
 
 @inlined
+def _work(
+    game: Game, i: int, px: float, py: float, rub: float, room: Room, event: FloatArray
+) -> None:
+    """Add to an event what a driven body works, or a constraint, by an impulse that its disc gets.
+
+    ``rub``: of it, along the rim with the spin.
+    """
+    disc, state = game.discs[i], room.states[i]
+    turn = disc[RADIUS] * rub
+    if disc[LIGHTNESS] > 0.0:
+        event[LED] += work_of_hold(disc, game.surface, state, px, py, turn)
+    else:
+        event[GOT] -= px * state[VX] + py * state[VY] + turn * state[SPIN]
+
+
+@inlined
 def note_impacts(game: Game, t: float, count: int, room: Room) -> None:
     """Write down the impacts of contacts that had an impulse."""
     for n in range(count):
@@ -240,6 +259,12 @@ def note_impacts(game: Game, t: float, count: int, room: Room) -> None:
             event[NORMAL_X], event[NORMAL_Y] = row[NX], row[NY]
             event[APPROACH], event[SLIDE] = row[FIRST_N], row[FIRST_T]
             event[PUSH], event[RUB], event[LOST] = row[SUM_N], row[SUM_T], row[LOSS]
+            px = row[SUM_N] * row[NX] - row[SUM_T] * row[NY]
+            py = row[SUM_N] * row[NY] + row[SUM_T] * row[NX]
+            j = room.contacts[n, 1]
+            _work(game, i, -px, -py, -row[SUM_T], room, event)
+            if j >= 0:
+                _work(game, j, px, py, -row[SUM_T], room, event)
             game.counts[N_IMPACTS] += 1
 
 
@@ -271,6 +296,8 @@ def overhang(game: Game, i: int, t: float, k: int, room: Room) -> None:
 def leave(game: Game, i: int, t: float, what: int, k: int, room: Room) -> None:
     """A disc falls into a pocket or over an edge."""
     note(game, t, what, i, -1 - k, room.states[i, X], room.states[i, Y])
+    vx, vy, spin = room.states[i, VX], room.states[i, VY], room.states[i, SPIN]
+    game.events[game.counts[N_EVENTS] - 1, GOT] = kinetic(game.discs[i], vx, vy, spin)
     room.states[i, VX] = room.states[i, VY] = room.states[i, SPIN] = 0.0
     start_flight(
         room.states[i], game.discs[i], game.surface, game.curves, t, room.work, game.flights[i]

@@ -35,6 +35,7 @@ from puck_tables.world.flight import (
     corridor,
 )
 from puck_tables.world.game import (
+    GOT,
     IMPACT,
     LAUNCH_SPIN,
     LAUNCH_TIME,
@@ -68,7 +69,16 @@ from puck_tables.world.impact import (
     approach,
     collide,
 )
-from puck_tables.world.layout import EDGE, KIND, LIGHTNESS, ON_FLOOR, OVERHANG, POCKET, RADIUS
+from puck_tables.world.layout import (
+    EDGE,
+    KIND,
+    LIGHTNESS,
+    ON_FLOOR,
+    OVERHANG,
+    POCKET,
+    RADIUS,
+    kinetic,
+)
 from puck_tables.world.meeting import are_apart, next_crossing, next_meeting, rest_together
 from puck_tables.world.quiet import quieten
 from puck_tables.world.touching import (
@@ -282,8 +292,11 @@ def _send(
         if j == i or (game.group[i] > 0 and game.group[j] == game.group[i]):
             locate(game, j, t, room)
             room.marks[j] = CONCERNED
-    room.states[i, VX], room.states[i, VY], room.states[i, SPIN] = vx, vy, spin
-    note(game, t, STRUCK, i, i, room.states[i, X], room.states[i, Y])
+    disc, state = game.discs[i], room.states[i]
+    before = kinetic(disc, state[VX], state[VY], state[SPIN])
+    state[VX], state[VY], state[SPIN] = vx, vy, spin
+    note(game, t, STRUCK, i, i, state[X], state[Y])
+    game.events[game.counts[N_EVENTS] - 1, GOT] = kinetic(disc, vx, vy, spin) - before
     count = find_touching(game, t, room)
     if count < 0:
         return CROWDED
@@ -340,8 +353,11 @@ def advance(
         if struck == THOSE_LEFT:
             status = _take_off_all(game, game.clock[0], room, desk)
         elif struck == EVERYBODY:
+            game.pace[3] = 0.0
             for i in range(count):
-                room.marks[i] = CONCERNED
+                room.marks[i], state = CONCERNED, room.states[i]
+                given = kinetic(game.discs[i], state[VX], state[VY], state[SPIN])
+                game.pace[3] += given
             contacts = find_touching(game, game.clock[0], room)
             if contacts < 0:
                 return CROWDED

@@ -22,11 +22,13 @@ EVENTS = (
     "impact", "contact", "part", "pocket", "edge", "rest", "launch", "entry", "exit", "overhang",
 )  # fmt: skip
 # columns of an event: what, disc, partner, place of the contact, normal from the disc to its
-# partner, approach and slip before, normal and tangential impulse, energy lost, all in SI units
+# partner, approach and slip before, normal and tangential impulse, energy lost, what launches and
+# driven bodies gave (of who leaves play: what went along), the work of constraints, in SI units
 (
-    TIME, WHAT, WHO, PARTNER, AT_X, AT_Y, NORMAL_X, NORMAL_Y, APPROACH, SLIDE, PUSH, RUB, LOST,
-) = range(13)  # fmt: skip
-EVENT_COLUMNS = 13
+    TIME, WHAT, WHO, PARTNER, AT_X, AT_Y, NORMAL_X, NORMAL_Y, APPROACH, SLIDE, PUSH, RUB, LOST, GOT,
+    LED,
+) = range(15)  # fmt: skip
+EVENT_COLUMNS = 15
 
 # why a run does not go on, whatever of it comes first, and where its books are wrong for the same
 TOGETHER = (
@@ -63,8 +65,9 @@ class Game(NamedTuple):
     rim is over an edge.  ``works``: where the energy of those went who were integrated, see
     :mod:`puck_tables.world.works`.  ``counts``: how many rows of
     events, history, pieces, works and held contacts are used, how many launches and what else was
-    done, and the contacts of the event at work.  ``pace`` (3,): the scales of speed, m/s, and
-    acceleration, m/s², and the error of a step where motions are integrated, in units of them.
+    done, and the contacts of the event at work.  ``pace`` (4,): the scales of speed, m/s, and
+    acceleration, m/s², the error of a step where motions are integrated, in units of them, and the
+    energy of the launches at the start, J.
     """
 
     discs: FloatArray

@@ -94,7 +94,7 @@ def push_on(game: Game, room: Room) -> Game:
     for i in np.flatnonzero(room.marks == CONCERNED):
         game.group[i] = 0
     held = held[game.group[held[:, 0]] > 0]
-    t, scales = float(game.clock[0]), Scales(*game.pace.tolist())
+    t, scales = float(game.clock[0]), Scales(*game.pace[:3].tolist())
     films, reels = _driven_now(game, t)
     shared = Group(
         game.discs, game.obstacles, game.regions, game.surface, game.rims, films, reels,

@@ -62,6 +62,26 @@ def response(
 
 
 @inlined
+def work_of_hold(
+    disc: FloatArray, surface: Surface, state: FloatArray, px: float, py: float, turn: float
+) -> float:
+    """What a constraint that moves, or grips a floor that does, works where an impulse acts, J.
+
+    What the puck gets beside the impulse is the constraint's, and A V is as before.
+    """
+    kind = int(disc[HOLD])
+    if kind == FREE:
+        return 0.0
+    dx, dy, _ = response(disc, state, px, py, turn)
+    wx, wy = disc[HOLD_VX], disc[HOLD_VY]
+    if kind == BLADE:  # what it grips, and its own side slip across it
+        ex, ey = edge_of(disc, state)
+        sx, sy, _ = floor_velocity(surface, state[X], state[Y])
+        wx, wy = sx - disc[HOLD_VX] * ey, sy + disc[HOLD_VX] * ex
+    return (dx / disc[LIGHTNESS] - px) * wx + (dy / disc[LIGHTNESS] - py) * wy
+
+
+@inlined
 def led(
     disc: FloatArray, surface: Surface, state: FloatArray, ax: float, ay: float, turn: float
 ) -> tuple[float, float, float]:

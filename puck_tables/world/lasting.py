@@ -34,6 +34,7 @@ from puck_tables.world.paths import START as PIECE_START
 
 _STUCK, _WITHIN = 1e-11, 10.0  # of the scale of speeds, and times the error of a step in it
 LONG = 100.0  # times what friction takes, at most: whatever moves then may never stop
+_FAR = 10.0  # times that limit: what a belt carries discs to by then is waited for
 _SLOWEST = 1e-9  # of the largest friction: what brakes less than that does not brake
 _UNKNOWN, _NOT_YET = -2.0, -1.0  # in place of a time
 # of a run without a time, beside how :func:`puck_tables.world.engine.advance` ends
@@ -146,7 +147,9 @@ def next_target(
         return (ROUND, turned) if happened > last else (ENDED, last)
     if now < limit:
         return GOES_ON, limit
-    return (ENDED, max(last, happened)) if pending == math.inf else (LEADS_ON, now)
+    if pending == math.inf:
+        return ENDED, max(last, happened)
+    return (GOES_ON, pending) if pending <= _FAR * limit else (LEADS_ON, now)
 
 
 def limits_of(game: Game, paces: FloatArray) -> tuple[FloatArray, float]:

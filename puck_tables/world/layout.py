@@ -53,6 +53,14 @@ ON_FLOOR = BORDER  # from there on: where friction changes under the base
 
 
 @inlined
+def kinetic(disc: FloatArray, vx: float, vy: float, spin: float) -> float:
+    """½ m v² + ½ I ω², J; nothing of what is driven."""
+    if disc[LIGHTNESS] == 0.0:
+        return 0.0
+    return 0.5 * (vx * vx + vy * vy) / disc[LIGHTNESS] + 0.5 * spin * spin / disc[TURNABILITY]
+
+
+@inlined
 def feels_floor(disc: FloatArray) -> bool:
     """Whether dry friction or drag acts on a disc."""
     drag = disc[DAMPING] + disc[WAKE] + disc[SPIN_DAMPING] + disc[SPIN_WAKE]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from puck_tables._core.fields import specs
 from puck_tables.scene.pieces import PieceSpec
 from puck_tables.scene.plan import EMPIRICAL, acting
@@ -30,15 +28,8 @@ _OF_OTHERS = (
 _ON_FLOOR = ("strips", "patches")
 
 
-class Plan(NamedTuple):
-    """``model``: how its pucks are moved, in a line; ``why``: lines of text."""
-
-    model: str
-    why: str
-
-
-def plan_of(scene: SceneSpec) -> Plan:
-    """How the pucks of a scene are moved, and which they are.
+def plan_of(scene: SceneSpec) -> tuple[str, str]:
+    """How the pucks of a scene are moved, in a line; and which they are and why, in lines of text.
 
     Raises
     ------
@@ -48,7 +39,7 @@ def plan_of(scene: SceneSpec) -> Plan:
     Examples
     --------
     >>> from puck_tables import Floor, Launch, Puck, Scene
-    >>> print(plan_of(Scene(Puck(0.1, friction=0.1), Floor(slope=0.05))).why)
+    >>> print(plan_of(Scene(Puck(0.1, friction=0.1), Floor(slope=0.05)))[1])
     1 puck integrated from impact to impact: slope
     a look-up would be cheaper, but it is of what only dry friction and a belt act on
     """
@@ -87,7 +78,7 @@ def plan_of(scene: SceneSpec) -> Plan:
         lines.append(EMPIRICAL)
     if len(pieces) > 1 or scene.walls or scene.posts or scene.arcs:
         lines.append(rule_of(scene))
-    return Plan(model, "\n".join(lines))
+    return model, "\n".join(lines)
 
 
 def _acting_on(scene: SceneSpec, piece: PieceSpec) -> list[str]:

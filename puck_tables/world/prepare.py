@@ -145,7 +145,7 @@ def game_of(scene: SceneSpec, order: Whole) -> tuple[Game, Room]:
         history=np.zeros((ROWS + 4 * count, HISTORY_COLUMNS)),
         works=np.zeros((0, WORK_COLUMNS)),
         counts=np.zeros(COUNTS, np.int64),
-        pace=np.array([0.0, 0.0, STEP_SHARE * flight_error(scene)]),
+        pace=np.array([0.0, 0.0, STEP_SHARE * flight_error(scene), 0.0]),
     )
     for i in range(count):
         lay_down(game, i, states[i])

@@ -62,12 +62,12 @@ def simulate(scene: SceneSpec, times: npt.ArrayLike | None = None) -> Run:
     if world.groups > 0 and not missed <= MISSED:
         raise PuckError(g.TOGETHER.format(time=world.time))
     speed, rate = world._game.pace[:2].tolist()
-    plan = plan_of(scene)
+    model, why = plan_of(scene)
     return Run(
         simulated=simulate,
         scene=scene.single(),
-        model=plan.model,
-        why=plan.why,
+        model=model,
+        why=why,
         end=end,
         end_time=end_time,
         names=world.names,

@@ -8,8 +8,6 @@ start.
 
 from __future__ import annotations
 
-import numpy as np
-
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 
@@ -38,38 +36,17 @@ def write_work(
         row[HALFWAY + i] = halfway[i]
 
 
-def worked(rows: FloatArray, ends: FloatArray, times: FloatArray) -> FloatArray:
-    """The ledger (6, times) at ascending times of rows whose flights ended at ``ends`` (rows,), J.
-
-    Examples
-    --------
-    >>> row = np.zeros((1, WORK_COLUMNS))
-    >>> row[0, [DURATION, DONE, BEGUN, ENDED, HALFWAY]] = 2.0, 4.0, 1.0, 3.0, 1.5
-    >>> worked(row, np.array([1.5]), np.array([1.0, 9.0]))[0].tolist()
-    [1.5, 2.625]
-    """
-    first = rows[:, START]
-    last = np.minimum(first + rows[:, DURATION], ends)
-    order = np.argsort(last, kind="stable")
-    done = np.cumsum(_part(rows, ends)[order], axis=0)
-    total = np.vstack([np.zeros(LEDGER), done])[np.searchsorted(last[order], times, side="right")]
-    begin, end = np.searchsorted(times, first, "right"), np.searchsorted(times, last, "left")
-    counts = np.maximum(end - begin, 0)  # of times that lie within a row
-    row = np.repeat(np.arange(len(rows)), counts)
-    at = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts - begin, counts)
-    np.add.at(total, at, _part(rows[row], times[at]))
-    return np.ascontiguousarray(total.T)
-
-
-def _part(rows: FloatArray, ends: FloatArray) -> FloatArray:
-    """What each row works until its end, (rows, 6)."""
-    h = rows[:, DURATION]
-    share = np.where(h > 0.0, (ends - rows[:, START]) / np.where(h > 0.0, h, 1.0), 1.0)
-    s, h = np.clip(share, 0.0, 1.0)[:, None], h[:, None]
-    firsts = (BEGUN, DONE, ENDED, HALFWAY)
-    begun, done, ended, halfway = (rows[:, first : first + LEDGER] for first in firsts)
-    part = done * s * s * (3.0 - 2.0 * s) + h * s * (1.0 - s) * (begun * (1.0 - s) - ended * s)
-    bend = halfway - 0.5 * done - 0.125 * h * (begun - ended)
-    part = part + 16.0 * bend * (s * (1.0 - s)) ** 2
-    whole: FloatArray = np.where(s < 1.0, part, done)
-    return whole
+@inlined
+def add_worked(row: FloatArray, t: float, book: FloatArray) -> None:
+    """Add what a row has worked by t to a book, of which the first are those of a ledger, J."""
+    h = row[DURATION]
+    s = (t - row[START]) / h if h > 0.0 else 1.0
+    for i in range(LEDGER):
+        done = row[DONE + i]
+        if 0.0 < s < 1.0:
+            begun, ended = row[BEGUN + i], row[ENDED + i]
+            bend = row[HALFWAY + i] - 0.5 * done - 0.125 * h * (begun - ended)
+            done *= s * s * (3.0 - 2.0 * s)
+            done += h * s * (1.0 - s) * (begun * (1.0 - s) - ended * s)
+            done += 16.0 * bend * (s * (1.0 - s)) ** 2
+        book[i] += done if s > 0.0 else 0.0

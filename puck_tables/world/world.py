@@ -243,14 +243,15 @@ class World:
         while how == GOES_ON:
             self._advance(target, NOBODY, self._room.one)
             how, target = next_target(self._game, float(limits[0]), given, self._room, ends)
+        who = "a puck" if len(self.names) > 1 else "the puck"
         if how == FOR_EVER:
             raise InputError(
-                f"something still moves after {target:.4g} s, a hundred times what friction "
+                f"{who} still moves after {target:.4g} s, a hundred times what friction "
                 "takes: it may never stop; give a time"
             )
         if how == LEADS_ON:
             raise InputError(
-                f"after {target:.4g} s the floor still carries a puck towards a wall, an edge, a "
+                f"after {target:.4g} s the floor still carries {who} towards a wall, an edge, a "
                 "border or a patch, and it may slip there again; give a time"
             )
         if self._game.surface.spin == 0.0:  # it was waited for what may come
