@@ -67,7 +67,7 @@ def test_a_wall_is_the_mirror_image_of_a_puck():
     launch, spin = (1.0, 0.4), 25.0
     how = {"restitution": 0.7}  # smooth: the rim of an image slides along with it
     wall = pt.Wall((0.2, 0.0), normal=(-1.0, 0.0), restitution=0.7)
-    puck, far = piece(0, 0, launch, spin, **how), piece(9.0, 9.0)  # a lone one may be refined
+    puck, far = piece(0, 0, launch, spin, **how), piece(-9.0, 9.0)  # a lone one may be refined
     alone = pt.Scene(pucks=[puck, far], walls=[wall]).simulate([0.4, 1.0])
     image = piece(0.4, 0.0, (-1.0, 0.4), -spin, **how)
     both = pt.Scene(pucks=[puck, image]).simulate([0.4, 1.0])

@@ -62,7 +62,7 @@ def simulate(scene: SceneSpec, times: npt.ArrayLike | None = None) -> Run:
     if world.groups > 0 and not missed <= MISSED:
         raise PuckError(g.TOGETHER.format(time=world.time))
     speed, rate = world._game.pace[:2].tolist()
-    model, why = plan_of(scene)
+    model, why = plan_of(world.scene)  # with the finer steps that it took
     return Run(
         simulated=simulate,
         scene=scene.single(),
