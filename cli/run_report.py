@@ -154,7 +154,7 @@ def plainly(run: Run) -> str:
             f"Time is up after {run.end_time:.4g} s and {impacts}: {moving} of "
             f"{_counted(count, 'puck')} still {verb}."
         )
-    fates = []
+    outcomes = []
     for what, one, several in (
         ("pocket", "falls into a pocket", "fall into pockets"),
         ("edge", "goes over an edge", "go over an edge"),
@@ -163,8 +163,8 @@ def plainly(run: Run) -> str:
         if names:
             shown = ", ".join(names[:MOST_NAMES])
             more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
-            fates.append(f"{len(names)} {one if len(names) == 1 else several} ({shown}{more})")
-    return f"{first}\n{'; '.join(fates)}." if fates else f"{first}\nNone leaves play."
+            outcomes.append(f"{len(names)} {one if len(names) == 1 else several} ({shown}{more})")
+    return f"{first}\n{'; '.join(outcomes)}." if outcomes else f"{first}\nNone leaves play."
 
 
 def _counted(count: int, noun: str) -> str:

@@ -2,14 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import click
 from puck_tables.cli.completion import scenes
 from puck_tables.cli.options import printable
-
-if TYPE_CHECKING:
-    pass
 
 
 @click.group()

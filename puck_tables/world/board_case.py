@@ -36,7 +36,7 @@ from puck_tables.world.bulk import Ends, follow_all
 from puck_tables.world.engine import CROWDED, OFF_TABLE, PUSHING, TANGLED, TOO_SHORT
 from puck_tables.world.footing import moves_along
 from puck_tables.world.lasting import FOR_EVER, LEADS_ON, ROUND
-from puck_tables.world.ledger import NAMES, books_of, energies_of, kinetic_of
+from puck_tables.world.ledger import NAMES, energies_of, kinetic_of, ledgers_of
 from puck_tables.world.plan import plan_of
 from puck_tables.world.prepare import game_of, order_of
 from puck_tables.world.reactions import reactions
@@ -176,7 +176,7 @@ class BoardCase:
             name: values[:, self.place] if self.scene.pucks else values[:, 0]
             for name, values in found.items()
         }
-        out |= {name: ends.books[:, n] for name, n in NAMES.items()}
+        out |= {name: ends.ledgers[:, n] for name, n in NAMES.items()}
         missing, largest = ledger(out)
         out["energy_residual"] = missing / np.where(largest > 0.0, largest, 1.0)
         out |= {"end_time": ends.time, "impacts": ends.impacts.astype(np.float64)}
@@ -206,7 +206,7 @@ class BoardCase:
         )
         gone = len(self.pieces) == 1 and not world.in_play[0]
         when = np.nextafter(ends.time[run], 0.0) if gone else ends.time[run]
-        ends.books[run] = books_of(world, np.array([min(when, world.time)]))[0]
+        ends.ledgers[run] = ledgers_of(world, np.array([min(when, world.time)]))[0]
         ends.impacts[run] = sum(event.what == "impact" for event in world.events_since(0.0))
         return ENDS.index(end)
 

@@ -19,7 +19,7 @@ from puck_tables.world.footing import moves_along, over_floor
 from puck_tables.world.game import COUNTS, N_HISTORY, N_IMPACTS, N_PIECES, Game, Whole
 from puck_tables.world.lasting import GOES_ON, at_rest_below, limits_of, next_target, slip_of
 from puck_tables.world.layout import RADIUS
-from puck_tables.world.ledger import BOOK, tally
+from puck_tables.world.ledger import LEDGER_COLUMNS, tally
 from puck_tables.world.lone import LONGEST
 from puck_tables.world.paths import PIECE_COLUMNS
 from puck_tables.world.prepare import fastest, scales_of
@@ -38,7 +38,7 @@ class Ends(NamedTuple):
 
     ``how`` (runs,): as :func:`puck_tables.world.engine.advance` says, or without a time
     :func:`puck_tables.world.lasting.next_target`.  ``courses`` (runs, 4): of
-    the disc that is watched, see :func:`puck_tables.world.course.trace`.  ``books`` (runs, 9):
+    the disc that is watched, see :func:`puck_tables.world.course.trace`.  ``ledgers`` (runs, 9):
     where energy went, see :mod:`puck_tables.world.ledger`; of runs that are watched none.
     """
 
@@ -49,7 +49,7 @@ class Ends(NamedTuple):
     impacts: FloatArray
     how: Whole
     courses: Whole
-    books: FloatArray
+    ledgers: FloatArray
 
 
 @inner
@@ -145,7 +145,7 @@ def _follow_all(
             ends.carried[run, i] = ends.in_play[run, i] if slip <= at_rest_below(game) else 0.0
         if watch[0] < 0:
             rows[0] = last
-            tally(game, rows[:1], room, rows[1:], ends.books[run : run + 1])
+            tally(game, rows[:1], room, rows[1:], ends.ledgers[run : run + 1])
 
 
 def follow_all(
@@ -162,7 +162,7 @@ def follow_all(
     ends = Ends(
         np.empty((runs, count, END_COLUMNS)), np.empty((runs, count)), np.empty((runs, count)),
         np.empty(runs), np.empty(runs), np.empty(runs, np.int64),
-        np.zeros((runs, COURSE_COLUMNS), np.int64), np.zeros((runs, BOOK)),
+        np.zeros((runs, COURSE_COLUMNS), np.int64), np.zeros((runs, LEDGER_COLUMNS)),
     )  # fmt: skip
     paces = _paces(game, first, discs, launches)
     limits, given = limits_of(game, paces)
@@ -173,7 +173,7 @@ def follow_all(
         part = Ends(
             ends.states[start:stop], ends.in_play[start:stop], ends.carried[start:stop],
             ends.time[start:stop], ends.impacts[start:stop], ends.how[start:stop],
-            ends.courses[start:stop], ends.books[start:stop],
+            ends.courses[start:stop], ends.ledgers[start:stop],
         )  # fmt: skip
         _follow_all(
             mine, game.discs, game.kinds, game.flights, first, discs, launches[start:stop],

@@ -30,7 +30,7 @@ EVENTS = (
 ) = range(15)  # fmt: skip
 EVENT_COLUMNS = 15
 
-# why a run does not go on, whatever of it comes first, and where its books are wrong for the same
+# why a run does not go on, whatever of it comes first, and where its ledger is wrong for the same
 TOGETHER = (
     "by {time:.6g} s what touches meets again and again, or presses so that no forces satisfy the "
     "laws of all rims: that is not solved here; give restitutions from 0.5 on or smooth rims "

@@ -97,7 +97,7 @@ def moves_on(game: Game, n: int, end: float, room: Room) -> float:
 
 
 @kernel
-def stirs(game: Game, room: Room, out: FloatArray) -> None:
+def fill_motion_ends(game: Game, room: Room, out: FloatArray) -> None:
     """Until when each disc has moved over the floor (n,), or when it left play; inf: it still does.
 
     0: it has lain there since the start.
@@ -131,7 +131,7 @@ def next_target(
     """
     now, turning = game.clock[0], abs(game.surface.spin)
     turn = 2.0 * math.pi / turning if turning > 0.0 else math.inf
-    stirs(game, room, ends)
+    fill_motion_ends(game, room, ends)
     last, pending, carries = 0.0, math.inf, False
     for i in range(ends.size):
         last, pending = max(last, ends[i]), min(pending, game.next_time[i])

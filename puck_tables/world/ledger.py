@@ -1,6 +1,6 @@
 """Where the energy of pucks went until any moment: floor, drag, rims, impacts; what drives.
 
-A book is a row: the ledger of :mod:`puck_tables.world.works`, and what launches gave, what went
+A row holds what :mod:`puck_tables.world.works` has, and what launches gave, what went
 with who left play, and the heat of impacts.  Of motions that are looked up the heat of the floor is
 what the flights lose; of those that are integrated heats and works are integrated with them.
 """
@@ -53,7 +53,7 @@ if TYPE_CHECKING:
     from puck_tables.world.world import World
 
 LAUNCHED, LEFT, IMPACT_HEAT = range(LEDGER, LEDGER + 3)
-BOOK = LEDGER + 3
+LEDGER_COLUMNS = LEDGER + 3
 NAMES = {
     "energy_given": LAUNCHED, "energy_gone": LEFT, "work_given": PULL_WORK,
     "work_driven": DRIVE_WORK, "work_support": SUPPORT_WORK, "heat_dry": FLOOR_HEAT,
@@ -91,8 +91,8 @@ def _pulled(game: Game, i: int, start: float, t: float, vx: float, vy: float) ->
 
 
 @inner
-def _add_flown(game: Game, n: int, t: float, room: Room, book: FloatArray) -> None:
-    """Add what a flight that is not integrated has lost by t to a book."""
+def _add_flown(game: Game, n: int, t: float, room: Room, ledger: FloatArray) -> None:
+    """Add what a flight that is not integrated has lost by t to a ledger."""
     row = game.history[n]
     i, kind, flight = int(row[0]), int(row[1]), row[2:]
     disc, one, two = game.discs[i], room.one, room.two
@@ -105,30 +105,30 @@ def _add_flown(game: Game, n: int, t: float, room: Room, book: FloatArray) -> No
     over = kinetic(disc, one[VX] - vx, one[VY] - vy, one[SPIN]) - kinetic(
         disc, two[VX] - vx, two[VY] - vy, two[SPIN]
     )
-    book[DRAG_HEAT if kind == DAMPED else FLOOR_HEAT] += over
-    book[SUPPORT_WORK] += over - lost
+    ledger[DRAG_HEAT if kind == DAMPED else FLOOR_HEAT] += over
+    ledger[SUPPORT_WORK] += over - lost
     if kind == STILL and (vx != 0.0 or vy != 0.0):  # the floor holds it against what pulls
         work = _pulled(game, i, start, t, vx, vy)
-        book[PULL_WORK] += work
-        book[SUPPORT_WORK] -= work
+        ledger[PULL_WORK] += work
+        ledger[SUPPORT_WORK] -= work
 
 
 @inlined
-def _add_event(event: FloatArray, book: FloatArray) -> None:
+def _add_event(event: FloatArray, ledger: FloatArray) -> None:
     what = int(event[WHAT])
-    book[IMPACT_HEAT] += event[LOST]
-    book[SUPPORT_WORK] += event[LED]
+    ledger[IMPACT_HEAT] += event[LOST]
+    ledger[SUPPORT_WORK] += event[LED]
     if what == STRUCK:
-        book[LAUNCHED] += event[GOT]
+        ledger[LAUNCHED] += event[GOT]
     elif what in (POCKETED, OVER_EDGE):
-        book[LEFT] += event[GOT]
+        ledger[LEFT] += event[GOT]
     elif what == IMPACT:
-        book[DRIVE_WORK] += event[GOT]
+        ledger[DRIVE_WORK] += event[GOT]
 
 
 @kernel
 def tally(game: Game, times: FloatArray, room: Room, ends: FloatArray, out: FloatArray) -> None:
-    """Books at ascending times, (times, BOOK); ``ends``: room for all flights and discs."""
+    """Ledgers at ascending times, J, one a row; ``ends``: room for all flights and discs."""
     flights, last = game.counts[N_HISTORY], times.size
     for i in range(game.discs.shape[0]):
         ends[flights + i] = math.inf
@@ -136,7 +136,7 @@ def tally(game: Game, times: FloatArray, room: Room, ends: FloatArray, out: Floa
         i = int(game.history[n, 0])
         ends[n], ends[flights + i] = ends[flights + i], game.history[n, 2 + START]
     for k in range(last):
-        for column in range(BOOK):
+        for column in range(LEDGER_COLUMNS):
             out[k, column] = 0.0
         out[k, LAUNCHED] = game.pace[3] if k == 0 else 0.0
     for n in range(flights):  # all of it, from its end on
@@ -154,7 +154,7 @@ def tally(game: Game, times: FloatArray, room: Room, ends: FloatArray, out: Floa
         if k < last:
             _add_event(game.events[n], out[k])
     for k in range(1, last):
-        for column in range(BOOK):
+        for column in range(LEDGER_COLUMNS):
             out[k, column] += out[k - 1, column]
     for n in range(flights):  # and a part of it, on the way
         patience(1)
@@ -175,10 +175,10 @@ def _end_of(game: Game, n: int, ends: FloatArray) -> float:
     return min(end, ends[flight]) if flight >= 0 else end
 
 
-def books_of(world: World, times: FloatArray) -> FloatArray:
-    """Books (times, BOOK) of a world at ascending times up to now, J."""
+def ledgers_of(world: World, times: FloatArray) -> FloatArray:
+    """Ledgers (times, LEDGER_COLUMNS) of a world at ascending times up to now, J."""
     game = world._game
-    out = np.empty((len(times), BOOK))
+    out = np.empty((len(times), LEDGER_COLUMNS))
     ends = np.empty(int(game.counts[N_HISTORY]) + len(game.discs))
     tally(game, np.asarray(times, np.float64), world._room, ends, out)
     return out
@@ -189,9 +189,9 @@ def energies_of(world: World, times: FloatArray) -> dict[str, FloatArray]:
 
     ``energy_given`` by launches, ``energy_gone`` with who left play.
     """
-    books = books_of(world, times)
+    ledgers = ledgers_of(world, times)
     energies = kinetic_of(world._game, states_at(world._game, times))
-    return {"kinetic_energy": energies, **{name: books[:, n] for name, n in NAMES.items()}}
+    return {"kinetic_energy": energies, **{name: ledgers[:, n] for name, n in NAMES.items()}}
 
 
 def kinetic_of(game: Game, states: FloatArray) -> FloatArray:

@@ -115,7 +115,7 @@ class Desk(NamedTuple):
     trial: FloatArray
     scale: FloatArray
     place: FloatArray
-    books: FloatArray
+    ledgers: FloatArray
     leaning: FloatArray
 
 
@@ -212,7 +212,7 @@ def _write_piece(model: Model, begin: float, h: float, row: FloatArray, desk: De
 def _write_work(game: Game, begin: float, h: float, count: int, desk: Desk) -> None:
     """What a step, after so many others, did to the energies."""
     row = game.works[game.counts[N_WORKS] + count]
-    before, done, after, half = desk.books[0], desk.books[1], desk.books[2], desk.books[3]
+    before, done, after, half = desk.ledgers[0], desk.ledgers[1], desk.ledgers[2], desk.ledgers[3]
     for n in range(GIVEN, SIZE):
         entry = works.PULL_WORK
         if n == DRY:

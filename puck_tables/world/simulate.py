@@ -72,7 +72,7 @@ def simulate(scene: SceneSpec, times: npt.ArrayLike | None = None) -> Run:
         end_time=end_time,
         names=world.names,
         events=_events(world),
-        stop_times=world.stirs,
+        stop_times=world.motion_ends,
         energy_residual=missed,
         error_estimate=error,
         speed_scale=speed,
@@ -103,10 +103,10 @@ def run_on(world: World, moments: FloatArray | None) -> tuple[str, float]:
         until = float(moments[-1]) if moments.size and moments[-1] > 0.0 else None
     if until is not None:
         world.advance(until)
-        stirs = world.stirs
+        ends_of_motion = world.motion_ends
         moving = bool(world.moving.any())
-        end_time = world.time if moving else float(stirs.max())
-        carried = moving and bool((stirs < math.inf).all())
+        end_time = world.time if moving else float(ends_of_motion.max())
+        carried = moving and bool((ends_of_motion < math.inf).all())
         end = ENDS[CARRIED_AWAY if carried else TIME_UP if moving else AT_REST]
     else:
         end_time, goes_round = world.come_to_rest()
@@ -114,7 +114,7 @@ def run_on(world: World, moments: FloatArray | None) -> tuple[str, float]:
         end = ENDS[CARRIED_ROUND if goes_round else CARRIED_AWAY if carried else AT_REST]
     if len(world.names) == 1 and not world.in_play[0]:
         fell = world.events_since(0.0)[-1].what == "pocket"
-        return ENDS[IN_POCKET if fell else OVER_EDGE], float(world.stirs[0])
+        return ENDS[IN_POCKET if fell else OVER_EDGE], float(world.motion_ends[0])
     return end, end_time
 
 
@@ -210,7 +210,7 @@ def _error(world: World) -> float:
     length, now = speed * speed / rate, world.time
     radii, alone = np.array([piece.radius for piece in pieces]), len(pieces) == 1
     probes = now * np.arange(1, PROBES + 1) / PROBES if alone else np.array([now])
-    states, stops, share = world.over(probes), world.stirs, flight_error(world.scene)
+    states, stops, share = world.over(probes), world.motion_ends, flight_error(world.scene)
     off = 0.0
     if world._game.floors[:, 2].any():
         slides = {(one.height, one.friction, one.pressure): one for one in pieces if not one.path}
@@ -227,7 +227,7 @@ def _error(world: World) -> float:
             )
             if alone and stops[0] < math.inf:
                 check.advance(LATER * now)
-                gaps.append(min(abs(check.stirs[0] - stops[0]), LATER * now) * rate / speed)
+                gaps.append(min(abs(check.motion_ends[0] - stops[0]), LATER * now) * rate / speed)
         except PuckError:  # it meets what has no answer: so nearly did the run
             gaps.append(float(np.hypot(*np.ptp(states[-1, :, :2], axis=0))) / length)
     return max(gaps) + world.place_error / length

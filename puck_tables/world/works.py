@@ -37,8 +37,8 @@ def write_work(
 
 
 @inlined
-def add_worked(row: FloatArray, t: float, book: FloatArray) -> None:
-    """Add what a row has worked by t to a book, of which the first are those of a ledger, J."""
+def add_worked(row: FloatArray, t: float, ledger: FloatArray) -> None:
+    """Add what a row has worked by t to a ledger, J."""
     h = row[DURATION]
     s = (t - row[START]) / h if h > 0.0 else 1.0
     for i in range(LEDGER):
@@ -49,4 +49,4 @@ def add_worked(row: FloatArray, t: float, book: FloatArray) -> None:
             done *= s * s * (3.0 - 2.0 * s)
             done += h * s * (1.0 - s) * (begun * (1.0 - s) - ended * s)
             done += 16.0 * bend * (s * (1.0 - s)) ** 2
-        book[i] += done if s > 0.0 else 0.0
+        ledger[i] += done if s > 0.0 else 0.0

@@ -43,9 +43,9 @@ from puck_tables.world.lasting import (
     GOES_ON,
     LEADS_ON,
     ROUND,
+    fill_motion_ends,
     limits_of,
     next_target,
-    stirs,
 )
 from puck_tables.world.law_range import refuse_too_fast, with_law_for
 from puck_tables.world.layout import HOLD, LIGHTNESS, NORMAL, RADIUS
@@ -156,13 +156,13 @@ class World:
         return float(self.stop_times.max())
 
     @property
-    def stirs(self) -> FloatArray:
+    def motion_ends(self) -> FloatArray:
         """Until when each puck has moved over its floor, or when it left play, array (pucks,), s.
 
         inf: it still moves; 0: it has lain there since the start.
         """
         found = np.empty(len(self.names))
-        stirs(self._game, self._room, found)
+        fill_motion_ends(self._game, self._room, found)
         return found[self._place]
 
     def state(self) -> FloatArray:
