@@ -248,7 +248,7 @@ def _with_rows(game: Game, name: str, count: int, rows: FloatArray) -> Game:
     """With rows at the end of its pieces or works, of which so many are counted there."""
     first, there = int(game.counts[count]), getattr(game, name)
     if first + len(rows) > len(there):
-        more: dict[str, Any] = {name: np.zeros((first + 2 * len(rows), rows.shape[1]))}
+        more: dict[str, Any] = {name: np.zeros((2 * (first + len(rows)), rows.shape[1]))}
         more[name][:first], there = there[:first], more[name]
         game = game._replace(**more)
     there[first : first + len(rows)] = rows
