@@ -69,15 +69,11 @@ class Spread(ABC):
         """Its two numbers, of which the unit is noted if they have one."""
         if any(isinstance(one, str) for one in values):
             kinds = [measured_kinds(one) if isinstance(one, str) else {} for one in values]
-            for one, kind in zip(values, kinds, strict=True):
-                if not kind and (isinstance(one, str) or one):
-                    why = (
-                        unit_meant(str(one)[:40])
-                        or "give both numbers a unit, as '25mm', or neither"
-                    )
-                    raise InputError(
-                        f"{type(self).__name__}: {shown(one)} has no known unit: {why}"
-                    )
+            for name, one, kind in zip(names, values, kinds, strict=True):
+                if kind or (not isinstance(one, str) and real(f"the {name}", one, "") == 0.0):
+                    continue
+                why = unit_meant(str(one)[:40]) or "give both a unit, as '25mm', or neither"
+                raise InputError(f"{type(self).__name__}: {shown(one)} has no known unit: {why}")
             both = [unit for unit in KIND_OF if all(not kind or unit in kind for kind in kinds)]
             if len(both) != 1:
                 what = f"may be in {' or '.join(both)}" if both else "are of two kinds"
