@@ -260,7 +260,6 @@ def _of_scenes() -> dict[str, Door]:
         "World.over": (on_copy("over"), {"times": 0.0}),
         "World.advance": (on_copy("advance"), {"duration": 0.1}),
         "World.events_since": (on_copy("events_since"), {"time": 0.0}),
-        "World.perturb": (on_copy("perturb"), {"scale": 1.1, "turn": 0.1}),
         "World.strike": (on_copy("strike"), {
             "puck": "cue", "velocity": TWO, "spin": 1.0, "impulse": (0.1, 0.0), "point": None}),
     }  # fmt: skip

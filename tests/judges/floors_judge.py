@@ -212,7 +212,12 @@ def play(floor: Floor, discs: list[Disc], lines: list[Line], until: float) -> To
                 out[6 * i : 6 * i + 3] = row[3:]
                 if rests[i]:
                     ground = floor.velocity(row)
-                    out[6 * i + 3 : 6 * i + 5] = floor.turning * np.array([-ground[1], ground[0]])
+                    turned = floor.turning * np.array([-ground[1], ground[0]])
+                    out[6 * i + 3 : 6 * i + 5] = turned
+                    holds = d.mass * (turned - floor.pull[:2])  # against what pulls, while it moves
+                    if d.force is not None:
+                        holds = holds - d.force(time)[:2]
+                    out[-1] += float(holds @ ground[:2])
                     continue
                 a, heat, support = rates(floor, d, time, row)
                 out[6 * i + 3 : 6 * i + 6] = a
