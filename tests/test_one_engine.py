@@ -50,7 +50,10 @@ def varied(seed: int, folder: Path) -> dict[str, Any]:
 
 @pytest.mark.parametrize(
     "first",
-    [pytest.param(n, marks=[pytest.mark.thorough] * (n > 0)) for n in range(0, 400, BLOCK)],
+    [
+        pytest.param(n, marks=[pytest.mark.thorough] * (n > 0) + [pytest.mark.nightly] * (n >= 100))
+        for n in range(0, 400, BLOCK)
+    ],
 )
 def test_a_far_post_changes_nothing(first: int, tmp_path: Path):
     """It makes the scene one of several bodies; within three errors and what ``tol`` allows."""
@@ -73,7 +76,12 @@ def told(run: pt.Run, length: float) -> list[tuple[Any, ...]]:
 
 
 @pytest.mark.parametrize(
-    "first", [0, *[pytest.param(n, marks=pytest.mark.thorough) for n in (9, 60, 90)]]
+    "first",
+    [
+        0,
+        pytest.param(9, marks=pytest.mark.thorough),
+        *[pytest.param(n, marks=[pytest.mark.thorough, pytest.mark.nightly]) for n in (60, 90)],
+    ],
 )
 def test_a_run_gives_the_same_beside_a_far_post(first: int, tmp_path: Path):
     """Its columns, end, stop, events that no wall makes; also without a time."""
