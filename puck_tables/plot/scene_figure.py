@@ -75,7 +75,7 @@ def states_drawn(run: Run) -> dict[str, FloatArray]:
     count = int(min(max(_STATES, _STATES_A_TURN * turns), _MOST_STATES))
     events = np.array([event.time for event in run.events])
     times = np.concatenate(
-        [np.linspace(0.0, run.end_time, count), events, np.nextafter(events, np.inf)]
+        [np.linspace(0.0, run.end_time, count), np.nextafter(events, 0.0), events]
     )
     times = np.unique(times[times <= run.end_time])
     return dict(run(times).columns)

@@ -222,9 +222,7 @@ class SceneSpec:
         >>> SceneSpec(PuckSpec(0.04)).is_board
         False
         """
-        more = self.pucks or self.posts or self.arcs or self.pockets or self.rims
-        by_speed = any(isinstance(wall.restitution, str | Restitution) for wall in self.walls)
-        return bool(more) or by_speed
+        return True
 
     def _parts(self) -> dict[str, Any]:
         """Its parts by the tables that they stand in."""

@@ -65,9 +65,9 @@ class Game(NamedTuple):
     rim is over an edge.  ``works``: where the energy of those went who were integrated, see
     :mod:`puck_tables.world.works`.  ``counts``: how many rows of
     events, history, pieces, works and held contacts are used, how many launches and what else was
-    done, and the contacts of the event at work.  ``pace`` (4,): the scales of speed, m/s, and
-    acceleration, m/s², the error of a step where motions are integrated, in units of them, and the
-    energy of the launches at the start, J.
+    done, and the contacts of the event at work.  ``pace`` (5,): the scales of speed, m/s, and
+    acceleration, m/s², the error of a step where motions are integrated, in units of them, the
+    energy of the launches at the start, J, and of the radius, as low rebounds have died out.
     """
 
     discs: FloatArray

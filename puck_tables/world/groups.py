@@ -79,6 +79,7 @@ from puck_tables.world.works import DONE, FLIGHT, LEDGER, NO_FLIGHT, RIM_HEAT, W
 from puck_tables.world.works import START as WORK_START
 
 ROWS = 400  # steps of a group before its flights end for a new look
+FINEST = 1e-13  # error of a step in units of the scales: finer is rounding
 _TRIES = 100
 LOST_SHARE = 1e-15
 FOR_EVER = 1e9  # s
@@ -94,7 +95,7 @@ def push_on(game: Game, room: Room) -> Game:
     for i in np.flatnonzero(room.marks == CONCERNED):
         game.group[i] = 0
     held = held[game.group[held[:, 0]] > 0]
-    t, scales = float(game.clock[0]), Scales(*game.pace[:3].tolist())
+    t, scales = float(game.clock[0]), _scales_of(game)
     films, reels = _driven_now(game, t)
     shared = Group(
         game.discs, game.obstacles, game.regions, game.surface, game.rims, films, reels,
@@ -128,6 +129,11 @@ def push_on(game: Game, room: Room) -> Game:
         game = _book(game, flight, t, jump, works)
     game.held[: len(held)], game.counts[N_HELD] = held, len(held)
     return game
+
+
+def _scales_of(game: Game) -> Scales:
+    speed, rate, tol = game.pace[:3].tolist()
+    return Scales(speed, rate, max(tol, FINEST))
 
 
 def _driven_now(game: Game, t: float) -> tuple[FloatArray, Whole]:

@@ -22,7 +22,8 @@ Poisson has it, and lessened together should energy grow.  So no numbering matte
 symmetric stays so.
 
 Rebounds of discs that press on each other die out.  Where those left are lower than 1e-13 of the
-radius, or than what is known of places (1e-10 of Q²/J), e = 0: they stay in contact.
+radius, or than the error of a step (in units of Q²/J), e = 0: they stay in contact.  Check runs end
+them earlier, so that what this does to a motion is part of its error estimate.
 """
 
 from __future__ import annotations
@@ -61,7 +62,6 @@ NO_END, TOO_FAST = -1, -2  # how impacts fail: rounds without end; faster than a
 
 NEGLIGIBLE = 1e-13  # of the scale of speeds: an approach as slow is none
 FLAT = 1e-13  # of the radius: rebounds as low have died out
-BLURRED = 1e-10  # of Q²/J: as low, they are lost in the errors of places that are looked up
 MOST_ROUNDS = 2_000
 TURNS = 200  # rounds after which contacts that take turns are resolved together, with e = 0
 _MOST_ITERATIONS = 50_000
@@ -170,7 +170,7 @@ def _dies_out(game: Game, i: int, j: int, t: float, row: FloatArray, states: Flo
     way = _slip2(game, i, states)
     if j >= 0:
         way = max(way, _slip2(game, j, states))
-    height = max(FLAT * game.discs[i, RADIUS], BLURRED * way / game.pace[1])
+    height = max(game.pace[4] * game.discs[i, RADIUS], game.pace[2] * way / game.pace[1])
     height *= 1.0 - row[E] ** 2
     return closing > 0.0 and un <= 0.0 and un * un <= 2.0 * closing * height
 

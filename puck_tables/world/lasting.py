@@ -13,6 +13,11 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel
+from puck_tables.scene.equations import SIZE
+from puck_tables.scene.ingredients import CARRIED as CARRIED_ALONG
+from puck_tables.scene.ingredients import NO_WAY, Dry, Stretch
+from puck_tables.scene.leaning import LEAN_COLUMNS
+from puck_tables.scene.rest import excess_at_rest
 from puck_tables.world.departures import Room
 from puck_tables.world.engine import REACHED, TOO_SHORT
 from puck_tables.world.flight import (
@@ -29,7 +34,16 @@ from puck_tables.world.flight import (
 )
 from puck_tables.world.footing import over_floor
 from puck_tables.world.game import LAUNCH_TIME, N_EVENTS, N_HISTORY, TIME, Game
-from puck_tables.world.layout import DAMPING, LIGHTNESS, PULL_X, PULL_Y, RADIUS, TURNABILITY
+from puck_tables.world.layout import (
+    DAMPING,
+    LIGHTNESS,
+    PULL_X,
+    PULL_Y,
+    RADIUS,
+    TURNABILITY,
+    TWIST,
+)
+from puck_tables.world.lone import model_of
 from puck_tables.world.paths import START as PIECE_START
 
 _STUCK, _WITHIN = 1e-11, 10.0  # of the scale of speeds, and times the error of a step in it
@@ -158,14 +172,14 @@ def limits_of(game: Game, paces: FloatArray) -> tuple[FloatArray, float]:
     LONG times what the least friction takes; ``paces`` (n, 2): their scales of speed and
     acceleration.
     """
-    discs, free = game.discs, game.discs[game.discs[:, LIGHTNESS] > 0.0]
+    free = game.discs[game.discs[:, LIGHTNESS] > 0.0]
     given = max(
         float(game.launches[:, LAUNCH_TIME].max(initial=0.0)),
         float(game.tides[:, 0].max(initial=0.0)),
         float(game.pieces[: game.drives.max(), :2].sum(axis=1).max(initial=0.0)),
     )
-    pulls, decels = np.hypot(discs[:, PULL_X], discs[:, PULL_Y]), game.floors[:, 0]
-    brakes = np.abs(decels.reshape(-1, len(discs)) - pulls).ravel()
+    decels = game.floors[:, 0]
+    brakes = _brakes(game)
     brakes = brakes[(decels > 0.0) & (brakes > _SLOWEST * decels.max())]
     arms = free[:, LIGHTNESS] / (free[:, TURNABILITY] * free[:, RADIUS] ** 2)  # k²
     fast = paces[:, 0] + float(_pushed(game).max())
@@ -174,6 +188,30 @@ def limits_of(game: Game, paces: FloatArray) -> tuple[FloatArray, float]:
     times = np.maximum(times, paces[:, 0] / paces[:, 1])
     times = np.maximum(times, float((1.0 / drags).max(initial=0.0)))
     return max(float(game.clock[0]), given) + LONG * times, given
+
+
+def _brakes(game: Game) -> FloatArray:
+    """What friction leaves to brake every disc beside what pulls at it, by rows of floors, m/s²."""
+    discs = game.discs
+    pulls = np.hypot(discs[:, PULL_X], discs[:, PULL_Y])
+    brakes = np.abs(game.floors[:, 0].reshape(-1, len(discs)) - pulls).ravel()
+    if discs[:, TWIST].any():
+        _fill_brakes(game, np.zeros(SIZE), np.zeros((0, LEAN_COLUMNS)), brakes)
+    return brakes
+
+
+@kernel
+def _fill_brakes(game: Game, y: FloatArray, leaning: FloatArray, out: FloatArray) -> None:
+    """The same of discs that a torque turns: how far friction is from what it could just hold."""
+    regions, count = game.regions, game.discs.shape[0]
+    for row in range(out.size):
+        i = row % count
+        if game.discs[i, TWIST] == 0.0 or regions.astride[row] or regions.load[row] == 0.0:
+            continue
+        dry = Dry(regions.load[row], regions.delta[row], regions.cuts[row], regions.by_speed)
+        stretch = Stretch(model_of(game, i), dry, leaning, 0, CARRIED_ALONG, NO_WAY, 0.0, 0.0)
+        excess = abs(excess_at_rest(stretch, 0.0, y)[0])
+        out[row] = min(excess, regions.load[row]) * game.discs[i, LIGHTNESS]
 
 
 def _pushed(game: Game) -> FloatArray:

@@ -374,9 +374,12 @@ def follow_alone(
         if settle:
             before, mode, way = mode, SLIDES, NO_WAY
             if dry.load > 0.0 and q <= REST * speed:
+                vx, vy, spin, slow_q = y[VX], y[VY], y[SPIN], q
                 y[VX] = y[VY] = y[SPIN] = 0.0
                 at_rest = Stretch(model, dry, leaning, rows, CARRIED, way, 0.0, 0.0)
                 mode, stiff, q = from_standstill(at_rest, speed, now, y, stages)
+                if mode == SLIDES and count == 0 and slow_q > q:  # the path before began to slip
+                    y[VX], y[VY], y[SPIN], q = vx, vy, spin, slow_q
                 rests = mode == CARRIED and not _swings(model, dry)
                 rests = rests and rests_on(model, dry, leaning, rows, y)
                 turns = (mode == CARRIED) != (before == CARRIED)

@@ -368,7 +368,7 @@ class World:
             floor = np.array(floor_velocity(game.surface, *state[:2].tolist()))
             if disc[LIGHTNESS] > 0.0 and disc[HOLD] == FREE:
                 state[VX:] = floor + turned @ (state[VX:] - floor)
-        game.pace[2] *= coarser
+        game.pace[[2, 4]] *= coarser
         game.regions.load[:] *= 1.0 + friction
         game.discs[:, NORMAL] *= 1.0 + friction
         twin._game = game
