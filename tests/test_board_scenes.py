@@ -12,7 +12,7 @@ import pytest
 from puck_tables import Scene
 from puck_tables.scene.library import shipped_scenes
 
-BOARDS = [name for name in shipped_scenes() if Scene.load(name).is_board]
+BOARDS = [name for name in shipped_scenes() if Scene.load(name).pucks]
 # how many impacts at least, and who leaves play
 STORIES: dict[str, tuple[int, set[str]]] = {
     "air-hockey-mallet": (5, set()),

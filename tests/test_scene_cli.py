@@ -49,7 +49,7 @@ def test_options_are_numbers_of_the_scene():
     plain = puck("simulate", "--v0", "1,0", "--w0", "5", "--json")
     scene = puck("simulate", "--v0", "1,0", "--w0", "5", "--set", "puck.mass=1", "--json")
     assert json.loads(scene.stdout)["x"] == pytest.approx(
-        json.loads(plain.stdout)["stop_position"][0], rel=1e-12
+        json.loads(plain.stdout)["stop_position"][0], rel=1e-9
     )
 
 
@@ -105,8 +105,11 @@ def test_a_map_over_a_scene_opens_in_xarray_and_equals_single_runs(tmp_path):
         tables = find_scene("incline")
         tables["floor"]["slope"], tables["launch"]["spin"] = 0.05, 40.0
         single = simulate_scene(tables, [0.0])
-        assert float(data["x"][1, 2]) == single.last["x"]
-        assert float(data["end_time"][1, 2]) == single.end_time
+        unit = single.speed_scale / single.rate_scale
+        far = 2.0 * single.scene.tol * unit
+        assert float(data["end_time"][1, 2]) == pytest.approx(single.end_time, abs=far)
+        far *= single.speed_scale
+        assert float(data["x"][1, 2]) == pytest.approx(single.last["x"], abs=far)
     table = puck("sweep", "--scene", "incline", *ranges)
     assert table.stdout.splitlines()[0].startswith("floor_slope[rad],launch_spin[rad/s],x[m]")
     assert len(table.stdout.splitlines()) == 13

@@ -19,8 +19,8 @@ from puck_tables.errors import InputError, PuckError
 from puck_tables.scene import parts
 from puck_tables.scene.entries import set_path, tables_of
 from puck_tables.scene.library import shipped_scenes
-from puck_tables.scene.plan import ingredients, plan_for
 from puck_tables.scene.scene_text import as_toml
+from puck_tables.world.plan import plan_of
 from puck_tables.world.scene import Scene
 
 FREE: dict[str, Any] = {
@@ -249,7 +249,7 @@ class SceneOfBumpyWalls(Scene):
 )  # fmt: skip
 def test_an_ingredient_that_the_plan_does_not_know_is_an_error(kind: Any, path: str) -> None:
     scene = kind(Puck(1.0, friction=0.1))  # whether it is there or not
-    for ask in (ingredients, plan_for, Scene.simulate):
+    for ask in (plan_of, Scene.simulate):
         with pytest.raises(PuckError, match=rf"^{path}: the plan of a run knows no such"):
             ask(scene)
 
@@ -315,7 +315,7 @@ def test_a_scene_made_from_dataclasses_is_checked_like_a_file() -> None:
 
 def test_what_disagrees_in_dataclasses_is_told_too() -> None:
     good = Scene.from_tables(whole({}))
-    with pytest.raises(InputError, match=r"wall\[0\]: the puck at launch\.position"):
+    with pytest.raises(InputError, match=r"wall\[0\]: the puck at \[0\.0, 0\.0\] reaches through"):
         replace(good, walls=(parts.Wall((0.0, 0.0), normal=(1.0, 0.0)),))
 
 

@@ -50,7 +50,7 @@ def test_scenes_that_never_end_are_refused_also_with_a_frame_and_in_a_sweep():
             simulate_scene(scene, times)
     with pytest.raises(InputError, match="may never stop"):
         sweep_scene({**scene, "launch": {**scene["launch"], "spin": "0:1:2"}})
-    with pytest.raises(InputError, match="nothing brings this scene to rest"):
+    with pytest.raises(InputError, match="nothing brings the puck to rest"):
         simulate_scene({"puck": {"radius": 0.04}})
 
 

@@ -28,7 +28,7 @@ def scene(force: float, torque: float, **parts: Any) -> dict[str, Any]:
         },
         "floor": {**parts.pop("floor", {})},
         "force": {"constant": [0.8 * force, 0.6 * force], "torque": torque},
-        "time": 1e-3,
+        "time": 1.0,
         **parts,
     }
 

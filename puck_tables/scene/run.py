@@ -279,8 +279,8 @@ def ledger(columns: Mapping[str, Any]) -> tuple[FloatArray, FloatArray]:
     return missing, np.max(np.abs(np.broadcast_arrays(*gains, *losses)), axis=0)
 
 
-def residual(columns: Mapping[str, Any]) -> float:
-    """What the energy ledger misses at most, as a share of its largest entry.
+def residual(columns: Mapping[str, Any], least: float = 0.0) -> float:
+    """What the energy ledger misses at most, as a share of its largest entry, or of ``least`` J.
 
     Examples
     --------
@@ -289,7 +289,7 @@ def residual(columns: Mapping[str, Any]) -> float:
     0.5
     """
     missing, largest = (float(one.max()) for one in ledger(columns))
-    return missing / largest if largest > 0.0 else 0.0
+    return missing / max(largest, least) if largest > 0.0 else 0.0
 
 
 def number_of(puck: int | str, names: Sequence[str]) -> int:

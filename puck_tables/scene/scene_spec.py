@@ -30,7 +30,6 @@ from puck_tables.scene.parts import (
 )
 from puck_tables.scene.pieces import Arc, PieceSpec, Pocket, Post, Rim
 from puck_tables.scene.ranges import Ranges, batch_of, launch_rows, owner_of, refuse_twice
-from puck_tables.scene.restitution import Restitution
 
 MAX_RUNS = 1_000_000_000  # of one sweep
 
@@ -158,9 +157,8 @@ class SceneSpec:
         InputError
         """
         if self.ranges:
-            sweep = "" if self.is_board else ", or run a sweep"
             raise InputError(
-                f"{', '.join(self.ranges)}: a range makes many runs; give one number{sweep}"
+                f"{', '.join(self.ranges)}: a range makes many runs; give one number, or run a sweep"
             )
         return self
 

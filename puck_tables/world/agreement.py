@@ -57,6 +57,18 @@ def called(piece: PieceSpec, number: int) -> str:
     return piece.name or f"puck {number}"
 
 
+def who(scene: SceneSpec, number: int) -> str:
+    """A puck of a scene in a sentence: the only one has no number.
+
+    Examples
+    --------
+    >>> from puck_tables import Puck, Scene
+    >>> who(Scene(Puck(0.1)), 0)
+    'the puck'
+    """
+    return called(scene.pucks[number], number) if scene.pucks else "the puck"
+
+
 def refuse_endless(scene: SceneSpec) -> None:
     """Refuse a run that has no end of its own and is given none.
 
@@ -77,13 +89,13 @@ def refuse_endless(scene: SceneSpec) -> None:
             )
         if not grips and not (scene.edges or scene.pockets):
             raise InputError(
-                f"nothing brings {called(piece, number)} to rest (its friction is 0): give "
+                f"nothing brings {who(scene, number)} to rest (its friction is 0): give "
                 "a time, or friction"
             )
         hold = piece.constraint
         if hold is not None and ((any(hold.velocity) and not moves) or hold.side_slip != 0.0):
             raise InputError(
-                f"the {hold.kind} of {called(piece, number)} moves, so it never comes to rest: "
+                f"the {hold.kind} of {who(scene, number)} moves, so it never comes to rest: "
                 "give a time"
             )
 
@@ -187,7 +199,7 @@ def _bad_floors(scene: SceneSpec, pieces: tuple[PieceSpec, ...]) -> Iterator[str
     found: dict[str, list[str]] = {}
     for number, piece in enumerate(pieces):
         for fault in () if piece.path else floor_faults(scene.alone(piece)):
-            found.setdefault(fault, []).append(called(piece, number))
+            found.setdefault(fault, []).append(who(scene, number))
     slides = sum(not piece.path for piece in pieces)
     for fault, names in found.items():
         yield fault if len(names) == slides else f"{', '.join(names)}: {fault}"
@@ -277,7 +289,7 @@ def start_of(piece: PieceSpec) -> tuple[float, float]:
 def _out_of_bounds(scene: SceneSpec, pieces: tuple[PieceSpec, ...]) -> Iterator[str]:
     """Pucks that start in a cushion or a hole."""
     for number, piece in enumerate(pieces):
-        place, name = start_of(piece), called(piece, number)
+        place, name = start_of(piece), who(scene, number)
         for path, what, depth in in_the_way(scene, place, piece.radius, holes=not piece.path):
             yield f"{path}: {name} at {list(place)} {what} by {depth:.3g} m: move one of them"
 
@@ -307,7 +319,7 @@ def _driven_through(scene: SceneSpec, pieces: tuple[PieceSpec, ...]) -> Iterator
                 row = int(deep[0])
                 start, end = rows[row : row + 2, 0]
                 yield (
-                    f"{path}: {called(piece, number)} is driven through it between {start:g} s and "
+                    f"{path}: {who(scene, number)} is driven through it between {start:g} s and "
                     f"{end:g} s, {piece.radius - gap[row]:.3g} m deep: lead its path around it"
                 )
 

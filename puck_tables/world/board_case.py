@@ -36,7 +36,7 @@ from puck_tables.world.bulk import Ends, follow_all
 from puck_tables.world.engine import CROWDED, OFF_TABLE, PUSHING, TANGLED, TOO_SHORT
 from puck_tables.world.footing import moves_along
 from puck_tables.world.lasting import FOR_EVER, LEADS_ON, ROUND
-from puck_tables.world.ledger import NAMES, energies_of, kinetic_of, ledgers_of
+from puck_tables.world.ledger import NAMES, energies_of, energy_scale, kinetic_of, ledgers_of
 from puck_tables.world.plan import plan_of
 from puck_tables.world.prepare import game_of, order_of
 from puck_tables.world.reactions import reactions
@@ -178,7 +178,8 @@ class BoardCase:
         }
         out |= {name: ends.ledgers[:, n] for name, n in NAMES.items()}
         missing, largest = ledger(out)
-        out["energy_residual"] = missing / np.where(largest > 0.0, largest, 1.0)
+        least = energy_scale(self.game)
+        out["energy_residual"] = missing / np.maximum(largest, least)
         out |= {"end_time": ends.time, "impacts": ends.impacts.astype(np.float64)}
         for values in out.values():
             values[status > LAST_END] = np.nan
@@ -191,7 +192,7 @@ class BoardCase:
             end, ends.time[run] = run_on(world, None)
             if world.groups > 0:  # what simulate refuses by its ledger
                 now = energies_of(world, np.array([world.time]))
-                if not residual(now) <= MISSED:
+                if not residual(now, energy_scale(world._game)) <= MISSED:
                     raise PuckError
         except InputError:
             return NO_END

@@ -196,6 +196,8 @@ def next_border(
                 return t
             if bend > 0.0:
                 step = max(step, math.sqrt(2.0 * rounded / bend))
+            elif rate > 0.0:  # it has only just come there
+                step = max(step, 2.0 * rounded / rate)
         if look >= PATIENCE and others > step:
             longer = stays_apart(
                 game, i, -1 - k, t, max(gap, rounded), nx, ny, 0.0, False, room, one, one

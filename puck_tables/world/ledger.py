@@ -61,6 +61,15 @@ NAMES = {
 }  # fmt: skip
 
 
+_NOTHING = 1e-6  # of what the pucks hold at the scale of speeds: an energy next to their rounding
+
+
+def energy_scale(game: Game) -> float:
+    """The least energy to which what a ledger misses is compared, J."""
+    light = game.discs[:, LIGHTNESS]
+    return _NOTHING * 0.5 * float((1.0 / light[light > 0.0]).sum() * game.pace[0] ** 2)
+
+
 @inlined
 def _first_from(times: FloatArray, t: float) -> int:
     """The first of ascending times that is not before t; their number: none."""

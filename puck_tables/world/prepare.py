@@ -47,6 +47,7 @@ from puck_tables.world.paths import FIRST, PIECE_COLUMNS
 from puck_tables.world.rim_laws import number_for, rims_of
 from puck_tables.world.works import WORK_COLUMNS
 
+SWIFTEST = 1e100  # m/s: its square is a number
 FAR = 1e12  # radii that a puck may slide: its rounding is a thousandth of a radius
 ROWS = 256  # of events and flights at first
 STEP_SHARE = 1e-2  # of what a flight may be wrong by, of each step where it is integrated
@@ -228,9 +229,13 @@ def scales_of(game: Game, speeds: FloatArray) -> FloatArray:
 
 def _refuse_far(game: Game, speed: float, radius: float) -> None:
     """Refuse looked-up pucks whose slide, at the largest slip, is beyond what digits can tell."""
+    if not speed < SWIFTEST:
+        raise InputError(
+            f"a slip of {speed:.3g} m/s is too fast for floating point: use other units"
+        )
     decels = game.floors[(game.floors[:, 2] == 0.0) & (game.floors[:, 0] > 0.0), 0]
     least = float(decels.min(initial=math.inf))
-    if not math.isfinite(speed) or (speed > 0.0 and speed / least > FAR * radius / speed):
+    if speed > 0.0 and speed / least > FAR * radius / speed:
         raise InputError(
             f"at a slip of {speed:.3g} m/s and the least friction, {least:.3g} m/s^2, a puck would "
             f"slide some {speed / least * speed:.3g} m, and places are good to 1e-15 of that: use "

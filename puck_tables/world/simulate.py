@@ -32,7 +32,7 @@ from puck_tables.world.agreement import TABLE_ERROR, flight_error, pieces_of
 from puck_tables.world.footing import moves_along
 from puck_tables.world.lasting import at_rest_below
 from puck_tables.world.layout import HOLD
-from puck_tables.world.ledger import energies_of
+from puck_tables.world.ledger import energies_of, energy_scale
 from puck_tables.world.plan import plan_of
 from puck_tables.world.reactions import reactions
 from puck_tables.world.rests import floor_under, rests_of, slips_over
@@ -58,7 +58,7 @@ def simulate(scene: SceneSpec, times: npt.ArrayLike | None = None) -> Run:
     columns = columns_of(world, moments, end_time)
     if not scene.pucks:
         columns = {n: one if one.ndim == 1 else one[:, 0] for n, one in columns.items()}
-    missed = residual(columns)
+    missed = residual(columns, energy_scale(world._game))
     if world.groups > 0 and not missed <= MISSED:
         raise PuckError(g.TOGETHER.format(time=world.time))
     speed, rate = world._game.pace[:2].tolist()
@@ -106,7 +106,8 @@ def run_on(world: World, moments: FloatArray | None) -> tuple[str, float]:
         ends_of_motion = world.motion_ends
         moving = bool(world.moving.any())
         end_time = world.time if moving else float(ends_of_motion.max())
-        carried = moving and bool((ends_of_motion < math.inf).all())
+        along = moving and moves_along(world._game.surface)
+        carried = along and bool((ends_of_motion < math.inf).all())
         end = ENDS[CARRIED_AWAY if carried else TIME_UP if moving else AT_REST]
     else:
         end_time, goes_round = world.come_to_rest()
@@ -123,7 +124,9 @@ def columns_of(world: World, moments: FloatArray, end_time: float) -> dict[str, 
 
     Arrays (times, pucks); energies but kinetic ones are of all together, (times,).
     """
-    times = np.minimum(np.append(moments, end_time), world.time)
+    wanted = np.minimum(np.append(moments, end_time), world.time)
+    order = np.argsort(wanted, kind="stable")  # of what rests states are asked after the end, too
+    times, back = wanted[order], np.argsort(order)
     alone_gone = len(world.names) == 1 and not world.in_play[0]
     if alone_gone:  # its run ends as it leaves
         times = np.minimum(times, np.nextafter(end_time, 0.0))
@@ -133,23 +136,23 @@ def columns_of(world: World, moments: FloatArray, end_time: float) -> dict[str, 
     for event in world.events_since(0.0):
         if event.what in ("pocket", "edge"):
             in_play[times >= event.time, world.names.index(event.puck)] = 0.0
-    in_play[-1] *= 0.0 if alone_gone else 1.0
+    in_play[back[-1]] *= 0.0 if alone_gone else 1.0
     discs = world._place
     slips = slips_over(world._game, np.broadcast_to(discs, in_play.shape).ravel(),
                        states.reshape(-1, 6)).reshape(in_play.shape)  # fmt: skip
     energies = energies_of(world, times)
     energies["kinetic_energy"] = energies["kinetic_energy"][:, discs]
     columns = {
-        "time": np.append(moments, end_time),
         **{name: states[..., n] for n, name in enumerate(STATE)},
         "in_play": in_play, "carried": np.where((slips <= near) & (in_play > 0.0), 1.0, 0.0),
         **energies,
     }  # fmt: skip
     if (world._game.discs[:, HOLD] != FREE).any():
-        order = world._order
-        forces = reactions(world._game, times, states[:, order], in_play[:, order])[:, discs]
+        own = world._order
+        forces = reactions(world._game, times, states[:, own], in_play[:, own])[:, discs]
         columns |= {"lambda_1": forces[..., 0], "lambda_2": forces[..., 1]}
-    return columns
+    found = {name: values[back] for name, values in columns.items()}
+    return {"time": np.append(moments, end_time), **found}
 
 
 def _number(row: Any) -> Any:
