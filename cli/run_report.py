@@ -30,7 +30,7 @@ def report(run: Run) -> str:
     steps = f", {run.steps} steps" if run.steps else ""
     lines |= {"error": _error(run), "model": run.model + steps}
     if any(event.what == "overhang" for event in run.events):
-        from puck_tables.scene.plan import OVERHANG
+        from puck_tables.scene.acting import OVERHANG
 
         lines["overhang"] = OVERHANG
     if run.scene.lateral.strength != 0.0:

@@ -60,7 +60,10 @@ def test_every_error_at_once() -> None:
         ({"time": 0.0}, "time = 0.0: must be a number > 0 s"),
         ({"wall": [{"point": [0, 0], "normal": [0, 0]}]}, "wall[0].normal = [0.0, 0.0]: must have"),
         ({"wall": [{"point": [0.01, 0], "normal": [-1, 0]}]}, "reaches through it by 0.03 m"),
-        ({"edge": [{"point": [-1, 0], "normal": [-1, 0]}]}, "the puck at [0.0, 0.0] lies in it by 1 m"),
+        (
+            {"edge": [{"point": [-1, 0], "normal": [-1, 0]}]},
+            "the puck at [0.0, 0.0] lies in it by 1 m",
+        ),
         ({"constraint": {"kind": "pivot"}}, "constraint.reach = 0: a pivot needs a number > 0 m"),
         ({"constraint": {"kind": "rail", "angle": 1.0}}, "launch.velocity = [1.0, 0.0]: the rail"),
         ({"launch": {"spin": "0:1:1"}}, "launch.spin = '0:1:1': must be a range of 2 to 1000000"),

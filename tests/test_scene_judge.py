@@ -12,7 +12,6 @@ from scene_judge import Judge
 from scenes import simulate_scene
 
 from puck_tables import Scene
-from puck_tables.scene.prepare import prepare
 from puck_tables.scene.run import Run
 
 NAMES = ("x", "y", "orientation", "vx", "vy", "spin")
@@ -20,11 +19,11 @@ NAMES = ("x", "y", "orientation", "vx", "vy", "spin")
 
 def scales(scene: dict[str, Any]) -> np.ndarray:
     """Q²/J, Q²/(J r), Q, Q/r of the launch, for x, y, θ, vx, vy, ω."""
-    prepared = prepare(Scene.from_tables(scene))
-    state, surface = prepared.state, prepared.model.surface
-    rim = prepared.model.body.radius * state[5]
-    q = math.hypot(state[3] - surface.vx, state[4] - surface.vy, rim) / prepared.ask.speed
-    return prepared.ask.scale[:6] * max(q, 1.0) ** np.array([2, 2, 2, 1, 1, 1])
+    world = Scene.from_tables(scene).world()
+    speed, rate = world._game.pace[:2].tolist()
+    radius, length = world.scene.puck.radius, speed * speed / rate
+    slow = max(1.0, 2.0 * world.scene.puck.gyration**2)
+    return np.array([length, length, length / radius, speed, speed, speed / (slow * radius)])
 
 
 def puck(**more: Any) -> dict[str, Any]:

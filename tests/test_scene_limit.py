@@ -12,11 +12,9 @@ import pytest
 from random_scenes import draw
 from scenes import simulate_scene
 
-from puck_tables import Scene
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.quadrature import integrals
 from puck_tables.contact.resultants import moment_balance
-from puck_tables.scene.prepare import prepare
 
 G = 9.80665
 
@@ -252,10 +250,3 @@ def test_a_force_that_sets_in_beyond_what_friction_holds(share: float, tmp_path:
     assert [event.what for event in run.events][:2] == ["stick", "slip"]
     assert run.events[1].time == pytest.approx(0.3, rel=1e-12)
     assert run.error_estimate <= 1e-8 and run.energy_residual < 1e-8
-
-
-def test_prepared_scales_are_those_reported() -> None:
-    scene = Scene.from_tables({"puck": {"radius": 0.1, "friction": 0.2}, "floor": {"slope": 0.1}})
-    prepared = prepare(scene)
-    assert prepared.speed == pytest.approx(math.sqrt(prepared.rate * 0.1))
-    assert prepared.rate == pytest.approx(0.2 * G * math.cos(0.1))

@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate._ivp import dop853_coefficients as published
 
 from puck_tables import Drag, Floor, Launch, Puck, Scene
-from puck_tables.scene import explicit, grading
+from puck_tables.scene import explicit
 
 COARSE, FINE = 1e-5, 1e-11
 EIGHTH, FIFTH = (COARSE / FINE) ** (1 / 8), (COARSE / FINE) ** (1 / 5)
@@ -86,15 +86,3 @@ def test_a_slip_stops_within_a_few_steps() -> None:
         time=whole.end_time * (1.0 - 1e-3), tol=1e-9,
     ).simulate([])  # fmt: skip
     assert whole.steps - before.steps < 12  # by halves it would be 25
-
-
-@pytest.mark.parametrize("share", [0.01, 0.3, 0.6, 0.87])
-def test_a_step_towards_a_stop_takes_its_share(share: float) -> None:
-    """Of what is left; so does what is stretched."""
-    bend = grading.towards_stop(share)
-    assert sum(grading.powers_of(bend)) == pytest.approx(1.0)
-    if share > 0.02:
-        assert grading.left_after(bend) == pytest.approx(1.0 - share)
-        assert grading.stretched(bend, share, 2.0) == pytest.approx(1.0 - (1.0 - share) ** 2)
-    else:
-        assert (bend, grading.stretched(bend, share, 2.0)) == (0.0, 2.0 * share)

@@ -13,8 +13,8 @@ from puck_tables.plot.floor_axes import Box, draw_floor
 from puck_tables.plot.round_parts import RoundPart, draw_rounds, rounds_of
 from puck_tables.plot.style import BLUE, GREY, LAUNCH, ORANGE, RED, STOP
 from puck_tables.plot.titles import legend_below, noted, out_of_sight
+from puck_tables.scene.acting import acting
 from puck_tables.scene.parts import Edge, Wall
-from puck_tables.scene.plan import acting
 from puck_tables.scene.run import Run
 from puck_tables.scene.scene_spec import SceneSpec
 

@@ -10,50 +10,15 @@ from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
 from puck_tables.scene.floor_patches import patch_faults
 from puck_tables.scene.forces import drive_of
-from puck_tables.scene.holds import allowed_velocity, misfits
+from puck_tables.scene.holds import allowed_velocity
 from puck_tables.scene.orthotropic import LEAST_RATIO
 from puck_tables.scene.parts import Edge, Floor, Rows, Wall
 
 if TYPE_CHECKING:
     from puck_tables.scene.scene_spec import SceneSpec
 
-_SMALLEST, _LARGEST = 1e-100, 1e100
 _MOST_ROWS = 60  # of a tabulated pressure astride: each row adds to the cost of a look
 _GRIPS = 1000.0  # the largest coefficient that a rim may come over
-
-
-def disagreements(scene: SceneSpec) -> list[str]:
-    """What is wrong between fields that are each in range."""
-    faults = []
-    for name, value in (("radius", scene.puck.radius), ("mass", scene.puck.mass)):
-        if not _SMALLEST <= value <= _LARGEST:  # the moment of inertia and its inverse are numbers
-            faults.append(
-                f"puck.{name} = {value:g}: must be from {_SMALLEST:g} to {_LARGEST:g} in a scene, "
-                "use other units"
-            )
-    faults += floor_faults(scene)
-    if not scene.frames.is_integer():
-        faults.append(f"frames = {scene.frames:g}: must be a whole number")
-    lines: list[tuple[str, Wall | Edge]] = [(f"wall[{i}]", w) for i, w in enumerate(scene.walls)]
-    lines += [(f"edge[{i}]", edge) for i, edge in enumerate(scene.edges)]
-    for name, line in lines:
-        if not 1e-100 < math.hypot(*line.normal) < 1e100:
-            faults.append(f"{name}.normal = {list(line.normal)}: must have a direction")
-            continue
-        margin = scene.puck.radius if isinstance(line, Wall) else 0.0
-        gap = distance(line, scene.launch.position) - margin
-        if gap < -1e-12 * max(margin, math.hypot(*line.point)):
-            what = "reaches through it" if margin > 0.0 else "is beyond it"
-            faults.append(
-                f"{name}: the puck at launch.position = {list(scene.launch.position)} "
-                f"{what} by {-gap:.3g} m: move the launch, or turn the normal into the field"
-            )
-    hold = scene.constraint
-    if hold is None:
-        return faults
-    if scene.walls:
-        faults.append("constraint and wall: a scene has one of them, not both")
-    return faults + misfits(scene.launch, hold, scene.floor, "")
 
 
 def floor_faults(scene: SceneSpec) -> list[str]:

@@ -4,9 +4,9 @@ The state holds place and angle in the laboratory, and velocity and spin *relati
 under the puck: so a slip keeps all its digits however fast the floor moves.  With s the velocity of
 the floor there and Ω its spin, x′ = v = u + s and u′ = F/m − Ω × v.  Given forces act on the
 centre, so the balance of moments that tilts the pressure stays that of the free puck.  The state
-carries the energies too: work of given forces, heat of dry friction (of the floor and of the rim
-on a cushion), heat of viscous friction (2f₂ of Chetaev), work of moving supports and constraints
-(−f₁, and what dry friction and reactions do at the velocity of their support).
+carries the energies too: work of given forces, heat of dry friction, heat of viscous friction (2f₂
+of Chetaev), work of moving supports and constraints (−f₁, and what dry friction and reactions do at
+the velocity of their support).
 """
 
 from __future__ import annotations
@@ -25,7 +25,6 @@ from puck_tables.scene.friction import (
     VY,
     X,
     Y,
-    dry_friction,
     dry_friction_here,
     size,
 )
@@ -40,7 +39,6 @@ from puck_tables.scene.ingredients import (
     held,
     put_at,
 )
-from puck_tables.scene.leaning import wall_reaction
 
 SIZE = 10
 GIVEN, DRY, VISCOUS, SUPPORT = range(6, SIZE)
@@ -95,17 +93,6 @@ def stopping(radius: float, y: FloatArray, work: FloatArray) -> tuple[float, flo
     return y[VX] / q, y[VY] / q, y[SPIN] / q, slip_change(radius, y, work)
 
 
-@inlined
-def acting_force(stretch: Stretch, t: float, y: FloatArray) -> tuple[float, float]:
-    """All force on the puck but that of walls and constraints."""
-    model = stretch.model
-    gx, gy, _ = given_force(model.forces, stretch.piece, t)
-    put_at(stretch.dry, y[X], y[Y])
-    hx, hy, _, _ = dry_friction(stretch.dry, model.body.radius, y[VX], y[VY], y[SPIN])
-    dx, dy, _, _ = drag_force(model.forces, y[VX], y[VY], y[SPIN])
-    return gx + hx + dx, gy + hy + dy
-
-
 @inner
 def rates(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: int) -> None:
     """:func:`rates_here` for callers whose time it is not worth to paste it in."""
@@ -133,11 +120,9 @@ def rates_here(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: 
         ax, ay, aw = gain * nx, gain * ny, gain * nw
         out[row, VX], out[row, VY], out[row, SPIN] = ax, ay, aw
         fx, fy, fm = gx - body.mass * cx, gy - body.mass * cy, gm
-        rx, ry, rm = wall_reaction(body, stretch.leaning, cx + ax, cy + ay, fx, fy, fm)
-        # what the floor and what holds the puck there do besides the given forces and the walls
-        fx, fy, fm = body.mass * ax - fx - rx, body.mass * ay - fy - ry, body.inertia * aw - fm - rm
-        rim = -(rx * vx + ry * vy + rm * spin)
-        out[row, DRY] = rim - (fx * y[VX] + fy * y[VY] + fm * y[SPIN])
+        # what the floor and what holds the puck there do besides the given forces
+        fx, fy, fm = body.mass * ax - fx, body.mass * ay - fy, body.inertia * aw - fm
+        out[row, DRY] = -(fx * y[VX] + fy * y[VY] + fm * y[SPIN])
         out[row, VISCOUS] = 0.0
         out[row, SUPPORT] = fx * sx + fy * sy + fm * turning
         out[row, LAMBDA], out[row, LAMBDA + 1] = 0.0, 0.0
@@ -146,10 +131,6 @@ def rates_here(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: 
     hx, hy, hm, heat = dry_friction_here(stretch.dry, body.radius, y[VX], y[VY], y[SPIN])
     dx, dy, dm, warmth = drag_force(model.forces, y[VX], y[VY], y[SPIN])
     fx, fy, fm = gx + hx + dx, gy + hy + dy, gm + hm + dm
-    if stretch.leaning.shape[0] > 0:
-        rx, ry, rm = wall_reaction(body, stretch.leaning, 0.0, 0.0, fx, fy, fm)
-        heat -= rx * vx + ry * vy + rm * spin
-        fx, fy, fm = fx + rx, fy + ry, fm + rm
     rx, ry, rm, first, second, power = held(model.hold, body, model.surface, y, fx, fy, fm)
     out[row, VX] = (fx + rx) / body.mass - cx
     out[row, VY] = (fy + ry) / body.mass - cy

@@ -1,4 +1,4 @@
-"""An explicit step of order 8, on a graded time (:mod:`puck_tables.scene.grading`).
+"""An explicit step of order 8.
 
 The pair 8(5,3) of Dormand and Prince (:data:`puck_tables.motion.tableaus.DORMAND_PRINCE_8`).  Its
 error is h e₅²/√(e₅² + e₃²/100), of order 8, with e₅ and e₃ those of embedded methods of order 5, 3.
@@ -15,8 +15,7 @@ from puck_tables.kernels.compile import inlined
 from puck_tables.motion.tableaus import DORMAND_PRINCE_8
 from puck_tables.scene.blade_axes import by_floor, has_axes, rates_by_blade
 from puck_tables.scene.equations import SIZE, rates_here
-from puck_tables.scene.friction import VX, VY, X, Y
-from puck_tables.scene.grading import powers_of
+from puck_tables.scene.friction import VX, VY
 from puck_tables.scene.ingredients import Stretch
 
 STAGES = len(DORMAND_PRINCE_8.c)  # the last one stands at the end of the step
@@ -41,15 +40,13 @@ HALFWAY_STAGES[_NODES] = np.linalg.solve(
 
 
 @inlined
-def _five(
-    y: FloatArray, i: int, h: float, slope: float, stage: int, work: FloatArray, new: FloatArray
-) -> None:  # fmt: skip
+def _five(y: FloatArray, i: int, h: float, stage: int, work: FloatArray, new: FloatArray) -> None:
     """Five numbers, from i on, of the state at a stage into ``new``.
 
     By name, so that they stay in registers: a compiler does not see that ``new`` and ``work`` are
     apart, and in loops over both to write and read again takes as long as to add.
     """
-    w = h * slope * _A[stage, 0]
+    w = h * _A[stage, 0]
     a, b, c = y[i] + w * work[0, i], y[i + 1] + w * work[0, i + 1], y[i + 2] + w * work[0, i + 2]
     d, e = y[i + 3] + w * work[0, i + 3], y[i + 4] + w * work[0, i + 4]
     for j in range(_SECOND[stage], stage):
@@ -64,18 +61,16 @@ def explicit_step(
     stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
     new: FloatArray,
 ) -> float:  # fmt: skip
-    """A step from (t, y) over h into ``new`` (12,), the state and dx, dy; its error in ``scale``.
+    """A step from (t, y) over h into ``new``; its error in ``scale``.
 
-    On entry work[0] is dy/dt at t, on return work[STAGES − 1] that at the end; those between are by
-    the variable of the step.  Velocities of a blade are by its own axes, on entry and on return.
+    On entry work[0] is dy/dt at t, on return work[STAGES − 1] that at the end.  Velocities of a
+    blade are by its own axes, on entry and on return.
     """
-    graded, own = stretch.bend != 0.0, has_axes(stretch)
-    slope, two, three, four = powers_of(stretch.bend)
+    own = has_axes(stretch)
     for stage in range(1, STAGES):
-        s = _C[stage]
-        moment = t + h * (s * (slope + s * (two + s * (three + s * four))))
-        _five(y, 0, h, slope, stage, work, new)
-        _five(y, 5, h, slope, stage, work, new)
+        moment = t + h * _C[stage]
+        _five(y, 0, h, stage, work, new)
+        _five(y, 5, h, stage, work, new)
         along, across = new[VX], new[VY]
         if own:
             by_floor(stretch, new)
@@ -83,17 +78,9 @@ def explicit_step(
         if own:
             new[VX], new[VY] = along, across
             rates_by_blade(stretch, new, work, stage)
-        if graded and stage < STAGES - 1:
-            here = slope + s * (2.0 * two + s * (3.0 * three + s * (4.0 * four)))
-            for i in range(SIZE):
-                work[stage, i] *= here
-    new[SIZE], new[SIZE + 1] = h * slope * _B[0] * work[0, X], h * slope * _B[0] * work[0, Y]
-    for j in range(_LATE, STAGES - 1):
-        new[SIZE] += h * _B[j] * work[j, X]
-        new[SIZE + 1] += h * _B[j] * work[j, Y]
     largest = 0.0
     for i in range(SIZE):
-        rate = slope * work[0, i]
+        rate = work[0, i]
         fifth, third = _ERROR_5[0] * rate, _ERROR_3[0] * rate
         for k in range(_LATE, STAGES - 1):
             rate = work[k, i]

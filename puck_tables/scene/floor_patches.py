@@ -111,27 +111,6 @@ def point_to_edge(p: FloatArray, a: FloatArray, b: FloatArray) -> float:
     return math.dist(p, a + share * way)
 
 
-def distances(floor: Floor, place: tuple[float, float]) -> list[float]:
-    """How far a place is from the border of every patch; in a patch that is negative.
-
-    Examples
-    --------
-    >>> from puck_tables import Floor, Patch
-    >>> distances(Floor(patches=[Patch(0.1, radius=1.0)]), (0.0, 0.25))
-    [-0.75]
-    """
-    point, found = np.array(place), []
-    for patch in floor.patches:
-        places = corners_of(patch)
-        away = math.dist(patch.centre, place) - patch.radius
-        if len(places):
-            ahead = np.roll(places, -1, axis=0)
-            away = min(point_to_edge(point, a, b) for a, b in zip(places, ahead, strict=True))
-            away = -away if inside(places, point) else away
-        found.append(away)
-    return found
-
-
 def patch_faults(floor: Floor) -> list[str]:
     """What is wrong with the patches of a floor; they may touch, but not overlap.
 

@@ -18,7 +18,7 @@ from puck_tables.kernels.compile import inlined
 from puck_tables.scene.parts import Rows
 
 if TYPE_CHECKING:
-    from puck_tables.scene.scene_spec import SceneSpec
+    pass
 
 
 MAX_DRIVE = 1 << 26  # bytes of a file of forces
@@ -45,63 +45,6 @@ class Forces(NamedTuple):
     across: float
     by_speed: float
     by_spin: float
-
-
-def forces_of(scene: SceneSpec) -> Forces:
-    """The forces of a scene.
-
-    Raises
-    ------
-    InputError
-        If the forces over time are none.
-
-    Examples
-    --------
-    >>> from puck_tables import Drag, Puck, Scene
-    >>> forces_of(Scene(Puck(1.0), drag=Drag(sliding=0.5))).sliding
-    0.5
-    """
-    puck, floor, force, drag = scene.puck, scene.floor, scene.force, scene.drag
-    pull = puck.mass * puck.gravity * math.sin(floor.slope)
-    return Forces(
-        x=force.constant[0] + pull * math.cos(floor.downhill),
-        y=force.constant[1] + pull * math.sin(floor.downhill),
-        torque=force.torque,
-        drive=drive_of(force.over_time) if force.over_time else np.empty((0, 4)),
-        sliding=drag.sliding,
-        spinning=drag.spinning,
-        quadratic=drag.quadratic,
-        quadratic_spin=drag.spinning_quadratic,
-        across=scene.lateral.strength,
-        by_speed=scene.lateral.speed_exponent,
-        by_spin=scene.lateral.spin_exponent,
-    )
-
-
-def strongest(forces: Forces, radius: float, speed: FloatArray) -> FloatArray:
-    """The largest force, or torque over the radius, at slips of these speeds, N (n,)."""
-    drive = forces.drive
-    given = max(
-        math.hypot(forces.x, forces.y),
-        abs(forces.torque) / radius,
-        float(np.hypot(drive[:, 1], drive[:, 2]).max(initial=0.0)),
-        float(np.abs(drive[:, 3]).max(initial=0.0)) / radius,
-    )
-    spin = speed / radius
-    with np.errstate(over="ignore"):
-        across = abs(forces.across) * speed**forces.by_speed * spin**forces.by_spin
-    turning = spin * (forces.spinning + forces.quadratic_spin * spin) / radius
-    drag = np.maximum(speed * (forces.sliding + forces.quadratic * speed), turning)
-    return np.asarray(np.maximum(np.maximum(given, drag), across))
-
-
-def impulse_over_time(forces: Forces, radius: float) -> tuple[float, float]:
-    """What forces over time give in all, N s, and when they have ended, s."""
-    drive = forces.drive
-    if not len(drive):
-        return 0.0, 0.0
-    force = np.hypot(drive[:, 1], drive[:, 2]) + np.abs(drive[:, 3]) / radius
-    return float(np.trapezoid(force, drive[:, 0])), max(float(drive[-1, 0]), 0.0)
 
 
 def drive_of(given: str | Rows) -> FloatArray:

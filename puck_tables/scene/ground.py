@@ -70,13 +70,6 @@ def _pieces(profile: FloatArray) -> FloatArray:
 NO_GROUND = np.empty(0)
 
 
-def own_ground(ground: FloatArray, share: float) -> FloatArray:
-    """The ground of a run, with all friction so many times as large."""
-    own = ground.copy()
-    own[SHARE : SHARE + 1] *= share
-    return own
-
-
 @inlined
 def border_of(ground: FloatArray, number: int) -> float:
     """The place of a border."""
@@ -100,12 +93,6 @@ def corner_of(ground: FloatArray, number: int) -> tuple[float, float]:
     """A corner of a patch."""
     first = _HEAD + 2 * int(ground[BORDERS]) + 1 + PATCH_COLUMNS * int(ground[PATCHES])
     return ground[first + 2 * number], ground[first + 2 * number + 1]
-
-
-@inlined
-def patches_on(ground: FloatArray) -> int:
-    """How many patches there are."""
-    return int(ground[PATCHES]) if ground.size > 0 else 0
 
 
 @inlined

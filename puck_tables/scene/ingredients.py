@@ -141,23 +141,18 @@ class Model(NamedTuple):
 class Stretch(NamedTuple):
     """What acts between two events.
 
-    ``leaning``: the walls that the puck leans on, rows (n, 5), see
-    :func:`puck_tables.scene.leaning.wall_reaction`; ``piece``: how many rows of ``forces.drive``
-    have passed; ``mode`` SLIDES, CARRIED (at rest on the floor), STOPS: with the constant relative
-    acceleration way[3] times the direction way[:3]; ``newton``: 0 for explicit steps; for implicit
-    ones, where the slip settles much faster than it changes, how well to solve their equations, in
-    units of the scales; ``bend``: how the time of explicit ones is graded, see
-    :mod:`puck_tables.scene.grading`.
+    ``piece``: how many rows of ``forces.drive`` have passed; ``mode`` SLIDES, CARRIED (at rest on
+    the floor), STOPS: with the constant relative acceleration way[3] times the direction way[:3];
+    ``newton``: 0 for explicit steps; for implicit ones, where the slip settles much faster than it
+    changes, how well to solve their equations, in units of the scales.
     """
 
     model: Model
     dry: Dry
-    leaning: FloatArray
     piece: int
     mode: int
     way: tuple[float, float, float, float]
     newton: float
-    bend: float
 
 
 def hold_of(hold: Constraint | None, launch: Launch) -> Hold:

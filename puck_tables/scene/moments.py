@@ -1,4 +1,4 @@
-"""When in a step something happens that is no line: the floor lets go, a rim stops, φ = π/4."""
+"""When in a step something happens that is no line: the floor lets go, a slip stops, φ = π/4."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
-from puck_tables.scene.cushions import NX, NY, rim_slip
 from puck_tables.scene.equations import SECOND, rates, slip_side, stopping
 from puck_tables.scene.forces import jumps
 from puck_tables.scene.friction import SPIN, VX, VY, size
@@ -17,25 +16,19 @@ from puck_tables.scene.ingredients import (
     Dry,
     Model,
     Stretch,
-    floor_velocity,
     is_astride,
 )
-from puck_tables.scene.leaning import GRIP, RIM
 from puck_tables.scene.orthotropic import is_elliptic
 from puck_tables.scene.rest import SLACK, excess_at_rest, held_by_floor, slip_led
 from puck_tables.scene.steps import step
 
-# watched: equal speeds of centre and rim; no spin; else the rim on a wall that is leant on
+# watched: equal speeds of centre and rim; nothing; no spin
 EQUAL, NOTHING, SPINLESS = -1, -2, -3
 _TURNS, _SETTLED = 3000, 1e-12  # at most; of friction: a direction stays
 _SLOW = 1e-3  # of friction: what brakes less comes closer to rest before it goes straight
-_STEADY = 1e-4  # of its rate: a slip whose direction does not change
-_LOST = 1e-10  # of the scale of speeds: rounding of places turns the slip
-_FAR = 10.0  # times the slip: a rim that slides so fast does not stop before
 REST = 1e-13  # of the scale of speeds: as good as at rest
 _MARGIN = 0.2  # of friction
-_BLURRED = 10.0  # times the local error: a slip that steps blur,
-_BRAKED = 0.3  # and that loses at least this share of what changes it
+_BLURRED = 10.0  # times the local error: a slip that steps blur
 _CLOSE = 1e-12  # of a step: how well a moment in it is known
 
 
@@ -74,7 +67,7 @@ def lost(
 
 
 @inlined
-def rests_on(model: Model, dry: Dry, leaning: FloatArray, piece: int, y: FloatArray) -> bool:
+def rests_on(model: Model, dry: Dry, piece: int, y: FloatArray) -> bool:
     """Whether the floor, at rest, holds a puck whatever forces are still to come.
 
     Between two rows a force lies between theirs; a curve that bulges inwards is given a margin.
@@ -87,7 +80,7 @@ def rests_on(model: Model, dry: Dry, leaning: FloatArray, piece: int, y: FloatAr
         return True
     for row in range(piece, rows + 1):  # at last what is left when the rows have ended
         at = row if row == rows else max(row, 1)
-        stretch = Stretch(model, dry, leaning, at, CARRIED, NO_WAY, 0.0, 0.0)
+        stretch = Stretch(model, dry, at, CARRIED, NO_WAY, 0.0)
         if excess_at_rest(stretch, model.forces.drive[min(row, rows - 1), 0], y)[0] > level:
             return False
     return True
@@ -96,14 +89,7 @@ def rests_on(model: Model, dry: Dry, leaning: FloatArray, piece: int, y: FloatAr
 @inlined
 def watched(stretch: Stretch, what: int, y: FloatArray) -> float:
     """What changes its sign at a moment that is looked for."""
-    model = stretch.model
-    if what == EQUAL:
-        return slip_side(model.body.radius, y)
-    if what == SPINLESS:
-        return float(y[SPIN])
-    sx, sy, turning = floor_velocity(model.surface, y[0], y[1])
-    lean = stretch.leaning[what]
-    return rim_slip(model.body, lean[NX], lean[NY], y[VX] + sx, y[VY] + sy, y[SPIN] + turning)
+    return slip_side(stretch.model.body.radius, y) if what == EQUAL else float(y[SPIN])
 
 
 @inner
@@ -144,18 +130,14 @@ def cut_short(
     new: FloatArray,
 ) -> tuple[int, float]:  # fmt: skip
     """What happens first on a step to ``new`` that is no line, or NOTHING; when; ``new`` then."""
-    radius, leaning, first = stretch.model.body.radius, stretch.leaning, NOTHING
-    for passed in range(2 + leaning.shape[0]):
+    radius, first = stretch.model.body.radius, NOTHING
+    for passed in range(2):
         what = NOTHING
         if passed == 0 and stretch.mode == SLIDES:
             what = EQUAL if slip_side(radius, y) * slip_side(radius, new) < 0.0 else what
         turns_over = y[SPIN] * new[SPIN] < 0.0 and jumps(stretch.model.forces)
         if passed == 1 and stretch.mode == SLIDES and turns_over:
             what = SPINLESS
-        for i in range(leaning.shape[0]):
-            passes = leaning[i, RIM] * watched(stretch, i, new) < 0.0
-            if what == NOTHING and leaning[i, GRIP] > 0.0 and passes:
-                what = i
         if what != NOTHING:
             when = zero(stretch, what, t, h, y, scale, work, new)
             if what == EQUAL and t + when == t:  # the slip is too small for a step to tell
@@ -208,7 +190,7 @@ def goes_straight(
     brakes, mass = -way[3], stretch.model.body.mass
     if not brakes > 0.0:
         return NO_WAY, 0.0
-    leaning, still = stretch.leaning.shape[0] > 0, q <= 2.0 * REST * speed
+    still = q <= 2.0 * REST * speed
     across = math.sqrt(max(pull * pull - brakes * brakes, 0.0))
     small = _SLOW * stretch.dry.load
     excess = excess_at_rest(stretch, t, y)[0]
@@ -217,19 +199,6 @@ def goes_straight(
     blurred = q <= _BLURRED * tolerance * speed
     quick = brakes > small / mass / slow and across <= brakes
     quick = quick and (blurred or late <= tolerance * unit)
-    if leaning and excess == math.inf:  # it goes through rest, for the floor goes into the wall
-        still = across <= _STEADY * brakes or q <= _LOST * speed
-        quick, late = False, 0.0
-    elif excess > SLACK * stretch.dry.load:
+    if excess > SLACK * stretch.dry.load or not (quick or still):
         return NO_WAY, 0.0
-    if leaning and blurred and brakes >= _BRAKED * pull:
-        return way, late
-    if not quick and not still:
-        return NO_WAY, 0.0
-    for i in range(stretch.leaning.shape[0]):  # the rim may stick before
-        sticks = abs(watched(stretch, i, y)) <= _FAR * q
-        rolls = stretch.leaning[i, RIM] == 0.0 and excess == math.inf  # and goes on to
-        unsure = stretch.leaning[i, GRIP] > 0.0 and sticks and not rolls
-        if unsure and q > 2.0 * REST * speed:
-            return NO_WAY, 0.0
     return way, late

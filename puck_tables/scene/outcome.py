@@ -1,4 +1,4 @@
-"""How runs of a scene end, what happens on the way, and the ledger of one puck."""
+"""How runs of a scene end, and what happens on the way."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from puck_tables.scene.scene_text import as_toml
 
 ENDS = (
     "at rest", "carried by the floor", "carried round", "time is up", "over the edge",
-    "in a pocket", "step limit", "events crowd together", "not finite", "undecided",
+    "in a pocket", "step limit", "events crowd together",
     "impacts without end", "unsolved", "faster than a table of restitution goes",
     "no end found", "refused",
 )  # fmt: skip
@@ -22,15 +22,9 @@ ENDS = (
 # many, which go on
 AT_REST, CARRIED_AWAY, CARRIED_ROUND, TIME_UP, OVER_EDGE, IN_POCKET = range(6)
 LAST_END = IN_POCKET
-STEP_LIMIT, EVENT_LIMIT, NOT_FINITE, UNDECIDED = range(6, 10)
-IMPACTS_WITHOUT_END, UNSOLVED, TOO_FAST, NO_END, REFUSED = range(10, 15)
+STEP_LIMIT, EVENT_LIMIT = range(6, 8)
+IMPACTS_WITHOUT_END, UNSOLVED, TOO_FAST, NO_END, REFUSED = range(8, 13)
 EVENTS = ("stick", "slip", "impact", "contact", "entry", "edge", "exit", "overhang")
-
-# rows of the compiled loop, and what follows from them
-LEDGER = (
-    "time", "x", "y", "orientation", "vx", "vy", "spin", "work_given", "heat_dry", "heat_viscous",
-    "work_support", "lambda_1", "lambda_2", "carried", "heat_impact", "kinetic_energy",
-)  # fmt: skip
 
 
 def refuse_changed(scene: SceneSpec, files: Mapping[str, str]) -> None:

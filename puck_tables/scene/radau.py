@@ -115,7 +115,7 @@ def radau_step(
     stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
     new: FloatArray,
 ) -> float:  # fmt: skip
-    """A step from (t, y) over h into ``new`` (12,), the state and dx, dy; its error in ``scale``.
+    """A step from (t, y) over h into ``new``; its error in ``scale``.
 
     inf: Newton's iteration did not converge.  On entry work[0] is dy/dt at t.
     """
@@ -183,7 +183,6 @@ def radau_step(
         return math.inf
     for i in range(SIZE):
         new[i] = y[i] + z[2, i]
-    new[SIZE], new[SIZE + 1] = z[2, X], z[2, X + 1]
     matrix, order = matrix[:_STIFF, :_STIFF], order[:_STIFF]
     return _error(stretch, h, y, scale, work, z, new, jacobian, matrix, order, step[:_STIFF])
 

@@ -35,15 +35,6 @@ from puck_tables.scene.ingredients import (
     is_astride,
     put_at,
 )
-from puck_tables.scene.leaning import (
-    GRIP,
-    NX,
-    NY,
-    RIM,
-    push_of,
-    still_torques,
-    wall_reaction,
-)
 from puck_tables.scene.orthotropic import ellipse_in, elliptic_demand, is_elliptic
 
 SLACK = 1e-12  # of f N: a demand this close to the limit is held
@@ -155,96 +146,6 @@ def constrained_yield(
     return free_yield(dry, body.radius, along * ex, along * ey, torque, guided)
 
 
-@inlined
-def _rim_yield(
-    dry: Dry, body: Body, nx: float, ny: float, most: float, fx: float, fy: float, torque: float,
-    guided: bool,
-) -> Yield:  # fmt: skip
-    """Along one wall whose rim friction takes up to ``most`` N: it takes what is best for rest.
-
-    The power of the best slip is convex in that friction, so its least is found by thirds.
-    """
-    along = nx * fy - ny * fx
-    most = min(most, abs(along) + abs(torque) / body.radius)  # more is never of use
-    low, high = -most, most
-    for _ in range(80):
-        left, right = low + (high - low) / 3.0, high - (high - low) / 3.0
-        one = free_yield(
-            dry, body.radius, -ny * (along + left), nx * (along + left),
-            torque - body.radius * left, guided,
-        )[0]  # fmt: skip
-        two = free_yield(
-            dry, body.radius, -ny * (along + right), nx * (along + right),
-            torque - body.radius * right, guided,
-        )[0]  # fmt: skip
-        if one <= two:
-            high = right
-        else:
-            low = left
-    rim = 0.5 * (low + high)
-    return free_yield(
-        dry, body.radius, -ny * (along + rim), nx * (along + rim), torque - body.radius * rim,
-        guided,
-    )  # fmt: skip
-
-
-@inlined
-def _wall_yield(
-    dry: Dry, body: Body, leaning: FloatArray, ax: float, ay: float, fx: float, fy: float,
-    torque: float,
-) -> Yield:  # fmt: skip
-    """Where one wall pushes; of a rim that slides along it the friction is known."""
-    for i in range(leaning.shape[0]):
-        lean = leaning[i]
-        push = push_of(lean, body.mass, ax, ay, fx, fy)
-        if push > 0.0 and lean[RIM] == 0.0 and lean[GRIP] > 0.0:
-            most = lean[GRIP] * push
-            return _rim_yield(dry, body, lean[NX], lean[NY], most, fx, fy, torque, True)
-    rx, ry, rm = wall_reaction(body, leaning, ax, ay, fx, fy, torque)
-    return free_yield(dry, body.radius, fx + rx, fy + ry, torque + rm, True)
-
-
-@inner
-def _corner_yield(
-    dry: Dry, body: Body, leaning: FloatArray, ax: float, ay: float, fx: float, fy: float,
-    torque: float,
-) -> Yield:  # fmt: skip
-    """Where more walls push: two of them hold the force and the floor what torque is left.
-
-    Or one wall and the floor do, or the puck slips along one wall, off the others.
-    """
-    radius, count = body.radius, leaning.shape[0]
-    _, _, _, heat = dry_friction(dry, radius, 0.0, 0.0, 1.0 / radius)
-    best = (math.inf, 0.0, 0.0, 0.0)
-    for i in range(count):
-        for j in range(i + 1, count):
-            if leaning[i, RIM] != 0.0 or leaning[j, RIM] != 0.0:
-                continue
-            holds, low, high = still_torques(leaning[i], leaning[j], fx, fy)
-            need = torque / radius
-            over = max(need - high, low - need, 0.0)
-            if holds and over - heat < best[0]:
-                best = (over - heat, 0.0, 0.0, (1.0 if need > high else -1.0) / radius)
-    if best[0] <= SLACK * dry.load:
-        return best
-    for i in range(count):
-        push = push_of(leaning[i], body.mass, ax, ay, fx, fy)
-        if push == 0.0 or leaning[i, RIM] != 0.0:
-            continue
-        nx, ny = leaning[i, NX], leaning[i, NY]
-        one = _rim_yield(dry, body, nx, ny, leaning[i, GRIP] * push, fx, fy, torque, True)
-        off = True
-        for j in range(count):
-            away = leaning[j, NX] * one[1] + leaning[j, NY] * one[2]
-            off = off and (j == i or away >= -1e-12)
-        if one[0] <= SLACK * dry.load or (off and one[0] < best[0]):
-            best = one
-    if best[0] < math.inf:
-        return best
-    rx, ry, rm = wall_reaction(body, leaning, ax, ay, fx, fy, torque)
-    return free_yield(dry, radius, fx + rx, fy + ry, torque + rm, True)
-
-
 @kernel
 def excess_at_rest(stretch: Stretch, t: float, y: FloatArray) -> Yield:
     """By how much the power of the best slip at Q = 1 exceeds friction, W, and that slip.
@@ -264,16 +165,6 @@ def excess_at_rest(stretch: Stretch, t: float, y: FloatArray) -> Yield:
         return constrained_yield(
             dry, model.hold, body, y[THETA], ax, ay, turning, fx, fy, torque, guided
         )
-    leaning, pushes, slack = stretch.leaning, 0, SLACK * dry.load
-    for i in range(leaning.shape[0]):
-        nx, ny = leaning[i, NX], leaning[i, NY]
-        if body.mass * (nx * ax + ny * ay) < -slack:  # the floor goes into the wall
-            return math.inf, nx, ny, 0.0
-        pushes += 1 if push_of(leaning[i], body.mass, ax, ay, fx, fy) > 0.0 else 0
-    if pushes > 0 and leaning.shape[0] > 1:  # what slips along one wall may go into another
-        return _corner_yield(dry, body, leaning, ax, ay, fx, fy, torque)
-    if pushes == 1:
-        return _wall_yield(dry, body, leaning, ax, ay, fx, fy, torque)
     if is_astride(dry) and torque == 0.0 and (sx != 0.0 or sy != 0.0):
         # Without a torque b = κ F, and as |u| is convex no slip gains where F is below the least f
         # alone: ∫ σ |u| dA ≥ N |u at the centre of pressure|.  A puck that is carried asks often.

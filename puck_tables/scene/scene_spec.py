@@ -158,7 +158,8 @@ class SceneSpec:
         """
         if self.ranges:
             raise InputError(
-                f"{', '.join(self.ranges)}: a range makes many runs; give one number, or run a sweep"
+                f"{', '.join(self.ranges)}: a range makes many runs; give one number, or run a "
+                "sweep"
             )
         return self
 
@@ -210,17 +211,6 @@ class SceneSpec:
         """
         instance("path", path, str)
         return "" if is_batch(path) else entry_at(self, path).kind.unit
-
-    @property
-    def is_board(self) -> bool:
-        """Whether it is for the engine of many pucks: several, posts, arcs, pockets, laws of rims.
-
-        Examples
-        --------
-        >>> SceneSpec(PuckSpec(0.04)).is_board
-        False
-        """
-        return True
 
     def _parts(self) -> dict[str, Any]:
         """Its parts by the tables that they stand in."""

@@ -6,14 +6,12 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inner
-from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.ingredients import (
     CARRIED,
-    FREE,
     NO_WAY,
     SLIDES,
     Stretch,
-    floor_velocity,
 )
 from puck_tables.scene.moments import REST, settle_way
 from puck_tables.scene.rest import SLACK, excess_at_rest
@@ -35,19 +33,13 @@ def from_standstill(
     if excess <= SLACK * load:
         return CARRIED, False, 0.0
     q = 2.0 * REST * speed
-    if excess == math.inf and model.hold.kind != FREE:  # it is led where the floor does not go
+    if excess == math.inf:  # it is led where the floor does not go
         return SLIDES, False, 0.0
-    if excess == math.inf:  # the floor goes into a wall, and under the puck
-        sx, sy, _ = floor_velocity(model.surface, y[X], y[Y])
-        off = -(nx * sx + ny * sy)
-        if abs(off) > q:
-            y[VX], y[VY] = off * nx, off * ny
-            return SLIDES, True, abs(off)
-    elif stretch.leaning.shape[0] == 0 and excess <= _QUICK * load:
+    if excess <= _QUICK * load:
         q = _FIRST * speed
         y[VX], y[VY], y[SPIN] = q * nx, q * ny, q * nw
         return SLIDES, True, q
     y[VX], y[VY], y[SPIN] = q * nx, q * ny, q * nw
-    slips = Stretch(model, stretch.dry, stretch.leaning, stretch.piece, SLIDES, NO_WAY, 0.0, 0.0)
+    slips = Stretch(model, stretch.dry, stretch.piece, SLIDES, NO_WAY, 0.0)
     settle_way(slips, t, q, y, work)
     return SLIDES, True, q

@@ -29,20 +29,18 @@ def follow_scales(scale: FloatArray, tolerance: float, body: Body, y: FloatArray
 
 @inlined
 def up_to_the_stop(
-    stretch: Stretch, h: float, q: float, least: float, pull: float, reach: float, closest: float,
-    y: FloatArray, work: FloatArray,
-) -> tuple[float, float]:  # fmt: skip
-    """The length of a step, no longer than where a slip q ≥ 0 leads; the rate at which that ends.
+    stretch: Stretch, h: float, q: float, least: float, pull: float, reach: float, y: FloatArray,
+    work: FloatArray,
+) -> float:  # fmt: skip
+    """The length of a step, no longer than where a slip q ≥ 0 leads.
 
     ``pull``: how fast the slip changes.  An implicit step takes at most the share ``reach`` of the
-    time in which that is as much as the slip, or ``least``.  Explicit ones follow how it stops: of
-    what brakes it they take at most the share ``closest``, and the rate of that, 1/s, is what their
-    time is graded by; else it is 0.
+    time in which that is as much as the slip, or ``least``; explicit ones that share of what brakes
+    it, or turns it.
     """
     near, radius = max(q, least), stretch.model.body.radius
     brakes = -slip_change(radius, y, work) if q > 0.0 else 0.0
-    across = math.sqrt(max(pull * pull - brakes * brakes, 0.0))
-    most, ends = pull / reach, 0.0
+    most = pull / reach
     if stretch.newton == 0.0 and brakes > 0.0:
-        most, ends = max(across / reach, brakes / closest), brakes / near
-    return (near / most if h * most > near else h), ends
+        most = max(math.sqrt(max(pull * pull - brakes * brakes, 0.0)), brakes) / reach
+    return near / most if h * most > near else h

@@ -1,6 +1,6 @@
 """One step in time: of order 8, or where the slip settles fast Radau IIA of order 5.
 
-A step ends on the constraint, and off the walls that the puck leans on.
+A step ends on the constraint.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.blade_axes import by_blade, by_floor, has_axes, rates_by_blade
-from puck_tables.scene.equations import FIRST, SIZE, rates, to_laboratory
+from puck_tables.scene.equations import FIRST, rates
 from puck_tables.scene.explicit import STAGES, explicit_step
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.ingredients import (
@@ -27,11 +27,7 @@ from puck_tables.scene.ingredients import (
     carried_along,
     floor_velocity,
 )
-from puck_tables.scene.leaning import keep_on
 from puck_tables.scene.radau import radau_step
-
-_LEVEL = 1e-12  # of the scale of accelerations: none
-WIDE = SIZE + 2  # of a new state: with the way of the step, exact however far out it is
 
 
 @inlined
@@ -58,21 +54,6 @@ def _put_right(hold: Hold, surface: Surface, t: float, y: FloatArray) -> None:
 
 
 @inlined
-def nudged(model: Model, size: float, number: int, scale: FloatArray, y: FloatArray) -> None:
-    """Move a puck on a blade off its way by ``size``, in ``scale``, as its steps may err.
-
-    A blade that is led aside gains speed as it turns, and its heading errs for ever: what is small
-    at first grows a hundred times.  Two runs that err alike at first would not show it.
-    """
-    if model.hold.kind == BLADE:
-        bearing = y[THETA] + model.hold.angle
-        speed = math.copysign(size * scale[VX], math.cos(number))  # either way, in no order
-        y[VX] += speed * math.cos(bearing)
-        y[VY] += speed * math.sin(bearing)
-        y[SPIN] += math.copysign(size * scale[SPIN], math.sin(2.0 * number))
-
-
-@inlined
 def accelerations(model: Model, work: FloatArray, row: int) -> tuple[float, float, float]:
     """Those of the centre in the laboratory and of the spin, by a row of rates of the state."""
     cx, cy = carried_along(model.surface, work[row, X], work[row, Y])
@@ -84,7 +65,7 @@ def step(
     stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
     new: FloatArray,
 ) -> float:  # fmt: skip
-    """A step from (t, y) over h into ``new`` (12,), the state and dx, dy; its error in ``scale``.
+    """A step from (t, y) over h into ``new``; its error in ``scale``.
 
     On entry work[0] is dy/dt at t; on return work[STAGES − 1] is that at the end.
     """
@@ -107,13 +88,6 @@ def step(
         new[VX] = new[VY] = new[SPIN] = 0.0
         if model.surface.spin == 0.0:  # straight on: what looks like an error is rounding
             error = 0.0
-    elif stretch.mode == SLIDES:
-        if model.hold.kind != FREE:
-            _put_right(model.hold, model.surface, t + h, new)
-        if stretch.leaning.shape[0] > 0:
-            level = _LEVEL * scale[VX] * scale[VX] / scale[X]
-            first, last = accelerations(model, work, 0), accelerations(model, work, STAGES - 1)
-            to_laboratory(model, new, 1.0)
-            keep_on(model.body, stretch.leaning, first, last, level, new, SIZE)
-            to_laboratory(model, new, -1.0)
+    elif stretch.mode == SLIDES and model.hold.kind != FREE:
+        _put_right(model.hold, model.surface, t + h, new)
     return error

@@ -16,7 +16,6 @@ from puck_tables.kernels.compile import inlined, inner, kernel
 from puck_tables.scene.equations import SIZE
 from puck_tables.scene.ingredients import CARRIED as CARRIED_ALONG
 from puck_tables.scene.ingredients import NO_WAY, Dry, Stretch
-from puck_tables.scene.leaning import LEAN_COLUMNS
 from puck_tables.scene.rest import excess_at_rest
 from puck_tables.world.departures import Room
 from puck_tables.world.engine import REACHED, TOO_SHORT
@@ -196,12 +195,12 @@ def _brakes(game: Game) -> FloatArray:
     pulls = np.hypot(discs[:, PULL_X], discs[:, PULL_Y])
     brakes = np.abs(game.floors[:, 0].reshape(-1, len(discs)) - pulls).ravel()
     if discs[:, TWIST].any():
-        _fill_brakes(game, np.zeros(SIZE), np.zeros((0, LEAN_COLUMNS)), brakes)
+        _fill_brakes(game, np.zeros(SIZE), brakes)
     return brakes
 
 
 @kernel
-def _fill_brakes(game: Game, y: FloatArray, leaning: FloatArray, out: FloatArray) -> None:
+def _fill_brakes(game: Game, y: FloatArray, out: FloatArray) -> None:
     """The same of discs that a torque turns: how far friction is from what it could just hold."""
     regions, count = game.regions, game.discs.shape[0]
     for row in range(out.size):
@@ -209,7 +208,7 @@ def _fill_brakes(game: Game, y: FloatArray, leaning: FloatArray, out: FloatArray
         if game.discs[i, TWIST] == 0.0 or regions.astride[row] or regions.load[row] == 0.0:
             continue
         dry = Dry(regions.load[row], regions.delta[row], regions.cuts[row], regions.by_speed)
-        stretch = Stretch(model_of(game, i), dry, leaning, 0, CARRIED_ALONG, NO_WAY, 0.0, 0.0)
+        stretch = Stretch(model_of(game, i), dry, 0, CARRIED_ALONG, NO_WAY, 0.0)
         excess = abs(excess_at_rest(stretch, 0.0, y)[0])
         out[row] = min(excess, regions.load[row]) * game.discs[i, LIGHTNESS]
 

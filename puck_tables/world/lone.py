@@ -90,7 +90,7 @@ _SAFE = 0.8  # of how long a piece could be, by what the last one missed
 _BRIEF = 1e-6  # of Q/J: on as short a step what a piece misses is rounding
 _NEAR = 0.75  # of the time in which the slip would end, at most, is a step
 _LAST = 0.03  # of the root of the error of a step: slips as small may go straight to their stop
-_STIFF, _MILD, _SLOWLY = 0.8, 0.3, 0.1  # as in :mod:`puck_tables.scene.loop`
+_STIFF, _MILD, _SLOWLY = 0.8, 0.3, 0.1
 _NEWTON, _FINEST_NEWTON = 1e-3, 1e-15  # of the error of a step: how well implicit ones are solved
 _SWING = 0.05  # rad that a puck at rest on a turntable turns, at most, in a step
 _OVER = 1e-12  # of a radius: beyond a border
@@ -103,8 +103,7 @@ class Desk(NamedTuple):
 
     Rates of the stages of a step (13, 12), and at its start and end (2, 12) and middle (1, 12);
     states at its start, its end and in between (12,); scales of a state; a place on a piece; powers
-    at the start, the energies of a step, powers at its end, and the energies half way (4, …); the
-    walls that it leans on: none (0, …).
+    at the start, the energies of a step, powers at its end, and the energies half way (4, …).
     """
 
     stages: FloatArray
@@ -116,7 +115,6 @@ class Desk(NamedTuple):
     scale: FloatArray
     place: FloatArray
     ledgers: FloatArray
-    leaning: FloatArray
 
 
 _ENDS, _MIDDLE, _STATES = STAGES, STAGES + 2, STAGES + 3
@@ -130,7 +128,7 @@ def _desk_on(rows: FloatArray) -> Desk:
     return Desk(
         rows[:STAGES], rows[_ENDS:_MIDDLE], rows[_MIDDLE:_STATES], rows[_STATES],
         rows[_STATES + 1], rows[_STATES + 2], rows[_STATES + 3], rows[_STATES + 4],
-        rows[_BOOKS:DESK_ROWS], rows[:0],
+        rows[_BOOKS:DESK_ROWS],
     )  # fmt: skip
 
 
@@ -286,7 +284,7 @@ def _longest(stretch: Stretch, h: float, q: float, speed: float, desk: Desk) -> 
     y, surface, radius = desk.y, stretch.model.surface, stretch.model.body.radius
     if stretch.mode == SLIDES and stretch.dry.load > 0.0:
         pull, least = slip_rate(radius, desk.stages), REST * speed
-        h, _ = up_to_the_stop(stretch, h, q, least, pull, _NEAR, _NEAR, y, desk.stages)
+        h = up_to_the_stop(stretch, h, q, least, pull, _NEAR, y, desk.stages)
     elif stretch.mode == CARRIED:
         if surface.spin != 0.0:
             h = min(h, _SWING / abs(surface.spin))
@@ -358,7 +356,7 @@ def follow_alone(
     ``work`` (25, 12): to work on.
     """
     model, dry, desk = model_of(game, i), dry_under(game.regions, game.discs, i), _desk_on(work)
-    y, new, stages, leaning = desk.y, desk.new, desk.stages, desk.leaning
+    y, new, stages = desk.y, desk.new, desk.stages
     speed, unit, radius = game.pace[0], game.pace[0] / game.pace[1], model.body.radius
     tol, drive = max(game.pace[2], FINEST), model.forces.drive
     _lay_out(game, i, model, state, tol, desk)
@@ -376,18 +374,18 @@ def follow_alone(
             if dry.load > 0.0 and q <= REST * speed:
                 vx, vy, spin, slow_q = y[VX], y[VY], y[SPIN], q
                 y[VX] = y[VY] = y[SPIN] = 0.0
-                at_rest = Stretch(model, dry, leaning, rows, CARRIED, way, 0.0, 0.0)
+                at_rest = Stretch(model, dry, rows, CARRIED, way, 0.0)
                 mode, stiff, q = from_standstill(at_rest, speed, now, y, stages)
                 if mode == SLIDES and count == 0 and slow_q > q:  # the path before began to slip
                     y[VX], y[VY], y[SPIN], q = vx, vy, spin, slow_q
                 rests = mode == CARRIED and not _swings(model, dry)
-                rests = rests and rests_on(model, dry, leaning, rows, y)
+                rests = rests and rests_on(model, dry, rows, y)
                 turns = (mode == CARRIED) != (before == CARRIED)
                 if rests or (turns and count > 0 and now > t):
                     break
                 h = target - now if mode == CARRIED else h
         newton = max(_NEWTON * tol, _FINEST_NEWTON) if stiff and mode == SLIDES else 0.0
-        stretch = Stretch(model, dry, leaning, rows, mode, way, newton, 0.0)
+        stretch = Stretch(model, dry, rows, mode, way, newton)
         if settle or not known:
             rates(stretch, now, y, stages, FIRST)
         settle, known = False, True
@@ -396,7 +394,7 @@ def follow_alone(
             way, _ = goes_straight(stretch, speed, tol, unit, now, q, pull, slow, y, stages)
             if way[3] < 0.0:
                 mode, h, newton = STOPS, -q / way[3], 0.0
-                stretch = Stretch(model, dry, leaning, rows, mode, way, newton, 0.0)
+                stretch = Stretch(model, dry, rows, mode, way, newton)
                 rates(stretch, now, y, stages, FIRST)
         h = _longest(stretch, h, q, speed, desk)
         landed = now + (1.0 if mode == STOPS else 1.1) * h >= target

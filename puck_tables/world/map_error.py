@@ -8,9 +8,8 @@ import numpy as np
 
 from puck_tables.errors import PuckError
 from puck_tables.scene.outcome import LAST_END
-from puck_tables.scene.simulate import simulate
 from puck_tables.world.scene_ends import SceneEnds
-from puck_tables.world.simulate import simulate as on_board
+from puck_tables.world.simulate import simulate
 
 CHECKED = 8  # runs
 
@@ -34,7 +33,7 @@ def largest_error(ends: SceneEnds) -> float:
     for number in valid[places].tolist():
         one = ends.scene.at(ends.numbers(number))
         try:
-            run = on_board(one, []) if one.is_board else simulate(one, [])
+            run = simulate(one, [])
         except PuckError:  # its own end is in doubt
             return math.inf
         place = np.unravel_index(number, ends.end.shape)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from puck_tables._core.fields import specs
+from puck_tables.scene.acting import EMPIRICAL, acting
 from puck_tables.scene.pieces import PieceSpec
-from puck_tables.scene.plan import EMPIRICAL, acting
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import (
     TABLE_ERROR,
@@ -87,7 +87,7 @@ def _acting_on(scene: SceneSpec, piece: PieceSpec) -> list[str]:
     Raises
     ------
     PuckError
-        As :func:`puck_tables.scene.plan.acting`.
+        As :func:`puck_tables.scene.acting.acting`.
     """
     one = scene.alone(piece)
     for spec in specs(type(scene)).values():

@@ -20,7 +20,6 @@ from puck_tables.scene.equations import (
 )
 from puck_tables.scene.friction import X, Y
 from puck_tables.scene.ingredients import FREE, NO_WAY, SLIDES, Stretch
-from puck_tables.scene.leaning import LEAN_COLUMNS
 from puck_tables.world.alone import rows_passed
 from puck_tables.world.footing import dry_under, ground_span, lies_to, off_border, step_onto
 from puck_tables.world.game import Game
@@ -43,15 +42,14 @@ def reactions(game: Game, times: FloatArray, states: FloatArray, in_play: FloatA
     regions = game.regions._replace(ground=game.regions.ground.copy())
     own = game._replace(discs=game.discs.copy(), regions=regions)
     out = np.zeros((len(times), len(game.discs), 2))
-    leaning, work = np.empty((0, LEAN_COLUMNS)), np.empty((1, ROW))
-    _fill(own, times, in_play, states, leaning, np.empty(SIZE), work, out)
+    _fill(own, times, in_play, states, np.empty(SIZE), np.empty((1, ROW)), out)
     return out
 
 
 @kernel
 def _fill(
     game: Game, times: FloatArray, in_play: FloatArray, states: FloatArray,
-    leaning: FloatArray, y: FloatArray, work: FloatArray, out: FloatArray,
+    y: FloatArray, work: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
     for i in range(game.discs.shape[0]):
         if int(game.discs[i, HOLD]) == FREE:
@@ -75,7 +73,7 @@ def _fill(
                 continue
             rows = rows_passed(drive, 0, len(drive), times[n])
             dry = dry_under(game.regions, game.discs, i)
-            stretch = Stretch(model, dry, leaning, rows, SLIDES, NO_WAY, 0.0, 0.0)
+            stretch = Stretch(model, dry, rows, SLIDES, NO_WAY, 0.0)
             rates(stretch, times[n], y, work, FIRST)
             out[n, i, 0], out[n, i, 1] = work[0, LAMBDA], work[0, LAMBDA + 1]
 

@@ -1,6 +1,6 @@
 """Many runs of a scene: over its ranges, or with numbers that are drawn; where and how each ends.
 
-Runs that differ in nothing but launches are done together, by the engine that the scene asks for.
+Runs that differ in nothing but launches are done together.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from puck_tables.bulk.work import Columns, Tally, Work
 from puck_tables.contact.laws import Law
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset
-from puck_tables.scene.case import Case, told_apart
+from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.scene.entries import is_batch, launch_paths, tables_of
 from puck_tables.scene.library import files_of
 from puck_tables.scene.outcome import ENDS, LAST_END, REFUSED, plain_name
@@ -95,13 +95,12 @@ class Runs(Work):
                 f"(such as {own} = '0:10:101')"
             )
         self.shape = tuple(values.size for values in self.axes.values()) if shape is None else shape
-        self._kind: type[Case] | type[BoardCase] = BoardCase if scene.is_board else Case
-        self.names, self._found = self._kind.names(scene), self._kind.columns(scene)
+        self.names, self._found = BoardCase.names(scene), BoardCase.columns(scene)
         self.columns: Mapping[str, tuple[int, ...]] = self._found
         self.block = min(MOST, max(FEWEST, self.size // 64))
         self._whole, self.files = tables_of(scene), files_of(scene)
         self._read = files_named(self._whole) if read is None else read
-        self._inner = {one for path in self.axes for one in self._kind.launches(scene, path)}
+        self._inner = {one for path in self.axes for one in BoardCase.launches(scene, path)}
         self._case = lru_cache(maxsize=8)(self._made)
 
     def __reduce__(self) -> Any:
@@ -111,7 +110,7 @@ class Runs(Work):
     def identity(self) -> Mapping[str, Any]:
         """The scene, its ranges, and what stands in the files that it names."""
         pucks = [
-            {**table, "pressure": told_apart(puck)} if isinstance(puck.pressure, Law) else table
+            {**table, "pressure": _told_apart(puck)} if isinstance(puck.pressure, Law) else table
             for puck, table in zip(pieces_of(self.scene), self._tables, strict=True)
         ]
         ranges = list(self.scene.ranges.items())
@@ -148,9 +147,9 @@ class Runs(Work):
         axes = zip(self.axes.items(), place, strict=True)
         return {path: float(values[i]) for (path, values), i in axes}
 
-    def _made(self, numbers: tuple[tuple[str, float], ...]) -> Case | BoardCase | InputError:
+    def _made(self, numbers: tuple[tuple[str, float], ...]) -> BoardCase | InputError:
         try:
-            return self._kind(self.scene.at(dict(numbers)))
+            return BoardCase(self.scene.at(dict(numbers)))
         except InputError as error:
             return error
 
@@ -205,7 +204,7 @@ class Runs(Work):
     def _alone(self, numbers: Mapping[str, FloatArray]) -> Any:
         """The end of one run, in a case of its own."""
         one = self.scene.at({path: float(values[0]) for path, values in numbers.items()})
-        return self._kind(one).ends({}, 1)
+        return BoardCase(one).ends({}, 1)
 
     def _refusal(self, run: int) -> str:
         """Why a run is refused."""
@@ -231,18 +230,18 @@ class Runs(Work):
                 first = tally.first[code]
                 at = ", ".join(f"{path} = {one:.10g}" for path, one in self.along(first).items())
                 refused = code == REFUSED
-                advice = self._refusal(first) if refused else self._kind.advice(self.scene, code)
+                advice = self._refusal(first) if refused else BoardCase.advice(self.scene, code)
                 lines.append(
                     f"{count} of {self.size} runs: {ENDS[code]}; the first at {at}: {advice}"
                 )
         return lines
 
-    def _first(self, tally: Tally) -> Case | BoardCase:
+    def _first(self, tally: Tally) -> BoardCase:
         """The case of the first run that is not refused."""
         first = min(run for code, run in tally.first.items() if code != REFUSED)
         numbers = {path: float(one[0]) for path, one in self.numbers(first, first + 1).items()}
         case = self._case(tuple(at for at in numbers.items() if at[0] not in self._inner))
-        return self._kind(self.scene.at(numbers)) if isinstance(case, InputError) else case
+        return BoardCase(self.scene.at(numbers)) if isinstance(case, InputError) else case
 
     def explain(self, tally: Tally) -> str:
         """The model of the first run that is valid, and why."""
@@ -339,3 +338,10 @@ class DrawnRuns(Runs):
             explanation=explanation, told=told, files=self.files, spreads=self.spreads,
             seed=self.seed,
         )  # fmt: skip
+
+
+def _told_apart(puck: PuckSpec) -> dict[str, Any]:
+    """What tells a pressure law that is given as an object from another."""
+    law = puck.body.law
+    ratios = np.stack(law.friction(np.linspace(0.0, 0.5 * np.pi, 99), 0.0))
+    return {"name": law.name, "edges": law.edges, "profile": law.profile, "friction": ratios}

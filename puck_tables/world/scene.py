@@ -15,10 +15,10 @@ import numpy.typing as npt
 from puck_tables._core.executor import Progress
 from puck_tables._core.fields import of
 from puck_tables.puck import Puck
-from puck_tables.scene.agreement import disagreements
 from puck_tables.scene.library import find_scene
 from puck_tables.scene.pieces import PieceSpec
 from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.world.agreement import disagreements
 
 if TYPE_CHECKING:
     from puck_tables.bulk.spreads import Spread
@@ -114,10 +114,6 @@ class Scene(SceneSpec):
 
     def _disagreements(self) -> list[str]:
         """What is wrong between its parts."""
-        if self.is_board:
-            from puck_tables.world.agreement import disagreements as of_board
-
-            return of_board(self)
         return disagreements(self)
 
     @classmethod
@@ -169,11 +165,7 @@ class Scene(SceneSpec):
         >>> run.end, round(run.end_time, 6)
         ('at rest', 2.253703)
         """
-        if self.is_board:
-            from puck_tables.world.simulate import simulate as on_board
-
-            return on_board(self, times)
-        from puck_tables.scene.simulate import simulate
+        from puck_tables.world.simulate import simulate
 
         return simulate(self, times)
 

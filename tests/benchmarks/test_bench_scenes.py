@@ -9,11 +9,7 @@ from scenes import sweep_scene
 
 import puck_tables as pt
 from puck_tables import Scene
-from puck_tables.scene.bulk import ENDS_COLUMNS
-from puck_tables.scene.case import STATE
-from puck_tables.scene.entries import LAUNCH
-from puck_tables.scene.plan import ingredients
-from puck_tables.scene.prepare import prepare
+from puck_tables.world.board_case import BoardCase
 
 ONE = pytest.mark.benchmark(group="one launch in a scene, 1600 at once, one thread")
 CROSSING = pytest.mark.benchmark(group="one launch over borders, 200 at once, one thread")
@@ -24,7 +20,7 @@ SIDE = 40
 RANGES = {"launch.velocity[0]": (0.1, 2.0), "launch.spin": (-50.0, 50.0)}
 
 SCENES: dict[str, dict[str, Any]] = {
-    "free puck, by the loop of scenes": {},
+    "free puck": {},
     "slope": {"floor": {"slope": 0.03}},
     "belt": {"floor": {"velocity": [0.2, 0.1]}},
     "turntable": {"floor": {"turning": 0.5}, "time": 2.0},
@@ -71,18 +67,11 @@ def test_the_plain_integrator(measure: Any) -> None:
 def test_one_ingredient(measure: Any, name: str) -> None:
     import numpy as np
 
-    scene = Scene.from_tables(whole(SCENES[name], velocity=[1.0, 0.0]))
-    assert bool(ingredients(scene)) is (name not in ("free puck, by the loop of scenes", "belt"))
-    prepared = prepare(scene)
-    states = np.tile(prepared.state, (SIDE * SIDE, 1))
+    case = BoardCase(Scene.from_tables(whole(SCENES[name], velocity=[1.0, 0.0])))
     grid = np.meshgrid(*(np.linspace(*ends, SIDE) for ends in RANGES.values()))
-    for path, values in zip(RANGES, grid, strict=True):
-        states[:, STATE[LAUNCH.index(path)]] = values.ravel()
-    out, status = np.empty((ENDS_COLUMNS, SIDE * SIDE)), np.empty(SIDE * SIDE, np.int8)
-    measure(
-        name, lambda: prepared.follow_all(states, out, status), items=SIDE * SIDE, unit="trajectory"
-    )
-    assert not np.isnan(out).any()
+    launches = {path: values.ravel() for path, values in zip(RANGES, grid, strict=True)}
+    measure(name, lambda: case.ends(launches, SIDE * SIDE), items=SIDE * SIDE, unit="trajectory")
+    assert not np.isnan(case.ends(launches, SIDE * SIDE)[0]["x"]).any()
 
 
 @CROSSING
@@ -94,20 +83,20 @@ def test_crossings(measure: Any, pressure: str, floor: str, tol: float) -> None:
     import numpy as np
 
     parts = {"floor": FLOORS[floor], "tol": tol, "puck": {**PUCK, "pressure": pressure}}
-    prepared = prepare(Scene.from_tables({**whole({}, velocity=[1.5, 0.0]), **parts}))
+    case = BoardCase(Scene.from_tables({**whole({}, velocity=[1.5, 0.0]), **parts}))
     rng, count = np.random.default_rng(3), 200
-    states = np.tile(prepared.state, (count, 1))
-    for path, low, high in (
-        ("launch.velocity[0]", 1.2, 2.0), ("launch.velocity[1]", -0.1, 0.1),
-        ("launch.spin", -50.0, 50.0),
-    ):  # fmt: skip
-        states[:, STATE[LAUNCH.index(path)]] = rng.uniform(low, high, count)
-    out, status = np.empty((ENDS_COLUMNS, count)), np.empty(count, np.int8)
+    launches = {
+        path: rng.uniform(low, high, count)
+        for path, low, high in (
+            ("launch.velocity[0]", 1.2, 2.0), ("launch.velocity[1]", -0.1, 0.1),
+            ("launch.spin", -50.0, 50.0),
+        )
+    }  # fmt: skip
     measure(
-        f"{pressure}, {floor}, {tol:.0e}", lambda: prepared.follow_all(states, out, status),
-        items=count, unit="trajectory",
+        f"{pressure}, {floor}, {tol:.0e}", lambda: case.ends(launches, count), items=count,
+        unit="trajectory",
     )  # fmt: skip
-    assert out[1].min() > 0.45
+    assert case.ends(launches, count)[0]["x"].min() > 0.45
 
 
 @SWEEP
