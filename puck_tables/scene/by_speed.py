@@ -24,6 +24,7 @@ Points = tuple[tuple[float, float], ...]
 
 LAW_SHARE = 0.1  # of the error wanted: of the friction at any slip, in units of f N
 NO_LAW = BySpeed(np.zeros(0), 0.0, 0.0, 1.0)
+FARTHER = 4.0  # a law by name holds at all speeds: its table goes on as needed
 _FLAT = 8.0  # times its own scale goes the first table of a launch from rest
 
 _one_at_a_time = threading.Lock()  # the threads of a sweep need the same table
