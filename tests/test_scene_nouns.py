@@ -24,10 +24,10 @@ def test_the_puck_of_a_scene_is_the_puck_of_free_motion() -> None:
     free = PUCK.simulate((0.8, 0.1), 20.0)
     run = pt.Scene(PUCK, launch=LAUNCH).simulate()
     assert run.scene.puck is PUCK
-    unit = run.speed_scale / run.rate_scale
-    assert run.end_time == pytest.approx(free.stop_time, abs=run.error_estimate * unit)
+    unit, far = run.speed_scale / run.rate_scale, run.error_estimate + free.error_estimate
+    assert run.end_time == pytest.approx(free.stop_time, abs=far * unit)
     assert (run.last["x"], run.last["y"]) == pytest.approx(
-        free.stop_position, abs=run.error_estimate * unit * run.speed_scale
+        free.stop_position, abs=far * unit * run.speed_scale
     )
 
 

@@ -67,7 +67,7 @@ class Game(NamedTuple):
     events, history, pieces, works and held contacts are used, how many launches and what else was
     done, and the contacts of the event at work.  ``pace`` (5,): the scales of speed, m/s, and
     acceleration, m/s², the error of a step where motions are integrated, in units of them, the
-    energy of the launches at the start, J, and of the radius, as low rebounds have died out.
+    energy of the launches at the start, J, and how long the rebounds were to last that died out, s.
     """
 
     discs: FloatArray

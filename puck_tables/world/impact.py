@@ -21,9 +21,9 @@ those that take turns are resolved together with e = 0; those that are squeezed 
 Poisson has it, and lessened together should energy grow.  So no numbering matters, and what is
 symmetric stays so.
 
-Rebounds of discs that press on each other die out.  Where those left are lower than 1e-13 of the
-radius, or than the error of a step (in units of Q²/J), e = 0: they stay in contact.  Check runs end
-them earlier, so that what this does to a motion is part of its error estimate.
+Rebounds of discs that press on each other die out.  Where those left are lower than 2e-15 of the
+places, or than a hundredth of the error of a step (in units of Q²/J), e = 0: they stay in contact.
+How long these would have lasted is kept: of one puck it is part of the error estimate.
 """
 
 from __future__ import annotations
@@ -61,7 +61,9 @@ CONTACT_COLUMNS = 18
 NO_END, TOO_FAST = -1, -2  # how impacts fail: rounds without end; faster than a table goes
 
 NEGLIGIBLE = 1e-13  # of the scale of speeds: an approach as slow is none
-FLAT = 1e-13  # of the radius: rebounds as low have died out
+FLAT = 1e-13  # of the radius: rebounds as low are none
+LOW = 2e-15  # of the places: rebounds as low have died out, their height is rounding
+LEAST = 1e-2  # of the error of a step, in units of Q²/J: these, too
 MOST_ROUNDS = 2_000
 TURNS = 200  # rounds after which contacts that take turns are resolved together, with e = 0
 _MOST_ITERATIONS = 50_000
@@ -170,9 +172,12 @@ def _dies_out(game: Game, i: int, j: int, t: float, row: FloatArray, states: Flo
     way = _slip2(game, i, states)
     if j >= 0:
         way = max(way, _slip2(game, j, states))
-    height = max(game.pace[4] * game.discs[i, RADIUS], game.pace[2] * way / game.pace[1])
-    height *= 1.0 - row[E] ** 2
-    return closing > 0.0 and un <= 0.0 and un * un <= 2.0 * closing * height
+    rounded = LOW * (abs(states[i, X]) + abs(states[i, Y]) + game.discs[i, RADIUS])
+    height = max(rounded, LEAST * game.pace[2] * way / game.pace[1]) * (1.0 - row[E] ** 2)
+    if not (closing > 0.0 and un <= 0.0 and un * un <= 2.0 * closing * height):
+        return False
+    game.pace[4] += -2.0 * un / (closing * (1.0 - row[E]))  # how long they would have lasted
+    return True
 
 
 @inlined

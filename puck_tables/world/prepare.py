@@ -42,7 +42,6 @@ from puck_tables.world.game import (
     Game,
     Whole,
 )
-from puck_tables.world.impact import FLAT
 from puck_tables.world.paths import FIRST, PIECE_COLUMNS
 from puck_tables.world.rim_laws import number_for, rims_of
 from puck_tables.world.works import WORK_COLUMNS
@@ -147,7 +146,7 @@ def game_of(scene: SceneSpec, order: Whole) -> tuple[Game, Room]:
         history=np.zeros((ROWS + 4 * count, HISTORY_COLUMNS)),
         works=np.zeros((0, WORK_COLUMNS)),
         counts=np.zeros(COUNTS, np.int64),
-        pace=np.array([0.0, 0.0, STEP_SHARE * flight_error(scene), 0.0, FLAT]),
+        pace=np.array([0.0, 0.0, STEP_SHARE * flight_error(scene), 0.0, 0.0]),
     )
     for i in range(count):
         lay_down(game, i, states[i])

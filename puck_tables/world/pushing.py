@@ -16,6 +16,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel, patience
+from puck_tables.scene.friction import X, Y
 from puck_tables.world.footing import is_over, moves_along, room_on_floor
 from puck_tables.world.forces import can_rest, count_rows, slip_of
 from puck_tables.world.group import (
@@ -41,6 +42,7 @@ from puck_tables.world.group import (
     small_slip,
 )
 from puck_tables.world.layout import LIES, LIGHTNESS, RADIUS
+from puck_tables.world.meeting import ROUNDED
 from puck_tables.world.moments import first_negative, sets_off, watch
 from puck_tables.world.paths import DURATION, START, on_piece, piece_at
 from puck_tables.world.sights import look
@@ -185,10 +187,12 @@ def _opens_midway(
             trial[place, i] = desk.film[i]
     look(group, members, desk.pairs[:contacts], trial, desk.midway)
     for c in range(contacts):
-        radius = group.discs[members[desk.pairs[c, 0]], RADIUS]
+        place = desk.pairs[c, 0]
+        radius = group.discs[members[place], RADIUS]
+        rounded = ROUNDED * (abs(trial[place, X]) + abs(trial[place, Y]) + radius)
         if desk.pairs[c, 1] >= 0:
             radius = min(radius, group.discs[members[desk.pairs[c, 1]], RADIUS])
-        largest = max(largest, abs(desk.midway[c, GAP]) / (_CLOSED * tol * radius))
+        largest = max(largest, abs(desk.midway[c, GAP]) / (_CLOSED * tol * radius + rounded))
     return largest
 
 

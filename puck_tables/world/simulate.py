@@ -233,4 +233,5 @@ def _error(world: World) -> float:
                 gaps.append(min(abs(check.motion_ends[0] - stops[0]), LATER * now) * rate / speed)
         except PuckError:  # it meets what has no answer: so nearly did the run
             gaps.append(float(np.hypot(*np.ptp(states[-1, :, :2], axis=0))) / length)
-    return max(gaps) + world.place_error / length
+    late = float(world._game.pace[4]) * rate / speed if alone else 0.0
+    return max(gaps) + late + world.place_error / length

@@ -61,7 +61,6 @@ from puck_tables.world.record import states_at
 
 MOST_EVENTS = 1_000_000
 CROWD = 1e-7  # of Q/J: 2000 events in less are a crowd
-FLATTER = 4.0  # of check runs: rebounds twice as long have died out, whose time doubles with that
 CROWDED_PUSHES, PUSHED_IN = 3000, 1e-3  # and so many new groups that push, in that share of Q/J
 
 
@@ -370,7 +369,6 @@ class World:
             if disc[LIGHTNESS] > 0.0 and disc[HOLD] == FREE:
                 state[VX:] = floor + turned @ (state[VX:] - floor)
         game.pace[2] *= coarser
-        game.pace[4] *= FLATTER
         game.regions.load[:] *= 1.0 + friction
         game.discs[:, NORMAL] *= 1.0 + friction
         twin._game = game
