@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.compact import compact
+from puck_tables.fitting.forward_model import RATE
 from puck_tables.fitting.least_squares import ROBUST, SQUARES, minimise
 from puck_tables.fitting.outliers import outliers_of
 from puck_tables.fitting.problem import ANGLE, PLACE, UNSEEN, Problem
@@ -209,6 +210,6 @@ def _jittery(
     seen = int((kept & (problem.kinds <= ANGLE)).sum())
     return likeliest(
         problem.noise, problem.jitter, known, np.concatenate(problem.deviations(x), axis=1),
-        np.concatenate(problem.rates(x), axis=1), np.concatenate(count, axis=1),
+        np.concatenate(problem.states(x), axis=1)[RATE], np.concatenate(count, axis=1),
         max(1.0 - x.size / seen, 0.1),
     )  # fmt: skip

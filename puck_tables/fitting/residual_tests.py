@@ -8,6 +8,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.estimate import Estimate
+from puck_tables.fitting.forward_model import RATE
 from puck_tables.fitting.timing import Known
 
 NO_PATTERN = 1e-3  # probability of residuals so patterned by chance
@@ -155,16 +156,17 @@ def lengthways(result: Estimate) -> float:
     Of frames that move, by three standard errors of such a ratio; 1 of too few.
     """
     along, across = [], []
-    deviations, rates = result.problem.deviations(result.x), result.problem.rates(result.x)
+    deviations, states = result.problem.deviations(result.x), result.problem.states(result.x)
     films = result.problem.films
-    for film, (x, _, _), one, rate in zip(
-        films, result.problem.each(), deviations, rates, strict=True
+    for film, (x, _, _), one, state in zip(
+        films, result.problem.each(), deviations, states, strict=True
     ):
         if film.straight is not None:
             continue
-        speed = np.hypot(rate[0], rate[1])
+        rate = state[RATE][:2]
+        speed = np.hypot(*rate)
         moving = result.kept[x] & (speed > _MOVING * speed.max(initial=0.0))
-        ahead = rate[:2, moving] / speed[moving]
+        ahead = rate[:, moving] / speed[moving]
         along.append((one[:2, moving] * ahead).sum(axis=0))
         across.append(one[0, moving] * ahead[1] - one[1, moving] * ahead[0])
     one, two = (np.concatenate(part or [np.empty(0)]) for part in (along, across))

@@ -19,13 +19,11 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.certainty import Certainty, shifted_by
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.forward_model import (
-    SPIN,
-    TIME,
-    VX,
-    VY,
+    DELTA,
+    RATE,
     Moving,
-    path_with_slopes,
-    rates_of,
+    states_and_slopes,
+    states_of,
 )
 from puck_tables.fitting.least_squares import inside
 from puck_tables.fitting.problem import Problem
@@ -176,19 +174,19 @@ def _along(problem: Problem, x: FloatArray) -> list[FloatArray]:
     numbers = problem.numbers_at(x)
     moving = problem.moving(numbers)
     return [
-        _along_one(moving, launch[2:4], float(launch[4]), problem.times(n, numbers))
+        _along_one(moving, launch, problem.times(n, numbers))
         for n, launch in enumerate(problem.launches(x))
     ]
 
 
-def _along_one(moving: Moving, velocity: FloatArray, spin: float, times: FloatArray) -> FloatArray:
+def _along_one(moving: Moving, launch: FloatArray, times: FloatArray) -> FloatArray:
     """The same of one motion.
 
     V(t) = ∂(vx, vy, ω)(t)/∂(vx, vy, ω)(0) carries changes on, from each moment to the next.
     """
     from scipy.interpolate import CubicSpline
 
-    vx, vy, w = rates_of(moving, velocity, spin, times)
+    vx, vy, w = states_of(moving, launch, times)[RATE]
     slips = np.hypot(np.hypot(vx, vy), moving.radius * w)
     moves = int((slips > _REST * slips.max()).sum())
     end = float(times[moves - 1]) if moves else 0.0
@@ -199,12 +197,9 @@ def _along_one(moving: Moving, velocity: FloatArray, spin: float, times: FloatAr
     if not end > 0.0:
         return np.zeros((3, times.size, _FORCES))
     moments = np.linspace(0.0, end, _MOMENTS)
-    slopes = path_with_slopes(moving, velocity, spin, moments)[1]
-    places = np.moveaxis(slopes[[VX, VY, SPIN]], (0, 1, 2), (2, 1, 0))
-    carried = CubicSpline(moments, places)(moments, 1)
-    carried[0] = np.eye(3)
+    states, slopes = states_and_slopes(moving, launch, moments)
+    carried, rates = slopes[:, RATE, :DELTA], states[RATE].T
     onwards = carried[1:] @ np.linalg.inv(carried[:-1])
-    rates = slopes[TIME].T
     forces = np.zeros((_MOMENTS, 3, _FORCES))
     forces[:, [0, 1], [0, 1]] = 1.0
     forces[:, :, DRAG[0]] = -rates
