@@ -10,8 +10,8 @@ import pytest
 from rarely import few
 
 import puck_tables as pt
-from puck_tables.fitting.compact import compact
 from puck_tables.fitting.forward_model import Moving, states_and_slopes, states_of
+from puck_tables.fitting.least_squares import compact
 from puck_tables.fitting.problem import ANGLE, PLACE, PRIOR
 from puck_tables.fitting.unit_motions import unit_motions_of
 from puck_tables.plot.fit_figure import draw

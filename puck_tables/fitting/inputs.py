@@ -19,10 +19,10 @@ from puck_tables.fitting.certainty import Certainty
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.impact_matching import Line
-from puck_tables.fitting.impacts import turns
 from puck_tables.fitting.observations import Observations, noise_of, observations_in, rests_from
 from puck_tables.fitting.parameters import MOST_NODES
 from puck_tables.fitting.starts import slowing_of
+from puck_tables.fitting.touches import turns
 
 MOST_FRAMES = 100_000
 FIND = "find"

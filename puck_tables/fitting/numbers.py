@@ -18,9 +18,9 @@ from puck_tables.fitting.certainty import (
     interval_of,
 )
 from puck_tables.fitting.estimate import Estimate
-from puck_tables.fitting.impacts import slide_name
 from puck_tables.fitting.parameters import ALL, LAUNCH, PUCK
 from puck_tables.fitting.problem import Problem
+from puck_tables.fitting.touches import slide_name
 
 _STEP = 1e-6
 # Scales are plausible within their own size, but not less than this

@@ -21,8 +21,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.forward_model import DELTA
-from puck_tables.fitting.least_squares import LOOSE, minimise
-from puck_tables.fitting.multi_start import FROM_AFAR, ROBUST, multi_start
+from puck_tables.fitting.least_squares import FROM_AFAR, LOOSE, ROBUST_SCALE, minimise, multi_start
 from puck_tables.fitting.observations import Observations, Turning, rests_from, turning_of
 from puck_tables.fitting.parameters import LAUNCH
 from puck_tables.fitting.problem import Problem
@@ -84,8 +83,8 @@ def minima_of(problem: Problem) -> list[FloatArray]:
     if turning is not None and not turning.sure:
         blind = replace(problem, films=(replace(film, angle=None),))
         by_angle = by_place(problem, blind, minima_of(blind)[:_BLIND])
-        more += [x for x, _ in multi_start(by_angle, FROM_AFAR, ROBUST)]
-    return _deepest(problem, multi_start(starts, FROM_AFAR, ROBUST, _RIVAL), more)
+        more += [x for x, _ in multi_start(by_angle, FROM_AFAR, ROBUST_SCALE)]
+    return _deepest(problem, multi_start(starts, FROM_AFAR, ROBUST_SCALE, _RIVAL), more)
 
 
 def _from_known(problem: Problem, place: FloatArray, velocity: FloatArray) -> list[FloatArray]:

@@ -19,14 +19,22 @@ from puck_tables.fitting.certainty import (
     pinned_of,
     widened,
 )
+from puck_tables.fitting.comparison import (
+    HeldOut,
+    LawScore,
+    chi2_under,
+    compare,
+    over_speeds,
+    predicted,
+    split,
+    variants_of,
+)
 from puck_tables.fitting.coupled_fit import Impact, couple, impacts_apart, impacts_coupled, not_met
 from puck_tables.fitting.estimate import Estimate, estimate, freedom
 from puck_tables.fitting.fit_result import Fit
 from puck_tables.fitting.fit_spec import FitSpec
-from puck_tables.fitting.held_out import HeldOut, predicted, split
-from puck_tables.fitting.identifiability import not_identifiable
+from puck_tables.fitting.identifiability import not_identifiable, ran_away
 from puck_tables.fitting.impact_matching import Line
-from puck_tables.fitting.impacts import SlideIndex, slides_apart
 from puck_tables.fitting.initial_estimate import initial_estimate
 from puck_tables.fitting.inputs import (
     begin_noise,
@@ -41,18 +49,21 @@ from puck_tables.fitting.inputs import (
     refuse_tipping,
     refuse_wobbling,
 )
-from puck_tables.fitting.law_comparison import LawScore, chi2_under, compare, variants_of
 from puck_tables.fitting.misfit import misfit
-from puck_tables.fitting.no_spin import without_spin
 from puck_tables.fitting.numbers import numbers_of, plausible_for
 from puck_tables.fitting.observations import Observations, noise_of
-from puck_tables.fitting.other_minima import mirrored, other_minima, taken
-from puck_tables.fitting.plausibility import ran_away
-from puck_tables.fitting.problem import Problem
-from puck_tables.fitting.residual_tests import drift, excess_of, may_misfit, no_answer, runs
-from puck_tables.fitting.side_forces import SideForces, side_forces
-from puck_tables.fitting.speed_law_fit import over_speeds
-from puck_tables.fitting.timing import Known
+from puck_tables.fitting.other_minima import mirrored, other_minima, taken, without_spin
+from puck_tables.fitting.problem import Known, Problem
+from puck_tables.fitting.residuals import (
+    SideForces,
+    drift,
+    excess_of,
+    may_misfit,
+    no_answer,
+    runs,
+    side_forces,
+)
+from puck_tables.fitting.touches import SlideIndex, slides_apart
 from puck_tables.puck import Puck
 
 Progress = Callable[[int, int], None]
