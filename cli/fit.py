@@ -176,7 +176,7 @@ def fit(
         *(() if is_json else (output,)), others=(output,) if is_json else (), plot=plot,
         overwrite=overwrite, inputs=[*files, how["marks"], pressure],
     )  # fmt: skip
-    from puck_tables.fitting.fit import fit as find
+    from puck_tables.fitting.fit_tracks import fit as find
     from puck_tables.puck import Puck
 
     texts = {

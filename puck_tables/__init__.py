@@ -37,8 +37,8 @@ if TYPE_CHECKING:
     from puck_tables.export.source import Source, export_source
     from puck_tables.film.puck_track import Track
     from puck_tables.film.track_files import read_tracks
-    from puck_tables.fitting.fit import fit
     from puck_tables.fitting.fit_result import Fit
+    from puck_tables.fitting.fit_tracks import fit
     from puck_tables.fitting.forecast import Camera, Forecast, fisher
     from puck_tables.kernels.closed_form_kernel import resultants
     from puck_tables.puck import Puck
@@ -151,7 +151,7 @@ _HOMES = {
     "contact": "",
     "export_source": "export.source",
     "fisher": "fitting.forecast",
-    "fit": "fitting.fit",
+    "fit": "fitting.fit_tracks",
     "floor_friction": "reference.floor_friction",
     "law_of": "contact.laws",
     "motion": "",

@@ -64,7 +64,7 @@ PUCK = pt.Puck(radius=0.04)
     ],
 )
 def test_questions_are_refused_before_anything_is_fitted(how, words, monkeypatch):
-    monkeypatch.setattr("puck_tables.fitting.fit.initial_estimate", None)
+    monkeypatch.setattr("puck_tables.fitting.fit_tracks.initial_estimate", None)
     with pytest.raises(pt.InputError, match=re.escape(words)):
         pt.fit(TRACK, PUCK, **how)
 
@@ -90,7 +90,7 @@ def test_tracks_are_refused(tracks, words):
 
 
 def test_heights_that_tip_are_refused_before_anything_is_fitted(monkeypatch):
-    monkeypatch.setattr("puck_tables.fitting.fit.initial_estimate", None)
+    monkeypatch.setattr("puck_tables.fitting.fit_tracks.initial_estimate", None)
     with pytest.raises(pt.InputError, match="tip over"):
         pt.fit(TRACK, pt.Puck(radius=0.04, height=1e9))
 

@@ -16,7 +16,6 @@ from puck_tables._core.safe_write import write_bytes
 from puck_tables._version import __version__
 from puck_tables.errors import InputError
 from puck_tables.fitting.certainty import Certainty, profile_point
-from puck_tables.fitting.comparison import HeldOut, LawScore, law_over
 from puck_tables.fitting.coupled_fit import Impact
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.fit_files import (
@@ -29,6 +28,7 @@ from puck_tables.fitting.fit_files import (
     without_nan,
 )
 from puck_tables.fitting.identifiability import doubts, rounded, taken_for_granted
+from puck_tables.fitting.model_comparison import HeldOut, LawScore, law_over
 from puck_tables.fitting.numbers import EstimatedLaunch, Number
 from puck_tables.fitting.observations import Observations
 from puck_tables.fitting.problem import Known

@@ -95,12 +95,12 @@ def _path(
     if moving.by_speed is not None:
         return _by_speed(moving.by_speed, at, times, want)
     if c == 0.0:
-        return _dry(moving, at, times, want)
+        return _without_drag(moving, at, times, want)
     s = np.expm1(c * times) / c
     ends = np.concatenate([[0.0], s])
     half, middle = 0.5 * np.diff(ends), 0.5 * (ends[1:] + ends[:-1])
     inner = middle[:, None] + half[:, None] * _POINTS
-    states, slopes = _dry(moving, at, np.concatenate([s, inner.ravel()]), want)
+    states, slopes = _without_drag(moving, at, np.concatenate([s, inner.ravel()]), want)
     weights = half[:, None] * _WEIGHTS / (1.0 + c * inner) ** 3
     slower = np.exp(-c * times)
 
@@ -121,7 +121,7 @@ def _path(
     return moved, out
 
 
-def _dry(
+def _without_drag(
     moving: Moving, at: FloatArray, times: FloatArray, want: bool
 ) -> tuple[FloatArray, FloatArray]:
     if want:

@@ -14,10 +14,10 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
-from puck_tables.fitting.comparison import tried
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.initial_estimate import initial_estimate
+from puck_tables.fitting.model_comparison import tried
 from puck_tables.fitting.parameters import NODES
 from puck_tables.fitting.problem import TURN, Known, Problem
 from puck_tables.fitting.residuals import AIR, NO_PATTERN, SLOPE, SideForces, forced

@@ -22,11 +22,11 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.fitting.certainty import Z95, Certainty, OtherMinimum, certainty_of
-from puck_tables.fitting.comparison import chi2_under
 from puck_tables.fitting.estimate import FARTHEST, Estimate, freedom
 from puck_tables.fitting.identifiability import ran_away
 from puck_tables.fitting.initial_estimate import initial_estimate
 from puck_tables.fitting.least_squares import SQUARES, compact, minimise, multi_start
+from puck_tables.fitting.model_comparison import chi2_under
 from puck_tables.fitting.numbers import Number, numbers_of, plausible_for
 from puck_tables.fitting.problem import Known
 from puck_tables.fitting.starts import minima_of, numbers_with

@@ -19,16 +19,6 @@ from puck_tables.fitting.certainty import (
     pinned_of,
     widened,
 )
-from puck_tables.fitting.comparison import (
-    HeldOut,
-    LawScore,
-    chi2_under,
-    compare,
-    over_speeds,
-    predicted,
-    split,
-    variants_of,
-)
 from puck_tables.fitting.coupled_fit import Impact, couple, impacts_apart, impacts_coupled, not_met
 from puck_tables.fitting.estimate import Estimate, estimate, freedom
 from puck_tables.fitting.fit_result import Fit
@@ -50,6 +40,16 @@ from puck_tables.fitting.inputs import (
     refuse_wobbling,
 )
 from puck_tables.fitting.misfit import misfit
+from puck_tables.fitting.model_comparison import (
+    HeldOut,
+    LawScore,
+    chi2_under,
+    compare,
+    over_speeds,
+    predicted,
+    split,
+    variants_of,
+)
 from puck_tables.fitting.numbers import numbers_of, plausible_for
 from puck_tables.fitting.observations import Observations, noise_of
 from puck_tables.fitting.other_minima import mirrored, other_minima, taken, without_spin
