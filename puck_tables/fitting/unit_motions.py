@@ -216,8 +216,9 @@ class TallMotions(IntegratedMotions):
         self, launch: FloatArray, times: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
         """Looked up up to δ = 1."""
-        plain = self._is_plain and launch[3] <= self._plain.highest
-        return (self._plain if plain else super()).states_and_slopes(launch, times)
+        if self._is_plain and launch[3] <= self._plain.highest:
+            return self._plain.states_and_slopes(launch, times)
+        return super().states_and_slopes(launch, times)
 
     def own(self, delta: float, cosine: float, sine: float, tau: FloatArray) -> FloatArray:
         """Of the same cubic, by δ exactly."""
