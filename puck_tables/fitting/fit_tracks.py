@@ -167,25 +167,25 @@ def fit(
     )  # fmt: skip
     inputs = Inputs.of(spec, noise, jitter, slip_speeds, between, impacts, lines, hold_out)
     films = observations_of(tracks, since, until, keep_all, checked_rows(rows), puck.radius)
-    seen = _observed(films, inputs)
+    observed = _observe(films, inputs)
     variants = variants_of(spec.alone(), laws)
     steps = 1 + len(variants) + (inputs.hold_out is not None)
     say = progress or (lambda done, total: None)
-    fitted = _fitted(inputs, seen)
+    estimates = _estimate_all(inputs, observed)
     say(1, steps)
-    judged = judged_motion(fitted.best, inputs.known, seen.smooth, inputs.spec.bounds)
+    judged = judged_motion(estimates.best, inputs.known, observed.smooth, inputs.spec.bounds)
     scores: tuple[LawScore, ...] = ()
     if variants:
-        scores = _compared(inputs, seen, fitted, variants)
+        scores = _compared(inputs, observed, estimates, variants)
         say(1 + len(variants), steps)
     held_out = None
     if inputs.hold_out is not None:
         held_out = _held_out(judged.best, inputs.hold_out, inputs.known)
         say(steps, steps)
-    return _reported(inputs, seen, fitted, judged, scores, held_out)
+    return _reported(inputs, observed, estimates, judged, scores, held_out)
 
 
-class _Seen(NamedTuple):
+class _Observed(NamedTuple):
     """The observations: ``uncut`` tracks, the ``pieces`` of them between impacts in ``problem``.
 
     ``smooth``: their noise (m, rad) as no model judged it.
@@ -197,7 +197,7 @@ class _Seen(NamedTuple):
     problem: Problem
 
 
-class _Fitted(NamedTuple):
+class _Estimates(NamedTuple):
     """The estimate of ``slides`` with launches of their own, and that of all that was asked for.
 
     ``constant``: of one friction for all slip speeds; ``untied``: why slides are not joined.
@@ -209,8 +209,8 @@ class _Fitted(NamedTuple):
     untied: str
 
 
-def _observed(films: tuple[Observations, ...], inputs: Inputs) -> _Seen:
-    """What is fitted of the tracks, in the slides between impacts if these are looked for."""
+def _observe(films: tuple[Observations, ...], inputs: Inputs) -> _Observed:
+    """What is estimates of the tracks, in the slides between impacts if these are looked for."""
     smooth = noise_of(list(films))
     begin = [
         value if value is not None else begin_noise(one, films)
@@ -226,40 +226,42 @@ def _observed(films: tuple[Observations, ...], inputs: Inputs) -> _Seen:
     if inputs.hold_out is not None:
         split(parts, inputs.hold_out, begin[0])
     problem = Problem(inputs.spec.alone(), parts, (begin[0], begin[1]), rests=rests, jitter=jitter)
-    return _Seen(films, pieces, smooth, problem)
+    return _Observed(films, pieces, smooth, problem)
 
 
-def _fitted(inputs: Inputs, seen: _Seen) -> _Fitted:
+def _estimate_all(inputs: Inputs, observed: _Observed) -> _Estimates:
     """The estimate, from slides apart to joined ones, from one friction to one over slip speed."""
-    best = slides = initial_estimate(seen.problem, inputs.known, refit=True)
+    best = slides = initial_estimate(observed.problem, inputs.known, refit=True)
     untied = ""
     if inputs.impacts:
         best, untied = couple(
-            slides, seen.pieces, seen.uncut, inputs.spec, inputs.lines, inputs.known
+            slides, observed.pieces, observed.uncut, inputs.spec, inputs.lines, inputs.known
         )
     constant = best
     if inputs.speeds:
         refuse_faster(inputs.speeds, best)
         best = over_speeds(best, inputs.speeds, inputs.between, inputs.known)
         refuse_opening(best)
-    return _Fitted(slides, best, constant, untied)
+    return _Estimates(slides, best, constant, untied)
 
 
 def _compared(
-    inputs: Inputs, seen: _Seen, fitted: _Fitted, variants: Mapping[str, FitSpec]
+    inputs: Inputs, observed: _Observed, estimates: _Estimates, variants: Mapping[str, FitSpec]
 ) -> tuple[LawScore, ...]:
     """The laws named, best first."""
 
     def of_law(one: FitSpec, noise: tuple[float, float], known: Known) -> Estimate:
         # frames that another law leaves out at the ends may be those that tell
-        same = replace(seen.problem, spec=one, noise=noise, jitter=fitted.slides.problem.jitter)
+        same = replace(
+            observed.problem, spec=one, noise=noise, jitter=estimates.slides.problem.jitter
+        )
         return initial_estimate(same, known._replace(jitter=True), refit=False)
 
-    return compare(variants, seen.problem.noise, inputs.known, of_law)
+    return compare(variants, observed.problem.noise, inputs.known, of_law)
 
 
 def _reported(
-    inputs: Inputs, seen: _Seen, fitted: _Fitted, judged: JudgedMotion,
+    inputs: Inputs, observed: _Observed, estimates: _Estimates, judged: JudgedMotion,
     laws: tuple[LawScore, ...], held_out: HeldOut | None,
 ) -> Fit:  # fmt: skip
     """What was found, with what is to be said of it."""
@@ -277,8 +279,10 @@ def _reported(
     if best.problem.impact_specs:
         impacts = impacts_coupled(best, certainty, numbers)
     elif inputs.impacts:
-        impacts = impacts_apart(best, seen.pieces, certainty, [film.name for film in seen.uncut])
-    left_out = _left_out((*seen.problem.films, *seen.uncut), best.problem.films)
+        impacts = impacts_apart(
+            best, observed.pieces, certainty, [film.name for film in observed.uncut]
+        )
+    left_out = _left_out((*observed.problem.films, *observed.uncut), best.problem.films)
     result = Fit(
         given=inputs.spec.puck,
         numbers=numbers,
@@ -288,29 +292,29 @@ def _reported(
         noise=best.problem.noise,
         jitter=best.problem.jitter,
         noise_known=known,
-        smooth_noise=seen.smooth,
+        smooth_noise=observed.smooth,
         outliers=best.outliers,
         runs=runs(best),
         drift=drift(best),
         left_out=left_out,
-        cut_off=_trimmed_ends(fitted.slides, seen.problem, known, left_out),
+        cut_off=_trimmed_ends(estimates.slides, observed.problem, known, left_out),
         blind=blind,
         astray=judged.astray,
         laws=laws,
         held_out=held_out,
         impacts=impacts,
-        untied=fitted.untied,
+        untied=estimates.untied,
         not_met=not_met(impacts, best.problem, inputs.lines) if inputs.impacts else (),
         constant_chi2=(
-            chi2_under(fitted.constant, best.problem.noise) if inputs.speeds else math.nan
+            chi2_under(estimates.constant, best.problem.noise) if inputs.speeds else math.nan
         ),
         estimate=best,
         certainty=certainty,
         forces=judged.forces,
-        uncut=seen.uncut,
+        uncut=observed.uncut,
     )
     if result.complaints:
-        said = misfit(fitted.slides, seen.problem, known, judged.forces, bool(inputs.speeds))
+        said = misfit(estimates.slides, observed.problem, known, judged.forces, bool(inputs.speeds))
         result = replace(result, misfit=said)
     return result
 
