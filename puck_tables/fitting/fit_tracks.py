@@ -150,6 +150,7 @@ def fit(
 
     Examples
     --------
+    >>> import numpy as np
     >>> puck = Puck(radius=0.0381, height=0.0254, friction=0.15)
     >>> t = np.arange(120) / 60.0
     >>> path = puck.states((2.0, 0.5), 40.0, t)
@@ -210,7 +211,7 @@ class _Estimates(NamedTuple):
 
 
 def _observe(films: tuple[Observations, ...], inputs: Inputs) -> _Observed:
-    """What is estimates of the tracks, in the slides between impacts if these are looked for."""
+    """What is fitted of the tracks, in the slides between impacts if these are looked for."""
     smooth = noise_of(list(films))
     begin = [
         value if value is not None else begin_noise(one, films)
