@@ -51,8 +51,9 @@ from puck_tables.stopping.similarity_lookup import (
     LAUNCH_COLUMNS,
     LAUNCH_ROWS,
     end_rates,
+    heading_at,
     inverse_end_rates,
-    launched,
+    number_at,
     share_of,
     stopped,
 )
@@ -237,10 +238,9 @@ def _find_places(room: FloatArray, count: int, cells: float, log_share: float) -
         slow, fast, _ = end_rates(tilt)
         by_slow, by_fast, spin_turn = inverse_end_rates(tilt)
         turn_fast = turning * by_fast - spin_turn
-        sign, by_slip, heading = launched(
-            rim > speed, share_of(speed, rim), c0, kappa, turning, tilt,
-            row_of(room, _F_CURVE, n), row_of(room, _F_TURN, n),
-        )  # fmt: skip
+        is_fast, share = rim > speed, share_of(speed, rim)
+        sign, by_slip = number_at(is_fast, share, c0, kappa, tilt, row_of(room, _F_CURVE, n))
+        heading = heading_at(is_fast, share, turning, tilt, row_of(room, _F_TURN, n))
         ends_fast, log_y = log_place(sign, by_slip + kappa * log_share, kappa, slow, fast)
         _, xi = place_of_log(log_y)
         first, inside = cell_of(xi, ends_fast, cells, _TURNS_ROW)

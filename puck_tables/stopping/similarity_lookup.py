@@ -146,23 +146,32 @@ def share_of(speed: float, rim: float) -> float:
 
 
 @inlined
-def launched(
-    is_fast: bool, share: float, c0: float, kappa: float, turning: float, delta: float,
-    curve: float, part: float,
-) -> tuple[float, float, float]:  # fmt: skip
-    """Sign and ln of the number of Q alone, and the heading without its part h₀ ln Q.
-
-    ``curve``, ``part``: κR and S/δ at the place of the launch.
-    """
-    by_slow, by_fast, spin_turn = inverse_end_rates(delta)
+def ends_of(is_fast: bool, share: float, delta: float) -> tuple[float, float]:
+    """ln(1 + c)/A and ln(1 − c), from 2w."""
+    by_slow, _, _ = inverse_end_rates(delta)
     small, large = log_of(share), log_of(2.0 - share)
-    plus = by_slow * (large if is_fast else small)
-    minus = small if is_fast else large
+    return by_slow * (large if is_fast else small), small if is_fast else large
+
+
+@inlined
+def heading_at(is_fast: bool, share: float, turning: float, delta: float, part: float) -> float:
+    """The heading without its part h₀ ln Q; ``part``: S/δ there."""
+    plus, minus = ends_of(is_fast, share, delta)
+    _, by_fast, spin_turn = inverse_end_rates(delta)
+    return turning * plus + (turning * by_fast - spin_turn) * minus + delta * part
+
+
+@inlined
+def number_at(
+    is_fast: bool, share: float, c0: float, kappa: float, delta: float, regular: float
+) -> tuple[float, float]:
+    """Sign and ln of the number of Q alone; ``regular``: κR there."""
+    plus, minus = ends_of(is_fast, share, delta)
+    _, by_fast, _ = inverse_end_rates(delta)
     c = 1.0 - share if is_fast else share - 1.0
     sign = 1.0 if is_fast & (1.0 - share > c0) else -1.0
-    heading = turning * plus + (turning * by_fast - spin_turn) * minus + delta * part
     log_n = log_of(max(abs((c - c0) / c0), TINY)) - kappa * (plus + by_fast * minus)
-    return sign, log_n + curve, heading
+    return sign, log_n + regular
 
 
 @inlined
@@ -231,9 +240,9 @@ def look_up_launch(
         return
     c0, kappa = _constant(constants, 0, s), _constant(constants, 1, s)
     turning = delta * _constant(constants, 2, s)
-    sign, log_n, heading = launched(
-        side == 1, share_of(speed, rim), c0, kappa, turning, delta, r, part
-    )
+    share = share_of(speed, rim)
+    sign, log_n = number_at(side == 1, share, c0, kappa, delta, r)
+    heading = heading_at(side == 1, share, turning, delta, part)
     out[SIGN_N], out[HEADING0] = sign, heading
     out[KAPPA], out[TURNING] = kappa, turning
     out[LOG_N] = log_n + kappa * (log_of(t) - _constant(constants, 3, s))
@@ -246,7 +255,7 @@ def look_up_launch(
         share = max(min(y * inverse_sum(turn_inverse, end, xi, s, sums), 1.0), TINY)
         _similarity_sums(nodes, end, place_of_share(share), sums, 2)
         part = _polynomial(sums, TURN_SUM, s)
-        _, _, later = launched(is_fast, share, c0, kappa, turning, delta, 0.0, part)
+        later = heading_at(is_fast, share, turning, delta, part)
         turn = turning * log_share + later - heading
         out[TURN] = turn if edge > 0.0 else -turn
 
@@ -289,8 +298,7 @@ def look_up_state(
     share = max(min(part * inverse_sum(time_inverse, side, xi, s, sums), 1.0), TINY)
     functions_at(stops, nodes, side, share, s, sums, result)
     fall = (1.0 - elapsed) * known[T_LAUNCH] / result[0]
-    # of the heading at a place nothing else is asked
-    _, _, heading = launched(is_fast, share, -1.0, kappa, turning, delta, 0.0, result[4])
+    heading = heading_at(is_fast, share, turning, delta, result[4])
     turn = turning * log_of(fall) + heading - known[HEADING0] if delta > 0.0 else 0.0
     (
         out[PUCK_X], out[PUCK_Y], out[HEADING], out[ORIENTATION], out[SPEED], out[SPIN],
