@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import json
-import math
-from dataclasses import dataclass, fields
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -56,30 +53,3 @@ class Accuracy:
             tuple(np.quantile(errors, 0.999, axis=1).tolist()), tuple(phi[where].tolist()),
             tuple(second[where].tolist()), len(errors), order, phi.size,
         )  # fmt: skip
-
-    @classmethod
-    def read(cls, text: str, functions: int) -> Accuracy:
-        """From the JSON of a file, with so many numbers in its lists.
-
-        Raises
-        ------
-        ValueError
-            If it is not like that.
-        """
-        stated = json.loads(text)
-        entries = {f.name: str(f.type) for f in fields(cls)}
-        if not isinstance(stated, dict) or stated.keys() != entries.keys():
-            raise ValueError("its measured accuracy is not complete")
-        for name, found in stated.items():
-            numbers = found if isinstance(found, list) else [found]
-            is_list = entries[name].startswith("tuple")
-            if is_list != isinstance(found, list) or (is_list and len(found) != functions):
-                raise ValueError(f"its measured accuracy has another {name}")
-            if not all(type(n) in (int, float) and not math.isnan(n) for n in numbers):
-                raise ValueError(f"its measured accuracy has a {name} that is no number")
-        if type(stated["promised"]) is not int or not 1 <= stated["promised"] <= functions:
-            raise ValueError("its measured accuracy is promised for no number of functions")
-        given: dict[str, Any] = {
-            k: tuple(v) if isinstance(v, list) else v for k, v in stated.items()
-        }
-        return cls(**given)
