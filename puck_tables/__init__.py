@@ -63,8 +63,7 @@ if TYPE_CHECKING:
     from puck_tables.scene.pieces import Arc, Pocket, Post, Rim
     from puck_tables.scene.restitution import Plastic, RestitutionTable, Viscoelastic
     from puck_tables.scene.run import Run
-    from puck_tables.stopping.aim_at_target import Aim
-    from puck_tables.stopping.aim_at_targets import Aims
+    from puck_tables.stopping.aim_at_targets import Aim, Aims
     from puck_tables.stopping.array_functions import state_arrays, stop_arrays
     from puck_tables.stopping.states import States, states
     from puck_tables.stopping.stop_map import StopMap, StopSample
@@ -86,7 +85,7 @@ with_neighbours(__name__, __file__)
 
 _HOMES = {
     "AccuracyError": "errors",
-    "Aim": "stopping.aim_at_target",
+    "Aim": "stopping.aim_at_targets",
     "Aims": "stopping.aim_at_targets",
     "Answer": "reference.answer",
     "Arc": "scene.pieces",

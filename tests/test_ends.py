@@ -51,7 +51,7 @@ LONG = {
         ["sweep", "--scene", "incline", "--set", "launch.spin=0:80:900000", "-o", "m.h5"],
     ),
     "aim": (
-        "stopping.aim_at_target", ["aim", "--target", "2,0.1", "--count", "9000", "-o", "a.csv"]
+        "stopping.aim_at_targets", ["aim", "--target", "2,0.1", "--count", "9000", "-o", "a.csv"]
     ),
     "tradeoff": ("tradeoff.measurement", ["tradeoff", "-o", "t.h5"]),
 }  # fmt: skip
