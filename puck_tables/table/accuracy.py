@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import json
+from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 
@@ -53,3 +55,14 @@ class Accuracy:
             tuple(np.quantile(errors, 0.999, axis=1).tolist()), tuple(phi[where].tolist()),
             tuple(second[where].tolist()), len(errors), order, phi.size,
         )  # fmt: skip
+
+    def text(self) -> str:
+        """As JSON."""
+        return json.dumps(asdict(self))
+
+    @classmethod
+    def read(cls, text: str) -> Accuracy:
+        """From the JSON of a file."""
+        stated: dict[str, Any] = json.loads(text)
+        stated |= {name: tuple(v) for name, v in stated.items() if isinstance(v, list)}
+        return cls(**stated)

@@ -23,7 +23,7 @@ from puck_tables.contact.laws import Law, law_of
 from puck_tables.contact.resultants import Resultants, checked_delta
 from puck_tables.errors import InputError
 from puck_tables.table.file import Axis
-from puck_tables.table.law_table import LawTable
+from puck_tables.table.section_table import LawTable
 from puck_tables.table.slip_axis import GRADING_POWER
 from puck_tables.table.spline_fit import height_terms, sided_coefficients
 

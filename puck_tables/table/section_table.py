@@ -1,19 +1,55 @@
-"""Tables over the slip angle at one height, of a puck under a pressure law."""
+"""Tables over the slip angle under a pressure law, and those of them at one height."""
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.contact.laws import Law
 from puck_tables.table.check import CheckReport, Route, judged
 from puck_tables.table.file import Axis
-from puck_tables.table.law_table import LawTable
+from puck_tables.table.slip_axis import LawAxis
 from puck_tables.table.slip_spline import SlipSpline
-from puck_tables.table.table import Progress
+from puck_tables.table.table import Progress, Table
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LawTable(Table):
+    """A table over the slip angle under a pressure law.
+
+    Parameters
+    ----------
+    values : array (nodes of φ, …)
+        At the nodes of ``axis``.
+    law : Law
+    """
+
+    _: KW_ONLY
+    law: Law
+
+    ends_too: ClassVar[bool] = False  # whether φ = 0 and π/2 are singular lines besides
+
+    @property
+    @abstractmethod
+    def lines_at(self) -> tuple[float, ...]:
+        """Cot φ of the singular lines, ascending."""
+
+    @cached_property
+    def axis(self) -> LawAxis:
+        """The slip angles of its nodes."""
+        sides = 2 * (len(self.lines_at) + self.ends_too)
+        return LawAxis(self.lines_at, (len(self.values) - 1) // sides, self.ends_too)
+
+    @property
+    def pressure_law(self) -> str:
+        """The name of the pressure law."""
+        return self.law.name
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -7,10 +7,9 @@ tables are saved, read, judged and refused is the same for all.
 
 from __future__ import annotations
 
-import json
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import dataclass, field, fields
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -26,7 +25,6 @@ from puck_tables.errors import InputError, OutputError, TableError
 from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.check import CheckReport
 from puck_tables.table.file import AGAIN, Axis, decode, encode, read_content
-from puck_tables.table.law_record import from_plain, plain
 
 Progress = Callable[[int, int], None]
 
@@ -142,7 +140,7 @@ class Table(ABC):
         >>> table.grid, table.accuracy.worst <= 1e-6
         ('69 phi x 4 delta nodes', True)
         """
-        for kind in kinds().values() if cls is Table else (cls,):
+        for kind in map(_kind_named, kinds()) if cls is Table else (cls,):
             if kind.is_of(of):
                 return cast(Self, kind.built(of, accuracy, **how))
         raise InputError(
@@ -199,7 +197,7 @@ class Table(ABC):
     @classmethod
     def read(cls, content: bytes, source: str) -> Self:
         """The table in the bytes of a file from a source; see :meth:`load`."""
-        served = tuple(kinds()) if cls is Table else (cls.kind,)
+        served = kinds() if cls is Table else [cls.kind]
         try:
             said, arrays, made_of = decode(content, source)
             if said["kind"] not in served:
@@ -207,15 +205,16 @@ class Table(ABC):
                     f"{source} holds '{said['kind']}', not a table of "
                     f"{' or '.join(map(repr, served))}: give a file made by 'puck build-tables'"
                 )
-            kind = kinds()[said["kind"]]
+            kind = _kind_named(said["kind"])
             if said["algorithm"] != kind.algorithm:
                 raise TableError(f"{source} was made by a recipe that this program does not know")
-            measured = json.loads(said["achieved_accuracy"])
+            if made_of:
+                from puck_tables.table.law_record import from_plain  # not for stops: 25 ms
+
+                made_of = {name: from_plain(one) for name, one in made_of.items()}
             return cast(Self, kind(
-                np.stack([arrays[name] for name in kind.functions], axis=-1),
-                **{name: from_plain(one) for name, one in made_of.items()},
-                tolerance=said["tolerance"],
-                accuracy=Accuracy(**{name: from_plain(one) for name, one in measured.items()}),
+                np.stack([arrays[name] for name in kind.functions], axis=-1), **made_of,
+                tolerance=said["tolerance"], accuracy=Accuracy.read(said["achieved_accuracy"]),
                 metadata=said, source=source,
             ))  # fmt: skip
         except (KeyError, ValueError, TypeError, OSError) as error:  # under a right seal
@@ -273,11 +272,13 @@ class Table(ABC):
         return written
 
     def _encoded(self, accuracy: Accuracy, command: str) -> bytes:
+        from puck_tables.table.law_record import plain
+
         own = [one.name for one in fields(self)[len(fields(Table)) :]]
         said: dict[str, str | float] = {
             "kind": self.kind, "pressure_law": self.pressure_law, "algorithm": self.algorithm,
             **self.words, "valid_range": self.valid_range, "tolerance": self.tolerance,
-            "achieved_accuracy": json.dumps(asdict(accuracy)), "command": as_utf8(command),
+            "achieved_accuracy": accuracy.text(), "command": as_utf8(command),
         }  # fmt: skip
         functions = {
             name: (self.values[..., number], long_name, accuracy.largest[number])
@@ -327,15 +328,21 @@ class Table(ABC):
         """The axes of the functions, in their order."""
 
 
-def kinds() -> dict[str, type[Table]]:
-    """The kinds of tables by their names; the package says where their classes stand.
+def kinds() -> list[str]:
+    """The names of the kinds of tables; the package says where their classes stand.
 
     Examples
     --------
-    >>> list(kinds())[:2]
+    >>> kinds()[:2]
     ['resultants', 'stops']
     """
-    return {name.removeprefix(_KIND): above(name) for name in names_above(_KIND)}
+    return [name.removeprefix(_KIND) for name in names_above(_KIND)]
+
+
+def _kind_named(name: str) -> type[Table]:
+    """The class, loaded when it is asked for."""
+    kind: type[Table] = above(_KIND + name)
+    return kind
 
 
 def refuse_other_kind(table: Table | None, *kinds: type[Table]) -> None:
@@ -365,4 +372,4 @@ def _shipped(kind: str) -> Any:
         raise InputError(
             f"no table of {shown(kind)} comes along: there are 'resultants' and 'stops'"
         )
-    return kinds()[kind].read(place.read_bytes(), f"default table of {kind}")
+    return _kind_named(kind).read(place.read_bytes(), f"default table of {kind}")
