@@ -15,10 +15,10 @@ from puck_tables.cli.main import main
 
 from puck_tables import SpeedLaw, Table
 from puck_tables._core import lazy
+from puck_tables.io.dataset import Variable
 from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import Goal, built
 from puck_tables.table.check import CheckReport, Route, judged
-from puck_tables.table.file import Axis
 from puck_tables.table.table_store import fetch
 
 
@@ -39,7 +39,9 @@ class WaveTable(Table):
 
     grid = property(lambda self: f"{len(self.values)} nodes")
     valid_range = "0 <= phi <= 1"
-    axes = property(lambda self: {"phi": Axis(np.linspace(0, 1, len(self.values)), "rad", "φ")})
+    axes = property(
+        lambda self: {"phi": Variable(np.linspace(0, 1, len(self.values)), ("phi",), "rad", "φ")}
+    )
 
     @classmethod
     def is_of(cls, of: object) -> bool:

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
+from puck_tables.io.dataset import Variable
 from puck_tables.motion.state import STATE_ROWS
 from puck_tables.stopping.axes import HEIGHTS, heights
 from puck_tables.stopping.launch_arrays import (
@@ -27,7 +28,6 @@ from puck_tables.stopping.lookup import STOP_POWERS, stops_kernel
 from puck_tables.stopping.similarity_lookup import LAUNCH_COLUMNS
 from puck_tables.stopping.state_lookup import PUCK_ROWS
 from puck_tables.stopping.stop_coefficients import StopCoefficients
-from puck_tables.table.file import Axis
 
 UPPER_DELTA = 1.0  # above, part of the base may lift
 OTHERS = ("path_length", "turn_angle", "body_angle")
@@ -245,9 +245,9 @@ class StopValues(StopCoefficients):
         return f"|phi| <= pi/2, 0 <= delta <= {UPPER_DELTA:g}; refused outside"
 
     @property
-    def axes(self) -> dict[str, Axis]:
+    def axes(self) -> dict[str, Variable]:
         """Slip angle and height."""
         return {
-            "phi": Axis(self.axis.phi(), "rad", "slip angle atan2(r omega, v)"),
-            "delta": Axis(heights(), "1", "dimensionless height 2 f h / r"),
+            "phi": Variable(self.axis.phi(), ("phi",), "rad", "slip angle atan2(r omega, v)"),
+            "delta": Variable(heights(), ("delta",), "1", "dimensionless height 2 f h / r"),
         }

@@ -4,9 +4,9 @@ After the HDF5 content stands a line with its sha256, the seal: nothing without 
 to the HDF5 library.  Whoever makes a file with a right seal is trusted as one whose code is run;
 ``puck validate`` judges the numbers of any table.
 
-Layout: one dimension scale per axis, one little-endian float64 dataset per function over all axes,
-what the values follow from as JSON in ``made_of``, everything else in attributes of the root.  The
-file is made and read in memory, so that a failing disk leaves no half of one.
+Layout: as :mod:`puck_tables.io.hdf5` writes results, a dataset per axis and per function over all
+axes, what the values follow from as JSON in ``made_of``, everything else in attributes of the root.
+The file is made and read in memory, so that a failing disk leaves no half of one.
 """
 
 from __future__ import annotations
@@ -16,9 +16,8 @@ import io
 import json
 import platform
 from collections.abc import Mapping
-from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -26,20 +25,13 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.safe_read import read_whole
 from puck_tables._version import __version__
 from puck_tables.errors import TableError
+from puck_tables.io.dataset import Dataset, Variable
 
 FORMAT, FORMAT_VERSION = "puck-tables", "4.0"
 MAX_FILE_BYTES = 1 << 31  # bytes: more is no table
 _SEAL = b"\npuck-tables sha256 "
 AGAIN = "build it again with 'puck build-tables'"
 _MADE_OF = "made_of"
-
-
-class Axis(NamedTuple):
-    """An axis in a file: its values and what they are."""
-
-    values: FloatArray
-    units: str
-    long_name: str
 
 
 def sealed(content: bytes) -> bytes:
@@ -54,43 +46,27 @@ def sealed(content: bytes) -> bytes:
 
 
 def encode(
-    said: Mapping[str, str | float], made_of: object, axes: Mapping[str, Axis],
-    functions: Mapping[str, tuple[FloatArray, str, float]],
+    axes: Mapping[str, Variable], functions: Mapping[str, Variable], said: Mapping[str, object],
+    made_of: object,
 ) -> bytes:  # fmt: skip
-    """The bytes of a table file, sealed.
+    """The bytes of a table file, sealed: axes, functions over all of them, attributes.
 
-    Parameters
-    ----------
-    said : attributes
-    made_of : what the values follow from, as JSON has it
-    axes : by their names
-    functions : by their names, over all axes: values, what they are, and their largest error
+    ``made_of``: what the values follow from, as JSON has it.
     """
     import h5py
 
-    buffer = io.BytesIO()
-    with h5py.File(buffer, "w") as file:
-        for name, axis in axes.items():
-            scale = file.create_dataset(name, data=axis.values, dtype="<f8")
-            scale.attrs.update(units=axis.units, long_name=axis.long_name)
-            scale.make_scale(name)
-        for name, (values, long_name, largest) in functions.items():
-            data = file.create_dataset(name, data=values, dtype="<f8")
-            data.attrs.update(units="1", long_name=long_name, max_error=largest)
-            for dimension, axis_name in enumerate(axes):
-                data.dims[dimension].attach_scale(file[axis_name])
-        file[_MADE_OF] = json.dumps(made_of)  # an attribute holds 64 kB at most
-        file[_MADE_OF].attrs.update(units="", long_name="what the values follow from, as JSON")
-        file.attrs.update({
-            "Conventions": "CF-1.11", "format": FORMAT, "format_version": FORMAT_VERSION, **said,
-            "package_version": __version__,
-            "library_versions": (
-                f"python {platform.python_version()}, numpy {np.__version__}, "
-                f"h5py {h5py.__version__}, HDF5 {h5py.version.hdf5_version}"
-            ),
-            "created": datetime.now(UTC).isoformat(timespec="seconds"),
-        })  # fmt: skip
-    return sealed(buffer.getvalue())
+    from puck_tables.io import hdf5
+
+    attributes = {
+        "format": FORMAT, "format_version": FORMAT_VERSION, **said,
+        "package_version": __version__,
+        "library_versions": (
+            f"python {platform.python_version()}, numpy {np.__version__}, "
+            f"h5py {h5py.__version__}, HDF5 {h5py.version.hdf5_version}"
+        ),
+    }  # fmt: skip
+    texts = {_MADE_OF: (json.dumps(made_of), "what the values follow from, as JSON")}
+    return sealed(hdf5.encode(Dataset(axes, functions, attributes, texts)))
 
 
 def read_content(path: str | Path) -> bytes:

@@ -22,7 +22,7 @@ from puck_tables.contact.integrals import checked_phi
 from puck_tables.contact.laws import Law, law_of
 from puck_tables.contact.resultants import Resultants, checked_delta
 from puck_tables.errors import InputError
-from puck_tables.table.file import Axis
+from puck_tables.io.dataset import Variable
 from puck_tables.table.section_table import LawTable
 from puck_tables.table.slip_axis import GRADING_POWER
 from puck_tables.table.spline_fit import height_terms, sided_coefficients
@@ -201,11 +201,11 @@ class ResultantValues(LawTable):
         return f"|phi| <= pi/2, 0 <= delta <= {self.delta_max:g}; refused outside"
 
     @property
-    def axes(self) -> dict[str, Axis]:
+    def axes(self) -> dict[str, Variable]:
         """Slip angle and height."""
         return {
-            "phi": Axis(self.axis.nodes(), "rad", "slip angle atan2(r omega, v)"),
-            "delta": Axis(self.heights, "1", "dimensionless height 2 f h / r"),
+            "phi": Variable(self.axis.nodes(), ("phi",), "rad", "slip angle atan2(r omega, v)"),
+            "delta": Variable(self.heights, ("delta",), "1", "dimensionless height 2 f h / r"),
         }
 
 

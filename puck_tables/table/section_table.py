@@ -12,8 +12,8 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.laws import Law
+from puck_tables.io.dataset import Variable
 from puck_tables.table.check import CheckReport, Route, judged
-from puck_tables.table.file import Axis
 from puck_tables.table.slip_axis import LawAxis
 from puck_tables.table.slip_spline import SlipSpline
 from puck_tables.table.table import Progress, Table
@@ -118,6 +118,6 @@ class SectionTable(LawTable):
         return f"|phi| <= pi/2, delta = {self.delta:g} only"
 
     @property
-    def axes(self) -> dict[str, Axis]:
+    def axes(self) -> dict[str, Variable]:
         """Slip angle."""
-        return {"phi": Axis(self.axis.nodes(), "rad", "slip angle atan2(r omega, v)")}
+        return {"phi": Variable(self.axis.nodes(), ("phi",), "rad", "slip angle atan2(r omega, v)")}

@@ -23,8 +23,8 @@ from puck_tables.contact.speed_quadrature import (
     refuse_lifting,
 )
 from puck_tables.errors import InputError
+from puck_tables.io.dataset import Variable
 from puck_tables.kernels.speed_spline import DONE, fill_speed, packed
-from puck_tables.table.file import Axis
 from puck_tables.table.speed_fit import quintic_coefficients
 from puck_tables.table.speed_grid import SlipPatch, patches_of
 from puck_tables.table.table import Table
@@ -211,6 +211,8 @@ class SpeedValues(Table):
         return f"|phi| <= pi/2, 0 <= v + r|omega| <= {self.top:g} m/s; refused outside"
 
     @property
-    def axes(self) -> dict[str, Axis]:
+    def axes(self) -> dict[str, Variable]:
         """The numbers of the nodes."""
-        return {"node": Axis(np.arange(float(len(self.values))), "1", "node of a patch")}
+        return {
+            "node": Variable(np.arange(float(len(self.values))), ("node",), "1", "node of a patch")
+        }

@@ -20,11 +20,12 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.lazy import above, names_above
 from puck_tables._core.real import instance, shown
-from puck_tables._core.safe_write import as_utf8, write_bytes
+from puck_tables._core.safe_write import write_bytes
 from puck_tables.errors import InputError, OutputError, TableError
+from puck_tables.io.dataset import Variable
 from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.check import CheckReport
-from puck_tables.table.file import AGAIN, Axis, decode, encode, read_content
+from puck_tables.table.file import AGAIN, decode, encode, read_content
 
 Progress = Callable[[int, int], None]
 
@@ -275,17 +276,17 @@ class Table(ABC):
         from puck_tables.table.law_record import plain
 
         own = [one.name for one in fields(self)[len(fields(Table)) :]]
-        said: dict[str, str | float] = {
+        said = {
             "kind": self.kind, "pressure_law": self.pressure_law, "algorithm": self.algorithm,
             **self.words, "valid_range": self.valid_range, "tolerance": self.tolerance,
-            "achieved_accuracy": accuracy.text(), "command": as_utf8(command),
+            "achieved_accuracy": accuracy.text(), "command": command,
         }  # fmt: skip
         functions = {
-            name: (self.values[..., number], long_name, accuracy.largest[number])
+            name: Variable(self.values[..., number], tuple(self.axes), "1", long_name)
             for number, (name, long_name) in enumerate(self.functions.items())
         }
         made_of = {name: plain(getattr(self, name)) for name in own}
-        return encode(said, made_of, self.axes, functions)
+        return encode(self.axes, functions, said, made_of)
 
     @abstractmethod
     def validate(self, progress: Progress | None = None) -> CheckReport:
@@ -324,7 +325,7 @@ class Table(ABC):
 
     @property
     @abstractmethod
-    def axes(self) -> dict[str, Axis]:
+    def axes(self) -> dict[str, Variable]:
         """The axes of the functions, in their order."""
 
 

@@ -11,13 +11,12 @@ from __future__ import annotations
 import hashlib
 import json
 import re
-import time
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, TypeVar
 
 from puck_tables._core.own_folder import make_private, refuse_shared, say, user_cache
-from puck_tables._core.partial_files import PART_PATTERN
+from puck_tables._core.partial_files import remove_dead
 from puck_tables._core.sources import source_digest
 from puck_tables.errors import InputError, OutputError, TableError
 from puck_tables.table.table import Table
@@ -25,7 +24,6 @@ from puck_tables.table.table import Table
 AnyTable = TypeVar("AnyTable", bound=Table)
 
 _NAME = re.compile(r"[\w.+-]+-[0-9a-f]{16}\.h5")
-_OLD = 86400.0  # s: what a killed builder left of a file is then of nobody
 
 
 def fetch(
@@ -42,10 +40,6 @@ def fetch(
     build : how it is made
     rooms : whose sources determine the values, besides those of tables
     most : so many are kept of those whose names begin alike, up to the first -
-
-    Returns
-    -------
-    The table, as read from a file if there is a place for one.
     """
     sources = source_digest("contact", "kernels", "table", *rooms)
     whole = json.dumps([recipe, kind.algorithm, sources], sort_keys=True)
@@ -67,7 +61,8 @@ def fetch(
                 say(f"{path} is another table than its name says: it is built again")
             except TableError:
                 say(f"{path} is damaged: it is built again")
-            path.rmdir() if path.is_dir() and not path.is_symlink() else path.unlink()
+            folder_there = path.is_dir() and not path.is_symlink()
+            path.rmdir() if folder_there else path.unlink(missing_ok=True)
         if most is not None:  # a sweep over many heights shall not fill the disk
             alike = [one for one in kept_files() if one.name.startswith(stem.split("-")[0] + "-")]
             for one in sorted(alike, key=lambda one: one.stat().st_mtime)[: 1 - most or None]:
@@ -107,10 +102,8 @@ def tables_folder() -> Path | None:
     return None if base is None else base / "tables"
 
 
-def kept_files(left_over: bool = False) -> list[Path]:
+def kept_files() -> list[Path]:
     """The files of the store that are tables by their names, in alphabetical order.
-
-    ``left_over``: instead, what builders that were killed while writing have left a day ago.
 
     Examples
     --------
@@ -122,9 +115,6 @@ def kept_files(left_over: bool = False) -> list[Path]:
         if folder is None or not folder.is_dir():
             return []
         refuse_shared(folder)
-        if left_over:
-            parts = folder.glob(PART_PATTERN)
-            return sorted(one for one in parts if one.stat().st_mtime < time.time() - _OLD)
     except OSError as error:
         say(f"{folder} is not used: {error.strerror or error}")
         return []
@@ -146,11 +136,12 @@ def remove(names: Iterable[str] | None = None) -> list[Path]:
     for name in names or ():
         if name not in kept:
             raise InputError(f"no table {name} is kept: 'puck tables' lists those that are")
-    everything = [*kept.values(), *kept_files(left_over=True)]
-    paths = everything if names is None else [kept[name] for name in dict.fromkeys(names)]
+    paths = [kept[name] for name in dict.fromkeys(kept if names is None else names)]
     for path in paths:
         try:
             path.unlink(missing_ok=True)
         except OSError as error:
             raise OutputError(f"cannot remove {path}: {error.strerror or error}") from None
+    if names is None and kept:
+        remove_dead(paths[0].parent)
     return paths
