@@ -139,7 +139,7 @@ def fit(
     Notes
     -----
     Least squares of places and angles, weighted by their noise, with observations beyond four
-    standard deviations left out.  Errors are those of the Fisher matrix, intervals of the puck's
+    standard deviations left out, or farther where few of them tell the noise.  Errors are those of the Fisher matrix, intervals of the puck's
     numbers by profile likelihood where that differs by more than 2 %.  The cost of a track of 250
     frames is some 0.1 s.
 
