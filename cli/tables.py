@@ -11,8 +11,6 @@ from puck_tables.cli.options import printable
 from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from puck_tables.table.table_list import KeptTable
 
 
@@ -33,32 +31,20 @@ def tables(as_json: bool, names: tuple[str, ...], clean: bool) -> None:
     """  # noqa: D301 - click reads the backspace
     if clean + bool(names) + as_json > 1:
         raise InputError("--json, --remove and --clean clash: give one of them")
-    from puck_tables.table import table_cache, table_list
+    from puck_tables.table import table_list, table_store
 
-    if names:
-        kept = {path.name: path for path in table_cache.kept_files()}
-        for name in names:
-            if name not in kept:
-                raise InputError(f"no table {name} is kept: 'puck tables' lists those that are")
-        _remove([kept[name] for name in dict.fromkeys(names)])
-    elif clean:
-        _remove([*table_cache.kept_files(), *table_cache.leftovers()])
+    if names or clean:
+        removed = table_store.remove(None if clean else names)
+        for path in removed:
+            click.echo(f"removed {click.format_filename(path)}")
+        if not removed:
+            click.echo("nothing is kept: nothing to remove")
+        return
+    entries = table_list.shipped_and_kept()
+    if as_json:
+        click.echo(json.dumps([entry._asdict() for entry in entries]))
     else:
-        entries = table_list.shipped_and_kept()
-        if as_json:
-            click.echo(json.dumps([entry._asdict() for entry in entries]))
-        else:
-            click.echo(printable(_lines(entries)))
-
-
-def _remove(paths: list[Path]) -> None:
-    from puck_tables.table import table_cache
-
-    for path in paths:
-        table_cache.remove(path)
-        click.echo(f"removed {click.format_filename(path)}")
-    if not paths:
-        click.echo("nothing is kept: nothing to remove")
+        click.echo(printable(_lines(entries)))
 
 
 def _lines(entries: list[KeptTable]) -> str:

@@ -21,10 +21,10 @@ from puck_tables.kernels.speed_quadrature_kernel import COARSE, FINE, fill_integ
 from puck_tables.kernels.speed_spline import fill_patch
 from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import COARSEST
-from puck_tables.table.metadata import Progress
 from puck_tables.table.speed_fit import missed_by_half, quintic_coefficients
 from puck_tables.table.speed_grid import COARSEST_CELLS, HALVINGS, SlipPatch, breaks_of, patches_of
 from puck_tables.table.speed_values import SpeedValues
+from puck_tables.table.table import Progress
 
 Law = SpeedLaw | FrictionLaw | SpeedFunction
 
@@ -218,8 +218,7 @@ def tabulated(
     cells = np.array([part.cells for part in parts], np.int64)
     values = np.concatenate([part.values.reshape(-1, 4) for part in parts])
     return kind(
-        values, breaks=breaks, cells=cells, largest_f=largest, law=kept, tolerance=accuracy,
-        accuracy=_measured(parts),
+        values, breaks=breaks, cells=cells, law=kept, tolerance=accuracy, accuracy=_measured(parts),
     )  # fmt: skip
 
 

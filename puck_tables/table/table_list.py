@@ -8,9 +8,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from puck_tables.errors import TableError
-from puck_tables.table.file import read_content
 from puck_tables.table.table import Table
-from puck_tables.table.table_cache import kept_files
+from puck_tables.table.table_store import kept_files
 
 
 class KeptTable(NamedTuple):
@@ -35,29 +34,25 @@ def shipped_and_kept() -> list[KeptTable]:
     >>> [entry.name for entry in shipped_and_kept() if entry.place == "comes along"]
     ['resultants.h5', 'stops.h5']
     """
-    folder = files("puck_tables.tables")
-    names = sorted(path.name for path in folder.iterdir() if path.name.endswith(".h5"))
-    shipped = [_entry(name, "comes along", (folder / name).read_bytes(), "") for name in names]
-    return shipped + [entry for path in kept_files() if (entry := _kept(path)) is not None]
+    along = [Path(str(one)) for one in files("puck_tables.tables").iterdir()]
+    shipped = sorted(path for path in along if path.suffix == ".h5")
+    found = [_entry(path, "comes along") for path in shipped]
+    found += [_entry(path, str(path.parent)) for path in kept_files()]
+    return [entry for entry in found if entry is not None]
 
 
-def _kept(path: Path) -> KeptTable | None:
+def _entry(path: Path, place: str) -> KeptTable | None:
     """None if another process has just removed it."""
     try:
-        date = datetime.fromtimestamp(path.stat().st_mtime, UTC).isoformat(timespec="seconds")
-        return _entry(path.name, str(path.parent), read_content(path), date)
+        about = path.stat()
     except FileNotFoundError:
         return None
-    except TableError:
-        return KeptTable(path.name, str(path.parent), None, None, None, None, 0, date, False)
-
-
-def _entry(name: str, place: str, content: bytes, date: str) -> KeptTable:
+    date = datetime.fromtimestamp(about.st_mtime, UTC).isoformat(timespec="seconds")
     try:
-        table = Table.read(content, name)
+        table = Table.load(path)
     except TableError:
-        return KeptTable(name, place, None, None, None, None, len(content), date, False)
+        return KeptTable(path.name, place, None, None, None, None, about.st_size, date, False)
     return KeptTable(
-        name, place, table.kind, table.pressure_law, table.valid_range, table.tolerance,
-        len(content), table.metadata["created"], True,
+        path.name, place, table.kind, table.pressure_law, table.valid_range, table.tolerance,
+        about.st_size, table.metadata["created"], True,
     )  # fmt: skip
