@@ -254,11 +254,11 @@ __all__ = [
 
 __getattr__, __dir__ = lazily(__name__, _HOMES)
 lead_up({
-    "FrictionSection": "puck_tables.table.friction_section",
-    "ResultantTable": "puck_tables.table.resultant_table",
-    "SpeedTable": "puck_tables.table.speed_table",
-    "StopSection": "puck_tables.stopping.stop_section",
-    "StopTable": "puck_tables.stopping.stop_table",
     "draw": "puck_tables.plot.drawn",
     "save_movie": "puck_tables.plot.movie",
+    "table of resultants": "puck_tables.table.resultant_table:ResultantTable",
+    "table of stops": "puck_tables.stopping.stop_table:StopTable",
+    "table of speed": "puck_tables.table.speed_table:SpeedTable",
+    "table of friction section": "puck_tables.table.friction_section:FrictionSection",
+    "table of stop section": "puck_tables.stopping.stop_section:StopSection",
 })  # fmt: skip

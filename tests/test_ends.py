@@ -28,14 +28,14 @@ threading.Thread(target=interrupt, daemon=True).start()
 """
 LONG = {
     "build resultants": (
-        "table.resultant_check", ["build-tables", "--cells", "60000", "-o", "n.h5"]
+        "table.resultant_table", ["build-tables", "--cells", "60000", "-o", "n.h5"]
     ),
     "build stops": (
         "stopping.stop_check",
         ["build-tables", "--kind", "stops", "--accuracy", "1e-11", "-o", "n.h5"]
     ),
     "build law": (
-        "table.resultant_check", ["build-tables", "--pressure", "hill.csv", "-o", "n.h5"]
+        "table.resultant_table", ["build-tables", "--pressure", "hill.csv", "-o", "n.h5"]
     ),
     "validate": (
         "stopping.stop_check", ["validate", str(files("puck_tables.tables") / "stops.h5")]

@@ -24,7 +24,7 @@ ROOMS = {
     "accuracy": "errors",
     "chetaev": "_core contact errors io result",
     "kernels": "_core contact errors",
-    "table": "_core _version contact errors kernels",
+    "table": "_core _version contact errors io kernels",
     "motion": "_core accuracy contact errors kernels table",
     "stopping": "_core accuracy bulk contact errors io kernels motion result table",
     "trajectory": "_core accuracy errors io motion result stopping table",

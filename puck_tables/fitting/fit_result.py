@@ -240,7 +240,7 @@ class Fit(Result):
             f"Noise of places {self.noise[0]:.3g} m, {place}.",
             *([f"Noise of angles {self.noise[1]:.3g} rad, {angle}."] if angled else []),
             f"{100.0 * self.outliers:.3g} % of the observations, beyond 4 standard deviations, are "
-            "left out.",
+            "left out: farther off where few frames tell the noise.",
         ]
         if math.isfinite(self.certainty.degrees):
             lines.append(

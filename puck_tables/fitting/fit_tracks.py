@@ -139,14 +139,14 @@ def fit(
     Notes
     -----
     Least squares of places and angles, weighted by their noise, with observations beyond four
-    standard deviations left out.  Errors are those of the Fisher matrix, intervals of the puck's
-    numbers by profile likelihood where that differs by more than 2 %.  The cost of a track of 250
-    frames is some 0.1 s.
+    standard deviations left out, or farther where few of them tell the noise.  Errors are those of
+    the Fisher matrix, intervals of the puck's numbers by profile likelihood where that differs by
+    more than 2 %.  The cost of a track of 250 frames is some 0.1 s.
 
     References
     ----------
-    Salnikova, Treschev, Gallyamov 2012, sections 2 and 6: the motion; scipy's ``least_squares``:
-    the optimiser.
+    Salnikova, Treschev, Gallyamov 2012, sections 2 and 6: the motion; Marquardt 1963: the
+    optimiser.
 
     Examples
     --------

@@ -147,7 +147,7 @@ def initial_estimate(problem: Problem, known: Known, refit: bool) -> Estimate:
     result = _trimmed(result, problem, known)
     if len(parts) == 1 and not is_clean(result, NOISY, NO_PATTERN):
         result = _of_a_part(problem, known) or result
-    if only_outliers(result):
+    if only_outliers(result, known):
         return result
     # frames that are off together are good ones: what the model cannot follow is not hidden
     return replace(estimate(result.problem, result.x, known, strict=True), minima=result.minima)

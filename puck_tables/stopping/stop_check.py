@@ -52,7 +52,7 @@ from puck_tables.stopping.stop_values import STOPS, StopValues
 from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import Goal, built
 from puck_tables.table.check import Check, CheckReport, compared
-from puck_tables.table.metadata import Progress
+from puck_tables.table.table import Progress
 
 _GOAL = Goal(1e-10, 1e-11, "in units of Q/J and Q^2/J", 0.62, 1 << 12)
 _CHUNK = 64  # launches at once, of integrations
