@@ -33,8 +33,7 @@ from puck_tables.kernels.patience import one_question
 if TYPE_CHECKING:
     from puck_tables._core.arrays import FloatArray
     from puck_tables.motion.puck_spec import PuckSpec
-    from puck_tables.stopping.aim_at_target import Aim
-    from puck_tables.stopping.aim_at_targets import Aims
+    from puck_tables.stopping.aim_at_targets import Aim, Aims
 
 _LARGEST_FILE = 1 << 30  # bytes: more is no file of targets, and would fill the memory
 

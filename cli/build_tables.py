@@ -106,7 +106,7 @@ def _wanted(kind: str, pressure: str | None, speed_law: Path | None) -> tuple[An
     if pressure in (None, "uniform"):
         return "uniform", kind, []
     from puck_tables.contact.laws import law_of
-    from puck_tables.table.table_cache import file_stem
+    from puck_tables.table.table_store import file_stem
 
     law = law_of(str(pressure))
-    return law, file_stem(law), [f"--pressure {pressure}"]
+    return law, file_stem(law.name), [f"--pressure {pressure}"]

@@ -49,6 +49,6 @@ def describe(table: Table) -> str:
     rest |= {
         "made by": f"{said['command']}  (puck-tables {said['package_version']}, {said['created']})",
         "format": f"{said['format']} {said['format_version']}",
-        "digest": f"sha256 {said['content_digest'][:16]}..., right",
+        "digest": f"sha256 {said['digest'][:16]}..., right",
     }
     return "\n".join(text + [f"{name:<11} {value}" for name, value in rest.items()])

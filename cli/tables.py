@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
+from typing import Any
 
 import click
 from puck_tables.cli.options import printable
 
 from puck_tables.errors import InputError
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from puck_tables.table.table_list import KeptTable
 
 
 @click.command()
@@ -33,48 +28,37 @@ def tables(as_json: bool, names: tuple[str, ...], clean: bool) -> None:
     """  # noqa: D301 - click reads the backspace
     if clean + bool(names) + as_json > 1:
         raise InputError("--json, --remove and --clean clash: give one of them")
-    from puck_tables.table import table_cache, table_list
+    from puck_tables.table import table_list, table_store
 
-    if names:
-        kept = {path.name: path for path in table_cache.kept_files()}
-        for name in names:
-            if name not in kept:
-                raise InputError(f"no table {name} is kept: 'puck tables' lists those that are")
-        _remove([kept[name] for name in dict.fromkeys(names)])
-    elif clean:
-        _remove([*table_cache.kept_files(), *table_cache.leftovers()])
+    if names or clean:
+        removed = table_store.remove(None if clean else names)
+        for path in removed:
+            click.echo(f"removed {click.format_filename(path)}")
+        if not removed:
+            click.echo("nothing is kept: nothing to remove")
+        return
+    entries = table_list.shipped_and_kept()
+    if as_json:
+        click.echo(json.dumps(entries))
     else:
-        entries = table_list.shipped_and_kept()
-        if as_json:
-            click.echo(json.dumps([entry._asdict() for entry in entries]))
-        else:
-            click.echo(printable(_lines(entries)))
+        click.echo(printable(_lines(entries)))
 
 
-def _remove(paths: list[Path]) -> None:
-    from puck_tables.table import table_cache
-
-    for path in paths:
-        table_cache.remove(path)
-        click.echo(f"removed {click.format_filename(path)}")
-    if not paths:
-        click.echo("nothing is kept: nothing to remove")
-
-
-def _lines(entries: list[KeptTable]) -> str:
+def _lines(entries: list[dict[str, Any]]) -> str:
     titles = ("name", "holds", "pressure", "accuracy", "kB", "made", "state", "range")
     rows = [titles]
     for entry in entries:
+        accuracy = entry["accuracy"]
         rows.append((
-            entry.name, entry.kind or "-", entry.pressure_law or "-",
-            "-" if entry.accuracy is None else f"{entry.accuracy:g}",
-            str(round(entry.bytes / 1000)), entry.date[:10] or "-",
-            "whole" if entry.whole else "damaged", entry.valid_range or "-",
+            entry["name"], entry["kind"] or "-", entry["pressure_law"] or "-",
+            "-" if accuracy is None else f"{accuracy:g}",
+            str(round(entry["bytes"] / 1000)), entry["date"][:10] or "-",
+            "whole" if entry["whole"] else "damaged", entry["valid_range"] or "-",
         ))  # fmt: skip
     widths = [max(len(row[i]) for row in rows) for i in range(len(titles))]
     lines = [
         "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
         for row in rows
     ]
-    places = list(dict.fromkeys(entry.place for entry in entries if entry.place != "comes along"))
+    places = dict.fromkeys(one["place"] for one in entries if one["place"] != "comes along")
     return "\n".join(lines + [f"kept in {click.format_filename(place)}" for place in places])

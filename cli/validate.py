@@ -19,8 +19,8 @@ FAILED = 3  # exit status: 1 and 2 are those of errors and of wrong usage
 def validate(file: Path | None) -> None:
     """Judge a table by independent routes.
 
-    Resultants: direct quadrature, closed forms, known entries, exact identities; those under other
-    pressure laws and friction laws: quadrature.  Stops: the integrator, the equations they satisfy
+    Resultants: direct quadrature and closed forms; those under other pressure laws and friction
+    laws: quadrature.  Stops: the integrator, the equations they satisfy
     with friction by quadrature, elementary solutions.
 
     Without FILE: the tables that come along.  Ends with code 3 if anything is out of a table's own

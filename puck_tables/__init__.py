@@ -63,8 +63,7 @@ if TYPE_CHECKING:
     from puck_tables.scene.pieces import Arc, Pocket, Post, Rim
     from puck_tables.scene.restitution import Plastic, RestitutionTable, Viscoelastic
     from puck_tables.scene.run import Run
-    from puck_tables.stopping.aim_at_target import Aim
-    from puck_tables.stopping.aim_at_targets import Aims
+    from puck_tables.stopping.aim_at_targets import Aim, Aims
     from puck_tables.stopping.array_functions import state_arrays, stop_arrays
     from puck_tables.stopping.states import States, states
     from puck_tables.stopping.stop_map import StopMap, StopSample
@@ -86,7 +85,7 @@ with_neighbours(__name__, __file__)
 
 _HOMES = {
     "AccuracyError": "errors",
-    "Aim": "stopping.aim_at_target",
+    "Aim": "stopping.aim_at_targets",
     "Aims": "stopping.aim_at_targets",
     "Answer": "reference.answer",
     "Arc": "scene.pieces",
@@ -255,11 +254,11 @@ __all__ = [
 
 __getattr__, __dir__ = lazily(__name__, _HOMES)
 lead_up({
-    "FrictionSection": "puck_tables.table.friction_section",
-    "ResultantTable": "puck_tables.table.resultant_table",
-    "SpeedTable": "puck_tables.table.speed_table",
-    "StopSection": "puck_tables.stopping.stop_section",
-    "StopTable": "puck_tables.stopping.stop_table",
     "draw": "puck_tables.plot.drawn",
     "save_movie": "puck_tables.plot.movie",
+    "table of resultants": "puck_tables.table.resultant_table:ResultantTable",
+    "table of stops": "puck_tables.stopping.stop_table:StopTable",
+    "table of speed": "puck_tables.table.speed_table:SpeedTable",
+    "table of friction section": "puck_tables.table.friction_section:FrictionSection",
+    "table of stop section": "puck_tables.stopping.stop_section:StopSection",
 })  # fmt: skip

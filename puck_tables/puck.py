@@ -13,8 +13,7 @@ import numpy.typing as npt
 from puck_tables.verbs_of_many import VerbsOfMany
 
 if TYPE_CHECKING:
-    from puck_tables.stopping.aim_at_target import Aim
-    from puck_tables.stopping.aim_at_targets import Aims
+    from puck_tables.stopping.aim_at_targets import Aim, Aims
     from puck_tables.stopping.states import States
     from puck_tables.stopping.stops import Stops
     from puck_tables.table.table import Table

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from puck_tables import Puck
-from puck_tables.stopping.aim_at_target import Aim
+from puck_tables.stopping.aim_at_targets import Aim
 from puck_tables.stopping.stop_map import StopMap
 from puck_tables.trajectory import Trajectory
 

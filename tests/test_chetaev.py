@@ -10,7 +10,6 @@ from scipy.interpolate import make_interp_spline
 
 from puck_tables import stop
 from puck_tables.chetaev import ConstrainedSystem, constrained_motion, patch_stop, patch_system
-from puck_tables.chetaev.system import instant
 from puck_tables.errors import AccuracyError, InputError
 
 TIMES = np.linspace(0.0, 3.0, 31)
@@ -360,6 +359,6 @@ def test_bad_patches_get_a_sentence():
 def test_an_instant_splits_the_reaction():
     slope = np.array([[[-0.6, 0.8]]])
     bead = ConstrainedSystem([1.0], lambda x, t: (slope, [0.0]), [[0.0, -5.0]], [-2.0])
-    now = instant(bead, np.zeros((1, 2)), np.array([[0.8, 0.6]]), 0.0)
+    now = bead.instant(np.zeros((1, 2)), np.array([[0.8, 0.6]]), 0.0)
     assert now.smooth == pytest.approx(np.array([[-2.4, 3.2]]))
     assert now.friction == pytest.approx(np.array([[-1.6, -1.2]]))

@@ -28,14 +28,14 @@ threading.Thread(target=interrupt, daemon=True).start()
 """
 LONG = {
     "build resultants": (
-        "table.resultant_check", ["build-tables", "--cells", "60000", "-o", "n.h5"]
+        "table.resultant_table", ["build-tables", "--cells", "60000", "-o", "n.h5"]
     ),
     "build stops": (
         "stopping.stop_check",
         ["build-tables", "--kind", "stops", "--accuracy", "1e-11", "-o", "n.h5"]
     ),
     "build law": (
-        "table.resultant_check", ["build-tables", "--pressure", "hill.csv", "-o", "n.h5"]
+        "table.resultant_table", ["build-tables", "--pressure", "hill.csv", "-o", "n.h5"]
     ),
     "validate": (
         "stopping.stop_check", ["validate", str(files("puck_tables.tables") / "stops.h5")]
@@ -51,7 +51,7 @@ LONG = {
         ["sweep", "--scene", "incline", "--set", "launch.spin=0:80:900000", "-o", "m.h5"],
     ),
     "aim": (
-        "stopping.aim_at_target", ["aim", "--target", "2,0.1", "--count", "9000", "-o", "a.csv"]
+        "stopping.aim_at_targets", ["aim", "--target", "2,0.1", "--count", "9000", "-o", "a.csv"]
     ),
     "tradeoff": ("tradeoff.measurement", ["tradeoff", "-o", "t.h5"]),
 }  # fmt: skip

@@ -10,8 +10,8 @@ import pytest
 from rarely import few
 
 import puck_tables as pt
-from puck_tables.fitting.compact import compact
-from puck_tables.fitting.forward_model import Moving, path_of, path_with_slopes
+from puck_tables.fitting.forward_model import Moving, states_and_slopes, states_of
+from puck_tables.fitting.least_squares import compact
 from puck_tables.fitting.problem import ANGLE, PLACE, PRIOR
 from puck_tables.fitting.unit_motions import unit_motions_of
 from puck_tables.plot.fit_figure import draw
@@ -95,14 +95,15 @@ def test_estimates_scatter_as_the_bound_says_over_1000_tracks(true, wrong, angle
 
 def test_derivatives_of_a_path_are_those_of_the_judge():
     times = np.linspace(0.0, 1.5, 40)
-    truth = np.array([1.9, 0.6, 20.0, DECEL, 0.6, RADIUS])
+    truth = np.array([1.9, 0.6, 20.0, 0.6, DECEL, RADIUS])
     moving = Moving(DECEL, 0.6, RADIUS, 0.0, unit_motions_of("uniform", 0.5**0.5))
-    _, slopes = path_with_slopes(moving, truth[:2], 20.0, times)
+    launch = np.array([0.0, 0.0, *truth[:3], 0.0])
+    slopes = states_and_slopes(moving, launch, times)[1][:, :3].T
     for k in range(6):
         step = 1e-3 * abs(truth[k])
         ends = []
         for side in (1.0, -1.0):
-            vx, vy, w, j, d, r = (truth + side * step * (np.arange(6) == k)).tolist()
+            vx, vy, w, d, j, r = (truth + side * step * (np.arange(6) == k)).tolist()
             ends.append(film_judge.path((vx, vy), w, j, d, r, times))
         expected = (ends[0] - ends[1]) / (2.0 * step)
         assert np.abs(slopes[k] - expected).max() < 1e-4 * np.abs(expected).max(), k
@@ -111,7 +112,7 @@ def test_derivatives_of_a_path_are_those_of_the_judge():
 def test_drag_by_look_up_is_drag_integrated():
     moving = Moving(DECEL, DELTA, RADIUS, 0.3, unit_motions_of("uniform", 0.5**0.5))
     times = np.linspace(0.0, 1.9, 50)
-    found = path_of(moving, np.array(VELOCITY), SPIN, times)
+    found = states_of(moving, np.array([0.0, 0.0, *VELOCITY, SPIN, 0.0]), times)[:3]
     expected = film_judge.path(VELOCITY, SPIN, DECEL, DELTA, RADIUS, times, drag=0.3)
     assert np.abs(found - expected).max(axis=1) == pytest.approx([0.0, 0.0, 0.0], abs=2e-6)
 

@@ -24,7 +24,6 @@ from puck_tables.stopping.section_lookup import fill_section_stops
 from puck_tables.stopping.similarity_lookup import LAUNCH_COLUMNS, LAUNCH_ROWS
 from puck_tables.stopping.state_lookup import PUCK_ROWS, fill_states_at
 from puck_tables.table.friction_section import friction_section
-from puck_tables.table.resultant_check import tabulate
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.tradeoff.bicubic import fill_bicubic, graded_coefficients
 
@@ -54,7 +53,7 @@ def look_up_everything() -> None:
     fast = np.arange(n) % 2 == 0
     table, stops = Table.shipped(), Table.shipped("stops")
     for law in (law_of("uniform"), law_of("annulus:0.5")):
-        small = tabulate(ResultantTable, law, 8)
+        small = ResultantTable.tabulated(law, 8)
         sides, columns = np.array(small.axis.sides), small.columns
         for c in (columns, np.random.default_rng(1).choice(WILD, columns.shape)):
             fill_resultants(c, sides, first, second, out)

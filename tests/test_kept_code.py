@@ -157,19 +157,19 @@ def test_a_folder_below_one_like_tmp_is_used(tmp_path: Path):
 
 
 def test_the_users_cache_is_judged_alike(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    from puck_tables.table import table_cache
+    from puck_tables.table import table_cache, table_store
 
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     tmp_path.chmod(0o777)
     _said.clear()
     said: list[str] = []
-    monkeypatch.setattr(table_cache, "say", said.append)
+    monkeypatch.setattr(table_store, "say", said.append)
     assert table_cache.table_for("ring", 1e-4).tolerance == 1e-4
     assert "others may write" in said[0]
     assert list(tmp_path.iterdir()) == []
-    assert table_cache.kept_files() == []
-    with pytest.raises(InputError, match="no table"):
-        table_cache.remove(tmp_path / "x")
+    assert table_store.kept_files() == []
+    with pytest.raises(InputError, match="no table x is kept"):
+        table_store.remove(["x"])
 
 
 def test_nothing_appears_beside_the_package_where_no_folder_will_do(tmp_path: Path):

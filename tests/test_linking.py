@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
+import pytest
 
 from puck_tables.kernels.compile import inlined, inner, kernel
 from puck_tables.kernels.compiled import dispatcher_of
@@ -72,3 +78,40 @@ def test_a_door_that_was_kept_is_linked_into_others_too():
 
     assert through(1.0) == expected
     assert sum(kept.compiled._cache_hits.values()) == 1
+
+
+_SAYS = (
+    "import sys, numba.core.codegen, numpy as np\n"
+    "{}\n"
+    "import puck_tables as p\n"
+    "stops = p.stop((1.0, 0.2), np.linspace(-3.0, 5.0, 99), delta=0.5)\n"
+    "run = p.Puck(0.04, 0.02, 0.15).simulate((1.0, 0.2), 5.0)\n"
+    "print(stops.stop_time.tolist(), stops.stop_position.tolist(), run.stop_time)\n"
+)
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize(
+    ("without", "kept"),
+    [
+        ("del numba.core.codegen.JITCodeLibrary", "*.code"),
+        ("sys.modules['puck_tables.kernels.kept_code'] = None", "*.nbc"),
+    ],
+)
+def test_a_numba_without_its_private_parts_compiles_the_same(
+    without: str, kept: str, tmp_path: Path
+):
+    said = []
+    for number, line in enumerate(("", without, without)):
+        folder = tmp_path / str(bool(number))
+        settings = {"NUMBA_DISABLE_JIT": "0", "NUMBA_CACHE_DIR": str(folder)}
+        ended = subprocess.run(
+            [sys.executable, "-c", _SAYS.format(line)], env={**os.environ, **settings},
+            capture_output=True, text=True, check=True,
+        )  # fmt: skip
+        said.append(ended.stdout)
+        if number == 1:
+            files = {path: path.stat().st_mtime_ns for path in folder.glob(f"compiled-*/**/{kept}")}
+    assert said[0] == said[1] == said[2]
+    assert files
+    assert files == {path: path.stat().st_mtime_ns for path in folder.rglob(kept)}  # and read again

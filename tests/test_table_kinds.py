@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import fields, replace
 from importlib.resources import files
 from pathlib import Path
 
@@ -28,11 +29,11 @@ COMMAND = "puck build-tables, as a test has it"
 GRIDS = {
     "resultants": ({"phi": 69, "delta": 4}, "spin", "69 phi x 4 delta nodes"),
     "washer": ({"phi": 49, "delta": 4}, "spin", "49 phi x 4 delta nodes"),
-    "profile": ({"phi": 145, "delta": 4, "profile_radius": 3}, "spin", "145 phi x 4 delta nodes"),
+    "profile": ({"phi": 145, "delta": 4}, "spin", "145 phi x 4 delta nodes"),
     "stops": ({"phi": 33, "delta": 9}, "time", "33 phi x 9 delta nodes"),
     "section": ({"phi": 129}, "spin_share", "129 phi nodes"),
     "stop section": ({"phi": 129}, "along", "129 phi nodes"),
-    "speed": ({"node": 968, "patch": 8}, "p_d", "968 nodes in 8 patches"),
+    "speed": ({"node": 968}, "p_d", "968 nodes in 8 patches"),
 }
 every_kind = pytest.mark.parametrize("kind", KINDS)
 
@@ -67,7 +68,11 @@ def test_round_trip_is_exact(kind: str, saved: Callable[[str], Path]):
     np.testing.assert_array_equal(loaded.values, table.values)
     np.testing.assert_array_equal(answers(loaded), answers(table))
     assert (loaded.accuracy, loaded.tolerance) == (table.accuracy, table.tolerance)
-    assert loaded.parameters == table.parameters
+    for one in fields(table):  # what the values follow from: laws, lines, grids
+        if one.name not in ("values", "metadata", "source"):
+            made, read = getattr(table, one.name), getattr(loaded, one.name)
+            assert type(made) is type(read)
+            assert np.all(np.asarray(made == read)), one.name
     assert not loaded.values.flags.writeable
 
 
@@ -78,18 +83,15 @@ def test_a_file_says_what_it_holds(kind: str, saved: Callable[[str], Path]):
     for name in (
         "format", "format_version", "kind", "pressure_law", "algorithm", "interpretation",
         "valid_range", "method", "package_version", "library_versions", "created",
-        "content_digest", "recipe_digest", "achieved_accuracy", "tolerance", *table.words,
+        "digest", "achieved_accuracy", "tolerance", *table.words,
     ):  # fmt: skip
         assert table.metadata[name], name
     assert table.metadata["command"] == COMMAND
     with xarray.open_dataset(saved(kind), engine="h5netcdf") as data:
         assert dict(data.sizes) == sizes
         assert set(table.functions) <= set(data.variables)
-        assert (
-            data[function].attrs["max_error"]
-            == table.accuracy.largest[list(table.functions).index(function)]
-        )
-        assert all("units" in data[name].attrs for name in data.variables)
+        assert all("units" in data[name].attrs for name in {*data.variables} - {"made_of"})
+        assert function in data
     told = CliRunner().invoke(main, ["info", str(saved(kind))]).stdout
     for words in (grid, f"{table.tolerance:g}", "right", COMMAND, table.pressure_law):
         assert words in told
@@ -116,21 +118,6 @@ def test_an_honest_table_passes_and_a_bold_or_bent_one_fails(
 
 
 @every_kind
-def test_a_sealed_file_is_still_checked(kind: str, tmp_path: Path):
-    """What a table of its kind cannot be is refused; ``validate`` judges the numbers."""
-    table = small(kind)
-    for wrong, words in (
-        (replace(table, tolerance=float("inf")), "tolerance is missing or no finite number"),
-        (replace(table, tolerance=2.0), "cannot use"),
-        (replace(table, tolerance=1e-18), "cannot use"),
-        (replace(table, values=-1e6 * table.values), "cannot use"),
-    ):
-        with pytest.raises(TableError, match=words):
-            wrong.save(tmp_path / "bad.h5")
-    assert list(tmp_path.iterdir()) == []
-
-
-@every_kind
 def test_nothing_is_overwritten_and_nothing_non_finite_is_saved(
     kind: str, saved: Callable[[str], Path], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ):
@@ -140,8 +127,12 @@ def test_nothing_is_overwritten_and_nothing_non_finite_is_saved(
         table.save(path)
     spoilt = table.values.copy()
     spoilt[0] = np.nan
-    for unsaved in (replace(table, values=spoilt), replace(table, accuracy=None)):
-        with pytest.raises(OutputError, match="without measured accuracy or with a non-finite"):
+    for unsaved, words in (
+        (replace(table, values=spoilt), "without measured accuracy or with a non-finite"),
+        (replace(table, accuracy=None), "without measured accuracy or with a non-finite"),
+        *((replace(table, tolerance=one), "promises") for one in (float("inf"), 2.0, 0.0)),
+    ):
+        with pytest.raises(OutputError, match=words):
             unsaved.save(path, overwrite=True)
 
     def full(descriptor: int) -> None:
@@ -179,30 +170,12 @@ def test_cut_and_flipped_files_are_refused_before_hdf5_sees_them(
 
 
 @every_kind
-def test_altered_texts_numbers_values_and_axes_are_refused(
-    kind: str, saved: Callable[[str], Path], tmp_path: Path
-):
-    axis, function = next(iter(small(kind).axes)), next(iter(small(kind).functions))
-
-    def scaled(name: str) -> Callable[[h5py.File], object]:
-        return lambda opened: opened[name].write_direct(opened[name][...] * (1 + 1e-15))
-
-    for edit in (
-        lambda opened: opened.attrs.update(interpretation="hertz"),
-        lambda opened: opened.attrs.update(tolerance=0.5),
-        scaled(axis), scaled(function),
-    ):  # fmt: skip
-        with pytest.raises(TableError, match="content does not match its digest"):
-            Table.load(altered(saved(kind), tmp_path / "altered.h5", edit))
-
-
-@every_kind
 def test_other_formats_kinds_and_strangers_are_refused_by_name(
     kind: str, saved: Callable[[str], Path], tmp_path: Path
 ):
     for version, words in (
-        ("4.0", r"format 4\.0, newer than 3\.0 of this program: update puck-tables"),
-        ("2.0", r"format 2\.0, older than 3\.0 of this program: build it again"),
+        ("5.0", r"format 5\.0, newer than 4\.0 of this program: update puck-tables"),
+        ("3.0", r"format 3\.0, older than 4\.0 of this program: build it again"),
     ):
         edited = altered(
             saved(kind),
@@ -211,6 +184,12 @@ def test_other_formats_kinds_and_strangers_are_refused_by_name(
         )
         with pytest.raises(TableError, match=words):
             Table.load(edited)
+    made = altered(saved(kind), tmp_path / "made.h5", lambda f: f.attrs.update(algorithm="mine; 9"))
+    with pytest.raises(TableError, match="recipe that this program does not know"):
+        Table.load(made)
+    bare = altered(saved(kind), tmp_path / "bare.h5", lambda f: f.pop("made_of"))
+    with pytest.raises(TableError, match="cannot be read as a table"):
+        Table.load(bare)
     renamed = altered(saved(kind), tmp_path / "kind.h5", lambda f: f.attrs.update(kind="partial"))
     with pytest.raises(TableError, match="holds 'partial', not a table of 'resultants' or 'stops'"):
         Table.load(renamed)
@@ -268,9 +247,10 @@ def test_progress_is_told(of: object):
 
 
 def test_laws_that_no_file_holds_are_not_saved(tmp_path: Path):
-    law = replace(law_of("hertz"), name="mine")
-    with pytest.raises(OutputError, match="the pressure law mine is a function"):
-        Table.build(law, cells=8).save(tmp_path / "mine.h5")
+    for name in ("mine", "ring"):  # nor one that borrows a name
+        law = replace(law_of("hertz"), name=name)
+        with pytest.raises(OutputError, match=f"the pressure law {name} is a function"):
+            Table.build(law, cells=8).save(tmp_path / "mine.h5")
     assert list(tmp_path.iterdir()) == []
 
 
@@ -281,12 +261,12 @@ def test_a_name_in_a_file_opens_no_other_file(tmp_path: Path, monkeypatch: pytes
     small("profile").save(path)
 
     def emptied(opened: h5py.File) -> None:
-        del opened["profile_radius"], opened["profile_pressure"]
-        opened.attrs["profile_rows"] = 0
+        del opened["made_of"]
+        opened["made_of"] = json.dumps({"law": {"pressure": "stone.csv"}})
 
     read: list[object] = []
     monkeypatch.setattr("puck_tables.contact.laws.numbers_of", read.append)
-    with pytest.raises(TableError):
+    with pytest.raises(TableError, match="neither names nor holds its pressure law"):
         Table.load(altered(path, Path("bare.h5"), emptied))
     assert read == []
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 NEEDED = ("numpy", "numba", "scipy", "h5py", "click")
-_ABOVE: dict[str, str] = {}  # modules by the names of functions in them, as the package tells
+_ABOVE: dict[str, str] = {}  # where names are, as the package tells
 _ROOT = Path(__file__).resolve().parent.parent.parent
 _CLONE = _ROOT if (_ROOT / "pyproject.toml").is_file() else None
 
@@ -57,19 +57,28 @@ def lazily(
 
 
 def lead_up(homes: Mapping[str, str]) -> None:
-    """Tell in which modules the functions are that lower rooms ask for without knowing them."""
+    """Tell where that is which lower rooms ask for without knowing it.
+
+    ``homes``: modules by names, or ``module:name`` where it has another name there.
+    """
     _ABOVE.update(homes)
 
 
+def names_above(beginning: str) -> list[str]:
+    """The names that were told and begin so, in the order in which they were."""
+    return [name for name in _ABOVE if name.startswith(beginning)]
+
+
 def above(name: str) -> Any:
-    """A function that stands above whoever asks for it: pictures stand above what they show.
+    """What stands above whoever asks for it: pictures stand above what they show.
 
     Examples
     --------
     >>> above("draw").__name__
     'draw'
     """
-    return getattr(import_module(_ABOVE[name]), name)
+    module, _, original = _ABOVE[name].partition(":")
+    return getattr(import_module(module), original or name)
 
 
 def with_neighbours(package: str, file: str) -> None:

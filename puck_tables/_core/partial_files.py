@@ -23,7 +23,6 @@ except ImportError:  # a system without such locks: parts are of the dead when t
     fcntl = None  # type: ignore[assignment]
 
 _PREFIX, _SUFFIX = ".puck-", ".part"
-PART_PATTERN = f"{_PREFIX}*{_SUFFIX}"  # of what an end in the middle of writing leaves
 _NAME = re.compile(re.escape(_PREFIX) + "[0-9a-f]{16}" + re.escape(_SUFFIX))
 _OLD = 86400.0  # s
 _own: set[Path] = set()  # of this process

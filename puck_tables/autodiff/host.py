@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables.contact.laws import HOMOGENEOUS, Law
+from puck_tables.errors import InputError
 from puck_tables.stopping.jacobian import LAUNCH_NAMES, MOMENT_NAMES, STATE_NAMES, STOP_NAMES
 from puck_tables.stopping.states import states
 from puck_tables.stopping.stops import stop
@@ -68,3 +70,69 @@ def slopes(inputs: Any, kind: PuckKind) -> Array:
         spins = (arguments[..., 0] == 0.0) & (arguments[..., 1] == 0.0)
         jacobian[spins, STOP_NAMES.index("path_length"), :2] = 0.0
     return jacobian
+
+
+def refuse_shape(shape: tuple[int, ...]) -> None:
+    """Refuse velocities that are no pairs.
+
+    Raises
+    ------
+    InputError
+    """
+    if not shape or shape[-1] != 2:
+        raise InputError(f"velocity must have the shape (..., 2), got {shape}")
+
+
+_ARGUMENTS = """
+    Parameters
+    ----------
+    velocity : (…, 2), m/s
+    spin, {time}delta, decel, radius : (…), rad/s, {second}1, m/s², m
+    pressure, gyration : as :class:`puck_tables.Puck`; not differentiated
+
+    Returns
+    -------
+    (…, {count}) in double precision
+        {results}
+
+    Raises
+    ------
+    InputError
+        If a number is in single precision, the shape of ``velocity`` is wrong, or as
+        :func:`puck_tables.{name}`.
+    """
+
+
+def functions(
+    of: Callable[[Any, PuckKind], Any], merged: Callable[..., Any]
+) -> tuple[Callable[..., Any], Callable[..., Any]]:
+    """The functions ``stop`` and ``states`` of a library.
+
+    Parameters
+    ----------
+    of : results of arguments (…, columns), differentiated
+    merged : arguments (…, columns) from a velocity (…, 2) and numbers (…)
+    """
+
+    def stop(
+        velocity: Any, spin: Any = 0.0, *, delta: Any = 0.5, decel: Any = 1.0, radius: Any = 1.0,
+        pressure: str | Law = "uniform", gyration: float = HOMOGENEOUS,
+    ) -> Any:  # fmt: skip
+        return of(merged(velocity, spin, delta, decel, radius), PuckKind(pressure, gyration))
+
+    def states(
+        velocity: Any, spin: Any, time: Any, *, delta: Any = 0.5, decel: Any = 1.0,
+        radius: Any = 1.0, pressure: str | Law = "uniform", gyration: float = HOMOGENEOUS,
+    ) -> Any:  # fmt: skip
+        arguments = merged(velocity, spin, delta, decel, radius, time)
+        return of(arguments, PuckKind(pressure, gyration))
+
+    stop.__doc__ = "Stops of pucks, as :func:`puck_tables.stop`.\n" + _ARGUMENTS.format(
+        time="", second="", count=5, name="stop",
+        results="Stop time, x, y, path length and body angle.",
+    )  # fmt: skip
+    states.__doc__ = "States of pucks, as :func:`puck_tables.states`.\n" + _ARGUMENTS.format(
+        time="time, ", second="s, ", count=6, name="states",
+        results="x, y, orientation, vx, vy, spin.",
+    )  # fmt: skip
+    return stop, states

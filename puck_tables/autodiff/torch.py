@@ -1,6 +1,13 @@
 """Stops and states that torch differentiates once, backward and forward.
 
 The numbers come from the host, in double precision; derivatives from the exact Jacobians.
+
+Examples
+--------
+>>> spin = torch.tensor(5.0, dtype=torch.float64, requires_grad=True)
+>>> stop((1.0, 0.0), spin)[1].backward()
+>>> round(spin.grad.item(), 6), round(states((1.0, 0.0), 5.0, 2.0)[0].item(), 6)
+(0.420792, 1.590682)
 """
 
 from __future__ import annotations
@@ -8,7 +15,6 @@ from __future__ import annotations
 from typing import Any
 
 from puck_tables.autodiff import host
-from puck_tables.contact.laws import HOMOGENEOUS, Law
 from puck_tables.errors import InputError, MissingExtraError
 
 try:
@@ -59,70 +65,8 @@ def _merged(velocity: Any, *others: Any) -> Any:
                 f"{one.dtype} is too coarse for the motion of a puck: give torch.float64"
             )
     way, *rest = (torch.as_tensor(one, dtype=torch.float64) for one in (velocity, *others))
-    if way.ndim == 0 or way.shape[-1] != 2:
-        raise InputError(f"velocity must have the shape (..., 2), got {tuple(way.shape)}")
+    host.refuse_shape(tuple(way.shape))
     return torch.stack(torch.broadcast_tensors(way[..., 0], way[..., 1], *rest), dim=-1)
 
 
-def stop(
-    velocity: Any, spin: Any = 0.0, *, delta: Any = 0.5, decel: Any = 1.0, radius: Any = 1.0,
-    pressure: str | Law = "uniform", gyration: float = HOMOGENEOUS,
-) -> Any:  # fmt: skip
-    """Stops of pucks, as :func:`puck_tables.stop`.
-
-    Parameters
-    ----------
-    velocity : (…, 2), m/s
-    spin, delta, decel, radius : (…), rad/s, 1, m/s², m
-    pressure, gyration : as :class:`puck_tables.Puck`; not differentiated
-
-    Returns
-    -------
-    torch.Tensor (…, 5)
-        Stop time, x, y, path length and body angle, float64.
-
-    Raises
-    ------
-    InputError
-        If a tensor is not float64, or as :func:`puck_tables.stop`.
-
-    Examples
-    --------
-    >>> spin = torch.tensor(5.0, dtype=torch.float64, requires_grad=True)
-    >>> stop((1.0, 0.0), spin)[1].backward()
-    >>> round(spin.grad.item(), 6)
-    0.420792
-    """
-    kind = host.PuckKind(pressure, gyration)
-    return _Stops.apply(_merged(velocity, spin, delta, decel, radius), kind)
-
-
-def states(
-    velocity: Any, spin: Any, time: Any, *, delta: Any = 0.5, decel: Any = 1.0, radius: Any = 1.0,
-    pressure: str | Law = "uniform", gyration: float = HOMOGENEOUS,
-) -> Any:  # fmt: skip
-    """States of pucks, as :func:`puck_tables.states`.
-
-    Parameters
-    ----------
-    velocity : (…, 2), m/s
-    spin, time, delta, decel, radius : (…), rad/s, s, 1, m/s², m
-    pressure, gyration : as :class:`puck_tables.Puck`; not differentiated
-
-    Returns
-    -------
-    torch.Tensor (…, 6)
-        x, y, orientation, vx, vy, spin, float64.
-
-    Raises
-    ------
-    InputError
-        As :func:`stop`.
-
-    Examples
-    --------
-    >>> round(states((1.0, 0.0), 5.0, 2.0)[0].item(), 6)
-    1.590682
-    """
-    joined = _merged(velocity, spin, delta, decel, radius, time)
-    return _Stops.apply(joined, host.PuckKind(pressure, gyration))
+stop, states = host.functions(_Stops.apply, _merged)

@@ -197,21 +197,17 @@ def asperity_curve(
             f"speed must be from 0 to {highest:g} m/s ({MAX_SPEED:g} times the speed at which the "
             f"crest is left), got {wrong:g}"
         )
-    rows = []
-    for done, one in enumerate(V, start=1):
-        w = float(one / asperity.lift_speed) ** 2
+    forces, phases = np.zeros((4, V.size)), np.zeros((2, V.size))
+    for n, w in enumerate(((V / asperity.lift_speed) ** 2).tolist()):
         run = held_round(w)
         first = -math.pi if math.isnan(run.landing) else run.landing
-        greatest = [greatest_force(w, first, kappa) for kappa in (0.0, asperity.slope)]
-        rows.append((
-            1.0, *(greatest if run.slides else (0.0, 0.0)), run.mean, run.landing,
-            run.flights / run.periods,
-        ))  # fmt: skip
+        if run.slides:
+            forces[1:3, n] = [greatest_force(w, first, kappa) for kappa in (0.0, asperity.slope)]
+        forces[0, n], forces[3, n] = 1.0, run.mean
+        phases[:, n] = run.landing, run.flights / run.periods
         if progress is not None:
-            progress(done, V.size)
-    columns = np.array(rows).T
-    columns[:4] *= asperity.load * asperity.slope
-    return AsperityCurve(asperity, V, *columns)
+            progress(n + 1, V.size)
+    return AsperityCurve(asperity, V, *(asperity.load * asperity.slope * forces), *phases)
 
 
 def greatest_force(w: float, first: float, slope: float = 0.0) -> float:

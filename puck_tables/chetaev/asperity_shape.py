@@ -69,7 +69,33 @@ class Asperity:
 
     def press(self, x: npt.ArrayLike, speed: npt.ArrayLike) -> FloatArray:
         """The numerator of λ, N: negative where the support falls away under a flying point."""
-        return self._pressed(x, speed)[2]
+        place, rate = broadcast(
+            x=finite_array("x", x, "m"), speed=finite_array("speed", speed, "m/s")
+        )
+        with np.errstate(over="ignore", invalid="ignore"):
+            press = np.asarray(self._press(place, rate))
+        if not np.isfinite(press).all():
+            raise InputError("x and speed give a press too large for floating point")
+        return press
+
+    def multipliers(self, x: npt.ArrayLike, speed: npt.ArrayLike) -> tuple[FloatArray, ...]:
+        """λ exact, by its leading terms, and crude, in N, not cut at 0: below there is no contact.
+
+        Parameters
+        ----------
+        x : array_like, m
+        speed : array_like, x′ in m/s, broadcast
+
+        Examples
+        --------
+        >>> bumps = Asperity(amplitude=1.0, length=1.0, load=2.0, mass=1.0)
+        >>> [float(lam.round(6)) for lam in bumps.multipliers(np.pi / 4, 1.0)]
+        [1.804738, 2.707107, 2.0]
+        """
+        press = self.press(x, speed)
+        pulled = self.pull * self._incline(np.asarray(x))
+        exact = press / (1.0 + self._incline(np.asarray(x)) ** 2)
+        return exact, press - pulled, np.full(press.shape, self.load)
 
     def _height(self, x: Any) -> Any:
         return -self.amplitude * np.cos(x / self.length)
@@ -80,40 +106,3 @@ class Asperity:
     def _press(self, x: Any, speed: Any) -> Any:
         bend = self.mass * self.amplitude / self.length**2 * speed**2 * np.cos(x / self.length)
         return self.load + bend + self.pull * self._incline(x)
-
-    def _pressed(
-        self, x: npt.ArrayLike, speed: npt.ArrayLike
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Places, speeds and the press there, checked."""
-        place, rate = broadcast(
-            x=finite_array("x", x, "m"), speed=finite_array("speed", speed, "m/s")
-        )
-        with np.errstate(over="ignore", invalid="ignore"):
-            press = np.asarray(self._press(place, rate))
-        if not np.isfinite(press).all():
-            raise InputError("x and speed give a press too large for floating point")
-        return place, rate, press
-
-    def multipliers(self, x: npt.ArrayLike, speed: npt.ArrayLike) -> tuple[FloatArray, ...]:
-        """λ exact, by its leading terms, and crude, in N.
-
-        Parameters
-        ----------
-        x : array_like, m
-        speed : array_like, x′ in m/s, broadcast
-
-        Returns
-        -------
-        three arrays of the broadcast shape
-            Not cut at 0: where λ < 0 there is no contact.
-
-        Examples
-        --------
-        >>> bumps = Asperity(amplitude=1.0, length=1.0, load=2.0, mass=1.0)
-        >>> [float(lam.round(6)) for lam in bumps.multipliers(np.pi / 4, 1.0)]
-        [1.804738, 2.707107, 2.0]
-        """
-        place, rate, press = self._pressed(x, speed)
-        bend = self.mass * self.amplitude / self.length**2 * rate**2 * np.cos(place / self.length)
-        exact = press / (1.0 + self._incline(place) ** 2)
-        return exact, self.load + bend, np.full(place.shape, self.load)

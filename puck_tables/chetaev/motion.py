@@ -15,13 +15,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import finite_array, instance, real, shown
-from puck_tables.chetaev.system import (
-    ConstrainedSystem,
-    Instant,
-    instant,
-    rate,
-    violation,
-)
+from puck_tables.chetaev.system import ConstrainedSystem, Instant
 from puck_tables.errors import AccuracyError, InputError
 
 FINEST, COARSEST = 1e-13, 1e-2  # relative: finer is rounding, looser is no answer
@@ -168,37 +162,43 @@ def constrained_motion(
     """
     from scipy.integrate import solve_ivp
 
-    x, v, t = _checked_start(system, position, velocity, times)
-    tol = checked_tol(tol)
+    instance("system", system, ConstrainedSystem)
+    x, v = finite_array("position", position, "m"), finite_array("velocity", velocity, "m/s")
+    points = np.asarray(system.masses).size
+    if x.ndim != 2 or x.shape[0] != points or x.shape[1] not in (2, 3) or v.shape != x.shape:
+        raise InputError(
+            f"position and velocity must have the shape ({points}, 2) or ({points}, 3), one row a "
+            f"mass, got {x.shape} and {v.shape}"
+        )
+    t, tol = checked_times(times), checked_tol(tol)
     if until is not None and not callable(until):
         raise InputError(f"until must be a function of (x, v, t), got {shown(until)}")
     start = _checked_admissible(system, x, v, t)
     size, shape = x.size, x.shape
 
-    def at(time: float, state: FloatArray) -> Instant:
-        x, v = state[: 2 * size].reshape(2, *shape)
-        return instant(system, x, v, time)
-
     def slope(time: float, state: FloatArray) -> FloatArray:
-        now = at(time, state)
+        x, v = state[: 2 * size].reshape(2, *shape)
+        now = system.instant(x, v, time)
         going = now.velocity
         works = ((now.force * going).sum(), (now.friction * going).sum(),
                  -now.multipliers @ now.drive)  # fmt: skip
         return np.concatenate([going.ravel(), now.acceleration.ravel(), works])
 
-    events = None
-    if until is not None:
-        ends = until
+    def ends(time: float, state: FloatArray) -> float:
+        assert until is not None
+        x, v = state[: 2 * size].reshape(2, *shape)
+        return float(until(x, v, time))
 
-        def events(time: float, state: FloatArray) -> float:
-            x, v = state[: 2 * size].reshape(2, *shape)
-            return float(ends(x, v, time))
-
-        events.terminal, events.direction = True, -1  # type: ignore[attr-defined]
+    ends.terminal, ends.direction = True, -1  # type: ignore[attr-defined]
+    # what errors are measured against where a coordinate passes zero: a length, speed, energy
+    span = t[-1] - t[0]
+    speed = float(np.abs(start.velocity).max() + np.abs(start.acceleration).max() * span) or 1.0
+    energy = float(np.asarray(system.masses).sum()) * speed**2
+    scales = [float(np.abs(x).max()) + speed * span, speed, energy]
     solved = solve_ivp(
         slope, (t[0], t[-1]), np.concatenate([x.ravel(), v.ravel(), np.zeros(_WORKS)]),
-        method="DOP853", t_eval=t, rtol=tol, atol=tol * _scales(system, x, start, t[-1] - t[0]),
-        events=events,
+        method="DOP853", t_eval=t, rtol=tol, atol=tol * np.repeat(scales, [size, size, _WORKS]),
+        events=None if until is None else ends,
     )  # fmt: skip
     if solved.status < 0:
         reached = solved.t[-1] if solved.t.size else t[0]
@@ -210,22 +210,21 @@ def constrained_motion(
     if solved.status == 1:
         when = np.append(when, solved.t_events[0])
         states = np.concatenate([states, solved.y_events[0]])
-    instants = [at(float(time), state) for time, state in zip(when, states, strict=True)]
-    return _reported(system, when, states, instants)
+    return _reported(system, when, states, shape)
+
+
+def checked_times(times: npt.ArrayLike) -> FloatArray:
+    """Times of a motion, the first of which is its start."""
+    t = finite_array("times", times, "s")
+    if t.ndim != 1 or t.size < 2 or not (np.diff(t) > 0.0).all():
+        raise InputError(
+            "times must be at least two numbers in s, ascending: the first is the start"
+        )
+    return t
 
 
 def checked_tol(tol: float) -> float:
-    """A local error that the integrator can keep.
-
-    Raises
-    ------
-    InputError, AccuracyError
-
-    Examples
-    --------
-    >>> checked_tol(1e-9)
-    1e-09
-    """
+    """A local error that the integrator can keep."""
     error = real("tol", tol, "relative")
     if not FINEST <= error <= COARSEST:
         raise AccuracyError(f"tol must be from {FINEST:g} to {COARSEST:g}, got {error:g}")
@@ -233,15 +232,14 @@ def checked_tol(tol: float) -> float:
 
 
 def _reported(
-    system: ConstrainedSystem, when: FloatArray, states: FloatArray, instants: list[Instant]
+    system: ConstrainedSystem, when: FloatArray, states: FloatArray, shape: tuple[int, ...]
 ) -> ConstrainedMotion:
+    size = shape[0] * shape[1]
+    position, integrated = np.moveaxis(states[:, : 2 * size].reshape(-1, 2, *shape), 1, 0)
+    rows = zip(position, integrated, when.tolist(), strict=True)
+    instants = [system.instant(*row) for row in rows]
     columns = Instant(*(np.array(column) for column in zip(*instants, strict=True)))
-    velocity = columns.velocity
-    size = velocity[0].size
-    position, integrated = (
-        part.reshape(velocity.shape) for part in (states[:, :size], states[:, size : 2 * size])
-    )
-    masses = np.asarray(system.masses)[:, None]
+    velocity, masses = columns.velocity, np.asarray(system.masses)[:, None]
     moved = (masses * (velocity - integrated) ** 2).sum(axis=(1, 2)) / masses.sum()
     residual = np.einsum("ksnd,knd->ks", columns.matrix, velocity) + columns.drive
     return ConstrainedMotion(
@@ -252,40 +250,12 @@ def _reported(
     )  # fmt: skip
 
 
-def _scales(system: ConstrainedSystem, x: FloatArray, start: Instant, span: float) -> FloatArray:
-    """What errors are measured against where a coordinate passes zero: a length, speed, energy."""
-    speed = float(np.abs(start.velocity).max() + np.abs(start.acceleration).max() * span) or 1.0
-    length = float(np.abs(x).max()) + speed * span
-    energy = float(np.asarray(system.masses).sum()) * speed**2
-    return np.repeat([length, speed, energy], [x.size, x.size, _WORKS])
-
-
-def _checked_start(
-    system: ConstrainedSystem, position: npt.ArrayLike, velocity: npt.ArrayLike,
-    times: npt.ArrayLike,
-) -> tuple[FloatArray, FloatArray, FloatArray]:  # fmt: skip
-    instance("system", system, ConstrainedSystem)
-    x, v = finite_array("position", position, "m"), finite_array("velocity", velocity, "m/s")
-    points = np.asarray(system.masses).size
-    if x.ndim != 2 or x.shape[0] != points or x.shape[1] not in (2, 3) or v.shape != x.shape:
-        raise InputError(
-            f"position and velocity must have the shape ({points}, 2) or ({points}, 3), one row a "
-            f"mass, got {x.shape} and {v.shape}"
-        )
-    t = finite_array("times", times, "s")
-    if t.ndim != 1 or t.size < 2 or not (np.diff(t) > 0.0).all():
-        raise InputError(
-            "times must be at least two numbers in s, ascending: the first is the start"
-        )
-    return x, v, t
-
-
 def _checked_admissible(
     system: ConstrainedSystem, x: FloatArray, v: FloatArray, times: FloatArray
 ) -> Instant:
     """The first instant; refuses a start that breaks a constraint, and a wrong derivative."""
     time, span = float(times[0]), float(times[-1] - times[0])
-    start = instant(system, x, v, time)
+    start = system.instant(x, v, time)
     terms = np.abs(start.matrix).sum(axis=(1, 2)) * np.abs(v).max() + np.abs(start.drive)
     broken = np.abs(start.residual) > _ADMISSIBLE * terms
     if broken.any():
@@ -294,13 +264,13 @@ def _checked_admissible(
             f"the velocity at the start breaks constraint {which + 1}: the sum of a·x' and e is "
             f"{start.residual[which]:g}, not 0; give a velocity that the constraints admit"
         )
-    step = _PROBE * span
-    ahead, behind = (
-        violation(system, x + side * v, v, time + side) for side in (step, -step)
-    )  # fmt: skip
-    found = rate(system, x, v, time)
+    beside = []
+    for step in (_PROBE * span, -_PROBE * span):
+        a, e = system.constrained(x + step * v, time + step)
+        beside.append(a.reshape(len(e), -1) @ v.ravel() + e)
+    found = system.change(x, v, time)
     allowed = _PROBE_SLACK * (np.abs(found) + terms / span)
-    wrong = ~(np.abs((ahead - behind) / (2.0 * step) - found) <= allowed)
+    wrong = ~(np.abs((beside[0] - beside[1]) / (2.0 * _PROBE * span) - found) <= allowed)
     if wrong.any():
         raise InputError(
             f"constraint {int(np.argmax(wrong)) + 1} changes otherwise along the motion than its "

@@ -36,20 +36,7 @@ _LAST = 1e-7
 
 
 def disc_points(rings: int) -> FloatArray:
-    """Places of the patches, in units of the radius.
-
-    Parameters
-    ----------
-    rings : int, from 1 to 256
-
-    Returns
-    -------
-    array (4 rings², 2)
-
-    Raises
-    ------
-    InputError
-        If the number of rings is out of range.
+    """Places of the 4 rings² patches (n, 2), in units of the radius.
 
     Examples
     --------
@@ -72,27 +59,9 @@ def disc_points(rings: int) -> FloatArray:
 def pressures(points: FloatArray, slip: FloatArray, delta: float) -> FloatArray:
     """Loads of the patches in units of their mean: 1 + b x + c y with the moments balanced.
 
-    Parameters
-    ----------
-    points : array (n, 2)
-        Places from the centre in units of the radius, axes fixed in space.
-    slip : array (n, 2)
-        Friction of each patch over f σ, turned round: directions of slip.
-    delta : float
-        Dimensionless height 2fh/r.
-
-    Returns
-    -------
-    array (n,)
-
-    Raises
-    ------
-    InputError
-        If a patch would have to be pulled down: the model is that of full contact.
-
-    Notes
-    -----
-    Σ σ x = (h/2) f Σ σ u/|u|: two linear equations for (b, c).
+    ``points`` (n, 2) from the centre in units of the radius, axes fixed in space; ``slip`` (n, 2):
+    friction of each patch over f σ, turned round.  Σ σ x = (h/2) f Σ σ u/|u| are two linear
+    equations for (b, c).
 
     Examples
     --------

@@ -68,7 +68,7 @@ class ConstrainedSystem:
     A bead on a rail at 30° (a is the normal of the rail), pressed by its weight:
 
     >>> rail = ConstrainedSystem([2.0], lambda x, t: ([[[-0.5, 0.75**0.5]]], [0.0]), [[0.0, -20.0]])
-    >>> now = instant(rail, np.zeros((1, 2)), np.zeros((1, 2)), 0.0)
+    >>> now = rail.instant(np.zeros((1, 2)), np.zeros((1, 2)), 0.0)
     >>> now.multipliers.round(6).tolist()  # 20 N cos 30°
     [17.320508]
     """
@@ -92,6 +92,72 @@ class ConstrainedSystem:
             )
         object.__setattr__(self, "masses", masses)
 
+    def instant(self, position: FloatArray, velocity: FloatArray, time: float) -> Instant:
+        """Accelerations and multipliers at a state, after its velocity is made admissible.
+
+        Raises
+        ------
+        InputError
+            If a function returns something of another shape or not finite, or the constraints
+            depend on each other.
+        """
+        shape = position.shape
+        a, e = self.constrained(position, time)
+        flat = a.reshape(len(e), -1)
+        per_mass = np.repeat(1.0 / np.asarray(self.masses), shape[1])
+        solve = _solver(flat, per_mass, time)
+        residual = flat @ velocity.ravel() + e
+        moving = (velocity.ravel() - per_mass * (flat.T @ solve(residual))).reshape(shape)
+
+        def at(name: str, function: OfState | npt.ArrayLike, wanted: tuple[int, ...]) -> FloatArray:
+            given = function(position, moving, time) if callable(function) else function
+            values = real_array(name, given, "SI units")
+            if values.shape not in ((), wanted):
+                raise InputError(f"{name} must have the shape {wanted}, got {values.shape}")
+            if not np.isfinite(values).all():
+                raise InputError(f"{name} is not finite at t = {time:g} s")
+            return np.broadcast_to(values, wanted)
+
+        force = at("force", self.force, shape)
+        friction = at("friction", self.friction, shape[:1])[:, None] * moving
+        free = per_mass * (force + friction).ravel()
+        multipliers = -solve(flat @ free + self.change(position, moving, time))
+        smooth = flat.T @ multipliers
+        return Instant(
+            moving, (free + per_mass * smooth).reshape(shape), multipliers, smooth.reshape(shape),
+            friction, force, a, e, residual,
+        )  # fmt: skip
+
+    def constrained(self, position: FloatArray, time: float) -> tuple[FloatArray, FloatArray]:
+        """A (s, n, d) and e (s,), checked."""
+        a, e = self.constraints(position, time)
+        drive = np.atleast_1d(np.asarray(e, dtype=np.float64))
+        matrix = np.asarray(a, dtype=np.float64)
+        if drive.ndim != 1 or matrix.shape != (drive.size, *position.shape):
+            raise InputError(
+                f"constraints must return a of shape (s, n, d) = ({drive.size}, "
+                f"{position.shape[0]}, {position.shape[1]}) and e of shape (s,), got "
+                f"{matrix.shape} and {drive.shape}"
+            )
+        if not (np.isfinite(matrix).all() and np.isfinite(drive).all()):
+            raise InputError(f"the constraints are not finite at t = {time:g} s")
+        return matrix, drive
+
+    def change(self, position: FloatArray, velocity: FloatArray, time: float) -> FloatArray:
+        """d(Σ a·v + e)/dt along the motion at fixed v, array (s,)."""
+        if self.rate is not None:
+            return np.asarray(self.rate(position, velocity, time), dtype=np.float64)
+        step = 1j * _COMPLEX_STEP
+        try:
+            a, e = self.constraints(position + step * velocity, time + step)
+            turned = np.asarray(a).reshape(-1, velocity.size) @ velocity.ravel() + np.asarray(e)
+        except TypeError as error:
+            raise InputError(
+                "the constraints must take complex numbers, by which they are differentiated; "
+                f"write them with NumPy's functions, or give rate= ({error})"
+            ) from None
+        return np.asarray(turned.imag / _COMPLEX_STEP)
+
 
 class Instant(NamedTuple):
     """What holds at one state: everything in SI units.
@@ -112,108 +178,12 @@ class Instant(NamedTuple):
     residual: FloatArray
 
 
-def instant(
-    system: ConstrainedSystem, position: FloatArray, velocity: FloatArray, time: float
-) -> Instant:
-    """Accelerations and multipliers at a state, after its velocity is made admissible.
+def _solver(
+    flat: FloatArray, per_mass: FloatArray, time: float
+) -> Callable[[FloatArray], FloatArray]:
+    """What solves for the λ, by Cholesky's factor of the Gram matrix of unit constraints."""
+    from scipy.linalg import cho_solve
 
-    Parameters
-    ----------
-    system : ConstrainedSystem
-    position, velocity : arrays (n, d), m and m/s
-    time : float, s
-
-    Returns
-    -------
-    Instant
-
-    Raises
-    ------
-    InputError
-        If a function returns something of another shape or not finite, or the constraints depend
-        on each other.
-    """
-    shape = position.shape
-    a, e = _constraints(system, position, time)
-    count = len(e)
-    flat = a.reshape(count, -1)
-    per_mass = np.repeat(1.0 / np.asarray(system.masses), shape[1])
-    factor = _factor(flat, per_mass, time)
-    residual = flat @ velocity.ravel() + e
-    v = velocity.ravel() - per_mass * (flat.T @ _solve(factor, residual))
-    moving = v.reshape(shape)
-    force = _of_state("force", system.force, position, moving, time, shape)
-    mu = _of_state("friction", system.friction, position, moving, time, shape[:1])
-    friction = mu[:, None] * moving
-    function = (force + friction).ravel()
-    multipliers = -_solve(
-        factor, flat @ (per_mass * function) + rate(system, position, moving, time)
-    )
-    smooth = flat.T @ multipliers
-    acceleration = (per_mass * (function + smooth)).reshape(shape)
-    return Instant(
-        moving, acceleration, multipliers, smooth.reshape(shape), friction, force, a, e, residual
-    )
-
-
-def rate(
-    system: ConstrainedSystem, position: FloatArray, velocity: FloatArray, time: float
-) -> FloatArray:
-    """d(Σ a·v + e)/dt along the motion at fixed v, array (s,)."""
-    if system.rate is not None:
-        return np.asarray(system.rate(position, velocity, time), dtype=np.float64)
-    step = 1j * _COMPLEX_STEP
-    try:
-        a, e = system.constraints(position + step * velocity, time + step)
-        turned = np.asarray(a).reshape(-1, velocity.size) @ velocity.ravel() + np.asarray(e)
-    except TypeError as error:
-        raise InputError(
-            "the constraints must take complex numbers, by which they are differentiated; write "
-            f"them with NumPy's functions, or give rate= ({error})"
-        ) from None
-    return np.asarray(turned.imag / _COMPLEX_STEP)
-
-
-def violation(
-    system: ConstrainedSystem, position: FloatArray, velocity: FloatArray, time: float
-) -> FloatArray:
-    """Σ a·v + e at a state, array (s,): zero where the velocity is admissible."""
-    a, e = _constraints(system, position, time)
-    return np.asarray(a.reshape(len(e), -1) @ velocity.ravel() + e)
-
-
-def _constraints(
-    system: ConstrainedSystem, position: FloatArray, time: float
-) -> tuple[FloatArray, FloatArray]:
-    a, e = system.constraints(position, time)
-    drive = np.atleast_1d(np.asarray(e, dtype=np.float64))
-    matrix = np.asarray(a, dtype=np.float64)
-    if drive.ndim != 1 or matrix.shape != (drive.size, *position.shape):
-        raise InputError(
-            f"constraints must return a of shape (s, n, d) = ({drive.size}, "
-            f"{position.shape[0]}, {position.shape[1]}) and e of shape (s,), got {matrix.shape} "
-            f"and {drive.shape}"
-        )
-    if not (np.isfinite(matrix).all() and np.isfinite(drive).all()):
-        raise InputError(f"the constraints are not finite at t = {time:g} s")
-    return matrix, drive
-
-
-def _of_state(
-    name: str, function: OfState | npt.ArrayLike, position: FloatArray, velocity: FloatArray,
-    time: float, shape: tuple[int, ...],
-) -> FloatArray:  # fmt: skip
-    asked = function(position, velocity, time) if callable(function) else function
-    values = real_array(name, asked, "SI units")
-    if values.shape not in ((), shape):
-        raise InputError(f"{name} must have the shape {shape}, got {values.shape}")
-    if not np.isfinite(values).all():
-        raise InputError(f"{name} is not finite at t = {time:g} s")
-    return np.broadcast_to(values, shape)
-
-
-def _factor(flat: FloatArray, per_mass: FloatArray, time: float) -> tuple[FloatArray, FloatArray]:
-    """Lengths of the constraints, and the Cholesky factor of their normalised Gram matrix."""
     gram = (flat * per_mass) @ flat.T
     length = np.sqrt(np.diag(gram))
     if not (length > 0.0).all():
@@ -232,13 +202,10 @@ def _factor(flat: FloatArray, per_mass: FloatArray, time: float) -> tuple[FloatA
             f"the constraint{which} at t = {time:g} s can be combined from the others: the forces "
             "of the constraints are not determined; leave the superfluous one out"
         )
-    return length, lower
 
+    def solve(right: FloatArray) -> FloatArray:
+        if not right.size:
+            return right
+        return np.asarray(cho_solve((lower, True), right / length, check_finite=False) / length)
 
-def _solve(factor: tuple[FloatArray, FloatArray], right: FloatArray) -> FloatArray:
-    from scipy.linalg import cho_solve
-
-    length, lower = factor
-    if right.size == 0:
-        return right
-    return np.asarray(cho_solve((lower, True), right / length, check_finite=False) / length)
+    return solve

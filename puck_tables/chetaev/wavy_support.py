@@ -19,19 +19,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array, instance, real
+from puck_tables._core.real import instance, real
 from puck_tables.chetaev.asperity_shape import Asperity
+from puck_tables.chetaev.motion import checked_times
 from puck_tables.errors import AccuracyError, InputError
 
 _TOL = 1e-13  # of a step, relative: near to what doubles hold
-_LARGEST_TURN = 0.25  # of θ in one step of sliding, so that no dip of λ is stepped over
-_LOOKS = 6  # looks a step for a change of sign: a step is smooth
+_LARGEST_TURN = 0.05  # of θ in one step of sliding, so that no dip of λ is stepped over
+_LOOKS = 6  # places where it is seen whether a gap only grows
 _GAP_STEPS = 1_000_000  # flights that hardly leave the crest take that many
 _NOISE = 2.0**-53  # relative rounding of a double: a gap below it is none
 MAX_ARCS = 100_000  # slides and flights: then it is refused by name
@@ -116,12 +117,8 @@ def asperity_motion(
     >>> [arc.kind for arc in run.arcs[:2]], float((run.x[1] - run.x[0]).round(12))  # off the crest
     (['fly', 'slide'], 1.2)
     """
-    when = finite_array("times", times, "s")
-    if when.ndim != 1 or when.size < 2 or not (np.diff(when) > 0.0).all():
-        raise InputError(
-            "times must be at least two numbers in s, ascending: the first is the start"
-        )
     instance("asperity", asperity, Asperity)
+    when = checked_times(times)
     place, rate = real("x", x, "m"), real("speed", speed, "m/s")
     if not math.isfinite(asperity.mass * rate * rate):
         raise InputError(f"speed = {rate:g} m/s gives an energy too large for floating point")
@@ -146,17 +143,8 @@ def asperity_motion(
     begun = np.array([one.time for one in arcs])
     energy = 0.5 * asperity.mass * (vx**2 + vy**2) - asperity.pull * px + asperity.load * py
     energy += lost[np.searchsorted(begun, t, side="right") - 1]
-    return AsperityMotion(
-        t,
-        px,
-        py,
-        vx,
-        vy,
-        lam,
-        tuple(arcs),
-        float(lost[-1]),
-        float(np.abs(energy - energy[0]).max()),
-    )
+    off = float(np.abs(energy - energy[0]).max())
+    return AsperityMotion(t, px, py, vx, vy, lam, tuple(arcs), float(lost[-1]), off)
 
 
 def _contact(asperity: Asperity, time: float, x: float, vx: float, loss: float) -> SlideOrFlight:
@@ -243,64 +231,39 @@ def _slide(
     asperity: Asperity, arc: SlideOrFlight, wanted: FloatArray, end: float
 ) -> tuple[SlideOrFlight | None, FloatArray]:
     """Until λ falls to 0, and the states at the times wanted before that."""
-    from scipy.integrate import DOP853, solve_ivp
+    from scipy.integrate import solve_ivp
 
-    def slope(t: float, state: FloatArray) -> FloatArray:
+    mass, load, pull = asperity.mass, asperity.load, asperity.pull
+
+    def slope(t: float, state: FloatArray) -> list[float]:
         x, vx = state
-        lam = asperity._press(x, vx) / (1.0 + asperity._incline(x) ** 2)
-        return np.array([vx, (asperity.pull - lam * asperity._incline(x)) / asperity.mass])
+        incline = asperity._incline(x)
+        lam = asperity._press(x, vx) / (1.0 + incline**2)
+        return [vx, (pull - lam * incline) / mass]
 
-    def at(state: FloatArray, start: float, time: float) -> FloatArray:
-        if time == start:
-            return state
-        return np.asarray(
-            solve_ivp(slope, (start, time), state, "DOP853", rtol=_TOL, atol=_TOL * sizes).y[:, -1]
+    def press(t: float, state: FloatArray) -> float:
+        return float(asperity._press(*state))
+
+    press.terminal, press.direction = True, -1  # type: ignore[attr-defined]
+    # over a wave the load and the pull give no more energy
+    gained = 4.0 * (load * asperity.amplitude + math.pi * abs(pull) * asperity.length) / mass
+    fastest = math.sqrt(arc.vx**2 + arc.vy**2 + gained)
+    solved = solve_ivp(
+        slope, (arc.time, end), [arc.x, arc.vx], "DOP853", wanted, events=press, rtol=_TOL,
+        atol=_TOL * np.array([asperity.length, fastest]),
+        max_step=_LARGEST_TURN * asperity.length / fastest,
+    )  # fmt: skip
+    if solved.status < 0:
+        raise AccuracyError(
+            f"the slide that begins at x = {arc.x:g} m, t = {arc.time:g} s cannot be followed: its "
+            "steps got too short; ask for an earlier time"
         )
-
-    quickest = max(abs(arc.vx), math.sqrt(asperity.load * asperity.amplitude / asperity.mass))
-    sizes = np.array([asperity.length, quickest])
-    state = np.array([arc.x, arc.vx])
-    solver = DOP853(slope, arc.time, state, end, rtol=_TOL, atol=_TOL * sizes)
-    columns: list[FloatArray] = []
-    leave = math.inf
-    while solver.status == "running" and leave == math.inf:
-        before = solver.y.copy()
-        speed = max(abs(before[1]), 0.2 * quickest)
-        solver.max_step = _LARGEST_TURN * asperity.length / speed
-        solver.step()
-        start = solver.t_old
-        leave = _lift(asperity, at, before, start, solver)
-        inside = wanted[(wanted <= solver.t) & (wanted < leave)]
-        columns += [np.array([t, *at(before, start, t)]) for t in inside]
-        wanted = wanted[inside.size :]
-    t, x, vx = np.array(columns).reshape(-1, 3).T
+    t, (x, vx) = np.array(solved.t, np.float64), np.reshape(solved.y, (2, -1))  # lists of none
     exact = asperity._press(x, vx) / (1.0 + asperity._incline(x) ** 2)
     states = np.stack([t, x, asperity._height(x), vx, asperity._incline(x) * vx, exact])
-    if leave == math.inf:
+    if solved.status != 1:
         return None, states
-    off_x, off_vx = (float(value) for value in at(before, start, leave))
+    leave, (off_x, off_vx) = float(solved.t_events[0][0]), solved.y_events[0][0].tolist()
     y, vy = float(asperity._height(off_x)), float(asperity._incline(off_x)) * off_vx
-    return SlideOrFlight("fly", leave, off_x, y, off_vx, vy, 0.0), states
-
-
-def _lift(asperity: Asperity, at: Any, state: FloatArray, start: float, solver: Any) -> float:
-    """When in the last step the numerator of λ passes through zero downwards; infinite if never."""
-    looks = np.linspace(start, solver.t, _LOOKS + 1)
-    press = asperity._press(*solver.dense_output()(looks))
-    below = np.flatnonzero(press[1:] < 0.0)
-    if below.size == 0:
-        return math.inf
-    late = float(looks[below[0] + 1])
-    early = float(looks[below[0]])
-    from scipy.optimize import brentq
-
-    def value(time: float) -> float:
-        return float(asperity._press(*at(state, start, time)))
-
-    if value(early) <= 0.0:
-        return early
-    if value(late) >= 0.0:
-        return math.inf
-    return float(
-        brentq(value, early, late, xtol=1e-15 * max(abs(late), late - early), rtol=8.9e-16)
-    )
+    before = states[:, t < leave]
+    return SlideOrFlight("fly", leave, off_x, y, off_vx, vy, 0.0), before

@@ -108,12 +108,6 @@ class FrictionLaw:
         speeds = np.concatenate([[0.0], last * np.linspace(0.0, 1.0, _LOOKS), self.scales])
         return float(self.formula(speeds[speeds <= last]).max())
 
-    def steepest(self, top: float) -> float:
-        """About the largest u f′ up to a speed."""
-        speeds = _checked_top(top) * np.geomspace(1e-9, 1.0, _LOOKS)
-        change = np.abs(np.diff(self.formula(speeds)) / np.diff(speeds))
-        return float((speeds[1:] * change).max())
-
     def pieces(self, top: float) -> tuple[FloatArray, FloatArray]:
         """The law in pieces up to a speed, see :mod:`puck_tables.contact.law_pieces`."""
         return _pieces(self, _checked_top(top))

@@ -164,12 +164,6 @@ class SpeedLaw:
             raise InputError(f"top must not be negative (m/s), got {last:g}")
         return float(self.extended(np.append(speeds[speeds < last], last)).max())
 
-    def steepest(self, top: float) -> float:
-        """About the largest u f′ up to a speed."""
-        positive("top", top, "m/s")
-        speeds, f = np.asarray(self.speeds), np.asarray(self.values)
-        return float(np.max(speeds[1:] * np.abs(np.diff(f) / np.diff(speeds))))
-
     def pieces(self, top: float) -> tuple[FloatArray, FloatArray]:
         """The law in pieces up to a speed, see :mod:`puck_tables.contact.law_pieces`."""
         speeds, last = np.asarray(self.speeds), positive("top", top, "m/s")

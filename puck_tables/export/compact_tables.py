@@ -109,9 +109,8 @@ def functions_of(table: StopTable) -> tuple[FloatArray, FloatArray, FloatArray]:
 
 
 def spline_fit(
-    values: FloatArray, error: float, haste: int = 1, even: bool = False,
-    degrees: Iterable[int] = DEGREES,
-) -> SplineFit:  # fmt: skip
+    values: FloatArray, error: float, haste: int = 1, degrees: Iterable[int] = DEGREES
+) -> SplineFit:
     """The cheapest table that is wrong by no more than ``error`` at any node and height.
 
     Cheapest is the least product of the signs that write it and, to the power of ``haste``, of how
@@ -122,7 +121,6 @@ def spline_fit(
     values : array (sides, nodes, heights, functions), nodes uniform in ξ from 0 to 1
     error : in the unit of the values
     haste : how much speed counts against size
-    even : whether all sides have the same cells; else each has those that it needs
     degrees : that are tried
 
     Raises
@@ -140,18 +138,15 @@ def spline_fit(
     """
     fits = _Fits(values, error)
     sides = range(len(values))
-    groups = [list(sides)] if even else [[side] for side in sides]
     best: tuple[float, SplineFit] | None = None
     for degree in degrees:
-        tried = [fits.cells_to_try(group, degree) for group in groups]
+        tried = [fits.cells_to_try(side, degree) for side in sides]
         for quantum in fits.quanta(degree):
-            result = [
-                fits.shortest(group, degree, cells, quantum)
-                for group, cells in zip(groups, tried, strict=True)
-            ]
-            parts = [numbers for group in result for numbers in group]
+            parts = [fits.shortest(side, degree, tried[side], quantum) for side in sides]
+            if not all(part.size for part in parts):
+                continue
             cost = sum(map(_signs, parts)) * (degree + 1.0) ** haste
-            if all(result) and (best is None or cost < best[0]):
+            if best is None or cost < best[0]:
                 cells = tuple(len(numbers) - degree for numbers in parts)
                 best = cost, SplineFit(cells, degree, quantum, np.concatenate(parts))
     if best is None:
@@ -227,34 +222,29 @@ class _Fits:
         largest = 2.0 * self._error / len(self._at_heights) / whole
         return [whole * float(f"{share * largest:.2g}") for share in _QUANTA]
 
-    def cells_to_try(self, group: list[int], degree: int) -> list[int]:
+    def cells_to_try(self, side: int, degree: int) -> list[int]:
         """The fewest cells that are good enough, and the next: the more cells, the better."""
         low, high = -1, len(self._sizes)
         while high - low > 1:
             middle = (low + high) // 2
             _, exact = self._solution(degree, self._sizes[middle])
-            if all(self._is_good(degree, exact[:, side], side) for side in group):
+            if self._is_good(degree, exact[:, side], side):
                 high = middle
             else:
                 low = middle
         return self._sizes[high : high + _MORE_CELLS]
 
     def shortest(
-        self, group: list[int], degree: int, tried: list[int], quantum: float
-    ) -> list[npt.NDArray[np.int64]]:
-        """The numbers of each side of a group with the fewest signs; empty if none are good."""
-        best: list[npt.NDArray[np.int64]] = []
+        self, side: int, degree: int, tried: list[int], quantum: float
+    ) -> npt.NDArray[np.int64]:
+        """The numbers of a side with the fewest signs; none if none are good."""
+        good = []
         for cells in tried:
             _, exact = self._solution(degree, cells)
-            whole = [np.rint(exact[:, side] / quantum) for side in group]
-            if all(
-                self._is_good(degree, quantum * numbers, side)
-                for numbers, side in zip(whole, group, strict=True)
-            ):
-                result = [numbers.astype(np.int64) for numbers in whole]
-                if not best or sum(map(_signs, result)) < sum(map(_signs, best)):
-                    best = result
-        return best
+            whole = np.rint(exact[:, side] / quantum)
+            if self._is_good(degree, quantum * whole, side):
+                good.append(whole.astype(np.int64))
+        return min(good, key=_signs, default=np.empty(0, np.int64))
 
     def _solution(self, degree: int, cells: int) -> tuple[FloatArray, FloatArray]:
         """B-splines at the nodes, and the coefficients (cells + degree, sides, powers, …)."""

@@ -45,9 +45,9 @@ def _shipped(tol: float) -> dict[str, SplineFit]:
     table = StopTable.shipped()
     stops, curve, inverse = functions_of(table)
     return {
-        "STOP": spline_fit(stops, STOP_SHARE * tol, haste=2, even=True),
-        "CURVE": spline_fit(curve, CURVE_SHARE * tol, even=True),
-        "INVERSE": spline_fit(inverse, CURVE_SHARE * tol, even=True),
+        "STOP": spline_fit(stops, STOP_SHARE * tol, haste=2),
+        "CURVE": spline_fit(curve, CURVE_SHARE * tol),
+        "INVERSE": spline_fit(inverse, CURVE_SHARE * tol),
         "CONSTANTS": fit_constants(table.constants, CONSTANT_SHARE * tol),
     }
 
@@ -123,8 +123,6 @@ def _written(
             f"{name}_DEGREE": table.degree, f"{name}_POWERS": table.powers,
             f"{name}_QUANTUM": _quantum(table),
         }  # fmt: skip
-        if len(set(table.cells)) == 1:
-            named[f"{name}_CELLS"] = table.cells[0]
         numbers[f"{name}_ROWS"] = table.rows
     return numbers, named
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -187,11 +187,22 @@ def _deeplabcut(path: str | Path, header: list[list[str]]) -> Layout:
             "another version, which this program does not know"
         )
     owners = rows.get("individuals", [""] * len(header[0]))
+    return deeplabcut(zip(owners[1:], rows["bodyparts"][1:], rows["coords"][1:], strict=True))
+
+
+def deeplabcut(labels: Iterable[tuple[str, str, str]]) -> Layout:
+    """The frames, and columns of an individual, a body part and what is told of it.
+
+    Examples
+    --------
+    >>> deeplabcut([("", "hub", "x"), ("", "hub", "y")]).columns[1]
+    ('', Heading(role='x', puck='hub', unit=''))
+    """
     columns = [("", Heading("frame"))]
-    for n in range(1, len(header[0])):
-        role = rows["coords"][n].lower()
+    for owner, mark, what in labels:
+        role = what.lower()
         known = role if role in ("x", "y", "likelihood") else ""
-        columns.append((owners[n], Heading(known, rows["bodyparts"][n], "")))
+        columns.append((owner, Heading(known, mark, "")))
     return Layout(columns, "DeepLabCut table", jointed=True, pixels=True)
 
 

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import codecs
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables._core.text import encoding_of
 
 Flags = npt.NDArray[np.bool_]
 
@@ -71,3 +76,27 @@ class Film:
     timed: bool = True
     likely: float | None = None
     notes: list[str] = field(default_factory=list)
+
+
+class Reader(NamedTuple):
+    """A format of tracks that is no table of text.
+
+    ``opens``: whether a file, by its path and how it begins, is of it; ``film_of``: what it holds.
+    """
+
+    opens: Callable[[str | Path, bytes], bool]
+    film_of: Callable[[str | Path], Film]
+
+
+def first_text(path: str | Path, head: bytes) -> str:
+    """What a file begins with, where it is a text that begins with a sign of XML or JSON.
+
+    Examples
+    --------
+    >>> first_text("a.trk", b" <object/>"), first_text("a.csv", b"t,x,y")
+    ('<object/>', '')
+    """
+    signs = (b"<", b"{", b"[", codecs.BOM_UTF8, b"\xff\xfe", b"\xfe\xff")
+    if not head[:400].lstrip().startswith(signs):
+        return ""
+    return head[:400].decode(encoding_of(path, head), errors="ignore").lstrip("\ufeff \t\r\n")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -72,10 +73,40 @@ def film_of_table(path: str | Path, head: bytes, columns: str | None) -> Film:
             codes, named = words.pop(n)
             values[n] = seconds(f"{path}, column {n + 1}", named)[codes]
             layout.columns[n] = (body, one._replace(unit="s"))
-    film = Film(layout.kind, [], jointed=layout.jointed, likely=layout.likely)
+    notes = []
     if unused := [n for n in range(form.width) if n not in wanted and layout.kind == "table"]:
         names = ", ".join(name_of(form, n) for n in unused[:8])
-        film.notes.append(f"column{'' if len(unused) == 1 else 's'} {names} left out")
+        notes.append(f"column{'' if len(unused) == 1 else 's'} {names} left out")
+    return film_of_columns(path, layout, values, words, notes)
+
+
+def film_of_columns(
+    path: str | Path, layout: Layout, values: Mapping[int, FloatArray], words: Mapping[int, Any],
+    notes: Sequence[str] = (),
+) -> Film:  # fmt: skip
+    """The film in columns, whatever file they are from.
+
+    Parameters
+    ----------
+    path : the file, for messages
+    layout : what its columns are
+    values : numbers (n,) by the number of a column
+    words : of columns of texts: for each row the number of its text, and the texts
+    notes : what was found, in sentences
+
+    Raises
+    ------
+    InputError
+        If columns do not fit each other.
+
+    Examples
+    --------
+    >>> layout = Layout([("", Heading("time")), ("", Heading("x")), ("", Heading("y"))])
+    >>> film = film_of_columns("a", layout, dict(enumerate(np.eye(3))), {})
+    >>> film.bodies[0].marks[""].tolist()
+    [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]
+    """
+    film = Film(layout.kind, [], jointed=layout.jointed, likely=layout.likely, notes=[*notes])
     if any(one.role == "step" for _, one in layout.columns):
         film.notes.append("times summed from steps, each since the row before")
     if layout.along:
@@ -126,7 +157,7 @@ def _units(path: str | Path, layout: Layout) -> tuple[str, str, bool]:
 
 
 def _rows(
-    path: str | Path, layout: Layout, values: dict[int, FloatArray], words: dict[int, Any]
+    path: str | Path, layout: Layout, values: Mapping[int, FloatArray], words: Mapping[int, Any]
 ) -> dict[str, Any]:
     """Which rows are of which puck, by its name: all of them where no column says whose they are.
 
@@ -162,8 +193,8 @@ def _rows(
 
 
 def _body(
-    path: str | Path, name: str, columns: dict[int, Heading], values: dict[int, FloatArray],
-    words: dict[int, Any], rows: Any, along: bool,
+    path: str | Path, name: str, columns: dict[int, Heading], values: Mapping[int, FloatArray],
+    words: Mapping[int, Any], rows: Any, along: bool,
 ) -> TrackedBody:  # fmt: skip
     """One body from its columns and rows; ``along``: places along x or y alone, the other is 0."""
     found: dict[tuple[str, str], FloatArray] = {}
@@ -218,7 +249,11 @@ def _body(
 
 
 def _flags(
-    path: str | Path, column: int, role: str, values: dict[int, FloatArray], words: dict[int, Any]
+    path: str | Path,
+    column: int,
+    role: str,
+    values: Mapping[int, FloatArray],
+    words: Mapping[int, Any],
 ) -> Flags:
     """Whether the puck is seen, row by row, from a column of flags."""
     if column in words:

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import codecs
 from collections.abc import Sequence
 from pathlib import Path
 
-from puck_tables._core.beginning import HDF5, ZIP, beginning, refuse_no_text
+from puck_tables._core.beginning import beginning, refuse_no_text
 from puck_tables._core.real import instance
-from puck_tables._core.text import encoding_of
 from puck_tables._core.text_rows import LARGEST
 from puck_tables.errors import InputError
-from puck_tables.film.film import Film
+from puck_tables.film.film import Film, first_text
 from puck_tables.film.plane import Marks
 from puck_tables.film.puck_track import Track
+from puck_tables.film.readers import readers
 from puck_tables.film.text_tables import film_of_table
 from puck_tables.film.to_tracks import ReaderOptions, to_si
 
@@ -117,39 +116,12 @@ def film_of(path: str | Path, columns: str | None = None) -> Film:
     'px'
     """
     head = beginning(path, LARGEST)
-    film = _own_format(path, head)
-    if film is None:
-        return film_of_table(path, head, columns)
-    if columns is not None:
-        raise InputError(f"{path} is a {film.kind}, not a table: leave columns (--columns) out")
-    return film
-
-
-def _own_format(path: str | Path, head: bytes) -> Film | None:
-    """The film in a file that is no table."""
-    if head.startswith(HDF5):
-        from puck_tables.film.poses import film_of_hdf5
-
-        return film_of_hdf5(path)
-    if head.startswith(ZIP):
-        from puck_tables.film.tracker import film_of_zip
-
-        return film_of_zip(path)
-    begin = head[:400].lstrip()
-    if not begin.startswith((b"<", b"{", b"[", codecs.BOM_UTF8, b"\xff\xfe", b"\xfe\xff")):
-        if Path(path).suffix.lower() == ".trz":  # its first bytes are damaged: it says so
-            from puck_tables.film.tracker import film_of_zip
-
-            return film_of_zip(path)
-        return None
-    text = head[:400].decode(encoding_of(path, head), errors="ignore").lstrip("\ufeff \t\r\n")
-    if text.startswith("<"):
-        from puck_tables.film.tracker import film_of_xml
-
-        return film_of_xml(path)
-    if text.startswith("{"):
-        from puck_tables.film.saved import film_of_json
-
-        return film_of_json(path)
-    refuse_no_text(path, head)
-    return None
+    for reader in readers():
+        if reader.opens(path, head):
+            film = reader.film_of(path)
+            if columns is None:
+                return film
+            raise InputError(f"{path} is a {film.kind}, not a table: leave columns (--columns) out")
+    if first_text(path, head):
+        refuse_no_text(path, head)
+    return film_of_table(path, head, columns)

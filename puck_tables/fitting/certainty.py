@@ -16,7 +16,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.estimate import Estimate
-from puck_tables.fitting.multi_start import FROM_BESIDE, multi_start
+from puck_tables.fitting.least_squares import FROM_BESIDE, multi_start
 from puck_tables.fitting.unknowns import NumbersOf
 
 Z95 = 1.959963984540054

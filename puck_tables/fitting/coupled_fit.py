@@ -18,23 +18,22 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.certainty import Certainty
 from puck_tables.fitting.estimate import FARTHEST, FARTHEST_PLACE, Estimate, estimate
 from puck_tables.fitting.fit_spec import FitSpec
-from puck_tables.fitting.impact_candidates import candidates_of
 from puck_tables.fitting.impact_law import WallLine
 from puck_tables.fitting.impact_matching import (
     CoupledFit,
     ImpactMatch,
     Line,
+    candidates_of,
     coupled,
     matched_impacts,
 )
-from puck_tables.fitting.impacts import SlideIndex
-from puck_tables.fitting.multi_start import ROBUST, multi_start
+from puck_tables.fitting.least_squares import ROBUST_SCALE, multi_start
 from puck_tables.fitting.numbers import FOLLOWS, Number, quadratic
 from puck_tables.fitting.observations import Observations
 from puck_tables.fitting.parameters import OF_PAIRS, OF_WALLS
-from puck_tables.fitting.problem import Problem
-from puck_tables.fitting.residual_tests import chi_square_tail
-from puck_tables.fitting.timing import Known
+from puck_tables.fitting.problem import Known, Problem
+from puck_tables.fitting.residuals import chi_square_tail
+from puck_tables.fitting.touches import SlideIndex
 
 _BY_CHANCE = 1e-5  # of the rise of χ²: less, and the law of impact is not that of these slides
 _STEP = 1e-6
@@ -110,7 +109,7 @@ def _deepest(group: list[CoupledFit], known: Known) -> Estimate:
     """The estimate from the best of several starts, with other minima near which it may lie."""
     if len(group) == 1:
         return estimate(group[0].problem, group[0].start, known)
-    walked = multi_start([(one.problem, one.start) for one in group], _WALK, ROBUST, _RIVAL)
+    walked = multi_start([(one.problem, one.start) for one in group], _WALK, ROBUST_SCALE, _RIVAL)
     result = estimate(group[0].problem, walked[0][0], known)
     return replace(result, minima=tuple(x for x, cost in walked if cost < walked[0][1] + _RIVAL))
 

@@ -3,6 +3,9 @@
 Outliers are recognised, dropped, and the rest is fitted by least squares: residuals beyond four
 standard deviations, as one good frame in 16,000 has.  So the fit of clean tracks is that of least
 squares, fully efficient, and intervals keep their coverage where one frame in twenty is wrong.
+
+A mark that is lost for a frame, or a blurred one, lies beside its neighbours.  Frames that lie far
+off together, and go there smoothly, are good ones: it is the model that is wrong.
 """
 
 from __future__ import annotations
@@ -14,18 +17,76 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.fitting.compact import compact
-from puck_tables.fitting.least_squares import ROBUST, SQUARES, minimise
-from puck_tables.fitting.outliers import outliers_of
-from puck_tables.fitting.problem import ANGLE, PLACE, UNSEEN, Problem
-from puck_tables.fitting.timing import Known, likeliest
+from puck_tables.fitting.forward_model import RATE
+from puck_tables.fitting.least_squares import ROBUST, SQUARES, compact, minimise
+from puck_tables.fitting.problem import ANGLE, PLACE, PRIOR, UNSEEN, Known, Problem, likeliest
+
+_AROUND = 4  # frames to either side
+_IN_A_ROW = 5  # frames in a row that may be strays by chance
+_LEAP, _MORE = 6.0, 3.0  # standard deviations, and times the way between frames beside
+
+
+def outliers_of(
+    deviations: FloatArray, outlying: npt.NDArray[np.bool_], limit: float
+) -> npt.NDArray[np.bool_]:
+    """Which of the frames that are far off are strays (n,).
+
+    Parameters
+    ----------
+    deviations : (n, k), residuals of each frame in units of the noise
+    outlying : (n,), whether they are so large that the frame seems to be none of the motion
+    limit : of the square of residuals, from which on they are
+
+    Examples
+    --------
+    >>> deviations = np.zeros((40, 1))
+    >>> deviations[20:, 0] = np.linspace(0.0, 20.0, 20)  # a motion that is another
+    >>> deviations[7] = 30.0
+    >>> np.flatnonzero(outliers_of(deviations, np.abs(deviations[:, 0]) > 4.0, 16.0)).tolist()
+    [7]
+    """
+    if outlying.sum() < _IN_A_ROW:
+        return outlying
+    result = outlying.copy()
+    usual = np.stack([
+        np.median(deviations[max(0, n - _AROUND) : n + _AROUND + 1], axis=0) for n in
+        range(len(deviations))
+    ])  # fmt: skip
+    together = outlying & (((deviations - usual) ** 2).sum(axis=1) <= limit)
+    for start, stop in _intervals(together):
+        ends = (
+            start > 0 and not _leaps(deviations, start),
+            stop < len(deviations) and not _leaps(deviations, stop),
+        )
+        if stop - start >= _IN_A_ROW and any(ends):
+            result[start:stop] &= ~together[start:stop]
+    return result
+
+
+def _intervals(together: npt.NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """From where to where frames lie off together, over single ones that do not."""
+    filled = together.copy()
+    filled[1:-1] |= together[:-2] & together[2:]
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], filled, [False]]).astype(int)))
+    return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
+
+
+def _leaps(deviations: FloatArray, at: int) -> bool:
+    """Whether residuals leap between two frames, and not those beside."""
+    ways = np.linalg.norm(np.diff(deviations[max(0, at - 3) : at + 3], axis=0), axis=1)
+    middle = at - max(0, at - 3) - 1
+    close = np.delete(ways, middle)
+    return bool(ways[middle] > max(_LEAP, _MORE * float(np.median(close))))
+
 
 FARTHEST = 4.0  # standard deviations of a frame that counts
-FARTHEST_PLACE = -2.0 * math.log(math.erfc(FARTHEST / math.sqrt(2.0)))  # of two of them, squared
+_BY_CHANCE = math.erfc(FARTHEST / math.sqrt(2.0))
+FARTHEST_PLACE = -2.0 * math.log(_BY_CHANCE)  # of two of them, squared
 _MEDIAN = 0.6744897501960817
 _MEDIAN_PLACE = 2.0 * math.log(2.0)  # of the square of two normal deviates
 _WIDE = 1.4
 _FEW = 2.5  # residuals for each unknown
+_LEAST_TOLD = 0.5  # residuals: of less nothing is an outlier
 _ROUNDS = 6
 _SETTLED = 1e-3  # of a standard deviation of the noise
 _COMPUTED = 1e-10  # of a path, as well as motions are known: no residuals tell a smaller noise
@@ -84,18 +145,21 @@ def estimate(
     if problem.usual(rows) > _AWAY * _MEDIAN:
         x, _ = minimise(problem, x, ROBUST)
         rows = problem.residuals(x)
-    kept = _kept(problem, rows, strict)
+    count = np.bincount(problem.kinds, minlength=UNSEEN + 1)[: PRIOR + 1]
+    free = count[:PRIOR] * max(1.0 - x.size / count.sum(), 0.0)
+    kept = _kept(problem, rows, _told(free.tolist(), noise_known), strict)
     for _ in range(_ROUNDS):
         x, _ = minimise(problem, x, SQUARES, kept)
         rows, slopes = problem.residuals_and_jacobian(x)
-        noise, jitter = _noise(problem, x, rows, slopes, kept, noise_known)
+        told = _told(_freedoms(problem, rows, slopes, kept), noise_known)
+        noise, jitter = _noise(problem, x, rows, told, kept, noise_known)
         noise = _at_least(problem, x, noise, noise_known)
         change = max(abs(math.log(new / old)) for new, old in
                      zip(noise, problem.noise, strict=True))  # fmt: skip
         change = max(change, abs(jitter - problem.jitter) / (jitter or 1.0))
         problem = problem.with_noise(noise, x, kept, jitter)
         rows = problem.residuals(x)
-        again = _kept(problem, rows, strict)
+        again = _kept(problem, rows / _foreseen(slopes, kept), told, strict)
         if change < _SETTLED and np.array_equal(again, kept):
             break
         kept = again
@@ -103,13 +167,40 @@ def estimate(
     return Estimate(problem, x, kept, rows, problem.jacobian(x))
 
 
-def only_outliers(result: Estimate) -> bool:
+def only_outliers(result: Estimate, known: Known) -> bool:
     """Whether all frames that an estimate leaves out are strays."""
-    return np.array_equal(result.kept, _kept(result.problem, result.residuals, True))
+    slopes, kept = result.jacobian, result.kept
+    rows = result.residuals / _foreseen(slopes, kept)
+    told = _told(_freedoms(result.problem, rows, slopes, kept), known)
+    return np.array_equal(kept, _kept(result.problem, rows, told, True))
 
 
-def _kept(problem: Problem, rows: FloatArray, strict: bool) -> npt.NDArray[np.bool_]:
-    """Residuals of frames that are no outliers; a place counts as a whole."""
+def _told(free: list[float], known: Known) -> list[float]:
+    """How many residuals told the noise of places, and of angles; infinite where it is given."""
+    return [math.inf if given else one for one, given in zip(free, known[:2], strict=True)]
+
+
+def _foreseen(slopes: FloatArray, kept: npt.NDArray[np.bool_]) -> FloatArray:
+    """How far off frames that are left out may be (n,): by what is not known of the motion, too."""
+    result = np.ones(kept.size)
+    if not kept.all():
+        size = np.maximum(np.linalg.norm(slopes[kept], axis=0), 1e-300)
+        scaled = slopes / size
+        covariance = np.linalg.pinv(scaled[kept].T @ scaled[kept], hermitian=True)
+        out = scaled[~kept]
+        result[~kept] = np.sqrt(1.0 + np.einsum("nk,kl,nl->n", out, covariance, out))
+    return result
+
+
+def _kept(
+    problem: Problem, rows: FloatArray, told: list[float], strict: bool
+) -> npt.NDArray[np.bool_]:
+    """Residuals of frames that are no outliers; a place counts as a whole.
+
+    ``told``: how many residuals told the noise: it is the less sure the fewer they are, and those
+    beyond it count no more in it.  So what is an outlier is farther off: by chance as seldom, under
+    Student's t, as a good frame beyond four standard deviations that are known.
+    """
     kept: npt.NDArray[np.bool_] = problem.kinds != UNSEEN
     if rows.size < _FEW * len(problem.names):  # too few to tell what is one
         return kept
@@ -117,13 +208,28 @@ def _kept(problem: Problem, rows: FloatArray, strict: bool) -> npt.NDArray[np.bo
     places = [np.stack([rows[x], rows[y]], axis=1) for x, y, _ in each]
     turns = [rows[turn, None] for _, _, turn in each]
     # where most are far off no frame is an outlier, but the noise is larger or the model wrong
-    most_place = FARTHEST_PLACE * _wide(places, _MEDIAN_PLACE)
-    most_turn = FARTHEST**2 * _wide(turns, _MEDIAN**2)
+    most_place = _farthest(2, told[PLACE]) * _wide(places, _MEDIAN_PLACE)
+    most_turn = _farthest(1, told[ANGLE]) * _wide(turns, _MEDIAN**2)
     for (x, y, turn), place, angle in zip(each, places, turns, strict=True):
         kept[x] = kept[y] = ~_out(place, most_place, strict)
         kept[turn] = ~_out(angle, most_turn, strict)
     kept &= problem.kinds != UNSEEN
     return kept
+
+
+def _farthest(count: int, told: float) -> float:
+    """The square of so many deviates over a noise that residuals told, that hardly any exceeds.
+
+    Examples
+    --------
+    >>> [round(_farthest(1, told) ** 0.5, 1) for told in (3.0, 30.0, 1e3, math.inf)]
+    [32.6, 4.6, 4.0, 4.0]
+    """
+    if told == math.inf:
+        return FARTHEST**2 if count == 1 else FARTHEST_PLACE
+    from scipy.special import fdtri
+
+    return count * float(fdtri(count, max(told, _LEAST_TOLD), 1.0 - _BY_CHANCE))
 
 
 def _out(deviations: FloatArray, most: float, strict: bool) -> npt.NDArray[np.bool_]:
@@ -139,7 +245,7 @@ def _wide(deviations: list[FloatArray], usual: float) -> float:
 
 
 def _noise(
-    problem: Problem, x: FloatArray, rows: FloatArray, slopes: FloatArray,
+    problem: Problem, x: FloatArray, rows: FloatArray, told: list[float],
     kept: npt.NDArray[np.bool_], known: Known,
 ) -> tuple[tuple[float, float], float]:  # fmt: skip
     """The noise that the residuals show, each kind less what the unknowns take, and the jitter."""
@@ -148,7 +254,7 @@ def _noise(
     if problem.jitter > 0.0 or not known.jitter:
         return _jittery(problem, x, kept, known)
     result = list(problem.noise)
-    for kind, free in enumerate(_freedoms(problem, rows, slopes, kept)):
+    for kind, free in enumerate(told):
         if not known[kind] and free > 1.0:
             mine = problem.kinds[kept] == kind
             result[kind] *= math.sqrt(float(np.sum(rows[kept][mine] ** 2)) / free)
@@ -209,6 +315,6 @@ def _jittery(
     seen = int((kept & (problem.kinds <= ANGLE)).sum())
     return likeliest(
         problem.noise, problem.jitter, known, np.concatenate(problem.deviations(x), axis=1),
-        np.concatenate(problem.rates(x), axis=1), np.concatenate(count, axis=1),
+        np.concatenate(problem.states(x), axis=1)[RATE], np.concatenate(count, axis=1),
         max(1.0 - x.size / seen, 0.1),
     )  # fmt: skip

@@ -18,7 +18,8 @@ from puck_tables.errors import InputError
 from puck_tables.fitting.certainty import Certainty, profile_point
 from puck_tables.fitting.coupled_fit import Impact
 from puck_tables.fitting.estimate import Estimate
-from puck_tables.fitting.fit_columns import (
+from puck_tables.fitting.fit_files import (
+    KIND,
     as_json,
     frames_of,
     impact_as_json,
@@ -26,15 +27,12 @@ from puck_tables.fitting.fit_columns import (
     numbers_as_json,
     without_nan,
 )
-from puck_tables.fitting.held_out import HeldOut
-from puck_tables.fitting.law_comparison import LawScore
+from puck_tables.fitting.identifiability import doubts, rounded, taken_for_granted
+from puck_tables.fitting.model_comparison import HeldOut, LawScore, law_over
 from puck_tables.fitting.numbers import EstimatedLaunch, Number
 from puck_tables.fitting.observations import Observations
-from puck_tables.fitting.plausibility import doubts, rounded, taken_for_granted
-from puck_tables.fitting.residual_tests import JITTERY, NO_PATTERN, lengthways, misfits
-from puck_tables.fitting.side_forces import SideForces
-from puck_tables.fitting.speed_law_fit import law_over
-from puck_tables.fitting.timing import Known
+from puck_tables.fitting.problem import Known
+from puck_tables.fitting.residuals import JITTERY, NO_PATTERN, SideForces, lengthways, misfits
 from puck_tables.io.dataset import Dataset
 from puck_tables.io.formats import FORMATS, ending_of
 from puck_tables.puck import Puck
@@ -42,8 +40,6 @@ from puck_tables.result import Result
 
 if TYPE_CHECKING:
     from puck_tables.trajectory import Trajectory
-
-KIND = "puck-tables fit 1"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -244,7 +240,7 @@ class Fit(Result):
             f"Noise of places {self.noise[0]:.3g} m, {place}.",
             *([f"Noise of angles {self.noise[1]:.3g} rad, {angle}."] if angled else []),
             f"{100.0 * self.outliers:.3g} % of the observations, beyond 4 standard deviations, are "
-            "left out.",
+            "left out: farther off where few frames tell the noise.",
         ]
         if math.isfinite(self.certainty.degrees):
             lines.append(

@@ -1,65 +1,61 @@
-"""``fit``: the puck and the launches under which tracks are most likely."""
+"""``fit``: the puck and the launches under which tracks are most likely.
+
+Inputs are checked, tracks become observations, these and a forward model a problem of least
+squares; its estimate is judged, and what was found is reported.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import NamedTuple
 
-import numpy as np
-
-from puck_tables._core.real import instance, real
-from puck_tables.errors import InputError
+from puck_tables._core.real import instance
 from puck_tables.film.puck_track import Track
-from puck_tables.fitting.certainty import (
-    Certainty,
-    certainty_of,
-    of_rounded,
-    pinned_of,
-    widened,
-)
 from puck_tables.fitting.coupled_fit import Impact, couple, impacts_apart, impacts_coupled, not_met
-from puck_tables.fitting.estimate import Estimate, estimate, freedom
+from puck_tables.fitting.estimate import Estimate, estimate
 from puck_tables.fitting.fit_result import Fit
 from puck_tables.fitting.fit_spec import FitSpec
-from puck_tables.fitting.held_out import HeldOut, predicted, split
 from puck_tables.fitting.identifiability import not_identifiable
 from puck_tables.fitting.impact_matching import Line
-from puck_tables.fitting.impacts import SlideIndex, slides_apart
 from puck_tables.fitting.initial_estimate import initial_estimate
 from puck_tables.fitting.inputs import (
+    Inputs,
+    begin_jitter,
     begin_noise,
-    checked_jitter,
-    checked_noise,
     checked_rows,
-    checked_speeds,
     checked_walls,
     observations_of,
     refuse_faster,
     refuse_opening,
     refuse_tipping,
-    refuse_wobbling,
 )
-from puck_tables.fitting.law_comparison import LawScore, chi2_under, compare, variants_of
+from puck_tables.fitting.judgement import JudgedMotion, judged_certainty, judged_motion
 from puck_tables.fitting.misfit import misfit
-from puck_tables.fitting.no_spin import without_spin
-from puck_tables.fitting.numbers import numbers_of, plausible_for
+from puck_tables.fitting.model_comparison import (
+    HeldOut,
+    LawScore,
+    chi2_under,
+    compare,
+    over_speeds,
+    predicted,
+    split,
+    variants_of,
+)
+from puck_tables.fitting.numbers import numbers_of
 from puck_tables.fitting.observations import Observations, noise_of
-from puck_tables.fitting.other_minima import mirrored, other_minima, taken
-from puck_tables.fitting.plausibility import ran_away
-from puck_tables.fitting.problem import Problem
-from puck_tables.fitting.residual_tests import drift, excess_of, may_misfit, no_answer, runs
-from puck_tables.fitting.side_forces import SideForces, side_forces
-from puck_tables.fitting.speed_law_fit import over_speeds
-from puck_tables.fitting.timing import Known
+from puck_tables.fitting.other_minima import without_spin
+from puck_tables.fitting.problem import Known, Problem
+from puck_tables.fitting.residuals import (
+    drift,
+    runs,
+)
+from puck_tables.fitting.touches import SlideIndex, slides_apart
 from puck_tables.puck import Puck
 
 Progress = Callable[[int, int], None]
-_JUDGED = 2.5  # degrees of freedom that tell the noise of a kind
 _MUCH = 0.1  # of the frames, left out at the ends
-_BIAS = 2.0  # times what a force, to first order, would have done
-_JITTER = 0.3  # times the noise of a place over the speed: to begin with
 
 
 def fit(
@@ -143,17 +139,18 @@ def fit(
     Notes
     -----
     Least squares of places and angles, weighted by their noise, with observations beyond four
-    standard deviations left out.  Errors are those of the Fisher matrix, intervals of the puck's
-    numbers by profile likelihood where that differs by more than 2 %.  The cost of a track of 250
-    frames is some 0.1 s.
+    standard deviations left out, or farther where few of them tell the noise.  Errors are those of
+    the Fisher matrix, intervals of the puck's numbers by profile likelihood where that differs by
+    more than 2 %.  The cost of a track of 250 frames is some 0.1 s.
 
     References
     ----------
-    Salnikova, Treschev, Gallyamov 2012, sections 2 and 6: the motion; scipy's ``least_squares``:
-    the optimiser.
+    Salnikova, Treschev, Gallyamov 2012, sections 2 and 6: the motion; Marquardt 1963: the
+    optimiser.
 
     Examples
     --------
+    >>> import numpy as np
     >>> puck = Puck(radius=0.0381, height=0.0254, friction=0.15)
     >>> t = np.arange(120) / 60.0
     >>> path = puck.states((2.0, 0.5), 40.0, t)
@@ -164,97 +161,131 @@ def fit(
     (0.15, 0.025)
     """
     instance("puck", puck, Puck)
-    films = observations_of(tracks, since, until, keep_all, checked_rows(rows), puck.radius)
     lines = checked_walls(walls)
-    impacts = impacts or bool(lines)
     spec = FitSpec.of(
-        puck, free, fixed or {}, prior or {}, bounds or {}, start or {}, impacts, rows is not None
-    )
-    given, known_noise = checked_noise(noise)
-    stamps = checked_jitter(jitter)
-    speeds = checked_speeds(slip_speeds, between)
-    if speeds:
-        spec.over(speeds, between)
-    known = Known(*known_noise, stamps is not None)
-    judged = noise_of(list(films))
-    begin = tuple(
+        puck, free, fixed or {}, prior or {}, bounds or {}, start or {}, impacts or bool(lines),
+        rows is not None,
+    )  # fmt: skip
+    inputs = Inputs.of(spec, noise, jitter, slip_speeds, between, impacts, lines, hold_out)
+    films = observations_of(tracks, since, until, keep_all, checked_rows(rows), puck.radius)
+    observed = _observe(films, inputs)
+    variants = variants_of(spec.alone(), laws)
+    steps = 1 + len(variants) + (inputs.hold_out is not None)
+    say = progress or (lambda done, total: None)
+    estimates = _estimate_all(inputs, observed)
+    say(1, steps)
+    judged = judged_motion(estimates.best, inputs.known, observed.smooth, inputs.spec.bounds)
+    scores: tuple[LawScore, ...] = ()
+    if variants:
+        scores = _compared(inputs, observed, estimates, variants)
+        say(1 + len(variants), steps)
+    held_out = None
+    if inputs.hold_out is not None:
+        held_out = _held_out(judged.best, inputs.hold_out, inputs.known)
+        say(steps, steps)
+    return _reported(inputs, observed, estimates, judged, scores, held_out)
+
+
+class _Observed(NamedTuple):
+    """The observations: ``uncut`` tracks, the ``pieces`` of them between impacts in ``problem``.
+
+    ``smooth``: their noise (m, rad) as no model judged it.
+    """
+
+    uncut: tuple[Observations, ...]
+    pieces: tuple[SlideIndex, ...]
+    smooth: tuple[float, float]
+    problem: Problem
+
+
+class _Estimates(NamedTuple):
+    """The estimate of ``slides`` with launches of their own, and that of all that was asked for.
+
+    ``constant``: of one friction for all slip speeds; ``untied``: why slides are not joined.
+    """
+
+    slides: Estimate
+    best: Estimate
+    constant: Estimate
+    untied: str
+
+
+def _observe(films: tuple[Observations, ...], inputs: Inputs) -> _Observed:
+    """What is fitted of the tracks, in the slides between impacts if these are looked for."""
+    smooth = noise_of(list(films))
+    begin = [
         value if value is not None else begin_noise(one, films)
-        for value, one in zip(given, judged, strict=True)
-    )
-    refuse_tipping(spec, films, begin[0])
-    questions = variants_of(spec.alone(), laws)
-    uncut = films
+        for value, one in zip(inputs.noise, smooth, strict=True)
+    ]
+    refuse_tipping(inputs.spec, films, begin[0])
+    parts = films
     pieces: tuple[SlideIndex, ...] = ()
     rests: tuple[bool, ...] = ()
-    if impacts:
-        films, pieces, rests = slides_apart(films, begin[0])
-    problem = Problem(spec.alone(), films, (begin[0], begin[1]), rests=rests)
-    problem = replace(problem, jitter=_begin_jitter(problem, begin[0], stamps))
-    held = None if hold_out is None else _held(hold_out)
-    if held is not None:
-        split(films, held, begin[0])
-    steps = 1 + len(laws) + (hold_out is not None)
-    say = progress or (lambda done, total: None)
-    best = slides = initial_estimate(problem, known, refit=True)
+    if inputs.impacts:
+        parts, pieces, rests = slides_apart(films, begin[0])
+    jitter = begin_jitter(parts, begin[0]) if inputs.jitter is None else inputs.jitter
+    if inputs.hold_out is not None:
+        split(parts, inputs.hold_out, begin[0])
+    problem = Problem(inputs.spec.alone(), parts, (begin[0], begin[1]), rests=rests, jitter=jitter)
+    return _Observed(films, pieces, smooth, problem)
+
+
+def _estimate_all(inputs: Inputs, observed: _Observed) -> _Estimates:
+    """The estimate, from slides apart to joined ones, from one friction to one over slip speed."""
+    best = slides = initial_estimate(observed.problem, inputs.known, refit=True)
     untied = ""
-    if impacts:
-        best, untied = couple(slides, pieces, uncut, spec, lines, known)
+    if inputs.impacts:
+        best, untied = couple(
+            slides, observed.pieces, observed.uncut, inputs.spec, inputs.lines, inputs.known
+        )
     constant = best
-    if speeds:
-        refuse_faster(speeds, best)
-        best = over_speeds(best, speeds, between, known)
+    if inputs.speeds:
+        refuse_faster(inputs.speeds, best)
+        best = over_speeds(best, inputs.speeds, inputs.between, inputs.known)
         refuse_opening(best)
-    say(1, steps)
-    certainty = _certainty(best, known)
-    refuse_wobbling(best, certainty)
-    excess = max(excess_of(best, judged), 1.0)
-    other_fits = other_minima(best, certainty, excess)
-    other = taken(best, other_fits, excess)
-    if other is not None:
-        best = replace(estimate(best.problem, other.estimate.x, known), minima=best.minima)
-        certainty = _certainty(best, known)
-        other_fits = other_minima(best, certainty, max(excess_of(best, judged), 1.0))
-    unsigned = mirrored(best, certainty)
-    forces = side_forces(best, certainty)
-    # bounds that the caller gives may keep every motion away: that is said of the bound
-    held_off = any(
-        best.problem.names[k][1] in spec.bounds for k in np.flatnonzero(certainty.pinned)
-    )
-    if held_off:  # no force
-        forces = forces._replace(biases=np.empty((0, 0)))
-    misfits = may_misfit(best, known, judged, forces.chance)
-    certainty = _wider(best, certainty, misfits, forces, bool(unsigned))
-    nowhere = "" if held_off else no_answer(best, known, judged)
-    astray = nowhere or ran_away(best.problem, best.x)
-    seen, certainty = certainty, certainty.lost() if astray else certainty
-    numbers, launches = numbers_of(best, certainty, other_fits, unsigned)
-    blind, open_then = ((), ()) if nowhere else without_spin(best, numbers, known)
+    return _Estimates(slides, best, constant, untied)
+
+
+def _compared(
+    inputs: Inputs, observed: _Observed, estimates: _Estimates, variants: Mapping[str, FitSpec]
+) -> tuple[LawScore, ...]:
+    """The laws named, best first."""
+
+    def of_law(one: FitSpec, noise: tuple[float, float], known: Known) -> Estimate:
+        # frames that another law leaves out at the ends may be those that tell
+        same = replace(
+            observed.problem, spec=one, noise=noise, jitter=estimates.slides.problem.jitter
+        )
+        return initial_estimate(same, known._replace(jitter=True), refit=False)
+
+    return compare(variants, observed.problem.noise, inputs.known, of_law)
+
+
+def _reported(
+    inputs: Inputs, observed: _Observed, estimates: _Estimates, judged: JudgedMotion,
+    laws: tuple[LawScore, ...], held_out: HeldOut | None,
+) -> Fit:  # fmt: skip
+    """What was found, with what is to be said of it."""
+    best, certainty, known = judged.best, judged.certainty, inputs.known
+    numbers, launches = numbers_of(best, certainty, judged.other_fits, judged.unsigned)
+    blind, open_then = ((), ()) if judged.nowhere else without_spin(best, numbers, known)
     numbers |= {name: numbers[name]._replace(error=math.inf) for name in open_then}
     lost = tuple(n for n in best.problem.spec.free if not numbers[n].determined)
-    scores: tuple[LawScore, ...] = ()
-    if laws:
-
-        def of_law(one: FitSpec, noise: tuple[float, float], fixed_noise: Known) -> Estimate:
-            # frames that another law leaves out at the ends may be those that tell
-            same = replace(problem, spec=one, noise=noise, jitter=slides.problem.jitter)
-            return initial_estimate(same, fixed_noise._replace(jitter=True), refit=False)
-
-        scores = compare(questions, (begin[0], begin[1]), known, of_law)
-        say(1 + len(laws), steps)
-    predictions = None
-    if held is not None:
-        predictions = _held_out(best, held, known)
-        say(steps, steps)
-    blind += (f"{astray}.",) if astray else not_identifiable(best, seen, lost, other_fits, unsigned)
-    impact_states: tuple[Impact, ...] = ()
+    blind += (
+        (f"{judged.astray}.",)
+        if judged.astray
+        else not_identifiable(best, judged.seen, lost, judged.other_fits, judged.unsigned)
+    )
+    impacts: tuple[Impact, ...] = ()
     if best.problem.impact_specs:
-        impact_states = impacts_coupled(best, certainty, numbers)
-    elif impacts:
-        names = [film.name for film in uncut]
-        impact_states = impacts_apart(best, pieces, certainty, names)
-    left_out = _left_out((*films, *uncut), best.problem.films)
+        impacts = impacts_coupled(best, certainty, numbers)
+    elif inputs.impacts:
+        impacts = impacts_apart(
+            best, observed.pieces, certainty, [film.name for film in observed.uncut]
+        )
+    left_out = _left_out((*observed.problem.films, *observed.uncut), best.problem.films)
     result = Fit(
-        given=puck,
+        given=inputs.spec.puck,
         numbers=numbers,
         launches=launches,
         chi2=best.chi2,
@@ -262,67 +293,31 @@ def fit(
         noise=best.problem.noise,
         jitter=best.problem.jitter,
         noise_known=known,
-        smooth_noise=judged,
+        smooth_noise=observed.smooth,
         outliers=best.outliers,
         runs=runs(best),
         drift=drift(best),
         left_out=left_out,
-        cut_off=_trimmed_ends(slides, problem, known, left_out),
+        cut_off=_trimmed_ends(estimates.slides, observed.problem, known, left_out),
         blind=blind,
-        astray=astray,
-        laws=scores,
-        held_out=predictions,
-        impacts=impact_states,
-        untied=untied,
-        not_met=not_met(impact_states, best.problem, lines) if impacts else (),
-        constant_chi2=chi2_under(constant, best.problem.noise) if speeds else math.nan,
+        astray=judged.astray,
+        laws=laws,
+        held_out=held_out,
+        impacts=impacts,
+        untied=estimates.untied,
+        not_met=not_met(impacts, best.problem, inputs.lines) if inputs.impacts else (),
+        constant_chi2=(
+            chi2_under(estimates.constant, best.problem.noise) if inputs.speeds else math.nan
+        ),
         estimate=best,
         certainty=certainty,
-        forces=forces,
-        uncut=uncut,
+        forces=judged.forces,
+        uncut=observed.uncut,
     )
     if result.complaints:
-        result = replace(result, misfit=misfit(slides, problem, known, forces, bool(speeds)))
+        said = misfit(estimates.slides, observed.problem, known, judged.forces, bool(inputs.speeds))
+        result = replace(result, misfit=said)
     return result
-
-
-def _begin_jitter(problem: Problem, noise: float, stamps: float | None) -> float:
-    """The jitter as given, or a value to begin with, s."""
-    if stamps is not None:
-        return stamps
-    lengths = [np.hypot(*np.diff(film.place, axis=0).T).sum() for film in problem.films]
-    speed = float(sum(lengths)) / sum(float(film.time[-1]) for film in problem.films)
-    return _JITTER * noise / max(speed, 1e-9)
-
-
-def _certainty(best: Estimate, known: Known) -> Certainty:
-    """How well the unknowns of an estimate are known."""
-    degrees = freedom(best, known)
-    if degrees < _JUDGED:
-        raise InputError(
-            f"{best.residuals.size} observations of {best.x.size} unknowns are too few to judge "
-            "the noise of each kind by: give the noise, or more frames"
-        )
-    plausible = plausible_for(best.problem, best.x)
-    certainty = certainty_of(best.jacobian[best.kept], plausible, degrees)
-    return replace(certainty, pinned=pinned_of(best, certainty))
-
-
-def _wider(
-    best: Estimate, certainty: Certainty, misfits: bool, forces: SideForces, unsigned: bool
-) -> Certainty:
-    """The same where residuals are no independent noise, or nothing tells a floor from a spin."""
-    if misfits or any(certainty.pinned):
-        certainty = widened(best, certainty)
-        if misfits and forces.biases.size:
-            by_force = _BIAS**2 * forces.biases @ forces.biases.T
-            certainty = certainty.wider(certainty.covariance + by_force, True)
-    elif any(any(film.steps) for film in best.problem.films):
-        certainty = of_rounded(best, certainty)
-    if unsigned and forces.by_law.size:  # its slowing alone tells friction from spin
-        by_law = np.outer(forces.by_law, forces.by_law)
-        certainty = certainty.wider(certainty.covariance + by_law, False)
-    return certainty
 
 
 def _left_out(
@@ -364,12 +359,6 @@ def _trimmed_ends(
     )
 
 
-def _held(hold_out: Any) -> float | tuple[str, ...]:
-    """A share of the frames, or names of tracks."""
-    names: Any = (hold_out,) if isinstance(hold_out, str) else hold_out
-    return tuple(names) if isinstance(names, list | tuple) else real("hold_out", names, "1")
-
-
 def _held_out(best: Estimate, wanted: float | tuple[str, ...], known: Known) -> HeldOut:
     """The later part of tracks, predicted from the rest."""
     problem = best.problem
@@ -379,4 +368,4 @@ def _held_out(best: Estimate, wanted: float | tuple[str, ...], known: Known) -> 
         part = estimate(fewer, best.x, known)
     else:
         part = initial_estimate(fewer, known, refit=False)
-    return predicted(part, _certainty(part, known), problem.films, later)
+    return predicted(part, judged_certainty(part, known), problem.films, later)

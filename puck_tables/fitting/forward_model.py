@@ -1,11 +1,6 @@
 """Where a launched puck is at the moments of a film, and how that depends on what is to be found.
 
-With Q = hypot(v, rω), φ = atan2(rω, v) and the natural motion (X, Y, Θ)(t J/Q; φ, δ),
-
-    place = (Q²/J) Rot(ψ)(X, Y),   turn = Q²/(J r) Θ .
-
-So only the derivatives to φ and δ are those of a motion (:meth:`Curve.with_slopes`); those to Q, J,
-ψ and r follow from the similarity and from the velocity.
+Dry friction alone is looked up, or integrated (:mod:`puck_tables.fitting.unit_motions`).
 
 Drag c, in 1/s, that brakes speed and spin alike, v′ = … − c v, ω′ = … − c ω, needs no motion of its
 own: v = e^(−ct) V(s), ω = e^(−ct) W(s) with s = (e^(ct) − 1)/c, where V and W are those without
@@ -19,7 +14,6 @@ law f(u) = f + (c/g) u of a coefficient that rises (c > 0) or falls (c < 0) with
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -27,17 +21,13 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.fitting.speed_motion import speed_path
-from puck_tables.fitting.unit_motions import BY_DELTA, BY_PHI, PATH, RATE, UnitMotions
-from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED
-from puck_tables.motion.state import SPIN as TURNING
+from puck_tables.fitting.unit_motions import UnitMotions
 
 _SPEED_STEP = 1e-6
-_SLOWEST = 1e-9  # of Q: a launch that only spins is taken to go that fast along its velocity
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 
-# what places and turns are differentiated to
-VX, VY, SPIN, DECEL, DELTA, RADIUS, TIME = range(7)
-_PATH, _RATE, _SLOPES = range(3)  # what is wanted: places; rates, too; derivatives, too
+VX, VY, SPIN, DELTA, DECEL, RADIUS, TIME = range(7)  # what states are differentiated to
+PLACE, RATE = slice(0, 3), slice(3, 6)  # of a state: x, y, angle and vx, vy, spin
 
 
 class SpeedFriction(NamedTuple):
@@ -49,9 +39,9 @@ class SpeedFriction(NamedTuple):
 
 
 class Moving(NamedTuple):
-    """What moves a puck: the scale J m/s², δ, r m, drag c 1/s, and its curve.
+    """What moves a puck: the scale J m/s², δ, r m, drag c 1/s, and its motions.
 
-    ``by_speed``: f over slip speed in place of the curve; J and δ are then those at rest.
+    ``by_speed``: f over slip speed in place of the motions; J and δ are then those at rest.
     """
 
     decel: float
@@ -61,157 +51,109 @@ class Moving(NamedTuple):
     motions: UnitMotions
     by_speed: SpeedFriction | None = None
 
+    def arguments(self, launch: FloatArray) -> FloatArray:
+        """Of a launch (6,), what states are differentiated to: vx, vy, ω, δ, J, r."""
+        return np.array([*launch[2:5], self.delta, self.decel, self.radius])
 
-def path_of(moving: Moving, velocity: FloatArray, spin: float, times: FloatArray) -> FloatArray:
-    """Displacement x, y (m) and turn of the body (rad) at times (n,) s after a launch, (3, n).
+
+def states_of(moving: Moving, launch: FloatArray, times: FloatArray) -> FloatArray:
+    """States (6, n) at times (n,) s after a launch: x, y (m), angle (rad), vx, vy (m/s), spin.
+
+    ``launch`` (6,): x, y, vx, vy, spin, angle.
 
     Examples
     --------
     >>> from puck_tables.fitting.unit_motions import unit_motions_of
     >>> plain = Moving(1.0, 0.5, 1.0, 0.0, unit_motions_of("uniform", 0.5**0.5))
-    >>> path_of(plain, np.array([1.0, 0.0]), 5.0, np.array([2.0]))[0].round(6).tolist()
+    >>> launch = np.array([0.0, 0.0, 1.0, 0.0, 5.0, 0.0])
+    >>> states_of(plain, launch, np.array([2.0]))[0].round(6).tolist()
     [1.590682]
     """
-    return _path(moving, velocity, spin, times, _PATH)[0]
+    return _placed(launch, _path(moving, launch, times, False)[0])
 
 
-def path_with_slopes(
-    moving: Moving, velocity: FloatArray, spin: float, times: FloatArray
+def states_and_slopes(
+    moving: Moving, launch: FloatArray, times: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """The same (3, n), and its derivatives (7, 3, n) to vx, vy, ω, J, δ, r and time."""
-    return _path(moving, velocity, spin, times, _SLOPES)
+    """States (6, n), and their derivatives (n, 6, 7) to vx, vy, ω, δ, J, r and time."""
+    states, slopes = _path(moving, launch, times, True)
+    return _placed(launch, states), slopes
 
 
-def path_and_rate(
-    moving: Moving, velocity: FloatArray, spin: float, times: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """The same (3, n), with velocity (m/s) and spin (rad/s) at these times, (3, n).
-
-    Examples
-    --------
-    >>> from puck_tables.fitting.unit_motions import unit_motions_of
-    >>> plain = Moving(1.0, 0.5, 1.0, 0.0, unit_motions_of("uniform", 0.5**0.5))
-    >>> path_and_rate(plain, np.array([1.0, 0.0]), 0.0, np.array([0.25]))[1].ravel().tolist()
-    [0.75, 0.0, 0.0]
-    """
-    path, slopes = _path(moving, velocity, spin, times, _RATE)
-    return path, slopes[-1]
-
-
-def rates_of(moving: Moving, velocity: FloatArray, spin: float, times: FloatArray) -> FloatArray:
-    """Velocity (m/s) and spin (rad/s) at times (n,) s after a launch, (3, n)."""
-    return path_and_rate(moving, velocity, spin, times)[1]
+def _placed(launch: FloatArray, states: FloatArray) -> FloatArray:
+    states[PLACE] += launch[[0, 1, 5], None]
+    return states
 
 
 def _path(
-    moving: Moving, velocity: FloatArray, spin: float, times: FloatArray, want: int
+    moving: Moving, launch: FloatArray, times: FloatArray, want: bool
 ) -> tuple[FloatArray, FloatArray]:
-    c = moving.drag
+    """States from (0, 0) on, and derivatives if they are wanted."""
+    c, at = moving.drag, moving.arguments(launch)
+    if not at[:3].any():
+        return np.zeros((6, times.size)), np.zeros((times.size, 6, 7))
     if moving.by_speed is not None:
-        return _by_speed(moving, velocity, spin, times, want)
+        return _by_speed(moving.by_speed, at, times, want)
     if c == 0.0:
-        return _dry_friction(moving, velocity, spin, times, want)
+        return _without_drag(moving, at, times, want)
     s = np.expm1(c * times) / c
     ends = np.concatenate([[0.0], s])
     half, middle = 0.5 * np.diff(ends), 0.5 * (ends[1:] + ends[:-1])
     inner = middle[:, None] + half[:, None] * _POINTS
-    path, slope = _dry_friction(moving, velocity, spin, np.concatenate([s, inner.ravel()]), want)
+    states, slopes = _without_drag(moving, at, np.concatenate([s, inner.ravel()]), want)
     weights = half[:, None] * _WEIGHTS / (1.0 + c * inner) ** 3
+    slower = np.exp(-c * times)
 
     def dragged(rows: FloatArray) -> FloatArray:
-        at = rows[..., : s.size]
-        within = rows[..., s.size :].reshape(*rows.shape[:-1], s.size, _POINTS.size)
+        """Of places (3, …) and rates (3, …) over all times those at the moments themselves."""
+        result: FloatArray = rows[..., : s.size] * slower
+        within = rows[PLACE, ..., s.size :].reshape(3, *rows.shape[1:-1], s.size, _POINTS.size)
         integral = np.cumsum((within * weights).sum(axis=-1), axis=-1)
-        result: FloatArray = at / (1.0 + c * s) ** 2 + 2.0 * c * integral
+        result[PLACE] = rows[PLACE, ..., : s.size] / (1.0 + c * s) ** 2 + 2.0 * c * integral
         return result
 
-    if want == _PATH:
-        return dragged(path), slope
-    result = dragged(slope)
-    result[-1] = slope[-1, :, : s.size] * np.exp(-c * times)
-    return dragged(path), result
+    moved = dragged(states)
+    if not want:
+        return moved, slopes
+    out = np.moveaxis(dragged(np.moveaxis(slopes, 0, 2)), 2, 0)
+    out[:, PLACE, TIME] = moved[RATE].T
+    out[:, RATE, TIME] = slopes[: s.size, RATE, TIME] - c * moved[RATE].T
+    return moved, out
+
+
+def _without_drag(
+    moving: Moving, at: FloatArray, times: FloatArray, want: bool
+) -> tuple[FloatArray, FloatArray]:
+    if want:
+        return moving.motions.states_and_slopes(at, times)
+    return moving.motions.states(at[:, None], times[None])[:, 0], np.empty((0, 6, 7))
 
 
 def _by_speed(
-    moving: Moving, velocity: FloatArray, spin: float, times: FloatArray, want: int
+    friction: SpeedFriction, at: FloatArray, times: FloatArray, want: bool
 ) -> tuple[FloatArray, FloatArray]:
     """The same where friction depends on the slip speed: no similarity, so all by differences.
 
     J does nothing, its place is taken by the numbers of the law.
     """
-    assert moving.by_speed is not None
-    law, gravity, gyration = moving.by_speed
+    law, gravity, gyration = friction
+    height = gravity / at[DECEL]  # δ times it is 2h/r
 
-    def path(by: FloatArray) -> tuple[FloatArray, FloatArray]:
-        vx, vy, w, _, delta, radius = by.tolist()
-        friction = moving.decel / gravity
-        return speed_path(
-            law, gravity, delta / friction, gyration, radius, np.array([vx, vy]), w, times
-        )
+    def path(by: FloatArray, times: FloatArray) -> FloatArray:
+        velocity, spin, delta, radius = by[:2], float(by[SPIN]), by[DELTA], float(by[RADIUS])
+        moved = speed_path(law, gravity, delta * height, gyration, radius, velocity, spin, times)
+        return np.concatenate(moved)
 
-    at = np.array([*velocity, spin, moving.decel, moving.delta, moving.radius])
-    result, rate = path(at)
-    if want != _SLOPES:
-        return result, rate[None]
-    out = np.zeros((7, 3, times.size))
-    scale = max(abs(at[0]), abs(at[1]), moving.radius * abs(spin))
-    steps = {VX: scale, VY: scale, SPIN: scale / moving.radius, DELTA: 1.0, RADIUS: moving.radius}
+    instant = _SPEED_STEP * (float(times.max(initial=0.0)) or 1.0)
+    result, later = np.split(path(at, np.concatenate([times, times + instant])), 2, axis=1)
+    out = np.zeros((times.size, 6, 7))
+    if not want:
+        return result, out
+    scale = max(abs(at[VX]), abs(at[VY]), at[RADIUS] * abs(at[SPIN]))
+    steps = {VX: scale, VY: scale, SPIN: scale / at[RADIUS], DELTA: 1.0, RADIUS: at[RADIUS]}
     for k, size in steps.items():
         step = np.zeros(6)
         step[k] = _SPEED_STEP * size
-        out[k] = (path(at + step)[0] - result) / step[k]
-    out[TIME] = rate
+        out[:, :, k] = ((path(at + step, times) - result) / step[k]).T
+    out[:, PLACE, TIME], out[:, RATE, TIME] = result[RATE].T, (later - result)[RATE].T / instant
     return result, out
-
-
-def _dry_friction(
-    moving: Moving, velocity: FloatArray, spin: float, times: FloatArray, want: int
-) -> tuple[FloatArray, FloatArray]:
-    vx, vy = velocity.tolist()
-    rim, speed = moving.radius * spin, math.hypot(vx, vy)
-    slip = math.hypot(speed, rim)
-    if slip == 0.0:
-        return np.zeros((3, times.size)), np.zeros((7, 3, times.size))
-    phi = math.atan2(rim, speed)
-    cosine, sine = (vx / speed, vy / speed) if speed > 0.0 else (1.0, 0.0)
-    turn = np.array([[cosine, -sine], [sine, cosine]])
-    length = slip * slip / moving.decel
-    tau = times * (moving.decel / slip)
-    motions, height = moving.motions, moving.delta
-    if want != _SLOPES:
-        states = motions.states(np.array([phi]), np.array([height]), tau[None])[:, 0]
-        path = _turned(turn, length, moving.radius, states[[PUCK_X, PUCK_Y, ORIENTATION]])
-        if want == _PATH:
-            return path, np.empty((0, 3, times.size))
-        heading, ahead = states[HEADING], states[SPEED]
-        motion = np.stack([ahead * np.cos(heading), ahead * np.sin(heading), states[TURNING]])
-        return path, _turned(turn, slip, moving.radius, motion)[None]
-    unit_motion = _turned(turn, 1.0, moving.radius, motions.with_slopes(phi, height, tau))
-    path, to_phi, rate = (
-        length * unit_motion[PATH],
-        length * unit_motion[BY_PHI],
-        slip * unit_motion[RATE],
-    )
-    to_log_slip = 2.0 * path - times * rate
-    to_speed = (math.cos(phi) / slip) * to_log_slip - (math.sin(phi) / slip) * to_phi
-    to_rim = (math.sin(phi) / slip) * to_log_slip + (math.cos(phi) / slip) * to_phi
-    across = path[:2] / max(speed, _SLOWEST * slip)
-    out = np.empty((7, 3, times.size))
-    out[VX], out[VY] = cosine * to_speed, sine * to_speed
-    out[VX, 0] += sine * across[1]
-    out[VX, 1] -= sine * across[0]
-    out[VY, 0] -= cosine * across[1]
-    out[VY, 1] += cosine * across[0]
-    out[SPIN], out[RADIUS], out[TIME] = moving.radius * to_rim, spin * to_rim, rate
-    out[RADIUS, 2] -= path[2] / moving.radius
-    out[DECEL] = (times * rate - path) / moving.decel
-    out[DELTA] = length * unit_motion[BY_DELTA]
-    return path, out
-
-
-def _turned(turn: FloatArray, unit: float, radius: float, unit_motion: FloatArray) -> FloatArray:
-    """x, y and body angle (…, 3, n) from natural ones, in a unit of length."""
-    whole = np.zeros((3, 3))
-    whole[:2, :2], whole[2, 2] = turn, 1.0 / radius
-    result: FloatArray = (unit * whole) @ unit_motion
-    return result

@@ -24,8 +24,9 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.fitting.forward_model import Moving, path_and_rate
+from puck_tables.fitting.forward_model import Moving, states_of
 
+AS_LAUNCH = [0, 1, 3, 4, 5, 2]  # rows of a state
 _NEWTON, _EXACT, _TOUCHES = 12, 1e-10, 1e-6  # of the radius
 
 
@@ -84,11 +85,7 @@ class ImpactState(NamedTuple):
 
 def state_at(moving: Moving, slide: Slide, time: float) -> FloatArray:
     """Launch numbers (6,) of a slide at a time, s."""
-    since = np.array([time - slide.since])
-    velocity, spin = slide.launch[2:4], float(slide.launch[4])
-    path, rate = path_and_rate(moving, velocity, spin, since)
-    x, y, turn = path[:, 0] + slide.launch[[0, 1, 5]]
-    return np.array([x, y, *rate[:, 0], turn])
+    return states_of(moving, slide.launch, np.array([time - slide.since]))[AS_LAUNCH, 0]
 
 
 def impact_at(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Any
 
@@ -19,18 +19,65 @@ from puck_tables.fitting.certainty import Certainty
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.impact_matching import Line
-from puck_tables.fitting.impacts import turns
 from puck_tables.fitting.observations import Observations, noise_of, observations_in, rests_from
 from puck_tables.fitting.parameters import MOST_NODES
+from puck_tables.fitting.problem import Known
 from puck_tables.fitting.starts import slowing_of
+from puck_tables.fitting.touches import turns
 
 MOST_FRAMES = 100_000
 FIND = "find"
 _GUESS = 1e-3  # of the track: noise to begin with where differences tell none
+_JITTER = 0.3  # times the noise of a place over the speed: to begin with
 _NEAREST, _FARTHEST = 1e-30, 1e6  # m or s, of a track
 _TWICE = 0.5  # of the frames: the same film again
 _SLOWER = 0.3  # times the deceleration seen: friction is no less
 _TIPS = 4.0  # δ
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """What is said of tracks.
+
+    ``spec``: what is to be found of the puck; ``noise`` (m, rad) and ``jitter`` (s), None for what
+    is to be found; ``speeds`` m/s at which friction is, ``between`` which it goes so; ``impacts``:
+    whether they are looked for; ``lines``: walls that are known; ``hold_out``: a share of the
+    frames, or names of tracks; ``known``: which noise is given.
+    """
+
+    spec: FitSpec
+    noise: tuple[float | None, float | None]
+    jitter: float | None
+    speeds: tuple[float, ...]
+    between: str
+    impacts: bool
+    lines: tuple[Line, ...]
+    hold_out: float | tuple[str, ...] | None
+
+    @classmethod
+    def of(
+        cls, spec: FitSpec, noise: Any, jitter: Any, speeds: Any, between: Any, impacts: bool,
+        lines: tuple[Line, ...], hold_out: Any,
+    ) -> Inputs:  # fmt: skip
+        """Checked."""
+        checked = checked_speeds(speeds, between)
+        if checked:
+            spec.over(checked, between)
+        names: Any = (hold_out,) if isinstance(hold_out, str) else hold_out
+        if isinstance(names, list | tuple):
+            names = tuple(names)
+        elif names is not None:
+            names = real("hold_out", names, "1")
+        return cls(
+            spec, checked_noise(noise), checked_jitter(jitter), checked, between,
+            impacts or bool(lines), lines, names,
+        )  # fmt: skip
+
+    @property
+    def known(self) -> Known:
+        """Whether the noise of places, of angles and of time stamps is given."""
+        place, angle = self.noise
+        return Known(place is not None, angle is not None, self.jitter is not None)
 
 
 def observations_of(
@@ -301,15 +348,15 @@ def checked_walls(raw: Any) -> tuple[Line, ...]:
     return tuple(lines)
 
 
-def checked_noise(raw: Any) -> tuple[tuple[float | None, float | None], tuple[bool, bool]]:
-    """The noise as given, and which of it was.
+def checked_noise(raw: Any) -> tuple[float | None, float | None]:
+    """The noise as given, None for what is to be found.
 
     Raises
     ------
     InputError
     """
     if raw is None:
-        return (None, None), (False, False)
+        return None, None
     try:
         place, angle = raw
     except (TypeError, ValueError):
@@ -325,7 +372,7 @@ def checked_noise(raw: Any) -> tuple[tuple[float | None, float | None], tuple[bo
         if not number > 0.0:
             raise InputError(f"the noise of {what} must be greater than 0 ({unit}), got {number:g}")
         checked.append(number)
-    return (checked[0], checked[1]), (checked[0] is not None, checked[1] is not None)
+    return checked[0], checked[1]
 
 
 def begin_noise(judged: float, films: tuple[Observations, ...]) -> float:
@@ -333,3 +380,10 @@ def begin_noise(judged: float, films: tuple[Observations, ...]) -> float:
     size = max(float(np.ptp(film.place, axis=0).max()) for film in films)
     least = 1e-9 * (size or 1.0)
     return max(judged, least) if math.isfinite(judged) else max(_GUESS * size, least)
+
+
+def begin_jitter(films: tuple[Observations, ...], noise: float) -> float:
+    """Jitter of time stamps to begin with, s, where places have so much noise (m)."""
+    lengths = [np.hypot(*np.diff(film.place, axis=0).T).sum() for film in films]
+    speed = float(sum(lengths)) / sum(float(film.time[-1]) for film in films)
+    return _JITTER * noise / max(speed, 1e-9)

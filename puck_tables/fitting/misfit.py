@@ -17,12 +17,10 @@ from puck_tables.errors import InputError
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.initial_estimate import initial_estimate
+from puck_tables.fitting.model_comparison import tried
 from puck_tables.fitting.parameters import NODES
-from puck_tables.fitting.problem import TURN, Problem
-from puck_tables.fitting.residual_tests import NO_PATTERN
-from puck_tables.fitting.side_forces import AIR, SLOPE, SideForces, forced
-from puck_tables.fitting.speed_law_fit import tried
-from puck_tables.fitting.timing import Known
+from puck_tables.fitting.problem import TURN, Known, Problem
+from puck_tables.fitting.residuals import AIR, NO_PATTERN, SLOPE, SideForces, forced
 
 _FAR = 1.5  # times smaller are residuals of a reading that is told
 _NEAR = 0.01  # of the radius: it is not another one

@@ -18,10 +18,9 @@ from puck_tables.fitting.certainty import (
     interval_of,
 )
 from puck_tables.fitting.estimate import Estimate
-from puck_tables.fitting.impact_derivatives import slopes_of_slides
-from puck_tables.fitting.impacts import slide_name
 from puck_tables.fitting.parameters import ALL, LAUNCH, PUCK
 from puck_tables.fitting.problem import Problem
+from puck_tables.fitting.touches import slide_name
 
 _STEP = 1e-6
 # Scales are plausible within their own size, but not less than this
@@ -198,7 +197,7 @@ def _launches(
     """
     problem, errors = result.problem, certainty.errors
     plausible = dict(zip(problem.names, certainty.plausible.tolist(), strict=True))
-    slides, slopes = problem.slides(result.x)[0], slopes_of_slides(problem, result.x)
+    slides, slopes = problem.slides(result.x)[0], problem.slopes_of_slides(result.x)
     launches = []
     for n, film in enumerate(problem.films):
         for m, slide in enumerate(slides[n]):

@@ -2,46 +2,147 @@
 
 The unknowns are the free numbers of the puck, shared by all tracks, then the launch of each track,
 then the walls that are found.  Impacts begin further slides, whose launches follow.  Residuals are
-in units of the noise: x, y and angle of every frame, then the priors.  Where time stamps jitter
-they are those along the motion, across it, and of the angle at what the place says of the time.
+in units of the noise: x, y and angle of every frame, then the priors.
+
+Where time stamps jitter they are those along the motion, across it, and of the angle what is left
+when the place has told of the time.  A stamp that is off by σ_t moves what is seen by that time
+along the motion, u = (vx, vy, ω), so a frame's x, y and angle have the covariance
+
+    C = diag(σ², σ², σ_a²) + σ_t² u uᵀ .
+
+σ, σ_a and σ_t that are not given are the most likely ones, from
+
+    −2 ln L = Σ ln det C + rᵀ C⁻¹ r ,   det C = σ⁴ σ_a² (1 + σ_t² (v²/σ² + ω²/σ_a²)) .
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.fit_spec import FitSpec
-from puck_tables.fitting.forward_model import (
-    SPIN,
-    TIME,
-    VX,
-    VY,
-    Moving,
-    path_of,
-    path_with_slopes,
-    rates_of,
-)
-from puck_tables.fitting.impact_derivatives import slopes_of_slides
-from puck_tables.fitting.impact_law import ImpactSpec, ImpactState, Slide, WallLine, impact_at
-from puck_tables.fitting.observations import Observations, Straight, wrapped
-from puck_tables.fitting.parameters import LAUNCH
-from puck_tables.fitting.timing import weights_of
-from puck_tables.fitting.unknowns import NumbersOf, Unknowns
+from puck_tables.fitting.forward_model import RATE
+from puck_tables.fitting.impact_law import ImpactSpec, WallLine
+from puck_tables.fitting.observations import Observations, wrapped
+from puck_tables.fitting.slides import Slides
+
+_LEAST, _MOST = 1e-4, 30.0  # times the noise of a place over the speed: σ_t is looked for within
+
+
+class Known(NamedTuple):
+    """Whether the noise of places, of angles, and of time stamps is given."""
+
+    place: bool
+    angle: bool
+    jitter: bool
+
+
+def weights_of(
+    noise: tuple[float, float], jitter: float, rates: FloatArray, placed: npt.NDArray[np.bool_]
+) -> FloatArray:
+    """What makes x, y and angle of frames independent and of unit variance, (n, 3, 3).
+
+    Parameters
+    ----------
+    noise : m, rad
+    jitter : s
+    rates : (3, n), velocity m/s and spin rad/s
+    placed : (n,), whether the place counts
+
+    Examples
+    --------
+    >>> one = weights_of((1e-3, 1e-2), 1e-3, np.array([[0.0], [1.0], [0.0]]), np.array([True]))
+    >>> abs(one[0]).sum(axis=1).round(3).tolist()  # along the motion, across it, angle
+    [707.107, 1000.0, 100.0]
+    """
+    vx, vy, spin = rates
+    speed = np.hypot(vx, vy)
+    still = speed == 0.0
+    cosine = np.where(still, 1.0, vx / np.where(still, 1.0, speed))
+    sine = np.where(still, 0.0, vy / np.where(still, 1.0, speed))
+    along = noise[0] ** 2 + (jitter * speed) ** 2
+    turn = noise[1] ** 2 + (jitter * spin) ** 2
+    told = np.where(placed, jitter**2 * speed * spin / along, 0.0)
+    left = np.sqrt(turn - told**2 * along)
+    out = np.zeros((speed.size, 3, 3))
+    out[:, 0, 0], out[:, 0, 1] = cosine / np.sqrt(along), sine / np.sqrt(along)
+    out[:, 1, 0], out[:, 1, 1] = -sine / noise[0], cosine / noise[0]
+    out[:, 2, 0], out[:, 2, 1] = -told * cosine / left, -told * sine / left
+    out[:, 2, 2] = 1.0 / left
+    return out
+
+
+def likeliest(
+    noise: tuple[float, float], jitter: float, known: Known, deviations: FloatArray, rates:
+    FloatArray, kept: npt.NDArray[np.bool_], share: float,
+) -> tuple[tuple[float, float], float]:  # fmt: skip
+    """The noise of places and angles, and σ_t, under which residuals are most likely.
+
+    Parameters
+    ----------
+    noise, jitter : to begin with, or as given
+    known : which is given
+    deviations : (3, n), m and rad, NaN where no angle is
+    rates : (3, n)
+    kept : (3, n), whether the place along the motion, the angle, the place across it count
+    share : of the squares that the unknowns have left
+    """
+    from scipy.optimize import minimize
+
+    angled = kept[1] & np.isfinite(deviations[2])
+    placed = kept[0]
+    x, y, turn = (
+        np.where(placed, deviations[0], 0.0),
+        np.where(placed, deviations[1], 0.0),
+        deviations[2],
+    )
+    turn = np.where(angled, turn, 0.0)
+    vx, vy, spin = rates
+    speed = float(np.sqrt(np.mean(vx**2 + vy**2))) or 1.0
+    usual = noise[0] / speed
+    begin = np.log([noise[0], noise[1], jitter if jitter > 0.0 else 0.3 * usual])
+    free = [k for k, one in enumerate(known) if not one and (k != 1 or angled.any())]
+    if not free:
+        return noise, jitter
+    factor = 1.0 / share
+
+    def cost(logs: FloatArray) -> float:
+        every = begin.copy()
+        every[free] = logs
+        place, angle, stamp = np.exp(2.0 * every)
+        if known.jitter:
+            stamp = jitter**2
+        gain = placed * (vx**2 + vy**2) / place + angled * spin**2 / angle
+        squares = (x**2 + y**2) / place + turn**2 / angle
+        ahead = (x * vx + y * vy) / place + turn * spin / angle
+        squares -= stamp * ahead**2 / (1.0 + stamp * gain)
+        logarithm = (placed.sum() + kept[2].sum()) * math.log(place) + angled.sum() * math.log(
+            angle
+        )
+        return float(logarithm + np.log1p(stamp * gain).sum() + factor * squares.sum())
+
+    bounds = [
+        (math.log(_LEAST * usual), math.log(_MOST * usual)) if k == 2
+        else (begin[k] - 3.0, begin[k] + 3.0) for k in free
+    ]  # fmt: skip
+    result = begin.copy()
+    result[free] = minimize(cost, begin[free], method="L-BFGS-B", bounds=bounds).x
+    place, angle, stamp = np.exp(result).tolist()
+    return (place, angle), jitter if known.jitter else stamp
+
 
 X, Y, TURN = range(3)  # of a path
 PLACE, ANGLE, PRIOR, UNSEEN = range(4)  # kinds of residuals; of what does not count there are none
-_CURVE_STEP = 1e-4
-LAUNCH_NAMES = tuple(LAUNCH)
 
 
 @dataclass(frozen=True, eq=False)
-class Problem(Unknowns):
+class Problem(Slides):
     """What least squares are asked.
 
     Parameters
@@ -78,84 +179,6 @@ class Problem(Unknowns):
             kinds += [np.where(x, PLACE, UNSEEN), np.where(y, PLACE, UNSEEN)]
             kinds.append(np.where(turn, ANGLE, UNSEEN)[self._angled(film)])
         return np.concatenate([*kinds, np.full(len(self.priors), PRIOR)]).astype(np.int64)
-
-    def moving(self, result: NumbersOf) -> Moving:
-        """What moves the puck."""
-        return self.spec.moving(result, self.tall)
-
-    def slides(self, x: FloatArray) -> tuple[list[list[Slide]], list[ImpactState]]:
-        """The slides of each track, in their order, and the impacts between them.
-
-        Times are those after the start of the first track.
-        """
-        result = self.numbers_at(x)
-        slides = [
-            [Slide(self._begin(n, result), launch)] for n, launch in enumerate(self.launches(x))
-        ]
-        impacts = []
-        if self.impact_specs:
-            moving, walls = self.moving(result), self.estimated_walls(x)
-            gyration = {**self.spec.known(), **result}["gyration"]
-        for impact_spec in self.impact_specs:
-            wall = None if impact_spec.wall < 0 else walls[impact_spec.wall]
-            before = tuple(slides[n][-1] for n in impact_spec.films)
-            impact = impact_at(
-                moving, gyration, self.spec.rims(result, wall is None), impact_spec, before, wall
-            )
-            for n, slide in zip(impact_spec.films, impact.after, strict=True):
-                slides[n].append(slide)
-            impacts.append(impact)
-        return slides, impacts
-
-    def _begin(self, n: int, result: NumbersOf) -> float:
-        """When a track begins, s after the start of the first."""
-        film = self.films[n]
-        late = 0.0 if film.row is None else self.spec.readout(result) * float(film.row[0])
-        return film.start - self.films[0].start + late
-
-    def times(self, n: int, result: NumbersOf) -> FloatArray:
-        """The times of a track's frames after its first: lines of a picture are read in turn."""
-        film = self.films[n]
-        if film.row is None:
-            return film.time
-        late: FloatArray = self.spec.readout(result) * (film.row - film.row[0])
-        return film.time + late
-
-    def _parts(
-        self, n: int, result: NumbersOf, slides: list[Slide]
-    ) -> list[tuple[slice, FloatArray, Slide]]:
-        """The frames of each slide of a track, their times after its launch, and the slide."""
-        times = self.times(n, result)
-        if len(slides) == 1:
-            return [(slice(0, times.size), times, slides[0])]
-        since = np.array([slide.since - slides[0].since for slide in slides])
-        firsts = np.searchsorted(times, since[1:])
-        ends = [0, *np.maximum.accumulate(firsts).tolist(), times.size]
-        return [
-            (slice(ends[m], ends[m + 1]), times[ends[m] : ends[m + 1]] - since[m], slide)
-            for m, slide in enumerate(slides)
-        ]
-
-    def paths(self, x: FloatArray) -> list[FloatArray]:
-        """Places and angles (3, n) of the model at the frames of each track."""
-        return self._along(x, path_of, True)
-
-    def rates(self, x: FloatArray) -> list[FloatArray]:
-        """Velocity and spin (3, n) of the model at the frames of each track."""
-        return self._along(x, rates_of, False)
-
-    def _along(self, x: FloatArray, of: Along, placed: bool) -> list[FloatArray]:
-        result = self.numbers_at(x)
-        moving, (slides, _) = self.moving(result), self.slides(x)
-        tracks = []
-        for n, track in enumerate(slides):
-            parts = [
-                of(moving, slide.launch[2:4], float(slide.launch[4]), times)
-                + (slide.launch[[0, 1, 5], None] if placed else 0.0)
-                for _, times, slide in self._parts(n, result, track)
-            ]
-            tracks.append(parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1))
-        return tracks
 
     def deviations(self, x: FloatArray) -> list[FloatArray]:
         """Model less what was seen (3, n) of each track, m and rad; NaN where no angle was."""
@@ -214,78 +237,16 @@ class Problem(Unknowns):
 
     def residuals_and_jacobian(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Both, from the same motions."""
-        result = self.numbers_at(x)
-        moving, (slides, _) = self.moving(result), self.slides(x)
-        follow = slopes_of_slides(self, x) if self.impact_specs else []
         out = np.zeros((self.kinds.size, x.size))
-        scales = {name: np.array(self.spec.slopes(result, name)) for name in self.spec.free}
-        spots = {key: k for k, key in enumerate(self.names)}
         row, paths = 0, []
-        for n, film in enumerate(self.films):
-            path = np.empty((3, film.time.size))
-            paths.append(path)
-            whole = np.zeros((3, film.time.size, x.size))
-            for m, (frames, times, slide) in enumerate(self._parts(n, result, slides[n])):
-                velocity, spin = slide.launch[2:4], float(slide.launch[4])
-                path[:, frames], slopes = path_with_slopes(moving, velocity, spin, times)
-                path[:, frames] += slide.launch[[0, 1, 5], None]
-                block = whole[:, frames]
-                for name in self.spec.free:
-                    k = spots[-1, name]
-                    if self.spec.changes_motion(name):
-                        block[:, :, k] = self._by_difference(result, name, times, slide)
-                    else:
-                        block[:, :, k] = np.einsum("k,kan->an", scales[name], slopes[3:TIME])
-                    if name == "readout" and film.row is not None:
-                        block[:, :, k] += slopes[TIME] * (film.row[frames] - film.row[0])
-                if m == 0:
-                    for name, axis in _SHIFTS.items():
-                        if (n, name) in spots:
-                            block[axis, :, spots[n, name]] = 1.0
-                    for name, which in _PUSHES.items():
-                        if (n, name) in spots:
-                            block[:, :, spots[n, name]] = slopes[which]
-                    if film.straight is not None:
-                        self._along_line(n, block, slopes, film.straight)
-                    continue
-                since, place_x, place_y, *pushes, angle = follow[n][m]
-                begin = np.zeros(x.size)
-                if film.row is not None and (-1, "readout") in spots:
-                    begin[spots[-1, "readout"]] = film.row[0]
-                block -= slopes[TIME][:, :, None] * (since - begin)
-                block += np.stack([place_x, place_y, angle])[:, None, :]
-                for which, push in zip((VX, VY, SPIN), pushes, strict=True):
-                    block += slopes[which][:, :, None] * push
-            rows = self.weighed(n, whole)
+        for n, (path, slopes) in enumerate(self.paths_and_slopes(x)):
+            rows = self.weighed(n, slopes)
             out[row : row + len(rows)] = rows
             row += len(rows)
+            paths.append(path)
         for n, (k, _, spread) in enumerate(self.priors):
             out[row + n, k] = 1.0 / spread
         return self._residuals(x, paths), out
-
-    def _along_line(
-        self, n: int, block: FloatArray, slopes: FloatArray, straight: Straight
-    ) -> None:
-        """What the other coordinate does with the main one, added to the derivatives (3, n, m)."""
-        place, push = (LAUNCH_NAMES[straight.main + by] for by in (0, 2))
-        spots = {name: k for k, (track, name) in enumerate(self.names) if track == n}
-        if place in spots:
-            block[1 - straight.main, :, spots[place]] = straight.slope
-        if push in spots:
-            block[:, :, spots[push]] += straight.slope * slopes[(VY, VX)[straight.main]]
-
-    def _by_difference(
-        self, result: NumbersOf, name: str, times: FloatArray, slide: Slide
-    ) -> FloatArray:
-        """The derivative of a path to what changes the curve itself."""
-        low, high = self.spec.limits(name)
-        ends = [min(max(result[name] + s * _CURVE_STEP, low), high) for s in (-1.0, 1.0)]
-        path: list[FloatArray] = []
-        for value in ends:
-            moving = self.moving({**result, name: value})
-            path.append(path_of(moving, slide.launch[2:4], float(slide.launch[4]), times))
-        slope: FloatArray = (path[1] - path[0]) / (ends[1] - ends[0])
-        return slope
 
     @staticmethod
     def _angled(film: Observations) -> npt.NDArray[np.bool_]:
@@ -316,9 +277,9 @@ class Problem(Unknowns):
         if moved.jitter == 0.0:
             return moved
         weights = []
-        for rates, (place, _, _) in zip(self.rates(x), self.each(), strict=True):
-            placed = np.ones(rates.shape[1], bool) if kept is None else kept[place]
-            weights.append(weights_of(noise, moved.jitter, rates, placed))
+        for states, (place, _, _) in zip(self.states(x), self.each(), strict=True):
+            placed = np.ones(states.shape[1], bool) if kept is None else kept[place]
+            weights.append(weights_of(noise, moved.jitter, states[RATE], placed))
         return replace(moved, weights=tuple(weights))
 
     def with_films(self, films: tuple[Observations, ...]) -> Problem:
@@ -333,8 +294,3 @@ def counting_of(film: Observations) -> npt.NDArray[np.bool_]:
         counts[X] = counts[film.straight.main]
         counts[Y] = False
     return counts
-
-
-Along = Callable[[Moving, FloatArray, float, FloatArray], FloatArray]
-_SHIFTS = {"launch_x": X, "launch_y": Y, "launch_angle": TURN}
-_PUSHES = {"launch_vx": VX, "launch_vy": VY, "launch_spin": SPIN}

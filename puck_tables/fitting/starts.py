@@ -20,8 +20,8 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.fit_spec import FitSpec
-from puck_tables.fitting.least_squares import LOOSE, minimise
-from puck_tables.fitting.multi_start import FROM_AFAR, ROBUST, multi_start
+from puck_tables.fitting.forward_model import DELTA
+from puck_tables.fitting.least_squares import FROM_AFAR, LOOSE, ROBUST_SCALE, minimise, multi_start
 from puck_tables.fitting.observations import Observations, Turning, rests_from, turning_of
 from puck_tables.fitting.parameters import LAUNCH
 from puck_tables.fitting.problem import Problem
@@ -83,8 +83,8 @@ def minima_of(problem: Problem) -> list[FloatArray]:
     if turning is not None and not turning.sure:
         blind = replace(problem, films=(replace(film, angle=None),))
         by_angle = by_place(problem, blind, minima_of(blind)[:_BLIND])
-        more += [x for x, _ in multi_start(by_angle, FROM_AFAR, ROBUST)]
-    return _deepest(problem, multi_start(starts, FROM_AFAR, ROBUST, _RIVAL), more)
+        more += [x for x, _ in multi_start(by_angle, FROM_AFAR, ROBUST_SCALE)]
+    return _deepest(problem, multi_start(starts, FROM_AFAR, ROBUST_SCALE, _RIVAL), more)
 
 
 def _from_known(problem: Problem, place: FloatArray, velocity: FloatArray) -> list[FloatArray]:
@@ -194,31 +194,31 @@ def _guesses(
     result = []
     spins = [(0.0, 0)] if problem.spinless[0] else _spins(spec, turning, speed, radius, rests)
     for spin, turns in spins:
-        slip = math.hypot(speed, radius * spin) or 1.0
-        phi = math.atan2(radius * spin, speed)
+        share = speed / (math.hypot(speed, radius * spin) or 1.0)
         rates = None if turning is None else turning.with_more(turns, film.time)[0]
         moments = time if turning is None else np.concatenate([time, turning.time])
-        heights, decels = _scales(spec, slowing / max(math.cos(phi), 0.1))
+        heights, decels = _scales(spec, slowing / max(share, 0.1))
         heights = np.minimum(heights, motions.highest)
+        launches = np.array([
+            np.full(heights.size, value) if n != DELTA else heights
+            for n, value in enumerate((speed, 0.0, spin, 0.0, 1.0, radius))
+        ])  # fmt: skip
 
         def scores(
-            decels: FloatArray, share: float, phi: float = phi, heights: FloatArray = heights,
-            slip: float = slip, rates: FloatArray | None = rates, moments: FloatArray = moments,
+            decels: FloatArray, share: float, launches: FloatArray = launches,
+            rates: FloatArray | None = rates, moments: FloatArray = moments,
         ) -> FloatArray:  # fmt: skip
-            tau = (decels / slip)[..., None] * moments
-            same = np.full(heights.size, phi)
-            states = motions.states(same, heights, tau.reshape(heights.size, -1))
-            states = states.reshape(6, *tau.shape)
-            length = (slip * slip / decels)[..., None]
-            deviations = np.hypot(
-                length * states[0, ..., : time.size] - places[:, 0],
-                length * states[1, ..., : time.size] - places[:, 1],
-            ) / (share * size)  # fmt: skip
+            # what J does: the same states J times as early, and J times as near
+            sooner = decels[..., None] * moments
+            states = motions.states(launches, sooner.reshape(len(sooner), -1))
+            states = states.reshape(6, *sooner.shape)
+            paths = states[:2, ..., : time.size] / decels[..., None]
+            deviations = np.hypot(paths[0] - places[:, 0], paths[1] - places[:, 1]) / (share * size)
             score: FloatArray = np.log1p(deviations * deviations).mean(axis=-1)
             if rates is not None:
-                spins = states[5, ..., time.size :] * (slip / radius)
                 scale = _RATE_SHARE * abs(rates[0]) + 0.01 / film.usual_step
-                score += np.log1p(((spins - rates) / scale) ** 2).mean(axis=-1)
+                left = (states[5, ..., time.size :] - rates) / scale
+                score += np.log1p(left**2).mean(axis=-1)
             return score
 
         if decels.shape[1] > 1:

@@ -1,4 +1,4 @@
-"""Motions of one kind of puck in natural units, at any slip angle and height.
+"""Motions of one kind of puck, at any launch and height, and how they change with these.
 
 All motions of a puck of one pressure law, height and spread of mass are one curve, up to rotation,
 reflection and scale.  A fit asks for that curve at angles and heights that change a little from one
@@ -23,15 +23,25 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.accuracy.methods import FrictionForm
 from puck_tables.contact.laws import Law, law_of
 from puck_tables.motion.body import body_of, plain_up_to
-from puck_tables.motion.frame import frame_of
+from puck_tables.motion.frame import Frame, frame_of
 from puck_tables.motion.friction_source import Friction, section_friction
 from puck_tables.motion.limits import log_ratio
-from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPIN, STATE_ROWS, T
+from puck_tables.motion.state import (
+    HEADING,
+    ORIENTATION,
+    PUCK_X,
+    PUCK_Y,
+    SPEED,
+    SPIN,
+    STATE_ROWS,
+    T,
+)
 from puck_tables.motion.steppers import Stepping
 from puck_tables.motion.tableaus import DORMAND_PRINCE
 from puck_tables.motion.unit_motion import MotionRun, at_constant_slip, integrated
+from puck_tables.stopping.launch_frame import fill_placed_states
 from puck_tables.stopping.plain_states import fill_state_slopes
-from puck_tables.stopping.state_values import looked_up, looked_up_launches
+from puck_tables.stopping.state_values import directions, looked_up, looked_up_launches
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.stopping.variational import Variations, unit_states, variations_by
 from puck_tables.table.friction_section import section_of_table
@@ -44,67 +54,34 @@ HIGHEST = 3.9
 _ACCURACY = 1e-7  # of friction ratios; a film knows places to 1e-4 of the path
 _STEPPING = Stepping(DORMAND_PRINCE, 0.0, 1e-9)
 _KEPT = 8
-PATH, RATE, BY_PHI, BY_DELTA = range(4)
-_PATH_ROWS = [PUCK_X, PUCK_Y, ORIENTATION]
-_ODD = [PUCK_Y, HEADING, ORIENTATION, SPIN]  # change sign with the spin
+_BY_DELTA = 4  # of the derivatives of unit states
 
 
 class UnitMotions(ABC):
-    """States of pucks of one kind, with Q₀ = J = r = 1 and the launch along x.
-
-    ``highest``: the largest δ for which it is known.
-    """
+    """Motions of pucks of one kind; ``highest``: the largest δ for which they are known."""
 
     highest: float
 
     @abstractmethod
-    def first_quadrant(self, phi: FloatArray, delta: FloatArray, tau: FloatArray) -> FloatArray:
-        """States for 0 ≤ φ ≤ π/2, as :meth:`states`."""
-
-    @abstractmethod
-    def with_variations(self, phi: float, delta: float, tau: FloatArray) -> FloatArray:
-        """Paths and their derivatives for 0 ≤ φ ≤ π/2, as :meth:`with_slopes`."""
-
-    def states(self, phi: FloatArray, delta: FloatArray, tau: FloatArray) -> FloatArray:
-        """States at natural times.
+    def states(self, launches: FloatArray, times: FloatArray) -> FloatArray:
+        """States of launches from (0, 0).
 
         Parameters
         ----------
-        phi : array (m,), slip angle of the launch, atan2(rω, v), negative for clockwise spin
-        delta : array (m,), δ of each
-        tau : array (m, n), t J/Q of each, ≥ 0
+        launches : array (6, m), vx, vy, ω, δ, J, r of each
+        times : array (m, n), s, ≥ 0
 
         Returns
         -------
         array (6, m, n)
-            x, y, heading from that of the launch, body angle, v, ω.
+            x, y, body angle, vx, vy, ω.
         """
-        out = self.first_quadrant(np.abs(phi), delta, tau)
-        clockwise = phi < 0.0
-        if clockwise.any():
-            for row in _ODD:
-                out[row, clockwise] *= -1.0
-        return out
 
-    def with_slopes(self, phi: float, delta: float, tau: FloatArray) -> FloatArray:
-        """One path and its derivatives.
-
-        Parameters
-        ----------
-        phi : slip angle of the launch, negative for clockwise spin
-        delta : δ
-        tau : array (n,), t J/Q, ≥ 0
-
-        Returns
-        -------
-        array (4, 3, n)
-            Of x, y and body angle: themselves, their rates, by φ, by δ.
-        """
-        out = self.with_variations(abs(phi), delta, tau)
-        if phi < 0.0:
-            out[:, 1:] *= -1.0  # y and the body angle are odd
-            out[BY_PHI] *= -1.0
-        return out
+    @abstractmethod
+    def states_and_slopes(
+        self, launch: FloatArray, times: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """States (6, n) of a launch (6,), and their derivatives (n, 6, 7) by it and by time."""
 
 
 class PlainMotions(UnitMotions):
@@ -112,63 +89,65 @@ class PlainMotions(UnitMotions):
 
     Examples
     --------
-    >>> one = np.array([math.pi / 4]), np.array([1.0]), np.array([[9.0]])
-    >>> PlainMotions().states(*one)[:2, 0, 0].round(8).tolist()  # X, Y at the stop
-    [0.32409373, -0.04297451]
+    >>> launch = np.array([[1.0, 0.0, 1.0, 1.0, 1.0, 1.0]]).T
+    >>> PlainMotions().states(launch, np.array([[9.0]]))[:2, 0, 0].round(8).tolist()  # the stop
+    [0.64818746, -0.08594902]
     """
 
     highest = 1.0
 
-    def first_quadrant(self, phi: FloatArray, delta: FloatArray, tau: FloatArray) -> FloatArray:
+    def states(self, launches: FloatArray, times: FloatArray) -> FloatArray:
         """By the stop table."""
-        count, frames = tau.shape
-        launches = np.zeros((6, count))
-        launches[0], launches[2], launches[3] = np.cos(phi), np.sin(phi), delta
-        launches[4:] = 1.0
-        which = np.repeat(np.arange(count), frames)
         table = StopTable.shipped()
-        result = looked_up(table, looked_up_launches(table, launches), which, tau.ravel())
-        return result.reshape(STATE_ROWS, count, frames)
+        which = np.repeat(np.arange(len(times)), times.shape[1])
+        rows = looked_up(table, looked_up_launches(table, launches), which, times.ravel())
+        headings = directions(launches[0], launches[1])[:, None]
+        return _cartesian(rows.reshape(STATE_ROWS, *times.shape), headings)
 
-    def with_variations(self, phi: float, delta: float, tau: FloatArray) -> FloatArray:
+    def states_and_slopes(
+        self, launch: FloatArray, times: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
         """By the slopes of the stop table."""
-        launch = np.array([[math.cos(phi), 0.0, math.sin(phi), delta, 1.0, 1.0]]).T
-        table = StopTable.shipped()
-        pucks, one = looked_up_launches(table, launch), np.zeros(1, np.int64)
-        values, slopes = looked_up(table, pucks, one, tau), np.empty((tau.size, 6, 7))
-        fill_state_slopes(table, pucks, one, tau, values, slopes)
-        by_speed, _, by_rim, by_delta, _, _, rate = slopes[:, :3].T
-        out = np.empty((4, 3, tau.size))
-        out[PATH], out[RATE], out[BY_DELTA] = values[_PATH_ROWS], rate, by_delta
-        out[BY_PHI] = math.cos(phi) * by_rim - math.sin(phi) * by_speed
-        return out
+        table, one = StopTable.shipped(), np.zeros(1, np.int64)
+        pucks = looked_up_launches(table, launch[:, None])
+        rows, slopes = looked_up(table, pucks, one, times), np.empty((times.size, 6, 7))
+        fill_state_slopes(table, pucks, one, times, rows, slopes)
+        return _cartesian(rows, directions(launch[:1], launch[1:2])), slopes
 
 
 class IntegratedMotions(UnitMotions):
     """Pucks whose friction is a section."""
 
     @abstractmethod
-    def friction(self, delta: float) -> Friction:
-        """Their friction at one height."""
+    def one(self, launch: FloatArray, times: FloatArray) -> FloatArray:
+        """States (6, n) of one launch (6,)."""
 
     @abstractmethod
-    def variations(self, delta: float) -> Variations:
-        """The same with its derivatives."""
+    def own(self, delta: float, cosine: float, sine: float, tau: FloatArray) -> FloatArray:
+        """States with Q = J = r = 1 and their derivatives, (n, 6, 6), as of ``unit_states``."""
 
-    def with_variations(self, phi: float, delta: float, tau: FloatArray) -> FloatArray:
-        """By variational equations."""
-        return _with_variations(phi, self.variations(delta), tau)
-
-    def first_quadrant(self, phi: FloatArray, delta: FloatArray, tau: FloatArray) -> FloatArray:
+    def states(self, launches: FloatArray, times: FloatArray) -> FloatArray:
         """Each integrated."""
-        out = np.empty((STATE_ROWS, *tau.shape))
-        for n, (angle, height) in enumerate(zip(phi.tolist(), delta.tolist(), strict=True)):
-            out[:, n] = self.motion(angle, height, tau[n])
-        return out
+        return np.stack([
+            self.one(launch, moments) for launch, moments in zip(launches.T, times, strict=True)
+        ], axis=1)  # fmt: skip
 
-    def motion(self, phi: float, delta: float, tau: FloatArray) -> FloatArray:
-        """States (6, n) of one launch."""
-        return _integrated(phi, self.friction(delta), tau)
+    def states_and_slopes(
+        self, launch: FloatArray, times: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """By variational equations."""
+        frame, slopes = _frame(launch), np.empty((times.size, 6, 7))
+        ratios = frame.speed / frame.slip, frame.rim / frame.slip
+        own = self.own(float(launch[3]), *ratios, times / frame.time)
+        fill_placed_states(launch, times, own, slopes)
+        x, y, turn, ahead, aside, rim = own[:, :, 0].T
+        pace = frame.slip / frame.length
+        states = np.stack([
+            *frame.place(x, y), frame.side * (frame.length / frame.radius) * turn,
+            *(pace * np.array(frame.place(ahead, aside))),
+            frame.side * (frame.slip / frame.radius) * rim,
+        ])  # fmt: skip
+        return states, slopes
 
 
 class LawMotions(IntegratedMotions):
@@ -177,8 +156,8 @@ class LawMotions(IntegratedMotions):
     Examples
     --------
     >>> ring = LawMotions(law_of("ring"), 1.0)
-    >>> one = np.array([math.pi / 4]), np.array([0.0]), np.array([[0.5]])
-    >>> speed, spin = ring.states(*one)[4:, 0, 0]  # its limit motion
+    >>> launch = np.array([[1.0, 0.0, 1.0, 0.0, 1.0, 1.0]]).T
+    >>> speed, _, spin = ring.states(launch, np.array([[0.5]]))[3:, 0, 0]  # its limit motion
     >>> round(float(spin / speed), 6)
     1.0
     """
@@ -188,19 +167,21 @@ class LawMotions(IntegratedMotions):
         self.highest = full_contact(law)
         self._kept: dict[float, Friction] = {}
 
-    def friction(self, delta: float) -> Friction:
-        """From the table of the law; the last few are kept."""
+    def one(self, launch: FloatArray, times: FloatArray) -> FloatArray:
+        """By the table of the law; the last few sections are kept."""
+        delta = float(launch[3])
         if delta not in self._kept:
             section = section_of_table(self._table, delta, 1.0)
             cut = section.for_motion(self._gyration)
             if len(self._kept) >= _KEPT:
                 self._kept.pop(next(iter(self._kept)))
             self._kept[delta] = Friction(FrictionForm.TABLE, delta, cut, section.tolerance)
-        return self._kept[delta]
+        return _integrated(launch, self._kept[delta], times)
 
-    def variations(self, delta: float) -> Variations:
-        """From the table of the law."""
-        return variations_by(slopes_of_table(self._table, delta), self._gyration)
+    def own(self, delta: float, cosine: float, sine: float, tau: FloatArray) -> FloatArray:
+        """By the table of the law."""
+        friction = variations_by(slopes_of_table(self._table, delta), self._gyration)
+        return unit_states(friction, cosine, sine, tau, _STEPPING.local)[0]
 
 
 class TallMotions(IntegratedMotions):
@@ -208,9 +189,8 @@ class TallMotions(IntegratedMotions):
 
     Examples
     --------
-    >>> one = np.array([math.atan(5.0)]), np.array([2.0]), np.array([[9.0]])
-    >>> place = TallMotions(0.5**0.5).states(*one)[:2, 0, 0] * 26.0
-    >>> place.round(5).tolist()  # of v = 1, r ω = 5
+    >>> launch = np.array([[1.0, 0.0, 5.0, 2.0, 1.0, 1.0]]).T
+    >>> TallMotions(0.5**0.5).states(launch, np.array([[99.0]]))[:2, 0, 0].round(5).tolist()
     [2.40884, -0.57795]
     """
 
@@ -220,34 +200,35 @@ class TallMotions(IntegratedMotions):
         self._gyration, self._plain = gyration, PlainMotions()
         self._is_plain = plain_up_to("uniform", gyration) > 0.0
 
-    def friction(self, delta: float) -> Friction:
-        """A section of its own."""
-        return section_friction(body_of("uniform", delta, self._gyration), _ACCURACY)
-
-    def variations(self, delta: float) -> Variations:
-        """The same: how motions change with δ, their cubic tells."""
-        return _tall_variations(delta, self._gyration)
-
-    def motion(self, phi: float, delta: float, tau: FloatArray) -> FloatArray:
+    def one(self, launch: FloatArray, times: FloatArray) -> FloatArray:
         """Cubic in δ through the motions of four heights; looked up up to δ = 1."""
+        delta = float(launch[3])
         if self._is_plain and delta <= self._plain.highest:
-            one = np.array([phi]), np.array([delta]), tau[None, :]
-            return self._plain.first_quadrant(*one)[:, 0]
-        out = np.zeros((STATE_ROWS, tau.size))
+            return self._plain.states(launch[:, None], times[None])[:, 0]
+        out = np.zeros((STATE_ROWS, times.size))
         for height, weight, _ in _heights(delta):
             if weight != 0.0:
-                out += weight * _integrated(phi, self.friction(height), tau)
+                body = body_of("uniform", height, self._gyration)
+                out += weight * _integrated(launch, section_friction(body, _ACCURACY), times)
         return out
 
-    def with_variations(self, phi: float, delta: float, tau: FloatArray) -> FloatArray:
+    def states_and_slopes(
+        self, launch: FloatArray, times: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Looked up up to δ = 1."""
+        if self._is_plain and launch[3] <= self._plain.highest:
+            return self._plain.states_and_slopes(launch, times)
+        return super().states_and_slopes(launch, times)
+
+    def own(self, delta: float, cosine: float, sine: float, tau: FloatArray) -> FloatArray:
         """Of the same cubic, by δ exactly."""
-        if self._is_plain and delta <= self._plain.highest:
-            return self._plain.with_variations(phi, delta, tau)
-        out = np.zeros((4, 3, tau.size))
+        out = np.zeros((tau.size, 6, 6))
         for height, weight, slope in _heights(delta):
-            result = _with_variations(phi, self.variations(height), tau)
-            out[:BY_DELTA] += weight * result[:BY_DELTA]
-            out[BY_DELTA] += slope * result[PATH]
+            friction = _tall_variations(height, self._gyration)
+            result = unit_states(friction, cosine, sine, tau, _STEPPING.local)[0]
+            result[:, :, _BY_DELTA] = 0.0
+            out += weight * result
+            out[:, :, _BY_DELTA] += slope * result[:, :, 0]
         return out
 
 
@@ -298,20 +279,29 @@ def unit_motions_of(pressure: str | Law, gyration: float, tall: bool = False) ->
     return LawMotions(law, gyration)
 
 
-def _integrated(phi: float, friction: Friction, tau: FloatArray) -> FloatArray:
-    """States (6, n) of one launch at natural times."""
-    speed, rim = math.cos(phi), math.sin(phi)
-    run = _run(speed, rim, friction)
-    frame = frame_of((speed, 0.0), rim, 1.0, 1.0)
-    moments = np.where(tau < float(run.stop[T]), tau, np.inf)
-    return np.stack(frame.states(*run.states(moments)))
+def _frame(launch: FloatArray) -> Frame:
+    """The frame of a launch (6,)."""
+    vx, vy, spin, _, decel, radius = launch.tolist()
+    return frame_of((vx, vy), spin, decel, radius)
 
 
-def _with_variations(phi: float, friction: Variations, tau: FloatArray) -> FloatArray:
-    """A path and its derivatives, as :meth:`Curve.with_slopes`."""
-    cosine, sine = math.cos(phi), math.sin(phi)
-    own = unit_states(friction, cosine, sine, tau, _STEPPING.local)[0][:, :3].T
-    return np.stack([own[0], own[5], cosine * own[3] - sine * own[1], own[4]])
+def _cartesian(rows: FloatArray, headings: FloatArray | float) -> FloatArray:
+    """States (6, …) with vx and vy from those with speed and heading."""
+    heading, speed = rows[HEADING] + headings, rows[SPEED]
+    return np.stack([
+        rows[PUCK_X], rows[PUCK_Y], rows[ORIENTATION], speed * np.cos(heading),
+        speed * np.sin(heading), rows[SPIN],
+    ])  # fmt: skip
+
+
+def _integrated(launch: FloatArray, friction: Friction, times: FloatArray) -> FloatArray:
+    """States (6, n) of one launch."""
+    frame = _frame(launch)
+    if frame.slip == 0.0:
+        return np.zeros((STATE_ROWS, times.size))
+    run = _run(frame.speed / frame.slip, frame.rim / frame.slip, friction)
+    moments = frame.unit_times(times, float(run.stop[T]) * frame.time)
+    return _cartesian(np.stack(frame.states(*run.states(moments))), frame.heading)
 
 
 def _run(speed: float, rim: float, friction: Friction) -> MotionRun:

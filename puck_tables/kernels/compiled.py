@@ -18,9 +18,18 @@ from numba.core.typing.typeof import typeof_impl
 
 from puck_tables.kernels import as_written, register_blocks, vectors
 from puck_tables.kernels.as_written import behind
-from puck_tables.kernels.kept_code import KeptCode
-from puck_tables.kernels.linking import LinkedAtDoors
+from puck_tables.kernels.cache import cache_folder
 from puck_tables.kernels.patience import patience
+
+# private parts of numba, worth it while they are there: 2 to 2.5 times the first compile of scenes,
+# and a cache that is safe
+linked_at_doors: Any = None
+kept_code: Any = None
+with contextlib.suppress(ImportError, AttributeError):
+    from puck_tables.kernels.linking import LinkedAtDoors as linked_at_doors
+with contextlib.suppress(ImportError, AttributeError):
+    from puck_tables.kernels.kept_code import KeptCode as kept_code
+_settings: Any = numba.config
 
 
 class _Announcer(event.Listener):
@@ -101,7 +110,8 @@ def dispatcher_of(function: Any, fuses: bool) -> Any:
     if (function, fuses) not in _dispatchers:
         made = _dispatcher(function, fuses, door=False, pasted=behind[function])
         made.get_call_template = partial(_whatever_its_value, made.get_call_template)
-        made._insert = _not_entered
+        if linked_at_doors:
+            made._insert = _not_entered
         _dispatchers[function, fuses] = made
     return _dispatchers[function, fuses]
 
@@ -110,7 +120,11 @@ def dispatcher_at(door: KernelDoor) -> Any:
     """Numba's object for a kernel that Python calls."""
     made = _dispatcher(door.py_func, door.fuses, door=True, counts=door.counts)
     made.get_call_template = partial(_at_door, door, made.get_call_template)
-    made._cache = KeptCode(door.py_func)
+    if kept_code:
+        made._cache = kept_code(door.py_func)
+    elif (folder := cache_folder()) is not None:  # named by the sources: it sees no edit elsewhere
+        _settings.CACHE_DIR = str(folder)
+        made.enable_caching()
     made._compile_for_args = door.callable_for  # asked where nothing was compiled for arguments
     return made
 
@@ -118,19 +132,21 @@ def dispatcher_at(door: KernelDoor) -> Any:
 def _dispatcher(
     function: Any, fuses: bool, door: bool, pasted: bool = False, counts: bool = False
 ) -> Any:
-    options: dict[str, Any] = {
-        "forceinline": pasted, "_nrt": counts, "fastmath": {"contract"} if fuses else False,
-        "no_cpython_wrapper": not door, "no_cfunc_wrapper": not door,
-    }  # fmt: skip
-    return numba.njit(nogil=True, error_model="numpy", pipeline_class=LinkedAtDoors, **options)(
-        function
-    )
+    options: dict[str, Any] = {"fastmath": {"contract"} if fuses else False}
+    if linked_at_doors:
+        options |= {
+            "forceinline": pasted, "_nrt": counts, "pipeline_class": linked_at_doors,
+            "no_cpython_wrapper": not door, "no_cfunc_wrapper": not door,
+        }  # fmt: skip
+    return numba.njit(nogil=True, error_model="numpy", **options)(function)
 
 
 def keeps(dispatcher: Any, args: tuple[Any, ...]) -> bool:
     """Whether code for such arguments was compiled in this process, or is kept on disk."""
     kinds = tuple(dispatcher.typeof_pyval(one) for one in args)
-    return kinds in dispatcher.overloads or dispatcher._cache.keeps(kinds, dispatcher.targetctx)
+    if kinds in dispatcher.overloads:
+        return True
+    return bool(kept_code and dispatcher._cache.keeps(kinds, dispatcher.targetctx))
 
 
 def code_for(door: KernelDoor, args: tuple[Any, ...]) -> Callable[..., Any]:

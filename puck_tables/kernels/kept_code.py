@@ -1,10 +1,11 @@
 """Compiled code on disk: one sealed file for each function and types of arguments.
 
-numba's own cache trusts whatever its files hold: a flipped bit in machine code would compute wrong
-numbers in silence, and where its folder cannot be used it turns to others.  Here nothing is opened
-that does not match its digest; what is missing or damaged is compiled anew; the folder is that of
-:func:`puck_tables.kernels.cache.cache_folder`, which only this user can write, and no other.  (The
-digest proves a file whole; that nobody else made it is for the folder to prove.)
+numba's own cache trusts whatever its files hold: a flipped bit in machine code computes wrong
+numbers in silence, one in its index ends the program, and of two processes that save at once one
+may find the code of the other's types under its own.  Here a file holds what it is for, and nothing
+is opened that does not match its digest; what is missing or damaged is compiled anew; the folder is
+that of :func:`puck_tables.kernels.cache.cache_folder`, which only this user can write.  (The digest
+proves a file whole; that nobody else made it is for the folder to prove.)
 """
 
 from __future__ import annotations
@@ -21,7 +22,6 @@ from typing import Any
 
 import numba
 from numba.core import serialize
-from numba.core.caching import _Cache
 from numba.core.compiler import CompileResult
 
 from puck_tables.kernels.cache import cache_folder, file_stem
@@ -31,7 +31,7 @@ _dumps: Any = serialize.dumps
 _settings: Any = numba.config
 
 
-class KeptCode(_Cache):
+class KeptCode:
     """The place of one function's compiled code, as numba's dispatchers ask for it."""
 
     def __init__(self, function: Callable[..., Any]) -> None:
@@ -93,15 +93,6 @@ class KeptCode(_Cache):
         if folder is None:
             return None
         return folder / f"{self._name}-{hashlib.sha256(repr(key).encode()).hexdigest()[:16]}.code"
-
-    def enable(self) -> None:
-        """Nothing to do: it is."""
-
-    def disable(self) -> None:
-        """Nothing to do: numba asks for it only where functions are recompiled by hand."""
-
-    def flush(self) -> None:
-        """Nothing to do: what is damaged is never read."""
 
 
 @cache

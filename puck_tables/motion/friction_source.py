@@ -1,13 +1,12 @@
 """Where a motion at one height has its friction from: closed forms, a table, or a section.
 
-A :class:`FrictionSource` gives friction as the integrator reads it, and knows what it adds to the
-error of a motion.  Which a puck has is asked once, in :func:`source_of`.
+A source gives friction as the integrator reads it, and knows what it adds to the error of a motion.
+Which a puck has is asked once, in :func:`source_of`.
 """
 
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 
@@ -107,67 +106,8 @@ def section_friction(body: UnitPuck, accuracy: float, coarser: bool = False) -> 
     return Friction(FrictionForm.SECTION, body.delta, coefficients, found.error)
 
 
-class FrictionSource(ABC):
-    """Friction at one height, as fine as is asked.
-
-    ``limit``: ln of the ratio rω/v that motions tend to; ``limit_width``: a start so close to it is
-    the limit motion.
-    """
-
-    limit_width: float
-    is_measured: bool  # whether the measured front is of such friction
-
-    @property
-    @abstractmethod
-    def limit(self) -> float:
-        """Ln of the ratio rω/v that motions tend to."""
-
-    @abstractmethod
-    def selected(self, question: str, tol: float, method: Method | None) -> Selection:
-        """The integrator to begin with.
-
-        Raises
-        ------
-        AccuracyError
-            If the tolerance is out of reach.
-        """
-
-    @abstractmethod
-    def first(self, selection: Selection) -> Setting:
-        """The setting of the integrator and the accuracy of the friction to begin with."""
-
-    @abstractmethod
-    def explained(self, selection: Selection, setting: Setting, error: ErrorEstimate) -> Selection:
-        """What was taken in the end, with its error."""
-
-    @abstractmethod
-    def next_accuracy(self, accuracy: float) -> float | None:
-        """The accuracy to try after one; None where that is the finest."""
-
-    @abstractmethod
-    def friction(self, accuracy: float) -> Friction:
-        """Friction with an error of about so much."""
-
-    def coarser(self, accuracy: float) -> Friction | None:
-        """The same of half as many cells; None where the error of the friction is known."""
-        return None
-
-    def refuse(self, least_log_ratio: float) -> None:
-        """Refuse a motion whose least ln(r|ω|/v) is outside what the friction holds for.
-
-        Raises
-        ------
-        ContactError
-        """
-        return
-
-    @abstractmethod
-    def at_constant_angle(self, tol: float) -> tuple[Friction, float, float]:
-        """Friction for an elementary motion, its error at the limit angle, and of rounding."""
-
-
 @dataclass(frozen=True)
-class FullContact(FrictionSource):
+class FullContact:
     """Closed forms, or a table where that is cheaper: a plain puck.
 
     Parameters
@@ -180,8 +120,8 @@ class FullContact(FrictionSource):
     delta: float
     table: ResultantTable | None = None
     exact: bool = False
-    limit_width = LIMIT_WIDTH
-    is_measured = True
+    limit_width = LIMIT_WIDTH  # of ln(rω/v): a start so close to the limit is the limit motion
+    is_measured = True  # whether the measured front is of such friction
 
     @cached_property
     def limit(self) -> float:
@@ -219,8 +159,17 @@ class FullContact(FrictionSource):
             return closed_form_friction(self.delta)
         return table_friction(self.delta, self.table or ResultantTable.shipped())
 
+    def coarser(self, accuracy: float) -> Friction | None:
+        """None: its error is known."""
+        return None
+
     def refuse(self, least_log_ratio: float) -> None:
-        """Above δ = 1 the linear law of pressure holds state by state: refuse where it does not."""
+        """Above δ = 1 the linear law of pressure holds state by state: refuse where it does not.
+
+        Raises
+        ------
+        ContactError
+        """
         u = least_log_ratio
         if self.delta <= 1.0:
             return
@@ -236,7 +185,7 @@ class FullContact(FrictionSource):
 
 
 @dataclass(frozen=True)
-class Sections(FrictionSource):
+class Sections:
     """The section of a table at the height of a puck, made for it and as fine as it needs."""
 
     body: UnitPuck
@@ -295,11 +244,17 @@ class Sections(FrictionSource):
         """Of half as many cells."""
         return section_friction(self.body, accuracy, coarser=True)
 
+    def refuse(self, least_log_ratio: float) -> None:
+        """Nothing: it holds for every motion."""
+
     def at_constant_angle(self, tol: float) -> tuple[Friction, float, float]:
         """A section, whose error shows at the limit angle."""
         friction = self.friction(max(0.5 * tol, FINEST_ACCURACY))
         at_limit = 4.0 * friction.error * max(1.0, 0.5 / self.body.inertia)
         return friction, at_limit, 10.0 * _ROUNDING
+
+
+FrictionSource = FullContact | Sections
 
 
 def source_of(

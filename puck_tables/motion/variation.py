@@ -24,7 +24,8 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating, inlined, kernel, patience
-from puck_tables.kernels.section_spline import INERTIA, LINE, section_slopes
+from puck_tables.kernels.section_spline import INERTIA, section_slopes
+from puck_tables.motion.equations_of_motion import distance_to_line
 from puck_tables.motion.path import STOPPED, integrate
 from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, T, U, X, Y
 from puck_tables.motion.tableaus import Tableau
@@ -39,15 +40,6 @@ _SHARE, _NEAREST = 0.5, 1e-8  # of the distance to a line; how near to it a step
 _LONGEST = 0.25  # in u: next to pure motions what counts grows like its exponential
 # a launch of nearly pure motion still turns where little is left of Q, and its time tells so
 _LAST, _TAIL_STEP = 1e-4, 0.25
-
-
-@inlined
-def _to_next_line(u: float, section: FloatArray) -> float:
-    """How far in u the nearest line is."""
-    nearest = math.inf
-    for row in range(0, section.shape[0], 2):
-        nearest = min(nearest, abs(u - section[row, LINE]))
-    return nearest
 
 
 @kernel
@@ -112,7 +104,7 @@ def advance(
         variation_rates(z, y, section, work[0])
         h = end - z
         rate = abs(work[0, U])
-        longest = min(_SHARE * _to_next_line(y[U], section) + _NEAREST, _LONGEST)
+        longest = min(_SHARE * distance_to_line(y[U], section) + _NEAREST, _LONGEST)
         if rate * h > longest:
             h = longest / rate
         for stage in range(1, _STAGES):

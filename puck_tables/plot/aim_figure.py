@@ -10,7 +10,7 @@ from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS
 from puck_tables.plot.style import BLUE, GREY, LAUNCH, ORANGE, canvas
 from puck_tables.plot.titles import titled
-from puck_tables.stopping.aim_at_target import Aim
+from puck_tables.stopping.aim_at_targets import Aim
 from puck_tables.stopping.states import states as states_at
 
 if TYPE_CHECKING:

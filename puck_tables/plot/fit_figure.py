@@ -11,7 +11,7 @@ from numpy.polynomial.polynomial import polyval
 
 from puck_tables._core.monotone import monotone_cubic
 from puck_tables.fitting.fit_result import Fit
-from puck_tables.fitting.forward_model import path_of
+from puck_tables.fitting.forward_model import states_of
 from puck_tables.fitting.numbers import Number
 from puck_tables.fitting.parameters import NODES
 from puck_tables.plot.style import BLUE, COLORS, GREY, LAUNCH, ORANGE, RED, canvas
@@ -89,8 +89,7 @@ def draw_on(paths: Axes, result: Fit) -> None:
         ends = [slide.since - track[0].since for slide in track] + [float(film.time[-1])]
         for slide, (start, stop) in zip(track, pairwise(ends), strict=True):
             fine = np.linspace(0.0, max(stop - start, 0.0), _FINE)
-            way = path_of(moving, slide.launch[2:4], float(slide.launch[4]), fine)[:2]
-            paths.plot(*(way + slide.launch[:2, None]), color=colour, linewidth=0.8)
+            paths.plot(*states_of(moving, slide.launch, fine)[:2], color=colour, linewidth=0.8)
         paths.plot(*track[0].launch[:2], **LAUNCH)
     for hit in hits:
         paths.plot(

@@ -1,11 +1,10 @@
-"""The inverse problem for many targets at once."""
+"""The inverse problem: which launches come to rest at a given place, or at each of many."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import pairwise
 from typing import Any, ClassVar
 
 import numpy as np
@@ -13,36 +12,117 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import run_chunks
-from puck_tables._core.real import broadcast, checked_threads, finite_array
+from puck_tables._core.real import broadcast, checked_threads, finite_array, positive, shown
 from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS as VARIABLES
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.motion.puck_spec import PUCK_UNITS, PuckSpec
-from puck_tables.stopping.aim_at_target import (
-    BEYOND,
-    COLUMNS,
-    SLACK,
-    TOO_LARGE,
-    Aim,
-    aim_at,
-    checked_bounds,
-    refuse_both,
+from puck_tables.result import Result
+from puck_tables.stopping.launch_arrays import positive_array
+from puck_tables.stopping.launch_search import (
+    OF,
+    QUANTITIES,
+    SPIN,
+    STOP_TIME,
+    VX,
+    VY,
+    LaunchSearch,
+    misses,
 )
-from puck_tables.stopping.aim_lookup import BEND, RIM, SPEED, TIME
-from puck_tables.stopping.launch_arrays import fits, positive_array
-from puck_tables.stopping.launch_columns import LaunchColumns
-from puck_tables.stopping.launch_family import LaunchFamily, launch_family_of
-from puck_tables.stopping.launch_ranges import between, concatenated, sample
-from puck_tables.stopping.target_error import misses
 
-ROWS = ("target_index", "target_x", "target_y", *COLUMNS[:-1])  # of a file: no miss, see Aims
+MAX_COUNT = 10_000  # launches of an answer: each a row
 _CHUNK = 4096  # targets that a thread takes at a time
 _TRIED = 100  # launches that are integrated to tell how well they do
-_QUANTITIES = {"spin": RIM, "speed": SPEED, "stop_time": TIME}
 _UNITS = {"spin": "rad/s", "speed": "m/s", "stop_time": "s"}
-_LARGEST_LOG = 708.0  # exp of it is still a number
-_OF, _SPIN, _VX, _VY, _TIME = range(5)
-_LAUNCH = 5  # columns: vx, vy, ω, time, miss
+
+
+class LaunchColumns(Result):
+    """Launches of a ``puck`` that were found: velocities (n, 2) m/s and spins (n,) rad/s."""
+
+    puck: PuckSpec
+    launch_velocity: FloatArray
+    launch_spin: FloatArray
+    answer: str
+    ROWS: ClassVar[tuple[str, ...]] = (  # of a file
+        "launch_spin", "launch_vx", "launch_vy", "launch_speed", "launch_heading",
+        "launch_slip_angle", "stop_time",
+    )  # fmt: skip
+
+    @property
+    def launch_vx(self) -> FloatArray:
+        """Launch velocity along x, m/s."""
+        return self.launch_velocity[:, 0]
+
+    @property
+    def launch_vy(self) -> FloatArray:
+        """Launch velocity along y, m/s."""
+        return self.launch_velocity[:, 1]
+
+    @property
+    def launch_speed(self) -> FloatArray:
+        """Launch speed, m/s."""
+        return np.hypot(self.launch_vx, self.launch_vy)
+
+    @property
+    def launch_heading(self) -> FloatArray:
+        """Direction of the velocity at the launch, rad."""
+        return np.arctan2(self.launch_vy, self.launch_vx)
+
+    @property
+    def launch_slip_angle(self) -> FloatArray:
+        """Slip angle atan2(rω, v) at the launch, rad."""
+        return np.arctan2(self.puck.radius * self.launch_spin, self.launch_speed)
+
+    def _summary(self, name: str, target: list[Any]) -> dict[str, Any]:
+        """The launches with what went in, and the units of all, ready for JSON."""
+        return {
+            name: target, **self.puck.described(), "answer": self.answer,
+            **{row: getattr(self, row).tolist() for row in self.ROWS},
+            "units": {name: "m", **PUCK_UNITS, **{r: VARIABLES[r].unit for r in self.ROWS}},
+        }  # fmt: skip
+
+    def _dataset(self, title: str, **attributes: Any) -> Dataset:
+        """One row a launch; the puck as attributes."""
+        columns = {name: variable(name, getattr(self, name), ("launch",)) for name in self.ROWS}
+        told = {"title": title, **attributes, "answer": self.answer, **self.puck.described()}
+        return Dataset({}, columns, told)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Aim(LaunchColumns):
+    """Launches of a ``puck`` that come to rest at ``target`` (2,) m from where they start.
+
+    Arrays (n,), ordered by spin, the most clockwise first: ``launch_velocity`` (n, 2) m/s,
+    ``launch_spin`` rad/s, ``launch_speed`` m/s, ``launch_heading`` rad, ``launch_slip_angle`` φ
+    rad, ``stop_time`` s, and ``miss`` m: how far from the target an integration of the launch ends.
+    ``answer`` is one sentence: what was found, or why nothing can be.
+    """
+
+    puck: PuckSpec
+    target: tuple[float, float]
+    launch_velocity: FloatArray
+    launch_spin: FloatArray
+    stop_time: FloatArray
+    miss: FloatArray
+    answer: str
+
+    picture: ClassVar[str] = "aim"
+    ROWS: ClassVar[tuple[str, ...]] = (*LaunchColumns.ROWS, "miss")
+
+    def __repr__(self) -> str:
+        return f"Aim(at ({self.target[0]:g}, {self.target[1]:g}) m: {self.answer})"
+
+    def explain(self) -> str:
+        """What was found, or why nothing can be."""
+        return self.answer
+
+    def summary(self) -> dict[str, Any]:
+        """The launches with what went in, and the units of all, ready for JSON."""
+        return self._summary("target", list(self.target))
+
+    def dataset(self) -> Dataset:
+        """One row a launch; puck and target as attributes."""
+        return self._dataset("Launches that come to rest at a target", target=list(self.target))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -68,6 +148,10 @@ class Aims(LaunchColumns):
     threads: int | None = None
 
     picture: ClassVar[str] = "aims"
+    # of a file: no miss, which has to be integrated
+    ROWS: ClassVar[tuple[str, ...]] = (
+        "target_index", "target_x", "target_y", *LaunchColumns.ROWS,
+    )  # fmt: skip
 
     def __repr__(self) -> str:
         return f"Aims({self.answer})"
@@ -81,7 +165,10 @@ class Aims(LaunchColumns):
         if place.shape != (2,):
             raise InputError(f"an index of one target is needed, got {index!r}")
         wish: Any = {name: float(values[index]) for name, values in self.wish.items()}
-        return aim_at(self.puck, place, **{**_NO_WISH, **wish, **self.rest})
+        none: Any = dict.fromkeys(QUANTITIES)
+        found = aim(self.puck, place, **{**none, **wish, **self.rest}, threads=self.threads)
+        assert isinstance(found, Aim)
+        return found
 
     @property
     def launches(self) -> npt.NDArray[np.int64]:
@@ -110,7 +197,7 @@ class Aims(LaunchColumns):
         return misses(self.puck, self._places, self.launch_velocity, self.launch_spin, self.threads)
 
     @property
-    def answer(self) -> str:
+    def answer(self) -> str:  # type: ignore[override]
         """How many launches there are, and to how many targets there is none."""
         none, n = int((self.launches == 0).sum()), self.launches.size
         text = f"{self.launch_spin.size} launches to {n} targets"
@@ -131,23 +218,12 @@ class Aims(LaunchColumns):
 
     def summary(self) -> dict[str, Any]:
         """The launches with what went in, and the units of all, ready for JSON."""
-        return {
-            "targets": self.target.tolist(), **self.puck.described(), "answer": self.answer,
-            **{name: getattr(self, name).tolist() for name in ROWS},
-            "units": {"targets": "m", **PUCK_UNITS, **{n: VARIABLES[n].unit for n in ROWS}},
-        }  # fmt: skip
+        return self._summary("targets", self.target.tolist())
 
     def dataset(self) -> Dataset:
         """One row a launch, with its target; the puck as attributes."""
-        columns = {name: variable(name, getattr(self, name), ("launch",)) for name in ROWS}
-        attributes = {
-            "title": "Launches that come to rest at targets",
-            "targets": self.launches.size, "answer": self.answer, **self.puck.described(),
-        }  # fmt: skip
-        return Dataset({}, columns, attributes)
-
-
-_NO_WISH: dict[str, Any] = dict.fromkeys(_QUANTITIES)
+        title = "Launches that come to rest at targets"
+        return self._dataset(title, targets=self.launches.size)
 
 
 def aim(
@@ -155,25 +231,18 @@ def aim(
     speed: npt.ArrayLike | None, stop_time: npt.ArrayLike | None, max_speed: float | None,
     max_spin: float | None, count: int, threads: int | None,
 ) -> Aim | Aims:  # fmt: skip
-    """Launches after which a puck comes to rest at targets: :meth:`puck_tables.Puck.aim`."""
+    """Launches after which a puck comes to rest at targets: :meth:`puck_tables.Puck.aim`.
+
+    One target is many of which there is one; its launches are put right by integration.
+    """
     checked_threads(threads)
     places = finite_array("target", target, "m")
     if places.ndim == 0 or places.shape[-1] != 2:
         raise InputError(
             f"target must be one place (x, y) in m, or (..., 2) of them, got shape {places.shape}"
         )
-    wishes = {"spin": spin, "speed": speed, "stop_time": stop_time}
-    wished = refuse_both(**wishes)
-    given = np.zeros(())
-    if wished == "spin":
-        given = finite_array("spin", wishes["spin"], "rad/s")  # type: ignore[arg-type]
-    elif wished is not None:
-        given = positive_array(wished, wishes[wished], _UNITS[wished])  # type: ignore[arg-type]
-    rest: dict[str, Any] = {"max_speed": max_speed, "max_spin": max_spin, "count": count}
-    if places.ndim == 1 and given.ndim == 0:
-        own = {} if wished is None else {wished: given.item()}
-        return aim_at(puck, places, **{**_NO_WISH, **own, **rest})
-    bounds = checked_bounds(max_speed, max_spin, count)
+    wished, given = _wish({"spin": spin, "speed": speed, "stop_time": stop_time})
+    bounds = _checked_bounds(max_speed, max_spin, count)
     x, y, wanted = broadcast(
         target_x=places[..., 0], target_y=places[..., 1], **{wished or "wish": given}
     )
@@ -185,138 +254,53 @@ def aim(
         raise InputError(
             f"target ({far[0]:g}, {far[1]:g}) m is too far for floating point: use larger units"
         )
-    search = _Search(puck, wished, bounds, count)
-    result: dict[int, FloatArray] = {}
+    is_one = places.ndim == 1
+    search = LaunchSearch(puck, wished, bounds, count, exact=is_one)
     flat = places.reshape(-1, 2), wanted.reshape(-1), distance.reshape(-1)
+    if is_one:
+        rows = search.launches(*flat)
+        velocity, spins = rows[:, [VX, VY]], rows[:, SPIN].copy()
+        answer = f"{len(rows)} launch{'' if len(rows) == 1 else 'es'}"
+        return Aim(
+            puck, (x.item(), y.item()), velocity, spins, rows[:, STOP_TIME].copy(),
+            misses(puck, places, velocity, spins, threads),
+            answer if len(rows) else search.reason(*flat[1:]),
+        )  # fmt: skip
+    result: dict[int, FloatArray] = {}
 
     def work(start: int, stop: int) -> None:
-        rows = search.launches(*(one[start:stop] for one in flat))
-        rows[:, _OF] += start
-        result[start] = rows
+        found = search.launches(*(one[start:stop] for one in flat))
+        found[:, OF] += start
+        result[start] = found
 
     run_chunks(work, distance.size, _CHUNK, threads)
-    rows = np.concatenate([np.empty((0, _LAUNCH)), *(result[start] for start in sorted(result))])
-    wish = {} if wished is None else {wished: wanted}
+    rows = np.concatenate([np.empty((0, STOP_TIME + 1)), *(result[n] for n in sorted(result))])
     return Aims(
-        puck, places, rows[:, _OF].astype(np.int64), rows[:, [_VX, _VY]], rows[:, _SPIN].copy(),
-        rows[:, _TIME].copy(), wish, rest, threads,
+        puck, places, rows[:, OF].astype(np.int64), rows[:, [VX, VY]], rows[:, SPIN].copy(),
+        rows[:, STOP_TIME].copy(), {} if wished is None else {wished: wanted},
+        {"max_speed": max_speed, "max_spin": max_spin, "count": count}, threads,
     )  # fmt: skip
 
 
-@dataclass(frozen=True)
-class _Search:
-    """Launches to many targets: ``wished`` picks some of each family, within ``bounds``."""
+def _wish(wishes: dict[str, Any]) -> tuple[str | None, FloatArray]:
+    """The one wish that is there, if any, and what is wished; two are refused."""
+    wished = [name for name, value in wishes.items() if value is not None]
+    if len(wished) > 1:
+        raise InputError(f"{wished[0]} and {wished[1]} both pick a launch: give one of them")
+    if not wished:
+        return None, np.zeros(())
+    name = wished[0]
+    checked = finite_array if name == "spin" else positive_array
+    return name, checked(name, wishes[name], _UNITS[name])
 
-    puck: PuckSpec
-    wished: str | None
-    bounds: tuple[float, float]
-    count: int
 
-    @cached_property
-    def family(self) -> LaunchFamily:
-        return launch_family_of(self.puck.body)
-
-    @property
-    def _limits(self) -> FloatArray:
-        """Ln of the largest speed and rim speed."""
-        fastest, widest = self.bounds
-        return np.array([math.log(fastest), math.log(widest) + math.log(self.puck.radius)])
-
-    def launches(self, places: FloatArray, wanted: FloatArray, distance: FloatArray) -> FloatArray:
-        """Rows (m, 5) of launches to targets (n, 2): of which, ω, vx, vy, stop time."""
-        puck, away = self.puck, np.flatnonzero(distance > 0.0)
-        rows = [self._on_the_spot(n, wanted[n]) for n in np.flatnonzero(distance == 0.0).tolist()]
-        with np.errstate(divide="ignore"):
-            half_d, half_j = 0.5 * np.log(distance[away]), 0.5 * math.log(puck.decel)
-        scales = np.stack([half_j + half_d, half_j + half_d, half_d - half_j, 0.0 * half_d], axis=1)
-        which, logs = self._logs(scales, wanted[away])
-        limits = self._limits
-        good = (logs[:, [SPEED, RIM]] <= limits + SLACK).all(axis=1)
-        which, logs = which[good], logs[good]
-        slides = logs[:, RIM] == -math.inf
-        if not (np.abs(logs[:, [SPEED, TIME]]) < _LARGEST_LOG).all():
-            raise InputError(TOO_LARGE)
-        log_spin = logs[~slides, RIM] - math.log(puck.radius)
-        if not (np.abs(log_spin) < _LARGEST_LOG).all():
-            raise InputError(TOO_LARGE)
-        speed, time, turning = np.exp(logs[:, SPEED]), np.exp(logs[:, TIME]), np.zeros(which.size)
-        turning[~slides] = np.exp(log_spin)
-        bearing = np.arctan2(places[away, 1], places[away, 0])[which]
-        for sense in (-1.0, 1.0):
-            chosen = ~slides | (sense > 0.0)
-            if self.wished == "spin":
-                chosen &= np.copysign(1.0, wanted[away][which]) == sense
-                chosen |= slides & (sense > 0.0)
-            heading = bearing - sense * logs[:, BEND]
-            both = [away[which], sense * turning, speed * np.cos(heading), speed * np.sin(heading),
-                    time]  # fmt: skip
-            rows.append(np.stack(both, axis=1)[chosen])
-        result = np.concatenate(rows) + 0.0  # no negative zero
-        self._refuse_too_large(result)
-        return result[np.lexsort((result[:, _SPIN], result[:, _OF]))]
-
-    def _logs(self, scales: FloatArray, wanted: FloatArray) -> tuple[npt.NDArray[Any], FloatArray]:
-        """Of which target, and ln v, ln r|ω|, ln t₀ and arg Z, of all launches that are wished."""
-        if self.wished is None:
-            which, u = self._sampled(scales)
-            return which, self.family.looked_up(u) + scales[which]
-        quantity = _QUANTITIES[self.wished]
-        with np.errstate(divide="ignore"):
-            log = np.log(np.abs(wanted))
-        log += math.log(self.puck.radius) if quantity == RIM else 0.0
-        values = log - scales[:, quantity]
-        which, u = self.family.roots(quantity, values)
-        none = np.bincount(which, minlength=wanted.size) == 0
-        if quantity == RIM:
-            still = np.flatnonzero(wanted == 0.0)
-            none[still] = False
-            which, u = np.append(which, still), np.append(u, np.full(still.size, -math.inf))
-        else:
-            best = self.family.extreme(quantity)[1]
-            none &= (values > best) != (quantity == SPEED)
-        if none.any():
-            raise InputError(BEYOND)
-        logs = self.family.looked_up(u) + scales[which]
-        logs[:, quantity] = log[which]
-        return which, logs
-
-    def _sampled(self, scales: FloatArray) -> tuple[npt.NDArray[Any], FloatArray]:
-        """A sample of the family of each target: of which, and u."""
-        n, limits = len(scales), self._limits
-        if not np.isfinite(limits).any():  # of all the same
-            one = np.array(sample([(-math.inf, math.inf)], self.count))
-            return np.repeat(np.arange(n), one.size), np.tile(one, n)
-        ends: list[set[float]] = [{-math.inf, math.inf} for _ in range(n)]
-        for quantity, limit in zip((SPEED, RIM), limits.tolist(), strict=True):
-            of, u = self.family.roots(quantity, limit - scales[:, quantity])
-            for target, end in zip(of.tolist(), u.tolist(), strict=True):
-                ends[target].add(end)
-        intervals = [list(pairwise(sorted(one))) for one in ends]
-        middles = np.array([between(*one) for some in intervals for one in some])
-        sizes = [len(some) for some in intervals]
-        logs = self.family.looked_up(middles) + np.repeat(scales, sizes, axis=0)
-        allowed = np.all(logs[:, [SPEED, RIM]] <= limits, axis=1)
-        inside = iter(allowed.tolist())
-        us = [
-            sample(concatenated(some, [next(inside) for _ in some]), self.count)
-            for some in intervals
-        ]
-        which = np.repeat(np.arange(n), [len(one) for one in us])
-        return which, np.array([u for one in us for u in one])
-
-    def _on_the_spot(self, n: int, wanted: float) -> FloatArray:
-        """Launches to a target where the puck lies."""
-        wish = {} if self.wished is None else {self.wished: float(wanted)}
-        result = aim_at(
-            self.puck, (0.0, 0.0), **{**_NO_WISH, **wish}, max_speed=None, max_spin=None, count=1
-        )
-        rows = np.zeros((result.launch_spin.size, _LAUNCH))
-        rows[:, _OF], rows[:, _SPIN], rows[:, _TIME] = n, result.launch_spin, result.stop_time
-        return rows
-
-    def _refuse_too_large(self, rows: FloatArray) -> None:
-        puck = self.puck
-        same = (np.full(len(rows), value) for value in (puck.delta, puck.decel, puck.radius))
-        launched = np.stack([*rows[:, [_VX, _VY, _SPIN]].T, *same])
-        if not fits(launched, puck.body.longest).all():
-            raise InputError(TOO_LARGE)
+def _checked_bounds(
+    max_speed: float | None, max_spin: float | None, count: int
+) -> tuple[float, float]:
+    """Bounds on speed and spin, infinite where there is none."""
+    if not isinstance(count, int) or not 1 <= count <= MAX_COUNT:
+        raise InputError(f"count must be a whole number from 1 to {MAX_COUNT}, got {shown(count)}")
+    return (
+        math.inf if max_speed is None else positive("max_speed", max_speed, "m/s"),
+        math.inf if max_spin is None else positive("max_spin", max_spin, "rad/s"),
+    )

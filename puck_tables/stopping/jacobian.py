@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
-from typing import ClassVar, NamedTuple
+from collections.abc import Callable, Sequence
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.executor import run_chunks
 from puck_tables._core.real import shown
-from puck_tables.contact.laws import Law
 from puck_tables.errors import InputError
 from puck_tables.motion.body import UnitPuck
 from puck_tables.stopping.launch_arrays import Launches, in_chunks, launches_in
 from puck_tables.stopping.spread import ResultSpread, spread_of
+from puck_tables.stopping.state_values import for_each
 from puck_tables.stopping.stop_table import StopTable
-from puck_tables.table.resultant_table import ResultantTable
 
 LAUNCH_NAMES = ("vx", "vy", "spin", "delta", "decel", "radius")
 STOP_NAMES = ("stop_time", "stop_x", "stop_y", "path_length", "body_angle")
@@ -26,16 +23,6 @@ STATE_NAMES = ("x", "y", "orientation", "vx", "vy", "spin")
 MOMENT_NAMES = (*LAUNCH_NAMES, "time")
 
 Bodies = dict[float, UnitPuck]  # by height
-
-
-class StopSettings(NamedTuple):
-    """Pressure law and radius of gyration of pucks, and how their stops were asked for."""
-
-    pressure: str | Law
-    gyration: float
-    tol: float = 1e-8
-    method: str | None = None
-    table: ResultantTable | StopTable | None = None
 
 
 class Differentiated:
@@ -49,8 +36,8 @@ class Differentiated:
     JACOBIAN_COLUMNS: ClassVar[tuple[str, ...]]
     _jacobian: FloatArray | None = None
     _arguments: FloatArray
-    _table: StopTable | None = None
-    _kind: StopSettings | None = None  # where not all are plain
+    _anew: Callable[..., Any] | None = None  # the same of other launches
+    _highest: float = 1.0  # δ of them
 
     @property
     def jacobian(self) -> FloatArray:
@@ -141,12 +128,17 @@ class Differentiated:
         """
         return spread_of(
             self.JACOBIAN_ROWS, self.JACOBIAN_COLUMNS, self.jacobian, self._arguments, self._again,
-            covariance, of, samples, seed, 1.0 if self._kind is None else math.inf,
+            covariance, of, samples, seed, self._highest,
         )  # fmt: skip
 
     def _again(self, arguments: FloatArray) -> FloatArray:
         """The rows of the Jacobian's results (rows, m) of arguments (columns, m)."""
-        raise NotImplementedError
+        assert self._anew is not None
+        found = self._anew(
+            arguments[:2].T, arguments[2], *arguments[len(LAUNCH_NAMES) :], delta=arguments[3],
+            decel=arguments[4], radius=arguments[5],
+        )  # fmt: skip
+        return np.stack([getattr(found, name) for name in self.JACOBIAN_ROWS])
 
 
 def refuse_rest(launches: FloatArray, shape: tuple[int, ...]) -> None:
@@ -216,24 +208,17 @@ def integrated_jacobians(
     from puck_tables.stopping.variational import unit_states, variations_of
 
     frictions = {height: variations_of(body) for height, body in bodies.items()}
-    order = np.argsort(which, kind="stable")
-    first = np.searchsorted(which[order], pucks)
-    last = np.searchsorted(which[order], pucks, side="right")
 
-    def work(start: int, stop: int) -> None:
-        for n in range(start, stop):
-            mine, launch = order[first[n] : last[n]], launches[:, pucks[n]]
-            speed, rim = np.hypot(launch[0], launch[1]), abs(launch[5] * launch[2])
-            slip = float(np.hypot(speed, rim))
-            part = np.zeros((mine.size, len(STATE_NAMES), len(MOMENT_NAMES)))
-            if slip > 0.0 and mine.size:
-                frictions[float(launch[3])].refuse_limit(speed, rim)
-                times = moments[mine]
-                own = unit_states(
-                    frictions[float(launch[3])], speed / slip, rim / slip,
-                    times / slip * launch[4],
-                )[0]  # fmt: skip
-                fill_placed_states(launch, times, own, part)
-            out[mine] = part
+    def work(puck: int, mine: npt.NDArray[np.int64]) -> None:
+        launch, times = launches[:, puck], moments[mine]
+        speed, rim = np.hypot(launch[0], launch[1]), abs(launch[5] * launch[2])
+        slip = float(np.hypot(speed, rim))
+        part = np.zeros((mine.size, len(STATE_NAMES), len(MOMENT_NAMES)))
+        if slip > 0.0:
+            friction = frictions[float(launch[3])]
+            friction.refuse_limit(speed, rim)
+            own, _ = unit_states(friction, speed / slip, rim / slip, times / slip * launch[4])
+            fill_placed_states(launch, times, own, part)
+        out[mine] = part
 
-    run_chunks(work, pucks.size, 1, threads)
+    for_each(pucks, which, work, threads)

@@ -58,6 +58,8 @@ _FITTED = 1e-10  # of logarithms, what a look-up is good to
 _NARROWEST = 1e-7  # of u between nodes: next to a line it does not get smooth
 _NEAR_LIMIT = 1e-3  # of |ρ_∥ − σ|: the derivatives are 0/0 at the limit of the motion
 _DIFFERENCE = 1e-4  # of u, over which a slope is told from a table
+_BESIDE = np.array([[-0.5], [0.5]]) * _DIFFERENCE
+_SMALL_STEP = 1e-6  # of u, after which what a step leaves is less than rounding
 _SLACK = 1e-12  # of logarithms: rounding
 _ROUNDED = 1e-9  # values closer than this to the slide's are rounding
 
@@ -67,6 +69,7 @@ _POWERS_AT = np.concatenate([  # of a piece at both ends and in the middle, then
     np.arange(POWERS) * _AT ** np.maximum(np.arange(POWERS) - 1, 0),
 ])  # fmt: skip
 
+SLIDE_ROW = np.array([SLIDE, -math.inf, SLIDE, 0.0])  # of a slide without spin
 Indices = npt.NDArray[np.int64]
 
 
@@ -120,42 +123,38 @@ class LaunchFamily:
             out[others] = self.rows(u[others])
         return out
 
-    def roots(self, quantity: int, values: FloatArray) -> tuple[Indices, FloatArray]:
-        """All u where a quantity has one of ``values`` (n,), looked up: of which (m,), and u (m,).
+    def roots(
+        self, quantity: int, values: FloatArray, exact: bool
+    ) -> tuple[Indices, FloatArray, FloatArray]:
+        """All u where a quantity has one of ``values`` (n,): of which, u (m,), the rows (m, 4).
 
-        In ascending order; −∞ is the slide without spin.
+        In ascending order; −∞ is the slide without spin.  Looked up, to 1e-10; if ``exact``, put
+        right by one integration.
         """
         which, low, high = self.brackets(quantity, values)
-        wanted, out = values[which], np.empty(which.size)
+        wanted, u, single = values[which], np.empty(which.size), low == high
         # brackets end where pieces do
-        inside = (low == high) | self.is_tabulated(0.5 * low + 0.5 * high)
-        first = np.where(inside, low, high)
-        fill_roots(quantity, wanted, first, high, self._section, self.limits, out)
-        for n in np.flatnonzero(~inside):
-            out[n] = self.searched(quantity, wanted[n], low[n], high[n])
-        order = np.lexsort((out, which))
-        which, out = which[order], out[order]
-        again = np.zeros(which.size, bool)
-        again[1:] = (which[1:] == which[:-1]) & (out[1:] == out[:-1])
-        return which[~again], out[~again]
-
-    def near(
-        self, quantity: int, wanted: float, low: float, high: float
-    ) -> tuple[float, FloatArray] | None:
-        """A root between two u, looked up, and the slopes (4,) of all there.
-
-        None where the curve is not tabulated.
-        """
-        out = np.empty(1)
-        ends = np.array([low]), np.array([high])
-        if not self.is_tabulated(0.5 * (ends[0] + ends[1])).all():
-            return None
-        fill_roots(quantity, np.array([wanted]), *ends, self._section, self.limits, out)
-        about = out + np.array([-0.5, 0.5]) * _DIFFERENCE
-        if not self.is_tabulated(about).all():
-            return None
-        rows = self.looked_up(about)
-        return out.item(), (rows[1] - rows[0]) / _DIFFERENCE
+        blind = ~single & ~self.is_tabulated(0.5 * low + 0.5 * high)
+        first = np.where(blind, high, low)
+        fill_roots(quantity, wanted, first, high, self._section, self.limits, u)
+        rows = self.rows(u) if exact else self.looked_up(u)
+        if exact:
+            behind, ahead = np.split(self.looked_up((u + _BESIDE).ravel()), 2)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                slopes = (ahead - behind) / _DIFFERENCE
+                step = (wanted - rows[:, quantity]) / slopes[:, quantity]
+            right = ~single & (np.abs(step) < _SMALL_STEP)
+            u[right] += step[right]
+            rows[right] += slopes[right] * step[right, None]
+            blind = ~single & ~right
+        for n in np.flatnonzero(blind):
+            u[n] = self.searched(quantity, wanted[n], low[n], high[n])
+            rows[n] = self.rows(u[n : n + 1])[0]
+        order = np.lexsort((u, which))
+        which, u, rows = which[order], u[order], rows[order]
+        fresh = np.ones(which.size, bool)
+        fresh[1:] = (which[1:] != which[:-1]) | (u[1:] != u[:-1])
+        return which[fresh], u[fresh], rows[fresh]
 
     def searched(self, quantity: int, wanted: float, low: float, high: float) -> float:
         """A root between two u by integrations alone."""
@@ -173,21 +172,19 @@ class LaunchFamily:
         the slide without spin has the value.  A value beyond a turn by 1e-9 counts as met there: so
         it may have been printed.
         """
-        u, levels = self.u, self.values[:, quantity]
+        u, levels, turns = self._branches[quantity]
         result: list[tuple[Indices, Any, Any]] = [(np.empty(0, np.int64), 0.0, 0.0)]
         finite = np.isfinite(values)
         values = np.where(finite, values, 0.0)
         least, largest = values.min(initial=math.inf), values.max(initial=-math.inf)
         if quantity != RIM:
-            from_here = int(np.flatnonzero(np.abs(levels - SLIDE) > _ROUNDED)[0])
-            u, levels = u[from_here:], levels[from_here:]
             past = values - SLIDE
             behind = past * (levels[0] - values)
             slides = (np.abs(past) <= _SLACK) | ((np.abs(past) <= _ROUNDED) & (behind < 0.0))
             result.append((np.flatnonzero(finite & slides), -math.inf, -math.inf))
             between = np.flatnonzero(finite & ~slides & (behind > 0.0))
             result.append((between, -LARGEST_U, u[0]))
-        for first, last in pairwise(self._turns(levels)):
+        for first, last in pairwise(turns):
             bottom, top = sorted((levels[first], levels[last]))
             if top < least or bottom > largest:
                 continue
@@ -198,7 +195,7 @@ class LaunchFamily:
             inside = np.flatnonzero(finite & (at > 0) & (at < own.size))
             after = first + at[inside]
             result.append((inside, u[after - 1], u[after]))
-        for turn in self._turns(levels)[1:-1]:
+        for turn in turns[1:-1]:
             error = levels[turn] - values
             beyond = error * (levels[turn] - levels[turn - 1]) <= 0.0
             short = np.flatnonzero(finite & beyond & (np.abs(error) <= _ROUNDED))
@@ -210,13 +207,22 @@ class LaunchFamily:
         )
         return which, low, high
 
-    @staticmethod
-    def _turns(levels: FloatArray) -> list[int]:
-        """The nodes at which a quantity turns, with both ends."""
-        up = np.sign(np.diff(levels))
-        moves = np.flatnonzero(up)
-        turns = moves[1:][up[moves[1:]] != up[moves[:-1]]]
-        return [0, *turns.tolist(), levels.size - 1]
+    @cached_property
+    def _branches(self) -> list[tuple[FloatArray, FloatArray, list[int]]]:
+        """Of each quantity: u, its levels, and at which it turns, with both ends.
+
+        Of speed and time from where they leave those of the slide without spin.
+        """
+        result = []
+        for quantity, levels in enumerate(self.values.T):
+            away = np.abs(levels - SLIDE) > _ROUNDED
+            begin = 0 if quantity == RIM else int(np.flatnonzero(away)[0])
+            levels = np.ascontiguousarray(levels[begin:])
+            up = np.sign(np.diff(levels))
+            moves = np.flatnonzero(up)
+            turns = moves[1:][up[moves[1:]] != up[moves[:-1]]]
+            result.append((self.u[begin:], levels, [0, *turns.tolist(), levels.size - 1]))
+        return result
 
     def extreme(self, quantity: int) -> tuple[float, float]:
         """The u and the value where the speed is greatest, or the time least; u = −∞: the slide."""
@@ -234,8 +240,8 @@ def launch_family_of(body: UnitPuck) -> LaunchFamily:
     Examples
     --------
     >>> from puck_tables.motion.body import body_of
-    >>> _, u = launch_family_of(body_of("uniform", 0.5, 0.5**0.5)).roots(RIM, np.array([1.0]))
-    >>> u.round(6).tolist()
+    >>> family = launch_family_of(body_of("uniform", 0.5, 0.5**0.5))
+    >>> family.roots(RIM, np.array([1.0]), exact=False)[1].round(6).tolist()
     [1.216315]
     >>> u, fastest = launch_family_of(body_of("uniform", 3.9, 0.1)).extreme(SPEED)
     >>> u > -4.0, fastest > 0.5 * math.log(2.0)

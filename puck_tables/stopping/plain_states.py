@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.motion.state import HEADING, SPIN, STATE_ROWS
-from puck_tables.stopping.launch_arrays import CHUNK, DELTA, Launches, in_chunks, launches_in
+from puck_tables.stopping.launch_arrays import CHUNK, Launches, in_chunks, launches_in
 from puck_tables.stopping.similarity_lookup import LAUNCH_COLUMNS, SLIP, SPEED0
 from puck_tables.stopping.state_values import directions, looked_up, refuse_times
 from puck_tables.stopping.stop_table import StopTable
@@ -15,7 +15,6 @@ from puck_tables.stopping.stop_table import StopTable
 _TINY = 1e-25  # slip ratio of the neighbours of pure motions, whose derivatives these have
 _SMALL, _LEAST = 1e-200, 1e-300  # slip speeds: below, one part of it may be no normal number
 _STOPPED = 9.0  # Q/J: a time after all stops
-_MANY = 1 << 12  # moments for which it pays to have all functions at their height
 _AT_ONCE = 1 << 11  # launches of which all that is known stays in the cache
 
 
@@ -86,24 +85,18 @@ def _fill_slopes(
     if which.size == end - begin == 1 and pucks.shape[1] == 1:
         which = which[:0]  # a moment of its own, of which all is found in one call
     known = pucks, generic, table.height_constants
-    facts, section = np.empty((0, 0)), np.empty((2, 0, 0))
+    facts = np.empty((0, 0))
     if which.size:
-        from puck_tables.stopping.launch_facts import fill_launch_facts
-        from puck_tables.stopping.similarity_rates import FACTS
+        from puck_tables.stopping.similarity_rates import FACTS, fill_launch_facts
 
         facts = np.empty((FACTS, pucks.shape[1]))
         fill_launch_facts(*known, slopes.states, slopes.rates, facts)
-    if end - begin >= _MANY and (pucks[DELTA] == pucks[DELTA, 0]).all():
-        from puck_tables.stopping.similarity_rates import SECTION_WIDTH, fill_section
-
-        section = np.empty((*slopes.states.shape[:2], SECTION_WIDTH))
-        fill_section(pucks[DELTA, 0].item(), slopes.states, slopes.rates, section)
     streamed = is_streamed(out)
 
     def work(start: int, stop: int) -> None:
         fill_state_jacobians(
             *known, facts, which, moments, result, begin + start, begin + stop, slopes.states,
-            slopes.rates, section, streamed, out,
+            slopes.rates, streamed, out,
         )  # fmt: skip
 
     in_chunks(work, end - begin, threads)

@@ -23,6 +23,7 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 from numpy.polynomial import chebyshev
 
 from puck_tables._core.arrays import FloatArray
@@ -55,15 +56,33 @@ def rates(u: FloatArray, delta: float) -> tuple[FloatArray, FloatArray]:
     [0.625, -0.325]
     """
     k = np.exp(-np.abs(u))
-    fast = (u > 0.0).astype(np.float64)
-    p_a, p_b, p_d = shape_integrals(k, fast)
+    rho, _, turning = rates_of_ratio(k, u > 0.0, delta)
+    sine = np.where(u > 0.0, 1.0, k) / np.hypot(1.0, k)
+    return rho, sine * delta * turning
+
+
+def rates_of_ratio(
+    k: FloatArray, fast: npt.ArrayLike, delta: npt.ArrayLike
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """ρ, N/ρ_∥ and h/(δ sin φ) at ratios k of the slower to the faster of v and r|ω|.
+
+    ``fast``: where r|ω| is the faster.
+
+    Examples
+    --------
+    >>> [float(one.round(6)) for one in rates_of_ratio(np.array(0.0), False, 1.0)]
+    [0.625, 1.0, 0.25]
+    """
+    rotates = np.broadcast_to(np.asarray(fast, np.float64), k.shape)
+    p_a, p_b, p_d = shape_integrals(k, rotates)
     share = 1.0 / (1.0 + k * k)
-    cos2 = share * np.where(u > 0.0, k * k, 1.0)
-    sin2 = share * np.where(u > 0.0, 1.0, k * k)
-    inverse = (1.0 - delta**2 * sin2 * p_b * (p_b - p_d)) / p_a
-    spin = 2.0 * (p_d * inverse + delta**2 * cos2 * p_b * (p_d - 2.0 * p_b))
+    cos2 = share * np.where(rotates > 0.0, k * k, 1.0)
+    sin2 = share * np.where(rotates > 0.0, 1.0, k * k)
+    d2 = np.square(delta)
+    inverse = (1.0 - d2 * sin2 * p_b * (p_b - p_d)) / p_a
+    spin = 2.0 * (p_d * inverse + d2 * cos2 * p_b * (p_d - 2.0 * p_b))
     norm = 1.0 / (cos2 + sin2 * spin)
-    return (1.0 - spin) * norm, np.sqrt(sin2) * delta * p_b * norm
+    return (1.0 - spin) * norm, inverse * norm, p_b * norm
 
 
 def limits(delta: float) -> Limits:

@@ -26,10 +26,9 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray, aligned
-from puck_tables.contact.closed_form import shape_integrals
-from puck_tables.stopping.axes import HEIGHTS, SlipAxis, height_polynomials, heights, ratio_at
-from puck_tables.stopping.similarity import limits, regular_slopes
-from puck_tables.table.spline_fit import clamped_coefficients
+from puck_tables.stopping.axes import HEIGHTS, SlipAxis, heights, ratio_at
+from puck_tables.stopping.similarity import limits, rates_of_ratio, regular_slopes
+from puck_tables.stopping.stop_splines import by_power
 
 STOP_FUNCTIONS = 5  # T, along, across, body, length; then the slopes of each
 STOP_WIDTH = 12  # all, padded to whole registers
@@ -78,20 +77,16 @@ def slopes_of(axis: SlipAxis, values: FloatArray) -> Slopes:
     by_u = np.stack([_slopes_at_nodes(axis, own[fast], fast == 1) for fast in range(2)])
     stops = np.concatenate([own, by_u], axis=-1)
     functions = np.concatenate([sides[..., [5, 6]], _similarity_slopes(axis)], axis=-1)
-    of_stops, of_curve = _splines(stops, STOP_POWERS), _splines(functions, HEIGHTS)
+    of_stops, of_curve = (
+        by_power(one, powers).transpose(2, 1, 0, 3)  # side, node, power, function
+        for one, powers in ((stops, STOP_POWERS), (functions, HEIGHTS))
+    )
     states = np.zeros((*of_curve.shape[:3], STATE_WIDTH))
     states[:, :, :STOP_POWERS, :4], states[..., 4:] = of_stops[..., :4], of_curve
     rates = of_stops[..., STOP_FUNCTIONS : STOP_FUNCTIONS + RATE_WIDTH]
     padded = np.zeros((*of_stops.shape[:3], STOP_WIDTH))
     padded[..., : of_stops.shape[3]] = of_stops
     return Slopes(*(_in_rows(splines) for splines in (padded, states, rates)))
-
-
-def _splines(values: FloatArray, powers: int) -> FloatArray:
-    """Coefficients (2, cells + 3, powers, n) from values (2, cells + 1, 9, n)."""
-    splines = clamped_coefficients(np.moveaxis(values, 1, 0)) / 6.0  # node, side, height, function
-    by_power = height_polynomials(np.moveaxis(splines, 2, 0), powers)  # power, node, side, function
-    return by_power.transpose(2, 1, 0, 3)
 
 
 def _in_rows(splines: FloatArray) -> FloatArray:
@@ -105,11 +100,7 @@ def _slopes_at_nodes(axis: SlipAxis, values: FloatArray, fast: bool) -> FloatArr
     k, delta = ratio_at(xi)[:, None], heights()
     large = 1.0 / np.hypot(1.0, k)
     s, c = (large, k * large) if fast else (k * large, large)
-    a, b, d = shape_integrals(k, np.full_like(k, float(fast)))
-    inverse = (1.0 - delta**2 * s**2 * b * (b - d)) / a
-    spin = 2.0 * (d * inverse + delta**2 * c**2 * b * (d - 2.0 * b))
-    norm = 1.0 / (c**2 + s**2 * spin)
-    rate, way, turning = (1.0 - spin) * norm, inverse * norm, b * norm
+    rate, way, turning = rates_of_ratio(k, fast, delta)
     time, along, across, body, length = np.moveaxis(values, -1, 0)
     with np.errstate(divide="ignore", invalid="ignore"):
         by_u = np.stack([

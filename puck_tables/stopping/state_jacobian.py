@@ -41,7 +41,6 @@ from puck_tables.kernels.compile import (
 )
 from puck_tables.kernels.elementary import cosine_sine_of, exp_of, logs_of
 from puck_tables.motion import state
-from puck_tables.stopping.launch_facts import fetch, fill_up, find_facts
 from puck_tables.stopping.launch_frame import PLACED_STATES, placed_state, rotated
 from puck_tables.stopping.similarity_rates import (
     BEND,
@@ -85,6 +84,9 @@ from puck_tables.stopping.similarity_rates import (
     UNIT,
     WORK,
     coefficients_at,
+    fetch,
+    fill_up,
+    find_facts,
     find_functions,
     of_stop,
     pole_at,
@@ -308,21 +310,19 @@ def _find_jacobians(room: FloatArray) -> None:
 def fill_state_jacobians(
     pucks: FloatArray, generic: FloatArray, constants: FloatArray, facts: FloatArray,
     which: npt.NDArray[np.int64], times: FloatArray, states: FloatArray, begin: int, end: int,
-    of_state: FloatArray, of_rate: FloatArray, section: FloatArray, streamed: bool,
-    out: FloatArray,
+    of_state: FloatArray, of_rate: FloatArray, streamed: bool, out: FloatArray,
 ) -> None:  # fmt: skip
     """Derivatives of states into ``out`` (n, 6, 7).
 
     At ``times`` (n,) ≥ 0, from ``begin`` to ``end``, as in
     :func:`puck_tables.stopping.state_lookup.fill_states_at`, whose ``states`` (6, n) are needed;
     of pucks ``which`` of ``facts`` (49, m), or, where ``which`` is empty, of ``pucks``, see
-    :func:`puck_tables.stopping.launch_facts.fill_launch_facts`.  ``section``: that of
-    :func:`puck_tables.stopping.similarity_rates.fill_section` where all have one height, or empty.
+    :func:`puck_tables.stopping.similarity_rates.fill_launch_facts`.
     Derivatives of x, y, body angle, vx, vy, ω by vx, vy, ω, δ, J, r, time; from the stop on those
     of the stop.
     """
     cells, fixed, held = float(of_state.shape[1] - 3), constants.reshape(-1), -1
-    splines, rates, sections = of_state.reshape(-1), of_rate.reshape(-1), section.reshape(-1)
+    splines, rates = of_state.reshape(-1), of_rate.reshape(-1)
     numbers, room = out.reshape(-1), np.empty(ROWS * BLOCK + LINE)
     room = room[-(room.ctypes.data // 8) % LINE :]  # from the beginning of a line of the cache on
     for start in range(begin, end, PART):
@@ -343,6 +343,6 @@ def fill_state_jacobians(
         for row in (MOMENT, TURNED, SHARE, FAST):
             fill_up(room, row, count)
         _find_places(room)
-        find_functions(room, splines, rates, sections, cells)
+        find_functions(room, splines, rates, cells)
         _find_jacobians(room)
         row_by_row(room, PUT, PLACED_STATES, count, numbers, start, streamed)

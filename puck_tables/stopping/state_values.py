@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import numpy.typing as npt
 
@@ -75,17 +77,29 @@ def integrate(
     which: npt.NDArray[np.int64], moments: FloatArray, out: FloatArray, threads: int | None,
 ) -> None:  # fmt: skip
     """States of other ``pucks``, each integrated, into their places in ``out`` (6, n)."""
+
+    def work(puck: int, mine: npt.NDArray[np.int64]) -> None:
+        launch = launches[:, puck]
+        out[:, mine] = states_of(bodies[float(launch[3])], launch, moments[mine])
+
+    for_each(pucks, which, work, threads)
+
+
+def for_each(
+    pucks: npt.NDArray[np.int64], which: npt.NDArray[np.int64],
+    work: Callable[[int, npt.NDArray[np.int64]], None], threads: int | None,
+) -> None:  # fmt: skip
+    """Call ``work(puck, its moments)`` for those of ``pucks`` that have some, by ``which`` (n,)."""
     order = np.argsort(which, kind="stable")
     first = np.searchsorted(which[order], pucks)
     last = np.searchsorted(which[order], pucks, side="right")
 
-    def work(start: int, stop: int) -> None:
+    def some(start: int, stop: int) -> None:
         for n in range(start, stop):
-            mine, launch = order[first[n] : last[n]], launches[:, pucks[n]]
-            if mine.size:
-                out[:, mine] = states_of(bodies[float(launch[3])], launch, moments[mine])
+            if first[n] < last[n]:
+                work(int(pucks[n]), order[first[n] : last[n]])
 
-    run_chunks(work, pucks.size, 1, threads)
+    run_chunks(some, pucks.size, 1, threads)
 
 
 def states_of(body: UnitPuck, launch: FloatArray, times: FloatArray) -> FloatArray:

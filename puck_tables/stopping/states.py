@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any, ClassVar
 
 import numpy as np
@@ -18,14 +20,12 @@ from puck_tables.motion.body import UnitPuck, body_of, plain_up_to
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED, SPIN, STATE_ROWS
 from puck_tables.result import Result
 from puck_tables.stopping.jacobian import (
-    LAUNCH_NAMES,
     MOMENT_NAMES,
     STATE_NAMES,
     Differentiated,
-    StopSettings,
     integrated_jacobians,
 )
-from puck_tables.stopping.launch_arrays import Launches, fits, launches_of
+from puck_tables.stopping.launch_arrays import TOO_LARGE, Launches, fits, launches_of
 from puck_tables.stopping.per_height import refuse_many
 from puck_tables.stopping.plain_states import all_looked_up, fill_state_slopes
 from puck_tables.stopping.state_values import (
@@ -39,9 +39,6 @@ from puck_tables.stopping.stop_table import StopTable
 from puck_tables.stopping.stop_values import UPPER_DELTA
 from puck_tables.table.table import refuse_other_kind
 
-TOO_LARGE = (
-    "velocity, spin, radius and decel give a motion too large for floating point: use larger units"
-)
 # of nothing and of one, made once: to make them takes as long as a look-up
 _NONE, _FIRST = np.empty(0, np.int64), np.zeros(1, np.int64)
 
@@ -64,8 +61,8 @@ class States(Differentiated, Result):
     explanation: str = ""
     _jacobian: FloatArray | None = None
     _wanted: tuple[FloatArray, npt.NDArray[np.int64]] | None = None  # launches (6, m), and which
-    _table: StopTable | None = None
-    _kind: StopSettings | None = None
+    _anew: Callable[..., Any] | None = None
+    _highest: float = 1.0
 
     picture: ClassVar[str] = "places"
     JACOBIAN_ROWS: ClassVar[tuple[str, ...]] = STATE_NAMES
@@ -130,25 +127,6 @@ class States(Differentiated, Result):
         launched, which = self._wanted
         each = _each(which, self.time.size)
         return np.concatenate([launched[:, each], self.time.reshape(1, -1)])
-
-    def _again(self, arguments: FloatArray) -> FloatArray:
-        if self._kind is not None:
-            found = states(
-                arguments[:2].T, arguments[2], arguments[6], delta=arguments[3],
-                decel=arguments[4], radius=arguments[5], pressure=self._kind.pressure,
-                gyration=self._kind.gyration,
-            )  # fmt: skip
-            return np.stack([getattr(found, name) for name in STATE_NAMES])
-        table, launches = self._table or StopTable.shipped(), arguments[: len(LAUNCH_NAMES)]
-        pucks = looked_up_launches(table, launches)
-        which = np.arange(arguments.shape[1])
-        rows = looked_up(table, pucks, which, arguments[len(LAUNCH_NAMES)].copy())
-        turned = rows[HEADING] + np.arctan2(launches[1], launches[0])
-        speed = rows[SPEED]
-        return np.stack([
-            rows[PUCK_X], rows[PUCK_Y], rows[ORIENTATION], speed * np.cos(turned),
-            speed * np.sin(turned), rows[SPIN],
-        ])  # fmt: skip
 
     def explain(self) -> str:
         """How they were got."""
@@ -297,7 +275,9 @@ def states(
         return _states(found, moments, launches, which, shape, told)
     return _states(
         found, moments, launches, which, shape, told, slopes.reshape(*shape, *slopes.shape[1:]),
-        (launches.matrix, which), table, StopSettings(pressure, gyration) if bodies else None,
+        (launches.matrix, which),
+        partial(states, table=table, pressure=pressure, gyration=gyration, threads=threads),
+        math.inf if bodies else 1.0,
     )  # fmt: skip
 
 

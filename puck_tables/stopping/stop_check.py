@@ -36,7 +36,6 @@ from puck_tables.stopping.axes import HEIGHTS, SlipAxis, heights, ratio_at
 from puck_tables.stopping.exact import end_values, exact_stops
 from puck_tables.stopping.launch_arrays import launches_in
 from puck_tables.stopping.lookup import CURVE_ROW
-from puck_tables.stopping.node_equations import missed_by_stops, similarity_error
 from puck_tables.stopping.similarity import limits, regular_parts
 from puck_tables.stopping.similarity_lookup import (
     BODY,
@@ -53,7 +52,7 @@ from puck_tables.stopping.stop_values import STOPS, StopValues
 from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import Goal, built
 from puck_tables.table.check import Check, CheckReport, compared
-from puck_tables.table.metadata import Progress
+from puck_tables.table.table import Progress
 
 _GOAL = Goal(1e-10, 1e-11, "in units of Q/J and Q^2/J", 0.62, 1 << 12)
 _CHUNK = 64  # launches at once, of integrations
@@ -250,8 +249,8 @@ def judged(table: StopValues, progress: Progress | None) -> CheckReport:
         errors = (looked_up(table, u, delta) - exact_stops(u, delta)).T
         checks += _checks(route, NAMES[:STOPS], errors, u, delta, allowed)
     step(1)
-    checks += _equations(table, rng, 400, allowed, _CURVE_CEILING / cells**4 + _CURVE_POLYNOMIAL)
-    checks += _at_nodes(table)
+    of_curve = _CURVE_CEILING / cells**4 + _CURVE_POLYNOMIAL
+    checks += _equations(table, rng, 400, allowed, of_curve) + _at_nodes(table, of_curve)
     step(2)
     checks += _elementary(table, allowed)
     step(3)
@@ -310,22 +309,17 @@ def _in_every_cell(axis: SlipAxis, rng: np.random.Generator) -> tuple[FloatArray
     return u.ravel(), delta.ravel()
 
 
-def _at_nodes(table: StopValues) -> list[Check]:
-    """All node values in the equations they satisfy, see ``node_equations``."""
-    axis = table.axis
-    slow = np.log(np.maximum(ratio_at(np.arange(axis.cells + 1) / axis.cells), 1e-300))
-    u, delta = np.broadcast_arrays(np.stack([slow, -slow])[..., None], heights())
-    missed, allowed = missed_by_stops(axis, table.values)
-    of_curve = [similarity_error(axis, table.values, j) for j in range(HEIGHTS)]
-    by_similarity, allowed_curve = np.stack([one for one, _ in of_curve], axis=2), of_curve[0][1]
-    places = u.ravel(), delta.ravel()
-    of_stops, of_curves = (
-        np.moveaxis(m, -1, 0).reshape(m.shape[-1], -1) for m in (missed, by_similarity)
-    )
-    return [
-        *_checks("equation, every node", NAMES[:STOPS], of_stops, *places, allowed),
-        *_checks("equation, every node", NAMES[STOPS:], of_curves, *places, allowed_curve),
-    ]
+def _at_nodes(table: StopValues, allowed: float) -> list[Check]:
+    """Every value of the curve, by quadrature anew; stops are looked at in every cell."""
+    missed = np.empty((table.axis.size, HEIGHTS, 2))
+    for j, one in enumerate(heights()):
+        parts = regular_parts(table.axis, float(one))
+        missed[:, j] = table.values[:, j, STOPS:] * [1.0, one]
+        missed[:, j] -= parts * [limits(float(one)).kappa, 1.0]
+    with np.errstate(divide="ignore"):
+        u = np.log(np.tan(table.axis.phi()))
+    u, delta = (one.ravel() for one in np.broadcast_arrays(u[:, None], heights()))
+    return _checks("every node", NAMES[STOPS:], missed.reshape(-1, 2).T, u, delta, allowed)
 
 
 def _along_motion(table: StopValues, u: FloatArray, delta: FloatArray) -> FloatArray:

@@ -29,10 +29,10 @@ from puck_tables.motion.solve import ErrorEstimate, close_enough
 from puck_tables.stopping.exact import integrated_stops
 from puck_tables.table.check import CheckReport
 from puck_tables.table.friction_section import FINEST_ACCURACY, FrictionSection
-from puck_tables.table.metadata import Progress
 from puck_tables.table.section_table import SectionTable
 from puck_tables.table.slip_axis import GRADING_POWER, LawAxis, sides_of
 from puck_tables.table.slip_spline import slip_spline
+from puck_tables.table.table import Progress
 from puck_tables.table.table_cache import kept_section
 
 FINEST_SECTION = 1e-10  # as fine as stops are looked up; beyond, they are integrated
@@ -43,7 +43,6 @@ _FINEST_CELLS = 1024  # a side
 _SAMPLE = 48  # launches at which it is held against an integration
 _COARSER_BY = 8.0  # half as many cells are 16 times as bad; half of that is believed
 _SHARE_OF_FRICTION, _SHARE_OF_SPLINE = 0.3, 0.6  # of the accuracy
-_LARGEST = 1e4  # of a value
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -89,9 +88,6 @@ class StopSection(SectionTable):
             f"tan(phi - line) = extent xi^{GRADING_POWER}"
         ),
     }
-    entries: ClassVar[Mapping[str, type]] = {
-        **SectionTable.entries, "gyration": float, "friction_error": float,
-    }  # fmt: skip
     ends_too = True
 
     @property
@@ -147,27 +143,6 @@ class StopSection(SectionTable):
                 f"units of Q/J and Q^2/J), got {wanted:g}"
             )
         return stop_section(body_of(*of), wanted, **how)
-
-    @property
-    def parameters(self) -> dict[str, int | float | str]:
-        """Those of its puck."""
-        own = {"gyration": self.gyration, "friction_error": self.friction_error}
-        return {**super().parameters, **own}
-
-    @property
-    def bounds(self) -> tuple[float, float, float]:
-        """Of the values and of the accuracy."""
-        return -_LARGEST, _LARGEST, 0.1 * FINEST_SECTION
-
-    @classmethod
-    def fields(cls, attributes: dict[str, Any], arrays: dict[str, FloatArray]) -> dict[str, Any]:
-        """Its puck, from a file."""
-        result = super().fields(attributes, arrays)
-        gyration, error = attributes["gyration"], attributes["friction_error"]
-        body_of(result["law"], attributes["delta"], gyration)
-        if not 0.0 <= error <= COARSEST:
-            raise ValueError("its error of the friction is none")
-        return result | {"gyration": gyration, "friction_error": error}
 
 
 @lru_cache(maxsize=64)

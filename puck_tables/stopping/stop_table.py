@@ -7,7 +7,7 @@ from typing import Any, Self
 
 from puck_tables.stopping.stop_values import StopValues
 from puck_tables.table.check import CheckReport
-from puck_tables.table.metadata import Progress
+from puck_tables.table.table import Progress
 
 
 @dataclass(frozen=True, eq=False, repr=False)

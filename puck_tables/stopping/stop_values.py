@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -13,10 +13,12 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
+from puck_tables.io.dataset import Variable
 from puck_tables.motion.state import STATE_ROWS
 from puck_tables.stopping.axes import HEIGHTS, heights
 from puck_tables.stopping.launch_arrays import (
     CHUNK,
+    TOO_LARGE,
     Launches,
     fits,
     in_chunks,
@@ -27,12 +29,10 @@ from puck_tables.stopping.lookup import STOP_POWERS, stops_kernel
 from puck_tables.stopping.similarity_lookup import LAUNCH_COLUMNS
 from puck_tables.stopping.state_lookup import PUCK_ROWS
 from puck_tables.stopping.stop_coefficients import StopCoefficients
-from puck_tables.table.metadata import Axis
 
 UPPER_DELTA = 1.0  # above, part of the base may lift
 OTHERS = ("path_length", "turn_angle", "body_angle")
 STOPS = 5  # of the functions are of stops; the others of the curve of all motions
-_LARGEST = 10.0  # of a value
 _INTERPRETATION = (
     "Where and when a uniform cylinder (radius r, height h) launched with speed v and spin omega "
     "on a rough plane stops, whole base loaded. Q = hypot(v, r omega), "
@@ -82,7 +82,6 @@ class StopValues(StopCoefficients):
             "curve"
         ),
     }
-    entries: ClassVar[Mapping[str, type]] = {"cells": int}
 
     def stops(
         self, launches: Launches, powers: int = STOP_POWERS, thinning: int = 1,
@@ -194,10 +193,7 @@ class StopValues(StopCoefficients):
         if bad:
             launches.refuse_bad()
         if doubtful and rows == PUCK_ROWS and not fits(out[:LAUNCH_COLUMNS]).all():
-            raise InputError(
-                "velocity, spin, radius and decel give a motion too large for floating point: "
-                "use larger units"
-            )
+            raise InputError(TOO_LARGE)
         return out, doubtful
 
     def states_of_one(self, launch: Launches, moments: FloatArray) -> FloatArray | None:
@@ -247,36 +243,9 @@ class StopValues(StopCoefficients):
         return f"|phi| <= pi/2, 0 <= delta <= {UPPER_DELTA:g}; refused outside"
 
     @property
-    def axes(self) -> dict[str, Axis]:
+    def axes(self) -> dict[str, Variable]:
         """Slip angle and height."""
         return {
-            "phi": Axis(self.axis.phi(), "rad", "slip angle atan2(r omega, v)"),
-            "delta": Axis(heights(), "1", "dimensionless height 2 f h / r"),
+            "phi": Variable(self.axis.phi(), ("phi",), "rad", "slip angle atan2(r omega, v)"),
+            "delta": Variable(heights(), ("delta",), "1", "dimensionless height 2 f h / r"),
         }
-
-    @property
-    def parameters(self) -> dict[str, int | float | str]:
-        """How many cells."""
-        return {"cells": self.axis.cells}
-
-    @property
-    def bounds(self) -> tuple[float, float, float]:
-        """Of the values and of the accuracy."""
-        return -_LARGEST, _LARGEST, 0.1 / self.axis.cells**4
-
-    @classmethod
-    def shapes(cls, attributes: dict[str, Any]) -> dict[str, tuple[int, ...]]:
-        """Shapes of the arrays of a file with these attributes.
-
-        Examples
-        --------
-        >>> StopValues.shapes({"cells": 8})["time"]
-        (17, 9)
-        """
-        shape = 2 * attributes["cells"] + 1, HEIGHTS
-        return {"phi": shape[:1], "delta": shape[1:], **dict.fromkeys(cls.functions, shape)}
-
-    @classmethod
-    def fields(cls, attributes: dict[str, Any], arrays: dict[str, FloatArray]) -> dict[str, Any]:
-        """Nothing."""
-        return {}

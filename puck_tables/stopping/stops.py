@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+from functools import partial
 from typing import Any, ClassVar
 
 import numpy as np
@@ -18,7 +21,6 @@ from puck_tables.stopping.jacobian import (
     LAUNCH_NAMES,
     STOP_NAMES,
     Differentiated,
-    StopSettings,
     refuse_rest,
     stop_jacobians,
 )
@@ -53,7 +55,7 @@ class Stops(Differentiated, Result):
 
     def __init__(
         self, solver: SolverPerHeight, launches: Launches, threads: int | None,
-        jacobian: FloatArray | None, table: StopTable | None, kind: StopSettings | None,
+        jacobian: FloatArray | None, anew: Callable[..., Stops] | None, highest: float,
     ) -> None:  # fmt: skip
         time, place, status, self._mark, self._rest = solver.first(launches, threads)
         self._solver: SolverPerHeight | None = solver
@@ -64,7 +66,7 @@ class Stops(Differentiated, Result):
         if jacobian is not None:
             jacobian[status != 0] = np.nan
             self._jacobian = jacobian.reshape(*launches.shape, *jacobian.shape[1:])
-            self._arguments, self._table, self._kind = launches.matrix, table, kind
+            self._arguments, self._anew, self._highest = launches.matrix, anew, highest
 
     def __repr__(self) -> str:
         return f"Stops({self.status.size} launches of shape {self.status.shape}, by {self.method})"
@@ -127,15 +129,6 @@ class Stops(Differentiated, Result):
     def body_angle(self) -> FloatArray:
         """Radians."""
         return self._row(2)
-
-    def _again(self, arguments: FloatArray) -> FloatArray:
-        if self._kind is not None:
-            solver = SolverPerHeight(*self._kind)
-            solver.prepare(arguments[3])
-            found: FloatArray = solver.all(arguments)[0][[0, 1, 2, 3, 5]]
-            return found
-        known = (self._table or StopTable.shipped()).known(arguments)
-        return known[: len(STOP_NAMES)]
 
     def explain(self) -> str:
         """Which method was taken, and why."""
@@ -245,10 +238,13 @@ def stop(
         launches.refuse_bad()
         refuse_rest(launches.matrix, launches.shape)
     solver.prepare_for(launches, threads)
-    own = table if isinstance(table, StopTable) else None
-    slopes = kind = None
+    slopes = anew = None
+    highest = 1.0
     if jacobian:
         plain, bodies = solver.kinds(launches.matrix[3])
-        slopes = stop_jacobians(launches, plain, bodies, own or StopTable.shipped(), threads)
-        kind = StopSettings(pressure, gyration, tol, method, table) if bodies else None
-    return Stops(solver, launches, threads, slopes, own, kind)
+        known = table if isinstance(table, StopTable) else StopTable.shipped()
+        slopes = stop_jacobians(launches, plain, bodies, known, threads)
+        highest = math.inf if bodies else 1.0
+        how: dict[str, Any] = {"method": method, "table": table, "pressure": pressure}
+        anew = partial(stop, tol=tol, gyration=gyration, threads=threads, **how)
+    return Stops(solver, launches, threads, slopes, anew, highest)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -70,3 +71,39 @@ def compared(
             float(phi[worst]), float(second[worst]),
         ))  # fmt: skip
     return checks
+
+
+class Route(NamedTuple):
+    """One way to judge a table: where, by what, and how far off it may be.
+
+    ``error`` of φ and the second place (n,), as (functions, n).
+    """
+
+    name: str
+    functions: Iterable[str]
+    phi: FloatArray
+    second: FloatArray
+    error: Callable[[FloatArray, FloatArray], FloatArray]
+    allowed: float
+
+
+def judged(
+    source: str, tolerance: float, routes: Sequence[Route],
+    progress: Callable[[int, int], None] | None = None,
+) -> CheckReport:  # fmt: skip
+    """The report of a table by all these routes, one after the other.
+
+    Examples
+    --------
+    >>> places = np.array([0.1, 0.2])
+    >>> rule = Route("rule", ["spin"], places, places, lambda phi, at: np.array([phi - at]), 1e-8)
+    >>> judged("a table", 1e-8, [rule]).passed
+    True
+    """
+    checks: list[Check] = []
+    for done, one in enumerate(routes, 1):
+        errors = one.error(one.phi, one.second)
+        checks += compared(one.name, one.functions, errors, one.phi, one.second, one.allowed)
+        if progress is not None:
+            progress(done, len(routes))
+    return CheckReport(source, tolerance, tuple(checks))

@@ -22,19 +22,17 @@ from puck_tables.kernels.section_spline import LINE
 from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import COARSEST
 from puck_tables.table.check import CheckReport
-from puck_tables.table.metadata import Progress
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.section_table import SectionTable
 from puck_tables.table.singular_lines import lines_of, opening_angle
 from puck_tables.table.slip_axis import GRADING_POWER, LawAxis, sides_of
-from puck_tables.table.slip_spline import slip_spline
+from puck_tables.table.slip_spline import SlipSpline, slip_spline
 from puck_tables.table.spline_fit import height_terms
+from puck_tables.table.table import Progress
 from puck_tables.table.tall_friction import tall_resultants
 
 DEFAULT_ACCURACY, FINEST_ACCURACY = 1e-9, 5e-13  # truth itself is good to 1e-13
-_LARGEST, _ROUNDING = 1e3, 1e-12  # of a ratio
 _NODE_ERROR = 1e-10  # how well the law is known at a node
-_CONSTANT = 1e-3  # no section is better than so many times cells⁻⁴
 AT_THE_LIMIT = 1e-6  # relative: so close to it, a section says that motions tend there
 _FULL_CONTACT = 1.0  # δ up to which the whole base is loaded in every motion
 
@@ -105,14 +103,7 @@ class FrictionSection(SectionTable):
         gyration : k/r > 0
         coarser : by every other node only, to see what the spline contributes to an error
         """
-        spline = self.spline.coarser() if coarser else self.spline
-        # exactly 1 and ½ for a homogeneous puck
-        square = 0.5 if gyration == HOMOGENEOUS else gyration * gyration
-        coefficients = spline.with_inertia(square, np.array([1.0, 1.0, 0.5 / square]))
-        # a line that is the limit of the motion is never crossed: rounding would, again and again
-        limit = np.abs(self.spline.values[:, 0, 2] * (0.5 / square) - 1.0) < AT_THE_LIMIT
-        coefficients[limit, LINE] = math.inf
-        return coefficients
+        return motion_coefficients(self.spline.coarser() if coarser else self.spline, gyration)
 
     def ratios(self, phi: FloatArray) -> FloatArray:
         """1/ρ_∥, ρ_⊥/ρ_∥, ρ_ω/ρ_∥ at slip angles (n,), (n, 3)."""
@@ -159,10 +150,22 @@ class FrictionSection(SectionTable):
             )
         return friction_section(law, float(checked_delta(of[1])), wanted, **how)
 
-    @property
-    def bounds(self) -> tuple[float, float, float]:
-        """Of the values and of the accuracy."""
-        return -_ROUNDING, _LARGEST, max(0.1 * FINEST_ACCURACY, _CONSTANT / self.axis.cells**4)
+
+def motion_coefficients(spline: SlipSpline, gyration: float) -> FloatArray:
+    """What compiled motions of a puck with this k/r read of its friction ratios."""
+    square, factors = inertia_of(gyration)
+    coefficients = spline.with_inertia(square, factors)
+    # a line that is the limit of the motion is never crossed: rounding would, again and again
+    limit = np.abs(spline.values[:, 0, 2] * factors[2] - 1.0) < AT_THE_LIMIT
+    coefficients[limit, LINE] = math.inf
+    return coefficients
+
+
+def inertia_of(gyration: float) -> tuple[float, FloatArray]:
+    """k²/r², and what the friction ratios are multiplied with: the third by r²/(2k²)."""
+    # exactly 1 and ½ for a homogeneous puck
+    square = 0.5 if gyration == HOMOGENEOUS else gyration * gyration
+    return square, np.array([1.0, 1.0, 0.5 / square])
 
 
 def section_of_table(table: ResultantTable, delta: float, accuracy: float) -> FrictionSection:

@@ -14,10 +14,14 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact import one_sided
-from puck_tables.contact.laws import HOMOGENEOUS, Law
+from puck_tables.contact.laws import Law
 from puck_tables.contact.opening import critical_delta
-from puck_tables.kernels.section_spline import LINE, RATIOS, SLOPES
-from puck_tables.table.friction_section import AT_THE_LIMIT, FrictionSection
+from puck_tables.kernels.section_spline import RATIOS, SLOPES
+from puck_tables.table.friction_section import (
+    FrictionSection,
+    inertia_of,
+    motion_coefficients,
+)
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.singular_lines import lines_of
 from puck_tables.table.slip_axis import sides_of
@@ -41,21 +45,12 @@ class FrictionSlopes:
     def for_motion(self, gyration: float) -> FloatArray:
         """What compiled motions read: the ratios alone, as a friction section gives them."""
         ratios = SlipSpline(self.spline.sides, self.spline.values[..., :RATIOS], True)
-        coefficients = ratios.with_inertia(*_inertia(gyration, RATIOS))
-        square = coefficients[0, 6]
-        limit = np.abs(self.spline.values[:, 0, 2] * (0.5 / square) - 1.0) < AT_THE_LIMIT
-        coefficients[limit, LINE] = np.inf
-        return coefficients
+        return motion_coefficients(ratios, gyration)
 
     def for_slopes(self, gyration: float) -> FloatArray:
         """What their derivatives read: all six."""
-        return self.spline.with_inertia(*_inertia(gyration, SLOPES))
-
-
-def _inertia(gyration: float, functions: int) -> tuple[float, FloatArray]:
-    """k²/r², and what the functions are multiplied with: each third by r²/(2k²)."""
-    square = 0.5 if gyration == HOMOGENEOUS else gyration * gyration
-    return square, np.tile([1.0, 1.0, 0.5 / square], functions // RATIOS)
+        square, factors = inertia_of(gyration)
+        return self.spline.with_inertia(square, np.tile(factors, SLOPES // RATIOS))
 
 
 @lru_cache(maxsize=64)

@@ -2,13 +2,33 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any, Self
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any, Self, cast
 
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.contact import quadrature
+from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.laws import Law, law_of
-from puck_tables.table.check import CheckReport
-from puck_tables.table.metadata import KINDS, Progress
-from puck_tables.table.resultant_values import ResultantValues
+from puck_tables.contact.resultants import moment_balance
+from puck_tables.table.accuracy import Accuracy
+from puck_tables.table.build import COARSEST, Goal, built
+from puck_tables.table.check import CheckReport, Route, judged
+from puck_tables.table.resultant_values import HEIGHTS, ResultantValues, full_contact
+from puck_tables.table.slip_axis import LawAxis
+from puck_tables.table.table import Progress, kinds
+
+Tell = Callable[[int], None]
+
+# where truth is closed forms, and where it is quadrature
+_EXACT = Goal(2e-11, 1e-13, "an absolute error of the dimensionless resultants", 1.2, 1 << 16)
+_BY_QUADRATURE = Goal(1e-9, 1e-11, _EXACT.units, 2.0, 2048, safety=1.25)
+_PROBES, _FEW_PROBES = 60_000, 2400  # about as many points are measured
+_CHUNK = 256  # angles between two reports of progress
+_CEILING, _FLOOR = 3.0, 1e-13  # largest error × cells⁴, twice what was measured, and of the nodes
+_NODE = 1e-10  # how well nodes under a law of quadrature are known
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -22,8 +42,54 @@ class ResultantTable(ResultantValues):
     law : Law
     """
 
+    @classmethod
+    def is_of(cls, of: object) -> bool:
+        """Pressure laws and their names."""
+        return isinstance(of, Law) or (isinstance(of, str) and of not in kinds())
+
+    @classmethod
+    def built(cls, of: Any, accuracy: float | None = None, **how: Any) -> Self:
+        """A table under a pressure law, see :meth:`puck_tables.Table.build`."""
+        return cls._of_law(of if isinstance(of, Law) else law_of(of), accuracy, **how)
+
+    @classmethod
+    def _of_law(
+        cls, law: Law, accuracy: float | None, cells: int | None = None,
+        progress: Progress | None = None,
+    ) -> Self:  # fmt: skip
+        probes = _PROBES if law.can_lift else _FEW_PROBES
+        done, work = 0, probes
+
+        def tell(count: int) -> None:
+            nonlocal done
+            done += count
+            if progress is not None:
+                progress(min(done, work), work)
+
+        def at(cells: int) -> ResultantTable:
+            nonlocal done, work
+            done, work = 0, LawAxis(law.edges, cells).size + probes
+            return cls.tabulated(law, cells, tell)
+
+        goal = _EXACT if law.can_lift else _BY_QUADRATURE
+        found = built(at, lambda table: _measured(table, probes, tell), goal, accuracy, cells)
+        return cast(Self, found)
+
+    @classmethod
+    def tabulated(cls, law: Law, cells: int, tell: Tell | None = None) -> Self:
+        """The node values of a table, without a measured accuracy.
+
+        Examples
+        --------
+        >>> ResultantTable.tabulated(law_of("annulus:0.5"), 8).values.shape
+        (33, 4, 3)
+        """
+        phi = LawAxis(law.edges, cells).nodes()
+        heights = np.linspace(0.0, full_contact(law), HEIGHTS)
+        return cls(_truth(law, phi[:, None], heights, tell), law=law)
+
     def validate(self, progress: Progress | None = None, points: int | None = None) -> CheckReport:
-        """Judge the table by the law itself, under uniform pressure also by independent routes.
+        """Judge the table by the law itself, under uniform pressure also by direct quadrature.
 
         Parameters
         ----------
@@ -36,26 +102,113 @@ class ResultantTable(ResultantValues):
         CheckReport
             Deviations from the law (closed forms under uniform pressure) at random points, next to
             the singular lines, in every cell and at every node; under uniform pressure also from
-            direct quadrature, from the elementary entries, and of exact identities.  Other points
-            at every call.
+            direct quadrature.  Other points at every call.
 
         Examples
         --------
         >>> ResultantTable.shipped().validate(points=50).passed
         True
         """
-        from puck_tables.table.resultant_check import judged
+        uniform, rng = self.law.can_lift, np.random.default_rng()
+        count = (40_000 if uniform else 3000) if points is None else points
+        truth = "closed forms" if uniform else "quadrature"
+        allowed = min(self.tolerance, COARSEST)
+        if uniform:  # what it promises, but no more than its grid can need
+            allowed = min(self.tolerance, _CEILING / self.axis.cells**4 + _FLOOR)
 
-        return judged(self, progress, points)
+        def off(phi: FloatArray, delta: FloatArray) -> FloatArray:
+            return np.stack(self.resultants(phi, delta)) - _truth(self.law, phi, delta).T
 
-    @classmethod
-    def is_of(cls, of: object) -> bool:
-        """Pressure laws and their names."""
-        return isinstance(of, Law) or (isinstance(of, str) and of not in KINDS)
+        def off_at_nodes(phi: FloatArray, delta: FloatArray) -> FloatArray:
+            missed = self.values - _truth(self.law, nodes[:, None], self.heights)
+            return missed.reshape(-1, len(self.functions)).T
 
-    @classmethod
-    def built(cls, of: Any, accuracy: float | None = None, **how: Any) -> Self:
-        """A table under a pressure law, see :meth:`puck_tables.Table.build`."""
-        from puck_tables.table.resultant_check import tabulated
+        names, nodes = self.functions, self.axis.nodes()
+        inside = nodes[:-1] + rng.random(nodes.size - 1) * np.diff(nodes)
+        every_phi, every_delta = np.broadcast_arrays(nodes[:, None], self.heights)
+        routes = [
+            Route(truth, names, *adversarial_points(self, count, seed=None), off, allowed),
+            Route(f"{truth}, every cell", names, inside, self.delta_max * rng.random(inside.size),
+                  off, allowed),
+            Route("every node", names, every_phi.ravel(), every_delta.ravel(), off_at_nodes,
+                  min(allowed, _NODE)),
+        ]  # fmt: skip
+        if uniform:
 
-        return tabulated(cls, of if isinstance(of, Law) else law_of(of), accuracy, **how)
+            def off_quadrature(phi: FloatArray, delta: FloatArray) -> FloatArray:
+                direct = moment_balance(quadrature.integrals(phi), slip_direction(phi), delta)
+                return np.stack(self.resultants(phi, delta)) - np.stack(direct)
+
+            some = adversarial_points(self, min(count, 4000), seed=None)
+            routes.append(Route("direct quadrature", names, *some, off_quadrature, allowed))
+        return judged(self.source, self.tolerance, routes, progress)
+
+
+def _truth(law: Law, phi: FloatArray, delta: FloatArray, tell: Tell | None = None) -> FloatArray:
+    """The resultants by the law, (…, 3); ``phi`` (n, …), ``delta`` alike or of one φ."""
+    parts = []
+    for start in range(0, len(phi), _CHUNK):
+        some = slice(start, start + _CHUNK)
+        at = delta if delta.shape[:1] != phi.shape[:1] else delta[some]
+        parts.append(np.stack(law.resultants(phi[some], at), axis=-1))
+        if tell is not None:
+            tell(len(parts[-1]))
+    return np.concatenate(parts)
+
+
+def _measured(table: ResultantValues, probes: int, tell: Tell | None) -> Accuracy:
+    """The errors of a table against its law."""
+    phi, delta = adversarial_points(table, probes, seed=2012)
+    truth = _truth(table.law, phi, delta, tell).T
+    errors = np.abs(np.stack(table.resultants(phi, delta)) - truth)
+    coarse = None
+    if table.axis.cells % 2 == 0 and table.axis.cells >= 8:
+        half = replace(table, values=table.values[::2])
+        coarse = np.abs(np.stack(half.resultants(phi, delta)) - truth)
+    return Accuracy.of(errors, phi, delta, coarse)
+
+
+def adversarial_points(
+    table: ResultantValues, count: int, seed: int | None
+) -> tuple[FloatArray, FloatArray]:
+    """Points where a table is worst, and random ones.
+
+    Parameters
+    ----------
+    table : whose cells are probed
+    count : about how many
+    seed : of the random generator; None: other points at every call
+
+    Returns
+    -------
+    phi, delta : arrays (n,)
+        Random; both sides of the singular lines and of 0 and π/2 at all distances; nodes and
+        middles of cells.
+
+    Examples
+    --------
+    >>> table = ResultantTable.tabulated(law_of("uniform"), 8)
+    >>> phi, delta = adversarial_points(table, 100, seed=1)
+    >>> bool(np.abs(phi).min() == 0.0 and delta.max() == 1.0)
+    True
+    """
+    rng = np.random.default_rng(seed)
+    part = count // 6
+    lines = np.array([0.0, 0.5 * np.pi, *{side.line for side in table.axis.sides}])
+    near = rng.choice(lines, part)
+    near += rng.choice([-1.0, 1.0], part) * 10.0 ** -np.where(
+        rng.random(part) < 0.1, rng.uniform(16.0, 300.0, part), rng.uniform(0.3, 16.0, part)
+    )
+    nodes = table.axis.nodes()
+    middles = 0.5 * (nodes[1:] + nodes[:-1])
+    phi = np.concatenate([
+        lines, near[(near >= 0.0) & (near <= 0.5 * np.pi)],
+        rng.choice(nodes, min(nodes.size, part), replace=False),
+        rng.choice(middles, min(middles.size, 2 * part), replace=False),
+        rng.uniform(0.0, 0.5 * np.pi, 2 * part),
+    ])  # fmt: skip
+    special = np.array([0.0, 5e-324, 1e-8, 0.1, 0.5, 0.9, 1.0 - 2.0**-53, 1.0])
+    share = np.where(
+        rng.random(phi.size) < 0.3, rng.choice(special, phi.size), rng.random(phi.size)
+    )
+    return rng.choice([-1.0, 1.0], phi.size) * phi, table.delta_max * share

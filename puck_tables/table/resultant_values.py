@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -22,15 +22,13 @@ from puck_tables.contact.integrals import checked_phi
 from puck_tables.contact.laws import Law, law_of
 from puck_tables.contact.resultants import Resultants, checked_delta
 from puck_tables.errors import InputError
-from puck_tables.table.law_table import LawTable
-from puck_tables.table.metadata import Axis
+from puck_tables.io.dataset import Variable
+from puck_tables.table.section_table import LawTable
 from puck_tables.table.slip_axis import GRADING_POWER
 from puck_tables.table.spline_fit import height_terms, sided_coefficients
 
 HEIGHTS = 4  # nodes of δ in a file
 _UNIFORM = "uniform"
-_LARGEST = 1e3  # of a resultant: 64 stands in an extreme profile
-_FINEST = 0.1  # no table is better than so many times cells⁻⁴
 _INTERPRETATION = (
     "Friction on a puck of radius r, height h, mass m sliding with speed v and spin omega "
     "on a rough plane, Coulomb coefficient f, weight N = m g, whole base loaded by the "
@@ -142,9 +140,7 @@ class ResultantValues(LawTable):
         ------
         InputError
         """
-        mine, other = (one.profile for one in (self.law, law))
-        same = mine is None or (other is not None and np.array_equal(mine, other))
-        if not (same and (self.law.name, self.law.edges) == (law.name, law.edges)):
+        if self.law != law:
             raise InputError(
                 f"{self.source} is a table under the pressure law {self.law.name}, not "
                 f"{law.name}{'' if self.law.name != law.name else ' as it is now'}: give a table "
@@ -203,32 +199,12 @@ class ResultantValues(LawTable):
         return f"|phi| <= pi/2, 0 <= delta <= {self.delta_max:g}; refused outside"
 
     @property
-    def axes(self) -> dict[str, Axis]:
+    def axes(self) -> dict[str, Variable]:
         """Slip angle and height."""
         return {
-            "phi": Axis(self.axis.nodes(), "rad", "slip angle atan2(r omega, v)"),
-            "delta": Axis(self.heights, "1", "dimensionless height 2 f h / r"),
+            "phi": Variable(self.axis.nodes(), ("phi",), "rad", "slip angle atan2(r omega, v)"),
+            "delta": Variable(self.heights, ("delta",), "1", "dimensionless height 2 f h / r"),
         }
-
-    @property
-    def bounds(self) -> tuple[float, float, float]:
-        """Of the values and of the accuracy."""
-        return 0.0, _LARGEST, _FINEST / self.axis.cells**4
-
-    @classmethod
-    def shapes(cls, attributes: dict[str, Any]) -> dict[str, tuple[int, ...]]:
-        """Shapes of the arrays of a file with these attributes.
-
-        Examples
-        --------
-        >>> ResultantValues.shapes({"n_phi": 33, "profile_rows": 0})["spin"]
-        (33, 4)
-        """
-        shapes = super().shapes(attributes)
-        functions = dict.fromkeys(cls.functions, (*shapes["phi"], HEIGHTS))
-        return {"phi": shapes["phi"], "delta": (HEIGHTS,), **functions, **{
-            name: shape for name, shape in shapes.items() if name not in ("phi", *functions)
-        }}  # fmt: skip
 
 
 def full_contact(law: Law) -> float:

@@ -1,23 +1,55 @@
-"""Tables over the slip angle at one height, of a puck under a pressure law."""
+"""Tables over the slip angle under a pressure law, and those of them at one height."""
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable, Mapping
+from abc import abstractmethod
+from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.table.check import Check, CheckReport, compared
-from puck_tables.table.law_table import LawTable
-from puck_tables.table.metadata import Axis, Progress
-from puck_tables.table.singular_lines import singular_lines
+from puck_tables.contact.laws import Law
+from puck_tables.io.dataset import Variable
+from puck_tables.table.check import CheckReport, Route, judged
+from puck_tables.table.slip_axis import LawAxis
 from puck_tables.table.slip_spline import SlipSpline
+from puck_tables.table.table import Progress, Table
 
-_SAME = 1e-9  # of lines
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LawTable(Table):
+    """A table over the slip angle under a pressure law.
+
+    Parameters
+    ----------
+    values : array (nodes of φ, …)
+        At the nodes of ``axis``.
+    law : Law
+    """
+
+    _: KW_ONLY
+    law: Law
+
+    ends_too: ClassVar[bool] = False  # whether φ = 0 and π/2 are singular lines besides
+
+    @property
+    @abstractmethod
+    def lines_at(self) -> tuple[float, ...]:
+        """Cot φ of the singular lines, ascending."""
+
+    @cached_property
+    def axis(self) -> LawAxis:
+        """The slip angles of its nodes."""
+        sides = 2 * (len(self.lines_at) + self.ends_too)
+        return LawAxis(self.lines_at, (len(self.values) - 1) // sides, self.ends_too)
+
+    @property
+    def pressure_law(self) -> str:
+        """The name of the pressure law."""
+        return self.law.name
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -37,7 +69,6 @@ class SectionTable(LawTable):
     cotangents: tuple[float, ...]
 
     second = "delta"
-    entries: ClassVar[Mapping[str, type]] = {**LawTable.entries, "delta": float, "cotangents": str}
 
     @property
     def lines_at(self) -> tuple[float, ...]:
@@ -64,22 +95,17 @@ class SectionTable(LawTable):
         near += rng.choice([-1.0, 1.0], points) * 10.0 ** -rng.uniform(0.3, 15.0, points)
         some = rng.permutation(nodes.size - 1)[:points]
         inside = nodes[some] + rng.random(some.size) * np.diff(nodes)[some]
-        odd = self.odd_nodes(points // 2)
         routes = (
             ("random points", rng.uniform(0.0, 0.5 * np.pi, points), allowed),
             ("next to the lines", np.clip(near, 0.0, 0.5 * np.pi), allowed),
             ("in the cells", inside, allowed),
-            ("the oddest nodes", nodes[odd], at_nodes),
+            ("nodes", nodes[rng.permutation(nodes.size)[:points]], at_nodes),
         )
-        checks: list[Check] = []
-        for done, (where, phi, most) in enumerate(routes, 1):
-            second = 0.0 * phi + self.delta
-            checks += compared(
-                f"{truth}, {where}", self.quantities, error(phi).T, phi, second, most
-            )
-            if progress is not None:
-                progress(done, len(routes))
-        return CheckReport(self.source, self.tolerance, tuple(checks))
+        return judged(self.source, self.tolerance, [
+            Route(f"{truth}, {where}", self.quantities, phi, 0.0 * phi + self.delta,
+                  lambda phi, _: error(phi).T, most)
+            for where, phi, most in routes
+        ], progress)  # fmt: skip
 
     @property
     def grid(self) -> str:
@@ -92,22 +118,6 @@ class SectionTable(LawTable):
         return f"|phi| <= pi/2, delta = {self.delta:g} only"
 
     @property
-    def axes(self) -> dict[str, Axis]:
+    def axes(self) -> dict[str, Variable]:
         """Slip angle."""
-        return {"phi": Axis(self.axis.nodes(), "rad", "slip angle atan2(r omega, v)")}
-
-    @property
-    def parameters(self) -> dict[str, int | float | str]:
-        """Those of its law, height and lines."""
-        lines = json.dumps(self.cotangents)
-        return {**super().parameters, "delta": self.delta, "cotangents": lines}
-
-    @classmethod
-    def fields(cls, attributes: dict[str, Any], arrays: dict[str, FloatArray]) -> dict[str, Any]:
-        """Law, height and lines of a file."""
-        found = super().fields(attributes, arrays)
-        lines = tuple(float(line) for line in json.loads(attributes["cotangents"]))
-        needed = np.array(singular_lines(found["law"], attributes["delta"]))
-        if np.any(np.abs(np.subtract.outer(needed, lines)).min(axis=1) > _SAME * needed):
-            raise ValueError("its lines are not those of its puck")
-        return found | {"delta": attributes["delta"], "cotangents": lines}
+        return {"phi": Variable(self.axis.nodes(), ("phi",), "rad", "slip angle atan2(r omega, v)")}

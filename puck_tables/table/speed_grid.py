@@ -100,18 +100,6 @@ def patches_of(breaks: FloatArray, grade: int = 1) -> tuple[SlipPatch, ...]:
     )
 
 
-def patch_count(breaks: FloatArray) -> int:
-    """How many they are, without making them.
-
-    Examples
-    --------
-    >>> patch_count(np.array([0.0, 1.0, 2.0]))
-    8
-    """
-    slabs = len(breaks) - 1
-    return slabs * (slabs + 3) - 2
-
-
 def breaks_of(
     law: SpeedLaw | Callable[..., object], top_speed: float | None, scale: float | None
 ) -> FloatArray:

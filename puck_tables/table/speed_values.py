@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
-from dataclasses import KW_ONLY, dataclass, field
+from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import broadcast
-from puck_tables.contact.friction_laws import NAMED, FrictionLaw, law_of_numbers
+from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.contact.integrals import PatchIntegrals, checked_phi, slip_direction
 from puck_tables.contact.resultants import Resultants, moment_balance, pressure_tilt
 from puck_tables.contact.speed_law import SpeedLaw
@@ -24,35 +23,24 @@ from puck_tables.contact.speed_quadrature import (
     refuse_lifting,
 )
 from puck_tables.errors import InputError
+from puck_tables.io.dataset import Variable
 from puck_tables.kernels.speed_spline import DONE, fill_speed, packed
-from puck_tables.table.metadata import Axis
 from puck_tables.table.speed_fit import quintic_coefficients
-from puck_tables.table.speed_grid import (
-    COARSEST_CELLS,
-    HALVINGS,
-    SlipPatch,
-    patch_count,
-    patches_of,
-)
+from puck_tables.table.speed_grid import SlipPatch, patches_of
 from puck_tables.table.table import Table
 
 IntArray = npt.NDArray[np.int64]
 
-MAX_POINTS = 2000  # of a law in a file: HDF5 keeps no longer attribute
-_LARGEST = 10.0  # of a value, over the largest f and u f'
-# how many nodes are compared with the law as a file is read, and how well that is known
-_FINEST = 5e-14  # no table is better
 _INTERPRETATION = (
     "Friction on a puck of radius r, height h, mass m sliding with speed v and spin omega on a "
-    "rough plane whose coefficient f depends on the local slip speed u by the law in law_speeds, "
-    "law_values, law_kind; weight N = m g, uniform pressure tilted linearly by the moment balance. "
-    "phi = atan2(r omega, v), Q = hypot(v, r omega), slip directions (e_x, e_y) in units of r: "
-    "cos(phi) p_a = mean of f e_x, sin(phi) p_b = mean of f e_y x, sin(phi) p_d = mean of f (x e_y "
-    "- y e_x), cos(phi) p_e = mean of f (x e_y - y e_x) y, p_c = p_b - p_d. With g = 2h/r, D = 1 - "
-    "g^2 sin^2(phi) p_b p_c: force -N cos(phi) p_a/D along the velocity, -N sin(phi) cos(phi) g "
-    "p_a p_b/D across it (to the left), torque -N r sin(phi) (p_d + g^2 cos^2(phi) p_a p_b p_e/D). "
-    "A law by name has its numbers in law_values. Even in phi. Salnikova, Treschev, Gallyamov "
-    "2012, section 5, with f inside the integrals."
+    "rough plane whose coefficient f depends on the local slip speed u by the law in made_of; "
+    "weight N = m g, uniform pressure tilted linearly by the moment balance. phi = atan2(r omega, "
+    "v), Q = hypot(v, r omega), slip directions (e_x, e_y) in units of r: cos(phi) p_a = mean of f "
+    "e_x, sin(phi) p_b = mean of f e_y x, sin(phi) p_d = mean of f (x e_y - y e_x), cos(phi) p_e = "
+    "mean of f (x e_y - y e_x) y, p_c = p_b - p_d. With g = 2h/r, D = 1 - g^2 sin^2(phi) p_b p_c: "
+    "force -N cos(phi) p_a/D along the velocity, -N sin(phi) cos(phi) g p_a p_b/D across it (to "
+    "the left), torque -N r sin(phi) (p_d + g^2 cos^2(phi) p_a p_b p_e/D). Even in phi. "
+    "Salnikova, Treschev, Gallyamov 2012, section 5, with f inside the integrals."
 )
 _MAP = (
     "U = v + r|omega|, W = |v - r|omega||; patches between the breaks b_k of U and W, for r|omega| "
@@ -60,8 +48,8 @@ _MAP = (
     "exponent rounded up for a Stribeck exponent that is no whole number, else 1. b_k <= U <= "
     "b_k+1: U = b_k + (b_k+1 - b_k) xi^p; W = b_1/2 zeta^4, then W = b_l - (b_l - left end)(1 - "
     "zeta)^p up to b_k, p = 2 (3 where r|omega| < v and l = k); last U, W = b_k + (b_k+1 - b_k)(xi,"
-    " zeta). Nodes uniform in xi and zeta, zeta fastest; quintic not-a-knot splines in both. Cells "
-    f"= {COARSEST_CELLS} 2^halvings; halvings of a patch = 16 along xi + along zeta"
+    " zeta). Nodes uniform in xi and zeta, zeta fastest; quintic not-a-knot splines in both. "
+    "breaks, and cells of every patch along xi and zeta, stand in made_of"
 )
 
 
@@ -74,8 +62,7 @@ class SpeedValues(Table):
 
     _: KW_ONLY
     breaks: FloatArray
-    cells: IntArray = field(repr=False)
-    largest_f: float
+    cells: IntArray
     law: SpeedLaw | FrictionLaw | None = None
 
     kind = "speed"
@@ -97,10 +84,6 @@ class SpeedValues(Table):
         "method": "quadrature over circles about the centre of rotation, 1e-14",
         "map": _MAP,
     }
-    entries: ClassVar[Mapping[str, type]] = {
-        "law_kind": str, "law_speeds": str, "law_values": str, "breaks": str, "nodes": int,
-        "patches": int, "largest_f": float,
-    }  # fmt: skip
 
     @property
     def top(self) -> float:
@@ -228,92 +211,8 @@ class SpeedValues(Table):
         return f"|phi| <= pi/2, 0 <= v + r|omega| <= {self.top:g} m/s; refused outside"
 
     @property
-    def axes(self) -> dict[str, Axis]:
+    def axes(self) -> dict[str, Variable]:
         """The numbers of the nodes."""
-        return {"node": Axis(np.arange(float(len(self.values))), "1", "node of a patch")}
-
-    @property
-    def parameters(self) -> dict[str, int | float | str]:
-        """The law and the grid."""
-        assert self.law is not None
-        if isinstance(self.law, FrictionLaw):
-            speeds, values = [0.0, self.top], self.law.numbers
-        else:
-            speeds = np.asarray(self.law.speeds).tolist()
-            values = np.asarray(self.law.values).tolist()
         return {
-            "law_kind": self.law.kind,
-            "law_speeds": json.dumps(speeds), "law_values": json.dumps(values),
-            "breaks": json.dumps(self.breaks.tolist()), "nodes": len(self.values),
-            "patches": len(self.cells), "largest_f": self.largest_f,
-        }  # fmt: skip
-
-    @property
-    def profile(self) -> dict[str, Axis]:
-        """How often each patch was halved along its two axes."""
-        halvings = np.log2(self.cells / COARSEST_CELLS) @ [16.0, 1.0]
-        return {
-            "patch": Axis(np.arange(float(len(self.cells))), "1", "patch"),
-            "halvings": Axis(halvings, "1", "16 times those along xi, and those along zeta"),
+            "node": Variable(np.arange(float(len(self.values))), ("node",), "1", "node of a patch")
         }
-
-    @property
-    def bounds(self) -> tuple[float, float, float]:
-        """Of the values, each a mean of f, of u f', or of both; and of the accuracy."""
-        assert self.law is not None
-        largest = _LARGEST * (self.law.largest(self.top) + self.law.steepest(self.top))
-        return -largest, largest, _FINEST
-
-    @classmethod
-    def shapes(cls, attributes: dict[str, Any]) -> dict[str, tuple[int, ...]]:
-        """Shapes of the arrays of a file with these attributes.
-
-        Examples
-        --------
-        >>> SpeedValues.shapes({"nodes": 500, "patches": 2})["p_d"]
-        (500,)
-        """
-        nodes, patches = (attributes["nodes"],), (attributes["patches"],)
-        functions = dict.fromkeys(cls.functions, nodes)
-        return {"node": nodes, **functions, "patch": patches, "halvings": patches}
-
-    @classmethod
-    def fields(cls, attributes: dict[str, Any], arrays: dict[str, FloatArray]) -> dict[str, Any]:
-        """Law and grid of a file."""
-        breaks, speeds, values = (
-            np.array(json.loads(attributes[name]), np.float64)
-            for name in ("breaks", "law_speeds", "law_values")
-        )
-        kind = attributes["law_kind"]
-        law: SpeedLaw | FrictionLaw
-        if kind in NAMED:
-            law, top = law_of_numbers(kind, values.tolist()), float(speeds[-1])
-        else:
-            law = SpeedLaw(speeds, values, kind)
-            top = law.top_speed if np.array_equal(law.speeds, speeds) else np.nan
-        codes = np.clip(np.nan_to_num(arrays["halvings"]), 0.0, 255.0).astype(np.int64)
-        cells = COARSEST_CELLS << np.minimum(np.stack([codes // 16, codes % 16], axis=-1), HALVINGS)
-        if not (
-            breaks.ndim == 1 and breaks.size > 1 and breaks[0] == 0.0
-            and np.all(np.diff(breaks) > 0.0) and breaks[-1] <= top
-            and attributes["patches"] == patch_count(breaks)
-            and (cells + 1).prod(axis=1).sum() == attributes["nodes"]
-        ):  # fmt: skip
-            raise ValueError("its patches are not those of its law")
-        largest = attributes["largest_f"]
-        return {"breaks": breaks, "cells": cells, "largest_f": largest, "law": law}
-
-    @property
-    def unsaveable(self) -> str | None:
-        """A law that is a function, or of too many points."""
-        if self.law is None:
-            return (
-                "the friction law of this table is a function, which a file cannot hold: give the "
-                "law as a SpeedLaw of points"
-            )
-        if isinstance(self.law, SpeedLaw) and np.size(self.law.speeds) > MAX_POINTS:
-            return (
-                f"the friction law has {np.size(self.law.speeds)} points: a file holds "
-                f"{MAX_POINTS}; give it with fewer"
-            )
-        return None

@@ -2,28 +2,41 @@
 
 A table is node values, splined between, judged against a truth.  What is particular to a kind (its
 axes, how a node is computed, what is splined, its truth) stands with the kind, a subclass; how
-tables are built, saved, read and refused is the same for all.
+tables are saved, read, judged and refused is the same for all.
 """
 
 from __future__ import annotations
 
-from abc import abstractmethod
-from dataclasses import dataclass
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, fields
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import Any, Self, cast
+from typing import Any, ClassVar, Self, cast
 
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.lazy import above, names_above
 from puck_tables._core.real import instance, shown
-from puck_tables.errors import InputError
-from puck_tables.table import file
+from puck_tables._core.safe_write import write_bytes
+from puck_tables.errors import InputError, OutputError, TableError
+from puck_tables.io.dataset import Variable
+from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.check import CheckReport
-from puck_tables.table.metadata import KINDS, Progress, Record, kind_named
+from puck_tables.table.file import AGAIN, decode, encode, read_content
+
+Progress = Callable[[int, int], None]
+
+_KIND = "table of "  # how the package says where the class of a kind stands
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Table(Record):
+class Table(ABC):
     """A table: build one, save it, load it, ask it, judge it.
+
+    A kind adds, as fields, what its values follow from: a law, lines, a grid; files hold them.
 
     Parameters
     ----------
@@ -46,6 +59,32 @@ class Table(Record):
     >>> float(table.resultants(0.0, 1.0).perpendicular.round(6)), table.validate().passed
     (0.25, True)
     """
+
+    values: FloatArray
+    tolerance: float = field(default=0.0, kw_only=True)
+    accuracy: Accuracy | None = field(default=None, kw_only=True)
+    metadata: dict[str, Any] = field(default_factory=dict, kw_only=True)
+    source: str = field(default="memory", kw_only=True)
+
+    # what a kind is, as its files have it
+    kind: ClassVar[str]
+    algorithm: ClassVar[str]
+    functions: ClassVar[Mapping[str, str]]  # names, and what they are
+    second: ClassVar[str]  # the second axis, in words for a report
+    errors: ClassVar[str] = "absolute errors"  # what they are, in such words
+    quantities: ClassVar[tuple[str, ...]]  # what has them
+    words: ClassVar[Mapping[str, str]]  # title, interpretation, method, maps of the axes
+
+    def __post_init__(self) -> None:
+        values = self.values.view()
+        values.flags.writeable = False
+        object.__setattr__(self, "values", values)
+
+    def __repr__(self) -> str:
+        return (
+            f"<Table of {self.kind}: {self.pressure_law} pressure, {self.grid}, "
+            f"to {self.tolerance:g}, {self.source}>"
+        )
 
     @classmethod
     def build(cls, of: Any = "uniform", accuracy: float | None = None, **how: Any) -> Self:
@@ -102,7 +141,7 @@ class Table(Record):
         >>> table.grid, table.accuracy.worst <= 1e-6
         ('69 phi x 4 delta nodes', True)
         """
-        for kind in map(kind_named, KINDS) if cls is Table else (cls,):
+        for kind in map(_kind_named, kinds()) if cls is Table else (cls,):
             if kind.is_of(of):
                 return cast(Self, kind.built(of, accuracy, **how))
         raise InputError(
@@ -132,7 +171,7 @@ class Table(Record):
         puck_tables.errors.TableError: there is no table file /nowhere/table.h5: build one with \
 'puck build-tables -o FILE', or leave --table out to use the tables that come along
         """
-        return cls.read(file.read_content(path), str(path))
+        return cls.read(read_content(path), str(path))
 
     @classmethod
     def shipped(cls, kind: str = "resultants") -> Self:
@@ -159,8 +198,30 @@ class Table(Record):
     @classmethod
     def read(cls, content: bytes, source: str) -> Self:
         """The table in the bytes of a file from a source; see :meth:`load`."""
-        kinds = tuple(KINDS) if cls is Table else (cls.kind,)
-        return cast(Self, file.decode(content, source, kinds))
+        served = kinds() if cls is Table else [cls.kind]
+        try:
+            said, arrays, made_of = decode(content, source)
+            if said["kind"] not in served:
+                raise TableError(
+                    f"{source} holds '{said['kind']}', not a table of "
+                    f"{' or '.join(map(repr, served))}: give a file made by 'puck build-tables'"
+                )
+            kind = _kind_named(said["kind"])
+            if said["algorithm"] != kind.algorithm:
+                raise TableError(f"{source} was made by a recipe that this program does not know")
+            if made_of:
+                from puck_tables.table.law_record import from_plain  # not for stops: 25 ms
+
+                made_of = {name: from_plain(one) for name, one in made_of.items()}
+            return cast(Self, kind(
+                np.stack([arrays[name] for name in kind.functions], axis=-1), **made_of,
+                tolerance=said["tolerance"], accuracy=Accuracy.read(said["achieved_accuracy"]),
+                metadata=said, source=source,
+            ))  # fmt: skip
+        except (KeyError, ValueError, TypeError, OSError) as error:  # under a right seal
+            raise TableError(
+                f"{source} cannot be read as a table ({type(error).__name__}: {error}): {AGAIN}"
+            ) from None
 
     def save(
         self, path: str | Path, overwrite: bool = False, command: str = "library call"
@@ -182,7 +243,8 @@ class Table(Record):
         ------
         OutputError
             If the file exists (without ``overwrite``) or cannot be written, or the table has no
-            measured accuracy, a value that is not finite, or a law that no file can hold.
+            measured accuracy, no tolerance below 1, a value that is not finite, or a law that no
+            file can hold.
         TableError
             If what was written does not read back as the same table.
 
@@ -194,7 +256,37 @@ class Table(Record):
         >>> saved.metadata["pressure_law"]
         'uniform'
         """
-        return cast(Self, file.save(self, path, overwrite, command))
+        if self.accuracy is None or not np.all(np.isfinite(self.values)):
+            raise OutputError(
+                "a table without measured accuracy or with a non-finite value is not saved"
+            )
+        if not 0.0 < self.tolerance < 1.0:
+            raise OutputError(
+                f"a table that promises an error of {self.tolerance:g} is not saved: it must be "
+                "between 0 and 1"
+            )
+        content = self._encoded(self.accuracy, command)
+        written = type(self).read(content, str(path))
+        if not np.array_equal(written.values, self.values):
+            raise TableError(f"{path}: the table does not read back as it was written")
+        write_bytes(path, content, overwrite)
+        return written
+
+    def _encoded(self, accuracy: Accuracy, command: str) -> bytes:
+        from puck_tables.table.law_record import plain
+
+        own = [one.name for one in fields(self)[len(fields(Table)) :]]
+        said = {
+            "kind": self.kind, "pressure_law": self.pressure_law, "algorithm": self.algorithm,
+            **self.words, "valid_range": self.valid_range, "tolerance": self.tolerance,
+            "achieved_accuracy": accuracy.text(), "command": command,
+        }  # fmt: skip
+        functions = {
+            name: Variable(self.values[..., number], tuple(self.axes), "1", long_name)
+            for number, (name, long_name) in enumerate(self.functions.items())
+        }
+        made_of = {name: plain(getattr(self, name)) for name in own}
+        return encode(self.axes, functions, said, made_of)
 
     @abstractmethod
     def validate(self, progress: Progress | None = None) -> CheckReport:
@@ -203,6 +295,55 @@ class Table(Record):
         The points are other ones at every call, and the bounds are the kind's own: what a file
         says of itself is no yardstick.
         """
+
+    # what a kind says
+
+    @classmethod
+    @abstractmethod
+    def is_of(cls, of: object) -> bool:
+        """Whether tables of this kind are built of such a thing."""
+
+    @classmethod
+    @abstractmethod
+    def built(cls, of: Any, accuracy: float | None, **how: Any) -> Self:
+        """Such a table, see :meth:`build`."""
+
+    @property
+    def pressure_law(self) -> str:
+        """The name of the pressure law."""
+        return "uniform"
+
+    @property
+    @abstractmethod
+    def grid(self) -> str:
+        """How many nodes it has, in words."""
+
+    @property
+    @abstractmethod
+    def valid_range(self) -> str:
+        """Where it holds, in words; beyond it look-ups are refused."""
+
+    @property
+    @abstractmethod
+    def axes(self) -> dict[str, Variable]:
+        """The axes of the functions, in their order."""
+
+
+def kinds() -> list[str]:
+    """The names of the kinds of tables; the package says where their classes stand.
+
+    Examples
+    --------
+    >>> kinds()[:2]
+    ['resultants', 'stops']
+    """
+    return [name.removeprefix(_KIND) for name in names_above(_KIND)]
+
+
+def _kind_named(name: str) -> type[Table]:
+    """The class, loaded when it is asked for."""
+    kind: type[Table] = above(_KIND + name)
+    return kind
 
 
 def refuse_other_kind(table: Table | None, *kinds: type[Table]) -> None:
@@ -228,10 +369,8 @@ def refuse_other_kind(table: Table | None, *kinds: type[Table]) -> None:
 @cache
 def _shipped(kind: str) -> Any:
     place = files("puck_tables.tables").joinpath(f"{kind}.h5")
-    if kind not in KINDS or not place.is_file():
+    if kind not in kinds() or not place.is_file():
         raise InputError(
             f"no table of {shown(kind)} comes along: there are 'resultants' and 'stops'"
         )
-    return cast("type[Table]", kind_named(kind)).read(
-        place.read_bytes(), f"default table of {kind}"
-    )
+    return _kind_named(kind).read(place.read_bytes(), f"default table of {kind}")

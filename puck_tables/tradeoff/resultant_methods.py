@@ -16,7 +16,6 @@ from puck_tables.contact.laws import law_of
 from puck_tables.contact.resultants import moment_balance
 from puck_tables.kernels.closed_form_kernel import _fill as fill_closed_form
 from puck_tables.kernels.quadratic import fill_resultants
-from puck_tables.table.resultant_check import tabulate
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.tradeoff.bicubic import fill_bicubic, graded_coefficients
 from puck_tables.tradeoff.contender import Contender, Ready
@@ -63,7 +62,7 @@ class ResultantTask:
 
 
 def _tabulated(size: int) -> ResultantTable:
-    return tabulate(ResultantTable, law_of("uniform"), size // 2)
+    return ResultantTable.tabulated(law_of("uniform"), size // 2)
 
 
 _SIDES = np.array(_tabulated(9).axis.sides)

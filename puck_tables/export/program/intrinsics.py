@@ -17,13 +17,16 @@ Rows = Sequence[int]  # where the rows of each side begin, and where all end; ho
 # tables of one error: cells, degree, powers, quantum and numbers
 STOP: Numbers = ()
 # all numbers here stand for those that a file is written with
-STOP_CELLS, STOP_DEGREE, STOP_POWERS = 1, 1, 1
+STOP_ROWS: Rows = ()
+STOP_DEGREE, STOP_POWERS = 1, 1
 STOP_QUANTUM = 1.0
 CURVE: Numbers = ()
-CURVE_CELLS, CURVE_DEGREE, CURVE_POWERS = 1, 1, 1
+CURVE_ROWS: Rows = ()
+CURVE_DEGREE, CURVE_POWERS = 1, 1
 CURVE_QUANTUM = 1.0
 INVERSE: Numbers = ()
-INVERSE_CELLS, INVERSE_DEGREE, INVERSE_POWERS = 1, 1, 1
+INVERSE_ROWS: Rows = ()
+INVERSE_DEGREE, INVERSE_POWERS = 1, 1
 INVERSE_QUANTUM = 1.0
 CONSTANTS: Numbers = ()
 CONSTANTS_POWERS = 1
@@ -38,7 +41,6 @@ BORDERS: Numbers = ()
 ORIGINS: Numbers = ()
 SCALES: Numbers = ()
 SIDES = 4  # pieces of φ between singular lines
-STOP_ROWS: Rows = ()
 PATCH: Numbers = ()
 PATCH_ROWS: Rows = ()
 PATCH_DEGREE = 1

@@ -10,9 +10,6 @@ from __future__ import annotations
 from math import exp, log, sqrt
 
 from puck_tables.export.program.intrinsics import (
-    CONSTANTS,
-    CONSTANTS_POWERS,
-    CONSTANTS_QUANTUM,
     END,
     ORBIT,
     ORBIT_CELLS,
@@ -39,6 +36,7 @@ from puck_tables.export.program.state_along import (
     THERE_SHARE,
     THERE_SIDE,
     TURNING,
+    constant,
 )
 from puck_tables.export.program.stop import stop_functions
 
@@ -46,14 +44,6 @@ from puck_tables.export.program.stop import stop_functions
 # delta/TALLEST in pure sliding, in pure spin and at the limit
 LIMIT, START, RATE, TURN = 0, 1, 3, 6
 SEARCH = 60  # steps of the Illinois rule at most
-
-
-def constant(row: int, s: float) -> float:
-    """One of the numbers that depend on the height alone."""
-    total: float = 0.0
-    for m in range(CONSTANTS_POWERS - 1, -1, -1):
-        total = total * s + CONSTANTS[row * CONSTANTS_POWERS + m]
-    return CONSTANTS_QUANTUM * total
 
 
 def limit_motion_at(branch: int, xi: float, s: float, out_row: Out) -> None:

@@ -13,15 +13,15 @@ from puck_tables.export.program.intrinsics import (
     CONSTANTS_POWERS,
     CONSTANTS_QUANTUM,
     CURVE,
-    CURVE_CELLS,
     CURVE_DEGREE,
     CURVE_POWERS,
     CURVE_QUANTUM,
+    CURVE_ROWS,
     INVERSE,
-    INVERSE_CELLS,
     INVERSE_DEGREE,
     INVERSE_POWERS,
     INVERSE_QUANTUM,
+    INVERSE_ROWS,
     Out,
     room,
 )
@@ -52,7 +52,7 @@ THERE_SIDE, THERE_SHARE, REGULAR = 0, 1, 2
 
 
 def constant(row: int, s: float) -> float:
-    """One of the numbers of a curve: limit, kappa, turning over delta, ln T at phi = pi/4."""
+    """One of the numbers that depend on the height alone."""
     total: float = 0.0
     for m in range(CONSTANTS_POWERS - 1, -1, -1):
         total = total * s + CONSTANTS[row * CONSTANTS_POWERS + m]
@@ -88,8 +88,9 @@ def regular_heading(
 def similarity_at(side: int, share: float, s: float, out_row: Out) -> None:
     """The regular parts of ln N and of the heading."""
     look_up(
-        CURVE, side * (CURVE_CELLS + CURVE_DEGREE) * CURVE_POWERS * 2, CURVE_CELLS, CURVE_DEGREE,
-        CURVE_POWERS, 2, CURVE_QUANTUM, place_of(share), s, out_row,
+        CURVE, CURVE_ROWS[side] * CURVE_POWERS * 2,
+        CURVE_ROWS[side + 1] - CURVE_ROWS[side] - CURVE_DEGREE, CURVE_DEGREE, CURVE_POWERS, 2,
+        CURVE_QUANTUM, place_of(share), s, out_row,
     )  # fmt: skip
 
 
@@ -144,8 +145,9 @@ def arrive(launch: Out, delta: float, log_left: float, place: Out, f: Out) -> No
     rest: float = -expm1(0.25 * log_y)
     xi: float = 1.0 - sqrt(rest if rest > 0.0 else 0.0)
     look_up(
-        INVERSE, side * (INVERSE_CELLS + INVERSE_DEGREE) * INVERSE_POWERS, INVERSE_CELLS,
-        INVERSE_DEGREE, INVERSE_POWERS, 1, INVERSE_QUANTUM, xi, s, c,
+        INVERSE, INVERSE_ROWS[side] * INVERSE_POWERS,
+        INVERSE_ROWS[side + 1] - INVERSE_ROWS[side] - INVERSE_DEGREE, INVERSE_DEGREE,
+        INVERSE_POWERS, 1, INVERSE_QUANTUM, xi, s, c,
     )  # fmt: skip
     share: float = y * c[0]
     if share > 1.0:

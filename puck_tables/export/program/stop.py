@@ -6,10 +6,10 @@ from puck_tables.export.program.intrinsics import (
     SPIN_TIME,
     STEEP,
     STOP,
-    STOP_CELLS,
     STOP_DEGREE,
     STOP_POWERS,
     STOP_QUANTUM,
+    STOP_ROWS,
     Out,
     room,
 )
@@ -37,9 +37,9 @@ STOP_FUNCTIONS = 5  # T, X, Y, path, body angle
 def table_at(side: int, share: float, delta: float, f: Out) -> None:
     """T, along, across, path length and body angle by look-up; side 1 where r|w| > v."""
     look_up(
-        STOP, side * (STOP_CELLS + STOP_DEGREE) * STOP_POWERS * STOP_FUNCTIONS, STOP_CELLS,
-        STOP_DEGREE, STOP_POWERS, STOP_FUNCTIONS, STOP_QUANTUM, place_of(share),
-        STEEP * delta * delta - 1.0, f,
+        STOP, STOP_ROWS[side] * STOP_POWERS * STOP_FUNCTIONS,
+        STOP_ROWS[side + 1] - STOP_ROWS[side] - STOP_DEGREE, STOP_DEGREE, STOP_POWERS,
+        STOP_FUNCTIONS, STOP_QUANTUM, place_of(share), STEEP * delta * delta - 1.0, f,
     )  # fmt: skip
 
 

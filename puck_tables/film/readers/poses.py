@@ -21,13 +21,15 @@ from typing import Any
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables._core.beginning import HDF5
 from puck_tables.errors import InputError
-from puck_tables.film.film import Film, TrackedBody
-from puck_tables.film.saved import Quantity, film_of_columns
+from puck_tables.film.column_roles import Layout, deeplabcut
+from puck_tables.film.film import Film, Reader
+from puck_tables.film.headings import Heading
+from puck_tables.film.readers.saved import Quantity, film_of_saved
+from puck_tables.film.text_tables import film_of_columns
 
 _LARGEST = 1 << 27  # numbers in a file, a gigabyte
-# of 1, as DeepLabCut and SLEAP tell it: their own default below which a point is hidden
-_LIKELY = 0.6
 _DIMS = ("track", "xy", "node", "frame")
 
 
@@ -58,7 +60,7 @@ def film_of_hdf5(path: str | Path) -> Film:
                 if isinstance(group, h5py.Group) and isinstance(group.get("table"), h5py.Dataset):
                     return _deeplabcut(path, group["table"])
             if isinstance(file.get("time"), h5py.Dataset) and "source" in file.attrs:
-                return film_of_columns(path, _columns(path, file))
+                return film_of_saved(path, _columns(path, file))
             if "metadata" in file and "points" in file:
                 raise InputError(
                     f"{path} is a project of SLEAP: export it as Analysis HDF5, or CSV"
@@ -89,38 +91,26 @@ def _deeplabcut(path: str | Path, table: Any) -> Film:
     """The film in a table of pandas."""
     if table.size * sum(_width(table, name) for name in table.dtype.names) > _LARGEST:
         raise InputError(f"{path} holds more than {_LARGEST} numbers: cut it into shorter films")
-    columns: dict[tuple[str, ...], FloatArray] = {}
+    labels: list[Any] = []
+    columns = [np.asarray(table["index"])]
     for name in table.dtype.names:
         kind = table.attrs.get(f"{name}_kind")
         if name == "index" or kind is None:
             continue
         values = np.asarray(table[name], dtype=np.float64).reshape(table.size, -1)
-        labels = names_in(path, bytes(kind))
-        if len(labels) != values.shape[1] or not all(isinstance(one, tuple) for one in labels):
-            raise InputError(f"{path} is a table of pandas, but none of DeepLabCut: save it as CSV")
-        columns |= {tuple(label): values[:, n] for n, label in enumerate(labels)}
-    if not columns or not all(len(label) in (3, 4) for label in columns):
+        named = names_in(path, bytes(kind))
+        columns += [*values.T]
+        labels += named if len(named) == len(values.T) else [()]
+    if not labels or not all(isinstance(one, tuple) and len(one) in (3, 4) for one in labels):
         raise InputError(f"{path} is a table of pandas, but none of DeepLabCut: save it as CSV")
-    if not np.issubdtype(table.dtype["index"], np.integer):
+    if not np.issubdtype(columns[0].dtype, np.integer):
         raise InputError(
             f"{path} names its frames instead of numbering them: it holds labels for training, "
             "not a film"
         )
-    frames = np.asarray(table["index"], dtype=np.float64)
-    film = Film("DeepLabCut table", [], "px", y_down=True, jointed=True, likely=_LIKELY)
-    for owner in dict.fromkeys(label[1] if len(label) == 4 else "" for label in columns):
-        mine = {
-            (label[-2], label[-1]): values for label, values in columns.items()
-            if len(label) == 3 or label[1] == owner
-        }  # fmt: skip
-        marks = {
-            mark: np.column_stack([values, mine[mark, "y"]])
-            for (mark, role), values in mine.items() if role == "x"
-        }  # fmt: skip
-        body = TrackedBody(owner, marks, frame=frames)
-        body.likelihoods = {mark: v for (mark, role), v in mine.items() if role == "likelihood"}
-        film.bodies.append(body)
-    return film
+    columns[0] = columns[0].astype(np.float64)
+    layout = deeplabcut((one[1] if len(one) == 4 else "", *one[-2:]) for one in labels)
+    return film_of_columns(path, layout, dict(enumerate(columns)), {})
 
 
 def _width(table: Any, name: str) -> int:
@@ -215,16 +205,18 @@ def _sleap(path: str | Path, file: Any) -> Film:
     names = _names(file, "track_names", values.shape[0], "track")
     if len(names) == 1:
         names = [""]
-    film = Film("SLEAP analysis file", [], "px", y_down=True, jointed=True)
-    frames = np.arange(values.shape[3], dtype=np.float64)
     scores = _scores(file, values.shape)
-    for n, name in enumerate(names):
-        marks = {node: values[n, :, k, :].T.copy() for k, node in enumerate(nodes)}
-        body = TrackedBody(name, marks, frame=frames)
-        if scores is not None:
-            body.likelihoods = {node: scores[n, k] for k, node in enumerate(nodes)}
-        film.bodies.append(body)
-    return film
+    columns = [("", Heading("frame"))]
+    numbers = [np.arange(values.shape[3], dtype=np.float64)]
+    for n, k in np.ndindex(len(names), len(nodes)):
+        told = [*values[n, :, k], *([] if scores is None else [scores[n, k]])]
+        columns += [
+            (names[n], Heading(role, nodes[k]))
+            for role, _ in zip(("x", "y", "likelihood"), told, strict=False)
+        ]
+        numbers += told
+    layout = Layout(columns, "SLEAP analysis file", jointed=True, pixels=True, likely=None)
+    return film_of_columns(path, layout, dict(enumerate(numbers)), {})
 
 
 def _order(tracks: Any) -> list[str] | None:
@@ -252,3 +244,6 @@ def _scores(file: Any, shape: tuple[int, ...]) -> FloatArray | None:
     if "point_scores" not in file or file["point_scores"].shape != (shape[0], shape[2], shape[3]):
         return None
     return np.asarray(file["point_scores"], dtype=np.float64)
+
+
+READERS = (Reader(lambda _, head: head.startswith(HDF5), film_of_hdf5),)

@@ -30,11 +30,12 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables._core.beginning import ZIP
 from puck_tables._core.safe_read import read_whole
 from puck_tables._core.text import encoding_of
 from puck_tables._core.units import unit_word
 from puck_tables.errors import InputError
-from puck_tables.film.film import Film, TrackedBody
+from puck_tables.film.film import Film, Reader, TrackedBody, first_text
 
 _LARGEST = 1 << 26  # bytes of a .trk, or of all in an archive
 _LARGEST_ARCHIVE = 1 << 32  # bytes: more is no archive of Tracker, or one made to fill the memory
@@ -316,3 +317,15 @@ def _world(
     p, q = (pixels[:, 0] - u) / scale, (v - pixels[:, 1]) / scale
     cos, sin = np.cos(angle), np.sin(angle)
     return np.column_stack([p * cos + q * sin, q * cos - p * sin])
+
+
+def _is_archive(path: str | Path, head: bytes) -> bool:
+    """Whether a file is a .trz archive, or one whose first bytes are damaged, which it says."""
+    damaged = Path(path).suffix.lower() == ".trz" and not first_text(path, head)
+    return head.startswith(ZIP) or damaged
+
+
+READERS = (
+    Reader(_is_archive, film_of_zip),
+    Reader(lambda path, head: first_text(path, head).startswith("<"), film_of_xml),
+)

@@ -14,13 +14,20 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from puck_tables._core.safe_read import read_whole
-from puck_tables._core.units import factor, unit_named
+from puck_tables._core.units import unit_named
 from puck_tables.errors import InputError
-from puck_tables.film.film import Film, TrackedBody
+from puck_tables.film.column_roles import Layout
+from puck_tables.film.film import Film, Reader, first_text
+from puck_tables.film.headings import Heading
+from puck_tables.film.text_tables import film_of_columns
 
 _LARGEST = 1 << 29  # bytes of JSON
 _NEEDED = ("time", "x", "y")
-_KINDS = {"time": "time", "x": "length", "y": "length", "orientation": "angle"}
+# what a column is, and of what kind its unit
+_ROLES = {
+    "time": ("time", "time"), "x": ("x", "length"), "y": ("y", "length"),
+    "orientation": ("angle", "angle"), "name": ("id", ""),
+}  # fmt: skip
 _WRONG = (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError)
 
 
@@ -31,7 +38,7 @@ class Quantity(NamedTuple):
     unit: str
 
 
-def film_of_columns(path: str | Path, columns: Mapping[str, Quantity]) -> Film:
+def film_of_saved(path: str | Path, columns: Mapping[str, Quantity]) -> Film:
     """The film in columns of these names.
 
     Raises
@@ -42,7 +49,7 @@ def film_of_columns(path: str | Path, columns: Mapping[str, Quantity]) -> Film:
     Examples
     --------
     >>> columns = {"time": ([0, 1], "s"), "x": ([0, 2], "m"), "y": ([0, None], "m")}
-    >>> film = film_of_columns("a.h5", {name: Quantity(*one) for name, one in columns.items()})
+    >>> film = film_of_saved("a.h5", {name: Quantity(*one) for name, one in columns.items()})
     >>> film.unit, film.bodies[0].marks[""].tolist()
     ('m', [[0.0, 0.0], [2.0, nan]])
     """
@@ -50,36 +57,25 @@ def film_of_columns(path: str | Path, columns: Mapping[str, Quantity]) -> Film:
         raise InputError(
             f"{path} has no columns time, x and y, as puck track saves them: save the table as CSV"
         )
-    numbers, units = {}, {}
-    for name, kind in _KINDS.items():
-        if name in columns:
+    layout, values, words = Layout([], "file of saved tracks", likely=None), {}, {}
+    for name, (role, kind) in _ROLES.items():
+        if name not in columns:
+            continue
+        n, (told, unit) = len(layout.columns), columns[name]
+        if kind:
             try:
-                numbers[name] = np.array(columns[name].values, np.float64)
+                values[n] = np.array(told, np.float64)
             except _WRONG:
                 raise InputError(f"{path}: its column {name} does not hold numbers") from None
-            unit = columns[name].unit
-            units[name] = unit_named(f"{path}: the unit of {name}", unit, kind) if unit else ""
-    names = [str(one) for one in columns["name"].values] if "name" in columns else []
-    size = numbers["time"].size
-    rows = {one.shape for one in numbers.values()} | ({(len(names),)} if names else set())
-    if rows != {(size,)} or not size:
+            unit = unit_named(f"{path}: the unit of {name}", unit, kind) if unit else ""
+        else:
+            names = list(dict.fromkeys(map(str, told)))
+            words[n] = np.array([names.index(str(one)) for one in told]), names
+        layout.columns.append(("", Heading(role, "", unit)))
+    rows = {one.shape for one in (*values.values(), *(codes for codes, _ in words.values()))}
+    if len(rows) != 1 or len(size := rows.pop()) != 1 or not size[0]:
         raise InputError(f"{path} holds no table with a row for each frame of a track")
-    if units["x"] != units["y"]:
-        raise InputError(f"{path}: its columns x and y are not in one unit: save the table as CSV")
-    film = Film(
-        "file of saved tracks", [], units["x"], units.get("orientation", ""),
-        timed=bool(units["time"]),
-    )  # fmt: skip
-    numbers["time"] *= factor(units["time"] or "s", "time")
-    owners = np.array(names or [""] * size)
-    for owner in dict.fromkeys(owners.tolist()):
-        mine = owners == owner
-        place = np.column_stack([numbers["x"][mine], numbers["y"][mine]])
-        body = TrackedBody(owner, {"": place}, time=numbers["time"][mine])
-        if "orientation" in numbers:
-            body.angles[""] = numbers["orientation"][mine]
-        film.bodies.append(body)
-    return film
+    return film_of_columns(path, layout, values, words)
 
 
 def film_of_json(path: str | Path) -> Film:
@@ -111,17 +107,20 @@ def film_of_json(path: str | Path) -> Film:
         if isinstance(whole.get("columns"), dict):
             columns = {
                 name: Quantity(one["values"], str(one.get("unit") or ""))
-                for name, one in whole["columns"].items() if name in (*_KINDS, "name")
+                for name, one in whole["columns"].items() if name in _ROLES
             }  # fmt: skip
         else:
             first = rows[0] if rows else {}
             columns = {
                 name: Quantity([row.get(name) for row in rows], "")
-                for name in first if name in (*_KINDS, "name")
+                for name in first if name in _ROLES
             }  # fmt: skip
     except _WRONG:
         raise InputError(f"{path} looks like JSON and is none: save the table as CSV") from None
     try:
-        return film_of_columns(path, columns)
+        return film_of_saved(path, columns)
     except InputError as error:
         raise InputError(f"{error} (it looks like JSON)") from None
+
+
+READERS = (Reader(lambda path, head: first_text(path, head).startswith("{"), film_of_json),)

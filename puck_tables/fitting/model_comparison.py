@@ -1,0 +1,311 @@
+"""What an estimate is held against: friction over slip speed, other laws, frames held out.
+
+Every law is fitted with the same unknowns to the same frames.  The noise is that of the law that
+leaves least (or the one given), and a residual beyond four standard deviations counts as four, so
+that no law gains by calling frames outliers.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.contact.laws import law_of
+from puck_tables.errors import InputError
+from puck_tables.fitting.certainty import Z95, Certainty
+from puck_tables.fitting.estimate import FARTHEST, FARTHEST_PLACE, Estimate, estimate
+from puck_tables.fitting.fit_spec import FitSpec
+from puck_tables.fitting.least_squares import LOOSE, minimise
+from puck_tables.fitting.observations import FEWEST, Observations, rests_from
+from puck_tables.fitting.parameters import NODES
+from puck_tables.fitting.problem import ANGLE, PLACE, PRIOR, Known, Problem
+from puck_tables.fitting.whole_turns import on_another_floor
+
+_FRAMES = 80  # that tell whether such a law may be the reason of a misfit
+_LEAST = 0.02  # of the largest friction of a line: the smallest
+_SHARES = (0.0, 0.08, 0.3, 1.0)  # of the fastest slip
+
+
+def over_speeds(
+    result: Estimate, speeds: tuple[float, ...], between: str, known: Known
+) -> Estimate:
+    """The estimate with a friction coefficient for each slip speed, from that of one for all."""
+    moved, start = _begun(result.problem, result.x, speeds)
+    lines, _ = minimise(moved, start, LOOSE)
+    spec = replace(moved.spec, between=between)
+    return estimate(replace(moved, spec=spec), lines, known)
+
+
+def tried(result: Estimate) -> Estimate:
+    """About what a law over slip speed leaves of the frames of an estimate."""
+    problem = result.problem
+    films = []
+    for film in problem.films:
+        few = np.zeros(film.time.size, bool)
+        few[np.linspace(0, film.time.size - 1, _FRAMES).astype(int)] = True
+        films.append(film.part(few))
+    radius = problem.spec.scales(problem.numbers_at(result.x))[2]
+    _, _, vx, vy, spin, _ = problem.launches(result.x).T
+    top = float((np.hypot(vx, vy) + radius * np.abs(spin)).max())
+    speeds = tuple(float(f"{1.1 * top * share:.2g}") for share in _SHARES)
+    fewer = problem.with_films(tuple(films))
+    moved, start = _begun(fewer, result.x, speeds)
+    lines, _ = minimise(moved, start, LOOSE)
+    smooth = replace(moved, spec=replace(moved.spec, between="cubic"))
+    x, _ = minimise(smooth, lines, LOOSE)
+    return replace(result, problem=smooth, x=x, minima=())
+
+
+def _begun(
+    problem: Problem, x: FloatArray, speeds: tuple[float, ...]
+) -> tuple[Problem, FloatArray]:
+    """A problem of lines between slip speeds, with the friction of an estimate at each.
+
+    Where drag besides friction is nearer to the tracks, which is a line, it is that of the line.
+    Where f is the same at all speeds the slopes of a cubic jump: lines lead away from there.
+    """
+    spec = problem.spec.over(speeds, "linear")
+    numbers, launches = problem.numbers_at(x), problem.launches(x)
+    numbers.update({name: numbers["friction"] for name in spec.free if name in NODES})
+    moved = replace(problem, spec=spec, weights=(), tall=False)
+    start = moved.unknowns(numbers, launches, problem.estimated_walls(x))
+    line = None if problem.impact_specs else on_another_floor(problem, x)
+    if line is None:
+        return moved, start
+    there, _ = minimise(*line, LOOSE)
+    result, gravity = line[0].numbers_at(there), problem.spec.known()["gravity"]
+    values = result["friction"] + result["drag"] / gravity * np.array(speeds)
+    values = np.maximum(values, _LEAST * values.max())
+    numbers.update(dict(zip(NODES, values.tolist(), strict=False)))
+    if "delta" in numbers:  # of the same height
+        numbers["delta"] = min(numbers["delta"] * values[0] / numbers["friction"], 1.0)
+    other = moved.unknowns(numbers, line[0].launches(there))
+    near = [float((moved.residuals(one) ** 2).sum()) for one in (start, other)]
+    return moved, other if near[1] < near[0] else start
+
+
+def law_over(
+    result: Estimate, covariance: FloatArray, at: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """The friction coefficient at slip speeds (n,) m/s, and its standard errors (n,)."""
+    spec, numbers = result.problem.spec, result.problem.numbers_at(result.x)
+    count = len(spec.speeds)
+    slopes = np.zeros((at.size, count))
+    for k, name in enumerate(spec.free[:count]):
+        step = 1e-4 * numbers[name]
+        ends = [spec.speed_law({**numbers, name: numbers[name] + by})(at) for by in (step, -step)]
+        slopes[:, k] = (ends[0] - ends[1]) / (2.0 * step)
+    spread = np.einsum("ni,ik,nk->n", slopes, covariance[:count, :count], slopes)
+    return np.asarray(spec.speed_law(numbers)(at)), np.sqrt(spread)
+
+
+DRAG = "+drag"
+_CONTENDS = 60.0  # of χ²: laws worse than the best by more are not fitted again
+
+Fitted = Callable[[FitSpec, tuple[float, float], Known], Estimate]
+
+
+class LawScore(NamedTuple):
+    """One law.
+
+    ``chi2``: squares of residuals under the common noise; ``unknowns``: how many were found;
+    ``weight``: its share of the Akaike weights exp(−½(χ² + 2 unknowns)); ``numbers``: what was
+    found of the puck.
+    """
+
+    name: str
+    chi2: float
+    unknowns: int
+    weight: float
+    numbers: dict[str, float]
+
+
+def compare(
+    variants: Mapping[str, FitSpec], noise: tuple[float, float], known: Known, fit_law: Fitted
+) -> tuple[LawScore, ...]:
+    """The laws named, best first; ``fit_law`` fits each with a noise, known or not."""
+    names, questions = list(variants), list(variants.values())
+    first = [fit_law(one, noise, known) for one in questions]
+    common = [
+        noise[kind] if known[kind] else min(one.problem.noise[kind] for one in first)
+        for kind in range(2)
+    ]
+    unknowns = np.array([one.x.size for one in first])
+    chi2 = np.array([chi2_under(one, (common[0], common[1])) for one in first])
+    score = chi2 + 2.0 * unknowns
+    again = list(first)
+    for k in np.flatnonzero(score < score.min() + _CONTENDS):
+        if not (known.place and known.angle):
+            again[k] = fit_law(questions[k], (common[0], common[1]), Known(True, True, True))
+            chi2[k] = chi2_under(again[k], (common[0], common[1]))
+    score = chi2 + 2.0 * unknowns
+    weight = np.exp(-0.5 * (score - score.min()))
+    weight /= weight.sum()
+    result = [
+        LawScore(name, float(c), int(m), float(w), one.problem.numbers_at(one.x))
+        for name, c, m, w, one in zip(names, chi2, unknowns, weight, again, strict=True)
+    ]
+    order = np.argsort(score, kind="stable")
+    return tuple(result[k] for k in order)
+
+
+def variants_of(spec: FitSpec, names: Any) -> dict[str, FitSpec]:
+    """What is asked of each law by its name.
+
+    Raises
+    ------
+    InputError
+        If they are no list, a law is not known, or named twice.
+    """
+    if isinstance(names, str):
+        raise InputError(f"laws must be a list of names, got the text '{names}'")
+    if len(set(names)) < len(names):
+        raise InputError(f"laws {', '.join(names)}: name each law once")
+    return {name: _variant(spec, name) for name in names}
+
+
+def _variant(spec: FitSpec, name: str) -> FitSpec:
+    """The same question of another law."""
+    drags = name.endswith(DRAG)
+    law = law_of(name.removesuffix(DRAG))
+    free = tuple(n for n in spec.free if n != "inner" and (n != "drag" or drags))
+    if drags and "drag" not in free:
+        free = (*free, "drag")
+    fixed = {n: v for n, v in spec.fixed.items() if n != "inner"}
+    return replace(spec, puck=replace(spec.puck, pressure=law), free=free, fixed=fixed)
+
+
+def chi2_under(result: Estimate, noise: tuple[float, float]) -> float:
+    """χ² under a noise, of all frames, with no residual beyond the farthest."""
+    rows = result.problem.with_noise(noise, result.x, result.kept).residuals(result.x)
+    total = float(np.sum(rows[result.problem.kinds == PRIOR] ** 2))
+    for x, y, turn in result.problem.each():
+        place = rows[x] ** 2 + rows[y] ** 2
+        total += float(np.minimum(place, FARTHEST_PLACE).sum())
+        total += float(np.minimum(rows[turn] ** 2, FARTHEST**2).sum())
+    return total if math.isfinite(total) else math.inf
+
+
+LEAST_SHARE, LARGEST_SHARE = 0.05, 0.9
+
+
+@dataclass(frozen=True, eq=False)
+class HeldOut:
+    """Predictions of frames that the fit did not see.
+
+    ``tracks``: whose later part it is; ``z_place`` (n,), ``z_angle`` (m,): what was seen less what
+    was predicted, over the standard deviation of noise and prediction together; ``chance``: the
+    range in which :attr:`rms` lies by chance, 95 of 100 times, if the model is right.
+    """
+
+    tracks: tuple[str, ...]
+    z_place: FloatArray
+    z_angle: FloatArray
+    chance: tuple[float, float]
+
+    @property
+    def inside(self) -> float:
+        """The share of observations within 95 % of their prediction."""
+        every = np.abs(np.concatenate([self.z_place, self.z_angle]))
+        return float(np.mean(every < Z95))
+
+    @property
+    def rms(self) -> float:
+        """The root mean square of z; 1 where the model and its errors are right.
+
+        An outlier counts as four.
+        """
+        every = np.clip(np.concatenate([self.z_place, self.z_angle]), -4.0, 4.0)
+        return float(np.sqrt(np.mean(every**2)))
+
+
+def split(
+    films: tuple[Observations, ...], hold_out: float | tuple[str, ...], spread: float
+) -> tuple[tuple[Observations, ...], tuple[npt.NDArray[np.bool_], ...]]:
+    """The tracks with what is fitted of them alone, and which frames of each are predicted.
+
+    Parameters
+    ----------
+    films : the tracks
+    hold_out : the last share of the moving frames of each, or names of tracks of which the later
+        half is
+    spread : noise of places, m
+
+    Raises
+    ------
+    InputError
+    """
+    if isinstance(hold_out, float):
+        if not LEAST_SHARE <= hold_out <= LARGEST_SHARE:
+            raise InputError(
+                f"hold_out must be a share of the frames from {LEAST_SHARE:g} to {LARGEST_SHARE:g},"
+                f" or names of tracks, got {hold_out:g}"
+            )
+        shares = [hold_out] * len(films)
+    else:
+        known = [film.name for film in films]
+        for name in hold_out:
+            if name not in known:
+                raise InputError(f"hold_out names '{name}': the tracks are {', '.join(known)}")
+        shares = [0.5 if film.name in hold_out else 0.0 for film in films]
+    kept, later = [], []
+    for film, share in zip(films, shares, strict=True):
+        moving = rests_from(film, spread)
+        count = film.time.size if share == 0.0 else round((1.0 - share) * moving)
+        if count < FEWEST + 2 and share > 0.0:
+            raise InputError(
+                f"{film.name} would keep {count} frames: hold out a smaller share, or other tracks"
+            )
+        after = np.arange(film.time.size) >= count
+        kept.append(film.part(~after))
+        later.append(after)
+    return tuple(kept), tuple(later)
+
+
+def predicted(
+    part: Estimate, certainty: Certainty, films: tuple[Observations, ...],
+    later: tuple[npt.NDArray[np.bool_], ...],
+) -> HeldOut:  # fmt: skip
+    """How far the frames held out are from their predictions."""
+    whole = part.problem.with_films(films).with_noise(part.problem.noise, part.x)
+    rows, slopes = whole.residuals(part.x), whole.jacobian(part.x)
+    by_fit = np.einsum("ik,kl,il->i", slopes, certainty.covariance, slopes)
+    z, chosen = -rows / np.sqrt(1.0 + by_fit), np.zeros(rows.size, bool)
+    for film, (x, y, turn), after in zip(films, whole.each(), later, strict=True):
+        chosen[x] = after
+        chosen[y] = after & (film.straight is None)
+        if film.angle is not None:
+            chosen[turn] = after[np.isfinite(film.angle)]
+    names = tuple(film.name for film, after in zip(films, later, strict=True) if after.any())
+    noise_degrees = math.inf if certainty.degrees == math.inf else part.degrees
+    return HeldOut(
+        names, z[chosen & (whole.kinds == PLACE)], z[chosen & (whole.kinds == ANGLE)],
+        _by_chance(slopes[chosen], by_fit[chosen], certainty.covariance, noise_degrees),
+    )  # fmt: skip
+
+
+def _by_chance(
+    slopes: FloatArray, by_fit: FloatArray, covariance: FloatArray, noise_degrees: float
+) -> tuple[float, float]:
+    """Between which the rms of z lies with 95 %, over ``noise_degrees`` of its noise.
+
+    The z of one motion err together: with R their correlations Σz² is as (n/ν) χ² of
+    ν = n²/tr R² degrees (Satterthwaite), over the noise that was told as F.
+    """
+    from scipy.special import chdtri, fdtri
+
+    weight = 1.0 / (1.0 + by_fit)
+    shared = covariance @ (slopes.T * weight) @ slopes
+    square = float(np.sum(weight**2 * (1.0 + 2.0 * by_fit)) + np.sum(shared * shared.T))
+    degrees = by_fit.size**2 / square
+    if noise_degrees == math.inf:
+        ends = [chdtri(degrees, tail) / degrees for tail in (0.975, 0.025)]
+    else:
+        ends = [fdtri(degrees, noise_degrees, share) for share in (0.025, 0.975)]
+    return math.sqrt(ends[0]), math.sqrt(ends[1])

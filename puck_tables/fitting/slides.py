@@ -1,0 +1,274 @@
+"""The slides of tracks, from impact to impact, and how they change with the unknowns.
+
+A state at an impact changes with the launch of its slide and with what moves the puck; the moment t
+with the gap of the rims, dt = dgap/u_n; the state after it with all of these, the wall and the
+numbers of the rims.  The law of impact is differenced, and the chain is their product.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cached_property
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.fitting.forward_model import (
+    DECEL,
+    DELTA,
+    PLACE,
+    RADIUS,
+    SPIN,
+    TIME,
+    VX,
+    VY,
+    Moving,
+    states_and_slopes,
+    states_of,
+)
+from puck_tables.fitting.impact_law import (
+    AS_LAUNCH,
+    ImpactSpec,
+    ImpactState,
+    Slide,
+    after_impact,
+    gap_of,
+    impact_at,
+)
+from puck_tables.fitting.parameters import LAUNCH
+from puck_tables.fitting.unknowns import NumbersOf, Unknowns
+
+_STEP, _CURVE_STEP = 1e-6, 1e-4  # of a scale; of what changes the curve itself
+_LEAST = 1e-2
+_FRAMES = list[tuple[slice, FloatArray, Slide]]
+
+
+class Slides(Unknowns):
+    """How the pucks of some tracks move: in slides, of which impacts begin all but the first."""
+
+    impact_specs: tuple[ImpactSpec, ...]
+
+    def moving(self, result: NumbersOf) -> Moving:
+        """What moves the puck."""
+        return self.spec.moving(result, self.tall)
+
+    def slides(self, x: FloatArray) -> tuple[list[list[Slide]], list[ImpactState]]:
+        """The slides of each track, in their order, and the impacts between them.
+
+        Times are those after the start of the first track.
+        """
+        result = self.numbers_at(x)
+        slides = [
+            [Slide(self._begin(n, result), launch)] for n, launch in enumerate(self.launches(x))
+        ]
+        impacts = []
+        if self.impact_specs:
+            moving, walls = self.moving(result), self.estimated_walls(x)
+            gyration = {**self.spec.known(), **result}["gyration"]
+        for impact_spec in self.impact_specs:
+            wall = None if impact_spec.wall < 0 else walls[impact_spec.wall]
+            before = tuple(slides[n][-1] for n in impact_spec.films)
+            impact = impact_at(
+                moving, gyration, self.spec.rims(result, wall is None), impact_spec, before, wall
+            )
+            for n, slide in zip(impact_spec.films, impact.after, strict=True):
+                slides[n].append(slide)
+            impacts.append(impact)
+        return slides, impacts
+
+    def _begin(self, n: int, result: NumbersOf) -> float:
+        """When a track begins, s after the start of the first."""
+        film = self.films[n]
+        late = 0.0 if film.row is None else self.spec.readout(result) * float(film.row[0])
+        return film.start - self.films[0].start + late
+
+    def times(self, n: int, result: NumbersOf) -> FloatArray:
+        """The times of a track's frames after its first: lines of a picture are read in turn."""
+        film = self.films[n]
+        if film.row is None:
+            return film.time
+        late: FloatArray = self.spec.readout(result) * (film.row - film.row[0])
+        return film.time + late
+
+    def _parts(self, n: int, result: NumbersOf, slides: list[Slide]) -> _FRAMES:
+        """The frames of each slide of a track, their times after its launch, and the slide."""
+        times = self.times(n, result)
+        if len(slides) == 1:
+            return [(slice(0, times.size), times, slides[0])]
+        since = np.array([slide.since - slides[0].since for slide in slides])
+        firsts = np.searchsorted(times, since[1:])
+        ends = [0, *np.maximum.accumulate(firsts).tolist(), times.size]
+        return [
+            (slice(ends[m], ends[m + 1]), times[ends[m] : ends[m + 1]] - since[m], slide)
+            for m, slide in enumerate(slides)
+        ]
+
+    def states(self, x: FloatArray) -> list[FloatArray]:
+        """The states (6, n) of the model at the frames of each track."""
+        result = self.numbers_at(x)
+        moving, (slides, _) = self.moving(result), self.slides(x)
+        return [
+            np.concatenate([
+                states_of(moving, slide.launch, times)
+                for _, times, slide in self._parts(n, result, track)
+            ], axis=1) for n, track in enumerate(slides)
+        ]  # fmt: skip
+
+    def paths(self, x: FloatArray) -> list[FloatArray]:
+        """Places and angles (3, n) of the model at the frames of each track."""
+        return [states[PLACE] for states in self.states(x)]
+
+    def paths_and_slopes(self, x: FloatArray) -> Iterator[tuple[FloatArray, FloatArray]]:
+        """The same of each track in turn, with their derivatives (3, n, m)."""
+        result, slides, changes = self.numbers_at(x), self.slides(x)[0], self.slopes_of_slides(x)
+        at = _Along(self, result, x.size)
+        for n, film in enumerate(self.films):
+            path = np.empty((3, film.time.size))
+            slopes = np.empty((3, film.time.size, x.size))
+            parts = self._parts(n, result, slides[n])
+            for (frames, times, slide), change in zip(parts, changes[n], strict=True):
+                row = None if film.row is None else film.row[frames]
+                states, slopes[:, frames], _ = at.states_and_slopes(
+                    slide, change, times, PLACE, row
+                )
+                path[:, frames] = states[PLACE]
+            yield path, slopes
+
+    def slopes_of_slides(self, x: FloatArray) -> list[list[FloatArray]]:
+        """The derivatives of each slide of each track (7, m): since when, then its launch."""
+        slopes = [[self._first(n, x.size)] for n in range(len(self.films))]
+        if not self.impact_specs:
+            return slopes
+        slides, impacts = self.slides(x)
+        at = _Along(self, self.numbers_at(x), x.size)
+        for impact_spec, impact in zip(self.impact_specs, impacts, strict=True):
+            before = [
+                at.of_impact(slides[n][len(slopes[n]) - 1], slopes[n][-1], impact.time)
+                for n in impact_spec.films
+            ]
+            after = _through(self, x, impact_spec, impact, before)
+            for n, one in zip(impact_spec.films, after, strict=True):
+                slopes[n].append(one)
+        return slopes
+
+    @cached_property
+    def spots(self) -> dict[tuple[int, str], int]:
+        """Where each unknown stands, by its track and name."""
+        return {key: k for k, key in enumerate(self.names)}
+
+    def _first(self, n: int, size: int) -> FloatArray:
+        """Of the first slide of a track."""
+        result, film = np.zeros((7, size)), self.films[n]
+        for k, name in enumerate(LAUNCH):
+            if (n, name) in self.spots:
+                result[1 + k, self.spots[n, name]] = 1.0
+        if film.straight is not None:
+            for main in (1 + film.straight.main, 3 + film.straight.main):
+                result[main + 1 - 2 * film.straight.main] = film.straight.slope * result[main]
+        if film.row is not None and (-1, "readout") in self.spots:
+            result[0, self.spots[-1, "readout"]] = film.row[0]
+        return result
+
+
+class _Along:
+    """States along slides, and their derivatives, for numbers of the puck."""
+
+    def __init__(self, problem: Slides, result: NumbersOf, size: int) -> None:
+        spec = problem.spec
+        self._problem, self._result, self._moving = problem, result, problem.moving(result)
+        self._curve = [k for k, name in enumerate(spec.free) if spec.changes_motion(name)]
+        self._by = np.zeros((7, size))  # of what states are differentiated to
+        for k, name in enumerate(spec.free):
+            if k not in self._curve:
+                self._by[[DECEL, DELTA, RADIUS], k] = spec.slopes(result, name)
+
+    def states_and_slopes(
+        self, slide: Slide, change: FloatArray, times: FloatArray, rows: slice,
+        row: FloatArray | None = None,
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:  # fmt: skip
+        """States (6, n) at times (n,) after a launch, derivatives (k, n, m) of k rows, by time.
+
+        ``change`` (7, m): of the slide; ``row`` (n,): how far down the picture the frames show it.
+        """
+        states, slopes = states_and_slopes(self._moving, slide.launch, times)
+        slopes = slopes[:, rows].swapaxes(0, 1)
+        self._by[[VX, VY, SPIN]], self._by[TIME] = change[3:6], -change[0]
+        out: FloatArray = (slopes.reshape(-1, 7) @ self._by).reshape(*slopes.shape[:2], -1)
+        out[PLACE] += change[[1, 2, 6], None]
+        for k in self._curve:
+            out[:, :, k] += self._by_difference(k, times, slide)[rows]
+        if row is not None and (-1, "readout") in self._problem.spots:
+            out[:, :, self._problem.spots[-1, "readout"]] += slopes[:, :, TIME] * row
+        return states, out, slopes[:, :, TIME]
+
+    def of_impact(
+        self, slide: Slide, change: FloatArray, time: float
+    ) -> tuple[FloatArray, FloatArray]:
+        """The derivatives (6, m) of a slide's state at a moment, and how fast it changes (6,)."""
+        since = np.array([time - slide.since])
+        _, out, speed = self.states_and_slopes(slide, change, since, slice(6))
+        return out[AS_LAUNCH, 0], speed[AS_LAUNCH, 0]
+
+    def _by_difference(self, k: int, times: FloatArray, slide: Slide) -> FloatArray:
+        """The derivative of states to what changes the curve itself."""
+        name = self._problem.spec.free[k]
+        low, high = self._problem.spec.limits(name)
+        value = self._result[name]
+        ends = [min(max(value + side * _CURVE_STEP, low), high) for side in (-1.0, 1.0)]
+        states = [
+            states_of(self._problem.moving({**self._result, name: end}), slide.launch, times)
+            for end in ends
+        ]
+        slope: FloatArray = (states[1] - states[0]) / (ends[1] - ends[0])
+        return slope
+
+
+def _through(
+    problem: Slides, x: FloatArray, impact_spec: ImpactSpec, impact: ImpactState,
+    before: list[tuple[FloatArray, FloatArray]],
+) -> list[FloatArray]:  # fmt: skip
+    """The derivatives (7, m) of the slides after an impact."""
+    slopes = [np.zeros((7, x.size)) for _ in before]
+    pair = impact_spec.wall < 0
+    for k in range(x.size):
+        step = _STEP * max(abs(float(x[k])), _LEAST)
+        means = []
+        for side in (1.0, -1.0):
+            moved = x.copy()
+            moved[k] += side * step
+            result = problem.numbers_at(moved)
+            wall = None if pair else problem.estimated_walls(moved)[impact_spec.wall]
+            means.append((side * step, problem.spec.scales(result)[2], result, wall))
+        later = 0.0
+        if impact.touches:
+            gaps = [
+                gap_of(_shifted(impact, before, k, by, 0.0), wall, radius)
+                for by, radius, _, wall in means
+            ]
+            approach = 0.5 * (gaps[0][1] + gaps[1][1])
+            later = (gaps[0][0] - gaps[1][0]) / (2.0 * step * approach) if approach > 0.0 else 0.0
+        ends = []
+        for by, radius, result, wall in means:
+            gyration = {**problem.spec.known(), **result}["gyration"]
+            states = _shifted(impact, before, k, by, later)
+            ends.append(
+                after_impact(states, radius, gyration, problem.spec.rims(result, pair), wall)[0]
+            )
+        for out, one, two in zip(slopes, *ends, strict=True):
+            out[0, k], out[1:, k] = later, (one - two) / (2.0 * step)
+    # a state holds x, y, vx, vy, spin, angle as a launch does
+    return slopes
+
+
+def _shifted(
+    impact: ImpactState,
+    before: list[tuple[FloatArray, FloatArray]],
+    k: int,
+    by: float,
+    later: float,
+) -> list[FloatArray]:
+    """States at an impact where an unknown is changed."""
+    return [
+        state + by * (slope[:, k] + speed * later)
+        for state, (slope, speed) in zip(impact.before, before, strict=True)
+    ]
