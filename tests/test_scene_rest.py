@@ -104,8 +104,8 @@ def test_a_torque_that_grows_slips_and_follows_its_law(tmp_path: Any) -> None:
     np.savetxt(path, [[0, 0, 0, 0], [2, 0, 0, 2]], delimiter=",")
     whole = scene(0.0, 0.0) | {"force": {"over_time": str(path)}, "time": 1.5}
     run = simulate_scene(whole)
-    assert run.events[0][1] == "stick" and run.events[1][1] == "slip"
-    assert run.events[1][0] == pytest.approx(2.0 / 3.0, rel=1e-9)
+    assert run.events[0].what == "slip"
+    assert run.events[0].time == pytest.approx(2.0 / 3.0, rel=1e-9)
     inertia = 0.5 / (0.2 * G)
     assert run.last["spin"] == pytest.approx(0.5 * (1.5 - 2.0 / 3.0) ** 2 / inertia, rel=1e-8)
 

@@ -74,7 +74,7 @@ def simulate(scene: SceneSpec, times: npt.ArrayLike | None = None) -> Run:
         events=_events(world),
         stop_times=world.motion_ends,
         energy_residual=missed,
-        error_estimate=error,
+        error_estimate=error + _late(world),
         speed_scale=speed,
         rate_scale=rate,
         steps=int(world._game.counts[g.N_PIECES]),
@@ -202,6 +202,12 @@ def _close_enough(scene: SceneSpec, moments: FloatArray | None) -> _Done:
     return best
 
 
+def _late(world: World) -> float:
+    """How long, in units of Q/J, the rebounds of one puck would have lasted that died out."""
+    speed, rate, *_, late = world._game.pace.tolist()
+    return late * rate / speed if len(world.names) == 1 else 0.0
+
+
 def _error(world: World) -> float:
     """How far check runs are from it at the end, and of one puck on the way and in time.
 
@@ -233,5 +239,4 @@ def _error(world: World) -> float:
                 gaps.append(min(abs(check.motion_ends[0] - stops[0]), LATER * now) * rate / speed)
         except PuckError:  # it meets what has no answer: so nearly did the run
             gaps.append(float(np.hypot(*np.ptp(states[-1, :, :2], axis=0))) / length)
-    late = float(world._game.pace[4]) * rate / speed if alone else 0.0
-    return max(gaps) + late + world.place_error / length
+    return max(gaps) + world.place_error / length
