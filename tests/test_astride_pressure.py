@@ -10,7 +10,7 @@ import pytest
 from astride_judge import Ground
 
 import puck_tables as pt
-from puck_tables.scene.floor_forces import friction_at
+from puck_tables.world.floor_forces import friction_at
 
 CORNERS = np.array([[-0.5, -0.9], [1.4, -0.2], [0.1, 0.1], [0.3, 1.2]])
 FLOORS = {

@@ -13,7 +13,7 @@ from scipy.integrate import quad
 
 import puck_tables as pt
 from puck_tables.kernels.circle_arcs import arc_to
-from puck_tables.scene.floor_forces import friction_at
+from puck_tables.world.floor_forces import friction_at
 
 CORNERS = np.array([[-0.5, -0.9], [1.4, -0.2], [0.1, 0.1], [0.3, 1.2]])
 

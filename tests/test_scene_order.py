@@ -9,6 +9,7 @@ import pytest
 from scipy.integrate._ivp import dop853_coefficients as published
 
 from puck_tables import Drag, Floor, Launch, Puck, Scene
+from puck_tables.motion.tableaus import DORMAND_PRINCE_8
 from puck_tables.scene import explicit
 
 COARSE, FINE = 1e-5, 1e-11
@@ -48,7 +49,7 @@ def test_the_numbers_are_those_that_are_published() -> None:
 
 def test_they_are_of_order_8_and_their_estimate_of_no_less_than_3() -> None:
     """Trees without branches: weights times powers of the nodes are 1/(k + 1)."""
-    a, c, b = explicit._A, explicit._C, explicit._B
+    a, c, b = explicit._A, explicit._C, DORMAND_PRINCE_8.b
     for k in range(8):
         assert b @ c**k == pytest.approx(1.0 / (k + 1), rel=1e-13)
     tall = np.ones(explicit.STAGES)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -23,7 +24,6 @@ from puck_tables.scene.entries import tables_of
 from puck_tables.scene.parts import Floor
 from puck_tables.scene.pieces import PieceSpec
 from puck_tables.scene.run import Run
-from puck_tables.scene.zones import zones_of
 from puck_tables.world.agreement import pieces_of
 
 STATE = ("x", "y", "orientation", "vx", "vy", "spin")
@@ -177,12 +177,12 @@ class Answer(Result):
         puck = self.run.scene.puck
         if floor.strips is None:
             return puck
-        zones, last = zones_of(self.run.scene), self.last()
-        place = zones.lines[0, :2] @ [last["x"], last["y"]]
-        zone = int(np.searchsorted(zones.lines[:, 2], place, "right"))
-        if zones.first[zone] != zones.last[zone]:
+        strips, last = floor.strips, self.last()
+        place = math.cos(strips.direction) * last["x"] + math.sin(strips.direction) * last["y"]
+        off = place - np.array(strips.borders)
+        if (np.abs(off) < puck.radius).any():
             return None
-        return replace(puck, friction=floor.strips.friction[zones.first[zone]])
+        return replace(puck, friction=strips.friction[int((off > 0.0).sum())])
 
     def puck_number(self, name: str | None) -> int | None:
         """Which of several pucks a name means; None of a single one.

@@ -8,12 +8,11 @@ from functools import lru_cache
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import rounded_up
 from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import AccuracyError, InputError
-from puck_tables.scene.agreement import launch_velocity, law_of_rows
+from puck_tables.scene.agreement import law_of_rows
 from puck_tables.scene.ingredients import BySpeed
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.table.speed_build import FINEST_ACCURACY
@@ -30,33 +29,15 @@ _FLAT = 8.0  # times its own scale goes the first table of a launch from rest
 _one_at_a_time = threading.Lock()  # the threads of a sweep need the same table
 
 
-def friction_by_speed(scene: SceneSpec, normal: float, reach: float) -> tuple[BySpeed, FloatArray]:
-    """Friction as the loop reads it, and the largest of it, N (1,).
-
-    ``normal``: N; ``reach``: how many times farther than it seems to need the table of a law by
-    name goes.
-
-    Raises
-    ------
-    InputError, ContactError
-        If the law cannot be read, ends below the slip at the launch, or lifts the base.
-    AccuracyError
-        If it has too many corners for so fine a tolerance; it says which can be reached.
-    """
-    puck, (ux, uy, rim) = scene.puck, slip_at_launch(scene)
-    table, largest = law_up_to(scene, math.hypot(ux, uy) + abs(rim), reach)
-    height_ratio = 2.0 * puck.height / puck.radius
-    table.refuse_height(height_ratio)
-    return BySpeed(table.compiled, height_ratio, normal, 1.0), np.array([normal * largest])
-
-
 def law_up_to(scene: SceneSpec, fastest: float, reach: float) -> tuple[SpeedTable, float]:
     """The table of a friction law that holds for such slips of the rim, m/s, and the largest f.
 
     Raises
     ------
-    InputError, AccuracyError
-        As :func:`friction_by_speed`.
+    InputError
+        If the law cannot be read, or ends below them.
+    AccuracyError
+        If it has too many corners for so fine a tolerance; it says which can be reached.
     """
     law = speed_law(scene)
     top = _first_top(law, fastest)
@@ -154,14 +135,3 @@ def _kept_table(of: FrictionLaw | Points, accuracy: float, top: float) -> SpeedT
         return table_for(of, accuracy, top_speed=top)
     speeds, values = zip(*of, strict=True)
     return table_for(SpeedLaw(speeds, values), accuracy)
-
-
-def slip_at_launch(scene: SceneSpec) -> tuple[float, float, float]:
-    """Velocity of the centre and rim speed relative to the floor at the launch, m/s."""
-    floor, (x, y) = scene.floor, scene.launch.position
-    vx, vy = launch_velocity(scene)
-    return (
-        vx - floor.velocity[0] + floor.turning * (y - floor.centre[1]),
-        vy - floor.velocity[1] - floor.turning * (x - floor.centre[0]),
-        scene.puck.radius * (scene.launch.spin - floor.turning),
-    )

@@ -20,7 +20,7 @@ from puck_tables.scene.ingredients import Stretch
 
 STAGES = len(DORMAND_PRINCE_8.c)  # the last one stands at the end of the step
 
-_A, _C, _B = DORMAND_PRINCE_8.a, DORMAND_PRINCE_8.c, DORMAND_PRINCE_8.b
+_A, _C = DORMAND_PRINCE_8.a, DORMAND_PRINCE_8.c
 _ERROR_5, _ERROR_3 = DORMAND_PRINCE_8.e
 # of each stage, the first one besides that at the start that it is made of; and of the end
 _SECOND = np.array([

@@ -80,15 +80,6 @@ class Dry(NamedTuple):
 
 
 @inlined
-def dry_in(regions: Regions, region: int) -> Dry:
-    """The friction of one of the regions."""
-    law = regions.by_speed
-    if regions.astride[region]:
-        law = BySpeed(regions.ground, 0.0, ASTRIDE, 1.0)
-    return Dry(regions.load[region], regions.delta[region], regions.cuts[region], law)
-
-
-@inlined
 def is_astride(dry: Dry) -> bool:
     """Whether the base lies on several frictions."""
     return dry.by_speed.normal < 0.0

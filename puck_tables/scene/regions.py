@@ -1,4 +1,4 @@
-"""Dry friction of every region of a scene's floor, for its puck, as the compiled loop reads it."""
+"""Friction ratios at one height, as good as a scene asks, and how wrong they may be."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from puck_tables.errors import AccuracyError
 from puck_tables.kernels.section_spline import HEADER, RATIOS
 from puck_tables.motion.body import body_of, is_plain
 from puck_tables.motion.friction_source import closed_form_friction, table_friction
-from puck_tables.scene.by_speed import NO_LAW, friction_by_speed, law_error
+from puck_tables.motion.puck_spec import PuckSpec
+from puck_tables.scene.by_speed import law_error
 from puck_tables.scene.ground import NO_GROUND
 from puck_tables.scene.ingredients import BySpeed, Regions
 from puck_tables.scene.parts import Orthotropic
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.scene.zones import ground_of, zones_of
 from puck_tables.table.friction_section import FINEST_ACCURACY
 from puck_tables.table.resultant_table import ResultantTable
 
@@ -26,48 +26,24 @@ CLOSED_FORM_ERROR, TABLE_ERROR = 1e-14, 2e-11
 SLICE_SHARE = 0.1  # of the error wanted
 
 
-def regions_of(scene: SceneSpec, reach: float = 1.0) -> Regions:
-    """Friction ratios in every region at the height that it has, or by slip speed.
-
-    ``reach``: see :func:`puck_tables.scene.by_speed.friction_by_speed`.
+def section_of(puck: PuckSpec, delta: float, tol: float) -> FloatArray:
+    """The friction ratios of a puck of any kind at a height, good enough for an error wanted.
 
     Raises
     ------
-    InputError, ContactError
-        If pressure law, gyration or height are out of range, or the friction law cannot be read.
     AccuracyError
-        If the friction of the puck cannot be tabulated as fine as the scene asks.
+        If they cannot be tabulated as fine as that.
     """
-    puck, floor = scene.puck, scene.floor
-    normal = puck.mass * puck.gravity * math.cos(floor.slope)
-    if floor.law:
-        by_speed, load = friction_by_speed(scene, normal, reach)
-        return alone(load, np.zeros(1), closed_form_friction(0.0).coefficients[None, :], by_speed)
-    if floor.orthotropic is not None:
-        axes = axes_of(floor.orthotropic)
-        load = np.array([normal * axes[:2].max()])
-        by_direction = BySpeed(axes, 2.0 * puck.height / puck.radius, normal, 1.0)
-        return alone(
-            load, np.zeros(1), closed_form_friction(0.0).coefficients[None, :], by_direction
-        )
-    heights = scene.heights
-    load = normal * np.array(scene.frictions)
-    if all(is_plain(puck.pressure, puck.gyration, delta) for delta in heights):
-        cuts = np.stack([plain_cut(scene.tol, delta) for delta in heights])
-        return _under_zones(scene, normal, load, np.array(heights), cuts)
-    accuracy = friction_error(scene)
-    # how the mass is spread stands in the equations of the scene, not in its friction
-    bodies = [body_of(puck.pressure, delta, puck.gyration) for delta in heights]
-    try:
-        slices = [body.friction(accuracy).coefficients for body in bodies]
+    accuracy = max(SLICE_SHARE * tol, FINEST_ACCURACY)
+    try:  # how the mass is spread stands in the equations, not in the friction
+        return body_of(puck.pressure, delta, puck.gyration).friction(accuracy).coefficients
     except AccuracyError as error:
         if error.reachable is None:
             raise
         raise AccuracyError(
-            f"tol = {scene.tol:g} is out of reach under the pressure law {puck.pressure}: give "
+            f"tol = {tol:g} is out of reach under the pressure law {puck.pressure}: give "
             f"a tol (or --tol) of {rounded_up(error.reachable / SLICE_SHARE):g} or more"
         ) from None
-    return _under_zones(scene, normal, load, np.array(heights), of_one_shape(slices))
 
 
 def axes_of(two: Orthotropic) -> FloatArray:
@@ -80,29 +56,8 @@ def alone(load: FloatArray, delta: FloatArray, cuts: FloatArray, by_speed: BySpe
     return Regions(load, delta, cuts, by_speed, np.zeros(len(load), np.bool_), NO_GROUND)
 
 
-def _under_zones(
-    scene: SceneSpec, normal: float, load: FloatArray, delta: FloatArray, cuts: FloatArray
-) -> Regions:
-    """Friction in every zone, on every patch, and astride a patch, of that on strips and patches.
-
-    Astride, load and δ are the largest that may be under the base.
-    """
-    zones, patches = zones_of(scene), len(scene.floor.patches)
-    strips = len(load) - patches
-    spans = [(one, two) for one, two in zip(zones.first, zones.last, strict=True)]
-    spans += [(strips + k, strips + k) for k in range(patches)]
-    if patches:
-        spans.append((0, strips + patches - 1))
-    return Regions(
-        np.array([load[one : two + 1].max() for one, two in spans]),
-        np.array([delta[one : two + 1].max() for one, two in spans]),
-        cuts[[one for one, _ in spans]], NO_LAW,
-        np.array([one != two for one, two in spans]), ground_of(scene, normal),
-    )  # fmt: skip
-
-
 def friction_error(scene: SceneSpec) -> float:
-    """How wrong the friction ratios of :func:`regions_of` may be."""
+    """How wrong the friction ratios under the puck of a scene may be."""
     puck = scene.puck
     if scene.floor.law:
         return law_error(scene)

@@ -1,16 +1,10 @@
-"""Which frictions a puck lies on: zones of its place across the borders of strips, and patches.
-
-The rim meets a border one radius before the centre does, and leaves it one radius behind.  These
-lines, two for each border, part the plane into zones: in every other the base lies on one strip.
-"""
+"""All frictions of a floor, for one puck, packed."""
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.laws import Law
@@ -23,46 +17,7 @@ from puck_tables.scene.ground import (
 )
 from puck_tables.scene.scene_spec import SceneSpec
 
-# columns of a line at which the rim comes over a border or leaves it: its normal, its place, the
-# number of the border, and −1 or 1: it is met on the way there or on the way on
-BORDER_COLUMNS = 5
 _PRESSURES = {"ring": RING, "hertz": HERTZ, "galin": GALIN}
-
-
-class Zones(NamedTuple):
-    """Zones between lines (m, 5), ascending: the first and the last strip under a base (m + 1,)."""
-
-    lines: FloatArray
-    first: npt.NDArray[np.int64]
-    last: npt.NDArray[np.int64]
-
-
-def zones_of(scene: SceneSpec) -> Zones:
-    """The zones of the floor of a scene; one where it has no strips.
-
-    Examples
-    --------
-    >>> from puck_tables import Floor, Puck, Scene, Strips
-    >>> floor = Floor(strips=Strips((0.1, 0.15), (0.3, 0.1, 0.2)))
-    >>> zones = zones_of(Scene(Puck(0.04), floor))
-    >>> zones.lines[:, 2].round(2).tolist()
-    [0.06, 0.11, 0.14, 0.19]
-    >>> zones.first.tolist(), zones.last.tolist()
-    ([0, 0, 0, 1, 2], [0, 1, 2, 2, 2])
-    """
-    strips, radius = scene.floor.strips, scene.puck.radius
-    if strips is None:
-        none = np.zeros(1, np.int64)
-        return Zones(np.empty((0, BORDER_COLUMNS)), none, none)
-    across = (math.cos(strips.direction), math.sin(strips.direction))
-    lines = np.array([
-        [*across, place + side * radius, i, side]
-        for i, place in enumerate(strips.borders) for side in (-1.0, 1.0)
-    ])  # fmt: skip
-    lines = lines[np.argsort(lines[:, 2], kind="stable")]
-    last = np.concatenate([[0], np.cumsum(lines[:, 4] < 0.0)])
-    first = np.concatenate([[0], np.cumsum(lines[:, 4] > 0.0)])
-    return Zones(lines, first, last)
 
 
 def ground_of(scene: SceneSpec, normal: float) -> FloatArray:

@@ -7,7 +7,6 @@ Rows are all pucks at one place of the floor after the other, see
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from functools import cache, partial
 
 import numpy as np
@@ -19,10 +18,9 @@ from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ground import NO_GROUND
 from puck_tables.scene.ingredients import BySpeed, Regions, Surface, floor_velocity
 from puck_tables.scene.pieces import PieceSpec
-from puck_tables.scene.regions import SLICE_SHARE, alone, axes_of, of_one_shape, plain_cut
+from puck_tables.scene.regions import alone, axes_of, of_one_shape, plain_cut, section_of
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.zones import ground_of
-from puck_tables.table.friction_section import FINEST_ACCURACY
 from puck_tables.world.agreement import frictions_under, has_closed_forms, is_integrated
 
 INTEGRATED, NOT_HELD = 1.0, 2.0  # see :mod:`puck_tables.world.layout`
@@ -99,9 +97,10 @@ def regions_of(
             cut = cache(partial(plain_cut, scene.tol))
             cuts = np.stack([cut(height) for height in delta[: len(places)].tolist()])
     else:
-        accuracy = max(SLICE_SHARE * scene.tol, FINEST_ACCURACY)
-        bodies = [replace(piece, friction=friction).body for piece, friction in places]
-        cuts = of_one_shape([body.friction(accuracy).coefficients for body in bodies])
+        cuts = of_one_shape([
+            section_of(piece, 2.0 * friction * piece.height / piece.radius, scene.tol)
+            for piece, friction in places
+        ])  # fmt: skip
     ground = NO_GROUND
     if has_several(scene):
         most = loads.reshape(-1, len(pieces)).max(axis=0)

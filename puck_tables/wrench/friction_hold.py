@@ -16,13 +16,16 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import broadcast, finite_array, velocity_array
 from puck_tables.errors import InputError
 from puck_tables.kernels.compile import allocating, patience
-from puck_tables.scene.ingredients import Dry, dry_in
-from puck_tables.scene.regions import regions_of
+from puck_tables.motion.body import is_plain
+from puck_tables.scene.by_speed import NO_LAW
+from puck_tables.scene.ingredients import Dry
+from puck_tables.scene.regions import plain_cut, section_of
 from puck_tables.scene.rest import SLACK, demand
-from puck_tables.scene.scene_spec import SceneSpec
 
 if TYPE_CHECKING:
     from puck_tables.motion.puck_spec import PuckSpec
+
+_TOL = 1e-9  # of the friction
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,8 +51,9 @@ def holds(puck: PuckSpec, force: npt.ArrayLike, torque: npt.ArrayLike) -> Hold:
     turning = finite_array("torque", torque, "N m")
     fx, fy, moment = broadcast(force_x=forces[..., 0], force_y=forces[..., 1], torque=turning)
     rows = np.stack([one.ravel() for one in (fx, fy, moment)])
-    regions = regions_of(SceneSpec(puck))
-    coefficients = dry_in(regions, 0)
+    plain = is_plain(puck.pressure, puck.gyration, puck.delta)
+    section = plain_cut(_TOL, puck.delta) if plain else section_of(puck, puck.delta, _TOL)
+    coefficients = Dry(puck.friction * puck.mass * puck.gravity, puck.delta, section, NO_LAW)
     # wrenches over their largest number, then over their largest force: no square, and no force of
     # a torque over the radius, leaves floating point
     largest = np.abs(rows).max(axis=0)

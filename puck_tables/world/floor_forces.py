@@ -1,4 +1,4 @@
-"""Dry friction of any floor on a puck, state by state: what the loop integrates, to be read."""
+"""Dry friction of any floor on a puck, state by state: what is integrated, to be read."""
 
 from __future__ import annotations
 
@@ -7,18 +7,19 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import kernel, patience
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y, dry_friction
-from puck_tables.scene.ingredients import Regions, dry_in, put_at
-from puck_tables.scene.regions import regions_of
+from puck_tables.scene.ingredients import put_at
 from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.world.footing import dry_under
+from puck_tables.world.game import Game
+from puck_tables.world.layout import RADIUS, REGION
+from puck_tables.world.prepare import game_of, order_of
 
 
 @kernel
-def _forces(
-    regions: Regions, region: int, radius: float, states: FloatArray, out: FloatArray
-) -> None:
+def _forces(game: Game, states: FloatArray, out: FloatArray) -> None:
     """Force and torque on the puck into out (n, 3) at states (n, 6) over the floor."""
     patience(states.shape[0])
-    dry = dry_in(regions, region)
+    dry, radius = dry_under(game.regions, game.discs, 0), game.discs[0, RADIUS]
     for n in range(states.shape[0]):
         patience(1)
         y = states[n]
@@ -55,7 +56,8 @@ def friction_at(scene: SceneSpec, states: FloatArray) -> FloatArray:
     >>> force.round(9).tolist()                              # (0.78 - 0.67) g/pi along the border
     [[0.0, 0.350140875, -4.833333333]]
     """
-    regions = regions_of(scene)
+    game, _ = game_of(scene, order_of(scene))
+    game.discs[0, REGION] = int(np.argmax(game.regions.astride))
     out = np.zeros((len(states), 3))
-    _forces(regions, int(np.argmax(regions.astride)), scene.puck.radius, states, out)
+    _forces(game, states, out)
     return out
