@@ -90,7 +90,7 @@ CLOSED = {
 def test_it_ends_and_the_ledger_closes(what: dict[str, Any]) -> None:
     run = simulate_scene(what)
     assert run.end in ("at rest", "carried by the floor", "time is up", "over the edge")
-    assert run.energy_residual <= 1e-9
+    assert run.energy_residual <= 1e-8
     assert all(np.isfinite(column).all() for column in run.columns.values())
     radius, place = what["puck"]["radius"], np.stack([run.columns["x"], run.columns["y"]])
     for line in what.get("wall", []):
@@ -156,7 +156,7 @@ def test_units_do_not_matter(mass: float, length: float, time: float) -> None:
 
 
 def test_the_launch_lies_beyond_the_numbers() -> None:
-    with pytest.raises(InputError, match="too large or too small for floating point"):
+    with pytest.raises(InputError, match="too fast for floating point"):
         simulate_scene(scene(launch={"velocity": [1e200, 0.0]}, floor={"slope": 0.1}))
 
 

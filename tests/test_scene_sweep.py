@@ -137,10 +137,10 @@ def test_runs_that_never_stop_get_a_status_and_the_others_go_on() -> None:
 @pytest.mark.parametrize(
     ("path", "values", "word", "said"),
     [
-        ("puck.friction", "0:0.3:4", "no end found", "puck.friction = 0"),
+        ("puck.friction", "0:0.3:4", "refused", "nothing brings the puck to rest"),
         ("puck.height", "0.1:4:5", "refused", "tips over"),
         ("launch.position[0]", "0:2:5", "refused", "reaches through it by"),
-        ("launch.spin", "1:1e200:3", "refused", "too large or too small for floating point"),
+        ("launch.spin", "1:1e200:3", "refused", "too fast for floating point"),
     ],
 )
 def test_no_run_takes_the_others_along(path: str, values: str, word: str, said: str) -> None:
@@ -163,7 +163,7 @@ def test_no_run_takes_the_others_along(path: str, values: str, word: str, said: 
 
 def test_a_sweep_in_which_nothing_has_an_end_is_refused() -> None:
     scene = {"puck": {"radius": 1.0}, "launch": {"velocity": [1.0, 0.0], "spin": "0:1:2"}}
-    with pytest.raises(InputError, match=r"no run of this sweep has an end\n  2 of 2 runs: no end"):
+    with pytest.raises(InputError, match=r"every run of this sweep is refused.* puck to rest"):
         sweep_scene(scene)
     scene["puck"]["friction"] = "4:5:2"
     scene["puck"]["height"] = 1.0

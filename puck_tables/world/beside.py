@@ -17,7 +17,7 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.friction import SPIN, VX, VY, dry_friction, size
-from puck_tables.scene.ingredients import dry_in
+from puck_tables.scene.ingredients import Dry
 from puck_tables.world.flight import (
     CARRIED,
     DAMPED,
@@ -64,7 +64,8 @@ def _knows(
     slip = size(vx, vy, disc[RADIUS] * state[SPIN])
     if kind != LOOKED_UP or slip == 0.0 or not t < flight[UNTIL]:
         return 0.0, 0.0, 0.0, math.inf
-    dry = dry_in(game.regions, int(disc[REGION]))
+    regions, row = game.regions, int(disc[REGION])
+    dry = Dry(regions.load[row], regions.delta[row], regions.cuts[row], regions.by_speed)
     fx, fy, _, _ = dry_friction(dry, disc[RADIUS], vx, vy, state[SPIN])
     decel, light = disc[DECEL], disc[LIGHTNESS]
     jerk = _JERK * decel * decel * math.hypot(vx, vy) / slip / slip

@@ -61,11 +61,14 @@ from puck_tables.world.game import (
 )
 from puck_tables.world.impact import (
     FLAT,
+    LASTING,
     NX,
     NY,
+    PRESSED,
     SUM_N,
     SUM_T,
     TOO_FAST,
+    E,
     approach,
     collide,
 )
@@ -154,13 +157,19 @@ def _is_squeezed(game: Game, t: float, count: int, room: Room) -> bool:
             return False
         if un <= 0.0 or found:
             continue
-        since = t - FLAT * game.discs[i, RADIUS] / un
+        since, last = t - FLAT * game.discs[i, RADIUS] / un, math.inf
         for back in range(1, min(game.counts[N_EVENTS], MOST_BACK) + 1):
             event = game.events[game.counts[N_EVENTS] - back]
-            if event[TIME] < since:
+            if event[TIME] < since and not found:
                 break
             if event[WHAT] == IMPACT and event[WHO] == i and event[PARTNER] == j:
-                found = True
+                if found:  # each rebound lasts a share of the one before: what is left of them
+                    hop, share = t - last, (t - last) / (last - event[TIME])
+                    low = 8.0 * FLAT * game.discs[i, RADIUS] / (PRESSED * game.pace[1])
+                    if row[E] > 0.0 and share < LASTING and hop * hop < low:
+                        game.pace[4] += hop * share / (1.0 - share)
+                    break
+                found, last = True, event[TIME]
     return found
 
 

@@ -21,8 +21,9 @@ those that take turns are resolved together with e = 0; those that are squeezed 
 Poisson has it, and lessened together should energy grow.  So no numbering matters, and what is
 symmetric stays so.
 
-Rebounds of discs that press on each other die out.  Where those left are lower than 2e-15 of the
-places, or than a hundredth of the error of a step (in units of Q²/J), e = 0: they stay in contact.
+Rebounds of discs that press on each other die out.  Where those left are lower than 1e-13 of the
+radius, than 1e-14 of the places, or than a hundredth of the error of a step (in units of Q²/J),
+e = 0: they stay in contact.
 How long these would have lasted is kept: of one puck it is part of the error estimate.
 """
 
@@ -61,9 +62,11 @@ CONTACT_COLUMNS = 18
 NO_END, TOO_FAST = -1, -2  # how impacts fail: rounds without end; faster than a table goes
 
 NEGLIGIBLE = 1e-13  # of the scale of speeds: an approach as slow is none
-FLAT = 1e-13  # of the radius: rebounds as low are none
-LOW = 2e-15  # of the places: rebounds as low have died out, their height is rounding
-LEAST = 1e-2  # of the error of a step, in units of Q²/J: these, too
+FLAT = 1e-13  # of the radius: rebounds as low have died out,
+LOW = 1e-14  # of the places: as these, whose height is rounding,
+LEAST = 1e-2  # and of the error of a step, in units of Q²/J
+LASTING = 0.99  # of the rebound before, at most: so long is the next one taken to be
+PRESSED = 1e-3  # of the scale of accelerations: what presses less brings no rebounds to an end
 MOST_ROUNDS = 2_000
 TURNS = 200  # rounds after which contacts that take turns are resolved together, with e = 0
 _MOST_ITERATIONS = 50_000
@@ -172,12 +175,35 @@ def _dies_out(game: Game, i: int, j: int, t: float, row: FloatArray, states: Flo
     way = _slip2(game, i, states)
     if j >= 0:
         way = max(way, _slip2(game, j, states))
-    rounded = LOW * (abs(states[i, X]) + abs(states[i, Y]) + game.discs[i, RADIUS])
-    height = max(rounded, LEAST * game.pace[2] * way / game.pace[1]) * (1.0 - row[E] ** 2)
+    rounded = LOW * (abs(states[i, X]) + abs(states[i, Y]))
+    least = LEAST * game.pace[2] * way / game.pace[1]
+    height = max(rounded, FLAT * game.discs[i, RADIUS], least)
     if not (closing > 0.0 and un <= 0.0 and un * un <= 2.0 * closing * height):
         return False
-    game.pace[4] += -2.0 * un / (closing * (1.0 - row[E]))  # how long they would have lasted
+    if j < 0:
+        game.pace[4] += _lasting(game, i, j, t, row, states, -un, closing)
     return True
+
+
+@inlined
+def _lasting(
+    game: Game, i: int, j: int, t: float, row: FloatArray, states: FloatArray, un: float,
+    rising: float,
+) -> float:  # fmt: skip
+    """How long rebounds from an obstacle would last, of which the first begins at un.
+
+    They are braked by ``rising`` on the way up; on the way down the rims and the floor rub back.
+    """
+    for side in range(2):  # there and back
+        turn = (2.0 - 4.0 * side) * un
+        states[i, VX] += turn * row[NX]
+        states[i, VY] += turn * row[NY]
+        if side == 0:
+            falling = -opening(game, i, j, t, row, states)
+    if falling <= 0.0 or rising <= PRESSED * game.pace[1]:
+        return 0.0
+    share = math.sqrt(falling / rising)
+    return un / rising * (1.0 + 1.0 / share) / (1.0 - min(row[E] * share, LASTING))
 
 
 @inlined

@@ -9,7 +9,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.speed_law import SpeedLaw
-from puck_tables.errors import InputError
+from puck_tables.errors import ContactError, InputError
 from puck_tables.scene.by_speed import FARTHER, law_name, speed_law
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.departures import CONCERNED, Room
@@ -44,7 +44,7 @@ def with_law_for(
     Raises
     ------
     InputError
-        If its law ends below one.
+        If its law ends below one, or lifts part of a base there.
     """
     top = law_goes_to(game.regions)
     if top == math.inf:
@@ -60,5 +60,12 @@ def with_law_for(
                 "give it more speeds"
             )
         top = FARTHER * fastest
-        game = with_law_up_to(game, scene, order, top)
+        try:
+            game = with_law_up_to(game, scene, order, top)
+        except ContactError as error:  # at the launch the heights were in order
+            raise InputError(
+                f"at {time:.6g} s the rim slips at {fastest:.6g} m/s, where friction by the law "
+                f"{law_name(scene)} tilts the pressure so much that part of a base would lift: a "
+                "slip that grows may never stop; give a shorter time, or less that drives it"
+            ) from error
     return game

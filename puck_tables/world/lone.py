@@ -92,6 +92,7 @@ _NEAR = 0.75  # of the time in which the slip would end, at most, is a step
 _LAST = 0.03  # of the root of the error of a step: slips as small may go straight to their stop
 _STIFF, _MILD, _SLOWLY = 0.8, 0.3, 0.1
 _NEWTON, _FINEST_NEWTON = 1e-3, 1e-15  # of the error of a step: how well implicit ones are solved
+_FARTHER = 0.1  # of the time since the start: so far ahead a path may go
 _SWING = 0.05  # rad that a puck at rest on a turntable turns, at most, in a step
 _OVER = 1e-12  # of a radius: beyond a border
 # of a polynomial of degree five that is wrong by d in its second derivative in the middle, over h:
@@ -167,12 +168,15 @@ def _swings(model: Model, dry: Dry) -> bool:
 
 @inlined
 def _horizon(game: Game, model: Model, t: float) -> float:
-    """Until when a path is followed: what is pulled or carried may get faster for ever."""
+    """Until when a path is followed: what is pulled or carried may get faster for ever.
+
+    Ever farther, so that what goes on for long takes few paths.
+    """
     hold, rows = model.hold, len(model.forces.drive)
     pulled = rows > 0 and model.forces.drive[rows - 1, 0] > t
     pulled = pulled or model.forces.x != 0.0 or model.forces.y != 0.0 or model.forces.torque != 0.0
     if pulled or moves_along(model.surface) or hold.vx != 0.0 or hold.vy != 0.0:
-        return t + 2.0 * game.pace[0] / game.pace[1]
+        return t + max(2.0 * game.pace[0] / game.pace[1], _FARTHER * t)
     return math.inf
 
 

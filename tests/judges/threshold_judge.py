@@ -72,6 +72,8 @@ def draw(seed: int, index: int) -> dict[str, Any]:
     rng = np.random.default_rng([seed, index, 13])
     kind = KINDS[index % 3]
     share = float((BELOW if kind == "stops" else ABOVE)[index // 3 % 6])
+    if kind == "peak":  # a slip shows from 1e-11 of the scale of speeds on
+        share = max(share, 1.0001)
     radius, mass = float(10.0 ** rng.uniform(-2.0, -1.0)), float(10.0 ** rng.uniform(-1.0, 0.5))
     friction, delta = float(rng.choice([0.1, 0.3])), float(rng.choice([0.0, 0.5, 1.0, 2.0, 3.0]))
     puck = {
