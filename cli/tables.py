@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
+from typing import Any
 
 import click
 from puck_tables.cli.options import printable
 
 from puck_tables.errors import InputError
-
-if TYPE_CHECKING:
-    from puck_tables.table.table_list import KeptTable
 
 
 @click.command()
@@ -42,25 +39,26 @@ def tables(as_json: bool, names: tuple[str, ...], clean: bool) -> None:
         return
     entries = table_list.shipped_and_kept()
     if as_json:
-        click.echo(json.dumps([entry._asdict() for entry in entries]))
+        click.echo(json.dumps(entries))
     else:
         click.echo(printable(_lines(entries)))
 
 
-def _lines(entries: list[KeptTable]) -> str:
+def _lines(entries: list[dict[str, Any]]) -> str:
     titles = ("name", "holds", "pressure", "accuracy", "kB", "made", "state", "range")
     rows = [titles]
     for entry in entries:
+        accuracy = entry["accuracy"]
         rows.append((
-            entry.name, entry.kind or "-", entry.pressure_law or "-",
-            "-" if entry.accuracy is None else f"{entry.accuracy:g}",
-            str(round(entry.bytes / 1000)), entry.date[:10] or "-",
-            "whole" if entry.whole else "damaged", entry.valid_range or "-",
+            entry["name"], entry["kind"] or "-", entry["pressure_law"] or "-",
+            "-" if accuracy is None else f"{accuracy:g}",
+            str(round(entry["bytes"] / 1000)), entry["date"][:10] or "-",
+            "whole" if entry["whole"] else "damaged", entry["valid_range"] or "-",
         ))  # fmt: skip
     widths = [max(len(row[i]) for row in rows) for i in range(len(titles))]
     lines = [
         "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
         for row in rows
     ]
-    places = list(dict.fromkeys(entry.place for entry in entries if entry.place != "comes along"))
+    places = dict.fromkeys(one["place"] for one in entries if one["place"] != "comes along")
     return "\n".join(lines + [f"kept in {click.format_filename(place)}" for place in places])

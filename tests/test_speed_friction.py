@@ -20,8 +20,8 @@ from puck_tables.errors import AccuracyError, ContactError, InputError, OutputEr
 from puck_tables.kernels.speed_quadrature_kernel import FINE, fill_integrals
 from puck_tables.kernels.speed_spline import speed_ratios
 from puck_tables.table import speed_build
-from puck_tables.table.speed_build import _Filled
 from puck_tables.table.speed_grid import patches_of
+from puck_tables.table.speed_patch import FilledPatch
 from puck_tables.table.speed_table import SpeedTable
 
 EVERY_PHI = np.array([
@@ -209,7 +209,7 @@ def test_the_grid_is_cut_at_the_corners_so_that_order_four_holds():
     errors = []
     for cells in (10, 20, 40):
         patches = enumerate(patches_of(CUBIC.speeds))
-        parts = [_Filled(patch, CUBIC, 0.3, n, FINE) for n, patch in patches]
+        parts = [FilledPatch(patch, CUBIC, 0.3, n, FINE) for n, patch in patches]
         for part in parts:
             part.cells = [cells, cells]
             part.fill()

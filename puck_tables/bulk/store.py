@@ -268,19 +268,15 @@ def _put_whole(group: Any, name: str, one: Variable) -> None:
 
 def _coded(one: Variable) -> dict[str, Any]:
     """How an array is kept: as its bytes with a checksum, nothing packed; with its labels."""
-    attributes: dict[str, Any] = {"units": one.unit or "1", "long_name": one.long_name}
-    if one.flags:
-        attributes["flag_values"] = list(range(len(one.flags)))
-        attributes["flag_meanings"] = " ".join(flag.replace(" ", "_") for flag in one.flags)
     return {
         "serializer": BytesCodec(), "compressors": [Crc32cCodec()], "filters": [],
-        "dimension_names": list(one.dims), "attributes": attributes, "config": _AT_ONCE,
+        "dimension_names": list(one.dims), "attributes": _plain(one.attributes), "config": _AT_ONCE,
     }  # fmt: skip
 
 
 def _plain(attributes: Mapping[str, Any]) -> dict[str, Any]:
     """Attributes as JSON takes them."""
     return {
-        name: value.item() if isinstance(value, np.generic) else value
+        name: value.tolist() if isinstance(value, np.generic | np.ndarray) else value
         for name, value in attributes.items()
     }

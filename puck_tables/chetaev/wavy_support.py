@@ -253,6 +253,11 @@ def _slide(
         atol=_TOL * np.array([asperity.length, fastest]),
         max_step=_LARGEST_TURN * asperity.length / fastest,
     )  # fmt: skip
+    if solved.status < 0:
+        raise AccuracyError(
+            f"the slide that begins at x = {arc.x:g} m, t = {arc.time:g} s cannot be followed: its "
+            "steps got too short; ask for an earlier time"
+        )
     t, (x, vx) = np.array(solved.t, np.float64), np.reshape(solved.y, (2, -1))  # lists of none
     exact = asperity._press(x, vx) / (1.0 + asperity._incline(x) ** 2)
     states = np.stack([t, x, asperity._height(x), vx, asperity._incline(x) * vx, exact])

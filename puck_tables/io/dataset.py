@@ -32,6 +32,15 @@ class Variable:
         if isinstance(self.values, list) and self.values and isinstance(self.values[0], str):
             object.__setattr__(self, "values", list(map(as_utf8, self.values)))
 
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """Its unit, what it is, and what codes mean, as the CF conventions have them."""
+        said: dict[str, Any] = {"units": self.unit or "1", "long_name": self.long_name}
+        if self.flags:
+            said["flag_values"] = np.arange(len(self.flags), dtype=np.int8)
+            said["flag_meanings"] = " ".join(flag.replace(" ", "_") for flag in self.flags)
+        return said
+
     def readable(self) -> npt.NDArray[Any]:
         """The values, codes as words."""
         if self.flags:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from puck_tables.errors import MissingExtraError
-from puck_tables.io.dataset import Dataset, Variable
+from puck_tables.io.dataset import Dataset
 
 if TYPE_CHECKING:
     import pandas
@@ -35,8 +35,10 @@ def to_xarray(dataset: Dataset) -> xarray.Dataset:
     attributes = {name: value for name, value in dataset.attributes.items() if value is not None}
     attributes |= {name: text for name, (text, _) in dataset.texts.items()}
     found: xarray.Dataset = dataset_of(
-        {name: _labelled(one) for name, one in dataset.columns.items()},
-        {name: _labelled(one) for name, one in dataset.axes.items()},
+        *(
+            {name: (one.dims, np.asarray(one.values), one.attributes) for name, one in part.items()}
+            for part in (dataset.columns, dataset.axes)
+        ),
         attributes,
     )
     return found
@@ -61,14 +63,6 @@ def _xarray() -> Any:
     except ImportError:
         raise MissingExtraError("to_xarray needs xarray: pip install xarray") from None
     return xarray
-
-
-def _labelled(one: Variable) -> tuple[Any, ...]:
-    attributes: dict[str, Any] = {"units": one.unit or "1", "long_name": one.long_name}
-    if one.flags:
-        attributes["flag_values"] = np.arange(len(one.flags), dtype=np.int8)
-        attributes["flag_meanings"] = " ".join(flag.replace(" ", "_") for flag in one.flags)
-    return one.dims, np.asarray(one.values), attributes
 
 
 def to_pandas(dataset: Dataset) -> pandas.DataFrame:

@@ -5,8 +5,6 @@ from __future__ import annotations
 import io
 from datetime import UTC, datetime
 
-import numpy as np
-
 from puck_tables._version import __version__
 from puck_tables.io.dataset import Dataset
 
@@ -37,11 +35,7 @@ def encode(dataset: Dataset) -> bytes:
                     file.create_dataset(axis_name, (size,), ">f4").make_scale(f"{_BARE}{size:10d}")
                 data.dims[position].attach_scale(file[axis_name])
         for name, one in {**dataset.axes, **dataset.columns}.items():
-            file[name].attrs.update(units=one.unit or "1", long_name=one.long_name)
-            if one.flags:
-                file[name].attrs["flag_values"] = np.arange(len(one.flags), dtype=np.int8)
-                words = (meaning.replace(" ", "_") for meaning in one.flags)
-                file[name].attrs["flag_meanings"] = " ".join(words)
+            file[name].attrs.update(one.attributes)
         for name, (text, long_name) in dataset.texts.items():  # an attribute holds 64 kB at most
             file.create_dataset(name, data=text, dtype=h5py.string_dtype())
             file[name].attrs["long_name"] = long_name

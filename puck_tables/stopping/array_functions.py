@@ -14,13 +14,12 @@ from puck_tables._core.real import broadcast, finite_array, real
 from puck_tables.accuracy.methods import Method
 from puck_tables.contact.laws import HOMOGENEOUS, Law
 from puck_tables.errors import InputError
-from puck_tables.stopping.launch_arrays import launches_of
-from puck_tables.stopping.per_height import SolverPerHeight
-from puck_tables.stopping.states import TOO_LARGE, states
+from puck_tables.stopping.launch_arrays import TOO_LARGE
+from puck_tables.stopping.states import states
 from puck_tables.stopping.stop_section import FINEST_SECTION
+from puck_tables.stopping.stops import stop
 
 StopArrays = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
-STATE_OUTPUTS = ("x", "y", "orientation", "vx", "vy", "spin")
 
 
 def stop_arrays(
@@ -56,17 +55,19 @@ def stop_arrays(
     >>> time.round(6).tolist(), x.round(6).tolist()
     ([3.962992, 4.472821], [2.213952, 4.736946])
     """
-    error = real("tol", tol, "dimensionless")
-    method = Method.LOOK_UP if error >= FINEST_SECTION else Method.ADAPTIVE
-    solver = SolverPerHeight(pressure, gyration, error, method.value, None)
-    launches = launches_of(_pairs(vx, vy), spin, delta, decel, radius)
-    launches.refuse_bad()
-    solver.prepare_for(launches, 1)
-    result, status = solver.all(launches.matrix)
-    if status.any():
+    method = (
+        Method.LOOK_UP if real("tol", tol, "dimensionless") >= FINEST_SECTION else Method.ADAPTIVE
+    )
+    found = stop(
+        _pairs(vx, vy), spin, delta=delta, decel=decel, radius=radius, tol=tol,
+        method=method.value, pressure=pressure, gyration=gyration, threads=1,
+    )  # fmt: skip
+    if found.status.any():
         raise InputError(TOO_LARGE)
-    time, x, y, length, turn, body = result.reshape((6, *launches.shape))
-    return time, x, y, length, turn, body
+    return (
+        found.stop_time, found.stop_x, found.stop_y, found.path_length, found.turn_angle,
+        found.body_angle,
+    )  # fmt: skip
 
 
 def state_arrays(

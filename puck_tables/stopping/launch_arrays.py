@@ -23,6 +23,9 @@ CHUNK = 1 << 15  # launches that a thread takes at a time
 COPIED = 1 << 14  # launches up to which a copy costs nothing that counts
 _UNITS = {"spin": "rad/s", "delta": "units of 2 f h / r", "decel": "m/s^2", "radius": "m"}
 
+TOO_LARGE = (
+    "velocity, spin, radius and decel give a motion too large for floating point: use larger units"
+)
 _NUMBERS = frozenset((float, int))
 
 Columns = tuple[FloatArray, FloatArray, int, FloatArray, FloatArray, FloatArray, FloatArray]

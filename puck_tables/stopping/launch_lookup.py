@@ -18,6 +18,7 @@ from puck_tables.kernels.compile import (
     look_up,
     patience,
     row_of,
+    rows_of,
     spline_values,
 )
 from puck_tables.kernels.elementary import log_of
@@ -50,11 +51,14 @@ from puck_tables.stopping.similarity_lookup import (
     LAUNCH_COLUMNS,
     LAUNCH_ROWS,
     end_rates,
+    heading_at,
     inverse_end_rates,
+    number_at,
+    share_of,
+    stopped,
 )
 from puck_tables.stopping.state_lookup import PUCK_ROWS, fill_states_at
 from puck_tables.stopping.state_splines import (
-    TINY,
     TURN_POWERS,
     TURN_STEP,
     cell_of,
@@ -200,23 +204,21 @@ def _find_stops(room: FloatArray, count: int) -> int:
     for n in range(count):
         vx, vy, rim = row_of(room, VX, n), row_of(room, VY, n), row_of(room, EDGE, n)
         speed, slip = row_of(room, SPEED, n), row_of(room, SLIP, n)
-        no_spin, still = rim == 0.0, speed == 0.0
-        t = 1.0 if no_spin else (0.75 if still else row_of(room, _F_TIME, n))
         decel = row_of(room, DECEL, n)
-        scale = slip / decel
-        along = scale * (0.5 if no_spin else row_of(room, _F_ALONG, n))
-        across = row_of(room, _F_ACROSS, n) * (row_of(room, DELTA, n) * rim / decel)
-        length = 0.5 if no_spin else row_of(room, _F_LENGTH, n)
-        body = 0.375 if still else row_of(room, _F_BODY, n)
-        into_row(room, _TIME, n, scale * t)
-        into_row(room, _X, n, along * vx - across * vy)
-        into_row(room, _Y, n, along * vy + across * vx)
-        into_row(room, _LENGTH, n, scale * length * speed)
-        into_row(room, _BODY, n, scale * body * row_of(room, SPIN, n))
+        f = rows_of(room, _F_TIME, 3, n)
+        found = stopped(
+            vx, vy, rim, row_of(room, SPIN, n), speed, slip, row_of(room, DELTA, n), decel,
+            (f[0], f[1], f[2], row_of(room, _F_BODY, n), row_of(room, _F_LENGTH, n)),
+        )  # fmt: skip
+        into_row(room, _TIME, n, found[0])
+        into_row(room, _X, n, found[1])
+        into_row(room, _Y, n, found[2])
+        into_row(room, _LENGTH, n, found[3])
+        into_row(room, _BODY, n, found[4])
         into_row(room, _Q, n, slip)
         into_row(room, _V, n, speed)
-        into_row(room, _T, n, t)
-        size = scale * slip
+        into_row(room, _T, n, found[5])
+        size = slip / decel * slip
         usual = (size < LARGEST) & (size < LARGEST * row_of(room, RADIUS, n))
         doubtful += 0 if usual else 1
     return doubtful
@@ -233,22 +235,12 @@ def _find_places(room: FloatArray, count: int, cells: float, log_share: float) -
         )
         c0, kappa = row_of(room, _C0, n), row_of(room, _KAPPA, n)
         turning = row_of(room, _TURNING, n)
-        larger, smaller = max(speed, rim), min(speed, rim)
-        # max + min by parts: their sum may overflow
-        ratio = smaller / (larger if larger > 0.0 else 1.0)
-        share = max(2.0 * ratio / (1.0 + ratio), TINY)
         slow, fast, _ = end_rates(tilt)
         by_slow, by_fast, spin_turn = inverse_end_rates(tilt)
-        is_fast = rim > speed
-        small, large = log_of(share), log_of(2.0 - share)
-        plus = by_slow * (large if is_fast else small)
-        minus = small if is_fast else large
-        c = 1.0 - share if is_fast else share - 1.0
-        sign = 1.0 if is_fast & (1.0 - share > c0) else -1.0
         turn_fast = turning * by_fast - spin_turn
-        heading = turning * plus + turn_fast * minus + tilt * row_of(room, _F_TURN, n)
-        by_slip = log_of(max(abs((c - c0) / c0), TINY)) - kappa * (plus + by_fast * minus)
-        by_slip += row_of(room, _F_CURVE, n)
+        is_fast, share = rim > speed, share_of(speed, rim)
+        sign, by_slip = number_at(is_fast, share, c0, kappa, tilt, row_of(room, _F_CURVE, n))
+        heading = heading_at(is_fast, share, turning, tilt, row_of(room, _F_TURN, n))
         ends_fast, log_y = log_place(sign, by_slip + kappa * log_share, kappa, slow, fast)
         _, xi = place_of_log(log_y)
         first, inside = cell_of(xi, ends_fast, cells, _TURNS_ROW)

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import look_up, patience, weighted_rows
+from puck_tables.kernels.compile import inlined, look_up, patience, weighted_rows
 from puck_tables.kernels.section_spline import HEADER, section_place
 from puck_tables.kernels.spline import basis
 from puck_tables.stopping.lookup import LARGEST, SMALLEST
@@ -17,6 +17,16 @@ from puck_tables.stopping.stop_jacobian import LAUNCH_COLUMNS, OWN, STOP_ROWS, p
 _FUNCTIONS = 6  # outputs of a stop
 _OUT = STOP_ROWS * LAUNCH_COLUMNS
 _LOWEST = 1e-290  # below, a ratio of speeds loses digits: both are raised by a power of two
+
+
+@inlined
+def _place(speed: float, edge: float, section: FloatArray, width: int) -> tuple[int, int, float]:
+    """Side, first number and place in the cell of speeds v and r|ω|."""
+    larger = max(speed, edge)
+    raised = 2.0**200 if larger < _LOWEST else 1.0
+    ratio = (raised * min(speed, edge)) / (raised * larger) if larger > 0.0 else 0.0
+    side, i, place = section_place(ratio, edge > speed, section, width)
+    return side, i, place
 
 
 @look_up
@@ -43,10 +53,7 @@ def fill_section_stops(
         else:
             speed = math.hypot(vx, vy)
             slip = math.hypot(speed, edge)
-        larger = max(speed, edge)
-        raised = 2.0**200 if larger < _LOWEST else 1.0
-        ratio = (raised * min(speed, edge)) / (raised * larger) if larger > 0.0 else 0.0
-        side, i, place = section_place(ratio, edge > speed, section, _FUNCTIONS)
+        side, i, place = _place(speed, edge, section, _FUNCTIONS)
         time, along, across, length, body, turn = weighted_rows(
             flat, side * section.shape[1] + i, basis(place), _FUNCTIONS
         )
@@ -79,10 +86,8 @@ def fill_section_jacobians(
         patience(1)
         vx, vy, spin, radius = launches[0, n], launches[1, n], launches[2, n], launches[5, n]
         speed, rim = math.hypot(vx, vy), abs(radius * spin)
-        slip, larger = math.hypot(speed, rim), max(speed, rim)
-        raised = 2.0**200 if larger < _LOWEST else 1.0
-        ratio = (raised * min(speed, rim)) / (raised * larger)
-        side, i, place = section_place(ratio, rim > speed, section, OWN)
+        slip = math.hypot(speed, rim)
+        side, i, place = _place(speed, rim, section, OWN)
         # a node is good whatever lies between
         left[n] = place > 0.0 and not good[side, (i - HEADER) // OWN]
         if left[n]:

@@ -23,15 +23,17 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
+from puck_tables.kernels.elementary import cosine_sine_of, log_of
 from puck_tables.kernels.spline import basis, cell_at
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED, SPIN
 from puck_tables.stopping.axes import HEIGHTS
 from puck_tables.stopping.lookup import STOP_POWERS, slip_place
+from puck_tables.stopping.state_splines import TINY, log_place, place_of_log
+
+Numbers = tuple[float, ...]
 
 # order of the functions of the curve
 BODY_SUM, TURN_SUM, LENGTH_SUM, CURVE_SUM = range(4)
-
-_SMALLEST_SHARE = 1e-300  # of the slower motion; less is a limit reached long before
 
 # rows of what is known of a launch
 TIME, STOP_X, STOP_Y, LENGTH, BODY, TURN = range(6)
@@ -114,52 +116,91 @@ def inverse_end_rates(delta: float) -> tuple[float, float, float]:
 
 
 @inlined
-def end_logs(side: int, double_share: float) -> tuple[float, float]:
-    """ln(1 + c) and ln(1 − c) from 2w."""
-    small, large = math.log(double_share), math.log1p(1.0 - double_share)
-    return (large, small) if side == 1 else (small, large)
+def stopped(
+    vx: float, vy: float, edge: float, spin: float, speed: float, slip: float, delta: float,
+    decel: float, f: Numbers,
+) -> Numbers:  # fmt: skip
+    """Stop time, x, y, path length, body angle and T; ``edge``: rω.
 
-
-@inlined
-def _log_n(side: int, double_share: float, c0: float, kappa: float, delta: float,
-           nodes: float, log_time: float) -> float:  # fmt: skip
-    """ln|N|, or with log_time = 0 the same of Q alone."""
-    slow, fast, _ = end_rates(delta)
-    log_plus, log_minus = end_logs(side, double_share)
-    c = 1.0 - double_share if side == 1 else double_share - 1.0
+    From T, along, across, body angle and path length at the place of the launch.
+    """
+    no_spin, still = edge == 0.0, speed == 0.0
+    t = 1.0 if no_spin else (0.75 if still else f[0])
+    scale = slip / decel
+    along = scale * (0.5 if no_spin else f[1])
+    across = f[2] * (delta * edge / decel)
+    body, length = 0.375 if still else f[3], 0.5 if no_spin else f[4]
     return (
-        math.log(abs((c - c0) / c0))
-        - kappa * (log_plus / slow + log_minus / fast - log_time)
-        + nodes
-    )
+        scale * t, along * vx - across * vy, along * vy + across * vx, scale * length * speed,
+        scale * body * spin, t,
+    )  # fmt: skip
 
 
 @inlined
-def _log_y(side: int, sign: float, log_n: float, kappa: float, delta: float) -> float:
-    """Ln y of a number N = sign·exp(log_n) that lies on this side."""
-    slow, fast, _ = end_rates(delta)
-    if side == 0:
-        return -(slow / kappa) * log_n
-    if sign > 0.0 and log_n > 1.0:
-        return -(fast / kappa) * (log_n + math.log1p(2.0 * math.exp(-log_n)))
-    return -(fast / kappa) * math.log1p(1.0 + sign * math.exp(log_n))
+def share_of(speed: float, rim: float) -> float:
+    """2w of a launch, at least the least whose logarithm is a number."""
+    larger, smaller = max(speed, rim), min(speed, rim)
+    # max + min by parts: their sum may overflow
+    ratio = smaller / (larger if larger > 0.0 else 1.0)
+    return max(2.0 * ratio / (1.0 + ratio), TINY)
 
 
 @inlined
-def _inverse_place(
-    sign: float, log_n: float, kappa: float, delta: float
-) -> tuple[int, float, float]:
-    """Side, ξ and y of the number sign·exp(log_n)."""
-    side = 0 if sign < 0.0 and log_n >= 0.0 else 1
-    log_y = _log_y(side, sign, log_n, kappa, delta)
-    if log_y < -0.5:
-        y = math.exp(log_y)
-        rest = 1.0 - y
-    else:
-        rest = -math.expm1(log_y)
-        y = 1.0 - rest
-    q = math.sqrt(math.sqrt(y))
-    return side, 1.0 - math.sqrt(rest / ((1.0 + q) * (1.0 + q * q))), y
+def ends_of(is_fast: bool, share: float, delta: float) -> tuple[float, float]:
+    """ln(1 + c)/A and ln(1 − c), from 2w."""
+    by_slow, _, _ = inverse_end_rates(delta)
+    small, large = log_of(share), log_of(2.0 - share)
+    return by_slow * (large if is_fast else small), small if is_fast else large
+
+
+@inlined
+def heading_at(is_fast: bool, share: float, turning: float, delta: float, part: float) -> float:
+    """The heading without its part h₀ ln Q; ``part``: S/δ there."""
+    plus, minus = ends_of(is_fast, share, delta)
+    _, by_fast, spin_turn = inverse_end_rates(delta)
+    return turning * plus + (turning * by_fast - spin_turn) * minus + delta * part
+
+
+@inlined
+def number_at(
+    is_fast: bool, share: float, c0: float, kappa: float, delta: float, regular: float
+) -> tuple[float, float]:
+    """Sign and ln of the number of Q alone; ``regular``: κR there."""
+    plus, minus = ends_of(is_fast, share, delta)
+    _, by_fast, _ = inverse_end_rates(delta)
+    c = 1.0 - share if is_fast else share - 1.0
+    sign = 1.0 if is_fast & (1.0 - share > c0) else -1.0
+    log_n = log_of(max(abs((c - c0) / c0), TINY)) - kappa * (plus + by_fast * minus)
+    return sign, log_n + regular
+
+
+@inlined
+def state_there(
+    launch: Numbers, stop: Numbers, is_fast: bool, share: float, slip: float, turn: float,
+    f: Numbers,
+) -> Numbers:  # fmt: skip
+    """X, y, heading, body angle, v and ω at a place of the curve, in the frame of the launch.
+
+    ``launch``: vx, vy, ω, δ, J, r, v; ``stop``: x, y, body angle; ``slip``: Q there; ``f``: along,
+    across, body angle there.
+    """
+    vx, vy, spin, delta, decel, radius, launch_speed = launch
+    around = 1.0 if spin > 0.0 else -1.0
+    small, large = 0.5 * share, 1.0 - 0.5 * share
+    norm = slip / math.sqrt(small * small + large * large)
+    speed, rim = norm * (small if is_fast else large), norm * (large if is_fast else small)
+    cosine, sine = cosine_sine_of(turn)
+    duration = slip / decel
+    # the way that is left, along and across the new heading
+    along, across = f[0] * duration * speed, around * delta * f[1] * (rim / decel) * speed
+    one = 1.0 / (launch_speed if launch_speed > 0.0 else 1.0)
+    east, north = vx * one, vy * one
+    ahead, aside = along * cosine - across * sine, along * sine + across * cosine
+    turning = around * (rim / radius)
+    return (
+        stop[0] - (ahead * east - aside * north), stop[1] - (ahead * north + aside * east), turn,
+        stop[2] - f[2] * duration * turning, speed, turning,
+    )  # fmt: skip
 
 
 @inlined
@@ -167,14 +208,6 @@ def inverse_sum(c: FloatArray, side: int, xi: float, s: float, sums: FloatArray)
     """2w/y."""
     _similarity_sums(c, side, xi, sums, 1)
     return _polynomial(sums, 0, s)
-
-
-@inlined
-def _heading(side: int, double_share: float, delta: float, turning: float, part: float) -> float:
-    """The heading without its part h₀ ln Q."""
-    slow, fast, spin_turn = end_rates(delta)
-    log_plus, log_minus = end_logs(side, double_share)
-    return turning / slow * log_plus + (turning - spin_turn) / fast * log_minus + delta * part
 
 
 @inlined
@@ -198,97 +231,33 @@ def look_up_launch(
     _similarity_sums(nodes, side, xi, sums, 4)
     body, length = _polynomial(sums, BODY_SUM, s), _polynomial(sums, LENGTH_SUM, s)
     r, part = _polynomial(sums, CURVE_SUM, s), _polynomial(sums, TURN_SUM, s)
-    if rim == 0.0:
-        t, along, length = 1.0, 0.5, 0.5
-    elif speed == 0.0:
-        t, body = 0.75, 0.375
-    scale = slip / decel
-    out[TIME] = scale * t
-    across *= delta * edge / decel
-    along *= scale
-    out[STOP_X] = along * vx - across * vy
-    out[STOP_Y] = along * vy + across * vx
-    out[LENGTH] = scale * length * speed
-    out[BODY] = scale * body * spin
+    out[TIME], out[STOP_X], out[STOP_Y], out[LENGTH], out[BODY], t = stopped(
+        vx, vy, edge, spin, speed, slip, delta, decel, (t, along, across, body, length)
+    )
     out[SLIP], out[T_LAUNCH], out[SPEED0] = slip, t, speed
     out[TURN] = out[SIGN_N] = 0.0
     if speed == 0.0 or rim == 0.0:
         return
     c0, kappa = _constant(constants, 0, s), _constant(constants, 1, s)
     turning = delta * _constant(constants, 2, s)
-    quarter = _constant(constants, 3, s)
-    # max + min by parts: their sum may overflow
-    share = min(speed, rim) / max(speed, rim)
-    double_share = max(2.0 * share / (1.0 + share), _SMALLEST_SHARE)
-    sign = 1.0 if side == 1 and 1.0 - double_share > c0 else -1.0
-    log_n = _log_n(side, double_share, c0, kappa, delta, r, 0.0)
-    heading = _heading(side, double_share, delta, turning, part)
+    share = share_of(speed, rim)
+    sign, log_n = number_at(side == 1, share, c0, kappa, delta, r)
+    heading = heading_at(side == 1, share, turning, delta, part)
     out[SIGN_N], out[HEADING0] = sign, heading
     out[KAPPA], out[TURNING] = kappa, turning
-    out[LOG_N] = log_n + kappa * (math.log(t) - quarter)
+    out[LOG_N] = log_n + kappa * (log_of(t) - _constant(constants, 3, s))
     if delta > 0.0 and turn_share > 0.0:
         log_share = math.log(turn_share)
-        end, xi, y = _inverse_place(sign, log_n + kappa * log_share, kappa, delta)
-        share = min(y * inverse_sum(turn_inverse, end, xi, s, sums), 1.0)
+        slow, fast, _ = end_rates(delta)
+        is_fast, log_y = log_place(sign, log_n + kappa * log_share, kappa, slow, fast)
+        y, xi = place_of_log(log_y)
+        end = 1 if is_fast else 0
+        share = max(min(y * inverse_sum(turn_inverse, end, xi, s, sums), 1.0), TINY)
         _similarity_sums(nodes, end, place_of_share(share), sums, 2)
         part = _polynomial(sums, TURN_SUM, s)
-        turn = turning * log_share + _heading(end, share, delta, turning, part) - heading
+        later = heading_at(is_fast, share, turning, delta, part)
+        turn = turning * log_share + later - heading
         out[TURN] = turn if edge > 0.0 else -turn
-
-
-@inlined
-def fill_state(
-    launch: FloatArray, time: float, side: int, double_share: float,
-    left: float, log_left: float, result: FloatArray, out: FloatArray,
-) -> None:  # fmt: skip
-    """One state from what was found at its place; side −1: at rest, the launch, or φ constant."""
-    known = launch[LAUNCH_COLUMNS:]
-    vx, vy, spin = launch[0], launch[1], launch[2]
-    delta, decel, radius = launch[3], launch[4], launch[5]
-    x, y, body = known[STOP_X], known[STOP_Y], known[BODY]
-    if side < 0:
-        left = 1.0 - time / known[TIME] if time < known[TIME] else 0.0
-        done = (1.0 - left) * (1.0 + left)
-        out[PUCK_X], out[PUCK_Y], out[ORIENTATION] = x * done, y * done, body * done
-        out[SPEED], out[SPIN] = left * known[SPEED0], left * spin
-        out[HEADING] = known[TURN] if left == 0.0 else 0.0
-        return
-    around = 1.0 if spin > 0.0 else -1.0
-    fall = left * known[T_LAUNCH] / result[0]
-    slip = known[SLIP] * fall
-    small, large = 0.5 * double_share, 1.0 - 0.5 * double_share
-    norm = slip / math.sqrt(small * small + large * large)
-    speed, rim = (small, large) if side == 1 else (large, small)
-    speed, rim = norm * speed, norm * rim
-    heading = 0.0
-    if delta > 0.0:
-        regular = _heading(side, double_share, delta, known[TURNING], result[4])
-        heading = around * (known[TURNING] * math.log(fall) + regular - known[HEADING0])
-    cosine, sine = math.cos(heading), math.sin(heading)
-    # the way that is left, along and across the new heading
-    along = result[1] * slip / decel * speed
-    across = around * delta * result[2] * rim / decel * speed
-    east, north = vx / known[SPEED0], vy / known[SPEED0]
-    ahead = along * cosine - across * sine
-    aside = along * sine + across * cosine
-    out[PUCK_X] = x - (ahead * east - aside * north)
-    out[PUCK_Y] = y - (ahead * north + aside * east)
-    out[HEADING] = heading
-    out[ORIENTATION] = body - around * result[3] * (slip / decel) * (rim / radius)
-    out[SPEED], out[SPIN] = speed, around * rim / radius
-
-
-@inlined
-def place_in_time(puck: FloatArray, time: float) -> tuple[int, float, float, float, float]:
-    """Side (−1: no place on the curve), ξ and y, the share of time that is left and its log."""
-    known = puck[LAUNCH_COLUMNS:]
-    done = time / known[TIME]
-    if known[SIGN_N] == 0.0 or not 0.0 < done < 1.0:
-        return -1, 0.0, 0.0, 0.0, 0.0
-    log = math.log1p(-done)
-    log_n = known[LOG_N] + known[KAPPA] * log
-    side, xi, y = _inverse_place(known[SIGN_N], log_n, known[KAPPA], puck[3])
-    return side, xi, y, 1.0 - done, log
 
 
 @inlined
@@ -308,10 +277,33 @@ def look_up_state(
     puck: FloatArray, time: float, stops: FloatArray, nodes: FloatArray, time_inverse: FloatArray,
     sums: FloatArray, result: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
-    """One of :func:`fill_states`; ``sums`` (40,) and ``result`` (5,) are room to work."""
-    side, xi, y, left, log = place_in_time(puck, time)
-    if side >= 0:
-        s = 2.0 * puck[3] * puck[3] - 1.0
-        y = min(y * inverse_sum(time_inverse, side, xi, s, sums), 1.0)
-        functions_at(stops, nodes, side, y, s, sums, result)
-    fill_state(puck, time, side, y, left, log, result, out)
+    """One state; ``sums`` (40,) and ``result`` (5,) are room to work."""
+    known = puck[LAUNCH_COLUMNS:]
+    x, y, body, spin = known[STOP_X], known[STOP_Y], known[BODY], puck[2]
+    elapsed = time / known[TIME]
+    if known[SIGN_N] == 0.0 or not 0.0 < elapsed < 1.0:  # at rest, the launch, or φ constant
+        left = 1.0 - elapsed if time < known[TIME] else 0.0
+        done = (1.0 - left) * (1.0 + left)
+        out[PUCK_X], out[PUCK_Y], out[ORIENTATION] = x * done, y * done, body * done
+        out[SPEED], out[SPIN] = left * known[SPEED0], left * spin
+        out[HEADING] = known[TURN] if left == 0.0 else 0.0
+        return
+    delta, kappa, turning = puck[3], known[KAPPA], known[TURNING]
+    s = 2.0 * delta * delta - 1.0
+    slow, fast, _ = end_rates(delta)
+    log_n = known[LOG_N] + kappa * math.log1p(-elapsed)
+    is_fast, log_y = log_place(known[SIGN_N], log_n, kappa, slow, fast)
+    part, xi = place_of_log(log_y)
+    side = 1 if is_fast else 0
+    share = max(min(part * inverse_sum(time_inverse, side, xi, s, sums), 1.0), TINY)
+    functions_at(stops, nodes, side, share, s, sums, result)
+    fall = (1.0 - elapsed) * known[T_LAUNCH] / result[0]
+    heading = heading_at(is_fast, share, turning, delta, result[4])
+    turn = turning * log_of(fall) + heading - known[HEADING0] if delta > 0.0 else 0.0
+    (
+        out[PUCK_X], out[PUCK_Y], out[HEADING], out[ORIENTATION], out[SPEED], out[SPIN],
+    ) = state_there(
+        (puck[0], puck[1], spin, delta, puck[4], puck[5], known[SPEED0]), (x, y, body), is_fast,
+        share, known[SLIP] * fall, turn if spin > 0.0 else -turn,
+        (result[1], result[2], result[3]),
+    )  # fmt: skip

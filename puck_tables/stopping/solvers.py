@@ -1,11 +1,13 @@
 """Solvers of stops, each for the heights that it is good for: by look-up, or by integration.
 
-A new one is a class here or beside, and its place in :mod:`puck_tables.stopping.per_height`.
+A new one is a class here, and its place in :mod:`puck_tables.stopping.per_height`.  Each has a
+``method`` and an ``error``, the largest, as promised or measured; ``work``, what determines the
+bits besides the launches; and ``all``, the outputs (6, n) and status (n,) of checked launches, with
+``threads`` = 1 where others cut the work.
 """
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
@@ -47,30 +49,8 @@ class First(NamedTuple):
     rest: FloatArray | None = None
 
 
-class StopSolver(ABC):
-    """Stops of launches of the heights that it is for.
-
-    ``method``: how; ``error``: the largest, as promised or measured.
-    """
-
-    method: Method
-    error: float
-
-    @property
-    @abstractmethod
-    def work(self) -> dict[str, Any]:
-        """What determines the bits besides the launches."""
-
-    @abstractmethod
-    def all(self, launches: FloatArray, threads: int | None = 1) -> tuple[FloatArray, Status]:
-        """All of :data:`OUTPUTS` (6, n) and status (n,) of checked launches (6, n).
-
-        ``threads``: 1 where others cut the work.
-        """
-
-
 @dataclass(frozen=True)
-class LookUp(StopSolver):
+class LookUp:
     """Stops from a stop table: nothing is integrated.
 
     Time and place from as coarse a cut of it as is good enough, all outputs from the whole table.
@@ -121,7 +101,7 @@ class LookUp(StopSolver):
 
 
 @dataclass(frozen=True)
-class SectionLookUp(StopSolver):
+class SectionLookUp:
     """Stops of the pucks of one height from a stop section."""
 
     section: StopSection
@@ -159,7 +139,7 @@ class SectionLookUp(StopSolver):
 
 
 @dataclass(frozen=True)
-class Integration(StopSolver):
+class Integration:
     """Stops by an integrator.
 
     ``columns``: of a table of resultants; ``section``: of one puck, whose height all launches must
@@ -203,7 +183,7 @@ class Integration(StopSolver):
 
 
 @dataclass
-class EachAlone(StopSolver):
+class EachAlone:
     """Stops of few launches of one height, each integrated as finely as it needs itself.
 
     So a first question waits for no measurement of what other launches would need.
@@ -240,6 +220,9 @@ class EachAlone(StopSolver):
             out[5, n] = frame.side * stop[THETA] * (frame.length / frame.radius)
             self.error = max(self.error, run.error)
         return out, status
+
+
+StopSolver = LookUp | SectionLookUp | Integration | EachAlone
 
 
 def mark_too_large(

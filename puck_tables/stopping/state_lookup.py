@@ -15,9 +15,10 @@ from puck_tables.kernels.compile import (
     look_up,
     patience,
     row_of,
+    rows_of,
     spline_values,
 )
-from puck_tables.kernels.elementary import cosine_sine_of, log_of
+from puck_tables.kernels.elementary import log_of
 from puck_tables.kernels.spline import basis
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED, SPIN, STATE_ROWS
 from puck_tables.stopping.axes import HEIGHTS
@@ -26,6 +27,7 @@ from puck_tables.stopping.similarity_lookup import (
     LAUNCH_ROWS,
     end_rates,
     inverse_end_rates,
+    state_there,
 )
 from puck_tables.stopping.state_splines import ORBIT_WIDTH, TINY, cell_of, log_place, place_of_log
 
@@ -154,39 +156,25 @@ def _find_places(room: FloatArray, count: int, cells: float) -> int:
 def _find_states(room: FloatArray, count: int) -> None:
     """From functions to states, in the frame of the launch."""
     for n in range(count):
-        spin, tilt, radius = (
-            row_of(room, _SPIN, n),
-            row_of(room, _DELTA, n),
-            row_of(room, _RADIUS, n),
-        )
-        left, launch_row = row_of(room, _LEFT, n), row_of(room, _V, n)
-        around = 1.0 if spin > 0.0 else -1.0
+        spin, left, speed = (
+            row_of(room, _SPIN, n), row_of(room, _LEFT, n), row_of(room, _V, n),
+        )  # fmt: skip
+        tilt, x, y = row_of(room, _DELTA, n), row_of(room, _X, n), row_of(room, _Y, n)
+        body = row_of(room, _BODY, n)
         slip = row_of(room, _Q, n) * (left * row_of(room, _T, n) / row_of(room, _F_TIME, n))
         share = min(row_of(room, _SHARE, n) * row_of(room, _F_SHARE, n), 1.0)
-        small, large = 0.5 * share, 1.0 - 0.5 * share
-        norm = slip / math.sqrt(small * small + large * large)
-        is_fast = row_of(room, _FAST, n) > 0.0
-        speed = norm * (small if is_fast else large)
-        rim = norm * (large if is_fast else small)
-        turn = around * (row_of(room, _SWUNG, n) + tilt * row_of(room, _F_TURN, n))
-        cosine, sine = cosine_sine_of(turn)
-        decel = row_of(room, _DECEL, n)
-        duration = slip / decel
-        # the way that is left, along and across the new heading
-        along = row_of(room, _F_ALONG, n) * duration * speed
-        across = around * tilt * row_of(room, _F_ACROSS, n) * (rim / decel) * speed
-        one = 1.0 / (launch_row if launch_row > 0.0 else 1.0)
-        east, north = row_of(room, _VX, n) * one, row_of(room, _VY, n) * one
-        ahead, aside = along * cosine - across * sine, along * sine + across * cosine
-        x, y, body = row_of(room, _X, n), row_of(room, _Y, n), row_of(room, _BODY, n)
-        turning = around * (rim / radius)
-        turned = row_of(room, _F_BODY, n) * duration * turning
+        turn = row_of(room, _SWUNG, n) + tilt * row_of(room, _F_TURN, n)
+        there = state_there(
+            (row_of(room, _VX, n), row_of(room, _VY, n), spin, tilt, row_of(room, _DECEL, n),
+             row_of(room, _RADIUS, n), speed), (x, y, body), row_of(room, _FAST, n) > 0.0, share,
+            slip, turn if spin > 0.0 else -turn, rows_of(room, _F_ALONG, 3, n),
+        )  # fmt: skip
         done = (1.0 - left) * (1.0 + left)
         on_curve = (row_of(room, _SIGN_N, n) != 0.0) & (left > 0.0) & (left < 1.0)
         at_rest = row_of(room, _TURN, n) if left == 0.0 else 0.0
-        into_row(room, _TO_X, n, x - (ahead * east - aside * north) if on_curve else x * done)
-        into_row(room, _TO_Y, n, y - (ahead * north + aside * east) if on_curve else y * done)
-        into_row(room, _TO_HEADING, n, turn if on_curve else at_rest)
-        into_row(room, _TO_ANGLE, n, body - turned if on_curve else body * done)
-        into_row(room, _TO_SPEED, n, speed if on_curve else left * launch_row)
-        into_row(room, _TO_SPIN, n, turning if on_curve else left * spin)
+        into_row(room, _TO_X, n, there[0] if on_curve else x * done)
+        into_row(room, _TO_Y, n, there[1] if on_curve else y * done)
+        into_row(room, _TO_HEADING, n, there[2] if on_curve else at_rest)
+        into_row(room, _TO_ANGLE, n, there[3] if on_curve else body * done)
+        into_row(room, _TO_SPEED, n, there[4] if on_curve else left * speed)
+        into_row(room, _TO_SPIN, n, there[5] if on_curve else left * spin)

@@ -25,7 +25,7 @@ from puck_tables.stopping.jacobian import (
     Differentiated,
     integrated_jacobians,
 )
-from puck_tables.stopping.launch_arrays import Launches, fits, launches_of
+from puck_tables.stopping.launch_arrays import TOO_LARGE, Launches, fits, launches_of
 from puck_tables.stopping.per_height import refuse_many
 from puck_tables.stopping.plain_states import all_looked_up, fill_state_slopes
 from puck_tables.stopping.state_values import (
@@ -39,9 +39,6 @@ from puck_tables.stopping.stop_table import StopTable
 from puck_tables.stopping.stop_values import UPPER_DELTA
 from puck_tables.table.table import refuse_other_kind
 
-TOO_LARGE = (
-    "velocity, spin, radius and decel give a motion too large for floating point: use larger units"
-)
 # of nothing and of one, made once: to make them takes as long as a look-up
 _NONE, _FIRST = np.empty(0, np.int64), np.zeros(1, np.int64)
 

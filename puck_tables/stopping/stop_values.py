@@ -18,6 +18,7 @@ from puck_tables.motion.state import STATE_ROWS
 from puck_tables.stopping.axes import HEIGHTS, heights
 from puck_tables.stopping.launch_arrays import (
     CHUNK,
+    TOO_LARGE,
     Launches,
     fits,
     in_chunks,
@@ -192,10 +193,7 @@ class StopValues(StopCoefficients):
         if bad:
             launches.refuse_bad()
         if doubtful and rows == PUCK_ROWS and not fits(out[:LAUNCH_COLUMNS]).all():
-            raise InputError(
-                "velocity, spin, radius and decel give a motion too large for floating point: "
-                "use larger units"
-            )
+            raise InputError(TOO_LARGE)
         return out, doubtful
 
     def states_of_one(self, launch: Launches, moments: FloatArray) -> FloatArray | None:

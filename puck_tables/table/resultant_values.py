@@ -140,9 +140,7 @@ class ResultantValues(LawTable):
         ------
         InputError
         """
-        mine, other = (one.profile for one in (self.law, law))
-        same = mine is None or (other is not None and np.array_equal(mine, other))
-        if not (same and (self.law.name, self.law.edges) == (law.name, law.edges)):
+        if self.law != law:
             raise InputError(
                 f"{self.source} is a table under the pressure law {self.law.name}, not "
                 f"{law.name}{'' if self.law.name != law.name else ' as it is now'}: give a table "

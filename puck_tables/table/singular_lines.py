@@ -38,31 +38,17 @@ def lines_of(law: Law, delta: float) -> tuple[float, ...]:
     >>> from puck_tables.contact.laws import law_of
     >>> lines_of(law_of("annulus:0.8"), 0.5)
     (0.8, 1.0)
-    """
-    singular = singular_lines(law, delta)
-    bend = _sharpest_corner(delta) if law.can_lift else 0.0
-    return tuple(sorted([*singular, *([1.0 / math.tan(bend)] if bend > 0.0 else [])]))
-
-
-def singular_lines(law: Law, delta: float) -> tuple[float, ...]:
-    """Those of them across which the ratios are not analytic, found at once.
-
-    Raises
-    ------
-    InputError, ContactError
-        If the height is out of range.
-
-    Examples
-    --------
-    >>> from puck_tables.contact.laws import law_of
-    >>> [round(line, 6) for line in singular_lines(law_of("uniform"), 2.0)]
+    >>> [round(line, 6) for line in lines_of(law_of("uniform"), 2.0)]
     [0.566906, 1.0]
     """
     refuse_height(law, delta)
-    opening = opening_angle(delta) if law.can_lift else 0.0
-    if opening == 0.0 or any(abs(opening - math.atan2(1.0, e)) <= _SAME_LINE for e in law.edges):
+    if not law.can_lift:
         return law.edges
-    return tuple(sorted([*law.edges, 1.0 / math.tan(opening)]))
+    opening, bend = opening_angle(delta), _sharpest_corner(delta)
+    if any(abs(opening - math.atan2(1.0, e)) <= _SAME_LINE for e in law.edges):
+        opening = 0.0
+    between = [1.0 / math.tan(line) for line in (opening, bend) if line > 0.0]
+    return tuple(sorted([*law.edges, *between]))
 
 
 @lru_cache(maxsize=1024)

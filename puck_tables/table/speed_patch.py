@@ -1,0 +1,155 @@
+"""One patch of a table by slip speed: its node values, and how good the spline through them is."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.executor import keep_on
+from puck_tables.contact.friction_laws import FrictionLaw
+from puck_tables.contact.integrals import SlipDirection
+from puck_tables.contact.speed_law import SpeedLaw
+from puck_tables.contact.speed_quadrature import SpeedFunction, speed_integrals
+from puck_tables.kernels.speed_quadrature_kernel import FINE, fill_integrals
+from puck_tables.kernels.speed_spline import fill_patch
+from puck_tables.table.speed_fit import missed_by_half, quintic_coefficients
+from puck_tables.table.speed_grid import COARSEST_CELLS, HALVINGS, SlipPatch
+
+Law = SpeedLaw | FrictionLaw | SpeedFunction
+
+_ORDER = 64.0  # to the power 6, of what half the nodes miss: the spline's own share
+_ALSO = 0.2  # of what the other axis misses: refined too
+_PROBES = 100  # random points of a patch
+_AT_ONCE = 20_000  # nodes between two looks whether to go on: some 0.1 s
+
+
+class FilledPatch:
+    """A patch with its node values; it is made empty, filled, and refined as long as it lacks."""
+
+    def __init__(self, patch: SlipPatch, law: Law, unit: float, number: int, rules: int):
+        self._law, self._unit, self._rules = law, unit, rules
+        self.patch = patch
+        self.cells = [COARSEST_CELLS, COARSEST_CELLS]
+        self._probes = _probes(np.random.default_rng([1960, number]), patch)
+        self.missed: list[float] = []  # nothing is known yet
+        self.first: float | None = None  # how bad the coarsest grid was
+
+    @property
+    def nodes(self) -> int:
+        """How many it has so far."""
+        return (self.cells[0] + 1) * (self.cells[1] + 1) if self.missed else 0
+
+    def fill(self) -> None:
+        """The coarsest grid."""
+        self.values = self._at(*(np.arange(n + 1) / n for n in self.cells))
+        self._judge()
+        self.first = self.badness
+
+    def _at(self, xi: FloatArray, zeta: FloatArray) -> FloatArray:
+        """The integrals on a grid, (ξ, ζ, 4)."""
+        direction, Q = self.patch.place(xi[:, None], zeta)
+        fast = bool(self.patch.fast)
+        return _truth_at(self._law, self.patch.top, direction.ratio, fast, Q, self._rules)
+
+    def _judge(self) -> None:
+        """Errors (4, probes) of the spline, and what is missed along ξ and ζ by half the nodes."""
+        xi, zeta = self._probes
+        direction, self.speeds = self.patch.place(xi, zeta)
+        found = np.empty((xi.size, 4))
+        along, across = self.cells
+        fill_patch(quintic_coefficients(self.values).ravel(), along, across, xi, zeta, found)
+        truth = _truth_at(
+            self._law, self.patch.top, direction.ratio, bool(self.patch.fast), self.speeds
+        )
+        self.errors = np.abs(self._weights(direction) * (found - truth))
+        self.phi = np.arctan2(np.sqrt(direction.sin_squared), np.sqrt(direction.cos_squared))
+        self.worst = float(self.errors.max())
+        nodes = [np.arange(n + 1) / n for n in self.cells]
+        weights = self._weights(self.patch.place(nodes[0][:, None], nodes[1])[0])
+        by_half = (
+            np.abs(missed_by_half(self.values) * weights[1::2]),
+            np.abs(missed_by_half(self.values.swapaxes(0, 1)) * weights.swapaxes(0, 1)[1::2]),
+        )
+        self.missed = [float(part.max()) / _ORDER for part in by_half]
+
+    def _weights(self, direction: SlipDirection) -> FloatArray:
+        """How the integrals enter the forces, over the largest f, (…, 4)."""
+        cosine, sine = np.sqrt(direction.cos_squared), np.sqrt(direction.sin_squared)
+        return np.stack([cosine, sine, sine, cosine], axis=-1) / self._unit
+
+    def lacks(self, accuracy: float) -> list[int]:
+        """The axes along which it has too few nodes."""
+        if self.good(accuracy):
+            return []
+        most = max(self.missed)
+        axes = [axis for axis in (0, 1) if self.missed[axis] >= _ALSO * most]
+        return [axis for axis in axes if self.cells[axis] < COARSEST_CELLS << HALVINGS]
+
+    def good(self, accuracy: float) -> bool:
+        """Whether it is as good as asked wherever that was looked at."""
+        return self.badness <= accuracy
+
+    @property
+    def badness(self) -> float:
+        """The largest error that was seen, or is to be feared."""
+        return max(self.worst, *self.missed)
+
+    def size_with(self, axes: list[int]) -> int:
+        """How many nodes it has once these axes are refined."""
+        u, w = (2 * n if axis in axes else n for axis, n in enumerate(self.cells))
+        return (u + 1) * (w + 1)
+
+    def refine(self, axes: list[int]) -> None:
+        """Halve the cells along these axes."""
+        for axis in axes:
+            n = self.cells[axis]
+            between = [np.arange(m + 1) / m for m in self.cells]
+            between[axis] = (np.arange(n) + 0.5) / n
+            shape = list(self.values.shape)
+            shape[axis] = 2 * n + 1
+            finer = np.moveaxis(np.empty(shape), axis, 0)
+            finer[::2] = np.moveaxis(self.values, axis, 0)
+            finer[1::2] = np.moveaxis(self._at(*between), axis, 0)
+            self.values = np.ascontiguousarray(np.moveaxis(finer, 0, axis))
+            self.cells[axis] = 2 * n
+        self._judge()
+
+    def share(self, accuracy: float) -> float:
+        """How far it has come, 0 to 1, on the way of its error from the coarsest grid."""
+        if self.first is None or self.good(accuracy):
+            return float(self.first is not None)
+        return max(0.0, math.log(self.first / self.badness) / math.log(self.first / accuracy))
+
+
+def _truth_at(
+    law: Law, top: float, ratio: FloatArray, fast: npt.ArrayLike, speed: FloatArray,
+    rules: int = FINE,
+) -> FloatArray:  # fmt: skip
+    """p_a, p_b, p_d, p_e by quadrature, (…, 4); ``top``: what the slip goes up to, m/s."""
+    if not isinstance(law, SpeedLaw | FrictionLaw):
+        p = speed_integrals(np.where(fast, np.arctan2(1.0, ratio), np.arctan(ratio)), speed, law)
+        return np.stack([p.a, p.b, p.d, p.e], axis=-1)
+    ends, pieces = law.pieces(top)
+    flat, Q = np.ravel(ratio).copy(), np.ravel(speed).copy()
+    inside = np.array(np.broadcast_to(fast, flat.shape), bool)
+    out = np.empty((flat.size, 4))
+    each = max(1, _AT_ONCE // max(1, len(pieces) // 4))
+    for start in range(0, flat.size, each):
+        keep_on()
+        part = slice(start, start + each)
+        fill_integrals(ends, pieces, flat[part], inside[part], Q[part], rules, out[part])
+    return out.reshape(*np.shape(ratio), 4)
+
+
+def _probes(rng: np.random.Generator, patch: SlipPatch) -> tuple[FloatArray, FloatArray]:
+    """Points of a patch, ξ and ζ: anywhere, and next to all edges and corners."""
+    share = rng.random((2, _PROBES))
+    near = rng.random((2, _PROBES)) ** 6
+    edge = np.where(rng.random((2, _PROBES)) < 0.5, near, 1.0 - near)
+    xi, zeta = np.where(rng.random((2, _PROBES)) < 0.5, share, edge)
+    if patch.slab > 0 and patch.part == patch.slab + 1:  # one half mirrors the other
+        return np.maximum(xi, zeta), np.minimum(xi, zeta)
+    return xi, zeta
