@@ -13,7 +13,6 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import instance, positive, real
 from puck_tables._core.units import PIXEL, factor, pixel_size, unit_named
 from puck_tables.errors import InputError
-from puck_tables.film.angles import direction
 from puck_tables.film.film import Film, TrackedBody
 from puck_tables.film.marks_file import plane_from
 from puck_tables.film.plane import Marks, Plane
@@ -370,3 +369,17 @@ def _angle_column(path: str | Path, body: TrackedBody, centre: Sequence[str]) ->
             "such as t,red_x,red_y,red_angle"
         )
     return None
+
+
+def direction(start: FloatArray, end: FloatArray) -> FloatArray:
+    """The angle of the line from one mark to another, counter-clockwise from x, (n,) in rad.
+
+    Examples
+    --------
+    >>> direction(np.array([[0.0, 0.0]]), np.array([[0.0, 2.0]])).round(6).tolist()
+    [1.570796]
+    """
+    apart = end - start
+    angle: FloatArray = np.arctan2(apart[:, 1], apart[:, 0])
+    angle[(apart == 0.0).all(axis=1)] = np.nan  # two marks at one place have no direction
+    return angle

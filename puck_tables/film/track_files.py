@@ -65,8 +65,7 @@ def read_tracks(
     Returns
     -------
     tuple of Track
-        Times in s, places in m, angles in rad as the file has them (see
-        :func:`puck_tables.film.angles.unwrap`), counter-clockwise.
+        Times in s, places in m, angles in rad as the file has them, counter-clockwise.
 
     Raises
     ------

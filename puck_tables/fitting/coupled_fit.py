@@ -16,7 +16,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.certainty import Certainty
-from puck_tables.fitting.estimate import FARTHEST, FARTHEST_PLACE, Estimate, estimate
+from puck_tables.fitting.estimate import Estimate, capped_squares, estimate
 from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.impact_law import WallLine
 from puck_tables.fitting.impact_matching import (
@@ -27,7 +27,7 @@ from puck_tables.fitting.impact_matching import (
     coupled,
     matched_impacts,
 )
-from puck_tables.fitting.least_squares import ROBUST_SCALE, multi_start
+from puck_tables.fitting.least_squares import ROBUST, multi_start
 from puck_tables.fitting.numbers import FOLLOWS, Number, quadratic
 from puck_tables.fitting.observations import Observations
 from puck_tables.fitting.parameters import OF_PAIRS, OF_WALLS
@@ -109,7 +109,7 @@ def _deepest(group: list[CoupledFit], known: Known) -> Estimate:
     """The estimate from the best of several starts, with other minima near which it may lie."""
     if len(group) == 1:
         return estimate(group[0].problem, group[0].start, known)
-    walked = multi_start([(one.problem, one.start) for one in group], _WALK, ROBUST_SCALE, _RIVAL)
+    walked = multi_start([(one.problem, one.start) for one in group], _WALK, ROBUST, _RIVAL)
     result = estimate(group[0].problem, walked[0][0], known)
     return replace(result, minima=tuple(x for x, cost in walked if cost < walked[0][1] + _RIVAL))
 
@@ -172,25 +172,14 @@ def _through(wall: WallLine, x: float, y: float) -> bool:
 def _rise(slides: Estimate, result: Estimate, whole: CoupledFit) -> float:
     """By how much χ² is larger, over the frames of all slides, with the noise of these."""
     noise = slides.problem.noise
-    apart = _frame_squares(slides.problem, slides.x)
-    together = _frame_squares(result.problem.with_noise(noise, result.x, result.kept), result.x)
+    apart = capped_squares(slides.problem, slides.x)
+    together = capped_squares(result.problem.with_noise(noise, result.x, result.kept), result.x)
     rise = 0.0
     for n, (film, squares) in enumerate(zip(slides.problem.films, apart, strict=True)):
         track = whole.pieces[n]
         places = np.searchsorted(result.problem.films[track].frame, film.frame)
         rise += float((together[track][places] - squares).sum())
     return rise
-
-
-def _frame_squares(problem: Problem, x: FloatArray) -> list[FloatArray]:
-    """Squares of the residuals of each frame, an outlier as the farthest that is none."""
-    rows, result = problem.residuals(x), []
-    for film, (one, two, turn) in zip(problem.films, problem.each(), strict=True):
-        squares = np.minimum(rows[one] ** 2 + rows[two] ** 2, FARTHEST_PLACE)
-        if film.angle is not None:
-            squares[np.isfinite(film.angle)] += np.minimum(rows[turn] ** 2, FARTHEST**2)
-        result.append(squares)
-    return result
 
 
 def impacts_coupled(

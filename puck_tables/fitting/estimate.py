@@ -86,7 +86,7 @@ _MEDIAN = 0.6744897501960817
 _MEDIAN_PLACE = 2.0 * math.log(2.0)  # of the square of two normal deviates
 _WIDE = 1.4
 _FEW = 2.5  # residuals for each unknown
-_LEAST_TOLD = 0.5  # residuals: of less nothing is an outlier
+_LEAST_DEGREES = 0.5  # residuals: of less nothing is an outlier
 _ROUNDS = 6
 _SETTLED = 1e-3  # of a standard deviation of the noise
 _COMPUTED = 1e-10  # of a path, as well as motions are known: no residuals tell a smaller noise
@@ -147,19 +147,19 @@ def estimate(
         rows = problem.residuals(x)
     count = np.bincount(problem.kinds, minlength=UNSEEN + 1)[: PRIOR + 1]
     free = count[:PRIOR] * max(1.0 - x.size / count.sum(), 0.0)
-    kept = _kept(problem, rows, _told(free.tolist(), noise_known), strict)
+    kept = _kept(problem, rows, _noise_degrees(free.tolist(), noise_known), strict)
     for _ in range(_ROUNDS):
         x, _ = minimise(problem, x, SQUARES, kept)
         rows, slopes = problem.residuals_and_jacobian(x)
-        told = _told(_freedoms(problem, rows, slopes, kept), noise_known)
-        noise, jitter = _noise(problem, x, rows, told, kept, noise_known)
+        degrees = _noise_degrees(_freedoms(problem, rows, slopes, kept), noise_known)
+        noise, jitter = _noise(problem, x, rows, degrees, kept, noise_known)
         noise = _at_least(problem, x, noise, noise_known)
         change = max(abs(math.log(new / old)) for new, old in
                      zip(noise, problem.noise, strict=True))  # fmt: skip
         change = max(change, abs(jitter - problem.jitter) / (jitter or 1.0))
         problem = problem.with_noise(noise, x, kept, jitter)
         rows = problem.residuals(x)
-        again = _kept(problem, rows / _foreseen(slopes, kept), told, strict)
+        again = _kept(problem, rows / _foreseen(slopes, kept), degrees, strict)
         if change < _SETTLED and np.array_equal(again, kept):
             break
         kept = again
@@ -167,15 +167,26 @@ def estimate(
     return Estimate(problem, x, kept, rows, problem.jacobian(x))
 
 
+def capped_squares(problem: Problem, x: FloatArray) -> list[FloatArray]:
+    """Squares of the residuals of each frame of each track, an outlier as the farthest of none."""
+    rows, result = problem.residuals(x), []
+    for film, (one, two, turn) in zip(problem.films, problem.each(), strict=True):
+        squares = np.minimum(rows[one] ** 2 + rows[two] ** 2, FARTHEST_PLACE)
+        if film.angle is not None:
+            squares[np.isfinite(film.angle)] += np.minimum(rows[turn] ** 2, FARTHEST**2)
+        result.append(squares)
+    return result
+
+
 def only_outliers(result: Estimate, known: Known) -> bool:
     """Whether all frames that an estimate leaves out are strays."""
     slopes, kept = result.jacobian, result.kept
     rows = result.residuals / _foreseen(slopes, kept)
-    told = _told(_freedoms(result.problem, rows, slopes, kept), known)
-    return np.array_equal(kept, _kept(result.problem, rows, told, True))
+    degrees = _noise_degrees(_freedoms(result.problem, rows, slopes, kept), known)
+    return np.array_equal(kept, _kept(result.problem, rows, degrees, True))
 
 
-def _told(free: list[float], known: Known) -> list[float]:
+def _noise_degrees(free: list[float], known: Known) -> list[float]:
     """How many residuals told the noise of places, and of angles; infinite where it is given."""
     return [math.inf if given else one for one, given in zip(free, known[:2], strict=True)]
 
@@ -193,13 +204,13 @@ def _foreseen(slopes: FloatArray, kept: npt.NDArray[np.bool_]) -> FloatArray:
 
 
 def _kept(
-    problem: Problem, rows: FloatArray, told: list[float], strict: bool
+    problem: Problem, rows: FloatArray, degrees: list[float], strict: bool
 ) -> npt.NDArray[np.bool_]:
     """Residuals of frames that are no outliers; a place counts as a whole.
 
-    ``told``: how many residuals told the noise: it is the less sure the fewer they are, and those
-    beyond it count no more in it.  So what is an outlier is farther off: by chance as seldom, under
-    Student's t, as a good frame beyond four standard deviations that are known.
+    ``degrees``: how many residuals tell the noise: it is the less sure the fewer they are, and
+    those beyond it count no more in it.  So what is an outlier is farther off: by chance as seldom,
+    under Student's t, as a good frame beyond four standard deviations that are known.
     """
     kept: npt.NDArray[np.bool_] = problem.kinds != UNSEEN
     if rows.size < _FEW * len(problem.names):  # too few to tell what is one
@@ -208,8 +219,8 @@ def _kept(
     places = [np.stack([rows[x], rows[y]], axis=1) for x, y, _ in each]
     turns = [rows[turn, None] for _, _, turn in each]
     # where most are far off no frame is an outlier, but the noise is larger or the model wrong
-    most_place = _farthest(2, told[PLACE]) * _wide(places, _MEDIAN_PLACE)
-    most_turn = _farthest(1, told[ANGLE]) * _wide(turns, _MEDIAN**2)
+    most_place = _farthest(2, degrees[PLACE]) * _wide(places, _MEDIAN_PLACE)
+    most_turn = _farthest(1, degrees[ANGLE]) * _wide(turns, _MEDIAN**2)
     for (x, y, turn), place, angle in zip(each, places, turns, strict=True):
         kept[x] = kept[y] = ~_out(place, most_place, strict)
         kept[turn] = ~_out(angle, most_turn, strict)
@@ -217,19 +228,19 @@ def _kept(
     return kept
 
 
-def _farthest(count: int, told: float) -> float:
+def _farthest(count: int, degrees: float) -> float:
     """The square of so many deviates over a noise that residuals told, that hardly any exceeds.
 
     Examples
     --------
-    >>> [round(_farthest(1, told) ** 0.5, 1) for told in (3.0, 30.0, 1e3, math.inf)]
+    >>> [round(_farthest(1, degrees) ** 0.5, 1) for degrees in (3.0, 30.0, 1e3, math.inf)]
     [32.6, 4.6, 4.0, 4.0]
     """
-    if told == math.inf:
+    if degrees == math.inf:
         return FARTHEST**2 if count == 1 else FARTHEST_PLACE
     from scipy.special import fdtri
 
-    return count * float(fdtri(count, max(told, _LEAST_TOLD), 1.0 - _BY_CHANCE))
+    return count * float(fdtri(count, max(degrees, _LEAST_DEGREES), 1.0 - _BY_CHANCE))
 
 
 def _out(deviations: FloatArray, most: float, strict: bool) -> npt.NDArray[np.bool_]:
@@ -245,7 +256,7 @@ def _wide(deviations: list[FloatArray], usual: float) -> float:
 
 
 def _noise(
-    problem: Problem, x: FloatArray, rows: FloatArray, told: list[float],
+    problem: Problem, x: FloatArray, rows: FloatArray, degrees: list[float],
     kept: npt.NDArray[np.bool_], known: Known,
 ) -> tuple[tuple[float, float], float]:  # fmt: skip
     """The noise that the residuals show, each kind less what the unknowns take, and the jitter."""
@@ -254,7 +265,7 @@ def _noise(
     if problem.jitter > 0.0 or not known.jitter:
         return _jittery(problem, x, kept, known)
     result = list(problem.noise)
-    for kind, free in enumerate(told):
+    for kind, free in enumerate(degrees):
         if not known[kind] and free > 1.0:
             mine = problem.kinds[kept] == kind
             result[kind] *= math.sqrt(float(np.sum(rows[kept][mine] ** 2)) / free)

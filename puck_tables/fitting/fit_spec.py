@@ -205,6 +205,16 @@ class FitSpec:
         friction = decel / all_of["gravity"]
         return decel, 2.0 * friction * all_of["height"] / all_of["radius"], all_of["radius"]
 
+    def all_at(self, result: Mapping[str, float]) -> dict[str, float]:
+        """All numbers of the puck where some are found: with J, δ, f and h, which follow."""
+        numbers = {**self.known(), **result}
+        decel, delta, radius = self.scales(result)
+        friction = decel / numbers["gravity"]
+        height = 0.5 * delta * radius / friction if friction > 0.0 else 0.0
+        return {
+            **numbers, "decel": decel, "delta": delta, "friction": friction, "height": height,
+        }  # fmt: skip
+
     def slopes(self, result: Mapping[str, float], name: str) -> tuple[float, float, float]:
         """The derivatives of J, δ and r to one that is found, by the complex step."""
         complex_values = {**result, name: result[name] + 1j * _TINY}

@@ -145,8 +145,8 @@ def fit(
 
     References
     ----------
-    Salnikova, Treschev, Gallyamov 2012, sections 2 and 6: the motion; Marquardt 1963: the
-    optimiser.
+    Salnikova, Treschev, Gallyamov 2012, sections 2 and 6: the motion; scipy's ``least_squares``:
+    the optimiser.
 
     Examples
     --------

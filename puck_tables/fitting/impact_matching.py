@@ -30,7 +30,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.impact_law import ImpactSpec, Slide, WallLine, state_at
-from puck_tables.fitting.least_squares import ROBUST_SCALE, multi_start
+from puck_tables.fitting.least_squares import ROBUST, multi_start
 from puck_tables.fitting.observations import Observations
 from puck_tables.fitting.parameters import OF_PAIRS, OF_WALLS
 from puck_tables.fitting.problem import Problem
@@ -365,15 +365,13 @@ def _spins_of(slides: Estimate, n: int, result: dict[str, float]) -> list[Option
     moderate = {"launch_spin": (0.0, _MODERATE * speed / radius)}
     fixed, priors = {**problem.spec.fixed, **result}, {**moderate, **problem.spec.priors}
     held = replace(problem.spec, free=(), fixed=fixed, priors=priors)
-    few = np.zeros(film.time.size, bool)
-    few[np.linspace(0, film.time.size - 1, _FRAMES).astype(int)] = True
-    alone = Problem(held, (film.part(few),), problem.noise, problem.tall)
+    alone = Problem(held, (film.thinned(_FRAMES),), problem.noise, problem.tall)
     starts = []
     for ratio, sign in product(_RATIOS, (1.0, -1.0)):
         other = launch.copy()
         other[4] = held.fixed.get("launch_spin", sign * ratio * speed / radius)
         starts.append((alone, alone.unknowns({}, other[None])))
-    walked = multi_start(starts, _STEPS, ROBUST_SCALE)
+    walked = multi_start(starts, _STEPS, ROBUST)
     options: list[Option] = []
     for x, cost in walked:
         one = alone.launches(x)[0]

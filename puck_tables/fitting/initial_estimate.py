@@ -18,7 +18,7 @@ from puck_tables.fitting.estimate import FARTHEST, Estimate, estimate, only_outl
 from puck_tables.fitting.numbers import plausible_for
 from puck_tables.fitting.observations import FEWEST, Observations, noise_of, rests_from
 from puck_tables.fitting.problem import ANGLE, UNSEEN, Known, Problem
-from puck_tables.fitting.residuals import NO_PATTERN, NOISY, drift, runs
+from puck_tables.fitting.residuals import NO_PATTERN, NOISY, drift, excess_of, runs
 from puck_tables.fitting.starts import minima_of
 from puck_tables.fitting.touches import first_touch, pushed
 
@@ -72,14 +72,9 @@ def _ends(whole: Observations, at: int, close: int, first: bool) -> bool:
 
 def is_clean(result: Estimate, excess: float = 1.2, chance: float = 0.01) -> bool:
     """Whether what is left of a track is noise, no more than that of a smooth motion."""
-    return _excess(result) < excess and min(runs(result), drift(result)) > chance
-
-
-def _excess(result: Estimate) -> float:
-    """The residuals over those of any smooth motion; 1 where these are not known."""
-    smooth = noise_of(list(result.problem.films))[0]
-    size = result.problem.noise[0] * math.sqrt(result.chi2 / max(result.degrees, 1))
-    return size / smooth if smooth > 0.0 else 1.0
+    smooth = noise_of(list(result.problem.films))[0], math.nan  # angles tell whole turns, too
+    noisy = excess_of(result, smooth) >= excess
+    return not noisy and min(runs(result), drift(result)) > chance
 
 
 def without_ends(film: Observations) -> list[Observations]:

@@ -289,12 +289,7 @@ def refuse_faster(speeds: tuple[float, ...], result: Estimate) -> None:
     ------
     InputError
     """
-    problem = result.problem
-    radius = problem.spec.scales(problem.numbers_at(result.x))[2]
-    fastest = max(
-        math.hypot(vx, vy) + radius * abs(spin)
-        for _, _, vx, vy, spin, _ in problem.launches(result.x).tolist()
-    )
+    fastest = result.problem.fastest(result.x)
     if fastest > speeds[-1]:
         raise InputError(
             f"the puck slips at up to {fastest:.4g} m/s, but the last of the slip speeds is "

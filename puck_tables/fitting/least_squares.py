@@ -70,8 +70,7 @@ class How(NamedTuple):
 
 _FAR = 1e3  # ends that are farther, and those of launches, would only bend steps to a minimum
 
-LOOSE = How("cauchy", 3.0, 40, 1e-4)
-ROBUST = How("cauchy", 3.0, 30, 1e-4)
+ROBUST = How("cauchy", 3.0, 40, 1e-4)
 SQUARES = How("linear", 1.0, 60, 1e-9)
 
 
@@ -163,7 +162,6 @@ def inside(x: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
 # steps, and how many starts then go on
 FROM_AFAR = ((1, 10), (4, 5), (12, 4))
 FROM_BESIDE = ((4, 2), (30, 1))
-ROBUST_SCALE = 3.0  # where residuals begin to count less, in units of the noise
 _DAMPED, _EASED, _HARDER = 1e-3, 0.1, 10.0
 _LEAST = 1e-9  # damping: what is not seen stays where it is
 _LEVEL, _HARDEST = 1e-4, 1e6  # what costs fall by, or the damping, where a start has arrived
@@ -173,7 +171,7 @@ _APART = 1e-2  # starts that are nearer have met
 
 def multi_start(
     starts: list[tuple[Problem, FloatArray]], rounds: tuple[tuple[int, int], ...],
-    scale: float = math.inf, allowance: float = 0.0, kept: npt.NDArray[np.bool_] | None = None,
+    how: How = SQUARES, allowance: float = 0.0, kept: npt.NDArray[np.bool_] | None = None,
     held: int | None = None,
 ) -> list[tuple[FloatArray, float]]:  # fmt: skip
     """Unknowns at the deepest minima that starts lead to, and the cost there, the deepest first.
@@ -184,11 +182,12 @@ def multi_start(
     ----------
     starts : problems of the same residuals, each with unknowns
     rounds : steps, and how many starts go on after them
-    scale : s; residuals r count as ½ s² ln(1 + (r/s)²), with s at least twice their median
+    how : residuals r count as ½ s² ln(1 + (r/s)²), with s at least twice their median, or squared
     allowance : what a start may cost more than the best and goes on, however many do
     kept : residuals that count, all where it is left out
     held : an unknown that stays
     """
+    scale = math.inf if how.loss == "linear" else how.scale
     walkers = [_Walker(problem, x, scale, kept, held) for problem, x in starts]
     for steps, most in rounds:
         for walker in walkers:

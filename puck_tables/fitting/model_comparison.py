@@ -19,12 +19,12 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.laws import law_of
 from puck_tables.errors import InputError
 from puck_tables.fitting.certainty import Z95, Certainty
-from puck_tables.fitting.estimate import FARTHEST, FARTHEST_PLACE, Estimate, estimate
+from puck_tables.fitting.estimate import Estimate, capped_squares, estimate
 from puck_tables.fitting.fit_spec import FitSpec
-from puck_tables.fitting.least_squares import LOOSE, minimise
+from puck_tables.fitting.least_squares import ROBUST, minimise
 from puck_tables.fitting.observations import FEWEST, Observations, rests_from
 from puck_tables.fitting.parameters import NODES
-from puck_tables.fitting.problem import ANGLE, PLACE, PRIOR, Known, Problem
+from puck_tables.fitting.problem import ANGLE, PLACE, Known, Problem
 from puck_tables.fitting.whole_turns import on_another_floor
 
 _FRAMES = 80  # that tell whether such a law may be the reason of a misfit
@@ -37,7 +37,7 @@ def over_speeds(
 ) -> Estimate:
     """The estimate with a friction coefficient for each slip speed, from that of one for all."""
     moved, start = _begun(result.problem, result.x, speeds)
-    lines, _ = minimise(moved, start, LOOSE)
+    lines, _ = minimise(moved, start, ROBUST)
     spec = replace(moved.spec, between=between)
     return estimate(replace(moved, spec=spec), lines, known)
 
@@ -45,20 +45,13 @@ def over_speeds(
 def tried(result: Estimate) -> Estimate:
     """About what a law over slip speed leaves of the frames of an estimate."""
     problem = result.problem
-    films = []
-    for film in problem.films:
-        few = np.zeros(film.time.size, bool)
-        few[np.linspace(0, film.time.size - 1, _FRAMES).astype(int)] = True
-        films.append(film.part(few))
-    radius = problem.spec.scales(problem.numbers_at(result.x))[2]
-    _, _, vx, vy, spin, _ = problem.launches(result.x).T
-    top = float((np.hypot(vx, vy) + radius * np.abs(spin)).max())
+    top = problem.fastest(result.x)
     speeds = tuple(float(f"{1.1 * top * share:.2g}") for share in _SHARES)
-    fewer = problem.with_films(tuple(films))
+    fewer = problem.with_films(tuple(film.thinned(_FRAMES) for film in problem.films))
     moved, start = _begun(fewer, result.x, speeds)
-    lines, _ = minimise(moved, start, LOOSE)
+    lines, _ = minimise(moved, start, ROBUST)
     smooth = replace(moved, spec=replace(moved.spec, between="cubic"))
-    x, _ = minimise(smooth, lines, LOOSE)
+    x, _ = minimise(smooth, lines, ROBUST)
     return replace(result, problem=smooth, x=x, minima=())
 
 
@@ -78,7 +71,7 @@ def _begun(
     line = None if problem.impact_specs else on_another_floor(problem, x)
     if line is None:
         return moved, start
-    there, _ = minimise(*line, LOOSE)
+    there, _ = minimise(*line, ROBUST)
     result, gravity = line[0].numbers_at(there), problem.spec.known()["gravity"]
     values = result["friction"] + result["drag"] / gravity * np.array(speeds)
     values = np.maximum(values, _LEAST * values.max())
@@ -183,12 +176,9 @@ def _variant(spec: FitSpec, name: str) -> FitSpec:
 
 def chi2_under(result: Estimate, noise: tuple[float, float]) -> float:
     """χ² under a noise, of all frames, with no residual beyond the farthest."""
-    rows = result.problem.with_noise(noise, result.x, result.kept).residuals(result.x)
-    total = float(np.sum(rows[result.problem.kinds == PRIOR] ** 2))
-    for x, y, turn in result.problem.each():
-        place = rows[x] ** 2 + rows[y] ** 2
-        total += float(np.minimum(place, FARTHEST_PLACE).sum())
-        total += float(np.minimum(rows[turn] ** 2, FARTHEST**2).sum())
+    problem = result.problem.with_noise(noise, result.x, result.kept)
+    total = sum(float(squares.sum()) for squares in capped_squares(problem, result.x))
+    total += sum(((result.x[k] - value) / spread) ** 2 for k, value, spread in problem.priors)
     return total if math.isfinite(total) else math.inf
 
 

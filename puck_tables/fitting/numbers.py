@@ -157,9 +157,7 @@ def numbers_of(
         if puck[name].profiled and 0.0 < errors[k] < math.inf and puck[name].determined:
             widened[k] = max(puck[name].error / errors[k], 1.0)
             profiled = True
-    everything = {**spec.known(), **values}
-    everything.update(_derived(spec.scales(values), everything))
-    for name, value in everything.items():
+    for name, value in spec.all_at(values).items():
         if name in puck or (name == "drag" and value == 0.0):
             continue
         slope = _slope(problem, x, name)
@@ -236,10 +234,7 @@ def _follows(
         return None
     one, ends = spec.free[of[0]], []
     for end in (puck[one].low, puck[one].high):
-        moved = {**values, one: end}
-        everything = {**spec.known(), **moved}
-        everything.update(_derived(spec.scales(moved), everything))
-        ends.append(everything[name])
+        ends.append(spec.all_at({**values, one: end})[name])
     return Interval(min(ends), max(ends), False)
 
 
@@ -253,8 +248,7 @@ def _profiled(result: Estimate, certainty: Certainty, name: str) -> Interval | N
     if "delta" not in spec.free or "delta" in spec.priors or "delta" in spec.bounds:
         return None
     k = spec.free.index("delta")
-    values = {**spec.known(), **problem.numbers_at(result.x)}
-    height = _derived(spec.scales(values), values)[name]
+    height = spec.all_at(problem.numbers_at(result.x))[name]
     other = replace(spec, free=tuple(name if one == "delta" else one for one in spec.free))
     moved = replace(problem, spec=other)
     x = result.x.copy()
@@ -267,16 +261,6 @@ def _profiled(result: Estimate, certainty: Certainty, name: str) -> Interval | N
     return interval_of(there, own, k).wider(height, ratio, 0.0, math.inf)
 
 
-def _derived(scales: tuple[float, float, float], numbers: Mapping[str, float]) -> dict[str, float]:
-    """J, δ, f and h from the scales."""
-    decel, delta, radius = scales
-    friction = decel / numbers["gravity"]
-    return {
-        "decel": decel, "delta": delta, "friction": friction,
-        "height": 0.5 * delta * radius / friction if friction > 0.0 else 0.0,
-    }  # fmt: skip
-
-
 def _slope(problem: Problem, x: FloatArray, name: str) -> FloatArray:
     """How a number changes with the unknowns (m,)."""
     spec, values = problem.spec, problem.numbers_at(x)
@@ -285,10 +269,7 @@ def _slope(problem: Problem, x: FloatArray, name: str) -> FloatArray:
         ends = []
         step = _STEP * (abs(values[free]) or 1.0)
         for side in (-1.0, 1.0):
-            moved = {**values, free: values[free] + side * step}
-            everything = {**spec.known(), **moved}
-            everything.update(_derived(spec.scales(moved), everything))
-            ends.append(everything[name])
+            ends.append(spec.all_at({**values, free: values[free] + side * step})[name])
         slope[k] = (ends[1] - ends[0]) / (2.0 * step)
         if abs(slope[k]) * step < 1e-13 * abs(ends[1]):  # rounding
             slope[k] = 0.0

@@ -140,6 +140,12 @@ class Observations:
             counts=None if self.counts is None else self.counts[chosen],
         )  # fmt: skip
 
+    def thinned(self, count: int) -> Observations:
+        """So many of the frames, spread over all of them, or all if they are fewer."""
+        chosen = np.zeros(self.time.size, bool)
+        chosen[np.linspace(0, self.time.size - 1, count).astype(int)] = True
+        return self.part(chosen)
+
     @property
     def usual_step(self) -> float:
         """The usual time between two frames, s."""

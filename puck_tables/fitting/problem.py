@@ -239,9 +239,9 @@ class Problem(Slides):
         """Both, from the same motions."""
         out = np.zeros((self.kinds.size, x.size))
         row, paths = 0, []
-        for n, (path, slopes) in enumerate(self.paths_and_slopes(x)):
+        for n, (path, slopes, columns) in enumerate(self.paths_and_slopes(x)):
             rows = self.weighed(n, slopes)
-            out[row : row + len(rows)] = rows
+            out[row : row + len(rows), columns] = rows
             row += len(rows)
             paths.append(path)
         for n, (k, _, spread) in enumerate(self.priors):

@@ -212,8 +212,8 @@ _REST = 1e-3  # of the greatest slip
 _TRIED = 0.1  # degrees of a table that nobody levelled with care
 _STEEP = 3.0  # degrees: nobody takes that for a level table
 _ALIKE = 6.0  # of χ²: forces that explain about as much
-_LAW = 0.2  # of a friction, by which it may change up to the fastest slip
 _ROUNDS, _CLOSE = 40, 1e-4
+_LAW = 0.2  # of a friction, by which it may change up to the fastest slip
 _RANK, _SEEN = 1e-9, 2e-3
 
 
@@ -256,7 +256,7 @@ def side_forces(result: Estimate, certainty: Certainty) -> SideForces:
     told = {kind: _explained(columns[:, kind], rows, result.degrees) for kind in _KINDS}
     forces = {kind: one.force / lengths[list(kind)] for kind, one in told.items()}
     values = problem.numbers_at(result.x)
-    decel, _, radius = problem.spec.scales(values)
+    decel = problem.spec.scales(values)[0]
     gravity = {**problem.spec.known(), **values}["gravity"]
     tilt = math.degrees(math.hypot(*forces[SLOPE]) / gravity)
     best = max(one.gain for one in told.values())
@@ -264,8 +264,7 @@ def side_forces(result: Estimate, certainty: Certainty) -> SideForces:
     if tilt > _STEEP and len(near) > 1:
         near = [kind for kind in near if kind != SLOPE]
     slope = np.hypot(*changes[:, SLOPE].T) * gravity * math.radians(_TRIED)
-    _, _, vx, vy, spin, _ = problem.launches(result.x).T
-    fastest = float((np.hypot(vx, vy) + radius * np.abs(spin)).max())
+    fastest = problem.fastest(result.x)
     return SideForces(
         min(len(_KINDS) * min(one.chance for one in told.values()), 1.0),
         " or ".join(_KINDS[kind].format(tilt) for kind in near),

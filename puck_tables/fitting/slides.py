@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.forward_model import (
@@ -51,6 +52,12 @@ class Slides(Unknowns):
     def moving(self, result: NumbersOf) -> Moving:
         """What moves the puck."""
         return self.spec.moving(result, self.tall)
+
+    def fastest(self, x: FloatArray) -> float:
+        """The greatest slip at a launch, at the rim, m/s."""
+        radius = self.spec.scales(self.numbers_at(x))[2]
+        _, _, vx, vy, spin, _ = self.launches(x).T
+        return float((np.hypot(vx, vy) + radius * np.abs(spin)).max())
 
     def slides(self, x: FloatArray) -> tuple[list[list[Slide]], list[ImpactState]]:
         """The slides of each track, in their order, and the impacts between them.
@@ -118,21 +125,23 @@ class Slides(Unknowns):
         """Places and angles (3, n) of the model at the frames of each track."""
         return [states[PLACE] for states in self.states(x)]
 
-    def paths_and_slopes(self, x: FloatArray) -> Iterator[tuple[FloatArray, FloatArray]]:
-        """The same of each track in turn, with their derivatives (3, n, m)."""
+    def paths_and_slopes(
+        self, x: FloatArray
+    ) -> Iterator[tuple[FloatArray, FloatArray, npt.NDArray[np.int64]]]:
+        """The same of each track in turn, their derivatives (3, n, k), and to which unknowns."""
         result, slides, changes = self.numbers_at(x), self.slides(x)[0], self.slopes_of_slides(x)
-        at = _Along(self, result, x.size)
+        at, owners = _Along(self, result), np.array([track for track, _ in self.names])
         for n, film in enumerate(self.films):
+            every = bool(self.impact_specs)  # slides may follow from launches of other tracks
+            columns = np.flatnonzero(every | (owners == -1) | (owners == n))
             path = np.empty((3, film.time.size))
-            slopes = np.empty((3, film.time.size, x.size))
+            slopes = np.empty((3, film.time.size, columns.size))
             parts = self._parts(n, result, slides[n])
             for (frames, times, slide), change in zip(parts, changes[n], strict=True):
                 row = None if film.row is None else film.row[frames]
-                states, slopes[:, frames], _ = at.states_and_slopes(
-                    slide, change, times, PLACE, row
-                )
-                path[:, frames] = states[PLACE]
-            yield path, slopes
+                of = at.states_and_slopes(slide, change[:, columns], times, PLACE, row)
+                path[:, frames], slopes[:, frames] = of[0][PLACE], of[1]
+            yield path, slopes, columns
 
     def slopes_of_slides(self, x: FloatArray) -> list[list[FloatArray]]:
         """The derivatives of each slide of each track (7, m): since when, then its launch."""
@@ -140,7 +149,7 @@ class Slides(Unknowns):
         if not self.impact_specs:
             return slopes
         slides, impacts = self.slides(x)
-        at = _Along(self, self.numbers_at(x), x.size)
+        at = _Along(self, self.numbers_at(x))
         for impact_spec, impact in zip(self.impact_specs, impacts, strict=True):
             before = [
                 at.of_impact(slides[n][len(slopes[n]) - 1], slopes[n][-1], impact.time)
@@ -173,14 +182,14 @@ class Slides(Unknowns):
 class _Along:
     """States along slides, and their derivatives, for numbers of the puck."""
 
-    def __init__(self, problem: Slides, result: NumbersOf, size: int) -> None:
+    def __init__(self, problem: Slides, result: NumbersOf) -> None:
         spec = problem.spec
         self._problem, self._result, self._moving = problem, result, problem.moving(result)
         self._curve = [k for k, name in enumerate(spec.free) if spec.changes_motion(name)]
-        self._by = np.zeros((7, size))  # of what states are differentiated to
+        self._scales = np.zeros((7, len(spec.free)))  # which are the first unknowns
         for k, name in enumerate(spec.free):
             if k not in self._curve:
-                self._by[[DECEL, DELTA, RADIUS], k] = spec.slopes(result, name)
+                self._scales[[DECEL, DELTA, RADIUS], k] = spec.slopes(result, name)
 
     def states_and_slopes(
         self, slide: Slide, change: FloatArray, times: FloatArray, rows: slice,
@@ -192,8 +201,10 @@ class _Along:
         """
         states, slopes = states_and_slopes(self._moving, slide.launch, times)
         slopes = slopes[:, rows].swapaxes(0, 1)
-        self._by[[VX, VY, SPIN]], self._by[TIME] = change[3:6], -change[0]
-        out: FloatArray = (slopes.reshape(-1, 7) @ self._by).reshape(*slopes.shape[:2], -1)
+        by = np.zeros(change.shape)
+        by[[VX, VY, SPIN]], by[TIME] = change[3:6], -change[0]
+        by[:, : self._scales.shape[1]] += self._scales
+        out: FloatArray = (slopes.reshape(-1, 7) @ by).reshape(*slopes.shape[:2], -1)
         out[PLACE] += change[[1, 2, 6], None]
         for k in self._curve:
             out[:, :, k] += self._by_difference(k, times, slide)[rows]

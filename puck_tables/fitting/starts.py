@@ -21,7 +21,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.forward_model import DELTA
-from puck_tables.fitting.least_squares import FROM_AFAR, LOOSE, ROBUST_SCALE, minimise, multi_start
+from puck_tables.fitting.least_squares import FROM_AFAR, ROBUST, minimise, multi_start
 from puck_tables.fitting.observations import Observations, Turning, rests_from, turning_of
 from puck_tables.fitting.parameters import LAUNCH
 from puck_tables.fitting.problem import Problem
@@ -65,9 +65,8 @@ def minima_of(problem: Problem) -> list[FloatArray]:
     place, velocity, slowing = _first_parabola(film, moving)
     turning = turning_of(film)
     guesses = _guesses(problem, velocity, slowing, turning, rests=moving < film.time.size)
-    few = np.zeros(film.time.size, bool)
-    few[np.linspace(0, film.time.size - 1, _FITTED).astype(int)] = True
-    part = film.part(few)
+    part = film.thinned(_FITTED)
+    few = np.isin(film.frame, part.frame)
     starts = []
     for guess in guesses:
         launch = np.array([*place, *velocity, guess.spin, 0.0])
@@ -83,8 +82,8 @@ def minima_of(problem: Problem) -> list[FloatArray]:
     if turning is not None and not turning.sure:
         blind = replace(problem, films=(replace(film, angle=None),))
         by_angle = by_place(problem, blind, minima_of(blind)[:_BLIND])
-        more += [x for x, _ in multi_start(by_angle, FROM_AFAR, ROBUST_SCALE)]
-    return _deepest(problem, multi_start(starts, FROM_AFAR, ROBUST_SCALE, _RIVAL), more)
+        more += [x for x, _ in multi_start(by_angle, FROM_AFAR, ROBUST)]
+    return _deepest(problem, multi_start(starts, FROM_AFAR, ROBUST, _RIVAL), more)
 
 
 def _from_known(problem: Problem, place: FloatArray, velocity: FloatArray) -> list[FloatArray]:
@@ -129,7 +128,7 @@ def _deepest(
             rivals[-1][spin] = math.remainder(x[spin], 2.0 * half)
     if len(rivals) == 1:
         return rivals
-    polished = sorted((minimise(problem, one, LOOSE) for one in rivals), key=lambda one: one[1])
+    polished = sorted((minimise(problem, one, ROBUST) for one in rivals), key=lambda one: one[1])
     result = [one for one, _ in polished]
     return in_order(problem, result) if marked else result
 

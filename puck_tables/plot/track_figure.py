@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from puck_tables.film.angles import unwrap
 from puck_tables.film.puck_track import Track
 from puck_tables.plot.style import COLORS, canvas
 from puck_tables.plot.titles import counted, legend_below, titled
@@ -36,7 +35,9 @@ def draw(tracks: Sequence[Track]) -> Figure:
         panels[0].plot(track.time, track.place[:, 0], label=label, **look)
         panels[1].plot(track.time, track.place[:, 1], **look)
         if track.angle is not None:
-            panels[2].plot(track.time, unwrap(track.angle, track.time), **look)
+            angle, known = track.angle.copy(), np.isfinite(track.angle)
+            angle[known] = np.unwrap(angle[known])
+            panels[2].plot(track.time, angle, **look)
     for panel, what in zip(panels, ("x / m", "y / m", "angle / rad"), strict=False):
         panel.set_ylabel(what)
         panel.grid(color="#e4e4e4", linewidth=0.6)
