@@ -163,7 +163,7 @@ def test_the_table_of_a_law_is_built_once_kept_and_listed(tmp_path, monkeypatch)
         assert done.exit_code == 0, done.output
         said.append("tabulating the friction law" in done.stderr)
     assert said == [True, False]
-    assert "slip-speed-1e-06" in CliRunner().invoke(main, ["tables"]).stdout
+    assert "slip-speed-cubic-1e-06" in CliRunner().invoke(main, ["tables"]).stdout
     (kept,) = (tmp_path / "cache" / "puck-tables" / "tables").iterdir()
     kept.write_bytes(kept.read_bytes()[:-100])
     _kept_table.cache_clear()

@@ -86,7 +86,7 @@ def tabulated(
         if progress is not None and time.monotonic() >= told + _BETWEEN_WORDS:
             told = time.monotonic()
             share = max(share, sum(part.share(goal) for part in parts) / len(parts))
-            progress(int(1000 * share), 1000)
+            progress(max(int(1000 * share), 1), 1000)
 
     _each(parts, FilledPatch.fill, tell)
     while pending := [part for part in parts if part.lacks(goal)]:
