@@ -1,4 +1,4 @@
-"""A scene of one puck is the same in both engines: alone, and beside a post that nothing meets."""
+"""A scene of one puck is the same alone and beside a post that nothing meets."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def varied(seed: int, folder: Path) -> dict[str, Any]:
     ],
 )
 def test_a_far_post_changes_nothing(first: int, tmp_path: Path):
-    """It makes the scene one of several bodies; within three errors and what ``tol`` allows."""
+    """Within three errors and what ``tol`` allows."""
     for seed in range(first, first + BLOCK):
         alone = varied(seed, tmp_path)
         scene = Scene.from_tables(alone)
@@ -67,7 +67,7 @@ def test_a_far_post_changes_nothing(first: int, tmp_path: Path):
 
 
 def told(run: pt.Run, length: float) -> list[tuple[Any, ...]]:
-    """The events of a run but those at walls, where one engine sums rebounds up."""
+    """The events of a run but those at walls and at its start."""
     return [
         (event.what, event.partner, event.time, event.x / length, event.y / length)
         for event in run.events
@@ -102,7 +102,7 @@ def test_a_run_gives_the_same_beside_a_far_post(first: int, tmp_path: Path):
         length, far = one.speed_scale * unit, 1e-6 + 3.0 * (one.error_estimate + two.error_estimate)
         assert (one.end, set(one.columns)) == (two.end, set(two.columns)), seed
         assert abs(one.end_time - two.end_time) < far * unit
-        if one.end != "over the edge":  # to one engine its rest counts, to the other the edge
+        if one.end != "over the edge":
             np.testing.assert_allclose(two.stop_times, one.stop_times, atol=far * unit)
         for name in set(one.columns) - {"carried"}:
             scale = max(np.abs(one.columns[name]).max(), 1e-2)

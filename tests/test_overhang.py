@@ -1,4 +1,4 @@
-"""A rim that comes over an edge is told, when and where, by both engines; its motion is none other.
+"""A rim that comes over an edge is told, when and where; its motion is none other.
 
 Straight slides and turns about a turntable are the truth: s = v t − J t²/2, and a circle.
 """

@@ -101,7 +101,7 @@ def test_it_ends_and_the_ledger_closes(what: dict[str, Any]) -> None:
 @pytest.mark.thorough
 def test_bounces_without_end_are_refused() -> None:
     """Hard walls with next to no room between them."""
-    with pytest.raises(PuckError, match=r"100000 events by .* they crowd together"):
+    with pytest.raises(PuckError, match=r"meets again and again|crowd together"):
         simulate_scene(scene(wall=[wall(0, 0.5 + 1e-9, 0, -1), wall(0, -0.5, 0, 1)]))
 
 

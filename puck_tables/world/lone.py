@@ -25,6 +25,7 @@ from puck_tables.scene.equations import (
     VISCOUS,
     rates,
     settling_rates,
+    slip_change,
     slip_rate,
     slip_speed,
     to_laboratory,
@@ -323,6 +324,21 @@ def _piece_for(coarse: float, h: float) -> float:
 
 
 @inlined
+def _goes_on(
+    stretch: Stretch, t: float, vx: float, vy: float, spin: float, q: float, y: FloatArray,
+    work: FloatArray,
+) -> float:  # fmt: skip
+    """Let a slip go on that the path before began, where it grows; else it begins anew, with q."""
+    radius, begun = stretch.model.body.radius, (y[VX], y[VY], y[SPIN])
+    y[VX], y[VY], y[SPIN] = vx, vy, spin
+    rates(stretch, t, y, work, FIRST)
+    if slip_change(radius, y, work) > 0.0:
+        return slip_speed(radius, y)
+    y[VX], y[VY], y[SPIN] = begun
+    return q
+
+
+@inlined
 def _is_carried(stretch: Stretch, t: float, h: float, desk: Desk) -> tuple[float, bool]:
     """How long of a step at rest over h the floor holds the puck, and whether it loses it."""
     slips = lost(stretch, t, h, desk.y, desk.scale, desk.stages, desk.new)
@@ -380,8 +396,9 @@ def follow_alone(
                 y[VX] = y[VY] = y[SPIN] = 0.0
                 at_rest = Stretch(model, dry, rows, CARRIED, way, 0.0)
                 mode, stiff, q = from_standstill(at_rest, speed, now, y, stages)
-                if mode == SLIDES and count == 0 and slow_q > q:  # the path before began to slip
-                    y[VX], y[VY], y[SPIN], q = vx, vy, spin, slow_q
+                if mode == SLIDES and count == 0 and slow_q > q:
+                    q = _goes_on(Stretch(model, dry, rows, SLIDES, NO_WAY, 0.0), now, vx, vy, spin,
+                                 q, y, stages)  # fmt: skip
                 rests = mode == CARRIED and not _swings(model, dry)
                 rests = rests and rests_on(model, dry, rows, y)
                 turns = (mode == CARRIED) != (before == CARRIED)

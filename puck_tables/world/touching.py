@@ -32,7 +32,7 @@ from puck_tables.world.layout import (
     RADIUS,
     TWIST,
 )
-from puck_tables.world.meeting import HARDLY, normal_to
+from puck_tables.world.meeting import HARDLY, ROUNDED, normal_to
 
 TOUCH = 1e-12  # of the radius: a gap as small is none
 BLUR = 1e-15  # of the time since the start, at full speed: another
@@ -61,7 +61,8 @@ def find_touching(game: Game, t: float, room: Room) -> int:
             patience(1)
             room.marks[i] = LOOKED_AT
             # moments are rounded, and so are the gaps at them
-            near = TOUCH * discs[i, RADIUS] + BLUR * t * game.pace[0]
+            far = abs(room.states[i, X]) + abs(room.states[i, Y])
+            near = TOUCH * discs[i, RADIUS] + BLUR * t * game.pace[0] + 2.0 * ROUNDED * far
             for k in range(game.obstacles.shape[0]):
                 shape = int(game.obstacles[k, KIND])
                 gap, _, _, there = normal_to(

@@ -59,7 +59,7 @@ from puck_tables.world.prepare import (
 )
 from puck_tables.world.record import states_at
 
-MOST_EVENTS = 1_000_000
+MOST_EVENTS, MOST_STEPS = 1_000_000, 1_000_000
 CROWD = 1e-7  # of Q/J: 2000 events in less are a crowd
 CROWDED_PUSHES, PUSHED_IN = 3000, 1e-3  # and so many new groups that push, in that share of Q/J
 
@@ -450,11 +450,24 @@ class World:
         few, names = 0, ("events", "history")
         if not lacks_rows(self._game, self._room):
             few, names = LONGEST, ("pieces", "works")
+            if len(self._game.pieces) > MOST_STEPS:
+                raise self._no_end()
         more: dict[str, Any] = {}
         for name in names:
             part = getattr(self._game, name)
             more[name] = np.vstack([part, np.zeros((max(few, len(part)), part.shape[1]))])
         self._game = self._game._replace(**more)
+
+    def _no_end(self) -> PuckError:
+        """After a million steps."""
+        lateral, long = self.scene.lateral, f"a million steps by {self.time:.6g} s"
+        if lateral.strength != 0.0 and lateral.speed_exponent < 1.0:
+            return InputError(
+                f"{long}: the slower a puck that still spins, the faster a lateral force turns its "
+                "way if lateral.speed_exponent is below 1; give one from 1 on, or end the run "
+                "before with a time"
+            )
+        return PuckError(f"{long}, and no end: ask for a shorter time")
 
     def _events(self, first: int) -> list[Event]:
         rows = self._game.events[first : self._game.counts[g.N_EVENTS]]
