@@ -22,7 +22,7 @@ from puck_tables.scene.astride import astride_friction
 from puck_tables.scene.ingredients import BySpeed, Dry, is_astride
 from puck_tables.scene.orthotropic import ellipse_in, elliptic_friction, is_elliptic
 
-X, Y, THETA, VX, VY, SPIN = range(6)  # of a state; in the loop the last three over the floor
+X, Y, THETA, VX, VY, SPIN = range(6)  # of a state; integrated, the last three are over the floor
 
 
 @inlined

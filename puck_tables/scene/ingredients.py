@@ -1,6 +1,6 @@
-"""What may act on a puck, as the compiled loop reads it; what a scene lacks is zero, or empty.
+"""What may act on a puck, as compiled code reads it; what a scene lacks is zero, or empty.
 
-One loop serves every scene, so that it is compiled once.  Zeros change no bit of a sum, and beside
+One code serves every scene, so that it is compiled once.  Zeros change no bit of a sum, and beside
 the friction law they cost nothing that can be measured.
 """
 

@@ -1,4 +1,4 @@
-"""What is wrong between the parts of a scene of several pucks."""
+"""What is wrong between the parts of a scene."""
 
 from __future__ import annotations
 

@@ -19,6 +19,7 @@ from puck_tables.world.floors import has_several
 from puck_tables.world.rim_laws import rule_of
 
 _NAMED = 6  # pucks of one way
+_CLOSER = f"closer than look-ups, which err by {TABLE_ERROR:g}"
 _OF_EACH = ("force", "constraint")
 # what makes no motion another one, but where it ends
 _OF_OTHERS = (
@@ -64,7 +65,7 @@ def plan_of(scene: SceneSpec) -> tuple[str, str]:
             shown = f" ({', '.join(names[:_NAMED])}{more})"
         lines.append(f"{len(names)} puck{'s' if len(names) != 1 else ''} {way}{shown}")
     model = ", ".join(lines)
-    if any("integrated from" in way for way in ways):
+    if any("integrated from" in way and not way.endswith(f": {_CLOSER}") for way in ways):
         lines.append(
             "a look-up would be cheaper, but it is of what only dry friction and a belt act on"
         )
@@ -109,7 +110,7 @@ def _way_of(scene: SceneSpec, piece: PieceSpec) -> str:
         if not all(has_closed_forms(piece, one) for one in frictions):
             acts.append("no closed forms")
         if flight_error(scene) < TABLE_ERROR:
-            acts.append(f"tol below the {TABLE_ERROR:g} of tables")
+            acts.append(_CLOSER)
         where = "" if all(integrated) else " on some of the floor"
         return f"integrated from impact to impact{where}: {', '.join(acts)}"
     if not any(frictions):

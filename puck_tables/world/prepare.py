@@ -1,4 +1,4 @@
-"""A scene of several pucks as the compiled engine reads it."""
+"""A scene as the compiled engine reads it."""
 
 from __future__ import annotations
 

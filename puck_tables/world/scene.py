@@ -148,7 +148,7 @@ class Scene(SceneSpec):
         Raises
         ------
         InputError
-            If a number of it is a range, or it has not ended after a thousand times its time scale
+            If a number of it is a range, or it has not ended after a hundred times its time scale
             and gives no ``time``.
         PuckError
             If the motion leaves floating point, or too many events crowd together.

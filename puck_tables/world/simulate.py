@@ -1,4 +1,4 @@
-"""One scene of several pucks, from its start to its end."""
+"""One scene, from its start to its end."""
 
 from __future__ import annotations
 

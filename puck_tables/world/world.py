@@ -1,4 +1,4 @@
-"""A scene of several pucks that is played on: for a game, a robot, a look ahead."""
+"""A scene that is played on: for a game, a robot, a look ahead."""
 
 from __future__ import annotations
 
@@ -356,25 +356,25 @@ class World:
         share : of their velocities and spins launches are off by so much, and in rad their headings
         friction : of what is integrated, off by so much
         """
-        twin = object.__new__(World)
-        twin.scene, twin._order = self.scene, self._order
-        game, twin._room = game_of(self.scene, self._order)
-        twin._desk = desk_for(game)
+        other = object.__new__(World)
+        other.scene, other._order = self.scene, self._order
+        game, other._room = game_of(self.scene, self._order)
+        other._desk = desk_for(game)
         scale = 1.0 + share
         cosine, sine = scale * math.cos(share), scale * math.sin(share)
         turned = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, scale]])
         game.launches[:, g.LAUNCH_VX :] = game.launches[:, g.LAUNCH_VX :] @ turned.T
-        for disc, state in zip(game.discs, twin._room.states, strict=True):
+        for disc, state in zip(game.discs, other._room.states, strict=True):
             floor = np.array(floor_velocity(game.surface, *state[:2].tolist()))
             if disc[LIGHTNESS] > 0.0 and disc[HOLD] == FREE:
                 state[VX:] = floor + turned @ (state[VX:] - floor)
         game.pace[2] *= coarser
         game.regions.load[:] *= 1.0 + friction
         game.discs[:, NORMAL] *= 1.0 + friction
-        twin._game = game
-        twin._named()
-        twin._advance(0.0, EVERYBODY, twin._room.one)
-        return twin
+        other._game = game
+        other._named()
+        other._advance(0.0, EVERYBODY, other._room.one)
+        return other
 
     @property
     def place_error(self) -> float:
@@ -384,8 +384,8 @@ class World:
 
     def copy(self) -> World:
         """A world of its own that goes on from here, to look ahead."""
-        twin = object.__new__(World)
-        twin.scene, twin._order = self.scene, self._order
+        other = object.__new__(World)
+        other.scene, other._order = self.scene, self._order
         # tables, floors and obstacles never change; in the ground it is written who lies where
         kept = (
             "floors", "surface", "tides", "spans", "rims", "obstacles", "curves",
@@ -394,10 +394,10 @@ class World:
         parts: dict[str, Any] = self._game._asdict()
         regions = parts.pop("regions")
         own = {n: one if n in kept else one.copy() for n, one in parts.items()}
-        twin._game = g.Game(regions=regions._replace(ground=regions.ground.copy()), **own)
-        twin._room, twin._desk = room_for(len(self.names)), desk_for(twin._game)
-        twin._named()
-        return twin
+        other._game = g.Game(regions=regions._replace(ground=regions.ground.copy()), **own)
+        other._room, other._desk = room_for(len(self.names)), desk_for(other._game)
+        other._named()
+        return other
 
     def __getstate__(self) -> dict[str, Any]:
         """All but the table that comes along: read back, it would be of another type to numba."""
