@@ -91,8 +91,8 @@ _SAFE = 0.8  # of how long a piece could be, by what the last one missed
 _BRIEF = 1e-6  # of Q/J: on as short a step what a piece misses is rounding
 _NEAR = 0.75  # of the time in which the slip would end, at most, is a step
 _LAST = 0.03  # of the root of the error of a step: slips as small may go straight to their stop
-# implicit is a step in which the direction of the slip settles by so much (by so much, where the one
-# before was), if the slip changes by no more than that share of it
+# a step is implicit in which the direction of the slip settles by so much (or by so much, where the
+# one before was implicit), if the slip changes by no more than that share of it
 _STIFF, _MILD, _SLOWLY = 0.8, 0.3, 0.1
 _NEWTON, _FINEST_NEWTON = 1e-3, 1e-15  # of the error of a step: how well implicit ones are solved
 _FARTHER = 0.1  # of the time since the start: so far ahead a path may go
