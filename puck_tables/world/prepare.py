@@ -228,6 +228,10 @@ def scales_of(game: Game, speeds: FloatArray) -> FloatArray:
 
 def _refuse_far(game: Game, speed: float, radius: float) -> None:
     """Refuse looked-up pucks whose slide, at the largest slip, is beyond what digits can tell."""
+    if not speed < SWIFTEST:
+        raise InputError(
+            f"a slip of {speed:.3g} m/s is too fast for floating point: use other units"
+        )
     decels = game.floors[(game.floors[:, 2] == 0.0) & (game.floors[:, 0] > 0.0), 0]
     least = float(decels.min(initial=math.inf))
     if speed > 0.0 and speed / least > FAR * radius / speed:
@@ -235,10 +239,6 @@ def _refuse_far(game: Game, speed: float, radius: float) -> None:
             f"at a slip of {speed:.3g} m/s and the least friction, {least:.3g} m/s^2, a puck would "
             f"slide some {speed / least * speed:.3g} m, and places are good to 1e-15 of that: use "
             f"speeds up to {math.sqrt(FAR * radius * least):.3g} m/s, more friction, or none at all"
-        )
-    if not speed < SWIFTEST:
-        raise InputError(
-            f"a slip of {speed:.3g} m/s is too fast for floating point: use other units"
         )
 
 
