@@ -105,7 +105,9 @@ def judged(
     rests = best["events"][best["events"][:, 1] == REST]
     found = [event.time for event in run.events if event.what == "stick"]
     if run.end == "at rest" and len(rests) and found:
-        late = abs(found[-1] - rests[-1, 0]) / best["unit"] / (2.0 * allowed)
+        # how long rebounds would have lasted that died out, to a factor of two
+        after = 2.0 * (allowed + run.error_estimate)
+        late = abs(found[-1] - rests[-1, 0]) / best["unit"] / after
         if late > share:
             share, why = late, f"rests at {found[-1]:.12g}; truth {rests[-1, 0]:.12g}"
     return ("right" if share <= 1.0 else "wrong"), share, why
