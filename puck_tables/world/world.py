@@ -334,6 +334,8 @@ class World:
             elif how == PUSHING:
                 from puck_tables.world.groups import push_on  # compiled where it is needed
 
+                if self._game.counts[g.N_PIECES] > MOST_STEPS:
+                    raise self._no_end()
                 self._game = with_law_for(
                     self._game, self._room, self.scene, self._order, self.names, self.time
                 )
