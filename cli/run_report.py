@@ -274,10 +274,6 @@ def _error(run: Run) -> str:
     words = f"about {run.error_estimate * time:.1e} s, {run.end_error:.1e} m; "
     if run.error_estimate > tol:
         known = "a finer table of its law helps" if run.scene.floor.law else "finer steps help"
-        why = (
-            "impacts multiply what is not known of launches"
-            if several
-            else f"{known} no more"
-        )
+        why = "impacts multiply what is not known of launches" if several else f"{known} no more"
         words += f"tol = {tol:g} is out of reach, {why}; "
     return words + f"Q = {run.speed_scale:.4g} m/s, J = {run.rate_scale:.4g} m/s^2"
