@@ -118,7 +118,8 @@ def friction_of_box(length, width, lever, c, sense) -> list[float]:
 
 CENTRES = [
     (0.0, 0.0), (0.5, 0.0), (0.5, 0.5), (0.1, 0.5), (0.3, 0.2), (0.5 + 1e-9, 0.5),
-    (0.2, 0.5 - 1e-12), (-0.7, 0.5), (0.9, 3.0), (5.9, 1.0), (6.1, -2.0), (-40.0, 30.0), (3e3, 1e3), (1e7, -3e6),
+    (0.2, 0.5 - 1e-12), (-0.7, 0.5), (0.9, 3.0), (5.9, 1.0), (6.1, -2.0),
+    (-40.0, 30.0), (3e3, 1e3), (1e7, -3e6),
 ]  # fmt: skip
 
 
@@ -151,9 +152,9 @@ def test_a_slide_without_spin_needs_one_newton_and_of_flat_bodies_no_torque(name
     angle = np.linspace(0.0, 6.0, 7)
     velocity = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
     found = puck.wrench(3.0 * velocity, 0.0, 0.7)
-    np.testing.assert_allclose(found.force, -velocity, atol=2e-15)
+    np.testing.assert_allclose(found.force, -velocity, atol=1e-14)  # a bar loses a digit
     if share == 0.0:
-        np.testing.assert_allclose(found.torque, 0.0, atol=1e-15 * puck.radius)
+        np.testing.assert_allclose(found.torque, 0.0, atol=1e-14 * puck.radius)
     barely = puck.wrench(3.0 * velocity, 1e-9 / puck.radius, 0.7)
     np.testing.assert_allclose(barely.force, found.force, atol=1e-9)
     np.testing.assert_allclose(barely.torque, found.torque, atol=1e-9 * puck.radius)
