@@ -1,0 +1,93 @@
+"""The picture of the limit surface of a base: its sections and those of its models."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.plot.style import COLORS, canvas
+from puck_tables.plot.titles import legend_below, titled
+from puck_tables.wrench.base_surface import BaseSurface
+from puck_tables.wrench.friction_hold import holds
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_LEVELS = (0.0, 0.5, 0.75, 0.9)  # of the largest torque
+_DIRECTIONS = 181  # of a section: every two degrees
+_HALVES = 40  # of a force
+
+
+def draw(surface: BaseSurface) -> Figure:
+    """Forces at constant torques, and force against torque along two axes."""
+    figure = canvas(10.5, 5.2)
+    left, right = figure.subplots(1, 2)
+    draw_on(left, surface)
+    turn = np.linspace(-0.5 * np.pi, 0.5 * np.pi, _DIRECTIONS)
+    length = surface.puck.inertia_radius
+    torque = length * np.sin(turn)
+    for way, axis, color in ((0, "x", COLORS[0]), (1, "y", COLORS[2])):
+        force = np.zeros((turn.size, 2))
+        force[:, way] = np.cos(turn)
+        for size, style, label in _sizes(surface, force, torque):
+            right.plot(
+                size * force[:, way], size * torque, linestyle=style, color=color,
+                label=f"{label}, force along {axis}",
+            )  # fmt: skip
+    right.set_xlabel("force F / N")
+    right.set_ylabel("torque M / (N m)")
+    right.set_aspect(1.0 / length, adjustable="box")
+    right.grid(color="#e4e4e4", linewidth=0.6)
+    legend_below(right, columns=2, down=0.14)
+    shape = surface.puck.shape
+    titled(figure, f"limit surface of {shape.name if shape else ''}")
+    return figure
+
+
+def draw_on(axes: Axes, surface: BaseSurface) -> None:
+    """The forces at constant torques alone."""
+    turn = np.linspace(0.0, 2.0 * np.pi, _DIRECTIONS)
+    ways = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+    most = float(np.max(surface.torque))
+    for level, color in zip(_LEVELS, COLORS, strict=False):
+        for n, (style, name) in enumerate((("-", "friction"), ("--", "ellipsoid"), (":", "4th"))):
+            force = _force_at(surface, ways, level * most, n)
+            axes.plot(
+                *(force[:, None] * ways).T, linestyle=style, color=color,
+                label=f"{name}, M = {level * most:.3g} N m",
+            )  # fmt: skip
+    axes.set_xlabel("force F_x / N")
+    axes.set_ylabel("force F_y / N")
+    axes.set_aspect("equal", adjustable="box")
+    axes.grid(color="#e4e4e4", linewidth=0.6)
+    legend_below(axes, columns=3, down=0.14)
+
+
+def _sizes(
+    surface: BaseSurface, force: FloatArray, torque: FloatArray
+) -> list[tuple[FloatArray, str, str]]:
+    """By what wrenches are multiplied to lie on the surface and on its models."""
+    return [
+        (_size(surface, force, torque, n), *words)
+        for n, words in enumerate((("-", "friction"), ("--", "ellipsoid"), (":", "4th order")))
+    ]
+
+
+def _size(surface: BaseSurface, force: FloatArray, torque: FloatArray, n: int) -> FloatArray:
+    if n == 0:
+        return holds(surface.puck, force, torque, 0.0).margin
+    return 1.0 / (surface.ellipsoid, surface.quartic)[n - 1].gauge(force, torque)
+
+
+def _force_at(surface: BaseSurface, ways: FloatArray, torque: float, n: int) -> FloatArray:
+    """The force in each direction with which a torque is just held; NaN where none is."""
+    low, high = np.zeros(len(ways)), np.full(len(ways), 2.0 * surface.unit_force)
+    turning = np.full(len(ways), torque)
+    for _ in range(_HALVES):
+        force = 0.5 * (low + high)
+        held = _size(surface, force[:, None] * ways, turning, n) >= 1.0
+        low, high = np.where(held, force, low), np.where(held, high, force)
+    return np.where(low > 0.0, low, np.nan)
