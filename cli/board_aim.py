@@ -3,32 +3,30 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import click
-from puck_tables.cli.options import deliver, progress, reported
+from puck_tables.cli.options import Outputs
+from puck_tables.cli.printing import columns, listed, progress
 
 if TYPE_CHECKING:
     from puck_tables.world.aimed import BoardAim
 
-_WIDEST = 60  # signs of a course in the table
+_MARGINS = {  # headings, and what a number is multiplied by
+    "per_degree": ("m per deg", 1.0), "per_percent": ("m per %", 1.0),
+    "heading_width": ("width deg", math.degrees(1.0)), "speed_width": ("width m/s", 1.0),
+    "spin_width": ("width 1/s", 1.0),
+}  # fmt: skip
 
 
-def aim_on_board(
-    tables: dict[str, Any], source: str, wishes: dict[str, Any], as_json: bool,
-    output: Path | None, plot: Path | None, overwrite: bool,
-) -> None:  # fmt: skip
+def aim_on_board(tables: dict[str, Any], source: str, wishes: dict[str, Any], out: Outputs) -> None:
     """An aim on a board, to the end of its command."""
     from puck_tables.world.scene import Scene
 
     scene = Scene.from_tables(tables, source)
     with progress("searches") as show:
         result = scene.aim(**wishes, progress=show)
-    deliver(result, output, plot if len(result) else None, overwrite)
-    if plot is not None and not len(result):
-        click.echo(f"no picture: there is nothing to draw in {plot}", err=True)
-    reported(result, False, as_json, _report)
+    out.deliver(result, empty=not len(result))
+    out.report(result, _report)
 
 
 def number_or_name(text: str | None) -> int | str | None:
@@ -44,32 +42,21 @@ def number_or_name(text: str | None) -> int | str | None:
 
 def _report(result: BoardAim) -> str:
     """The answer, and the launches line by line."""
-    lines = [
-        f"scene    {result.scene.title or 'without a title'}",
-        f"wanted   {result.puck} {result.where}, {result.striker} sent off {result.limit}".rstrip(),
-        f"answer   {result.answer}",
-    ]
+    wanted = f"{result.puck} {result.where}, {result.striker} sent off {result.limit}".rstrip()
+    first = listed({
+        "scene": result.scene.title or "without a title", "wanted": wanted, "answer": result.answer,
+    }, 8)  # fmt: skip
     if not len(result):
-        return "\n".join(lines)
-    names = {
-        "per_degree": ("m per deg", 1.0), "per_percent": ("m per %", 1.0),
-        "heading_width": ("width deg", math.degrees(1.0)), "speed_width": ("width m/s", 1.0),
-        "spin_width": ("width 1/s", 1.0),
+        return first
+    margins = [(*_MARGINS[name], result.columns[name]) for name in _MARGINS
+               if name in result.columns]  # fmt: skip
+    heads = {
+        "speed m/s": ".6f", "heading deg": ".5f", "w0 rad/s": ".5g",
+        **{head: ".4g" for head, _, _ in margins}, "time s": ".6g", "miss m": ".0e", "impacts": "",
     }  # fmt: skip
-    kinds = [name for name in names if name in result.columns]
-    lines.append(
-        f"\n{'speed m/s':>11} {'heading deg':>12} {'w0 rad/s':>9} "
-        + " ".join(f"{names[kind][0]:>10}" for kind in kinds)
-        + f" {'time s':>9} {'miss m':>7}  impacts"
-    )
-    for n, course in enumerate(result.courses):
-        margins = " ".join(
-            f"{result.columns[kind][n] * names[kind][1]:>10.4g}" for kind in kinds
-        )  # fmt: skip
-        shown = course if len(course) <= _WIDEST else course[: _WIDEST - 3] + "..."
-        lines.append(
-            f"{result.launch_speed[n]:>11.6f} {math.degrees(result.launch_heading[n]):>12.5f} "
-            f"{result.launch_spin[n]:>9.5g} {margins} {result.stop_time[n]:>9.6g} "
-            f"{result.miss[n]:>7.0e}  {shown or 'none'}"
-        )
-    return "\n".join(lines)
+    rows = zip(
+        result.launch_speed, math.degrees(1.0) * result.launch_heading, result.launch_spin,
+        *(factor * values for _, factor, values in margins), result.stop_time, result.miss,
+        (course or "none" for course in result.courses), strict=True,
+    )  # fmt: skip
+    return f"{first}\n\n{columns(heads, rows)}"

@@ -6,6 +6,8 @@ import math
 from dataclasses import is_dataclass
 from typing import TYPE_CHECKING, Any
 
+from puck_tables.cli.printing import columns, listed
+
 if TYPE_CHECKING:
     from puck_tables.scene.run import Event, Run
     from puck_tables.scene.scene_spec import SceneSpec
@@ -13,7 +15,7 @@ if TYPE_CHECKING:
 MOST_PARTS = 16  # of a scene in a report
 MOST_PUCKS, MOST_IMPACTS, MOST_NAMES = 40, 6, 6  # of a report
 _EMPIRICAL = "empirical: no dry friction over the contact explains it"
-_WIDEST = 24  # signs of a name in the table
+_WIDEST = 48  # signs of a text in the table
 _ROUNDING = 1e-14  # of energies
 
 
@@ -36,11 +38,11 @@ def report(run: Run) -> str:
     if run.scene.lateral.strength != 0.0:
         there = [lines["lateral"]] if "lateral" in lines else []
         lines["lateral"] = "; ".join([*there, _EMPIRICAL])
-    told = "\n".join(f"{name:<10} {text}" for name, text in lines.items())
+    told = listed(lines, 10)
     if not several:
         return told
     impacts = ["\n".join(_impacts(run))] if run.impacts else []
-    return "\n\n".join([plainly(run), "\n".join(_pucks(run)), *impacts, told])
+    return "\n\n".join([plainly(run), _pucks(run), *impacts, told])
 
 
 def _of_one(run: Run) -> dict[str, str]:
@@ -171,26 +173,24 @@ def _counted(count: int, noun: str) -> str:
     return f"{count or 'no'} {noun}{'' if count == 1 else 's'}"
 
 
-def _pucks(run: Run) -> list[str]:
+def _pucks(run: Run) -> str:
     """A line for each puck: where it ends, how far from its start, and when."""
     from puck_tables.world.agreement import pieces_of, start_of
 
-    pieces = pieces_of(run.scene)
-    wide = min(_WIDEST, max(len("puck"), *(len(name) for name in run.names)))
-    rows = [f"{'puck':<{wide}} {'end x m':>12} {'end y m':>12} {'moved m':>10}  how it ends"]
-    for number, (name, piece) in enumerate(zip(run.names, pieces, strict=True)):
+    rows = []
+    for number, (name, piece) in enumerate(zip(run.names, pieces_of(run.scene), strict=True)):
         if number == MOST_PUCKS:
-            rows.append(f"and {len(run.names) - MOST_PUCKS} more (-o FILE saves all)")
             break
         last = run.last_of(number)
         end = last["x"], last["y"]
         unseen = 1e-9 * piece.radius  # what rounding leaves
-        x, y, moved = (
+        ways = (
             0.0 if abs(way) < unseen else way for way in (*end, math.dist(end, start_of(piece)))
         )
-        shown = name if len(name) <= wide else name[: wide - 3] + "..."
-        rows.append(f"{shown:<{wide}} {x:>12.6g} {y:>12.6g} {moved:>10.4g}  {_ending(run, number)}")
-    return rows
+        rows.append((name, *ways, _ending(run, number)))
+    heads = {"puck": "", "end x m": ".6g", "end y m": ".6g", "moved m": ".4g", "how it ends": ""}
+    more = f"\nand {len(run.names) - MOST_PUCKS} more (-o FILE saves all)"
+    return columns(heads, rows, _WIDEST) + (more if len(run.names) > MOST_PUCKS else "")
 
 
 def _ending(run: Run, number: int) -> str:

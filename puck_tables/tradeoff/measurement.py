@@ -98,8 +98,8 @@ def measure(quick: bool = False, progress: Progress | None = None) -> TradeOff:
     total = 2 * len(contenders) + repeats
     runs, methods = [], []
     for number, contender in enumerate(contenders):
-        *run, method = _prepared(contender)
-        runs.append(run)
+        run, count, answers, method = _prepared(contender)
+        runs.append((run, count, answers))
         methods.append(method)
         if progress is not None:
             progress(2 * number + 2, total)

@@ -42,11 +42,11 @@ def _columns(size: int, dtype: type) -> FloatArray:
 
 
 def _quadratic(c: FloatArray) -> Run:
-    return filled(lambda inputs, out: fill_resultants(c, _SIDES, *inputs, out))
+    return filled(lambda inputs, out: fill_resultants(c, _SIDES, inputs[0], inputs[1], out))
 
 
 def _bicubic(c: FloatArray) -> Run:
-    return filled(lambda inputs, out: fill_bicubic(c, 1.0, *inputs, out))
+    return filled(lambda inputs, out: fill_bicubic(c, 1.0, inputs[0], inputs[1], out))
 
 
 def _by(integrals: Callable[[FloatArray], Any]) -> Run:
@@ -68,7 +68,7 @@ def contenders(points: Question) -> Iterator[Contender]:
     )
     yield Contender(
         points, "closed forms", "", kept(None),
-        lambda _: filled(lambda inputs, out: fill_closed_form(*inputs, out)),
+        lambda _: filled(lambda inputs, out: fill_closed_form(inputs[0], inputs[1], out)),
     )  # fmt: skip
     yield Contender(points, "closed forms, plain NumPy", "", kept(None), lambda _: in_numpy)
     for kind, dtype, sizes in (("", np.float64, _NODES), (", float32", np.float32, (257, 991))):
@@ -96,7 +96,8 @@ def _outsiders(points: Question) -> Iterator[Contender]:
         yield Contender(
             flat, f"Pade, {setting}", "",
             partial(pade_at_best, flat) if best else kept(PADE_MATCHED),
-            lambda ab: filled(lambda inputs, out: fill_pade(inputs[0], *ab, out)), outsider=True,
+            lambda ab: filled(lambda inputs, out: fill_pade(inputs[0], ab[0], ab[1], out)),
+            outsider=True,
         )  # fmt: skip
     yield Contender(
         flat, "limit surface", "", kept(None),
