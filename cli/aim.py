@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
-from puck_tables.cli.board_aim import aim_on_board, number_or_name
 from puck_tables.cli.options import (
     FILE,
     SPEED,
@@ -21,7 +20,7 @@ from puck_tables.cli.options import (
     packed,
     puck_options,
 )
-from puck_tables.cli.printing import columns, listed
+from puck_tables.cli.printing import columns, listed, progress
 from puck_tables.cli.scene_run import SceneChoice, scene_options, scene_tables
 from puck_tables.cli.values import Vector, not_none
 
@@ -30,8 +29,14 @@ from puck_tables.kernels.patience import one_question
 
 if TYPE_CHECKING:
     from puck_tables.stopping.aim_at_targets import Aim, Aims
+    from puck_tables.world.aimed import BoardAim
 
 _LARGEST_FILE = 1 << 30  # bytes: more is no file of targets, and would fill the memory
+_MARGINS = {  # headings, and what a number is multiplied by
+    "per_degree": ("m per deg", 1.0), "per_percent": ("m per %", 1.0),
+    "heading_width": ("width deg", math.degrees(1.0)), "speed_width": ("width m/s", 1.0),
+    "spin_width": ("width 1/s", 1.0),
+}  # fmt: skip
 _ON_BOARDS = ("pocket", "puck", "striker", "hits", "max_impacts")
 
 
@@ -107,7 +112,12 @@ def aim(
             wishes["spin"] = wishes.pop("w0")
         if targets:
             wishes["target"] = targets[0]
-        aim_on_board(tables, chosen.name, wishes, out)
+        from puck_tables.world.scene import Scene
+
+        with progress("searches") as show:
+            found = Scene.from_tables(tables, chosen.name).aim(**wishes, progress=show)
+        out.deliver(found, empty=not len(found))
+        out.report(found, _board_report)
         return
     for name in _ON_BOARDS:
         if name in wishes:
@@ -158,3 +168,36 @@ def _report(result: Aim | Aims, note: str) -> Iterator[str]:
             degrees * result.launch_heading, degrees * result.launch_slip_angle, result.stop_time,
             result.miss, strict=True,
         ))  # fmt: skip
+
+
+def number_or_name(text: str | None) -> int | str | None:
+    """A puck as it is given on the command line: a number, or a name.
+
+    Examples
+    --------
+    >>> number_or_name("2"), number_or_name("queen")
+    (2, 'queen')
+    """
+    return int(text) if text is not None and text.isascii() and text.isdecimal() else text
+
+
+def _board_report(result: BoardAim) -> str:
+    """The answer, and the launches line by line."""
+    wanted = f"{result.puck} {result.where}, {result.striker} sent off {result.limit}".rstrip()
+    first = listed({
+        "scene": result.scene.title or "without a title", "wanted": wanted, "answer": result.answer,
+    }, 8)  # fmt: skip
+    if not len(result):
+        return first
+    margins = [(*_MARGINS[name], result.columns[name]) for name in _MARGINS
+               if name in result.columns]  # fmt: skip
+    heads = {
+        "speed m/s": ".6f", "heading deg": ".5f", "w0 rad/s": ".5g",
+        **{head: ".4g" for head, _, _ in margins}, "time s": ".6g", "miss m": ".0e", "impacts": "",
+    }  # fmt: skip
+    rows = zip(
+        result.launch_speed, math.degrees(1.0) * result.launch_heading, result.launch_spin,
+        *(factor * values for _, factor, values in margins), result.stop_time, result.miss,
+        (course or "none" for course in result.courses), strict=True,
+    )  # fmt: skip
+    return f"{first}\n\n{columns(heads, rows)}"

@@ -125,12 +125,7 @@ def scene_tables(
 
 
 def _refuse_one_for_all(tables: dict[str, Any], flag: str, path: str, value: str) -> None:
-    """Refuse a number of the only puck where there are several.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a number of the only puck where there are several."""
     pucks, own = tables.get("puck"), _of_each(tables, path)
     if isinstance(pucks, list) and path == "puck.gravity":
         raise InputError(f"{flag}: all pucks of a scene have its gravity: write --gravity {value}")

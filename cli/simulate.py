@@ -120,12 +120,7 @@ def simulate(
 def _from_fit(
     ctx: click.Context, path: Path, track: str | None
 ) -> tuple[Puck, tuple[float, float], float, tuple[str, ...]]:
-    """The puck and the launch of a fit, which no option contradicts, and what it left open.
-
-    Raises
-    ------
-    InputError
-    """
+    """The puck and the launch of a fit, which no option contradicts, and what it left open."""
     for name in _LAUNCHED:
         if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE:
             raise InputError(

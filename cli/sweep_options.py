@@ -31,10 +31,6 @@ def chosen_spreads(
 
     ``names``: the arguments by the names that are allowed; None: any, as they are; ``unit_of``:
     the unit of each.
-
-    Raises
-    ------
-    InputError
     """
     from puck_tables.bulk.spreads import spread_named
 
@@ -56,12 +52,7 @@ def samples_checked(
     random: int | None, seed: int | None, spreads: tuple[str, ...], regions: tuple[str, ...],
     name_of_spin: str,
 ) -> list[tuple[float, ...]]:  # fmt: skip
-    """The regions asked for; options of samples that stand alone are refused.
-
-    Raises
-    ------
-    InputError
-    """
+    """The regions asked for; options of samples that stand alone are refused."""
     from puck_tables.bulk.summary import checked_regions
 
     if random is None:
@@ -146,12 +137,7 @@ class Whole:
         }  # fmt: skip
 
     def refuse_outputs(self, *inputs: Path | str | None) -> None:
-        """Refuse, before any work, what could not be written.
-
-        Raises
-        ------
-        InputError, OutputError, MissingExtraError
-        """
+        """Refuse, before any work, what could not be written."""
         from puck_tables.io.formats import FORMATS, STORE, ending_of
 
         if self.out.output is not None:
@@ -185,12 +171,7 @@ class Whole:
         return last_words[0]()
 
     def refuse_memory(self, sizes: list[int], samples: int | None) -> None:
-        """Refuse a map that would not fit in memory, as its format needs it.
-
-        Raises
-        ------
-        InputError
-        """
+        """Refuse a map that would not fit in memory, as its format needs it."""
         from puck_tables._core.memory import check_memory
         from puck_tables.stopping.stop_sweep import BYTES_PER_LAUNCH, BYTES_PER_ROW
 

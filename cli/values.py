@@ -118,12 +118,7 @@ def read_as(read: Callable[[Any, str], Any]) -> Callable[..., Any]:
 
 
 def names(text: str, option: str) -> list[str]:
-    """Names with commas.
-
-    Raises
-    ------
-    InputError
-    """
+    """Names with commas."""
     parts = [name.strip() for name in text.split(",")]
     if not all(parts):
         raise InputError(f"{option} '{text}' must be names with commas")
@@ -131,12 +126,7 @@ def names(text: str, option: str) -> list[str]:
 
 
 def named(texts: Iterable[str], option: str) -> dict[str, str]:
-    """NAME=VALUE, several times.
-
-    Raises
-    ------
-    InputError
-    """
+    """NAME=VALUE, several times."""
     result: dict[str, str] = {}
     for text in texts:
         name, equals, value = (part.strip() for part in text.partition("="))
