@@ -74,6 +74,13 @@ def puck_options(
     ]  # fmt: skip
 
 
+base_option = click.option(
+    "--base", metavar="BASE", help="In place of --radius: box:LENGTHxWIDTH, disc:RADIUS, "
+    "annulus:RADIUSxINNER, in m or with units (box:20cmx10cm), or a CSV file of corners x, y; @X,Y "
+    "after it is the centre of mass.  --gyration is then in m.",
+)  # fmt: skip
+
+
 def body_options(
     kind: type[NumberParam] = NumberParam, many: bool = False
 ) -> tuple[Option[Any], Option[Any]]:
@@ -103,6 +110,7 @@ class PuckChoice:
     delta: float | None = None
     decel: float | None = None
     mass: float | None = None
+    base: str | None = None
 
     @property
     def note(self) -> str:
@@ -112,7 +120,7 @@ class PuckChoice:
         )
 
     def puck(self) -> Puck:
-        """The puck.
+        """The puck; on a base it is flat without a height, and has f = 1 without a friction.
 
         Raises
         ------
@@ -129,6 +137,15 @@ class PuckChoice:
                 f"--{real[0]} and --{scaled[0]} clash: give the real puck (--radius --height "
                 "--friction --gravity) or the scaled one (--radius --delta --decel)"
             )
+        if self.base is not None:
+            for other in ("radius", "delta"):
+                if other in chosen:
+                    raise InputError(f"--base and --{other} clash: --{other} is of round pucks")
+            if real and "friction" not in chosen:
+                raise InputError(f"--{real[0]} needs --friction too")
+            if not real:
+                chosen |= {"friction": 1.0, "gravity": chosen.pop("decel", DEFAULT_DECEL)}
+            return Puck(**chosen)
         if not real:
             return Puck.similar(**chosen)
         missing = [f"--{n}" for n in ("radius", "height", "friction") if n not in chosen]
