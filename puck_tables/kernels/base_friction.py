@@ -59,7 +59,7 @@ def packed(base: Base, lever: float) -> FloatArray:
 
 def room_for(base: FloatArray) -> int:
     """How many numbers the sides of a part of a base take, cut off by a line."""
-    return SIDE_COLUMNS * int(2.0 * base[SIDES] + base[DISCS]) if base.size else 0
+    return SIDE_COLUMNS * 2 * int(base[SIDES]) if base.size else 0
 
 
 @inlined

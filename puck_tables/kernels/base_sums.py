@@ -59,3 +59,13 @@ def moved(sums: Sums, cx: float, cy: float) -> Sums:
         ex, ey, xx + ex * cx, xy + ex * cy, yx + ey * cx, yy + ey * cy,
         sums[6] + cx * yx - cy * xx + swing * cx, sums[7] + cx * yy - cy * xy + swing * cy,
     )  # fmt: skip
+
+
+@inlined
+def scaled(sums: Sums, unit: float) -> Sums:
+    """Sums with lengths in a unit, m, as sums in m."""
+    area, third = unit * unit, unit * unit * unit
+    return (
+        area * sums[0], area * sums[1], third * sums[2], third * sums[3], third * sums[4],
+        third * sums[5], area * area * sums[6], area * area * sums[7],
+    )  # fmt: skip

@@ -106,7 +106,7 @@ class PuckSpec:
         if self.has_rim and not self.radius >= shape.reach:
             raise InputError(
                 f"radius = {self.radius:g} m: with a base it is that of the rim, which must not be "
-                f"less than the reach of the base, {shape.reach:.6g} m; leave it out if there is none"
+                f"less than the reach of the base, {shape.reach:.6g} m, or left out"
             )
         if self.pressure != "uniform":
             raise InputError(

@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.base_boundary import arc_sums
 from puck_tables.kernels.base_friction import (
     DISC_COLUMNS,
     DISCS,
@@ -23,7 +22,16 @@ from puck_tables.kernels.base_friction import (
     pressure_on,
 )
 from puck_tables.kernels.base_friction import REACH as BASE_REACH
-from puck_tables.kernels.base_sums import NOTHING, UNIFORM, Sums, from_slip, plus
+from puck_tables.kernels.base_parts import beyond_sums
+from puck_tables.kernels.base_sums import (
+    NOTHING,
+    UNIFORM,
+    Sums,
+    from_slip,
+    moved,
+    plus,
+    scaled,
+)
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.kernels.polygon_sums import (
     ANEW,
@@ -92,6 +100,29 @@ def _sides_beyond(
     return count
 
 
+@inlined
+def _disc_beyond(
+    cx: float, cy: float, size: float, nx: float, ny: float, place: float, ux: float, uy: float,
+    w: float,
+) -> Sums:  # fmt: skip
+    """Sums over what of a disc about (cx, cy) lies beyond the line n·x = place."""
+    away = (place - (nx * cx + ny * cy)) / size
+    if away >= 1.0:
+        return NOTHING
+    whole = disc_at(cx, cy, size, ux, uy, w) if away < 0.0 else NOTHING
+    if away <= -1.0:
+        return whole
+    # in radii about its own middle, by axes along the slip there, in which the spin is not negative
+    sense = 1.0 if away >= 0.0 else -1.0
+    ux, uy, mirrored = ux - w * cy, uy + w * cx, -1.0 if w < 0.0 else 1.0
+    speed = math.sqrt(ux * ux + uy * uy)
+    c, s = (ux / speed, uy / speed) if speed > 0.0 else (1.0, 0.0)
+    tx, ty = sense * (c * nx + s * ny), sense * mirrored * (c * ny - s * nx)
+    part = beyond_sums(speed, size * abs(w), 1.0, tx, ty, sense * away, UNIFORM)
+    part = moved(from_slip(scaled(part, size), c, s, mirrored), cx, cy)
+    return plus(whole, sense, part)
+
+
 @inner
 def _beyond(
     base: FloatArray, room: FloatArray, nx: float, ny: float, place: float, ux: float, uy: float,
@@ -99,28 +130,13 @@ def _beyond(
 ) -> Sums:  # fmt: skip
     """Sums over what of a base lies beyond the line n·x = place, all in its axes."""
     count, sums = _sides_beyond(base, room, nx, ny, place), NOTHING
+    if count > 0:
+        sums = polygon_sums(room, 0, count, base[BASE_REACH], ux, uy, w)
     discs = HEAD + SIDE_COLUMNS * int(base[SIDES])
-    speed, mirrored = math.sqrt(ux * ux + uy * uy), -1.0 if w < 0.0 else 1.0
-    c, s = (ux / speed, uy / speed) if speed > 0.0 else (1.0, 0.0)
     for k in range(int(base[DISCS])):
         at = discs + DISC_COLUMNS * k
-        cx, cy, size, sign = base[at], base[at + 1], base[at + 2], base[at + 3]
-        away = place - (nx * cx + ny * cy)
-        if away <= -size:
-            sums = plus(sums, sign, disc_at(cx, cy, size, ux, uy, w))
-        elif away < size:
-            end = math.sqrt((size - away) * (size + away))
-            half = math.acos(away / size)
-            # in axes along the slip, in which the spin is not negative
-            tx, ty = c * nx + s * ny, mirrored * (c * ny - s * nx)
-            px, py = c * cx + s * cy, mirrored * (c * cy - s * cx)
-            start = math.atan2(ty, tx) - half
-            arc = arc_sums(speed, abs(w), px, py, size, start, 2.0 * half, UNIFORM, False)
-            sums = plus(sums, sign, from_slip(arc, c, s, mirrored))
-            mx, my, dx, dy = cx + away * nx, cy + away * ny, -sign * end * ny, sign * end * nx
-            count = _side(room, count, mx + dx, my + dy, mx - dx, my - dy)
-    if count > 0:
-        sums = plus(sums, 1.0, polygon_sums(room, 0, count, base[BASE_REACH], ux, uy, w))
+        part = _disc_beyond(base[at], base[at + 1], base[at + 2], nx, ny, place, ux, uy, w)
+        sums = plus(sums, base[at + 3], part)
     return sums
 
 

@@ -59,6 +59,8 @@ def _row(scene: SceneSpec, piece: PieceSpec, friction: float, how: float) -> lis
     if piece.path:
         return [0.0, 0.0, 0.0]
     decel = friction * piece.gravity * math.cos(scene.floor.slope)
+    if piece.shape is not None:
+        return [decel, 0.0, how]  # its height stands with its base
     return [decel, 2.0 * friction * piece.height / piece.radius, how]
 
 
