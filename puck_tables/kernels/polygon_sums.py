@@ -34,6 +34,7 @@ SIDE_COLUMNS = 6
 FAR = 6.0  # times the reach of the base: closer, closed forms lose less than 1e-13
 NODES = 8  # of Gauss's rule on a side that far away: 6e-16
 NODE, WEIGHT = np.polynomial.legendre.leggauss(NODES)
+_SHORT = 0.05  # of the sum of the distances of its ends: a series of six terms is exact
 LEAST = 1e-17  # of a length: C on a side; what the logarithm loses is multiplied by d² = 0
 
 
@@ -79,6 +80,18 @@ def flat_sums(
 
 
 @inlined
+def _second(q: float, across: float, both: float) -> float:
+    """A₂ of a side that is short for its distance, where [sR] and d² A₀ cancel.
+
+    With q = L/(R₀ + R₁): ¼ ((s₀ + s₁)² (2q − g) + (R₀ + R₁)² g), g = q − (1 − q²) atanh q.
+    """
+    square = q * q
+    series = 2.0 / 63.0 + square * (2.0 / 99.0 + square * (2.0 / 143.0))
+    g = q * square * (2.0 / 3.0 + square * (2.0 / 15.0 + square * (2.0 / 35.0 + square * series)))
+    return 0.25 * (across * across * (2.0 * q - g) + both * both * g)
+
+
+@inlined
 def _near(base: FloatArray, first: int, count: int, ux: float, uy: float, w: float) -> Sums:
     cx, cy = -uy / w, ux / w
     ex, ey, size, rx, ry, far = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -95,6 +108,9 @@ def _near(base: FloatArray, first: int, count: int, ux: float, uy: float, w: flo
         a1 = length * (begin + end) / both
         product, square = end * far - begin * near, d * d * a0
         a2, b0 = 0.5 * (product - square), 0.5 * (product + square)
+        share = length / both
+        if share < _SHORT:
+            a2 = _second(share, begin + end, both)
         b1 = a1 * (far * far + far * near + near * near) / 3.0
         nx, ny = ty, -tx
         ax, ay = d * (d * a0 * tx - a1 * nx), d * (d * a0 * ty - a1 * ny)
