@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from puck_tables.stopping.stops import Stops
     from puck_tables.table.table import Table
     from puck_tables.trajectory import Trajectory
+    from puck_tables.wrench.base_surface import BaseSurface
     from puck_tables.wrench.friction_force import Wrench
     from puck_tables.wrench.friction_hold import Hold, Twist
     from puck_tables.wrench.surface import LimitSurface
@@ -326,17 +327,21 @@ class Puck(VerbsOfMany):
             max_spin=max_spin, count=count, threads=threads,
         )  # fmt: skip
 
-    def limit_surface(self, n: int = 181) -> LimitSurface:
+    def limit_surface(self, n: int | None = None) -> LimitSurface | BaseSurface:
         """What force and torque friction takes up, over the direction of slip.
 
         Parameters
         ----------
-        n : how many slip angles, equally spaced from −π/2 to π/2; 5 to 1e6 and one
+        n : how many slip angles, equally spaced from −π/2 to π/2
+            5 to 1e6 and one, 181 if left out; with a base 5 to 1001, 31 if left out, each in
+            2n − 1 directions of slip.
 
         Returns
         -------
         LimitSurface
             With the ellipsoid and the convex polynomial of order 4 that fit it best.
+        BaseSurface
+            With a base: over the direction of slip, too, in the axes of the base.
 
         Raises
         ------

@@ -296,6 +296,12 @@ class PuckSpec:
     def described(self) -> dict[str, Any]:
         """Its numbers by name, with δ and J, as results and files carry them."""
         numbers = {name: getattr(self, name) for name in ("radius", "height", "friction", "mass")}
+        if self.shape is not None:
+            del numbers["radius"]
+            return {
+                "base": self.shape.name, **numbers, "gravity": self.gravity, "decel": self.decel,
+                "gyration": self.gyration,
+            }  # fmt: skip
         law = self.body.law.name
         return {
             **numbers, "gravity": self.gravity, "delta": self.delta, "decel": self.decel,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.plot.style import COLORS, canvas
+from puck_tables.plot.style import COLORS, GREY, canvas
 from puck_tables.plot.titles import legend_below, titled
 from puck_tables.wrench.base_surface import BaseSurface
 from puck_tables.wrench.friction_hold import holds
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _LEVELS = (0.0, 0.5, 0.75, 0.9)  # of the largest torque
+_STYLES = ("-", "--", ":")  # of friction, ellipsoid and 4th order
 _DIRECTIONS = 181  # of a section: every two degrees
 _HALVES = 40  # of a force
 
@@ -27,21 +28,20 @@ def draw(surface: BaseSurface) -> Figure:
     left, right = figure.subplots(1, 2)
     draw_on(left, surface)
     turn = np.linspace(-0.5 * np.pi, 0.5 * np.pi, _DIRECTIONS)
-    length = surface.puck.inertia_radius
-    torque = length * np.sin(turn)
+    torque = surface.puck.inertia_radius * np.sin(turn)
     for way, axis, color in ((0, "x", COLORS[0]), (1, "y", COLORS[2])):
         force = np.zeros((turn.size, 2))
         force[:, way] = np.cos(turn)
-        for size, style, label in _sizes(surface, force, torque):
+        for n, style in enumerate(_STYLES):
+            size = _size(surface, force, torque, n)
             right.plot(
                 size * force[:, way], size * torque, linestyle=style, color=color,
-                label=f"{label}, force along {axis}",
+                label="" if n else f"force along {axis}",
             )  # fmt: skip
     right.set_xlabel("force F / N")
     right.set_ylabel("torque M / (N m)")
-    right.set_aspect(1.0 / length, adjustable="box")
     right.grid(color="#e4e4e4", linewidth=0.6)
-    legend_below(right, columns=2, down=0.14)
+    right.legend(frameon=False)
     shape = surface.puck.shape
     titled(figure, f"limit surface of {shape.name if shape else ''}")
     return figure
@@ -52,28 +52,20 @@ def draw_on(axes: Axes, surface: BaseSurface) -> None:
     turn = np.linspace(0.0, 2.0 * np.pi, _DIRECTIONS)
     ways = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
     most = float(np.max(surface.torque))
+    for style, name in zip(_STYLES, ("friction", "ellipsoid", "4th order"), strict=True):
+        axes.plot([], [], linestyle=style, color=GREY, label=name)
     for level, color in zip(_LEVELS, COLORS, strict=False):
-        for n, (style, name) in enumerate((("-", "friction"), ("--", "ellipsoid"), (":", "4th"))):
+        for n, style in enumerate(_STYLES):
             force = _force_at(surface, ways, level * most, n)
             axes.plot(
                 *(force[:, None] * ways).T, linestyle=style, color=color,
-                label=f"{name}, M = {level * most:.3g} N m",
+                label="" if n else f"M = {level * most:.3g} N m",
             )  # fmt: skip
     axes.set_xlabel("force F_x / N")
     axes.set_ylabel("force F_y / N")
-    axes.set_aspect("equal", adjustable="box")
+    axes.set_aspect("equal", adjustable="datalim")
     axes.grid(color="#e4e4e4", linewidth=0.6)
-    legend_below(axes, columns=3, down=0.14)
-
-
-def _sizes(
-    surface: BaseSurface, force: FloatArray, torque: FloatArray
-) -> list[tuple[FloatArray, str, str]]:
-    """By what wrenches are multiplied to lie on the surface and on its models."""
-    return [
-        (_size(surface, force, torque, n), *words)
-        for n, words in enumerate((("-", "friction"), ("--", "ellipsoid"), (":", "4th order")))
-    ]
+    legend_below(axes, columns=4, down=0.11)
 
 
 def _size(surface: BaseSurface, force: FloatArray, torque: FloatArray, n: int) -> FloatArray:

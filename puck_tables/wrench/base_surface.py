@@ -1,4 +1,4 @@
-"""The limit surface of a puck on a base: a surface over the direction of slip and its share of spin.
+"""The limit surface of a puck on a base: over the direction of slip and its share of spin.
 
 With the twist Q (cos φ cos ψ, cos φ sin ψ, sin φ/k), ψ its direction in the axes of the base and k
 the radius of gyration, a pusher that keeps the slip going gives the force and torque of
@@ -26,7 +26,7 @@ from puck_tables.wrench.friction_hold import holds, twist
 if TYPE_CHECKING:
     from puck_tables.motion.puck_spec import PuckSpec
 
-_DIRECTIONS = 4000  # of wrenches, for models and convexity
+_DIRECTIONS = 2000  # of wrenches, for models and convexity
 _SLACK = 1e-9  # of f m g: so much a convex surface may seem to bend in
 _COLUMNS = ("force_x", "force_y", "torque", "normal_x", "normal_y", "normal_torque")
 
@@ -159,8 +159,8 @@ def base_surface(puck: PuckSpec, count: int) -> BaseSurface:
 def _normals(puck: PuckSpec, velocity: FloatArray, spin: FloatArray) -> FloatArray:
     """Outward unit normals (…, 3), in (F_x, F_y, M/k), where friction is that of twists.
 
-    Friction does not change along the twist t, and by J dt it moves in the surface; so the cofactors
-    of J, scaled, are n ⊗ t.
+    Friction does not change along the twist t, and by J dt it moves in the surface; so the
+    cofactors of J, scaled, are n ⊗ t.
     """
     scale = np.array([1.0, 1.0, puck.inertia_radius])
     slip = np.concatenate([velocity, spin[..., None]], axis=-1) * scale

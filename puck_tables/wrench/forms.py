@@ -16,8 +16,8 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import finite_array
 
-_ROUNDS = 12  # of Gauss–Newton steps: four do
-_HALVES = 40  # of the share of the ellipsoid
+_ROUNDS = 6  # of Gauss–Newton steps: four do
+_HALVES = 20  # of the share of the ellipsoid
 _SLACK = 1e-12  # of the largest curvature: less is rounding
 
 
@@ -147,7 +147,10 @@ def monomials(rows: FloatArray, powers: npt.NDArray[np.int64]) -> FloatArray:
     >>> monomials(np.array([2.0, 3.0, 1.0]), np.array([[2, 0, 0], [1, 1, 0]])).tolist()
     [4.0, 6.0]
     """
-    found: FloatArray = np.prod(rows[..., None, :] ** powers, axis=-1)
+    of = rows[..., None] ** np.arange(powers.max() + 1.0)
+    found: FloatArray = (
+        of[..., 0, powers[:, 0]] * of[..., 1, powers[:, 1]] * of[..., 2, powers[:, 2]]
+    )
     return found
 
 
@@ -183,11 +186,17 @@ def _powers(order: int) -> npt.NDArray[np.int64]:
 def _fit(points: FloatArray, powers: npt.NDArray[np.int64]) -> FloatArray:
     """Coefficients of the least squares of 1/g − 1."""
     order, parts = int(powers[0].sum()), monomials(points, powers)
-    found: FloatArray = np.linalg.lstsq(parts, np.ones(len(points)), rcond=None)[0]
+    found = _least_squares(parts, np.ones(len(points)))
     for _ in range(_ROUNDS):
         g = np.maximum(parts @ found, 1e-3) ** (1.0 / order)
         change = parts * (-(g ** -(order + 1.0)) / order)[:, None]
-        found = found - np.linalg.lstsq(change, 1.0 / g - 1.0, rcond=None)[0]
+        found = found - _least_squares(change, 1.0 / g - 1.0)
+    return found
+
+
+def _least_squares(parts: FloatArray, wanted: FloatArray) -> FloatArray:
+    q, r = np.linalg.qr(parts)
+    found: FloatArray = np.linalg.solve(r, q.T @ wanted)
     return found
 
 

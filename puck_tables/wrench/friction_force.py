@@ -2,7 +2,7 @@
 
 Under a base, and under a round puck with uniform pressure in full contact, by closed forms
 (:mod:`puck_tables.kernels.base_friction`, :mod:`puck_tables.kernels.base_hessian`).  Under other
-laws by the resultants (:mod:`puck_tables.wrench.surface`), with u^⊥ the velocity turned by +90°,
+laws by the resultants (:mod:`puck_tables.contact.resultants`), u^⊥ the velocity turned by +90°,
 
     F = −f N (ρ_∥ u + sin φ ρ_⊥ u^⊥)/Q,   T = −½ f N r sin φ ρ_ω,   Q = hypot(u, r w).
 """
@@ -23,7 +23,6 @@ from puck_tables.errors import InputError
 from puck_tables.kernels.base_friction import grip, packed
 from puck_tables.kernels.base_hessian import grip_slopes
 from puck_tables.kernels.compile import kernel, patience
-from puck_tables.wrench.surface import wrenches
 
 if TYPE_CHECKING:
     from puck_tables.motion.puck_spec import PuckSpec
@@ -74,6 +73,21 @@ def wrench(
         found[:2].T.reshape(*shape, 2), found[2].reshape(shape),
         slopes.reshape(*shape, 3, 3) if jacobian else None,
     )  # fmt: skip
+
+
+def wrenches(law: Law, delta: float, phi: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """F_x, F_y and M/r over f N, each of the shape of ``phi``.
+
+    Examples
+    --------
+    >>> from puck_tables.contact.laws import law_of
+    >>> [float(x.round(12)) for x in wrenches(law_of("uniform"), 0.0, np.array(np.pi / 2))]
+    [0.0, 0.0, 0.666666666667]
+    """
+    rho = law.friction(phi, delta)
+    cosine = np.where(np.abs(phi) == 0.5 * np.pi, 0.0, np.cos(phi))
+    sine = np.sin(phi)
+    return cosine * rho.parallel, sine * cosine * rho.perpendicular, 0.5 * sine * rho.spin
 
 
 def _round(
