@@ -57,16 +57,16 @@ from puck_tables.kernels.polygon_sums import (
     WEIGHT,
 )
 
-Bends = tuple[float, float, float, float, float, float]  # xx, xy, yy, xw, yw, ww
+Hessian = tuple[float, float, float, float, float, float]  # xx, xy, yy, xw, yw, ww
 Wrench = tuple[float, float, float]
-_FLAT: Bends = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+_FLAT: Hessian = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 _TINY = 1e-300  # of a distance: C at a corner, where what is divided by it is 0
 _FEW = 0.99  # of the smaller rate over the larger: up to it few steps of the mean do
 _SMALL = 0.01  # of k²: below it 4 (D − G) − 3 B cancels, and eight terms of its series do
 
 
 @inlined
-def _about(xx: float, xy: float, yy: float, cx: float, cy: float) -> Bends:
+def _about(xx: float, xy: float, yy: float, cx: float, cy: float) -> Hessian:
     """From the sums over n ⊗ n those over g ⊗ g, with C at (cx, cy)."""
     return (
         xx, xy, yy, cx * xy - cy * xx, cx * yy - cy * xy,
@@ -77,7 +77,7 @@ def _about(xx: float, xy: float, yy: float, cx: float, cy: float) -> Bends:
 @inlined
 def _sides_near(
     base: FloatArray, a: float, bx: float, by: float, ux: float, uy: float, w: float
-) -> Bends:  # fmt: skip
+) -> Hessian:  # fmt: skip
     cx, cy = -uy / w, ux / w
     xx, xy, yy, far = 0.0, 0.0, 0.0, 0.0
     at_c = a + bx * cx + by * cy
@@ -108,7 +108,7 @@ def _sides_near(
 @inlined
 def _sides_far(
     base: FloatArray, a: float, bx: float, by: float, ux: float, uy: float, w: float
-) -> Bends:  # fmt: skip
+) -> Hessian:  # fmt: skip
     speed, sign = math.sqrt(ux * ux + uy * uy), -1.0 if w < 0.0 else 1.0
     xx, xy, yy, xw, yw, ww = _FLAT
     for i in range(HEAD, HEAD + SIDE_COLUMNS * int(base[SIDES]), SIDE_COLUMNS):
@@ -137,7 +137,9 @@ def _sides_far(
 
 
 @inlined
-def _disc(size: float, middle: float, along: float, across: float, speed: float, w: float) -> Bends:
+def _disc(
+    size: float, middle: float, along: float, across: float, speed: float, w: float
+) -> Hessian:
     """A disc that slips along x, about its own middle.
 
     ``middle``: the pressure there; ``along``, ``across``: its slope along the slip, to the left.
@@ -180,7 +182,7 @@ def _series(m: float) -> float:
 @inlined
 def _disc_at(
     base: FloatArray, at: int, a: float, bx: float, by: float, ux: float, uy: float, w: float
-) -> Bends:  # fmt: skip
+) -> Hessian:  # fmt: skip
     """A disc about a place: about its own middle, turned and moved."""
     cx, cy = base[at], base[at + 1]
     ux, uy = ux - w * cy, uy + w * cx
@@ -202,9 +204,9 @@ def _disc_at(
 
 
 @inner
-def base_bends(
+def pressed_hessian(
     base: FloatArray, a: float, bx: float, by: float, ux: float, uy: float, w: float
-) -> Bends:  # fmt: skip
+) -> Hessian:  # fmt: skip
     """∫ p/|u| g ⊗ g dA over a base, in its own axes, with the pressure p = a + b·x."""
     sums = _FLAT
     if base[SIDES] > 0.0:
@@ -233,7 +235,7 @@ def grip_slopes(base: FloatArray, ux: float, uy: float, w: float, out: FloatArra
     lever, fx, fy = base[LEVER], base[FIRST_X], base[FIRST_Y]
     sums = base_sums(base, ux, uy, w) if lever != 0.0 else NOTHING
     a, bx, by = pressure_on(base, sums)
-    xx, xy, yy, xw, yw, ww = base_bends(base, a, bx, by, ux, uy, w)
+    xx, xy, yy, xw, yw, ww = pressed_hessian(base, a, bx, by, ux, uy, w)
     out[0, 0], out[0, 1], out[0, 2] = xx, xy, xw
     out[1, 0], out[1, 1], out[1, 2] = xy, yy, yw
     out[2, 0], out[2, 1], out[2, 2] = xw, yw, ww

@@ -50,15 +50,15 @@ def draw(surface: BaseSurface) -> Figure:
 def draw_on(axes: Axes, surface: BaseSurface) -> None:
     """The forces at constant torques alone."""
     turn = np.linspace(0.0, 2.0 * np.pi, _DIRECTIONS)
-    ways = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+    directions = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
     most = float(np.max(surface.torque))
     for style, name in zip(_STYLES, ("friction", "ellipsoid", "4th order"), strict=True):
         axes.plot([], [], linestyle=style, color=GREY, label=name)
     for level, color in zip(_LEVELS, COLORS, strict=False):
         for n, style in enumerate(_STYLES):
-            force = _force_at(surface, ways, level * most, n)
+            force = _force_at(surface, directions, level * most, n)
             axes.plot(
-                *(force[:, None] * ways).T, linestyle=style, color=color,
+                *(force[:, None] * directions).T, linestyle=style, color=color,
                 label="" if n else f"M = {level * most:.3g} N m",
             )  # fmt: skip
     axes.set_xlabel("force F_x / N")
@@ -74,12 +74,12 @@ def _size(surface: BaseSurface, force: FloatArray, torque: FloatArray, n: int) -
     return 1.0 / (surface.ellipsoid, surface.quartic)[n - 1].gauge(force, torque)
 
 
-def _force_at(surface: BaseSurface, ways: FloatArray, torque: float, n: int) -> FloatArray:
+def _force_at(surface: BaseSurface, directions: FloatArray, torque: float, n: int) -> FloatArray:
     """The force in each direction with which a torque is just held; NaN where none is."""
-    low, high = np.zeros(len(ways)), np.full(len(ways), 2.0 * surface.unit_force)
-    turning = np.full(len(ways), torque)
+    low, high = np.zeros(len(directions)), np.full(len(directions), 2.0 * surface.unit_force)
+    turning = np.full(len(directions), torque)
     for _ in range(_HALVES):
         force = 0.5 * (low + high)
-        held = _size(surface, force[:, None] * ways, turning, n) >= 1.0
+        held = _size(surface, force[:, None] * directions, turning, n) >= 1.0
         low, high = np.where(held, force, low), np.where(held, high, force)
     return np.where(low > 0.0, low, np.nan)

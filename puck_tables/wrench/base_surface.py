@@ -145,8 +145,8 @@ def base_surface(puck: PuckSpec, count: int) -> BaseSurface:
     phi = np.linspace(-0.5 * np.pi, 0.5 * np.pi, count)
     psi = np.linspace(-np.pi, np.pi, 2 * count - 1)
     cosine = np.where(np.abs(phi) == 0.5 * np.pi, 0.0, np.cos(phi))
-    ways = np.stack([np.cos(psi), np.sin(psi)], axis=-1)
-    velocity = cosine[None, :, None] * ways[:, None]
+    directions = np.stack([np.cos(psi), np.sin(psi)], axis=-1)
+    velocity = cosine[None, :, None] * directions[:, None]
     spin = np.broadcast_to(np.sin(phi) / puck.inertia_radius, velocity.shape[:2])
     found = wrench(puck, velocity, spin, 0.0, False)
     normal = _normals(puck, velocity, spin)

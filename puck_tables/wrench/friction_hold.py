@@ -129,8 +129,8 @@ def _slips(
     if puck.shape is None:
         plain = is_plain(puck.pressure, puck.gyration, puck.delta)
         section = plain_cut(tol, puck.delta) if plain else section_of(puck, puck.delta, tol)
-        dry = Dry(load, puck.delta, section, NO_LAW)
-        _fill(dry, puck.radius, load * rows / unit, share, heat, slip)
+        coefficients = Dry(load, puck.delta, section, NO_LAW)
+        _fill(coefficients, puck.radius, load * rows / unit, share, heat, slip)
         heat /= load
     else:
         base = packed(puck.shape, puck.lever)
@@ -154,14 +154,14 @@ def _forces(force: npt.ArrayLike) -> FloatArray:
 
 @allocating
 def _fill(
-    dry: Dry, radius: float, rows: FloatArray, share: FloatArray, heat: FloatArray,
+    coefficients: Dry, radius: float, rows: FloatArray, share: FloatArray, heat: FloatArray,
     slip: FloatArray,
 ) -> None:  # fmt: skip
     """The shares of wrenches (3, n), the power of friction in their slips, and these (3, n)."""
     for n in range(rows.shape[1]):
         patience(1)
         share[n], heat[n], slip[0, n], slip[1, n], slip[2, n] = demand(
-            dry, radius, rows[0, n], rows[1, n], rows[2, n], False
+            coefficients, radius, rows[0, n], rows[1, n], rows[2, n], False
         )
 
 
