@@ -14,6 +14,7 @@ from puck_tables.cli.options import (
     FILE,
     NUMBER,
     SPIN,
+    base_option,
     body_options,
     chosen_puck,
     deliver,
@@ -41,9 +42,15 @@ if TYPE_CHECKING:
     from puck_tables.result import TimedResult
     from puck_tables.trajectory import Trajectory
 
+ENDS = {  # of slides on bases that are not round
+    "rest": "it lies still",
+    "together": "sliding and spinning end together",
+    "slide last": "the spin dies out first, it slides last",
+    "spin last": "the sliding dies out first, it spins last",
+}
 _LAUNCHED = (
     "v0", "w0", "radius", "height", "friction", "gravity", "mass", "decel", "delta", "pressure",
-    "gyration",
+    "gyration", "base",
 )  # fmt: skip
 
 
@@ -58,6 +65,7 @@ _LAUNCHED = (
 @click.option("--track", help="Which track of --fit, by its name or number from 1.")
 @click.option("--v0", type=Vector("m/s"), help="Launch velocity in m/s, like 1,0.")
 @click.option("--w0", type=SPIN, default=0.0, show_default=True, help="Launch spin in rad/s.")
+@base_option
 @puck_options(mass=True)
 @click.option("--delta", type=NUMBER, help="delta = 2 f h / r instead.  [default: 0.5]")
 @body_options()
@@ -94,10 +102,10 @@ _LAUNCHED = (
 @click.pass_context
 def simulate(
     ctx: click.Context, fit_path: Path | None, track: str | None,
-    v0: tuple[float, float] | None, w0: float, radius: float | None, height: float | None,
-    friction: float | None, gravity: float | None, mass: float | None, decel: float | None,
-    delta: float | None, pressure: str, gyration: float | None, frames: int | None,
-    times: tuple[float, ...] | None, tol: float,
+    v0: tuple[float, float] | None, w0: float, base: str | None, radius: float | None,
+    height: float | None, friction: float | None, gravity: float | None, mass: float | None,
+    decel: float | None, delta: float | None, pressure: str, gyration: float | None,
+    frames: int | None, times: tuple[float, ...] | None, tol: float,
     method: str | None, explain: bool, exact: bool, table_path: Path | None, as_json: bool,
     output: Path | None, movie: Path | None, plot: Path | None, overwrite: bool, scene: str | None,
     changes: tuple[str, ...],
@@ -112,6 +120,7 @@ def simulate(
     puck simulate --scene carrom-break --movie carrom.html
     puck simulate --v0 1,0 --w0 5 --delta 2
     puck simulate --v0 1,0 --w0 5 --pressure annulus:0.8 --gyration 0.9
+    puck simulate --v0 1,0 --w0 10 --base box:20cmx10cm --friction 0.3 --plot box.png
     puck simulate --fit fit.json --track 1
     """  # noqa: D301 - click reads the backspace
     unknown: tuple[str, ...] = ()
@@ -133,13 +142,13 @@ def simulate(
             raise InputError("--exact and --table clash: closed forms need no table")
         prepare_outputs(
             output, plot=plot, movie=movie, overwrite=overwrite,
-            inputs=(table_path, pressure, fit_path),
+            inputs=(table_path, pressure, fit_path, base),
         )  # fmt: skip
         if fit_path is not None:
             puck, velocity, w0, unknown = _from_fit(ctx, fit_path, track)
         elif v0 is not None:
             puck = chosen_puck(
-                radius, height, friction, gravity, delta, decel, pressure, gyration, mass
+                radius, height, friction, gravity, delta, decel, pressure, gyration, mass, base
             )
             velocity = v0
         else:
@@ -152,7 +161,7 @@ def simulate(
                 table=None if table_path is None else open_table(table_path),
             )  # fmt: skip
         given = fit_path is not None or any(
-            x is not None for x in (radius, height, friction, delta, decel, gyration)
+            x is not None for x in (radius, height, friction, delta, decel, gyration, base)
         )
         in_words = partial(
             report, note="" if given else "   (defaults: see --help for a real puck)"
@@ -185,37 +194,69 @@ def _from_fit(
 
 def report(run: Trajectory, note: str) -> str:
     """The trajectory in a dozen lines."""
+    lines = _on_base(run, note) if run.puck.shape is not None else _of_round(run, note)
+    table = "\n".join(f"{name:<15} {text}" for name, text in lines.items())
+    return f"{plainly(run)}\n\n{table}"
+
+
+def _of_round(run: Trajectory, note: str) -> dict[str, str]:
+    """What is told of a round puck."""
     from puck_tables.motion.limits import REGIMES
 
     puck, (vx, vy), w0 = run.puck, run.launch_velocity, run.launch_spin
     q0 = math.hypot(vx, vy, puck.radius * w0)
+    assert run.turn_angle is not None
     turn = f"{math.degrees(run.turn_angle):.5g} deg"
-    if run.turn_rate != 0.0:
+    if run.turn_rate:
         decade = math.degrees(run.turn_rate) * math.log(10.0)
         turn += f" by Q = Q0/1000, then {decade:.4g} deg more for each factor 10 of Q"
-    x, y = run.stop_position
     kind = f", {puck.body.kind}" if puck.body.kind else ""
-    lines = {
+    return {
         "puck": f"r = {puck.radius:g} m, delta = {puck.delta:.6g}, J = {puck.decel:.6g} m/s^2{kind}"
         f"{note}",
         "launch": f"v0 = ({vx:g}, {vy:g}) m/s, w0 = {w0:g} rad/s, "
         f"Q0 = hypot(v0, r w0) = {q0:.6g} m/s",
         "regime": f"{run.regime}: {REGIMES[run.regime]}",
         "contact": _contact(run),
+        **_stop(run, q0, {"heading turned": turn}, {"limit angle": _limit(run.limit_angle)}),
+    }
+
+
+def _on_base(run: Trajectory, note: str) -> dict[str, str]:
+    """What is told of a puck on another base."""
+    puck, (vx, vy), w0 = run.puck, run.launch_velocity, run.launch_spin
+    assert puck.shape is not None
+    k = puck.inertia_radius
+    q0 = math.hypot(vx, vy, k * w0)
+    high = f"h = {puck.height:g} m, " if puck.height > 0.0 else ""
+    return {
+        "puck": f"base {puck.shape.name}, k = {k:.6g} m, {high}f = {puck.friction:g}, "
+        f"J = {puck.decel:.6g} m/s^2{note}",
+        "launch": f"v0 = ({vx:g}, {vy:g}) m/s, w0 = {w0:g} rad/s, "
+        f"Q0 = hypot(v0, k w0) = {q0:.6g} m/s",
+        "end": ENDS[run.regime],
+        **_stop(run, q0, {}, {}),
+    }
+
+
+def _stop(
+    run: Trajectory, q0: float, on_the_way: dict[str, str], at_last: dict[str, str]
+) -> dict[str, str]:
+    """What is told of any stop, with more about turns."""
+    (x, y), puck = run.stop_position, run.puck
+    return {
         "stop time": f"{run.stop_time:.9g} s",
         "stop position": f"({x:.9g}, {y:.9g}) m",
         "path length": f"{run.path_length:.9g} m",
-        "heading turned": turn,
+        **on_the_way,
         "body turned": f"{run.body_angle:.9g} rad ({run.body_angle / (2 * math.pi):.5g} turns)",
-        "limit angle": _limit(run),
+        **at_last,
         "energy": f"{run.kinetic_energy:.6g} J (m = {puck.mass:g} kg), all lost to friction; "
         f"residual {run.energy_residual:.1e} of it",
         "method": run.method + (f", {run.steps} steps" if run.steps else ""),
         "error estimate": f"{run.error_estimate * q0 / puck.decel:.1e} s, "
         f"{run.error_estimate * q0 * q0 / puck.decel:.1e} m",
     }
-    table = "\n".join(f"{name:<15} {text}" for name, text in lines.items())
-    return f"{plainly(run)}\n\n{table}"
 
 
 def plainly(run: Trajectory) -> str:
@@ -230,7 +271,7 @@ def plainly(run: Trajectory) -> str:
         )
     first = f"The puck stops after {run.stop_time:.4g} s, {math.hypot(x, y):.4g} m from its launch."
     aside = math.degrees(math.atan2(vx * y - vy * x, vx * x + vy * y))
-    if run.launch_spin == 0.0:
+    if run.launch_spin == run.body_angle == 0.0:
         return first + "\nWithout spin its path is straight."
     side = "left" if aside > 0.0 else "right"
     bent = (
@@ -238,7 +279,8 @@ def plainly(run: Trajectory) -> str:
     )
     if abs(aside) < 1e-9:
         bent = "Its path is straight"
-    return f"{first}\n{bent}; sliding and spinning end together."
+    end = ENDS.get(run.regime, ENDS["together"])
+    return f"{first}\n{bent}; {end}."
 
 
 def _contact(run: Trajectory) -> str:
@@ -257,11 +299,12 @@ def _contact(run: Trajectory) -> str:
     return text
 
 
-def _limit(run: Trajectory) -> str:
+def _limit(angle: float | None) -> str:
     """Where the ratio of spin to speed tends to."""
-    if run.limit_angle == 0.0:
+    assert angle is not None
+    if angle == 0.0:
         return "none: the spin dies out before the sliding, r w/v tends to 0"
-    if run.limit_angle == 0.5 * math.pi:
+    if angle == 0.5 * math.pi:
         return "none: the sliding dies out before the spin, r w/v grows without bound"
-    ratio = math.tan(run.limit_angle)
-    return f"{math.degrees(run.limit_angle):.7g} deg (r w/v tends to {ratio:.7g})"
+    ratio = math.tan(angle)
+    return f"{math.degrees(angle):.7g} deg (r w/v tends to {ratio:.7g})"

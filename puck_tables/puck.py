@@ -81,6 +81,7 @@ class Puck(VerbsOfMany):
         """
         from puck_tables.motion.limits import regime
 
+        self.refuse_base("regime")
         return regime(velocity, spin, self.delta, self.radius, self.pressure, self.gyration)
 
     def simulate(
@@ -145,9 +146,14 @@ class Puck(VerbsOfMany):
         >>> run.regime, round(run.stop_time, 8), round(run.stop_position[0], 8)
         ('B', 3.96299205, 2.21395163)
         """
-        from puck_tables.trajectory import simulate
+        from puck_tables.trajectory import simulate, simulate_on_base
 
         self.refuse_frictionless()
+        if self.shape is not None:
+            self.refuse_for_round(method=method, exact=exact, table=table)
+            return simulate_on_base(
+                self, velocity, spin, frames=frames, times=times, tol=tol
+            )  # fmt: skip
         return simulate(
             self, velocity, spin, frames=frames, times=times, tol=tol, method=method, exact=exact,
             table=cast(Any, table),
@@ -183,6 +189,12 @@ class Puck(VerbsOfMany):
         >>> Puck.similar(delta=1.0).stop((1.0, 0.0), [1.0, 5.0]).stop_time.round(6).tolist()
         [1.395088, 4.000189]
         """
+        if self.shape is not None:
+            from puck_tables.stopping.base_stops import stop_on_base
+
+            self.refuse_frictionless()
+            self.refuse_for_round(method=method, table=table, jacobian=jacobian)
+            return stop_on_base(self, velocity, spin, tol, threads)
         from puck_tables.stopping.stops import stop
 
         return stop(
@@ -221,6 +233,12 @@ class Puck(VerbsOfMany):
         >>> Puck.similar().states((1.0, 0.0), 5.0, [2.0, 0.0]).x.round(6).tolist()
         [1.590682, 0.0]
         """
+        if self.shape is not None:
+            from puck_tables.stopping.base_stops import states_on_base
+
+            self.refuse_frictionless()
+            self.refuse_for_round(table=table, jacobian=jacobian)
+            return states_on_base(self, velocity, spin, time, threads)
         from puck_tables.stopping.states import states
 
         return states(
@@ -319,6 +337,7 @@ class Puck(VerbsOfMany):
         """
         from puck_tables.stopping.aim_at_targets import aim
 
+        self.refuse_base("aim")
         self.refuse_frictionless()
         return aim(
             self, target, spin=spin, speed=speed, stop_time=stop_time, max_speed=max_speed,
