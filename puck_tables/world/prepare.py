@@ -86,7 +86,7 @@ def game_of(scene: SceneSpec, order: Whole) -> tuple[Game, Room]:
     rims, discs[:, layout.MAKE], makes, called = rims_of(scene, pieces)
     for i, piece in enumerate(pieces):
         driven = bool(piece.path)
-        inertia = piece.mass * (piece.gyration * piece.radius) ** 2
+        inertia = piece.mass * piece.inertia_radius**2
         if not driven:
             discs[i, layout.LIGHTNESS], discs[i, layout.TURNABILITY] = 1.0 / piece.mass, 1 / inertia
             discs[i, layout.PULL_X : layout.TWIST + 1] = _pull_on(scene, piece, inertia)
