@@ -186,7 +186,7 @@ def _on_base(run: Trajectory, note: str) -> dict[str, str]:
 
 
 def _stop(
-    run: Trajectory, q0: float, on_the_way: dict[str, str], at_last: dict[str, str]
+    run: Trajectory, q0: float, turns: dict[str, str], limit: dict[str, str]
 ) -> dict[str, str]:
     """What is told of any stop, with more about turns."""
     (x, y), puck = run.stop_position, run.puck
@@ -194,9 +194,9 @@ def _stop(
         "stop time": f"{run.stop_time:.9g} s",
         "stop position": f"({x:.9g}, {y:.9g}) m",
         "path length": f"{run.path_length:.9g} m",
-        **on_the_way,
+        **turns,
         "body turned": f"{run.body_angle:.9g} rad ({run.body_angle / (2 * math.pi):.5g} turns)",
-        **at_last,
+        **limit,
         "energy": f"{run.kinetic_energy:.6g} J (m = {puck.mass:g} kg), all lost to friction; "
         f"residual {run.energy_residual:.1e} of it",
         "method": run.method + (f", {run.steps} steps" if run.steps else ""),

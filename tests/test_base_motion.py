@@ -236,16 +236,16 @@ def test_threads_and_cutting_change_no_bit():
 
 
 def test_kernels_as_they_are_written():
-    from puck_tables.motion.base_slides import fill_slides, launched
+    from puck_tables.motion.base_slides import fill_slides, launch_rows
 
     puck = Puck(base=TRIANGLE, friction=0.3, height=0.02)
-    launch = launched(puck, np.array([[1.0, 0.2]]), np.array([5.0]))
+    launch = launch_rows(puck, np.array([[1.0, 0.2]]), np.array([5.0]))
     base = packed(TRIANGLE, puck.lever)
     results = []
     for run in (fill_slides, fill_slides.py_func):
-        told, states, status = np.empty((10, 1)), np.empty((2, 6)), np.empty(1, np.int8)
-        run(base, launch, 1e-6, np.array([0, 2]), np.array([0.3, 2.0]), told, states, status)
-        results.append(np.concatenate([told.ravel(), states.ravel()]))
+        out, states, status = np.empty((10, 1)), np.empty((2, 6)), np.empty(1, np.int8)
+        run(base, launch, 1e-6, np.array([0, 2]), np.array([0.3, 2.0]), out, states, status)
+        results.append(np.concatenate([out.ravel(), states.ravel()]))
     if not as_written():
         np.testing.assert_allclose(*results, rtol=1e-9, atol=1e-12)
 

@@ -52,23 +52,24 @@ _LOCAL = 1.0 / 30.0
 _FINER = 0.01  # of the local error: a slide that tells the error of another
 _ROUNDING = 10.0  # of a slide as long as Q₀/J, over that of friction
 
-# of what is told of a slide: time, place, path length, 0, angle of the body, as solvers.OUTPUTS;
-# steps, energy residual, how fast the direction of (v, kΩ) changes per factor e of Q, and that
-# direction at the stop, atan2(k|Ω|, v)
-TOLD = 10
-STOP_TIME, STOP_X, STOP_Y, PATH, _, BODY_ANGLE, STEPS, RESIDUAL, CHANGE, ENDING = range(TOLD)
+# rows of what comes out of a slide: time, place, path length, 0, angle of the body, as in
+# solvers.OUTPUTS; steps, energy residual, how fast the direction of (v, kΩ) changes per factor e of
+# Q, and that direction at the stop, atan2(k|Ω|, v)
+OUT_ROWS = 10
+STOP_TIME, STOP_X, STOP_Y, PATH, _, BODY_ANGLE, STEPS, RESIDUAL, CHANGE, ENDING = range(OUT_ROWS)
 
 
 @allocating
 def fill_slides(
     base: FloatArray, launches: FloatArray, local: float, ends: npt.NDArray[np.int64],
-    moments: FloatArray, told: FloatArray, states: FloatArray, status: npt.NDArray[np.int8],
+    moments: FloatArray, out: FloatArray, states: FloatArray, status: npt.NDArray[np.int8],
 ) -> None:  # fmt: skip
     """Slides of launches (6, n): vx, vy, ω, f z (m), J, k.
 
     ``base``: as :func:`puck_tables.kernels.base_friction.packed` has it; ``moments`` (m,): times in
-    Q₀/J, those of launch i from ``ends[i]`` to ``ends[i + 1]``, in order; into ``told`` (TOLD, n),
-    ``states`` (m, 6) as :mod:`puck_tables.motion.state` has those of a puck, and ``status`` (n,).
+    Q₀/J, those of launch i from ``ends[i]`` to ``ends[i + 1]``, in order; into ``out``
+    (OUT_ROWS, n), ``states`` (m, 6) as :mod:`puck_tables.motion.state` has those of a puck, and
+    ``status`` (n,).
     One launch never influences another, so any cutting into chunks gives the same bits.
     """
     patience(A_MOTION * launches.shape[1])
@@ -85,7 +86,7 @@ def fill_slides(
         fits = math.isfinite(LONGEST * (length + turning))
         status[n] = STOPPED if fits else OVERFLOW
         if q0 == 0.0 or not fits:
-            told[:, n] = 0.0 if fits else math.nan
+            out[:, n] = 0.0 if fits else math.nan
             states[begin:end] = 0.0 if fits else math.nan
             continue
         own[LEVER] = launches[3, n]
@@ -96,14 +97,14 @@ def fill_slides(
             own, gyration, turning, local, y, work, moments[begin:end], states[begin:end]
         )
         if status[n] != STOPPED:
-            told[:, n] = math.nan
+            out[:, n] = math.nan
             states[begin:end] = math.nan
             continue
-        told[STOP_TIME, n], told[PATH, n] = y[T] * time, y[LENGTH] * length
-        told[STOP_X, n], told[STOP_Y, n] = y[X] * length, y[Y] * length
-        told[_, n], told[BODY_ANGLE, n] = 0.0, y[TURN] * turning
-        told[STEPS, n], told[RESIDUAL, n], told[CHANGE, n] = steps, residual, change
-        told[ENDING, n] = math.atan2(abs(y[RIM]), math.hypot(y[VX], y[VY]))
+        out[STOP_TIME, n], out[PATH, n] = y[T] * time, y[LENGTH] * length
+        out[STOP_X, n], out[STOP_Y, n] = y[X] * length, y[Y] * length
+        out[_, n], out[BODY_ANGLE, n] = 0.0, y[TURN] * turning
+        out[STEPS, n], out[RESIDUAL, n], out[CHANGE, n] = steps, residual, change
+        out[ENDING, n] = math.atan2(abs(y[RIM]), math.hypot(y[VX], y[VY]))
         for m in range(begin, end):
             states[m, 0] *= length
             states[m, 1] *= length
@@ -133,7 +134,7 @@ def local_error(tol: float) -> float:
     return tol * _LOCAL
 
 
-def launched(puck: PuckSpec, velocity: FloatArray, spin: FloatArray) -> FloatArray:
+def launch_rows(puck: PuckSpec, velocity: FloatArray, spin: FloatArray) -> FloatArray:
     """Launches (6, n), as :func:`fill_slides` takes them, of velocities (n, 2) and spins (n,)."""
     puck_numbers = np.array([[puck.lever], [puck.decel], [puck.inertia_radius]])
     rows = np.empty((6, len(velocity)))
@@ -145,14 +146,14 @@ def launched(puck: PuckSpec, velocity: FloatArray, spin: FloatArray) -> FloatArr
 class BaseSlide:
     """One slide of a puck on a base, SI units.
 
-    ``told`` (TOLD,): see above; ``error``: of the stop, in units of Q₀/J and Q₀²/J; ``local``: the
-    error of a step.
+    ``out`` (OUT_ROWS,): see above; ``error``: of the stop, in units of Q₀/J and Q₀²/J; ``local``:
+    the error of a step.
     """
 
     puck: PuckSpec
     launch: FloatArray = field(repr=False)
     local: float
-    told: FloatArray = field(repr=False)
+    out: FloatArray = field(repr=False)
     error: float
 
     @property
@@ -164,37 +165,37 @@ class BaseSlide:
     @property
     def stop_time(self) -> float:
         """Seconds."""
-        return float(self.told[STOP_TIME])
+        return float(self.out[STOP_TIME])
 
     @property
     def stop_position(self) -> tuple[float, float]:
         """Metres from the launch."""
-        return float(self.told[STOP_X]), float(self.told[STOP_Y])
+        return float(self.out[STOP_X]), float(self.out[STOP_Y])
 
     @property
     def path_length(self) -> float:
         """Metres."""
-        return float(self.told[PATH])
+        return float(self.out[PATH])
 
     @property
     def body_angle(self) -> float:
         """How far the body turns, rad."""
-        return float(self.told[BODY_ANGLE])
+        return float(self.out[BODY_ANGLE])
 
     @property
     def steps(self) -> int:
         """How many there are."""
-        return int(self.told[STEPS])
+        return int(self.out[STEPS])
 
     @property
     def energy_residual(self) -> float:
         """The largest difference between energy lost and work of friction, over the energy."""
-        return float(self.told[RESIDUAL])
+        return float(self.out[RESIDUAL])
 
     @property
     def explanation(self) -> str:
         """How it was got, why in that way, and how it ends."""
-        change, angle = self.told[CHANGE], float(self.told[ENDING])
+        change, angle = self.out[CHANGE], float(self.out[ENDING])
         ending = f"At the stop v : k|w| = {math.cos(angle):.4f} : {math.sin(angle):.4f}"
         turns = f", still turning by {change:.2g} rad per factor e of Q" if change > _TURNS else ""
         if self.slip == 0.0:
@@ -210,7 +211,7 @@ class BaseSlide:
         """How it ends, told by the direction of (v, kΩ) at the stop."""
         if self.slip == 0.0:
             return "rest"
-        angle = float(self.told[ENDING])
+        angle = float(self.out[ENDING])
         if angle < _ALONE:
             return "slide last"
         return "spin last" if angle > 0.5 * math.pi - _ALONE else "together"
@@ -245,10 +246,10 @@ def slide_of(puck: PuckSpec, velocity: tuple[float, float], spin: float, tol: fl
     Examples
     --------
     >>> puck = PuckSpec(base="box:0.2x0.1", friction=0.3)
-    >>> slide_of(puck, (1.0, 0.0), 10.0, 1e-9).told[STOP_TIME].round(9).item()
-    0.443100484
+    >>> slide_of(puck, (1.0, 0.0), 10.0, 1e-9).out[STOP_TIME].round(9).item()
+    0.448246266
     """
-    launch = launched(puck, np.array([velocity]), np.array([spin]))
+    launch = launch_rows(puck, np.array([velocity]), np.array([spin]))
     none, nothing = np.empty(0), np.empty((0, STATE_SIZE))
     slip = math.hypot(*velocity, puck.inertia_radius * spin)
     time = slip / puck.decel or 1.0
@@ -258,11 +259,11 @@ def slide_of(puck: PuckSpec, velocity: tuple[float, float], spin: float, tol: fl
     scale = np.array([time, length, length, length, 1.0, length / puck.shape.reach])
 
     def attempt(local: float) -> tuple[BaseSlide, ErrorEstimate]:
-        told = _followed(puck, launch, local, none, nothing)
+        out = _followed(puck, launch, local, none, nothing)
         finer = _followed(puck, launch, max(_FINER * local, 1e-15), none, nothing)
-        off = float(np.abs((told - finer)[: scale.size] / scale).max())
-        error = ErrorEstimate(off, 0.0, noise * max(1.0, float(told[STOP_TIME]) / time))
-        return BaseSlide(puck, launch, local, told, error.total), error
+        off = float(np.abs((out - finer)[: scale.size] / scale).max())
+        error = ErrorEstimate(off, 0.0, noise * max(1.0, float(out[STOP_TIME]) / time))
+        return BaseSlide(puck, launch, local, out, error.total), error
 
     def finer(local: float, error: ErrorEstimate) -> float | None:
         return 0.1 * local if local > 1e-14 else None
@@ -273,11 +274,11 @@ def slide_of(puck: PuckSpec, velocity: tuple[float, float], spin: float, tol: fl
 def _followed(
     puck: PuckSpec, launch: FloatArray, local: float, moments: FloatArray, states: FloatArray
 ) -> FloatArray:
-    """What is told of one slide (TOLD,); its states at moments."""
+    """What comes out of one slide (OUT_ROWS,); its states at moments."""
     assert puck.shape is not None
-    told, status = np.empty((TOLD, 1)), np.empty(1, np.int8)
+    out, status = np.empty((OUT_ROWS, 1)), np.empty(1, np.int8)
     ends = np.array([0, moments.size])
-    fill_slides(packed(puck.shape, puck.lever), launch, local, ends, moments, told, states, status)
+    fill_slides(packed(puck.shape, puck.lever), launch, local, ends, moments, out, states, status)
     if status[0] == OVERFLOW:
         raise InputError(
             "velocity, spin, base and friction give a motion too large for floating point: use "
@@ -288,4 +289,4 @@ def _followed(
             f"the slide cannot be followed in {MOST_STEPS} steps: ask for less accuracy, or give "
             "less spin"
         )
-    return told[:, 0]
+    return out[:, 0]

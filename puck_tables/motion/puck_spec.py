@@ -240,14 +240,14 @@ class PuckSpec:
         if self.shape is not None:
             raise InputError(f"{what} is {ROUND_ONLY}")
 
-    def refuse_for_round(self, **given: Any) -> None:
+    def refuse_for_round(self, **values: Any) -> None:
         """Refuse arguments that a puck on a base has no use for, where one is given.
 
         Raises
         ------
         InputError
         """
-        for name, value in given.items():
+        for name, value in values.items():
             if value is not None and value is not False:
                 self.refuse_base(name)
 

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.colours import brightness, on_white
-from puck_tables.plot.outlines import MARK, outline_of
+from puck_tables.plot.base_outlines import MARK, outline_of
 from puck_tables.plot.round_parts import RoundPart, rounds_of
 from puck_tables.plot.scene_figure import states_drawn
 from puck_tables.plot.titles import out_of_sight
@@ -44,8 +44,8 @@ Box = tuple[float, float, float, float]  # left, right, low, high, m
 class MovingDisc(NamedTuple):
     """A disc and its way: knots (n, 7) of t, x, y, angle, vx, vy, spin; ``gone`` s, or inf.
 
-    ``outline``: of a base that is not round, as :func:`puck_tables.plot.outlines.outline_of` has
-    it; ``radius`` is then its reach.
+    ``outline``: of a base that is not round, as :mod:`puck_tables.plot.base_outlines` has it;
+    ``radius`` is then its reach.
     """
 
     name: str

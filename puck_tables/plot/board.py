@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from puck_tables.plot.animation import Animation, Box, MovingDisc
+from puck_tables.plot.base_outlines import path_of, placed
 from puck_tables.plot.floor_axes import Box as Sight
 from puck_tables.plot.floor_axes import draw_floor
-from puck_tables.plot.outlines import path_of, placed
 from puck_tables.plot.round_parts import draw_rounds
 from puck_tables.plot.style import RED
 

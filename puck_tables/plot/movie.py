@@ -18,10 +18,10 @@ from puck_tables.errors import MissingExtraError, OutputError
 from puck_tables.io.formats import ending_of
 from puck_tables.plot import board
 from puck_tables.plot.animation import Animation, MovingDisc, between, film_of, path_of
+from puck_tables.plot.base_outlines import path_of as path_through
+from puck_tables.plot.base_outlines import placed
 from puck_tables.plot.floor_axes import Box as Sight
 from puck_tables.plot.floor_axes import motion_said, shades_of
-from puck_tables.plot.outlines import path_of as path_through
-from puck_tables.plot.outlines import placed
 from puck_tables.plot.style import RED, canvas, may_replace, require_matplotlib
 from puck_tables.plot.titles import titled
 from puck_tables.result import TimedResult

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from puck_tables.plot.outlines import MARK, outline_of, path_of, placed
+from puck_tables.plot.base_outlines import MARK, outline_of, path_of, placed
 from puck_tables.plot.style import BLUE, GREEN, GREY, LAUNCH, ORANGE, STOP, canvas
 from puck_tables.plot.titles import legend_below, titled
 from puck_tables.trajectory import Trajectory

@@ -14,7 +14,7 @@ from puck_tables.accuracy.method_errors import Selection
 from puck_tables.contact.base import Base
 from puck_tables.kernels.base_friction import packed
 from puck_tables.motion.base_motion import STATE_SIZE
-from puck_tables.motion.base_slides import TOLD, WHY_INTEGRATED, fill_slides, local_error
+from puck_tables.motion.base_slides import OUT_ROWS, WHY_INTEGRATED, fill_slides, local_error
 from puck_tables.stopping.launch_arrays import Launches
 from puck_tables.stopping.solvers import OUTPUTS, First, Status
 
@@ -73,31 +73,34 @@ class BaseSolver:
         """Outputs (6, n), as of round pucks, and status (n,) of launches (6, n)."""
         count = launches.shape[1]
         none = np.empty(0), np.zeros(count + 1, np.int64)
-        told, _, status = followed(self._base, launches, self.local, *none, threads)
-        return told[: len(OUTPUTS)], status
+        out, _, status = followed(self._base, launches, self.local, *none, threads)
+        return out[: len(OUTPUTS)], status
 
 
 def followed(
     base: FloatArray, launches: FloatArray, local: float, moments: FloatArray,
     ends: npt.NDArray[np.int64], threads: int | None,
 ) -> tuple[FloatArray, FloatArray, Status]:  # fmt: skip
-    """What is told of launches (6, n), their states at moments, and status, shared by threads."""
+    """What comes out of launches (6, n), their states at moments, and status, shared by threads."""
     count = launches.shape[1]
-    told, status = np.empty((TOLD, count)), np.empty(count, np.int8)
+    out, status = np.empty((OUT_ROWS, count)), np.empty(count, np.int8)
     states = np.empty((moments.size, STATE_SIZE))
 
     def work(start: int, stop: int) -> None:
-        some, part = np.ascontiguousarray(launches[:, start:stop]), np.empty((TOLD, stop - start))
+        some, part = (
+            np.ascontiguousarray(launches[:, start:stop]),
+            np.empty((OUT_ROWS, stop - start)),
+        )
         first, last = ends[start], ends[stop]
         own = ends[start : stop + 1] - first
         fill_slides(
             base, some, local, own, moments[first:last], part, states[first:last],
             status[start:stop],
         )  # fmt: skip
-        told[:, start:stop] = part
+        out[:, start:stop] = part
 
     if threads == 1:
         in_slices(work, count)
     else:
         run_chunks(work, count, _CHUNK, threads)
-    return told, states, status
+    return out, states, status
