@@ -504,7 +504,7 @@ class Puck(VerbsOfMany):
         Notes
         -----
         Held are the force and torque that are not larger than those of their kind on the limit
-        surface; margins err by 1e-9.  Scenes decide by the same.
+        surface; margins err by 1e-9.  Scenes decide by the same rule.
 
         Examples
         --------

@@ -123,6 +123,21 @@ def test_scenes_hold_what_holds(height: float, ratio: float):
         assert run.end == end
 
 
+@pytest.mark.parametrize("height", [0.0, 0.12])
+@pytest.mark.parametrize("ratio", [0.0, 0.02, -0.15])
+def test_scenes_hold_what_holds_on_a_base(height: float, ratio: float):
+    """Whose sums over borders share no code with Newton's method."""
+    body = {"base": "box:0.2x0.1", "height": height, "friction": 0.2, "mass": 1.0 / (0.2 * G)}
+    margin = float(pt.Puck(**body).holds((0.8, 0.6), ratio).margin)
+    for share, end in ((1.0 - 1e-8, "at rest"), (1.0 + 1e-8, "time is up")):
+        size = share * margin
+        run = simulate_scene({
+            "puck": body, "force": {"constant": [0.8 * size, 0.6 * size], "torque": ratio * size},
+            "time": 1e-3,
+        })  # fmt: skip
+        assert run.end == end
+
+
 @pytest.mark.parametrize("law", ["uniform", "ring"])
 def test_the_surface_is_what_is_just_held(law: str):
     puck = pt.Puck(0.3, 0.2, 0.4, mass=3.0, pressure=law)

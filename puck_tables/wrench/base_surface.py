@@ -166,7 +166,8 @@ def _normals(puck: PuckSpec, velocity: FloatArray, spin: FloatArray) -> FloatArr
     slip = np.concatenate([velocity, spin[..., None]], axis=-1) * scale
     slip = slip / np.linalg.norm(slip, axis=-1)[..., None]
     if puck.lever == 0.0:
-        return slip
+        twists: FloatArray = slip
+        return twists
     found = wrench(puck, velocity, spin, 0.0, True)
     assert found.jacobian is not None
     slopes = found.jacobian / scale / scale[:, None]

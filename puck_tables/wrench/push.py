@@ -288,9 +288,12 @@ def _result(
     load = puck.friction * puck.mass * puck.gravity
     place = finger.finger + times * finger.velocity
     codes = np.array([code for _, code in found], np.int8)
+    x, y, orientation = states
+    vx, vy, spin, push_x, push_y = rows
     return Push(
-        puck, times, *states, *rows[:3], *(load * rows[3:]), place.real, place.imag, codes, end
-    )
+        puck, times, x, y, orientation, vx, vy, spin, load * push_x, load * push_y, place.real,
+        place.imag, codes, end,
+    )  # fmt: skip
 
 
 def _base_of(puck: PuckSpec) -> Base:
