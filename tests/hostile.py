@@ -143,8 +143,14 @@ def _of_pucks() -> dict[str, Door]:
         "Puck.aim": (p.aim, {
             "target": TWO, "spin": 2.0, "speed": None, "stop_time": None, "max_speed": None,
             "max_spin": None, "count": 3, "threads": 1}),
-        "Puck.holds": (p.holds, {"force": (0.1, 0.0), "torque": 0.0}),
+        "Puck.holds": (p.holds, {"force": (0.1, 0.0), "torque": 0.0, "angle": 0.1}),
         "Puck.limit_surface": (p.limit_surface, {"n": 31}),
+        "Puck.wrench": (p.wrench, {
+            "velocity": TWO, "spin": 2.0, "angle": 0.1, "jacobian": True}),
+        "Puck.twist": (p.twist, {"force": (0.1, 0.0), "torque": 1e-3, "angle": 0.1}),
+        "push": (pt.push, {
+            "puck": pt.Puck(base="box:0.2x0.1", friction=0.3), "at": (-0.1, 0.02),
+            "velocity": (0.05, 0.0), "friction": 0.2, "angle": 0.1, "duration": 0.1, "frames": 3}),
         "Puck.sweep": (p.sweep, {
             "spin": [0.0, 5.0], "speed": 1.0, "velocity": None, "heading": None, "radius": None,
             "height": None, "friction": None, "gravity": None, "tol": 1e-8, "method": None,

@@ -168,6 +168,7 @@ def test_how_pushes_end(tmp_path):
         (lambda p: pt.push(p, (-0.1, 0.0), (1.0, math.nan), 0.3), "velocity"),
         (lambda p: pt.push(p, (-0.1, 0.0), (1.0, 0.0), 0.3, duration=-1.0), "duration"),
         (lambda p: pt.push(p, (-0.1, 0.0), (1.0, 0.0), 0.3, frames=0), "frames"),
+        (lambda p: pt.push(p, (-0.1, 0.0), (1.0, 0.0), 0.3, duration=1e9), "times the reach"),
         (lambda p: pt.push(p, -0.1, (1.0, 0.0), 0.3), "two numbers"),
         (lambda p: pt.push(RING, (0.1, 0.0), (1.0, 0.0), 0.3), "push knows pucks on a base"),
         (lambda p: pt.push(pt.Puck(base="box:1x1"), (0.5, 0.0), (1.0, 0.0), 0.3), "friction = 0"),

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import broadcast, finite_array, velocity_array
+from puck_tables._core.real import broadcast, checked_flag, finite_array, velocity_array
 from puck_tables.contact.base import Base
 from puck_tables.contact.laws import Law
 from puck_tables.errors import InputError
@@ -48,6 +48,7 @@ def wrench(
     jacobian: bool,
 ) -> Wrench:  # fmt: skip
     """Friction of slips, as :meth:`puck_tables.Puck.wrench` has it."""
+    checked_flag("jacobian", jacobian)
     moving = velocity_array(velocity)
     vx, vy, turning, turned = broadcast(
         velocity_x=moving[..., 0], velocity_y=moving[..., 1],

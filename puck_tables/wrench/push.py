@@ -28,6 +28,7 @@ from puck_tables.result import Result
 
 _ON_IT = 1e-6  # of the reach: as far from the outline a finger may be
 _TOL = 1e-10  # of the reach, and rad, of a step
+_LONGEST, _MOST = 1000.0, 1_000_000  # path of a finger over the reach; states
 CONTACTS = ("sticks", "slides left", "slides right", "apart")
 _COLUMNS = ("x", "y", "orientation", "vx", "vy", "spin", "push_x", "push_y", "finger_x", "finger_y")
 
@@ -142,20 +143,23 @@ class _Ending(NamedTuple):
 
 @dataclass(frozen=True)
 class _Pushing:
-    """A base, the piece of its outline that a finger touches, and the finger."""
+    """A base, the piece of its outline that a finger touches, and the finger.
+
+    Slow pushes do not depend on the speed: the finger moves by ``heading``, and its path is time.
+    """
 
     base: FloatArray
     side: _Side
     finger: complex
-    velocity: complex
+    heading: complex
     friction: float
 
     def at(self, t: float, y: FloatArray) -> tuple[FloatArray, int, float]:
         """Twist and force over f N in the axes of the floor, how it touches, place on the side."""
         turn = complex(math.cos(y[2]), math.sin(y[2]))
-        own = (self.finger + t * self.velocity - complex(y[0], y[1])) / turn
+        own = (self.finger + t * self.heading - complex(y[0], y[1])) / turn
         contact, normal, place = self.side.place(own)
-        velocity, out = self.velocity / turn, np.empty(5)
+        velocity, out = self.heading / turn, np.empty(5)
         code = push_twist(
             self.base, velocity.real, velocity.imag, contact.real, contact.imag, normal.real,
             normal.imag, self.friction, out, np.empty(3), np.empty((3, 3)),
@@ -233,36 +237,42 @@ def push(
     if not (grip := real("friction", friction, "a coefficient")) >= 0.0:
         raise InputError(f"friction of the finger must not be negative, got {grip:g}")
     moving = complex(*one_velocity(velocity))
-    if moving == 0.0:
-        raise InputError("velocity of the finger is 0: it pushes nothing")
-    if not (span := real("duration", duration, "s")) >= 0.0:
-        raise InputError(f"duration must not be negative, got {span:g} s")
-    count = int(real("frames", frames, "states"))
-    if not 1 <= count <= 1_000_000:
-        raise InputError(f"frames must be 1 to 1e6 states, got {frames}")
+    speed = abs(moving)
+    if not 0.0 < speed < math.inf:
+        raise InputError(f"velocity of the finger is {speed:g}: it pushes nothing")
+    if not (span := speed * real("duration", duration, "s")) >= 0.0:
+        raise InputError(f"duration must not be negative, got {duration:g} s")
+    if not span <= _LONGEST * base.reach:
+        raise InputError(
+            f"a push of {span:g} m is longer than {_LONGEST:g} times the reach of the base"
+        )
+    count = real("frames", frames, "states")
+    if not (count == int(count) and 1 <= count <= _MOST):
+        raise InputError(f"frames must be a whole number from 1 to {_MOST}, got {frames}")
     turned = real("angle", angle, "rad")
     own, side = _touched(base, at)
     begun = own * complex(math.cos(turned), math.sin(turned))
-    finger = _Pushing(packed(base, puck.lever), side, begun, moving, grip)
+    finger = _Pushing(packed(base, puck.lever), side, begun, moving / speed, grip)
     y = np.array([0.0, 0.0, turned])
     if finger.at(0.0, y)[1] == UNKNOWN:
         raise ContactError("no slip was found in which finger and floor agree")
     if span == 0.0:
-        return _result(puck, finger, np.zeros(1), y[:, None], "how it begins")
-    return _followed(puck, finger, y, span, count, base.reach)
+        return _result(puck, finger, speed, np.zeros(1), y[:, None], "how it begins")
+    return _followed(puck, finger, speed, y, span, int(count), base.reach)
 
 
 def _followed(
-    puck: PuckSpec, finger: _Pushing, y: FloatArray, span: float, count: int, reach: float
-) -> Push:
-    """The push over time, until it ends."""
+    puck: PuckSpec, finger: _Pushing, speed: float, y: FloatArray, span: float, count: int,
+    reach: float,
+) -> Push:  # fmt: skip
+    """The push along a path of the finger, until it ends."""
     if finger.presses(0.0, y) < 0.0:
-        return _result(puck, finger, np.zeros(1), y[:, None], "the finger does not press on")
+        return _result(puck, finger, speed, np.zeros(1), y[:, None], "it does not press on")
     run = solve_ivp(
         finger.rate, (0.0, span), y, method="DOP853", rtol=1e-10,
         atol=np.array([_TOL * reach, _TOL * reach, _TOL]), dense_output=True,
         events=[_Ending(finger.room), _Ending(finger.presses)],
-        max_step=0.05 * span,
+        max_step=min(0.05 * span, 0.25 * reach),
     )  # fmt: skip
     if not run.success:
         raise ContactError(f"the push could not be followed: {run.message}")
@@ -273,26 +283,26 @@ def _followed(
     elif run.t_events[1].size:
         if finger.at(last, run.y[:, -1])[1] == UNKNOWN:
             raise ContactError(
-                f"after {last:.6g} s no slip was found in which finger and floor agree"
+                f"after {last / speed:.6g} s no slip was found in which finger and floor agree"
             )
         end = "the finger presses on no more"
-    times = np.linspace(0.0, last, count)
-    return _result(puck, finger, times, run.sol(times), end)
+    path = np.linspace(0.0, last, count)
+    return _result(puck, finger, speed, path, run.sol(path), end)
 
 
 def _result(
-    puck: PuckSpec, finger: _Pushing, times: FloatArray, states: FloatArray, end: str
+    puck: PuckSpec, finger: _Pushing, speed: float, path: FloatArray, states: FloatArray, end: str
 ) -> Push:
-    found = [finger.at(t, states[:, n])[:2] for n, t in enumerate(times.tolist())]
+    found = [finger.at(s, states[:, n])[:2] for n, s in enumerate(path.tolist())]
     rows = np.array([one for one, _ in found]).T
     load = puck.friction * puck.mass * puck.gravity
-    place = finger.finger + times * finger.velocity
+    place = finger.finger + path * finger.heading
     codes = np.array([code for _, code in found], np.int8)
     x, y, orientation = states
     vx, vy, spin, push_x, push_y = rows
     return Push(
-        puck, times, x, y, orientation, vx, vy, spin, load * push_x, load * push_y, place.real,
-        place.imag, codes, end,
+        puck, path / speed, x, y, orientation, speed * vx, speed * vy, speed * spin,
+        load * push_x, load * push_y, place.real, place.imag, codes, end,
     )  # fmt: skip
 
 
