@@ -42,7 +42,10 @@ class Puck(VerbsOfMany):
     pressure : contact pressure: uniform, galin, hertz, ring, annulus:INNER, a CSV file of ρ, W, or
         a Law
     gyration : radius of gyration about the vertical axis over r, 0.1 to 10; √½ for a homogeneous
-        puck, 1 for a ring
+        puck, 1 for a ring; with a base in m, left out that of a homogeneous body
+    base : Base, or a text as :func:`puck_tables.contact.base.base_of` takes it, in place of radius
+        ``simulate``, ``stop``, ``states`` then integrate (:mod:`puck_tables.motion.base_motion`),
+        with Q = hypot(v, kω); what is looked up or differentiated is refused.
 
     Raises
     ------
@@ -62,6 +65,9 @@ class Puck(VerbsOfMany):
     (0.133333, 0.980665)
     >>> round(puck.simulate((2.0, 0.0), 30.0).stop_time, 6)
     2.345288
+    >>> box = Puck(base="box:0.2x0.1", friction=0.3)
+    >>> round(box.simulate((1.0, 0.0), 10.0).stop_time, 6)
+    0.448246
     """
 
     def regime(self, velocity: npt.ArrayLike, spin: float = 0.0) -> str:
@@ -71,7 +77,7 @@ class Puck(VerbsOfMany):
         -------
         str
             A rest, B0 pure spin, C0 pure translation, D limit motion, B more spin than the limit
-            motion, C less.
+            motion, C less.  Of round pucks.
 
         Examples
         --------
@@ -81,6 +87,7 @@ class Puck(VerbsOfMany):
         """
         from puck_tables.motion.limits import regime
 
+        self.refuse_base("regime")
         return regime(velocity, spin, self.delta, self.radius, self.pressure, self.gyration)
 
     def simulate(
@@ -112,7 +119,8 @@ class Puck(VerbsOfMany):
             the states on the way keep it too, speed and rω in units of Q; those of other pucks may
             be off by 3 times that (measured: 2.8, launched next to φ = π/4).  The cheapest
             integrator whose measured error is below it is taken; ``explain()`` of the result says
-            which and why.
+            which and why.  On a base that is not round 1e-12 to 0.01, and the angle of the body is
+            as good: what it moves the farthest point of the base by, in units of Q²/J.
         method : 'adaptive' (Dormand–Prince 5(4)) or 'rk4', optional
             Only this one.
         exact : bool
@@ -145,9 +153,14 @@ class Puck(VerbsOfMany):
         >>> run.regime, round(run.stop_time, 8), round(run.stop_position[0], 8)
         ('B', 3.96299205, 2.21395163)
         """
-        from puck_tables.trajectory import simulate
+        from puck_tables.trajectory import simulate, simulate_on_base
 
         self.refuse_frictionless()
+        if self.shape is not None:
+            self.refuse_for_round(method=method, exact=exact, table=table)
+            return simulate_on_base(
+                self, velocity, spin, frames=frames, times=times, tol=tol
+            )  # fmt: skip
         return simulate(
             self, velocity, spin, frames=frames, times=times, tol=tol, method=method, exact=exact,
             table=cast(Any, table),
@@ -183,6 +196,12 @@ class Puck(VerbsOfMany):
         >>> Puck.similar(delta=1.0).stop((1.0, 0.0), [1.0, 5.0]).stop_time.round(6).tolist()
         [1.395088, 4.000189]
         """
+        if self.shape is not None:
+            from puck_tables.stopping.base_stops import stop_on_base
+
+            self.refuse_frictionless()
+            self.refuse_for_round(method=method, table=table, jacobian=jacobian)
+            return stop_on_base(self, velocity, spin, tol, threads)
         from puck_tables.stopping.stops import stop
 
         return stop(
@@ -221,6 +240,12 @@ class Puck(VerbsOfMany):
         >>> Puck.similar().states((1.0, 0.0), 5.0, [2.0, 0.0]).x.round(6).tolist()
         [1.590682, 0.0]
         """
+        if self.shape is not None:
+            from puck_tables.stopping.base_stops import states_on_base
+
+            self.refuse_frictionless()
+            self.refuse_for_round(table=table, jacobian=jacobian)
+            return states_on_base(self, velocity, spin, time, threads)
         from puck_tables.stopping.states import states
 
         return states(
@@ -319,6 +344,7 @@ class Puck(VerbsOfMany):
         """
         from puck_tables.stopping.aim_at_targets import aim
 
+        self.refuse_base("aim")
         self.refuse_frictionless()
         return aim(
             self, target, spin=spin, speed=speed, stop_time=stop_time, max_speed=max_speed,

@@ -18,6 +18,8 @@ from puck_tables.errors import MissingExtraError, OutputError
 from puck_tables.io.formats import ending_of
 from puck_tables.plot import board
 from puck_tables.plot.animation import Animation, MovingDisc, between, film_of, path_of
+from puck_tables.plot.base_outlines import path_of as path_through
+from puck_tables.plot.base_outlines import placed
 from puck_tables.plot.floor_axes import motion_said, shades_of
 from puck_tables.plot.style import RED, canvas, may_replace, require_matplotlib
 from puck_tables.plot.titles import titled
@@ -122,6 +124,8 @@ def _body(body: MovingDisc) -> dict[str, Any]:
         **body._asdict(),
         "gone": body.gone if math.isfinite(body.gone) else None,
         "mark": body.mark,
+        "mark_length": body.mark_length,
+        "outline": [np.round(part, DIGITS).tolist() for part in body.outline],
         "line": body.line,
         "knots": [[float(f"{x:.{DIGITS}g}") for x in row] for row in body.knots.tolist()],
     }
@@ -156,6 +160,8 @@ def _filmed(film: Animation, kind: str) -> bytes:
 
 def _stage(film: Animation, slowed: float) -> tuple[Figure, Callable[[float], None]]:
     """A picture of a film, and what shows it at any time."""
+    from matplotlib.patches import PathPatch
+
     wide, high = board.size_of(film.box)
     share = min(1.0, 6.0 / max(wide, high))
     figure = canvas(_even(share * wide + 0.9), _even(share * high + 1.0))
@@ -185,8 +191,12 @@ def _stage(film: Animation, slowed: float) -> tuple[Figure, Callable[[float], No
             until = min(time, body.gone)
             x, y, angle = between(body.knots, np.array([until]))[0].tolist()
             trail.set_data(*np.vstack([path_of(body, until), (x, y)]).T)
-            disc.set_center((x, y))
-            rim = x + body.radius * math.cos(angle), y + body.radius * math.sin(angle)
+            if isinstance(disc, PathPatch):
+                disc.set_path(path_through(placed(body.outline, x, y, angle)))
+            else:
+                disc.set_center((x, y))
+            long = body.mark_length
+            rim = x + long * math.cos(angle), y + long * math.sin(angle)
             mark.set_data([x, rim[0]], [y, rim[1]])
             for part in (disc, mark):
                 part.set_alpha(0.25 if time >= body.gone else 1.0)
