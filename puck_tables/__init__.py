@@ -80,6 +80,7 @@ if TYPE_CHECKING:
     from puck_tables.world.scene import Piece, Scene
     from puck_tables.world.world import World
     from puck_tables.wrench.friction_hold import Hold
+    from puck_tables.wrench.push import Push, push
     from puck_tables.wrench.surface import LimitSurface
 
 with_neighbours(__name__, __file__)
@@ -126,6 +127,7 @@ _HOMES = {  # names of this package by the modules that hold them
     "world.scene": "Piece Scene",
     "world.world": "World",
     "wrench.friction_hold": "Hold",
+    "wrench.push": "Push push",
     "wrench.surface": "LimitSurface",
 }
 
@@ -135,12 +137,12 @@ __all__ = [
     "Fit", "Floor", "FloorFriction", "Force", "Forecast", "Hold", "InputError", "Lateral",
     "Launch", "Law", "LimitSurface", "Map", "MissingExtraError", "Normal", "Orthotropic",
     "OutputError", "Patch", "Piece", "Plastic", "Pocket", "Post", "PowerLaw", "Puck", "PuckError",
-    "RestitutionTable", "Result", "Rim", "Run", "Sample", "Scene", "Source", "SpeedLaw", "States",
-    "StopMap", "StopSample", "Stops", "StribeckLaw", "Strips", "Table", "TableError", "Track",
-    "Trajectory", "Uniform", "Viscoelastic", "Wall", "World", "__version__", "chetaev", "compare",
-    "contact", "export_source", "fisher", "fit", "floor_friction", "law_of", "motion",
-    "path_along", "profile_law", "read_tracks", "reference_case", "resultants", "state_arrays",
-    "states", "stop", "stop_arrays", "table_for", "warm_up",
+    "Push", "RestitutionTable", "Result", "Rim", "Run", "Sample", "Scene", "Source", "SpeedLaw",
+    "States", "StopMap", "StopSample", "Stops", "StribeckLaw", "Strips", "Table", "TableError",
+    "Track", "Trajectory", "Uniform", "Viscoelastic", "Wall", "World", "__version__", "chetaev",
+    "compare", "contact", "export_source", "fisher", "fit", "floor_friction", "law_of", "motion",
+    "path_along", "profile_law", "push", "read_tracks", "reference_case", "resultants",
+    "state_arrays", "states", "stop", "stop_arrays", "table_for", "warm_up",
 ]  # fmt: skip
 
 __getattr__, __dir__ = lazily(__name__, _HOMES)
