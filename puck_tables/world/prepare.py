@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.world import layout
 from puck_tables.world.agreement import flight_error, pieces_of, start_of
-from puck_tables.world.departures import Room, drive_on, room_for
+from puck_tables.world.departures import drive_on, room_for
 from puck_tables.world.drive import pieces_along, rows_of
 from puck_tables.world.flight import (
     ANGLE,
@@ -52,6 +53,20 @@ ROWS = 256  # of events and flights at first
 STEP_SHARE = 1e-2  # of what a flight may be wrong by, of each step where it is integrated
 
 
+class Start(NamedTuple):
+    """A scene at its start, prepared once for all its runs.
+
+    ``order``: the numbers of the pucks in the order in which the engine has them; ``game``: its
+    arrays, nothing has taken off yet, so EVERYBODY is to look ahead; ``states`` (n, 6): then.  A
+    run takes copies.
+    """
+
+    scene: SceneSpec
+    order: Whole
+    game: Game
+    states: FloatArray
+
+
 def order_of(scene: SceneSpec) -> Whole:
     """The numbers of the pucks in the order in which the engine has them.
 
@@ -70,11 +85,15 @@ def shipped_curves() -> Curves:
     )  # fmt: skip
 
 
-def game_of(scene: SceneSpec, order: Whole) -> tuple[Game, Room]:
-    """The engine's arrays at the start of a scene, and room to work in with the states then.
+def prepared(scene: SceneSpec) -> Start:
+    """A scene without ranges at its start.
 
-    Nothing has taken off yet: EVERYBODY is to look ahead.
+    Raises
+    ------
+    PuckError
+        If a file or a law that it names does not serve, or numbers in it are too large.
     """
+    order = order_of(scene)
     pieces = [pieces_of(scene)[number] for number in order]
     count = len(pieces)
     lies = len(borders_of(scene)) + len(scene.floor.patches)
@@ -86,27 +105,11 @@ def game_of(scene: SceneSpec, order: Whole) -> tuple[Game, Room]:
     rims, discs[:, layout.MAKE], makes, called = rims_of(scene, pieces)
     for i, piece in enumerate(pieces):
         driven = bool(piece.path)
-        inertia = piece.mass * (piece.gyration * piece.radius) ** 2
-        if not driven:
-            discs[i, layout.LIGHTNESS], discs[i, layout.TURNABILITY] = 1.0 / piece.mass, 1 / inertia
-            discs[i, layout.PULL_X : layout.TWIST + 1] = _pull_on(scene, piece, inertia)
-            discs[i, layout.HOLD : layout.HOLD_PLACE + 1] = _hold_on(piece)
-            if piece.force.over_time:
-                first = sum(map(len, tides))
-                tides.append(drive_of(piece.force.over_time))
-                spans[i] = first, first + len(tides[-1])
-            discs[i, layout.DAMPING] = scene.drag.sliding / piece.mass
-            discs[i, layout.WAKE] = scene.drag.quadratic / piece.mass
-            discs[i, layout.SPIN_DAMPING] = scene.drag.spinning / inertia
-            discs[i, layout.SPIN_WAKE] = scene.drag.spinning_quadratic / inertia
-            discs[i, layout.ACROSS] = scene.lateral.strength / piece.mass
-            discs[i, layout.BY_SPEED] = scene.lateral.speed_exponent
-            discs[i, layout.BY_SPIN] = scene.lateral.spin_exponent
-            discs[i, layout.NORMAL] = normal_on(scene, piece)
-            discs[i, layout.HEIGHT_RATIO] = 2.0 * piece.height / piece.radius
-        discs[i, layout.RADIUS] = piece.radius
-        discs[i, layout.RESTITUTION] = number_for(piece.restitution, called)
-        discs[i, layout.TANGENTIAL], discs[i, layout.FRICTION] = piece.tangential, piece.rim
+        _fill_disc(scene, piece, called, discs[i])
+        if piece.force.over_time:
+            first = sum(map(len, tides))
+            tides.append(drive_of(piece.force.over_time))
+            spans[i] = first, first + len(tides[-1])
         launch = piece.launch
         velocity = allowed_velocity(launch, piece.constraint, scene.floor)
         states[i, :2], states[i, 2] = start_of(piece), launch.orientation
@@ -160,9 +163,32 @@ def game_of(scene: SceneSpec, order: Whole) -> tuple[Game, Room]:
             game.flights[i, FIRST_PIECE] = drives[i, 0]
             room.states[i] = states[i]
             drive_on(game, i, 0.0, room)
-    room.states[:] = states
     set_pace(game, states)
-    return game, room
+    return Start(scene, order, game, states)
+
+
+def _fill_disc(
+    scene: SceneSpec, piece: PieceSpec, called: dict[object, float], disc: FloatArray
+) -> None:
+    """What a disc is, and what acts on it."""
+    disc[layout.RADIUS], disc[layout.TANGENTIAL] = piece.radius, piece.tangential
+    disc[layout.RESTITUTION] = number_for(piece.restitution, called)
+    disc[layout.FRICTION] = piece.rim
+    if piece.path:
+        return
+    inertia = piece.mass * (piece.gyration * piece.radius) ** 2
+    disc[layout.LIGHTNESS], disc[layout.TURNABILITY] = 1.0 / piece.mass, 1.0 / inertia
+    disc[layout.PULL_X : layout.TWIST + 1] = _pull_on(scene, piece, inertia)
+    disc[layout.HOLD : layout.HOLD_PLACE + 1] = _hold_on(piece)
+    disc[layout.DAMPING] = scene.drag.sliding / piece.mass
+    disc[layout.WAKE] = scene.drag.quadratic / piece.mass
+    disc[layout.SPIN_DAMPING] = scene.drag.spinning / inertia
+    disc[layout.SPIN_WAKE] = scene.drag.spinning_quadratic / inertia
+    disc[layout.ACROSS] = scene.lateral.strength / piece.mass
+    disc[layout.BY_SPEED] = scene.lateral.speed_exponent
+    disc[layout.BY_SPIN] = scene.lateral.spin_exponent
+    disc[layout.NORMAL] = normal_on(scene, piece)
+    disc[layout.HEIGHT_RATIO] = 2.0 * piece.height / piece.radius
 
 
 def _hang_over(game: Game, i: int, state: FloatArray) -> None:
