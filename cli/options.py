@@ -100,6 +100,17 @@ def body_options(
     return decorate
 
 
+def base_option(command: Command) -> Command:
+    """The base of a puck that is not round, or whose centre of mass is not its middle."""
+    return click.option(
+        "--base",
+        metavar="BASE",
+        help="In place of --radius: box:LENGTHxWIDTH, disc:RADIUS, annulus:RADIUSxINNER, in m or "
+        "with units (box:20cmx10cm), or a CSV file of corners x, y; @X,Y after it is the centre of "
+        "mass.  --gyration is then in m.",
+    )(command)
+
+
 def output_options(command: Command) -> Command:
     """Where results go."""
     for option in (
@@ -159,8 +170,11 @@ def chosen_puck(
     pressure: str,
     gyration: float | None,
     mass: float | None = None,
+    base: str | None = None,
 ) -> Puck:
     """The puck from either set of options: by its dimensions and friction, or by δ and J.
+
+    On a base it is flat where no height is given, and has f = 1 where no friction is.
 
     Raises
     ------
@@ -179,6 +193,16 @@ def chosen_puck(
             f"{given_real[0]} and {given_scaled[0]} clash: give the real puck (--radius --height "
             "--friction --gravity) or the scaled one (--radius --delta --decel)"
         )
+    if base is not None:
+        if radius is not None or delta is not None:
+            other = "--radius" if radius is not None else "--delta"
+            raise InputError(f"--base and {other} clash: {other} is of round pucks")
+        if given_real and friction is None:
+            raise InputError(f"{given_real[0]} needs --friction too")
+        if not given_real:
+            friction, gravity = 1.0, DEFAULT_DECEL if decel is None else decel
+        numbers = {"height": height, "friction": friction, "gravity": gravity}
+        return Puck(**_only(base=base, **numbers, **kind))
     if given_real:
         needed = {"--radius": radius, "--height": height, "--friction": friction}
         missing = [name for name, value in needed.items() if value is None]

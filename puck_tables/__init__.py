@@ -21,6 +21,7 @@ from puck_tables._version import __version__
 if TYPE_CHECKING:
     from puck_tables import chetaev, contact, motion
     from puck_tables.bulk.spreads import Normal, Uniform
+    from puck_tables.contact.base import Base
     from puck_tables.contact.friction_laws import CurlingLaw, PowerLaw, StribeckLaw
     from puck_tables.contact.laws import Law, law_of, profile_law
     from puck_tables.contact.speed_law import SpeedLaw
@@ -89,6 +90,7 @@ _HOMES = {
     "Aims": "stopping.aim_at_targets",
     "Answer": "reference.answer",
     "Arc": "scene.pieces",
+    "Base": "contact.base",
     "BoardAim": "world.aimed",
     "Camera": "fitting.forecast",
     "CheckReport": "table.check",
@@ -173,6 +175,7 @@ __all__ = [
     "Aims",
     "Answer",
     "Arc",
+    "Base",
     "BoardAim",
     "Camera",
     "CheckReport",

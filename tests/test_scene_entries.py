@@ -155,6 +155,7 @@ BOARD: dict[str, Any] = {
 LED = {"kind": {"kind": "rail"}, "angle": {"kind": "rail"}, "velocity": {"kind": "rail"},
        "reach": {"kind": "pivot", "reach": 0.02}, "side_slip": {"kind": "blade"}}  # fmt: skip
 NO_PHYSICS = {"title", "frames", "tol", "floor.law.kind"}
+BASES = {"puck.base", "puck[0].base"}  # in place of a radius: see tests/test_base_scenes.py
 
 
 def whole(more: dict[str, Any]) -> dict[str, Any]:
@@ -171,7 +172,9 @@ def end_of(tables: dict[str, Any]) -> dict[str, float]:
 
 def test_the_cases_below_are_all_entries() -> None:
     on_board = {re.sub(r"puck\[\d\]", "puck[0]", path) for path in BOARD}
-    assert {path for path, _, _ in described(Scene)} == {*CASES, *FILES, *NO_PHYSICS, *on_board}
+    assert {path for path, _, _ in described(Scene)} == {
+        *CASES, *FILES, *NO_PHYSICS, *BASES, *on_board
+    }  # fmt: skip
 
 
 @pytest.mark.parametrize("path", [path for path, value in BOARD.items() if value is not None])

@@ -12,8 +12,10 @@ from puck_tables._core.fields import Unsaid, of
 from puck_tables._core.own_folder import say
 from puck_tables._core.reading import Reading, entries_in, mark_checked, read_values
 from puck_tables._core.real import positive, real
+from puck_tables.contact.base import NAMES as BASES
+from puck_tables.contact.base import Base, base_of
 from puck_tables.contact.laws import HOMOGENEOUS, Law
-from puck_tables.errors import InputError
+from puck_tables.errors import ContactError, InputError
 from puck_tables.motion.body import (
     LARGEST_GYRATION,
     SMALLEST_GYRATION,
@@ -38,7 +40,10 @@ class PuckSpec:
     (0.133333, 0.980665)
     """
 
-    radius: float = of("number", unit="m", low=0.0, above=True, usual=OF_A_PUCK, doc="of the base")
+    radius: float = of(
+        "number", None, "m", low=0.0, above=True, usual=OF_A_PUCK, objects=(Unsaid,),
+        doc="of a round base",
+    )  # fmt: skip
     height: float = of(
         "number", 0.0, "m", low=0.0, usual=OF_A_PUCK,
         doc="twice that of its centre of mass; 0: no tilt",
@@ -54,8 +59,12 @@ class PuckSpec:
         doc="pressure law, as build-tables --pressure takes it",
     )  # fmt: skip
     gyration: float = of(
-        "number", HOMOGENEOUS, low=SMALLEST_GYRATION, high=LARGEST_GYRATION,
-        doc="radius of gyration about the vertical over the radius",
+        "number", None, low=0.0, above=True, objects=(Unsaid,),
+        doc="radius of gyration about the vertical over the radius; with a base in m; homogeneous "
+        "if left out",
+    )  # fmt: skip
+    base: str | Base = of(
+        "text", "", file=".csv", objects=(Base,), doc=f"in place of a radius: {BASES}"
     )  # fmt: skip
 
     def __post_init__(self) -> None:
@@ -65,21 +74,75 @@ class PuckSpec:
             raise InputError("; ".join(reading.errors))
         for name, value in values.items():
             object.__setattr__(self, name, value)
-        if not (math.isfinite(self.delta) and self.decel < math.inf) or (
-            self.decel == 0.0 and self.friction > 0.0
-        ):
-            raise InputError(
-                f"radius {self.radius:g} m, height {self.height:g} m, friction {self.friction:g} "
-                f"and gravity {self.gravity:g} m/s^2 give delta = {self.delta:g} and J = "
-                f"{self.decel:g} m/s^2: out of the range of floating point"
-            )
+        if self.shape is not None:
+            self._stand_on(self.shape)
+        else:
+            self._be_round()
+        mark_checked(self)
+
+    def _be_round(self) -> None:
+        """Check a round puck, and give it what was left out."""
+        if self.radius is None or isinstance(self.radius, Unsaid):
+            raise InputError("radius is missing: it must be a number > 0 m, or give a base")
+        if self.gyration is None or isinstance(self.gyration, Unsaid):
+            object.__setattr__(self, "gyration", HOMOGENEOUS)
+        self._refuse_out_of_range(self.delta)
         object.__setattr__(self, "gyration", self.body.gyration)
         if (rim := self.body.law.rim) is not None and abs(rim - self.radius) > _ROUNDED * rim:
             say(  # once for a law, however many radii
                 f"{self.body.law.name} ends at {rim:g} m: pucks of another radius have its "
                 "pressure over their own"
             )
-        mark_checked(self)
+
+    def _stand_on(self, shape: Base) -> None:
+        """Check a puck on a base, and give it what was left out; its radius is how far that goes.
+
+        Raises
+        ------
+        InputError
+        ContactError
+            If part of the base would lift.
+        """
+        said = self.radius is not None and not isinstance(self.radius, Unsaid)
+        if said and self.radius != shape.reach:
+            raise InputError(f"radius = {self.radius:g} m and a base: give one of them")
+        if self.pressure != "uniform":
+            raise InputError(
+                "pressure: under a base it is linear, and fixed by the weight; pressure laws are "
+                "of round pucks with a radius"
+            )
+        object.__setattr__(self, "radius", Unsaid(shape.reach))
+        if self.gyration is None or isinstance(self.gyration, Unsaid):
+            if not shape.is_centred:
+                raise InputError(
+                    "gyration is missing: a body whose centre of mass is not the middle of its "
+                    "base is not homogeneous; give its radius of gyration, m"
+                )
+            object.__setattr__(self, "gyration", Unsaid(shape.gyration))
+        ratio = self.gyration / shape.reach
+        if not SMALLEST_GYRATION <= ratio <= LARGEST_GYRATION:
+            raise InputError(
+                f"gyration of a base must be {SMALLEST_GYRATION:g} to {LARGEST_GYRATION:g} times "
+                f"its reach, {SMALLEST_GYRATION * shape.reach:g} to "
+                f"{LARGEST_GYRATION * shape.reach:g} m, got {self.gyration:g}"
+            )
+        self._refuse_out_of_range(self.lever / shape.reach)
+        if not self.lever <= shape.highest_lever:
+            highest = 2.0 * shape.highest_lever / self.friction
+            raise ContactError(
+                f"friction {self.friction:g} and height {self.height:g} m: part of the base would "
+                f"lift; with this friction it stays down up to a height of {highest:.6g} m"
+            )
+
+    def _refuse_out_of_range(self, height: float) -> None:
+        if not (math.isfinite(height) and self.decel < math.inf) or (
+            self.decel == 0.0 and self.friction > 0.0
+        ):
+            raise InputError(
+                f"radius {self.radius:g} m, height {self.height:g} m, friction {self.friction:g} "
+                f"and gravity {self.gravity:g} m/s^2 give delta = {height:g} and J = "
+                f"{self.decel:g} m/s^2: out of the range of floating point"
+            )
 
     @classmethod
     def similar(
@@ -120,8 +183,47 @@ class PuckSpec:
 
     @property
     def delta(self) -> float:
-        """Dimensionless height 2fh/r."""
+        """Dimensionless height 2fh/r, of a round puck."""
+        self.refuse_base("delta = 2 f h / r")
         return 2.0 * self.friction * self.height / self.radius
+
+    @cached_property
+    def shape(self) -> Base | None:
+        """The base, of a puck that has one in place of a radius.
+
+        Examples
+        --------
+        >>> puck = PuckSpec(base="box:0.2x0.1", friction=0.3)
+        >>> round(puck.shape.area, 6), round(puck.radius, 6), round(puck.gyration, 6)
+        (0.02, 0.111803, 0.06455)
+        """
+        return base_of(self.base) if isinstance(self.base, str) and self.base else self.base or None
+
+    @property
+    def lever(self) -> float:
+        """Friction times the height of the centre of mass, m."""
+        return 0.5 * self.friction * self.height
+
+    @property
+    def inertia_radius(self) -> float:
+        """Radius of gyration about the vertical, m.
+
+        Examples
+        --------
+        >>> PuckSpec(0.04, gyration=0.5).inertia_radius
+        0.02
+        """
+        return self.gyration if self.shape is not None else self.gyration * self.radius
+
+    def refuse_base(self, what: str) -> None:
+        """Refuse what is of round pucks alone.
+
+        Raises
+        ------
+        InputError
+        """
+        if self.shape is not None:
+            raise InputError(f"{what} is of round pucks: give a radius in place of the base")
 
     @property
     def decel(self) -> float:
@@ -130,7 +232,8 @@ class PuckSpec:
 
     @cached_property
     def body(self) -> UnitPuck:
-        """Pressure law, δ and gyration: what the motion depends on besides its scale."""
+        """Pressure law, δ and gyration: what the motion of a round puck depends on."""
+        self.refuse_base("what is looked up")
         return body_of(self.pressure, self.delta, self.gyration)
 
     @property

@@ -1,0 +1,377 @@
+"""The base of a puck that is not round, or whose centre of mass is not its middle: what touches.
+
+A base is made of polygons and discs that do not overlap, with holes in them.  Its pressure is
+linear over it, see :mod:`puck_tables.kernels.base_friction`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Self
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.own_folder import say
+from puck_tables._core.quantities import X, Y
+from puck_tables._core.read_columns import numbers_of
+from puck_tables._core.real import finite_array, instance, listed, number_in, positive, shown
+from puck_tables._core.safe_read import is_number
+from puck_tables._core.safe_write import as_utf8
+from puck_tables.contact.outlines import crossing, inside, overlap
+from puck_tables.errors import ContactError, InputError
+
+NAMES = "box:LENGTHxWIDTH, disc:RADIUS, annulus:RADIUSxINNER (m, or with units), or a CSV of x, y"
+MOST_CORNERS = 10_000
+MAX_BYTES = 1 << 24  # of a file of corners: more is no base
+_RIM_POINTS = 4096  # of a disc, at which its pressure is looked at: it errs by 3e-7 of it
+_CENTRED = 1e-9  # of the reach: the centre of mass is the middle of the base
+
+Corners = tuple[tuple[float, float], ...]
+Disc = tuple[float, float, float, float]  # x, y, radius, 1 or −1 of a hole
+
+
+@dataclass(frozen=True)
+class Base:
+    """The base of a puck: what of it touches the floor.
+
+    Made by :meth:`box`, :meth:`polygon`, :meth:`disc`, :meth:`annulus`, :meth:`feet`,
+    :meth:`union`, or from a text by :func:`base_of`.
+
+    Parameters
+    ----------
+    outlines : tuple of outlines, each a tuple of corners (x, y), m
+        Counter-clockwise; those of holes clockwise.
+    discs : tuple of (x, y, radius, sign), m; sign −1: a hole
+    centre : (x, y), m, of mass; left out: the middle of the area
+    name : as :func:`base_of` takes it, or a short text
+
+    Raises
+    ------
+    InputError
+        If there is no area, corners cross, parts overlap, or a number is out of range.
+    ContactError
+        If the centre of mass lies so far out that part of the base would lift, or the body tip.
+
+    Examples
+    --------
+    >>> base = Base.box(0.2, 0.1)
+    >>> round(base.area, 6), round(base.reach, 6), round(base.gyration, 6)
+    (0.02, 0.111803, 0.06455)
+    """
+
+    outlines: tuple[Corners, ...]
+    discs: tuple[Disc, ...] = ()
+    centre: tuple[float, float] | None = None
+    name: str = field(default="base", compare=False)
+
+    def __post_init__(self) -> None:
+        if not self.outlines and not self.discs:
+            raise InputError("a base needs an outline or a disc")
+        area, first, _ = self._moments
+        if not area > 0.0:
+            raise InputError(f"base {self.name}: its area must be > 0 m^2, got {area:g}")
+        middle = (float(first[0] / area), float(first[1] / area))
+        centre = middle
+        if self.centre is not None:
+            given = finite_array("centre of mass", self.centre, "m")
+            if given.shape != (2,):
+                raise InputError("centre of mass must be two numbers (x, y), m")
+            centre = (float(given[0]), float(given[1]))
+            if math.dist(centre, middle) <= _CENTRED * self._reach_from(middle):
+                centre = middle
+        object.__setattr__(self, "centre", centre)
+        if not self.least_pressure > 0.0:
+            raise ContactError(
+                f"base {self.name}: with its centre of mass at ({centre[0]:g}, {centre[1]:g}) m "
+                "part of it would lift, or the body tip; pressure that is linear over the base "
+                f"needs it nearer to the middle, ({middle[0]:g}, {middle[1]:g}) m"
+            )
+
+    @classmethod
+    def box(
+        cls, length: float, width: float, *, centre: tuple[float, float] | None = None
+    ) -> Self:  # fmt: skip
+        """A rectangle about the origin, ``length`` along x, m; ``centre`` of mass (x, y), m.
+
+        Examples
+        --------
+        >>> round(Base.box(0.2, 0.1).area, 6)
+        0.02
+        """
+        a, b = 0.5 * positive("length", length, "m"), 0.5 * positive("width", width, "m")
+        corners = ((-a, -b), (a, -b), (a, b), (-a, b))
+        return cls((corners,), (), centre, f"box:{2.0 * a:.12g}x{2.0 * b:.12g}")
+
+    @classmethod
+    def polygon(
+        cls, corners: npt.ArrayLike, *, holes: Sequence[npt.ArrayLike] = (),
+        centre: tuple[float, float] | None = None, name: str = "polygon",
+    ) -> Self:  # fmt: skip
+        """A polygon of corners (n, 2), m, in order; ``holes``: polygons that are left out of it.
+
+        Examples
+        --------
+        >>> round(Base.polygon([(0, 0), (0.1, 0), (0, 0.1)]).area, 6)
+        0.005
+        """
+        outside = _corners_of(corners, name, 1.0)
+        cut = tuple(
+            _corners_of(hole, f"{name}: hole", -1.0) for hole in listed("holes", holes, "outlines")
+        )
+        for hole in cut:
+            if crossing(outside, hole) or not inside(outside, hole[0]):
+                raise InputError(f"{name}: a hole must lie in the outline")
+        return cls((outside, *cut), (), centre, name)
+
+    @classmethod
+    def disc(cls, radius: float, *, centre: tuple[float, float] | None = None) -> Self:
+        """A disc about the origin, m.
+
+        Examples
+        --------
+        >>> round(Base.disc(1.0).area, 6)
+        3.141593
+        """
+        r = positive("radius", radius, "m")
+        return cls((), ((0.0, 0.0, r, 1.0),), centre, f"disc:{r:.12g}")
+
+    @classmethod
+    def annulus(
+        cls, radius: float, inner: float, *, centre: tuple[float, float] | None = None
+    ) -> Self:
+        """A disc about the origin with a round hole of the radius ``inner``, m.
+
+        Examples
+        --------
+        >>> round(Base.annulus(1.0, 0.5).gyration, 6)
+        0.790569
+        """
+        r, hole = positive("radius", radius, "m"), positive("inner", inner, "m")
+        if not hole < r:
+            raise InputError(f"inner must be less than the radius, {r:g} m, got {hole:g}")
+        discs = ((0.0, 0.0, r, 1.0), (0.0, 0.0, hole, -1.0))
+        return cls((), discs, centre, f"annulus:{r:.12g}x{hole:.12g}")
+
+    @classmethod
+    def feet(
+        cls, centres: npt.ArrayLike, radius: float, *, centre: tuple[float, float] | None = None
+    ) -> Self:
+        """Round feet of one radius, m, about ``centres`` (n, 2), m; they must not overlap.
+
+        Examples
+        --------
+        >>> len(Base.feet([(0.1, 0.0), (-0.1, 0.1), (-0.1, -0.1)], 0.005).discs)
+        3
+        """
+        r, places = positive("radius", radius, "m"), finite_array("centres", centres, "m")
+        if places.ndim != 2 or places.shape[1] != 2 or len(places) == 0:
+            raise InputError("centres must be a list of places (x, y), m")
+        discs = [cls((), ((x, y, r, 1.0),), name="foot") for x, y in places.tolist()]
+        return cls.union(discs, centre=centre, name=f"{len(discs)} feet")
+
+    @classmethod
+    def union(
+        cls, parts: Sequence[Base], *, centre: tuple[float, float] | None = None,
+        name: str = "union",
+    ) -> Self:  # fmt: skip
+        """Several bases together, which must not overlap.
+
+        Examples
+        --------
+        >>> stem = Base.polygon([(-0.01, -0.2), (0.01, -0.2), (0.01, 0.0), (-0.01, 0.0)])
+        >>> round(Base.union([stem, Base.feet([(0.0, 0.05)], 0.03)]).area, 6)
+        0.006827
+        """
+        bases = listed("parts", parts, "bases")
+        for base in bases:
+            instance("a part of a union", base, Base)
+        for i, one in enumerate(bases):
+            for k, other in enumerate(bases[:i]):
+                if overlap((one.outlines, one.discs), (other.outlines, other.discs)):
+                    raise InputError(
+                        f"parts {k} and {i} of the base overlap: move them apart, or give the "
+                        "outline of both"
+                    )
+        outlines = tuple(outline for base in bases for outline in base.outlines)
+        return cls(outlines, tuple(disc for base in bases for disc in base.discs), centre, name)
+
+    @property
+    def area(self) -> float:
+        """Of what touches, m²."""
+        return self._moments[0]
+
+    @property
+    def is_centred(self) -> bool:
+        """Whether the centre of mass lies in the middle of the area."""
+        area, first, _ = self._moments
+        return self.middle == (float(first[0] / area), float(first[1] / area))
+
+    @property
+    def middle(self) -> tuple[float, float]:
+        """The centre of mass, m."""
+        assert self.centre is not None  # it has been found
+        return self.centre
+
+    @cached_property
+    def reach(self) -> float:
+        """How far the farthest point of it lies from the centre of mass, m."""
+        return self._reach_from(self.middle)
+
+    @property
+    def gyration(self) -> float:
+        """Radius of gyration about the vertical of a homogeneous body on this base, m."""
+        area, first, second = self._moments
+        return math.sqrt(float(np.trace(second) - first @ first / area) / area)
+
+    @cached_property
+    def about_centre(self) -> tuple[float, FloatArray, FloatArray]:
+        """∫ dA, ∫ x dA (2,) and ∫ x x dA (2, 2), x from the centre of mass."""
+        area, first, second = self._moments
+        c = np.array(self.middle)
+        own = np.zeros(2) if self.is_centred else first - area * c
+        return area, own, second - np.outer(c, first) - np.outer(first, c) + area * np.outer(c, c)
+
+    @property
+    def least_pressure(self) -> float:
+        """The least pressure under it where it lies flat, over the mean."""
+        flat, _ = self._pressures
+        return float(flat.min()) * self.area
+
+    @property
+    def highest_lever(self) -> float:
+        """How large friction times the height of the centre of mass may be, m.
+
+        Up to it no state of motion lifts a part of the base.  The pressure at a place is linear in
+        the force of friction, which is largest, f N, as the base slides without spin.
+
+        Examples
+        --------
+        >>> round(Base.box(0.2, 0.1).highest_lever, 9), round(Base.disc(0.04).highest_lever, 9)
+        (0.01490712, 0.01)
+        """
+        flat, tilt = self._pressures
+        return float((flat / np.maximum(np.hypot(tilt[0], tilt[1]), 1e-300)).min())
+
+    @property
+    def _pressures(self) -> tuple[FloatArray, FloatArray]:
+        """At its outermost points the pressure, and what a moment N x of the load adds to it."""
+        area, first, second = self.about_centre
+        balance = np.block([[np.array([[area]]), first[None, :]], [first[:, None], second]])
+        points = self.points() - np.array(self.middle)
+        parts = np.linalg.inv(balance) @ np.column_stack([np.ones(len(points)), points]).T
+        return parts[0], parts[1:]
+
+    def points(self) -> FloatArray:
+        """Corners, and points on the rims of discs, (n, 2), m."""
+        turn = np.linspace(0.0, 2.0 * np.pi, _RIM_POINTS, endpoint=False)
+        circle = np.column_stack([np.cos(turn), np.sin(turn)])
+        rims = [np.array(d[:2]) + d[2] * circle for d in self.discs if d[3] > 0.0]
+        return np.concatenate([*map(np.array, self.outlines), *rims])
+
+    def _reach_from(self, place: tuple[float, float]) -> float:
+        corners = [math.dist(corner, place) for outline in self.outlines for corner in outline]
+        rims = [math.dist(disc[:2], place) + disc[2] for disc in self.discs]
+        return max(corners + rims)
+
+    @cached_property
+    def _moments(self) -> tuple[float, FloatArray, FloatArray]:
+        """∫ dA, ∫ x dA and ∫ x x dA about the origin."""
+        area, first, second = 0.0, np.zeros(2), np.zeros((2, 2))
+        for outline in self.outlines:
+            p = np.array(outline)
+            q = np.roll(p, -1, axis=0)
+            cross = p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]
+            area += 0.5 * float(cross.sum())
+            first = first + cross @ (p + q) / 6.0
+            both = p + q
+            outer = np.einsum("n,ni,nj->ij", cross, both, both)
+            outer += np.einsum("n,ni,nj->ij", cross, p, p) + np.einsum("n,ni,nj->ij", cross, q, q)
+            second = second + outer / 24.0
+        for x, y, radius, sign in self.discs:
+            own, place = sign * math.pi * radius * radius, np.array([x, y])
+            area += own
+            first = first + own * place
+            second = second + own * (np.outer(place, place) + 0.25 * radius * radius * np.eye(2))
+        return area, first, second
+
+
+def _corners_of(corners: npt.ArrayLike, name: str, sense: float) -> Corners:
+    """Checked corners, counter-clockwise, or clockwise where ``sense`` is −1."""
+    points = finite_array(f"{name}: corners", corners, "m")
+    if points.ndim != 2 or points.shape[1:] != (2,) or not 3 <= len(points) <= MOST_CORNERS:
+        raise InputError(
+            f"{name}: corners must be 3 to {MOST_CORNERS} places (x, y), m, got an array of shape "
+            f"{points.shape}"
+        )
+    if np.array_equal(points[0], points[-1]):  # closed by itself
+        points = points[:-1]
+    if (points == np.roll(points, 1, axis=0)).all(axis=1).any():
+        raise InputError(f"{name}: a corner stands twice in a row")
+    x, y = (points - points.mean(axis=0)).T
+    area = float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
+    found = tuple(map(tuple, points.tolist()))
+    if crossing(found):
+        raise InputError(f"{name}: its sides cross, or touch each other: give corners in order")
+    if area * sense < 0.0:
+        if sense > 0.0:
+            say(f"{name}: its corners stand clockwise; they are taken the other way round")
+        found = found[::-1]
+    return found
+
+
+def base_of(text: str) -> Base:
+    """The base of a text: of a name with lengths, or of a CSV file of corners.
+
+    Parameters
+    ----------
+    text : str
+        box:LENGTHxWIDTH, disc:RADIUS, annulus:RADIUSxINNER, in m or with units (box:20cmx10cm), or
+        the path of a CSV file with columns x and y; ``@X,Y`` after it is the centre of mass.
+
+    Returns
+    -------
+    Base
+
+    Raises
+    ------
+    InputError
+        If it is not known, or a number is out of range.
+    ContactError
+        If part of it would lift.
+
+    Examples
+    --------
+    >>> round(base_of("box:20cmx10cm@1cm,0").middle[0], 6)
+    0.01
+    """
+    instance("base", text, str)
+    shape, at, place = text.rpartition("@") if "@" in text else (text, "", "")
+    centre = None
+    if at:
+        numbers = [_length("centre of mass of the base", part) for part in place.split(",")]
+        if len(numbers) != 2:
+            raise InputError(f"base {shown(text)}: the centre of mass is @X,Y, got @{place}")
+        centre = (numbers[0], numbers[1])
+    if shape.lower().endswith(".csv"):
+        corners = numbers_of(shape, (X, Y), 2, MAX_BYTES).rows
+        return Base.polygon(corners, centre=centre, name=as_utf8(text))
+    kind, _, sizes = shape.partition(":")
+    makers = {"box": (Base.box, 2), "disc": (Base.disc, 1), "annulus": (Base.annulus, 2)}
+    if kind not in makers:
+        raise InputError(f"no base is called {shown(text)}: choose {NAMES}")
+    make, count = makers[kind]
+    lengths = [_length(f"base {shape}", part) for part in sizes.split("x")]
+    if len(lengths) != count:
+        raise InputError(f"base {shown(text)}: {kind} takes {count} lengths; choose {NAMES}")
+    found: Base = make(*lengths, centre=centre)
+    return replace(found, name=text) if at else found
+
+
+def _length(name: str, text: str) -> float:
+    """A length, m, with or without a unit."""
+    return float(text) if is_number(text) else number_in(name, text, "m")

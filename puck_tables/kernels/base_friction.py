@@ -1,0 +1,125 @@
+"""Dry friction of a base of any shape: polygons and discs, with holes, and a linear pressure.
+
+With e the slip direction and lengths from the centre of mass, the pressure p = a + b·x over the
+base, for a weight of 1, carries the puck and balances the moment of friction at the height z of its
+centre of mass,
+
+    ∫ p dA = 1 ,   ∫ p x dA = z f ∫ p e dA :
+
+three linear equations, as ∫ p e dA is linear in a and b.  Of a flat base (z = 0) they fix p once
+for all.  Friction is then −f ∫ p e dA and its moment.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.contact.base import Base
+from puck_tables.kernels.base_parts import disc_sums
+from puck_tables.kernels.base_sums import NOTHING, Sums, plus
+from puck_tables.kernels.compile import inlined, inner
+from puck_tables.kernels.polygon_sums import SIDE_COLUMNS, flat_sums, polygon_sums
+
+# A base in one array: how many sides and discs, how far its farthest point is, ∫ dA, ∫ x dA and
+# ∫ x x dA over it, and z f; then a row for each side, and for each disc its middle, its radius, and
+# 1, or −1 of a hole; from the centre of mass
+SIDES, DISCS, REACH, AREA, FIRST_X, FIRST_Y, SECOND_XX, SECOND_XY, SECOND_YY, LEVER = range(10)
+HEAD = 10
+DISC_COLUMNS = 4
+NO_BASE = np.empty(0)
+
+
+def packed(base: Base, lever: float) -> FloatArray:
+    """A base in one array; ``lever``: friction times the height of the centre of mass, m.
+
+    Examples
+    --------
+    >>> packed(Base.box(0.2, 0.1), 0.0)[:4].round(6).tolist()
+    [4.0, 0.0, 0.111803, 0.02]
+    """
+    area, first, second = base.about_centre
+    middle, sides = np.array(base.middle), []
+    for outline in base.outlines:
+        corners = np.array(outline) - middle
+        way = np.roll(corners, -1, axis=0) - corners
+        length = np.hypot(*way.T)
+        anew = np.zeros(len(corners))
+        anew[0] = 1.0
+        sides.append(np.column_stack([corners, way / length[:, None], length, anew]).ravel())
+    discs = [[x - middle[0], y - middle[1], radius, sign] for x, y, radius, sign in base.discs]
+    head = [
+        sum(map(len, base.outlines)), len(discs), base.reach, area, *first,
+        second[0, 0], second[0, 1], second[1, 1], lever,
+    ]  # fmt: skip
+    return np.concatenate([head, *sides, np.ravel(discs)]).astype(np.float64)
+
+
+@inlined
+def _disc_at(cx: float, cy: float, size: float, ux: float, uy: float, w: float) -> Sums:
+    """A disc about a place: by the closed forms about its own middle, turned and moved."""
+    ux, uy = ux - w * cy, uy + w * cx
+    speed = math.sqrt(ux * ux + uy * uy)
+    c, s = (ux / speed, uy / speed) if speed > 0.0 else (1.0, 0.0)
+    sums = disc_sums(speed, abs(w), size)
+    sign = -1.0 if w < 0.0 else 1.0
+    ex, ey = c * sums[0], s * sums[0]
+    up, across, far = sign * sums[3], sign * sums[4], sums[7]  # ∫ y e_x, x e_y, y (x × e)
+    both = up + across
+    xx, yy = -both * c * s, both * c * s
+    xy, yx = up * c * c - across * s * s, across * c * c - up * s * s
+    swing = across - up + cx * ey - cy * ex
+    return (
+        ex, ey, xx + ex * cx, xy + ex * cy, yx + ey * cx, yy + ey * cy,
+        -s * far + cx * yx - cy * xx + swing * cx, c * far + cx * yy - cy * xy + swing * cy,
+    )  # fmt: skip
+
+
+@inner
+def base_sums(base: FloatArray, ux: float, uy: float, w: float) -> Sums:
+    """Sums of the slip direction over a base, in its own axes, at a slip and a spin, not both 0."""
+    count, sums = int(base[SIDES]), NOTHING
+    discs = HEAD + SIDE_COLUMNS * count
+    if count > 0:
+        sums = polygon_sums(base, HEAD, count, base[REACH], ux, uy, w)
+    for i in range(int(base[DISCS])):
+        at = discs + DISC_COLUMNS * i
+        sums = plus(sums, base[at + 3], _disc_at(base[at], base[at + 1], base[at + 2], ux, uy, w))
+    return sums
+
+
+@inlined
+def pressure_on(base: FloatArray, sums: Sums) -> tuple[float, float, float]:
+    """A, b_x and b_y of the pressure a + b·x for a weight of 1."""
+    lever = base[LEVER]
+    sx, sy = base[FIRST_X] - lever * sums[0], base[FIRST_Y] - lever * sums[1]
+    xx, xy = base[SECOND_XX] - lever * sums[2], base[SECOND_XY] - lever * sums[3]
+    yx, yy = base[SECOND_XY] - lever * sums[4], base[SECOND_YY] - lever * sums[5]
+    turn = 1.0 / (xx * yy - xy * yx)
+    bx, by = turn * (xy * sy - yy * sx), turn * (yx * sx - xx * sy)
+    a = 1.0 / (base[AREA] + base[FIRST_X] * bx + base[FIRST_Y] * by)
+    return a, a * bx, a * by
+
+
+@inner
+def base_friction(
+    base: FloatArray, angle: float, ux: float, uy: float, w: float
+) -> tuple[float, float, float]:
+    """Force and torque about the centre of mass, over f N, of a base turned by an angle.
+
+    (ux, uy): the slip of the centre of mass, m/s; w: the spin over the floor, rad/s; not both 0.
+    """
+    c, s = math.cos(angle), math.sin(angle)
+    ux, uy = c * ux + s * uy, c * uy - s * ux
+    if base[DISCS] == 0.0 and base[LEVER] == 0.0 and base[FIRST_X] == 0.0 and base[FIRST_Y] == 0.0:
+        fx, fy, torque = flat_sums(base, HEAD, int(base[SIDES]), base[REACH], ux, uy, w)
+        a = 1.0 / base[AREA]
+        return a * (s * fy - c * fx), -a * (s * fx + c * fy), -a * torque
+    sums = base_sums(base, ux, uy, w)
+    a, bx, by = pressure_on(base, sums)
+    fx = a * sums[0] + bx * sums[2] + by * sums[3]
+    fy = a * sums[1] + bx * sums[4] + by * sums[5]
+    torque = a * (sums[4] - sums[3]) + bx * sums[6] + by * sums[7]
+    return s * fy - c * fx, -s * fx - c * fy, -torque

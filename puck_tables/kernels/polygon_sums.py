@@ -1,0 +1,148 @@
+"""Sums of the slip direction over a polygon, along its sides.
+
+With C the instantaneous centre, R the distance from it and (R, t) polar coordinates about it, the
+slip direction e = sgn w (−sin t, cos t) is the same all along a ray.  So the integral over the area
+is one along its boundary, ∫ e g dA = ∮ e [∫ g R dR] dt, and on a straight side that is elementary.
+With the unit tangent t and outward normal n of a side, d, s₀ and s₁ its place along n and its ends
+along t from C, R₀ and R₁ how far these are, L its length,
+
+    A₀ = ln((R₀ + R₁ + L)/(R₀ + R₁ − L)),  A₁ = R₁ − R₀,  A₂ = ([sR] − d² A₀)/2,
+    B₀ = ([sR] + d² A₀)/2,  B₁ = (R₁³ − R₀³)/3,
+
+    ∫ e dA = ½ Σ d (d A₀ t − A₁ n),  ∫ R dA = ⅓ Σ d B₀,  ∫ R r dA = ¼ Σ d (d B₀ n + B₁ t),
+    ∫ e ⊗ r dA = ⅓ Σ d [(d A₀ t − A₁ n) ⊗ d n + (d A₁ t − A₂ n) ⊗ t]     (r from C, sgn w = 1):
+
+one logarithm and one root a side.  Where C lies far away these cancel; there the inner integral
+runs from the distance of C instead of 0, which is a short polynomial, and Gauss's rule along a side
+is exact to rounding.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.base_sums import NOTHING, Sums
+from puck_tables.kernels.compile import inlined, inner, summed
+
+# of a side: where it begins, its unit tangent with the polygon to the left, its length, and whether
+# it begins where the one before ends (0) or not (1)
+BEGIN_X, BEGIN_Y, TANGENT_X, TANGENT_Y, LENGTH, ANEW = range(6)
+SIDE_COLUMNS = 6
+_FAR = 6.0  # times the reach of the base: closer, closed forms lose less than 1e-13
+_NODES = 8  # of Gauss's rule on a side that far away: 6e-16
+_NODE, _WEIGHT = np.polynomial.legendre.leggauss(_NODES)
+_LEAST = 1e-17  # of a length: C on a side; what the logarithm loses is multiplied by d² = 0
+
+
+@inner
+def polygon_sums(
+    base: FloatArray, first: int, count: int, reach: float, ux: float, uy: float, w: float
+) -> Sums:  # fmt: skip
+    """Sums over what sides bound, about the origin, at a slip (ux, uy) and a spin, not both 0.
+
+    ``base``: where ``count`` sides stand from ``first`` on; ``reach``: no corner lies farther from
+    the origin.
+    """
+    if math.sqrt(ux * ux + uy * uy) > _FAR * reach * abs(w):
+        return _far(base, first, count, ux, uy, w)
+    return _near(base, first, count, ux, uy, w)
+
+
+@inner
+def flat_sums(
+    base: FloatArray, first: int, count: int, reach: float, ux: float, uy: float, w: float
+) -> tuple[float, float, float]:  # fmt: skip
+    """∫ e dA and its moment alone: all that uniform pressure asks for, in half the time."""
+    if math.sqrt(ux * ux + uy * uy) > _FAR * reach * abs(w):
+        sums = _far(base, first, count, ux, uy, w)
+        return sums[0], sums[1], sums[4] - sums[3]
+    cx, cy = -uy / w, ux / w
+    ex, ey, size, far = 0.0, 0.0, 0.0, 0.0
+    for i in range(first, first + SIDE_COLUMNS * count, SIDE_COLUMNS):
+        px, py = base[i + BEGIN_X] - cx, base[i + BEGIN_Y] - cy
+        tx, ty, length = base[i + TANGENT_X], base[i + TANGENT_Y], base[i + LENGTH]
+        near = math.sqrt(px * px + py * py) if base[i + ANEW] != 0.0 else far
+        d, begin = px * ty - py * tx, px * tx + py * ty
+        end = begin + length
+        far = math.sqrt(d * d + end * end)
+        both = near + far
+        along = d * math.log((both + length) / max(both - length, _LEAST * length))
+        a1 = length * (begin + end) / both
+        ex, ey = ex + d * (along * tx - a1 * ty), ey + d * (along * ty + a1 * tx)
+        size += d * (end * far - begin * near + d * along)
+    sign = 1.0 if w > 0.0 else -1.0
+    ex, ey = 0.5 * sign * ex, 0.5 * sign * ey
+    return ex, ey, sign * size / 6.0 + cx * ey - cy * ex
+
+
+@inlined
+def _near(base: FloatArray, first: int, count: int, ux: float, uy: float, w: float) -> Sums:
+    cx, cy = -uy / w, ux / w
+    ex, ey, size, rx, ry, far = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    xx, xy, yx, yy = 0.0, 0.0, 0.0, 0.0
+    for i in range(first, first + SIDE_COLUMNS * count, SIDE_COLUMNS):
+        px, py = base[i + BEGIN_X] - cx, base[i + BEGIN_Y] - cy
+        tx, ty, length = base[i + TANGENT_X], base[i + TANGENT_Y], base[i + LENGTH]
+        near = math.sqrt(px * px + py * py) if base[i + ANEW] != 0.0 else far
+        d, begin = px * ty - py * tx, px * tx + py * ty
+        end = begin + length
+        far = math.sqrt(d * d + end * end)
+        both = near + far
+        a0 = math.log((both + length) / max(both - length, _LEAST * length))
+        a1 = length * (begin + end) / both
+        product, square = end * far - begin * near, d * d * a0
+        a2, b0 = 0.5 * (product - square), 0.5 * (product + square)
+        b1 = a1 * (far * far + far * near + near * near) / 3.0
+        nx, ny = ty, -tx
+        ax, ay = d * (d * a0 * tx - a1 * nx), d * (d * a0 * ty - a1 * ny)
+        bx, by = d * (d * a1 * tx - a2 * nx), d * (d * a1 * ty - a2 * ny)
+        ex, ey, size = ex + ax, ey + ay, size + d * b0
+        rx, ry = rx + d * (d * b0 * nx + b1 * tx), ry + d * (d * b0 * ny + b1 * ty)
+        xx, xy = xx + ax * d * nx + bx * tx, xy + ax * d * ny + bx * ty
+        yx, yy = yx + ay * d * nx + by * tx, yy + ay * d * ny + by * ty
+    sign = 1.0 if w > 0.0 else -1.0
+    ex, ey, size = 0.5 * sign * ex, 0.5 * sign * ey, sign * size / 3.0
+    xx, xy, yx, yy = sign * xx / 3.0, sign * xy / 3.0, sign * yx / 3.0, sign * yy / 3.0
+    swing = size + cx * ey - cy * ex
+    return (
+        ex, ey, xx + ex * cx, xy + ex * cy, yx + ey * cx, yy + ey * cy,
+        0.25 * sign * rx + cx * yx - cy * xx + swing * cx,
+        0.25 * sign * ry + cx * yy - cy * xy + swing * cy,
+    )  # fmt: skip
+
+
+@inlined
+def _far(base: FloatArray, first: int, count: int, ux: float, uy: float, w: float) -> Sums:
+    """From the distance of C to the boundary, s from there, at (V + |w| s)/|w| from C."""
+    speed, spin, sign = math.sqrt(ux * ux + uy * uy), abs(w), -1.0 if w < 0.0 else 1.0
+    ex, ey, xx, xy, yx, yy, gx, gy = NOTHING
+    for i in range(first, first + SIDE_COLUMNS * count, SIDE_COLUMNS):
+        half = 0.5 * base[i + LENGTH]
+        hx, hy = half * base[i + TANGENT_X], half * base[i + TANGENT_Y]
+        mx, my = base[i + BEGIN_X] + hx, base[i + BEGIN_Y] + hy
+        for node in range(_NODES):
+            qx, qy = mx + _NODE[node] * hx, my + _NODE[node] * hy
+            vx, vy = ux - w * qy, uy + w * qx
+            slip = math.sqrt(vx * vx + vy * vy)
+            inverse = 1.0 / slip
+            deep = sign * (2.0 * (uy * qx - ux * qy) + w * (qx * qx + qy * qy)) / (slip + speed)
+            k0 = deep * (speed + 0.5 * spin * deep)
+            k1 = deep * deep * (0.5 * speed + spin * deep / 3.0)
+            k2 = deep * deep * deep * (speed / 3.0 + 0.25 * spin * deep)
+            weight = _WEIGHT[node] * (vx * hx + vy * hy) * inverse * inverse
+            # along the ray: from (bx, by) at s = 0 towards the boundary, r × e = sign (lever + s)
+            dx, dy = sign * vy * inverse, -sign * vx * inverse
+            bx, by = qx - deep * dx, qy - deep * dy
+            lever = qx * dx + qy * dy - deep
+            side = sign * weight * inverse
+            fx, fy = side * vx, side * vy
+            px, py = bx * k0 + dx * k1, by * k0 + dy * k1
+            ex, ey = summed(ex, fx * k0), summed(ey, fy * k0)
+            xx, xy = summed(xx, fx * px), summed(xy, fx * py)
+            yx, yy = summed(yx, fy * px), summed(yy, fy * py)
+            gx = summed(gx, weight * (lever * px + bx * k1 + dx * k2))
+            gy = summed(gy, weight * (lever * py + by * k1 + dy * k2))
+    return ex, ey, xx, xy, yx, yy, gx, gy
