@@ -190,7 +190,7 @@ class BoardCase:
             world = World(self.scene.at(numbers))
             end, ends.time[run] = run_on(world, None)
             if world.groups > 0:  # what simulate refuses by its ledger
-                now = energies_of(world, np.array([world.time]))
+                now = energies_of(world, np.array([world.time]), world.state()[None])
                 if not residual(now, energy_scale(world._game)) <= MISSED:
                     raise PuckError
         except InputError:

@@ -8,10 +8,11 @@ import numpy as np
 
 from puck_tables.errors import PuckError
 from puck_tables.scene.friction import THETA, VX, X, Y
-from puck_tables.scene.ingredients import FREE, floor_velocity
+from puck_tables.scene.ingredients import FREE
 from puck_tables.scene.regions import friction_error
 from puck_tables.world import game as g
 from puck_tables.world.agreement import flight_error, pieces_of
+from puck_tables.world.floors import velocities_under
 from puck_tables.world.layout import HOLD, LIGHTNESS, NORMAL
 from puck_tables.world.prepare import Start
 from puck_tables.world.world import World
@@ -45,14 +46,14 @@ def error_of(world: World, start: Start) -> float:
     for coarser, sign in CHECKS:
         try:
             check = World.since(_otherwise(start, coarser, sign * share, sign * off))
-            check.advance(now)
+            check._advance(now)
             gap = check.over(probes) - states
             gaps.append(
                 float((np.hypot(gap[..., X], gap[..., Y]) + radii * np.abs(gap[..., THETA])).max())
                 / length
             )
             if alone and stops[0] < math.inf:
-                check.advance(LATER * now)
+                check._advance((1.0 + LATER) * now)
                 gaps.append(min(abs(check.motion_ends[0] - stops[0]), LATER * now) * rate / speed)
         except PuckError:  # it meets what has no answer: so nearly did the run
             gaps.append(float(np.hypot(*np.ptp(states[-1, :, :2], axis=0))) / length)
@@ -81,10 +82,9 @@ def _otherwise(start: Start, coarser: float, share: float, friction: float) -> S
     cosine, sine = scale * math.cos(share), scale * math.sin(share)
     turned = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, scale]])
     launches[:, g.LAUNCH_VX :] = launches[:, g.LAUNCH_VX :] @ turned.T
-    for disc, state in zip(game.discs, states, strict=True):
-        if disc[LIGHTNESS] > 0.0 and disc[HOLD] == FREE:
-            floor = np.array(floor_velocity(game.surface, *state[:2].tolist()))
-            state[VX:] = floor + turned @ (state[VX:] - floor)
+    free = (game.discs[:, LIGHTNESS] > 0.0) & (game.discs[:, HOLD] == FREE)
+    floor = velocities_under(game.surface, states)[free]
+    states[free, VX:] = floor + (states[free, VX:] - floor) @ turned.T
     game.pace[2] *= coarser
     game.discs[:, NORMAL] *= 1.0 + friction
     regions = game.regions._replace(load=game.regions.load * (1.0 + friction))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from functools import cache, partial
+from typing import Any
 
 import numpy as np
 
@@ -116,6 +117,14 @@ def slip_of_rim(radius: float, surface: Surface, state: list[float]) -> float:
     """The fastest slip of a rim over the floor in a state (6,), m/s."""
     sx, sy, turning = floor_velocity(surface, state[X], state[Y])
     return math.hypot(state[VX] - sx, state[VY] - sy) + radius * abs(state[SPIN] - turning)
+
+
+def velocities_under(surface: Surface, states: FloatArray) -> FloatArray:
+    """Velocities and spins of the floor, array (..., 3), under pucks in states (..., 6)."""
+    places: Any = states[..., X], states[..., Y]  # the same for arrays
+    under = np.empty((*states.shape[:-1], 3))
+    under[..., 0], under[..., 1], under[..., 2] = floor_velocity(surface, *places)
+    return under
 
 
 def fastest_rim(pieces: list[PieceSpec], states: FloatArray, surface: Surface) -> float:

@@ -12,7 +12,7 @@ from puck_tables.errors import InputError
 from puck_tables.scene.forces import drive_of
 from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.holds import allowed_velocity
-from puck_tables.scene.ingredients import RAIL, Surface, floor_velocity, hold_of
+from puck_tables.scene.ingredients import RAIL, Surface, hold_of
 from puck_tables.scene.parts import Wall
 from puck_tables.scene.pieces import Arc, PieceSpec, Post
 from puck_tables.scene.scene_spec import SceneSpec
@@ -29,7 +29,13 @@ from puck_tables.world.flight import (
     PLACE_Y,
     Curves,
 )
-from puck_tables.world.floors import fastest_rim, floors_of, normal_on, regions_of
+from puck_tables.world.floors import (
+    fastest_rim,
+    floors_of,
+    normal_on,
+    regions_of,
+    velocities_under,
+)
 from puck_tables.world.footing import lay_down, step_onto
 from puck_tables.world.game import (
     COUNTS,
@@ -43,6 +49,7 @@ from puck_tables.world.game import (
     Game,
     Whole,
 )
+from puck_tables.world.lone import LONGEST
 from puck_tables.world.paths import FIRST, PIECE_COLUMNS
 from puck_tables.world.rim_laws import number_for, rims_of
 from puck_tables.world.works import WORK_COLUMNS
@@ -124,6 +131,7 @@ def prepared(scene: SceneSpec) -> Start:
     rim = fastest_rim(pieces, states, surface)
     floors = floors_of(scene, pieces, rim)
     regions = regions_of(scene, pieces, floors, rim)
+    steps = 2 * LONGEST if floors[:, 2].any() else 0  # the first path, and room for another
     game = Game(
         discs=discs,
         regions=regions,
@@ -142,27 +150,27 @@ def prepared(scene: SceneSpec) -> Start:
         next_time=np.full(count, math.inf),
         next_partner=np.full(count, NOTHING),
         launches=np.array(sorted(launches)).reshape(-1, LAUNCH_COLUMNS),
-        pieces=np.vstack(ways),
+        pieces=np.vstack([*ways, np.zeros((steps, PIECE_COLUMNS))]),
         drives=drives,
         hangs=np.zeros((count, len(scene.edges)), np.int64),
         events=np.zeros((ROWS + (8 + len(scene.edges)) * count, EVENT_COLUMNS)),
         history=np.zeros((ROWS + 4 * count, HISTORY_COLUMNS)),
-        works=np.zeros((0, WORK_COLUMNS)),
+        works=np.zeros((steps, WORK_COLUMNS)),
         counts=np.zeros(COUNTS, np.int64),
         pace=np.array([0.0, 0.0, STEP_SHARE * flight_error(scene), 0.0, 0.0]),
     )
     for i in range(count):
         lay_down(game, i, states[i])
-        _hang_over(game, i, states[i])
-    game.counts[N_PIECES] = len(game.pieces)
-    room = room_for(count)
-    for i in range(count):
-        game.flights[i, [PLACE_X, PLACE_Y, ANGLE]] = states[i, :3]
-        if drives[i, 0] < drives[i, 1]:
-            states[i, VX:] = game.pieces[drives[i, 0], FIRST + VX : FIRST + SPIN + 1]
-            game.flights[i, FIRST_PIECE] = drives[i, 0]
-            room.states[i] = states[i]
-            drive_on(game, i, 0.0, room)
+        if scene.edges:
+            _hang_over(game, i, states[i])
+    game.counts[N_PIECES] = drives.max()
+    game.flights[:, [PLACE_X, PLACE_Y, ANGLE]] = states[:, :3]
+    for i in np.flatnonzero(drives[:, 0] < drives[:, 1]).tolist():
+        states[i, VX:] = game.pieces[drives[i, 0], FIRST + VX : FIRST + SPIN + 1]
+        game.flights[i, FIRST_PIECE] = drives[i, 0]
+        room = room_for(count)
+        room.states[i] = states[i]
+        drive_on(game, i, 0.0, room)
     set_pace(game, states)
     return Start(scene, order, game, states)
 
@@ -225,7 +233,7 @@ def fastest(game: Game, states: FloatArray) -> float:
     driven = game.pieces[: game.drives.max(), FIRST + VX : FIRST + VY + 1]
     launched = np.hypot(game.launches[:, 2], game.launches[:, 3])
     led = np.hypot(*game.discs[:, [layout.HOLD_VX, layout.HOLD_VY]].T)
-    floor = np.array([floor_velocity(game.surface, *place) for place in states[:, :2].tolist()])
+    floor = velocities_under(game.surface, states)
     return max(
         float(np.hypot(np.hypot(states[:, VX], states[:, VY]), rims).max()),
         float(np.hypot(*driven.T).max(initial=0.0)), float(launched.max(initial=0.0)),
@@ -270,15 +278,15 @@ def _refuse_far(game: Game, speed: float, radius: float) -> None:
 
 def _strongest(game: Game) -> float:
     """The largest acceleration by slope and given forces, m/s²."""
-    discs, most = game.discs, 0.0
-    for i, (first, last) in enumerate(game.spans):
-        rows = np.vstack([np.zeros(4), game.tides[first:last]])
-        light, turns = discs[i, layout.LIGHTNESS], discs[i, layout.TURNABILITY]
-        ax = discs[i, layout.PULL_X] + light * rows[:, 1]
-        ay = discs[i, layout.PULL_Y] + light * rows[:, 2]
-        rim = discs[i, layout.RADIUS] * (discs[i, layout.TWIST] + turns * rows[:, 3])
-        most = max(most, float(np.hypot(ax, ay).max()), float(np.abs(rim).max()))
-    return most
+    counts = game.spans[:, 1] - game.spans[:, 0]
+    discs, forced = game.discs, np.repeat(np.arange(len(counts)), counts)
+    of = np.concatenate([np.arange(len(counts)), forced])  # each without its force, and with it
+    rows, discs = np.vstack([np.zeros((len(counts), 4)), game.tides]), discs[of]
+    light, turns = discs[:, layout.LIGHTNESS], discs[:, layout.TURNABILITY]
+    ax = discs[:, layout.PULL_X] + light * rows[:, 1]
+    ay = discs[:, layout.PULL_Y] + light * rows[:, 2]
+    rim = discs[:, layout.RADIUS] * (discs[:, layout.TWIST] + turns * rows[:, 3])
+    return max(float(np.hypot(ax, ay).max()), float(np.abs(rim).max()))
 
 
 def _pull_on(scene: SceneSpec, piece: PieceSpec, inertia: float) -> tuple[float, float, float]:

@@ -129,19 +129,17 @@ def columns_of(world: World, moments: FloatArray, end_time: float) -> dict[str, 
     states = world.over(times)
     near = at_rest_below(world._game)
     in_play = np.ones(states.shape[:2])
-    for event in world.events_since(0.0):
-        if event.what in ("pocket", "edge"):
-            in_play[times >= event.time, world.names.index(event.puck)] = 0.0
+    events = world._game.events[: world._game.counts[g.N_EVENTS]]
+    for event in events[np.isin(events[:, g.WHAT], (g.POCKETED, g.OVER_EDGE))]:
+        in_play[times >= event[g.TIME], world._order[int(event[g.WHO])]] = 0.0
     in_play[back[-1]] *= 0.0 if alone_gone else 1.0
     discs = world._place
     slips = slips_over(world._game, np.broadcast_to(discs, in_play.shape).ravel(),
                        states.reshape(-1, 6)).reshape(in_play.shape)  # fmt: skip
-    energies = energies_of(world, times)
-    energies["kinetic_energy"] = energies["kinetic_energy"][:, discs]
     columns = {
         **{name: states[..., n] for n, name in enumerate(STATE)},
         "in_play": in_play, "carried": np.where((slips <= near) & (in_play > 0.0), 1.0, 0.0),
-        **energies,
+        **energies_of(world, times, states),
     }  # fmt: skip
     if (world._game.discs[:, HOLD] != FREE).any():
         own = world._order

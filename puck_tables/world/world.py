@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -104,14 +105,13 @@ class World:
         self._room.states[:] = start.states
         self._desk = desk_for(self._game)
         self._named()
-        self._advance(0.0, EVERYBODY, self._room.one)
+        self._advance(0.0, EVERYBODY)
 
     def _named(self) -> None:
         """Who is where in the engine's order, and what they are called."""
         self._place = np.argsort(self._order)
         pieces = pieces_of(self.scene)
         self.names = tuple(called(piece, number) for number, piece in enumerate(pieces))
-        self._obstacles = obstacle_names(self.scene)
 
     def __repr__(self) -> str:
         title = f"{self.scene.title}, " if self.scene.title else ""
@@ -226,7 +226,7 @@ class World:
         if span == math.inf:
             self.come_to_rest()
         else:
-            self._advance(self.time + span, NOBODY, self._room.one)
+            self._advance(self.time + span)
         return self._events(before)
 
     def come_to_rest(self) -> tuple[float, bool]:
@@ -244,7 +244,7 @@ class World:
         limits, given = limits_of(self._game, self._game.pace[None, :2])
         ends, how, target = np.empty(len(self.names)), GOES_ON, self.time
         while how == GOES_ON:
-            self._advance(target, NOBODY, self._room.one)
+            self._advance(target)
             how, target = next_target(self._game, float(limits[0]), given, self._room, ends)
         who = "a puck" if len(self.names) > 1 else "the puck"
         if how == FOR_EVER:
@@ -318,8 +318,9 @@ class World:
         for fault in misfits(launch, hold, self.scene.floor, ""):
             raise InputError(f"{self.names[number]}: {fault}".replace("launch.", ""))
 
-    def _advance(self, until: float, struck: int, state: FloatArray) -> None:
+    def _advance(self, until: float, struck: int = NOBODY, given: FloatArray | None = None) -> None:
         """Let time pass, after a disc was given the velocity of a state."""
+        state = self._room.one if given is None else given
         unit = float(self._game.pace[0] / max(self._game.pace[1], 1e-300))
         mark, pushes = -math.inf, deque[float](maxlen=CROWDED_PUSHES)
         if lacks_rows(self._game, self._room):
@@ -439,14 +440,16 @@ class World:
 
     def _events(self, first: int) -> list[Event]:
         rows = self._game.events[first : self._game.counts[g.N_EVENTS]]
+        columns = [g.TIME, g.WHAT, g.WHO, g.PARTNER, g.AT_X, g.AT_Y, g.APPROACH, g.SLIDE, g.PUSH,
+                   g.RUB, g.LOST]  # fmt: skip
         return [
-            Event(
-                float(row[g.TIME]), g.EVENTS[int(row[g.WHAT])], self._name(row[g.WHO]),
-                self._name(row[g.PARTNER]), *row[[g.AT_X, g.AT_Y]].tolist(),
-                *row[[g.APPROACH, g.SLIDE, g.PUSH, g.RUB, g.LOST]].tolist(),
-            )
-            for row in rows
-        ]  # fmt: skip
+            Event(time, g.EVENTS[int(what)], self._name(who), self._name(partner), *numbers)
+            for time, what, who, partner, *numbers in rows[:, columns].tolist()
+        ]
+
+    @cached_property
+    def _obstacles(self) -> list[str]:
+        return obstacle_names(self.scene)
 
     def _name(self, partner: float) -> str:
         """A disc or an obstacle of the engine in words."""
