@@ -19,7 +19,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.base import Base
 from puck_tables.kernels.base_parts import disc_sums
-from puck_tables.kernels.base_sums import NOTHING, Sums, plus
+from puck_tables.kernels.base_sums import NOTHING, Sums, from_slip, moved, plus
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.kernels.polygon_sums import SIDE_COLUMNS, flat_sums, polygon_sums
 
@@ -57,24 +57,19 @@ def packed(base: Base, lever: float) -> FloatArray:
     return np.concatenate([head, *sides, np.ravel(discs)]).astype(np.float64)
 
 
+def room_for(base: FloatArray) -> int:
+    """How many numbers the sides of a part of a base take, cut off by a line."""
+    return SIDE_COLUMNS * 2 * int(base[SIDES]) if base.size else 0
+
+
 @inlined
-def _disc_at(cx: float, cy: float, size: float, ux: float, uy: float, w: float) -> Sums:
+def disc_at(cx: float, cy: float, size: float, ux: float, uy: float, w: float) -> Sums:
     """A disc about a place: by the closed forms about its own middle, turned and moved."""
     ux, uy = ux - w * cy, uy + w * cx
     speed = math.sqrt(ux * ux + uy * uy)
     c, s = (ux / speed, uy / speed) if speed > 0.0 else (1.0, 0.0)
     sums = disc_sums(speed, abs(w), size)
-    sign = -1.0 if w < 0.0 else 1.0
-    ex, ey = c * sums[0], s * sums[0]
-    up, across, far = sign * sums[3], sign * sums[4], sums[7]  # ∫ y e_x, x e_y, y (x × e)
-    both = up + across
-    xx, yy = -both * c * s, both * c * s
-    xy, yx = up * c * c - across * s * s, across * c * c - up * s * s
-    swing = across - up + cx * ey - cy * ex
-    return (
-        ex, ey, xx + ex * cx, xy + ex * cy, yx + ey * cx, yy + ey * cy,
-        -s * far + cx * yx - cy * xx + swing * cx, c * far + cx * yy - cy * xy + swing * cy,
-    )  # fmt: skip
+    return moved(from_slip(sums, c, s, -1.0 if w < 0.0 else 1.0), cx, cy)
 
 
 @inner
@@ -86,13 +81,13 @@ def base_sums(base: FloatArray, ux: float, uy: float, w: float) -> Sums:
         sums = polygon_sums(base, HEAD, count, base[REACH], ux, uy, w)
     for i in range(int(base[DISCS])):
         at = discs + DISC_COLUMNS * i
-        sums = plus(sums, base[at + 3], _disc_at(base[at], base[at + 1], base[at + 2], ux, uy, w))
+        sums = plus(sums, base[at + 3], disc_at(base[at], base[at + 1], base[at + 2], ux, uy, w))
     return sums
 
 
 @inlined
 def pressure_on(base: FloatArray, sums: Sums) -> tuple[float, float, float]:
-    """A, b_x and b_y of the pressure a + b·x for a weight of 1."""
+    """A, b_x and b_y of the pressure a + b·x for a weight of 1, as it slips."""
     lever = base[LEVER]
     sx, sy = base[FIRST_X] - lever * sums[0], base[FIRST_Y] - lever * sums[1]
     xx, xy = base[SECOND_XX] - lever * sums[2], base[SECOND_XY] - lever * sums[3]
@@ -101,6 +96,18 @@ def pressure_on(base: FloatArray, sums: Sums) -> tuple[float, float, float]:
     bx, by = turn * (xy * sy - yy * sx), turn * (yx * sx - xx * sy)
     a = 1.0 / (base[AREA] + base[FIRST_X] * bx + base[FIRST_Y] * by)
     return a, a * bx, a * by
+
+
+@inlined
+def pressure_at(base: FloatArray, mx: float, my: float) -> tuple[float, float, float]:
+    """The same at rest: where the load stands at (mx, my), m, from the centre of mass."""
+    sx, sy, area = base[FIRST_X], base[FIRST_Y], base[AREA]
+    xx, xy = base[SECOND_XX] - sx * sx / area, base[SECOND_XY] - sx * sy / area
+    yy = base[SECOND_YY] - sy * sy / area
+    px, py = mx - sx / area, my - sy / area
+    turn = 1.0 / (xx * yy - xy * xy)
+    bx, by = turn * (yy * px - xy * py), turn * (xx * py - xy * px)
+    return (1.0 - sx * bx - sy * by) / area, bx, by
 
 
 @inner

@@ -42,7 +42,7 @@ class PuckSpec:
 
     radius: float = of(
         "number", None, "m", low=0.0, above=True, usual=OF_A_PUCK, objects=(Unsaid,),
-        doc="of a round base",
+        doc="of a round base, or of the rim around a base of another shape",
     )  # fmt: skip
     height: float = of(
         "number", 0.0, "m", low=0.0, usual=OF_A_PUCK,
@@ -64,7 +64,7 @@ class PuckSpec:
         "if left out",
     )  # fmt: skip
     base: str | Base = of(
-        "text", "", file=".csv", objects=(Base,), doc=f"in place of a radius: {BASES}"
+        "text", "", file=".csv", objects=(Base,), doc=f"that is not round: {BASES}"
     )  # fmt: skip
 
     def __post_init__(self) -> None:
@@ -95,7 +95,7 @@ class PuckSpec:
             )
 
     def _stand_on(self, shape: Base) -> None:
-        """Check a puck on a base, and give it what was left out; its radius is how far that goes.
+        """Check a puck on a base, and give it what was left out.
 
         Raises
         ------
@@ -103,15 +103,18 @@ class PuckSpec:
         ContactError
             If part of the base would lift.
         """
-        said = self.radius is not None and not isinstance(self.radius, Unsaid)
-        if said and self.radius != shape.reach:
-            raise InputError(f"radius = {self.radius:g} m and a base: give one of them")
+        if self.has_rim and not self.radius >= shape.reach:
+            raise InputError(
+                f"radius = {self.radius:g} m: with a base it is that of the rim, which must not be "
+                f"less than the reach of the base, {shape.reach:.6g} m, or left out"
+            )
         if self.pressure != "uniform":
             raise InputError(
                 "pressure: under a base it is linear, and fixed by the weight; pressure laws are "
                 "of round pucks with a radius"
             )
-        object.__setattr__(self, "radius", Unsaid(shape.reach))
+        if not self.has_rim:
+            object.__setattr__(self, "radius", Unsaid(shape.reach))
         if self.gyration is None or isinstance(self.gyration, Unsaid):
             if not shape.is_centred:
                 raise InputError(
@@ -198,6 +201,17 @@ class PuckSpec:
         (0.02, 0.111803, 0.06455)
         """
         return base_of(self.base) if isinstance(self.base, str) and self.base else self.base or None
+
+    @property
+    def has_rim(self) -> bool:
+        """Whether it has a round rim, which may meet walls and other pucks.
+
+        Examples
+        --------
+        >>> PuckSpec(base="box:0.2x0.1").has_rim, PuckSpec(0.15, base="box:0.2x0.1").has_rim
+        (False, True)
+        """
+        return self.radius is not None and not isinstance(self.radius, Unsaid)
 
     @property
     def lever(self) -> float:

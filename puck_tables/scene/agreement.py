@@ -29,10 +29,33 @@ def floor_faults(scene: SceneSpec) -> list[str]:
             faults.append(
                 f"floor.law and floor.{name}: each takes the place of puck.friction, give one"
             )
+    if scene.puck.shape is not None:
+        return faults + (bad_strips(scene.floor) or _bad_under_base(scene)) + _bad_rows(scene)
     if scene.floor.law and (scene.puck.pressure != "uniform"):
         faults.append("floor.law: known under uniform pressure only, not with puck.pressure")
     faults += bad_strips(scene.floor) or patch_faults(scene.floor) or _bad_astride(scene)
     return faults + _bad_rows(scene) + _bad_axes(scene)
+
+
+def _bad_under_base(scene: SceneSpec) -> list[str]:
+    """Why friction is not known under a base that is not round."""
+    floor, puck = scene.floor, scene.puck
+    for name, there in (
+        ("law", floor.law), ("orthotropic", floor.orthotropic), ("patch", floor.patches),
+    ):  # fmt: skip
+        if there:
+            return [
+                f"floor.{name}: not known under a base that is not round; give a radius in place "
+                "of puck.base, or leave it out"
+            ]
+    assert puck.shape is not None
+    most, highest = max(scene.frictions), puck.shape.highest_lever
+    if 0.5 * most * puck.height > highest:
+        return [
+            f"floor.strips: part of the base would lift at f = {most:g}; up to a puck.height of "
+            f"{2.0 * highest / most:.6g} m it stays down"
+        ]
+    return []
 
 
 def _bad_astride(scene: SceneSpec) -> list[str]:

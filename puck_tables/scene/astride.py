@@ -19,11 +19,12 @@ its centre, and of every part with what its own differs by.
 from __future__ import annotations
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.base_sums import Sums
+from puck_tables.kernels.base_sums import ANY, Sums
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.astride_parts import slip_of
 from puck_tables.scene.astride_pressure import sums_under
-from puck_tables.scene.ground import LEVER
+from puck_tables.scene.base_on_floor import friction_held, friction_of_base
+from puck_tables.scene.ground import LEVER, PRESSURE
 
 
 @inlined
@@ -42,6 +43,8 @@ def astride_friction(
     slip: float,
 ) -> tuple[float, float, float, float]:  # fmt: skip
     """Force, torque and the power they take, at velocities relative to the floor; Q = ``slip``."""
+    if ground[PRESSURE] == ANY:
+        return friction_of_base(ground, ux, uy, w)
     to_unit = 1.0 / slip
     way = slip_of(to_unit * ux, to_unit * uy, to_unit * radius * w)
     mirrored = -1.0 if w < 0.0 else 1.0
@@ -69,7 +72,13 @@ def held_friction(
     ground: FloatArray, radius: float, nx: float, ny: float, rim: float,
     bx: float, by: float,
 ) -> tuple[float, float, float]:  # fmt: skip
-    """∫ f σ e dA and its moment over r at a slip of Q = 1, of a pressure with slopes (bx, by)."""
+    """∫ f σ e dA and its moment over r at a slip of Q = 1, of a pressure with slopes (bx, by).
+
+    Under a base of any shape these are the place of the load, m.
+    """
+    if ground[PRESSURE] == ANY:
+        fx, fy, turning = friction_held(ground, nx, ny, rim / radius, bx, by)
+        return fx, fy, turning / radius
     way = slip_of(nx, ny, rim)
     mirrored = -1.0 if rim < 0.0 else 1.0
     sums = sums_under(ground, radius, way, mirrored)

@@ -127,7 +127,7 @@ def rates_here(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: 
         out[row, SUPPORT] = fx * sx + fy * sy + fm * turning
         out[row, LAMBDA], out[row, LAMBDA + 1] = 0.0, 0.0
         return
-    put_at(stretch.dry, y[X], y[Y])
+    put_at(stretch.dry, y[X], y[Y], y[THETA])
     hx, hy, hm, heat = dry_friction_here(stretch.dry, body.radius, y[VX], y[VY], y[SPIN])
     dx, dy, dm, warmth = drag_force(model.forces, y[VX], y[VY], y[SPIN])
     fx, fy, fm = gx + hx + dx, gy + hy + dy, gm + hm + dm

@@ -7,21 +7,23 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.base_friction import room_for
 from puck_tables.kernels.base_sums import UNIFORM
 from puck_tables.kernels.compile import inlined
 
 # A ground, all in one array, which is quick to hand on: where the centre of the base is, 1 or by
-# how much all friction is taken wrong, and what holds for all of it,
+# how much all friction is taken wrong, what holds for all of it, and how the base is turned,
 PLACE_X, PLACE_Y, SHARE, LEVER, INNER, ACROSS_X, ACROSS_Y, BORDERS, PATCHES = range(9)
-PRESSURE, PROFILE, ROWS, ROOM = range(9, 13)
-_HEAD = 13
+PRESSURE, PROFILE, ROWS, ROOM, ANGLE = range(9, 14)
+_HEAD = 14
 # the places of its borders, f N between them, a row for each patch (its middle, the radius of a
 # circle about it, the first of its corners, how many (none: it is that circle), and f N there),
 MIDDLE_X, MIDDLE_Y, REACH, CORNER, CORNERS, LOAD = range(6)
 PATCH_COLUMNS = 6
 _ROOM, _ROOM_A_ROW = 48, 22
 # the corners of all patches, and of a tabulated pressure from PROFILE on all radii, A and B of its
-# pieces W = A + B ρ, with one on either side where nothing presses, and from ROOM on room to work.
+# pieces W = A + B ρ, with one on either side where nothing presses, or a base of any shape, and
+# from ROOM on room to work.
 
 
 class Ground(NamedTuple):
@@ -32,7 +34,9 @@ class Ground(NamedTuple):
     ``corners`` (m, 2) of those that are polygons, counter-clockwise, m; ``lever``: κ, 1/N;
     ``inner``: radius of the hole of the base over the outer, where the pressure is uniform;
     ``pressure``: its law; ``profile`` (p, 2): of a tabulated one, radii over r and W with
-    ∫ W ρ dρ = ½, straight between them.
+    ∫ W ρ dρ = ½, straight between them; ``base``: of ANY, in one array
+    (:func:`puck_tables.kernels.base_friction.packed`), with ``lever``: height of the centre of mass
+    over N, m/N.
     """
 
     across_x: float
@@ -45,17 +49,18 @@ class Ground(NamedTuple):
     inner: float
     pressure: int = UNIFORM
     profile: FloatArray = np.empty((0, 2))
+    base: FloatArray = np.empty(0)
 
     def packed(self) -> FloatArray:
         """In one array."""
         head = [0.0, 0.0, 1.0, self.lever, self.inner, self.across_x, self.across_y]
         tables = [self.borders, self.loads, self.patches.ravel(), self.corners.ravel()]
         at, rows = _HEAD + sum(table.size for table in tables), len(self.profile)
-        pieces = _pieces(self.profile) if rows else np.empty(0)
+        pieces = _pieces(self.profile) if rows else self.base
         counts = [
-            len(self.borders), len(self.patches), self.pressure, at, rows, at + pieces.size,
+            len(self.borders), len(self.patches), self.pressure, at, rows, at + pieces.size, 0.0,
         ]  # fmt: skip
-        room = np.zeros(_ROOM + _ROOM_A_ROW * rows if rows else 0)
+        room = np.zeros(_ROOM + _ROOM_A_ROW * rows if rows else room_for(self.base))
         return np.concatenate([head, counts, *tables, pieces, room]).astype(np.float64)
 
 

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 from puck_tables.scene.forces import Forces
-from puck_tables.scene.ground import PLACE_X, PLACE_Y
+from puck_tables.scene.ground import ANGLE, PLACE_X, PLACE_Y
 
 if TYPE_CHECKING:
     from puck_tables.scene.parts import Constraint, Launch
@@ -54,8 +54,8 @@ class Regions(NamedTuple):
     ``load``, ``delta``: arrays (regions,); ``cuts``: (regions, …), see
     :func:`puck_tables.motion.equations_of_motion.ratios_at`; ``by_speed`` takes the place of all.
     ``astride`` (regions,): where the base lies on several frictions of the ``ground``, see
-    :mod:`puck_tables.scene.astride`; there load and δ are the largest of them.  A run has its own
-    ground, in which it says where the base is.
+    :mod:`puck_tables.scene.astride`, or is not round; there load and δ are the largest of them.  A
+    run has its own ground, in which it says where the base is.
     """
 
     load: FloatArray
@@ -69,8 +69,9 @@ class Regions(NamedTuple):
 class Dry(NamedTuple):
     """Dry friction in one region; no load: none.
 
-    Of a base astride several frictions ``by_speed.table`` is their ground and its ``normal`` is
-    ASTRIDE: a record of its own would be handed on with every call, which costs all scenes more.
+    Of a base astride several frictions, or of one that is not round, ``by_speed.table`` is their
+    ground and its ``normal`` is ASTRIDE: a record of its own would be handed on with every call,
+    which costs all scenes more.
     """
 
     load: float
@@ -81,15 +82,16 @@ class Dry(NamedTuple):
 
 @inlined
 def is_astride(dry: Dry) -> bool:
-    """Whether the base lies on several frictions."""
+    """Whether the base lies on several frictions, or is not round."""
     return dry.by_speed.normal < 0.0
 
 
 @inlined
-def put_at(dry: Dry, x: float, y: float) -> None:
-    """Put the centre of the base at a place, which matters where it is astride."""
+def put_at(dry: Dry, x: float, y: float, angle: float) -> None:
+    """Put the base at a place, turned, which matters where it is astride, or not round."""
     if is_astride(dry):
-        dry.by_speed.table[PLACE_X], dry.by_speed.table[PLACE_Y] = x, y
+        ground = dry.by_speed.table
+        ground[PLACE_X], ground[PLACE_Y], ground[ANGLE] = x, y, angle
 
 
 class Surface(NamedTuple):

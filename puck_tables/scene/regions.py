@@ -59,6 +59,8 @@ def alone(load: FloatArray, delta: FloatArray, cuts: FloatArray, by_speed: BySpe
 def friction_error(scene: SceneSpec) -> float:
     """How wrong the friction ratios under the puck of a scene may be."""
     puck = scene.puck
+    if puck.shape is not None:
+        return CLOSED_FORM_ERROR
     if scene.floor.law:
         return law_error(scene)
     if scene.floor.orthotropic is not None:

@@ -159,7 +159,7 @@ def excess_at_rest(stretch: Stretch, t: float, y: FloatArray) -> Yield:
     gx, gy, torque = given_force(model.forces, stretch.piece, t)
     fx, fy = gx - body.mass * ax, gy - body.mass * ay
     dry = at_slip_zero(stretch.dry)
-    put_at(dry, y[X], y[Y])
+    put_at(dry, y[X], y[Y], y[THETA])
     guided = model.hold.kind != FREE
     if guided:
         return constrained_yield(

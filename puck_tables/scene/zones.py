@@ -8,7 +8,8 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.laws import Law
-from puck_tables.kernels.base_sums import GALIN, HERTZ, RING, TABLE, UNIFORM
+from puck_tables.kernels.base_friction import packed
+from puck_tables.kernels.base_sums import ANY, GALIN, HERTZ, RING, TABLE, UNIFORM
 from puck_tables.scene.floor_patches import corners_of
 from puck_tables.scene.ground import (
     NO_GROUND,
@@ -27,11 +28,11 @@ def ground_of(scene: SceneSpec, normal: float) -> FloatArray:
     --------
     >>> from puck_tables import Floor, Puck, Scene, Strips
     >>> floor = Floor(strips=Strips((0.1,), (0.3, 0.1)))
-    >>> ground_of(Scene(Puck(0.04), floor), 2.0)[13:16].tolist()
+    >>> ground_of(Scene(Puck(0.04), floor), 2.0)[14:17].tolist()
     [0.1, 0.6, 0.2]
     """
     floor, puck = scene.floor, scene.puck
-    if floor.strips is None and not floor.patches:
+    if floor.strips is None and not floor.patches and puck.shape is None:
         return NO_GROUND
     strips = floor.strips
     angle = 0.0 if strips is None else strips.direction
@@ -44,13 +45,18 @@ def ground_of(scene: SceneSpec, normal: float) -> FloatArray:
             reach = float(np.hypot(*(places - middle).T).max())
             corners.append(places)
         rows.append([*middle, reach, begin, len(places), normal * patch.friction])
-    law = puck.body.law
-    return Ground(
+    there = (
         math.cos(angle), math.sin(angle),
         np.array(() if strips is None else strips.borders, np.float64),
         normal * np.array((puck.friction,) if strips is None else strips.friction),
         np.array(rows).reshape(-1, PATCH_COLUMNS), np.concatenate(corners),
-        puck.height / (2.0 * puck.radius * law.mean_square * normal), hole_of(law),
+    )  # fmt: skip
+    if puck.shape is not None:
+        lever = 0.5 * puck.height / normal
+        return Ground(*there, lever, 0.0, ANY, base=packed(puck.shape, lever)).packed()
+    law = puck.body.law
+    return Ground(
+        *there, puck.height / (2.0 * puck.radius * law.mean_square * normal), hole_of(law),
         _PRESSURES.get(law.name, UNIFORM if law.profile is None else TABLE), _profile_of(law),
     ).packed()  # fmt: skip
 

@@ -42,7 +42,8 @@ def pieces_of(scene: SceneSpec) -> tuple[PieceSpec, ...]:
         kept["_pieces"] = (
             PieceSpec(
                 puck.radius, puck.height, puck.friction, puck.mass, puck.gravity, puck.pressure,
-                puck.gyration, launch=scene.launch, force=scene.force, constraint=scene.constraint,
+                puck.gyration, puck.base, launch=scene.launch, force=scene.force,
+                constraint=scene.constraint,
             ),
         )  # fmt: skip
     return kept["_pieces"]
@@ -126,6 +127,8 @@ def frictions_under(scene: SceneSpec, piece: PieceSpec, fastest: float = 0.0) ->
 def has_closed_forms(piece: PieceSpec, friction: float) -> bool:
     """Whether closed forms hold for a friction of a puck, or it is 0."""
     delta = 2.0 * friction * piece.height / piece.radius
+    if piece.shape is not None:
+        return True  # in sums of its own, which are exact
     return friction == 0.0 or is_plain(piece.pressure, piece.gyration, delta)
 
 
@@ -153,6 +156,7 @@ def is_integrated(scene: SceneSpec, piece: PieceSpec, friction: float) -> bool:
     """
     drags, floor = scene.drag != Drag(), scene.floor
     unlike = bool(floor.law) or floor.orthotropic is not None or flight_error(scene) < TABLE_ERROR
+    unlike = unlike or piece.shape is not None
     rough = friction > 0.0 and (drags or unlike or not has_closed_forms(piece, friction))
     turns = floor.turning != 0.0 and (friction > 0.0 or drags)
     more = floor.slope > 0.0 or piece.force != Force() or piece.constraint is not None
@@ -216,6 +220,7 @@ def _of_one(scene: SceneSpec, piece: PieceSpec, path: str) -> Iterator[str]:
                 f"{path}.{name} = {value:g}: must be from {_SMALLEST:g} to {_LARGEST:g} in a "
                 "scene, use other units"
             )
+    yield from _bad_base(scene, piece, path)
     if piece.path:
         for name, part, default in (
             ("launch", piece.launch, Launch(position=piece.launch.position)),
@@ -241,6 +246,27 @@ def _of_one(scene: SceneSpec, piece: PieceSpec, path: str) -> Iterator[str]:
             f"{path}.launch.time = {piece.launch.time:g}: a {hold.kind} that moves leads it "
             "at once, leave it out"
         )
+
+
+def _bad_base(scene: SceneSpec, piece: PieceSpec, path: str) -> Iterator[str]:
+    """What does not go with a base that is not round."""
+    if piece.shape is None:
+        return
+    if piece.path:
+        yield f"{path}.base: what is driven along a path needs no base, give its radius"
+    if piece.has_rim:
+        return
+    met = [name for name in CUSHIONS if getattr(scene, f"{name}s")]
+    met += ["puck"] if len(pieces_of(scene)) > 1 else []
+    if met:
+        yield (
+            f"{path}.radius is missing: a body that may meet a {met[0]} needs a round rim around "
+            f"its base, {path}.radius, of at least {piece.shape.reach:.6g} m"
+        )
+    usual = PieceSpec(1.0)
+    for name in ("restitution", "tangential", "rim"):
+        if getattr(piece, name) != getattr(usual, name):
+            yield f"{path}.{name}: a base without a rim meets nothing, give {path}.radius, or none"
 
 
 def _strange_rims(scene: SceneSpec) -> Iterator[str]:

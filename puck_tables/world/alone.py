@@ -7,7 +7,7 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 from puck_tables.scene.forces import given_by
-from puck_tables.scene.friction import VX, VY, X, Y, dry_friction, size
+from puck_tables.scene.friction import THETA, VX, VY, X, Y, dry_friction, size
 from puck_tables.scene.ingredients import carried_along, put_at
 from puck_tables.world.footing import dry_under, over_floor
 from puck_tables.world.game import Game, Whole
@@ -68,7 +68,7 @@ def acceleration(game: Game, i: int, t: float, state: FloatArray) -> tuple[float
         ax, ay = cx + left * (ax - cx), cy + left * (ay - cy)
     else:
         dry = dry_under(game.regions, game.discs, i)
-        put_at(dry, state[X], state[Y])
+        put_at(dry, state[X], state[Y], state[THETA])
         fx, fy, torque, _ = dry_friction(dry, disc[RADIUS], ux, uy, w)
         dx, dy, slows, _, _ = dragged(disc, ux, uy, w)
         ax += disc[LIGHTNESS] * fx + dx

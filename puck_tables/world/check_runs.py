@@ -40,7 +40,11 @@ def error_of(world: World, start: Start) -> float:
     states, stops = world.over(probes), world.motion_ends
     share, off = _launches_off(start, alone), 0.0
     if start.game.floors[:, 2].any():
-        slides = {(one.height, one.friction, one.pressure): one for one in pieces if not one.path}
+        slides = {
+            (one.height, one.friction, one.pressure, one.shape is None): one
+            for one in pieces
+            if not one.path
+        }
         off = max(friction_error(start.scene.alone(one)) for one in slides.values())
     gaps = []
     for coarser, sign in CHECKS:

@@ -6,7 +6,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import kernel, patience
-from puck_tables.scene.friction import SPIN, VX, VY, X, Y, dry_friction
+from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y, dry_friction
 from puck_tables.scene.ingredients import put_at
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.footing import dry_under
@@ -23,7 +23,7 @@ def _forces(game: Game, states: FloatArray, out: FloatArray) -> None:
     for n in range(states.shape[0]):
         patience(1)
         y = states[n]
-        put_at(dry, y[X], y[Y])
+        put_at(dry, y[X], y[Y], y[THETA])
         fx, fy, torque, _ = dry_friction(dry, radius, y[VX], y[VY], y[SPIN])
         out[n, 0], out[n, 1], out[n, 2] = fx, fy, torque
 

@@ -43,11 +43,12 @@ def floors_of(scene: SceneSpec, pieces: list[PieceSpec], fastest: float) -> Floa
     Astride the largest of them.  ``fastest``: a slip to which a friction law is looked at, m/s.
     """
     frictions = [frictions_under(scene, piece, fastest) for piece in pieces]
-    by_slip = scene.floor.law or scene.floor.orthotropic is not None
+    by_slip = bool(scene.floor.law) or scene.floor.orthotropic is not None
     rows = []
     for place in range(len(frictions[0])):
         for piece, given in zip(pieces, frictions, strict=True):
-            how = NOT_HELD if by_slip else float(is_integrated(scene, piece, given[place]))
+            unheld = by_slip or (piece.shape is not None and not piece.path)
+            how = NOT_HELD if unheld else float(is_integrated(scene, piece, given[place]))
             rows.append(_row(scene, piece, given[place], how))
     if has_several(scene):
         for piece, given in zip(pieces, frictions, strict=True):
@@ -59,6 +60,8 @@ def _row(scene: SceneSpec, piece: PieceSpec, friction: float, how: float) -> lis
     if piece.path:
         return [0.0, 0.0, 0.0]
     decel = friction * piece.gravity * math.cos(scene.floor.slope)
+    if piece.shape is not None:
+        return [decel, 0.0, how]  # its height stands with its base
     return [decel, 2.0 * friction * piece.height / piece.radius, how]
 
 
@@ -89,6 +92,7 @@ def regions_of(
         return alone(normals * axes[:2].max(), delta, none, BySpeed(axes, 0.0, 1.0, 1.0))
     there = [[(piece, f) for f in frictions_under(scene, piece)] for piece in pieces]
     places = [one for rows in zip(*there, strict=True) for one in rows]
+    shaped = np.array([piece.shape is not None and not piece.path for piece, _ in places])
     loads = np.array([
         0.0 if piece.path else normal_on(scene, piece) * friction for piece, friction in places
     ])  # fmt: skip
@@ -102,14 +106,15 @@ def regions_of(
             section_of(piece, 2.0 * friction * piece.height / piece.radius, scene.tol)
             for piece, friction in places
         ])  # fmt: skip
-    ground = NO_GROUND
-    if has_several(scene):
+    ground, several = NO_GROUND, has_several(scene)
+    if several:
         most = loads.reshape(-1, len(pieces)).max(axis=0)
         loads, cuts = np.concatenate([loads, most]), np.concatenate([cuts, cuts[: len(pieces)]])
+    if several or shaped.any():
         grounds = [ground_of(scene.alone(piece), normal_on(scene, piece)) for piece in pieces]
         size = max(map(len, grounds))  # what they end with is room for radii
         ground = np.concatenate([np.pad(own, (0, size - len(own))) for own in grounds])
-    astride = np.arange(count) >= len(places)
+    astride = np.concatenate([shaped, np.ones(count - len(places), np.bool_)])
     return Regions(loads, delta, cuts, NO_LAW, astride, ground)
 
 

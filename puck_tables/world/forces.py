@@ -145,7 +145,7 @@ def act(
         sx, sy, turning = floor_velocity(group.surface, y[place, X], y[place, Y])
         ux, uy, w = vx - sx, vy - sy, spin - turning
         dry = dry_under(group.regions, group.discs, number)
-        put_at(dry, y[place, X], y[place, Y])
+        put_at(dry, y[place, X], y[place, Y], y[place, THETA])
         if doing == YIELDS:
             way = desk.ways[place]
             fx, fy, torque, _ = dry_friction(at_slip_zero(dry), radius, way[0], way[1], way[2])
@@ -219,7 +219,7 @@ def excess_on(
     """By how much what acts on a disc at rest exceeds its friction, over f N, and the slip then."""
     disc = group.discs[members[place]]
     dry = at_slip_zero(dry_under(group.regions, group.discs, members[place]))
-    put_at(dry, y[place, X], y[place, Y])
+    put_at(dry, y[place, X], y[place, Y], y[place, THETA])
     fx, fy, torque = _asked_of_floor(group, members, place, count, desk)
     kind = int(disc[HOLD])
     if kind == FREE:

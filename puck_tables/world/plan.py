@@ -51,7 +51,7 @@ def plan_of(scene: SceneSpec) -> tuple[str, str]:
         force, hold = piece.force, piece.constraint
         key = (
             piece.radius, piece.height, piece.friction, piece.gravity, str(piece.pressure),
-            piece.gyration, force.constant, force.torque, bool(force.over_time),
+            piece.gyration, str(piece.base), force.constant, force.torque, bool(force.over_time),
             hold and hold.kind, bool(piece.path),
         )  # fmt: skip
         if key not in known:
@@ -70,7 +70,7 @@ def plan_of(scene: SceneSpec) -> tuple[str, str]:
             "a look-up would be cheaper, but it is of what only dry friction and a belt act on"
         )
     if has_several(scene):
-        piled = any(piece.body.law.profile is not None for piece in pieces)
+        piled = any(one.shape is None and one.body.law.profile is not None for one in pieces)
         lines.append(
             "while a base is astride several frictions they are integrated over its parts, about "
             f"{'forty' if piled else 'ten'} times the cost of a step elsewhere"
@@ -109,6 +109,8 @@ def _way_of(scene: SceneSpec, piece: PieceSpec) -> str:
     if any(integrated):
         if not all(has_closed_forms(piece, one) for one in frictions):
             acts.append("no closed forms")
+        if piece.shape is not None:
+            acts.append("a base that is not round")
         if flight_error(scene) < TABLE_ERROR:
             acts.append(_CLOSER)
         where = "" if all(integrated) else " on some of the floor"

@@ -184,7 +184,7 @@ def _fill_disc(
     disc[layout.FRICTION] = piece.rim
     if piece.path:
         return
-    inertia = piece.mass * (piece.gyration * piece.radius) ** 2
+    inertia = piece.mass * piece.inertia_radius**2
     disc[layout.LIGHTNESS], disc[layout.TURNABILITY] = 1.0 / piece.mass, 1.0 / inertia
     disc[layout.PULL_X : layout.TWIST + 1] = _pull_on(scene, piece, inertia)
     disc[layout.HOLD : layout.HOLD_PLACE + 1] = _hold_on(piece)

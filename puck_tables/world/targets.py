@@ -220,7 +220,7 @@ def out_of_reach(scene: SceneSpec, target: Target, speed: float, spin: float) ->
         )
         ways.append((striker, max(min(gaps), 0.0)))
     needed = sum(_LEAST_SHARE * one.decel * one.mass * length for one, length in ways)
-    rim = striker.gyration * striker.radius * spin
+    rim = striker.inertia_radius * spin
     given = 0.5 * striker.mass * (speed * speed + rim * rim)
     if given >= needed:
         return ""

@@ -1,0 +1,224 @@
+"""Scenes of pucks on bases that are not round: known runs, floors, rest, and what is refused."""
+
+import math
+import tomllib
+from typing import Any
+
+import numpy as np
+import pytest
+
+from puck_tables import (
+    Base,
+    ContactError,
+    Edge,
+    Floor,
+    Force,
+    InputError,
+    Launch,
+    Orthotropic,
+    Patch,
+    Piece,
+    Puck,
+    Scene,
+    Strips,
+    Wall,
+)
+from puck_tables.scene.scene_text import as_toml
+from puck_tables.world.floor_forces import friction_at
+
+TRIANGLE = [(-0.04, -0.03), (0.08, -0.03), (-0.04, 0.06)]
+# launch and end (t, x, y, angle), by an independent program: DOP853 in dt/Q at 1e-12, with another
+# form of the integral
+KNOWN = {
+    "triangle": (
+        Puck(base=Base.polygon(TRIANGLE), friction=0.25),
+        Launch(velocity=(0.8, 0.0), spin=-15.0),
+        (0.4234099378, 0.1608519283, 0.0011112212, -3.4301195933),
+    ),
+    "box": (
+        Puck(base="box:0.2x0.1", friction=0.3),
+        Launch(velocity=(1.0, 0.0), spin=10.0, orientation=math.pi / 6),
+        (0.4421850099, 0.2097666929, 0.0019267285, 3.0053561162),
+    ),
+    "disc off its middle": (
+        Puck(base="disc:0.05@0.01,0", friction=0.2, gyration=math.sqrt(0.00125 - 0.0001)),
+        Launch(velocity=(1.0, 0.0), spin=20.0),
+        (0.6756148494, 0.3187052185, -0.0001404809, 7.3656062776),
+    ),
+}
+BASES = {
+    "bar": Base.box(0.3, 0.02),
+    "L": Base.polygon([(0, 0), (0.2, 0), (0.2, 0.05), (0.05, 0.05), (0.05, 0.1), (0, 0.1)]),
+    "frame": Base.polygon(
+        [(0, 0), (0.2, 0), (0.2, 0.1), (0, 0.1)],
+        holes=[[(0.05, 0.02), (0.15, 0.02), (0.15, 0.08), (0.05, 0.08)]],
+    ),
+    "feet": Base.feet([(0.08, 0.0), (-0.05, 0.05), (-0.05, -0.05)], 0.01),
+    "washer": Base.annulus(0.08, 0.05, centre=(0.01, 0.0)),
+}
+
+
+@pytest.mark.parametrize("name", KNOWN)
+def test_known_runs(name: str) -> None:
+    puck, launch, end = KNOWN[name]
+    run = Scene(puck, launch=launch).simulate([0.0])
+    found = (run.end_time, *(run.last[key] for key in ("x", "y", "orientation")))
+    assert np.abs(np.subtract(found, end)).max() < 2e-10
+    assert run.end == "at rest" and run.error_estimate < 1e-9
+    assert abs(run.energy_residual) < 1e-12
+
+
+def on_floor(seed: int) -> dict[str, Any]:
+    """A drawn floor, and what else acts."""
+    rng = np.random.default_rng(seed)
+    kinds: list[dict[str, Any]] = [
+        {"floor": Floor(slope=float(rng.uniform(0.02, 0.12)))},
+        {"floor": Floor(velocity=tuple(rng.normal(scale=0.4, size=2).tolist())), "time": 1.5},
+        {"floor": Floor(turning=float(rng.normal()), centre=(0.2, 0.1)), "time": 1.0},
+        {"force": Force(constant=(0.1, 0.2), torque=1e-3)},
+        {"floor": Floor(strips=Strips((0.1, 0.18, 0.21), (0.2, 0.05, 0.4, 0.1), direction=0.4))},
+    ]
+    return kinds[seed % len(kinds)]
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_disc_by_its_base_is_the_round_puck(seed: int) -> None:
+    height = 0.05 if seed % 2 else 0.0
+    launch = Launch(velocity=(1.0, 0.2), spin=12.0)
+    ends = []
+    for puck in (Puck(0.05, height, 0.2), Puck(base="disc:0.05", height=height, friction=0.2)):
+        run = Scene(puck, launch=launch, **on_floor(seed)).simulate([0.0])
+        ends.append([run.end_time, *(run.last[key] for key in ("x", "y", "orientation"))])
+    assert np.abs(np.subtract(*ends)).max() < 1e-9
+
+
+def quadrature(base: Base, cut: Any, state: Any, lever: float, floor: Strips | None) -> Any:
+    """Force and torque by a fine grid over the base in the laboratory: f of each point, N = 1."""
+    x, y, angle, vx, vy, w = state
+    low, high = base.points().min(axis=0), base.points().max(axis=0)
+    n = 1500
+    px, py = np.meshgrid(
+        *(a + (np.arange(n) + 0.5) / n * (b - a) for a, b in zip(low, high, strict=True))
+    )
+    on = cut(px, py)
+    px, py = px[on] - base.middle[0], py[on] - base.middle[1]
+    c, s = math.cos(angle), math.sin(angle)
+    rx, ry = c * px - s * py, s * px + c * py
+    ux, uy = vx - w * ry, vy + w * rx
+    slip = np.hypot(ux, uy)
+    ex, ey = ux / slip, uy / slip
+    f = np.full(len(rx), 0.2)
+    if floor is not None:
+        across = math.cos(floor.direction) * (x + rx) + math.sin(floor.direction) * (y + ry)
+        f = np.array(floor.friction)[np.searchsorted(floor.borders, across)]
+    ones = np.ones_like(rx)
+    rows = np.stack([ones, rx, ry])
+    balance = rows @ rows.T
+    pull = np.stack([np.zeros(3), -(f * ex) @ rows.T * lever, -(f * ey) @ rows.T * lever])
+    load = np.linalg.solve(balance + pull, [1.0, 0.0, 0.0]) @ rows
+    fx, fy = -(f * load * ex).sum(), -(f * load * ey).sum()
+    return np.array([fx, fy, -(f * load * (rx * ey - ry * ex)).sum()])
+
+
+CUTS: dict[str, Any] = {
+    "bar": lambda x, y: np.ones(x.shape, bool),
+    "L": lambda x, y: (y < 0.05) | (x < 0.05),
+    "frame": lambda x, y: ~((abs(x - 0.1) < 0.05) & (abs(y - 0.05) < 0.03)),
+    "feet": lambda x, y: np.any(
+        [np.hypot(x - a, y - b) < 0.01 for a, b in ((0.08, 0), (-0.05, 0.05), (-0.05, -0.05))],
+        axis=0,
+    ),
+    "washer": lambda x, y: (np.hypot(x, y) < 0.08) & (np.hypot(x, y) > 0.05),
+}
+
+
+@pytest.mark.parametrize("several", [False, True])
+@pytest.mark.parametrize("name", BASES)
+def test_friction_is_that_of_a_grid_over_the_base(name: str, several: bool) -> None:
+    rng = np.random.default_rng(7)
+    strips = Strips((-0.03, 0.02, 0.05), (0.2, 0.05, 0.3, 0.1), direction=0.7) if several else None
+    base = BASES[name]
+    height = 1.9 * base.highest_lever / 0.3  # of which none of the frictions lifts it
+    puck = Puck(base=base, friction=0.2, height=height, gravity=1.0, gyration=0.1)
+    scene = Scene(puck, Floor(strips=strips) if strips else Floor())
+    states = np.column_stack([
+        rng.normal(scale=0.05, size=(4, 2)), rng.uniform(0.0, 6.0, 4),
+        rng.normal(size=(4, 2)), rng.normal(scale=15.0, size=4),
+    ])  # fmt: skip
+    found = friction_at(scene, states)
+    for state, forces in zip(states.tolist(), found, strict=True):
+        wanted = quadrature(base, CUTS[name], state, 0.5 * height, strips)
+        gap = np.abs(forces - wanted) / [1.0, 1.0, base.reach]
+        assert gap.max() < 1e-4  # of the grid: a cell at the rim is in or out
+
+
+def test_a_square_turns_when_the_torque_is_that_of_its_friction() -> None:
+    side, friction, gravity = 0.1, 0.3, 10.0
+    limit = (math.sqrt(2.0) + math.log(1.0 + math.sqrt(2.0))) / 6.0 * friction * gravity * side
+    square = Puck(base=f"box:{side}x{side}", friction=friction, gravity=gravity)
+    for share, end in ((1.0 - 1e-9, "at rest"), (1.0 + 1e-9, "time is up")):
+        run = Scene(square, force=Force(torque=share * limit), time=1.0).simulate([0.0])
+        assert run.end == end, share
+
+
+def test_a_block_holds_on_a_slope_to_its_angle_of_friction() -> None:
+    for base in ("box:0.3x0.02", "disc:0.05@0.005,0"):
+        block = Puck(base=base, friction=0.25, height=0.02, gyration=0.05)
+        for slope, end in ((math.atan(0.25) - 1e-9, "at rest"), (math.atan(0.25) + 1e-6, "moves")):
+            run = Scene(block, Floor(slope=slope), time=0.5).simulate([0.0])
+            assert (run.end == "at rest") == (end == "at rest"), (base, slope)
+
+
+def test_a_stone_on_a_running_band_meets_a_wall_by_its_rim() -> None:
+    stone = Piece(
+        0.14, base="annulus:0.065x0.06", friction=0.1, gyration=0.1, restitution=0.8,
+        launch=Launch(velocity=(1.0, 0.0), spin=2.0), name="stone",
+    )  # fmt: skip
+    run = Scene(pucks=[stone], walls=[Wall((0.3, 0.0), normal=(-1.0, 0.0))]).simulate()
+    impact = next(event for event in run.events if event.what == "impact")
+    assert abs(impact.x - 0.3) < 1e-9  # where they touch
+
+
+REFUSED: dict[str, tuple[dict[str, Any], str]] = {
+    "law": ({"floor": Floor(law=((0.0, 0.3), (1.0, 0.2)))}, "floor.law: not known under a base"),
+    "direction": ({"floor": Floor(orthotropic=Orthotropic((0.2, 0.1)))}, "floor.orthotropic"),
+    "patch": ({"floor": Floor(patches=[Patch(0.1, (0.0, 0.0), 0.2)])}, "floor.patch: not known"),
+    "lifts": ({"floor": Floor(strips=Strips((0.0,), (0.2, 5.0)))}, "part of the base would lift"),
+    "wall": ({"walls": [Wall((1.0, 0.0), normal=(-1.0, 0.0))]}, "puck.radius is missing"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_is_not_known_is_refused(name: str) -> None:
+    parts, words = REFUSED[name]
+    with pytest.raises(InputError, match=words):
+        Scene(Puck(base="box:0.2x0.1", friction=0.2, height=0.02), **parts)
+
+
+def test_numbers_of_a_puck_on_a_base_are_checked() -> None:
+    for numbers, words in (
+        ({"base": "box:0.2x0.1", "friction": 0.3, "height": 0.2}, "height of 0.0993808"),
+        ({"base": "box:0.2x0.1@0.06,0", "friction": 0.3}, "part of it would lift"),
+        ({"base": "box:0.2x0.1@0.01,0", "friction": 0.3}, "gyration is missing"),
+        ({"base": "box:0.2x0.1", "radius": 0.1}, "not be less than the reach"),
+        ({"base": "box:0.2x0.1", "pressure": "ring"}, "pressure laws are of round pucks"),
+        ({"base": "boxes:0.2x0.1"}, "no base is called"),
+        ({"base": "box:0.2"}, "box takes 2 lengths"),
+        ({"base": "none.csv"}, "none.csv"),
+        ({}, "radius is missing"),
+    ):
+        with pytest.raises((InputError, ContactError), match=words):
+            Puck(**numbers)  # type: ignore[arg-type]
+
+
+def test_a_base_goes_into_a_file_and_comes_back() -> None:
+    scene = Scene.from_tables({
+        "puck": {"base": "box:20cmx10cm", "friction": 0.3},
+        "launch": {"velocity": [1.0, 0.0], "spin": 10.0, "orientation": math.pi / 6},
+        "edge": [{"point": [5.0, 0.0], "normal": [-1.0, 0.0]}],
+    })  # fmt: skip
+    assert scene.edges == (Edge((5.0, 0.0), normal=(-1.0, 0.0)),)
+    again = Scene.from_tables(tomllib.loads(as_toml(scene)))
+    assert again == scene
+    run = again.simulate([0.0])
+    assert abs(run.end_time - KNOWN["box"][2][0]) < 2e-10
