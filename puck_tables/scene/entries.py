@@ -64,7 +64,8 @@ def entries(part: Any, prefix: str = "") -> Iterator[Entry]:
     >>> [entry.path for entry in entries(Edge((0.0, 1.0), normal=(0.0, -1.0)), "edge[0].")]
     ['edge[0].point', 'edge[0].normal']
     """
-    for name, table, kind, doc, default, acts in _told(type(part)):
+    whole: Any = type(part)
+    for name, table, kind, doc, default, acts in _told(whole):
         value, path = getattr(part, name), prefix + table
         if kind.shape == "part" and value is not None:
             yield from entries(value, f"{path}.")

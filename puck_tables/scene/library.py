@@ -189,7 +189,8 @@ def files_of(scene: SceneSpec) -> dict[str, str]:
 
 def _named_in(part: Any, prefix: str) -> Iterator[tuple[str, str]]:
     """Path and name of every file that a scene or a part of it names."""
-    for spec, table, kind in _may_name(type(part)):
+    whole: Any = type(part)
+    for spec, table, kind in _may_name(whole):
         value, path = getattr(part, spec), prefix + table
         if kind.shape == "part":
             yield from () if value is None else _named_in(value, f"{path}.")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.scene.friction import VX, X, Y
@@ -36,8 +37,8 @@ def _told(game: g.Game) -> list[Rest]:
     flights, kinds = game.history[: len(discs), 2:], game.history[: len(discs), 1]
     starts, stops = flights[:, START], np.where(kinds == LOOKED_UP, flights[:, UNTIL], ends)
     near, rows = at_rest_below(game), game.discs
-    resting = slips_over(game, discs, states) <= near
-    moves = ~resting.all(axis=1)
+    resting: npt.NDArray[np.bool_] = np.less_equal(slips_over(game, discs, states), near)
+    moves: npt.NDArray[np.bool_] = np.logical_not(resting.all(axis=1))
     unsure = np.flatnonzero((kinds == PATH) & ~moves & (starts < ends))  # perhaps rest to rest
     if unsure.size:
         middles = np.minimum([middle_of(game, n) for n in unsure.tolist()], ends[unsure])
