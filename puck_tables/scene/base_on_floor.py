@@ -12,14 +12,17 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.base_friction import (
+    AREA,
     DISC_COLUMNS,
     DISCS,
     HEAD,
     SIDES,
     base_sums,
     disc_at,
+    is_uniform,
     pressure_at,
     pressure_on,
+    uniform_sums,
 )
 from puck_tables.kernels.base_friction import REACH as BASE_REACH
 from puck_tables.kernels.base_parts import beyond_sums
@@ -194,8 +197,14 @@ def friction_of_base(
     ``moving`` 0: with the friction at slip zero, whatever the slip.
     """
     c, s = math.cos(ground[ANGLE]), math.sin(ground[ANGLE])
+    base = ground[int(ground[PROFILE]) :]
+    if ground[BORDERS] == 0.0 and ground[ROWS] == 0.0 and is_uniform(base):
+        x, y, turning = uniform_sums(base, c * ux + s * uy, c * uy - s * ux, w)
+        mean = ground[SHARE] * load_of(ground, 0) / base[AREA]
+        fx, fy, torque = mean * (c * x - s * y), mean * (s * x + c * y), mean * turning
+        return -fx, -fy, -torque, fx * ux + fy * uy + torque * w
     sums = _friction_sums(ground, c * ux + s * uy, c * uy - s * ux, w, moving)
-    a, bx, by = pressure_on(ground[int(ground[PROFILE]) :], sums)
+    a, bx, by = pressure_on(base, sums)
     fx, fy, torque = _under(sums, a, bx, by, c, s)
     return -fx, -fy, -torque, fx * ux + fy * uy + torque * w
 
