@@ -43,7 +43,7 @@ _POWERS = DEGREE + 1
 
 
 @inlined
-def _piece(law: FloatArray, u: float) -> tuple[int, float]:
+def _polynomials_at(law: FloatArray, u: float) -> tuple[int, float]:
     """Where the polynomials of a slip speed begin, and its t; the last piece goes on."""
     low, high = 1, 1 + int(law[0])
     while high - low > 1:
@@ -60,7 +60,7 @@ def _piece(law: FloatArray, u: float) -> tuple[int, float]:
 @inlined
 def _moments(law: FloatArray, u: float) -> tuple[float, float, float]:
     """H₁, H₂ and H₃ at a slip speed."""
-    first, t = _piece(law, u)
+    first, t = _polynomials_at(law, u)
     h1, h2, h3 = 0.0, 0.0, 0.0
     for power in range(_POWERS - 1, -1, -1):
         h1 = h1 * t + law[first + _POWERS + power]
@@ -71,7 +71,7 @@ def _moments(law: FloatArray, u: float) -> tuple[float, float, float]:
 
 @inlined
 def _coefficient(law: FloatArray, u: float) -> float:
-    first, t = _piece(law, u)
+    first, t = _polynomials_at(law, u)
     f = 0.0
     for power in range(_POWERS - 1, -1, -1):
         f = f * t + law[first + power]
