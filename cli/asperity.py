@@ -7,15 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
-from puck_tables.cli.options import (
-    FILE,
-    LENGTH,
-    deliver,
-    note,
-    output_options,
-    prepare_outputs,
-    progress,
-)
+from puck_tables.cli.options import FILE, LENGTH, Outputs, outputs
+from puck_tables.cli.printing import note, progress
 from puck_tables.cli.values import NumberParam, RangeParam
 
 from puck_tables.errors import InputError
@@ -37,24 +30,12 @@ MOST_LEAPS = 5  # more are no single steps of the force
 @click.option(
     "--speeds", type=RangeParam("m/s"), help="In m/s.  [default: 0 to 2.5 V0 in 501 steps]"
 )
-@click.option(
-    "-o",
-    "--output",
-    type=FILE,
-    metavar="FILE",
-    help="Save the curve: .h5 or .csv.  Without -o and --plot, CSV goes to stdout.",
-)
-@click.option(
-    "--law",
-    type=FILE,
-    metavar="FILE",
-    help="Save greatest force over load against speed: a CSV that floor.law of a scene takes.",
-)
-@output_options
+@click.option("--law", type=FILE, metavar="FILE", help="Save greatest force over load against "
+              "speed: a CSV that floor.law of a scene takes.")  # fmt: skip
+@outputs("Save the curve: .h5 or .csv.  Without -o and --plot, CSV goes to stdout.")
 def asperity(
     amplitude: float, wavelength: float, load: float, mass: float | None,
-    speeds: float | tuple[float, float, int] | None, output: Path | None, law: Path | None,
-    plot: Path | None, overwrite: bool,
+    speeds: float | tuple[float, float, int] | None, law: Path | None, out: Outputs,
 ) -> None:  # fmt: skip
     """Draw friction against speed for a point on a wavy one-sided support.
 
@@ -68,36 +49,29 @@ def asperity(
     puck asperity --amplitude 2e-6 --wavelength 4e-5 --load 5 --speeds 0:0.03:301 -o curve.csv
     puck asperity --wavelength 0.001 --amplitude 1e-5 --speeds 0:0.2:41 --law rough.csv
     """  # noqa: D301 - click reads the backspace
-    prepare_outputs(output, plot=plot, others=(law,), overwrite=overwrite)
-    if plot is not None and isinstance(speeds, float):
+    out.prepare(others=(law,))
+    if out.plot is not None and isinstance(speeds, float):
         raise InputError("--plot needs a range: give --speeds START:STOP:COUNT")
     import numpy as np
 
     from puck_tables.chetaev.asperity_forces import asperity_curve
     from puck_tables.chetaev.asperity_shape import Asperity
-    from puck_tables.io.csv import encode
     from puck_tables.motion.body import STANDARD_GRAVITY
 
-    support = Asperity(
-        amplitude,
-        wavelength / (2.0 * math.pi),
-        load,
-        load / STANDARD_GRAVITY if mass is None else mass,
-    )
+    heavy = load / STANDARD_GRAVITY if mass is None else mass
+    support = Asperity(amplitude, wavelength / (2.0 * math.pi), load, heavy)
     if speeds is None:
         speeds = 0.0, DEFAULT_TOP * support.lift_speed, DEFAULT_COUNT
     count = speeds[2] if isinstance(speeds, tuple) else np.size(speeds)
     if count > MAX_SPEEDS:
         raise InputError(f"--speeds asks for {count} speeds: at most {MAX_SPEEDS}")
-    asked = np.linspace(*speeds) if isinstance(speeds, tuple) else np.atleast_1d(speeds)
+    held = np.linspace(*speeds) if isinstance(speeds, tuple) else np.atleast_1d(speeds)
     with progress("speeds") as show:
-        result = asperity_curve(support, asked, show)
-    deliver(result, output, plot, overwrite)
+        result = asperity_curve(support, held, show)
+    out.deliver(result, printed=law is None)
     if law is not None:
-        result.law().to_csv(law, overwrite)
+        result.law().to_csv(law, out.overwrite)
         note(law)
-    if output is None and law is None and plot is None:
-        click.echo(encode(result.dataset()).decode(), nl=False)
     click.echo(_summary(result), err=True)
 
 

@@ -8,52 +8,29 @@ from typing import Any
 import click
 from puck_tables.cli.completion import laws
 from puck_tables.cli.info import describe
-from puck_tables.cli.options import FILE, NUMBER, note, prepare_outputs, printable, progress
+from puck_tables.cli.options import FILE, NUMBER, Outputs
+from puck_tables.cli.printing import note, progress, say
 
 from puck_tables.errors import InputError
 
 
 @click.command("build-tables")
-@click.option(
-    "--kind",
-    type=click.Choice(["resultants", "stops"]),
-    default="resultants",
-    show_default=True,
-    help="Friction resultants in full contact, or stops and the way to them.",
-)
-@click.option(
-    "--pressure",
-    metavar="LAW",
-    shell_complete=laws,
-    help="Resultants under uniform, galin, hertz, ring, annulus:INNER or a profile FILE.csv "
-    "(columns rho in units of r, and W).  [default: uniform]",
-)
-@click.option(
-    "--speed-law",
-    type=FILE,
-    metavar="FILE",
-    help="Resultants with a coefficient that depends on the slip speed: CSV of speed in m/s and f.",
-)
-@click.option(
-    "--accuracy",
-    type=NUMBER,
-    help="Largest error: of resultants 1e-13 to 0.01 [default: 2e-11], of those under other laws "
-    "than uniform pressure 1e-11 to 0.01 [default: 1e-9], of stops 1e-11 to 0.01 in units of Q/J "
-    "and Q^2/J [default: 1e-10], with --speed-law 1e-13 to 0.01 of the largest f [default: 1e-6].",
-)
-@click.option(
-    "--cells",
-    type=int,
-    help="Grid size by hand instead: cells on each side of each singular line, at least 4, for "
-    "stops 8.",
-)
-@click.option(
-    "-o",
-    "--output",
-    type=FILE,
-    metavar="FILE",
-    help="The table file.  [default: KIND.h5 or LAW.h5, here]",
-)
+@click.option("--kind", type=click.Choice(["resultants", "stops"]), default="resultants",
+              show_default=True, help="Friction resultants in full contact, or stops and the way "
+              "to them.")  # fmt: skip
+@click.option("--pressure", metavar="LAW", shell_complete=laws,
+              help="Resultants under uniform, galin, hertz, ring, annulus:INNER or a profile "
+              "FILE.csv (columns rho in units of r, and W).  [default: uniform]")  # fmt: skip
+@click.option("--speed-law", type=FILE, metavar="FILE", help="Resultants with a coefficient that "
+              "depends on the slip speed: CSV of speed in m/s and f.")  # fmt: skip
+@click.option("--accuracy", type=NUMBER, help="Largest error: of resultants 1e-13 to 0.01 "
+              "[default: 2e-11], of those under other laws than uniform pressure 1e-11 to 0.01 "
+              "[default: 1e-9], of stops 1e-11 to 0.01 in units of Q/J and Q^2/J [default: 1e-10], "
+              "with --speed-law 1e-13 to 0.01 of the largest f [default: 1e-6].")  # fmt: skip
+@click.option("--cells", type=int, help="Grid size by hand instead: cells on each side of each "
+              "singular line, at least 4, for stops 8.")  # fmt: skip
+@click.option("-o", "--output", type=FILE, metavar="FILE",
+              help="The table file.  [default: KIND.h5 or LAW.h5, here]")  # fmt: skip
 @click.option("--overwrite", is_flag=True, help="Replace the file if it exists.")
 def build_tables(
     kind: str, pressure: str | None, speed_law: Path | None, accuracy: float | None,
@@ -82,7 +59,7 @@ def build_tables(
     path = Path(f"{stem}.h5") if output is None else output
     if path.suffix.lower() != ".h5":
         raise InputError(f"{path}: a table is an HDF5 file: give a name that ends in .h5")
-    prepare_outputs(others=(path,), overwrite=overwrite, inputs=(speed_law, pressure))
+    Outputs(path, overwrite=overwrite).prepare(speed_law, pressure, saved=False)
     options = {"--accuracy": accuracy, "--cells": cells}
     given = [f"{name} {value}" for name, value in options.items() if value is not None]
     grid = {} if cells is None else {"cells": cells}
@@ -92,7 +69,7 @@ def build_tables(
         table = Table.build(of, accuracy, progress=show, **grid)
         saved = table.save(path, overwrite, " ".join(["puck build-tables", *words, *given]))
     note(path)
-    click.echo(printable(describe(saved)))
+    say(describe(saved))
 
 
 def _wanted(kind: str, pressure: str | None, speed_law: Path | None) -> tuple[Any, str, list[str]]:

@@ -6,7 +6,8 @@ import webbrowser
 from pathlib import Path
 
 import click
-from puck_tables.cli.options import FILE, note, prepare_outputs
+from puck_tables.cli.options import FILE, Outputs
+from puck_tables.cli.printing import note
 
 from puck_tables.errors import InputError, OutputError
 
@@ -33,7 +34,7 @@ def explore(output: Path | None, overwrite: bool) -> None:
     if output is not None:
         if output.suffix.lower() not in (".html", ".htm"):
             raise InputError(f"{output}: the explorer is a page: call it FILE.html")
-        prepare_outputs(others=(output,), overwrite=overwrite)
+        Outputs(output, overwrite=overwrite).prepare(saved=False)
         write_bytes(output, explorer_page().encode(), overwrite)
         note(output)
         return

@@ -5,32 +5,23 @@ from __future__ import annotations
 from pathlib import Path
 
 import click
-from puck_tables.cli.options import FILE, NUMBER, body_options, chosen_puck, note, prepare_outputs
+from puck_tables.cli.options import FILE, NUMBER, Outputs, PuckChoice, body_options, packed
+from puck_tables.cli.printing import note
 
 
 @click.command()
 @click.option("--language", required=True, metavar="NAME", help="c, js or python.")
-@click.option(
-    "--what",
-    default="stop,state,resultants",
-    show_default=True,
-    metavar="PARTS",
-    help="Where and when launches stop, states at any time, friction resultants.",
-)
-@click.option(
-    "--tol",
-    type=NUMBER,
-    default=1e-6,
-    show_default=True,
-    help="Largest error, in units of Q/J, Q^2/J, Q: 1e-9 to 0.01.",
-)
-@body_options()
+@click.option("--what", default="stop,state,resultants", show_default=True, metavar="PARTS",
+              help="Where and when launches stop, states at any time, friction resultants."
+              )  # fmt: skip
+@click.option("--tol", type=NUMBER, default=1e-6, show_default=True,
+              help="Largest error, in units of Q/J, Q^2/J, Q: 1e-9 to 0.01.")  # fmt: skip
+@packed("choice", PuckChoice, *body_options())
 @click.option("-o", "--output", type=FILE, required=True, metavar="FILE", help="The file.")
 @click.option("--overwrite", is_flag=True, help="Replace an output file that exists.")
 def export(
-    language: str, what: str, tol: float, pressure: str, gyration: float | None, output: Path,
-    overwrite: bool,
-) -> None:  # fmt: skip
+    language: str, what: str, tol: float, choice: PuckChoice, output: Path, overwrite: bool
+) -> None:
     """Write one self-contained source file that computes motions without this program.
 
     The tables are in it, as small as the error allows, the licence, and self_test, which returns
@@ -47,9 +38,8 @@ def export(
 
     parts = checked_request(language, what, tol)
     checked_ending(output, language)
-    prepare_outputs(inputs=(pressure,), others=(output,), overwrite=overwrite)
-    puck = chosen_puck(None, None, None, None, None, None, pressure, gyration)
-    source = export_source(language, parts, tol, puck)
+    Outputs(output, overwrite=overwrite).prepare(choice.pressure, saved=False)
+    source = export_source(language, parts, tol, choice.puck())
     source.save(output, overwrite)
     click.echo(repr(source), err=True)
     note(output)

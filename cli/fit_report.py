@@ -3,96 +3,95 @@
 from __future__ import annotations
 
 import math
+from itertools import combinations
 from typing import TYPE_CHECKING
+
+from puck_tables.cli.printing import columns, listed
 
 if TYPE_CHECKING:
     from puck_tables.fitting.fit_result import Fit
     from puck_tables.fitting.numbers import Number
 
+_WIDTH = 15  # of names
 _DIGITS = 9  # after the point: more are written with a power of ten
 
 
 def report(result: Fit) -> str:
     """What was found, plainly first, then the numbers."""
-    lines = [_plainly(result), ""]
-    for name, number in result.numbers.items():
-        if number.how != "known":
-            lines.append(f"{name:<15} {_shown(number)}")
-    known = [
-        f"{name} {number.value:g}{_unit(number)}" for name, number in result.numbers.items()
-        if number.how == "known"
+    numbers = result.numbers
+    known = [f"{n} {one.value:g}{_unit(one)}" for n, one in numbers.items() if one.how == "known"]
+    lines = [
+        _plainly(result), "",
+        _lines({name: _shown(one) for name, one in numbers.items() if one.how != "known"}),
+        _lines({"taken as known": ", ".join(known), "pressure": result.puck.body.law.name}),
+        *_correlations(result),
     ]  # fmt: skip
-    lines += [
-        f"{'taken as known':<15} {', '.join(known)}",
-        f"{'pressure':<15} {result.puck.body.law.name}",
-    ]
-    lines += [f"{'correlation':<15} {text}" for text in _correlations(result)]
     for launch in result.launches:
-        v, w = launch.numbers, launch.numbers["launch_spin"]
-        lines += [
-            f"\nlaunch of {launch.name}, at {launch.time:g} s",
-            f"{'  place':<15} ({launch.place[0]:.6g}, {launch.place[1]:.6g}) m "
-            f"{_errors(v['launch_x'], v['launch_y'])}",
-            f"{'  velocity':<15} ({launch.velocity[0]:.6g}, {launch.velocity[1]:.6g}) m/s "
-            f"{_errors(v['launch_vx'], v['launch_vy'])}",
-            f"{'  spin':<15} {_spin(result, w)}",
-        ]
+        v, (x, y), (vx, vy) = launch.numbers, launch.place, launch.velocity
+        errors = _errors(v["launch_vx"], v["launch_vy"])
+        lines += [f"\nlaunch of {launch.name}, at {launch.time:g} s", _lines({
+            "  place": f"({x:.6g}, {y:.6g}) m {_errors(v['launch_x'], v['launch_y'])}",
+            "  velocity": f"({vx:.6g}, {vy:.6g}) m/s {errors}",
+            "  spin": _spin(result, v["launch_spin"]),
+        })]  # fmt: skip
     for one in result.impacts:
-        degrees = math.degrees(one.wall) % 360.0
-        what = f"{one.partner}" if one.partner else "a wall"
+        ratio = one.mass_ratio
         lines += [
             f"\nimpact of {one.track} at {one.time:.6g} s, ({one.place[0]:.5g}, "
-            f"{one.place[1]:.5g}) m, on {what} at {degrees:.4g} degrees from x",
-            f"{'  restitution':<15} {_shown(one.restitution)}",
-            f"{'  rim':<15} {_shown(one.rim)} (tangential over normal impulse)",
-        ]
-        if one.mass_ratio is not None and one.mass_ratio.how != "known":
-            lines.append(f"{'  mass ratio':<15} {_shown(one.mass_ratio)}")
-    angled = any(film.angle is not None for film in result.estimate.problem.films)
-    how = ["given" if known else "from the residuals" for known in result.noise_known[:2]]
-    noise = f"places {1e3 * result.noise[0]:.3g} mm ({how[0]})"
-    if angled:
-        noise += f", angles {1e3 * result.noise[1]:.3g} mrad ({how[1]})"
-    if result.jitter:
-        how_stamps = "given" if result.noise_known.jitter else "from the residuals"
-        noise += f", time stamps {1e3 * result.jitter:.3g} ms ({how_stamps})"
-    lines += [
-        "",
-        f"{'noise':<15} {noise}",
-        f"{'chi^2':<15} {result.chi2:.5g} for {result.degrees} degrees of freedom",
-        f"{'left out':<15} {100.0 * result.outliers:.3g} % of the observations, as outliers",
-        *_left_out(result),
-        f"{'residuals':<15} probability of such a pattern by chance: runs {result.runs:.2g}, "
-        f"drift {result.drift:.2g}",
-    ]
+            f"{one.place[1]:.5g}) m, on {one.partner or 'a wall'} at "
+            f"{math.degrees(one.wall) % 360.0:.4g} degrees from x",
+            _lines({
+                "  restitution": _shown(one.restitution),
+                "  rim": f"{_shown(one.rim)} (tangential over normal impulse)",
+                **({} if ratio is None or ratio.how == "known" else
+                   {"  mass ratio": _shown(ratio)}),
+            }),
+        ]  # fmt: skip
+    chance = f"runs {result.runs:.2g}, drift {result.drift:.2g}"
+    lines += ["", _lines({
+        "noise": _noise(result),
+        "chi^2": f"{result.chi2:.5g} for {result.degrees} degrees of freedom",
+        "left out": f"{100.0 * result.outliers:.3g} % of the observations, as outliers",
+    })]  # fmt: skip
+    lines += [  # frames at either end that are no free motion
+        _lines({"cut off": f"the first {first} and the last {last} frames of {name}: no free "
+                "motion"}) for name, first, last in result.left_out if first or last
+    ]  # fmt: skip
+    lines.append(_lines({"residuals": f"probability of such a pattern by chance: {chance}"}))
     if speeds := result.estimate.problem.spec.speeds:
         fewer = result.constant_chi2 - result.chi2
-        lines += [
-            "", f"{'slip speeds':<15} {', '.join(f'{u:g}' for u in speeds)} m/s, of friction_0 and "
-            f"so on; chi^2 is {fewer:.4g} less than with one friction for {len(speeds) - 1} more "
-            "numbers",
-        ]  # fmt: skip
+        lines += ["", _lines({"slip speeds": (
+            f"{', '.join(f'{u:g}' for u in speeds)} m/s, of friction_0 and so on; chi^2 is "
+            f"{fewer:.4g} less than with one friction for {len(speeds) - 1} more numbers"
+        )})]  # fmt: skip
     if result.laws:
-        lines += ["", *_laws(result)]
-    if result.held_out is not None:
-        held = result.held_out
-        lines += [
-            "",
-            f"{'held out':<15} {held.z_place.size + held.z_angle.size} observations of "
-            f"{', '.join(held.tracks)}: {100.0 * held.inside:.3g} % within 95 % of their "
-            f"prediction, z rms {held.rms:.3g} (if all is right 1, by chance {held.chance[0]:.3g} "
-            f"to {held.chance[1]:.3g} in 95 of 100 films)",
-        ]
+        lines += ["", _laws(result)]
+    if (held := result.held_out) is not None:
+        lines += ["", _lines({"held out": (
+            f"{held.z_place.size + held.z_angle.size} observations of {', '.join(held.tracks)}: "
+            f"{100.0 * held.inside:.3g} % within 95 % of their prediction, z rms {held.rms:.3g} "
+            f"(if all is right 1, by chance {held.chance[0]:.3g} to {held.chance[1]:.3g} in 95 of "
+            "100 films)"
+        )})]  # fmt: skip
     return "\n".join(lines)
 
 
-def _left_out(result: Fit) -> list[str]:
-    """Frames at either end that are no free motion."""
-    return [
-        f"{'cut off':<15} the first {first} and the last {last} frames of {name}: no free motion"
-        for name, first, last in result.left_out
-        if first or last
-    ]
+def _lines(entries: dict[str, str]) -> str:
+    return listed(entries, _WIDTH)
+
+
+def _noise(result: Fit) -> str:
+    """Of places, angles and time stamps, and where it is known from."""
+    of_angles = any(film.angle is not None for film in result.estimate.problem.films)
+    parts = zip(
+        (f"places {1e3 * result.noise[0]:.3g} mm", f"angles {1e3 * result.noise[1]:.3g} mrad",
+         f"time stamps {1e3 * result.jitter:.3g} ms"),
+        result.noise_known, (True, of_angles, bool(result.jitter)), strict=True,
+    )  # fmt: skip
+    return ", ".join(
+        f"{words} ({'given' if known else 'from the residuals'})"
+        for words, known, shown in parts if shown
+    )  # fmt: skip
 
 
 def _plainly(result: Fit) -> str:
@@ -173,22 +172,18 @@ def _spin(result: Fit, spin: Number) -> str:
 def _correlations(result: Fit) -> list[str]:
     """Of each two numbers that were found."""
     table = result.correlation()
-    names = list(table)
     return [
-        f"{one} and {other}: {table[one][other]:.3f}"
-        for n, one in enumerate(names) for other in names[n + 1 :]
-        if math.isfinite(table[one][other])
+        _lines({"correlation": f"{one} and {other}: {table[one][other]:.3f}"})
+        for one, other in combinations(table, 2) if math.isfinite(table[one][other])
     ]  # fmt: skip
 
 
-def _laws(result: Fit) -> list[str]:
+def _laws(result: Fit) -> str:
     """The laws compared, line by line."""
-    best = result.laws[0]
-    lines = [f"{'law':<18} {'chi^2':>10} {'more':>9} {'unknowns':>9} {'weight':>8}  found"]
-    for law in result.laws:
-        numbers = ", ".join(f"{name} {value:.4g}" for name, value in law.numbers.items())
-        lines.append(
-            f"{law.name:<18} {law.chi2:>10.5g} {law.chi2 - best.chi2:>9.4g} {law.unknowns:>9} "
-            f"{law.weight:>8.2g}  {numbers}"
-        )
-    return lines
+    heads = {"law": "", "chi^2": ".5g", "more": ".4g", "unknowns": "d", "weight": ".2g",
+             "found": ""}  # fmt: skip
+    return columns(heads, (
+        (law.name, law.chi2, law.chi2 - result.laws[0].chi2, law.unknowns, law.weight,
+         ", ".join(f"{name} {value:.4g}" for name, value in law.numbers.items()))
+        for law in result.laws
+    ), most=200)  # fmt: skip

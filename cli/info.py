@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
-from puck_tables.cli.options import FILE, printable, tables_named
+from puck_tables.cli.options import FILE, tables_named
+from puck_tables.cli.printing import columns, listed, say
 
 if TYPE_CHECKING:
     from puck_tables.table.table import Table
@@ -19,7 +20,7 @@ def info(file: Path | None) -> None:
 
     Without FILE: the tables that come along.
     """
-    click.echo(printable("\n\n".join(describe(table) for table in tables_named(file))))
+    say("\n\n".join(describe(table) for table in tables_named(file)))
 
 
 def describe(table: Table) -> str:
@@ -34,21 +35,18 @@ def describe(table: Table) -> str:
         "tolerance": f"{table.tolerance:g}",
         "measured": f"at {accuracy.points} random and adversarial points ({table.errors}):",
     }
-    columns = {"largest": accuracy.largest, "rms": accuracy.rms, "99.9 %": accuracy.p999}
-    text = [f"{name:<11} {value}" for name, value in lines.items()]
-    text.append(
-        f"{'':<26}" + "".join(f"{name:>10}" for name in columns) + f"   at phi, {table.second}"
-    )
-    for i, name in enumerate(table.quantities):
-        errors = "".join(f"{values[i]:>10.1e}" for values in columns.values())
-        place = f"{accuracy.at_phi[i]:.6g}, {accuracy.at_second[i]:.6g}"
-        text.append(f"{'':<11} {name:<14}{errors}   {place}")
-    rest = {"order": f"{accuracy.order:.2f} in phi, against half the cells"}
-    if not accuracy.order:
-        rest = {"order": "not measured"}
-    rest |= {
+    heads = {"": "", "largest": ".1e", "rms": ".1e", "99.9 %": ".1e", "at phi": ".6g"}
+    errors = zip(
+        table.quantities, accuracy.largest, accuracy.rms, accuracy.p999, accuracy.at_phi,
+        accuracy.at_second, strict=True,
+    )  # fmt: skip
+    order = f"{accuracy.order:.2f} in phi, against half the cells"
+    rest = {
+        "order": order if accuracy.order else "not measured",
         "made by": f"{said['command']}  (puck-tables {said['package_version']}, {said['created']})",
         "format": f"{said['format']} {said['format_version']}",
         "digest": f"sha256 {said['digest'][:16]}..., right",
     }
-    return "\n".join(text + [f"{name:<11} {value}" for name, value in rest.items()])
+    return "\n".join(
+        [listed(lines, 11), columns({**heads, table.second: ".6g"}, errors), listed(rest, 11)]
+    )

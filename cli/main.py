@@ -12,6 +12,7 @@ import io
 import os
 import signal
 import sys
+from functools import partial
 from typing import Any
 
 import click
@@ -25,7 +26,7 @@ from puck_tables.cli.export import export
 from puck_tables.cli.fit import fit
 from puck_tables.cli.info import info
 from puck_tables.cli.limit_surface import limit_surface
-from puck_tables.cli.options import printable, said_first
+from puck_tables.cli.printing import printable, progress
 from puck_tables.cli.reference import reference
 from puck_tables.cli.scene import scene
 from puck_tables.cli.simulate import simulate
@@ -137,7 +138,7 @@ def _drop(stream: Any) -> None:
 @click.version_option(__version__, package_name="puck-tables", prog_name="puck")
 def main() -> None:
     """Motion of a flat puck that slides and spins under dry friction, until it stops."""
-    watchers[:] = [said_first]
+    watchers[:] = [partial(progress, begin=True)]
     del endings.last_words[1:]
 
 

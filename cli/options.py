@@ -1,291 +1,275 @@
-"""Options that several commands share, and how their values are read."""
+"""Options that several commands share, and what they make together: a puck, outputs."""
 
 from __future__ import annotations
 
 import json
 import os
-import sys
-import time
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable
+from dataclasses import asdict, dataclass
+from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 from puck_tables.cli.completion import laws
-from puck_tables.cli.values import NumberParam
+from puck_tables.cli.printing import note, say
+from puck_tables.cli.values import NumberParam, not_none
 
 from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
     from puck_tables.puck import Puck
-    from puck_tables.result import Result, TimedResult
-    from puck_tables.table.resultant_table import ResultantTable
+    from puck_tables.result import Result
     from puck_tables.table.table import Table
 
 Command = TypeVar("Command", bound=Callable[..., Any])
-Progress = Callable[[int, int], None]
+Option = Callable[[Command], Command]
 
 # dimensionless, m/s²: of a puck that nothing is said of, as the library has it
 DEFAULT_DELTA, DEFAULT_DECEL = 0.5, 1.0
-QUIET_TIME, BETWEEN_LINES = 2.0, 10.0  # s, where stderr is no terminal
+RESULTS = ".h5, .csv, .json, .jsonl or .parquet"
 
 NUMBER, LENGTH, SPEED, SPIN, TIME = map(NumberParam, ("", "m", "m/s", "rad/s", "s"))
 FILE = click.Path(readable=False, path_type=Path)
 
 
-def puck_options(mass: bool, kind: type[NumberParam] = NumberParam) -> Callable[[Command], Command]:
-    """The puck and the floor: by δ and J, or by dimensions and friction; numbers of one kind."""
-    options = [
-        click.option(
-            "--radius",
-            type=kind("m"),
-            help="Radius r in m, or with its unit: 38.1mm.  [default: 1]",
-        ),
-        click.option(
-            "--height",
-            type=kind("m"),
-            help="Height h of the puck in m, twice that of its centre of mass; with --friction.",
-        ),
-        click.option("--friction", type=kind(), help="Coulomb coefficient f; with --height."),
-        click.option("--gravity", type=kind("m/s^2"), help="Gravity in m/s^2.  [default: 9.80665]"),
-        click.option("--decel", type=kind("m/s^2"), help="J = f g in m/s^2 instead.  [default: 1]"),
-    ]
-    if mass:
-        options.insert(
-            4, click.option("--mass", type=NumberParam("kg"), help="Mass in kg (energies, forces).")
-        )
+def packed(name: str, make: Callable[..., Any], *options: Option[Any]) -> Option[Command]:
+    """Options that a command gets as one argument: what is made of them by their names."""
 
     def decorate(command: Command) -> Command:
+        @wraps(command)
+        def whole(*arguments: Any, **values: Any) -> Any:
+            mine = {one: values.pop(one) for one in names}
+            return command(*arguments, **values, **{name: make(**mine)})
+
+        before = len(getattr(whole, "__click_params__", ()))
         for option in reversed(options):
-            command = option(command)
-        return command
+            option(whole)
+        names = [one.name for one in getattr(whole, "__click_params__")[before:]]  # noqa: B009
+        return whole  # type: ignore[return-value]
 
     return decorate
+
+
+def puck_options(
+    mass: bool = False, kind: type[NumberParam] = NumberParam, many: bool = False
+) -> list[Option[Any]]:
+    """The puck and the floor: by δ and J, or by dimensions and friction; numbers of one kind.
+
+    ``many``: whether several pressure laws may be given.
+    """
+    heavy = click.option("--mass", type=NumberParam("kg"), help="Mass in kg (energies, forces).")
+    return [
+        click.option("--delta", type=kind(), help="delta = 2 f h / r.  [default: 0.5]"),
+        click.option("--radius", type=kind("m"),
+                     help="Radius r in m, or with its unit: 38.1mm.  [default: 1]"),
+        click.option("--height", type=kind("m"), help="Height h of the puck in m, twice that of "
+                     "its centre of mass; with --friction."),
+        click.option("--friction", type=kind(), help="Coulomb coefficient f; with --height."),
+        click.option("--gravity", type=kind("m/s^2"),
+                     help="Gravity in m/s^2.  [default: 9.80665]"),
+        *([heavy] if mass else []),
+        click.option("--decel", type=kind("m/s^2"), help="J = f g in m/s^2 instead.  [default: 1]"),
+        *body_options(kind, many),
+    ]  # fmt: skip
+
+
+base_option = click.option(
+    "--base", metavar="BASE", help="In place of --radius: box:LENGTHxWIDTH, disc:RADIUS, "
+    "annulus:RADIUSxINNER, in m or with units (box:20cmx10cm), or a CSV file of corners x, y; @X,Y "
+    "after it is the centre of mass.  --gyration is then in m.",
+)  # fmt: skip
 
 
 def body_options(
     kind: type[NumberParam] = NumberParam, many: bool = False
-) -> Callable[[Command], Command]:
-    """The kind of puck: how it presses on the floor and how its mass is spread.
-
-    ``kind``: of the radius of gyration; ``many``: whether several laws may be given.
-    """
+) -> tuple[Option[Any], Option[Any]]:
+    """The kind of puck: how it presses on the floor and how its mass is spread."""
     words = "Contact pressure: uniform, galin, hertz, ring, annulus:INNER, or a CSV file of rho, W."
     if many:
         words += "  As often as wanted; annulus:START:STOP:COUNT is a range of them."
-    options = [
-        click.option(
-            "--gyration",
-            type=kind(),
-            help="Radius of gyration about the vertical axis over r (a ratio, also with --radius), "
-            "0.1 to 10.  [default: 0.7071, homogeneous]",
-        ),
-        click.option(
-            "--pressure",
-            metavar="LAW",
-            shell_complete=laws,
-            default=("uniform",) if many else "uniform",
-            multiple=many,
-            show_default=True,
-            help=words,
-        ),
-    ]
-
-    def decorate(command: Command) -> Command:
-        for option in options:
-            command = option(command)
-        return command
-
-    return decorate
+    return (
+        click.option("--pressure", metavar="LAW", shell_complete=laws, multiple=many, help=words,
+                     default=("uniform",) if many else "uniform", show_default=True),
+        click.option("--gyration", type=kind(),
+                     help="Radius of gyration about the vertical axis over r (a ratio, also with "
+                     "--radius), 0.1 to 10.  [default: 0.7071, homogeneous]"),
+    )  # fmt: skip
 
 
-def base_option(command: Command) -> Command:
-    """The base of a puck that is not round, or whose centre of mass is not its middle."""
-    return click.option(
-        "--base",
-        metavar="BASE",
-        help="In place of --radius: box:LENGTHxWIDTH, disc:RADIUS, annulus:RADIUSxINNER, in m or "
-        "with units (box:20cmx10cm), or a CSV file of corners x, y; @X,Y after it is the centre of "
-        "mass.  --gyration is then in m.",
-    )(command)
+@dataclass(frozen=True)
+class PuckChoice:
+    """A puck from either set of options: by its dimensions and friction, or by δ and J."""
 
+    pressure: str
+    gyration: float | None = None
+    radius: float | None = None
+    height: float | None = None
+    friction: float | None = None
+    gravity: float | None = None
+    delta: float | None = None
+    decel: float | None = None
+    mass: float | None = None
+    base: str | None = None
 
-def output_options(command: Command) -> Command:
-    """Where results go."""
-    for option in (
-        click.option(
-            "--overwrite",
-            is_flag=True,
-            help="Replace output files that exist; pictures and movies always are.",
-        ),
-        click.option("--plot", type=FILE, metavar="FILE", help="Draw: .png, .svg or .pdf."),
-    ):
-        command = option(command)
-    return command
-
-
-def table_option(command: Command) -> Command:
-    """Which table to use."""
-    return click.option(
-        "--table", "table_path", type=FILE, metavar="FILE",
-        help="Table file of 'puck build-tables'.  [default: the one that comes along]",
-    )(command)  # fmt: skip
-
-
-def json_option(command: Command) -> Command:
-    """A report as JSON."""
-    return click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")(command)
-
-
-def explain_option(command: Command) -> Command:
-    """Whether to say what the tolerance led to."""
-    return click.option(
-        "--explain", is_flag=True, help="Say which method was taken, and why (on stderr)."
-    )(command)
-
-
-def explained(result: Result) -> None:
-    """Say on stderr how a result was got."""
-    click.echo(printable(result.explain()), err=True)
-
-
-def reported(result: Any, explain: bool, as_json: bool, in_words: Callable[[Any], str]) -> None:
-    """A report on stdout, in words or as JSON; if asked for, on stderr how it was got."""
-    if explain:
-        explained(result)
-    if as_json:
-        click.echo(json.dumps(result.summary(), allow_nan=False))
-    else:
-        click.echo(printable(in_words(result)))
-
-
-def chosen_puck(
-    radius: float | None,
-    height: float | None,
-    friction: float | None,
-    gravity: float | None,
-    delta: float | None,
-    decel: float | None,
-    pressure: str,
-    gyration: float | None,
-    mass: float | None = None,
-    base: str | None = None,
-) -> Puck:
-    """The puck from either set of options: by its dimensions and friction, or by δ and J.
-
-    On a base it is flat where no height is given, and has f = 1 where no friction is.
-
-    Raises
-    ------
-    InputError
-        If options of both sets are given (naming two of them), or one set is not complete.
-    """
-    from puck_tables.puck import Puck
-
-    kind = {"pressure": pressure, "gyration": gyration, "mass": mass}
-    real = {"--height": height, "--friction": friction, "--gravity": gravity}
-    scaled = {"--delta": delta, "--decel": decel}
-    given_real = [name for name, value in real.items() if value is not None]
-    given_scaled = [name for name, value in scaled.items() if value is not None]
-    if given_real and given_scaled:
-        raise InputError(
-            f"{given_real[0]} and {given_scaled[0]} clash: give the real puck (--radius --height "
-            "--friction --gravity) or the scaled one (--radius --delta --decel)"
+    @property
+    def note(self) -> str:
+        """What is said where nothing of it was chosen."""
+        return (
+            "" if len(not_none(asdict(self))) > 1 else "   (defaults: see --help for a real puck)"
         )
-    if base is not None:
-        if radius is not None or delta is not None:
-            other = "--radius" if radius is not None else "--delta"
-            raise InputError(f"--base and {other} clash: {other} is of round pucks")
-        if given_real and friction is None:
-            raise InputError(f"{given_real[0]} needs --friction too")
-        if not given_real:
-            friction, gravity = 1.0, DEFAULT_DECEL if decel is None else decel
-        numbers = {"height": height, "friction": friction, "gravity": gravity}
-        return Puck(**_only(base=base, **numbers, **kind))
-    if given_real:
-        needed = {"--radius": radius, "--height": height, "--friction": friction}
-        missing = [name for name, value in needed.items() if value is None]
+
+    def puck(self) -> Puck:
+        """The puck; on a base it is flat without a height, and has f = 1 without a friction.
+
+        Raises
+        ------
+        InputError
+            If options of both sets are given (naming two of them), or one set is not complete.
+        """
+        from puck_tables.puck import Puck
+
+        chosen = not_none(asdict(self))
+        real = [name for name in ("height", "friction", "gravity") if name in chosen]
+        scaled = [name for name in ("delta", "decel") if name in chosen]
+        if real and scaled:
+            raise InputError(
+                f"--{real[0]} and --{scaled[0]} clash: give the real puck (--radius --height "
+                "--friction --gravity) or the scaled one (--radius --delta --decel)"
+            )
+        if self.base is not None:
+            for other in ("radius", "delta"):
+                if other in chosen:
+                    raise InputError(f"--base and --{other} clash: --{other} is of round pucks")
+            if real and "friction" not in chosen:
+                raise InputError(f"--{real[0]} needs --friction too")
+            if not real:
+                chosen |= {"friction": 1.0, "gravity": chosen.pop("decel", DEFAULT_DECEL)}
+            return Puck(**chosen)
+        if not real:
+            return Puck.similar(**chosen)
+        missing = [f"--{n}" for n in ("radius", "height", "friction") if n not in chosen]
         if missing:
             raise InputError(
-                f"{given_real[0]} needs {' and '.join(missing)} too: a real puck is given by "
+                f"--{real[0]} needs {' and '.join(missing)} too: a real puck is given by "
                 "--radius --height --friction (and --gravity)"
             )
-        dimensions = {"radius": radius, "height": height, "friction": friction, "gravity": gravity}
-        return Puck(**_only(**dimensions, **kind))
-    return Puck.similar(**_only(radius=radius, delta=delta, decel=decel, **kind))
+        return Puck(**chosen)
 
 
-def _only(**values: Any) -> dict[str, Any]:
-    """Those that were given."""
-    return {name: value for name, value in values.items() if value is not None}
+@dataclass(frozen=True)
+class Outputs:
+    """Where a result goes: files, a picture, a movie, and what is printed of it."""
 
+    output: Path | None = None
+    plot: Path | None = None
+    overwrite: bool = False
+    movie: Path | None = None
+    explain: bool = False
+    as_json: bool = False
 
-def prepare_outputs(
-    *outputs: Path | None, plot: Path | None = None, movie: Path | None = None,
-    others: Iterable[Path | None] = (), overwrite: bool, inputs: Iterable[Path | str | None] = (),
-) -> None:  # fmt: skip
-    """Refuse, before any work, what could not be written, or would replace what is read.
+    def prepare(
+        self, *inputs: Path | str | None, others: Iterable[Path | None] = (), saved: bool = True
+    ) -> None:
+        """Refuse, before any work, what could not be written, or would replace what is read.
 
-    Parameters
-    ----------
-    outputs : files of results, in the format that the ending says
-    plot, movie : a picture, a movie
-    others : further files that are written
-    overwrite : whether existing files may be replaced; a picture or movie may by another
-    inputs : the files that the command reads; names that are no files are left out
-    """
-    from puck_tables._core.safe_write import check_target
-    from puck_tables.io.formats import encoder_for
+        Parameters
+        ----------
+        inputs : the files that the command reads; names that are no files are left out
+        others : further files that are written
+        saved : whether the output is a result, in the format that its ending says
+        """
+        from puck_tables._core.safe_write import check_target
+        from puck_tables.io.formats import encoder_for
+        from puck_tables.plot.style import checked_kind, may_replace, require_matplotlib
 
-    for path in outputs:
-        if path is not None:
-            encoder_for(path)
-    if plot is not None:
-        from puck_tables.plot.style import checked_kind, require_matplotlib
+        if saved and self.output is not None:
+            encoder_for(self.output)
+        if self.plot is not None:
+            checked_kind(self.plot)
+            require_matplotlib()
+        if self.movie is not None:
+            from puck_tables.plot.movie import checked_movie
 
-        checked_kind(plot)
-        require_matplotlib()
-    if movie is not None:
-        from puck_tables.plot.movie import checked_movie
-
-        checked_movie(movie)
-    chosen: list[Path] = []
-    for path in (*outputs, plot, movie, *others):
-        if path is None:
-            continue
-        target = check_target(path, overwrite or (path in (plot, movie) and _redrawn(path)))
-        for other in chosen:
-            if _same(target, other):
+            checked_movie(self.movie)
+        chosen: list[Path] = []
+        for path in (self.output, self.plot, self.movie, *others):
+            if path is None:
+                continue
+            again = path in (self.plot, self.movie) and may_replace(path)
+            target = check_target(path, self.overwrite or again)
+            if any(_same(target, other) for other in chosen):
                 raise InputError(f"{path} is named for two outputs: give two file names")
-        for read in inputs:
-            if read is not None and os.path.isfile(read) and _same(target, Path(read)):
+            if any(read and os.path.isfile(read) and _same(target, Path(read)) for read in inputs):
                 raise InputError(f"{path} is read by this command: give the output another name")
-        chosen.append(path)
+            chosen.append(path)
+
+    def deliver(self, result: Any, printed: bool = False, empty: bool = False) -> None:
+        """Save, draw and film a result, and say so on stderr; what is empty is not drawn.
+
+        ``printed``: whether CSV goes to stdout where no file is named.
+        """
+        if self.output is not None:
+            result.save(self.output, self.overwrite)
+            note(self.output)
+        if self.plot is not None and empty:
+            click.echo(f"no picture: there is nothing to draw in {self.plot}", err=True)
+        elif self.plot is not None:
+            result.plot(self.plot, overwrite=self.overwrite)
+            note(self.plot)
+        if self.movie is not None:
+            result.movie(self.movie, self.overwrite)
+            note(self.movie)
+        if printed and self.output is None and self.plot is None:
+            from puck_tables.io.csv import encode
+
+            click.echo(encode(result.dataset()).decode(), nl=False)
+
+    def report(self, result: Result, in_words: Callable[[Any], str]) -> None:
+        """A report on stdout, in words or as JSON; if asked for, on stderr how it was got."""
+        if self.explain:
+            say(result.explain(), err=True)
+        if self.as_json:
+            summary: Any = result.summary()  # type: ignore[attr-defined]
+            click.echo(json.dumps(summary, allow_nan=False))
+        else:
+            say(in_words(result))
 
 
-def _redrawn(path: Path) -> bool:
-    """Whether a picture or a movie lies there, that is drawn again without a word."""
-    from puck_tables.plot.style import may_replace
+def outputs(
+    save: str | None = f"Save: {RESULTS}.", *, plot: bool = True, movie: bool = False,
+    explain: bool = False, as_json: bool = False,
+) -> Option[Command]:  # fmt: skip
+    """Where results go, as ``out``; ``save``: the help of -o, if there is one."""
+    options: list[Option[Any]] = []
+    if explain:
+        options.append(click.option(
+            "--explain", is_flag=True, help="Say which method was taken, and why (on stderr)."
+        ))  # fmt: skip
+    if as_json:
+        options.append(json_option)
+    if save is not None:
+        options.append(click.option("-o", "--output", type=FILE, metavar="FILE", help=save))
+    if movie:
+        options.append(click.option(
+            "--movie", type=FILE, metavar="FILE", help="Show the motion: .html (one file for any "
+            "browser, with a time slider), .gif or .mp4.",
+        ))  # fmt: skip
+    words = "Replace output files that exist."
+    if plot:
+        options.append(
+            click.option("--plot", type=FILE, metavar="FILE", help="Draw: .png, .svg or .pdf.")
+        )
+        words = "Replace output files that exist; pictures and movies always are."
+    options.append(click.option("--overwrite", is_flag=True, help=words))
+    return packed("out", Outputs, *options)
 
-    return may_replace(path)
 
-
-def deliver(result: Result, output: Path | None, plot: Path | None, overwrite: bool) -> None:
-    """Save and draw a result, and say so on stderr."""
-    if output is not None:
-        result.save(output, overwrite)
-        note(output)
-    if plot is not None:
-        result.plot(plot, overwrite=overwrite)
-        note(plot)
-
-
-def filmed(run: TimedResult, movie: Path | None, overwrite: bool) -> None:
-    """Make a movie of a motion, and say so on stderr."""
-    if movie is not None:
-        run.movie(movie, overwrite)
-        note(movie)
+json_option = click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+table_option = click.option(
+    "--table", "table_path", type=FILE, metavar="FILE",
+    help="Table file of 'puck build-tables'.  [default: the one that comes along]",
+)  # fmt: skip
 
 
 def _same(one: Path, other: Path) -> bool:
@@ -295,67 +279,8 @@ def _same(one: Path, other: Path) -> bool:
     return os.path.realpath(one) == os.path.realpath(other)
 
 
-def printable(text: str) -> str:
-    r"""A text, perhaps from a file, without what a terminal would obey.
-
-    Examples
-    --------
-    >>> printable("red: " + chr(27) + "[31m")
-    'red: \\x1b[31m'
-    """
-    return "".join(
-        sign if sign.isprintable() or sign == "\n" else repr(sign)[1:-1] for sign in text
-    )
-
-
-def open_table(path: Path | None) -> ResultantTable:
-    """The table of resultants asked for."""
-    from puck_tables.table.resultant_table import ResultantTable
-
-    return ResultantTable.shipped() if path is None else ResultantTable.load(path)
-
-
 def tables_named(path: Path | None) -> list[Table]:
     """The table in a file, of any kind, or those that come along."""
     from puck_tables.table.table import Table
 
     return [Table.shipped(), Table.shipped("stops")] if path is None else [Table.load(path)]
-
-
-def note(path: Path) -> None:
-    """Say on stderr that a file was written."""
-    click.echo(f"wrote {click.format_filename(path)}", err=True)
-
-
-@contextmanager
-def progress(label: str) -> Iterator[Progress]:
-    """A progress bar on stderr; where that is no terminal a line now and then, if it takes long."""
-    if sys.stderr is None:
-        yield lambda done, total: None
-        return
-    if not sys.stderr.isatty():
-        due = time.monotonic() + QUIET_TIME
-
-        def say(done: int, total: int) -> None:
-            nonlocal due
-            if time.monotonic() >= due:
-                click.echo(f"{label}: {100 * done // total} %", err=True)
-                due = time.monotonic() + BETWEEN_LINES
-
-        yield say
-        return
-    with click.progressbar(length=1000, label=label, file=sys.stderr, show_pos=False) as bar:
-
-        def show(done: int, total: int) -> None:
-            bar.update(1000 * done // total - bar.pos)
-
-        yield show
-
-
-@contextmanager
-def said_first(label: str) -> Iterator[Progress]:
-    """The same for work that nobody asked for by name: said before it begins."""
-    if sys.stderr is not None and not sys.stderr.isatty():
-        click.echo(label, err=True)
-    with progress(label) as show:
-        yield show

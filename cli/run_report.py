@@ -6,14 +6,20 @@ import math
 from dataclasses import is_dataclass
 from typing import TYPE_CHECKING, Any
 
+from puck_tables.cli.printing import columns, listed
+
 if TYPE_CHECKING:
     from puck_tables.scene.run import Event, Run
     from puck_tables.scene.scene_spec import SceneSpec
 
 MOST_PARTS = 16  # of a scene in a report
-MOST_PUCKS, MOST_IMPACTS, MOST_NAMES = 40, 6, 6  # of a report
+MOST_PUCKS, MOST = 40, 6  # of a report; impacts, events, names
+_LEAVES = {
+    "pocket": ("falls into a pocket", "fall into pockets"),
+    "edge": ("goes over an edge", "go over an edge"),
+}
 _EMPIRICAL = "empirical: no dry friction over the contact explains it"
-_WIDEST = 24  # signs of a name in the table
+_WIDEST = 48  # signs of a text in the table
 _ROUNDING = 1e-14  # of energies
 
 
@@ -36,11 +42,14 @@ def report(run: Run) -> str:
     if run.scene.lateral.strength != 0.0:
         there = [lines["lateral"]] if "lateral" in lines else []
         lines["lateral"] = "; ".join([*there, _EMPIRICAL])
-    told = "\n".join(f"{name:<10} {text}" for name, text in lines.items())
+    told = listed(lines, 10)
     if not several:
         return told
-    impacts = ["\n".join(_impacts(run))] if run.impacts else []
-    return "\n\n".join([plainly(run), "\n".join(_pucks(run)), *impacts, told])
+    impacts = _some([
+        f"impact at {event.time:.6g} s: {event.puck} and {event.partner}, {event.approach:.4g} m/s"
+        for event in run.events if event.what == "impact"
+    ], "\n")  # fmt: skip
+    return "\n\n".join(filter(None, [plainly(run), _pucks(run), impacts, told]))
 
 
 def _of_one(run: Run) -> dict[str, str]:
@@ -53,7 +62,8 @@ def _of_one(run: Run) -> dict[str, str]:
         "end": f"{run.end} after {run.end_time:.9g} s",
         "place": f"({last['x']:.9g}, {last['y']:.9g}) m, body at {last['orientation']:.6g} rad",
         "motion": f"v = ({last['vx']:.6g}, {last['vy']:.6g}) m/s, w = {last['spin']:.6g} rad/s",
-        "events": _events(run),
+        "events": _some([f"{_event(event)} at {event.time:.6g} s" for event in run.events])
+        or "none",
     }
 
 
@@ -61,10 +71,10 @@ def _of_all(run: Run) -> dict[str, str]:
     """What is on a board."""
     scene = run.scene
     parts = {
-        "puck": len(run.names), "wall": len(scene.walls), "post": len(scene.posts),
-        "arc": len(scene.arcs), "pocket": len(scene.pockets), "edge": len(scene.edges),
+        "puck": run.names, "wall": scene.walls, "post": scene.posts, "arc": scene.arcs,
+        "pocket": scene.pockets, "edge": scene.edges,
     }  # fmt: skip
-    counted = ", ".join(_counted(count, noun) for noun, count in parts.items() if count)
+    counted = ", ".join(_counted(len(those), noun) for noun, those in parts.items() if those)
     return {"scene": f"{scene.title or 'without a title'}: {counted}"}
 
 
@@ -75,18 +85,14 @@ def _inputs(scene: SceneSpec) -> dict[str, str]:
     parts: dict[str, list[str]] = {}
     for entry in entries(scene):
         part, dot, name = entry.path.partition(".")
-        note = dot or part not in ("title", "gravity")  # above all, and of each puck
-        if is_dataclass(entry.value) or not note:  # its entries follow
-            continue
+        if is_dataclass(entry.value) or not (dot or part not in ("title", "gravity")):
+            continue  # its entries follow; above all, and of each puck
         if entry.value != entry.default and entry.value is not None:
-            unit = f" {entry.kind.unit}" if entry.kind.unit else ""
-            words = f"{name} {_written(entry.value)}{unit}".lstrip()
+            words = f"{name} {_written(entry.value)} {entry.kind.unit}".strip()
             parts.setdefault(part, []).append(words)
-    lines = {part: ", ".join(told_of) for part, told_of in parts.items()}
-    most = list(lines)[:MOST_PARTS]
-    return {part: lines[part] for part in most} | (
-        {"further": f"{len(lines) - len(most)} parts more"} if len(lines) > len(most) else {}
-    )
+    lines = {part: ", ".join(words) for part, words in list(parts.items())[:MOST_PARTS]}
+    more = len(parts) - MOST_PARTS
+    return lines | ({"further": f"{more} parts more"} if more > 0 else {})
 
 
 def _written(value: Any) -> str:
@@ -115,82 +121,62 @@ def _event(event: Event) -> str:
     return event.what if event.partner == "floor" else f"{event.what} ({event.partner})"
 
 
-def _events(run: Run) -> str:
-    if not run.events:
-        return "none"
-    told_of = [f"{_event(event)} at {event.time:.6g} s" for event in run.events[:6]]
-    more = len(run.events) - 6
-    return ", ".join(told_of) + (f" and {more} more" if more > 0 else "")
+def _some(texts: list[str], sign: str = ", ") -> str:
+    """The first of many, and how many more there are."""
+    more = len(texts) - MOST
+    return sign.join(texts[:MOST]) + (f"{sign.strip(',')}and {more} more" if more > 0 else "")
 
 
 def plainly(run: Run) -> str:
     """How it ends and who leaves the board."""
     from puck_tables.world.agreement import pieces_of
 
-    count, impacts = len(run.names), _counted(run.impacts, "impact")
+    pucks = _counted(len(run.names), "puck")
     if run.end_time == 0.0 and all(event.what == "overhang" for event in run.events):
-        return (
-            f"{_counted(count, 'puck')}: nothing moves.\n"
-            "Send one off: --set puck[0].launch.velocity=[1,0]"
-        )
-    left = sum(event.what in ("pocket", "edge") for event in run.events)
+        return f"{pucks}: nothing moves.\nSend one off: --set puck[0].launch.velocity=[1,0]"
+    after = f"{run.end_time:.4g} s and {_counted(run.impacts, 'impact')}"
+    left = {what: [event.puck for event in run.events if event.what == what] for what in _LEAVES}
+    rest = len(run.names) - sum(map(len, left.values()))
     if run.end in ("at rest", "over the edge", "in a pocket"):
-        rest = count - left
-        what = f"{rest or 'none'} of {count} pucks" if left else _counted(count, "puck")
-        verb = "comes" if rest == 1 else "come"
-        first = f"{what} {verb} to rest after {run.end_time:.4g} s and {impacts}."
-    elif run.end != "time is up":
-        way = "round" if run.end == "carried round" else "along"
-        who = "the puck rests" if count - left == 1 else f"{count - left} pucks rest"
-        first = (
-            f"After {run.end_time:.4g} s and {impacts} {who} on the floor, which carries "
-            f"{'it' if count - left == 1 else 'them'} {way}."
-        )
-    else:
+        who = pucks if rest == len(run.names) else f"{rest or 'none'} of {pucks}"
+        first = f"{who} {'comes' if rest == 1 else 'come'} to rest after {after}."
+    elif run.end == "time is up":
         free = [not piece.path for piece in pieces_of(run.scene)]
         moving = int((run.stop_times > run.end_time)[free].sum())
         verb = "moves" if moving == 1 else "move"
-        first = (
-            f"Time is up after {run.end_time:.4g} s and {impacts}: {moving} of "
-            f"{_counted(count, 'puck')} still {verb}."
-        )
-    outcomes = []
-    for what, one, several in (
-        ("pocket", "falls into a pocket", "fall into pockets"),
-        ("edge", "goes over an edge", "go over an edge"),
-    ):
-        names = [event.puck for event in run.events if event.what == what]
-        if names:
-            shown = ", ".join(names[:MOST_NAMES])
-            more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
-            outcomes.append(f"{len(names)} {one if len(names) == 1 else several} ({shown}{more})")
-    return f"{first}\n{'; '.join(outcomes)}." if outcomes else f"{first}\nNone leaves play."
+        first = f"Time is up after {after}: {moving} of {pucks} still {verb}."
+    else:
+        who, them = ("the puck rests", "it") if rest == 1 else (f"{rest} pucks rest", "them")
+        way = "round" if run.end == "carried round" else "along"
+        first = f"After {after} {who} on the floor, which carries {them} {way}."
+    outcomes = [
+        f"{len(names)} {_LEAVES[what][len(names) > 1]} ({_some(names)})"
+        for what, names in left.items() if names
+    ]  # fmt: skip
+    return f"{first}\n{'; '.join(outcomes) or 'None leaves play'}."
 
 
 def _counted(count: int, noun: str) -> str:
     return f"{count or 'no'} {noun}{'' if count == 1 else 's'}"
 
 
-def _pucks(run: Run) -> list[str]:
+def _pucks(run: Run) -> str:
     """A line for each puck: where it ends, how far from its start, and when."""
     from puck_tables.world.agreement import pieces_of, start_of
 
-    pieces = pieces_of(run.scene)
-    wide = min(_WIDEST, max(len("puck"), *(len(name) for name in run.names)))
-    rows = [f"{'puck':<{wide}} {'end x m':>12} {'end y m':>12} {'moved m':>10}  how it ends"]
-    for number, (name, piece) in enumerate(zip(run.names, pieces, strict=True)):
+    rows = []
+    for number, (name, piece) in enumerate(zip(run.names, pieces_of(run.scene), strict=True)):
         if number == MOST_PUCKS:
-            rows.append(f"and {len(run.names) - MOST_PUCKS} more (-o FILE saves all)")
             break
         last = run.last_of(number)
         end = last["x"], last["y"]
         unseen = 1e-9 * piece.radius  # what rounding leaves
-        x, y, moved = (
-            0.0 if abs(way) < unseen else way for way in (*end, math.dist(end, start_of(piece)))
-        )
-        shown = name if len(name) <= wide else name[: wide - 3] + "..."
-        rows.append(f"{shown:<{wide}} {x:>12.6g} {y:>12.6g} {moved:>10.4g}  {_ending(run, number)}")
-    return rows
+        lengths = (*end, math.dist(end, start_of(piece)))
+        shown = (0.0 if abs(length) < unseen else length for length in lengths)
+        rows.append((name, *shown, _ending(run, number)))
+    heads = {"puck": "", "end x m": ".6g", "end y m": ".6g", "moved m": ".4g", "how it ends": ""}
+    more = f"\nand {len(run.names) - MOST_PUCKS} more (-o FILE saves all)"
+    return columns(heads, rows, _WIDEST) + (more if len(run.names) > MOST_PUCKS else "")
 
 
 def _ending(run: Run, number: int) -> str:
@@ -207,17 +193,6 @@ def _ending(run: Run, number: int) -> str:
         speed = math.hypot(last["vx"], last["vy"])
         return f"moves, {speed:.4g} m/s"
     return f"stops at {stop:.6g} s" if stop > 0.0 else "never moved"
-
-
-def _impacts(run: Run) -> list[str]:
-    """The first impacts, a line each."""
-    impacts = [event for event in run.events if event.what == "impact"]
-    rows = [
-        f"impact at {event.time:.6g} s: {event.puck} and {event.partner}, {event.approach:.4g} m/s"
-        for event in impacts[:MOST_IMPACTS]
-    ]
-    more = len(impacts) - MOST_IMPACTS
-    return rows + ([f"and {_counted(more, 'impact')} more"] if more > 0 else [])
 
 
 def _energy(run: Run) -> str:
@@ -240,14 +215,12 @@ def _heat(run: Run) -> str:
     last = run.last
     works = sum(abs(last[name]) for name in ("work_driven", "work_given", "work_support"))
     unseen = _ROUNDING * (last["energy_given"] + works)
-    names = {"heat_dry": "floor", "heat_viscous": "drag", "heat_rims": "rims",
-             "heat_impact": "impacts"}  # fmt: skip
-    heats = {words: last[name] if abs(last[name]) > unseen else 0.0
-             for name, words in names.items()}  # fmt: skip
+    names = {"floor": "heat_dry", "drag": "heat_viscous", "rims": "heat_rims",
+             "impacts": "heat_impact"}  # fmt: skip
+    heats = {who: last[name] if abs(last[name]) > unseen else 0.0 for who, name in names.items()}
     note = ", ".join(
-        f"{heat:.6g} J {words}" for words, heat in heats.items()
-        if heat or words in ("floor", "impacts")
-    )  # fmt: skip
+        f"{heat:.6g} J {who}" for who, heat in heats.items() if heat or who in ("floor", "impacts")
+    )
     rounding = run.energy_residual < _ROUNDING
     missed = f"under {_ROUNDING:g}" if rounding else f"{run.energy_residual:.1e}"
     return f"{note}; ledger misses {missed} of it"

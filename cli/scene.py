@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 from puck_tables.cli.completion import scenes
-from puck_tables.cli.options import printable
+from puck_tables.cli.printing import say
 
 
 @click.group()
@@ -59,7 +59,7 @@ def check(name: str) -> None:
 
     whole = Scene.load(name)
     game_of(whole, order_of(whole))  # files and heights
-    click.echo(printable(f"{name}: a scene" + (f", {whole.title}" if whole.title else "")))
+    say(f"{name}: a scene" + (f", {whole.title}" if whole.title else ""))
     for path, values in axes_of(whole).items():
         click.echo(f"ranges        {path} from {values[0]:g} to {values[-1]:g}, {values.size}")
-    click.echo(printable(plan_of(whole)[1]))
+    say(plan_of(whole)[1])

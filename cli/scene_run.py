@@ -3,22 +3,52 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any, TypeVar
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import click
 from puck_tables.cli.completion import scenes
-from puck_tables.cli.options import DEFAULT_DECEL, DEFAULT_DELTA
+from puck_tables.cli.options import DEFAULT_DECEL, DEFAULT_DELTA, packed
 
 from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
     from puck_tables.bulk.finish import Stored
-    from puck_tables.result import TimedResult
     from puck_tables.world.map import Map
     from puck_tables.world.sample import Sample
 
-Command = TypeVar("Command", bound=Callable[..., Any])
+
+@dataclass(frozen=True)
+class SceneChoice:
+    """A scene, and numbers in it."""
+
+    scene: str | None
+    changes: tuple[str, ...]
+
+    def __bool__(self) -> bool:
+        return self.scene is not None or bool(self.changes)
+
+    @property
+    def name(self) -> str:
+        """As refusals have it."""
+        return self.scene or "scene"
+
+    def reads(self, tables: dict[str, Any]) -> list[str]:
+        """The files that a run reads: that of the scene, and those that it names."""
+        from puck_tables._core.digest import files_named
+
+        return [*([] if self.scene is None else [self.scene]), *files_named(tables)]
+
+
+scene_options = packed(
+    "chosen", SceneChoice,
+    click.option("--scene", metavar="FILE|NAME", shell_complete=scenes, help="A scene file, or one "
+                 "that comes along (see 'puck scene list'); other options change its numbers."),
+    click.option("--set", "changes", multiple=True, metavar="PATH=VALUE", help="A number of the "
+                 "scene, like floor.slope=0.1, wall[0].restitution=0.8 or "
+                 "puck[0].launch.velocity=[1,0]; as often as needed."),
+)  # fmt: skip
 
 PATHS = {
     "v0": "launch.velocity", "w0": "launch.spin", "speed": "launch.velocity[0]",
@@ -38,26 +68,8 @@ INSTEAD = {  # of options that no scene has
 }  # fmt: skip
 
 
-def scene_options(command: Command) -> Command:
-    """A scene, and numbers in it."""
-    for option in (
-        click.option(
-            "--set", "changes", multiple=True, metavar="PATH=VALUE",
-            help="A number of the scene, like floor.slope=0.1, wall[0].restitution=0.8 or "
-            "puck[0].launch.velocity=[1,0]; as often as needed.",
-        ),
-        click.option(
-            "--scene", metavar="FILE|NAME", shell_complete=scenes,
-            help="A scene file, or one that comes along (see 'puck scene list'); other options "
-            "change its numbers.",
-        ),
-    ):  # fmt: skip
-        command = option(command)
-    return command
-
-
 def scene_tables(
-    ctx: click.Context, scene: str | None, changes: tuple[str, ...], own: tuple[str, ...] = (),
+    ctx: click.Context, chosen: SceneChoice, own: tuple[str, ...] = (),
     scattering: Iterable[str] = (),
 ) -> dict[str, Any]:  # fmt: skip
     """The scene that options describe: a file or defaults, then options, then --set.
@@ -73,16 +85,14 @@ def scene_tables(
     from puck_tables.scene.entries import set_path
     from puck_tables.scene.library import find_scene
 
-    source = click.core.ParameterSource.DEFAULT
+    scene, source = chosen.scene, click.core.ParameterSource.DEFAULT
     fields = {
         name: value
         for name, value in ctx.params.items()
         if ctx.get_parameter_source(name) is not source
         and name not in ("scene", "changes", *KEPT, *own)
     }
-    tables = {} if scene is None else find_scene(scene)
-    if scene is None:
-        tables = _default_tables(fields)
+    tables = _default_tables(fields) if scene is None else find_scene(scene)
     named = dict.fromkeys(scattering, "--spread")
     for name, value in fields.items():
         if name in SCALED and scene is None:
@@ -100,7 +110,7 @@ def scene_tables(
             for puck in pucks if isinstance(pucks, list) else [pucks]:
                 puck.pop("gravity", None)
         set_path(tables, PATHS[name], _as_toml(value))
-    for change in changes:
+    for change in chosen.changes:
         path, equals, text = change.partition("=")
         if not equals or not text:
             raise InputError(f"--set {change}: write PATH=VALUE, like floor.slope=0.1")
@@ -115,12 +125,7 @@ def scene_tables(
 
 
 def _refuse_one_for_all(tables: dict[str, Any], flag: str, path: str, value: str) -> None:
-    """Refuse a number of the only puck where there are several.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a number of the only puck where there are several."""
     pucks, own = tables.get("puck"), _of_each(tables, path)
     if isinstance(pucks, list) and path == "puck.gravity":
         raise InputError(f"{flag}: all pucks of a scene have its gravity: write --gravity {value}")
@@ -150,13 +155,6 @@ def _as_text(value: Any) -> str:
     if isinstance(written, list):
         return f"[{','.join(f'{number:.12g}' for number in written)}]"
     return f"{written:.12g}" if isinstance(written, float) else str(written)
-
-
-def files_read(scene: str | None, tables: dict[str, Any]) -> list[str]:
-    """The files that a run of a scene reads: its own, and those that it names."""
-    from puck_tables._core.digest import files_named
-
-    return [*([] if scene is None else [scene]), *files_named(tables)]
 
 
 def _default_tables(fields: dict[str, Any]) -> dict[str, Any]:
@@ -203,13 +201,6 @@ def _value(text: str) -> Any:
     if len(listed) > 1 and all(re.match(r"\s*[-+]?\.?[0-9]", one) for one in listed):
         return [_value(one.strip()) for one in listed]
     return text
-
-
-def run_scene(tables: dict[str, Any], source: str, times: tuple[float, ...] | None) -> TimedResult:
-    """One run of a scene with its states at some times."""
-    from puck_tables.world.scene import Scene
-
-    return Scene.from_tables(tables, source).simulate(times)
 
 
 def summary_of_map(ends: Map | Sample | Stored) -> str:

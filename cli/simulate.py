@@ -14,22 +14,17 @@ from puck_tables.cli.options import (
     FILE,
     NUMBER,
     SPIN,
-    body_options,
-    chosen_puck,
-    deliver,
-    explain_option,
-    filmed,
-    json_option,
-    open_table,
-    output_options,
-    prepare_outputs,
-    printable,
+    Outputs,
+    PuckChoice,
+    base_option,
+    outputs,
+    packed,
     puck_options,
-    reported,
     table_option,
 )
+from puck_tables.cli.printing import listed, say
 from puck_tables.cli.run_report import report as report_of_scene
-from puck_tables.cli.scene_run import files_read, run_scene, scene_options, scene_tables
+from puck_tables.cli.scene_run import SceneChoice, scene_options, scene_tables
 from puck_tables.cli.values import Times, Vector
 
 from puck_tables.accuracy.methods import INTEGRATORS
@@ -41,66 +36,42 @@ if TYPE_CHECKING:
     from puck_tables.result import TimedResult
     from puck_tables.trajectory import Trajectory
 
+ENDS = {  # of slides on bases that are not round
+    "rest": "it lies still",
+    "together": "sliding and spinning end together",
+    "slide last": "the spin dies out first, it slides last",
+    "spin last": "the sliding dies out first, it spins last",
+}
 _LAUNCHED = (
     "v0", "w0", "radius", "height", "friction", "gravity", "mass", "decel", "delta", "pressure",
-    "gyration",
+    "gyration", "base",
 )  # fmt: skip
 
 
 @click.command()
-@click.option(
-    "--fit",
-    "fit_path",
-    type=FILE,
-    metavar="FILE",
-    help="The puck and the launch that 'puck fit -o FILE.json' found.",
-)
+@click.option("--fit", "fit_path", type=FILE, metavar="FILE",
+              help="The puck and the launch that 'puck fit -o FILE.json' found.")  # fmt: skip
 @click.option("--track", help="Which track of --fit, by its name or number from 1.")
 @click.option("--v0", type=Vector("m/s"), help="Launch velocity in m/s, like 1,0.")
 @click.option("--w0", type=SPIN, default=0.0, show_default=True, help="Launch spin in rad/s.")
-@puck_options(mass=True)
-@click.option("--delta", type=NUMBER, help="delta = 2 f h / r instead.  [default: 0.5]")
-@body_options()
+@packed("choice", PuckChoice, base_option, *puck_options(mass=True))
 @click.option("--frames", type=int, help="Number of states to save.  [default: 101]")
 @click.option("--times", type=Times("s"), help="Times of the states to save, in s.")
-@click.option(
-    "--tol",
-    type=NUMBER,
-    default=1e-9,
-    show_default=True,
-    help="Largest error, in units of Q/J (times) and Q^2/J (places), Q = hypot(v0, r w0): the "
-    "cheapest method whose measured error is below it is taken.",
-)
-@click.option(
-    "--method",
-    type=click.Choice([method.value for method in INTEGRATORS]),
-    help="Dormand-Prince 5(4), or Runge-Kutta 4.  [default: the cheaper]",
-)
-@explain_option
+@click.option("--tol", type=NUMBER, default=1e-9, show_default=True,
+              help="Largest error, in units of Q/J (times) and Q^2/J (places), Q = hypot(v0, r "
+              "w0): the cheapest method whose measured error is below it is taken.")  # fmt: skip
+@click.option("--method", type=click.Choice([method.value for method in INTEGRATORS]),
+              help="Dormand-Prince 5(4), or Runge-Kutta 4.  [default: the cheaper]")  # fmt: skip
 @click.option("--exact", is_flag=True, help="Closed forms instead of the table.")
 @table_option
-@json_option
-@click.option(
-    "-o", "--output", type=FILE, metavar="FILE", help="Save: .h5, .csv, .json, .jsonl or .parquet."
-)
-@click.option(
-    "--movie",
-    type=FILE,
-    metavar="FILE",
-    help="Show the motion: .html (one file for any browser, with a time slider), .gif or .mp4.",
-)
-@output_options
+@outputs(movie=True, explain=True, as_json=True)
 @scene_options
 @click.pass_context
 def simulate(
     ctx: click.Context, fit_path: Path | None, track: str | None,
-    v0: tuple[float, float] | None, w0: float, radius: float | None, height: float | None,
-    friction: float | None, gravity: float | None, mass: float | None, decel: float | None,
-    delta: float | None, pressure: str, gyration: float | None, frames: int | None,
-    times: tuple[float, ...] | None, tol: float,
-    method: str | None, explain: bool, exact: bool, table_path: Path | None, as_json: bool,
-    output: Path | None, movie: Path | None, plot: Path | None, overwrite: bool, scene: str | None,
-    changes: tuple[str, ...],
+    v0: tuple[float, float] | None, w0: float, choice: PuckChoice, frames: int | None,
+    times: tuple[float, ...] | None, tol: float, method: str | None, exact: bool,
+    table_path: Path | None, out: Outputs, chosen: SceneChoice,
 ) -> None:  # fmt: skip
     """Slide one puck until it stops, or run a scene of one or of several.
 
@@ -112,67 +83,52 @@ def simulate(
     puck simulate --scene carrom-break --movie carrom.html
     puck simulate --v0 1,0 --w0 5 --delta 2
     puck simulate --v0 1,0 --w0 5 --pressure annulus:0.8 --gyration 0.9
+    puck simulate --v0 1,0 --w0 10 --base box:20cmx10cm --friction 0.3 --plot box.png
     puck simulate --fit fit.json --track 1
     """  # noqa: D301 - click reads the backspace
     unknown: tuple[str, ...] = ()
     run: TimedResult
-    if scene is not None or changes:
-        tables = scene_tables(ctx, scene, changes)
-        prepare_outputs(
-            output, plot=plot, movie=movie, overwrite=overwrite,
-            inputs=files_read(scene, tables),
-        )  # fmt: skip
-        states = (0.0,) if output is None and plot is None and times is None else times
+    report_only = out.output is None and out.plot is None and times is None
+    if chosen:
+        from puck_tables.world.scene import Scene
+
+        tables = scene_tables(ctx, chosen)
+        out.prepare(*chosen.reads(tables))
         board = isinstance(tables.get("puck"), list)  # quicker by what was compiled before
         with nullcontext() if board else one_question():
-            run, in_words = run_scene(tables, scene or "scene", states), report_of_scene
+            run = Scene.from_tables(tables, chosen.name).simulate((0.0,) if report_only else times)
+        in_words = report_of_scene
     else:
         if track is not None and fit_path is None:
             raise InputError("--track chooses a track of --fit: give that, too")
         if exact and table_path is not None:
             raise InputError("--exact and --table clash: closed forms need no table")
-        prepare_outputs(
-            output, plot=plot, movie=movie, overwrite=overwrite,
-            inputs=(table_path, pressure, fit_path),
-        )  # fmt: skip
+        out.prepare(table_path, choice.pressure, choice.base, fit_path)
         if fit_path is not None:
             puck, velocity, w0, unknown = _from_fit(ctx, fit_path, track)
         elif v0 is not None:
-            puck = chosen_puck(
-                radius, height, friction, gravity, delta, decel, pressure, gyration, mass
-            )
-            velocity = v0
+            puck, velocity = choice.puck(), v0
         else:
             raise click.MissingParameter(param_hint="'--v0'", param_type="option")
-        if output is None and plot is None and times is None and frames is None:
-            frames = 1  # a report needs no states
+        from puck_tables.table.resultant_table import ResultantTable
+
         with one_question():
             run = puck.simulate(
-                velocity, w0, frames=frames, times=times, tol=tol, method=method, exact=exact,
-                table=None if table_path is None else open_table(table_path),
+                velocity, w0, frames=1 if report_only and frames is None else frames, times=times,
+                tol=tol, method=method, exact=exact,
+                table=None if table_path is None else ResultantTable.load(table_path),
             )  # fmt: skip
-        given = fit_path is not None or any(
-            x is not None for x in (radius, height, friction, delta, decel, gyration)
-        )
-        in_words = partial(
-            report, note="" if given else "   (defaults: see --help for a real puck)"
-        )
+        in_words = partial(report, note="" if fit_path else choice.note)
     for sentence in unknown:
-        click.echo(printable(f"{fit_path}: {sentence}"), err=True)
-    deliver(run, output, plot, overwrite)
-    filmed(run, movie, overwrite)
-    reported(run, explain, as_json, in_words)
+        say(f"{fit_path}: {sentence}", err=True)
+    out.deliver(run)
+    out.report(run, in_words)
 
 
 def _from_fit(
     ctx: click.Context, path: Path, track: str | None
 ) -> tuple[Puck, tuple[float, float], float, tuple[str, ...]]:
-    """The puck and the launch of a fit, which no option contradicts, and what it left open.
-
-    Raises
-    ------
-    InputError
-    """
+    """The puck and the launch of a fit, which no option contradicts, and what it left open."""
     for name in _LAUNCHED:
         if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE:
             raise InputError(
@@ -185,37 +141,68 @@ def _from_fit(
 
 def report(run: Trajectory, note: str) -> str:
     """The trajectory in a dozen lines."""
+    lines = _on_base(run, note) if run.puck.shape is not None else _of_round(run, note)
+    return f"{plainly(run)}\n\n{listed(lines, 15)}"
+
+
+def _of_round(run: Trajectory, note: str) -> dict[str, str]:
+    """What is told of a round puck."""
     from puck_tables.motion.limits import REGIMES
 
     puck, (vx, vy), w0 = run.puck, run.launch_velocity, run.launch_spin
     q0 = math.hypot(vx, vy, puck.radius * w0)
+    assert run.turn_angle is not None
     turn = f"{math.degrees(run.turn_angle):.5g} deg"
-    if run.turn_rate != 0.0:
+    if run.turn_rate:
         decade = math.degrees(run.turn_rate) * math.log(10.0)
         turn += f" by Q = Q0/1000, then {decade:.4g} deg more for each factor 10 of Q"
-    x, y = run.stop_position
     kind = f", {puck.body.kind}" if puck.body.kind else ""
-    lines = {
+    return {
         "puck": f"r = {puck.radius:g} m, delta = {puck.delta:.6g}, J = {puck.decel:.6g} m/s^2{kind}"
         f"{note}",
         "launch": f"v0 = ({vx:g}, {vy:g}) m/s, w0 = {w0:g} rad/s, "
         f"Q0 = hypot(v0, r w0) = {q0:.6g} m/s",
         "regime": f"{run.regime}: {REGIMES[run.regime]}",
         "contact": _contact(run),
+        **_stop(run, q0, {"heading turned": turn}, {"limit angle": _limit(run.limit_angle)}),
+    }
+
+
+def _on_base(run: Trajectory, note: str) -> dict[str, str]:
+    """What is told of a puck on another base."""
+    puck, (vx, vy), w0 = run.puck, run.launch_velocity, run.launch_spin
+    assert puck.shape is not None
+    k = puck.inertia_radius
+    q0 = math.hypot(vx, vy, k * w0)
+    high = f"h = {puck.height:g} m, " if puck.height > 0.0 else ""
+    return {
+        "puck": f"base {puck.shape.name}, k = {k:.6g} m, {high}f = {puck.friction:g}, "
+        f"J = {puck.decel:.6g} m/s^2{note}",
+        "launch": f"v0 = ({vx:g}, {vy:g}) m/s, w0 = {w0:g} rad/s, "
+        f"Q0 = hypot(v0, k w0) = {q0:.6g} m/s",
+        "end": ENDS[run.regime],
+        **_stop(run, q0, {}, {}),
+    }
+
+
+def _stop(
+    run: Trajectory, q0: float, turns: dict[str, str], limit: dict[str, str]
+) -> dict[str, str]:
+    """What is told of any stop, with more about turns."""
+    (x, y), puck = run.stop_position, run.puck
+    return {
         "stop time": f"{run.stop_time:.9g} s",
         "stop position": f"({x:.9g}, {y:.9g}) m",
         "path length": f"{run.path_length:.9g} m",
-        "heading turned": turn,
+        **turns,
         "body turned": f"{run.body_angle:.9g} rad ({run.body_angle / (2 * math.pi):.5g} turns)",
-        "limit angle": _limit(run),
+        **limit,
         "energy": f"{run.kinetic_energy:.6g} J (m = {puck.mass:g} kg), all lost to friction; "
         f"residual {run.energy_residual:.1e} of it",
         "method": run.method + (f", {run.steps} steps" if run.steps else ""),
         "error estimate": f"{run.error_estimate * q0 / puck.decel:.1e} s, "
         f"{run.error_estimate * q0 * q0 / puck.decel:.1e} m",
     }
-    table = "\n".join(f"{name:<15} {text}" for name, text in lines.items())
-    return f"{plainly(run)}\n\n{table}"
 
 
 def plainly(run: Trajectory) -> str:
@@ -230,7 +217,7 @@ def plainly(run: Trajectory) -> str:
         )
     first = f"The puck stops after {run.stop_time:.4g} s, {math.hypot(x, y):.4g} m from its launch."
     aside = math.degrees(math.atan2(vx * y - vy * x, vx * x + vy * y))
-    if run.launch_spin == 0.0:
+    if run.launch_spin == run.body_angle == 0.0:
         return first + "\nWithout spin its path is straight."
     side = "left" if aside > 0.0 else "right"
     bent = (
@@ -238,7 +225,8 @@ def plainly(run: Trajectory) -> str:
     )
     if abs(aside) < 1e-9:
         bent = "Its path is straight"
-    return f"{first}\n{bent}; sliding and spinning end together."
+    end = ENDS.get(run.regime, ENDS["together"])
+    return f"{first}\n{bent}; {end}."
 
 
 def _contact(run: Trajectory) -> str:
@@ -257,11 +245,12 @@ def _contact(run: Trajectory) -> str:
     return text
 
 
-def _limit(run: Trajectory) -> str:
+def _limit(angle: float | None) -> str:
     """Where the ratio of spin to speed tends to."""
-    if run.limit_angle == 0.0:
+    assert angle is not None
+    if angle == 0.0:
         return "none: the spin dies out before the sliding, r w/v tends to 0"
-    if run.limit_angle == 0.5 * math.pi:
+    if angle == 0.5 * math.pi:
         return "none: the sliding dies out before the spin, r w/v grows without bound"
-    ratio = math.tan(run.limit_angle)
-    return f"{math.degrees(run.limit_angle):.7g} deg (r w/v tends to {ratio:.7g})"
+    ratio = math.tan(angle)
+    return f"{math.degrees(angle):.7g} deg (r w/v tends to {ratio:.7g})"

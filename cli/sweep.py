@@ -3,103 +3,70 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 from puck_tables.cli.options import (
-    FILE,
     NUMBER,
-    body_options,
-    chosen_puck,
-    explain_option,
-    output_options,
-    progress,
+    Outputs,
+    PuckChoice,
+    outputs,
+    packed,
     puck_options,
     table_option,
     tables_named,
 )
-from puck_tables.cli.scene_run import files_read, scene_options, scene_tables, summary_of_map
+from puck_tables.cli.printing import progress
+from puck_tables.cli.scene_run import SceneChoice, scene_options, scene_tables, summary_of_map
 from puck_tables.cli.sweep_options import Whole, chosen_laws, chosen_spreads, samples_checked
-from puck_tables.cli.values import MAX_COUNT, RangeParam, Vector
+from puck_tables.cli.values import MAX_COUNT, RangeParam, Vector, not_none
 
 from puck_tables.accuracy.methods import METHODS
 from puck_tables.errors import InputError
 
-if TYPE_CHECKING:
-    from puck_tables.puck import Puck
-    from puck_tables.stopping.stop_table import StopTable
-    from puck_tables.table.resultant_table import ResultantTable
-
-ARGUMENTS = {  # of the library by the names of options
-    "w0": "spin", "speed": "speed", "heading": "heading", "vx": "vx", "vy": "vy",
-    "radius": "radius", "height": "height", "friction": "friction", "gravity": "gravity",
-    "delta": "delta", "decel": "decel", "gyration": "gyration",
-}  # fmt: skip
-REAL = ("height", "friction", "gravity")
+_OF_PUCK = ("radius", "height", "friction", "gravity", "delta", "decel", "gyration")
+# of the library by the names of options
+ARGUMENTS = {"w0": "spin", **{name: name for name in ("speed", "heading", "vx", "vy", *_OF_PUCK)}}
 
 
 @click.command()
 @click.option("--w0", type=RangeParam("rad/s"), help="Launch spin in rad/s.")
-@click.option(
-    "--speed", type=RangeParam("m/s"), help="Launch speed in m/s, along x without --heading."
-)
+@click.option("--speed", type=RangeParam("m/s"),
+              help="Launch speed in m/s, along x without --heading.")  # fmt: skip
 @click.option("--heading", type=RangeParam("rad"), help="Direction of the launch from x, in rad.")
 @click.option("--v0", type=Vector("m/s"), help="One launch velocity in m/s instead of --speed.")
-@click.option("--delta", type=RangeParam(), help="delta = 2 f h / r.  [default: 0.5]")
-@puck_options(mass=False, kind=RangeParam)
-@body_options(kind=RangeParam, many=True)
-@click.option(
-    "--random", type=click.IntRange(2, MAX_COUNT), metavar="COUNT",
-    help="Samples instead of ranges: so many launches whose numbers scatter.",
+@packed("numbers", dict, *puck_options(kind=RangeParam, many=True))
+@packed(
+    "sample", dict,
+    click.option("--random", type=click.IntRange(2, MAX_COUNT), metavar="COUNT",
+                 help="Samples instead of ranges: so many launches whose numbers scatter."),
+    click.option("--seed", type=click.IntRange(0, 2**64 - 1), help="Of the samples.  [default: 0]"),
+    click.option("--spread", "spreads", multiple=True, metavar="NAME=SPREAD",
+                 help="How a number scatters: w0=normal:5:0.2, speed=uniform:0.9:1.1; in scenes "
+                 "launch.spin=...; numbers may have units, w0=normal:50rpm:2rpm; as often as "
+                 "needed."),
+    click.option("--inside", "regions", multiple=True, metavar="X,Y,R|X1,Y1,X2,Y2",
+                 help="Say with which chance samples end inside a disc or a rectangle, in m."),
 )  # fmt: skip
-@click.option("--seed", type=click.IntRange(0, 2**64 - 1), help="Of the samples.  [default: 0]")
-@click.option(
-    "--spread", "spreads", multiple=True, metavar="NAME=SPREAD",
-    help="How a number scatters: w0=normal:5:0.2, speed=uniform:0.9:1.1; in scenes "
-    "launch.spin=...; numbers may have units, w0=normal:50rpm:2rpm; as often as needed.",
-)  # fmt: skip
-@click.option(
-    "--inside", "regions", multiple=True, metavar="X,Y,R|X1,Y1,X2,Y2",
-    help="Say with which chance samples end inside a disc or a rectangle, in m.",
-)  # fmt: skip
-@click.option(
-    "--tol",
-    type=NUMBER,
-    default=1e-8,
-    show_default=True,
-    help="Largest error, in units of Q/J (times) and Q^2/J (places): the cheapest method whose "
-    "measured error is below it is taken.",
-)
-@click.option(
-    "--method",
-    type=click.Choice([method.value for method in METHODS]),
-    help="Only this one.  [default: the cheapest]",
-)
-@explain_option
+@click.option("--tol", type=NUMBER, default=1e-8, show_default=True,
+              help="Largest error, in units of Q/J (times) and Q^2/J (places): the cheapest method "
+              "whose measured error is below it is taken.")  # fmt: skip
+@click.option("--method", type=click.Choice([method.value for method in METHODS]),
+              help="Only this one.  [default: the cheapest]")  # fmt: skip
 @click.option("--threads", type=click.IntRange(1, 1024), help="[default: all cores]")
-@click.option(
-    "--cluster", metavar="local:N|tcp://HOST:PORT|tls://HOST:PORT",
-    help="Let N processes, or a Dask cluster that runs, do it; with -o NAME.zarr.",
-)  # fmt: skip
+@click.option("--cluster", metavar="local:N|tcp://HOST:PORT|tls://HOST:PORT", help="Let N "
+              "processes, or a Dask cluster that runs, do it; with -o NAME.zarr.")  # fmt: skip
 @table_option
-@click.option(
-    "-o",
-    "--output",
-    type=FILE,
-    metavar="FILE",
-    help="Save the map: .h5, .csv, .json, .jsonl, .parquet; or .zarr, which may be larger than "
-    "memory and goes on after any end.  Without -o and --plot, CSV goes to stdout; of samples, a "
-    "summary does in any case.",
-)
-@output_options
+@outputs("Save the map: .h5, .csv, .json, .jsonl, .parquet; or .zarr, which may be larger than "
+         "memory and goes on after any end.  Without -o and --plot, CSV goes to stdout; of "
+         "samples, a summary does in any case.", explain=True)  # fmt: skip
 @scene_options
 @click.pass_context
 def sweep(
-    ctx: click.Context, /, v0: tuple[float, float] | None, pressure: tuple[str, ...],
-    random: int | None, seed: int | None, spreads: tuple[str, ...], regions: tuple[str, ...],
-    tol: float, method: str | None, explain: bool, threads: int | None, cluster: str | None,
-    table_path: Path | None, output: Path | None, plot: Path | None, overwrite: bool,
-    scene: str | None, changes: tuple[str, ...], **numbers: Any,
+    ctx: click.Context, /, w0: Any, speed: Any, heading: Any, v0: tuple[float, float] | None,
+    numbers: dict[str, Any], sample: dict[str, Any], tol: float, method: str | None,
+    threads: int | None, cluster: str | None, table_path: Path | None, out: Outputs,
+    chosen: SceneChoice,
 ) -> None:  # fmt: skip
     """Map where and when pucks stop, or how a scene ends.
 
@@ -122,13 +89,13 @@ def sweep(
     from puck_tables.io.columns import COLUMNS
     from puck_tables.stopping.population import COLUMN
 
-    is_scene = scene is not None or bool(changes)
-    inside = samples_checked(random, seed, spreads, regions, "launch.spin" if is_scene else "w0")
-    whole = Whole(threads, cluster, output, plot, overwrite, explain, inside)
-    if is_scene:
+    inside = samples_checked(**sample, name_of_spin="launch.spin" if chosen else "w0")
+    random, seed, spreads = sample["random"], sample["seed"] or 0, sample["spreads"]
+    whole = Whole(threads, cluster, out, inside)
+    if chosen:
         scattering = [one.partition("=")[0].strip() for one in spreads]
-        tables = scene_tables(ctx, scene, changes, scattering=scattering)
-        whole.refuse_outputs(files_read(scene, tables))
+        tables = scene_tables(ctx, chosen, scattering=scattering)
+        whole.refuse_outputs(*chosen.reads(tables))
         from puck_tables.world.scene import Scene
 
         with progress("runs") as show:
@@ -137,77 +104,72 @@ def sweep(
                 ends: Any = one.sweep(progress=show, **whole.how)
             else:
                 drawn = chosen_spreads(spreads, None, one.unit_of)
-                ends = one.sample(random, seed or 0, drawn, progress=show, **whole.how)
+                ends = one.sample(random, seed, drawn, progress=show, **whole.how)
         whole.deliver(ends, summary_of_map(ends))
         return
+    pressure = numbers.pop("pressure")
     drawn = chosen_spreads(spreads, ARGUMENTS, lambda name: COLUMNS[COLUMN[name]].unit)
-    if v0 is not None and numbers["speed"] is not None:
+    if v0 is not None and speed is not None:
         raise InputError("--v0 and --speed clash: both give the launch velocity")
-    for name, option in ARGUMENTS.items():
-        if option in drawn and numbers.get(name) is not None:
+    numbers = not_none({"w0": w0, "speed": speed, "heading": heading, **numbers})
+    for name in numbers:
+        if ARGUMENTS[name] in drawn:
             raise InputError(f"--{name} and --spread {name}=... clash: both give it")
-    whole.refuse_outputs((table_path, *pressure))
-    chosen = {
-        ARGUMENTS[name]: value for name, value in numbers.items() if value is not None
-    } | drawn
-    ranged = {name: value for name, value in chosen.items() if isinstance(value, tuple | list)}
+    whole.refuse_outputs(table_path, *pressure)
+    values = {ARGUMENTS[name]: value for name, value in numbers.items()} | drawn
+    ranged = {name: value for name, value in values.items() if isinstance(value, tuple | list)}
     laws = chosen_laws(pressure)
     if random is not None and (ranged or len(laws) > 1):
         first = next(iter(ranged), "pressure")
         raise InputError(
             f"--random draws samples: {first} cannot range, give one number or a --spread"
         )
-    if (
-        plot is not None
-        and random is None
-        and chosen.keys() & {"spin", "speed"} | ({"spin"} if v0 is not None else set())
-        and not ranged
-        and len(laws) == 1
-    ):
+    is_one = not ranged and len(laws) == 1 and (v0 or values.keys() & {"spin", "speed"})
+    if out.plot is not None and random is None and is_one:
         raise InputError(
             "--plot needs a range: give --w0, --speed, --delta or another number as "
             "START:STOP:COUNT or a list"
         )
     sizes = [one[2] if isinstance(one, tuple) else len(one) for one in ranged.values()]
     whole.refuse_memory([*sizes, len(laws)], random)
-    puck = _puck(chosen, laws)
-    launch = {name: _values(value) for name, value in chosen.items() if name not in _OF_PUCK}
-    launch |= {name: _values(value) for name, value in chosen.items()
-               if name in _OF_PUCK and not isinstance(value, float)}  # fmt: skip
-    if "radius" in launch and not chosen.keys() & set(REAL):  # similar pucks stay similar
+    puck = PuckChoice(laws[0], **{n: _first(values[n]) for n in _OF_PUCK if n in values}).puck()
+    launch = {
+        name: _all(value) for name, value in values.items()
+        if name not in _OF_PUCK or not isinstance(value, float)
+    }  # fmt: skip
+    if "radius" in launch and not values.keys() & {"height", "friction", "gravity"}:
+        # similar pucks stay similar
         launch |= {name: launch.get(name, getattr(puck, name)) for name in ("delta", "decel")}
-    launch |= {} if v0 is None else {"velocity": v0}
-    launch |= {} if len(laws) == 1 else {"pressure": laws}
-    table = None if table_path is None else _table_of_stops(table_path)
-    how: dict[str, Any] = {"tol": tol, "method": method, "table": table, **whole.how}
+    launch |= not_none({"velocity": v0, "pressure": laws if len(laws) > 1 else None})
+    how: dict[str, Any] = {"tol": tol, "method": method, "table": _table(table_path), **whole.how}
     with progress("stops") as show:
         if random is None:
             stops: Any = puck.sweep(**launch, progress=show, **how)
         else:
-            stops = puck.sample(random, seed or 0, **launch, progress=show, **how)
+            stops = puck.sample(random, seed, **launch, progress=show, **how)
     whole.deliver(stops, _summary(stops))
 
 
-_OF_PUCK = ("radius", "height", "friction", "gravity", "delta", "decel", "gyration")
-
-
-def _puck(chosen: dict[str, Any], laws: list[str]) -> Puck:
-    """The puck, with the lowest number of each range, and the middle of each spread."""
-    alone: dict[str, Any] = {name: _first(chosen.get(name)) for name in _OF_PUCK}
-    return chosen_puck(**alone, pressure=laws[0])
-
-
-def _first(value: Any) -> float | None:
+def _first(value: Any) -> float:
+    """The lowest number of a range, the middle of a spread."""
+    if isinstance(value, float):
+        return value
     if isinstance(value, tuple | list):
         return float(value[0])
-    if value is None or isinstance(value, float):
-        return value
     middle: float = value.mean if hasattr(value, "mean") else 0.5 * (value.low + value.high)
     return middle
 
 
-def _table_of_stops(path: Path) -> ResultantTable | StopTable:
+def _all(value: Any) -> Any:
+    import numpy as np
+
+    return np.linspace(*value) if isinstance(value, tuple) else value
+
+
+def _table(path: Path | None) -> Any:
     """A table that stops can come from."""
+    if path is None:
+        return None
     from puck_tables.stopping.stop_table import StopTable
     from puck_tables.table.resultant_table import ResultantTable
 
@@ -215,12 +177,6 @@ def _table_of_stops(path: Path) -> ResultantTable | StopTable:
     if not isinstance(table, ResultantTable | StopTable):
         raise InputError(f"{path} holds '{table.kind}': stops come from 'stops' or 'resultants'")
     return table
-
-
-def _values(chosen: Any) -> Any:
-    import numpy as np
-
-    return np.linspace(*chosen) if isinstance(chosen, tuple) else chosen
 
 
 def _summary(stops: Any) -> str:

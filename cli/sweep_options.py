@@ -5,13 +5,15 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 from puck_tables.cli.endings import last_words
-from puck_tables.cli.options import deliver, explained, note, prepare_outputs, printable
+from puck_tables.cli.options import Outputs
+from puck_tables.cli.printing import note, say
+from puck_tables.cli.values import numbers_in
 
 from puck_tables.errors import InputError, OutputError
 
@@ -29,10 +31,6 @@ def chosen_spreads(
 
     ``names``: the arguments by the names that are allowed; None: any, as they are; ``unit_of``:
     the unit of each.
-
-    Raises
-    ------
-    InputError
     """
     from puck_tables.bulk.spreads import spread_named
 
@@ -54,17 +52,11 @@ def samples_checked(
     random: int | None, seed: int | None, spreads: tuple[str, ...], regions: tuple[str, ...],
     name_of_spin: str,
 ) -> list[tuple[float, ...]]:  # fmt: skip
-    """The regions asked for; options of samples that stand alone are refused.
-
-    Raises
-    ------
-    InputError
-    """
-    from puck_tables._core.units import UNIT_EACH, measured, without_unit
+    """The regions asked for; options of samples that stand alone are refused."""
     from puck_tables.bulk.summary import checked_regions
 
-    alone = {"--seed": seed is not None, "--spread": spreads, "--inside": regions}
     if random is None:
+        alone = {"--seed": seed is not None, "--spread": spreads, "--inside": regions}
         for name, is_given in alone.items():
             if is_given:
                 raise InputError(f"{name} is for samples: give --random COUNT too")
@@ -73,17 +65,9 @@ def samples_checked(
         raise InputError(
             f"--random needs a --spread: say what scatters, like {name_of_spin}=normal:5:0.2"
         )
-    found = []
-    for region in regions:
-        try:
-            parts = region.split(",")
-            if bare := without_unit(parts, "m"):
-                raise InputError(f"--inside {region}: {UNIT_EACH.format(bare)}")
-            found.append(tuple(measured(part, "m") for part in parts))
-        except ValueError:
-            raise InputError(f"--inside {region}: write X,Y,R or X1,Y1,X2,Y2, in m") from None
-    checked_regions(found)
-    return found
+    numbers = [numbers_in(one, "--inside", ",", one, "m") for one in regions]  # 3 or 4 of each
+    checked_regions(numbers)
+    return numbers
 
 
 def chosen_laws(pressure: tuple[str, ...]) -> list[str]:
@@ -128,84 +112,77 @@ class Whole:
 
     threads: int | None
     cluster: str | None
-    output: Path | None
-    plot: Path | None
-    overwrite: bool
-    explain: bool
+    out: Outputs
     regions: list[tuple[float, ...]]  # the chances of ending inside which are asked for
 
     @property
-    def stored(self) -> bool:
-        """Whether it goes to a Zarr store."""
+    def store(self) -> Path | None:
+        """The Zarr store it goes to, if it does."""
         from puck_tables.io.formats import STORE
 
-        return self.output is not None and self.output.suffix.lower() == STORE
+        path = self.out.output
+        return path if path is not None and path.suffix.lower() == STORE else None
+
+    @property
+    def files(self) -> Outputs:
+        """The outputs that are no store."""
+        return self.out if self.store is None else replace(self.out, output=None)
 
     @property
     def how(self) -> dict[str, Any]:
         """As the library takes it."""
         return {
-            "threads": self.threads, "cluster": self.cluster, "overwrite": self.overwrite,
-            "store": self.output if self.stored else None,
+            "threads": self.threads, "cluster": self.cluster, "overwrite": self.out.overwrite,
+            "store": self.store,
         }  # fmt: skip
 
-    def refuse_outputs(self, inputs: Iterable[Any]) -> None:
-        """Refuse, before any work, what could not be written.
-
-        Raises
-        ------
-        InputError, OutputError, MissingExtraError
-        """
+    def refuse_outputs(self, *inputs: Path | str | None) -> None:
+        """Refuse, before any work, what could not be written."""
         from puck_tables.io.formats import FORMATS, STORE, ending_of
 
-        if self.output is not None:
-            ending_of(self.output, (*FORMATS, STORE))
-        file = None if self.stored else self.output
-        prepare_outputs(file, plot=self.plot, overwrite=self.overwrite, inputs=inputs)
+        if self.out.output is not None:
+            ending_of(self.out.output, (*FORMATS, STORE))
+        self.files.prepare(*inputs)
         if self.cluster is not None:
-            if not self.stored:
+            if self.store is None:
                 raise InputError("--cluster writes to a Zarr store: give -o NAME.zarr too")
             from puck_tables.bulk.cluster import checked_address
 
             checked_address(self.cluster)
-        if self.stored and self.output is not None:
+        if self.store is not None:
             import puck_tables.bulk.store  # noqa: F401 - says what is not installed
 
-            folder = self.output.absolute().parent
+            folder = self.store.absolute().parent
             if not folder.is_dir():
-                raise OutputError(f"cannot write {self.output}: the folder {folder} does not exist")
+                raise OutputError(f"cannot write {self.store}: the folder {folder} does not exist")
             last_words.append(self._kept)
 
     def _kept(self) -> str:
         """What is said when the sweep is ended."""
         from puck_tables.bulk.store_folder import sibling_of
 
-        if self.output is not None and self.output.exists():
-            if sibling_of(Path(os.path.realpath(self.output))).exists():
+        if self.store is not None and self.store.exists():
+            if sibling_of(Path(os.path.realpath(self.store))).exists():
                 return (
-                    f"Interrupted: {self.output} is as it was; what is done of the new one is kept "
+                    f"Interrupted: {self.store} is as it was; what is done of the new one is kept "
                     "beside it: the same command goes on."
                 )
-            return f"Interrupted: {self.output} keeps what is done; the same command goes on."
+            return f"Interrupted: {self.store} keeps what is done; the same command goes on."
         return last_words[0]()
 
     def refuse_memory(self, sizes: list[int], samples: int | None) -> None:
-        """Refuse a map that would not fit in memory, as its format needs it.
-
-        Raises
-        ------
-        InputError
-        """
+        """Refuse a map that would not fit in memory, as its format needs it."""
         from puck_tables._core.memory import check_memory
         from puck_tables.stopping.stop_sweep import BYTES_PER_LAUNCH, BYTES_PER_ROW
 
         shape = tuple(n for n in sizes if n > 1) if samples is None else (samples,)
-        if self.stored:
-            if self.plot is not None or self.regions:
+        if self.store is not None:
+            if self.out.plot is not None or self.regions:
                 advice = "--plot and --inside read a whole store, leave them out"
                 check_memory(shape, BYTES_PER_LAUNCH, advice)
             return
-        as_text = self.plot is None if self.output is None else self.output.suffix.lower() != ".h5"
+        path, plot = self.out.output, self.out.plot
+        as_text = plot is None if path is None else path.suffix.lower() != ".h5"
         check_memory(shape, BYTES_PER_ROW if as_text else BYTES_PER_LAUNCH)
 
     def deliver(self, result: Any, summary: str) -> None:
@@ -213,21 +190,15 @@ class Whole:
         from puck_tables.bulk.finish import Stored
         from puck_tables.bulk.summary import Summary
 
-        if self.stored and self.output is not None:
-            note(self.output)
+        if self.store is not None:
+            note(self.store)
             last_words[:] = last_words[:1]
-        else:
-            deliver(result, self.output, None, self.overwrite)
         kept = isinstance(result, Stored)
         many = kept and result.work.size * max(1, len(getattr(result.work, "names", ()))) > SUMMED
         summed = kept and result.is_sample and (bool(self.regions) or not many)
-        drawn = result.load() if summed or (kept and self.plot is not None) else result
-        deliver(drawn, None, self.plot, self.overwrite)
-        if self.output is None and self.plot is None and not isinstance(result, Summary):
-            from puck_tables.io.csv import encode
-
-            click.echo(encode(result.dataset()).decode(), nl=False)
-        click.echo(printable(summary), err=True)
+        drawn = result.load() if summed or (kept and self.out.plot is not None) else result
+        self.files.deliver(drawn, printed=not kept and not isinstance(result, Summary))
+        say(summary, err=True)
         if isinstance(drawn, Summary):
             click.echo(drawn.summary(self.regions))
         elif kept and result.is_sample:
@@ -236,5 +207,5 @@ class Whole:
                 "memory (some 200 bytes each); or open the store with xarray.",
                 err=True,
             )
-        if self.explain:
-            explained(result)
+        if self.out.explain:
+            say(result.explain(), err=True)

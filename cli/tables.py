@@ -6,7 +6,7 @@ import json
 from typing import Any
 
 import click
-from puck_tables.cli.options import printable
+from puck_tables.cli.printing import columns, say
 
 from puck_tables.errors import InputError
 
@@ -41,24 +41,20 @@ def tables(as_json: bool, names: tuple[str, ...], clean: bool) -> None:
     if as_json:
         click.echo(json.dumps(entries))
     else:
-        click.echo(printable(_lines(entries)))
+        say(_lines(entries))
 
 
 def _lines(entries: list[dict[str, Any]]) -> str:
-    titles = ("name", "holds", "pressure", "accuracy", "kB", "made", "state", "range")
-    rows = [titles]
-    for entry in entries:
-        accuracy = entry["accuracy"]
-        rows.append((
-            entry["name"], entry["kind"] or "-", entry["pressure_law"] or "-",
-            "-" if accuracy is None else f"{accuracy:g}",
-            str(round(entry["bytes"] / 1000)), entry["date"][:10] or "-",
-            "whole" if entry["whole"] else "damaged", entry["valid_range"] or "-",
-        ))  # fmt: skip
-    widths = [max(len(row[i]) for row in rows) for i in range(len(titles))]
-    lines = [
-        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
-        for row in rows
-    ]
+    heads = {
+        "name": "", "holds": "", "pressure": "", "accuracy": "g", "kB": ".0f", "made": "",
+        "state": "", "range": "",
+    }  # fmt: skip
+    rows = [
+        (one["name"], one["kind"] or "-", one["pressure_law"] or "-", one["accuracy"],
+         one["bytes"] / 1000, one["date"][:10] or "-", "whole" if one["whole"] else "damaged",
+         one["valid_range"] or "-")
+        for one in entries
+    ]  # fmt: skip
     places = dict.fromkeys(one["place"] for one in entries if one["place"] != "comes along")
-    return "\n".join(lines + [f"kept in {click.format_filename(place)}" for place in places])
+    kept = [f"kept in {click.format_filename(place)}" for place in places]
+    return "\n".join([columns(heads, rows), *kept])

@@ -2,71 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from functools import wraps
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import click
-from puck_tables.cli.options import FILE, NUMBER
+from puck_tables.cli.options import FILE, NUMBER, packed
 
 if TYPE_CHECKING:
     from puck_tables.film.puck_track import Track
 
-Command = TypeVar("Command", bound=Callable[..., Any])
-
-_OPTIONS = {
-    "fps": click.option("--fps", type=NUMBER, help="Frames a second, for frame numbers."),
-    "unit": click.option(
-        "--unit", metavar="UNIT", help="Unit of the places, where the file does not say: m, cm, px."
-    ),
-    "scale": click.option(
-        "--scale", metavar="SIZE", help="Size of a pixel, a number and a unit: 0.5mm."
-    ),
-    "angle_unit": click.option(
-        "--angle-unit", metavar="UNIT", help="Unit of angles: deg, rad or turn."
-    ),
-    "y_down": click.option(
-        "--y-down/--y-up", default=None,
-        help="Which way y grows in the file.  [default: down for pixels, else up]",
-    ),
-    "columns": click.option(
-        "--columns", metavar="NAMES",
-        help="Headings for all columns, in place of the file's, - for those to leave out: "
-        "'frame,red_x [px],red_y [px],-'.",
-    ),
-    "marks": click.option(
-        "--marks", type=FILE, metavar="FILE",
-        help="Four marks or more on the floor, for a tilted camera: a CSV file of u,v,x [m],y [m], "
-        "their pixels and places.",
-    ),
-    "centre": click.option(
-        "--centre", metavar="MARKS",
-        help="The marks on a puck, with commas, in whose middle its centre lies.",
-    ),
-    "toward": click.option(
-        "--toward", metavar="MARK", help="The mark on a puck that its angle points to."
-    ),
-    "likelihood": click.option(
-        "--likelihood", type=NUMBER,
-        help="Places less likely are not seen.  [default: 0.6; not used of SLEAP]",
-    ),
-    "pucks": click.option("--pucks", metavar="NAMES", help="Read these only, with commas."),
-}  # fmt: skip
-
-
-def track_options(command: Command) -> Command:
-    """Options of how files of tracks are read; the command gets them as ``how``, a dict."""
-
-    @wraps(command)
-    def packed(*arguments: Any, **options: Any) -> Any:
-        how = {name: options.pop(name) for name in _OPTIONS}
-        return command(*arguments, how=how, **options)
-
-    result: Any = packed
-    for option in reversed(_OPTIONS.values()):
-        result = option(result)
-    return result  # type: ignore[no-any-return]
+track_options = packed(
+    "how", dict,
+    click.option("--fps", type=NUMBER, help="Frames a second, for frame numbers."),
+    click.option("--unit", metavar="UNIT",
+                 help="Unit of the places, where the file does not say: m, cm, px."),
+    click.option("--scale", metavar="SIZE", help="Size of a pixel, a number and a unit: 0.5mm."),
+    click.option("--angle-unit", metavar="UNIT", help="Unit of angles: deg, rad or turn."),
+    click.option("--y-down/--y-up", default=None,
+                 help="Which way y grows in the file.  [default: down for pixels, else up]"),
+    click.option("--columns", metavar="NAMES", help="Headings for all columns, in place of the "
+                 "file's, - for those to leave out: 'frame,red_x [px],red_y [px],-'."),
+    click.option("--marks", type=FILE, metavar="FILE", help="Four marks or more on the floor, for "
+                 "a tilted camera: a CSV file of u,v,x [m],y [m], their pixels and places."),
+    click.option("--centre", metavar="MARKS",
+                 help="The marks on a puck, with commas, in whose middle its centre lies."),
+    click.option("--toward", metavar="MARK", help="The mark on a puck that its angle points to."),
+    click.option("--likelihood", type=NUMBER,
+                 help="Places less likely are not seen.  [default: 0.6; not used of SLEAP]"),
+    click.option("--pucks", metavar="NAMES", help="Read these only, with commas."),
+)  # fmt: skip
 
 
 def read_all(files: Iterable[Path], how: Mapping[str, Any]) -> list[Track]:

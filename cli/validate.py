@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
-from puck_tables.cli.options import FILE, printable, progress, tables_named
+from puck_tables.cli.options import FILE, tables_named
+from puck_tables.cli.printing import columns, progress, say
 
 if TYPE_CHECKING:
     from puck_tables.table.check import CheckReport
@@ -30,7 +31,7 @@ def validate(file: Path | None) -> None:
     for table in tables_named(file):
         with progress("validating") as show:
             report = table.validate(show)
-        click.echo(printable(_lines(report, table.second)))
+        say(_lines(report, table.second))
         passed = passed and report.passed
     if not passed:
         click.echo("Error: the table is out of its own tolerance", err=True)
@@ -38,15 +39,13 @@ def validate(file: Path | None) -> None:
 
 
 def _lines(report: CheckReport, second: str) -> str:
-    text = [
-        f"{report.source}: tolerance {report.tolerance:g}",
-        f"{'check':<36}{'function':<15}{'points':>7}{'largest':>10}{'allowed':>10}  result"
-        f"   at phi, {second}",
-    ]
-    for check in report.checks:
-        text.append(
-            f"{check.name:<36}{check.function:<15}{check.points:>7}{check.deviation:>10.1e}"
-            f"{check.allowed:>10.1e}  {'pass' if check.passed else 'FAIL'}"
-            f"     {check.at_phi:.6g}, {check.at_second:.6g}"
-        )
-    return "\n".join(text)
+    heads = {
+        "check": "", "function": "", "points": "d", "largest": ".1e", "allowed": ".1e",
+        "result": "", "at phi": ".6g", second: ".6g",
+    }  # fmt: skip
+    rows = [
+        (one.name, one.function, one.points, one.deviation, one.allowed,
+         "pass" if one.passed else "FAIL", one.at_phi, one.at_second)
+        for one in report.checks
+    ]  # fmt: skip
+    return f"{report.source}: tolerance {report.tolerance:g}\n{columns(heads, rows)}"

@@ -1,14 +1,18 @@
-"""What users type as values: numbers with units, vectors, ranges, times."""
+"""What users type as values: numbers with units, vectors, ranges, times, names with numbers."""
 
 from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import click
 
+from puck_tables.errors import InputError
+
 MAX_COUNT = 1_000_000_000  # values of a range
+MAX_TIMES = 10_000_000  # states of a run
 
 
 class NumberParam(click.ParamType):
@@ -21,7 +25,25 @@ class NumberParam(click.ParamType):
 
     def convert(self, value: Any, param: Any, ctx: Any) -> float:
         """Parse a finite number."""
-        return finite(str(value), self, param, ctx, self.unit)
+        return self.numbers([str(value)], param, ctx)[0]
+
+    def numbers(self, parts: list[str], param: Any, ctx: Any) -> list[float]:
+        """Finite numbers that stand beside each other, each with its unit or none of them."""
+        from puck_tables._core.units import SHOWN, UNIT_EACH, measured, unit_meant, without_unit
+
+        if bare := without_unit(parts, self.unit):
+            self.fail(UNIT_EACH.format(bare), param, ctx)
+        numbers = []
+        for text in parts:
+            try:
+                numbers.append(measured(text, self.unit))
+            except ValueError:
+                why = unit_meant(text[:40])
+                like = f", or one with a unit as {SHOWN[self.unit]}" if self.unit else ""
+                self.fail(f"'{text}' is not a number{like}{f' ({why})' if why else ''}", param, ctx)
+            if not math.isfinite(numbers[-1]):
+                self.fail(f"'{text}' is not a finite number", param, ctx)
+        return numbers
 
 
 class Vector(NumberParam):
@@ -36,7 +58,7 @@ class Vector(NumberParam):
         parts = str(value).split(",")
         if len(parts) != 2:
             self.fail(f"'{value}' must be two numbers with a comma, like 1,0", param, ctx)
-        return tuple(all_finite(parts, self, param, ctx))
+        return tuple(self.numbers(parts, param, ctx))
 
 
 class RangeParam(NumberParam):
@@ -48,19 +70,15 @@ class RangeParam(NumberParam):
         """Parse a number, a range or a list."""
         if isinstance(value, float | tuple | list):
             return value
-        if "," in str(value):
-            return all_finite(str(value).split(","), self, param, ctx)
         parts = str(value).split(":")
+        if "," in str(value):
+            return self.numbers(str(value).split(","), param, ctx)
         if len(parts) == 1:
-            return finite(parts[0], self, param, ctx, self.unit)
+            return self.numbers(parts, param, ctx)[0]
         if len(parts) != 3:
-            self.fail(
-                f"'{value}' must be a number, START:STOP:COUNT like 0:10:101, or numbers with "
-                "commas",
-                param,
-                ctx,
-            )
-        start, stop = all_finite(parts[:2], self, param, ctx)
+            self.fail(f"'{value}' must be a number, START:STOP:COUNT like 0:10:101, or numbers "
+                      "with commas", param, ctx)  # fmt: skip
+        start, stop = self.numbers(parts[:2], param, ctx)
         if not re.fullmatch(r"[0-9]{1,10}", parts[2]) or not 2 <= int(parts[2]) <= MAX_COUNT:
             self.fail(f"the COUNT of '{value}' must be a whole number from 2 to 1e9", param, ctx)
         if not stop > start:
@@ -78,32 +96,73 @@ class Times(NumberParam):
     def convert(self, value: Any, param: Any, ctx: Any) -> Any:
         """Parse a list of times or a range."""
         if ":" not in str(value):
-            return tuple(all_finite(str(value).split(","), self, param, ctx))
+            return tuple(self.numbers(str(value).split(","), param, ctx))
         start, stop, count = RangeParam(self.unit).convert(value, param, ctx)
-        if count > 10_000_000:
+        if count > MAX_TIMES:
             self.fail(f"'{value}' asks for too many states: at most 1e7", param, ctx)
         return tuple(start + (stop - start) * i / (count - 1) for i in range(count))
 
 
-def all_finite(parts: list[str], kind: NumberParam, param: Any, ctx: Any) -> list[float]:
-    """Finite numbers that stand beside each other, each with its unit or none of them."""
-    from puck_tables._core.units import UNIT_EACH, without_unit
-
-    if bare := without_unit(parts, kind.unit):
-        kind.fail(UNIT_EACH.format(bare), param, ctx)
-    return [finite(part, kind, param, ctx, kind.unit) for part in parts]
+def not_none(values: dict[str, Any]) -> dict[str, Any]:
+    """Those that were given."""
+    return {name: value for name, value in values.items() if value is not None}
 
 
-def finite(text: str, kind: click.ParamType, param: Any, ctx: Any, unit: str = "") -> float:
-    """A finite number, in an SI unit where another stands behind it, or click's error."""
-    from puck_tables._core.units import SHOWN, measured, unit_meant
+def read_as(read: Callable[[Any, str], Any]) -> Callable[..., Any]:
+    """The callback of an option whose value is read by a function of it and of its flag."""
 
-    try:
-        number = measured(text, unit)
-    except ValueError:
-        why = unit_meant(text[:40])
-        example = f", or one with a unit as {SHOWN[unit]}" if unit else ""
-        kind.fail(f"'{text}' is not a number{example}{f' ({why})' if why else ''}", param, ctx)
-    if not math.isfinite(number):
-        kind.fail(f"'{text}' is not a finite number", param, ctx)
-    return number
+    def callback(ctx: click.Context, param: click.Parameter, value: Any) -> Any:
+        return value if value is None else read(value, param.opts[0])
+
+    return callback
+
+
+def names(text: str, option: str) -> list[str]:
+    """Names with commas."""
+    parts = [name.strip() for name in text.split(",")]
+    if not all(parts):
+        raise InputError(f"{option} '{text}' must be names with commas")
+    return parts
+
+
+def named(texts: Iterable[str], option: str) -> dict[str, str]:
+    """NAME=VALUE, several times."""
+    result: dict[str, str] = {}
+    for text in texts:
+        name, equals, value = (part.strip() for part in text.partition("="))
+        if not equals or not name or not value:
+            raise InputError(f"{option} '{text}' must be NAME=VALUE, like friction=0.2")
+        if name in result:
+            raise InputError(f"{option} names {name} twice: give it once")
+        result[name] = value
+    return result
+
+
+def numbers_in(text: str, option: str, sign: str, form: str, unit: str = "") -> tuple[float, ...]:
+    """As many numbers as ``form`` shows, parted by a sign, each with its unit or none of them.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> numbers_in("0.2:0.05", "--prior friction", ":", "VALUE:SIGMA")
+    (0.2, 0.05)
+    """
+    from puck_tables._core.units import UNIT_EACH, measured, without_unit
+
+    parts = text.split(sign) if sign else [text]
+    if len(parts) != (form.count(sign) if sign else 0) + 1:
+        raise InputError(f"{option}={text} must be {form}")
+    if bare := without_unit(parts, unit):
+        raise InputError(f"{option}={text}: {UNIT_EACH.format(bare)}")
+    numbers = []
+    for part in parts:
+        try:
+            numbers.append(measured(part, unit))
+        except ValueError:
+            numbers.append(math.nan)
+        if not math.isfinite(numbers[-1]):
+            raise InputError(f"{option}={text}: '{part}' is not a finite number")
+    return tuple(numbers)

@@ -20,10 +20,10 @@ from puck_tables.motion.bulk_stops import fill_stops
 from puck_tables.motion.tableaus import DORMAND_PRINCE, RK4
 from puck_tables.stopping.exact import exact_stops
 from puck_tables.stopping.stop_table import StopTable
-from puck_tables.tradeoff import measurement, resultant_methods, stop_methods
+from puck_tables.tradeoff import measurement, resultant_methods, state_methods, stop_methods
 from puck_tables.tradeoff.bicubic import fill_bicubic, graded_coefficients
 from puck_tables.tradeoff.literature_models import as_table
-from puck_tables.tradeoff.truth import Points, golden_starts, random_points
+from puck_tables.tradeoff.truth import Contender, Question, random_points
 
 
 @pytest.fixture(scope="module")
@@ -36,35 +36,50 @@ def measured() -> measurement.TradeOff:
 @pytest.mark.thorough
 def test_errors_are_properties_of_the_ways_and_ship_as_measured():
     """Every look-up and every fifth contender measured again: the same to the digits shipped."""
-    points = random_points(40)
-    task = stop_methods.StopTask(golden_starts(), points, Table.shipped(), Table.shipped("stops"))
     known = {(method.question, method.name): method for method in shipped_errors()}
     count = 0
-    for number, contender in enumerate(stop_methods.contenders(task)):
+    for number, contender in enumerate(stop_methods.contenders(random_points(40))):
         if contender.outsider or (contender.method != "look-up" and number % 5):
             continue
-        if contender.question != "stop" or "float32" in contender.method:
+        if contender.question.name != "stop" or "float32" in contender.method:
             continue
-        ready = contender.ready(contender.build())
-        worst = max(ready.time_error.max(), ready.place_error.max())
         method = known["stop", f"{contender.method} ({contender.setting})"]
-        assert worst == pytest.approx(method.error, rel=0.02, abs=2e-14), method.name
+        assert worst(contender) == pytest.approx(method.error, rel=0.02, abs=2e-14), method.name
         count += 1
     assert count >= 7 + 4
 
 
+def worst(contender: Contender) -> float:
+    """The largest error at the judged inputs."""
+    run = contender.prepare(contender.build())
+    return float(np.max(contender.question.errors(run(contender.question.inputs))))
+
+
 @pytest.mark.thorough
 def test_errors_of_resultants_ship_as_measured():
-    points = random_points(4000)
-    flat = points.delta == 0.0
-    flat_points = Points(points.phi[flat], points.delta[flat], points.resultants[:, flat])
-    task = resultant_methods.ResultantTask(points, flat_points)
     known = {method.name: method for method in shipped_errors() if method.question == "resultants"}
-    for contender in resultant_methods.contenders(task):
+    for contender in resultant_methods.contenders(random_points(4000)):
         if contender.method in ("quadratic in delta", "bicubic, graded", "limit surface"):
-            error = contender.ready(contender.build()).place_error.max()
             name = contender.method + (f" ({contender.setting})" if contender.setting else "")
-            assert error == pytest.approx(known[name].error, rel=0.02, abs=1e-14)
+            assert worst(contender) == pytest.approx(known[name].error, rel=0.02, abs=1e-14)
+
+
+@pytest.mark.thorough
+def test_every_row_that_ships_can_be_measured_again():
+    """Methods, settings and sizes; and errors of states and outsiders."""
+    points = random_points(1000)
+    contenders = [
+        *resultant_methods.contenders(points),
+        *stop_methods.contenders(points.some(points.inputs[1] == 0.0)),
+        *state_methods.contenders(),
+    ]
+    rows = [(one.question.name, one.method, one.setting, one.outsider) for one in contenders]
+    shipped = {(m.question, m.method, m.setting, m.outsider): m for m in shipped_errors()}
+    assert sorted(rows) == sorted(shipped)
+    for contender, row in zip(contenders, rows, strict=True):
+        if contender.question.name == "state" or (contender.outsider and row[0] == "stop"):
+            error = worst(contender)  # within a factor: tables and solvers have moved since
+            assert error < 2.0 * shipped[row].error < 4.0 * error, row
 
 
 def test_the_figures_asked_for_are_on_the_front():
@@ -207,15 +222,15 @@ def test_refusals_come_before_the_work(tmp_path: Path, monkeypatch: pytest.Monke
 def test_every_round_runs_every_way(monkeypatch: pytest.MonkeyPatch):
     """The engine itself, on two methods and small sizes."""
 
-    def few(task: resultant_methods.ResultantTask):
-        for contender in all_contenders(task):
+    def few(points: Question):
+        for contender in all_contenders(points):
             if contender.method in ("closed forms", "limit surface"):
                 yield contender
 
     all_contenders = resultant_methods.contenders
     monkeypatch.setattr(measurement.resultant_methods, "contenders", few)
-    monkeypatch.setattr(measurement.stop_methods, "contenders", lambda task: iter(()))
-    monkeypatch.setattr(measurement.state_methods, "contenders", lambda task: iter(()))
+    monkeypatch.setattr(measurement.stop_methods, "contenders", lambda flat: iter(()))
+    monkeypatch.setattr(measurement.state_methods, "contenders", lambda: iter(()))
     seen: list[tuple[int, int]] = []
     result = measurement.measure(
         quick=True, progress=lambda done, total: seen.append((done, total))

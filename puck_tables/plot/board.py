@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from puck_tables.plot.animation import Animation, Box, MovingDisc
+from puck_tables.plot.base_outlines import path_of, placed
 from puck_tables.plot.floor_axes import Box as Sight
 from puck_tables.plot.floor_axes import draw_floor
 from puck_tables.plot.round_parts import draw_rounds
@@ -12,7 +13,7 @@ from puck_tables.plot.style import RED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.patches import Circle
+    from matplotlib.patches import Circle, PathPatch
 
 _WIDE, _HIGH = 9.0, 7.0  # in, of a panel at most
 _LOW = 1.2  # in, at least
@@ -45,11 +46,13 @@ def draw_board(axes: Axes, film: Animation) -> None:
         axes.plot(line.x, line.y, zorder=1, **looks)
 
 
-def disc(body: MovingDisc, x: float, y: float, **looks: Any) -> Circle:
-    """A disc at a place, to scale; one that is driven is hatched."""
-    from matplotlib.patches import Circle
+def disc(body: MovingDisc, x: float, y: float, **looks: Any) -> Circle | PathPatch:
+    """A disc at a place, or what it is instead, to scale; one that is driven is hatched."""
+    from matplotlib.patches import Circle, PathPatch
 
     hatch = {"hatch": "////"} if body.driven else {}
+    if body.outline:
+        return PathPatch(path_of(placed(body.outline, x, y, 0.0)), **hatch, **looks)
     return Circle((x, y), body.radius, **hatch, **looks)
 
 

@@ -18,6 +18,8 @@ from puck_tables.errors import MissingExtraError, OutputError
 from puck_tables.io.formats import ending_of
 from puck_tables.plot import board
 from puck_tables.plot.animation import Animation, MovingDisc, between, film_of, path_of
+from puck_tables.plot.base_outlines import path_of as path_through
+from puck_tables.plot.base_outlines import placed
 from puck_tables.plot.floor_axes import Box as Sight
 from puck_tables.plot.floor_axes import motion_said, shades_of
 from puck_tables.plot.style import RED, canvas, may_replace, require_matplotlib
@@ -27,7 +29,7 @@ from puck_tables.scene.parts import Floor
 
 if TYPE_CHECKING:
     from matplotlib.lines import Line2D
-    from matplotlib.patches import Circle
+    from matplotlib.patches import Circle, PathPatch
 
 MOVIE_KINDS = (".html", ".gif", ".mp4")
 DIGITS = 8  # of the numbers in HTML
@@ -133,6 +135,8 @@ def _body(body: MovingDisc) -> dict[str, Any]:
         **body._asdict(),
         "gone": body.gone if math.isfinite(body.gone) else None,
         "mark": body.mark,
+        "mark_length": body.mark_length,
+        "outline": [np.round(part, DIGITS).tolist() for part in body.outline],
         "line": body.line,
         "knots": [[float(f"{x:.{DIGITS}g}") for x in row] for row in body.knots.tolist()],
     }
@@ -188,7 +192,7 @@ class _Stage:
         self._agg = cast("Any", FigureCanvasAgg(figure))
         self._agg.draw()
         self._board = self._agg.copy_from_bbox(figure.bbox)
-        self._discs: list[Circle] = []
+        self._discs: list[Circle | PathPatch] = []
         self._trails: list[Line2D] = []
         self._marks: list[Line2D] = []
         for body in film.bodies:
@@ -205,13 +209,19 @@ class _Stage:
 
     def in_view(self, time: float) -> Any:
         """The picture at a time, array (high, wide, 4) of bytes."""
+        from matplotlib.patches import PathPatch
+
         parts = zip(self.film.bodies, self._discs, self._trails, self._marks, strict=True)
         for body, disc, trail, mark in parts:
             in_view = min(time, body.gone)
             x, y, angle = between(body.knots, np.array([in_view]))[0].tolist()
             trail.set_data(*np.vstack([path_of(body, in_view), (x, y)]).T)
-            disc.set_center((x, y))
-            rim = x + body.radius * math.cos(angle), y + body.radius * math.sin(angle)
+            if isinstance(disc, PathPatch):
+                disc.set_path(path_through(placed(body.outline, x, y, angle)))
+            else:
+                disc.set_center((x, y))
+            long = body.mark_length
+            rim = x + long * math.cos(angle), y + long * math.sin(angle)
             mark.set_data([x, rim[0]], [y, rim[1]])
             alpha = 0.25 if time >= body.gone else 1.0
             disc.set_alpha(alpha)

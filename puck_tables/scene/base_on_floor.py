@@ -22,6 +22,7 @@ from puck_tables.kernels.base_friction import (
     is_uniform,
     pressure_at,
     pressure_on,
+    under_load,
     uniform_sums,
 )
 from puck_tables.kernels.base_friction import REACH as BASE_REACH
@@ -178,16 +179,6 @@ def _friction_sums(ground: FloatArray, ux: float, uy: float, w: float, moving: f
     return plus(NOTHING, ground[SHARE], sums)
 
 
-@inlined
-def _under(
-    sums: Sums, a: float, bx: float, by: float, c: float, s: float
-) -> tuple[float, float, float]:
-    """∫ f p e dA and its moment, by axes of the floor."""
-    x = a * sums[0] + bx * sums[2] + by * sums[3]
-    y = a * sums[1] + bx * sums[4] + by * sums[5]
-    return c * x - s * y, s * x + c * y, a * (sums[4] - sums[3]) + bx * sums[6] + by * sums[7]
-
-
 @inner
 def friction_of_base(
     ground: FloatArray, ux: float, uy: float, w: float, moving: float
@@ -205,7 +196,8 @@ def friction_of_base(
         return -fx, -fy, -torque, fx * ux + fy * uy + torque * w
     sums = _friction_sums(ground, c * ux + s * uy, c * uy - s * ux, w, moving)
     a, bx, by = pressure_on(base, sums)
-    fx, fy, torque = _under(sums, a, bx, by, c, s)
+    x, y, torque = under_load(sums, a, bx, by)
+    fx, fy = c * x - s * y, s * x + c * y
     return -fx, -fy, -torque, fx * ux + fy * uy + torque * w
 
 
@@ -218,4 +210,5 @@ def friction_held(
     c, s = math.cos(ground[ANGLE]), math.sin(ground[ANGLE])
     sums = _friction_sums(ground, c * ux + s * uy, c * uy - s * ux, w, 0.0)
     a, bx, by = pressure_at(base, c * mx + s * my, c * my - s * mx)
-    return _under(sums, a, bx, by, c, s)
+    x, y, torque = under_load(sums, a, bx, by)
+    return c * x - s * y, s * x + c * y, torque

@@ -21,26 +21,17 @@ def graded_coefficients(table: ResultantTable) -> FloatArray:
     >>> graded_coefficients(ResultantTable.shipped()).shape[::3]
     (2, 3)
     """
-    sides = np.moveaxis(table.axis.by_side(_ratios(table.values)), 0, 1)
+    parallel = table.values[..., :1]
+    ratios = np.concatenate([1.0 / parallel, table.values[..., 1:] / parallel], axis=-1)
+    sides = np.moveaxis(table.axis.by_side(ratios), 0, 1)
     along_delta = not_a_knot_coefficients(np.moveaxis(clamped_coefficients(sides), 2, 0))
     return np.ascontiguousarray(along_delta.transpose(2, 0, 1, 3)) / 36.0
 
 
-def _ratios(resultants: FloatArray) -> FloatArray:
-    parallel = resultants[..., :1]
-    return np.concatenate([1.0 / parallel, resultants[..., 1:] / parallel], axis=-1)
-
-
 def not_a_knot_coefficients(values: FloatArray) -> FloatArray:
-    """Coefficients of the uniform cubic spline with not-a-knot ends, along axis 0.
+    """Coefficients (n + 3, …) of the uniform cubic spline with not-a-knot ends, along axis 0.
 
-    Parameters
-    ----------
-    values : array (n + 1, …), n ≥ 3
-
-    Returns
-    -------
-    array (n + 3, …); cubics are reproduced exactly
+    ``values`` (n + 1, …), n ≥ 3; cubics are reproduced exactly.
 
     Examples
     --------
@@ -73,16 +64,11 @@ def fill_bicubic(
     c = coefficients.reshape(-1)
     row = 3 * (n_eta + 3)
     step = np.uint64(row)
-    first = np.empty(_BLOCK, np.int64)
-    w = np.empty((8, _BLOCK))
-    w0, w1, w2, w3 = w[0], w[1], w[2], w[3]
-    v0, v1, v2, v3 = w[4], w[5], w[6], w[7]
+    first, w = np.empty(_BLOCK, np.int64), np.empty((8, _BLOCK))
+    w0, w1, w2, w3, v0, v1, v2, v3 = w[0], w[1], w[2], w[3], w[4], w[5], w[6], w[7]
     for start in range(0, phi.size, _BLOCK):
-        angle = phi[start : start + _BLOCK]
-        height = delta[start : start + _BLOCK]
-        parallel = out[0, start : start + _BLOCK]
-        perpendicular = out[1, start : start + _BLOCK]
-        spin = out[2, start : start + _BLOCK]
+        angle, height = phi[start : start + _BLOCK], delta[start : start + _BLOCK]
+        values = out[:, start : start + _BLOCK]
         for n in range(angle.size):
             side, eta = side_and_eta(angle[n])
             p = eta * n_eta
@@ -100,10 +86,10 @@ def fill_bicubic(
             f2, g2, h2 = row_sums(c, k + step + step, a, b, d, e)
             f3, g3, h3 = row_sums(c, k + step + step + step, a, b, d, e)
             a, b, d, e = v0[n], v1[n], v2[n], v3[n]
-            parallel[n] = a * f0 + b * f1 + d * f2 + e * f3
-            perpendicular[n] = a * g0 + b * g1 + d * g2 + e * g3
-            spin[n] = a * h0 + b * h1 + d * h2 + e * h3
+            values[0, n] = a * f0 + b * f1 + d * f2 + e * f3
+            values[1, n] = a * g0 + b * g1 + d * g2 + e * g3
+            values[2, n] = a * h0 + b * h1 + d * h2 + e * h3
         for n in range(angle.size):
-            parallel[n] = 1.0 / parallel[n]
-            perpendicular[n] *= parallel[n]
-            spin[n] *= parallel[n]
+            values[0, n] = 1.0 / values[0, n]
+            values[1, n] *= values[0, n]
+            values[2, n] *= values[0, n]

@@ -20,6 +20,7 @@ from puck_tables.kernels.compile import kernel, patience
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.resultant_values import HEIGHTS
 from puck_tables.table.slip_axis import LawAxis
+from puck_tables.tradeoff.truth import Question
 
 PADE_MATCHED = (1.0, 8.0 / 3.0)
 
@@ -37,7 +38,7 @@ def fill_pade(phi: FloatArray, a: float, b: float, out: FloatArray) -> None:
 
 @kernel
 def fill_limit_surface(phi: FloatArray, out: FloatArray) -> None:
-    """The same for the ellipsoidal limit surface."""
+    """ρ_∥, ρ_⊥ = 0, ρ_ω of the ellipsoidal limit surface at such angles into ``out`` (3, n)."""
     patience(phi.size)
     for n in range(phi.size):
         c, s = np.cos(phi[n]), np.sin(phi[n])
@@ -47,42 +48,31 @@ def fill_limit_surface(phi: FloatArray, out: FloatArray) -> None:
         out[2, n] = (8.0 / 9.0) * w
 
 
-def pade_at_best(phi: FloatArray, resultants: FloatArray) -> tuple[float, float]:
-    """The a and b with the least worst error at given angles.
-
-    Parameters
-    ----------
-    phi : array (n,)
-    resultants : array (3, n), at δ = 0
+def pade_at_best(flat: Question) -> tuple[float, float]:
+    """The a and b with the least worst error at resultants of δ = 0.
 
     Examples
     --------
-    >>> from puck_tables import resultants
-    >>> phi = np.linspace(0.0, np.pi / 2, 200)
-    >>> [round(x, 3) for x in pade_at_best(phi, np.stack(resultants(phi, 0.0)))]
-    [0.724, 1.516]
+    >>> from puck_tables.tradeoff.truth import random_points
+    >>> points = random_points(2000)
+    >>> [round(x, 2) for x in pade_at_best(points.some(points.inputs[1] == 0.0))]
+    [0.72, 1.52]
     """
     from scipy.optimize import minimize_scalar
 
-    c, s = np.cos(phi), np.sin(phi)
+    phi, out = np.ascontiguousarray(flat.inputs[0]), np.empty(flat.truth.shape)
 
-    def error_parallel(a: float) -> float:
-        return float(np.abs(1.0 / (c + a * s) - resultants[0]).max())
+    def error(row: int, a: float, b: float) -> float:
+        fill_pade(phi, a, b, out)
+        return float(np.abs(out[row] - flat.truth[row]).max())
 
-    def error_spin(b: float) -> float:
-        return float(np.abs((4.0 / 3.0) / (s + b * c) - resultants[2]).max())
-
-    a = minimize_scalar(error_parallel, bounds=(0.3, 1.5), method="bounded").x
-    b = minimize_scalar(error_spin, bounds=(1.5, 4.0), method="bounded").x
+    a = minimize_scalar(lambda a: error(0, a, 1.0), bounds=(0.3, 1.5), method="bounded").x
+    b = minimize_scalar(lambda b: error(2, 1.0, b), bounds=(1.5, 4.0), method="bounded").x
     return float(a), float(b)
 
 
 def as_table(model: str, a: float = 1.0, b: float = 8.0 / 3.0, cells: int = 512) -> ResultantTable:
-    """A model as a table of resultants, the same at every δ: so the same loops integrate it.
-
-    Parameters
-    ----------
-    model : 'pade' or 'limit surface'
+    """A model ('pade' or 'limit surface') as a table of resultants, the same at every δ.
 
     Examples
     --------

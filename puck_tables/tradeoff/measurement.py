@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
+import os
+import platform
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
+from functools import partial
+from importlib.metadata import version
+from timeit import timeit
 from typing import Any, ClassVar
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
+from puck_tables._version import __version__
 from puck_tables.accuracy.method_errors import MeasuredMethod
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.kernels.patience import compiled_at_once
 from puck_tables.result import Result
-from puck_tables.stopping.stop_table import StopTable
-from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.tradeoff import resultant_methods, state_methods, stop_methods
-from puck_tables.tradeoff.contender import Contender, Ready
-from puck_tables.tradeoff.machine import describe
-from puck_tables.tradeoff.truth import Points, golden_starts, random_points
+from puck_tables.tradeoff.truth import Contender, random_points
 
 Progress = Callable[[int, int], None]
 
@@ -89,60 +90,79 @@ def measure(quick: bool = False, progress: Progress | None = None) -> TradeOff:
     machine = describe()
     repeats = QUICK_REPEATS if quick else REPEATS
     points = random_points(_QUICK_POINTS if quick else _POINTS)
-    chosen = points.delta == 0.0
-    flat = Points(points.phi[chosen], points.delta[chosen], points.resultants[:, chosen])
-    table, stop_table = ResultantTable.shipped(), StopTable.shipped()
-    contenders: list[Contender] = [
-        *resultant_methods.contenders(resultant_methods.ResultantTask(points, flat)),
-        *stop_methods.contenders(stop_methods.StopTask(golden_starts(), flat, table, stop_table)),
-        *state_methods.contenders(state_methods.StateTask(table, stop_table)),
+    contenders = [
+        *resultant_methods.contenders(points),
+        *stop_methods.contenders(points.some(points.inputs[1] == 0.0)),
+        *state_methods.contenders(),
     ]
-    total, done = 2 * len(contenders) + repeats, 0
-
-    def step(count: int = 1) -> None:
-        nonlocal done
-        done += count
+    total = 2 * len(contenders) + repeats
+    runs, methods = [], []
+    for number, contender in enumerate(contenders):
+        run, count, answers, method = _prepared(contender)
+        runs.append((run, count, answers))
+        methods.append(method)
         if progress is not None:
-            progress(done, total)
-
-    readies, build_seconds = [], []
-    for contender in contenders:
-        start = time.perf_counter()
-        built = contender.build()
-        build_seconds.append(time.perf_counter() - start)
-        readies.append(contender.ready(built))
-        step(2)
-    costs = np.empty((len(readies), repeats))
-    loops = [_loops(ready) for ready in readies]
+            progress(2 * number + 2, total)
+    costs = np.empty((len(runs), repeats))  # ns
     for repeat in range(repeats):
-        for n, (ready, count) in enumerate(zip(readies, loops, strict=True)):
-            costs[n, repeat] = _seconds(ready, count) / (count * ready.items)
-        step()
-    methods = map(_measured, contenders, readies, build_seconds, costs)
-    return TradeOff(tuple(methods), machine, repeats, time.perf_counter() - begin)
+        for n, (run, count, answers) in enumerate(runs):
+            costs[n, repeat] = 1e9 * timeit(run, number=count) / (count * answers)
+        if progress is not None:
+            progress(2 * len(runs) + repeat + 1, total)
+    low, middle, high = np.quantile(costs, [0.25, 0.5, 0.75], axis=1)
+    timed = (
+        replace(method, ns=float(ns), ns_spread=float(spread))
+        for method, ns, spread in zip(methods, middle, high - low, strict=True)
+    )
+    return TradeOff(tuple(timed), machine, repeats, time.perf_counter() - begin)
 
 
-def _loops(ready: Ready) -> int:
-    ready.run()
-    once = _seconds(ready, 1)
-    return max(1, int(_SHORTEST / once))
-
-
-def _seconds(ready: Ready, count: int) -> float:
+def _prepared(contender: Contender) -> tuple[Callable[[], object], int, int, MeasuredMethod]:
+    """A run for the clock, how often a round repeats it, how much it answers, and its errors."""
+    question = contender.question
     start = time.perf_counter()
-    for _ in range(count):
-        ready.run()
-    return time.perf_counter() - start
-
-
-def _measured(
-    contender: Contender, ready: Ready, build: float, costs: FloatArray
-) -> MeasuredMethod:
-    error = np.maximum(ready.time_error, ready.place_error)
-    low, middle, high = 1e9 * np.quantile(costs, [0.25, 0.5, 0.75])
-    return MeasuredMethod(
-        contender.question, contender.method, contender.setting, int(contender.outsider),
+    built = contender.build()
+    build = time.perf_counter() - start
+    run = contender.prepare(built)
+    time_error, place_error = question.errors(run(question.inputs))
+    error = np.maximum(time_error, place_error)
+    clocked = partial(run, np.ascontiguousarray(question.timed[:, : contender.items]))
+    answers = np.size(clocked()) // 3
+    count = max(1, int(_SHORTEST / timeit(clocked, number=1)))
+    return clocked, count, answers, MeasuredMethod(
+        question.name, contender.method, contender.setting, int(contender.outsider),
         error=float(error.max()), median_error=float(np.median(error)),
-        time_error=float(ready.time_error.max()), place_error=float(ready.place_error.max()),
-        ns=float(middle), ns_spread=float(high - low), bytes=ready.bytes, build_s=build,
+        time_error=float(time_error.max()), place_error=float(place_error.max()),
+        ns=0.0, ns_spread=0.0, bytes=_bytes(built), build_s=build,
     )  # fmt: skip
+
+
+def _bytes(built: object) -> int:
+    """Of the tables that a method keeps."""
+    each = built if isinstance(built, tuple) else (built,)
+    return sum(one.nbytes for one in each if isinstance(one, np.ndarray))
+
+
+def describe() -> dict[str, str]:
+    """The machine a measurement was made on, in words: processor, system and versions.
+
+    Examples
+    --------
+    >>> sorted(describe())[:3]
+    ['cores', 'load', 'numba']
+    """
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    load = f"{os.getloadavg()[0]:.1f}" if hasattr(os, "getloadavg") else "unknown"
+    try:
+        with open("/proc/cpuinfo", encoding="utf-8") as file:
+            named = [line.partition(":")[2].strip() for line in file if "model name" in line]
+    except OSError:
+        named = []
+    return {
+        "processor": (named or [platform.processor() or platform.machine()])[0],
+        "cores": str(cores), "load": f"{load} at the start",
+        "system": f"{platform.system()} {platform.machine()}",
+        "python": platform.python_version(),
+        **{name: version(name) for name in ("numpy", "numba", "scipy")},
+        "puck-tables": __version__,
+    }  # fmt: skip

@@ -26,10 +26,6 @@ _PATCH_END = 1e-3  # of Q₀, at which it counts as at rest
 _MOST_CALLS = 20_000  # of the right-hand side: then it is given up
 
 
-class _Trembles(Exception):
-    """Stepped over the stop, where friction jumps, and now to and fro about it."""
-
-
 @allocating
 def rates(t: float, state: FloatArray, delta: float) -> FloatArray:
     """d/dt of vx, vy, ω, x, y, friction by the compiled closed forms."""
@@ -56,25 +52,24 @@ def _until_stopped(
 
     q0, calls = math.hypot(*launch), 0
 
+    def left(t: float, state: FloatArray, *_: float) -> float:
+        return math.hypot(state[0], state[1], state[2]) - end * q0
+
     def counted(t: float, state: FloatArray, *args: float) -> Any:
         nonlocal calls
         calls += 1
-        if calls > _MOST_CALLS:
-            raise _Trembles
+        if calls > _MOST_CALLS:  # stepped over the stop, where friction jumps, it trembles there
+            raise TimeoutError
         return function(t, state, *args)
 
-    def nearly_stopped(t: float, state: FloatArray, *_: float) -> float:
-        return math.hypot(state[0], state[1], state[2]) - end * q0
-
-    nearly_stopped.terminal = True  # type: ignore[attr-defined]
-    start = [*launch, 0.0, 0.0]
+    left.terminal = True  # type: ignore[attr-defined]
     try:
-        solution = solve_ivp(counted, (0.0, 2.0 * q0), start, events=nearly_stopped, **options)
-    except _Trembles:
+        solution = solve_ivp(counted, (0.0, 2.0 * q0), [*launch, 0.0, 0.0], events=left, **options)
+    except TimeoutError:
         return np.full(3, math.nan)
     if solution.status != 1:
         return np.full(3, math.nan)
-    return np.array([solution.t[-1], solution.y[3, -1], solution.y[4, -1]])
+    return np.array([solution.t[-1], *solution.y[3:, -1]])
 
 
 def scipy_stop(

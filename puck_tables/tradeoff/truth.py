@@ -1,4 +1,4 @@
-"""What answers are judged by, from outside the code that gives them.
+"""What methods are asked, and what their answers are judged by, from outside the code they run.
 
 Resultants: direct quadrature over the patch.  Stops: a file of a thousand launches, computed once
 by a script of its own (``tests/golden/make_starts.py``: mpmath, nothing of the package) to 1e-13.
@@ -7,8 +7,10 @@ by a script of its own (``tests/golden/make_starts.py``: mpmath, nothing of the 
 from __future__ import annotations
 
 import io
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from importlib.resources import files
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -18,78 +20,121 @@ from puck_tables.contact import quadrature
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.resultants import moment_balance
 
-
-@dataclass(frozen=True)
-class Points:
-    """Slip angles and heights (n,), and the resultants there (3, n)."""
-
-    phi: FloatArray
-    delta: FloatArray
-    resultants: FloatArray
-
-    def errors(self, values: FloatArray) -> FloatArray:
-        """The largest error of the three at every point (n,)."""
-        error: FloatArray = np.abs(values - self.resultants).max(axis=0)
-        return error
+Run = Callable[[FloatArray], FloatArray]  # from inputs (rows, n) to answers (3, n, …)
+RESULTANTS = "resultants"
+DELTA = 0.5  # dimensionless: that of a puck that nothing is said of
+_TIMED = 40_000  # inputs timed
 
 
-@dataclass(frozen=True)
-class Starts:
-    """Launches at u = ln(rω/v) and δ (n,), and T, X, Y in units of Q/J and Q²/J (n, 3)."""
+@dataclass(frozen=True, eq=False)
+class Question:
+    """Inputs (rows, n) with their true answers (3, n, …), and as many as are ``timed``.
 
-    u: FloatArray
-    delta: FloatArray
-    stops: FloatArray
-
-    def launches(self) -> FloatArray:
-        """Launches (6, n) along x with Q = J = r = 1."""
-        k = np.exp(-np.abs(self.u))
-        large = 1.0 / np.hypot(1.0, k)
-        one = np.ones_like(k)
-        v = np.where(self.u > 0.0, k, one) * large
-        rim = np.where(self.u > 0.0, one, k) * large
-        return np.stack([v, 0.0 * k, rim, self.delta, one, one])
-
-    def errors(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Errors of time and place (n,) of stops (3, n); no number is infinitely wrong."""
-        off = np.nan_to_num(np.abs(values.T - self.stops), nan=np.inf)
-        return off[:, 0], np.hypot(off[:, 1], off[:, 2])
-
-    def some(self, chosen: npt.NDArray[np.bool_] | npt.NDArray[np.int64]) -> Starts:
-        """Those that are chosen."""
-        return Starts(self.u[chosen], self.delta[chosen], self.stops[chosen])
-
-
-def golden_starts() -> Starts:
-    """The launches that come with the package.
-
-    Examples
-    --------
-    >>> golden_starts().stops.shape
-    (1000, 3)
+    Inputs: φ and δ, or launches vx, vy, rω, δ, J, r.  Answers: ρ_∥, ρ_⊥, ρ_ω, or a time and a place
+    in units of Q/J and Q²/J.
     """
-    content = (files("puck_tables.tables") / "starts.npz").read_bytes()
-    with np.load(io.BytesIO(content)) as file:
-        return Starts(file["u"], file["delta"], np.stack([file[n] for n in "TXY"], axis=-1))
+
+    name: str
+    inputs: FloatArray
+    truth: FloatArray
+    timed: FloatArray
+
+    def some(self, chosen: slice | npt.NDArray[np.bool_] | npt.NDArray[np.int64]) -> Question:
+        """With some of the inputs that are judged."""
+        inputs = np.ascontiguousarray(self.inputs[:, chosen])
+        return replace(self, inputs=inputs, truth=self.truth[:, chosen])
+
+    def errors(self, answers: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Errors of time and place (n, …), no number being infinitely wrong.
+
+        Of resultants the first is zero and the second the largest of the three.
+        """
+        off = np.nan_to_num(np.abs(answers - self.truth), nan=np.inf)
+        if self.name == RESULTANTS:
+            return 0.0 * off[0], off.max(axis=0)
+        return off[0], np.hypot(off[1], off[2])
 
 
-def random_points(count: int, seed: int = 1832) -> Points:
+@dataclass(frozen=True, eq=False)
+class Contender:
+    """A method before it is measured: ``build`` makes what it keeps, ``prepare`` a run from that.
+
+    ``items``: inputs answered at once on the clock, all of them by default.
+    """
+
+    question: Question
+    method: str
+    setting: str
+    build: Callable[[], Any]
+    prepare: Callable[[Any], Run]
+    items: int | None = None
+    outsider: bool = False
+
+
+def kept(value: Any) -> Callable[[], Any]:
+    """A build of what is there already."""
+    return lambda: value
+
+
+def filled(fill: Callable[[FloatArray, FloatArray], object], rows: int = 3) -> Run:
+    """A run of a function that fills its answers in; the room for them is made once."""
+    rooms: dict[int, FloatArray] = {}
+
+    def run(inputs: FloatArray) -> FloatArray:
+        size = inputs.shape[1]
+        if size not in rooms:
+            rooms[size] = np.empty((rows, size))
+        fill(inputs, rooms[size])
+        return rooms[size][:3]
+
+    return run
+
+
+def random_points(count: int, seed: int = 1832) -> Question:
     """Half of them anywhere, half next to φ = 0, π/4 and π/2, with δ = 0 and 1 among the heights.
 
     Examples
     --------
-    >>> random_points(12).resultants.shape
+    >>> random_points(12).truth.shape
     (3, 12)
     """
     rng = np.random.default_rng(seed)
     phi = rng.uniform(0.0, 0.5 * np.pi, count)
     near = 10.0 ** -rng.uniform(0.2, 12.0, count)
-    place = rng.integers(0, 4, count)
+    quarter, half = 0.25 * np.pi, 0.5 * np.pi
     beside = np.choose(
-        place, [near, 0.25 * np.pi - near, 0.25 * np.pi + near, 0.5 * np.pi - near]
-    ).clip(0.0, 0.5 * np.pi)
-    phi = np.where(np.arange(count) % 2 == 0, phi, beside)
+        rng.integers(0, 4, count), [near, quarter - near, quarter + near, half - near]
+    )
+    phi = np.where(np.arange(count) % 2 == 0, phi, beside.clip(0.0, half))
     delta = rng.choice([0.0, 1.0, -1.0], count, p=[0.1, 0.1, 0.8])
     delta = np.where(delta < 0.0, rng.random(count), delta)
-    truth = moment_balance(quadrature.integrals(phi), slip_direction(phi), delta)
-    return Points(phi, delta, np.stack(truth))
+    truth = np.stack(moment_balance(quadrature.integrals(phi), slip_direction(phi), delta))
+    rng = np.random.default_rng(7)
+    timed = np.stack([rng.uniform(0.0, half, _TIMED), rng.random(_TIMED)])
+    return Question(RESULTANTS, np.stack([phi, delta]), truth, timed)
+
+
+def golden_starts() -> tuple[Question, Question, FloatArray]:
+    """Stops: of launches that come with the package; of a few that are not adversarial; ln(rω/v).
+
+    The judged launches go along x with Q = J = r = 1.
+
+    Examples
+    --------
+    >>> golden_starts()[0].truth.shape
+    (3, 1000)
+    """
+    content = (files("puck_tables.tables") / "starts.npz").read_bytes()
+    with np.load(io.BytesIO(content)) as file:
+        u, delta, truth = file["u"], file["delta"], np.stack([file[name] for name in "TXY"])
+    k, one = np.exp(-np.abs(u)), np.ones_like(u)
+    v, rim = np.where(u > 0.0, (k, one), (one, k)) / np.hypot(1.0, k)
+    rng, one_timed = np.random.default_rng(11), np.ones(_TIMED)
+    timed = np.stack([
+        *rng.uniform(-1.0, 1.0, (2, _TIMED)), rng.uniform(-5.0, 5.0, _TIMED), rng.random(_TIMED),
+        one_timed, one_timed,
+    ])  # fmt: skip
+    stops = Question("stop", np.stack([v, 0.0 * k, rim, delta, one, one]), truth, timed)
+    size = np.abs(u)
+    moderate = np.flatnonzero((size < 4.0) & (size > 0.05) & (np.abs(u - 0.4) > 0.1))
+    return stops, stops.some(rng.choice(moderate, 16, replace=False)), u
