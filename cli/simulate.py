@@ -16,6 +16,7 @@ from puck_tables.cli.options import (
     SPIN,
     Outputs,
     PuckChoice,
+    base_option,
     outputs,
     packed,
     puck_options,
@@ -35,9 +36,15 @@ if TYPE_CHECKING:
     from puck_tables.result import TimedResult
     from puck_tables.trajectory import Trajectory
 
+ENDS = {  # of slides on bases that are not round
+    "rest": "it lies still",
+    "together": "sliding and spinning end together",
+    "slide last": "the spin dies out first, it slides last",
+    "spin last": "the sliding dies out first, it spins last",
+}
 _LAUNCHED = (
     "v0", "w0", "radius", "height", "friction", "gravity", "mass", "decel", "delta", "pressure",
-    "gyration",
+    "gyration", "base",
 )  # fmt: skip
 
 
@@ -47,7 +54,7 @@ _LAUNCHED = (
 @click.option("--track", help="Which track of --fit, by its name or number from 1.")
 @click.option("--v0", type=Vector("m/s"), help="Launch velocity in m/s, like 1,0.")
 @click.option("--w0", type=SPIN, default=0.0, show_default=True, help="Launch spin in rad/s.")
-@packed("choice", PuckChoice, *puck_options(mass=True))
+@packed("choice", PuckChoice, base_option, *puck_options(mass=True))
 @click.option("--frames", type=int, help="Number of states to save.  [default: 101]")
 @click.option("--times", type=Times("s"), help="Times of the states to save, in s.")
 @click.option("--tol", type=NUMBER, default=1e-9, show_default=True,
@@ -76,6 +83,7 @@ def simulate(
     puck simulate --scene carrom-break --movie carrom.html
     puck simulate --v0 1,0 --w0 5 --delta 2
     puck simulate --v0 1,0 --w0 5 --pressure annulus:0.8 --gyration 0.9
+    puck simulate --v0 1,0 --w0 10 --base box:20cmx10cm --friction 0.3 --plot box.png
     puck simulate --fit fit.json --track 1
     """  # noqa: D301 - click reads the backspace
     unknown: tuple[str, ...] = ()
@@ -95,7 +103,7 @@ def simulate(
             raise InputError("--track chooses a track of --fit: give that, too")
         if exact and table_path is not None:
             raise InputError("--exact and --table clash: closed forms need no table")
-        out.prepare(table_path, choice.pressure, fit_path)
+        out.prepare(table_path, choice.pressure, choice.base, fit_path)
         if fit_path is not None:
             puck, velocity, w0, unknown = _from_fit(ctx, fit_path, track)
         elif v0 is not None:
@@ -133,36 +141,68 @@ def _from_fit(
 
 def report(run: Trajectory, note: str) -> str:
     """The trajectory in a dozen lines."""
+    lines = _on_base(run, note) if run.puck.shape is not None else _of_round(run, note)
+    return f"{plainly(run)}\n\n{listed(lines, 15)}"
+
+
+def _of_round(run: Trajectory, note: str) -> dict[str, str]:
+    """What is told of a round puck."""
     from puck_tables.motion.limits import REGIMES
 
     puck, (vx, vy), w0 = run.puck, run.launch_velocity, run.launch_spin
     q0 = math.hypot(vx, vy, puck.radius * w0)
+    assert run.turn_angle is not None
     turn = f"{math.degrees(run.turn_angle):.5g} deg"
-    if run.turn_rate != 0.0:
+    if run.turn_rate:
         decade = math.degrees(run.turn_rate) * math.log(10.0)
         turn += f" by Q = Q0/1000, then {decade:.4g} deg more for each factor 10 of Q"
-    x, y = run.stop_position
     kind = f", {puck.body.kind}" if puck.body.kind else ""
-    lines = {
+    return {
         "puck": f"r = {puck.radius:g} m, delta = {puck.delta:.6g}, J = {puck.decel:.6g} m/s^2{kind}"
         f"{note}",
         "launch": f"v0 = ({vx:g}, {vy:g}) m/s, w0 = {w0:g} rad/s, "
         f"Q0 = hypot(v0, r w0) = {q0:.6g} m/s",
         "regime": f"{run.regime}: {REGIMES[run.regime]}",
         "contact": _contact(run),
+        **_stop(run, q0, {"heading turned": turn}, {"limit angle": _limit(run.limit_angle)}),
+    }
+
+
+def _on_base(run: Trajectory, note: str) -> dict[str, str]:
+    """What is told of a puck on another base."""
+    puck, (vx, vy), w0 = run.puck, run.launch_velocity, run.launch_spin
+    assert puck.shape is not None
+    k = puck.inertia_radius
+    q0 = math.hypot(vx, vy, k * w0)
+    high = f"h = {puck.height:g} m, " if puck.height > 0.0 else ""
+    return {
+        "puck": f"base {puck.shape.name}, k = {k:.6g} m, {high}f = {puck.friction:g}, "
+        f"J = {puck.decel:.6g} m/s^2{note}",
+        "launch": f"v0 = ({vx:g}, {vy:g}) m/s, w0 = {w0:g} rad/s, "
+        f"Q0 = hypot(v0, k w0) = {q0:.6g} m/s",
+        "end": ENDS[run.regime],
+        **_stop(run, q0, {}, {}),
+    }
+
+
+def _stop(
+    run: Trajectory, q0: float, turns: dict[str, str], limit: dict[str, str]
+) -> dict[str, str]:
+    """What is told of any stop, with more about turns."""
+    (x, y), puck = run.stop_position, run.puck
+    return {
         "stop time": f"{run.stop_time:.9g} s",
         "stop position": f"({x:.9g}, {y:.9g}) m",
         "path length": f"{run.path_length:.9g} m",
-        "heading turned": turn,
+        **turns,
         "body turned": f"{run.body_angle:.9g} rad ({run.body_angle / (2 * math.pi):.5g} turns)",
-        "limit angle": _limit(run),
+        **limit,
         "energy": f"{run.kinetic_energy:.6g} J (m = {puck.mass:g} kg), all lost to friction; "
         f"residual {run.energy_residual:.1e} of it",
         "method": run.method + (f", {run.steps} steps" if run.steps else ""),
         "error estimate": f"{run.error_estimate * q0 / puck.decel:.1e} s, "
         f"{run.error_estimate * q0 * q0 / puck.decel:.1e} m",
     }
-    return f"{plainly(run)}\n\n{listed(lines, 15)}"
 
 
 def plainly(run: Trajectory) -> str:
@@ -177,7 +217,7 @@ def plainly(run: Trajectory) -> str:
         )
     first = f"The puck stops after {run.stop_time:.4g} s, {math.hypot(x, y):.4g} m from its launch."
     aside = math.degrees(math.atan2(vx * y - vy * x, vx * x + vy * y))
-    if run.launch_spin == 0.0:
+    if run.launch_spin == run.body_angle == 0.0:
         return first + "\nWithout spin its path is straight."
     side = "left" if aside > 0.0 else "right"
     bent = (
@@ -185,7 +225,8 @@ def plainly(run: Trajectory) -> str:
     )
     if abs(aside) < 1e-9:
         bent = "Its path is straight"
-    return f"{first}\n{bent}; sliding and spinning end together."
+    end = ENDS.get(run.regime, ENDS["together"])
+    return f"{first}\n{bent}; {end}."
 
 
 def _contact(run: Trajectory) -> str:
@@ -204,11 +245,12 @@ def _contact(run: Trajectory) -> str:
     return text
 
 
-def _limit(run: Trajectory) -> str:
+def _limit(angle: float | None) -> str:
     """Where the ratio of spin to speed tends to."""
-    if run.limit_angle == 0.0:
+    assert angle is not None
+    if angle == 0.0:
         return "none: the spin dies out before the sliding, r w/v tends to 0"
-    if run.limit_angle == 0.5 * math.pi:
+    if angle == 0.5 * math.pi:
         return "none: the sliding dies out before the spin, r w/v grows without bound"
-    ratio = math.tan(run.limit_angle)
-    return f"{math.degrees(run.limit_angle):.7g} deg (r w/v tends to {ratio:.7g})"
+    ratio = math.tan(angle)
+    return f"{math.degrees(angle):.7g} deg (r w/v tends to {ratio:.7g})"

@@ -18,7 +18,9 @@ if TYPE_CHECKING:
     from puck_tables.stopping.stops import Stops
     from puck_tables.table.table import Table
     from puck_tables.trajectory import Trajectory
-    from puck_tables.wrench.friction_hold import Hold
+    from puck_tables.wrench.base_surface import BaseSurface
+    from puck_tables.wrench.friction_force import Wrench
+    from puck_tables.wrench.friction_hold import Hold, Twist
     from puck_tables.wrench.surface import LimitSurface
 
 
@@ -42,7 +44,10 @@ class Puck(VerbsOfMany):
     pressure : contact pressure: uniform, galin, hertz, ring, annulus:INNER, a CSV file of ρ, W, or
         a Law
     gyration : radius of gyration about the vertical axis over r, 0.1 to 10; √½ for a homogeneous
-        puck, 1 for a ring
+        puck, 1 for a ring; with a base in m, left out that of a homogeneous body
+    base : Base, or a text as :func:`puck_tables.contact.base.base_of` takes it, in place of radius
+        ``simulate``, ``stop``, ``states`` then integrate (:mod:`puck_tables.motion.base_motion`),
+        with Q = hypot(v, kω); what is looked up or differentiated is refused.
 
     Raises
     ------
@@ -62,6 +67,9 @@ class Puck(VerbsOfMany):
     (0.133333, 0.980665)
     >>> round(puck.simulate((2.0, 0.0), 30.0).stop_time, 6)
     2.345288
+    >>> box = Puck(base="box:0.2x0.1", friction=0.3)
+    >>> round(box.simulate((1.0, 0.0), 10.0).stop_time, 6)
+    0.448246
     """
 
     def regime(self, velocity: npt.ArrayLike, spin: float = 0.0) -> str:
@@ -71,7 +79,7 @@ class Puck(VerbsOfMany):
         -------
         str
             A rest, B0 pure spin, C0 pure translation, D limit motion, B more spin than the limit
-            motion, C less.
+            motion, C less.  Of round pucks.
 
         Examples
         --------
@@ -81,6 +89,7 @@ class Puck(VerbsOfMany):
         """
         from puck_tables.motion.limits import regime
 
+        self.refuse_base("regime")
         return regime(velocity, spin, self.delta, self.radius, self.pressure, self.gyration)
 
     def simulate(
@@ -112,7 +121,8 @@ class Puck(VerbsOfMany):
             the states on the way keep it too, speed and rω in units of Q; those of other pucks may
             be off by 3 times that (measured: 2.8, launched next to φ = π/4).  The cheapest
             integrator whose measured error is below it is taken; ``explain()`` of the result says
-            which and why.
+            which and why.  On a base that is not round 1e-12 to 0.01, and the angle of the body is
+            as good: what it moves the farthest point of the base by, in units of Q²/J.
         method : 'adaptive' (Dormand–Prince 5(4)) or 'rk4', optional
             Only this one.
         exact : bool
@@ -145,9 +155,14 @@ class Puck(VerbsOfMany):
         >>> run.regime, round(run.stop_time, 8), round(run.stop_position[0], 8)
         ('B', 3.96299205, 2.21395163)
         """
-        from puck_tables.trajectory import simulate
+        from puck_tables.trajectory import simulate, simulate_on_base
 
         self.refuse_frictionless()
+        if self.shape is not None:
+            self.refuse_for_round(method=method, exact=exact, table=table)
+            return simulate_on_base(
+                self, velocity, spin, frames=frames, times=times, tol=tol
+            )  # fmt: skip
         return simulate(
             self, velocity, spin, frames=frames, times=times, tol=tol, method=method, exact=exact,
             table=cast(Any, table),
@@ -183,6 +198,12 @@ class Puck(VerbsOfMany):
         >>> Puck.similar(delta=1.0).stop((1.0, 0.0), [1.0, 5.0]).stop_time.round(6).tolist()
         [1.395088, 4.000189]
         """
+        if self.shape is not None:
+            from puck_tables.stopping.base_stops import stop_on_base
+
+            self.refuse_frictionless()
+            self.refuse_for_round(method=method, table=table, jacobian=jacobian)
+            return stop_on_base(self, velocity, spin, tol, threads)
         from puck_tables.stopping.stops import stop
 
         return stop(
@@ -221,6 +242,12 @@ class Puck(VerbsOfMany):
         >>> Puck.similar().states((1.0, 0.0), 5.0, [2.0, 0.0]).x.round(6).tolist()
         [1.590682, 0.0]
         """
+        if self.shape is not None:
+            from puck_tables.stopping.base_stops import states_on_base
+
+            self.refuse_frictionless()
+            self.refuse_for_round(table=table, jacobian=jacobian)
+            return states_on_base(self, velocity, spin, time, threads)
         from puck_tables.stopping.states import states
 
         return states(
@@ -319,23 +346,28 @@ class Puck(VerbsOfMany):
         """
         from puck_tables.stopping.aim_at_targets import aim
 
+        self.refuse_base("aim")
         self.refuse_frictionless()
         return aim(
             self, target, spin=spin, speed=speed, stop_time=stop_time, max_speed=max_speed,
             max_spin=max_spin, count=count, threads=threads,
         )  # fmt: skip
 
-    def limit_surface(self, n: int = 181) -> LimitSurface:
+    def limit_surface(self, n: int | None = None) -> LimitSurface | BaseSurface:
         """What force and torque friction takes up, over the direction of slip.
 
         Parameters
         ----------
-        n : how many slip angles, equally spaced from −π/2 to π/2; 5 to 1e6 and one
+        n : how many slip angles, equally spaced from −π/2 to π/2
+            5 to 1e6 and one, 181 if left out; with a base 5 to 1001, 31 if left out, each in
+            2n − 1 directions of slip.
 
         Returns
         -------
         LimitSurface
             With the ellipsoid and the convex polynomial of order 4 that fit it best.
+        BaseSurface
+            With a base: over the direction of slip, too, in the axes of the base.
 
         Raises
         ------
@@ -357,13 +389,104 @@ class Puck(VerbsOfMany):
 
         return limit_surface(self, n)
 
-    def holds(self, force: npt.ArrayLike, torque: npt.ArrayLike = 0.0) -> Hold:
-        """Whether friction holds this puck at rest under a force and a torque; both broadcast.
+    def wrench(
+        self, velocity: npt.ArrayLike, spin: npt.ArrayLike = 0.0, angle: npt.ArrayLike = 0.0, *,
+        jacobian: bool = False,
+    ) -> Wrench:  # fmt: skip
+        """Force and torque of friction on this puck while it slips; all broadcasts.
+
+        Parameters
+        ----------
+        velocity : array_like (…, 2), m/s, of the centre of mass over the floor
+        spin : array_like (…), rad/s, counter-clockwise positive
+        angle : array_like (…), rad, by which a base is turned
+        jacobian : whether derivatives are wanted
+
+        Returns
+        -------
+        Wrench
+            ``force`` (…, 2), N, ``torque`` (…), N m, about the vertical through the centre of mass,
+            as the floor exerts them, and ``jacobian`` (…, 3, 3), to v_x, v_y and the spin, or None.
+            They err by some 1e-13 of f m g.
+
+        Raises
+        ------
+        InputError
+            If an argument is not finite or has the wrong shape, or a slip is 0.
+
+        Notes
+        -----
+        Derivatives are closed forms under any base and uniform pressure in full contact; else
+        central differences, good to 1e-8 off the singular lines of the pressure law.
+
+        Examples
+        --------
+        >>> from puck_tables import Puck
+        >>> box = Puck(base="box:0.2x0.1", friction=0.3, mass=2.0)
+        >>> found = box.wrench((1.0, 0.0), 10.0)
+        >>> found.force.round(6).tolist(), float(found.torque.round(6))
+        ([-5.090855, 0.0], -0.170834)
+        """
+        from puck_tables.wrench.friction_force import wrench
+
+        return wrench(self, velocity, spin, angle, jacobian)
+
+    def twist(
+        self, force: npt.ArrayLike, torque: npt.ArrayLike = 0.0, angle: npt.ArrayLike = 0.0
+    ) -> Twist:
+        """The slip in which friction is along a force and a torque; all broadcasts.
+
+        The inverse of :meth:`wrench`.  What a push leads to is the slip whose friction is against
+        it: give its negative.
+
+        Parameters
+        ----------
+        force : array_like (…, 2), N
+        torque : array_like (…), N m; force and torque of any size, not both 0
+        angle : array_like (…), rad, by which a base is turned
+
+        Returns
+        -------
+        Twist
+            ``velocity`` (…, 2), m/s, and ``spin`` (…), rad/s, with hypot(v, lω) = 1 m/s, where l is
+            the radius, or with a base the radius of gyration.
+
+        Raises
+        ------
+        InputError
+            If an argument is not finite or has the wrong shape, or no wrench acts.
+        ContactError
+            If the slip of a tall body was not found.
+
+        Notes
+        -----
+        Of a flat body it is the least of what friction dissipates among slips of the same power
+        against the wrench, which is convex; friction in it is along the wrench to 1e-11 of f m g,
+        under other pressure laws than uniform to 1e-9.  Of a tall body that slip is given to which
+        the one of the flat body leads.
+
+        Examples
+        --------
+        >>> from puck_tables import Puck
+        >>> box = Puck(base="box:0.2x0.1", friction=0.3, mass=2.0)
+        >>> found = box.twist((-5.0, 0.0), -0.2)
+        >>> found.velocity.round(6).tolist(), float(found.spin.round(6))
+        ([0.792114, 0.0], 9.455852)
+        """
+        from puck_tables.wrench.friction_hold import twist
+
+        return twist(self, force, torque, angle)
+
+    def holds(
+        self, force: npt.ArrayLike, torque: npt.ArrayLike = 0.0, angle: npt.ArrayLike = 0.0
+    ) -> Hold:
+        """Whether friction holds this puck at rest under a force and a torque; all broadcasts.
 
         Parameters
         ----------
         force : array_like (…, 2), N
         torque : array_like (…), N m, counter-clockwise positive
+        angle : array_like (…), rad, by which a base is turned
 
         Returns
         -------
@@ -375,6 +498,8 @@ class Puck(VerbsOfMany):
         ------
         InputError
             If an argument is not finite or has the wrong shape, or the puck has no friction.
+        ContactError
+            If the slip of a tall body on a base was not found.
 
         Notes
         -----
@@ -390,4 +515,4 @@ class Puck(VerbsOfMany):
         """
         from puck_tables.wrench.friction_hold import holds
 
-        return holds(self, force, torque)
+        return holds(self, force, torque, angle)

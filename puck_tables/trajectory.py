@@ -15,12 +15,13 @@ from puck_tables.accuracy.method_errors import Selection
 from puck_tables.accuracy.methods import INTEGRATORS, method_named
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset, variable
+from puck_tables.motion.base_slides import BaseSlide, slide_of
 from puck_tables.motion.body import UnitPuck, body_of
 from puck_tables.motion.contact import contact_of
 from puck_tables.motion.frame import Frame, frame_of
 from puck_tables.motion.friction_source import source_of
 from puck_tables.motion.limits import regime_of
-from puck_tables.motion.puck_spec import PUCK_UNITS, PuckSpec
+from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.motion.state import LENGTH, PSI, THETA, T, U, X, Y
 from puck_tables.motion.unit_motion import GENERIC, MotionRun, solve
 from puck_tables.result import TimedResult
@@ -71,6 +72,11 @@ class Trajectory(TimedResult):
     m/s; ``spin`` ω rad/s; ``slip_speed`` Q m/s; ``slip_angle`` φ = atan2(rω, v) rad, and so 0 at
     rest (what it tends to is ``limit_angle``).  Called with times it gives the states of the same
     motion there.
+
+    On a base that is not round Q = hypot(v, kω) and φ = atan2(kω, v) with the radius of gyration k
+    for r; ``heading`` lies between −π and π, at rest it is that just before; ``regime`` tells how
+    it ends: rest, 'together', 'slide last' or 'spin last'; ``turn_angle``, ``turn_rate`` and
+    ``limit_angle`` are None.
     """
 
     puck: PuckSpec
@@ -80,10 +86,10 @@ class Trajectory(TimedResult):
     stop_time: float
     stop_position: tuple[float, float]
     path_length: float
-    turn_angle: float
-    turn_rate: float
+    turn_angle: float | None
+    turn_rate: float | None
     body_angle: float
-    limit_angle: float
+    limit_angle: float | None
     loaded_share: float
     least_loaded_share: float
     contact_opens: float | None
@@ -103,12 +109,12 @@ class Trajectory(TimedResult):
     spin: FloatArray = field(repr=False)
     slip_speed: FloatArray = field(repr=False)
     slip_angle: FloatArray = field(repr=False)
-    motion: MotionRun = field(repr=False, compare=False)
+    motion: MotionRun | BaseSlide = field(repr=False, compare=False)
 
     picture: ClassVar[str] = "trajectory"
 
     def __call__(self, times: npt.ArrayLike) -> Trajectory:
-        """The same motion with its states at other times; nothing is integrated again.
+        """The same motion with its states at other times; of a round puck it is not done anew.
 
         Parameters
         ----------
@@ -126,9 +132,14 @@ class Trajectory(TimedResult):
         [1.590682, 0.0]
         """
         moments = checked_times(times)
+        found: dict[str, Any] = self._states_at(moments)
+        return replace(self, time=moments, **found)
+
+    def _states_at(self, moments: FloatArray) -> dict[str, FloatArray]:
+        if isinstance(self.motion, BaseSlide):
+            return _slid(self.motion, moments)
         frame = frame_of(self.launch_velocity, self.launch_spin, self.puck.decel, self.puck.radius)
-        states: dict[str, Any] = _integrated(self.motion, frame, moments, self.stop_time)
-        return replace(self, time=moments, **states)
+        return _integrated(self.motion, frame, moments, self.stop_time)
 
     @property
     def vx(self) -> FloatArray:
@@ -149,6 +160,8 @@ class Trajectory(TimedResult):
 
     def explain(self) -> str:
         """Which method was taken, and why."""
+        if isinstance(self.motion, BaseSlide):
+            return self.motion.explanation
         if self.selection is None:
             return "solved in elementary functions: the slip angle is constant"
         return self.selection.explanation
@@ -163,7 +176,7 @@ class Trajectory(TimedResult):
         [0.5, 0.0]
         """
         values = {name: getattr(self, name) for name in SCALARS}
-        units = {name: unit for name, unit in {**SCALARS, **PUCK_UNITS}.items() if unit}
+        units = {name: unit for name, unit in {**SCALARS, **self.puck.units}.items() if unit}
         listed = {n: list(v) if isinstance(v, tuple) else v for n, v in values.items()}
         return {**listed, **self.puck.described(), "units": units}
 
@@ -243,6 +256,57 @@ def simulate(
         motion=run,
         **columns,
     )
+
+
+def simulate_on_base(
+    puck: PuckSpec, velocity: npt.ArrayLike, spin: float, *, frames: int | None,
+    times: npt.ArrayLike | None, tol: float,
+) -> Trajectory:  # fmt: skip
+    """The motion of a puck on a base that is not round, as :meth:`puck_tables.Puck.simulate`."""
+    launch, w = one_velocity(velocity), real("spin", spin, "rad/s")
+    wanted = real("tol", tol, "dimensionless")
+    _check_frames(frames, times)
+    run = slide_of(puck, launch, w, wanted)
+    energy = 0.5 * puck.mass * run.slip * run.slip
+    if not math.isfinite(energy):
+        raise InputError(f"mass = {puck.mass:g} kg gives an energy too large for floating point")
+    moments = _moments(frames, times, run.stop_time)
+    return Trajectory(
+        puck=puck,
+        launch_velocity=launch,
+        launch_spin=w,
+        regime=run.end,
+        stop_time=run.stop_time,
+        stop_position=run.stop_position,
+        path_length=run.path_length,
+        turn_angle=None,
+        turn_rate=None,
+        body_angle=run.body_angle,
+        limit_angle=None,
+        loaded_share=1.0,
+        least_loaded_share=1.0,
+        contact_opens=None,
+        contact_closes=None,
+        kinetic_energy=energy,
+        energy_residual=run.energy_residual,
+        method="Dormand-Prince 8(5,3), adaptive, friction summed along the base",
+        steps=run.steps,
+        error_estimate=run.error,
+        selection=None,
+        time=moments,
+        motion=run,
+        **_slid(run, moments),
+    )
+
+
+def _slid(run: BaseSlide, moments: FloatArray) -> dict[str, FloatArray]:
+    """States of a slide on a base as the columns of a trajectory."""
+    x, y, heading, orientation, speed, spin = run.states(moments)
+    rim = run.puck.inertia_radius * spin
+    return {
+        "x": x, "y": y, "heading": heading, "orientation": orientation, "speed": speed,
+        "spin": spin, "slip_speed": np.hypot(speed, rim), "slip_angle": np.arctan2(rim, speed),
+    }  # fmt: skip
 
 
 def _refuse_too_large(frame: Frame, body: UnitPuck, energy: float, decel: float) -> None:

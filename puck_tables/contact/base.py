@@ -7,7 +7,7 @@ linear over it, see :mod:`puck_tables.kernels.base_friction`.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Self
@@ -361,6 +361,7 @@ def base_of(text: str) -> Base:
         corners = numbers_of(shape, (X, Y), 2, MAX_BYTES).rows
         return Base.polygon(corners, centre=centre, name=as_utf8(text))
     kind, _, sizes = shape.partition(":")
+    makers: dict[str, tuple[Callable[..., Base], int]]
     makers = {"box": (Base.box, 2), "disc": (Base.disc, 1), "annulus": (Base.annulus, 2)}
     if kind not in makers:
         raise InputError(f"no base is called {shown(text)}: choose {NAMES}")
@@ -368,7 +369,7 @@ def base_of(text: str) -> Base:
     lengths = [_length(f"base {shape}", part) for part in sizes.split("x")]
     if len(lengths) != count:
         raise InputError(f"base {shown(text)}: {kind} takes {count} lengths; choose {NAMES}")
-    found: Base = make(*lengths, centre=centre)
+    found = make(*lengths, centre=centre)
     return replace(found, name=text) if at else found
 
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 
@@ -38,7 +39,7 @@ def crossing(outline: Outline, other: Outline | None = None) -> bool:
     return own and _folds(p)
 
 
-def _meet(p: FloatArray, q: FloatArray, a: FloatArray, b: FloatArray) -> FloatArray:
+def _meet(p: FloatArray, q: FloatArray, a: FloatArray, b: FloatArray) -> npt.NDArray[np.bool_]:
     """Whether pieces from p to q and from a to b have a point in common."""
 
     def side(u: FloatArray, v: FloatArray, w: FloatArray) -> FloatArray:

@@ -24,6 +24,7 @@ from puck_tables.motion.body import (
     body_of,
 )
 
+ROUND_ONLY = "of round pucks: give a radius in place of the base"
 _ROUNDED = 0.01  # of a radius: what a profile and a puck may differ by
 
 
@@ -237,7 +238,18 @@ class PuckSpec:
         InputError
         """
         if self.shape is not None:
-            raise InputError(f"{what} is of round pucks: give a radius in place of the base")
+            raise InputError(f"{what} is {ROUND_ONLY}")
+
+    def refuse_for_round(self, **values: Any) -> None:
+        """Refuse arguments that a puck on a base has no use for, where one is given.
+
+        Raises
+        ------
+        InputError
+        """
+        for name, value in values.items():
+            if value is not None and value is not False:
+                self.refuse_base(name)
 
     @property
     def decel(self) -> float:
@@ -259,6 +271,7 @@ class PuckSpec:
         >>> round(PuckSpec.similar(delta=0.0).limit_ratio, 6)
         1.531389
         """
+        self.refuse_base("limit_ratio")
         return self.body.limit_ratio
 
     @property
@@ -296,11 +309,30 @@ class PuckSpec:
     def described(self) -> dict[str, Any]:
         """Its numbers by name, with δ and J, as results and files carry them."""
         numbers = {name: getattr(self, name) for name in ("radius", "height", "friction", "mass")}
+        if self.shape is not None:
+            del numbers["radius"]
+            return {
+                "base": self.shape.name, **numbers, "gravity": self.gravity, "decel": self.decel,
+                "gyration": self.gyration,
+            }  # fmt: skip
         law = self.body.law.name
         return {
             **numbers, "gravity": self.gravity, "delta": self.delta, "decel": self.decel,
             "pressure": law, "gyration": self.gyration,
         }  # fmt: skip
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Of what describes it.
+
+        Examples
+        --------
+        >>> PuckSpec(base="disc:0.1").units["gyration"], PuckSpec(0.1).units["gyration"]
+        ('m', '1')
+        """
+        names = self.described()
+        units = {name: unit for name, unit in PUCK_UNITS.items() if name in names}
+        return units if self.shape is None else {**units, "gyration": "m"}
 
 
 PUCK_UNITS = {

@@ -16,6 +16,8 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.colours import brightness, on_white
+from puck_tables.plot.base_outlines import MARK, outline_of
+from puck_tables.plot.floor_axes import Box
 from puck_tables.plot.round_parts import RoundPart, rounds_of
 from puck_tables.plot.scene_figure import states_drawn
 from puck_tables.plot.titles import out_of_sight
@@ -37,11 +39,13 @@ _FAR = 3.0  # sizes of the ways: corners of the board farther off are left out o
 
 _DARK = 0.45  # brightness: a mark on it is white
 
-Box = tuple[float, float, float, float]  # left, right, low, high, m
-
 
 class MovingDisc(NamedTuple):
-    """A disc and its way: knots (n, 7) of t, x, y, angle, vx, vy, spin; ``gone`` s, or inf."""
+    """A disc and its way: knots (n, 7) of t, x, y, angle, vx, vy, spin; ``gone`` s, or inf.
+
+    ``outline``: of a base that is not round, as :mod:`puck_tables.plot.base_outlines` has it;
+    ``radius`` is then its reach.
+    """
 
     name: str
     radius: float
@@ -49,6 +53,7 @@ class MovingDisc(NamedTuple):
     driven: bool
     knots: FloatArray
     gone: float
+    outline: tuple[FloatArray, ...] = ()
 
     @property
     def line(self) -> str:
@@ -59,6 +64,11 @@ class MovingDisc(NamedTuple):
     def mark(self) -> str:
         """The colour of a mark that is seen on it."""
         return "white" if brightness(self.colour) < _DARK and not self.driven else "black"
+
+    @property
+    def mark_length(self) -> float:
+        """How far a mark goes from its centre, m."""
+        return MARK * self.radius if self.outline else self.radius
 
 
 class StraightPart(NamedTuple):
@@ -109,9 +119,12 @@ def film_of(result: TimedResult) -> Animation:
         states = _stacked(
             run.time, run.x, run.y, run.orientation, run.vx, run.vy, run.spin
         )  # fmt: skip
-        return _film(
-            "Puck", "at rest", run.stop_time, [("puck", run.puck.radius, "", False, states)]
-        )
+        body = ("puck", run.puck.radius, "", False, states)
+        film = _film("Puck", "at rest", run.stop_time, [body])
+        if run.puck.shape is None:
+            return film
+        outline = tuple(outline_of(run.puck))
+        return film._replace(bodies=[film.bodies[0]._replace(outline=outline)])
     if isinstance(result, Run) and result.scene.pucks:
         return _film_of_several(result)
     if isinstance(result, Run):
@@ -275,7 +288,7 @@ def _sight(bodies: list[tuple[str, float, str, bool, FloatArray]], rounds: list[
     for one in rounds:
         centre = np.array([one.x, one.y])
         low, high = np.minimum(low, centre - one.radius), np.maximum(high, centre + one.radius)
-    return float(low[0]), float(high[0]), float(low[1]), float(high[1])
+    return Box(float(low[0]), float(high[0]), float(low[1]), float(high[1]))
 
 
 def _half_planes(scene: SceneSpec) -> list[tuple[str, FloatArray]]:
@@ -305,7 +318,8 @@ def _with_corners(box: Box, planes: list[FloatArray]) -> Box:
         if inside and max(left - x, x - right, low - y, y - high) <= _FAR * size:
             left, right, low, high = min(left, x), max(right, x), min(low, y), max(high, y)
     margin = 0.03 * max(right - left, high - low)
-    return float(left - margin), float(right + margin), float(low - margin), float(high + margin)
+    sides = left - margin, right + margin, low - margin, high + margin
+    return Box(*map(float, sides))
 
 
 def _lines(planes: list[tuple[str, FloatArray]], box: Box) -> list[StraightPart]:

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from puck_tables.plot.animation import Animation, Box, MovingDisc
-from puck_tables.plot.floor_axes import Box as Sight
-from puck_tables.plot.floor_axes import draw_floor
+from puck_tables.plot.animation import Animation, MovingDisc
+from puck_tables.plot.base_outlines import path_of, placed
+from puck_tables.plot.floor_axes import Box, draw_floor
 from puck_tables.plot.round_parts import draw_rounds
 from puck_tables.plot.style import RED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.patches import Circle
+    from matplotlib.patches import Circle, PathPatch
 
 _WIDE, _HIGH = 9.0, 7.0  # in, of a panel at most
 _LOW = 1.2  # in, at least
@@ -23,7 +23,7 @@ def size_of(box: Box) -> tuple[float, float]:
 
     Examples
     --------
-    >>> size_of((0.0, 2.0, 0.0, 1.0))
+    >>> size_of(Box(0.0, 2.0, 0.0, 1.0))
     (9.0, 4.5)
     """
     shape = (box[3] - box[2]) / (box[1] - box[0])
@@ -33,7 +33,7 @@ def size_of(box: Box) -> tuple[float, float]:
 
 def draw_board(axes: Axes, film: Animation) -> None:
     """The floor, and all that stands still, each kind labelled once, to scale."""
-    draw_floor(axes, film.floor, Sight(*film.box), max(film.frictions, default=0.0))
+    draw_floor(axes, film.floor, film.box, max(film.frictions, default=0.0))
     draw_rounds(axes, film.rounds)
     told: set[str] = set()
     for line in film.lines:
@@ -45,11 +45,13 @@ def draw_board(axes: Axes, film: Animation) -> None:
         axes.plot(line.x, line.y, zorder=1, **looks)
 
 
-def disc(body: MovingDisc, x: float, y: float, **looks: Any) -> Circle:
-    """A disc at a place, to scale; one that is driven is hatched."""
-    from matplotlib.patches import Circle
+def disc(body: MovingDisc, x: float, y: float, **looks: Any) -> Circle | PathPatch:
+    """A disc at a place, or what it is instead, to scale; one that is driven is hatched."""
+    from matplotlib.patches import Circle, PathPatch
 
     hatch = {"hatch": "////"} if body.driven else {}
+    if body.outline:
+        return PathPatch(path_of(placed(body.outline, x, y, 0.0)), **hatch, **looks)
     return Circle((x, y), body.radius, **hatch, **looks)
 
 

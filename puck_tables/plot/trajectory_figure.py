@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from puck_tables.plot.base_outlines import MARK, outline_of, path_of, placed
 from puck_tables.plot.style import BLUE, GREEN, GREY, LAUNCH, ORANGE, STOP, canvas
 from puck_tables.plot.titles import legend_below, titled
 from puck_tables.trajectory import Trajectory
@@ -27,7 +28,8 @@ def draw(run: Trajectory) -> Figure:
     _draw_path(figure.add_subplot(grid[0, :]), run)
     speeds = figure.add_subplot(grid[1, 0])
     speeds.plot(run.time, run.speed, color=BLUE, label="speed v")
-    speeds.plot(run.time, run.puck.radius * run.spin, color=ORANGE, label="rim speed rω")
+    arm, rim = ("r", "rim speed rω") if run.puck.shape is None else ("k", "kω")
+    speeds.plot(run.time, _arm(run) * run.spin, color=ORANGE, label=rim)
     speeds.axhline(0.0, color=GREY, linewidth=0.6)
     for moment, text in ((run.contact_opens, "base lifts"), (run.contact_closes, "base down")):
         if moment is not None:
@@ -39,22 +41,39 @@ def draw(run: Trajectory) -> Figure:
     moving = run.speed > 0.0
     if moving.any() and run.launch_spin != 0.0:
         ratio.plot(run.time[moving], np.tan(run.slip_angle[moving]), color=GREEN)
-        if run.limit_angle < 0.5 * math.pi:
-            _draw_limit(ratio, run, float(np.tan(run.slip_angle[moving]).max()))
+        if run.limit_angle is not None and run.limit_angle < 0.5 * math.pi:
+            limit = math.copysign(math.tan(run.limit_angle), run.launch_spin)
+            _draw_limit(ratio, limit, float(np.tan(run.slip_angle[moving]).max()))
     else:
         ratio.text(
             0.5, 0.5, "spin only" if run.launch_spin != 0.0 else "no spin",
             ha="center", transform=ratio.transAxes, color=GREY,
         )  # fmt: skip
-    ratio.set_ylabel("rω/v")
+    ratio.set_ylabel(f"{arm}ω/v")
     ratio.set_xlabel("time / s")
-    (vx, vy), puck = run.launch_velocity, run.puck
+    vx, vy = run.launch_velocity
     titled(
         figure,
-        f"v₀ = ({vx:g}, {vy:g}) m/s, ω₀ = {run.launch_spin:g} rad/s, r = {puck.radius:g} m, "
-        f"δ = {puck.delta:.4g}, J = {puck.decel:.4g} m/s²{_kind(run)}",
+        f"v₀ = ({vx:g}, {vy:g}) m/s, ω₀ = {run.launch_spin:g} rad/s, {_puck(run)}{_kind(run)}",
     )
     return figure
+
+
+def _arm(run: Trajectory) -> float:
+    """What makes a speed of the spin: the radius, or of another base k, m."""
+    puck = run.puck
+    return puck.radius if puck.shape is None else puck.inertia_radius
+
+
+def _puck(run: Trajectory) -> str:
+    puck = run.puck
+    if puck.shape is None:
+        return f"r = {puck.radius:g} m, δ = {puck.delta:.4g}, J = {puck.decel:.4g} m/s²"
+    high = f", h = {puck.height:.4g} m" if puck.height > 0.0 else ""
+    return (
+        f"base {puck.shape.name}, k = {puck.inertia_radius:.4g} m{high}, f = {puck.friction:.4g}, "
+        f"J = {puck.decel:.4g} m/s²"
+    )
 
 
 def draw_on(axes: Axes, run: Trajectory) -> None:
@@ -69,16 +88,15 @@ def _whole(run: Trajectory) -> Trajectory:
 def _kind(run: Trajectory) -> str:
     """The kind of puck, and how much of its base is loaded, where there is something to say."""
     text = ""
-    if run.puck.body.kind:
+    if run.puck.shape is None and run.puck.body.kind:
         text = f"\n{run.puck.body.kind}"
     if run.least_loaded_share < 1.0:
         text += f"\nat the least {100.0 * run.least_loaded_share:.3g} % of the base loaded"
     return text
 
 
-def _draw_limit(panel: Axes, run: Trajectory, largest: float) -> None:
+def _draw_limit(panel: Axes, limit: float, largest: float) -> None:
     """The ratio that the motion tends to."""
-    limit = math.copysign(math.tan(run.limit_angle), run.launch_spin)
     panel.axhline(limit, color=GREY, linestyle="--", linewidth=1.0)
     above = limit > largest
     panel.annotate(
@@ -89,7 +107,7 @@ def _draw_limit(panel: Axes, run: Trajectory, largest: float) -> None:
 
 
 def _draw_path(axes: Axes, run: Trajectory) -> None:
-    from matplotlib.patches import Circle
+    from matplotlib.patches import PathPatch
 
     axes.plot(run.x, run.y, color=BLUE, linewidth=1.6)
     extent = max(np.ptp(run.x), np.ptp(run.y))
@@ -100,9 +118,11 @@ def _draw_path(axes: Axes, run: Trajectory) -> None:
     chosen = np.unique(np.searchsorted(travelled, wanted).clip(0, run.time.size - 1))
     for index in chosen:
         x, y, angle = run.x[index], run.y[index], run.orientation[index]
-        axes.add_patch(Circle((x, y), radius, fill=False, color=GREY, linewidth=0.9))
+        outline = placed(outline_of(run.puck), x, y, angle, radius / run.puck.radius)
+        axes.add_patch(PathPatch(path_of(outline), fill=False, color=GREY, linewidth=0.9))
+        reach = MARK * radius if run.puck.shape is not None else radius
         axes.plot(
-            [x, x + radius * math.cos(angle)], [y, y + radius * math.sin(angle)],
+            [x, x + reach * math.cos(angle)], [y, y + reach * math.sin(angle)],
             color=ORANGE, linewidth=1.4,
         )  # fmt: skip
     axes.plot(run.x[0], run.y[0], **LAUNCH, label="launch")

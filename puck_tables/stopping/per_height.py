@@ -83,6 +83,9 @@ class SolverPerHeight:
     'look-up and integrated'
     """
 
+    launched = ("launch_vx", "launch_vy", "launch_spin", "delta")
+    outputs = OUTPUTS
+
     def __init__(
         self, pressure: str | Law, gyration: float, tol: float, method: str | None, table: AnyTable
     ) -> None:

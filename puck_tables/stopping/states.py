@@ -125,7 +125,7 @@ class States(Differentiated, Result):
     def _arguments(self) -> FloatArray:  # type: ignore[override]
         assert self._wanted is not None
         launched, which = self._wanted
-        each = _each(which, self.time.size)
+        each = each_of(which, self.time.size)
         return np.concatenate([launched[:, each], self.time.reshape(1, -1)])
 
     def explain(self) -> str:
@@ -242,14 +242,14 @@ def states(
         launches.refuse_bad()
         if table is not None:
             table.checked_range(launches.delta)
-    which, moments, shape = _moments_of(launches, times)
+    which, moments, shape = moments_of(launches, times)
     slopes = np.empty((moments.size, len(STATE_NAMES), len(MOMENT_NAMES))) if jacobian else None
     if all_plain:
         found = all_looked_up(chosen, launches, which, moments, threads, slopes)
         bodies, told = {}, _explained(launches.size, 0)
     else:
         refuse_times(moments)
-        each = _each(which, moments.size)
+        each = each_of(which, moments.size)
         rows = launches.matrix
         plain = rows[3] <= highest
         bodies = _bodies(pressure, gyration, rows[3, ~plain])
@@ -272,8 +272,8 @@ def states(
         found[HEADING] += directions(rows[0], rows[1])[each]
         told = _explained(int(plain.sum()), int((~plain).sum()))
     if slopes is None:
-        return _states(found, moments, launches, which, shape, told)
-    return _states(
+        return states_in(found, moments, launches, which, shape, told)
+    return states_in(
         found, moments, launches, which, shape, told, slopes.reshape(*shape, *slopes.shape[1:]),
         (launches.matrix, which),
         partial(states, table=table, pressure=pressure, gyration=gyration, threads=threads),
@@ -288,10 +288,22 @@ def _explained(looked: int, integrated: int) -> str:
     return " and ".join(words) + ", to 1e-9 of Q, Q^2/J and Q^2/(J r)"
 
 
-def _moments_of(
+def moments_of(
     launches: Launches, times: FloatArray
 ) -> tuple[npt.NDArray[np.int64], FloatArray, tuple[int, ...]]:
-    """Which launch each moment is of, as compiled code reads it, the moments, and their shape."""
+    """Which launch each moment is of, as compiled code reads it, the moments, and their shape.
+
+    Raises
+    ------
+    InputError
+        If their shapes do not fit.
+
+    Examples
+    --------
+    >>> one = launches_of((1.0, 0.0), 0.0, 0.5, 1.0, 1.0)
+    >>> [part.tolist() for part in moments_of(one, np.array([0.0, 2.0]))[:2]]
+    [[0], [0.0, 2.0]]
+    """
     if launches.shape == () or launches.shape == times.shape:
         which = _NONE if launches.shape else _FIRST
         flat = times.reshape(-1)
@@ -304,8 +316,14 @@ def _moments_of(
     return one.reshape(-1).astype(np.int64), moments, one.shape
 
 
-def _each(which: npt.NDArray[np.int64], count: int) -> npt.NDArray[np.int64]:
-    """Which launch each of so many moments is of."""
+def each_of(which: npt.NDArray[np.int64], count: int) -> npt.NDArray[np.int64]:
+    """Which launch each of so many moments is of.
+
+    Examples
+    --------
+    >>> each_of(np.array([3]), 2).tolist(), each_of(np.empty(0, int), 2).tolist()
+    ([3, 3], [0, 1])
+    """
     return np.broadcast_to(which, count) if which.size else np.arange(count)
 
 
@@ -319,11 +337,19 @@ def _bodies(pressure: str | Law, gyration: float, delta: FloatArray) -> dict[flo
     return {height: body_of(law, height, gyration) for height in heights.tolist()}
 
 
-def _states(
+def states_in(
     out: FloatArray, moments: FloatArray, launches: Launches, which: npt.NDArray[np.int64],
     shape: tuple[int, ...], explanation: str, *differentiated: Any,
 ) -> States:  # fmt: skip
-    """Rows of states in their shape; ``differentiated``: derivatives, and of what they are."""
+    """Rows of states in their shape; ``differentiated``: derivatives, and of what they are.
+
+    Examples
+    --------
+    >>> one = launches_of((1.0, 0.0), 0.0, 0.5, 1.0, 1.0)
+    >>> moments = moments_of(one, np.array([0.0, 2.0]))
+    >>> states_in(np.zeros((6, 2)), moments[1], one, *moments[::2], "nothing moves").x.shape
+    (2,)
+    """
     radius = launches.radius
     if radius.size > 1:
         radius = radius[which] if which.size else radius.copy()

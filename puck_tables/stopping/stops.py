@@ -14,9 +14,12 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import checked_flag, checked_threads
 from puck_tables.accuracy.method_errors import Selection
 from puck_tables.contact.laws import HOMOGENEOUS, Law
+from puck_tables.errors import InputError
 from puck_tables.io.columns import derived, following
 from puck_tables.io.dataset import Dataset, variable
+from puck_tables.motion.puck_spec import ROUND_ONLY
 from puck_tables.result import Result
+from puck_tables.stopping.base_solver import BaseSolver
 from puck_tables.stopping.jacobian import (
     LAUNCH_NAMES,
     STOP_NAMES,
@@ -31,7 +34,6 @@ from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
 
 DEFAULT_TOL = 1e-8  # of Q/J, Q²/J
-_LAUNCHES = ("launch_vx", "launch_vy", "launch_spin", "delta")
 
 
 class Stops(Differentiated, Result):
@@ -45,7 +47,8 @@ class Stops(Differentiated, Result):
     (…) rad: how far the heading has turned when Q has fallen to 1/1000 (for δ > 0 it turns on
     without end); of other than plain pucks, looked up, it errs by up to some 2000 ``tol``.  For
     that more than 16384 launches are held as they were given, not copied: where their arrays have
-    been changed in the meantime it is refused.
+    been changed in the meantime it is refused.  On a base that is not round there is no
+    ``turn_angle``.
     """
 
     picture: ClassVar[str] = "places"
@@ -54,11 +57,12 @@ class Stops(Differentiated, Result):
     _told: dict[str, Any]  # of results that were pickled
 
     def __init__(
-        self, solver: SolverPerHeight, launches: Launches, threads: int | None,
+        self, solver: SolverPerHeight | BaseSolver, launches: Launches, threads: int | None,
         jacobian: FloatArray | None, anew: Callable[..., Stops] | None, highest: float,
     ) -> None:  # fmt: skip
         time, place, status, self._mark, self._rest = solver.first(launches, threads)
-        self._solver: SolverPerHeight | None = solver
+        self._solver: SolverPerHeight | BaseSolver | None = solver
+        self._launched, self._outputs = solver.launched, solver.outputs
         self._launches, self._threads = launches, threads
         self.stop_time: FloatArray = time.reshape(launches.shape)
         self.stop_position: FloatArray = place.reshape(*launches.shape, 2)
@@ -97,7 +101,7 @@ class Stops(Differentiated, Result):
     def _others(self) -> FloatArray:
         """Path length, turn of heading and of the body (3, n)."""
         if self._rest is None:
-            assert self._solver is not None
+            assert isinstance(self._solver, SolverPerHeight)
             self._launches.refuse_changed(self._mark)
             self._rest = self._solver.rest(self._launches, self._threads)
             if self.status.any():
@@ -122,7 +126,15 @@ class Stops(Differentiated, Result):
 
     @property
     def turn_angle(self) -> FloatArray:
-        """Radians; integrated, good to a hundred times the tolerance only."""
+        """Radians; integrated, good to a hundred times the tolerance only.
+
+        Raises
+        ------
+        InputError
+            If the base is not round.
+        """
+        if "turn_angle" not in self._outputs:
+            raise InputError(f"turn_angle is {ROUND_ONLY}")
         return self._row(1)
 
     @property
@@ -139,9 +151,10 @@ class Stops(Differentiated, Result):
         shape = self.status.shape
         dims = tuple(f"axis_{n}" for n in range(len(shape))) or ("launch",)
         shape = shape or (1,)
-        launches = dict(zip(_LAUNCHES, self._own_launches.matrix, strict=False))
+        launches = dict(zip(self._launched, self._own_launches.matrix, strict=False))
         stops = (self.stop_time, self.stop_x, self.stop_y, *self._others)
-        columns = {**launches, **dict(zip(OUTPUTS, stops, strict=True))}
+        found = dict(zip(OUTPUTS, stops, strict=True))
+        columns = {**launches, **{name: found[name] for name in self._outputs}}
         columns |= derived(columns)
         variables = {n: variable(n, row.reshape(shape), dims) for n, row in columns.items()}
         status = self.status.reshape(shape)
