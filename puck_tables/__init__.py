@@ -80,6 +80,7 @@ if TYPE_CHECKING:
     from puck_tables.world.scene import Piece, Scene
     from puck_tables.world.world import World
     from puck_tables.wrench.friction_hold import Hold
+    from puck_tables.wrench.push import Push, push
     from puck_tables.wrench.surface import LimitSurface
 
 with_neighbours(__name__, __file__)
@@ -125,6 +126,7 @@ _HOMES = {
     "PowerLaw": "contact.friction_laws",
     "Puck": "puck",
     "PuckError": "errors",
+    "Push": "wrench.push",
     "RestitutionTable": "scene.restitution",
     "Result": "result",
     "Rim": "scene.pieces",
@@ -158,6 +160,7 @@ _HOMES = {
     "motion": "",
     "path_along": "scene.driven",
     "profile_law": "contact.laws",
+    "push": "wrench.push",
     "read_tracks": "film.track_files",
     "reference_case": "reference.answer",
     "resultants": "kernels.closed_form_kernel",
@@ -210,6 +213,7 @@ __all__ = [
     "PowerLaw",
     "Puck",
     "PuckError",
+    "Push",
     "RestitutionTable",
     "Result",
     "Rim",
@@ -244,6 +248,7 @@ __all__ = [
     "motion",
     "path_along",
     "profile_law",
+    "push",
     "read_tracks",
     "reference_case",
     "resultants",

@@ -77,6 +77,7 @@ DOORS = {
         "table.speed_fit",
         "tradeoff",
         "wrench.models",
+        "wrench.push",
     },
     "click": {"cli"},
     "jax": {"autodiff.jax"},

@@ -31,30 +31,25 @@ from puck_tables.contact.resultants import (
     pressure_tilt,
 )
 
+Elliptic = Callable[[FloatArray], tuple[FloatArray, FloatArray, FloatArray]]
 ShapeIntegrals = Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray, FloatArray]]
 
 AGM_STEPS = 8  # six would leave 4e-7 next to φ = π/4, where the modulus reaches 1
 
 
-def shape_integrals_with(steps: int) -> ShapeIntegrals:
-    """p_a, p_b and p_d after so many steps of the arithmetic–geometric mean, as a function.
+def elliptic_with(steps: int) -> Elliptic:
+    """B, D and G after so many steps of the arithmetic–geometric mean, as a function of k.
 
     A constant number, so that the loop over it can be unrolled and the one around it vectorised.
 
     Examples
     --------
-    >>> few, all_ = shape_integrals_with(4)(0.5, 0.0)[0], shape_integrals(0.5, 0.0)[0]
+    >>> few, all_ = elliptic_with(4)(0.5)[0], elliptic(0.5)[0]
     >>> bool(abs(few - all_) < 1e-15)
     True
     """
 
-    def shape_integrals(
-        ratio: FloatArray, fast: FloatArray
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """p_a, p_b and p_d of a slip direction; the other two follow exactly from them.
-
-        ``ratio`` is min(v, r|ω|)/max(v, r|ω|); ``fast`` is 1.0 where r|ω| > v, else 0.0.
-        """
+    def elliptic(ratio: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         m = ratio * ratio
         m1 = (1.0 - ratio) * (1.0 + ratio)
         # The first AGM step by hand: a₀ = 1, b₀ = √m1 (1e-32 stands for the limit k = 1),
@@ -80,8 +75,27 @@ def shape_integrals_with(steps: int) -> ShapeIntegrals:
         K = (0.5 * np.pi) * inverse
         B = (0.25 * np.pi) * (x + y * inverse) * inverse / power
         G = K * total
-        D = 0.5 * (K + m * G)
-        m1_D = m1 * D
+        return B, 0.5 * (K + m * G), G
+
+    return elliptic
+
+
+elliptic = elliptic_with(AGM_STEPS)
+
+
+def shape_integrals_by(elliptic: Elliptic) -> ShapeIntegrals:
+    """p_a, p_b and p_d from B, D and G, as a function."""
+
+    def shape_integrals(
+        ratio: FloatArray, fast: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """p_a, p_b and p_d of a slip direction; the other two follow exactly from them.
+
+        ``ratio`` is min(v, r|ω|)/max(v, r|ω|); ``fast`` is 1.0 where r|ω| > v, else 0.0.
+        """
+        m = ratio * ratio
+        B, D, G = elliptic(ratio)
+        m1_D = (1.0 - ratio) * (1.0 + ratio) * D
 
         factor = np.sqrt(1.0 + m) / np.pi
         p_a = (4.0 / 3.0) * factor * (2.0 * B + m1_D)
@@ -98,7 +112,7 @@ def shape_integrals_with(steps: int) -> ShapeIntegrals:
     return shape_integrals
 
 
-shape_integrals = shape_integrals_with(AGM_STEPS)
+shape_integrals = shape_integrals_by(elliptic)
 
 
 def integrals(phi: npt.ArrayLike) -> PatchIntegrals:

@@ -158,12 +158,20 @@ COLUMNS = {
     "number_low": Column("1", "low", "lower end of its 95 % interval"),
     "number_high": Column("1", "high", "upper end of its 95 % interval"),
     # a limit surface
-    "force_x": Column("N", "force along the slip", "force that friction takes up, along the slip"),
-    "force_y": Column("N", "force across", "the same to the left of the slip"),
+    "force_x": Column("N", "force along", "force along the slip, of a base along its x"),
+    "force_y": Column("N", "force across", "force to the left of the slip, of a base along its y"),
     "torque": Column("N m", "torque", "torque that friction takes up, counter-clockwise"),
     "force": Column("N", "force", "size of the force", ("force_x", "force_y"), np.hypot),
     "normal_force": Column("1", "normal, force", "outward normal in (F, M/r), part along F"),
-    "normal_torque": Column("1", "normal, torque", "outward normal in (F, M/r), part along M/r"),
+    "normal_x": Column("1", "normal, force x", "outward normal in (F_x, F_y, M/k), part along F_x"),
+    "normal_y": Column("1", "normal, force y", "outward normal in (F_x, F_y, M/k), part along F_y"),
+    "normal_torque": Column("1", "normal, torque", "the same, part along M/r, of a base M/k"),
+    # a push by a finger
+    "push_x": Column("N", "push x", "force of the finger along x"),
+    "push_y": Column("N", "push y", "force of the finger along y"),
+    "finger_x": Column("m", "finger x", "place of the finger along x"),
+    "finger_y": Column("m", "finger y", "place of the finger along y"),
+    "touch": Column("", "contact", "what the finger does"),
     # a point on a wavy support
     "held_speed": Column("m/s", "speed V", "speed held along the support"),
     "crude": Column("N", "Coulomb's force", "Coulomb's force, load times a/b"),

@@ -111,6 +111,26 @@ def pressure_at(base: FloatArray, mx: float, my: float) -> tuple[float, float, f
 
 
 @inner
+def grip(base: FloatArray, ux: float, uy: float, w: float) -> tuple[float, float, float]:
+    """Force and torque over f N that keep a base slipping, in its own axes: against friction."""
+    if base[DISCS] == 0.0 and base[LEVER] == 0.0 and base[FIRST_X] == 0.0 and base[FIRST_Y] == 0.0:
+        fx, fy, torque = flat_sums(base, HEAD, int(base[SIDES]), base[REACH], ux, uy, w)
+        a = 1.0 / base[AREA]
+        return a * fx, a * fy, a * torque
+    sums = base_sums(base, ux, uy, w)
+    return under_load(sums, *pressure_on(base, sums))
+
+
+@inlined
+def under_load(sums: Sums, a: float, bx: float, by: float) -> tuple[float, float, float]:
+    """Force and torque under the pressure a + b·x."""
+    return (
+        a * sums[0] + bx * sums[2] + by * sums[3], a * sums[1] + bx * sums[4] + by * sums[5],
+        a * (sums[4] - sums[3]) + bx * sums[6] + by * sums[7],
+    )  # fmt: skip
+
+
+@inner
 def base_friction(
     base: FloatArray, angle: float, ux: float, uy: float, w: float
 ) -> tuple[float, float, float]:
@@ -119,14 +139,5 @@ def base_friction(
     (ux, uy): the slip of the centre of mass, m/s; w: the spin over the floor, rad/s; not both 0.
     """
     c, s = math.cos(angle), math.sin(angle)
-    ux, uy = c * ux + s * uy, c * uy - s * ux
-    if base[DISCS] == 0.0 and base[LEVER] == 0.0 and base[FIRST_X] == 0.0 and base[FIRST_Y] == 0.0:
-        fx, fy, torque = flat_sums(base, HEAD, int(base[SIDES]), base[REACH], ux, uy, w)
-        a = 1.0 / base[AREA]
-        return a * (s * fy - c * fx), -a * (s * fx + c * fy), -a * torque
-    sums = base_sums(base, ux, uy, w)
-    a, bx, by = pressure_on(base, sums)
-    fx = a * sums[0] + bx * sums[2] + by * sums[3]
-    fy = a * sums[1] + bx * sums[4] + by * sums[5]
-    torque = a * (sums[4] - sums[3]) + bx * sums[6] + by * sums[7]
+    fx, fy, torque = grip(base, c * ux + s * uy, c * uy - s * ux, w)
     return s * fy - c * fx, -s * fx - c * fy, -torque

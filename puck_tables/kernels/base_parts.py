@@ -11,13 +11,14 @@ from typing import Any
 from puck_tables.contact import closed_form
 from puck_tables.kernels.base_boundary import arc_sums, line_sums
 from puck_tables.kernels.base_sums import NOTHING, RING, UNIFORM, Sums, plus
+from puck_tables.kernels.closed_form_kernel import few_elliptic
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.kernels.load_parts import loaded_arc
 from puck_tables.kernels.load_rim import loaded_rim, loaded_whole
 
 # of the whole disc; up to a ratio of the two rates few steps are exact to rounding
 _full_integrals: Any = inlined(closed_form.shape_integrals)
-_few_integrals: Any = inlined(closed_form.shape_integrals_with(4))
+_few_integrals: Any = inlined(closed_form.shape_integrals_by(few_elliptic))
 _FEW = 0.99  # of the smaller rate over the larger: up to it few steps do
 
 

@@ -41,8 +41,10 @@ def _friction_ratios_with(shape_integrals: Any) -> Any:
     return inlined(friction_ratios)
 
 
+full_elliptic: Any = inlined(closed_form.elliptic)
+few_elliptic: Any = inlined(closed_form.elliptic_with(_FEW_STEPS))
 friction_ratios = _friction_ratios_with(inlined(closed_form.shape_integrals))
-_far_ratios = _friction_ratios_with(inlined(closed_form.shape_integrals_with(_FEW_STEPS)))
+_far_ratios = _friction_ratios_with(inlined(closed_form.shape_integrals_by(few_elliptic)))
 
 
 @inlined

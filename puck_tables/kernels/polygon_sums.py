@@ -31,10 +31,11 @@ from puck_tables.kernels.compile import inlined, inner, summed
 # it begins where the one before ends (0) or not (1)
 BEGIN_X, BEGIN_Y, TANGENT_X, TANGENT_Y, LENGTH, ANEW = range(6)
 SIDE_COLUMNS = 6
-_FAR = 6.0  # times the reach of the base: closer, closed forms lose less than 1e-13
-_NODES = 8  # of Gauss's rule on a side that far away: 6e-16
-_NODE, _WEIGHT = np.polynomial.legendre.leggauss(_NODES)
-_LEAST = 1e-17  # of a length: C on a side; what the logarithm loses is multiplied by d² = 0
+FAR = 6.0  # times the reach of the base: closer, closed forms lose less than 1e-13
+NODES = 8  # of Gauss's rule on a side that far away: 6e-16
+NODE, WEIGHT = np.polynomial.legendre.leggauss(NODES)
+_SHORT = 0.05  # of the sum of the distances of its ends: a series of six terms is exact
+LEAST = 1e-17  # of a length: C on a side; what the logarithm loses is multiplied by d² = 0
 
 
 @inner
@@ -46,7 +47,7 @@ def polygon_sums(
     ``base``: where ``count`` sides stand from ``first`` on; ``reach``: no corner lies farther from
     the origin.
     """
-    if math.sqrt(ux * ux + uy * uy) > _FAR * reach * abs(w):
+    if math.sqrt(ux * ux + uy * uy) > FAR * reach * abs(w):
         return _far(base, first, count, ux, uy, w)
     return _near(base, first, count, ux, uy, w)
 
@@ -56,7 +57,7 @@ def flat_sums(
     base: FloatArray, first: int, count: int, reach: float, ux: float, uy: float, w: float
 ) -> tuple[float, float, float]:  # fmt: skip
     """∫ e dA and its moment alone: all that uniform pressure asks for, in half the time."""
-    if math.sqrt(ux * ux + uy * uy) > _FAR * reach * abs(w):
+    if math.sqrt(ux * ux + uy * uy) > FAR * reach * abs(w):
         sums = _far(base, first, count, ux, uy, w)
         return sums[0], sums[1], sums[4] - sums[3]
     cx, cy = -uy / w, ux / w
@@ -69,13 +70,25 @@ def flat_sums(
         end = begin + length
         far = math.sqrt(d * d + end * end)
         both = near + far
-        along = d * math.log((both + length) / max(both - length, _LEAST * length))
+        along = d * math.log((both + length) / max(both - length, LEAST * length))
         a1 = length * (begin + end) / both
         ex, ey = ex + d * (along * tx - a1 * ty), ey + d * (along * ty + a1 * tx)
         size += d * (end * far - begin * near + d * along)
     sign = 1.0 if w > 0.0 else -1.0
     ex, ey = 0.5 * sign * ex, 0.5 * sign * ey
     return ex, ey, sign * size / 6.0 + cx * ey - cy * ex
+
+
+@inlined
+def _second(q: float, across: float, both: float) -> float:
+    """A₂ of a side that is short for its distance, where [sR] and d² A₀ cancel.
+
+    With q = L/(R₀ + R₁): ¼ ((s₀ + s₁)² (2q − g) + (R₀ + R₁)² g), g = q − (1 − q²) atanh q.
+    """
+    square = q * q
+    series = 2.0 / 63.0 + square * (2.0 / 99.0 + square * (2.0 / 143.0))
+    g = q * square * (2.0 / 3.0 + square * (2.0 / 15.0 + square * (2.0 / 35.0 + square * series)))
+    return 0.25 * (across * across * (2.0 * q - g) + both * both * g)
 
 
 @inlined
@@ -91,10 +104,13 @@ def _near(base: FloatArray, first: int, count: int, ux: float, uy: float, w: flo
         end = begin + length
         far = math.sqrt(d * d + end * end)
         both = near + far
-        a0 = math.log((both + length) / max(both - length, _LEAST * length))
+        a0 = math.log((both + length) / max(both - length, LEAST * length))
         a1 = length * (begin + end) / both
         product, square = end * far - begin * near, d * d * a0
         a2, b0 = 0.5 * (product - square), 0.5 * (product + square)
+        share = length / both
+        if share < _SHORT:
+            a2 = _second(share, begin + end, both)
         b1 = a1 * (far * far + far * near + near * near) / 3.0
         nx, ny = ty, -tx
         ax, ay = d * (d * a0 * tx - a1 * nx), d * (d * a0 * ty - a1 * ny)
@@ -123,8 +139,8 @@ def _far(base: FloatArray, first: int, count: int, ux: float, uy: float, w: floa
         half = 0.5 * base[i + LENGTH]
         hx, hy = half * base[i + TANGENT_X], half * base[i + TANGENT_Y]
         mx, my = base[i + BEGIN_X] + hx, base[i + BEGIN_Y] + hy
-        for node in range(_NODES):
-            qx, qy = mx + _NODE[node] * hx, my + _NODE[node] * hy
+        for node in range(NODES):
+            qx, qy = mx + NODE[node] * hx, my + NODE[node] * hy
             vx, vy = ux - w * qy, uy + w * qx
             slip = math.sqrt(vx * vx + vy * vy)
             inverse = 1.0 / slip
@@ -132,7 +148,7 @@ def _far(base: FloatArray, first: int, count: int, ux: float, uy: float, w: floa
             k0 = deep * (speed + 0.5 * spin * deep)
             k1 = deep * deep * (0.5 * speed + spin * deep / 3.0)
             k2 = deep * deep * deep * (speed / 3.0 + 0.25 * spin * deep)
-            weight = _WEIGHT[node] * (vx * hx + vy * hy) * inverse * inverse
+            weight = WEIGHT[node] * (vx * hx + vy * hy) * inverse * inverse
             # along the ray: from (bx, by) at s = 0 towards the boundary, r × e = sign (lever + s)
             dx, dy = sign * vy * inverse, -sign * vx * inverse
             bx, by = qx - deep * dx, qy - deep * dy

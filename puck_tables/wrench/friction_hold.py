@@ -1,21 +1,24 @@
-"""Whether friction holds a puck at rest under a force and a torque.
+"""What friction does with a force and a torque on a puck: whether it holds, or how it slips.
 
-The answer is that of scenes (:mod:`puck_tables.scene.rest`): the wrench is held if it is not larger
-than the one of its kind, F : T, on the curve of what friction has in some slip.
+It holds a wrench that is not larger than the one of its kind, F : T, that it has in some slip.  Of
+round pucks that slip is looked for as scenes do (:mod:`puck_tables.scene.rest`), of others by
+Newton's method (:mod:`puck_tables.kernels.base_twist`).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import broadcast, finite_array, velocity_array
-from puck_tables.errors import InputError
-from puck_tables.kernels.compile import allocating, patience
+from puck_tables.errors import ContactError, InputError
+from puck_tables.kernels.base_friction import packed
+from puck_tables.kernels.base_twist import base_twist
+from puck_tables.kernels.compile import allocating, kernel, patience
 from puck_tables.motion.body import is_plain
 from puck_tables.scene.by_speed import NO_LAW
 from puck_tables.scene.ingredients import Dry
@@ -26,6 +29,7 @@ if TYPE_CHECKING:
     from puck_tables.motion.puck_spec import PuckSpec
 
 _TOL = 1e-9  # of the friction
+_EXACT = 1e-10  # of it: by closed forms where there are
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,17 +47,75 @@ class Hold:
         return bool(self.held)
 
 
-def holds(puck: PuckSpec, force: npt.ArrayLike, torque: npt.ArrayLike) -> Hold:
+class Twist(NamedTuple):
+    """Velocity (…, 2), m/s, and spin (…), rad/s, of slips."""
+
+    velocity: FloatArray
+    spin: FloatArray
+
+
+def holds(
+    puck: PuckSpec, force: npt.ArrayLike, torque: npt.ArrayLike, angle: npt.ArrayLike
+) -> Hold:
     """Whether friction holds a puck, as :meth:`puck_tables.Puck.holds` has it."""
     if puck.friction == 0.0:
         raise InputError("a puck with friction = 0 holds nothing: give friction > 0")
+    rows, _, shape = _in_its_axes(force, torque, angle)
+    margin, heat, _ = _slips(puck, rows, _TOL)
+    with np.errstate(divide="ignore", over="ignore"):
+        held = (1.0 / margin - 1.0) * heat <= SLACK
+    return Hold(held.reshape(shape), margin.reshape(shape))
+
+
+def twist(
+    puck: PuckSpec, force: npt.ArrayLike, torque: npt.ArrayLike, angle: npt.ArrayLike
+) -> Twist:
+    """The slip of a friction, as :meth:`puck_tables.Puck.twist` has it."""
+    if puck.friction == 0.0:
+        raise InputError("a puck with friction = 0 slips freely: give friction > 0")
+    rows, turn, shape = _in_its_axes(force, torque, angle)
+    if not rows.any(axis=0).all():
+        raise InputError("force and torque are both 0: they tell no slip")
+    _, _, slip = _slips(puck, -rows, _EXACT)
+    velocity = turn * (slip[0] + 1j * slip[1])
+    scale = np.hypot(np.abs(velocity), slip_length(puck) * slip[2])
+    velocity = (velocity / scale).reshape(shape)
+    return Twist(
+        np.stack([velocity.real, velocity.imag], axis=-1) + 0.0,
+        (slip[2] / scale).reshape(shape),
+    )
+
+
+def slip_length(puck: PuckSpec) -> float:
+    """What makes spins speeds, m: the radius, or with a base the radius of gyration.
+
+    Examples
+    --------
+    >>> from puck_tables import Puck
+    >>> slip_length(Puck(radius=0.04))
+    0.04
+    """
+    return puck.radius if puck.shape is None else puck.inertia_radius
+
+
+def _in_its_axes(
+    force: npt.ArrayLike, torque: npt.ArrayLike, angle: npt.ArrayLike
+) -> tuple[FloatArray, npt.NDArray[np.complex128], tuple[int, ...]]:
+    """Wrenches (3, n) in the axes of the base, by what those are turned (n,), and their shape."""
     forces = _forces(force)
-    turning = finite_array("torque", torque, "N m")
-    fx, fy, moment = broadcast(force_x=forces[..., 0], force_y=forces[..., 1], torque=turning)
-    rows = np.stack([one.ravel() for one in (fx, fy, moment)])
-    plain = is_plain(puck.pressure, puck.gyration, puck.delta)
-    section = plain_cut(_TOL, puck.delta) if plain else section_of(puck, puck.delta, _TOL)
-    coefficients = Dry(puck.friction * puck.mass * puck.gravity, puck.delta, section, NO_LAW)
+    fx, fy, moment, turned = broadcast(
+        force_x=forces[..., 0], force_y=forces[..., 1],
+        torque=finite_array("torque", torque, "N m"), angle=finite_array("angle", angle, "rad"),
+    )  # fmt: skip
+    c, s = np.cos(turned), np.sin(turned)
+    rows = np.stack([one.ravel() for one in (c * fx + s * fy, c * fy - s * fx, moment)])
+    return rows, (c + 1j * s).ravel(), fx.shape
+
+
+def _slips(
+    puck: PuckSpec, rows: FloatArray, tol: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """By what wrenches (3, n) may be multiplied, the power over f N of their slips, and these."""
     # wrenches over their largest number, then over their largest force: no square, and no force of
     # a torque over the radius, leaves floating point
     largest = np.abs(rows).max(axis=0)
@@ -62,12 +124,24 @@ def holds(puck: PuckSpec, force: npt.ArrayLike, torque: npt.ArrayLike) -> Hold:
     rows = rows / largest
     unit = np.maximum(np.abs(rows[:2]).max(axis=0), np.abs(rows[2]) / puck.radius)
     unit = np.where(acts, unit, 1.0)
-    share, heat = np.empty(unit.size), np.empty(unit.size)
-    _fill(coefficients, puck.radius, coefficients.load * rows / unit, share, heat)
+    share, heat, slip = np.zeros(unit.size), np.ones(unit.size), np.empty((3, unit.size))
+    load = puck.friction * puck.mass * puck.gravity
+    if puck.shape is None:
+        plain = is_plain(puck.pressure, puck.gyration, puck.delta)
+        section = plain_cut(tol, puck.delta) if plain else section_of(puck, puck.delta, tol)
+        coefficients = Dry(load, puck.delta, section, NO_LAW)
+        _fill(coefficients, puck.radius, load * rows / unit, share, heat, slip)
+        heat /= load
+    else:
+        base = packed(puck.shape, puck.lever)
+        _fill_base(base, rows / unit, share, slip, np.empty(3), np.empty((3, 3)))
+        if np.isnan(share).any():
+            raise ContactError(
+                "the slip under this force and torque was not found: of a tall body on a base it "
+                "need not be the only one; a lower one has it"
+            )
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
-        margin = np.where(acts, coefficients.load / unit / share / largest, np.inf)
-        held = (1.0 / margin - 1.0) * heat <= SLACK * coefficients.load
-    return Hold(held.reshape(fx.shape), margin.reshape(fx.shape))
+        return np.where(acts, load / unit / share / largest, np.inf), heat, slip
 
 
 def _forces(force: npt.ArrayLike) -> FloatArray:
@@ -80,11 +154,26 @@ def _forces(force: npt.ArrayLike) -> FloatArray:
 
 @allocating
 def _fill(
-    coefficients: Dry, radius: float, rows: FloatArray, share: FloatArray, heat: FloatArray
-) -> None:
-    """The shares of wrenches (3, n), and the power of friction in their slip."""
+    coefficients: Dry, radius: float, rows: FloatArray, share: FloatArray, heat: FloatArray,
+    slip: FloatArray,
+) -> None:  # fmt: skip
+    """The shares of wrenches (3, n), the power of friction in their slips, and these (3, n)."""
     for n in range(rows.shape[1]):
         patience(1)
-        share[n], heat[n], _, _, _ = demand(
+        share[n], heat[n], slip[0, n], slip[1, n], slip[2, n] = demand(
             coefficients, radius, rows[0, n], rows[1, n], rows[2, n], False
         )
+
+
+@kernel
+def _fill_base(
+    base: FloatArray, rows: FloatArray, share: FloatArray, slip: FloatArray, one: FloatArray,
+    slopes: FloatArray,
+) -> None:  # fmt: skip
+    """The shares of wrenches over f N (3, n), where they act, and their slips (3, n)."""
+    for n in range(rows.shape[1]):
+        patience(1)
+        fx, fy, torque = rows[0, n], rows[1, n], rows[2, n]
+        if fx != 0.0 or fy != 0.0 or torque != 0.0:
+            share[n] = 1.0 / base_twist(base, fx, fy, torque, one, slopes)
+            slip[0, n], slip[1, n], slip[2, n] = one[0], one[1], one[2]

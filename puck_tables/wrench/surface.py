@@ -25,12 +25,15 @@ from puck_tables.errors import InputError
 from puck_tables.io.columns import following
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.result import Result
+from puck_tables.wrench.base_surface import BaseSurface, base_surface
+from puck_tables.wrench.friction_force import wrenches
 from puck_tables.wrench.models import SurfaceModel, ellipsoid, quartic
 
 if TYPE_CHECKING:
     from puck_tables.motion.puck_spec import PuckSpec
 
-LEAST, MOST = 5, 1_000_001  # points of a curve
+LEAST, MOST, OF_A_ROUND = 5, 1_000_001, 181  # points of a curve
+MOST_OF_A_BASE, OF_A_BASE = 1001, 31  # slip angles of a surface
 _FINE = 1441  # angles for what does not depend on how many were asked for
 _STEP = 1e-5  # rad, of differences for the normals
 _COLUMNS = ("force_x", "force_y", "torque", "normal_force", "normal_torque")
@@ -138,13 +141,17 @@ class LimitSurface(Result):
         })  # fmt: skip
 
 
-def limit_surface(puck: PuckSpec, count: int) -> LimitSurface:
+def limit_surface(puck: PuckSpec, count: int | None) -> LimitSurface | BaseSurface:
     """The limit surface of a puck, as :meth:`puck_tables.Puck.limit_surface` has it."""
-    number = real("n", count, "points")
-    if not (number == int(number) and LEAST <= number <= MOST):
-        raise InputError(f"n must be a whole number from {LEAST} to {MOST}, got {count}")
+    if count is None:
+        count = OF_A_ROUND if puck.shape is None else OF_A_BASE
+    number, most = real("n", count, "points"), MOST if puck.shape is None else MOST_OF_A_BASE
+    if not (number == int(number) and LEAST <= number <= most):
+        raise InputError(f"n must be a whole number from {LEAST} to {most}, got {count}")
     if puck.friction == 0.0:
         raise InputError("a puck with friction = 0 has no limit surface: give friction > 0")
+    if puck.shape is not None:
+        return base_surface(puck, int(number))
     phi = np.linspace(-0.5 * np.pi, 0.5 * np.pi, int(number))
     law, delta, unit = puck.body.law, puck.delta, puck.mass * puck.decel
     along, across, turning = wrenches(law, delta, phi)
@@ -152,21 +159,6 @@ def limit_surface(puck: PuckSpec, count: int) -> LimitSurface:
     return LimitSurface(
         puck, phi, unit * along, unit * across, unit * puck.radius * turning, normal[0], normal[1]
     )
-
-
-def wrenches(law: Law, delta: float, phi: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """F_x, F_y and M/r over f N, each of the shape of ``phi``.
-
-    Examples
-    --------
-    >>> from puck_tables.contact.laws import law_of
-    >>> [float(x.round(12)) for x in wrenches(law_of("uniform"), 0.0, np.array(np.pi / 2))]
-    [0.0, 0.0, 0.666666666667]
-    """
-    rho = law.friction(phi, delta)
-    cosine = np.where(np.abs(phi) == 0.5 * np.pi, 0.0, np.cos(phi))
-    sine = np.sin(phi)
-    return cosine * rho.parallel, sine * cosine * rho.perpendicular, 0.5 * sine * rho.spin
 
 
 def _normals(law: Law, delta: float, phi: FloatArray) -> FloatArray:

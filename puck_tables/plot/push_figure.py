@@ -1,0 +1,71 @@
+"""The picture of a push: outlines of the puck on its way, the finger, its force."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.plot.style import BLUE, GREY, ORANGE, canvas
+from puck_tables.plot.titles import legend_below, titled
+from puck_tables.wrench.push import Push
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_DRAWN = 7  # outlines: more run into each other
+_LENGTH = 0.5  # of the reach: of the arrow of a force f m g
+
+
+def draw(run: Push) -> Figure:
+    """The way of the puck; velocity, spin and force over time."""
+    figure = canvas(10.5, 4.8)
+    left, right = figure.subplots(1, 2, width_ratios=(1.4, 1.0))
+    draw_on(left, run)
+    unit = run.puck.friction * run.puck.mass * run.puck.gravity
+    right.plot(run.time, run.speed, color=BLUE, label="speed / (m/s)")
+    right.plot(run.time, run.puck.radius * run.spin, color=ORANGE, label="reach · spin / (m/s)")
+    right.set_xlabel("time / s")
+    right.grid(color="#e4e4e4", linewidth=0.6)
+    legend_below(right)
+    force = np.hypot(run.push_x, run.push_y) / unit
+    titled(figure, f"{run.contact[0]} at first; force {force.min():.3g} to {force.max():.3g} f m g")
+    return figure
+
+
+def draw_on(axes: Axes, run: Push) -> None:
+    """The way of the puck alone."""
+    chosen = np.unique(np.linspace(0, run.time.size - 1, _DRAWN).round().astype(int))
+    unit = run.puck.friction * run.puck.mass * run.puck.gravity
+    for n in chosen.tolist():
+        for outline in _outlines(run):
+            turned = outline * np.exp(1j * run.orientation[n]) + run.x[n] + 1j * run.y[n]
+            axes.plot(turned.real, turned.imag, color=BLUE if n == chosen[-1] else GREY)
+    axes.plot(run.x, run.y, color=BLUE, linewidth=0.9, label="centre of mass")
+    axes.plot(run.finger_x, run.finger_y, color=ORANGE, marker="o", markevery=chosen.tolist(),
+              label="finger")  # fmt: skip
+    axes.quiver(
+        run.finger_x[chosen], run.finger_y[chosen], run.push_x[chosen], run.push_y[chosen],
+        color=ORANGE, angles="xy", scale_units="xy", scale=unit / (_LENGTH * run.puck.radius),
+        width=0.004, label="its force",
+    )  # fmt: skip
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_xlabel("x / m")
+    axes.set_ylabel("y / m")
+    legend_below(axes)
+
+
+def _outlines(run: Push) -> list[FloatArray]:
+    """Closed curves of the base, from the centre of mass, as complex numbers."""
+    circle = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 181))
+    base = run.puck.shape
+    if base is None:
+        return [run.puck.radius * circle]
+    middle = complex(*base.middle)
+    curves = [complex(x, y) - middle + radius * circle for x, y, radius, _ in base.discs]
+    for outline in base.outlines:
+        corners = np.array([complex(*one) for one in (*outline, outline[0])]) - middle
+        curves.append(corners)
+    return curves
