@@ -27,10 +27,13 @@ def draw(stops: StopMap) -> Figure:
     panels = figure.subplots(2, 3, sharex=True)
     for panel, name in zip(panels.flat, stops.outputs, strict=False):
         _draw(figure, panel, stops, axes, name, place)
-    for panel in panels.flat[len(stops.outputs) :]:
+    for n, panel in enumerate(panels.flat[len(stops.outputs) :], start=len(stops.outputs)):
         panel.set_visible(False)
+        panels.flat[n - 3].tick_params(labelbottom=True)
     legend_below(figure, FEW)
-    titled(figure, _fixed_title(fixed) + (f" ({left_out})" if left_out else ""))
+    base = stops.dataset().attributes.get("base")
+    on = f", base {base}" if base else ""
+    titled(figure, _fixed_title(fixed) + on + (f" ({left_out})" if left_out else ""))
     return figure
 
 
