@@ -28,7 +28,7 @@ from puck_tables.cli.info import info
 from puck_tables.cli.limit_surface import limit_surface
 from puck_tables.cli.printing import printable, progress
 from puck_tables.cli.reference import reference
-from puck_tables.cli.scene import scene
+from puck_tables.cli.scene_files import scene
 from puck_tables.cli.simulate import simulate
 from puck_tables.cli.sweep import sweep
 from puck_tables.cli.tables import tables

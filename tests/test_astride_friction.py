@@ -18,7 +18,7 @@ NO_PATCHES, NO_CORNERS = np.empty((0, 6)), np.empty((0, 2))
 
 @kernel
 def _friction(ground, ux, uy, w):
-    return astride_friction(ground, 1.0, ux, uy, w, math.sqrt(ux * ux + uy * uy + w * w))
+    return astride_friction(ground, 1.0, ux, uy, w, math.sqrt(ux * ux + uy * uy + w * w), 1.0)
 
 
 def friction(ground: Ground, slip: tuple[float, float, float], x: float = 0.0, y: float = 0.0):

@@ -44,3 +44,19 @@ def test_of_no_run_with_an_end_there_is_none() -> None:
     found = scene(1e-7).sweep()
     wrong = replace(found, end=np.full_like(found.end, 7))
     assert math.isnan(wrong.error_estimate)
+
+
+@pytest.mark.parametrize("slope", [0.0, 0.05])
+def test_a_run_alone_is_done_once_and_its_estimate_holds(slope: float) -> None:
+    """Looked up, or integrated: with finer steps only where check runs miss the default ``tol``."""
+    rng = np.random.default_rng(31)
+    for _ in range(8):
+        puck = pt.Puck(0.04, height=float(rng.uniform(0.0, 0.1)), friction=0.2)
+        launch = pt.Launch(tuple(rng.normal(size=2).tolist()), float(rng.normal() * 30.0))
+        one = pt.Scene(puck, pt.Floor(slope=slope), launch)
+        run, fine = one.simulate(), replace(one, tol=1e-12).simulate()
+        assert "closer than" not in run.why
+        far = math.hypot(run.last["x"] - fine.last["x"], run.last["y"] - fine.last["y"])
+        late = abs(run.end_time - fine.end_time) * run.rate_scale / run.speed_scale
+        error = max(far * run.rate_scale / run.speed_scale**2, late)
+        assert error <= run.error_estimate <= one.tol

@@ -57,7 +57,8 @@ def booked(world: pt.World, until: float) -> dict[str, float]:
     """The same from the ledger of the world."""
     start = world.time
     world.advance(until - world.time)
-    found = energies_of(world, np.array([start, world.time]))
+    moments = np.array([start, world.time])
+    found = energies_of(world, moments, world.over(moments))
     assert residual(found) < 1e-9
     return {name: float((row[1] - row[0]).sum()) for name, row in found.items()}
 

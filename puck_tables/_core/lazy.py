@@ -23,20 +23,25 @@ def lazily(
     Parameters
     ----------
     package : its ``__name__``
-    homes : modules of it by the names that they hold; ``module:name`` if it has another one there,
-        and nothing for a module itself
+    homes : names that modules of it hold, by these; ``there:name`` where a name is another there;
+        modules themselves stand under no name
 
     Examples
     --------
-    >>> get, listed = lazily("puck_tables", {"Puck": "puck", "contact": ""})
+    >>> get, listed = lazily("puck_tables", {"puck": "Puck", "": "contact"})
     >>> get("Puck").__name__, get("contact").__name__, "Puck" in listed()
     ('Puck', 'puck_tables.contact', True)
     """
+    places = {
+        name.rpartition(":")[2]: (module, name.partition(":")[0])
+        for module, names in homes.items()
+        for name in names.split()
+    }
 
     def get(name: str) -> Any:
-        if name not in homes:
+        if name not in places:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
-        module, _, original = homes[name].partition(":")
+        module, there = places[name]
         try:
             value: Any = import_module(f"{package}.{module or name}")
         except ModuleNotFoundError as error:
@@ -49,11 +54,11 @@ def lazily(
                 name=error.name,
             ) from None
         if module:
-            value = getattr(value, original or name)
+            value = getattr(value, there)
         setattr(sys.modules[package], name, value)
         return value
 
-    return get, lambda: sorted({*vars(sys.modules[package]), *homes})
+    return get, lambda: sorted({*vars(sys.modules[package]), *places})
 
 
 def lead_up(homes: Mapping[str, str]) -> None:

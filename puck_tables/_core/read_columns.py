@@ -213,12 +213,7 @@ def list_of(path: str | Path, column: InputColumn, most: int) -> FloatArray | No
 
 
 def _content(path: str | Path, most: int) -> bytes:
-    """The content of a file.
-
-    Raises
-    ------
-    InputError
-    """
+    """The content of a file."""
     try:
         return read_whole(path, most)
     except OSError as error:
@@ -272,12 +267,7 @@ def _taken(
 
 
 def _refuse_unit_in_words(path: str, form: TextForm, columns: Sequence[InputColumn]) -> None:
-    """Refuse a unit in a comment, or a line over numbers, that is no heading: whose is it?
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a unit in a comment, or a line over numbers, that is no heading: whose is it?"""
     lines = [*form.said, *(" ".join(row) for row in form.header)]
     for unit in re.findall(r"[\[(]([^\[\]()]+)[\])]|(\S+/\S+)", " ".join(lines)):
         text = "".join(unit).strip()

@@ -266,12 +266,7 @@ def _no_scheduler(where: object, error: Exception) -> ClusterError:
 
 @contextlib.contextmanager
 def _own(workers: int) -> Iterator[Any]:
-    """A cluster of this process.
-
-    Raises
-    ------
-    MissingExtraError, ClusterError
-    """
+    """A cluster of this process."""
     try:
         security = Security.temporary()
     except ImportError:

@@ -265,12 +265,7 @@ def _made(path: Path, folder: Path, start: Content) -> Place:
 
 @contextlib.contextmanager
 def _renaming(path: Path) -> Iterator[Callable[[Path], None]]:
-    """Nobody else renames this store meanwhile; gives how to put a folder aside, for good.
-
-    Raises
-    ------
-    OutputError
-    """
+    """Nobody else renames this store meanwhile; gives how to put a folder aside, for good."""
     gone: list[Path] = []
 
     def aside(folder: Path) -> None:

@@ -13,29 +13,17 @@ if TYPE_CHECKING:
     from puck_tables.chetaev.wavy_support import AsperityMotion, asperity_motion
 
 _HOMES = {
-    "Asperity": "asperity_shape",
-    "AsperityCurve": "asperity_forces",
-    "AsperityMotion": "wavy_support",
-    "ConstrainedMotion": "motion",
-    "ConstrainedSystem": "system",
-    "asperity_curve": "asperity_forces",
-    "asperity_motion": "wavy_support",
-    "constrained_motion": "motion",
-    "patch_stop": "patch_puck",
-    "patch_system": "patch_puck",
+    "asperity_forces": "AsperityCurve asperity_curve",
+    "asperity_shape": "Asperity",
+    "motion": "ConstrainedMotion constrained_motion",
+    "patch_puck": "patch_stop patch_system",
+    "system": "ConstrainedSystem",
+    "wavy_support": "AsperityMotion asperity_motion",
 }
 
 __all__ = [
-    "Asperity",
-    "AsperityCurve",
-    "AsperityMotion",
-    "ConstrainedMotion",
-    "ConstrainedSystem",
-    "asperity_curve",
-    "asperity_motion",
-    "constrained_motion",
-    "patch_stop",
-    "patch_system",
-]
+    "Asperity", "AsperityCurve", "AsperityMotion", "ConstrainedMotion", "ConstrainedSystem",
+    "asperity_curve", "asperity_motion", "constrained_motion", "patch_stop", "patch_system",
+]  # fmt: skip
 
 __getattr__, __dir__ = lazily(__name__, _HOMES)

@@ -13,21 +13,16 @@ if TYPE_CHECKING:
     from puck_tables.contact.speed_quadrature import speed_resultants
 
 _HOMES = {
-    "Resultants": "resultants",
-    "critical_delta": "opening",
-    "is_full_contact": "closed_form",
-    "loaded_share": "one_sided",
-    "one_sided_resultants": "one_sided:resultants",
-    "speed_resultants": "speed_quadrature",
+    "closed_form": "is_full_contact",
+    "one_sided": "loaded_share resultants:one_sided_resultants",
+    "opening": "critical_delta",
+    "resultants": "Resultants",
+    "speed_quadrature": "speed_resultants",
 }
 
 __all__ = [
-    "Resultants",
-    "critical_delta",
-    "is_full_contact",
-    "loaded_share",
-    "one_sided_resultants",
+    "Resultants", "critical_delta", "is_full_contact", "loaded_share", "one_sided_resultants",
     "speed_resultants",
-]
+]  # fmt: skip
 
 __getattr__, __dir__ = lazily(__name__, _HOMES)

@@ -152,12 +152,7 @@ def puck_and_launch(
 
 
 def _chosen(names: list[str], track: str | None, path: str | Path) -> str:
-    """The name of a track.
-
-    Raises
-    ------
-    InputError
-    """
+    """The name of a track."""
     listed = ", ".join(names)
     if track is None:
         if len(names) != 1:

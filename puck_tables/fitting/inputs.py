@@ -126,12 +126,7 @@ def observations_of(
 
 
 def _refuse_far(film: Observations) -> None:
-    """Refuse a track, or a time, that is no slide of a puck by its size alone.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a track, or a time, that is no slide of a puck by its size alone."""
     size = float(np.ptp(film.place, axis=0).max())
     for what, extent, unit in (("places", size, "m"), ("times", float(film.time[-1]), "s")):
         if extent and not _NEAREST < extent < _FARTHEST:
@@ -142,12 +137,7 @@ def _refuse_far(film: Observations) -> None:
 
 
 def _refuse_still(film: Observations) -> None:
-    """Refuse a track of a puck that lies still.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a track of a puck that lies still."""
     place, _ = noise_of([film])
     _refuse_within(film, place if math.isfinite(place) else 0.0)
 
@@ -168,12 +158,7 @@ def refuse_wobbling(result: Estimate, certainty: Certainty) -> None:
 
 
 def _refuse_within(film: Observations, spread: float) -> None:
-    """Refuse a track of a puck that does not leave its place by more than some spread (m).
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a track of a puck that does not leave its place by more than some spread (m)."""
     if rests_from(film, spread) == 0 and not turns(film):
         raise InputError(
             f"the puck of {film.name} lies still, within {1e3 * spread:.3g} mm of noise: a fit "
@@ -182,12 +167,7 @@ def _refuse_within(film: Observations, spread: float) -> None:
 
 
 def _refuse_twice(one: Observations, other: Observations) -> None:
-    """Refuse a film that is given twice: it would count for two.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a film that is given twice: it would count for two."""
     count = min(one.time.size, other.time.size)
     aligned = (one.place[:count] == other.place[:count]).all(axis=1).sum()
     frames = [

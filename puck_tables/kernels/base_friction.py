@@ -110,11 +110,26 @@ def pressure_at(base: FloatArray, mx: float, my: float) -> tuple[float, float, f
     return (1.0 - sx * bx - sy * by) / area, bx, by
 
 
+@inlined
+def is_uniform(base: FloatArray) -> bool:
+    """Whether it is a polygon under uniform pressure."""
+    flat = base[LEVER] == 0.0 and base[FIRST_X] == 0.0 and base[FIRST_Y] == 0.0
+    return flat and base[DISCS] == 0.0
+
+
+@inlined
+def uniform_sums(
+    base: FloatArray, ux: float, uy: float, w: float
+) -> tuple[float, float, float]:  # fmt: skip
+    """∫ e dA and its moment over such a base, in its axes."""
+    return flat_sums(base, HEAD, int(base[SIDES]), base[REACH], ux, uy, w)
+
+
 @inner
 def grip(base: FloatArray, ux: float, uy: float, w: float) -> tuple[float, float, float]:
     """Force and torque over f N that keep a base slipping, in its own axes: against friction."""
-    if base[DISCS] == 0.0 and base[LEVER] == 0.0 and base[FIRST_X] == 0.0 and base[FIRST_Y] == 0.0:
-        fx, fy, torque = flat_sums(base, HEAD, int(base[SIDES]), base[REACH], ux, uy, w)
+    if is_uniform(base):
+        fx, fy, torque = uniform_sums(base, ux, uy, w)
         a = 1.0 / base[AREA]
         return a * fx, a * fy, a * torque
     sums = base_sums(base, ux, uy, w)

@@ -15,21 +15,13 @@ if TYPE_CHECKING:
     )
 
 _HOMES = {
-    "approach_exponent": "limits",
-    "curvature_slope": "limits",
-    "elementary_stop_time": "limits",
-    "limit_angle": "limits",
-    "limit_ratio": "limits",
-    "regime": "limits",
+    "limits": "approach_exponent curvature_slope elementary_stop_time limit_angle limit_ratio "
+    "regime",
 }
 
 __all__ = [
-    "approach_exponent",
-    "curvature_slope",
-    "elementary_stop_time",
-    "limit_angle",
-    "limit_ratio",
+    "approach_exponent", "curvature_slope", "elementary_stop_time", "limit_angle", "limit_ratio",
     "regime",
-]
+]  # fmt: skip
 
 __getattr__, __dir__ = lazily(__name__, _HOMES)

@@ -17,6 +17,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.colours import brightness, on_white
 from puck_tables.plot.base_outlines import MARK, outline_of
+from puck_tables.plot.floor_axes import Box
 from puck_tables.plot.round_parts import RoundPart, rounds_of
 from puck_tables.plot.scene_figure import states_drawn
 from puck_tables.plot.titles import out_of_sight
@@ -37,8 +38,6 @@ _UNSEEN = (1e-4, 0.01)  # of the size of what is in sight, and of the smallest r
 _FAR = 3.0  # sizes of the ways: corners of the board farther off are left out of sight
 
 _DARK = 0.45  # brightness: a mark on it is white
-
-Box = tuple[float, float, float, float]  # left, right, low, high, m
 
 
 class MovingDisc(NamedTuple):
@@ -289,7 +288,7 @@ def _sight(bodies: list[tuple[str, float, str, bool, FloatArray]], rounds: list[
     for one in rounds:
         centre = np.array([one.x, one.y])
         low, high = np.minimum(low, centre - one.radius), np.maximum(high, centre + one.radius)
-    return float(low[0]), float(high[0]), float(low[1]), float(high[1])
+    return Box(float(low[0]), float(high[0]), float(low[1]), float(high[1]))
 
 
 def _half_planes(scene: SceneSpec) -> list[tuple[str, FloatArray]]:
@@ -319,7 +318,8 @@ def _with_corners(box: Box, planes: list[FloatArray]) -> Box:
         if inside and max(left - x, x - right, low - y, y - high) <= _FAR * size:
             left, right, low, high = min(left, x), max(right, x), min(low, y), max(high, y)
     margin = 0.03 * max(right - left, high - low)
-    return float(left - margin), float(right + margin), float(low - margin), float(high + margin)
+    sides = left - margin, right + margin, low - margin, high + margin
+    return Box(*map(float, sides))
 
 
 def _lines(planes: list[tuple[str, FloatArray]], box: Box) -> list[StraightPart]:

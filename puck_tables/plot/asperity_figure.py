@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.chetaev.asperity_forces import LEAP, AsperityCurve
-from puck_tables.plot.panels import Panel, Picture, PlotLine, draw_panel
-from puck_tables.plot.panels import draw as panels_drawn
+from puck_tables.plot.style import BLUE, GREY, ORANGE, canvas
+from puck_tables.plot.titles import titled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,41 +18,60 @@ if TYPE_CHECKING:
 
 def draw(result: AsperityCurve) -> Figure:
     """Greatest force, mean force and phase of landing against the speed."""
-    support = result.asperity
-    title = (
+    figure, support = canvas(8.6, 10.2), result.asperity
+    greatest, mean, landing = figure.subplots(3, 1)
+    draw_on(greatest, result)
+    scaled = result.held_speed / support.lift_speed
+    w = scaled**2
+    steepest = np.arccos(2.0 * w / (1.0 + np.sqrt(1.0 + 8.0 * w * w)))  # cos θ* in one form of it
+    _draw_force(mean, result, {"mean, with\nall landings": result.mean}, "mean force", LEAP)
+    mean.set_title("mean force: what landings lose; never above Coulomb's", fontsize=10)
+    _draw(landing, scaled, result.landing_phase, "lands at θ₁,\nthen slides", BLUE, 1.0)
+    _for_reference(landing, scaled, steepest, "greatest force\non a rise, θ*")
+    landing.set_title("on the next rise: trough 0, steepest slope π/2, crest π", fontsize=10)
+    landing.set_ylabel("landing θ₁ / rad")
+    titled(
+        figure,
         f"a = {support.amplitude:.4g} m, 2πb = {2.0 * np.pi * support.length:.4g} m, "
-        f"|Y| = {support.load:.4g} N, m = {support.mass:.4g} kg: V₀ = {support.lift_speed:.4g} m/s"
+        f"|Y| = {support.load:.4g} N, m = {support.mass:.4g} kg: V₀ = {support.lift_speed:.4g} m/s",
     )
-    return panels_drawn(Picture(title, _panels(result), 3.4))
+    return figure
 
 
 def draw_on(axes: Axes, result: AsperityCurve) -> None:
     """The greatest force alone."""
-    draw_panel(axes, _panels(result)[0])
+    curves = {
+        "held speed:\n−Y + m(a/b²)V² cos θ": result.greatest,
+        "not driven:\nexact λ": result.undriven,
+    }
+    _draw_force(axes, result, curves, "greatest force", 1.0)
+    axes.set_title("greatest force in contact (none where the point only hops)", fontsize=10)
 
 
-def _panels(result: AsperityCurve) -> list[Panel]:
-    support = result.asperity
-    scaled = result.held_speed / support.lift_speed
-    unit = support.load * support.slope
-    coulomb = PlotLine(scaled, result.crude / unit, "Coulomb, |Y| a/b", dashed=True)
-    across = "speed V/V₀  (above 1 the point leaves the crests)"
-    return [
-        Panel(across, "greatest force / (|Y| a/b)", [
-            PlotLine(scaled, result.greatest / unit, "held speed:\n−Y + m(a/b²)V² cos θ", leap=1.0),
-            PlotLine(scaled, result.undriven / unit, "not driven:\nexact λ", leap=1.0), coulomb,
-        ], "greatest force in contact (none where the point only hops)"),
-        Panel(across, "mean force / (|Y| a/b)", [
-            PlotLine(scaled, result.mean / unit, "mean, with\nall landings", leap=LEAP), coulomb,
-        ], "mean force: what landings lose; never above Coulomb's"),
-        Panel(across, "landing θ₁ / rad", [
-            PlotLine(scaled, result.landing_phase, "lands at θ₁,\nthen slides", leap=1.0),
-            PlotLine(scaled, steepest(scaled), "greatest force\non a rise, θ*", dashed=True),
-        ], "on the next rise: trough 0, steepest slope π/2, crest π"),
-    ]  # fmt: skip
+def _draw_force(
+    axes: Axes, result: AsperityCurve, forces: dict[str, FloatArray], what: str, leap: float
+) -> None:
+    """Forces over Coulomb's, and that."""
+    scaled = result.held_speed / result.asperity.lift_speed
+    for (label, force), colour in zip(forces.items(), (BLUE, ORANGE), strict=False):
+        _draw(axes, scaled, force / result.crude, label, colour, leap)
+    _for_reference(axes, scaled, np.ones_like(scaled), "Coulomb, |Y| a/b")
+    axes.set_ylabel(f"{what} / (|Y| a/b)")
 
 
-def steepest(scaled: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """θ*: cos θ* = (√(1 + 8w²) − 1)/(4w), w = (V/V₀)²."""
-    w = scaled**2
-    return np.asarray(np.arccos(2.0 * w / (1.0 + np.sqrt(1.0 + 8.0 * w * w))))
+def _draw(axes: Axes, x: FloatArray, y: FloatArray, label: str, colour: str, leap: float) -> None:
+    """A curve; where neighbours differ by more than ``leap`` dots: a line would be made up."""
+    leaps = np.flatnonzero(np.abs(np.diff(y)) > leap)
+    beside = np.union1d(leaps, leaps + 1)
+    broken = np.insert(x, leaps + 1, np.nan), np.insert(y, leaps + 1, np.nan)
+    axes.plot(*broken, color=colour, linewidth=1.8, label=label)
+    axes.plot(x[beside], y[beside], ".", color=colour, markersize=4)
+
+
+def _for_reference(axes: Axes, x: FloatArray, y: FloatArray, label: str) -> None:
+    """A thin grey curve, and what goes with the last of a panel."""
+    axes.plot(x, y, "--", color=GREY, linewidth=1.2, label=label)
+    axes.set_xlabel("speed V/V₀  (above 1 the point leaves the crests)")
+    axes.margins(y=0.08)
+    axes.grid(color="#e4e4e4", linewidth=0.6)
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from puck_tables.plot.animation import Animation, Box, MovingDisc
+from puck_tables.plot.animation import Animation, MovingDisc
 from puck_tables.plot.base_outlines import path_of, placed
-from puck_tables.plot.floor_axes import Box as Sight
-from puck_tables.plot.floor_axes import draw_floor
+from puck_tables.plot.floor_axes import Box, draw_floor
 from puck_tables.plot.round_parts import draw_rounds
 from puck_tables.plot.style import RED
 
@@ -24,7 +23,7 @@ def size_of(box: Box) -> tuple[float, float]:
 
     Examples
     --------
-    >>> size_of((0.0, 2.0, 0.0, 1.0))
+    >>> size_of(Box(0.0, 2.0, 0.0, 1.0))
     (9.0, 4.5)
     """
     shape = (box[3] - box[2]) / (box[1] - box[0])
@@ -34,7 +33,7 @@ def size_of(box: Box) -> tuple[float, float]:
 
 def draw_board(axes: Axes, film: Animation) -> None:
     """The floor, and all that stands still, each kind labelled once, to scale."""
-    draw_floor(axes, film.floor, Sight(*film.box), max(film.frictions, default=0.0))
+    draw_floor(axes, film.floor, film.box, max(film.frictions, default=0.0))
     draw_rounds(axes, film.rounds)
     told: set[str] = set()
     for line in film.lines:

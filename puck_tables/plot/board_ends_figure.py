@@ -9,9 +9,10 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.colours import on_white
 from puck_tables.errors import InputError
-from puck_tables.plot.animation import Animation, Box, film_of
+from puck_tables.plot.animation import Animation, film_of
 from puck_tables.plot.board import draw_board, show
 from puck_tables.plot.board_panels import close_up, finished, panels_for
+from puck_tables.plot.floor_axes import Box
 from puck_tables.plot.sample_figure import HELD, cloud_of
 from puck_tables.plot.style import GREY
 from puck_tables.plot.titles import counted, legend_below, noted
@@ -152,4 +153,4 @@ def _box(ends: SceneEnds, film: Animation) -> Box:
         return float(np.nanmin(result)) - radius, float(np.nanmax(result)) + radius
 
     (west, east), (south, north) = sides("x"), sides("y")
-    return min(left, west), max(right, east), min(low, south), max(top, north)
+    return Box(min(left, west), max(right, east), min(low, south), max(top, north))

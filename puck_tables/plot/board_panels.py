@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.plot.animation import Box
 from puck_tables.plot.board import size_of
+from puck_tables.plot.floor_axes import Box
 from puck_tables.plot.style import canvas
 from puck_tables.plot.titles import legend_below, titled
 
@@ -28,10 +28,10 @@ def close_up(box: Box, places: FloatArray, radius: float) -> list[Box]:
 
     Examples
     --------
-    >>> (box,) = close_up((0.0, 40.0, -2.0, 2.0), np.array([[30.0, 0.0], [32.0, 1.0]]), 0.15)
+    >>> (box,) = close_up(Box(0.0, 40.0, -2.0, 2.0), np.array([[30.0, 0.0], [32.0, 1.0]]), 0.15)
     >>> [round(side, 9) for side in box]
     [29.7, 32.3, -0.3, 1.3]
-    >>> close_up((0.0, 4.0, -2.0, 2.0), np.array([[3.0, 0.0], [3.2, 0.1]]), 0.15)
+    >>> close_up(Box(0.0, 4.0, -2.0, 2.0), np.array([[3.0, 0.0], [3.2, 0.1]]), 0.15)
     []
     """
     wide = box[1] - box[0]
@@ -43,7 +43,7 @@ def close_up(box: Box, places: FloatArray, radius: float) -> list[Box]:
     if 2.0 * half > 0.6 * wide:
         return []
     middle = 0.5 * float(x.min() + x.max()), 0.5 * float(y.min() + y.max())
-    return [(middle[0] - half, middle[0] + half, middle[1] - high, middle[1] + high)]
+    return [Box(middle[0] - half, middle[0] + half, middle[1] - high, middle[1] + high)]
 
 
 def panels_for(boxes: list[Box]) -> tuple[Figure, list[Axes]]:

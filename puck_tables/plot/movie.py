@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import itertools
 import json
 import math
 import tempfile
+from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path
 from subprocess import CalledProcessError
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,7 +20,6 @@ from puck_tables.plot import board
 from puck_tables.plot.animation import Animation, MovingDisc, between, film_of, path_of
 from puck_tables.plot.base_outlines import path_of as path_through
 from puck_tables.plot.base_outlines import placed
-from puck_tables.plot.floor_axes import Box as Sight
 from puck_tables.plot.floor_axes import motion_said, shades_of
 from puck_tables.plot.style import RED, canvas, may_replace, require_matplotlib
 from puck_tables.plot.titles import titled
@@ -28,16 +27,13 @@ from puck_tables.result import TimedResult
 from puck_tables.scene.parts import Floor
 
 if TYPE_CHECKING:
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Circle, PathPatch
+    from matplotlib.figure import Figure
 
 MOVIE_KINDS = (".html", ".gif", ".mp4")
 DIGITS = 8  # of the numbers in HTML
 _PICTURES = 25  # a second
-_SHORTEST, _LONGEST = (
-    3.0,
-    12.0,
-)  # s, of a GIF or MP4: shorter or longer motions are shown slower, faster
+# s, of a GIF or MP4: shorter or longer motions are shown slower, faster
+_SHORTEST, _LONGEST = 3.0, 12.0
 _HELD = 12  # pictures of the end
 _DOTS = 100  # an inch
 _FLASH = 0.2  # s for which an impact is seen
@@ -101,25 +97,18 @@ def page(film: Animation) -> str:
     True
     """
     template = (files("puck_tables.plot") / "movie.html").read_text(encoding="utf-8")
+    shades = [
+        {"corners": shade.corners, "centre": shade.centre, "radius": shade.radius,
+         "colour": "#" + "".join(f"{round(255 * part):02x}" for part in shade.colour)}
+        for shade in shades_of(film.floor, film.box, max(film.frictions, default=0.0))
+    ]  # fmt: skip
     shown = {
-        "title": _title(film),
-        "end_time": film.end_time,
-        "box": film.box,
+        "title": _title(film), "end_time": film.end_time, "box": film.box,
         "bodies": [_body(body) for body in film.bodies],
-        "lines": [line._asdict() for line in film.lines],
-        "shades": [
-            {
-                "corners": shade.corners,
-                "centre": shade.centre,
-                "radius": shade.radius,
-                "colour": "#" + "".join(f"{round(255 * part):02x}" for part in shade.colour),
-            }
-            for shade in shades_of(film.floor, Sight(*film.box), max(film.frictions, default=0.0))
-        ],
-        "moving": _motion(film.floor),
-        "rounds": [one._asdict() for one in film.rounds],
+        "lines": [line._asdict() for line in film.lines], "shades": shades,
+        "moving": _motion(film.floor), "rounds": [one._asdict() for one in film.rounds],
         "happenings": [one._asdict() for one in film.happenings],
-    }
+    }  # fmt: skip
     text = json.dumps(shown, allow_nan=False, separators=(",", ":"))
     # what a name or a title says never ends the script
     text = text.replace("<", "\\u003c").replace(">", "\\u003e")
@@ -155,67 +144,53 @@ def _filmed(film: Animation, kind: str) -> bytes:
 
     shown = min(max(film.end_time, _SHORTEST), _LONGEST) if film.end_time > 0.0 else 0.0
     times = np.linspace(0.0, film.end_time, round(shown * _PICTURES) + 1)
-    slowed = shown / film.end_time if film.end_time > 0.0 else 1.0
-    stage = _Stage(film, slowed)
-    screen = canvas(*stage.size)
-    image = screen.figimage(stage.in_view(0.0))
+    figure, show = _stage(film, shown / film.end_time if film.end_time > 0.0 else 1.0)
     writer = (PillowWriter if kind == ".gif" else FFMpegWriter)(fps=_PICTURES)
     try:
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / f"movie{kind}"
-            with writer.saving(screen, str(path), _DOTS):
+            with writer.saving(figure, str(path), _DOTS):
                 for time in [*times.tolist(), *[film.end_time] * _HELD]:
-                    image.set_data(stage.in_view(time))
+                    show(time)
                     writer.grab_frame()
             return path.read_bytes()
     except (OSError, CalledProcessError) as error:  # no room for it, or ffmpeg fails
         raise OutputError(f"the movie could not be made: {error}") from None
 
 
-class _Stage:
-    """A picture of a film at any time: the board is drawn once, and what moves on it anew."""
+def _stage(film: Animation, slowed: float) -> tuple[Figure, Callable[[float], None]]:
+    """A picture of a film, and what shows it at any time."""
+    from matplotlib.patches import PathPatch
 
-    def __init__(self, film: Animation, slowed: float) -> None:
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
+    wide, high = board.size_of(film.box)
+    share = min(1.0, 6.0 / max(wide, high))
+    figure = canvas(_even(share * wide + 0.9), _even(share * high + 1.0))
+    axes = figure.add_subplot()
+    board.draw_board(axes, film)
+    board.show(axes, film.box)
+    titled(figure, _title(film))
+    clock = axes.set_title(" ", fontsize=9, loc="left")
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")  # all is where it stays
+    moving = []
+    for body in film.bodies:
+        looks: dict[str, Any] = {"facecolor": body.colour, "edgecolor": "black"}
+        if body.driven:
+            looks = {"facecolor": "white", "edgecolor": body.line}
+        (trail,) = axes.plot([], [], color=body.line, linewidth=0.8)
+        disc = board.disc(body, 0.0, 0.0, linewidth=0.7, zorder=3, **looks)
+        axes.add_patch(disc)
+        (mark,) = axes.plot([], [], color=body.mark, linewidth=1.0, zorder=3)
+        moving.append((body, disc, trail, mark))
+    (flashes,) = axes.plot(
+        [], [], linestyle="", marker="o", markersize=9, fillstyle="none", color=RED, zorder=4
+    )
 
-        self.film, self.slowed = film, slowed
-        wide, high = board.size_of(film.box)
-        share = min(1.0, 6.0 / max(wide, high))
-        self.size = _even(share * wide + 0.9), _even(share * high + 1.0)
-        figure = canvas(*self.size)
-        figure.set_dpi(_DOTS)
-        axes = figure.add_subplot()
-        board.draw_board(axes, film)
-        board.show(axes, film.box)
-        titled(figure, _title(film))
-        self._clock = axes.set_title(" ", fontsize=9, loc="left")
-        self._agg = cast("Any", FigureCanvasAgg(figure))
-        self._agg.draw()
-        self._board = self._agg.copy_from_bbox(figure.bbox)
-        self._discs: list[Circle | PathPatch] = []
-        self._trails: list[Line2D] = []
-        self._marks: list[Line2D] = []
-        for body in film.bodies:
-            looks: dict[str, Any] = {"facecolor": body.colour, "edgecolor": "black"}
-            if body.driven:
-                looks = {"facecolor": "white", "edgecolor": body.line}
-            self._discs.append(board.disc(body, 0.0, 0.0, linewidth=0.7, **looks))
-            axes.add_patch(self._discs[-1])
-            self._trails += axes.plot([], [], color=body.line, linewidth=0.8)
-            self._marks += axes.plot([], [], color=body.mark, linewidth=1.0)
-        self._flashes = axes.plot(
-            [], [], linestyle="", marker="o", markersize=9, fillstyle="none", color=RED
-        )[0]
-
-    def in_view(self, time: float) -> Any:
-        """The picture at a time, array (high, wide, 4) of bytes."""
-        from matplotlib.patches import PathPatch
-
-        parts = zip(self.film.bodies, self._discs, self._trails, self._marks, strict=True)
-        for body, disc, trail, mark in parts:
-            in_view = min(time, body.gone)
-            x, y, angle = between(body.knots, np.array([in_view]))[0].tolist()
-            trail.set_data(*np.vstack([path_of(body, in_view), (x, y)]).T)
+    def show(time: float) -> None:
+        for body, disc, trail, mark in moving:
+            until = min(time, body.gone)
+            x, y, angle = between(body.knots, np.array([until]))[0].tolist()
+            trail.set_data(*np.vstack([path_of(body, until), (x, y)]).T)
             if isinstance(disc, PathPatch):
                 disc.set_path(path_through(placed(body.outline, x, y, angle)))
             else:
@@ -223,21 +198,13 @@ class _Stage:
             long = body.mark_length
             rim = x + long * math.cos(angle), y + long * math.sin(angle)
             mark.set_data([x, rim[0]], [y, rim[1]])
-            alpha = 0.25 if time >= body.gone else 1.0
-            disc.set_alpha(alpha)
-            mark.set_alpha(alpha)
-        recent = [
-            one for one in self.film.happenings
-            if 0.0 <= time - one.time <= _FLASH / self.slowed
-        ]  # fmt: skip
-        self._flashes.set_data([one.x for one in recent], [one.y for one in recent])
-        words = f"{time:.3f} s" if self.slowed == 1.0 else f"{time:.3f} s, {1.0 / self.slowed:.3g}x"
-        self._clock.set_text(words)
-        self._agg.restore_region(self._board)
-        discs = itertools.chain(*zip(self._discs, self._marks, strict=True))
-        for artist in [*self._trails, *discs, self._flashes, self._clock]:
-            artist.draw(self._agg.get_renderer())
-        return np.array(self._agg.buffer_rgba())
+            for part in (disc, mark):
+                part.set_alpha(0.25 if time >= body.gone else 1.0)
+        recent = [e for e in film.happenings if 0.0 <= time - e.time <= _FLASH / slowed]
+        flashes.set_data([one.x for one in recent], [one.y for one in recent])
+        clock.set_text(f"{time:.3f} s" + (f", {1.0 / slowed:.3g}x" if slowed != 1.0 else ""))
+
+    return figure, show
 
 
 def _even(inches: float) -> float:

@@ -20,10 +20,6 @@ from puck_tables.reference.measure import MeasuredRun, measured
 from puck_tables.reference.threshold import Rest, Threshold, exact_rest, threshold_of, usual
 from puck_tables.result import Result
 
-ERRORS = (
-    "rest_time_error", "stop_place_error", "place_error_max", "speed_error_max", "spin_error_max",
-    "angle_error_max", "epsilon_error",
-)  # fmt: skip
 _SHOWN = 1e-3  # of a ratio: what rows show otherwise is said
 _CONVERGING = {
     "rest_time_error": "stop time", "stop_place_error": "stop place",

@@ -41,7 +41,7 @@ def _bad_under_base(scene: SceneSpec) -> list[str]:
     """Why friction is not known under a base that is not round."""
     floor, puck = scene.floor, scene.puck
     for name, there in (
-        ("law", floor.law), ("orthotropic", floor.orthotropic), ("patch", floor.patches),
+        ("orthotropic", floor.orthotropic), ("patch", floor.patches),
     ):  # fmt: skip
         if there:
             return [
@@ -50,7 +50,7 @@ def _bad_under_base(scene: SceneSpec) -> list[str]:
             ]
     assert puck.shape is not None
     most, highest = max(scene.frictions), puck.shape.highest_lever
-    if 0.5 * most * puck.height > highest:
+    if floor.strips is not None and 0.5 * most * puck.height > highest:
         return [
             f"floor.strips: part of the base would lift at f = {most:g}; up to a puck.height of "
             f"{2.0 * highest / most:.6g} m it stays down"

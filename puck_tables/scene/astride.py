@@ -40,11 +40,14 @@ def tilted(sums: Sums, bx: float, by: float) -> tuple[float, float, float]:
 @inner
 def astride_friction(
     ground: FloatArray, radius: float, ux: float, uy: float, w: float,
-    slip: float,
+    slip: float, moving: float,
 ) -> tuple[float, float, float, float]:  # fmt: skip
-    """Force, torque and the power they take, at velocities relative to the floor; Q = ``slip``."""
+    """Force, torque and the power they take, at velocities relative to the floor; Q = ``slip``.
+
+    ``moving`` 0: with the friction at slip zero, where it depends on the slip.
+    """
     if ground[PRESSURE] == ANY:
-        return friction_of_base(ground, ux, uy, w)
+        return friction_of_base(ground, ux, uy, w, moving)
     to_unit = 1.0 / slip
     way = slip_of(to_unit * ux, to_unit * uy, to_unit * radius * w)
     mirrored = -1.0 if w < 0.0 else 1.0

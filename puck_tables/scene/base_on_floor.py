@@ -1,4 +1,4 @@
-"""Dry friction of a base of any shape on a floor of one friction, or of strips of several.
+"""Dry friction of a base of any shape on a floor of one friction, by law or not, or of strips.
 
 What of the base lies beyond a border is bounded by its own contour there and by pieces of the
 border.  The sums along such a piece are those from one point of the border, the foot, to one end of
@@ -12,14 +12,18 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.base_friction import (
+    AREA,
     DISC_COLUMNS,
     DISCS,
     HEAD,
     SIDES,
     base_sums,
     disc_at,
+    is_uniform,
     pressure_at,
     pressure_on,
+    under_load,
+    uniform_sums,
 )
 from puck_tables.kernels.base_friction import REACH as BASE_REACH
 from puck_tables.kernels.base_parts import beyond_sums
@@ -33,6 +37,7 @@ from puck_tables.kernels.base_sums import (
     scaled,
 )
 from puck_tables.kernels.compile import inlined, inner
+from puck_tables.kernels.law_sums import law_sums
 from puck_tables.kernels.polygon_sums import (
     ANEW,
     BEGIN_X,
@@ -52,6 +57,7 @@ from puck_tables.scene.ground import (
     PLACE_Y,
     PROFILE,
     ROOM,
+    ROWS,
     SHARE,
     border_of,
     load_of,
@@ -141,8 +147,17 @@ def _beyond(
 
 
 @inner
-def _friction_sums(ground: FloatArray, ux: float, uy: float, w: float) -> Sums:
-    """Sums over the base times f N of what is under each part, in the axes of the base."""
+def _friction_sums(ground: FloatArray, ux: float, uy: float, w: float, moving: float) -> Sums:
+    """Sums over the base times f N of what is under each part, in the axes of the base.
+
+    ``moving`` 0: with the friction at slip zero, whatever the slip.
+    """
+    if moving != 0.0 and ground[ROWS] > 0.0:
+        first = int(ground[ROWS])
+        law = ground[first : int(ground[ROOM])]
+        return plus(
+            NOTHING, ground[SHARE], law_sums(ground[int(ground[PROFILE]) : first], law, ux, uy, w)
+        )
     base, room = ground[int(ground[PROFILE]) :], ground[int(ground[ROOM]) :]
     reach, borders = base[BASE_REACH], int(ground[BORDERS])
     c, s = math.cos(ground[ANGLE]), math.sin(ground[ANGLE])
@@ -164,25 +179,25 @@ def _friction_sums(ground: FloatArray, ux: float, uy: float, w: float) -> Sums:
     return plus(NOTHING, ground[SHARE], sums)
 
 
-@inlined
-def _under(
-    sums: Sums, a: float, bx: float, by: float, c: float, s: float
-) -> tuple[float, float, float]:
-    """∫ f p e dA and its moment, by axes of the floor."""
-    x = a * sums[0] + bx * sums[2] + by * sums[3]
-    y = a * sums[1] + bx * sums[4] + by * sums[5]
-    return c * x - s * y, s * x + c * y, a * (sums[4] - sums[3]) + bx * sums[6] + by * sums[7]
-
-
 @inner
 def friction_of_base(
-    ground: FloatArray, ux: float, uy: float, w: float
+    ground: FloatArray, ux: float, uy: float, w: float, moving: float
 ) -> tuple[float, float, float, float]:
-    """Force, torque and the power they take, at velocities relative to the floor, not all 0."""
+    """Force, torque and the power they take, at velocities relative to the floor, not all 0.
+
+    ``moving`` 0: with the friction at slip zero, whatever the slip.
+    """
     c, s = math.cos(ground[ANGLE]), math.sin(ground[ANGLE])
-    sums = _friction_sums(ground, c * ux + s * uy, c * uy - s * ux, w)
-    a, bx, by = pressure_on(ground[int(ground[PROFILE]) :], sums)
-    fx, fy, torque = _under(sums, a, bx, by, c, s)
+    base = ground[int(ground[PROFILE]) :]
+    if ground[BORDERS] == 0.0 and ground[ROWS] == 0.0 and is_uniform(base):
+        x, y, turning = uniform_sums(base, c * ux + s * uy, c * uy - s * ux, w)
+        mean = ground[SHARE] * load_of(ground, 0) / base[AREA]
+        fx, fy, torque = mean * (c * x - s * y), mean * (s * x + c * y), mean * turning
+        return -fx, -fy, -torque, fx * ux + fy * uy + torque * w
+    sums = _friction_sums(ground, c * ux + s * uy, c * uy - s * ux, w, moving)
+    a, bx, by = pressure_on(base, sums)
+    x, y, torque = under_load(sums, a, bx, by)
+    fx, fy = c * x - s * y, s * x + c * y
     return -fx, -fy, -torque, fx * ux + fy * uy + torque * w
 
 
@@ -193,6 +208,7 @@ def friction_held(
     """∫ f p e dA and its moment, of the pressure that carries a moment (mx, my) of the load, m."""
     base = ground[int(ground[PROFILE]) :]
     c, s = math.cos(ground[ANGLE]), math.sin(ground[ANGLE])
-    sums = _friction_sums(ground, c * ux + s * uy, c * uy - s * ux, w)
+    sums = _friction_sums(ground, c * ux + s * uy, c * uy - s * ux, w, 0.0)
     a, bx, by = pressure_at(base, c * mx + s * my, c * my - s * mx)
-    return _under(sums, a, bx, by, c, s)
+    x, y, torque = under_load(sums, a, bx, by)
+    return c * x - s * y, s * x + c * y, torque

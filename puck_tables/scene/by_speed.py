@@ -8,8 +8,10 @@ from functools import lru_cache
 
 import numpy as np
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import rounded_up
 from puck_tables.contact.friction_laws import FrictionLaw
+from puck_tables.contact.law_moments import law_moments
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.scene.agreement import law_of_rows
@@ -29,15 +31,15 @@ _FLAT = 8.0  # times its own scale goes the first table of a launch from rest
 _one_at_a_time = threading.Lock()  # the threads of a sweep need the same table
 
 
-def law_up_to(scene: SceneSpec, fastest: float, reach: float) -> tuple[SpeedTable, float]:
-    """The table of a friction law that holds for such slips of the rim, m/s, and the largest f.
+def law_range(scene: SceneSpec, fastest: float) -> tuple[SpeedLaw | FrictionLaw, float, float]:
+    """A friction law, up to which slip it is tabulated, m/s, and the largest f there.
+
+    ``fastest``: a slip of a rim for which it must hold, m/s.
 
     Raises
     ------
     InputError
-        If the law cannot be read, or ends below them.
-    AccuracyError
-        If it has too many corners for so fine a tolerance; it says which can be reached.
+        If the law cannot be read, or ends below that.
     """
     law = speed_law(scene)
     top = _first_top(law, fastest)
@@ -46,11 +48,36 @@ def law_up_to(scene: SceneSpec, fastest: float, reach: float) -> tuple[SpeedTabl
             f"the rim slips at {fastest:.6g} m/s at the launch, faster than the friction law "
             f"{law_name(scene)} goes ({top:g} m/s): nothing is known beyond; give it more"
         )
-    largest = law.largest(top)
-    if isinstance(law, FrictionLaw):
-        top *= reach
-    share = largest / law.largest(top) if largest > 0.0 else 1.0  # the unit of errors of the table
-    return _law_table(law, scene, top, share), largest
+    return law, top, law.largest(top)
+
+
+def law_table(scene: SceneSpec, law: SpeedLaw | FrictionLaw, top: float) -> SpeedTable:
+    """The table of a friction law up to a slip, m/s, that the scene's tolerance asks for.
+
+    Raises
+    ------
+    AccuracyError
+        If the law has too many corners for so fine a tolerance; it says which can be reached.
+    """
+    try:
+        with _one_at_a_time:
+            return _kept_table(_key(law), max(law_error(scene), FINEST_ACCURACY), top)
+    except AccuracyError as error:
+        if error.reachable is None:
+            raise
+        finest = rounded_up(error.reachable / LAW_SHARE)
+        bends, smoother = "its exponent", "a law that bends less at its start"
+        if isinstance(law, SpeedLaw):
+            bends, smoother = "its corners", "a law with fewer points"
+        raise AccuracyError(
+            f"tol = {scene.tol:g} is out of reach of a table of {law_name(scene)}, with "
+            f"{bends}: give a tol (or --tol) of {finest:g} or more, or {smoother}"
+        ) from None
+
+
+def moments_of(law: SpeedLaw | FrictionLaw, top: float) -> tuple[FloatArray, FloatArray]:
+    """Its moments up to a slip, m/s, see :func:`puck_tables.contact.law_moments.law_moments`."""
+    return _kept_moments(_key(law), top)
 
 
 def _first_top(law: SpeedLaw | FrictionLaw, fastest: float) -> float:
@@ -97,41 +124,30 @@ def law_name(scene: SceneSpec) -> str:
     return law if isinstance(law, str) else "floor.law"
 
 
-def _law_table(
-    law: SpeedLaw | FrictionLaw, scene: SceneSpec, top: float, share: float
-) -> SpeedTable:
-    """The table of a friction law that the scene's tolerance asks for.
-
-    Raises
-    ------
-    AccuracyError
-        If the law has too many corners for so fine a tolerance; it says which can be reached.
-    """
-    of: FrictionLaw | Points
+def _key(law: SpeedLaw | FrictionLaw) -> FrictionLaw | Points:
+    """What a table is kept by."""
     if isinstance(law, FrictionLaw):
-        of = law
-    else:
-        of = tuple(map(tuple, np.stack([law.speeds, law.values], axis=1).tolist()))
-    try:
-        with _one_at_a_time:
-            return _kept_table(of, max(share * law_error(scene), FINEST_ACCURACY), top)
-    except AccuracyError as error:
-        if error.reachable is None:
-            raise
-        finest = rounded_up(error.reachable / LAW_SHARE)
-        bends, smoother = "its exponent", "a law that bends less at its start"
-        if isinstance(law, SpeedLaw):
-            bends, smoother = "its corners", "a law with fewer points"
-        raise AccuracyError(
-            f"tol = {scene.tol:g} is out of reach of a table of {law_name(scene)}, with "
-            f"{bends}: give a tol (or --tol) of {finest:g} or more, or {smoother}"
-        ) from None
+        return law
+    return tuple(map(tuple, np.stack([law.speeds, law.values], axis=1).tolist()))
 
 
 @lru_cache(maxsize=8)
 def _kept_table(of: FrictionLaw | Points, accuracy: float, top: float) -> SpeedTable:
     """Kept by the law or its points: a sweep asks for it again and again."""
+    law = _law(of)
+    if isinstance(law, FrictionLaw):
+        return table_for(law, accuracy, top_speed=top)
+    return table_for(law, accuracy)
+
+
+@lru_cache(maxsize=8)
+def _kept_moments(of: FrictionLaw | Points, top: float) -> tuple[FloatArray, FloatArray]:
+    law = _law(of)
+    return law_moments(law, law.pieces(top)[0])
+
+
+def _law(of: FrictionLaw | Points) -> SpeedLaw | FrictionLaw:
     if isinstance(of, FrictionLaw):
-        return table_for(of, accuracy, top_speed=top)
+        return of
     speeds, values = zip(*of, strict=True)
-    return table_for(SpeedLaw(speeds, values), accuracy)
+    return SpeedLaw(speeds, values)

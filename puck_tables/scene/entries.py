@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import re
 from collections.abc import Iterator, Mapping
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -63,19 +64,28 @@ def entries(part: Any, prefix: str = "") -> Iterator[Entry]:
     >>> [entry.path for entry in entries(Edge((0.0, 1.0), normal=(0.0, -1.0)), "edge[0].")]
     ['edge[0].point', 'edge[0].normal']
     """
-    for name, spec in specs(type(part)).items():
-        kind: Kind = spec.metadata["kind"]
-        value, path = getattr(part, spec.name), prefix + in_tables(name)
+    whole: Any = type(part)
+    for name, table, kind, doc, default, acts in _told(whole):
+        value, path = getattr(part, name), prefix + table
         if kind.shape == "part" and value is not None:
             yield from entries(value, f"{path}.")
         elif kind.shape == "parts":
             for i, item in enumerate(value):
                 yield from entries(item, f"{path}[{i}].")
         else:
-            doc, acts = spec.metadata["doc"], spec.metadata["acts"]
-            yield Entry(path, value, kind, doc, spec.default, acts)
+            yield Entry(path, value, kind, doc, default, acts)
             if kind.kinds and isinstance(value, tuple(kind.kinds.values())):
                 yield from entries(value, f"{path}.")
+
+
+@lru_cache(maxsize=64)
+def _told(part: Any) -> list[tuple[str, str, Kind, str, Any, str | None]]:
+    """Of a part's fields: name, that in tables, what it allows, what it is, default, what acts."""
+    return [
+        (spec.name, in_tables(name), spec.metadata["kind"], spec.metadata["doc"], spec.default,
+         spec.metadata["acts"])
+        for name, spec in specs(part).items()
+    ]  # fmt: skip
 
 
 def units_of(scene: Any) -> dict[str, str]:

@@ -40,7 +40,7 @@ def dry_friction(
     if law.normal == 0.0 or dry.load == 0.0 or slip == 0.0:
         return _plain_friction(dry, radius, ux, uy, w)
     if is_astride(dry):
-        return astride_friction(law.table, radius, ux, uy, w, slip)
+        return astride_friction(law.table, radius, ux, uy, w, slip, law.moving)
     if is_elliptic(law.table):
         axes = ellipse_in(law.table, law.height_ratio, law.normal)
         return elliptic_friction(axes, radius, ux, uy, w)

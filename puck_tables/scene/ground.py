@@ -23,7 +23,8 @@ PATCH_COLUMNS = 6
 _ROOM, _ROOM_A_ROW = 48, 22
 # the corners of all patches, and of a tabulated pressure from PROFILE on all radii, A and B of its
 # pieces W = A + B ρ, with one on either side where nothing presses, or a base of any shape, and
-# from ROOM on room to work.
+# from ROOM on room to work.  ROWS: of a tabulated pressure; of a base where its law of friction
+# over the slip speed stands, 0 where it has none.
 
 
 class Ground(NamedTuple):
@@ -36,7 +37,8 @@ class Ground(NamedTuple):
     ``pressure``: its law; ``profile`` (p, 2): of a tabulated one, radii over r and W with
     ∫ W ρ dρ = ½, straight between them; ``base``: of ANY, in one array
     (:func:`puck_tables.kernels.base_friction.packed`), with ``lever``: height of the centre of mass
-    over N, m/N.
+    over N, m/N; ``law``: its friction f N over the slip speed, in one array
+    (:func:`puck_tables.contact.law_moments.packed_law`), where it depends on that.
     """
 
     across_x: float
@@ -50,17 +52,21 @@ class Ground(NamedTuple):
     pressure: int = UNIFORM
     profile: FloatArray = np.empty((0, 2))
     base: FloatArray = np.empty(0)
+    law: FloatArray = np.empty(0)
 
     def packed(self) -> FloatArray:
         """In one array."""
         head = [0.0, 0.0, 1.0, self.lever, self.inner, self.across_x, self.across_y]
         tables = [self.borders, self.loads, self.patches.ravel(), self.corners.ravel()]
         at, rows = _HEAD + sum(table.size for table in tables), len(self.profile)
-        pieces = _pieces(self.profile) if rows else self.base
+        pieces = _pieces(self.profile) if rows else np.concatenate([self.base, self.law])
+        if self.law.size:
+            rows = at + self.base.size
         counts = [
             len(self.borders), len(self.patches), self.pressure, at, rows, at + pieces.size, 0.0,
         ]  # fmt: skip
-        room = np.zeros(_ROOM + _ROOM_A_ROW * rows if rows else room_for(self.base))
+        size = _ROOM + _ROOM_A_ROW * rows if len(self.profile) else room_for(self.base)
+        room = np.zeros(size)
         return np.concatenate([head, counts, *tables, pieces, room]).astype(np.float64)
 
 

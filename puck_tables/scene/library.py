@@ -6,15 +6,16 @@ import os
 import re
 import tomllib
 from codecs import BOM_UTF16_BE, BOM_UTF16_LE
+from collections.abc import Iterator
 from difflib import get_close_matches
+from functools import lru_cache
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from puck_tables._core.fields import in_tables, specs
+from puck_tables._core.fields import Kind, in_tables, specs
 from puck_tables._core.safe_read import read_whole
 from puck_tables.errors import InputError
-from puck_tables.scene.entries import entries
 from puck_tables.scene.scene_spec import SceneSpec
 
 MAX_FILE = 1 << 20
@@ -177,11 +178,35 @@ def files_of(scene: SceneSpec) -> dict[str, str]:
     {}
     """
     texts = {}
-    for path, file, kind, *_ in entries(scene):
-        if kind.file is not None and kind.names_file(file):
-            try:
-                text = read_whole(file, MAX_NAMED).decode("utf-8-sig", "replace")
-            except OSError as error:
-                raise InputError(f"cannot read {file}: {error.strerror or error}") from None
-            texts[path] = text.replace("\0", "\ufffd")
+    for path, file in _named_in(scene, ""):
+        try:
+            text = read_whole(file, MAX_NAMED).decode("utf-8-sig", "replace")
+        except OSError as error:
+            raise InputError(f"cannot read {file}: {error.strerror or error}") from None
+        texts[path] = text.replace("\0", "\ufffd")
     return texts
+
+
+def _named_in(part: Any, prefix: str) -> Iterator[tuple[str, str]]:
+    """Path and name of every file that a scene or a part of it names."""
+    whole: Any = type(part)
+    for spec, table, kind in _may_name(whole):
+        value, path = getattr(part, spec), prefix + table
+        if kind.shape == "part":
+            yield from () if value is None else _named_in(value, f"{path}.")
+        elif kind.shape == "parts":
+            for i, item in enumerate(value):
+                yield from _named_in(item, f"{path}[{i}].")
+        elif kind.names_file(value):
+            yield path, value
+
+
+@lru_cache(maxsize=64)
+def _may_name(part: Any) -> list[tuple[str, str, Kind]]:
+    """The fields of a part, if it is one, that may name a file, or parts that do."""
+    kinds = {name: spec.metadata["kind"] for name, spec in specs(part).items()} if part else {}
+    return [
+        (specs(part)[name].name, in_tables(name), kind)
+        for name, kind in kinds.items()
+        if kind.file is not None or _may_name(kind.part)
+    ]

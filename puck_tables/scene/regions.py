@@ -23,6 +23,7 @@ from puck_tables.table.resultant_table import ResultantTable
 
 EXACT_BELOW = 1e-9  # friction by closed forms where a table's error would show
 CLOSED_FORM_ERROR, TABLE_ERROR = 1e-14, 2e-11
+UNDER_LAW_ERROR = 1e-10  # of integrals of a law over a base that is not round
 SLICE_SHARE = 0.1  # of the error wanted
 
 
@@ -60,7 +61,7 @@ def friction_error(scene: SceneSpec) -> float:
     """How wrong the friction ratios under the puck of a scene may be."""
     puck = scene.puck
     if puck.shape is not None:
-        return CLOSED_FORM_ERROR
+        return UNDER_LAW_ERROR if scene.floor.law else CLOSED_FORM_ERROR
     if scene.floor.law:
         return law_error(scene)
     if scene.floor.orthotropic is not None:

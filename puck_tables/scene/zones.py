@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.contact.law_moments import DEGREE, packed_law
 from puck_tables.contact.laws import Law
 from puck_tables.kernels.base_friction import packed
 from puck_tables.kernels.base_sums import ANY, GALIN, HERTZ, RING, TABLE, UNIFORM
@@ -18,11 +19,16 @@ from puck_tables.scene.ground import (
 )
 from puck_tables.scene.scene_spec import SceneSpec
 
+Moments = tuple[FloatArray, FloatArray]
+
+_AT_REST = (-1.0) ** np.arange(DEGREE + 1)  # powers of t at the beginning of a piece
 _PRESSURES = {"ring": RING, "hertz": HERTZ, "galin": GALIN}
 
 
-def ground_of(scene: SceneSpec, normal: float) -> FloatArray:
+def ground_of(scene: SceneSpec, normal: float, law: Moments | None = None) -> FloatArray:
     """All frictions of the floor of a scene, for its puck, packed; ``normal``: N.
+
+    ``law``: moments of the friction over the slip speed, under a base that is not round.
 
     Examples
     --------
@@ -45,15 +51,18 @@ def ground_of(scene: SceneSpec, normal: float) -> FloatArray:
             reach = float(np.hypot(*(places - middle).T).max())
             corners.append(places)
         rows.append([*middle, reach, begin, len(places), normal * patch.friction])
+    friction = puck.friction if law is None else float(law[1][0, 0] @ _AT_REST)
     there = (
         math.cos(angle), math.sin(angle),
         np.array(() if strips is None else strips.borders, np.float64),
-        normal * np.array((puck.friction,) if strips is None else strips.friction),
+        normal * np.array((friction,) if strips is None else strips.friction),
         np.array(rows).reshape(-1, PATCH_COLUMNS), np.concatenate(corners),
     )  # fmt: skip
     if puck.shape is not None:
         lever = 0.5 * puck.height / normal
-        return Ground(*there, lever, 0.0, ANY, base=packed(puck.shape, lever)).packed()
+        over_slip = np.empty(0) if law is None else packed_law(law[0], normal * law[1])
+        shape = packed(puck.shape, lever)
+        return Ground(*there, lever, 0.0, ANY, base=shape, law=over_slip).packed()
     law = puck.body.law
     return Ground(
         *there, puck.height / (2.0 * puck.radius * law.mean_square * normal), hole_of(law),

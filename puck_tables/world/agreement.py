@@ -36,14 +36,17 @@ def pieces_of(scene: SceneSpec) -> tuple[PieceSpec, ...]:
     """
     if scene.pucks:
         return scene.pucks
-    puck = scene.puck
-    return (
-        PieceSpec(
-            puck.radius, puck.height, puck.friction, puck.mass, puck.gravity, puck.pressure,
-            puck.gyration, puck.base, launch=scene.launch, force=scene.force,
-            constraint=scene.constraint,
-        ),
-    )  # fmt: skip
+    kept: dict[str, tuple[PieceSpec, ...]] = vars(scene)  # it is asked for often, and checked anew
+    if "_pieces" not in kept:
+        puck = scene.puck
+        kept["_pieces"] = (
+            PieceSpec(
+                puck.radius, puck.height, puck.friction, puck.mass, puck.gravity, puck.pressure,
+                puck.gyration, puck.base, launch=scene.launch, force=scene.force,
+                constraint=scene.constraint,
+            ),
+        )  # fmt: skip
+    return kept["_pieces"]
 
 
 def called(piece: PieceSpec, number: int) -> str:

@@ -38,7 +38,7 @@ from puck_tables.world.footing import moves_along
 from puck_tables.world.lasting import FOR_EVER, LEADS_ON, ROUND
 from puck_tables.world.ledger import NAMES, energies_of, energy_scale, kinetic_of, ledgers_of
 from puck_tables.world.plan import plan_of
-from puck_tables.world.prepare import game_of, order_of
+from puck_tables.world.prepare import prepared
 from puck_tables.world.reactions import reactions
 from puck_tables.world.simulate import MISSED, columns_of, run_on
 from puck_tables.world.world import World
@@ -73,9 +73,8 @@ class BoardCase:
         refuse_endless(scene)
         self.model, self.explanation = plan_of(scene)
         self.until = math.inf if scene.time is None else scene.time
-        order = order_of(scene)
-        self.game, room = game_of(scene, order)
-        self.first, self.place = room.states.copy(), np.argsort(order)
+        start = prepared(scene)
+        self.game, self.first, self.place = start.game, start.states, np.argsort(start.order)
 
     @staticmethod
     def names(scene: SceneSpec) -> tuple[str, ...]:
@@ -191,7 +190,7 @@ class BoardCase:
             world = World(self.scene.at(numbers))
             end, ends.time[run] = run_on(world, None)
             if world.groups > 0:  # what simulate refuses by its ledger
-                now = energies_of(world, np.array([world.time]))
+                now = energies_of(world, np.array([world.time]), world.state()[None])
                 if not residual(now, energy_scale(world._game)) <= MISSED:
                     raise PuckError
         except InputError:

@@ -12,7 +12,7 @@ from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.footing import dry_under
 from puck_tables.world.game import Game
 from puck_tables.world.layout import RADIUS, REGION
-from puck_tables.world.prepare import game_of, order_of
+from puck_tables.world.prepare import prepared
 
 
 @kernel
@@ -56,7 +56,7 @@ def friction_at(scene: SceneSpec, states: FloatArray) -> FloatArray:
     >>> force.round(9).tolist()                              # (0.78 - 0.67) g/pi along the border
     [[0.0, 0.350140875, -4.833333333]]
     """
-    game, _ = game_of(scene, order_of(scene))
+    game = prepared(scene).game
     game.discs[0, REGION] = int(np.argmax(game.regions.astride))
     out = np.zeros((len(states), 3))
     _forces(game, states, out)

@@ -8,12 +8,15 @@ from __future__ import annotations
 
 import math
 from functools import cache, partial
+from typing import Any
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.contact.base import Base
+from puck_tables.errors import ContactError
 from puck_tables.kernels.section_spline import NO_SECTION
-from puck_tables.scene.by_speed import NO_LAW, law_up_to
+from puck_tables.scene.by_speed import NO_LAW, law_range, law_table, moments_of
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ground import NO_GROUND
 from puck_tables.scene.ingredients import BySpeed, Regions, Surface, floor_velocity
@@ -79,19 +82,16 @@ def regions_of(
         If the friction of one cannot be tabulated as fine as the scene asks.
     """
     normals = np.array([0.0 if piece.path else normal_on(scene, piece) for piece in pieces])
-    ratios = [2.0 * piece.height / piece.radius for piece in pieces if not piece.path]
     count, delta = len(floors), floors[:, 1].copy()
     none = np.empty((count, *NO_SECTION.shape))
     if scene.floor.law:
-        table, largest = law_up_to(scene, fastest, 1.0)
-        table.refuse_height(max(ratios, default=0.0))
-        return alone(normals * largest, delta, none, BySpeed(table.compiled, 0.0, 1.0, 1.0))
+        return _by_slip(scene, pieces, normals, delta, none, fastest)
     if scene.floor.orthotropic is not None:
         axes = axes_of(scene.floor.orthotropic)
         return alone(normals * axes[:2].max(), delta, none, BySpeed(axes, 0.0, 1.0, 1.0))
     there = [[(piece, f) for f in frictions_under(scene, piece)] for piece in pieces]
     places = [one for rows in zip(*there, strict=True) for one in rows]
-    shaped = np.array([piece.shape is not None and not piece.path for piece, _ in places])
+    shaped = np.array([_is_shaped(piece) for piece, _ in places])
     loads = np.array([
         0.0 if piece.path else normal_on(scene, piece) * friction for piece, friction in places
     ])  # fmt: skip
@@ -102,6 +102,7 @@ def regions_of(
             cuts = np.stack([cut(height) for height in delta[: len(places)].tolist()])
     else:
         cuts = of_one_shape([
+            plain_cut(scene.tol, 0.0) if _is_shaped(piece) else
             section_of(piece, 2.0 * friction * piece.height / piece.radius, scene.tol)
             for piece, friction in places
         ])  # fmt: skip
@@ -110,17 +111,78 @@ def regions_of(
         most = loads.reshape(-1, len(pieces)).max(axis=0)
         loads, cuts = np.concatenate([loads, most]), np.concatenate([cuts, cuts[: len(pieces)]])
     if several or shaped.any():
-        grounds = [ground_of(scene.alone(piece), normal_on(scene, piece)) for piece in pieces]
-        size = max(map(len, grounds))  # what they end with is room for radii
-        ground = np.concatenate([np.pad(own, (0, size - len(own))) for own in grounds])
+        ground = _of_one_length([
+            ground_of(scene.alone(piece), normal_on(scene, piece)) for piece in pieces
+        ])  # fmt: skip
     astride = np.concatenate([shaped, np.ones(count - len(places), np.bool_)])
     return Regions(loads, delta, cuts, NO_LAW, astride, ground)
+
+
+def _is_shaped(piece: PieceSpec) -> bool:
+    """Whether it slides on a base that is not round."""
+    return piece.shape is not None and not piece.path
+
+
+def _of_one_length(grounds: list[FloatArray]) -> FloatArray:
+    size = max(map(len, grounds))  # what they end with is room to work
+    return np.concatenate([np.pad(own, (0, size - len(own))) for own in grounds])
+
+
+def _by_slip(
+    scene: SceneSpec, pieces: list[PieceSpec], normals: FloatArray, delta: FloatArray,
+    cuts: FloatArray, fastest: float,
+) -> Regions:  # fmt: skip
+    """By a friction law over the slip speed: a table under round bases, integrals under others.
+
+    Raises
+    ------
+    InputError, AccuracyError
+        As :func:`regions_of`.
+    ContactError
+        If it lifts a base.
+    """
+    law, top, largest = law_range(scene, fastest)
+    shaped = np.array([_is_shaped(piece) for piece in pieces])
+    ratios = [2.0 * one.height / one.radius for one in pieces if one.shape is None and not one.path]
+    compiled, ground = np.array([1.0, top]), NO_GROUND
+    if ratios:
+        table = law_table(scene, law, top)
+        table.refuse_height(max(ratios))
+        compiled = table.compiled
+    if shaped.any():
+        for piece in pieces:
+            if piece.shape is not None:
+                _refuse_lift(piece, piece.shape, largest)
+        moments = moments_of(law, top)
+        ground = _of_one_length([
+            ground_of(scene.alone(piece), normal_on(scene, piece), moments)
+            if _is_shaped(piece) else NO_GROUND
+            for piece in pieces
+        ])  # fmt: skip
+    by_slip = BySpeed(compiled, 0.0, 1.0, 1.0)
+    return Regions(normals * largest, delta, cuts, by_slip, shaped, ground)
+
+
+def _refuse_lift(piece: PieceSpec, shape: Base, friction: float) -> None:
+    if 0.5 * friction * piece.height > shape.highest_lever:
+        raise ContactError(
+            f"floor.law: part of the base would lift at f = {friction:.6g}; up to a height of "
+            f"{2.0 * shape.highest_lever / friction:.6g} m it stays down"
+        )
 
 
 def slip_of_rim(radius: float, surface: Surface, state: list[float]) -> float:
     """The fastest slip of a rim over the floor in a state (6,), m/s."""
     sx, sy, turning = floor_velocity(surface, state[X], state[Y])
     return math.hypot(state[VX] - sx, state[VY] - sy) + radius * abs(state[SPIN] - turning)
+
+
+def velocities_under(surface: Surface, states: FloatArray) -> FloatArray:
+    """Velocities and spins of the floor, array (..., 3), under pucks in states (..., 6)."""
+    places: Any = states[..., X], states[..., Y]  # the same for arrays
+    under = np.empty((*states.shape[:-1], 3))
+    under[..., 0], under[..., 1], under[..., 2] = floor_velocity(surface, *places)
+    return under
 
 
 def fastest_rim(pieces: list[PieceSpec], states: FloatArray, surface: Surface) -> float:

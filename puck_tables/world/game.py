@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -95,3 +95,17 @@ class Game(NamedTuple):
     works: FloatArray
     counts: Whole
     pace: FloatArray
+
+
+# what never changes: tables, floors and obstacles; in the ground it is written who lies where
+_SHARED = (
+    "floors", "surface", "tides", "spans", "rims", "obstacles", "curves", "launches", "drives",
+)  # fmt: skip
+
+
+def copy_of(game: Game) -> Game:
+    """A game that goes on by itself from here; what never changes both have."""
+    parts: dict[str, Any] = game._asdict()
+    regions = parts.pop("regions")
+    own = {name: one if name in _SHARED else one.copy() for name, one in parts.items()}
+    return Game(regions=regions._replace(ground=regions.ground.copy()), **own)

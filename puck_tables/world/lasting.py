@@ -216,8 +216,8 @@ def _fill_brakes(game: Game, y: FloatArray, out: FloatArray) -> None:
 def _pushed(game: Game) -> FloatArray:
     """What speed forces over time give every disc at most, m/s."""
     found = np.zeros(len(game.discs))
-    for i, (first, end) in enumerate(game.spans.tolist()):
-        rows, disc = game.tides[first:end], game.discs[i]
+    for i in np.flatnonzero(game.spans[:, 0] < game.spans[:, 1]).tolist():
+        rows, disc = game.tides[slice(*game.spans[i])], game.discs[i]
         strength = np.hypot(rows[:, 1], rows[:, 2]) + np.abs(rows[:, 3]) / disc[RADIUS]
         found[i] = disc[LIGHTNESS] * np.trapezoid(strength, rows[:, 0])
     return found

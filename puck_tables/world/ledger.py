@@ -34,7 +34,7 @@ from puck_tables.world.game import (
     Game,
 )
 from puck_tables.world.layout import LIGHTNESS, PULL_X, PULL_Y, TURNABILITY, kinetic
-from puck_tables.world.record import states_at
+from puck_tables.world.record import first_from
 from puck_tables.world.works import (
     DRAG_HEAT,
     DRIVE_WORK,
@@ -70,19 +70,6 @@ def energy_scale(game: Game) -> float:
     return _NOTHING * 0.5 * float((1.0 / light[light > 0.0]).sum() * game.pace[0] ** 2)
 
 
-@inlined
-def _first_from(times: FloatArray, t: float) -> int:
-    """The first of ascending times that is not before t; their number: none."""
-    low, high = 0, times.size
-    while low < high:
-        middle = (low + high) // 2
-        if times[middle] < t:
-            low = middle + 1
-        else:
-            high = middle
-    return low
-
-
 @inner
 def _pulled(game: Game, i: int, start: float, t: float, vx: float, vy: float) -> float:
     """What slope and given forces work on a disc that a belt carries, from the start to t, J."""
@@ -100,15 +87,24 @@ def _pulled(game: Game, i: int, start: float, t: float, vx: float, vy: float) ->
 
 
 @inner
+def _begin_flown(game: Game, n: int, room: Room) -> bool:
+    """The state at the start of a flight into ``room.one``; False: it is integrated, or driven."""
+    row = game.history[n]
+    i, kind, flight = int(row[0]), int(row[1]), row[2:]
+    if game.discs[i, LIGHTNESS] == 0.0 or kind in (PATH, GONE):
+        return False
+    state_at(kind, flight, game.discs[i], game.curves, game.pieces, flight[START], room.work,
+             room.one)  # fmt: skip
+    return True
+
+
+@inner
 def _add_flown(game: Game, n: int, t: float, room: Room, ledger: FloatArray) -> None:
-    """Add what a flight that is not integrated has lost by t to a ledger."""
+    """Add what a flight has lost by t, since its start as it stands in ``room.one``."""
     row = game.history[n]
     i, kind, flight = int(row[0]), int(row[1]), row[2:]
     disc, one, two = game.discs[i], room.one, room.two
-    if disc[LIGHTNESS] == 0.0 or kind in (PATH, GONE):
-        return
     start, vx, vy = flight[START], flight[DRIFT_X], flight[DRIFT_Y]
-    state_at(kind, flight, disc, game.curves, game.pieces, start, room.work, one)
     state_at(kind, flight, disc, game.curves, game.pieces, t, room.work, two)
     lost = kinetic(disc, one[VX], one[VY], one[SPIN]) - kinetic(disc, two[VX], two[VY], two[SPIN])
     over = kinetic(disc, one[VX] - vx, one[VY] - vy, one[SPIN]) - kinetic(
@@ -150,16 +146,16 @@ def tally(game: Game, times: FloatArray, room: Room, ends: FloatArray, out: Floa
         out[k, LAUNCHED] = game.pace[3] if k == 0 else 0.0
     for n in range(flights):  # all of it, from its end on
         patience(1)
-        k = _first_from(times, ends[n])
-        if k < last:
+        k = first_from(times, ends[n])
+        if k < last and _begin_flown(game, n, room):
             _add_flown(game, n, ends[n], room, out[k])
     for n in range(game.counts[N_WORKS]):
         end = _end_of(game, n, ends)
-        k = _first_from(times, end)
+        k = first_from(times, end)
         if k < last:
             add_worked(game.works[n], end, out[k])
     for n in range(game.counts[N_EVENTS]):
-        k = _first_from(times, game.events[n, TIME])
+        k = first_from(times, game.events[n, TIME])
         if k < last:
             _add_event(game.events[n], out[k])
     for k in range(1, last):
@@ -167,12 +163,14 @@ def tally(game: Game, times: FloatArray, room: Room, ends: FloatArray, out: Floa
             out[k, column] += out[k - 1, column]
     for n in range(flights):  # and a part of it, on the way
         patience(1)
-        begin = _first_from(times, game.history[n, 2 + START])
-        for k in range(begin, _first_from(times, ends[n])):
+        begin, end = first_from(times, game.history[n, 2 + START]), first_from(times, ends[n])
+        if begin == end or not _begin_flown(game, n, room):
+            continue
+        for k in range(begin, end):
             _add_flown(game, n, times[k], room, out[k])
     for n in range(game.counts[N_WORKS]):
-        begin = _first_from(times, game.works[n, BEGINS])
-        for k in range(begin, _first_from(times, _end_of(game, n, ends))):
+        begin = first_from(times, game.works[n, BEGINS])
+        for k in range(begin, first_from(times, _end_of(game, n, ends))):
             add_worked(game.works[n], times[k], out[k])
 
 
@@ -193,13 +191,14 @@ def ledgers_of(world: World, times: FloatArray) -> FloatArray:
     return out
 
 
-def energies_of(world: World, times: FloatArray) -> dict[str, FloatArray]:
-    """Kinetic energy of every disc (times, discs), and heats and works until then (times,), J.
+def energies_of(world: World, times: FloatArray, states: FloatArray) -> dict[str, FloatArray]:
+    """Kinetic energy of every puck (times, pucks), and heats and works until then (times,), J.
 
-    ``energy_given`` by launches, ``energy_gone`` with who left play.
+    ``states`` (times, pucks, 6): then.  ``energy_given`` by launches, ``energy_gone`` with who left
+    play.
     """
     ledgers = ledgers_of(world, times)
-    energies = kinetic_of(world._game, states_at(world._game, times))
+    energies = kinetic_of(world._game, states[:, world._order])[:, world._place]
     return {"kinetic_energy": energies, **{name: ledgers[:, n] for name, n in NAMES.items()}}
 
 

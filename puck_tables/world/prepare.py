@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,14 +12,14 @@ from puck_tables.errors import InputError
 from puck_tables.scene.forces import drive_of
 from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.holds import allowed_velocity
-from puck_tables.scene.ingredients import RAIL, Surface, floor_velocity, hold_of
+from puck_tables.scene.ingredients import RAIL, Surface, hold_of
 from puck_tables.scene.parts import Wall
 from puck_tables.scene.pieces import Arc, PieceSpec, Post
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.world import layout
 from puck_tables.world.agreement import flight_error, pieces_of, start_of
-from puck_tables.world.departures import Room, drive_on, room_for
+from puck_tables.world.departures import drive_on, room_for
 from puck_tables.world.drive import pieces_along, rows_of
 from puck_tables.world.flight import (
     ANGLE,
@@ -28,7 +29,13 @@ from puck_tables.world.flight import (
     PLACE_Y,
     Curves,
 )
-from puck_tables.world.floors import fastest_rim, floors_of, normal_on, regions_of
+from puck_tables.world.floors import (
+    fastest_rim,
+    floors_of,
+    normal_on,
+    regions_of,
+    velocities_under,
+)
 from puck_tables.world.footing import lay_down, step_onto
 from puck_tables.world.game import (
     COUNTS,
@@ -42,6 +49,7 @@ from puck_tables.world.game import (
     Game,
     Whole,
 )
+from puck_tables.world.lone import LONGEST
 from puck_tables.world.paths import FIRST, PIECE_COLUMNS
 from puck_tables.world.rim_laws import number_for, rims_of
 from puck_tables.world.works import WORK_COLUMNS
@@ -50,6 +58,20 @@ SWIFTEST = 1e100  # m/s: its square is a number
 FAR = 1e12  # radii that a puck may slide: its rounding is a thousandth of a radius
 ROWS = 256  # of events and flights at first
 STEP_SHARE = 1e-2  # of what a flight may be wrong by, of each step where it is integrated
+
+
+class Start(NamedTuple):
+    """A scene at its start, prepared once for all its runs.
+
+    ``order``: the numbers of the pucks in the order in which the engine has them; ``game``: its
+    arrays, nothing has taken off yet, so EVERYBODY is to look ahead; ``states`` (n, 6): then.  A
+    run takes copies.
+    """
+
+    scene: SceneSpec
+    order: Whole
+    game: Game
+    states: FloatArray
 
 
 def order_of(scene: SceneSpec) -> Whole:
@@ -70,11 +92,15 @@ def shipped_curves() -> Curves:
     )  # fmt: skip
 
 
-def game_of(scene: SceneSpec, order: Whole) -> tuple[Game, Room]:
-    """The engine's arrays at the start of a scene, and room to work in with the states then.
+def prepared(scene: SceneSpec) -> Start:
+    """A scene without ranges at its start.
 
-    Nothing has taken off yet: EVERYBODY is to look ahead.
+    Raises
+    ------
+    PuckError
+        If a file or a law that it names does not serve, or numbers in it are too large.
     """
+    order = order_of(scene)
     pieces = [pieces_of(scene)[number] for number in order]
     count = len(pieces)
     lies = len(borders_of(scene)) + len(scene.floor.patches)
@@ -86,27 +112,11 @@ def game_of(scene: SceneSpec, order: Whole) -> tuple[Game, Room]:
     rims, discs[:, layout.MAKE], makes, called = rims_of(scene, pieces)
     for i, piece in enumerate(pieces):
         driven = bool(piece.path)
-        inertia = piece.mass * piece.inertia_radius**2
-        if not driven:
-            discs[i, layout.LIGHTNESS], discs[i, layout.TURNABILITY] = 1.0 / piece.mass, 1 / inertia
-            discs[i, layout.PULL_X : layout.TWIST + 1] = _pull_on(scene, piece, inertia)
-            discs[i, layout.HOLD : layout.HOLD_PLACE + 1] = _hold_on(piece)
-            if piece.force.over_time:
-                first = sum(map(len, tides))
-                tides.append(drive_of(piece.force.over_time))
-                spans[i] = first, first + len(tides[-1])
-            discs[i, layout.DAMPING] = scene.drag.sliding / piece.mass
-            discs[i, layout.WAKE] = scene.drag.quadratic / piece.mass
-            discs[i, layout.SPIN_DAMPING] = scene.drag.spinning / inertia
-            discs[i, layout.SPIN_WAKE] = scene.drag.spinning_quadratic / inertia
-            discs[i, layout.ACROSS] = scene.lateral.strength / piece.mass
-            discs[i, layout.BY_SPEED] = scene.lateral.speed_exponent
-            discs[i, layout.BY_SPIN] = scene.lateral.spin_exponent
-            discs[i, layout.NORMAL] = normal_on(scene, piece)
-            discs[i, layout.HEIGHT_RATIO] = 2.0 * piece.height / piece.radius
-        discs[i, layout.RADIUS] = piece.radius
-        discs[i, layout.RESTITUTION] = number_for(piece.restitution, called)
-        discs[i, layout.TANGENTIAL], discs[i, layout.FRICTION] = piece.tangential, piece.rim
+        _fill_disc(scene, piece, called, discs[i])
+        if piece.force.over_time:
+            first = sum(map(len, tides))
+            tides.append(drive_of(piece.force.over_time))
+            spans[i] = first, first + len(tides[-1])
         launch = piece.launch
         velocity = allowed_velocity(launch, piece.constraint, scene.floor)
         states[i, :2], states[i, 2] = start_of(piece), launch.orientation
@@ -121,6 +131,7 @@ def game_of(scene: SceneSpec, order: Whole) -> tuple[Game, Room]:
     rim = fastest_rim(pieces, states, surface)
     floors = floors_of(scene, pieces, rim)
     regions = regions_of(scene, pieces, floors, rim)
+    steps = 2 * LONGEST if floors[:, 2].any() else 0  # the first path, and room for another
     game = Game(
         discs=discs,
         regions=regions,
@@ -139,30 +150,53 @@ def game_of(scene: SceneSpec, order: Whole) -> tuple[Game, Room]:
         next_time=np.full(count, math.inf),
         next_partner=np.full(count, NOTHING),
         launches=np.array(sorted(launches)).reshape(-1, LAUNCH_COLUMNS),
-        pieces=np.vstack(ways),
+        pieces=np.vstack([*ways, np.zeros((steps, PIECE_COLUMNS))]),
         drives=drives,
         hangs=np.zeros((count, len(scene.edges)), np.int64),
         events=np.zeros((ROWS + (8 + len(scene.edges)) * count, EVENT_COLUMNS)),
         history=np.zeros((ROWS + 4 * count, HISTORY_COLUMNS)),
-        works=np.zeros((0, WORK_COLUMNS)),
+        works=np.zeros((steps, WORK_COLUMNS)),
         counts=np.zeros(COUNTS, np.int64),
         pace=np.array([0.0, 0.0, STEP_SHARE * flight_error(scene), 0.0, 0.0]),
     )
     for i in range(count):
         lay_down(game, i, states[i])
-        _hang_over(game, i, states[i])
-    game.counts[N_PIECES] = len(game.pieces)
-    room = room_for(count)
-    for i in range(count):
-        game.flights[i, [PLACE_X, PLACE_Y, ANGLE]] = states[i, :3]
-        if drives[i, 0] < drives[i, 1]:
-            states[i, VX:] = game.pieces[drives[i, 0], FIRST + VX : FIRST + SPIN + 1]
-            game.flights[i, FIRST_PIECE] = drives[i, 0]
-            room.states[i] = states[i]
-            drive_on(game, i, 0.0, room)
-    room.states[:] = states
+        if scene.edges:
+            _hang_over(game, i, states[i])
+    game.counts[N_PIECES] = drives.max()
+    game.flights[:, [PLACE_X, PLACE_Y, ANGLE]] = states[:, :3]
+    for i in np.flatnonzero(drives[:, 0] < drives[:, 1]).tolist():
+        states[i, VX:] = game.pieces[drives[i, 0], FIRST + VX : FIRST + SPIN + 1]
+        game.flights[i, FIRST_PIECE] = drives[i, 0]
+        room = room_for(count)
+        room.states[i] = states[i]
+        drive_on(game, i, 0.0, room)
     set_pace(game, states)
-    return game, room
+    return Start(scene, order, game, states)
+
+
+def _fill_disc(
+    scene: SceneSpec, piece: PieceSpec, called: dict[object, float], disc: FloatArray
+) -> None:
+    """What a disc is, and what acts on it."""
+    disc[layout.RADIUS], disc[layout.TANGENTIAL] = piece.radius, piece.tangential
+    disc[layout.RESTITUTION] = number_for(piece.restitution, called)
+    disc[layout.FRICTION] = piece.rim
+    if piece.path:
+        return
+    inertia = piece.mass * piece.inertia_radius**2
+    disc[layout.LIGHTNESS], disc[layout.TURNABILITY] = 1.0 / piece.mass, 1.0 / inertia
+    disc[layout.PULL_X : layout.TWIST + 1] = _pull_on(scene, piece, inertia)
+    disc[layout.HOLD : layout.HOLD_PLACE + 1] = _hold_on(piece)
+    disc[layout.DAMPING] = scene.drag.sliding / piece.mass
+    disc[layout.WAKE] = scene.drag.quadratic / piece.mass
+    disc[layout.SPIN_DAMPING] = scene.drag.spinning / inertia
+    disc[layout.SPIN_WAKE] = scene.drag.spinning_quadratic / inertia
+    disc[layout.ACROSS] = scene.lateral.strength / piece.mass
+    disc[layout.BY_SPEED] = scene.lateral.speed_exponent
+    disc[layout.BY_SPIN] = scene.lateral.spin_exponent
+    disc[layout.NORMAL] = normal_on(scene, piece)
+    disc[layout.HEIGHT_RATIO] = 2.0 * piece.height / piece.radius
 
 
 def _hang_over(game: Game, i: int, state: FloatArray) -> None:
@@ -199,7 +233,7 @@ def fastest(game: Game, states: FloatArray) -> float:
     driven = game.pieces[: game.drives.max(), FIRST + VX : FIRST + VY + 1]
     launched = np.hypot(game.launches[:, 2], game.launches[:, 3])
     led = np.hypot(*game.discs[:, [layout.HOLD_VX, layout.HOLD_VY]].T)
-    floor = np.array([floor_velocity(game.surface, *place) for place in states[:, :2].tolist()])
+    floor = velocities_under(game.surface, states)
     return max(
         float(np.hypot(np.hypot(states[:, VX], states[:, VY]), rims).max()),
         float(np.hypot(*driven.T).max(initial=0.0)), float(launched.max(initial=0.0)),
@@ -244,15 +278,15 @@ def _refuse_far(game: Game, speed: float, radius: float) -> None:
 
 def _strongest(game: Game) -> float:
     """The largest acceleration by slope and given forces, m/s²."""
-    discs, most = game.discs, 0.0
-    for i, (first, last) in enumerate(game.spans):
-        rows = np.vstack([np.zeros(4), game.tides[first:last]])
-        light, turns = discs[i, layout.LIGHTNESS], discs[i, layout.TURNABILITY]
-        ax = discs[i, layout.PULL_X] + light * rows[:, 1]
-        ay = discs[i, layout.PULL_Y] + light * rows[:, 2]
-        rim = discs[i, layout.RADIUS] * (discs[i, layout.TWIST] + turns * rows[:, 3])
-        most = max(most, float(np.hypot(ax, ay).max()), float(np.abs(rim).max()))
-    return most
+    counts = game.spans[:, 1] - game.spans[:, 0]
+    discs, forced = game.discs, np.repeat(np.arange(len(counts)), counts)
+    of = np.concatenate([np.arange(len(counts)), forced])  # each without its force, and with it
+    rows, discs = np.vstack([np.zeros((len(counts), 4)), game.tides]), discs[of]
+    light, turns = discs[:, layout.LIGHTNESS], discs[:, layout.TURNABILITY]
+    ax = discs[:, layout.PULL_X] + light * rows[:, 1]
+    ay = discs[:, layout.PULL_Y] + light * rows[:, 2]
+    rim = discs[:, layout.RADIUS] * (discs[:, layout.TWIST] + turns * rows[:, 3])
+    return max(float(np.hypot(ax, ay).max()), float(np.abs(rim).max()))
 
 
 def _pull_on(scene: SceneSpec, piece: PieceSpec, inertia: float) -> tuple[float, float, float]:

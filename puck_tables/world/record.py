@@ -5,46 +5,37 @@ from __future__ import annotations
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import kernel, patience
+from puck_tables.kernels.compile import inlined, kernel, patience
 from puck_tables.world.flight import ROOM, START, state_at
 from puck_tables.world.game import N_HISTORY, Game, Whole
 
 
 def states_at(game: Game, times: FloatArray) -> FloatArray:
-    """States of all discs, array (times, discs, 6), at times up to now, s.
+    """States of all discs, array (times, discs, 6), at ascending times up to now, s.
 
     One that has left play stays where it left.
     """
-    rows = flight_rows(game, times)
-    moments = np.repeat(np.asarray(times, np.float64), len(game.discs))
-    return states_on(game, rows.ravel(), moments).reshape(len(times), len(game.discs), 6)
+    count, moments = len(game.discs), np.asarray(times, np.float64)
+    rows, flights = np.empty((len(moments), count), np.int64), int(game.counts[N_HISTORY])
+    _fill_rows(game.history, flights, moments, np.full(count, len(moments)), rows)
+    states = states_on(game, rows.ravel(), np.repeat(moments, count))
+    return states.reshape(len(moments), count, 6)
 
 
-def flight_rows(game: Game, times: FloatArray) -> Whole:
-    """On which flights the discs are, rows of the history, array (times, discs)."""
-    discs, starts = _flights(game)
-    rows = np.empty((len(times), len(game.discs)), np.int64)
-    for i in range(len(game.discs)):
-        mine = np.flatnonzero(discs == i)
-        rows[:, i] = mine[np.searchsorted(starts[mine[1:]], times, side="right")]
-    return rows
+def flights_of(game: Game) -> tuple[Whole, FloatArray, FloatArray]:
+    """The disc of every flight, when it ended, and its states then and at its start.
 
-
-def flights_of(game: Game) -> tuple[Whole, FloatArray]:
-    """The disc of every flight, and its states at the start and the end, array (flights, 2, 6)."""
-    discs, starts = _flights(game)
-    ends = np.full(len(discs), game.clock[0])
-    for i in range(len(game.discs)):
-        mine = np.flatnonzero(discs == i)
-        ends[mine[:-1]] = starts[mine[1:]]
-    rows = np.repeat(np.arange(len(discs)), 2)
-    return discs, states_on(game, rows, np.stack([starts, ends], 1).ravel()).reshape(-1, 2, 6)
-
-
-def _flights(game: Game) -> tuple[Whole, FloatArray]:
-    """The disc and the start of every flight, in the order in which they began."""
+    Arrays (flights,), (flights,) and (flights, 2, 6), the start first.
+    """
     history = game.history[: game.counts[N_HISTORY]]
-    return history[:, 0].astype(np.int64), history[:, 2 + START].copy()
+    discs, starts = history[:, 0].astype(np.int64), history[:, 2 + START]
+    ends, own = np.full(len(discs), game.clock[0]), np.argsort(discs, kind="stable")
+    before, after = own[:-1], own[1:]
+    one = discs[before] == discs[after]
+    ends[before[one]] = starts[after[one]]
+    rows = np.repeat(np.arange(len(discs)), 2)
+    states = states_on(game, rows, np.stack([starts, ends], 1).ravel())
+    return discs, ends, states.reshape(-1, 2, 6)
 
 
 def states_on(game: Game, rows: Whole, times: FloatArray) -> FloatArray:
@@ -52,6 +43,36 @@ def states_on(game: Game, rows: Whole, times: FloatArray) -> FloatArray:
     out = np.empty((len(rows), 6))
     _fill(game, rows, times, np.empty(ROOM), out)
     return out
+
+
+@inlined
+def first_from(times: FloatArray, t: float) -> int:
+    """The first of ascending times that is not before t; their number: none."""
+    low, high = 0, times.size
+    while low < high:
+        middle = (low + high) // 2
+        if times[middle] < t:
+            low = middle + 1
+        else:
+            high = middle
+    return low
+
+
+@kernel
+def _fill_rows(
+    history: FloatArray, flights: int, times: FloatArray, open_to: Whole, out: Whole
+) -> None:
+    """On which flights discs are, rows of the history (times, discs).
+
+    ``open_to`` (discs,): before which time nothing is filled yet, at first all.
+    """
+    for n in range(flights - 1, -1, -1):
+        i = int(history[n, 0])
+        begin = first_from(times, history[n, 2 + START])
+        for k in range(begin, open_to[i]):
+            patience(1)
+            out[k, i] = n
+        open_to[i] = min(open_to[i], begin)
 
 
 @kernel

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.scene.friction import SPIN, VX, VY, X, Y
-from puck_tables.scene.ingredients import Surface, floor_velocity
+from puck_tables.scene.friction import VX, X, Y
 from puck_tables.scene.parts import Floor
 from puck_tables.world import game as g
 from puck_tables.world.flight import GONE, LOOKED_UP, PATH, START, UNTIL
+from puck_tables.world.floors import velocities_under
 from puck_tables.world.lasting import at_rest_below, middle_of
 from puck_tables.world.layout import DECEL, INTEGRATED, LIGHTNESS, RADIUS
-from puck_tables.world.record import flights_of, states_at, states_on
+from puck_tables.world.record import flights_of, states_on
 
 Rest = tuple[float, str, int, float, float]  # when, stick or slip, which disc, where
 
@@ -32,47 +31,49 @@ def rests_of(game: g.Game) -> list[Rest]:
     return found
 
 
-def _told(game: g.Game) -> Iterator[Rest]:
+def _told(game: g.Game) -> list[Rest]:
     """Every stick and slip until now, also a rest that ends at once, disc by disc."""
-    discs, states = flights_of(game)
+    discs, ends, states = flights_of(game)
     flights, kinds = game.history[: len(discs), 2:], game.history[: len(discs), 1]
-    near, now = at_rest_below(game), float(game.clock[0])
-    slips = slips_over(game, discs, states)
-    for disc in range(len(game.discs)):
-        row = game.discs[disc]
-        if row[LIGHTNESS] == 0.0 or not (row[DECEL] > 0.0 or row[INTEGRATED] > 0.0):
-            continue  # driven, or nothing can hold it
-        rested = True  # what lies at the start has not come to rest
-        mine = np.flatnonzero(discs == disc)
-        for k, n in enumerate(mine.tolist()):
-            start = float(flights[n, START])
-            end = float(flights[mine[k + 1], START]) if k + 1 < len(mine) else now
-            if kinds[n] == GONE:
-                break
-            first, last = slips[n] <= near
-            moves = not (first and last)
-            if kinds[n] == PATH and not moves and start < end:  # perhaps from rest to rest
-                middle = states_on(game, mine[k : k + 1], np.array([min(middle_of(game, n), end)]))
-                moves = bool(slips_over(game, discs[n : n + 1], middle)[0] > near)
-            if first and not rested:
-                yield start, "stick", disc, float(states[n, 0, X]), float(states[n, 0, Y])
-            if first and moves and kinds[n] == PATH and start > 0.0:
-                yield start, "slip", disc, float(states[n, 0, X]), float(states[n, 0, Y])
-            rested = bool(last)
-            if last and moves:
-                stop = float(flights[n, UNTIL]) if kinds[n] == LOOKED_UP else end
-                place = states_at(game, np.array([min(stop, end)]))[0, disc]
-                yield min(stop, end), "stick", disc, float(place[X]), float(place[Y])
+    starts, stops = flights[:, START], np.where(kinds == LOOKED_UP, flights[:, UNTIL], ends)
+    near, rows = at_rest_below(game), game.discs
+    resting: npt.NDArray[np.bool_] = np.less_equal(slips_over(game, discs, states), near)
+    moves: npt.NDArray[np.bool_] = np.logical_not(resting.all(axis=1))
+    unsure = np.flatnonzero((kinds == PATH) & ~moves & (starts < ends))  # perhaps rest to rest
+    if unsure.size:
+        middles = np.minimum([middle_of(game, n) for n in unsure.tolist()], ends[unsure])
+        moves[unsure] = slips_over(game, discs[unsure], states_on(game, unsure, middles)) > near
+    # none of what is driven, or what nothing can hold
+    held = (rows[:, LIGHTNESS] > 0.0) & ((rows[:, DECEL] > 0.0) | (rows[:, INTEGRATED] > 0.0))
+    own = np.argsort(discs, kind="stable")
+    found: list[tuple[int, float, str]] = []
+    disc, rested = -1, True
+    for n in own[held[discs[own]]].tolist():
+        if discs[n] != disc:
+            disc, rested = discs[n], True  # what lies at the start has not come to rest
+        if kinds[n] == GONE:
+            continue
+        first, last = resting[n]
+        if first and not rested:
+            found.append((n, starts[n], "stick"))
+        if first and moves[n] and kinds[n] == PATH and starts[n] > 0.0:
+            found.append((n, starts[n], "slip"))
+        rested = last
+        if last and moves[n]:
+            found.append((n, min(stops[n], ends[n]), "stick"))
+    at, times = np.array([n for n, *_ in found], np.int64), np.array([one[1] for one in found])
+    places = states_on(game, at, times)[:, [X, Y]].tolist() if found else []
+    return [
+        (float(time), what, int(discs[n]), x, y)
+        for (n, time, what), (x, y) in zip(found, places, strict=True)
+    ]
 
 
 def slips_over(game: g.Game, discs: g.Whole, states: FloatArray) -> FloatArray:
     """How fast the rims of discs (n,) slip over the floor at states (n, …, 6), m/s."""
-    surface: Surface = game.surface
-    places: Any = states[..., X], states[..., Y]  # the same for arrays
-    sx, sy, turning = floor_velocity(surface, *places)
+    over = states[..., VX:] - velocities_under(game.surface, states)
     radii = game.discs[discs, RADIUS].reshape(-1, *[1] * (states.ndim - 2))
-    across = np.hypot(states[..., VX] - sx, states[..., VY] - sy)
-    slips: FloatArray = np.hypot(across, radii * (states[..., SPIN] - turning))
+    slips: FloatArray = np.hypot(np.hypot(over[..., 0], over[..., 1]), radii * over[..., 2])
     return slips
 
 

@@ -19,7 +19,7 @@ from puck_tables.world.course import FATE, LENGTH, PASSES, PRINT, trace
 from puck_tables.world.engine import PUSHING, REACHED
 from puck_tables.world.floors import has_several
 from puck_tables.world.game import Whole
-from puck_tables.world.prepare import game_of, order_of
+from puck_tables.world.prepare import order_of, prepared
 from puck_tables.world.world import World
 
 _SHARES = (0.02, 0.1, 0.5)  # of the time that the striker may slide: then courses are looked at
@@ -74,9 +74,8 @@ class Shots:
         self.scene, self.striker, self.velocities = scene, striker, velocities
         self._path = f"puck[{striker}].launch" if scene.pucks else "launch"
         self.until = math.inf if scene.time is None else scene.time
-        order = order_of(scene)
-        self._game, room = game_of(scene, order)
-        self._first, place = room.states.copy(), np.argsort(order)
+        start = prepared(scene)
+        self._game, self._first, place = start.game, start.states, np.argsort(start.order)
         self._disc = int(place[striker])
         self._watch = int(place[puck]), int(place[through]) if through >= 0 else -1, most
         pieces = pieces_of(scene)

@@ -12,7 +12,6 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import finite_array
 from puck_tables.errors import InputError, PuckError
-from puck_tables.scene.friction import THETA, X, Y
 from puck_tables.scene.ingredients import FREE
 from puck_tables.scene.library import files_of
 from puck_tables.scene.outcome import (
@@ -24,24 +23,21 @@ from puck_tables.scene.outcome import (
     OVER_EDGE,
     TIME_UP,
 )
-from puck_tables.scene.regions import friction_error
 from puck_tables.scene.run import STATE, Event, Run, residual
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import game as g
-from puck_tables.world.agreement import TABLE_ERROR, flight_error, pieces_of
+from puck_tables.world.agreement import TABLE_ERROR
+from puck_tables.world.check_runs import error_of
 from puck_tables.world.footing import moves_along
 from puck_tables.world.lasting import at_rest_below
 from puck_tables.world.layout import HOLD
 from puck_tables.world.ledger import energies_of, energy_scale
 from puck_tables.world.plan import plan_of
+from puck_tables.world.prepare import prepared
 from puck_tables.world.reactions import reactions
 from puck_tables.world.rests import floor_under, rests_of, slips_over
 from puck_tables.world.world import World
 
-# of check runs: so many times the error of a step, and to which side launches are off
-CHECKS = ((30.0, 1.0), (8.0, -1.0))
-PROBES = 8  # states of one puck that are compared
-LATER = 0.01  # of a run: by so much a check run may end later
 FINER, FINEST = 1 / 30, 1e-12  # of the tolerance before, tried one after the other
 MOST_IN_VAIN = 2  # finer tolerances in a row that do not halve the estimate
 MISSED = 1e-7  # of the ledger, where pucks pushed each other: their impacts were not solved
@@ -133,19 +129,17 @@ def columns_of(world: World, moments: FloatArray, end_time: float) -> dict[str, 
     states = world.over(times)
     near = at_rest_below(world._game)
     in_play = np.ones(states.shape[:2])
-    for event in world.events_since(0.0):
-        if event.what in ("pocket", "edge"):
-            in_play[times >= event.time, world.names.index(event.puck)] = 0.0
+    events = world._game.events[: world._game.counts[g.N_EVENTS]]
+    for event in events[np.isin(events[:, g.WHAT], (g.POCKETED, g.OVER_EDGE))]:
+        in_play[times >= event[g.TIME], world._order[int(event[g.WHO])]] = 0.0
     in_play[back[-1]] *= 0.0 if alone_gone else 1.0
     discs = world._place
     slips = slips_over(world._game, np.broadcast_to(discs, in_play.shape).ravel(),
                        states.reshape(-1, 6)).reshape(in_play.shape)  # fmt: skip
-    energies = energies_of(world, times)
-    energies["kinetic_energy"] = energies["kinetic_energy"][:, discs]
     columns = {
         **{name: states[..., n] for n, name in enumerate(STATE)},
         "in_play": in_play, "carried": np.where((slips <= near) & (in_play > 0.0), 1.0, 0.0),
-        **energies,
+        **energies_of(world, times, states),
     }  # fmt: skip
     if (world._game.discs[:, HOLD] != FREE).any():
         own = world._order
@@ -179,9 +173,10 @@ class _Done(NamedTuple):
 
 
 def _done(scene: SceneSpec, moments: FloatArray | None) -> _Done:
-    world = World(scene)
+    start = prepared(scene)
+    world = World.since(start)
     end, end_time = run_on(world, moments)
-    return _Done(world, end, end_time, _error(world))
+    return _Done(world, end, end_time, error_of(world, start))
 
 
 def _close_enough(scene: SceneSpec, moments: FloatArray | None) -> _Done:
@@ -189,7 +184,7 @@ def _close_enough(scene: SceneSpec, moments: FloatArray | None) -> _Done:
 
     Of several launches decide, which nobody knows so well.
     """
-    best, tol, in_vain = _done(scene, moments), min(scene.tol, TABLE_ERROR), 0
+    best, tol, in_vain = _done(scene.single(), moments), min(scene.tol, TABLE_ERROR), 0
     alone = len(best.world.names) == 1
     while alone and best.error > scene.tol and tol > FINEST and in_vain < MOST_IN_VAIN:
         tol = max(FINER * tol, FINEST)
@@ -206,37 +201,3 @@ def _late(world: World) -> float:
     """How long, in units of Q/J, the rebounds of one puck would have lasted that died out."""
     speed, rate, *_, late = world._game.pace.tolist()
     return late * rate / speed if len(world.names) == 1 else 0.0
-
-
-def _error(world: World) -> float:
-    """How far check runs are from it at the end, and of one puck on the way and in time.
-
-    Their steps are coarser, their launches and what friction is integrated off by what flights may
-    be wrong by.  With the rounding of the look-up, for pucks that could slide far.
-    """
-    pieces = pieces_of(world.scene)
-    speed, rate = world._game.pace[:2].tolist()
-    length, now = speed * speed / rate, world.time
-    radii, alone = np.array([piece.radius for piece in pieces]), len(pieces) == 1
-    probes = now * np.arange(1, PROBES + 1) / PROBES if alone else np.array([now])
-    states, stops, share = world.over(probes), world.motion_ends, flight_error(world.scene)
-    off = 0.0
-    if world._game.floors[:, 2].any():
-        slides = {(one.height, one.friction, one.pressure): one for one in pieces if not one.path}
-        off = max(friction_error(world.scene.alone(one)) for one in slides.values())
-    gaps = []
-    for coarser, sign in CHECKS:
-        try:
-            check = world.check_run(coarser, sign * share, sign * off)
-            check.advance(now)
-            gap = check.over(probes) - states
-            gaps.append(
-                float((np.hypot(gap[..., X], gap[..., Y]) + radii * np.abs(gap[..., THETA])).max())
-                / length
-            )
-            if alone and stops[0] < math.inf:
-                check.advance(LATER * now)
-                gaps.append(min(abs(check.motion_ends[0] - stops[0]), LATER * now) * rate / speed)
-        except PuckError:  # it meets what has no answer: so nearly did the run
-            gaps.append(float(np.hypot(*np.ptp(states[-1, :, :2], axis=0))) / length)
-    return max(gaps) + world.place_error / length

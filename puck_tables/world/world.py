@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,6 @@ from puck_tables._core.real import finite_array, real
 from puck_tables.errors import InputError, PuckError
 from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.holds import misfits
-from puck_tables.scene.ingredients import FREE, floor_velocity
 from puck_tables.scene.parts import Launch
 from puck_tables.scene.run import Event, number_of
 from puck_tables.scene.scene_spec import SceneSpec
@@ -48,15 +48,9 @@ from puck_tables.world.lasting import (
     next_target,
 )
 from puck_tables.world.law_range import refuse_too_fast, with_law_for
-from puck_tables.world.layout import HOLD, LIGHTNESS, NORMAL, RADIUS
+from puck_tables.world.layout import LIGHTNESS, RADIUS
 from puck_tables.world.lone import LONGEST
-from puck_tables.world.prepare import (
-    game_of,
-    obstacle_names,
-    order_of,
-    set_pace,
-    shipped_curves,
-)
+from puck_tables.world.prepare import Start, obstacle_names, prepared, set_pace, shipped_curves
 from puck_tables.world.record import states_at
 
 MOST_EVENTS, MOST_STEPS = 1_000_000, 1_000_000
@@ -96,19 +90,28 @@ class World:
     def __init__(self, scene: SceneSpec) -> None:
         if not isinstance(scene, SceneSpec):
             raise InputError(f"scene must be a Scene, got a {type(scene).__name__}")
-        self.scene = scene.single()
-        self._order = order_of(self.scene)
-        self._game, self._room = game_of(self.scene, self._order)
+        self._set_off(prepared(scene.single()))
+
+    @classmethod
+    def since(cls, start: Start) -> World:
+        """The world of a scene that is prepared."""
+        world = object.__new__(cls)
+        world._set_off(start)
+        return world
+
+    def _set_off(self, start: Start) -> None:
+        self.scene, self._order = start.scene, start.order
+        self._game, self._room = g.copy_of(start.game), room_for(len(start.order))
+        self._room.states[:] = start.states
         self._desk = desk_for(self._game)
         self._named()
-        self._advance(0.0, EVERYBODY, self._room.one)
+        self._advance(0.0, EVERYBODY)
 
     def _named(self) -> None:
         """Who is where in the engine's order, and what they are called."""
         self._place = np.argsort(self._order)
         pieces = pieces_of(self.scene)
         self.names = tuple(called(piece, number) for number, piece in enumerate(pieces))
-        self._obstacles = obstacle_names(self.scene)
 
     def __repr__(self) -> str:
         title = f"{self.scene.title}, " if self.scene.title else ""
@@ -223,7 +226,7 @@ class World:
         if span == math.inf:
             self.come_to_rest()
         else:
-            self._advance(self.time + span, NOBODY, self._room.one)
+            self._advance(self.time + span)
         return self._events(before)
 
     def come_to_rest(self) -> tuple[float, bool]:
@@ -241,7 +244,7 @@ class World:
         limits, given = limits_of(self._game, self._game.pace[None, :2])
         ends, how, target = np.empty(len(self.names)), GOES_ON, self.time
         while how == GOES_ON:
-            self._advance(target, NOBODY, self._room.one)
+            self._advance(target)
             how, target = next_target(self._game, float(limits[0]), given, self._room, ends)
         who = "a puck" if len(self.names) > 1 else "the puck"
         if how == FOR_EVER:
@@ -315,8 +318,9 @@ class World:
         for fault in misfits(launch, hold, self.scene.floor, ""):
             raise InputError(f"{self.names[number]}: {fault}".replace("launch.", ""))
 
-    def _advance(self, until: float, struck: int, state: FloatArray) -> None:
+    def _advance(self, until: float, struck: int = NOBODY, given: FloatArray | None = None) -> None:
         """Let time pass, after a disc was given the velocity of a state."""
+        state = self._room.one if given is None else given
         unit = float(self._game.pace[0] / max(self._game.pace[1], 1e-300))
         mark, pushes = -math.inf, deque[float](maxlen=CROWDED_PUSHES)
         if lacks_rows(self._game, self._room):
@@ -349,35 +353,6 @@ class World:
             else:
                 raise PuckError(self._failure(CROWDED if how == PAUSED else how))
 
-    def check_run(self, coarser: float, share: float, friction: float) -> World:
-        """The same from the start, otherwise: to see how far what errs by so much ends from it.
-
-        Parameters
-        ----------
-        coarser : so many times the error of a step
-        share : of their velocities and spins launches are off by so much, and in rad their headings
-        friction : of what is integrated, off by so much
-        """
-        other = object.__new__(World)
-        other.scene, other._order = self.scene, self._order
-        game, other._room = game_of(self.scene, self._order)
-        other._desk = desk_for(game)
-        scale = 1.0 + share
-        cosine, sine = scale * math.cos(share), scale * math.sin(share)
-        turned = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, scale]])
-        game.launches[:, g.LAUNCH_VX :] = game.launches[:, g.LAUNCH_VX :] @ turned.T
-        for disc, state in zip(game.discs, other._room.states, strict=True):
-            floor = np.array(floor_velocity(game.surface, *state[:2].tolist()))
-            if disc[LIGHTNESS] > 0.0 and disc[HOLD] == FREE:
-                state[VX:] = floor + turned @ (state[VX:] - floor)
-        game.pace[2] *= coarser
-        game.regions.load[:] *= 1.0 + friction
-        game.discs[:, NORMAL] *= 1.0 + friction
-        other._game = game
-        other._named()
-        other._advance(0.0, EVERYBODY, other._room.one)
-        return other
-
     @property
     def place_error(self) -> float:
         """The rounding of looked-up places, m: 1e-15 of Q²/J of the largest slip."""
@@ -388,15 +363,7 @@ class World:
         """A world of its own that goes on from here, to look ahead."""
         other = object.__new__(World)
         other.scene, other._order = self.scene, self._order
-        # tables, floors and obstacles never change; in the ground it is written who lies where
-        kept = (
-            "floors", "surface", "tides", "spans", "rims", "obstacles", "curves",
-            "launches", "drives",
-        )  # fmt: skip
-        parts: dict[str, Any] = self._game._asdict()
-        regions = parts.pop("regions")
-        own = {n: one if n in kept else one.copy() for n, one in parts.items()}
-        other._game = g.Game(regions=regions._replace(ground=regions.ground.copy()), **own)
+        other._game = g.copy_of(self._game)
         other._room, other._desk = room_for(len(self.names)), desk_for(other._game)
         other._named()
         return other
@@ -473,14 +440,16 @@ class World:
 
     def _events(self, first: int) -> list[Event]:
         rows = self._game.events[first : self._game.counts[g.N_EVENTS]]
+        columns = [g.TIME, g.WHAT, g.WHO, g.PARTNER, g.AT_X, g.AT_Y, g.APPROACH, g.SLIDE, g.PUSH,
+                   g.RUB, g.LOST]  # fmt: skip
         return [
-            Event(
-                float(row[g.TIME]), g.EVENTS[int(row[g.WHAT])], self._name(row[g.WHO]),
-                self._name(row[g.PARTNER]), *row[[g.AT_X, g.AT_Y]].tolist(),
-                *row[[g.APPROACH, g.SLIDE, g.PUSH, g.RUB, g.LOST]].tolist(),
-            )
-            for row in rows
-        ]  # fmt: skip
+            Event(time, g.EVENTS[int(what)], self._name(who), self._name(partner), *numbers)
+            for time, what, who, partner, *numbers in rows[:, columns].tolist()
+        ]
+
+    @cached_property
+    def _obstacles(self) -> list[str]:
+        return obstacle_names(self.scene)
 
     def _name(self, partner: float) -> str:
         """A disc or an obstacle of the engine in words."""

@@ -7,7 +7,7 @@ from pathlib import Path
 from paper.claim import as_page
 from paper.claims import all_claims
 from paper.figures import FIGURES
-from puck_tables.plot.panels import draw
+from paper.panels import draw
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 PAGE = ROOT / "docs" / "paper.md"

@@ -14,13 +14,13 @@ from collections.abc import Callable
 import numpy as np
 
 from paper.friction import slip_angle_rate
+from paper.panels import Panel, Picture, PlotLine
 from paper.patch import HEIGHTS, PHI, pressure_reserve
 from paper.runs import simulate
 from paper.shapes import SPIN, ends_against_spin
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.closed_form import by_closed_form, integrals
 from puck_tables.motion.limits import limit_angle
-from puck_tables.plot.panels import Panel, Picture, PlotLine
 from puck_tables.puck import Puck
 
 FAMILY = (0.0, 0.25, 0.5, 0.75, 1.0)

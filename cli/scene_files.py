@@ -53,12 +53,12 @@ def fields() -> None:
 def check(name: str) -> None:
     """Check a scene: every error at once, or what it holds and how it would be run."""
     from puck_tables.world.plan import plan_of
-    from puck_tables.world.prepare import game_of, order_of
+    from puck_tables.world.prepare import prepared
     from puck_tables.world.scene import Scene
     from puck_tables.world.scene_ends import axes_of
 
     whole = Scene.load(name)
-    game_of(whole, order_of(whole))  # files and heights
+    prepared(whole)  # files and heights
     say(f"{name}: a scene" + (f", {whole.title}" if whole.title else ""))
     for path, values in axes_of(whole).items():
         click.echo(f"ranges        {path} from {values[0]:g} to {values[-1]:g}, {values.size}")

@@ -1,0 +1,211 @@
+"""Sums of friction over a base whose coefficient depends on the slip speed, along its contour.
+
+With C the instantaneous centre, R and (R, t) polar coordinates about it, W = |ω| and H_k the
+moments of the law (:mod:`puck_tables.contact.law_moments`) at W R, along a piece dr of the contour
+
+    ∫ f e dA = ∮ e H₁ (r × dr),  ∫ f R dA = ∮ R H₂ (r × dr),  ∫ f R r dA = ∮ R r H₃ (r × dr),
+    ∫ f e ⊗ r dA = ∮ e ⊗ r H₂ (r × dr)      (r from C).
+
+On a straight side at the distance d from C, r × dr = d ds, and with y = asinh(s/|d|) the integrands
+are entire: Gauss's rule on panels of y.  On a circle panels shrink towards C.  Where C lies far
+away these cancel: there the inner integral runs from the distance of C to the contour, by a rule of
+its own.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.contact.law_moments import DEGREE, MOMENTS
+from puck_tables.kernels.base_friction import DISC_COLUMNS, DISCS, HEAD, REACH, SIDES
+from puck_tables.kernels.base_sums import NOTHING, Sums, moved, plus
+from puck_tables.kernels.compile import inlined, inner
+from puck_tables.kernels.polygon_sums import (
+    BEGIN_X,
+    BEGIN_Y,
+    LENGTH,
+    SIDE_COLUMNS,
+    TANGENT_X,
+    TANGENT_Y,
+)
+
+_FAR = 6.0  # times the reach of the base: nearer, 1e-13 is lost to cancellation at most
+_NODES = 8  # of Gauss's rule a panel, and across the base where C is far away
+_NODE, _WEIGHT = np.polynomial.legendre.leggauss(_NODES)
+_PANEL = 1.2  # of y
+_ARC = 0.9  # of an angle, over how far it is from the singularity next to C
+_ON_SIDE = 1e-14  # of the reach: closer, C lies on a side, and nothing is left of it
+_LEAST_GAP = 1e-9  # of an angle: closer, C lies on the circle
+_POWERS = DEGREE + 1
+
+
+@inlined
+def _polynomials_at(law: FloatArray, u: float) -> tuple[int, float]:
+    """Where the polynomials of a slip speed begin, and its t; the last piece goes on."""
+    low, high = 1, 1 + int(law[0])
+    while high - low > 1:
+        middle = (low + high) // 2
+        if u >= law[middle]:
+            low = middle
+        else:
+            high = middle
+    begin, end = law[low], law[low + 1]
+    first = 2 + int(law[0]) + (low - 1) * MOMENTS * _POWERS
+    return first, (2.0 * u - begin - end) / (end - begin)
+
+
+@inlined
+def _moments(law: FloatArray, u: float) -> tuple[float, float, float]:
+    """H₁, H₂ and H₃ at a slip speed."""
+    first, t = _polynomials_at(law, u)
+    h1, h2, h3 = 0.0, 0.0, 0.0
+    for power in range(_POWERS - 1, -1, -1):
+        h1 = h1 * t + law[first + _POWERS + power]
+        h2 = h2 * t + law[first + 2 * _POWERS + power]
+        h3 = h3 * t + law[first + 3 * _POWERS + power]
+    return h1, h2, h3
+
+
+@inlined
+def _coefficient(law: FloatArray, u: float) -> float:
+    first, t = _polynomials_at(law, u)
+    f = 0.0
+    for power in range(_POWERS - 1, -1, -1):
+        f = f * t + law[first + power]
+    return f
+
+
+@inner
+def _at(law: FloatArray, spin: float, rx: float, ry: float, distance: float, area: float) -> Sums:
+    """What a point of the contour adds, about C, with r × dr = ``area``; e for ω > 0."""
+    h1, h2, h3 = _moments(law, spin * distance)
+    ex, ey = -ry / distance, rx / distance
+    one, two, three = area * h1, area * h2, area * distance * h3
+    return (
+        one * ex, one * ey, two * ex * rx, two * ex * ry, two * ey * rx, two * ey * ry,
+        three * rx, three * ry,
+    )  # fmt: skip
+
+
+@inner
+def _along_side(
+    law: FloatArray, spin: float, px: float, py: float, tx: float, ty: float, length: float,
+    least: float,
+) -> Sums:  # fmt: skip
+    """A straight side that begins at p from C."""
+    d, begin, sums = px * ty - py * tx, px * tx + py * ty, NOTHING
+    away = abs(d)
+    if away <= least:
+        return sums
+    low, high = math.asinh(begin / away), math.asinh((begin + length) / away)
+    panels = 1 + int((high - low) / _PANEL)
+    half = 0.5 * (high - low) / panels
+    for panel in range(panels):
+        middle = low + (2 * panel + 1) * half
+        for n in range(_NODES):
+            y = middle + half * _NODE[n]
+            up = math.exp(y)
+            s, distance = 0.5 * away * (up - 1.0 / up), 0.5 * away * (up + 1.0 / up)
+            rx, ry = d * ty + s * tx, s * ty - d * tx
+            weight = half * _WEIGHT[n] * d * distance
+            sums = plus(sums, 1.0, _at(law, spin, rx, ry, distance, weight))
+    return sums
+
+
+@inner
+def _along_circle(
+    law: FloatArray, spin: float, gx: float, gy: float, size: float
+) -> Sums:  # fmt: skip
+    """A circle about g from C, counter-clockwise: both ways from where it is nearest to C."""
+    off, sums = math.sqrt(gx * gx + gy * gy), NOTHING
+    nearest = math.atan2(-gy, -gx)
+    gap = min(max(abs(off - size) / size, _LEAST_GAP), 1.0)
+    near = 0.0
+    while near < math.pi:
+        length = _ARC * math.sqrt(gap * gap + near * near)
+        if length >= 0.7 * (math.pi - near):
+            length = math.pi - near if length >= math.pi - near else 0.5 * (math.pi - near)
+        half = 0.5 * length
+        for way in range(2):
+            for n in range(_NODES):
+                turn = near + half * (1.0 + _NODE[n])
+                angle = nearest + turn if way == 0 else nearest - turn
+                c, s = math.cos(angle), math.sin(angle)
+                rx, ry = gx + size * c, gy + size * s
+                distance = math.sqrt(rx * rx + ry * ry)
+                area = half * _WEIGHT[n] * size * (size + gx * c + gy * s)
+                sums = plus(sums, 1.0, _at(law, spin, rx, ry, distance, area))
+        near = near + length if length < math.pi - near else math.pi
+    return sums
+
+
+@inner
+def _from_far(
+    law: FloatArray, ux: float, uy: float, w: float, qx: float, qy: float, dx: float, dy: float
+) -> Sums:  # fmt: skip
+    """What a point q of the contour adds, about the centre of mass; (dx, dy): dr there."""
+    speed, spin, sign = math.sqrt(ux * ux + uy * uy), abs(w), -1.0 if w < 0.0 else 1.0
+    vx, vy = ux - w * qy, uy + w * qx
+    slip = math.sqrt(vx * vx + vy * vy)
+    deep = sign * (2.0 * (uy * qx - ux * qy) + w * (qx * qx + qy * qy)) / (slip + speed)
+    k0, k1, k2 = 0.0, 0.0, 0.0
+    for n in range(_NODES):
+        s = 0.5 * deep * (1.0 + _NODE[n])
+        u = speed + spin * s
+        part = 0.5 * deep * _WEIGHT[n] * _coefficient(law, u) * u
+        k0, k1, k2 = k0 + part, k1 + part * s, k2 + part * s * s
+    weight = (vx * dx + vy * dy) / (slip * slip)
+    outx, outy = sign * vy / slip, -sign * vx / slip
+    bx, by = qx - deep * outx, qy - deep * outy
+    lever = qx * outx + qy * outy - deep
+    fx, fy = sign * weight * vx / slip, sign * weight * vy / slip
+    ax, ay = bx * k0 + outx * k1, by * k0 + outy * k1
+    return (
+        fx * k0, fy * k0, fx * ax, fx * ay, fy * ax, fy * ay,
+        weight * (lever * ax + bx * k1 + outx * k2), weight * (lever * ay + by * k1 + outy * k2),
+    )  # fmt: skip
+
+
+@inner
+def _far_sums(base: FloatArray, law: FloatArray, ux: float, uy: float, w: float) -> Sums:
+    sums, discs = NOTHING, HEAD + SIDE_COLUMNS * int(base[SIDES])
+    for i in range(HEAD, discs, SIDE_COLUMNS):
+        half = 0.5 * base[i + LENGTH]
+        hx, hy = half * base[i + TANGENT_X], half * base[i + TANGENT_Y]
+        mx, my = base[i + BEGIN_X] + hx, base[i + BEGIN_Y] + hy
+        for n in range(_NODES):
+            part = _from_far(law, ux, uy, w, mx + _NODE[n] * hx, my + _NODE[n] * hy, hx, hy)
+            sums = plus(sums, _WEIGHT[n], part)
+    for k in range(int(base[DISCS])):
+        at = discs + DISC_COLUMNS * k
+        size, step = base[at + 2], math.pi / _NODES
+        for n in range(2 * _NODES):  # equal steps around a circle are as good as Gauss's
+            c, s = math.cos(n * step), math.sin(n * step)
+            part = _from_far(
+                law, ux, uy, w, base[at] + size * c, base[at + 1] + size * s, -size * s, size * c
+            )
+            sums = plus(sums, base[at + 3] * step, part)
+    return sums
+
+
+@inner
+def law_sums(base: FloatArray, law: FloatArray, ux: float, uy: float, w: float) -> Sums:
+    """Sums of the slip direction times f(slip speed) over a base, in its axes; not at rest."""
+    if math.sqrt(ux * ux + uy * uy) > _FAR * base[REACH] * abs(w):
+        return _far_sums(base, law, ux, uy, w)
+    spin, cx, cy, sums = abs(w), -uy / w, ux / w, NOTHING
+    discs = HEAD + SIDE_COLUMNS * int(base[SIDES])
+    for i in range(HEAD, discs, SIDE_COLUMNS):
+        part = _along_side(
+            law, spin, base[i + BEGIN_X] - cx, base[i + BEGIN_Y] - cy, base[i + TANGENT_X],
+            base[i + TANGENT_Y], base[i + LENGTH], _ON_SIDE * base[REACH],
+        )  # fmt: skip
+        sums = plus(sums, 1.0, part)
+    for k in range(int(base[DISCS])):
+        at = discs + DISC_COLUMNS * k
+        part = _along_circle(law, spin, base[at] - cx, base[at + 1] - cy, base[at + 2])
+        sums = plus(sums, base[at + 3], part)
+    return plus(NOTHING, 1.0 if w > 0.0 else -1.0, moved(sums, cx, cy))
