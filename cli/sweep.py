@@ -10,6 +10,7 @@ from puck_tables.cli.options import (
     NUMBER,
     Outputs,
     PuckChoice,
+    base_option,
     outputs,
     packed,
     puck_options,
@@ -35,7 +36,7 @@ ARGUMENTS = {"w0": "spin", **{name: name for name in ("speed", "heading", "vx", 
               help="Launch speed in m/s, along x without --heading.")  # fmt: skip
 @click.option("--heading", type=RangeParam("rad"), help="Direction of the launch from x, in rad.")
 @click.option("--v0", type=Vector("m/s"), help="One launch velocity in m/s instead of --speed.")
-@packed("numbers", dict, *puck_options(kind=RangeParam, many=True))
+@packed("numbers", dict, base_option, *puck_options(kind=RangeParam, many=True))
 @packed(
     "sample", dict,
     click.option("--random", type=click.IntRange(2, MAX_COUNT), metavar="COUNT",
@@ -73,7 +74,8 @@ def sweep(
     Ranges are START:STOP:COUNT, ends included, or lists: --w0 0,10,20.  What is left out is fixed at --speed 1 --w0 0
     --delta 0.5 --radius 1 --decel 1; without --w0, --speed and --v0 the map is that of speeds from
     0 to 2 m/s by spins from -4 to 4 rad/s.  The status of a stop is 0, or 2 where the motion is too
-    large for floating point.
+    large for floating point.  With --base the launch heads along the x axis of the body, or by
+    --heading from there; spins are then from -2 m/s over k to 2 m/s over k.
 
     \b
     puck sweep --plot map.png
@@ -82,6 +84,7 @@ def sweep(
     puck sweep --w0 0:10:101 --pressure uniform --pressure hertz --pressure annulus:0.1:0.9:5 -o laws.h5
     puck sweep --speed 0:2:9000 --w0 -4:4:9000 -o map.zarr --cluster local:4
     puck sweep --random 1000000 --spread w0=normal:5:0.2 --spread speed=uniform:0.9:1.1 --plot where.png
+    puck sweep --base box:20cmx10cm --friction 0.3 --speed 0:2:41 --w0 -30:30:61 --plot box.png
     puck sweep --scene incline --set launch.spin=0:80:81 --set floor.slope=0:0.14:71 --plot map.png
 
     Each delta above 1, or with another --pressure or --gyration, takes about a second to prepare.
@@ -107,7 +110,7 @@ def sweep(
                 ends = one.sample(random, seed, drawn, progress=show, **whole.how)
         whole.deliver(ends, summary_of_map(ends))
         return
-    pressure = numbers.pop("pressure")
+    pressure, base = numbers.pop("pressure"), numbers.pop("base")
     drawn = chosen_spreads(spreads, ARGUMENTS, lambda name: COLUMNS[COLUMN[name]].unit)
     if v0 is not None and speed is not None:
         raise InputError("--v0 and --speed clash: both give the launch velocity")
@@ -115,7 +118,7 @@ def sweep(
     for name in numbers:
         if ARGUMENTS[name] in drawn:
             raise InputError(f"--{name} and --spread {name}=... clash: both give it")
-    whole.refuse_outputs(table_path, *pressure)
+    whole.refuse_outputs(table_path, base, *pressure)
     values = {ARGUMENTS[name]: value for name, value in numbers.items()} | drawn
     ranged = {name: value for name, value in values.items() if isinstance(value, tuple | list)}
     laws = chosen_laws(pressure)
@@ -132,7 +135,8 @@ def sweep(
         )
     sizes = [one[2] if isinstance(one, tuple) else len(one) for one in ranged.values()]
     whole.refuse_memory([*sizes, len(laws)], random)
-    puck = PuckChoice(laws[0], **{n: _first(values[n]) for n in _OF_PUCK if n in values}).puck()
+    numbers = {name: _first(values[name]) for name in _OF_PUCK if name in values}
+    puck = PuckChoice(laws[0], base=base, **numbers).puck()
     launch = {
         name: _all(value) for name, value in values.items()
         if name not in _OF_PUCK or not isinstance(value, float)

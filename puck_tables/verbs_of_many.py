@@ -56,12 +56,14 @@ class VerbsOfMany(PuckSpec):
         Parameters
         ----------
         spin, speed, heading : number or array (n,), rad/s, m/s ≥ 0, rad from x
-            Without ``spin``, ``speed`` and ``velocity``: a map of 41 speeds by 41 spins.
+            Without ``spin``, ``speed`` and ``velocity``: a map of 41 speeds by 41 spins.  On a base
+            that is not round headings are from the x axis of the body at the launch.
         velocity : (vx, vy), m/s, instead of ``speed`` and ``heading``
         radius, height, friction, gravity, gyration : number or array (n,), optional
             Instead of that of the puck, whose other numbers stay; units as :class:`Puck` has them.
         delta, decel : number or array (n,), optional
-            δ = 2fh/r in place of the height, J = fg (m/s²) in place of the gravity.
+            δ = 2fh/r in place of the height, J = fg (m/s²) in place of the gravity.  On a base that
+            is not round there is no δ and no radius, and the gyration is that of the puck.
         pressure : pressure law, or a list of at most 100, optional
         launches : xarray.Dataset, optional
             Its coordinates and variables ``launch_speed``, ``launch_spin``, ``launch_vx``,

@@ -10,7 +10,6 @@ from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS
 from puck_tables.plot.style import FEW, canvas, draw_over, in_order
 from puck_tables.plot.titles import legend_below, noted, titled
-from puck_tables.stopping.solvers import OUTPUTS
 from puck_tables.stopping.stop_map import StopMap
 
 if TYPE_CHECKING:
@@ -26,10 +25,15 @@ def draw(stops: StopMap) -> Figure:
     axes, fixed, left_out, place = _sections(stops)
     figure = canvas(11.0, 6.8)
     panels = figure.subplots(2, 3, sharex=True)
-    for panel, name in zip(panels.flat, OUTPUTS, strict=True):
+    for panel, name in zip(panels.flat, stops.outputs, strict=False):
         _draw(figure, panel, stops, axes, name, place)
+    for n, panel in enumerate(panels.flat[len(stops.outputs) :], start=len(stops.outputs)):
+        panel.set_visible(False)
+        panels.flat[n - 3].tick_params(labelbottom=True)
     legend_below(figure, FEW)
-    titled(figure, _fixed_title(fixed) + (f" ({left_out})" if left_out else ""))
+    base = stops.dataset().attributes.get("base")
+    on = f", base {base}" if base else ""
+    titled(figure, _fixed_title(fixed) + on + (f" ({left_out})" if left_out else ""))
     return figure
 
 

@@ -28,7 +28,8 @@ class StopMap(Result):
     ``turn_angle`` rad (until Q has fallen to 1/1000; integrated, to a hundred times the tolerance),
     ``body_angle`` rad, ``status`` (0: stopped), and what was given one by one.  ``method`` says how
     ('look-up', 'integrated', or both where pucks differ), ``table`` with which table,
-    ``selections`` what was selected for the tolerance.
+    ``selections`` what was selected for the tolerance, ``outputs`` the names of the arrays of
+    stops: on a base that is not round there is no ``turn_angle``.
     """
 
     picture: ClassVar[str] = "stop_map"
@@ -41,6 +42,7 @@ class StopMap(Result):
         self.laws = tuple(map(law_name, launches.laws))
         self.tol, self.method, self.table, self.selections = tol, method, table, selections
         self._explanation, self._own = explanation, own
+        self.outputs = tuple(name for name in OUTPUTS if name in own.columns)
 
     def __getattr__(self, name: str) -> Any:
         """A column: of the stops, what was given one by one, or what follows from others."""
@@ -74,9 +76,12 @@ class StopSample(StopMap, Summary):
     """
 
     picture: ClassVar[str] = "sample"
-    summed = OUTPUTS
     place = ("stop_x", "stop_y")
     shown = ("stop_time", "path_length")
+
+    def __init__(self, *parts: Any) -> None:
+        super().__init__(*parts)
+        self.summed = self.outputs
 
     @property
     def drawn_words(self) -> str:

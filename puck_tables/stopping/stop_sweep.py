@@ -17,6 +17,7 @@ from puck_tables.bulk.finish import check_part, finish
 from puck_tables.bulk.spreads import checked_samples
 from puck_tables.errors import InputError
 from puck_tables.result import Result
+from puck_tables.stopping.base_work import BaseStopWork
 from puck_tables.stopping.population import COLUMN, Population, drawn, labelled, ranged
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.stopping.sweep_work import StopWork
@@ -34,7 +35,8 @@ def sweep(puck: Any, chosen: Mapping[str, Any], launches: Any, *, how: SweepOpti
     numbers = numbers_of(puck, chosen)
     if launches is None:
         if not {"spin", "speed", "vx", "vy"} & numbers.keys():
-            numbers |= {"spin": DEFAULT_SPIN, "speed": DEFAULT_SPEED}
+            scale = 1.0 if puck.shape is None else 2.0 * puck.inertia_radius
+            numbers |= {"spin": DEFAULT_SPIN / scale, "speed": DEFAULT_SPEED}
         laws = numbers.pop("pressure", puck.pressure)
         return how.done(ranged(_whole(puck, numbers, numbers), laws), puck)
     if not (hasattr(launches, "variables") and hasattr(launches, "sizes")):
@@ -61,6 +63,7 @@ def sample(
 def numbers_of(puck: Any, chosen: Mapping[str, Any]) -> dict[str, Any]:
     """What was given, by the names of arguments; a velocity by its components."""
     numbers = {name: value for name, value in chosen.items() if value is not None}
+    _refuse_of_round(puck, numbers)
     if "velocity" in numbers:
         if {"speed", "heading", "vx", "vy"} & numbers.keys():
             raise InputError(
@@ -82,6 +85,8 @@ def _whole(puck: Any, numbers: Mapping[str, Any], names: Container[str]) -> dict
     elif "vy" in names and "vx" not in names:
         whole["vx"] = 0.0
     whole |= {} if "spin" in names else {"spin": 0.0}
+    if puck.shape is not None:
+        return {**whole, **_on_base(puck, names), **numbers}
     whole |= {} if "radius" in names else {"radius": puck.radius}
     dimensions = [name in names for name in ("height", "friction", "radius")]
     if "delta" not in names:
@@ -93,6 +98,23 @@ def _whole(puck: Any, numbers: Mapping[str, Any], names: Container[str]) -> dict
     if "friction" not in names and {"height", "gravity"} & {*whole, *numbers, *_of(names)}:
         whole["friction"] = puck.friction
     return {**whole, **numbers}
+
+
+def _on_base(puck: Any, names: Container[str]) -> dict[str, Any]:
+    """What else a launch of a puck on a base needs; what it cannot have is refused."""
+    _refuse_of_round(puck, names)
+    whole = {name: getattr(puck, name) for name in ("height", "friction") if name not in names}
+    if "decel" not in names and "gravity" not in names:
+        name = "gravity" if "friction" in names else "decel"
+        whole[name] = getattr(puck, name)
+    return whole
+
+
+def _refuse_of_round(puck: Any, names: Container[str]) -> None:
+    """Refuse numbers that a puck on a base does not have, or has once for all."""
+    for name in ("radius", "delta", "pressure", "gyration"):
+        if name in names:
+            puck.refuse_base(f"{name} of a sweep or a sample")
 
 
 def _of(names: Container[str]) -> list[str]:
@@ -113,10 +135,16 @@ class SweepOptions:
     cluster: str | None
     overwrite: bool
 
+    def _work(self, launches: Population, puck: Any) -> StopWork:
+        if puck.shape is None:
+            return StopWork(launches, puck.gyration, self.tol, self.method, self.table, self.chunk)
+        puck.refuse_for_round(method=self.method, table=self.table)
+        return BaseStopWork(launches, puck, self.tol, self.chunk)
+
     def done(self, launches: Population, puck: Any) -> Result:
         """The result, or what stands in the store."""
         check_part(self.chunk)
-        work = StopWork(launches, puck.gyration, self.tol, self.method, self.table, self.chunk)
+        work = self._work(launches, puck)
         if self.store is None:
             check_memory(launches.shape, BYTES_PER_LAUNCH)
         where = self.store, self.cluster, self.overwrite

@@ -13,7 +13,6 @@ from puck_tables._core.executor import Progress
 from puck_tables.bulk.work import Columns, Tally, Work
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset, variable
-from puck_tables.result import Result
 from puck_tables.stopping.per_height import HEIGHT_COST, MOST_HEIGHTS, SolverPerHeight, refuse_many
 from puck_tables.stopping.population import COLUMN, Population, law_name
 from puck_tables.stopping.solvers import OUTPUTS, STATUS_MEANINGS
@@ -27,6 +26,25 @@ PART = 1 << 13  # launches that a thread takes at once
 BLOCKS = (1 << 14, 1 << 18), (1 << 8, 1 << 13)  # launches; the latter where one takes long
 _SLAB = 1 << 20  # pucks whose heights are sorted at once
 Kind = tuple[int, float]  # number of the pressure law, radius of gyration
+
+
+def velocities(one: Mapping[str, Any], count: int) -> FloatArray:
+    """Components (2, count) of the velocities of launches by their numbers, m/s.
+
+    Examples
+    --------
+    >>> velocities({"speed": 2.0}, 1).tolist()
+    [[2.0], [0.0]]
+    """
+    rows = np.empty((2, count))
+    if "speed" not in one:
+        rows[0], rows[1] = one.get("vx", 0.0), one.get("vy", 0.0)
+        return rows
+    rows[0], rows[1] = one["speed"], 0.0
+    if "heading" in one:
+        rows[1] = rows[0] * np.sin(one["heading"])
+        rows[0] *= np.cos(one["heading"])
+    return rows
 
 
 class StopWork(Work):
@@ -167,13 +185,7 @@ class StopWork(Work):
             If a puck is out of the range of floating point.
         """
         rows = np.empty((8, count))
-        if "speed" in one:
-            rows[0], rows[1] = one["speed"], 0.0
-            if "heading" in one:
-                rows[1] = rows[0] * np.sin(one["heading"])
-                rows[0] *= np.cos(one["heading"])
-        else:
-            rows[0], rows[1] = one.get("vx", 0.0), one.get("vy", 0.0)
+        rows[:2] = velocities(one, count)
         rows[2], rows[5] = one.get("spin", 0.0), one["radius"]
         friction = one.get("friction", 1.0)
         with np.errstate(over="ignore", under="ignore"):
@@ -235,7 +247,7 @@ class StopWork(Work):
             attributes["seed"] = self.launches.seed
         return Dataset(axes, labels, attributes)
 
-    def result(self, columns: Columns) -> Result:
+    def result(self, columns: Columns) -> StopMap:
         """A map, or samples."""
         return (StopSample if self.launches.spreads else StopMap)(
             self.launches, self.tol, self.method, self.source, self.selections, self.explain(),

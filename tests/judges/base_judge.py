@@ -120,7 +120,7 @@ class Judge:
         return -force @ pressure, float(-torque @ pressure)
 
     def slide(
-        self, velocity: tuple[float, float], spin: float, decel: float, rtol: float = 1e-11
+        self, velocity: tuple[float, float], spin: float, decel: float, rtol: float = 1e-12
     ) -> np.ndarray:
         """Stop time, x, y, path length, and the angle of the body: (5,)."""
         k = self.k
