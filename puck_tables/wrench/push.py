@@ -296,13 +296,14 @@ def _result(
     found = [finger.at(s, states[:, n])[:2] for n, s in enumerate(path.tolist())]
     rows = np.array([one for one, _ in found]).T
     load = puck.friction * puck.mass * puck.gravity
-    place = finger.finger + path * finger.heading
+    begin, heading = finger.finger, finger.heading
+    place_x, place_y = begin.real + path * heading.real, begin.imag + path * heading.imag
     codes = np.array([code for _, code in found], np.int8)
     x, y, orientation = states
     vx, vy, spin, push_x, push_y = rows
     return Push(
         puck, path / speed, x, y, orientation, speed * vx, speed * vy, speed * spin,
-        load * push_x, load * push_y, place.real, place.imag, codes, end,
+        load * push_x, load * push_y, place_x, place_y, codes, end,
     )  # fmt: skip
 
 
