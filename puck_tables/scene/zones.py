@@ -63,11 +63,10 @@ def ground_of(scene: SceneSpec, normal: float, law: Moments | None = None) -> Fl
         over_slip = np.empty(0) if law is None else packed_law(law[0], normal * law[1])
         shape = packed(puck.shape, lever)
         return Ground(*there, lever, 0.0, ANY, base=shape, law=over_slip).packed()
-    law = puck.body.law
-    return Ground(
-        *there, puck.height / (2.0 * puck.radius * law.mean_square * normal), hole_of(law),
-        _PRESSURES.get(law.name, UNIFORM if law.profile is None else TABLE), _profile_of(law),
-    ).packed()  # fmt: skip
+    pressure = puck.body.law
+    kind = _PRESSURES.get(pressure.name, UNIFORM if pressure.profile is None else TABLE)
+    lever = puck.height / (2.0 * puck.radius * pressure.mean_square * normal)
+    return Ground(*there, lever, hole_of(pressure), kind, _profile_of(pressure)).packed()
 
 
 def _profile_of(law: Law) -> FloatArray:
