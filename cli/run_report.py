@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from puck_tables.cli.printing import columns, listed
 
+from puck_tables._core.fields import Unsaid
+
 if TYPE_CHECKING:
     from puck_tables.scene.run import Event, Run
     from puck_tables.scene.scene_spec import SceneSpec
@@ -87,6 +89,8 @@ def _inputs(scene: SceneSpec) -> dict[str, str]:
         part, dot, name = entry.path.partition(".")
         if is_dataclass(entry.value) or not (dot or part not in ("title", "gravity")):
             continue  # its entries follow; above all, and of each puck
+        if entry.default is None and isinstance(entry.value, Unsaid):
+            continue  # what follows from the base
         if entry.value != entry.default and entry.value is not None:
             words = f"{name} {_written(entry.value)} {entry.kind.unit}".strip()
             parts.setdefault(part, []).append(words)
@@ -111,8 +115,10 @@ def _friction(scene: SceneSpec) -> str:
     if scene.floor.orthotropic is not None:
         decels = ", ".join(f"{f * normal:.6g}" for f in scene.floor.orthotropic.friction)
         return f"by direction, f N/m = {decels} m/s^2 along its axes"
-    words = f"delta = {', '.join(f'{delta:.4g}' for delta in scene.heights)}, "
-    words += f"f N/m = {', '.join(f'{f * normal:.6g}' for f in scene.frictions)} m/s^2"
+    decels = f"f N/m = {', '.join(f'{f * normal:.6g}' for f in scene.frictions)} m/s^2"
+    if scene.puck.shape is not None:
+        return decels
+    words = f"delta = {', '.join(f'{delta:.4g}' for delta in scene.heights)}, {decels}"
     return words + ("; part of the base may lift" if max(scene.heights) > 1.0 else "")
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.colours import brightness, on_white
+from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.plot.base_outlines import MARK, outline_of
 from puck_tables.plot.floor_axes import Box
 from puck_tables.plot.round_parts import RoundPart, rounds_of
@@ -120,11 +122,7 @@ def film_of(result: TimedResult) -> Animation:
             run.time, run.x, run.y, run.orientation, run.vx, run.vy, run.spin
         )  # fmt: skip
         body = ("puck", run.puck.radius, "", False, states)
-        film = _film("Puck", "at rest", run.stop_time, [body])
-        if run.puck.shape is None:
-            return film
-        outline = tuple(outline_of(run.puck))
-        return film._replace(bodies=[film.bodies[0]._replace(outline=outline)])
+        return _outlined(_film("Puck", "at rest", run.stop_time, [body]), [run.puck])
     if isinstance(result, Run) and result.scene.pucks:
         return _film_of_several(result)
     if isinstance(result, Run):
@@ -135,9 +133,9 @@ def film_of(result: TimedResult) -> Animation:
             Happening(e.time, e.what, e.x, e.y) for e in result.events if e.what == "impact"
         ]
         body = ("puck", result.scene.puck.radius, "", False, states)
-        return _film(
-            result.scene.title, result.end, result.end_time, [body], happenings, result.scene
-        )
+        scene = result.scene
+        film = _film(scene.title, result.end, result.end_time, [body], happenings, scene)
+        return _outlined(film, [scene.puck])
     raise TypeError(f"{type(result).__name__} has no film")
 
 
@@ -163,7 +161,15 @@ def _film_of_several(run: Run) -> Animation:
         for event in run.events if event.what in ("impact", "pocket", "edge")
     ]  # fmt: skip
     film = _film(scene.title, run.end, run.end_time, bodies, happenings, scene)
-    return film._replace(bodies=[body._replace(gone=gone[body.name]) for body in film.bodies])
+    film = film._replace(bodies=[body._replace(gone=gone[body.name]) for body in film.bodies])
+    return _outlined(film, pieces)
+
+
+def _outlined(film: Animation, pucks: Sequence[PuckSpec]) -> Animation:
+    """The film, with the outlines of bases that are not round."""
+    outlines = [() if puck.shape is None else tuple(outline_of(puck)) for puck in pucks]
+    bodies = zip(film.bodies, outlines, strict=True)
+    return film._replace(bodies=[body._replace(outline=outline) for body, outline in bodies])
 
 
 def _stacked(*columns: FloatArray) -> FloatArray:

@@ -19,7 +19,7 @@ _POINTS = 96  # of a circle: it misses a thousandth of its radius, which is not 
 
 
 def outline_of(puck: PuckSpec) -> list[FloatArray]:
-    """Outlines of its base, points (n, 2), m from the centre of mass; holes run clockwise.
+    """Outlines of its base and rim, points (n, 2), m from the centre of mass; holes run clockwise.
 
     Examples
     --------
@@ -31,7 +31,8 @@ def outline_of(puck: PuckSpec) -> list[FloatArray]:
         return [_circle(0.0, 0.0, puck.radius, 1.0)]
     x, y = base.middle
     polygons = [np.array(corners) - (x, y) for corners in base.outlines]
-    return polygons + [_circle(d[0] - x, d[1] - y, d[2], d[3]) for d in base.discs]
+    rim = [_circle(0.0, 0.0, puck.radius, 1.0)] if puck.has_rim else []
+    return rim + polygons + [_circle(d[0] - x, d[1] - y, d[2], d[3]) for d in base.discs]
 
 
 def placed(

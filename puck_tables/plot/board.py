@@ -45,13 +45,15 @@ def draw_board(axes: Axes, film: Animation) -> None:
         axes.plot(line.x, line.y, zorder=1, **looks)
 
 
-def disc(body: MovingDisc, x: float, y: float, **looks: Any) -> Circle | PathPatch:
+def disc(
+    body: MovingDisc, x: float, y: float, angle: float = 0.0, **looks: Any
+) -> Circle | PathPatch:
     """A disc at a place, or what it is instead, to scale; one that is driven is hatched."""
     from matplotlib.patches import Circle, PathPatch
 
     hatch = {"hatch": "////"} if body.driven else {}
     if body.outline:
-        return PathPatch(path_of(placed(body.outline, x, y, 0.0)), **hatch, **looks)
+        return PathPatch(path_of(placed(body.outline, x, y, angle)), **hatch, **looks)
     return Circle((x, y), body.radius, **hatch, **looks)
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.plot.base_outlines import MARK, outline_of, path_of, placed
 from puck_tables.plot.floor_axes import Box, draw_floor
 from puck_tables.plot.round_parts import RoundPart, draw_rounds, rounds_of
 from puck_tables.plot.style import BLUE, GREY, LAUNCH, ORANGE, RED, STOP
@@ -94,9 +95,10 @@ def _meets(box: Box, part: RoundPart) -> bool:
 
 def _draw_pucks(axes: Axes, scene: SceneSpec, columns: dict[str, FloatArray]) -> None:
     """The puck at some places of its path, with a mark on it, or the blade that leads it."""
-    from matplotlib.patches import Circle
+    from matplotlib.patches import PathPatch
 
     x, y, radius = columns["x"], columns["y"], scene.puck.radius
+    outline, mark = outline_of(scene.puck), radius * (1.0 if scene.puck.shape is None else MARK)
     hold = scene.constraint
     blade = hold is not None and hold.kind == "blade"
     angle = columns["orientation"] + (hold.angle if hold is not None and blade else 0.0)
@@ -104,10 +106,9 @@ def _draw_pucks(axes: Axes, scene: SceneSpec, columns: dict[str, FloatArray]) ->
     count = min(_PUCKS_DRAWN, max(2, int(way[-1] / (2.2 * radius)) + 1))
     chosen = np.unique(np.searchsorted(way, np.linspace(0.0, way[-1], count)).clip(0, x.size - 1))
     for n in chosen:
-        axes.add_patch(
-            Circle((x[n], y[n]), radius, fill=False, color=GREY, linewidth=0.8, zorder=2)
-        )
-        dx, dy = radius * math.cos(angle[n]), radius * math.sin(angle[n])
+        there = path_of(placed(outline, x[n], y[n], columns["orientation"][n]))
+        axes.add_patch(PathPatch(there, fill=False, color=GREY, linewidth=0.8, zorder=2))
+        dx, dy = mark * math.cos(angle[n]), mark * math.sin(angle[n])
         back = 1.0 if blade else 0.0
         style: dict[str, Any] = {"color": _PURPLE, "linewidth": 1.6} if blade else {"color": GREY}
         label: dict[str, Any] = {"label": "blade"} if blade and n == chosen[0] else {}

@@ -78,7 +78,15 @@ def _draw_body(axes: Axes, body: MovingDisc, label: str) -> None:
     )  # fmt: skip
     if moves:
         axes.add_patch(
-            disc(body, *path[0], fill=False, edgecolor=body.line, linewidth=0.9, zorder=2)
+            disc(
+                body,
+                *path[0],
+                body.knots[0, 3],
+                fill=False,
+                edgecolor=body.line,
+                linewidth=0.9,
+                zorder=2,
+            )
         )
     left = body.gone < math.inf
     x, y, angle = between(body.knots, body.knots[-1:, 0])[0]
@@ -87,11 +95,11 @@ def _draw_body(axes: Axes, body: MovingDisc, label: str) -> None:
         looks = {"facecolor": "none", "edgecolor": body.line, "linewidth": 1.2, "linestyle": ":"}
     elif body.driven:
         looks |= {"facecolor": "white", "edgecolor": body.line, "linewidth": 1.2}
-    axes.add_patch(disc(body, x, y, zorder=4, **looks))
+    axes.add_patch(disc(body, x, y, angle, zorder=4, **looks))
     if not left and not body.driven:
         axes.plot(
-            [x, x + body.radius * math.cos(angle)], [y, y + body.radius * math.sin(angle)],
-            color=body.mark, linewidth=0.8, zorder=5,
+            [x, x + body.mark_length * math.cos(angle)],
+            [y, y + body.mark_length * math.sin(angle)], color=body.mark, linewidth=0.8, zorder=5,
         )  # fmt: skip
 
 

@@ -136,7 +136,7 @@ def tables_of(part: Any) -> dict[str, Any]:
     tables: dict[str, Any] = {}
     for name, spec in specs(type(part)).items():
         value = _plain(getattr(part, spec.name))
-        unsaid = isinstance(value, Unsaid) and value == spec.default
+        unsaid = isinstance(value, Unsaid) and spec.default in (None, value)
         if not (
             unsaid or value is None or value == [] or (type(value) is float and value == np.inf)
         ):
