@@ -156,7 +156,7 @@ def test_a_long_free_flight_steps_over_no_part_of_a_crossing(corners):
     for start in (-3.0, 0.0, 0.1):
         launch = pt.Launch((0.5, 0.0), 20.0, (start, 0.0))
         run = pt.Scene(smooth, pt.Floor(patches=[patch]), launch, time=8.0).simulate()
-        assert run.energy_residual < 1e-10
+        assert run.energy_residual < run.scene.tol
         entry = run.events[0].time
         ends.append([run.events[1].time - entry, run.events[1].x, run.events[1].y])
     assert np.ptp(np.array(ends), axis=0).max() < 2e-9

@@ -51,7 +51,7 @@ def test_every_error_at_once() -> None:
 @pytest.mark.parametrize(
     ("more", "said"),
     [
-        ({"puck": {}}, "puck.radius is missing: it must be a number > 0 m"),
+        ({"puck": {}}, "puck: radius is missing: it must be a number > 0 m"),
         ({"launch": {"velocity": [10**400, 0]}}, "launch.velocity[0] = "),
         ({"floor": {"strips": {"borders": [0.0], "friction": [0.1]}}}, "must be one number more"),
         ({"floor": {"strips": {"borders": [1.0, 0.0], "friction": [1, 1, 1]}}}, "must ascend"),

@@ -108,7 +108,7 @@ def test_bounces_without_end_are_refused() -> None:
 def test_a_channel_as_wide_as_the_puck_lets_it_slide_along() -> None:
     run = simulate_scene(scene(wall=[wall(0, 0.5, 0, -1), wall(0, -0.5, 0, 1)]))
     assert run.end == "at rest" and abs(run.last["y"]) < 1e-15
-    assert run.energy_residual < 1e-12
+    assert run.energy_residual < 1e-11  # a hundredth of tol, as steps err
 
 
 def test_an_edge_that_it_leaves_at_once() -> None:
