@@ -33,10 +33,10 @@ NUMBER, LENGTH, SPEED, SPIN, TIME = map(NumberParam, ("", "m", "m/s", "rad/s", "
 FILE = click.Path(readable=False, path_type=Path)
 
 
-def packed(name: str, make: Callable[..., Any], *options: Option[Any]) -> Option[Command]:
+def packed(name: str, make: Callable[..., Any], *options: Option[Any]) -> Option[Any]:
     """Options that a command gets as one argument: what is made of them by their names."""
 
-    def decorate(command: Command) -> Command:
+    def decorate(command: Callable[..., Any]) -> Callable[..., Any]:
         @wraps(command)
         def whole(*arguments: Any, **values: Any) -> Any:
             mine = {one: values.pop(one) for one in names}
@@ -46,7 +46,7 @@ def packed(name: str, make: Callable[..., Any], *options: Option[Any]) -> Option
         for option in reversed(options):
             option(whole)
         names = [one.name for one in getattr(whole, "__click_params__")[before:]]  # noqa: B009
-        return whole  # type: ignore[return-value]
+        return whole
 
     return decorate
 

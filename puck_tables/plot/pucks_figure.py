@@ -77,17 +77,9 @@ def _draw_body(axes: Axes, body: MovingDisc, label: str) -> None:
         linestyle=(0, (5, 2)) if body.driven else "-", **words,
     )  # fmt: skip
     if moves:
-        axes.add_patch(
-            disc(
-                body,
-                *path[0],
-                body.knots[0, 3],
-                fill=False,
-                edgecolor=body.line,
-                linewidth=0.9,
-                zorder=2,
-            )
-        )
+        x, y, angle = path[0, 0], path[0, 1], body.knots[0, 3]
+        start = disc(body, x, y, angle, fill=False, edgecolor=body.line, linewidth=0.9, zorder=2)
+        axes.add_patch(start)
     left = body.gone < math.inf
     x, y, angle = between(body.knots, body.knots[-1:, 0])[0]
     looks: dict[str, Any] = {"facecolor": body.colour, "edgecolor": "black", "linewidth": 0.7}
