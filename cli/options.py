@@ -239,7 +239,7 @@ class Outputs:
 def outputs(
     save: str | None = f"Save: {RESULTS}.", *, plot: bool = True, movie: bool = False,
     explain: bool = False, as_json: bool = False,
-) -> Option[Command]:  # fmt: skip
+) -> Option[Any]:  # fmt: skip
     """Where results go, as ``out``; ``save``: the help of -o, if there is one."""
     options: list[Option[Any]] = []
     if explain:
