@@ -257,6 +257,24 @@ class Base:
         flat, tilt = self._pressures
         return float((flat / np.maximum(np.hypot(tilt[0], tilt[1]), 1e-300)).min())
 
+    def refuse_lift(self, friction: float, height: float) -> None:
+        """Refuse a body of twice the height of its centre of mass under which part would lift.
+
+        Raises
+        ------
+        ContactError
+
+        Examples
+        --------
+        >>> Base.box(0.2, 0.1).refuse_lift(0.3, 0.05)
+        """
+        if not 0.5 * friction * height <= self.highest_lever:
+            raise ContactError(
+                f"friction {friction:g} and height {height:g} m: part of the base would lift; with "
+                f"this friction it stays down up to a height of "
+                f"{2.0 * self.highest_lever / friction:.6g} m"
+            )
+
     @property
     def _pressures(self) -> tuple[FloatArray, FloatArray]:
         """At its outermost points the pressure, and what a moment N x of the load adds to it."""

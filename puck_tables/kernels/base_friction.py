@@ -29,7 +29,6 @@ from puck_tables.kernels.polygon_sums import SIDE_COLUMNS, flat_sums, polygon_su
 SIDES, DISCS, REACH, AREA, FIRST_X, FIRST_Y, SECOND_XX, SECOND_XY, SECOND_YY, LEVER = range(10)
 HEAD = 10
 DISC_COLUMNS = 4
-NO_BASE = np.empty(0)
 
 
 def packed(base: Base, lever: float) -> FloatArray:

@@ -43,7 +43,6 @@ from puck_tables.kernels.base_sums import NOTHING
 from puck_tables.kernels.closed_form_kernel import few_elliptic, full_elliptic
 from puck_tables.kernels.compile import inlined, inner, summed
 from puck_tables.kernels.polygon_sums import (
-    ANEW,
     BEGIN_X,
     BEGIN_Y,
     FAR,
@@ -55,6 +54,8 @@ from puck_tables.kernels.polygon_sums import (
     TANGENT_X,
     TANGENT_Y,
     WEIGHT,
+    ray_to,
+    side_from,
 )
 
 Hessian = tuple[float, float, float, float, float, float]  # xx, xy, yy, xw, yw, ww
@@ -82,12 +83,7 @@ def _sides_near(
     xx, xy, yy, far = 0.0, 0.0, 0.0, 0.0
     at_c = a + bx * cx + by * cy
     for i in range(HEAD, HEAD + SIDE_COLUMNS * int(base[SIDES]), SIDE_COLUMNS):
-        px, py = base[i + BEGIN_X] - cx, base[i + BEGIN_Y] - cy
-        tx, ty, length = base[i + TANGENT_X], base[i + TANGENT_Y], base[i + LENGTH]
-        near = math.sqrt(px * px + py * py) if base[i + ANEW] != 0.0 else far
-        d, begin = px * ty - py * tx, px * tx + py * ty
-        end = begin + length
-        far = math.sqrt(d * d + end * end)
+        tx, ty, length, d, begin, end, near, far = side_from(base, i, cx, cy, far)
         both = near + far
         first, last = 1.0 / max(near, _TINY), 1.0 / max(far, _TINY)
         k0 = end * last - begin * first
@@ -109,7 +105,7 @@ def _sides_near(
 def _sides_far(
     base: FloatArray, a: float, bx: float, by: float, ux: float, uy: float, w: float
 ) -> Hessian:  # fmt: skip
-    speed, sign = math.sqrt(ux * ux + uy * uy), -1.0 if w < 0.0 else 1.0
+    sign = -1.0 if w < 0.0 else 1.0
     xx, xy, yy, xw, yw, ww = _FLAT
     for i in range(HEAD, HEAD + SIDE_COLUMNS * int(base[SIDES]), SIDE_COLUMNS):
         half = 0.5 * base[i + LENGTH]
@@ -117,10 +113,8 @@ def _sides_far(
         mx, my = base[i + BEGIN_X] + hx, base[i + BEGIN_Y] + hy
         for node in range(NODES):
             qx, qy = mx + NODE[node] * hx, my + NODE[node] * hy
-            vx, vy = ux - w * qy, uy + w * qx
-            slip = math.sqrt(vx * vx + vy * vy)
+            vx, vy, slip, deep = ray_to(ux, uy, w, qx, qy)
             inverse = 1.0 / slip
-            deep = sign * (2.0 * (uy * qx - ux * qy) + w * (qx * qx + qy * qy)) / (slip + speed)
             nx, ny = vy * inverse, -vx * inverse
             turn = qx * ny - qy * nx
             weight = sign * WEIGHT[node] * (vx * hx + vy * hy) * inverse * inverse * deep

@@ -30,6 +30,7 @@ from puck_tables.kernels.polygon_sums import (
     SIDE_COLUMNS,
     TANGENT_X,
     TANGENT_Y,
+    ray_to,
 )
 
 _FAR = 6.0  # times the reach of the base: nearer, 1e-13 is lost to cancellation at most
@@ -148,9 +149,7 @@ def _from_far(
 ) -> Sums:  # fmt: skip
     """What a point q of the contour adds, about the centre of mass; (dx, dy): dr there."""
     speed, spin, sign = math.sqrt(ux * ux + uy * uy), abs(w), -1.0 if w < 0.0 else 1.0
-    vx, vy = ux - w * qy, uy + w * qx
-    slip = math.sqrt(vx * vx + vy * vy)
-    deep = sign * (2.0 * (uy * qx - ux * qy) + w * (qx * qx + qy * qy)) / (slip + speed)
+    vx, vy, slip, deep = ray_to(ux, uy, w, qx, qy)
     k0, k1, k2 = 0.0, 0.0, 0.0
     for n in range(_NODES):
         s = 0.5 * deep * (1.0 + _NODE[n])

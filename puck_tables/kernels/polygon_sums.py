@@ -38,6 +38,37 @@ _SHORT = 0.05  # of the sum of the distances of its ends: a series of six terms 
 LEAST = 1e-17  # of a length: C on a side; what the logarithm loses is multiplied by d² = 0
 
 
+@inlined
+def side_from(
+    base: FloatArray, i: int, cx: float, cy: float, far: float
+) -> tuple[float, float, float, float, float, float, float, float]:
+    """A side as C sees it: its tangent, its length, d, s₀, s₁, R₀ and R₁.
+
+    ``far``: R₁ of the side before.
+    """
+    px, py = base[i + BEGIN_X] - cx, base[i + BEGIN_Y] - cy
+    tx, ty, length = base[i + TANGENT_X], base[i + TANGENT_Y], base[i + LENGTH]
+    near = math.sqrt(px * px + py * py) if base[i + ANEW] != 0.0 else far
+    d, begin = px * ty - py * tx, px * tx + py * ty
+    end = begin + length
+    return tx, ty, length, d, begin, end, near, math.sqrt(d * d + end * end)
+
+
+@inlined
+def ray_to(
+    ux: float, uy: float, w: float, qx: float, qy: float
+) -> tuple[float, float, float, float]:
+    """The slip at a point of the boundary, its size, and how much farther than |c| that is from C.
+
+    |c| is how far the origin is from C.
+    """
+    vx, vy = ux - w * qy, uy + w * qx
+    slip, speed = math.sqrt(vx * vx + vy * vy), math.sqrt(ux * ux + uy * uy)
+    sign = -1.0 if w < 0.0 else 1.0
+    deep = sign * (2.0 * (uy * qx - ux * qy) + w * (qx * qx + qy * qy)) / (slip + speed)
+    return vx, vy, slip, deep
+
+
 @inner
 def polygon_sums(
     base: FloatArray, first: int, count: int, reach: float, ux: float, uy: float, w: float
@@ -63,12 +94,7 @@ def flat_sums(
     cx, cy = -uy / w, ux / w
     ex, ey, size, far = 0.0, 0.0, 0.0, 0.0
     for i in range(first, first + SIDE_COLUMNS * count, SIDE_COLUMNS):
-        px, py = base[i + BEGIN_X] - cx, base[i + BEGIN_Y] - cy
-        tx, ty, length = base[i + TANGENT_X], base[i + TANGENT_Y], base[i + LENGTH]
-        near = math.sqrt(px * px + py * py) if base[i + ANEW] != 0.0 else far
-        d, begin = px * ty - py * tx, px * tx + py * ty
-        end = begin + length
-        far = math.sqrt(d * d + end * end)
+        tx, ty, length, d, begin, end, near, far = side_from(base, i, cx, cy, far)
         both = near + far
         along = d * math.log((both + length) / max(both - length, LEAST * length))
         a1 = length * (begin + end) / both
@@ -97,12 +123,7 @@ def _near(base: FloatArray, first: int, count: int, ux: float, uy: float, w: flo
     ex, ey, size, rx, ry, far = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     xx, xy, yx, yy = 0.0, 0.0, 0.0, 0.0
     for i in range(first, first + SIDE_COLUMNS * count, SIDE_COLUMNS):
-        px, py = base[i + BEGIN_X] - cx, base[i + BEGIN_Y] - cy
-        tx, ty, length = base[i + TANGENT_X], base[i + TANGENT_Y], base[i + LENGTH]
-        near = math.sqrt(px * px + py * py) if base[i + ANEW] != 0.0 else far
-        d, begin = px * ty - py * tx, px * tx + py * ty
-        end = begin + length
-        far = math.sqrt(d * d + end * end)
+        tx, ty, length, d, begin, end, near, far = side_from(base, i, cx, cy, far)
         both = near + far
         a0 = math.log((both + length) / max(both - length, LEAST * length))
         a1 = length * (begin + end) / both
@@ -141,10 +162,8 @@ def _far(base: FloatArray, first: int, count: int, ux: float, uy: float, w: floa
         mx, my = base[i + BEGIN_X] + hx, base[i + BEGIN_Y] + hy
         for node in range(NODES):
             qx, qy = mx + NODE[node] * hx, my + NODE[node] * hy
-            vx, vy = ux - w * qy, uy + w * qx
-            slip = math.sqrt(vx * vx + vy * vy)
+            vx, vy, slip, deep = ray_to(ux, uy, w, qx, qy)
             inverse = 1.0 / slip
-            deep = sign * (2.0 * (uy * qx - ux * qy) + w * (qx * qx + qy * qy)) / (slip + speed)
             k0 = deep * (speed + 0.5 * spin * deep)
             k1 = deep * deep * (0.5 * speed + spin * deep / 3.0)
             k2 = deep * deep * deep * (speed / 3.0 + 0.25 * spin * deep)

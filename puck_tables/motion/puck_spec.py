@@ -15,7 +15,7 @@ from puck_tables._core.real import positive, real
 from puck_tables.contact.base import NAMES as BASES
 from puck_tables.contact.base import Base, base_of
 from puck_tables.contact.laws import HOMOGENEOUS, Law
-from puck_tables.errors import ContactError, InputError
+from puck_tables.errors import InputError
 from puck_tables.motion.body import (
     LARGEST_GYRATION,
     SMALLEST_GYRATION,
@@ -131,12 +131,7 @@ class PuckSpec:
                 f"{LARGEST_GYRATION * shape.reach:g} m, got {self.gyration:g}"
             )
         self._refuse_out_of_range(self.lever / shape.reach)
-        if not self.lever <= shape.highest_lever:
-            highest = 2.0 * shape.highest_lever / self.friction
-            raise ContactError(
-                f"friction {self.friction:g} and height {self.height:g} m: part of the base would "
-                f"lift; with this friction it stays down up to a height of {highest:.6g} m"
-            )
+        shape.refuse_lift(self.friction, self.height)
 
     def _refuse_out_of_range(self, height: float) -> None:
         if not (math.isfinite(height) and self.decel < math.inf) or (

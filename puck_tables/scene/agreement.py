@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from puck_tables.contact.friction_laws import NAMED, FrictionLaw
 from puck_tables.contact.speed_law import SpeedLaw
-from puck_tables.errors import InputError
+from puck_tables.errors import ContactError, InputError
 from puck_tables.scene.floor_patches import patch_faults
 from puck_tables.scene.forces import drive_of
 from puck_tables.scene.holds import allowed_velocity
@@ -40,21 +40,17 @@ def floor_faults(scene: SceneSpec) -> list[str]:
 def _bad_under_base(scene: SceneSpec) -> list[str]:
     """Why friction is not known under a base that is not round."""
     floor, puck = scene.floor, scene.puck
-    for name, there in (
-        ("orthotropic", floor.orthotropic), ("patch", floor.patches),
-    ):  # fmt: skip
+    for name, there in (("orthotropic", floor.orthotropic), ("patch", floor.patches)):
         if there:
             return [
                 f"floor.{name}: not known under a base that is not round; give a radius in place "
                 "of puck.base, or leave it out"
             ]
-    assert puck.shape is not None
-    most, highest = max(scene.frictions), puck.shape.highest_lever
-    if floor.strips is not None and 0.5 * most * puck.height > highest:
-        return [
-            f"floor.strips: part of the base would lift at f = {most:g}; up to a puck.height of "
-            f"{2.0 * highest / most:.6g} m it stays down"
-        ]
+    if floor.strips is not None and puck.shape is not None:
+        try:
+            puck.shape.refuse_lift(max(scene.frictions), puck.height)
+        except ContactError as error:
+            return [f"floor.strips: {error}"]
     return []
 
 

@@ -13,8 +13,6 @@ from typing import Any
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.contact.base import Base
-from puck_tables.errors import ContactError
 from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.scene.by_speed import NO_LAW, law_range, law_table, moments_of
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
@@ -49,7 +47,7 @@ def floors_of(scene: SceneSpec, pieces: list[PieceSpec], fastest: float) -> Floa
     rows = []
     for place in range(len(frictions[0])):
         for piece, given in zip(pieces, frictions, strict=True):
-            unheld = by_slip or (piece.shape is not None and not piece.path)
+            unheld = by_slip or _is_shaped(piece)
             how = NOT_HELD if unheld else float(is_integrated(scene, piece, given[place]))
             rows.append(_row(scene, piece, given[place], how))
     if has_several(scene):
@@ -152,7 +150,7 @@ def _by_slip(
     if shaped.any():
         for piece in pieces:
             if piece.shape is not None:
-                _refuse_lift(piece, piece.shape, largest)
+                piece.shape.refuse_lift(largest, piece.height)
         moments = moments_of(law, top)
         ground = _of_one_length([
             ground_of(scene.alone(piece), normal_on(scene, piece), moments)
@@ -161,14 +159,6 @@ def _by_slip(
         ])  # fmt: skip
     by_slip = BySpeed(compiled, 0.0, 1.0, 1.0)
     return Regions(normals * largest, delta, cuts, by_slip, shaped, ground)
-
-
-def _refuse_lift(piece: PieceSpec, shape: Base, friction: float) -> None:
-    if 0.5 * friction * piece.height > shape.highest_lever:
-        raise ContactError(
-            f"floor.law: part of the base would lift at f = {friction:.6g}; up to a height of "
-            f"{2.0 * shape.highest_lever / friction:.6g} m it stays down"
-        )
 
 
 def slip_of_rim(radius: float, surface: Surface, state: list[float]) -> float:

@@ -16,12 +16,11 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.io.columns import following
 from puck_tables.io.dataset import Dataset, variable
-from puck_tables.result import Result
 from puck_tables.wrench.forms import WrenchForm, ellipsoid, quartic
 from puck_tables.wrench.friction_force import wrench
 from puck_tables.wrench.friction_hold import holds, twist
+from puck_tables.wrench.friction_surface import FrictionSurface
 
 if TYPE_CHECKING:
     from puck_tables.motion.puck_spec import PuckSpec
@@ -32,7 +31,7 @@ _COLUMNS = ("force_x", "force_y", "torque", "normal_x", "normal_y", "normal_torq
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class BaseSurface(Result):
+class BaseSurface(FrictionSurface):
     """Force and torque that friction takes up under a base, over the twist.
 
     Attributes
@@ -50,7 +49,6 @@ class BaseSurface(Result):
         What planar pushing takes for the surface, fitted to it, with their errors.
     """
 
-    puck: PuckSpec
     heading: FloatArray
     slip_angle: FloatArray
     force_x: FloatArray
@@ -63,20 +61,7 @@ class BaseSurface(Result):
     picture: ClassVar[str] = "base_surface"
 
     def __repr__(self) -> str:
-        return (
-            f"BaseSurface({self.torque.size} twists, {_named(self.puck)}, up to "
-            f"{float(np.max(self.force)):.6g} N and {float(np.max(self.torque)):.6g} N m)"
-        )
-
-    def __getattr__(self, name: str) -> FloatArray:
-        """A column that follows from others: ``force`` (m, n) N."""
-        column: FloatArray = following(self, name)
-        return column
-
-    @property
-    def unit_force(self) -> float:
-        """F m g, N: what slides without spin."""
-        return self.puck.mass * self.puck.decel
+        return self._said(_named(self.puck))
 
     @cached_property
     def _sampled(self) -> tuple[FloatArray, FloatArray]:

@@ -22,11 +22,10 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import real
 from puck_tables.contact.laws import Law
 from puck_tables.errors import InputError
-from puck_tables.io.columns import following
 from puck_tables.io.dataset import Dataset, variable
-from puck_tables.result import Result
 from puck_tables.wrench.base_surface import BaseSurface, base_surface
 from puck_tables.wrench.friction_force import wrenches
+from puck_tables.wrench.friction_surface import FrictionSurface
 from puck_tables.wrench.models import SurfaceModel, ellipsoid, quartic
 
 if TYPE_CHECKING:
@@ -40,7 +39,7 @@ _COLUMNS = ("force_x", "force_y", "torque", "normal_force", "normal_torque")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class LimitSurface(Result):
+class LimitSurface(FrictionSurface):
     """Force and torque that friction takes up, over the direction of slip.
 
     Attributes
@@ -58,7 +57,6 @@ class LimitSurface(Result):
         What planar pushing takes for the surface, fitted to it, with their errors.
     """
 
-    puck: PuckSpec
     slip_angle: FloatArray
     force_x: FloatArray
     force_y: FloatArray
@@ -69,20 +67,7 @@ class LimitSurface(Result):
     picture: ClassVar[str] = "limit_surface"
 
     def __repr__(self) -> str:
-        return (
-            f"LimitSurface({self.slip_angle.size} twists, delta = {self.puck.delta:.6g}, up to "
-            f"{float(np.max(self.force)):.6g} N and {float(np.max(self.torque)):.6g} N m)"
-        )
-
-    def __getattr__(self, name: str) -> FloatArray:
-        """A column that follows from others: ``force`` (n,) N."""
-        column: FloatArray = following(self, name)
-        return column
-
-    @property
-    def unit_force(self) -> float:
-        """F m g, N: what slides without spin."""
-        return self.puck.mass * self.puck.decel
+        return self._said(f"delta = {self.puck.delta:.6g}")
 
     @cached_property
     def _section(self) -> FloatArray:
