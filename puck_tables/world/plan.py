@@ -42,7 +42,7 @@ def plan_of(scene: SceneSpec) -> tuple[str, str]:
     >>> from puck_tables import Floor, Launch, Puck, Scene
     >>> print(plan_of(Scene(Puck(0.1, friction=0.1), Floor(slope=0.05)))[1])
     1 puck integrated from impact to impact: slope
-    a look-up would be cheaper, but it is of what only dry friction and a belt act on
+    a look-up would be cheaper: of round pucks on which only dry friction and a belt act
     """
     pieces = pieces_of(scene)
     ways: dict[str, list[str]] = {}
@@ -67,7 +67,7 @@ def plan_of(scene: SceneSpec) -> tuple[str, str]:
     model = ", ".join(lines)
     if any("integrated from" in way and not way.endswith(f": {_CLOSER}") for way in ways):
         lines.append(
-            "a look-up would be cheaper, but it is of what only dry friction and a belt act on"
+            "a look-up would be cheaper: of round pucks on which only dry friction and a belt act"
         )
     if has_several(scene):
         piled = any(one.shape is None and one.body.law.profile is not None for one in pieces)
