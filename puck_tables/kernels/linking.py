@@ -61,15 +61,19 @@ class Behind(Library):  # type: ignore[misc]
     """The code of a function with a door, and of all behind it."""
 
     def finalize(self) -> None:
-        """Optimise all of it together."""
-        result: dict[Any, None] = {}
-        waiting: list[Any] = list(self._linking_libraries)  # type: ignore[has-type]
-        while waiting:
-            library = waiting.pop(0)
-            if library not in result:
-                result[library] = None
-                waiting += library._linking_libraries if isinstance(library, Pasted) else []
-        self._linking_libraries = list(result)
+        """Optimise all of it together, callers first: what nobody calls yet is not taken over."""
+        behind: dict[Any, None] = {}
+        seen: set[Any] = set()
+
+        def add(libraries: list[Any]) -> None:
+            for library in libraries:
+                if library not in seen:
+                    seen.add(library)
+                    add(library._linking_libraries if isinstance(library, Pasted) else [])
+                    behind[library] = None
+
+        add(list(self._linking_libraries))  # type: ignore[has-type]
+        self._linking_libraries = list(reversed(behind))
         super().finalize()
 
 
