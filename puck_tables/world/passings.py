@@ -18,16 +18,26 @@ from puck_tables.scene.friction import VX, VY, X, Y
 from puck_tables.scene.patches import ASTRIDE, INSIDE, OUTSIDE
 from puck_tables.scene.pieces import Line
 from puck_tables.world.borders import to_round
-from puck_tables.world.flight import FASTEST, GONE, ROOM, START, moves_until, state_at
+from puck_tables.world.flight import GONE, ROOM, START, moves_until, state_at
 from puck_tables.world.footing import lies_to
 from puck_tables.world.game import ENTERS, LEAVES, N_HISTORY, PASSES, Game, Whole
 from puck_tables.world.layout import RADIUS
-from puck_tables.world.meeting import QUIET, ROUNDED, arc_step, bend_of, safe_step
+from puck_tables.world.meeting import (
+    QUIET,
+    ROUNDED,
+    arc_step,
+    bend_of,
+    once_round,
+    safe_step,
+    way_left,
+)
 
 # columns of a line: a straight one goes from (A, B) to (C, D); a round one has the radius R > 0
 # about (A, B)
 A, B, C, D, R = range(5)
 CENTRE, RIM = 0, 1  # what passes
+# what is seen of one: its side, since when, and when it leaves it; < 0: it was not looked for
+SIDE, FROM, NEXT = range(3)
 UNKNOWN = -1  # on which side one lies that was put on the line
 TIME, WHAT, WHO, LINE, AT_X, AT_Y, ACROSS = range(7)
 COLUMNS = 7
@@ -72,10 +82,9 @@ class Passings:
 
     def __init__(self, lines: Sequence[Line], discs: int, rimless: Sequence[bool] = ()) -> None:
         self._lines = rows_of(lines)
-        parts = (discs, len(lines), 2)
-        self._sides, self._done = np.full(parts, UNKNOWN), np.zeros(parts)
-        self._done[np.flatnonzero(rimless), :, RIM] = math.inf
-        self._flights, self._seen = np.full(discs, -1), np.zeros(1, np.int64)
+        self._seen = np.tile([UNKNOWN, 0.0, -1.0], (discs, len(lines), 2, 1))
+        self._seen[np.flatnonzero(rimless), :, RIM, FROM:] = math.inf
+        self._flights = np.append(np.full(discs, -1), 0)
         self.rows: FloatArray = np.zeros((0, COLUMNS))
 
     def copy(self) -> Passings:
@@ -89,12 +98,10 @@ class Passings:
         """See what passed until now."""
         size = 16
         while self._lines.size:
-            own = self.copy()
-            found = np.zeros((size, COLUMNS))
+            own, found = self.copy(), np.zeros((size, COLUMNS))
             count = _follow(
-                game, own._lines, own._sides, own._done, own._flights, own._seen, np.empty(ROOM),
-                np.empty(6), found,
-            )  # fmt: skip
+                game, own._lines, own._seen, own._flights, np.empty(ROOM), np.empty(6), found
+            )
             if count <= size:
                 order = np.lexsort((found[:count, LINE], found[:count, WHO], found[:count, TIME]))
                 own.rows = np.vstack([self.rows, found[:count][order]])
@@ -171,80 +178,116 @@ def _beyond(line: FloatArray, side: int, radius: float, state: FloatArray) -> in
     return INSIDE if _away(line, RIM, state[X], state[Y]) < 0.0 else OUTSIDE
 
 
-@inner
-def _along(
-    game: Game, n: int, until: float, lines: FloatArray, k: int, part: int, sides: Whole,
-    done: FloatArray, room: FloatArray, state: FloatArray, found: FloatArray, count: int,
+@inlined
+def _side_at_start(
+    line: FloatArray, part: int, before: int, radius: float, rounded: float, state: FloatArray
 ) -> int:  # fmt: skip
-    """What passes one line on one flight; how many rows of ``found`` are used, or would be."""
-    i, kind, flight = int(game.history[n, 0]), int(game.history[n, 1]), game.history[n, 2:]
-    disc, line, now = game.discs[i], lines[k], max(done[i, k, part], flight[START])
-    radius = disc[RADIUS] if part == RIM else 0.0
-    last = min(until, moves_until(kind, flight))
-    done[i, k, part] = max(done[i, k, part], until)
-    if kind == GONE:
-        return count
-    state_at(kind, flight, disc, game.curves, game.pieces, now, room, state)
+    """On which side a flight begins; on the line itself it is the side from which one came."""
     away = _away(line, part, state[X], state[Y])
-    rounded = ROUNDED * (abs(state[X]) + abs(state[Y]) + radius + line[R])
-    if abs(abs(away) - radius) > rounded:  # it was put there, or flies on
-        sides[i, k, part] = lies_to(away, radius)
-    elif sides[i, k, part] == UNKNOWN:  # where it goes from there, it was
-        side = INSIDE if away < 0.0 and part == RIM else OUTSIDE
-        _, rate, _ = _look(line, part, side, radius, state, 0.0)
-        if rate != 0.0:
-            sides[i, k, part] = _beyond(line, side, radius, state) if rate < 0.0 else side
-    if abs(away) - radius > flight[FASTEST] * max(last - now, 0.0) * (1.0 + 1e-9):
-        return count
-    t = now
-    while t < last:
+    if abs(abs(away) - radius) > rounded:
+        return lies_to(away, radius)
+    if before != UNKNOWN:
+        return before
+    side = INSIDE if away < 0.0 and part == RIM else OUTSIDE
+    _, rate, _ = _look(line, part, side, radius, state, 0.0)
+    if rate == 0.0:
+        return UNKNOWN
+    return _beyond(line, side, radius, state) if rate < 0.0 else side
+
+
+@inner
+def _next_passing(
+    game: Game, n: int, now: float, last: float, line: FloatArray, part: int, side: int,
+    room: FloatArray, state: FloatArray,
+) -> float:  # fmt: skip
+    """When a side is left on a flight, up to a time, else inf; the state then in ``state``."""
+    kind, flight = int(game.history[n, 1]), game.history[n, 2:]
+    disc, t = game.discs[int(game.history[n, 0])], now
+    radius = disc[RADIUS] if part == RIM else 0.0
+    while True:
         patience(1)
-        side, bend = int(sides[i, k, part]), bend_of(kind, flight, disc, state, t)
+        state_at(kind, flight, disc, game.curves, game.pieces, t, room, state)
+        rounded = ROUNDED * (abs(state[X]) + abs(state[Y]) + radius + line[R])
+        bend = bend_of(kind, flight, disc, state, t)
         gap, rate, step = _look(line, part, side, radius, state, bend)
+        if gap > way_left(kind, flight, disc, state, t) * (1.0 + 1e-9):
+            return math.inf
         if gap <= rounded:
             if rate < -QUIET * game.pace[0]:
-                to = _beyond(line, side, radius, state)
-                sides[i, k, part] = to
-                row = found[min(count, found.shape[0] - 1)]
-                if _note(line, side, to, state, row):
-                    row[TIME], row[WHO], row[LINE] = t, i, k
-                    count += 1
-                continue
+                return t
             if bend > 0.0:
                 step = max(step, math.sqrt(2.0 * rounded / bend))
             elif rate != 0.0:
                 step = max(step, 2.0 * rounded / abs(rate))
-        if t + step == t:
-            step = abs(np.spacing(t))
-        t = min(t + step, last)
-        state_at(kind, flight, disc, game.curves, game.pieces, t, room, state)
+        if t + step > last:
+            return math.inf
+        t = max(t + step, np.nextafter(t, math.inf))
+
+
+@inner
+def _along(
+    game: Game, n: int, until: float, line: FloatArray, part: int, seen: FloatArray,
+    room: FloatArray, state: FloatArray, found: FloatArray, count: int,
+) -> int:  # fmt: skip
+    """What passes a line on a flight; how many rows of ``found`` are used, or would be."""
+    i, kind, flight = int(game.history[n, 0]), int(game.history[n, 1]), game.history[n, 2:]
+    if kind == GONE:
+        return count
+    radius = game.discs[i, RADIUS] if part == RIM else 0.0
+    if seen[SIDE] == UNKNOWN or seen[FROM] == flight[START]:
+        state_at(kind, flight, game.discs[i], game.curves, game.pieces, flight[START], room, state)
+        rounded = ROUNDED * (abs(state[X]) + abs(state[Y]) + radius + line[R])
+        seen[SIDE] = _side_at_start(line, part, int(seen[SIDE]), radius, rounded, state)
+    while seen[NEXT] <= until and seen[SIDE] != UNKNOWN:
+        if seen[NEXT] < 0.0:
+            last = min(moves_until(kind, flight), once_round(kind, flight, seen[FROM]))
+            if last == math.inf:
+                last = until
+            at = _next_passing(game, n, seen[FROM], last, line, part, int(seen[SIDE]), room, state)
+            if at == math.inf and last == until:
+                seen[FROM] = until
+                return count
+            seen[NEXT] = at
+            continue
+        side, at = int(seen[SIDE]), seen[NEXT]
+        state_at(kind, flight, game.discs[i], game.curves, game.pieces, at, room, state)
+        to = _beyond(line, side, radius, state)
+        row = found[min(count, found.shape[0] - 1)]
+        if _note(line, side, to, state, row):
+            row[TIME], row[WHO] = at, i
+            count += 1
+        seen[SIDE], seen[FROM], seen[NEXT] = to, at, -1.0
     return count
 
 
 @kernel
 def _follow(
-    game: Game, lines: FloatArray, sides: Whole, done: FloatArray, flights: Whole, seen: Whole,
-    room: FloatArray, state: FloatArray, found: FloatArray,
+    game: Game, lines: FloatArray, seen: FloatArray, flights: Whole, room: FloatArray,
+    state: FloatArray, found: FloatArray,
 ) -> int:  # fmt: skip
     """All that passed until now; how many rows of ``found`` that takes, perhaps more than it has.
 
-    ``flights`` (discs,): the row of the history on which a disc is; ``seen`` (1,): how many were.
+    ``flights`` (discs + 1,): the row of the history on which a disc is; how many there were.
     """
-    count = 0
-    for n in range(seen[0], game.counts[N_HISTORY] + game.discs.shape[0]):
+    count, discs = 0, game.discs.shape[0]
+    begun = int(game.counts[N_HISTORY])
+    for n in range(flights[discs], begun + discs):
         patience(1)
-        new = n < game.counts[N_HISTORY]
-        i = int(game.history[n, 0]) if new else n - int(game.counts[N_HISTORY])
-        until = game.history[n, 2 + START] if new else game.clock[0]
-        if flights[i] >= 0:
-            for k in range(lines.shape[0]):
-                for part in range(2):
-                    if done[i, k, part] < until:
-                        count = _along(
-                            game, flights[i], until, lines, k, part, sides, done, room, state,
-                            found, count,
-                        )  # fmt: skip
-        if new:
+        i = int(game.history[n, 0]) if n < begun else n - begun
+        until = game.history[n, 2 + START] if n < begun else game.clock[0]
+        for k in range(lines.shape[0]):
+            for part in range(2):
+                if flights[i] >= 0 and seen[i, k, part, NEXT] <= until:
+                    used = count
+                    count = _along(
+                        game, flights[i], until, lines[k], part, seen[i, k, part], room, state,
+                        found, count,
+                    )  # fmt: skip
+                    for row in range(used, min(count, found.shape[0])):
+                        found[row, LINE] = k
+                if n < begun and seen[i, k, part, FROM] < math.inf:
+                    seen[i, k, part, FROM], seen[i, k, part, NEXT] = until, -1.0
+        if n < begun:
             flights[i] = n
-    seen[0] = game.counts[N_HISTORY]
+    flights[discs] = begun
     return count
