@@ -79,7 +79,7 @@ def _pulled(game: Game, i: int, start: float, t: float, vx: float, vy: float) ->
         one, two = game.tides[n - 1], game.tides[n]
         begin, end = max(one[0], start), min(two[0], t)
         if begin >= end:
-            break
+            continue
         share = (0.5 * (begin + end) - one[0]) / (two[0] - one[0])  # straight in between
         fx, fy = one[1] + share * (two[1] - one[1]), one[2] + share * (two[2] - one[2])
         work += (fx * vx + fy * vy) * (end - begin)
