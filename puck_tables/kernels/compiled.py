@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import gc
-import importlib
 import sys
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -12,7 +11,6 @@ from types import FunctionType
 from typing import Any, Protocol
 
 import numba
-from llvmlite import binding
 from numba import types
 from numba.core import event
 from numba.core.compiler_lock import global_compiler_lock
@@ -29,7 +27,7 @@ from puck_tables.kernels.patience import patience
 linked_at_doors: Any = None
 kept_code: Any = None
 with contextlib.suppress(ImportError, AttributeError):
-    from puck_tables.kernels.linking import Called
+    from puck_tables.kernels.linking import Called, put_at
     from puck_tables.kernels.linking import LinkedAtDoors as linked_at_doors
 with contextlib.suppress(ImportError, AttributeError):
     from puck_tables.kernels.kept_code import KeptCode as kept_code
@@ -178,12 +176,11 @@ def _name_door(function: Any, kinds: tuple[Any, ...], code: Any) -> None:
 
 def _put_at_hand(called: Any) -> None:
     """Put a door, compiled or read, at the symbol under which kept code calls it."""
-    door = getattr(importlib.import_module(called.module), called.name)
+    door = getattr(sys.modules[called.module], called.name)  # whoever calls it has imported it
     with _compiling(door):
         door.compiled.compile(called.kinds)
     code = door.compiled.overloads[called.kinds]
-    address = code.library.get_pointer_to_function(code.fndesc.llvm_func_name)
-    binding.add_symbol(called.symbol, address)
+    put_at(called.symbol, code)
 
 
 def _whatever_its_value(template_for: Callable[..., Any], args: Any, named: Any) -> Any:

@@ -29,6 +29,12 @@ class Called(NamedTuple):
     symbol: str
 
 
+def put_at(symbol: str, code: Any) -> None:
+    """Put a function that is compiled at a symbol under which others call it."""
+    address = code.library.get_pointer_to_function(code.fndesc.llvm_func_name)
+    binding.add_symbol(symbol, address)
+
+
 class _NoAddress:
     """The code generator for a function that has no address, and so no environment at one."""
 
