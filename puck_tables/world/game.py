@@ -17,9 +17,12 @@ Whole = npt.NDArray[np.int64]
 NOTHING, PATH_ENDS, LOOK_AGAIN = 1 << 40, (1 << 40) + 1, (1 << 40) + 2
 
 # events
-IMPACT, CONTACT, PART, POCKETED, OVER_EDGE, REST, STRUCK, ENTERS, LEAVES, OVERHANGS = range(10)
+(
+    IMPACT, CONTACT, PART, POCKETED, OVER_EDGE, REST, STRUCK, ENTERS, LEAVES, OVERHANGS, PASSES,
+) = range(11)  # fmt: skip
 EVENTS = (
     "impact", "contact", "part", "pocket", "edge", "rest", "launch", "entry", "exit", "overhang",
+    "line",
 )  # fmt: skip
 # columns of an event: what, disc, partner, place of the contact, normal from the disc to its
 # partner, approach and slip before, normal and tangential impulse, energy lost, what launches and

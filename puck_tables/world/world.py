@@ -19,6 +19,7 @@ from puck_tables.scene.parts import Launch
 from puck_tables.scene.run import Event, number_of
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import game as g
+from puck_tables.world import passings
 from puck_tables.world.agreement import called, pieces_of, refuse_endless
 from puck_tables.world.departures import desk_for, room_for
 from puck_tables.world.engine import (
@@ -50,6 +51,7 @@ from puck_tables.world.lasting import (
 from puck_tables.world.law_range import refuse_too_fast, with_law_for
 from puck_tables.world.layout import LIGHTNESS, RADIUS
 from puck_tables.world.lone import LONGEST
+from puck_tables.world.passings import Passings, called_line
 from puck_tables.world.prepare import Start, obstacle_names, prepared, set_pace, shipped_curves
 from puck_tables.world.record import states_at
 
@@ -105,6 +107,9 @@ class World:
         self._room.states[:] = start.states
         self._desk = desk_for(self._game)
         self._named()
+        pieces = pieces_of(self.scene)
+        rimless = [not pieces[number].has_rim for number in self._order]
+        self._passings = Passings(self.scene.lines, len(self.names), rimless)
         self._advance(0.0, EVERYBODY)
 
     def _named(self) -> None:
@@ -222,12 +227,13 @@ class World:
         span = math.inf if endless else real("duration", duration, "s")
         if not span >= 0.0:
             raise InputError(f"duration must not be negative, got {span:g} s")
-        before = int(self._game.counts[g.N_EVENTS])
+        before = int(self._game.counts[g.N_EVENTS]), len(self._passings.rows)
         if span == math.inf:
             self.come_to_rest()
         else:
             self._advance(self.time + span)
-        return self._events(before)
+        self._passings.follow(self._game)
+        return self._events(*before)
 
     def come_to_rest(self) -> tuple[float, bool]:
         """Let time pass until nothing more can happen; since when that is so, s.
@@ -264,8 +270,10 @@ class World:
     def events_since(self, time: float) -> list[Event]:
         """What happened from a time on."""
         moment = real("time", time, "s")
+        self._passings.follow(self._game)
         times = self._game.events[: self._game.counts[g.N_EVENTS], g.TIME]
-        return self._events(int(np.searchsorted(times, moment)))
+        passed = self._passings.rows[:, passings.TIME]
+        return self._events(*(int(np.searchsorted(one, moment)) for one in (times, passed)))
 
     def strike(
         self, puck: int | str, velocity: npt.ArrayLike | None = None, spin: float | None = None,
@@ -365,6 +373,7 @@ class World:
         other.scene, other._order = self.scene, self._order
         other._game = g.copy_of(self._game)
         other._room, other._desk = room_for(len(self.names)), desk_for(other._game)
+        other._passings = self._passings.copy()
         other._named()
         return other
 
@@ -438,14 +447,20 @@ class World:
             )
         return PuckError(f"{long}, and no end: ask for a shorter time")
 
-    def _events(self, first: int) -> list[Event]:
+    def _events(self, first: int, passed: int) -> list[Event]:
         rows = self._game.events[first : self._game.counts[g.N_EVENTS]]
         columns = [g.TIME, g.WHAT, g.WHO, g.PARTNER, g.AT_X, g.AT_Y, g.APPROACH, g.SLIDE, g.PUSH,
                    g.RUB, g.LOST]  # fmt: skip
-        return [
+        found = [
             Event(time, g.EVENTS[int(what)], self._name(who), self._name(partner), *numbers)
             for time, what, who, partner, *numbers in rows[:, columns].tolist()
         ]
+        lines = self.scene.lines
+        found += [
+            Event(time, g.EVENTS[int(what)], self._name(who), called_line(lines, int(k)), *numbers)
+            for time, what, who, k, *numbers in self._passings.rows[passed:].tolist()
+        ]
+        return sorted(found, key=lambda event: event.time) if lines else found
 
     @cached_property
     def _obstacles(self) -> list[str]:
