@@ -72,7 +72,7 @@ def group_of(discs, obstacles=(), pull=(0.0, 0.0), films=None, cuts=None):
     return Group(
         discs, np.array(obstacles, float).reshape(-1, OBSTACLE_COLUMNS),
         alone(mass * discs[:, 3], discs[:, 4].copy(), cuts, NO_LAW),
-        Surface(*[0.0] * 5), PLAIN_RIMS, np.vstack(rows), reels,
+        Surface(*[0.0] * 9), PLAIN_RIMS, np.vstack(rows), reels,
         np.zeros((0, 4)), np.zeros((len(discs), 2), np.int64),
     )  # fmt: skip
 

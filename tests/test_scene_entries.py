@@ -119,6 +119,7 @@ CASES: dict[str, tuple[dict[str, Any], Any]] = {
 }
 FILES = {
     "floor.law": ({"puck": {"friction": 0.0}}, "speed,f\n0,0.2\n5,0.1\n"),
+    "floor.over_time": ({}, "t,vx,vy,spin\n0,0,0,0\n1,0.1,0,1\n2,0,0,0\n"),
     "force.over_time": ({}, "t,Fx,Fy\n0,0.1,0\n1,0,0\n"),
 }
 # a board on which every entry matters, and another value for each

@@ -11,9 +11,9 @@ from puck_tables.errors import ContactError, InputError
 from puck_tables.scene.floor_patches import patch_faults
 from puck_tables.scene.holds import allowed_velocity
 from puck_tables.scene.orthotropic import LEAST_RATIO
-from puck_tables.scene.over_time import drive_of, grip_faults, largest_factors
+from puck_tables.scene.over_time import drive_of, grip_faults, largest_factors, motion_of
 from puck_tables.scene.parts import Edge, Floor, Rows, Wall
-from puck_tables.scene.stretches import belt_faults
+from puck_tables.scene.stretches import belt_faults, has_belts
 
 if TYPE_CHECKING:
     from puck_tables.scene.scene_spec import SceneSpec
@@ -31,6 +31,7 @@ def floor_faults(scene: SceneSpec) -> list[str]:
                 f"floor.law and floor.{name}: each takes the place of puck.friction, give one"
             )
     faults += grip_faults(scene.floor) + belt_faults(scene.floor)
+    faults += _bad_motion(scene.floor)
     if faults:
         return faults
     if scene.puck.shape is not None:
@@ -39,6 +40,20 @@ def floor_faults(scene: SceneSpec) -> list[str]:
         faults.append("floor.law: known under uniform pressure only, not with puck.pressure")
     faults += bad_strips(scene.floor) or patch_faults(scene.floor) or _bad_astride(scene)
     return faults + _bad_rows(scene) + _bad_axes(scene)
+
+
+def _bad_motion(floor: Floor) -> list[str]:
+    """What is wrong with the motion of a floor over time."""
+    if not floor.over_time:
+        return []
+    others = [name for name in ("velocity", "turning") if getattr(floor, name) not in (0.0, (0, 0))]
+    others += ["strips or patches with velocities of their own"] * has_belts(floor)
+    try:
+        turns = bool(motion_of(floor)[:, 3].any())
+    except InputError as error:
+        return [f"floor.over_time: {str(error).removeprefix('floor.over_time ')}"]
+    others += ["orthotropic"] * (turns and floor.orthotropic is not None)
+    return [f"floor.over_time and floor.{name}: give one of them" for name in others]
 
 
 def _bad_under_base(scene: SceneSpec) -> list[str]:

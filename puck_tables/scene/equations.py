@@ -36,12 +36,14 @@ from puck_tables.scene.ingredients import (
     Body,
     Model,
     Stretch,
+    Surface,
     carried_along,
     dry_at,
     floor_velocity,
     held,
     is_over_belts,
     put_at,
+    surface_now,
 )
 from puck_tables.scene.over_time import has_factors
 
@@ -113,9 +115,10 @@ def rates_here(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: 
     """
     model = stretch.model
     body = model.body
-    sx, sy, turning = floor_velocity(model.surface, y[X], y[Y])
+    surface = surface_now(stretch, t)
+    sx, sy, turning = floor_velocity(surface, y[X], y[Y])
     vx, vy, spin = y[VX] + sx, y[VY] + sy, y[SPIN] + turning
-    cx, cy = carried_along(model.surface, vx, vy)
+    cx, cy = carried_along(surface, y[X], y[Y], vx, vy)
     gx, gy, gm = given_force(model.forces, stretch.piece, t)
     out[row, X], out[row, Y], out[row, THETA] = vx, vy, spin
     out[row, GIVEN] = gx * vx + gy * vy + gm * spin
@@ -124,7 +127,7 @@ def rates_here(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: 
         gain = 0.0 if stretch.mode == CARRIED else gain
         ax, ay, aw = gain * nx, gain * ny, gain * nw
         out[row, VX], out[row, VY], out[row, SPIN] = ax, ay, aw
-        fx, fy, fm = gx - body.mass * cx, gy - body.mass * cy, gm
+        fx, fy, fm = gx - body.mass * cx, gy - body.mass * cy, gm - body.inertia * surface.turn
         # what the floor and what holds the puck there do besides the given forces
         fx, fy, fm = body.mass * ax - fx, body.mass * ay - fy, body.inertia * aw - fm
         rubs = 0.0
@@ -146,10 +149,10 @@ def rates_here(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: 
         hx, hy, hm, heat = dry_friction_here(stretch.dry, body.radius, y[VX], y[VY], y[SPIN])
     dx, dy, dm, warmth = drag_force(model.forces, y[VX], y[VY], y[SPIN])
     fx, fy, fm = gx + hx + dx, gy + hy + dy, gm + hm + dm
-    rx, ry, rm, first, second, power = held(model.hold, body, model.surface, y, fx, fy, fm)
+    rx, ry, rm, first, second, power = held(model.hold, body, surface, y, fx, fy, fm)
     out[row, VX] = (fx + rx) / body.mass - cx
     out[row, VY] = (fy + ry) / body.mass - cy
-    out[row, SPIN] = (fm + rm) / body.inertia
+    out[row, SPIN] = (fm + rm) / body.inertia - surface.turn
     out[row, DRY], out[row, VISCOUS] = heat, warmth
     out[row, SUPPORT] = (hx + dx) * sx + (hy + dy) * sy + (hm + dm) * turning + power
     if is_over_belts(stretch.dry):  # what others of them do
@@ -158,9 +161,9 @@ def rates_here(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: 
 
 
 @inlined
-def to_laboratory(model: Model, y: FloatArray, sign: float) -> None:
+def to_laboratory(surface: Surface, y: FloatArray, sign: float) -> None:
     """Relative velocities of a state into those of the laboratory; ``sign`` −1: and back."""
-    sx, sy, turning = floor_velocity(model.surface, y[X], y[Y])
+    sx, sy, turning = floor_velocity(surface, y[X], y[Y])
     y[VX] += sign * sx
     y[VY] += sign * sy
     y[SPIN] += sign * turning

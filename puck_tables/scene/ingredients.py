@@ -16,7 +16,16 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 from puck_tables.scene.forces import Forces
 from puck_tables.scene.ground import ANGLE, BELTS, PLACE_X, PLACE_Y, SHARE, set_factor, stretches_in
-from puck_tables.scene.over_time import ON_ALL, ON_STRETCH, factor_at, has_factors
+from puck_tables.scene.over_time import (
+    FLOOR_SPIN,
+    FLOOR_X,
+    FLOOR_Y,
+    ON_ALL,
+    ON_STRETCH,
+    has_factors,
+    held_at,
+    rate_at,
+)
 
 if TYPE_CHECKING:
     from puck_tables.scene.parts import Constraint, Launch
@@ -106,14 +115,14 @@ def dry_at(dry: Dry, drive: FloatArray, piece: int, t: float) -> Dry:
     """The dry friction at a time, on the piece of what is given over time that rows precede."""
     law, factor = dry.by_speed, 1.0
     if has_factors(drive):
-        factor = factor_at(drive, piece, ON_ALL, t)
+        factor = held_at(drive, piece, ON_ALL, t)
     height_ratio, normal = factor * law.height_ratio, factor * law.normal
     if is_astride(dry):
         height_ratio, normal = law.height_ratio, law.normal
         if has_factors(drive):
             law.table[SHARE] = factor
             for stretch in range(stretches_in(law.table)):
-                set_factor(law.table, stretch, factor_at(drive, piece, ON_STRETCH + stretch, t))
+                set_factor(law.table, stretch, held_at(drive, piece, ON_STRETCH + stretch, t))
     return Dry(
         factor * dry.load, factor * dry.delta, dry.cut,
         BySpeed(law.table, height_ratio, normal, law.moving),
@@ -121,13 +130,33 @@ def dry_at(dry: Dry, drive: FloatArray, piece: int, t: float) -> Dry:
 
 
 class Surface(NamedTuple):
-    """A floor that moves like a rigid body: velocity at a centre, m/s, and spin, rad/s."""
+    """A floor that moves like a rigid body: velocity at a centre, m/s, and spin, rad/s.
+
+    And how fast they change, m/s², rad/s².  ``changes``: 1 if they do, as rows over time say, else
+    0.
+    """
 
     vx: float
     vy: float
     cx: float
     cy: float
     spin: float
+    ax: float
+    ay: float
+    turn: float
+    changes: float
+
+
+@inlined
+def surface_at(surface: Surface, drive: FloatArray, piece: int, t: float) -> Surface:
+    """How a floor moves at a time, on the piece of what is given over time that rows precede."""
+    if surface.changes == 0.0 or len(drive) == 0:
+        return surface
+    return Surface(
+        held_at(drive, piece, FLOOR_X, t), held_at(drive, piece, FLOOR_Y, t), surface.cx,
+        surface.cy, held_at(drive, piece, FLOOR_SPIN, t), rate_at(drive, piece, FLOOR_X),
+        rate_at(drive, piece, FLOOR_Y), rate_at(drive, piece, FLOOR_SPIN), 1.0,
+    )  # fmt: skip
 
 
 class Hold(NamedTuple):
@@ -209,9 +238,21 @@ def floor_velocity(surface: Surface, x: float, y: float) -> tuple[float, float, 
 
 
 @inlined
-def carried_along(surface: Surface, vx: float, vy: float) -> tuple[float, float]:
+def carried_along(
+    surface: Surface, x: float, y: float, vx: float, vy: float
+) -> tuple[float, float]:  # fmt: skip
     """How fast the velocity of the floor under a puck changes while the puck moves at (vx, vy)."""
-    return -surface.spin * vy, surface.spin * vx
+    return (
+        surface.ax - surface.turn * (y - surface.cy) - surface.spin * vy,
+        surface.ay + surface.turn * (x - surface.cx) + surface.spin * vx,
+    )
+
+
+@inlined
+def surface_now(stretch: Stretch, t: float) -> Surface:
+    """How the floor of a stretch moves at a time."""
+    model = stretch.model
+    return surface_at(model.surface, model.forces.drive, stretch.piece, t)
 
 
 @inlined
@@ -235,7 +276,7 @@ def held(
     if hold.kind == BLADE:
         # n = (−sin, cos), n′ u = −ω (cos, sin)·u
         sx, sy, _ = floor_velocity(surface, y[0], y[1])
-        cx, cy = carried_along(surface, y[3] + sx, y[4] + sy)
+        cx, cy = carried_along(surface, y[0], y[1], y[3] + sx, y[4] + sy)
         swing = spin * (cosine * y[3] + sine * y[4])
         reaction = sine * fx - cosine * fy + body.mass * (swing - sine * cx + cosine * cy)
         power = reaction * (hold.vx - sine * sx + cosine * sy)

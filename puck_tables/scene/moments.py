@@ -17,6 +17,7 @@ from puck_tables.scene.ingredients import (
     Model,
     Stretch,
     is_astride,
+    surface_now,
 )
 from puck_tables.scene.orthotropic import is_elliptic
 from puck_tables.scene.rest import SLACK, excess_at_rest, held_by_floor, slip_led
@@ -45,7 +46,8 @@ def lost(
     slack = SLACK * stretch.dry.load
     first, last = excess_at_rest(stretch, t, y)[0], excess_at_rest(stretch, t + h, new)[0]
     low, high = 0.0, h if last > slack else math.inf
-    if (stretch.model.surface.spin != 0.0 or is_astride(stretch.dry)) and last <= slack:
+    swings = stretch.model.surface.spin != 0.0 or stretch.model.surface.changes != 0.0
+    if (swings or is_astride(stretch.dry)) and last <= slack:
         step(stretch, t, 0.5 * h, y, scale, work, new)
         middle = excess_at_rest(stretch, t + 0.5 * h, new)[0]
         bend = 2.0 * (first - 2.0 * middle + last)
@@ -184,7 +186,7 @@ def goes_straight(
     ``unit``, s, or the slip not be more than such errors are, ``tolerance``, of ``speed``: nobody
     knows which way it is turned.  What brakes slowly must have settled, and all else be small.
     """
-    if slip_led(stretch.model.hold, stretch.model.surface, y) > 2.0 * REST * speed:
+    if slip_led(stretch.model.hold, surface_now(stretch, t), y) > 2.0 * REST * speed:
         return NO_WAY, 0.0  # a constraint leads it on
     way = stopping(stretch.model.body.radius, y, work)
     brakes, mass = -way[3], stretch.model.body.mass

@@ -1,8 +1,8 @@
-"""What a scene gives over time: forces on a puck, and factors on the friction of the floor.
+"""What a scene gives over time: forces on a puck, how the floor moves, factors on its friction.
 
 All that changes under one puck stands in one table, so that steps end at its rows: the time, force
-and torque, the factor on all friction, and one more for every stretch of the floor, its strips and
-then its patches.  A scene without factors has the first four columns only.
+and torque, the velocity and spin of the floor, the factor on all friction, and one more for every
+stretch of the floor, its strips and then its patches.  A scene of forces has the first four only.
 """
 
 from __future__ import annotations
@@ -10,7 +10,16 @@ from __future__ import annotations
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.quantities import FACTOR, FORCE_X, FORCE_Y, TIME, TORQUE
+from puck_tables._core.quantities import (
+    FACTOR,
+    FORCE_X,
+    FORCE_Y,
+    SPEED_X,
+    SPEED_Y,
+    SPIN,
+    TIME,
+    TORQUE,
+)
 from puck_tables._core.read_columns import numbers_of
 from puck_tables.errors import InputError
 from puck_tables.kernels.compile import inlined
@@ -19,7 +28,8 @@ from puck_tables.scene.stretches import stretch_of, stretches_of
 
 MAX_DRIVE = 1 << 26  # bytes of a file of forces
 _MOST_BYTES = 1 << 20  # of one of factors
-ON_ALL, ON_STRETCH = 4, 5  # columns of factors
+FORCED, FLOOR_X, FLOOR_Y, FLOOR_SPIN = 4, 4, 5, 6  # columns of forces alone; of a floor that moves
+ON_ALL, ON_STRETCH = 7, 8  # of factors
 
 
 def drive_of(given: str | Rows) -> FloatArray:
@@ -31,6 +41,21 @@ def drive_of(given: str | Rows) -> FloatArray:
         If it cannot be read, or is no such file.
     """
     numbers = numbers_of(given, (TIME, FORCE_X, FORCE_Y, TORQUE), 3, MAX_DRIVE, "force.over_time")
+    numbers.refuse_unless_ascending("the times")
+    rows = numbers.rows
+    return np.pad(rows, ((0, 0), (0, 4 - rows.shape[1])))
+
+
+def motion_of(floor: Floor) -> FloatArray:
+    """Rows (n, 4) of t, velocity and spin of a floor; they may lack the spin.
+
+    Raises
+    ------
+    InputError
+        If they cannot be read.
+    """
+    columns = (TIME, SPEED_X, SPEED_Y, SPIN)
+    numbers = numbers_of(floor.over_time, columns, 3, MAX_DRIVE, "floor.over_time")
     numbers.refuse_unless_ascending("the times")
     rows = numbers.rows
     return np.pad(rows, ((0, 0), (0, 4 - rows.shape[1])))
@@ -109,16 +134,16 @@ def _on_stretches(floor: Floor, taken: object) -> FloatArray:
 def over_time(floor: Floor, force: Force) -> FloatArray:
     """All that changes over time under a puck, in one table.
 
-    Where something jumps a time stands twice.  Before and after its rows there is no force, and a
-    factor stays what it was.
+    Where something jumps a time stands twice.  Before and after its rows there is no force, and the
+    floor goes on as it did.
 
     Examples
     --------
-    >>> over_time(Floor(grips=[Grip([[0.0, 1.0], [1.0, 0.5]])]), Force())[:, [0, 4, 5]].tolist()
+    >>> over_time(Floor(grips=[Grip([[0.0, 1.0], [1.0, 0.5]])]), Force())[:, [0, 7, 8]].tolist()
     [[0.0, 1.0, 1.0], [1.0, 0.5, 1.0]]
     """
-    drive = drive_of(force.over_time) if force.over_time else np.empty((0, 4))
-    if not floor.grips:
+    drive = drive_of(force.over_time) if force.over_time else np.empty((0, FORCED))
+    if not floor.grips and not floor.over_time:
         return drive
     width = ON_STRETCH + stretches_of(floor)
     tables: list[tuple[int, FloatArray]] = []
@@ -126,6 +151,8 @@ def over_time(floor: Floor, force: Force) -> FloatArray:
         ends = np.zeros((2, 4))
         ends[:, 0] = drive[[0, -1], 0]
         tables.append((1, np.vstack([ends[:1], drive, ends[1:]])))
+    if floor.over_time:
+        tables.append((FLOOR_X, motion_of(floor)))
     for grip in floor.grips:
         tables.append((ON_STRETCH + stretch_of(floor, grip.where), factors_of(grip)))
     rows = []
@@ -158,7 +185,7 @@ def _just(table: FloatArray, t: float, after: bool) -> FloatArray:
 @inlined
 def has_factors(drive: FloatArray) -> bool:
     """Whether friction changes over time."""
-    return drive.shape[1] > ON_ALL and drive.shape[0] > 0
+    return drive.shape[1] > FORCED and drive.shape[0] > 0
 
 
 @inlined
@@ -183,8 +210,30 @@ def given_by(drive: FloatArray, piece: int, t: float) -> tuple[float, float, flo
 
 
 @inlined
-def factor_at(drive: FloatArray, piece: int, column: int, t: float) -> float:
-    """A factor at a time, on the piece that so many rows precede."""
+def rows_passed(tides: FloatArray, first: int, last: int, t: float) -> int:
+    """How many of the rows first … last − 1 have passed."""
+    low, high = first, last
+    while low < high:
+        middle = (low + high) // 2
+        if tides[middle, 0] <= t:
+            low = middle + 1
+        else:
+            high = middle
+    return low - first
+
+
+@inlined
+def rate_at(drive: FloatArray, piece: int, column: int) -> float:
+    """How fast a column changes on a piece, 1/s."""
+    if piece == 0 or piece == len(drive):
+        return 0.0
+    h = drive[piece, 0] - drive[piece - 1, 0]
+    return (drive[piece, column] - drive[piece - 1, column]) / h if h > 0.0 else 0.0
+
+
+@inlined
+def held_at(drive: FloatArray, piece: int, column: int, t: float) -> float:
+    """What a column is at a time, on the piece that so many rows precede; held before and after."""
     if piece == 0 or piece == len(drive):
         return drive[max(piece - 1, 0), column]
     one, two = drive[piece - 1, column], drive[piece, column]

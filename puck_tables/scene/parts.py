@@ -103,6 +103,14 @@ class Floor:
     velocity: tuple[float, float] = of("pair", (0.0, 0.0), "m/s", doc="of a belt", acts="")
     turning: float = of("number", 0.0, "rad/s", doc="spin of a turntable", acts="turntable")
     centre: tuple[float, float] = of("pair", (0.0, 0.0), "m", doc="of the turntable", acts="")
+    over_time: str | Rows = of(
+        "rows",
+        "",
+        file="",
+        doc="CSV or rows of t, vx, vy and perhaps spin, straight between, in place of velocity and "
+        "turning: a tray that shakes",
+        acts="moving floor",
+    )
     strips: Strips | None = of("part", None, part=Strips)
     patches: tuple[Patch, ...] = of("parts", (), part=Patch, table="patch")
     grips: tuple[Grip, ...] = of("parts", (), part=Grip, table="grip")

@@ -36,6 +36,7 @@ from puck_tables.scene.ingredients import (
     is_astride,
     is_over_belts,
     put_at,
+    surface_now,
 )
 from puck_tables.scene.orthotropic import ellipse_in, elliptic_demand, is_elliptic
 
@@ -161,9 +162,11 @@ def excess_at_rest(stretch: Stretch, t: float, y: FloatArray) -> Yield:
     """
     model = stretch.model
     body = model.body
-    sx, sy, turning = floor_velocity(model.surface, y[X], y[Y])
-    ax, ay = carried_along(model.surface, sx, sy)
+    surface = surface_now(stretch, t)
+    sx, sy, turning = floor_velocity(surface, y[X], y[Y])
+    ax, ay = carried_along(surface, y[X], y[Y], sx, sy)
     gx, gy, torque = given_force(model.forces, stretch.piece, t)
+    torque -= body.inertia * surface.turn
     fx, fy = gx - body.mass * ax, gy - body.mass * ay
     dry = at_slip_zero(dry_at(stretch.dry, model.forces.drive, stretch.piece, t))
     put_at(dry, y[X], y[Y], y[THETA])

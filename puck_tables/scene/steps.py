@@ -21,7 +21,6 @@ from puck_tables.scene.ingredients import (
     RAIL,
     SLIDES,
     Hold,
-    Model,
     Stretch,
     Surface,
     carried_along,
@@ -54,10 +53,12 @@ def _put_right(hold: Hold, surface: Surface, t: float, y: FloatArray) -> None:
 
 
 @inlined
-def accelerations(model: Model, work: FloatArray, row: int) -> tuple[float, float, float]:
+def accelerations(
+    surface: Surface, y: FloatArray, work: FloatArray, row: int
+) -> tuple[float, float, float]:  # fmt: skip
     """Those of the centre in the laboratory and of the spin, by a row of rates of the state."""
-    cx, cy = carried_along(model.surface, work[row, X], work[row, Y])
-    return work[row, VX] + cx, work[row, VY] + cy, work[row, SPIN]
+    cx, cy = carried_along(surface, y[X], y[Y], work[row, X], work[row, Y])
+    return work[row, VX] + cx, work[row, VY] + cy, work[row, SPIN] + surface.turn
 
 
 @inner
@@ -86,8 +87,8 @@ def step(
     model = stretch.model
     if stretch.mode == CARRIED:
         new[VX] = new[VY] = new[SPIN] = 0.0
-        if model.surface.spin == 0.0:  # straight on: what looks like an error is rounding
-            error = 0.0
+        if model.surface.spin == 0.0 and model.surface.changes == 0.0:
+            error = 0.0  # straight on: what looks like an error is rounding
     elif stretch.mode == SLIDES and model.hold.kind != FREE:
         _put_right(model.hold, model.surface, t + h, new)
     return error

@@ -84,7 +84,7 @@ def refuse_endless(scene: SceneSpec) -> None:
     if scene.time is not None:
         return
     floor = scene.floor
-    moves = bool(belts_of(floor).any()) or floor.turning != 0.0
+    moves = bool(belts_of(floor).any()) or floor.turning != 0.0 or bool(floor.over_time)
     for number, piece in enumerate(pieces_of(scene)):
         under = frictions_under(scene, piece)
         grips = any(under) or bool(piece.path)
@@ -163,7 +163,7 @@ def is_integrated(scene: SceneSpec, piece: PieceSpec, friction: float) -> bool:
     """
     drags, floor = scene.drag != Drag(), scene.floor
     unlike = bool(floor.law) or floor.orthotropic is not None or flight_error(scene) < TABLE_ERROR
-    unlike = unlike or piece.shape is not None or bool(floor.grips)
+    unlike = unlike or piece.shape is not None or bool(floor.grips) or bool(floor.over_time)
     rough = friction > 0.0 and (drags or unlike or not has_closed_forms(piece, friction))
     turns = floor.turning != 0.0 and (friction > 0.0 or drags)
     more = floor.slope > 0.0 or piece.force != Force() or piece.constraint is not None
@@ -269,6 +269,8 @@ def _of_one(scene: SceneSpec, piece: PieceSpec, path: str) -> Iterator[str]:
             yield f"{path}.{error}"
     hold, alone = piece.constraint, f"{path}." if scene.pucks else ""
     yield from misfits(piece.launch, hold, scene.floor, alone)
+    if hold is not None and scene.floor.over_time:
+        yield f"{path}.constraint: not known beside floor.over_time; leave one out"
     if hold is not None and has_belts(scene.floor):
         yield (
             f"{path}.constraint: not known on belts of several velocities, floor.strips or "

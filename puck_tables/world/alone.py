@@ -6,10 +6,10 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
-from puck_tables.scene.friction import VX, VY, at_slip_zero, dry_friction, size
+from puck_tables.scene.friction import VX, VY, X, Y, at_slip_zero, dry_friction, size
 from puck_tables.scene.ingredients import carried_along
-from puck_tables.scene.over_time import ON_ALL, given_by
-from puck_tables.world.footing import dry_now, over_floor
+from puck_tables.scene.over_time import FORCED, given_by, rows_passed
+from puck_tables.world.footing import dry_now, floor_of, over_floor
 from puck_tables.world.game import Game, Whole
 from puck_tables.world.holds import led
 from puck_tables.world.layout import (
@@ -22,19 +22,6 @@ from puck_tables.world.layout import (
     TWIST,
     dragged,
 )
-
-
-@inlined
-def rows_passed(tides: FloatArray, first: int, last: int, t: float) -> int:
-    """How many of the rows first … last − 1 of forces over time have passed."""
-    low, high = first, last
-    while low < high:
-        middle = (low + high) // 2
-        if tides[middle, 0] <= t:
-            low = middle + 1
-        else:
-            high = middle
-    return low - first
 
 
 @inlined
@@ -62,9 +49,10 @@ def acceleration(game: Game, i: int, t: float, state: FloatArray) -> tuple[float
     ax, ay, turn = pull_on(game.discs, game.tides, game.spans, i, passed, t)
     ux, uy, w = over_floor(game.surface, disc, state)
     if size(ux, uy, w) == 0.0:
-        cx, cy = carried_along(game.surface, state[VX], state[VY])
+        floor = floor_of(game.surface, disc)
+        cx, cy = carried_along(floor, state[X], state[Y], state[VX], state[VY])
         push, holds = math.hypot(ax - cx, ay - cy), disc[DECEL]
-        if push > 0.0 and game.tides.shape[1] > ON_ALL:
+        if push > 0.0 and game.tides.shape[1] > FORCED:
             dry = dry_now(
                 game.regions, game.discs, game.tides, game.spans, i, passed, t, state
             )  # fmt: skip

@@ -140,7 +140,7 @@ def _follow_all(
                 ends.states[run, i],
             )  # fmt: skip
             ends.in_play[run, i] = 0.0 if game.kinds[i] == GONE else 1.0
-            slip = least_slip(game.surface, game.regions, game.discs, i, ends.states[run, i])
+            slip = least_slip(game, i, ends.states[run, i], at)
             ends.carried[run, i] = ends.in_play[run, i] if slip <= at_rest_below(game) else 0.0
         if watch[0] < 0:
             rows[0] = last

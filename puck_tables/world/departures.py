@@ -33,7 +33,14 @@ from puck_tables.world.flight import (
     start_flight,
     state_at,
 )
-from puck_tables.world.footing import choose_belt, floor_of, ground_span, off_border, step_onto
+from puck_tables.world.footing import (
+    choose_belt,
+    floor_of,
+    ground_span,
+    move_floor,
+    off_border,
+    step_onto,
+)
 from puck_tables.world.game import (
     APPROACH,
     AT_X,
@@ -117,7 +124,8 @@ def desk_for(game: Game) -> FloatArray | None:
 
 @inlined
 def locate(game: Game, i: int, t: float, room: Room) -> None:
-    """The state of a disc now."""
+    """The state of a disc now, and how its floor moves."""
+    move_floor(game.surface, game.discs, game.tides, game.spans, i, t)
     state_at(
         game.kinds[i], game.flights[i], game.discs[i], game.curves, game.pieces, t, room.work,
         room.states[i],

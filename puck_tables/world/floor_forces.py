@@ -8,9 +8,9 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import kernel, patience
 from puck_tables.scene.friction import SPIN, VX, VY, dry_friction
 from puck_tables.scene.ground import OVER_X, OVER_Y
+from puck_tables.scene.over_time import rows_passed
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.stretches import has_belts
-from puck_tables.world.alone import rows_passed
 from puck_tables.world.footing import dry_now
 from puck_tables.world.game import Game
 from puck_tables.world.layout import RADIUS, REGION

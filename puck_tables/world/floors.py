@@ -53,7 +53,7 @@ def floors_of(scene: SceneSpec, pieces: list[PieceSpec], fastest: float) -> Floa
     rows = []
     for place in range(len(frictions[0])):
         for piece, given in zip(pieces, frictions, strict=True):
-            unheld = by_slip or _is_summed(scene, piece)
+            unheld = by_slip or bool(scene.floor.over_time) or _is_summed(scene, piece)
             how = NOT_HELD if unheld else float(is_integrated(scene, piece, given[place]))
             rows.append(_row(scene, piece, given[place], how))
     if has_several(scene):

@@ -35,11 +35,17 @@ from puck_tables.scene.ingredients import (
     dry_at,
     floor_velocity,
     put_at,
+    surface_at,
 )
 from puck_tables.scene.orthotropic import is_elliptic
+from puck_tables.scene.over_time import rows_passed
 from puck_tables.scene.patches import ASTRIDE, INSIDE, OUTSIDE, distance_to
 from puck_tables.world.game import Game, Whole
 from puck_tables.world.layout import (
+    BELT_AX,
+    BELT_AY,
+    BELT_SPIN,
+    BELT_TURN,
     BELT_X,
     BELT_Y,
     DECEL,
@@ -59,7 +65,23 @@ SURE = 1.0 - 1e-9  # of the last slip that a friction law knows: whoever is fast
 @inlined
 def floor_of(surface: Surface, disc: FloatArray) -> Surface:
     """How the floor moves that a disc is on."""
-    return Surface(disc[BELT_X], disc[BELT_Y], surface.cx, surface.cy, surface.spin)
+    return Surface(
+        disc[BELT_X], disc[BELT_Y], surface.cx, surface.cy, disc[BELT_SPIN], disc[BELT_AX],
+        disc[BELT_AY], disc[BELT_TURN], surface.changes,
+    )  # fmt: skip
+
+
+@inlined
+def move_floor(
+    surface: Surface, discs: FloatArray, tides: FloatArray, spans: Whole, i: int, t: float
+) -> None:  # fmt: skip
+    """Let the floor under a disc move as it does at a time."""
+    first, last = spans[i, 0], spans[i, 1]
+    if surface.changes != 0.0 and first < last:
+        passed, disc = rows_passed(tides, first, last, t), discs[i]
+        now = surface_at(surface, tides[first:last], passed, t)
+        disc[BELT_X], disc[BELT_Y], disc[BELT_SPIN] = now.vx, now.vy, now.spin
+        disc[BELT_AX], disc[BELT_AY], disc[BELT_TURN] = now.ax, now.ay, now.turn
 
 
 @inlined
@@ -186,11 +208,12 @@ def nears_another(
 
 
 @inlined
-def least_slip(
-    surface: Surface, regions: Regions, discs: FloatArray, i: int, state: FloatArray
-) -> float:
+def least_slip(game: Game, i: int, state: FloatArray, t: float) -> float:
     """The slip of the rim of a disc over the nearest of the floors under it, anywhere, m/s."""
+    rows = game.tides[game.spans[i, 0] : game.spans[i, 1]]
+    surface = surface_at(game.surface, rows, rows_passed(rows, 0, len(rows), t), t)
     sx, sy, turning = floor_velocity(surface, state[X], state[Y])
+    regions, discs = game.regions, game.discs
     radius = discs[i, RADIUS]
     speed, rim = math.hypot(state[VX] - sx, state[VY] - sy), radius * (state[SPIN] - turning)
     first, last = ground_span(regions, discs, i)
@@ -223,6 +246,8 @@ def lay_down(game: Game, i: int, state: FloatArray) -> None:
         away = off_border(ground, number, state[X], state[Y])
         game.discs[i, LIES + number] = lies_to(away, game.discs[i, RADIUS])
     step_onto(game, i)
+    game.discs[i, BELT_SPIN] = game.surface.spin
+    move_floor(game.surface, game.discs, game.tides, game.spans, i, 0.0)
     choose_belt(game.regions, game.discs, i, state)
 
 
@@ -250,5 +275,5 @@ def step_onto(game: Game, i: int) -> None:
     disc[REGION] = region
     disc[DECEL], disc[DELTA] = game.floors[region, 0], game.floors[region, 1]
     disc[INTEGRATED] = game.floors[region, 2]
-    if not astride:
+    if not astride and game.surface.changes == 0.0:
         disc[BELT_X], disc[BELT_Y] = game.floors[region, 3], game.floors[region, 4]

@@ -24,9 +24,10 @@ from puck_tables.scene.ingredients import (
     carried_along,
     floor_velocity,
 )
+from puck_tables.scene.over_time import rows_passed
 from puck_tables.scene.rest import constrained_yield, free_yield
-from puck_tables.world.alone import pull_on, rows_passed
-from puck_tables.world.footing import dry_now, floor_of, is_over_belts, over_floor
+from puck_tables.world.alone import pull_on
+from puck_tables.world.footing import dry_now, floor_of, is_over_belts, move_floor, over_floor
 from puck_tables.world.group import (
     ARM,
     DRIVEN,
@@ -87,12 +88,26 @@ def rest_on_floor(group: Group, number: int, y: FloatArray) -> None:
 
 
 @inlined
+def _move_floor(group: Group, number: int, t: float) -> None:
+    """Let the floor under a disc move as it does at a time."""
+    move_floor(group.surface, group.discs, group.tides, group.spans, number, t)
+
+
+@inlined
+def slip_at(group: Group, number: int, y: FloatArray, t: float) -> float:
+    """Q of a disc in the state y (6,) over the floor at a time."""
+    _move_floor(group, number, t)
+    return slip_of(group, number, y)
+
+
+@inlined
 def count_rows(group: Group, members: IntArray, t: float, desk: Desk) -> None:
-    """How many rows of the forces over time on the members have passed."""
+    """How many rows over time of the members have passed, and how their floors move."""
     for place in range(members.shape[0]):
         number = members[place]
         first, last = group.spans[number, 0], group.spans[number, 1]
         desk.passed[place] = rows_passed(group.tides, first, last, t)
+        _move_floor(group, number, t)
 
 
 @inlined
@@ -102,6 +117,7 @@ def place_driven(
     """Put the driven members where their films have them at t, and their accelerations."""
     desk.clock[0] = t
     for place in range(members.shape[0]):
+        _move_floor(group, members[place], t)
         if doings[place] == DRIVEN:
             first, last = group.reels[members[place], 0], group.reels[members[place], 1]
             on_piece(group.films[piece_at(group.films, first, last, t)], t, desk.film)
@@ -144,8 +160,10 @@ def act(
         doing, radius = doings[place], disc[RADIUS]
         inverse[0] = inverse[1] = 0.0
         vx, vy, spin = y[place, VX], y[place, VY], y[place, SPIN]
-        cx, cy = carried_along(group.surface, vx, vy)
-        desk.carried[place, 0], desk.carried[place, 1] = cx, cy
+        floor = floor_of(group.surface, disc)
+        cx, cy = carried_along(floor, y[place, X], y[place, Y], vx, vy)
+        carried = desk.carried[place]
+        carried[0], carried[1], carried[2] = cx, cy, floor.turn
         if doing == DRIVEN:
             continue
         px, py, pull = _pull_on(group, members, place, desk)
@@ -153,7 +171,7 @@ def act(
         power[PULL_WORK] += (px * vx + py * vy) / light + pull * spin / turns
         rubbed = is_over_belts(group.regions, group.discs, number)
         if doing == HELD:
-            own[0], own[1], own[2] = cx, cy, 0.0
+            own[0], own[1], own[2] = cx, cy, floor.turn
             if rubbed:
                 dry = _dry_under(group, members, place, y, desk)
                 heat = heat_at_rest(dry.by_speed.table, radius, -px / light, -py / light)
@@ -161,7 +179,6 @@ def act(
                 power[SUPPORT_WORK] += heat
             continue
         inverse[0], inverse[1] = light, turns
-        floor = floor_of(group.surface, disc)
         sx, sy, turning = floor_velocity(floor, y[place, X], y[place, Y])
         ux, uy, w = vx - sx, vy - sy, spin - turning
         dry = _dry_under(group, members, place, y, desk)
@@ -231,8 +248,8 @@ def _asked_of_floor(
     fx, fy, torque = force_of_contacts(desk, count, place)
     px, py, pull = _pull_on(group, members, place, desk)
     light, turns = disc[LIGHTNESS], disc[TURNABILITY]
-    ax, ay = desk.carried[place, 0], desk.carried[place, 1]
-    return fx + (px - ax) / light, fy + (py - ay) / light, torque + pull / turns
+    ax, ay, turn = desk.carried[place, 0], desk.carried[place, 1], desk.carried[place, 2]
+    return fx + (px - ax) / light, fy + (py - ay) / light, torque + (pull - turn) / turns
 
 
 @inlined
@@ -264,7 +281,8 @@ def gain_of(group: Group, number: int, place: int, desk: Desk) -> float:
     """How fast a disc that yields gains speed along its way."""
     way, rate, radius = desk.ways[place], desk.rates[place], group.discs[number, RADIUS]
     ax, ay = rate[0] - desk.carried[place, 0], rate[1] - desk.carried[place, 1]
-    return way[0] * ax + way[1] * ay + radius * radius * way[2] * rate[2]
+    turn = rate[2] - desk.carried[place, 2]
+    return way[0] * ax + way[1] * ay + radius * radius * way[2] * turn
 
 
 @inlined

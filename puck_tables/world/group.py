@@ -93,7 +93,7 @@ class Desk(NamedTuple):
     ``strays`` (2h, 3): see :func:`puck_tables.world.holds.forbid`, ``number`` (1,): how many there
     are; ``rows``, ``columns`` (k, 6), ``owners`` (k, 2), ``order`` (k,), k = 2c + 2h: the
     constraints, and the members concerned; ``matrix``, ``factors`` (k, k), ``vectors`` (4, k);
-    ``modes`` (2, c), ``doings`` (m,): trials; ``film`` (9,); ``carried`` (m, 2): what the floor
+    ``modes`` (2, c), ``doings`` (m,): trials; ``film`` (9,); ``carried`` (m, 3): what the floor
     asks of each acceleration; ``passed`` (m,): rows of forces over time; ``clock`` (1,): now.
     """
 
@@ -152,7 +152,7 @@ def desk_for(members: int, contacts: int, led: int = 0) -> Desk:
         rows=np.zeros((k, 6)), columns=np.zeros((k, 6)), owners=np.zeros((k, 2), np.int64),
         order=np.zeros(k, np.int64), matrix=np.zeros((k, k)), factors=np.zeros((k, k)),
         vectors=np.zeros((4, k)), modes=np.zeros((2, c), np.int64),
-        doings=np.zeros(m, np.int64), film=np.zeros(9), carried=np.zeros((m, 2)),
+        doings=np.zeros(m, np.int64), film=np.zeros(9), carried=np.zeros((m, 3)),
         passed=np.zeros(m, np.int64), clock=np.zeros(1),
     )  # fmt: skip
 

@@ -208,13 +208,16 @@ def _follow(
     discs, surface = shared.discs[members], shared.surface
     pulled = discs[:, [PULL_X, PULL_Y, TWIST]].any(axis=1)
     spans = [span for span in shared.spans[members] if span[0] < span[1]]
-    jumps = [row for span in spans for row in _jumps_in(shared.tides[slice(*span), 0]) if row > t]
+    rows = [shared.tides[slice(*span), 0] for span in spans]
+    kinks = rows if surface.changes != 0.0 else map(_jumps_in, rows)
+    jumps = [row for times in kinks for row in times if row > t]
     # what is pulled or carried may go on for ever, and gets faster than bounds should be
     driven = pulled.any() or any(surface[:2]) or surface.spin != 0.0
     driven = driven or bool(jumps) or discs[:, [HOLD_VX, HOLD_VY]].any()
     horizon = t + 2.0 * scales.speed / scales.rate if driven else math.inf
     horizon = min([horizon, *jumps])
     swings = surface.spin != 0.0 and (pulled.any() or bool(jumps))
+    swings = swings or (surface.changes != 0.0 and bool(jumps))
     # what holds those who lie astride changes as they are carried on
     over = shared.regions.astride[discs[:, REGION].astype(np.int64)].any()
     swings = swings or bool(over and moves_along(surface))

@@ -106,7 +106,7 @@ def led(
 def _swing(surface: Surface, state: FloatArray, ex: float, ey: float) -> float:
     """The acceleration across a blade, by which its side slip over the floor stays."""
     sx, sy, _ = floor_velocity(surface, state[X], state[Y])
-    cx, cy = carried_along(surface, state[VX], state[VY])
+    cx, cy = carried_along(surface, state[X], state[Y], state[VX], state[VY])
     return state[SPIN] * (ex * (state[VX] - sx) + ey * (state[VY] - sy)) + ex * cy - ey * cx
 
 

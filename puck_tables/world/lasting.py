@@ -68,7 +68,7 @@ def _slips_at(game: Game, n: int, t: float, room: Room) -> bool:
     i, state = int(flight[0]), room.one
     state_at(int(flight[1]), flight[2:], game.discs[i], game.curves, game.pieces, t, room.work,
              state)  # fmt: skip
-    return least_slip(game.surface, game.regions, game.discs, i, state) > at_rest_below(game)
+    return least_slip(game, i, state, t) > at_rest_below(game)
 
 
 @inlined

@@ -14,7 +14,7 @@ from puck_tables.scene.by_speed import FARTHER, law_name, speed_law
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.departures import CONCERNED, Room
 from puck_tables.world.floors import slip_of_rim
-from puck_tables.world.footing import SURE, law_goes_to
+from puck_tables.world.footing import SURE, floor_of, law_goes_to
 from puck_tables.world.game import Game, Whole
 from puck_tables.world.layout import LIGHTNESS, RADIUS
 from puck_tables.world.prepare import with_law_up_to
@@ -28,7 +28,9 @@ def refuse_too_fast(game: Game, scene: SceneSpec, name: str, i: int, state: Floa
     InputError
     """
     top = law_goes_to(game.regions)
-    fastest = slip_of_rim(game.discs[i, RADIUS], game.surface, state.tolist())
+    fastest = slip_of_rim(
+        game.discs[i, RADIUS], floor_of(game.surface, game.discs[i]), state.tolist()
+    )
     if fastest > top and isinstance(speed_law(scene), SpeedLaw):
         raise InputError(
             f"{name}: its rim would slip at {fastest:.6g} m/s, and the friction law "
@@ -50,7 +52,9 @@ def with_law_for(
     if top == math.inf:
         return game
     for i in np.flatnonzero(room.marks == CONCERNED):
-        fastest = slip_of_rim(game.discs[i, RADIUS], game.surface, room.states[i].tolist())
+        fastest = slip_of_rim(
+            game.discs[i, RADIUS], floor_of(game.surface, game.discs[i]), room.states[i].tolist()
+        )
         if game.discs[i, LIGHTNESS] == 0.0 or fastest < SURE * top:
             continue
         if isinstance(speed_law(scene), SpeedLaw):

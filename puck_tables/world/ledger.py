@@ -15,7 +15,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel, patience
 from puck_tables.scene.friction import SPIN, VX, VY
-from puck_tables.world.alone import rows_passed
+from puck_tables.scene.over_time import rows_passed
 from puck_tables.world.departures import Room
 from puck_tables.world.flight import DAMPED, DRIFT_X, DRIFT_Y, GONE, PATH, START, STILL, state_at
 from puck_tables.world.game import (

@@ -45,16 +45,19 @@ from puck_tables.scene.ingredients import (
     Hold,
     Model,
     Stretch,
+    Surface,
     floor_velocity,
     is_astride,
     is_over_belts,
+    surface_at,
+    surface_now,
 )
 from puck_tables.scene.moments import NOTHING, REST, cut_short, goes_straight, lost, rests_on
+from puck_tables.scene.over_time import rows_passed
 from puck_tables.scene.standstill import from_standstill
 from puck_tables.scene.step_size import follow_scales, up_to_the_stop
 from puck_tables.scene.steps import accelerations, step
 from puck_tables.world import works
-from puck_tables.world.alone import rows_passed
 from puck_tables.world.footing import (
     choose_belt,
     dry_under,
@@ -167,6 +170,13 @@ def model_of(game: Game, i: int) -> Model:
 
 
 @inlined
+def _surface_at(model: Model, t: float) -> Surface:
+    """How the floor moves at a time."""
+    drive = model.forces.drive
+    return surface_at(model.surface, drive, rows_passed(drive, 0, len(drive), t), t)
+
+
+@inlined
 def _is_pulled(model: Model) -> bool:
     """Whether a force acts that is given."""
     forces = model.forces
@@ -174,9 +184,11 @@ def _is_pulled(model: Model) -> bool:
 
 
 @inlined
-def _swings(model: Model, dry: Dry) -> bool:
+def _swings(model: Model, dry: Dry, rows: int) -> bool:
     """Whether what the floor has to do for a puck at rest on it changes as it is carried."""
     surface = model.surface
+    if surface.changes != 0.0 and rows < len(model.forces.drive):
+        return True
     turns = surface.spin != 0.0 and _is_pulled(model)
     if is_over_belts(dry) and is_rubbed(dry.by_speed.table, model.body.radius):
         return True  # it gets warm
@@ -198,7 +210,9 @@ def _horizon(game: Game, model: Model, t: float) -> float:
 
 
 @inlined
-def _lay_out(game: Game, i: int, model: Model, state: FloatArray, tol: float, desk: Desk) -> None:
+def _lay_out(
+    game: Game, i: int, model: Model, t: float, state: FloatArray, tol: float, desk: Desk
+) -> None:  # fmt: skip
     """The state at the start, relative to the floor, and the scales of errors."""
     body, speed = model.body, game.pace[0]
     length, energy = speed * speed / game.pace[1], body.mass * speed * speed
@@ -209,18 +223,19 @@ def _lay_out(game: Game, i: int, model: Model, state: FloatArray, tol: float, de
     desk.scale[THETA] = length / body.radius
     desk.scale[SPIN] = speed / (slow * body.radius)
     follow_scales(desk.scale, tol, body, desk.y)
-    to_laboratory(model, desk.y, -1.0)
+    to_laboratory(_surface_at(model, t), desk.y, -1.0)
 
 
 @inlined
-def _write_piece(model: Model, begin: float, h: float, row: FloatArray, desk: Desk) -> None:
+def _write_piece(stretch: Stretch, begin: float, h: float, row: FloatArray, desk: Desk) -> None:
     """A step as a piece of the path; the rates at its ends are kept."""
     for n in range(ROW):
         desk.ends[0, n], desk.ends[1, n] = desk.stages[0, n], desk.stages[STAGES - 1, n]
     row[BEGINS], row[DURATION] = begin, h
     for end in range(2):
         state = desk.y if end == 0 else desk.new
-        ax, ay, turn = accelerations(model, desk.ends, end)
+        floor = surface_now(stretch, begin + end * h)
+        ax, ay, turn = accelerations(floor, state, desk.ends, end)
         first = PLACES + 9 * end
         for n in range(3):
             row[first + n], row[first + 3 + n] = state[n], desk.ends[end, n]
@@ -256,13 +271,14 @@ def _misfit(
     friction magnifies that, by half a step.
     """
     on_piece(piece, t + 0.5 * h, desk.place)
-    trial, place, scale, model = desk.trial, desk.place, desk.scale, stretch.model
+    trial, place, scale = desk.trial, desk.place, desk.scale
+    floor = surface_now(stretch, t + 0.5 * h)
     largest = 0.0
     if stretch.newton > 0.0:
         error = step(stretch, t, 0.5 * h, desk.y, scale, desk.stages, trial)
         if not error < math.inf:
             return math.inf
-        to_laboratory(model, trial, 1.0)
+        to_laboratory(floor, trial, 1.0)
         for n in range(GIVEN):
             largest = max(largest, abs(place[n] - trial[n]) / scale[n])
         for n in range(GIVEN, SIZE):
@@ -270,9 +286,9 @@ def _misfit(
         return largest / (COARSER * tol)
     for n in range(GIVEN):
         trial[n] = place[n]
-    to_laboratory(model, trial, -1.0)
+    to_laboratory(floor, trial, -1.0)
     rates(stretch, t + 0.5 * h, trial, desk.middle, FIRST)
-    acts = accelerations(model, desk.middle, 0)
+    acts = accelerations(floor, trial, desk.middle, 0)
     for n in range(3):
         gap = h * abs(place[6 + n] - acts[n])
         largest = max(largest, _PLACE * h * gap / scale[n], _RATE * gap / scale[VX + n])
@@ -304,9 +320,11 @@ def _leads_off(game: Game, i: int, desk: Desk) -> bool:
 
 
 @inlined
-def _longest(stretch: Stretch, h: float, q: float, speed: float, desk: Desk) -> float:
+def _longest(
+    stretch: Stretch, t: float, h: float, q: float, speed: float, desk: Desk
+) -> float:  # fmt: skip
     """A step where the slip is about to end, or may turn; at rest, where what holds it changes."""
-    y, surface, radius = desk.y, stretch.model.surface, stretch.model.body.radius
+    y, surface, radius = desk.y, surface_now(stretch, t), stretch.model.body.radius
     if stretch.mode == SLIDES and stretch.dry.load > 0.0:
         pull, least = slip_rate(radius, desk.stages), REST * speed
         h = up_to_the_stop(stretch, h, q, least, pull, _NEAR, y, desk.stages)
@@ -378,9 +396,9 @@ def _go_on_from(model: Model, tol: float, desk: Desk) -> None:
 
 
 @inlined
-def _put_down(model: Model, state: FloatArray, desk: Desk) -> None:
+def _put_down(model: Model, t: float, state: FloatArray, desk: Desk) -> None:
     """Where it rests, in the laboratory, into ``state`` (6,)."""
-    to_laboratory(model, desk.y, 1.0)
+    to_laboratory(_surface_at(model, t), desk.y, 1.0)
     for n in range(GIVEN):
         state[n] = desk.y[n]
 
@@ -400,7 +418,7 @@ def follow_alone(
     y, new, stages = desk.y, desk.new, desk.stages
     speed, unit, radius = game.pace[0], game.pace[0] / game.pace[1], model.body.radius
     tol, drive = max(game.pace[2], FINEST), model.forces.drive
-    _lay_out(game, i, model, state, tol, desk)
+    _lay_out(game, i, model, t, state, tol, desk)
     slow = max(1.0, 2.0 * model.body.inertia / (model.body.mass * radius * radius))
     straight, horizon = _LAST * math.sqrt(tol) * speed, _horizon(game, model, t)
     now, passed, h, count, mode, way = t, 0.0, _BEGIN * unit, 0, SLIDES, NO_WAY
@@ -420,7 +438,7 @@ def follow_alone(
                 if mode == SLIDES and count == 0 and slow_q > q:
                     q = _goes_on(Stretch(model, dry, rows, SLIDES, NO_WAY, 0.0), now, vx, vy, spin,
                                  q, y, stages)  # fmt: skip
-                rests = mode == CARRIED and not _swings(model, dry)
+                rests = mode == CARRIED and not _swings(model, dry, rows)
                 rests = rests and rests_on(model, dry, rows, y)
                 turns = (mode == CARRIED) != (before == CARRIED)
                 if rests or (turns and count > 0 and now > t):
@@ -438,7 +456,7 @@ def follow_alone(
                 mode, h, newton = STOPS, -q / way[3], 0.0
                 stretch = Stretch(model, dry, rows, mode, way, newton)
                 rates(stretch, now, y, stages, FIRST)
-        h = _longest(stretch, h, q, speed, desk)
+        h = _longest(stretch, now, h, q, speed, desk)
         landed = now + (1.0 if mode == STOPS else 1.1) * h >= target
         whole = target - now if landed else h
         error = step(stretch, now, whole, y, desk.scale, stages, new)
@@ -457,7 +475,7 @@ def follow_alone(
             length, slips = _is_carried(stretch, now, length, desk)
         landed = landed and stuck == NOTHING and not slips
         piece = game.pieces[game.counts[N_PIECES] + count]
-        _write_piece(model, now, length, piece, desk)
+        _write_piece(stretch, now, length, piece, desk)
         coarse = _misfit(stretch, now, length, piece, tol, desk)
         longest = _piece_for(coarse, length) if length > _BRIEF * unit else math.inf
         if coarse > 1.0 and longest < length:
@@ -478,5 +496,5 @@ def follow_alone(
         known = not settle and model.hold.kind == FREE
     if count > 0 and now > t:
         return True, now, count
-    _put_down(model, state, desk)
+    _put_down(model, now, state, desk)
     return rests, math.inf, 0

@@ -12,7 +12,14 @@ from puck_tables.errors import InputError
 from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.holds import allowed_velocity
 from puck_tables.scene.ingredients import RAIL, Surface, hold_of
-from puck_tables.scene.over_time import ON_ALL, over_time
+from puck_tables.scene.over_time import (
+    FLOOR_SPIN,
+    FLOOR_X,
+    FLOOR_Y,
+    FORCED,
+    motion_of,
+    over_time,
+)
 from puck_tables.scene.parts import Wall
 from puck_tables.scene.pieces import Arc, PieceSpec, Post
 from puck_tables.scene.scene_spec import SceneSpec
@@ -108,7 +115,10 @@ def prepared(scene: SceneSpec) -> Start:
     discs, states = np.zeros((count, layout.DISC_COLUMNS + lies)), np.zeros((count, 6))
     belts = belts_of(scene.floor)
     fastest_belt = belts[np.hypot(*belts.T).argmax()].tolist()
-    surface = Surface(*fastest_belt, *scene.floor.centre, scene.floor.turning)
+    surface = Surface(*fastest_belt, *scene.floor.centre, scene.floor.turning, 0.0, 0.0, 0.0, 0.0)
+    if scene.floor.over_time:
+        *velocity, spin = motion_of(scene.floor)[-1, 1:].tolist()  # it goes on so
+        surface = surface._replace(vx=velocity[0], vy=velocity[1], spin=spin, changes=1.0)
     spans, tides = np.zeros((count, 2), np.int64), []
     drives, ways = np.zeros((count, 2), np.int64), [np.zeros((0, PIECE_COLUMNS))]
     launches = []
@@ -140,7 +150,7 @@ def prepared(scene: SceneSpec) -> Start:
         regions=regions,
         floors=floors,
         surface=surface,
-        tides=np.vstack(tides) if tides else np.empty((0, ON_ALL)),
+        tides=np.vstack(tides) if tides else np.empty((0, FORCED)),
         spans=spans,
         rims=rims,
         obstacles=_obstacles(scene, called, makes),
@@ -241,7 +251,7 @@ def fastest(game: Game, states: FloatArray) -> float:
         float(np.hypot(np.hypot(states[:, VX], states[:, VY]), rims).max()),
         float(np.hypot(*driven.T).max(initial=0.0)), float(launched.max(initial=0.0)),
         float(led.max(initial=0.0)),
-    ) + float(np.hypot(*floor[:, :2].T).max(initial=0.0))  # fmt: skip
+    ) + max(float(np.hypot(*floor[:, :2].T).max(initial=0.0)), _swiftest(game, states))  # fmt: skip
 
 
 def scales_of(game: Game, speeds: FloatArray) -> FloatArray:
@@ -258,9 +268,30 @@ def scales_of(game: Game, speeds: FloatArray) -> FloatArray:
     _refuse_far(game, float(speeds.max(initial=0.0)), radius)
     steady = max(float(game.floors[:, 0].max()), _strongest(game))
     turning = abs(game.surface.spin)
-    steady = max(steady, turning * float(speeds.max(initial=0.0)))
+    steady = max(steady, turning * float(speeds.max(initial=0.0)), _shaken(game))
     speeds = np.where(speeds > 0.0, speeds, np.sqrt(steady * radius))
     return np.stack([speeds, np.where(steady > 0.0, steady, speeds**2 / radius)], axis=1)
+
+
+def _swiftest(game: Game, states: FloatArray) -> float:
+    """The largest velocity that a floor over time ever has under these states, m/s."""
+    if game.surface.changes == 0.0:
+        return 0.0
+    far = np.hypot(states[:, 0] - game.surface.cx, states[:, 1] - game.surface.cy).max()
+    rows = game.tides
+    speeds = np.hypot(rows[:, FLOOR_X], rows[:, FLOOR_Y]) + far * np.abs(rows[:, FLOOR_SPIN])
+    return float(speeds.max(initial=0.0))
+
+
+def _shaken(game: Game) -> float:
+    """The largest acceleration of a floor over time at its centre, m/s²."""
+    if game.surface.changes == 0.0:
+        return 0.0
+    free = int(np.argmax(np.diff(game.spans)[:, 0]))  # what is driven has no rows
+    rows = game.tides[slice(*game.spans[free])]
+    steps = np.diff(rows[:, 0])
+    rates = np.hypot(*np.diff(rows[:, [FLOOR_X, FLOOR_Y]], axis=0)[steps > 0.0].T)
+    return float((rates / steps[steps > 0.0]).max(initial=0.0))
 
 
 def _refuse_far(game: Game, speed: float, radius: float) -> None:
@@ -284,8 +315,8 @@ def _strongest(game: Game) -> float:
     counts = game.spans[:, 1] - game.spans[:, 0]
     discs, forced = game.discs, np.repeat(np.arange(len(counts)), counts)
     of = np.concatenate([np.arange(len(counts)), forced])  # each without its force, and with it
-    given = game.tides[:, :ON_ALL]
-    rows, discs = np.vstack([np.zeros((len(counts), ON_ALL)), given]), discs[of]
+    given = game.tides[:, :FORCED]
+    rows, discs = np.vstack([np.zeros((len(counts), FORCED)), given]), discs[of]
     light, turns = discs[:, layout.LIGHTNESS], discs[:, layout.TURNABILITY]
     ax = discs[:, layout.PULL_X] + light * rows[:, 1]
     ay = discs[:, layout.PULL_Y] + light * rows[:, 2]

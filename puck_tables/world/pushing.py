@@ -18,7 +18,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel, patience
 from puck_tables.scene.friction import VX, VY, X, Y
 from puck_tables.world.footing import is_over, moves_along, nears_another, room_on_floor
-from puck_tables.world.forces import can_rest, count_rows, slip_of
+from puck_tables.world.forces import can_rest, count_rows, slip_at
 from puck_tables.world.group import (
     DRIVEN,
     FULL,
@@ -325,7 +325,8 @@ def follow(
             write_piece(pieces[place, count], start + passed, length, place, desk)
             before, after = y[place], new[place]
             number = members[place]
-            q, earlier = slip_of(group, number, after), slip_of(group, number, before)
+            earlier = slip_at(group, number, before, t)
+            q = slip_at(group, number, after, t + length)
             if doings[place] == YIELDS and (q > small_slip(scales) or q < earlier):
                 doings[place], begun = MOVES, True
             elif how == TIME_UP and doings[place] == MOVES and can_rest(group, number):

@@ -20,7 +20,7 @@ from puck_tables.scene.equations import (
 )
 from puck_tables.scene.friction import X, Y
 from puck_tables.scene.ingredients import FREE, NO_WAY, SLIDES, Stretch
-from puck_tables.world.alone import rows_passed
+from puck_tables.scene.over_time import rows_passed
 from puck_tables.world.footing import dry_under, ground_span, lies_to, off_border, step_onto
 from puck_tables.world.game import Game
 from puck_tables.world.lasting import at_rest_below
@@ -64,7 +64,7 @@ def _fill(
                 away = off_border(game.regions.ground[first:last], number, y[X], y[Y])
                 game.discs[i, LIES + number] = lies_to(away, game.discs[i, RADIUS])
             step_onto(game, i)
-            to_laboratory(model, y, -1.0)
+            to_laboratory(model.surface, y, -1.0)
             slips = slip_speed(game.discs[i, RADIUS], y) > at_rest_below(game)
             if in_play[n, i] == 0.0 or not slips:
                 continue

@@ -39,12 +39,14 @@ def _told(game: g.Game) -> list[Rest]:
     flights, kinds = game.history[: len(discs), 2:], game.history[: len(discs), 1]
     starts, stops = flights[:, START], np.where(kinds == LOOKED_UP, flights[:, UNTIL], ends)
     near, rows = at_rest_below(game), game.discs
-    resting: npt.NDArray[np.bool_] = np.less_equal(slips_over(game, discs, states), near)
+    both = np.stack([starts, ends], 1)
+    resting: npt.NDArray[np.bool_] = np.less_equal(slips_over(game, discs, states, both), near)
     moves: npt.NDArray[np.bool_] = np.logical_not(resting.all(axis=1))
     unsure = np.flatnonzero((kinds == PATH) & ~moves & (starts < ends))  # perhaps rest to rest
     if unsure.size:
         middles = np.minimum([middle_of(game, n) for n in unsure.tolist()], ends[unsure])
-        moves[unsure] = slips_over(game, discs[unsure], states_on(game, unsure, middles)) > near
+        there = states_on(game, unsure, middles)
+        moves[unsure] = slips_over(game, discs[unsure], there, middles) > near
     # none of what is driven, or what nothing can hold
     held = (rows[:, LIGHTNESS] > 0.0) & ((rows[:, DECEL] > 0.0) | (rows[:, INTEGRATED] > 0.0))
     own = np.argsort(discs, kind="stable")
@@ -71,19 +73,24 @@ def _told(game: g.Game) -> list[Rest]:
     ]
 
 
-def slips_over(game: g.Game, discs: g.Whole, states: FloatArray) -> FloatArray:
-    """How fast the rims of discs (n,) slip over the floor at states (n, …, 6), m/s."""
-    slips = np.empty(states.shape[:-1])
-    _fill_slips(game, discs, states.reshape(len(discs), -1, STATE), slips.reshape(len(discs), -1))
+def slips_over(game: g.Game, discs: g.Whole, states: FloatArray, times: FloatArray) -> FloatArray:
+    """How fast the rims of discs (n,) slip over the floor at states (n, …, 6) and times, m/s."""
+    slips, count = np.empty(states.shape[:-1]), len(discs)
+    _fill_slips(
+        game, discs, states.reshape(count, -1, STATE), times.reshape(count, -1),
+        slips.reshape(count, -1),
+    )  # fmt: skip
     return slips
 
 
 @kernel
-def _fill_slips(game: g.Game, discs: g.Whole, states: FloatArray, out: FloatArray) -> None:
+def _fill_slips(
+    game: g.Game, discs: g.Whole, states: FloatArray, times: FloatArray, out: FloatArray
+) -> None:
     patience(states.shape[0])
     for n in range(states.shape[0]):
         for k in range(states.shape[1]):
-            out[n, k] = least_slip(game.surface, game.regions, game.discs, discs[n], states[n, k])
+            out[n, k] = least_slip(game, discs[n], states[n, k], times[n, k])
 
 
 def floor_under(floor: Floor, x: float, y: float) -> str:

@@ -10,8 +10,9 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.motion.tableaus import DORMAND_PRINCE
-from puck_tables.scene.friction import size
+from puck_tables.scene.friction import X, Y, size
 from puck_tables.scene.ingredients import carried_along
+from puck_tables.world.footing import floor_of
 from puck_tables.world.forces import (
     act,
     can_rest,
@@ -93,7 +94,7 @@ def step(
                     total += _A[stage, j] * stages[j, place, i]
                 new[place, i] = y[place, i] + h * total
         rates_at(group, members, modes, doings, t + _C[stage] * h, new, stage, scales, desk)
-    largest, turning = 0.0, group.surface.spin != 0.0
+    largest, turning = 0.0, group.surface.spin != 0.0 or group.surface.changes != 0.0
     for place in range(members.shape[0]):
         if doings[place] == HELD:
             rest_on_floor(group, members[place], new[place])
@@ -132,9 +133,10 @@ def longest_step(group: Group, members: IntArray, doings: IntArray, desk: Desk) 
         number = members[place]
         if doings[place] == MOVES and can_rest(group, number):
             radius, rate = group.discs[number, RADIUS], desk.stages[0, place]
-            cx, cy = carried_along(group.surface, rate[0], rate[1])
-            pull = size(rate[3] - cx, rate[4] - cy, radius * rate[5])
-            q = slip_of(group, number, desk.states[0, place])
+            floor, y = floor_of(group.surface, group.discs[number]), desk.states[0, place]
+            cx, cy = carried_along(floor, y[X], y[Y], rate[0], rate[1])
+            pull = size(rate[3] - cx, rate[4] - cy, radius * (rate[5] - floor.turn))
+            q = slip_of(group, number, y)
             disc = group.discs[number]
             turns = max(disc[LIGHTNESS], 0.5 * radius * radius * disc[TURNABILITY])
             pull = max(pull / _NEAR, load_on(group, number) * turns / _TURN)

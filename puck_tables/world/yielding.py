@@ -46,7 +46,7 @@ def _turn(group: Group, number: int, place: int, radius: float, desk: Desk) -> t
     gain = gain_of(group, number, place, desk)
     ox = desk.rates[place, 0] - desk.carried[place, 0] - gain * way[0]
     oy = desk.rates[place, 1] - desk.carried[place, 1] - gain * way[1]
-    ow = radius * (desk.rates[place, 2] - gain * way[2])
+    ow = radius * (desk.rates[place, 2] - desk.carried[place, 2] - gain * way[2])
     off = size(ox, oy, ow)
     if off > 0.97 * pace[1]:
         pace[0] = max(_PACE, 0.5 * pace[0]) if off > 1.001 * pace[1] else 1.3 * pace[0]
