@@ -113,6 +113,18 @@ def test_across_two_belts_that_run_apart_a_body_turns() -> None:
 
 
 @pytest.mark.parametrize("name", SEVERAL)
+def test_astride_from_the_start_on_a_belt_is_astride_on_a_floor_that_stands(name: str) -> None:
+    puck, strips, ends = pt.Puck(**PUCKS[name]), pt.Strips((0.0,), (0.2, 0.1)), []
+    for speed in (0.0, 0.3):  # along the border
+        floor = pt.Floor(strips=strips, velocity=(0.0, speed))
+        launch = pt.Launch((0.4, 0.1 + speed), 5.0, (-0.01, 0.0), 0.3)
+        ends.append(
+            last_of(pt.Scene(puck, floor, launch, time=0.2)) - [0, 0.2 * speed, 0, 0, speed, 0]
+        )
+    assert np.abs(ends[1] - ends[0]).max() < 1e-9
+
+
+@pytest.mark.parametrize("name", SEVERAL)
 def test_mirror_images(name: str) -> None:
     puck, turn = pt.Puck(**PUCKS[name], friction=0.2), np.array([1, -1, -1, 1, -1, -1])
     ends = []

@@ -7,6 +7,8 @@ stretch of the floor, its strips and then its patches.  A scene of forces has th
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
@@ -122,11 +124,11 @@ def last_factors(floor: Floor) -> FloatArray:
     return _on_stretches(floor, lambda factors: factors[-1])
 
 
-def _on_stretches(floor: Floor, taken: object) -> FloatArray:
+def _on_stretches(floor: Floor, taken: Callable[[FloatArray], float]) -> FloatArray:
     found = np.ones(stretches_of(floor))
     for grip in floor.grips:
         place = stretch_of(floor, grip.where)
-        factor = taken(factors_of(grip)[:, 1])  # type: ignore[operator]
+        factor = taken(factors_of(grip)[:, 1])
         found[place if place >= 0 else slice(None)] *= factor
     return found
 
@@ -155,7 +157,7 @@ def over_time(floor: Floor, force: Force) -> FloatArray:
         tables.append((FLOOR_X, motion_of(floor)))
     for grip in floor.grips:
         tables.append((ON_STRETCH + stretch_of(floor, grip.where), factors_of(grip)))
-    rows = []
+    rows: list[FloatArray] = []
     for t in np.unique(np.concatenate([table[:, 0] for _, table in tables])).tolist():
         for after in (False, True):
             row = np.ones(width)

@@ -275,5 +275,5 @@ def step_onto(game: Game, i: int) -> None:
     disc[REGION] = region
     disc[DECEL], disc[DELTA] = game.floors[region, 0], game.floors[region, 1]
     disc[INTEGRATED] = game.floors[region, 2]
-    if not astride and game.surface.changes == 0.0:
+    if game.surface.changes == 0.0 and not is_over_belts(game.regions, game.discs, i):
         disc[BELT_X], disc[BELT_Y] = game.floors[region, 3], game.floors[region, 4]

@@ -115,11 +115,12 @@ def prepared(scene: SceneSpec) -> Start:
     discs, states = np.zeros((count, layout.DISC_COLUMNS + lies)), np.zeros((count, 6))
     belts = belts_of(scene.floor)
     fastest_belt = belts[np.hypot(*belts.T).argmax()].tolist()
-    surface = Surface(*fastest_belt, *scene.floor.centre, scene.floor.turning, 0.0, 0.0, 0.0, 0.0)
+    (vx, vy), spin, changes = fastest_belt, scene.floor.turning, 0.0
     if scene.floor.over_time:
-        *velocity, spin = motion_of(scene.floor)[-1, 1:].tolist()  # it goes on so
-        surface = surface._replace(vx=velocity[0], vy=velocity[1], spin=spin, changes=1.0)
-    spans, tides = np.zeros((count, 2), np.int64), []
+        (vx, vy, spin), changes = motion_of(scene.floor)[-1, 1:].tolist(), 1.0  # it goes on so
+    surface = Surface(vx, vy, *scene.floor.centre, spin, 0.0, 0.0, 0.0, changes)
+    spans = np.zeros((count, 2), np.int64)
+    tides: list[FloatArray] = []
     drives, ways = np.zeros((count, 2), np.int64), [np.zeros((0, PIECE_COLUMNS))]
     launches = []
     rims, discs[:, layout.MAKE], makes, called = rims_of(scene, pieces)
