@@ -57,9 +57,9 @@ class Game(NamedTuple):
     """Everything, as arrays: a copy of them is a copy of the world.
 
     ``regions``: the dry friction of every disc everywhere on the floor, see
-    :mod:`puck_tables.world.footing`; ``floors`` what of it stands in its row there (places · n, 3):
-    deceleration, δ, and whether it is integrated, which a disc takes over when it comes there;
-    ``surface``: how the floor moves; ``tides``,
+    :mod:`puck_tables.world.footing`; ``floors`` what of it stands in its row there (places · n, 5):
+    deceleration, δ, whether it is integrated, and the velocity of the floor, which a disc takes
+    over when it comes there; ``surface``: how the floor moves, of belts the fastest; ``tides``,
     ``spans``: see :class:`puck_tables.world.group.Group`; ``rims``: the laws
     by which they meet (:mod:`puck_tables.world.rims`).  ``clock`` (1,): now.  ``group``
     (n,): discs of one number push each other, 0: none; ``held`` (…, 2): their contacts.
