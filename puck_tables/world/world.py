@@ -16,6 +16,7 @@ from puck_tables.errors import InputError, PuckError
 from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.holds import misfits
 from puck_tables.scene.parts import Launch
+from puck_tables.scene.pieces import called_line
 from puck_tables.scene.run import Event, number_of
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import game as g
@@ -51,7 +52,7 @@ from puck_tables.world.lasting import (
 from puck_tables.world.law_range import refuse_too_fast, with_law_for
 from puck_tables.world.layout import LIGHTNESS, RADIUS
 from puck_tables.world.lone import LONGEST
-from puck_tables.world.passings import Passings, called_line
+from puck_tables.world.passings import Passings
 from puck_tables.world.prepare import Start, obstacle_names, prepared, set_pace, shipped_curves
 from puck_tables.world.record import states_at
 
