@@ -16,10 +16,14 @@ Whole = npt.NDArray[np.int64]
 # what comes next for a disc, beside a partner (a disc ≥ 0, an obstacle −1 − k)
 NOTHING, PATH_ENDS, LOOK_AGAIN = 1 << 40, (1 << 40) + 1, (1 << 40) + 2
 
-# events
-IMPACT, CONTACT, PART, POCKETED, OVER_EDGE, REST, STRUCK, ENTERS, LEAVES, OVERHANGS = range(10)
+# events; from PLACED on, as STRUCK, by hand
+(
+    IMPACT, CONTACT, PART, POCKETED, OVER_EDGE, REST, STRUCK, ENTERS, LEAVES, OVERHANGS, PLACED,
+    REMOVED, ADDED, FORCED,
+) = range(14)  # fmt: skip
 EVENTS = (
     "impact", "contact", "part", "pocket", "edge", "rest", "launch", "entry", "exit", "overhang",
+    "placed", "removed", "added", "force",
 )  # fmt: skip
 # columns of an event: what, disc, partner, place of the contact, normal from the disc to its
 # partner, approach and slip before, normal and tangential impulse, energy lost, what launches and
@@ -98,14 +102,24 @@ class Game(NamedTuple):
 
 
 # what never changes: tables, floors and obstacles; in the ground it is written who lies where
-_SHARED = (
-    "floors", "surface", "tides", "spans", "rims", "obstacles", "curves", "launches", "drives",
-)  # fmt: skip
+_SHARED = ("floors", "surface", "tides", "spans", "rims", "obstacles", "curves", "launches")
+_GROWS = ("pieces", "events", "history", "works")  # rows are added after those that are counted
 
 
-def copy_of(game: Game) -> Game:
+def copy_of(game: Game, shared: tuple[str, ...] = _SHARED) -> Game:
     """A game that goes on by itself from here; what never changes both have."""
     parts: dict[str, Any] = game._asdict()
     regions = parts.pop("regions")
-    own = {name: one if name in _SHARED else one.copy() for name, one in parts.items()}
+    own = {name: one if name in shared else one.copy() for name, one in parts.items()}
     return Game(regions=regions._replace(ground=regions.ground.copy()), **own)
+
+
+def kept(game: Game) -> Game:
+    """The game as it is, to go back to: what is added to it later is not counted there."""
+    return copy_of(game, _SHARED + _GROWS)
+
+
+def led_rows(game: Game) -> FloatArray:
+    """The pieces (n, 21) of the ways along which discs are driven."""
+    ways = [game.pieces[first:last] for first, last in game.drives.tolist() if first < last]
+    return np.concatenate([game.pieces[:0], *ways])

@@ -19,6 +19,7 @@ from puck_tables.world.alone import rows_passed
 from puck_tables.world.departures import Room
 from puck_tables.world.flight import DAMPED, DRIFT_X, DRIFT_Y, GONE, PATH, START, STILL, state_at
 from puck_tables.world.game import (
+    ADDED,
     GOT,
     IMPACT,
     LED,
@@ -27,7 +28,9 @@ from puck_tables.world.game import (
     N_HISTORY,
     N_WORKS,
     OVER_EDGE,
+    PLACED,
     POCKETED,
+    REMOVED,
     STRUCK,
     TIME,
     WHAT,
@@ -78,8 +81,8 @@ def _pulled(game: Game, i: int, start: float, t: float, vx: float, vy: float) ->
     for n in range(first + max(rows_passed(game.tides, first, last, start), 1), last):
         one, two = game.tides[n - 1], game.tides[n]
         begin, end = max(one[0], start), min(two[0], t)
-        if begin >= end:
-            break
+        if begin >= end:  # a jump has two rows at one time
+            continue
         share = (0.5 * (begin + end) - one[0]) / (two[0] - one[0])  # straight in between
         fx, fy = one[1] + share * (two[1] - one[1]), one[2] + share * (two[2] - one[2])
         work += (fx * vx + fy * vy) * (end - begin)
@@ -123,9 +126,9 @@ def _add_event(event: FloatArray, ledger: FloatArray) -> None:
     what = int(event[WHAT])
     ledger[IMPACT_HEAT] += event[LOST]
     ledger[SUPPORT_WORK] += event[LED]
-    if what == STRUCK:
+    if what in (STRUCK, PLACED, ADDED):
         ledger[LAUNCHED] += event[GOT]
-    elif what in (POCKETED, OVER_EDGE):
+    elif what in (POCKETED, OVER_EDGE, REMOVED):
         ledger[LEFT] += event[GOT]
     elif what == IMPACT:
         ledger[DRIVE_WORK] += event[GOT]
