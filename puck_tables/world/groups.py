@@ -226,6 +226,8 @@ def _follow(
     # what is pulled or carried may go on for ever, and gets faster than bounds should be
     driven = pulled.any() or any(surface[:2]) or surface.spin != 0.0
     driven = driven or bool(jumps) or discs[:, [HOLD_VX, HOLD_VY]].any()
+    ends = [shared.films[first, DURATION] for first, last in shared.reels[members] if first < last]
+    driven = driven or any(duration >= FOR_EVER for duration in ends)  # by hand, until it turns
     horizon = t + 2.0 * scales.speed / scales.rate if driven else math.inf
     horizon = min([horizon, *jumps])
     swings = surface.spin != 0.0 and (pulled.any() or bool(jumps))

@@ -10,7 +10,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.scene.forces import drive_of
-from puck_tables.scene.friction import SPIN, VX, VY
+from puck_tables.scene.friction import SPIN, THETA, VX, VY
 from puck_tables.scene.holds import allowed_velocity
 from puck_tables.scene.ingredients import RAIL, Surface, hold_of
 from puck_tables.scene.parts import Wall
@@ -123,6 +123,7 @@ def prepared(scene: SceneSpec, order: Whole | None = None) -> Start:
             first = sum(map(len, ways))
             ways.append(pieces_along(rows_of(piece.path)))
             drives[i] = first, first + len(ways[-1])
+            states[i, THETA] = ways[-1][0, FIRST + THETA]
         elif launch.time > 0.0:
             launches.append([launch.time, i, *velocity, launch.spin])
         else:
