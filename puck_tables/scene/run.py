@@ -34,7 +34,8 @@ class Event(NamedTuple):
     stick (it comes to rest on the floor), slip (it leaves that rest); impact; contact, which lasts;
     entry (its rim comes over a border or patch), exit (it has left it); pocket or edge, where it
     leaves play; overhang, where its rim comes over an edge (from there to the edge it is carried as
-    if nothing of it hung in the air); launch.
+    if nothing of it hung in the air); launch; and of a world into which a hand reaches placed,
+    removed, added, force.
 
     ``partner``: the puck, wall, post, arc, pocket, edge, border or patch that it meets, such as
     'wall 0'; of stick and slip the floor, or the strip under its centre.  ``x``, ``y`` m: where;

@@ -104,19 +104,20 @@ class Game(NamedTuple):
 # what never changes: tables, floors and obstacles; in the ground it is written who lies where
 _SHARED = ("floors", "surface", "tides", "spans", "rims", "obstacles", "curves", "launches")
 _GROWS = ("pieces", "events", "history", "works")  # rows are added after those that are counted
+_CHANGES = tuple(sorted({*Game._fields} - {*_SHARED, *_GROWS, "regions"}))
 
 
-def copy_of(game: Game, shared: tuple[str, ...] = _SHARED) -> Game:
+def copy_of(game: Game) -> Game:
     """A game that goes on by itself from here; what never changes both have."""
     parts: dict[str, Any] = game._asdict()
     regions = parts.pop("regions")
-    own = {name: one if name in shared else one.copy() for name, one in parts.items()}
+    own = {name: one if name in _SHARED else one.copy() for name, one in parts.items()}
     return Game(regions=regions._replace(ground=regions.ground.copy()), **own)
 
 
 def kept(game: Game) -> Game:
     """The game as it is, to go back to: what is added to it later is not counted there."""
-    return copy_of(game, _SHARED + _GROWS)
+    return game._replace(**{name: getattr(game, name).copy() for name in _CHANGES})
 
 
 def led_rows(game: Game) -> FloatArray:

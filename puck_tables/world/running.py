@@ -35,7 +35,7 @@ from puck_tables.world.layout import EDGE, KIND, POCKET
 from puck_tables.world.lone import LONGEST
 from puck_tables.world.prepare import Start, obstacle_names, prepared, shipped_curves
 from puck_tables.world.pushed_back import Told
-from puck_tables.world.record import states_at
+from puck_tables.world.record import states_at, states_now
 from puck_tables.world.setting_off import (
     CROWDED,
     FULL,
@@ -140,7 +140,12 @@ class Running:
 
     def state(self) -> FloatArray:
         """X, y (m), angle (rad), vx, vy (m/s), spin (rad/s) of every puck now, array (pucks, 6)."""
-        return self._states(np.array([self.time]))[0]
+        state: FloatArray = self._all_now()[self._place]
+        return state
+
+    def _all_now(self) -> FloatArray:
+        """The same in the order of the engine."""
+        return states_now(self._game, self._room.work)
 
     def at(self, time: float) -> FloatArray:
         """The same at any time: as it was, or as it will be if nobody interferes.

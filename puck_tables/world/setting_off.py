@@ -23,7 +23,7 @@ from puck_tables.world.departures import (
 )
 from puck_tables.world.flight import GONE, STILL
 from puck_tables.world.footing import lay_down
-from puck_tables.world.game import GOT, N_CONTACTS, N_EVENTS, REMOVED, Game
+from puck_tables.world.game import GOT, N_CONTACTS, N_EVENTS, PLACED, REMOVED, Game
 from puck_tables.world.layout import (
     ARC,
     EDGE,
@@ -177,8 +177,8 @@ def _put_down(game: Game, i: int, what: int, t: float, moved: bool, room: Room) 
 def put(game: Game, what: int, t: float, room: Room, desk: FloatArray | None) -> int:
     """Those marked get the states ``room.before``, as by an impact from outside; how it ended.
 
-    NaN in them stays as it is.  REMOVED: they leave play.  MISPLACED: nothing was changed, for one
-    would overlap, see :func:`_overlaps`.
+    NaN in them stays as it is; nothing is PLACED where it is.  REMOVED: they leave play.
+    MISPLACED: nothing was changed, for one would overlap, see :func:`_overlaps`.
     """
     count, moves = game.discs.shape[0], False
     for i in range(count):
@@ -186,12 +186,17 @@ def put(game: Game, what: int, t: float, room: Room, desk: FloatArray | None) ->
         if room.marks[i] != CONCERNED:
             continue
         locate(game, i, t, room)
-        room.shares[i] = _PUT
+        changed, moved = what != PLACED, game.kinds[i] == GONE and what != REMOVED
         for column in range(6):
-            if math.isnan(room.before[i, column]):
+            given = room.before[i, column]
+            if math.isnan(given) or given == room.states[i, column]:
                 room.before[i, column] = room.states[i, column]
-            elif column <= Y:
-                room.shares[i], moves = _MOVED, True
+            else:
+                changed, moved = True, moved or column <= Y
+        if moved:
+            room.shares[i], moves = _MOVED, True
+        elif changed:
+            room.shares[i] = _PUT
     if moves and _overlaps(game, t, room):
         return MISPLACED
     for i in range(count):  # and whoever pushes them, or is pushed by them

@@ -31,7 +31,6 @@ from puck_tables.world.layout import HOLD, LIGHTNESS, RADIUS
 from puck_tables.world.paths import FOR_EVER
 from puck_tables.world.prepare import set_pace
 from puck_tables.world.pushed_back import Told, pushed_back
-from puck_tables.world.record import states_at
 from puck_tables.world.running import Running
 
 
@@ -136,10 +135,8 @@ class World(Running):
         """
         i = int(self._place[number_of(puck, self.names)])
         row = _row(position, angle, velocity, spin)
-        if self._game.kinds[i] == GONE:
-            if position is None:
-                raise InputError(f"{self._name(i)} is not in play: give the position to put it at")
-            row = np.where(np.isnan(row), self._all_now()[i], row)
+        if self._game.kinds[i] == GONE and position is None:
+            raise InputError(f"{self._name(i)} is not in play: give the position to put it at")
         self._put(g.PLACED, row[None], [i])
 
     def set_state(self, states: npt.ArrayLike) -> None:
@@ -172,12 +169,11 @@ class World(Running):
                 f"states must be rows of 6 numbers for {len(self.names)} pucks, got the shape "
                 f"{rows.shape}"
             )
-        rows, now = rows[self._order], self._all_now()
-        same = rows == now
-        changed = np.flatnonzero(~same.all(axis=1))
-        same[self._game.kinds == GONE] = False
-        if len(changed):
-            self._put(g.PLACED, np.where(same, np.nan, rows)[changed], changed)
+        rows, discs = rows[self._order], np.arange(len(rows))
+        gone = self._game.kinds == GONE
+        if gone.any():
+            discs = discs[~gone | (rows != self._all_now()).any(axis=1)]
+        self._put(g.PLACED, rows[discs], discs)
 
     def remove(self, puck: int | str) -> None:
         """Take a puck out of play, now; an event says "removed".  :meth:`place` brings it back.
@@ -346,11 +342,6 @@ class World(Running):
             set_pace(self._game, self._all_now())
             self._put(g.FORCED, _row(None, None, None, None)[None], [i])
 
-    def _all_now(self) -> FloatArray:
-        """States (n, 6) in the order of the engine."""
-        states: FloatArray = states_at(self._game, np.array([self.time]))[0]
-        return states
-
     def _in_play(self, puck: int | str) -> int:
         """The disc of a puck."""
         i = int(self._place[number_of(puck, self.names)])
@@ -396,13 +387,14 @@ class World(Running):
             return
         if sure and known.all() and not (_slips(own, rows) > game.pace[0]).any():
             return
-        states = self._all_now()
+        now = self._all_now()
+        states = now.copy()
         states[discs] = np.where(np.isnan(rows), states[discs], rows)
         for i, is_held, is_led in zip(discs, held.tolist(), led.tolist(), strict=True):
             if is_held:
                 refuse_off_hold(game, i, states[i], self._name(i))
                 self._refuse_misfit(int(self._order[i]), states[i])
-            if is_led:
+            if is_led and (states[i] != now[i]).any():
                 self._lead(i, states[i], FOR_EVER)
             elif law:
                 refuse_too_fast(game, self.scene, self._name(i), i, states[i])
