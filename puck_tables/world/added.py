@@ -35,9 +35,8 @@ def board_with(scene: SceneSpec, piece: PieceSpec) -> SceneSpec:
     if not isinstance(piece, PieceSpec):
         raise InputError(f"puck must be a Piece, got a {type(piece).__name__}")
     there = pieces_of(scene)
-    alone = replace(
-        scene, puck=None, pucks=(piece,), launch=Launch(), force=Force(), constraint=None, rims=()
-    ).single()
+    bare: dict[str, Any] = {"puck": None, "launch": Launch(), "force": Force(), "constraint": None}
+    alone = replace(scene, **bare, pucks=(piece,), rims=()).single()
     own = alone.pucks[0]
     if own.name and own.name in {one.name for one in there}:
         raise InputError(f"puck.name = {own.name!r}: there is one of that name")
@@ -51,7 +50,7 @@ def board_with(scene: SceneSpec, piece: PieceSpec) -> SceneSpec:
         )
     board = object.__new__(type(scene))
     parts = {name: part for name, part in vars(scene).items() if name != "_pieces"}
-    parts |= {name: getattr(alone, name) for name in ("puck", "launch", "force", "constraint")}
+    parts |= {name: getattr(alone, name) for name in bare}
     vars(board).update(parts | {"pucks": (*there, own)})
     return board
 
@@ -96,6 +95,7 @@ def with_puck(game: Game, board: SceneSpec, order: Whole, now: float) -> tuple[S
         "hangs": np.vstack([game.hangs, np.zeros_like(new.hangs[:1])]),
         "history": np.vstack([game.history, np.zeros_like(game.history[:1])]),
         "counts": game.counts.copy(),
+        "pace": np.append(np.maximum(game.pace[:2], new.pace[:2]), game.pace[2:]),
     }
     before = np.concatenate([[count, GONE], flight])  # until now it was not there
     longer["history"][game.counts[N_HISTORY]] = before

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -40,10 +41,12 @@ _FULL_TURN = 2.0 * math.pi
 
 def led_state(game: Game, i: int) -> FloatArray:
     """The state (6,) of a disc that is driven, now."""
-    flight, state = game.flights[i], [0.0] * 9
+    flight = game.flights[i]
     if game.kinds[i] != PATH:
         return np.array([*flight[PLACE_X : ANGLE + 1].tolist(), 0.0, 0.0, 0.0])
-    on_piece(game.pieces[int(flight[FIRST_PIECE])].tolist(), float(game.clock[0]), state)
+    piece: Any = game.pieces[int(flight[FIRST_PIECE])].tolist()  # lists are faster, from Python
+    state: Any = [0.0] * 9
+    on_piece(piece, float(game.clock[0]), state)
     return np.array(state[:6])
 
 
@@ -139,9 +142,9 @@ def _forces_at(rows: FloatArray, times: FloatArray, after: bool) -> FloatArray:
 def with_integrated(game: Game, scene: SceneSpec, order: Whole, discs: Whole) -> Game:
     """With motions of discs that are integrated from now on, wherever they are."""
     count = len(game.discs)
-    floors = game.floors.reshape(-1, count, game.floors.shape[1]).copy()
-    floors[:, discs, 2] = np.maximum(floors[:, discs, 2], INTEGRATED)
-    floors = floors.reshape(game.floors.shape)
+    floors = game.floors.copy()
+    how = floors.reshape(-1, count, floors.shape[1])[:, :, 2]
+    how[:, discs] = np.maximum(how[:, discs], INTEGRATED)
     regions = game.regions
     if not game.floors[:, 2].any():  # its friction is asked for often from now on
         pieces = [pieces_of(scene)[number] for number in order]

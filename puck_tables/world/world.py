@@ -260,15 +260,15 @@ class World(Running):
         """
         i = self._led(puck)
         turn, state, duration = real("spin", spin, "rad/s"), led_state(self._game, i), FOR_EVER
-        if (velocity is None) == (towards is None) or (towards is None) != (speed is None):
-            raise InputError("give a velocity, or towards, where to, with a speed")
-        if velocity is not None:
+        if velocity is not None and towards is None and speed is None:
             state[VX : VY + 1] = _pair("velocity", velocity, "m/s")
-        else:
+        elif velocity is None and towards is not None and speed is not None:
             way = _pair("towards", towards, "m") - state[:2]
             far, fast = math.hypot(*way), positive("speed", speed, "m/s")
             duration = far / fast
             state[VX : VY + 1] = fast / far * way if far > 0.0 else 0.0
+        else:
+            raise InputError("give a velocity, or towards, where to, with a speed")
         state[SPIN] = turn
         with self._or_as_before():
             self._lead(i, state, duration)
