@@ -54,6 +54,7 @@ if TYPE_CHECKING:
         Edge,
         Floor,
         Force,
+        Grip,
         Lateral,
         Launch,
         Orthotropic,
@@ -107,7 +108,8 @@ _HOMES = {  # names of this package by the modules that hold them
     "reference.floor_friction": "FloorFriction floor_friction",
     "result": "Result",
     "scene.driven": "path_along",
-    "scene.parts": "Constraint Drag Edge Floor Force Lateral Launch Orthotropic Patch Strips Wall",
+    "scene.parts": "Constraint Drag Edge Floor Force Grip Lateral Launch Orthotropic Patch Strips "
+    "Wall",
     "scene.pieces": "Arc Pocket Post Rim",
     "scene.restitution": "Plastic RestitutionTable Viscoelastic",
     "scene.run": "Run",
@@ -134,7 +136,7 @@ _HOMES = {  # names of this package by the modules that hold them
 __all__ = [
     "AccuracyError", "Aim", "Aims", "Answer", "Arc", "Base", "BoardAim", "Camera", "CheckReport",
     "ClusterError", "Comparison", "Constraint", "ContactError", "CurlingLaw", "Drag", "Edge",
-    "Fit", "Floor", "FloorFriction", "Force", "Forecast", "Hold", "InputError", "Lateral",
+    "Fit", "Floor", "FloorFriction", "Force", "Forecast", "Grip", "Hold", "InputError", "Lateral",
     "Launch", "Law", "LimitSurface", "Map", "MissingExtraError", "Normal", "Orthotropic",
     "OutputError", "Patch", "Piece", "Plastic", "Pocket", "Post", "PowerLaw", "Puck", "PuckError",
     "Push", "RestitutionTable", "Result", "Rim", "Run", "Sample", "Scene", "Source", "SpeedLaw",

@@ -229,6 +229,7 @@ def _of_scenes() -> dict[str, Door]:
             "kind": "blade", "angle": 0.0, "reach": 0.0, "velocity": TWO, "side_slip": 0.1}),
         "Orthotropic": (pt.Orthotropic, {"friction": (0.1, 0.2), "direction": 0.1}),
         "Strips": (pt.Strips, {"borders": (0.0,), "friction": (0.1, 0.2), "direction": 0.1}),
+        "Grip": (pt.Grip, {"over_time": ((0.0, 1.0), (1.0, 0.5)), "where": "floor"}),
         "Patch": (pt.Patch, {"friction": 0.1, "centre": TWO, "radius": 0.1, "corners": ()}),
         "Piece": (pt.Piece, {
             "radius": 0.03, "friction": 0.1, "name": "a", "colour": "", "launch": pt.Launch()}),

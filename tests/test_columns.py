@@ -16,7 +16,7 @@ from puck_tables._core.read_columns import numbers_of
 from puck_tables.contact.laws import law_of
 from puck_tables.errors import InputError
 from puck_tables.reference.log import times_in
-from puck_tables.scene.forces import drive_of
+from puck_tables.scene.over_time import drive_of
 from puck_tables.scene.restitution import restitution_law
 from puck_tables.world.drive import rows_of
 

@@ -40,6 +40,9 @@ ROUND = {"floor": {"patch": [{"friction": 0.1, "centre": [0.15, 0.05], "radius":
 POLYGON = {"floor": {"patch": [
     {"friction": 0.1, "corners": [[0.06, -0.1], [0.2, -0.1], [0.1, 0.2]]},
 ]}}  # fmt: skip
+WET = {"floor": {**STRIPS["floor"], "grip": [
+    {"over_time": [[0.0, 1.0], [0.1, 0.5]], "where": "strip 0"},
+]}}  # fmt: skip
 WALL = {"wall": [{"point": [0.1, 0.0], "normal": [-1.0, 0.1], "tangential": 0.2}]}
 EDGE = {"edge": [{"point": [0.05, 0.0], "normal": [-1.0, 0.0]}]}
 HELD = {"launch": {"velocity": None}, "time": 0.5}
@@ -69,6 +72,8 @@ CASES: dict[str, tuple[dict[str, Any], Any]] = {
     "floor.patch[0].centre": (ROUND, [0.3, 0.05]),
     "floor.patch[0].radius": (ROUND, 0.07),
     "floor.patch[0].corners": (POLYGON, [[0.05, -0.1], [0.2, -0.1], [0.1, 0.2]]),
+    "floor.grip[0].over_time": (WET, [[0.0, 1.0], [0.1, 0.2]]),
+    "floor.grip[0].where": (WET, "floor"),
     "floor.orthotropic.friction": (GRAINED, [0.2, 0.4]),
     "floor.orthotropic.direction": (GRAINED, 1.0),
     "floor.law.static": (BY_NAME, 0.4),

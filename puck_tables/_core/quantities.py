@@ -73,10 +73,14 @@ FRICTION = InputColumn(
 RESTITUTION = InputColumn("restitution", "e cor restitution", "ratio")
 RADIUS = InputColumn("radius", f"r radius radii rho ρ x radial {' '.join(_DIAMETERS)}", "radius")
 PRESSURE = InputColumn("pressure", "p pressure w load stress druck pression", "any")
+FACTOR = InputColumn("factor", "factor factors share multiplier faktor facteur", "ratio")
 FORCE_X = InputColumn("force along x", "Fx fx forcex xforce", "force")
 FORCE_Y = InputColumn("force along y", "Fy fy forcey yforce", "force")
 TORQUE = InputColumn("torque", "torque moment m mz tz tau drehmoment", "torque")
-ALL = (TIME, X, Y, ANGLE, SPEED, FRICTION, RESTITUTION, RADIUS, PRESSURE, FORCE_X, FORCE_Y, TORQUE)
+ALL = (
+    TIME, X, Y, ANGLE, SPEED, FRICTION, RESTITUTION, RADIUS, PRESSURE, FACTOR, FORCE_X, FORCE_Y,
+    TORQUE,
+)  # fmt: skip
 
 
 def known_as(text: str, columns: Sequence[InputColumn]) -> InputColumn | None:

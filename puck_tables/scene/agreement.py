@@ -9,9 +9,9 @@ from puck_tables.contact.friction_laws import NAMED, FrictionLaw
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import ContactError, InputError
 from puck_tables.scene.floor_patches import patch_faults
-from puck_tables.scene.forces import drive_of
 from puck_tables.scene.holds import allowed_velocity
 from puck_tables.scene.orthotropic import LEAST_RATIO
+from puck_tables.scene.over_time import drive_of, grip_faults, largest_factors
 from puck_tables.scene.parts import Edge, Floor, Rows, Wall
 
 if TYPE_CHECKING:
@@ -29,6 +29,9 @@ def floor_faults(scene: SceneSpec) -> list[str]:
             faults.append(
                 f"floor.law and floor.{name}: each takes the place of puck.friction, give one"
             )
+    faults += grip_faults(scene.floor)
+    if faults:
+        return faults
     if scene.puck.shape is not None:
         return faults + (bad_strips(scene.floor) or _bad_under_base(scene)) + _bad_rows(scene)
     if scene.floor.law and (scene.puck.pressure != "uniform"):
@@ -46,34 +49,43 @@ def _bad_under_base(scene: SceneSpec) -> list[str]:
                 f"floor.{name}: not known under a base that is not round; give a radius in place "
                 "of puck.base, or leave it out"
             ]
-    if floor.strips is not None and puck.shape is not None:
+    name = "floor.grip" if floor.grips else "floor.strips"
+    if (floor.strips is not None or floor.grips) and puck.shape is not None and not floor.law:
         try:
-            puck.shape.refuse_lift(max(scene.frictions), puck.height)
+            puck.shape.refuse_lift(_strongest(scene), puck.height)
         except ContactError as error:
-            return [f"floor.strips: {error}"]
+            return [f"{name}: {error}"]
     return []
 
 
+def _strongest(scene: SceneSpec) -> float:
+    """The largest coefficient that friction ever has under the puck."""
+    return float((largest_factors(scene.floor) * scene.frictions).max())
+
+
 def _bad_astride(scene: SceneSpec) -> list[str]:
-    """Why friction is not known where the base lies on several of the floor."""
+    """Why friction is not known that is summed over the base: on several, or over time."""
     floor, law = scene.floor, scene.puck.body.law
-    if floor.strips is None and not floor.patches:
+    if floor.law or floor.orthotropic is not None:
+        return []
+    if floor.strips is None and not floor.patches and not floor.grips:
         return []
     name = "floor.strips" if floor.strips is not None else "floor.patch"
+    name = "floor.grip" if floor.grips else name
     if law.profile is not None and len(law.profile[0]) > _MOST_ROWS:
         return [
-            f"{name}: friction under a base on two frictions takes a tabulated puck.pressure of up "
+            f"{name}: friction that is summed over the base takes a tabulated puck.pressure of up "
             f"to {_MOST_ROWS} rows, it has {len(law.profile[0])}: give fewer"
         ]
-    if max(scene.frictions) > _GRIPS:
+    if _strongest(scene) > _GRIPS:
         return [
-            f"{name}: a friction of {max(scene.frictions):g} stops a rim within its first "
+            f"{name}: a friction of {_strongest(scene):g} stops a rim within its first "
             f"micrometres, which takes minutes to follow; give at most {_GRIPS:g}"
         ]
-    highest = max(scene.heights)
+    highest = 2.0 * _strongest(scene) * scene.puck.height / scene.puck.radius
     if highest > law.delta_max * (1.0 + 1e-12):
         return [
-            f"{name}: friction under a base on two frictions is known for one that is loaded "
+            f"{name}: friction that is summed over the base is known for one that is loaded "
             f"everywhere, delta = 2 f h / r up to {law.delta_max:g}; its largest f makes "
             f"{highest:g}: give a lower puck.height or less friction"
         ]
@@ -122,7 +134,8 @@ def _bad_axes(scene: SceneSpec) -> list[str]:
             f"{name}.friction = {list(two.friction)}: one must be at least {LEAST_RATIO:g} of the "
             "other"
         )
-    tall = 2.0 * max(two.friction) * puck.height / puck.radius
+    most = max(two.friction) * float(largest_factors(floor)[0])
+    tall = 2.0 * most * puck.height / puck.radius
     if tall > 1.0:
         faults.append(
             f"{name}: 2 f h/r = {tall:.4g} with the larger f must be at most 1, above part of the "

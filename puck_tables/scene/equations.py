@@ -25,6 +25,7 @@ from puck_tables.scene.friction import (
     VY,
     X,
     Y,
+    dry_friction,
     dry_friction_here,
     size,
 )
@@ -35,10 +36,12 @@ from puck_tables.scene.ingredients import (
     Model,
     Stretch,
     carried_along,
+    dry_at,
     floor_velocity,
     held,
     put_at,
 )
+from puck_tables.scene.over_time import has_factors
 
 SIZE = 10
 GIVEN, DRY, VISCOUS, SUPPORT = range(6, SIZE)
@@ -128,7 +131,12 @@ def rates_here(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: 
         out[row, LAMBDA], out[row, LAMBDA + 1] = 0.0, 0.0
         return
     put_at(stretch.dry, y[X], y[Y], y[THETA])
-    hx, hy, hm, heat = dry_friction_here(stretch.dry, body.radius, y[VX], y[VY], y[SPIN])
+    drive = model.forces.drive
+    if has_factors(drive):
+        dry = dry_at(stretch.dry, drive, stretch.piece, t)
+        hx, hy, hm, heat = dry_friction(dry, body.radius, y[VX], y[VY], y[SPIN])
+    else:
+        hx, hy, hm, heat = dry_friction_here(stretch.dry, body.radius, y[VX], y[VY], y[SPIN])
     dx, dy, dm, warmth = drag_force(model.forces, y[VX], y[VY], y[SPIN])
     fx, fy, fm = gx + hx + dx, gy + hy + dy, gm + hm + dm
     rx, ry, rm, first, second, power = held(model.hold, body, model.surface, y, fx, fy, fm)

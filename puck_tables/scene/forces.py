@@ -7,28 +7,18 @@ All of them in one record, zero where a scene lacks them.  A new force is its en
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
-
-import numpy as np
+from typing import NamedTuple
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.quantities import FORCE_X, FORCE_Y, TIME, TORQUE
-from puck_tables._core.read_columns import numbers_of
 from puck_tables.kernels.compile import inlined
-from puck_tables.scene.parts import Rows
-
-if TYPE_CHECKING:
-    pass
-
-
-MAX_DRIVE = 1 << 26  # bytes of a file of forces
+from puck_tables.scene.over_time import given_by
 
 
 class Forces(NamedTuple):
     """Numbers of the forces.
 
-    ``x``, ``y`` N, ``torque`` N m: constant, with gravity along the slope; ``drive``: rows (n, 4)
-    of time, force and torque over time, straight between the rows and nothing before and after;
+    ``x``, ``y`` N, ``torque`` N m: constant, with gravity along the slope; ``drive``: rows of
+    force and torque over time, and of friction (:mod:`puck_tables.scene.over_time`);
     ``sliding`` kg/s, ``spinning`` N m s: drag per relative speed and spin; ``quadratic`` kg/m,
     ``quadratic_spin`` N m s²: per their squares; ``across`` N, ``by_speed``, ``by_spin``: strength
     and exponents of a lateral force.
@@ -45,20 +35,6 @@ class Forces(NamedTuple):
     across: float
     by_speed: float
     by_spin: float
-
-
-def drive_of(given: str | Rows) -> FloatArray:
-    """Rows (n, 4) of t, Fx, Fy and torque, given or from a CSV file; they may lack the torque.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read, or is no such file.
-    """
-    numbers = numbers_of(given, (TIME, FORCE_X, FORCE_Y, TORQUE), 3, MAX_DRIVE, "force.over_time")
-    numbers.refuse_unless_ascending("the times")
-    rows = numbers.rows
-    return np.pad(rows, ((0, 0), (0, 4 - rows.shape[1])))
 
 
 @inlined
@@ -105,17 +81,3 @@ def given_force(forces: Forces, piece: int, t: float) -> tuple[float, float, flo
     """Given force and torque at a time, on the piece of the drive that ``piece`` rows precede."""
     fx, fy, torque = given_by(forces.drive, piece, t)
     return forces.x + fx, forces.y + fy, forces.torque + torque
-
-
-@inlined
-def given_by(drive: FloatArray, piece: int, t: float) -> tuple[float, float, float]:
-    """Force and torque of rows over time alone, of which so many have passed."""
-    if piece == 0 or piece == len(drive):
-        return 0.0, 0.0, 0.0
-    i, j = piece - 1, piece
-    share = (t - drive[i, 0]) / (drive[j, 0] - drive[i, 0])
-    return (
-        drive[i, 1] + share * (drive[j, 1] - drive[i, 1]),
-        drive[i, 2] + share * (drive[j, 2] - drive[i, 2]),
-        drive[i, 3] + share * (drive[j, 3] - drive[i, 3]),
-    )

@@ -11,13 +11,14 @@ from puck_tables.kernels.base_friction import room_for
 from puck_tables.kernels.base_sums import UNIFORM
 from puck_tables.kernels.compile import inlined
 
-# A ground, all in one array, which is quick to hand on: where the centre of the base is, 1 or by
-# how much all friction is taken wrong, what holds for all of it, and how the base is turned,
+# A ground, all in one array, which is quick to hand on: where the centre of the base is, the factor
+# on all friction now, what holds for all of it, and how the base is turned,
 PLACE_X, PLACE_Y, SHARE, LEVER, INNER, ACROSS_X, ACROSS_Y, BORDERS, PATCHES = range(9)
 PRESSURE, PROFILE, ROWS, ROOM, ANGLE = range(9, 14)
 _HEAD = 14
-# the places of its borders, f N between them, a row for each patch (its middle, the radius of a
-# circle about it, the first of its corners, how many (none: it is that circle), and f N there),
+# the places of its borders, f N between them now, f N of all strips and then of all patches where
+# no factor changes it, a row for each patch (its middle, the radius of a
+# circle about it, the first of its corners, how many (none: it is that circle), and f N there now),
 MIDDLE_X, MIDDLE_Y, REACH, CORNER, CORNERS, LOAD = range(6)
 PATCH_COLUMNS = 6
 _ROOM, _ROOM_A_ROW = 48, 22
@@ -57,7 +58,8 @@ class Ground(NamedTuple):
     def packed(self) -> FloatArray:
         """In one array."""
         head = [0.0, 0.0, 1.0, self.lever, self.inner, self.across_x, self.across_y]
-        tables = [self.borders, self.loads, self.patches.ravel(), self.corners.ravel()]
+        whole = np.concatenate([self.loads, self.patches[:, LOAD]])
+        tables = [self.borders, self.loads, whole, self.patches.ravel(), self.corners.ravel()]
         at, rows = _HEAD + sum(table.size for table in tables), len(self.profile)
         pieces = _pieces(self.profile) if rows else np.concatenate([self.base, self.law])
         if self.law.size:
@@ -94,15 +96,21 @@ def load_of(ground: FloatArray, strip: int) -> float:
 
 
 @inlined
+def _patches_in(ground: FloatArray) -> int:
+    """Where the patches begin."""
+    return _HEAD + 3 * int(ground[BORDERS]) + 2 + int(ground[PATCHES])
+
+
+@inlined
 def patch_of(ground: FloatArray, number: int, column: int) -> float:
     """What is known of a patch."""
-    return ground[_HEAD + 2 * int(ground[BORDERS]) + 1 + PATCH_COLUMNS * number + column]
+    return ground[_patches_in(ground) + PATCH_COLUMNS * number + column]
 
 
 @inlined
 def corner_of(ground: FloatArray, number: int) -> tuple[float, float]:
     """A corner of a patch."""
-    first = _HEAD + 2 * int(ground[BORDERS]) + 1 + PATCH_COLUMNS * int(ground[PATCHES])
+    first = _patches_in(ground) + PATCH_COLUMNS * int(ground[PATCHES])
     return ground[first + 2 * number], ground[first + 2 * number + 1]
 
 
@@ -118,3 +126,20 @@ def strip_at(ground: FloatArray, x: float, y: float) -> int:
         else:
             high = middle
     return low
+
+
+@inlined
+def stretches_in(ground: FloatArray) -> int:
+    """How many strips and patches there are."""
+    return int(ground[BORDERS]) + 1 + int(ground[PATCHES])
+
+
+@inlined
+def set_factor(ground: FloatArray, stretch: int, factor: float) -> None:
+    """Let friction on a strip, or after all of them a patch, be so many times what it is."""
+    strips = int(ground[BORDERS]) + 1
+    load = factor * ground[_HEAD + 2 * strips - 1 + stretch]
+    if stretch < strips:
+        ground[_HEAD + strips - 1 + stretch] = load
+    else:
+        ground[_patches_in(ground) + PATCH_COLUMNS * (stretch - strips) + LOAD] = load

@@ -15,7 +15,8 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 from puck_tables.scene.forces import Forces
-from puck_tables.scene.ground import ANGLE, PLACE_X, PLACE_Y
+from puck_tables.scene.ground import ANGLE, PLACE_X, PLACE_Y, SHARE, set_factor, stretches_in
+from puck_tables.scene.over_time import ON_ALL, ON_STRETCH, factor_at, has_factors
 
 if TYPE_CHECKING:
     from puck_tables.scene.parts import Constraint, Launch
@@ -92,6 +93,25 @@ def put_at(dry: Dry, x: float, y: float, angle: float) -> None:
     if is_astride(dry):
         ground = dry.by_speed.table
         ground[PLACE_X], ground[PLACE_Y], ground[ANGLE] = x, y, angle
+
+
+@inlined
+def dry_at(dry: Dry, drive: FloatArray, piece: int, t: float) -> Dry:
+    """The dry friction at a time, on the piece of what is given over time that rows precede."""
+    law, factor = dry.by_speed, 1.0
+    if has_factors(drive):
+        factor = factor_at(drive, piece, ON_ALL, t)
+    height_ratio, normal = factor * law.height_ratio, factor * law.normal
+    if is_astride(dry):
+        height_ratio, normal = law.height_ratio, law.normal
+        if has_factors(drive):
+            law.table[SHARE] = factor
+            for stretch in range(stretches_in(law.table)):
+                set_factor(law.table, stretch, factor_at(drive, piece, ON_STRETCH + stretch, t))
+    return Dry(
+        factor * dry.load, factor * dry.delta, dry.cut,
+        BySpeed(law.table, height_ratio, normal, law.moving),
+    )  # fmt: skip
 
 
 class Surface(NamedTuple):

@@ -45,6 +45,25 @@ class Patch:
 
 
 @dataclass(frozen=True)
+class Grip:
+    """A factor on friction over time: ice that is swept, a floor that gets wet.
+
+    Straight between its rows; before and after them it stays what it was, and where a time stands
+    twice it jumps.
+
+    Examples
+    --------
+    >>> swept = Grip([[0.0, 1.0], [2.0, 0.8]])
+    """
+
+    over_time: str | Rows = of(
+        "rows", file="", doc="CSV or rows of t and a factor on friction, straight between",
+        acts="friction over time",
+    )  # fmt: skip
+    where: str = of("text", "floor", doc="'floor', or 'strip 0', 'patch 0', ...", acts="")
+
+
+@dataclass(frozen=True)
 class Orthotropic:
     """A floor that is rougher one way than the other, as brushed metal, felt and wood are.
 
@@ -76,6 +95,7 @@ class Floor:
     centre: tuple[float, float] = of("pair", (0.0, 0.0), "m", doc="of the turntable", acts="")
     strips: Strips | None = of("part", None, part=Strips)
     patches: tuple[Patch, ...] = of("parts", (), part=Patch, table="patch")
+    grips: tuple[Grip, ...] = of("parts", (), part=Grip, table="grip")
     orthotropic: Orthotropic | None = of("part", None, part=Orthotropic)
     law: str | Rows | FrictionLaw = of(
         "rows",

@@ -31,6 +31,7 @@ from puck_tables.scene.ingredients import (
     Stretch,
     Surface,
     carried_along,
+    dry_at,
     floor_velocity,
     is_astride,
     put_at,
@@ -103,6 +104,11 @@ def demand(
 @inner
 def free_yield(dry: Dry, radius: float, fx: float, fy: float, torque: float, guided: bool) -> Yield:
     """The same where the puck may slip and turn; ``guided``: along the force only."""
+    if dry.load == 0.0:
+        size = math.hypot(math.hypot(fx, fy), torque / radius)
+        if size == 0.0:
+            return 0.0, 1.0, 0.0, 0.0
+        return size, fx / size, fy / size, torque / radius / size / radius
     if is_astride(dry):
         return astride_yield(dry.by_speed.table, dry.load, radius, fx, fy, torque, guided)
     share, heat, ux, uy, w = demand(dry, radius, fx, fy, torque, guided)
@@ -158,7 +164,7 @@ def excess_at_rest(stretch: Stretch, t: float, y: FloatArray) -> Yield:
     ax, ay = carried_along(model.surface, sx, sy)
     gx, gy, torque = given_force(model.forces, stretch.piece, t)
     fx, fy = gx - body.mass * ax, gy - body.mass * ay
-    dry = at_slip_zero(stretch.dry)
+    dry = at_slip_zero(dry_at(stretch.dry, model.forces.drive, stretch.piece, t))
     put_at(dry, y[X], y[Y], y[THETA])
     guided = model.hold.kind != FREE
     if guided:

@@ -38,7 +38,8 @@ def ground_of(scene: SceneSpec, normal: float, law: Moments | None = None) -> Fl
     [0.1, 0.6, 0.2]
     """
     floor, puck = scene.floor, scene.puck
-    if floor.strips is None and not floor.patches and puck.shape is None:
+    one = floor.strips is None and not floor.patches and not floor.grips
+    if one and puck.shape is None:
         return NO_GROUND
     strips = floor.strips
     angle = 0.0 if strips is None else strips.direction

@@ -11,6 +11,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.scene.friction import VX
+from puck_tables.scene.over_time import drive_of, over_time
 from puck_tables.scene.parts import Force, Launch
 from puck_tables.scene.pieces import PieceSpec
 from puck_tables.scene.scene_spec import SceneSpec
@@ -71,8 +72,9 @@ def with_puck(game: Game, board: SceneSpec, order: Whole, now: float) -> tuple[S
     discs[:count, own] = mine
     strips = game.discs[:, layout.REGION] // count
     discs[:count, layout.REGION] = strips * (count + 1) + np.arange(count)
-    rows = new.tides[slice(*new.spans[count])] + np.array([now, 0.0, 0.0, 0.0])
-    tides = np.vstack([game.tides, rows])
+    tides = game.tides
+    if not board.pucks[-1].path:
+        tides = np.vstack([tides, _rows_from(board, now)])
     spans = np.vstack([game.spans, [[len(game.tides), len(tides)]]])
     used, way = int(game.counts[N_PIECES]), new.pieces[slice(*new.drives[count])].copy()
     way[:, BEGINS] += now
@@ -110,3 +112,13 @@ def with_puck(game: Game, board: SceneSpec, order: Whole, now: float) -> tuple[S
     if len(way):
         state[VX:] = 0.0  # it goes on as its way has it
     return Start(board, order, whole, fresh.states), state
+
+
+def _rows_from(board: SceneSpec, now: float) -> FloatArray:
+    """What changes over time under the last puck, whose force counts from now."""
+    own = board.pucks[-1]
+    force = own.force
+    if force.over_time:
+        drive = drive_of(force.over_time) + np.array([now, 0.0, 0.0, 0.0])
+        force = replace(force, over_time=tuple(map(tuple, drive.tolist())))
+    return over_time(board.floor, force)

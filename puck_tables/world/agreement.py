@@ -12,8 +12,8 @@ from puck_tables.errors import InputError
 from puck_tables.motion.body import is_plain
 from puck_tables.scene.agreement import distance, floor_faults
 from puck_tables.scene.by_speed import law_name, speed_law
-from puck_tables.scene.forces import drive_of
 from puck_tables.scene.holds import misfits
+from puck_tables.scene.over_time import drive_of, last_factors
 from puck_tables.scene.parts import Drag, Edge, Force, Launch, Wall
 from puck_tables.scene.pieces import PieceSpec
 from puck_tables.scene.scene_spec import SceneSpec
@@ -85,11 +85,17 @@ def refuse_endless(scene: SceneSpec) -> None:
     floor = scene.floor
     moves = any(floor.velocity) or floor.turning != 0.0
     for number, piece in enumerate(pieces_of(scene)):
-        grips = any(frictions_under(scene, piece)) or bool(piece.path)
+        under = frictions_under(scene, piece)
+        grips = any(under) or bool(piece.path)
         if not grips and floor.law:
             raise InputError(
                 f"{law_name(scene)}: its friction is 0 at slip zero, so that nothing comes to "
                 "rest: give a time"
+            )
+        if grips and not piece.path and not np.multiply(under, last_factors(floor)).any():
+            raise InputError(
+                f"floor.grip: friction is 0 in the end, so that {who(scene, number)} may never "
+                "come to rest: give a time"
             )
         if not grips and not (scene.edges or scene.pockets):
             raise InputError(
@@ -156,7 +162,7 @@ def is_integrated(scene: SceneSpec, piece: PieceSpec, friction: float) -> bool:
     """
     drags, floor = scene.drag != Drag(), scene.floor
     unlike = bool(floor.law) or floor.orthotropic is not None or flight_error(scene) < TABLE_ERROR
-    unlike = unlike or piece.shape is not None
+    unlike = unlike or piece.shape is not None or bool(floor.grips)
     rough = friction > 0.0 and (drags or unlike or not has_closed_forms(piece, friction))
     turns = floor.turning != 0.0 and (friction > 0.0 or drags)
     more = floor.slope > 0.0 or piece.force != Force() or piece.constraint is not None

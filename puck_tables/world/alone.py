@@ -6,10 +6,10 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
-from puck_tables.scene.forces import given_by
-from puck_tables.scene.friction import THETA, VX, VY, X, Y, dry_friction, size
-from puck_tables.scene.ingredients import carried_along, put_at
-from puck_tables.world.footing import dry_under, over_floor
+from puck_tables.scene.friction import VX, VY, at_slip_zero, dry_friction, size
+from puck_tables.scene.ingredients import carried_along
+from puck_tables.scene.over_time import ON_ALL, given_by
+from puck_tables.world.footing import dry_now, over_floor
 from puck_tables.world.game import Game, Whole
 from puck_tables.world.holds import led
 from puck_tables.world.layout import (
@@ -63,12 +63,19 @@ def acceleration(game: Game, i: int, t: float, state: FloatArray) -> tuple[float
     ux, uy, w = over_floor(game.surface, state)
     if size(ux, uy, w) == 0.0:
         cx, cy = carried_along(game.surface, state[VX], state[VY])
-        push = math.hypot(ax - cx, ay - cy)
-        left = 1.0 - disc[DECEL] / push if push > disc[DECEL] else 0.0
+        push, holds = math.hypot(ax - cx, ay - cy), disc[DECEL]
+        if push > 0.0 and game.tides.shape[1] > ON_ALL:
+            dry = dry_now(
+                game.regions, game.discs, game.tides, game.spans, i, passed, t, state
+            )  # fmt: skip
+            fx, fy, _, _ = dry_friction(
+                at_slip_zero(dry), disc[RADIUS], (ax - cx) / push, (ay - cy) / push, 0.0
+            )  # fmt: skip
+            holds = disc[LIGHTNESS] * math.hypot(fx, fy)
+        left = 1.0 - holds / push if push > holds else 0.0
         ax, ay = cx + left * (ax - cx), cy + left * (ay - cy)
     else:
-        dry = dry_under(game.regions, game.discs, i)
-        put_at(dry, state[X], state[Y], state[THETA])
+        dry = dry_now(game.regions, game.discs, game.tides, game.spans, i, passed, t, state)
         fx, fy, torque, _ = dry_friction(dry, disc[RADIUS], ux, uy, w)
         dx, dy, slows, _, _ = dragged(disc, ux, uy, w)
         ax += disc[LIGHTNESS] * fx + dx

@@ -10,6 +10,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.scene.friction import VX, VY, X, Y
+from puck_tables.scene.over_time import ON_ALL
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import pieces_of
 from puck_tables.world.drive import straight_piece
@@ -112,31 +113,33 @@ def with_force(
     """With a force (Fx, Fy, torque) on a disc from now to then, N and N m, beside all others."""
     begin = float(game.clock[0])
     mine = game.tides[slice(*game.spans[i])]
-    times = np.unique(np.concatenate([mine[:, 0], [begin, until]]))
-    after, before = _forces_at(mine, times[:-1], True), _forces_at(mine, times[1:], False)
-    on = (times[:-1] >= begin) & (times[1:] <= until)
-    ends = np.stack([times[:-1], times[1:]], axis=1)
-    rows = np.stack([after, before], axis=1) + np.where(on, 1.0, 0.0)[:, None, None] * force
-    rows = np.concatenate([ends[:, :, None], rows], axis=2).reshape(-1, 4)
-    again = np.append((rows[1:] == rows[:-1]).all(axis=1), False)
+    times = np.unique(np.concatenate([mine[:, 0], [begin, until]])).tolist()
+    rows = []
+    for start, end in zip(times[:-1], times[1:], strict=True):
+        for row in (_just(mine, start, True), _just(mine, end, False)):
+            if begin <= start and end <= until:
+                row[1:ON_ALL] += force
+            if not rows or (row != rows[-1]).any():
+                rows.append(row)
     parts = [game.tides[slice(*span)] for span in game.spans]
-    parts[i] = rows[~again]
-    ends_of = np.cumsum([0, *map(len, parts)])
-    game = game._replace(
-        tides=np.vstack(parts), spans=np.stack([ends_of[:-1], ends_of[1:]], axis=1)
-    )
+    parts[i] = np.array(rows)
+    ends = np.cumsum([0, *map(len, parts)])
+    spans = np.stack([ends[:-1], ends[1:]], axis=1)
+    game = game._replace(tides=np.vstack(parts), spans=spans)
     return with_integrated(game, scene, order, np.array([i]))
 
 
-def _forces_at(rows: FloatArray, times: FloatArray, after: bool) -> FloatArray:
-    """Force and torque (n, 3) of rows just after, or just before, times."""
-    out = np.zeros((len(times), 3))
-    for n, t in enumerate(times.tolist()):
-        j = int((rows[:, 0] <= t).sum() if after else (rows[:, 0] < t).sum())
-        if 0 < j < len(rows):
-            one, two = rows[j - 1], rows[j]
-            out[n] = one[1:] + (t - one[0]) / (two[0] - one[0]) * (two[1:] - one[1:])
-    return out
+def _just(rows: FloatArray, t: float, after: bool) -> FloatArray:
+    """The row just after, or just before, a time: beyond all rows no force, factors as there."""
+    j = int((rows[:, 0] <= t).sum() if after else (rows[:, 0] < t).sum())
+    row = np.zeros(rows.shape[1])
+    if 0 < j < len(rows):
+        one, two = rows[j - 1], rows[j]
+        row = one + (t - one[0]) / (two[0] - one[0]) * (two - one)
+    elif len(rows):
+        row[ON_ALL:] = rows[max(j - 1, 0), ON_ALL:]
+    row[0] = t
+    return row
 
 
 def with_integrated(game: Game, scene: SceneSpec, order: Whole, discs: Whole) -> Game:

@@ -6,10 +6,10 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import kernel, patience
-from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y, dry_friction
-from puck_tables.scene.ingredients import put_at
+from puck_tables.scene.friction import SPIN, VX, VY, dry_friction
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.footing import dry_under
+from puck_tables.world.alone import rows_passed
+from puck_tables.world.footing import dry_now
 from puck_tables.world.game import Game
 from puck_tables.world.layout import RADIUS, REGION
 from puck_tables.world.prepare import prepared
@@ -19,11 +19,12 @@ from puck_tables.world.prepare import prepared
 def _forces(game: Game, states: FloatArray, out: FloatArray) -> None:
     """Force and torque on the puck into out (n, 3) at states (n, 6) over the floor."""
     patience(states.shape[0])
-    dry, radius = dry_under(game.regions, game.discs, 0), game.discs[0, RADIUS]
+    radius = game.discs[0, RADIUS]
+    passed = rows_passed(game.tides, game.spans[0, 0], game.spans[0, 1], 0.0)
     for n in range(states.shape[0]):
         patience(1)
         y = states[n]
-        put_at(dry, y[X], y[Y], y[THETA])
+        dry = dry_now(game.regions, game.discs, game.tides, game.spans, 0, passed, 0.0, y)
         fx, fy, torque, _ = dry_friction(dry, radius, y[VX], y[VY], y[SPIN])
         out[n, 0], out[n, 1], out[n, 2] = fx, fy, torque
 
@@ -31,7 +32,8 @@ def _forces(game: Game, states: FloatArray, out: FloatArray) -> None:
 def friction_at(scene: SceneSpec, states: FloatArray) -> FloatArray:
     """Force and torque of the floor on the one puck of a scene.
 
-    A base over several frictions feels each under its own part, wherever it lies.
+    A base over several frictions feels each under its own part, wherever it lies; where friction
+    changes over time it is that at its start.
 
     Parameters
     ----------

@@ -18,6 +18,7 @@ from puck_tables.scene.by_speed import NO_LAW, law_range, law_table, moments_of
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ground import NO_GROUND
 from puck_tables.scene.ingredients import BySpeed, Regions, Surface, floor_velocity
+from puck_tables.scene.over_time import largest_factors
 from puck_tables.scene.pieces import PieceSpec
 from puck_tables.scene.regions import alone, axes_of, of_one_shape, plain_cut, section_of
 from puck_tables.scene.scene_spec import SceneSpec
@@ -42,18 +43,24 @@ def floors_of(scene: SceneSpec, pieces: list[PieceSpec], fastest: float) -> Floa
 
     Astride the largest of them.  ``fastest``: a slip to which a friction law is looked at, m/s.
     """
-    frictions = [frictions_under(scene, piece, fastest) for piece in pieces]
+    frictions = [_strongest_under(scene, piece, fastest) for piece in pieces]
     by_slip = bool(scene.floor.law) or scene.floor.orthotropic is not None
     rows = []
     for place in range(len(frictions[0])):
         for piece, given in zip(pieces, frictions, strict=True):
-            unheld = by_slip or _is_shaped(piece)
+            unheld = by_slip or _is_summed(scene, piece)
             how = NOT_HELD if unheld else float(is_integrated(scene, piece, given[place]))
             rows.append(_row(scene, piece, given[place], how))
     if has_several(scene):
         for piece, given in zip(pieces, frictions, strict=True):
             rows.append(_row(scene, piece, max(given), NOT_HELD))
     return np.array(rows)
+
+
+def _strongest_under(scene: SceneSpec, piece: PieceSpec, fastest: float) -> list[float]:
+    """The coefficients under a puck, on every stretch the largest that it ever has."""
+    under = frictions_under(scene, piece, fastest)
+    return (largest_factors(scene.floor) * under).tolist()
 
 
 def _row(scene: SceneSpec, piece: PieceSpec, friction: float, how: float) -> list[float]:
@@ -86,21 +93,22 @@ def regions_of(
         return _by_slip(scene, pieces, normals, delta, none, fastest)
     if scene.floor.orthotropic is not None:
         axes = axes_of(scene.floor.orthotropic)
-        return alone(normals * axes[:2].max(), delta, none, BySpeed(axes, 0.0, 1.0, 1.0))
-    there = [[(piece, f) for f in frictions_under(scene, piece)] for piece in pieces]
+        strongest = axes[:2].max() * largest_factors(scene.floor)[0]
+        return alone(normals * strongest, delta, none, BySpeed(axes, 0.0, 1.0, 1.0))
+    there = [[(piece, f) for f in _strongest_under(scene, piece, 0.0)] for piece in pieces]
     places = [one for rows in zip(*there, strict=True) for one in rows]
-    shaped = np.array([_is_shaped(piece) for piece, _ in places])
+    summed = np.array([_is_summed(scene, piece) for piece, _ in places])
     loads = np.array([
         0.0 if piece.path else normal_on(scene, piece) * friction for piece, friction in places
     ])  # fmt: skip
     cuts = none[: len(places)]
-    if all(has_closed_forms(*one) for one in places):
+    if all(sums or has_closed_forms(*one) for one, sums in zip(places, summed, strict=True)):
         if floors[:, 2].any():  # those that are integrated ask for friction often
             cut = cache(partial(plain_cut, scene.tol))
             cuts = np.stack([cut(height) for height in delta[: len(places)].tolist()])
     else:
         cuts = of_one_shape([
-            plain_cut(scene.tol, 0.0) if _is_shaped(piece) else
+            plain_cut(scene.tol, 0.0) if _is_summed(scene, piece) else
             section_of(piece, 2.0 * friction * piece.height / piece.radius, scene.tol)
             for piece, friction in places
         ])  # fmt: skip
@@ -108,17 +116,23 @@ def regions_of(
     if several:
         most = loads.reshape(-1, len(pieces)).max(axis=0)
         loads, cuts = np.concatenate([loads, most]), np.concatenate([cuts, cuts[: len(pieces)]])
-    if several or shaped.any():
+    if several or summed.any():
         ground = _of_one_length([
             ground_of(scene.alone(piece), normal_on(scene, piece)) for piece in pieces
         ])  # fmt: skip
-    astride = np.concatenate([shaped, np.ones(count - len(places), np.bool_)])
+    astride = np.concatenate([summed, np.ones(count - len(places), np.bool_)])
     return Regions(loads, delta, cuts, NO_LAW, astride, ground)
 
 
 def _is_shaped(piece: PieceSpec) -> bool:
     """Whether it slides on a base that is not round."""
     return piece.shape is not None and not piece.path
+
+
+def _is_summed(scene: SceneSpec, piece: PieceSpec) -> bool:
+    """Whether its friction is summed over its base everywhere, not looked up."""
+    changes = bool(scene.floor.grips) and scene.floor.orthotropic is None and not scene.floor.law
+    return _is_shaped(piece) or (changes and not piece.path)
 
 
 def _of_one_length(grounds: list[FloatArray]) -> FloatArray:
@@ -140,12 +154,14 @@ def _by_slip(
         If it lifts a base.
     """
     law, top, largest = law_range(scene, fastest)
+    factor = float(largest_factors(scene.floor)[0])
+    largest *= factor
     shaped = np.array([_is_shaped(piece) for piece in pieces])
     ratios = [2.0 * one.height / one.radius for one in pieces if one.shape is None and not one.path]
     compiled, ground = np.array([1.0, top]), NO_GROUND
     if ratios:
         table = law_table(scene, law, top)
-        table.refuse_height(max(ratios))
+        table.refuse_height(max(factor, 1.0) * max(ratios))
         compiled = table.compiled
     if shaped.any():
         for piece in pieces:

@@ -12,7 +12,7 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
-from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.ground import (
     ACROSS_X,
     ACROSS_Y,
@@ -28,11 +28,13 @@ from puck_tables.scene.ingredients import (
     Dry,
     Regions,
     Surface,
+    dry_at,
     floor_velocity,
+    put_at,
 )
 from puck_tables.scene.orthotropic import is_elliptic
 from puck_tables.scene.patches import ASTRIDE, INSIDE, OUTSIDE, distance_to
-from puck_tables.world.game import Game
+from puck_tables.world.game import Game, Whole
 from puck_tables.world.layout import (
     DECEL,
     DELTA,
@@ -84,6 +86,17 @@ def dry_under(regions: Regions, discs: FloatArray, i: int) -> Dry:
     elif law.normal > 0.0:
         law = BySpeed(law.table, discs[i, HEIGHT_RATIO], discs[i, NORMAL], 1.0)
     return Dry(regions.load[region], regions.delta[region], regions.cuts[region], law)
+
+
+@inlined
+def dry_now(
+    regions: Regions, discs: FloatArray, tides: FloatArray, spans: Whole, i: int, passed: int,
+    t: float, state: FloatArray,
+) -> Dry:  # fmt: skip
+    """The dry friction on a disc in a state (6,) at t, when so many of its rows have passed."""
+    dry = dry_at(dry_under(regions, discs, i), tides[spans[i, 0] : spans[i, 1]], passed, t)
+    put_at(dry, state[X], state[Y], state[THETA])
+    return dry
 
 
 @inlined

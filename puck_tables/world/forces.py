@@ -18,14 +18,14 @@ from puck_tables.scene.friction import (
 from puck_tables.scene.ingredients import (
     FREE,
     Body,
+    Dry,
     Hold,
     carried_along,
     floor_velocity,
-    put_at,
 )
 from puck_tables.scene.rest import constrained_yield, free_yield
 from puck_tables.world.alone import pull_on, rows_passed
-from puck_tables.world.footing import dry_under, over_floor
+from puck_tables.world.footing import dry_now, over_floor
 from puck_tables.world.group import (
     ARM,
     DRIVEN,
@@ -117,6 +117,15 @@ def _pull_on(group: Group, members: IntArray, place: int, desk: Desk) -> tuple[f
     )
 
 
+@inlined
+def _dry_under(group: Group, members: IntArray, place: int, y: FloatArray, desk: Desk) -> Dry:
+    """The dry friction on a member, now."""
+    return dry_now(
+        group.regions, group.discs, group.tides, group.spans, members[place], desk.passed[place],
+        desk.clock[0], y[place],
+    )  # fmt: skip
+
+
 @inner
 def act(
     group: Group, members: IntArray, doings: IntArray, y: FloatArray, power: FloatArray, desk: Desk
@@ -146,8 +155,7 @@ def act(
         inverse[0], inverse[1] = light, turns
         sx, sy, turning = floor_velocity(group.surface, y[place, X], y[place, Y])
         ux, uy, w = vx - sx, vy - sy, spin - turning
-        dry = dry_under(group.regions, group.discs, number)
-        put_at(dry, y[place, X], y[place, Y], y[place, THETA])
+        dry = _dry_under(group, members, place, y, desk)
         if doing == YIELDS:
             way = desk.ways[place]
             fx, fy, torque, _ = dry_friction(at_slip_zero(dry), radius, way[0], way[1], way[2])
@@ -222,13 +230,13 @@ def excess_on(
 ) -> tuple[float, float, float, float]:
     """By how much what acts on a disc at rest exceeds its friction, over f N, and the slip then."""
     disc = group.discs[members[place]]
-    dry = at_slip_zero(dry_under(group.regions, group.discs, members[place]))
-    put_at(dry, y[place, X], y[place, Y], y[place, THETA])
+    dry = at_slip_zero(_dry_under(group, members, place, y, desk))
+    load = load_on(group, members[place])
     fx, fy, torque = _asked_of_floor(group, members, place, count, desk)
     kind = int(disc[HOLD])
     if kind == FREE:
         excess, ux, uy, w = free_yield(dry, disc[RADIUS], fx, fy, torque, False)
-        return excess / dry.load, ux, uy, w
+        return excess / load, ux, uy, w
     hold = Hold(
         kind, disc[HOLD_X], disc[HOLD_Y], disc[HOLD_REACH], disc[HOLD_ANGLE], disc[HOLD_VX],
         disc[HOLD_VY],
@@ -237,7 +245,7 @@ def excess_on(
     excess, ux, uy, w = constrained_yield(
         dry, hold, body, y[place, THETA], 0.0, 0.0, 0.0, fx, fy, torque, True
     )
-    return excess / dry.load, ux, uy, w
+    return excess / load, ux, uy, w
 
 
 @inlined

@@ -222,7 +222,7 @@ def _follow(
     discs, surface = shared.discs[members], shared.surface
     pulled = discs[:, [PULL_X, PULL_Y, TWIST]].any(axis=1)
     spans = [span for span in shared.spans[members] if span[0] < span[1]]
-    jumps = [row for span in spans for row in shared.tides[[span[0], span[1] - 1], 0] if row > t]
+    jumps = [row for span in spans for row in _jumps_in(shared.tides[slice(*span), 0]) if row > t]
     # what is pulled or carried may go on for ever, and gets faster than bounds should be
     driven = pulled.any() or any(surface[:2]) or surface.spin != 0.0
     driven = driven or bool(jumps) or discs[:, [HOLD_VX, HOLD_VY]].any()
@@ -264,6 +264,11 @@ def _follow(
         if not len(contacts):
             return contacts, t, nothing, jump, idle
     raise PuckError(TOGETHER.format(time=t))
+
+
+def _jumps_in(times: FloatArray) -> list[float]:
+    """When rows over time may jump: at the first, the last and where a time stands twice."""
+    return [times[0], times[-1], *times[1:][np.diff(times) == 0.0]]
 
 
 def _with_rows(game: Game, name: str, count: int, rows: FloatArray) -> Game:

@@ -81,7 +81,7 @@ def _pulled(game: Game, i: int, start: float, t: float, vx: float, vy: float) ->
     for n in range(first + max(rows_passed(game.tides, first, last, start), 1), last):
         one, two = game.tides[n - 1], game.tides[n]
         begin, end = max(one[0], start), min(two[0], t)
-        if begin >= end:  # a jump has two rows at one time
+        if begin >= end:
             continue
         share = (0.5 * (begin + end) - one[0]) / (two[0] - one[0])  # straight in between
         fx, fy = one[1] + share * (two[1] - one[1]), one[2] + share * (two[2] - one[2])

@@ -9,10 +9,10 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
-from puck_tables.scene.forces import drive_of
 from puck_tables.scene.friction import SPIN, THETA, VX, VY
 from puck_tables.scene.holds import allowed_velocity
 from puck_tables.scene.ingredients import RAIL, Surface, hold_of
+from puck_tables.scene.over_time import ON_ALL, over_time
 from puck_tables.scene.parts import Wall
 from puck_tables.scene.pieces import Arc, PieceSpec, Post
 from puck_tables.scene.scene_spec import SceneSpec
@@ -105,16 +105,16 @@ def prepared(scene: SceneSpec, order: Whole | None = None) -> Start:
     lies = len(borders_of(scene)) + len(scene.floor.patches)
     discs, states = np.zeros((count, layout.DISC_COLUMNS + lies)), np.zeros((count, 6))
     surface = Surface(*scene.floor.velocity, *scene.floor.centre, scene.floor.turning)
-    spans, tides = np.zeros((count, 2), np.int64), [np.zeros((0, 4))]
+    spans, tides = np.zeros((count, 2), np.int64), []
     drives, ways = np.zeros((count, 2), np.int64), [np.zeros((0, PIECE_COLUMNS))]
     launches = []
     rims, discs[:, layout.MAKE], makes, called = rims_of(scene, pieces)
     for i, piece in enumerate(pieces):
         driven = bool(piece.path)
         _fill_disc(scene, piece, called, discs[i])
-        if piece.force.over_time:
+        if not driven:
             first = sum(map(len, tides))
-            tides.append(drive_of(piece.force.over_time))
+            tides.append(over_time(scene.floor, piece.force))
             spans[i] = first, first + len(tides[-1])
         launch = piece.launch
         velocity = allowed_velocity(launch, piece.constraint, scene.floor)
@@ -137,7 +137,7 @@ def prepared(scene: SceneSpec, order: Whole | None = None) -> Start:
         regions=regions,
         floors=floors,
         surface=surface,
-        tides=np.vstack(tides),
+        tides=np.vstack(tides) if tides else np.empty((0, ON_ALL)),
         spans=spans,
         rims=rims,
         obstacles=_obstacles(scene, called, makes),
@@ -269,7 +269,8 @@ def _strongest(game: Game) -> float:
     counts = game.spans[:, 1] - game.spans[:, 0]
     discs, forced = game.discs, np.repeat(np.arange(len(counts)), counts)
     of = np.concatenate([np.arange(len(counts)), forced])  # each without its force, and with it
-    rows, discs = np.vstack([np.zeros((len(counts), 4)), game.tides]), discs[of]
+    given = game.tides[:, :ON_ALL]
+    rows, discs = np.vstack([np.zeros((len(counts), ON_ALL)), given]), discs[of]
     light, turns = discs[:, layout.LIGHTNESS], discs[:, layout.TURNABILITY]
     ax = discs[:, layout.PULL_X] + light * rows[:, 1]
     ay = discs[:, layout.PULL_Y] + light * rows[:, 2]

@@ -1,0 +1,234 @@
+"""What a scene gives over time: forces on a puck, and factors on the friction of the floor.
+
+All that changes under one puck stands in one table, so that steps end at its rows: the time, force
+and torque, the factor on all friction, and one more for every stretch of the floor, its strips and
+then its patches.  A scene without factors has the first four columns only.
+"""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.quantities import FACTOR, FORCE_X, FORCE_Y, TIME, TORQUE
+from puck_tables._core.read_columns import numbers_of
+from puck_tables.errors import InputError
+from puck_tables.kernels.compile import inlined
+from puck_tables.scene.parts import Floor, Force, Grip, Rows
+
+MAX_DRIVE = 1 << 26  # bytes of a file of forces
+_MOST_BYTES = 1 << 20  # of one of factors
+ON_ALL, ON_STRETCH = 4, 5  # columns of factors
+_WHERE = re.compile(r"(strip|patch) (\d+)")
+
+
+def drive_of(given: str | Rows) -> FloatArray:
+    """Rows (n, 4) of t, Fx, Fy and torque, given or from a CSV file; they may lack the torque.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or is no such file.
+    """
+    numbers = numbers_of(given, (TIME, FORCE_X, FORCE_Y, TORQUE), 3, MAX_DRIVE, "force.over_time")
+    numbers.refuse_unless_ascending("the times")
+    rows = numbers.rows
+    return np.pad(rows, ((0, 0), (0, 4 - rows.shape[1])))
+
+
+def factors_of(grip: Grip) -> FloatArray:
+    """Rows (n, 2) of t and a factor; a time that stands twice is a jump.
+
+    Raises
+    ------
+    InputError
+        If they cannot be read, or a factor is below 0.
+    """
+    numbers = numbers_of(grip.over_time, (TIME, FACTOR), 2, _MOST_BYTES, "over_time")
+    numbers.refuse_unless_ascending("the times", equal=True)
+    wrong = np.flatnonzero(numbers.rows[:, 1] < 0.0)
+    if wrong.size:
+        row = int(wrong[0])
+        raise InputError(
+            f"{numbers.where(row)}: a factor of {numbers.rows[row, 1]:g}: must be >= 0"
+        )
+    return numbers.rows
+
+
+def stretches_of(floor: Floor) -> int:
+    """How many stretches a floor has that may have friction of their own.
+
+    Examples
+    --------
+    >>> stretches_of(Floor())
+    1
+    """
+    return (1 if floor.strips is None else len(floor.strips.friction)) + len(floor.patches)
+
+
+def stretch_of(floor: Floor, where: str) -> int:
+    """The number of the stretch of a floor that is called so; −1: all of it.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+
+    Examples
+    --------
+    >>> stretch_of(Floor(), "floor")
+    -1
+    """
+    if where == "floor":
+        return -1
+    match, strips = _WHERE.fullmatch(where), floor.strips
+    there = {
+        "strip": 0 if strips is None else len(strips.friction), "patch": len(floor.patches),
+    }  # fmt: skip
+    if match is None or not int(match[2]) < there[match[1]]:
+        known = ["'floor'"]
+        for name, count in there.items():
+            known += [f"'{name} 0'" if count == 1 else f"'{name} 0' to '{name} {count - 1}'"] * (
+                count > 0
+            )
+        raise InputError(f"where = {where!r}: must be {' or '.join(known)}")
+    before = stretches_of(floor) - len(floor.patches) if match[1] == "patch" else 0
+    return before + int(match[2])
+
+
+def grip_faults(floor: Floor) -> list[str]:
+    """What is wrong with the factors on friction over time.
+
+    Examples
+    --------
+    >>> grip_faults(Floor(grips=[Grip([[0.0, 1.0], [1.0, -1.0]])]))
+    ['floor.grip[0]: row 2: a factor of -1: must be >= 0']
+    """
+    faults, taken = [], set()
+    for i, grip in enumerate(floor.grips):
+        try:
+            if stretch_of(floor, grip.where) in taken:
+                raise InputError(f"where = {grip.where!r} stands twice: give one table of factors")
+            taken.add(stretch_of(floor, grip.where))
+            factors_of(grip)
+        except InputError as error:
+            faults.append(f"floor.grip[{i}]: {error}")
+    return faults
+
+
+def largest_factors(floor: Floor) -> FloatArray:
+    """By what friction is more, at most, on each stretch of a floor.
+
+    Examples
+    --------
+    >>> largest_factors(Floor(grips=[Grip([[0.0, 1.0], [1.0, 2.5]])])).tolist()
+    [2.5]
+    """
+    return _on_stretches(floor, np.max)
+
+
+def last_factors(floor: Floor) -> FloatArray:
+    """By what friction is more in the end, on each stretch of a floor.
+
+    Examples
+    --------
+    >>> last_factors(Floor(grips=[Grip([[0.0, 1.0], [1.0, 2.5]])])).tolist()
+    [2.5]
+    """
+    return _on_stretches(floor, lambda factors: factors[-1])
+
+
+def _on_stretches(floor: Floor, taken: object) -> FloatArray:
+    found = np.ones(stretches_of(floor))
+    for grip in floor.grips:
+        place = stretch_of(floor, grip.where)
+        factor = taken(factors_of(grip)[:, 1])  # type: ignore[operator]
+        found[place if place >= 0 else slice(None)] *= factor
+    return found
+
+
+def over_time(floor: Floor, force: Force) -> FloatArray:
+    """All that changes over time under a puck, in one table.
+
+    Where something jumps a time stands twice.  Before and after its rows there is no force, and a
+    factor stays what it was.
+
+    Examples
+    --------
+    >>> over_time(Floor(grips=[Grip([[0.0, 1.0], [1.0, 0.5]])]), Force())[:, [0, 4, 5]].tolist()
+    [[0.0, 1.0, 1.0], [1.0, 0.5, 1.0]]
+    """
+    drive = drive_of(force.over_time) if force.over_time else np.empty((0, 4))
+    if not floor.grips:
+        return drive
+    width = ON_STRETCH + stretches_of(floor)
+    tables: list[tuple[int, FloatArray]] = []
+    if len(drive):
+        ends = np.zeros((2, 4))
+        ends[:, 0] = drive[[0, -1], 0]
+        tables.append((1, np.vstack([ends[:1], drive, ends[1:]])))
+    for grip in floor.grips:
+        tables.append((ON_STRETCH + stretch_of(floor, grip.where), factors_of(grip)))
+    rows = []
+    for t in np.unique(np.concatenate([table[:, 0] for _, table in tables])).tolist():
+        for after in (False, True):
+            row = np.ones(width)
+            row[0], row[1:ON_ALL] = t, 0.0
+            for column, table in tables:
+                row[column : column + table.shape[1] - 1] = _just(table, t, after)
+            if not (after and np.array_equal(row, rows[-1])):
+                rows.append(row)
+    return np.array(rows)
+
+
+def _just(table: FloatArray, t: float, after: bool) -> FloatArray:
+    """What a table has just before a time, or just after."""
+    times = table[:, 0]
+    one = int(np.searchsorted(times, t, "right")) - 1 if after else int(np.searchsorted(times, t))
+    if 0 <= one < len(table) and times[one] == t:
+        return table[one, 1:]
+    if after:
+        one += 1
+    if one in (0, len(table)):
+        return table[max(one - 1, 0), 1:]
+    share = (t - times[one - 1]) / (times[one] - times[one - 1])
+    row: FloatArray = (1.0 - share) * table[one - 1, 1:] + share * table[one, 1:]
+    return row
+
+
+@inlined
+def has_factors(drive: FloatArray) -> bool:
+    """Whether friction changes over time."""
+    return drive.shape[1] > ON_ALL and drive.shape[0] > 0
+
+
+@inlined
+def _share(drive: FloatArray, piece: int, t: float) -> float:
+    """How much of the way from one row to the next is done; at a jump all."""
+    begin, end = drive[piece - 1, 0], drive[piece, 0]
+    return (t - begin) / (end - begin) if end > begin else 1.0
+
+
+@inlined
+def given_by(drive: FloatArray, piece: int, t: float) -> tuple[float, float, float]:
+    """Force and torque of rows over time alone, of which so many have passed."""
+    if piece == 0 or piece == len(drive):
+        return 0.0, 0.0, 0.0
+    i, j = piece - 1, piece
+    share = _share(drive, piece, t)
+    return (
+        drive[i, 1] + share * (drive[j, 1] - drive[i, 1]),
+        drive[i, 2] + share * (drive[j, 2] - drive[i, 2]),
+        drive[i, 3] + share * (drive[j, 3] - drive[i, 3]),
+    )
+
+
+@inlined
+def factor_at(drive: FloatArray, piece: int, column: int, t: float) -> float:
+    """A factor at a time, on the piece that so many rows precede."""
+    if piece == 0 or piece == len(drive):
+        return drive[max(piece - 1, 0), column]
+    one, two = drive[piece - 1, column], drive[piece, column]
+    return one + _share(drive, piece, t) * (two - one)
