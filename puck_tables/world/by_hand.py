@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -115,7 +116,7 @@ def with_force(
     mine = game.tides[slice(*game.spans[i])]
     times = np.unique(np.concatenate([mine[:, 0], [begin, until]])).tolist()
     rows = []
-    for start, end in zip(times[:-1], times[1:], strict=True):
+    for start, end in pairwise(times):
         for row in (_just(mine, start, True), _just(mine, end, False)):
             if begin <= start and end <= until:
                 row[1:ON_ALL] += force
