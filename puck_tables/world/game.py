@@ -104,7 +104,7 @@ class Game(NamedTuple):
 # what never changes: tables, floors and obstacles; in the ground it is written who lies where
 _SHARED = ("floors", "surface", "tides", "spans", "rims", "obstacles", "curves", "launches")
 _GROWS = ("pieces", "events", "history", "works")  # rows are added after those that are counted
-_CHANGES = tuple(sorted({*Game._fields} - {*_SHARED, *_GROWS, "regions"}))
+_CHANGES = [name not in (*_SHARED, *_GROWS, "regions") for name in Game._fields]
 
 
 def copy_of(game: Game) -> Game:
@@ -117,7 +117,8 @@ def copy_of(game: Game) -> Game:
 
 def kept(game: Game) -> Game:
     """The game as it is, to go back to: what is added to it later is not counted there."""
-    return game._replace(**{name: getattr(game, name).copy() for name in _CHANGES})
+    pairs = zip(_CHANGES, game, strict=True)
+    return Game._make([part.copy() if changes else part for changes, part in pairs])
 
 
 def led_rows(game: Game) -> FloatArray:

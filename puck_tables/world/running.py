@@ -197,14 +197,15 @@ class Running:
         span = math.inf if endless else real("duration", duration, "s")
         if not span >= 0.0:
             raise InputError(f"duration must not be negative, got {span:g} s")
-        before = int(self._game.counts[g.N_EVENTS])
+        before, until = int(self._game.counts[g.N_EVENTS]), self.time + span
         if span == math.inf:
             self.come_to_rest()
-        elif self._next_moment() > self.time + span:
-            self._game.clock[0] = self.time + span
+        elif self._next_moment() > until:
+            self._game.clock[0] = until
+            return []
         else:
             with self._or_as_before():
-                self._advance(self.time + span)
+                self._advance(until)
         return self._events(before)
 
     def _next_moment(self) -> float:
@@ -261,7 +262,6 @@ class Running:
 
     def _advance(self, until: float, first: int = NOBODY) -> None:
         """Let time pass, after an event by hand."""
-        unit = float(self._game.pace[0] / max(self._game.pace[1], 1e-300))
         mark, pushes = -math.inf, deque[float](maxlen=CROWDED_PUSHES)
         if lacks_rows(self._game, self._room):
             self._grow()
@@ -269,6 +269,7 @@ class Running:
             how = advance(self._game, until, first, self._room, self._desk)
             if how == REACHED:
                 return
+            unit = float(self._game.pace[0] / max(self._game.pace[1], 1e-300))
             first = NOBODY
             if how == FULL:
                 self._grow()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -25,6 +24,7 @@ from puck_tables.world.by_hand import lead, led_state, refuse_off_hold, with_for
 from puck_tables.world.departures import CONCERNED, NOT_CONCERNED, desk_for, room_for
 from puck_tables.world.flight import GONE
 from puck_tables.world.footing import law_goes_to, moves_along
+from puck_tables.world.game import Whole
 from puck_tables.world.holds import response
 from puck_tables.world.law_range import refuse_too_fast
 from puck_tables.world.layout import HOLD, LIGHTNESS, RADIUS
@@ -103,7 +103,7 @@ class World(Running):
             row[VX:] = state[VX:] + response(disc, state, float(push[0]), float(push[1]), moment)
         elif point is not None:
             raise InputError("point is where an impulse acts: give the impulse, too")
-        self._put(g.STRUCK, row[None], [i])
+        self._put(g.STRUCK, row, i)
 
     def place(
         self, puck: int | str, position: npt.ArrayLike | None = None, angle: float | None = None,
@@ -137,7 +137,7 @@ class World(Running):
         row = _row(position, angle, velocity, spin)
         if self._game.kinds[i] == GONE and position is None:
             raise InputError(f"{self._name(i)} is not in play: give the position to put it at")
-        self._put(g.PLACED, row[None], [i])
+        self._put(g.PLACED, row, i)
 
     def set_state(self, states: npt.ArrayLike) -> None:
         """Put all pucks into states, as :meth:`state` gives them; of each that changes an event.
@@ -191,7 +191,7 @@ class World(Running):
         >>> world.in_play.tolist(), world.events_since(0.0)[0].what
         ([False], 'removed')
         """
-        self._put(g.REMOVED, _row(None, None, None, None)[None], [self._in_play(puck)])
+        self._put(g.REMOVED, _row(None, None, None, None), self._in_play(puck))
 
     def add(self, puck: PieceSpec) -> int:
         """Put a new puck on the board, now, with its launch; its number.  An event says "added".
@@ -220,7 +220,7 @@ class World(Running):
             self.scene, self._order, self._game = start.scene, start.order, start.game
             self._room, self._desk = room_for(len(start.order)), desk_for(start.game)
             self._named()
-            self._put(g.ADDED, state[None], [len(start.order) - 1])
+            self._put(g.ADDED, state, len(start.order) - 1)
         return len(self.names) - 1
 
     def drive(
@@ -340,7 +340,7 @@ class World(Running):
             self._game = with_force(self._game, self.scene, self._order, i, push, until)
             self._desk = desk_for(self._game)
             set_pace(self._game, self._all_now())
-            self._put(g.FORCED, _row(None, None, None, None)[None], [i])
+            self._put(g.FORCED, _row(None, None, None, None), i)
 
     def _in_play(self, puck: int | str) -> int:
         """The disc of a puck."""
@@ -365,32 +365,41 @@ class World(Running):
         if not math.hypot(state[VX], state[VY]) <= self._game.pace[0]:
             set_pace(self._game, np.zeros((len(self.names), 6)))
 
-    def _put(self, what: int, rows: FloatArray, discs: Sequence[int] | npt.NDArray[Any]) -> None:
-        """Give discs the states (n, 6), NaN: as it is, by an event; all or nothing."""
+    def _put(self, what: int, rows: FloatArray, discs: int | Whole) -> None:
+        """Give discs their states, NaN: as it is, by an event; all or nothing."""
         game, room = self._game, self._room
         with self._or_as_before():
             game.counts[g.N_AT_ONCE] = 0
-            if what in (g.STRUCK, g.PLACED, g.ADDED):
-                self._see_to(what, rows, discs)
+            if what in (g.STRUCK, g.PLACED, g.ADDED) and not self._is_slow(rows, discs):
+                self._see_to(what, np.atleast_2d(rows), np.atleast_1d(discs))
             room.marks[:] = NOT_CONCERNED
             room.marks[discs] = CONCERNED
             room.before[discs] = rows
             self._advance(self.time, what)
 
-    def _see_to(self, what: int, rows: FloatArray, discs: Sequence[int] | npt.NDArray[Any]) -> None:
+    def _is_slow(self, rows: FloatArray, discs: int | Whole) -> bool:
+        """Whether one free disc does not slip faster than anything has yet, on a floor at rest."""
+        if not isinstance(discs, int):
+            return False
+        disc, (*_, vx, vy, spin) = self._game.discs[discs], rows.tolist()
+        if disc[HOLD] != FREE or disc[LIGHTNESS] == 0.0 or moves_along(self._game.surface):
+            return False
+        slow = math.hypot(vx, vy, disc[RADIUS] * spin) <= self._game.pace[0]  # not of NaN
+        stays = vx != vx and spin != spin
+        return bool(slow or stays) and law_goes_to(self._game.regions) == math.inf
+
+    def _see_to(self, what: int, rows: FloatArray, discs: Whole) -> None:
         """Refuse what does not fit, see to the scales, and lead what is led from there."""
         game, own = self._game, self._game.discs[discs]
         held, led = own[:, HOLD] != FREE, (own[:, LIGHTNESS] == 0.0) & (what != g.ADDED)
-        known, law = ~np.isnan(rows[:, VX:]), law_goes_to(game.regions) < math.inf
+        law = law_goes_to(game.regions) < math.inf
         sure = not (law or held.any() or led.any() or moves_along(game.surface))
-        if sure and not known.any():
-            return
-        if sure and known.all() and not (_slips(own, rows) > game.pace[0]).any():
+        if sure and (_slips(own, rows) <= game.pace[0]).all():
             return
         now = self._all_now()
         states = now.copy()
         states[discs] = np.where(np.isnan(rows), states[discs], rows)
-        for i, is_held, is_led in zip(discs, held.tolist(), led.tolist(), strict=True):
+        for i, is_held, is_led in zip(discs.tolist(), held.tolist(), led.tolist(), strict=True):
             if is_held:
                 refuse_off_hold(game, i, states[i], self._name(i))
                 self._refuse_misfit(int(self._order[i]), states[i])
@@ -434,6 +443,10 @@ def _row(
 
 
 def _pair(name: str, values: Any, unit: str) -> FloatArray:
+    if type(values) is tuple and len(values) == 2 and type(values[0]) is type(values[1]) is float:
+        pair = np.array(values)  # most are so, and quickly seen to
+        if math.isfinite(values[0]) and math.isfinite(values[1]):
+            return pair
     pair = finite_array(name, values, unit)
     if pair.shape != (2,):
         raise InputError(f"{name} must be two numbers in {unit}, got the shape {pair.shape}")
