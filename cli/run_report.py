@@ -74,7 +74,7 @@ def _of_all(run: Run) -> dict[str, str]:
     scene = run.scene
     parts = {
         "puck": run.names, "wall": scene.walls, "post": scene.posts, "arc": scene.arcs,
-        "pocket": scene.pockets, "edge": scene.edges,
+        "pocket": scene.pockets, "edge": scene.edges, "line": scene.lines,
     }  # fmt: skip
     counted = ", ".join(_counted(len(those), noun) for noun, those in parts.items() if those)
     return {"scene": f"{scene.title or 'without a title'}: {counted}"}

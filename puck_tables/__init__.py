@@ -62,7 +62,7 @@ if TYPE_CHECKING:
         Strips,
         Wall,
     )
-    from puck_tables.scene.pieces import Arc, Pocket, Post, Rim
+    from puck_tables.scene.pieces import Arc, Line, Pocket, Post, Rim
     from puck_tables.scene.restitution import Plastic, RestitutionTable, Viscoelastic
     from puck_tables.scene.run import Run
     from puck_tables.stopping.aim_at_targets import Aim, Aims
@@ -110,7 +110,7 @@ _HOMES = {  # names of this package by the modules that hold them
     "scene.driven": "path_along",
     "scene.parts": "Constraint Drag Edge Floor Force Grip Lateral Launch Orthotropic Patch Strips "
     "Wall",
-    "scene.pieces": "Arc Pocket Post Rim",
+    "scene.pieces": "Arc Line Pocket Post Rim",
     "scene.restitution": "Plastic RestitutionTable Viscoelastic",
     "scene.run": "Run",
     "stopping.aim_at_targets": "Aim Aims",
@@ -137,7 +137,7 @@ __all__ = [
     "AccuracyError", "Aim", "Aims", "Answer", "Arc", "Base", "BoardAim", "Camera", "CheckReport",
     "ClusterError", "Comparison", "Constraint", "ContactError", "CurlingLaw", "Drag", "Edge",
     "Fit", "Floor", "FloorFriction", "Force", "Forecast", "Grip", "Hold", "InputError", "Lateral",
-    "Launch", "Law", "LimitSurface", "Map", "MissingExtraError", "Normal", "Orthotropic",
+    "Launch", "Law", "LimitSurface", "Line", "Map", "MissingExtraError", "Normal", "Orthotropic",
     "OutputError", "Patch", "Piece", "Plastic", "Pocket", "Post", "PowerLaw", "Puck", "PuckError",
     "Push", "RestitutionTable", "Result", "Rim", "Run", "Sample", "Scene", "Source", "SpeedLaw",
     "States", "StopMap", "StopSample", "Stops", "StribeckLaw", "Strips", "Table", "TableError",

@@ -115,3 +115,58 @@ def test_a_numba_without_its_private_parts_compiles_the_same(
     assert said[0] == said[1] == said[2]
     assert files
     assert files == {path: path.stat().st_mtime_ns for path in folder.rglob(kept)}  # and read again
+
+
+_DOORS = """
+import sys
+import numpy as np
+from puck_tables.kernels.compile import kernel
+
+@kernel
+def unrelated(x: float) -> float:
+    return x + 1.0
+
+@kernel
+def inside(x: float) -> float:
+    return 3.0 * x
+
+@kernel
+def outside(values) -> float:
+    total = 0.0
+    for x in values:
+        total += inside(x)
+    return total
+
+if __name__ != "__main__":
+    from puck_tables.kernels.patience import here
+    type(here).at_once = True
+"""
+_CALLED = """
+import sys
+import numpy as np
+import doors_here
+for name in sys.argv[1:]:
+    getattr(doors_here, name)(1.0)
+print(doors_here.outside(np.arange(4.0)), sum(doors_here.outside.compiled._cache_hits.values()))
+"""
+
+
+def test_a_door_behind_a_door_is_called_where_it_is_and_may_be_compiled_anew(tmp_path: Path):
+    """Its symbol is another one in each process: whoever is read finds it by address."""
+    (tmp_path / "doors_here.py").write_text(_DOORS)
+    folder = tmp_path / "kept"
+
+    def told(*first: str) -> list[str]:
+        return subprocess.run(
+            [sys.executable, "-c", _CALLED, *first], cwd=tmp_path, capture_output=True, text=True,
+            check=True, env={**os.environ, "NUMBA_CACHE_DIR": str(folder)},
+        ).stdout.split()  # fmt: skip
+
+    assert told() == ["18.0", "0"]
+    names = {path.name.rpartition("-")[0] for path in folder.rglob("*.code")}
+    assert names == {"doors_here-inside", "doors_here-outside"}
+    assert told("unrelated") == ["18.0", "1"]
+    for path in folder.rglob("doors_here-inside-*"):
+        path.unlink()
+    assert told("unrelated", "unrelated") == ["18.0", "1"]
+    assert len(list(folder.rglob("doors_here-inside-*"))) == 1

@@ -160,6 +160,8 @@ BOARD: dict[str, Any] = {
 LED = {"kind": {"kind": "rail"}, "angle": {"kind": "rail"}, "velocity": {"kind": "rail"},
        "reach": {"kind": "pivot", "reach": 0.02}, "side_slip": {"kind": "blade"}}  # fmt: skip
 NO_PHYSICS = {"title", "frames", "tol", "floor.law.kind"}
+# change nothing: see tests/test_lines.py
+LINES = {f"line[0].{name}" for name in ("start", "end", "centre", "radius", "name", "colour")}
 BASES = {"puck.base", "puck[0].base"}  # in place of a radius: see tests/test_base_scenes.py
 
 
@@ -178,7 +180,7 @@ def end_of(tables: dict[str, Any]) -> dict[str, float]:
 def test_the_cases_below_are_all_entries() -> None:
     on_board = {re.sub(r"puck\[\d\]", "puck[0]", path) for path in BOARD}
     assert {path for path, _, _ in described(Scene)} == {
-        *CASES, *FILES, *NO_PHYSICS, *BASES, *on_board
+        *CASES, *FILES, *NO_PHYSICS, *LINES, *BASES, *on_board
     }  # fmt: skip
 
 

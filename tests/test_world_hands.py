@@ -379,6 +379,18 @@ def test_a_puck_put_over_a_border_and_an_edge_knows_it():
     assert world.events_since(0.0)[-1].what == "overhang"
 
 
+def test_lines_are_passed_by_motion_and_by_no_hand():
+    goal = pt.Line((0.3, -1.0), (0.3, 1.0), name="goal")
+    world = pt.Scene(pucks=[piece(0, 0, friction=0.05)], lines=[goal]).world()
+    world.place(0, (0.4, 0.0))
+    world.place(0, (0.1, 0.0), velocity=(1.0, 0.0))
+    assert world.add(piece(0.6, 0.2, (-1.0, 0.0), friction=0.05)) == 1
+    told = [(e.what, e.puck) for e in world.advance(1.0) if e.partner == "goal"]
+    for who in ("puck 0", "puck 1"):
+        assert [what for what, one in told if one == who] == ["entry", "line", "exit"]
+    assert [e.what for e in world.events_since(0.0)][:3] == ["placed", "placed", "added"]
+
+
 REFUSED: list[tuple[Callable[[pt.World], Any], str]] = [
     (lambda w: w.place(1, (0.21, 0.1)), r"puck 1 would overlap puck 2 by 0\.05 m"),
     (lambda w: w.place(2, (0.59, 0.0)), r"puck 2 would reach through wall 1 by 0\.02 m"),

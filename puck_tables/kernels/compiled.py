@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import gc
+import sys
 from collections.abc import Callable, Iterator
 from functools import partial
 from types import FunctionType
@@ -26,6 +27,7 @@ from puck_tables.kernels.patience import patience
 linked_at_doors: Any = None
 kept_code: Any = None
 with contextlib.suppress(ImportError, AttributeError):
+    from puck_tables.kernels.linking import Called, put_at
     from puck_tables.kernels.linking import LinkedAtDoors as linked_at_doors
 with contextlib.suppress(ImportError, AttributeError):
     from puck_tables.kernels.kept_code import KeptCode as kept_code
@@ -121,7 +123,7 @@ def dispatcher_at(door: KernelDoor) -> Any:
     made = _dispatcher(door.py_func, door.fuses, door=True, counts=door.counts)
     made.get_call_template = partial(_at_door, door, made.get_call_template)
     if kept_code:
-        made._cache = kept_code(door.py_func)
+        made._cache = kept_code(door.py_func, _put_at_hand)
     elif (folder := cache_folder()) is not None:  # named by the sources: it sees no edit elsewhere
         _settings.CACHE_DIR = str(folder)
         made.enable_caching()
@@ -158,7 +160,27 @@ def code_for(door: KernelDoor, args: tuple[Any, ...]) -> Callable[..., Any]:
 
 def _at_door(door: KernelDoor, template_for: Callable[..., Any], args: Any, named: Any) -> Any:
     with _compiling(door):
-        return _whatever_its_value(template_for, args, named)
+        found = _whatever_its_value(template_for, args, named)
+    if linked_at_doors:
+        for kinds, code in door.compiled.overloads.items():
+            _name_door(door.py_func, kinds, code)
+    return found
+
+
+def _name_door(function: Any, kinds: tuple[Any, ...], code: Any) -> None:
+    """Say at which door a library is, so that it is called and not linked, if it can be found."""
+    module, name = function.__module__, function.__qualname__
+    if hasattr(sys.modules.get(module), name):
+        code.library.door = Called(module, name, kinds, code.fndesc.llvm_func_name)
+
+
+def _put_at_hand(called: Any) -> None:
+    """Put a door, compiled or read, at the symbol under which kept code calls it."""
+    door = getattr(sys.modules[called.module], called.name)  # whoever calls it has imported it
+    with _compiling(door):
+        door.compiled.compile(called.kinds)
+    code = door.compiled.overloads[called.kinds]
+    put_at(called.symbol, code)
 
 
 def _whatever_its_value(template_for: Callable[..., Any], args: Any, named: Any) -> Any:

@@ -138,7 +138,7 @@ class Door:
 
 
 def _called(door: Door) -> set[Any]:
-    """The function behind a door, and all kernels that it calls."""
+    """The function behind a door, and all kernels that it calls and that are not kept."""
     result: set[Any] = set()
     waiting: list[Any] = [door.py_func]
     while waiting:
@@ -149,7 +149,8 @@ def _called(door: Door) -> set[Any]:
             names = (function.__globals__.get(name) for name in function.__code__.co_names)
             for one in (*cells, *names):
                 if isinstance(one, Door):
-                    waiting.append(one.py_func)
+                    if not is_any_kept(one.py_func):
+                        waiting.append(one.py_func)
                 elif callable(one) and one in behind:
                     waiting.append(one)
     return result

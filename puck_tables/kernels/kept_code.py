@@ -32,10 +32,13 @@ _settings: Any = numba.config
 
 
 class KeptCode:
-    """The place of one function's compiled code, as numba's dispatchers ask for it."""
+    """The place of one function's compiled code, as numba's dispatchers ask for it.
 
-    def __init__(self, function: Callable[..., Any]) -> None:
-        self._function = function
+    ``at_hand``: puts a door that it calls at the symbol under which it does.
+    """
+
+    def __init__(self, function: Callable[..., Any], at_hand: Callable[[Any], None]) -> None:
+        self._function, self._at_hand = function, at_hand
         self._name = file_stem(function)
 
     @property
@@ -57,9 +60,11 @@ class KeptCode:
             content = kept[_DIGEST:]
             if hashlib.sha256(content).digest() != kept[:_DIGEST]:
                 return None
-            kept_key, payload = serialize.loads(content)
+            kept_key, calls, payload = serialize.loads(content)
             if kept_key != key:
                 return None
+            for called in calls:
+                self._at_hand(called)
             result: Any = CompileResult
             return result._rebuild(target_context, *payload)
         except Exception:  # not there, or whatever numba's objects raise
@@ -76,7 +81,7 @@ class KeptCode:
         path = self._path(key)
         if path is None or data.lifted or data.library.has_dynamic_globals:
             return  # addresses in it hold for this process only
-        content = _dumps((key, data._reduce()))
+        content = _dumps((key, getattr(data.library, "calls", ()), data._reduce()))
         with contextlib.suppress(OSError):
             _write(path, hashlib.sha256(content).digest() + content)
 

@@ -3,12 +3,13 @@
 numba optimises every function as soon as it is compiled, together with all that it calls, and makes
 machine code of that, also of what only other functions call: what lies ten calls deep is worked on
 ten times.  Here a function without a door to Python stays as it was written down, and is optimised
-with each door behind which it is called.
+with each door behind which it is called.  A door that another one calls is not part of that: its
+machine code is there once, and is called by its address.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 from llvmlite import binding
 from numba.core.codegen import JITCodeLibrary
@@ -17,6 +18,21 @@ from numba.core.compiler import Compiler, Flags
 Library: Any = JITCodeLibrary
 AnyCompiler: Any = Compiler
 Options: Any = Flags
+
+
+class Called(NamedTuple):
+    """A door that compiled code calls: where it stands, for which types, under which symbol."""
+
+    module: str
+    name: str
+    kinds: tuple[Any, ...]
+    symbol: str
+
+
+def put_at(symbol: str, code: Any) -> None:
+    """Put a function that is compiled at a symbol under which others call it."""
+    address = code.library.get_pointer_to_function(code.fndesc.llvm_func_name)
+    binding.add_symbol(symbol, address)
 
 
 class _NoAddress:
@@ -58,7 +74,12 @@ class Pasted(Library):  # type: ignore[misc]
 
 
 class Behind(Library):  # type: ignore[misc]
-    """The code of a function with a door, and of all behind it."""
+    """The code of a function with a door, and of all behind it but for other doors.
+
+    ``calls``: those.
+    """
+
+    calls: tuple[Called, ...] = ()
 
     def finalize(self) -> None:
         """Optimise all of it together."""
@@ -69,7 +90,8 @@ class Behind(Library):  # type: ignore[misc]
             if library not in result:
                 result[library] = None
                 waiting += library._linking_libraries if isinstance(library, Pasted) else []
-        self._linking_libraries = list(result)
+        self.calls = tuple(one.door for one in result if hasattr(one, "door"))
+        self._linking_libraries = [one for one in result if not hasattr(one, "door")]
         super().finalize()
 
 

@@ -20,6 +20,7 @@ from puck_tables._core.colours import brightness, on_white
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.plot.base_outlines import MARK, outline_of
 from puck_tables.plot.floor_axes import Box
+from puck_tables.plot.painted_lines import Painted, painted_on
 from puck_tables.plot.round_parts import RoundPart, rounds_of
 from puck_tables.plot.scene_figure import states_drawn
 from puck_tables.plot.titles import out_of_sight
@@ -99,6 +100,7 @@ class Animation(NamedTuple):
     bodies: list[MovingDisc]
     lines: list[StraightPart]
     rounds: list[RoundPart]
+    painted: list[Painted]
     happenings: list[Happening]
     box: Box
     floor: Floor
@@ -182,7 +184,8 @@ def _film(
 ) -> Animation:  # fmt: skip
     """A film of bodies by name, radius, colour, whether driven, and states close to each other."""
     rounds = [] if scene is None else rounds_of(scene)
-    box = _sight(bodies, rounds)
+    painted = [] if scene is None else painted_on(scene)
+    box = _sight(bodies, rounds, painted)
     planes = [] if scene is None else _half_planes(scene)
     box = _with_corners(box, [plane for _, plane in planes])
     size, smallest = max(box[1] - box[0], box[3] - box[2]), min(body[1] for body in bodies)
@@ -198,7 +201,7 @@ def _film(
             )
             for name, radius, colour, driven, states in bodies
         ],
-        lines, rounds, happenings or [], box, Floor() if scene is None else scene.floor,
+        lines, rounds, painted, happenings or [], box, Floor() if scene is None else scene.floor,
         () if scene is None else _frictions(scene), out_of_sight(planes, lines),
     )  # fmt: skip
 
@@ -283,8 +286,11 @@ def _leaps(states: FloatArray) -> npt.NDArray[np.bool_]:
     return np.asarray(at_once & (np.abs(np.diff(rates, axis=0)) > 1e-9 * scale).any(axis=1))
 
 
-def _sight(bodies: list[tuple[str, float, str, bool, FloatArray]], rounds: list[RoundPart]) -> Box:
-    """What ways and round parts of the board cover."""
+def _sight(
+    bodies: list[tuple[str, float, str, bool, FloatArray]], rounds: list[RoundPart],
+    painted: list[Painted],
+) -> Box:  # fmt: skip
+    """What ways, round parts of the board and painted lines cover."""
     low = np.min(
         [states[:, 1:3].min(axis=0) - radius for _, radius, _, _, states in bodies], axis=0
     )
@@ -294,6 +300,9 @@ def _sight(bodies: list[tuple[str, float, str, bool, FloatArray]], rounds: list[
     for one in rounds:
         centre = np.array([one.x, one.y])
         low, high = np.minimum(low, centre - one.radius), np.maximum(high, centre + one.radius)
+    for line in painted:
+        low = np.minimum(low, [min(line.x), min(line.y)])
+        high = np.maximum(high, [max(line.x), max(line.y)])
     return Box(float(low[0]), float(high[0]), float(low[1]), float(high[1]))
 
 

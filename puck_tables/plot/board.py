@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from puck_tables.plot.animation import Animation, MovingDisc
 from puck_tables.plot.base_outlines import path_of, placed
 from puck_tables.plot.floor_axes import Box, draw_floor
+from puck_tables.plot.painted_lines import draw_painted
 from puck_tables.plot.round_parts import draw_rounds
 from puck_tables.plot.style import RED
 
@@ -34,6 +35,7 @@ def size_of(box: Box) -> tuple[float, float]:
 def draw_board(axes: Axes, film: Animation) -> None:
     """The floor, and all that stands still, each kind labelled once, to scale."""
     draw_floor(axes, film.floor, film.box, max(film.frictions, default=0.0))
+    draw_painted(axes, film.painted)
     draw_rounds(axes, film.rounds)
     told: set[str] = set()
     for line in film.lines:

@@ -107,6 +107,7 @@ def page(film: Animation) -> str:
         "bodies": [_body(body) for body in film.bodies],
         "lines": [line._asdict() for line in film.lines], "shades": shades,
         "moving": _motion(film.floor), "rounds": [one._asdict() for one in film.rounds],
+        "painted": [line._asdict() for line in film.painted],
         "happenings": [one._asdict() for one in film.happenings],
     }  # fmt: skip
     text = json.dumps(shown, allow_nan=False, separators=(",", ":"))

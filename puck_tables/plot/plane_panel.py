@@ -11,6 +11,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.plot.base_outlines import MARK, outline_of, path_of, placed
 from puck_tables.plot.floor_axes import Box, draw_floor
+from puck_tables.plot.painted_lines import draw_painted, painted_on
 from puck_tables.plot.round_parts import RoundPart, draw_rounds, rounds_of
 from puck_tables.plot.style import BLUE, GREY, LAUNCH, ORANGE, RED, STOP
 from puck_tables.plot.titles import legend_below, noted, out_of_sight
@@ -52,6 +53,7 @@ def draw_plane(axes: Axes, run: Run, columns: dict[str, FloatArray]) -> None:
     _draw_pucks(axes, scene, columns)
     walls = _draw_lines(axes, scene.walls, box, "wall", color="black", linewidth=2.5)
     edges = _draw_lines(axes, scene.edges, box, "edge", color=RED, linestyle="--")
+    draw_painted(axes, painted_on(scene))
     rounds = [one for one in rounds_of(scene) if _meets(box, one)]
     draw_rounds(axes, rounds)
     turns = [event for event in run.events if event.what in ("impact", "contact")]

@@ -20,7 +20,8 @@ EMPIRICAL = (
 )
 # entries that change no motion, or where it begins and ends, or whom it meets
 FREE = (
-    "title", "puck", "launch", "time", "frames", "tol", "puck[]", "post", "arc", "pocket", "rim",
+    "title", "puck", "launch", "time", "frames", "tol", "puck[]", "post", "arc", "pocket", "line",
+    "rim",
 )  # fmt: skip
 
 

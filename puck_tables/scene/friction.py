@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 
-from puck_tables.kernels.compile import inlined, inner
+from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.kernels.speed_spline import speed_ratios
 from puck_tables.motion.equations_of_motion import ratios_at
 from puck_tables.scene.astride import astride_friction
@@ -31,7 +31,7 @@ def size(a: float, b: float, c: float) -> float:
     return math.sqrt(a * a + b * b + c * c)
 
 
-@inner
+@kernel
 def dry_friction(
     dry: Dry, radius: float, ux: float, uy: float, w: float
 ) -> tuple[float, float, float, float]:

@@ -24,7 +24,7 @@ AT_REST, CARRIED_AWAY, CARRIED_ROUND, TIME_UP, OVER_EDGE, IN_POCKET = range(6)
 LAST_END = IN_POCKET
 STEP_LIMIT, EVENT_LIMIT = range(6, 8)
 IMPACTS_WITHOUT_END, UNSOLVED, TOO_FAST, NO_END, REFUSED = range(8, 13)
-EVENTS = ("stick", "slip", "impact", "contact", "entry", "edge", "exit", "overhang")
+EVENTS = ("stick", "slip", "impact", "contact", "entry", "edge", "exit", "overhang", "line")
 
 
 def refuse_changed(scene: SceneSpec, files: Mapping[str, str]) -> None:

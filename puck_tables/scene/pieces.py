@@ -100,6 +100,29 @@ class Pocket:
 
 
 @dataclass(frozen=True)
+class Line:
+    """A line painted on the floor, straight or round, that tells who passes it and changes nothing.
+
+    It is a goal mouth, a hog line, a ring of the house.  Events are "line", where the centre of a
+    puck passes it, "entry" and "exit", where the rim comes over it and has left it.  Their
+    ``approach`` is the speed across it in m/s, positive to the left of the way from start to end,
+    or inwards: a goal is an "exit" with one of the right sign.
+
+    Examples
+    --------
+    >>> hog = Line((-6.401, -2.375), (-6.401, 2.375), name="hog line")
+    >>> house = Line(centre=(0.0, 0.0), radius=1.829, name="house")
+    """
+
+    start: tuple[float, float] | None = of("pair", None, "m", doc="of a straight one")
+    end: tuple[float, float] | None = of("pair", None, "m", doc="of a straight one")
+    centre: tuple[float, float] = of("pair", (0.0, 0.0), "m", doc="of a round one")
+    radius: float = of("number", 0.0, "m", low=0.0, doc="of a round one")
+    name: str = of("text", "", doc="in events and pictures")
+    colour: str = of("colour", "", doc="in pictures and movies")
+
+
+@dataclass(frozen=True)
 class Rim:
     """How two meet, in place of what each of them says.
 

@@ -32,17 +32,17 @@ class Event(NamedTuple):
     """What happened: when (s), what, to which puck, with what.
 
     stick (it comes to rest on the floor), slip (it leaves that rest); impact; contact, which lasts;
-    entry (its rim comes over a border or patch), exit (it has left it); pocket or edge, where it
-    leaves play; overhang, where its rim comes over an edge (from there to the edge it is carried as
-    if nothing of it hung in the air); launch; and of a world into which a hand reaches placed,
-    removed, added, force.
+    entry (its rim comes over a border, a patch or a painted line), exit (it has left it); line (its
+    centre passes one); pocket or edge, where it leaves play; overhang, where its rim comes over an
+    edge (from there to the edge it is carried as if nothing of it hung in the air); launch; of a
+    world into which a hand reaches placed, removed, added, force.
 
-    ``partner``: the puck, wall, post, arc, pocket, edge, border or patch that it meets, such as
-    'wall 0'; of stick and slip the floor, or the strip under its centre.  ``x``, ``y`` m: where;
+    ``partner``: the puck, wall, post, arc, pocket, edge, border, patch or line that it meets, such
+    as 'wall 0'; of stick and slip the floor, or the strip under its centre.  ``x``, ``y`` m: where;
     ``approach``, ``slip`` m/s: how fast the rims came together and slid on each other before the
-    first impact of this moment; ``impulse``, ``rub`` N s: along the line from the puck to its
-    partner and 90° to the left of it; ``lost`` J: kinetic energy lost.  Of several impacts at one
-    moment impulses and losses are right in sum only.
+    first impact of this moment, or a line was passed; ``impulse``, ``rub`` N s: along the line from
+    the puck to its partner and 90° to the left of it; ``lost`` J: kinetic energy lost.  Of several
+    impacts at one moment impulses and losses are right in sum only.
     """
 
     time: float

@@ -28,7 +28,7 @@ from puck_tables.scene.parts import (
     Launch,
     Wall,
 )
-from puck_tables.scene.pieces import Arc, PieceSpec, Pocket, Post, Rim
+from puck_tables.scene.pieces import Arc, Line, PieceSpec, Pocket, Post, Rim
 from puck_tables.scene.ranges import Ranges, batch_of, launch_rows, owner_of, refuse_twice
 
 MAX_RUNS = 1_000_000_000  # of one sweep
@@ -58,6 +58,7 @@ class SceneSpec:
     posts: tuple[Post, ...] = of("parts", (), part=Post, table="post")
     arcs: tuple[Arc, ...] = of("parts", (), part=Arc, table="arc")
     pockets: tuple[Pocket, ...] = of("parts", (), part=Pocket, table="pocket")
+    lines: tuple[Line, ...] = of("parts", (), part=Line, table="line")
     edges: tuple[Edge, ...] = of("parts", (), part=Edge, table="edge")
     rims: tuple[Rim, ...] = of("parts", (), part=Rim, table="rim")
     constraint: Constraint | None = of("part", None, part=Constraint)

@@ -184,6 +184,7 @@ def disagreements(scene: SceneSpec) -> list[str]:
     for path, line in lines:
         if not _SMALLEST < math.hypot(*line.normal) < _LARGEST:
             faults.append(f"{path}.normal = {list(line.normal)}: must have a direction")
+    faults += _strange_lines(scene)
     faults += _strange_rims(scene)
     if not scene.frames.is_integer():
         faults.append(f"frames = {scene.frames:g}: must be a whole number")
@@ -193,6 +194,19 @@ def disagreements(scene: SceneSpec) -> list[str]:
         *_overlaps(pieces), *_out_of_bounds(scene, pieces), *_driven_through(scene, pieces),
         *_wide_pockets(scene),
     ]  # fmt: skip
+
+
+def _strange_lines(scene: SceneSpec) -> Iterator[str]:
+    """Painted lines that are neither straight nor round, or of which two have one name."""
+    for k, line in enumerate(scene.lines):
+        straight = line.start is not None and line.end is not None
+        if straight == (line.radius > 0.0) or (line.start is None) != (line.end is None):
+            yield f"line[{k}]: give its start and end, or a centre and a radius > 0 of a round one"
+        elif straight and line.start == line.end:
+            yield f"line[{k}].end = {line.end}: must lie elsewhere than its start"
+    names = [line.name for line in scene.lines if line.name]
+    for name in sorted({name for name in names if names.count(name) > 1}):
+        yield f"line.name = {name!r}: {names.count(name)} lines have it, it must be of one"
 
 
 def _not_here(scene: SceneSpec) -> Iterator[str]:

@@ -66,7 +66,7 @@ def _to_line(away: float, rate: float, how: int, radius: float, bend: float) -> 
 
 
 @inlined
-def _to_round(
+def to_round(
     dx: float, dy: float, vx: float, vy: float, reach: float, how: int, radius: float, bend: float
 ) -> Sight:
     """Of a circle, whose middle is at (dx, dy) from the centre of the disc."""
@@ -138,7 +138,7 @@ def _look(
         return _to_polygon(ground, number, state, how, radius, bend)
     dx = patch_of(ground, number, MIDDLE_X) - state[X]
     dy = patch_of(ground, number, MIDDLE_Y) - state[Y]
-    return _to_round(dx, dy, vx, vy, patch_of(ground, number, REACH), how, radius, bend)
+    return to_round(dx, dy, vx, vy, patch_of(ground, number, REACH), how, radius, bend)
 
 
 @inlined

@@ -18,12 +18,12 @@ NOTHING, PATH_ENDS, LOOK_AGAIN = 1 << 40, (1 << 40) + 1, (1 << 40) + 2
 
 # events; from PLACED on, as STRUCK, by hand
 (
-    IMPACT, CONTACT, PART, POCKETED, OVER_EDGE, REST, STRUCK, ENTERS, LEAVES, OVERHANGS, PLACED,
-    REMOVED, ADDED, FORCED,
-) = range(14)  # fmt: skip
+    IMPACT, CONTACT, PART, POCKETED, OVER_EDGE, REST, STRUCK, ENTERS, LEAVES, OVERHANGS, PASSES,
+    PLACED, REMOVED, ADDED, FORCED,
+) = range(15)  # fmt: skip
 EVENTS = (
     "impact", "contact", "part", "pocket", "edge", "rest", "launch", "entry", "exit", "overhang",
-    "placed", "removed", "added", "force",
+    "line", "placed", "removed", "added", "force",
 )  # fmt: skip
 # columns of an event: what, disc, partner, place of the contact, normal from the disc to its
 # partner, approach and slip before, normal and tangential impulse, energy lost, what launches and

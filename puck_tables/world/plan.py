@@ -24,7 +24,7 @@ _OF_EACH = ("force", "constraint")
 # what makes no motion another one, but where it ends
 _OF_OTHERS = (
     "title", "puck", "pucks", "launch", "time", "frames", "tol", "gravity", "walls", "edges",
-    "posts", "arcs", "pockets", "rims",
+    "posts", "arcs", "pockets", "lines", "rims",
 )  # fmt: skip
 _ON_FLOOR = ("strips", "patches")
 

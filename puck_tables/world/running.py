@@ -16,6 +16,7 @@ from puck_tables.errors import InputError, PuckError
 from puck_tables.scene.run import Event
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import game as g
+from puck_tables.world import passings
 from puck_tables.world.agreement import called, pieces_of, refuse_endless
 from puck_tables.world.departures import desk_for, room_for
 from puck_tables.world.engine import EVERYBODY, NOBODY, THOSE_LEFT, advance, lacks_rows
@@ -33,6 +34,7 @@ from puck_tables.world.lasting import (
 from puck_tables.world.law_range import with_law_for
 from puck_tables.world.layout import EDGE, KIND, POCKET
 from puck_tables.world.lone import LONGEST
+from puck_tables.world.passings import Passings, called_line
 from puck_tables.world.prepare import Start, obstacle_names, prepared, shipped_curves
 from puck_tables.world.pushed_back import Told
 from puck_tables.world.record import states_at, states_now
@@ -74,6 +76,9 @@ class Running:
         self._desk = desk_for(self._game)
         self._told: dict[int, Told] = {}  # until when what pushed back discs was told
         self._named()
+        pieces = pieces_of(self.scene)
+        rimless = [not pieces[number].has_rim for number in self._order]
+        self._passings = Passings(self.scene.lines, len(self.names), rimless)
         self._advance(0.0, EVERYBODY)
 
     def _named(self) -> None:
@@ -198,15 +203,16 @@ class Running:
         if not span >= 0.0:
             raise InputError(f"duration must not be negative, got {span:g} s")
         before, until = int(self._game.counts[g.N_EVENTS]), self.time + span
+        passed = len(self._passings.rows)
         if span == math.inf:
             self.come_to_rest()
         elif self._next_moment() > until:
             self._game.clock[0] = until
-            return []
         else:
             with self._or_as_before():
                 self._advance(until)
-        return self._events(before)
+        self._passings.follow(self._game)
+        return self._events(before, passed)
 
     def _next_moment(self) -> float:
         """When something happens next, s."""
@@ -253,8 +259,10 @@ class Running:
     def events_since(self, time: float) -> list[Event]:
         """What happened from a time on."""
         moment = real("time", time, "s")
+        self._passings.follow(self._game)
         times = self._game.events[: self._game.counts[g.N_EVENTS], g.TIME]
-        return self._events(int(np.searchsorted(times, moment)))
+        passed = self._passings.rows[:, passings.TIME]
+        return self._events(*(int(np.searchsorted(one, moment)) for one in (times, passed)))
 
     def _or_as_before(self) -> _OrAsBefore:
         """What is done in it is done as a whole, or not at all."""
@@ -306,6 +314,7 @@ class Running:
         other.__dict__.update(self.__dict__)
         other._game = g.copy_of(self._game)
         other._room, other._desk = room_for(len(self.names)), desk_for(other._game)
+        other._passings = self._passings.copy()
         return other
 
     def __getstate__(self) -> dict[str, Any]:
@@ -388,14 +397,22 @@ class Running:
             )
         return PuckError(f"{long}, and no end: ask for a shorter time")
 
-    def _events(self, first: int) -> list[Event]:
-        rows = self._game.events[first : self._game.counts[g.N_EVENTS]]
+    def _events(self, first: int, passed: int) -> list[Event]:
+        count, lines = int(self._game.counts[g.N_EVENTS]), self.scene.lines
+        if first == count and passed == len(self._passings.rows):
+            return []
+        rows = self._game.events[first:count]
         columns = [g.TIME, g.WHAT, g.WHO, g.PARTNER, g.AT_X, g.AT_Y, g.APPROACH, g.SLIDE, g.PUSH,
                    g.RUB, g.LOST]  # fmt: skip
-        return [
+        found = [
             Event(time, g.EVENTS[int(what)], self._name(who), self._name(partner), *numbers)
             for time, what, who, partner, *numbers in rows[:, columns].tolist()
         ]
+        found += [
+            Event(time, g.EVENTS[int(what)], self._name(who), called_line(lines, int(k)), *numbers)
+            for time, what, who, k, *numbers in self._passings.rows[passed:].tolist()
+        ]
+        return sorted(found, key=lambda event: event.time) if lines else found
 
     @cached_property
     def _obstacles(self) -> list[str]:

@@ -80,7 +80,7 @@ class Scene(SceneSpec):
     floor, launch, drag, lateral, force, title : optional
         As :mod:`puck_tables.scene.parts` has them.
     walls, edges : sequences of Wall, of Edge, optional
-    pucks, posts, arcs, pockets, rims : sequences, optional
+    pucks, posts, arcs, pockets, lines, rims : sequences, optional
         As :mod:`puck_tables.scene.pieces` has them.
     constraint : Constraint, optional
     time : s, > 0, optional

@@ -219,6 +219,7 @@ class World(Running):
             start, state = with_puck(self._game, board, self._order, self.time)
             self.scene, self._order, self._game = start.scene, start.order, start.game
             self._room, self._desk = room_for(len(start.order)), desk_for(start.game)
+            self._passings = self._passings.with_disc(puck.has_rim)
             self._named()
             self._put(g.ADDED, state, len(start.order) - 1)
         return len(self.names) - 1

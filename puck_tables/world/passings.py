@@ -1,0 +1,302 @@
+"""When pucks pass the lines of a scene: found on the paths that they had, which no line changes.
+
+A side is left when the room on it is used up: as with what stands in the way
+(:mod:`puck_tables.world.borders`) it cannot be before s = 2g/(√(g′² + 2Ag) − g′) where the room g
+is convex but for the acceleration A, so that steps of s reach the moment from before.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import inlined, inner, kernel, patience
+from puck_tables.scene.friction import VX, VY, X, Y
+from puck_tables.scene.patches import ASTRIDE, INSIDE, OUTSIDE
+from puck_tables.scene.pieces import Line
+from puck_tables.world.borders import to_round
+from puck_tables.world.flight import GONE, ROOM, START, moves_until, state_at
+from puck_tables.world.footing import lies_to
+from puck_tables.world.game import ENTERS, LEAVES, N_HISTORY, PASSES, Game, Whole
+from puck_tables.world.layout import RADIUS
+from puck_tables.world.meeting import (
+    QUIET,
+    ROUNDED,
+    arc_step,
+    bend_of,
+    once_round,
+    safe_step,
+    way_left,
+)
+
+# columns of a line: a straight one goes from (A, B) to (C, D); a round one has the radius R > 0
+# about (A, B)
+A, B, C, D, R = range(5)
+CENTRE, RIM = 0, 1  # what passes
+# what is seen of one: its side, since when, and when it leaves it; < 0: it was not looked for
+SIDE, FROM, NEXT = range(3)
+UNKNOWN = -1  # on which side one lies that was put on the line
+TIME, WHAT, WHO, LINE, AT_X, AT_Y, ACROSS = range(7)
+COLUMNS = 7
+
+
+def rows_of(lines: Sequence[Line]) -> FloatArray:
+    """Lines as the kernels read them, array (lines, 5).
+
+    Examples
+    --------
+    >>> rows_of([Line((0.0, -1.0), (0.0, 1.0)), Line(centre=(2.0, 0.0), radius=0.5)]).tolist()
+    [[0.0, -1.0, 0.0, 1.0, 0.0], [2.0, 0.0, 0.0, 0.0, 0.5]]
+    """
+    rows = [
+        (*line.centre, 0.0, 0.0, line.radius)
+        if line.start is None or line.end is None
+        else (*line.start, *line.end, 0.0)
+        for line in lines
+    ]
+    return np.array(rows, np.float64).reshape(-1, 5)
+
+
+def called_line(lines: Sequence[Line], number: int) -> str:
+    """A line in an event.
+
+    Examples
+    --------
+    >>> called_line([Line((0.0, 0.0), (1.0, 0.0)), Line((0.0, 1.0), (1.0, 1.0), name="goal")], 1)
+    'goal'
+    """
+    return lines[number].name or f"line {number}"
+
+
+class Passings:
+    """What passed the lines of a world so far.
+
+    Examples
+    --------
+    >>> Passings([], 3).rows.shape
+    (0, 7)
+    """
+
+    def __init__(self, lines: Sequence[Line], discs: int, rimless: Sequence[bool] = ()) -> None:
+        self._lines = rows_of(lines)
+        self._seen = np.tile([UNKNOWN, 0.0, -1.0], (discs, len(lines), 2, 1))
+        self._seen[np.flatnonzero(rimless), :, RIM, FROM:] = math.inf
+        self._flights = np.append(np.full(discs, -1), 0)
+        self.rows: FloatArray = np.zeros((0, COLUMNS))
+
+    def copy(self) -> Passings:
+        """One that goes on by itself."""
+        other = object.__new__(Passings)
+        kept = {name: one.copy() for name, one in self.__dict__.items() if name != "_lines"}
+        other.__dict__.update(kept, _lines=self._lines)
+        return other
+
+    def with_disc(self, has_rim: bool) -> Passings:
+        """One that follows a disc more, the last."""
+        other, own = self.copy(), np.tile([UNKNOWN, 0.0, -1.0], (1, len(self._lines), 2, 1))
+        if not has_rim:
+            own[:, :, RIM, FROM:] = math.inf
+        other._seen = np.concatenate([self._seen, own])
+        other._flights = np.insert(self._flights, -1, -1)
+        return other
+
+    def follow(self, game: Game) -> None:
+        """See what passed until now."""
+        size = 16
+        while self._lines.size:
+            own, found = self.copy(), np.zeros((size, COLUMNS))
+            count = _follow(
+                game, own._lines, own._seen, own._flights, np.empty(ROOM), np.empty(6), found
+            )
+            if count <= size:
+                order = np.lexsort((found[:count, LINE], found[:count, WHO], found[:count, TIME]))
+                own.rows = np.vstack([self.rows, found[:count][order]])
+                self.__dict__.update(own.__dict__)
+                return
+            size *= 4
+
+
+@inlined
+def _away(line: FloatArray, part: int, x: float, y: float) -> float:
+    """How far a place is from a line; of a centre left of it, or within, less than 0."""
+    if line[R] > 0.0:
+        return math.hypot(x - line[A], y - line[B]) - line[R]
+    ax, ay, bx, by = x - line[A], y - line[B], line[C] - line[A], line[D] - line[B]
+    if part == CENTRE:
+        return (ay * -bx + ax * by) / math.hypot(bx, by)
+    share = min(max((ax * bx + ay * by) / (bx * bx + by * by), 0.0), 1.0)
+    return math.hypot(ax - share * bx, ay - share * by)
+
+
+@inlined
+def _look(
+    line: FloatArray, part: int, side: int, radius: float, state: FloatArray, bend: float
+) -> tuple[float, float, float]:
+    """The room that is left on a side, how fast it changes, and how long it surely stays."""
+    x, y, vx, vy = state[X], state[Y], state[VX], state[VY]
+    if line[R] > 0.0:
+        room, rate, step, _, _, _ = to_round(
+            line[A] - x, line[B] - y, vx, vy, line[R], side, radius, bend
+        )
+        return room, rate, step
+    ax, ay, bx, by = x - line[A], y - line[B], line[C] - line[A], line[D] - line[B]
+    long = math.hypot(bx, by)
+    if part == CENTRE:
+        sign = 1.0 if side == OUTSIDE else -1.0
+        room, rate = sign * (ax * by - ay * bx) / long, sign * (vx * by - vy * bx) / long
+        return room, rate, safe_step(max(room, 0.0), rate, bend)
+    share = min(max((ax * bx + ay * by) / (long * long), 0.0), 1.0)
+    ox, oy = ax - share * bx, ay - share * by
+    far = math.hypot(ox, oy)
+    rate = (ox * vx + oy * vy) / far if far > 0.0 else 0.0
+    if side == ASTRIDE:
+        return radius - far, -rate, arc_step(max(radius - far, 0.0), ox, oy, vx, vy, bend)
+    return far - radius, rate, safe_step(max(far - radius, 0.0), rate, bend)
+
+
+@inlined
+def _note(line: FloatArray, side: int, to: int, state: FloatArray, row: FloatArray) -> bool:
+    """Write down a passing, if the line is there."""
+    x, y = state[X], state[Y]
+    if line[R] > 0.0:
+        far = math.hypot(x - line[A], y - line[B])
+        nx, ny = ((line[A] - x) / far, (line[B] - y) / far) if far > 0.0 else (1.0, 0.0)
+    else:
+        ax, ay, bx, by = x - line[A], y - line[B], line[C] - line[A], line[D] - line[B]
+        long = math.hypot(bx, by)
+        nx, ny = -by / long, bx / long
+        along = ax * bx + ay * by
+        if ASTRIDE not in (side, to) and not 0.0 <= along <= long * long:
+            return False
+    row[WHAT] = ENTERS if to == ASTRIDE else LEAVES if side == ASTRIDE else PASSES
+    row[AT_X], row[AT_Y] = x, y
+    row[ACROSS] = state[VX] * nx + state[VY] * ny
+    return True
+
+
+@inlined
+def _beyond(line: FloatArray, side: int, radius: float, state: FloatArray) -> int:
+    """Where a disc comes that leaves a side now."""
+    if radius == 0.0:
+        return INSIDE if side == OUTSIDE else OUTSIDE
+    if side != ASTRIDE:
+        return ASTRIDE
+    return INSIDE if _away(line, RIM, state[X], state[Y]) < 0.0 else OUTSIDE
+
+
+@inlined
+def _side_at_start(
+    line: FloatArray, part: int, before: int, radius: float, rounded: float, state: FloatArray
+) -> int:  # fmt: skip
+    """On which side a flight begins; on the line itself it is the side from which one came."""
+    away = _away(line, part, state[X], state[Y])
+    if abs(abs(away) - radius) > rounded:
+        return lies_to(away, radius)
+    if before != UNKNOWN:
+        return before
+    side = INSIDE if away < 0.0 and part == RIM else OUTSIDE
+    _, rate, _ = _look(line, part, side, radius, state, 0.0)
+    if rate == 0.0:
+        return UNKNOWN
+    return _beyond(line, side, radius, state) if rate < 0.0 else side
+
+
+@inner
+def _next_passing(
+    game: Game, n: int, now: float, last: float, line: FloatArray, part: int, side: int,
+    room: FloatArray, state: FloatArray,
+) -> float:  # fmt: skip
+    """When a side is left on a flight, up to a time, else inf; the state then in ``state``."""
+    kind, flight = int(game.history[n, 1]), game.history[n, 2:]
+    disc, t = game.discs[int(game.history[n, 0])], now
+    radius = disc[RADIUS] if part == RIM else 0.0
+    while True:
+        patience(1)
+        state_at(kind, flight, disc, game.curves, game.pieces, t, room, state)
+        rounded = ROUNDED * (abs(state[X]) + abs(state[Y]) + radius + line[R])
+        bend = bend_of(kind, flight, disc, state, t)
+        gap, rate, step = _look(line, part, side, radius, state, bend)
+        if gap > way_left(kind, flight, disc, state, t) * (1.0 + 1e-9):
+            return math.inf
+        if gap <= rounded:
+            if rate < -QUIET * game.pace[0]:
+                return t
+            if bend > 0.0:
+                step = max(step, math.sqrt(2.0 * rounded / bend))
+            elif rate != 0.0:
+                step = max(step, 2.0 * rounded / abs(rate))
+        if t + step > last:
+            return math.inf
+        t = max(t + step, np.nextafter(t, math.inf))
+
+
+@inner
+def _along(
+    game: Game, n: int, until: float, line: FloatArray, part: int, seen: FloatArray,
+    room: FloatArray, state: FloatArray, found: FloatArray, count: int,
+) -> int:  # fmt: skip
+    """What passes a line on a flight; how many rows of ``found`` are used, or would be."""
+    i, kind, flight = int(game.history[n, 0]), int(game.history[n, 1]), game.history[n, 2:]
+    if kind == GONE:
+        return count
+    radius = game.discs[i, RADIUS] if part == RIM else 0.0
+    if seen[SIDE] == UNKNOWN or seen[FROM] == flight[START]:
+        state_at(kind, flight, game.discs[i], game.curves, game.pieces, flight[START], room, state)
+        rounded = ROUNDED * (abs(state[X]) + abs(state[Y]) + radius + line[R])
+        seen[SIDE] = _side_at_start(line, part, int(seen[SIDE]), radius, rounded, state)
+    while seen[NEXT] <= until and seen[SIDE] != UNKNOWN:
+        if seen[NEXT] < 0.0:
+            last = min(moves_until(kind, flight), once_round(kind, flight, seen[FROM]))
+            if last == math.inf:
+                last = until
+            at = _next_passing(game, n, seen[FROM], last, line, part, int(seen[SIDE]), room, state)
+            if at == math.inf and last == until:
+                seen[FROM] = until
+                return count
+            seen[NEXT] = at
+            continue
+        side, at = int(seen[SIDE]), seen[NEXT]
+        state_at(kind, flight, game.discs[i], game.curves, game.pieces, at, room, state)
+        to = _beyond(line, side, radius, state)
+        row = found[min(count, found.shape[0] - 1)]
+        if _note(line, side, to, state, row):
+            row[TIME], row[WHO] = at, i
+            count += 1
+        seen[SIDE], seen[FROM], seen[NEXT] = to, at, -1.0
+    return count
+
+
+@kernel
+def _follow(
+    game: Game, lines: FloatArray, seen: FloatArray, flights: Whole, room: FloatArray,
+    state: FloatArray, found: FloatArray,
+) -> int:  # fmt: skip
+    """All that passed until now; how many rows of ``found`` that takes, perhaps more than it has.
+
+    ``flights`` (discs + 1,): the row of the history on which a disc is; how many there were.
+    """
+    count, discs = 0, game.discs.shape[0]
+    begun = int(game.counts[N_HISTORY])
+    for n in range(flights[discs], begun + discs):
+        patience(1)
+        i = int(game.history[n, 0]) if n < begun else n - begun
+        until = game.history[n, 2 + START] if n < begun else game.clock[0]
+        for k in range(lines.shape[0]):
+            for part in range(2):
+                if flights[i] >= 0 and seen[i, k, part, NEXT] <= until:
+                    used = count
+                    count = _along(
+                        game, flights[i], until, lines[k], part, seen[i, k, part], room, state,
+                        found, count,
+                    )  # fmt: skip
+                    for row in range(used, min(count, found.shape[0])):
+                        found[row, LINE] = k
+                if n < begun and seen[i, k, part, FROM] < math.inf:
+                    seen[i, k, part, FROM], seen[i, k, part, NEXT] = until, -1.0
+        if n < begun:
+            flights[i] = n
+    flights[discs] = begun
+    return count
