@@ -70,7 +70,7 @@ def _board() -> Scene:
 def _table() -> Scene:
     """Two pucks that meet on a level floor."""
     sent, there = Launch((1.0, 0.0)), Launch(position=(0.2, 0.01))
-    return Scene(pucks=[Piece(0.04, friction=0.1, launch=n) for n in (sent, there)])
+    return Scene(pucks=tuple(Piece(0.04, friction=0.1, launch=n) for n in (sent, there)))
 
 
 _PARTS: tuple[tuple[str, Callable[[], None]], ...] = (

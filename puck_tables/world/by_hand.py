@@ -115,7 +115,7 @@ def with_force(
     begin = float(game.clock[0])
     mine = game.tides[slice(*game.spans[i])]
     times = np.unique(np.concatenate([mine[:, 0], [begin, until]])).tolist()
-    rows = []
+    rows: list[FloatArray] = []
     for start, end in pairwise(times):
         for row in (_just(mine, start, True), _just(mine, end, False)):
             if begin <= start and end <= until:

@@ -117,7 +117,8 @@ def copy_of(game: Game) -> Game:
 
 def kept(game: Game) -> Game:
     """The game as it is, to go back to: what is added to it later is not counted there."""
-    pairs = zip(_CHANGES, game, strict=True)
+    parts: Any = game
+    pairs = zip(_CHANGES, parts, strict=True)
     return Game._make([part.copy() if changes else part for changes, part in pairs])
 
 
