@@ -64,7 +64,7 @@ def _of_one(run: Run) -> dict[str, str]:
         "end": f"{run.end} after {run.end_time:.9g} s",
         "place": f"({last['x']:.9g}, {last['y']:.9g}) m, body at {last['orientation']:.6g} rad",
         "motion": f"v = ({last['vx']:.6g}, {last['vy']:.6g}) m/s, w = {last['spin']:.6g} rad/s",
-        "events": _some([f"{_event(event)} at {event.time:.6g} s" for event in run.events])
+        "events": _some([f"{_event(event)} at {event.time:.6g} s" for event in run.main_events])
         or "none",
     }
 
@@ -87,6 +87,8 @@ def _inputs(scene: SceneSpec) -> dict[str, str]:
     parts: dict[str, list[str]] = {}
     for entry in entries(scene):
         part, dot, name = entry.path.partition(".")
+        if part.startswith("line["):
+            continue  # which of them it passes stands under events
         if is_dataclass(entry.value) or not (dot or part not in ("title", "gravity")):
             continue  # its entries follow; above all, and of each puck
         if entry.default is None and isinstance(entry.value, Unsaid):

@@ -187,6 +187,25 @@ def test_a_law_is_integrated_as_exactly_as_a_constant() -> None:
                 assert np.abs((np.array(law) - 0.3 * np.array(own)) / unit).max() < 1e-10
 
 
+def test_arrays_give_what_the_kernel_gives_before_it_is_compiled() -> None:
+    def smooth(u: np.ndarray) -> np.ndarray:
+        return 0.002 / (u + 0.06) + 0.006
+
+    law = packed_law(*law_moments(smooth, np.array([0.0, 60.0])))
+    rng = np.random.default_rng(4)
+    for base in BASES.values():
+        shape, outermost = packed(base, 0.0), base.points() - np.array(base.middle)
+        for _ in range(40):
+            w, far = float(rng.choice([-5.0, 5.0])), 10.0 ** float(rng.uniform(-4.0, 2.0))
+            rim = outermost[rng.integers(len(outermost))]
+            slips = [(*(far * rng.normal(size=2) * 0.1), w), (w * rim[1], -w * rim[0], w)]
+            for ux, uy, spin in [*slips, (1.0, 0.5, 0.0)]:
+                one = law_sums.py_func(shape, law, ux, uy, spin)
+                two = law_sums.at_first(shape, law, ux, uy, spin)
+                unit = base.area * np.array([1.0] * 2 + [base.reach] * 4 + [base.reach**2] * 2)
+                assert (np.abs(np.subtract(one, two)) < 1e-13 * unit).all()
+
+
 def test_a_square_turns_when_the_torque_is_that_of_its_friction() -> None:
     side, friction, gravity = 0.1, 0.3, 10.0
     limit = (math.sqrt(2.0) + math.log(1.0 + math.sqrt(2.0))) / 6.0 * friction * gravity * side

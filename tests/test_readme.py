@@ -18,7 +18,15 @@ TEXTS = {name: path.read_text(encoding="utf-8") for name, path in PAGES.items()}
 EXAMPLES = sorted((ROOT / "docs" / "gallery").rglob("*.py"))
 every_page = pytest.mark.parametrize("page", PAGES)
 # their commands take long
-LONG = ("fits.md", "command-line.md", "several-pucks.md", "explorer.md", "scenes.md", "export.md")
+LONG = (
+    "curling.md",
+    "fits.md",
+    "command-line.md",
+    "several-pucks.md",
+    "explorer.md",
+    "scenes.md",
+    "export.md",
+)
 
 
 def console_examples(text: str) -> list[tuple[str, str]]:

@@ -43,6 +43,9 @@ POLYGON = {"floor": {"patch": [
 WET = {"floor": {**STRIPS["floor"], "grip": [
     {"over_time": [[0.0, 1.0], [0.1, 0.5]], "where": "strip 0"},
 ]}}  # fmt: skip
+BELTS = {"floor": {"strips": {
+    "borders": [0.03], "friction": [0.2, 0.1], "across": [0.1, -0.2], "along": [0.3, 0.0],
+}}, "time": 0.5}  # fmt: skip
 WALL = {"wall": [{"point": [0.1, 0.0], "normal": [-1.0, 0.1], "tangential": 0.2}]}
 EDGE = {"edge": [{"point": [0.05, 0.0], "normal": [-1.0, 0.0]}]}
 HELD = {"launch": {"velocity": None}, "time": 0.5}
@@ -68,6 +71,9 @@ CASES: dict[str, tuple[dict[str, Any], Any]] = {
     "floor.strips.borders": (STRIPS, [0.06]),
     "floor.strips.friction": (STRIPS, [0.2, 0.3]),
     "floor.strips.direction": (STRIPS, 1.0),
+    "floor.strips.across": (BELTS, [0.1, 0.1]),
+    "floor.strips.along": (BELTS, [0.1, 0.1]),
+    "floor.patch[0].velocity": (ROUND, [0.0, 0.5]),
     "floor.patch[0].friction": (ROUND, 0.3),
     "floor.patch[0].centre": (ROUND, [0.3, 0.05]),
     "floor.patch[0].radius": (ROUND, 0.07),

@@ -36,15 +36,12 @@ class Door:
     """A kernel that Python calls.
 
     ``counts``: references to arrays; ``fuses``: a·b + c is rounded once where the machine can;
-    ``arrays``: what runs at first in place of the function as it is written.
+    ``at_first``: what runs at first in place of the function as it is written.
     """
 
-    def __init__(
-        self, function: Callable[..., Any], counts: bool, fuses: bool,
-        arrays: Callable[..., Any] | None = None,
-    ) -> None:  # fmt: skip
+    def __init__(self, function: Callable[..., Any], counts: bool, fuses: bool) -> None:
         update_wrapper(self, function)
-        self._at_first = arrays or function
+        self.at_first = function
         self.py_func, self.counts, self.fuses = function, counts, fuses
         self.spent = 0.0  # s of computing, as it is written
         self._ready: Any = None
@@ -52,7 +49,7 @@ class Door:
     def __call__(self, *args: Any) -> Any:
         """Run it."""
         if here.as_written:
-            return self.py_func(*args)
+            return self.at_first(*args)
         if self._ready is not None:
             return self._ready(*args)
         return self.callable_for(*args)(*args)
@@ -84,7 +81,7 @@ class Door:
         """How long it may run as it is written, s: the longer, the longer compiling takes."""
         if is_any_kept(self.py_func):
             return AT_FIRST
-        worth = _WORTH if self._at_first is self.py_func else _WORTH_OF_ARRAYS
+        worth = _WORTH if self.at_first is self.py_func else _WORTH_OF_ARRAYS
         return max(AT_FIRST, worth * self.seconds)
 
     def _keeps(self, args: tuple[Any, ...]) -> bool:
@@ -116,7 +113,7 @@ class Door:
         here.as_written, here.until = True, begin + self._allowed - self.spent
         try:
             with np.errstate(all="ignore"):
-                result = self._at_first(*args)
+                result = self.at_first(*args)
             if not _is_complex(result):
                 return result
         except (OutOfPatience, ArithmeticError, ValueError, TypeError) as error:
@@ -215,13 +212,16 @@ def allocating(function: Function) -> Function:
 
 
 def arrays_at_first(arrays: Callable[..., Any]) -> Callable[[Function], Function]:
-    """A kernel as :func:`allocating`; until compiling it pays, arrays answer in its place.
+    """A kernel in whose place arrays answer until compiling it pays.
 
-    ``arrays``: takes what the kernel takes, and fills the same outputs with NumPy.
+    ``arrays``: takes what the kernel takes, and gives the same or fills the same outputs, by NumPy.
     """
 
-    def door(function: Function) -> Function:
-        made: Any = arrays if as_written() else Door(function, True, False, arrays)
+    def door(made: Function) -> Function:
+        one: Any = made
+        if not isinstance(one, Door):
+            return arrays  # type: ignore[return-value]
+        one.at_first = arrays
         return made
 
     return door

@@ -16,13 +16,22 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.law_moments import DEGREE, MOMENTS
 from puck_tables.kernels.base_friction import DISC_COLUMNS, DISCS, HEAD, REACH, SIDES
 from puck_tables.kernels.base_sums import NOTHING, Sums, moved, plus
-from puck_tables.kernels.compile import inlined, inner
+from puck_tables.kernels.compile import arrays_at_first, inlined, inner, kernel
+from puck_tables.kernels.law_sums_at_first import (
+    ARC,
+    FAR,
+    LEAST_GAP,
+    NODE,
+    NODES,
+    ON_SIDE,
+    PANEL,
+    WEIGHT,
+    law_sums_at_first,
+)
 from puck_tables.kernels.polygon_sums import (
     BEGIN_X,
     BEGIN_Y,
@@ -33,13 +42,6 @@ from puck_tables.kernels.polygon_sums import (
     ray_to,
 )
 
-_FAR = 6.0  # times the reach of the base: nearer, 1e-13 is lost to cancellation at most
-_NODES = 8  # of Gauss's rule a panel, and across the base where C is far away
-_NODE, _WEIGHT = np.polynomial.legendre.leggauss(_NODES)
-_PANEL = 1.2  # of y
-_ARC = 0.9  # of an angle, over how far it is from the singularity next to C
-_ON_SIDE = 1e-14  # of the reach: closer, C lies on a side, and nothing is left of it
-_LEAST_GAP = 1e-9  # of an angle: closer, C lies on the circle
 _POWERS = DEGREE + 1
 
 
@@ -102,16 +104,16 @@ def _along_side(
     if away <= least:
         return sums
     low, high = math.asinh(begin / away), math.asinh((begin + length) / away)
-    panels = 1 + int((high - low) / _PANEL)
+    panels = 1 + int((high - low) / PANEL)
     half = 0.5 * (high - low) / panels
     for panel in range(panels):
         middle = low + (2 * panel + 1) * half
-        for n in range(_NODES):
-            y = middle + half * _NODE[n]
+        for n in range(NODES):
+            y = middle + half * NODE[n]
             up = math.exp(y)
             s, distance = 0.5 * away * (up - 1.0 / up), 0.5 * away * (up + 1.0 / up)
             rx, ry = d * ty + s * tx, s * ty - d * tx
-            weight = half * _WEIGHT[n] * d * distance
+            weight = half * WEIGHT[n] * d * distance
             sums = plus(sums, 1.0, _at(law, spin, rx, ry, distance, weight))
     return sums
 
@@ -123,21 +125,21 @@ def _along_circle(
     """A circle about g from C, counter-clockwise: both ways from where it is nearest to C."""
     off, sums = math.sqrt(gx * gx + gy * gy), NOTHING
     nearest = math.atan2(-gy, -gx)
-    gap = min(max(abs(off - size) / size, _LEAST_GAP), 1.0)
+    gap = min(max(abs(off - size) / size, LEAST_GAP), 1.0)
     near = 0.0
     while near < math.pi:
-        length = _ARC * math.sqrt(gap * gap + near * near)
+        length = ARC * math.sqrt(gap * gap + near * near)
         if length >= 0.7 * (math.pi - near):
             length = math.pi - near if length >= math.pi - near else 0.5 * (math.pi - near)
         half = 0.5 * length
         for way in range(2):
-            for n in range(_NODES):
-                turn = near + half * (1.0 + _NODE[n])
+            for n in range(NODES):
+                turn = near + half * (1.0 + NODE[n])
                 angle = nearest + turn if way == 0 else nearest - turn
                 c, s = math.cos(angle), math.sin(angle)
                 rx, ry = gx + size * c, gy + size * s
                 distance = math.sqrt(rx * rx + ry * ry)
-                area = half * _WEIGHT[n] * size * (size + gx * c + gy * s)
+                area = half * WEIGHT[n] * size * (size + gx * c + gy * s)
                 sums = plus(sums, 1.0, _at(law, spin, rx, ry, distance, area))
         near = near + length if length < math.pi - near else math.pi
     return sums
@@ -151,10 +153,10 @@ def _from_far(
     speed, spin, sign = math.sqrt(ux * ux + uy * uy), abs(w), -1.0 if w < 0.0 else 1.0
     vx, vy, slip, deep = ray_to(ux, uy, w, qx, qy)
     k0, k1, k2 = 0.0, 0.0, 0.0
-    for n in range(_NODES):
-        s = 0.5 * deep * (1.0 + _NODE[n])
+    for n in range(NODES):
+        s = 0.5 * deep * (1.0 + NODE[n])
         u = speed + spin * s
-        part = 0.5 * deep * _WEIGHT[n] * _coefficient(law, u) * u
+        part = 0.5 * deep * WEIGHT[n] * _coefficient(law, u) * u
         k0, k1, k2 = k0 + part, k1 + part * s, k2 + part * s * s
     weight = (vx * dx + vy * dy) / (slip * slip)
     outx, outy = sign * vy / slip, -sign * vx / slip
@@ -175,13 +177,13 @@ def _far_sums(base: FloatArray, law: FloatArray, ux: float, uy: float, w: float)
         half = 0.5 * base[i + LENGTH]
         hx, hy = half * base[i + TANGENT_X], half * base[i + TANGENT_Y]
         mx, my = base[i + BEGIN_X] + hx, base[i + BEGIN_Y] + hy
-        for n in range(_NODES):
-            part = _from_far(law, ux, uy, w, mx + _NODE[n] * hx, my + _NODE[n] * hy, hx, hy)
-            sums = plus(sums, _WEIGHT[n], part)
+        for n in range(NODES):
+            part = _from_far(law, ux, uy, w, mx + NODE[n] * hx, my + NODE[n] * hy, hx, hy)
+            sums = plus(sums, WEIGHT[n], part)
     for k in range(int(base[DISCS])):
         at = discs + DISC_COLUMNS * k
-        size, step = base[at + 2], math.pi / _NODES
-        for n in range(2 * _NODES):  # equal steps around a circle are as good as Gauss's
+        size, step = base[at + 2], math.pi / NODES
+        for n in range(2 * NODES):  # equal steps around a circle are as good as Gauss's
             c, s = math.cos(n * step), math.sin(n * step)
             part = _from_far(
                 law, ux, uy, w, base[at] + size * c, base[at + 1] + size * s, -size * s, size * c
@@ -190,17 +192,18 @@ def _far_sums(base: FloatArray, law: FloatArray, ux: float, uy: float, w: float)
     return sums
 
 
-@inner
+@arrays_at_first(law_sums_at_first)
+@kernel
 def law_sums(base: FloatArray, law: FloatArray, ux: float, uy: float, w: float) -> Sums:
     """Sums of the slip direction times f(slip speed) over a base, in its axes; not at rest."""
-    if math.sqrt(ux * ux + uy * uy) > _FAR * base[REACH] * abs(w):
+    if math.sqrt(ux * ux + uy * uy) > FAR * base[REACH] * abs(w):
         return _far_sums(base, law, ux, uy, w)
     spin, cx, cy, sums = abs(w), -uy / w, ux / w, NOTHING
     discs = HEAD + SIDE_COLUMNS * int(base[SIDES])
     for i in range(HEAD, discs, SIDE_COLUMNS):
         part = _along_side(
             law, spin, base[i + BEGIN_X] - cx, base[i + BEGIN_Y] - cy, base[i + TANGENT_X],
-            base[i + TANGENT_Y], base[i + LENGTH], _ON_SIDE * base[REACH],
+            base[i + TANGENT_Y], base[i + LENGTH], ON_SIDE * base[REACH],
         )  # fmt: skip
         sums = plus(sums, 1.0, part)
     for k in range(int(base[DISCS])):

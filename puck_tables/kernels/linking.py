@@ -82,16 +82,21 @@ class Behind(Library):  # type: ignore[misc]
     calls: tuple[Called, ...] = ()
 
     def finalize(self) -> None:
-        """Optimise all of it together."""
-        result: dict[Any, None] = {}
-        waiting: list[Any] = list(self._linking_libraries)  # type: ignore[has-type]
-        while waiting:
-            library = waiting.pop(0)
-            if library not in result:
-                result[library] = None
-                waiting += library._linking_libraries if isinstance(library, Pasted) else []
-        self.calls = tuple(one.door for one in result if hasattr(one, "door"))
-        self._linking_libraries = [one for one in result if not hasattr(one, "door")]
+        """Optimise all of it together, callers first: what nobody calls yet is not taken over."""
+        behind: dict[Any, None] = {}
+        seen: set[Any] = set()
+
+        def add(libraries: list[Any]) -> None:
+            for library in libraries:
+                if library not in seen:
+                    seen.add(library)
+                    add(library._linking_libraries if isinstance(library, Pasted) else [])
+                    behind[library] = None
+
+        add(list(self._linking_libraries))  # type: ignore[has-type]
+        called = list(reversed(behind))
+        self.calls = tuple(one.door for one in called if hasattr(one, "door"))
+        self._linking_libraries = [one for one in called if not hasattr(one, "door")]
         super().finalize()
 
 

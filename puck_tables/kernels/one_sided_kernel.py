@@ -18,6 +18,7 @@ from puck_tables.contact.integrals import SlipDirection
 from puck_tables.contact.one_sided import balanced
 from puck_tables.kernels.compile import (
     BLOCK,
+    allocating,
     arrays_at_first,
     inlined,
     inner,
@@ -214,6 +215,7 @@ def _by_arrays(
 
 
 @arrays_at_first(_by_arrays)
+@allocating
 def fill_balances(
     ratio: FloatArray, fast: npt.NDArray[np.bool_], delta: float, guess: FloatArray,
     lines: FloatArray, gauss: FloatArray, out: FloatArray,

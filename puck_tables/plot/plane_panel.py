@@ -11,7 +11,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.plot.base_outlines import MARK, outline_of, path_of, placed
 from puck_tables.plot.floor_axes import Box, draw_floor
-from puck_tables.plot.painted_lines import draw_painted, painted_on
+from puck_tables.plot.painted_lines import Painted, draw_painted, painted_on
 from puck_tables.plot.round_parts import RoundPart, draw_rounds, rounds_of
 from puck_tables.plot.style import BLUE, GREY, LAUNCH, ORANGE, RED, STOP
 from puck_tables.plot.titles import legend_below, noted, out_of_sight
@@ -47,13 +47,14 @@ def draw_plane(axes: Axes, run: Run, columns: dict[str, FloatArray]) -> None:
     """Draw the plane of a run; ``columns``: its states close to each other, (n,) by name."""
     scene, radius = run.scene, run.scene.puck.radius
     x, y = columns["x"], columns["y"]
-    box = _box(x, y, 1.6 * radius)
+    painted = painted_on(scene)
+    box = _box(*_with_painted(x, y, painted), 1.6 * radius)
     draw_floor(axes, scene.floor, box, max(scene.frictions))
     axes.plot(x, y, color=BLUE, linewidth=1.4, zorder=3)
     _draw_pucks(axes, scene, columns)
     walls = _draw_lines(axes, scene.walls, box, "wall", color="black", linewidth=2.5)
     edges = _draw_lines(axes, scene.edges, box, "edge", color=RED, linestyle="--")
-    draw_painted(axes, painted_on(scene))
+    draw_painted(axes, painted)
     rounds = [one for one in rounds_of(scene) if _meets(box, one)]
     draw_rounds(axes, rounds)
     turns = [event for event in run.events if event.what in ("impact", "contact")]
@@ -85,6 +86,17 @@ def _box(x: FloatArray, y: FloatArray, margin: float) -> Box:
     wide, high = float(np.ptp(x)) / 2 + margin, float(np.ptp(y)) / 2 + margin
     wide, high = 1.05 * max(wide, _SHAPE * high), 1.05 * max(high, wide / _SHAPE)
     return Box(middle[0] - wide, middle[0] + wide, middle[1] - high, middle[1] + high)
+
+
+def _with_painted(
+    x: FloatArray, y: FloatArray, painted: list[Painted]
+) -> tuple[FloatArray, FloatArray]:
+    """The path, with the lines that lie where it goes."""
+    for line in painted:
+        over = min(line.x) <= x.max() and x.min() <= max(line.x)
+        if over and min(line.y) <= y.max() and y.min() <= max(line.y):
+            x, y = np.append(x, line.x), np.append(y, line.y)
+    return x, y
 
 
 def _meets(box: Box, part: RoundPart) -> bool:

@@ -83,7 +83,7 @@ def states_drawn(run: Run) -> dict[str, FloatArray]:
 
 def _draw_events(axes: Axes, run: Run) -> None:
     """Thin lines at what happens, as long as there are not too many; else how many there are."""
-    events = [e for e in run.events if e.what != "edge"]
+    events = [e for e in run.main_events if e.what != "edge"]
     if len(events) > _EVENTS_DRAWN:
         noted(axes, f"the moments of {len(events)} events are not drawn")
         return

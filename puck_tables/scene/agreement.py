@@ -13,6 +13,7 @@ from puck_tables.scene.holds import allowed_velocity
 from puck_tables.scene.orthotropic import LEAST_RATIO
 from puck_tables.scene.over_time import drive_of, grip_faults, largest_factors
 from puck_tables.scene.parts import Edge, Floor, Rows, Wall
+from puck_tables.scene.stretches import belt_faults
 
 if TYPE_CHECKING:
     from puck_tables.scene.scene_spec import SceneSpec
@@ -29,7 +30,7 @@ def floor_faults(scene: SceneSpec) -> list[str]:
             faults.append(
                 f"floor.law and floor.{name}: each takes the place of puck.friction, give one"
             )
-    faults += grip_faults(scene.floor)
+    faults += grip_faults(scene.floor) + belt_faults(scene.floor)
     if faults:
         return faults
     if scene.puck.shape is not None:

@@ -24,7 +24,8 @@ from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.astride_parts import slip_of
 from puck_tables.scene.astride_pressure import sums_under
 from puck_tables.scene.base_on_floor import friction_held, friction_of_base
-from puck_tables.scene.ground import LEVER, PRESSURE
+from puck_tables.scene.belts import friction_on_belts
+from puck_tables.scene.ground import BELTS, LEVER, OVER_X, OVER_Y, PRESSURE, sum_over
 
 
 @inlined
@@ -46,6 +47,8 @@ def astride_friction(
 
     ``moving`` 0: with the friction at slip zero, where it depends on the slip.
     """
+    if ground[BELTS] != 0.0:
+        return friction_on_belts(ground, radius, ux, uy, w, moving)
     if ground[PRESSURE] == ANY:
         return friction_of_base(ground, ux, uy, w, moving)
     to_unit = 1.0 / slip
@@ -77,8 +80,23 @@ def held_friction(
 ) -> tuple[float, float, float]:  # fmt: skip
     """∫ f σ e dA and its moment over r at a slip of Q = 1, of a pressure with slopes (bx, by).
 
-    Under a base of any shape these are the place of the load, m.
+    Under a base of any shape these are the place of the load, m.  Of belts the one is summed that
+    states are relative to.
     """
+    if ground[BELTS] == 0.0:
+        return _held(ground, radius, nx, ny, rim, bx, by)
+    sum_over(ground, ground[OVER_X], ground[OVER_Y], False)
+    held = _held(ground, radius, nx, ny, rim, bx, by)
+    sum_over(ground, 0.0, 0.0, True)
+    return held
+
+
+@inner
+def _held(
+    ground: FloatArray, radius: float, nx: float, ny: float, rim: float,
+    bx: float, by: float,
+) -> tuple[float, float, float]:  # fmt: skip
+    """The same of all that is summed."""
     if ground[PRESSURE] == ANY:
         fx, fy, turning = friction_held(ground, nx, ny, rim / radius, bx, by)
         return fx, fy, turning / radius

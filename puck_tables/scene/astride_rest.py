@@ -15,7 +15,8 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inner
 from puck_tables.scene.astride import held_friction
-from puck_tables.scene.ground import LEVER
+from puck_tables.scene.belts import rub_at_rest
+from puck_tables.scene.ground import BELTS, LEVER
 
 Yield = tuple[float, float, float, float]
 
@@ -84,18 +85,23 @@ def astride_yield(
 ) -> Yield:
     """By how much the power of the best slip at Q = 1 exceeds friction, and that slip.
 
-    ``most``: f N of the largest f; ``guided``: the puck can slip along the force only, and turn.
+    What other belts do to it is force, too.  ``most``: f N of the largest f; ``guided``: the puck
+    can slip along the force only, and turn.
     """
-    rim = torque / radius
     force = math.sqrt(fx * fx + fy * fy)
-    size = math.sqrt(force * force + rim * rim)
-    if size == 0.0:
-        gx, _, _ = held_friction(ground, radius, 1.0, 0.0, 0.0, 0.0, 0.0)
-        return -gx, 1.0, 0.0, 0.0
     lever = ground[LEVER]
     bx, by = lever * fx, lever * fy
     if force > most:  # it slips: what tilts is friction
         bx, by = bx * most / force, by * most / force
+    if ground[BELTS] != 0.0:
+        rx, ry, turning, _ = rub_at_rest(ground, radius, bx, by)
+        fx, fy, torque = fx + rx, fy + ry, torque + turning
+        force = math.sqrt(fx * fx + fy * fy)
+    rim = torque / radius
+    size = math.sqrt(force * force + rim * rim)
+    if size == 0.0:
+        gx, _, _ = held_friction(ground, radius, 1.0, 0.0, 0.0, 0.0, 0.0)
+        return -gx, 1.0, 0.0, 0.0
     ex, ey = (fx / force, fy / force) if force > 0.0 else (1.0, 0.0)
     px, pw = force / size, rim / size
     n = (px * ex, px * ey, pw)

@@ -147,7 +147,7 @@ def _beyond(
 
 
 @inner
-def _friction_sums(ground: FloatArray, ux: float, uy: float, w: float, moving: float) -> Sums:
+def friction_sums(ground: FloatArray, ux: float, uy: float, w: float, moving: float) -> Sums:
     """Sums over the base times f N of what is under each part, in the axes of the base.
 
     ``moving`` 0: with the friction at slip zero, whatever the slip.
@@ -194,7 +194,7 @@ def friction_of_base(
         mean = ground[SHARE] * load_of(ground, 0) / base[AREA]
         fx, fy, torque = mean * (c * x - s * y), mean * (s * x + c * y), mean * turning
         return -fx, -fy, -torque, fx * ux + fy * uy + torque * w
-    sums = _friction_sums(ground, c * ux + s * uy, c * uy - s * ux, w, moving)
+    sums = friction_sums(ground, c * ux + s * uy, c * uy - s * ux, w, moving)
     a, bx, by = pressure_on(base, sums)
     x, y, torque = under_load(sums, a, bx, by)
     fx, fy = c * x - s * y, s * x + c * y
@@ -208,7 +208,7 @@ def friction_held(
     """∫ f p e dA and its moment, of the pressure that carries a moment (mx, my) of the load, m."""
     base = ground[int(ground[PROFILE]) :]
     c, s = math.cos(ground[ANGLE]), math.sin(ground[ANGLE])
-    sums = _friction_sums(ground, c * ux + s * uy, c * uy - s * ux, w, 0.0)
+    sums = friction_sums(ground, c * ux + s * uy, c * uy - s * ux, w, 0.0)
     a, bx, by = pressure_at(base, c * mx + s * my, c * my - s * mx)
     x, y, torque = under_load(sums, a, bx, by)
     return c * x - s * y, s * x + c * y, torque

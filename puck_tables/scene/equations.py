@@ -17,6 +17,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
+from puck_tables.scene.belts import heat_at_rest
 from puck_tables.scene.forces import damping, drag_force, given_force
 from puck_tables.scene.friction import (
     SPIN,
@@ -39,6 +40,7 @@ from puck_tables.scene.ingredients import (
     dry_at,
     floor_velocity,
     held,
+    is_over_belts,
     put_at,
 )
 from puck_tables.scene.over_time import has_factors
@@ -125,9 +127,14 @@ def rates_here(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: 
         fx, fy, fm = gx - body.mass * cx, gy - body.mass * cy, gm
         # what the floor and what holds the puck there do besides the given forces
         fx, fy, fm = body.mass * ax - fx, body.mass * ay - fy, body.inertia * aw - fm
-        out[row, DRY] = -(fx * y[VX] + fy * y[VY] + fm * y[SPIN])
+        rubs = 0.0
+        if is_over_belts(stretch.dry):
+            put_at(stretch.dry, y[X], y[Y], y[THETA])
+            dry = dry_at(stretch.dry, model.forces.drive, stretch.piece, t)
+            rubs = heat_at_rest(dry.by_speed.table, body.radius, fx, fy)
+        out[row, DRY] = rubs - (fx * y[VX] + fy * y[VY] + fm * y[SPIN])
         out[row, VISCOUS] = 0.0
-        out[row, SUPPORT] = fx * sx + fy * sy + fm * turning
+        out[row, SUPPORT] = rubs + fx * sx + fy * sy + fm * turning
         out[row, LAMBDA], out[row, LAMBDA + 1] = 0.0, 0.0
         return
     put_at(stretch.dry, y[X], y[Y], y[THETA])
@@ -145,6 +152,8 @@ def rates_here(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: 
     out[row, SPIN] = (fm + rm) / body.inertia
     out[row, DRY], out[row, VISCOUS] = heat, warmth
     out[row, SUPPORT] = (hx + dx) * sx + (hy + dy) * sy + (hm + dm) * turning + power
+    if is_over_belts(stretch.dry):  # what others of them do
+        out[row, SUPPORT] += heat + hx * y[VX] + hy * y[VY] + hm * y[SPIN]
     out[row, LAMBDA], out[row, LAMBDA + 1] = first, second
 
 

@@ -19,7 +19,7 @@ from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.kernels.speed_spline import speed_ratios
 from puck_tables.motion.equations_of_motion import ratios_at
 from puck_tables.scene.astride import astride_friction
-from puck_tables.scene.ingredients import BySpeed, Dry, is_astride
+from puck_tables.scene.ingredients import BySpeed, Dry, is_astride, is_over_belts
 from puck_tables.scene.orthotropic import ellipse_in, elliptic_friction, is_elliptic
 
 X, Y, THETA, VX, VY, SPIN = range(6)  # of a state; integrated, the last three are over the floor
@@ -37,7 +37,7 @@ def dry_friction(
 ) -> tuple[float, float, float, float]:
     """Force, torque and the power they take, at velocities relative to the floor."""
     law, slip = dry.by_speed, size(ux, uy, radius * w)
-    if law.normal == 0.0 or dry.load == 0.0 or slip == 0.0:
+    if law.normal == 0.0 or dry.load == 0.0 or (slip == 0.0 and not is_over_belts(dry)):
         return _plain_friction(dry, radius, ux, uy, w)
     if is_astride(dry):
         return astride_friction(law.table, radius, ux, uy, w, slip, law.moving)

@@ -12,12 +12,15 @@ from puck_tables.kernels.base_sums import UNIFORM
 from puck_tables.kernels.compile import inlined
 
 # A ground, all in one array, which is quick to hand on: where the centre of the base is, the factor
-# on all friction now, what holds for all of it, and how the base is turned,
+# on all friction now, what holds for all of it, how the base is turned, whether velocities of the
+# floor differ, and the one that states are relative to,
 PLACE_X, PLACE_Y, SHARE, LEVER, INNER, ACROSS_X, ACROSS_Y, BORDERS, PATCHES = range(9)
 PRESSURE, PROFILE, ROWS, ROOM, ANGLE = range(9, 14)
-_HEAD = 14
-# the places of its borders, f N between them now, f N of all strips and then of all patches where
-# no factor changes it, a row for each patch (its middle, the radius of a
+BELTS, OVER_X, OVER_Y = 14, 15, 16
+_HEAD = 17
+# the places of its borders, f N between them as it is summed now, f N of all strips and then of all
+# patches where no factor changes it, the same with their factors, their velocities, a row for each
+# patch (its middle, the radius of a
 # circle about it, the first of its corners, how many (none: it is that circle), and f N there now),
 MIDDLE_X, MIDDLE_Y, REACH, CORNER, CORNERS, LOAD = range(6)
 PATCH_COLUMNS = 6
@@ -39,7 +42,8 @@ class Ground(NamedTuple):
     ∫ W ρ dρ = ½, straight between them; ``base``: of ANY, in one array
     (:func:`puck_tables.kernels.base_friction.packed`), with ``lever``: height of the centre of mass
     over N, m/N; ``law``: its friction f N over the slip speed, in one array
-    (:func:`puck_tables.contact.law_moments.packed_law`), where it depends on that.
+    (:func:`puck_tables.contact.law_moments.packed_law`), where it depends on that;
+    ``belts`` (n + 1 + k, 2): velocities of strips and patches, m/s, none: all alike.
     """
 
     across_x: float
@@ -54,18 +58,24 @@ class Ground(NamedTuple):
     profile: FloatArray = np.empty((0, 2))
     base: FloatArray = np.empty(0)
     law: FloatArray = np.empty(0)
+    belts: FloatArray = np.empty((0, 2))
 
     def packed(self) -> FloatArray:
         """In one array."""
         head = [0.0, 0.0, 1.0, self.lever, self.inner, self.across_x, self.across_y]
         whole = np.concatenate([self.loads, self.patches[:, LOAD]])
-        tables = [self.borders, self.loads, whole, self.patches.ravel(), self.corners.ravel()]
+        belts = self.belts if len(self.belts) else np.zeros((len(whole), 2))
+        tables = [
+            self.borders, self.loads, whole, whole, belts.ravel(), self.patches.ravel(),
+            self.corners.ravel(),
+        ]  # fmt: skip
         at, rows = _HEAD + sum(table.size for table in tables), len(self.profile)
         pieces = _pieces(self.profile) if rows else np.concatenate([self.base, self.law])
         if self.law.size:
             rows = at + self.base.size
         counts = [
             len(self.borders), len(self.patches), self.pressure, at, rows, at + pieces.size, 0.0,
+            float((belts != belts[0]).any()), *belts[0],
         ]  # fmt: skip
         size = _ROOM + _ROOM_A_ROW * rows if len(self.profile) else room_for(self.base)
         room = np.zeros(size)
@@ -98,7 +108,7 @@ def load_of(ground: FloatArray, strip: int) -> float:
 @inlined
 def _patches_in(ground: FloatArray) -> int:
     """Where the patches begin."""
-    return _HEAD + 3 * int(ground[BORDERS]) + 2 + int(ground[PATCHES])
+    return _HEAD + 2 * int(ground[BORDERS]) + 1 + 4 * stretches_in(ground)
 
 
 @inlined
@@ -135,11 +145,41 @@ def stretches_in(ground: FloatArray) -> int:
 
 
 @inlined
-def set_factor(ground: FloatArray, stretch: int, factor: float) -> None:
-    """Let friction on a strip, or after all of them a patch, be so many times what it is."""
+def _loads_in(ground: FloatArray) -> int:
+    """Where f N of all stretches stands."""
+    return _HEAD + 2 * int(ground[BORDERS]) + 1
+
+
+@inlined
+def _sum_with(ground: FloatArray, stretch: int, load: float) -> None:
+    """Let a stretch be summed with so much f N."""
     strips = int(ground[BORDERS]) + 1
-    load = factor * ground[_HEAD + 2 * strips - 1 + stretch]
     if stretch < strips:
         ground[_HEAD + strips - 1 + stretch] = load
     else:
         ground[_patches_in(ground) + PATCH_COLUMNS * (stretch - strips) + LOAD] = load
+
+
+@inlined
+def set_factor(ground: FloatArray, stretch: int, factor: float) -> None:
+    """Let friction on a strip, or after all of them a patch, be so many times what it is."""
+    at = _loads_in(ground) + stretch
+    ground[at + stretches_in(ground)] = factor * ground[at]
+    _sum_with(ground, stretch, factor * ground[at])
+
+
+@inlined
+def belt_of(ground: FloatArray, stretch: int) -> tuple[float, float]:
+    """The velocity of a stretch, m/s."""
+    at = _loads_in(ground) + 2 * stretches_in(ground) + 2 * stretch
+    return ground[at], ground[at + 1]
+
+
+@inlined
+def sum_over(ground: FloatArray, vx: float, vy: float, every: bool) -> None:
+    """Let stretches of a velocity be summed alone, or every one."""
+    at = _loads_in(ground) + stretches_in(ground)
+    for stretch in range(stretches_in(ground)):
+        bx, by = belt_of(ground, stretch)
+        load = ground[at + stretch] if every or (bx == vx and by == vy) else 0.0
+        _sum_with(ground, stretch, load)

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 from puck_tables.scene.forces import Forces
-from puck_tables.scene.ground import ANGLE, PLACE_X, PLACE_Y, SHARE, set_factor, stretches_in
+from puck_tables.scene.ground import ANGLE, BELTS, PLACE_X, PLACE_Y, SHARE, set_factor, stretches_in
 from puck_tables.scene.over_time import ON_ALL, ON_STRETCH, factor_at, has_factors
 
 if TYPE_CHECKING:
@@ -85,6 +85,12 @@ class Dry(NamedTuple):
 def is_astride(dry: Dry) -> bool:
     """Whether the base lies on several frictions, or is not round."""
     return dry.by_speed.normal < 0.0
+
+
+@inlined
+def is_over_belts(dry: Dry) -> bool:
+    """Whether velocities of the floor differ, so that parts of a base may slip each its own way."""
+    return is_astride(dry) and dry.by_speed.table[BELTS] != 0.0
 
 
 @inlined

@@ -7,8 +7,6 @@ then its patches.  A scene without factors has the first four columns only.
 
 from __future__ import annotations
 
-import re
-
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
@@ -17,11 +15,11 @@ from puck_tables._core.read_columns import numbers_of
 from puck_tables.errors import InputError
 from puck_tables.kernels.compile import inlined
 from puck_tables.scene.parts import Floor, Force, Grip, Rows
+from puck_tables.scene.stretches import stretch_of, stretches_of
 
 MAX_DRIVE = 1 << 26  # bytes of a file of forces
 _MOST_BYTES = 1 << 20  # of one of factors
 ON_ALL, ON_STRETCH = 4, 5  # columns of factors
-_WHERE = re.compile(r"(strip|patch) (\d+)")
 
 
 def drive_of(given: str | Rows) -> FloatArray:
@@ -55,47 +53,6 @@ def factors_of(grip: Grip) -> FloatArray:
             f"{numbers.where(row)}: a factor of {numbers.rows[row, 1]:g}: must be >= 0"
         )
     return numbers.rows
-
-
-def stretches_of(floor: Floor) -> int:
-    """How many stretches a floor has that may have friction of their own.
-
-    Examples
-    --------
-    >>> stretches_of(Floor())
-    1
-    """
-    return (1 if floor.strips is None else len(floor.strips.friction)) + len(floor.patches)
-
-
-def stretch_of(floor: Floor, where: str) -> int:
-    """The number of the stretch of a floor that is called so; −1: all of it.
-
-    Raises
-    ------
-    InputError
-        If there is none.
-
-    Examples
-    --------
-    >>> stretch_of(Floor(), "floor")
-    -1
-    """
-    if where == "floor":
-        return -1
-    match, strips = _WHERE.fullmatch(where), floor.strips
-    there = {
-        "strip": 0 if strips is None else len(strips.friction), "patch": len(floor.patches),
-    }  # fmt: skip
-    if match is None or not int(match[2]) < there[match[1]]:
-        known = ["'floor'"]
-        for name, count in there.items():
-            known += [f"'{name} 0'" if count == 1 else f"'{name} 0' to '{name} {count - 1}'"] * (
-                count > 0
-            )
-        raise InputError(f"where = {where!r}: must be {' or '.join(known)}")
-    before = stretches_of(floor) - len(floor.patches) if match[1] == "patch" else 0
-    return before + int(match[2])
 
 
 def grip_faults(floor: Floor) -> list[str]:

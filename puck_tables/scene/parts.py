@@ -30,6 +30,12 @@ class Strips:
     )
     friction: tuple[float, ...] = of("numbers", low=0.0, doc="one more than borders", acts="")
     direction: float = of("number", 0.0, "rad", doc="across the borders, from x", acts="")
+    across: tuple[float, ...] = of(
+        "numbers", (), "m/s", doc="speeds of belts along 'direction', one a strip", acts="belts"
+    )
+    along: tuple[float, ...] = of(
+        "numbers", (), "m/s", doc="along the borders, to the left of that", acts="belts"
+    )
 
 
 @dataclass(frozen=True)
@@ -42,6 +48,10 @@ class Patch:
     corners: str | Rows = of(
         "rows", (), file="", doc="CSV or rows of x and y in m, around a polygon", acts=""
     )
+    velocity: tuple[float, float] | None = of(
+        "pair", None, "m/s", doc="of a belt below its outline; left out: as around it",
+        acts="belts",
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)

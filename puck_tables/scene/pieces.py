@@ -6,6 +6,7 @@ Plain records, checked when a :class:`puck_tables.Scene` is made of them.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -120,6 +121,17 @@ class Line:
     radius: float = of("number", 0.0, "m", low=0.0, doc="of a round one")
     name: str = of("text", "", doc="in events and pictures")
     colour: str = of("colour", "", doc="in pictures and movies")
+
+
+def called_line(lines: Sequence[Line], number: int) -> str:
+    """A line in an event.
+
+    Examples
+    --------
+    >>> called_line([Line((0.0, 0.0), (1.0, 0.0)), Line((0.0, 1.0), (1.0, 1.0), name="goal")], 1)
+    'goal'
+    """
+    return lines[number].name or f"line {number}"
 
 
 @dataclass(frozen=True)

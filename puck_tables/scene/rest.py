@@ -34,6 +34,7 @@ from puck_tables.scene.ingredients import (
     dry_at,
     floor_velocity,
     is_astride,
+    is_over_belts,
     put_at,
 )
 from puck_tables.scene.orthotropic import ellipse_in, elliptic_demand, is_elliptic
@@ -171,7 +172,8 @@ def excess_at_rest(stretch: Stretch, t: float, y: FloatArray) -> Yield:
         return constrained_yield(
             dry, model.hold, body, y[THETA], ax, ay, turning, fx, fy, torque, guided
         )
-    if is_astride(dry) and torque == 0.0 and (sx != 0.0 or sy != 0.0):
+    carried = torque == 0.0 and (sx != 0.0 or sy != 0.0)
+    if carried and is_astride(dry) and not is_over_belts(dry):
         # Without a torque b = κ F, and as |u| is convex no slip gains where F is below the least f
         # alone: ∫ σ |u| dA ≥ N |u at the centre of pressure|.  A puck that is carried asks often.
         force = math.sqrt(fx * fx + fy * fy)

@@ -18,6 +18,7 @@ from puck_tables.io.dataset import Dataset, Variable, variable
 from puck_tables.result import TimedResult
 from puck_tables.scene.entries import tables_of, units_of
 from puck_tables.scene.outcome import column_of, refuse_changed, scene_texts
+from puck_tables.scene.pieces import called_line
 from puck_tables.scene.scene_spec import SceneSpec
 
 STATE = ("x", "y", "orientation", "vx", "vy", "spin")
@@ -164,6 +165,14 @@ class Run(TimedResult):
         return {
             name: float(row[0 if row.size == 1 else number]) for name, row in rows.items()
         }  # fmt: skip
+
+    @property
+    def main_events(self) -> list[Event]:
+        """Its events, but for rims that come over painted lines or leave them."""
+        lines = self.scene.lines
+        names = {called_line(lines, number) for number in range(len(lines))}
+        rims = ("entry", "exit")
+        return [one for one in self.events if one.what not in rims or one.partner not in names]
 
     @property
     def impacts(self) -> int:

@@ -18,6 +18,7 @@ from puck_tables.scene.ground import (
     Ground,
 )
 from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.scene.stretches import belts_of
 
 Moments = tuple[FloatArray, FloatArray]
 
@@ -34,7 +35,7 @@ def ground_of(scene: SceneSpec, normal: float, law: Moments | None = None) -> Fl
     --------
     >>> from puck_tables import Floor, Puck, Scene, Strips
     >>> floor = Floor(strips=Strips((0.1,), (0.3, 0.1)))
-    >>> ground_of(Scene(Puck(0.04), floor), 2.0)[14:17].tolist()
+    >>> ground_of(Scene(Puck(0.04), floor), 2.0)[17:20].tolist()
     [0.1, 0.6, 0.2]
     """
     floor, puck = scene.floor, scene.puck
@@ -63,11 +64,14 @@ def ground_of(scene: SceneSpec, normal: float, law: Moments | None = None) -> Fl
         lever = 0.5 * puck.height / normal
         over_slip = np.empty(0) if law is None else packed_law(law[0], normal * law[1])
         shape = packed(puck.shape, lever)
-        return Ground(*there, lever, 0.0, ANY, base=shape, law=over_slip).packed()
+        belts = belts_of(floor)
+        return Ground(*there, lever, 0.0, ANY, base=shape, law=over_slip, belts=belts).packed()
     pressure = puck.body.law
     kind = _PRESSURES.get(pressure.name, UNIFORM if pressure.profile is None else TABLE)
     lever = puck.height / (2.0 * puck.radius * pressure.mean_square * normal)
-    return Ground(*there, lever, hole_of(pressure), kind, _profile_of(pressure)).packed()
+    return Ground(
+        *there, lever, hole_of(pressure), kind, _profile_of(pressure), belts=belts_of(floor)
+    ).packed()
 
 
 def _profile_of(law: Law) -> FloatArray:

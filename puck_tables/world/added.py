@@ -11,6 +11,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.scene.friction import VX
+from puck_tables.scene.ground import OVER_X, OVER_Y
 from puck_tables.scene.over_time import drive_of, over_time
 from puck_tables.scene.parts import Force, Launch
 from puck_tables.scene.pieces import PieceSpec
@@ -72,6 +73,7 @@ def with_puck(game: Game, board: SceneSpec, order: Whole, now: float) -> tuple[S
     discs[:count, own] = mine
     strips = game.discs[:, layout.REGION] // count
     discs[:count, layout.REGION] = strips * (count + 1) + np.arange(count)
+    _keep_belts(game, new, count)
     tides = game.tides
     if not board.pucks[-1].path:
         tides = np.vstack([tides, _rows_from(board, now)])
@@ -112,6 +114,14 @@ def with_puck(game: Game, board: SceneSpec, order: Whole, now: float) -> tuple[S
     if len(way):
         state[VX:] = 0.0  # it goes on as its way has it
     return Start(board, order, whole, fresh.states), state
+
+
+def _keep_belts(game: Game, new: Game, count: int) -> None:
+    """The velocities of the floor that states of the discs there are relative to stay."""
+    if new.regions.ground.size:
+        before = game.regions.ground.reshape(count, -1)
+        after = new.regions.ground.reshape(count + 1, -1)
+        after[:count, [OVER_X, OVER_Y]] = before[:, [OVER_X, OVER_Y]]
 
 
 def _rows_from(board: SceneSpec, now: float) -> FloatArray:

@@ -14,9 +14,10 @@ from puck_tables.scene.agreement import distance, floor_faults
 from puck_tables.scene.by_speed import law_name, speed_law
 from puck_tables.scene.holds import misfits
 from puck_tables.scene.over_time import drive_of, last_factors
-from puck_tables.scene.parts import Drag, Edge, Force, Launch, Wall
+from puck_tables.scene.parts import Drag, Edge, Force, Lateral, Launch, Wall
 from puck_tables.scene.pieces import PieceSpec
 from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.scene.stretches import belts_of, has_belts
 from puck_tables.world.drive import rows_of
 
 TOUCH = 1e-12  # of the radius: pucks that overlap less touch
@@ -83,7 +84,7 @@ def refuse_endless(scene: SceneSpec) -> None:
     if scene.time is not None:
         return
     floor = scene.floor
-    moves = any(floor.velocity) or floor.turning != 0.0
+    moves = bool(belts_of(floor).any()) or floor.turning != 0.0
     for number, piece in enumerate(pieces_of(scene)):
         under = frictions_under(scene, piece)
         grips = any(under) or bool(piece.path)
@@ -174,6 +175,13 @@ def disagreements(scene: SceneSpec) -> list[str]:
     """What is wrong between fields that are each in range."""
     pieces = pieces_of(scene)
     faults = [*_not_here(scene), *_bad_floors(scene, pieces)]
+    if not faults and has_belts(scene.floor):
+        for name in ("drag", "lateral"):
+            if getattr(scene, name) != (Drag() if name == "drag" else Lateral()):
+                faults.append(
+                    f"{name}: not known on belts of several velocities, floor.strips or "
+                    "floor.patch; leave one out"
+                )
     names = [piece.name for piece in pieces if piece.name]
     for name in sorted({name for name in names if names.count(name) > 1}):
         faults.append(f"puck.name = {name!r}: {names.count(name)} pucks have it, it must be of one")
@@ -261,6 +269,11 @@ def _of_one(scene: SceneSpec, piece: PieceSpec, path: str) -> Iterator[str]:
             yield f"{path}.{error}"
     hold, alone = piece.constraint, f"{path}." if scene.pucks else ""
     yield from misfits(piece.launch, hold, scene.floor, alone)
+    if hold is not None and has_belts(scene.floor):
+        yield (
+            f"{path}.constraint: not known on belts of several velocities, floor.strips or "
+            "floor.patch; leave one out"
+        )
     if hold is not None and any(hold.velocity) and piece.launch.time > 0.0:
         yield (
             f"{path}.launch.time = {piece.launch.time:g}: a {hold.kind} that moves leads it "

@@ -60,7 +60,7 @@ def acceleration(game: Game, i: int, t: float, state: FloatArray) -> tuple[float
         return 0.0, 0.0  # straight on
     passed = rows_passed(game.tides, game.spans[i, 0], game.spans[i, 1], t)
     ax, ay, turn = pull_on(game.discs, game.tides, game.spans, i, passed, t)
-    ux, uy, w = over_floor(game.surface, state)
+    ux, uy, w = over_floor(game.surface, disc, state)
     if size(ux, uy, w) == 0.0:
         cx, cy = carried_along(game.surface, state[VX], state[VY])
         push, holds = math.hypot(ax - cx, ay - cy), disc[DECEL]

@@ -15,9 +15,9 @@ from puck_tables.world.course import COURSE_COLUMNS, LENGTH, trace
 from puck_tables.world.departures import Room, desk_for, room_for
 from puck_tables.world.engine import EVERYBODY, NOBODY, advance
 from puck_tables.world.flight import GONE, START, moves_until, state_at
-from puck_tables.world.footing import moves_along, over_floor
+from puck_tables.world.footing import least_slip, moves_along
 from puck_tables.world.game import COUNTS, N_HISTORY, N_IMPACTS, N_PIECES, Game, Whole
-from puck_tables.world.lasting import GOES_ON, at_rest_below, limits_of, next_target, slip_of
+from puck_tables.world.lasting import GOES_ON, at_rest_below, limits_of, next_target
 from puck_tables.world.layout import RADIUS
 from puck_tables.world.ledger import LEDGER_COLUMNS, tally
 from puck_tables.world.lone import LONGEST
@@ -141,8 +141,7 @@ def _follow_all(
                 ends.states[run, i],
             )  # fmt: skip
             ends.in_play[run, i] = 0.0 if game.kinds[i] == GONE else 1.0
-            ux, uy, w = over_floor(game.surface, ends.states[run, i])
-            slip = slip_of(game.discs[i, RADIUS], ux, uy, w)
+            slip = least_slip(game.surface, game.regions, game.discs, i, ends.states[run, i])
             ends.carried[run, i] = ends.in_play[run, i] if slip <= at_rest_below(game) else 0.0
         if watch[0] < 0:
             rows[0] = last

@@ -87,7 +87,7 @@ def _otherwise(start: Start, coarser: float, share: float, friction: float) -> S
     turned = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, scale]])
     launches[:, g.LAUNCH_VX :] = launches[:, g.LAUNCH_VX :] @ turned.T
     free = (game.discs[:, LIGHTNESS] > 0.0) & (game.discs[:, HOLD] == FREE)
-    floor = velocities_under(game.surface, states)[free]
+    floor = velocities_under(game, states)[free]
     states[free, VX:] = floor + (states[free, VX:] - floor) @ turned.T
     game.pace[2] *= coarser
     game.discs[:, NORMAL] *= 1.0 + friction

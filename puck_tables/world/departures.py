@@ -33,7 +33,7 @@ from puck_tables.world.flight import (
     start_flight,
     state_at,
 )
-from puck_tables.world.footing import ground_span, off_border, step_onto
+from puck_tables.world.footing import choose_belt, floor_of, ground_span, off_border, step_onto
 from puck_tables.world.game import (
     APPROACH,
     AT_X,
@@ -149,7 +149,13 @@ def keep_flight(game: Game, i: int) -> None:
 def take_off(game: Game, i: int, t: float, room: Room) -> None:
     """A new flight of a disc alone, from its state; what it was is kept."""
     game.kinds[i] = start_flight(
-        room.states[i], game.discs[i], game.surface, game.curves, t, room.work, game.flights[i]
+        room.states[i],
+        game.discs[i],
+        floor_of(game.surface, game.discs[i]),
+        game.curves,
+        t,
+        room.work,
+        game.flights[i],
     )
     game.group[i] = 0
     keep_flight(game, i)
@@ -159,9 +165,10 @@ def take_off(game: Game, i: int, t: float, room: Room) -> None:
 def stay(game: Game, i: int, t: float, room: Room) -> None:
     """A disc at rest on its floor, that others or a cushion may hold there."""
     state = room.states[i]
-    state[VX], state[VY], state[SPIN] = floor_velocity(game.surface, state[X], state[Y])
+    floor = floor_of(game.surface, game.discs[i])
+    state[VX], state[VY], state[SPIN] = floor_velocity(floor, state[X], state[Y])
     game.kinds[i] = start_flight(
-        state, game.discs[i], game.surface, game.curves, t, room.work, game.flights[i]
+        state, game.discs[i], floor, game.curves, t, room.work, game.flights[i]
     )
     keep_flight(game, i)
 
@@ -216,7 +223,13 @@ def drive_on(game: Game, i: int, t: float, room: Room) -> None:
         piece += 1
     piece = max(piece, game.drives[i, 0])  # a way that is led anew
     start_flight(
-        room.states[i], game.discs[i], game.surface, game.curves, t, room.work, game.flights[i]
+        room.states[i],
+        game.discs[i],
+        floor_of(game.surface, game.discs[i]),
+        game.curves,
+        t,
+        room.work,
+        game.flights[i],
     )
     if piece < last and game.pieces[piece, DURATION] > 0.0:
         row = game.pieces[piece]
@@ -294,6 +307,7 @@ def cross(game: Game, i: int, t: float, k: int, room: Room) -> None:
     game.discs[i, LIES + number] = how
     note(game, t, ENTERS if enters else LEAVES, i, -1 - k, x, y)
     step_onto(game, i)
+    choose_belt(game.regions, game.discs, i, room.states[i])
 
 
 @inlined
@@ -326,7 +340,13 @@ def leave(game: Game, i: int, t: float, what: int, partner: int, room: Room) -> 
     game.events[game.counts[N_EVENTS] - 1, GOT] = kinetic(game.discs[i], vx, vy, spin)
     room.states[i, VX] = room.states[i, VY] = room.states[i, SPIN] = 0.0
     start_flight(
-        room.states[i], game.discs[i], game.surface, game.curves, t, room.work, game.flights[i]
+        room.states[i],
+        game.discs[i],
+        floor_of(game.surface, game.discs[i]),
+        game.curves,
+        t,
+        room.work,
+        game.flights[i],
     )
     game.flights[i, DRIFT_X] = game.flights[i, DRIFT_Y] = 0.0
     game.kinds[i] = GONE

@@ -7,7 +7,9 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import kernel, patience
 from puck_tables.scene.friction import SPIN, VX, VY, dry_friction
+from puck_tables.scene.ground import OVER_X, OVER_Y
 from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.scene.stretches import has_belts
 from puck_tables.world.alone import rows_passed
 from puck_tables.world.footing import dry_now
 from puck_tables.world.game import Game
@@ -38,7 +40,8 @@ def friction_at(scene: SceneSpec, states: FloatArray) -> FloatArray:
     Parameters
     ----------
     scene : of one puck
-    states : ndarray (n, 6): x, y m, angle rad; velocity m/s and spin rad/s over the floor
+    states : ndarray (n, 6): x, y m, angle rad; velocity m/s and spin rad/s over the floor; in the
+        laboratory where strips and patches have velocities of their own
 
     Returns
     -------
@@ -60,6 +63,8 @@ def friction_at(scene: SceneSpec, states: FloatArray) -> FloatArray:
     """
     game = prepared(scene).game
     game.discs[0, REGION] = int(np.argmax(game.regions.astride))
+    if has_belts(scene.floor):
+        game.regions.ground[[OVER_X, OVER_Y]] = 0.0
     out = np.zeros((len(states), 3))
     _forces(game, states, out)
     return out

@@ -22,8 +22,11 @@ from puck_tables.scene.over_time import largest_factors
 from puck_tables.scene.pieces import PieceSpec
 from puck_tables.scene.regions import alone, axes_of, of_one_shape, plain_cut, section_of
 from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.scene.stretches import belts_of
 from puck_tables.scene.zones import ground_of
 from puck_tables.world.agreement import frictions_under, has_closed_forms, is_integrated
+from puck_tables.world.footing import floor_of
+from puck_tables.world.game import Game
 
 INTEGRATED, NOT_HELD = 1.0, 2.0  # see :mod:`puck_tables.world.layout`
 
@@ -39,7 +42,9 @@ def has_several(scene: SceneSpec) -> bool:
 
 
 def floors_of(scene: SceneSpec, pieces: list[PieceSpec], fastest: float) -> FloatArray:
-    """Deceleration, δ, and whether it is integrated, of every puck at every place of the floor.
+    """Deceleration, δ, whether it is integrated, and the velocity of the floor, (n, 5).
+
+    Of every puck at every place of the floor.
 
     Astride the largest of them.  ``fastest``: a slip to which a friction law is looked at, m/s.
     """
@@ -54,7 +59,10 @@ def floors_of(scene: SceneSpec, pieces: list[PieceSpec], fastest: float) -> Floa
     if has_several(scene):
         for piece, given in zip(pieces, frictions, strict=True):
             rows.append(_row(scene, piece, max(given), NOT_HELD))
-    return np.array(rows)
+    belts = np.repeat(belts_of(scene.floor), len(pieces), axis=0)
+    missing = len(rows) - len(belts)  # astride, where it depends
+    belts = np.concatenate([belts, np.tile(belts[:1], (missing, 1))])
+    return np.column_stack([rows, belts])
 
 
 def _strongest_under(scene: SceneSpec, piece: PieceSpec, fastest: float) -> list[float]:
@@ -183,11 +191,12 @@ def slip_of_rim(radius: float, surface: Surface, state: list[float]) -> float:
     return math.hypot(state[VX] - sx, state[VY] - sy) + radius * abs(state[SPIN] - turning)
 
 
-def velocities_under(surface: Surface, states: FloatArray) -> FloatArray:
-    """Velocities and spins of the floor, array (..., 3), under pucks in states (..., 6)."""
-    places: Any = states[..., X], states[..., Y]  # the same for arrays
-    under = np.empty((*states.shape[:-1], 3))
-    under[..., 0], under[..., 1], under[..., 2] = floor_velocity(surface, *places)
+def velocities_under(game: Game, states: FloatArray) -> FloatArray:
+    """Velocities and spins (n, 3) of the floor that discs in states (n, 6) are on."""
+    belts: Any = floor_of(game.surface, game.discs.T)  # the same for arrays
+    places: Any = states[:, X], states[:, Y]
+    under = np.empty((len(states), 3))
+    under[:, 0], under[:, 1], under[:, 2] = floor_velocity(belts, *places)
     return under
 
 

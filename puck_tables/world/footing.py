@@ -12,11 +12,15 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
+from puck_tables.scene.belts import nearest_belt
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.ground import (
     ACROSS_X,
     ACROSS_Y,
+    BELTS,
     BORDERS,
+    OVER_X,
+    OVER_Y,
     PATCHES,
     border_of,
 )
@@ -36,6 +40,8 @@ from puck_tables.scene.orthotropic import is_elliptic
 from puck_tables.scene.patches import ASTRIDE, INSIDE, OUTSIDE, distance_to
 from puck_tables.world.game import Game, Whole
 from puck_tables.world.layout import (
+    BELT_X,
+    BELT_Y,
     DECEL,
     DELTA,
     HEIGHT_RATIO,
@@ -46,26 +52,35 @@ from puck_tables.world.layout import (
     REGION,
 )
 
+_NEARER = 0.9  # of the slip over one belt is that over another: states are relative to that
 SURE = 1.0 - 1e-9  # of the last slip that a friction law knows: whoever is faster comes beyond
 
 
 @inlined
-def over_floor(surface: Surface, state: FloatArray) -> tuple[float, float, float]:
-    """Velocity and spin of a state (6,) relative to the floor under it."""
-    sx, sy, turning = floor_velocity(surface, state[X], state[Y])
+def floor_of(surface: Surface, disc: FloatArray) -> Surface:
+    """How the floor moves that a disc is on."""
+    return Surface(disc[BELT_X], disc[BELT_Y], surface.cx, surface.cy, surface.spin)
+
+
+@inlined
+def over_floor(
+    surface: Surface, disc: FloatArray, state: FloatArray
+) -> tuple[float, float, float]:  # fmt: skip
+    """Velocity and spin of a disc in a state (6,) relative to the floor that it is on."""
+    sx, sy, turning = floor_velocity(floor_of(surface, disc), state[X], state[Y])
     return state[VX] - sx, state[VY] - sy, state[SPIN] - turning
 
 
 @inlined
-def slips(surface: Surface, state: FloatArray) -> bool:
+def slips(surface: Surface, disc: FloatArray, state: FloatArray) -> bool:
     """Whether it moves over the floor."""
-    vx, vy, spin = over_floor(surface, state)
+    vx, vy, spin = over_floor(surface, disc, state)
     return vx != 0.0 or vy != 0.0 or spin != 0.0
 
 
 @inlined
 def moves_along(surface: Surface) -> bool:
-    """Whether the floor moves."""
+    """Whether the floor moves, or any of it: of all belts it knows the fastest."""
     return surface.vx != 0.0 or surface.vy != 0.0 or surface.spin != 0.0
 
 
@@ -137,6 +152,56 @@ def is_over(regions: Regions, discs: FloatArray, i: int) -> bool:
 
 
 @inlined
+def is_over_belts(regions: Regions, discs: FloatArray, i: int) -> bool:
+    """Whether a disc may have parts on stretches of the floor with different velocities."""
+    first, last = ground_span(regions, discs, i)
+    return is_over(regions, discs, i) and last > first and regions.ground[first + BELTS] != 0.0
+
+
+@inlined
+def choose_belt(regions: Regions, discs: FloatArray, i: int, state: FloatArray) -> None:
+    """Of the velocities under a disc let states be relative to the one nearest to its own."""
+    if is_over_belts(regions, discs, i):
+        first, last = ground_span(regions, discs, i)
+        ground, disc = regions.ground[first:last], discs[i]
+        bx, by, _ = nearest_belt(
+            ground, state[X], state[Y], disc[RADIUS], state[VX], state[VY]
+        )  # fmt: skip
+        ground[OVER_X], ground[OVER_Y] = bx, by
+        disc[BELT_X], disc[BELT_Y] = bx, by
+
+
+@inlined
+def nears_another(
+    regions: Regions, discs: FloatArray, i: int, x: float, y: float, vx: float, vy: float
+) -> bool:
+    """Whether a disc that moves at (vx, vy) is nearer to another velocity of the floor."""
+    if not is_over_belts(regions, discs, i):
+        return False
+    first, last = ground_span(regions, discs, i)
+    disc = discs[i]
+    _, _, least = nearest_belt(regions.ground[first:last], x, y, disc[RADIUS], vx, vy)
+    ox, oy = vx - disc[BELT_X], vy - disc[BELT_Y]
+    return least < _NEARER * math.sqrt(ox * ox + oy * oy)
+
+
+@inlined
+def least_slip(
+    surface: Surface, regions: Regions, discs: FloatArray, i: int, state: FloatArray
+) -> float:
+    """The slip of the rim of a disc over the nearest of the floors under it, anywhere, m/s."""
+    sx, sy, turning = floor_velocity(surface, state[X], state[Y])
+    radius = discs[i, RADIUS]
+    speed, rim = math.hypot(state[VX] - sx, state[VY] - sy), radius * (state[SPIN] - turning)
+    first, last = ground_span(regions, discs, i)
+    if last > first and regions.ground[first + BELTS] != 0.0:
+        _, _, speed = nearest_belt(
+            regions.ground[first:last], state[X], state[Y], radius, state[VX], state[VY]
+        )  # fmt: skip
+    return math.sqrt(speed * speed + rim * rim)
+
+
+@inlined
 def room_on_floor(regions: Regions, discs: FloatArray, i: int, state: FloatArray) -> float:
     """How far a disc in a state (6,) is from lying otherwise than it is taken to; < 0: it does."""
     first, last = ground_span(regions, discs, i)
@@ -174,6 +239,8 @@ def step_onto(game: Game, i: int) -> None:
     disc[REGION] = region
     disc[DECEL], disc[DELTA] = game.floors[region, 0], game.floors[region, 1]
     disc[INTEGRATED] = game.floors[region, 2]
+    if not astride:
+        disc[BELT_X], disc[BELT_Y] = game.floors[region, 3], game.floors[region, 4]
 
 
 @inlined
@@ -185,3 +252,4 @@ def lay_down(game: Game, i: int, state: FloatArray) -> None:
         away = off_border(ground, number, state[X], state[Y])
         game.discs[i, LIES + number] = lies_to(away, game.discs[i, RADIUS])
     step_onto(game, i)
+    choose_belt(game.regions, game.discs, i, state)

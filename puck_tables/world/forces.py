@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
+from puck_tables.scene.belts import heat_at_rest
 from puck_tables.scene.friction import (
     SPIN,
     THETA,
@@ -25,7 +26,7 @@ from puck_tables.scene.ingredients import (
 )
 from puck_tables.scene.rest import constrained_yield, free_yield
 from puck_tables.world.alone import pull_on, rows_passed
-from puck_tables.world.footing import dry_now, over_floor
+from puck_tables.world.footing import dry_now, floor_of, is_over_belts, over_floor
 from puck_tables.world.group import (
     ARM,
     DRIVEN,
@@ -64,11 +65,13 @@ from puck_tables.world.works import (
     SUPPORT_WORK,
 )
 
+_BEGUN = 1e-12  # m/s: a slip that has a direction, and no size
+
 
 @inlined
 def slip_of(group: Group, number: int, y: FloatArray) -> float:
     """Q of a disc in the state y (6,) over the floor."""
-    vx, vy, spin = over_floor(group.surface, y)
+    vx, vy, spin = over_floor(group.surface, group.discs[number], y)
     return size(vx, vy, group.discs[number, RADIUS] * spin)
 
 
@@ -79,9 +82,10 @@ def load_on(group: Group, number: int) -> float:
 
 
 @inlined
-def rest_on_floor(group: Group, y: FloatArray) -> None:
-    """Give a state (6,) the velocity of the floor under it."""
-    y[VX], y[VY], y[SPIN] = floor_velocity(group.surface, y[X], y[Y])
+def rest_on_floor(group: Group, number: int, y: FloatArray) -> None:
+    """Give a disc in a state (6,) the velocity of the floor that it is on."""
+    floor = floor_of(group.surface, group.discs[number])
+    y[VX], y[VY], y[SPIN] = floor_velocity(floor, y[X], y[Y])
 
 
 @inlined
@@ -149,22 +153,33 @@ def act(
         px, py, pull = _pull_on(group, members, place, desk)
         light, turns = disc[LIGHTNESS], disc[TURNABILITY]
         power[PULL_WORK] += (px * vx + py * vy) / light + pull * spin / turns
+        rubbed = is_over_belts(group.regions, group.discs, number)
         if doing == HELD:
             own[0], own[1], own[2] = cx, cy, 0.0
+            if rubbed:
+                dry = _dry_under(group, members, place, y, desk)
+                heat = heat_at_rest(dry.by_speed.table, radius, -px / light, -py / light)
+                power[FLOOR_HEAT] += heat
+                power[SUPPORT_WORK] += heat
             continue
         inverse[0], inverse[1] = light, turns
-        sx, sy, turning = floor_velocity(group.surface, y[place, X], y[place, Y])
+        floor = floor_of(group.surface, disc)
+        sx, sy, turning = floor_velocity(floor, y[place, X], y[place, Y])
         ux, uy, w = vx - sx, vy - sy, spin - turning
         dry = _dry_under(group, members, place, y, desk)
         if doing == YIELDS:
-            way = desk.ways[place]
-            fx, fy, torque, _ = dry_friction(at_slip_zero(dry), radius, way[0], way[1], way[2])
-            heat = -(fx * ux + fy * uy + torque * w)
+            way, small = desk.ways[place], _BEGUN if rubbed else 1.0  # other belts slip by more
+            nx, ny, nw = small * way[0], small * way[1], small * way[2]
+            fx, fy, torque, heat = dry_friction(at_slip_zero(dry), radius, nx, ny, nw)
+            others = heat + fx * nx + fy * ny + torque * nw if rubbed else 0.0
+            heat = others - (fx * ux + fy * uy + torque * w)
         else:
             fx, fy, torque, heat = dry_friction(dry, radius, ux, uy, w)
         ax, ay, turn, warmth, turning_warmth = dragged(disc, ux, uy, w)
         ax, ay, turn = ax + fx * light, ay + fy * light, turn + torque * turns
         own[0], own[1], own[2] = px + ax, py + ay, pull + turn
+        if rubbed:  # what others of the belts do
+            power[SUPPORT_WORK] += heat + fx * ux + fy * uy + torque * w
         power[FLOOR_HEAT] += heat
         power[DRAG_HEAT] += warmth / light + turning_warmth / turns
         power[SUPPORT_WORK] += (ax * sx + ay * sy) / light + turn * turning / turns

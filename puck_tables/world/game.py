@@ -58,9 +58,9 @@ class Game(NamedTuple):
     """Everything, as arrays: a copy of them is a copy of the world.
 
     ``regions``: the dry friction of every disc everywhere on the floor, see
-    :mod:`puck_tables.world.footing`; ``floors`` what of it stands in its row there (places · n, 3):
-    deceleration, δ, and whether it is integrated, which a disc takes over when it comes there;
-    ``surface``: how the floor moves; ``tides``,
+    :mod:`puck_tables.world.footing`; ``floors`` what of it stands in its row there (places · n, 5):
+    deceleration, δ, whether it is integrated, and the velocity of the floor, which a disc takes
+    over when it comes there; ``surface``: how the floor moves, of belts the fastest; ``tides``,
     ``spans``: see :class:`puck_tables.world.group.Group`; ``rims``: the laws
     by which they meet (:mod:`puck_tables.world.rims`).  ``clock`` (1,): now.  ``group``
     (n,): discs of one number push each other, 0: none; ``held`` (…, 2): their contacts.
@@ -119,7 +119,10 @@ def kept(game: Game) -> Game:
     """The game as it is, to go back to: what is added to it later is not counted there."""
     parts: Any = game
     pairs = zip(_CHANGES, parts, strict=True)
-    return Game._make([part.copy() if changes else part for changes, part in pairs])
+    same = Game._make([part.copy() if changes else part for changes, part in pairs])
+    if not game.regions.ground.size:
+        return same
+    return same._replace(regions=game.regions._replace(ground=game.regions.ground.copy()))
 
 
 def led_rows(game: Game) -> FloatArray:

@@ -209,7 +209,7 @@ def _lasting(
 @inlined
 def _slip2(game: Game, i: int, states: FloatArray) -> float:
     """Q² of a disc over the floor."""
-    vx, vy, spin = over_floor(game.surface, states[i])
+    vx, vy, spin = over_floor(game.surface, game.discs[i], states[i])
     rim = game.discs[i, RADIUS] * spin
     return vx**2 + vy**2 + rim * rim
 

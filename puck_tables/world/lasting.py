@@ -30,7 +30,7 @@ from puck_tables.world.flight import (
     UNTIL,
     state_at,
 )
-from puck_tables.world.footing import over_floor
+from puck_tables.world.footing import least_slip
 from puck_tables.world.game import LAUNCH_TIME, N_EVENTS, N_HISTORY, TIME, Game, led_rows
 from puck_tables.world.layout import (
     DAMPING,
@@ -63,20 +63,13 @@ def at_rest_below(game: Game) -> float:
 
 
 @inlined
-def slip_of(radius: float, ux: float, uy: float, w: float) -> float:
-    """The slip of a velocity and spin over the floor, m/s."""
-    return math.sqrt(ux * ux + uy * uy + (radius * w) ** 2)
-
-
-@inlined
 def _slips_at(game: Game, n: int, t: float, room: Room) -> bool:
     """Whether the disc of a flight, a row of the history, slips on it at t."""
     flight = game.history[n]
     i, state = int(flight[0]), room.one
     state_at(int(flight[1]), flight[2:], game.discs[i], game.curves, game.pieces, t, room.work,
              state)  # fmt: skip
-    ux, uy, w = over_floor(game.surface, state)
-    return slip_of(game.discs[i, RADIUS], ux, uy, w) > at_rest_below(game)
+    return least_slip(game.surface, game.regions, game.discs, i, state) > at_rest_below(game)
 
 
 @inlined

@@ -30,10 +30,11 @@ REGION = 24  # of the dry friction under it: where on the floor it is, times dis
 SPIN_WAKE = 25  # quadratic drag of the spin, over inertia
 ACROSS, BY_SPEED, BY_SPIN = 26, 27, 28  # a lateral force: its acceleration and exponents
 NORMAL, HEIGHT_RATIO = 29, 30  # N, and 2h/r: where friction depends on the slip
+BELT_X, BELT_Y = 31, 32  # the velocity of the floor that it is on, of belts the nearest to its own
 # from here on how its base lies to every border of strips, and then to every patch
 # (:mod:`puck_tables.world.footing`)
-LIES = 31
-DISC_COLUMNS = 31  # without those
+LIES = 33
+DISC_COLUMNS = 33  # without those
 
 # columns of an obstacle: for a wall or edge (A, B) is its unit normal, into the field, and C its
 # place along it; for the others (A, B) is the centre, C the radius; [FROM, FROM + SPAN] are the

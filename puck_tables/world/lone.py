@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, patience
+from puck_tables.scene.belts import is_rubbed
 from puck_tables.scene.equations import (
     DRY,
     FIRST,
@@ -46,6 +47,7 @@ from puck_tables.scene.ingredients import (
     Stretch,
     floor_velocity,
     is_astride,
+    is_over_belts,
 )
 from puck_tables.scene.moments import NOTHING, REST, cut_short, goes_straight, lost, rests_on
 from puck_tables.scene.standstill import from_standstill
@@ -53,10 +55,20 @@ from puck_tables.scene.step_size import follow_scales, up_to_the_stop
 from puck_tables.scene.steps import accelerations, step
 from puck_tables.world import works
 from puck_tables.world.alone import rows_passed
-from puck_tables.world.footing import dry_under, moves_along, outruns_law, room_on_floor
+from puck_tables.world.footing import (
+    choose_belt,
+    dry_under,
+    floor_of,
+    moves_along,
+    nears_another,
+    outruns_law,
+    room_on_floor,
+)
 from puck_tables.world.game import N_HISTORY, N_PIECES, N_WORKS, Game
 from puck_tables.world.layout import (
     ACROSS,
+    BELT_X,
+    BELT_Y,
     BY_SPEED,
     BY_SPIN,
     DAMPING,
@@ -151,7 +163,7 @@ def model_of(game: Game, i: int) -> Model:
         int(disc[HOLD]), disc[HOLD_X], disc[HOLD_Y], disc[HOLD_REACH], disc[HOLD_ANGLE],
         disc[HOLD_VX], disc[HOLD_VY],
     )  # fmt: skip
-    return Model(Body(mass, inertia, disc[RADIUS]), game.surface, forces, hold)
+    return Model(Body(mass, inertia, disc[RADIUS]), floor_of(game.surface, disc), forces, hold)
 
 
 @inlined
@@ -166,6 +178,8 @@ def _swings(model: Model, dry: Dry) -> bool:
     """Whether what the floor has to do for a puck at rest on it changes as it is carried."""
     surface = model.surface
     turns = surface.spin != 0.0 and _is_pulled(model)
+    if is_over_belts(dry) and is_rubbed(dry.by_speed.table, model.body.radius):
+        return True  # it gets warm
     return turns or (is_astride(dry) and moves_along(surface))
 
 
@@ -178,7 +192,7 @@ def _horizon(game: Game, model: Model, t: float) -> float:
     hold, rows = model.hold, len(model.forces.drive)
     pulled = rows > 0 and model.forces.drive[rows - 1, 0] > t
     pulled = pulled or model.forces.x != 0.0 or model.forces.y != 0.0 or model.forces.torque != 0.0
-    if pulled or moves_along(model.surface) or hold.vx != 0.0 or hold.vy != 0.0:
+    if pulled or moves_along(game.surface) or hold.vx != 0.0 or hold.vy != 0.0:
         return t + max(2.0 * game.pace[0] / game.pace[1], _FARTHER * t)
     return math.inf
 
@@ -274,9 +288,13 @@ def _misfit(
 def _leads_off(game: Game, i: int, desk: Desk) -> bool:
     """Whether a step has led to where there is another friction, or none is known.
 
-    The rim has come over a border, or left it, or it slips faster than a law goes.
+    The rim has come over a border, or left it, or it slips faster than a law goes, or least over
+    another belt.
     """
-    y, radius = desk.new, game.discs[i, RADIUS]
+    y, disc, radius = desk.new, game.discs[i], game.discs[i, RADIUS]
+    vx, vy = y[VX] + disc[BELT_X], y[VY] + disc[BELT_Y]
+    if nears_another(game.regions, game.discs, i, y[X], y[X + 1], vx, vy):
+        return True
     if outruns_law(game.regions, radius, y[VX], y[VY], y[SPIN]):
         return True
     if game.discs.shape[1] == LIES:
@@ -377,6 +395,7 @@ def follow_alone(
     uncounted.  Where it rests for good there are none, until inf; ``state`` (6,) is moved to rest.
     ``work`` (25, 12): to work on.
     """
+    choose_belt(game.regions, game.discs, i, state)
     model, dry, desk = model_of(game, i), dry_under(game.regions, game.discs, i), _desk_on(work)
     y, new, stages = desk.y, desk.new, desk.stages
     speed, unit, radius = game.pace[0], game.pace[0] / game.pace[1], model.body.radius

@@ -60,17 +60,6 @@ def rows_of(lines: Sequence[Line]) -> FloatArray:
     return np.array(rows, np.float64).reshape(-1, 5)
 
 
-def called_line(lines: Sequence[Line], number: int) -> str:
-    """A line in an event.
-
-    Examples
-    --------
-    >>> called_line([Line((0.0, 0.0), (1.0, 0.0)), Line((0.0, 1.0), (1.0, 1.0), name="goal")], 1)
-    'goal'
-    """
-    return lines[number].name or f"line {number}"
-
-
 class Passings:
     """What passed the lines of a world so far.
 

@@ -6,6 +6,7 @@ from puck_tables._core.fields import specs
 from puck_tables.scene.acting import EMPIRICAL, acting
 from puck_tables.scene.pieces import PieceSpec
 from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.scene.stretches import belts_of
 from puck_tables.world.agreement import (
     TABLE_ERROR,
     called,
@@ -26,7 +27,7 @@ _OF_OTHERS = (
     "title", "puck", "pucks", "launch", "time", "frames", "tol", "gravity", "walls", "edges",
     "posts", "arcs", "pockets", "lines", "rims",
 )  # fmt: skip
-_ON_FLOOR = ("strips", "patches")
+_ON_FLOOR = ("strips", "patches", "belts")
 
 
 def plan_of(scene: SceneSpec) -> tuple[str, str]:
@@ -120,4 +121,4 @@ def _way_of(scene: SceneSpec, piece: PieceSpec) -> str:
     way = "looked up from impact to impact"
     if has_several(scene):
         way = "looked up from impact or border to the next, integrated where astride"
-    return f"{way}, over the belt" if any(scene.floor.velocity) else way
+    return f"{way}, over the belt" if belts_of(scene.floor).any() else way

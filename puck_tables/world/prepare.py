@@ -16,6 +16,7 @@ from puck_tables.scene.over_time import ON_ALL, over_time
 from puck_tables.scene.parts import Wall
 from puck_tables.scene.pieces import Arc, PieceSpec, Post
 from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.scene.stretches import belts_of
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.world import layout
 from puck_tables.world.agreement import flight_error, pieces_of, start_of
@@ -104,7 +105,9 @@ def prepared(scene: SceneSpec, order: Whole | None = None) -> Start:
     count = len(pieces)
     lies = len(borders_of(scene)) + len(scene.floor.patches)
     discs, states = np.zeros((count, layout.DISC_COLUMNS + lies)), np.zeros((count, 6))
-    surface = Surface(*scene.floor.velocity, *scene.floor.centre, scene.floor.turning)
+    belts = belts_of(scene.floor)
+    fastest_belt = belts[np.hypot(*belts.T).argmax()].tolist()
+    surface = Surface(*fastest_belt, *scene.floor.centre, scene.floor.turning)
     spans, tides = np.zeros((count, 2), np.int64), []
     drives, ways = np.zeros((count, 2), np.int64), [np.zeros((0, PIECE_COLUMNS))]
     launches = []
@@ -221,7 +224,7 @@ def fastest(game: Game, states: FloatArray) -> float:
     driven = led_rows(game)[:, FIRST + VX : FIRST + VY + 1]
     launched = np.hypot(game.launches[:, 2], game.launches[:, 3])
     led = np.hypot(*game.discs[:, [layout.HOLD_VX, layout.HOLD_VY]].T)
-    floor = velocities_under(game.surface, states)
+    floor = velocities_under(game, states)
     return max(
         float(np.hypot(np.hypot(states[:, VX], states[:, VY]), rims).max()),
         float(np.hypot(*driven.T).max(initial=0.0)), float(launched.max(initial=0.0)),

@@ -8,7 +8,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel, patience
 from puck_tables.scene.friction import SPIN, VX
 from puck_tables.world.complementarity import rim_mode
-from puck_tables.world.footing import over_floor
+from puck_tables.world.footing import choose_belt, over_floor
 from puck_tables.world.forces import (
     can_rest,
     count_rows,
@@ -65,7 +65,7 @@ def _goes_on(group: Group, number: int, place: int, scales: Scales, desk: Desk) 
     """Whether a small slip, if there is one, grows in the direction that it has."""
     y, way, radius = desk.states[0, place], desk.ways[place], group.discs[number, RADIUS]
     slip = slip_of(group, number, y)
-    vx, vy, spin = over_floor(group.surface, y)
+    vx, vy, spin = over_floor(group.surface, group.discs[number], y)
     along = way[0] * vx + way[1] * vy + radius * radius * way[2] * spin
     gains = gain_of(group, number, place, desk) > GAINS * scales.rate
     return slip == 0.0 or (gains and along > _SAME * slip)
@@ -124,16 +124,17 @@ def press(
         for i in range(6):
             y[place, i] = states[number, i]
         doings[place] = MOVES
+        choose_belt(group.regions, group.discs, number, y[place])
         if group.discs[number, LIGHTNESS] == 0.0:
             doings[place] = DRIVEN
         elif can_rest(group, number):
             q = slip_of(group, number, y[place])
             if q <= STILL * scales.speed:
                 doings[place] = HELD
-                rest_on_floor(group, y[place])
+                rest_on_floor(group, number, y[place])
             elif q <= small_slip(scales):
                 doings[place] = YIELDS
-                vx, vy, spin = over_floor(group.surface, y[place])
+                vx, vy, spin = over_floor(group.surface, group.discs[number], y[place])
                 way = desk.ways[place]
                 way[0], way[1], way[2] = vx / q, vy / q, spin / q
     count_rows(group, members, t, desk)

@@ -16,8 +16,8 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel, patience
-from puck_tables.scene.friction import X, Y
-from puck_tables.world.footing import is_over, moves_along, room_on_floor
+from puck_tables.scene.friction import VX, VY, X, Y
+from puck_tables.world.footing import is_over, moves_along, nears_another, room_on_floor
 from puck_tables.world.forces import can_rest, count_rows, slip_of
 from puck_tables.world.group import (
     DRIVEN,
@@ -117,6 +117,18 @@ def _comes_over(group: Group, members: IntArray, desk: Desk) -> int:
             if before > 0.0 > _room_of(group, members, place, desk.states[1]):
                 return place
     return -1
+
+
+@inlined
+def _changes_belts(group: Group, members: IntArray, desk: Desk) -> bool:
+    """Whether a member has come nearer to the velocity of another belt under it, on a step."""
+    for place in range(members.shape[0]):
+        y = desk.states[1, place]
+        if nears_another(
+            group.regions, group.discs, members[place], y[X], y[Y], y[VX], y[VY]
+        ):  # fmt: skip
+            return True
+    return False
 
 
 @inlined
@@ -305,6 +317,8 @@ def follow(
                 length = _moment(
                     group, members, modes, doings, t, length, which, _OVER_BORDER, scales, desk
                 )
+            elif _changes_belts(group, members, desk):
+                how = OFF_BORDER
         add_work(length, start + passed, works[count], desk)
         begun = False  # whether anybody's slip is so large that it has a direction of its own
         for place in range(size):

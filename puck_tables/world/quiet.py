@@ -28,7 +28,7 @@ def _moved_by(game: Game, room: Room, i: int) -> float:
         return 0.0
     disc = game.discs[i]
     steep = disc[DECEL] <= math.hypot(disc[PULL_X], disc[PULL_Y])
-    if not (steep or slips(game.surface, room.states[i])):
+    if not (steep or slips(game.surface, disc, room.states[i])):
         return 0.0
     return game.discs[i, LIGHTNESS]
 

@@ -8,15 +8,17 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.scene.friction import VX, X, Y
+from puck_tables.kernels.compile import kernel, patience
+from puck_tables.scene.friction import SPIN, X, Y
 from puck_tables.scene.parts import Floor
 from puck_tables.world import game as g
 from puck_tables.world.flight import GONE, LOOKED_UP, PATH, START, UNTIL
-from puck_tables.world.floors import velocities_under
+from puck_tables.world.footing import least_slip
 from puck_tables.world.lasting import at_rest_below, middle_of
-from puck_tables.world.layout import DECEL, INTEGRATED, LIGHTNESS, RADIUS
+from puck_tables.world.layout import DECEL, INTEGRATED, LIGHTNESS
 from puck_tables.world.record import flights_of, states_on
 
+STATE = SPIN + 1
 Rest = tuple[float, str, int, float, float]  # when, stick or slip, which disc, where
 
 
@@ -71,10 +73,17 @@ def _told(game: g.Game) -> list[Rest]:
 
 def slips_over(game: g.Game, discs: g.Whole, states: FloatArray) -> FloatArray:
     """How fast the rims of discs (n,) slip over the floor at states (n, …, 6), m/s."""
-    over = states[..., VX:] - velocities_under(game.surface, states)
-    radii = game.discs[discs, RADIUS].reshape(-1, *[1] * (states.ndim - 2))
-    slips: FloatArray = np.hypot(np.hypot(over[..., 0], over[..., 1]), radii * over[..., 2])
+    slips = np.empty(states.shape[:-1])
+    _fill_slips(game, discs, states.reshape(len(discs), -1, STATE), slips.reshape(len(discs), -1))
     return slips
+
+
+@kernel
+def _fill_slips(game: g.Game, discs: g.Whole, states: FloatArray, out: FloatArray) -> None:
+    patience(states.shape[0])
+    for n in range(states.shape[0]):
+        for k in range(states.shape[1]):
+            out[n, k] = least_slip(game.surface, game.regions, game.discs, discs[n], states[n, k])
 
 
 def floor_under(floor: Floor, x: float, y: float) -> str:

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import finite_array, real
 from puck_tables.errors import InputError, PuckError
+from puck_tables.scene.pieces import called_line
 from puck_tables.scene.run import Event
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import game as g
@@ -34,7 +35,7 @@ from puck_tables.world.lasting import (
 from puck_tables.world.law_range import with_law_for
 from puck_tables.world.layout import EDGE, KIND, POCKET
 from puck_tables.world.lone import LONGEST
-from puck_tables.world.passings import Passings, called_line
+from puck_tables.world.passings import Passings
 from puck_tables.world.prepare import Start, obstacle_names, prepared, shipped_curves
 from puck_tables.world.pushed_back import Told
 from puck_tables.world.record import states_at, states_now

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import finite_array
 from puck_tables.errors import InputError, PuckError
+from puck_tables.scene.friction import VX
 from puck_tables.scene.ingredients import FREE
 from puck_tables.scene.library import files_of
 from puck_tables.scene.outcome import (
@@ -104,6 +105,8 @@ def run_on(world: World, moments: FloatArray | None) -> tuple[str, float]:
         end_time = world.time if moving else float(ends_of_motion.max())
         along = moving and moves_along(world._game.surface)
         carried = along and bool((ends_of_motion < math.inf).all())
+        if carried and not world.state()[:, VX:].any():  # other belts rub it
+            moving = carried = False
         end = ENDS[CARRIED_AWAY if carried else TIME_UP if moving else AT_REST]
     else:
         end_time, goes_round = world.come_to_rest()

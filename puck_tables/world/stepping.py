@@ -96,7 +96,7 @@ def step(
     largest, turning = 0.0, group.surface.spin != 0.0
     for place in range(members.shape[0]):
         if doings[place] == HELD:
-            rest_on_floor(group, new[place])
+            rest_on_floor(group, members[place], new[place])
         if doings[place] == DRIVEN or (doings[place] == HELD and not turning):
             continue
         for i in range(6):

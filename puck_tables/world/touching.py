@@ -9,7 +9,7 @@ from puck_tables.kernels.compile import inlined, inner, patience
 from puck_tables.scene.friction import X, Y
 from puck_tables.world.departures import CONCERNED, LOOKED_AT, NOT_CONCERNED, Room, locate
 from puck_tables.world.flight import GONE, PLACE_X, PLACE_Y, STILL, drifts
-from puck_tables.world.footing import outruns_law, over_floor, slips
+from puck_tables.world.footing import is_over_belts, outruns_law, over_floor, slips
 from puck_tables.world.game import (
     Game,
 )
@@ -115,8 +115,8 @@ def press_somewhere(game: Game, count: int, t: float, room: Room) -> bool:
         un, _ = approach(game, i, j, row[NX], row[NY], room.states)
         row[ACTS] = 1.0 if abs(un) <= HARDLY * game.pace[0] else 0.0
         # what neither presses nor parts is a group, too: alone, both would look for each other
-        moves = slips(game.surface, room.states[i])
-        moves = moves or (j >= 0 and slips(game.surface, room.states[j]))
+        moves = slips(game.surface, game.discs[i], room.states[i])
+        moves = moves or (j >= 0 and slips(game.surface, game.discs[j], room.states[j]))
         least = HARDLY * game.pace[1] if moves else -HARDLY * game.pace[1]
         if row[ACTS] > 0.0 and opening(game, i, j, t, row, room.states) < least:
             found = True
@@ -126,7 +126,7 @@ def press_somewhere(game: Game, count: int, t: float, room: Room) -> bool:
 @inlined
 def sets_off_too_fast(game: Game, i: int, state: FloatArray) -> bool:
     """Whether its rim slips faster than the friction law of the floor is known."""
-    ux, uy, w = over_floor(game.surface, state)
+    ux, uy, w = over_floor(game.surface, game.discs[i], state)
     free = game.discs[i, LIGHTNESS] > 0.0
     return free and outruns_law(game.regions, game.discs[i, RADIUS], ux, uy, w)
 
@@ -137,7 +137,9 @@ def is_integrated(game: Game, i: int, state: FloatArray) -> bool:
     disc = game.discs[i]
     if disc[INTEGRATED] == 0.0 or game.kinds[i] == GONE:
         return False
-    if slips(game.surface, state) or game.surface.spin != 0.0 or disc[TWIST] != 0.0:
+    if slips(game.surface, disc, state) or game.surface.spin != 0.0 or disc[TWIST] != 0.0:
+        return True
+    if is_over_belts(game.regions, game.discs, i):
         return True
     forced = game.spans[i, 0] < game.spans[i, 1]
     holds = disc[DECEL] if disc[INTEGRATED] == 1.0 else 0.0

@@ -1,0 +1,205 @@
+"""Friction on a base that lies on stretches of the floor with velocities of their own.
+
+Each part of the base is summed with its own slip: those of one velocity together, with all others
+left out.  Sums are in axes of the base, or of the floor under a round one, and add up there; then
+the load tilts as it does astride several frictions (:mod:`puck_tables.scene.astride`).  States are
+relative to one of the velocities.  What moves at it rests on its part of the floor, which holds it
+against what the others do: their friction is a force like any other.
+"""
+
+from __future__ import annotations
+
+import math
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.base_friction import pressure_at, pressure_on, under_load
+from puck_tables.kernels.base_sums import ANY, NOTHING, Sums, from_slip, plus
+from puck_tables.kernels.compile import inlined, inner
+from puck_tables.scene.astride_parts import slip_of
+from puck_tables.scene.astride_pressure import sums_under
+from puck_tables.scene.base_on_floor import friction_sums
+from puck_tables.scene.ground import (
+    ACROSS_X,
+    ACROSS_Y,
+    ANGLE,
+    BELTS,
+    BORDERS,
+    LEVER,
+    OVER_X,
+    OVER_Y,
+    PATCHES,
+    PLACE_X,
+    PLACE_Y,
+    PRESSURE,
+    PROFILE,
+    belt_of,
+    border_of,
+    stretches_in,
+    sum_over,
+)
+from puck_tables.scene.patches import distance_to
+
+Far = tuple[float, float, float]  # Σ over the parts of velocity times e, x e and y e
+
+
+@inner
+def lies_on(ground: FloatArray, stretch: int, x: float, y: float, radius: float) -> bool:
+    """Whether a base at a place may have a part on a strip, or after all of them a patch."""
+    strips = int(ground[BORDERS]) + 1
+    if stretch >= strips:
+        return distance_to(ground, stretch - strips, x, y) < radius
+    place = ground[ACROSS_X] * x + ground[ACROSS_Y] * y
+    if stretch > 0 and place + radius <= border_of(ground, stretch - 1):
+        return False
+    if stretch < strips - 1 and place - radius >= border_of(ground, stretch):
+        return False
+    covered = False
+    for k in range(int(ground[PATCHES])):
+        covered = covered or distance_to(ground, k, x, y) <= -radius
+    return not covered
+
+
+@inlined
+def _is_first(ground: FloatArray, stretch: int) -> bool:
+    """Whether no stretch before has the same velocity."""
+    vx, vy = belt_of(ground, stretch)
+    for before in range(stretch):
+        ox, oy = belt_of(ground, before)
+        if ox == vx and oy == vy:
+            return False
+    return True
+
+
+@inner
+def nearest_belt(
+    ground: FloatArray, x: float, y: float, radius: float, vx: float, vy: float
+) -> tuple[float, float, float]:
+    """Of the velocities under a base at a place the one nearest to (vx, vy), and how far it is."""
+    least, bx, by = math.inf, ground[OVER_X], ground[OVER_Y]
+    for stretch in range(stretches_in(ground)):
+        ox, oy = belt_of(ground, stretch)
+        off = math.sqrt((vx - ox) * (vx - ox) + (vy - oy) * (vy - oy))
+        if off < least and lies_on(ground, stretch, x, y, radius):
+            least, bx, by = off, ox, oy
+    return bx, by, least
+
+
+@inner
+def is_rubbed(ground: FloatArray, radius: float) -> bool:
+    """Whether parts of a base may lie on velocities that differ."""
+    if ground[BELTS] == 0.0:
+        return False
+    for stretch in range(stretches_in(ground)):
+        ox, oy = belt_of(ground, stretch)
+        other = ox != ground[OVER_X] or oy != ground[OVER_Y]
+        if other and lies_on(ground, stretch, ground[PLACE_X], ground[PLACE_Y], radius):
+            return True
+    return False
+
+
+@inlined
+def _axes(ground: FloatArray) -> tuple[float, float]:
+    """The direction of the first axis of sums."""
+    if ground[PRESSURE] == ANY:
+        return math.cos(ground[ANGLE]), math.sin(ground[ANGLE])
+    return 1.0, 0.0
+
+
+@inner
+def _sums(
+    ground: FloatArray, radius: float, ux: float, uy: float, w: float, moving: float
+) -> Sums:  # fmt: skip
+    """Sums of what is left in, at a slip in the same axes."""
+    if ground[PRESSURE] == ANY:
+        return friction_sums(ground, ux, uy, w, moving)
+    rim = radius * w
+    unit = 1.0 / math.sqrt(ux * ux + uy * uy + rim * rim)
+    way, mirrored = slip_of(unit * ux, unit * uy, unit * rim), -1.0 if w < 0.0 else 1.0
+    sums = sums_under(ground, radius, way, mirrored)
+    return from_slip(sums, way.cosine, way.sine, mirrored)
+
+
+@inner
+def _all_sums(
+    ground: FloatArray, radius: float, ux: float, uy: float, w: float, moving: float
+) -> tuple[Sums, Far]:
+    """Sums over all parts that slip, each at its own velocity, and what they take to far off."""
+    c, s = _axes(ground)
+    sums, one, two, three = NOTHING, 0.0, 0.0, 0.0
+    for stretch in range(stretches_in(ground)):
+        bx, by = belt_of(ground, stretch)
+        ox, oy = bx - ground[OVER_X], by - ground[OVER_Y]
+        vx, vy = ux - ox, uy - oy
+        if (vx == 0.0 and vy == 0.0 and w == 0.0) or not _is_first(ground, stretch):
+            continue
+        sum_over(ground, bx, by, False)
+        part = _sums(ground, radius, c * vx + s * vy, c * vy - s * vx, w, moving)
+        sums = plus(sums, 1.0, part)
+        px, py = c * ox + s * oy, c * oy - s * ox
+        one += px * part[0] + py * part[1]
+        two += px * part[2] + py * part[4]
+        three += px * part[3] + py * part[5]
+    sum_over(ground, 0.0, 0.0, True)
+    return sums, (one, two, three)
+
+
+@inlined
+def _tilt(ground: FloatArray, sums: Sums) -> tuple[float, float, float]:
+    """The pressure a + b·x that balances friction."""
+    lever = ground[LEVER]
+    if ground[PRESSURE] == ANY:
+        return pressure_on(ground[int(ground[PROFILE]) :], sums)
+    if lever == 0.0:
+        return 1.0, 0.0, 0.0
+    xx, xy = 1.0 - lever * sums[2], -lever * sums[3]
+    yx, yy = -lever * sums[4], 1.0 - lever * sums[5]
+    turn = lever / (xx * yy - xy * yx)
+    return 1.0, turn * (yy * sums[0] - xy * sums[1]), turn * (xx * sums[1] - yx * sums[0])
+
+
+@inlined
+def _done(
+    ground: FloatArray, radius: float, ux: float, uy: float, w: float, sums: Sums, far: Far,
+    a: float, bx: float, by: float,
+) -> tuple[float, float, float, float]:  # fmt: skip
+    """Force, torque and heat of sums under a pressure."""
+    c, s = _axes(ground)
+    x, y, torque = under_load(sums, a, bx, by)
+    if ground[PRESSURE] != ANY:
+        torque *= radius
+    fx, fy = c * x - s * y, s * x + c * y
+    heat = fx * ux + fy * uy + torque * w - (a * far[0] + bx * far[1] + by * far[2])
+    return -fx, -fy, -torque, heat
+
+
+@inner
+def friction_on_belts(
+    ground: FloatArray, radius: float, ux: float, uy: float, w: float, moving: float
+) -> tuple[float, float, float, float]:
+    """Force, torque, and the heat of all parts; of who rests what the other belts do."""
+    sums, far = _all_sums(ground, radius, ux, uy, w, moving)
+    a, bx, by = _tilt(ground, sums)
+    return _done(ground, radius, ux, uy, w, sums, far, a, bx, by)
+
+
+@inner
+def rub_at_rest(
+    ground: FloatArray, radius: float, bx: float, by: float
+) -> tuple[float, float, float, float]:
+    """Force, torque and heat of other belts on who rests, under a pressure with slopes (bx, by).
+
+    Under a base of any shape these are the place of the load, m.
+    """
+    sums, far = _all_sums(ground, radius, 0.0, 0.0, 0.0, 0.0)
+    a = 1.0
+    if ground[PRESSURE] == ANY:
+        c, s = _axes(ground)
+        base = ground[int(ground[PROFILE]) :]
+        a, bx, by = pressure_at(base, c * bx + s * by, c * by - s * bx)
+    return _done(ground, radius, 0.0, 0.0, 0.0, sums, far, a, bx, by)
+
+
+@inlined
+def heat_at_rest(ground: FloatArray, radius: float, fx: float, fy: float) -> float:
+    """The heat of other belts under who rests, where the floor does the force (fx, fy) to it."""
+    return rub_at_rest(ground, radius, -ground[LEVER] * fx, -ground[LEVER] * fy)[3]
