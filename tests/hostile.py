@@ -67,6 +67,11 @@ def world() -> pt.World:
     return board().world()
 
 
+@cache
+def led_world() -> pt.World:
+    return pt.Scene(pucks=[pt.Piece(0.03, path=[[0.0, 0.0, 0.0]], name="mallet")]).world()
+
+
 def on_copy(verb: str) -> Callable[..., Any]:
     return lambda **given: getattr(world().copy(), verb)(**given)
 
@@ -267,6 +272,18 @@ def _of_scenes() -> dict[str, Door]:
         "World.events_since": (on_copy("events_since"), {"time": 0.0}),
         "World.strike": (on_copy("strike"), {
             "puck": "cue", "velocity": TWO, "spin": 1.0, "impulse": (0.1, 0.0), "point": None}),
+        "World.place": (on_copy("place"), {
+            "puck": "cue", "position": (0.1, 0.1), "angle": 1.0, "velocity": TWO, "spin": 1.0}),
+        "World.set_state": (on_copy("set_state"), {"states": world().state()}),
+        "World.remove": (on_copy("remove"), {"puck": "cue"}),
+        "World.add": (on_copy("add"), {
+            "puck": pt.Piece(0.01, friction=0.1, launch=pt.Launch(position=(0.1, 0.4)))}),
+        "World.drive": (lambda **given: led_world().copy().drive(**given), {
+            "puck": "mallet", "velocity": TWO, "spin": 1.0}),
+        "World.reaction": (lambda **given: led_world().copy().reaction(**given), {
+            "puck": "mallet"}),
+        "World.apply_force": (on_copy("apply_force"), {
+            "puck": "cue", "force": (0.1, 0.0), "torque": 0.01, "time": 0.1}),
     }  # fmt: skip
 
 

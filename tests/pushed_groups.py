@@ -143,7 +143,7 @@ class Ride:
 
     def residual(self):
         """What the ledger misses."""
-        floor, rim, drag, pull, drive, support = self.ledger
+        floor, rim, drag, pull, drive, support = self.ledger[:6]
         return (
             self.energy(self.starts[0]) + pull + drive + support - floor - rim - drag
             - self.energy(self.states)

@@ -33,13 +33,13 @@ from puck_tables.scene.run import STATE, ledger, residual
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import called, pieces_of, refuse_endless
 from puck_tables.world.bulk import Ends, follow_all
-from puck_tables.world.engine import CROWDED, OFF_TABLE, PUSHING, TANGLED, TOO_SHORT
 from puck_tables.world.footing import moves_along
-from puck_tables.world.lasting import FOR_EVER, LEADS_ON, ROUND
+from puck_tables.world.lasting import LEADS_ON, NEVER_ENDS, ROUND
 from puck_tables.world.ledger import NAMES, energies_of, energy_scale, kinetic_of, ledgers_of
 from puck_tables.world.plan import plan_of
 from puck_tables.world.prepare import prepared
 from puck_tables.world.reactions import reactions
+from puck_tables.world.setting_off import CROWDED, OFF_TABLE, PUSHING, TANGLED, TOO_SHORT
 from puck_tables.world.simulate import MISSED, columns_of, run_on
 from puck_tables.world.world import World
 
@@ -51,7 +51,7 @@ _ENDS = {
     OFF_TABLE: TOO_FAST,
     TOO_SHORT: STEP_LIMIT,
     ROUND: CARRIED_ROUND,
-    FOR_EVER: NO_END,
+    NEVER_ENDS: NO_END,
     LEADS_ON: NO_END,
 }
 _ON_EDGE = 1e-6  # of the radius: who left play there left it over an edge

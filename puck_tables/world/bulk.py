@@ -13,7 +13,7 @@ from puck_tables.kernels.compile import inner, kernel, patience
 from puck_tables.scene.friction import VX
 from puck_tables.world.course import COURSE_COLUMNS, LENGTH, trace
 from puck_tables.world.departures import Room, desk_for, room_for
-from puck_tables.world.engine import EVERYBODY, FULL, NOBODY, PAUSED, PUSHING, REACHED, advance
+from puck_tables.world.engine import EVERYBODY, NOBODY, advance
 from puck_tables.world.flight import GONE, START, moves_until, state_at
 from puck_tables.world.footing import least_slip, moves_along
 from puck_tables.world.game import COUNTS, N_HISTORY, N_IMPACTS, N_PIECES, Game, Whole
@@ -23,6 +23,7 @@ from puck_tables.world.ledger import LEDGER_COLUMNS, tally
 from puck_tables.world.lone import LONGEST
 from puck_tables.world.paths import PIECE_COLUMNS
 from puck_tables.world.prepare import fastest, scales_of
+from puck_tables.world.setting_off import FULL, PAUSED, PUSHING, REACHED
 from puck_tables.world.works import WORK_COLUMNS
 
 _LOOKS = 6  # at a course before its end: at Q/2J, Q/4J, ...
@@ -62,10 +63,10 @@ def _to_the_end(
     if endless:
         target = limit if game.surface.spin == 0.0 else game.clock[0]
     while how == GOES_ON:
-        how = advance(game, target, struck, room.one, room, desk)
+        how = advance(game, target, struck, room, desk)
         struck = NOBODY
         while how == PAUSED:
-            how = advance(game, target, struck, room.one, room, desk)
+            how = advance(game, target, struck, room, desk)
         if endless and how == REACHED:
             how, target = next_target(game, limit, given, room, work)
     return how, target

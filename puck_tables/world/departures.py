@@ -73,9 +73,20 @@ from puck_tables.world.impact import (
     SUM_N,
     SUM_T,
 )
-from puck_tables.world.layout import EDGE_NUMBER, LIES, LIGHTNESS, RADIUS, A, kinetic
+from puck_tables.world.layout import (
+    EDGE_NUMBER,
+    KIND,
+    LIES,
+    LIGHTNESS,
+    OVERHANG,
+    RADIUS,
+    A,
+    B,
+    C,
+    kinetic,
+)
 from puck_tables.world.lone import DESK_ROWS, LONGEST, follow_alone
-from puck_tables.world.paths import DURATION, FIRST, bounds_of
+from puck_tables.world.paths import DURATION, FIRST, FOR_EVER, bounds_of
 from puck_tables.world.paths import START as BEGINS
 
 # of a disc while an event is worked on: not concerned, concerned, its contacts are known, was to
@@ -210,6 +221,7 @@ def drive_on(game: Game, i: int, t: float, room: Room) -> None:
     piece, last = int(game.flights[i, FIRST_PIECE]), game.drives[i, 1]
     if game.kinds[i] == PATH:
         piece += 1
+    piece = max(piece, game.drives[i, 0])  # a way that is led anew
     start_flight(
         room.states[i],
         game.discs[i],
@@ -219,11 +231,12 @@ def drive_on(game: Game, i: int, t: float, room: Room) -> None:
         room.work,
         game.flights[i],
     )
-    if piece < last:
+    if piece < last and game.pieces[piece, DURATION] > 0.0:
         row = game.pieces[piece]
         game.kinds[i] = PATH
         game.flights[i, FIRST_PIECE], game.flights[i, LAST_PIECE] = piece, piece + 1
-        game.flights[i, UNTIL] = row[BEGINS] + row[DURATION]
+        ends = row[BEGINS] + row[DURATION]
+        game.flights[i, UNTIL] = ends if row[DURATION] < FOR_EVER else math.inf
         game.flights[i, FASTEST] = math.hypot(row[FIRST + VX], row[FIRST + VY])
         game.flights[i, STRONGEST] = 0.0
     else:
@@ -307,9 +320,22 @@ def overhang(game: Game, i: int, t: float, k: int, room: Room) -> None:
 
 
 @inlined
-def leave(game: Game, i: int, t: float, what: int, k: int, room: Room) -> None:
-    """A disc falls into a pocket or over an edge."""
-    note(game, t, what, i, -1 - k, room.states[i, X], room.states[i, Y])
+def hang_over(game: Game, i: int, t: float, state: FloatArray) -> None:
+    """See over which edges the rim of a disc is that is put down; what is new is told."""
+    for k in range(game.obstacles.shape[0]):
+        row, number = game.obstacles[k], int(game.obstacles[k, EDGE_NUMBER])
+        if int(row[KIND]) == OVERHANG:
+            gap = row[A] * state[X] + row[B] * state[Y] - row[C]
+            over = game.discs[i, LIGHTNESS] > 0.0 and gap < game.discs[i, RADIUS]
+            if over and game.hangs[i, number] == 0:
+                note(game, t, OVERHANGS, i, -1 - k, state[X], state[Y])
+            game.hangs[i, number] = 1 if over else 0
+
+
+@inlined
+def leave(game: Game, i: int, t: float, what: int, partner: int, room: Room) -> None:
+    """A disc falls into a pocket or over an edge, or is taken away."""
+    note(game, t, what, i, partner, room.states[i, X], room.states[i, Y])
     vx, vy, spin = room.states[i, VX], room.states[i, VY], room.states[i, SPIN]
     game.events[game.counts[N_EVENTS] - 1, GOT] = kinetic(game.discs[i], vx, vy, spin)
     room.states[i, VX] = room.states[i, VY] = room.states[i, SPIN] = 0.0

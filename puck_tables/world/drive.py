@@ -17,6 +17,8 @@ MAX_BYTES = 1 << 26
 def rows_of(given: str | Rows) -> FloatArray:
     """Rows (n, 4) of t, x, y, angle, given or from a CSV file; they may lack the angle.
 
+    One row, of t = 0, is a body that is led by hand.
+
     Raises
     ------
     InputError
@@ -28,21 +30,24 @@ def rows_of(given: str | Rows) -> FloatArray:
     [0.5, 1.0, 3.0, 0.0]
     """
     numbers = numbers_of(given, (TIME, X, Y, ANGLE), 3, MAX_BYTES)
-    numbers.refuse_unless_ascending("the times")
     rows = numbers.rows
+    if len(rows) != 1:
+        numbers.refuse_unless_ascending("the times")
     if rows[0, 0] != 0.0:
         raise InputError(f"must begin at t = 0, not at {rows[0, 0]:g} s")
     return np.hstack([rows, np.zeros((len(rows), 4 - rows.shape[1]))])
 
 
 def pieces_along(rows: FloatArray) -> FloatArray:
-    """Straight pieces (n − 1, 20) between rows of t, x, y, angle.
+    """Straight pieces (n − 1, 21) between rows of t, x, y, angle; of one a piece of no duration.
 
     Examples
     --------
     >>> pieces_along(np.array([[0.0, 0.0, 0.0, 0.0], [2.0, 1.0, 0.0, 0.0]]))[0, 5].item()
     0.5
     """
+    if len(rows) == 1:
+        return straight_piece(0.0, 0.0, np.append(rows[0, 1:], np.zeros(3)))[None]
     pieces = np.zeros((len(rows) - 1, PIECE_COLUMNS))
     times = np.diff(rows[:, 0])
     rates = np.diff(rows[:, 1:], axis=0) / times[:, None]
@@ -50,3 +55,19 @@ def pieces_along(rows: FloatArray) -> FloatArray:
     pieces[:, FIRST : FIRST + 3], pieces[:, FIRST + 9 : FIRST + 12] = rows[:-1, 1:], rows[1:, 1:]
     pieces[:, FIRST + 3 : FIRST + 6] = pieces[:, FIRST + 12 : FIRST + 15] = rates
     return pieces
+
+
+def straight_piece(start: float, duration: float, state: FloatArray) -> FloatArray:
+    """One straight piece (21,) from a state (6,) on.
+
+    Examples
+    --------
+    >>> straight_piece(1.0, 2.0, np.array([0.0, 0.0, 0.0, 0.5, 0.0, 0.0]))[[0, 1, 11]].tolist()
+    [1.0, 2.0, 1.0]
+    """
+    piece = np.zeros(PIECE_COLUMNS)
+    piece[START], piece[DURATION] = start, duration
+    piece[FIRST : FIRST + 6] = state
+    piece[FIRST + 9 : FIRST + 12] = state[:3] + duration * state[3:]
+    piece[FIRST + 12 : FIRST + 15] = state[3:]
+    return piece

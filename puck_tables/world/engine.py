@@ -6,25 +6,20 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel, patience
-from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.world.borders import next_border
 from puck_tables.world.departures import (
     CONCERNED,
     DISAPPOINTED,
     LOOKED_AT,
     NOT_CONCERNED,
-    SENT,
     Room,
     cross,
     drive_on,
-    integrate,
-    lacks_pieces,
     leave,
     locate,
-    note,
     note_impacts,
     overhang,
-    take_off,
 )
 from puck_tables.world.flight import (
     GONE,
@@ -35,7 +30,6 @@ from puck_tables.world.flight import (
     corridor,
 )
 from puck_tables.world.game import (
-    GOT,
     IMPACT,
     LAUNCH_SPIN,
     LAUNCH_TIME,
@@ -83,18 +77,20 @@ from puck_tables.world.layout import (
     kinetic,
 )
 from puck_tables.world.meeting import are_apart, next_crossing, next_meeting, rest_together
-from puck_tables.world.quiet import quieten
-from puck_tables.world.touching import (
-    find_touching,
-    is_integrated,
-    press_somewhere,
-    sets_off_too_fast,
+from puck_tables.world.setting_off import (
+    CROWDED,
+    FULL,
+    OFF_TABLE,
+    PAUSED,
+    REACHED,
+    TANGLED,
+    go_on,
+    put,
+    take_off_all,
 )
+from puck_tables.world.touching import find_touching
 
-# how a call ends
-REACHED, FULL, CROWDED, TANGLED, PAUSED, PUSHING, OFF_TABLE, TOO_SHORT = range(8)
-
-NOBODY, EVERYBODY, THOSE_LEFT = -1, -2, -3
+NOBODY, EVERYBODY, THOSE_LEFT = -1, -2, -3  # who is concerned at once; else an event by hand
 SLOW = 1e-6  # of the scale of speeds: an impact that only what pushes brings about
 MOST_BACK = 64  # events
 MOST_AT_ONCE = 1_000  # events at one moment
@@ -202,7 +198,7 @@ def _happen(
         if shape >= ON_FLOOR:
             cross(game, i, t, -1 - partner, room)
         if shape in (POCKET, EDGE):
-            leave(game, i, t, POCKETED if shape == POCKET else OVER_EDGE, -1 - partner, room)
+            leave(game, i, t, POCKETED if shape == POCKET else OVER_EDGE, partner, room)
             room.marks[i] = LOOKED_AT
     count = find_touching(game, t, room)
     if count < 0:
@@ -228,91 +224,23 @@ def _happen(
             room.marks[room.contacts[n, 0]] = CONCERNED
             if room.contacts[n, 1] >= 0:
                 room.marks[room.contacts[n, 1]] = CONCERNED
-    return _go_on(game, t, count, room, desk)
+    return go_on(game, t, count, room, desk)
 
 
 @inlined
-def _go_on(game: Game, t: float, count: int, room: Room, desk: FloatArray | None) -> int:
-    """New flights of all that are concerned.
-
-    PUSHING: some push each other, or slip faster than the friction law is known: before, the caller
-    does what is to be done.
-    """
-    game.counts[N_CONTACTS] = count
-    if quieten(game, count, room):
-        _whole_groups(game, count, room)
-    pushes = press_somewhere(game, count, t, room)
-    for j in range(game.discs.shape[0]):
-        pushes = pushes or (
-            room.marks[j] == CONCERNED and sets_off_too_fast(game, j, room.states[j])
-        )
-    return PUSHING if pushes else _take_off_all(game, t, room, desk)
-
-
-@inlined
-def _whole_groups(game: Game, count: int, room: Room) -> None:
-    """Mark the groups of those concerned."""
-    grown = True
-    while grown:
-        grown = False
-        for n in range(count):
-            i, j = room.contacts[n, 0], room.contacts[n, 1]
-            if j < 0 or game.group[i] == 0 or game.group[i] != game.group[j]:
-                continue
-            if (room.marks[i] == CONCERNED) != (room.marks[j] == CONCERNED):
-                room.marks[i] = room.marks[j] = CONCERNED
-                grown = True
-
-
-@inlined
-def _take_off_all(game: Game, t: float, room: Room, desk: FloatArray | None) -> int:
-    """New flights of all that are concerned and not driven; how it ended.
-
-    FULL: not yet of all; TOO_SHORT: no step is short enough to follow one.
-    """
-    for j in range(game.discs.shape[0]):
-        driven = game.drives[j, 0] < game.drives[j, 1]
-        if room.marks[j] != CONCERNED or game.kinds[j] == GONE or driven:
-            continue
-        if desk is None:
-            take_off(game, j, t, room)
-        elif is_integrated(game, j, room.states[j]):
-            if lacks_pieces(game):
-                return FULL
-            if not integrate(game, j, t, room, desk):
-                return TOO_SHORT
-        else:
-            take_off(game, j, t, room)
-        room.marks[j] = SENT
-    return REACHED
-
-
-@inner
-def _send(
-    game: Game, i: int, t: float, vx: float, vy: float, spin: float, room: Room,
-    desk: FloatArray | None,
-) -> int:  # fmt: skip
-    """Give a disc in play another velocity and spin: like an impact from outside."""
+def _launch(game: Game, row: FloatArray, t: float, room: Room, desk: FloatArray | None) -> int:
+    """A later launch of a disc, if it is still in play."""
+    i = int(row[LAUNCHED])
     for j in range(game.discs.shape[0]):
         room.marks[j] = NOT_CONCERNED
     if game.kinds[i] == GONE:
         return REACHED
-    for j in range(game.discs.shape[0]):  # and whoever pushes it, or is pushed by it
-        if j == i or (game.group[i] > 0 and game.group[j] == game.group[i]):
-            locate(game, j, t, room)
-            room.marks[j] = CONCERNED
-    disc, state = game.discs[i], room.states[i]
-    before = kinetic(disc, state[VX], state[VY], state[SPIN])
-    state[VX], state[VY], state[SPIN] = vx, vy, spin
-    note(game, t, STRUCK, i, i, state[X], state[Y])
-    game.events[game.counts[N_EVENTS] - 1, GOT] = kinetic(disc, vx, vy, spin) - before
-    count = find_touching(game, t, room)
-    if count < 0:
-        return CROWDED
-    for j in range(game.discs.shape[0]):
-        with_i = game.group[i] > 0 and game.group[j] == game.group[i]
-        room.marks[j] = CONCERNED if j == i or with_i else NOT_CONCERNED
-    return _go_on(game, t, count, room, desk)
+    room.marks[i] = CONCERNED
+    for column in range(VX):
+        room.before[i, column] = math.nan
+    room.before[i, VX], room.before[i, VY] = row[LAUNCH_VX], row[LAUNCH_VY]
+    room.before[i, SPIN] = row[LAUNCH_SPIN]
+    return put(game, STRUCK, t, room, desk)
 
 
 @inner
@@ -344,24 +272,25 @@ def lacks_rows(game: Game, room: Room) -> bool:
 
 @kernel
 def advance(
-    game: Game, until: float, struck: int, state: FloatArray, room: Room, desk: FloatArray | None
+    game: Game, until: float, first: int, room: Room, desk: FloatArray | None
 ) -> int:  # fmt: skip
     """All that happens up to a time; how it ended.
 
     After FULL the caller gives more rows and calls again, after PAUSED it just calls again.
 
-    ``struck``: the disc that gets the velocity and spin of ``state`` before; NOBODY; at the start,
+    ``first``: what happens before.  An event by hand (STRUCK, PLACED, ...): those who are marked
+    get their states, see :func:`puck_tables.world.setting_off.put`; NOBODY; at the start,
     EVERYBODY looks ahead; after FULL, or after PUSHING when the groups that push are on their way,
     THOSE_LEFT set off.  ``desk``: to integrate on, see
     :func:`puck_tables.world.departures.desk_for`; None: nothing is.
     """
     count = game.discs.shape[0]
     events = 0
-    if struck != NOBODY:
+    if first != NOBODY:
         status = REACHED
-        if struck == THOSE_LEFT:
-            status = _take_off_all(game, game.clock[0], room, desk)
-        elif struck == EVERYBODY:
+        if first == THOSE_LEFT:
+            status = take_off_all(game, game.clock[0], room, desk)
+        elif first == EVERYBODY:
             game.pace[3] = 0.0
             for i in range(count):
                 room.marks[i], state = CONCERNED, room.states[i]
@@ -372,21 +301,20 @@ def advance(
                 return CROWDED
             for i in range(count):
                 room.marks[i] = CONCERNED
-            status = _go_on(game, game.clock[0], contacts, room, desk)
+            status = go_on(game, game.clock[0], contacts, room, desk)
         else:
-            vx, vy, spin = state[VX], state[VY], state[SPIN]
-            status = _send(game, struck, game.clock[0], vx, vy, spin, room, desk)
+            status = put(game, first, game.clock[0], room, desk)
         if status != REACHED:
             return status
         _look_again(game, game.clock[0], room)
     while True:
         patience(1)
-        first, t = count - 1, math.inf
+        who, t = count - 1, math.inf
         for i in range(count):
             # a driven disc turns before those that it pushes are asked where they go
             turns = game.next_partner[i] == PATH_ENDS and game.drives[i, 0] < game.drives[i, 1]
             if game.next_time[i] < t or (turns and game.next_time[i] == t):
-                first, t = i, game.next_time[i]
+                who, t = i, game.next_time[i]
         done, launch = game.counts[N_LAUNCHES], math.inf
         if done < game.launches.shape[0]:
             launch = game.launches[done, LAUNCH_TIME]
@@ -406,14 +334,11 @@ def advance(
         if game.counts[N_AT_ONCE] > MOST_AT_ONCE + 8 * count:
             return CROWDED
         if launch <= t:
-            t, row = launch, game.launches[done]
-            status = _send(
-                game, int(row[LAUNCHED]), t, row[LAUNCH_VX], row[LAUNCH_VY], row[LAUNCH_SPIN],
-                room, desk,
-            )  # fmt: skip
+            t = launch
+            status = _launch(game, game.launches[done], t, room, desk)
             game.counts[N_LAUNCHES] += 1
         else:
-            status = _happen(game, first, game.next_partner[first], t, room, desk)
+            status = _happen(game, who, game.next_partner[who], t, room, desk)
         game.clock[0] = t
         if status != REACHED:
             return status

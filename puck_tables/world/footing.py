@@ -215,17 +215,6 @@ def room_on_floor(regions: Regions, discs: FloatArray, i: int, state: FloatArray
     return room
 
 
-def lay_down(game: Game, i: int, state: FloatArray) -> None:
-    """See how the base of a disc lies at its start, and which friction it has there."""
-    first, last = ground_span(game.regions, game.discs, i)
-    ground = game.regions.ground[first:last]
-    for number in range(game.discs.shape[1] - LIES):
-        away = off_border(ground, number, state[X], state[Y])
-        game.discs[i, LIES + number] = lies_to(away, game.discs[i, RADIUS])
-    step_onto(game, i)
-    choose_belt(game.regions, game.discs, i, state)
-
-
 @inlined
 def step_onto(game: Game, i: int) -> None:
     """A disc has the friction that belongs to how it lies to borders and patches."""
@@ -252,3 +241,15 @@ def step_onto(game: Game, i: int) -> None:
     disc[INTEGRATED] = game.floors[region, 2]
     if not astride:
         disc[BELT_X], disc[BELT_Y] = game.floors[region, 3], game.floors[region, 4]
+
+
+@inlined
+def lay_down(game: Game, i: int, state: FloatArray) -> None:
+    """See how the base of a disc lies that is put down, and which friction it has there."""
+    first, last = ground_span(game.regions, game.discs, i)
+    ground = game.regions.ground[first:last]
+    for number in range(game.discs.shape[1] - LIES):
+        away = off_border(ground, number, state[X], state[Y])
+        game.discs[i, LIES + number] = lies_to(away, game.discs[i, RADIUS])
+    step_onto(game, i)
+    choose_belt(game.regions, game.discs, i, state)

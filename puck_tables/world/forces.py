@@ -55,6 +55,8 @@ from puck_tables.world.layout import (
 )
 from puck_tables.world.paths import on_piece, piece_at
 from puck_tables.world.works import (
+    BACK_X,
+    BACK_Y,
     DRAG_HEAT,
     DRIVE_WORK,
     FLOOR_HEAT,
@@ -212,6 +214,8 @@ def power_of_contacts(
         if doings[place] == DRIVEN:
             fx, fy, torque = force_of_contacts(desk, count, place)
             power[DRIVE_WORK] -= fx * vx + fy * vy + torque * spin
+            power[BACK_X] += fx
+            power[BACK_Y] += fy
         elif doings[place] == HELD and size(vx, vy, spin) > 0.0:
             fx, fy, torque = _asked_of_floor(group, members, place, count, desk)
             power[SUPPORT_WORK] -= fx * vx + fy * vy + torque * spin

@@ -16,13 +16,14 @@ Whole = npt.NDArray[np.int64]
 # what comes next for a disc, beside a partner (a disc ≥ 0, an obstacle −1 − k)
 NOTHING, PATH_ENDS, LOOK_AGAIN = 1 << 40, (1 << 40) + 1, (1 << 40) + 2
 
-# events
+# events; from PLACED on, as STRUCK, by hand
 (
     IMPACT, CONTACT, PART, POCKETED, OVER_EDGE, REST, STRUCK, ENTERS, LEAVES, OVERHANGS, PASSES,
-) = range(11)  # fmt: skip
+    PLACED, REMOVED, ADDED, FORCED,
+) = range(15)  # fmt: skip
 EVENTS = (
     "impact", "contact", "part", "pocket", "edge", "rest", "launch", "entry", "exit", "overhang",
-    "line",
+    "line", "placed", "removed", "added", "force",
 )  # fmt: skip
 # columns of an event: what, disc, partner, place of the contact, normal from the disc to its
 # partner, approach and slip before, normal and tangential impulse, energy lost, what launches and
@@ -101,9 +102,9 @@ class Game(NamedTuple):
 
 
 # what never changes: tables, floors and obstacles; in the ground it is written who lies where
-_SHARED = (
-    "floors", "surface", "tides", "spans", "rims", "obstacles", "curves", "launches", "drives",
-)  # fmt: skip
+_SHARED = ("floors", "surface", "tides", "spans", "rims", "obstacles", "curves", "launches")
+_GROWS = ("pieces", "events", "history", "works")  # rows are added after those that are counted
+_CHANGES = [name not in (*_SHARED, *_GROWS, "regions") for name in Game._fields]
 
 
 def copy_of(game: Game) -> Game:
@@ -112,3 +113,19 @@ def copy_of(game: Game) -> Game:
     regions = parts.pop("regions")
     own = {name: one if name in _SHARED else one.copy() for name, one in parts.items()}
     return Game(regions=regions._replace(ground=regions.ground.copy()), **own)
+
+
+def kept(game: Game) -> Game:
+    """The game as it is, to go back to: what is added to it later is not counted there."""
+    parts: Any = game
+    pairs = zip(_CHANGES, parts, strict=True)
+    same = Game._make([part.copy() if changes else part for changes, part in pairs])
+    if not game.regions.ground.size:
+        return same
+    return same._replace(regions=game.regions._replace(ground=game.regions.ground.copy()))
+
+
+def led_rows(game: Game) -> FloatArray:
+    """The pieces (n, 21) of the ways along which discs are driven."""
+    ways = [game.pieces[first:last] for first, last in game.drives.tolist() if first < last]
+    return np.concatenate([game.pieces[:0], *ways])

@@ -84,7 +84,7 @@ class Desk(NamedTuple):
     """Arrays to work in for m members and c contacts, of which h members are led.
 
     ``pairs``: the contacts by places of members; ``states``: at the start and the end of a step and
-    at a trial (3, m, 6); ``stages`` (8, m, 6) and ``powers`` (10, 6): rates of states and ledger;
+    at a trial (3, m, 6); ``stages`` (8, m, 6) and ``powers`` (10, 8): rates of states and ledger;
     ``own``, ``rates`` (m, 3): accelerations without and with contacts; ``inverse`` (m, 2): 1/m, 1/I
     of those that can move; ``sights``, ``midway`` (c, 11): at the end and in the middle of a step;
     ``watched`` (2, c, 4): see :func:`puck_tables.world.moments.watch`; ``pushes`` (c, 2): λ, τ;

@@ -71,18 +71,29 @@ from puck_tables.world.layout import (
     TURNABILITY,
     TWIST,
 )
-from puck_tables.world.paths import DURATION, FIRST, PIECE_COLUMNS
+from puck_tables.world.paths import DURATION, FIRST, FOR_EVER, PIECE_COLUMNS
 from puck_tables.world.paths import START as BEGINS
 from puck_tables.world.pressing import press
 from puck_tables.world.pushing import follow
-from puck_tables.world.works import DONE, FLIGHT, LEDGER, NO_FLIGHT, RIM_HEAT, WORK_COLUMNS
+from puck_tables.world.works import (
+    BACK_X,
+    BACK_Y,
+    DONE,
+    FLIGHT,
+    LED_BY,
+    LEDGER,
+    NO_FLIGHT,
+    NONE,
+    RIM_HEAT,
+    SEVERAL,
+    WORK_COLUMNS,
+)
 from puck_tables.world.works import START as WORK_START
 
 ROWS = 400  # steps of a group before its flights end for a new look
 FINEST = 1e-13  # error of a step in units of the scales: finer is rounding
 _TRIES = 100
 LOST_SHARE = 1e-15
-FOR_EVER = 1e9  # s
 
 
 def push_on(game: Game, room: Room) -> Game:
@@ -106,12 +117,15 @@ def push_on(game: Game, room: Room) -> Game:
         before = room.states.copy()
         kept, t_end, ways, jump, works = _follow(shared, members, part, room.states, t, scales)
         _note_contacts(game, t, part, kept, held_before, float(jump[RIM_HEAT]), before, room)
+        led = _led_by(game, members)
+        if jump[RIM_HEAT] != 0.0 and led >= 0 and (part >= 0).all():  # no cushion shares it
+            jump[[BACK_X, BACK_Y]] = _momentum(game, members, before - room.states)
         jump[RIM_HEAT] = 0.0  # the event has it
         for i in members:  # a rim that gripped at once has changed what touches it, too
             if room.marks[i] == NOT_CONCERNED and (room.states[i] != before[i]).any():
                 room.marks[i] = CONCERNED
         if not len(kept):
-            game = _book(game, NO_FLIGHT, t, jump, works)
+            game = _book(game, NO_FLIGHT, t, jump, works, led)
             continue
         game.counts[N_GROUPS] += 1
         held = np.vstack([held, kept])
@@ -126,7 +140,7 @@ def push_on(game: Game, room: Room) -> Game:
             else:
                 game = _set_out(game, int(i), t, t_end, ways[place])
             flight = int(game.counts[N_HISTORY]) - 1
-        game = _book(game, flight, t, jump, works)
+        game = _book(game, flight, t, jump, works, led)
     game.held[: len(held)], game.counts[N_HELD] = held, len(held)
     return game
 
@@ -201,7 +215,7 @@ def _follow(
 ) -> tuple[Whole, float, FloatArray, FloatArray, FloatArray]:
     """The contacts of a group that press, until when it is known, and pieces (m, rows, 21).
 
-    And the ledger (6,) of what jumped at once, and the works (rows, 19) of the way.
+    And the ledger (8,) of what jumped at once, and the works (rows, 37) of the way.
 
     No contacts where none presses; where all rest until they are hit, for ever and no pieces.
     """
@@ -212,6 +226,8 @@ def _follow(
     # what is pulled or carried may go on for ever, and gets faster than bounds should be
     driven = pulled.any() or any(surface[:2]) or surface.spin != 0.0
     driven = driven or bool(jumps) or discs[:, [HOLD_VX, HOLD_VY]].any()
+    ends = [shared.films[first, DURATION] for first, last in shared.reels[members] if first < last]
+    driven = driven or any(duration >= FOR_EVER for duration in ends)  # by hand, until it turns
     horizon = t + 2.0 * scales.speed / scales.rate if driven else math.inf
     horizon = min([horizon, *jumps])
     swings = surface.spin != 0.0 and (pulled.any() or bool(jumps))
@@ -267,13 +283,28 @@ def _with_rows(game: Game, name: str, count: int, rows: FloatArray) -> Game:
     return game
 
 
-def _book(game: Game, flight: int, t: float, jump: FloatArray, works: FloatArray) -> Game:
-    """Keep what was worked on a flight from t on, and at its start."""
+def _led_by(game: Game, members: Whole) -> int:
+    """Which of them is driven."""
+    driven = members[game.discs[members, LIGHTNESS] == 0.0]
+    if len(driven) > 1:
+        return SEVERAL
+    return int(driven[0]) if len(driven) else NONE
+
+
+def _momentum(game: Game, members: Whole, states: FloatArray) -> FloatArray:
+    """The momentum of those of them that can move, N s."""
+    free = members[game.discs[members, LIGHTNESS] > 0.0]
+    total: FloatArray = (states[free, VX : VY + 1] / game.discs[free, LIGHTNESS, None]).sum(axis=0)
+    return total
+
+
+def _book(game: Game, flight: int, t: float, jump: FloatArray, works: FloatArray, led: int) -> Game:
+    """Keep what was worked on a flight from t on, and at its start, perhaps led by a disc."""
     if jump.any():
         row = np.zeros((1, WORK_COLUMNS))
         row[0, WORK_START], row[0, DONE : DONE + LEDGER] = t, jump
         works = np.vstack([row, works])
-    works[:, FLIGHT] = flight
+    works[:, FLIGHT], works[:, LED_BY] = flight, led
     return _with_rows(game, "works", N_WORKS, works)
 
 

@@ -265,8 +265,11 @@ def _speeds(game: Game, i: int, states: FloatArray) -> float:
 def _shared_out(
     game: Game, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
     states: FloatArray, weight: float,
-) -> None:  # fmt: skip
-    """The impulses for e = β = 0 of contacts that share discs; rims without bound all stop."""
+) -> bool:  # fmt: skip
+    """The impulses for e = β = 0 of contacts that share discs; whether they were found.
+
+    Rims without bound all stop.
+    """
     rounding = 0.0  # of impulses: where discs that go fast touch slowly, more than a share of them
     for n in range(count):
         rows[n, PN] = rows[n, PT] = 0.0
@@ -291,22 +294,23 @@ def _shared_out(
             largest = max(largest, row[PN], abs(row[PT]))
         _push_all(game, contacts, count, rows, before, states)
         if change <= max(_SOLVED * largest, rounding):
-            break
+            return True
+    return False
 
 
 @inner
 def _together(
     game: Game, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
     states: FloatArray, weight: float,
-) -> None:  # fmt: skip
+) -> bool:  # fmt: skip
     """The law for contacts that share discs, at most 1/weight each, or bear on what is led.
 
     A rim without bound on its friction does not grip where nothing presses it in the end: such a
-    contact takes no part in this round.
+    contact takes no part in this round.  Whether impulses were found.
     """
-    again = True
+    again, solved = True, True
     while again:
-        _shared_out(game, contacts, count, rows, before, states, weight)
+        solved = _shared_out(game, contacts, count, rows, before, states, weight)
         pressed, idle = 0, 0
         for n in range(count):
             if rows[n, ACTS] > 0.0:
@@ -336,6 +340,18 @@ def _together(
             rows[n, PN] *= gain / cost
             rows[n, PT] *= gain / cost
         _push_all(game, contacts, count, rows, before, states)
+    return solved
+
+
+@inlined
+def _is_driven(game: Game, contacts: Whole, count: int) -> bool:
+    """Whether one of the discs of contacts is driven."""
+    for n in range(count):
+        for m in range(2):
+            i = contacts[n, m]
+            if i >= 0 and game.discs[i, LIGHTNESS] == 0.0:
+                return True
+    return False
 
 
 @inlined
@@ -413,7 +429,9 @@ def collide(
                     if rows[n, ACTS] > 0.0:
                         _alone(game, contacts[n, 0], contacts[n, 1], rows[n], states, rows[n, E])
             else:
-                _together(game, contacts, count, rows, before, states, 1.0 / most)
+                solved = _together(game, contacts, count, rows, before, states, 1.0 / most)
+                if not solved and _is_driven(game, contacts, count):
+                    return NO_END  # it squeezes somebody: no impulses would do
             again = False
             for n in range(count):
                 row = rows[n]

@@ -18,7 +18,6 @@ from puck_tables.scene.ingredients import CARRIED as CARRIED_ALONG
 from puck_tables.scene.ingredients import NO_WAY, Dry, Stretch
 from puck_tables.scene.rest import excess_at_rest
 from puck_tables.world.departures import Room
-from puck_tables.world.engine import REACHED, TOO_SHORT
 from puck_tables.world.flight import (
     CARRIED,
     DAMPED,
@@ -32,7 +31,7 @@ from puck_tables.world.flight import (
     state_at,
 )
 from puck_tables.world.footing import least_slip
-from puck_tables.world.game import LAUNCH_TIME, N_EVENTS, N_HISTORY, TIME, Game
+from puck_tables.world.game import LAUNCH_TIME, N_EVENTS, N_HISTORY, TIME, Game, led_rows
 from puck_tables.world.layout import (
     DAMPING,
     LIGHTNESS,
@@ -43,7 +42,9 @@ from puck_tables.world.layout import (
     TWIST,
 )
 from puck_tables.world.lone import model_of
+from puck_tables.world.paths import DURATION, FOR_EVER
 from puck_tables.world.paths import START as PIECE_START
+from puck_tables.world.setting_off import MISPLACED, REACHED
 
 _STUCK, _WITHIN = 1e-11, 10.0  # of the scale of speeds, and times the error of a step in it
 LONG = 100.0  # times what friction takes, at most: whatever moves then may never stop
@@ -52,7 +53,7 @@ _SLOWEST = 1e-9  # of the largest friction: what brakes less than that does not 
 _UNKNOWN, _NOT_YET = -2.0, -1.0  # in place of a time
 # of a run without a time, beside how :func:`puck_tables.world.engine.advance` ends
 GOES_ON, ENDED = -1, REACHED
-ROUND, FOR_EVER, LEADS_ON = range(TOO_SHORT + 1, TOO_SHORT + 4)
+ROUND, NEVER_ENDS, LEADS_ON = range(MISPLACED + 1, MISPLACED + 4)
 
 
 @inlined
@@ -131,8 +132,8 @@ def next_target(
 ) -> tuple[int, float]:
     """Whether a run without a time goes on from now, and until when; or how it ended, and when.
 
-    FOR_EVER: at the limit somebody still moves over the floor; LEADS_ON: or is carried on to where
-    it may slip; ROUND: the floor carries discs over the same borders again and again.
+    NEVER_ENDS: at the limit somebody still moves over the floor; LEADS_ON: or is carried on to
+    where it may slip; ROUND: the floor carries discs over the same borders again and again.
     ``scheduled``: when the last launch, force or film is over; ``ends`` (n,): to work in.
     """
     now, turning = game.clock[0], abs(game.surface.spin)
@@ -145,7 +146,7 @@ def next_target(
     count = game.counts[N_EVENTS]
     happened = game.events[count - 1, TIME] if count > 0 else 0.0
     if last == math.inf:
-        return (FOR_EVER, now) if now >= limit else (GOES_ON, min(limit, now + turn))
+        return (NEVER_ENDS, now) if now >= limit else (GOES_ON, min(limit, now + turn))
     if carries and turning > 0.0:
         turned = max(last, scheduled) + turn
         if now < turned:
@@ -164,11 +165,11 @@ def limits_of(game: Game, paces: FloatArray) -> tuple[FloatArray, float]:
     LONG times what the least friction takes; ``paces`` (n, 2): their scales of speed and
     acceleration.
     """
-    free = game.discs[game.discs[:, LIGHTNESS] > 0.0]
+    free, ways = game.discs[game.discs[:, LIGHTNESS] > 0.0], led_rows(game)
     given = max(
         float(game.launches[:, LAUNCH_TIME].max(initial=0.0)),
         float(game.tides[:, 0].max(initial=0.0)),
-        float(game.pieces[: game.drives.max(), :2].sum(axis=1).max(initial=0.0)),
+        float(ways[ways[:, DURATION] < FOR_EVER, :2].sum(axis=1).max(initial=0.0)),
     )
     decels = game.floors[:, 0]
     brakes = _brakes(game)

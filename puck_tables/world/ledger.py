@@ -19,6 +19,7 @@ from puck_tables.world.alone import rows_passed
 from puck_tables.world.departures import Room
 from puck_tables.world.flight import DAMPED, DRIFT_X, DRIFT_Y, GONE, PATH, START, STILL, state_at
 from puck_tables.world.game import (
+    ADDED,
     GOT,
     IMPACT,
     LED,
@@ -27,7 +28,9 @@ from puck_tables.world.game import (
     N_HISTORY,
     N_WORKS,
     OVER_EDGE,
+    PLACED,
     POCKETED,
+    REMOVED,
     STRUCK,
     TIME,
     WHAT,
@@ -123,9 +126,9 @@ def _add_event(event: FloatArray, ledger: FloatArray) -> None:
     what = int(event[WHAT])
     ledger[IMPACT_HEAT] += event[LOST]
     ledger[SUPPORT_WORK] += event[LED]
-    if what == STRUCK:
+    if what in (STRUCK, PLACED, ADDED):
         ledger[LAUNCHED] += event[GOT]
-    elif what in (POCKETED, OVER_EDGE):
+    elif what in (POCKETED, OVER_EDGE, REMOVED):
         ledger[LEFT] += event[GOT]
     elif what == IMPACT:
         ledger[DRIVE_WORK] += event[GOT]

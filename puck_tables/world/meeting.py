@@ -285,7 +285,7 @@ def next_meeting(
             nx, ny, more = dx / size, dy / size, max(gap, rounded)
             longer = stays_apart(game, i, j, t, more, nx, ny, 0.0, False, room, one, two)
             step = max(step, longer)
-        if t + step > last:
+        if t + step > last or step == math.inf:
             return math.inf
         if t + step == t:
             return t if rate < -QUIET * game.pace[0] else math.inf
@@ -359,7 +359,7 @@ def next_crossing(
             step = max(step, stays_apart(
                 game, i, -1 - k, t, max(gap, rounded), nx, ny, far, shape == ARC, room, one, one,
             ))  # fmt: skip
-        if t + step > last:
+        if t + step > last or step == math.inf:
             return math.inf
         if t + step == t:
             return t if rate < -QUIET * game.pace[0] else math.inf

@@ -83,6 +83,15 @@ class Passings:
         other.__dict__.update(kept, _lines=self._lines)
         return other
 
+    def with_disc(self, has_rim: bool) -> Passings:
+        """One that follows a disc more, the last."""
+        other, own = self.copy(), np.tile([UNKNOWN, 0.0, -1.0], (1, len(self._lines), 2, 1))
+        if not has_rim:
+            own[:, :, RIM, FROM:] = math.inf
+        other._seen = np.concatenate([self._seen, own])
+        other._flights = np.insert(self._flights, -1, -1)
+        return other
+
     def follow(self, game: Game) -> None:
         """See what passed until now."""
         size = 16

@@ -9,7 +9,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
-from puck_tables.scene.friction import SPIN, VX, VY
+from puck_tables.scene.friction import SPIN, THETA, VX, VY
 from puck_tables.scene.holds import allowed_velocity
 from puck_tables.scene.ingredients import RAIL, Surface, hold_of
 from puck_tables.scene.over_time import ON_ALL, over_time
@@ -20,7 +20,7 @@ from puck_tables.scene.stretches import belts_of
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.world import layout
 from puck_tables.world.agreement import flight_error, pieces_of, start_of
-from puck_tables.world.departures import drive_on, room_for
+from puck_tables.world.departures import drive_on, hang_over, room_for
 from puck_tables.world.drive import pieces_along, rows_of
 from puck_tables.world.flight import (
     ANGLE,
@@ -43,12 +43,11 @@ from puck_tables.world.game import (
     EVENT_COLUMNS,
     HISTORY_COLUMNS,
     LAUNCH_COLUMNS,
-    N_EVENTS,
     N_PIECES,
     NOTHING,
-    OVERHANGS,
     Game,
     Whole,
+    led_rows,
 )
 from puck_tables.world.lone import LONGEST
 from puck_tables.world.paths import FIRST, PIECE_COLUMNS
@@ -93,15 +92,15 @@ def shipped_curves() -> Curves:
     )  # fmt: skip
 
 
-def prepared(scene: SceneSpec) -> Start:
-    """A scene without ranges at its start.
+def prepared(scene: SceneSpec, order: Whole | None = None) -> Start:
+    """A scene without ranges at its start; its pucks in an order, else that of their places.
 
     Raises
     ------
     PuckError
         If a file or a law that it names does not serve, or numbers in it are too large.
     """
-    order = order_of(scene)
+    order = order_of(scene) if order is None else order
     pieces = [pieces_of(scene)[number] for number in order]
     count = len(pieces)
     lies = len(borders_of(scene)) + len(scene.floor.patches)
@@ -127,6 +126,7 @@ def prepared(scene: SceneSpec) -> Start:
             first = sum(map(len, ways))
             ways.append(pieces_along(rows_of(piece.path)))
             drives[i] = first, first + len(ways[-1])
+            states[i, THETA] = ways[-1][0, FIRST + THETA]
         elif launch.time > 0.0:
             launches.append([launch.time, i, *velocity, launch.spin])
         else:
@@ -165,7 +165,7 @@ def prepared(scene: SceneSpec) -> Start:
     for i in range(count):
         lay_down(game, i, states[i])
         if scene.edges:
-            _hang_over(game, i, states[i])
+            hang_over(game, i, 0.0, states[i])
     game.counts[N_PIECES] = drives.max()
     game.flights[:, [PLACE_X, PLACE_Y, ANGLE]] = states[:, :3]
     for i in np.flatnonzero(drives[:, 0] < drives[:, 1]).tolist():
@@ -202,18 +202,6 @@ def _fill_disc(
     disc[layout.HEIGHT_RATIO] = 2.0 * piece.height / piece.radius
 
 
-def _hang_over(game: Game, i: int, state: FloatArray) -> None:
-    """See over which edges the rim of a disc is at its start, and note it."""
-    for k in np.flatnonzero(game.obstacles[:, layout.KIND] == layout.OVERHANG):
-        row, disc = game.obstacles[k], game.discs[i]
-        gap = row[layout.A] * state[0] + row[layout.B] * state[1] - row[layout.C]
-        if disc[layout.LIGHTNESS] > 0.0 and gap < disc[layout.RADIUS]:
-            game.hangs[i, int(row[layout.EDGE_NUMBER])] = 1
-            event = [0.0, OVERHANGS, i, -1 - k, state[0], state[1]]
-            game.events[game.counts[N_EVENTS], : len(event)] = event
-            game.counts[N_EVENTS] += 1
-
-
 def with_law_up_to(game: Game, scene: SceneSpec, order: Whole, fastest: float) -> Game:
     """With the table of a friction law by name for slips of the rim up to ``fastest``, m/s."""
     pieces = [pieces_of(scene)[number] for number in order]
@@ -233,7 +221,7 @@ def set_pace(game: Game, states: FloatArray) -> None:
 def fastest(game: Game, states: FloatArray) -> float:
     """The largest slip of these states, of launches to come and of what is driven, m/s."""
     rims = game.discs[:, layout.RADIUS] * np.abs(states[:, SPIN])
-    driven = game.pieces[: game.drives.max(), FIRST + VX : FIRST + VY + 1]
+    driven = led_rows(game)[:, FIRST + VX : FIRST + VY + 1]
     launched = np.hypot(game.launches[:, 2], game.launches[:, 3])
     led = np.hypot(*game.discs[:, [layout.HOLD_VX, layout.HOLD_VY]].T)
     floor = velocities_under(game, states)

@@ -110,7 +110,7 @@ def press(
         more.  Rims that press and have friction without bound are stopped at once: then contacts
         that are APART may approach.
     modes : (c,) and doings : (m,), the answer, see :mod:`puck_tables.world.group`
-    ledger : (6,) J, to which the heat of what is stopped is added
+    ledger : (8,) J, to which the heat of what is stopped is added
 
     Returns
     -------

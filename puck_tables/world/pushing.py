@@ -226,7 +226,7 @@ def follow(
         Contacts that are APART are not looked at.
     pieces : (≥ m, rows, 20), the ways, see :mod:`puck_tables.world.paths`
         ``pieces[a, :count]`` are those of member a, one row for each step.
-    works : (rows, 19), where the energy went, see :mod:`puck_tables.world.works`
+    works : (rows, 37), where the energy went, see :mod:`puck_tables.world.works`
         ``works[:count]``, one row for each step, but for its first two columns.
     desk : to work on
 

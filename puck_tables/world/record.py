@@ -10,6 +10,13 @@ from puck_tables.world.flight import ROOM, START, state_at
 from puck_tables.world.game import N_HISTORY, Game, Whole
 
 
+def states_now(game: Game, work: FloatArray) -> FloatArray:
+    """States of all discs now, array (discs, 6); ``work``: of a room."""
+    out = np.empty((len(game.discs), 6))
+    _fill_now(game, work, out)
+    return out
+
+
 def states_at(game: Game, times: FloatArray) -> FloatArray:
     """States of all discs, array (times, discs, 6), at ascending times up to now, s.
 
@@ -73,6 +80,15 @@ def _fill_rows(
             patience(1)
             out[k, i] = n
         open_to[i] = min(open_to[i], begin)
+
+
+@kernel
+def _fill_now(game: Game, work: FloatArray, out: FloatArray) -> None:
+    for i in range(game.discs.shape[0]):
+        state_at(
+            game.kinds[i], game.flights[i], game.discs[i], game.curves, game.pieces,
+            game.clock[0], work, out[i],
+        )  # fmt: skip
 
 
 @kernel

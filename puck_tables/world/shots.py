@@ -16,10 +16,10 @@ from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import frictions_under, is_integrated, pieces_of
 from puck_tables.world.bulk import follow_all
 from puck_tables.world.course import FATE, LENGTH, PASSES, PRINT, trace
-from puck_tables.world.engine import PUSHING, REACHED
 from puck_tables.world.floors import has_several
 from puck_tables.world.game import Whole
 from puck_tables.world.prepare import order_of, prepared
+from puck_tables.world.setting_off import PUSHING, REACHED
 from puck_tables.world.world import World
 
 _SHARES = (0.02, 0.1, 0.5)  # of the time that the striker may slide: then courses are looked at

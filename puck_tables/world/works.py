@@ -12,14 +12,17 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 
 # of a ledger, J: heat of dry friction, of rims, of drag; work of slope and given forces, of driven
-# discs, and of what moves under or leads the discs
-FLOOR_HEAT, RIM_HEAT, DRAG_HEAT, PULL_WORK, DRIVE_WORK, SUPPORT_WORK = range(6)
-LEDGER = 6
+# discs, and of what moves under or leads the discs; and N s, by its powers in N: what all contacts
+# push the driven discs with
+FLOOR_HEAT, RIM_HEAT, DRAG_HEAT, PULL_WORK, DRIVE_WORK, SUPPORT_WORK, BACK_X, BACK_Y = range(8)
+LEDGER = 8
 
 # columns: the flight of one of them, a row of the history, or NO_FLIGHT; start and duration of the
-# step; at its start and end the powers, W, and the works in between and up to its middle, J
-FLIGHT, START, DURATION, FIRST = range(4)
+# step; which disc is driven among them, or NONE, or SEVERAL; at its start and end the powers, W,
+# and the works in between and up to its middle, J
+FLIGHT, START, DURATION, LED_BY, FIRST = range(5)
 NO_FLIGHT = -1
+NONE, SEVERAL = -1, -2
 WORK_COLUMNS = FIRST + 4 * LEDGER
 BEGUN, DONE, ENDED, HALFWAY = range(FIRST, WORK_COLUMNS, LEDGER)
 
@@ -30,7 +33,7 @@ def write_work(
     halfway: FloatArray,
 ) -> None:  # fmt: skip
     """A step: the powers at its start, the works, the powers at its end, the works half way."""
-    row[START], row[DURATION] = start, h
+    row[START], row[DURATION], row[LED_BY] = start, h, NONE
     for i in range(LEDGER):
         row[BEGUN + i], row[DONE + i], row[ENDED + i] = begin[i], done[i], end[i]
         row[HALFWAY + i] = halfway[i]

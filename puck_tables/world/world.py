@@ -1,72 +1,50 @@
-"""A scene that is played on: for a game, a robot, a look ahead."""
+"""A scene that is played on: for a game, a robot, a look ahead, an agent that learns."""
 
 from __future__ import annotations
 
 import math
-from collections import deque
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array, real
-from puck_tables.errors import InputError, PuckError
-from puck_tables.scene.friction import SPIN, VX, VY
+from puck_tables._core.real import finite_array, positive, real
+from puck_tables.errors import InputError
+from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.holds import misfits
+from puck_tables.scene.ingredients import FREE
 from puck_tables.scene.parts import Launch
-from puck_tables.scene.pieces import called_line
-from puck_tables.scene.run import Event, number_of
-from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.scene.pieces import PieceSpec
+from puck_tables.scene.run import number_of
 from puck_tables.world import game as g
-from puck_tables.world import passings
-from puck_tables.world.agreement import called, pieces_of, refuse_endless
-from puck_tables.world.departures import desk_for, room_for
-from puck_tables.world.engine import (
-    CROWDED,
-    EVERYBODY,
-    FULL,
-    NOBODY,
-    OFF_TABLE,
-    PAUSED,
-    PUSHING,
-    REACHED,
-    THOSE_LEFT,
-    TOO_SHORT,
-    advance,
-    lacks_rows,
-)
-from puck_tables.world.flight import GONE, START, moves_until
+from puck_tables.world.added import board_with, with_puck
+from puck_tables.world.agreement import pieces_of
+from puck_tables.world.by_hand import lead, led_state, refuse_off_hold, with_force
+from puck_tables.world.departures import CONCERNED, NOT_CONCERNED, desk_for, room_for
+from puck_tables.world.flight import GONE
+from puck_tables.world.footing import law_goes_to, moves_along
+from puck_tables.world.game import Whole
 from puck_tables.world.holds import response
-from puck_tables.world.impact import FIRST_N, E
-from puck_tables.world.lasting import (
-    FOR_EVER,
-    GOES_ON,
-    LEADS_ON,
-    ROUND,
-    fill_motion_ends,
-    limits_of,
-    next_target,
-)
-from puck_tables.world.law_range import refuse_too_fast, with_law_for
-from puck_tables.world.layout import LIGHTNESS, RADIUS
-from puck_tables.world.lone import LONGEST
-from puck_tables.world.passings import Passings
-from puck_tables.world.prepare import Start, obstacle_names, prepared, set_pace, shipped_curves
-from puck_tables.world.record import states_at
-
-MOST_EVENTS, MOST_STEPS = 1_000_000, 1_000_000
-CROWD = 1e-7  # of Q/J: 2000 events in less are a crowd
-CROWDED_PUSHES, PUSHED_IN = 3000, 1e-3  # and so many new groups that push, in that share of Q/J
+from puck_tables.world.law_range import refuse_too_fast
+from puck_tables.world.layout import HOLD, LIGHTNESS, RADIUS
+from puck_tables.world.paths import FOR_EVER
+from puck_tables.world.prepare import set_pace
+from puck_tables.world.pushed_back import Told, pushed_back
+from puck_tables.world.running import Running
 
 
-class World:
+class World(Running):
     """Pucks on a board, from now on.
 
     It is made by :meth:`puck_tables.Scene.world`.  Nothing is stepped: between two events every
     puck is on a curve that is known as a whole, so a call costs what happens in it.  The same calls
-    give the same bits, also of copies and of what was saved.
+    give the same bits, also of copies and of what was saved.  A call that is refused, or fails,
+    changes nothing.
+
+    A puck whose ``path`` is one row, ``path=[[0, x, y]]``, is led by hand: :meth:`drive` moves it,
+    and nothing that it meets does.  One of finite mass that a hand holds is any puck to which
+    :meth:`strike` gives a velocity every frame.
 
     Parameters
     ----------
@@ -90,192 +68,6 @@ class World:
     [0.0, 0.803867]
     """
 
-    def __init__(self, scene: SceneSpec) -> None:
-        if not isinstance(scene, SceneSpec):
-            raise InputError(f"scene must be a Scene, got a {type(scene).__name__}")
-        self._set_off(prepared(scene.single()))
-
-    @classmethod
-    def since(cls, start: Start) -> World:
-        """The world of a scene that is prepared."""
-        world = object.__new__(cls)
-        world._set_off(start)
-        return world
-
-    def _set_off(self, start: Start) -> None:
-        self.scene, self._order = start.scene, start.order
-        self._game, self._room = g.copy_of(start.game), room_for(len(start.order))
-        self._room.states[:] = start.states
-        self._desk = desk_for(self._game)
-        self._named()
-        pieces = pieces_of(self.scene)
-        rimless = [not pieces[number].has_rim for number in self._order]
-        self._passings = Passings(self.scene.lines, len(self.names), rimless)
-        self._advance(0.0, EVERYBODY)
-
-    def _named(self) -> None:
-        """Who is where in the engine's order, and what they are called."""
-        self._place = np.argsort(self._order)
-        pieces = pieces_of(self.scene)
-        self.names = tuple(called(piece, number) for number, piece in enumerate(pieces))
-
-    def __repr__(self) -> str:
-        title = f"{self.scene.title}, " if self.scene.title else ""
-        moving = int(self.moving.sum())
-        return f"World({title}{len(self.names)} pucks, {moving} moving, at {self.time:.6g} s)"
-
-    @property
-    def time(self) -> float:
-        """Now, s."""
-        return float(self._game.clock[0])
-
-    @property
-    def in_play(self) -> npt.NDArray[np.bool_]:
-        """Which pucks are in no pocket and over no edge, array (pucks,)."""
-        return self._game.kinds[self._place] != GONE
-
-    @property
-    def groups(self) -> int:
-        """How many groups of pucks have pushed each other."""
-        return int(self._game.counts[g.N_GROUPS])
-
-    @property
-    def moving(self) -> npt.NDArray[np.bool_]:
-        """Which pucks move, if only with the floor, array (pucks,)."""
-        return (self._rests > self.time)[self._place]
-
-    @property
-    def _rests(self) -> FloatArray:
-        """When each disc comes to rest if nothing happens before; −inf: it lies, inf: never."""
-        flights = zip(self._game.kinds.tolist(), self._game.flights, strict=True)
-        return np.array([moves_until(kind, flight) for kind, flight in flights])
-
-    @property
-    def stop_times(self) -> FloatArray:
-        """When each puck came or will come to rest if nothing happens before, array (pucks,), s.
-
-        Of one that has left play: when it left; inf: never.
-        """
-        rests: FloatArray = np.maximum(self._rests, self._game.flights[:, START])
-        return rests[self._place]
-
-    @property
-    def last_motion(self) -> float:
-        """When the last puck came or will come to rest if nothing happens before, s."""
-        return float(self.stop_times.max())
-
-    @property
-    def motion_ends(self) -> FloatArray:
-        """Until when each puck has moved over its floor, or when it left play, array (pucks,), s.
-
-        inf: it still moves; 0: it has lain there since the start.
-        """
-        found = np.empty(len(self.names))
-        fill_motion_ends(self._game, self._room, found)
-        return found[self._place]
-
-    def state(self) -> FloatArray:
-        """X, y (m), angle (rad), vx, vy (m/s), spin (rad/s) of every puck now, array (pucks, 6)."""
-        return self._states(np.array([self.time]))[0]
-
-    def at(self, time: float) -> FloatArray:
-        """The same at any time: as it was, or as it will be if nobody interferes.
-
-        Raises
-        ------
-        InputError
-            If the time is no number ≥ 0.
-        """
-        moment = real("time", time, "s")
-        if not moment >= 0.0:
-            raise InputError(f"time must not be negative, got {moment:g} s")
-        world = self
-        if moment > self.time:
-            world = self.copy()
-            world.advance(moment - self.time)
-        return world._states(np.array([moment]))[0]
-
-    def over(self, times: npt.ArrayLike) -> FloatArray:
-        """The same at times of the past, ascending, array (times, pucks, 6)."""
-        moments = np.atleast_1d(finite_array("times", times, "s"))
-        if moments.ndim != 1 or (np.diff(moments) < 0.0).any() or (moments < 0.0).any():
-            raise InputError("times must be a list of ascending numbers >= 0 s")
-        if moments.size and moments[-1] > self.time:
-            raise InputError(
-                f"times must not lie after now, {self.time:g} s: advance before, or use at"
-            )
-        return self._states(moments)
-
-    def _states(self, times: FloatArray) -> FloatArray:
-        states: FloatArray = states_at(self._game, times)[:, self._place]
-        return states
-
-    def advance(self, duration: float) -> list[Event]:
-        """Let time pass; what happened in it.
-
-        Parameters
-        ----------
-        duration : s, ≥ 0; inf: until nothing more can happen
-
-        Raises
-        ------
-        InputError
-            If it is no such number, or inf where pucks never come to rest.
-        PuckError
-            If events crowd together without end.
-        """
-        endless = isinstance(duration, float) and duration == math.inf
-        span = math.inf if endless else real("duration", duration, "s")
-        if not span >= 0.0:
-            raise InputError(f"duration must not be negative, got {span:g} s")
-        before = int(self._game.counts[g.N_EVENTS]), len(self._passings.rows)
-        if span == math.inf:
-            self.come_to_rest()
-        else:
-            self._advance(self.time + span)
-        self._passings.follow(self._game)
-        return self._events(*before)
-
-    def come_to_rest(self) -> tuple[float, bool]:
-        """Let time pass until nothing more can happen; since when that is so, s.
-
-        And whether a floor that turns goes on to carry pucks over the same borders, turn after
-        turn: one whole turn is followed.
-
-        Raises
-        ------
-        InputError, PuckError
-            As :meth:`advance`.
-        """
-        refuse_endless(self.scene)
-        limits, given = limits_of(self._game, self._game.pace[None, :2])
-        ends, how, target = np.empty(len(self.names)), GOES_ON, self.time
-        while how == GOES_ON:
-            self._advance(target)
-            how, target = next_target(self._game, float(limits[0]), given, self._room, ends)
-        who = "a puck" if len(self.names) > 1 else "the puck"
-        if how == FOR_EVER:
-            raise InputError(
-                f"{who} still moves after {target:.4g} s, a hundred times what friction "
-                "takes: it may never stop; give a time"
-            )
-        if how == LEADS_ON:
-            raise InputError(
-                f"after {target:.4g} s the floor still carries {who} towards a wall, an edge, a "
-                "border or a patch, and it may slip there again; give a time"
-            )
-        if self._game.surface.spin == 0.0:  # it was waited for what may come
-            self._game.clock[0] = target
-        return target, how == ROUND
-
-    def events_since(self, time: float) -> list[Event]:
-        """What happened from a time on."""
-        moment = real("time", time, "s")
-        self._passings.follow(self._game)
-        times = self._game.events[: self._game.counts[g.N_EVENTS], g.TIME]
-        passed = self._passings.rows[:, passings.TIME]
-        return self._events(*(int(np.searchsorted(one, moment)) for one in (times, passed)))
-
     def strike(
         self, puck: int | str, velocity: npt.ArrayLike | None = None, spin: float | None = None,
         *, impulse: npt.ArrayLike | None = None, point: npt.ArrayLike | None = None,
@@ -295,29 +87,329 @@ class World:
         InputError
             If there is no such puck, it is not in play or driven, or a number is not finite.
         """
-        i = int(self._place[number_of(puck, self.names)])
-        if self._game.kinds[i] == GONE:
-            raise InputError(f"{self.names[self._order[i]]} is no longer in play")
+        i = self._in_play(puck)
         if self._game.discs[i, LIGHTNESS] == 0.0:
-            raise InputError(f"{self.names[self._order[i]]} is driven along its path")
-        state = states_at(self._game, np.array([self.time]))[0, i]
-        if velocity is not None:
-            state[VX : VY + 1] = _pair("velocity", velocity, "m/s")
-        if spin is not None:
-            state[SPIN] = real("spin", spin, "rad/s")
+            raise InputError(f"{self._name(i)} is driven along its path")
+        row = _row(None, None, velocity, spin)
         if impulse is not None:
-            push, disc = _pair("impulse", impulse, "N s"), self._game.discs[i]
+            state, disc = self._all_now()[i], self._game.discs[i]
+            state = np.where(np.isnan(row), state, row)
+            push = _pair("impulse", impulse, "N s")
             arm = np.zeros(2) if point is None else _pair("point", point, "m") - state[:2]
             if math.hypot(*arm) > disc[RADIUS] * (1.0 + 1e-9):
                 raise InputError(f"point must lie on the puck, at most {disc[RADIUS]:g} m from its "
                                  "centre")  # fmt: skip
             moment = float(arm[0] * push[1] - arm[1] * push[0])
-            state[VX:] += response(disc, state, float(push[0]), float(push[1]), moment)
+            row[VX:] = state[VX:] + response(disc, state, float(push[0]), float(push[1]), moment)
         elif point is not None:
             raise InputError("point is where an impulse acts: give the impulse, too")
-        self._refuse_misfit(int(self._order[i]), state)
-        refuse_too_fast(self._game, self.scene, self.names[self._order[i]], i, state)
-        self._advance(self.time, i, state)
+        self._put(g.STRUCK, row, i)
+
+    def place(
+        self, puck: int | str, position: npt.ArrayLike | None = None, angle: float | None = None,
+        velocity: npt.ArrayLike | None = None, spin: float | None = None,
+    ) -> None:  # fmt: skip
+        """Put a puck somewhere, now, also back from a pocket; an event says "placed".
+
+        What it has then more of kinetic energy is booked as given.
+
+        Parameters
+        ----------
+        puck : its number, or its name
+        position : (2,) m, angle : rad, velocity : (2,) m/s, spin : rad/s, optional
+            Left out: as they are.  One that comes back needs a position, and is at rest if left so.
+
+        Raises
+        ------
+        InputError
+            If there is no such puck, a number is not finite, or it would overlap a puck or a
+            cushion, or lie in a hole: with whom, and by how much.
+
+        Examples
+        --------
+        >>> from puck_tables import Piece, Scene
+        >>> world = Scene(pucks=[Piece(0.03, friction=0.1)]).world()
+        >>> world.place(0, (0.5, 0.0), velocity=(0.2, 0.0))
+        >>> world.advance(9.0), world.state()[0, 0].round(6).item()      # 0.5 + v^2/2fg
+        ([], 0.520394)
+        """
+        i = int(self._place[number_of(puck, self.names)])
+        row = _row(position, angle, velocity, spin)
+        if self._game.kinds[i] == GONE and position is None:
+            raise InputError(f"{self._name(i)} is not in play: give the position to put it at")
+        self._put(g.PLACED, row, i)
+
+    def set_state(self, states: npt.ArrayLike) -> None:
+        """Put all pucks into states, as :meth:`state` gives them; of each that changes an event.
+
+        One out of play stays so where its row is what it was; else it comes back.
+
+        Parameters
+        ----------
+        states : (pucks, 6): x, y m, angle rad, vx, vy m/s, spin rad/s
+
+        Raises
+        ------
+        InputError
+            If they are no such numbers, or pucks would overlap, as :meth:`place`.
+
+        Examples
+        --------
+        >>> from puck_tables import Launch, Piece, Scene
+        >>> world = Scene(pucks=[Piece(0.03, friction=0.1, launch=Launch((1.0, 0.0)))]).world()
+        >>> start = world.state()
+        >>> _ = world.advance(0.3)
+        >>> world.set_state(start)                                       # again from where it was
+        >>> world.state()[0].tolist()
+        [0.0, 0.0, 0.0, 1.0, 0.0, 0.0]
+        """
+        rows = finite_array("states", states, "m, rad, m/s, rad/s")
+        if rows.shape != (len(self.names), 6):
+            raise InputError(
+                f"states must be rows of 6 numbers for {len(self.names)} pucks, got the shape "
+                f"{rows.shape}"
+            )
+        rows, discs = rows[self._order], np.arange(len(rows))
+        gone = self._game.kinds == GONE
+        if gone.any():
+            discs = discs[~gone | (rows != self._all_now()).any(axis=1)]
+        self._put(g.PLACED, rows[discs], discs)
+
+    def remove(self, puck: int | str) -> None:
+        """Take a puck out of play, now; an event says "removed".  :meth:`place` brings it back.
+
+        Raises
+        ------
+        InputError
+            If there is no such puck in play.
+
+        Examples
+        --------
+        >>> from puck_tables import Piece, Scene
+        >>> world = Scene(pucks=[Piece(0.03, friction=0.1)]).world()
+        >>> world.remove(0)
+        >>> world.in_play.tolist(), world.events_since(0.0)[0].what
+        ([False], 'removed')
+        """
+        self._put(g.REMOVED, _row(None, None, None, None), self._in_play(puck))
+
+    def add(self, puck: PieceSpec) -> int:
+        """Put a new puck on the board, now, with its launch; its number.  An event says "added".
+
+        Times of its launch, its path and its force count from now.  It takes some ms: arrays are
+        made anew.
+
+        Raises
+        ------
+        InputError
+            If it does not go with the board, its name is taken, or it would overlap, as
+            :meth:`place`.
+
+        Examples
+        --------
+        >>> from puck_tables import Launch, Piece, Scene
+        >>> world = Scene(pucks=[Piece(0.03, friction=0.1)]).world()
+        >>> world.add(Piece(0.02, friction=0.1, launch=Launch((1.0, 0.0), position=(-0.2, 0.0))))
+        1
+        >>> [event.what for event in world.advance(0.2)]
+        ['impact']
+        """
+        board = board_with(self.scene, puck)
+        with self._or_as_before():
+            start, state = with_puck(self._game, board, self._order, self.time)
+            self.scene, self._order, self._game = start.scene, start.order, start.game
+            self._room, self._desk = room_for(len(start.order)), desk_for(start.game)
+            self._passings = self._passings.with_disc(puck.has_rim)
+            self._named()
+            self._put(g.ADDED, state, len(start.order) - 1)
+        return len(self.names) - 1
+
+    def drive(
+        self, puck: int | str, velocity: npt.ArrayLike | None = None, spin: float = 0.0, *,
+        towards: npt.ArrayLike | None = None, speed: float | None = None,
+    ) -> None:  # fmt: skip
+        """Move a puck that is led by hand, from now on until the next call: a mallet.
+
+        It is one with a ``path``, of one row if it has no way of its own.  It goes straight on
+        whatever it meets; walls, posts and arcs stop it, short of them by 1e-9 of its radius.
+
+        Parameters
+        ----------
+        puck : its number, or its name
+        velocity : (2,) m/s
+            Or, in its place, ``towards`` (2,) m at a ``speed`` > 0, m/s: where it then stops.
+        spin : rad/s
+
+        Raises
+        ------
+        InputError
+            If there is no such puck in play, it is not led by hand, or a number is not finite.
+        PuckError
+            If it squeezes pucks that touch it, now, against what does not give way: later
+            :meth:`advance` raises that.
+
+        Examples
+        --------
+        >>> from puck_tables import Piece, Scene
+        >>> mallet = Piece(0.05, path=[[0, -0.2, 0]], name="mallet")
+        >>> world = Scene(pucks=[mallet, Piece(0.03, friction=0.1)]).world()
+        >>> world.drive("mallet", towards=(0.0, 0.0), speed=1.0)
+        >>> [event.what for event in world.advance(9.0)]
+        ['impact']
+        >>> world.state().round(6)[:, 0].tolist()                        # v^2/2fg, v = 2 m/s
+        [0.0, 2.039432]
+        """
+        i = self._led(puck)
+        turn, state, duration = real("spin", spin, "rad/s"), led_state(self._game, i), FOR_EVER
+        if velocity is not None and towards is None and speed is None:
+            state[VX : VY + 1] = _pair("velocity", velocity, "m/s")
+        elif velocity is None and towards is not None and speed is not None:
+            way = _pair("towards", towards, "m") - state[:2]
+            far, fast = math.hypot(*way), positive("speed", speed, "m/s")
+            duration = far / fast
+            state[VX : VY + 1] = fast / far * way if far > 0.0 else 0.0
+        else:
+            raise InputError("give a velocity, or towards, where to, with a speed")
+        state[SPIN] = turn
+        with self._or_as_before():
+            self._lead(i, state, duration)
+            self._game.next_time[i], self._game.next_partner[i] = self.time, g.PATH_ENDS
+            self._game.counts[g.N_AT_ONCE] = 0
+            self._advance(self.time)
+
+    def reaction(self, puck: int | str) -> FloatArray:
+        """What pucks gave one that is driven since the last call, array (2,), N s.
+
+        The impulses of impacts, and the forces, over their time, of pucks that it pushes.  NaN
+        where several driven ones pushed the same pucks, for nobody knows how these share it.  What
+        rims without a bound on their friction give as they grip at once is left out where a cushion
+        takes part.
+
+        Raises
+        ------
+        InputError
+            If there is no such puck, or it is not driven.
+
+        Examples
+        --------
+        >>> from puck_tables import Piece, Scene
+        >>> mallet = Piece(0.05, path=[[0, -0.2, 0]], name="mallet")
+        >>> world = Scene(pucks=[mallet, Piece(0.03, mass=0.1, friction=0.1)]).world()
+        >>> world.drive("mallet", (1.0, 0.0))
+        >>> _ = world.advance(0.5)
+        >>> world.reaction("mallet").round(6).tolist()                     # 2 m v, e = 1
+        [-0.2, 0.0]
+        """
+        i = self._led(puck, False)
+        impulse, told = pushed_back(self._game, i, self._told.get(i, Told()))
+        self._told = {**self._told, i: told}
+        return impulse
+
+    def apply_force(
+        self, puck: int | str, force: npt.ArrayLike, torque: float = 0.0, *, time: float
+    ) -> None:
+        """Let a constant force act on a puck at its centre, from now on for a time, s > 0.
+
+        Beside all others, as ``Force.over_time`` of a scene.  A puck that was looked up until then
+        is integrated from now on.  An event says "force".
+
+        Parameters
+        ----------
+        puck : its number, or its name
+        force : (2,) N, torque : N m
+
+        Raises
+        ------
+        InputError
+            If there is no such puck in play, it is driven, or a number is not finite.
+
+        Examples
+        --------
+        >>> from puck_tables import Piece, Scene
+        >>> world = Scene(pucks=[Piece(0.03, mass=1.0, friction=0.0, gravity=10.0)]).world()
+        >>> world.apply_force(0, (2.0, 0.0), time=0.5)
+        >>> _ = world.advance(1.0)
+        >>> world.state()[0, [0, 3]].round(9).tolist()            # F t^2/2m + F t/m 0.5 s
+        [0.75, 1.0]
+        """
+        i = self._in_play(puck)
+        if self._game.discs[i, LIGHTNESS] == 0.0:
+            raise InputError(f"{self._name(i)} is driven: no force moves it")
+        push = np.append(_pair("force", force, "N"), real("torque", torque, "N m"))
+        until = self.time + positive("time", time, "s")
+        with self._or_as_before():
+            self._game = with_force(self._game, self.scene, self._order, i, push, until)
+            self._desk = desk_for(self._game)
+            set_pace(self._game, self._all_now())
+            self._put(g.FORCED, _row(None, None, None, None), i)
+
+    def _in_play(self, puck: int | str) -> int:
+        """The disc of a puck."""
+        i = int(self._place[number_of(puck, self.names)])
+        if self._game.kinds[i] == GONE:
+            raise InputError(f"{self._name(i)} is no longer in play")
+        return i
+
+    def _led(self, puck: int | str, in_play: bool = True) -> int:
+        """The disc of a puck that is led."""
+        i = self._in_play(puck) if in_play else int(self._place[number_of(puck, self.names)])
+        if self._game.discs[i, LIGHTNESS] > 0.0:
+            raise InputError(
+                f"{self._name(i)} is not led by hand: give it a path of one row, path=[[0, x, y]], "
+                "or strike it"
+            )
+        return i
+
+    def _lead(self, i: int, state: FloatArray, duration: float) -> None:
+        """What is led goes on from a state."""
+        self._game = lead(self._game, i, state, duration)
+        if not math.hypot(state[VX], state[VY]) <= self._game.pace[0]:
+            set_pace(self._game, np.zeros((len(self.names), 6)))
+
+    def _put(self, what: int, rows: FloatArray, discs: int | Whole) -> None:
+        """Give discs their states, NaN: as it is, by an event; all or nothing."""
+        game, room = self._game, self._room
+        with self._or_as_before():
+            game.counts[g.N_AT_ONCE] = 0
+            if what in (g.STRUCK, g.PLACED, g.ADDED) and not self._is_slow(rows, discs):
+                self._see_to(what, np.atleast_2d(rows), np.atleast_1d(discs))
+            room.marks[:] = NOT_CONCERNED
+            room.marks[discs] = CONCERNED
+            room.before[discs] = rows
+            self._advance(self.time, what)
+
+    def _is_slow(self, rows: FloatArray, discs: int | Whole) -> bool:
+        """Whether one free disc does not slip faster than anything has yet, on a floor at rest."""
+        if not isinstance(discs, int):
+            return False
+        disc, (*_, vx, vy, spin) = self._game.discs[discs], rows.tolist()
+        if disc[HOLD] != FREE or disc[LIGHTNESS] == 0.0 or moves_along(self._game.surface):
+            return False
+        slow = math.hypot(vx, vy, disc[RADIUS] * spin) <= self._game.pace[0]  # not of NaN
+        stays = vx != vx and spin != spin
+        return bool(slow or stays) and law_goes_to(self._game.regions) == math.inf
+
+    def _see_to(self, what: int, rows: FloatArray, discs: Whole) -> None:
+        """Refuse what does not fit, see to the scales, and lead what is led from there."""
+        game, own = self._game, self._game.discs[discs]
+        held, led = own[:, HOLD] != FREE, (own[:, LIGHTNESS] == 0.0) & (what != g.ADDED)
+        law = law_goes_to(game.regions) < math.inf
+        sure = not (law or held.any() or led.any() or moves_along(game.surface))
+        if sure and (_slips(own, rows) <= game.pace[0]).all():
+            return
+        now = self._all_now()
+        states = now.copy()
+        states[discs] = np.where(np.isnan(rows), states[discs], rows)
+        for i, is_held, is_led in zip(discs.tolist(), held.tolist(), led.tolist(), strict=True):
+            if is_held:
+                refuse_off_hold(game, i, states[i], self._name(i))
+                self._refuse_misfit(int(self._order[i]), states[i])
+            if is_led and (states[i] != now[i]).any():
+                self._lead(i, states[i], FOR_EVER)
+            elif law:
+                refuse_too_fast(game, self.scene, self._name(i), i, states[i])
+        if not sure or (_slips(own, states[discs]) > game.pace[0]).any():
+            set_pace(self._game, states)
 
     def _refuse_misfit(self, number: int, state: FloatArray) -> None:
         """Refuse a velocity that the constraint of a puck does not allow."""
@@ -327,153 +419,35 @@ class World:
         for fault in misfits(launch, hold, self.scene.floor, ""):
             raise InputError(f"{self.names[number]}: {fault}".replace("launch.", ""))
 
-    def _advance(self, until: float, struck: int = NOBODY, given: FloatArray | None = None) -> None:
-        """Let time pass, after a disc was given the velocity of a state."""
-        state = self._room.one if given is None else given
-        unit = float(self._game.pace[0] / max(self._game.pace[1], 1e-300))
-        mark, pushes = -math.inf, deque[float](maxlen=CROWDED_PUSHES)
-        if lacks_rows(self._game, self._room):
-            self._grow()
-        if struck >= 0:
-            set_pace(self._game, state[None] * np.ones((len(self._game.discs), 1)))
-        while True:
-            how = advance(self._game, until, struck, state, self._room, self._desk)
-            if how == REACHED:
-                return
-            struck = NOBODY
-            if how == FULL:
-                self._grow()
-                struck = THOSE_LEFT
-            elif how == PUSHING:
-                from puck_tables.world.groups import push_on  # compiled where it is needed
 
-                if self._game.counts[g.N_PIECES] > MOST_STEPS:
-                    raise self._no_end()
-                self._game = with_law_for(
-                    self._game, self._room, self.scene, self._order, self.names, self.time
-                )
-                full = len(pushes) == CROWDED_PUSHES
-                if full and self.time - pushes[0] <= PUSHED_IN * unit:
-                    raise PuckError(self._failure(CROWDED))
-                pushes.append(self.time)
-                self._game, struck = push_on(self._game, self._room), THOSE_LEFT
-            elif how == PAUSED and self.time - mark > CROWD * unit:
-                mark = self.time
-            else:
-                raise PuckError(self._failure(CROWDED if how == PAUSED else how))
-
-    @property
-    def place_error(self) -> float:
-        """The rounding of looked-up places, m: 1e-15 of Q²/J of the largest slip."""
-        speed, rate = self._game.pace[:2].tolist()
-        return 1e-15 * speed / rate * speed
-
-    def copy(self) -> World:
-        """A world of its own that goes on from here, to look ahead."""
-        other = object.__new__(World)
-        other.scene, other._order = self.scene, self._order
-        other._game = g.copy_of(self._game)
-        other._room, other._desk = room_for(len(self.names)), desk_for(other._game)
-        other._passings = self._passings.copy()
-        other._named()
-        return other
-
-    def __getstate__(self) -> dict[str, Any]:
-        """All but the table that comes along: read back, it would be of another type to numba."""
-        parts: Any = self._game
-        return {**self.__dict__, "_game": parts._replace(curves=None)}
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        """As it was, with the table that comes along."""
-        self.__dict__.update(state)
-        self._game = self._game._replace(curves=shipped_curves())
-
-    def _failure(self, how: int) -> str:
-        """Why it does not go on, in words."""
-        if how == TOO_SHORT:
-            return (
-                f"at {self.time:.6g} s no step is short enough to follow a puck that is "
-                "integrated: ask for a shorter run.time"
-            )
-        radii = np.array([piece.radius for piece in pieces_of(self.scene)])
-        places = self.state()[:, :2]
-        for number, piece in enumerate(pieces_of(self.scene)):
-            if piece.path:
-                gaps = np.hypot(*(places - places[number]).T) - radii - radii[number]
-                near = np.flatnonzero(np.abs(gaps) < 1e-6 * radii[number])
-                if near.size:
-                    others = ", ".join(self.names[one] for one in near)
-                    return (
-                        f"{self.names[number]}, which is driven, squeezes {others} at "
-                        f"{self.time:.6g} s against what does not give way: let its path end "
-                        "before, or leave more room"
-                    )
-        if how == OFF_TABLE:
-            return self._off_table()
-        return g.TOGETHER.format(time=self.time)
-
-    def _off_table(self) -> str:
-        """Which impact is faster than its table of restitution goes."""
-        count = self._game.counts[g.N_CONTACTS]
-        n = int(np.flatnonzero(self._room.rows[:count, E] < 0.0)[0])
-        one, other = (self._name(number) for number in self._room.contacts[n])
-        return (
-            f"{one} and {other} meet at {self._room.rows[n, FIRST_N]:.6g} m/s, faster than their "
-            "table of restitution goes: add a row to it for such a speed"
-        )
-
-    def _grow(self) -> None:
-        """Twice the rows of what lacks some: events and flights, or pieces of paths and works."""
-        if len(self._game.events) > MOST_EVENTS:
-            raise PuckError(self._failure(CROWDED))
-        few, names = 0, ("events", "history")
-        if not lacks_rows(self._game, self._room):
-            few, names = LONGEST, ("pieces", "works")
-            if len(self._game.pieces) > MOST_STEPS:
-                raise self._no_end()
-        more: dict[str, Any] = {}
-        for name in names:
-            part = getattr(self._game, name)
-            more[name] = np.vstack([part, np.zeros((max(few, len(part)), part.shape[1]))])
-        self._game = self._game._replace(**more)
-
-    def _no_end(self) -> PuckError:
-        """After a million steps."""
-        lateral, long = self.scene.lateral, f"a million steps by {self.time:.6g} s"
-        if lateral.strength != 0.0 and lateral.speed_exponent < 1.0:
-            return InputError(
-                f"{long}: the slower a puck that still spins, the faster a lateral force turns its "
-                "way if lateral.speed_exponent is below 1; give one from 1 on, or end the run "
-                "before with a time"
-            )
-        return PuckError(f"{long}, and no end: ask for a shorter time")
-
-    def _events(self, first: int, passed: int) -> list[Event]:
-        rows = self._game.events[first : self._game.counts[g.N_EVENTS]]
-        columns = [g.TIME, g.WHAT, g.WHO, g.PARTNER, g.AT_X, g.AT_Y, g.APPROACH, g.SLIDE, g.PUSH,
-                   g.RUB, g.LOST]  # fmt: skip
-        found = [
-            Event(time, g.EVENTS[int(what)], self._name(who), self._name(partner), *numbers)
-            for time, what, who, partner, *numbers in rows[:, columns].tolist()
-        ]
-        lines = self.scene.lines
-        found += [
-            Event(time, g.EVENTS[int(what)], self._name(who), called_line(lines, int(k)), *numbers)
-            for time, what, who, k, *numbers in self._passings.rows[passed:].tolist()
-        ]
-        return sorted(found, key=lambda event: event.time) if lines else found
-
-    @cached_property
-    def _obstacles(self) -> list[str]:
-        return obstacle_names(self.scene)
-
-    def _name(self, partner: float) -> str:
-        """A disc or an obstacle of the engine in words."""
-        number = int(partner)
-        return self._obstacles[-1 - number] if number < 0 else self.names[self._order[number]]
+def _slips(discs: FloatArray, states: FloatArray) -> FloatArray:
+    """How fast rims slip on a floor at rest, m/s."""
+    speeds: FloatArray = np.hypot(states[:, VX], states[:, VY])
+    return np.hypot(speeds, discs[:, RADIUS] * states[:, SPIN])
 
 
-def _pair(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
+def _row(
+    position: npt.ArrayLike | None, angle: float | None, velocity: npt.ArrayLike | None,
+    spin: float | None,
+) -> FloatArray:  # fmt: skip
+    """A state (6,) of what is given; NaN of the rest."""
+    row = np.full(6, math.nan)
+    if position is not None:
+        row[X : Y + 1] = _pair("position", position, "m")
+    if angle is not None:
+        row[THETA] = real("angle", angle, "rad")
+    if velocity is not None:
+        row[VX : VY + 1] = _pair("velocity", velocity, "m/s")
+    if spin is not None:
+        row[SPIN] = real("spin", spin, "rad/s")
+    return row
+
+
+def _pair(name: str, values: Any, unit: str) -> FloatArray:
+    if type(values) is tuple and len(values) == 2 and type(values[0]) is type(values[1]) is float:
+        pair = np.array(values)  # most are so, and quickly seen to
+        if math.isfinite(values[0]) and math.isfinite(values[1]):
+            return pair
     pair = finite_array(name, values, unit)
     if pair.shape != (2,):
         raise InputError(f"{name} must be two numbers in {unit}, got the shape {pair.shape}")

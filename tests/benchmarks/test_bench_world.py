@@ -20,6 +20,7 @@ BREAK = pytest.mark.benchmark(group="carrom break, 20 discs until rest, one thre
 MEETING = pytest.mark.benchmark(group="next contact of one pair, one thread")
 GROWTH = pytest.mark.benchmark(group="one striker among many at rest, one thread")
 HOCKEY = pytest.mark.benchmark(group="air hockey, 1/60 s a call")
+HANDS = pytest.mark.benchmark(group="a hand in a world of 20 pucks, one call")
 CURLING = pytest.mark.benchmark(group="curling take-out, 100 000 strikes, all cores")
 
 BOARD, MAN, STRIKER = 0.7366, 0.0159, 0.02065  # m
@@ -187,6 +188,70 @@ def test_air_hockey(measure: Any) -> None:
         }  # fmt: skip
     measure("a minute of play, advance and state", lambda: game(calls["advance and state"]),
             items=3600, unit="frame")  # fmt: skip
+
+
+def led() -> pt.World:
+    """The same table with one mallet, which a hand leads."""
+    scene = hockey()
+    mallet = pt.Piece(0.05, path=[[0.0, -0.75, 0.0]], restitution=0.9)
+    return pt.Scene(
+        pucks=[scene.pucks[0], mallet], walls=scene.walls, drag=scene.drag, time=60.0
+    ).world()
+
+
+@HOCKEY
+def test_air_hockey_led_by_hand(measure: Any) -> None:
+    """Every frame: where to, and advance; now and then the puck is struck."""
+    start = led()
+
+    def game() -> np.ndarray:
+        world, spent = start.copy(), np.empty((2, 3600))
+        for frame in range(spent.shape[1]):
+            if frame % 300 == 0:
+                world.strike(0, (2.0, 1.3), 10.0)
+            t = frame / 60.0
+            x, y = -0.75 + 0.08 * math.sin(3.1 * t), 0.25 * math.sin(2.3 * t)
+            times = [time.perf_counter()]
+            world.drive(1, towards=(x, y), speed=1.0)
+            times.append(time.perf_counter())
+            world.advance(1.0 / 60.0)
+            times.append(time.perf_counter())
+            spent[:, frame] = np.diff(times)
+        return spent
+
+    spent = np.concatenate([game() for _ in range(3)], axis=1)
+    for name, row in zip(("drive", "advance"), np.sort(spent, axis=1), strict=True):
+        measure.benchmark.extra_info[name] = {
+            "median_s": float(np.median(row)), "of_1000_s": float(np.quantile(row, 0.999)),
+            "worst_s": float(row[-1]),
+        }  # fmt: skip
+    measure("a minute of play, drive and advance", game, items=3600, unit="frame")
+
+
+@HANDS
+@pytest.mark.parametrize("verb", ["strike", "place", "set_state", "remove and place"])
+def test_hands(measure: Any, verb: str) -> None:
+    world = draw(3, 20, side=0.6).world()
+    world.advance(20.0)
+    states, home = world.state(), world.state()[0, :2]
+    moved = states.copy()
+    moved[0, :2] += 1e-4
+    turn = [0]
+
+    def both() -> None:
+        world.remove(0)
+        world.place(0, home, velocity=(0.0, 0.0), spin=0.0)
+
+    def other() -> None:
+        turn[0] = 1 - turn[0]
+        world.set_state(moved if turn[0] else states)
+
+    calls = {
+        "strike": lambda: world.strike(0, (0.0, 0.0), 0.0),
+        "place": lambda: world.place(0, home, velocity=(0.0, 0.0), spin=0.0),
+        "set_state": other, "remove and place": both,
+    }  # fmt: skip
+    measure(verb, calls[verb], unit="call")
 
 
 def take_out() -> pt.Scene:

@@ -1,0 +1,134 @@
+"""A world with one puck more: the same arrays, longer by a disc that is not yet in play."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.errors import InputError
+from puck_tables.scene.friction import VX
+from puck_tables.scene.ground import OVER_X, OVER_Y
+from puck_tables.scene.over_time import drive_of, over_time
+from puck_tables.scene.parts import Force, Launch
+from puck_tables.scene.pieces import PieceSpec
+from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.world import layout
+from puck_tables.world.agreement import pieces_of
+from puck_tables.world.by_hand import with_integrated
+from puck_tables.world.flight import ANGLE, FLIGHT_COLUMNS, GONE, PLACE_X, START, UNTIL
+from puck_tables.world.footing import law_goes_to
+from puck_tables.world.game import LAUNCHED, N_HISTORY, N_LAUNCHES, N_PIECES, Game, Whole
+from puck_tables.world.paths import START as BEGINS
+from puck_tables.world.prepare import Start, prepared, with_law_up_to
+
+
+def board_with(scene: SceneSpec, piece: PieceSpec) -> SceneSpec:
+    """A scene with a puck more, which fits its board; its pucks may have moved since.
+
+    Raises
+    ------
+    InputError
+        If the puck does not go with the board, or its name is taken.
+    """
+    if not isinstance(piece, PieceSpec):
+        raise InputError(f"puck must be a Piece, got a {type(piece).__name__}")
+    there = pieces_of(scene)
+    bare: dict[str, Any] = {"puck": None, "launch": Launch(), "force": Force(), "constraint": None}
+    alone = replace(scene, **bare, pucks=(piece,), rims=()).single()
+    own = alone.pucks[0]
+    if own.name and own.name in {one.name for one in there}:
+        raise InputError(f"puck.name = {own.name!r}: there is one of that name")
+    if own.gravity != there[0].gravity:
+        raise InputError(
+            f"puck.gravity = {own.gravity:g}: the pucks of this world have {there[0].gravity:g}"
+        )
+    if own.constraint is not None and any(own.constraint.velocity):
+        raise InputError(
+            f"puck.constraint: a {own.constraint.kind} that moves must be there from the start"
+        )
+    board = object.__new__(type(scene))
+    parts = {name: part for name, part in vars(scene).items() if name != "_pieces"}
+    parts |= {name: getattr(alone, name) for name in bare}
+    vars(board).update(parts | {"pucks": (*there, own)})
+    return board
+
+
+def with_puck(game: Game, board: SceneSpec, order: Whole, now: float) -> tuple[Start, FloatArray]:
+    """The world of a board with a puck more, the last, which is out of play; and its state (6,)."""
+    count = len(order)
+    order = np.append(order, count)
+    fresh = prepared(board, order)
+    new, state = fresh.game, fresh.states[count]
+    top = law_goes_to(game.regions)
+    if law_goes_to(new.regions) < top < math.inf:
+        new = with_law_up_to(new, board, order, top)
+    discs = new.discs.copy()
+    own = [layout.RESTITUTION, layout.MAKE]  # which law is called how may be another
+    mine = discs[:count, own]
+    discs[:count] = game.discs
+    discs[:count, own] = mine
+    strips = game.discs[:, layout.REGION] // count
+    discs[:count, layout.REGION] = strips * (count + 1) + np.arange(count)
+    _keep_belts(game, new, count)
+    tides = game.tides
+    if not board.pucks[-1].path:
+        tides = np.vstack([tides, _rows_from(board, now)])
+    spans = np.vstack([game.spans, [[len(game.tides), len(tides)]]])
+    used, way = int(game.counts[N_PIECES]), new.pieces[slice(*new.drives[count])].copy()
+    way[:, BEGINS] += now
+    pieces = np.vstack([game.pieces[:used], way, np.zeros((max(used, 128), way.shape[1]))])
+    launch = new.launches[new.launches[:, LAUNCHED] == count] + np.array([now, 0, 0, 0, 0])
+    done = int(game.counts[N_LAUNCHES])
+    later = np.vstack([game.launches[done:], launch])
+    later = later[np.argsort(later[:, 0], kind="stable")]
+    flight = np.zeros(FLIGHT_COLUMNS)
+    flight[PLACE_X : ANGLE + 1], flight[UNTIL], flight[START] = state[:3], math.inf, 0.0
+    longer: dict[str, Any] = {
+        "kinds": np.append(game.kinds, GONE),
+        "flights": np.vstack([game.flights, flight]),
+        "group": np.append(game.group, 0),
+        "held": np.vstack([game.held, np.zeros((6, 2), np.int64)]),
+        "next_time": np.append(game.next_time, math.inf),
+        "next_partner": np.append(game.next_partner, new.next_partner[count]),
+        "launches": np.vstack([game.launches[:done], later]),
+        "drives": np.vstack([game.drives, [[used, used + len(way)]]]),
+        "hangs": np.vstack([game.hangs, np.zeros_like(new.hangs[:1])]),
+        "history": np.vstack([game.history, np.zeros_like(game.history[:1])]),
+        "counts": game.counts.copy(),
+        "pace": np.append(np.maximum(game.pace[:2], new.pace[:2]), game.pace[2:]),
+    }
+    before = np.concatenate([[count, GONE], flight])  # until now it was not there
+    longer["history"][game.counts[N_HISTORY]] = before
+    longer["counts"][N_HISTORY] += 1
+    longer["counts"][N_PIECES] += len(way)
+    whole = game._replace(
+        discs=discs, regions=new.regions, floors=new.floors, rims=new.rims,
+        obstacles=new.obstacles, tides=tides, spans=spans, pieces=pieces, **longer,
+    )  # fmt: skip
+    integrated = game.floors[:, 2].reshape(-1, count).any(axis=0)
+    whole = with_integrated(whole, board, order, np.flatnonzero(integrated))
+    if len(way):
+        state[VX:] = 0.0  # it goes on as its way has it
+    return Start(board, order, whole, fresh.states), state
+
+
+def _keep_belts(game: Game, new: Game, count: int) -> None:
+    """The velocities of the floor that states of the discs there are relative to stay."""
+    if new.regions.ground.size:
+        before = game.regions.ground.reshape(count, -1)
+        after = new.regions.ground.reshape(count + 1, -1)
+        after[:count, [OVER_X, OVER_Y]] = before[:, [OVER_X, OVER_Y]]
+
+
+def _rows_from(board: SceneSpec, now: float) -> FloatArray:
+    """What changes over time under the last puck, whose force counts from now."""
+    own = board.pucks[-1]
+    force = own.force
+    if force.over_time:
+        drive = drive_of(force.over_time) + np.array([now, 0.0, 0.0, 0.0])
+        force = replace(force, over_time=tuple(map(tuple, drive.tolist())))
+    return over_time(board.floor, force)

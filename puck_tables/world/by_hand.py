@@ -1,0 +1,159 @@
+"""What a hand does to discs: how far what is led may go, and forces that are added."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.errors import InputError
+from puck_tables.scene.friction import VX, VY, X, Y
+from puck_tables.scene.over_time import ON_ALL
+from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.world.agreement import pieces_of
+from puck_tables.world.drive import straight_piece
+from puck_tables.world.flight import ANGLE, FIRST_PIECE, PATH, PLACE_X
+from puck_tables.world.floors import INTEGRATED, regions_of
+from puck_tables.world.footing import step_onto
+from puck_tables.world.game import N_PIECES, Game, Whole
+from puck_tables.world.holds import forbid
+from puck_tables.world.layout import (
+    ARC,
+    FROM,
+    KIND,
+    POST,
+    RADIUS,
+    SPAN,
+    WALL,
+    A,
+    B,
+    C,
+)
+from puck_tables.world.lone import LONGEST
+from puck_tables.world.meeting import in_span
+from puck_tables.world.paths import on_piece
+
+SHORT_OF = 1e-9  # of its radius: so far from cushions stops what is led, and never presses them
+_OFF = 1e-9  # of its radius: farther off its constraint a puck cannot be put
+_FULL_TURN = 2.0 * math.pi
+
+
+def led_state(game: Game, i: int) -> FloatArray:
+    """The state (6,) of a disc that is driven, now."""
+    flight = game.flights[i]
+    if game.kinds[i] != PATH:
+        return np.array([*flight[PLACE_X : ANGLE + 1].tolist(), 0.0, 0.0, 0.0])
+    piece: Any = game.pieces[int(flight[FIRST_PIECE])].tolist()  # lists are faster, from Python
+    state: Any = [0.0] * 9
+    on_piece(piece, float(game.clock[0]), state)
+    return np.array(state[:6])
+
+
+def lead(game: Game, i: int, state: FloatArray, duration: float) -> Game:
+    """A disc is to go straight on from a state for so long, or until it is at a cushion."""
+    count = int(game.counts[N_PIECES])
+    if count == len(game.pieces):
+        more = np.zeros((max(LONGEST, count), game.pieces.shape[1]))
+        game = game._replace(pieces=np.vstack([game.pieces, more]))
+    moves = bool(state[VX:].any())
+    duration = min(duration, _free_for(game, i, state.tolist())) if moves else 0.0
+    game.pieces[count] = straight_piece(float(game.clock[0]), duration, state)
+    game.counts[N_PIECES], game.drives[i] = count + 1, (count, count + 1)
+    return game
+
+
+def _free_for(game: Game, i: int, state: list[float]) -> float:
+    """How long a disc can go straight on before it is at a wall, a post or an arc, s."""
+    x, y, vx, vy = state[X], state[Y], state[VX], state[VY]
+    radius = float(game.discs[i, RADIUS]) * (1.0 + SHORT_OF)
+    longest, speed2 = math.inf, vx * vx + vy * vy
+    for row in game.obstacles.tolist():
+        if row[KIND] == WALL:
+            closes = -(row[A] * vx + row[B] * vy)
+            if closes > 0.0:
+                gap = row[A] * x + row[B] * y - row[C] - radius
+                longest = min(longest, max(gap, 0.0) / closes)
+        elif row[KIND] in (POST, ARC):
+            dx, dy = x - row[A], y - row[B]
+            along = dx * vx + dy * vy
+            reach = row[C] + (radius if row[KIND] == POST else -radius)
+            rest = dx * dx + dy * dy - reach * reach
+            root = along * along - speed2 * rest
+            if row[KIND] == POST and along < 0.0 < root:
+                longest = min(longest, max(rest, 0.0) / (math.sqrt(root) - along))
+            elif row[KIND] == ARC and speed2 > 0.0 and math.hypot(dx, dy) < row[C]:
+                out = max((math.sqrt(max(root, 0.0)) - along) / speed2, 0.0)
+                angle = math.atan2(dy + out * vy, dx + out * vx)
+                if row[SPAN] >= _FULL_TURN or in_span(angle, row[FROM], row[SPAN]):
+                    longest = min(longest, out)
+    return longest
+
+
+def refuse_off_hold(game: Game, i: int, state: FloatArray, name: str) -> None:
+    """Refuse a place where the constraint of a puck does not let it be.
+
+    Raises
+    ------
+    InputError
+    """
+    rows, off = np.zeros((2, 3)), np.zeros((2, 3))
+    forbid(game.discs[i], game.surface, float(game.clock[0]), state, rows, off)
+    away = float(np.abs(off[:, 0]).max())
+    if away > _OFF * game.discs[i, RADIUS]:
+        raise InputError(
+            f"{name} would be {away:.3g} m off the rail or pivot that leads it: put it on that"
+        )
+
+
+def with_force(
+    game: Game, scene: SceneSpec, order: Whole, i: int, force: FloatArray, until: float
+) -> Game:
+    """With a force (Fx, Fy, torque) on a disc from now to then, N and N m, beside all others."""
+    begin = float(game.clock[0])
+    mine = game.tides[slice(*game.spans[i])]
+    times = np.unique(np.concatenate([mine[:, 0], [begin, until]])).tolist()
+    rows: list[FloatArray] = []
+    for start, end in pairwise(times):
+        for row in (_just(mine, start, True), _just(mine, end, False)):
+            if begin <= start and end <= until:
+                row[1:ON_ALL] += force
+            if not rows or (row != rows[-1]).any():
+                rows.append(row)
+    parts = [game.tides[slice(*span)] for span in game.spans]
+    parts[i] = np.array(rows)
+    ends = np.cumsum([0, *map(len, parts)])
+    spans = np.stack([ends[:-1], ends[1:]], axis=1)
+    game = game._replace(tides=np.vstack(parts), spans=spans)
+    return with_integrated(game, scene, order, np.array([i]))
+
+
+def _just(rows: FloatArray, t: float, after: bool) -> FloatArray:
+    """The row just after, or just before, a time: beyond all rows no force, factors as there."""
+    j = int((rows[:, 0] <= t).sum() if after else (rows[:, 0] < t).sum())
+    row = np.zeros(rows.shape[1])
+    if 0 < j < len(rows):
+        one, two = rows[j - 1], rows[j]
+        row = one + (t - one[0]) / (two[0] - one[0]) * (two - one)
+    elif len(rows):
+        row[ON_ALL:] = rows[max(j - 1, 0), ON_ALL:]
+    row[0] = t
+    return row
+
+
+def with_integrated(game: Game, scene: SceneSpec, order: Whole, discs: Whole) -> Game:
+    """With motions of discs that are integrated from now on, wherever they are."""
+    count = len(game.discs)
+    floors = game.floors.copy()
+    how = floors.reshape(-1, count, floors.shape[1])[:, :, 2]
+    how[:, discs] = np.maximum(how[:, discs], INTEGRATED)
+    regions = game.regions
+    if not game.floors[:, 2].any():  # its friction is asked for often from now on
+        pieces = [pieces_of(scene)[number] for number in order]
+        regions = regions_of(scene, pieces, floors, 0.0)
+    game = game._replace(floors=floors, regions=regions)
+    for i in discs.tolist():
+        step_onto(game, i)
+    return game
