@@ -128,7 +128,7 @@ def over_time(floor: Floor, force: Force) -> FloatArray:
         tables.append((1, np.vstack([ends[:1], drive, ends[1:]])))
     for grip in floor.grips:
         tables.append((ON_STRETCH + stretch_of(floor, grip.where), factors_of(grip)))
-    rows = []
+    rows: list[FloatArray] = []
     for t in np.unique(np.concatenate([table[:, 0] for _, table in tables])).tolist():
         for after in (False, True):
             row = np.ones(width)
