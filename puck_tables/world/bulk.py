@@ -76,7 +76,8 @@ def _to_the_end(
 def _follow_all(
     game: Game, fresh: FloatArray, kinds: Whole, hangs: Whole, flights: FloatArray,
     first: FloatArray, discs: Whole, launches: FloatArray, paces: FloatArray, until: float,
-    limits: FloatArray, given: float, watch: Whole, room: Room, desk: FloatArray | None, rows: FloatArray, ends: Ends,
+    limits: FloatArray, given: float, watch: Whole, room: Room, desk: FloatArray | None,
+    rows: FloatArray, ends: Ends,
 ) -> None:  # fmt: skip
     """Runs from the states ``first`` (n, 6), with launches (runs, m, 3) of the ``discs`` (m,).
 
@@ -179,8 +180,8 @@ def follow_all(
         )  # fmt: skip
         _follow_all(
             mine, game.discs, game.kinds, game.hangs, game.flights, first, discs,
-            launches[start:stop], paces[start:stop], until, limits[start:stop], given, np.array(watch), room, desk,
-            np.empty(1 + len(mine.history) + count), part,
+            launches[start:stop], paces[start:stop], until, limits[start:stop], given,
+            np.array(watch), room, desk, np.empty(1 + len(mine.history) + count), part,
         )  # fmt: skip
 
     in_slices(work, runs)
