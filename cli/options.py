@@ -76,7 +76,8 @@ def puck_options(
 
 base_option = click.option(
     "--base", metavar="BASE", help="In place of --radius: box:LENGTHxWIDTH, disc:RADIUS, "
-    "annulus:RADIUSxINNER, in m or with units (box:20cmx10cm), or a CSV file of corners x, y; @X,Y "
+    "annulus:RADIUSxINNER, polygon:X,Y;X,Y;X,Y, feet:RADIUS;X,Y;X,Y, in m or with units "
+    "(box:20cmx10cm), or a CSV file of corners x, y; @X,Y "
     "after it is the centre of mass.  --gyration is then in m.",
 )  # fmt: skip
 

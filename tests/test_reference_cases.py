@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from any_puck import stops_by_truth
+from base_judge import Judge
 from pucks_judge import Disc, Line, play
 from reference import states as flat_states
 from scipy.integrate import solve_ivp
@@ -84,6 +85,72 @@ def test_stops_by_an_independent_integrator(name: str):
     assert abs(answer.end_time * j / q - time) < 1e-10
     assert abs(last["x"] * j / q**2 - x) < 1e-10
     assert abs(last["y"] * j / q**2 - y) < 1e-10
+
+
+def body(name: str) -> tuple[Judge, float, float]:
+    """Its judge, J and the angle at the launch; the centre of mass in the origin."""
+    tables = case_named(name).tables
+    puck, shapes = tables["puck"], {
+        "box": ([[(-0.1, -0.05), (0.1, -0.05), (0.1, 0.05), (-0.1, 0.05)]], []),
+        "box-tall": ([[(-0.1, -0.05), (0.1, -0.05), (0.1, 0.05), (-0.1, 0.05)]], []),
+        "bar": ([[(-0.15, -0.005), (0.15, -0.005), (0.15, 0.005), (-0.15, 0.005)]], []),
+        "triangle": ([[(-0.05, -0.05), (0.1, -0.05), (-0.05, 0.1)]], []),
+        "off-centre": ([], [(-0.01, 0.0, 0.05, 1.0)]),
+        "three-feet": ([], [(x + 0.02 / 3.0, y, 0.005, 1.0)
+                            for x, y in ((0.08, 0.0), (-0.05, 0.06), (-0.05, -0.06))]),
+    }  # fmt: skip
+    gyrations = {
+        "box": math.sqrt((0.04 + 0.01) / 12.0), "bar": math.sqrt((0.09 + 1e-4) / 12.0),
+        "triangle": math.sqrt(2.0 * 0.15**2 / 18.0), "off-centre": 0.036,
+    }  # fmt: skip
+    friction = puck["friction"]
+    k = gyrations.get(name.removesuffix("-tall"))
+    if k is None:  # of three discs about their centre
+        k = math.sqrt(0.005**2 / 2.0 + np.mean([x * x + y * y for x, y, _, _ in shapes[name][1]]))
+    judge = Judge(*shapes[name], friction * 0.5 * puck["height"], k)
+    return judge, friction * puck["gravity"], tables["launch"]["orientation"]
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "box", "triangle",
+        *(pytest.param(n, marks=pytest.mark.thorough)
+          for n in ("box-tall", "bar", "off-centre", "three-feet")),
+    ],
+)  # fmt: skip
+def test_bodies_by_an_independent_integrator(name: str):
+    """Their stops, in the axes of the body at the launch."""
+    judge, decel, angle = body(name)
+    launch = case_named(name).tables["launch"]
+    c, s = math.cos(angle), math.sin(angle)
+    vx, vy = launch["velocity"]
+    time, x, y, _, turn = judge.slide((c * vx + s * vy, c * vy - s * vx), launch["spin"], decel)
+    answer = reference_case(name, times=[0.0])
+    last, q, j = answer.last(), answer.speed_scale, answer.rate_scale
+    assert answer.share_bound <= 1e-10
+    assert abs(answer.end_time - time) < 2e-10 * q / j
+    place = np.array([c * x - s * y, s * x + c * y])
+    assert np.abs(place - [last["x"], last["y"]]).max() < 2e-10 * q * q / j
+    assert abs(last["orientation"] - angle - turn) < 2e-10 * q * q / j / judge.k
+
+
+def test_a_flat_body_thrown_without_a_spin_goes_straight():
+    answer = reference_case("box-straight")
+    assert np.abs(answer.orientation - 0.5).max() < 1e-12 and answer.floor_torque.max() < 1e-12
+    assert np.abs(answer.y - 0.2 * answer.x).max() < 1e-12
+
+
+def test_the_force_of_a_body_on_the_floor_is_what_brakes_it():
+    """F = m a, by differences of second order of its velocity."""
+    answer = reference_case("triangle")
+    times = np.array([0.1, 0.2])
+    gap = 1e-4
+    before, after, here = (answer(times + shift) for shift in (-gap, gap, 0.0))
+    mass = case_named("triangle").tables["puck"]["mass"]
+    for speed, force in (("vx", "floor_fx"), ("vy", "floor_fy")):
+        pull = mass * (getattr(after, speed) - getattr(before, speed)) / (2.0 * gap)
+        assert np.abs(getattr(here, force) + pull).max() < 1e-5
 
 
 def test_the_coin():

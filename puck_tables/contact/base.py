@@ -25,7 +25,10 @@ from puck_tables._core.safe_write import as_utf8
 from puck_tables.contact.outlines import crossing, inside, overlap
 from puck_tables.errors import ContactError, InputError
 
-NAMES = "box:LENGTHxWIDTH, disc:RADIUS, annulus:RADIUSxINNER (m, or with units), or a CSV of x, y"
+NAMES = (
+    "box:LENGTHxWIDTH, disc:RADIUS, annulus:RADIUSxINNER, polygon:X,Y;X,Y;X,Y, feet:RADIUS;X,Y;X,Y "
+    "(m, or with units), or a CSV of x, y"
+)
 MOST_CORNERS = 10_000
 MAX_BYTES = 1 << 24  # of a file of corners: more is no base
 _RIM_POINTS = 4096  # of a disc, at which its pressure is looked at: it errs by 3e-7 of it
@@ -348,8 +351,9 @@ def base_of(text: str) -> Base:
     Parameters
     ----------
     text : str
-        box:LENGTHxWIDTH, disc:RADIUS, annulus:RADIUSxINNER, in m or with units (box:20cmx10cm), or
-        the path of a CSV file with columns x and y; ``@X,Y`` after it is the centre of mass.
+        box:LENGTHxWIDTH, disc:RADIUS, annulus:RADIUSxINNER, polygon:X,Y;X,Y;X,Y by its corners,
+        feet:RADIUS;X,Y;X,Y by their places, in m or with units (box:20cmx10cm), or the path of a
+        CSV file with columns x and y; ``@X,Y`` after it is the centre of mass.
 
     Returns
     -------
@@ -366,19 +370,20 @@ def base_of(text: str) -> Base:
     --------
     >>> round(base_of("box:20cmx10cm@1cm,0").middle[0], 6)
     0.01
+    >>> round(base_of("polygon:0,0;20cm,0;0,10cm").area, 6)
+    0.01
     """
     instance("base", text, str)
     shape, at, place = text.rpartition("@") if "@" in text else (text, "", "")
     centre = None
     if at:
-        numbers = [_length("centre of mass of the base", part) for part in place.split(",")]
-        if len(numbers) != 2:
-            raise InputError(f"base {shown(text)}: the centre of mass is @X,Y, got @{place}")
-        centre = (numbers[0], numbers[1])
+        centre = _place(f"base {shown(text)}: the centre of mass is @X,Y, got @{place}", place)
     if shape.lower().endswith(".csv"):
         corners = numbers_of(shape, (X, Y), 2, MAX_BYTES).rows
         return Base.polygon(corners, centre=centre, name=as_utf8(text))
     kind, _, sizes = shape.partition(":")
+    if kind in ("polygon", "feet"):
+        return _by_places(kind, sizes, text, centre)
     makers: dict[str, tuple[Callable[..., Base], int]]
     makers = {"box": (Base.box, 2), "disc": (Base.disc, 1), "annulus": (Base.annulus, 2)}
     if kind not in makers:
@@ -389,6 +394,31 @@ def base_of(text: str) -> Base:
         raise InputError(f"base {shown(text)}: {kind} takes {count} lengths; choose {NAMES}")
     found = make(*lengths, centre=centre)
     return replace(found, name=text) if at else found
+
+
+def _by_places(
+    kind: str, sizes: str, text: str, centre: tuple[float, float] | None
+) -> Base:  # fmt: skip
+    """A polygon, or feet, of a text of places."""
+    first, *rest = sizes.split(";")
+    each = "its corners are X,Y;X,Y;X,Y" if kind == "polygon" else "feet are RADIUS;X,Y;X,Y"
+    wrong = f"base {shown(text)}: {each}, in m or with units"
+    if kind == "polygon":
+        places = [_place(wrong, part) for part in (first, *rest)]
+        return Base.polygon(places, centre=centre, name=text)
+    if not rest:
+        raise InputError(wrong)
+    radius = _length(f"base {kind}", first)
+    found = Base.feet([_place(wrong, part) for part in rest], radius, centre=centre)
+    return replace(found, name=text)
+
+
+def _place(wrong: str, text: str) -> tuple[float, float]:
+    """A place of a text X,Y, m, or what is wrong with it."""
+    numbers = [_length("a place of the base", part) for part in text.split(",")]
+    if len(numbers) != 2:
+        raise InputError(wrong)
+    return numbers[0], numbers[1]
 
 
 def _length(name: str, text: str) -> float:

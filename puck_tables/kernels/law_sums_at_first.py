@@ -62,7 +62,7 @@ def _discs(base: FloatArray) -> FloatArray:
 
 
 def _summed(terms: list[FloatArray]) -> Sums:
-    return tuple(np.array(terms).sum(axis=1).tolist())  # type: ignore[return-value]
+    return tuple(np.array(terms).sum(axis=1).tolist())
 
 
 def _signed(sums: Sums, w: float) -> Sums:

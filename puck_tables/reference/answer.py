@@ -169,10 +169,16 @@ class Answer(Result):
     def puck_at_end(self) -> PuckSpec | None:
         """The one puck with the friction that it stops on; None: its base lies on several.
 
-        None, too, where friction depends on the slip or several pucks are there.
+        None, too, where friction depends on the slip, a base is not round, or pucks are several.
         """
         floor = self.floor
-        if self.names or floor.patches or floor.law or floor.orthotropic:
+        if (
+            self.pieces[0].shape is not None
+            or self.names
+            or floor.patches
+            or floor.law
+            or floor.orthotropic
+        ):
             return None
         puck = self.run.scene.puck
         if floor.strips is None:

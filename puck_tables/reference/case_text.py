@@ -58,11 +58,15 @@ def lines_of(answer: Answer) -> dict[str, str]:
 
 def _puck(puck: PuckSpec) -> str:
     """Its numbers; of pressure and gyration those that are not the usual ones."""
+    size = f"r = {_digits(puck.radius)} m" if puck.shape is None else f"base {puck.base}"
     told = (
-        f"r = {_digits(puck.radius)} m, height {_digits(puck.height)} m (centre of mass at "
+        f"{size}, height {_digits(puck.height)} m (centre of mass at "
         f"{_digits(0.5 * puck.height)} m), f = {_digits(puck.friction)}, "
-        f"g = {_digits(puck.gravity)} m/s^2, m = {_digits(puck.mass)} kg, delta = {puck.delta:.6g}"
+        f"g = {_digits(puck.gravity)} m/s^2, m = {_digits(puck.mass)} kg"
     )
+    if puck.shape is not None:
+        return f"{told}, gyration {_digits(puck.gyration)} m"
+    told += f", delta = {puck.delta:.6g}"
     usual = PuckSpec(puck.radius)
     if puck.pressure != usual.pressure:
         told += f", pressure {puck.body.law.name}"
@@ -73,9 +77,9 @@ def _puck(puck: PuckSpec) -> str:
 
 def _launch(launch: Launch) -> str:
     vx, vy = launch.velocity or (0.0, 0.0)
-    return (
-        f"v = {_pair(vx, vy)} m/s, w = {_digits(launch.spin)} rad/s at {_pair(*launch.position)} m"
-    )
+    told = f"v = {_pair(vx, vy)} m/s, w = {_digits(launch.spin)} rad/s"
+    turned = f", turned by {_digits(launch.orientation)} rad" if launch.orientation else ""
+    return f"{told} at {_pair(*launch.position)} m{turned}"
 
 
 def _entries(part: Mapping[str, Any], units: Mapping[str, str], path: str) -> Iterator[str]:

@@ -23,7 +23,7 @@ class ReferenceCase(NamedTuple):
 
     ``name``, ``version``; ``title``: a line; ``tests``: what an engine gets wrong in it, in a
     sentence; ``tables``: the scene, as a scene file has it, in SI units.  Its ``height`` is the
-    full height of a homogeneous cylinder, whose centre of mass lies half as high.
+    full height of a homogeneous body, whose centre of mass lies half as high.
     """
 
     name: str
@@ -54,6 +54,7 @@ class ReferenceCase(NamedTuple):
 _DISC = {"radius": 0.05, "height": 0.002, "friction": 0.2, "gravity": 9.81, "mass": 0.1}
 _TALL = {**_DISC, "friction": 0.5}
 _STONE = {**_DISC, "restitution": 0.9, "tangential": 0.0, "rim": 0.1}
+_BODY = {"friction": 0.3, "gravity": 9.81, "mass": 0.5}
 _DOWN = -0.5 * math.pi  # along −y
 
 
@@ -97,6 +98,15 @@ def _over_edge(
         f"astride-{name}", 1, title, tests,
         {"puck": puck, "floor": {"strips": strips}, "launch": launch},
     )  # fmt: skip
+
+
+def _body(
+    name: str, base: str, title: str, tests: str, height: float = 0.0, **more: Any
+) -> ReferenceCase:  # fmt: skip
+    """A body on a base that is not round, thrown with a spin, or as ``more`` says."""
+    launch = {"velocity": [1.0, 0.2], "spin": 12.0, "orientation": 0.5}
+    puck = {"base": base, "height": height, **_BODY, **more.pop("puck", {})}
+    return ReferenceCase(name, 1, title, tests, {"puck": puck, "launch": launch, **more})
 
 
 CASES = (
@@ -163,6 +173,29 @@ CASES = (
         _DISC, [0.1, 0.16], [0.15, 0.4, 0.1], 0.0,
         {"velocity": [0.75, 0.1], "spin": -20.0},
     ),
+    _body("box", "box:0.2x0.1", "Box that slides and spins",
+          "it stops turning and sliding together; the path bends as its long side turns"),
+    _body("box-straight", "box:0.2x0.1", "Box thrown without a spin, its long side aslant",
+          "a flat body that does not turn is not made to: no torque, whatever its base",
+          launch={"velocity": [1.0, 0.2], "orientation": 0.5}),
+    _body("box-tall", "box:0.2x0.1", "Box 8 cm high",
+          "the pressure tilts by two balances, along the box and across it", 0.08),
+    _body("bar", "box:0.3x0.01", "Bar, thirty times as long as wide",
+          "friction across and along a bar differ once it spins"),
+    _body("triangle", "polygon:-0.05,-0.05;0.1,-0.05;-0.05,0.1", "Right-angled triangle",
+          "no symmetry: a force across the motion although the base is flat"),
+    _body("off-centre", "disc:0.05@0.01,0", "Disc whose centre of mass is 1 cm off its middle",
+          "friction acts in the middle, inertia 1 cm beside it", puck={"gyration": 0.036}),
+    _body("three-feet", "feet:0.005;0.08,0;-0.05,0.06;-0.05,-0.06", "Body on three round feet",
+          "each foot carries a third, and slips its own way"),
+    _body("box-slope", "box:0.2x0.1", "Box across and up a slope that holds it",
+          "a spin uses up friction: it slides farther down than without one",
+          floor={"slope": 0.2, "downhill": _DOWN}),
+    _body("box-belts", "box:0.2x0.1", "Box from a fast belt to a slow one",
+          "each belt acts under its own part of the base, at its own slip",
+          launch={"velocity": [0.5, 0.0], "position": [-0.15, 0.0], "orientation": 0.3},
+          floor={"strips": {"borders": [0.0], "friction": [0.3, 0.3], "across": [0.5, 0.2]}},
+          time=0.6),
     ReferenceCase(
         "rebound", 1, "Spinning disc off a cushion",
         "restitution 0.8; the rim stops on the cushion or rubs with 0.2 of the impulse",

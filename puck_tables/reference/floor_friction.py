@@ -140,6 +140,7 @@ def floor_friction(name: str, epsilon: npt.ArrayLike | None = None) -> FloorFric
             "states (floor_fx, floor_fy, floor_torque)"
         )
     piece = pieces_of(scene)[0]
+    piece.refuse_base(f"a table of friction over v/(r w) of case {case.name}")
     with np.errstate(divide="ignore"):
         inverse = 1.0 / ratios
     slope = scene.floor.slope

@@ -4,8 +4,8 @@
 
 along the slip, to its left, and about the vertical in the sense of the spin; φ = atan2(rω, v) of
 velocity and spin relative to the floor (Salnikova, Treschev, Gallyamov 2012, section 6).  Where
-friction differs from place to place, by direction or by speed no ratios say it, and it is that of
-the scene.  A puck at rest on the floor passes on what other forces ask.
+friction differs from place to place, by direction or by speed, or a base is not round, no ratios
+say it, and it is that of the scene.  A puck at rest on the floor passes on what other forces ask.
 """
 
 from __future__ import annotations
@@ -136,10 +136,11 @@ def on_the_floor(
     down = puck.gravity * math.sin(floor.slope)
     fx = puck.mass * (down * math.cos(floor.downhill) + turning**2 * (states["x"] - cx))
     fy = puck.mass * (down * math.sin(floor.downhill) + turning**2 * (states["y"] - cy))
-    if is_one_friction(floor):
+    if is_one_friction(floor) and puck.shape is None:
         found = _by_ratios(puck, slip, floor.slope)
     else:
-        place = [states["x"], states["y"], np.zeros_like(states["x"])]
+        angle = states.get("orientation", np.zeros_like(states["x"]))
+        place = [states["x"], states["y"], angle]
         on_puck = friction_at(scene, np.stack([*place, *slip], axis=-1))
         found = -on_puck[:, 0], -on_puck[:, 1], -on_puck[:, 2]
     return (

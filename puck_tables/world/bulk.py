@@ -74,9 +74,10 @@ def _to_the_end(
 
 @kernel
 def _follow_all(
-    game: Game, fresh: FloatArray, kinds: Whole, flights: FloatArray, first: FloatArray,
-    discs: Whole, launches: FloatArray, paces: FloatArray, until: float, limits: FloatArray,
-    given: float, watch: Whole, room: Room, desk: FloatArray | None, rows: FloatArray, ends: Ends,
+    game: Game, fresh: FloatArray, kinds: Whole, hangs: Whole, flights: FloatArray,
+    first: FloatArray, discs: Whole, launches: FloatArray, paces: FloatArray, until: float,
+    limits: FloatArray, given: float, watch: Whole, room: Room, desk: FloatArray | None,
+    rows: FloatArray, ends: Ends,
 ) -> None:  # fmt: skip
     """Runs from the states ``first`` (n, 6), with launches (runs, m, 3) of the ``discs`` (m,).
 
@@ -100,6 +101,8 @@ def _follow_all(
                 game.discs[i, column] = fresh[i, column]
             for column in range(flights.shape[1]):
                 game.flights[i, column] = flights[i, column]
+            for column in range(hangs.shape[1]):
+                game.hangs[i, column] = hangs[i, column]
         for i in range(count):
             for column in range(6):
                 room.states[i, column] = first[i, column]
@@ -176,9 +179,9 @@ def follow_all(
             ends.courses[start:stop], ends.ledgers[start:stop],
         )  # fmt: skip
         _follow_all(
-            mine, game.discs, game.kinds, game.flights, first, discs, launches[start:stop],
-            paces[start:stop], until, limits[start:stop], given, np.array(watch), room, desk,
-            np.empty(1 + len(mine.history) + count), part,
+            mine, game.discs, game.kinds, game.hangs, game.flights, first, discs,
+            launches[start:stop], paces[start:stop], until, limits[start:stop], given,
+            np.array(watch), room, desk, np.empty(1 + len(mine.history) + count), part,
         )  # fmt: skip
 
     in_slices(work, runs)
@@ -213,7 +216,8 @@ def _own(game: Game, rows: int) -> Game:
     pieces = np.zeros((paths, PIECE_COLUMNS))
     return game._replace(
         regions=game.regions._replace(ground=game.regions.ground.copy()),
-        discs=game.discs.copy(), clock=np.zeros(1), kinds=game.kinds.copy(),
+        discs=game.discs.copy(), hangs=game.hangs.copy(), clock=np.zeros(1),
+        kinds=game.kinds.copy(),
         flights=game.flights.copy(), group=game.group.copy(), held=game.held.copy(),
         next_time=game.next_time.copy(), next_partner=game.next_partner.copy(),
         pieces=np.vstack([game.pieces, pieces]), works=np.zeros((paths, WORK_COLUMNS)),
