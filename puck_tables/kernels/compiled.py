@@ -161,7 +161,7 @@ def code_for(door: KernelDoor, args: tuple[Any, ...]) -> Callable[..., Any]:
 def _at_door(door: KernelDoor, template_for: Callable[..., Any], args: Any, named: Any) -> Any:
     with _compiling(door):
         found = _whatever_its_value(template_for, args, named)
-    if linked_at_doors:
+    if linked_at_doors and kept_code:  # numba's own cache would not bring the door along
         for kinds, code in door.compiled.overloads.items():
             _name_door(door.py_func, kinds, code)
     return found

@@ -38,6 +38,7 @@ A, B, C, D, R = range(5)
 CENTRE, RIM = 0, 1  # what passes
 # what is seen of one: its side, since when, and when it leaves it; < 0: it was not looked for
 SIDE, FROM, NEXT = range(3)
+_NEXT = 4e-16  # of a moment: the next one is no later
 UNKNOWN = -1  # on which side one lies that was put on the line
 TIME, WHAT, WHO, LINE, AT_X, AT_Y, ACROSS = range(7)
 COLUMNS = 7
@@ -219,7 +220,7 @@ def _next_passing(
                 step = max(step, 2.0 * rounded / abs(rate))
         if t + step > last:
             return math.inf
-        t = max(t + step, np.nextafter(t, math.inf))
+        t = max(t + step, t * (1.0 + _NEXT) + _NEXT * _NEXT)
 
 
 @inner

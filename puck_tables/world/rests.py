@@ -87,9 +87,9 @@ def slips_over(game: g.Game, discs: g.Whole, states: FloatArray, times: FloatArr
 def _fill_slips(
     game: g.Game, discs: g.Whole, states: FloatArray, times: FloatArray, out: FloatArray
 ) -> None:
-    patience(states.shape[0])
     for n in range(states.shape[0]):
         for k in range(states.shape[1]):
+            patience(1)
             out[n, k] = least_slip(game, discs[n], states[n, k], times[n, k])
 
 
