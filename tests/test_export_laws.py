@@ -11,6 +11,7 @@ from click.testing import CliRunner
 from exported import RUNNERS, units
 from law_exports import SPREAD, by_library, puck_under, text_under
 from puck_tables.cli.main import main
+from rarely import few
 
 import puck_tables as pt
 
@@ -49,7 +50,10 @@ def test_stops_of_every_law_to_nine_digits(law: str, tmp_path: Path):
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("law", [*SPREAD, "galin homogeneous", "annulus:0.8 homogeneous"])
+@pytest.mark.parametrize(
+    "law",
+    few(2, [*SPREAD, "galin homogeneous", "annulus:0.8 homogeneous"]),
+)
 def test_size_of_a_law(law: str):
     name, *homogeneous = law.split()
     puck = puck_under(name, 0.5**0.5 if homogeneous else None)

@@ -72,7 +72,7 @@ def test_friction_over_slip_speed_is_found(true, tmp_path):
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("seed", few(2, range(12)))
+@pytest.mark.parametrize("seed", few(1, range(12)))
 def test_a_law_of_rows_means_the_same_in_a_fit_and_in_a_scene(seed):
     """A cubic that rises and falls only where the rows do: scipy's."""
     rng = np.random.default_rng([35, 6, seed])

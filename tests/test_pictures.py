@@ -232,7 +232,7 @@ def test_the_examples_of_asperity_show_all_that_happens() -> None:
     assert coarse.leaps > 20 and curves.leaps == 0
 
 
-KINDS = [".png", ".svg", ".pdf", ".html", pytest.param(".gif", marks=pytest.mark.thorough)]
+KINDS = [".png", ".svg", ".pdf", ".html", pytest.param(".gif", marks=pytest.mark.nightly)]
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -61,7 +61,7 @@ def faults(scenes, tols, folder):
 
 @pytest.mark.thorough
 def test_pairs_and_triples(tmp_path):
-    scenes = [(1, i) for i in (0, 1, 2, 3, 4, 5, 7, 8)] + [(2, 285), (12, 79)]
+    scenes = [(1, i) for i in (0, 3, 5)] + [(2, 285), (12, 79)]
     assert faults([draw(*scene) for scene in scenes], [1e-6, 1e-9], tmp_path) == []
 
 
