@@ -21,6 +21,7 @@ from puck_tables._core.quantities import (
     SPIN,
     TIME,
     TORQUE,
+    InputColumn,
 )
 from puck_tables._core.read_columns import numbers_of
 from puck_tables.errors import InputError
@@ -42,10 +43,7 @@ def drive_of(given: str | Rows) -> FloatArray:
     InputError
         If it cannot be read, or is no such file.
     """
-    numbers = numbers_of(given, (TIME, FORCE_X, FORCE_Y, TORQUE), 3, MAX_DRIVE, "force.over_time")
-    numbers.refuse_unless_ascending("the times")
-    rows = numbers.rows
-    return np.pad(rows, ((0, 0), (0, 4 - rows.shape[1])))
+    return _rows_of(given, (TIME, FORCE_X, FORCE_Y, TORQUE), "force.over_time")
 
 
 def motion_of(floor: Floor) -> FloatArray:
@@ -56,8 +54,12 @@ def motion_of(floor: Floor) -> FloatArray:
     InputError
         If they cannot be read.
     """
-    columns = (TIME, SPEED_X, SPEED_Y, SPIN)
-    numbers = numbers_of(floor.over_time, columns, 3, MAX_DRIVE, "floor.over_time")
+    return _rows_of(floor.over_time, (TIME, SPEED_X, SPEED_Y, SPIN), "floor.over_time")
+
+
+def _rows_of(given: str | Rows, columns: tuple[InputColumn, ...], name: str) -> FloatArray:
+    """Rows (n, 4) that may lack the last column, which is then 0."""
+    numbers = numbers_of(given, columns, 3, MAX_DRIVE, name)
     numbers.refuse_unless_ascending("the times")
     rows = numbers.rows
     return np.pad(rows, ((0, 0), (0, 4 - rows.shape[1])))

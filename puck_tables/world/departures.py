@@ -154,17 +154,18 @@ def keep_flight(game: Game, i: int) -> None:
 
 
 @inlined
+def _start(game: Game, i: int, t: float, room: Room) -> int:
+    """The flight of a disc alone, from its state, over the floor that it is on; its kind."""
+    floor = floor_of(game.surface, game.discs[i])
+    return start_flight(
+        room.states[i], game.discs[i], floor, game.curves, t, room.work, game.flights[i]
+    )
+
+
+@inlined
 def take_off(game: Game, i: int, t: float, room: Room) -> None:
     """A new flight of a disc alone, from its state; what it was is kept."""
-    game.kinds[i] = start_flight(
-        room.states[i],
-        game.discs[i],
-        floor_of(game.surface, game.discs[i]),
-        game.curves,
-        t,
-        room.work,
-        game.flights[i],
-    )
+    game.kinds[i] = _start(game, i, t, room)
     game.group[i] = 0
     keep_flight(game, i)
 
@@ -175,9 +176,7 @@ def stay(game: Game, i: int, t: float, room: Room) -> None:
     state = room.states[i]
     floor = floor_of(game.surface, game.discs[i])
     state[VX], state[VY], state[SPIN] = floor_velocity(floor, state[X], state[Y])
-    game.kinds[i] = start_flight(
-        state, game.discs[i], floor, game.curves, t, room.work, game.flights[i]
-    )
+    game.kinds[i] = _start(game, i, t, room)
     keep_flight(game, i)
 
 
@@ -230,15 +229,7 @@ def drive_on(game: Game, i: int, t: float, room: Room) -> None:
     if game.kinds[i] == PATH:
         piece += 1
     piece = max(piece, game.drives[i, 0])  # a way that is led anew
-    start_flight(
-        room.states[i],
-        game.discs[i],
-        floor_of(game.surface, game.discs[i]),
-        game.curves,
-        t,
-        room.work,
-        game.flights[i],
-    )
+    _start(game, i, t, room)
     if piece < last and game.pieces[piece, DURATION] > 0.0:
         row = game.pieces[piece]
         game.kinds[i] = PATH
@@ -347,15 +338,7 @@ def leave(game: Game, i: int, t: float, what: int, partner: int, room: Room) -> 
     vx, vy, spin = room.states[i, VX], room.states[i, VY], room.states[i, SPIN]
     game.events[game.counts[N_EVENTS] - 1, GOT] = kinetic(game.discs[i], vx, vy, spin)
     room.states[i, VX] = room.states[i, VY] = room.states[i, SPIN] = 0.0
-    start_flight(
-        room.states[i],
-        game.discs[i],
-        floor_of(game.surface, game.discs[i]),
-        game.curves,
-        t,
-        room.work,
-        game.flights[i],
-    )
+    _start(game, i, t, room)
     game.flights[i, DRIFT_X] = game.flights[i, DRIFT_Y] = 0.0
     game.kinds[i] = GONE
     game.group[i] = 0

@@ -20,7 +20,7 @@ from puck_tables.scene.over_time import (
     motion_of,
     over_time,
 )
-from puck_tables.scene.parts import Wall
+from puck_tables.scene.parts import Floor, Wall
 from puck_tables.scene.pieces import Arc, PieceSpec, Post
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.stretches import belts_of
@@ -99,6 +99,15 @@ def shipped_curves() -> Curves:
     )  # fmt: skip
 
 
+def _surface_of(floor: Floor) -> Surface:
+    """How a floor moves in the end: as its fastest belt."""
+    belts = belts_of(floor)
+    (vx, vy), spin, changes = belts[np.hypot(*belts.T).argmax()].tolist(), floor.turning, 0.0
+    if floor.over_time:
+        (vx, vy, spin), changes = motion_of(floor)[-1, 1:].tolist(), 1.0  # it goes on so
+    return Surface(vx, vy, *floor.centre, spin, 0.0, 0.0, 0.0, changes)
+
+
 def prepared(scene: SceneSpec, order: Whole | None = None) -> Start:
     """A scene without ranges at its start; its pucks in an order, else that of their places.
 
@@ -112,12 +121,7 @@ def prepared(scene: SceneSpec, order: Whole | None = None) -> Start:
     count = len(pieces)
     lies = len(borders_of(scene)) + len(scene.floor.patches)
     discs, states = np.zeros((count, layout.DISC_COLUMNS + lies)), np.zeros((count, 6))
-    belts = belts_of(scene.floor)
-    fastest_belt = belts[np.hypot(*belts.T).argmax()].tolist()
-    (vx, vy), spin, changes = fastest_belt, scene.floor.turning, 0.0
-    if scene.floor.over_time:
-        (vx, vy, spin), changes = motion_of(scene.floor)[-1, 1:].tolist(), 1.0  # it goes on so
-    surface = Surface(vx, vy, *scene.floor.centre, spin, 0.0, 0.0, 0.0, changes)
+    surface = _surface_of(scene.floor)
     spans = np.zeros((count, 2), np.int64)
     tides: list[FloatArray] = []
     drives, ways = np.zeros((count, 2), np.int64), [np.zeros((0, PIECE_COLUMNS))]
