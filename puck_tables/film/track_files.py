@@ -32,8 +32,8 @@ def read_tracks(
     mark) and spreadsheets (.xlsx, .ods), the files and exports of Tracker (.trk, .trz), the tables
     of trackpy, DeepLabCut and SLEAP, the HDF5 files of the latter two, exports of Qualisys, Vicon
     and OptiTrack, .trc and C3D files, tables of ROS, and what ``puck track`` saves (HDF5, JSON,
-    JSON lines).  What a file does not say is asked for, never guessed; what was found and done stands
-    in the ``notes`` of a track.
+    JSON lines).  What a file does not say is asked for, never guessed; what was found and done
+    stands in the ``notes`` of a track.
 
     Parameters
     ----------
