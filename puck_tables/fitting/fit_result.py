@@ -162,11 +162,12 @@ class Fit(Result):
                 "the puck was found with friction over slip speed, which a free puck has not: put "
                 "it into a Scene with the law that fit.friction_over() gives"
             )
-        if self.drag != 0.0:
-            raise InputError(
-                f"the puck was found with drag of {self.drag:.3g}/s, which a free puck has not: "
-                "put it into a Scene with Drag"
-            )
+        for name in ("drag", "air", "spin_drag"):
+            if (number := self.numbers.get(name)) is not None and number.value != 0.0:
+                raise InputError(
+                    f"the puck was found with {name} of {number.value:.3g} {number.unit}, which a "
+                    "free puck has not: put it into a Scene with Drag"
+                )
         return self.puck.simulate(launch.velocity, launch.spin, **how)
 
     @property
@@ -216,6 +217,12 @@ class Fit(Result):
                     f"best may be {way}. So it has no standard error, and its interval, and errors "
                     "and intervals of the rest, may mislead"
                 )
+        air, mass = self.numbers.get("air"), self.given.mass
+        if air is not None and mass != 1.0 and math.isfinite(air.error):
+            said.append(
+                f"air is {air.value * mass:.4g} +- {air.error * mass:.2g} kg/m over the mass of "
+                f"{mass:g} kg: drag.quadratic of a scene"
+            )
         said += (*self.not_met, *self.doubts)
         # stamps that jitter leave no drift, as another law does
         if self.jitter == 0.0 and self.noise[0] > 0.0 and self.drift > NO_PATTERN:

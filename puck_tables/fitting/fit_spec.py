@@ -16,7 +16,7 @@ from puck_tables._core.real import instance
 from puck_tables.contact.laws import law_of
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
-from puck_tables.fitting.forward_model import Moving, SpeedFriction
+from puck_tables.fitting.forward_model import Moving
 from puck_tables.fitting.impact_law import Rims
 from puck_tables.fitting.parameters import (
     ALL,
@@ -36,10 +36,12 @@ from puck_tables.fitting.parameters import (
     prior_of,
     refuse_unknown,
 )
+from puck_tables.fitting.speed_motion import Drags, SpeedFriction
 from puck_tables.fitting.unit_motions import unit_motions_of
 from puck_tables.puck import Puck
 
-_KIND = ("gyration", "inner", "drag")  # change the curve itself
+_KIND = ("gyration", "inner", "drag", "air", "spin_drag")  # change the curve itself
+_DRAGS = ("air", "spin_drag")  # of which motions are integrated
 _CLASHES = (("friction", "decel"), ("delta", "height"))
 _TINY = 1e-30
 _LEAST = 1e-9
@@ -189,7 +191,7 @@ class FitSpec:
         puck = self.puck
         numbers = {name: float(getattr(puck, name)) for name in
                    ("radius", "height", "friction", "gravity", "gyration")}  # fmt: skip
-        numbers["drag"] = 0.0
+        numbers.update(dict.fromkeys(("drag", *_DRAGS), 0.0))
         if _is_annulus(puck):
             numbers["inner"] = float(puck.body.law.name.partition(":")[2])
         return {**numbers, **self.of_impacts, **{n: v for n, v in self.fixed.items() if n in PUCK}}
@@ -278,7 +280,32 @@ class FitSpec:
 
     def changes_motion(self, name: str) -> bool:
         """Whether a parameter is none of the scales."""
-        return name in _KIND or name in NODES
+        scale = self.integrates and name in ("friction", "decel", "gravity")
+        return name in _KIND or name in NODES or scale
+
+    @property
+    def integrates(self) -> bool:
+        """Whether drags are found, or known, with which no look-up has the motions."""
+        return any(name in self.free or name in self.fixed for name in _DRAGS)
+
+    def with_linear_drag(self) -> FitSpec:
+        """The same with linear drag in place of those that are integrated: to begin from.
+
+        Raises
+        ------
+        InputError
+            If pressure is not uniform.
+        """
+        if self.puck.body.law.name != "uniform" or "inner" in (*self.free, *self.fixed):
+            raise InputError(
+                f"{' and '.join(n for n in _DRAGS if n in (*self.free, *self.fixed))} are found of "
+                f"uniform pressure alone, not of {self.puck.body.law.name}"
+            )
+        free = tuple(name for name in self.free if name not in _DRAGS)
+        plain = "drag" in self.free or "drag" in self.fixed
+        bounds = self.bounds if plain else {**self.bounds, "drag": (0.0, MOST["drag"])}
+        fixed = {name: value for name, value in self.fixed.items() if name not in _DRAGS}
+        return replace(self, free=free if plain else (*free, "drag"), fixed=fixed, bounds=bounds)
 
     def moving(self, result: Mapping[str, float], tall: bool) -> Moving:
         """What moves the puck."""
@@ -287,11 +314,12 @@ class FitSpec:
         pressure: Any = self.puck.body.law
         if "inner" in result or "inner" in self.fixed:
             pressure = f"annulus:{numbers['inner']!r}"
-        motions = unit_motions_of(pressure, numbers["gyration"], tall)
+        motions = unit_motions_of(pressure, numbers["gyration"], tall and not self.integrates)
         by_speed = None
-        if self.speeds:
-            law = self.speed_law(numbers)
-            by_speed = SpeedFriction(law, numbers["gravity"], numbers["gyration"])
+        if self.speeds or self.integrates:
+            law = self.speed_law(numbers) if self.speeds else float(decel / numbers["gravity"])
+            drags = Drags(numbers["drag"], *(numbers[name] for name in _DRAGS))
+            by_speed = SpeedFriction(law, numbers["gravity"], numbers["gyration"], drags)
         # while a minimum is sought J, r and h may lead beyond; where it lies is judged in the end
         return Moving(
             decel, min(delta, motions.highest), radius, numbers["drag"], motions, by_speed
@@ -310,7 +338,7 @@ class FitSpec:
         InputError
             If friction is not what is found, or something is found that such a puck has not.
         """
-        for name in ("decel", "gravity", "drag", "inner"):
+        for name in ("decel", "gravity", "drag", *_DRAGS, "inner"):
             if name in self.free or name in self.fixed:
                 raise InputError(
                     f"{name} cannot be found or fixed beside a friction over slip speed: leave it "
@@ -334,6 +362,7 @@ class FitSpec:
 
     def highest(self, tall: bool) -> float:
         """The largest δ of which motions are known, of an annulus that is free as of the puck's."""
+        tall = tall and not self.integrates
         pressure = self.puck.body.law
         if "inner" in self.fixed:
             pressure = law_of(f"annulus:{self.fixed['inner']!r}")

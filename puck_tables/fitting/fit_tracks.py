@@ -12,14 +12,16 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from puck_tables._core.real import instance
+from puck_tables.errors import InputError
 from puck_tables.film.puck_track import Track
 from puck_tables.fitting.coupled_fit import Impact, couple, impacts_apart, impacts_coupled, not_met
+from puck_tables.fitting.drag_start import begun_with_drags
 from puck_tables.fitting.estimate import Estimate, estimate
 from puck_tables.fitting.fit_result import Fit
 from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.identifiability import not_identifiable
 from puck_tables.fitting.impact_matching import Line
-from puck_tables.fitting.initial_estimate import initial_estimate
+from puck_tables.fitting.initial_estimate import initial_estimate, is_clean
 from puck_tables.fitting.inputs import (
     Inputs,
     begin_jitter,
@@ -32,6 +34,7 @@ from puck_tables.fitting.inputs import (
     refuse_tipping,
 )
 from puck_tables.fitting.judgement import JudgedMotion, judged_certainty, judged_motion
+from puck_tables.fitting.least_squares import ROBUST, minimise
 from puck_tables.fitting.misfit import misfit
 from puck_tables.fitting.model_comparison import (
     HeldOut,
@@ -42,15 +45,13 @@ from puck_tables.fitting.model_comparison import (
     predicted,
     split,
     variants_of,
+    with_drags,
 )
 from puck_tables.fitting.numbers import numbers_of
 from puck_tables.fitting.observations import Observations, noise_of
 from puck_tables.fitting.other_minima import without_spin
 from puck_tables.fitting.problem import Known, Problem
-from puck_tables.fitting.residuals import (
-    drift,
-    runs,
-)
+from puck_tables.fitting.residuals import NO_PATTERN, NOISY, drift, runs
 from puck_tables.fitting.touches import SlideIndex, slides_apart
 from puck_tables.puck import Puck
 
@@ -94,7 +95,8 @@ def fit(
     free : names, optional
         What is found besides the launches: friction or decel (J = f g), delta or height
         (δ = 2fh/r), radius, gravity, gyration, inner (radius of an annulus), drag (1/s, of speed
-        and spin alike: for a flat uniform puck f(u) = f + (drag/g) u of the slip speed u).
+        and spin alike: for a flat uniform puck f(u) = f + (drag/g) u of the slip speed u), air
+        (1/m, of the speed squared: drag.quadratic of a scene over the mass), spin_drag (1/s).
         Without it friction, and delta where the puck has no height.
     fixed : values by name, held; also launch_spin and the like
     prior : (value, standard deviation) by name
@@ -170,6 +172,8 @@ def fit(
     films = observations_of(tracks, since, until, keep_all, checked_rows(rows), puck.radius)
     observed = _observe(films, inputs)
     variants = variants_of(spec.alone(), laws)
+    if variants and spec.integrates:
+        raise InputError("pressure laws are not compared beside air or spin_drag: leave out one")
     steps = 1 + len(variants) + (inputs.hold_out is not None)
     say = progress or (lambda done, total: None)
     estimates = _estimate_all(inputs, observed)
@@ -232,7 +236,10 @@ def _observe(films: tuple[Observations, ...], inputs: Inputs) -> _Observed:
 
 def _estimate_all(inputs: Inputs, observed: _Observed) -> _Estimates:
     """The estimate, from slides apart to joined ones, from one friction to one over slip speed."""
-    best = slides = initial_estimate(observed.problem, inputs.known, refit=True)
+    if inputs.spec.integrates:
+        best = slides = _dragged(observed.problem, inputs.known)
+    else:
+        best = slides = initial_estimate(observed.problem, inputs.known, refit=True)
     untied = ""
     if inputs.impacts:
         best, untied = couple(
@@ -244,6 +251,31 @@ def _estimate_all(inputs: Inputs, observed: _Observed) -> _Estimates:
         best = over_speeds(best, inputs.speeds, inputs.between, inputs.known)
         refuse_opening(best)
     return _Estimates(slides, best, constant, untied)
+
+
+def _dragged(problem: Problem, known: Known) -> Estimate:
+    """The estimate with drags of which no look-up has the motions.
+
+    Begun from what slows the puck; where that cannot be told, or does not lead to a motion that
+    fits, from one with linear drag.  Frames at the ends are looked at only then.
+    """
+    problem.spec.with_linear_drag()  # refuses what has no such motions
+    begun = begun_with_drags(problem)
+    if begun is not None:
+        x, _ = minimise(*begun, ROBUST)
+        result = estimate(problem, x, known)
+        if is_clean(result, NOISY, NO_PATTERN):
+            refuse_opening(result)
+            return result
+    linear = replace(problem, spec=problem.spec.with_linear_drag())
+    result = with_drags(initial_estimate(linear, known, refit=False), problem.spec, known)
+    if not is_clean(result, NOISY, NO_PATTERN):
+        cut = initial_estimate(linear, known, refit=True)
+        sizes = ([film.time.size for film in one.films] for one in (cut.problem, problem))
+        if next(sizes) != next(sizes):
+            result = with_drags(cut, problem.spec, known)
+    refuse_opening(result)
+    return result
 
 
 def _compared(
@@ -364,7 +396,7 @@ def _held_out(best: Estimate, wanted: float | tuple[str, ...], known: Known) -> 
     problem = best.problem
     films, later = split(problem.films, wanted, problem.noise[0])
     fewer = problem.with_films(films)
-    if problem.impact_specs or problem.spec.speeds:
+    if problem.impact_specs or problem.spec.speeds or problem.spec.integrates:
         part = estimate(fewer, best.x, known)
     else:
         part = initial_estimate(fewer, known, refit=False)

@@ -63,6 +63,10 @@ class Inputs:
         checked = checked_speeds(speeds, between)
         if checked:
             spec.over(checked, between)
+        if spec.integrates and (impacts or lines):
+            raise InputError(
+                "air and spin_drag are not found beside impacts: leave one of the two out"
+            )
         names: Any = (hold_out,) if isinstance(hold_out, str) else hold_out
         if isinstance(names, list | tuple):
             names = tuple(names)
@@ -286,13 +290,15 @@ def refuse_opening(result: Estimate) -> None:
     """
     problem = result.problem
     numbers = problem.numbers_at(result.x)
-    law = problem.spec.speed_law(numbers)
     _, delta, _ = problem.spec.scales(numbers)
-    largest = float(delta * law.largest(law.top_speed) / law(0.0))
+    largest = float(delta)
+    if problem.spec.speeds:
+        law = problem.spec.speed_law(numbers)
+        largest *= float(law.largest(law.top_speed) / law(0.0))
     if largest > 1.0:
         raise InputError(
             f"where friction is largest delta = 2 f h/r is {largest:.4g}: a friction over slip "
-            "speed is found where it is at most 1, so fix a lower height"
+            "speed, air and spin_drag are found where it is at most 1, so fix a lower height"
         )
 
 

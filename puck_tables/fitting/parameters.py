@@ -34,6 +34,8 @@ PUCK = {
     ),
     "inner": Parameter("1", 0.0, 1.0, 0.5, "inner radius of an annulus over r"),
     "drag": Parameter("1/s", -math.inf, math.inf, 1.0, "linear drag, of speed and of spin"),
+    "air": Parameter("1/m", 0.0, math.inf, 1.0, "drag of the speed squared over the mass"),
+    "spin_drag": Parameter("1/s", 0.0, math.inf, 1.0, "drag of the spin alone"),
     "readout": Parameter("s", -1.0, 1.0, 0.02, "time in which the lines of a picture are read"),
     "restitution": Parameter("1", 0.0, 1.0, 1.0, "restitution e of a wall"),
     "rim_friction": Parameter("1", 0.0, math.inf, 1.0, "friction of the rim on a wall"),
@@ -71,7 +73,8 @@ OF_IMPACTS = {**OF_WALLS, **OF_PAIRS}
 # more of it has no puck on a film: where a fit runs away it ends here; a friction is far larger
 # where units are wrong, which is then said
 MOST = {
-    "friction": 1e6, "decel": 1e7, "gravity": 1e3, "drag": 100.0, "rim_friction": 100.0,
+    "friction": 1e6, "decel": 1e7, "gravity": 1e3, "drag": 100.0, "air": 100.0,
+    "spin_drag": 100.0, "rim_friction": 100.0,
     "pair_friction": 100.0, "mass_ratio": 1e3, **dict.fromkeys(NODES, 10.0),
 }  # fmt: skip
 TALLEST, LARGEST, SMALLEST = 100.0, 1e6, 1e-6  # times the radius; m
