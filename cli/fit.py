@@ -111,8 +111,8 @@ def _held_out(text: str, option: str) -> float | list[str]:
     "wanted", dict,
     click.option("--free", metavar="NAMES", callback=read_as(names),
                  help="What is found, with commas: friction, delta, height, decel, gyration, inner "
-                 "(of an annulus), drag, air, spin_drag, radius, gravity; of impacts tangential, "
-                 "mass_ratio.  "
+                 "(of an annulus), drag, air, spin_drag, slope_x, slope_y, belt_x, belt_y, radius, "
+                 "gravity; of impacts tangential, mass_ratio.  "
                  "[default: friction and delta, friction alone if --height is given]"),
     click.option("--fix", "fixed", multiple=True, metavar="NAME=VALUE", callback=read_as(_held),
                  help="Hold a number; also launch_spin and the like."),
@@ -151,9 +151,13 @@ def _held_out(text: str, option: str) -> float | list[str]:
     click.option("--between", type=click.Choice(["cubic", "linear"]), default="cubic",
                  show_default=True, help="How friction goes between --slip-speeds; cubic, as the "
                  "law of a scene, rises and falls only where f at them does."),
+    click.option("--law", type=click.Choice(["stribeck", "hyperbola", "two-valued"]),
+                 help="Find friction over slip speed by a law with three numbers: friction (of "
+                 "fast slip), friction_rest, law_speed."),
     click.option("--laws", metavar="LAW,...", callback=read_as(names),
-                 help="Compare pressure laws; with +drag also a coefficient that changes with the "
-                 "slip speed: uniform,hertz,annulus:0.8,uniform+drag."),
+                 help="Compare pressure laws, with +drag, +air, +slope, +belt, +stribeck, "
+                 "+hyperbola or +two-valued also floors: uniform,hertz,annulus:0.8,uniform+drag; "
+                 "floors: all of these, and which the film supports."),
     click.option("--hold-out", metavar="SHARE|NAMES", callback=read_as(_held_out),
                  help="Predict this last share of each track, or the later half of the tracks "
                  "named, from the rest."),

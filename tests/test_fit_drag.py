@@ -128,7 +128,7 @@ def test_drag_of_the_spin_is_found():
 def test_what_does_not_go_with_air_is_refused_and_nothing_is_played():
     track, truth = film(np.random.default_rng(5))
     for how, words in (
-        ({"impacts": True}, "beside impacts"), ({"laws": ["uniform"]}, "not compared"),
+        ({"impacts": True}, "beside impacts"),
         ({"slip_speeds": [0.0, 9.0]}, "beside a friction over slip speed"),
     ):  # fmt: skip
         with pytest.raises(pt.InputError, match=words):

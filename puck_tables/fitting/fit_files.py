@@ -16,6 +16,7 @@ from puck_tables.errors import InputError
 from puck_tables.fitting.coupled_fit import Impact
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.numbers import EstimatedLaunch, Number
+from puck_tables.fitting.parameters import INTEGRATED
 from puck_tables.io.dataset import Variable, variable
 from puck_tables.puck import Puck
 
@@ -130,7 +131,7 @@ def puck_and_launch(
         puck = Puck(**{name: data["puck"][name] for name in _PUCK})
         drags = {
             name: real(name, data["numbers"][name]["value"], "")
-            for name in ("drag", "air", "spin_drag") if name in data["numbers"]
+            for name in ("drag", *INTEGRATED) if name in data["numbers"]
         }  # fmt: skip
         chosen = launches[_chosen(list(launches), track, path)]
         velocity = one_velocity(chosen["velocity"])
@@ -150,7 +151,7 @@ def puck_and_launch(
         if drag != 0.0:
             raise InputError(
                 f"{path}: this puck was found with {name} of {drag:.3g}, which a free puck has "
-                "not: make a scene of it, with drag"
+                "not: make a scene of it"
             )
     return puck, velocity, spin, unknown
 

@@ -28,9 +28,10 @@ from puck_tables.fitting.fit_files import (
     without_nan,
 )
 from puck_tables.fitting.identifiability import doubts, rounded, taken_for_granted
-from puck_tables.fitting.model_comparison import HeldOut, LawScore, law_over
+from puck_tables.fitting.model_comparison import HeldOut, LawScore, law_over, verdict
 from puck_tables.fitting.numbers import EstimatedLaunch, Number
 from puck_tables.fitting.observations import Observations
+from puck_tables.fitting.parameters import INTEGRATED
 from puck_tables.fitting.problem import Known
 from puck_tables.fitting.residuals import JITTERY, NO_PATTERN, SideForces, lengthways, misfits
 from puck_tables.io.dataset import Dataset
@@ -162,13 +163,18 @@ class Fit(Result):
                 "the puck was found with friction over slip speed, which a free puck has not: put "
                 "it into a Scene with the law that fit.friction_over() gives"
             )
-        for name in ("drag", "air", "spin_drag"):
+        for name in ("drag", *INTEGRATED):
             if (number := self.numbers.get(name)) is not None and number.value != 0.0:
                 raise InputError(
                     f"the puck was found with {name} of {number.value:.3g} {number.unit}, which a "
-                    "free puck has not: put it into a Scene with Drag"
+                    "free puck has not: put it into a Scene"
                 )
         return self.puck.simulate(launch.velocity, launch.spin, **how)
+
+    @property
+    def verdict(self) -> str:
+        """Which of the laws compared the film supports, in a sentence; '' where none were."""
+        return verdict(self.laws)
 
     @property
     def complaints(self) -> tuple[str, ...]:
@@ -290,7 +296,7 @@ class Fit(Result):
             "not_determined": list(self.blind), "astray": self.astray, "doubts": self.doubts,
             "remarks": list(self.remarks),
             "complaints": list(self.complaints),
-            "laws": [one._asdict() for one in self.laws],
+            "laws": [one._asdict() for one in self.laws], "verdict": self.verdict,
             "held_out": None,
             "slip_speeds": list(self.estimate.problem.spec.speeds),
             "between": self.estimate.problem.spec.between,

@@ -15,7 +15,6 @@ from puck_tables._core.real import instance
 from puck_tables.errors import InputError
 from puck_tables.film.puck_track import Track
 from puck_tables.fitting.coupled_fit import Impact, couple, impacts_apart, impacts_coupled, not_met
-from puck_tables.fitting.drag_start import begun_with_drags
 from puck_tables.fitting.estimate import Estimate, estimate
 from puck_tables.fitting.fit_result import Fit
 from puck_tables.fitting.fit_spec import FitSpec
@@ -41,6 +40,7 @@ from puck_tables.fitting.model_comparison import (
     LawScore,
     chi2_under,
     compare,
+    on_a_floor,
     over_speeds,
     predicted,
     split,
@@ -50,8 +50,10 @@ from puck_tables.fitting.model_comparison import (
 from puck_tables.fitting.numbers import numbers_of
 from puck_tables.fitting.observations import Observations, noise_of
 from puck_tables.fitting.other_minima import without_spin
+from puck_tables.fitting.parameters import DRAGS
 from puck_tables.fitting.problem import Known, Problem
 from puck_tables.fitting.residuals import NO_PATTERN, NOISY, drift, runs
+from puck_tables.fitting.slowing import begun_from_slowing
 from puck_tables.fitting.touches import SlideIndex, slides_apart
 from puck_tables.puck import Puck
 
@@ -78,6 +80,7 @@ def fit(
     walls: Sequence[Line] = (),
     slip_speeds: Sequence[float] | None = None,
     between: str = "cubic",
+    law: str | None = None,
     laws: Sequence[str] = (),
     hold_out: float | Sequence[str] | None = None,
     progress: Progress | None = None,
@@ -96,7 +99,8 @@ def fit(
         What is found besides the launches: friction or decel (J = f g), delta or height
         (δ = 2fh/r), radius, gravity, gyration, inner (radius of an annulus), drag (1/s, of speed
         and spin alike: for a flat uniform puck f(u) = f + (drag/g) u of the slip speed u), air
-        (1/m, of the speed squared: drag.quadratic of a scene over the mass), spin_drag (1/s).
+        (1/m, of the speed squared: drag.quadratic of a scene over the mass), spin_drag (1/s),
+        slope_x and slope_y (pull over g), belt_x and belt_y (m/s, of the floor).
         Without it friction, and delta where the puck has no height.
     fixed : values by name, held; also launch_spin and the like
     prior : (value, standard deviation) by name
@@ -122,8 +126,11 @@ def fit(
         with u the slip speed.  It is one number where they are left out.
     between : cubic or linear, f between these speeds
         As :class:`SpeedLaw` takes it: a cubic that rises and falls only where f at the speeds does.
-    laws : names of pressure laws to compare, as :class:`Puck` takes them; with '+drag' of those
-        with drag
+    law : 'stribeck', 'hyperbola' or 'two-valued', of friction over slip speed by three numbers
+        friction (of fast slip), friction_rest and law_speed (m/s): :mod:`.named_laws`.
+    laws : names of pressure laws to compare, as :class:`Puck` takes them; with +drag, +air, +slope,
+        +belt, +stribeck, +hyperbola or +two-valued what is then found, too; 'floors': all of these
+        of uniform pressure, and :attr:`Fit.verdict` says which the film supports
     hold_out : share of the moving frames at the end of each track, or names of tracks
         Fitted without them (of a track named: without its later half), and predicted.
     progress : callable (done, total), optional
@@ -168,12 +175,12 @@ def fit(
         puck, free, fixed or {}, prior or {}, bounds or {}, start or {}, impacts or bool(lines),
         rows is not None,
     )  # fmt: skip
+    if law is not None:
+        spec = spec.with_law(law)
     inputs = Inputs.of(spec, noise, jitter, slip_speeds, between, impacts, lines, hold_out)
     films = observations_of(tracks, since, until, keep_all, checked_rows(rows), puck.radius)
     observed = _observe(films, inputs)
     variants = variants_of(spec.alone(), laws)
-    if variants and spec.integrates:
-        raise InputError("pressure laws are not compared beside air or spin_drag: leave out one")
     steps = 1 + len(variants) + (inputs.hold_out is not None)
     say = progress or (lambda done, total: None)
     estimates = _estimate_all(inputs, observed)
@@ -237,7 +244,7 @@ def _observe(films: tuple[Observations, ...], inputs: Inputs) -> _Observed:
 def _estimate_all(inputs: Inputs, observed: _Observed) -> _Estimates:
     """The estimate, from slides apart to joined ones, from one friction to one over slip speed."""
     if inputs.spec.integrates:
-        best = slides = _dragged(observed.problem, inputs.known)
+        best = slides = _integrated(observed.problem, inputs.known)
     else:
         best = slides = initial_estimate(observed.problem, inputs.known, refit=True)
     untied = ""
@@ -253,20 +260,24 @@ def _estimate_all(inputs: Inputs, observed: _Observed) -> _Estimates:
     return _Estimates(slides, best, constant, untied)
 
 
-def _dragged(problem: Problem, known: Known) -> Estimate:
-    """The estimate with drags of which no look-up has the motions.
+def _integrated(problem: Problem, known: Known) -> Estimate:
+    """The estimate with what no look-up has the motions of: drags, a slope, a belt, a law.
 
     Begun from what slows the puck; where that cannot be told, or does not lead to a motion that
     fits, from one with linear drag.  Frames at the ends are looked at only then.
     """
-    problem.spec.with_linear_drag()  # refuses what has no such motions
-    begun = begun_with_drags(problem)
+    begun = begun_from_slowing(problem)
     if begun is not None:
         x, _ = minimise(*begun, ROBUST)
         result = estimate(problem, x, known)
-        if is_clean(result, NOISY, NO_PATTERN):
+        if is_clean(result, NOISY, NO_PATTERN) or not {*DRAGS} >= {*problem.spec.integrated}:
             refuse_opening(result)
             return result
+    if not {*DRAGS} >= {*problem.spec.integrated}:
+        raise InputError(
+            f"{' and '.join(problem.spec.integrated)} are found of tracks with angles that can be "
+            "followed from frame to frame, or along a line: film a mark on the puck"
+        )
     linear = replace(problem, spec=problem.spec.with_linear_drag())
     result = with_drags(initial_estimate(linear, known, refit=False), problem.spec, known)
     if not is_clean(result, NOISY, NO_PATTERN):
@@ -288,6 +299,8 @@ def _compared(
         same = replace(
             observed.problem, spec=one, noise=noise, jitter=estimates.slides.problem.jitter
         )
+        if one.integrates:
+            return on_a_floor(same, known._replace(jitter=True))
         return initial_estimate(same, known._replace(jitter=True), refit=False)
 
     return compare(variants, observed.problem.noise, inputs.known, of_law)

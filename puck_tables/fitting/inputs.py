@@ -63,9 +63,12 @@ class Inputs:
         checked = checked_speeds(speeds, between)
         if checked:
             spec.over(checked, between)
+        if spec.integrates:
+            spec.refuse_integrated()
         if spec.integrates and (impacts or lines):
             raise InputError(
-                "air and spin_drag are not found beside impacts: leave one of the two out"
+                f"{' and '.join(spec.integrated)} cannot be found beside impacts: leave one of "
+                "the two out"
             )
         names: Any = (hold_out,) if isinstance(hold_out, str) else hold_out
         if isinstance(names, list | tuple):
@@ -292,13 +295,13 @@ def refuse_opening(result: Estimate) -> None:
     numbers = problem.numbers_at(result.x)
     _, delta, _ = problem.spec.scales(numbers)
     largest = float(delta)
-    if problem.spec.speeds:
+    if problem.spec.speeds or problem.spec.law:
         law = problem.spec.speed_law(numbers)
         largest *= float(law.largest(law.top_speed) / law(0.0))
     if largest > 1.0:
         raise InputError(
             f"where friction is largest delta = 2 f h/r is {largest:.4g}: a friction over slip "
-            "speed, air and spin_drag are found where it is at most 1, so fix a lower height"
+            "speed, drags, slopes and belts are found where it is at most 1, so fix a lower height"
         )
 
 

@@ -14,15 +14,15 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
-from puck_tables.fitting.drag_start import begun_with_drags
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.initial_estimate import initial_estimate
 from puck_tables.fitting.least_squares import ROBUST, minimise
 from puck_tables.fitting.model_comparison import tried
-from puck_tables.fitting.parameters import NODES
+from puck_tables.fitting.parameters import INTEGRATED, NODES
 from puck_tables.fitting.problem import TURN, Known, Problem
 from puck_tables.fitting.residuals import AIR, NO_PATTERN, SLOPE, SideForces, forced
+from puck_tables.fitting.slowing import begun_from_slowing
 
 _FAR = 1.5  # times smaller are residuals of a reading that is told
 _NEAR = 0.01  # of the radius: it is not another one
@@ -153,7 +153,7 @@ def _by_air(result: Estimate, problem: Problem) -> _Reading | None:
     if not _may_change(spec):
         return None
     other = replace(problem, spec=replace(spec, free=(*spec.free, "air")), tall=False)
-    begun = begun_with_drags(other)
+    begun = begun_from_slowing(other)
     if begun is None:
         return None
     try:
@@ -173,7 +173,7 @@ def _air_words(air: float, spec: FitSpec) -> str:
 
 def _may_change(spec: FitSpec) -> bool:
     """Whether nothing was asked that goes with no friction over slip speed."""
-    named = {"drag", "air", "spin_drag", "inner", "decel", "gravity"} & {*spec.free, *spec.fixed}
+    named = {"drag", *INTEGRATED, "inner", "decel", "gravity"} & {*spec.free, *spec.fixed}
     uniform = spec.puck.body.law.name == "uniform"
     lifts = spec.bounds.get("delta", (0.0, 1.0))[0] >= 1.0  # under such laws no base does
     return uniform and not named and not spec.speeds and not lifts and "friction" in spec.free

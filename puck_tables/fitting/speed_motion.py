@@ -24,9 +24,9 @@ from puck_tables.kernels.compile import allocating, inlined, kernel, patience
 from puck_tables.kernels.speed_quadrature_kernel import FINE, integrals_at
 
 _STEP, _STEPS = 0.08, 440  # of which friction alone takes half
-_REST = 1e-7  # of the slip at the launch
+_REST = 1e-6  # of the slip at the launch
 _ROOM = 48
-V, RIM, HEADING, X, Y, TURN, TIME = range(7)
+AHEAD, ASIDE, RIM, X, Y, TURN, TIME = range(7)  # speeds along x and y, of the rim; place, angle
 _ANY = np.zeros((1, 4)), np.zeros(2)  # of no law
 _integrals: Any = inlined(closed_form.shape_integrals)
 
@@ -43,12 +43,17 @@ class Drags(NamedTuple):
 
 
 class SpeedFriction(NamedTuple):
-    """Friction over slip speed, or one for all, gravity m/s², radius of gyration over r, drags."""
+    """Friction over slip speed, or one for all, gravity m/s², radius of gyration over r, drags.
+
+    ``push``: m/s² along x and y, of a slope; ``belt``: m/s, of the floor along x and y.
+    """
 
     law: SpeedLaw | float
     gravity: float
     gyration: float
     drags: Drags = Drags()
+    push: tuple[float, float] = (0.0, 0.0)
+    belt: tuple[float, float] = (0.0, 0.0)
 
 
 @kernel
@@ -58,7 +63,7 @@ def _rates(
     out: FloatArray,
 ) -> None:  # fmt: skip
     """d/ds of a state; ``even``: one friction for all speeds, 0: the law; ``height`` 2h/r."""
-    v, rim = y[V], abs(y[RIM])
+    v, rim = math.hypot(y[AHEAD], y[ASIDE]), abs(y[RIM])
     slip = math.sqrt(v * v + rim * rim)
     fast = rim > v
     ratio = v / rim if fast else (rim / v if v > 0.0 else 0.0)
@@ -73,14 +78,16 @@ def _rates(
     bottom = 1.0 - height * height * sine * sine * b * (b - d)
     ahead, turning = (drags[0] + drags[1] * v) / g, (drags[0] + drags[2]) / g
     slowing = cosine * cosine * a + sine * sine * inertia * d
-    pace = slip / (slowing + slip * max(ahead, turning))  # dt g/ds
+    pushed = (abs(drags[3]) + abs(drags[4])) / g
+    pace = slip / (slowing + slip * max(ahead, turning) + pushed)  # dt g/ds
     spun = d + height * height * cosine * cosine * a * b * e / bottom
-    out[V] = -pace * (cosine * a / bottom + ahead * v)
+    along, across = a / (bottom * slip) + ahead, sine * height * a * b / (bottom * slip)
+    out[AHEAD] = -pace * (along * y[AHEAD] - across * y[ASIDE] - drags[3] / g)
+    out[ASIDE] = -pace * (along * y[ASIDE] + across * y[AHEAD] - drags[4] / g)
     out[RIM] = -pace * (inertia * sine * spun + turning * y[RIM])
-    out[HEADING] = -pace * sine * height * a * b / (bottom * slip)
     out[TIME] = pace / g
-    out[X] = out[TIME] * v * math.cos(y[HEADING])
-    out[Y] = out[TIME] * v * math.sin(y[HEADING])
+    out[X] = out[TIME] * y[AHEAD]
+    out[Y] = out[TIME] * y[ASIDE]
     out[TURN] = out[TIME] * y[RIM] / radius
 
 
@@ -91,7 +98,7 @@ def _integrate(
 ) -> int:  # fmt: skip
     """States after each step into ``states`` (n + 1, 7), of which the first is given; how many."""
     edges, p, k, y = np.empty(_ROOM + len(breaks)), np.empty(4), np.empty((4, 7)), np.empty(7)
-    slip = math.hypot(states[0, V], states[0, RIM])
+    slip = math.hypot(math.hypot(states[0, AHEAD], states[0, ASIDE]), states[0, RIM])
     for n in range(len(states) - 1):
         patience(1)
         for stage in range(4):
@@ -103,7 +110,10 @@ def _integrate(
             states[n + 1, i] = states[n, i] + _STEP / 6.0 * (
                 k[0, i] + 2.0 * k[1, i] + 2.0 * k[2, i] + k[3, i]
             )
-        if math.hypot(states[n + 1, V], states[n + 1, RIM]) < _REST * slip:
+        left = math.hypot(
+            math.hypot(states[n + 1, AHEAD], states[n + 1, ASIDE]), states[n + 1, RIM]
+        )
+        if left < _REST * slip:
             return n + 2
     return len(states)
 
@@ -130,19 +140,21 @@ def speed_path(
     >>> path[0].round(4).tolist(), rate[0].round(4).tolist()
     ([0.375, 0.5], [0.5, 0.0])
     """
-    vx, vy = velocity.tolist()
-    speed = math.hypot(vx, vy)
-    if speed == 0.0 and spin == 0.0:
-        return np.zeros((3, times.size)), np.zeros((3, times.size))
+    law, gravity, gyration, drags, push, belt = friction
+    carried = np.array([*belt, 0.0])
+    vx, vy = (velocity - belt).tolist()
+    if vx == 0.0 and vy == 0.0 and spin == 0.0:
+        return carried[:, None] * times, np.repeat(carried[:, None], times.size, axis=1)
     states = np.zeros((_STEPS + 1, 7))
-    states[0, :3] = speed, radius * spin, math.atan2(vy, vx) if speed > 0.0 else 0.0
-    law, gravity, gyration, drags = friction
+    states[0, :3] = vx, vy, radius * spin
     even = law if isinstance(law, float) else 0.0
     parts = (_ANY[1], _ANY[0]) if isinstance(law, float) else law.pieces(law.top_speed)
-    count = _integrate(*parts, even, gravity, height, gyration**-2, radius, np.array(drags), states)
-    v, rim, heading, x, y, turn, time = states[:count].T
+    count = _integrate(
+        *parts, even, gravity, height, gyration**-2, radius, np.array([*drags, *push]), states
+    )
+    ahead, aside, rim, x, y, turn, time = states[:count].T
     known = np.stack([x, y, turn])
-    slopes = np.stack([v * np.cos(heading), v * np.sin(heading), rim / radius])
+    slopes = np.stack([ahead, aside, rim / radius])
     at = np.minimum(times, time[-1])
     n = np.clip(np.searchsorted(time, at, side="right") - 1, 0, count - 2)
     h = time[n + 1] - time[n]
@@ -152,4 +164,4 @@ def speed_path(
     kink, twist = 3.0 * rise - 2.0 * left - right, left + right - 2.0 * rise
     path = one + u * (left + u * (kink + u * twist))
     rate = np.where(times < time[-1], (left + u * (2.0 * kink + 3.0 * u * twist)) / h, 0.0)
-    return path, rate
+    return path + carried[:, None] * times, rate + carried[:, None]
