@@ -30,6 +30,8 @@ _UNITS = {
     "decel": "m/s^2",
 }  # fmt: skip
 
+_ANY_RADIUS = 0.04  # m: of a slide without spin it does not matter
+
 
 def _held(texts: tuple[str, ...], option: str) -> dict[str, float]:
     """NAME=VALUE, several times."""
@@ -92,7 +94,11 @@ def _held_out(text: str, option: str) -> float | list[str]:
 @packed(
     "known",
     dict,
-    click.option("--radius", type=LENGTH, required=True, help="Radius r of the puck in m."),
+    click.option(
+        "--radius",
+        type=LENGTH,
+        help="Radius r of the puck in m; of slides along a line without angles it does not matter.",
+    ),
     click.option(
         "--height", type=LENGTH, help="Height h in m, if known: the tilt then follows from f."
     ),
@@ -177,6 +183,7 @@ def fit(
     puck fit run.csv --radius 0.0381
     puck fit run.csv --fps 120 --unit px --scale 0.5mm --radius 0.0381 --height 0.0254
     puck fit one.csv two.csv --radius 0.0381 --laws uniform,hertz,ring --plot fit.png
+    puck fit slide.csv --unit cm
     puck fit run.csv --radius 0.0381 --prior friction=0.2:0.05 --hold-out 0.3 -o fit.json
     puck simulate --fit fit.json
     """  # noqa: D301 - click reads the backspace
@@ -184,6 +191,13 @@ def fit(
     from puck_tables.fitting.fit_tracks import fit as find
     from puck_tables.puck import Puck
 
+    tracks = read_all(files, how)
+    if known["radius"] is None:
+        if not all(one.angle is None and one.along_line for one in tracks):
+            raise InputError("give the radius of the puck (--radius 38mm)")
+        known["radius"] = _ANY_RADIUS
+        if wanted["free"] is None and known["height"] is None:
+            wanted["free"] = [] if known["friction"] is not None else ["friction"]
     puck = Puck(**not_none(known))
     free, fixed = wanted["free"], wanted["fixed"]
     for name in ("friction", "height"):
@@ -197,7 +211,6 @@ def fit(
                 raise InputError(f"--{name} and --fix {name} say the same: leave out one of them")
             if not (name == "height" and free is not None and "delta" in free):
                 fixed[name] = value
-    tracks = read_all(files, how)
     with progress("fitting") as show:
         result = find(tracks, puck, progress=show, **not_none(wanted))
     out.deliver(result)

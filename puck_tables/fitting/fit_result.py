@@ -27,7 +27,12 @@ from puck_tables.fitting.fit_files import (
     numbers_as_json,
     without_nan,
 )
-from puck_tables.fitting.identifiability import doubts, rounded, taken_for_granted
+from puck_tables.fitting.identifiability import (
+    doubts,
+    rounded,
+    spin_would_tell,
+    taken_for_granted,
+)
 from puck_tables.fitting.model_comparison import HeldOut, LawScore, law_over, verdict
 from puck_tables.fitting.numbers import EstimatedLaunch, Number
 from puck_tables.fitting.observations import Observations
@@ -207,13 +212,19 @@ class Fit(Result):
             f"{float(getattr(self.given, name)):g}"
             for name in problem.spec.freed if hasattr(self.given, name)
         ]  # fmt: skip
-        for film, spinless in zip(problem.films, problem.spinless, strict=True):
-            if spinless:
-                said.append(
-                    f"{film.name} lies along a line and shows no angles: it is taken for a slide "
-                    "without spin. If it spun, friction may be up to 1.6 times as much "
-                    "(bounds or a start of launch_spin look for that)"
-                )
+        straight = [
+            film.name for film, spinless in zip(problem.films, problem.spinless, strict=True)
+            if spinless
+        ]  # fmt: skip
+        if straight:
+            others = f" and {len(straight) - 1} more" if len(straight) > 1 else ""
+            said.append(
+                f"{straight[0]}{others} lies along a line and shows no angles: it is taken for a "
+                "slide without spin. If it spun, friction may be up to 1.6 times as much (bounds "
+                "or a start of launch_spin look for that)"
+            )
+        if all(problem.spinless) and (more := spin_would_tell(self.estimate)):
+            said.append(more)
         said += [text for film in problem.films for text in rounded(film)]
         for k, side in enumerate(self.certainty.pinned):
             if side:

@@ -176,7 +176,10 @@ def _refuse_within(film: Observations, spread: float) -> None:
 def _refuse_twice(one: Observations, other: Observations) -> None:
     """Refuse a film that is given twice: it would count for two."""
     count = min(one.time.size, other.time.size)
-    aligned = (one.place[:count] == other.place[:count]).all(axis=1).sum()
+    alike = (one.place[:count] == other.place[:count]).all(axis=1)
+    if one.straight is not None:  # gates stand where they stand
+        alike &= one.time[:count] == other.time[:count]
+    aligned = alike.sum()
     frames = [
         set(zip((film.start + film.time).tolist(), *film.place.T.tolist(), strict=True))
         for film in (one, other)
