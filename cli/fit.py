@@ -18,7 +18,7 @@ from puck_tables.cli.options import (
     outputs,
     packed,
 )
-from puck_tables.cli.printing import progress
+from puck_tables.cli.printing import note, progress
 from puck_tables.cli.track_options import read_all, track_options
 from puck_tables.cli.values import NumberParam, named, names, not_none, numbers_in, read_as
 
@@ -168,11 +168,14 @@ def _held_out(text: str, option: str) -> float | list[str]:
                  help="Predict this last share of each track, or the later half of the tracks "
                  "named, from the rest."),
 )  # fmt: skip
+@click.option("--report", "worksheet", type=click.Path(path_type=Path), metavar="PAGE",
+              help="Write one page for a class (.html): pictures, numbers, residuals, what was "
+              "assumed, and blanks.")  # fmt: skip
 @outputs(f"Save: {RESULTS}; .json is what simulate --fit takes, the others have frames and "
          "residuals.", explain=True, as_json=True)  # fmt: skip
 def fit(
     files: tuple[Path, ...], how: dict[str, Any], known: dict[str, Any], wanted: dict[str, Any],
-    out: Outputs,
+    worksheet: Path | None, out: Outputs,
 ) -> None:  # fmt: skip
     """Find friction, tilt and launches of a sliding puck from tracks of it.
 
@@ -183,11 +186,15 @@ def fit(
     puck fit run.csv --radius 0.0381
     puck fit run.csv --fps 120 --unit px --scale 0.5mm --radius 0.0381 --height 0.0254
     puck fit one.csv two.csv --radius 0.0381 --laws uniform,hertz,ring --plot fit.png
-    puck fit slide.csv --unit cm
+    puck fit slide.csv --unit cm --report page.html
     puck fit run.csv --radius 0.0381 --prior friction=0.2:0.05 --hold-out 0.3 -o fit.json
     puck simulate --fit fit.json
     """  # noqa: D301 - click reads the backspace
-    out.prepare(*files, how["marks"], known["pressure"])
+    if worksheet is not None:
+        from puck_tables.plot.fit_page import checked_page
+
+        checked_page(worksheet)
+    out.prepare(*files, how["marks"], known["pressure"], others=[worksheet])
     from puck_tables.fitting.fit_tracks import fit as find
     from puck_tables.puck import Puck
 
@@ -214,4 +221,7 @@ def fit(
     with progress("fitting") as show:
         result = find(tracks, puck, progress=show, **not_none(wanted))
     out.deliver(result)
+    if worksheet is not None:
+        result.report(worksheet, out.overwrite)
+        note(worksheet)
     out.report(result, report)

@@ -85,7 +85,7 @@ def test_photogates_tell_friction_in_one_line(tmp_path: Path, unit: str):
     assert said.exit_code == 0, said.output
     first, *others = said.stdout.splitlines()
     assert first.startswith("The friction coefficient is 0.") and "+-" in first
-    assert any("slide 1 and 5 more" in line for line in others)
+    assert any("slide 1 and 5 more lie along" in line for line in others)
     assert any(line.startswith("With more spin") for line in others)
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables._core.lazy import above
 from puck_tables._core.real import instance
 from puck_tables._core.safe_write import write_bytes
 from puck_tables._version import __version__
@@ -176,6 +177,25 @@ class Fit(Result):
                 )
         return self.puck.simulate(launch.velocity, launch.spin, **how)
 
+    def report(self, path: str | Path, overwrite: bool = False) -> None:
+        """Write one page for a class: pictures, numbers, residuals, what was assumed, and blanks.
+
+        Parameters
+        ----------
+        path : .html; it loads nothing, and prints well
+        overwrite : whether an existing file may be replaced
+
+        Raises
+        ------
+        InputError
+            If the ending is another.
+        MissingExtraError
+            If matplotlib is not installed.
+        OutputError
+            If the file exists or cannot be written.
+        """
+        above("save_fit_page")(self, path, overwrite)
+
     @property
     def verdict(self) -> str:
         """Which of the laws compared the film supports, in a sentence; '' where none were."""
@@ -217,11 +237,11 @@ class Fit(Result):
             if spinless
         ]  # fmt: skip
         if straight:
-            others = f" and {len(straight) - 1} more" if len(straight) > 1 else ""
+            others = f" and {len(straight) - 1} more lie" if len(straight) > 1 else " lies"
             said.append(
-                f"{straight[0]}{others} lies along a line and shows no angles: it is taken for a "
-                "slide without spin. If it spun, friction may be up to 1.6 times as much (bounds "
-                "or a start of launch_spin look for that)"
+                f"{straight[0]}{others} along a line and without angles: taken for a slide without "
+                "spin. If it spun, friction may be up to 1.6 times as much (bounds or a start of "
+                "launch_spin look for that)"
             )
         if all(problem.spinless) and (more := spin_would_tell(self.estimate)):
             said.append(more)
