@@ -35,7 +35,8 @@ def floor_faults(scene: SceneSpec) -> list[str]:
     if faults:
         return faults
     if scene.puck.shape is not None:
-        return faults + (bad_strips(scene.floor) or _bad_under_base(scene)) + _bad_rows(scene)
+        wrong = bad_strips(scene.floor) or patch_faults(scene.floor) or _bad_under_base(scene)
+        return faults + wrong + _bad_rows(scene)
     if scene.floor.law and (scene.puck.pressure != "uniform"):
         faults.append("floor.law: known under uniform pressure only, not with puck.pressure")
     faults += bad_strips(scene.floor) or patch_faults(scene.floor) or _bad_astride(scene)
@@ -59,14 +60,15 @@ def _bad_motion(floor: Floor) -> list[str]:
 def _bad_under_base(scene: SceneSpec) -> list[str]:
     """Why friction is not known under a base that is not round."""
     floor, puck = scene.floor, scene.puck
-    for name, there in (("orthotropic", floor.orthotropic), ("patch", floor.patches)):
-        if there:
-            return [
-                f"floor.{name}: not known under a base that is not round; give a radius in place "
-                "of puck.base, or leave it out"
-            ]
-    name = "floor.grip" if floor.grips else "floor.strips"
-    if (floor.strips is not None or floor.grips) and puck.shape is not None and not floor.law:
+    if floor.orthotropic is not None:
+        return [
+            "floor.orthotropic: not known under a base that is not round; give a radius in place "
+            "of puck.base, or leave it out"
+        ]
+    name = "floor.patch" if floor.patches else "floor.strips"
+    name = "floor.grip" if floor.grips else name
+    several = floor.strips is not None or floor.patches or floor.grips
+    if several and puck.shape is not None and not floor.law:
         try:
             puck.shape.refuse_lift(_strongest(scene), puck.height)
         except ContactError as error:
