@@ -16,7 +16,6 @@ from puck_tables import (
     Force,
     InputError,
     Launch,
-    Orthotropic,
     Patch,
     Piece,
     Puck,
@@ -325,7 +324,6 @@ def test_a_stone_on_a_running_band_meets_a_wall_by_its_rim() -> None:
 
 
 REFUSED: dict[str, tuple[dict[str, Any], str]] = {
-    "direction": ({"floor": Floor(orthotropic=Orthotropic((0.2, 0.1)))}, "floor.orthotropic"),
     "lifted by a patch": (
         {"floor": Floor(patches=[Patch(5.0, (0.0, 0.0), 0.2)])},
         "floor.patch: .* would lift",

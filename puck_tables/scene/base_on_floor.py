@@ -23,11 +23,13 @@ from puck_tables.kernels.base_friction import (
 from puck_tables.kernels.base_friction import REACH as BASE_REACH
 from puck_tables.kernels.base_sums import NOTHING, Sums, plus
 from puck_tables.kernels.compile import inlined, inner
+from puck_tables.kernels.elliptic_sums import Ellipse, elliptic_sums
 from puck_tables.kernels.law_sums import law_sums
 from puck_tables.scene.ground import (
     ACROSS_X,
     ACROSS_Y,
     ANGLE,
+    AXES,
     BORDERS,
     CORNER,
     CORNERS,
@@ -127,12 +129,17 @@ def friction_sums(ground: FloatArray, ux: float, uy: float, w: float, moving: fl
 
     ``moving`` 0: with the friction at slip zero, whatever the slip.
     """
-    if moving != 0.0 and ground[ROWS] > 0.0:
-        first = int(ground[ROWS])
-        law = ground[first : int(ground[ROOM])]
-        return plus(
-            NOTHING, ground[SHARE], law_sums(ground[int(ground[PROFILE]) : first], law, ux, uy, w)
-        )
+    first, last = int(ground[ROWS]), int(ground[ROOM])
+    if first > 0 and last - first == AXES:
+        angle = ground[first + 2] - ground[first + 3] * ground[ANGLE]
+        law = Ellipse(ground[first], ground[first + 1], math.cos(angle), math.sin(angle))
+        sums = elliptic_sums(ground[int(ground[PROFILE]) : first], law, ux, uy, w)
+        return plus(NOTHING, ground[SHARE], sums)
+    if moving != 0.0 and first > 0:
+        sums = law_sums(
+            ground[int(ground[PROFILE]) : first], ground[first:last], ux, uy, w
+        )  # fmt: skip
+        return plus(NOTHING, ground[SHARE], sums)
     begin, to = int(ground[PROFILE]), int(ground[ROOM])
     base = ground[begin:]
     contour, end = whole_contour(base, begin)
