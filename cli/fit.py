@@ -30,6 +30,8 @@ _UNITS = {
     "decel": "m/s^2",
 }  # fmt: skip
 
+_ANY_RADIUS = 0.04  # m: of a slide without spin it does not matter
+
 
 def _held(texts: tuple[str, ...], option: str) -> dict[str, float]:
     """NAME=VALUE, several times."""
@@ -92,7 +94,11 @@ def _held_out(text: str, option: str) -> float | list[str]:
 @packed(
     "known",
     dict,
-    click.option("--radius", type=LENGTH, required=True, help="Radius r of the puck in m."),
+    click.option(
+        "--radius",
+        type=LENGTH,
+        help="Radius r of the puck in m; of slides along a line without angles it does not matter.",
+    ),
     click.option(
         "--height", type=LENGTH, help="Height h in m, if known: the tilt then follows from f."
     ),
@@ -111,7 +117,8 @@ def _held_out(text: str, option: str) -> float | list[str]:
     "wanted", dict,
     click.option("--free", metavar="NAMES", callback=read_as(names),
                  help="What is found, with commas: friction, delta, height, decel, gyration, inner "
-                 "(of an annulus), drag, radius, gravity; of impacts tangential, mass_ratio.  "
+                 "(of an annulus), drag, air, spin_drag, slope_x, slope_y, belt_x, belt_y, radius, "
+                 "gravity; of impacts tangential, mass_ratio.  "
                  "[default: friction and delta, friction alone if --height is given]"),
     click.option("--fix", "fixed", multiple=True, metavar="NAME=VALUE", callback=read_as(_held),
                  help="Hold a number; also launch_spin and the like."),
@@ -150,9 +157,13 @@ def _held_out(text: str, option: str) -> float | list[str]:
     click.option("--between", type=click.Choice(["cubic", "linear"]), default="cubic",
                  show_default=True, help="How friction goes between --slip-speeds; cubic, as the "
                  "law of a scene, rises and falls only where f at them does."),
+    click.option("--law", type=click.Choice(["stribeck", "hyperbola", "two-valued"]),
+                 help="Find friction over slip speed by a law with three numbers: friction (of "
+                 "fast slip), friction_rest, law_speed."),
     click.option("--laws", metavar="LAW,...", callback=read_as(names),
-                 help="Compare pressure laws; with +drag also a coefficient that changes with the "
-                 "slip speed: uniform,hertz,annulus:0.8,uniform+drag."),
+                 help="Compare pressure laws, with +drag, +air, +slope, +belt, +stribeck, "
+                 "+hyperbola or +two-valued also floors: uniform,hertz,annulus:0.8,uniform+drag; "
+                 "floors: all of these, and which the film supports."),
     click.option("--hold-out", metavar="SHARE|NAMES", callback=read_as(_held_out),
                  help="Predict this last share of each track, or the later half of the tracks "
                  "named, from the rest."),
@@ -172,6 +183,7 @@ def fit(
     puck fit run.csv --radius 0.0381
     puck fit run.csv --fps 120 --unit px --scale 0.5mm --radius 0.0381 --height 0.0254
     puck fit one.csv two.csv --radius 0.0381 --laws uniform,hertz,ring --plot fit.png
+    puck fit slide.csv --unit cm
     puck fit run.csv --radius 0.0381 --prior friction=0.2:0.05 --hold-out 0.3 -o fit.json
     puck simulate --fit fit.json
     """  # noqa: D301 - click reads the backspace
@@ -179,6 +191,13 @@ def fit(
     from puck_tables.fitting.fit_tracks import fit as find
     from puck_tables.puck import Puck
 
+    tracks = read_all(files, how)
+    if known["radius"] is None:
+        if not all(one.angle is None and one.along_line for one in tracks):
+            raise InputError("give the radius of the puck (--radius 38mm)")
+        known["radius"] = _ANY_RADIUS
+        if wanted["free"] is None and known["height"] is None:
+            wanted["free"] = [] if known["friction"] is not None else ["friction"]
     puck = Puck(**not_none(known))
     free, fixed = wanted["free"], wanted["fixed"]
     for name in ("friction", "height"):
@@ -192,7 +211,6 @@ def fit(
                 raise InputError(f"--{name} and --fix {name} say the same: leave out one of them")
             if not (name == "height" and free is not None and "delta" in free):
                 fixed[name] = value
-    tracks = read_all(files, how)
     with progress("fitting") as show:
         result = find(tracks, puck, progress=show, **not_none(wanted))
     out.deliver(result)
