@@ -18,7 +18,7 @@ from puck_tables.cli.options import (
     outputs,
     packed,
 )
-from puck_tables.cli.printing import progress
+from puck_tables.cli.printing import note, progress
 from puck_tables.cli.track_options import read_all, track_options
 from puck_tables.cli.values import NumberParam, named, names, not_none, numbers_in, read_as
 
@@ -29,6 +29,8 @@ _UNITS = {
     "launch_vx": "m/s", "launch_vy": "m/s", "launch_spin": "rad/s", "gravity": "m/s^2",
     "decel": "m/s^2",
 }  # fmt: skip
+
+_ANY_RADIUS = 0.04  # m: of a slide without spin it does not matter
 
 
 def _held(texts: tuple[str, ...], option: str) -> dict[str, float]:
@@ -92,7 +94,11 @@ def _held_out(text: str, option: str) -> float | list[str]:
 @packed(
     "known",
     dict,
-    click.option("--radius", type=LENGTH, required=True, help="Radius r of the puck in m."),
+    click.option(
+        "--radius",
+        type=LENGTH,
+        help="Radius r of the puck in m; of slides along a line without angles it does not matter.",
+    ),
     click.option(
         "--height", type=LENGTH, help="Height h in m, if known: the tilt then follows from f."
     ),
@@ -111,7 +117,8 @@ def _held_out(text: str, option: str) -> float | list[str]:
     "wanted", dict,
     click.option("--free", metavar="NAMES", callback=read_as(names),
                  help="What is found, with commas: friction, delta, height, decel, gyration, inner "
-                 "(of an annulus), drag, radius, gravity; of impacts tangential, mass_ratio.  "
+                 "(of an annulus), drag, air, spin_drag, slope_x, slope_y, belt_x, belt_y, radius, "
+                 "gravity; of impacts tangential, mass_ratio.  "
                  "[default: friction and delta, friction alone if --height is given]"),
     click.option("--fix", "fixed", multiple=True, metavar="NAME=VALUE", callback=read_as(_held),
                  help="Hold a number; also launch_spin and the like."),
@@ -150,18 +157,25 @@ def _held_out(text: str, option: str) -> float | list[str]:
     click.option("--between", type=click.Choice(["cubic", "linear"]), default="cubic",
                  show_default=True, help="How friction goes between --slip-speeds; cubic, as the "
                  "law of a scene, rises and falls only where f at them does."),
+    click.option("--law", type=click.Choice(["stribeck", "hyperbola", "two-valued"]),
+                 help="Find friction over slip speed by a law with three numbers: friction (of "
+                 "fast slip), friction_rest, law_speed."),
     click.option("--laws", metavar="LAW,...", callback=read_as(names),
-                 help="Compare pressure laws; with +drag also a coefficient that changes with the "
-                 "slip speed: uniform,hertz,annulus:0.8,uniform+drag."),
+                 help="Compare pressure laws, with +drag, +air, +slope, +belt, +stribeck, "
+                 "+hyperbola or +two-valued also floors: uniform,hertz,annulus:0.8,uniform+drag; "
+                 "floors: all of these, and which the film supports."),
     click.option("--hold-out", metavar="SHARE|NAMES", callback=read_as(_held_out),
                  help="Predict this last share of each track, or the later half of the tracks "
                  "named, from the rest."),
 )  # fmt: skip
+@click.option("--report", "worksheet", type=click.Path(path_type=Path), metavar="PAGE",
+              help="Write one page for a class (.html): pictures, numbers, residuals, what was "
+              "assumed, and blanks.")  # fmt: skip
 @outputs(f"Save: {RESULTS}; .json is what simulate --fit takes, the others have frames and "
          "residuals.", explain=True, as_json=True)  # fmt: skip
 def fit(
     files: tuple[Path, ...], how: dict[str, Any], known: dict[str, Any], wanted: dict[str, Any],
-    out: Outputs,
+    worksheet: Path | None, out: Outputs,
 ) -> None:  # fmt: skip
     """Find friction, tilt and launches of a sliding puck from tracks of it.
 
@@ -172,13 +186,25 @@ def fit(
     puck fit run.csv --radius 0.0381
     puck fit run.csv --fps 120 --unit px --scale 0.5mm --radius 0.0381 --height 0.0254
     puck fit one.csv two.csv --radius 0.0381 --laws uniform,hertz,ring --plot fit.png
+    puck fit slide.csv --unit cm --report page.html
     puck fit run.csv --radius 0.0381 --prior friction=0.2:0.05 --hold-out 0.3 -o fit.json
     puck simulate --fit fit.json
     """  # noqa: D301 - click reads the backspace
-    out.prepare(*files, how["marks"], known["pressure"])
+    if worksheet is not None:
+        from puck_tables.plot.fit_page import checked_page
+
+        checked_page(worksheet)
+    out.prepare(*files, how["marks"], known["pressure"], others=[worksheet])
     from puck_tables.fitting.fit_tracks import fit as find
     from puck_tables.puck import Puck
 
+    tracks = read_all(files, how)
+    if known["radius"] is None:
+        if not all(one.angle is None and one.along_line for one in tracks):
+            raise InputError("give the radius of the puck (--radius 38mm)")
+        known["radius"] = _ANY_RADIUS
+        if wanted["free"] is None and known["height"] is None:
+            wanted["free"] = [] if known["friction"] is not None else ["friction"]
     puck = Puck(**not_none(known))
     free, fixed = wanted["free"], wanted["fixed"]
     for name in ("friction", "height"):
@@ -192,8 +218,10 @@ def fit(
                 raise InputError(f"--{name} and --fix {name} say the same: leave out one of them")
             if not (name == "height" and free is not None and "delta" in free):
                 fixed[name] = value
-    tracks = read_all(files, how)
     with progress("fitting") as show:
         result = find(tracks, puck, progress=show, **not_none(wanted))
     out.deliver(result)
+    if worksheet is not None:
+        result.report(worksheet, out.overwrite)
+        note(worksheet)
     out.report(result, report)

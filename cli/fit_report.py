@@ -65,7 +65,7 @@ def report(result: Fit) -> str:
             f"{fewer:.4g} less than with one friction for {len(speeds) - 1} more numbers"
         )})]  # fmt: skip
     if result.laws:
-        lines += ["", _laws(result)]
+        lines += ["", _laws(result), result.verdict]
     if (held := result.held_out) is not None:
         lines += ["", _lines({"held out": (
             f"{held.z_place.size + held.z_angle.size} observations of {', '.join(held.tracks)}: "

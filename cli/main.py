@@ -44,6 +44,14 @@ from puck_tables.errors import InputError, PuckError
 BROKEN_PIPE = 141  # 128 + SIGPIPE, as shells count
 
 
+SECTIONS = {  # of the help: by what one wants
+    "One shot, a scene, a board": (simulate, scene, explore),
+    "Very many, or a target": (sweep, aim),
+    "Films of real pucks": (track, fit),
+    "Engines and robots": (reference, compare, limit_surface, export),
+    "Tables, and how exact": (build_tables, validate, info, tables, tradeoff),
+    "Else": (warm_up, asperity),
+}
 MEANT = {  # what others call an option
     "--omega": "--w0", "--spin": "--w0", "--velocity": "--v0", "--mu": "--friction",
     "--tolerance": "--tol", "--slope": "--set floor.slope=5deg",
@@ -70,6 +78,13 @@ class PuckGroup(click.Group):
             _drop(sys.stdout)
             click.echo(f"Error: {_explained(error)}", err=True)
             raise SystemExit(1) from None
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the commands into the help by what one wants."""
+        for heading, commands in SECTIONS.items():
+            with formatter.section(heading):
+                rows = [(one.name or "", one.get_short_help_str(limit=200)) for one in commands]
+                formatter.write_dl(rows)
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command."""
@@ -142,9 +157,6 @@ def main() -> None:
     del endings.last_words[1:]
 
 
-_ALL = (
-    simulate, sweep, aim, scene, track, fit, build_tables, validate, info, tables, tradeoff,
-    asperity, limit_surface, reference, compare, export, explore, warm_up,
-)  # fmt: skip
-for _command in _ALL:
-    main.add_command(_command)
+for _commands in SECTIONS.values():
+    for _command in _commands:
+        main.add_command(_command)

@@ -19,9 +19,10 @@ from puck_tables.cli.track_options import read_all, track_options
 def track(files: tuple[Path, ...], how: dict[str, Any], out: Outputs) -> None:
     """Say what was read of filmed pucks: frames, times, places, angles, and what looks odd.
 
-    Files may be tables of times or frame numbers and places (CSV and other text, with any header),
-    files and exports of Tracker (.trk, .trz), and tables of trackpy, DeepLabCut and SLEAP (of the
-    latter two HDF5, too).  What a file does not say is asked for.
+    Files may be tables of times or frame numbers and places (CSV and other text, with any header,
+    spreadsheets), files and exports of Tracker (.trk, .trz), tables of trackpy, DeepLabCut and
+    SLEAP (of the latter two HDF5, too), exports of Qualisys, Vicon, OptiTrack, C3D, ROS, and of
+    phones' gyroscopes.  What a file does not say is asked for.
 
     \b
     puck track run.csv --unit cm --plot run.png

@@ -17,7 +17,8 @@ track_options = packed(
     click.option("--fps", type=NUMBER, help="Frames a second, for frame numbers."),
     click.option("--unit", metavar="UNIT",
                  help="Unit of the places, where the file does not say: m, cm, px."),
-    click.option("--scale", metavar="SIZE", help="Size of a pixel, a number and a unit: 0.5mm."),
+    click.option("--scale", metavar="SIZE", help="Size of a pixel, a number and a unit: 0.5mm; "
+                 "or a scale bar: 240px=30cm."),
     click.option("--angle-unit", metavar="UNIT", help="Unit of angles: deg, rad or turn."),
     click.option("--y-down/--y-up", default=None,
                  help="Which way y grows in the file.  [default: down for pixels, else up]"),
@@ -26,10 +27,13 @@ track_options = packed(
     click.option("--marks", type=FILE, metavar="FILE", help="Four marks or more on the floor, for "
                  "a tilted camera: a CSV file of u,v,x [m],y [m], their pixels and places."),
     click.option("--centre", metavar="MARKS",
-                 help="The marks on a puck, with commas, in whose middle its centre lies."),
+                 help="The marks on a puck, with commas, in whose middle its centre lies; of "
+                 "several pucks what their names have in common."),
     click.option("--toward", metavar="MARK", help="The mark on a puck that its angle points to."),
     click.option("--likelihood", type=NUMBER,
                  help="Places less likely are not seen.  [default: 0.6; not used of SLEAP]"),
+    click.option("--up", type=click.Choice(["x", "y", "z"]), help="The axis that points up, of "
+                 "places in space.  [default: as the file says, else z]"),
     click.option("--pucks", metavar="NAMES", help="Read these only, with commas."),
 )  # fmt: skip
 

@@ -30,7 +30,7 @@ extensions = [
     "sphinx_click",
     "sphinx_gallery.gen_gallery",
 ]
-exclude_patterns = ["_build", "gallery/**", "engines/**", "_templates", "_extra"]
+exclude_patterns = ["_build", "paper/**", "gallery/**", "engines/**", "_templates", "_extra"]
 templates_path = ["_templates"]
 nitpicky = False
 

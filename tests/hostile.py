@@ -274,7 +274,8 @@ def _of_scenes() -> dict[str, Door]:
             "puck": "cue", "velocity": TWO, "spin": 1.0, "impulse": (0.1, 0.0), "point": None}),
         "World.place": (on_copy("place"), {
             "puck": "cue", "position": (0.1, 0.1), "angle": 1.0, "velocity": TWO, "spin": 1.0}),
-        "World.set_state": (on_copy("set_state"), {"states": world().state()}),
+        "World.set_state": (on_copy("set_state"), {
+            "states": [[0.0, 0.0, 0.0, 1.0, 0.0, 0.0], [0.3, *(0.0,) * 5]]}),
         "World.remove": (on_copy("remove"), {"puck": "cue"}),
         "World.add": (on_copy("add"), {
             "puck": pt.Piece(0.01, friction=0.1, launch=pt.Launch(position=(0.1, 0.4)))}),

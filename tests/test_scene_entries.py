@@ -84,6 +84,7 @@ CASES: dict[str, tuple[dict[str, Any], Any]] = {
     "floor.grip[0].where": (WET, "floor"),
     "floor.orthotropic.friction": (GRAINED, [0.2, 0.4]),
     "floor.orthotropic.direction": (GRAINED, 1.0),
+    "floor.orthotropic.fixed_to": (GRAINED, "body"),
     "floor.law.static": (BY_NAME, 0.4),
     "floor.law.kinetic": (BY_NAME, 0.2),
     "floor.law.speed": (BY_NAME, 0.4),

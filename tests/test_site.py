@@ -155,3 +155,14 @@ def test_who_has_windows_is_told_how_to_begin() -> None:
             assert "Scripts\\activate" in text or "on Windows](tutorial.md#install)" in text, page
     for path in [*PAGES, *SOURCES]:
         assert not re.search(r"pip install (-e )?'", path.read_text(encoding="utf-8")), path
+
+
+def test_everything_that_can_be_called_is_told_once() -> None:
+    rows = [line.split("|") for line in (DOCS / "what-to-call.md").read_text("utf-8").split("\n")
+            if line.startswith("|")]  # fmt: skip
+    told = [name for row in rows for name in re.findall(r"`([\w-]+)`", "|".join(row[1:-2]))]
+    known = [*main.commands, *(name for name in puck_tables.__all__ if name != "__version__")]
+    twice = {name for name in known if known.count(name) > 1}  # command and function alike
+    assert sorted(set(known) - set(told)) == []
+    for name in known:
+        assert told.count(name) == 1 + (name in twice), name

@@ -121,8 +121,8 @@ GOOD = trk({"A": {0: (1.0, 2.0), 1: (2.0, 3.0)}}, {0: (0.0, 0.0, 0.0, 9.0)})
         ("a.trz", archive({"a.trk": GOOD[:-40]}), "a.trk is damaged XML .* save it again"),
         ("a.trz", archive({"a.trk": GOOD}).replace(b"\x08\0", b"\x63\0"), "unpack it, and read"),
         ("a.trz", archive({"a.trk": b" " * ((1 << 26) + 1)}), "too large"),
-        ("a.xlsx", archive({"xl/workbook.xml": "x"}), "a spreadsheet"),
-        ("a.ods", archive({"content.xml": "x"}), "a spreadsheet"),
+        ("a.xlsx", archive({"xl/workbook.xml": "x"}), "no sheet with numbers"),
+        ("a.ods", archive({"content.xml": "x"}), "a damaged spreadsheet"),
     ],
 )  # fmt: skip
 def test_what_is_wrong_with_files_of_tracker_is_said(

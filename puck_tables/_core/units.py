@@ -14,21 +14,24 @@ from puck_tables.errors import InputError
 PIXEL = "px"
 
 _LENGTHS = {
-    "m": "m meter meters metre metres", "dm": "dm", "cm": "cm centimeter centimeters centimetre "
-    "centimetres", "mm": "mm millimeter millimeters millimetre millimetres",
+    "m": "m meter meters metre metres metro metros mètre mètres м", "dm": "dm", "cm": "cm "
+    "centimeter centimeters centimetre centimetres centímetros см",
+    "mm": "mm millimeter millimeters millimetre millimetres milímetros мм",
     "um": "um µm μm micron microns micrometer micrometre", "km": "km", "in": "in inch inches zoll",
-    "ft": "ft foot feet", "yd": "yd yard yards", PIXEL: "px pixel pixels pix",
+    "ft": "ft foot feet", "yd": "yd yard yards", PIXEL: "px pixel pixels pix píxel píxeles пиксель",
 }  # fmt: skip
 _METRES = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 1e-3, "um": 1e-6, "km": 1e3, "in": 0.0254,
            "ft": 0.3048, "yd": 0.9144}  # fmt: skip
 _TIMES = {
-    "s": "s sec secs second seconds sek sekunde sekunden", "ms": "ms msec millisecond milliseconds "
-    "millis", "us": "us µs μs usec microsecond microseconds", "ns": "ns nanosecond nanoseconds",
+    "s": "s sec secs second seconds sek sekunde sekunden segundo segundos seconde secondes с сек",
+    "ms": "ms msec millisecond milliseconds millis milisegundos мс",
+    "us": "us µs μs usec microsecond microseconds", "ns": "ns nanosecond nanoseconds",
     "min": "min minute minutes", "h": "h hr hour hours",
 }  # fmt: skip
 _SECONDS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0}
 _ANGLES = {
-    "rad": "rad radian radians", "deg": "deg degree degrees ° grad_deg", "turn": "turn turns rev "
+    "rad": "rad radian radians radianes radianos рад", "deg": "deg degree degrees ° grad_deg "
+    "grados graus degré degrés град", "turn": "turn turns rev "
     "revs revolution revolutions", "mrad": "mrad milliradian milliradians",
 }  # fmt: skip
 _RADIANS = {"rad": 1.0, "deg": math.pi / 180.0, "turn": 2.0 * math.pi, "mrad": 1e-3}
@@ -58,6 +61,7 @@ SHOWN = {"m": "25mm", "m/s": "2km/h", "rad": "45deg", "rad/s": "30rpm", "s": "40
 EXAMPLES = {"velocity": "m/s", "spin": "rad/s", "length": "m", "time": "s", "angle": "rad",
             "force": "N", "torque": "N m", "acceleration": "m/s^2"}  # fmt: skip
 _NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
+_BAR = re.compile(rf"\s*({_NUMBER})\s*(?:px|pixels?)\s*=\s*(.+)")
 
 
 def unit_word(text: str, kind: str) -> str:
@@ -240,7 +244,7 @@ def pixel_size(scale: str | float) -> float:
     Parameters
     ----------
     scale : str or float
-        Like '0.5mm' or '0.5 mm/px'; a number is in metres.
+        Like '0.5mm' or '0.5 mm/px', or a scale bar, '240px = 30cm'; a number is in metres.
 
     Raises
     ------
@@ -251,7 +255,11 @@ def pixel_size(scale: str | float) -> float:
     --------
     >>> pixel_size("0.5 mm/px"), pixel_size(0.002)
     (0.0005, 0.002)
+    >>> pixel_size("240px = 30cm")
+    0.00125
     """
+    if isinstance(scale, str) and (bar := _BAR.fullmatch(scale)) and float(bar[1]) > 0.0:
+        return pixel_size(bar[2]) / float(bar[1])
     what = "scale must be the size of a pixel, a number and a unit such as 0.5mm"
     if isinstance(scale, str):
         found = re.fullmatch(rf"\s*({_NUMBER})\s*([^\s/0-9]*)\s*(?:/\s*(?:px|pixel)\s*)?", scale)
@@ -284,7 +292,7 @@ def unit_in(heading: str) -> str:
 
 
 def parted(text: str) -> tuple[str, str]:
-    """A name and what stands as its unit, in brackets or after a stroke.
+    """A name and what stands as its unit, in brackets or after a stroke or comma.
 
     Examples
     --------
@@ -294,7 +302,7 @@ def parted(text: str) -> tuple[str, str]:
     found = re.fullmatch(r"(.+?)\s*[\[(<]\s*([^\[\]()<>]*?)\s*[\])>]", text)
     if found is not None:
         return found[1], found[2]
-    for form in (r"(.+?)\s*/\s*([^\s/]+)", r"(.+?)\s+in\s+(\S+)"):
+    for form in (r"(.+?)\s*[/,]\s*([^\s/,]+)", r"(.+?)\s+(?:in|en|em)\s+(\S+)"):
         found = re.fullmatch(form, text)
         if found is not None and is_unit(found[2]):
             return found[1], found[2]

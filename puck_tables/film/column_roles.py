@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,9 +11,18 @@ from puck_tables._core.header import header_of
 from puck_tables._core.text import TextForm
 from puck_tables.errors import InputError
 from puck_tables.film.headings import Heading, heading, headings, on_a_line
+from puck_tables.film.rates import ANGLES, NO_ACCELERATIONS, PLACES
 
 _TRACKPY = {"frame", "particle", "x", "y"}
 _SCORER = "scorer"  # begins DeepLabCut's tables
+_CLOCKS = ("time", "nanos", "frame", "step")
+# what stands in place of places and angles, and which roles it then has
+_RATES = (
+    (PLACES, {"vx": "x", "vy": "y", "v": "x", "wx": "", "wy": "", "wz": "", "a": ""}),
+    (ANGLES, {"wz": "angle", "wx": "", "wy": "", "a": ""}),
+)
+_MOVES = {*_RATES[0][1], "vz"}
+_ROS = re.compile(r"(pose[./]position|transform[./]translation)[./]x$")
 _LIKELY = 0.6  # what DeepLabCut takes for a mark that is there ('pcutoff')
 
 
@@ -23,7 +33,7 @@ class Layout:
     ``columns``: each with the body that it is of ('' for all), ``kind``: of file, for messages,
     ``jointed``: whether marks are parts of a body, ``pixels``: whether such files are in pixels,
     ``likely``: the likelihood below which a place is none, ``along``: whether x or y alone is told,
-    of tracks along a line.
+    of tracks along a line, ``rates``: whether places are velocities, or angles spins.
     """
 
     columns: list[tuple[str, Heading]]
@@ -32,6 +42,7 @@ class Layout:
     pixels: bool = False
     likely: float | None = _LIKELY
     along: bool = False
+    rates: str = ""
 
 
 def layout_of(path: str | Path, form: TextForm, columns: str | None) -> Layout:
@@ -50,12 +61,18 @@ def layout_of(path: str | Path, form: TextForm, columns: str | None) -> Layout:
     """
     header = headed(path, form, columns)
     if columns is not None:
-        return _named(header[0])
+        return _named(path, header[0])
     if header[0][0].lower() == _SCORER:
         return _deeplabcut(path, header)
     names = header[-1]
-    layout = _named(names, _owners(header)) if len(header) > 1 else _named(names)
+    layout = _named(path, names, _owners(header) if len(header) > 1 else ())
     result = {name.lower() for name in names}
+    if any(_ROS.search(name) for name in result):  # in m and rad, by its REP 103
+        layout.kind = "table of ROS messages"
+        layout.columns = [
+            (body, one._replace(unit="m") if one.role in ("x", "y", "z") and not one.unit else one)
+            for body, one in layout.columns
+        ]
     if result >= _TRACKPY:
         layout.kind, layout.pixels = "trackpy table", True
     if "frame_idx" in result and {"track", "instance.score"} & result:
@@ -120,21 +137,55 @@ def _owners(header: list[list[str]]) -> list[str]:
     return owners if whose["x"] == whose["y"] else []
 
 
-def _named(names: Sequence[str], owners: Sequence[str] = ()) -> Layout:
+def _named(path: str | Path, names: Sequence[str], owners: Sequence[str] = ()) -> Layout:
     """The columns of a table with one row of names; ``owners`` are names of pucks over them."""
     read = headings(names) if not any(owners) else [heading(name) for name in names]
     if any(owners):
         read = [
             one._replace(puck=" ".join(filter(None, (owner, one.puck))))
-            if one.role in ("x", "y", "angle", "seen", "hidden", "likelihood") else one
+            if one.role not in (*_CLOCKS, "id", "") else one
             for one, owner in zip(read, owners, strict=True)
         ]  # fmt: skip
     if any(name.lower() == "instance.score" for name in names):
         read = [Heading("") if one.puck == "instance" else one for one in read]
-    read = _own_times(read)
-    if (line := on_a_line(names, read)) is not None:
-        return Layout([("", one) for one in line], along=True)
-    return Layout(list(zip(_blocks(read), read, strict=True)))
+    read = _own_times(_one_clock(names, read))
+    rates, line = "", on_a_line(names, read)
+    told = {one.role for one in line or read}
+    if not told & {"x", "y"}:
+        for kind, into in _RATES:
+            if told & {role for role, other in into.items() if other}:
+                rates = kind
+                read = [one._replace(role=into.get(one.role, one.role)) for one in read]
+                line = read if len({one.role for one in read} & {"x", "y"}) == 1 else None
+                break
+        else:
+            if "a" in told:
+                raise InputError(f"{path} {NO_ACCELERATIONS}")
+    read = [Heading("") if one.role in _MOVES else one for one in line or read]
+    apart = {one.puck for one in read if one.role == "x"} == {"c", "m"}  # a centre and its mark
+    return Layout(
+        list(zip(_blocks(read), read, strict=True)), jointed=apart, along=line is not None,
+        rates=rates,
+    )  # fmt: skip
+
+
+def _one_clock(names: Sequence[str], read: Sequence[Heading]) -> list[Heading]:
+    """The headings with one of several times: of the measurement, or that counts from the start.
+
+    Examples
+    --------
+    >>> names = ["Time", "header.stamp", "x", "y"]
+    >>> [one.role for one in _one_clock(names, headings(names))]
+    ['', 'time', 'x', 'y']
+    """
+    result = list(read)
+    times = [n for n, one in enumerate(read) if one.role == "time"]
+    for word in ("stamp", "elapsed"):
+        mine = [n for n in times if re.search(rf"(?<![^\W_]){word}(?![^\W_])", names[n].lower())]
+        if len(mine) == 1 < len(times):
+            return [Heading("") if n in times and n not in mine else one
+                    for n, one in enumerate(result)]  # fmt: skip
+    return result
 
 
 def _own_times(read: Sequence[Heading]) -> list[Heading]:
@@ -146,8 +197,7 @@ def _own_times(read: Sequence[Heading]) -> list[Heading]:
     ['time', '', 'x', 'y']
     """
     pucks = {one.puck for one in read if one.role == "x"} | {""}
-    clocks = ("time", "frame", "step")
-    known = {one.role for one in read if one.role in clocks and one.puck in pucks}
+    known = {one.role for one in read if one.role in _CLOCKS and one.puck in pucks}
     return [
         Heading("") if one.role in known and one.puck not in pucks else one for one in read
     ]  # fmt: skip

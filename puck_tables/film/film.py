@@ -25,7 +25,7 @@ class TrackedBody:
     ----------
     name : str
         '' where the file has none.
-    marks : dict of ndarray (n, 2)
+    marks : dict of ndarray (n, 2) or (n, 3)
         Places by the names of the marks, in the unit and along the axes of the file.
     frame, time : ndarray (n,), optional
         Frame numbers; times in s.
@@ -33,6 +33,8 @@ class TrackedBody:
         Of the body that a mark is of, in the unit of the file; under '' of all.
     likelihoods, seen : dict of ndarray (n,)
         The same for how likely a place is, and whether it is one.
+    turns : dict of ndarray (n, 4)
+        The same of quaternions x, y, z, w.
     """
 
     name: str
@@ -42,6 +44,7 @@ class TrackedBody:
     angles: dict[str, FloatArray] = field(default_factory=dict)
     likelihoods: dict[str, FloatArray] = field(default_factory=dict)
     seen: dict[str, Flags] = field(default_factory=dict)
+    turns: dict[str, FloatArray] = field(default_factory=dict)
 
 
 @dataclass
@@ -63,6 +66,10 @@ class Film:
         Whether it names the unit of its times.
     likely : float, optional
         The likelihood below which the writer of such files takes a place for none.
+    up : str
+        The axis of places in space that points up; '' where it does not say.
+    rates : str
+        Whether velocities, or spins, stand in place of places and angles.
     notes : list of str
         What was found, in sentences.
     """
@@ -75,17 +82,21 @@ class Film:
     jointed: bool = False
     timed: bool = True
     likely: float | None = None
+    up: str = ""
+    rates: str = ""
     notes: list[str] = field(default_factory=list)
 
 
 class Reader(NamedTuple):
     """A format of tracks that is no table of text.
 
-    ``opens``: whether a file, by its path and how it begins, is of it; ``film_of``: what it holds.
+    ``opens``: whether a file, by its path and how it begins, is of it; ``film_of``: what it holds;
+    or ``as_text``: a table of text that holds the same, which is then read as any other.
     """
 
     opens: Callable[[str | Path, bytes], bool]
-    film_of: Callable[[str | Path], Film]
+    film_of: Callable[[str | Path], Film] | None = None
+    as_text: Callable[[str | Path], bytes] | None = None
 
 
 def first_text(path: str | Path, head: bytes) -> str:

@@ -86,6 +86,12 @@ class Track:
             )
 
     @property
+    def along_line(self) -> bool:
+        """Whether all places have the same x, or the same y: of a track along a line."""
+        known = self.place[self.seen]
+        return bool((np.ptp(known, axis=0) == 0.0).any())
+
+    @property
     def seen(self) -> npt.NDArray[np.bool_]:
         """Frames (n,) where the place is known."""
         known: npt.NDArray[np.bool_] = np.isfinite(self.place[:, 0] + self.place[:, 1])

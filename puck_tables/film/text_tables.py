@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,14 +12,16 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.text import TextForm, number, text_form_of
 from puck_tables._core.text_rows import read_columns
-from puck_tables._core.units import factor
+from puck_tables._core.units import factor, unit_size
 from puck_tables.errors import InputError
 from puck_tables.film.clock import is_clock, seconds
 from puck_tables.film.column_roles import Layout, example, layout_of, name_of
 from puck_tables.film.film import Film, Flags, TrackedBody
 from puck_tables.film.headings import Heading
+from puck_tables.film.rates import ANGLES
 
 MOST_PUCKS = 10_000  # in one file: more is a column of another meaning
+_TURN = ("qx", "qy", "qz", "qw")
 _YES = {"true", "yes", "y", "t", "ja", "j", "oui", "si", "sí", "wahr", "ok"}
 _NO = {"false", "no", "n", "f", "nein", "non", "falsch", ""}
 _SHOWN, _HIDDEN = (
@@ -27,7 +30,9 @@ _SHOWN, _HIDDEN = (
 )
 
 
-def film_of_table(path: str | Path, head: bytes, columns: str | None) -> Film:
+def film_of_table(
+    path: str | Path, head: bytes, columns: str | None, content: bytes | None = None
+) -> Film:
     r"""The film in a text file.
 
     Parameters
@@ -35,6 +40,7 @@ def film_of_table(path: str | Path, head: bytes, columns: str | None) -> Film:
     path : the file
     head : how it begins
     columns : headings for its columns with commas, in place of those in the file
+    content : all of it, where it is not the file itself that is the text
 
     Raises
     ------
@@ -53,12 +59,41 @@ def film_of_table(path: str | Path, head: bytes, columns: str | None) -> Film:
     """
     form = text_form_of(path, head)
     layout = layout_of(path, form, columns)
+    return film_in_text(path, form, layout, content)
+
+
+def film_in_text(
+    path: str | Path, form: TextForm, layout: Layout, content: bytes | None = None,
+    notes: Sequence[str] = (),
+) -> Film:  # fmt: skip
+    r"""The film in a table of text whose columns are known.
+
+    Parameters
+    ----------
+    path : the file
+    form : how it is written
+    layout : what its columns are
+    content : its bytes, if it has been read
+    notes : what was found, in sentences
+
+    Raises
+    ------
+    InputError
+        If it has no places, or cells that do not fit.
+
+    Examples
+    --------
+    >>> form = text_form_of("a.tsv", b"7\t9\n8\t9\n")
+    >>> layout = Layout([("", Heading("x", "", "mm")), ("", Heading("y", "", "mm"))], "file")
+    >>> film_in_text("a.tsv", form, layout, b"7\t9\n8\t9\n").bodies[0].marks[""].tolist()
+    [[7.0, 9.0], [8.0, 9.0]]
+    """
     for n, (body, one) in enumerate(layout.columns):
         cells = {row[n].lower() for row in form.rows if n < len(row)}
         if not one.role and cells & _HIDDEN and cells <= _SHOWN | _HIDDEN:
             layout.columns[n] = (body, Heading("seen"))  # whatever it is called
     wanted = [n for n, (_, one) in enumerate(layout.columns) if one.role]
-    if not {one.role for _, one in layout.columns} & {"x", "y"}:
+    if not {one.role for _, one in layout.columns} & {"x", "y"} and not layout.rates:
         names = ", ".join(name_of(form, n) for n in range(min(form.width, 8)))
         raise InputError(
             f"{path} has no columns x and y that are known by their names (they are {names:.90}): "
@@ -66,15 +101,18 @@ def film_of_table(path: str | Path, head: bytes, columns: str | None) -> Film:
             "a line with x alone"
         )
     texts = [n for n in wanted if _holds_text(form, n, layout.columns[n][1])]
-    values, words = read_columns(path, form, [n for n in wanted if n not in texts], texts)
+    values, words = read_columns(
+        path, form, [n for n in wanted if n not in texts], texts, content
+    )  # fmt: skip
     for n in texts:
         body, one = layout.columns[n]
         if one.role == "time":
             codes, named = words.pop(n)
             values[n] = seconds(f"{path}, column {n + 1}", named)[codes]
             layout.columns[n] = (body, one._replace(unit="s"))
-    notes = []
-    if unused := [n for n in range(form.width) if n not in wanted and layout.kind == "table"]:
+    notes = [*notes]
+    unused = [n for n in range(form.width) if n not in wanted]
+    if unused and layout.kind.startswith("table"):
         names = ", ".join(name_of(form, n) for n in unused[:8])
         notes.append(f"column{'' if len(unused) == 1 else 's'} {names} left out")
     return film_of_columns(path, layout, values, words, notes)
@@ -106,12 +144,24 @@ def film_of_columns(
     >>> film.bodies[0].marks[""].tolist()
     [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]
     """
-    film = Film(layout.kind, [], jointed=layout.jointed, likely=layout.likely, notes=[*notes])
+    film = Film(
+        layout.kind, [], jointed=layout.jointed, likely=layout.likely, rates=layout.rates,
+        notes=[*notes],
+    )  # fmt: skip
+    values = dict(values)
+    for n, (body, one) in enumerate(layout.columns) if layout.rates else ():
+        rate = {"x": "velocity", "y": "velocity", "angle": "spin"}.get(one.role, "")
+        if rate and one.unit and (size := unit_size(one.unit, rate)) is not None:
+            values[n] = values[n] * size
+            unit = "rad" if one.role == "angle" else "m"
+            layout.columns[n] = (body, one._replace(unit=unit))
     if any(one.role == "step" for _, one in layout.columns):
         film.notes.append("times summed from steps, each since the row before")
     if layout.along:
         film.notes.append("places along one line, the other coordinate is 0")
     film.unit, film.angle_unit, film.timed = _units(path, layout)
+    if layout.rates == ANGLES:
+        film.unit = "m"  # of places that are all 0
     if layout.pixels:
         film.unit = film.unit or "px"
         film.y_down = True if film.unit == "px" else None
@@ -123,9 +173,58 @@ def film_of_columns(
                 n: one for n, (whose, one) in enumerate(layout.columns)
                 if one.role and whose in ("", body)
             }  # fmt: skip
-            found = _body(path, body, mine, values, words, chosen, layout.along)
+            found = _body(path, body, mine, values, words, chosen, layout.along, layout.rates)
             if found.marks:
                 film.bodies.append(found)
+    return film
+
+
+def film_below(
+    path: str | Path, head: bytes, lines: int, columns: Sequence[tuple[str, Heading]], kind: str,
+    rate: float = 0.0,
+) -> Film:  # fmt: skip
+    r"""The film in a table that stands below lines of another form, which said what it holds.
+
+    Parameters
+    ----------
+    path : the file
+    head : how it begins
+    lines : how many stand above the first row of numbers
+    columns : each with the body that it is of
+    kind : of file, for messages
+    rate : frames a second, where the lines say it and no column holds times
+
+    Raises
+    ------
+    InputError
+        If there are more, or fewer, columns of numbers, or cells that do not fit.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> columns = [("", Heading("x", "", "mm")), ("", Heading("y", "", "mm"))]
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file, content = Path(folder, "a.tsv"), b"FREQUENCY\t50\n7\t9\n8\t9\n"
+    ...     _ = file.write_bytes(content)
+    ...     film_below(file, content, 1, columns, "file", 50.0).bodies[0].time.tolist()
+    [0.0, 0.02]
+    """
+    form = text_form_of(path, b"\n".join(head.split(b"\n")[lines:]))
+    columns = [*columns] + [("", Heading(""))] * max(0, form.width - len(columns))
+    if len(columns) > form.width or any(one.role for _, one in columns[form.width :]):
+        raise InputError(
+            f"{path} names {len(columns)} columns and has {form.width}: it is damaged, or of a "
+            "version that is not known; export it once more"
+        )
+    form = replace(form, skip=form.skip + lines)
+    film = film_in_text(path, form, Layout(columns, kind, jointed=True, likely=None))
+    for body in film.bodies:
+        if body.time is None and rate > 0.0:
+            first = next(iter(body.marks.values())).shape[0]
+            body.time = (np.arange(first) if body.frame is None else body.frame) / rate
+            body.frame = None
+    if rate > 0.0:
+        film.notes.append(f"{rate:.9g} frames a second, as it says")
     return film
 
 
@@ -143,7 +242,7 @@ def _units(path: str | Path, layout: Layout) -> tuple[str, str, bool]:
     """Units of places and angles, and whether that of times is named."""
     headed = [one for _, one in layout.columns]
     said = []
-    for roles in (("x", "y"), ("angle",)):
+    for roles in (("x", "y", "z"), ("angle",)):
         units = {one.unit for one in headed if one.role in roles}
         if len(units) > 1:
             raise InputError(
@@ -194,7 +293,7 @@ def _rows(
 
 def _body(
     path: str | Path, name: str, columns: dict[int, Heading], values: Mapping[int, FloatArray],
-    words: Mapping[int, Any], rows: Any, along: bool,
+    words: Mapping[int, Any], rows: Any, along: bool, rates: str,
 ) -> TrackedBody:  # fmt: skip
     """One body from its columns and rows; ``along``: places along x or y alone, the other is 0."""
     found: dict[tuple[str, str], FloatArray] = {}
@@ -224,8 +323,19 @@ def _body(
                 f"{'y' if role == 'x' else 'x'}: name its columns with columns (--columns), of a "
                 f"puck that goes along {role} alone with - for what else there is"
             )
-        marks[mark] = np.column_stack([where, other] if role == "x" else [other, where])
+        level = [where, other] if role == "x" else [other, where]
+        height = [found["z", mark]] if ("z", mark) in found else []
+        marks[mark] = np.column_stack(level + height)
+    if rates == ANGLES:
+        marks = {
+            mark: np.zeros((where.size, 2)) for (role, mark), where in found.items()
+            if role == "angle"
+        }  # fmt: skip
     body = TrackedBody(name, marks, seen=seen)
+    for mark in marks:
+        turn = [found[role, mark] for role in _TURN if (role, mark) in found]
+        if len(turn) == len(_TURN):
+            body.turns[mark] = np.stack(turn, axis=1)
     clocks = {}
     for (role, _), value in found.items():
         if role in clocks:
@@ -233,11 +343,14 @@ def _body(
                 f"{path} has two columns of {role}: read the pucks one by one, with - in columns "
                 "(--columns) for those of others"
             )
-        if role in ("frame", "time", "step"):
+        if role in ("frame", "time", "step", "nanos"):
             clocks[role] = value
     body.frame, body.time = clocks.get("frame"), clocks.get("time")
     if body.time is not None:
         body.time = body.time * factor(units["time"] or "s", "time")
+        if "nanos" in clocks:  # from the first second on: doubles hold no more of a stamp
+            start = body.time[np.isfinite(body.time)].min(initial=np.inf)
+            body.time = body.time - start + 1e-9 * clocks["nanos"]
     elif "step" in clocks:
         steps = clocks["step"] * factor(units["step"] or "s", "time")
         body.time = np.concatenate([[0.0], np.cumsum(steps[1:])])

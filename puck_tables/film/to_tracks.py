@@ -17,9 +17,12 @@ from puck_tables.film.film import Film, TrackedBody
 from puck_tables.film.marks_file import plane_from
 from puck_tables.film.plane import Marks, Plane
 from puck_tables.film.puck_track import Track
+from puck_tables.film.rates import summed
+from puck_tables.film.space import UPS, on_the_floor
 
 _SURE = 1.5  # likelihoods above are no shares of 1, whatever rounding or scoring did
 _STAMPED = 1e3  # lengths of a film: a first time that is later is that of a clock
+_EPOCH = (5e8, 4e9)  # s since 1970: 1985 to 2096
 _SLOW = 1.0  # s between frames: more, and times are hardly in seconds
 
 
@@ -37,6 +40,7 @@ class ReaderOptions:
     toward: str | None = None
     likelihood: float | None = None
     pucks: str | Sequence[str] | None = None
+    up: str | None = None
     size: float | None = field(init=False, default=None)  # of a pixel in m
     plane: Plane | None = field(init=False, default=None)
 
@@ -68,6 +72,8 @@ class ReaderOptions:
                     "leave y_down out"
                 )
             put("plane", plane_from(self.marks))
+        if self.up is not None and self.up not in UPS:
+            raise InputError(f"up must be the axis that points up, x, y or z, got {self.up!r:.40}")
         instance("y_down", self.y_down, bool, type(None))
         instance("toward", self.toward, str, type(None))
         for name in ("centre", "pucks"):
@@ -100,19 +106,29 @@ def to_si(path: str | Path, film: Film, how: ReaderOptions) -> tuple[Track, ...]
     >>> to_si("a.csv", film, ReaderOptions(fps=50.0))[0].place.tolist()
     [[0.0, 0.01], [0.02, 0.01]]
     """
-    notes = [film.kind, *film.notes]
-    scale = _Scale(path, film, how, notes)
+    if any(body.turns for body in film.bodies):
+        film.angle_unit = film.angle_unit or "rad"
+    film.bodies = [on_the_floor(path, film, body, how.up) for body in film.bodies]
+    scaled: list[str] = []
+    scale = _Scale(path, film, how, scaled)
+    bodies = []
+    for flat in film.bodies:
+        time, body_notes = _times(path, film, flat, how)
+        bodies.append((summed(path, film, flat, time), time, body_notes))
+    film.bodies = [body for body, *_ in bodies]
+    notes = [film.kind, *film.notes, *scaled]
     tracks = []
     there: list[str] = []
-    for body in film.bodies:
-        time, body_notes = _times(path, film, body, how)
-        for mark, centre in _pucks(path, film, body, how).items():
+    for body, time, body_notes in bodies:
+        for mark, (centre, toward) in _pucks(path, film, body, how).items():
             puck = " ".join(filter(None, (body.name, mark)))
             there.append(puck)
             if how.pucks is not None and not {puck, body.name, mark} & set(how.pucks):
                 continue
             name = f"{Path(path).name}{f': {puck}' if puck else ''}"
-            place, angle, hidden_notes = _visible(path, film, body, centre, how, scale)
+            place, angle, hidden_notes = _visible(
+                path, film, body, centre, toward, how, scale
+            )  # fmt: skip
             rows = np.flatnonzero(~np.isnan(time))
             if (lost := np.flatnonzero(np.isnan(time) & np.isfinite(place).all(axis=1))).size:
                 raise InputError(
@@ -247,6 +263,11 @@ def _times(
         what = "frame numbers and no times" if body.frame is not None else "no times"
         row = "" if body.frame is not None else "; each row is then a frame"
         raise InputError(f"{path} has {what}: give frames a second with fps (--fps 120){row}")
+    if not film.timed and (unit := _stamp_unit(film)):
+        film.timed = True
+        film.notes.append(f"times in {unit} since 1970, as their size tells")
+        for one in film.bodies:
+            one.time = None if one.time is None else one.time * factor(unit, "time")
     first = _stamped(film)
     said = [f"times from its first frame on, {first:.15g} s of its clock"] if first else []
     if film.timed:
@@ -261,6 +282,18 @@ def _times(
     return body.time - first, ["times taken as seconds, of which the file says nothing", *said]
 
 
+def _stamp_unit(film: Film) -> str:
+    """The unit of stamps that count from 1970, where no other gives a year of films; else ''."""
+    times = [body.time[np.isfinite(body.time)] for body in film.bodies if body.time is not None]
+    there = np.concatenate(times) if times else np.empty(0)
+    if not there.size:
+        return ""
+    return next((
+        unit for unit in ("s", "ms", "us", "ns")
+        if _EPOCH[0] < float(there.min()) * factor(unit, "time") < _EPOCH[1]
+    ), "")  # fmt: skip
+
+
 def _stamped(film: Film) -> float:
     """The first time of all bodies, where it is far from 0 for so short a film; 0 elsewhere.
 
@@ -273,31 +306,68 @@ def _stamped(film: Film) -> float:
     return float(there.min())
 
 
+def _alike(names: Sequence[str], wanted: Sequence[str]) -> dict[str, dict[str, str]]:
+    """Pucks that have each of these marks under a name that is longer by the puck's, by puck.
+
+    Examples
+    --------
+    >>> _alike(["cm1", "ed1", "cm2", "ed2"], ["cm", "ed"])
+    {'1': {'cm': 'cm1', 'ed': 'ed1'}, '2': {'cm': 'cm2', 'ed': 'ed2'}}
+    """
+    pucks: dict[str, dict[str, str]] = {}
+    for mark in wanted:
+        for name in names:
+            if name != mark and (name.startswith(mark) or name.endswith(mark)):
+                rest = name.removeprefix(mark) if name.startswith(mark) else name[: -len(mark)]
+                pucks.setdefault(rest.strip(" _-.:"), {})[mark] = name
+    return {
+        puck: marks for puck, marks in sorted(pucks.items()) if len(marks) == len({*wanted})
+    }  # fmt: skip
+
+
+def _centre_and_toward(names: Sequence[str]) -> tuple[str, str]:
+    """Marks to give as an example: those that several pucks have, or the first two."""
+    stems = dict.fromkeys(name.strip("0123456789 _-.:") for name in names)
+    first = [stem for stem in stems if stem and len(_alike(names, [stem])) > 1]
+    both = (first[0], first[1]) if len(first) > 1 else (names[0], names[1])
+    return both if len(_alike(names, both)) > 1 else (names[0], names[1])
+
+
 def _pucks(
     path: str | Path, film: Film, body: TrackedBody, how: ReaderOptions
-) -> dict[str, Sequence[str]]:  # fmt: skip
-    """The pucks of a body by name, with the marks in whose middle each has its centre."""
+) -> dict[str, tuple[Sequence[str], str | None]]:  # fmt: skip
+    """The pucks of a body by name: marks in whose middle each has its centre, that it points to."""
     names = list(body.marks)
     if how.centre is not None:
-        for name in [*how.centre, *([how.toward] if how.toward else [])]:
+        wanted = [*how.centre, *([how.toward] if how.toward else [])]
+        if not {*wanted} <= {*names} and (pucks := _alike(names, wanted)):
+            return {
+                puck: (
+                    [marks[one] for one in how.centre],
+                    marks[how.toward] if how.toward else None,
+                )
+                for puck, marks in pucks.items()
+            }
+        for name in wanted:
             if name not in names:
                 near = get_close_matches(name, names, 1)
                 hint = f", did you mean '{near[0]}'?" if near else "."
                 raise InputError(
                     f"{path} has no mark '{name}'{hint} Its marks: {', '.join(names[:8])}"
                 )
-        return {"": how.centre}
+        return {"": (how.centre, how.toward)}
     named = {*names, *(f"{body.name} {mark}" for mark in names)} & {*(how.pucks or ())}
     if len(names) > 1 and film.jointed and not named:
+        centre, toward = _centre_and_toward(names)
         raise InputError(
-            f"{path} has the marks {', '.join(names[:8])}: if they are on one puck, say which is "
-            f"its centre, or which are around it, and where its angle points, with centre and "
-            f"toward (--centre {names[0]} --toward {names[1]}); if each is a puck, name them with "
-            f"pucks (--pucks {','.join(names[:2])})"
+            f"{path} has the marks {', '.join(names[:8])}: if they are on one puck, or alike on "
+            f"several, say which is its centre, or which are around it, and where its angle "
+            f"points, with centre and toward (--centre {centre} --toward {toward}); if each is a "
+            f"puck, name them with pucks (--pucks {','.join(names[:2])})"
         )
     if len(names) == 1 and body.name:
-        return {"": names}
-    return {name: [name] for name in names}
+        return {"": (names, None)}
+    return {name: ([name], None) for name in names}
 
 
 def _visible(
@@ -305,11 +375,12 @@ def _visible(
     film: Film,
     body: TrackedBody,
     centre: Sequence[str],
+    toward: str | None,
     how: ReaderOptions,
     scale: _Scale,
 ) -> tuple[FloatArray, FloatArray | None, list[str]]:
     """Place and angle of a puck with NaN where it was not seen."""
-    used = [*centre, *([how.toward] if how.toward else [])]
+    used = [*centre, *([toward] if toward else [])]
     shown = np.ones(len(body.marks[centre[0]]), bool)
     for mark in used:
         for name in ("", mark):
@@ -336,8 +407,8 @@ def _visible(
     points = {mark: np.where(shown[:, None], body.marks[mark], np.nan) for mark in used}
     places = {mark: scale.place(point) for mark, point in points.items()}
     place: FloatArray = np.mean([places[mark] for mark in centre], axis=0)
-    if how.toward is not None:
-        return place, direction(place, places[how.toward]), notes
+    if toward is not None:
+        return place, direction(place, places[toward]), notes
     angle = _angle_column(path, body, centre)
     if angle is None:
         return place, None, notes

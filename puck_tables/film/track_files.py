@@ -7,6 +7,7 @@ from pathlib import Path
 
 from puck_tables._core.beginning import beginning, refuse_no_text
 from puck_tables._core.real import instance
+from puck_tables._core.text import HEAD
 from puck_tables._core.text_rows import LARGEST
 from puck_tables.errors import InputError
 from puck_tables.film.film import Film, first_text
@@ -23,14 +24,16 @@ def read_tracks(
     columns: str | None = None, marks: Marks | None = None,
     centre: str | Sequence[str] | None = None, toward: str | None = None,
     likelihood: float | None = None, pucks: str | Sequence[str] | None = None,
+    up: str | None = None,
 ) -> tuple[Track, ...]:  # fmt: skip
     r"""The tracks of all pucks in a file.
 
     Read are tables in text files (CSV and the like: any header, separator, encoding and decimal
-    mark), the files and exports of Tracker (.trk, .trz), the tables of trackpy, DeepLabCut and
-    SLEAP, the HDF5 files of the latter two, and what ``puck track`` saves (HDF5, JSON, JSON
-    lines).  What a file does not say is asked for, never guessed; what was found and done stands
-    in the ``notes`` of a track.
+    mark) and spreadsheets (.xlsx, .ods), the files and exports of Tracker (.trk, .trz), the tables
+    of trackpy, DeepLabCut and SLEAP, the HDF5 files of the latter two, exports of Qualisys, Vicon
+    and OptiTrack, .trc and C3D files, tables of ROS, and what ``puck track`` saves (HDF5, JSON,
+    JSON lines).  What a file does not say is asked for, never guessed; what was found and done
+    stands in the ``notes`` of a track.
 
     Parameters
     ----------
@@ -40,7 +43,7 @@ def read_tracks(
     unit : str, optional
         Of the places, where the file does not say: m, cm, mm, in, px, ...
     scale : str or float, optional
-        The size of a pixel: '0.5mm', or in metres.
+        The size of a pixel: '0.5mm', or in metres; or a scale bar in the picture, '240px=30cm'.
     angle_unit : {'rad', 'deg', 'turn'}, optional
         Of a column of angles, where its heading does not say.
     y_down : bool, optional
@@ -53,7 +56,8 @@ def read_tracks(
         Four marks or more on the floor, rows of their pixels u, v and their places x, y in m (or a
         CSV file of them, with a header that says the unit): a tilted camera.
     centre : str or sequence of str, optional
-        The marks on a puck in whose middle its centre lies: 'hub', 'red,blue'.
+        The marks on a puck in whose middle its centre lies: 'hub', 'red,blue'.  Where several
+        pucks have marks alike (cm1, ed1, cm2, ed2), what these have in common: 'cm'.
     toward : str, optional
         The mark on a puck that its angle points to from the centre.
     likelihood : float, optional
@@ -61,6 +65,9 @@ def read_tracks(
         Default: 0.6 as in DeepLabCut; of SLEAP's scores none.
     pucks : str or sequence of str, optional
         Those to read, by name.
+    up : {'x', 'y', 'z'}, optional
+        The axis that points up, of places in space.  Default: as the file says, z where it does
+        not; refused where the puck would go up and down.
 
     Returns
     -------
@@ -86,7 +93,7 @@ def read_tracks(
     if "\0" in str(path):
         raise InputError("path must be the name of a file, it holds a NUL")
     how = ReaderOptions(
-        fps, unit, scale, angle_unit, y_down, marks, centre, toward, likelihood, pucks
+        fps, unit, scale, angle_unit, y_down, marks, centre, toward, likelihood, pucks, up
     )
     try:
         film = film_of(path, columns)
@@ -117,6 +124,10 @@ def film_of(path: str | Path, columns: str | None = None) -> Film:
     head = beginning(path, LARGEST)
     for reader in readers():
         if reader.opens(path, head):
+            if reader.as_text is not None:
+                content = reader.as_text(path)
+                return film_of_table(path, content[:HEAD], columns, content)
+            assert reader.film_of is not None
             film = reader.film_of(path)
             if columns is None:
                 return film

@@ -16,6 +16,7 @@ from puck_tables.errors import InputError
 from puck_tables.fitting.coupled_fit import Impact
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.numbers import EstimatedLaunch, Number
+from puck_tables.fitting.parameters import INTEGRATED
 from puck_tables.io.dataset import Variable, variable
 from puck_tables.puck import Puck
 
@@ -128,7 +129,10 @@ def puck_and_launch(
     try:
         launches = {str(one["track"]): one for one in data["launches"]}
         puck = Puck(**{name: data["puck"][name] for name in _PUCK})
-        drag = real("drag", data["drag"], "1/s")
+        drags = {
+            name: real(name, data["numbers"][name]["value"], "")
+            for name in ("drag", *INTEGRATED) if name in data["numbers"]
+        }  # fmt: skip
         chosen = launches[_chosen(list(launches), track, path)]
         velocity = one_velocity(chosen["velocity"])
         spin = real("spin", chosen["spin"], "rad/s")
@@ -143,11 +147,12 @@ def puck_and_launch(
             f"{path}: this puck was found with friction over slip speed, which a free puck has "
             "not: make a scene of it, with that law"
         )
-    if drag != 0.0:
-        raise InputError(
-            f"{path}: this puck was found with drag of {drag:.3g}/s, which a free puck has not: "
-            "make a scene of it, with drag"
-        )
+    for name, drag in drags.items():
+        if drag != 0.0:
+            raise InputError(
+                f"{path}: this puck was found with {name} of {drag:.3g}, which a free puck has "
+                "not: make a scene of it"
+            )
     return puck, velocity, spin, unknown
 
 

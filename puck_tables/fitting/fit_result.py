@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables._core.lazy import above
 from puck_tables._core.real import instance
 from puck_tables._core.safe_write import write_bytes
 from puck_tables._version import __version__
@@ -27,10 +28,16 @@ from puck_tables.fitting.fit_files import (
     numbers_as_json,
     without_nan,
 )
-from puck_tables.fitting.identifiability import doubts, rounded, taken_for_granted
-from puck_tables.fitting.model_comparison import HeldOut, LawScore, law_over
+from puck_tables.fitting.identifiability import (
+    doubts,
+    rounded,
+    spin_would_tell,
+    taken_for_granted,
+)
+from puck_tables.fitting.model_comparison import HeldOut, LawScore, law_over, verdict
 from puck_tables.fitting.numbers import EstimatedLaunch, Number
 from puck_tables.fitting.observations import Observations
+from puck_tables.fitting.parameters import INTEGRATED
 from puck_tables.fitting.problem import Known
 from puck_tables.fitting.residuals import JITTERY, NO_PATTERN, SideForces, lengthways, misfits
 from puck_tables.io.dataset import Dataset
@@ -162,12 +169,37 @@ class Fit(Result):
                 "the puck was found with friction over slip speed, which a free puck has not: put "
                 "it into a Scene with the law that fit.friction_over() gives"
             )
-        if self.drag != 0.0:
-            raise InputError(
-                f"the puck was found with drag of {self.drag:.3g}/s, which a free puck has not: "
-                "put it into a Scene with Drag"
-            )
+        for name in ("drag", *INTEGRATED):
+            if (number := self.numbers.get(name)) is not None and number.value != 0.0:
+                raise InputError(
+                    f"the puck was found with {name} of {number.value:.3g} {number.unit}, which a "
+                    "free puck has not: put it into a Scene"
+                )
         return self.puck.simulate(launch.velocity, launch.spin, **how)
+
+    def report(self, path: str | Path, overwrite: bool = False) -> None:
+        """Write one page for a class: pictures, numbers, residuals, what was assumed, and blanks.
+
+        Parameters
+        ----------
+        path : .html; it loads nothing, and prints well
+        overwrite : whether an existing file may be replaced
+
+        Raises
+        ------
+        InputError
+            If the ending is another.
+        MissingExtraError
+            If matplotlib is not installed.
+        OutputError
+            If the file exists or cannot be written.
+        """
+        above("save_fit_page")(self, path, overwrite)
+
+    @property
+    def verdict(self) -> str:
+        """Which of the laws compared the film supports, in a sentence; '' where none were."""
+        return verdict(self.laws)
 
     @property
     def complaints(self) -> tuple[str, ...]:
@@ -200,13 +232,19 @@ class Fit(Result):
             f"{float(getattr(self.given, name)):g}"
             for name in problem.spec.freed if hasattr(self.given, name)
         ]  # fmt: skip
-        for film, spinless in zip(problem.films, problem.spinless, strict=True):
-            if spinless:
-                said.append(
-                    f"{film.name} lies along a line and shows no angles: it is taken for a slide "
-                    "without spin. If it spun, friction may be up to 1.6 times as much "
-                    "(bounds or a start of launch_spin look for that)"
-                )
+        straight = [
+            film.name for film, spinless in zip(problem.films, problem.spinless, strict=True)
+            if spinless
+        ]  # fmt: skip
+        if straight:
+            others = f" and {len(straight) - 1} more lie" if len(straight) > 1 else " lies"
+            said.append(
+                f"{straight[0]}{others} along a line and without angles: taken for a slide without "
+                "spin. If it spun, friction may be up to 1.6 times as much (bounds or a start of "
+                "launch_spin look for that)"
+            )
+        if all(problem.spinless) and (more := spin_would_tell(self.estimate)):
+            said.append(more)
         said += [text for film in problem.films for text in rounded(film)]
         for k, side in enumerate(self.certainty.pinned):
             if side:
@@ -216,6 +254,12 @@ class Fit(Result):
                     f"best may be {way}. So it has no standard error, and its interval, and errors "
                     "and intervals of the rest, may mislead"
                 )
+        air, mass = self.numbers.get("air"), self.given.mass
+        if air is not None and mass != 1.0 and math.isfinite(air.error):
+            said.append(
+                f"air is {air.value * mass:.4g} +- {air.error * mass:.2g} kg/m over the mass of "
+                f"{mass:g} kg: drag.quadratic of a scene"
+            )
         said += (*self.not_met, *self.doubts)
         # stamps that jitter leave no drift, as another law does
         if self.jitter == 0.0 and self.noise[0] > 0.0 and self.drift > NO_PATTERN:
@@ -283,7 +327,7 @@ class Fit(Result):
             "not_determined": list(self.blind), "astray": self.astray, "doubts": self.doubts,
             "remarks": list(self.remarks),
             "complaints": list(self.complaints),
-            "laws": [one._asdict() for one in self.laws],
+            "laws": [one._asdict() for one in self.laws], "verdict": self.verdict,
             "held_out": None,
             "slip_speeds": list(self.estimate.problem.spec.speeds),
             "between": self.estimate.problem.spec.between,

@@ -16,11 +16,16 @@ from puck_tables._core.real import instance
 from puck_tables.contact.laws import law_of
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
-from puck_tables.fitting.forward_model import Moving, SpeedFriction
+from puck_tables.fitting.forward_model import Moving
 from puck_tables.fitting.impact_law import Rims
+from puck_tables.fitting.named_laws import NAMES as LAWS
+from puck_tables.fitting.named_laws import law_named
 from puck_tables.fitting.parameters import (
     ALL,
+    DRAGS,
+    INTEGRATED,
     LARGEST,
+    LAW_NUMBERS,
     MOST,
     NODES,
     OF_IMPACTS,
@@ -36,10 +41,11 @@ from puck_tables.fitting.parameters import (
     prior_of,
     refuse_unknown,
 )
+from puck_tables.fitting.speed_motion import Drags, SpeedFriction
 from puck_tables.fitting.unit_motions import unit_motions_of
 from puck_tables.puck import Puck
 
-_KIND = ("gyration", "inner", "drag")  # change the curve itself
+_KIND = ("gyration", "inner", "drag", *INTEGRATED)  # change the curve itself
 _CLASHES = (("friction", "decel"), ("delta", "height"))
 _TINY = 1e-30
 _LEAST = 1e-9
@@ -63,6 +69,7 @@ class FitSpec:
 
     speeds : slip speeds (m/s) at which friction coefficients are found, friction_0 and so on
     between : cubic or linear, f between these speeds
+    law : a law over slip speed by its name, '' for none
 
     Raises
     ------
@@ -89,6 +96,7 @@ class FitSpec:
     of_impacts: Mapping[str, float] = field(default_factory=dict)
     speeds: tuple[float, ...] = ()
     between: str = "cubic"
+    law: str = ""
 
     @classmethod
     def of(
@@ -189,7 +197,7 @@ class FitSpec:
         puck = self.puck
         numbers = {name: float(getattr(puck, name)) for name in
                    ("radius", "height", "friction", "gravity", "gyration")}  # fmt: skip
-        numbers["drag"] = 0.0
+        numbers.update(dict.fromkeys(("drag", *INTEGRATED[: -len(LAW_NUMBERS)]), 0.0))
         if _is_annulus(puck):
             numbers["inner"] = float(puck.body.law.name.partition(":")[2])
         return {**numbers, **self.of_impacts, **{n: v for n, v in self.fixed.items() if n in PUCK}}
@@ -197,8 +205,8 @@ class FitSpec:
     def scales(self, result: Mapping[str, Any]) -> tuple[Any, Any, Any]:
         """J, δ and r of what is found; of complex numbers, too."""
         all_of = {**self.known(), **result}
-        if self.speeds:  # that of a puck about to stop
-            all_of["friction"] = all_of[NODES[0]]
+        if self.speeds or self.law:  # that of a puck about to stop
+            all_of["friction"] = all_of[NODES[0] if self.speeds else LAW_NUMBERS[0]]
         decel = all_of["decel"] if self.uses_decel else all_of["friction"] * all_of["gravity"]
         if self.uses_delta:
             return decel, all_of["delta"], all_of["radius"]
@@ -278,7 +286,62 @@ class FitSpec:
 
     def changes_motion(self, name: str) -> bool:
         """Whether a parameter is none of the scales."""
-        return name in _KIND or name in NODES
+        scale = self.integrates and name in ("friction", "decel", "gravity")
+        return name in _KIND or name in NODES or scale
+
+    @property
+    def integrates(self) -> bool:
+        """Whether there is something found, or known, with which no look-up has the motions."""
+        return bool(self.integrated)
+
+    @property
+    def integrated(self) -> tuple[str, ...]:
+        """What of these is found or known."""
+        return tuple(name for name in INTEGRATED if name in (*self.free, *self.fixed))
+
+    def with_law(self, law: str) -> FitSpec:
+        """The same with a law over slip speed by its name, whose numbers are found too.
+
+        Raises
+        ------
+        InputError
+            If there is no such law, or friction is known.
+        """
+        if law not in LAWS:
+            raise InputError(f"law must be one of {', '.join(LAWS)}, got {law!r:.40}")
+        if "friction" not in self.free:
+            raise InputError("a law over slip speed is found: do not give the friction")
+        more = tuple(n for n in LAW_NUMBERS if n not in self.free and n not in self.fixed)
+        return replace(self, law=law, free=(*self.free, *more))
+
+    def refuse_integrated(self) -> None:
+        """Refuse what does not go with motions that are integrated.
+
+        Raises
+        ------
+        InputError
+        """
+        named = self.integrated
+        if self.puck.body.law.name != "uniform" or "inner" in (*self.free, *self.fixed):
+            raise InputError(
+                f"{' and '.join(named)} are found of uniform pressure alone, not of "
+                f"{self.puck.body.law.name}"
+            )
+        if not self.law and any(name in LAW_NUMBERS for name in named):
+            raise InputError(
+                f"{' and '.join(LAW_NUMBERS)} are numbers of a law over slip speed: name it "
+                f"(--law, law=): {', '.join(LAWS)}"
+            )
+
+    def with_linear_drag(self) -> FitSpec:
+        """The same with linear drag in place of what is integrated: to begin from."""
+        free = tuple(name for name in self.free if name not in INTEGRATED)
+        plain = "drag" in self.free or "drag" in self.fixed
+        bounds = self.bounds if plain else {**self.bounds, "drag": (0.0, MOST["drag"])}
+        fixed = {name: value for name, value in self.fixed.items() if name not in INTEGRATED}
+        return replace(
+            self, free=free if plain else (*free, "drag"), fixed=fixed, bounds=bounds, law=""
+        )
 
     def moving(self, result: Mapping[str, float], tall: bool) -> Moving:
         """What moves the puck."""
@@ -287,11 +350,18 @@ class FitSpec:
         pressure: Any = self.puck.body.law
         if "inner" in result or "inner" in self.fixed:
             pressure = f"annulus:{numbers['inner']!r}"
-        motions = unit_motions_of(pressure, numbers["gyration"], tall)
+        motions = unit_motions_of(pressure, numbers["gyration"], tall and not self.integrates)
         by_speed = None
-        if self.speeds:
-            law = self.speed_law(numbers)
-            by_speed = SpeedFriction(law, numbers["gravity"], numbers["gyration"])
+        if self.speeds or self.integrates:
+            g = numbers["gravity"]
+            over = self.speeds or self.law
+            law = self.speed_law(numbers) if over else float(decel / g)
+            drags = Drags(numbers["drag"], *(numbers[name] for name in DRAGS))
+            by_speed = SpeedFriction(
+                law, g, numbers["gyration"], drags,
+                (g * numbers["slope_x"], g * numbers["slope_y"]),
+                (numbers["belt_x"], numbers["belt_y"]),
+            )  # fmt: skip
         # while a minimum is sought J, r and h may lead beyond; where it lies is judged in the end
         return Moving(
             decel, min(delta, motions.highest), radius, numbers["drag"], motions, by_speed
@@ -299,6 +369,8 @@ class FitSpec:
 
     def speed_law(self, numbers: Mapping[str, float]) -> SpeedLaw:
         """The friction coefficient over slip speed."""
+        if self.law:
+            return law_named(self.law, *(numbers[n] for n in ("friction", *LAW_NUMBERS)))
         values = [numbers[name] for name in NODES[: len(self.speeds)]]
         return SpeedLaw(list(self.speeds), values, self.between)
 
@@ -310,7 +382,7 @@ class FitSpec:
         InputError
             If friction is not what is found, or something is found that such a puck has not.
         """
-        for name in ("decel", "gravity", "drag", "inner"):
+        for name in ("decel", "gravity", "drag", *INTEGRATED, "inner"):
             if name in self.free or name in self.fixed:
                 raise InputError(
                     f"{name} cannot be found or fixed beside a friction over slip speed: leave it "
@@ -334,6 +406,7 @@ class FitSpec:
 
     def highest(self, tall: bool) -> float:
         """The largest δ of which motions are known, of an annulus that is free as of the puck's."""
+        tall = tall and not self.integrates
         pressure = self.puck.body.law
         if "inner" in self.fixed:
             pressure = law_of(f"annulus:{self.fixed['inner']!r}")

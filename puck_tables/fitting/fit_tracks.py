@@ -12,6 +12,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from puck_tables._core.real import instance
+from puck_tables.errors import InputError
 from puck_tables.film.puck_track import Track
 from puck_tables.fitting.coupled_fit import Impact, couple, impacts_apart, impacts_coupled, not_met
 from puck_tables.fitting.estimate import Estimate, estimate
@@ -19,7 +20,7 @@ from puck_tables.fitting.fit_result import Fit
 from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.identifiability import not_identifiable
 from puck_tables.fitting.impact_matching import Line
-from puck_tables.fitting.initial_estimate import initial_estimate
+from puck_tables.fitting.initial_estimate import initial_estimate, is_clean
 from puck_tables.fitting.inputs import (
     Inputs,
     begin_jitter,
@@ -32,25 +33,27 @@ from puck_tables.fitting.inputs import (
     refuse_tipping,
 )
 from puck_tables.fitting.judgement import JudgedMotion, judged_certainty, judged_motion
+from puck_tables.fitting.least_squares import ROBUST, minimise
 from puck_tables.fitting.misfit import misfit
 from puck_tables.fitting.model_comparison import (
     HeldOut,
     LawScore,
     chi2_under,
     compare,
+    on_a_floor,
     over_speeds,
     predicted,
     split,
     variants_of,
+    with_drags,
 )
 from puck_tables.fitting.numbers import numbers_of
 from puck_tables.fitting.observations import Observations, noise_of
 from puck_tables.fitting.other_minima import without_spin
+from puck_tables.fitting.parameters import DRAGS
 from puck_tables.fitting.problem import Known, Problem
-from puck_tables.fitting.residuals import (
-    drift,
-    runs,
-)
+from puck_tables.fitting.residuals import NO_PATTERN, NOISY, drift, runs
+from puck_tables.fitting.slowing import begun_from_slowing
 from puck_tables.fitting.touches import SlideIndex, slides_apart
 from puck_tables.puck import Puck
 
@@ -77,6 +80,7 @@ def fit(
     walls: Sequence[Line] = (),
     slip_speeds: Sequence[float] | None = None,
     between: str = "cubic",
+    law: str | None = None,
     laws: Sequence[str] = (),
     hold_out: float | Sequence[str] | None = None,
     progress: Progress | None = None,
@@ -94,7 +98,9 @@ def fit(
     free : names, optional
         What is found besides the launches: friction or decel (J = f g), delta or height
         (δ = 2fh/r), radius, gravity, gyration, inner (radius of an annulus), drag (1/s, of speed
-        and spin alike: for a flat uniform puck f(u) = f + (drag/g) u of the slip speed u).
+        and spin alike: for a flat uniform puck f(u) = f + (drag/g) u of the slip speed u), air
+        (1/m, of the speed squared: drag.quadratic of a scene over the mass), spin_drag (1/s),
+        slope_x and slope_y (pull over g), belt_x and belt_y (m/s, of the floor).
         Without it friction, and delta where the puck has no height.
     fixed : values by name, held; also launch_spin and the like
     prior : (value, standard deviation) by name
@@ -120,8 +126,11 @@ def fit(
         with u the slip speed.  It is one number where they are left out.
     between : cubic or linear, f between these speeds
         As :class:`SpeedLaw` takes it: a cubic that rises and falls only where f at the speeds does.
-    laws : names of pressure laws to compare, as :class:`Puck` takes them; with '+drag' of those
-        with drag
+    law : 'stribeck', 'hyperbola' or 'two-valued', of friction over slip speed by three numbers
+        friction (of fast slip), friction_rest and law_speed (m/s): :mod:`.named_laws`.
+    laws : names of pressure laws to compare, as :class:`Puck` takes them; with +drag, +air, +slope,
+        +belt, +stribeck, +hyperbola or +two-valued what is then found, too; 'floors': all of these
+        of uniform pressure, and :attr:`Fit.verdict` says which the film supports
     hold_out : share of the moving frames at the end of each track, or names of tracks
         Fitted without them (of a track named: without its later half), and predicted.
     progress : callable (done, total), optional
@@ -166,6 +175,8 @@ def fit(
         puck, free, fixed or {}, prior or {}, bounds or {}, start or {}, impacts or bool(lines),
         rows is not None,
     )  # fmt: skip
+    if law is not None:
+        spec = spec.with_law(law)
     inputs = Inputs.of(spec, noise, jitter, slip_speeds, between, impacts, lines, hold_out)
     films = observations_of(tracks, since, until, keep_all, checked_rows(rows), puck.radius)
     observed = _observe(films, inputs)
@@ -232,7 +243,10 @@ def _observe(films: tuple[Observations, ...], inputs: Inputs) -> _Observed:
 
 def _estimate_all(inputs: Inputs, observed: _Observed) -> _Estimates:
     """The estimate, from slides apart to joined ones, from one friction to one over slip speed."""
-    best = slides = initial_estimate(observed.problem, inputs.known, refit=True)
+    if inputs.spec.integrates:
+        best = slides = _integrated(observed.problem, inputs.known)
+    else:
+        best = slides = initial_estimate(observed.problem, inputs.known, refit=True)
     untied = ""
     if inputs.impacts:
         best, untied = couple(
@@ -246,6 +260,35 @@ def _estimate_all(inputs: Inputs, observed: _Observed) -> _Estimates:
     return _Estimates(slides, best, constant, untied)
 
 
+def _integrated(problem: Problem, known: Known) -> Estimate:
+    """The estimate with what no look-up has the motions of: drags, a slope, a belt, a law.
+
+    Begun from what slows the puck; where that cannot be told, or does not lead to a motion that
+    fits, from one with linear drag.  Frames at the ends are looked at only then.
+    """
+    begun = begun_from_slowing(problem)
+    if begun is not None:
+        x, _ = minimise(*begun, ROBUST)
+        result = estimate(problem, x, known)
+        if is_clean(result, NOISY, NO_PATTERN) or not {*DRAGS} >= {*problem.spec.integrated}:
+            refuse_opening(result)
+            return result
+    if not {*DRAGS} >= {*problem.spec.integrated}:
+        raise InputError(
+            f"{' and '.join(problem.spec.integrated)} are found of tracks with angles that can be "
+            "followed from frame to frame, or along a line: film a mark on the puck"
+        )
+    linear = replace(problem, spec=problem.spec.with_linear_drag())
+    result = with_drags(initial_estimate(linear, known, refit=False), problem.spec, known)
+    if not is_clean(result, NOISY, NO_PATTERN):
+        cut = initial_estimate(linear, known, refit=True)
+        sizes = ([film.time.size for film in one.films] for one in (cut.problem, problem))
+        if next(sizes) != next(sizes):
+            result = with_drags(cut, problem.spec, known)
+    refuse_opening(result)
+    return result
+
+
 def _compared(
     inputs: Inputs, observed: _Observed, estimates: _Estimates, variants: Mapping[str, FitSpec]
 ) -> tuple[LawScore, ...]:
@@ -256,6 +299,8 @@ def _compared(
         same = replace(
             observed.problem, spec=one, noise=noise, jitter=estimates.slides.problem.jitter
         )
+        if one.integrates:
+            return on_a_floor(same, known._replace(jitter=True))
         return initial_estimate(same, known._replace(jitter=True), refit=False)
 
     return compare(variants, observed.problem.noise, inputs.known, of_law)
@@ -364,7 +409,7 @@ def _held_out(best: Estimate, wanted: float | tuple[str, ...], known: Known) -> 
     problem = best.problem
     films, later = split(problem.films, wanted, problem.noise[0])
     fewer = problem.with_films(films)
-    if problem.impact_specs or problem.spec.speeds:
+    if problem.impact_specs or problem.spec.speeds or problem.spec.integrates:
         part = estimate(fewer, best.x, known)
     else:
         part = initial_estimate(fewer, known, refit=False)

@@ -8,8 +8,10 @@ drag, since dry friction depends on their direction only.  So place = ∫ V ds/(
 
     place = X(s)/(1 + cs)² + 2c ∫ X ds/(1 + cs)³ ,
 
-and so for every derivative of it.  For a homogeneous flat puck under uniform pressure this is the
-law f(u) = f + (c/g) u of a coefficient that rises (c > 0) or falls (c < 0) with the slip speed u.
+and so for every derivative of it.  Drag of the speed squared, or of the spin alone, is integrated
+(:mod:`puck_tables.fitting.speed_motion`).  For a homogeneous flat puck under uniform pressure
+linear drag is the law f(u) = f + (c/g) u of a coefficient that rises (c > 0) or falls (c < 0) with
+the slip speed u.
 """
 
 from __future__ import annotations
@@ -19,8 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.contact.speed_law import SpeedLaw
-from puck_tables.fitting.speed_motion import speed_path
+from puck_tables.fitting.speed_motion import SpeedFriction, speed_path
 from puck_tables.fitting.unit_motions import UnitMotions
 
 _SPEED_STEP = 1e-6
@@ -30,18 +31,11 @@ VX, VY, SPIN, DELTA, DECEL, RADIUS, TIME = range(7)  # what states are different
 PLACE, RATE = slice(0, 3), slice(3, 6)  # of a state: x, y, angle and vx, vy, spin
 
 
-class SpeedFriction(NamedTuple):
-    """A friction coefficient over slip speed, gravity m/s², and the radius of gyration over r."""
-
-    law: SpeedLaw
-    gravity: float
-    gyration: float
-
-
 class Moving(NamedTuple):
     """What moves a puck: the scale J m/s², δ, r m, drag c 1/s, and its motions.
 
-    ``by_speed``: f over slip speed in place of the motions; J and δ are then those at rest.
+    ``by_speed``: f over slip speed, or drags of another kind, in place of the motions; J and δ are
+    then those at rest.
     """
 
     decel: float
@@ -136,12 +130,11 @@ def _by_speed(
 
     J does nothing, its place is taken by the numbers of the law.
     """
-    law, gravity, gyration = friction
-    height = gravity / at[DECEL]  # δ times it is 2h/r
+    height = friction.gravity / at[DECEL]  # δ times it is 2h/r
 
     def path(by: FloatArray, times: FloatArray) -> FloatArray:
         velocity, spin, delta, radius = by[:2], float(by[SPIN]), by[DELTA], float(by[RADIUS])
-        moved = speed_path(law, gravity, delta * height, gyration, radius, velocity, spin, times)
+        moved = speed_path(friction, delta * height, radius, velocity, spin, times)
         return np.concatenate(moved)
 
     instant = _SPEED_STEP * (float(times.max(initial=0.0)) or 1.0)

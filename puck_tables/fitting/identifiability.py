@@ -311,6 +311,27 @@ def _with_heights_inside(values: dict[str, float]) -> dict[str, float]:
     return values
 
 
+def spin_would_tell(result: Estimate) -> str:
+    """What the same slide would tell if it spun and a mark on it were filmed; '' if not more.
+
+    For a result whose tracks lie along a line without angles.
+    """
+    problem = replace(result.problem, spec=replace(result.problem.spec, bounds={}, start={}))
+    for words, other, x in reversed(_other_films(replace(result, problem=problem))):
+        if "spin" not in words or "marks" not in words:
+            continue
+        slopes, plausible = other.jacobian(x), plausible_for(other, x)
+        known = certainty_of(slopes[other.kinds != PRIOR], plausible)
+        told = [
+            f"{name} to +- {error:.2g}"
+            for name, error in zip(other.spec.free, known.errors, strict=False)
+            if math.isfinite(error) and error > 0.0
+        ]
+        if told:
+            return f"With {words}, as it is otherwise, the film would tell {' and '.join(told)}"
+    return ""
+
+
 def _errors(problem: Problem, x: FloatArray, members: list[tuple[int, str]]) -> FloatArray:
     """The errors of members, those of the puck if there are, in units of what is plausible."""
     slopes, plausible = problem.jacobian(x), plausible_for(problem, x)

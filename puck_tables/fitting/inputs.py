@@ -63,6 +63,13 @@ class Inputs:
         checked = checked_speeds(speeds, between)
         if checked:
             spec.over(checked, between)
+        if spec.integrates:
+            spec.refuse_integrated()
+        if spec.integrates and (impacts or lines):
+            raise InputError(
+                f"{' and '.join(spec.integrated)} cannot be found beside impacts: leave one of "
+                "the two out"
+            )
         names: Any = (hold_out,) if isinstance(hold_out, str) else hold_out
         if isinstance(names, list | tuple):
             names = tuple(names)
@@ -169,7 +176,10 @@ def _refuse_within(film: Observations, spread: float) -> None:
 def _refuse_twice(one: Observations, other: Observations) -> None:
     """Refuse a film that is given twice: it would count for two."""
     count = min(one.time.size, other.time.size)
-    aligned = (one.place[:count] == other.place[:count]).all(axis=1).sum()
+    alike = (one.place[:count] == other.place[:count]).all(axis=1)
+    if one.straight is not None:  # gates stand where they stand
+        alike &= one.time[:count] == other.time[:count]
+    aligned = alike.sum()
     frames = [
         set(zip((film.start + film.time).tolist(), *film.place.T.tolist(), strict=True))
         for film in (one, other)
@@ -286,13 +296,15 @@ def refuse_opening(result: Estimate) -> None:
     """
     problem = result.problem
     numbers = problem.numbers_at(result.x)
-    law = problem.spec.speed_law(numbers)
     _, delta, _ = problem.spec.scales(numbers)
-    largest = float(delta * law.largest(law.top_speed) / law(0.0))
+    largest = float(delta)
+    if problem.spec.speeds or problem.spec.law:
+        law = problem.spec.speed_law(numbers)
+        largest *= float(law.largest(law.top_speed) / law(0.0))
     if largest > 1.0:
         raise InputError(
             f"where friction is largest delta = 2 f h/r is {largest:.4g}: a friction over slip "
-            "speed is found where it is at most 1, so fix a lower height"
+            "speed, drags, slopes and belts are found where it is at most 1, so fix a lower height"
         )
 
 

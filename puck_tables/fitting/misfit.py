@@ -17,10 +17,12 @@ from puck_tables.errors import InputError
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.initial_estimate import initial_estimate
+from puck_tables.fitting.least_squares import ROBUST, minimise
 from puck_tables.fitting.model_comparison import tried
-from puck_tables.fitting.parameters import NODES
+from puck_tables.fitting.parameters import INTEGRATED, NODES
 from puck_tables.fitting.problem import TURN, Known, Problem
 from puck_tables.fitting.residuals import AIR, NO_PATTERN, SLOPE, SideForces, forced
+from puck_tables.fitting.slowing import begun_from_slowing
 
 _FAR = 1.5  # times smaller are residuals of a reading that is told
 _NEAR = 0.01  # of the radius: it is not another one
@@ -76,7 +78,8 @@ def misfit(
             law = None
         told = [one for one in (drag, law) if one]
     if not speeds and not problem.impact_specs:
-        told += [one for kind in (AIR, SLOPE) if (one := _by_force(result, kind, noise))]
+        one = _by_air(result, problem) or _by_force(result, AIR, noise)
+        told += [one for one in (one, _by_force(result, SLOPE, noise)) if one]
     told = sorted(told, key=lambda one: -one.gain)[:2]
     told += _otherwise(result, problem, known)
     best = max((one.gain for one in told), default=0.0)
@@ -144,9 +147,33 @@ def _by_drag(result: Estimate, problem: Problem, known: Known) -> _Reading | Non
     return _Reading(words, gain, True) if gain else None
 
 
+def _by_air(result: Estimate, problem: Problem) -> _Reading | None:
+    """Drag of the speed squared, if that fits far better; tried where angles can be followed."""
+    spec = problem.spec
+    if not _may_change(spec):
+        return None
+    other = replace(problem, spec=replace(spec, free=(*spec.free, "air")), tall=False)
+    begun = begun_from_slowing(other)
+    if begun is None:
+        return None
+    try:
+        x, _ = minimise(*begun, ROBUST)
+    except InputError:
+        return None
+    gain = _gain(result, _sizes(other, other.deviations(x)), problem.noise[0])
+    return _Reading(_air_words(other.numbers_at(x)["air"], spec), gain, True) if gain else None
+
+
+def _air_words(air: float, spec: FitSpec) -> str:
+    return (
+        f"if air slowed it, by {air:.2g}/m times the square of its speed (what slows it hardly "
+        f"brakes its spin, as air does): find it, too (--free {','.join((*spec.free, 'air'))})"
+    )
+
+
 def _may_change(spec: FitSpec) -> bool:
     """Whether nothing was asked that goes with no friction over slip speed."""
-    named = {"drag", "inner", "decel", "gravity"} & {*spec.free, *spec.fixed}
+    named = {"drag", *INTEGRATED, "inner", "decel", "gravity"} & {*spec.free, *spec.fixed}
     uniform = spec.puck.body.law.name == "uniform"
     lifts = spec.bounds.get("delta", (0.0, 1.0))[0] >= 1.0  # under such laws no base does
     return uniform and not named and not spec.speeds and not lifts and "friction" in spec.free
@@ -184,11 +211,7 @@ def _by_force(result: Estimate, kind: tuple[int, ...], noise: float) -> _Reading
     gravity = {**result.problem.spec.known(), **result.problem.numbers_at(result.x)}["gravity"]
     slope = math.degrees(math.hypot(*force) / gravity)
     if kind == AIR:
-        words = (
-            f"if air slowed it, by {force[0]:.2g}/m times the square of its speed (what slows it "
-            "hardly brakes its spin, as air does): a fit has no such drag, a scene has "
-            "(drag.quadratic)"
-        )
+        words = _air_words(force[0], result.problem.spec)
         believed = force[0] > 0.0
     else:
         words = (

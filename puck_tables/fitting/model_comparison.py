@@ -21,12 +21,17 @@ from puck_tables.errors import InputError
 from puck_tables.fitting.certainty import Z95, Certainty
 from puck_tables.fitting.estimate import Estimate, capped_squares, estimate
 from puck_tables.fitting.fit_spec import FitSpec
-from puck_tables.fitting.least_squares import ROBUST, minimise
+from puck_tables.fitting.least_squares import FROM_AFAR, ROBUST, minimise, multi_start
+from puck_tables.fitting.named_laws import NAMES as LAWS
 from puck_tables.fitting.observations import FEWEST, Observations, rests_from
-from puck_tables.fitting.parameters import NODES
-from puck_tables.fitting.problem import ANGLE, PLACE, Known, Problem
+from puck_tables.fitting.parameters import LAW_NUMBERS, NODES
+from puck_tables.fitting.problem import ANGLE, PLACE, TURN, UNSEEN, Known, Problem
+from puck_tables.fitting.slowing import begun_from_slowing
 from puck_tables.fitting.whole_turns import on_another_floor
 
+_ROUGHLY = ROBUST._replace(evaluations=15)
+_NEAR = 3.0  # times the noise: floors that are fitted to the end
+_SHARES_OF_AIR = (0.3, 0.6, 0.9)
 _FRAMES = 80  # that tell whether such a law may be the reason of a misfit
 _LEAST = 0.02  # of the largest friction of a line: the smallest
 _SHARES = (0.0, 0.08, 0.3, 1.0)  # of the fastest slip
@@ -40,6 +45,70 @@ def over_speeds(
     lines, _ = minimise(moved, start, ROBUST)
     spec = replace(moved.spec, between=between)
     return estimate(replace(moved, spec=spec), lines, known)
+
+
+def with_drags(result: Estimate, spec: FitSpec, known: Known) -> Estimate:
+    """The estimate with drags of the speed squared, or of the spin, from that with a linear one.
+
+    Parameters
+    ----------
+    result : of :meth:`FitSpec.with_linear_drag`
+    spec : what is asked
+    known : whether the noise of places, of angles and of time stamps is
+    """
+    problem = result.problem
+    numbers, launches = problem.numbers_at(result.x), problem.launches(result.x)
+    whole = tuple(_near(film, path[TURN]) for film, path in
+                  zip(problem.films, problem.paths(result.x), strict=True))  # fmt: skip
+    moved = replace(problem, spec=spec, weights=(), tall=False, whole=whole)
+    line, speed = numbers.get("drag", 0.0), float(np.hypot(*launches[:, 2:4].T).max())
+    gravity = spec.known()["gravity"]
+    starts = []
+    for share in _SHARES_OF_AIR:  # of the slowing at half the speed that is by air
+        begun = {**dict.fromkeys(spec.free, 0.0), **numbers}
+        begun["air"] = share * max(line, 0.0) / max(0.5 * speed, 1e-9)
+        begun["friction"] = numbers.get("friction", 0.0)
+        begun["friction"] += 0.5 * (1.0 - share) * max(line, 0.0) * speed / gravity
+        if "drag" in spec.free:
+            begun["drag"] = (1.0 - share) * line
+        values = {name: begun[name] for name in spec.free}
+        starts.append((moved, np.clip(moved.unknowns(values, launches), *moved.limits)))
+    (x, _), *_ = multi_start(starts, FROM_AFAR, ROBUST)
+    return estimate(replace(moved, whole=()), x, known)
+
+
+def _near(film: Observations, path: FloatArray) -> FloatArray | None:
+    """The angles of a track in one piece, as near as whole turns let them be to a path (n,)."""
+    if film.angle is None:
+        return None
+    turn = 2.0 * math.pi
+    whole: FloatArray = film.angle + turn * np.round((path - film.angle) / turn)
+    return whole
+
+
+def on_a_floor(problem: Problem, known: Known) -> Estimate:
+    """The estimate of a floor that is compared with others: about, where it does not come near.
+
+    Raises
+    ------
+    InputError
+        If its tracks do not tell where to begin, or no such motion can be computed.
+    """
+    begun = begun_from_slowing(problem)
+    if begun is None:
+        raise InputError(
+            f"{' and '.join(problem.spec.integrated)} are found of tracks with angles that can be "
+            "followed from frame to frame, or along a line: film a mark on the puck"
+        )
+    x, _ = minimise(*begun, _ROUGHLY)
+    rows = problem.residuals(x)
+    if problem.usual(rows) < _NEAR:
+        return estimate(problem, x, known)
+    noise = (problem.usual(rows) / 0.6745 * problem.noise[0], problem.noise[1])
+    wider = problem.with_noise(noise, x) if not known.place else problem
+    return Estimate(
+        wider, x, problem.kinds != UNSEEN, wider.residuals(x), np.zeros((rows.size, x.size))
+    )
 
 
 def tried(result: Estimate) -> Estimate:
@@ -98,7 +167,12 @@ def law_over(
     return np.asarray(spec.speed_law(numbers)(at)), np.sqrt(spread)
 
 
-DRAG = "+drag"
+# what may go with a pressure law, and what is then found besides
+FLOORS = {
+    "drag": ("drag",), "air": ("air",), "stribeck": LAW_NUMBERS, "hyperbola": LAW_NUMBERS,
+    "two-valued": LAW_NUMBERS, "slope": ("slope_x", "slope_y"), "belt": ("belt_x", "belt_y"),
+}  # fmt: skip
+EVERY_FLOOR = "floors"  # of uniform pressure: all of these
 _CONTENDS = 60.0  # of χ²: laws worse than the best by more are not fitted again
 
 Fitted = Callable[[FitSpec, tuple[float, float], Known], Estimate]
@@ -123,8 +197,16 @@ def compare(
     variants: Mapping[str, FitSpec], noise: tuple[float, float], known: Known, fit_law: Fitted
 ) -> tuple[LawScore, ...]:
     """The laws named, best first; ``fit_law`` fits each with a noise, known or not."""
-    names, questions = list(variants), list(variants.values())
-    first = [fit_law(one, noise, known) for one in questions]
+    names, questions, first = [], [], []
+    for name, question in variants.items():
+        try:
+            first.append(fit_law(question, noise, known))
+        except InputError:
+            if "+" not in name:  # no such floor leads to such a track
+                raise
+            continue
+        names.append(name)
+        questions.append(question)
     common = [
         noise[kind] if known[kind] else min(one.problem.noise[kind] for one in first)
         for kind in range(2)
@@ -158,20 +240,31 @@ def variants_of(spec: FitSpec, names: Any) -> dict[str, FitSpec]:
     """
     if isinstance(names, str):
         raise InputError(f"laws must be a list of names, got the text '{names}'")
+    floors = ["uniform", *(f"uniform+{one}" for one in FLOORS)]
+    names = [
+        more for name in names for more in (floors if name == EVERY_FLOOR else [name])
+    ]  # fmt: skip
     if len(set(names)) < len(names):
         raise InputError(f"laws {', '.join(names)}: name each law once")
     return {name: _variant(spec, name) for name in names}
 
 
 def _variant(spec: FitSpec, name: str) -> FitSpec:
-    """The same question of another law."""
-    drags = name.endswith(DRAG)
-    law = law_of(name.removesuffix(DRAG))
-    free = tuple(n for n in spec.free if n != "inner" and (n != "drag" or drags))
-    if drags and "drag" not in free:
-        free = (*free, "drag")
-    fixed = {n: v for n, v in spec.fixed.items() if n != "inner"}
-    return replace(spec, puck=replace(spec.puck, pressure=law), free=free, fixed=fixed)
+    """The same question of another law, and another floor."""
+    pressure, plus, floor = name.partition("+")
+    if plus and floor not in FLOORS:
+        raise InputError(f"laws {name}: behind + may stand {', '.join(FLOORS)}")
+    law = law_of(pressure)
+    other = {"inner", *(one for numbers in FLOORS.values() for one in numbers)}
+    free = tuple(n for n in spec.free if n not in other) + FLOORS.get(floor, ())
+    fixed = {n: v for n, v in spec.fixed.items() if n not in other}
+    named = floor if floor in LAWS else ""
+    variant = replace(
+        spec, puck=replace(spec.puck, pressure=law), free=free, fixed=fixed, law=named
+    )
+    if variant.integrates:
+        variant.refuse_integrated()
+    return variant
 
 
 def chi2_under(result: Estimate, noise: tuple[float, float]) -> float:
@@ -180,6 +273,45 @@ def chi2_under(result: Estimate, noise: tuple[float, float]) -> float:
     total = sum(float(squares.sum()) for squares in capped_squares(problem, result.x))
     total += sum(((result.x[k] - value) / spread) ** 2 for k, value, spread in problem.priors)
     return total if math.isfinite(total) else math.inf
+
+
+_EACH = 7.0  # of χ², that each more number has to earn: ln n of a film of some hundred frames
+_ALIKE = 10.0  # of that: floors that the film does not tell apart
+
+
+def verdict(laws: tuple[LawScore, ...]) -> str:
+    """Which of the laws compared a film supports, from the simplest up, in a sentence.
+
+    A law counts by χ² + 7 for each number.
+
+    Examples
+    --------
+    >>> one = LawScore("uniform", 930.0, 8, 0.0, {})
+    >>> verdict((one._replace(name="uniform+air", chi2=700.0, unknowns=9), one))
+    'uniform+air is what the film supports: with 1 more number than uniform it leaves 230 less of \
+chi^2, and no other law leaves less for its numbers.'
+    """
+    if len(laws) < 2:
+        return ""
+    ranked = sorted(laws, key=lambda one: one.chi2 + _EACH * one.unknowns)
+    simplest = min(laws, key=lambda one: (one.unknowns, one.chi2))
+    best = ranked[0]
+    least = best.chi2 + _EACH * best.unknowns
+    alike = [one.name for one in ranked[1:] if one.chi2 + _EACH * one.unknowns < least + _ALIKE]
+    if best is simplest:
+        said = f"{best.name} is enough: no law with more numbers leaves so much less of chi^2"
+        said += " that they are worth it"
+    else:
+        more = best.unknowns - simplest.unknowns
+        words = f"{more} more number{'' if more == 1 else 's'} than"
+        said = (
+            f"{best.name} is what the film supports: with {words} {simplest.name} it leaves "
+            f"{simplest.chi2 - best.chi2:.4g} less of chi^2, and no other law leaves less for its "
+            "numbers"
+        )
+    if alike:
+        said += f"; {', '.join(alike)} may be as right: the film does not tell"
+    return f"{said}."
 
 
 LEAST_SHARE, LARGEST_SHARE = 0.05, 0.9

@@ -64,7 +64,7 @@ def other_minima(
     apart = not problem.impact_specs
     signed = marked or not apart  # a wall tells a motion from its mirror image
     single = len(problem.films) == 1
-    if problem.spec.speeds:
+    if problem.spec.speeds or problem.spec.integrates:
         return ()
     starts = list(result.minima)
     if not starts and apart and single:

@@ -34,6 +34,14 @@ PUCK = {
     ),
     "inner": Parameter("1", 0.0, 1.0, 0.5, "inner radius of an annulus over r"),
     "drag": Parameter("1/s", -math.inf, math.inf, 1.0, "linear drag, of speed and of spin"),
+    "air": Parameter("1/m", 0.0, math.inf, 1.0, "drag of the speed squared over the mass"),
+    "spin_drag": Parameter("1/s", 0.0, math.inf, 1.0, "drag of the spin alone"),
+    "friction_rest": Parameter("1", 0.0, math.inf, 1.0, "friction of a named law at rest"),
+    "law_speed": Parameter("m/s", 0.0, math.inf, 1.0, "slip speed of a named law"),
+    "slope_x": Parameter("1", -1.0, 1.0, 0.1, "pull of a slope along x, over g"),
+    "slope_y": Parameter("1", -1.0, 1.0, 0.1, "pull of a slope along y, over g"),
+    "belt_x": Parameter("m/s", -100.0, 100.0, 1.0, "velocity of the floor along x"),
+    "belt_y": Parameter("m/s", -100.0, 100.0, 1.0, "velocity of the floor along y"),
     "readout": Parameter("s", -1.0, 1.0, 0.02, "time in which the lines of a picture are read"),
     "restitution": Parameter("1", 0.0, 1.0, 1.0, "restitution e of a wall"),
     "rim_friction": Parameter("1", 0.0, math.inf, 1.0, "friction of the rim on a wall"),
@@ -71,11 +79,16 @@ OF_IMPACTS = {**OF_WALLS, **OF_PAIRS}
 # more of it has no puck on a film: where a fit runs away it ends here; a friction is far larger
 # where units are wrong, which is then said
 MOST = {
-    "friction": 1e6, "decel": 1e7, "gravity": 1e3, "drag": 100.0, "rim_friction": 100.0,
+    "friction": 1e6, "decel": 1e7, "gravity": 1e3, "drag": 100.0, "air": 100.0,
+    "spin_drag": 100.0, "friction_rest": 10.0, "law_speed": 100.0, "rim_friction": 100.0,
     "pair_friction": 100.0, "mass_ratio": 1e3, **dict.fromkeys(NODES, 10.0),
 }  # fmt: skip
 TALLEST, LARGEST, SMALLEST = 100.0, 1e6, 1e-6  # times the radius; m
-POSITIVE = ("radius", "gravity", "friction", "decel", "mass_ratio")  # 0 is none of their values
+# 0 is none of their values
+POSITIVE = ("radius", "gravity", "friction", "decel", "mass_ratio", "friction_rest", "law_speed")
+DRAGS, LAW_NUMBERS = ("air", "spin_drag"), ("friction_rest", "law_speed")
+# of which no look-up has the motions
+INTEGRATED = (*DRAGS, "slope_x", "slope_y", "belt_x", "belt_y", *LAW_NUMBERS)
 
 
 def refuse_unknown(name: str, known: Mapping[str, Parameter], what: str) -> None:

@@ -21,14 +21,21 @@ from puck_tables.contact.base import Base
 from puck_tables.kernels.base_parts import disc_sums
 from puck_tables.kernels.base_sums import NOTHING, Sums, from_slip, moved, plus
 from puck_tables.kernels.compile import inlined, inner
-from puck_tables.kernels.polygon_sums import SIDE_COLUMNS, flat_sums, polygon_sums
+from puck_tables.kernels.polygon_sums import (
+    ABOUT_X,
+    ABOUT_Y,
+    PIECE_COLUMNS,
+    RADIUS,
+    TURN,
+    flat_sums,
+    polygon_sums,
+)
 
 # A base in one array: how many sides and discs, how far its farthest point is, ∫ dA, ∫ x dA and
-# ∫ x x dA over it, and z f; then a row for each side, and for each disc its middle, its radius, and
-# 1, or −1 of a hole; from the centre of mass
+# ∫ x x dA over it, and z f; then its contour, a row for each side and then for each disc, which
+# turns backwards around a hole; from the centre of mass
 SIDES, DISCS, REACH, AREA, FIRST_X, FIRST_Y, SECOND_XX, SECOND_XY, SECOND_YY, LEVER = range(10)
 HEAD = 10
-DISC_COLUMNS = 4
 
 
 def packed(base: Base, lever: float) -> FloatArray:
@@ -47,8 +54,14 @@ def packed(base: Base, lever: float) -> FloatArray:
         length = np.hypot(*way.T)
         anew = np.zeros(len(corners))
         anew[0] = 1.0
-        sides.append(np.column_stack([corners, way / length[:, None], length, anew]).ravel())
-    discs = [[x - middle[0], y - middle[1], radius, sign] for x, y, radius, sign in base.discs]
+        last, turn = np.roll(corners, -1, axis=0), np.zeros(len(corners))
+        rows = [corners, way / length[:, None], length, anew, last, turn]
+        sides.append(np.column_stack(rows).ravel())
+    discs = []
+    for x, y, radius, sign in base.discs:
+        x, y = x - middle[0], y - middle[1]
+        begin = x + radius, y
+        discs.append([*begin, x, y, radius, 0.0, *begin, sign * 2.0 * math.pi])
     head = [
         sum(map(len, base.outlines)), len(discs), base.reach, area, *first,
         second[0, 0], second[0, 1], second[1, 1], lever,
@@ -56,9 +69,12 @@ def packed(base: Base, lever: float) -> FloatArray:
     return np.concatenate([head, *sides, np.ravel(discs)]).astype(np.float64)
 
 
-def room_for(base: FloatArray) -> int:
-    """How many numbers the sides of a part of a base take, cut off by a line."""
-    return SIDE_COLUMNS * 2 * int(base[SIDES]) if base.size else 0
+@inlined
+def disc_in(base: FloatArray, number: int) -> tuple[float, float, float, float]:
+    """The middle of a disc of a base, its radius, and 1, or −1 of a hole."""
+    at = HEAD + PIECE_COLUMNS * (int(base[SIDES]) + number)
+    sign = 1.0 if base[at + TURN] > 0.0 else -1.0
+    return base[at + ABOUT_X], base[at + ABOUT_Y], base[at + RADIUS], sign
 
 
 @inlined
@@ -75,12 +91,11 @@ def disc_at(cx: float, cy: float, size: float, ux: float, uy: float, w: float) -
 def base_sums(base: FloatArray, ux: float, uy: float, w: float) -> Sums:
     """Sums of the slip direction over a base, in its own axes, at a slip and a spin, not both 0."""
     count, sums = int(base[SIDES]), NOTHING
-    discs = HEAD + SIDE_COLUMNS * count
     if count > 0:
         sums = polygon_sums(base, HEAD, count, base[REACH], ux, uy, w)
     for i in range(int(base[DISCS])):
-        at = discs + DISC_COLUMNS * i
-        sums = plus(sums, base[at + 3], disc_at(base[at], base[at + 1], base[at + 2], ux, uy, w))
+        cx, cy, size, sign = disc_in(base, i)
+        sums = plus(sums, sign, disc_at(cx, cy, size, ux, uy, w))
     return sums
 
 

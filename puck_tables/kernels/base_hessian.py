@@ -23,7 +23,6 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.base_friction import (
     AREA,
-    DISC_COLUMNS,
     DISCS,
     FIRST_X,
     FIRST_Y,
@@ -35,6 +34,7 @@ from puck_tables.kernels.base_friction import (
     SECOND_YY,
     SIDES,
     base_sums,
+    disc_in,
     grip,
     pressure_on,
     under_load,
@@ -50,7 +50,7 @@ from puck_tables.kernels.polygon_sums import (
     LENGTH,
     NODE,
     NODES,
-    SIDE_COLUMNS,
+    PIECE_COLUMNS,
     TANGENT_X,
     TANGENT_Y,
     WEIGHT,
@@ -82,7 +82,7 @@ def _sides_near(
     cx, cy = -uy / w, ux / w
     xx, xy, yy, far = 0.0, 0.0, 0.0, 0.0
     at_c = a + bx * cx + by * cy
-    for i in range(HEAD, HEAD + SIDE_COLUMNS * int(base[SIDES]), SIDE_COLUMNS):
+    for i in range(HEAD, HEAD + PIECE_COLUMNS * int(base[SIDES]), PIECE_COLUMNS):
         tx, ty, length, d, begin, end, near, far = side_from(base, i, cx, cy, far)
         both = near + far
         first, last = 1.0 / max(near, _TINY), 1.0 / max(far, _TINY)
@@ -107,7 +107,7 @@ def _sides_far(
 ) -> Hessian:  # fmt: skip
     sign = -1.0 if w < 0.0 else 1.0
     xx, xy, yy, xw, yw, ww = _FLAT
-    for i in range(HEAD, HEAD + SIDE_COLUMNS * int(base[SIDES]), SIDE_COLUMNS):
+    for i in range(HEAD, HEAD + PIECE_COLUMNS * int(base[SIDES]), PIECE_COLUMNS):
         half = 0.5 * base[i + LENGTH]
         hx, hy = half * base[i + TANGENT_X], half * base[i + TANGENT_Y]
         mx, my = base[i + BEGIN_X] + hx, base[i + BEGIN_Y] + hy
@@ -175,15 +175,15 @@ def _series(m: float) -> float:
 
 @inlined
 def _disc_at(
-    base: FloatArray, at: int, a: float, bx: float, by: float, ux: float, uy: float, w: float
+    cx: float, cy: float, size: float, a: float, bx: float, by: float, ux: float, uy: float,
+    w: float,
 ) -> Hessian:  # fmt: skip
     """A disc about a place: about its own middle, turned and moved."""
-    cx, cy = base[at], base[at + 1]
     ux, uy = ux - w * cy, uy + w * cx
     speed = math.sqrt(ux * ux + uy * uy)
     c, s = (ux / speed, uy / speed) if speed > 0.0 else (1.0, 0.0)
     xx, xy, yy, xw, yw, ww = _disc(
-        base[at + 2], a + bx * cx + by * cy, c * bx + s * by, c * by - s * bx, speed, w
+        size, a + bx * cx + by * cy, c * bx + s * by, c * by - s * bx, speed, w
     )
     turned_xw, turned_yw = c * xw - s * yw, s * xw + c * yw
     mixed = c * s * (xx - yy) + (c * c - s * s) * xy
@@ -208,9 +208,9 @@ def pressed_hessian(
             sums = _sides_far(base, a, bx, by, ux, uy, w)
         else:
             sums = _sides_near(base, a, bx, by, ux, uy, w)
-    first = HEAD + SIDE_COLUMNS * int(base[SIDES])
-    for at in range(first, first + DISC_COLUMNS * int(base[DISCS]), DISC_COLUMNS):
-        one, sign = _disc_at(base, at, a, bx, by, ux, uy, w), base[at + 3]
+    for k in range(int(base[DISCS])):
+        cx, cy, size, sign = disc_in(base, k)
+        one = _disc_at(cx, cy, size, a, bx, by, ux, uy, w)
         sums = (
             sums[0] + sign * one[0], sums[1] + sign * one[1], sums[2] + sign * one[2],
             sums[3] + sign * one[3], sums[4] + sign * one[4], sums[5] + sign * one[5],

@@ -18,20 +18,18 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.base_friction import (
     AREA,
-    DISC_COLUMNS,
     DISCS,
-    HEAD,
     LEVER,
     SECOND_XX,
     SECOND_YY,
     SIDES,
+    disc_in,
     grip,
     pressure_on,
 )
 from puck_tables.kernels.base_hessian import Wrench, grip_slopes
 from puck_tables.kernels.base_sums import NOTHING
 from puck_tables.kernels.compile import inlined, inner, patience
-from puck_tables.kernels.polygon_sums import SIDE_COLUMNS
 
 Plane = tuple[float, float, float, float, float, float]  # two unit vectors across W
 _STEPS = 60  # of Newton's method; it takes 3 to 12
@@ -57,12 +55,11 @@ def _start(base: FloatArray, size: float, x: float, y: float, z: float) -> Wrenc
     sides, discs = base[SIDES], int(base[DISCS])
     if discs > 0 and sides + discs > 1.0:
         a, bx, by = pressure_on(base, NOTHING)  # with the height 0: as it is now
-        first = HEAD + SIDE_COLUMNS * int(sides)
-        for at in range(first, first + DISC_COLUMNS * discs, DISC_COLUMNS):
-            cx, cy, radius = base[at], base[at + 1], base[at + 2]
+        for k in range(discs):
+            cx, cy, radius, sign = disc_in(base, k)
             lever = size * z - cx * y + cy * x  # torque about the foot
             load = math.pi * radius * radius * (a + bx * cx + by * cy)
-            if base[at + 3] < 0.0 or lever == 0.0:
+            if sign < 0.0 or lever == 0.0:
                 continue
             w = 1.0 if lever > 0.0 else -1.0
             fx, fy, torque = grip(base, w * cy, -w * cx, w)

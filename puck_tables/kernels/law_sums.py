@@ -18,7 +18,7 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.law_moments import DEGREE, MOMENTS
-from puck_tables.kernels.base_friction import DISC_COLUMNS, DISCS, HEAD, REACH, SIDES
+from puck_tables.kernels.base_friction import DISCS, HEAD, REACH, SIDES, disc_in
 from puck_tables.kernels.base_sums import NOTHING, Sums, moved, plus
 from puck_tables.kernels.compile import arrays_at_first, inlined, inner, kernel
 from puck_tables.kernels.law_sums_at_first import (
@@ -36,7 +36,7 @@ from puck_tables.kernels.polygon_sums import (
     BEGIN_X,
     BEGIN_Y,
     LENGTH,
-    SIDE_COLUMNS,
+    PIECE_COLUMNS,
     TANGENT_X,
     TANGENT_Y,
     ray_to,
@@ -172,8 +172,8 @@ def _from_far(
 
 @inner
 def _far_sums(base: FloatArray, law: FloatArray, ux: float, uy: float, w: float) -> Sums:
-    sums, discs = NOTHING, HEAD + SIDE_COLUMNS * int(base[SIDES])
-    for i in range(HEAD, discs, SIDE_COLUMNS):
+    sums, discs = NOTHING, HEAD + PIECE_COLUMNS * int(base[SIDES])
+    for i in range(HEAD, discs, PIECE_COLUMNS):
         half = 0.5 * base[i + LENGTH]
         hx, hy = half * base[i + TANGENT_X], half * base[i + TANGENT_Y]
         mx, my = base[i + BEGIN_X] + hx, base[i + BEGIN_Y] + hy
@@ -181,14 +181,13 @@ def _far_sums(base: FloatArray, law: FloatArray, ux: float, uy: float, w: float)
             part = _from_far(law, ux, uy, w, mx + NODE[n] * hx, my + NODE[n] * hy, hx, hy)
             sums = plus(sums, WEIGHT[n], part)
     for k in range(int(base[DISCS])):
-        at = discs + DISC_COLUMNS * k
-        size, step = base[at + 2], math.pi / NODES
+        (cx, cy, size, sign), step = disc_in(base, k), math.pi / NODES
         for n in range(2 * NODES):  # equal steps around a circle are as good as Gauss's
             c, s = math.cos(n * step), math.sin(n * step)
             part = _from_far(
-                law, ux, uy, w, base[at] + size * c, base[at + 1] + size * s, -size * s, size * c
-            )
-            sums = plus(sums, base[at + 3] * step, part)
+                law, ux, uy, w, cx + size * c, cy + size * s, -size * s, size * c
+            )  # fmt: skip
+            sums = plus(sums, sign * step, part)
     return sums
 
 
@@ -199,15 +198,14 @@ def law_sums(base: FloatArray, law: FloatArray, ux: float, uy: float, w: float) 
     if math.sqrt(ux * ux + uy * uy) > FAR * base[REACH] * abs(w):
         return _far_sums(base, law, ux, uy, w)
     spin, cx, cy, sums = abs(w), -uy / w, ux / w, NOTHING
-    discs = HEAD + SIDE_COLUMNS * int(base[SIDES])
-    for i in range(HEAD, discs, SIDE_COLUMNS):
+    discs = HEAD + PIECE_COLUMNS * int(base[SIDES])
+    for i in range(HEAD, discs, PIECE_COLUMNS):
         part = _along_side(
             law, spin, base[i + BEGIN_X] - cx, base[i + BEGIN_Y] - cy, base[i + TANGENT_X],
             base[i + TANGENT_Y], base[i + LENGTH], ON_SIDE * base[REACH],
         )  # fmt: skip
         sums = plus(sums, 1.0, part)
     for k in range(int(base[DISCS])):
-        at = discs + DISC_COLUMNS * k
-        part = _along_circle(law, spin, base[at] - cx, base[at + 1] - cy, base[at + 2])
-        sums = plus(sums, base[at + 3], part)
+        x, y, size, sign = disc_in(base, k)
+        sums = plus(sums, sign, _along_circle(law, spin, x - cx, y - cy, size))
     return plus(NOTHING, 1.0 if w > 0.0 else -1.0, moved(sums, cx, cy))

@@ -11,15 +11,19 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.law_moments import DEGREE, MOMENTS
-from puck_tables.kernels.base_friction import DISC_COLUMNS, DISCS, HEAD, REACH, SIDES
+from puck_tables.kernels.base_friction import DISCS, HEAD, REACH, SIDES
 from puck_tables.kernels.base_sums import Sums, moved
 from puck_tables.kernels.polygon_sums import (
+    ABOUT_X,
+    ABOUT_Y,
     BEGIN_X,
     BEGIN_Y,
     LENGTH,
-    SIDE_COLUMNS,
+    PIECE_COLUMNS,
+    RADIUS,
     TANGENT_X,
     TANGENT_Y,
+    TURN,
 )
 
 # the rule of both
@@ -52,13 +56,15 @@ def law_sums_at_first(base: FloatArray, law: FloatArray, ux: float, uy: float, w
 
 
 def _sides(base: FloatArray) -> FloatArray:
-    end = HEAD + SIDE_COLUMNS * int(base[SIDES])
-    return base[HEAD:end].reshape(-1, SIDE_COLUMNS)
+    end = HEAD + PIECE_COLUMNS * int(base[SIDES])
+    return base[HEAD:end].reshape(-1, PIECE_COLUMNS)
 
 
 def _discs(base: FloatArray) -> FloatArray:
-    begin, count = HEAD + SIDE_COLUMNS * int(base[SIDES]), int(base[DISCS])
-    return base[begin : begin + DISC_COLUMNS * count].reshape(-1, DISC_COLUMNS)
+    """The middle of each, its radius, and 1, or −1 of a hole."""
+    begin, count = HEAD + PIECE_COLUMNS * int(base[SIDES]), int(base[DISCS])
+    rows = base[begin : begin + PIECE_COLUMNS * count].reshape(-1, PIECE_COLUMNS)
+    return np.column_stack([rows[:, [ABOUT_X, ABOUT_Y, RADIUS]], np.sign(rows[:, TURN])])
 
 
 def _summed(terms: list[FloatArray]) -> Sums:

@@ -27,10 +27,13 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.base_sums import NOTHING, Sums
 from puck_tables.kernels.compile import inlined, inner, summed
 
-# of a side: where it begins, its unit tangent with the polygon to the left, its length, and whether
-# it begins where the one before ends (0) or not (1)
-BEGIN_X, BEGIN_Y, TANGENT_X, TANGENT_Y, LENGTH, ANEW = range(6)
-SIDE_COLUMNS = 6
+# of a piece of contour: where it begins; of a straight one its unit tangent with the base to the
+# left, its length, and whether it begins where the one before ends (0) or not (1), of an arc in
+# place of these its middle, its radius, and from which angle; where it ends, and by which angle it
+# turns (0: it is straight)
+BEGIN_X, BEGIN_Y, TANGENT_X, TANGENT_Y, LENGTH, ANEW, END_X, END_Y, TURN = range(9)
+ABOUT_X, ABOUT_Y, RADIUS, START = TANGENT_X, TANGENT_Y, LENGTH, ANEW
+PIECE_COLUMNS = 9
 FAR = 6.0  # times the reach of the base: closer, closed forms lose less than 1e-13
 NODES = 8  # of Gauss's rule on a side that far away: 6e-16
 NODE, WEIGHT = np.polynomial.legendre.leggauss(NODES)
@@ -93,7 +96,7 @@ def flat_sums(
         return sums[0], sums[1], sums[4] - sums[3]
     cx, cy = -uy / w, ux / w
     ex, ey, size, far = 0.0, 0.0, 0.0, 0.0
-    for i in range(first, first + SIDE_COLUMNS * count, SIDE_COLUMNS):
+    for i in range(first, first + PIECE_COLUMNS * count, PIECE_COLUMNS):
         tx, ty, length, d, begin, end, near, far = side_from(base, i, cx, cy, far)
         both = near + far
         along = d * math.log((both + length) / max(both - length, LEAST * length))
@@ -122,7 +125,7 @@ def _near(base: FloatArray, first: int, count: int, ux: float, uy: float, w: flo
     cx, cy = -uy / w, ux / w
     ex, ey, size, rx, ry, far = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     xx, xy, yx, yy = 0.0, 0.0, 0.0, 0.0
-    for i in range(first, first + SIDE_COLUMNS * count, SIDE_COLUMNS):
+    for i in range(first, first + PIECE_COLUMNS * count, PIECE_COLUMNS):
         tx, ty, length, d, begin, end, near, far = side_from(base, i, cx, cy, far)
         both = near + far
         a0 = math.log((both + length) / max(both - length, LEAST * length))
@@ -156,7 +159,7 @@ def _far(base: FloatArray, first: int, count: int, ux: float, uy: float, w: floa
     """From the distance of C to the boundary, s from there, at (V + |w| s)/|w| from C."""
     speed, spin, sign = math.sqrt(ux * ux + uy * uy), abs(w), -1.0 if w < 0.0 else 1.0
     ex, ey, xx, xy, yx, yy, gx, gy = NOTHING
-    for i in range(first, first + SIDE_COLUMNS * count, SIDE_COLUMNS):
+    for i in range(first, first + PIECE_COLUMNS * count, PIECE_COLUMNS):
         half = 0.5 * base[i + LENGTH]
         hx, hy = half * base[i + TANGENT_X], half * base[i + TANGENT_Y]
         mx, my = base[i + BEGIN_X] + hx, base[i + BEGIN_Y] + hy

@@ -34,7 +34,8 @@ def floor_faults(scene: SceneSpec) -> list[str]:
     if faults:
         return faults
     if scene.puck.shape is not None:
-        return faults + (bad_strips(scene.floor) or _bad_under_base(scene)) + _bad_rows(scene)
+        wrong = bad_strips(scene.floor) or patch_faults(scene.floor) or _bad_under_base(scene)
+        return faults + wrong + _bad_rows(scene) + _bad_axes(scene)
     if scene.floor.law and (scene.puck.pressure != "uniform"):
         faults.append("floor.law: known under uniform pressure only, not with puck.pressure")
     faults += bad_strips(scene.floor) or patch_faults(scene.floor) or _bad_astride(scene)
@@ -51,21 +52,19 @@ def _bad_motion(floor: Floor) -> list[str]:
         turns = bool(motion_of(floor)[:, 3].any())
     except InputError as error:
         return [f"floor.over_time: {str(error).removeprefix('floor.over_time ')}"]
-    others += ["orthotropic"] * (turns and floor.orthotropic is not None)
+    axes = floor.orthotropic
+    others += ["orthotropic"] * (turns and axes is not None and axes.fixed_to == "floor")
     return [f"floor.over_time and floor.{name}: give one of them" for name in others]
 
 
 def _bad_under_base(scene: SceneSpec) -> list[str]:
     """Why friction is not known under a base that is not round."""
     floor, puck = scene.floor, scene.puck
-    for name, there in (("orthotropic", floor.orthotropic), ("patch", floor.patches)):
-        if there:
-            return [
-                f"floor.{name}: not known under a base that is not round; give a radius in place "
-                "of puck.base, or leave it out"
-            ]
-    name = "floor.grip" if floor.grips else "floor.strips"
-    if (floor.strips is not None or floor.grips) and puck.shape is not None and not floor.law:
+    name = "floor.patch" if floor.patches else "floor.strips"
+    name = "floor.orthotropic" if floor.orthotropic is not None else name
+    name = "floor.grip" if floor.grips else name
+    several = floor.strips is not None or floor.patches or floor.grips
+    if (several or floor.orthotropic is not None) and puck.shape is not None and not floor.law:
         try:
             puck.shape.refuse_lift(_strongest(scene), puck.height)
         except ContactError as error:
@@ -75,7 +74,9 @@ def _bad_under_base(scene: SceneSpec) -> list[str]:
 
 def _strongest(scene: SceneSpec) -> float:
     """The largest coefficient that friction ever has under the puck."""
-    return float((largest_factors(scene.floor) * scene.frictions).max())
+    axes = scene.floor.orthotropic
+    frictions = scene.frictions if axes is None else (max(axes.friction),)
+    return float((largest_factors(scene.floor) * frictions).max())
 
 
 def _bad_astride(scene: SceneSpec) -> list[str]:
@@ -140,7 +141,7 @@ def _bad_axes(scene: SceneSpec) -> list[str]:
             f"{name}: with floor.law, floor.strips or floor.patch there is no such friction, give "
             "one"
         )
-    if floor.turning != 0.0:
+    if floor.turning != 0.0 and two.fixed_to == "floor":
         faults.append(f"{name}: not on a floor that turns, its axes stand still; leave one out")
     if puck.pressure != "uniform":
         faults.append(f"{name}: known under uniform pressure only, not with puck.pressure")
@@ -149,8 +150,9 @@ def _bad_axes(scene: SceneSpec) -> list[str]:
             f"{name}.friction = {list(two.friction)}: one must be at least {LEAST_RATIO:g} of the "
             "other"
         )
-    most = max(two.friction) * float(largest_factors(floor)[0])
-    tall = 2.0 * most * puck.height / puck.radius
+    if puck.shape is not None:
+        return faults
+    tall = 2.0 * _strongest(scene) * puck.height / puck.radius
     if tall > 1.0:
         faults.append(
             f"{name}: 2 f h/r = {tall:.4g} with the larger f must be at most 1, above part of the "

@@ -1,24 +1,19 @@
-"""Dry friction of a base of any shape on a floor of one friction, by law or not, or of strips.
-
-What of the base lies beyond a border is bounded by its own contour there and by pieces of the
-border.  The sums along such a piece are those from one point of the border, the foot, to one end of
-it less those to the other: so every place where the contour crosses the border adds a side from the
-foot to it, or back, and nothing has to be put in order.
-"""
+"""Dry friction of a base of any shape on a floor of one friction, or of strips and patches."""
 
 from __future__ import annotations
 
 import math
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.base_cut import (
+    beyond_line,
+    contour_sums,
+    in_circle,
+    whole_contour,
+)
 from puck_tables.kernels.base_friction import (
     AREA,
-    DISC_COLUMNS,
-    DISCS,
-    HEAD,
-    SIDES,
     base_sums,
-    disc_at,
     is_uniform,
     pressure_at,
     pressure_on,
@@ -26,33 +21,22 @@ from puck_tables.kernels.base_friction import (
     uniform_sums,
 )
 from puck_tables.kernels.base_friction import REACH as BASE_REACH
-from puck_tables.kernels.base_parts import beyond_sums
-from puck_tables.kernels.base_sums import (
-    NOTHING,
-    UNIFORM,
-    Sums,
-    from_slip,
-    moved,
-    plus,
-    scaled,
-)
+from puck_tables.kernels.base_sums import NOTHING, Sums, plus
 from puck_tables.kernels.compile import inlined, inner
+from puck_tables.kernels.elliptic_sums import Ellipse, elliptic_sums
 from puck_tables.kernels.law_sums import law_sums
-from puck_tables.kernels.polygon_sums import (
-    ANEW,
-    BEGIN_X,
-    BEGIN_Y,
-    LENGTH,
-    SIDE_COLUMNS,
-    TANGENT_X,
-    TANGENT_Y,
-    polygon_sums,
-)
 from puck_tables.scene.ground import (
     ACROSS_X,
     ACROSS_Y,
     ANGLE,
+    AXES,
     BORDERS,
+    CORNER,
+    CORNERS,
+    LOAD,
+    MIDDLE_X,
+    MIDDLE_Y,
+    PATCHES,
     PLACE_X,
     PLACE_Y,
     PROFILE,
@@ -60,90 +44,83 @@ from puck_tables.scene.ground import (
     ROWS,
     SHARE,
     border_of,
+    corner_of,
     load_of,
+    patch_of,
+    strip_at,
 )
-
-
-@inlined
-def _side(room: FloatArray, count: int, px: float, py: float, qx: float, qy: float) -> int:
-    """Add a side from p to q; how many there are then."""
-    tx, ty = qx - px, qy - py
-    length = math.sqrt(tx * tx + ty * ty)
-    if not length > 0.0:
-        return count
-    at = SIDE_COLUMNS * count
-    room[at + BEGIN_X], room[at + BEGIN_Y], room[at + ANEW] = px, py, 1.0
-    room[at + TANGENT_X], room[at + TANGENT_Y], room[at + LENGTH] = tx / length, ty / length, length
-    return count + 1
-
-
-@inlined
-def _sides_beyond(
-    base: FloatArray, room: FloatArray, nx: float, ny: float, place: float
-) -> int:  # fmt: skip
-    """The sides of the polygons of a base beyond the line n·x = place, closed along it."""
-    fx, fy, count, first = place * nx, place * ny, 0, HEAD
-    last = HEAD + SIDE_COLUMNS * int(base[SIDES])
-    for i in range(HEAD, last, SIDE_COLUMNS):
-        if base[i + ANEW] != 0.0:
-            first = i
-        after = i + SIDE_COLUMNS
-        if after == last or base[after + ANEW] != 0.0:
-            after = first
-        px, py, qx, qy = base[i], base[i + 1], base[after], base[after + 1]
-        one, two = nx * px + ny * py - place, nx * qx + ny * qy - place
-        if one >= 0.0 and two >= 0.0:
-            count = _side(room, count, px, py, qx, qy)
-        elif one >= 0.0 or two >= 0.0:
-            share = one / (one - two)
-            x, y = px + share * (qx - px), py + share * (qy - py)
-            if one >= 0.0:
-                count = _side(room, count, px, py, x, y)
-                count = _side(room, count, x, y, fx, fy)
-            else:
-                count = _side(room, count, fx, fy, x, y)
-                count = _side(room, count, x, y, qx, qy)
-    return count
-
-
-@inlined
-def _disc_beyond(
-    cx: float, cy: float, size: float, nx: float, ny: float, place: float, ux: float, uy: float,
-    w: float,
-) -> Sums:  # fmt: skip
-    """Sums over what of a disc about (cx, cy) lies beyond the line n·x = place."""
-    away = (place - (nx * cx + ny * cy)) / size
-    if away >= 1.0:
-        return NOTHING
-    whole = disc_at(cx, cy, size, ux, uy, w) if away < 0.0 else NOTHING
-    if away <= -1.0:
-        return whole
-    # in radii about its own middle, by axes along the slip there, in which the spin is not negative
-    sense = 1.0 if away >= 0.0 else -1.0
-    ux, uy, mirrored = ux - w * cy, uy + w * cx, -1.0 if w < 0.0 else 1.0
-    speed = math.sqrt(ux * ux + uy * uy)
-    c, s = (ux / speed, uy / speed) if speed > 0.0 else (1.0, 0.0)
-    tx, ty = sense * (c * nx + s * ny), sense * mirrored * (c * ny - s * nx)
-    part = beyond_sums(speed, size * abs(w), 1.0, tx, ty, sense * away, UNIFORM)
-    part = moved(from_slip(scaled(part, size), c, s, mirrored), cx, cy)
-    return plus(whole, sense, part)
+from puck_tables.scene.ground import REACH as PATCH_REACH
+from puck_tables.scene.patches import distance_to
 
 
 @inner
-def _beyond(
-    base: FloatArray, room: FloatArray, nx: float, ny: float, place: float, ux: float, uy: float,
-    w: float,
+def _in_polygon(
+    ground: FloatArray, first: int, count: int, contour: int, last: int, reach: float, ux: float,
+    uy: float, w: float,
 ) -> Sums:  # fmt: skip
-    """Sums over what of a base lies beyond the line n·x = place, all in its axes."""
-    count, sums = _sides_beyond(base, room, nx, ny, place), NOTHING
-    if count > 0:
-        sums = polygon_sums(room, 0, count, base[BASE_REACH], ux, uy, w)
-    discs = HEAD + SIDE_COLUMNS * int(base[SIDES])
-    for k in range(int(base[DISCS])):
-        at = discs + DISC_COLUMNS * k
-        part = _disc_beyond(base[at], base[at + 1], base[at + 2], nx, ny, place, ux, uy, w)
-        sums = plus(sums, base[at + 3], part)
+    """Sums over what of a base, whose contour stands in the ground, lies in a patch with corners.
+
+    By triangles from the first corner, which are added, or taken off where they turn back.
+    """
+    sums, one = NOTHING, int(ground[ROOM])
+    two = one + (len(ground) - one) // 2
+    ox, oy = _from_base(ground, *corner_of(ground, first))
+    for k in range(1, count - 1):
+        ax, ay = _from_base(ground, *corner_of(ground, first + k))
+        bx, by = _from_base(ground, *corner_of(ground, first + k + 1))
+        twice = (ax - ox) * (by - oy) - (ay - oy) * (bx - ox)
+        if twice == 0.0:
+            continue
+        way = 1.0 if twice > 0.0 else -1.0
+        end = _left_of(ground, contour, last, one, ox, oy, ax, ay, way)
+        end = _left_of(ground, one, end, two, ax, ay, bx, by, way)
+        end = _left_of(ground, two, end, one, bx, by, ox, oy, way)
+        if end > one:
+            sums = plus(sums, way, contour_sums(ground, one, end, reach, ux, uy, w))
     return sums
+
+
+@inlined
+def _left_of(
+    room: FloatArray, first: int, last: int, to: int, px: float, py: float, qx: float, qy: float,
+    way: float,
+) -> int:  # fmt: skip
+    """Put what of a contour lies to the left of a line at a place, or to its right; its end."""
+    dx, dy = qx - px, qy - py
+    per = way / math.sqrt(dx * dx + dy * dy)
+    nx, ny = -dy * per, dx * per
+    return beyond_line(room, first, last, to, nx, ny, nx * px + ny * py)
+
+
+@inlined
+def _from_base(ground: FloatArray, x: float, y: float) -> tuple[float, float]:
+    """A place on the floor in the axes of the base."""
+    c, s = math.cos(ground[ANGLE]), math.sin(ground[ANGLE])
+    x, y = x - ground[PLACE_X], y - ground[PLACE_Y]
+    return c * x + s * y, c * y - s * x
+
+
+@inner
+def _in_patch(
+    ground: FloatArray, patch: int, contour: int, last: int, ux: float, uy: float, w: float
+) -> Sums:  # fmt: skip
+    """Sums over what of a base lies in a patch."""
+    base = ground[int(ground[PROFILE]) :]
+    reach, away = base[BASE_REACH], distance_to(ground, patch, ground[PLACE_X], ground[PLACE_Y])
+    if away >= reach:
+        return NOTHING
+    if away <= -reach:
+        return base_sums(base, ux, uy, w)
+    corners = int(patch_of(ground, patch, CORNERS))
+    if corners > 0:
+        first = int(patch_of(ground, patch, CORNER))
+        return _in_polygon(ground, first, corners, contour, last, reach, ux, uy, w)
+    one = int(ground[ROOM])
+    mx, my = _from_base(
+        ground, patch_of(ground, patch, MIDDLE_X), patch_of(ground, patch, MIDDLE_Y)
+    )  # fmt: skip
+    end = in_circle(ground, contour, last, one, mx, my, patch_of(ground, patch, PATCH_REACH))
+    return contour_sums(ground, one, end, reach, ux, uy, w)
 
 
 @inner
@@ -152,13 +129,20 @@ def friction_sums(ground: FloatArray, ux: float, uy: float, w: float, moving: fl
 
     ``moving`` 0: with the friction at slip zero, whatever the slip.
     """
-    if moving != 0.0 and ground[ROWS] > 0.0:
-        first = int(ground[ROWS])
-        law = ground[first : int(ground[ROOM])]
-        return plus(
-            NOTHING, ground[SHARE], law_sums(ground[int(ground[PROFILE]) : first], law, ux, uy, w)
-        )
-    base, room = ground[int(ground[PROFILE]) :], ground[int(ground[ROOM]) :]
+    first, last = int(ground[ROWS]), int(ground[ROOM])
+    if first > 0 and last - first == AXES:
+        angle = ground[first + 2] - ground[first + 3] * ground[ANGLE]
+        law = Ellipse(ground[first], ground[first + 1], math.cos(angle), math.sin(angle))
+        sums = elliptic_sums(ground[int(ground[PROFILE]) : first], law, ux, uy, w)
+        return plus(NOTHING, ground[SHARE], sums)
+    if moving != 0.0 and first > 0:
+        sums = law_sums(
+            ground[int(ground[PROFILE]) : first], ground[first:last], ux, uy, w
+        )  # fmt: skip
+        return plus(NOTHING, ground[SHARE], sums)
+    begin, to = int(ground[PROFILE]), int(ground[ROOM])
+    base = ground[begin:]
+    contour, end = whole_contour(base, begin)
     reach, borders = base[BASE_REACH], int(ground[BORDERS])
     c, s = math.cos(ground[ANGLE]), math.sin(ground[ANGLE])
     east, north = ground[ACROSS_X], ground[ACROSS_Y]
@@ -174,8 +158,13 @@ def friction_sums(ground: FloatArray, ux: float, uy: float, w: float, moving: fl
         sums = plus(sums, whole, base_sums(base, ux, uy, w))
     for i in range(first, last):
         more = load_of(ground, i + 1) - load_of(ground, i)
-        part = _beyond(base, room, nx, ny, border_of(ground, i) - place, ux, uy, w)
+        until = beyond_line(ground, contour, end, to, nx, ny, border_of(ground, i) - place)
+        part = contour_sums(ground, to, until, reach, ux, uy, w)
         sums = plus(sums, more, part)
+    for k in range(int(ground[PATCHES])):
+        mx, my = patch_of(ground, k, MIDDLE_X), patch_of(ground, k, MIDDLE_Y)
+        more = patch_of(ground, k, LOAD) - load_of(ground, strip_at(ground, mx, my))
+        sums = plus(sums, more, _in_patch(ground, k, contour, end, ux, uy, w))
     return plus(NOTHING, ground[SHARE], sums)
 
 
@@ -189,7 +178,8 @@ def friction_of_base(
     """
     c, s = math.cos(ground[ANGLE]), math.sin(ground[ANGLE])
     base = ground[int(ground[PROFILE]) :]
-    if ground[BORDERS] == 0.0 and ground[ROWS] == 0.0 and is_uniform(base):
+    one = ground[BORDERS] == 0.0 and ground[PATCHES] == 0.0 and ground[ROWS] == 0.0
+    if one and is_uniform(base):
         x, y, turning = uniform_sums(base, c * ux + s * uy, c * uy - s * ux, w)
         mean = ground[SHARE] * load_of(ground, 0) / base[AREA]
         fx, fy, torque = mean * (c * x - s * y), mean * (s * x + c * y), mean * turning

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.base_friction import room_for
+from puck_tables.kernels.base_cut import room_to_cut
 from puck_tables.kernels.base_sums import UNIFORM
 from puck_tables.kernels.compile import inlined
 
@@ -28,7 +28,9 @@ _ROOM, _ROOM_A_ROW = 48, 22
 # the corners of all patches, and of a tabulated pressure from PROFILE on all radii, A and B of its
 # pieces W = A + B ρ, with one on either side where nothing presses, or a base of any shape, and
 # from ROOM on room to work.  ROWS: of a tabulated pressure; of a base where its law of friction
-# over the slip speed stands, 0 where it has none.
+# over the slip speed or its direction stands, 0 where it has none.  That by direction is f N along
+# and across, the angle of the first, and 1: in the floor, or 0: in the body.
+AXES = 4
 
 
 class Ground(NamedTuple):
@@ -42,7 +44,8 @@ class Ground(NamedTuple):
     ∫ W ρ dρ = ½, straight between them; ``base``: of ANY, in one array
     (:func:`puck_tables.kernels.base_friction.packed`), with ``lever``: height of the centre of mass
     over N, m/N; ``law``: its friction f N over the slip speed, in one array
-    (:func:`puck_tables.contact.law_moments.packed_law`), where it depends on that;
+    (:func:`puck_tables.contact.law_moments.packed_law`), or the direction, where it depends on
+    that;
     ``belts`` (n + 1 + k, 2): velocities of strips and patches, m/s, none: all alike.
     """
 
@@ -77,7 +80,7 @@ class Ground(NamedTuple):
             len(self.borders), len(self.patches), self.pressure, at, rows, at + pieces.size, 0.0,
             float((belts != belts[0]).any()), *belts[0],
         ]  # fmt: skip
-        size = _ROOM + _ROOM_A_ROW * rows if len(self.profile) else room_for(self.base)
+        size = _ROOM + _ROOM_A_ROW * rows if len(self.profile) else room_to_cut(self.base)
         room = np.zeros(size)
         return np.concatenate([head, counts, *tables, pieces, room]).astype(np.float64)
 

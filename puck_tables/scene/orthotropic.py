@@ -1,22 +1,9 @@
 """Dry friction of a floor that is rougher one way than the other: brushed metal, felt, wood grain.
 
-The local law is that of the largest dissipation within an ellipse (Michałowski, Mróz 1978; Goyal,
-Ruina, Papadopoulos 1991): an element that slips in the direction e, in the axes of the floor, feels
-
-    −σ (f_x² e_x, f_y² e_y)/√(f_x² e_x² + f_y² e_y²),
-
-and one at rest holds what lies within the ellipse of the half axes σ f_x, σ f_y.  The simpler −σ
-(f_x e_x, f_y e_y) has the same friction along the axes, but no cone at rest that belongs to it.
-
-The directions of slip are those of a turn about the instantaneous centre c, so on a line through c
-friction is the same all along, but for its sign; that makes of the integral over the base one over
-the lines.  With θ from the direction to the middle of the base, p = s sin θ the distance of a line
-(s = v/(r|ω|)), L = √(1 − p²) half its chord and D = s cos θ, in units of r,
-
-    ∫ dA → 2LD dθ,   ∫ ρ dA → ⅔L³ dθ,   ∫ ρ² dA → ⅔L³D dθ    (ρ along the line from its middle)
-
-whether c lies in the base or not.  For s > 1 sin q = s sin θ clears the ends.  Friction tilts the
-load as everywhere, with F in both directions; while 2 max(f) h/r ≤ 1 the whole base stays loaded.
+The local law is that of :mod:`puck_tables.kernels.elliptic_sums`, and an element at rest holds what
+lies within the ellipse of the half axes σ f_x, σ f_y.  The simpler −σ (f_x e_x, f_y e_y) has the
+same friction along the axes, but no cone at rest that belongs to it.  Friction tilts the load as
+everywhere, with F in both directions; while 2 max(f) h/r ≤ 1 a round base stays loaded everywhere.
 """
 
 from __future__ import annotations
@@ -24,14 +11,10 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel, patience
+from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.elliptic_sums import Ellipse, disc_sums
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(14)
-_GROWTH = 2.0  # of a panel, over its distance from what is nearly singular
-_CLOSEST = 1e-9  # nearer than this nothing is singular that could be seen
 _SETTLED = 4e-15  # rounding of a direction
 LEAST_RATIO = 0.03  # of f in the two directions; below, steps are many
 
@@ -66,24 +49,6 @@ def ellipse_in(table: FloatArray, height_ratio: float, normal: float) -> Ellipti
     return Elliptic(table[0], table[1], table[2], table[3], height_ratio, normal)
 
 
-@inlined
-def local_friction(law: Elliptic, ex: float, ey: float) -> tuple[float, float]:
-    """What an element of the load 1 that slips along (ex, ey), in the axes of the floor, feels."""
-    size = math.hypot(law.along * ex, law.across * ey)
-    return -law.along * law.along * ex / size, -law.across * law.across * ey / size
-
-
-@inlined
-def _end_of_panel(start: float, last: float, place: float, near: float) -> float:
-    """How far a panel may go that begins beside what is singular at the distance ``near``."""
-    away = start - place
-    if away >= 0.0:
-        return min(last, start + max(near, _GROWTH * away))
-    if -away <= near:
-        return min(last, place)
-    return min(last, start - _GROWTH / (1.0 + _GROWTH) * away)
-
-
 @kernel
 def mean_friction(
     law: Elliptic, vx: float, vy: float, rim: float
@@ -92,83 +57,13 @@ def mean_friction(
 
     ``rim``: r ω; not all three are zero.
     """
-    speed, fast = math.hypot(vx, vy), abs(rim)
-    if rim == 0.0:
-        fx, fy = local_friction(law, vx / speed, vy / speed)
-        return fx, fy, 0.0
-    way = 1.0 if rim > 0.0 else -1.0
-    # from the instantaneous centre to the middle of the base
-    ox, oy = (way * vy / speed, -way * vx / speed) if speed > 0.0 else (1.0, 0.0)
-    inside = speed <= fast
-    ratio = speed / fast if inside else fast / speed
-    gap = (1.0 - ratio) * (1.0 + ratio)
-    branch = math.sqrt(gap) / max(ratio, 0.1)
-    # where the slip is along the axis of less friction, and how far the zero of the root lies
-    least, most = min(law.along, law.across), max(law.along, law.across)
-    sharp = math.atanh(least / most) if least < most else 10.0
-    ax, ay = (0.0, 1.0) if law.along < law.across else (1.0, 0.0)
-    sine, cosine = ax * oy - ay * ox, ax * ox + ay * oy
-    place = -math.atan(sine / cosine) if cosine != 0.0 else 0.5 * math.pi
-    if not inside:
-        turn = math.cos(place) / ratio
-        bend = math.sin(place) / ratio
-        bend = min(max(bend, -1.0), 1.0)
-        place = math.asin(bend)
-        sharp *= turn / max(math.sqrt(1.0 - bend * bend), math.sqrt(sharp * turn))
-    branch, sharp = max(branch, _CLOSEST), max(sharp, _CLOSEST)
-    fx, fy, moment = 0.0, 0.0, 0.0
-    xx, xy, yx, yy, mx, my = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    start, last = -0.5 * math.pi, 0.5 * math.pi
-    while start < last:
-        patience(1)
-        end = _end_of_panel(start, last, -0.5 * math.pi, branch)
-        end = _end_of_panel(start, end, 0.5 * math.pi, branch)
-        end = _end_of_panel(start, end, place, sharp)
-        end = min(_end_of_panel(start, end, place + math.pi, sharp), start + 1.0)
-        end = _end_of_panel(start, end, place - math.pi, sharp)
-        half, middle = 0.5 * (end - start), 0.5 * (end + start)
-        start = end
-        for i in range(len(_NODES)):
-            q = middle + half * _NODES[i]
-            sin_q, cos_q = math.sin(q), math.cos(q)
-            if inside:
-                sin_t, cos_t, off = sin_q, cos_q, ratio * sin_q
-                chord = math.sqrt(gap + (ratio * cos_q) ** 2)
-                area = 2.0 * chord * ratio * cos_t
-                first = 2.0 / 3.0 * chord * chord * chord
-                second = first * ratio * cos_t
-            else:
-                sin_t, off = ratio * sin_q, sin_q
-                cos_t = math.sqrt(gap + (ratio * cos_q) ** 2)
-                area = 2.0 * cos_q * cos_q
-                second = area * cos_q * cos_q / 3.0
-                first = second * ratio / cos_t
-            nx, ny = cos_t * ox - sin_t * oy, cos_t * oy + sin_t * ox
-            tx, ty = local_friction(law, -way * ny, way * nx)
-            # torque of friction about the middle of the line, and along it
-            arm, along = -(nx * tx + ny * ty), nx * ty - ny * tx
-            weight = half * _WEIGHTS[i]
-            area, first, second = weight * area, weight * first, weight * second
-            px, py = nx * first - off * ny * area, ny * first + off * nx * area
-            fx, fy = fx + tx * area, fy + ty * area
-            moment += off * arm * area + along * first
-            xx, xy, yx, yy = xx + tx * px, xy + tx * py, yx + ty * px, yy + ty * py
-            turning = off * first
-            mx += (
-                nx * (off * arm * first)
-                - ny * (off * off * arm * area)
-                + (nx * along * second - ny * turning * along)
-            )
-            my += (
-                ny * (off * arm * first)
-                + nx * (off * off * arm * area)
-                + (ny * along * second + nx * turning * along)
-            )
+    sums = disc_sums(Ellipse(law.along, law.across, 1.0, 0.0), vx, vy, rim)
+    fx, fy, xx, xy, yx, yy, mx, my = sums
     g = law.height_ratio / math.pi
-    a, b, c, d = 1.0 + g * xx, g * xy, g * yx, 1.0 + g * yy
+    a, b, c, d = 1.0 - g * xx, -g * xy, -g * yx, 1.0 - g * yy
     whole = a * d - b * c
     fx, fy = (d * fx - b * fy) / whole, (a * fy - c * fx) / whole
-    return fx / math.pi, fy / math.pi, (moment - g * (fx * mx + fy * my)) / math.pi
+    return -fx / math.pi, -fy / math.pi, -(yx - xy + g * (fx * mx + fy * my)) / math.pi
 
 
 @inlined

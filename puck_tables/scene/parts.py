@@ -78,7 +78,7 @@ class Orthotropic:
     """A floor that is rougher one way than the other, as brushed metal, felt and wood are.
 
     An element that slips along e feels −(f_x² e_x, f_y² e_y)/√(f_x² e_x² + f_y² e_y²) of its load,
-    in the axes of the floor.
+    in the axes of the floor, or of the body that is so.
     """
 
     friction: tuple[float, float] = of(
@@ -86,6 +86,10 @@ class Orthotropic:
         acts="orthotropic friction",
     )  # fmt: skip
     direction: float = of("number", 0.0, "rad", doc="of the first of them, from x", acts="")
+    fixed_to: str = of(
+        "choice", "floor", choices=("floor", "body"), acts="",
+        doc="what 'direction' is in: the floor, or the body, as that of a brushed sole is",
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,6 @@ from puck_tables.motion.body import body_of, is_plain
 from puck_tables.motion.friction_source import closed_form_friction, table_friction
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.scene.by_speed import law_error
-from puck_tables.scene.ground import NO_GROUND
-from puck_tables.scene.ingredients import BySpeed, Regions
 from puck_tables.scene.parts import Orthotropic
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.table.friction_section import FINEST_ACCURACY
@@ -52,16 +50,12 @@ def axes_of(two: Orthotropic) -> FloatArray:
     return np.array([*two.friction, math.cos(two.direction), math.sin(two.direction)])
 
 
-def alone(load: FloatArray, delta: FloatArray, cuts: FloatArray, by_speed: BySpeed) -> Regions:
-    """Regions of which a base never lies on two at once."""
-    return Regions(load, delta, cuts, by_speed, np.zeros(len(load), np.bool_), NO_GROUND)
-
-
 def friction_error(scene: SceneSpec) -> float:
     """How wrong the friction ratios under the puck of a scene may be."""
     puck = scene.puck
     if puck.shape is not None:
-        return UNDER_LAW_ERROR if scene.floor.law else CLOSED_FORM_ERROR
+        by_law = scene.floor.law or scene.floor.orthotropic is not None
+        return UNDER_LAW_ERROR if by_law else CLOSED_FORM_ERROR
     if scene.floor.law:
         return law_error(scene)
     if scene.floor.orthotropic is not None:

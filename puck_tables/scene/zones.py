@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.contact.base import Base
 from puck_tables.contact.law_moments import DEGREE, packed_law
 from puck_tables.contact.laws import Law
 from puck_tables.kernels.base_friction import packed
@@ -40,9 +41,9 @@ def ground_of(scene: SceneSpec, normal: float, law: Moments | None = None) -> Fl
     """
     floor, puck = scene.floor, scene.puck
     one = floor.strips is None and not floor.patches and not floor.grips
-    if one and puck.shape is None:
+    shape, strips, axes = shape_under(scene), floor.strips, floor.orthotropic
+    if one and shape is None:
         return NO_GROUND
-    strips = floor.strips
     angle = 0.0 if strips is None else strips.direction
     rows, corners = [], [np.empty((0, 2))]
     for patch in floor.patches:
@@ -54,24 +55,43 @@ def ground_of(scene: SceneSpec, normal: float, law: Moments | None = None) -> Fl
             corners.append(places)
         rows.append([*middle, reach, begin, len(places), normal * patch.friction])
     friction = puck.friction if law is None else float(law[1][0, 0] @ _AT_REST)
+    friction = friction if axes is None else min(axes.friction)
     there = (
         math.cos(angle), math.sin(angle),
         np.array(() if strips is None else strips.borders, np.float64),
         normal * np.array((friction,) if strips is None else strips.friction),
         np.array(rows).reshape(-1, PATCH_COLUMNS), np.concatenate(corners),
     )  # fmt: skip
-    if puck.shape is not None:
+    if shape is not None:
         lever = 0.5 * puck.height / normal
         over_slip = np.empty(0) if law is None else packed_law(law[0], normal * law[1])
-        shape = packed(puck.shape, lever)
-        belts = belts_of(floor)
-        return Ground(*there, lever, 0.0, ANY, base=shape, law=over_slip, belts=belts).packed()
+        if axes is not None:
+            turns = float(axes.fixed_to == "floor")
+            over_slip = np.array([*np.multiply(normal, axes.friction), axes.direction, turns])
+        base, belts = packed(shape, lever), belts_of(floor)
+        return Ground(*there, lever, 0.0, ANY, base=base, law=over_slip, belts=belts).packed()
     pressure = puck.body.law
     kind = _PRESSURES.get(pressure.name, UNIFORM if pressure.profile is None else TABLE)
     lever = puck.height / (2.0 * puck.radius * pressure.mean_square * normal)
     return Ground(
         *there, lever, hole_of(pressure), kind, _profile_of(pressure), belts=belts_of(floor)
     ).packed()
+
+
+def shape_under(scene: SceneSpec) -> Base | None:
+    """The base over which friction is summed in axes of its own; None: it is round in all ways.
+
+    Examples
+    --------
+    >>> from puck_tables import Floor, Orthotropic, Puck, Scene
+    >>> brushed = Orthotropic((0.1, 0.2), fixed_to="body")
+    >>> shape_under(Scene(Puck(0.04), Floor(orthotropic=brushed))).reach
+    0.04
+    """
+    puck, axes = scene.puck, scene.floor.orthotropic
+    if puck.shape is None and axes is not None and axes.fixed_to == "body":
+        return Base.disc(puck.radius)
+    return puck.shape
 
 
 def _profile_of(law: Law) -> FloatArray:

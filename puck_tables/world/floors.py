@@ -11,6 +11,7 @@ from functools import cache, partial
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.section_spline import NO_SECTION
@@ -20,10 +21,10 @@ from puck_tables.scene.ground import NO_GROUND
 from puck_tables.scene.ingredients import BySpeed, Regions, Surface, floor_velocity
 from puck_tables.scene.over_time import largest_factors
 from puck_tables.scene.pieces import PieceSpec
-from puck_tables.scene.regions import alone, axes_of, of_one_shape, plain_cut, section_of
+from puck_tables.scene.regions import axes_of, of_one_shape, plain_cut, section_of
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.stretches import belts_of
-from puck_tables.scene.zones import ground_of
+from puck_tables.scene.zones import Moments, ground_of, shape_under
 from puck_tables.world.agreement import frictions_under, has_closed_forms, is_integrated
 from puck_tables.world.footing import floor_of
 from puck_tables.world.game import Game
@@ -102,7 +103,12 @@ def regions_of(
     if scene.floor.orthotropic is not None:
         axes = axes_of(scene.floor.orthotropic)
         strongest = axes[:2].max() * largest_factors(scene.floor)[0]
-        return alone(normals * strongest, delta, none, BySpeed(axes, 0.0, 1.0, 1.0))
+        shaped = np.array([
+            shape_under(scene.alone(piece)) is not None and not piece.path for piece in pieces
+        ])  # fmt: skip
+        by_direction = BySpeed(axes, 0.0, 1.0, 1.0)
+        ground = _grounds(scene, pieces, shaped)
+        return Regions(normals * strongest, delta, none, by_direction, shaped, ground)
     there = [[(piece, f) for f in _strongest_under(scene, piece, 0.0)] for piece in pieces]
     places = [one for rows in zip(*there, strict=True) for one in rows]
     summed = np.array([_is_summed(scene, piece) for piece, _ in places])
@@ -125,9 +131,7 @@ def regions_of(
         most = loads.reshape(-1, len(pieces)).max(axis=0)
         loads, cuts = np.concatenate([loads, most]), np.concatenate([cuts, cuts[: len(pieces)]])
     if several or summed.any():
-        ground = _of_one_length([
-            ground_of(scene.alone(piece), normal_on(scene, piece)) for piece in pieces
-        ])  # fmt: skip
+        ground = _grounds(scene, pieces, np.ones(len(pieces), np.bool_))
     astride = np.concatenate([summed, np.ones(count - len(places), np.bool_)])
     return Regions(loads, delta, cuts, NO_LAW, astride, ground)
 
@@ -143,7 +147,15 @@ def _is_summed(scene: SceneSpec, piece: PieceSpec) -> bool:
     return _is_shaped(piece) or (changes and not piece.path)
 
 
-def _of_one_length(grounds: list[FloatArray]) -> FloatArray:
+def _grounds(
+    scene: SceneSpec, pieces: list[PieceSpec], summed: npt.NDArray[np.bool_],
+    moments: Moments | None = None,
+) -> FloatArray:  # fmt: skip
+    """The frictions under those pucks over whose bases they are summed, all of one length."""
+    grounds = [
+        ground_of(scene.alone(piece), normal_on(scene, piece), moments) if sums else NO_GROUND
+        for piece, sums in zip(pieces, summed, strict=True)
+    ]
     size = max(map(len, grounds))  # what they end with is room to work
     return np.concatenate([np.pad(own, (0, size - len(own))) for own in grounds])
 
@@ -176,11 +188,7 @@ def _by_slip(
             if piece.shape is not None:
                 piece.shape.refuse_lift(largest, piece.height)
         moments = moments_of(law, top)
-        ground = _of_one_length([
-            ground_of(scene.alone(piece), normal_on(scene, piece), moments)
-            if _is_shaped(piece) else NO_GROUND
-            for piece in pieces
-        ])  # fmt: skip
+        ground = _grounds(scene, pieces, shaped, moments)
     by_slip = BySpeed(compiled, 0.0, 1.0, 1.0)
     return Regions(normals * largest, delta, cuts, by_slip, shaped, ground)
 

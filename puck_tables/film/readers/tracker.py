@@ -93,10 +93,8 @@ def film_of_zip(path: str | Path) -> Film:
             if len(members) > _MOST_MEMBERS:
                 raise InputError(f"{path} has too many members: it is no .trz archive of Tracker")
             names = [PurePosixPath(member.filename) for member in members]
-            if any(name.parts[:1] in (("xl",), ("word",)) for name in names) or (
-                PurePosixPath("content.xml") in names
-            ):
-                raise InputError(f"{path} is a spreadsheet or document: save its table as CSV")
+            if any(name.parts[:1] == ("word",) for name in names):
+                raise InputError(f"{path} is a document: save its table as CSV")
             for member, name in zip(members, names, strict=True):
                 if name.suffix.lower() != ".trk" or name.parts[0] == "__MACOSX":
                     continue

@@ -1,0 +1,52 @@
+"""Sensors that the app Sensor Logger writes, a file each, which says in its name what it holds."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from puck_tables._core.safe_read import read_whole
+from puck_tables.errors import InputError
+from puck_tables.film.film import Reader
+from puck_tables.film.rates import NO_ACCELERATIONS
+
+_BEGINS = b"time,seconds_elapsed,"
+_LARGEST = 1 << 28  # bytes
+_NAMES = {"x": "wx [rad/s]", "y": "wy [rad/s]", "z": "wz [rad/s]", "seconds_elapsed": "t [s]"}
+
+
+def spins_of_phone(path: str | Path) -> bytes:
+    r"""The file of a gyroscope with headings that say what its columns are.
+
+    Raises
+    ------
+    InputError
+        If it is of another sensor, or its name does not say of which.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = Path(folder, "Gyroscope.csv")
+    ...     _ = file.write_text("time,seconds_elapsed,z,y,x\n9,0.5,30,0,0\n")
+    ...     spins_of_phone(file).splitlines()[0]
+    b'-,t [s],wz [rad/s],wy [rad/s],wx [rad/s]'
+    """
+    name = Path(path).stem.lower()
+    if "accel" in name or "gravity" in name:
+        raise InputError(f"{path} {NO_ACCELERATIONS}")
+    if "gyro" not in name:
+        raise InputError(
+            f"{path} is of the app Sensor Logger, whose files say in their names of which sensor "
+            "they are: Gyroscope.csv is read, for the spin over time"
+        )
+    names, _, rows = read_whole(path, _LARGEST).partition(b"\n")
+    headings = ",".join(_NAMES.get(one, "-") for one in names.decode().strip().split(","))
+    return headings.encode() + b"\n" + rows
+
+
+def _opens(path: str | Path, head: bytes) -> bool:
+    names = head.split(b"\n")[0].strip().split(b",")
+    return head.startswith(_BEGINS) and {b"x", b"y", b"z"} <= {*names}
+
+
+READERS = (Reader(_opens, as_text=spins_of_phone),)

@@ -1,0 +1,112 @@
+"""Tables of two photogates: how long each was blocked, and the time between them, a row a slide.
+
+The edges of a flag of width w that passes two gates a way L apart are four places along a line at
+four times: 0, w, L and L + w at 0, Δ₁, T and T + Δ₂.  The columns ``flag`` and ``distance`` say w
+and L with their units; PASCO and Vernier name the others.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+from puck_tables._core.beginning import beginning
+from puck_tables._core.header import header_of
+from puck_tables._core.text import text_form_of
+from puck_tables._core.text_rows import LARGEST, read_columns
+from puck_tables._core.units import factor, parted, unit_word
+from puck_tables.errors import InputError
+from puck_tables.film.film import Film, Reader, TrackedBody, first_text
+
+_BETWEEN = re.compile(r"time.*between.*gates?|between.*gates?", re.IGNORECASE)
+_GATE = re.compile(r"(?:time.*(?:in|at)\s+)?(?:photo)?gate\s*#?\s*([12])\b.*", re.IGNORECASE)
+_SIZES = {"flag": re.compile(r"(?:flag|width).*", re.IGNORECASE),
+          "distance": re.compile(r"distance.*|spacing.*", re.IGNORECASE)}  # fmt: skip
+
+
+def film_of_gates(path: str | Path) -> Film:
+    r"""The slides in a table of two photogates, along a line.
+
+    Raises
+    ------
+    InputError
+        If it does not say the width of the flag, the way between the gates, or a time.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> names = "Time in Gate 1,Time Between Gates,Time in Gate 2,flag [cm],distance [cm]"
+    >>> said = names + "\n0.010,0.30,0.012,2,50\n0.011,0.33,0.014,2,50\n"
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = Path(folder, "a.csv").write_text(said)
+    ...     film = film_of_gates(Path(folder, "a.csv"))
+    >>> film.bodies[0].time.tolist(), film.bodies[1].marks[""][:, 0].round(9).tolist()
+    ([0.0, 0.01, 0.3, 0.312], [0.0, 0.02, 0.5, 0.52])
+    """
+    head = beginning(path, LARGEST)
+    form = text_form_of(path, head)
+    names = header_of(form, bool)[-1]
+    found = _columns(names)
+    missing = [name for name in ("gate 2", "between", "flag", "distance") if name not in found]
+    if missing:
+        raise InputError(
+            f"{path} is of photogates and has no column of {' and '.join(missing)}: it needs the "
+            "times in gate 1, in gate 2 and between the gates, and columns 'flag [cm]', the width "
+            "of what passes them, and 'distance [cm]', the way between them"
+        )
+    columns, _ = read_columns(path, form, list(found.values()), [])
+    values = {}
+    for name, n in found.items():
+        kind = "length" if name in _SIZES else "time"
+        unit = unit_word(parted(names[n])[1], kind)
+        if not unit and kind == "length":
+            raise InputError(
+                f"{path} does not say the unit of its column '{names[n]}': {name} [cm]"
+            )
+        values[name] = columns[n] * factor(unit or "s", kind)
+    film = Film(
+        "table of photogates", [], "m", notes=["places along one line, the edges of a flag"]
+    )
+    for n in range(len(values["flag"])):
+        one, two, between, width, way = (
+            float(values[name][n]) for name in ("gate 1", "gate 2", "between", "flag", "distance")
+        )
+        if not all(np.isfinite([one, two, between])):
+            continue
+        place = np.array([0.0, width, way, way + width])
+        time = np.array([0.0, one, between, between + two])
+        film.bodies.append(
+            TrackedBody(f"slide {n + 1}", {"": np.stack([place, 0.0 * place], axis=1)}, time=time)
+        )
+    return film
+
+
+def _columns(names: list[str]) -> dict[str, int]:
+    """Where gates, the time between them and the sizes stand."""
+    found: dict[str, int] = {}
+    for n, name in enumerate(names):
+        bare = parted(name.strip())[0].strip()
+        gate = _GATE.fullmatch(bare)
+        if _BETWEEN.fullmatch(bare):
+            found.setdefault("between", n)
+        elif gate is not None:
+            found.setdefault(f"gate {gate[1]}", n)
+        for size, form in _SIZES.items():
+            if form.fullmatch(bare):
+                found.setdefault(size, n)
+    return found
+
+
+def _opens(path: str | Path, head: bytes) -> bool:
+    if first_text(path, head) or b"ate" not in head[:2000]:
+        return False
+    try:
+        header = header_of(text_form_of(path, head), bool)
+    except InputError:
+        return False
+    return bool(header) and "gate 1" in _columns(header[-1])
+
+
+READERS = (Reader(_opens, film_of_gates),)

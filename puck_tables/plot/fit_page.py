@@ -1,0 +1,275 @@
+"""A fit as one page for a class: pictures, numbers, residuals, what was assumed, and blanks.
+
+It loads nothing, needs no server, and is made to be printed.
+"""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Iterable, Sequence
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from puck_tables._core.safe_write import write_bytes
+from puck_tables._version import __version__
+from puck_tables.fitting.fit_result import Fit
+from puck_tables.fitting.forward_model import RATE
+from puck_tables.fitting.numbers import Number
+from puck_tables.fitting.parameters import ALL
+from puck_tables.io.formats import ending_of
+from puck_tables.plot.fit_figure import draw
+from puck_tables.plot.style import BLUE, COLORS, canvas, require_matplotlib
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_ROWS = 16  # of measured points: as many as a class copies
+_STYLE = (
+    "body{font:16px/1.5 system-ui,sans-serif;max-width:52em;margin:2em auto;padding:0 1em;"
+    "color:#111;background:#fff}table{border-collapse:collapse;font-size:14px;margin:.5em 0}"
+    "td,th{border:1px solid #767676;padding:.2em .6em;text-align:right;height:1.5em}"
+    "td:first-child,th:first-child{text-align:left}svg{max-width:100%;height:auto}"
+    ".blank{display:inline-block;min-width:9em;border-bottom:1px solid #111}"
+    ".wide{display:block;height:1.9em;border-bottom:1px solid #767676}"
+    ".found{font-size:1.15em;font-weight:600}figure{margin:1em 0}"
+    "@media print{body{margin:0;font-size:11pt}h2{break-after:avoid}"
+    "table,figure,li{break-inside:avoid}}"
+)
+
+
+def checked_page(path: str | Path) -> None:
+    """Refuse, before any work, a page that could not be made.
+
+    Raises
+    ------
+    InputError
+        If the name does not end in .html.
+    MissingExtraError
+        If matplotlib is not installed.
+    """
+    ending_of(Path(path), (".html",))
+    require_matplotlib()
+
+
+def save_page(result: Fit, path: str | Path, overwrite: bool = False) -> None:
+    """Write the page, whole or not at all.
+
+    Raises
+    ------
+    InputError, MissingExtraError
+        As :func:`checked_page`.
+    OutputError
+        If the file exists (without ``overwrite``) or cannot be written.
+    """
+    checked_page(path)
+    write_bytes(path, page(result).encode(), overwrite)
+
+
+def page(result: Fit) -> str:
+    """The page as HTML."""
+    names = ", ".join(film.name for film in result.estimate.problem.films)
+    parts = [
+        f"<h1>Friction of a puck: {escape(names)}</h1>",
+        f"<p>Name {_blank()} Class {_blank()} Date {_blank()}</p>",
+        f"<p class='found'>{escape(_first(result))}</p>",
+        _pictures(result), _numbers(result), _left(result), _assumed(result), _laws(result),
+        _class(result), f"<p>Made by puck-tables {__version__}.</p>",
+    ]  # fmt: skip
+    return (
+        "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'><meta name='viewport' "
+        "content='width=device-width'>"
+        f"<title>Friction of a puck: {escape(names)}</title><style>{_STYLE}</style></head>"
+        f"<body><main>{''.join(parts)}</main></body></html>\n"
+    )
+
+
+def _first(result: Fit) -> str:
+    """What was found of friction, in a sentence."""
+    if result.astray:
+        return f"{result.astray}."
+    friction = result.numbers["friction"]
+    if not friction.determined:
+        return "These tracks do not tell the friction."
+    return (
+        f"Friction coefficient f = {_written(friction)}: sliding without spin the puck loses "
+        f"{result.numbers['decel'].value:.4g} m/s each second."
+    )
+
+
+def _pictures(result: Fit) -> str:
+    return (
+        "<h2>Pictures</h2>"
+        + _figure(_speeds(result), "Speed over time",
+                  "Speed over time, from each frame to the next (circles), and of the motion found "
+                  "(line). Where nothing but friction acts on a slide the line is straight.")
+        + _figure(draw(result), "Paths, residuals and likelihoods",
+                  "Places and the path found; what is left of places and angles, frame by frame; "
+                  "how often so much is left; how much worse other values would fit.")
+    )  # fmt: skip
+
+
+def _figure(figure: Figure, label: str, words: str) -> str:
+    picture = io.StringIO()
+    figure.savefig(picture, format="svg", metadata={"Date": None})
+    svg = picture.getvalue()
+    svg = svg[svg.index("<svg") :].replace("<svg", f"<svg role='img' aria-label='{label}'", 1)
+    return f"<figure>{svg}<figcaption>{escape(words)}</figcaption></figure>"
+
+
+def _speeds(result: Fit) -> Figure:
+    """Speeds of each track over time: seen, and of the motion found."""
+    problem, x = result.estimate.problem, result.estimate.x
+    figure = canvas(8.0, 3.2)
+    axes = figure.add_subplot()
+    for n, (film, states) in enumerate(zip(problem.films, problem.states(x), strict=True)):
+        colour = COLORS[n % len(COLORS)]
+        since = film.start + film.time
+        seen = np.hypot(*np.diff(film.place, axis=0).T) / np.diff(film.time)
+        axes.plot(0.5 * (since[1:] + since[:-1]), seen, "o", color=colour, markersize=3,
+                  fillstyle="none", markeredgewidth=0.6)  # fmt: skip
+        axes.plot(since, np.hypot(*states[RATE][:2]), color=colour if n else BLUE, linewidth=1.5)
+    axes.set(xlabel="time / s", ylabel="speed / (m/s)", ylim=(0.0, None))
+    return figure
+
+
+def _numbers(result: Fit) -> str:
+    rows = [
+        (_words(name), _written(number), _interval(number),
+         {"found": "from the film", "follows": "follows", "known": "known"}[number.how])
+        for name, number in result.numbers.items()
+    ]  # fmt: skip
+    launches = [
+        (one.name, f"{math.hypot(*one.velocity):.4g}", _written(one.numbers["launch_spin"]))
+        for one in result.launches
+    ]
+    return (
+        "<h2>Numbers</h2>"
+        + _table(("number", "value", "95 of 100 times within", "where from"), rows)
+        + _table(("launch of", "speed / (m/s)", "spin"), launches)
+    )
+
+
+def _left(result: Fit) -> str:
+    angled = any(film.angle is not None for film in result.estimate.problem.films)
+    by_chance = min(result.runs, result.drift)
+    said = [
+        f"A place is off by {1e3 * result.noise[0]:.3g} mm (standard deviation)"
+        + (f", an angle by {math.degrees(result.noise[1]):.2g} degrees." if angled else "."),
+        f"χ² is {result.chi2:.4g} for {result.degrees} degrees of freedom; "
+        f"{100.0 * result.outliers:.2g} % of what was seen is left out as strays.",
+        f"So much pattern in what is left comes by chance with a probability of {by_chance:.2g}.",
+        *result.complaints,
+    ]  # fmt: skip
+    return f"<h2>What is left</h2>{_list(said)}"
+
+
+def _assumed(result: Fit) -> str:
+    known = [
+        f"{_words(name)}: {_written(number)}" for name, number in result.numbers.items()
+        if number.how == "known"
+    ]  # fmt: skip
+    law = result.puck.body.law.name
+    said = [
+        "The table is level, hard and alike everywhere, and only friction (and what was found "
+        "beside it) slows the puck.",
+        "Friction does not depend on how hard a point is pressed; its coefficient is the same for "
+        "all speeds unless a law was found.",
+        f"The base is pressed to the floor by the law '{law}'.",
+        *(f"Known, not found: {one}." for one in known),
+        *result.remarks,
+    ]
+    lost = f"<h2>What the film does not tell</h2>{_list(result.blind)}" if result.blind else ""
+    return f"<h2>What was assumed</h2>{_list(said)}{lost}"
+
+
+def _laws(result: Fit) -> str:
+    if not result.laws:
+        return ""
+    rows = [
+        (one.name, f"{one.unknowns}", f"{one.chi2:.5g}", f"{one.weight:.2g}") for one in result.laws
+    ]
+    return f"<h2>Which floor</h2><p>{escape(result.verdict)}</p>" + _table(
+        ("model", "numbers found", "χ²", "weight"), rows
+    )
+
+
+def _class(result: Fit) -> str:
+    """Points to copy and blanks to fill."""
+    film = result.estimate.problem.films[0]
+    chosen = np.unique(np.linspace(0, film.time.size - 1, _ROWS).round().astype(int))
+    angled = film.angle is not None
+    rows = []
+    for n in chosen:
+        row = [f"{film.start + film.time[n]:.4f}", *(f"{one:.4f}" for one in film.place[n])]
+        row += [f"{film.angle[n]:.3f}"] if film.angle is not None else []
+        rows.append((*row, "", ""))
+    head = (
+        "t / s",
+        "x / m",
+        "y / m",
+        *(["angle / rad"] if angled else []),
+        "way / m",
+        "speed / (m/s)",
+    )
+    gravity = result.numbers["gravity"].value
+    tasks = [
+        f"Read the speed at the start from the first picture: v = {_blank()} m/s, and when the "
+        f"puck stops, or would: t = {_blank()} s.",
+        f"Of a slide without spin f = v/(g t), g = {gravity:g} m/s²: f = {_blank()}.",
+        f"Fill in the last two columns of the table for the first five rows, and say how much "
+        f"speed is lost each second: {_blank()} m/s².",
+        f"By how many of its errors is your f off from that of the fit? {_blank()} What would "
+        f"make yours larger, or smaller? <span class='wide'></span>",
+        f"Weigh and measure your puck: mass {_blank()} kg, radius {_blank()} mm, height "
+        f"{_blank()} mm. Which of these should not matter for f? {_blank()}",
+        "Look at what is left: is it noise, or is there a pattern? What may have made it? "
+        "<span class='wide'></span><span class='wide'></span>",
+        "Which of the assumptions would you test first, and how? <span class='wide'></span>"
+        "<span class='wide'></span>",
+    ]
+    items = "".join(f"<li>{one}</li>" for one in tasks)
+    return (
+        f"<h2>For you to do</h2><p>Points of {escape(film.name)}:</p>{_table(head, rows)}"
+        f"<ol>{items}</ol>"
+    )
+
+
+def _words(name: str) -> str:
+    return f"{name.replace('_', ' ')} ({ALL[name].words})" if name in ALL else name
+
+
+def _written(number: Number) -> str:
+    """Value ± error and unit, to two digits of the error."""
+    unit = "" if number.unit == "1" else f" {number.unit}"
+    if not number.determined:
+        return "not told"
+    if number.at_bound or not (number.error > 0.0 and math.isfinite(number.error)):
+        return f"{number.value:.6g}{unit}"
+    digits = min(max(0, 1 - math.floor(math.log10(number.error))), 9)
+    return f"{number.value:.{digits}f} ± {number.error:.{digits}f}{unit}"
+
+
+def _interval(number: Number) -> str:
+    ends = (number.low, number.high)
+    told = number.how != "known" and number.determined and all(map(math.isfinite, ends))
+    return f"{number.low:.5g} to {number.high:.5g}" if told else "–"
+
+
+def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    names = "".join(f"<th scope='col'>{escape(one)}</th>" for one in head)
+    body = "".join(
+        "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in rows
+    )
+    return f"<table><thead><tr>{names}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def _list(said: Iterable[str]) -> str:
+    return f"<ul>{''.join(f'<li>{escape(one)}</li>' for one in said)}</ul>"
+
+
+def _blank() -> str:
+    return "<span class='blank'>&nbsp;</span>"

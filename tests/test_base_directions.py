@@ -1,0 +1,144 @@
+"""Friction by direction under bases of any shape, in axes of the floor and of the body."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from puck_tables import Base, Floor, InputError, Launch, Orthotropic, Puck, Scene
+from puck_tables.world.floor_forces import friction_at
+
+L_SHAPE = [(0, 0), (0.2, 0), (0.2, 0.05), (0.05, 0.05), (0.05, 0.1), (0, 0.1)]
+BASES = {
+    "box": Base.box(0.2, 0.1), "bar": Base.box(0.3, 0.02), "L": Base.polygon(L_SHAPE),
+    "frame": Base.polygon(
+        [(0, 0), (0.2, 0), (0.2, 0.1), (0, 0.1)],
+        holes=[[(0.05, 0.02), (0.15, 0.02), (0.15, 0.08), (0.05, 0.08)]],
+    ),
+}  # fmt: skip
+
+
+def puck(base: Base | str, height: float = 0.0) -> Puck:
+    return Puck(base=base, height=height, friction=0.2, gravity=1.0, gyration=0.06)
+
+
+def judge(base: Base, axes: Orthotropic, height: float, state: Any) -> np.ndarray:
+    """Force and torque at N = 1 by points of triangles from the instantaneous centre."""
+    _, _, angle, vx, vy, w = state
+    c, s = math.cos(angle), math.sin(angle)
+    turn = np.array([[c, -s], [s, c]])
+    centre = np.array([-vy / w, vx / w])
+    node, weight = np.polynomial.legendre.leggauss(20)
+    along, part = np.polynomial.legendre.leggauss(6)
+    along, part = 0.5 * (1.0 + along), 0.5 * part
+    ends = np.linspace(0.0, 1.0, 401)
+    share = (ends[:-1, None] + 0.5 / 400 * (1.0 + node)).ravel()
+    on_side = np.tile(0.5 / 400 * weight, 400)
+    points, areas = [], []
+    for outline in base.outlines:
+        corners = (np.array(outline) - base.middle) @ turn.T
+        for one, two in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+            a, b = one - centre, two - centre
+            far = a + share[:, None] * (b - a)
+            points.append((centre + along[:, None, None] * far).reshape(-1, 2))
+            twice = a[0] * b[1] - a[1] * b[0]
+            areas.append((twice * along[:, None] * part[:, None] * on_side).ravel())
+    (x, y), area = np.concatenate(points).T, np.concatenate(areas)
+    ux, uy = vx - w * y, vy + w * x
+    slip = np.hypot(ux, uy)
+    ex, ey = ux / slip, uy / slip
+    way = axes.direction + (angle if axes.fixed_to == "body" else 0.0)
+    c, s = math.cos(way), math.sin(way)
+    one, two = axes.friction[0] ** 2 * (c * ex + s * ey), axes.friction[1] ** 2 * (c * ey - s * ex)
+    root = np.hypot(one / axes.friction[0], two / axes.friction[1])
+    tx, ty = (c * one - s * two) / root, (s * one + c * two) / root
+    rows = np.stack([np.ones_like(x), x, y])
+    balance = (rows * area) @ rows.T
+    pull = [np.zeros(3), -(rows * area) @ tx * height / 2, -(rows * area) @ ty * height / 2]
+    load = area * (np.linalg.solve(balance + np.stack(pull), [1.0, 0.0, 0.0]) @ rows)
+    return -np.array([load @ tx, load @ ty, load @ (x * ty - y * tx)])
+
+
+@pytest.mark.parametrize("fixed_to", ["floor", "body"])
+@pytest.mark.parametrize("name", BASES)
+def test_friction_is_that_of_points_over_the_base(name: str, fixed_to: str) -> None:
+    rng, base = np.random.default_rng(5), BASES[name]
+    corner = base.points()[0] - np.array(base.middle)
+    for pair in ((0.3, 0.2), (0.1, 0.4), (0.4, 0.04)):
+        axes = Orthotropic(pair, direction=float(rng.uniform(0.0, 3.0)), fixed_to=fixed_to)
+        height = float(rng.choice([0.0, 1.9 * base.highest_lever / 0.4]))
+        states = np.zeros((8, 6))
+        states[:, 2] = rng.uniform(0.0, 6.0, 8)
+        states[:, 3:5] = rng.normal(size=(8, 2))
+        states[:, 5] = rng.choice([-1.0, 1.0], 8) * 10.0 ** rng.uniform(0.3, 2.5, 8)
+        states[6] = [0, 0, 0, -corner[1], corner[0], -1]  # C opposite to a corner
+        states[7] = [0, 0, 0, 0.0, 0.0, 1.0]
+        found = friction_at(Scene(puck(base, height), Floor(orthotropic=axes)), states)
+        for state, forces in zip(states, found, strict=True):
+            gap = np.abs(forces - judge(base, axes, height, state)) / [1.0, 1.0, base.reach]
+            assert gap.max() < 1e-10, (pair, state)
+
+
+def test_equal_frictions_are_no_direction() -> None:
+    rng = np.random.default_rng(6)
+    states = rng.normal(size=(40, 6)) * [0.0, 0.0, 3.0, 1.0, 1.0, 30.0]
+    for base in BASES.values():
+        floor = Floor(orthotropic=Orthotropic((0.2, 0.2), direction=0.4))
+        one, two = (
+            friction_at(Scene(puck(base, 0.001), each), states) for each in (floor, Floor())
+        )
+        assert np.abs(one - two).max() < 1e-12
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("height", [0.0, 0.04])
+def test_a_disc_by_its_base_is_the_round_puck(height: float) -> None:
+    floor = Floor(orthotropic=Orthotropic((0.3, 0.15), direction=0.5), slope=0.05)
+    ends = []
+    for one in (Puck(0.05, height, 0.2), Puck(base="disc:0.05", height=height, friction=0.2)):
+        run = Scene(one, floor, launch=Launch(velocity=(1.0, 0.2), spin=12.0)).simulate([0.0])
+        ends.append([run.end_time, *(run.last[key] for key in ("x", "y", "orientation"))])
+        assert abs(run.energy_residual) < 1e-12
+    assert np.abs(np.subtract(*ends)).max() < 1e-9
+
+
+@pytest.mark.thorough
+def test_grooves_turn_with_the_body() -> None:
+    """Without a spin a puck feels them as it lies; what turns it turns its friction, too."""
+    launch = Launch(velocity=(1.0, 0.0), orientation=0.3)
+    ends = []
+    for axes in (
+        Orthotropic((0.3, 0.15), direction=0.9), Orthotropic((0.3, 0.15), 0.6, fixed_to="body"),
+    ):  # fmt: skip
+        run = Scene(Puck(0.05), Floor(orthotropic=axes), launch=launch).simulate([0.0])
+        ends.append([run.end_time, run.last["x"], run.last["y"], run.last["spin"]])
+    assert np.abs(np.subtract(*ends)).max() < 1e-9
+    assert ends[0][2] < -0.05  # most of the force is along the rougher axis
+    turning = Launch(velocity=(1.0, 0.0), spin=60.0)
+    run = Scene(Puck(0.05), Floor(orthotropic=axes), launch=turning).simulate([0.0])
+    assert run.end == "at rest" and abs(run.energy_residual) < 1e-12
+    assert abs(run.last["y"]) < 0.02  # all ways take turns
+
+
+def test_a_block_holds_on_a_slope_by_the_friction_across_its_grooves() -> None:
+    block = Puck(base="box:0.1x0.06", friction=0.2)
+    for angle, friction in ((0.0, 0.1), (0.5 * math.pi, 0.4)):
+        axes = Orthotropic((0.1, 0.4), fixed_to="body")
+        launch = Launch(orientation=angle)
+        for off, rests in ((-1e-9, True), (1e-6, False)):
+            floor = Floor(slope=math.atan(friction) + off, orthotropic=axes)
+            run = Scene(block, floor, launch=launch, time=0.5).simulate([0.0])
+            assert (run.end == "at rest") == rests, (angle, off)
+
+
+def test_what_is_not_known_is_refused() -> None:
+    floor = Floor(orthotropic=Orthotropic((0.2, 0.1)), turning=1.0)
+    with pytest.raises(InputError, match="its axes stand still"):
+        Scene(puck("box:0.2x0.1"), floor, time=1.0)
+    with pytest.raises(InputError, match=r"floor.orthotropic: .* would lift"):
+        Scene(puck("box:0.2x0.1", 0.1), Floor(orthotropic=Orthotropic((0.9, 0.1))))
+    with pytest.raises(InputError, match="fixed_to"):
+        Scene(Puck(0.1), Floor(orthotropic=Orthotropic((0.2, 0.1), fixed_to="table")))

@@ -1,0 +1,147 @@
+"""Friction with drag of the speed squared, as air tables have it, and with drag of the spin.
+
+Films are made by an integrator of its own: a flat disc under friction as elliptic integrals of the
+ratio of speed and spin, which scipy computes, and drags; on a straight line, as such a disc goes.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.special import ellipe, ellipk
+
+import puck_tables as pt
+from puck_tables.fitting.speed_motion import Drags, SpeedFriction, speed_path
+
+G, R = 9.80665, 0.03165
+PUCK = pt.Puck(R, height=0.0)
+NOISE = (5e-4, 5e-3)
+
+
+def friction(v: float, rim: float) -> tuple[float, float]:
+    """Force and torque of a flat disc over f N and f N r, at speeds v, rim ≥ 0 of its motion."""
+    if rim < 1e-3 * v:
+        return 1.0, 0.25 * rim / v
+    if v < 1e-3 * rim:
+        return v / rim, 2.0 / 3.0
+    s = v / rim
+    if s <= 1.0:
+        e, k = ellipe(s * s), ellipk(s * s)
+        force = (s + 1.0 / s) * e + (s - 1.0 / s) * k
+        torque = (4.0 - 2.0 * s * s) * e + (s * s - 1.0) * k
+    else:
+        m = 1.0 / (s * s)
+        e, k = ellipe(m), ellipk(m)
+        force = (1.0 + s * s) * e + (1.0 - s * s) * k
+        torque = (4.0 * s - 2.0 * s**3) * e + (-5.0 * s + 2.0 * s**3 + 3.0 / s) * k
+    return 4.0 * force / (3.0 * math.pi), 4.0 * torque / (9.0 * math.pi)
+
+
+def motion(f, linear, air, spinning, v, spin, times):
+    """Way and angle at times (n,) of a launch along a line."""
+
+    def rates(_, y):
+        force, torque = friction(max(y[2], 0.0), R * abs(y[3]))
+        turned = -2.0 * f * G * torque / R * np.sign(y[3]) - (linear + spinning) * y[3]
+        return [y[2], y[3], -f * G * force - (linear + air * abs(y[2])) * y[2], turned]
+
+    def rests(_, y):
+        return math.hypot(y[2], R * y[3]) - 1e-5 * math.hypot(v, R * spin)
+
+    rests.terminal = True
+    run = solve_ivp(rates, (0.0, times[-1]), [0.0, 0.0, v, spin], "DOP853", rtol=1e-10,
+                    atol=1e-12, events=rests, dense_output=True)  # fmt: skip
+    return run.sol(np.minimum(times, run.t[-1]))[:2]
+
+
+def film(rng, frames=250, **how):
+    """A drawn film and its truth."""
+    truth = {
+        "friction": 10.0 ** rng.uniform(-2.3, -0.9), "air": 10.0 ** rng.uniform(-1.7, -0.3),
+        "v": rng.uniform(1.5, 4.5), "spin": rng.uniform(5.0, 60.0) * rng.choice([-1.0, 1.0]),
+        "linear": 0.0, "spinning": 0.0,
+    } | how  # fmt: skip
+    t = np.arange(frames) / rng.choice([60.0, 120.0])
+    # to about the stop, or as long as the film is
+    way, turn = motion(truth["friction"], truth["linear"], truth["air"], truth["spinning"],
+                       truth["v"], truth["spin"], t)  # fmt: skip
+    at = rng.uniform(0.0, 2.0 * math.pi)
+    place = way[:, None] * [math.cos(at), math.sin(at)] + rng.normal(0.0, NOISE[0], (frames, 2))
+    return pt.Track(t, place, turn + rng.normal(0.0, NOISE[1], frames), "film"), truth
+
+
+def test_motions_are_those_of_an_independent_integrator():
+    t = np.linspace(0.0, 3.0, 40)
+    for f, c, k, s, v, w in (
+        (0.0096, 0.0, 0.047, 0.0, 4.0, 10.0), (0.1, 0.2, 0.3, 0.0, 1.0, 60.0),
+        (0.02, 0.0, 0.5, 0.7, 2.0, -30.0), (0.003, 0.4, 0.0, 0.2, 0.3, 90.0),
+    ):  # fmt: skip
+        way, turn = motion(f, c, k, s, v, w, t)
+        drags = Drags(c, k, s)
+        (x, y, angle), _ = speed_path(
+            SpeedFriction(f, G, 0.5**0.5, drags), 0.0, R, np.array([v, 0.0]), w, t
+        )
+        assert np.abs(x - way).max() < 3e-6 * way[-1] and not y.any()
+        assert np.abs(angle - turn).max() < 3e-6 * abs(turn[-1]) + 1e-6
+
+
+def scores(seed: int, count: int, spin_drag: bool = False):
+    """Errors of drawn films over their stated ones, and over the bound of the same film."""
+    rng = np.random.default_rng(seed)
+    names = ["friction", "spin_drag"] if spin_drag else ["friction", "air"]
+    z, inside = [], []
+    for _ in range(count):
+        how = {"air": 0.0, "spinning": 10.0 ** rng.uniform(-1.0, 0.3)} if spin_drag else {}
+        track, truth = film(rng, **how)
+        truth["spin_drag"] = truth["spinning"]
+        result = pt.fit(track, PUCK, free=names)
+        if not all(result[name].determined and result[name].error > 0.0 for name in names):
+            continue  # said to be at a bound, or not told
+        z.append([(result[name].value - truth[name]) / result[name].error for name in names])
+        inside.append([result[name].low <= truth[name] <= result[name].high for name in names])
+    return np.array(z), np.array(inside)
+
+
+def test_air_and_friction_are_found_with_their_errors():
+    z, inside = scores(1, 12)
+    assert len(z) >= 11
+    assert (np.abs(z) < 4.5).all()
+    assert inside.mean() > 0.8
+
+
+@pytest.mark.thorough
+def test_errors_and_coverage_of_air_and_friction():
+    z, inside = scores(2, 200)
+    assert len(z) >= 190
+    assert (np.sqrt((z**2).mean(axis=0)) < 1.2).all()
+    assert (np.abs(inside.mean(axis=0) - 0.95) < 0.05).all()
+
+
+def test_drag_of_the_spin_is_found():
+    z, _ = scores(3, 6, spin_drag=True)
+    assert len(z) >= 5 and (np.abs(z) < 4.5).all()
+
+
+def test_what_does_not_go_with_air_is_refused_and_nothing_is_played():
+    track, truth = film(np.random.default_rng(5))
+    for how, words in (
+        ({"impacts": True}, "beside impacts"),
+        ({"slip_speeds": [0.0, 9.0]}, "beside a friction over slip speed"),
+    ):  # fmt: skip
+        with pytest.raises(pt.InputError, match=words):
+            pt.fit(track, PUCK, free=["friction", "air"], **how)
+    with pytest.raises(pt.InputError, match="uniform pressure alone"):
+        pt.fit(track, pt.Puck(R, height=0.0, pressure="hertz"), free=["friction", "air"])
+    result = pt.fit(track, pt.Puck(R, height=0.0, mass=0.0425), free=["friction", "air"])
+    assert "drag.quadratic of a scene" in " ".join(result.remarks)
+    with pytest.raises(pt.InputError, match="found with air"):
+        result.simulate()
+    assert abs(result["air"].value - truth["air"]) < 5.0 * result["air"].error
+
+
+def test_air_is_named_as_the_reason_of_a_misfit():
+    track, _ = film(np.random.default_rng(6), friction=0.0096, air=0.047, v=4.0, spin=10.0)
+    assert "--free friction,air" in pt.fit(track, PUCK, free="friction").misfit
