@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from functools import cached_property
 from typing import Any, Self
 
 import numpy as np
@@ -88,6 +87,7 @@ class Running:
         self._place = np.argsort(self._order)
         pieces = pieces_of(self.scene)
         self.names = tuple(called(piece, number) for number, piece in enumerate(pieces))
+        self._obstacles = obstacle_names(self.scene)
 
     def __repr__(self) -> str:
         title = f"{self.scene.title}, " if self.scene.title else ""
@@ -415,10 +415,6 @@ class Running:
             for time, what, who, k, *numbers in self._passings.rows[passed:].tolist()
         ]
         return sorted(found, key=lambda event: event.time) if lines else found
-
-    @cached_property
-    def _obstacles(self) -> list[str]:
-        return obstacle_names(self.scene)
 
     def _name(self, partner: float) -> str:
         """A disc or an obstacle of the engine in words."""
