@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 import numpy as np
-from judges.pucks_judge import Disc, Line
+from pucks_judge import Disc, Line, Straight
 
 import puck_tables as pt
 
@@ -48,7 +48,28 @@ def draw(
     return pt.Scene(pucks=pieces, walls=cushions if walls else [])
 
 
-def judged(scene: pt.Scene) -> tuple[list[Disc], list[Line]]:
+def draw_pieces(seed: int, count: int) -> pt.Scene:
+    """The same in a frame of four walls with ends, and four such walls among the pucks."""
+    rng, bare = np.random.default_rng([seed, 3]), draw(seed, count, walls=False)
+    corners = [(-0.4, -0.4), (0.4, -0.4), (0.4, 0.4), (-0.4, 0.4)]
+    ends = list(zip(corners, corners[1:] + corners[:1], strict=True))
+    while len(ends) < 8:
+        a = rng.uniform(-0.35, 0.35, 2)
+        b = a + rng.uniform(0.05, 0.3) * rng.normal(size=2)
+        wall = Straight(a, b, 1.0, 0.0, 0.0)
+        gaps = (math.dist(p.launch.position, wall.nearest(np.array(p.launch.position))) - p.radius
+                for p in bare.pucks)  # fmt: skip
+        if np.abs(b).max() < 0.4 and min(gaps) > 1e-3:
+            ends.append((tuple(a.tolist()), tuple(b.tolist())))
+    walls = [
+        pt.Wall(a, b, restitution=float(rng.uniform(0.3, 1.0)),
+                tangential=float(rng.uniform(-1.0, 0.8)), friction=float(rng.uniform(0.0, 0.5)))
+        for a, b in ends
+    ]  # fmt: skip
+    return pt.Scene(pucks=bare.pucks, walls=walls)
+
+
+def judged(scene: pt.Scene) -> tuple[list[Disc], list[Line | Straight]]:
     """The same for the judge."""
     discs = [
         Disc(p.radius, p.mass, p.friction, p.height, p.restitution, p.tangential, p.rim,
@@ -56,10 +77,13 @@ def judged(scene: pt.Scene) -> tuple[list[Disc], list[Line]]:
                        p.launch.spin]))
         for p in scene.pucks
     ]  # fmt: skip
-    lines = [
-        Line(w.normal, float(np.dot(w.normal, w.point)), w.restitution, w.tangential, w.friction)
-        for w in scene.walls
-    ]
+    lines: list[Line | Straight] = []
+    for w in scene.walls:
+        law: Any = w.restitution, w.tangential, w.friction
+        if w.point is None:
+            lines.append(Straight(np.array(w.start), np.array(w.end), *law))
+        else:
+            lines.append(Line(w.normal, float(np.dot(w.normal, w.point)), *law))
     return discs, lines
 
 

@@ -53,7 +53,15 @@ def post(x, y, radius, grip=0.0):
 
 
 def arc(x, y, radius, first, span, grip=0.0):
-    return [ARC, x, y, radius, 0.0, 0.0, grip, first, span, 0.0]
+    return [ARC, x, y, radius, 0.0, 0.0, grip, first, span]
+
+
+def padded(obstacles):
+    """Rows of what stands, with what a wall without ends and a round one leave out."""
+    rows = np.zeros((len(obstacles), OBSTACLE_COLUMNS))
+    for row, given in zip(rows, obstacles, strict=True):
+        row[: len(given)] = given
+    return rows
 
 
 def group_of(discs, obstacles=(), pull=(0.0, 0.0), films=None, cuts=None):
@@ -70,7 +78,7 @@ def group_of(discs, obstacles=(), pull=(0.0, 0.0), films=None, cuts=None):
     if cuts is None:
         cuts = np.zeros((len(discs), *NO_SECTION.shape))
     return Group(
-        discs, np.array(obstacles, float).reshape(-1, OBSTACLE_COLUMNS),
+        discs, padded(obstacles),
         alone(mass * discs[:, 3], discs[:, 4].copy(), cuts, NO_LAW),
         Surface(*[0.0] * 9), PLAIN_RIMS, np.vstack(rows), reels,
         np.zeros((0, 4)), np.zeros((len(discs), 2), np.int64),

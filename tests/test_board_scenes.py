@@ -15,14 +15,17 @@ from puck_tables.scene.library import shipped_scenes
 BOARDS = [name for name in shipped_scenes() if Scene.load(name).pucks]
 # how many impacts at least, and who leaves play
 STORIES: dict[str, tuple[int, set[str]]] = {
+    "air-hockey-goals": (2, {"puck"}),
     "air-hockey-mallet": (5, set()),
     "air-table": (4, set()),
     "bowling-row": (15, {"ball", "pin 1", "pin 5", "pin 7"}),
+    "bumper-pool": (1, {"cue"}),
     "carrom-break": (40, {"white 1", "black 2"}),
     "crokinole": (2, {"shot"}),
     "curling-take-out": (2, {"yellow", "yellow 2"}),
     "newtons-row": (5, set()),
     "shuffleboard-two-stones": (1, {"blue"}),
+    "sjoelen": (5, set()),
 }
 
 
@@ -81,3 +84,35 @@ def test_posts_of_crokinole_stand_on_their_circle_and_the_ditch_is_round() -> No
     assert [math.hypot(*post.point) for post in scene.posts] == pytest.approx([0.1016] * 8)
     turns = np.diff(np.unwrap([math.atan2(*edge.point[::-1]) for edge in scene.edges]))
     assert turns == pytest.approx(np.full(23, 2.0 * math.pi / 24.0))
+
+
+def test_a_goal_is_the_exit_of_its_line_into_the_slot(runs: dict[str, Any]) -> None:
+    run = runs["air-hockey-goals"]
+    goals = [event for event in run.events if event.partner == "right goal"]
+    assert [event.what for event in goals] == ["entry", "line", "exit"]
+    goes_in = goals[-1].time < next(event.time for event in run.events if event.what == "edge")
+    assert goes_in and goals[-1].approach < 0.0 and abs(goals[1].y - 0.55) < 0.1524
+
+
+def test_gates_and_compartments_of_sjoelen(runs: dict[str, Any]) -> None:
+    """Four gates of 60 mm in the middle of compartments of 91 mm, with partitions of 12 mm."""
+    run = runs["sjoelen"]
+    corners = np.array(run.scene.walls[0].corners)
+    gates = [(line.start[1], line.end[1]) for line in run.scene.lines]
+    assert np.diff(gates).ravel() == pytest.approx([0.06] * 4)
+    backs = np.sort(corners[corners[:, 0] == 2.0, 1]).reshape(4, 2)
+    assert np.diff(backs).ravel() == pytest.approx([0.091] * 4)
+    assert (backs[1:, 0] - backs[:-1, 1]) == pytest.approx([0.012] * 3)
+    assert backs.mean(axis=1) == pytest.approx(np.mean(gates, axis=1))
+    assert [(event.puck, event.partner) for event in run.events if event.what == "exit"] == [
+        ("first", "three")
+    ]
+    assert run["first"]["x"][-1] > 1.6 + 0.026
+
+
+def test_bumpers_leave_room_for_a_disc(runs: dict[str, Any]) -> None:
+    scene = runs["bumper-pool"].scene
+    posts, radius = scene.posts, scene.pucks[0].radius
+    assert len(posts) == 12 and len(scene.pucks) == 8
+    inner = sorted(math.hypot(*post.point) for post in posts)[:4]
+    assert min(inner) - posts[0].radius > radius  # at the centre of the cross

@@ -12,6 +12,8 @@ from puck_tables.cli.main import main
 
 from puck_tables.contact.laws import law_of
 
+AIR_GAMES = {"air-hockey", "air-hockey-goals", "air-hockey-mallet", "air-table"}
+
 
 def offered(words: list[str], begun: str) -> dict[str, str]:
     found = ShellComplete(main, {}, "puck", "_PUCK_COMPLETE").get_completions(words, begun)
@@ -23,7 +25,7 @@ def offered(words: list[str], begun: str) -> dict[str, str]:
     [
         (["simulate", "--scene"], "inc", {"incline"}, True),
         (["aim", "--scene"], "cro", {"crokinole"}, True),
-        (["scene", "check"], "air", {"air-hockey", "air-hockey-mallet", "air-table"}, True),
+        (["scene", "check"], "air", AIR_GAMES, True),
         (["scene", "show"], "car", {"carrom-break"}, False),
         (["simulate", "--pressure"], "h", {"hertz"}, True),
         (["build-tables", "--pressure"], "g", {"galin"}, True),

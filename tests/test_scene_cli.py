@@ -59,7 +59,7 @@ def test_every_error_is_told_at_once(tmp_path):
     for command in (("scene", "check"), ("simulate", "--scene"), ("sweep", "--scene")):
         result = puck(*command, str(file))
         assert result.exit_code == 2
-        for part in ("puck.radius = -1", "puck.hight", "puck.friction", "wall[0].normal", "> 0 m"):
+        for part in ("puck.radius = -1", "puck.hight", "puck.friction", "wall[0].point", "> 0 m"):
             assert part in result.stderr
         assert "Traceback" not in result.stderr
 

@@ -47,6 +47,8 @@ BELTS = {"floor": {"strips": {
     "borders": [0.03], "friction": [0.2, 0.1], "across": [0.1, -0.2], "along": [0.3, 0.0],
 }}, "time": 0.5}  # fmt: skip
 WALL = {"wall": [{"point": [0.1, 0.0], "normal": [-1.0, 0.1], "tangential": 0.2}]}
+PIECE = {"wall": [{"start": [0.1, -0.1], "end": [0.1, 0.1]}]}
+ISLAND = {"wall": [{"corners": [[0.1, -0.1], [0.2, -0.1], [0.1, 0.1]]}]}
 EDGE = {"edge": [{"point": [0.05, 0.0], "normal": [-1.0, 0.0]}]}
 HELD = {"launch": {"velocity": None}, "time": 0.5}
 RAIL = {**HELD, "constraint": {"kind": "rail", "velocity": [0.0, 0.1]}}
@@ -106,6 +108,9 @@ CASES: dict[str, tuple[dict[str, Any], Any]] = {
     "force.torque": ({}, 1e-3),
     "wall[0].point": (WALL, [0.15, 0.0]),
     "wall[0].normal": (WALL, [-1.0, -0.1]),
+    "wall[0].start": (PIECE, [0.12, -0.1]),
+    "wall[0].end": (PIECE, [0.12, 0.1]),
+    "wall[0].corners": (ISLAND, [[0.11, -0.1], [0.2, -0.1], [0.11, 0.1]]),
     "wall[0].restitution": (WALL, 0.5),
     "wall[0].tangential": (WALL, 0.5),
     "wall[0].friction": (WALL, 0.05),

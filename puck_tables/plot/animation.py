@@ -23,11 +23,13 @@ from puck_tables.plot.floor_axes import Box
 from puck_tables.plot.painted_lines import Painted, painted_on
 from puck_tables.plot.round_parts import RoundPart, rounds_of
 from puck_tables.plot.scene_figure import states_drawn
+from puck_tables.plot.straight_parts import StraightPart, straight_parts
 from puck_tables.plot.titles import out_of_sight
 from puck_tables.result import TimedResult
 from puck_tables.scene.parts import Floor
 from puck_tables.scene.run import Run
 from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.scene.sides import line_of
 from puck_tables.trajectory import Trajectory
 from puck_tables.world.agreement import frictions_under, pieces_of
 from puck_tables.world.drive import rows_of
@@ -72,14 +74,6 @@ class MovingDisc(NamedTuple):
     def mark_length(self) -> float:
         """How far a mark goes from its centre, m."""
         return MARK * self.radius if self.outline else self.radius
-
-
-class StraightPart(NamedTuple):
-    """A straight part of the board: a wall or an edge, m."""
-
-    kind: str
-    x: tuple[float, float]
-    y: tuple[float, float]
 
 
 class Happening(NamedTuple):
@@ -185,12 +179,13 @@ def _film(
     """A film of bodies by name, radius, colour, whether driven, and states close to each other."""
     rounds = [] if scene is None else rounds_of(scene)
     painted = [] if scene is None else painted_on(scene)
-    box = _sight(bodies, rounds, painted)
     planes = [] if scene is None else _half_planes(scene)
+    sides = [] if scene is None else straight_parts(scene)
+    box = _sight(bodies, rounds, [*painted, *sides])
     box = _with_corners(box, [plane for _, plane in planes])
     size, smallest = max(box[1] - box[0], box[3] - box[2]), min(body[1] for body in bodies)
     unseen = min(_UNSEEN[0] * size, _UNSEEN[1] * smallest)
-    lines = _lines(planes, box)
+    lines = [*sides, *_lines(planes, box)]
     colours = (colour_of(number) for number in range(len(bodies)))
     return Animation(
         title, end, end_time,
@@ -202,7 +197,7 @@ def _film(
             for name, radius, colour, driven, states in bodies
         ],
         lines, rounds, painted, happenings or [], box, Floor() if scene is None else scene.floor,
-        () if scene is None else _frictions(scene), out_of_sight(planes, lines),
+        () if scene is None else _frictions(scene), out_of_sight(planes, lines[len(sides) :]),
     )  # fmt: skip
 
 
@@ -253,10 +248,11 @@ def between(knots: FloatArray, times: FloatArray) -> FloatArray:
 
 def path_of(body: MovingDisc, until: float = math.inf) -> FloatArray:
     """Places of a body so close that lines between them are its way, array (n, 2)."""
-    knots = body.knots[: np.searchsorted(body.knots[:, 0], until, side="right")]
-    starts, ends = knots[:-1, 0], knots[1:, 0]
-    fine = (starts[:, None] + np.linspace(0.0, 1.0, 12) * (ends - starts)[:, None]).ravel()
-    return between(knots, np.append(fine, knots[-1, 0]))[:, :2]
+    times, until = body.knots[:, 0], min(until, body.knots[-1, 0])
+    starts = times[: np.searchsorted(times, until, side="right")]
+    ends = np.append(starts[1:], until)  # also within the piece that it is on
+    fine = starts[:, None] + np.linspace(0.0, 1.0, 12) * (ends - starts)[:, None]
+    return between(body.knots, fine.ravel())[:, :2]
 
 
 def _knots(states: FloatArray, radius: float, unseen: float) -> FloatArray:
@@ -288,9 +284,9 @@ def _leaps(states: FloatArray) -> npt.NDArray[np.bool_]:
 
 def _sight(
     bodies: list[tuple[str, float, str, bool, FloatArray]], rounds: list[RoundPart],
-    painted: list[Painted],
+    lines: list[Painted | StraightPart],
 ) -> Box:  # fmt: skip
-    """What ways, round parts of the board and painted lines cover."""
+    """What ways, round parts of the board and lines with ends cover."""
     low = np.min(
         [states[:, 1:3].min(axis=0) - radius for _, radius, _, _, states in bodies], axis=0
     )
@@ -300,20 +296,17 @@ def _sight(
     for one in rounds:
         centre = np.array([one.x, one.y])
         low, high = np.minimum(low, centre - one.radius), np.maximum(high, centre + one.radius)
-    for line in painted:
+    for line in lines:
         low = np.minimum(low, [min(line.x), min(line.y)])
         high = np.maximum(high, [max(line.x), max(line.y)])
     return Box(float(low[0]), float(high[0]), float(low[1]), float(high[1]))
 
 
 def _half_planes(scene: SceneSpec) -> list[tuple[str, FloatArray]]:
-    """Walls and edges as unit normals into the field, and places along them."""
-    planes = []
-    for kind, lines in (("wall", scene.walls), ("edge", scene.edges)):
-        for line in lines:
-            normal = np.array(line.normal) / math.hypot(*line.normal)
-            planes.append((kind, np.append(normal, normal @ np.array(line.point))))
-    return planes
+    """Walls and edges without ends as unit normals into the field, and places along them."""
+    walls = [("wall", line_of(wall)) for wall in scene.walls if wall.point is not None]
+    edges = [("edge", line_of(edge)) for edge in scene.edges]
+    return [(kind, np.array(line)) for kind, line in walls + edges]
 
 
 def _with_corners(box: Box, planes: list[FloatArray]) -> Box:

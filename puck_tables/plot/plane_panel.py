@@ -13,12 +13,14 @@ from puck_tables.plot.base_outlines import MARK, outline_of, path_of, placed
 from puck_tables.plot.floor_axes import Box, draw_floor
 from puck_tables.plot.painted_lines import Painted, draw_painted, painted_on
 from puck_tables.plot.round_parts import RoundPart, draw_rounds, rounds_of
+from puck_tables.plot.straight_parts import StraightPart, straight_parts
 from puck_tables.plot.style import BLUE, GREY, LAUNCH, ORANGE, RED, STOP
 from puck_tables.plot.titles import legend_below, noted, out_of_sight
 from puck_tables.scene.acting import acting
 from puck_tables.scene.parts import Edge, Wall
 from puck_tables.scene.run import Run
 from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.scene.sides import line_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -47,13 +49,18 @@ def draw_plane(axes: Axes, run: Run, columns: dict[str, FloatArray]) -> None:
     """Draw the plane of a run; ``columns``: its states close to each other, (n,) by name."""
     scene, radius = run.scene, run.scene.puck.radius
     x, y = columns["x"], columns["y"]
-    painted = painted_on(scene)
-    box = _box(*_with_painted(x, y, painted), 1.6 * radius)
+    painted, sides = painted_on(scene), straight_parts(scene)
+    box = _box(*_with_lines(x, y, [*painted, *sides]), 1.6 * radius)
     draw_floor(axes, scene.floor, box, max(scene.frictions))
     axes.plot(x, y, color=BLUE, linewidth=1.4, zorder=3)
     _draw_pucks(axes, scene, columns)
-    walls = _draw_lines(axes, scene.walls, box, "wall", color="black", linewidth=2.5)
+    endless = [wall for wall in scene.walls if wall.point is not None]
+    walls = _draw_lines(axes, endless, box, "wall", color="black", linewidth=2.5)
     edges = _draw_lines(axes, scene.edges, box, "edge", color=RED, linestyle="--")
+    seen = [side for side in sides if _in_sight(side, box)]
+    for number, side in enumerate(seen):
+        label = None if walls + number else "wall"
+        axes.plot(side.x, side.y, color="black", linewidth=2.5, zorder=1, label=label)
     draw_painted(axes, painted)
     rounds = [one for one in rounds_of(scene) if _meets(box, one)]
     draw_rounds(axes, rounds)
@@ -66,10 +73,10 @@ def draw_plane(axes: Axes, run: Run, columns: dict[str, FloatArray]) -> None:
     _draw_constraint(axes, scene, columns, box, run.end_time)
     also = _draw_pulls(axes, scene, x, y, box)
     hidden = out_of_sight(
-        [("wall",)] * len(scene.walls)
+        [("wall",)] * (len(endless) + len(sides))
         + [("edge",)] * len(scene.edges)
         + [(one.kind,) for one in rounds_of(scene)],
-        [("wall",)] * walls + [("edge",)] * edges + [(one.kind,) for one in rounds],
+        [("wall",)] * (walls + len(seen)) + [("edge",)] * edges + [(one.kind,) for one in rounds],
     )
     if notes := [words for words in (also, hidden) if words]:
         noted(axes, "; ".join(notes))
@@ -88,15 +95,21 @@ def _box(x: FloatArray, y: FloatArray, margin: float) -> Box:
     return Box(middle[0] - wide, middle[0] + wide, middle[1] - high, middle[1] + high)
 
 
-def _with_painted(
-    x: FloatArray, y: FloatArray, painted: list[Painted]
+def _with_lines(
+    x: FloatArray, y: FloatArray, lines: list[Painted | StraightPart]
 ) -> tuple[FloatArray, FloatArray]:
     """The path, with the lines that lie where it goes."""
-    for line in painted:
+    for line in lines:
         over = min(line.x) <= x.max() and x.min() <= max(line.x)
         if over and min(line.y) <= y.max() and y.min() <= max(line.y):
             x, y = np.append(x, line.x), np.append(y, line.y)
     return x, y
+
+
+def _in_sight(side: StraightPart, box: Box) -> bool:
+    """Whether a side may be in sight."""
+    over = min(side.x) <= box.right and box.left <= max(side.x)
+    return over and min(side.y) <= box.high and box.low <= max(side.y)
 
 
 def _meets(box: Box, part: RoundPart) -> bool:
@@ -195,16 +208,16 @@ def _draw_lines(
     in_view = 0
     for line in lines:
         words = "" if in_view else label
-        in_view += _draw_line(axes, line.point, line.normal, box, label=words, **style)
+        nx, ny, at = line_of(line)
+        in_view += _draw_line(axes, (nx * at, ny * at), (nx, ny), box, label=words, **style)
     return in_view
 
 
 def _draw_line(
     axes: Axes, point: tuple[float, float], normal: tuple[float, float], box: Box, **style: Any
 ) -> bool:
-    """A line, drawn only where it is in sight; whether it is."""
-    size = math.hypot(*normal)
-    nx, ny = normal[0] / size, normal[1] / size
+    """A line of a unit normal, drawn only where it is in sight; whether it is."""
+    nx, ny = normal
     middle = ((box.left + box.right) / 2, (box.low + box.high) / 2)
     half = math.hypot(box.right - box.left, box.high - box.low)
     off = nx * (middle[0] - point[0]) + ny * (middle[1] - point[1])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 from puck_tables.contact.friction_laws import NAMED, FrictionLaw
@@ -12,7 +11,7 @@ from puck_tables.scene.floor_patches import patch_faults
 from puck_tables.scene.holds import allowed_velocity
 from puck_tables.scene.orthotropic import LEAST_RATIO
 from puck_tables.scene.over_time import drive_of, grip_faults, largest_factors, motion_of
-from puck_tables.scene.parts import Edge, Floor, Rows, Wall
+from puck_tables.scene.parts import Floor, Rows
 from puck_tables.scene.stretches import belt_faults, has_belts
 
 if TYPE_CHECKING:
@@ -199,15 +198,3 @@ def law_of_rows(rows: Rows) -> SpeedLaw:
 def launch_velocity(scene: SceneSpec) -> tuple[float, float]:
     """The velocity of the centre at the launch, as the constraint allows it."""
     return allowed_velocity(scene.launch, scene.constraint, scene.floor)
-
-
-def distance(line: Wall | Edge, place: tuple[float, float]) -> float:
-    """How far a place is from a line, on the side its normal points to.
-
-    Examples
-    --------
-    >>> distance(Edge((0.0, 1.0), normal=(0.0, -2.0)), (5.0, 0.25))
-    0.75
-    """
-    size = math.hypot(*line.normal)
-    return sum((p - q) * n / size for p, q, n in zip(place, line.point, line.normal, strict=True))

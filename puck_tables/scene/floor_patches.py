@@ -15,15 +15,15 @@ from puck_tables._core.read_columns import numbers_of
 from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
-    from puck_tables.scene.parts import Floor, Patch
+    from puck_tables.scene.parts import Floor, Patch, Wall
 
 MOST_CORNERS = 200
 _MOST_BYTES = 1 << 16  # of a file of corners
 _FLAT = 1e-12  # of the square of its size: the area of a polygon that has none
 
 
-def corners_of(patch: Patch) -> FloatArray:
-    """The corners (n, 2) of a patch, counter-clockwise, m; none of a round one.
+def corners_of(part: Patch | Wall) -> FloatArray:
+    """The corners (n, 2) of a patch or a wall, counter-clockwise, m; none of a round patch.
 
     Raises
     ------
@@ -36,11 +36,11 @@ def corners_of(patch: Patch) -> FloatArray:
     >>> corners_of(Patch(0.1, corners=[[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]])).tolist()
     [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]]
     """
-    if not patch.corners:
+    if not part.corners:
         return np.empty((0, 2))
-    rows = numbers_of(patch.corners, (X, Y), 2, _MOST_BYTES, "corners").rows
+    rows = numbers_of(part.corners, (X, Y), 2, _MOST_BYTES, "corners").rows
     if not 3 <= len(rows) <= MOST_CORNERS:
-        source = f" in {patch.corners}" if isinstance(patch.corners, str) else ""
+        source = f" in {part.corners}" if isinstance(part.corners, str) else ""
         raise InputError(
             f"corners must be from 3 to {MOST_CORNERS} rows of x and y, got {len(rows)}{source}"
         )
@@ -59,13 +59,13 @@ def _around(corners: tuple[tuple[float, ...], ...]) -> FloatArray:
     if crossing := _crossing(rows, ahead):
         raise InputError(
             f"the edges from corners {crossing[0]} and {crossing[1]} meet: give the corners one "
-            "after the other around the patch"
+            "after the other around it"
         )
     around = rows - rows[0]
     area = 0.5 * float(np.sum(around[:, 0] * np.roll(around[:, 1], -1)
                               - around[:, 1] * np.roll(around[:, 0], -1)))  # fmt: skip
     if abs(area) <= _FLAT * float(np.ptp(rows, axis=0).max()) ** 2:
-        raise InputError("the corners lie on a line: a patch needs an area")
+        raise InputError("the corners lie on a line: what they go around needs an area")
     return rows if area > 0.0 else rows[::-1].copy()
 
 

@@ -227,24 +227,38 @@ def _two_places(name: str, first: Any, second: Any) -> str:
         return said
     return (
         f"{said}; for the whole line through both places normal=({by - ay:g}, {ax - bx:g}) or "
-        f"({ay - by:g}, {bx - ax:g}), whichever points into the field (a {name.lower()} has no "
-        "ends)"
+        f"({ay - by:g}, {bx - ax:g}), whichever points into the field (an {name.lower()} has "
+        "no ends)"
     )
 
 
-@_one_place
 @dataclass(frozen=True)
 class Wall:
-    """A straight cushion that the rim of the puck bounces off: a line without ends.
+    """A straight cushion that rims bounce off: a line without ends, a piece of one, or a polygon.
+
+    ``Wall(point, normal=...)`` has no ends, and pucks on one side.  ``Wall(start, end)`` has two
+    faces, and ends that are round points, as a post of radius 0.  ``Wall(corners=...)`` is closed,
+    with one such wall from each corner to the next; pucks may be inside as well as outside.
 
     Examples
     --------
     >>> board_end = Wall((1.0, 0.0), normal=(-1.0, 0.0), restitution=0.7)
+    >>> beside_the_goal = Wall((1.0, 0.15), (1.0, 0.5), restitution=0.7)
+    >>> island = Wall(corners=[[0.4, 0.2], [0.6, 0.2], [0.5, 0.3]])
     """
 
-    point: tuple[float, float] = of("pair", unit="m", doc="any point of it", acts="walls")
+    start: tuple[float, float] | None = of("pair", None, "m", doc="of one with ends", acts="walls")
+    end: tuple[float, float] | None = of("pair", None, "m", doc="of one with ends", acts="")
     _: KW_ONLY
-    normal: tuple[float, float] = of("pair", doc="into the field, any length", acts="")
+    point: tuple[float, float] | None = of(
+        "pair", None, "m", doc="any point of one without ends", acts="walls"
+    )
+    normal: tuple[float, float] | None = of(
+        "pair", None, doc="of one without ends, into the field, any length", acts=""
+    )
+    corners: str | Rows = of(
+        "rows", (), file="", doc="CSV or rows of x and y in m, around a closed one", acts="walls"
+    )
     restitution: float | str | Restitution = restitution_of(1.0, acts="")
     tangential: float = of(
         "number",
@@ -255,6 +269,11 @@ class Wall:
         acts="",
     )
     friction: float = of("number", math.inf, low=0.0, doc="limits the tangential impulse", acts="")
+
+    def __post_init__(self) -> None:
+        if self.normal is not None and self.point is None and self.end is None:
+            object.__setattr__(self, "point", self.start)  # the one place without a name
+            object.__setattr__(self, "start", None)
 
 
 @_one_place

@@ -10,13 +10,14 @@ import numpy as np
 
 from puck_tables.errors import InputError
 from puck_tables.motion.body import is_plain
-from puck_tables.scene.agreement import distance, floor_faults
+from puck_tables.scene.agreement import floor_faults
 from puck_tables.scene.by_speed import law_name, speed_law
 from puck_tables.scene.holds import misfits
 from puck_tables.scene.over_time import drive_of, last_factors
-from puck_tables.scene.parts import Drag, Edge, Force, Lateral, Launch, Wall
+from puck_tables.scene.parts import Drag, Force, Lateral, Launch
 from puck_tables.scene.pieces import PieceSpec
 from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.scene.sides import gap_on_way, gap_to, line_of, shape_faults
 from puck_tables.scene.stretches import belts_of, has_belts
 from puck_tables.world.drive import rows_of
 
@@ -187,11 +188,13 @@ def disagreements(scene: SceneSpec) -> list[str]:
         faults.append(f"puck.name = {name!r}: {names.count(name)} pucks have it, it must be of one")
     for number, piece in enumerate(pieces):
         faults += _of_one(scene, piece, f"puck[{number}]" if scene.pucks else "puck")
-    lines: list[tuple[str, Wall | Edge]] = [(f"wall[{k}]", w) for k, w in enumerate(scene.walls)]
-    lines += [(f"edge[{k}]", edge) for k, edge in enumerate(scene.edges)]
-    for path, line in lines:
-        if not _SMALLEST < math.hypot(*line.normal) < _LARGEST:
-            faults.append(f"{path}.normal = {list(line.normal)}: must have a direction")
+    for k, wall in enumerate(scene.walls):
+        faults += [f"wall[{k}]: {fault}" for fault in shape_faults(wall)]
+    normals = [(f"wall[{k}]", wall.normal) for k, wall in enumerate(scene.walls)]
+    normals += [(f"edge[{k}]", edge.normal) for k, edge in enumerate(scene.edges)]
+    for path, normal in normals:
+        if normal is not None and not _SMALLEST < math.hypot(*normal) < _LARGEST:
+            faults.append(f"{path}.normal = {list(normal)}: must have a direction")
     faults += _strange_lines(scene)
     faults += _strange_rims(scene)
     if not scene.frames.is_integer():
@@ -367,7 +370,10 @@ def _driven_through(scene: SceneSpec, pieces: tuple[PieceSpec, ...]) -> Iterator
         before, after = rows[:-1, 1:3], rows[1:, 1:3]
         gaps = {}
         for k, wall in enumerate(scene.walls):
-            gaps[f"wall[{k}]"] = np.array([distance(wall, tuple(place)) for place in after])
+            gaps[f"wall[{k}]"] = np.array(
+                [gap_to(wall, tuple(place)) for place in after] if wall.point is not None
+                else [gap_on_way(wall, *way) for way in zip(before, after, strict=True)]
+            )  # fmt: skip
         for k, post in enumerate(scene.posts):
             way, off = after - before, np.array(post.point) - before
             square = np.maximum((way * way).sum(axis=1), 1e-300)
@@ -402,7 +408,7 @@ def in_the_way(
     >>> list(in_the_way(board, (0.0, 0.45), 0.1, holes=True))[0][:2]
     ('wall[0]', 'reaches through it')
     """
-    gaps = {f"wall[{k}]": distance(one, place) - radius for k, one in enumerate(scene.walls)}
+    gaps = {f"wall[{k}]": gap_to(one, place) - radius for k, one in enumerate(scene.walls)}
     for k, post in enumerate(scene.posts):
         gaps[f"post[{k}]"] = math.dist(place, post.point) - radius - post.radius
     for k, arc in enumerate(scene.arcs):
@@ -411,7 +417,9 @@ def in_the_way(
     if holes:
         for k, pocket in enumerate(scene.pockets):
             gaps[f"pocket[{k}]"] = math.dist(place, pocket.point) - pocket.radius
-        gaps |= {f"edge[{k}]": distance(one, place) for k, one in enumerate(scene.edges)}
+        for k, edge in enumerate(scene.edges):
+            nx, ny, at = line_of(edge)
+            gaps[f"edge[{k}]"] = nx * place[0] + ny * place[1] - at
     for path, gap in gaps.items():
         if gap < -TOUCH * radius:
             what = "lies in it" if path.startswith(("pocket", "edge")) else "reaches through it"
@@ -419,14 +427,13 @@ def in_the_way(
 
 
 def _wide_pockets(scene: SceneSpec) -> Iterator[str]:
-    """Pockets wider than the board between two facing walls."""
+    """Pockets wider than the board between two facing walls without ends."""
+    lines = [(k, line_of(one), one.point) for k, one in enumerate(scene.walls) if one.point]
     for k, pocket in enumerate(scene.pockets):
-        for number, wall in enumerate(scene.walls):
-            for other, facing in enumerate(scene.walls[:number]):
-                sizes = math.hypot(*wall.normal) * math.hypot(*facing.normal)
-                along = wall.normal[0] * facing.normal[0] + wall.normal[1] * facing.normal[1]
-                width = distance(wall, facing.point)
-                if along < -0.999 * sizes and 2.0 * pocket.radius >= width:
+        for place, (number, (nx, ny, at), _) in enumerate(lines):
+            for other, (ox, oy, _), facing in lines[:place]:
+                width = nx * facing[0] + ny * facing[1] - at
+                if nx * ox + ny * oy < -0.999 and 2.0 * pocket.radius >= width:
                     yield (
                         f"pocket[{k}].radius = {pocket.radius:g}: wider than the board, {width:g} "
                         f"m between wall[{other}] and wall[{number}]"

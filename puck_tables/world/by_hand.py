@@ -22,11 +22,17 @@ from puck_tables.world.game import N_PIECES, Game, Whole
 from puck_tables.world.holds import forbid
 from puck_tables.world.layout import (
     ARC,
+    CORNER,
+    END_X,
+    END_Y,
     FROM,
     KIND,
     POST,
     RADIUS,
+    SIDE,
     SPAN,
+    START_X,
+    START_Y,
     WALL,
     A,
     B,
@@ -66,7 +72,7 @@ def lead(game: Game, i: int, state: FloatArray, duration: float) -> Game:
 
 
 def _free_for(game: Game, i: int, state: list[float]) -> float:
-    """How long a disc can go straight on before it is at a wall, a post or an arc, s."""
+    """How long a disc can go straight on before it is at what stands, s."""
     x, y, vx, vy = state[X], state[Y], state[VX], state[VY]
     radius = float(game.discs[i, RADIUS]) * (1.0 + SHORT_OF)
     longest, speed2 = math.inf, vx * vx + vy * vy
@@ -76,13 +82,23 @@ def _free_for(game: Game, i: int, state: list[float]) -> float:
             if closes > 0.0:
                 gap = row[A] * x + row[B] * y - row[C] - radius
                 longest = min(longest, max(gap, 0.0) / closes)
-        elif row[KIND] in (POST, ARC):
+        elif row[KIND] == SIDE:
+            away = row[A] * x + row[B] * y - row[C]
+            closes = -math.copysign(row[A] * vx + row[B] * vy, away * (row[A] * vx + row[B] * vy))
+            if closes > 0.0:
+                out = max(abs(away) - radius, 0.0) / closes
+                px, py = x + out * vx, y + out * vy
+                before = (px - row[START_X]) * row[B] - (py - row[START_Y]) * row[A]
+                after = (px - row[END_X]) * row[B] - (py - row[END_Y]) * row[A]
+                if before >= 0.0 >= after:
+                    longest = min(longest, out)
+        elif row[KIND] in (POST, CORNER, ARC):
             dx, dy = x - row[A], y - row[B]
             along = dx * vx + dy * vy
-            reach = row[C] + (radius if row[KIND] == POST else -radius)
+            reach = row[C] + (-radius if row[KIND] == ARC else radius)
             rest = dx * dx + dy * dy - reach * reach
             root = along * along - speed2 * rest
-            if row[KIND] == POST and along < 0.0 < root:
+            if row[KIND] != ARC and along < 0.0 < root:
                 longest = min(longest, max(rest, 0.0) / (math.sqrt(root) - along))
             elif row[KIND] == ARC and speed2 > 0.0 and math.hypot(dx, dy) < row[C]:
                 out = max((math.sqrt(max(root, 0.0)) - along) / speed2, 0.0)

@@ -44,6 +44,7 @@ from puck_tables.world.layout import (
     KIND,
     LIGHTNESS,
     RADIUS,
+    SIDE,
     TURNABILITY,
     WALL,
     C,
@@ -128,7 +129,7 @@ def prepare_contact(game: Game, i: int, j: int, states: FloatArray, row: FloatAr
         row[NX], row[NY] = dx / size, dy / size
     else:
         _, row[NX], row[NY], _ = normal_to(
-            game.obstacles[-1 - j], discs[i, RADIUS], states[i, X], states[i, Y]
+            game.obstacles[-1 - j], discs[i, RADIUS], states[i, X], states[i, Y], 0.0
         )
     soft, slick, cross = _slownesses(discs[i], states[i], row[NX], row[NY])
     if j >= 0:
@@ -158,7 +159,7 @@ def opening(game: Game, i: int, j: int, t: float, row: FloatArray, states: Float
         pull -= ax * nx + ay * ny
     else:
         obstacle = game.obstacles[-1 - j]
-        size = math.inf if obstacle[KIND] == WALL else size + obstacle[C]
+        size = math.inf if obstacle[KIND] in (WALL, SIDE) else size + obstacle[C]
         if obstacle[KIND] == ARC:
             size = game.discs[i, RADIUS] - obstacle[C]  # it bends the other way
     across = wy * nx - wx * ny

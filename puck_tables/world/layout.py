@@ -40,17 +40,20 @@ DISC_COLUMNS = 37  # without those
 
 # columns of an obstacle: for a wall or edge (A, B) is its unit normal, into the field, and C its
 # place along it; for the others (A, B) is the centre, C the radius; [FROM, FROM + SPAN] are the
-# angles of an arc.  Of a border or patch A is its number among both: the ground knows the rest.
-# Of an overhang EDGE_NUMBER is that of the edge
+# angles of an arc.  A side is a wall between two ends, (START_X, START_Y) and (END_X, END_Y), its
+# normal to the left of the way from one to the other; a corner a post of radius 0 that is met from
+# beyond two walls only, along which these four are unit vectors from it.  Of a border or patch A is
+# its number among both: the ground knows the rest.  Of an overhang EDGE_NUMBER is that of the edge
 KIND, A, B, C = range(4)
 WALL_RESTITUTION, WALL_TANGENTIAL, WALL_FRICTION = 4, 5, 6
 FROM, SPAN = 7, 8
 EDGE_NUMBER = 7
-OBSTACLE_MAKE = 9
-OBSTACLE_COLUMNS = 10
+START_X, START_Y, END_X, END_Y = range(9, 13)
+OBSTACLE_MAKE = 13
+OBSTACLE_COLUMNS = 14
 
 # of pocket and edge the centre counts; where the rim comes over an edge is told, and no more
-WALL, POST, ARC, POCKET, EDGE, OVERHANG, BORDER, PATCH = range(8)
+WALL, POST, ARC, SIDE, CORNER, POCKET, EDGE, OVERHANG, BORDER, PATCH = range(10)
 NO_CUSHION = POCKET  # from there on: no impact
 ON_FLOOR = BORDER  # from there on: where friction changes under the base
 

@@ -43,15 +43,21 @@ from puck_tables.world.flight import (
 from puck_tables.world.game import N_HELD, N_LOOKS, Game
 from puck_tables.world.layout import (
     ARC,
+    CORNER,
     DAMPING,
     EDGE,
     EDGE_NUMBER,
+    END_X,
+    END_Y,
     FROM,
     KIND,
     OVERHANG,
     POCKET,
     RADIUS,
+    SIDE,
     SPAN,
+    START_X,
+    START_Y,
     WAKE,
     WALL,
     A,
@@ -60,6 +66,7 @@ from puck_tables.world.layout import (
 )
 
 OUTSIDE = 1e-9  # of the radius
+TOUCH = 1e-12  # of the radius: a gap as small is none
 ROUNDED = 1e-15  # of the places: a gap as small is none
 QUIET = 1e-12  # of the scale of speeds: an approach as slow is none
 HARDLY = 1e-11  # of the scales of speeds and accelerations: as good as none, of what touches
@@ -84,18 +91,56 @@ def in_span(angle: float, start: float, span: float) -> bool:
 
 
 @inlined
+def beyond_ends(obstacle: FloatArray, x: float, y: float) -> tuple[float, float, float]:
+    """How far a centre is beyond where a side or a corner is met, less than 0 within; its gradient.
+
+    The same sums decide about a side and about the corners at its ends.
+    """
+    if obstacle[KIND] == SIDE:
+        ux, uy = obstacle[B], -obstacle[A]
+        before = (obstacle[START_X] - x) * ux + (obstacle[START_Y] - y) * uy
+        after = (x - obstacle[END_X]) * ux + (y - obstacle[END_Y]) * uy
+        return (before, -ux, -uy) if before > after else (after, ux, uy)
+    dx, dy = x - obstacle[A], y - obstacle[B]
+    one = dx * obstacle[START_X] + dy * obstacle[START_Y]
+    other = dx * obstacle[END_X] + dy * obstacle[END_Y]
+    if one > other:
+        return one, obstacle[START_X], obstacle[START_Y]
+    return other, obstacle[END_X], obstacle[END_Y]
+
+
+@inlined
+def slack_of(radius: float, x: float, y: float) -> float:
+    """How far sides reach beyond their ends: no rounding leaves a gap between them and corners.
+
+    Of what touches it is then a side, no corner.  What runs off a side does so twice as far away.
+    """
+    return TOUCH * radius + 4.0 * ROUNDED * (abs(x) + abs(y))
+
+
+@inlined
 def normal_to(
-    obstacle: FloatArray, radius: float, x: float, y: float
+    obstacle: FloatArray, radius: float, x: float, y: float, slack: float
 ) -> tuple[float, float, float, bool]:
-    """The gap of a disc to an obstacle, the unit normal towards it, and whether it is there."""
+    """The gap of a disc to an obstacle, the unit normal towards it, and whether it is there.
+
+    ``slack``: see :func:`slack_of`, or 0.
+    """
     kind = int(obstacle[KIND])
     if kind in (WALL, EDGE, OVERHANG):
         margin = 0.0 if kind == EDGE else radius
         gap = obstacle[A] * x + obstacle[B] * y - obstacle[C] - margin
         return gap, -obstacle[A], -obstacle[B], True
+    if kind == SIDE:
+        away = obstacle[A] * x + obstacle[B] * y - obstacle[C]
+        face = -1.0 if away < 0.0 else 1.0
+        there = beyond_ends(obstacle, x, y)[0] <= slack
+        return face * away - radius, -face * obstacle[A], -face * obstacle[B], there
     dx, dy = obstacle[A] - x, obstacle[B] - y
     size = math.hypot(dx, dy)
     nx, ny = (dx / size, dy / size) if size > 0.0 else (1.0, 0.0)
+    if kind == CORNER:
+        return size - radius, nx, ny, beyond_ends(obstacle, x, y)[0] < -slack
     if kind == ARC:
         there = in_span(math.atan2(-ny, -nx), obstacle[FROM], obstacle[SPAN])
         return obstacle[C] - radius - size, -nx, -ny, there
@@ -313,10 +358,14 @@ def next_crossing(
     ax, ay, bx, by, margin = corridor(kind, flight, disc, one, last, now)
     if shape in (WALL, EDGE, OVERHANG):
         nearest = min(
-            side * normal_to(obstacle, radius, ax, ay)[0],
-            side * normal_to(obstacle, radius, bx, by)[0],
+            side * normal_to(obstacle, radius, ax, ay, 0.0)[0],
+            side * normal_to(obstacle, radius, bx, by, 0.0)[0],
         )
         if nearest > margin * (1.0 + 1e-9):
+            return math.inf
+    elif shape == SIDE:
+        ends = obstacle[START_X], obstacle[START_Y], obstacle[END_X], obstacle[END_Y], 0.0
+        if are_apart((ax, ay, bx, by, margin), ends, radius):
             return math.inf
     elif shape == ARC:
         farthest = max(
@@ -330,10 +379,11 @@ def next_crossing(
         near = distance2(ax, ay, bx, by, obstacle[A], obstacle[B])
         if near > reach * reach * (1.0 + 1e-9):
             return math.inf
-    t = now
+    t, partly = now, shape in (ARC, SIDE, CORNER)
     for look in range(MOST_LOOKS):
         game.counts[N_LOOKS] += 1
-        gap, nx, ny, there = normal_to(obstacle, radius, one[X], one[Y])
+        slack = slack_of(radius, one[X], one[Y]) if shape == SIDE else 0.0
+        gap, nx, ny, there = normal_to(obstacle, radius, one[X], one[Y], slack)
         gap, nx, ny = side * gap, side * nx, side * ny
         rate = -(nx * one[VX] + ny * one[VY])
         bend = bend_of(kind, flight, disc, one, t)
@@ -342,19 +392,23 @@ def next_crossing(
         rounded = ROUNDED * (abs(one[X]) + abs(one[Y]) + radius + obstacle[C] * (shape == ARC))
         if shape == ARC and gap >= 0.0:
             step = arc_step(gap, one[X] - obstacle[A], one[Y] - obstacle[B], one[VX], one[VY], bend)
-        elif shape == ARC:
+        elif shape == ARC or (there and partly and gap < -OUTSIDE * radius):
             step = safe_step(-gap, -rate, bend)  # outside it: until it comes back
         else:
             step = safe_step(max(gap, 0.0), rate, bend)
+        if not there and shape != ARC:
+            away, gx, gy = beyond_ends(obstacle, one[X], one[Y])
+            closes = gx * one[VX] + gy * one[VY]
+            step = max(step, safe_step(max(away - slack, 0.0), closes, bend))
         # farther outside an arc it has passed where the arc is not
-        if gap <= rounded and (shape != ARC or gap > -OUTSIDE * radius):
+        if gap <= rounded and (not partly or gap > -OUTSIDE * radius):
             if rate < -QUIET * game.pace[0] and there:
                 return t
             if bend > 0.0:
                 step = max(step, math.sqrt(2.0 * rounded / bend))
             if not there and rate != 0.0:
                 step = max(step, 4.0 * rounded / abs(rate))
-        if look >= PATIENCE and (shape != ARC or gap >= 0.0):
+        if look >= PATIENCE and (not partly or gap >= 0.0):
             far = math.hypot(one[X] - obstacle[A], one[Y] - obstacle[B])
             step = max(step, stays_apart(
                 game, i, -1 - k, t, max(gap, rounded), nx, ny, far, shape == ARC, room, one, one,
@@ -362,7 +416,7 @@ def next_crossing(
         if t + step > last or step == math.inf:
             return math.inf
         if t + step == t:
-            return t if rate < -QUIET * game.pace[0] else math.inf
+            return t if rate < -QUIET * game.pace[0] and (there or shape == ARC) else math.inf
         t += step
         state_at(kind, flight, disc, game.curves, game.pieces, t, room, one)
     return -1.0 - t

@@ -20,8 +20,8 @@ from puck_tables.scene.over_time import (
     motion_of,
     over_time,
 )
-from puck_tables.scene.parts import Floor, Wall
-from puck_tables.scene.pieces import Arc, PieceSpec, Post
+from puck_tables.scene.parts import Floor
+from puck_tables.scene.pieces import PieceSpec
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.stretches import belts_of
 from puck_tables.stopping.stop_table import StopTable
@@ -57,6 +57,7 @@ from puck_tables.world.game import (
     led_rows,
 )
 from puck_tables.world.lone import LONGEST
+from puck_tables.world.obstacles import borders_of, obstacles_of
 from puck_tables.world.paths import FIRST, PIECE_COLUMNS
 from puck_tables.world.rim_laws import number_for, rims_of
 from puck_tables.world.works import WORK_COLUMNS
@@ -158,7 +159,7 @@ def prepared(scene: SceneSpec, order: Whole | None = None) -> Start:
         tides=np.vstack(tides) if tides else np.empty((0, FORCED)),
         spans=spans,
         rims=rims,
-        obstacles=_obstacles(scene, called, makes),
+        obstacles=obstacles_of(scene, called, makes),
         curves=shipped_curves(),
         clock=np.zeros(1),
         kinds=np.zeros(count, np.int64),
@@ -333,51 +334,3 @@ def _hold_on(piece: PieceSpec) -> tuple[float, ...]:
     hold, (x, y) = hold_of(piece.constraint, piece.launch), piece.launch.position
     place = hold.ax * x + hold.ay * y if hold.kind == RAIL else 0.0
     return (*hold, place)
-
-
-def _obstacles(scene: SceneSpec, called: dict[object, float], makes: FloatArray) -> FloatArray:
-    """Rows of :mod:`puck_tables.world.layout`: what stands, edges twice, then borders."""
-
-    def rim(cushion: Wall | Post | Arc) -> list[float]:
-        return [number_for(cushion.restitution, called), cushion.tangential, cushion.friction]
-
-    rows: list[list[float]] = []
-    for wall in scene.walls:
-        rows.append([layout.WALL, *_line(wall.point, wall.normal), *rim(wall), 0.0, 0.0])
-    for post in scene.posts:
-        rows.append([layout.POST, *post.point, post.radius, *rim(post), 0.0, 0.0])
-    for arc in scene.arcs:
-        rows.append([layout.ARC, *arc.point, arc.radius, *rim(arc), arc.start, arc.span])
-    for pocket in scene.pockets:
-        rows.append([layout.POCKET, *pocket.point, pocket.radius, *[0.0] * 5])
-    for edge in scene.edges:
-        rows.append([layout.EDGE, *_line(edge.point, edge.normal), *[0.0] * 5])
-    for number, edge in enumerate(scene.edges):
-        line = _line(edge.point, edge.normal)
-        rows.append([layout.OVERHANG, *line, 0.0, 0.0, 0.0, float(number), 0.0])
-    borders = len(borders_of(scene))
-    for number in range(borders + len(scene.floor.patches)):
-        shape = layout.BORDER if number < borders else layout.PATCH
-        rows.append([shape, float(number), *[0.0] * 7])
-    found = np.array(rows, np.float64).reshape(-1, layout.OBSTACLE_MAKE)
-    return np.column_stack([found, makes])
-
-
-def obstacle_names(scene: SceneSpec) -> list[str]:
-    """What the rows of the obstacles are called, in their order."""
-    lists = (("wall", scene.walls), ("post", scene.posts), ("arc", scene.arcs),
-             ("pocket", scene.pockets), ("edge", scene.edges), ("edge", scene.edges),
-             ("border", borders_of(scene)), ("patch", scene.floor.patches))  # fmt: skip
-    return [f"{name} {number}" for name, ones in lists for number in range(len(ones))]
-
-
-def borders_of(scene: SceneSpec) -> tuple[float, ...]:
-    """The borders of its strips."""
-    return scene.floor.strips.borders if scene.floor.strips is not None else ()
-
-
-def _line(point: tuple[float, float], normal: tuple[float, float]) -> tuple[float, float, float]:
-    """Unit normal of a line, and its place along it."""
-    size = math.hypot(*normal)
-    nx, ny = normal[0] / size, normal[1] / size
-    return nx, ny, nx * point[0] + ny * point[1]

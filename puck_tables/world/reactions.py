@@ -83,7 +83,7 @@ def _touches(game: Game, i: int, states: FloatArray) -> bool:
     """Whether a disc touches a cushion or another disc, at states (n, 6)."""
     x, y, radius = states[i, X], states[i, Y], game.discs[i, RADIUS]
     for k in range(game.obstacles.shape[0]):
-        gap, _, _, there = normal_to(game.obstacles[k], radius, x, y)
+        gap, _, _, there = normal_to(game.obstacles[k], radius, x, y, 0.0)
         if there and gap < _NEAR * radius and int(game.obstacles[k, KIND]) < NO_CUSHION:
             return True
     for j in range(game.discs.shape[0]):

@@ -12,7 +12,8 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.scene.pieces import PieceSpec
 from puck_tables.scene.restitution import Restitution, restitution_law
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.agreement import CUSHIONS, pieces_of
+from puck_tables.scene.sides import cushions_in
+from puck_tables.world.agreement import pieces_of
 
 
 def _laws_of(scene: SceneSpec, first: int) -> tuple[FloatArray, dict[object, float]]:
@@ -53,8 +54,7 @@ def rims_of(
 
     Those that the same rims of the scene name have one kind.  And by what numbers laws are called.
     """
-    cushions = zip(CUSHIONS, (scene.walls, scene.posts, scene.arcs), strict=True)
-    names = [(kind, f"{kind} {k}") for kind, ones in cushions for k in range(len(ones))]
+    names = [(kind, f"{kind} {k}") for kind, k in cushions_in(scene)]
     borders = scene.floor.strips.borders if scene.floor.strips is not None else ()
     without = (scene.pockets, scene.edges, scene.edges, borders, scene.floor.patches)
     names += [("", "")] * sum(map(len, without))

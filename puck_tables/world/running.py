@@ -35,8 +35,9 @@ from puck_tables.world.lasting import (
 from puck_tables.world.law_range import with_law_for
 from puck_tables.world.layout import EDGE, KIND, POCKET
 from puck_tables.world.lone import LONGEST
+from puck_tables.world.obstacles import obstacle_names
 from puck_tables.world.passings import Passings
-from puck_tables.world.prepare import Start, obstacle_names, prepared, shipped_curves
+from puck_tables.world.prepare import Start, prepared, shipped_curves
 from puck_tables.world.pushed_back import Told
 from puck_tables.world.record import states_at, states_now
 from puck_tables.world.setting_off import (

@@ -26,12 +26,14 @@ from puck_tables.world.footing import lay_down
 from puck_tables.world.game import GOT, N_CONTACTS, N_EVENTS, PLACED, REMOVED, Game
 from puck_tables.world.layout import (
     ARC,
+    CORNER,
     EDGE,
     KIND,
     LIGHTNESS,
     OVERHANG,
     POCKET,
     RADIUS,
+    SIDE,
     SPAN,
     kinetic,
 )
@@ -114,9 +116,11 @@ def _depth_in(obstacle: FloatArray, disc: FloatArray, x: float, y: float) -> flo
     shape, driven = int(obstacle[KIND]), disc[LIGHTNESS] == 0.0
     if shape >= OVERHANG or (driven and shape in (POCKET, EDGE)):
         return 0.0
-    gap, _, _, there = normal_to(obstacle, disc[RADIUS], x, y)
+    gap, _, _, there = normal_to(obstacle, disc[RADIUS], x, y, 0.0)
     if shape == ARC and obstacle[SPAN] < _TURN and (not there or gap < -2.0 * disc[RADIUS]):
         return 0.0  # beside it, or behind
+    if shape in (SIDE, CORNER) and not there:
+        return 0.0
     return -gap
 
 

@@ -5,8 +5,8 @@ spins, the rims slip by u = Δv·t + R₁ω₁ + R₂ω₂, and
 
     gap′ = −Δv·n,   gap″ = −Δa·n + κ (Δv·t)²,   u′ = Δa·t + R₁α₁ + R₂α₂ + κ (Δv·t)(Δv·n),
 
-κ being one over the distance of the centres: from a post as from a disc; 0 at a wall; and minus one
-over the distance from its centre within an arc.
+κ being one over the distance of the centres: from a post or a corner as from a disc; 0 at a wall;
+and minus one over the distance from its centre within an arc.
 """
 
 from __future__ import annotations
@@ -36,16 +36,19 @@ from puck_tables.world.group import (
 from puck_tables.world.holds import forbid
 from puck_tables.world.layout import (
     ARC,
+    CORNER,
     FROM,
     HOLD,
     KIND,
     RADIUS,
+    SIDE,
     SPAN,
     WALL,
     A,
     B,
     C,
 )
+from puck_tables.world.meeting import beyond_ends, slack_of
 from puck_tables.world.rims import along_of_pair
 
 
@@ -64,8 +67,15 @@ def _to_end(obstacle: FloatArray, ex: float, ey: float) -> float:
 def _obstacle_sight(
     obstacle: FloatArray, radius: float, x: float, y: float, out: FloatArray
 ) -> None:
-    """Normal, bend, gap and end of an arc where a disc is at an obstacle."""
+    """Normal, bend, gap and the way to its end where a disc is at an obstacle."""
     out[TO_END] = math.inf
+    if obstacle[KIND] == SIDE:
+        away = obstacle[A] * x + obstacle[B] * y - obstacle[C]
+        face = -1.0 if away < 0.0 else 1.0
+        out[NX], out[NY], out[BEND] = -face * obstacle[A], -face * obstacle[B], 0.0
+        out[GAP] = face * away - radius
+        out[TO_END] = 2.0 * slack_of(radius, x, y) - beyond_ends(obstacle, x, y)[0]
+        return
     if obstacle[KIND] == WALL:
         out[NX], out[NY], out[BEND] = -obstacle[A], -obstacle[B], 0.0
         out[GAP] = obstacle[A] * x + obstacle[B] * y - obstacle[C] - radius
@@ -73,7 +83,10 @@ def _obstacle_sight(
     dx, dy = x - obstacle[A], y - obstacle[B]
     distance = math.hypot(dx, dy)
     ex, ey = dx / distance, dy / distance
-    out[TO_END] = _to_end(obstacle, ex, ey)
+    if obstacle[KIND] == CORNER:
+        out[TO_END] = -beyond_ends(obstacle, x, y)[0]
+    else:
+        out[TO_END] = _to_end(obstacle, ex, ey)
     if obstacle[KIND] == ARC and distance < obstacle[C]:
         out[NX], out[NY], out[BEND] = ex, ey, -1.0 / distance
         out[GAP] = obstacle[C] - distance - radius

@@ -24,7 +24,7 @@ from puck_tables.world.agreement import (
     refuse_endless,
     start_of,
 )
-from puck_tables.world.prepare import obstacle_names
+from puck_tables.world.obstacles import obstacle_names
 
 _LEAST_SHARE = 0.75  # of f m g, over the way of a puck with δ ≤ 1: what friction takes at least
 

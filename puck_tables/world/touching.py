@@ -32,9 +32,8 @@ from puck_tables.world.layout import (
     RADIUS,
     TWIST,
 )
-from puck_tables.world.meeting import HARDLY, ROUNDED, normal_to
+from puck_tables.world.meeting import HARDLY, ROUNDED, TOUCH, normal_to, slack_of
 
-TOUCH = 1e-12  # of the radius: a gap as small is none
 BLUR = 1e-15  # of the time since the start, at full speed: another
 
 
@@ -63,11 +62,13 @@ def find_touching(game: Game, t: float, room: Room) -> int:
             # moments are rounded, and so are the gaps at them
             far = abs(room.states[i, X]) + abs(room.states[i, Y])
             near = TOUCH * discs[i, RADIUS] + BLUR * t * game.pace[0] + 2.0 * ROUNDED * far
+            slack = slack_of(discs[i, RADIUS], room.states[i, X], room.states[i, Y])
             for k in range(game.obstacles.shape[0]):
                 shape = int(game.obstacles[k, KIND])
                 gap, _, _, there = normal_to(
-                    game.obstacles[k], discs[i, RADIUS], room.states[i, X], room.states[i, Y]
-                )
+                    game.obstacles[k], discs[i, RADIUS], room.states[i, X], room.states[i, Y],
+                    slack,
+                )  # fmt: skip
                 if gap <= near and there and shape < NO_CUSHION:
                     if count == room.contacts.shape[0]:
                         return -1

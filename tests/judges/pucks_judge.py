@@ -62,6 +62,23 @@ class Line:
 
 
 @dataclass
+class Straight:
+    """A cushion from one place to another: what counts is the place of it next to a centre."""
+
+    start: np.ndarray
+    end: np.ndarray
+    e: float
+    beta: float
+    mu: float
+
+    def nearest(self, places: np.ndarray) -> np.ndarray:
+        """Of each of the places (2,) or (2, n)."""
+        way = self.end - self.start
+        share = np.clip((way @ (places.T - self.start).T) / (way @ way), 0.0, 1.0)
+        return (self.start + np.multiply.outer(share, way)).T
+
+
+@dataclass
 class Told:
     """Times and partners of impacts, and the last states."""
 
@@ -69,7 +86,9 @@ class Told:
     states: np.ndarray | None = None
 
 
-def play(discs: list[Disc], lines: list[Line], until: float, most: int = 10**6) -> Told:
+def play(
+    discs: list[Disc], lines: list[Line | Straight], until: float, most: int = 10**6
+) -> Told:  # fmt: skip
     """Follow them until a time, or so many impacts."""
     told, t = Told(), 0.0
     y = np.array([d.state for d in discs], float)
@@ -80,6 +99,8 @@ def play(discs: list[Disc], lines: list[Line], until: float, most: int = 10**6) 
         if j >= 0:
             return np.hypot(*(z[i, :2] - z[j, :2])) - discs[i].radius - discs[j].radius
         line = lines[-1 - j]
+        if isinstance(line, Straight):
+            return np.hypot(*(z[i, :2] - line.nearest(z[i, :2]))) - discs[i].radius
         return np.dot(line.normal, z[i, :2]) - line.place - discs[i].radius
 
     def moves(i: int) -> bool:
@@ -146,7 +167,9 @@ def play(discs: list[Disc], lines: list[Line], until: float, most: int = 10**6) 
     return told
 
 
-def collide(discs: list[Disc], lines: list[Line], i: int, j: int, y: np.ndarray) -> None:
+def collide(
+    discs: list[Disc], lines: list[Line | Straight], i: int, j: int, y: np.ndarray
+) -> None:  # fmt: skip
     """The impact of two, as linear equations in their six velocities and two impulses."""
     d = discs[i]
     if j >= 0:
@@ -157,7 +180,11 @@ def collide(discs: list[Disc], lines: list[Line], i: int, j: int, y: np.ndarray)
         reach = other.radius
     else:
         line = lines[-1 - j]
-        n, e, beta, mu = -np.array(line.normal), line.e, line.beta, line.mu
+        if isinstance(line, Straight):
+            n = (line.nearest(y[i, :2]) - y[i, :2]) / d.radius
+        else:
+            n = -np.array(line.normal)
+        e, beta, mu = line.e, line.beta, line.mu
         masses, reach = [d.mass, d.mass, d.inertia], 0.0
     s = np.array([-n[1], n[0]])
     normal = np.array([*n, 0.0, *(-n), 0.0])[: len(masses)]
