@@ -20,7 +20,7 @@ from scipy.integrate import solve_ivp
 from puck_tables import Edge, Floor, InputError, Launch, Piece, Post, Scene, Trajectory, Wall
 from puck_tables._core.colours import brightness, is_colour
 from puck_tables.errors import MissingExtraError, OutputError
-from puck_tables.plot.animation import PALETTE, between, colour_of, film_of
+from puck_tables.plot.animation import PALETTE, between, colour_of, film_of, path_of
 from puck_tables.plot.movie import page
 from puck_tables.plot.style import RED
 from puck_tables.puck import Puck
@@ -198,6 +198,19 @@ def test_one_puck_has_a_movie_too(tmp_path: Path) -> None:
 
 
 @pytest.mark.thorough
+def test_a_trail_bends_up_to_its_puck() -> None:
+    puck = Puck(0.03, height=0.06, friction=0.25)
+    film = film_of(puck.simulate((1.0, 0.0), 60.0))
+    body = film.bodies[0]
+    assert len(body.knots) < 20  # few, between which the way is bent
+    for share in (0.3, 0.5, 0.77, 1.0):
+        until = share * film.end_time
+        (x, y), place = path_of(body, until).T, between(body.knots, np.array([until]))[0]
+        assert (x[-1], y[-1]) == tuple(place[:2])
+        way = between(body.knots, np.linspace(0.0, until, 2001))
+        assert np.abs(np.interp(way[:, 0], x, y) - way[:, 1]).max() < 1e-5
+
+
 def test_what_lies_still_has_a_movie_too(tmp_path: Path) -> None:
     still = Scene(pucks=[Piece(0.1, friction=0.1)]).simulate()
     still.movie(tmp_path / "still.html")

@@ -6,6 +6,7 @@ have, and what is read must be it to the last digit written.
 
 from __future__ import annotations
 
+import json
 import warnings
 import zipfile
 from collections.abc import Callable
@@ -504,3 +505,31 @@ def test_other_programs(tmp_path: Path, motion: Motion, case: str):
         columns.append(angle)
     file = table(tmp_path / "a.csv", head, columns)
     check(read_tracks(file)[0], motion, angles=angled)
+
+
+def test_trajectories_of_kinovea(tmp_path: Path, motion: Motion):
+    t, place, _ = motion  # a hundred frames a second: hundredths are exact
+    rows = [f"0:00:{int(a):02d}:{round(a * 100) % 100:02d} {100 * x:.4f} {100 * y:.4f} "
+            for a, (x, y) in zip(t, place, strict=True)]  # fmt: skip
+    head = ["#Kinovea Trajectory data export", "#T X Y", ""]
+    file = lines(tmp_path / "a.txt", *head, *rows, "", *rows[:5], "")
+    one, two = read_tracks(file, unit="cm")
+    check(one, motion, digits=1e-6)
+    assert two.time.size == 5
+    with pytest.raises(InputError, match="line 4: '1 2 3' is no time"):
+        read_tracks(lines(tmp_path / "b.txt", *head, "1 2 3"), unit="cm")
+
+
+@pytest.mark.parametrize("form", ["rows", "columns"])
+def test_tables_in_json(tmp_path: Path, motion: Motion, form: str):
+    t, place, angle = motion
+    columns = {"t [s]": t, "x [cm]": 100 * place[:, 0], "y [cm]": 100 * place[:, 1],
+               "theta [rad]": angle}  # fmt: skip
+    cells = {name: one.tolist() for name, one in columns.items()}
+    rows = [dict(zip(cells, row, strict=True)) for row in zip(*cells.values(), strict=True)]
+    file = tmp_path / "a.json"
+    file.write_text(json.dumps(rows if form == "rows" else cells))
+    check(read_tracks(file)[0], motion, angles=True, digits=1e-12)
+    file.write_text('{"t": [0, 1], "x": [1]}')
+    with pytest.raises(InputError, match="equally long"):
+        read_tracks(file)

@@ -248,10 +248,11 @@ def between(knots: FloatArray, times: FloatArray) -> FloatArray:
 
 def path_of(body: MovingDisc, until: float = math.inf) -> FloatArray:
     """Places of a body so close that lines between them are its way, array (n, 2)."""
-    knots = body.knots[: np.searchsorted(body.knots[:, 0], until, side="right")]
-    starts, ends = knots[:-1, 0], knots[1:, 0]
-    fine = (starts[:, None] + np.linspace(0.0, 1.0, 12) * (ends - starts)[:, None]).ravel()
-    return between(knots, np.append(fine, knots[-1, 0]))[:, :2]
+    times, until = body.knots[:, 0], min(until, body.knots[-1, 0])
+    starts = times[: np.searchsorted(times, until, side="right")]
+    ends = np.append(starts[1:], until)  # also within the piece that it is on
+    fine = starts[:, None] + np.linspace(0.0, 1.0, 12) * (ends - starts)[:, None]
+    return between(body.knots, fine.ravel())[:, :2]
 
 
 def _knots(states: FloatArray, radius: float, unseen: float) -> FloatArray:

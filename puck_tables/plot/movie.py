@@ -191,7 +191,7 @@ def _stage(film: Animation, slowed: float) -> tuple[Figure, Callable[[float], No
         for body, disc, trail, mark in moving:
             until = min(time, body.gone)
             x, y, angle = between(body.knots, np.array([until]))[0].tolist()
-            trail.set_data(*np.vstack([path_of(body, until), (x, y)]).T)
+            trail.set_data(*path_of(body, until).T)
             if isinstance(disc, PathPatch):
                 disc.set_path(path_through(placed(body.outline, x, y, angle)))
             else:

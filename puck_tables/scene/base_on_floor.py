@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.base_cut import (
+from puck_tables.kernels.base_clipping import (
     beyond_line,
     contour_sums,
     in_circle,

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.base_cut import room_to_cut
+from puck_tables.kernels.base_clipping import room_to_clip
 from puck_tables.kernels.base_sums import UNIFORM
 from puck_tables.kernels.compile import inlined
 
@@ -80,7 +80,7 @@ class Ground(NamedTuple):
             len(self.borders), len(self.patches), self.pressure, at, rows, at + pieces.size, 0.0,
             float((belts != belts[0]).any()), *belts[0],
         ]  # fmt: skip
-        size = _ROOM + _ROOM_A_ROW * rows if len(self.profile) else room_to_cut(self.base)
+        size = _ROOM + _ROOM_A_ROW * rows if len(self.profile) else room_to_clip(self.base)
         room = np.zeros(size)
         return np.concatenate([head, counts, *tables, pieces, room]).astype(np.float64)
 

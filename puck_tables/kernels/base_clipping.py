@@ -41,7 +41,7 @@ _SLIVER = 1e-9  # of a circle: a base that has less of it, or all but that, is t
 Angles = tuple[int, float, float, float, float]
 
 
-def room_to_cut(base: FloatArray) -> int:
+def room_to_clip(base: FloatArray) -> int:
     """How many numbers the contours of two parts of a base take."""
     if not base.size:
         return 0
