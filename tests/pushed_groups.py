@@ -8,8 +8,8 @@ import numpy as np
 
 from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.scene.by_speed import NO_LAW
-from puck_tables.scene.ingredients import Surface
-from puck_tables.scene.regions import alone
+from puck_tables.scene.ground import NO_GROUND
+from puck_tables.scene.ingredients import Regions, Surface
 from puck_tables.world.group import (
     APART,
     HELD,
@@ -79,7 +79,10 @@ def group_of(discs, obstacles=(), pull=(0.0, 0.0), films=None, cuts=None):
         cuts = np.zeros((len(discs), *NO_SECTION.shape))
     return Group(
         discs, padded(obstacles),
-        alone(mass * discs[:, 3], discs[:, 4].copy(), cuts, NO_LAW),
+        Regions(
+            mass * discs[:, 3], discs[:, 4].copy(), cuts, NO_LAW, np.zeros(len(discs), np.bool_),
+            NO_GROUND,
+        ),
         Surface(*[0.0] * 9), PLAIN_RIMS, np.vstack(rows), reels,
         np.zeros((0, 4)), np.zeros((len(discs), 2), np.int64),
     )  # fmt: skip

@@ -65,7 +65,7 @@ class Ellipse(NamedTuple):
 @inlined
 def local_friction(law: Ellipse, ex: float, ey: float) -> tuple[float, float]:
     """What keeps an element of the load 1 slipping along (ex, ey), in the axes of the ellipse."""
-    size = math.sqrt(law.along * law.along * ex * ex + law.across * law.across * ey * ey)
+    size = math.hypot(law.along * ex, law.across * ey)
     return law.along * law.along * ex / size, law.across * law.across * ey / size
 
 

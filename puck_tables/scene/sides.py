@@ -130,9 +130,9 @@ def corners_in(scene: SceneSpec) -> list[Corner]:
     Examples
     --------
     >>> from puck_tables import Puck, Scene
-    >>> angle = [Wall((0.0, 0.0), (1.0, 0.0)), Wall((1.0, 0.0), (1.0, 1.0))]
+    >>> angle = [Wall((1.0, 0.0), (2.0, 0.0)), Wall((2.0, 0.0), (2.0, 1.0))]
     >>> [corner.point for corner in corners_in(Scene(Puck(0.1, friction=0.1), walls=angle))]
-    [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)]
+    [(1.0, 0.0), (2.0, 0.0), (2.0, 1.0)]
     """
     sides = sides_in(scene)
     leaving: dict[Point, list[tuple[int, Point]]] = {}
