@@ -208,7 +208,8 @@ def test_a_trail_bends_up_to_its_puck() -> None:
         (x, y), place = path_of(body, until).T, between(body.knots, np.array([until]))[0]
         assert (x[-1], y[-1]) == tuple(place[:2])
         way = between(body.knots, np.linspace(0.0, until, 2001))
-        assert np.abs(np.interp(way[:, 0], x, y) - way[:, 1]).max() < 1e-5
+        off = np.abs(np.interp(way[:, 0], x, y) - way[:, 1]).max()
+        assert off < 5e-5  # a dot of the picture is 6e-4 m wide
 
 
 def test_what_lies_still_has_a_movie_too(tmp_path: Path) -> None:
