@@ -61,7 +61,7 @@ def compare(
     """  # noqa: D301 - click reads the backspace
     out.prepare(*files, others=(report,))
     if report is not None:
-        from puck_tables.plot.comparison_page import checked_page
+        from puck_tables.plot.html_page import checked_page
 
         checked_page(report)
     from puck_tables.reference.comparison import compare as compared
@@ -69,9 +69,10 @@ def compare(
     result = compared(files, **how)
     out.deliver(result)
     if report is not None:
-        from puck_tables.plot.comparison_page import save_page
+        from puck_tables.plot.comparison_page import page
+        from puck_tables.plot.html_page import save_page
 
-        save_page(result, report, out.overwrite)
+        save_page(page, result, report, out.overwrite)
         note(report)
     out.report(result, in_words)
 

@@ -191,7 +191,7 @@ def fit(
     puck simulate --fit fit.json
     """  # noqa: D301 - click reads the backspace
     if worksheet is not None:
-        from puck_tables.plot.fit_page import checked_page
+        from puck_tables.plot.html_page import checked_page
 
         checked_page(worksheet)
     out.prepare(*files, how["marks"], known["pressure"], others=[worksheet])

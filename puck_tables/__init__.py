@@ -151,7 +151,8 @@ __getattr__, __dir__ = lazily(__name__, _HOMES)
 lead_up({
     "draw": "puck_tables.plot.drawn",
     "save_movie": "puck_tables.plot.movie",
-    "save_fit_page": "puck_tables.plot.fit_page:save_page",
+    "save_page": "puck_tables.plot.html_page",
+    "fit_page": "puck_tables.plot.fit_page:page",
     "table of resultants": "puck_tables.table.resultant_table:ResultantTable",
     "table of stops": "puck_tables.stopping.stop_table:StopTable",
     "table of speed": "puck_tables.table.speed_table:SpeedTable",

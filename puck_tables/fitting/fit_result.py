@@ -194,7 +194,7 @@ class Fit(Result):
         OutputError
             If the file exists or cannot be written.
         """
-        above("save_fit_page")(self, path, overwrite)
+        above("save_page")(above("fit_page"), self, path, overwrite)
 
     @property
     def verdict(self) -> str:

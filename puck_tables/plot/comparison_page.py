@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import io
 import math
 from html import escape
-from pathlib import Path
 
-from puck_tables._core.safe_write import write_bytes
 from puck_tables._version import __version__
 from puck_tables.io.columns import COLUMNS
-from puck_tables.io.formats import ending_of
 from puck_tables.plot.comparison_figure import draw
-from puck_tables.plot.style import require_matplotlib
+from puck_tables.plot.html_page import svg_of
 from puck_tables.reference.case_text import lines_of
 from puck_tables.reference.comparison import Comparison
 from puck_tables.reference.threshold import states_of
@@ -25,41 +21,10 @@ _STYLE = (
 )
 
 
-def checked_page(path: Path) -> None:
-    """Refuse, before any work, a page that could not be made.
-
-    Raises
-    ------
-    InputError
-        If the name does not end in .html.
-    MissingExtraError
-        If matplotlib is not installed.
-    """
-    ending_of(path, (".html",))
-    require_matplotlib()
-
-
-def save_page(result: Comparison, path: Path, overwrite: bool = False) -> None:
-    """Write the page, whole or not at all.
-
-    Raises
-    ------
-    InputError, MissingExtraError
-        As :func:`checked_page`.
-    OutputError
-        If the file exists (without ``overwrite``) or cannot be written.
-    """
-    checked_page(path)
-    write_bytes(path, page(result).encode(), overwrite)
-
-
 def page(result: Comparison) -> str:
     """The page as HTML."""
     case, answer = result.answer.case, result.answer
-    picture = io.StringIO()
-    draw(result).savefig(picture, format="svg", metadata={"Date": None})
-    svg = picture.getvalue()
-    svg = svg[svg.index("<svg") :]
+    svg = svg_of(draw(result))
     rows = result.rows()
     names = list(rows[0])
     head = "".join(f"<th>{escape(_titled(name))}</th>" for name in names)

@@ -5,24 +5,21 @@ It loads nothing, needs no server, and is made to be printed.
 
 from __future__ import annotations
 
-import io
 import math
 from collections.abc import Iterable, Sequence
 from html import escape
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from puck_tables._core.safe_write import write_bytes
 from puck_tables._version import __version__
 from puck_tables.fitting.fit_result import Fit
 from puck_tables.fitting.forward_model import RATE
 from puck_tables.fitting.numbers import Number
 from puck_tables.fitting.parameters import ALL
-from puck_tables.io.formats import ending_of
 from puck_tables.plot.fit_figure import draw
-from puck_tables.plot.style import BLUE, COLORS, canvas, require_matplotlib
+from puck_tables.plot.html_page import svg_of
+from puck_tables.plot.style import BLUE, COLORS, canvas
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -39,34 +36,6 @@ _STYLE = (
     "@media print{body{margin:0;font-size:11pt}h2{break-after:avoid}"
     "table,figure,li{break-inside:avoid}}"
 )
-
-
-def checked_page(path: str | Path) -> None:
-    """Refuse, before any work, a page that could not be made.
-
-    Raises
-    ------
-    InputError
-        If the name does not end in .html.
-    MissingExtraError
-        If matplotlib is not installed.
-    """
-    ending_of(Path(path), (".html",))
-    require_matplotlib()
-
-
-def save_page(result: Fit, path: str | Path, overwrite: bool = False) -> None:
-    """Write the page, whole or not at all.
-
-    Raises
-    ------
-    InputError, MissingExtraError
-        As :func:`checked_page`.
-    OutputError
-        If the file exists (without ``overwrite``) or cannot be written.
-    """
-    checked_page(path)
-    write_bytes(path, page(result).encode(), overwrite)
 
 
 def page(result: Fit) -> str:
@@ -113,10 +82,7 @@ def _pictures(result: Fit) -> str:
 
 
 def _figure(figure: Figure, label: str, words: str) -> str:
-    picture = io.StringIO()
-    figure.savefig(picture, format="svg", metadata={"Date": None})
-    svg = picture.getvalue()
-    svg = svg[svg.index("<svg") :].replace("<svg", f"<svg role='img' aria-label='{label}'", 1)
+    svg = svg_of(figure).replace("<svg", f"<svg role='img' aria-label='{label}'", 1)
     return f"<figure>{svg}<figcaption>{escape(words)}</figcaption></figure>"
 
 

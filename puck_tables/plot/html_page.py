@@ -1,0 +1,56 @@
+"""A result as one page for any browser: checked before any work, and written whole or not at all.
+
+What stands on it is told by a function of its own; it loads nothing, and its pictures are SVG.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from puck_tables._core.safe_write import write_bytes
+from puck_tables.io.formats import ending_of
+from puck_tables.plot.style import require_matplotlib
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def checked_page(path: str | Path) -> None:
+    """Refuse, before any work, a page that could not be made.
+
+    Raises
+    ------
+    InputError
+        If the name does not end in .html.
+    MissingExtraError
+        If matplotlib is not installed.
+    """
+    ending_of(Path(path), (".html",))
+    require_matplotlib()
+
+
+def save_page(
+    page: Callable[[Any], str], result: Any, path: str | Path, overwrite: bool = False
+) -> None:
+    """Write the page of a result, whole or not at all.
+
+    Raises
+    ------
+    InputError, MissingExtraError
+        As :func:`checked_page`.
+    OutputError
+        If the file exists (without ``overwrite``) or cannot be written.
+    """
+    checked_page(path)
+    write_bytes(path, page(result).encode(), overwrite)
+
+
+def svg_of(figure: Figure) -> str:
+    """A figure as it stands in a page, the same for the same figure."""
+    picture = io.StringIO()
+    figure.savefig(picture, format="svg", metadata={"Date": None})
+    svg = picture.getvalue()
+    return svg[svg.index("<svg") :]
