@@ -8,9 +8,11 @@ import astride_judge
 import numpy as np
 import pytest
 
+import puck_tables as pt
+from puck_tables.kernels.base_friction import packed
 from puck_tables.kernels.compile import kernel
-from puck_tables.scene.astride import astride_friction
 from puck_tables.scene.astride_rest import astride_yield
+from puck_tables.scene.belts import friction_on_floor
 from puck_tables.scene.ground import PLACE_X, PLACE_Y, Ground
 
 NO_PATCHES, NO_CORNERS = np.empty((0, 6)), np.empty((0, 2))
@@ -18,21 +20,26 @@ NO_PATCHES, NO_CORNERS = np.empty((0, 6)), np.empty((0, 2))
 
 @kernel
 def _friction(ground, ux, uy, w):
-    return astride_friction(ground, 1.0, ux, uy, w, math.sqrt(ux * ux + uy * uy + w * w), 1.0)
+    return friction_on_floor(ground, ux, uy, w, 1.0)
 
 
 def friction(ground: Ground, slip: tuple[float, float, float], x: float = 0.0, y: float = 0.0):
     """Of a base of radius 1 under a load of 1, against the puck: force and torque; and power."""
-    packed = ground.packed()
-    packed[PLACE_X], packed[PLACE_Y] = x, y
-    fx, fy, torque, power = _friction(packed, *slip)
+    there = ground.packed()
+    there[PLACE_X], there[PLACE_Y] = x, y
+    fx, fy, torque, power = _friction(there, *slip)
     return np.array([-fx, -fy, -torque]), power
 
 
+def round_base(lever: float, inner: float = 0.0) -> np.ndarray:
+    """``lever``: of the slope of the pressure over the force, as the judge has it."""
+    base = pt.Base.annulus(1.0, inner) if inner > 0.0 else pt.Base.disc(1.0)
+    return packed(base, 0.25 * lever * (1.0 + inner * inner))
+
+
 def strips(borders, loads, lever=0.0, inner=0.0) -> Ground:
-    return Ground(
-        1.0, 0.0, np.array(borders), np.array(loads), NO_PATCHES, NO_CORNERS, lever, inner
-    )
+    base = round_base(lever, inner)
+    return Ground(1.0, 0.0, np.array(borders), np.array(loads), NO_PATCHES, NO_CORNERS, base)
 
 
 SLIPS = {
@@ -70,7 +77,7 @@ CORNERS = np.array([[-0.5, -0.9], [1.4, -0.2], [0.1, 0.1], [0.3, 1.2]])
 def test_round_patches_against_scans(x, y, size, lever):
     ground = Ground(
         1.0, 0.0, np.array([-0.95]), np.array([0.2, 0.3]),
-        np.array([[x, y, size, 0.0, 0.0, 0.05]]), NO_CORNERS, lever, 0.0,
+        np.array([[x, y, size, 0.0, 0.0, 0.05]]), NO_CORNERS, round_base(lever),
     )  # fmt: skip
     judge = astride_judge.Ground([-0.95], [0.2, 0.3], [(x, y, size, 0.05)])
     for name, slip in SLIPS.items():
@@ -84,7 +91,7 @@ def test_polygons_against_scans(x, y):
     reach = np.hypot(*(CORNERS - middle).T).max()
     ground = Ground(
         1.0, 0.0, np.empty(0), np.array([0.3]), np.array([[*middle, reach, 0.0, 4.0, 0.05]]),
-        CORNERS, 0.4, 0.0,
+        CORNERS, round_base(0.4),
     )  # fmt: skip
     judge = astride_judge.Ground([], [0.3], polygons=[(CORNERS - (x, y), 0.05)])
     for name, slip in SLIPS.items():
@@ -141,12 +148,12 @@ def test_what_friction_takes_up_in_a_slip_is_held_only_just(guided, lever):
         if guided:
             along = fx * east + fy * north
             fx, fy = along * east, along * north
-        packed = strips(borders, loads, lever).packed()
+        there = strips(borders, loads, lever).packed()
         for share, excess in ((1.0, 0.0), (0.99, -0.01), (1.01, 0.01)):
-            over, *way = _yield(packed, max(loads), share * fx, share * fy, share * torque, guided)
+            over, *way = _yield(there, max(loads), share * fx, share * fy, share * torque, guided)
             power = fx * slip[0] + fy * slip[1] + torque * slip[2]
             assert over == pytest.approx(
                 excess * power, abs=3e-12 if share == 1.0 else 2e-3 * power
             )
-        over, *way = _yield(packed, max(loads), fx, fy, torque, guided)
+        over, *way = _yield(there, max(loads), fx, fy, torque, guided)
         np.testing.assert_allclose(way, slip, atol=1e-6)

@@ -1,4 +1,4 @@
-"""Sums of the slip direction over parts of a round base: along pieces of their boundary.
+"""Sums of the slip direction over parts of a base: along pieces of their boundary.
 
 With the slip velocity u = (α − β y, β x) in units of Q, x along the slip of the centre and lengths
 in radii, w = |u| and e = u/w, it is β e = (−∂w/∂y, ∂w/∂x): every sum of e, x e, … over a part of
@@ -9,19 +9,22 @@ vanishes, and the part's boundary counter-clockwise,
 
 and so on for one power of x and y more, which a tilted pressure needs.  On a straight piece these
 are elementary.  On an arc h is smooth but next to the instantaneous centre of rotation, (0, α/β):
-Gauss's rule on panels that shrink towards it.
+Gauss's rule on panels that shrink towards it; of a long one the whole disc by the closed forms,
+less the rest.
 """
 
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
-from puck_tables.kernels.base_sums import NOTHING, UNIFORM, Sums, added, plus
-from puck_tables.kernels.compile import inlined, inner, summed
+from puck_tables.contact import closed_form
+from puck_tables.kernels.base_sums import NOTHING, UNIFORM, Sums, added, from_slip, moved, plus
+from puck_tables.kernels.closed_form_kernel import few_elliptic
+from puck_tables.kernels.compile import inlined, inner
 from puck_tables.kernels.elementary import cosine_sine_of
-from puck_tables.kernels.load_parts import loaded_line
 
 _NODES = 16  # of Gauss's rule a panel
 _NODE, _WEIGHT = np.polynomial.legendre.leggauss(_NODES)
@@ -30,6 +33,37 @@ _PANEL = 2.4  # the length of a panel over its distance from the centre of rotat
 _RING_PANEL = 1.6  # of a ring, where w is divided by
 _LEAST_GAP = 1e-5  # closer than this the centre is on the arc: the square of it is lost
 _RING_GAP = 1e-12  # of a ring it is lost itself
+# of the whole disc; up to a ratio of the two rates few steps are exact to rounding
+_full_integrals: Any = inlined(closed_form.shape_integrals)
+_few_integrals: Any = inlined(closed_form.shape_integrals_by(few_elliptic))
+_FEW = 0.99  # of the smaller rate over the larger: up to it few steps do
+
+
+@inlined
+def disc_sums(alpha: float, beta: float, size: float) -> Sums:
+    """The whole disc of a radius about the centre of the base, by the closed forms."""
+    rim = beta * size
+    fast = rim > alpha
+    ratio = alpha / rim if fast else rim / alpha
+    side = 1.0 if fast else 0.0
+    a, b, d = _few_integrals(ratio, side) if ratio < _FEW else _full_integrals(ratio, side)
+    length = math.sqrt(alpha * alpha + rim * rim)
+    area = math.pi * size * size
+    slides, turns = area * alpha / length, area * size * rim / length
+    return (
+        slides * a, 0.0, 0.0, turns * (b - d), turns * b, 0.0, 0.0,
+        slides * size * size * (d - 2.0 * b),
+    )  # fmt: skip
+
+
+@inlined
+def disc_at(cx: float, cy: float, size: float, ux: float, uy: float, w: float) -> Sums:
+    """A disc about a place: by the closed forms about its own middle, turned and moved."""
+    ux, uy = ux - w * cy, uy + w * cx
+    speed = math.sqrt(ux * ux + uy * uy)
+    c, s = (ux / speed, uy / speed) if speed > 0.0 else (1.0, 0.0)
+    sums = disc_sums(speed, abs(w), size)
+    return moved(from_slip(sums, c, s, -1.0 if w < 0.0 else 1.0), cx, cy)
 
 
 @inlined
@@ -78,15 +112,13 @@ def _at(alpha: float, beta: float, x: float, y: float, tx: float, ty: float) -> 
 
 @inner
 def line_sums(
-    alpha: float, beta: float, x: float, y: float, to_x: float, to_y: float, law: int
-) -> Sums:
+    alpha: float, beta: float, x: float, y: float, to_x: float, to_y: float
+) -> Sums:  # fmt: skip
     """A straight piece of boundary from (x, y) to (to_x, to_y)."""
     length = math.sqrt((to_x - x) * (to_x - x) + (to_y - y) * (to_y - y))
     if length == 0.0:
         return NOTHING
     tx, ty = (to_x - x) / length, (to_y - y) / length
-    if law != UNIFORM:
-        return loaded_line(alpha, beta, x, y, tx, ty, length, law)
     if not _FAR * beta > alpha:
         sums, half = NOTHING, 0.5 * length
         mx, my = 0.5 * (x + to_x), 0.5 * (y + to_y)
@@ -133,33 +165,6 @@ def _on_ring(alpha: float, beta: float, x: float, y: float) -> Sums:
 
 
 @inlined
-def _rim_panel(alpha: float, beta: float, radius: float, middle: float, half: float) -> Sums:
-    """A panel of a circle about the centre of the base: its direction is (−y, x)."""
-    cosine, sine = cosine_sine_of(middle)
-    cosine, sine = radius * cosine, radius * sine
-    h0, hx, hy, hxy, hyy = 0.0, 0.0, 0.0, 0.0, 0.0
-    k0, ky, kxy, kyy, qy = 0.0, 0.0, 0.0, 0.0, 0.0
-    for i in range(_NODES):
-        c, s = cosine_sine_of(half * _NODE[i])
-        x, y = cosine * c - sine * s, sine * c + cosine * s
-        h, k, q = _potentials(alpha, beta, x, y)
-        weight = half * _WEIGHT[i]
-        h, k, q = weight * h, weight * k, weight * q
-        h0, hx, hy = summed(h0, h), summed(hx, x * h), summed(hy, y * h)
-        hxy, hyy = summed(hxy, x * y * h), summed(hyy, y * y * h)
-        k0, ky, kxy = summed(k0, k), summed(ky, y * k), summed(kxy, x * y * k)
-        kyy, qy = summed(kyy, y * y * k), summed(qy, y * q)
-    square = radius * radius
-    mass = (square * h0 - ky) / 3.0
-    first = 0.25 * (square * hx - kxy)
-    second = 0.25 * (square * hy - kyy) + (square * k0 - qy) / 12.0
-    return (
-        -hy, hx, -hxy, mass - hyy, square * h0 - hyy - mass, hxy,
-        square * hx - 3.0 * first, square * hy - 3.0 * second,
-    )  # fmt: skip
-
-
-@inlined
 def _panel(
     alpha: float, beta: float, cx: float, cy: float, radius: float, middle: float, half: float,
     law: int,
@@ -185,12 +190,11 @@ def _panel(
 @inner
 def arc_sums(
     alpha: float, beta: float, cx: float, cy: float, radius: float, start: float, turn: float,
-    law: int, rim: bool,
+    law: int,
 ) -> Sums:  # fmt: skip
     """An arc about (cx, cy) from the angle ``start`` over ``turn``, clockwise where that is < 0.
 
-    Of a ring the sums over the arc itself, not over what it bounds.  ``rim``: it is that of the
-    base.
+    Of a ring the sums over the arc itself, not over what it bounds.
     """
     if turn == 0.0:
         return NOTHING
@@ -220,10 +224,7 @@ def arc_sums(
             middle = near + 0.5 * length
             angle = nearest + (base + middle if leads_away else base - middle)
             half = 0.5 * length
-            if law == UNIFORM and rim:
-                sums = plus(sums, 1.0, _rim_panel(alpha, beta, radius, angle, half))
-            else:
-                sums = plus(sums, 1.0, _panel(alpha, beta, cx, cy, radius, angle, half, law))
+            sums = plus(sums, 1.0, _panel(alpha, beta, cx, cy, radius, angle, half, law))
             near = near + length if length < far - near else far
         low = edge
         number += 1.0

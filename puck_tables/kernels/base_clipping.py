@@ -12,9 +12,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.base_boundary import arc_sums, line_sums
 from puck_tables.kernels.base_friction import DISCS, HEAD, SIDES
-from puck_tables.kernels.base_sums import NOTHING, UNIFORM, Sums, from_slip, plus, scaled
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.kernels.polygon_sums import (
     ABOUT_X,
@@ -31,10 +29,10 @@ from puck_tables.kernels.polygon_sums import (
     TANGENT_X,
     TANGENT_Y,
     TURN,
-    polygon_sums,
 )
 
 _A_SIDE, _AN_ARC = 8, 32  # pieces that three cuts make of one at most
+_MORE = 160  # pieces: room for more cuts of the parts of most bases
 _WHOLE = 2.0 * math.pi
 _SLIVER = 1e-9  # of a circle: a base that has less of it, or all but that, is told by its middle
 
@@ -43,9 +41,8 @@ Angles = tuple[int, float, float, float, float]
 
 def room_to_clip(base: FloatArray) -> int:
     """How many numbers the contours of two parts of a base take."""
-    if not base.size:
-        return 0
-    return 2 * PIECE_COLUMNS * (_A_SIDE * int(base[SIDES]) + _AN_ARC * int(base[DISCS]))
+    pieces = _A_SIDE * int(base[SIDES]) + _AN_ARC * int(base[DISCS]) + _MORE
+    return 2 * PIECE_COLUMNS * pieces
 
 
 @inlined
@@ -112,6 +109,10 @@ def _inside(
     off = room[at + START] - middle
     off = off if room[at + TURN] > 0.0 else -off
     out, back = _past(half - off), _past(-half - off)
+    if turn == _WHOLE:  # it begins nowhere
+        if abs(cosine) < 1.0:
+            return 1, back - turn, back - turn + 2.0 * half, 0.0, 0.0
+        return (1 if cosine < 0.0 else 0), 0.0, turn, 0.0, 0.0
     if begins and ends:
         if out < back and back < turn and abs(cosine) < 1.0:
             return 2, 0.0, out, back, turn
@@ -155,12 +156,22 @@ def _part_of_arc(
     return end, px, py, qx, qy
 
 
+@inlined
+def _first_met(fx: float, fy: float, x: float, y: float) -> tuple[float, float]:
+    """The point of a cut from which all its pieces begin: that given, or the first that is met."""
+    return (fx, fy) if fx < math.inf else (x, y)
+
+
 @inner
 def beyond_line(
-    room: FloatArray, first: int, last: int, to: int, nx: float, ny: float, place: float
+    room: FloatArray, first: int, last: int, to: int, nx: float, ny: float, place: float,
+    fx: float, fy: float,
 ) -> int:  # fmt: skip
-    """Put what of a contour lies beyond the line n·x = place at a place; where it ends."""
-    fx, fy, end = place * nx, place * ny, to
+    """Put what of a contour lies beyond the line n·x = place at a place; where it ends.
+
+    ``fx``, ``fy``: from which point of the line its pieces begin; inf: from the first that is met.
+    """
+    end = to
     for at in range(first, last, PIECE_COLUMNS):
         px, py, qx, qy = room[at + BEGIN_X], room[at + BEGIN_Y], room[at + END_X], room[at + END_Y]
         one, two = nx * px + ny * py - place, nx * qx + ny * qy - place
@@ -171,6 +182,7 @@ def beyond_line(
             elif begins or ends:
                 share = one / (one - two)
                 x, y = px + share * (qx - px), py + share * (qy - py)
+                fx, fy = _first_met(fx, fy, x, y)
                 if begins:
                     end = _straight(room, end, px, py, x, y)
                     end = _straight(room, end, x, y, fx, fy)
@@ -186,9 +198,11 @@ def beyond_line(
             if k > 0:
                 low, high = again, until
             end, px, py, qx, qy = _part_of_arc(room, at, end, low, high)
-            if low > 0.0 or not begins:
+            if low != 0.0 or not begins:
+                fx, fy = _first_met(fx, fy, px, py)
                 end = _straight(room, end, fx, fy, px, py)
-            if high < abs(room[at + TURN]) or not ends:
+            if high != abs(room[at + TURN]) or not ends:
+                fx, fy = _first_met(fx, fy, qx, qy)
                 end = _straight(room, end, qx, qy, fx, fy)
     return end
 
@@ -210,16 +224,20 @@ def _chord_in(
 
 @inlined
 def _round_to(
-    room: FloatArray, end: int, mx: float, my: float, radius: float, ref: float, x: float, y: float,
-    out: bool,
-) -> int:  # fmt: skip
-    """Put an arc of a circle from a point of it to that at an angle, or back, the short way."""
-    angle = math.atan2(y - my, x - mx)
-    turn = _past(ref - angle + math.pi) - math.pi
-    rx, ry = mx + radius * math.cos(ref), my + radius * math.sin(ref)
+    room: FloatArray, end: int, mx: float, my: float, radius: float, ref: float, fx: float,
+    fy: float, x: float, y: float, out: bool,
+) -> tuple[int, float, float, float]:  # fmt: skip
+    """Put an arc of a circle from (x, y) to f at an angle, or back, never by its far side.
+
+    Where the next goes, and the angle and the place of f: of the first point that is met.
+    """
+    near = math.atan2(-my, -mx)
+    angle = near + _past(math.atan2(y - my, x - mx) - near + math.pi) - math.pi
+    if fx == math.inf:
+        return end, angle, x, y
     if out:
-        return _arc(room, end, mx, my, radius, angle, turn, x, y, rx, ry)
-    return _arc(room, end, mx, my, radius, angle + turn, -turn, rx, ry, x, y)
+        return _arc(room, end, mx, my, radius, angle, ref - angle, x, y, fx, fy), ref, fx, fy
+    return _arc(room, end, mx, my, radius, ref, angle - ref, fx, fy, x, y), ref, fx, fy
 
 
 @inner
@@ -227,7 +245,7 @@ def in_circle(
     room: FloatArray, first: int, last: int, to: int, mx: float, my: float, radius: float
 ) -> int:  # fmt: skip
     """Put what of a contour lies in a circle about m at a place; where it ends."""
-    end, ref = to, math.atan2(-my, -mx)  # the point of it next to the base
+    end, ref, fx, fy = to, 0.0, math.inf, math.inf
     for at in range(first, last, PIECE_COLUMNS):
         px, py, qx, qy = room[at + BEGIN_X], room[at + BEGIN_Y], room[at + END_X], room[at + END_Y]
         ox, oy, ax, ay = px - mx, py - my, qx - mx, qy - my
@@ -242,11 +260,13 @@ def in_circle(
             if begins:
                 sx, sy = px, py
             else:
-                end = _round_to(room, end, mx, my, radius, ref, sx, sy, False)
+                end, ref, fx, fy = _round_to(
+                    room, end, mx, my, radius, ref, fx, fy, sx, sy, False
+                )  # fmt: skip
             if ends:
                 ex, ey = qx, qy
             else:
-                end = _round_to(room, end, mx, my, radius, ref, ex, ey, True)
+                end, ref, fx, fy = _round_to(room, end, mx, my, radius, ref, fx, fy, ex, ey, True)
             end = _straight(room, end, sx, sy, ex, ey)
             continue
         dx, dy, own = mx - room[at + ABOUT_X], my - room[at + ABOUT_Y], room[at + RADIUS]
@@ -259,15 +279,17 @@ def in_circle(
             if k > 0:
                 low, high = again, until
             end, px, py, qx, qy = _part_of_arc(room, at, end, low, high)
-            if low > 0.0 or not begins:
-                end = _round_to(room, end, mx, my, radius, ref, px, py, False)
-            if high < abs(room[at + TURN]) or not ends:
-                end = _round_to(room, end, mx, my, radius, ref, qx, qy, True)
-    # short ways around leave out the circle itself, where its far side is in the base
+            if low != 0.0 or not begins:
+                end, ref, fx, fy = _round_to(
+                    room, end, mx, my, radius, ref, fx, fy, px, py, False
+                )  # fmt: skip
+            if high != abs(room[at + TURN]) or not ends:
+                end, ref, fx, fy = _round_to(room, end, mx, my, radius, ref, fx, fy, qx, qy, True)
+    # ways that leave out its far side leave out the circle itself, where that is in the base
     whole = math.pi * radius * radius
     area = _area(room, to, end, mx, my)
     if area < -_SLIVER * whole or (area < _SLIVER * whole and _holds(room, first, last, mx, my)):
-        end = _arc(room, end, mx, my, radius, ref, _WHOLE, mx, my, mx, my)
+        end = _arc(room, end, mx, my, radius, 0.0, _WHOLE, mx, my, mx, my)
     return end
 
 
@@ -306,48 +328,8 @@ def _holds(room: FloatArray, first: int, last: int, x: float, y: float) -> bool:
         for k in range(pieces):
             if k > 0:
                 low, high = again, until
-            if (low > 0.0 or not begins) and _point_of(room, at, low)[0] > x:
+            if (low != 0.0 or not begins) and _point_of(room, at, low)[0] > x:
                 turns += 1
-            if (high < abs(room[at + TURN]) or not ends) and _point_of(room, at, high)[0] > x:
+            if (high != abs(room[at + TURN]) or not ends) and _point_of(room, at, high)[0] > x:
                 turns -= 1
     return turns > 0
-
-
-@inner
-def contour_sums(
-    room: FloatArray, first: int, last: int, reach: float, ux: float, uy: float, w: float
-) -> Sums:  # fmt: skip
-    """Sums of the slip direction over what a contour bounds, at a slip and a spin, not both 0.
-
-    Of arcs, in units of ``reach``, by axes along the slip, in which the spin is not negative.
-    """
-    arcs = False
-    for at in range(first, last, PIECE_COLUMNS):
-        arcs = arcs or room[at + TURN] != 0.0
-    if not arcs:
-        return polygon_sums(room, first, (last - first) // PIECE_COLUMNS, reach, ux, uy, w)
-    speed, sums, unit = math.sqrt(ux * ux + uy * uy), NOTHING, 1.0 / reach
-    c, s = (ux / speed, uy / speed) if speed > 0.0 else (1.0, 0.0)
-    mirrored, spin, ahead = -1.0 if w < 0.0 else 1.0, reach * abs(w), math.atan2(s, c)
-    for at in range(first, last, PIECE_COLUMNS):
-        turn = mirrored * room[at + TURN]
-        if turn == 0.0:
-            px, py, qx, qy = (
-                room[at + BEGIN_X],
-                room[at + BEGIN_Y],
-                room[at + END_X],
-                room[at + END_Y],
-            )
-            part = line_sums(
-                speed, spin, unit * (c * px + s * py), unit * mirrored * (c * py - s * px),
-                unit * (c * qx + s * qy), unit * mirrored * (c * qy - s * qx), UNIFORM,
-            )  # fmt: skip
-        else:
-            cx, cy = room[at + ABOUT_X], room[at + ABOUT_Y]
-            part = arc_sums(
-                speed, spin, unit * (c * cx + s * cy), unit * mirrored * (c * cy - s * cx),
-                unit * room[at + RADIUS], mirrored * (room[at + START] - ahead), turn, UNIFORM,
-                False,
-            )  # fmt: skip
-        sums = plus(sums, mirrored, part)
-    return from_slip(scaled(sums, reach), c, s, mirrored)

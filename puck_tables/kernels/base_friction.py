@@ -18,8 +18,18 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.base import Base
-from puck_tables.kernels.base_parts import disc_sums
-from puck_tables.kernels.base_sums import NOTHING, Sums, from_slip, moved, plus
+from puck_tables.contact.laws import Law
+from puck_tables.kernels.base_boundary import disc_at
+from puck_tables.kernels.base_sums import (
+    GALIN,
+    HERTZ,
+    NOTHING,
+    RING,
+    TABLE,
+    UNIFORM,
+    Sums,
+    plus,
+)
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.kernels.polygon_sums import (
     ABOUT_X,
@@ -32,10 +42,15 @@ from puck_tables.kernels.polygon_sums import (
 )
 
 # A base in one array: how many sides and discs, how far its farthest point is, ∫ dA, ∫ x dA and
-# ∫ x x dA over it, and z f; then its contour, a row for each side and then for each disc, which
-# turns backwards around a hole; from the centre of mass
+# ∫ x x dA over it, z f, its law of pressure, and how many rows that has; then its contour, a row
+# for each side and then for each disc, which turns backwards around a hole; from the centre of mass
 SIDES, DISCS, REACH, AREA, FIRST_X, FIRST_Y, SECOND_XX, SECOND_XY, SECOND_YY, LEVER = range(10)
-HEAD = 10
+PRESSURE, ROWS = 10, 11
+HEAD = 12
+# of a tabulated pressure follow the radii, and of the pieces of W = A + B ρ, with one on either
+# side where nothing presses, each A and B, flat; then room to work
+_ROOM, _ROOM_A_ROW = 48, 22
+_PRESSURES = {"ring": RING, "hertz": HERTZ, "galin": GALIN}
 
 
 def packed(base: Base, lever: float) -> FloatArray:
@@ -64,9 +79,36 @@ def packed(base: Base, lever: float) -> FloatArray:
         discs.append([*begin, x, y, radius, 0.0, *begin, sign * 2.0 * math.pi])
     head = [
         sum(map(len, base.outlines)), len(discs), base.reach, area, *first,
-        second[0, 0], second[0, 1], second[1, 1], lever,
+        second[0, 0], second[0, 1], second[1, 1], lever, UNIFORM, 0.0,
     ]  # fmt: skip
     return np.concatenate([head, *sides, np.ravel(discs)]).astype(np.float64)
+
+
+def packed_round(radius: float, law: Law, lever: float) -> FloatArray:
+    """A round base under a pressure law in one array, as :func:`packed`.
+
+    Examples
+    --------
+    >>> packed_round(1.0, law_of("hertz"), 0.0)[[SECOND_XX, PRESSURE]].round(6).tolist()
+    [0.628319, 2.0]
+    """
+    if law.name.startswith("annulus:"):
+        return packed(Base.annulus(radius, law.edges[0] * radius), lever)
+    base = packed(Base.disc(radius), lever)
+    base[SECOND_XX] = base[SECOND_YY] = base[AREA] * radius * radius * law.mean_square
+    base[PRESSURE] = _PRESSURES.get(law.name, UNIFORM)
+    if law.profile is None:
+        return base
+    rho, weight = law.profile
+    middle = 0.25 * (rho[1:] + rho[:-1]) * (weight[1:] + weight[:-1])
+    ends = rho * weight
+    load = float(np.sum(np.diff(rho) * (ends[1:] + ends[:-1] + 4.0 * middle))) / 6.0
+    weight = 0.5 * weight / load
+    slope = np.diff(weight) / np.diff(rho)
+    at_centre = weight[:-1] - slope * rho[:-1]
+    base[PRESSURE], base[ROWS] = TABLE, len(rho)
+    room = np.zeros(_ROOM + _ROOM_A_ROW * len(rho))
+    return np.concatenate([base, rho, np.pad(at_centre, 1), np.pad(slope, 1), room])
 
 
 @inlined
@@ -75,16 +117,6 @@ def disc_in(base: FloatArray, number: int) -> tuple[float, float, float, float]:
     at = HEAD + PIECE_COLUMNS * (int(base[SIDES]) + number)
     sign = 1.0 if base[at + TURN] > 0.0 else -1.0
     return base[at + ABOUT_X], base[at + ABOUT_Y], base[at + RADIUS], sign
-
-
-@inlined
-def disc_at(cx: float, cy: float, size: float, ux: float, uy: float, w: float) -> Sums:
-    """A disc about a place: by the closed forms about its own middle, turned and moved."""
-    ux, uy = ux - w * cy, uy + w * cx
-    speed = math.sqrt(ux * ux + uy * uy)
-    c, s = (ux / speed, uy / speed) if speed > 0.0 else (1.0, 0.0)
-    sums = disc_sums(speed, abs(w), size)
-    return moved(from_slip(sums, c, s, -1.0 if w < 0.0 else 1.0), cx, cy)
 
 
 @inner

@@ -10,8 +10,8 @@ from puck_tables.kernels.compile import inlined, summed
 Sums = tuple[float, float, float, float, float, float, float, float]
 NOTHING: Sums = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
-# laws of pressure; ANY: linear, under a base of any shape
-UNIFORM, RING, HERTZ, GALIN, TABLE, ANY = range(6)
+# laws of pressure; those but the first under round bases alone
+UNIFORM, RING, HERTZ, GALIN, TABLE = range(5)
 
 
 @inlined

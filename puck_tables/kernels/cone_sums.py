@@ -15,7 +15,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact import closed_form
-from puck_tables.kernels.base_parts import disc_sums
+from puck_tables.kernels.base_boundary import disc_sums
 from puck_tables.kernels.compile import inlined, inner, spline_values
 
 Four = tuple[float, float, float, float]  # e_x, y e_x, x e_y and y (x e_y − y e_x)

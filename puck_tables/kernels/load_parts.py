@@ -23,7 +23,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from puck_tables.kernels.base_sums import GALIN, NOTHING, Sums, added
+from puck_tables.kernels.base_sums import GALIN, NOTHING, Sums, added, plus
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.kernels.elementary import angle_of, cosine_sine_of, exp_of, log_of
 
@@ -316,13 +316,17 @@ def _along(
 
 @inner
 def loaded_line(
-    alpha: float, beta: float, x: float, y: float, tx: float, ty: float, length: float, law: int
+    alpha: float, beta: float, x: float, y: float, to_x: float, to_y: float, law: int
 ) -> Sums:
-    """A straight piece from (x, y) along (tx, ty)."""
+    """A straight piece from (x, y) to (to_x, to_y)."""
+    length = math.sqrt((to_x - x) * (to_x - x) + (to_y - y) * (to_y - y))
+    if length == 0.0:
+        return NOTHING
+    tx, ty = (to_x - x) / length, (to_y - y) / length
     begin = x * tx + y * ty
     x0, y0 = x - begin * tx, y - begin * ty
     off = y0 * tx - x0 * ty
-    half = math.sqrt((1.0 - off) * (1.0 + off))
+    half = math.sqrt(max((1.0 - off) * (1.0 + off), 0.0))
     if half == 0.0:
         return NOTHING
     c = alpha / beta if alpha < _FARTHEST * beta else _FARTHEST
@@ -337,9 +341,10 @@ def loaded_line(
 
 @inner
 def loaded_arc(
-    alpha: float, beta: float, cx: float, cy: float, radius: float, law: int
+    alpha: float, beta: float, cx: float, cy: float, radius: float, start: float, turn: float,
+    law: int,
 ) -> Sums:  # fmt: skip
-    """What of a circle about (cx, cy) lies in the base, all or up to its rim, counter-clockwise."""
+    """Of a circle about (cx, cy) all, or an arc in the base from an angle over a turn."""
     apart = math.sqrt(cx * cx + cy * cy)
     tx, ty = (-cx / apart, -cy / apart) if apart > 0.0 else (1.0, 0.0)
     room = (1.0 - apart + radius) * (1.0 + apart - radius)  # 1 − ρ² where it is next to the centre
@@ -351,6 +356,13 @@ def loaded_arc(
     ratio = math.sqrt(ahead * ahead + aside * aside)
     if abs(ratio - 1.0) * radius < _ON:
         ratio = 1.0 + _ON / radius
+    middle = start + 0.5 * turn - math.atan2(ty, tx)
+    middle -= 2.0 * math.pi * math.floor(middle / (2.0 * math.pi) + 0.5)
+    low, high = 0.5 * middle - 0.25 * abs(turn), 0.5 * middle + 0.25 * abs(turn)
+    low, high = max(math.sin(low) / size, -1.0), min(math.sin(high) / size, 1.0)
+    if abs(turn) >= 2.0 * math.pi:
+        low, high = -1.0, 1.0
+    way = 1.0 if turn > 0.0 else -1.0
     turn, root = 0.5 * math.atan2(aside, ahead), 2.0 * size * math.sqrt(max(ratio, 1e-6))
     # no root is of the angle of a circle as the sine of its half is
     far = 1.0 / size if spare == 0.0 else math.sqrt(room / max(span, _ON))
@@ -363,6 +375,7 @@ def loaded_arc(
         two, two_gap = _grazed(alpha, beta, border, turn - off, c, tangent)
     across, apart = math.sin(turn) * (ratio + 1.0) / root, math.cos(turn) * (ratio - 1.0) / root
     seam = _inverse_sinh(math.sqrt(max((far - 1.0) * (far + 1.0), 0.0)))
-    return _along(
-        alpha, beta, border, -1.0, 1.0, across, apart, seam, one, one_gap, two, two_gap, law
+    sums = _along(
+        alpha, beta, border, low, high, across, apart, seam, one, one_gap, two, two_gap, law
     )
+    return plus(NOTHING, way, sums)

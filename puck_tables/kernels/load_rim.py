@@ -106,12 +106,3 @@ def loaded_rim(alpha: float, beta: float, start: float, turn: float, law: int) -
     """An arc of the rim from the angle ``start`` over ``turn``."""
     end = _up_to(alpha, beta, start + turn, law)
     return plus(end, -1.0, _up_to(alpha, beta, start, law))
-
-
-@inner
-def loaded_whole(alpha: float, beta: float, law: int) -> Sums:
-    """All of the rim."""
-    if alpha < beta:
-        return _primitive(alpha, beta, 2.0 * math.pi, 1.0, 0.0, 0.0, law)
-    ends = _at_touch(alpha, beta, law)
-    return 4.0 * ends[0], 0.0, 0.0, 4.0 * ends[3], 4.0 * ends[4], 0.0, 0.0, 4.0 * ends[7]

@@ -1,6 +1,6 @@
 """What a floor holds of a puck at rest astride several frictions.
 
-At rest the demand on the floor fixes the tilt of the pressure: b = κ F; under a puck that is
+At rest the demand on the floor fixes where the load stands, b = z F/N; under a puck that is
 guided, which leaves open what the floor takes up across, friction in the slip that begins does.
 With the pressure known, friction holds a force and a torque if no slip gains energy: P·n ≤ D(n) =
 ∫ f σ |u| dA for all slips n = (u_x, u_y, r ω), P = (F_x, F_y, T/r).  D is convex and its gradient
@@ -14,9 +14,29 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inner
-from puck_tables.scene.astride import held_friction
+from puck_tables.scene.base_on_floor import friction_held
 from puck_tables.scene.belts import rub_at_rest
-from puck_tables.scene.ground import BELTS, LEVER
+from puck_tables.scene.ground import (
+    ACROSS_X,
+    ACROSS_Y,
+    BELTS,
+    BORDERS,
+    LEVER,
+    LOAD,
+    MIDDLE_X,
+    MIDDLE_Y,
+    OVER_X,
+    OVER_Y,
+    PATCHES,
+    PLACE_X,
+    PLACE_Y,
+    REACH,
+    SHARE,
+    border_of,
+    load_of,
+    patch_of,
+    sum_over,
+)
 
 Yield = tuple[float, float, float, float]
 
@@ -26,12 +46,45 @@ _TILTED = 1e-14  # of friction: what the load's tilt is known to
 
 
 @inner
+def least_under(ground: FloatArray, radius: float) -> float:
+    """The least f N that a base may have under a part of it."""
+    x, y = ground[PLACE_X], ground[PLACE_Y]
+    place = ground[ACROSS_X] * x + ground[ACROSS_Y] * y
+    least = math.inf
+    for i in range(int(ground[BORDERS]) + 1):
+        below = i == 0 or border_of(ground, i - 1) < place + radius
+        if below and (i == int(ground[BORDERS]) or border_of(ground, i) > place - radius):
+            least = min(least, load_of(ground, i))
+    for k in range(int(ground[PATCHES])):
+        dx, dy = patch_of(ground, k, MIDDLE_X) - x, patch_of(ground, k, MIDDLE_Y) - y
+        if math.sqrt(dx * dx + dy * dy) < radius + patch_of(ground, k, REACH):
+            least = min(least, patch_of(ground, k, LOAD))
+    return ground[SHARE] * least
+
+
+@inner
+def _held(
+    ground: FloatArray, radius: float, nx: float, ny: float, rim: float, mx: float, my: float
+) -> tuple[float, float, float]:
+    """∫ f σ e dA and its moment over r at a slip of Q = 1, of a load at (mx, my), m.
+
+    Of belts the one is summed that states are relative to.
+    """
+    if ground[BELTS] != 0.0:
+        sum_over(ground, ground[OVER_X], ground[OVER_Y], False)
+    fx, fy, turning = friction_held(ground, nx, ny, rim / radius, mx, my)
+    if ground[BELTS] != 0.0:
+        sum_over(ground, 0.0, 0.0, True)
+    return fx, fy, turning / radius
+
+
+@inner
 def _resists(
     ground: FloatArray, radius: float, nx: float, ny: float, nw: float, bx: float, by: float
 ) -> tuple[float, float, float]:
     """The gradient of D at a slip of any size."""
     whole = math.sqrt(nx * nx + ny * ny + nw * nw)
-    return held_friction(ground, radius, nx / whole, ny / whole, nw / whole, bx, by)
+    return _held(ground, radius, nx / whole, ny / whole, nw / whole, bx, by)
 
 
 @inner
@@ -94,13 +147,13 @@ def astride_yield(
     if force > most:  # it slips: what tilts is friction
         bx, by = bx * most / force, by * most / force
     if ground[BELTS] != 0.0:
-        rx, ry, turning, _ = rub_at_rest(ground, radius, bx, by)
+        rx, ry, turning, _ = rub_at_rest(ground, bx, by)
         fx, fy, torque = fx + rx, fy + ry, torque + turning
         force = math.sqrt(fx * fx + fy * fy)
     rim = torque / radius
     size = math.sqrt(force * force + rim * rim)
     if size == 0.0:
-        gx, _, _ = held_friction(ground, radius, 1.0, 0.0, 0.0, 0.0, 0.0)
+        gx, _, _ = _held(ground, radius, 1.0, 0.0, 0.0, 0.0, 0.0)
         return -gx, 1.0, 0.0, 0.0
     ex, ey = (fx / force, fy / force) if force > 0.0 else (1.0, 0.0)
     px, pw = force / size, rim / size
@@ -114,7 +167,7 @@ def astride_yield(
             m = _least_in_plane(ground, radius, bx, by, n, level, turns)
         whole = math.sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2])
         m = (m[0] / whole, m[1] / whole, m[2] / whole)
-        gx, gy, gw = held_friction(ground, radius, m[0], m[1], m[2], bx, by)
+        gx, gy, gw = _held(ground, radius, m[0], m[1], m[2], bx, by)
         if not guided:
             break
         # what tilts is friction, also that across, which the guide bears

@@ -1,10 +1,9 @@
 """Friction on a base that lies on stretches of the floor with velocities of their own.
 
 Each part of the base is summed with its own slip: those of one velocity together, with all others
-left out.  Sums are in axes of the base, or of the floor under a round one, and add up there; then
-the load tilts as it does astride several frictions (:mod:`puck_tables.scene.astride`).  States are
-relative to one of the velocities.  What moves at it rests on its part of the floor, which holds it
-against what the others do: their friction is a force like any other.
+left out.  Sums are in axes of the base, and add up there; then the load tilts as it does on several
+frictions.  States are relative to one of the velocities.  What moves at it rests on its part of the
+floor, which holds it against what the others do: their friction is a force like any other.
 """
 
 from __future__ import annotations
@@ -13,15 +12,14 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.base_friction import pressure_at, pressure_on, under_load
-from puck_tables.kernels.base_sums import ANY, NOTHING, Sums, from_slip, plus
+from puck_tables.kernels.base_sums import NOTHING, Sums, plus
 from puck_tables.kernels.compile import inlined, inner
-from puck_tables.scene.astride_parts import slip_of
-from puck_tables.scene.astride_pressure import sums_under
-from puck_tables.scene.base_on_floor import friction_sums
+from puck_tables.scene.base_on_floor import friction_of_base, friction_sums
 from puck_tables.scene.ground import (
     ACROSS_X,
     ACROSS_Y,
     ANGLE,
+    BASE,
     BELTS,
     BORDERS,
     LEVER,
@@ -30,8 +28,6 @@ from puck_tables.scene.ground import (
     PATCHES,
     PLACE_X,
     PLACE_Y,
-    PRESSURE,
-    PROFILE,
     belt_of,
     border_of,
     stretches_in,
@@ -97,34 +93,12 @@ def is_rubbed(ground: FloatArray, radius: float) -> bool:
     return False
 
 
-@inlined
-def _axes(ground: FloatArray) -> tuple[float, float]:
-    """The direction of the first axis of sums."""
-    if ground[PRESSURE] == ANY:
-        return math.cos(ground[ANGLE]), math.sin(ground[ANGLE])
-    return 1.0, 0.0
-
-
-@inner
-def _sums(
-    ground: FloatArray, radius: float, ux: float, uy: float, w: float, moving: float
-) -> Sums:  # fmt: skip
-    """Sums of what is left in, at a slip in the same axes."""
-    if ground[PRESSURE] == ANY:
-        return friction_sums(ground, ux, uy, w, moving)
-    rim = radius * w
-    unit = 1.0 / math.sqrt(ux * ux + uy * uy + rim * rim)
-    way, mirrored = slip_of(unit * ux, unit * uy, unit * rim), -1.0 if w < 0.0 else 1.0
-    sums = sums_under(ground, radius, way, mirrored)
-    return from_slip(sums, way.cosine, way.sine, mirrored)
-
-
 @inner
 def _all_sums(
-    ground: FloatArray, radius: float, ux: float, uy: float, w: float, moving: float
+    ground: FloatArray, ux: float, uy: float, w: float, moving: float
 ) -> tuple[Sums, Far]:
     """Sums over all parts that slip, each at its own velocity, and what they take to far off."""
-    c, s = _axes(ground)
+    c, s = math.cos(ground[ANGLE]), math.sin(ground[ANGLE])
     sums, one, two, three = NOTHING, 0.0, 0.0, 0.0
     for stretch in range(stretches_in(ground)):
         bx, by = belt_of(ground, stretch)
@@ -133,7 +107,7 @@ def _all_sums(
         if (vx == 0.0 and vy == 0.0 and w == 0.0) or not _is_first(ground, stretch):
             continue
         sum_over(ground, bx, by, False)
-        part = _sums(ground, radius, c * vx + s * vy, c * vy - s * vx, w, moving)
+        part = friction_sums(ground, c * vx + s * vy, c * vy - s * vx, w, moving)
         sums = plus(sums, 1.0, part)
         px, py = c * ox + s * oy, c * oy - s * ox
         one += px * part[0] + py * part[1]
@@ -144,62 +118,43 @@ def _all_sums(
 
 
 @inlined
-def _tilt(ground: FloatArray, sums: Sums) -> tuple[float, float, float]:
-    """The pressure a + b·x that balances friction."""
-    lever = ground[LEVER]
-    if ground[PRESSURE] == ANY:
-        return pressure_on(ground[int(ground[PROFILE]) :], sums)
-    if lever == 0.0:
-        return 1.0, 0.0, 0.0
-    xx, xy = 1.0 - lever * sums[2], -lever * sums[3]
-    yx, yy = -lever * sums[4], 1.0 - lever * sums[5]
-    turn = lever / (xx * yy - xy * yx)
-    return 1.0, turn * (yy * sums[0] - xy * sums[1]), turn * (xx * sums[1] - yx * sums[0])
-
-
-@inlined
 def _done(
-    ground: FloatArray, radius: float, ux: float, uy: float, w: float, sums: Sums, far: Far,
-    a: float, bx: float, by: float,
+    ground: FloatArray, ux: float, uy: float, w: float, sums: Sums, far: Far, a: float, bx: float,
+    by: float,
 ) -> tuple[float, float, float, float]:  # fmt: skip
-    """Force, torque and heat of sums under a pressure."""
-    c, s = _axes(ground)
+    """Force, torque and heat of sums under the pressure a + b·x."""
+    c, s = math.cos(ground[ANGLE]), math.sin(ground[ANGLE])
     x, y, torque = under_load(sums, a, bx, by)
-    if ground[PRESSURE] != ANY:
-        torque *= radius
     fx, fy = c * x - s * y, s * x + c * y
     heat = fx * ux + fy * uy + torque * w - (a * far[0] + bx * far[1] + by * far[2])
     return -fx, -fy, -torque, heat
 
 
 @inner
-def friction_on_belts(
-    ground: FloatArray, radius: float, ux: float, uy: float, w: float, moving: float
+def friction_on_floor(
+    ground: FloatArray, ux: float, uy: float, w: float, moving: float
 ) -> tuple[float, float, float, float]:
-    """Force, torque, and the heat of all parts; of who rests what the other belts do."""
-    sums, far = _all_sums(ground, radius, ux, uy, w, moving)
-    a, bx, by = _tilt(ground, sums)
-    return _done(ground, radius, ux, uy, w, sums, far, a, bx, by)
+    """Force, torque, and the heat of all parts; of who rests what other belts do.
+
+    At velocities relative to the floor; ``moving`` 0: with the friction at slip zero.
+    """
+    if ground[BELTS] == 0.0:
+        return friction_of_base(ground, ux, uy, w, moving)
+    sums, far = _all_sums(ground, ux, uy, w, moving)
+    a, bx, by = pressure_on(ground[int(ground[BASE]) :], sums)
+    return _done(ground, ux, uy, w, sums, far, a, bx, by)
 
 
 @inner
-def rub_at_rest(
-    ground: FloatArray, radius: float, bx: float, by: float
-) -> tuple[float, float, float, float]:
-    """Force, torque and heat of other belts on who rests, under a pressure with slopes (bx, by).
-
-    Under a base of any shape these are the place of the load, m.
-    """
-    sums, far = _all_sums(ground, radius, 0.0, 0.0, 0.0, 0.0)
-    a = 1.0
-    if ground[PRESSURE] == ANY:
-        c, s = _axes(ground)
-        base = ground[int(ground[PROFILE]) :]
-        a, bx, by = pressure_at(base, c * bx + s * by, c * by - s * bx)
-    return _done(ground, radius, 0.0, 0.0, 0.0, sums, far, a, bx, by)
+def rub_at_rest(ground: FloatArray, mx: float, my: float) -> tuple[float, float, float, float]:
+    """Force, torque and heat of other belts on who rests, whose load stands at (mx, my), m."""
+    sums, far = _all_sums(ground, 0.0, 0.0, 0.0, 0.0)
+    c, s = math.cos(ground[ANGLE]), math.sin(ground[ANGLE])
+    a, bx, by = pressure_at(ground[int(ground[BASE]) :], c * mx + s * my, c * my - s * mx)
+    return _done(ground, 0.0, 0.0, 0.0, sums, far, a, bx, by)
 
 
 @inlined
-def heat_at_rest(ground: FloatArray, radius: float, fx: float, fy: float) -> float:
+def heat_at_rest(ground: FloatArray, fx: float, fy: float) -> float:
     """The heat of other belts under who rests, where the floor does the force (fx, fy) to it."""
-    return rub_at_rest(ground, radius, -ground[LEVER] * fx, -ground[LEVER] * fy)[3]
+    return rub_at_rest(ground, -ground[LEVER] * fx, -ground[LEVER] * fy)[3]

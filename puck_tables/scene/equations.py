@@ -134,7 +134,7 @@ def rates_here(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: 
         if is_over_belts(stretch.dry):
             put_at(stretch.dry, y[X], y[Y], y[THETA])
             dry = dry_at(stretch.dry, model.forces.drive, stretch.piece, t)
-            rubs = heat_at_rest(dry.by_speed.table, body.radius, fx, fy)
+            rubs = heat_at_rest(dry.by_speed.table, fx, fy)
         out[row, DRY] = rubs - (fx * y[VX] + fy * y[VY] + fm * y[SPIN])
         out[row, VISCOUS] = 0.0
         out[row, SUPPORT] = rubs + fx * sx + fy * sy + fm * turning

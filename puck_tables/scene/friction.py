@@ -18,7 +18,7 @@ import math
 from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.kernels.speed_spline import speed_ratios
 from puck_tables.motion.equations_of_motion import ratios_at
-from puck_tables.scene.astride import astride_friction
+from puck_tables.scene.belts import friction_on_floor
 from puck_tables.scene.ingredients import BySpeed, Dry, is_astride, is_over_belts
 from puck_tables.scene.orthotropic import ellipse_in, elliptic_friction, is_elliptic
 
@@ -40,7 +40,7 @@ def dry_friction(
     if law.normal == 0.0 or dry.load == 0.0 or (slip == 0.0 and not is_over_belts(dry)):
         return _plain_friction(dry, radius, ux, uy, w)
     if is_astride(dry):
-        return astride_friction(law.table, radius, ux, uy, w, slip, law.moving)
+        return friction_on_floor(law.table, ux, uy, w, law.moving)
     if is_elliptic(law.table):
         axes = ellipse_in(law.table, law.height_ratio, law.normal)
         return elliptic_friction(axes, radius, ux, uy, w)

@@ -8,28 +8,24 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.base_clipping import room_to_clip
-from puck_tables.kernels.base_sums import UNIFORM
+from puck_tables.kernels.base_friction import LEVER as BASE_LEVER
 from puck_tables.kernels.compile import inlined
 
 # A ground, all in one array, which is quick to hand on: where the centre of the base is, the factor
 # on all friction now, what holds for all of it, how the base is turned, whether velocities of the
 # floor differ, and the one that states are relative to,
-PLACE_X, PLACE_Y, SHARE, LEVER, INNER, ACROSS_X, ACROSS_Y, BORDERS, PATCHES = range(9)
-PRESSURE, PROFILE, ROWS, ROOM, ANGLE = range(9, 14)
-BELTS, OVER_X, OVER_Y = 14, 15, 16
-_HEAD = 17
+PLACE_X, PLACE_Y, SHARE, LEVER, ACROSS_X, ACROSS_Y, BORDERS, PATCHES = range(8)
+BASE, LAW, ROOM, ANGLE, BELTS, OVER_X, OVER_Y = range(8, 15)
+_HEAD = 15
 # the places of its borders, f N between them as it is summed now, f N of all strips and then of all
 # patches where no factor changes it, the same with their factors, their velocities, a row for each
 # patch (its middle, the radius of a
 # circle about it, the first of its corners, how many (none: it is that circle), and f N there now),
 MIDDLE_X, MIDDLE_Y, REACH, CORNER, CORNERS, LOAD = range(6)
 PATCH_COLUMNS = 6
-_ROOM, _ROOM_A_ROW = 48, 22
-# the corners of all patches, and of a tabulated pressure from PROFILE on all radii, A and B of its
-# pieces W = A + B ρ, with one on either side where nothing presses, or a base of any shape, and
-# from ROOM on room to work.  ROWS: of a tabulated pressure; of a base where its law of friction
-# over the slip speed or its direction stands, 0 where it has none.  That by direction is f N along
-# and across, the angle of the first, and 1: in the floor, or 0: in the body.
+# the corners of all patches, from BASE on the base, from LAW on its law of friction over the slip
+# speed or its direction (0: it has none), and from ROOM on room to work.  That by direction is f N
+# along and across, the angle of the first, and 1: in the floor, or 0: in the body.
 AXES = 4
 
 
@@ -38,11 +34,8 @@ class Ground(NamedTuple):
 
     ``across_x``, ``across_y``: the direction across the borders of strips; ``borders`` (n,): their
     places along it, ascending, m; ``loads`` (n + 1,): f N between them; ``patches`` (k, 6), and
-    ``corners`` (m, 2) of those that are polygons, counter-clockwise, m; ``lever``: κ, 1/N;
-    ``inner``: radius of the hole of the base over the outer, where the pressure is uniform;
-    ``pressure``: its law; ``profile`` (p, 2): of a tabulated one, radii over r and W with
-    ∫ W ρ dρ = ½, straight between them; ``base``: of ANY, in one array
-    (:func:`puck_tables.kernels.base_friction.packed`), with ``lever``: height of the centre of mass
+    ``corners`` (m, 2) of those that are polygons, counter-clockwise, m; ``base``: in one array
+    (:func:`puck_tables.kernels.base_friction.packed`), its lever the height of the centre of mass
     over N, m/N; ``law``: its friction f N over the slip speed, in one array
     (:func:`puck_tables.contact.law_moments.packed_law`), or the direction, where it depends on
     that;
@@ -55,42 +48,27 @@ class Ground(NamedTuple):
     loads: FloatArray
     patches: FloatArray
     corners: FloatArray
-    lever: float
-    inner: float
-    pressure: int = UNIFORM
-    profile: FloatArray = np.empty((0, 2))
-    base: FloatArray = np.empty(0)
+    base: FloatArray
     law: FloatArray = np.empty(0)
     belts: FloatArray = np.empty((0, 2))
 
     def packed(self) -> FloatArray:
         """In one array."""
-        head = [0.0, 0.0, 1.0, self.lever, self.inner, self.across_x, self.across_y]
         whole = np.concatenate([self.loads, self.patches[:, LOAD]])
         belts = self.belts if len(self.belts) else np.zeros((len(whole), 2))
         tables = [
             self.borders, self.loads, whole, whole, belts.ravel(), self.patches.ravel(),
             self.corners.ravel(),
         ]  # fmt: skip
-        at, rows = _HEAD + sum(table.size for table in tables), len(self.profile)
-        pieces = _pieces(self.profile) if rows else np.concatenate([self.base, self.law])
-        if self.law.size:
-            rows = at + self.base.size
-        counts = [
-            len(self.borders), len(self.patches), self.pressure, at, rows, at + pieces.size, 0.0,
-            float((belts != belts[0]).any()), *belts[0],
+        at = _HEAD + sum(table.size for table in tables)
+        law = at + self.base.size
+        head = [
+            0.0, 0.0, 1.0, self.base[BASE_LEVER], self.across_x, self.across_y,
+            len(self.borders), len(self.patches), at, law if self.law.size else 0,
+            law + self.law.size, 0.0, float((belts != belts[0]).any()), *belts[0],
         ]  # fmt: skip
-        size = _ROOM + _ROOM_A_ROW * rows if len(self.profile) else room_to_clip(self.base)
-        room = np.zeros(size)
-        return np.concatenate([head, counts, *tables, pieces, room]).astype(np.float64)
-
-
-def _pieces(profile: FloatArray) -> FloatArray:
-    """The radii of a tabulated pressure, and A and B of its pieces, flat."""
-    radii, weights = profile.T
-    slope = np.diff(weights) / np.diff(radii)
-    base = weights[:-1] - slope * radii[:-1]
-    return np.concatenate([radii, np.pad(base, 1), np.pad(slope, 1)])
+        room = np.zeros(room_to_clip(self.base))
+        return np.concatenate([head, *tables, self.base, self.law, room]).astype(np.float64)
 
 
 NO_GROUND = np.empty(0)

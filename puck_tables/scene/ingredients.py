@@ -64,8 +64,8 @@ class Regions(NamedTuple):
     ``load``, ``delta``: arrays (regions,); ``cuts``: (regions, …), see
     :func:`puck_tables.motion.equations_of_motion.ratios_at`; ``by_speed`` takes the place of all.
     ``astride`` (regions,): where the base lies on several frictions of the ``ground``, see
-    :mod:`puck_tables.scene.astride`, or is not round; there load and δ are the largest of them.  A
-    run has its own ground, in which it says where the base is.
+    :mod:`puck_tables.scene.base_on_floor`, or is not round; there load and δ are the largest of
+    them.  A run has its own ground, in which it says where the base is.
     """
 
     load: FloatArray

@@ -241,4 +241,5 @@ def held_at(drive: FloatArray, piece: int, column: int, t: float) -> float:
     if piece == 0 or piece == len(drive):
         return drive[max(piece - 1, 0), column]
     one, two = drive[piece - 1, column], drive[piece, column]
-    return one + _share(drive, piece, t) * (two - one)
+    # past the next row, if by a rounding, a factor that ends in 0 would be less than that
+    return one + min(_share(drive, piece, t), 1.0) * (two - one)

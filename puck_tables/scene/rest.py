@@ -16,8 +16,7 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel, patience
-from puck_tables.scene.astride_parts import least_under
-from puck_tables.scene.astride_rest import astride_yield
+from puck_tables.scene.astride_rest import astride_yield, least_under
 from puck_tables.scene.forces import given_force
 from puck_tables.scene.friction import THETA, X, Y, at_slip_zero, dry_friction
 from puck_tables.scene.ingredients import (

@@ -9,9 +9,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.base import Base
 from puck_tables.contact.law_moments import DEGREE, packed_law
-from puck_tables.contact.laws import Law
-from puck_tables.kernels.base_friction import packed
-from puck_tables.kernels.base_sums import ANY, GALIN, HERTZ, RING, TABLE, UNIFORM
+from puck_tables.kernels.base_friction import packed, packed_round
 from puck_tables.scene.floor_patches import corners_of
 from puck_tables.scene.ground import (
     NO_GROUND,
@@ -24,7 +22,6 @@ from puck_tables.scene.stretches import belts_of
 Moments = tuple[FloatArray, FloatArray]
 
 _AT_REST = (-1.0) ** np.arange(DEGREE + 1)  # powers of t at the beginning of a piece
-_PRESSURES = {"ring": RING, "hertz": HERTZ, "galin": GALIN}
 
 
 def ground_of(scene: SceneSpec, normal: float, law: Moments | None = None) -> FloatArray:
@@ -36,7 +33,7 @@ def ground_of(scene: SceneSpec, normal: float, law: Moments | None = None) -> Fl
     --------
     >>> from puck_tables import Floor, Puck, Scene, Strips
     >>> floor = Floor(strips=Strips((0.1,), (0.3, 0.1)))
-    >>> ground_of(Scene(Puck(0.04), floor), 2.0)[17:20].tolist()
+    >>> ground_of(Scene(Puck(0.04), floor), 2.0)[15:18].tolist()
     [0.1, 0.6, 0.2]
     """
     floor, puck = scene.floor, scene.puck
@@ -62,20 +59,16 @@ def ground_of(scene: SceneSpec, normal: float, law: Moments | None = None) -> Fl
         normal * np.array((friction,) if strips is None else strips.friction),
         np.array(rows).reshape(-1, PATCH_COLUMNS), np.concatenate(corners),
     )  # fmt: skip
-    if shape is not None:
-        lever = 0.5 * puck.height / normal
-        over_slip = np.empty(0) if law is None else packed_law(law[0], normal * law[1])
-        if axes is not None:
-            turns = float(axes.fixed_to == "floor")
-            over_slip = np.array([*np.multiply(normal, axes.friction), axes.direction, turns])
-        base, belts = packed(shape, lever), belts_of(floor)
-        return Ground(*there, lever, 0.0, ANY, base=base, law=over_slip, belts=belts).packed()
-    pressure = puck.body.law
-    kind = _PRESSURES.get(pressure.name, UNIFORM if pressure.profile is None else TABLE)
-    lever = puck.height / (2.0 * puck.radius * pressure.mean_square * normal)
-    return Ground(
-        *there, lever, hole_of(pressure), kind, _profile_of(pressure), belts=belts_of(floor)
-    ).packed()
+    lever, over_slip = 0.5 * puck.height / normal, np.empty(0)
+    if shape is None:
+        base = packed_round(puck.radius, puck.body.law, lever)
+        return Ground(*there, base, over_slip, belts_of(floor)).packed()
+    if law is not None:
+        over_slip = packed_law(law[0], normal * law[1])
+    if axes is not None:
+        turns = float(axes.fixed_to == "floor")
+        over_slip = np.array([*np.multiply(normal, axes.friction), axes.direction, turns])
+    return Ground(*there, packed(shape, lever), over_slip, belts_of(floor)).packed()
 
 
 def shape_under(scene: SceneSpec) -> Base | None:
@@ -92,26 +85,3 @@ def shape_under(scene: SceneSpec) -> Base | None:
     if puck.shape is None and axes is not None and axes.fixed_to == "body":
         return Base.disc(puck.radius)
     return puck.shape
-
-
-def _profile_of(law: Law) -> FloatArray:
-    """Rows (n, 2) of a tabulated law, radii over r and W with ∫ W ρ dρ = ½; none of another."""
-    if law.profile is None:
-        return np.empty((0, 2))
-    rho, weight = law.profile
-    middle = 0.25 * (rho[1:] + rho[:-1]) * (weight[1:] + weight[:-1])
-    ends = rho * weight
-    load = float(np.sum(np.diff(rho) * (ends[1:] + ends[:-1] + 4.0 * middle))) / 6.0
-    return np.stack([rho, 0.5 * weight / load], axis=1)
-
-
-def hole_of(law: Law) -> float:
-    """The inner radius of the base over the outer: 0, or that of an annulus.
-
-    Examples
-    --------
-    >>> from puck_tables.contact.laws import law_of
-    >>> hole_of(law_of("uniform")), hole_of(law_of("annulus:0.8"))
-    (0.0, 0.8)
-    """
-    return law.edges[0] if law.name.startswith("annulus:") else 0.0

@@ -2,8 +2,8 @@
 
 Where friction differs, the rows of ``regions`` are all discs on the first strip, on the second, …,
 on every patch, and then all discs astride: on several frictions at once, each of which is felt
-under its own part of the base (:mod:`puck_tables.scene.astride`).  ``regions.ground`` has one such
-ground for every disc, all of one length, for each has its own load.
+under its own part of the base (:mod:`puck_tables.scene.base_on_floor`).  ``regions.ground`` has
+one such ground for every disc, all of one length, for each has its own load.
 """
 
 from __future__ import annotations

@@ -176,7 +176,7 @@ def act(
             own[0], own[1], own[2] = cx, cy, floor.turn
             if rubbed:
                 dry = _dry_under(group, members, place, y, desk)
-                heat = heat_at_rest(dry.by_speed.table, radius, -px / light, -py / light)
+                heat = heat_at_rest(dry.by_speed.table, -px / light, -py / light)
                 power[FLOOR_HEAT] += heat
                 power[SUPPORT_WORK] += heat
             continue
