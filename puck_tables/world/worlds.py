@@ -383,8 +383,8 @@ class Worlds:
         self.time = self.time.copy()
         self.time[some], self._told = orders.after, told
         if self._apart or apart:
-            self._apart = {slot: one for slot, one in self._apart.items() if slot in self._at}
-            self._apart |= apart
+            still = np.setdiff1d(self._at, target)
+            self._apart = {slot: one for slot, one in self._apart.items() if slot in still} | apart
 
     def _quicken(
         self, what: int, rows: FloatArray, discs: Whole, slots: Whole, time: FloatArray,
