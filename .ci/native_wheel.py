@@ -38,10 +38,10 @@ def main(pure: Path, into: Path) -> None:
     with tempfile.TemporaryDirectory() as work:
         kept, unpacked = Path(work, "kept"), Path(work, "unpacked")
         venv.create(Path(work, "empty"), with_pip=True)
-        python = next(Path(work, "empty").glob("*/python*"))
+        python = Path(work, "empty", "Scripts" if os.name == "nt" else "bin", "python")
         run(python, "-m", "pip", "install", "--quiet", pure, "wheel")
         machine = {"NUMBA_CPU_NAME": name, "NUMBA_CPU_FEATURES": "", "NUMBA_CACHE_DIR": str(kept)}
-        run(python, "-m", "puck_tables.cli", "warm-up", **machine)
+        run(python, "-c", "import puck_tables; puck_tables.warm_up()", **machine)
         run(python, "-m", "wheel", "unpack", "--dest", unpacked, pure)
         (root,), (folder,) = unpacked.iterdir(), kept.iterdir()
         brought = root / "puck_tables" / folder.name

@@ -271,9 +271,7 @@ def _profiled(result: Estimate, certainty: Certainty, name: str) -> Interval | N
 def _height_of_delta(problem: Problem, x: FloatArray, delta: Number) -> Interval:
     """The interval of height from the ends of δ's, f and r as found (that of f is far narrower)."""
     spec, values = problem.spec, problem.numbers_at(x)
-    low, high = (
-        spec.all_at({**values, "delta": end})["height"] for end in (delta.low, delta.high)
-    )
+    low, high = (spec.all_at({**values, "delta": end})["height"] for end in (delta.low, delta.high))
     return Interval(low, high, True)
 
 

@@ -7,7 +7,7 @@ is opened that does not match its digest; what is missing or damaged is compiled
 that of :func:`puck_tables.kernels.cache.cache_folder`, which only this user can write.  (The digest
 proves a file whole; that nobody else made it is for the folder to prove.)  A wheel for one kind of
 machine brings such files along, made for the oldest processors that it serves: see
-:class:`Target`.
+:class:`MadeFor`.
 """
 
 from __future__ import annotations
@@ -106,7 +106,7 @@ class KeptCode:
         return folder / f"{self._name}-{hashlib.sha256(repr(key).encode()).hexdigest()[:16]}.code"
 
 
-class Target(NamedTuple):
+class MadeFor(NamedTuple):
     """For which processors a wheel's compiled code was made; the file ``target.json`` says it.
 
     ``codegen``: numba's triple, name and features; ``needs``: features that it uses.
@@ -116,7 +116,7 @@ class Target(NamedTuple):
     needs: tuple[str, ...]
 
     @classmethod
-    def read(cls, folder: Path) -> Target | None:
+    def read(cls, folder: Path) -> MadeFor | None:
         """Of the code in a folder, None where there is none."""
         try:
             kept = json.loads((folder / "target.json").read_text(encoding="utf-8"))
@@ -131,7 +131,7 @@ def brought_for(codegen: Any) -> tuple[str, ...] | None:
 
     Whoever names a processor to numba gets code for that one.
     """
-    target = Target.read(brought_folder())
+    target = MadeFor.read(brought_folder())
     if target is None or _settings.CPU_NAME or _settings.CPU_FEATURES:
         return None
     features = binding.get_host_cpu_features()
