@@ -73,7 +73,7 @@ _WHOLE = ("kinds", "group", "next_partner", "counts", "drives", "hangs", "held")
 PACE = slice(0, 2)  # where in a row the scales of a board are
 
 
-class Store(NamedTuple):
+class Slots(NamedTuple):
     """What boards keep, in slots: rows of numbers, of whole ones, and of pieces (slots, rows, 21).
 
     ``due`` (slots,): before when nothing happens, s.
@@ -171,7 +171,7 @@ def lay_out(bench: Bench, game: Game, seen: FloatArray) -> Game:
 
 
 @inlined
-def _take(store: Store, slot: int, time: float, bench: Bench) -> None:
+def _take(store: Slots, slot: int, time: float, bench: Bench) -> None:
     """Copy a board to the bench, with a flight before that of each disc: until when it moved."""
     game, count = bench.game, bench.ended.size
     for column in range(bench.numbers.size):
@@ -197,7 +197,7 @@ def _take(store: Store, slot: int, time: float, bench: Bench) -> None:
 
 
 @kernel
-def take(store: Store, slot: int, time: float, bench: Bench) -> None:
+def take(store: Slots, slot: int, time: float, bench: Bench) -> None:
     """Copy a board to the bench."""
     _take(store, slot, time, bench)
 
@@ -268,7 +268,7 @@ def _next_due(game: Game, seen: FloatArray) -> float:
 
 
 @inner
-def _put_away(game: Game, bench: Bench, store: Store, slot: int) -> bool:
+def _put_away(game: Game, bench: Bench, store: Slots, slot: int) -> bool:
     """Copy what a board keeps to a slot, if its pieces have room there."""
     count = bench.ended.size
     _find_ends(game, bench.room, bench.ended)
@@ -289,7 +289,7 @@ def _put_away(game: Game, bench: Bench, store: Store, slot: int) -> bool:
 
 
 @kernel
-def put_away(game: Game, bench: Bench, store: Store, slot: int) -> bool:
+def put_away(game: Game, bench: Bench, store: Slots, slot: int) -> bool:
     """The same of a game that :func:`lay_out` gave."""
     return _put_away(game, bench, store, slot)
 
@@ -371,7 +371,7 @@ def tell(board: int, game: Game, first: int, bench: Bench, passed: int, out: Flo
 
 @kernel
 def play(
-    what: int, orders: Orders, store: Store, bench: Bench, desk: FloatArray | None, start: int,
+    what: int, orders: Orders, store: Slots, bench: Bench, desk: FloatArray | None, start: int,
     stop: int, out: FloatArray,
 ) -> tuple[int, int]:  # fmt: skip
     """Play boards, until all are done or ``out`` may lack rows; how far it came, and rows used.
@@ -411,7 +411,7 @@ def play(
 
 @kernel
 def fill_states(
-    store: Store, slots: Whole, times: FloatArray, bench: Bench, start: int, stop: int,
+    store: Slots, slots: Whole, times: FloatArray, bench: Bench, start: int, stop: int,
     states: FloatArray, moving: Whole,
 ) -> None:  # fmt: skip
     """States (n, pucks, 6) of boards in slots, and which pucks move."""
