@@ -19,8 +19,8 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.speed_law import SpeedLaw
-from puck_tables.kernels.compile import allocating, kernel, patience
 from puck_tables.kernels.closed_form_kernel import full_integrals
+from puck_tables.kernels.compile import allocating, kernel, patience
 from puck_tables.kernels.speed_quadrature_kernel import COARSE, integrals_at
 
 _STEP, _STEPS = 0.08, 440  # of which friction alone takes half
