@@ -26,6 +26,7 @@ LONG = (
     "explorer.md",
     "scenes.md",
     "export.md",
+    "paths.md",
 )
 
 
