@@ -208,7 +208,7 @@ class Worlds(Together):
         >>> worlds.drive("mallet", [[1.0, 0.0], [2.0, 0.0]])
         >>> worlds.advance(0.25)
         >>> worlds.state()[:, 1, 3].round(6).tolist()         # 2 V - f g t, from the impact on
-        [1.872514, 3.803867]
+        [1.872514, 3.813674]
         """
         i, some = self._first._led(puck, False), self._some(boards)
         self._refuse_gone(i, some)
@@ -254,10 +254,10 @@ class Worlds(Together):
         --------
         >>> from puck_tables import Launch, Piece, Scene, Worlds
         >>> worlds = Worlds(Scene(pucks=[Piece(0.03, friction=0.1, launch=Launch((1, 0)))]), 2)
-        >>> worlds.advance(0.5)
+        >>> worlds.advance(0.25)
         >>> worlds.reset([1])
         >>> worlds.time.tolist(), worlds.state()[:, 0, 3].round(6).tolist()
-        ([0.5, 0.0], [0.509668, 1.0])
+        ([0.25, 0.0], [0.754834, 1.0])
         """
         some = self._some(boards)
         if states is not None:
