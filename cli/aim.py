@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 from puck_tables.cli.options import (
+    ANGLE,
     FILE,
     SPEED,
     SPIN,
@@ -55,10 +56,12 @@ _ON_BOARDS = ("pocket", "puck", "striker", "hits", "max_impacts")
     click.option("--w0", type=SPIN, help="The launch with this spin, in rad/s, with its sign."),
     click.option("--speed", type=SPEED, help="The launches with this speed, in m/s."),
     click.option("--time", type=TIME, help="The launches that stop after this time, in s."),
+    click.option("--angle", type=ANGLE, help="The launches after which the body rests at this "
+                 "angle up to whole turns, in rad or like 90deg; it begins at 0."),
     click.option("--max-speed", type=SPEED, help="No launch faster than this, in m/s."),
     click.option("--max-spin", type=SPIN, help="No launch with more spin than this, in rad/s."),
-    click.option("--count", type=int, help="Slip angles of a sample, for each sense of spin "
-                 "[default: 8]; in a scene launches that are given [default: 16]."),
+    click.option("--count", type=int, help="Slip angles of a sample, or numbers of turns, for each "
+                 "sense of spin [default: 8]; in a scene launches that are given [default: 16]."),
 )  # fmt: skip
 @packed("choice", PuckChoice, *puck_options())
 @outputs("Save the launches: .csv, .h5, .jsonl or .parquet.", as_json=True)
@@ -70,13 +73,15 @@ def aim(
 ) -> None:  # fmt: skip
     """Find launches after which a puck comes to rest at a target.
 
-    There is one for each slip angle and sense of spin.  --w0, --speed or --time picks one or two;
-    without them a sample of the family is shown.  Each is integrated, and how far from the target
-    that ends stands in the last column.  That there is none is an answer too.
+    There is one for each slip angle and sense of spin.  --w0, --speed or --time picks one or two,
+    --angle one for each number of whole turns; without them a sample of the family is shown.  Each
+    is integrated, and how far from the target that ends stands in the last column.  That there is
+    none is an answer too.
 
     \b
     puck aim --target 2,0.1 --w0 5
     puck aim --target 2,0.1 --time 3
+    puck aim --target 2,0.1 --angle 90deg --count 2
     puck aim --target 2,0.1 --max-speed 1.5 --max-spin 10 --plot aim.png
     puck aim --targets holes.csv --time 3 -o shots.csv
 
@@ -88,7 +93,7 @@ def aim(
     puck aim --scene curling-take-out --puck yellow --target 0.5,-0.5
     puck aim --scene crokinole --puck shot --pocket 0 --plot shot.png
     """  # noqa: D301 - click reads the backspace
-    picked = [f"--{name}" for name in ("w0", "speed", "time") if wishes[name] is not None]
+    picked = [f"--{name}" for name in ("w0", "speed", "time", "angle") if wishes[name] is not None]
     if len(picked) > 1:
         raise InputError(f"{picked[0]} and {picked[1]} clash: each picks a launch")
     for name, places in (("--target", targets), ("--pocket", wishes["pocket"])):
@@ -101,6 +106,7 @@ def aim(
         for name, value, instead in (
             ("--targets", targets_file, "give one --target"),
             ("--time", wishes.get("time"), "leave it out"),
+            ("--angle", wishes.get("angle"), "leave it out"),
         ):  # fmt: skip
             if value is not None:
                 raise InputError(f"{name} has no place in a scene: {instead}")
@@ -160,13 +166,14 @@ def _report(result: Aim | Aims, note: str) -> Iterator[str]:
     if result.launch_spin.size:
         heads = {
             "w0 rad/s": ".6g", "v0 x m/s": ".6g", "v0 y m/s": ".6g", "speed m/s": ".6g",
-            "heading deg": ".5f", "phi deg": ".3f", "time s": ".6g", "miss m": ".0e",
+            "heading deg": ".5f", "phi deg": ".3f", "time s": ".6g", "body deg": ".5g",
+            "miss m": ".0e",
         }  # fmt: skip
         degrees = math.degrees(1.0)
         yield "\n" + columns(heads, zip(
             result.launch_spin, result.launch_vx, result.launch_vy, result.launch_speed,
             degrees * result.launch_heading, degrees * result.launch_slip_angle, result.stop_time,
-            result.miss, strict=True,
+            degrees * result.body_angle, result.miss, strict=True,
         ))  # fmt: skip
 
 

@@ -29,7 +29,7 @@ Option = Callable[[Command], Command]
 DEFAULT_DELTA, DEFAULT_DECEL = 0.5, 1.0
 RESULTS = ".h5, .csv, .json, .jsonl or .parquet"
 
-NUMBER, LENGTH, SPEED, SPIN, TIME = map(NumberParam, ("", "m", "m/s", "rad/s", "s"))
+NUMBER, LENGTH, SPEED, SPIN, TIME, ANGLE = map(NumberParam, ("", "m", "m/s", "rad/s", "s", "rad"))
 FILE = click.Path(readable=False, path_type=Path)
 
 

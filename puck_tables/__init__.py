@@ -80,6 +80,7 @@ if TYPE_CHECKING:
     from puck_tables.world.sample import Sample
     from puck_tables.world.scene import Piece, Scene
     from puck_tables.world.world import World
+    from puck_tables.world.worlds import Worlds
     from puck_tables.wrench.friction_hold import Hold
     from puck_tables.wrench.push import Push, push
     from puck_tables.wrench.surface import LimitSurface
@@ -128,6 +129,7 @@ _HOMES = {  # names of this package by the modules that hold them
     "world.sample": "Sample",
     "world.scene": "Piece Scene",
     "world.world": "World",
+    "world.worlds": "Worlds",
     "wrench.friction_hold": "Hold",
     "wrench.push": "Push push",
     "wrench.surface": "LimitSurface",
@@ -135,15 +137,15 @@ _HOMES = {  # names of this package by the modules that hold them
 
 __all__ = [
     "AccuracyError", "Aim", "Aims", "Answer", "Arc", "Base", "BoardAim", "Camera", "CheckReport",
-    "ClusterError", "Comparison", "Constraint", "ContactError", "CurlingLaw", "Drag", "Edge",
-    "Fit", "Floor", "FloorFriction", "Force", "Forecast", "Grip", "Hold", "InputError", "Lateral",
+    "ClusterError", "Comparison", "Constraint", "ContactError", "CurlingLaw", "Drag", "Edge", "Fit",
+    "Floor", "FloorFriction", "Force", "Forecast", "Grip", "Hold", "InputError", "Lateral",
     "Launch", "Law", "LimitSurface", "Line", "Map", "MissingExtraError", "Normal", "Orthotropic",
     "OutputError", "Patch", "Piece", "Plastic", "Pocket", "Post", "PowerLaw", "Puck", "PuckError",
     "Push", "RestitutionTable", "Result", "Rim", "Run", "Sample", "Scene", "Source", "SpeedLaw",
     "States", "StopMap", "StopSample", "Stops", "StribeckLaw", "Strips", "Table", "TableError",
-    "Track", "Trajectory", "Uniform", "Viscoelastic", "Wall", "World", "__version__", "chetaev",
-    "compare", "contact", "export_source", "fisher", "fit", "floor_friction", "law_of", "motion",
-    "path_along", "profile_law", "push", "read_tracks", "reference_case", "resultants",
+    "Track", "Trajectory", "Uniform", "Viscoelastic", "Wall", "World", "Worlds", "__version__",
+    "chetaev", "compare", "contact", "export_source", "fisher", "fit", "floor_friction", "law_of",
+    "motion", "path_along", "profile_law", "push", "read_tracks", "reference_case", "resultants",
     "state_arrays", "states", "stop", "stop_arrays", "table_for", "warm_up",
 ]  # fmt: skip
 

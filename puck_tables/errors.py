@@ -4,7 +4,12 @@ from __future__ import annotations
 
 
 class PuckError(Exception):
-    """Base class: whatever the package refuses to do, it refuses with one of these."""
+    """Base class: whatever the package refuses to do, it refuses with one of these.
+
+    ``boards``: of what :class:`puck_tables.Worlds` does, the numbers of boards on which it fails.
+    """
+
+    boards: tuple[int, ...] = ()
 
 
 class InputError(PuckError, ValueError):

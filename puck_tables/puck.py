@@ -263,7 +263,7 @@ class Puck(VerbsOfMany):
     @overload
     def aim(
         self, target: tuple[float, float], *, spin: float | None = None,
-        speed: float | None = None, stop_time: float | None = None,
+        speed: float | None = None, stop_time: float | None = None, angle: float | None = None,
         max_speed: float | None = None, max_spin: float | None = None, count: int = 8,
         threads: int | None = None,
     ) -> Aim: ...  # fmt: skip
@@ -272,8 +272,8 @@ class Puck(VerbsOfMany):
     def aim(
         self, target: npt.ArrayLike, *, spin: npt.ArrayLike | None = None,
         speed: npt.ArrayLike | None = None, stop_time: npt.ArrayLike | None = None,
-        max_speed: float | None = None, max_spin: float | None = None, count: int = 8,
-        threads: int | None = None,
+        angle: npt.ArrayLike | None = None, max_speed: float | None = None,
+        max_spin: float | None = None, count: int = 8, threads: int | None = None,
     ) -> Aim | Aims: ...  # fmt: skip
 
     def aim(
@@ -283,6 +283,7 @@ class Puck(VerbsOfMany):
         spin: npt.ArrayLike | None = None,
         speed: npt.ArrayLike | None = None,
         stop_time: npt.ArrayLike | None = None,
+        angle: npt.ArrayLike | None = None,
         max_speed: float | None = None,
         max_spin: float | None = None,
         count: int = 8,
@@ -291,7 +292,8 @@ class Puck(VerbsOfMany):
         """Launches after which the puck comes to rest at given displacements; all broadcasts.
 
         They are a family for each target: one for each slip angle and sense of spin.  A spin, a
-        speed or a stop time picks one or two of it; without any, a sample is given.
+        speed or a stop time picks one or two of it, an angle of the body at rest one for
+        each number of whole turns; without any, a sample is given.
 
         Parameters
         ----------
@@ -299,6 +301,8 @@ class Puck(VerbsOfMany):
         spin : array_like (…), wanted, rad/s, with its sign
         speed : array_like (…), launch speed wanted, m/s
         stop_time : array_like (…), duration wanted, s
+        angle : array_like (…), of the body at rest wanted, rad up to whole turns, 0 at the launch
+            Of each sense of spin the ``count`` launches with the fewest turns, within the bounds.
         max_speed, max_spin : bounds on speed (m/s) and on |spin| (rad/s)
         count : how many slip angles a sample has, for each sense of spin
             Equally spaced from the least spin that ``max_speed`` allows (0 without it) to
@@ -319,8 +323,8 @@ class Puck(VerbsOfMany):
         Raises
         ------
         InputError
-            If an argument is not finite or outside its range, or two of ``spin``, ``speed`` and
-            ``stop_time`` are given.
+            If an argument is not finite or outside its range, or two of ``spin``, ``speed``,
+            ``stop_time`` and ``angle`` are given.
 
         Notes
         -----
@@ -343,14 +347,17 @@ class Puck(VerbsOfMany):
         >>> many = Puck.similar().aim([(2.0, 0.1), (1.0, -1.0)], speed=1.7)
         >>> many.launches.tolist(), many.launch_spin.round(6).tolist()
         ([2, 0], [-1.981038, 1.981038])
+        >>> pose = Puck.similar().aim((2.0, 0.1), angle=1.0, count=1)
+        >>> pose.launch_spin.round(6).tolist(), pose.body_angle.round(6).tolist()
+        ([-3.547515, 0.735296], [-5.283185, 1.0])
         """
         from puck_tables.stopping.aim_at_targets import aim
 
         self.refuse_base("aim")
         self.refuse_frictionless()
         return aim(
-            self, target, spin=spin, speed=speed, stop_time=stop_time, max_speed=max_speed,
-            max_spin=max_spin, count=count, threads=threads,
+            self, target, spin=spin, speed=speed, stop_time=stop_time, angle=angle,
+            max_speed=max_speed, max_spin=max_spin, count=count, threads=threads,
         )  # fmt: skip
 
     def limit_surface(self, n: int | None = None) -> LimitSurface | BaseSurface:

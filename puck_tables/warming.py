@@ -10,6 +10,7 @@ from puck_tables.kernels.patience import compiled_at_once
 from puck_tables.puck import Puck
 from puck_tables.scene.parts import Floor, Launch, Wall
 from puck_tables.world.scene import Piece, Scene
+from puck_tables.world.worlds import Worlds
 
 _PUCKS = [Puck(0.04, 0.02, 0.15), Puck(0.04, 0.02, 0.15, pressure="ring")]
 _LAUNCH = (1.0, 0.2), 5.0  # m/s, rad/s: any that is neither pure sliding nor pure spin
@@ -57,6 +58,10 @@ def _boards() -> None:
 def _boards_of_many() -> None:
     one, two = (Piece(0.04, friction=0.1, launch=Launch(position=(x, 0.0))) for x in (0.0, 0.2))
     Scene(pucks=(one, two)).aim((0.5, 0.0), puck=1, striker=0, max_speed=2.0)
+    worlds = Worlds(_table(), 2)
+    worlds.strike(0, (0.5, 0.0))
+    worlds.advance(0.1)
+    worlds.state()
 
 
 def _board() -> Scene:

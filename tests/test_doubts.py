@@ -30,6 +30,12 @@ def nothing_said(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(own_folder, "_said", set())
 
 
+def test_a_puck_in_units_of_its_own_may_have_any_size(capsys: pytest.CaptureFixture[str]):
+    pt.Puck.similar(radius=1e4, delta=0.7)
+    pt.export_source("js", "state", tol=1e-4)
+    assert "beyond" not in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("path", SIZES)
 def test_another_unit_is_asked_for(path: str, capsys: pytest.CaptureFixture[str]):
     usual, factor, words = SIZES[path]

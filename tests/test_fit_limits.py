@@ -34,6 +34,23 @@ def test_any_noise_may_be_given_of_any_track(seed):
     assert not friction.determined or abs(friction.value - puck.friction) < 4.5 * friction.error
 
 
+@pytest.mark.parametrize("seed", few(3, range(40)))
+def test_a_puck_that_is_flat_or_nearly_has_a_height_within_its_film(seed):
+    """δ is bound by the film and h = δ r/2f with it, also where δ ends at 0."""
+    rng = np.random.default_rng([35, 12, seed])
+    height = 0.0 if seed % 2 else rng.uniform(0.0, 2e-3)
+    times = np.arange(90) / 60.0
+    path = pt.Puck(radius=0.0381, friction=0.1, height=height).states((2.0, 0.3), 20.0, times)
+    place = np.stack([path.x, path.y], axis=1) + NOISE[0] * rng.normal(size=(90, 2))
+    angle = path.orientation + 3e-3 * rng.normal(size=90)
+    found = pt.fit(pt.Track(times, place, angle), pt.Puck(radius=0.0381))
+    told, delta = found["height"], found["delta"]
+    half = 0.0381 / (2.0 * found["friction"].value)
+    assert 0.0 <= told.low < told.high and delta.high < 1.0
+    assert told.high == pytest.approx(delta.high * half, rel=0.05)
+    assert told.low - 1e-3 < height < told.high + 1e-3  # some 3 errors beside the interval
+
+
 def test_a_forecast_of_anything_is_a_forecast_or_a_sentence():
     rng = np.random.default_rng(3511)
     puck, told, refused = pt.Puck(radius=0.04, height=0.02, friction=0.2), 0, 0

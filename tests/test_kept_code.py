@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -15,7 +16,7 @@ from rarely import few
 from puck_tables._core.own_folder import _said, make_private, refuse_shared
 from puck_tables._core.sources import source_digest
 from puck_tables.errors import InputError
-from puck_tables.kernels import kept_code
+from puck_tables.kernels import cache, kept_code
 from puck_tables.kernels.compile import kernel
 
 LIMIT = 1.531389372173909906  # tan φ₀ at δ = 0
@@ -156,8 +157,12 @@ def test_a_folder_below_one_like_tmp_is_used(tmp_path: Path):
         make_private(tmp_path)
 
 
-def test_the_users_cache_is_judged_alike(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_the_users_cache_is_judged_alike(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
+):
     from puck_tables.table import table_cache, table_store
+
+    request.addfinalizer(cache.cache_folder.cache_clear)  # it may be asked here first
 
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     tmp_path.chmod(0o777)
@@ -179,3 +184,56 @@ def test_nothing_appears_beside_the_package_where_no_folder_will_do(tmp_path: Pa
     run(Path("/proc/none"), HOME="/proc/none")
     beside = {path.suffix for path in (ROOT / "puck_tables").glob("**/__pycache__/*")}
     assert beside <= {".pyc"}
+
+
+@pytest.fixture
+def brought(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder beside it, with code as a wheel brings it along, for this machine."""
+    compiled()(6.0)
+    (path,) = folder.iterdir()
+    along = folder.parent / f"{folder.name}-along"
+    along.mkdir()
+    path.replace(along / path.name)
+    monkeypatch.setattr(kept_code, "brought_folder", lambda: along)
+    kept_code.brought_for.cache_clear()
+    return along
+
+
+def say_target(folder: Path, *needs: str) -> None:
+    codegen = compiled().compiled.targetctx.codegen().magic_tuple()
+    target = {"codegen": codegen, "needs": needs}
+    (folder / "target.json").write_text(json.dumps(target), encoding="utf-8")
+
+
+def test_code_that_came_along_is_run(folder: Path, brought: Path):
+    say_target(brought)
+    again = compiled()
+    assert again(6.0) == 2.0
+    assert sum(again.compiled.stats.cache_hits.values()) == 1
+    assert list(folder.iterdir()) == []
+
+
+@pytest.mark.parametrize("harm", ["a processor", "no target", "another triple", "a flipped bit"])
+def test_code_that_came_along_for_others_is_not_run(harm: str, folder: Path, brought: Path):
+    say_target(brought, *(["avx1024"] if harm == "a processor" else []))
+    target = brought / "target.json"
+    (code,) = brought.glob("*.code")
+    if harm == "no target":
+        target.write_text("{}", encoding="utf-8")
+    if harm == "another triple":
+        target.write_text(target.read_text().replace("-linux", "-beos"), encoding="utf-8")
+    if harm == "a flipped bit":
+        whole = code.read_bytes()
+        code.write_bytes(whole[:-1] + bytes([whole[-1] ^ 1]))
+    again = compiled()
+    assert again(6.0) == 2.0
+    assert not again.compiled.stats.cache_hits
+    assert len(list(folder.iterdir())) == 1
+
+
+def test_whoever_names_a_processor_gets_code_for_it(brought: Path, monkeypatch: pytest.MonkeyPatch):
+    say_target(brought)
+    monkeypatch.setattr("numba.config.CPU_NAME", "generic")
+    again = compiled()
+    assert again(6.0) == 2.0
+    assert not again.compiled.stats.cache_hits

@@ -58,7 +58,12 @@ DOORS = {
         "kernels.numba_settings",
         "kernels.vectors",
     },
-    "llvmlite": {"kernels.register_blocks", "kernels.linking", "kernels.vectors"},
+    "llvmlite": {
+        "kernels.kept_code",
+        "kernels.linking",
+        "kernels.register_blocks",
+        "kernels.vectors",
+    },
     "h5py": {"film.readers.poses", "io.hdf5", "table.file"},
     "xarray": {"io.frames"},
     "pandas": {"io.frames"},

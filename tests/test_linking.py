@@ -90,7 +90,7 @@ _SAYS = (
 )
 
 
-@pytest.mark.thorough
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("without", "kept"),
     [

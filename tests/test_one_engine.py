@@ -51,7 +51,7 @@ def varied(seed: int, folder: Path) -> dict[str, Any]:
 @pytest.mark.parametrize(
     "first",
     [
-        pytest.param(n, marks=[pytest.mark.thorough] * (n > 0) + [pytest.mark.nightly] * (n >= 50))
+        pytest.param(n, marks=[pytest.mark.thorough] * (n > 0) + [pytest.mark.nightly] * (n >= 20))
         for n in range(0, 400, BLOCK)
     ],
 )

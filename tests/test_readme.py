@@ -26,6 +26,7 @@ LONG = (
     "explorer.md",
     "scenes.md",
     "export.md",
+    "paths.md",
 )
 
 
@@ -66,7 +67,7 @@ def test_console_examples(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyP
 @every_page
 def test_library_examples(page: str):
     found = doctest.testfile(str(PAGES[page]), module_relative=False, encoding="utf-8")
-    assert found.attempted == TEXTS[page].count("\n>>> ")
+    assert found.attempted == len(re.findall(r"^ *>>> ", TEXTS[page], re.MULTILINE))
     assert found.failed == 0
 
 

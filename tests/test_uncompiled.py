@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from rarely import few
 
 import puck_tables as pt
 from puck_tables._core.arrays import FloatArray
@@ -95,7 +96,8 @@ print(json.dumps([answers, "numba" in sys.modules]))
 
 @pytest.mark.thorough
 @pytest.mark.parametrize(
-    ("seed", "kind"), [(0, "plain"), (1, "plain"), (2, "pressure"), (3, "gyration"), (4, "tall")]
+    ("seed", "kind"),
+    few(2, [(0, "plain"), (4, "tall"), (1, "plain"), (2, "pressure"), (3, "gyration")]),
 )
 def test_python_compiles_nothing_and_tells_what_compiled_code_tells(
     seed: int, kind: str, tmp_path: Path
@@ -125,7 +127,7 @@ def test_python_compiles_nothing_and_tells_what_compiled_code_tells(
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("name", ["wet-patch", "air-hockey", "carrom-break"])
+@pytest.mark.parametrize("name", few(1, ["carrom-break", "wet-patch", "air-hockey"]))
 def test_scenes_run_alike(name: str):
     command = [*PUCK, "simulate", "--scene", name, "--json"]
     told, compiled = run(command, **AS_WRITTEN)[0], run(command, **COMPILED)[0]

@@ -26,6 +26,9 @@ world = pt.Scene.load("curling-take-out").world()
 for frame in range(60):
     world.advance(1.0 / 60.0)
     world.state()
+many = pt.Worlds(pt.Scene.load("shuffleboard-two-stones"), 100)
+many.advance(0.5)
+many.state()
 """
 
 

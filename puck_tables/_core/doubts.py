@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
+import threading
+from collections.abc import Iterator
 
 from puck_tables._core.own_folder import say
 from puck_tables._core.units import SHOWN
@@ -13,6 +16,25 @@ _USUAL = {"m": 100.0, "m/s": 300.0, "rad": 2.0 * math.pi, "kg": 100.0}
 _WORDS = {"m": "lengths are in metres", "m/s": "speeds are in m/s", "kg": "masses are in kg",
           "rad": "angles are in radians; if degrees are meant"}  # fmt: skip
 _WIDE = 1.0  # rad, of a standard deviation: those of headings are below
+
+
+_here = threading.local()
+
+
+@contextlib.contextmanager
+def unquestioned() -> Iterator[None]:
+    """Take numbers as they are in this thread: they follow from others, or have no unit.
+
+    Examples
+    --------
+    >>> with unquestioned():
+    ...     question("radius", 1e6, "m")
+    """
+    before, _here.quiet = getattr(_here, "quiet", False), True
+    try:
+        yield
+    finally:
+        _here.quiet = before
 
 
 def question(name: str, number: float, unit: str, usual: float = 0.0) -> None:
@@ -29,7 +51,7 @@ def question(name: str, number: float, unit: str, usual: float = 0.0) -> None:
     >>> question("puck.radius", 0.04, "m")
     """
     limit = usual or _USUAL.get(unit, math.inf)
-    if not limit < abs(number) < math.inf:
+    if not limit < abs(number) < math.inf or getattr(_here, "quiet", False):
         return
     what = name.rpartition(".")[2].partition("[")[0]
     if what == "orientation" and 2.0 * number % 1.0:  # of a puck that has turned often

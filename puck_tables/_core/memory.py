@@ -10,7 +10,9 @@ from puck_tables.errors import InputError
 _ON_DISK = "use smaller counts, or a Zarr store (-o NAME.zarr, store=), which grows on disk"
 
 
-def check_memory(shape: tuple[int, ...], per_item: int, advice: str = _ON_DISK) -> None:
+def check_memory(
+    shape: tuple[int, ...], per_item: int, advice: str = _ON_DISK, what: str = ""
+) -> None:
     """Refuse a map that would not fit in memory, before anything is allocated.
 
     Parameters
@@ -18,6 +20,7 @@ def check_memory(shape: tuple[int, ...], per_item: int, advice: str = _ON_DISK) 
     shape : the sizes of the ranges
     per_item : bytes needed for each launch
     advice : what to do instead
+    what : that is to be kept, if it is no map of launches
 
     Raises
     ------
@@ -30,9 +33,9 @@ def check_memory(shape: tuple[int, ...], per_item: int, advice: str = _ON_DISK) 
     needed = float(per_item) * math.prod(shape)
     available = _memory()
     if needed > available:
-        sizes = " x ".join(str(n) for n in shape)
+        what = what or f"a map of {' x '.join(str(n) for n in shape)} launches"
         raise InputError(
-            f"a map of {sizes} launches would need {needed / 2**30:,.1f} GiB of memory, "
+            f"{what} would need {needed / 2**30:,.1f} GiB of memory, "
             f"{available / 2**30:,.1f} GiB are free: {advice}"
         )
 

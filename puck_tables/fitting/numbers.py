@@ -175,9 +175,13 @@ def numbers_of(
         ends = _follows(problem, x, name, slope, puck)
         if ends is None and profiled and name == "height" and math.isfinite(error):
             ends = _profiled(result, certainty, name)
-            if ends is not None and ends.profiled:
-                half = 0.5 * (ends.high - ends.low)
-                number = number._replace(error=half / certainty.reach, profiled=True)
+        if ends is None and name == "height" and "delta" in puck and puck["delta"].profiled:
+            ends = _height_of_delta(problem, x, puck["delta"])
+        if ends is not None and ends.profiled:
+            half = 0.5 * (ends.high - ends.low)
+            number = number._replace(
+                error=error if math.isnan(error) else half / certainty.reach, profiled=True
+            )
         if ends is not None:
             number = number._replace(low=ends.low, high=ends.high)
         puck[name] = number._replace(low=max(number.low, PUCK[name].low))
@@ -241,7 +245,8 @@ def _follows(
 def _profiled(result: Estimate, certainty: Certainty, name: str) -> Interval | None:
     """The interval of height by the profile likelihood, with height in place of δ as an unknown.
 
-    None where δ is not found, or more is known of it than the tracks tell.
+    None where δ is not found, or more is known of it than the tracks tell, or height is not bound
+    by itself.
     """
     problem = result.problem
     spec = problem.spec
@@ -257,8 +262,17 @@ def _profiled(result: Estimate, certainty: Certainty, name: str) -> Interval | N
     there = replace(result, problem=moved, x=x, residuals=rows, jacobian=slopes, minima=())
     plausible = plausible_for(moved, x)
     own = certainty_of(slopes[result.kept], plausible, certainty.degrees)
+    if own.undetermined[k]:
+        return None
     ratio = certainty.ratio(k)
     return interval_of(there, own, k).wider(height, ratio, 0.0, math.inf)
+
+
+def _height_of_delta(problem: Problem, x: FloatArray, delta: Number) -> Interval:
+    """The interval of height from the ends of δ's, f and r as found (that of f is far narrower)."""
+    spec, values = problem.spec, problem.numbers_at(x)
+    low, high = (spec.all_at({**values, "delta": end})["height"] for end in (delta.low, delta.high))
+    return Interval(low, high, True)
 
 
 def _slope(problem: Problem, x: FloatArray, name: str) -> FloatArray:

@@ -13,22 +13,21 @@ places are right to 1e-6 of the path, far below what a film tells.
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.contact import closed_form
 from puck_tables.contact.speed_law import SpeedLaw
-from puck_tables.kernels.compile import allocating, inlined, kernel, patience
-from puck_tables.kernels.speed_quadrature_kernel import FINE, integrals_at
+from puck_tables.kernels.closed_form_kernel import full_integrals
+from puck_tables.kernels.compile import allocating, kernel, patience
+from puck_tables.kernels.speed_quadrature_kernel import COARSE, integrals_at
 
 _STEP, _STEPS = 0.08, 440  # of which friction alone takes half
 _REST = 1e-6  # of the slip at the launch
 _ROOM = 48
 AHEAD, ASIDE, RIM, X, Y, TURN, TIME = range(7)  # speeds along x and y, of the rim; place, angle
 _ANY = np.zeros((1, 4)), np.zeros(2)  # of no law
-_integrals: Any = inlined(closed_form.shape_integrals)
 
 
 class Drags(NamedTuple):
@@ -68,11 +67,11 @@ def _rates(
     fast = rim > v
     ratio = v / rim if fast else (rim / v if v > 0.0 else 0.0)
     if even > 0.0:
-        a, b, d = _integrals(ratio, 1.0 if fast else 0.0)
+        a, b, d = full_integrals(ratio, 1.0 if fast else 0.0)
         a, b, d = even * a, even * b, even * d
         e = d - 2.0 * b
     else:
-        integrals_at(breaks, pieces, ratio, fast, slip, FINE, edges, p)
+        integrals_at(breaks, pieces, ratio, fast, slip, COARSE, edges, p)
         a, b, d, e = p[0], p[1], p[2], p[3]
     cosine, sine = v / slip, y[RIM] / slip
     bottom = 1.0 - height * height * sine * sine * b * (b - d)

@@ -7,6 +7,7 @@ the package: after any edit, nothing compiled before can be found.
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import shutil
@@ -19,6 +20,8 @@ from typing import Any
 
 from puck_tables._core.own_folder import make_private, say, user_cache
 from puck_tables._core.sources import source_digest
+
+_PACKAGE = Path(__file__).resolve().parent.parent
 
 
 @cache
@@ -66,14 +69,20 @@ def file_stem(function: Callable[..., Any]) -> str:
 
 def is_any_kept(function: Callable[..., Any]) -> bool:
     """Whether compiled code of a function is kept, for whatever arguments."""
-    folder = _place()
-    try:
-        return folder is not None and file_stem(function) in _kept(folder, folder.stat().st_mtime)
-    except OSError:  # not there yet
-        return False
+    stem = file_stem(function)
+    for folder in (_place(), brought_folder()):
+        with contextlib.suppress(OSError):  # not there yet
+            if folder is not None and stem in _kept(folder, folder.stat().st_mtime):
+                return True
+    return False
 
 
-@lru_cache(maxsize=1)
+def brought_folder() -> Path:
+    """Where a wheel for this machine brings compiled code along; in a clone there is none."""
+    return _PACKAGE / f"compiled-{source_digest()}"
+
+
+@lru_cache(maxsize=2)
 def _kept(folder: Path, changed: float) -> set[str]:
     """Of which functions, since the folder was changed last."""
     return {path.name.rpartition("-")[0] for path in folder.glob("*.code")}

@@ -43,7 +43,8 @@ def _friction_ratios_with(shape_integrals: Any) -> Any:
 
 full_elliptic: Any = inlined(closed_form.elliptic)
 few_elliptic: Any = inlined(closed_form.elliptic_with(_FEW_STEPS))
-friction_ratios = _friction_ratios_with(inlined(closed_form.shape_integrals))
+full_integrals: Any = inlined(closed_form.shape_integrals)
+friction_ratios = _friction_ratios_with(full_integrals)
 _far_ratios = _friction_ratios_with(inlined(closed_form.shape_integrals_by(few_elliptic)))
 
 

@@ -5,26 +5,30 @@ numbers in silence, one in its index ends the program, and of two processes that
 may find the code of the other's types under its own.  Here a file holds what it is for, and nothing
 is opened that does not match its digest; what is missing or damaged is compiled anew; the folder is
 that of :func:`puck_tables.kernels.cache.cache_folder`, which only this user can write.  (The digest
-proves a file whole; that nobody else made it is for the folder to prove.)
+proves a file whole; that nobody else made it is for the folder to prove.)  A wheel for one kind of
+machine brings such files along, made for the oldest processors that it serves: see
+:class:`MadeFor`.
 """
 
 from __future__ import annotations
 
 import contextlib
 import hashlib
+import json
 import os
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numba
+from llvmlite import binding
 from numba.core import serialize
 from numba.core.compiler import CompileResult
 
-from puck_tables.kernels.cache import cache_folder, file_stem
+from puck_tables.kernels.cache import brought_folder, cache_folder, file_stem
 
 _DIGEST = hashlib.sha256().digest_size
 _dumps: Any = serialize.dumps
@@ -51,53 +55,88 @@ class KeptCode:
         """What was compiled for a signature, or None."""
         _leave_out_blas()
         target_context.refresh()
-        key = self._key(sig, target_context.codegen())
-        path = self._path(key)
-        if path is None:
-            return None
-        try:
-            kept = path.read_bytes()
-            content = kept[_DIGEST:]
-            if hashlib.sha256(content).digest() != kept[:_DIGEST]:
-                return None
-            kept_key, calls, payload = serialize.loads(content)
-            if kept_key != key:
-                return None
-            for called in calls:
-                self._at_hand(called)
-            result: Any = CompileResult
-            return result._rebuild(target_context, *payload)
-        except Exception:  # not there, or whatever numba's objects raise
-            return None
+        for path, key in self._places(sig, target_context.codegen()):
+            # not there, or whatever numba's objects raise
+            with contextlib.suppress(Exception):
+                kept = path.read_bytes()
+                content = kept[_DIGEST:]
+                if hashlib.sha256(content).digest() != kept[:_DIGEST]:
+                    continue
+                kept_key, calls, payload = serialize.loads(content)
+                if kept_key != key:
+                    continue
+                for called in calls:
+                    self._at_hand(called)
+                result: Any = CompileResult
+                return result._rebuild(target_context, *payload)
+        return None
 
     def keeps(self, sig: Any, target_context: Any) -> bool:
         """Whether a file is there that was made for a signature."""
-        path = self._path(self._key(sig, target_context.codegen()))
-        return path is not None and path.exists()
+        return any(path.exists() for path, _ in self._places(sig, target_context.codegen()))
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep what was compiled for a signature, unless the disk is full."""
-        key = self._key(sig, data.codegen)
-        path = self._path(key)
-        if path is None or data.lifted or data.library.has_dynamic_globals:
+        folder = cache_folder()
+        if folder is None or data.lifted or data.library.has_dynamic_globals:
             return  # addresses in it hold for this process only
+        key = self._key(sig, data.codegen.magic_tuple())
+        path = self._path(folder, key)
         content = _dumps((key, getattr(data.library, "calls", ()), data._reduce()))
         with contextlib.suppress(OSError):
             _write(path, hashlib.sha256(content).digest() + content)
 
-    def _key(self, sig: Any, codegen: Any) -> tuple[str, ...]:
+    def _places(self, sig: Any, codegen: Any) -> Iterator[tuple[Path, tuple[str, ...]]]:
+        """Where it may be, and what is written there: this user's folder, then what came along."""
+        machine, brought = codegen.magic_tuple(), brought_for(codegen)
+        for folder, target in ((cache_folder(), machine), (brought_folder(), brought)):
+            if folder is not None and target is not None:
+                key = self._key(sig, target)
+                yield self._path(folder, key), key
+
+    def _key(self, sig: Any, target: tuple[str, ...]) -> tuple[str, ...]:
         """All that the compiled code depends on besides the sources of the package."""
         enclosed = [cell.cell_contents for cell in self._function.__closure__ or ()]
         return (
-            self._name, str(sig), repr(codegen.magic_tuple()), repr(enclosed), numba.__version__,
-            sys.version, repr(_settings.BOUNDSCHECK), repr(_settings.OPT),
+            self._name, str(sig), repr(target), repr(enclosed), numba.__version__,
+            str(sys.implementation.cache_tag), repr(_settings.BOUNDSCHECK), repr(_settings.OPT),
         )  # fmt: skip
 
-    def _path(self, key: tuple[str, ...]) -> Path | None:
-        folder = cache_folder()
-        if folder is None:
-            return None
+    def _path(self, folder: Path, key: tuple[str, ...]) -> Path:
         return folder / f"{self._name}-{hashlib.sha256(repr(key).encode()).hexdigest()[:16]}.code"
+
+
+class MadeFor(NamedTuple):
+    """For which processors a wheel's compiled code was made; the file ``target.json`` says it.
+
+    ``codegen``: numba's triple, name and features; ``needs``: features that it uses.
+    """
+
+    codegen: tuple[str, ...]
+    needs: tuple[str, ...]
+
+    @classmethod
+    def read(cls, folder: Path) -> MadeFor | None:
+        """Of the code in a folder, None where there is none."""
+        try:
+            kept = json.loads((folder / "target.json").read_text(encoding="utf-8"))
+            return cls(tuple(kept["codegen"]), tuple(kept["needs"]))
+        except (OSError, ValueError, KeyError, TypeError):
+            return None
+
+
+@cache
+def brought_for(codegen: Any) -> tuple[str, ...] | None:
+    """For what the code was made that came along; None where this processor cannot run it.
+
+    Whoever names a processor to numba gets code for that one.
+    """
+    target = MadeFor.read(brought_folder())
+    if target is None or _settings.CPU_NAME or _settings.CPU_FEATURES:
+        return None
+    features = binding.get_host_cpu_features()
+    fits = codegen.magic_tuple()[0] == target.codegen[0] and all(map(features.get, target.needs))
+    return target.codegen if fits else None
 
 
 @cache

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Self
 
-from puck_tables._core.doubts import MOST_FRICTION, OF_A_PUCK
+from puck_tables._core.doubts import MOST_FRICTION, OF_A_PUCK, unquestioned
 from puck_tables._core.fields import Unsaid, of
 from puck_tables._core.own_folder import say
 from puck_tables._core.reading import Reading, entries_in, mark_checked, read_values
@@ -175,10 +175,11 @@ class PuckSpec:
         r, height = positive("radius", radius, "m"), real("delta", delta, "dimensionless")
         if not height >= 0.0:
             raise InputError(f"delta = 2 f h / r must not be negative, got {height:g}")
-        return cls(
-            radius=r, height=0.5 * height * r, friction=1.0, mass=mass,
-            gravity=positive("decel", decel, "m/s^2"), pressure=pressure, gyration=gyration,
-        )  # fmt: skip
+        with unquestioned():  # a puck in units of its own may have any size
+            return cls(
+                radius=r, height=0.5 * height * r, friction=1.0, mass=mass,
+                gravity=positive("decel", decel, "m/s^2"), pressure=pressure, gyration=gyration,
+            )  # fmt: skip
 
     @property
     def delta(self) -> float:

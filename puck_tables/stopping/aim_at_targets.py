@@ -20,6 +20,7 @@ from puck_tables.motion.puck_spec import PUCK_UNITS, PuckSpec
 from puck_tables.result import Result
 from puck_tables.stopping.launch_arrays import positive_array
 from puck_tables.stopping.launch_search import (
+    ANGLE,
     OF,
     QUANTITIES,
     SPIN,
@@ -33,7 +34,7 @@ from puck_tables.stopping.launch_search import (
 MAX_COUNT = 10_000  # launches of an answer: each a row
 _CHUNK = 4096  # targets that a thread takes at a time
 _TRIED = 100  # launches that are integrated to tell how well they do
-_UNITS = {"spin": "rad/s", "speed": "m/s", "stop_time": "s"}
+_UNITS = {"spin": "rad/s", "speed": "m/s", "stop_time": "s", "angle": "rad"}
 
 
 class LaunchColumns(Result):
@@ -45,7 +46,7 @@ class LaunchColumns(Result):
     answer: str
     ROWS: ClassVar[tuple[str, ...]] = (  # of a file
         "launch_spin", "launch_vx", "launch_vy", "launch_speed", "launch_heading",
-        "launch_slip_angle", "stop_time",
+        "launch_slip_angle", "stop_time", "body_angle",
     )  # fmt: skip
 
     @property
@@ -94,8 +95,9 @@ class Aim(LaunchColumns):
 
     Arrays (n,), ordered by spin, the most clockwise first: ``launch_velocity`` (n, 2) m/s,
     ``launch_spin`` rad/s, ``launch_speed`` m/s, ``launch_heading`` rad, ``launch_slip_angle`` φ
-    rad, ``stop_time`` s, and ``miss`` m: how far from the target an integration of the launch ends.
-    ``answer`` is one sentence: what was found, or why nothing can be.
+    rad, ``stop_time`` s, ``body_angle`` rad by which the puck turns, and ``miss`` m: how far from
+    the target an integration of the launch ends.  ``answer`` is one sentence: what was found, or
+    why nothing can be.
     """
 
     puck: PuckSpec
@@ -103,6 +105,7 @@ class Aim(LaunchColumns):
     launch_velocity: FloatArray
     launch_spin: FloatArray
     stop_time: FloatArray
+    body_angle: FloatArray
     miss: FloatArray
     answer: str
 
@@ -132,9 +135,9 @@ class Aims(LaunchColumns):
     ``target`` (…, 2) m; ``launches`` (…): how many lead to each.  Arrays (n,) of all launches,
     target after target and ordered by spin: ``target_index``, counted through all targets,
     ``launch_velocity`` (n, 2) m/s, ``launch_spin`` rad/s, ``launch_speed`` m/s, ``launch_heading``
-    rad, ``launch_slip_angle`` φ rad, ``stop_time`` s.  ``miss`` m, integrated when first asked for:
-    how far from its target an integration of the launch ends.  ``aims[2]`` or ``aims[2, 3]`` is the
-    :class:`Aim` at one target: with the reason where there is no launch.
+    rad, ``launch_slip_angle`` φ rad, ``stop_time`` s, ``body_angle`` rad.  ``miss`` m, integrated
+    when first asked for: how far from its target an integration of the launch ends.  ``aims[2]``
+    or ``aims[2, 3]`` is the :class:`Aim` at one target: with the reason where there is no launch.
     """
 
     puck: PuckSpec
@@ -143,6 +146,7 @@ class Aims(LaunchColumns):
     launch_velocity: FloatArray
     launch_spin: FloatArray
     stop_time: FloatArray
+    body_angle: FloatArray
     wish: dict[str, FloatArray] = field(repr=False)
     rest: dict[str, Any] = field(repr=False)
     threads: int | None = None
@@ -228,8 +232,8 @@ class Aims(LaunchColumns):
 
 def aim(
     puck: PuckSpec, target: npt.ArrayLike, *, spin: npt.ArrayLike | None,
-    speed: npt.ArrayLike | None, stop_time: npt.ArrayLike | None, max_speed: float | None,
-    max_spin: float | None, count: int, threads: int | None,
+    speed: npt.ArrayLike | None, stop_time: npt.ArrayLike | None, angle: npt.ArrayLike | None,
+    max_speed: float | None, max_spin: float | None, count: int, threads: int | None,
 ) -> Aim | Aims:  # fmt: skip
     """Launches after which a puck comes to rest at targets: :meth:`puck_tables.Puck.aim`.
 
@@ -241,7 +245,7 @@ def aim(
         raise InputError(
             f"target must be one place (x, y) in m, or (..., 2) of them, got shape {places.shape}"
         )
-    wished, given = _wish({"spin": spin, "speed": speed, "stop_time": stop_time})
+    wished, given = _wish({"spin": spin, "speed": speed, "stop_time": stop_time, "angle": angle})
     bounds = _checked_bounds(max_speed, max_spin, count)
     x, y, wanted = broadcast(
         target_x=places[..., 0], target_y=places[..., 1], **{wished or "wish": given}
@@ -263,7 +267,7 @@ def aim(
         answer = f"{len(rows)} launch{'' if len(rows) == 1 else 'es'}"
         return Aim(
             puck, (x.item(), y.item()), velocity, spins, rows[:, STOP_TIME].copy(),
-            misses(puck, places, velocity, spins, threads),
+            rows[:, ANGLE].copy(), misses(puck, places, velocity, spins, threads),
             answer if len(rows) else search.reason(*flat[1:]),
         )  # fmt: skip
     result: dict[int, FloatArray] = {}
@@ -274,10 +278,11 @@ def aim(
         result[start] = found
 
     run_chunks(work, distance.size, _CHUNK, threads)
-    rows = np.concatenate([np.empty((0, STOP_TIME + 1)), *(result[n] for n in sorted(result))])
+    rows = np.concatenate([np.empty((0, ANGLE + 1)), *(result[n] for n in sorted(result))])
     return Aims(
         puck, places, rows[:, OF].astype(np.int64), rows[:, [VX, VY]], rows[:, SPIN].copy(),
-        rows[:, STOP_TIME].copy(), {} if wished is None else {wished: wanted},
+        rows[:, STOP_TIME].copy(), rows[:, ANGLE].copy(),
+        {} if wished is None else {wished: wanted},
         {"max_speed": max_speed, "max_spin": max_spin, "count": count}, threads,
     )  # fmt: skip
 
@@ -290,7 +295,7 @@ def _wish(wishes: dict[str, Any]) -> tuple[str | None, FloatArray]:
     if not wished:
         return None, np.zeros(())
     name = wished[0]
-    checked = finite_array if name == "spin" else positive_array
+    checked = finite_array if name in ("spin", "angle") else positive_array
     return name, checked(name, wishes[name], _UNITS[name])
 
 

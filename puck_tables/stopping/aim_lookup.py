@@ -1,8 +1,8 @@
 """The launches that stop at one distance, looked up, compiled: values on their curve, and roots.
 
 What :mod:`puck_tables.stopping.launch_family` integrates is read here off a table.  Of a plain puck
-that is the stop table cut down to one height: with T = ``time``, X = cos φ · along and
-Y = sin φ cos φ · across, J = D = 1,
+that is the stop table cut down to one height: with T = ``time``, X = cos φ · along,
+Y = sin φ cos φ · across and the angle sin φ · body by which the puck turns, J = D = r = 1,
 
     ln Q = −½ (ln cos φ + ½ ln(along² + sin²φ across²)),   arg Z = atan2(sin φ across, along).
 
@@ -20,8 +20,8 @@ from puck_tables.kernels.compile import inlined, inner, kernel, patience, spline
 from puck_tables.kernels.spline import basis
 from puck_tables.stopping.lookup import WIDTH, slip_place
 
-SPEED, RIM, TIME, BEND = range(4)
-LOGS = 4  # ln v, ln r
+SPEED, RIM, TIME, TURN, BEND = range(5)
+LOGS = 5
 SLIDE = 0.5 * math.log(2.0)  # ln v = ln t₀ of the slide without spin
 POWERS = 6  # of a piece
 PIECE = 2 + LOGS * POWERS  # where it begins, 1/width, then the powers of each quantity, ascending
@@ -31,22 +31,23 @@ _STEPS = 200  # of a root at most
 
 
 @inlined
-def _plain_logs(u: float, section: FloatArray) -> tuple[float, float, float, float, float]:
-    """Ln v, ln r|ω| and ln t₀ at a finite u; the place of the stop along and across the launch."""
+def _plain_logs(u: float, section: FloatArray) -> tuple[float, float, float, float, float, float]:
+    """Ln v, ln r|ω|, ln t₀ and ln θ at a finite u; the stop along and across the launch."""
     k = math.exp(-abs(u))
     side, xi = slip_place(1.0, k) if u <= 0.0 else slip_place(k, 1.0)
     cells = section.shape[1] // WIDTH - 3
     place = xi * cells
     cell = min(int(place), cells - 1)
     at = side * section.shape[1] + cell * WIDTH
-    time, along, across, _ = spline_values(
+    time, along, across, body = spline_values(
         section.reshape(-1), at, basis(place - cell), 0.0, WIDTH, 1
     )
     larger = -0.5 * math.log1p(k * k)
-    log_cosine = larger - max(u, 0.0)
-    left = math.exp(larger + min(u, 0.0)) * across
+    log_cosine, log_sine = larger - max(u, 0.0), larger + min(u, 0.0)
+    left = math.exp(log_sine) * across
     log_q = -0.5 * (log_cosine + 0.5 * math.log(along * along + left * left))
-    return log_q + log_cosine, log_q + larger + min(u, 0.0), log_q + math.log(time), along, left
+    log_turn = 2.0 * log_q + log_sine + math.log(body)
+    return log_q + log_cosine, log_q + log_sine, log_q + math.log(time), log_turn, along, left
 
 
 @inlined
@@ -73,9 +74,11 @@ def _above(
     """How much a quantity is above a value."""
     if limits.shape[0] > 0:
         return _in_part(quantity, u, limits) - wanted
-    speed, rim, time, _, _ = _plain_logs(u, section)
+    speed, rim, time, turn, _, _ = _plain_logs(u, section)
     if quantity == SPEED:
         return speed - wanted
+    if quantity == TURN:
+        return turn - wanted
     return (rim if quantity == RIM else time) - wanted
 
 
@@ -119,20 +122,22 @@ def _root(
 
 @kernel
 def fill_logs(u: FloatArray, section: FloatArray, limits: FloatArray, out: FloatArray) -> None:
-    """Ln v, ln r|ω|, ln t₀ and arg Z for ω > 0 at ``u`` (n,) into ``out`` (n, 4); −∞ slides.
+    """Ln v, ln r|ω|, ln t₀, ln θ, and arg Z for ω > 0 at ``u`` (n,) into ``out`` (n, 5); −∞ slides.
 
     ``section``: of a plain puck, :func:`puck_tables.stopping.stop_splines.at_height`;
-    ``limits`` (m, 26): of any other; none of a plain one.
+    ``limits`` (m, 32): of any other; none of a plain one.
     """
     for n in range(u.size):
         patience(1)
         if u[n] == -math.inf:
-            out[n, SPEED], out[n, RIM], out[n, TIME], out[n, BEND] = SLIDE, u[n], SLIDE, 0.0
+            out[n, SPEED], out[n, RIM], out[n, TIME] = SLIDE, u[n], SLIDE
+            out[n, TURN], out[n, BEND] = u[n], 0.0
         elif limits.shape[0] > 0:
             for quantity in range(LOGS):
                 out[n, quantity] = _in_part(quantity, u[n], limits)
         else:
-            out[n, SPEED], out[n, RIM], out[n, TIME], along, left = _plain_logs(u[n], section)
+            speed, rim, time, turn, along, left = _plain_logs(u[n], section)
+            out[n, SPEED], out[n, RIM], out[n, TIME], out[n, TURN] = speed, rim, time, turn
             out[n, BEND] = math.atan2(left, along)
 
 

@@ -1,14 +1,15 @@
 """The launches that stop at one distance, as functions of u = ln(r|ω|/v): where they turn back.
 
-All launches of a puck that stop at distance D are one curve over u, with J = D = 1
+All launches of a puck that stop at distance D are one curve over u, with J = D = r = 1
 
     ln Q = −½ ln|Z|,   Z = X + iY,   ln v = ln Q + ln cos φ,   ln r|ω| = ln v + u,
-    ln t₀ = ln Q + ln T.
+    ln t₀ = ln Q + ln T,   ln θ = 2 ln Q + ln Θ, the angle by which the puck turns.
 
 T and Z obey linear equations in u (:mod:`puck_tables.stopping.similarity`), so that the derivatives
 of the curve need nothing but its values and the friction, with σ = (r²/2k²) ρ_ω
 
     (ρ_∥ − σ) (ln v, ln r|ω|, ln t₀)′ = ½ cos φ Re(1/Z) − (ρ_∥, σ, 1/T),
+    (ρ_∥ − σ) (ln θ)′ = cos φ Re(1/Z) − sin φ/Θ,
     (ρ_∥ − σ) (arg Z)′ = sin φ ρ_⊥ − cos φ Im(1/Z).
 
 Of a tall puck speed and time are not monotonic: paths bend, and a launch with spin may be the
@@ -40,6 +41,7 @@ from puck_tables.stopping.aim_lookup import (
     RIM,
     SLIDE,
     SPEED,
+    TURN,
     fill_logs,
     fill_roots,
 )
@@ -58,6 +60,7 @@ _FITTED = 1e-10  # of logarithms, what a look-up is good to
 _NARROWEST = 1e-7  # of u between nodes: next to a line it does not get smooth
 _NEAR_LIMIT = 1e-3  # of |ρ_∥ − σ|: the derivatives are 0/0 at the limit of the motion
 _DIFFERENCE = 1e-4  # of u, over which a slope is told from a table
+_OF_STOPS = [0, 1, 2, 4]  # columns of what is integrated: time, place, angle
 _BESIDE = np.array([[-0.5], [0.5]]) * _DIFFERENCE
 _SMALL_STEP = 1e-6  # of u, after which what a step leaves is less than rounding
 _SLACK = 1e-12  # of logarithms: rounding
@@ -69,20 +72,21 @@ _POWERS_AT = np.concatenate([  # of a piece at both ends and in the middle, then
     np.arange(POWERS) * _AT ** np.maximum(np.arange(POWERS) - 1, 0),
 ])  # fmt: skip
 
-SLIDE_ROW = np.array([SLIDE, -math.inf, SLIDE, 0.0])  # of a slide without spin
+SLIDE_ROW = np.array([SLIDE, -math.inf, SLIDE, -math.inf, 0.0])  # of a slide without spin
+_FROM_NOTHING = (RIM, TURN)  # which the slide without spin has none of
 Indices = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True)
 class LaunchFamily:
-    """Ln v, ln r|ω| and ln t₀ of all launches that stop at distance 1 m, J = 1 m/s².
+    """Ln v, ln r|ω|, ln t₀ and ln θ of all launches that stop at 1 m, J = 1 m/s², r = 1 m.
 
     Parameters
     ----------
     body : Body
-    u : array (n,), ascending; between two all three quantities are monotonic
-    values : array (n, 3)
-    limits : array (m, 26), see :mod:`puck_tables.stopping.aim_lookup`; none of a plain puck
+    u : array (n,), ascending; between two all four quantities are monotonic
+    values : array (n, 4)
+    limits : array (m, 32), see :mod:`puck_tables.stopping.aim_lookup`; none of a plain puck
     fit : array (m,), which of them fit the curve
     """
 
@@ -93,7 +97,7 @@ class LaunchFamily:
     fit: npt.NDArray[np.bool_] = field(repr=False)
 
     def rows(self, u: FloatArray) -> FloatArray:
-        """Ln v, ln r|ω|, ln t₀ and arg Z for ω > 0, at u (n,), (n, 4); u = −∞ slides."""
+        """Ln v, ln r|ω|, ln t₀, ln θ, and arg Z for ω > 0, at u (n,), (n, 5); u = −∞ slides."""
         return np.column_stack(_logs(u, _stops(self.body, u)))
 
     @cached_property
@@ -126,7 +130,7 @@ class LaunchFamily:
     def roots(
         self, quantity: int, values: FloatArray, exact: bool
     ) -> tuple[Indices, FloatArray, FloatArray]:
-        """All u where a quantity has one of ``values`` (n,): of which, u (m,), the rows (m, 4).
+        """All u where a quantity has one of ``values`` (n,): of which, u (m,), the rows (m, 5).
 
         In ascending order; −∞ is the slide without spin.  Looked up, to 1e-10; if ``exact``, put
         right by one integration.
@@ -177,7 +181,7 @@ class LaunchFamily:
         finite = np.isfinite(values)
         values = np.where(finite, values, 0.0)
         least, largest = values.min(initial=math.inf), values.max(initial=-math.inf)
-        if quantity != RIM:
+        if quantity not in _FROM_NOTHING:
             past = values - SLIDE
             behind = past * (levels[0] - values)
             slides = (np.abs(past) <= _SLACK) | ((np.abs(past) <= _ROUNDED) & (behind < 0.0))
@@ -216,7 +220,7 @@ class LaunchFamily:
         result = []
         for quantity, levels in enumerate(self.values.T):
             away = np.abs(levels - SLIDE) > _ROUNDED
-            begin = 0 if quantity == RIM else int(np.flatnonzero(away)[0])
+            begin = 0 if quantity in _FROM_NOTHING else int(np.flatnonzero(away)[0])
             levels = np.ascontiguousarray(levels[begin:])
             up = np.sign(np.diff(levels))
             moves = np.flatnonzero(up)
@@ -312,21 +316,23 @@ def _turns(u: FloatArray, values: FloatArray, slopes: FloatArray) -> FloatArray:
 
 
 def _stops(body: UnitPuck, u: FloatArray) -> FloatArray:
-    """T, X, Y at u (n,), (n, 3)."""
+    """T, X, Y, Θ at u (n,), (n, 4)."""
     heights = np.full(u.size, body.delta)
     if body.is_plain:
-        return integrated_stops(u, heights, NO_SECTION, _PLAIN_LOCAL, cosine_of(u))[:, :3]
+        return integrated_stops(u, heights, NO_SECTION, _PLAIN_LOCAL, cosine_of(u))[:, _OF_STOPS]
     section = body.friction(SECTION_ACCURACY).for_motion(body.gyration)
-    return integrated_stops(u, heights, section, _LOCAL, cosine_of(u))[:, :3]
+    return integrated_stops(u, heights, section, _LOCAL, cosine_of(u))[:, _OF_STOPS]
 
 
 def _logs(u: FloatArray, stops: FloatArray) -> tuple[FloatArray, ...]:
-    """Ln v, ln r|ω|, ln t₀ and arg Z from stops."""
-    time, x, y = stops.T
+    """Ln v, ln r|ω|, ln t₀, ln θ and arg Z from stops."""
+    time, x, y, turn = stops.T
     log_q = -0.5 * np.log(np.hypot(x, y))
     larger = log_q - 0.5 * np.log1p(np.exp(-2.0 * np.abs(u)))
+    with np.errstate(divide="ignore"):
+        log_turn = 2.0 * log_q + np.log(turn)
     return (
-        larger - np.maximum(u, 0.0), larger + np.minimum(u, 0.0), log_q + np.log(time),
+        larger - np.maximum(u, 0.0), larger + np.minimum(u, 0.0), log_q + np.log(time), log_turn,
         np.arctan2(y, x),
     )  # fmt: skip
 
@@ -342,10 +348,10 @@ def _values(body: UnitPuck, u: FloatArray) -> FloatArray:
 
 
 def _with_slopes(body: UnitPuck, u: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Values and their derivatives, both (n, 4); the derivatives NaN next to the limit."""
+    """Values and their derivatives, both (n, 5); the derivatives NaN next to the limit."""
     stops = _stops(body, u)
     values = np.column_stack(_logs(u, stops))
-    time, x, y = stops.T
+    time, x, y, turn = stops.T
     inverse, across, spin = body.friction(SECTION_ACCURACY).ratios(np.arctan(np.exp(u))).T
     along = 1.0 / inverse
     turning = 0.5 / body.inertia * spin * along
@@ -354,14 +360,15 @@ def _with_slopes(body: UnitPuck, u: FloatArray) -> tuple[FloatArray, FloatArray]
     gap = along - turning
     gap[np.abs(gap) < _NEAR_LIMIT] = np.nan
     swung = cosine_of(-u) * across * along + cosine * y / size2
-    raw = np.column_stack([common - along, common - turning, common - 1.0 / time, swung])
+    fading = 2.0 * common - cosine_of(-u) / turn
+    raw = np.column_stack([common - along, common - turning, common - 1.0 / time, fading, swung])
     return values, raw / gap[:, None]
 
 
 def _pieces(
     body: UnitPuck, u: FloatArray, values: FloatArray, slopes: FloatArray, middles: FloatArray
 ) -> tuple[FloatArray, npt.NDArray[np.bool_]]:
-    """The powers of u between nodes, (n − 1, 26), and which of them fit, (n − 1,).
+    """The powers of u between nodes, (n − 1, 32), and which of them fit, (n − 1,).
 
     From values and slopes at both ends and in the middle; where that has no slope, without it, and
     tried against an integration on both sides of it.

@@ -1,7 +1,7 @@
 """The launches that come to rest at targets, on the curve of all that stop at one distance.
 
 From displacement = (Q²/J) Rot(ψ)(X, Y): Q² = J D/|X + iY|, ψ = bearing − arg(X ± iY), D the way.
-Speeds are √(JD) and times √(D/J) times those of the curve
+Speeds are √(JD), times √(D/J) and angles D/r times those of the curve
 (:mod:`puck_tables.stopping.launch_family`); all here are logarithms.
 """
 
@@ -20,7 +20,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.motion.friction_source import source_of
 from puck_tables.motion.puck_spec import PuckSpec
-from puck_tables.stopping.aim_lookup import BEND, RIM, SPEED, TIME  # the first two are bounded
+from puck_tables.stopping.aim_lookup import BEND, RIM, SPEED, TIME, TURN  # two are bounded
 from puck_tables.stopping.exact import integrated_stops
 from puck_tables.stopping.launch_arrays import fits
 from puck_tables.stopping.launch_family import (
@@ -31,8 +31,8 @@ from puck_tables.stopping.launch_family import (
     launch_family_of,
 )
 
-QUANTITIES = {"spin": RIM, "speed": SPEED, "stop_time": TIME}
-OF, SPIN, VX, VY, STOP_TIME = range(5)  # columns of launches that were found
+QUANTITIES = {"spin": RIM, "speed": SPEED, "stop_time": TIME, "angle": TURN}
+OF, SPIN, VX, VY, STOP_TIME, ANGLE = range(6)  # columns of launches that were found
 _SAMPLED_U = math.log(math.tan(math.radians(80.0)))  # as far as is sampled without a bound
 _SLACK = 1e-11  # relative: a bound as printed, or rounded, is met
 _LARGEST_LOG = 708.0  # exp of it is still a number
@@ -51,7 +51,8 @@ class LaunchSearch:
     """Launches to targets: ``wished`` picks some of each family, within ``bounds``.
 
     ``bounds``: the largest speed and spin, infinite where there is none; ``count``: how many slip
-    angles a sample has; ``exact``: whether what was looked up is put right by integration.
+    angles a sample has, or how many numbers of whole turns are tried for each sense of spin;
+    ``exact``: whether what was looked up is put right by integration.
     """
 
     puck: PuckSpec
@@ -72,12 +73,13 @@ class LaunchSearch:
         return np.array([math.log(fastest), math.log(widest) + math.log(self.puck.radius)])
 
     def _scales(self, distance: FloatArray) -> FloatArray:
-        """Of speed, rim speed and time (n, 4); 0 for the angle."""
+        """Of speed, rim speed, time and angle (n, 5); 0 for the direction."""
         half_d, half_j = 0.5 * np.log(distance), 0.5 * math.log(self.puck.decel)
-        return np.stack([half_j + half_d, half_j + half_d, half_d - half_j, 0.0 * half_d], axis=1)
+        fast, turn = half_j + half_d, 2.0 * half_d - math.log(self.puck.radius)
+        return np.stack([fast, fast, half_d - half_j, turn, 0.0 * half_d], axis=1)
 
     def launches(self, places: FloatArray, wanted: FloatArray, distance: FloatArray) -> FloatArray:
-        """Rows (m, 5) of launches to targets (n, 2): of which, ω, vx, vy, stop time.
+        """Rows (m, 6) of launches to targets (n, 2): of which, ω, vx, vy, stop time, body angle.
 
         Raises
         ------
@@ -85,23 +87,18 @@ class LaunchSearch:
             If one of them leaves floating point.
         """
         puck, away, limits = self.puck, np.flatnonzero(distance > 0.0), self._limits
-        which, logs = self._logs(self._scales(distance[away]), wanted[away])
+        which, sense, logs = self._of_both_senses(self._scales(distance[away]), wanted[away])
         if min(self.bounds) < math.inf:
             good = (logs[:, :TIME] <= limits + _SLACK).all(axis=1)
-            which, logs = which[good], logs[good]
+            which, sense, logs = which[good], sense[good], logs[good]
             logs[:, :TIME] = np.minimum(logs[:, :TIME], limits)
-        if self.wished == "spin":
-            sense = np.copysign(1.0, wanted[away[which]])
-        else:  # both, but of the slide without spin
-            spins = np.flatnonzero(logs[:, RIM] > -math.inf)
-            sense = np.repeat((-1.0, 1.0), (spins.size, which.size))
-            each = np.concatenate([spins, np.arange(which.size)])
-            which, logs = which[each], logs[each]
         of = away[which]
-        speed, turning, time = _numbers(logs[:, :BEND] - [0.0, math.log(puck.radius), 0.0]).T
+        speed, turning, time = _numbers(logs[:, :TURN] - [0.0, math.log(puck.radius), 0.0]).T
         heading = np.arctan2(places[of, 1], places[of, 0]) - sense * logs[:, BEND]
-        rows = np.empty((of.size, STOP_TIME + 1))
+        rows = np.empty((of.size, ANGLE + 1))
         rows[:, OF], rows[:, SPIN], rows[:, STOP_TIME] = of, sense * turning, time
+        with np.errstate(over="ignore"):  # then the launch does not fit either
+            rows[:, ANGLE] = sense * np.exp(logs[:, TURN])
         rows[:, VX], rows[:, VY] = speed * np.cos(heading), speed * np.sin(heading)
         if away.size < distance.size:
             rows = np.concatenate([rows, self._on_the_spot(distance, wanted)])
@@ -113,8 +110,55 @@ class LaunchSearch:
             raise InputError(_TOO_LARGE)
         return rows[np.lexsort((rows[:, SPIN], rows[:, OF]))]
 
+    def _of_both_senses(
+        self, scales: FloatArray, wanted: FloatArray
+    ) -> tuple[npt.NDArray[Any], FloatArray, FloatArray]:
+        """Of which target, the sense of spin ±1, and the logarithms of all that are wished."""
+        if self.wished == "angle":
+            return self._turned(scales, wanted)
+        which, logs = self._logs(scales, wanted)
+        if self.wished == "spin":
+            return which, np.copysign(1.0, wanted[which]), logs
+        # both, but of the slide without spin
+        spins = np.flatnonzero(logs[:, RIM] > -math.inf)
+        sense = np.repeat((-1.0, 1.0), (spins.size, which.size))
+        each = np.concatenate([spins, np.arange(which.size)])
+        return which[each], sense, logs[each]
+
+    def _turned(
+        self, scales: FloatArray, wanted: FloatArray
+    ) -> tuple[npt.NDArray[Any], FloatArray, FloatArray]:
+        """Those that end at an angle of the body: of each sense the fewest whole turns first.
+
+        The slower a launch the more it turns, so that a largest speed says the fewest.
+        """
+        fewest, top = np.zeros(len(scales)), self._limits[SPEED]
+        if top < math.inf:
+            of, _, rows = self.family.roots(SPEED, top - scales[:, SPEED], exact=False)
+            least = np.full(len(scales), math.inf)
+            np.minimum.at(least, of, np.exp(rows[:, TURN] + scales[of, TURN]))
+            fewest = np.where(least < math.inf, least, 0.0) * (1.0 - 1e-9)
+        found = []
+        for sense in (-1.0, 1.0):
+            first = np.mod(sense * wanted, 2.0 * math.pi)
+            first += 2.0 * math.pi * np.maximum(np.ceil((fewest - first) / (2.0 * math.pi)), 0.0)
+            turns = (first[:, None] + 2.0 * math.pi * np.arange(self.count)).ravel()
+            each = np.repeat(np.arange(len(scales)), self.count)
+            with np.errstate(divide="ignore"):
+                log = np.log(turns)
+            which, _, rows = self.family.roots(TURN, log - scales[each, TURN], self.exact)
+            logs = rows + scales[each[which]]
+            logs[:, TURN] = log[which]
+            found.append((each[which], np.full(which.size, sense), logs))
+            if sense > 0.0:  # no turn at all: the slide without spin, which has no sense
+                still = each[turns == 0.0]
+                slides = np.tile(SLIDE_ROW, (still.size, 1)) + scales[still]
+                found.append((still, np.ones(still.size), slides))
+        which, sense, logs = (np.concatenate(one) for one in zip(*found, strict=True))
+        return which, sense, logs
+
     def _logs(self, scales: FloatArray, wanted: FloatArray) -> tuple[npt.NDArray[Any], FloatArray]:
-        """Of which target, and ln v, ln r|ω|, ln t₀ and arg Z, of all launches that are wished."""
+        """Of which target, and ln v, ln r|ω|, ln t₀, ln θ and arg Z, of all that are wished."""
         if self.wished is None:
             which, u = self._sampled(scales)
             rows = self.family.rows(u) if self.exact else self.family.looked_up(u)
@@ -166,28 +210,38 @@ class LaunchSearch:
 
     def _on_the_spot(self, distance: FloatArray, wanted: FloatArray) -> FloatArray:
         """Launches to targets where the puck lies: pure spin stays, ¾ r|ω|/J for a plain puck."""
-        if self.wished not in ("spin", "stop_time"):
-            return np.empty((0, STOP_TIME + 1))
+        if self.wished not in ("spin", "stop_time", "angle"):
+            return np.empty((0, ANGLE + 1))
         which = np.flatnonzero(distance == 0.0)
         puck, given = self.puck, wanted[which]
+        slowing = puck.decel / puck.radius / puck.body.spin_time  # rad/s², evenly
         with np.errstate(over="ignore", under="ignore"):
             if self.wished == "spin":
                 turning = given
-                time = puck.radius * np.abs(given) / puck.decel * puck.body.spin_time
-            else:
-                which, time = np.repeat(which, 2), np.repeat(given, 2)
-                turning = time / puck.body.spin_time * puck.decel / puck.radius
+            elif self.wished == "stop_time":
+                which, turning = np.repeat(which, 2), np.repeat(given * slowing, 2)
                 turning *= np.tile([-1.0, 1.0], given.size)
+            else:
+                sense = np.array([-1.0, 1.0])[:, None]
+                first = np.mod(sense * given[:, None, None], 2.0 * math.pi)
+                turns = (sense * (first + 2.0 * math.pi * np.arange(self.count))).ravel()
+                which = np.repeat(which, 2 * self.count)
+                turning = np.copysign(np.sqrt(2.0 * slowing * np.abs(turns)), turns)
+            time = np.abs(turning) / slowing
+            angle = 0.5 * turning * time
         if not (np.isfinite(turning + time) & ((turning == 0.0) == (time == 0.0))).all():
             raise InputError("radius and decel give a spin out of floating point: use other units")
-        return np.stack([which, turning, 0.0 * time, 0.0 * time, time], axis=1)
+        rows = np.stack([which, turning, 0.0 * time, 0.0 * time, time, angle], axis=1)
+        return rows[np.abs(turning) <= self.bounds[1] * (1.0 + _SLACK)]
 
     def reason(self, wanted: FloatArray, distance: FloatArray) -> str:
         """Why no launch leads to the one target, in a sentence."""
         if distance[0] == 0.0:
             if self.wished is None:
                 return "the target is where the puck lies: any spin alone stays there"
-            return "no launch with speed comes to rest where it began"
+            if self.wished == "speed":
+                return "no launch with speed comes to rest where it began"
+            return f"the spin that is asked for is above the bound of {self.bounds[1]:g} rad/s"
         scales, (fastest, widest) = self._scales(distance), self.bounds
         if self.wished is None:
             _, _, rows = self.family.roots(SPEED, math.log(fastest) - scales[:, SPEED], True)
@@ -198,11 +252,12 @@ class LaunchSearch:
                 f"{widest:g} rad/s: at {fastest:g} m/s it takes "
                 f"{self._spin(rows[:, RIM].min() + scales[0, RIM]):.9g} rad/s"
             )
-        _, logs = self._logs(scales, wanted)
+        _, _, logs = self._of_both_senses(scales, wanted)
         if logs.size:
+            least = logs[np.unique(logs[:, RIM], return_index=True)[1][:2]]
             taken = " or ".join(
                 f"{_numbers(row[SPEED]):.9g} m/s and {self._spin(row[RIM]):.9g} rad/s"
-                for row in logs
+                for row in least
             )
             return f"the launch asked for takes {taken}: out of the bounds"
         quantity = QUANTITIES[self.wished]

@@ -124,7 +124,7 @@ class StopCoefficients(Table):
 
         Parameters
         ----------
-        powers : powers of 2δ² − 1 to keep for T; along and across keep one fewer, enough for them
+        powers : powers of 2δ² − 1 to keep for T; the others keep one fewer, enough for them
         thinning : keep every so many nodes of the slip axis; divides ``axis.cells``
 
         Returns
@@ -133,6 +133,6 @@ class StopCoefficients(Table):
         """
         if (powers, thinning) in self._thinned_tables:
             return self._thinned_tables[powers, thinning]
-        kept = section_rows(self._sides([0, 1, 2], thinning), powers)
+        kept = section_rows(self._sides([0, 1, 2, 4], thinning), powers)
         self._thinned_tables[powers, thinning] = kept
         return kept

@@ -56,15 +56,15 @@ def in_rows(coefficients: FloatArray, row: int, power_first: bool) -> FloatArray
 
 
 def section_rows(sides: FloatArray, powers: int) -> FloatArray:
-    """Rows (2, nodes + 2, powers × WIDTH) of T, along, across (2 sides, nodes, heights, 3).
+    """Rows (2, nodes + 2, powers × WIDTH) of T, along, across, body (2 sides, nodes, heights, 4).
 
-    Along and across have one power fewer.
+    All but T have one power fewer.
     """
     times = by_power(sides[..., 0], powers)  # power, node, side
     places = by_power(sides[..., 1:], powers - 1)
     result = np.zeros((2, times.shape[1], powers, WIDTH))
     result[..., 0] = times.transpose(2, 1, 0)
-    result[:, :, :-1, 1:3] = places.transpose(2, 1, 0, 3)
+    result[:, :, :-1, 1:] = places.transpose(2, 1, 0, 3)
     return aligned(result.reshape(2, -1, powers * WIDTH))
 
 
@@ -80,7 +80,7 @@ def inverse_solution_splines(solution: InverseSolution, with_time: bool) -> Floa
 
 
 def at_height(rows: FloatArray, delta: float) -> FloatArray:
-    """T, along and δ · across at one height, (2, (cells + 3) × WIDTH): of no power any more.
+    """T, along, δ · across and body at one height, (2, (cells + 3) × WIDTH): of no power any more.
 
     Examples
     --------

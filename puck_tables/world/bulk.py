@@ -170,7 +170,7 @@ def follow_all(
     paces = _paces(game, first, discs, launches)
     limits, given = limits_of(game, paces)
     room, desk, rows = room_for(count), desk_for(game), 256 + 16 * count
-    mine = _own(game, rows)
+    mine = own_game(game, rows)
 
     def work(start: int, stop: int) -> None:
         part = Ends(
@@ -191,7 +191,7 @@ def follow_all(
             ends.how[full] = PUSHING
             break
         rows *= 4
-        mine = _own(game, rows)
+        mine = own_game(game, rows)
         for run in full:
             work(int(run), int(run) + 1)
         full = full[ends.how[full] == FULL]
@@ -210,9 +210,12 @@ def _paces(game: Game, first: FloatArray, discs: Whole, launches: FloatArray) ->
     return scales_of(game, np.maximum(slowest, slips.max(axis=1, initial=0.0)))
 
 
-def _own(game: Game, rows: int) -> Game:
-    """A copy to run on, with so many rows for events and flights; for paths if there are any."""
-    paths = rows + LONGEST if desk_for(game) is not None else 0
+def own_game(game: Game, rows: int, more: int = 0) -> Game:
+    """A copy to run on, with so many rows for events and flights; for paths if there are any.
+
+    ``more``: rows for paths beside these.
+    """
+    paths = more + (rows + LONGEST if desk_for(game) is not None else 0)
     pieces = np.zeros((paths, PIECE_COLUMNS))
     return game._replace(
         regions=game.regions._replace(ground=game.regions.ground.copy()),
@@ -220,7 +223,7 @@ def _own(game: Game, rows: int) -> Game:
         kinds=game.kinds.copy(),
         flights=game.flights.copy(), group=game.group.copy(), held=game.held.copy(),
         next_time=game.next_time.copy(), next_partner=game.next_partner.copy(),
-        pieces=np.vstack([game.pieces, pieces]), works=np.zeros((paths, WORK_COLUMNS)),
+        pieces=np.vstack([game.pieces, pieces]), works=np.zeros((paths - more, WORK_COLUMNS)),
         events=np.zeros((rows, game.events.shape[1])),
         history=np.zeros((rows, game.history.shape[1])), counts=game.counts.copy(),
         pace=game.pace.copy(),

@@ -10,11 +10,12 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
-from puck_tables.scene.friction import VX, VY, X, Y
+from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.over_time import ON_ALL
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import pieces_of
-from puck_tables.world.drive import straight_piece
+from puck_tables.world.drive import fill_straight
 from puck_tables.world.flight import ANGLE, FIRST_PIECE, PATH, PLACE_X
 from puck_tables.world.floors import INTEGRATED, regions_of
 from puck_tables.world.footing import step_onto
@@ -58,25 +59,45 @@ def led_state(game: Game, i: int) -> FloatArray:
     return np.array(state[:6])
 
 
-def lead(game: Game, i: int, state: FloatArray, duration: float) -> Game:
-    """A disc is to go straight on from a state for so long, or until it is at a cushion."""
+def with_room_to_lead(game: Game) -> Game:
+    """With room for one piece more."""
     count = int(game.counts[N_PIECES])
-    if count == len(game.pieces):
-        more = np.zeros((max(LONGEST, count), game.pieces.shape[1]))
-        game = game._replace(pieces=np.vstack([game.pieces, more]))
-    moves = bool(state[VX:].any())
-    duration = min(duration, _free_for(game, i, state.tolist())) if moves else 0.0
-    game.pieces[count] = straight_piece(float(game.clock[0]), duration, state)
-    game.counts[N_PIECES], game.drives[i] = count + 1, (count, count + 1)
-    return game
+    if count < len(game.pieces):
+        return game
+    more = np.zeros((max(LONGEST, count), game.pieces.shape[1]))
+    return game._replace(pieces=np.vstack([game.pieces, more]))
 
 
-def _free_for(game: Game, i: int, state: list[float]) -> float:
-    """How long a disc can go straight on before it is at what stands, s."""
+@inlined
+def lead(game: Game, i: int, state: FloatArray, duration: float) -> None:
+    """A disc is to go straight on from a state for so long, or until it is at a cushion."""
+    count = game.counts[N_PIECES]
+    go_straight(
+        game.obstacles, game.discs[i, RADIUS], game.clock[0], duration, state, game.pieces[count]
+    )
+    game.drives[i, 0], game.drives[i, 1] = count, count + 1
+    game.counts[N_PIECES] = count + 1
+
+
+@kernel
+def go_straight(
+    obstacles: FloatArray, radius: float, start: float, duration: float, state: FloatArray,
+    piece: FloatArray,
+) -> None:  # fmt: skip
+    """The piece from a state for so long, or until one of that radius is at what stands."""
+    moves = state[VX] != 0.0 or state[VY] != 0.0 or state[SPIN] != 0.0
+    longest = min(duration, _free_for(obstacles, radius, state)) if moves else 0.0
+    fill_straight(start, longest, state, piece)
+
+
+@inlined
+def _free_for(obstacles: FloatArray, radius: float, state: FloatArray) -> float:
+    """How long one of that radius can go straight on before it is at what stands, s."""
     x, y, vx, vy = state[X], state[Y], state[VX], state[VY]
-    radius = float(game.discs[i, RADIUS]) * (1.0 + SHORT_OF)
+    radius *= 1.0 + SHORT_OF
     longest, speed2 = math.inf, vx * vx + vy * vy
-    for row in game.obstacles.tolist():
+    for k in range(obstacles.shape[0]):
+        row = obstacles[k]
         if row[KIND] == WALL:
             closes = -(row[A] * vx + row[B] * vy)
             if closes > 0.0:

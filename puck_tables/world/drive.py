@@ -8,6 +8,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.quantities import ANGLE, TIME, X, Y
 from puck_tables._core.read_columns import numbers_of
 from puck_tables.errors import InputError
+from puck_tables.kernels.compile import inlined
 from puck_tables.scene.parts import Rows
 from puck_tables.world.paths import DURATION, FIRST, PIECE_COLUMNS, START
 
@@ -66,8 +67,17 @@ def straight_piece(start: float, duration: float, state: FloatArray) -> FloatArr
     [1.0, 2.0, 1.0]
     """
     piece = np.zeros(PIECE_COLUMNS)
-    piece[START], piece[DURATION] = start, duration
-    piece[FIRST : FIRST + 6] = state
-    piece[FIRST + 9 : FIRST + 12] = state[:3] + duration * state[3:]
-    piece[FIRST + 12 : FIRST + 15] = state[3:]
+    fill_straight(start, duration, state, piece)
     return piece
+
+
+@inlined
+def fill_straight(start: float, duration: float, state: FloatArray, piece: FloatArray) -> None:
+    """The same into a row."""
+    for column in range(PIECE_COLUMNS):
+        piece[column] = 0.0
+    piece[START], piece[DURATION] = start, duration
+    for i in range(3):
+        piece[FIRST + i], piece[FIRST + 3 + i] = state[i], state[3 + i]
+        piece[FIRST + 9 + i] = state[i] + duration * state[3 + i]
+        piece[FIRST + 12 + i] = state[3 + i]

@@ -70,6 +70,7 @@ from puck_tables.world.layout import (
     EDGE,
     KIND,
     LIGHTNESS,
+    NO_CUSHION,
     ON_FLOOR,
     OVERHANG,
     POCKET,
@@ -113,9 +114,10 @@ def look_ahead(game: Game, i: int, t: float, room: Room) -> None:
     if game.kinds[i] == PATH:
         _earlier(game, i, game.flights[i, UNTIL], PATH_ENDS)
     for k in range(game.obstacles.shape[0]):
-        if int(game.obstacles[k, KIND]) == OVERHANG and game.discs[i, LIGHTNESS] == 0.0:
-            continue  # what is driven is carried
-        if int(game.obstacles[k, KIND]) >= ON_FLOOR:
+        shape, driven = int(game.obstacles[k, KIND]), game.discs[i, LIGHTNESS] == 0.0
+        if driven and (shape == OVERHANG or shape < NO_CUSHION):
+            continue  # what is driven is carried, and its way leads past cushions
+        if shape >= ON_FLOOR:
             found = next_border(game, i, k, t, game.next_time[i], room.work, room.one)
         else:
             found = next_crossing(game, i, k, t, game.next_time[i], room.work, room.one)

@@ -31,7 +31,7 @@ from puck_tables.world.flight import (
     state_at,
 )
 from puck_tables.world.footing import least_slip
-from puck_tables.world.game import LAUNCH_TIME, N_EVENTS, N_HISTORY, TIME, Game, led_rows
+from puck_tables.world.game import LAUNCH_TIME, N_EVENTS, N_HISTORY, TIME, Game
 from puck_tables.world.layout import (
     DAMPING,
     LIGHTNESS,
@@ -162,15 +162,30 @@ def next_target(
 def limits_of(game: Game, paces: FloatArray) -> tuple[FloatArray, float]:
     """Until when runs without a time are followed, s, and when all that they are given is over.
 
-    LONG times what the least friction takes; ``paces`` (n, 2): their scales of speed and
-    acceleration.
+    ``paces`` (n, 2): their scales of speed and acceleration.
     """
-    free, ways = game.discs[game.discs[:, LIGHTNESS] > 0.0], led_rows(game)
-    given = max(
-        float(game.launches[:, LAUNCH_TIME].max(initial=0.0)),
-        float(game.tides[:, 0].max(initial=0.0)),
-        float(ways[ways[:, DURATION] < FOR_EVER, :2].sum(axis=1).max(initial=0.0)),
-    )
+    given = given_until(game)
+    return max(float(game.clock[0]), given) + longest_of(game, paces), given
+
+
+@kernel
+def given_until(game: Game) -> float:
+    """When the last launch, force or film is over, s."""
+    given = 0.0
+    for row in range(game.launches.shape[0]):
+        given = max(given, game.launches[row, LAUNCH_TIME])
+    for row in range(game.tides.shape[0]):
+        given = max(given, game.tides[row, 0])
+    for i in range(game.drives.shape[0]):
+        for row in range(game.drives[i, 0], game.drives[i, 1]):
+            if game.pieces[row, DURATION] < FOR_EVER:
+                given = max(given, game.pieces[row, PIECE_START] + game.pieces[row, DURATION])
+    return given
+
+
+def longest_of(game: Game, paces: FloatArray) -> FloatArray:
+    """LONG times what the least friction takes at such scales of speed and acceleration, s."""
+    free = game.discs[game.discs[:, LIGHTNESS] > 0.0]
     decels = game.floors[:, 0]
     brakes = _brakes(game)
     brakes = brakes[(decels > 0.0) & (brakes > _SLOWEST * decels.max())]
@@ -180,7 +195,7 @@ def limits_of(game: Game, paces: FloatArray) -> tuple[FloatArray, float]:
     drags = free[free[:, DAMPING] > 0.0, DAMPING]
     times = np.maximum(times, paces[:, 0] / paces[:, 1])
     times = np.maximum(times, float((1.0 / drags).max(initial=0.0)))
-    return max(float(game.clock[0]), given) + LONG * times, given
+    return LONG * times
 
 
 def _brakes(game: Game) -> FloatArray:

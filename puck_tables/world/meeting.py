@@ -354,7 +354,8 @@ def next_crossing(
     side = 1.0  # one that hangs over an edge comes back
     if shape == OVERHANG and game.hangs[i, int(obstacle[EDGE_NUMBER])] != 0:
         side = -1.0
-    state_at(kind, flight, disc, game.curves, game.pieces, now, room, one)
+    if kind in (DAMPED, PATH):
+        state_at(kind, flight, disc, game.curves, game.pieces, now, room, one)
     ax, ay, bx, by, margin = corridor(kind, flight, disc, one, last, now)
     if shape in (WALL, EDGE, OVERHANG):
         nearest = min(
@@ -379,6 +380,8 @@ def next_crossing(
         near = distance2(ax, ay, bx, by, obstacle[A], obstacle[B])
         if near > reach * reach * (1.0 + 1e-9):
             return math.inf
+    if kind not in (DAMPED, PATH):
+        state_at(kind, flight, disc, game.curves, game.pieces, now, room, one)
     t, partly = now, shape in (ARC, SIDE, CORNER)
     for look in range(MOST_LOOKS):
         game.counts[N_LOOKS] += 1

@@ -36,7 +36,7 @@ from puck_tables.world.meeting import (
 # about (A, B)
 A, B, C, D, R = range(5)
 CENTRE, RIM = 0, 1  # what passes
-# what is seen of one: its side, since when, and when it leaves it; < 0: it was not looked for
+# what is seen of one: its side, from when on it may leave it, and when it does; < 0: not looked for
 SIDE, FROM, NEXT = range(3)
 _NEXT = 4e-16  # of a moment: the next one is no later
 UNKNOWN = -1  # on which side one lies that was put on the line
@@ -64,6 +64,9 @@ def rows_of(lines: Sequence[Line]) -> FloatArray:
 class Passings:
     """What passed the lines of a world so far.
 
+    ``seen`` (discs, lines, 2, 3): where each lies to each line, with its centre and its rim;
+    ``flights`` (discs + 1,): on which rows of the history they are, and how many were looked at.
+
     Examples
     --------
     >>> Passings([], 3).rows.shape
@@ -71,35 +74,35 @@ class Passings:
     """
 
     def __init__(self, lines: Sequence[Line], discs: int, rimless: Sequence[bool] = ()) -> None:
-        self._lines = rows_of(lines)
-        self._seen = np.tile([UNKNOWN, 0.0, -1.0], (discs, len(lines), 2, 1))
-        self._seen[np.flatnonzero(rimless), :, RIM, FROM:] = math.inf
-        self._flights = np.append(np.full(discs, -1), 0)
+        self.lines = rows_of(lines)
+        self.seen = np.tile([UNKNOWN, 0.0, -1.0], (discs, len(lines), 2, 1))
+        self.seen[np.flatnonzero(rimless), :, RIM, FROM:] = math.inf
+        self.flights = np.append(np.full(discs, -1), 0)
         self.rows: FloatArray = np.zeros((0, COLUMNS))
 
     def copy(self) -> Passings:
         """One that goes on by itself."""
         other = object.__new__(Passings)
-        kept = {name: one.copy() for name, one in self.__dict__.items() if name != "_lines"}
-        other.__dict__.update(kept, _lines=self._lines)
+        kept = {name: one.copy() for name, one in self.__dict__.items() if name != "lines"}
+        other.__dict__.update(kept, lines=self.lines)
         return other
 
     def with_disc(self, has_rim: bool) -> Passings:
         """One that follows a disc more, the last."""
-        other, own = self.copy(), np.tile([UNKNOWN, 0.0, -1.0], (1, len(self._lines), 2, 1))
+        other, own = self.copy(), np.tile([UNKNOWN, 0.0, -1.0], (1, len(self.lines), 2, 1))
         if not has_rim:
             own[:, :, RIM, FROM:] = math.inf
-        other._seen = np.concatenate([self._seen, own])
-        other._flights = np.insert(self._flights, -1, -1)
+        other.seen = np.concatenate([self.seen, own])
+        other.flights = np.insert(self.flights, -1, -1)
         return other
 
     def follow(self, game: Game) -> None:
         """See what passed until now."""
         size = 16
-        while self._lines.size:
+        while self.lines.size:
             own, found = self.copy(), np.zeros((size, COLUMNS))
-            count = _follow(
-                game, own._lines, own._seen, own._flights, np.empty(ROOM), np.empty(6), found
+            count = find_passings(
+                game, own.lines, own.seen, own.flights, np.empty(ROOM), np.empty(6), found
             )
             if count <= size:
                 order = np.lexsort((found[:count, LINE], found[:count, WHO], found[:count, TIME]))
@@ -196,12 +199,15 @@ def _side_at_start(
 
 @inner
 def _next_passing(
-    game: Game, n: int, now: float, last: float, line: FloatArray, part: int, side: int,
+    game: Game, n: int, last: float, until: float, line: FloatArray, part: int, seen: FloatArray,
     room: FloatArray, state: FloatArray,
 ) -> float:  # fmt: skip
-    """When a side is left on a flight, up to a time, else inf; the state then in ``state``."""
+    """When a side is left on a flight, up to a time, else inf; the state then in ``state``.
+
+    < 0: not until then, nor before ``seen[FROM]``.
+    """
     kind, flight = int(game.history[n, 1]), game.history[n, 2:]
-    disc, t = game.discs[int(game.history[n, 0])], now
+    disc, t, side = game.discs[int(game.history[n, 0])], seen[FROM], int(seen[SIDE])
     radius = disc[RADIUS] if part == RIM else 0.0
     while True:
         patience(1)
@@ -218,9 +224,12 @@ def _next_passing(
                 step = max(step, math.sqrt(2.0 * rounded / bend))
             elif rate != 0.0:
                 step = max(step, 2.0 * rounded / abs(rate))
-        if t + step > last:
+        if t + step > last or step == math.inf:
             return math.inf
         t = max(t + step, t * (1.0 + _NEXT) + _NEXT * _NEXT)
+        if t > until:
+            seen[FROM] = t
+            return -1.0
 
 
 @inner
@@ -240,13 +249,11 @@ def _along(
     while seen[NEXT] <= until and seen[SIDE] != UNKNOWN:
         if seen[NEXT] < 0.0:
             last = min(moves_until(kind, flight), once_round(kind, flight, seen[FROM]))
-            if last == math.inf:
-                last = until
-            at = _next_passing(game, n, seen[FROM], last, line, part, int(seen[SIDE]), room, state)
-            if at == math.inf and last == until:
-                seen[FROM] = until
+            far = until if last == math.inf else math.inf
+            if seen[FROM] <= far:
+                seen[NEXT] = _next_passing(game, n, last, far, line, part, seen, room, state)
+            if seen[NEXT] < 0.0:
                 return count
-            seen[NEXT] = at
             continue
         side, at = int(seen[SIDE]), seen[NEXT]
         state_at(kind, flight, game.discs[i], game.curves, game.pieces, at, room, state)
@@ -260,7 +267,7 @@ def _along(
 
 
 @kernel
-def _follow(
+def find_passings(
     game: Game, lines: FloatArray, seen: FloatArray, flights: Whole, room: FloatArray,
     state: FloatArray, found: FloatArray,
 ) -> int:  # fmt: skip

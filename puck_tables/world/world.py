@@ -20,7 +20,13 @@ from puck_tables.scene.run import number_of
 from puck_tables.world import game as g
 from puck_tables.world.added import board_with, with_puck
 from puck_tables.world.agreement import pieces_of
-from puck_tables.world.by_hand import lead, led_state, refuse_off_hold, with_force
+from puck_tables.world.by_hand import (
+    lead,
+    led_state,
+    refuse_off_hold,
+    with_force,
+    with_room_to_lead,
+)
 from puck_tables.world.departures import CONCERNED, NOT_CONCERNED, desk_for, room_for
 from puck_tables.world.flight import GONE
 from puck_tables.world.footing import law_goes_to, moves_along
@@ -32,6 +38,8 @@ from puck_tables.world.paths import FOR_EVER
 from puck_tables.world.prepare import set_pace
 from puck_tables.world.pushed_back import Told, pushed_back
 from puck_tables.world.running import Running
+
+_SURELY = 1.0 - 1e-12
 
 
 class World(Running):
@@ -362,8 +370,9 @@ class World(Running):
 
     def _lead(self, i: int, state: FloatArray, duration: float) -> None:
         """What is led goes on from a state."""
-        self._game = lead(self._game, i, state, duration)
-        if not math.hypot(state[VX], state[VY]) <= self._game.pace[0]:
+        self._game = with_room_to_lead(self._game)
+        lead(self._game, i, state, duration)
+        if not np.hypot(state[VX], state[VY]) <= self._game.pace[0]:
             set_pace(self._game, np.zeros((len(self.names), 6)))
 
     def _put(self, what: int, rows: FloatArray, discs: int | Whole) -> None:
@@ -385,7 +394,8 @@ class World(Running):
         disc, (*_, vx, vy, spin) = self._game.discs[discs], rows.tolist()
         if disc[HOLD] != FREE or disc[LIGHTNESS] == 0.0 or moves_along(self._game.surface):
             return False
-        slow = math.hypot(vx, vy, disc[RADIUS] * spin) <= self._game.pace[0]  # not of NaN
+        fast = math.hypot(vx, vy, disc[RADIUS] * spin)
+        slow = fast <= _SURELY * self._game.pace[0]  # not of NaN; what is near is seen to
         stays = vx != vx and spin != spin
         return bool(slow or stays) and law_goes_to(self._game.regions) == math.inf
 
@@ -395,7 +405,7 @@ class World(Running):
         held, led = own[:, HOLD] != FREE, (own[:, LIGHTNESS] == 0.0) & (what != g.ADDED)
         law = law_goes_to(game.regions) < math.inf
         sure = not (law or held.any() or led.any() or moves_along(game.surface))
-        if sure and (_slips(own, rows) <= game.pace[0]).all():
+        if sure and (slips_of(own, rows) <= game.pace[0]).all():
             return
         now = self._all_now()
         states = now.copy()
@@ -408,7 +418,7 @@ class World(Running):
                 self._lead(i, states[i], FOR_EVER)
             elif law:
                 refuse_too_fast(game, self.scene, self._name(i), i, states[i])
-        if not sure or (_slips(own, states[discs]) > game.pace[0]).any():
+        if not sure or (slips_of(own, states[discs]) > game.pace[0]).any():
             set_pace(self._game, states)
 
     def _refuse_misfit(self, number: int, state: FloatArray) -> None:
@@ -420,10 +430,10 @@ class World(Running):
             raise InputError(f"{self.names[number]}: {fault}".replace("launch.", ""))
 
 
-def _slips(discs: FloatArray, states: FloatArray) -> FloatArray:
+def slips_of(discs: FloatArray, states: FloatArray) -> FloatArray:
     """How fast rims slip on a floor at rest, m/s."""
-    speeds: FloatArray = np.hypot(states[:, VX], states[:, VY])
-    return np.hypot(speeds, discs[:, RADIUS] * states[:, SPIN])
+    speeds: FloatArray = np.hypot(states[..., VX], states[..., VY])
+    return np.hypot(speeds, discs[..., RADIUS] * states[..., SPIN])
 
 
 def _row(

@@ -1,0 +1,255 @@
+"""Boards that are played together, in slots of a store, as a whole or not at all."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.executor import run_chunks
+from puck_tables._core.memory import check_memory
+from puck_tables._core.real import shown
+from puck_tables.errors import InputError, PuckError
+from puck_tables.kernels.patience import FEW, compiled_at_once
+from puck_tables.scene.friction import VX, VY
+from puck_tables.scene.ingredients import FREE
+from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.world import game as g
+from puck_tables.world import stored
+from puck_tables.world.departures import desk_for, room_for
+from puck_tables.world.footing import law_goes_to, moves_along
+from puck_tables.world.game import Whole
+from puck_tables.world.lasting import longest_of
+from puck_tables.world.layout import HOLD, LIGHTNESS
+from puck_tables.world.paths import PIECE_COLUMNS
+from puck_tables.world.prepare import scales_of
+from puck_tables.world.setting_off import REACHED
+from puck_tables.world.stored import LED, LET_GO, Bench, Orders, Slots
+from puck_tables.world.world import World, slips_of
+
+_PARTS = 16  # in which threads take boards at least
+_ROWS = 4 * stored.ROWS  # of events that are told at once
+
+
+class Together:
+    """Copies of a board, with nobody's hand in them yet: see :class:`puck_tables.Worlds`.
+
+    Each is in one of two slots of its own, or in the last slot, where the scene starts; what is
+    done to it goes to its other slot, and is taken over where all went well.
+    """
+
+    def __init__(self, scene: SceneSpec, n: int) -> None:
+        if isinstance(n, bool) or not isinstance(n, int | np.integer) or n < 1:
+            raise InputError(f"n must be a whole number from 1 on, got {shown(n)}")
+        self._first = first = World(scene)
+        self.scene, self.names, self._n = first.scene, first.names, int(n)
+        self._order, self._place, game = first._order, first._place, first._game
+        held = (game.discs[:, HOLD] != FREE).any() or game.surface.changes != 0.0
+        lawful = law_goes_to(game.regions) < math.inf
+        self._plain = not (held or lawful or moves_along(game.surface))
+        bench = self._bench(0)
+        columns, discs = bench.numbers.size + bench.whole.size, len(self._order)
+        check_memory((2 * n + 1,), 8 * (columns + discs * PIECE_COLUMNS), "ask for fewer boards",
+                     f"{n} boards")  # fmt: skip
+        self._store = Slots(
+            np.empty((2 * n + 1, bench.numbers.size)), np.empty((2 * n + 1, bench.whole.size), int),
+            np.empty((2 * n + 1, 1, PIECE_COLUMNS)), np.empty(2 * n + 1),
+        )  # fmt: skip
+        self._free: list[tuple[Bench, FloatArray | None, FloatArray]] = []
+        self._apart: dict[int, g.Game] = {}  # slots of boards whose floors know faster slips
+        self._at = np.full(n, 2 * n)  # of each board, the slot in which it is; the last: the start
+        self.time: FloatArray = np.zeros(n)
+        self._told: list[FloatArray] = []
+        first._passings.follow(first._game)
+        self._keep(bench, first, 2 * n)
+
+    def _do(
+        self, what: int, some: Whole, alone: Callable[[World, int], Any], span: float,
+        rows: FloatArray | None = None, discs: Whole | None = None, anew: bool = False,
+    ) -> None:  # fmt: skip
+        """Do it on boards, together or ``alone``, as a whole or not at all."""
+        count, n = len(some), self._n
+        source = np.full(count, 2 * n) if anew else self._at[some]
+        time = np.zeros(count) if anew else self.time[some]
+        target = np.where(self._at[some] == some, some + n, some)
+        how, longest = np.full(count, stored.TO_DO), np.zeros(count)
+        paces = self._store.numbers[source, stored.PACE]
+        if what != LET_GO and not self._plain:
+            how[:] = stored.ALONE
+        elif rows is not None and discs is not None:
+            self._quicken(what, rows, discs, source, time, paces)
+        elif span == math.inf:
+            longest = longest_of(self._first._game, paces)
+        how[np.isin(source, list(self._apart))] = stored.ALONE
+        orders = Orders(
+            some, source, target, time, time + span, np.zeros(0, int) if discs is None else discs,
+            np.zeros((0, 0, 6)) if rows is None else rows, paces, longest, np.empty(count), how,
+        )  # fmt: skip
+        told = self._play(what, orders)
+        apart: dict[int, g.Game] = {}
+        failed: dict[int, PuckError] = {}
+        for k in np.flatnonzero((how != REACHED) & (how != stored.WAITS)).tolist():
+            try:
+                told.append(self._play_alone(orders, k, alone, apart))
+            except PuckError as error:
+                failed[int(some[k])] = error
+        if failed:
+            raise of_boards(failed)
+        self._at[some] = np.where(how == stored.WAITS, source, target)
+        self.time = self.time.copy()
+        self.time[some], self._told = orders.after, told
+        if self._apart or apart:
+            still = np.setdiff1d(self._at, target)
+            self._apart = {slot: one for slot, one in self._apart.items() if slot in still} | apart
+
+    def _quicken(
+        self, what: int, rows: FloatArray, discs: Whole, slots: Whole, time: FloatArray,
+        paces: FloatArray,
+    ) -> None:  # fmt: skip
+        """Scales that hold for what a hand gives, too: as World sets them, to the bit."""
+        game = self._first._game
+        own = game.discs[discs]
+        given = slips_of(own, rows)
+        if what == LED:
+            fastest = np.hypot(rows[:, 0, VX], rows[:, 0, VY])
+            new = np.flatnonzero(fastest > paces[:, 0])
+            fastest = fastest[new]
+        else:
+            faster = ~(given <= paces[:, :1]).all(axis=1)
+            if what == g.STRUCK:
+                faster &= ~np.isnan(rows[:, 0, [VX, -1]]).all(axis=1)
+            led = bool((own[:, LIGHTNESS] == 0.0).any())
+            new = np.flatnonzero(faster | led)
+            states = self._states(slots[new], time[new])[0][:, self._order]
+            states[:, discs] = np.where(np.isnan(rows[new]), states[:, discs], rows[new])
+            if not led:
+                faster = (slips_of(own, states[:, discs]) > paces[new, :1]).any(axis=1)
+                new, states = new[faster], states[faster]
+            fastest = slips_of(game.discs, states).max(axis=1, initial=0.0)
+        if new.size:
+            paces[new] = np.maximum(paces[new], scales_of(game, fastest))
+
+    def _play(self, what: int, orders: Orders) -> list[FloatArray]:
+        """Play boards together; what happened."""
+        told: list[FloatArray] = []
+
+        def work(start: int, stop: int) -> None:
+            bench, desk, out = self._a_bench()
+            while start < stop:
+                start, used = stored.play(what, orders, self._store, bench, desk, start, stop, out)
+                if used:
+                    told.append(out[:used].copy())
+            self._free.append((bench, desk, out))
+
+        while (orders.how == stored.TO_DO).any():
+            self._on_all_cores(work, len(orders.how))
+            lacking = orders.how == stored.LACKS_PIECES
+            if lacking.any():
+                self._grow()
+                orders.how[lacking] = stored.TO_DO
+        return told
+
+    def _on_all_cores(self, work: Callable[[int, int], None], count: int) -> None:
+        """Call it for parts of so many boards; many are compiled for at once.
+
+        A thread that runs a kernel as it is written, and gives up, would put back what others did.
+        """
+
+        def at_once(start: int, stop: int) -> None:
+            with compiled_at_once():
+                work(start, stop)
+
+        few = count <= FEW
+        run_chunks(work if few else at_once, count, max(FEW, -(-count // _PARTS)))
+
+    def _play_alone(
+        self, orders: Orders, k: int, alone: Callable[[World, int], Any], apart: dict[int, g.Game]
+    ) -> FloatArray:
+        """Play a board as a world of its own; what happened."""
+        mine, source, board = self._a_bench(), int(orders.source[k]), int(orders.boards[k])
+        bench = mine[0]
+        stored.take(self._store, source, float(orders.time[k]), bench)
+        world = object.__new__(World)
+        world.__dict__.update(self._first.__dict__)
+        game = bench.game
+        if source in self._apart:
+            floors = self._apart[source].floors
+            regions = self._apart[source].regions._replace(ground=game.regions.ground)
+            game = game._replace(regions=regions, floors=floors)
+        world._game, world._room, world._told = game, room_for(len(self.names)), {}
+        world._desk, world._passings = desk_for(game), self._first._passings.copy()
+        world._passings.seen, world._passings.flights = bench.seen.copy(), bench.passed.copy()
+        first = int(game.counts[g.N_EVENTS])
+        alone(world, k)
+        world._passings.follow(world._game)
+        if world._game.floors is not self._first._game.floors:
+            apart[int(orders.target[k])] = world._game
+        passed = world._passings.rows
+        out = np.empty((int(world._game.counts[g.N_EVENTS]) + len(passed), stored.FOUND_COLUMNS))
+        used = stored.tell(
+            board, world._game, first, bench._replace(found=passed), len(passed), out
+        )
+        orders.after[k], orders.how[k] = world.time, REACHED
+        self._free.append(mine)
+        self._keep(bench, world, int(orders.target[k]))
+        return out[:used]
+
+    def _keep(self, bench: Bench, world: World, slot: int) -> None:
+        """Put a world away in a slot."""
+        game = stored.lay_out(bench, world._game, world._passings.seen)
+        while not stored.put_away(game, bench, self._store, slot):
+            self._grow()
+
+    def _grow(self) -> None:
+        """Twice the rows for pieces."""
+        pieces = self._store.pieces
+        more = np.empty((len(pieces), 2 * pieces.shape[1], PIECE_COLUMNS))
+        more[:, : pieces.shape[1]] = pieces
+        self._store, self._free = self._store._replace(pieces=more), []
+
+    def _bench(self, rows: int) -> Bench:
+        """A new one."""
+        passings = self._first._passings
+        return stored.bench_for(self._first._game, self._order, passings.lines, passings.seen, rows)
+
+    def _a_bench(self) -> tuple[Bench, FloatArray | None, FloatArray]:
+        """One that nobody uses, with a desk, and rows for what happens."""
+        try:
+            return self._free.pop()
+        except IndexError:
+            bench = self._bench(self._store.pieces.shape[1])
+            rows = _ROWS + 2 * len(bench.game.events)
+            return bench, desk_for(bench.game), np.empty((rows, stored.FOUND_COLUMNS))
+
+    def _kinds(self, slots: Whole) -> Whole:
+        """Of the flights of all discs of boards, (slots, discs)."""
+        return self._store.whole[slots, : len(self.names)]
+
+    def _states(
+        self, slots: Whole, times: FloatArray
+    ) -> tuple[FloatArray, npt.NDArray[np.bool_]]:  # fmt: skip
+        """States of boards, and which pucks move."""
+        states = np.empty((len(slots), len(self.names), 6))
+        moving = np.zeros(states.shape[:2], int)
+
+        def work(start: int, stop: int) -> None:
+            mine = self._a_bench()
+            stored.fill_states(self._store, slots, times, mine[0], start, stop, states, moving)
+            self._free.append(mine)
+
+        self._on_all_cores(work, len(slots))
+        return states, moving > 0
+
+
+def of_boards(failed: dict[int, PuckError]) -> PuckError:
+    """The error of the first of them, in which the others are named."""
+    board = min(failed)
+    more = f", and {len(failed) - 1} more" if len(failed) > 1 else ""
+    kind = InputError if isinstance(failed[board], InputError) else PuckError
+    error = kind(f"board {board}{more}: {failed[board]}")
+    error.boards = tuple(sorted(failed))
+    return error
