@@ -89,6 +89,7 @@ def packed_round(radius: float, law: Law, lever: float) -> FloatArray:
 
     Examples
     --------
+    >>> from puck_tables.contact.laws import law_of
     >>> packed_round(1.0, law_of("hertz"), 0.0)[[SECOND_XX, PRESSURE]].round(6).tolist()
     [0.628319, 2.0]
     """

@@ -215,7 +215,7 @@ class LaunchSearch:
         which = np.flatnonzero(distance == 0.0)
         puck, given = self.puck, wanted[which]
         slowing = puck.decel / puck.radius / puck.body.spin_time  # rad/s², evenly
-        with np.errstate(over="ignore", under="ignore"):
+        with np.errstate(over="ignore", under="ignore", invalid="ignore"):
             if self.wished == "spin":
                 turning = given
             elif self.wished == "stop_time":
