@@ -42,7 +42,7 @@ def test_the_body_rests_at_the_angle_by_scipy():
         assert off(angle, 1.0) < 1e-12
 
 
-@pytest.mark.parametrize("name", few(2, PUCKS))
+@pytest.mark.parametrize("name", few(1, PUCKS))
 def test_none_is_left_out(name: str):
     """Against a scan over all spins that a bound allows."""
     puck, target, wanted = PUCKS[name], np.array([0.6, -0.2]), 2.3
@@ -56,7 +56,7 @@ def test_none_is_left_out(name: str):
         mine = np.sign(family.launch_spin) == sense
         turns = np.floor((family.body_angle[mine] - wanted) / (2.0 * math.pi))
         crossed += int(np.abs(np.diff(turns)).sum())
-    assert abs(found.launch_spin.size - crossed) == 0
+    assert found.launch_spin.size == crossed
     ends = puck.stop(found.launch_velocity, found.launch_spin, tol=1e-10)
     assert np.hypot(ends.stop_x - target[0], ends.stop_y - target[1]).max() < 1e-8
     assert off(ends.body_angle, wanted).max() < 1e-8 * (1.0 + np.abs(ends.body_angle).max())
