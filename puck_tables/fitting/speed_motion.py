@@ -157,10 +157,13 @@ def speed_path(
     at = np.minimum(times, time[-1])
     n = np.clip(np.searchsorted(time, at, side="right") - 1, 0, count - 2)
     h = time[n + 1] - time[n]
-    u = (at - time[n]) / h
+    moves = h > 0.0  # not where numbers that ran away leave no time between steps
+    u = np.divide(at - time[n], h, out=np.zeros(at.size), where=moves)
     one, two, left, right = known[:, n], known[:, n + 1], slopes[:, n] * h, slopes[:, n + 1] * h
     rise = two - one
     kink, twist = 3.0 * rise - 2.0 * left - right, left + right - 2.0 * rise
     path = one + u * (left + u * (kink + u * twist))
-    rate = np.where(times < time[-1], (left + u * (2.0 * kink + 3.0 * u * twist)) / h, 0.0)
+    change = left + u * (2.0 * kink + 3.0 * u * twist)
+    rate = np.divide(change, h, out=slopes[:, n].copy(), where=moves)
+    rate = np.where(times < time[-1], rate, 0.0)
     return path + carried[:, None] * times, rate + carried[:, None]

@@ -154,8 +154,8 @@ class LaunchSearch:
                 still = each[turns == 0.0]
                 slides = np.tile(SLIDE_ROW, (still.size, 1)) + scales[still]
                 found.append((still, np.ones(still.size), slides))
-        which, sense, logs = (np.concatenate(one) for one in zip(*found, strict=True))
-        return which, sense, logs
+        which, senses, logs = (np.concatenate(one) for one in zip(*found, strict=True))
+        return which, senses, logs
 
     def _logs(self, scales: FloatArray, wanted: FloatArray) -> tuple[npt.NDArray[Any], FloatArray]:
         """Of which target, and ln v, ln r|ω|, ln t₀, ln θ and arg Z, of all that are wished."""
