@@ -111,3 +111,5 @@ def test_what_cannot_be_is_said():
         PLAIN.aim((2.0, 0.1), angle=1.0, spin=3.0)
     with pytest.raises(pt.InputError, match="angle"):
         PLAIN.aim((2.0, 0.1), angle=math.nan)
+    with pytest.raises(pt.InputError, match="within 1e\\+06 rad"):
+        PLAIN.aim((2.0, 0.1), angle=[0.0, -1e30])

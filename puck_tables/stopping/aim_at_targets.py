@@ -34,6 +34,7 @@ from puck_tables.stopping.launch_search import (
 MAX_COUNT = 10_000  # launches of an answer: each a row
 _CHUNK = 4096  # targets that a thread takes at a time
 _TRIED = 100  # launches that are integrated to tell how well they do
+_LARGEST_ANGLE = 1e6  # rad: of more too few digits are left of a turn
 _UNITS = {"spin": "rad/s", "speed": "m/s", "stop_time": "s", "angle": "rad"}
 
 
@@ -296,7 +297,13 @@ def _wish(wishes: dict[str, Any]) -> tuple[str | None, FloatArray]:
         return None, np.zeros(())
     name = wished[0]
     checked = finite_array if name in ("spin", "angle") else positive_array
-    return name, checked(name, wishes[name], _UNITS[name])
+    values = checked(name, wishes[name], _UNITS[name])
+    if name == "angle" and np.abs(values).max(initial=0.0) > _LARGEST_ANGLE:
+        raise InputError(
+            f"angle must be within {_LARGEST_ANGLE:g} rad, got {np.abs(values).max():g}: it counts "
+            "up to whole turns"
+        )
+    return name, values
 
 
 def _checked_bounds(

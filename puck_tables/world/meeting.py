@@ -351,9 +351,8 @@ def next_crossing(
         return math.inf
     disc, obstacle = game.discs[i], game.obstacles[k]
     radius, shape = disc[RADIUS], int(obstacle[KIND])
-    side = 1.0  # one that hangs over an edge comes back
-    if shape == OVERHANG and game.hangs[i, int(obstacle[EDGE_NUMBER])] != 0:
-        side = -1.0
+    hangs = shape == OVERHANG and game.hangs[i, int(obstacle[EDGE_NUMBER])] != 0
+    side = -1.0 if hangs else 1.0  # over an edge it comes back
     if kind in (DAMPED, PATH):
         state_at(kind, flight, disc, game.curves, game.pieces, now, room, one)
     ax, ay, bx, by, margin = corridor(kind, flight, disc, one, last, now)
