@@ -121,13 +121,7 @@ class PuckChoice:
         )
 
     def puck(self) -> Puck:
-        """The puck; on a base it is flat without a height, and has f = 1 without a friction.
-
-        Raises
-        ------
-        InputError
-            If options of both sets are given (naming two of them), or one set is not complete.
-        """
+        """The puck; on a base it is flat without a height, and has f = 1 without a friction."""
         from puck_tables.puck import Puck
 
         chosen = not_none(asdict(self))

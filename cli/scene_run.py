@@ -76,11 +76,6 @@ def scene_tables(
 
     ``own``: parameters of the command that are no numbers of the scene; ``scattering``: numbers of
     it that --spread gives.
-
-    Raises
-    ------
-    InputError
-        If an option has no place in a scene.
     """
     from puck_tables.scene.entries import set_path
     from puck_tables.scene.library import find_scene

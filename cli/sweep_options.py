@@ -71,13 +71,7 @@ def samples_checked(
 
 
 def chosen_laws(pressure: tuple[str, ...]) -> list[str]:
-    """Pressure laws, annulus:START:STOP:COUNT as so many of them.
-
-    Raises
-    ------
-    InputError
-        If they are too many.
-    """
+    """Pressure laws, annulus:START:STOP:COUNT as so many of them."""
     import numpy as np
 
     from puck_tables.stopping.population import MOST_LAWS

@@ -39,13 +39,7 @@ track_options = packed(
 
 
 def read_all(files: Iterable[Path], how: Mapping[str, Any]) -> list[Track]:
-    """The tracks in files, in their order.
-
-    Raises
-    ------
-    InputError
-        As :func:`puck_tables.film.track_files.read_tracks`.
-    """
+    """The tracks in files, in their order."""
     from puck_tables.film.track_files import read_tracks
 
     return [track for file in files for track in read_tracks(file, **how)]

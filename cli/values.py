@@ -141,10 +141,6 @@ def named(texts: Iterable[str], option: str) -> dict[str, str]:
 def numbers_in(text: str, option: str, sign: str, form: str, unit: str = "") -> tuple[float, ...]:
     """As many numbers as ``form`` shows, parted by a sign, each with its unit or none of them.
 
-    Raises
-    ------
-    InputError
-
     Examples
     --------
     >>> numbers_in("0.2:0.05", "--prior friction", ":", "VALUE:SIGMA")

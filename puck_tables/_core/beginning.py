@@ -57,10 +57,6 @@ def beginning(path: str | Path, largest: int) -> bytes:
 def refuse_others(path: str | Path, head: bytes) -> None:
     """Refuse a file that is empty, or of a kind in which no table stands.
 
-    Raises
-    ------
-    InputError
-
     Examples
     --------
     >>> refuse_others("a.csv", b"")
@@ -81,10 +77,6 @@ def refuse_others(path: str | Path, head: bytes) -> None:
 
 def refuse_no_text(path: str | Path, head: bytes) -> None:
     """Refuse a file that is no table in a text file.
-
-    Raises
-    ------
-    InputError
 
     Examples
     --------

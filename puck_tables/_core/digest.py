@@ -88,10 +88,6 @@ def files_named(value: Any) -> dict[str, str]:
 def refuse_changed(whole: Any, read: Mapping[str, str]) -> None:
     """Refuse to go on when a file that a structure names is not what it was.
 
-    Raises
-    ------
-    InputError
-
     Examples
     --------
     >>> refuse_changed({"launch": {"spin": 1.0}}, {})

@@ -22,10 +22,6 @@ def check_memory(
     advice : what to do instead
     what : that is to be kept, if it is no map of launches
 
-    Raises
-    ------
-    InputError
-
     Examples
     --------
     >>> check_memory((1000, 1000), 160)

@@ -68,11 +68,6 @@ def from_rest(speeds: FloatArray, values: FloatArray, name: str) -> tuple[FloatA
     speeds, values : ndarray (k,)
     name : of the points, for what is said
 
-    Raises
-    ------
-    InputError
-        If the speeds do not ascend from 0 or more.
-
     Examples
     --------
     >>> xs, ys = from_rest(np.array([0.0, 1.0, 1.0]), np.array([0.3, 0.2, 0.4]), "this law")

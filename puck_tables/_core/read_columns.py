@@ -65,11 +65,6 @@ class Numbers:
         ----------
         what : what stands in it, for the message: 'the speeds'
         equal : whether neighbours may be equal
-
-        Raises
-        ------
-        InputError
-            With the line at which it does not.
         """
         first = self.rows[:, 0]
         if first.size < 2:
@@ -179,11 +174,6 @@ def list_of(path: str | Path, column: InputColumn, most: int) -> FloatArray | No
     r"""The numbers of a file that has one a line, perhaps under a heading, in SI units.
 
     None for a file of several columns.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read, or its unit is not known.
 
     Examples
     --------

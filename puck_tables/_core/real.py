@@ -18,10 +18,6 @@ _SHOWN = 60  # characters of a value in a message
 def refuse_mask(name: str, values: object) -> None:
     """Refuse masked values: no function here can carry a mask through to its results.
 
-    Raises
-    ------
-    InputError
-
     Examples
     --------
     >>> refuse_mask("spin", np.ma.masked_array([1.0, 2.0], [False, True]))
@@ -43,11 +39,6 @@ def real_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
     name, unit : str
         For the message.
     values : array_like
-
-    Raises
-    ------
-    InputError
-        If the values are not real numbers that fit a double, or some are masked.
 
     Examples
     --------
@@ -93,11 +84,6 @@ def _is_0(text: str) -> bool:
 def number_in(name: str, text: str, unit: str) -> float:
     """A number with its unit behind it, in an SI unit.
 
-    Raises
-    ------
-    InputError
-        If it is none, or has no unit.
-
     Examples
     --------
     >>> number_in("spin", "30rpm", "rad/s")
@@ -133,10 +119,6 @@ def _in(unit: str) -> str:
 def finite_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
     """Values as an array of finite numbers.
 
-    Raises
-    ------
-    InputError
-
     Examples
     --------
     >>> finite_array("w0", [1, 2], "rad/s")
@@ -169,10 +151,6 @@ def shown(value: object) -> str:
 def instance(name: str, value: object, *kinds: type) -> None:
     """Refuse a value that is not of one of these kinds.
 
-    Raises
-    ------
-    InputError
-
     Examples
     --------
     >>> instance("table", "coarse.h5", dict)
@@ -187,10 +165,6 @@ def instance(name: str, value: object, *kinds: type) -> None:
 
 def listed(name: str, values: object, what: str) -> list[Any]:
     """What stands in a list, a tuple or an array; a text is none.
-
-    Raises
-    ------
-    InputError
 
     Examples
     --------
@@ -208,11 +182,6 @@ def listed(name: str, values: object, what: str) -> list[Any]:
 
 def broadcast(**arrays: FloatArray) -> list[FloatArray]:
     """Arrays broadcast against each other, in the order given.
-
-    Raises
-    ------
-    InputError
-        If their shapes do not fit.
 
     Examples
     --------
@@ -241,10 +210,6 @@ def rounded_up(value: float) -> float:
 def positive(name: str, value: float, unit: str) -> float:
     """A finite number greater than zero.
 
-    Raises
-    ------
-    InputError
-
     Examples
     --------
     >>> positive("radius", 0.04, "m")
@@ -258,10 +223,6 @@ def positive(name: str, value: float, unit: str) -> float:
 
 def real(name: str, value: float, unit: str) -> float:
     """A finite number.
-
-    Raises
-    ------
-    InputError
 
     Examples
     --------
@@ -299,10 +260,6 @@ def bracketed(unit: str) -> str:
 def velocity_array(velocity: npt.ArrayLike) -> npt.NDArray[np.float64]:
     """Velocities of shape (…, 2), m/s.
 
-    Raises
-    ------
-    InputError
-
     Examples
     --------
     >>> velocity_array((1, 0))
@@ -319,10 +276,6 @@ def velocity_array(velocity: npt.ArrayLike) -> npt.NDArray[np.float64]:
 def one_velocity(velocity: npt.ArrayLike) -> tuple[float, float]:
     """One velocity (vx, vy), m/s.
 
-    Raises
-    ------
-    InputError
-
     Examples
     --------
     >>> one_velocity([1, 0])
@@ -338,10 +291,6 @@ def one_velocity(velocity: npt.ArrayLike) -> tuple[float, float]:
 def checked_threads(threads: int | None) -> None:
     """Refuse a number of threads that is none.
 
-    Raises
-    ------
-    InputError
-
     Examples
     --------
     >>> checked_threads(None), checked_threads(2)
@@ -356,10 +305,6 @@ def checked_threads(threads: int | None) -> None:
 def checked_flag(name: str, value: object) -> None:
     """Refuse what is neither true nor false.
 
-    Raises
-    ------
-    InputError
-
     Examples
     --------
     >>> checked_flag("jacobian", True)
@@ -370,10 +315,6 @@ def checked_flag(name: str, value: object) -> None:
 
 def checked_progress(progress: object) -> None:
     """Refuse what cannot be told how far work is.
-
-    Raises
-    ------
-    InputError
 
     Examples
     --------

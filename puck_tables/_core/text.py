@@ -221,12 +221,7 @@ def _is_names(row: Sequence[str]) -> bool:
 
 
 def refuse_groups(path: str | Path, rows: Sequence[Sequence[str]]) -> None:
-    """Refuse a table whose numbers have thousands separators.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a table whose numbers have thousands separators."""
     grouped = next((cell for row in rows for cell in row if _GROUPED.fullmatch(cell)), None)
     if grouped is not None:
         raise InputError(

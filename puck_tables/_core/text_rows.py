@@ -48,11 +48,6 @@ def read_columns(
     numbers : dict of ndarray (n,)
     texts : dict of (codes ndarray (n,), list of the texts that they stand for)
 
-    Raises
-    ------
-    InputError
-        If a cell of a column of numbers is a text, or a row has too few cells or too many.
-
     Examples
     --------
     >>> import tempfile

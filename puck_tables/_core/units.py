@@ -134,11 +134,6 @@ def factor(unit: str, kind: str) -> float:
 def unit_named(name: str, text: str, kind: str) -> str:
     """The usual name of a unit that is asked for.
 
-    Raises
-    ------
-    InputError
-        If it is none, with the nearest that is.
-
     Examples
     --------
     >>> unit_named("unit", "cms", "length")
@@ -245,11 +240,6 @@ def pixel_size(scale: str | float) -> float:
     ----------
     scale : str or float
         Like '0.5mm' or '0.5 mm/px', or a scale bar, '240px = 30cm'; a number is in metres.
-
-    Raises
-    ------
-    InputError
-        If it is no such text, or not greater than 0.
 
     Examples
     --------

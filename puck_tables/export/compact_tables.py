@@ -123,11 +123,6 @@ def spline_fit(
     haste : how much speed counts against size
     degrees : that are tried
 
-    Raises
-    ------
-    AccuracyError
-        If none is good enough.
-
     Examples
     --------
     >>> xi = np.linspace(0.0, 1.0, 101)[None, :, None, None]
@@ -156,11 +151,6 @@ def spline_fit(
 
 def spline_fits(values: FloatArray, error: float) -> list[SplineFit]:
     """A table for each side, of powers and digits of its own; all of one degree, the cheapest.
-
-    Raises
-    ------
-    AccuracyError
-        If none is good enough.
 
     Examples
     --------

@@ -51,13 +51,7 @@ def caption(figure: Figure, launches: Axes, puck: PuckSpec, answer: str) -> None
 
 
 def draw_on(paths: Axes, result: Aim) -> ScalarMappable:
-    """The paths alone, coloured by spin; the colours.
-
-    Raises
-    ------
-    InputError
-        If there is no launch to draw.
-    """
+    """The paths alone, coloured by spin; the colours."""
     if result.launch_spin.size == 0:
         raise InputError(f"there is nothing to draw: {result.answer}")
     from matplotlib.cm import ScalarMappable

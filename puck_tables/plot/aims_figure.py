@@ -27,13 +27,7 @@ def draw(result: Aims) -> Figure:
 
 
 def draw_on(axes: Axes, result: Aims) -> None:
-    """The targets alone, coloured by the stop time of a launch to them.
-
-    Raises
-    ------
-    InputError
-        If there is no launch to draw.
-    """
+    """The targets alone, coloured by the stop time of a launch to them."""
     if result.launch_spin.size == 0:
         raise InputError(f"there is nothing to draw: {result.answer}")
     missed = result.target[result.launches == 0]

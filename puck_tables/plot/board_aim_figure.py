@@ -22,13 +22,7 @@ _ARROW = 4.0  # radii of the striker
 
 
 def draw(result: BoardAim) -> Figure:
-    """The board with the ways of the first launch on it, and close-ups as of any run.
-
-    Raises
-    ------
-    InputError
-        If there is no launch to draw.
-    """
+    """The board with the ways of the first launch on it, and close-ups as of any run."""
     run = _first(result)
     title = (
         f"{result.scene.title or 'Board'}: {result.puck} {result.where}\n"

@@ -31,13 +31,7 @@ _BOARD = ("wall", "edge", "post", "arc", "pocket", "floor")  # what may range an
 
 
 def draw(ends: SceneEnds) -> Figure:
-    """The ends of all runs as points in the colours of the pucks, crosses where they left play.
-
-    Raises
-    ------
-    InputError
-        If no run has an end.
-    """
+    """The ends of all runs as points in the colours of the pucks, crosses where they left play."""
     film = _board(ends)
     boxes = [_box(ends, film), *_close_up(ends, film)]
     figure, panels = panels_for(boxes)
@@ -57,13 +51,7 @@ def draw(ends: SceneEnds) -> Figure:
 
 
 def draw_on(axes: Axes, ends: SceneEnds) -> None:
-    """The board alone.
-
-    Raises
-    ------
-    InputError
-        If no run has an end.
-    """
+    """The board alone."""
     film = _board(ends)
     _draw(axes, ends, film, _box(ends, film))
     _note(axes, ends, film)

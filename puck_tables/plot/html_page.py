@@ -19,15 +19,7 @@ if TYPE_CHECKING:
 
 
 def checked_page(path: str | Path) -> None:
-    """Refuse, before any work, a page that could not be made.
-
-    Raises
-    ------
-    InputError
-        If the name does not end in .html.
-    MissingExtraError
-        If matplotlib is not installed.
-    """
+    """Refuse, before any work, a page that could not be made."""
     ending_of(Path(path), (".html",))
     require_matplotlib()
 
@@ -35,15 +27,7 @@ def checked_page(path: str | Path) -> None:
 def save_page(
     page: Callable[[Any], str], result: Any, path: str | Path, overwrite: bool = False
 ) -> None:
-    """Write the page of a result, whole or not at all.
-
-    Raises
-    ------
-    InputError, MissingExtraError
-        As :func:`checked_page`.
-    OutputError
-        If the file exists (without ``overwrite``) or cannot be written.
-    """
+    """Write the page of a result, whole or not at all."""
     checked_page(path)
     write_bytes(path, page(result).encode(), overwrite)
 

@@ -75,13 +75,7 @@ def _name_laws(panel: Axes, stops: StopMap) -> None:
 
 
 def _sections(stops: StopMap) -> tuple[dict[str, Any], dict[str, float], str, tuple[int, ...]]:
-    """At most two of the axes, what is fixed then, in words, and where.
-
-    Raises
-    ------
-    InputError
-        If nothing is ranged.
-    """
+    """At most two of the axes, what is fixed then, in words, and where."""
     sizes = dict(zip(stops.dims, stops.status.shape, strict=True))
     axes = {dim: stops.axes.get(dim, np.arange(float(n))) for dim, n in sizes.items()}
     fixed = dict(stops.fixed)

@@ -140,11 +140,6 @@ def no_rounding(axes: Axes) -> None:
 def checked_kind(path: str | Path) -> str:
     """The ending of a picture's name.
 
-    Raises
-    ------
-    InputError
-        If pictures have no such ending.
-
     Examples
     --------
     >>> checked_kind("run.png")

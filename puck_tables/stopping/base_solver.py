@@ -27,11 +27,6 @@ class BaseSolver:
     Parameters
     ----------
     shape, tol : the base, and the largest error, of Q/J and Q²/J, Q = hypot(v, kω)
-
-    Raises
-    ------
-    AccuracyError
-        If the tolerance is out of reach.
     """
 
     method = "integrated"

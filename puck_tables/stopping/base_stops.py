@@ -23,14 +23,7 @@ STATES_TOL = 1e-9  # of Q/J, Q²/J, as the states of other pucks are good to
 def stop_on_base(
     puck: PuckSpec, velocity: npt.ArrayLike, spin: npt.ArrayLike, tol: float, threads: int | None
 ) -> Stops:
-    """Where launches of a puck on a base stop, as :meth:`puck_tables.Puck.stop` has it.
-
-    Raises
-    ------
-    InputError
-    AccuracyError
-        If the tolerance is out of reach.
-    """
+    """Where launches of a puck on a base stop, as :meth:`puck_tables.Puck.stop` has it."""
     checked_threads(threads)
     assert puck.shape is not None
     solver = BaseSolver(puck.shape, tol)
@@ -41,12 +34,7 @@ def states_on_base(
     puck: PuckSpec, velocity: npt.ArrayLike, spin: npt.ArrayLike, time: npt.ArrayLike,
     threads: int | None,
 ) -> States:  # fmt: skip
-    """States of a puck on a base, as :meth:`puck_tables.Puck.states` has them.
-
-    Raises
-    ------
-    InputError
-    """
+    """States of a puck on a base, as :meth:`puck_tables.Puck.states` has them."""
     checked_threads(threads)
     assert puck.shape is not None
     launches = _launches(puck, velocity, spin)

@@ -29,11 +29,6 @@ class BaseStopWork(StopWork):
     puck : whose base and radius of gyration they have
     tol, part
         As :meth:`puck_tables.Puck.sweep` takes them.
-
-    Raises
-    ------
-    AccuracyError
-        If the tolerance is out of reach.
     """
 
     method = "integrated"
@@ -53,14 +48,7 @@ class BaseStopWork(StopWork):
         return progress
 
     def _launches_of(self, one: Mapping[str, Any], count: int) -> FloatArray:
-        """Launches (6, count): vx, vy, ω, f z, J, k.
-
-        Raises
-        ------
-        InputError
-        ContactError
-            If part of the base would lift.
-        """
+        """Launches (6, count): vx, vy, ω, f z, J, k."""
         rows = np.empty((6, count))
         rows[:2] = velocities(one, count)
         friction = one.get("friction", self._puck.friction)

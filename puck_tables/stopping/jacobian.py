@@ -142,12 +142,7 @@ class Differentiated:
 
 
 def refuse_rest(launches: FloatArray, shape: tuple[int, ...]) -> None:
-    """Refuse launches (6, n) at rest: next to them the stop time is a cone.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse launches (6, n) at rest: next to them the stop time is a cone."""
     still = (launches[:2] == 0.0).all(axis=0) & (launches[2] == 0.0)
     if still.any():
         where = np.unravel_index(int(still.argmax()), shape) if shape else ()
@@ -162,13 +157,7 @@ def stop_jacobians(
     launches: Launches, plain: npt.NDArray[np.bool_], bodies: Bodies, table: StopTable,
     threads: int | None,
 ) -> FloatArray:  # fmt: skip
-    """Derivatives (n, 5, 6) of the stops of launches: of ``plain`` ones by the stop table.
-
-    Raises
-    ------
-    AccuracyError
-        If the derivatives of other pucks are out of reach.
-    """
+    """Derivatives (n, 5, 6) of the stops of launches: of ``plain`` ones by the stop table."""
     if plain.all():
         return _of_plain(table, launches, threads)
     from puck_tables.stopping.slope_section import stop_slopes_of

@@ -99,12 +99,7 @@ class Launches:
         return smallest_mark((a, mark_of(*self.part(a, b), b - a)) for a, b in ends)
 
     def refuse_changed(self, mark: int) -> None:
-        """Refuse launches that are no longer those of a mark: their arrays are the caller's.
-
-        Raises
-        ------
-        InputError
-        """
+        """Refuse launches that are no longer those of a mark: their arrays are the caller's."""
         if self.is_held and self.mark() != mark:
             raise InputError(
                 "the arrays of launches have been changed since their stops were looked up: call "
@@ -112,12 +107,7 @@ class Launches:
             )
 
     def refuse_bad(self) -> None:
-        """Refuse numbers that are not finite, heights below 0, J and r that are not above.
-
-        Raises
-        ------
-        InputError
-        """
+        """Refuse numbers that are not finite, heights below 0, J and r that are not above."""
         step = self.step or 1
         speeds = (("velocity", self.vx[::step]), ("velocity", self.vy[::step]), ("spin", self.spin))
         for name, values in speeds:
@@ -133,11 +123,6 @@ def launches_of(
     radius: npt.ArrayLike,
 ) -> Launches:  # fmt: skip
     """Launches from what a caller passes, broadcast; whether the numbers are good is not asked.
-
-    Raises
-    ------
-    InputError
-        If they are not real numbers, or their shapes do not fit.
 
     Examples
     --------

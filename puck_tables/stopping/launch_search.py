@@ -79,13 +79,7 @@ class LaunchSearch:
         return np.stack([fast, fast, half_d - half_j, turn, 0.0 * half_d], axis=1)
 
     def launches(self, places: FloatArray, wanted: FloatArray, distance: FloatArray) -> FloatArray:
-        """Rows (m, 6) of launches to targets (n, 2): of which, ω, vx, vy, stop time, body angle.
-
-        Raises
-        ------
-        InputError
-            If one of them leaves floating point.
-        """
+        """Rows (m, 6) of launches to targets (n, 2): of which, ω, vx, vy, stop time, body angle."""
         puck, away, limits = self.puck, np.flatnonzero(distance > 0.0), self._limits
         which, sense, logs = self._of_both_senses(self._scales(distance[away]), wanted[away])
         if min(self.bounds) < math.inf:

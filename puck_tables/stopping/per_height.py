@@ -70,11 +70,6 @@ class SolverPerHeight:
     pressure, gyration, tol, method, table
         As :func:`puck_tables.stop` takes them.
 
-    Raises
-    ------
-    InputError
-        If the method is not known, or the table is of other pucks.
-
     Examples
     --------
     >>> solver = SolverPerHeight("uniform", 0.5**0.5, 1e-6, None, None)
@@ -111,12 +106,7 @@ class SolverPerHeight:
         self._launches = 0, 0  # of plain heights, of others
 
     def checked_range(self, delta: npt.ArrayLike) -> FloatArray:
-        """``delta`` as an array, refused where the friction is not known.
-
-        Raises
-        ------
-        InputError, ContactError
-        """
+        """``delta`` as an array, refused where the friction is not known."""
         if self._table is not None and self._law_table is None:
             return self._table.checked_range(delta)
         height = checked_delta(delta)
@@ -132,13 +122,6 @@ class SolverPerHeight:
 
         Up to ``alone`` of one height are each tried themselves: for what is asked once, not in
         blocks.
-
-        Raises
-        ------
-        InputError
-            If too many heights need preparation.
-        AccuracyError
-            If the tolerance is out of reach.
         """
         all_plain = not delta.size or float(delta.max()) <= self._plain_up_to
         others = delta[:0] if all_plain else delta[delta > self._plain_up_to]
@@ -227,12 +210,7 @@ class SolverPerHeight:
         return integration_of(body, self.tol, self._wanted)
 
     def prepare_for(self, launches: Launches, threads: int | None) -> None:
-        """Make what launches need, whose heights are refused where the friction is not known.
-
-        Raises
-        ------
-        InputError, ContactError, AccuracyError
-        """
+        """Make what launches need, whose heights are refused where the friction is not known."""
         delta = launches.delta
         bound = -math.inf
         if self._table is None:
@@ -248,13 +226,7 @@ class SolverPerHeight:
         self.prepare(delta, launches.size // max(delta.size, 1), threads, alone=ALONE)
 
     def first(self, launches: Launches, threads: int | None) -> First:
-        """Stop times, places, status and mark of launches, and the rest if it costs no more.
-
-        Raises
-        ------
-        InputError
-            If one of them is no launch.
-        """
+        """Stop times, places, status and mark of launches, and the rest if it costs no more."""
         if not self._sections and type(self._plain) is LookUp:
             return self._plain.first(launches, threads)
         if not self._sections:  # else it was looked at for them
@@ -380,12 +352,7 @@ def _shipped_look_up(selection: Selection) -> tuple[LookUp, str]:
 
 
 def refuse_many(heights: FloatArray) -> None:
-    """Refuse more different heights than can be prepared.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse more different heights than can be prepared."""
     if heights.size > MOST_HEIGHTS:
         raise InputError(
             f"{heights.size} different delta are too many for such pucks, each takes about a "

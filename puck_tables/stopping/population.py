@@ -62,13 +62,7 @@ class Population:
         return math.prod(self.shape)
 
     def at(self, start: int, stop: int) -> dict[str, Any]:
-        """Numbers of some launches, arrays (stop − start,) or one number for all.
-
-        Raises
-        ------
-        InputError
-            If one that is drawn lies outside its range.
-        """
+        """Numbers of some launches, arrays (stop − start,) or one number for all."""
         index: dict[str, Any] = {}
         if self.dims:
             places = np.unravel_index(np.arange(start, stop), self.shape)
@@ -147,10 +141,6 @@ def ranged(chosen: Mapping[str, Any], laws: Any) -> Population:
     chosen : by the names of arguments: numbers, or lists (n,)
     laws : a pressure law, or a list of them
 
-    Raises
-    ------
-    InputError
-
     Examples
     --------
     >>> ranged({"spin": [0.0, 1.0], "speed": 1.0}, "uniform").axes
@@ -169,13 +159,7 @@ def ranged(chosen: Mapping[str, Any], laws: Any) -> Population:
 
 
 def drawn(chosen: Mapping[str, Any], laws: Any, count: int, seed: int) -> Population:
-    """Launches of which some numbers are drawn.
-
-    Raises
-    ------
-    InputError
-        If none is.
-    """
+    """Launches of which some numbers are drawn."""
     spreads = {name: one for name, one in chosen.items() if isinstance(one, Spread)}
     if not spreads:
         raise InputError(
@@ -201,11 +185,6 @@ def labelled(launches: Any, chosen: Mapping[str, Any], laws: Any) -> Population:
     ----------
     launches : xarray.Dataset with variables named as in results: launch_speed, launch_spin, …
     chosen : further numbers
-
-    Raises
-    ------
-    InputError
-        If it has a variable that is no number of a launch.
     """
     arrays = {str(name): one for name, one in launches.variables.items()}
     sizes = {str(dim): int(n) for dim, n in launches.sizes.items()}
@@ -265,10 +244,6 @@ def _values(
 def refuse_clashes(names: Any) -> None:
     """Refuse two numbers that give the same.
 
-    Raises
-    ------
-    InputError
-
     Examples
     --------
     >>> refuse_clashes(["delta", "radius"])
@@ -280,10 +255,6 @@ def refuse_clashes(names: Any) -> None:
 
 def refuse_outside(name: str, values: FloatArray, words: str) -> None:
     """Refuse numbers outside their range.
-
-    Raises
-    ------
-    InputError
 
     Examples
     --------

@@ -46,11 +46,6 @@ class SlopeSection(NamedTuple):
 def slope_section(body: UnitPuck) -> SlopeSection:
     """Tabulate the derivatives of the stops of one kind of puck.
 
-    Raises
-    ------
-    AccuracyError
-        If they are out of reach.
-
     Notes
     -----
     The error is measured in the middles of all cells, as in
@@ -88,13 +83,6 @@ def slope_section(body: UnitPuck) -> SlopeSection:
 
 def stop_slopes_of(body: UnitPuck, launches: FloatArray, threads: int | None = None) -> FloatArray:
     """Derivatives (n, 5, 6) of the stops of launches (6, n) of one kind of puck, none at rest.
-
-    Raises
-    ------
-    AccuracyError
-        If they are out of reach.
-    InputError
-        If a launch is at a limit where the friction has no derivative.
 
     Examples
     --------

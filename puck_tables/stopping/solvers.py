@@ -71,13 +71,7 @@ class LookUp:
         }  # fmt: skip
 
     def first(self, launches: Launches, threads: int | None) -> First:
-        """Stop times (n,), places (n, 2), status (n,) and the mark of launches.
-
-        Raises
-        ------
-        InputError
-            If one of them is no launch.
-        """
+        """Stop times (n,), places (n, 2), status (n,) and the mark of launches."""
         time, place, doubtful, mark = self.table.stops(
             launches, self.powers, self.thinning, threads
         )

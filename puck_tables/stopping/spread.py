@@ -122,11 +122,6 @@ def spread_of(
     covariance, of, samples, seed
         As :meth:`puck_tables.Stops.spread`.
     highest : the largest δ of a sample that ``again`` takes; it may refuse others itself
-
-    Raises
-    ------
-    InputError
-        If the covariance is none, or samples leave the range of an argument.
     """
     which = [_place(name, columns) for name in listed("of", of, "arguments")]
     if len(set(which)) < len(which) or not which:

@@ -24,12 +24,7 @@ TOL = 1e-9  # of Q/J, Q²/J, as a look-up of plain pucks is good to
 
 
 def refuse_times(moments: FloatArray) -> None:
-    """Refuse times that are no numbers, or negative.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse times that are no numbers, or negative."""
     times = finite_array("time", moments, "s")
     if not np.all(times >= 0.0):
         raise InputError(f"time must not be negative, got {times.min():g} s")

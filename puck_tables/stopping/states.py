@@ -293,11 +293,6 @@ def moments_of(
 ) -> tuple[npt.NDArray[np.int64], FloatArray, tuple[int, ...]]:
     """Which launch each moment is of, as compiled code reads it, the moments, and their shape.
 
-    Raises
-    ------
-    InputError
-        If their shapes do not fit.
-
     Examples
     --------
     >>> one = launches_of((1.0, 0.0), 0.0, 0.5, 1.0, 1.0)

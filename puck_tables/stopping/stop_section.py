@@ -154,11 +154,6 @@ def stop_section_for(body: UnitPuck, accuracy: float) -> StopSection:
     body : Body
     accuracy : the largest error, in units of Q/J (time), Q²/J (place, path), Q²/(J r) (body angle)
 
-    Raises
-    ------
-    AccuracyError
-        If it is out of reach.
-
     Examples
     --------
     >>> result = stop_section_for(body_of("uniform", 2.0, 0.5**0.5), 1e-5)
@@ -182,11 +177,6 @@ def stop_section(body: UnitPuck, accuracy: float, progress: Progress | None = No
     body, accuracy
         As :func:`stop_section_for`.
     progress : callable (done, total), optional
-
-    Raises
-    ------
-    AccuracyError
-        If it is out of reach.
 
     Notes
     -----

@@ -56,11 +56,6 @@ class StopWork(Work):
     gyration : of the puck, where it is not among them
     tol, method, table, part
         As :meth:`puck_tables.Puck.sweep` takes them.
-
-    Raises
-    ------
-    InputError, AccuracyError
-        If a puck is not known, or there are too many different ones.
     """
 
     code = "status"
@@ -177,13 +172,7 @@ class StopWork(Work):
         )
 
     def _rows(self, one: Mapping[str, Any], count: int) -> FloatArray:
-        """Rows vx, vy, ω, δ, J, r, law, k of launches by their numbers, array (8, count).
-
-        Raises
-        ------
-        InputError
-            If a puck is out of the range of floating point.
-        """
+        """Rows vx, vy, ω, δ, J, r, law, k of launches by their numbers, array (8, count)."""
         rows = np.empty((8, count))
         rows[:2] = velocities(one, count)
         rows[2], rows[5] = one.get("spin", 0.0), one["radius"]

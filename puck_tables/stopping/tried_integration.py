@@ -23,11 +23,6 @@ _PROBES = 40  # launches over all φ, besides those next to lines
 def integration_of(body: UnitPuck, tol: float, method: Method | None = None) -> Integration:
     """An integration good for every launch of a puck, tried at both sides of singular lines.
 
-    Raises
-    ------
-    AccuracyError
-        If none is.
-
     Examples
     --------
     >>> from puck_tables.motion.body import body_of

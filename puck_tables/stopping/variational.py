@@ -51,12 +51,7 @@ class Variations(NamedTuple):
     limits: tuple[float, ...]
 
     def refuse_limit(self, speed: FloatArray, rim: FloatArray) -> None:
-        """Refuse launches of these v and r|ω|, arrays, at a line that is the limit.
-
-        Raises
-        ------
-        InputError
-        """
+        """Refuse launches of these v and r|ω|, arrays, at a line that is the limit."""
         for line in self.limits:
             if (np.abs(rim - np.exp(line) * speed) < _AT_LINE * np.hypot(speed, rim)).any():
                 raise InputError(
@@ -69,11 +64,6 @@ class Variations(NamedTuple):
 @lru_cache(maxsize=64)
 def variations_of(body: UnitPuck) -> Variations:
     """The friction of a puck.
-
-    Raises
-    ------
-    AccuracyError
-        If its pressure law is too rough for derivatives.
 
     Examples
     --------
@@ -162,11 +152,6 @@ def unit_states(
     -------
     array (n, 6, 6), array (n, 6)
         Of x, y, body angle, vx, vy, rω: themselves; by v, v across, rω, δ, time; and by k/r.
-
-    Raises
-    ------
-    AccuracyError
-        If the stop is not reached.
     """
     from puck_tables.motion.variation import BLOCKS, KEPT, VARIED, fill_state_variations, vary
 

@@ -72,11 +72,6 @@ def encode(
 def read_content(path: str | Path) -> bytes:
     """The bytes of a table file.
 
-    Raises
-    ------
-    TableError
-        If it is missing, no regular file, too large or cannot be read.
-
     Examples
     --------
     >>> read_content("/nowhere/table.h5")
@@ -98,11 +93,6 @@ def read_content(path: str | Path) -> bytes:
 
 def decode(content: bytes, source: str) -> tuple[dict[str, Any], dict[str, FloatArray], Any]:
     """What a file says, its arrays by name, and what they follow from.
-
-    Raises
-    ------
-    TableError
-        If it is not a table file, altered, or of another format.
 
     Examples
     --------

@@ -177,13 +177,6 @@ def section_of_table(table: ResultantTable, delta: float, accuracy: float) -> Fr
     delta : dimensionless height 2fh/r
     accuracy : the largest error of a friction ratio
 
-    Raises
-    ------
-    InputError
-        If the height is outside the table, or the table of an odd number of cells.
-    AccuracyError
-        If the table is not so exact.
-
     Examples
     --------
     >>> table = ResultantTable.build("ring", 1e-8)
@@ -244,13 +237,6 @@ def friction_section(law: Law, delta: float, accuracy: float = DEFAULT_ACCURACY)
     -------
     FrictionSection
         Kept: the same call again costs nothing.
-
-    Raises
-    ------
-    InputError, ContactError
-        If the height is out of range.
-    AccuracyError
-        If the accuracy is out of reach.
 
     References
     ----------

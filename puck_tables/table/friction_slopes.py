@@ -63,13 +63,6 @@ def friction_slopes_of(law: Law, delta: float, accuracy: float = FLOW_ACCURACY) 
     delta : dimensionless height 2fh/r
     accuracy : the largest error of a friction ratio
 
-    Raises
-    ------
-    InputError, ContactError
-        If the height is out of range.
-    AccuracyError
-        If the accuracy is out of reach.
-
     Examples
     --------
     >>> from puck_tables.contact.laws import law_of
@@ -84,11 +77,6 @@ def friction_slopes_of(law: Law, delta: float, accuracy: float = FLOW_ACCURACY) 
 
 def slopes_of_table(table: ResultantTable, delta: float) -> FrictionSlopes:
     """The same from a table of resultants: all that is asked.
-
-    Raises
-    ------
-    InputError
-        If the height is outside the table.
 
     Examples
     --------

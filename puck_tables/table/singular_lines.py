@@ -28,11 +28,6 @@ def lines_of(law: Law, delta: float) -> tuple[float, ...]:
 
     Besides the singular ones that where a puck next to tipping bends most.
 
-    Raises
-    ------
-    InputError, ContactError
-        If the height is out of range.
-
     Examples
     --------
     >>> from puck_tables.contact.laws import law_of
@@ -54,13 +49,6 @@ def lines_of(law: Law, delta: float) -> tuple[float, ...]:
 @lru_cache(maxsize=1024)
 def refuse_height(law: Law, delta: float) -> None:
     """Refuse a height at which the friction is not known at every slip angle.
-
-    Raises
-    ------
-    InputError
-        If it is not a height, or beyond full contact under another law than uniform pressure.
-    ContactError
-        If the puck tips, or its contact is not determined.
 
     Examples
     --------

@@ -48,11 +48,6 @@ class LawAxis:
     ends_too : bool
         Whether φ = 0 and π/2 are singular lines besides.
 
-    Raises
-    ------
-    InputError
-        If there are too few or too many.
-
     Examples
     --------
     >>> axis = LawAxis((1.0,), 4)

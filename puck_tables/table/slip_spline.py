@@ -136,11 +136,6 @@ def slip_spline(
     weights : what the errors of the functions are multiplied with before they are judged
     finest : the most cells on a side
 
-    Raises
-    ------
-    AccuracyError
-        If so many cells do not suffice.
-
     Notes
     -----
     The error falls like cells⁻⁴.

@@ -111,11 +111,6 @@ def breaks_of(
     top_speed : m/s; needed for a callable
     scale : the speed below which a callable is nearly cubic, m/s; default ``top_speed``
 
-    Raises
-    ------
-    InputError
-        If a number is out of range.
-
     Examples
     --------
     >>> breaks_of(SpeedLaw([0.0, 1.0, 9.0], [0.3, 0.2, 0.2]), None, None).round(3).tolist()

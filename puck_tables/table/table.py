@@ -349,10 +349,6 @@ def _kind_named(name: str) -> type[Table]:
 def refuse_other_kind(table: Table | None, *kinds: type[Table]) -> None:
     """Refuse a table, if one is given, that is not of these kinds.
 
-    Raises
-    ------
-    InputError
-
     Examples
     --------
     >>> refuse_other_kind(Table.shipped("stops"), type(Table.shipped()))

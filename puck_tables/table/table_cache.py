@@ -124,11 +124,6 @@ def friction_for(law: Law, delta: float, accuracy: float) -> FrictionSection:
     ----------
     law, delta, accuracy : as in :func:`puck_tables.table.friction_section.friction_section`
 
-    Raises
-    ------
-    InputError, ContactError, AccuracyError
-        As there.
-
     Examples
     --------
     >>> friction_for(law_of("ring"), 0.5, 1e-6).grid  # under other laws it takes no time

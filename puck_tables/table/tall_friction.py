@@ -33,11 +33,6 @@ def tall_resultants(phi: FloatArray, delta: float) -> Resultants:
     Resultants
         Arrays (n,), good to 1e-13 for δ ≤ 3.9.
 
-    Raises
-    ------
-    ContactError, AccuracyError
-        As :func:`puck_tables.contact.one_sided.resultants`.
-
     Examples
     --------
     >>> rho = tall_resultants(np.array([0.5, 1.5]), 2.0)
