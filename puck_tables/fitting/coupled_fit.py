@@ -192,13 +192,11 @@ def impacts_coupled(
         return np.array([impact.ratio for impact in problem.slides(x)[1]])
 
     slopes = _slopes(result, certainty, ratios)
-    first = problem.films[0].start
-    impacts = []
-    impact_states = problem.slides(result.x)[1]
-    for impact_spec, impact, slope in zip(problem.impact_specs, impact_states, slopes, strict=True):
+    first, impacts = problem.films[0].start, []
+    every = zip(problem.impact_specs, problem.slides(result.x)[1], slopes, strict=True)
+    for impact_spec, impact, slope in every:
         pair = impact_spec.wall < 0
-        names = list(OF_PAIRS if pair else OF_WALLS)
-        error = certainty.error_of(slope, 1.0)
+        names, error = list(OF_PAIRS if pair else OF_WALLS), certainty.error_of(slope, 1.0)
         films = [problem.films[n].name for n in impact_spec.films]
         impacts.append(Impact(
             films[0], films[1] if pair else "", first + impact.time,
