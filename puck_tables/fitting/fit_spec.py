@@ -245,7 +245,7 @@ class FitSpec:
         ``sizes``: how many pucks meet, 1 those with walls; ``grips``: whether rims stop on what
         they meet in all of them, so that nothing tells their friction.
         """
-        free, of_impacts = list(self.alone().free), {}
+        free, of_impacts = list(self.alone().free), dict[str, float]()
         named = [name for name in self.free if name in OF_IMPACTS]
         for size, numbers, what in ((1, OF_WALLS, "a wall"), (2, OF_PAIRS, "two pucks")):
             if size not in sizes:
