@@ -20,12 +20,7 @@ from puck_tables.fitting.certainty import Certainty, profile_point
 from puck_tables.fitting.coupled_fit import Impact
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.fit_files import KIND, as_json, frames_of, numbers_as_json
-from puck_tables.fitting.identifiability import (
-    doubts,
-    rounded,
-    spin_would_tell,
-    taken_for_granted,
-)
+from puck_tables.fitting.identifiability import doubts, rounded, spin_would_tell, taken_for_granted
 from puck_tables.fitting.model_comparison import HeldOut, LawScore, law_over, verdict
 from puck_tables.fitting.numbers import EstimatedLaunch, Number
 from puck_tables.fitting.observations import Observations
