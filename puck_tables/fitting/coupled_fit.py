@@ -70,13 +70,7 @@ def couple(
     slides: Estimate, pieces: tuple[SlideIndex, ...], films: tuple[Observations, ...], spec:
     FitSpec, lines: Sequence[Line], known: Known,
 ) -> tuple[Estimate, str]:  # fmt: skip
-    """The estimate of joined slides; that of slides apart and a sentence if these are not joined.
-
-    Parameters
-    ----------
-    slides, pieces, films, spec, lines : as :func:`puck_tables.fitting.impact_matching.coupled`
-    known : whether the noise of places and of angles is
-    """
+    """The estimate of joined slides; that of slides apart and why, if these are not joined."""
     groups: dict[tuple[object, ...], list[CoupledFit]] = {}
     ways = candidates_of(slides)
     for x in ways:
@@ -143,14 +137,7 @@ def _unlikely(result: Estimate) -> int:
 
 
 def not_met(impacts: Sequence[Impact], problem: Problem, lines: Sequence[Line]) -> tuple[str, ...]:
-    """A sentence for each wall that was given and never met, or one if there is no impact at all.
-
-    Parameters
-    ----------
-    impacts : that were found, where they were looked for
-    problem : of the joined slides, with the walls that they meet
-    lines : walls that were given, by two points each
-    """
+    """A sentence for each given wall that was never met, or one if there is no impact at all."""
     if not impacts:
         return ("No impact was found: each track is taken for one slide",)
     if not problem.impact_specs:  # nothing is joined at walls

@@ -29,10 +29,8 @@ _LEAP, _MORE = 6.0, 3.0  # standard deviations, and times the way between frames
 def outliers_of(deviations: FloatArray, limit: float, strict: bool) -> npt.NDArray[np.bool_]:
     """Which frames (n,) are far off; of these only strays, if ``strict``.
 
-    Parameters
-    ----------
-    deviations : (n, k), residuals of each frame in units of the noise
-    limit : of the square of residuals, from which on a frame seems to be none of the motion
+    ``deviations`` (n, k): residuals of each frame in units of the noise; ``limit``: of the sum of
+    their squares, from which on a frame seems to be none of the motion.
 
     Examples
     --------
@@ -134,13 +132,9 @@ def estimate(
 ) -> Estimate:
     """Fit, sort out, and fit again until the same frames are left out.
 
-    Parameters
-    ----------
-    problem, start : what is asked, and unknowns to begin with, which are put within their limits:
-        those of several tracks may have a mean beyond
-    noise_known : whether the noise of places, angles and time stamps was given; else it is that of
-        the residuals in the end
-    strict : whether only strays are left out, and not frames that are off together
+    ``start`` is put within its limits: that of several tracks may have a mean beyond.  Noise that
+    is not known is that of the residuals in the end.  ``strict``: whether only strays are left out,
+    and not frames that are off together.
     """
     x = np.clip(start, *problem.limits)
     problem = problem.with_noise(problem.noise, x)

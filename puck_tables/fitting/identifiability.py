@@ -30,12 +30,7 @@ _UNITS = "the unit of the places, or of the times, the scale or the frames a sec
 def doubts(
     numbers: Mapping[str, Number], launches: Sequence[EstimatedLaunch], radius: float
 ) -> tuple[str, ...]:
-    """A sentence for each number that was found and that no puck has.
-
-    Parameters
-    ----------
-    numbers, launches : as they were found
-    radius : m, of the puck as it was given
+    """A sentence for each number that was found and that no puck has; ``radius`` m: as given.
 
     Examples
     --------
@@ -156,12 +151,9 @@ _SCALES = {"friction", "gravity", "height", "radius", "decel"}
 
 
 def not_identifiable(
-    result: Estimate,
-    certainty: Certainty,
-    lost: tuple[str, ...],
-    minima: tuple[OtherMinimum, ...] = (),
-    unsigned: tuple[int, ...] = (),
-) -> tuple[str, ...]:
+    result: Estimate, certainty: Certainty, lost: tuple[str, ...],
+    minima: tuple[OtherMinimum, ...] = (), unsigned: tuple[int, ...] = (),
+) -> tuple[str, ...]:  # fmt: skip
     """A sentence for each direction that the tracks do not see.
 
     ``lost``: numbers of the puck that are not determined, by whatever; ``minima``: other motions

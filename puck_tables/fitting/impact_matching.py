@@ -187,15 +187,8 @@ def coupled(
     """The problem of slides that impacts join; none where there is no impact.
 
     Where rims seem to stop on what they meet in each of several impacts there is another, in which
-    they may slide.
-
-    Parameters
-    ----------
-    problem, x : of slides, each with a launch of its own, and a way in which they may move
-    pieces : which they are
-    films : the tracks, uncut
-    spec : with the numbers of impacts
-    lines : walls that are given, by two points each
+    they may slide.  ``problem``, ``x``: of slides, each with a launch of its own, and a way in
+    which they may move; ``films``: the tracks, uncut; ``spec``: with the numbers of impacts.
     """
     matches = matched_impacts(problem, pieces, x)
     if not matches:

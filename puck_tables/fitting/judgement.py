@@ -50,11 +50,7 @@ def judged_motion(
 ) -> JudgedMotion:
     """Which motion is taken of those that fit as well, and how far it is to be believed.
 
-    Parameters
-    ----------
-    best, known : the estimate, and which noise was given
-    smooth : the noise (m, rad) that no model judged
-    bounds : names of numbers that the caller bounds
+    ``smooth``: the noise (m, rad) that no model judged; ``bounds``: names that the caller bounds.
     """
     certainty = judged_certainty(best, known)
     refuse_wobbling(best, certainty)

@@ -190,16 +190,10 @@ def multi_start(
 ) -> list[tuple[FloatArray, float]]:  # fmt: skip
     """Unknowns at the deepest minima that starts lead to, and the cost there, the deepest first.
 
-    Starts that have met go on as one.
-
-    Parameters
-    ----------
-    starts : problems of the same residuals, each with unknowns
-    rounds : steps, and how many starts go on after them
-    how : residuals r count as ½ s² ln(1 + (r/s)²), with s at least twice their median, or squared
-    allowance : what a start may cost more than the best and goes on, however many do
-    kept : residuals that count, all where it is left out
-    held : an unknown that stays
+    Starts, of the same residuals, that have met go on as one.  ``rounds``: steps, and how many
+    starts go on after them; residuals r count squared, or as ½ s² ln(1 + (r/s)²) with s at least
+    twice their median; ``allowance``: what a start may cost more than the best and goes on, however
+    many do; ``kept``: residuals that count, all where it is left out; ``held``: what stays.
     """
     scale = math.inf if how.loss == "linear" else how.scale
     walkers = [_Walker(problem, x, scale, kept, held) for problem, x in starts]

@@ -61,15 +61,8 @@ def misfit(
 ) -> str:
     """A sentence that says which other reading fits far better; empty if none does.
 
-    A floor is named before angles or a radius that fit about as well.
-
-    Parameters
-    ----------
-    result : the estimate of slides that do not fit
-    problem : what was asked, with all frames
-    known : whether the noise of places, of angles and of time stamps is
-    forces : what a slope, drag or air would explain
-    speeds : whether a friction over slip speed does not fit, either
+    A floor is named before angles or a radius that fit about as well.  ``problem``: what was asked,
+    with all frames; ``speeds``: whether a friction over slip speed does not fit, either.
     """
     noise, told = problem.noise[0], []
     if _may_change(problem.spec) and not speeds:

@@ -112,11 +112,9 @@ def plausible_for(problem: Problem, x: FloatArray) -> FloatArray:
 
 
 def numbers_of(
-    result: Estimate,
-    certainty: Certainty,
-    other_fits: tuple[OtherMinimum, ...] = (),
+    result: Estimate, certainty: Certainty, other_fits: tuple[OtherMinimum, ...] = (),
     unsigned: tuple[int, ...] = (),
-) -> tuple[dict[str, Number], tuple[EstimatedLaunch, ...]]:
+) -> tuple[dict[str, Number], tuple[EstimatedLaunch, ...]]:  # fmt: skip
     """All numbers of the puck, and of each launch.
 
     ``other_fits``: other summits of the likelihood; what they differ in, or do not tell, is not

@@ -91,11 +91,8 @@ def misfits(
 ) -> tuple[str, ...]:
     """Signs that a model does not fit.
 
-    Parameters
-    ----------
-    result, known : the estimate, and which noise was given
-    smooth : the noise (m, rad) that no model judged
-    explained : the probability by chance of what a slope, drag or air would explain
+    ``smooth``: the noise (m, rad) that no model judged; ``explained``: the probability by chance of
+    what a slope, drag or air would explain.
     """
     told = []
     size = max(float(np.ptp(film.place, axis=0).max()) for film in result.problem.films)
