@@ -19,7 +19,7 @@ from puck_tables.cli.options import (
     packed,
 )
 from puck_tables.cli.printing import note, progress
-from puck_tables.cli.track_options import read_all, track_options
+from puck_tables.cli.track import read_all, track_options
 from puck_tables.cli.values import NumberParam, named, names, not_none, numbers_in, read_as
 
 from puck_tables.errors import InputError

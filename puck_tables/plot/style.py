@@ -99,11 +99,6 @@ def canvas(width: float, height: float) -> Figure:
     ------
     MissingExtraError
         If matplotlib is not installed.
-
-    Examples
-    --------
-    >>> canvas(4.0, 3.0).axes
-    []
     """
     require_matplotlib()
     from matplotlib.figure import Figure
@@ -138,13 +133,7 @@ def no_rounding(axes: Axes) -> None:
 
 
 def checked_kind(path: str | Path) -> str:
-    """The ending of a picture's name.
-
-    Examples
-    --------
-    >>> checked_kind("run.png")
-    '.png'
-    """
+    """The ending of a picture's name."""
     return ending_of(path, PICTURE_KINDS)
 
 
@@ -185,12 +174,6 @@ def save_figure(figure: Figure, path: str | Path, overwrite: bool = False) -> No
         If the ending of the name is none of pictures.
     OutputError
         If a file is there that is no picture (without ``overwrite``) or cannot be written.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     save_figure(canvas(4.0, 3.0), folder + "/empty.png")
     """
     kind = checked_kind(path)
     buffer = io.BytesIO()
