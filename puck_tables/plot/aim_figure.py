@@ -27,13 +27,8 @@ def draw(result: Aim) -> Figure:
     paths, launches = figure.subplots(1, 2, width_ratios=(1.7, 1.0))
     colours = draw_on(paths, result)
     for sense in (result.launch_spin <= 0.0, result.launch_spin >= 0.0):
-        launches.plot(
-            result.launch_spin[sense],
-            result.launch_speed[sense],
-            color=GREY,
-            linewidth=0.8,
-            zorder=1,
-        )
+        line = result.launch_spin[sense], result.launch_speed[sense]
+        launches.plot(*line, color=GREY, linewidth=0.8, zorder=1)
     launches.scatter(
         result.launch_spin, result.launch_speed, c=colours.to_rgba(result.launch_spin), zorder=2
     )

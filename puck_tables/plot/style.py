@@ -33,20 +33,9 @@ _LOOKED_AT = 4096  # bytes at each end
 
 BLUE, ORANGE, GREEN, GREY, RED = "#0b5fa5", "#d9660c", "#2f8f3a", "#8a8a8a", "#b3202a"
 COLORS = (BLUE, ORANGE, GREEN, "#8b2fa0", RED)
-LAUNCH: dict[str, Any] = {
-    "marker": "o",
-    "color": GREEN,
-    "markersize": 6,
-    "linestyle": "",
-    "zorder": 5,
-}
-STOP: dict[str, Any] = {
-    "marker": "s",
-    "color": ORANGE,
-    "markersize": 6,
-    "linestyle": "",
-    "zorder": 5,
-}
+_MARK: dict[str, Any] = {"markersize": 6, "linestyle": "", "zorder": 5}
+LAUNCH: dict[str, Any] = {"marker": "o", "color": GREEN, **_MARK}
+STOP: dict[str, Any] = {"marker": "s", "color": ORANGE, **_MARK}
 FEW = 7  # values of an axis that are curves rather than bands of a map
 NO_VALUE = "#d0d0d0"  # of a map, where there is none: white and the colours of values are taken
 _STEADY = 1e-6  # of itself: a smaller change of a quantity is none
