@@ -39,7 +39,7 @@ class InverseSolution:
         """One function at places on the axis of slip (2, n, heights)."""
         place = xi * self.cells
         cell = np.clip(place.astype(np.int64), 0, self.cells - 1)
-        weights = basis(place - cell)  # type: ignore[arg-type]
+        weights = basis(place - cell)
         spline = self.splines[function]
         rows = (np.take_along_axis(spline, cell + k, axis=1) for k in range(4))
         return np.asarray(sum(w * row for w, row in zip(weights, rows, strict=True)))
