@@ -19,6 +19,7 @@ from puck_tables.io.formats import ending_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Colormap
     from matplotlib.figure import Figure
     from matplotlib.gridspec import SubplotSpec
@@ -119,6 +120,19 @@ def no_rounding(axes: Axes) -> None:
         if high - low < _STRAIGHT * longest:
             middle, half = 0.5 * (low + high), 0.05 * longest
             axes.set(**{side: (middle - half, middle + half)})
+
+
+def labelled(axes: Axes, x: str, y: str) -> None:
+    """What stands at both axes, and a light grid."""
+    axes.set(xlabel=x, ylabel=y)
+    axes.grid(color="#e4e4e4", linewidth=0.6)
+
+
+def colour_bar(axes: Axes, marks: ScalarMappable, label: str) -> None:
+    """What the colours of marks say, beside their panel."""
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    figure.colorbar(marks, ax=axes, label=label)
 
 
 def checked_kind(path: str | Path) -> str:

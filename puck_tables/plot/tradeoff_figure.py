@@ -78,8 +78,7 @@ def _draw(axes: Axes, title: str, group: list[MeasuredMethod]) -> None:
                 fontsize=5.5, textcoords="offset points", ha="center", color=color, zorder=4,
             )  # fmt: skip
         _name(axes, method, own, color, taken)
-    axes.set_xlabel("worst error (left: rough, right: exact)")
-    axes.set_ylabel("ns for one")
+    axes.set(xlabel="worst error (left: rough, right: exact)", ylabel="ns for one")
     axes.set_title(title, fontsize=11, color=BLUE, loc="left")
     axes.grid(color="#eeeeee", linewidth=0.6)
     axes.legend(frameon=False, loc="upper left", fontsize=8)
