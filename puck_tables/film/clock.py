@@ -37,11 +37,6 @@ def seconds(where: str, texts: Sequence[str]) -> FloatArray:
     where : for messages
     texts : sequence of str
 
-    Raises
-    ------
-    InputError
-        If one is no such time.
-
     Examples
     --------
     >>> seconds("a.csv", ["23:59:59.75", "", "24:00:00.5"]).tolist()

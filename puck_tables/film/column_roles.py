@@ -48,11 +48,6 @@ class Layout:
 def layout_of(path: str | Path, form: TextForm, columns: str | None) -> Layout:
     """What the columns of a table are, by its header or by headings given in its place.
 
-    Raises
-    ------
-    InputError
-        If there are none, or not as many as columns.
-
     Examples
     --------
     >>> form = TextForm("utf-8", ",", False, [["t", "x1", "y1"]], [], [["0", "1", "2"]], 1, 3)

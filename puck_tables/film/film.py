@@ -90,13 +90,13 @@ class Film:
 class Reader(NamedTuple):
     """A format of tracks that is no table of text.
 
-    ``opens``: whether a file, by its path and how it begins, is of it; ``film_of``: what it holds;
-    or ``as_text``: a table of text that holds the same, which is then read as any other.
+    By the path of a file and how it begins, ``opens``: whether it is of it; ``film_of``: what it
+    holds; or ``as_text``: a table of text that holds the same, which is then read as any other.
     """
 
     opens: Callable[[str | Path, bytes], bool]
-    film_of: Callable[[str | Path], Film] | None = None
-    as_text: Callable[[str | Path], bytes] | None = None
+    film_of: Callable[[str | Path, bytes], Film] | None = None
+    as_text: Callable[[str | Path, bytes], bytes] | None = None
 
 
 def first_text(path: str | Path, head: bytes) -> str:

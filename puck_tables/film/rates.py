@@ -29,11 +29,6 @@ def summed(path: str | Path, film: Film, body: TrackedBody, time: FloatArray) ->
 
     By the trapezoidal rule, over frames where none is told as between those beside them.
 
-    Raises
-    ------
-    InputError
-        If fewer than two are told.
-
     Examples
     --------
     >>> body = TrackedBody("", {"": np.array([[2.0, 0.0], [2.0, 0.0], [1.0, 0.0]])})
@@ -51,11 +46,8 @@ def summed(path: str | Path, film: Film, body: TrackedBody, time: FloatArray) ->
         if known.sum() < 2:
             raise InputError(f"{path} tells fewer than two {film.rates}")
         steps = np.diff(time[known])
-        path_of = np.concatenate(
-            [[0.0], np.cumsum(0.5 * steps * (rates[known][1:] + rates[known][:-1]))]
-        )
         result = np.full(rates.shape, np.nan)
-        result[known] = path_of
+        result[known] = np.cumsum([0.0, *(0.5 * steps * (rates[known][1:] + rates[known][:-1]))])
         return result
 
     if film.rates == ANGLES:

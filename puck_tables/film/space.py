@@ -29,11 +29,6 @@ def on_the_floor(path: str | Path, film: Film, body: TrackedBody, up: str | None
     body : with places (n, 3) perhaps, and quaternions
     up : the axis that points up; None as the file, or most files, have it
 
-    Raises
-    ------
-    InputError
-        If it goes up and down, so that the axis is another one, or turns are no quaternions.
-
     Examples
     --------
     >>> body = TrackedBody("", {"": np.array([[0.0, 1.0, 9.0], [2.0, 1.0, 8.0], [4.0, 1.0, 7.0]])})

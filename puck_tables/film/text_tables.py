@@ -15,7 +15,7 @@ from puck_tables._core.text_rows import read_columns
 from puck_tables._core.units import factor, unit_size
 from puck_tables.errors import InputError
 from puck_tables.film.clock import is_clock, seconds
-from puck_tables.film.column_roles import Layout, example, layout_of, name_of
+from puck_tables.film.column_roles import Layout, example, name_of
 from puck_tables.film.film import Film, Flags, TrackedBody
 from puck_tables.film.headings import Heading
 from puck_tables.film.rates import ANGLES
@@ -24,48 +24,13 @@ MOST_PUCKS = 10_000  # in one file: more is a column of another meaning
 _TURN = ("qx", "qy", "qz", "qw")
 _YES = {"true", "yes", "y", "t", "ja", "j", "oui", "si", "sí", "wahr", "ok"}
 _NO = {"false", "no", "n", "f", "nein", "non", "falsch", ""}
-_SHOWN, _HIDDEN = (
-    {"visible", "seen", "shown", "detected"},
-    {"hidden", "occluded", "lost", "missing"},
-)
-
-
-def film_of_table(
-    path: str | Path, head: bytes, columns: str | None, content: bytes | None = None
-) -> Film:
-    r"""The film in a text file.
-
-    Parameters
-    ----------
-    path : the file
-    head : how it begins
-    columns : headings for its columns with commas, in place of those in the file
-    content : all of it, where it is not the file itself that is the text
-
-    Raises
-    ------
-    InputError
-        If it is no table, has no header where none is given, or columns that do not fit.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     file, content = Path(folder, "a.csv"), b"t,red_x [cm],red_y [cm]\n0,3,1\n1,4,1\n"
-    ...     _ = file.write_bytes(content)
-    ...     film = film_of_table(file, content, None)
-    >>> film.unit, film.bodies[0].marks["red"].tolist()
-    ('cm', [[3.0, 1.0], [4.0, 1.0]])
-    """
-    form = text_form_of(path, head)
-    layout = layout_of(path, form, columns)
-    return film_in_text(path, form, layout, content)
+_SHOWN = {"visible", "seen", "shown", "detected"}
+_HIDDEN = {"hidden", "occluded", "lost", "missing"}
 
 
 def film_in_text(
-    path: str | Path, form: TextForm, layout: Layout, content: bytes | None = None,
-    notes: Sequence[str] = (),
-) -> Film:  # fmt: skip
+    path: str | Path, form: TextForm, layout: Layout, content: bytes | None = None
+) -> Film:
     r"""The film in a table of text whose columns are known.
 
     Parameters
@@ -74,12 +39,6 @@ def film_in_text(
     form : how it is written
     layout : what its columns are
     content : its bytes, if it has been read
-    notes : what was found, in sentences
-
-    Raises
-    ------
-    InputError
-        If it has no places, or cells that do not fit.
 
     Examples
     --------
@@ -101,16 +60,14 @@ def film_in_text(
             "a line with x alone"
         )
     texts = [n for n in wanted if _holds_text(form, n, layout.columns[n][1])]
-    values, words = read_columns(
-        path, form, [n for n in wanted if n not in texts], texts, content
-    )  # fmt: skip
+    values, words = read_columns(path, form, [n for n in wanted if n not in texts], texts, content)
     for n in texts:
         body, one = layout.columns[n]
         if one.role == "time":
             codes, named = words.pop(n)
             values[n] = seconds(f"{path}, column {n + 1}", named)[codes]
             layout.columns[n] = (body, one._replace(unit="s"))
-    notes = [*notes]
+    notes = []
     unused = [n for n in range(form.width) if n not in wanted]
     if unused and layout.kind.startswith("table"):
         names = ", ".join(name_of(form, n) for n in unused[:8])
@@ -132,16 +89,10 @@ def film_of_columns(
     words : of columns of texts: for each row the number of its text, and the texts
     notes : what was found, in sentences
 
-    Raises
-    ------
-    InputError
-        If columns do not fit each other.
-
     Examples
     --------
     >>> layout = Layout([("", Heading("time")), ("", Heading("x")), ("", Heading("y"))])
-    >>> film = film_of_columns("a", layout, dict(enumerate(np.eye(3))), {})
-    >>> film.bodies[0].marks[""].tolist()
+    >>> film_of_columns("a", layout, dict(enumerate(np.eye(3))), {}).bodies[0].marks[""].tolist()
     [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]
     """
     film = Film(
@@ -181,7 +132,7 @@ def film_of_columns(
 
 def film_below(
     path: str | Path, head: bytes, lines: int, columns: Sequence[tuple[str, Heading]], kind: str,
-    rate: float = 0.0,
+    up: str, rate: float = 0.0, content: bytes | None = None,
 ) -> Film:  # fmt: skip
     r"""The film in a table that stands below lines of another form, which said what it holds.
 
@@ -192,12 +143,9 @@ def film_below(
     lines : how many stand above the first row of numbers
     columns : each with the body that it is of
     kind : of file, for messages
+    up : the axis of places in space that points up
     rate : frames a second, where the lines say it and no column holds times
-
-    Raises
-    ------
-    InputError
-        If there are more, or fewer, columns of numbers, or cells that do not fit.
+    content : all of the table, where other things stand below it
 
     Examples
     --------
@@ -206,7 +154,7 @@ def film_below(
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     file, content = Path(folder, "a.tsv"), b"FREQUENCY\t50\n7\t9\n8\t9\n"
     ...     _ = file.write_bytes(content)
-    ...     film_below(file, content, 1, columns, "file", 50.0).bodies[0].time.tolist()
+    ...     film_below(file, content, 1, columns, "file", "z", 50.0).bodies[0].time.tolist()
     [0.0, 0.02]
     """
     form = text_form_of(path, b"\n".join(head.split(b"\n")[lines:]))
@@ -217,12 +165,12 @@ def film_below(
             "version that is not known; export it once more"
         )
     form = replace(form, skip=form.skip + lines)
-    film = film_in_text(path, form, Layout(columns, kind, jointed=True, likely=None))
+    film = film_in_text(path, form, Layout(columns, kind, jointed=True, likely=None), content)
+    film.up = up
     for body in film.bodies:
         if body.time is None and rate > 0.0:
             first = next(iter(body.marks.values())).shape[0]
             body.time = (np.arange(first) if body.frame is None else body.frame) / rate
-            body.frame = None
     if rate > 0.0:
         film.notes.append(f"{rate:.9g} frames a second, as it says")
     return film
@@ -311,6 +259,10 @@ def _body(
                 )
             found[one.role, one.puck] = values[n][rows]
             units[one.role] = one.unit
+
+    def of(role: str) -> dict[str, FloatArray]:
+        return {mark: value for (one, mark), value in found.items() if one == role}
+
     marks = {}
     for role, mark in found:
         if role not in ("x", "y"):
@@ -327,47 +279,39 @@ def _body(
         height = [found["z", mark]] if ("z", mark) in found else []
         marks[mark] = np.column_stack(level + height)
     if rates == ANGLES:
-        marks = {
-            mark: np.zeros((where.size, 2)) for (role, mark), where in found.items()
-            if role == "angle"
-        }  # fmt: skip
-    body = TrackedBody(name, marks, seen=seen)
-    for mark in marks:
-        turn = [found[role, mark] for role in _TURN if (role, mark) in found]
-        if len(turn) == len(_TURN):
-            body.turns[mark] = np.stack(turn, axis=1)
-    clocks = {}
-    for (role, _), value in found.items():
-        if role in clocks:
+        marks = {mark: np.zeros((where.size, 2)) for mark, where in of("angle").items()}
+    turns = {
+        mark: np.stack([found[role, mark] for role in _TURN], axis=1) for mark in marks
+        if all((role, mark) in found for role in _TURN)
+    }  # fmt: skip
+    body = TrackedBody(
+        name, marks, angles=of("angle"), likelihoods=of("likelihood"), seen=seen, turns=turns
+    )
+    clocks: dict[str, FloatArray | None] = {}
+    for role in ("frame", "time", "step", "nanos"):
+        whose = [*of(role).values()]
+        if len(whose) > 1:
             raise InputError(
                 f"{path} has two columns of {role}: read the pucks one by one, with - in columns "
                 "(--columns) for those of others"
             )
-        if role in ("frame", "time", "step", "nanos"):
-            clocks[role] = value
-    body.frame, body.time = clocks.get("frame"), clocks.get("time")
+        clocks[role] = whose[0] if whose else None
+    body.frame, body.time = clocks["frame"], clocks["time"]
     if body.time is not None:
         body.time = body.time * factor(units["time"] or "s", "time")
-        if "nanos" in clocks:  # from the first second on: doubles hold no more of a stamp
+        if clocks["nanos"] is not None:  # from the first second on: doubles hold no more of a stamp
             start = body.time[np.isfinite(body.time)].min(initial=np.inf)
             body.time = body.time - start + 1e-9 * clocks["nanos"]
-    elif "step" in clocks:
+    elif clocks["step"] is not None:
         steps = clocks["step"] * factor(units["step"] or "s", "time")
         body.time = np.concatenate([[0.0], np.cumsum(steps[1:])])
-    body.angles = {mark: value for (role, mark), value in found.items() if role == "angle"}
-    body.likelihoods = {
-        mark: value for (role, mark), value in found.items() if role == "likelihood"
-    }
     return body
 
 
 def _flags(
-    path: str | Path,
-    column: int,
-    role: str,
-    values: Mapping[int, FloatArray],
+    path: str | Path, column: int, role: str, values: Mapping[int, FloatArray],
     words: Mapping[int, Any],
-) -> Flags:
+) -> Flags:  # fmt: skip
     """Whether the puck is seen, row by row, from a column of flags."""
     if column in words:
         codes, texts = words[column]
@@ -381,13 +325,11 @@ def _flags(
                 )
             yes = low in _YES | {"1"}
             shown.append(low in _SHOWN or (low not in _HIDDEN and yes == (role == "seen")))
-        by_row: Flags = np.array(shown, bool)[codes]
-        return by_row
+        return np.asarray(np.array(shown, bool)[codes])
     flags = values[column]
     if not np.isin(flags[~np.isnan(flags)], (0.0, 1.0)).all():
         raise InputError(
             f"{path}, column {column + 1}: flags of what is seen must be 0 or 1; leave the column "
             "out with - in columns (--columns)"
         )
-    result: Flags = flags == 1.0 if role == "seen" else flags != 1.0
-    return result
+    return np.asarray((flags == 1.0) == (role == "seen"))

@@ -14,8 +14,7 @@ from puck_tables._core.real import instance, positive, real
 from puck_tables._core.units import PIXEL, factor, pixel_size, unit_named
 from puck_tables.errors import InputError
 from puck_tables.film.film import Film, TrackedBody
-from puck_tables.film.marks_file import plane_from
-from puck_tables.film.plane import Marks, Plane
+from puck_tables.film.plane import Marks, Plane, plane_from
 from puck_tables.film.puck_track import Track
 from puck_tables.film.rates import summed
 from puck_tables.film.space import UPS, on_the_floor
@@ -126,9 +125,7 @@ def to_si(path: str | Path, film: Film, how: ReaderOptions) -> tuple[Track, ...]
             if how.pucks is not None and not {puck, body.name, mark} & set(how.pucks):
                 continue
             name = f"{Path(path).name}{f': {puck}' if puck else ''}"
-            place, angle, hidden_notes = _visible(
-                path, film, body, centre, toward, how, scale
-            )  # fmt: skip
+            place, angle, hidden = _visible(path, film, body, centre, toward, how, scale)
             rows = np.flatnonzero(~np.isnan(time))
             if (lost := np.flatnonzero(np.isnan(time) & np.isfinite(place).all(axis=1))).size:
                 raise InputError(
@@ -138,34 +135,29 @@ def to_si(path: str | Path, film: Film, how: ReaderOptions) -> tuple[Track, ...]
             try:
                 track = Track(
                     time[rows], place[rows], None if angle is None else angle[rows], name,
-                    (*notes, *body_notes, *hidden_notes),
+                    (*notes, *body_notes, *hidden),
                 )  # fmt: skip
-            except InputError as error:
-                raise InputError(f"{name}: {error}{_others(film, how)}") from None
+            except InputError as error:  # one puck of many may spoil all
+                many = len(film.bodies) > 1 and how.pucks is None
+                hint = "; or say which pucks to read with pucks (--pucks)" if many else ""
+                raise InputError(f"{name}: {error}{hint}") from None
             tracks.append(track)
-    _refuse_unknown(path, how.pucks, there)
+    words = {part for name in there for part in (name, *name.split(" ", 1))}
+    for name in how.pucks or ():
+        if name not in words:
+            listed = ", ".join(there[:8]) + (", ..." if len(there) > 8 else "")
+            raise InputError(
+                f"{path} has no puck '{name}'{_meant(name, there)} Its pucks: "
+                f"{listed or 'none with a name'}"
+            )
     if not tracks:
         raise InputError(f"{path} holds no puck")
     return tuple(tracks)
 
 
-def _others(film: Film, how: ReaderOptions) -> str:
-    """A hint where one puck of many spoils all."""
-    many = len(film.bodies) > 1 and how.pucks is None
-    return "; or say which pucks to read with pucks (--pucks)" if many else ""
-
-
-def _refuse_unknown(path: str | Path, wanted: Sequence[str] | None, there: Sequence[str]) -> None:
-    words = {part for name in there for part in (name, *name.split(" ", 1))}
-    for name in wanted or ():
-        if name not in words:
-            near = get_close_matches(name, there, 1)
-            listed = ", ".join(there[:8]) + (", ..." if len(there) > 8 else "")
-            raise InputError(
-                f"{path} has no puck '{name}'"
-                + (f", did you mean '{near[0]}'?" if near else ".")
-                + f" Its pucks: {listed or 'none with a name'}"
-            )
+def _meant(name: str, there: Sequence[str]) -> str:
+    near = get_close_matches(name, there, 1)
+    return f", did you mean '{near[0]}'?" if near else "."
 
 
 class _Scale:
@@ -173,9 +165,7 @@ class _Scale:
 
     def __init__(self, path: str | Path, film: Film, how: ReaderOptions, notes: list[str]) -> None:
         if how.unit is not None and film.unit not in ("", how.unit, PIXEL):
-            raise InputError(
-                f"{path} gives places in {film.unit}: leave unit = '{how.unit}' out"
-            )  # fmt: skip
+            raise InputError(f"{path} gives places in {film.unit}: leave unit = '{how.unit}' out")
         given = how.unit or (PIXEL if how.size is not None or how.plane is not None else "")
         if given == PIXEL and film.unit not in ("", PIXEL):
             raise InputError(f"{path} gives places in {film.unit}: leave scale and marks out")
@@ -268,7 +258,9 @@ def _times(
         film.notes.append(f"times in {unit} since 1970, as their size tells")
         for one in film.bodies:
             one.time = None if one.time is None else one.time * factor(unit, "time")
-    first = _stamped(film)
+    there = _all_times(film)
+    # a first time far from 0 for so short a film is a stamp: only the time between stamps counts
+    first = float(there.min()) if abs(there.min()) > _STAMPED * np.ptp(there) > 0.0 else 0.0
     said = [f"times from its first frame on, {first:.15g} s of its clock"] if first else []
     if film.timed:
         return body.time - first, said
@@ -282,28 +274,18 @@ def _times(
     return body.time - first, ["times taken as seconds, of which the file says nothing", *said]
 
 
+def _all_times(film: Film) -> FloatArray:
+    """The times of all bodies, 0 if there are none."""
+    times = [body.time[np.isfinite(body.time)] for body in film.bodies if body.time is not None]
+    there = np.concatenate([*times, np.empty(0)])
+    return there if there.size else np.zeros(1)
+
+
 def _stamp_unit(film: Film) -> str:
     """The unit of stamps that count from 1970, where no other gives a year of films; else ''."""
-    times = [body.time[np.isfinite(body.time)] for body in film.bodies if body.time is not None]
-    there = np.concatenate(times) if times else np.empty(0)
-    if not there.size:
-        return ""
-    return next((
-        unit for unit in ("s", "ms", "us", "ns")
-        if _EPOCH[0] < float(there.min()) * factor(unit, "time") < _EPOCH[1]
-    ), "")  # fmt: skip
-
-
-def _stamped(film: Film) -> float:
-    """The first time of all bodies, where it is far from 0 for so short a film; 0 elsewhere.
-
-    Such times are stamps of a clock: as dates do, they mean nothing but the time between them.
-    """
-    times = [body.time[~np.isnan(body.time)] for body in film.bodies if body.time is not None]
-    there = np.concatenate(times) if times else np.empty(0)
-    if not there.size or not abs(there.min()) > _STAMPED * np.ptp(there) > 0.0:
-        return 0.0
-    return float(there.min())
+    first = float(_all_times(film).min())
+    units = ("s", "ms", "us", "ns")
+    return next((one for one in units if _EPOCH[0] < first * factor(one, "time") < _EPOCH[1]), "")
 
 
 def _alike(names: Sequence[str], wanted: Sequence[str]) -> dict[str, dict[str, str]]:
@@ -342,18 +324,14 @@ def _pucks(
         wanted = [*how.centre, *([how.toward] if how.toward else [])]
         if not {*wanted} <= {*names} and (pucks := _alike(names, wanted)):
             return {
-                puck: (
-                    [marks[one] for one in how.centre],
-                    marks[how.toward] if how.toward else None,
-                )
+                puck: ([marks[one] for one in how.centre], marks.get(how.toward or ""))
                 for puck, marks in pucks.items()
             }
         for name in wanted:
             if name not in names:
-                near = get_close_matches(name, names, 1)
-                hint = f", did you mean '{near[0]}'?" if near else "."
                 raise InputError(
-                    f"{path} has no mark '{name}'{hint} Its marks: {', '.join(names[:8])}"
+                    f"{path} has no mark '{name}'{_meant(name, names)} Its marks: "
+                    f"{', '.join(names[:8])}"
                 )
         return {"": (how.centre, how.toward)}
     named = {*names, *(f"{body.name} {mark}" for mark in names)} & {*(how.pucks or ())}
@@ -371,14 +349,9 @@ def _pucks(
 
 
 def _visible(
-    path: str | Path,
-    film: Film,
-    body: TrackedBody,
-    centre: Sequence[str],
-    toward: str | None,
-    how: ReaderOptions,
-    scale: _Scale,
-) -> tuple[FloatArray, FloatArray | None, list[str]]:
+    path: str | Path, film: Film, body: TrackedBody, centre: Sequence[str], toward: str | None,
+    how: ReaderOptions, scale: _Scale,
+) -> tuple[FloatArray, FloatArray | None, list[str]]:  # fmt: skip
     """Place and angle of a puck with NaN where it was not seen."""
     used = [*centre, *([toward] if toward else [])]
     shown = np.ones(len(body.marks[centre[0]]), bool)
@@ -414,7 +387,6 @@ def _visible(
         return place, None, notes
     middle: FloatArray = np.mean([points[mark] for mark in centre], axis=0)
     there = np.isfinite(middle).all(axis=1)
-    angle = np.where(there, angle, np.nan)
     turned = np.full(angle.shape, np.nan)
     turned[there] = scale.angle(middle[there], angle[there])
     return place, turned, notes

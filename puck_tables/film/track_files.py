@@ -7,14 +7,15 @@ from pathlib import Path
 
 from puck_tables._core.beginning import beginning, refuse_no_text
 from puck_tables._core.real import instance
-from puck_tables._core.text import HEAD
+from puck_tables._core.text import HEAD, text_form_of
 from puck_tables._core.text_rows import LARGEST
 from puck_tables.errors import InputError
+from puck_tables.film.column_roles import layout_of
 from puck_tables.film.film import Film, first_text
 from puck_tables.film.plane import Marks
 from puck_tables.film.puck_track import Track
 from puck_tables.film.readers import readers
-from puck_tables.film.text_tables import film_of_table
+from puck_tables.film.text_tables import film_in_text
 from puck_tables.film.to_tracks import ReaderOptions, to_si
 
 
@@ -125,13 +126,15 @@ def film_of(path: str | Path, columns: str | None = None) -> Film:
     for reader in readers():
         if reader.opens(path, head):
             if reader.as_text is not None:
-                content = reader.as_text(path)
-                return film_of_table(path, content[:HEAD], columns, content)
+                content = reader.as_text(path, head)
+                form = text_form_of(path, content[:HEAD])
+                return film_in_text(path, form, layout_of(path, form, columns), content)
             assert reader.film_of is not None
-            film = reader.film_of(path)
+            film = reader.film_of(path, head)
             if columns is None:
                 return film
             raise InputError(f"{path} is a {film.kind}, not a table: leave columns (--columns) out")
     if first_text(path, head):
         refuse_no_text(path, head)
-    return film_of_table(path, head, columns)
+    form = text_form_of(path, head)
+    return film_in_text(path, form, layout_of(path, form, columns))

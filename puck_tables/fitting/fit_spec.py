@@ -249,11 +249,6 @@ class FitSpec:
 
         ``sizes``: how many pucks meet, 1 those with walls; ``grips``: whether rims stop on what
         they meet in all of them, so that nothing tells their friction.
-
-        Raises
-        ------
-        InputError
-            If a number of impacts is named that are not there.
         """
         free, of_impacts = list(self.alone().free), {}
         named = [name for name in self.free if name in OF_IMPACTS]
@@ -300,13 +295,7 @@ class FitSpec:
         return tuple(name for name in INTEGRATED if name in (*self.free, *self.fixed))
 
     def with_law(self, law: str) -> FitSpec:
-        """The same with a law over slip speed by its name, whose numbers are found too.
-
-        Raises
-        ------
-        InputError
-            If there is no such law, or friction is known.
-        """
+        """The same with a law over slip speed by its name, whose numbers are found too."""
         if law not in LAWS:
             raise InputError(f"law must be one of {', '.join(LAWS)}, got {law!r:.40}")
         if "friction" not in self.free:
@@ -315,12 +304,7 @@ class FitSpec:
         return replace(self, law=law, free=(*self.free, *more))
 
     def refuse_integrated(self) -> None:
-        """Refuse what does not go with motions that are integrated.
-
-        Raises
-        ------
-        InputError
-        """
+        """Refuse what does not go with motions that are integrated."""
         named = self.integrated
         if self.puck.body.law.name != "uniform" or "inner" in (*self.free, *self.fixed):
             raise InputError(
@@ -375,13 +359,7 @@ class FitSpec:
         return SpeedLaw(list(self.speeds), values, self.between)
 
     def over(self, speeds: tuple[float, ...], between: str) -> FitSpec:
-        """The same with a friction coefficient for each of these slip speeds.
-
-        Raises
-        ------
-        InputError
-            If friction is not what is found, or something is found that such a puck has not.
-        """
+        """The same with a friction coefficient for each of these slip speeds."""
         for name in ("decel", "gravity", "drag", *INTEGRATED, "inner"):
             if name in self.free or name in self.fixed:
                 raise InputError(

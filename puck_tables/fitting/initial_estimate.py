@@ -149,13 +149,7 @@ def initial_estimate(problem: Problem, known: Known, refit: bool) -> Estimate:
 
 
 def _with_room(problem: Problem) -> Problem:
-    """The same, of pucks so tall as the bounds of δ want them.
-
-    Raises
-    ------
-    InputError
-        If no value within bounds is one of which motions are known.
-    """
+    """The same, of pucks so tall as the bounds of δ want them."""
     low, high = problem.limits
     narrow = np.flatnonzero(low >= high)
     if not narrow.size:

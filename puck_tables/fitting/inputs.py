@@ -96,10 +96,6 @@ def observations_of(
     ``keep_all``: whether all their frames are of free motion; ``radius`` m: of the puck, two of
     which are never nearer than twice that; ``rows``: y in m of the first and the last line of the
     picture.
-
-    Raises
-    ------
-    InputError
     """
     if not isinstance(tracks, Track | Iterable):
         raise InputError(f"tracks must be a Track or several, got {tracks!r}")
@@ -150,12 +146,7 @@ def _refuse_still(film: Observations) -> None:
 
 
 def refuse_wobbling(result: Estimate, certainty: Certainty) -> None:
-    """Refuse a track of a puck that goes nowhere beyond what any slide leaves of its places.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a track of a puck that goes nowhere beyond what any slide leaves of its places."""
     problem = result.problem
     for n, film in enumerate(problem.films):
         speeds = [(n, name) for name in ("launch_vx", "launch_vy")]
@@ -192,12 +183,7 @@ def _refuse_twice(one: Observations, other: Observations) -> None:
 
 
 def refuse_tipping(spec: FitSpec, films: tuple[Observations, ...], noise: float) -> None:
-    """Refuse a height at which a puck that slows down as these would tip over.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a height at which a puck that slows down as these would tip over."""
     known = spec.known()
     if spec.uses_delta or "height" in spec.free or known["height"] == 0.0:
         return
@@ -214,12 +200,7 @@ def refuse_tipping(spec: FitSpec, films: tuple[Observations, ...], noise: float)
 
 
 def checked_jitter(raw: Any) -> float | None:
-    """The standard deviation of time stamps, s; None if it is to be found, 0 if there is none.
-
-    Raises
-    ------
-    InputError
-    """
+    """The standard deviation of time stamps, s; None if it is to be found, 0 if there is none."""
     if raw is None:
         return 0.0
     if isinstance(raw, str):
@@ -230,12 +211,7 @@ def checked_jitter(raw: Any) -> float | None:
 
 
 def checked_rows(raw: Any) -> tuple[float, float] | None:
-    """Y of the first and the last line of a picture, m.
-
-    Raises
-    ------
-    InputError
-    """
+    """Y of the first and the last line of a picture, m."""
     if raw is None:
         return None
     try:
@@ -251,12 +227,7 @@ def checked_rows(raw: Any) -> tuple[float, float] | None:
 
 
 def checked_speeds(raw: Any, between: Any) -> tuple[float, ...]:
-    """Slip speeds at which friction is found, m/s, none where it does not depend on them.
-
-    Raises
-    ------
-    InputError
-    """
+    """Slip speeds at which friction is found, m/s, none where it does not depend on them."""
     if between not in KINDS:
         raise InputError(f"between must be {' or '.join(KINDS)}, got {between!r:.40}")
     if raw is None:
@@ -273,12 +244,7 @@ def checked_speeds(raw: Any, between: Any) -> tuple[float, ...]:
 
 
 def refuse_faster(speeds: tuple[float, ...], result: Estimate) -> None:
-    """Refuse slip speeds that end below those of the tracks.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse slip speeds that end below those of the tracks."""
     fastest = result.problem.fastest(result.x)
     if fastest > speeds[-1]:
         raise InputError(
@@ -288,12 +254,7 @@ def refuse_faster(speeds: tuple[float, ...], result: Estimate) -> None:
 
 
 def refuse_opening(result: Estimate) -> None:
-    """Refuse a puck so tall, for the largest friction that was found, that its base opens.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a puck so tall, for the largest friction that was found, that its base opens."""
     problem = result.problem
     numbers = problem.numbers_at(result.x)
     _, delta, _ = problem.spec.scales(numbers)
@@ -309,12 +270,7 @@ def refuse_opening(result: Estimate) -> None:
 
 
 def checked_walls(raw: Any) -> tuple[Line, ...]:
-    """Walls, each by two points (x, y) m on it.
-
-    Raises
-    ------
-    InputError
-    """
+    """Walls, each by two points (x, y) m on it."""
     if isinstance(raw, str) or not isinstance(raw, Sequence):
         raise InputError("walls must be a list, each wall two points ((x, y), (x, y)) on it in m")
     lines = []
@@ -336,12 +292,7 @@ def checked_walls(raw: Any) -> tuple[Line, ...]:
 
 
 def checked_noise(raw: Any) -> tuple[float | None, float | None]:
-    """The noise as given, None for what is to be found.
-
-    Raises
-    ------
-    InputError
-    """
+    """The noise as given, None for what is to be found."""
     if raw is None:
         return None, None
     try:

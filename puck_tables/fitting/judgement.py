@@ -88,13 +88,7 @@ def judged_motion(
 
 
 def judged_certainty(best: Estimate, known: Known) -> Certainty:
-    """How well the unknowns of an estimate are known.
-
-    Raises
-    ------
-    InputError
-        If too few observations told the noise.
-    """
+    """How well the unknowns of an estimate are known."""
     degrees = freedom(best, known)
     if degrees < _JUDGED:
         raise InputError(

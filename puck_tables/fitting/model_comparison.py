@@ -87,13 +87,7 @@ def _near(film: Observations, path: FloatArray) -> FloatArray | None:
 
 
 def on_a_floor(problem: Problem, known: Known) -> Estimate:
-    """The estimate of a floor that is compared with others: about, where it does not come near.
-
-    Raises
-    ------
-    InputError
-        If its tracks do not tell where to begin, or no such motion can be computed.
-    """
+    """The estimate of a floor that is compared with others: about, where it does not come near."""
     begun = begun_from_slowing(problem)
     if begun is None:
         raise InputError(
@@ -231,13 +225,7 @@ def compare(
 
 
 def variants_of(spec: FitSpec, names: Any) -> dict[str, FitSpec]:
-    """What is asked of each law by its name.
-
-    Raises
-    ------
-    InputError
-        If they are no list, a law is not known, or named twice.
-    """
+    """What is asked of each law by its name."""
     if isinstance(names, str):
         raise InputError(f"laws must be a list of names, got the text '{names}'")
     floors = ["uniform", *(f"uniform+{one}" for one in FLOORS)]
@@ -358,10 +346,6 @@ def split(
     hold_out : the last share of the moving frames of each, or names of tracks of which the later
         half is
     spread : noise of places, m
-
-    Raises
-    ------
-    InputError
     """
     if isinstance(hold_out, float):
         if not LEAST_SHARE <= hold_out <= LARGEST_SHARE:

@@ -46,11 +46,6 @@ def shape(name: str, x: FloatArray) -> FloatArray:
 def law_named(name: str, fast: float, rest: float, speed: float) -> SpeedLaw:
     """The law with these numbers, between rows that are close where it bends.
 
-    Raises
-    ------
-    InputError
-        If there is no such law.
-
     Examples
     --------
     >>> law = law_named("stribeck", 0.1, 0.2, 0.05)

@@ -157,11 +157,6 @@ def observations_in(
 ) -> Observations:
     """The frames of a track, those of free motion if its start and end are told, or all are.
 
-    Raises
-    ------
-    InputError
-        If they are too few.
-
     Examples
     --------
     >>> track = Track(0.1 * np.arange(9), np.zeros((9, 2)), name="a")

@@ -92,12 +92,7 @@ INTEGRATED = (*DRAGS, "slope_x", "slope_y", "belt_x", "belt_y", *LAW_NUMBERS)
 
 
 def refuse_unknown(name: str, known: Mapping[str, Parameter], what: str) -> None:
-    """Refuse a name that is no parameter, with the nearest that is.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a name that is no parameter, with the nearest that is."""
     if name not in known:
         usable = [one for one in known if one not in NODES]
         near = difflib.get_close_matches(str(name), usable, 1, 0.3)
@@ -106,12 +101,7 @@ def refuse_unknown(name: str, known: Mapping[str, Parameter], what: str) -> None
 
 
 def in_range(name: str, value: Any) -> float:
-    """A value of a parameter.
-
-    Raises
-    ------
-    InputError
-    """
+    """A value of a parameter."""
     refuse_unknown(name, ALL, "the fit")
     number, kind = real(name, value, ALL[name].unit), ALL[name]
     if not kind.low <= number <= kind.high or (name in POSITIVE and number == 0.0):
@@ -130,12 +120,7 @@ def _range(name: str) -> str:
 
 
 def prior_of(name: str, pair: Any) -> tuple[float, float]:
-    """A value and its standard deviation.
-
-    Raises
-    ------
-    InputError
-    """
+    """A value and its standard deviation."""
     value, spread = _pair(name, pair, "prior", "value and a standard deviation")
     if not spread > 0.0:
         raise InputError(
@@ -146,12 +131,7 @@ def prior_of(name: str, pair: Any) -> tuple[float, float]:
 
 
 def bounds_of(name: str, pair: Any) -> tuple[float, float]:
-    """The least and the largest value.
-
-    Raises
-    ------
-    InputError
-    """
+    """The least and the largest value."""
     low, high = _pair(name, pair, "bounds", "least and a largest value")
     if not low < high:
         raise InputError(f"the bounds of {name} must ascend, got {low:g} and {high:g}")

@@ -21,14 +21,8 @@ from puck_tables.film.film import Film, Reader, TrackedBody
 _KEY = 0x50  # the second byte of all C3D files
 
 
-def film_of_c3d(path: str | Path) -> Film:
-    """The film in a C3D file.
-
-    Raises
-    ------
-    InputError
-        If neither package is installed, it is damaged, or holds no marks.
-    """
+def _film(path: str | Path, head: bytes) -> Film:
+    """The film in a C3D file."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of parts of a file that nothing here needs
@@ -92,4 +86,4 @@ def _opens(path: str | Path, head: bytes) -> bool:
     return head[1:2] == bytes([_KEY]) and 1 < head[0] < 40 and b"\0" in head[:512]
 
 
-READERS = (Reader(_opens, film_of_c3d),)
+READERS = (Reader(_opens, _film),)

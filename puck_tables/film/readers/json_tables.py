@@ -17,22 +17,8 @@ _LARGEST = 1 << 28  # bytes
 _BEGINS = re.compile(r"\[\s*\{|\{\s*\"[^\"]*\"\s*:\s*\[\s*[-0-9n]")
 
 
-def cells_of_json(path: str | Path) -> bytes:
-    r"""The same as a CSV file (UTF-8) with the names of its entries as headings.
-
-    Raises
-    ------
-    InputError
-        If it is no JSON, or no table.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     _ = Path(folder, "a.json").write_text('{"t": [0, 0.1], "x [m]": [1, null]}')
-    ...     cells_of_json(Path(folder, "a.json"))
-    b't,x [m]\n0,1\n0.1,\n'
-    """
+def _as_csv(path: str | Path, head: bytes) -> bytes:
+    """The same as a CSV file (UTF-8) with the names of its entries as headings."""
     try:
         data: Any = json.loads(read_whole(path, _LARGEST))
         if isinstance(data, dict):
@@ -54,9 +40,8 @@ def cells_of_json(path: str | Path) -> bytes:
     return text.getvalue().encode()
 
 
-READERS = (
-    Reader(
-        lambda path, head: _BEGINS.match(first_text(path, head)) is not None,
-        as_text=cells_of_json,
-    ),
-)
+def _opens(path: str | Path, head: bytes) -> bool:
+    return _BEGINS.match(first_text(path, head)) is not None
+
+
+READERS = (Reader(_opens, as_text=_as_csv),)

@@ -22,23 +22,8 @@ _BEGINS = b"#Kinovea Trajectory"
 _ROW = re.compile(r"(?:(\d+):)?(\d+):(\d+):(\d+)\s+(\S+)\s+(\S+)\s*")
 
 
-def rows_of_kinovea(path: str | Path) -> bytes:
-    r"""The same as a table (UTF-8, semicolons) of trajectory, time, x and y.
-
-    Raises
-    ------
-    InputError
-        If a row is none of a time and two places.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> said = "#Kinovea Trajectory data export\n#T X Y\n\n0:00:00:07 8.5 3\n0:00:01:10 9 3\n"
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     _ = Path(folder, "a.txt").write_text(said)
-    ...     rows_of_kinovea(Path(folder, "a.txt"))
-    b'track;t [s];x;y\n1;0.07;8.5;3\n1;1.10;9;3\n'
-    """
+def _as_csv(path: str | Path, head: bytes) -> bytes:
+    """The same as a table (UTF-8, semicolons) of trajectory, time, x and y."""
     content = read_whole(path, _LARGEST)
     rows, track, apart = ["track;t [s];x;y"], 0, True
     for n, line in enumerate(content.decode(encoding_of(path, content)).splitlines(), start=1):
@@ -60,4 +45,4 @@ def rows_of_kinovea(path: str | Path) -> bytes:
     return ("\n".join(rows) + "\n").encode()
 
 
-READERS = (Reader(lambda _, head: head.startswith(_BEGINS), as_text=rows_of_kinovea),)
+READERS = (Reader(lambda _, head: head.startswith(_BEGINS), as_text=_as_csv),)

@@ -14,8 +14,6 @@ from __future__ import annotations
 import csv
 from pathlib import Path
 
-from puck_tables._core.beginning import beginning
-from puck_tables._core.text_rows import LARGEST
 from puck_tables._core.units import unit_word
 from puck_tables.errors import InputError
 from puck_tables.film.film import Film, Reader
@@ -25,25 +23,8 @@ from puck_tables.film.text_tables import film_below
 _FEWEST = 5  # lines over the table
 
 
-def film_of_optitrack(path: str | Path) -> Film:
-    r"""The film in an export of Motive.
-
-    Raises
-    ------
-    InputError
-        If rotations are no quaternions, or it has no columns that are known.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> said = ("Format Version,1.23,Length Units,Meters\n\n,,Marker,Marker,Marker\n,,hub,hub,hub\n"
-    ...         ",,1,1,1\n,,Position,Position,Position\nFrame,Time (Seconds),X,Y,Z\n0,0,1,2,3\n")
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     _ = Path(folder, "a.csv").write_text(said + "1,0.01,2,2,3\n")
-    ...     film_of_optitrack(Path(folder, "a.csv")).bodies[0].marks["hub"].tolist()
-    [[1.0, 2.0, 3.0], [2.0, 2.0, 3.0]]
-    """
-    head = beginning(path, LARGEST)
+def _film(path: str | Path, head: bytes) -> Film:
+    """The film in an export of Motive."""
     lines = head.decode("utf-8-sig", "replace").replace("\r", "").split("\n")
     rows = list(csv.reader(lines[:40]))
     at = next((n for n, row in enumerate(rows) if row[:1] == ["Frame"]), -1)
@@ -68,22 +49,16 @@ def film_of_optitrack(path: str | Path) -> Film:
         if role == "frame" or role.startswith("time (") or axis == "Time":
             columns.append(("", Heading("frame" if role == "frame" else "time", "", "s")))
         elif kind == ("Rigid Body" if solid else "Marker") and told in ("Position", "Rotation"):
-            body, _, mark = ("", "", name) if solid is False else (name, "", "")
-            if not solid and ":" in name:
-                body, _, mark = name.partition(":")
+            body, _, mark = (name, "", "") if solid else name.rpartition(":")
             role = f"q{role}" if told == "Rotation" else role
             columns.append((body, Heading(role, mark, unit if told == "Position" else "rad")))
         else:
             columns.append(("", Heading("")))
-    film = film_below(path, head, at + 1, columns, "export of OptiTrack")
-    for one in film.bodies:
-        one.frame = None  # its times are told
-    film.up = "y"
-    return film
+    return film_below(path, head, at + 1, columns, "export of OptiTrack", "y")
 
 
 def _opens(path: str | Path, head: bytes) -> bool:
     return head.removeprefix(b"\xef\xbb\xbf").startswith(b"Format Version,")
 
 
-READERS = (Reader(_opens, film_of_optitrack),)
+READERS = (Reader(_opens, _film),)

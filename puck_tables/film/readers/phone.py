@@ -14,23 +14,8 @@ _LARGEST = 1 << 28  # bytes
 _NAMES = {"x": "wx [rad/s]", "y": "wy [rad/s]", "z": "wz [rad/s]", "seconds_elapsed": "t [s]"}
 
 
-def spins_of_phone(path: str | Path) -> bytes:
-    r"""The file of a gyroscope with headings that say what its columns are.
-
-    Raises
-    ------
-    InputError
-        If it is of another sensor, or its name does not say of which.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     file = Path(folder, "Gyroscope.csv")
-    ...     _ = file.write_text("time,seconds_elapsed,z,y,x\n9,0.5,30,0,0\n")
-    ...     spins_of_phone(file).splitlines()[0]
-    b'-,t [s],wz [rad/s],wy [rad/s],wx [rad/s]'
-    """
+def _as_csv(path: str | Path, head: bytes) -> bytes:
+    """The file of a gyroscope with headings that say what its columns are."""
     name = Path(path).stem.lower()
     if "accel" in name or "gravity" in name:
         raise InputError(f"{path} {NO_ACCELERATIONS}")
@@ -49,4 +34,4 @@ def _opens(path: str | Path, head: bytes) -> bool:
     return head.startswith(_BEGINS) and {b"x", b"y", b"z"} <= {*names}
 
 
-READERS = (Reader(_opens, as_text=spins_of_phone),)
+READERS = (Reader(_opens, as_text=_as_csv),)

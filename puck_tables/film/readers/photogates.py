@@ -12,10 +12,9 @@ from pathlib import Path
 
 import numpy as np
 
-from puck_tables._core.beginning import beginning
 from puck_tables._core.header import header_of
 from puck_tables._core.text import text_form_of
-from puck_tables._core.text_rows import LARGEST, read_columns
+from puck_tables._core.text_rows import read_columns
 from puck_tables._core.units import factor, parted, unit_word
 from puck_tables.errors import InputError
 from puck_tables.film.film import Film, Reader, TrackedBody, first_text
@@ -26,26 +25,8 @@ _SIZES = {"flag": re.compile(r"(?:flag|width).*", re.IGNORECASE),
           "distance": re.compile(r"distance.*|spacing.*", re.IGNORECASE)}  # fmt: skip
 
 
-def film_of_gates(path: str | Path) -> Film:
-    r"""The slides in a table of two photogates, along a line.
-
-    Raises
-    ------
-    InputError
-        If it does not say the width of the flag, the way between the gates, or a time.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> names = "Time in Gate 1,Time Between Gates,Time in Gate 2,flag [cm],distance [cm]"
-    >>> said = names + "\n0.010,0.30,0.012,2,50\n0.011,0.33,0.014,2,50\n"
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     _ = Path(folder, "a.csv").write_text(said)
-    ...     film = film_of_gates(Path(folder, "a.csv"))
-    >>> film.bodies[0].time.tolist(), film.bodies[1].marks[""][:, 0].round(9).tolist()
-    ([0.0, 0.01, 0.3, 0.312], [0.0, 0.02, 0.5, 0.52])
-    """
-    head = beginning(path, LARGEST)
+def _film(path: str | Path, head: bytes) -> Film:
+    """The slides in a table of two photogates, along a line."""
     form = text_form_of(path, head)
     names = header_of(form, bool)[-1]
     found = _columns(names)
@@ -109,4 +90,4 @@ def _opens(path: str | Path, head: bytes) -> bool:
     return bool(header) and "gate 1" in _columns(header[-1])
 
 
-READERS = (Reader(_opens, film_of_gates),)
+READERS = (Reader(_opens, _film),)

@@ -1,8 +1,8 @@
 """Films in HDF5: tables that DeepLabCut wrote with pandas, SLEAP's analysis files, and our own.
 
-pandas keeps the names of columns as pickles.  They are never run: the few signs of which a list of
-names consists are read one by one (:mod:`pickletools` only takes a pickle apart), and all others
-are refused.
+pandas keeps the names of columns as pickles, which may run whatever they name.  These are taken
+apart first (:mod:`pickletools` runs nothing): any sign but those of texts, lists and tuples, which
+can call nothing, is refused.
 
 References
 ----------
@@ -14,6 +14,7 @@ group ``df_with_missing``.  SLEAP, "Analysis HDF5": ``tracks`` (tracks, 2, nodes
 from __future__ import annotations
 
 import json
+import pickle
 import pickletools
 from pathlib import Path
 from typing import Any
@@ -26,30 +27,21 @@ from puck_tables.errors import InputError
 from puck_tables.film.column_roles import Layout, deeplabcut
 from puck_tables.film.film import Film, Reader
 from puck_tables.film.headings import Heading
-from puck_tables.film.readers.saved import Quantity, film_of_saved
+from puck_tables.film.readers.saved import film_of_saved
 from puck_tables.film.text_tables import film_of_columns
 
 _LARGEST = 1 << 27  # numbers in a file, a gigabyte
+_TEXTS = {
+    "MARK", "UNICODE", "BINUNICODE", "SHORT_BINUNICODE", "STRING", "LIST", "TUPLE", "EMPTY_LIST",
+    "TUPLE1", "TUPLE2", "TUPLE3", "APPEND", "APPENDS", "PUT", "BINPUT", "LONG_BINPUT", "MEMOIZE",
+    "GET", "BINGET", "LONG_BINGET", "PROTO", "FRAME", "STOP",
+}  # fmt: skip
+_DAMAGE = (ValueError, EOFError, LookupError, AttributeError, TypeError, pickle.UnpicklingError)
 _DIMS = ("track", "xy", "node", "frame")
 
 
-def film_of_hdf5(path: str | Path) -> Film:
-    """The film in an HDF5 file.
-
-    Raises
-    ------
-    InputError
-        If it is none of DeepLabCut, SLEAP or this program, damaged, or too large.
-
-    Examples
-    --------
-    >>> import h5py, tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     with h5py.File(folder + "/a.h5", "w") as file:
-    ...         file["tracks"], file["node_names"] = np.ones((1, 2, 1, 9)), [b"hub"]
-    ...     film_of_hdf5(folder + "/a.h5").bodies[0].marks["hub"].shape
-    (9, 2)
-    """
+def _film(path: str | Path, head: bytes) -> Film:
+    """The film in an HDF5 file."""
     import h5py
 
     try:
@@ -75,7 +67,7 @@ def film_of_hdf5(path: str | Path) -> Film:
     )
 
 
-def _columns(path: str | Path, file: Any) -> dict[str, Quantity]:
+def _columns(path: str | Path, file: Any) -> dict[str, tuple[Any, str]]:
     """The columns of a file that this program saved."""
     columns = {}
     for name, one in file.items():
@@ -83,7 +75,7 @@ def _columns(path: str | Path, file: Any) -> dict[str, Quantity]:
             if one.size > _LARGEST:
                 raise InputError(f"{path}: its column {name} holds more than {_LARGEST} numbers")
             values = one.asstr()[()] if one.dtype.kind == "O" else one[()]
-            columns[name] = Quantity(values, str(one.attrs["units"]))
+            columns[name] = values, str(one.attrs["units"])
     return columns
 
 
@@ -98,7 +90,7 @@ def _deeplabcut(path: str | Path, table: Any) -> Film:
         if name == "index" or kind is None:
             continue
         values = np.asarray(table[name], dtype=np.float64).reshape(table.size, -1)
-        named = names_in(path, bytes(kind))
+        named = _names_in(path, bytes(kind))
         columns += [*values.T]
         labels += named if len(named) == len(values.T) else [()]
     if not labels or not all(isinstance(one, tuple) and len(one) in (3, 4) for one in labels):
@@ -117,69 +109,21 @@ def _width(table: Any, name: str) -> int:
     return int(np.prod(table.dtype[name].shape, dtype=np.int64))
 
 
-def names_in(path: str | Path, pickled: bytes) -> list[Any]:
-    """The list of texts, and of tuples of texts, in a pickle that holds nothing else.
-
-    Raises
-    ------
-    InputError
-        If it holds anything else.
-
-    Examples
-    --------
-    >>> import pickle
-    >>> names_in("a.h5", pickle.dumps([("DLC", "hub", "x"), ("DLC", "hub", "y")], protocol=0))
-    [('DLC', 'hub', 'x'), ('DLC', 'hub', 'y')]
-    """
-    stack: list[Any] = []
-    memo: dict[int, Any] = {}
-    mark = object()
-
-    def since() -> list[Any]:
-        at = len(stack) - 1 - stack[::-1].index(mark)
-        items = stack[at + 1 :]
-        del stack[at:]
-        return items
-
+def _names_in(path: str | Path, pickled: bytes) -> list[Any]:
+    """The list of texts, and of tuples of texts, in a pickle that holds nothing else."""
     try:
         for sign, value, _ in pickletools.genops(pickled):
-            match sign.name:
-                case "MARK":
-                    stack.append(mark)
-                case "UNICODE" | "BINUNICODE" | "SHORT_BINUNICODE" | "STRING":
-                    stack.append(value)
-                case "LIST" | "TUPLE":
-                    items = since()
-                    stack.append(items if sign.name == "LIST" else tuple(items))
-                case "EMPTY_LIST":
-                    stack.append([])
-                case "TUPLE1" | "TUPLE2" | "TUPLE3":
-                    count = int(sign.name[-1])
-                    items = [stack.pop() for _ in range(count)][::-1]
-                    stack.append(tuple(items))
-                case "APPEND":
-                    item = stack.pop()
-                    stack[-1].append(item)
-                case "APPENDS":
-                    items = since()
-                    stack[-1].extend(items)
-                case "PUT" | "BINPUT" | "LONG_BINPUT":
-                    memo[value] = stack[-1]  # type: ignore[index]
-                case "MEMOIZE":
-                    memo[len(memo)] = stack[-1]
-                case "GET" | "BINGET" | "LONG_BINGET":
-                    stack.append(memo[value])  # type: ignore[index]
-                case "PROTO" | "FRAME" | "STOP":
-                    pass
-                case _:
-                    raise InputError(
-                        f"{path} names its columns by more than texts, which is not read: save "
-                        "the table as CSV"
-                    )
-        (names,) = stack
+            if sign.name not in _TEXTS:
+                raise InputError(
+                    f"{path} names its columns by more than texts, which is not read: save the "
+                    "table as CSV"
+                )
+            if isinstance(value, int) and value > len(pickled):  # a place that would fill memory
+                raise ValueError
+        names = pickle.loads(pickled)
         if not isinstance(names, list):
             raise ValueError
-    except (ValueError, IndexError, KeyError, AttributeError) as error:
+    except _DAMAGE as error:
         if isinstance(error, InputError):
             raise
         raise InputError(f"{path} is damaged: its names of columns cannot be read") from None
@@ -246,4 +190,4 @@ def _scores(file: Any, shape: tuple[int, ...]) -> FloatArray | None:
     return np.asarray(file["point_scores"], dtype=np.float64)
 
 
-READERS = (Reader(lambda _, head: head.startswith(HDF5), film_of_hdf5),)
+READERS = (Reader(lambda _, head: head.startswith(HDF5), _film),)

@@ -14,9 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from puck_tables._core.beginning import beginning
 from puck_tables._core.text import number
-from puck_tables._core.text_rows import LARGEST
 from puck_tables._core.units import unit_word
 from puck_tables.errors import InputError
 from puck_tables.film.film import Film, Reader
@@ -24,40 +22,19 @@ from puck_tables.film.headings import Heading
 from puck_tables.film.text_tables import film_below
 
 _BEGINS = ("FILE_VERSION", "NO_OF_FRAMES", "NO_OF_CAMERAS", "NO_OF_MARKERS", "NO_OF_BODIES")
+_WORDS = ("FREQUENCY", "DESCRIPTION", "EVENT")  # over the table, without a _
 _POSE = ("x", "y", "z", "", "", "angle")  # X Y Z Roll Pitch Yaw, then residual and matrix
 _POSE_WIDTH = 16
 
 
-def film_of_qualisys(path: str | Path) -> Film:
-    r"""The film in a motion data file of Qualisys.
-
-    Raises
-    ------
-    InputError
-        If it names no marks or bodies, or has two coordinates of each camera.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> said = "NO_OF_FRAMES\t2\nFREQUENCY\t100\nMARKER_NAMES\thub\n1\t2\t0\n3\t2\t0\n"
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     _ = Path(folder, "a.tsv").write_text(said)
-    ...     film = film_of_qualisys(Path(folder, "a.tsv"))
-    >>> film.unit, film.bodies[0].time.tolist(), film.bodies[0].marks["hub"][:, 0].tolist()
-    ('mm', [0.0, 0.01], [1.0, 3.0])
-    """
-    head = beginning(path, LARGEST)
+def _film(path: str | Path, head: bytes) -> Film:
+    """The film in a motion data file of Qualisys."""
     said: dict[str, list[str]] = {}
     names: list[str] = []
-    lines = head.decode("utf-8", "replace").split("\n")
     count = 0
-    for line in lines:
+    for line in head.decode("utf-8", "replace").split("\n"):
         cells = [cell.strip() for cell in line.rstrip("\r\n").split("\t")]
-        if (cells[0].isupper() and "_" in cells[0]) or cells[0] in (
-            "FREQUENCY",
-            "DESCRIPTION",
-            "EVENT",
-        ):
+        if (cells[0].isupper() and "_" in cells[0]) or cells[0] in _WORDS:
             said.setdefault(cells[0], cells[1:])
         elif any(cells):
             if all(_is_number(cell) for cell in cells):
@@ -83,12 +60,11 @@ def film_of_qualisys(path: str | Path) -> Film:
         raise InputError(
             f"{path} names no marks and no bodies: export it with its header (Include TSV header)"
         )
-    film = film_below(path, head, count, columns, "file of Qualisys", rate)
+    film = film_below(path, head, count, columns, "file of Qualisys", "z", rate)
     for one in film.bodies:
         for mark, points in one.marks.items():
             lost = (points == 0.0).all(axis=1)
             one.marks[mark] = np.where(lost[:, None], np.nan, points)
-    film.up = "z"
     return film
 
 
@@ -101,4 +77,4 @@ def _opens(path: str | Path, head: bytes) -> bool:
     return text.partition("\t")[0] in _BEGINS
 
 
-READERS = (Reader(_opens, film_of_qualisys),)
+READERS = (Reader(_opens, _film),)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -31,25 +31,13 @@ _ROLES = {
 _WRONG = (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError)
 
 
-class Quantity(NamedTuple):
-    """Values (n,) and their unit, '' where the file does not say it."""
-
-    values: Any
-    unit: str
-
-
-def film_of_saved(path: str | Path, columns: Mapping[str, Quantity]) -> Film:
-    """The film in columns of these names.
-
-    Raises
-    ------
-    InputError
-        If there are none, or they are no rows of one frame each.
+def film_of_saved(path: str | Path, columns: Mapping[str, tuple[Any, str]]) -> Film:
+    """The film in columns of these names: the values (n,) and the unit of each, '' if none is said.
 
     Examples
     --------
     >>> columns = {"time": ([0, 1], "s"), "x": ([0, 2], "m"), "y": ([0, None], "m")}
-    >>> film = film_of_saved("a.h5", {name: Quantity(*one) for name, one in columns.items()})
+    >>> film = film_of_saved("a.h5", columns)
     >>> film.unit, film.bodies[0].marks[""].tolist()
     ('m', [[0.0, 0.0], [2.0, nan]])
     """
@@ -78,25 +66,8 @@ def film_of_saved(path: str | Path, columns: Mapping[str, Quantity]) -> Film:
     return film_of_columns(path, layout, values, words)
 
 
-def film_of_json(path: str | Path) -> Film:
-    """The film in a file of JSON, or of JSON lines.
-
-    Raises
-    ------
-    InputError
-        If it is none.
-    OSError
-        If it cannot be read.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     lines = '{"time": 0.0, "x": 1.0, "y": 2.0}' + chr(10)
-    ...     _ = Path(folder, "a.jsonl").write_text(lines)
-    ...     film_of_json(Path(folder, "a.jsonl")).bodies[0].marks[""].tolist()
-    [[1.0, 2.0]]
-    """
+def _film(path: str | Path, head: bytes) -> Film:
+    """The film in a file of JSON, or of JSON lines."""
     content = read_whole(path, _LARGEST)
     try:
         rows = [json.loads(line) for line in content.splitlines() if line.strip()]
@@ -106,13 +77,13 @@ def film_of_json(path: str | Path) -> Film:
         whole = json.loads(content) if len(rows) < 2 else {}
         if isinstance(whole.get("columns"), dict):
             columns = {
-                name: Quantity(one["values"], str(one.get("unit") or ""))
+                name: (one["values"], str(one.get("unit") or ""))
                 for name, one in whole["columns"].items() if name in _ROLES
             }  # fmt: skip
         else:
             first = rows[0] if rows else {}
             columns = {
-                name: Quantity([row.get(name) for row in rows], "")
+                name: ([row.get(name) for row in rows], "")
                 for name in first if name in _ROLES
             }  # fmt: skip
     except _WRONG:
@@ -123,4 +94,4 @@ def film_of_json(path: str | Path) -> Film:
         raise InputError(f"{error} (it looks like JSON)") from None
 
 
-READERS = (Reader(lambda path, head: first_text(path, head).startswith("{"), film_of_json),)
+READERS = (Reader(lambda path, head: first_text(path, head).startswith("{"), _film),)

@@ -32,14 +32,8 @@ _DAMAGE = (zipfile.BadZipFile, zlib.error, ElementTree.ParseError, KeyError, Val
            NotImplementedError, RuntimeError, EOFError, OSError)  # fmt: skip
 
 
-def first_table(path: str | Path) -> bytes:
-    """The cells of the first sheet that holds numbers, as a CSV file (UTF-8).
-
-    Raises
-    ------
-    InputError
-        If it is damaged or holds no numbers.
-    """
+def _as_csv(path: str | Path, head: bytes) -> bytes:
+    """The cells of the first sheet that holds numbers, as a CSV file (UTF-8)."""
     try:
         with zipfile.ZipFile(path) as archive:
             names = set(archive.namelist())
@@ -154,4 +148,4 @@ def _opens(path: str | Path, head: bytes) -> bool:
     return any(name.startswith("xl/") for name in names) or _ODS in names
 
 
-READERS = (Reader(_opens, as_text=first_table),)
+READERS = (Reader(_opens, as_text=_as_csv),)

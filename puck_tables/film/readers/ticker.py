@@ -14,22 +14,8 @@ _LARGEST = 1 << 24  # bytes
 _LOOKED_AT = 4  # rows that tell
 
 
-def numbered_ticks(path: str | Path) -> bytes:
-    r"""The same table with the number of the tick beside each place (UTF-8, semicolons).
-
-    Raises
-    ------
-    OSError
-        If it cannot be read.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     _ = Path(folder, "a.txt").write_text("s [cm]\n0\n2,1\n")
-    ...     numbered_ticks(Path(folder, "a.txt"))
-    b'frame;s [cm]\n0;0\n1;2,1\n'
-    """
+def _as_csv(path: str | Path, head: bytes) -> bytes:
+    """The same table with the number of the tick beside each place (UTF-8, semicolons)."""
     content = read_whole(path, _LARGEST)
     name, *dots = _lines(content.decode(encoding_of(path, content), "replace"))
     return "".join(
@@ -58,4 +44,4 @@ def _opens(path: str | Path, head: bytes) -> bool:
     )  # fmt: skip
 
 
-READERS = (Reader(_opens, as_text=numbered_ticks),)
+READERS = (Reader(_opens, as_text=_as_csv),)

@@ -44,41 +44,8 @@ _MOST_FRAMES = 10_000_000  # of a film: a day at 100 Hz
 _PANEL, _MASS = "TrackerPanel", "PointMass"
 
 
-def film_of_xml(path: str | Path) -> Film:
-    """The film of a .trk file.
-
-    Raises
-    ------
-    InputError
-        If it is another kind of XML, damaged, or holds no point mass.
-    OSError
-        If it cannot be read.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     file = Path(folder, "a.trk")
-    ...     _ = file.write_text('<object class="org.opensourcephysics.cabrillo.tracker.TFrame"/>')
-    ...     try:
-    ...         film_of_xml(file)
-    ...     except InputError as error:
-    ...         print(str(error).partition("a.trk ")[2])
-    holds a TFrame of Tracker, not a tab with tracks: read the .trk files of its tabs
-    """
-    return _film(str(path), read_whole(path, _LARGEST))
-
-
-def film_of_zip(path: str | Path) -> Film:
-    """The film of a .trz archive: all its .trk files.
-
-    Raises
-    ------
-    InputError
-        If it is another kind of archive, or damaged; or as :func:`film_of_xml`.
-    OSError
-        If it cannot be read.
-    """
+def _film_of_zip(path: str | Path, head: bytes) -> Film:
+    """The film of a .trz archive: all its .trk files."""
     if Path(path).stat().st_size > _LARGEST_ARCHIVE:
         raise InputError(f"{path} is too large: unpack it, and read its .trk file")
     films, left = {}, _LARGEST
@@ -128,13 +95,9 @@ def _damage(path: str | Path, member: PurePosixPath | None, error: Exception) ->
     """What is wrong with an archive, and what to do."""
     if isinstance(error, RuntimeError):  # encrypted, or packed by an uncommon method
         return f"{path}: {member} cannot be read ({error}): unpack it, and read its .trk file"
-    where = (
-        f"{member} in it cannot be unpacked"
-        if member
-        else (
-            "its list of contents is missing or broken, as of a file that was not copied to its end"
-        )
-    )
+    where = "its list of contents is missing or broken, as of a file that was not copied to its end"
+    if member:
+        where = f"{member} in it cannot be unpacked"
     return (
         f"{path} is a damaged archive: {where} ({error}). Copy it once more, or open it in Tracker "
         "and save it again"
@@ -170,7 +133,8 @@ def _film(path: str, content: bytes) -> Film:
         raise InputError(f"{path} holds no point mass that was marked in a frame")
     texts = _texts(root)
     start, step, duration, begin = _clock(path, root)
-    frames = _frames(path, result, step)
+    marked = {frame for marks in result.values() for frame in marks}
+    frames = sorted(marked | {*range(min(marked), max(marked) + 1, step)})
     film = Film(
         "file of Tracker", [], unit_word(texts.get("length_unit", ""), "length"), y_down=False
     )
@@ -260,13 +224,6 @@ def _marks(path: str, mass: Element) -> dict[int, tuple[float, float]]:
     }
 
 
-def _frames(path: str, result: dict[str, dict[int, tuple[float, float]]], step: int) -> list[int]:
-    """All frames in which a mark is or should be."""
-    marked = {frame for marks in result.values() for frame in marks}
-    first, last = min(marked), max(marked)
-    return sorted(marked | set(range(first, last + 1, step)))
-
-
 def _clock(path: str, root: Element) -> tuple[int, int, float | None, float]:
     """First frame, frames of a step, ms of a frame and of the first; None where it is not said."""
     clip = _inner(root, "videoclip")
@@ -324,6 +281,9 @@ def _is_archive(path: str | Path, head: bytes) -> bool:
 
 
 READERS = (
-    Reader(_is_archive, film_of_zip),
-    Reader(lambda path, head: first_text(path, head).startswith("<"), film_of_xml),
+    Reader(_is_archive, _film_of_zip),
+    Reader(
+        lambda path, head: first_text(path, head).startswith("<"),
+        lambda path, _: _film(str(path), read_whole(path, _LARGEST)),
+    ),
 )

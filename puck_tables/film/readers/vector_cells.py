@@ -8,10 +8,8 @@ import re
 from pathlib import Path
 from typing import NamedTuple
 
-from puck_tables._core.beginning import beginning
 from puck_tables._core.safe_read import read_whole
 from puck_tables._core.text import COMMENTS, POINT, encoding_of, number
-from puck_tables._core.text_rows import LARGEST
 from puck_tables.errors import InputError
 from puck_tables.film.film import Reader, first_text
 
@@ -29,24 +27,9 @@ class _Form(NamedTuple):
     counts: list[int]
 
 
-def plain_cells(path: str | Path) -> bytes:
-    r"""The same table (UTF-8, commas) with a column for each number of a cell.
-
-    Raises
-    ------
-    OSError
-        If it cannot be read.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     file, content = Path(folder, "a.csv"), b"t;Position\n0;[1, 2]\n1;[3, 4]\n"
-    ...     _ = file.write_bytes(content)
-    ...     plain_cells(file)
-    b't,Position_x,Position_y\n0,1,2\n1,3,4\n'
-    """
-    form = _form_of(path, beginning(path, LARGEST))
+def _as_csv(path: str | Path, head: bytes) -> bytes:
+    """The same table (UTF-8, commas) with a column for each number of a cell."""
+    form = _form_of(path, head)
     content = read_whole(path, _LARGEST)
     if form is None:
         return content
@@ -107,4 +90,4 @@ def _numbers(cell: str) -> list[str]:
     return words if len(words) > 1 and all(map(POINT.fullmatch, words)) else []
 
 
-READERS = (Reader(lambda path, head: _form_of(path, head) is not None, as_text=plain_cells),)
+READERS = (Reader(lambda path, head: _form_of(path, head) is not None, as_text=_as_csv),)

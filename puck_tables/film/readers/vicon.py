@@ -13,36 +13,19 @@ from __future__ import annotations
 from pathlib import Path
 
 from puck_tables._core.safe_read import read_whole
-from puck_tables._core.text import number, text_form_of
+from puck_tables._core.text import number
 from puck_tables._core.units import unit_word
 from puck_tables.errors import InputError
-from puck_tables.film.column_roles import Layout
 from puck_tables.film.film import Film, Reader
 from puck_tables.film.headings import Heading
-from puck_tables.film.text_tables import film_in_text
+from puck_tables.film.text_tables import film_below
 
 _SECTION = "trajectories"
 _LARGEST = 1 << 30  # bytes
 
 
-def film_of_vicon(path: str | Path) -> Film:
-    r"""The film in an export of Vicon.
-
-    Raises
-    ------
-    InputError
-        If it has no trajectories.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> said = "Trajectories\n50\n,,puck:hub,,\nFrame,Sub Frame,X,Y,Z\n,,mm,mm,mm\n1,0,7,8,9\n"
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     _ = Path(folder, "a.csv").write_text(said + "2,0,7,9,9\n")
-    ...     film = film_of_vicon(Path(folder, "a.csv"))
-    >>> film.bodies[0].name, film.bodies[0].time.tolist()
-    ('puck', [0.02, 0.04])
-    """
+def _film(path: str | Path, head: bytes) -> Film:
+    """The film in an export of Vicon."""
     text = read_whole(path, _LARGEST).decode("utf-8-sig", "replace")
     lines = [line.strip() for line in text.splitlines()]
     start = next((n for n, line in enumerate(lines) if line.strip(",;\t").lower() == _SECTION), -1)
@@ -59,16 +42,7 @@ def film_of_vicon(path: str | Path) -> Film:
         columns.append((subject, Heading("xyz"[(n - 2) % 3], mark, unit_word(unit, "length"))))
     end = next((n for n in range(start + 5, len(lines)) if not lines[n].strip(sign)), len(lines))
     content = "\n".join(lines[start + 5 : end]).encode()
-    form = text_form_of(path, content)
-    film = film_in_text(
-        path, form, Layout(columns, "export of Vicon", jointed=True, likely=None), content,
-        [f"{rate:.9g} frames a second, as it says"],
-    )  # fmt: skip
-    for body in film.bodies:
-        if rate and body.frame is not None:
-            body.time, body.frame = body.frame / rate, None
-    film.up = "z"
-    return film
+    return film_below(path, content, 0, columns, "export of Vicon", "z", rate, content)
 
 
 def _opens(path: str | Path, head: bytes) -> bool:
@@ -76,4 +50,4 @@ def _opens(path: str | Path, head: bytes) -> bool:
     return "sub frame" in text and "frame" in text
 
 
-READERS = (Reader(_opens, film_of_vicon),)
+READERS = (Reader(_opens, _film),)
