@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -31,8 +32,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     def rank(item: pytest.Item) -> int:
         path = item.path
         if path not in ranks:
-            scenes = "scene" in path.read_text("utf-8").lower()
-            ranks[path] = 0 if path.name == COMPILES else 1 + scenes
+            scenes = re.search("scene|world|reference|aim|compare", path.read_text("utf-8").lower())
+            ranks[path] = 0 if path.name == COMPILES else 1 + bool(scenes)
         return ranks[path]
 
     items.sort(key=rank)
