@@ -12,7 +12,6 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from puck_tables._core.real import instance
-from puck_tables.errors import InputError
 from puck_tables.film.puck_track import Track
 from puck_tables.fitting.coupled_fit import Impact, couple, impacts_apart, impacts_coupled, not_met
 from puck_tables.fitting.estimate import Estimate, estimate
@@ -53,7 +52,7 @@ from puck_tables.fitting.other_minima import without_spin
 from puck_tables.fitting.parameters import DRAGS
 from puck_tables.fitting.problem import Known, Problem
 from puck_tables.fitting.residuals import NO_PATTERN, NOISY, drift, runs
-from puck_tables.fitting.slowing import begun_from_slowing
+from puck_tables.fitting.slowing import begun_from_slowing, begun_or_refused
 from puck_tables.fitting.touches import SlideIndex, slides_apart
 from puck_tables.puck import Puck
 
@@ -266,18 +265,14 @@ def _integrated(problem: Problem, known: Known) -> Estimate:
     Begun from what slows the puck; where that cannot be told, or does not lead to a motion that
     fits, from one with linear drag.  Frames at the ends are looked at only then.
     """
-    begun = begun_from_slowing(problem)
+    drags = {*DRAGS} >= {*problem.spec.integrated}
+    begun = begun_from_slowing(problem) if drags else begun_or_refused(problem)
     if begun is not None:
         x, _ = minimise(*begun, ROBUST)
         result = estimate(problem, x, known)
-        if is_clean(result, NOISY, NO_PATTERN) or not {*DRAGS} >= {*problem.spec.integrated}:
+        if is_clean(result, NOISY, NO_PATTERN) or not drags:
             refuse_opening(result)
             return result
-    if not {*DRAGS} >= {*problem.spec.integrated}:
-        raise InputError(
-            f"{' and '.join(problem.spec.integrated)} are found of tracks with angles that can be "
-            "followed from frame to frame, or along a line: film a mark on the puck"
-        )
     linear = replace(problem, spec=problem.spec.with_linear_drag())
     result = with_drags(initial_estimate(linear, known, refit=False), problem.spec, known)
     if not is_clean(result, NOISY, NO_PATTERN):

@@ -6,7 +6,7 @@ Each is tried out: where residuals then are far smaller, about as noise is, that
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -22,7 +22,7 @@ from puck_tables.fitting.model_comparison import tried
 from puck_tables.fitting.parameters import INTEGRATED, NODES
 from puck_tables.fitting.problem import TURN, Known, Problem
 from puck_tables.fitting.residuals import AIR, NO_PATTERN, SLOPE, SideForces, forced
-from puck_tables.fitting.slowing import begun_from_slowing
+from puck_tables.fitting.slowing import begun_or_refused
 
 _FAR = 1.5  # times smaller are residuals of a reading that is told
 _NEAR = 0.01  # of the radius: it is not another one
@@ -66,12 +66,13 @@ def misfit(
     """
     noise, told = problem.noise[0], []
     if _may_change(problem.spec) and not speeds:
-        drag, law = _by_drag(result, problem, known), _by_speed(result, problem)
+        drag = _reading(lambda: _by_drag(result, problem, known))
+        law = _reading(lambda: _by_speed(result, problem))
         if drag and law and law.gain < drag.gain + _BETTER:  # more numbers fit a little better
             law = None
         told = [one for one in (drag, law) if one]
     if not speeds and not problem.impact_specs:
-        one = _by_air(result, problem) or _by_force(result, AIR, noise)
+        one = _reading(lambda: _by_air(result, problem)) or _by_force(result, AIR, noise)
         told += [one for one in (one, _by_force(result, SLOPE, noise)) if one]
     told = sorted(told, key=lambda one: -one.gain)[:2]
     told += _otherwise(result, problem, known)
@@ -87,6 +88,15 @@ def misfit(
     if forces.chance < NO_PATTERN:
         return f"What may leave such a pattern: {forces.words}"
     return ""
+
+
+def _reading(of: Callable[[], _Reading]) -> _Reading | None:
+    """One that is worth telling; None where there is no such motion, or it gains nothing."""
+    try:
+        one = of()
+    except InputError:
+        return None
+    return one if one.gain else None
 
 
 def _otherwise(result: Estimate, problem: Problem, known: Known) -> list[_Reading]:
@@ -118,36 +128,26 @@ def _gain(result: Estimate, other: _Sizes, noise: float) -> float:
     return gain if fits or (gain > _MUCH and _explained(other)) else 0.0
 
 
-def _by_drag(result: Estimate, problem: Problem, known: Known) -> _Reading | None:
+def _by_drag(result: Estimate, problem: Problem, known: Known) -> _Reading:
     """Drag of speed and spin alike, if that fits far better."""
     # from a speed e^20 times as slow, or as fast, at the end nothing is told any more
     most = _MOST_DRAG / max(float(film.time[-1]) for film in problem.films)
     spec, bounds = problem.spec, {**problem.spec.bounds, "drag": (-most, most)}
     spec = replace(spec, free=(*spec.free, "drag"), bounds=bounds)
-    try:
-        one = initial_estimate(replace(problem, spec=spec), known, refit=False)
-    except InputError:
-        return None
-    gain = _gain(result, _deviations(one), problem.noise[0])
+    one = initial_estimate(replace(problem, spec=spec), known, refit=False)
     words = f"with drag besides friction: find it, too (--free {','.join(spec.free)})"
-    return _Reading(words, gain, True) if gain else None
+    return _Reading(words, _gain(result, _deviations(one), problem.noise[0]), True)
 
 
-def _by_air(result: Estimate, problem: Problem) -> _Reading | None:
+def _by_air(result: Estimate, problem: Problem) -> _Reading:
     """Drag of the speed squared, if that fits far better; tried where angles can be followed."""
     spec = problem.spec
     if not _may_change(spec):
-        return None
+        return _Reading("", 0.0)
     other = replace(problem, spec=replace(spec, free=(*spec.free, "air")), tall=False)
-    begun = begun_from_slowing(other)
-    if begun is None:
-        return None
-    try:
-        x, _ = minimise(*begun, ROBUST)
-    except InputError:
-        return None
+    x, _ = minimise(*begun_or_refused(other), ROBUST)
     gain = _gain(result, _sizes(other, other.deviations(x)), problem.noise[0])
-    return _Reading(_air_words(other.numbers_at(x)["air"], spec), gain, True) if gain else None
+    return _Reading(_air_words(other.numbers_at(x)["air"], spec), gain, True)
 
 
 def _air_words(air: float, spec: FitSpec) -> str:
@@ -165,24 +165,21 @@ def _may_change(spec: FitSpec) -> bool:
     return uniform and not named and not spec.speeds and not lifts and "friction" in spec.free
 
 
-def _by_speed(result: Estimate, problem: Problem) -> _Reading | None:
+def _by_speed(result: Estimate, problem: Problem) -> _Reading:
     """A friction over slip speed, if that fits far better."""
-    try:
-        other = tried(result)
-    except InputError:  # hardly any friction, at no speed
-        return None
+    other = tried(result)
     gain = _gain(result, _deviations(other), problem.noise[0])
     speeds, numbers = other.problem.spec.speeds, other.problem.numbers_at(other.x)
     values = [numbers[name] for name in NODES[: len(speeds)]]
     usual = result.problem.numbers_at(result.x)["friction"]
     if max(values) > _MOST * usual or min(values) < _LEAST * usual:  # such a law fits noise
-        return None
+        return _Reading("", 0.0)
     told = ", ".join(f"{f:.2g} at {u:g} m/s" for u, f in zip(speeds, values, strict=True))
     words = (
         f"with a friction over slip speed ({told}): find it (--slip-speeds "
         f"{','.join(f'{u:g}' for u in speeds)})"
     )
-    return _Reading(words, gain, True) if gain else None
+    return _Reading(words, gain, True)
 
 
 def _by_force(result: Estimate, kind: tuple[int, ...], noise: float) -> _Reading | None:

@@ -26,7 +26,7 @@ from puck_tables.fitting.named_laws import NAMES as LAWS
 from puck_tables.fitting.observations import FEWEST, Observations, rests_from
 from puck_tables.fitting.parameters import LAW_NUMBERS, NODES
 from puck_tables.fitting.problem import ANGLE, PLACE, TURN, UNSEEN, Known, Problem
-from puck_tables.fitting.slowing import begun_from_slowing
+from puck_tables.fitting.slowing import begun_or_refused
 from puck_tables.fitting.whole_turns import on_another_floor
 
 _ROUGHLY = ROBUST._replace(evaluations=15)
@@ -81,13 +81,7 @@ def _near(film: Observations, path: FloatArray) -> FloatArray | None:
 
 def on_a_floor(problem: Problem, known: Known) -> Estimate:
     """The estimate of a floor that is compared with others: about, where it does not come near."""
-    begun = begun_from_slowing(problem)
-    if begun is None:
-        raise InputError(
-            f"{' and '.join(problem.spec.integrated)} are found of tracks with angles that can be "
-            "followed from frame to frame, or along a line: film a mark on the puck"
-        )
-    x, _ = minimise(*begun, _ROUGHLY)
+    x, _ = minimise(*begun_or_refused(problem), _ROUGHLY)
     rows = problem.residuals(x)
     if problem.usual(rows) < _NEAR:
         return estimate(problem, x, known)

@@ -23,6 +23,7 @@ from numpy.polynomial import Chebyshev
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact import closed_form
+from puck_tables.errors import InputError
 from puck_tables.fitting.named_laws import shape
 from puck_tables.fitting.observations import Observations, rests_from, turning_of
 from puck_tables.fitting.problem import Problem
@@ -87,6 +88,17 @@ def begun_from_slowing(problem: Problem) -> tuple[Problem, FloatArray] | None:
     launches = np.array([film.launch for film in films])
     x0 = problem.unknowns({name: begun[name] for name in spec.free}, launches)
     return replace(problem, whole=tuple(whole), weights=()), np.clip(x0, *problem.limits)
+
+
+def begun_or_refused(problem: Problem) -> tuple[Problem, FloatArray]:
+    """The same, refused where none can be followed."""
+    begun = begun_from_slowing(problem)
+    if begun is None:
+        raise InputError(
+            f"{' and '.join(problem.spec.integrated)} are found of tracks with angles that can be "
+            "followed from frame to frame, or along a line: film a mark on the puck"
+        )
+    return begun
 
 
 def _trials(problem: Problem, films: list[_Moments]) -> Iterator[NumbersOf]:

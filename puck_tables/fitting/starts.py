@@ -232,8 +232,10 @@ def _guesses(
         nearest = {guess.turns: guess for guess in reversed(result)}
         return [*dict.fromkeys((*result[:_KEPT], *nearest.values()))]
     # without angles every spin is a chance, with the height that suits it
-    by_spin = {guess.spin: guess for guess in reversed(result)}
-    return sorted(by_spin.values(), key=lambda guess: guess.score)[:_KEPT_BLIND]
+    by_spin: dict[float, _Guess] = {}
+    for guess in result:
+        by_spin.setdefault(guess.spin, guess)
+    return list(by_spin.values())[:_KEPT_BLIND]
 
 
 def _spins(
