@@ -19,7 +19,7 @@ from puck_tables.cli.options import (
     packed,
 )
 from puck_tables.cli.printing import note, progress
-from puck_tables.cli.track_options import read_all, track_options
+from puck_tables.cli.track import read_all, track_options
 from puck_tables.cli.values import NumberParam, named, names, not_none, numbers_in, read_as
 
 from puck_tables.errors import InputError
@@ -92,27 +92,18 @@ def _held_out(text: str, option: str) -> float | list[str]:
 @click.argument("files", type=FILE, nargs=-1, required=True, metavar="TRACK...")
 @track_options
 @packed(
-    "known",
-    dict,
-    click.option(
-        "--radius",
-        type=LENGTH,
-        help="Radius r of the puck in m; of slides along a line without angles it does not matter.",
-    ),
-    click.option(
-        "--height", type=LENGTH, help="Height h in m, if known: the tilt then follows from f."
-    ),
+    "known", dict,
+    click.option("--radius", type=LENGTH, help="Radius r of the puck in m; of slides along a line "
+                 "without angles it does not matter."),
+    click.option("--height", type=LENGTH,
+                 help="Height h in m, if known: the tilt then follows from f."),
     click.option("--friction", type=NUMBER, help="Coulomb coefficient f, if known."),
-    click.option(
-        "--mass",
-        type=NumberParam("kg"),
-        help="Mass in kg (for energies of what is simulated later).",
-    ),
-    click.option(
-        "--gravity", type=NumberParam("m/s^2"), help="Gravity in m/s^2.  [default: 9.80665]"
-    ),
+    click.option("--mass", type=NumberParam("kg"),
+                 help="Mass in kg (for energies of what is simulated later)."),
+    click.option("--gravity", type=NumberParam("m/s^2"),
+                 help="Gravity in m/s^2.  [default: 9.80665]"),
     *body_options(),
-)
+)  # fmt: skip
 @packed(
     "wanted", dict,
     click.option("--free", metavar="NAMES", callback=read_as(names),

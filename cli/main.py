@@ -12,6 +12,7 @@ import io
 import os
 import signal
 import sys
+from collections.abc import Iterator
 from functools import partial
 from typing import Any
 
@@ -64,20 +65,12 @@ class PuckGroup(click.Group):
     def main(self, *args: Any, **named: Any) -> Any:
         """Run the program; help and usage, too, are written whole or not at all."""
         _whole_writes()
-        try:
+        with _written():
             try:
                 return super().main(*args, **named)
             finally:
                 if sys.stdout is not None:
                     sys.stdout.flush()
-        except BrokenPipeError:
-            _drop(sys.stdout)
-            _drop(sys.stderr)
-            raise SystemExit(BROKEN_PIPE) from None
-        except OSError as error:
-            _drop(sys.stdout)
-            click.echo(f"Error: {_explained(error)}", err=True)
-            raise SystemExit(1) from None
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the commands into the help by what one wants."""
@@ -92,10 +85,11 @@ class PuckGroup(click.Group):
         for one in at_start:
             signal.signal(one, endings.interrupt)
         try:
-            result = super().invoke(ctx)
-            if sys.stdout is not None:
-                sys.stdout.flush()
-            return result
+            with _written():  # before click makes its own of it
+                result = super().invoke(ctx)
+                if sys.stdout is not None:
+                    sys.stdout.flush()
+                return result
         except click.NoSuchOption as error:
             meant = MEANT.get(error.option_name)
             if meant is None:
@@ -105,14 +99,6 @@ class PuckGroup(click.Group):
         except PuckError as error:
             click.echo(f"Error: {printable(click.format_filename(str(error)))}", err=True)
             ctx.exit(2 if isinstance(error, InputError) else 1)
-        except BrokenPipeError:
-            _drop(sys.stdout)
-            _drop(sys.stderr)
-            ctx.exit(BROKEN_PIPE)
-        except OSError as error:
-            _drop(sys.stdout)
-            click.echo(f"Error: {_explained(error)}", err=True)
-            ctx.exit(1)
         except MemoryError:
             click.echo("Error: not enough memory: ask for fewer points", err=True)
             ctx.exit(1)
@@ -124,10 +110,22 @@ class PuckGroup(click.Group):
                 signal.signal(one, endings.end_at_once)
 
 
-def _explained(error: OSError) -> str:
-    """What failed: a file that the system names, or else what was printed."""
-    what = "write the results" if error.filename is None else f"use {error.filename}"
-    return printable(f"cannot {what}: {error.strerror or error}")
+@contextlib.contextmanager
+def _written() -> Iterator[None]:
+    """End with a sentence where results cannot be written, in silence where nobody reads them."""
+    try:
+        yield
+    except PuckError:  # says itself what is wrong
+        raise
+    except BrokenPipeError:
+        _drop(sys.stdout)
+        _drop(sys.stderr)
+        raise SystemExit(BROKEN_PIPE) from None
+    except OSError as error:
+        _drop(sys.stdout)
+        what = "write the results" if error.filename is None else f"use {error.filename}"
+        click.echo(f"Error: {printable(f'cannot {what}: {error.strerror or error}')}", err=True)
+        raise SystemExit(1) from None
 
 
 def _whole_writes() -> None:

@@ -13,7 +13,7 @@ import click
 from puck_tables.cli.endings import last_words
 from puck_tables.cli.options import Outputs
 from puck_tables.cli.printing import note, say
-from puck_tables.cli.values import numbers_in
+from puck_tables.cli.values import named, numbers_in
 
 from puck_tables.errors import InputError, OutputError
 
@@ -35,15 +35,10 @@ def chosen_spreads(
     from puck_tables.bulk.spreads import spread_named
 
     found: dict[str, Spread] = {}
-    for one in spreads:
-        name, equals, text = (part.strip() for part in one.partition("="))
-        if not equals or not text:
-            raise InputError(f"--spread {one}: write NAME=SPREAD, like w0=normal:5:0.2")
+    for name, text in named(spreads, "--spread", "NAME=SPREAD, like w0=normal:5:0.2").items():
         if names is not None and name not in names:
-            raise InputError(f"--spread {one}: {name} does not scatter: give {', '.join(names)}")
+            raise InputError(f"--spread {name} does not scatter: give {', '.join(names)}")
         argument = name if names is None else names[name]
-        if argument in found:
-            raise InputError(f"--spread {name} is given twice")
         found[argument] = spread_named(text, unit_of(argument))
     return found
 

@@ -125,13 +125,15 @@ def names(text: str, option: str) -> list[str]:
     return parts
 
 
-def named(texts: Iterable[str], option: str) -> dict[str, str]:
+def named(
+    texts: Iterable[str], option: str, form: str = "NAME=VALUE, like friction=0.2"
+) -> dict[str, str]:
     """NAME=VALUE, several times."""
     result: dict[str, str] = {}
     for text in texts:
         name, equals, value = (part.strip() for part in text.partition("="))
         if not equals or not name or not value:
-            raise InputError(f"{option} '{text}' must be NAME=VALUE, like friction=0.2")
+            raise InputError(f"{option} '{text}' must be {form}")
         if name in result:
             raise InputError(f"{option} names {name} twice: give it once")
         result[name] = value

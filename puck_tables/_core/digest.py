@@ -41,13 +41,7 @@ def work_digest(**what: Any) -> str:
 
 @cache
 def program() -> tuple[str, ...]:
-    """What computes here: the sources of the package, and what compiles and runs them.
-
-    Examples
-    --------
-    >>> len(program())
-    8
-    """
+    """What computes here: the sources of the package, and what compiles and runs them."""
     libraries = ("numba", "llvmlite", "numpy", "scipy")
     runs = [version(name) for name in libraries]
     return source_digest(), *runs, platform.machine(), platform.processor(), sys.version
@@ -86,12 +80,7 @@ def files_named(value: Any) -> dict[str, str]:
 
 
 def refuse_changed(whole: Any, read: Mapping[str, str]) -> None:
-    """Refuse to go on when a file that a structure names is not what it was.
-
-    Examples
-    --------
-    >>> refuse_changed({"launch": {"spin": 1.0}}, {})
-    """
+    """Refuse to go on when a file that a structure names is not what it was."""
     if files_named(whole) != read:
         raise InputError(
             f"a file that this scene names was changed while it was swept ({', '.join(read)}), or "

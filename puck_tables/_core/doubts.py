@@ -23,13 +23,7 @@ _here = threading.local()
 
 @contextlib.contextmanager
 def unquestioned() -> Iterator[None]:
-    """Take numbers as they are in this thread: they follow from others, or have no unit.
-
-    Examples
-    --------
-    >>> with unquestioned():
-    ...     question("radius", 1e6, "m")
-    """
+    """Take numbers as they are in this thread: they follow from others, or have no unit."""
     before, _here.quiet = getattr(_here, "quiet", False), True
     try:
         yield
@@ -45,10 +39,6 @@ def question(name: str, number: float, unit: str, usual: float = 0.0) -> None:
     name : of what it is; of a path such as puck.radius or wall[0].start[1] the last name
     number, unit : in this SI unit
     usual : up to which it is usual, where that differs from others of the unit
-
-    Examples
-    --------
-    >>> question("puck.radius", 0.04, "m")
     """
     limit = usual or _USUAL.get(unit, math.inf)
     if not limit < abs(number) < math.inf or getattr(_here, "quiet", False):
@@ -64,12 +54,7 @@ def question(name: str, number: float, unit: str, usual: float = 0.0) -> None:
 
 
 def question_spread(name: str, deviation: float, width: float, unit: str) -> None:
-    """Say so of an angle that scatters too widely: by a deviation, or over a width.
-
-    Examples
-    --------
-    >>> question_spread("heading", 0.1, 0.0, "rad")
-    """
+    """Say so of an angle that scatters too widely: by a deviation, or over a width."""
     wide = deviation > _WIDE or width > _USUAL["rad"] * (1.0 + 1e-9)
     if unit == "rad" and wide:
         say(

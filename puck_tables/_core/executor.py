@@ -96,10 +96,6 @@ def keep_on() -> None:
     ------
     KeyboardInterrupt
         In a thread of :func:`run_chunks` that is not to finish its work.
-
-    Examples
-    --------
-    >>> keep_on()
     """
     given_up = getattr(_this_thread, "given_up", None)
     if given_up is not None and given_up.is_set():
@@ -192,13 +188,7 @@ def _interrupt_noted() -> Iterator[Callable[[], None]]:
 
 
 def usable_cores() -> int:
-    """Cores this process may run on.
-
-    Examples
-    --------
-    >>> usable_cores() >= 1
-    True
-    """
+    """Cores this process may run on."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1

@@ -75,13 +75,7 @@ def names_above(beginning: str) -> list[str]:
 
 
 def above(name: str) -> Any:
-    """What stands above whoever asks for it: pictures stand above what they show.
-
-    Examples
-    --------
-    >>> above("draw").__name__
-    'draw'
-    """
+    """What stands above whoever asks for it: pictures stand above what they show."""
     module, _, original = _ABOVE[name].partition(":")
     return getattr(import_module(module), original or name)
 

@@ -21,10 +21,6 @@ def check_memory(
     per_item : bytes needed for each launch
     advice : what to do instead
     what : that is to be kept, if it is no map of launches
-
-    Examples
-    --------
-    >>> check_memory((1000, 1000), 160)
     """
     needed = float(per_item) * math.prod(shape)
     available = _memory()

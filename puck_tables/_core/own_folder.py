@@ -29,11 +29,6 @@ def user_cache() -> Path | None:
     """Where this user's programs keep what they can make again; None where there is no such place.
 
     ``XDG_CACHE_HOME`` or ``~/.cache``, ``~/Library/Caches`` on macOS, ``LOCALAPPDATA`` on Windows.
-
-    Examples
-    --------
-    >>> user_cache().name
-    'puck-tables'
     """
     if sys.platform == "win32":
         base = os.environ.get("LOCALAPPDATA") or os.path.expanduser("~/AppData/Local")

@@ -29,12 +29,7 @@ _own: set[Path] = set()  # of this process
 
 
 def new_part(folder: Path) -> Path:
-    """A name for a part in a folder, known from now on as one of this process.
-
-    Examples
-    --------
-    >>> forget(new_part(Path("there")))
-    """
+    """A name for a part in a folder, known from now on as one of this process."""
     part = folder / f"{_PREFIX}{secrets.token_hex(8)}{_SUFFIX}"
     _own.add(part)
     return part
@@ -61,12 +56,7 @@ def hold(descriptor: int) -> None:
 
 
 def identity(path: Path | int) -> tuple[int, int] | None:
-    """What a name stands for, whatever it is renamed to; None for nothing.
-
-    Examples
-    --------
-    >>> identity(Path("/nowhere"))
-    """
+    """What a name stands for, whatever it is renamed to; None for nothing."""
     try:
         found = os.fstat(path) if isinstance(path, int) else os.lstat(path)
     except FileNotFoundError:

@@ -117,13 +117,7 @@ def _in(unit: str) -> str:
 
 
 def finite_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
-    """Values as an array of finite numbers.
-
-    Examples
-    --------
-    >>> finite_array("w0", [1, 2], "rad/s")
-    array([1., 2.])
-    """
+    """Values as an array of finite numbers."""
     array = real_array(name, values, unit)
     if not np.isfinite(array).all():
         raise InputError(
@@ -164,13 +158,7 @@ def instance(name: str, value: object, *kinds: type) -> None:
 
 
 def listed(name: str, values: object, what: str) -> list[Any]:
-    """What stands in a list, a tuple or an array; a text is none.
-
-    Examples
-    --------
-    >>> listed("names", ("x", "y"), "columns")
-    ['x', 'y']
-    """
+    """What stands in a list, a tuple or an array; a text is none."""
     try:
         if isinstance(values, str | bytes):
             raise TypeError
@@ -208,13 +196,7 @@ def rounded_up(value: float) -> float:
 
 
 def positive(name: str, value: float, unit: str) -> float:
-    """A finite number greater than zero.
-
-    Examples
-    --------
-    >>> positive("radius", 0.04, "m")
-    0.04
-    """
+    """A finite number greater than zero."""
     number = real(name, value, unit)
     if not number > 0.0:
         raise InputError(f"{name} must be greater than 0{bracketed(unit)}, got {number:g}")
@@ -222,13 +204,7 @@ def positive(name: str, value: float, unit: str) -> float:
 
 
 def real(name: str, value: float, unit: str) -> float:
-    """A finite number.
-
-    Examples
-    --------
-    >>> real("spin", 5, "rad/s")
-    5.0
-    """
+    """A finite number."""
     if type(value) is float and math.isfinite(value):
         return value
     if isinstance(value, str) and unit in SHOWN:
@@ -258,13 +234,7 @@ def bracketed(unit: str) -> str:
 
 
 def velocity_array(velocity: npt.ArrayLike) -> npt.NDArray[np.float64]:
-    """Velocities of shape (…, 2), m/s.
-
-    Examples
-    --------
-    >>> velocity_array((1, 0))
-    array([1., 0.])
-    """
+    """Velocities of shape (…, 2), m/s."""
     array = finite_array("velocity", velocity, "m/s")
     if array.ndim == 0 or array.shape[-1] != 2:
         raise InputError(
@@ -274,13 +244,7 @@ def velocity_array(velocity: npt.ArrayLike) -> npt.NDArray[np.float64]:
 
 
 def one_velocity(velocity: npt.ArrayLike) -> tuple[float, float]:
-    """One velocity (vx, vy), m/s.
-
-    Examples
-    --------
-    >>> one_velocity([1, 0])
-    (1.0, 0.0)
-    """
+    """One velocity (vx, vy), m/s."""
     array = velocity_array(velocity)
     if array.shape != (2,):
         raise InputError(f"velocity must be one (vx, vy) in m/s, got an array of {array.shape}")
@@ -289,13 +253,7 @@ def one_velocity(velocity: npt.ArrayLike) -> tuple[float, float]:
 
 
 def checked_threads(threads: int | None) -> None:
-    """Refuse a number of threads that is none.
-
-    Examples
-    --------
-    >>> checked_threads(None), checked_threads(2)
-    (None, None)
-    """
+    """Refuse a number of threads that is none."""
     if threads is not None and (
         not isinstance(threads, int) or isinstance(threads, bool) or threads < 1
     ):
@@ -303,23 +261,12 @@ def checked_threads(threads: int | None) -> None:
 
 
 def checked_flag(name: str, value: object) -> None:
-    """Refuse what is neither true nor false.
-
-    Examples
-    --------
-    >>> checked_flag("jacobian", True)
-    """
+    """Refuse what is neither true nor false."""
     if not isinstance(value, bool | np.bool_):
         raise InputError(f"{name} must be True or False, got {shown(value)}")
 
 
 def checked_progress(progress: object) -> None:
-    """Refuse what cannot be told how far work is.
-
-    Examples
-    --------
-    >>> checked_progress(None), checked_progress(print)
-    (None, None)
-    """
+    """Refuse what cannot be told how far work is."""
     if progress is not None and not callable(progress):
         raise InputError(f"progress must be a function of (done, total), got {shown(progress)}")

@@ -15,11 +15,5 @@ watchers: list[Watcher] = []  # the last one is told
 
 
 def watched(what: str) -> AbstractContextManager[Progress]:
-    """A place to tell (done, total) of what takes long.
-
-    Examples
-    --------
-    >>> with watched("counting") as progress:
-    ...     progress(1, 2)
-    """
+    """A place to tell (done, total) of what takes long."""
     return watchers[-1](what) if watchers else nullcontext(lambda done, total: None)

@@ -21,7 +21,7 @@ from scipy.interpolate import make_interp_spline
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import AccuracyError
-from puck_tables.stopping.axes import HEIGHTS, heights
+from puck_tables.stopping.axes import heights
 from puck_tables.stopping.stop_table import StopTable
 
 DEGREES = range(3, 8)
@@ -101,10 +101,7 @@ def functions_of(table: StopTable) -> tuple[FloatArray, FloatArray, FloatArray]:
     there = 1.0 - np.sqrt(1.0 - np.sqrt(xi * (2.0 - xi)))
     along = make_interp_spline(np.linspace(0.0, 1.0, n + 1), np.moveaxis(sides, 1, 0), 5)
     moved = np.moveaxis(along(there), 0, 1)
-    splines = table.time_inverse  # (2, nodes + 2, powers)
-    at_nodes = splines[:, :-2] + 4.0 * splines[:, 1:-1] + splines[:, 2:]
-    s = 2.0 * heights() ** 2 - 1.0
-    inverse = at_nodes @ (s ** np.arange(HEIGHTS)[:, None])
+    inverse = table.inverse.ratios(with_time=True)
     return moved[..., STOP_COLUMNS], moved[..., CURVE_COLUMNS], inverse[..., None]
 
 

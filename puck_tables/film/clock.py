@@ -30,12 +30,7 @@ def is_clock(text: str) -> bool:
 
 
 def seconds(where: str, texts: Sequence[str]) -> FloatArray:
-    """Times (n,) in s, from the first one on; NaN for empty texts.
-
-    Parameters
-    ----------
-    where : for messages
-    texts : sequence of str
+    """Times (n,) in s, from the first one on; NaN for empty texts; ``where``: for messages.
 
     Examples
     --------

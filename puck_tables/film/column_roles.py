@@ -78,11 +78,7 @@ def layout_of(path: str | Path, form: TextForm, columns: str | None) -> Layout:
 def headed(path: str | Path, form: TextForm, columns: str | None) -> list[list[str]]:
     """The rows of names over the columns of a table; the last has their units in brackets.
 
-    Parameters
-    ----------
-    path : the file, for messages
-    form : how it is written
-    columns : names with commas in place of those in the file; empty for '-'
+    ``columns``: names with commas in place of those in the file; empty for '-'.
 
     Raises
     ------

@@ -21,20 +21,10 @@ Flags = npt.NDArray[np.bool_]
 class TrackedBody:
     """The rows of one body: a puck, or marks of which each is one.
 
-    Parameters
-    ----------
-    name : str
-        '' where the file has none.
-    marks : dict of ndarray (n, 2) or (n, 3)
-        Places by the names of the marks, in the unit and along the axes of the file.
-    frame, time : ndarray (n,), optional
-        Frame numbers; times in s.
-    angles : dict of ndarray (n,)
-        Of the body that a mark is of, in the unit of the file; under '' of all.
-    likelihoods, seen : dict of ndarray (n,)
-        The same for how likely a place is, and whether it is one.
-    turns : dict of ndarray (n, 4)
-        The same of quaternions x, y, z, w.
+    ``name``: '' where the file has none; ``marks``: places (n, 2) or (n, 3) by the names of the
+    marks, in the unit and along the axes of the file; ``frame`` (n,): numbers; ``time`` (n,): s;
+    ``angles`` (n,) of the body that a mark is of, in the unit of the file, under '' of all; the
+    same for how likely a place is, whether it is one, and quaternions (n, 4) x, y, z, w.
     """
 
     name: str
@@ -51,27 +41,12 @@ class TrackedBody:
 class Film:
     """All bodies of a file, and what it says of them.
 
-    Parameters
-    ----------
-    kind : str
-        Of file, for messages.
-    bodies : list of Body
-    unit, angle_unit : str
-        Of places and angles; '' where the file does not say.
-    y_down : bool, optional
-        Whether y grows downwards in it; None where it does not say.
-    jointed : bool
-        Whether the marks of a body are parts of it rather than pucks of their own.
-    timed : bool
-        Whether it names the unit of its times.
-    likely : float, optional
-        The likelihood below which the writer of such files takes a place for none.
-    up : str
-        The axis of places in space that points up; '' where it does not say.
-    rates : str
-        Whether velocities, or spins, stand in place of places and angles.
-    notes : list of str
-        What was found, in sentences.
+    ``kind``: of file, for messages; ``unit``, ``angle_unit``: '' where it does not say; ``y_down``:
+    whether y grows downwards, None where it does not say; ``jointed``: whether the marks of a body
+    are parts of it rather than pucks of their own; ``timed``: whether it names the unit of its
+    times; ``likely``: the likelihood below which the writer of such files takes a place for none;
+    ``up``: the axis of places in space that points up, '' where it does not say; ``rates``: whether
+    velocities, or spins, stand in place of places and angles; ``notes``: what was found.
     """
 
     kind: str

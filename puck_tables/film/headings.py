@@ -7,14 +7,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from puck_tables._core.quantities import function_in
-from puck_tables._core.units import (
-    is_unit,
-    parted,
-    unit_meant,
-    unit_named,
-    unit_size,
-    unit_word,
-)
+from puck_tables._core.units import is_unit, parted, unit_meant, unit_named, unit_size, unit_word
 from puck_tables.errors import InputError
 
 _WORDS = {

@@ -20,14 +20,10 @@ _ENDS = (2.0, 98.0)  # percent of the frames: lost marks are found anywhere
 
 
 def on_the_floor(path: str | Path, film: Film, body: TrackedBody, up: str | None) -> TrackedBody:
-    """A body with places (n, 2) and angles about the vertical.
+    """A body with places (n, 2) and angles about the vertical, of one with places (n, 3) perhaps.
 
-    Parameters
-    ----------
-    path : the file, for messages
-    film : of which the body is one; notes are put to it
-    body : with places (n, 3) perhaps, and quaternions
-    up : the axis that points up; None as the file, or most files, have it
+    ``film``: of which it is one, to which notes are put; ``up``: the axis that points up; None as
+    the file, or most files, have it.
 
     Examples
     --------

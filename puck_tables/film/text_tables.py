@@ -31,14 +31,7 @@ _HIDDEN = {"hidden", "occluded", "lost", "missing"}
 def film_in_text(
     path: str | Path, form: TextForm, layout: Layout, content: bytes | None = None
 ) -> Film:
-    r"""The film in a table of text whose columns are known.
-
-    Parameters
-    ----------
-    path : the file
-    form : how it is written
-    layout : what its columns are
-    content : its bytes, if it has been read
+    r"""The film in a table of text whose columns are known; ``content``: its bytes, if read.
 
     Examples
     --------
@@ -81,13 +74,8 @@ def film_of_columns(
 ) -> Film:  # fmt: skip
     """The film in columns, whatever file they are from.
 
-    Parameters
-    ----------
-    path : the file, for messages
-    layout : what its columns are
-    values : numbers (n,) by the number of a column
-    words : of columns of texts: for each row the number of its text, and the texts
-    notes : what was found, in sentences
+    ``values``: numbers (n,) by the number of a column; ``words``: of columns of texts, for each row
+    the number of its text, and the texts; ``notes``: what was found, in sentences.
 
     Examples
     --------
@@ -136,16 +124,10 @@ def film_below(
 ) -> Film:  # fmt: skip
     r"""The film in a table that stands below lines of another form, which said what it holds.
 
-    Parameters
-    ----------
-    path : the file
-    head : how it begins
-    lines : how many stand above the first row of numbers
-    columns : each with the body that it is of
-    kind : of file, for messages
-    up : the axis of places in space that points up
-    rate : frames a second, where the lines say it and no column holds times
-    content : all of the table, where other things stand below it
+    ``head``: how the file begins; ``lines``: how many stand above the first row of numbers;
+    ``columns``: each with the body that it is of; ``up``: the axis of places in space that points
+    up; ``rate``: frames a second, where the lines say it and no column holds times; ``content``:
+    all of the table, where other things stand below it.
 
     Examples
     --------

@@ -63,7 +63,11 @@ class Certainty:
     @property
     def quantile(self) -> float:
         """Half a 95 % interval where the noise is as it was found: that of Student's t."""
-        return quantile_of(self.degrees)
+        if self.degrees == math.inf:
+            return Z95
+        from scipy.special import stdtrit
+
+        return float(stdtrit(max(self.degrees, 1), 0.975))
 
     def wider(self, covariance: FloatArray, widened: bool) -> Certainty:
         """With a larger covariance (m, m)."""
@@ -100,11 +104,8 @@ class Certainty:
         Infinite where a direction that is not seen changes it by a fifth of what is plausible, or
         where nothing is seen.
         """
-        by_each = slope * self.plausible
-        if (
-            all(self.undetermined)
-            or np.abs(self.blind @ by_each).max(initial=0.0) > _MEMBER * plausible
-        ):
+        unseen = np.abs(self.blind @ (slope * self.plausible)).max(initial=0.0)
+        if all(self.undetermined) or unseen > _MEMBER * plausible:
             return math.inf
         return self.spread * math.sqrt(max(float(slope @ self.covariance @ slope), 0.0))
 
@@ -154,21 +155,6 @@ class OtherMinimum(NamedTuple):
         }
 
 
-def quantile_of(degrees: float) -> float:
-    """Half a 95 % interval where so many degrees of freedom told the noise.
-
-    Examples
-    --------
-    >>> round(quantile_of(10), 3), round(quantile_of(10**6), 3)
-    (2.228, 1.96)
-    """
-    if degrees == math.inf:
-        return Z95
-    from scipy.special import stdtrit
-
-    return float(stdtrit(max(degrees, 1), 0.975))
-
-
 def certainty_of(
     jacobian: FloatArray, plausible: FloatArray, degrees: float = math.inf
 ) -> Certainty:
@@ -179,6 +165,8 @@ def certainty_of(
     >>> known = certainty_of(np.array([[10.0, 10.0], [0.0, 0.0]]), np.array([1.0, 1.0]))
     >>> known.undetermined, known.blind.round(3).tolist()  # their sum alone is seen
     ((True, True), [[-0.707, 0.707]])
+    >>> round(replace(known, degrees=10).quantile, 3)
+    2.228
     """
     square = np.zeros((plausible.size, plausible.size))
     triangle = np.linalg.qr(jacobian * plausible, mode="r")
@@ -190,25 +178,18 @@ def certainty_of(
     spread = np.where(seen, 1.0 / np.maximum(full, BLIND), 1.0)
     scaled = (rows.T * spread**2) @ rows
     lost = np.abs(blind).max(axis=0, initial=0.0) > _MEMBER
-    return Certainty(
-        scaled * np.outer(plausible, plausible), blind, tuple(lost.tolist()), plausible,
-        degrees,
-    )  # fmt: skip
+    covariance = scaled * np.outer(plausible, plausible)
+    return Certainty(covariance, blind, tuple(lost.tolist()), plausible, degrees)
 
 
 def pinned_of(result: Estimate, certainty: Certainty) -> tuple[int, ...]:
     """Which unknowns that are seen lie on the end of their range: −1 the lower, 1 the upper."""
-    low, high = result.problem.limits
-    errors = certainty.errors
-    seen = np.isfinite(errors)
-    near, deviations = (
-        _ON_BOUND * np.where(seen, errors, 0.0),
-        _OFF_BOUND * np.where(seen, errors, 0.0),
-    )
-    on = []
-    for end in (low, high):
-        width = np.minimum(_ON_BOUND * np.maximum(np.abs(end), 1.0), deviations)
-        on.append(seen & np.isfinite(end) & (np.abs(result.x - end) <= np.maximum(near, width)))
+    seen = np.isfinite(certainty.errors)
+    errors, on = np.where(seen, certainty.errors, 0.0), []
+    for end in result.problem.limits:
+        width = np.minimum(_ON_BOUND * np.maximum(np.abs(end), 1.0), _OFF_BOUND * errors)
+        width = np.maximum(width, _ON_BOUND * errors)
+        on.append(seen & np.isfinite(end) & (np.abs(result.x - end) <= width))
     return tuple(np.where(on[0], -1, on[1].astype(int)).tolist())
 
 
@@ -218,10 +199,8 @@ def widened(result: Estimate, certainty: Certainty) -> Certainty:
     To the covariance is added what leaving out a part of the frames at a time does to the unknowns,
     as the jackknife counts it: of halves, of quarters and of eighths.
     """
-    covariance = certainty.covariance + sum(
-        _without_parts(result, certainty, count) for count in _PARTS
-    )
-    return certainty.wider(covariance, True)
+    by_parts = sum(_without_parts(result, certainty, count) for count in _PARTS)
+    return certainty.wider(certainty.covariance + by_parts, True)
 
 
 def of_rounded(result: Estimate, certainty: Certainty) -> Certainty:
@@ -295,9 +274,8 @@ def interval_of(result: Estimate, certainty: Certainty, k: int) -> Interval:
         return Interval(low, high, False)
     ends, profiled = [], False
     for side, limit in ((-1.0, low), (1.0, high)):
-        end, searched = _end(
-            result, certainty, k, side, x + side * certainty.quantile * error, limit
-        )
+        guess = x + side * certainty.quantile * error
+        end, searched = _end(result, certainty, k, side, guess, limit)
         ends.append(end)
         profiled |= searched
     return Interval(ends[0], ends[1], profiled)
@@ -334,9 +312,8 @@ def _end(
             if abs(far[0] - near[0]) < _NARROW * abs(far[0] - x0):  # another minimum begins there
                 return at, True
         elif deviations > -0.5 * wanted and n < _LOOKS:
-            at = x0 + side * min(
-                _BEYOND * wanted / (wanted + deviations) * abs(at - x0), abs(limit - x0)
-            )
+            farther = _BEYOND * wanted / (wanted + deviations) * abs(at - x0)
+            at = x0 + side * min(farther, abs(limit - x0))
         else:
             at = limit if math.isfinite(limit) else x0 + _OUTWARDS * (at - x0)
     return at, True

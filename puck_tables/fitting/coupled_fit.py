@@ -70,13 +70,7 @@ def couple(
     slides: Estimate, pieces: tuple[SlideIndex, ...], films: tuple[Observations, ...], spec:
     FitSpec, lines: Sequence[Line], known: Known,
 ) -> tuple[Estimate, str]:  # fmt: skip
-    """The estimate of joined slides; that of slides apart and a sentence if these are not joined.
-
-    Parameters
-    ----------
-    slides, pieces, films, spec, lines : as :func:`puck_tables.fitting.impact_matching.coupled`
-    known : whether the noise of places and of angles is
-    """
+    """The estimate of joined slides; that of slides apart and why, if these are not joined."""
     groups: dict[tuple[object, ...], list[CoupledFit]] = {}
     ways = candidates_of(slides)
     for x in ways:
@@ -143,14 +137,7 @@ def _unlikely(result: Estimate) -> int:
 
 
 def not_met(impacts: Sequence[Impact], problem: Problem, lines: Sequence[Line]) -> tuple[str, ...]:
-    """A sentence for each wall that was given and never met, or one if there is no impact at all.
-
-    Parameters
-    ----------
-    impacts : that were found, where they were looked for
-    problem : of the joined slides, with the walls that they meet
-    lines : walls that were given, by two points each
-    """
+    """A sentence for each given wall that was never met, or one if there is no impact at all."""
     if not impacts:
         return ("No impact was found: each track is taken for one slide",)
     if not problem.impact_specs:  # nothing is joined at walls
@@ -192,13 +179,11 @@ def impacts_coupled(
         return np.array([impact.ratio for impact in problem.slides(x)[1]])
 
     slopes = _slopes(result, certainty, ratios)
-    first = problem.films[0].start
-    impacts = []
-    impact_states = problem.slides(result.x)[1]
-    for impact_spec, impact, slope in zip(problem.impact_specs, impact_states, slopes, strict=True):
+    first, impacts = problem.films[0].start, []
+    every = zip(problem.impact_specs, problem.slides(result.x)[1], slopes, strict=True)
+    for impact_spec, impact, slope in every:
         pair = impact_spec.wall < 0
-        names = list(OF_PAIRS if pair else OF_WALLS)
-        error = certainty.error_of(slope, 1.0)
+        names, error = list(OF_PAIRS if pair else OF_WALLS), certainty.error_of(slope, 1.0)
         films = [problem.films[n].name for n in impact_spec.films]
         impacts.append(Impact(
             films[0], films[1] if pair else "", first + impact.time,

@@ -26,26 +26,22 @@ _IN_A_ROW = 5  # frames in a row that may be strays by chance
 _LEAP, _MORE = 6.0, 3.0  # standard deviations, and times the way between frames beside
 
 
-def outliers_of(
-    deviations: FloatArray, outlying: npt.NDArray[np.bool_], limit: float
-) -> npt.NDArray[np.bool_]:
-    """Which of the frames that are far off are strays (n,).
+def outliers_of(deviations: FloatArray, limit: float, strict: bool) -> npt.NDArray[np.bool_]:
+    """Which frames (n,) are far off; of these only strays, if ``strict``.
 
-    Parameters
-    ----------
-    deviations : (n, k), residuals of each frame in units of the noise
-    outlying : (n,), whether they are so large that the frame seems to be none of the motion
-    limit : of the square of residuals, from which on they are
+    ``deviations`` (n, k): residuals of each frame in units of the noise; ``limit``: of the sum of
+    their squares, from which on a frame seems to be none of the motion.
 
     Examples
     --------
     >>> deviations = np.zeros((40, 1))
     >>> deviations[20:, 0] = np.linspace(0.0, 20.0, 20)  # a motion that is another
     >>> deviations[7] = 30.0
-    >>> np.flatnonzero(outliers_of(deviations, np.abs(deviations[:, 0]) > 4.0, 16.0)).tolist()
+    >>> np.flatnonzero(outliers_of(deviations, 16.0, True)).tolist()
     [7]
     """
-    if outlying.sum() < _IN_A_ROW:
+    outlying: npt.NDArray[np.bool_] = (deviations**2).sum(axis=1) > limit
+    if not strict or outlying.sum() < _IN_A_ROW:
         return outlying
     result = outlying.copy()
     usual = np.stack([
@@ -120,6 +116,11 @@ class Estimate:
         return int(self.kept.sum()) - self.x.size
 
     @property
+    def size(self) -> float:
+        """The usual size of residuals over the noise."""
+        return math.sqrt(self.chi2 / max(self.degrees, 1))
+
+    @property
     def outliers(self) -> float:
         """The share of observations that are left out."""
         seen = self.problem.kinds <= ANGLE
@@ -131,13 +132,9 @@ def estimate(
 ) -> Estimate:
     """Fit, sort out, and fit again until the same frames are left out.
 
-    Parameters
-    ----------
-    problem, start : what is asked, and unknowns to begin with, which are put within their limits:
-        those of several tracks may have a mean beyond
-    noise_known : whether the noise of places, angles and time stamps was given; else it is that of
-        the residuals in the end
-    strict : whether only strays are left out, and not frames that are off together
+    ``start`` is put within its limits: that of several tracks may have a mean beyond.  Noise that
+    is not known is that of the residuals in the end.  ``strict``: whether only strays are left out,
+    and not frames that are off together.
     """
     x = np.clip(start, *problem.limits)
     problem = problem.with_noise(problem.noise, x)
@@ -222,8 +219,8 @@ def _kept(
     most_place = _farthest(2, degrees[PLACE]) * _wide(places, _MEDIAN_PLACE)
     most_turn = _farthest(1, degrees[ANGLE]) * _wide(turns, _MEDIAN**2)
     for (x, y, turn), place, angle in zip(each, places, turns, strict=True):
-        kept[x] = kept[y] = ~_out(place, most_place, strict)
-        kept[turn] = ~_out(angle, most_turn, strict)
+        kept[x] = kept[y] = ~outliers_of(place, most_place, strict)
+        kept[turn] = ~outliers_of(angle, most_turn, strict)
     kept &= problem.kinds != UNSEEN
     return kept
 
@@ -241,12 +238,6 @@ def _farthest(count: int, degrees: float) -> float:
     from scipy.special import fdtri
 
     return count * float(fdtri(count, max(degrees, _LEAST_DEGREES), 1.0 - _BY_CHANCE))
-
-
-def _out(deviations: FloatArray, most: float, strict: bool) -> npt.NDArray[np.bool_]:
-    """Frames whose residuals (n, k) are too large."""
-    outlying: npt.NDArray[np.bool_] = (deviations**2).sum(axis=1) > most
-    return outliers_of(deviations, outlying, most) if strict else outlying
 
 
 def _wide(deviations: list[FloatArray], usual: float) -> float:
@@ -301,15 +292,11 @@ def _at_least(
 
     Places or angles that are all the same, as of a column of zeros, have no residuals at all.
     """
-    paths = problem.paths(x)
     radius = problem.spec.scales(problem.numbers_at(x))[2]
-    size = max(float(np.ptp(path[:2], axis=1).max()) for path in paths)
-    turned = max(float(np.ptp(path[2])) for path in paths)
-    length = max(size, radius * turned)
-    place, angle = _COMPUTED * length, _COMPUTED * length / radius
+    length = max(float((np.ptp(path, axis=1) * [1, 1, radius]).max()) for path in problem.paths(x))
     return (
-        noise[0] if known.place else max(noise[0], place),
-        noise[1] if known.angle else max(noise[1], angle),
+        noise[0] if known.place else max(noise[0], _COMPUTED * length),
+        noise[1] if known.angle else max(noise[1], _COMPUTED * length / radius),
     )
 
 

@@ -15,6 +15,7 @@ from puck_tables._core.safe_read import read_whole
 from puck_tables.errors import InputError
 from puck_tables.fitting.coupled_fit import Impact
 from puck_tables.fitting.estimate import Estimate
+from puck_tables.fitting.model_comparison import LawScore
 from puck_tables.fitting.numbers import EstimatedLaunch, Number
 from puck_tables.fitting.parameters import INTEGRATED
 from puck_tables.io.dataset import Variable, variable
@@ -58,40 +59,22 @@ def numbers_as_json(numbers: Mapping[str, Number]) -> dict[str, Variable]:
     return columns
 
 
-def as_json(number: Number) -> dict[str, Any]:
-    """A number as JSON has it."""
-    return {**number._asdict(), "determined": number.determined, "at_bound": number.at_bound}
-
-
-def launch_as_json(one: EstimatedLaunch) -> dict[str, Any]:
-    """A launch as JSON has it."""
-    return {
-        "track": one.name, "time": one.time, "place": list(one.place),
-        "velocity": list(one.velocity), "spin": one.spin, "angle": one.angle,
-        "numbers": {name: as_json(number) for name, number in one.numbers.items()},
-    }  # fmt: skip
-
-
-def impact_as_json(one: Impact) -> dict[str, Any]:
-    """An impact as JSON has it."""
-    return {
-        **one._asdict(), "place": list(one.place), "restitution": as_json(one.restitution),
-        "rim": as_json(one.rim),
-        "mass_ratio": None if one.mass_ratio is None else as_json(one.mass_ratio),
-    }  # fmt: skip
-
-
-def without_nan(value: Any) -> Any:
-    """The same with None for what is no number: JSON has none."""
+def as_json(value: Any) -> Any:
+    """The same as JSON has it, by names, with None for what is no number: JSON has none."""
+    if isinstance(value, Number):
+        value = {**value._asdict(), "determined": value.determined, "at_bound": value.at_bound}
+    elif isinstance(value, EstimatedLaunch):
+        value = {"track": value.name, **value._asdict()}
+        del value["name"]
+    elif isinstance(value, Impact | LawScore):
+        value = value._asdict()
     if isinstance(value, dict):
-        return {name: without_nan(one) for name, one in value.items()}
+        return {name: as_json(one) for name, one in value.items()}
     if isinstance(value, list | tuple):
-        return [without_nan(one) for one in value]
+        return [as_json(one) for one in value]
     if isinstance(value, float) and not math.isfinite(value):
         return None
-    if isinstance(value, np.bool_):
-        return bool(value)
-    return value
+    return bool(value) if isinstance(value, np.bool_) else value
 
 
 _LARGEST = 1 << 26  # bytes

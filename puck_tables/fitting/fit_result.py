@@ -19,21 +19,8 @@ from puck_tables.errors import InputError
 from puck_tables.fitting.certainty import Certainty, profile_point
 from puck_tables.fitting.coupled_fit import Impact
 from puck_tables.fitting.estimate import Estimate
-from puck_tables.fitting.fit_files import (
-    KIND,
-    as_json,
-    frames_of,
-    impact_as_json,
-    launch_as_json,
-    numbers_as_json,
-    without_nan,
-)
-from puck_tables.fitting.identifiability import (
-    doubts,
-    rounded,
-    spin_would_tell,
-    taken_for_granted,
-)
+from puck_tables.fitting.fit_files import KIND, as_json, frames_of, numbers_as_json
+from puck_tables.fitting.identifiability import doubts, rounded, spin_would_tell, taken_for_granted
 from puck_tables.fitting.model_comparison import HeldOut, LawScore, law_over, verdict
 from puck_tables.fitting.numbers import EstimatedLaunch, Number
 from puck_tables.fitting.observations import Observations
@@ -313,34 +300,27 @@ class Fit(Result):
 
     def summary(self) -> dict[str, Any]:
         """Everything but the frames, ready for JSON; None for what is not determined."""
-        puck = self.puck.described()
         summary: dict[str, Any] = {
-            "kind": KIND, "source": f"puck-tables {__version__}", "puck": puck, "drag": self.drag,
-            "numbers": {name: as_json(number) for name, number in self.numbers.items()},
-            "launches": [launch_as_json(one) for one in self.launches],
+            "kind": KIND, "source": f"puck-tables {__version__}", "puck": self.puck.described(),
+            "drag": self.drag,
+            "numbers": self.numbers, "launches": self.launches,
             "correlation": self.correlation(), "chi2": self.chi2, "degrees": self.degrees,
-            "noise": list(self.noise), "noise_given": list(self.noise_known[:2]),
+            "noise": self.noise, "noise_given": self.noise_known[:2],
             "jitter": self.jitter, "jitter_given": self.noise_known.jitter,
-            "outliers": self.outliers, "left_out": [list(one) for one in self.left_out],
-            "cut_off": self.cut_off,
-            "runs": self.runs, "drift": self.drift,
-            "not_determined": list(self.blind), "astray": self.astray, "doubts": self.doubts,
-            "remarks": list(self.remarks),
-            "complaints": list(self.complaints),
-            "laws": [one._asdict() for one in self.laws], "verdict": self.verdict,
-            "held_out": None,
-            "slip_speeds": list(self.estimate.problem.spec.speeds),
+            "outliers": self.outliers, "left_out": self.left_out, "cut_off": self.cut_off,
+            "runs": self.runs, "drift": self.drift, "not_determined": self.blind,
+            "astray": self.astray, "doubts": self.doubts, "remarks": self.remarks,
+            "complaints": self.complaints, "laws": self.laws, "verdict": self.verdict,
+            "held_out": None, "slip_speeds": self.estimate.problem.spec.speeds,
             "between": self.estimate.problem.spec.between,
-            "constant_chi2": self.constant_chi2, "untied": self.untied,
-            "impacts": [impact_as_json(one) for one in self.impacts],
+            "constant_chi2": self.constant_chi2, "untied": self.untied, "impacts": self.impacts,
         }  # fmt: skip
         if self.held_out is not None:
             summary["held_out"] = {
-                "tracks": list(self.held_out.tracks), "rms": self.held_out.rms,
-                "rms_by_chance": list(self.held_out.chance), "inside": self.held_out.inside,
+                "tracks": self.held_out.tracks, "rms": self.held_out.rms,
+                "rms_by_chance": self.held_out.chance, "inside": self.held_out.inside,
             }  # fmt: skip
-        cleaned: dict[str, Any] = without_nan(summary)
-        return cleaned
+        return {name: as_json(value) for name, value in summary.items()}
 
     def correlation(self) -> dict[str, dict[str, float]]:
         """Correlations of the numbers of the puck that were found."""

@@ -46,8 +46,8 @@ from puck_tables.fitting.unit_motions import unit_motions_of
 from puck_tables.puck import Puck
 
 _KIND = ("gyration", "inner", "drag", *INTEGRATED)  # change the curve itself
-_CLASHES = (("friction", "decel"), ("delta", "height"))
-_TINY = 1e-30
+_CLASHES = (("friction", "decel", ", J = f g"), ("delta", "height", ""))
+TINY = 1e-30  # step of derivatives along the imaginary axis
 _LEAST = 1e-9
 
 
@@ -128,6 +128,10 @@ class FitSpec:
             wanted += ("readout",)
         for name in wanted:
             refuse_unknown(name, PUCK, "free")
+            if name in known:
+                raise InputError(
+                    f"{name} is both free and fixed at {known[name]:g}: leave out one of the two"
+                )
         if len(set(wanted)) < len(wanted):
             raise InputError(f"free names {', '.join(wanted)}: name each parameter once")
         for name in (*wanted, *known):
@@ -146,11 +150,6 @@ class FitSpec:
                     f"{name} is a number of impacts, which are not looked for: ask for them "
                     "(--impacts, impacts=True)"
                 )
-        for name in wanted:
-            if name in known:
-                raise InputError(
-                    f"{name} is both free and fixed at {known[name]:g}: leave out one of the two"
-                )
         for given, what in ((priors, "prior"), (bounds, "bounds"), (start, "start")):
             for name in given:
                 refuse_unknown(name, ALL, what)
@@ -158,12 +157,9 @@ class FitSpec:
                     raise InputError(f"{name} is fixed at {known[name]:g}: leave out its {what}")
                 if name in PUCK and name not in wanted and not (impacts and name in OF_IMPACTS):
                     raise InputError(f"{name} is not free: name it in free to give it a {what}")
-        for one, other in _CLASHES:
-            both = [name for name in (*wanted, *known) if name in (one, other)]
-            if len(both) > 1 and not {"friction", "decel"} == set(both):
-                raise InputError(f"{one} and {other} say the same: leave out one of them")
-            if len(both) > 1:
-                raise InputError("friction and decel say the same, J = f g: leave out one of them")
+        for one, other, since in _CLASHES:
+            if {one, other} <= {*wanted, *known}:
+                raise InputError(f"{one} and {other} say the same{since}: leave out one of them")
         if "inner" in (*wanted, *known) and not _is_annulus(puck):
             raise InputError(
                 "inner is the inner radius of an annulus: give the puck the pressure 'annulus:0.8'"
@@ -213,22 +209,21 @@ class FitSpec:
         friction = decel / all_of["gravity"]
         return decel, 2.0 * friction * all_of["height"] / all_of["radius"], all_of["radius"]
 
-    def all_at(self, result: Mapping[str, float]) -> dict[str, float]:
-        """All numbers of the puck where some are found: with J, δ, f and h, which follow."""
+    def all_at(self, result: Mapping[str, Any]) -> dict[str, Any]:
+        """All numbers of the puck where some are found, real or complex; J, δ, f and h follow."""
         numbers = {**self.known(), **result}
         decel, delta, radius = self.scales(result)
         friction = decel / numbers["gravity"]
-        height = 0.5 * delta * radius / friction if friction > 0.0 else 0.0
+        height = 0.5 * delta * radius / friction if friction != 0.0 else 0.0
         return {
             **numbers, "decel": decel, "delta": delta, "friction": friction, "height": height,
         }  # fmt: skip
 
     def slopes(self, result: Mapping[str, float], name: str) -> tuple[float, float, float]:
         """The derivatives of J, δ and r to one that is found, by the complex step."""
-        complex_values = {**result, name: result[name] + 1j * _TINY}
-        return tuple(  # type: ignore[return-value]
-            float((value + 0j).imag) / _TINY for value in self.scales(complex_values)
-        )
+        complex_values = {**result, name: result[name] + 1j * TINY}
+        decel, delta, radius = ((one + 0j).imag / TINY for one in self.scales(complex_values))
+        return decel, delta, radius
 
     def alone(self) -> FitSpec:
         """The same without the numbers of impacts: of slides that nothing joins."""
@@ -250,7 +245,7 @@ class FitSpec:
         ``sizes``: how many pucks meet, 1 those with walls; ``grips``: whether rims stop on what
         they meet in all of them, so that nothing tells their friction.
         """
-        free, of_impacts = list(self.alone().free), {}
+        free, of_impacts = list(self.alone().free), dict[str, float]()
         named = [name for name in self.free if name in OF_IMPACTS]
         for size, numbers, what in ((1, OF_WALLS, "a wall"), (2, OF_PAIRS, "two pucks")):
             if size not in sizes:
@@ -262,18 +257,14 @@ class FitSpec:
             rub = tangential if grips and friction not in named else friction
             mine = [name for name in numbers if name in (restitution, rub, *named)]
             free += [name for name in mine if name not in self.fixed]
-            of_impacts.update(
-                {n: v for n, v in numbers.items() if n not in mine and math.isfinite(v)}
-            )
+            of_impacts |= {n: v for n, v in numbers.items() if n not in mine and math.isfinite(v)}
         return replace(self, free=tuple(free), of_impacts=of_impacts)
 
     def rims(self, result: Mapping[str, float], pair: bool) -> Rims:
         """How rims meet, of two pucks or of one and a wall."""
         defaults = OF_PAIRS if pair else OF_WALLS
         numbers = {**defaults, **self.fixed, **result}
-        values = [numbers[name] for name in defaults]
-        mass = values[3] if pair else math.inf
-        return Rims(values[0], values[1], values[2], mass)
+        return Rims(*(numbers[name] for name in defaults), *([] if pair else [math.inf]))
 
     def readout(self, result: Mapping[str, float]) -> float:
         """The time in which a picture is read, s."""
@@ -323,9 +314,8 @@ class FitSpec:
         plain = "drag" in self.free or "drag" in self.fixed
         bounds = self.bounds if plain else {**self.bounds, "drag": (0.0, MOST["drag"])}
         fixed = {name: value for name, value in self.fixed.items() if name not in INTEGRATED}
-        return replace(
-            self, free=free if plain else (*free, "drag"), fixed=fixed, bounds=bounds, law=""
-        )
+        free = free if plain else (*free, "drag")
+        return replace(self, free=free, fixed=fixed, bounds=bounds, law="")
 
     def moving(self, result: Mapping[str, float], tall: bool) -> Moving:
         """What moves the puck."""
@@ -347,9 +337,8 @@ class FitSpec:
                 (numbers["belt_x"], numbers["belt_y"]),
             )  # fmt: skip
         # while a minimum is sought J, r and h may lead beyond; where it lies is judged in the end
-        return Moving(
-            decel, min(delta, motions.highest), radius, numbers["drag"], motions, by_speed
-        )
+        delta = min(delta, motions.highest)
+        return Moving(decel, delta, radius, numbers["drag"], motions, by_speed)
 
     def speed_law(self, numbers: Mapping[str, float]) -> SpeedLaw:
         """The friction coefficient over slip speed."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar, NamedTuple, Protocol
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
@@ -152,10 +152,10 @@ class Forecast(Result):
         found = np.empty((speeds.size, spins.size))
         for i, speed in enumerate(speeds.tolist()):
             for k, spin in enumerate(spins.tolist()):
-                other = _Launch((speed, 0.0), spin)
+                launch = (speed, 0.0), spin
                 try:
-                    one = _bounds(self.puck, other, self.camera, self.free)
-                    found[i, k] = one.certainty.errors[self.names.index(name)]
+                    _, told = _forecast_estimate(self.puck, *launch, self.camera, self.free)
+                    found[i, k] = told.errors[self.names.index(name)]
                 except InputError:  # a film of too few frames
                     found[i, k] = np.inf
         return found
@@ -173,12 +173,6 @@ class Forecast(Result):
             "launch_spin": self.spin, **self.puck.described(),
         }  # fmt: skip
         return Dataset({}, columns, attributes)
-
-
-@dataclass(frozen=True)
-class _Launch:
-    velocity: tuple[float, float]
-    spin: float
 
 
 def fisher(
@@ -224,10 +218,8 @@ def fisher(
     instance("camera", camera, Camera)
     velocity = one_velocity(getattr(launch, "velocity", None))  # type: ignore[arg-type]
     spin = real("spin", getattr(launch, "spin", None), "rad/s")  # type: ignore[arg-type]
-    words = _bounds(puck, _Launch(velocity, spin), camera, free)
-    problem, known = words.problem, words.certainty
-    errors = known.errors
-    seen = _forecast_estimate(words)
+    seen, known = _forecast_estimate(puck, velocity, spin, camera, free)
+    problem, errors = seen.problem, known.errors
     rivals = () if camera.angle_noise is not None else other_minima(seen, known)
     unsigned = mirrored(seen, known)
     names = tuple(name for _, name in problem.names)
@@ -242,7 +234,7 @@ def fisher(
         camera=camera,
         free=problem.spec.free,
         names=names,
-        values=words.x,
+        values=seen.x,
         errors=errors,
         frames=problem.films[0].time.size,
         rivals=(
@@ -253,36 +245,26 @@ def fisher(
     )
 
 
-class _Bounds(NamedTuple):
-    problem: Problem
-    x: FloatArray
-    certainty: Certainty
-
-
-def _bounds(puck: Puck, launch: _Launch, camera: Camera, free: Iterable[str]) -> _Bounds:
-    """How well a film tells the unknowns of a launch."""
+def _forecast_estimate(
+    puck: Puck, velocity: tuple[float, float], spin: float, camera: Camera, free: Iterable[str]
+) -> tuple[Estimate, Certainty]:
+    """What would be found of a film of a launch without noise, and how well it is told."""
     spec = FitSpec.of(puck, free, {}, {}, {}, {})
-    slip = math.hypot(*launch.velocity, puck.radius * launch.spin)
+    slip = math.hypot(*velocity, puck.radius * spin)
     if not 0.0 < slip <= _FASTEST:
         raise InputError(
             f"a film is of a launch whose base slips at up to {_FASTEST:g} m/s, and at more than 0 "
             f"m/s, got {slip:g} m/s"
         )
-    stop = puck.stop(launch.velocity, launch.spin)
-    film = camera.film(float(stop.stop_time))
+    film = camera.film(float(puck.stop(velocity, spin).stop_time))
     noise = camera.place_noise, camera.angle_noise or 1.0
     problem = Problem(spec, (film,), noise, tall=puck.delta > 1.0)
     numbers = {**spec.known(), "decel": puck.decel, "delta": puck.delta}
     found = {name: numbers[name] for name in spec.free}
-    x = problem.unknowns(found, np.array([[0.0, 0.0, *launch.velocity, launch.spin, 0.0]]))
-    return _Bounds(problem, x, certainty_of(problem.jacobian(x), plausible_for(problem, x)))
-
-
-def _forecast_estimate(words: _Bounds) -> Estimate:
-    """What would be found of the film itself, without its noise."""
-    places = words.problem.paths(words.x)[0][:2].T
-    film = replace(words.problem.films[0], place=places)
-    problem = words.problem.with_films((film,))
-    kept = np.ones(problem.kinds.size, bool)
-    rows = problem.residuals(words.x)
-    return Estimate(problem, words.x, kept, rows, problem.jacobian(words.x))
+    x = problem.unknowns(found, np.array([[0.0, 0.0, *velocity, spin, 0.0]]))
+    rows, slopes = problem.residuals_and_jacobian(x)
+    certainty = certainty_of(slopes, plausible_for(problem, x))
+    places = rows[: 2 * film.time.size].reshape(2, -1).T * camera.place_noise  # all were seen at 0
+    problem = problem.with_films((replace(film, place=places),))
+    kept = np.ones(rows.size, bool)
+    return Estimate(problem, x, kept, problem.residuals(x), slopes), certainty

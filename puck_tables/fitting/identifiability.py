@@ -30,12 +30,7 @@ _UNITS = "the unit of the places, or of the times, the scale or the frames a sec
 def doubts(
     numbers: Mapping[str, Number], launches: Sequence[EstimatedLaunch], radius: float
 ) -> tuple[str, ...]:
-    """A sentence for each number that was found and that no puck has.
-
-    Parameters
-    ----------
-    numbers, launches : as they were found
-    radius : m, of the puck as it was given
+    """A sentence for each number that was found and that no puck has; ``radius`` m: as given.
 
     Examples
     --------
@@ -156,20 +151,16 @@ _SCALES = {"friction", "gravity", "height", "radius", "decel"}
 
 
 def not_identifiable(
-    result: Estimate,
-    certainty: Certainty,
-    lost: tuple[str, ...],
-    minima: tuple[OtherMinimum, ...] = (),
-    unsigned: tuple[int, ...] = (),
-) -> tuple[str, ...]:
+    result: Estimate, certainty: Certainty, lost: tuple[str, ...],
+    minima: tuple[OtherMinimum, ...] = (), unsigned: tuple[int, ...] = (),
+) -> tuple[str, ...]:  # fmt: skip
     """A sentence for each direction that the tracks do not see.
 
     ``lost``: numbers of the puck that are not determined, by whatever; ``minima``: other motions
     that fit about as well; ``unsigned``: tracks that the opposite spin fits as well.
     """
-    sentences = []
     marked = any(film.angle is not None for film in result.problem.films)
-    sentences += [minimum_sentence(minimum, marked) for minimum in minima[:_TOLD_ALL]]
+    sentences = [minimum_sentence(minimum, marked) for minimum in minima[:_TOLD_ALL]]
     if others := len(minima[_TOLD_ALL:]):
         more = "motion of another spin fits" if others == 1 else "motions of other spins fit"
         sentences.append(f"{others} more {more} about as well.")
@@ -238,9 +229,8 @@ def _name(problem: Problem, k: int) -> str:
 def _together(problem: Problem, certainty: Certainty, members: list[int]) -> str:
     """How members of a direction change together."""
     first, *others = members
-    direction = certainty.blind[
-        int(np.argmax(np.abs(certainty.blind[:, first]) + np.abs(certainty.blind[:, others[0]])))
-    ]
+    sizes = np.abs(certainty.blind[:, [first, others[0]]]).sum(axis=1)
+    direction = certainty.blind[int(np.argmax(sizes))]
     words = [f"{_name(problem, first)} rises"]
     for k in others:
         same = direction[k] * direction[first] > 0.0
@@ -279,8 +269,9 @@ def _other_films(result: Estimate) -> list[tuple[str, Problem, FloatArray]]:
     marked = problem
     if any(film.angle is None for film in problem.films):
         marked = replace(
-            problem, films=tuple(_marked(film) for film in problem.films),
-            noise=(problem.noise[0], min(problem.noise[1], 1e-3 * _MARKS)),
+            problem, films=tuple(
+                replace(film, angle=np.zeros(film.time.size), counts=None) for film in problem.films
+            ), noise=(problem.noise[0], min(problem.noise[1], 1e-3 * _MARKS)),
         )  # fmt: skip
         films.append(("angle marks on the puck", marked, marked.unknowns(values, launches)))
     faster = launches.copy()
@@ -290,7 +281,9 @@ def _other_films(result: Estimate) -> list[tuple[str, Problem, FloatArray]]:
     least = float(spin.max())
     asks = not np.allclose(faster, launches) and "launch_spin" not in problem.spec.fixed
     if asks and least * radius < _FASTEST:
-        moderate = _with_heights_inside(values)
+        moderate = dict(values)
+        if "delta" in values:  # at a bound it says nothing of what could be seen
+            moderate["delta"] = min(max(values["delta"], 0.05), 0.9)
         films.append(
             (f"more spin (some {least:.2g} rad/s)", problem, problem.unknowns(moderate, faster))
         )
@@ -304,13 +297,6 @@ def _other_films(result: Estimate) -> list[tuple[str, Problem, FloatArray]]:
     return films
 
 
-def _with_heights_inside(values: dict[str, float]) -> dict[str, float]:
-    """δ at a bound says nothing of what could be seen."""
-    if "delta" in values:
-        return {**values, "delta": min(max(values["delta"], 0.05), 0.9)}
-    return values
-
-
 def spin_would_tell(result: Estimate) -> str:
     """What the same slide would tell if it spun and a mark on it were filmed; '' if not more.
 
@@ -320,8 +306,7 @@ def spin_would_tell(result: Estimate) -> str:
     for words, other, x in reversed(_other_films(replace(result, problem=problem))):
         if "spin" not in words or "marks" not in words:
             continue
-        slopes, plausible = other.jacobian(x), plausible_for(other, x)
-        known = certainty_of(slopes[other.kinds != PRIOR], plausible)
+        known = _by_tracks(other, x)
         told = [
             f"{name} to +- {error:.2g}"
             for name, error in zip(other.spec.free, known.errors, strict=False)
@@ -334,16 +319,16 @@ def spin_would_tell(result: Estimate) -> str:
 
 def _errors(problem: Problem, x: FloatArray, members: list[tuple[int, str]]) -> FloatArray:
     """The errors of members, those of the puck if there are, in units of what is plausible."""
-    slopes, plausible = problem.jacobian(x), plausible_for(problem, x)
-    known = certainty_of(slopes[problem.kinds != PRIOR], plausible)
+    known = _by_tracks(problem, x)
     wanted = [key for key in members if key[0] == -1] or members
     places = [problem.names.index(key) for key in wanted]
-    errors: FloatArray = (known.errors / plausible)[places]
-    return errors
+    return np.asarray((known.errors / known.plausible)[places])
 
 
-def _marked(film: Observations) -> Observations:
-    return replace(film, angle=np.zeros(film.time.size), counts=None)
+def _by_tracks(problem: Problem, x: FloatArray) -> Certainty:
+    """How well unknowns are known by tracks without priors."""
+    slopes = problem.jacobian(x)[problem.kinds != PRIOR]
+    return certainty_of(slopes, plausible_for(problem, x))
 
 
 def _longer(film: Observations) -> Observations:

@@ -92,15 +92,7 @@ def impact_at(
     moving: Moving, gyration: float, rims: Rims, impact_spec: ImpactSpec, before: tuple[Slide, ...],
     wall: WallLine | None,
 ) -> ImpactState:  # fmt: skip
-    """An impact, from the slides before it.
-
-    Parameters
-    ----------
-    moving, gyration : of the pucks; radius of gyration over r
-    rims : of what meets
-    impact_spec : about when
-    before : the slides of its tracks
-    wall : of one track; None of two
+    """An impact, from the slides before it; ``gyration`` over r; ``wall``: None of two pucks.
 
     Examples
     --------

@@ -83,7 +83,7 @@ def matched_impacts(
     taken: set[int] = set()
     matches = []
     near = [
-        (abs(_apart(one, two) - 2.0 * radius), i, k)
+        (abs(math.hypot(*(one.before[:2] - two.before[:2])) - 2.0 * radius), i, k)
         for (i, one), (k, two) in combinations(enumerate(kinks_of_slides), 2)
         if pieces[one.piece].track != pieces[two.piece].track
         and abs(one.time - two.time) <= _TOGETHER * step
@@ -101,10 +101,6 @@ def matched_impacts(
     return sorted(matches, key=lambda one: one.kinks_of_slides[0].time)
 
 
-def _apart(one: Kink, two: Kink) -> float:
-    return math.hypot(*(one.before[:2] - two.before[:2]))
-
-
 def _kink(problem: Problem, x: FloatArray, n: int) -> Kink:
     """Between piece ``n`` and the next."""
     launches, result = problem.launches(x), problem.numbers_at(x)
@@ -114,12 +110,11 @@ def _kink(problem: Problem, x: FloatArray, n: int) -> Kink:
     slides = [Slide(film.start - first, launches[k]) for k, film in ((n, one), (n + 1, two))]
     # straight lines through both ends of the gap meet nearest where the impact was
     last, start = slides[0].since + float(one.time[-1]), slides[1].since
-    end, begin = state_at(moving, slides[0], last), slides[1].launch
+    end, begin, gap = state_at(moving, slides[0], last), slides[1].launch, start - last
     closing = end[2:4] - begin[2:4]
-    apart = begin[:2] - begin[2:4] * (start - last) - end[:2]
+    apart = begin[:2] - begin[2:4] * gap - end[:2]
     size = float(closing @ closing)
-    since = float(apart @ closing) / size if size > 0.0 else 0.5 * (start - last)
-    gap = start - last
+    since = float(apart @ closing) / size if size > 0.0 else 0.5 * gap
     time = last + min(max(since, -gap), 2.0 * gap)
     # before its launch a slide goes on as it slows
     later = state_at(moving, slides[1], start + gap)
@@ -131,7 +126,7 @@ def _kink(problem: Problem, x: FloatArray, n: int) -> Kink:
 def _numbers(problem: Problem, x: FloatArray) -> tuple[float, float]:
     """Radius of the puck and its radius of gyration over it."""
     result = problem.numbers_at(x)
-    return problem.spec.scales(result)[2], {**problem.spec.known(), **result}["gyration"]
+    return problem.spec.scales(result)[2], problem.gyration(result)
 
 
 def _of_wall(problem: Problem, x: FloatArray, kink: Kink) -> ImpactMatch | None:
@@ -192,15 +187,8 @@ def coupled(
     """The problem of slides that impacts join; none where there is no impact.
 
     Where rims seem to stop on what they meet in each of several impacts there is another, in which
-    they may slide.
-
-    Parameters
-    ----------
-    problem, x : of slides, each with a launch of its own, and a way in which they may move
-    pieces : which they are
-    films : the tracks, uncut
-    spec : with the numbers of impacts
-    lines : walls that are given, by two points each
+    they may slide.  ``problem``, ``x``: of slides, each with a launch of its own, and a way in
+    which they may move; ``films``: the tracks, uncut; ``spec``: with the numbers of impacts.
     """
     matches = matched_impacts(problem, pieces, x)
     if not matches:
@@ -226,25 +214,21 @@ def coupled(
     shift = problem.films[0].start - tracks[0].start
     radius = _numbers(problem, x)[0]
     step = max(film.usual_step for film in problem.films)
-    known = dict(enumerate(lines))
     numbers: dict[int, int] = {}
     for match_ in matches:
         kink = match_.kinks_of_slides[0]
-        ends = [problem.films[one.piece].time[-1] for one in match_.kinks_of_slides]
-        ends += [problem.films[one.piece + 1].time[-1] for one in match_.kinks_of_slides]
+        own = [one.piece for one in match_.kinks_of_slides]
+        ends = [problem.films[n + more].time[-1] for n in own for more in (0, 1)]
         number = -1
-        if len(match_.kinks_of_slides) == 1:
-            given = _wall_at(known, kink, radius)
-            if given is None or given[0] not in numbers:
-                if given is not None:
-                    numbers[given[0]] = len(walls)
-                met_wall = given[1] if given else _wall(match_, radius)
-                number = len(walls)
+        if len(own) == 1:
+            given = _wall_at(lines, kink, radius)
+            number = numbers.get(given[0], len(walls)) if given else len(walls)
+            if number == len(walls):
                 walls.append(given[1] if given else None)
-                starts.append(met_wall)
-            else:
-                number = numbers[given[0]]
-        films_met = tuple(home[one.piece] for one in match_.kinks_of_slides)
+                starts.append(given[1] if given else _wall(match_, radius))
+            if given:
+                numbers[given[0]] = number
+        films_met = tuple(home[n] for n in own)
         reach = max(_REACH * float(min(ends)), _REACH_FRAMES * step)
         impact_specs.append(ImpactSpec(kink.time + shift, reach, films_met, number))
     sizes = {len(match_.kinks_of_slides) for match_ in matches}
@@ -291,10 +275,10 @@ def _wall(match_: ImpactMatch, radius: float) -> WallLine:
     return WallLine(match_.toward, float(match_.kinks_of_slides[0].before[:2] @ normal) + radius)
 
 
-def _wall_at(lines: dict[int, Line], kink: Kink, radius: float) -> tuple[int, WallLine] | None:
+def _wall_at(lines: Sequence[Line], kink: Kink, radius: float) -> tuple[int, WallLine] | None:
     """The given wall that a puck touched, and its number; None if it was none of them."""
     best: tuple[float, int, WallLine] | None = None
-    for n, (one, two) in lines.items():
+    for n, (one, two) in enumerate(lines):
         along = np.subtract(two, one)
         normal = np.array([along[1], -along[0]]) / math.hypot(*along)
         if float((np.array(one) - kink.before[:2]) @ normal) < 0.0:

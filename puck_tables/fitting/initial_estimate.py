@@ -108,11 +108,7 @@ _JUDGED = 10  # degrees of freedom that tell the noise
 def initial_estimate(problem: Problem, known: Known, refit: bool) -> Estimate:
     """The estimate of a problem, from starts of its own.
 
-    Parameters
-    ----------
-    problem : Problem
-    known : whether the noise of places, of angles and of time stamps is
-    refit : whether frames at the ends that are no free motion are left out
+    ``refit``: whether frames at the ends that are no free motion are left out.
     """
     problem = _with_room(problem)
     left = _observations(problem) - len(problem.names) + len(problem.priors)

@@ -106,8 +106,7 @@ def observations_of(
         instance("tracks", track, Track)
     if said := marks_of_one(listed, 2.0 * radius):
         raise InputError(f"{said}: two pucks of radius {radius:g} m are {2.0 * radius:g} m apart")
-    names = [track.name for track in listed]
-    films = []
+    names, films = [track.name for track in listed], []
     for n, track in enumerate(listed):
         film = observations_in(track, since, until, keep_all)
         if names.count(track.name) > 1:
@@ -116,7 +115,7 @@ def observations_of(
             film = replace(film, row=(rows[0] - film.place[:, 1]) / (rows[0] - rows[1]))
         films.append(film)
         _refuse_far(film)
-        _refuse_still(film)
+        _refuse_still(film, np.nan_to_num(noise_of([film])[0]))
     for one, other in combinations(films, 2):
         _refuse_twice(one, other)
     count = sum(film.time.size for film in films)
@@ -139,12 +138,6 @@ def _refuse_far(film: Observations) -> None:
             )
 
 
-def _refuse_still(film: Observations) -> None:
-    """Refuse a track of a puck that lies still."""
-    place, _ = noise_of([film])
-    _refuse_within(film, place if math.isfinite(place) else 0.0)
-
-
 def refuse_wobbling(result: Estimate, certainty: Certainty) -> None:
     """Refuse a track of a puck that goes nowhere beyond what any slide leaves of its places."""
     problem = result.problem
@@ -152,10 +145,10 @@ def refuse_wobbling(result: Estimate, certainty: Certainty) -> None:
         speeds = [(n, name) for name in ("launch_vx", "launch_vy")]
         lost = [certainty.undetermined[k] for k, key in enumerate(problem.names) if key in speeds]
         if lost and all(lost):
-            _refuse_within(film, problem.noise[0])
+            _refuse_still(film, problem.noise[0])
 
 
-def _refuse_within(film: Observations, spread: float) -> None:
+def _refuse_still(film: Observations, spread: float) -> None:
     """Refuse a track of a puck that does not leave its place by more than some spread (m)."""
     if rests_from(film, spread) == 0 and not turns(film):
         raise InputError(
@@ -170,12 +163,11 @@ def _refuse_twice(one: Observations, other: Observations) -> None:
     alike = (one.place[:count] == other.place[:count]).all(axis=1)
     if one.straight is not None:  # gates stand where they stand
         alike &= one.time[:count] == other.time[:count]
-    aligned = alike.sum()
     frames = [
         set(zip((film.start + film.time).tolist(), *film.place.T.tolist(), strict=True))
         for film in (one, other)
     ]  # fmt: skip
-    if max(int(aligned), len(frames[0] & frames[1])) > _TWICE * count:
+    if max(int(alike.sum()), len(frames[0] & frames[1])) > _TWICE * count:
         raise InputError(
             f"{one.name} and {other.name} show the same frames, which would count twice: give each "
             "film once"
@@ -281,13 +273,12 @@ def checked_walls(raw: Any) -> tuple[Line, ...]:
             raise InputError(
                 f"a wall must be two points ((x, y), (x, y)) on it in m, got {wall!r:.60}"
             ) from None
-        values = [real("a point of a wall", value, "m") for value in (ax, ay, bx, by)]
-        one, two = (values[0], values[1]), (values[2], values[3])
-        if one == two:
+        ax, ay, bx, by = (real("a point of a wall", value, "m") for value in (ax, ay, bx, by))
+        if (ax, ay) == (bx, by):
             raise InputError(
                 f"a wall must be given by two different points, got ({ax:g}, {ay:g}) twice"
             )
-        lines.append((one, two))
+        lines.append(((ax, ay), (bx, by)))
     return tuple(lines)
 
 
@@ -301,16 +292,10 @@ def checked_noise(raw: Any) -> tuple[float | None, float | None]:
         raise InputError(
             f"noise must be (metres, radians), None for what is to be estimated, got {raw!r:.40}"
         ) from None
-    checked: list[float | None] = []
-    for value, what, unit in ((place, "places", "m"), (angle, "angles", "rad")):
-        if value is None:
-            checked.append(None)
-            continue
-        number = real(f"the noise of {what}", value, unit)
-        if not number > 0.0:
-            raise InputError(f"the noise of {what} must be greater than 0 ({unit}), got {number:g}")
-        checked.append(number)
-    return checked[0], checked[1]
+    return (
+        None if place is None else positive("the noise of places", place, "m"),
+        None if angle is None else positive("the noise of angles", angle, "rad"),
+    )
 
 
 def begin_noise(judged: float, films: tuple[Observations, ...]) -> float:

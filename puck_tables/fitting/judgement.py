@@ -23,13 +23,7 @@ from puck_tables.fitting.inputs import refuse_wobbling
 from puck_tables.fitting.numbers import plausible_for
 from puck_tables.fitting.other_minima import mirrored, other_minima, taken
 from puck_tables.fitting.problem import Known
-from puck_tables.fitting.residuals import (
-    SideForces,
-    excess_of,
-    may_misfit,
-    no_answer,
-    side_forces,
-)
+from puck_tables.fitting.residuals import SideForces, excess_of, may_misfit, no_answer, side_forces
 
 _JUDGED = 2.5  # degrees of freedom that tell the noise of a kind
 _BIAS = 2.0  # times what a force, to first order, would have done
@@ -56,11 +50,7 @@ def judged_motion(
 ) -> JudgedMotion:
     """Which motion is taken of those that fit as well, and how far it is to be believed.
 
-    Parameters
-    ----------
-    best, known : the estimate, and which noise was given
-    smooth : the noise (m, rad) that no model judged
-    bounds : names of numbers that the caller bounds
+    ``smooth``: the noise (m, rad) that no model judged; ``bounds``: names that the caller bounds.
     """
     certainty = judged_certainty(best, known)
     refuse_wobbling(best, certainty)

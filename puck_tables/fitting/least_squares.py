@@ -14,6 +14,7 @@ track costs.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,6 +23,8 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.fitting.problem import ANGLE, PLACE, PRIOR, Problem
+
+Of = Callable[[FloatArray], FloatArray]
 
 
 class Compact(NamedTuple):
@@ -92,24 +95,17 @@ def minimise(
         for ends, far in zip(limits, (-np.inf, np.inf), strict=True)
     )
     begun = inside(x[moved], low, high)
-    latest: dict[bytes, FloatArray] = {}
 
-    def residuals(values: FloatArray) -> FloatArray:
+    def rows_and_slopes(values: FloatArray) -> tuple[FloatArray, FloatArray]:
         whole[moved] = values
         rows, slopes = problem.residuals_and_jacobian(whole)
         if not (np.isfinite(slopes).all() and np.isfinite(rows).all()):
             raise InputError(_astray(problem, whole))
         if how.loss == "linear":  # only their squares and products count
             rows, slopes, _ = compact(problem, rows, slopes, kept)
-        latest.clear()
-        latest[values.tobytes()] = slopes[:, moved]
-        return rows
+        return rows, slopes[:, moved]
 
-    def jacobian(values: FloatArray) -> FloatArray:
-        if values.tobytes() not in latest:
-            residuals(values)
-        return latest[values.tobytes()]
-
+    residuals, jacobian = apart(rows_and_slopes)
     scale = how.scale
     if how.loss != "linear":  # far from the minimum all residuals are large, none an outlier
         scale = max(scale, 2.0 * problem.usual(residuals(begun)))
@@ -130,6 +126,24 @@ def minimise(
             return whole, float(result.cost)
         begun = inside(result.x, low, high)
         scale = max(how.scale, min(0.25 * scale, 2.0 * problem.usual(result.fun)))
+
+
+def apart(both: Callable[[FloatArray], tuple[FloatArray, FloatArray]]) -> tuple[Of, Of]:
+    """Residuals and their derivatives as scipy asks for them, from one call."""
+    latest: dict[bytes, FloatArray] = {}
+
+    def residuals(values: FloatArray) -> FloatArray:
+        rows, slopes = both(values)
+        latest.clear()
+        latest[values.tobytes()] = slopes
+        return rows
+
+    def jacobian(values: FloatArray) -> FloatArray:
+        if values.tobytes() not in latest:
+            residuals(values)
+        return latest[values.tobytes()]
+
+    return residuals, jacobian
 
 
 def _astray(problem: Problem, x: FloatArray) -> str:
@@ -176,16 +190,10 @@ def multi_start(
 ) -> list[tuple[FloatArray, float]]:  # fmt: skip
     """Unknowns at the deepest minima that starts lead to, and the cost there, the deepest first.
 
-    Starts that have met go on as one.
-
-    Parameters
-    ----------
-    starts : problems of the same residuals, each with unknowns
-    rounds : steps, and how many starts go on after them
-    how : residuals r count as ½ s² ln(1 + (r/s)²), with s at least twice their median, or squared
-    allowance : what a start may cost more than the best and goes on, however many do
-    kept : residuals that count, all where it is left out
-    held : an unknown that stays
+    Starts, of the same residuals, that have met go on as one.  ``rounds``: steps, and how many
+    starts go on after them; residuals r count squared, or as ½ s² ln(1 + (r/s)²) with s at least
+    twice their median; ``allowance``: what a start may cost more than the best and goes on, however
+    many do; ``kept``: residuals that count, all where it is left out; ``held``: what stays.
     """
     scale = math.inf if how.loss == "linear" else how.scale
     walkers = [_Walker(problem, x, scale, kept, held) for problem, x in starts]
@@ -195,7 +203,7 @@ def multi_start(
                 if not walker.arrived:
                     walker.step()
         walkers.sort(key=lambda one: one.cost)
-        walkers = _apart(walkers)
+        walkers = _that_differ(walkers)
         near = sum(one.cost < walkers[0].cost + allowance for one in walkers)
         walkers = walkers[: max(most, near)]
     return [(walker.x, walker.cost) for walker in walkers]
@@ -262,7 +270,7 @@ def _cost(rows: FloatArray, scale: float) -> float:
     return 0.5 * scale * scale * float(np.log1p((rows / scale) ** 2).sum())
 
 
-def _apart(walkers: list[_Walker]) -> list[_Walker]:
+def _that_differ(walkers: list[_Walker]) -> list[_Walker]:
     """Those that no deeper one has met."""
     result: list[_Walker] = []
     for one in walkers:

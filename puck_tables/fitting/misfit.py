@@ -61,15 +61,8 @@ def misfit(
 ) -> str:
     """A sentence that says which other reading fits far better; empty if none does.
 
-    A floor is named before angles or a radius that fit about as well.
-
-    Parameters
-    ----------
-    result : the estimate of slides that do not fit
-    problem : what was asked, with all frames
-    known : whether the noise of places, of angles and of time stamps is
-    forces : what a slope, drag or air would explain
-    speeds : whether a friction over slip speed does not fit, either
+    A floor is named before angles or a radius that fit about as well.  ``problem``: what was asked,
+    with all frames; ``speeds``: whether a friction over slip speed does not fit, either.
     """
     noise, told = problem.noise[0], []
     if _may_change(problem.spec) and not speeds:
@@ -125,25 +118,18 @@ def _gain(result: Estimate, other: _Sizes, noise: float) -> float:
     return gain if fits or (gain > _MUCH and _explained(other)) else 0.0
 
 
-def _dragged(problem: Problem) -> Problem:
-    """The same with drag besides friction."""
-    spec = problem.spec
-    # from a speed e^20 times as slow, or as fast, at the end nothing is told any more
-    most = _MOST_DRAG / max(float(film.time[-1]) for film in problem.films)
-    bounds = {**spec.bounds, "drag": (-most, most)}
-    return replace(problem, spec=replace(spec, free=(*spec.free, "drag"), bounds=bounds))
-
-
 def _by_drag(result: Estimate, problem: Problem, known: Known) -> _Reading | None:
     """Drag of speed and spin alike, if that fits far better."""
-    other = _dragged(problem)
+    # from a speed e^20 times as slow, or as fast, at the end nothing is told any more
+    most = _MOST_DRAG / max(float(film.time[-1]) for film in problem.films)
+    spec, bounds = problem.spec, {**problem.spec.bounds, "drag": (-most, most)}
+    spec = replace(spec, free=(*spec.free, "drag"), bounds=bounds)
     try:
-        one = initial_estimate(other, known, refit=False)
+        one = initial_estimate(replace(problem, spec=spec), known, refit=False)
     except InputError:
         return None
-    seen, noise = _deviations(one), problem.noise[0]
-    gain = _gain(result, seen, noise)
-    words = f"with drag besides friction: find it, too (--free {','.join(other.spec.free)})"
+    gain = _gain(result, _deviations(one), problem.noise[0])
+    words = f"with drag besides friction: find it, too (--free {','.join(spec.free)})"
     return _Reading(words, gain, True) if gain else None
 
 
@@ -185,10 +171,8 @@ def _by_speed(result: Estimate, problem: Problem) -> _Reading | None:
         other = tried(result)
     except InputError:  # hardly any friction, at no speed
         return None
-    seen, noise = _deviations(other), problem.noise[0]
-    gain = _gain(result, seen, noise)
-    spec, numbers = other.problem.spec, other.problem.numbers_at(other.x)
-    speeds = spec.speeds
+    gain = _gain(result, _deviations(other), problem.noise[0])
+    speeds, numbers = other.problem.spec.speeds, other.problem.numbers_at(other.x)
     values = [numbers[name] for name in NODES[: len(speeds)]]
     usual = result.problem.numbers_at(result.x)["friction"]
     if max(values) > _MOST * usual or min(values) < _LEAST * usual:  # such a law fits noise
@@ -204,23 +188,20 @@ def _by_speed(result: Estimate, problem: Problem) -> _Reading | None:
 def _by_force(result: Estimate, kind: tuple[int, ...], noise: float) -> _Reading | None:
     """A table out of level, or air, to first order, if that fits far better."""
     off, force = forced(result, kind)
-    seen = _sizes(result.problem, off)
-    gain = _gain(result, seen, noise)
+    gain = _gain(result, _sizes(result.problem, off), noise)
     if not gain:
         return None
     gravity = {**result.problem.spec.known(), **result.problem.numbers_at(result.x)}["gravity"]
     slope = math.degrees(math.hypot(*force) / gravity)
     if kind == AIR:
         words = _air_words(force[0], result.problem.spec)
-        believed = force[0] > 0.0
-    else:
-        words = (
-            f"with a table out of level by {slope:.2g} degrees, down along "
-            f"{math.degrees(math.atan2(force[1], force[0])) % 360.0:.3g} degrees from x: level it, "
-            "a fit has no slope, a scene has"
-        )
-        believed = slope < _STEEPEST
-    return _Reading(words, gain, True, True) if believed else None
+        return _Reading(words, gain, True, True) if force[0] > 0.0 else None
+    words = (
+        f"with a table out of level by {slope:.2g} degrees, down along "
+        f"{math.degrees(math.atan2(force[1], force[0])) % 360.0:.3g} degrees from x: level it, or "
+        "find its slope, too (slope_x, slope_y)"
+    )
+    return _Reading(words, gain, True, True) if slope < _STEEPEST else None
 
 
 def _others(problem: Problem) -> Iterator[tuple[str, Problem, float]]:

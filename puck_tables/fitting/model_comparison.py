@@ -48,14 +48,7 @@ def over_speeds(
 
 
 def with_drags(result: Estimate, spec: FitSpec, known: Known) -> Estimate:
-    """The estimate with drags of the speed squared, or of the spin, from that with a linear one.
-
-    Parameters
-    ----------
-    result : of :meth:`FitSpec.with_linear_drag`
-    spec : what is asked
-    known : whether the noise of places, of angles and of time stamps is
-    """
+    """The estimate with drags of the speed squared, or of the spin, from that with a linear one."""
     problem = result.problem
     numbers, launches = problem.numbers_at(result.x), problem.launches(result.x)
     whole = tuple(_near(film, path[TURN]) for film, path in
@@ -340,12 +333,8 @@ def split(
 ) -> tuple[tuple[Observations, ...], tuple[npt.NDArray[np.bool_], ...]]:
     """The tracks with what is fitted of them alone, and which frames of each are predicted.
 
-    Parameters
-    ----------
-    films : the tracks
-    hold_out : the last share of the moving frames of each, or names of tracks of which the later
-        half is
-    spread : noise of places, m
+    That is the last share of the moving frames of each, or the later half of tracks that are named;
+    ``spread`` m: noise of places.
     """
     if isinstance(hold_out, float):
         if not LEAST_SHARE <= hold_out <= LARGEST_SHARE:

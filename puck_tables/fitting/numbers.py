@@ -18,11 +18,11 @@ from puck_tables.fitting.certainty import (
     interval_of,
 )
 from puck_tables.fitting.estimate import Estimate
+from puck_tables.fitting.fit_spec import TINY
 from puck_tables.fitting.parameters import ALL, INTEGRATED, LAUNCH, PUCK
 from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.touches import slide_name
 
-_STEP = 1e-6
 # Scales are plausible within their own size, but not less than this
 _LEAST = {"friction": 1e-3, "decel": 1e-2, "gravity": 1e-2, "height": 1e-4, "radius": 1e-4}
 _ALL = 0.8  # of the range in which a number is looked for: an interval so wide tells nothing
@@ -92,14 +92,12 @@ def plausible_for(problem: Problem, x: FloatArray) -> FloatArray:
             sizes.append(_TOLD * problem.read_within)
             continue
         if track == -1:
-            least = _LEAST.get(name)
-            sizes.append(
-                problem.spec.plausible(name) if least is None else max(abs(result[name]), least)
-            )
+            own, least = problem.spec.plausible(name), _LEAST.get(name)
+            sizes.append(own if least is None else max(abs(result[name]), least))
             continue
         if track < -1:
-            of_walls = [film.place for film in problem.films]
-            size = float(np.ptp(np.concatenate(of_walls), axis=0).max()) or radius
+            every = np.concatenate([film.place for film in problem.films])
+            size = float(np.ptp(every, axis=0).max()) or radius
             sizes.append({"wall_angle": 1.0, "wall_distance": size}[name])
             continue
         launch, film = launches[track], problem.films[track]
@@ -114,11 +112,9 @@ def plausible_for(problem: Problem, x: FloatArray) -> FloatArray:
 
 
 def numbers_of(
-    result: Estimate,
-    certainty: Certainty,
-    other_fits: tuple[OtherMinimum, ...] = (),
+    result: Estimate, certainty: Certainty, other_fits: tuple[OtherMinimum, ...] = (),
     unsigned: tuple[int, ...] = (),
-) -> tuple[dict[str, Number], tuple[EstimatedLaunch, ...]]:
+) -> tuple[dict[str, Number], tuple[EstimatedLaunch, ...]]:  # fmt: skip
     """All numbers of the puck, and of each launch.
 
     ``other_fits``: other summits of the likelihood; what they differ in, or do not tell, is not
@@ -136,10 +132,8 @@ def numbers_of(
         low, high = interval.low, interval.high
         for minimum in other_fits:
             there = interval_of(minimum.estimate, minimum.certainty, k)
-            if (
-                not interval.low <= minimum.numbers[name] <= interval.high
-                or minimum.certainty.undetermined[k]
-            ):
+            within = interval.low <= minimum.numbers[name] <= interval.high
+            if not within or minimum.certainty.undetermined[k]:
                 error = math.inf
             low, high = min(low, there.low), max(high, there.high)
             error = max(error, (high - low) / (2.0 * certainty.reach))
@@ -147,10 +141,8 @@ def numbers_of(
         least, largest = (float(limit[k]) for limit in problem.limits)
         if width >= _ALL * (largest - least) or error > _MUCH.get(name, math.inf):
             error = math.inf
-        puck[name] = Number(
-            values[name], error, low, high, PUCK[name].unit, FREE,
-            interval.profiled,
-        )  # fmt: skip
+        unit = PUCK[name].unit
+        puck[name] = Number(values[name], error, low, high, unit, FREE, interval.profiled)
     # what follows is as much less certain as what it follows from
     widened, profiled = np.ones(x.size), False
     for k, name in enumerate(spec.free):
@@ -178,10 +170,8 @@ def numbers_of(
         if ends is None and name == "height" and "delta" in puck and puck["delta"].profiled:
             ends = _height_of_delta(problem, x, puck["delta"])
         if ends is not None and ends.profiled:
-            half = 0.5 * (ends.high - ends.low)
-            number = number._replace(
-                error=error if math.isnan(error) else half / certainty.reach, profiled=True
-            )
+            half = 0.5 * (ends.high - ends.low) / certainty.reach
+            number = number._replace(error=error if math.isnan(error) else half, profiled=True)
         if ends is not None:
             number = number._replace(low=ends.low, high=ends.high)
         puck[name] = number._replace(low=max(number.low, PUCK[name].low))
@@ -236,9 +226,8 @@ def _follows(
     of = np.flatnonzero(slope)
     if of.size != 1 or not math.isfinite(puck[spec.free[of[0]]].high):
         return None
-    one, ends = spec.free[of[0]], []
-    for end in (puck[one].low, puck[one].high):
-        ends.append(spec.all_at({**values, one: end})[name])
+    one = spec.free[of[0]]
+    ends = [spec.all_at({**values, one: end})[name] for end in (puck[one].low, puck[one].high)]
     return Interval(min(ends), max(ends), False)
 
 
@@ -280,11 +269,8 @@ def _slope(problem: Problem, x: FloatArray, name: str) -> FloatArray:
     spec, values = problem.spec, problem.numbers_at(x)
     slope = np.zeros(x.size)
     for k, free in enumerate(spec.free):
-        ends = []
-        step = _STEP * (abs(values[free]) or 1.0)
-        for side in (-1.0, 1.0):
-            ends.append(spec.all_at({**values, free: values[free] + side * step})[name])
-        slope[k] = (ends[1] - ends[0]) / (2.0 * step)
-        if abs(slope[k]) * step < 1e-13 * abs(ends[1]):  # rounding
+        moved = spec.all_at({**values, free: values[free] + 1j * TINY})
+        slope[k] = moved[name].imag / TINY
+        if abs(slope[k] * values[free]) < 1e-13 * abs(moved[name]):  # rounding
             slope[k] = 0.0
     return slope

@@ -188,19 +188,16 @@ def observations_in(
 def _on_grid(film: Observations) -> Observations:
     """The same with what is to be known of its rounding."""
     place, angle = noise_of([film])
-    steps = [coarse(step_of(*film.place.T), place), 0.0]
-    if film.angle is not None:
-        steps[1] = coarse(step_of(film.angle), angle)
+    turn = np.full(film.time.size, np.nan) if film.angle is None else film.angle
+    steps = coarse(step_of(*film.place.T), place), coarse(step_of(turn), angle)
     if not any(steps):
         return film
     counts = np.ones((film.time.size, 3), bool)
-    for k in range(2):
-        if steps[0]:
-            counts[:, k] = counting(film.place[:, k])
-    if steps[1] and film.angle is not None:
-        known = np.isfinite(film.angle)
-        counts[known, 2] = counting(film.angle[known])
-    return replace(film, steps=(steps[0], steps[1]), counts=counts)
+    for k, rows in enumerate((*film.place.T, turn)):
+        if steps[k // 2]:
+            known = np.isfinite(rows)
+            counts[known, k] = counting(rows[known])
+    return replace(film, steps=steps, counts=counts)
 
 
 def _straight(place: FloatArray) -> Straight | None:
@@ -282,8 +279,7 @@ def wrapped(angle: FloatArray) -> FloatArray:
     >>> wrapped(np.array([7.0])).round(3).tolist()
     [0.717]
     """
-    result: FloatArray = angle - 2.0 * math.pi * np.round(angle / (2.0 * math.pi))
-    return result
+    return np.asarray(angle - 2.0 * math.pi * np.round(angle / (2.0 * math.pi)))
 
 
 def rests_from(film: Observations, spread: float) -> int:

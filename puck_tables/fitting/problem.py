@@ -48,12 +48,8 @@ def weights_of(
 ) -> FloatArray:
     """What makes x, y and angle of frames independent and of unit variance, (n, 3, 3).
 
-    Parameters
-    ----------
-    noise : m, rad
-    jitter : s
-    rates : (3, n), velocity m/s and spin rad/s
-    placed : (n,), whether the place counts
+    ``noise``: m, rad; ``jitter`` s; ``rates`` (3, n): velocity m/s and spin rad/s; ``placed`` (n,):
+    whether the place counts.
 
     Examples
     --------
@@ -84,14 +80,9 @@ def likeliest(
 ) -> tuple[tuple[float, float], float]:  # fmt: skip
     """The noise of places and angles, and σ_t, under which residuals are most likely.
 
-    Parameters
-    ----------
-    noise, jitter : to begin with, or as given
-    known : which is given
-    deviations : (3, n), m and rad, NaN where no angle is
-    rates : (3, n)
-    kept : (3, n), whether the place along the motion, the angle, the place across it count
-    share : of the squares that the unknowns have left
+    ``deviations`` (3, n): m and rad, NaN where no angle is; ``rates`` (3, n); ``kept`` (3, n):
+    whether the place along the motion, the angle, the place across it count; ``share``: of the
+    squares that the unknowns have left.
     """
     from scipy.optimize import minimize
 

@@ -18,14 +18,8 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.certainty import Certainty, shifted_by
 from puck_tables.fitting.estimate import Estimate
-from puck_tables.fitting.forward_model import (
-    DELTA,
-    RATE,
-    Moving,
-    states_and_slopes,
-    states_of,
-)
-from puck_tables.fitting.least_squares import inside
+from puck_tables.fitting.forward_model import DELTA, RATE, Moving, states_and_slopes, states_of
+from puck_tables.fitting.least_squares import apart, inside
 from puck_tables.fitting.problem import Known, Problem
 
 NO_PATTERN = 1e-3  # probability of residuals so patterned by chance
@@ -80,15 +74,14 @@ def drift(result: Estimate) -> float:
         for part in np.array_split(rows, min(_PARTS, rows.size)):
             total += part.sum() ** 2 / part.size
             degrees += 1
-    scale = max(result.chi2 / max(result.degrees, 1), 1e-300)
+    scale = max(result.size**2, 1e-300)
     return chi_square_tail(total / scale, max(degrees - result.x.size, 1)) if degrees else 1.0
 
 
 def excess_of(result: Estimate, smooth: tuple[float, float]) -> float:
     """The residuals over the noise (m, rad) that no model judged; 1 where that is not known."""
-    size = math.sqrt(result.chi2 / max(result.degrees, 1))
     return max((
-        size * own / other for own, other in zip(result.problem.noise, smooth, strict=True)
+        result.size * own / other for own, other in zip(result.problem.noise, smooth, strict=True)
         if math.isfinite(other) and other > 0.0
     ), default=1.0)  # fmt: skip
 
@@ -98,23 +91,19 @@ def misfits(
 ) -> tuple[str, ...]:
     """Signs that a model does not fit.
 
-    Parameters
-    ----------
-    result, known : the estimate, and which noise was given
-    smooth : the noise (m, rad) that no model judged
-    explained : the probability by chance of what a slope, drag or air would explain
+    ``smooth``: the noise (m, rad) that no model judged; ``explained``: the probability by chance of
+    what a slope, drag or air would explain.
     """
     told = []
-    noise, chi2, degrees = result.problem.noise, result.chi2, max(result.degrees, 1)
     size = max(float(np.ptp(film.place, axis=0).max()) for film in result.problem.films)
     # smaller residuals are the errors of what is computed
-    seen = noise[0] > _COMPUTED * size
+    seen = result.problem.noise[0] > _COMPUTED * size
     excess = excess_of(result, smooth)
     given = any(known[:2])
     if seen and not given and excess > NOISY:
         told.append(f"The residuals are {excess:.3g} times what smooth tracks would leave")
-    if given and chi2 / degrees > 1.0 + 5.0 * math.sqrt(2.0 / degrees):
-        told.append(f"The residuals are {math.sqrt(chi2 / degrees):.3g} times the noise given")
+    if given and result.size**2 > 1.0 + 5.0 * math.sqrt(2.0 / max(result.degrees, 1)):
+        told.append(f"The residuals are {result.size:.3g} times the noise given")
     by_chance = min(runs(result), drift(result), explained)
     if seen and by_chance < NO_PATTERN and not hidden(result):
         told.append(
@@ -129,9 +118,9 @@ def hidden(result: Estimate) -> bool:
     films, noise = result.problem.films, result.problem.noise
     steps = [max(film.steps[kind] for film in films) for kind in range(2)]
     angled = any(film.angle is not None for film in films)
-    size = math.sqrt(result.chi2 / max(result.degrees, 1))
     within = [
-        step > 0.0 and size * own < _ROUNDED * step for step, own in zip(steps, noise, strict=True)
+        step > 0.0 and result.size * own < _ROUNDED * step
+        for step, own in zip(steps, noise, strict=True)
     ]
     return within[0] or (angled and within[1])
 
@@ -151,7 +140,7 @@ def may_misfit(
 def no_answer(result: Estimate, known: Known, smooth: tuple[float, float]) -> str:
     """A sentence where no motion comes near the tracks, and nothing is determined; else none."""
     size = max(float(np.ptp(film.place, axis=0).max()) for film in result.problem.films)
-    usual = math.sqrt(result.chi2 / max(result.degrees, 1))
+    usual = result.size
     times = max(excess_of(result, smooth), usual if any(known[:2]) else 0.0)
     angled = any(film.angle is not None for film in result.problem.films)
     if times > _NOWHERE and usual * result.problem.noise[0] > _FAR * size:
@@ -175,9 +164,8 @@ def lengthways(result: Estimate) -> float:
     along, across = [], []
     deviations, states = result.problem.deviations(result.x), result.problem.states(result.x)
     films = result.problem.films
-    for film, (x, _, _), one, state in zip(
-        films, result.problem.each(), deviations, states, strict=True
-    ):
+    each = zip(films, result.problem.each(), deviations, states, strict=True)
+    for film, (x, _, _), one, state in each:
         if film.straight is not None:
             continue
         rate = state[RATE][:2]
@@ -292,9 +280,8 @@ def _explained(columns: FloatArray, rows: FloatArray, degrees: int) -> _Explaine
     from scipy.special import fdtrc
 
     ways, sizes, turned = np.linalg.svd(columns, full_matrices=False)
-    ways, seen, turned = (
-        ways[:, sizes > _SEEN], sizes[sizes > _SEEN], turned[sizes > _SEEN]
-    )  # fmt: skip
+    told = sizes > _SEEN
+    ways, seen, turned = ways[:, told], sizes[told], turned[told]
     along, left, count = ways.T @ rows, float(rows @ rows), seen.size
     less = float(along @ along)
     noise = max((left - less) / (degrees - count), 1e-300)
@@ -308,19 +295,12 @@ def forced(result: Estimate, kind: tuple[int, ...]) -> tuple[list[FloatArray], F
     from scipy.optimize import least_squares
 
     problem, count = result.problem, result.x.size
-    latest: dict[bytes, FloatArray] = {}
 
-    def residuals(values: FloatArray) -> FloatArray:
+    def rows_and_slopes(values: FloatArray) -> tuple[FloatArray, FloatArray]:
         rows, slopes = problem.residuals_and_jacobian(values[:count])
         pushed = _weighed(problem, [one[..., kind] for one in _along(problem, values[:count])])
-        latest.clear()
-        latest[values.tobytes()] = np.column_stack([slopes, pushed])[result.kept]
-        return (rows + pushed @ values[count:])[result.kept]
-
-    def jacobian(values: FloatArray) -> FloatArray:
-        if values.tobytes() not in latest:
-            residuals(values)
-        return latest[values.tobytes()]
+        slopes = np.column_stack([slopes, pushed])[result.kept]
+        return (rows + pushed @ values[count:])[result.kept], slopes
 
     start = np.append(result.x, np.zeros(len(kind)))
     free = np.array([track >= 0 for track, _ in problem.names] + [True] * len(kind))
@@ -328,6 +308,7 @@ def forced(result: Estimate, kind: tuple[int, ...]) -> tuple[list[FloatArray], F
         np.where(free, far, np.append(ends, np.zeros(len(kind))))
         for ends, far in zip(problem.limits, (-np.inf, np.inf), strict=True)
     )
+    residuals, jacobian = apart(rows_and_slopes)
     found = least_squares(
         residuals, inside(start, low, high), jacobian, bounds=(low, high), x_scale="jac",
         max_nfev=_ROUNDS, ftol=_CLOSE, xtol=_CLOSE,

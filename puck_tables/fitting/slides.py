@@ -53,6 +53,10 @@ class Slides(Unknowns):
         """What moves the puck."""
         return self.spec.moving(result, self.tall)
 
+    def gyration(self, result: NumbersOf) -> float:
+        """The radius of gyration over r."""
+        return {**self.spec.known(), **result}["gyration"]
+
     def fastest(self, x: FloatArray) -> float:
         """The greatest slip at a launch, at the rim, m/s."""
         radius = self.spec.scales(self.numbers_at(x))[2]
@@ -71,7 +75,7 @@ class Slides(Unknowns):
         impacts = []
         if self.impact_specs:
             moving, walls = self.moving(result), self.estimated_walls(x)
-            gyration = {**self.spec.known(), **result}["gyration"]
+            gyration = self.gyration(result)
         for impact_spec in self.impact_specs:
             wall = None if impact_spec.wall < 0 else walls[impact_spec.wall]
             before = tuple(slides[n][-1] for n in impact_spec.films)
@@ -230,8 +234,7 @@ class _Along:
             states_of(self._problem.moving({**self._result, name: end}), slide.launch, times)
             for end in ends
         ]
-        slope: FloatArray = (states[1] - states[0]) / (ends[1] - ends[0])
-        return slope
+        return np.asarray((states[1] - states[0]) / (ends[1] - ends[0]))
 
 
 def _through(
@@ -260,11 +263,9 @@ def _through(
             later = (gaps[0][0] - gaps[1][0]) / (2.0 * step * approach) if approach > 0.0 else 0.0
         ends = []
         for by, radius, result, wall in means:
-            gyration = {**problem.spec.known(), **result}["gyration"]
+            gyration, rims = problem.gyration(result), problem.spec.rims(result, pair)
             states = _shifted(impact, before, k, by, later)
-            ends.append(
-                after_impact(states, radius, gyration, problem.spec.rims(result, pair), wall)[0]
-            )
+            ends.append(after_impact(states, radius, gyration, rims, wall)[0])
         for out, one, two in zip(slopes, *ends, strict=True):
             out[0, k], out[1:, k] = later, (one - two) / (2.0 * step)
     # a state holds x, y, vx, vy, spin, angle as a launch does
@@ -272,12 +273,9 @@ def _through(
 
 
 def _shifted(
-    impact: ImpactState,
-    before: list[tuple[FloatArray, FloatArray]],
-    k: int,
-    by: float,
+    impact: ImpactState, before: list[tuple[FloatArray, FloatArray]], k: int, by: float,
     later: float,
-) -> list[FloatArray]:
+) -> list[FloatArray]:  # fmt: skip
     """States at an impact where an unknown is changed."""
     return [
         state + by * (slope[:, k] + speed * later)

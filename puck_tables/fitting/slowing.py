@@ -49,14 +49,8 @@ class _Moments(NamedTuple):
 def begun_from_slowing(problem: Problem) -> tuple[Problem, FloatArray] | None:
     """A start of a problem of tracks with angles, or along lines; None where none can be followed.
 
-    Parameters
-    ----------
-    problem : of which friction, drags, a slope, a belt or the numbers of a law are found
-
-    Returns
-    -------
-    problem, unknowns
-        The same problem with the angles of each track in one piece.
+    Of those of which friction, drags, a slope, a belt or the numbers of a law are found; with its
+    unknowns comes the same problem with the angles of each track in one piece.
 
     Examples
     --------

@@ -13,8 +13,9 @@ A fit of nonlinear motions finds the nearest minimum, so it is begun near the de
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
@@ -44,8 +45,7 @@ _PLACE_SHARE, _FINER_SHARE, _RATE_SHARE = 0.02, 0.005, 0.05
 _LEAST_SPEED = 1e-6
 
 
-@dataclass(frozen=True, eq=False)
-class _Guess:
+class _Guess(NamedTuple):
     """A start: what moves the puck, its spin, and the angles in one piece."""
 
     decel: float
@@ -190,7 +190,7 @@ def _guesses(
     places = (film.place[chosen] - film.place[0]) @ ahead.T
     size = float(np.abs(places).max()) + problem.noise[0]
     motions = problem.moving(_any(spec)).motions
-    result = []
+    result: list[_Guess] = []
     spins = [(0.0, 0)] if problem.spinless[0] else _spins(spec, turning, speed, radius, rests)
     for spin, turns in spins:
         share = speed / (math.hypot(speed, radius * spin) or 1.0)
@@ -229,14 +229,11 @@ def _guesses(
             result.append(_Guess(decel, height, spin, turns, float(finer[n, k])))
     result.sort(key=lambda guess: guess.score)
     if turning is not None:
-        best = {guess.turns: guess for guess in reversed(result)}
-        kept = result[:_KEPT]
-        return kept + [guess for guess in best.values() if guess not in kept]
+        nearest = {guess.turns: guess for guess in reversed(result)}
+        return [*dict.fromkeys((*result[:_KEPT], *nearest.values()))]
     # without angles every spin is a chance, with the height that suits it
-    nearest: dict[float, _Guess] = {}
-    for guess in result:
-        nearest.setdefault(guess.spin, guess)
-    return list(nearest.values())[:_KEPT_BLIND]
+    by_spin = {guess.spin: guess for guess in reversed(result)}
+    return sorted(by_spin.values(), key=lambda guess: guess.score)[:_KEPT_BLIND]
 
 
 def _spins(
@@ -268,9 +265,8 @@ def _spins(
 
 def _any(spec: FitSpec) -> NumbersOf:
     """Any numbers for what is free."""
-    known = spec.known()
+    known, values = spec.known(), {}
     middle = {"friction": 0.2, "decel": 2.0, "delta": 0.3, "height": 0.3 * spec.puck.radius}
-    values = {}
     for name in spec.free:
         value = spec.start.get(name, spec.priors.get(name, (known.get(name) or 0.0,))[0])
         low, high = spec.limits(name)

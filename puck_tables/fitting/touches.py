@@ -88,13 +88,9 @@ def pushed(film: Observations, start: int, stop: int) -> bool:
 
 
 def _gain(
-    film: Observations,
-    noise: float,
-    steady: npt.NDArray[np.bool_],
-    middle: int,
-    reach: int,
+    film: Observations, noise: float, steady: npt.NDArray[np.bool_], middle: int, reach: int,
     rests: int,
-) -> float:
+) -> float:  # fmt: skip
     """By how much two parabolas are nearer than one polynomial, 0 where that is by chance.
 
     ``rests``: the frame from which on the puck does.  It comes to rest by itself, where its
@@ -125,9 +121,8 @@ def _gain(
         jump = math.hypot(*(slopes[1][0] - slopes[0][0]))
         error = math.sqrt(sum(spread / size**3 for _, spread, size, _ in slopes)) * noise
         slowing = 2.0 * math.hypot(*slopes[0][3])
-        hidden = _FEWEST_BESIDE * film.usual_step + 2.0 * math.sqrt(
-            10.0 * noise / max(slowing, 1e-12)
-        )
+        hidden = _FEWEST_BESIDE * film.usual_step
+        hidden += 2.0 * math.sqrt(10.0 * noise / max(slowing, 1e-12))
         if jump < max(_JUMPS * error / film.usual_step, slowing * hidden):
             return 0.0
     return gain
@@ -148,8 +143,7 @@ def _spikes(place: FloatArray, noise: float) -> npt.NDArray[np.bool_]:
     inner = place[2:-2] - (4.0 * (place[1:-3] + place[3:-1]) - place[:-4] - place[4:]) / 6.0
     deviations[2:-2] = np.hypot(*inner.T) / (1.4 * noise)
     around = np.stack([np.roll(deviations, k) for k in (-2, -1, 1, 2)]).max(axis=0)
-    spikes: npt.NDArray[np.bool_] = (deviations > _SPIKE) & (deviations >= around)
-    return spikes
+    return np.asarray((deviations > _SPIKE) & (deviations >= around))
 
 
 _WINDOW, _WIDER = 5, 15  # frames to either side
@@ -216,25 +210,19 @@ def _jumps(film: Observations, noise: float, start: int, middle: int, stop: int)
 
 def _around(change: FloatArray) -> FloatArray:
     """What friction changes near each frame (n, 2): the median of frames beside it."""
-    count = len(change)
-    out = np.empty_like(change)
-    for n in range(count):
-        close = np.r_[
-            max(0, n - 3 * _WINDOW) : max(0, n - _WINDOW),
-            min(count, n + _WINDOW + 1) : min(count, n + 3 * _WINDOW + 1),
-        ]
-        out[n] = np.median(change[close], axis=0)
-    return out
+    away = np.r_[-3 * _WINDOW : -_WINDOW, _WINDOW + 1 : 3 * _WINDOW + 1]
+    near = (n + away for n in range(len(change)))
+    return np.array([
+        np.median(change[at[(at >= 0) & (at < len(change))]], axis=0) for at in near
+    ])  # fmt: skip
 
 
 def _velocity(film: Observations, start: int, stop: int) -> FloatArray:
     """The median of the slopes between any two frames, which one outlier in five does not move."""
     time, place = film.time[start:stop], film.place[start:stop]
     one, two = np.triu_indices(time.size, 1)
-    velocity: FloatArray = np.median(
-        (place[two] - place[one]) / (time[two] - time[one])[:, None], axis=0
-    )
-    return velocity
+    slopes = (place[two] - place[one]) / (time[two] - time[one])[:, None]
+    return np.asarray(np.median(slopes, axis=0))
 
 
 def slides_apart(
@@ -273,9 +261,6 @@ def turns(film: Observations) -> bool:
     >>> turns(Observations("a", 0.0, t, np.zeros((50, 2)), 3.0 * t, np.arange(50)))
     True
     """
-    turning = turning_of(film)
-    _, angle = noise_of([film])
-    noise = angle if math.isfinite(angle) else 0.0
-    return turning is not None and float(np.nanstd(turning.angle)) > _STILL * max(
-        noise, _LEAST_TURN
-    )
+    turning, noise = turning_of(film), np.nan_to_num(noise_of([film])[1])
+    least = _STILL * max(float(noise), _LEAST_TURN)
+    return turning is not None and float(np.nanstd(turning.angle)) > least

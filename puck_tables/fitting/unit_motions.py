@@ -64,17 +64,9 @@ class UnitMotions(ABC):
 
     @abstractmethod
     def states(self, launches: FloatArray, times: FloatArray) -> FloatArray:
-        """States of launches from (0, 0).
+        """States (6, m, n), x, y, body angle, vx, vy, ω, of launches from (0, 0).
 
-        Parameters
-        ----------
-        launches : array (6, m), vx, vy, ω, δ, J, r of each
-        times : array (m, n), s, ≥ 0
-
-        Returns
-        -------
-        array (6, m, n)
-            x, y, body angle, vx, vy, ω.
+        ``launches`` (6, m): vx, vy, ω, δ, J, r of each; ``times`` (m, n): s, ≥ 0.
         """
 
     @abstractmethod
@@ -258,13 +250,7 @@ def _law_table(law: Law) -> ResultantTable:
 
 @lru_cache(maxsize=64)
 def unit_motions_of(pressure: str | Law, gyration: float, tall: bool = False) -> UnitMotions:
-    """The motions of a kind of puck.
-
-    Parameters
-    ----------
-    pressure, gyration
-        As :class:`puck_tables.Puck`.
-    tall : whether part of the base may lift
+    """The motions of a kind of puck; ``tall``: whether part of the base may lift.
 
     Examples
     --------

@@ -32,37 +32,6 @@ _PLACES = ("launch_x", "launch_y")
 _SPEEDS = ("launch_vx", "launch_vy")
 
 
-def limits_of(
-    spec: FitSpec, films: Sequence[Observations], names: Sequence[tuple[int, str]], tall: bool
-) -> tuple[FloatArray, FloatArray]:
-    """The least and the largest value of each unknown (m,), ``names`` as of a problem.
-
-    No δ is higher than motions of such a puck are known; bounds of the caller's are taken as they
-    are, and his start and prior lie within.
-    """
-    pairs = []
-    for track, name in names:
-        low, high = spec.limits(name)
-        if name == "delta":
-            high = min(high, spec.highest(tall))
-        elif name in ("friction", "decel"):
-            high = min(high, spec.steepest(name))
-        elif name == "drag":
-            most = min(_DRAGGED / max(float(film.time[-1]) for film in films), MOST["drag"])
-            low, high = max(low, -most), min(high, most)
-        elif name not in spec.bounds and name in (*LAUNCH, *WALL):
-            own = films if track < 0 else [films[track]]
-            low, high = _of_films(name, own, spec.puck.radius)
-            wanted = [spec.start[name]] if name in spec.start else []
-            if name in spec.priors:
-                value, spread = spec.priors[name]
-                wanted += [value - _PRIOR * spread, value + _PRIOR * spread]
-            low, high = min([low, *wanted]), max([high, *wanted])
-        pairs.append((low, high))
-    ends = np.array(pairs).reshape(-1, 2)
-    return ends[:, 0], ends[:, 1]
-
-
 def _of_films(name: str, films: Sequence[Observations], radius: float) -> tuple[float, float]:
     """The range of a number of a launch, or of a wall that the pucks of some tracks meet."""
     place = np.concatenate([film.place for film in films])
@@ -166,8 +135,31 @@ class Unknowns:
 
     @cached_property
     def limits(self) -> tuple[FloatArray, FloatArray]:
-        """The range in which each unknown is looked for."""
-        return limits_of(self.spec, self.films, self.names, self.tall)
+        """The least and the largest value of each unknown (m,).
+
+        No δ is higher than motions of such a puck are known; bounds of the caller's are taken as
+        they are, and his start and prior lie within.
+        """
+        spec, pairs = self.spec, []
+        for track, name in self.names:
+            low, high = spec.limits(name)
+            if name == "delta":
+                high = min(high, spec.highest(self.tall))
+            elif name in ("friction", "decel"):
+                high = min(high, spec.steepest(name))
+            elif name == "drag":
+                end = max(float(film.time[-1]) for film in self.films)
+                most = min(_DRAGGED / end, MOST["drag"])
+                low, high = max(low, -most), min(high, most)
+            elif name not in spec.bounds and name in (*LAUNCH, *WALL):
+                own = self.films if track < 0 else [self.films[track]]
+                value, spread = spec.priors.get(name, (math.nan, 0.0))
+                wanted = spec.start.get(name), value - _PRIOR * spread, value + _PRIOR * spread
+                ends = [*_of_films(name, own, spec.puck.radius), *wanted]
+                low, high = (float(of(np.array(ends, float))) for of in (np.nanmin, np.nanmax))
+            pairs.append((low, high))
+        low_high = np.array(pairs).reshape(-1, 2)
+        return low_high[:, 0], low_high[:, 1]
 
     def numbers_at(self, x: FloatArray) -> NumbersOf:
         """The numbers of the puck that are found."""

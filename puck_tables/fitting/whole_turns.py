@@ -144,11 +144,7 @@ def by_place(problem: Problem, blind: Problem, minima: list[FloatArray]) -> list
 ]:  # fmt: skip
     """Starts of a track from motions that its places allow and that meet its angles.
 
-    Parameters
-    ----------
-    problem : of one track with angles
-    blind : the same without angles
-    minima : unknowns of ``blind``
+    ``blind``: the same problem without angles; ``minima``: its unknowns.
     """
     (film,) = problem.films
     assert film.angle is not None

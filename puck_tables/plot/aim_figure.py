@@ -8,7 +8,7 @@ import numpy as np
 
 from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS
-from puck_tables.plot.style import BLUE, GREY, LAUNCH, ORANGE, canvas
+from puck_tables.plot.style import BLUE, GREY, LAUNCH, ORANGE, canvas, colour_bar
 from puck_tables.plot.titles import titled
 from puck_tables.stopping.aim_at_targets import Aim
 from puck_tables.stopping.states import states as states_at
@@ -27,13 +27,8 @@ def draw(result: Aim) -> Figure:
     paths, launches = figure.subplots(1, 2, width_ratios=(1.7, 1.0))
     colours = draw_on(paths, result)
     for sense in (result.launch_spin <= 0.0, result.launch_spin >= 0.0):
-        launches.plot(
-            result.launch_spin[sense],
-            result.launch_speed[sense],
-            color=GREY,
-            linewidth=0.8,
-            zorder=1,
-        )
+        line = result.launch_spin[sense], result.launch_speed[sense]
+        launches.plot(*line, color=GREY, linewidth=0.8, zorder=1)
     launches.scatter(
         result.launch_spin, result.launch_speed, c=colours.to_rgba(result.launch_spin), zorder=2
     )
@@ -80,7 +75,5 @@ def draw_on(paths: Axes, result: Aim) -> ScalarMappable:
         )  # fmt: skip
     paths.set(xlabel="x / m", ylabel="y / m (not to scale)")
     paths.margins(0.18, 0.2)
-    figure = paths.get_figure()
-    assert figure is not None
-    figure.colorbar(colours, ax=paths, label=COLUMNS["launch_spin"].axis)
+    colour_bar(paths, colours, COLUMNS["launch_spin"].axis)
     return colours

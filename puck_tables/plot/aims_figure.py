@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS
 from puck_tables.plot.aim_figure import caption
-from puck_tables.plot.style import GREY, LAUNCH, canvas, ramp
+from puck_tables.plot.style import GREY, LAUNCH, canvas, colour_bar, ramp
 from puck_tables.plot.titles import counted, legend_below
 from puck_tables.stopping.aim_at_targets import Aims
 
@@ -36,9 +36,7 @@ def draw_on(axes: Axes, result: Aims) -> None:
         axes.plot(*missed.T, "x", color=GREY, markersize=4, label=words)
     marks = axes.scatter(result.target_x, result.target_y, c=result.stop_time, s=12, cmap=ramp())
     axes.plot(0.0, 0.0, **LAUNCH, label="launch")
-    figure = axes.get_figure()
-    assert figure is not None
-    figure.colorbar(marks, ax=axes, label=COLUMNS["stop_time"].axis)
+    colour_bar(axes, marks, COLUMNS["stop_time"].axis)
     axes.set(xlabel=COLUMNS["target_x"].axis, ylabel=COLUMNS["target_y"].axis)
     axes.set_aspect("equal", adjustable="datalim")
     legend_below(axes)

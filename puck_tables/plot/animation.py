@@ -19,11 +19,16 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.colours import brightness, on_white
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.plot.base_outlines import MARK, outline_of
+from puck_tables.plot.board_parts import (
+    Painted,
+    RoundPart,
+    StraightPart,
+    painted_on,
+    rounds_of,
+    straight_parts,
+)
 from puck_tables.plot.floor_axes import Box
-from puck_tables.plot.painted_lines import Painted, painted_on
-from puck_tables.plot.round_parts import RoundPart, rounds_of
 from puck_tables.plot.scene_figure import states_drawn
-from puck_tables.plot.straight_parts import StraightPart, straight_parts
 from puck_tables.plot.titles import out_of_sight
 from puck_tables.result import TimedResult
 from puck_tables.scene.parts import Floor

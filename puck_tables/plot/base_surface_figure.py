@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.plot.style import COLORS, GREY, canvas
+from puck_tables.plot.style import COLORS, GREY, canvas, labelled
 from puck_tables.plot.titles import legend_below, titled
 from puck_tables.wrench.base_surface import BaseSurface
 from puck_tables.wrench.friction_hold import holds
@@ -38,9 +38,7 @@ def draw(surface: BaseSurface) -> Figure:
                 size * force[:, way], size * torque, linestyle=style, color=color,
                 label="" if n else f"force along {axis}",
             )  # fmt: skip
-    right.set_xlabel("force F / N")
-    right.set_ylabel("torque M / (N m)")
-    right.grid(color="#e4e4e4", linewidth=0.6)
+    labelled(right, "force F / N", "torque M / (N m)")
     right.legend(frameon=False)
     shape = surface.puck.shape
     titled(figure, f"limit surface of {shape.name if shape else ''}")
@@ -61,10 +59,8 @@ def draw_on(axes: Axes, surface: BaseSurface) -> None:
                 *(force[:, None] * directions).T, linestyle=style, color=color,
                 label="" if n else f"M = {level * most:.3g} N m",
             )  # fmt: skip
-    axes.set_xlabel("force F_x / N")
-    axes.set_ylabel("force F_y / N")
+    labelled(axes, "force F_x / N", "force F_y / N")
     axes.set_aspect("equal", adjustable="datalim")
-    axes.grid(color="#e4e4e4", linewidth=0.6)
     legend_below(axes, columns=4, down=0.11)
 
 

@@ -10,8 +10,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.colours import on_white
 from puck_tables.errors import InputError
 from puck_tables.plot.animation import Animation, film_of
-from puck_tables.plot.board import draw_board, show
-from puck_tables.plot.board_panels import close_up, finished, panels_for
+from puck_tables.plot.board import close_up, draw_board, finished, panels_for, show
 from puck_tables.plot.floor_axes import Box
 from puck_tables.plot.sample_figure import HELD, cloud_of
 from puck_tables.plot.style import GREY

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from puck_tables.plot.style import COLORS, GREY, canvas, no_rounding, shaded
+from puck_tables.plot.style import COLORS, GREY, canvas, labelled, no_rounding, shaded
 from puck_tables.plot.titles import legend_below, noted, titled
 from puck_tables.reference.comparison import Comparison
 from puck_tables.reference.floor_reaction import ratios, slip_over
@@ -54,9 +54,7 @@ def draw_on(axes: Axes, result: Comparison) -> None:
         name = run.log.name if len(result.runs) <= _LABELLED else None
         axes.plot(run.log.x, run.log.y, color=colour, linewidth=1.0, label=name)
     no_rounding(axes)
-    axes.set_xlabel("x / m")
-    axes.set_ylabel("y / m")
-    axes.grid(color="#e4e4e4", linewidth=0.6)
+    labelled(axes, "x / m", "y / m")
     if len(result.runs) > _LABELLED:
         noted(axes, f"{len(result.runs)} runs, the first light and the last dark")
     legend_below(axes)

@@ -6,19 +6,17 @@ It loads nothing, needs no server, and is made to be printed.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
 from html import escape
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from puck_tables._version import __version__
 from puck_tables.fitting.fit_result import Fit
 from puck_tables.fitting.forward_model import RATE
 from puck_tables.fitting.numbers import Number
 from puck_tables.fitting.parameters import ALL
 from puck_tables.plot.fit_figure import draw
-from puck_tables.plot.html_page import svg_of
+from puck_tables.plot.html_page import bullets, document, svg_of, table
 from puck_tables.plot.style import BLUE, COLORS, canvas
 
 if TYPE_CHECKING:
@@ -41,19 +39,14 @@ _STYLE = (
 def page(result: Fit) -> str:
     """The page as HTML."""
     names = ", ".join(film.name for film in result.estimate.problem.films)
-    parts = [
-        f"<h1>Friction of a puck: {escape(names)}</h1>",
+    title = f"Friction of a puck: {names}"
+    return document(title, _STYLE, [
+        f"<h1>{escape(title)}</h1>",
         f"<p>Name {_blank()} Class {_blank()} Date {_blank()}</p>",
         f"<p class='found'>{escape(_first(result))}</p>",
         _pictures(result), _numbers(result), _left(result), _assumed(result), _laws(result),
-        _class(result), f"<p>Made by puck-tables {__version__}.</p>",
-    ]  # fmt: skip
-    return (
-        "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'><meta name='viewport' "
-        "content='width=device-width'>"
-        f"<title>Friction of a puck: {escape(names)}</title><style>{_STYLE}</style></head>"
-        f"<body><main>{''.join(parts)}</main></body></html>\n"
-    )
+        _class(result),
+    ])  # fmt: skip
 
 
 def _first(result: Fit) -> str:
@@ -114,8 +107,8 @@ def _numbers(result: Fit) -> str:
     ]
     return (
         "<h2>Numbers</h2>"
-        + _table(("number", "value", "95 of 100 times within", "where from"), rows)
-        + _table(("launch of", "speed / (m/s)", "spin"), launches)
+        + table(("number", "value", "95 of 100 times within", "where from"), rows)
+        + table(("launch of", "speed / (m/s)", "spin"), launches)
     )
 
 
@@ -130,7 +123,7 @@ def _left(result: Fit) -> str:
         f"So much pattern in what is left comes by chance with a probability of {by_chance:.2g}.",
         *result.complaints,
     ]  # fmt: skip
-    return f"<h2>What is left</h2>{_list(said)}"
+    return f"<h2>What is left</h2>{bullets(said)}"
 
 
 def _assumed(result: Fit) -> str:
@@ -148,8 +141,8 @@ def _assumed(result: Fit) -> str:
         *(f"Known, not found: {one}." for one in known),
         *result.remarks,
     ]
-    lost = f"<h2>What the film does not tell</h2>{_list(result.blind)}" if result.blind else ""
-    return f"<h2>What was assumed</h2>{_list(said)}{lost}"
+    lost = f"<h2>What the film does not tell</h2>{bullets(result.blind)}" if result.blind else ""
+    return f"<h2>What was assumed</h2>{bullets(said)}{lost}"
 
 
 def _laws(result: Fit) -> str:
@@ -158,7 +151,7 @@ def _laws(result: Fit) -> str:
     rows = [
         (one.name, f"{one.unknowns}", f"{one.chi2:.5g}", f"{one.weight:.2g}") for one in result.laws
     ]
-    return f"<h2>Which floor</h2><p>{escape(result.verdict)}</p>" + _table(
+    return f"<h2>Which floor</h2><p>{escape(result.verdict)}</p>" + table(
         ("model", "numbers found", "χ²", "weight"), rows
     )
 
@@ -173,14 +166,8 @@ def _class(result: Fit) -> str:
         row = [f"{film.start + film.time[n]:.4f}", *(f"{one:.4f}" for one in film.place[n])]
         row += [f"{film.angle[n]:.3f}"] if film.angle is not None else []
         rows.append((*row, "", ""))
-    head = (
-        "t / s",
-        "x / m",
-        "y / m",
-        *(["angle / rad"] if angled else []),
-        "way / m",
-        "speed / (m/s)",
-    )
+    turned = ["angle / rad"] if angled else []
+    head = ("t / s", "x / m", "y / m", *turned, "way / m", "speed / (m/s)")
     gravity = result.numbers["gravity"].value
     tasks = [
         f"Read the speed at the start from the first picture: v = {_blank()} m/s, and when the "
@@ -199,7 +186,7 @@ def _class(result: Fit) -> str:
     ]
     items = "".join(f"<li>{one}</li>" for one in tasks)
     return (
-        f"<h2>For you to do</h2><p>Points of {escape(film.name)}:</p>{_table(head, rows)}"
+        f"<h2>For you to do</h2><p>Points of {escape(film.name)}:</p>{table(head, rows)}"
         f"<ol>{items}</ol>"
     )
 
@@ -223,18 +210,6 @@ def _interval(number: Number) -> str:
     ends = (number.low, number.high)
     told = number.how != "known" and number.determined and all(map(math.isfinite, ends))
     return f"{number.low:.5g} to {number.high:.5g}" if told else "–"
-
-
-def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    names = "".join(f"<th scope='col'>{escape(one)}</th>" for one in head)
-    body = "".join(
-        "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in rows
-    )
-    return f"<table><thead><tr>{names}</tr></thead><tbody>{body}</tbody></table>"
-
-
-def _list(said: Iterable[str]) -> str:
-    return f"<ul>{''.join(f'<li>{escape(one)}</li>' for one in said)}</ul>"
 
 
 def _blank() -> str:

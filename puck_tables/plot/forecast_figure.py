@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from puck_tables.fitting.forecast import Forecast
-from puck_tables.plot.style import LAUNCH, NO_VALUE, canvas
+from puck_tables.plot.style import LAUNCH, NO_VALUE, canvas, colour_bar
 from puck_tables.plot.titles import titled
 
 if TYPE_CHECKING:
@@ -51,14 +51,12 @@ def _draw_map(panel: Axes, result: Forecast, name: str) -> None:
     spins = np.linspace(0.0, largest_spin, _SPINS)
     errors = result.over(speeds, spins, name)
     shown = np.where(np.isfinite(errors), errors, np.nan)
-    figure = panel.get_figure(root=True)
-    assert figure is not None
     if np.isfinite(shown).any():
         norm = LogNorm(float(np.nanmin(shown)), float(np.nanmax(shown)))
         mesh = panel.pcolormesh(
             spins, speeds, shown, norm=norm, shading="nearest", cmap="viridis_r", rasterized=True
         )
-        figure.colorbar(mesh, ax=panel, label=f"standard error of {name}")
+        colour_bar(panel, mesh, f"standard error of {name}")
     panel.set_facecolor(NO_VALUE)
     panel.plot(abs(result.spin), speed, **LAUNCH)
     panel.set(xlabel="launch spin / rad/s", ylabel="launch speed / m/s",

@@ -6,11 +6,13 @@ What stands on it is told by a function of its own; it loads nothing, and its pi
 from __future__ import annotations
 
 import io
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from puck_tables._core.safe_write import write_bytes
+from puck_tables._version import __version__
 from puck_tables.io.formats import ending_of
 from puck_tables.plot.style import require_matplotlib
 
@@ -38,3 +40,28 @@ def svg_of(figure: Figure) -> str:
     figure.savefig(picture, format="svg", metadata={"Date": None})
     svg = picture.getvalue()
     return svg[svg.index("<svg") :]
+
+
+def document(title: str, style: str, parts: Iterable[str]) -> str:
+    """A whole page of these parts, HTML; its title is a text."""
+    return (
+        "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'><meta name='viewport' "
+        f"content='width=device-width'><title>{escape(title)}</title><style>{style}</style></head>"
+        f"<body><main>{''.join(parts)}<p>Made by puck-tables {__version__}.</p></main></body>"
+        "</html>\n"
+    )
+
+
+def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Texts in rows, below their headings if there are any."""
+    names = "".join(f"<th scope='col'>{escape(one)}</th>" for one in head)
+    top = f"<thead><tr>{names}</tr></thead>" if names else ""
+    body = "".join(
+        "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in rows
+    )
+    return f"<table>{top}<tbody>{body}</tbody></table>"
+
+
+def bullets(said: Iterable[str]) -> str:
+    """Sentences as a list."""
+    return f"<ul>{''.join(f'<li>{escape(one)}</li>' for one in said)}</ul>"

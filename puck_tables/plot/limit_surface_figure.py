@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.plot.style import COLORS, GREY, canvas
+from puck_tables.plot.style import COLORS, GREY, canvas, labelled
 from puck_tables.plot.titles import legend_below, titled
 from puck_tables.wrench.models import SurfaceModel
 from puck_tables.wrench.surface import LimitSurface
@@ -30,10 +30,8 @@ def draw(surface: LimitSurface) -> Figure:
         off = 100.0 * (1.0 / model.gauge(surface.force, surface.torque) - 1.0)
         right.plot(degrees, off, color=COLORS[number], label=name)
     right.axhline(0.0, color=GREY, linewidth=0.8)
-    right.set_xlabel("slip angle φ = atan2(rω, v) / °")
-    right.set_ylabel("model − law / % of the wrench")
+    labelled(right, "slip angle φ = atan2(rω, v) / °", "model − law / % of the wrench")
     right.set_xticks(range(-90, 91, 30))
-    right.grid(color="#e4e4e4", linewidth=0.6)
     right.legend(frameon=False)
     puck = surface.puck
     kind = f", {puck.body.kind}" if puck.body.kind else ""
@@ -60,8 +58,7 @@ def draw_on(axes: Axes, surface: LimitSurface) -> None:
             force[picked], torque[picked], x, y, color=color, angles="uv", scale=9.0, width=width,
             label=label,
         )  # fmt: skip
-    axes.set_xlabel("force |F| / N")
-    axes.set_ylabel("torque M / (N m)")
+    axes.set(xlabel="force |F| / N", ylabel="torque M / (N m)")
     axes.set_xlim(-0.04 * unit, 1.4 * unit)
     reach = 1.35 * float(np.max(torque))
     axes.set_ylim(-reach, reach)

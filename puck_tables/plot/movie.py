@@ -48,11 +48,6 @@ def checked_movie(path: str | Path) -> str:
         If movies have no such ending.
     MissingExtraError
         If matplotlib or ffmpeg is needed and not installed.
-
-    Examples
-    --------
-    >>> checked_movie("run.html")
-    '.html'
     """
     kind = ending_of(path, MOVIE_KINDS)
     if kind != ".html":
@@ -88,14 +83,7 @@ def save_movie(result: TimedResult, path: str | Path, overwrite: bool = False) -
 
 
 def page(film: Animation) -> str:
-    """One HTML page with the film in it: it loads nothing and needs no server.
-
-    Examples
-    --------
-    >>> from puck_tables import Puck
-    >>> "requestAnimationFrame" in page(film_of(Puck.similar().simulate((1.0, 0.0))))
-    True
-    """
+    """One HTML page with the film in it: it loads nothing and needs no server."""
     template = (files("puck_tables.plot") / "movie.html").read_text(encoding="utf-8")
     shades = [
         {"corners": shade.corners, "centre": shade.centre, "radius": shade.radius,

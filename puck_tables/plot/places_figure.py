@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from puck_tables.io.columns import COLUMNS
-from puck_tables.plot.style import LAUNCH, canvas, ramp
+from puck_tables.plot.style import LAUNCH, canvas, colour_bar, ramp
 from puck_tables.plot.titles import counted, legend_below, noted
 from puck_tables.stopping.states import States
 from puck_tables.stopping.stops import Stops
@@ -34,9 +34,7 @@ def draw_on(axes: Axes, result: Stops | States) -> None:
     if lost:
         noted(axes, f"{lost} of {counted(x.size, 'launch', 'launches')} without a place")
     axes.plot(0.0, 0.0, **LAUNCH, label="launch")
-    figure = axes.get_figure()
-    assert figure is not None
-    figure.colorbar(marks, ax=axes, label=COLUMNS[names[2]].axis)
+    colour_bar(axes, marks, COLUMNS[names[2]].axis)
     axes.set(xlabel=COLUMNS[names[0]].axis, ylabel=COLUMNS[names[1]].axis)
     axes.set_aspect("equal", adjustable="datalim")
     legend_below(axes)

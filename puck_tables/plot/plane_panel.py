@@ -10,10 +10,17 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.plot.base_outlines import MARK, outline_of, path_of, placed
+from puck_tables.plot.board_parts import (
+    Painted,
+    RoundPart,
+    StraightPart,
+    draw_painted,
+    draw_rounds,
+    painted_on,
+    rounds_of,
+    straight_parts,
+)
 from puck_tables.plot.floor_axes import Box, draw_floor
-from puck_tables.plot.painted_lines import Painted, draw_painted, painted_on
-from puck_tables.plot.round_parts import RoundPart, draw_rounds, rounds_of
-from puck_tables.plot.straight_parts import StraightPart, straight_parts
 from puck_tables.plot.style import BLUE, GREY, LAUNCH, ORANGE, RED, STOP
 from puck_tables.plot.titles import legend_below, noted, out_of_sight
 from puck_tables.scene.acting import acting

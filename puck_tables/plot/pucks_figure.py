@@ -8,8 +8,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from puck_tables.plot.animation import Animation, MovingDisc, between, film_of, path_of
-from puck_tables.plot.board import disc, draw_board, show
-from puck_tables.plot.board_panels import LEGEND_ROW, close_up, finished, panels_for
+from puck_tables.plot.board import (
+    LEGEND_ROW,
+    close_up,
+    disc,
+    draw_board,
+    finished,
+    panels_for,
+    show,
+)
 from puck_tables.plot.floor_axes import Box
 from puck_tables.plot.style import GREY, RED
 from puck_tables.plot.titles import legend_below, noted

@@ -52,8 +52,7 @@ def draw_on(axes: Axes, run: Push) -> None:
         width=0.004, label="its force",
     )  # fmt: skip
     axes.set_aspect("equal", adjustable="datalim")
-    axes.set_xlabel("x / m")
-    axes.set_ylabel("y / m")
+    axes.set(xlabel="x / m", ylabel="y / m")
     legend_below(axes)
 
 

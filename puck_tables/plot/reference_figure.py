@@ -16,6 +16,7 @@ from puck_tables.plot.style import (
     ORANGE,
     STOP,
     canvas,
+    labelled,
     no_rounding,
 )
 from puck_tables.plot.titles import noted, titled
@@ -94,9 +95,7 @@ def _draw_path(axes: Axes, answer: Answer, whole: Answer) -> None:
         axes.plot(x[0], y[0], **LAUNCH)
         axes.plot(x[-1], y[-1], **STOP)
     no_rounding(axes)
-    axes.grid(color="#e4e4e4", linewidth=0.6)
+    labelled(axes, "x / m", "y / m")
     axes.set_title("path, not to scale", fontsize=10)
-    axes.set_xlabel("x / m")
-    axes.set_ylabel("y / m")
     if answer.names:
         axes.legend(frameon=False, fontsize=8)

@@ -12,7 +12,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.colours import on_white
 from puck_tables.bulk.summary import Summary
 from puck_tables.io.columns import COLUMNS
-from puck_tables.plot.style import BLUE, GREY, ORANGE, canvas, no_rounding
+from puck_tables.plot.style import BLUE, GREY, ORANGE, canvas, colour_bar, no_rounding
 from puck_tables.plot.titles import legend_below, noted, titled
 
 if TYPE_CHECKING:
@@ -88,8 +88,7 @@ def draw_on(panel: Axes, samples: Summary) -> None:
     panel.plot(*(mean[name] for name in samples.place), "+", color=ORANGE, label="mean", zorder=4)
     panel.set(xlim=sides[0], ylim=sides[1])
     no_rounding(panel)
-    panel.set_xlabel(COLUMNS[samples.place[0]].axis)
-    panel.set_ylabel(COLUMNS[samples.place[1]].axis)
+    panel.set(xlabel=COLUMNS[samples.place[0]].axis, ylabel=COLUMNS[samples.place[1]].axis)
     notes = [f"{left} of {samples.ended} samples left play"] if left else []
     if not in_view.all():
         notes.append(f"{np.count_nonzero(~in_view)} of {in_view.size} samples lie outside")
@@ -106,9 +105,7 @@ def _draw_density(panel: Axes, cloud: Cloud) -> None:
     blues = ListedColormap(colormaps["Blues"](np.linspace(_LIGHT, 1.0, 256)))
     thick = np.ma.masked_less(cloud.density, _COVERED * float(cloud.density.max()))
     mesh = panel.pcolormesh(*cloud.corners, thick, cmap=blues, rasterized=True, zorder=2)
-    figure = panel.get_figure(root=True)
-    assert figure is not None
-    figure.colorbar(mesh, ax=panel, label="density / m⁻²")
+    colour_bar(panel, mesh, "density / m⁻²")
     levels = np.quantile(cloud.at_samples, [1.0 - held for held in _HELD])
     if not 0.0 < levels[0] < levels[1]:
         return

@@ -19,6 +19,7 @@ from puck_tables.io.formats import ending_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Colormap
     from matplotlib.figure import Figure
     from matplotlib.gridspec import SubplotSpec
@@ -33,20 +34,9 @@ _LOOKED_AT = 4096  # bytes at each end
 
 BLUE, ORANGE, GREEN, GREY, RED = "#0b5fa5", "#d9660c", "#2f8f3a", "#8a8a8a", "#b3202a"
 COLORS = (BLUE, ORANGE, GREEN, "#8b2fa0", RED)
-LAUNCH: dict[str, Any] = {
-    "marker": "o",
-    "color": GREEN,
-    "markersize": 6,
-    "linestyle": "",
-    "zorder": 5,
-}
-STOP: dict[str, Any] = {
-    "marker": "s",
-    "color": ORANGE,
-    "markersize": 6,
-    "linestyle": "",
-    "zorder": 5,
-}
+_MARK: dict[str, Any] = {"markersize": 6, "linestyle": "", "zorder": 5}
+LAUNCH: dict[str, Any] = {"marker": "o", "color": GREEN, **_MARK}
+STOP: dict[str, Any] = {"marker": "s", "color": ORANGE, **_MARK}
 FEW = 7  # values of an axis that are curves rather than bands of a map
 NO_VALUE = "#d0d0d0"  # of a map, where there is none: white and the colours of values are taken
 _STEADY = 1e-6  # of itself: a smaller change of a quantity is none
@@ -99,11 +89,6 @@ def canvas(width: float, height: float) -> Figure:
     ------
     MissingExtraError
         If matplotlib is not installed.
-
-    Examples
-    --------
-    >>> canvas(4.0, 3.0).axes
-    []
     """
     require_matplotlib()
     from matplotlib.figure import Figure
@@ -137,14 +122,21 @@ def no_rounding(axes: Axes) -> None:
             axes.set(**{side: (middle - half, middle + half)})
 
 
-def checked_kind(path: str | Path) -> str:
-    """The ending of a picture's name.
+def labelled(axes: Axes, x: str, y: str) -> None:
+    """What stands at both axes, and a light grid."""
+    axes.set(xlabel=x, ylabel=y)
+    axes.grid(color="#e4e4e4", linewidth=0.6)
 
-    Examples
-    --------
-    >>> checked_kind("run.png")
-    '.png'
-    """
+
+def colour_bar(axes: Axes, marks: ScalarMappable, label: str) -> None:
+    """What the colours of marks say, beside their panel."""
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    figure.colorbar(marks, ax=axes, label=label)
+
+
+def checked_kind(path: str | Path) -> str:
+    """The ending of a picture's name."""
     return ending_of(path, PICTURE_KINDS)
 
 
@@ -185,12 +177,6 @@ def save_figure(figure: Figure, path: str | Path, overwrite: bool = False) -> No
         If the ending of the name is none of pictures.
     OutputError
         If a file is there that is no picture (without ``overwrite``) or cannot be written.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     save_figure(canvas(4.0, 3.0), folder + "/empty.png")
     """
     kind = checked_kind(path)
     buffer = io.BytesIO()

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from puck_tables.film.puck_track import Track
-from puck_tables.plot.style import COLORS, canvas
+from puck_tables.plot.style import COLORS, canvas, labelled
 from puck_tables.plot.titles import counted, legend_below, titled
 
 if TYPE_CHECKING:
@@ -43,9 +43,7 @@ def draw(tracks: Sequence[Track]) -> Figure:
         panel.grid(color="#e4e4e4", linewidth=0.6)
     panels[-1].set_xlabel("time / s")
     plane.set_aspect("equal", adjustable="datalim")
-    plane.grid(color="#e4e4e4", linewidth=0.6)
-    plane.set_xlabel("x / m")
-    plane.set_ylabel("y / m")
+    labelled(plane, "x / m", "y / m")
     legend_below(figure, 4)
     seen = sum(int(np.count_nonzero(track.seen)) for track in tracks)
     unseen = sum(track.time.size for track in tracks) - seen

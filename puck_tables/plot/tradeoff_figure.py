@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from puck_tables.tradeoff.measurement import TradeOff
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.transforms import Bbox
 
 _TITLES = {
     "resultants": "three resultants at a scattered point",
@@ -61,7 +62,7 @@ def _draw(axes: Axes, title: str, group: list[MeasuredMethod]) -> None:
     axes.set_xlim(300.0 * max(map(_error, group)), 0.01 * min(map(_error, group)))
     axes.set_ylim(0.3 * min(one.ns for one in group), 6.0 * max(one.ns for one in group))
     methods = list(dict.fromkeys(one.method for one in group))
-    taken: list[tuple[float, float, float, float]] = []
+    taken: list[Bbox] = []
     for number, method in enumerate(methods):
         own = [one for one in group if one.method == method]
         color = GREY if own[0].outsider else _MORE_COLORS[number % len(_MORE_COLORS)]
@@ -77,18 +78,18 @@ def _draw(axes: Axes, title: str, group: list[MeasuredMethod]) -> None:
                 fontsize=5.5, textcoords="offset points", ha="center", color=color, zorder=4,
             )  # fmt: skip
         _name(axes, method, own, color, taken)
-    axes.set_xlabel("worst error (left: rough, right: exact)")
-    axes.set_ylabel("ns for one")
+    axes.set(xlabel="worst error (left: rough, right: exact)", ylabel="ns for one")
     axes.set_title(title, fontsize=11, color=BLUE, loc="left")
     axes.grid(color="#eeeeee", linewidth=0.6)
     axes.legend(frameon=False, loc="upper left", fontsize=8)
 
 
 def _name(
-    axes: Axes, method: str, own: list[MeasuredMethod], color: str,
-    taken: list[tuple[float, float, float, float]],
-) -> None:  # fmt: skip
+    axes: Axes, method: str, own: list[MeasuredMethod], color: str, taken: list[Bbox]
+) -> None:
     """The name of a method near its line, where no other name stands; boxes in pixels."""
+    from matplotlib.transforms import Bbox
+
     width, height = 5.4 * len(method), 11.0
     ends = sorted(own, key=_error)
     beside = [(ends[-1], -width - 8.0, -3.0), (ends[0], 8.0, -3.0)]
@@ -100,28 +101,16 @@ def _name(
     ]
     for one, dx, dy in spots:
         x, y = axes.transData.transform((_error(one), one.ns))
-        box = (
-            x + _PIXELS * dx,
-            y + _PIXELS * dy,
-            x + _PIXELS * (dx + width),
-            y + _PIXELS * (dy + height),
-        )
-        inside = box[0] >= axes.bbox.x0 and box[2] <= axes.bbox.x1
-        if inside and not any(
-            box[0] < other[2] and other[0] < box[2] and box[1] < other[3] and other[1] < box[3]
-            for other in taken
-        ):
+        left, low = x + _PIXELS * dx, y + _PIXELS * dy
+        box = Bbox.from_bounds(left, low, _PIXELS * width, _PIXELS * height)
+        inside = box.x0 >= axes.bbox.x0 and box.x1 <= axes.bbox.x1
+        if inside and not box.count_overlaps(taken):
             break
     taken.append(box)
-    options: dict[str, Any] = {"fontsize": 8, "color": color, "zorder": 2, "weight": "bold"}
     axes.annotate(
-        method,
-        (_error(one), one.ns),
-        xytext=(dx, dy),
-        textcoords="offset points",
-        bbox=_PAPER,
-        **options,
-    )
+        method, (_error(one), one.ns), xytext=(dx, dy), textcoords="offset points", bbox=_PAPER,
+        fontsize=8, color=color, zorder=2, weight="bold",
+    )  # fmt: skip
 
 
 def _error(one: MeasuredMethod) -> float:

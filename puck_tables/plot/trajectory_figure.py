@@ -34,8 +34,7 @@ def draw(run: Trajectory) -> Figure:
     for moment, text in ((run.contact_opens, "base lifts"), (run.contact_closes, "base down")):
         if moment is not None:
             speeds.axvline(moment, color=GREY, linestyle=":", linewidth=1.0, label=text)
-    speeds.set_ylabel("m/s")
-    speeds.set_xlabel("time / s")
+    speeds.set(xlabel="time / s", ylabel="m/s")
     legend_below(speeds)
     ratio = figure.add_subplot(grid[1, 1], sharex=speeds)
     moving = run.speed > 0.0
@@ -49,8 +48,7 @@ def draw(run: Trajectory) -> Figure:
             0.5, 0.5, "spin only" if run.launch_spin != 0.0 else "no spin",
             ha="center", transform=ratio.transAxes, color=GREY,
         )  # fmt: skip
-    ratio.set_ylabel(f"{arm}ω/v")
-    ratio.set_xlabel("time / s")
+    ratio.set(xlabel="time / s", ylabel=f"{arm}ω/v")
     vx, vy = run.launch_velocity
     titled(
         figure,
@@ -129,7 +127,6 @@ def _draw_path(axes: Axes, run: Trajectory) -> None:
     axes.plot(*run.stop_position, **STOP, label="stop")
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.12)
-    axes.set_xlabel("x / m")
-    axes.set_ylabel("y / m")
+    axes.set(xlabel="x / m", ylabel="y / m")
     axes.set_title("puck to scale" if true_size else "puck not to scale", fontsize=10)
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)

@@ -161,13 +161,7 @@ def launches_of(
 
 
 def launches_in(rows: FloatArray, shape: tuple[int, ...] | None = None) -> Launches:
-    """Checked launches (6, n): vx, vy, ω, δ, J, r, of another shape if it is given.
-
-    Examples
-    --------
-    >>> launches_in(np.ones((6, 3))).shape
-    (3,)
-    """
+    """Checked launches (6, n): vx, vy, ω, δ, J, r, of another shape if it is given."""
     vx, vy, spin, delta, decel, radius = (np.ascontiguousarray(row) for row in rows)
     return Launches(
         (vx.size,) if shape is None else shape, vx, vy, 1, spin, delta, decel, radius
@@ -178,11 +172,6 @@ def flat_column(array: FloatArray, shape: tuple[int, ...], is_own: bool) -> tupl
     """An array that broadcasts to a shape as (n,) or (1,), and whether it is the caller's.
 
     Read-only ones are copied: compiled code would be compiled once more for them.
-
-    Examples
-    --------
-    >>> flat_column(np.array(2.0), (3,), True)
-    (array([2.]), False)
     """
     if array.size != 1 and array.shape != shape:
         return np.broadcast_to(array, shape).reshape(-1), False
@@ -319,13 +308,7 @@ def mark_of(
 
 
 def positive_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
-    """An array of finite numbers greater than zero.
-
-    Examples
-    --------
-    >>> positive_array("radius", 0.5, "m")
-    array(0.5)
-    """
+    """An array of finite numbers greater than zero."""
     array = finite_array(name, values, unit)
     if not np.all(array > 0.0):
         raise InputError(

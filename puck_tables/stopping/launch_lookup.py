@@ -24,7 +24,7 @@ from puck_tables.kernels.compile import (
 from puck_tables.kernels.elementary import log_of
 from puck_tables.kernels.spline import basis
 from puck_tables.motion.path import TURN_SHARE
-from puck_tables.stopping.axes import CONSTANT_HEIGHTS, HEIGHTS
+from puck_tables.stopping.axes import HEIGHTS
 from puck_tables.stopping.launch_arrays import (
     DECEL,
     DELTA,
@@ -48,25 +48,22 @@ from puck_tables.stopping.lookup import (
     place_block,
 )
 from puck_tables.stopping.similarity_lookup import (
+    CURVE_WIDTH,
     LAUNCH_COLUMNS,
     LAUNCH_ROWS,
-    end_rates,
+    TURN_POWERS,
+    TURN_STEP,
+    cell_of,
+    constants_at,
     heading_at,
-    inverse_end_rates,
     number_at,
+    place_after,
+    place_of_log,
     share_of,
     stopped,
 )
 from puck_tables.stopping.state_lookup import PUCK_ROWS, fill_states_at
-from puck_tables.stopping.state_splines import (
-    TURN_POWERS,
-    TURN_STEP,
-    cell_of,
-    log_place,
-    place_of_log,
-)
 
-CURVE_WIDTH = 4  # body angle, S/δ, κR, path length
 _ROW, _CURVE_ROW = WIDTH * STOP_POWERS, CURVE_WIDTH * HEIGHTS
 _TURNS_ROW = TURN_STEP * TURN_POWERS
 _REST, _ALL = 3, 6  # rows of what a stop has besides time and place, and with them
@@ -89,10 +86,10 @@ def fill_launch_lookup(
     """Launches, and what is known of them, into ``out`` (6 + 14, n).
 
     Or of a stop alone: time, x, y, path length, turn of heading and of the body (6, n); without
-    time and place (3, n).  ``stops`` (2, cells + 3, 8 × 4)
-    is a cut of the stop table, ``functions`` (2, cells + 3, 9 × 4) holds the other functions,
-    ``turns`` (2, cells + 3, 12) the heading's regular part over the place by Q; ``constants`` as
-    for :func:`puck_tables.stopping.similarity_lookup.look_up_launch`.  Returns of how many Q²/J or
+    time and place (3, n).  ``stops`` (2, cells + 3, 8 × 4) is a cut of the stop table,
+    ``functions`` (2, cells + 3, 9 × 4) holds the other functions, ``turns`` (2, cells + 3, 12) the
+    heading's regular part over the place by Q; ``constants`` (4, 14) as
+    :func:`puck_tables.stopping.similarity_lookup.constants_at`.  Returns of how many Q²/J or
     Q²/(J r) may be too large, and how many are no launches.
     """
     patience(out.shape[1])
@@ -162,20 +159,9 @@ def fill_states_of_one(
     """
     puck = np.empty((PUCK_ROWS, 1))
     doubtful, bad = fill_launch_lookup(
-        vx,
-        vy,
-        step,
-        spin,
-        delta,
-        decel,
-        radius,
-        stops,
-        functions,
-        turns,
-        constants,
-        TURN_SHARE,
+        vx, vy, step, spin, delta, decel, radius, stops, functions, turns, constants, TURN_SHARE,
         puck,
-    )
+    )  # fmt: skip
     which = np.zeros(1, np.int64)
     late = fill_states_at(puck, which, moments, 0, moments.size, splines, out)
     return doubtful + bad + late
@@ -186,10 +172,8 @@ def _find_constants(room: FloatArray, count: int, constants: FloatArray) -> None
     """c₀, κ, h₀, ln T(π/4) of the heights."""
     for n in range(count):
         tilt = row_of(room, DELTA, n)
-        s, c0, kappa, turning, quarter = 2.0 * tilt * tilt - 1.0, 0.0, 0.0, 0.0, 0.0
-        for m in range(CONSTANT_HEIGHTS - 1, -1, -1):
-            c0, kappa = c0 * s + constants[0, m], kappa * s + constants[1, m]
-            turning, quarter = turning * s + constants[2, m], quarter * s + constants[3, m]
+        s = 2.0 * tilt * tilt - 1.0
+        c0, kappa, turning, quarter = constants_at(constants, s)
         into_row(room, _S, n, s)
         into_row(room, _C0, n, c0)
         into_row(room, _KAPPA, n, kappa)
@@ -235,16 +219,12 @@ def _find_places(room: FloatArray, count: int, cells: float, log_share: float) -
         )
         c0, kappa = row_of(room, _C0, n), row_of(room, _KAPPA, n)
         turning = row_of(room, _TURNING, n)
-        slow, fast, _ = end_rates(tilt)
-        by_slow, by_fast, spin_turn = inverse_end_rates(tilt)
-        turn_fast = turning * by_fast - spin_turn
         is_fast, share = rim > speed, share_of(speed, rim)
         sign, by_slip = number_at(is_fast, share, c0, kappa, tilt, row_of(room, _F_CURVE, n))
         heading = heading_at(is_fast, share, turning, tilt, row_of(room, _F_TURN, n))
-        ends_fast, log_y = log_place(sign, by_slip + kappa * log_share, kappa, slow, fast)
+        ends_fast, log_y, swung = place_after(log_share, sign, by_slip, kappa, turning, tilt)
         _, xi = place_of_log(log_y)
         first, inside = cell_of(xi, ends_fast, cells, _TURNS_ROW)
-        swung = turning * log_share + (turn_fast if ends_fast else turning * by_slow) * log_y
         constant = (speed == 0.0) | (rim == 0.0)
         into_row(room, FIRST, n, first)
         into_row(room, INSIDE, n, inside)

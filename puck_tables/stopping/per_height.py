@@ -46,11 +46,11 @@ from puck_tables.stopping.solvers import (
     SectionLookUp,
     Status,
     StopSolver,
+    integration_of,
 )
 from puck_tables.stopping.stop_section import FINEST_SECTION, stop_section_for
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.stopping.stop_values import UPPER_DELTA
-from puck_tables.stopping.tried_integration import integration_of
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.table import refuse_other_kind
 

@@ -242,24 +242,14 @@ def _values(
 
 
 def refuse_clashes(names: Any) -> None:
-    """Refuse two numbers that give the same.
-
-    Examples
-    --------
-    >>> refuse_clashes(["delta", "radius"])
-    """
+    """Refuse two numbers that give the same."""
     for one, other in CLASHES:
         if one in names and other in names:
             raise InputError(f"{one} and {other} clash: give one of them")
 
 
 def refuse_outside(name: str, values: FloatArray, words: str) -> None:
-    """Refuse numbers outside their range.
-
-    Examples
-    --------
-    >>> refuse_outside("speed", np.array([1.0]), "speed")
-    """
+    """Refuse numbers outside their range."""
     if not values.size:
         return
     low, unit = float(values.min()), COLUMNS[COLUMN[name]].unit

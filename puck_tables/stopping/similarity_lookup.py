@@ -9,31 +9,43 @@ time that is left, N ∝ (t₀ − t)^κ, and is one and the same monotonic func
 classes: negative below the limit ratio, −1 at π/4, positive above.  Its inverse is tabulated, so a
 state at a time is found without solving anything.  Without ln T the same holds for Q itself.
 
-The inverse is tabulated on the axis ξ of the table, but for
+The inverse is tabulated over the place ξ of
 
     y = (−N)^(−A/κ)  for N ≤ −1 (v > r|ω|),    y = (2 + N)^(−B/κ)  above,
 
 which is 1 at π/4 and proportional to 2w = 2 min(v, r|ω|)/(v + r|ω|) at the ends; what is splined is
-2w/y.
+2w/y, and beside it all that stands there: T, along, across, body angle, and the heading's part G,
+
+    δ G = regular − a ln y [− h₀ ln T],    a = h₀/A for v > r|ω|, (h₀ − h₁)/B above,
+
+in which ln 2w = ln y + ln(2w/y) leaves nothing singular.
+
+One launch and one moment are looked up here; many, with the same formulas, by
+:mod:`puck_tables.stopping.launch_lookup` and :mod:`puck_tables.stopping.state_lookup`.
 """
 
 from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined
-from puck_tables.kernels.elementary import cosine_sine_of, log_of
+from puck_tables.kernels.compile import inlined, spline_values
+from puck_tables.kernels.elementary import cosine_sine_of, exp_of, log_of
 from puck_tables.kernels.spline import basis, cell_at
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED, SPIN
-from puck_tables.stopping.axes import HEIGHTS
-from puck_tables.stopping.lookup import STOP_POWERS, slip_place
-from puck_tables.stopping.state_splines import TINY, log_place, place_of_log
+from puck_tables.stopping.axes import CONSTANT_HEIGHTS, HEIGHTS
+from puck_tables.stopping.lookup import STOP_POWERS, WIDTH, slip_place
 
 Numbers = tuple[float, ...]
 
-# order of the functions of the curve
-BODY_SUM, TURN_SUM, LENGTH_SUM, CURVE_SUM = range(4)
+CURVE_WIDTH = 4  # body angle, S/δ, κR, path length
+TURN_FUNCTION, CURVE_FUNCTION = 1, 2  # of these
+ORBIT_WIDTH = 8  # 2w/y, T, along, across; body angle, G and nothing
+REGULAR = 5  # G of these
+TURN_STEP, TURN_POWERS = 4, 3  # of one function: powers m, m + 4, m + 8 of s, m = 0 … 3
+TINY = 1e-300  # its logarithm is a number
 
 # rows of what is known of a launch
 TIME, STOP_X, STOP_Y, LENGTH, BODY, TURN = range(6)
@@ -43,61 +55,45 @@ LAUNCH_COLUMNS = 6  # vx, vy, ω, δ, J, r
 
 
 @inlined
-def _cell(xi: float, cells: int) -> tuple[int, float, float, float, float]:
+def log_place(
+    sign: float, log_n: float, kappa: float, slow: float, fast: float
+) -> tuple[bool, float]:
+    """Whether r|ω| > v, and ln y of the number sign·exp(log_n), by arithmetic alone."""
+    is_slow = (sign < 0.0) & (log_n >= 0.0)
+    is_large = (sign > 0.0) & (log_n > 1.0)
+    moderate = log_n if log_n < 1.0 else 1.0
+    power = exp_of(-log_n if is_large else moderate)
+    log = log_of(1.0 + 2.0 * power if is_large else 2.0 + sign * power)
+    log_fast = fast * (log + (log_n if is_large else 0.0))
+    return not is_slow, -(slow * log_n if is_slow else log_fast) / kappa
+
+
+@inlined
+def place_of_log(log_y: float) -> tuple[float, float]:
+    """Y and ξ from ln y ≤ 0."""
+    y = exp_of(log_y if log_y < 0.0 else 0.0)
+    q = math.sqrt(math.sqrt(y))
+    return y, 1.0 - math.sqrt((1.0 - y) / ((1.0 + q) * (1.0 + q * q)))
+
+
+@inlined
+def cell_of(xi: float, is_fast: bool, cells: float, row: int) -> tuple[float, float]:
+    """The place of the first row of a cell in a flat table, and that in the cell."""
     p = xi * cells
-    i = cell_at(p, cells)
-    w0, w1, w2, w3 = basis(p - i)
-    return i, w0, w1, w2, w3
+    inside = p if p > 0.0 else 0.0
+    last = cells - 1.0
+    cell = np.floor(inside if inside < last else last)
+    return row * (cell + (cells + 3.0 if is_fast else 0.0)), p - cell
 
 
 @inlined
-def place_of_share(double_share: float) -> float:
-    """ξ from 2w."""
-    q = math.sqrt(math.sqrt(double_share))
-    return 1.0 - math.sqrt((1.0 - double_share) / ((1.0 + q) * (1.0 + q * q)))
-
-
-@inlined
-def _polynomial(c: FloatArray, function: int, s: float) -> float:
-    """The polynomial of degree 8 that starts at 9 · function."""
-    total = 0.0
-    for m in range(HEIGHTS - 1, -1, -1):
-        total = total * s + c[function * HEIGHTS + m]
-    return total
-
-
-@inlined
-def _constant(constants: FloatArray, row: int, s: float) -> float:
-    total = 0.0
-    for m in range(constants.shape[1] - 1, -1, -1):
-        total = total * s + constants[row, m]
-    return total
-
-
-@inlined
-def _stop_functions(
-    c: FloatArray, side: int, xi: float, s: float, sums: FloatArray
-) -> tuple[float, float, float]:
-    """T, along, across."""
-    i, w0, w1, w2, w3 = _cell(xi, c.shape[1] - 3)
-    for m in range(3 * STOP_POWERS):
-        sums[m] = w0 * c[side, i, m] + w1 * c[side, i + 1, m]
-        sums[m] += w2 * c[side, i + 2, m] + w3 * c[side, i + 3, m]
-    f, g, h = 0.0, 0.0, 0.0
-    for m in range(STOP_POWERS - 1, -1, -1):
-        f = f * s + sums[3 * m]
-        g = g * s + sums[3 * m + 1]
-        h = h * s + sums[3 * m + 2]
-    return f, g, h
-
-
-@inlined
-def _similarity_sums(c: FloatArray, side: int, xi: float, sums: FloatArray, functions: int) -> None:
-    """Polynomials of the first functions of: body, S/δ, length, κR."""
-    i, w0, w1, w2, w3 = _cell(xi, c.shape[1] - 3)
-    for m in range(functions * HEIGHTS):
-        sums[m] = w0 * c[side, i, m] + w1 * c[side, i + 1, m]
-        sums[m] += w2 * c[side, i + 2, m] + w3 * c[side, i + 3, m]
+def constants_at(constants: FloatArray, s: float) -> tuple[float, float, float, float]:
+    """c₀, κ, h₀/δ and ln T(π/4) from their polynomials (4, 14) in s = 2δ² − 1."""
+    c0, kappa, turning, quarter = 0.0, 0.0, 0.0, 0.0
+    for m in range(CONSTANT_HEIGHTS - 1, -1, -1):
+        c0, kappa = c0 * s + constants[0, m], kappa * s + constants[1, m]
+        turning, quarter = turning * s + constants[2, m], quarter * s + constants[3, m]
+    return c0, kappa, turning, quarter
 
 
 @inlined
@@ -204,21 +200,31 @@ def state_there(
 
 
 @inlined
-def inverse_sum(c: FloatArray, side: int, xi: float, s: float, sums: FloatArray) -> float:
-    """2w/y."""
-    _similarity_sums(c, side, xi, sums, 1)
-    return _polynomial(sums, 0, s)
+def place_after(
+    log_left: float, sign: float, log_n: float, kappa: float, turning: float, delta: float
+) -> tuple[bool, float, float]:
+    """Where a motion is when its time, or Q, has fallen so far: whether r|ω| > v, and ln y.
+
+    And the heading's part h₀ ln Q with what is singular of the rest.
+    """
+    slow, fast, _ = end_rates(delta)
+    by_slow, by_fast, spin_turn = inverse_end_rates(delta)
+    is_fast, log_y = log_place(sign, log_n + kappa * log_left, kappa, slow, fast)
+    by_fast = turning * by_fast - spin_turn
+    swung = turning * log_left + (by_fast if is_fast else turning * by_slow) * log_y
+    return is_fast, log_y, swung
 
 
 @inlined
 def look_up_launch(
-    launch: FloatArray, stops: FloatArray, nodes: FloatArray, turn_inverse: FloatArray,
-    constants: FloatArray, turn_share: float, sums: FloatArray, out: FloatArray,
+    launch: FloatArray, stops: FloatArray, functions: FloatArray, constants: FloatArray,
+    out: FloatArray,
 ) -> None:  # fmt: skip
     """All that is known of a launch (6,): vx, vy, ω, δ, J, r, into ``out`` (14,).
 
-    Stop time, x, y; path length, body angle, turn of the heading until Q has fallen to
-    ``turn_share`` (0: not asked); Q, T; ln|N|, its sign, the heading's regular part; v.
+    Stop time, x, y; path length, body angle, nothing; Q, v, T; ln|N|, its sign, the heading's
+    regular part; κ, h₀.  Tables as :func:`puck_tables.stopping.launch_lookup.fill_launch_lookup`
+    reads them.
     """
     vx, vy, spin = launch[0], launch[1], launch[2]
     delta, decel, radius = launch[3], launch[4], launch[5]
@@ -227,10 +233,16 @@ def look_up_launch(
     slip = math.hypot(speed, rim)
     s = 2.0 * delta * delta - 1.0
     side, xi = slip_place(speed, rim)
-    t, along, across = _stop_functions(stops, side, xi, s, sums)
-    _similarity_sums(nodes, side, xi, sums, 4)
-    body, length = _polynomial(sums, BODY_SUM, s), _polynomial(sums, LENGTH_SUM, s)
-    r, part = _polynomial(sums, CURVE_SUM, s), _polynomial(sums, TURN_SUM, s)
+    cells = stops.shape[1] - 3
+    place = xi * cells
+    cell = cell_at(place, cells)
+    node, weights = side * stops.shape[1] + cell, basis(place - cell)
+    t, along, across, _ = spline_values(
+        stops.reshape(-1), WIDTH * STOP_POWERS * node, weights, s, WIDTH, STOP_POWERS
+    )
+    body, part, regular, length = spline_values(
+        functions.reshape(-1), CURVE_WIDTH * HEIGHTS * node, weights, s, CURVE_WIDTH, HEIGHTS
+    )
     out[TIME], out[STOP_X], out[STOP_Y], out[LENGTH], out[BODY], t = stopped(
         vx, vy, edge, spin, speed, slip, delta, decel, (t, along, across, body, length)
     )
@@ -238,46 +250,20 @@ def look_up_launch(
     out[TURN] = out[SIGN_N] = 0.0
     if speed == 0.0 or rim == 0.0:
         return
-    c0, kappa = _constant(constants, 0, s), _constant(constants, 1, s)
-    turning = delta * _constant(constants, 2, s)
-    share = share_of(speed, rim)
-    sign, log_n = number_at(side == 1, share, c0, kappa, delta, r)
-    heading = heading_at(side == 1, share, turning, delta, part)
-    out[SIGN_N], out[HEADING0] = sign, heading
+    c0, kappa, turning, quarter = constants_at(constants, s)
+    turning, is_fast, share = delta * turning, side == 1, share_of(speed, rim)
+    out[SIGN_N], log_n = number_at(is_fast, share, c0, kappa, delta, regular)
+    out[HEADING0] = heading_at(is_fast, share, turning, delta, part)
     out[KAPPA], out[TURNING] = kappa, turning
-    out[LOG_N] = log_n + kappa * (log_of(t) - _constant(constants, 3, s))
-    if delta > 0.0 and turn_share > 0.0:
-        log_share = math.log(turn_share)
-        slow, fast, _ = end_rates(delta)
-        is_fast, log_y = log_place(sign, log_n + kappa * log_share, kappa, slow, fast)
-        y, xi = place_of_log(log_y)
-        end = 1 if is_fast else 0
-        share = max(min(y * inverse_sum(turn_inverse, end, xi, s, sums), 1.0), TINY)
-        _similarity_sums(nodes, end, place_of_share(share), sums, 2)
-        part = _polynomial(sums, TURN_SUM, s)
-        later = heading_at(is_fast, share, turning, delta, part)
-        turn = turning * log_share + later - heading
-        out[TURN] = turn if edge > 0.0 else -turn
+    out[LOG_N] = log_n + kappa * (log_of(t) - quarter)
 
 
 @inlined
-def functions_at(
-    stops: FloatArray, nodes: FloatArray, side: int, double_share: float, s: float,
-    sums: FloatArray, result: FloatArray,
-) -> None:  # fmt: skip
-    """T, along, across, body angle, S/δ into ``result`` (5,)."""
-    xi = place_of_share(double_share)
-    result[0], result[1], result[2] = _stop_functions(stops, side, xi, s, sums)
-    _similarity_sums(nodes, side, xi, sums, 2)
-    result[3], result[4] = _polynomial(sums, BODY_SUM, s), _polynomial(sums, TURN_SUM, s)
+def look_up_state(puck: FloatArray, time: float, splines: FloatArray, out: FloatArray) -> None:
+    """The state of a puck (20,), its launch and what is known of it, at a time, into ``out`` (6,).
 
-
-@inlined
-def look_up_state(
-    puck: FloatArray, time: float, stops: FloatArray, nodes: FloatArray, time_inverse: FloatArray,
-    sums: FloatArray, result: FloatArray, out: FloatArray,
-) -> None:  # fmt: skip
-    """One state; ``sums`` (40,) and ``result`` (5,) are room to work."""
+    ``splines`` as :func:`puck_tables.stopping.state_lookup.fill_states_at` reads them.
+    """
     known = puck[LAUNCH_COLUMNS:]
     x, y, body, spin = known[STOP_X], known[STOP_Y], known[BODY], puck[2]
     elapsed = time / known[TIME]
@@ -288,22 +274,21 @@ def look_up_state(
         out[SPEED], out[SPIN] = left * known[SPEED0], left * spin
         out[HEADING] = known[TURN] if left == 0.0 else 0.0
         return
-    delta, kappa, turning = puck[3], known[KAPPA], known[TURNING]
-    s = 2.0 * delta * delta - 1.0
-    slow, fast, _ = end_rates(delta)
-    log_n = known[LOG_N] + kappa * math.log1p(-elapsed)
-    is_fast, log_y = log_place(known[SIGN_N], log_n, kappa, slow, fast)
+    delta, turning = puck[3], known[TURNING]
+    is_fast, log_y, swung = place_after(
+        math.log1p(-elapsed), known[SIGN_N], known[LOG_N], known[KAPPA], turning, delta
+    )
     part, xi = place_of_log(log_y)
-    side = 1 if is_fast else 0
-    share = max(min(part * inverse_sum(time_inverse, side, xi, s, sums), 1.0), TINY)
-    functions_at(stops, nodes, side, share, s, sums, result)
-    fall = (1.0 - elapsed) * known[T_LAUNCH] / result[0]
-    heading = heading_at(is_fast, share, turning, delta, result[4])
-    turn = turning * log_of(fall) + heading - known[HEADING0] if delta > 0.0 else 0.0
+    first, inside = cell_of(xi, is_fast, float(splines.shape[1] - 3), ORBIT_WIDTH * HEIGHTS)
+    f = spline_values(
+        splines.reshape(-1), int(first), basis(inside), 2.0 * delta * delta - 1.0, ORBIT_WIDTH,
+        HEIGHTS,
+    )  # fmt: skip
+    turn = swung + turning * log_of(known[T_LAUNCH]) - known[HEADING0] + delta * f[REGULAR]
     (
         out[PUCK_X], out[PUCK_Y], out[HEADING], out[ORIENTATION], out[SPEED], out[SPIN],
     ) = state_there(
         (puck[0], puck[1], spin, delta, puck[4], puck[5], known[SPEED0]), (x, y, body), is_fast,
-        share, known[SLIP] * fall, turn if spin > 0.0 else -turn,
-        (result[1], result[2], result[3]),
+        min(part * f[0], 1.0), known[SLIP] * ((1.0 - elapsed) * known[T_LAUNCH] / f[1]),
+        turn if spin > 0.0 else -turn, (f[2], f[3], f[4]),
     )  # fmt: skip

@@ -50,13 +50,6 @@ def slope_section(body: UnitPuck) -> SlopeSection:
     -----
     The error is measured in the middles of all cells, as in
     :func:`puck_tables.table.slip_spline.slip_spline`.
-
-    Examples
-    --------
-    >>> from puck_tables.motion.body import body_of
-    >>> section = slope_section(body_of("hertz", 0.5, 0.6))
-    >>> section.good.shape, bool(section.good[:, -1].all())
-    ((4, 128), True)
     """
     friction = variations_of(body)
     sides = sides_of(lines_of(body.law, body.delta)[::-1], ends_too=True)

@@ -63,13 +63,6 @@ def slopes_of(axis: SlipAxis, values: FloatArray) -> Slopes:
     ----------
     axis : SlipAxis
     values : array (2 cells + 1, 9, 7), as in :class:`puck_tables.stopping.stop_table.StopTable`
-
-    Examples
-    --------
-    >>> from puck_tables import Table
-    >>> table = Table.shipped("stops")
-    >>> [one.shape for one in slopes_of(table.axis, table.values)]
-    [(2, 285, 84), (2, 285, 72), (2, 285, 28)]
     """
     n = axis.cells
     sides = np.stack([values[: n + 1], values[: n - 1 : -1]])  # both from k = 0 to k = 1

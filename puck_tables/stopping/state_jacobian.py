@@ -42,6 +42,7 @@ from puck_tables.kernels.compile import (
 from puck_tables.kernels.elementary import cosine_sine_of, exp_of, logs_of
 from puck_tables.motion import state
 from puck_tables.stopping.launch_frame import PLACED_STATES, placed_state, rotated
+from puck_tables.stopping.similarity_lookup import TINY
 from puck_tables.stopping.similarity_rates import (
     BEND,
     C0_TILT,
@@ -93,7 +94,6 @@ from puck_tables.stopping.similarity_rates import (
     turn_rate,
 )
 from puck_tables.stopping.state_lookup import gather
-from puck_tables.stopping.state_splines import TINY
 from puck_tables.stopping.stop_jacobian import BY_HEIGHT, Numbers, T, row_by_row, stop_by_speeds
 
 # rows of a block for what is found on the way

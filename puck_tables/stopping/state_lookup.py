@@ -25,11 +25,13 @@ from puck_tables.stopping.axes import HEIGHTS
 from puck_tables.stopping.similarity_lookup import (
     LAUNCH_COLUMNS,
     LAUNCH_ROWS,
-    end_rates,
-    inverse_end_rates,
+    ORBIT_WIDTH,
+    TINY,
+    cell_of,
+    place_after,
+    place_of_log,
     state_there,
 )
-from puck_tables.stopping.state_splines import ORBIT_WIDTH, TINY, cell_of, log_place, place_of_log
 
 PUCK_ROWS = LAUNCH_COLUMNS + LAUNCH_ROWS
 _ROW = ORBIT_WIDTH * HEIGHTS
@@ -133,16 +135,14 @@ def _find_places(room: FloatArray, count: int, cells: float) -> int:
         left = 1.0 - time / row_of(room, _TIME, n)
         left = left if left > 0.0 else 0.0
         log_left = log_of(max(left, TINY))
-        slow, fast, _ = end_rates(tilt)
-        by_slow, by_fast, spin_turn = inverse_end_rates(tilt)
-        kappa, turning = row_of(room, _KAPPA, n), row_of(room, _TURNING, n)
-        log_n = row_of(room, _LOG_N, n) + kappa * log_left
-        is_fast, log_y = log_place(row_of(room, _SIGN_N, n), log_n, kappa, slow, fast)
+        turning = row_of(room, _TURNING, n)
+        is_fast, log_y, swung = place_after(
+            log_left, row_of(room, _SIGN_N, n), row_of(room, _LOG_N, n), row_of(room, _KAPPA, n),
+            turning, tilt,
+        )  # fmt: skip
         y, xi = place_of_log(log_y)
         first, inside = cell_of(xi, is_fast, cells, _ROW)
-        by_slow, by_fast = turning * by_slow, turning * by_fast - spin_turn
-        swung = turning * (log_left + log_of(max(row_of(room, _T, n), TINY)))
-        swung += (by_fast if is_fast else by_slow) * log_y - row_of(room, _HEADING, n)
+        swung += turning * log_of(max(row_of(room, _T, n), TINY)) - row_of(room, _HEADING, n)
         into_row(room, _LEFT, n, left)
         into_row(room, _SHARE, n, y)
         into_row(room, _SWUNG, n, swung)

@@ -1,8 +1,8 @@
 """The curve of all motions, inverted at the nodes of a stop table: for all of them at once.
 
 From the place by the time that is left, or by Q, back to the ratio of speed and spin, and what
-stands there; what it is see :mod:`puck_tables.stopping.similarity_lookup` and
-:mod:`puck_tables.stopping.state_splines`.  Arrays (2 sides, nodes, heights).
+stands there; what it is see :mod:`puck_tables.stopping.similarity_lookup`.  Arrays (2 sides, nodes,
+heights).
 """
 
 from __future__ import annotations
@@ -13,40 +13,33 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.spline import basis
 from puck_tables.stopping.axes import HEIGHTS, heights
-from puck_tables.stopping.lookup import STOP_POWERS
-from puck_tables.stopping.similarity_lookup import end_rates
-from puck_tables.stopping.state_splines import TINY
+from puck_tables.stopping.similarity_lookup import TINY, end_rates
+from puck_tables.table.spline_fit import clamped_coefficients
 
-_TIME, _ALONG, _ACROSS, _BODY, _TURN, _LENGTH, _CURVE = range(7)
+_TIME, _ALONG, _ACROSS, _LENGTH, _BODY, _CURVE, _TURN = range(7)  # as the table has them
 _FAST = np.array([False, True])[:, None, None]  # the side of r|ω| > v
 _ROUNDING = 2e-16  # of a double
 _LOOKS = 100  # at most
 
 
 class InverseSolution:
-    """Functions and constants of a stop table at its heights, from its coefficients."""
+    """Functions of a stop table at its nodes (2, cells + 1, 9, 7), and constants of its heights."""
 
-    def __init__(
-        self, cells: int, constants: FloatArray, stops: FloatArray, places: FloatArray
-    ) -> None:
+    def __init__(self, constants: FloatArray, sides: FloatArray) -> None:
         delta = heights()
-        self.delta, self.cells = delta, cells
+        self.delta, self.cells = delta, sides.shape[1] - 1
         self.slow, self.fast, self.spin_turn = end_rates(delta)  # type: ignore[arg-type]
         powers = (2.0 * delta * delta - 1.0) ** np.arange(constants.shape[1])[:, None]
         self.c0, self.kappa, turning, self.quarter = constants @ powers
         self.turning = delta * turning
-        stops = stops.reshape(2, -1, STOP_POWERS, 3)
-        places = places[..., : 4 * HEIGHTS].reshape(2, -1, 4, HEIGHTS)
-        self.splines = np.concatenate([
-            np.einsum("sipf,ph->fsih", stops, powers[:STOP_POWERS]),
-            np.einsum("sifp,ph->fsih", places, powers[:HEIGHTS]),
-        ])  # fmt: skip
+        splines = clamped_coefficients(np.moveaxis(sides, 1, 0)) / 6.0
+        self.splines = np.ascontiguousarray(splines.transpose(3, 1, 0, 2))
 
     def at(self, function: int, xi: FloatArray) -> FloatArray:
         """One function at places on the axis of slip (2, n, heights)."""
         place = xi * self.cells
         cell = np.clip(place.astype(np.int64), 0, self.cells - 1)
-        weights = basis(place - cell)  # type: ignore[arg-type]
+        weights = basis(place - cell)
         spline = self.splines[function]
         rows = (np.take_along_axis(spline, cell + k, axis=1) for k in range(4))
         return np.asarray(sum(w * row for w, row in zip(weights, rows, strict=True)))

@@ -336,15 +336,7 @@ def states_in(
     out: FloatArray, moments: FloatArray, launches: Launches, which: npt.NDArray[np.int64],
     shape: tuple[int, ...], explanation: str, *differentiated: Any,
 ) -> States:  # fmt: skip
-    """Rows of states in their shape; ``differentiated``: derivatives, and of what they are.
-
-    Examples
-    --------
-    >>> one = launches_of((1.0, 0.0), 0.0, 0.5, 1.0, 1.0)
-    >>> moments = moments_of(one, np.array([0.0, 2.0]))
-    >>> states_in(np.zeros((6, 2)), moments[1], one, *moments[::2], "nothing moves").x.shape
-    (2,)
-    """
+    """Rows of states in their shape; ``differentiated``: derivatives, and of what they are."""
     radius = launches.radius
     if radius.size > 1:
         radius = radius[which] if which.size else radius.copy()

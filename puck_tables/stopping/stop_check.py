@@ -35,17 +35,17 @@ from puck_tables.motion.limits import limit_ratio
 from puck_tables.stopping.axes import HEIGHTS, SlipAxis, heights, ratio_at
 from puck_tables.stopping.exact import end_values, exact_stops
 from puck_tables.stopping.launch_arrays import launches_in
-from puck_tables.stopping.lookup import CURVE_ROW
 from puck_tables.stopping.similarity import limits, regular_parts
 from puck_tables.stopping.similarity_lookup import (
     BODY,
-    CURVE_SUM,
+    CURVE_FUNCTION,
+    CURVE_WIDTH,
     HEADING0,
     KAPPA,
     LENGTH,
     LOG_N,
     T_LAUNCH,
-    TURN_SUM,
+    TURN_FUNCTION,
     TURNING,
 )
 from puck_tables.stopping.stop_values import STOPS, StopValues
@@ -73,14 +73,7 @@ _CURVE_CEILING, _CURVE_POLYNOMIAL = 10.0, 2e-10  # of the curve
 def launch_points(
     axis: SlipAxis, random_points: int, seed: int | None
 ) -> tuple[FloatArray, FloatArray]:
-    """Launches (u, δ) where a stop table is worst: cell middles, ends, both sides of π/4.
-
-    Examples
-    --------
-    >>> u, delta = launch_points(SlipAxis(8), 10, seed=1)
-    >>> bool(np.isinf(u).any()), float(delta.max())
-    (True, 1.0)
-    """
+    """Launches (u, δ) where a stop table is worst: cell middles, ends, both sides of π/4."""
     rng = np.random.default_rng(seed)
     middle = (np.arange(axis.cells) + 0.5) / axis.cells
     q4 = (middle * (2.0 - middle)) ** 4
@@ -101,13 +94,7 @@ def launch_points(
 
 
 def launches_at(u: FloatArray, delta: FloatArray) -> FloatArray:
-    """Launches (6, n) along x with Q = J = r = 1.
-
-    Examples
-    --------
-    >>> launches_at(np.array([0.0]), np.array([0.5])).round(3).ravel().tolist()
-    [0.707, 0.0, 0.707, 0.5, 1.0, 1.0]
-    """
+    """Launches (6, n) along x with Q = J = r = 1."""
     k = np.exp(-np.abs(u))
     large = 1.0 / np.hypot(1.0, k)
     one = np.ones_like(k)
@@ -202,9 +189,9 @@ def measured(table: StopValues) -> Accuracy:
     for row, one in enumerate(_CURVE_HEIGHTS):
         parts = regular_parts(between, one)
         deviation[0, row] = (
-            _similarity_between(table, CURVE_SUM, one) - limits(one).kappa * parts[:, 0]
+            _similarity_between(table, CURVE_FUNCTION, one) - limits(one).kappa * parts[:, 0]
         )
-        deviation[1, row] = _similarity_between(table, TURN_SUM, one) - parts[:, 1]
+        deviation[1, row] = _similarity_between(table, TURN_FUNCTION, one) - parts[:, 1]
     nodes, height = np.broadcast_arrays(between.phi(), np.array(_CURVE_HEIGHTS)[:, None])
     curve = Accuracy.of(np.abs(deviation).reshape(2, -1), nodes.ravel(), height.ravel(), None)
     both = {
@@ -217,9 +204,7 @@ def measured(table: StopValues) -> Accuracy:
 
 def _similarity_between(table: StopValues, function: int, delta: float) -> FloatArray:
     """κR or S at the nodes of an axis three times as fine, as the table's splines give them."""
-    c = table.similarity_coefficients.reshape(2, -1, CURVE_ROW)[:, :, function * HEIGHTS :][
-        :, :, :HEIGHTS
-    ]
+    c = table.launch_coefficients.reshape(2, -1, HEIGHTS, CURVE_WIDTH)[..., function]
     at_height = c @ (2.0 * delta**2 - 1.0) ** np.arange(HEIGHTS)
     n = table.axis.cells
     sides = np.empty((2, _REFINED * n + 1))
@@ -228,7 +213,7 @@ def _similarity_between(table: StopValues, function: int, delta: float) -> Float
         sides[:, part:-1:_REFINED] = sum(w * at_height[:, j : n + j] for j, w in enumerate(weights))
     sides[:, -1] = sum(w * at_height[:, n - 1 + j] for j, w in enumerate(basis(1.0)))
     values = np.concatenate([sides[0], sides[1, -2::-1]])
-    return values * (delta if function == TURN_SUM else 1.0)
+    return values * (delta if function == TURN_FUNCTION else 1.0)
 
 
 def judged(table: StopValues, progress: Progress | None) -> CheckReport:

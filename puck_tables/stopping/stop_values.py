@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,7 +16,13 @@ from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Variable
 from puck_tables.motion.state import STATE_ROWS
-from puck_tables.stopping.axes import HEIGHTS, heights
+from puck_tables.stopping.axes import (
+    CONSTANT_HEIGHTS,
+    HEIGHTS,
+    SlipAxis,
+    height_polynomials,
+    heights,
+)
 from puck_tables.stopping.launch_arrays import (
     CHUNK,
     TOO_LARGE,
@@ -26,9 +33,19 @@ from puck_tables.stopping.launch_arrays import (
     smallest_mark,
 )
 from puck_tables.stopping.lookup import STOP_POWERS, stops_kernel
-from puck_tables.stopping.similarity_lookup import LAUNCH_COLUMNS
+from puck_tables.stopping.similarity import limits
+from puck_tables.stopping.similarity_lookup import (
+    LAUNCH_COLUMNS,
+    ORBIT_WIDTH,
+    REGULAR,
+    TURN_POWERS,
+    TURN_STEP,
+)
+from puck_tables.stopping.slopes import Slopes, slopes_of
 from puck_tables.stopping.state_lookup import PUCK_ROWS
-from puck_tables.stopping.stop_coefficients import StopCoefficients
+from puck_tables.stopping.state_nodes import InverseSolution
+from puck_tables.stopping.stop_splines import by_power, section_rows, side_by_side
+from puck_tables.table.table import Table
 
 UPPER_DELTA = 1.0  # above, part of the base may lift
 OTHERS = ("path_length", "turn_angle", "body_angle")
@@ -50,7 +67,7 @@ _INTERPRETATION = (
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class StopValues(StopCoefficients):
+class StopValues(Table):
     """Where and when any puck stops, and how it gets there, with the splines through them.
 
     :class:`puck_tables.stopping.stop_table.StopTable` adds how it is built and judged.
@@ -229,6 +246,89 @@ class StopValues(StopCoefficients):
                 "every motion"
             )
         return height
+
+    # as compiled code reads it: coefficients of splines, made when asked for
+
+    @cached_property
+    def axis(self) -> SlipAxis:
+        """The slip angles of its nodes."""
+        return SlipAxis(len(self.values) // 2)
+
+    @cached_property
+    def constants(self) -> FloatArray:
+        """c₀, κ, h₀/δ and ln T(π/4) as polynomials in 2δ² − 1, (4, 14)."""
+        rows = []
+        for delta in heights(CONSTANT_HEIGHTS):
+            at = limits(float(delta))
+            rows.append([math.tanh(0.5 * at.u), at.kappa, at.turn / delta])
+        polynomials = np.zeros((4, CONSTANT_HEIGHTS))
+        polynomials[:3] = height_polynomials(np.array(rows), CONSTANT_HEIGHTS).T
+        quarter = np.log(self.values[self.axis.cells, :, 0])
+        polynomials[3, :HEIGHTS] = height_polynomials(quarter)
+        return polynomials
+
+    @cached_property
+    def height_constants(self) -> FloatArray:
+        """The same, those of a power side by side, (14, 4)."""
+        return np.ascontiguousarray(self.constants.T)
+
+    @cached_property
+    def slopes(self) -> Slopes:
+        """What derivatives of stops and states need."""
+        return slopes_of(self.axis, self.values)
+
+    @cached_property
+    def launch_coefficients(self) -> FloatArray:
+        """Body angle, S/δ, κR, path length: as compiled look-ups of launches read them."""
+        return side_by_side(by_power(self._sides([4, 6, 5, 3])))
+
+    @cached_property
+    def state_coefficients(self) -> FloatArray:
+        """What :mod:`puck_tables.stopping.state_lookup` reads."""
+        values = by_power(self.inverse.splined(with_time=True))
+        padded = np.zeros((*values.shape[:3], ORBIT_WIDTH))
+        padded[..., : values.shape[3]] = values
+        return side_by_side(padded)
+
+    @cached_property
+    def turn_coefficients(self) -> FloatArray:
+        """The heading's regular part over the place by Q, (2, cells + 3, 12)."""
+        parts = by_power(self.inverse.splined(with_time=False)[..., REGULAR:])
+        padded = np.zeros((TURN_STEP * TURN_POWERS, *parts.shape[1:]))
+        padded[: len(parts)] = parts
+        return side_by_side(padded)
+
+    @cached_property
+    def inverse(self) -> InverseSolution:
+        """From the time that is left, or Q, to the place on the curve, at the nodes."""
+        return InverseSolution(self.constants, self._sides(list(range(len(self.functions)))))
+
+    def _sides(self, functions: list[int], thinning: int = 1) -> FloatArray:
+        """Some functions at the nodes (2, cells + 1, heights, functions), from k = 0 to k = 1."""
+        n, values = self.axis.cells // thinning, self.values[::thinning, :, functions]
+        return np.stack([values[: n + 1], values[: n - 1 : -1]])
+
+    @cached_property
+    def _thinned_tables(self) -> dict[tuple[int, int], FloatArray]:
+        return {}
+
+    def thinned(self, powers: int = STOP_POWERS, thinning: int = 1) -> FloatArray:
+        """What :func:`puck_tables.stopping.lookup.stops_kernel` reads, as coarse as wanted.
+
+        Parameters
+        ----------
+        powers : powers of 2δ² − 1 to keep for T; the others keep one fewer, enough for them
+        thinning : keep every so many nodes of the slip axis; divides ``axis.cells``
+
+        Returns
+        -------
+        array (2, cells/thinning + 3, powers × WIDTH)
+        """
+        if (powers, thinning) in self._thinned_tables:
+            return self._thinned_tables[powers, thinning]
+        kept = section_rows(self._sides([0, 1, 2, 4], thinning), powers)
+        self._thinned_tables[powers, thinning] = kept
+        return kept
 
     # the record of the kind
 

@@ -63,14 +63,7 @@ class Variations(NamedTuple):
 
 @lru_cache(maxsize=64)
 def variations_of(body: UnitPuck) -> Variations:
-    """The friction of a puck.
-
-    Examples
-    --------
-    >>> from puck_tables.motion.body import body_of
-    >>> variations_of(body_of("ring", 0.5, 1.0)).delta
-    0.5
-    """
+    """The friction of a puck."""
     if body.table is not None:
         return variations_by(slopes_of_table(body.table, body.delta), body.gyration)
     try:

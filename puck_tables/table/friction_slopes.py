@@ -92,15 +92,7 @@ def slopes_of_table(table: ResultantTable, delta: float) -> FrictionSlopes:
 
 
 def slopes_at_one_height(section: FrictionSection) -> FrictionSlopes:
-    """The same from a friction section, for who asks nothing about other heights: slopes by δ 0.
-
-    Examples
-    --------
-    >>> from puck_tables.contact.laws import law_of
-    >>> from puck_tables.table.friction_section import friction_section
-    >>> slopes_at_one_height(friction_section(law_of("ring"), 1.0, 1e-6)).spline.values.shape[2]
-    6
-    """
+    """The same from a friction section, for who asks nothing about other heights: slopes by δ 0."""
     spline = section.spline
     values = np.concatenate([spline.values, np.zeros_like(spline.values)], axis=2)
     return FrictionSlopes(SlipSpline(spline.sides, values, True), section.delta, section.error)

@@ -184,13 +184,6 @@ def adversarial_points(
     phi, delta : arrays (n,)
         Random; both sides of the singular lines and of 0 and π/2 at all distances; nodes and
         middles of cells.
-
-    Examples
-    --------
-    >>> table = ResultantTable.tabulated(law_of("uniform"), 8)
-    >>> phi, delta = adversarial_points(table, 100, seed=1)
-    >>> bool(np.abs(phi).min() == 0.0 and delta.max() == 1.0)
-    True
     """
     rng = np.random.default_rng(seed)
     part = count // 6

@@ -48,13 +48,7 @@ def lines_of(law: Law, delta: float) -> tuple[float, ...]:
 
 @lru_cache(maxsize=1024)
 def refuse_height(law: Law, delta: float) -> None:
-    """Refuse a height at which the friction is not known at every slip angle.
-
-    Examples
-    --------
-    >>> from puck_tables.contact.laws import law_of
-    >>> refuse_height(law_of("ring"), 2.0)
-    """
+    """Refuse a height at which the friction is not known at every slip angle."""
     law.friction(0.0, delta)
     if law.can_lift and delta > one_sided.FOLD_DELTA:
         raise ContactError(

@@ -14,13 +14,7 @@ _BLOCK = 128  # points at once
 
 
 def graded_coefficients(table: ResultantTable) -> FloatArray:
-    """B-spline weights over 36 of the friction ratios at the nodes of a table with one edge.
-
-    Examples
-    --------
-    >>> graded_coefficients(ResultantTable.shipped()).shape[::3]
-    (2, 3)
-    """
+    """B-spline weights over 36 of the friction ratios at the nodes of a table with one edge."""
     parallel = table.values[..., :1]
     ratios = np.concatenate([1.0 / parallel, table.values[..., 1:] / parallel], axis=-1)
     sides = np.moveaxis(table.axis.by_side(ratios), 0, 1)

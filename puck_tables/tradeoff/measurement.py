@@ -144,13 +144,7 @@ def _bytes(built: object) -> int:
 
 
 def describe() -> dict[str, str]:
-    """The machine a measurement was made on, in words: processor, system and versions.
-
-    Examples
-    --------
-    >>> sorted(describe())[:3]
-    ['cores', 'load', 'numba']
-    """
+    """The machine a measurement was made on, in words: processor, system and versions."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     load = f"{os.getloadavg()[0]:.1f}" if hasattr(os, "getloadavg") else "unknown"
     try:

@@ -91,13 +91,7 @@ def filled(fill: Callable[[FloatArray, FloatArray], object], rows: int = 3) -> R
 
 
 def random_points(count: int, seed: int = 1832) -> Question:
-    """Half of them anywhere, half next to φ = 0, π/4 and π/2, with δ = 0 and 1 among the heights.
-
-    Examples
-    --------
-    >>> random_points(12).truth.shape
-    (3, 12)
-    """
+    """Half of them anywhere, half next to φ = 0, π/4, π/2, with δ = 0 and 1 among the heights."""
     rng = np.random.default_rng(seed)
     phi = rng.uniform(0.0, 0.5 * np.pi, count)
     near = 10.0 ** -rng.uniform(0.2, 12.0, count)
@@ -118,11 +112,6 @@ def golden_starts() -> tuple[Question, Question, FloatArray]:
     """Stops: of launches that come with the package; of a few that are not adversarial; ln(rω/v).
 
     The judged launches go along x with Q = J = r = 1.
-
-    Examples
-    --------
-    >>> golden_starts()[0].truth.shape
-    (3, 1000)
     """
     content = (files("puck_tables.tables") / "starts.npz").read_bytes()
     with np.load(io.BytesIO(content)) as file:

@@ -27,7 +27,6 @@ from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED
 from puck_tables.motion.state import SPIN as PUCK_SPIN
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.ingredients import Surface, floor_velocity
-from puck_tables.stopping.lookup import CURVE_ROW
 from puck_tables.stopping.similarity_lookup import (
     LAUNCH_COLUMNS,
     LAUNCH_ROWS,
@@ -60,8 +59,7 @@ OFF_X, OFF_Y, OFF_ANGLE = range(START + 9, START + 12)  # what the look-up says 
 DRIFT_X, DRIFT_Y = START + 12, START + 13  # velocity of the belt on which it moves or rests
 FLIGHT_COLUMNS = START + 14
 
-ROOM = CURVE_ROW + 5 + 9  # numbers to work in
-NO_TURN = 0.0
+ROOM = 9  # numbers to work in: a piece of a path
 _SOON = 1e-16  # of the time until rest
 
 
@@ -69,9 +67,8 @@ class Curves(NamedTuple):
     """The tables of stops of plain pucks, as the kernels read them."""
 
     stops: FloatArray
-    curve: FloatArray
-    time_inverse: FloatArray
-    turn_inverse: FloatArray
+    functions: FloatArray
+    states: FloatArray
     constants: FloatArray
 
 
@@ -124,11 +121,8 @@ def state_at(
 ) -> None:  # fmt: skip
     """X, y, angle, vx, vy, spin at the time t into ``out`` (6,)."""
     if kind == LOOKED_UP:
-        found = room[CURVE_ROW + 5 :]
-        look_up_state(
-            flight, t - flight[START], curves.stops, curves.curve, curves.time_inverse,
-            room, room[CURVE_ROW:], found,
-        )  # fmt: skip
+        found = room
+        look_up_state(flight, t - flight[START], curves.states, found)
         later = 1.0 if t > flight[START] else 0.0
         out[X] = flight[PLACE_X] + (found[PUCK_X] - later * flight[OFF_X])
         out[Y] = flight[PLACE_Y] + (found[PUCK_Y] - later * flight[OFF_Y])
@@ -198,17 +192,11 @@ def start_flight(
     if speed == 0.0 and spin == 0.0:
         return STILL
     if disc[DECEL] > 0.0:
-        look_up_launch(
-            flight, curves.stops, curves.curve, curves.turn_inverse, curves.constants, NO_TURN,
-            room, flight[KNOWN:],
-        )  # fmt: skip
+        look_up_launch(flight, curves.stops, curves.functions, curves.constants, flight[KNOWN:])
         flight[UNTIL] = t + flight[KNOWN + TIME]
         # places that are looked up are off by some 1e-12 of Q²/J: discs that touch must not jump
-        found = room[CURVE_ROW + 5 :]
-        look_up_state(
-            flight, _SOON * flight[KNOWN + TIME], curves.stops, curves.curve, curves.time_inverse,
-            room, room[CURVE_ROW:], found,
-        )  # fmt: skip
+        found = room
+        look_up_state(flight, _SOON * flight[KNOWN + TIME], curves.states, found)
         flight[OFF_X], flight[OFF_Y] = found[PUCK_X], found[PUCK_Y]
         flight[OFF_ANGLE] = found[ORIENTATION]
         flight[STRONGEST] = disc[DECEL]

@@ -95,9 +95,8 @@ def shipped_curves() -> Curves:
     """The table of stops that comes along, as the engine reads it."""
     table = StopTable.shipped()
     return Curves(
-        table.stop_coefficients, table.similarity_coefficients, table.time_inverse,
-        table.turn_inverse, table.constants,
-    )  # fmt: skip
+        table.thinned(), table.launch_coefficients, table.state_coefficients, table.constants
+    )
 
 
 def _surface_of(floor: Floor) -> Surface:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib import import_module
 from pkgutil import iter_modules
 
-from puck_tables.export.language import Language
+from puck_tables.export.translate import Language
 
 LANGUAGES: dict[str, Language] = {
     language.key: language

@@ -5,8 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Sequence
 
-from puck_tables.export.language import Language, rows_of
-from puck_tables.export.translate import Braces
+from puck_tables.export.translate import Braces, Language, rows_of
 
 _KINDS = {"float": "double", "int": "int", "bool": "int", "counter": "int", "None": "void"}
 _ARRAYS = {"Numbers": "const double *", "Rows": "const int *", "Out": "double *"}

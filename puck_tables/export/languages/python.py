@@ -6,7 +6,7 @@ import ast
 import re
 from collections.abc import Sequence
 
-from puck_tables.export.language import Language, rows_of
+from puck_tables.export.translate import Language, rows_of
 
 
 class Python(Language):

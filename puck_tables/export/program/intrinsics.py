@@ -64,11 +64,5 @@ STOP_COUNT = STATE_COUNT = TURN_COUNT = RESULTANT_COUNT = 0
 
 
 def room(size: int) -> Room:
-    """An array to work in.
-
-    Examples
-    --------
-    >>> room(2)
-    [0.0, 0.0]
-    """
+    """An array to work in."""
     return [0.0] * size
