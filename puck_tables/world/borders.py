@@ -42,6 +42,7 @@ from puck_tables.world.meeting import (
     arc_step,
     bend_of,
     distance2,
+    moment_there,
     once_round,
     safe_step,
     way_left,
@@ -194,10 +195,7 @@ def next_border(
         if gap <= rounded:
             if rate < -QUIET * game.pace[0]:
                 return t
-            if bend > 0.0:
-                step = max(step, math.sqrt(2.0 * rounded / bend))
-            elif rate > 0.0:  # it has only just come there
-                step = max(step, 2.0 * rounded / rate)
+            step = max(step, moment_there(rounded, rate, bend, t))
         if look >= PATIENCE and others > step:
             longer = stays_apart(
                 game, i, -1 - k, t, max(gap, rounded), nx, ny, 0.0, False, room, one, one

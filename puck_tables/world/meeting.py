@@ -84,6 +84,19 @@ def safe_step(gap: float, rate: float, bend: float) -> float:
 
 
 @inlined
+def moment_there(rounded: float, rate: float, bend: float, t: float) -> float:
+    """How long a gap of about 0 that does not close is nothing but rounded, from t on.
+
+    What only bends moves by so little meanwhile; what opens has opened by then, and may meet what
+    it goes to from there: another side of a border, or an arc.
+    """
+    bends = math.sqrt(2.0 * rounded / bend) if bend > 0.0 else math.inf
+    opens = max(2.0 * rounded / rate, 4.0 * ROUNDED * abs(t)) if rate > 0.0 else math.inf
+    short = min(bends, opens)
+    return short if short < math.inf else 0.0
+
+
+@inlined
 def in_span(angle: float, start: float, span: float) -> bool:
     """Whether an angle lies in [start, start + span]."""
     turns = (angle - start) / (2.0 * math.pi)
@@ -406,8 +419,7 @@ def next_crossing(
         if gap <= rounded and (not partly or gap > -OUTSIDE * radius):
             if rate < -QUIET * game.pace[0] and there:
                 return t
-            if bend > 0.0:
-                step = max(step, math.sqrt(2.0 * rounded / bend))
+            step = max(step, moment_there(rounded, rate, bend, t))
             if not there and rate != 0.0:
                 step = max(step, 4.0 * rounded / abs(rate))
         if look >= PATIENCE and (not partly or gap >= 0.0):

@@ -27,6 +27,7 @@ from puck_tables.world.meeting import (
     ROUNDED,
     arc_step,
     bend_of,
+    moment_there,
     once_round,
     safe_step,
     way_left,
@@ -220,10 +221,7 @@ def _next_passing(
         if gap <= rounded:
             if rate < -QUIET * game.pace[0]:
                 return t
-            if bend > 0.0:
-                step = max(step, math.sqrt(2.0 * rounded / bend))
-            elif rate != 0.0:
-                step = max(step, 2.0 * rounded / abs(rate))
+            step = max(step, moment_there(rounded, abs(rate), bend, t))
         if t + step > last or step == math.inf:
             return math.inf
         t = max(t + step, t * (1.0 + _NEXT) + _NEXT * _NEXT)
