@@ -1,8 +1,8 @@
 """Films in HDF5: tables that DeepLabCut wrote with pandas, SLEAP's analysis files, and our own.
 
-pandas keeps the names of columns as pickles, which may run whatever they name.  These are taken
-apart first (:mod:`pickletools` runs nothing): any sign but those of texts, lists and tuples, which
-can call nothing, is refused.
+pandas keeps the names of columns as pickles.  They are never run: the few signs of which a list of
+names consists are read one by one (:mod:`pickletools` only takes a pickle apart), and all others
+are refused.
 
 References
 ----------
@@ -14,7 +14,6 @@ group ``df_with_missing``.  SLEAP, "Analysis HDF5": ``tracks`` (tracks, 2, nodes
 from __future__ import annotations
 
 import json
-import pickle
 import pickletools
 from pathlib import Path
 from typing import Any
@@ -31,12 +30,6 @@ from puck_tables.film.readers.saved import film_of_saved
 from puck_tables.film.text_tables import film_of_columns
 
 _LARGEST = 1 << 27  # numbers in a file, a gigabyte
-_TEXTS = {
-    "MARK", "UNICODE", "BINUNICODE", "SHORT_BINUNICODE", "STRING", "LIST", "TUPLE", "EMPTY_LIST",
-    "TUPLE1", "TUPLE2", "TUPLE3", "APPEND", "APPENDS", "PUT", "BINPUT", "LONG_BINPUT", "MEMOIZE",
-    "GET", "BINGET", "LONG_BINGET", "PROTO", "FRAME", "STOP",
-}  # fmt: skip
-_DAMAGE = (ValueError, EOFError, LookupError, AttributeError, TypeError, pickle.UnpicklingError)
 _DIMS = ("track", "xy", "node", "frame")
 
 
@@ -111,19 +104,55 @@ def _width(table: Any, name: str) -> int:
 
 def _names_in(path: str | Path, pickled: bytes) -> list[Any]:
     """The list of texts, and of tuples of texts, in a pickle that holds nothing else."""
+    stack: list[Any] = []
+    memo: dict[int, Any] = {}
+    mark = object()
+
+    def since() -> list[Any]:
+        at = len(stack) - 1 - stack[::-1].index(mark)
+        items = stack[at + 1 :]
+        del stack[at:]
+        return items
+
     try:
         for sign, value, _ in pickletools.genops(pickled):
-            if sign.name not in _TEXTS:
-                raise InputError(
-                    f"{path} names its columns by more than texts, which is not read: save the "
-                    "table as CSV"
-                )
-            if isinstance(value, int) and value > len(pickled):  # a place that would fill memory
-                raise ValueError
-        names = pickle.loads(pickled)
+            match sign.name:
+                case "MARK":
+                    stack.append(mark)
+                case "UNICODE" | "BINUNICODE" | "SHORT_BINUNICODE" | "STRING":
+                    stack.append(value)
+                case "LIST" | "TUPLE":
+                    items = since()
+                    stack.append(items if sign.name == "LIST" else tuple(items))
+                case "EMPTY_LIST":
+                    stack.append([])
+                case "TUPLE1" | "TUPLE2" | "TUPLE3":
+                    count = int(sign.name[-1])
+                    items = [stack.pop() for _ in range(count)][::-1]
+                    stack.append(tuple(items))
+                case "APPEND":
+                    item = stack.pop()
+                    stack[-1].append(item)
+                case "APPENDS":
+                    items = since()
+                    stack[-1].extend(items)
+                case "PUT" | "BINPUT" | "LONG_BINPUT":
+                    memo[value] = stack[-1]  # type: ignore[index]
+                case "MEMOIZE":
+                    memo[len(memo)] = stack[-1]
+                case "GET" | "BINGET" | "LONG_BINGET":
+                    stack.append(memo[value])  # type: ignore[index]
+                case "PROTO" | "FRAME" | "STOP":
+                    pass
+                case _:
+                    raise InputError(
+                        f"{path} names its columns by more than texts, which is not read: save "
+                        "the table as CSV"
+                    )
+        (names,) = stack
         if not isinstance(names, list):
             raise ValueError
-    except _DAMAGE as error:
+    except (ValueError, IndexError, KeyError, AttributeError) as error:
         if isinstance(error, InputError):
             raise
         raise InputError(f"{path} is damaged: its names of columns cannot be read") from None
