@@ -1,4 +1,4 @@
-"""A force as faint as rounding changes nothing: no border, arc or line is passed unseen for it."""
+"""What is as faint as rounding changes nothing: nothing is passed unseen for it, no end moves."""
 
 import math
 
@@ -54,3 +54,35 @@ def test_all_is_passed_that_is_passed_without_it(kind):
             assert others == names, (draw, force)
             np.testing.assert_allclose(then, times, rtol=0.0, atol=1e-8)
     assert seen >= 12
+
+
+STRIPS = pt.Strips(borders=(0.1, 0.2), friction=(0.2, 0.1, 0.3))
+
+
+@pytest.mark.parametrize("faint", [1e-12, 1e-18, 1e-300])
+@pytest.mark.parametrize("strips", [None, STRIPS])
+@pytest.mark.parametrize(
+    "parts",
+    [
+        lambda v: {"floor": {"slope": v}}, lambda v: {"floor": {"velocity": (v, -v)}},
+        lambda v: {"drag": pt.Drag(sliding=v)}, lambda v: {"drag": pt.Drag(quadratic=v)},
+        lambda v: {"force": pt.Force(constant=(v, -v))}, lambda v: {"force": pt.Force(torque=v)},
+        lambda v: {"lateral": pt.Lateral(v)}, lambda v: {"height": v},
+    ],
+)  # fmt: skip
+def test_a_number_as_faint_as_rounding_moves_no_end(parts, strips, faint):
+    def end(v):
+        more = parts(v)
+        floor = pt.Floor(strips=strips, **more.pop("floor", {}))
+        puck = pt.Puck(radius=0.05, friction=0.2, mass=0.5, height=more.pop("height", 0.0))
+        launch = pt.Launch((1.0, 0.3), spin=8.0)
+        last = pt.Scene(puck, floor=floor, launch=launch, tol=1e-9, **more).simulate().last
+        return [last[name] for name in ("x", "y", "orientation")]
+
+    np.testing.assert_allclose(end(faint), end(0.0), rtol=0.0, atol=1e-8)
+
+
+@pytest.mark.parametrize("turning", [1e-12, -1e-300])
+def test_a_turntable_slower_than_a_turn_in_200_years_is_refused(turning):
+    with pytest.raises(pt.InputError, match="must be 0, or at least 1e-09 rad"):
+        pt.Scene(pt.Puck(0.05), floor=pt.Floor(turning=turning))

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from puck_tables.scene.scene_spec import SceneSpec
 
 _MOST_ROWS = 60  # of a tabulated pressure astride: each row adds to the cost of a look
+_SLOWEST = 1e-9  # rad/s, of a turntable: what lies on a slower one meets a border after 1e10 s
 _GRIPS = 1000.0  # the largest coefficient that a rim may come over
 
 
@@ -43,7 +44,12 @@ def floor_faults(scene: SceneSpec) -> list[str]:
 
 
 def _bad_motion(floor: Floor) -> list[str]:
-    """What is wrong with the motion of a floor over time."""
+    """What is wrong with the motion of a floor."""
+    if 0.0 < abs(floor.turning) < _SLOWEST:
+        return [
+            f"floor.turning = {floor.turning:g}: must be 0, or at least {_SLOWEST:g} rad/s either "
+            "way, a turn in 200 years"
+        ]
     if not floor.over_time:
         return []
     others = [name for name in ("velocity", "turning") if getattr(floor, name) not in (0.0, (0, 0))]

@@ -137,10 +137,8 @@ def columns_of(world: World, moments: FloatArray, end_time: float) -> dict[str, 
         in_play[times >= event[g.TIME], world._order[int(event[g.WHO])]] = 0.0
     in_play[back[-1]] *= 0.0 if alone_gone else 1.0
     discs = world._place
-    every, then = np.broadcast_arrays(discs, times[:, None])
-    slips = slips_over(world._game, every.ravel(), states.reshape(-1, 6), then.ravel()).reshape(
-        in_play.shape
-    )
+    every, then = np.tile(discs, len(times)), np.repeat(times, len(discs))
+    slips = slips_over(world._game, every, states.reshape(-1, 6), then).reshape(in_play.shape)
     columns = {
         **{name: states[..., n] for n, name in enumerate(STATE)},
         "in_play": in_play, "carried": np.where((slips <= near) & (in_play > 0.0), 1.0, 0.0),
