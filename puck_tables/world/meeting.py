@@ -337,8 +337,7 @@ def next_meeting(
         if gap <= rounded:
             if rate < -QUIET * game.pace[0]:
                 return t
-            if bend > 0.0:
-                step = max(step, math.sqrt(2.0 * rounded / bend))
+            step = max(step, moment_there(rounded, rate, bend, t))
         if look >= PATIENCE:
             nx, ny, more = dx / size, dy / size, max(gap, rounded)
             longer = stays_apart(game, i, j, t, more, nx, ny, 0.0, False, room, one, two)
