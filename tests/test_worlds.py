@@ -128,7 +128,7 @@ class Pair:
 
     def strike(self, puck: int, boards: Any, velocity: Any, spin: Any) -> bool:
         if not self.many.in_play[boards, puck].all():
-            with pytest.raises(pt.InputError, match="no longer in play"):
+            with pytest.raises(pt.InputError, match="no longer in play: set_state"):
                 self.many.strike(puck, velocity, spin, boards=boards)
             return False
 

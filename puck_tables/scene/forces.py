@@ -13,7 +13,6 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 from puck_tables.scene.over_time import given_by
 
-
 _FAINT = 1e-12  # 1/m: spin over speed that rounding makes of a launch without spin; has no sign
 
 

@@ -168,7 +168,8 @@ class Drag:
 class Lateral:
     """An empirical force across the motion: strength (v in m/s)^b (|w| in rad/s)^c sign w.
 
-    b is ``speed_exponent``, c ``spin_exponent``; none where |w| is below 1e-12 v per m, as rounding.
+    b is ``speed_exponent``, c ``spin_exponent``; no force where |w| is below 1e-12 v per m, which
+    rounding makes of no spin.
 
     It is to the left of the motion over the floor where the spin is counter-clockwise, and does no
     work there.  Players of curling fit it to the curl of their stones; no dry friction over the
@@ -185,7 +186,9 @@ class Lateral:
         acts="lateral force (empirical)",
     )  # fmt: skip
     speed_exponent: float = of("number", 0.0, low=0.0, high=8.0, doc="of the speed in m/s", acts="")
-    spin_exponent: float = of("number", 0.0, low=0.0, high=8.0, doc="of the spin in rad/s; 0: its sign only", acts="")
+    spin_exponent: float = of(
+        "number", 0.0, low=0.0, high=8.0, doc="of the spin in rad/s; 0: its sign only", acts=""
+    )
 
 
 @dataclass(frozen=True)

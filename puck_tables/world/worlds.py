@@ -299,7 +299,12 @@ class Worlds(Together):
         gone = some[self._kinds(self._at[some])[:, i] == GONE].tolist()
         if gone:
             name = self.names[self._order[i]]
-            raise of_boards({one: InputError(f"{name} is no longer in play") for one in gone})
+            raise of_boards(
+                {
+                    one: InputError(f"{name} is no longer in play: set_state or reset puts it back")
+                    for one in gone
+                }
+            )
 
     def _each(self, name: str, values: Any, unit: str, count: int, *width: int) -> FloatArray:
         """Numbers for each board, or for all the same."""
