@@ -148,6 +148,8 @@ class Run(TimedResult):
         InputError
             If there is no such puck.
         """
+        if puck in COLUMNS and puck not in self.names:
+            raise InputError(f"[{puck!r}] takes a puck: the column of all of them is .{puck}")
         number = number_of(puck, self.names)
         whole = {**self.columns, **self._derived()}
         return {name: row if row.ndim == 1 else row[:, number] for name, row in whole.items()}
@@ -322,6 +324,4 @@ def number_of(puck: int | str, names: Sequence[str]) -> int:
     shown = ", ".join(names[:8]) + (", ..." if len(names) > 8 else "")
     near = get_close_matches(str(puck), names, 1, 0.6)
     meant = f" (did you mean {near[0]!r}?)" if near else ""
-    if puck in COLUMNS:
-        meant = f" ([...] takes a puck; that column is .{puck})"
     raise InputError(f"no puck {puck!r}{meant}: there are {len(names)}, {shown}")
