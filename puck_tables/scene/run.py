@@ -148,7 +148,7 @@ class Run(TimedResult):
         InputError
             If there is no such puck.
         """
-        if puck in COLUMNS and puck not in self.names:
+        if isinstance(puck, str) and puck in COLUMNS and puck not in self.names:
             raise InputError(f"[{puck!r}] takes a puck: the column of all of them is .{puck}")
         number = number_of(puck, self.names)
         whole = {**self.columns, **self._derived()}
