@@ -129,6 +129,8 @@ class Together:
         paces: FloatArray,
     ) -> None:  # fmt: skip
         """Scales that hold for what a hand gives, too: as World sets them, to the bit."""
+        if what == g.REMOVED:
+            return
         game = self._first._game
         own = game.discs[discs]
         given = slips_of(own, rows)
