@@ -62,6 +62,17 @@ def by_law() -> pt.Scene:
     return pt.Scene(pucks=pucks, floor=floor, walls=cushions())
 
 
+def by_law_on_rings() -> pt.Scene:
+    """The same under bases over which friction is summed: what is known of the law lies there."""
+    law = pt.CurlingLaw(0.02, 0.06, 0.1)
+    pucks = [
+        pt.Piece(0.03, base="annulus:0.02x0.015", friction=0.1, restitution=0.8, tangential=0.0,
+                 rim=0.2, launch=pt.Launch((v, 0.0), position=(0.1 * n, 0.01 * n)))
+        for n, v in enumerate((0.1, 0.0))
+    ]  # fmt: skip
+    return pt.Scene(pucks=pucks, floor=pt.Floor(law=law), walls=cushions(), tol=1e-4)
+
+
 def rail() -> pt.Scene:
     held = pt.Piece(0.03, friction=0.2, constraint=pt.Constraint("rail", angle=0.0),
                     launch=pt.Launch((0.5, 0.0)))  # fmt: skip
@@ -266,7 +277,7 @@ def test_boards_are_worlds_of_their_own_whatever_is_done(board: str, seed: int):
 
 @pytest.mark.thorough
 @pytest.mark.parametrize("seed", range(6))
-@pytest.mark.parametrize("board", [table, push, slope, turning, by_law, rail])
+@pytest.mark.parametrize("board", [table, push, slope, turning, by_law, by_law_on_rings, rail])
 def test_so_are_boards_where_pucks_push_or_are_integrated(board: Any, seed: int):
     chain(board(), seed)
 
