@@ -23,7 +23,7 @@ from puck_tables.errors import MissingExtraError
 try:
     from gymnasium import register
 except ImportError:
-    raise MissingExtraError('environments need Gymnasium: pip install "puck-tables[gym]"') from None
+    raise MissingExtraError("environments need Gymnasium: pip install gymnasium") from None
 
 from puck_tables.gym.envs import GAMES, ManyTables, OneTable
 

@@ -394,12 +394,8 @@ class Worlds(Together):
         gone = some[self._kinds(self._at[some])[:, i] == GONE].tolist()
         if gone:
             name = self.names[self._order[i]]
-            raise of_boards(
-                {
-                    one: InputError(f"{name} is no longer in play: set_state or reset puts it back")
-                    for one in gone
-                }
-            )
+            error = InputError(f"{name} is no longer in play: place puts it back")
+            raise of_boards(dict.fromkeys(gone, error))
 
     def _each(self, name: str, values: Any, unit: str, count: int, *width: int) -> FloatArray:
         """Numbers for each board, or for all the same."""
