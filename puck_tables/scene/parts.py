@@ -168,7 +168,7 @@ class Drag:
 class Lateral:
     """An empirical force across the motion: strength (v in m/s)^b (|w| in rad/s)^c sign w.
 
-    b is ``speed_exponent``, c ``spin_exponent``; no force where |w| is below 1e-12 v per m, which
+    b is ``speed_exponent``, c ``spin_exponent``; no force at a spin w below 1e-12 v per m, which
     rounding makes of no spin.
 
     It is to the left of the motion over the floor where the spin is counter-clockwise, and does no
