@@ -242,21 +242,33 @@ def _observe(films: tuple[Observations, ...], inputs: Inputs) -> _Observed:
 
 def _estimate_all(inputs: Inputs, observed: _Observed) -> _Estimates:
     """The estimate, from slides apart to joined ones, from one friction to one over slip speed."""
+    problem, known = observed.problem, inputs.known
+    # what one friction leaves off at the ends need not be foreign where another is looked for
+    late = bool(inputs.speeds) and not inputs.impacts
     if inputs.spec.integrates:
-        best = slides = _integrated(observed.problem, inputs.known)
+        best = slides = _integrated(problem, known)
     else:
-        best = slides = initial_estimate(observed.problem, inputs.known, refit=True)
+        best = slides = initial_estimate(problem, known, refit=not late)
     untied = ""
     if inputs.impacts:
         best, untied = couple(
-            slides, observed.pieces, observed.uncut, inputs.spec, inputs.lines, inputs.known
+            slides, observed.pieces, observed.uncut, inputs.spec, inputs.lines, known
         )
     constant = best
     if inputs.speeds:
-        refuse_faster(inputs.speeds, best)
-        best = over_speeds(best, inputs.speeds, inputs.between, inputs.known)
+        best = _over_speeds(constant, inputs)
+        if late and not is_clean(best, NOISY, NO_PATTERN):
+            slides = initial_estimate(problem, known, refit=True)
+            if slides.problem.films != constant.problem.films:
+                constant, best = slides, _over_speeds(slides, inputs)
         refuse_opening(best)
     return _Estimates(slides, best, constant, untied)
+
+
+def _over_speeds(constant: Estimate, inputs: Inputs) -> Estimate:
+    """The estimate with a friction over slip speed, from that of one for all."""
+    refuse_faster(inputs.speeds, constant)
+    return over_speeds(constant, inputs.speeds, inputs.between, inputs.known)
 
 
 def _integrated(problem: Problem, known: Known) -> Estimate:

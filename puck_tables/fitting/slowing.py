@@ -1,7 +1,7 @@
 """Values to begin with where more than one friction moves a puck: from what slows and turns it.
 
 A polynomial of time through places and angles in one piece tells velocity v and spin ω; what they
-change by from the first moment on is linear in friction, drags and a push, for a flat puck
+change by, from their means over the film, is linear in friction, drags and a push, for a flat puck
 
     Δv = −f g ∫ I_a v/|v| dt − c ∫ v dt − k ∫ |v| v dt + p t
     Δω = −f g (r/k_g²) ∫ I_d sgn ω dt − (c + s) ∫ ω dt
@@ -202,6 +202,8 @@ def _columns(
     columns = []
     for rate in rates:
         parts = np.cumsum(0.5 * steps * (rate[:, 1:] + rate[:, :-1]), axis=1)
-        columns.append(np.concatenate([np.zeros((3, 1)), parts], axis=1).ravel())
-    moved = np.concatenate([film.velocity, film.rim[None]])
-    return np.stack(columns, axis=1), (moved - moved[:, :1]).ravel()
+        columns.append(np.concatenate([np.zeros((3, 1)), parts], axis=1))
+    columns.append(np.concatenate([film.velocity, film.rim[None]]))
+    # from their means: a polynomial is least sure at its ends
+    *columns, moved = [(one - one.mean(axis=1, keepdims=True)).ravel() for one in columns]
+    return np.stack(columns, axis=1), moved
