@@ -32,7 +32,6 @@ from puck_tables.fitting.inputs import (
     refuse_tipping,
 )
 from puck_tables.fitting.judgement import JudgedMotion, judged_certainty, judged_motion
-from puck_tables.fitting.least_squares import ROBUST, minimise
 from puck_tables.fitting.misfit import misfit
 from puck_tables.fitting.model_comparison import (
     HeldOut,
@@ -52,7 +51,7 @@ from puck_tables.fitting.other_minima import without_spin
 from puck_tables.fitting.parameters import DRAGS
 from puck_tables.fitting.problem import Known, Problem
 from puck_tables.fitting.residuals import NO_PATTERN, NOISY, drift, runs
-from puck_tables.fitting.slowing import begun_from_slowing, begun_or_refused
+from puck_tables.fitting.slowing import begun_or_refused, nearest_start
 from puck_tables.fitting.touches import SlideIndex, slides_apart
 from puck_tables.puck import Puck
 
@@ -278,10 +277,9 @@ def _integrated(problem: Problem, known: Known) -> Estimate:
     fits, from one with linear drag.  Frames at the ends are looked at only then.
     """
     drags = {*DRAGS} >= {*problem.spec.integrated}
-    begun = begun_from_slowing(problem) if drags else begun_or_refused(problem)
+    begun = nearest_start(problem) if drags else begun_or_refused(problem)
     if begun is not None:
-        x, _ = minimise(*begun, ROBUST)
-        result = estimate(problem, x, known)
+        result = estimate(problem, begun[1], known)
         if is_clean(result, NOISY, NO_PATTERN) or not drags:
             refuse_opening(result)
             return result

