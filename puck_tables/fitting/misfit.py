@@ -157,7 +157,8 @@ def _faint(result: Estimate, kind: tuple[int, ...], force: float) -> bool:
     """Whether a force does next to nothing: then it only led to another motion."""
     speed = float(np.hypot(*result.problem.launches(result.x)[:, 2:4].T).max())
     slowing = result.problem.spec.scales(result.problem.numbers_at(result.x))[0]
-    return force * (speed**2 if kind == AIR else 1.0) < _FAINT * slowing
+    faint: bool = force * (speed**2 if kind == AIR else 1.0) < _FAINT * slowing
+    return faint
 
 
 def _air_words(air: float, spec: FitSpec) -> str:
