@@ -155,7 +155,7 @@ def _report(result: Aim | Aims, note: str) -> Iterator[str]:
     """The answer; of one target the launches, line by line, of many how well they do."""
     puck = result.puck
     kind = f", {puck.body.kind}" if puck.body.kind else ""
-    words = f"r = {puck.radius:g} m, delta = {puck.delta:.6g}, J = {puck.decel:.6g} m/s^2{kind}"
+    words = f"r = {puck.radius:g} m, delta = {puck.delta:.6g}, f g = {puck.decel:.6g} m/s^2{kind}"
     first, *others = result.explain().splitlines()
     if not isinstance(result.target, tuple):
         yield listed({"puck": words + note, "answer": first.rstrip(".")}, 7)

@@ -25,8 +25,9 @@ from puck_tables.errors import InputError
               "depends on the slip speed: CSV of speed in m/s and f.")  # fmt: skip
 @click.option("--accuracy", type=NUMBER, help="Largest error: of resultants 1e-13 to 0.01 "
               "[default: 2e-11], of those under other laws than uniform pressure 1e-11 to 0.01 "
-              "[default: 1e-9], of stops 1e-11 to 0.01 in units of Q/J and Q^2/J [default: 1e-10], "
-              "with --speed-law 1e-13 to 0.01 of the largest f [default: 1e-6].")  # fmt: skip
+              "[default: 1e-9], of stops 1e-11 to 0.01 in units of Q/(f g) and Q^2/(f g) [default: "
+              "1e-10], with --speed-law 1e-13 to 0.01 of the largest f "
+              "[default: 1e-6].")  # fmt: skip
 @click.option("--cells", type=int, help="Grid size by hand instead: cells on each side of each "
               "singular line, at least 4, for stops 8.")  # fmt: skip
 @click.option("-o", "--output", type=FILE, metavar="FILE",

@@ -15,7 +15,7 @@ from puck_tables.cli.printing import note
               help="Where and when launches stop, states at any time, friction resultants."
               )  # fmt: skip
 @click.option("--tol", type=NUMBER, default=1e-6, show_default=True,
-              help="Largest error, in units of Q/J, Q^2/J, Q: 1e-9 to 0.01.")  # fmt: skip
+              help="Largest error, in units of Q/(f g), Q^2/(f g), Q: 1e-9 to 0.01.")  # fmt: skip
 @packed("choice", PuckChoice, *body_options())
 @click.option("-o", "--output", type=FILE, required=True, metavar="FILE", help="The file.")
 @click.option("--overwrite", is_flag=True, help="Replace an output file that exists.")

@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from puck_tables.fitting.numbers import Number
 
 _WIDTH = 15  # of names
-_DIGITS = 9  # after the point: more are written with a power of ten
+# after the point, of numbers below 1e-3 and of others: more are written with a power of ten
+_DIGITS, _MOST = 9, 12
 
 
 def report(result: Fit) -> str:
@@ -131,7 +132,7 @@ def _rounded(number: Number) -> str:
     if not (number.error > 0.0 and math.isfinite(number.error)):
         return f"{number.value:.6g}{unit}"
     digits = max(0, 1 - math.floor(math.log10(number.error)))
-    if digits > _DIGITS and number.value != 0.0:
+    if digits > (_DIGITS if abs(number.value) < 1e-3 else _MOST) and number.value != 0.0:
         power = max(0, digits + math.floor(math.log10(abs(number.value))))
         return f"{number.value:.{power}e} +- {number.error:.1e}{unit}"
     return f"{number.value:.{digits}f} +- {number.error:.{digits}f}{unit}"

@@ -69,7 +69,8 @@ def puck_options(
         click.option("--gravity", type=kind("m/s^2"),
                      help="Gravity in m/s^2.  [default: 9.80665]"),
         *([heavy] if mass else []),
-        click.option("--decel", type=kind("m/s^2"), help="J = f g in m/s^2 instead.  [default: 1]"),
+        click.option("--decel", type=kind("m/s^2"), help="f g in m/s^2 instead of "
+                     "--friction.  [default: 1]"),
         *body_options(kind, many),
     ]  # fmt: skip
 
@@ -115,10 +116,11 @@ class PuckChoice:
 
     @property
     def note(self) -> str:
-        """What is said where nothing of it was chosen."""
-        return (
-            "" if len(not_none(asdict(self))) > 1 else "   (defaults: see --help for a real puck)"
-        )
+        """What is said where nothing of it was chosen, or no friction."""
+        chosen = not_none(asdict(self))
+        if self.base is not None and not {"friction", "decel"} & {*chosen}:
+            return "   (a default: give --friction)"
+        return "" if len(chosen) > 1 else "   (defaults: see --help for a real puck)"
 
     def puck(self) -> Puck:
         """The puck; on a base it is flat without a height, and has f = 1 without a friction."""

@@ -110,13 +110,13 @@ def report(answer: Answer) -> str:
 def _friction(result: FloorFriction) -> str:
     """A few rows of force and torque over ε."""
     heads = {
-        "v/(r w)": ".6g", "r w/v": ".6g", "F along/fN": ".10f", "F across/fN": ".10f",
+        "v/(r w)": ".6g", "F along/fN": ".10f", "F across/fN": ".10f",
         "M/(fNr)": ".10f",
     }  # fmt: skip
     step = max(1, result.epsilon.size // _ROWS)
     rows = zip(
         *(values[::step] for values in (
-            result.epsilon, result.slip_ratio, result.share_along, result.share_across,
+            result.epsilon, result.share_along, result.share_across,
             result.share_torque,
         )), strict=True,
     )  # fmt: skip

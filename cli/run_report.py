@@ -47,11 +47,15 @@ def report(run: Run) -> str:
     told = listed(lines, 10)
     if not several:
         return told
-    impacts = _some([
-        f"impact at {event.time:.6g} s: {event.puck} and {event.partner}, {event.approach:.4g} m/s"
-        for event in run.events if event.what == "impact"
-    ], "\n")  # fmt: skip
-    return "\n\n".join(filter(None, [plainly(run), _pucks(run), impacts, told]))
+    met, passed = (
+        _some([
+            f"{event.what} at {event.time:.6g} s: {event.puck} and {event.partner}, "
+            f"{abs(event.approach):.4g} m/s"
+            for event in run.events if event.what == what
+        ], "\n")
+        for what in ("impact", "line")
+    )  # fmt: skip
+    return "\n\n".join(filter(None, [plainly(run), _pucks(run), met, passed, told]))
 
 
 def _of_one(run: Run) -> dict[str, str]:
@@ -116,12 +120,18 @@ def _friction(scene: SceneSpec) -> str:
         return f"by slip speed, {law_name(scene)}"
     if scene.floor.orthotropic is not None:
         decels = ", ".join(f"{f * normal:.6g}" for f in scene.floor.orthotropic.friction)
-        return f"by direction, f N/m = {decels} m/s^2 along its axes"
-    decels = f"f N/m = {', '.join(f'{f * normal:.6g}' for f in scene.frictions)} m/s^2"
+        return f"by direction, {_pull(scene)} = {decels} m/s^2 along its axes"
+    decels = ", ".join(f"{f * normal:.6g}" for f in scene.frictions)
+    decels = f"{_pull(scene)} = {decels} m/s^2"
     if scene.puck.shape is not None:
         return decels
     words = f"delta = {', '.join(f'{delta:.4g}' for delta in scene.heights)}, {decels}"
     return words + ("; part of the base may lift" if max(scene.heights) > 1.0 else "")
+
+
+def _pull(scene: SceneSpec) -> str:
+    """What friction takes of a mass on this floor."""
+    return "f g cos(slope)" if scene.floor.slope else "f g"
 
 
 def _event(event: Event) -> str:
@@ -139,20 +149,22 @@ def plainly(run: Run) -> str:
     """How it ends and who leaves the board."""
     from puck_tables.world.agreement import pieces_of
 
-    pucks = _counted(len(run.names), "puck")
+    free = [not piece.path for piece in pieces_of(run.scene)]  # none is driven
+    pucks = _counted(sum(free), "puck")
     if run.end_time == 0.0 and all(event.what == "overhang" for event in run.events):
         return f"{pucks}: nothing moves.\nSend one off: --set puck[0].launch.velocity=[1,0]"
     after = f"{run.end_time:.4g} s and {_counted(run.impacts, 'impact')}"
     left = {what: [event.puck for event in run.events if event.what == what] for what in _LEAVES}
-    rest = len(run.names) - sum(map(len, left.values()))
+    rest = sum(free) - sum(map(len, left.values()))
     if run.end in ("at rest", "over the edge", "in a pocket"):
-        who = pucks if rest == len(run.names) else f"{rest or 'none'} of {pucks}"
+        who = pucks if rest == sum(free) else f"{rest} of {pucks}"
         first = f"{who} {'comes' if rest == 1 else 'come'} to rest after {after}."
+        first = first if rest else f"No puck is left after {after}."
     elif run.end == "time is up":
-        free = [not piece.path for piece in pieces_of(run.scene)]
         moving = int((run.stop_times > run.end_time)[free].sum())
+        who = pucks if moving == sum(free) else f"{moving} of {pucks}"
         verb = "moves" if moving == 1 else "move"
-        first = f"Time is up after {after}: {moving} of {pucks} still {verb}."
+        first = f"Time is up after {after}: {who} still {verb}."
     else:
         who, them = ("the puck rests", "it") if rest == 1 else (f"{rest} pucks rest", "them")
         way = "round" if run.end == "carried round" else "along"
@@ -245,16 +257,19 @@ def _error(run: Run) -> str:
     """What times and places may be wrong by; where tol could not be kept, or nobody can know."""
     from puck_tables.world.agreement import pieces_of
 
-    time = run.speed_scale / run.rate_scale if run.rate_scale > 0.0 else 0.0
     tol, several = run.scene.tol, bool(run.scene.pucks)
+    time = run.speed_scale / run.rate_scale if run.rate_scale > 0.0 else 0.0
+    wanted = f"tol = {tol:g}"
+    if time > 0.0:
+        wanted += f" ({tol * time:.1e} s, {tol * time * run.speed_scale:.1e} m)"
     if run.end_error > min(piece.radius for piece in pieces_of(run.scene)):
         return (
             "nobody can know the end: launches that differ by 1e-9 end up to "
             f"{run.end_error:.2g} m apart, for every impact multiplies what is not known"
         )
-    words = f"about {run.error_estimate * time:.1e} s, {run.end_error:.1e} m; "
+    words = f"about {run.error_estimate * time:.1e} s, {run.end_error:.1e} m; {wanted}"
     if run.error_estimate > tol:
         known = "a finer table of its law helps" if run.scene.floor.law else "finer steps help"
         why = "impacts multiply what is not known of launches" if several else f"{known} no more"
-        words += f"tol = {tol:g} is out of reach, {why}; "
-    return words + f"Q = {run.speed_scale:.4g} m/s, J = {run.rate_scale:.4g} m/s^2"
+        words += f" is out of reach, {why}"
+    return words

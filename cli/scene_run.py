@@ -52,8 +52,8 @@ scene_options = packed(
 
 PATHS = {
     "v0": "launch.velocity", "w0": "launch.spin", "speed": "launch.velocity[0]",
-    "radius": "puck.radius", "height": "puck.height", "mass": "puck.mass",
-    "friction": "puck.friction", "gravity": "gravity", "frames": "frames",
+    "base": "puck.base", "radius": "puck.radius", "height": "puck.height",
+    "mass": "puck.mass", "friction": "puck.friction", "gravity": "gravity", "frames": "frames",
     "tol": "tol",
 }  # fmt: skip
 KEPT = (
@@ -160,7 +160,14 @@ def _default_tables(fields: dict[str, Any]) -> dict[str, Any]:
     scaled = [name for name in SCALED if name in fields]
     if real and scaled:
         raise InputError(f"--{real[0]} and --{scaled[0]} clash: give the real or the scaled puck")
-    tables: dict[str, Any] = {"puck": {"radius": 1.0}, "launch": {"velocity": [0.0, 0.0]}}
+    launch = {"velocity": [0.0, 0.0]}
+    if "base" in fields:
+        if "delta" in fields:
+            raise InputError("--base and --delta clash: --delta is of round pucks")
+        own = {} if "friction" in fields else {"friction": 1.0}
+        more = {} if real else {"gravity": fields.get("decel", DEFAULT_DECEL)}
+        return {"puck": own, "launch": launch, **more}
+    tables: dict[str, Any] = {"puck": {"radius": 1.0}, "launch": launch}
     if real:
         return tables
     for name in scaled:
@@ -215,6 +222,6 @@ def summary_of_map(ends: Map | Sample | Stored) -> str:
     lines = work.without_end(tally) if isinstance(ends, Stored) else ends.without_end()
     model = ""
     if isinstance(ends, Map):
-        error = f"{ends.error_estimate:.1e} (Q/J, Q²/J)"
+        error = f"{ends.error_estimate:.1e} of Q/a, Q²/a"
         model = f"; {ends.model}; error <= {error} in the runs that were checked"
     return "\n".join([f"{work.scene.title or 'scene'} over {ranged}: {counts}{model}", *lines])

@@ -58,8 +58,9 @@ _LAUNCHED = (
 @click.option("--frames", type=int, help="Number of states to save.  [default: 101]")
 @click.option("--times", type=Times("s"), help="Times of the states to save, in s.")
 @click.option("--tol", type=NUMBER, default=1e-9, show_default=True,
-              help="Largest error, in units of Q/J (times) and Q^2/J (places), Q = hypot(v0, r "
-              "w0): the cheapest method whose measured error is below it is taken.")  # fmt: skip
+              help="Largest error, in units of Q/(f g) (times) and Q^2/(f g) (places), Q = "
+              "hypot(v0, r w0): the cheapest method whose measured error is below it is "
+              "taken.")  # fmt: skip
 @click.option("--method", type=click.Choice([method.value for method in INTEGRATORS]),
               help="Dormand-Prince 5(4), or Runge-Kutta 4.  [default: the cheaper]")  # fmt: skip
 @click.option("--exact", is_flag=True, help="Closed forms instead of the table.")
@@ -158,13 +159,13 @@ def _of_round(run: Trajectory, note: str) -> dict[str, str]:
         turn += f" by Q = Q0/1000, then {decade:.4g} deg more for each factor 10 of Q"
     kind = f", {puck.body.kind}" if puck.body.kind else ""
     return {
-        "puck": f"r = {puck.radius:g} m, delta = {puck.delta:.6g}, J = {puck.decel:.6g} m/s^2{kind}"
-        f"{note}",
+        "puck": f"r = {puck.radius:g} m, delta = {puck.delta:.6g}, "
+        f"f g = {puck.decel:.6g} m/s^2{kind}{note}",
         "launch": f"v0 = ({vx:g}, {vy:g}) m/s, w0 = {w0:g} rad/s, "
         f"Q0 = hypot(v0, r w0) = {q0:.6g} m/s",
         "regime": f"{run.regime}: {REGIMES[run.regime]}",
         "contact": _contact(run),
-        **_stop(run, q0, {"heading turned": turn}, {"limit angle": _limit(run.limit_angle)}),
+        **_stop(run, q0, {"heading turned": turn}, {"limit": _limit(run)}),
     }
 
 
@@ -177,10 +178,10 @@ def _on_base(run: Trajectory, note: str) -> dict[str, str]:
     high = f"h = {puck.height:g} m, " if puck.height > 0.0 else ""
     return {
         "puck": f"base {puck.shape.name}, k = {k:.6g} m, {high}f = {puck.friction:g}, "
-        f"J = {puck.decel:.6g} m/s^2{note}",
+        f"f g = {puck.decel:.6g} m/s^2{note}",
         "launch": f"v0 = ({vx:g}, {vy:g}) m/s, w0 = {w0:g} rad/s, "
         f"Q0 = hypot(v0, k w0) = {q0:.6g} m/s",
-        "end": ENDS[run.regime],
+        "end": "it slides without a spin" if _is_straight(run) else ENDS[run.regime],
         **_stop(run, q0, {}, {}),
     }
 
@@ -217,7 +218,7 @@ def plainly(run: Trajectory) -> str:
         )
     first = f"The puck stops after {run.stop_time:.4g} s, {math.hypot(x, y):.4g} m from its launch."
     aside = math.degrees(math.atan2(vx * y - vy * x, vx * x + vy * y))
-    if run.launch_spin == run.body_angle == 0.0:
+    if _is_straight(run):
         return first + "\nWithout spin its path is straight."
     side = "left" if aside > 0.0 else "right"
     bent = (
@@ -227,6 +228,11 @@ def plainly(run: Trajectory) -> str:
         bent = "Its path is straight"
     end = ENDS.get(run.regime, ENDS["together"])
     return f"{first}\n{bent}; {end}."
+
+
+def _is_straight(run: Trajectory) -> bool:
+    """Whether it slides and never spins."""
+    return run.stop_time > 0.0 and run.launch_spin == run.body_angle == 0.0
 
 
 def _contact(run: Trajectory) -> str:
@@ -245,12 +251,14 @@ def _contact(run: Trajectory) -> str:
     return text
 
 
-def _limit(angle: float | None) -> str:
-    """Where the ratio of spin to speed tends to."""
+def _limit(run: Trajectory) -> str:
+    """What the ratio ε of sliding to spinning tends to."""
+    angle = run.limit_angle
     assert angle is not None
+    if run.regime not in ("B", "C", "D"):
+        return "none: it does not slide and spin at once"
     if angle == 0.0:
-        return "none: the spin dies out before the sliding, r w/v tends to 0"
+        return "none: the spin dies out before the sliding, v/(r w) grows without bound"
     if angle == 0.5 * math.pi:
-        return "none: the sliding dies out before the spin, r w/v grows without bound"
-    ratio = math.tan(angle)
-    return f"{math.degrees(angle):.7g} deg (r w/v tends to {ratio:.7g})"
+        return "none: the sliding dies out before the spin, v/(r w) tends to 0"
+    return f"v/(r w) tends to {1.0 / math.tan(angle):.7g}"

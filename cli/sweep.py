@@ -50,8 +50,8 @@ ARGUMENTS = {"w0": "spin", **{name: name for name in ("speed", "heading", "vx", 
                  help="Say with which chance samples end inside a disc or a rectangle, in m."),
 )  # fmt: skip
 @click.option("--tol", type=NUMBER, default=1e-8, show_default=True,
-              help="Largest error, in units of Q/J (times) and Q^2/J (places): the cheapest method "
-              "whose measured error is below it is taken.")  # fmt: skip
+              help="Largest error, in units of Q/(f g) (times) and Q^2/(f g) (places): the "
+              "cheapest method whose measured error is below it is taken.")  # fmt: skip
 @click.option("--method", type=click.Choice([method.value for method in METHODS]),
               help="Only this one.  [default: the cheapest]")  # fmt: skip
 @click.option("--threads", type=click.IntRange(1, 1024), help="[default: all cores]")

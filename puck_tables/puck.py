@@ -29,7 +29,7 @@ class Puck(VerbsOfMany):
     """A flat puck on a rough floor.
 
     Its motion depends, up to scale, on ``delta`` = 2fh/r, the pressure and the gyration; the scale
-    of time is Q/J with ``decel`` = J = fg.
+    of time is Q/(fg) with ``decel`` = fg.
 
     Parameters
     ----------
@@ -116,13 +116,14 @@ class Puck(VerbsOfMany):
         times : array_like, s, ≥ 0, any order, optional
             The times of the states instead; after the stop the puck is at rest.
         tol : float
-            Largest error of the stop wanted, in units of Q/J (time) and Q²/J (place); 1e-13 to
-            0.01, from 1e-11 on for a puck with δ > 1, another law or radius of gyration.  Of these
-            the states on the way keep it too, speed and rω in units of Q; those of other pucks may
-            be off by 3 times that (measured: 2.8, launched next to φ = π/4).  The cheapest
-            integrator whose measured error is below it is taken; ``explain()`` of the result says
-            which and why.  On a base that is not round 1e-12 to 0.01, and the angle of the body is
-            as good: what it moves the farthest point of the base by, in units of Q²/J.
+            Largest error of the stop wanted, in units of Q/(fg) (time) and Q²/(fg) (place); 1e-13
+            to 0.01, from 1e-11 on for a puck with δ > 1, another law or radius of gyration.  Of
+            these the states on the way keep it too, speed and rω in units of Q; those of other
+            pucks may be off by 3 times that (measured: 2.8, launched next to φ = π/4).  The
+            cheapest integrator whose measured error is below it is taken; ``explain()`` of the
+            result says which and why.  On a base that is not round 1e-12 to 0.01, and the angle of
+            the body is as good: what it moves the farthest point of the base by, in units of
+            Q²/(fg).
         method : 'adaptive' (Dormand–Prince 5(4)) or 'rk4', optional
             Only this one.
         exact : bool
@@ -328,11 +329,11 @@ class Puck(VerbsOfMany):
 
         Notes
         -----
-        Displacement = (Q²/J) Rot(ψ)(X, ±Y)(φ, δ), so at each φ the place fixes Q and ψ.  As φ goes
-        from 0 to π/2 the speed falls from √(2JD) to 0, spin and stop time grow without bound from 0
-        and √(2D/J), D the distance: each value is met once for each sense of spin.  For tall pucks,
-        δ from about 3.5 on, speed and time are not monotonic: a value may be met several times, and
-        a launch with spin may be faster than any without.  All are found.
+        Displacement = (Q²/(fg)) Rot(ψ)(X, ±Y)(φ, δ), so at each φ the place fixes Q and ψ.  As φ
+        goes from 0 to π/2 the speed falls from √(2fgD) to 0, spin and stop time grow without bound
+        from 0 and √(2D/(fg)), D the distance: each value is met once for each sense of spin.  For
+        tall pucks, δ from about 3.5 on, speed and time are not monotonic: a value may be met
+        several times, and a launch with spin may be faster than any without.  All are found.
 
         References
         ----------

@@ -38,7 +38,7 @@ SCALARS = {  # and their units
     "energy_residual": "1", "method": "", "steps": "1", "error_estimate": "1",
     "launch_velocity": "m/s", "launch_spin": "rad/s",
 }  # fmt: skip
-DEFAULT_TOL = 1e-9  # of Q/J, Q²/J
+DEFAULT_TOL = 1e-9  # of Q/(fg), Q²/(fg)
 DEFAULT_FRAMES = 101  # a hundred steps: smooth in a picture
 MAX_FRAMES = 1_000_000  # more is a slip of the hand
 _LARGEST_U = 700.0  # of ln tan φ; beyond, φ is π/2
@@ -64,7 +64,7 @@ class Trajectory(TimedResult):
       when all of it is down again (None: never);
     * ``kinetic_energy`` J at the launch; ``energy_residual``: the largest difference between
       energy lost and work of friction along the path, as a share of it;
-    * ``method``, ``steps``, and ``error_estimate`` in units of Q/J (times) and Q²/J (places);
+    * ``method``, ``steps``, and ``error_estimate`` in units of Q/(fg) (times) and Q²/(fg) (places);
       ``selection``: the method selected for the tolerance (None where the motion is elementary).
 
     Arrays over ``time`` (n,) s: ``x``, ``y`` m; ``vx``, ``vy`` m/s; ``heading`` rad (of the

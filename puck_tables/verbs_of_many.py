@@ -62,14 +62,14 @@ class VerbsOfMany(PuckSpec):
         radius, height, friction, gravity, gyration : number or array (n,), optional
             Instead of that of the puck, whose other numbers stay; units as :class:`Puck` has them.
         delta, decel : number or array (n,), optional
-            δ = 2fh/r in place of the height, J = fg (m/s²) in place of the gravity.  On a base that
+            δ = 2fh/r in place of the height, fg (m/s²) in place of the gravity.  On a base that
             is not round there is no δ and no radius, and the gyration is that of the puck.
         pressure : pressure law, or a list of at most 100, optional
         launches : xarray.Dataset, optional
             Its coordinates and variables ``launch_speed``, ``launch_spin``, ``launch_vx``,
             ``radius``, … over its dimensions, instead of arrays.
         tol : float
-            Largest error in units of Q/J (time) and Q²/J (place).
+            Largest error in units of Q/(fg) (time) and Q²/(fg) (place).
         method, table : optional
             As for :func:`puck_tables.stop`.
         threads, chunk : int

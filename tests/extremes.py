@@ -235,7 +235,7 @@ def pure_spin() -> Iterator[float]:
         yield run.stop_time / 1.5 - 1.0
 
 
-@row("a state exactly on φ₀: the spiral in elementary functions", "Q, Q/J, Q²/J", 1e-9)
+@row("a state exactly on φ₀: the spiral in elementary functions", "Q, Q/(fg), Q²/(fg)", 1e-9)
 def on_the_limit_angle() -> Iterator[float]:
     for delta in (0.0, 5e-324, 0.4, 1.0):
         with mp.workdps(40):
@@ -290,7 +290,7 @@ def known_stops() -> tuple[np.ndarray, np.ndarray]:
     return u, judge().stops(u, HEIGHT)
 
 
-@row("launches on the edges of the cells of the stop table", "Q/J, Q²/J", 1.1e-10)
+@row("launches on the edges of the cells of the stop table", "Q/(fg), Q²/(fg)", 1.1e-10)
 def launches_on_the_edges_of_cells() -> Iterator[float]:
     u, truth = known_stops()
     rim, speed = np.exp(np.minimum(u, 0.0)), np.exp(-np.maximum(u, 0.0))
@@ -301,7 +301,7 @@ def launches_on_the_edges_of_cells() -> Iterator[float]:
     yield from (found.stop_position - truth[:, 1:] * [1.0, -1.0]).ravel()
 
 
-@row("Runge–Kutta 4 with 1e6 steps", "Q/J, Q²/J", 1e-11)
+@row("Runge–Kutta 4 with 1e6 steps", "Q/(fg), Q²/(fg)", 1e-11)
 def a_million_steps() -> Iterator[float]:
     from puck_tables.kernels.section_spline import NO_SECTION
     from puck_tables.motion.path import STOPPED, integrate

@@ -348,7 +348,8 @@ def test_numbers_of_a_puck_on_a_base_are_checked() -> None:
         ({"base": "box:0.2x0.1", "radius": 0.1}, "not be less than the reach"),
         ({"base": "box:0.2x0.1", "pressure": "ring"}, "pressure laws are of round pucks"),
         ({"base": "boxes:0.2x0.1"}, "no base is called"),
-        ({"base": "box:0.2"}, "box takes 2 lengths"),
+        ({"base": "box:0.2"}, "box takes 2 lengths, an x between"),
+        ({"base": "box:10cm,6cm"}, "box takes 2 lengths, an x between"),
         ({"base": "none.csv"}, "none.csv"),
         ({}, "radius is missing"),
     ):

@@ -37,8 +37,14 @@ def test_a_report_says_first_what_happened() -> None:
 
 def test_what_still_moves_and_what_is_driven_is_told() -> None:
     said = puck("simulate", "--scene", "air-hockey-mallet").stdout
-    assert said.startswith("Time is up after 3 s and 12 impacts: 1 of 2 pucks still moves.")
+    assert said.startswith("Time is up after 3 s and 12 impacts: 1 puck still moves.")
     assert "None leaves play." in said and "  driven\n" in said and " m/s\n" in said
+
+
+def test_a_driven_mallet_comes_not_to_rest_and_goals_are_told() -> None:
+    said = puck("simulate", "--scene", "air-hockey-goals").stdout
+    assert said.startswith("No puck is left after 3 s and 2 impacts.\n1 goes over an edge (puck).")
+    assert "\nline at 1.00893 s: puck and right goal, " in said
 
 
 def test_what_nobody_can_know_is_said(tmp_path: Path) -> None:

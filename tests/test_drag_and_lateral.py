@@ -152,3 +152,17 @@ def test_what_is_refused_and_what_is_said():
     piece = pt.Piece(RADIUS, friction=0.1, launch=pt.Launch((1.0, 0.0), 1.0))
     board = pt.Scene(pucks=[piece], lateral=pt.Lateral(0.1)).simulate()
     assert "no dry friction over the contact explains it" in board.explain()
+
+
+@pytest.mark.parametrize("floor", [pt.Floor(), pt.Floor(velocity=(0.4, 0.0))])
+def test_a_lateral_force_by_the_sign_of_a_spin_does_nothing_without_one(floor):
+    """Rounding makes a spin of none, of either sign: such a run had no end."""
+    stone = pt.Puck(0.145, base="annulus:0.0635x0.0555", friction=0.05, mass=20.0, height=0.1)
+    launch, across = pt.Launch((2.0, 0.1)), pt.Lateral(0.16, 0.2)
+    alone = pt.Scene(stone, floor, launch).simulate()
+    run = pt.Scene(stone, floor, launch, lateral=across).simulate()
+    assert run.steps < 2 * alone.steps + 20
+    for name in ("x", "y", "orientation"):
+        assert run.last[name] == pytest.approx(alone.last[name], abs=1e-9)
+    slow = pt.Scene(stone, floor, pt.Launch((2.0, 0.1), spin=1e-6), lateral=across).simulate()
+    assert slow.last["y"] > run.last["y"] + 1e-3

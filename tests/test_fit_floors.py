@@ -128,6 +128,15 @@ def test_which_floor_a_film_supports(floor: str):
     assert result.verdict.startswith(floor + " is "), (result.verdict, result.laws)
 
 
+def test_a_law_with_more_numbers_leaves_no_more_than_one_friction():
+    """What is fitted again under the common noise is begun anew, and may not arrive."""
+    track = film(6, lambda u: 0.15 + 0.15 * np.exp(-u / 0.2), v=1.5, spin=20.0, frames=129)
+    laws = ["uniform", "uniform+stribeck", "uniform+hyperbola"]
+    result = pt.fit(track, PUCK, free="friction", laws=laws, keep_all=True)
+    left = {one.name: one.chi2 for one in result.laws}
+    assert left["uniform+stribeck"] < left["uniform+hyperbola"] < 0.5 * left["uniform"]
+
+
 def test_what_is_wrong_with_floors_is_said():
     track = film(5, even, frames=60)
     for how, words in (

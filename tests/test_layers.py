@@ -44,6 +44,7 @@ ROOMS = {
     "tradeoff": "_core _version accuracy contact io kernels motion puck result stopping table",
     "plot": "_core _version accuracy bulk chetaev errors film fitting io motion reference "
     "result scene stopping tradeoff trajectory world wrench",
+    "gym": "_core contact errors plot scene world",
     "cli": "_core _version accuracy bulk chetaev contact errors explore export film fitting io "
     "kernels motion plot puck reference result scene stopping table tradeoff trajectory warming "
     "world",
@@ -85,6 +86,8 @@ DOORS = {
         "wrench.push",
     },
     "click": {"cli"},
+    "gymnasium": {"gym"},
+    "pettingzoo": {"gym.two_players"},
     "jax": {"autodiff.jax"},
     "torch": {"autodiff.torch"},
 }

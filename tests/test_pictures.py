@@ -161,7 +161,7 @@ def test_no_axis_has_an_offset_or_shows_rounding(drawn: Any, delta: float) -> No
             formatter = axis.get_major_formatter()
             assert isinstance(formatter, ScalarFormatter) and formatter.offset == 0
     low, high = figure.axes[2].get_ylim()  # the ratio, which is constant
-    assert low < ratio < high and high - low > 0.01 * ratio
+    assert low < 1.0 / ratio < high and high - low > 0.01 / ratio
 
 
 def incline(slopes: str, spins: str) -> Any:

@@ -88,6 +88,16 @@ def test_refusals_are_one_clear_sentence(arguments, words):
     assert "Traceback" not in result.stderr
 
 
+def test_a_base_beside_set_is_that_of_the_scene():
+    belt = ("--v0", "0,0", "--set", "floor.velocity=[0.3,0]")
+    result = puck("simulate", "--base", "box:10cmx6cm", "--friction", "0.4", *belt)
+    assert "base box:10cmx6cm" in result.stdout and "f g = 3.92266 m/s^2" in result.stdout
+    assert f"carried by the floor after {0.3 / (0.4 * 9.80665):.9g} s" in result.stdout
+    for more, words in ((("--delta", "1"), "--base and --delta clash"), ((), "0.3 s")):
+        result = puck("simulate", "--base", "box:10cmx6cm", *more, *belt)
+        assert words in result.stdout + result.stderr
+
+
 def test_above_the_friction_angle_the_run_ends_at_the_time_asked():
     steep = ("--set", "floor.slope=0.5", "--set", "time=3")
     result = puck("simulate", "--scene", "incline", *steep)

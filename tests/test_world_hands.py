@@ -95,7 +95,7 @@ def meddle(rng: np.random.Generator, world: pt.World, forces: bool = True) -> No
         lambda: world.advance(float(rng.uniform(0.0, 0.1))),
     ]
     if forces:
-        calls.append(lambda: world.apply_force(who, 0.3 * v, 1e-3, time=0.05))
+        calls.append(lambda: world.apply_force(who, 0.3 * v, 1e-3, duration=0.05))
     before = bits(world)
     try:
         calls[int(rng.integers(len(calls)))]()
@@ -299,7 +299,7 @@ def test_a_push_over_a_time_is_that_of_a_scene():
     alone = piece(0.0, 0.0, **launch, force=pt.Force(over_time=rows))
     truth = pt.Scene(pucks=[alone, piece(0.3, 0.1)], walls=cushions()).world()
     world = pt.Scene(pucks=[piece(0.0, 0.0, **launch), piece(0.3, 0.1)], walls=cushions()).world()
-    world.apply_force(0, force, torque, time=0.2)
+    world.apply_force(0, force, torque, duration=0.2)
     truth.advance(0.4)
     world.advance(0.4)
     assert world.state() == pytest.approx(truth.state(), abs=1e-11)
@@ -311,9 +311,9 @@ def test_pushes_add_up_in_closed_form():
     """Two that overlap, of one that nothing brakes."""
     world = pt.Scene(pucks=[piece(0, 0, mass=1.0, friction=0.0)], time=1.0).world()
     world.advance(0.1)
-    world.apply_force(0, (1.0, 0.0), time=0.4)
+    world.apply_force(0, (1.0, 0.0), duration=0.4)
     world.advance(0.2)
-    world.apply_force(0, (2.0, 1.0), time=0.3)
+    world.apply_force(0, (2.0, 1.0), duration=0.3)
     world.advance(1.0)
     assert world.state()[0, 3:5] == pytest.approx([0.4 + 0.6, 0.3], abs=1e-12)
     x = 0.5 * 0.4**2 + 0.4 * 0.8 + 0.5 * 2.0 * 0.3**2 + 0.6 * 0.7
@@ -325,10 +325,10 @@ def test_a_push_too_weak_leaves_it_lying_and_one_in_a_row_moves_all():
     pucks = [piece(0.06 * n, 0.0, restitution=0.0) for n in range(3)]
     world = pt.Scene(pucks=pucks).world()
     weight = 0.2 * 0.1 * G
-    world.apply_force(0, (2.9 * weight, 0.0), time=0.2)
+    world.apply_force(0, (2.9 * weight, 0.0), duration=0.2)
     world.advance(0.3)
     assert world.state()[:, 0] == pytest.approx([0.0, 0.06, 0.12], abs=1e-15)
-    world.apply_force(0, (4.0 * weight, 0.0), time=0.2)
+    world.apply_force(0, (4.0 * weight, 0.0), duration=0.2)
     world.advance(0.2)
     assert world.state()[:, 3] == pytest.approx([0.2 * weight / 0.3] * 3, abs=1e-9)
     assert missed(world) < 1e-8
@@ -410,8 +410,8 @@ REFUSED: list[tuple[Callable[[pt.World], Any], str]] = [
     (lambda w: w.drive(0, (1.0, 0.0), speed=1.0), "give a velocity, or towards"),
     (lambda w: w.drive(0, towards=(1.0, 0.0), speed=-1.0), "speed"),
     (lambda w: w.drive(0, (1e200, 0.0)), "use other units"),
-    (lambda w: w.apply_force(0, (1.0, 0.0), time=1.0), "mallet is driven: no force moves it"),
-    (lambda w: w.apply_force(1, (1.0, 0.0), time=0.0), "time"),
+    (lambda w: w.apply_force(0, (1.0, 0.0), duration=1.0), "mallet is driven: no force moves it"),
+    (lambda w: w.apply_force(1, (1.0, 0.0), duration=0.0), "duration"),
     (lambda w: w.strike(0, (1.0, 0.0)), "is driven along its path"),
     (lambda w: w.strike(1, velocity=(1e200, 0.0)), "use other units"),
     (lambda w: w.advance(-1.0), "duration must not be negative"),
@@ -471,7 +471,7 @@ def test_copies_and_pickles_know_what_hands_did():
     past = world.over(times)
     for one in (copy, again):
         one.drive(0, (0.4, 0.1))
-        one.apply_force(4, (0.1, 0.1), time=0.1)
+        one.apply_force(4, (0.1, 0.1), duration=0.1)
         one.place(4, (-0.5, 0.5))
         one.advance(0.3)
         assert np.array_equal(one.over(times), past)

@@ -147,6 +147,12 @@ def test_a_strike_that_cannot_be_is_a_sentence(who: Any, how: dict[str, Any], wo
     assert words in str(error.value)
 
 
+def test_a_column_in_place_of_a_puck_is_told_how_it_is_got():
+    run = pt.Scene(pucks=[piece(0, 0)]).simulate()
+    with pytest.raises(pt.InputError, match=r"the column of all of them is \.x"):
+        run["x"]
+
+
 def test_an_impulse_at_the_rim_spins():
     world = pt.Scene(pucks=[piece(0, 0)]).world()
     world.strike(0, impulse=(0.1, 0.0), point=(0.0, -0.03))

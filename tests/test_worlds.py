@@ -62,6 +62,17 @@ def by_law() -> pt.Scene:
     return pt.Scene(pucks=pucks, floor=floor, walls=cushions())
 
 
+def by_law_on_rings() -> pt.Scene:
+    """The same under bases over which friction is summed: what is known of the law lies there."""
+    law = pt.CurlingLaw(0.02, 0.06, 0.1)
+    pucks = [
+        pt.Piece(0.03, base="annulus:0.02x0.015", friction=0.1, restitution=0.8, tangential=0.0,
+                 rim=0.2, launch=pt.Launch((v, 0.0), position=(0.1 * n, 0.01 * n)))
+        for n, v in enumerate((0.1, 0.0))
+    ]  # fmt: skip
+    return pt.Scene(pucks=pucks, floor=pt.Floor(law=law), walls=cushions(), tol=1e-4)
+
+
 def rail() -> pt.Scene:
     held = pt.Piece(0.03, friction=0.2, constraint=pt.Constraint("rail", angle=0.0),
                     launch=pt.Launch((0.5, 0.0)))  # fmt: skip
@@ -128,7 +139,7 @@ class Pair:
 
     def strike(self, puck: int, boards: Any, velocity: Any, spin: Any) -> bool:
         if not self.many.in_play[boards, puck].all():
-            with pytest.raises(pt.InputError, match="no longer in play"):
+            with pytest.raises(pt.InputError, match="no longer in play: set_state"):
                 self.many.strike(puck, velocity, spin, boards=boards)
             return False
 
@@ -147,6 +158,33 @@ class Pair:
             lambda: self.many.drive(puck, velocity, spin, boards=boards),
             lambda w, k: w.drive(puck, velocity[k], spin[k]), boards,
         )  # fmt: skip
+
+    def place(self, puck: int, boards: Any, parts: dict[str, Any]) -> bool:
+        """With some parts of a state; one that is gone needs its position."""
+        if "position" not in parts and not self.many.in_play[boards, puck].all():
+            with pytest.raises(pt.InputError, match="no longer in play"):
+                self.many.place(puck, **parts, boards=boards)
+            return False
+
+        def one(world: pt.World, k: int) -> None:
+            world.place(puck, **{name: part[k] for name, part in parts.items()})
+
+        return self.both(lambda: self.many.place(puck, **parts, boards=boards), one, boards)
+
+    def remove(self, puck: int, boards: Any) -> bool:
+        boards = boards[self.many.in_play[boards, puck]]
+        return self.both(
+            lambda: self.many.remove(puck, boards=boards), lambda w, k: w.remove(puck), boards
+        )
+
+    def copy(self, boards: Any) -> None:
+        """Go on with copies; what was stays as it is."""
+        before, old = self.bits(), self.many
+        self.many, self.single = old.copy(boards), [self.single[k].copy() for k in boards]
+        self.n = len(boards)
+        self.agree()
+        bits = old.state().tobytes(), old.time.tobytes(), old.in_play.tobytes()
+        assert bits == before
 
     def set_state(self, boards: Any, states: Any, anew: bool) -> bool:
         def one(world: pt.World, k: int) -> pt.World:
@@ -175,7 +213,8 @@ class Pair:
         led = [bool(one.path) for one in self.scene.pucks]
         free = int(rng.choice(np.flatnonzero(~np.array(led))))
         what = str(rng.choice(
-            ["advance"] * 4 + ["strike", "turn", "same", "set_state", "anew", "reset", "drive"]
+            ["advance"] * 4 + ["strike", "turn", "same", "set_state", "anew", "reset", "drive",
+                               "place", "remove", "copy"]
         ))  # fmt: skip
         if what == "advance":
             done = self.advance(float(rng.choice([1.0 / 60.0, 0.05, 0.3])))
@@ -189,6 +228,16 @@ class Pair:
             done = self.strike(free, boards, around, None)
         elif what == "drive" and any(led):
             done = self.drive(led.index(True), boards, velocity, spin)
+        elif what == "place":
+            given = {"position": 0.4 * rng.random((count, 2)), "angle": spin, "velocity": velocity,
+                     "spin": spin}  # fmt: skip
+            parts = {name: part for name, part in given.items() if rng.random() < 0.6}
+            done = self.place(int(rng.integers(pucks)), boards, parts)
+        elif what == "remove":
+            done = self.remove(free, boards)
+        elif what == "copy":
+            self.copy(rng.permutation(self.n))
+            done = True
         elif what == "reset":
             self.reset(boards)
             done = True
@@ -219,13 +268,16 @@ def test_boards_are_worlds_of_their_own_whatever_is_done(board: str, seed: int):
     }
     pair = chain(scenes[board](), seed)
     if board != "table":
+        one = int(np.flatnonzero(pair.many.in_play.all(axis=0))[0])
+        assert pair.strike(one, np.arange(5), strikes(5), None)
         assert pair.advance(math.inf)
-        assert len(set(pair.many.time.tolist())) > 1 and not pair.many.moving.any()
+        assert len({state.tobytes() for state in pair.many.state()}) > 1
+        assert not pair.many.moving.any()
 
 
 @pytest.mark.thorough
 @pytest.mark.parametrize("seed", range(6))
-@pytest.mark.parametrize("board", [table, push, slope, turning, by_law, rail])
+@pytest.mark.parametrize("board", [table, push, slope, turning, by_law, by_law_on_rings, rail])
 def test_so_are_boards_where_pucks_push_or_are_integrated(board: Any, seed: int):
     chain(board(), seed)
 
@@ -331,6 +383,12 @@ BAD = [
     (lambda w: w.strike(1, (1, 0), boards=[True, False]), "or a mask of 3"),
     (lambda w: w.strike(1, (1, 0), boards=[0.5]), "boards must be numbers"),
     (lambda w: w.strike(1, (1, 0), boards=[[1], [1, 2]]), "boards must be numbers"),
+    (lambda w: w.place(1, (0.2, 0.1)), "board 0, and 2 more: (puck 1|puck 2) would overlap"),
+    (lambda w: w.place(1, [1.0]), r"position must have the shape \(2,\) or \(3, 2\)"),
+    (lambda w: w.place("nobody"), "no puck 'nobody'"),
+    (lambda w: w.remove(1, boards=[3]), "boards must be numbers"),
+    (lambda w: w.copy([]), "one board at least"),
+    (lambda w: w.copy([3]), "boards must be numbers from 0 to 2, or a mask of 3"),
     (lambda w: w.drive(1, (1, 0)), "puck 1 is not led by hand"),
     (lambda w: w.drive(0, 1.0), "velocity must have the shape"),
     (lambda w: w.set_state(np.zeros((2, 4, 6))), r"states must have the shape \(3, 4, 6\), or"),
@@ -361,6 +419,14 @@ def test_boards_are_numbers_or_a_mask_in_any_order():
     worlds.strike(1, np.zeros((0, 2)), boards=[])
     assert worlds.state()[:, 1, 3].tolist() == [2.0, 0.5, 0.5, 1.0]
     assert repr(worlds) == "Worlds(4 boards of 4 pucks)"
+
+
+def test_one_board_may_be_copied_again_and_again():
+    pair = Pair(table(), 2)
+    assert pair.strike(1, np.array([1]), strikes(1), None) and pair.advance(0.1)
+    pair.copy([1, 0, 1, 1])
+    assert pair.strike(2, np.arange(3), strikes(3), None) and pair.advance(1.0)
+    assert len({state.tobytes() for state in pair.many.state()}) == 4
 
 
 def test_what_cannot_end_is_refused_by_its_board():

@@ -18,9 +18,9 @@ from importlib.resources import files
 from puck_tables.accuracy.methods import INTEGRATED, LOOK_UP, MEASURED, FrictionForm, Method, Scheme
 from puck_tables.errors import AccuracyError, TableError
 
-COARSEST, FINEST = 0.01, 1e-13  # of Q/J, Q²/J: looser nobody measured; finer is rounding
+COARSEST, FINEST = 0.01, 1e-13  # of Q/(fg), Q²/(fg): looser nobody measured; finer is rounding
 MARGIN = 1.5  # errors are measured at a thousand starts: others may be a little worse
-UNITS = "of Q/J (times) and Q^2/J (places)"
+UNITS = "of Q/(f g) (times) and Q^2/(f g) (places)"
 
 
 @dataclass(frozen=True)
@@ -29,9 +29,9 @@ class MeasuredMethod:
 
     ``question``: resultants (three at a point), stop, trajectory, state.  ``method`` and
     ``setting`` name it; ``outsider`` is 1 for what is not this program.  Errors are absolute
-    and dimensionless: of the resultants, or in units of Q/J (time) and Q²/J (place); ``error`` is
-    the worst, ``median_error`` the median over all starts.  ``ns`` is the median cost of one item
-    on one thread in nanoseconds, ``ns_spread`` the distance between the quartiles.
+    and dimensionless: of the resultants, or in units of Q/(fg) (time) and Q²/(fg) (place);
+    ``error`` is the worst, ``median_error`` the median over all starts.  ``ns`` is the median cost
+    of one item on one thread in nanoseconds, ``ns_spread`` the distance between the quartiles.
     """
 
     question: str
@@ -166,7 +166,7 @@ def select(
     Parameters
     ----------
     question : 'stop' or 'trajectory'
-    tol : largest error wanted, in units of Q/J (times) and Q²/J (places), 1e-13 to 0.01
+    tol : largest error wanted, in units of Q/(fg) (times) and Q²/(fg) (places), 1e-13 to 0.01
     schemes : what may be selected
     own_table : the name of a table that stands where closed forms were measured, and what it adds
         to the error
@@ -190,8 +190,8 @@ def select(
         exact = Scheme(Method.ADAPTIVE, FrictionForm.CLOSED_FORMS)
         hint = "" if exact in schemes else "; integration with closed forms reaches 1e-13"
         raise AccuracyError(
-            f"tol must be from {_up(best)} (the best of {names}) to {COARSEST:g}, in units of Q/J "
-            f"and Q^2/J, got {tol:g}: give a tol in that range{hint}"
+            f"tol must be from {_up(best)} (the best of {names}) to {COARSEST:g}, in units of "
+            f"Q/(f g) and Q^2/(f g), got {tol:g}: give a tol in that range{hint}"
         )
     ranked = sorted(rows, key=lambda row: row.ns)
     taken = next(row for row in ranked if off[row] <= tol)

@@ -26,9 +26,7 @@ try:
     import jax
     import jax.numpy as jnp
 except ImportError:
-    raise MissingExtraError(
-        'puck_tables.autodiff.jax needs jax: pip install "puck-tables[jax]"'
-    ) from None
+    raise MissingExtraError("puck_tables.autodiff.jax needs jax: pip install jax") from None
 
 
 @partial(jax.custom_jvp, nondiff_argnums=(1,))

@@ -21,9 +21,7 @@ try:
     import torch
     from torch.autograd.function import once_differentiable
 except ImportError:
-    raise MissingExtraError(
-        'puck_tables.autodiff.torch needs torch: pip install "puck-tables[torch]"'
-    ) from None
+    raise MissingExtraError("puck_tables.autodiff.torch needs torch: pip install torch") from None
 
 
 class _Stops(torch.autograd.Function):

@@ -39,7 +39,7 @@ try:
     from distributed.security import Security
 except ImportError:
     raise MissingExtraError(
-        '--cluster (cluster=) needs dask and distributed: pip install "puck-tables[cluster]"'
+        "--cluster (cluster=) needs dask and distributed: pip install dask distributed"
     ) from None
 
 MOST_WORKERS = 1024  # processes of one machine: more is a slip of the hand
@@ -271,7 +271,7 @@ def _own(workers: int) -> Iterator[Any]:
         security = Security.temporary()
     except ImportError:
         raise MissingExtraError(
-            '--cluster local:N needs cryptography: pip install "puck-tables[cluster]"'
+            "--cluster local:N needs cryptography: pip install cryptography"
         ) from None
     with contextlib.ExitStack() as stack:
         stack.enter_context(dask.config.set(_OWN))

@@ -33,7 +33,7 @@ try:
     from zarr.core.buffer import default_buffer_prototype
     from zarr.storage import MemoryStore
 except ImportError:
-    raise MissingExtraError('Zarr stores need zarr: pip install "puck-tables[cluster]"') from None
+    raise MissingExtraError("Zarr stores need zarr: pip install zarr") from None
 
 NOT_DONE = -1  # the code of an item that is not computed yet
 _AT_ONCE = {"write_empty_chunks": True}  # a block of NaN is a result, too

@@ -389,9 +389,12 @@ def base_of(text: str) -> Base:
     if kind not in makers:
         raise InputError(f"no base is called {shown(text)}: choose {NAMES}")
     make, count = makers[kind]
-    lengths = [_length(f"base {shape}", part) for part in sizes.split("x")]
-    if len(lengths) != count:
-        raise InputError(f"base {shown(text)}: {kind} takes {count} lengths; choose {NAMES}")
+    parts = sizes.split("x")
+    lengths = [_length(f"base {shape}", part) for part in parts] if len(parts) == count else []
+    if not lengths:
+        raise InputError(
+            f"base {shown(text)}: {kind} takes {count} lengths, an x between; choose {NAMES}"
+        )
     found = make(*lengths, centre=centre)
     return replace(found, name=text) if at else found
 

@@ -9,7 +9,7 @@ const FIELDS = {  // label, unit, least, largest, digits of a step
   radius: ["radius", "mm", 5, 200, 1],
   height: ["height", "mm", 0, 200, 1],
   friction: ["friction", "", 0.01, 1, 3],
-  moment: ["moment", "%", 0, 100, 0],
+  moment: ["time", "%", 0, 100, 0],
 };
 const now = { law: "uniform", speed: 2, heading: 10, spin: 60, radius: 38.1, height: 25.4, friction: 0.1, moment: 0, target: null };
 const five = new Float64Array(5), six = new Float64Array(6), three = new Float64Array(3);

@@ -32,7 +32,7 @@ from puck_tables.export.program import (
 )
 from puck_tables.puck import Puck
 
-FINEST, COARSEST = 1e-9, 1e-2  # of Q/J, Q²/J: finer the stop table is not; looser is no answer
+FINEST, COARSEST = 1e-9, 1e-2  # of Q/(fg), Q²/(fg): as fine as the stop table; looser is no answer
 # What can be asked for: the modules of it, and the functions that its user calls.
 PARTS: dict[str, tuple[tuple[ModuleType, ...], tuple[str, ...]]] = {
     "stop": ((places, stop), ("stop",)),
@@ -57,7 +57,7 @@ class Source:
     text : its content
     language : one of :func:`languages`
     what : what it computes
-    tol : the largest error of it, in units of Q/J (times), Q²/J (places), Q (speeds), rad
+    tol : the largest error of it, in units of Q/(fg) (times), Q²/(fg) (places), Q (speeds), rad
     kind : pressure and gyration in words, empty for homogeneous pucks under uniform pressure
     tallest : δ up to which it holds
     """
@@ -116,9 +116,9 @@ def export_source(
     what : 'stop' (where and when a launch stops), 'state' (states at any time, the turn of the
         heading, and stop), 'resultants' (of friction), or some of them
     tol : float
-        Largest error, in units of Q/J (times), Q²/J (places), Q²/(J r) (body angle), Q (velocity),
-        Q/r (spin) and 1 (turn of the heading), Q = hypot(v, rω) of the launch; 1e-9 to 0.01.
-        Of resultants 1; in closed form, 1e-14, for homogeneous pucks under uniform pressure.
+        Largest error, in units of Q/(fg) (times), Q²/(fg) (places), Q²/(fg r) (body angle), Q
+        (velocity), Q/r (spin) and 1 (turn of the heading), Q = hypot(v, rω) of the launch; 1e-9 to
+        0.01. Of resultants 1; in closed form, 1e-14, for homogeneous pucks under uniform pressure.
     puck : Puck, optional
         Whose pressure law and radius of gyration the file is for; the height and all else are
         arguments of its functions.  Default: homogeneous, under uniform pressure.
@@ -179,7 +179,7 @@ def checked_request(language: str, what: str | Iterable[str], tol: float) -> tup
     instance("language", language, str)
     if language not in LANGUAGES:
         raise InputError(f"no language is called {shown(language)}: choose {', '.join(LANGUAGES)}")
-    error = real("tol", tol, "units of Q/J, Q^2/J")
+    error = real("tol", tol, "units of Q/(f g), Q^2/(f g)")
     if not FINEST <= error <= COARSEST:
         raise AccuracyError(
             f"tol must be from {FINEST:g} to {COARSEST:g} for exported files, got {error:g}: give "

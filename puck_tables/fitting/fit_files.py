@@ -22,6 +22,12 @@ from puck_tables.io.dataset import Variable, variable
 from puck_tables.puck import Puck
 
 KIND = "puck-tables fit 1"
+_ENTRIES = {  # of a scene, that have what a free puck has not
+    "drag": "drag.sliding and drag.spinning", "air": "drag.quadratic (air times mass)",
+    "spin_drag": "drag.spinning", "slope_x": "floor.slope", "slope_y": "floor.slope",
+    "belt_x": "floor.velocity", "belt_y": "floor.velocity", "friction_rest": "floor.law",
+    "law_speed": "floor.law",
+}  # fmt: skip
 _FRAMES = (
     "track", "frame", "time", "seen_x", "seen_y", "seen_angle", "fit_x", "fit_y", "fit_angle",
     "counts_place", "counts_angle",
@@ -128,13 +134,13 @@ def puck_and_launch(
     if speeds:
         raise InputError(
             f"{path}: this puck was found with friction over slip speed, which a free puck has "
-            "not: make a scene of it, with that law"
+            "not: make a scene of it, with floor.law"
         )
     for name, drag in drags.items():
         if drag != 0.0:
             raise InputError(
                 f"{path}: this puck was found with {name} of {drag:.3g}, which a free puck has "
-                "not: make a scene of it"
+                f"not: make a scene of it, with {_ENTRIES[name]}"
             )
     return puck, velocity, spin, unknown
 

@@ -47,7 +47,7 @@ from puck_tables.fitting.unit_motions import unit_motions_of
 from puck_tables.puck import Puck
 
 _KIND = (*OWN_CURVE, "drag", *INTEGRATED)  # change the curve itself
-_CLASHES = (("friction", "decel", ", J = f g"), ("delta", "height", ""))
+_CLASHES = (("friction", "decel", ", decel is f g"), ("delta", "height", ""))
 TINY = 1e-30  # step of derivatives along the imaginary axis
 _LEAST = 1e-9
 

@@ -94,7 +94,7 @@ def fit(
     puck : Puck
         What is known of it: its radius, and whatever ``free`` does not name.
     free : names, optional
-        What is found besides the launches: friction or decel (J = f g), delta or height
+        What is found besides the launches: friction or decel (f g), delta or height
         (δ = 2fh/r), radius, gravity, gyration, inner (radius of an annulus), drag (1/s, of speed
         and spin alike: for a flat uniform puck f(u) = f + (drag/g) u of the slip speed u), air
         (1/m, of the speed squared: drag.quadratic of a scene over the mass), spin_drag (1/s),

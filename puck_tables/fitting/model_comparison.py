@@ -29,6 +29,8 @@ from puck_tables.fitting.problem import ANGLE, PLACE, TURN, UNSEEN, Known, Probl
 from puck_tables.fitting.slowing import begun_or_refused
 from puck_tables.fitting.whole_turns import on_another_floor
 
+_ROUGHLY = ROBUST._replace(evaluations=15)
+_FALLS = 0.99  # of the cost before: a floor that still comes nearer is followed
 _NEAR = 3.0  # times the noise: floors that are fitted to the end
 _SHARES_OF_AIR = (0.3, 0.6, 0.9)
 _FRAMES = 80  # that tell whether such a law may be the reason of a misfit
@@ -80,10 +82,14 @@ def _near(film: Observations, path: FloatArray) -> FloatArray | None:
 
 def on_a_floor(problem: Problem, known: Known) -> Estimate:
     """The estimate of a floor that is compared with others: about, where it does not come near."""
-    x = begun_or_refused(problem)[1]
-    rows = problem.residuals(x)
-    if problem.usual(rows) < _NEAR:
-        return estimate(problem, x, known)
+    begun, x = begun_or_refused(problem)
+    cost, falls = math.inf, True
+    while falls:
+        x, less = minimise(begun, x, _ROUGHLY)
+        rows = problem.residuals(x)
+        if problem.usual(rows) < _NEAR:
+            return estimate(problem, x, known)
+        cost, falls = less, less < _FALLS * cost
     noise = (problem.usual(rows) / 0.6745 * problem.noise[0], problem.noise[1])
     wider = problem.with_noise(noise, x) if not known.place else problem
     return Estimate(
@@ -197,8 +203,10 @@ def compare(
     again = list(first)
     for k in np.flatnonzero(score < score.min() + _CONTENDS):
         if not (known.place and known.angle):
-            again[k] = fit_law(questions[k], (common[0], common[1]), Known(True, True, True))
-            chi2[k] = chi2_under(again[k], (common[0], common[1]))
+            one = fit_law(questions[k], (common[0], common[1]), Known(True, True, True))
+            less = chi2_under(one, (common[0], common[1]))
+            if less < chi2[k]:  # what was begun anew may have come less near
+                again[k], chi2[k] = one, less
     score = chi2 + 2.0 * unknowns
     weight = np.exp(-0.5 * (score - score.min()))
     weight /= weight.sum()

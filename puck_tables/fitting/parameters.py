@@ -24,7 +24,7 @@ class Parameter(NamedTuple):
 
 PUCK = {
     "friction": Parameter("1", 0.0, math.inf, 1.0, "Coulomb's coefficient f"),
-    "decel": Parameter("m/s^2", 0.0, math.inf, 10.0, "deceleration of a slide, J = f g"),
+    "decel": Parameter("m/s^2", 0.0, math.inf, 10.0, "deceleration of a slide, f g"),
     "delta": Parameter("1", 0.0, 4.0, 1.0, "dimensionless height 2 f h / r"),
     "height": Parameter("m", 0.0, math.inf, 0.0, "height of the puck"),
     "radius": Parameter("m", 0.0, math.inf, 0.0, "radius of the base"),

@@ -11,9 +11,7 @@ try:
     import pyarrow
     import pyarrow.parquet
 except ImportError:
-    raise MissingExtraError(
-        'Parquet files need pyarrow: pip install "puck-tables[parquet]"'
-    ) from None
+    raise MissingExtraError("Parquet files need pyarrow: pip install pyarrow") from None
 
 
 def encode(dataset: Dataset) -> bytes:

@@ -203,7 +203,7 @@ class BaseSlide:
         return (
             f"integrated in dt/Q, Q = hypot(v, k w), order 8, {self.steps} steps that err by "
             f"{self.local:.2g} at most; against finer steps the stop errs by {self.error:.2g} of "
-            f"Q/J (time) and Q^2/J (place).\n{WHY_INTEGRATED}\n{ending}{turns}."
+            f"Q/(f g) (time) and Q^2/(f g) (place).\n{WHY_INTEGRATED}\n{ending}{turns}."
         )
 
     @property

@@ -25,9 +25,9 @@ REGIMES = {
     "A": "rest",
     "B0": "pure spin",
     "C0": "pure translation",
-    "D": "limit motion, r w/v constant",
-    "B": "spin-rich, r w/v falls towards the limit ratio",
-    "C": "spin-poor, r w/v grows towards the limit ratio",
+    "D": "limit motion, v/(r w) constant",
+    "B": "spin-rich, v/(r w) grows towards its limit",
+    "C": "spin-poor, v/(r w) falls towards its limit",
 }
 
 
@@ -263,7 +263,7 @@ def elementary_stop_time(
     ----------
     velocity, spin, delta, radius, pressure, gyration
         As :func:`regime`.
-    decel : J = fg, m/s², > 0
+    decel : fg, m/s², > 0
 
     Returns
     -------

@@ -155,7 +155,7 @@ class PuckSpec:
         delta : dimensionless height 2fh/r, ≥ 0
             Below 3.9637 under uniform pressure (from 1 on part of the base may lift), up to the
             full contact of another law.
-        decel : J = fg, m/s², > 0
+        decel : fg, m/s², > 0
         radius, mass, pressure, gyration
             As for :class:`Puck`.
 
@@ -249,7 +249,7 @@ class PuckSpec:
 
     @property
     def decel(self) -> float:
-        """Deceleration of a slide without spin, J = fg, m/s²."""
+        """Deceleration of a slide without spin, fg, m/s²."""
         return self.friction * self.gravity
 
     @cached_property

@@ -41,7 +41,9 @@ def caption(figure: Figure, launches: Axes, puck: PuckSpec, answer: str) -> None
     """Label the panel of speeds against spins, and say above all what is drawn, of which puck."""
     launches.set(xlabel=COLUMNS["launch_spin"].axis, ylabel=COLUMNS["launch_speed"].axis)
     launches.set_ylim(bottom=0.0)
-    words = f"{answer}: r = {puck.radius:g} m, δ = {puck.delta:.4g}, J = {puck.decel:.4g} m/s²"
+    words = (
+        f"{answer}: r = {puck.radius:g} m, δ = 2fh/r = {puck.delta:.4g}, fg = {puck.decel:.4g} m/s²"
+    )
     titled(figure, words)
 
 

@@ -36,7 +36,7 @@ from puck_tables.scene.run import Run
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.sides import line_of
 from puck_tables.trajectory import Trajectory
-from puck_tables.world.agreement import frictions_under, pieces_of
+from puck_tables.world.agreement import called, frictions_under, pieces_of, start_of
 from puck_tables.world.drive import rows_of
 
 # dark and light by turns, so that neighbours differ in grey as well (Okabe and Ito)
@@ -164,6 +164,24 @@ def _film_of_several(run: Run) -> Animation:
     film = _film(scene.title, run.end, run.end_time, bodies, happenings, scene)
     film = film._replace(bodies=[body._replace(gone=gone[body.name]) for body in film.bodies])
     return _outlined(film, pieces)
+
+
+def at_start(scene: SceneSpec) -> Animation:
+    """A board with its pucks where they are at the start, without their motion.
+
+    Examples
+    --------
+    >>> from puck_tables import Scene
+    >>> len(at_start(Scene.load("crokinole")).bodies)
+    4
+    """
+    pieces = pieces_of(scene)
+    bodies = [
+        (called(piece, n), piece.radius, piece.colour, bool(piece.path),
+         np.array([[0.0, *start_of(piece), piece.launch.orientation, 0.0, 0.0, 0.0]]))
+        for n, piece in enumerate(pieces)
+    ]  # fmt: skip
+    return _outlined(_film(scene.title, "", 0.0, bodies, scene=scene), pieces)
 
 
 def _outlined(film: Animation, pucks: Sequence[PuckSpec]) -> Animation:

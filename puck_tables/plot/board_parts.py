@@ -114,8 +114,8 @@ def painted_on(scene: SceneSpec) -> list[Painted]:
     return found
 
 
-def draw_painted(axes: Axes, lines: list[Painted]) -> None:
+def draw_painted(axes: Axes, lines: list[Painted], zorder: float = 0.9) -> None:
     """All of them, labelled once."""
     for number, line in enumerate(lines):
         label = "line" if number == 0 else None
-        axes.plot(line.x, line.y, color=line.colour, linewidth=1.1, zorder=0.9, label=label)
+        axes.plot(line.x, line.y, color=line.colour, linewidth=1.1, zorder=zorder, label=label)

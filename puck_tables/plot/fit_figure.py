@@ -49,7 +49,10 @@ def draw(result: Fit) -> Figure:
     told = [f"{name} = {_in_words(result.numbers[name])}" for name in names]
     told += [f"{name} is not determined" for name in free if name not in names]
     titled(
-        figure, "; ".join([*told, f"chi² per degree {result.chi2 / max(result.degrees, 1):.3g}"])
+        figure,
+        "; ".join(
+            [*told, f"chi² per degree of freedom {result.chi2 / max(result.degrees, 1):.3g}"]
+        ),
     )
     return figure
 
@@ -125,9 +128,9 @@ def _draw_residuals(panel: Axes, result: Fit) -> None:
     panel.axhline(0.0, color=GREY, linewidth=0.8)
     panel.set(
         xlabel="time since the launch / s",
-        ylabel="residual / noise (6 at most)",
+        ylabel="residual / noise (to 6)",
         ylim=(-6.5, 6.5),
-        title=f"runs p = {result.runs:.2g}, drift p = {result.drift:.2g}",
+        title=f"what is left; chance of such a pattern {min(result.runs, result.drift):.2g}",
     )
     legend_below(panel)
 

@@ -172,7 +172,8 @@ def _class(result: Fit) -> str:
     tasks = [
         f"Read the speed at the start from the first picture: v = {_blank()} m/s, and when the "
         f"puck stops, or would: t = {_blank()} s.",
-        f"Of a slide without spin f = v/(g t), g = {gravity:g} m/s²: f = {_blank()}.",
+        f"Of a slide without spin f = v/(g t), g = {gravity:g} m/s²: f = {_blank()}. "
+        "(One that spins slides longer, so that this f is too small.)",
         f"Fill in the last two columns of the table for the first five rows, and say how much "
         f"speed is lost each second: {_blank()} m/s².",
         f"By how many of its errors is your f off from that of the fit? {_blank()} What would "

@@ -24,21 +24,21 @@ def draw(run: Push) -> Figure:
     figure = canvas(10.5, 4.8)
     left, right = figure.subplots(1, 2, width_ratios=(1.4, 1.0))
     draw_on(left, run)
-    unit = run.puck.friction * run.puck.mass * run.puck.gravity
     right.plot(run.time, run.speed, color=BLUE, label="speed / (m/s)")
-    right.plot(run.time, run.puck.radius * run.spin, color=ORANGE, label="reach · spin / (m/s)")
+    right.plot(run.time, run.puck.radius * run.spin, color=ORANGE,
+               label="rω / (m/s), r of the farthest point")  # fmt: skip
     right.set_xlabel("time / s")
     right.grid(color="#e4e4e4", linewidth=0.6)
     legend_below(right)
-    force = np.hypot(run.push_x, run.push_y) / unit
-    titled(figure, f"{run.contact[0]} at first; force {force.min():.3g} to {force.max():.3g} f m g")
+    force = np.hypot(run.push_x, run.push_y)
+    titled(figure, f"{run.contact[0]} at first; force {force.min():.3g} to {force.max():.3g} N")
     return figure
 
 
 def draw_on(axes: Axes, run: Push) -> None:
     """The way of the puck alone."""
-    chosen = np.unique(np.linspace(0, run.time.size - 1, _DRAWN).round().astype(int))
     unit = run.puck.friction * run.puck.mass * run.puck.gravity
+    chosen = np.unique(np.linspace(0, run.time.size - 1, _DRAWN).round().astype(int))
     for n in chosen.tolist():
         for outline in _outlines(run):
             turned = outline * np.exp(1j * run.orientation[n]) + run.x[n] + 1j * run.y[n]

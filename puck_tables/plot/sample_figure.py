@@ -12,6 +12,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.colours import on_white
 from puck_tables.bulk.summary import Summary
 from puck_tables.io.columns import COLUMNS
+from puck_tables.plot.board_parts import draw_painted, painted_on
 from puck_tables.plot.style import BLUE, GREY, ORANGE, canvas, colour_bar, no_rounding
 from puck_tables.plot.titles import legend_below, noted, titled
 
@@ -86,10 +87,14 @@ def draw_on(panel: Axes, samples: Summary) -> None:
     )  # fmt: skip
     mean = samples.mean()
     panel.plot(*(mean[name] for name in samples.place), "+", color=ORANGE, label="mean", zorder=4)
+    scene = getattr(samples, "scene", None)
+    painted = [] if scene is None else painted_on(scene)
+    draw_painted(panel, painted, 2.5)  # as the rings of a house, over the density
     panel.set(xlim=sides[0], ylim=sides[1])
     no_rounding(panel)
     panel.set(xlabel=COLUMNS[samples.place[0]].axis, ylabel=COLUMNS[samples.place[1]].axis)
-    notes = [f"{left} of {samples.ended} samples left play"] if left else []
+    notes = ["x and y of different scale"] if painted else []
+    notes += [f"{left} of {samples.ended} samples left play"] if left else []
     if not in_view.all():
         notes.append(f"{np.count_nonzero(~in_view)} of {in_view.size} samples lie outside")
     if notes:

@@ -94,7 +94,7 @@ def _sections(stops: StopMap) -> tuple[dict[str, Any], dict[str, float], str, tu
 
 
 def _fixed_title(fixed: dict[str, float]) -> str:
-    short = {"decel": "J", "radius": "r", "delta": "δ", "height": "h", "friction": "f",
+    short = {"decel": "fg", "radius": "r", "delta": "δ", "height": "h", "friction": "f",
              "gravity": "g", "gyration": "k/r", "launch_speed": "v₀", "launch_spin": "ω₀",
              "launch_heading": "heading"}  # fmt: skip
     parts = []

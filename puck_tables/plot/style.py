@@ -71,9 +71,7 @@ def require_matplotlib() -> None:
     try:
         import matplotlib  # noqa: F401
     except ImportError:
-        raise MissingExtraError(
-            'pictures need matplotlib: pip install "puck-tables[plot]"'
-        ) from None
+        raise MissingExtraError("pictures need matplotlib: pip install matplotlib") from None
     except ValueError as error:
         chosen = os.environ.get("MPLBACKEND")
         which = (

@@ -28,7 +28,7 @@ def draw(run: Trajectory) -> Figure:
     _draw_path(figure.add_subplot(grid[0, :]), run)
     speeds = figure.add_subplot(grid[1, 0])
     speeds.plot(run.time, run.speed, color=BLUE, label="speed v")
-    arm, rim = ("r", "rim speed rω") if run.puck.shape is None else ("k", "kω")
+    arm, rim = ("r", "rim speed rω") if run.puck.shape is None else ("k", "kω, k of gyration")
     speeds.plot(run.time, _arm(run) * run.spin, color=ORANGE, label=rim)
     speeds.axhline(0.0, color=GREY, linewidth=0.6)
     for moment, text in ((run.contact_opens, "base lifts"), (run.contact_closes, "base down")):
@@ -39,16 +39,17 @@ def draw(run: Trajectory) -> Figure:
     ratio = figure.add_subplot(grid[1, 1], sharex=speeds)
     moving = run.speed > 0.0
     if moving.any() and run.launch_spin != 0.0:
-        ratio.plot(run.time[moving], np.tan(run.slip_angle[moving]), color=GREEN)
-        if run.limit_angle is not None and run.limit_angle < 0.5 * math.pi:
-            limit = math.copysign(math.tan(run.limit_angle), run.launch_spin)
-            _draw_limit(ratio, limit, float(np.tan(run.slip_angle[moving]).max()))
+        epsilon = 1.0 / np.tan(run.slip_angle[moving])
+        ratio.plot(run.time[moving], epsilon, color=GREEN)
+        if run.limit_angle:
+            limit = math.copysign(1.0 / math.tan(run.limit_angle), run.launch_spin)
+            _draw_limit(ratio, limit, float(epsilon.max()))
     else:
         ratio.text(
             0.5, 0.5, "spin only" if run.launch_spin != 0.0 else "no spin",
             ha="center", transform=ratio.transAxes, color=GREY,
         )  # fmt: skip
-    ratio.set(xlabel="time / s", ylabel=f"{arm}ω/v")
+    ratio.set(xlabel="time / s", ylabel=f"ε = v/({arm}ω)")
     vx, vy = run.launch_velocity
     titled(
         figure,
@@ -66,11 +67,11 @@ def _arm(run: Trajectory) -> float:
 def _puck(run: Trajectory) -> str:
     puck = run.puck
     if puck.shape is None:
-        return f"r = {puck.radius:g} m, δ = {puck.delta:.4g}, J = {puck.decel:.4g} m/s²"
+        return f"r = {puck.radius:g} m, δ = 2fh/r = {puck.delta:.4g}, fg = {puck.decel:.4g} m/s²"
     high = f", h = {puck.height:.4g} m" if puck.height > 0.0 else ""
     return (
         f"base {puck.shape.name}, k = {puck.inertia_radius:.4g} m{high}, f = {puck.friction:.4g}, "
-        f"J = {puck.decel:.4g} m/s²"
+        f"fg = {puck.decel:.4g} m/s²"
     )
 
 
@@ -109,10 +110,11 @@ def _draw_path(axes: Axes, run: Trajectory) -> None:
 
     axes.plot(run.x, run.y, color=BLUE, linewidth=1.6)
     extent = max(np.ptp(run.x), np.ptp(run.y))
-    true_size = extent == 0.0 or 0.02 * extent <= run.puck.radius <= 0.12 * extent
+    true_size = extent == 0.0 or 0.02 * extent <= run.puck.radius <= 0.3 * extent
     radius = run.puck.radius if true_size else 0.045 * extent
     travelled = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(run.x), np.diff(run.y)))])
-    wanted = np.linspace(0.0, travelled[-1], _PUCKS_DRAWN)
+    count = min(_PUCKS_DRAWN, 2 + int(travelled[-1] / (2.4 * radius or 1.0)))
+    wanted = np.linspace(0.0, travelled[-1], count)
     chosen = np.unique(np.searchsorted(travelled, wanted).clip(0, run.time.size - 1))
     for index in chosen:
         x, y, angle = run.x[index], run.y[index], run.orientation[index]

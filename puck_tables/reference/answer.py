@@ -136,7 +136,7 @@ class Answer(Result):
 
     @property
     def share_bound(self) -> float:
-        """What times, places and speeds may be wrong by, in units of Q/J, Q²/J and Q."""
+        """What times, places and speeds may be wrong by, in units of Q/(fg), Q²/(fg) and Q."""
         length = self.speed_scale**2 / self.rate_scale
         return _STATES * max(self.run.end_error / length, TOL)
 
@@ -321,7 +321,7 @@ def reference_case(
     -------
     Answer
         Places in m from where the case says, angles counter-clockwise.  Times are off by at most
-        ``time_bound``, below 1e-10 of Q/J for free pucks.
+        ``time_bound``, below 1e-10 of Q/(fg) for free pucks.
 
     Raises
     ------

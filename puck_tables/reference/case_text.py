@@ -46,12 +46,9 @@ def lines_of(answer: Answer) -> dict[str, str]:
             f"({last['x'][n]:.12g}, {last['y'][n]:.12g}) m after {answer.end_time_of(n):.12g} s"
         )
     if answer.limit_epsilon is not None:
-        limit = answer.limit_epsilon
-        inverse = f"{1.0 / limit:.9g}" if limit > 0.0 else "inf"
-        lines["limit"] = f"v/(r w) -> {limit:.9g} as papers write it, r w/v -> {inverse} as here"
+        lines["limit"] = f"v/(r w) tends to {answer.limit_epsilon:.9g}"
     lines["error"] = (
-        f"<= {answer.time_bound:.1e} s, {answer.place_bound:.1e} m, {answer.speed_bound:.1e} m/s; "
-        f"Q = {answer.speed_scale:.6g} m/s, J = {answer.rate_scale:.6g} m/s^2"
+        f"<= {answer.time_bound:.1e} s, {answer.place_bound:.1e} m, {answer.speed_bound:.1e} m/s"
     )
     return lines
 

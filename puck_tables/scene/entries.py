@@ -219,6 +219,7 @@ def set_path(tables: dict[str, Any], path: str, value: Any) -> None:
                 at = at[step]
         except (IndexError, TypeError, KeyError):
             raise InputError(
-                f"{path}: the scene has no such entry to set; 'puck scene fields' lists what may "
-                "be; of a list each part has its number (puck[0], wall[1]), and stands in a file"
+                f"{path}: the scene has no such entry to set: write that part into its file "
+                "('puck scene show NAME > mine.toml' begins one; 'puck scene fields' lists what "
+                "may stand there, of a list each part by its number, as puck[0], wall[1])"
             ) from None

@@ -13,6 +13,8 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 from puck_tables.scene.over_time import given_by
 
+_FAINT = 1e-12  # 1/m: spin over speed that rounding makes of a launch without spin; has no sign
+
 
 class Forces(NamedTuple):
     """Numbers of the forces.
@@ -64,10 +66,16 @@ def drag_force(forces: Forces, ux: float, uy: float, w: float) -> tuple[float, f
 @inlined
 def sideways(strength: float, by_speed: float, by_spin: float, speed: float, w: float) -> float:
     """A lateral force over the speed, to the left; none of what does not move, or not spin."""
-    if strength == 0.0 or speed == 0.0 or w == 0.0:
+    if strength == 0.0 or speed == 0.0 or not has_sign(w, speed):
         return 0.0
     side = math.copysign(1.0, w) * strength * speed**by_speed / speed
     return side if by_spin == 0.0 else side * abs(w) ** by_spin
+
+
+@inlined
+def has_sign(w: float, speed: float) -> bool:
+    """Whether a spin, 1/s, of what slides at a speed, m/s, is more than rounding makes of none."""
+    return abs(w) > _FAINT * speed
 
 
 @inlined

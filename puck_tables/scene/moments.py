@@ -7,7 +7,7 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.equations import SECOND, rates, slip_side, stopping
-from puck_tables.scene.forces import jumps
+from puck_tables.scene.forces import has_sign, jumps
 from puck_tables.scene.friction import SPIN, VX, VY, size
 from puck_tables.scene.ingredients import (
     CARRIED,
@@ -138,6 +138,10 @@ def cut_short(
         if passed == 0 and stretch.mode == SLIDES:
             what = EQUAL if slip_side(radius, y) * slip_side(radius, new) < 0.0 else what
         turns_over = y[SPIN] * new[SPIN] < 0.0 and jumps(stretch.model.forces)
+        turns_over = turns_over and (
+            has_sign(y[SPIN], size(y[VX], y[VY], 0.0))
+            or has_sign(new[SPIN], size(new[VX], new[VY], 0.0))
+        )
         if passed == 1 and stretch.mode == SLIDES and turns_over:
             what = SPINLESS
         if what != NOTHING:

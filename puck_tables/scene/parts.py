@@ -168,6 +168,9 @@ class Drag:
 class Lateral:
     """An empirical force across the motion: strength (v in m/s)^b (|w| in rad/s)^c sign w.
 
+    b is ``speed_exponent``, c ``spin_exponent``; no force where |w| is below 1e-12 v per m, which
+    rounding makes of no spin.
+
     It is to the left of the motion over the floor where the spin is counter-clockwise, and does no
     work there.  Players of curling fit it to the curl of their stones; no dry friction over the
     contact explains it.  With b < 1 a puck that slides ever slower while it still spins turns its
@@ -182,8 +185,10 @@ class Lateral:
         "number", 0.0, "N", doc="at 1 m/s and 1 rad/s; below 0 to the right",
         acts="lateral force (empirical)",
     )  # fmt: skip
-    speed_exponent: float = of("number", 0.0, low=0.0, high=8.0, doc="b", acts="")
-    spin_exponent: float = of("number", 0.0, low=0.0, high=8.0, doc="c; 0: its sign only", acts="")
+    speed_exponent: float = of("number", 0.0, low=0.0, high=8.0, doc="of the speed in m/s", acts="")
+    spin_exponent: float = of(
+        "number", 0.0, low=0.0, high=8.0, doc="of the spin in rad/s; 0: its sign only", acts=""
+    )
 
 
 @dataclass(frozen=True)

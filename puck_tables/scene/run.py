@@ -79,9 +79,9 @@ class Run(TimedResult):
     laboratory, 0 at rest there.
 
     ``energy_residual``: what this ledger misses, as a share of its largest entry.
-    ``error_estimate``: of times in units of Q/J and of places in Q²/J, with ``speed_scale`` = Q in
-    m/s and ``rate_scale`` = J in m/s² (the largest slip hypot(v, rω), and the largest of friction,
-    forces and what a turning floor asks over the mass; without slip Q² = J r), from check runs with
+    ``error_estimate``: of times in units of Q/a and of places in Q²/a, with ``speed_scale`` = Q in
+    m/s and ``rate_scale`` = a in m/s² (the largest slip hypot(v, rω), and the largest of friction,
+    forces and what a turning floor asks over the mass; without slip Q² = a r), from check runs with
     other steps or, among several pucks, other launches: those that differ by 1e-9.  It is above
     ``tol`` where the motion amplifies errors so much that tol cannot be kept; each impact of round
     pucks does: after many the launch decides the end by digits that it does not have.
@@ -148,6 +148,8 @@ class Run(TimedResult):
         InputError
             If there is no such puck.
         """
+        if isinstance(puck, str) and puck in COLUMNS and puck not in self.names:
+            raise InputError(f"[{puck!r}] takes a puck: the column of all of them is .{puck}")
         number = number_of(puck, self.names)
         whole = {**self.columns, **self._derived()}
         return {name: row if row.ndim == 1 else row[:, number] for name, row in whole.items()}

@@ -74,7 +74,10 @@ class SceneSpec:
     )
     time: float | None = of("number", None, "s", low=0.0, above=True, doc="until rest if left out")
     frames: float = of("number", 101.0, low=1.0, high=1e6, doc="states to save")
-    tol: float = of("number", 1e-9, low=1e-12, high=1e-2, doc="error wanted, of Q/J and Q^2/J")
+    tol: float = of(
+        "number", 1e-9, low=1e-12, high=1e-2,
+        doc="error wanted, of Q/a and Q^2/a: Q the slip, a the deceleration at the launch",
+    )  # fmt: skip
     ranges: Mapping[str, FloatArray] = field(default_factory=dict)
 
     def __post_init__(self) -> None:

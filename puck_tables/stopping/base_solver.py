@@ -26,7 +26,7 @@ class BaseSolver:
 
     Parameters
     ----------
-    shape, tol : the base, and the largest error, of Q/J and Q²/J, Q = hypot(v, kω)
+    shape, tol : the base, and the largest error, of Q/(fg) and Q²/(fg), Q = hypot(v, kω)
     """
 
     method = "integrated"
@@ -43,7 +43,8 @@ class BaseSolver:
     def explanation(self) -> str:
         """What was taken, and why."""
         return (
-            f"Asked: an error of at most {self.tol:.3g} of Q/J (times) and Q^2/J (places).\n"
+            f"Asked: an error of at most {self.tol:.3g} of Q/(f g) (times) and "
+            "Q^2/(f g) (places).\n"
             f"Taken: each launch integrated, order 8, steps that err by {self.local:.2g} at most.\n"
             f"{WHY_INTEGRATED}"
         )

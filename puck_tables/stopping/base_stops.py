@@ -17,7 +17,7 @@ from puck_tables.stopping.state_values import refuse_times
 from puck_tables.stopping.states import States, each_of, moments_of, states_in
 from puck_tables.stopping.stops import Stops
 
-STATES_TOL = 1e-9  # of Q/J, Q²/J, as the states of other pucks are good to
+STATES_TOL = 1e-9  # of Q/(fg), Q²/(fg), as the states of other pucks are good to
 
 
 def stop_on_base(
@@ -55,7 +55,7 @@ def states_on_base(
         raise InputError(TOO_LARGE)
     out = np.empty((STATE_ROWS, moments.size))
     out[:, order] = found.T
-    told = f"{launches.size} pucks integrated, to 1e-9 of Q and Q^2/J.\n{WHY_INTEGRATED}"
+    told = f"{launches.size} pucks integrated, to 1e-9 of Q and Q^2/(f g).\n{WHY_INTEGRATED}"
     return states_in(out, moments, launches, which, shape, told)
 
 

@@ -168,7 +168,7 @@ def states(
     delta : array_like (…), dimensionless height 2fh/r
         Below 3.9637 under uniform pressure, up to the full contact of another law; with a table 0
         to 1.
-    decel : array_like (…), J = fg, m/s², > 0
+    decel : array_like (…), fg, m/s², > 0
     radius : array_like (…), m, > 0
     table : Table of stops, optional
         The default one if left out.
@@ -188,8 +188,8 @@ def states(
     States
         Of the shape to which the pucks and ``time`` broadcast: for every time of every puck give
         the pucks one axis more, ``states(velocity[:, None, :], spin[:, None], time)``.  With the
-        default table, and of every other puck, errors stay below 1e-9 of Q, Q²/J (places) and
-        Q²/(J r) (body angle); of the heading, times v/Q.  With ``jacobian``, ``jacobian`` (…, 6,
+        default table, and of every other puck, errors stay below 1e-9 of Q, Q²/(fg) (places) and
+        Q²/(fg r) (body angle); of the heading, times v/Q.  With ``jacobian``, ``jacobian`` (…, 6,
         7); see the notes for its error.
 
     Raises
@@ -210,7 +210,7 @@ def states(
     :mod:`puck_tables.stopping.variational`).  In units of Q, J, r of the launch they err by at
     most 1e-7 until Q has fallen to 1/1000, for launches of any slip angle.  Towards the stop the
     direction turns without end, and the velocity is that of a moment as far off as the stop time
-    may be, 1e-10 Q/J.  At the stop and after it they are those of the stop, and of velocities 0.
+    may be, 1e-10 Q/(fg).  At the stop and after it they are those of the stop, and of velocities 0.
     In exact pure sliding and pure spin they are the limits from launches beside.
 
     References
@@ -285,7 +285,7 @@ def states(
 def _explained(looked: int, integrated: int) -> str:
     each = ((looked, "looked up"), (integrated, "integrated"))
     words = [f"{count} pucks {how}" for count, how in each if count or not integrated]
-    return " and ".join(words) + ", to 1e-9 of Q, Q^2/J and Q^2/(J r)"
+    return " and ".join(words) + ", to 1e-9 of Q, Q^2/(f g) and Q^2/(f g r)"
 
 
 def moments_of(

@@ -54,7 +54,7 @@ from puck_tables.table.build import Goal, built
 from puck_tables.table.check import Check, CheckReport, compared
 from puck_tables.table.table import Progress
 
-_GOAL = Goal(1e-10, 1e-11, "in units of Q/J and Q^2/J", 0.62, 1 << 12)
+_GOAL = Goal(1e-10, 1e-11, "in units of Q/(f g) and Q^2/(f g)", 0.62, 1 << 12)
 _CHUNK = 64  # launches at once, of integrations
 K = TypeVar("K", bound=StopValues)  # the kind that is made
 NAMES = StopValues.quantities

@@ -33,7 +33,7 @@ from puck_tables.stopping.solvers import OUTPUTS, STATUS_MEANINGS
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
 
-DEFAULT_TOL = 1e-8  # of Q/J, Q²/J
+DEFAULT_TOL = 1e-8  # of Q/(fg), Q²/(fg)
 
 
 class Stops(Differentiated, Result):
@@ -187,12 +187,12 @@ def stop(
         Below 3.9637 under uniform pressure, up to the full contact of another law; with a table, in
         its range (0 to 1).  Beyond 1 or for another kind of puck each different height takes about
         a second to prepare, at most 500 of them; the others are looked up as if they were alone.
-    decel : array_like (…), J = fg, m/s², > 0
+    decel : array_like (…), fg, m/s², > 0
     radius : array_like (…), m, > 0
     tol : float
-        Largest error in units of Q/J (time) and Q²/J (place), Q = hypot(v, rω); 1e-13 to 0.01.  The
-        cheapest method whose measured error is below it is taken; ``explain()`` of the result says
-        which and why.
+        Largest error in units of Q/(fg) (time) and Q²/(fg) (place), Q = hypot(v, rω); 1e-13 to
+        0.01. The cheapest method whose measured error is below it is taken; ``explain()`` of the
+        result says which and why.
     method : 'look-up', 'rk4' or 'adaptive', optional
         Only this one.
     table : Table, optional

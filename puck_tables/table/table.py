@@ -103,9 +103,9 @@ class Table(ABC):
         accuracy : float, optional
             Largest error wanted, up to 0.01.  Resultants (dimensionless): from 1e-13, default
             2e-11, under another law than uniform pressure 1e-11 and 1e-9.  Stops (in units of
-            Q/J, Q²/J and Q²/(J r)): from 1e-11, default 1e-10.  Speed (over the largest f): from
-            1e-13, default 1e-6.  One puck (of its friction ratios): from 5e-13, default 1e-9; of
-            its stops, as above, from 1e-10, default 1e-8.
+            Q/(fg), Q²/(fg) and Q²/(fg r)): from 1e-11, default 1e-10.  Speed (over the largest f):
+            from 1e-13, default 1e-6.  One puck (of its friction ratios): from 5e-13, default 1e-9;
+            of its stops, as above, from 1e-10, default 1e-8.
         cells : int, optional
             Resultants and stops: grid size by hand instead, cells on each side of each singular
             line, from 4 (stops: 8) on.

@@ -70,7 +70,7 @@ class Map(SceneEnds):
 
     @cached_property
     def error_estimate(self) -> float:
-        """The largest error of a few runs, each done again alone and estimated; in Q/J and Q²/J.
+        """The largest error of a few runs, each done again alone and estimated, of Q/a and Q²/a.
 
         Of several pucks it grows with every impact, see :class:`puck_tables.scene.run.Run`.
 

@@ -15,7 +15,7 @@ CHECKED = 8  # runs
 
 
 def largest_error(ends: SceneEnds) -> float:
-    """The largest error found in the ends of a scene, times in units of Q/J, places in Q²/J.
+    """The largest error found in the ends of a scene, times in units of Q/a, places in Q²/a.
 
     Of :data:`CHECKED` runs that have an end, spread evenly: how far a run alone is from it, and the
     error estimate of that.  NaN where none has an end.

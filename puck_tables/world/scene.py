@@ -86,7 +86,7 @@ class Scene(SceneSpec):
     time : s, > 0, optional
         How long; left out, until rest.
     frames, tol : optional
-        How many states to save; the error wanted, of Q/J and Q²/J.
+        How many states to save; the error wanted, of Q/a and Q²/a as :class:`Run` has them.
     gravity : m/s², > 0, optional
         Of all its pucks.  Left out, it is what the pucks have: one, where there are several.
     ranges : mapping, optional

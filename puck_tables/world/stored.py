@@ -163,7 +163,8 @@ def lay_out(bench: Bench, game: Game, seen: FloatArray) -> Game:
     mine: Any = bench.game._asdict()
     for name in ("clock", *_NUMBERS, *_WHOLE):
         mine[name][...] = theirs[name]
-    bench.game.regions.ground[...] = game.regions.ground
+    if bench.game.regions.ground.size == game.regions.ground.size:  # no law that grew
+        bench.game.regions.ground[...] = game.regions.ground
     bench.seen[...] = seen
     return bench.game._replace(
         events=game.events, history=game.history, pieces=game.pieces, works=game.works
@@ -199,6 +200,7 @@ def _take(store: Slots, slot: int, time: float, bench: Bench) -> None:
 @kernel
 def take(store: Slots, slot: int, time: float, bench: Bench) -> None:
     """Copy a board to the bench."""
+    patience(1 + bench.numbers.size // 1000)
     _take(store, slot, time, bench)
 
 
@@ -291,6 +293,7 @@ def _put_away(game: Game, bench: Bench, store: Slots, slot: int) -> bool:
 @kernel
 def put_away(game: Game, bench: Bench, store: Slots, slot: int) -> bool:
     """The same of a game that :func:`lay_out` gave."""
+    patience(1 + bench.numbers.size // 1000)
     return _put_away(game, bench, store, slot)
 
 
@@ -307,7 +310,7 @@ def _lay_hands_on(what: int, k: int, orders: Orders, bench: Bench) -> None:
         locate(game, i, t, room)
         state = room.states[i]
         for column in range(6):
-            changed = changed or row[column] != state[column]
+            changed = changed or (row[column] == row[column] and row[column] != state[column])
         if what == LED:
             for column in range(VX, SPIN + 1):
                 state[column] = row[column]
@@ -315,7 +318,10 @@ def _lay_hands_on(what: int, k: int, orders: Orders, bench: Bench) -> None:
             game.next_time[i], game.next_partner[i] = t, PATH_ENDS
         elif changed or what != PLACED or game.kinds[i] != GONE:
             if changed and what == PLACED and game.discs[i, LIGHTNESS] == 0.0:
-                lead(game, i, row, FOR_EVER)
+                for column in range(6):
+                    if row[column] == row[column]:  # not NaN
+                        state[column] = row[column]
+                lead(game, i, state, FOR_EVER)
             room.marks[i] = CONCERNED
             for column in range(6):
                 room.before[i, column] = row[column]
@@ -379,7 +385,7 @@ def play(
     ``what``: an event by hand, LED or LET_GO.  What the engine does not do by itself is left as it
     was, to be played alone.
     """
-    patience(stop - start)
+    patience((stop - start) * (1 + bench.numbers.size // 1000))  # all of them are copied
     game, room, used = bench.game, bench.room, 0
     for k in range(start, stop):
         source = orders.source[k]
@@ -415,7 +421,7 @@ def fill_states(
     states: FloatArray, moving: Whole,
 ) -> None:  # fmt: skip
     """States (n, pucks, 6) of boards in slots, and which pucks move."""
-    patience(stop - start)
+    patience((stop - start) * (1 + bench.numbers.size // 1000))  # all of them are copied
     game = bench.game
     for k in range(start, stop):
         _take(store, slots[k], times[k], bench)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -49,12 +49,10 @@ class Together:
         self.scene, self.names, self._n = first.scene, first.names, int(n)
         self._order, self._place, game = first._order, first._place, first._game
         held = (game.discs[:, HOLD] != FREE).any() or game.surface.changes != 0.0
-        lawful = law_goes_to(game.regions) < math.inf
-        self._plain = not (held or lawful or moves_along(game.surface))
+        self._plain = not (held or moves_along(game.surface))
         bench = self._bench(0)
-        columns, discs = bench.numbers.size + bench.whole.size, len(self._order)
-        check_memory((2 * n + 1,), 8 * (columns + discs * PIECE_COLUMNS), "ask for fewer boards",
-                     f"{n} boards")  # fmt: skip
+        self._columns = bench.numbers.size + bench.whole.size + len(self._order) * PIECE_COLUMNS
+        self._refuse_many(n)
         self._store = Slots(
             np.empty((2 * n + 1, bench.numbers.size)), np.empty((2 * n + 1, bench.whole.size), int),
             np.empty((2 * n + 1, 1, PIECE_COLUMNS)), np.empty(2 * n + 1),
@@ -66,6 +64,26 @@ class Together:
         self._told: list[FloatArray] = []
         first._passings.follow(first._game)
         self._keep(bench, first, 2 * n)
+
+    def _refuse_many(self, n: int) -> None:
+        """Refuse more boards than memory has room for."""
+        check_memory((2 * n + 1,), 8 * self._columns, "ask for fewer boards", f"{n} boards")
+
+    def _copied(self, some: Whole) -> Self:
+        """Boards of their own that go on as some of these are."""
+        count, old = len(some), self._store
+        if count == 0:
+            raise InputError("boards must be one board at least")
+        self._refuse_many(count)
+        slots = np.concatenate([self._at[some], self._at[some], [2 * self._n]])
+        other = object.__new__(type(self))
+        other.__dict__.update(self.__dict__)
+        other._n, other._at, other.time = count, np.arange(count), self.time[some]
+        other._store = Slots(*(part[slots] for part in old))
+        other._free, other._told = [], []
+        apart = enumerate(slots[:count].tolist())
+        other._apart = {k: self._apart[slot] for k, slot in apart if slot in self._apart}
+        return other
 
     def _do(
         self, what: int, some: Whole, alone: Callable[[World, int], Any], span: float,
@@ -111,6 +129,8 @@ class Together:
         paces: FloatArray,
     ) -> None:  # fmt: skip
         """Scales that hold for what a hand gives, too: as World sets them, to the bit."""
+        if what == g.REMOVED:
+            return
         game = self._first._game
         own = game.discs[discs]
         given = slips_of(own, rows)
@@ -122,7 +142,7 @@ class Together:
             faster = ~(given <= paces[:, :1]).all(axis=1)
             if what == g.STRUCK:
                 faster &= ~np.isnan(rows[:, 0, [VX, -1]]).all(axis=1)
-            led = bool((own[:, LIGHTNESS] == 0.0).any())
+            led = bool((own[:, LIGHTNESS] == 0.0).any()) or law_goes_to(game.regions) < math.inf
             new = np.flatnonzero(faster | led)
             states = self._states(slots[new], time[new])[0][:, self._order]
             states[:, discs] = np.where(np.isnan(rows[new]), states[:, discs], rows[new])
@@ -177,9 +197,10 @@ class Together:
         world.__dict__.update(self._first.__dict__)
         game = bench.game
         if source in self._apart:
-            floors = self._apart[source].floors
-            regions = self._apart[source].regions._replace(ground=game.regions.ground)
-            game = game._replace(regions=regions, floors=floors)
+            floors, regions = self._apart[source].floors, self._apart[source].regions
+            own, kept = regions.ground, game.regions.ground  # of one size, it is in the slot
+            ground = kept if kept.size == own.size else own.copy()
+            game = game._replace(regions=regions._replace(ground=ground), floors=floors)
         world._game, world._room, world._told = game, room_for(len(self.names)), {}
         world._desk, world._passings = desk_for(game), self._first._passings.copy()
         world._passings.seen, world._passings.flights = bench.seen.copy(), bench.passed.copy()

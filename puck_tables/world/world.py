@@ -314,9 +314,9 @@ class World(Running):
         return impulse
 
     def apply_force(
-        self, puck: int | str, force: npt.ArrayLike, torque: float = 0.0, *, time: float
+        self, puck: int | str, force: npt.ArrayLike, torque: float = 0.0, *, duration: float
     ) -> None:
-        """Let a constant force act on a puck at its centre, from now on for a time, s > 0.
+        """Let a constant force act on a puck at its centre, from now on for a duration, s > 0.
 
         Beside all others, as ``Force.over_time`` of a scene.  A puck that was looked up until then
         is integrated from now on.  An event says "force".
@@ -335,7 +335,7 @@ class World(Running):
         --------
         >>> from puck_tables import Piece, Scene
         >>> world = Scene(pucks=[Piece(0.03, mass=1.0, friction=0.0, gravity=10.0)]).world()
-        >>> world.apply_force(0, (2.0, 0.0), time=0.5)
+        >>> world.apply_force(0, (2.0, 0.0), duration=0.5)
         >>> _ = world.advance(1.0)
         >>> world.state()[0, [0, 3]].round(9).tolist()            # F t^2/2m + F t/m 0.5 s
         [0.75, 1.0]
@@ -344,7 +344,7 @@ class World(Running):
         if self._game.discs[i, LIGHTNESS] == 0.0:
             raise InputError(f"{self._name(i)} is driven: no force moves it")
         push = np.append(_pair("force", force, "N"), real("torque", torque, "N m"))
-        until = self.time + positive("time", time, "s")
+        until = self.time + positive("duration", duration, "s")
         with self._or_as_before():
             self._game = with_force(self._game, self.scene, self._order, i, push, until)
             self._desk = desk_for(self._game)
@@ -355,7 +355,7 @@ class World(Running):
         """The disc of a puck."""
         i = int(self._place[number_of(puck, self.names)])
         if self._game.kinds[i] == GONE:
-            raise InputError(f"{self._name(i)} is no longer in play")
+            raise InputError(f"{self._name(i)} is no longer in play: place puts it back")
         return i
 
     def _led(self, puck: int | str, in_play: bool = True) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -11,7 +11,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import finite_array, real, shown
 from puck_tables.errors import InputError
-from puck_tables.scene.friction import VX, VY
+from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.pieces import called_line
 from puck_tables.scene.run import Event, number_of
 from puck_tables.world import game as g
@@ -31,8 +31,8 @@ class Worlds(Together):
 
     All that is done to them is done at once, in compiled code on all cores; results depend neither
     on how many boards there are nor on the cores.  Only a board on which pucks begin to push each
-    other is taken on alone for that call.  By-hand calls on a floor that moves or has a law, and of
-    pucks that a constraint leads, go board by board, too.  A call that is refused, or fails,
+    other is taken on alone for that call.  By-hand calls on a floor that moves, and of pucks that a
+    constraint leads, go board by board, too.  A call that is refused, or fails,
     changes no board.
 
     Parameters
@@ -170,13 +170,89 @@ class Worlds(Together):
         if self._first._game.discs[i, LIGHTNESS] == 0.0:
             raise InputError(f"{self.names[self._order[i]]} is driven along its path")
         self._refuse_gone(i, some)
-        rows = np.full((len(some), 1, 6), math.nan)
-        if velocity is not None:
-            rows[:, 0, VX : VY + 1] = self._each("velocity", velocity, "m/s", len(some), 2)
-        if spin is not None:
-            rows[:, 0, -1] = self._each("spin", spin, "rad/s", len(some))
-        self._do(g.STRUCK, some, lambda world, k: world._put(g.STRUCK, rows[k, 0], i), 0.0, rows,
-                 np.array([i]))  # fmt: skip
+        self._put(g.STRUCK, i, some, self._rows(len(some), None, None, velocity, spin))
+
+    def place(
+        self, puck: int | str, position: npt.ArrayLike | None = None,
+        angle: npt.ArrayLike | None = None, velocity: npt.ArrayLike | None = None,
+        spin: npt.ArrayLike | None = None, *, boards: Boards = None,
+    ) -> None:  # fmt: skip
+        """Put a puck somewhere, now, also back from a pocket, on all boards or some.
+
+        As :meth:`puck_tables.World.place`.
+
+        Parameters
+        ----------
+        puck : its number, or its name
+        position : (2,) or (boards, 2) m, angle : one or (boards,) rad, optional
+        velocity : (2,) or (boards, 2) m/s, spin : one or (boards,) rad/s, optional
+            Left out: as they are.  One that comes back needs a position, and is at rest if left so.
+        boards : numbers, or a mask (n,), optional
+            All if left out.
+
+        Raises
+        ------
+        InputError
+            If there is no such puck or board, a number is not finite, or it would overlap a puck or
+            a cushion, or lie in a hole: on which board, with whom, and by how much.
+
+        Examples
+        --------
+        >>> from puck_tables import Piece, Scene, Worlds
+        >>> worlds = Worlds(Scene(pucks=[Piece(0.03, friction=0.1)]), 2)
+        >>> worlds.place(0, [[0.5, 0.0], [0.6, 0.0]], velocity=(0.2, 0.0))
+        >>> worlds.advance(9.0)
+        >>> worlds.state()[:, 0, 0].round(6).tolist()                    # 0.5 + v^2/2fg
+        [0.520394, 0.620394]
+        """
+        i, some = int(self._place[number_of(puck, self.names)]), self._some(boards)
+        if position is None:
+            self._refuse_gone(i, some)
+        self._put(g.PLACED, i, some, self._rows(len(some), position, angle, velocity, spin))
+
+    def remove(self, puck: int | str, *, boards: Boards = None) -> None:
+        """Take a puck out of play, now, on all boards or some; :meth:`place` brings it back.
+
+        Raises
+        ------
+        InputError
+            If there is no such puck or board, or it is not in play on one.
+
+        Examples
+        --------
+        >>> from puck_tables import Piece, Scene, Worlds
+        >>> worlds = Worlds(Scene(pucks=[Piece(0.03, friction=0.1)]), 2)
+        >>> worlds.remove(0, boards=[1])
+        >>> worlds.in_play[:, 0].tolist()
+        [True, False]
+        """
+        i, some = int(self._place[number_of(puck, self.names)]), self._some(boards)
+        self._refuse_gone(i, some)
+        self._put(g.REMOVED, i, some, np.full((len(some), 1, 6), math.nan))
+
+    def copy(self, boards: Boards = None) -> Self:
+        """Boards of their own that go on from here, to look ahead.
+
+        Parameters
+        ----------
+        boards : numbers, which may come again, or a mask (n,), optional
+            All if left out.
+
+        Raises
+        ------
+        InputError
+            If there is no such board, or so many do not fit in memory.
+
+        Examples
+        --------
+        >>> from puck_tables import Piece, Scene, Worlds
+        >>> worlds = Worlds(Scene(pucks=[Piece(0.03, friction=0.1)]), 2)
+        >>> worlds.strike(0, (1.0, 0.0), boards=[1])
+        >>> tries = worlds.copy([1, 1, 0])
+        >>> tries.state()[:, 0, 3].tolist(), len(worlds)
+        ([1.0, 1.0, 0.0], 2)
+        """
+        return self._copied(self._some(boards, again=True))
 
     def drive(
         self, puck: int | str, velocity: npt.ArrayLike, spin: npt.ArrayLike = 0.0, *,
@@ -212,9 +288,7 @@ class Worlds(Together):
         """
         i, some = self._first._led(puck, False), self._some(boards)
         self._refuse_gone(i, some)
-        rows = np.zeros((len(some), 1, 6))
-        rows[:, 0, VX : VY + 1] = self._each("velocity", velocity, "m/s", len(some), 2)
-        rows[:, 0, -1] = self._each("spin", spin, "rad/s", len(some))
+        rows = self._rows(len(some), None, None, velocity, spin)
         self._do(LED, some, lambda world, k: world.drive(puck, rows[k, 0, VX : VY + 1],
                  float(rows[k, 0, -1])), 0.0, rows, np.array([i]))  # fmt: skip
 
@@ -277,8 +351,8 @@ class Worlds(Together):
         self._do(g.PLACED, some, lambda world, k: world.set_state(rows[k]), 0.0,
                  rows[:, self._order].copy(), np.arange(len(self.names)), anew)  # fmt: skip
 
-    def _some(self, boards: Boards) -> Whole:
-        """The numbers of boards."""
+    def _some(self, boards: Boards, again: bool = False) -> Whole:
+        """The numbers of boards, which come once if not ``again``."""
         if boards is None:
             return np.arange(self._n)
         try:
@@ -289,17 +363,43 @@ class Worlds(Together):
             return np.flatnonzero(given)
         if given.ndim == 1 and (given.size == 0 or np.issubdtype(given.dtype, np.integer)):
             some = np.unique(given).astype(int)
-            if len(some) == given.size and ((some >= 0) & (some < self._n)).all():
+            if (again or len(some) == given.size) and ((some >= 0) & (some < self._n)).all():
                 return given.astype(int)
-        raise InputError(f"boards must be numbers from 0 to {self._n - 1}, each once, or a mask of "
+        once = "" if again else ", each once"
+        raise InputError(f"boards must be numbers from 0 to {self._n - 1}{once}, or a mask of "
                          f"{self._n}, got {shown(boards)}")  # fmt: skip
+
+    def _put(self, what: int, i: int, some: Whole, rows: FloatArray) -> None:
+        """Give a disc states (boards, 1, 6), NaN: as it is, by an event."""
+        self._do(what, some, lambda world, k: world._put(what, rows[k, 0], i), 0.0, rows,
+                 np.array([i]))  # fmt: skip
+
+    def _rows(
+        self, count: int, position: Any, angle: Any, velocity: Any, spin: Any
+    ) -> FloatArray:  # fmt: skip
+        """States (count, 1, 6) of what is given; NaN of the rest."""
+        rows = np.full((count, 1, 6), math.nan)
+        if position is not None:
+            rows[:, 0, X : Y + 1] = self._each("position", position, "m", count, 2)
+        if angle is not None:
+            rows[:, 0, THETA] = self._each("angle", angle, "rad", count)
+        if velocity is not None:
+            rows[:, 0, VX : VY + 1] = self._each("velocity", velocity, "m/s", count, 2)
+        if spin is not None:
+            rows[:, 0, SPIN] = self._each("spin", spin, "rad/s", count)
+        return rows
 
     def _refuse_gone(self, i: int, some: Whole) -> None:
         """Refuse boards where a disc has left play."""
         gone = some[self._kinds(self._at[some])[:, i] == GONE].tolist()
         if gone:
             name = self.names[self._order[i]]
-            raise of_boards({one: InputError(f"{name} is no longer in play") for one in gone})
+            raise of_boards(
+                {
+                    one: InputError(f"{name} is no longer in play: set_state or reset puts it back")
+                    for one in gone
+                }
+            )
 
     def _each(self, name: str, values: Any, unit: str, count: int, *width: int) -> FloatArray:
         """Numbers for each board, or for all the same."""

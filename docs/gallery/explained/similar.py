@@ -3,7 +3,7 @@ One curve for all motions
 =========================
 
 The equations keep their form when speeds and times are scaled and the plane is turned or
-mirrored. So stop time and place of a puck are three functions of φ, in units of Q/J and Q²/J:
+mirrored. So stop time and place of a puck are three functions of φ, in units of Q/(fg) and Q²/(fg):
 these are looked up, and nothing is integrated.
 """
 
@@ -20,5 +20,5 @@ for delta, style in ((0.0, "-"), (1.0, "--")):
     axes.plot(degrees, stops.stop_time, f"C0{style}", label=f"time T, δ = {delta:g}")
     axes.plot(degrees, place[:, 0], f"C1{style}", label="ahead X")
     axes.plot(degrees, place[:, 1], f"C2{style}", label="aside Y")
-axes.set(xlabel="φ of the launch / °", title="Stops of Q = 1, J = 1", xticks=[0, 45, 90])
+axes.set(xlabel="φ of the launch / °", title="Stops of Q = 1, fg = 1", xticks=[0, 45, 90])
 axes.legend()

@@ -29,8 +29,7 @@ def _film(path: str | Path, head: bytes) -> Film:
             names, points, rate, unit, up = _points(path)
     except ImportError:
         raise InputError(
-            f"{path} is a C3D file: install what reads it (pip install c3d, or "
-            "'puck-tables[films]'), or export it as CSV"
+            f"{path} is a C3D file: install what reads it (pip install c3d), or export it as CSV"
         ) from None
     except Exception as error:  # of either package, of whatever a file holds
         raise InputError(f"{path} is a damaged C3D file: {error}") from None

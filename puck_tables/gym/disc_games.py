@@ -1,0 +1,191 @@
+"""Games of shots at discs on a board: carrom and crokinole, each as an exercise for one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.gym.table_game import TableGame, Tables, Truth, Whole, between, pucks_seen, sent
+from puck_tables.scene.parts import Launch
+from puck_tables.world.scene import Scene
+
+
+class ShotGame(TableGame):
+    """One shot is a move: until all is at rest; it earns what the score becomes larger by."""
+
+    def move(
+        self, tables: Tables, boards: Whole, actions: FloatArray, rng: np.random.Generator
+    ) -> tuple[FloatArray, Truth]:
+        """A shot on each."""
+        before = self.score(tables)[boards]
+        self.shoot(tables, boards, actions, rng)
+        tables.moves[boards] += 1
+        return self.score(tables)[boards] - before, self.over(tables)[boards]
+
+    def shoot(
+        self, tables: Tables, boards: Whole, actions: FloatArray, rng: np.random.Generator
+    ) -> None:
+        """Send off what is shot, and wait until all is at rest."""
+        raise NotImplementedError
+
+    def score(self, tables: Tables) -> FloatArray:
+        """Points on each board, array (n,)."""
+        raise NotImplementedError
+
+    def over(self, tables: Tables) -> Truth:
+        """Where the game is over: after so many shots."""
+        return tables.moves >= self.limit
+
+
+def free_places(
+    wanted: FloatArray, line: FloatArray, others: FloatArray, there: Truth, gaps: FloatArray
+) -> tuple[FloatArray, Truth]:
+    """The places (n, 2) nearest to those wanted on which nobody is, of a line (m, 2) of them.
+
+    ``others`` (n, pucks, 2), ``there``: which are on the board; ``gaps`` (pucks,): how far away
+    their centres must be.  And where there is any.
+
+    Examples
+    --------
+    >>> line, wanted = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]), np.array([[0.2, 0.0]])
+    >>> there, gaps = np.array([[True]]), np.array([0.5])
+    >>> free_places(wanted, line, np.array([[[0.1, 0.0]]]), there, gaps)[0].tolist()
+    [[1.0, 0.0]]
+    """
+    count = len(wanted)
+    places = np.concatenate([wanted[:, None], np.broadcast_to(line, (count, *line.shape))], axis=1)
+    apart = np.hypot(*np.moveaxis(places[:, :, None] - others[:, None], -1, 0))
+    free = ((apart > gaps) | ~there[:, None]).all(axis=2)
+    far = np.where(free, np.hypot(*np.moveaxis(places - wanted[:, None], -1, 0)), np.inf)
+    nearest = far.argmin(axis=1)
+    return places[np.arange(count), nearest], free.any(axis=1)
+
+
+class Carrom(ShotGame):
+    """White men are to be pocketed, from the break on; 30 shots at most.
+
+    An action is the place of the striker on its base line, ±0.21 m, its direction, ±80° to the line
+    across, and its speed, 0.2 to 6 m/s; where a man is in the way, the nearest free place is taken.
+    A white man earns 1, a black one −1, the queen 3, the striker in a pocket −1.  Seen are x, y, m,
+    of all men and 1 for each on the board, then the share of shots made.
+    """
+
+    actions, limit, places = 3, 30, slice(0, 38)
+
+    def __init__(self) -> None:
+        scene = Scene.load("carrom-break")
+        men, striker = scene.pucks[:-1], scene.pucks[-1]
+        place = float(striker.launch.position[1])
+        striker = replace(striker, launch=Launch(position=(0.0, place)))
+        self.scene = replace(scene, pucks=(*men, striker), title="Carrom")
+        self._line = np.column_stack([np.linspace(-0.21, 0.21, 85), np.full(85, place)])
+        self._gaps = np.array([1.0001 * (man.radius + striker.radius) for man in men])
+        worth = {"white": 1.0, "black": -1.0, "queen": 3.0}
+        self._worth = np.array([worth[man.name.split()[0]] for man in men])
+        self.high = np.ones(3 * len(men) + 1)
+        self.low = np.concatenate([-self.high[:38], np.zeros(20)])
+
+    def shoot(
+        self, tables: Tables, boards: Whole, actions: FloatArray, rng: np.random.Generator
+    ) -> None:
+        """Place the striker, and send it off."""
+        worlds, place = tables.worlds, self._line[0, 1]
+        wanted = np.column_stack([0.21 * actions[:, 0], np.full(len(boards), place)])
+        states, there = worlds.state()[boards], worlds.in_play[boards]
+        at, free = free_places(wanted, self._line, states[:, :-1, :2], there[:, :-1], self._gaps)
+        way, speed = np.radians(80.0) * actions[:, 1], between(actions[:, 2], 0.2, 6.0)
+        velocity = sent(speed, 0.5 * np.pi - way)
+        worlds.place("striker", at[free], velocity=velocity[free], spin=0.0, boards=boards[free])
+        tables.advance(np.inf)
+
+    def score(self, tables: Tables) -> FloatArray:
+        """What is in the pockets; the striker is there only just after its shot."""
+        gone = ~tables.worlds.in_play
+        return np.asarray(gone[:, :-1] @ self._worth - gone[:, -1])
+
+    def over(self, tables: Tables) -> Truth:
+        """Where no white man is left, or all shots are made."""
+        whites = tables.worlds.in_play[:, :-1][:, self._worth == 1.0]
+        return super().over(tables) | ~whites.any(axis=1)
+
+    def seen(self, tables: Tables) -> FloatArray:
+        """All men."""
+        men = pucks_seen(tables.worlds.state()[:, :-1], tables.worlds.in_play[:, :-1])
+        return np.column_stack([men, tables.moves / self.limit])
+
+
+class Crokinole(ShotGame):
+    """Eight discs to be shot at the hole and at three of the other side, which lie anywhere.
+
+    An action is the place on the line of the own quarter, ±45°, the direction, ±30° to the middle,
+    and the speed, 0.2 to 3 m/s.  Points are those of the own discs less those of the others: 20 in
+    the hole, 15, 10 and 5 in the rings, all of a disc within; nobody has to hit anything.  Seen are
+    x, y, m, of all discs, own first, and 1 for each on the board, then the share of shots made.
+    """
+
+    actions, limit, places = 3, 8, slice(0, 22)
+    _RINGS = ((0.1016, 15.0), (0.2032, 10.0), (0.3048, 5.0))  # radius, m, and points
+    _START, _THEIRS = 0.2948, 3  # m: on the outer line
+
+    def __init__(self) -> None:
+        scene = Scene.load("crokinole")
+        own, their = scene.pucks[0], scene.pucks[1]
+        turns = np.arange(self.limit + self._THEIRS) * 2.0 * np.pi / 11.0
+        pucks = [
+            replace(
+                own if k < self.limit else their,
+                name=f"disc {k + 1}" if k < self.limit else f"other {k - self.limit + 1}",
+                launch=Launch(position=(0.25 * np.cos(turn), 0.25 * np.sin(turn))),
+            )
+            for k, turn in enumerate(turns.tolist())
+        ]
+        self.scene = replace(scene, pucks=tuple(pucks))
+        self._radius = own.radius
+        angles = np.linspace(-0.75, -0.25, 61) * np.pi
+        self._line = self._START * np.column_stack([np.cos(angles), np.sin(angles)])
+        self.high = np.ones(3 * len(pucks) + 1)
+        self.low = np.concatenate([-self.high[:22], np.zeros(12)])
+
+    def begin(self, tables: Tables, boards: Whole, rng: np.random.Generator) -> None:
+        """Put the discs of the other side anywhere, a ring each."""
+        super().begin(tables, boards, rng)
+        for k in range(self.limit):
+            tables.worlds.remove(k, boards=boards)
+        for k, (low, high) in enumerate(((0.03, 0.07), (0.13, 0.18), (0.21, 0.24))):
+            far, way = rng.uniform(low, high, len(boards)), rng.uniform(-np.pi, np.pi, len(boards))
+            tables.worlds.place(self.limit + k, sent(far, way), boards=boards)
+
+    def shoot(
+        self, tables: Tables, boards: Whole, actions: FloatArray, rng: np.random.Generator
+    ) -> None:
+        """Place the next disc, and send it off."""
+        worlds, turn = tables.worlds, -0.5 * np.pi + 0.25 * np.pi * actions[:, 0]
+        wanted = self._START * np.column_stack([np.cos(turn), np.sin(turn)])
+        states, there = worlds.state()[boards], worlds.in_play[boards]
+        gaps = np.full(len(self.scene.pucks), 2.0001 * self._radius)
+        at, free = free_places(wanted, self._line, states[:, :, :2], there, gaps)
+        way = np.arctan2(-at[:, 1], -at[:, 0]) + np.radians(30.0) * actions[:, 1]
+        speed = between(actions[:, 2], 0.2, 3.0)
+        velocity = sent(speed, way)
+        for k in np.unique(tables.moves[boards]).tolist():
+            on = free & (tables.moves[boards] == k)
+            worlds.place(k, at[on], velocity=velocity[on], spin=0.0, boards=boards[on])
+        tables.advance(np.inf)
+
+    def score(self, tables: Tables) -> FloatArray:
+        """Of own discs that were shot, less those of the others."""
+        worlds, own = tables.worlds, np.arange(len(self.scene.pucks)) < self.limit
+        far = np.hypot(*np.moveaxis(worlds.state()[:, :, :2], -1, 0))
+        points = np.zeros(far.shape)
+        for radius, worth in self._RINGS[::-1]:
+            points[worlds.in_play & (far + self._radius < radius)] = worth
+        shot = np.arange(far.shape[1]) < tables.moves[:, None]
+        points[~worlds.in_play & (far < 0.02) & (shot | ~own)] = 20.0
+        return points @ np.where(own, 1.0, -1.0)
+
+    def seen(self, tables: Tables) -> FloatArray:
+        """All discs."""
+        discs = pucks_seen(tables.worlds.state(), tables.worlds.in_play)
+        return np.column_stack([discs, tables.moves / self.limit])
