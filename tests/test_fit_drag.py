@@ -14,7 +14,7 @@ from scipy.integrate import solve_ivp
 from scipy.special import ellipe, ellipk
 
 import puck_tables as pt
-from puck_tables.fitting.speed_motion import Drags, SpeedFriction, speed_path
+from puck_tables.fitting.speed_motion import Drags, SpeedFriction, SpeedLaunch, speed_paths
 
 G, R = 9.80665, 0.03165
 PUCK = pt.Puck(R, height=0.0)
@@ -81,9 +81,9 @@ def test_motions_are_those_of_an_independent_integrator():
     ):  # fmt: skip
         way, turn = motion(f, c, k, s, v, w, t)
         drags = Drags(c, k, s)
-        (x, y, angle), _ = speed_path(
-            SpeedFriction(f, G, 0.5**0.5, drags), 0.0, R, np.array([v, 0.0]), w, t
-        )
+        floor = SpeedFriction(f, G, 0.5**0.5, drags)
+        states, _ = speed_paths([SpeedLaunch(floor, 0.0, R, np.array([v, 0.0]), w)], t)
+        x, y, angle = states[0, :3]
         assert np.abs(x - way).max() < 3e-6 * way[-1] and not y.any()
         assert np.abs(angle - turn).max() < 3e-6 * abs(turn[-1]) + 1e-6
 

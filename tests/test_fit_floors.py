@@ -1,6 +1,6 @@
 """Floors that are no constant friction: slopes, belts, laws over slip speed; what a film supports.
 
-Films are made by an integrator of its own, which sums friction over the points of a flat disc.
+Films are made by an integrator of its own (:mod:`disc_judge`).
 """
 
 from __future__ import annotations
@@ -9,39 +9,27 @@ import math
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
+from disc_judge import slid
+from film_judge import G
 
 import puck_tables as pt
+from puck_tables.fitting.fit_spec import FitSpec
+from puck_tables.fitting.forward_model import RADIUS, SPIN, VX, VY, states_and_slopes
+from puck_tables.fitting.named_laws import law_named
+from puck_tables.fitting.parameters import LAW_NUMBERS
 
-G, R = 9.80665, 0.04
+R = 0.04
 PUCK = pt.Puck(R, height=0.0)
 NOISE = (3e-4, 4e-3)
-_X, _W = np.polynomial.legendre.leggauss(16)
-_RHO = 0.5 * (_X + 1.0)
-_ANGLE = (np.arange(40) + 0.5) * 2.0 * np.pi / 40
-_AT = np.stack([np.outer(_RHO, np.cos(_ANGLE)), np.outer(_RHO, np.sin(_ANGLE))]).reshape(2, -1)
-_SHARE = (np.outer(_W * _RHO, np.ones(40)) / 40).ravel()  # of the pressure on each point
 
 
-def film(seed: int, law, push=(0.0, 0.0), belt=(0.0, 0.0), drag=0.0, v=1.6, spin=35.0, frames=150):
+def film(seed: int, law, v=1.6, spin=35.0, frames=150, **how):
     """A film of a disc under friction law(u) on a floor that slopes or moves."""
     rng = np.random.default_rng(seed)
-    belt, push = np.array(belt), np.array(push)
-
-    def rates(_, y):
-        along = y[3:5] - belt
-        slip = along[:, None] + R * y[5] * np.stack([-_AT[1], _AT[0]])
-        speed = np.hypot(*slip)
-        force = -G * _SHARE * law(speed) / np.sqrt(speed**2 + 1e-6) * slip
-        torque = R * (_AT[0] * force[1] - _AT[1] * force[0]).sum() / (0.5 * R * R)
-        return [*y[3:], *(force.sum(axis=1) + push - drag * along), torque - drag * y[5]]
-
-    t = np.arange(frames) / 120.0
-    way = rng.uniform(0.0, 2.0 * math.pi)
-    start = [0.0, 0.0, 0.0, v * math.cos(way), v * math.sin(way), spin]
-    y = solve_ivp(rates, (0.0, t[-1]), start, "DOP853", t, rtol=1e-7, atol=1e-9).y
-    place = y[:2].T + rng.normal(0.0, NOISE[0], (frames, 2))
-    return pt.Track(t, place, y[2] + rng.normal(0.0, NOISE[1], frames), "film")
+    t, way = np.arange(frames) / 120.0, rng.uniform(0.0, 2.0 * math.pi)
+    x, y, angle = slid(law, R, (v * math.cos(way), v * math.sin(way)), spin, t, **how)
+    place = np.stack([x, y], axis=1) + rng.normal(0.0, NOISE[0], (frames, 2))
+    return pt.Track(t, place, angle + rng.normal(0.0, NOISE[1], frames), "film")
 
 
 def even(u):
@@ -82,6 +70,46 @@ def test_laws_by_their_names(name, law, numbers):
     result = pt.fit(film(3, law, frames=110), PUCK, free="friction", law=name, keep_all=True)
     for one, value in zip(("friction", "friction_rest", "law_speed"), numbers, strict=True):
         assert near(result[one], value) and result[one].error < 0.2 * value, (one, result[one])
+
+
+@pytest.mark.parametrize("how", [{}, {"push": (0.2, 0.1)}, {"belt": (0.4, -0.3)}, {"drag": 0.5}])
+@pytest.mark.parametrize(("v", "spin"), [(1.6, 35.0), (0.3, 60.0), (1.2, 8.0)])
+def test_motions_and_their_slopes_are_those_of_the_judge(how, v, spin):
+    """By launch, radius and the numbers of a law."""
+    times = np.linspace(0.0, 1.0, 30)
+    truth = np.array([v, 0.2, spin, R, 0.1, 0.22, 0.3])
+
+    def judged(numbers):
+        vx, vy, w, radius, fast, rest, speed = numbers
+        law = law_named("stribeck", fast, rest, speed).extended  # its rows, not its formula
+        return slid(law, radius, (vx, vy), w, times, until=1e-5, **how)
+
+    spec = FitSpec.of(pt.Puck(R, height=0.0), ["friction"], {}, {}, {}, {}).with_law("stribeck")
+    push, belt = how.get("push", (0.0, 0.0)), how.get("belt", (0.0, 0.0))
+    floor = dict(zip(("slope_x", "slope_y", "belt_x", "belt_y"),
+                     (push[0] / G, push[1] / G, *belt), strict=True))  # fmt: skip
+    floor["drag"] = how.get("drag", 0.0)
+    numbers = dict(zip(("friction", *LAW_NUMBERS), truth[4:].tolist(), strict=True)) | floor
+    step = 1e-6
+    beside = [spec.moving({**numbers, name: numbers[name] + step}, False)
+              for name in ("friction", *LAW_NUMBERS)]  # fmt: skip
+    launch = np.array([0.0, 0.0, *truth[:3], 0.0])
+    states, slopes, differ = states_and_slopes(spec.moving(numbers, False), launch, times, beside)
+    seen = judged(truth)
+    assert np.all(np.abs(states[:3] - seen).max(axis=1) < 2e-5 * np.ptp(seen, axis=1).max())
+    found = [*(slopes[:, :3, k].T for k in (VX, VY, SPIN, RADIUS)), *(differ[:, :3] / step)]
+    for k, one in enumerate(found):
+        by = 1e-3 * truth[k] * (np.arange(truth.size) == k)
+        expected = (judged(truth + by) - judged(truth - by)) / (2e-3 * truth[k])
+        assert np.abs(one - expected).max() < 5e-3 * np.abs(expected).max(), k
+
+
+def test_a_puck_that_comes_to_rest_on_a_belt():
+    track = film(2, even, belt=(0.3, 0.1), frames=250)
+    result = pt.fit(track, PUCK, free=["friction", "belt_x", "belt_y"])
+    assert result.complaints == ()
+    for name, value in (("friction", 0.12), ("belt_x", 0.3), ("belt_y", 0.1)):
+        assert near(result[name], value), (name, result[name])
 
 
 FLOORS = {

@@ -231,6 +231,8 @@ def _without_parts(result: Estimate, certainty: Certainty, count: int) -> FloatA
     """The covariance that leaving out a part of the frames at a time shows: the jackknife's."""
     slopes, square = _scaled(result, certainty)
     rows, changes = result.residuals * result.kept, []
+    # what little is left of a slope at the minimum, parts that hardly tell a number would magnify
+    rows = rows - slopes @ np.linalg.lstsq(slopes, rows, rcond=None)[0]
     for film in result.problem.each():
         parts = zip(*(np.array_split(np.r_[one], count) for one in film), strict=True)
         for frames in (np.concatenate(part) for part in parts):

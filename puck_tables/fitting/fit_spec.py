@@ -31,6 +31,7 @@ from puck_tables.fitting.parameters import (
     OF_IMPACTS,
     OF_PAIRS,
     OF_WALLS,
+    OWN_CURVE,
     POSITIVE,
     PUCK,
     SMALLEST,
@@ -45,7 +46,7 @@ from puck_tables.fitting.speed_motion import Drags, SpeedFriction
 from puck_tables.fitting.unit_motions import unit_motions_of
 from puck_tables.puck import Puck
 
-_KIND = ("gyration", "inner", "drag", *INTEGRATED)  # change the curve itself
+_KIND = (*OWN_CURVE, "drag", *INTEGRATED)  # change the curve itself
 _CLASHES = (("friction", "decel", ", decel is f g"), ("delta", "height", ""))
 TINY = 1e-30  # step of derivatives along the imaginary axis
 _LEAST = 1e-9

@@ -32,7 +32,6 @@ from puck_tables.fitting.inputs import (
     refuse_tipping,
 )
 from puck_tables.fitting.judgement import JudgedMotion, judged_certainty, judged_motion
-from puck_tables.fitting.least_squares import ROBUST, minimise
 from puck_tables.fitting.misfit import misfit
 from puck_tables.fitting.model_comparison import (
     HeldOut,
@@ -52,7 +51,7 @@ from puck_tables.fitting.other_minima import without_spin
 from puck_tables.fitting.parameters import DRAGS
 from puck_tables.fitting.problem import Known, Problem
 from puck_tables.fitting.residuals import NO_PATTERN, NOISY, drift, runs
-from puck_tables.fitting.slowing import begun_from_slowing, begun_or_refused
+from puck_tables.fitting.slowing import begun_or_refused, nearest_start
 from puck_tables.fitting.touches import SlideIndex, slides_apart
 from puck_tables.puck import Puck
 
@@ -242,21 +241,33 @@ def _observe(films: tuple[Observations, ...], inputs: Inputs) -> _Observed:
 
 def _estimate_all(inputs: Inputs, observed: _Observed) -> _Estimates:
     """The estimate, from slides apart to joined ones, from one friction to one over slip speed."""
+    problem, known = observed.problem, inputs.known
+    # what one friction leaves off at the ends need not be foreign where another is looked for
+    late = bool(inputs.speeds) and not inputs.impacts
     if inputs.spec.integrates:
-        best = slides = _integrated(observed.problem, inputs.known)
+        best = slides = _integrated(problem, known)
     else:
-        best = slides = initial_estimate(observed.problem, inputs.known, refit=True)
+        best = slides = initial_estimate(problem, known, refit=not late)
     untied = ""
     if inputs.impacts:
         best, untied = couple(
-            slides, observed.pieces, observed.uncut, inputs.spec, inputs.lines, inputs.known
+            slides, observed.pieces, observed.uncut, inputs.spec, inputs.lines, known
         )
     constant = best
     if inputs.speeds:
-        refuse_faster(inputs.speeds, best)
-        best = over_speeds(best, inputs.speeds, inputs.between, inputs.known)
+        best = _over_speeds(constant, inputs)
+        if late and not is_clean(best, NOISY, NO_PATTERN):
+            slides = initial_estimate(problem, known, refit=True)
+            if slides.problem.films != constant.problem.films:
+                constant, best = slides, _over_speeds(slides, inputs)
         refuse_opening(best)
     return _Estimates(slides, best, constant, untied)
+
+
+def _over_speeds(constant: Estimate, inputs: Inputs) -> Estimate:
+    """The estimate with a friction over slip speed, from that of one for all."""
+    refuse_faster(inputs.speeds, constant)
+    return over_speeds(constant, inputs.speeds, inputs.between, inputs.known)
 
 
 def _integrated(problem: Problem, known: Known) -> Estimate:
@@ -266,10 +277,9 @@ def _integrated(problem: Problem, known: Known) -> Estimate:
     fits, from one with linear drag.  Frames at the ends are looked at only then.
     """
     drags = {*DRAGS} >= {*problem.spec.integrated}
-    begun = begun_from_slowing(problem) if drags else begun_or_refused(problem)
+    begun = nearest_start(problem) if drags else begun_or_refused(problem)
     if begun is not None:
-        x, _ = minimise(*begun, ROBUST)
-        result = estimate(problem, x, known)
+        result = estimate(problem, begun[1], known)
         if is_clean(result, NOISY, NO_PATTERN) or not drags:
             refuse_opening(result)
             return result

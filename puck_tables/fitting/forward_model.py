@@ -4,28 +4,29 @@ Dry friction alone is looked up, or integrated (:mod:`puck_tables.fitting.unit_m
 
 Drag c, in 1/s, that brakes speed and spin alike, v′ = … − c v, ω′ = … − c ω, needs no motion of its
 own: v = e^(−ct) V(s), ω = e^(−ct) W(s) with s = (e^(ct) − 1)/c, where V and W are those without
-drag, since dry friction depends on their direction only.  So place = ∫ V ds/(1 + cs)², by parts
+drag, since dry friction depends on their direction only.  So place = ∫ e^(−ct) V dt, by parts
 
-    place = X(s)/(1 + cs)² + 2c ∫ X ds/(1 + cs)³ ,
+    place = g + 2c ∫ g dt ,  g = e^(−2ct) X(s) ,
 
-and so for every derivative of it.  Drag of the speed squared, or of the spin alone, is integrated
-(:mod:`puck_tables.fitting.speed_motion`).  For a homogeneous flat puck under uniform pressure
-linear drag is the law f(u) = f + (c/g) u of a coefficient that rises (c > 0) or falls (c < 0) with
-the slip speed u.
+and so for every derivative of it; the integral by trapezia, corrected by g′ at their ends.  Drag of
+the speed squared, or of the spin alone, is integrated (:mod:`puck_tables.fitting.speed_motion`).
+For a homogeneous flat puck under uniform pressure linear drag is the law f(u) = f + (c/g) u of a
+coefficient that rises (c > 0) or falls (c < 0) with the slip speed u.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.fitting.speed_motion import SpeedFriction, speed_path
+from puck_tables.fitting.speed_motion import SpeedFriction, SpeedLaunch, speed_paths
 from puck_tables.fitting.unit_motions import UnitMotions
 
-_SPEED_STEP = 1e-6
-_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+_SPEED_STEP = 1e-6  # of a slip at the rim, of a radius, of δ
+_MOMENTS = 129  # from the launch on, besides those asked for: places to some 1e-8 of the path
 
 VX, VY, SPIN, DELTA, DECEL, RADIUS, TIME = range(7)  # what states are differentiated to
 PLACE, RATE = slice(0, 3), slice(3, 6)  # of a state: x, y, angle and vx, vy, spin
@@ -45,6 +46,12 @@ class Moving(NamedTuple):
     motions: UnitMotions
     by_speed: SpeedFriction | None = None
 
+    def speed_launch(self, at: FloatArray) -> SpeedLaunch:
+        """What is integrated of arguments (6,); J does nothing, f of the law is in its place."""
+        assert self.by_speed is not None
+        height = at[DELTA] * self.by_speed.gravity / self.decel  # 2h/r
+        return SpeedLaunch(self.by_speed, height, float(at[RADIUS]), at[:2], float(at[SPIN]))
+
     def arguments(self, launch: FloatArray) -> FloatArray:
         """Of a launch (6,), what states are differentiated to: vx, vy, ω, δ, J, r."""
         return np.array([*launch[2:5], self.delta, self.decel, self.radius])
@@ -63,15 +70,28 @@ def states_of(moving: Moving, launch: FloatArray, times: FloatArray) -> FloatArr
     >>> states_of(plain, launch, np.array([2.0]))[0].round(6).tolist()
     [1.590682]
     """
+    if moving.by_speed is not None:
+        alone = moving.speed_launch(moving.arguments(launch))
+        return _placed(launch, speed_paths([alone], times)[0][0])
     return _placed(launch, _path(moving, launch, times, False)[0])
 
 
 def states_and_slopes(
-    moving: Moving, launch: FloatArray, times: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """States (6, n), and their derivatives (n, 6, 7) to vx, vy, ω, δ, J, r and time."""
+    moving: Moving, launch: FloatArray, times: FloatArray, nearby: Sequence[Moving] = ()
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """States (6, n), and their derivatives (n, 6, 7) to vx, vy, ω, δ, J, r and time.
+
+    And how states differ (k, 6, n) under what moves a puck in hardly another way.
+    """
+    if moving.by_speed is not None:
+        states, slopes, differ = _by_speed(moving, launch, times, nearby)
+        return _placed(launch, states), slopes, differ
     states, slopes = _path(moving, launch, times, True)
-    return _placed(launch, states), slopes
+    placed = _placed(launch, states)
+    differ = np.zeros((len(nearby), *placed.shape))
+    for one, change in zip(nearby, differ, strict=True):
+        change[:] = states_of(one, launch, times) - placed
+    return placed, slopes, differ
 
 
 def _placed(launch: FloatArray, states: FloatArray) -> FloatArray:
@@ -86,32 +106,29 @@ def _path(
     c, at = moving.drag, moving.arguments(launch)
     if not at[:3].any():
         return np.zeros((6, times.size)), np.zeros((times.size, 6, 7))
-    if moving.by_speed is not None:
-        return _by_speed(moving.by_speed, at, times, want)
     if c == 0.0:
         return _without_drag(moving, at, times, want)
-    s = np.expm1(c * times) / c
-    ends = np.concatenate([[0.0], s])
-    half, middle = 0.5 * np.diff(ends), 0.5 * (ends[1:] + ends[:-1])
-    inner = middle[:, None] + half[:, None] * _POINTS
-    states, slopes = _without_drag(moving, at, np.concatenate([s, inner.ravel()]), want)
-    weights = half[:, None] * _WEIGHTS / (1.0 + c * inner) ** 3
-    slower = np.exp(-c * times)
+    end = float(times.max(initial=0.0))
+    grid = np.union1d(times, np.linspace(0.0, end, _MOMENTS))
+    states, slopes = _without_drag(moving, at, np.expm1(c * grid) / c, want)
+    slower, step, where = np.exp(-c * grid), np.diff(grid), np.searchsorted(grid, times)
 
     def dragged(rows: FloatArray) -> FloatArray:
-        """Of places (3, …) and rates (3, …) over all times those at the moments themselves."""
-        result: FloatArray = rows[..., : s.size] * slower
-        within = rows[PLACE, ..., s.size :].reshape(3, *rows.shape[1:-1], s.size, _POINTS.size)
-        integral = np.cumsum((within * weights).sum(axis=-1), axis=-1)
-        result[PLACE] = rows[PLACE, ..., : s.size] / (1.0 + c * s) ** 2 + 2.0 * c * integral
-        return result
+        """Of places (3, …) and rates (3, …) on the grid those at the moments asked for."""
+        rates = rows[RATE] * slower
+        near = rows[PLACE] * slower**2
+        rise = rates - 2.0 * c * near
+        parts = 0.5 * step * (near[..., 1:] + near[..., :-1])
+        parts -= step**2 / 12.0 * np.diff(rise, axis=-1)
+        near[..., 1:] += 2.0 * c * np.cumsum(parts, axis=-1)
+        return np.concatenate([near, rates])[..., where]
 
     moved = dragged(states)
     if not want:
         return moved, slopes
     out = np.moveaxis(dragged(np.moveaxis(slopes, 0, 2)), 2, 0)
     out[:, PLACE, TIME] = moved[RATE].T
-    out[:, RATE, TIME] = slopes[: s.size, RATE, TIME] - c * moved[RATE].T
+    out[:, RATE, TIME] = slopes[where, RATE, TIME] - c * moved[RATE].T
     return moved, out
 
 
@@ -124,29 +141,21 @@ def _without_drag(
 
 
 def _by_speed(
-    friction: SpeedFriction, at: FloatArray, times: FloatArray, want: bool
-) -> tuple[FloatArray, FloatArray]:
-    """The same where friction depends on the slip speed: no similarity, so all by differences.
-
-    J does nothing, its place is taken by the numbers of the law.
-    """
-    height = friction.gravity / at[DECEL]  # δ times it is 2h/r
-
-    def path(by: FloatArray, times: FloatArray) -> FloatArray:
-        velocity, spin, delta, radius = by[:2], float(by[SPIN]), by[DELTA], float(by[RADIUS])
-        moved = speed_path(friction, delta * height, radius, velocity, spin, times)
-        return np.concatenate(moved)
-
-    instant = _SPEED_STEP * (float(times.max(initial=0.0)) or 1.0)
-    result, later = np.split(path(at, np.concatenate([times, times + instant])), 2, axis=1)
-    out = np.zeros((times.size, 6, 7))
-    if not want:
-        return result, out
-    scale = max(abs(at[VX]), abs(at[VY]), at[RADIUS] * abs(at[SPIN]))
-    steps = {VX: scale, VY: scale, SPIN: scale / at[RADIUS], DELTA: 1.0, RADIUS: at[RADIUS]}
-    for k, size in steps.items():
-        step = np.zeros(6)
+    moving: Moving, launch: FloatArray, times: FloatArray, nearby: Sequence[Moving]
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Where friction depends on the slip speed, no similarity helps: all by motions nearby."""
+    at = moving.arguments(launch)
+    scale = max(abs(at[VX]), abs(at[VY]), at[RADIUS] * abs(at[SPIN])) or 1.0
+    sizes = {VX: scale, VY: scale, SPIN: scale / at[RADIUS], DELTA: 1.0, RADIUS: at[RADIUS]}
+    steps = np.zeros((len(sizes), 6))
+    for step, (k, size) in zip(steps, sizes.items(), strict=True):
         step[k] = _SPEED_STEP * size
-        out[:, :, k] = ((path(at + step, times) - result) / step[k]).T
-    out[:, PLACE, TIME], out[:, RATE, TIME] = result[RATE].T, (later - result)[RATE].T / instant
-    return result, out
+    launches = [moving.speed_launch(at), *(moving.speed_launch(at + step) for step in steps)]
+    launches += [one.speed_launch(one.arguments(launch)) for one in nearby]
+    states, gains = speed_paths(launches, times)
+    result, differ = states[0], states[1:] - states[0]
+    slopes = np.zeros((times.size, 6, 7))
+    for k, step, change in zip(sizes, steps, differ, strict=False):
+        slopes[:, :, k] = change.T / step[k]
+    slopes[:, PLACE, TIME], slopes[:, RATE, TIME] = result[RATE].T, gains.T
+    return result, slopes, differ[len(steps) :]

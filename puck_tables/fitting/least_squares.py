@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -130,20 +131,16 @@ def minimise(
 
 def apart(both: Callable[[FloatArray], tuple[FloatArray, FloatArray]]) -> tuple[Of, Of]:
     """Residuals and their derivatives as scipy asks for them, from one call."""
-    latest: dict[bytes, FloatArray] = {}
+    latest: dict[bytes, tuple[FloatArray, FloatArray]] = {}
 
-    def residuals(values: FloatArray) -> FloatArray:
-        rows, slopes = both(values)
-        latest.clear()
-        latest[values.tobytes()] = slopes
-        return rows
+    def at(values: FloatArray, which: int) -> FloatArray:
+        key = values.tobytes()
+        if key not in latest:
+            latest.clear()
+            latest[key] = both(values)
+        return latest[key][which].copy()  # scipy scales them where they are
 
-    def jacobian(values: FloatArray) -> FloatArray:
-        if values.tobytes() not in latest:
-            residuals(values)
-        return latest[values.tobytes()]
-
-    return residuals, jacobian
+    return partial(at, which=0), partial(at, which=1)
 
 
 def _astray(problem: Problem, x: FloatArray) -> str:
@@ -176,6 +173,7 @@ def inside(x: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
 # steps, and how many starts then go on
 FROM_AFAR = ((1, 10), (4, 5), (12, 4))
 FROM_BESIDE = ((4, 2), (30, 1))
+FROM_SLOWING = ((3, 3), (8, 2), (30, 1))
 _DAMPED, _EASED, _HARDER = 1e-3, 0.1, 10.0
 _LEAST = 1e-9  # damping: what is not seen stays where it is
 _LEVEL, _HARDEST = 1e-4, 1e6  # what costs fall by, or the damping, where a start has arrived

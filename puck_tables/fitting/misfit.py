@@ -17,7 +17,6 @@ from puck_tables.errors import InputError
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.initial_estimate import initial_estimate
-from puck_tables.fitting.least_squares import ROBUST, minimise
 from puck_tables.fitting.model_comparison import tried
 from puck_tables.fitting.parameters import INTEGRATED, NODES
 from puck_tables.fitting.problem import TURN, Known, Problem
@@ -40,6 +39,7 @@ _ALIKE = math.log(1.5)  # readings that fit about as well
 _MUCH = math.log(3.0)  # so much smaller residuals tell, though they are no noise yet
 _LITTLE, _CLEAN = math.log(1.1), 1.4  # less than that is no reason; times the noise of a place
 _MOST, _LEAST = 10.0, 1e-3  # times one friction for all speeds: laws that some floor has
+_FAINT = 1e-3  # of what friction does: no force explains anything by so little
 _STEEPEST = 10.0  # degrees: nobody takes that for a level table
 _HELD = ("launch_spin", "launch_angle")  # what is said of these is said of the angles as they are
 
@@ -145,9 +145,20 @@ def _by_air(result: Estimate, problem: Problem) -> _Reading:
     if not _may_change(spec):
         return _Reading("", 0.0)
     other = replace(problem, spec=replace(spec, free=(*spec.free, "air")), tall=False)
-    x, _ = minimise(*begun_or_refused(other), ROBUST)
+    x = begun_or_refused(other)[1]
+    air = other.numbers_at(x)["air"]
+    if _faint(result, AIR, air):
+        return _Reading("", 0.0)
     gain = _gain(result, _sizes(other, other.deviations(x)), problem.noise[0])
-    return _Reading(_air_words(other.numbers_at(x)["air"], spec), gain, True)
+    return _Reading(_air_words(air, spec), gain, True)
+
+
+def _faint(result: Estimate, kind: tuple[int, ...], force: float) -> bool:
+    """Whether a force does next to nothing: then it only led to another motion."""
+    speed = float(np.hypot(*result.problem.launches(result.x)[:, 2:4].T).max())
+    slowing = result.problem.spec.scales(result.problem.numbers_at(result.x))[0]
+    faint: bool = force * (speed**2 if kind == AIR else 1.0) < _FAINT * slowing
+    return faint
 
 
 def _air_words(air: float, spec: FitSpec) -> str:
@@ -186,7 +197,7 @@ def _by_force(result: Estimate, kind: tuple[int, ...], noise: float) -> _Reading
     """A table out of level, or air, to first order, if that fits far better."""
     off, force = forced(result, kind)
     gain = _gain(result, _sizes(result.problem, off), noise)
-    if not gain:
+    if not gain or _faint(result, kind, math.hypot(*force)):
         return None
     gravity = {**result.problem.spec.known(), **result.problem.numbers_at(result.x)}["gravity"]
     slope = math.degrees(math.hypot(*force) / gravity)

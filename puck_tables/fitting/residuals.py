@@ -342,7 +342,8 @@ def _along_one(moving: Moving, launch: FloatArray, times: FloatArray) -> FloatAr
     from scipy.interpolate import CubicSpline
 
     vx, vy, w = states_of(moving, launch, times)[RATE]
-    slips = np.hypot(np.hypot(vx, vy), moving.radius * w)
+    belt = (0.0, 0.0) if moving.by_speed is None else moving.by_speed.belt
+    slips = np.hypot(np.hypot(vx - belt[0], vy - belt[1]), moving.radius * w)
     moves = int((slips > _REST * slips.max()).sum())
     end = float(times[moves - 1]) if moves else 0.0
     if 1 < moves < times.size:  # it slows at about a constant rate until it stops
@@ -352,7 +353,7 @@ def _along_one(moving: Moving, launch: FloatArray, times: FloatArray) -> FloatAr
     if not end > 0.0:
         return np.zeros((3, times.size, _FORCES))
     moments = np.linspace(0.0, end, _MOMENTS)
-    states, slopes = states_and_slopes(moving, launch, moments)
+    states, slopes, _ = states_and_slopes(moving, launch, moments)
     carried, rates = slopes[:, RATE, :DELTA], states[RATE].T
     onwards = carried[1:] @ np.linalg.inv(carried[:-1])
     forces = np.zeros((_MOMENTS, 3, _FORCES))

@@ -36,10 +36,11 @@ from puck_tables.fitting.impact_law import (
     gap_of,
     impact_at,
 )
-from puck_tables.fitting.parameters import LAUNCH
+from puck_tables.fitting.parameters import LAUNCH, OWN_CURVE
 from puck_tables.fitting.unknowns import NumbersOf, Unknowns
 
-_STEP, _CURVE_STEP = 1e-6, 1e-4  # of a scale; of what changes the curve itself
+_STEP = 1e-6
+_CURVE_STEP = 1e-4  # of what has a curve of its own at each value, known less well
 _LEAST = 1e-2
 _FRAMES = list[tuple[slice, FloatArray, Slide]]
 
@@ -188,11 +189,17 @@ class _Along:
 
     def __init__(self, problem: Slides, result: NumbersOf) -> None:
         spec = problem.spec
-        self._problem, self._result, self._moving = problem, result, problem.moving(result)
-        self._curve = [k for k, name in enumerate(spec.free) if spec.changes_motion(name)]
+        self._problem, self._moving = problem, problem.moving(result)
+        self._nearby: list[Moving] = []
+        self._parts: list[tuple[int, float]] = []  # of the difference of each, by an unknown
+        for k, name in enumerate(spec.free):
+            if spec.changes_motion(name):
+                for change, part in _differences(name, result[name], *spec.limits(name)):
+                    self._nearby.append(problem.moving({**result, name: result[name] + change}))
+                    self._parts.append((k, part))
         self._scales = np.zeros((7, len(spec.free)))  # which are the first unknowns
         for k, name in enumerate(spec.free):
-            if k not in self._curve:
+            if not spec.changes_motion(name):
                 self._scales[[DECEL, DELTA, RADIUS], k] = spec.slopes(result, name)
 
     def states_and_slopes(
@@ -203,15 +210,15 @@ class _Along:
 
         ``change`` (7, m): of the slide; ``row`` (n,): how far down the picture the frames show it.
         """
-        states, slopes = states_and_slopes(self._moving, slide.launch, times)
+        states, slopes, differ = states_and_slopes(self._moving, slide.launch, times, self._nearby)
         slopes = slopes[:, rows].swapaxes(0, 1)
         by = np.zeros(change.shape)
         by[[VX, VY, SPIN]], by[TIME] = change[3:6], -change[0]
         by[:, : self._scales.shape[1]] += self._scales
         out: FloatArray = (slopes.reshape(-1, 7) @ by).reshape(*slopes.shape[:2], -1)
         out[PLACE] += change[[1, 2, 6], None]
-        for k in self._curve:
-            out[:, :, k] += self._by_difference(k, times, slide)[rows]
+        for (k, part), difference in zip(self._parts, differ, strict=True):
+            out[:, :, k] += part * difference[rows]
         if row is not None and (-1, "readout") in self._problem.spots:
             out[:, :, self._problem.spots[-1, "readout"]] += slopes[:, :, TIME] * row
         return states, out, slopes[:, :, TIME]
@@ -224,17 +231,14 @@ class _Along:
         _, out, speed = self.states_and_slopes(slide, change, since, slice(6))
         return out[AS_LAUNCH, 0], speed[AS_LAUNCH, 0]
 
-    def _by_difference(self, k: int, times: FloatArray, slide: Slide) -> FloatArray:
-        """The derivative of states to what changes the curve itself."""
-        name = self._problem.spec.free[k]
-        low, high = self._problem.spec.limits(name)
-        value = self._result[name]
-        ends = [min(max(value + side * _CURVE_STEP, low), high) for side in (-1.0, 1.0)]
-        states = [
-            states_of(self._problem.moving({**self._result, name: end}), slide.launch, times)
-            for end in ends
-        ]
-        return np.asarray((states[1] - states[0]) / (ends[1] - ends[0]))
+
+def _differences(name: str, value: float, low: float, high: float) -> list[tuple[float, float]]:
+    """By how much a number that changes the curve itself is changed, and parts of the slope."""
+    if name in OWN_CURVE:
+        up, down = min(value + _CURVE_STEP, high), max(value - _CURVE_STEP, low)
+        return [(up - value, 1.0 / (up - down)), (down - value, -1.0 / (up - down))]
+    step = _STEP * max(abs(value), _LEAST) * (1.0 if value < high else -1.0)
+    return [(step, 1.0 / step)]
 
 
 def _through(

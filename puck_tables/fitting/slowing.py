@@ -1,7 +1,7 @@
 """Values to begin with where more than one friction moves a puck: from what slows and turns it.
 
 A polynomial of time through places and angles in one piece tells velocity v and spin ω; what they
-change by from the first moment on is linear in friction, drags and a push, for a flat puck
+change by, from their means over the film, is linear in friction, drags and a push, for a flat puck
 
     Δv = −f g ∫ I_a v/|v| dt − c ∫ v dt − k ∫ |v| v dt + p t
     Δω = −f g (r/k_g²) ∫ I_d sgn ω dt − (c + s) ∫ ω dt
@@ -24,6 +24,7 @@ from numpy.polynomial import Chebyshev
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact import closed_form
 from puck_tables.errors import InputError
+from puck_tables.fitting.least_squares import FROM_SLOWING, ROBUST, multi_start
 from puck_tables.fitting.named_laws import shape
 from puck_tables.fitting.observations import Observations, rests_from, turning_of
 from puck_tables.fitting.problem import Problem
@@ -33,7 +34,9 @@ _DEGREE = 7  # of the polynomial: motions that slow are smooth
 _FAR, _ROUNDS = 4.0, 4  # usual deviations of a frame that counts; so often others are left out
 _MOMENTS = 60
 _LEAST = 1e-3  # of the friction that slows alone
+_KEPT = 5  # trials that begin a fit
 _LINEAR = ("friction", "friction_rest", "drag", "air", "spin_drag", "slope_x", "slope_y")
+_NOTHING = ("drag", "air", "spin_drag", "slope_x", "slope_y", "belt_x", "belt_y")
 _LAW_SPEEDS = (0.03, 0.06, 0.1, 0.16, 0.25, 0.4, 0.6)  # of the fastest slip
 _BELT_SPEEDS, _BELT_WAYS = (0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0), 16  # of the fastest speed
 
@@ -47,11 +50,12 @@ class _Moments(NamedTuple):
     launch: list[float]
 
 
-def begun_from_slowing(problem: Problem) -> tuple[Problem, FloatArray] | None:
-    """A start of a problem of tracks with angles, or along lines; None where none can be followed.
+def starts_from_slowing(problem: Problem) -> list[tuple[Problem, FloatArray]]:
+    """Starts of a problem of tracks with angles, or along lines; none where none can be followed.
 
     Of those of which friction, drags, a slope, a belt or the numbers of a law are found; with its
-    unknowns comes the same problem with the angles of each track in one piece.
+    unknowns comes the same problem with the angles of each track in one piece.  The last start is
+    that of one friction and nothing else, which leaves no more in the end than that alone would.
 
     Examples
     --------
@@ -62,7 +66,8 @@ def begun_from_slowing(problem: Problem) -> tuple[Problem, FloatArray] | None:
     >>> t = 0.01 * np.arange(90)
     >>> track = Track(t, np.stack([2.0 * t - 0.49 * t**2, 0.0 * t], axis=1), 0.0 * t)
     >>> spec = FitSpec.of(Puck(0.03, gravity=9.8), ["friction", "air"], {}, {}, {}, {})
-    >>> begun_from_slowing(Problem(spec, (observations_in(track),), (1e-4, 1e-3)))[1][:2].round(4)
+    >>> starts = starts_from_slowing(Problem(spec, (observations_in(track),), (1e-4, 1e-3)))
+    >>> starts[0][1][:2].round(4)
     array([0.1, 0. ])
     """
     films, whole = [], []
@@ -70,29 +75,39 @@ def begun_from_slowing(problem: Problem) -> tuple[Problem, FloatArray] | None:
     for film in problem.films:
         turning = turning_of(film)
         if film.angle is not None and (turning is None or not turning.sure):
-            return None
+            return []
         if film.angle is None and film.straight is None:
-            return None
+            return []
         angle = None if turning is None else turning.angle
         whole.append(angle)
         films.append(_moments(film, angle, rests_from(film, problem.noise[0]), radius))
-    best, least = None, np.inf
-    for trial in _trials(problem, films):
-        numbers, left = _linear_fit(problem, films, trial)
-        if left < least:
-            best, least = numbers, left
-    assert best is not None
+    tried = [_linear_fit(problem, films, trial) for trial in _trials(problem, films)]
+    tried = sorted(tried, key=lambda one: one[1])[:_KEPT]
+    alone = {**tried[0][0], **dict.fromkeys(_NOTHING, 0.0), "friction": tried[0][2]}
+    alone["friction_rest"] = alone["friction"]
     spec, known = problem.spec, problem.spec.known()
-    begun = {**known, "delta": 0.1, **best, **spec.start}
-    begun["decel"] = begun["friction"] * known["gravity"]
-    launches = np.array([film.launch for film in films])
-    x0 = problem.unknowns({name: begun[name] for name in spec.free}, launches)
-    return replace(problem, whole=tuple(whole), weights=()), np.clip(x0, *problem.limits)
+    moved = replace(problem, whole=tuple(whole), weights=())
+    launches, starts = np.array([film.launch for film in films]), []
+    for numbers in (*(one[0] for one in tried), alone):
+        begun = {**known, "delta": 0.1, **numbers, **spec.start}
+        begun["decel"] = begun["friction"] * known["gravity"]
+        x = moved.unknowns({name: begun[name] for name in spec.free}, launches)
+        starts.append((moved, np.clip(x, *moved.limits)))
+    return starts
+
+
+def nearest_start(problem: Problem) -> tuple[Problem, FloatArray] | None:
+    """That of the starts which leads to the deepest minimum, there; None where there are none."""
+    starts = starts_from_slowing(problem)
+    if not starts:
+        return None
+    (x, _), *_ = multi_start(starts, FROM_SLOWING, ROBUST)
+    return starts[0][0], x
 
 
 def begun_or_refused(problem: Problem) -> tuple[Problem, FloatArray]:
     """The same, refused where none can be followed."""
-    begun = begun_from_slowing(problem)
+    begun = nearest_start(problem)
     if begun is None:
         raise InputError(
             f"{' and '.join(problem.spec.integrated)} are found of tracks with angles that can be "
@@ -120,8 +135,8 @@ def _trials(problem: Problem, films: list[_Moments]) -> Iterator[NumbersOf]:
 
 def _linear_fit(
     problem: Problem, films: list[_Moments], trial: NumbersOf
-) -> tuple[NumbersOf, float]:  # fmt: skip
-    """The numbers that linear least squares find with those tried, and what is left."""
+) -> tuple[NumbersOf, float, float]:  # fmt: skip
+    """The numbers that linear least squares find with those tried, what is left, and f alone."""
     spec = problem.spec
     known = {**spec.known(), **trial}
     names = [n for n in _LINEAR if n in spec.free or (n == "friction" and "decel" in spec.free)]
@@ -144,7 +159,7 @@ def _linear_fit(
     for name in ("friction", "friction_rest"):
         if name in values:
             values[name] = max(values[name], _LEAST * abs(alone))
-    return {**trial, **values}, left
+    return {**trial, **values}, left, max(alone, _LEAST)
 
 
 def _moments(
@@ -202,6 +217,8 @@ def _columns(
     columns = []
     for rate in rates:
         parts = np.cumsum(0.5 * steps * (rate[:, 1:] + rate[:, :-1]), axis=1)
-        columns.append(np.concatenate([np.zeros((3, 1)), parts], axis=1).ravel())
-    moved = np.concatenate([film.velocity, film.rim[None]])
-    return np.stack(columns, axis=1), (moved - moved[:, :1]).ravel()
+        columns.append(np.concatenate([np.zeros((3, 1)), parts], axis=1))
+    columns.append(np.concatenate([film.velocity, film.rim[None]]))
+    # from their means: a polynomial is least sure at its ends
+    *columns, moved = [(one - one.mean(axis=1, keepdims=True)).ravel() for one in columns]
+    return np.stack(columns, axis=1), moved

@@ -7,27 +7,36 @@ for all speeds the integrals of the base are closed forms.
 A table of friction serves one law f(u); a fit asks for another at every step.  So the integrals of
 the base are taken as they are needed, in a time that shrinks with the slip, Q = Q₀ exp(−s) but for
 the tilt of the load, so that the stop is reached smoothly.  Fourth order, with steps so small that
-places are right to 1e-6 of the path, far below what a film tells.
+places are right to some 1e-6 of the path, far below what a film tells.
+
+How motions change with a launch or a law is told by motions nearby, which run abreast: their
+integrals are those of the first, carried on to first order in the direction of slip, its speed and
+the law.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.kernels.closed_form_kernel import full_integrals
-from puck_tables.kernels.compile import allocating, kernel, patience
+from puck_tables.kernels.compile import allocating, inlined, kernel, patience
 from puck_tables.kernels.speed_quadrature_kernel import COARSE, integrals_at
 
-_STEP, _STEPS = 0.08, 440  # of which friction alone takes half
-_REST = 1e-6  # of the slip at the launch
+_STEP, _LARGEST, _STEPS = 0.08, 0.32, 440  # of s, of which friction alone takes about 50
+_REST = 1e-4  # of the slip at the launch: what is left of the path is the square of it
 _ROOM = 48
+_NEARBY = 1e-5  # of ratios and of slip speeds: so close integrals are differenced
 AHEAD, ASIDE, RIM, X, Y, TURN, TIME = range(7)  # speeds along x and y, of the rim; place, angle
-_ANY = np.zeros((1, 4)), np.zeros(2)  # of no law
+# of a slide: one friction for all speeds, 0: the law; 2h/r; over the gyration squared; drags, push
+EVEN, GRAVITY, HEIGHT, INERTIA, RADIUS, LINEAR, AIR, SPINNING, PUSH_X, PUSH_Y = range(10)
+_ANY = np.zeros(2), np.zeros((1, 6))  # of no law
 
 
 class Drags(NamedTuple):
@@ -55,115 +64,203 @@ class SpeedFriction(NamedTuple):
     belt: tuple[float, float] = (0.0, 0.0)
 
 
-@kernel
-def _rates(
-    breaks: FloatArray, pieces: FloatArray, even: float, g: float, height: float, inertia: float,
-    radius: float, drags: FloatArray, y: FloatArray, edges: FloatArray, p: FloatArray,
-    out: FloatArray,
-) -> None:  # fmt: skip
-    """d/ds of a state; ``even``: one friction for all speeds, 0: the law; ``height`` 2h/r."""
+class SpeedLaunch(NamedTuple):
+    """A launch under such friction: 2h/r, r m, velocity (2,) m/s, spin rad/s."""
+
+    friction: SpeedFriction
+    height: float
+    radius: float
+    velocity: FloatArray
+    spin: float
+
+
+@inlined
+def _is_fast(y: FloatArray) -> bool:
+    fast: bool = abs(y[RIM]) > math.hypot(y[AHEAD], y[ASIDE])
+    return fast
+
+
+@inlined
+def _ratio_at(y: FloatArray, fast: bool) -> float:
+    """v/r|ω| where it spins fast, else r|ω|/v; up to 1, and hardly more next to such a motion."""
     v, rim = math.hypot(y[AHEAD], y[ASIDE]), abs(y[RIM])
-    slip = math.sqrt(v * v + rim * rim)
-    fast = rim > v
-    ratio = v / rim if fast else (rim / v if v > 0.0 else 0.0)
-    if even > 0.0:
-        a, b, d = full_integrals(ratio, 1.0 if fast else 0.0)
-        a, b, d = even * a, even * b, even * d
-        e = d - 2.0 * b
-    else:
-        integrals_at(breaks, pieces, ratio, fast, slip, COARSE, edges, p)
-        a, b, d, e = p[0], p[1], p[2], p[3]
+    ratio: float = v / rim if fast else (rim / v if v > 0.0 else 0.0)
+    return ratio
+
+
+@inlined
+def _slip_of(y: FloatArray) -> float:
+    return math.hypot(math.hypot(y[AHEAD], y[ASIDE]), y[RIM])
+
+
+@kernel
+def _rates(slide: FloatArray, p: FloatArray, y: FloatArray, out: FloatArray) -> None:
+    """d/ds of a state (7,) of a slide under integrals p of friction and base."""
+    a, b, d, e = p[0], p[1], p[2], p[3]
+    g, height, inertia = slide[GRAVITY], slide[HEIGHT], slide[INERTIA]
+    v, slip = math.hypot(y[AHEAD], y[ASIDE]), _slip_of(y)
     cosine, sine = v / slip, y[RIM] / slip
     bottom = 1.0 - height * height * sine * sine * b * (b - d)
-    ahead, turning = (drags[0] + drags[1] * v) / g, (drags[0] + drags[2]) / g
+    ahead = (slide[LINEAR] + slide[AIR] * v) / g
+    turning = (slide[LINEAR] + slide[SPINNING]) / g
     slowing = cosine * cosine * a + sine * sine * inertia * d
-    pushed = (abs(drags[3]) + abs(drags[4])) / g
+    pushed = (abs(slide[PUSH_X]) + abs(slide[PUSH_Y])) / g
     pace = slip / (slowing + slip * max(ahead, turning) + pushed)  # dt g/ds
     spun = d + height * height * cosine * cosine * a * b * e / bottom
     along, across = a / (bottom * slip) + ahead, sine * height * a * b / (bottom * slip)
-    out[AHEAD] = -pace * (along * y[AHEAD] - across * y[ASIDE] - drags[3] / g)
-    out[ASIDE] = -pace * (along * y[ASIDE] + across * y[AHEAD] - drags[4] / g)
+    out[AHEAD] = -pace * (along * y[AHEAD] - across * y[ASIDE] - slide[PUSH_X] / g)
+    out[ASIDE] = -pace * (along * y[ASIDE] + across * y[AHEAD] - slide[PUSH_Y] / g)
     out[RIM] = -pace * (inertia * sine * spun + turning * y[RIM])
     out[TIME] = pace / g
     out[X] = out[TIME] * y[AHEAD]
     out[Y] = out[TIME] * y[ASIDE]
-    out[TURN] = out[TIME] * y[RIM] / radius
+    out[TURN] = out[TIME] * y[RIM] / slide[RADIUS]
+
+
+@inlined
+def _even_integrals(even: float, y: FloatArray, p: FloatArray) -> None:
+    """Of one friction for all speeds: closed forms."""
+    fast = _is_fast(y)
+    a, b, d = full_integrals(_ratio_at(y, fast), 1.0 if fast else 0.0)
+    p[0], p[1], p[2], p[3] = even * a, even * b, even * d, even * (d - 2.0 * b)
+
+
+@inlined
+def _stage_at(
+    states: FloatArray, rates: FloatArray, stage: int, step: float, y: FloatArray
+) -> None:
+    part = 0.0 if stage == 0 else (step if stage == 3 else 0.5 * step)
+    for i in range(7):
+        y[i] = states[i] + (part * rates[stage - 1, i] if stage > 0 else 0.0)
+
+
+@inlined
+def _changes(
+    breaks: FloatArray, pieces: FloatArray, ratio: float, fast: bool, slip: float, p: FloatArray,
+    edges: FloatArray, by: FloatArray,
+) -> None:  # fmt: skip
+    """By how much integrals ``p`` change with the ratio, with the slip, and to each other law."""
+    aside = ratio + _NEARBY if ratio + _NEARBY < 1.0 else ratio - _NEARBY
+    integrals_at(breaks[0], pieces[0], aside, fast, slip, COARSE, edges, by[0])
+    faster = slip + _NEARBY * slip
+    integrals_at(breaks[0], pieces[0], ratio, fast, faster, COARSE, edges, by[1])
+    for i in range(4):
+        by[0, i] = (by[0, i] - p[i]) / (aside - ratio)
+        by[1, i] = (by[1, i] - p[i]) / (faster - slip)
+    for k in range(1, len(breaks)):
+        integrals_at(breaks[k], pieces[k], ratio, fast, slip, COARSE, edges, by[k + 1])
+        for i in range(4):
+            by[k + 1, i] -= p[i]
 
 
 @allocating
 def _integrate(
-    breaks: FloatArray, pieces: FloatArray, even: float, g: float, height: float, inertia: float,
-    radius: float, drags: FloatArray, states: FloatArray,
+    breaks: FloatArray, pieces: FloatArray, of_law: npt.NDArray[np.int64], slides: FloatArray,
+    until: float, states: FloatArray,
 ) -> int:  # fmt: skip
-    """States after each step into ``states`` (n + 1, 7), of which the first is given; how many."""
-    edges, p, k, y = np.empty(_ROOM + len(breaks)), np.empty(4), np.empty((4, 7)), np.empty(7)
-    slip = math.hypot(math.hypot(states[0, AHEAD], states[0, ASIDE]), states[0, RIM])
+    """States after each step into ``states`` (n + 1, m, 7), of which the first are given.
+
+    ``breaks`` (k, …), ``pieces`` (k, …): of the law of the first slide, and others; ``of_law``
+    (m,): which is that of each; ``until`` s.  How many states there are then.
+    """
+    count, even = len(slides), slides[0, EVEN] > 0.0
+    edges, q, y = np.empty(_ROOM + breaks.shape[1]), np.empty(4), np.empty(7)
+    p, rates, at = np.empty((4, 4)), np.empty((count, 4, 7)), np.empty((4, 7))
+    by, fast = np.empty((4, len(breaks) + 1, 4)), np.zeros(4, np.bool_)
+    first = _slip_of(states[0, 0])
     for n in range(len(states) - 1):
         patience(1)
+        # the slower it is the less of the path is left
+        step = min(_STEP * math.sqrt(math.sqrt(first / _slip_of(states[n, 0]))), _LARGEST)
         for stage in range(4):
-            part = 0.0 if stage == 0 else (1.0 if stage == 3 else 0.5)
+            _stage_at(states[n, 0], rates[0], stage, step, at[stage])
+            if even:
+                _even_integrals(slides[0, EVEN], at[stage], p[stage])
+            else:
+                spins = _is_fast(at[stage])
+                ratio, slip = _ratio_at(at[stage], spins), _slip_of(at[stage])
+                integrals_at(breaks[0], pieces[0], ratio, spins, slip, COARSE, edges, p[stage])
+                if count > 1:
+                    _changes(breaks, pieces, ratio, spins, slip, p[stage], edges, by[stage])
+                fast[stage] = spins
+            _rates(slides[0], p[stage], at[stage], rates[0, stage])
+        for k in range(1, count):
+            for stage in range(4):
+                _stage_at(states[n, k], rates[k], stage, step, y)
+                if even:
+                    _even_integrals(slides[k, EVEN], y, q)
+                else:
+                    turned = _ratio_at(y, fast[stage]) - _ratio_at(at[stage], fast[stage])
+                    faster = _slip_of(y) - _slip_of(at[stage])
+                    for i in range(4):
+                        q[i] = p[stage, i] + by[stage, 0, i] * turned + by[stage, 1, i] * faster
+                        if of_law[k] > 0:
+                            q[i] += by[stage, of_law[k] + 1, i]
+                _rates(slides[k], q, y, rates[k, stage])
+        for k in range(count):
             for i in range(7):
-                y[i] = states[n, i] + (part * _STEP * k[stage - 1, i] if stage > 0 else 0.0)
-            _rates(breaks, pieces, even, g, height, inertia, radius, drags, y, edges, p, k[stage])
-        for i in range(7):
-            states[n + 1, i] = states[n, i] + _STEP / 6.0 * (
-                k[0, i] + 2.0 * k[1, i] + 2.0 * k[2, i] + k[3, i]
-            )
-        left = math.hypot(
-            math.hypot(states[n + 1, AHEAD], states[n + 1, ASIDE]), states[n + 1, RIM]
-        )
-        if left < _REST * slip:
+                states[n + 1, k, i] = states[n, k, i] + step / 6.0 * (
+                    rates[k, 0, i] + 2.0 * rates[k, 1, i] + 2.0 * rates[k, 2, i] + rates[k, 3, i]
+                )
+        if _slip_of(states[n + 1, 0]) < _REST * first or states[n + 1, :, TIME].min() > until:
             return n + 2
     return len(states)
 
 
-def speed_path(
-    friction: SpeedFriction, height: float, radius: float, velocity: FloatArray, spin: float,
-    times: FloatArray,
-) -> tuple[FloatArray, FloatArray]:  # fmt: skip
-    """Displacement and turn (3, n), velocity and spin (3, n) at times (n,) s after a launch.
+def speed_paths(
+    launches: Sequence[SpeedLaunch], times: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Motions from (0, 0) of a launch and of others nearby, at times (n,) s, ascending.
 
-    Parameters
-    ----------
-    friction : f(u), beyond whose top speed the last piece goes on; gravity, gyration, drags
-    height : 2h/r
-    radius : m
-    velocity, spin : m/s, rad/s
-    times : s, ascending
+    States (m, 6, n): displacement and turn, velocity and spin; acceleration (3, n) of the first.
+    Beyond the top speed of a law its last piece goes on.
 
     Examples
     --------
     >>> even = SpeedFriction(0.1, 10.0, 0.5**0.5)
-    >>> path, rate = speed_path(
-    ...     even, 0.5, 1.0, np.array([1.0, 0.0]), 0.0, np.array([0.5, 2.0]))
-    >>> path[0].round(4).tolist(), rate[0].round(4).tolist()
-    ([0.375, 0.5], [0.5, 0.0])
+    >>> slide = SpeedLaunch(even, 0.5, 1.0, np.array([1.0, 0.0]), 0.0)
+    >>> states, gains = speed_paths([slide], np.array([0.5, 2.0]))
+    >>> states[0, [0, 3]].round(3).tolist(), gains[0].round(3).tolist()
+    ([[0.375, 0.5], [0.5, 0.0]], [-1.0, 0.0])
     """
-    law, gravity, gyration, drags, push, belt = friction
-    carried = np.array([*belt, 0.0])
-    vx, vy = (velocity - belt).tolist()
-    if vx == 0.0 and vy == 0.0 and spin == 0.0:
-        return carried[:, None] * times, np.repeat(carried[:, None], times.size, axis=1)
-    states = np.zeros((_STEPS + 1, 7))
-    states[0, :3] = vx, vy, radius * spin
-    even = law if isinstance(law, float) else 0.0
-    parts = (_ANY[1], _ANY[0]) if isinstance(law, float) else law.pieces(law.top_speed)
+    carried = np.array([[*one.friction.belt, 0.0] for one in launches])
+    states = np.zeros((_STEPS + 1, len(launches), 7))
+    for row, one, (belt_x, belt_y, _) in zip(states[0], launches, carried.tolist(), strict=True):
+        row[:3] = one.velocity[0] - belt_x, one.velocity[1] - belt_y, one.radius * one.spin
+    drifts = carried[:, :, None] * times, np.repeat(carried[:, :, None], times.size, axis=2)
+    if not states[0, 0].any():
+        return np.concatenate(drifts, axis=1), np.zeros((3, times.size))
+    slides, laws, of_law = [], dict[SpeedLaw, int](), []
+    for (law, g, gyration, drags, push, _), height, radius, *_ in launches:
+        of_law.append(laws.setdefault(law, len(laws)) if isinstance(law, SpeedLaw) else 0)
+        even = 0.0 if isinstance(law, SpeedLaw) else law
+        slides.append([even, g, height, gyration**-2, radius, *drags, *push])
+    parts = [law.pieces(law.top_speed) for law in laws] or [_ANY]
+    breaks, pieces = (np.stack(part) for part in zip(*parts, strict=True))
     count = _integrate(
-        *parts, even, gravity, height, gyration**-2, radius, np.array([*drags, *push]), states
+        breaks, pieces, np.array(of_law), np.array(slides), float(times.max(initial=0.0)), states
     )
-    ahead, aside, rim, x, y, turn, time = states[:count].T
-    known = np.stack([x, y, turn])
-    slopes = np.stack([ahead, aside, rim / radius])
-    at = np.minimum(times, time[-1])
-    n = np.clip(np.searchsorted(time, at, side="right") - 1, 0, count - 2)
-    h = time[n + 1] - time[n]
+    return _at_times(states[:count], np.array(slides)[:, RADIUS], times, drifts)
+
+
+def _at_times(
+    states: FloatArray, radius: FloatArray, times: FloatArray,
+    drifts: tuple[FloatArray, FloatArray],
+) -> tuple[FloatArray, FloatArray]:  # fmt: skip
+    """Between steps (n, m, 7), by cubics; ``drifts``: of the belt, (m, 3, n) each."""
+    known, time = states[:, :, X : TURN + 1], states[:, :, TIME]
+    speeds = states[:, :, : RIM + 1] / np.stack([1.0 + 0.0 * radius, 1.0 + 0.0 * radius, radius], 1)
+    last = len(states) - 2
+    n = np.clip(np.searchsorted(time[:, 0], times, side="right") - 1, 0, last)
+    h = (time[n + 1] - time[n])[..., None]
     moves = h > 0.0  # not where numbers that ran away leave no time between steps
-    u = np.divide(at - time[n], h, out=np.zeros(at.size), where=moves)
-    one, two, left, right = known[:, n], known[:, n + 1], slopes[:, n] * h, slopes[:, n + 1] * h
-    rise = two - one
+    h = np.where(moves, h, 1.0)
+    u = (np.minimum(times[:, None], time[-1]) - time[n])[..., None] / h
+    left, right, rise = speeds[n] * h, speeds[n + 1] * h, known[n + 1] - known[n]
     kink, twist = 3.0 * rise - 2.0 * left - right, left + right - 2.0 * rise
-    path = one + u * (left + u * (kink + u * twist))
-    change = left + u * (2.0 * kink + 3.0 * u * twist)
-    rate = np.divide(change, h, out=slopes[:, n].copy(), where=moves)
-    rate = np.where(times < time[-1], rate, 0.0)
-    return path + carried[:, None] * times, rate + carried[:, None]
+    path = known[n] + u * (left + u * (kink + u * twist))
+    rate = np.where(moves, (left + u * (2.0 * kink + 3.0 * u * twist)) / h, speeds[n])
+    on = (times[:, None] < time[-1])[..., None]
+    gains = np.where(on, 2.0 * (kink + 3.0 * u * twist) / h**2, 0.0)[:, 0].T
+    rows = [np.moveaxis(path, 0, 2), np.moveaxis(np.where(on, rate, 0.0), 0, 2)]
+    return np.concatenate([a + b for a, b in zip(rows, drifts, strict=True)], axis=1), gains
