@@ -139,7 +139,7 @@ class Pair:
 
     def strike(self, puck: int, boards: Any, velocity: Any, spin: Any) -> bool:
         if not self.many.in_play[boards, puck].all():
-            with pytest.raises(pt.InputError, match="no longer in play: set_state"):
+            with pytest.raises(pt.InputError, match="no longer in play: place"):
                 self.many.strike(puck, velocity, spin, boards=boards)
             return False
 
