@@ -284,7 +284,7 @@ def _of_scenes() -> dict[str, Door]:
         "World.reaction": (lambda **given: led_world().copy().reaction(**given), {
             "puck": "mallet"}),
         "World.apply_force": (on_copy("apply_force"), {
-            "puck": "cue", "force": (0.1, 0.0), "torque": 0.01, "time": 0.1}),
+            "puck": "cue", "force": (0.1, 0.0), "torque": 0.01, "duration": 0.1}),
     }  # fmt: skip
 
 
