@@ -135,7 +135,7 @@ def steel_puck() -> Picture:
     early = [
         PlotLine(c.x[c.x <= 0.44], c.y[c.x <= 0.44], c.label) for c in lines[:-1]
     ] + [PlotLine(np.array([0.0, 0.44]), lines[-1].y, lines[-1].label, dashed=True)]  # fmt: skip
-    label = "ε = rω/v"
+    label = "rω/v (ε of this paper)"
     return Picture(
         f"Steel puck, 60 mm × 19 mm, in theory (Fig. 5; f = 0.2 assumed: δ = {delta:.3f})",
         [
@@ -157,7 +157,7 @@ def rubber_puck() -> Picture:
     delta, lines = ratio_against_time(0.037, 0.025, 0.6, 0.38)
     return Picture(
         f"Rubber puck, 74 mm × 25 mm, in theory (Fig. 6; f = 0.6 assumed: δ = {delta:.3f})",
-        [Panel("time / s", "ε = rω/v", lines, "to the stop after 0.38 s")],
+        [Panel("time / s", "rω/v (ε of this paper)", lines, "to the stop after 0.38 s")],
     )
 
 
