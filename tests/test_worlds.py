@@ -391,6 +391,8 @@ BAD = [
     (lambda w: w.copy([3]), "boards must be numbers from 0 to 2, or a mask of 3"),
     (lambda w: w.drive(1, (1, 0)), "puck 1 is not led by hand"),
     (lambda w: w.drive(0, 1.0), "velocity must have the shape"),
+    (lambda w: w.drive(0, None), "velocity must be"),
+    (lambda w: w.drive(0, (1.0, 0.0), None), "spin must be"),
     (lambda w: w.set_state(np.zeros((2, 4, 6))), r"states must have the shape \(3, 4, 6\), or"),
     (lambda w: w.reset(7), "boards must be numbers"),
     (lambda w: w.strike(1, (1e200, 0)), "too fast for floating point"),

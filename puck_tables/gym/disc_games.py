@@ -30,6 +30,19 @@ class ShotGame(TableGame):
         """Send off what is shot, and wait until all is at rest."""
         raise NotImplementedError
 
+    def send(
+        self, tables: Tables, boards: Whole, numbers: Whole, at: FloatArray, velocity: FloatArray,
+        spin: FloatArray | float = 0.0,
+    ) -> None:  # fmt: skip
+        """Place the puck of such a number on each board, send it off, and wait for the rest."""
+        spins = np.broadcast_to(spin, len(boards))
+        for number in np.unique(numbers).tolist():
+            on = numbers == number
+            tables.worlds.place(
+                number, at[on], velocity=velocity[on], spin=spins[on], boards=boards[on]
+            )
+        tables.advance(np.inf)
+
     def score(self, tables: Tables) -> FloatArray:
         """Points on each board, array (n,)."""
         raise NotImplementedError
@@ -96,9 +109,8 @@ class Carrom(ShotGame):
         states, there = worlds.state()[boards], worlds.in_play[boards]
         at, free = free_places(wanted, self._line, states[:, :-1, :2], there[:, :-1], self._gaps)
         way, speed = np.radians(80.0) * actions[:, 1], between(actions[:, 2], 0.2, 6.0)
-        velocity = sent(speed, 0.5 * np.pi - way)
-        worlds.place("striker", at[free], velocity=velocity[free], spin=0.0, boards=boards[free])
-        tables.advance(np.inf)
+        striker = np.full(free.sum(), len(self._worth))
+        self.send(tables, boards[free], striker, at[free], sent(speed, 0.5 * np.pi - way)[free])
 
     def score(self, tables: Tables) -> FloatArray:
         """What is in the pockets; the striker is there only just after its shot."""
@@ -168,11 +180,8 @@ class Crokinole(ShotGame):
         at, free = free_places(wanted, self._line, states[:, :, :2], there, gaps)
         way = np.arctan2(-at[:, 1], -at[:, 0]) + np.radians(30.0) * actions[:, 1]
         speed = between(actions[:, 2], 0.2, 3.0)
-        velocity = sent(speed, way)
-        for k in np.unique(tables.moves[boards]).tolist():
-            on = free & (tables.moves[boards] == k)
-            worlds.place(k, at[on], velocity=velocity[on], spin=0.0, boards=boards[on])
-        tables.advance(np.inf)
+        number = tables.moves[boards]
+        self.send(tables, boards[free], number[free], at[free], sent(speed, way)[free])
 
     def score(self, tables: Tables) -> FloatArray:
         """Of own discs that were shot, less those of the others."""

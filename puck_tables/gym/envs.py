@@ -178,14 +178,22 @@ class ManyTables(VectorEnv[Seen, Any, Any]):
         return earned
 
     def render(self) -> Any:
-        """A picture of the first board, if a mode was asked for: an array, or a window."""
+        """The :meth:`picture` in a tuple, as vector environments have it."""
+        drawn = self.picture()
+        return None if drawn is None else (drawn,)
+
+    def picture(self) -> npt.NDArray[np.uint8] | None:
+        """Of the first board, array (height, width, 3), or a window, if a mode was asked for."""
         if self.render_mode is None:
             return None
         from puck_tables.plot.still import picture, shown_in_window
 
         worlds = self.tables.worlds
         drawn = picture(self.game.scene, worlds.state()[0], worlds.in_play[0])
-        return shown_in_window(drawn) if self.render_mode == "human" else (drawn,)
+        if self.render_mode == "human":
+            shown_in_window(drawn)
+            return None
+        return drawn
 
     def _laid_out(self) -> Tables:
         count = self.num_envs
@@ -262,8 +270,7 @@ class OneTable(gymnasium.Env[Seen, Any]):
 
     def render(self) -> Any:
         """A picture, if a mode was asked for: an array (height, width, 3), or a window."""
-        drawn = self.many.render()
-        return drawn[0] if self.render_mode == "rgb_array" else drawn
+        return self.many.picture()
 
     def _rendered(self) -> None:
         if self.render_mode == "human":

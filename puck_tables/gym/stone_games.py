@@ -54,13 +54,7 @@ class StoneGame(ShotGame):
         """A stone of the others, then one of one's own."""
         number = tables.moves[boards]
         for first, given in ((self.limit, self.theirs(rng, len(boards))), (0, actions)):
-            at, velocity, spin = self.throw(given)
-            for k in np.unique(number).tolist():
-                on = number == k
-                tables.worlds.place(
-                    first + k, at[on], velocity=velocity[on], spin=spin[on], boards=boards[on]
-                )
-            tables.advance(np.inf)
+            self.send(tables, boards, first + number, *self.throw(given))
             self.clear(tables, boards, number + 1)
 
     def clear(self, tables: Tables, boards: Whole, thrown: Whole) -> None:

@@ -59,8 +59,6 @@ class TableGame:
         Which of them are places, m.
     limit : int
         Moves of a game at most.
-    span : float
-        How long a move takes, s; inf: until all is at rest.
     """
 
     scene: SceneSpec
@@ -69,7 +67,6 @@ class TableGame:
     high: FloatArray
     places: slice | Whole
     limit: int
-    span = np.inf
 
     def begin(self, tables: Tables, boards: Whole, rng: np.random.Generator) -> None:
         """Begin anew on some boards."""

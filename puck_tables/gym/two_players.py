@@ -72,8 +72,7 @@ class TwoPlayers(ParallelEnv[str, Seen, Any]):
 
     def render(self) -> Any:
         """A picture, if a mode was asked for."""
-        drawn = self._many.render()
-        return drawn[0] if self.render_mode == "rgb_array" else drawn
+        return self._many.picture()
 
     def _split(self, seen: Seen) -> dict[str, Seen]:
         return dict(zip(PLAYERS, np.split(seen[0], 2), strict=True))

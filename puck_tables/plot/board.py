@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -66,6 +67,23 @@ def disc(
     if body.outline:
         return PathPatch(path_of(placed(body.outline, x, y, angle)), **hatch, **looks)
     return Circle((x, y), body.radius, **hatch, **looks)
+
+
+def draw_body(
+    axes: Axes, body: MovingDisc, x: float, y: float, angle: float, left: bool = False
+) -> None:
+    """A body as it is, with a mark that turns with it; ``left``: where it left play."""
+    looks: dict[str, Any] = {"facecolor": body.colour, "edgecolor": "black", "linewidth": 0.7}
+    if left:
+        looks = {"facecolor": "none", "edgecolor": body.line, "linewidth": 1.2, "linestyle": ":"}
+    elif body.driven:
+        looks |= {"facecolor": "white", "edgecolor": body.line, "linewidth": 1.2}
+    axes.add_patch(disc(body, x, y, angle, zorder=4, **looks))
+    if not left and not body.driven:
+        axes.plot(
+            [x, x + body.mark_length * math.cos(angle)],
+            [y, y + body.mark_length * math.sin(angle)], color=body.mark, linewidth=0.8, zorder=5,
+        )  # fmt: skip
 
 
 def show(axes: Axes, box: Box) -> None:

@@ -13,6 +13,7 @@ from puck_tables.plot.board import (
     close_up,
     disc,
     draw_board,
+    draw_body,
     finished,
     panels_for,
     show,
@@ -87,19 +88,8 @@ def _draw_body(axes: Axes, body: MovingDisc, label: str) -> None:
         x, y, angle = path[0, 0], path[0, 1], body.knots[0, 3]
         start = disc(body, x, y, angle, fill=False, edgecolor=body.line, linewidth=0.9, zorder=2)
         axes.add_patch(start)
-    left = body.gone < math.inf
     x, y, angle = between(body.knots, body.knots[-1:, 0])[0]
-    looks: dict[str, Any] = {"facecolor": body.colour, "edgecolor": "black", "linewidth": 0.7}
-    if left:
-        looks = {"facecolor": "none", "edgecolor": body.line, "linewidth": 1.2, "linestyle": ":"}
-    elif body.driven:
-        looks |= {"facecolor": "white", "edgecolor": body.line, "linewidth": 1.2}
-    axes.add_patch(disc(body, x, y, angle, zorder=4, **looks))
-    if not left and not body.driven:
-        axes.plot(
-            [x, x + body.mark_length * math.cos(angle)],
-            [y, y + body.mark_length * math.sin(angle)], color=body.mark, linewidth=0.8, zorder=5,
-        )  # fmt: skip
+    draw_body(axes, body, x, y, angle, body.gone < math.inf)
 
 
 def _explain_looks(axes: Axes, film: Animation) -> None:

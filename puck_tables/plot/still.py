@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.plot.animation import at_start
-from puck_tables.plot.board import disc, draw_board, show, size_of
+from puck_tables.plot.board import draw_board, draw_body, show, size_of
 from puck_tables.plot.style import canvas
 from puck_tables.scene.scene_spec import SceneSpec
 
@@ -46,12 +46,7 @@ def picture(
     draw_board(axes, film)
     for body, state, there in zip(film.bodies, states, in_play, strict=True):
         if there:
-            axes.add_patch(disc(body, *state[:3].tolist(), facecolor=body.colour,
-                                edgecolor="black", linewidth=0.5, zorder=3))  # fmt: skip
-            x, y, angle = state[:3].tolist()
-            reach = body.mark_length
-            axes.plot([x, x + reach * np.cos(angle)], [y, y + reach * np.sin(angle)],
-                      color=body.mark, linewidth=0.8, zorder=4)  # fmt: skip
+            draw_body(axes, body, *state[:3].tolist())
     show(axes, film.box)
     axes.axis("off")
     drawn: Any = FigureCanvasAgg(figure)

@@ -288,7 +288,9 @@ class Worlds(Together):
         """
         i, some = self._first._led(puck, False), self._some(boards)
         self._refuse_gone(i, some)
-        rows = self._rows(len(some), None, None, velocity, spin)
+        rows = np.zeros((len(some), 1, 6))
+        rows[:, 0, VX : VY + 1] = self._each("velocity", velocity, "m/s", len(some), 2)
+        rows[:, 0, SPIN] = self._each("spin", spin, "rad/s", len(some))
         self._do(LED, some, lambda world, k: world.drive(puck, rows[k, 0, VX : VY + 1],
                  float(rows[k, 0, -1])), 0.0, rows, np.array([i]))  # fmt: skip
 
