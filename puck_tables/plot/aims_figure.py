@@ -9,14 +9,14 @@ from puck_tables.io.columns import COLUMNS
 from puck_tables.plot.aim_figure import caption
 from puck_tables.plot.style import GREY, LAUNCH, canvas, colour_bar, ramp
 from puck_tables.plot.titles import counted, legend_below
-from puck_tables.stopping.aim_at_targets import Aims
+from puck_tables.stopping.aim_at_targets import Aim
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 
-def draw(result: Aims) -> Figure:
+def draw(result: Aim) -> Figure:
     """The targets, and speeds of launches against their spins."""
     figure = canvas(10.0, 4.6)
     targets, launches = figure.subplots(1, 2, width_ratios=(1.5, 1.0))
@@ -26,7 +26,7 @@ def draw(result: Aims) -> Figure:
     return figure
 
 
-def draw_on(axes: Axes, result: Aims) -> None:
+def draw_on(axes: Axes, result: Aim) -> None:
     """The targets alone, coloured by the stop time of a launch to them."""
     if result.launch_spin.size == 0:
         raise InputError(f"there is nothing to draw: {result.answer}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -22,7 +22,6 @@ from puck_tables.stopping.launch_arrays import positive_array
 from puck_tables.stopping.launch_search import (
     ANGLE,
     OF,
-    QUANTITIES,
     SPIN,
     STOP_TIME,
     VX,
@@ -35,20 +34,80 @@ MAX_COUNT = 10_000  # launches of an answer: each a row
 _CHUNK = 4096  # targets that a thread takes at a time
 _TRIED = 100  # launches that are integrated to tell how well they do
 _LARGEST_ANGLE = 1e6  # rad: of more too few digits are left of a turn
+_ROWS = (  # of a file
+    "launch_spin", "launch_vx", "launch_vy", "launch_speed", "launch_heading", "launch_slip_angle",
+    "stop_time", "body_angle",
+)  # fmt: skip
 _UNITS = {"spin": "rad/s", "speed": "m/s", "stop_time": "s", "angle": "rad"}
 
 
-class LaunchColumns(Result):
-    """Launches of a ``puck`` that were found: velocities (n, 2) m/s and spins (n,) rad/s."""
+@dataclass(frozen=True, eq=False, repr=False)
+class Aim(Result):
+    """Launches that come to rest at ``target`` (2,) or at one of many (…, 2), m from their start.
 
-    puck: PuckSpec
+    ``launches`` (…): how many lead to each target.  Arrays (n,) of all, target after target and
+    ordered by spin, the most clockwise first: ``target_index``, counted through all targets,
+    ``launch_velocity`` (n, 2) m/s, ``launch_spin`` rad/s, ``launch_speed`` m/s, ``launch_heading``
+    rad, ``launch_slip_angle`` φ rad, ``stop_time`` s, ``body_angle`` rad by which the puck turns.
+    ``miss`` m, integrated when first asked for: how far from its target each launch ends.
+    ``answer`` is one sentence: what was found, or why nothing leads to the one target.  ``aim[2]``
+    or ``aim[2, 3]`` has the launches to some of the targets.
+    """
+
+    search: LaunchSearch = field(repr=False)
+    target: FloatArray
+    wanted: FloatArray
+    target_index: npt.NDArray[np.int64]
     launch_velocity: FloatArray
     launch_spin: FloatArray
-    answer: str
-    ROWS: ClassVar[tuple[str, ...]] = (  # of a file
-        "launch_spin", "launch_vx", "launch_vy", "launch_speed", "launch_heading",
-        "launch_slip_angle", "stop_time", "body_angle",
-    )  # fmt: skip
+    stop_time: FloatArray
+    body_angle: FloatArray
+    threads: int | None = None
+
+    def __repr__(self) -> str:
+        at = f"at ({self.target[0]:g}, {self.target[1]:g}) m: " if self.is_one else ""
+        return f"Aim({at}{self.answer})"
+
+    def __len__(self) -> int:
+        return 1 if self.is_one else len(self.target)
+
+    def __getitem__(self, index: Any) -> Aim:
+        """The launches to one target, or to some of them."""
+        shape = self.target.shape[:-1]
+        chosen = np.arange(math.prod(shape)).reshape(shape)[index]
+        place = np.full(math.prod(shape), -1)
+        place[chosen] = np.arange(np.size(chosen)).reshape(np.shape(chosen))
+        of = place[self.target_index]
+        which = np.flatnonzero(of >= 0)
+        which = which[np.argsort(of[which], kind="stable")]
+        columns = (
+            self.launch_velocity, self.launch_spin, self.stop_time, self.body_angle,
+        )  # fmt: skip
+        return Aim(
+            self.search, self.target[index], np.asarray(self.wanted[index]), of[which],
+            *(column[which] for column in columns), self.threads,
+        )  # fmt: skip
+
+    @property
+    def puck(self) -> PuckSpec:
+        """What is launched."""
+        return self.search.puck
+
+    @property
+    def is_one(self) -> bool:
+        """Whether there is one target, (2,), not an array of them."""
+        return self.target.ndim == 1
+
+    @property
+    def picture(self) -> str:  # type: ignore[override]
+        """The module that draws it."""
+        return "aim" if self.is_one else "aims"
+
+    @property
+    def launches(self) -> npt.NDArray[np.int64]:
+        """How many launches lead to each target, of the shape of the targets."""
+        shape = self.target.shape[:-1]
+        return np.bincount(self.target_index, minlength=math.prod(shape)).reshape(shape)
 
     @property
     def launch_vx(self) -> FloatArray:
@@ -75,112 +134,6 @@ class LaunchColumns(Result):
         """Slip angle atan2(rω, v) at the launch, rad."""
         return np.arctan2(self.puck.radius * self.launch_spin, self.launch_speed)
 
-    def _summary(self, name: str, target: list[Any]) -> dict[str, Any]:
-        """The launches with what went in, and the units of all, ready for JSON."""
-        return {
-            name: target, **self.puck.described(), "answer": self.answer,
-            **{row: getattr(self, row).tolist() for row in self.ROWS},
-            "units": {name: "m", **PUCK_UNITS, **{r: VARIABLES[r].unit for r in self.ROWS}},
-        }  # fmt: skip
-
-    def _dataset(self, title: str, **attributes: Any) -> Dataset:
-        """One row a launch; the puck as attributes."""
-        columns = {name: variable(name, getattr(self, name), ("launch",)) for name in self.ROWS}
-        told = {"title": title, **attributes, "answer": self.answer, **self.puck.described()}
-        return Dataset({}, columns, told)
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Aim(LaunchColumns):
-    """Launches of a ``puck`` that come to rest at ``target`` (2,) m from where they start.
-
-    Arrays (n,), ordered by spin, the most clockwise first: ``launch_velocity`` (n, 2) m/s,
-    ``launch_spin`` rad/s, ``launch_speed`` m/s, ``launch_heading`` rad, ``launch_slip_angle`` φ
-    rad, ``stop_time`` s, ``body_angle`` rad by which the puck turns, and ``miss`` m: how far from
-    the target an integration of the launch ends.  ``answer`` is one sentence: what was found, or
-    why nothing can be.
-    """
-
-    puck: PuckSpec
-    target: tuple[float, float]
-    launch_velocity: FloatArray
-    launch_spin: FloatArray
-    stop_time: FloatArray
-    body_angle: FloatArray
-    miss: FloatArray
-    answer: str
-
-    picture: ClassVar[str] = "aim"
-    ROWS: ClassVar[tuple[str, ...]] = (*LaunchColumns.ROWS, "miss")
-
-    def __repr__(self) -> str:
-        return f"Aim(at ({self.target[0]:g}, {self.target[1]:g}) m: {self.answer})"
-
-    def explain(self) -> str:
-        """What was found, or why nothing can be."""
-        return self.answer
-
-    def summary(self) -> dict[str, Any]:
-        """The launches with what went in, and the units of all, ready for JSON."""
-        return self._summary("target", list(self.target))
-
-    def dataset(self) -> Dataset:
-        """One row a launch; puck and target as attributes."""
-        return self._dataset("Launches that come to rest at a target", target=list(self.target))
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Aims(LaunchColumns):
-    """Launches of a ``puck`` that come to rest at one of many targets from where they start.
-
-    ``target`` (…, 2) m; ``launches`` (…): how many lead to each.  Arrays (n,) of all launches,
-    target after target and ordered by spin: ``target_index``, counted through all targets,
-    ``launch_velocity`` (n, 2) m/s, ``launch_spin`` rad/s, ``launch_speed`` m/s, ``launch_heading``
-    rad, ``launch_slip_angle`` φ rad, ``stop_time`` s, ``body_angle`` rad.  ``miss`` m, integrated
-    when first asked for: how far from its target an integration of the launch ends.  ``aims[2]``
-    or ``aims[2, 3]`` is the :class:`Aim` at one target: with the reason where there is no launch.
-    """
-
-    puck: PuckSpec
-    target: FloatArray
-    target_index: npt.NDArray[np.int64]
-    launch_velocity: FloatArray
-    launch_spin: FloatArray
-    stop_time: FloatArray
-    body_angle: FloatArray
-    wish: dict[str, FloatArray] = field(repr=False)
-    rest: dict[str, Any] = field(repr=False)
-    threads: int | None = None
-
-    picture: ClassVar[str] = "aims"
-    # of a file: no miss, which has to be integrated
-    ROWS: ClassVar[tuple[str, ...]] = (
-        "target_index", "target_x", "target_y", *LaunchColumns.ROWS,
-    )  # fmt: skip
-
-    def __repr__(self) -> str:
-        return f"Aims({self.answer})"
-
-    def __len__(self) -> int:
-        return len(self.target)
-
-    def __getitem__(self, index: Any) -> Aim:
-        """The launches to one target, each integrated, and what was found in words."""
-        place = self.target[index]
-        if place.shape != (2,):
-            raise InputError(f"an index of one target is needed, got {index!r}")
-        wish: Any = {name: float(values[index]) for name, values in self.wish.items()}
-        none: Any = dict.fromkeys(QUANTITIES)
-        found = aim(self.puck, place, **{**none, **wish, **self.rest}, threads=self.threads)
-        assert isinstance(found, Aim)
-        return found
-
-    @property
-    def launches(self) -> npt.NDArray[np.int64]:
-        """How many launches lead to each target, of the shape of the targets."""
-        shape = self.target.shape[:-1]
-        return np.bincount(self.target_index, minlength=math.prod(shape)).reshape(shape)
-
     @property
     def _places(self) -> FloatArray:
         """The target of each launch, (n, 2)."""
@@ -199,47 +152,68 @@ class Aims(LaunchColumns):
     @cached_property
     def miss(self) -> FloatArray:
         """How far from its target an integration of each launch ends, m."""
-        return misses(self.puck, self._places, self.launch_velocity, self.launch_spin, self.threads)
+        return self._missed(np.arange(self.launch_spin.size))
 
-    @property
-    def answer(self) -> str:  # type: ignore[override]
-        """How many launches there are, and to how many targets there is none."""
-        none, n = int((self.launches == 0).sum()), self.launches.size
-        text = f"{self.launch_spin.size} launches to {n} targets"
+    def _missed(self, which: npt.NDArray[np.int64]) -> FloatArray:
+        return misses(
+            self.puck, self._places[which], self.launch_velocity[which], self.launch_spin[which],
+            self.threads,
+        )  # fmt: skip
+
+    @cached_property
+    def answer(self) -> str:
+        """How many launches there are, and to how many targets there is none, or why not."""
+        count, none = self.launch_spin.size, int((self.launches == 0).sum())
+        if self.is_one and none:
+            distance = np.array([math.hypot(*self.target.tolist())])
+            return self.search.reason(self.wanted.reshape(1), distance)
+        text = f"{count} launch{'' if count == 1 else 'es'}"
+        if self.is_one:
+            return text
+        text += f" to {self.launches.size} targets"
         return f"{text}, none to {none} of them" if none else text
 
     def explain(self) -> str:
         """What was found, how, and how well: of some launches, integrated."""
         looked = "the stop table" if self.puck.body.is_plain else "the curve of all its launches"
-        text = f"{self.answer}.\nLooked up in {looked}."
         if not self.launch_spin.size:
-            return text
+            return self.answer
         some = np.unique(np.linspace(0, self.launch_spin.size - 1, _TRIED).astype(np.int64))
-        error = misses(
-            self.puck, self._places[some], self.launch_velocity[some], self.launch_spin[some],
-            self.threads,
-        )  # fmt: skip
-        return f"{text}\n{some.size} of them, integrated, end at most {error.max():.1g} m off."
+        error, count = self._missed(some).max(), some.size
+        tried = f"{count} of them, integrated, end" if count > 1 else "One, integrated, ends"
+        return f"{self.answer}.\nLooked up in {looked}.\n{tried} at most {error:.1g} m off."
+
+    @property
+    def _rows(self) -> tuple[str, ...]:
+        """Columns of a file; no miss, which has to be integrated."""
+        return _ROWS if self.is_one else ("target_index", "target_x", "target_y", *_ROWS)
 
     def summary(self) -> dict[str, Any]:
         """The launches with what went in, and the units of all, ready for JSON."""
-        return self._summary("targets", self.target.tolist())
+        name, rows = "target" if self.is_one else "targets", self._rows
+        return {
+            name: self.target.tolist(), **self.puck.described(), "answer": self.answer,
+            **{row: getattr(self, row).tolist() for row in rows},
+            "units": {name: "m", **PUCK_UNITS, **{row: VARIABLES[row].unit for row in rows}},
+        }  # fmt: skip
 
     def dataset(self) -> Dataset:
-        """One row a launch, with its target; the puck as attributes."""
-        title = "Launches that come to rest at targets"
-        return self._dataset(title, targets=self.launches.size)
+        """One row a launch, with its target if there are many; the puck as attributes."""
+        columns = {name: variable(name, getattr(self, name), ("launch",)) for name in self._rows}
+        where: dict[str, Any] = {"targets": self.launches.size}
+        if self.is_one:
+            where = {"target": self.target.tolist()}
+        title = f"Launches that come to rest at {'a target' if self.is_one else 'targets'}"
+        told = {"title": title, **where, "answer": self.answer, **self.puck.described()}
+        return Dataset({}, columns, told)
 
 
 def aim(
     puck: PuckSpec, target: npt.ArrayLike, *, spin: npt.ArrayLike | None,
     speed: npt.ArrayLike | None, stop_time: npt.ArrayLike | None, angle: npt.ArrayLike | None,
     max_speed: float | None, max_spin: float | None, count: int, threads: int | None,
-) -> Aim | Aims:  # fmt: skip
-    """Launches after which a puck comes to rest at targets: :meth:`puck_tables.Puck.aim`.
-
-    One target is many of which there is one; its launches are put right by integration.
-    """
+) -> Aim:  # fmt: skip
+    """Launches after which a puck comes to rest at targets: :meth:`puck_tables.Puck.aim`."""
     checked_threads(threads)
     places = finite_array("target", target, "m")
     if places.ndim == 0 or places.shape[-1] != 2:
@@ -259,18 +233,8 @@ def aim(
         raise InputError(
             f"target ({far[0]:g}, {far[1]:g}) m is too far for floating point: use larger units"
         )
-    is_one = places.ndim == 1
-    search = LaunchSearch(puck, wished, bounds, count, exact=is_one)
+    search = LaunchSearch(puck, wished, bounds, count)
     flat = places.reshape(-1, 2), wanted.reshape(-1), distance.reshape(-1)
-    if is_one:
-        rows = search.launches(*flat)
-        velocity, spins = rows[:, [VX, VY]], rows[:, SPIN].copy()
-        answer = f"{len(rows)} launch{'' if len(rows) == 1 else 'es'}"
-        return Aim(
-            puck, (x.item(), y.item()), velocity, spins, rows[:, STOP_TIME].copy(),
-            rows[:, ANGLE].copy(), misses(puck, places, velocity, spins, threads),
-            answer if len(rows) else search.reason(*flat[1:]),
-        )  # fmt: skip
     result: dict[int, FloatArray] = {}
 
     def work(start: int, stop: int) -> None:
@@ -280,12 +244,13 @@ def aim(
 
     run_chunks(work, distance.size, _CHUNK, threads)
     rows = np.concatenate([np.empty((0, ANGLE + 1)), *(result[n] for n in sorted(result))])
-    return Aims(
-        puck, places, rows[:, OF].astype(np.int64), rows[:, [VX, VY]], rows[:, SPIN].copy(),
-        rows[:, STOP_TIME].copy(), rows[:, ANGLE].copy(),
-        {} if wished is None else {wished: wanted},
-        {"max_speed": max_speed, "max_spin": max_spin, "count": count}, threads,
+    found = Aim(
+        search, places, np.asarray(wanted), rows[:, OF].astype(np.int64), rows[:, [VX, VY]],
+        rows[:, SPIN].copy(), rows[:, STOP_TIME].copy(), rows[:, ANGLE].copy(), threads,
     )  # fmt: skip
+    if found.is_one:
+        _ = found.answer  # a question out of floating point is refused at once
+    return found
 
 
 def _wish(wishes: dict[str, Any]) -> tuple[str | None, FloatArray]:

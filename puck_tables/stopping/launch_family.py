@@ -59,10 +59,7 @@ _RESOLVED = 1e-8  # of logarithms: how far a cubic may be off in the middle
 _FITTED = 1e-10  # of logarithms, what a look-up is good to
 _NARROWEST = 1e-7  # of u between nodes: next to a line it does not get smooth
 _NEAR_LIMIT = 1e-3  # of |ρ_∥ − σ|: the derivatives are 0/0 at the limit of the motion
-_DIFFERENCE = 1e-4  # of u, over which a slope is told from a table
 _OF_STOPS = [0, 1, 2, 4]  # columns of what is integrated: time, place, angle
-_BESIDE = np.array([[-0.5], [0.5]]) * _DIFFERENCE
-_SMALL_STEP = 1e-6  # of u, after which what a step leaves is less than rounding
 _SLACK = 1e-12  # of logarithms: rounding
 _ROUNDED = 1e-9  # values closer than this to the slide's are rounding
 
@@ -127,13 +124,10 @@ class LaunchFamily:
             out[others] = self.rows(u[others])
         return out
 
-    def roots(
-        self, quantity: int, values: FloatArray, exact: bool
-    ) -> tuple[Indices, FloatArray, FloatArray]:
+    def roots(self, quantity: int, values: FloatArray) -> tuple[Indices, FloatArray, FloatArray]:
         """All u where a quantity has one of ``values`` (n,): of which, u (m,), the rows (m, 5).
 
-        In ascending order; −∞ is the slide without spin.  Looked up, to 1e-10; if ``exact``, put
-        right by one integration.
+        In ascending order; −∞ is the slide without spin.  To 1e-10, as :meth:`looked_up`.
         """
         which, low, high = self.brackets(quantity, values)
         wanted, u, single = values[which], np.empty(which.size), low == high
@@ -141,16 +135,7 @@ class LaunchFamily:
         blind = ~single & ~self.is_tabulated(0.5 * low + 0.5 * high)
         first = np.where(blind, high, low)
         fill_roots(quantity, wanted, first, high, self._section, self.limits, u)
-        rows = self.rows(u) if exact else self.looked_up(u)
-        if exact:
-            behind, ahead = np.split(self.looked_up((u + _BESIDE).ravel()), 2)
-            with np.errstate(divide="ignore", invalid="ignore"):
-                slopes = (ahead - behind) / _DIFFERENCE
-                step = (wanted - rows[:, quantity]) / slopes[:, quantity]
-            right = ~single & (np.abs(step) < _SMALL_STEP)
-            u[right] += step[right]
-            rows[right] += slopes[right] * step[right, None]
-            blind = ~single & ~right
+        rows = self.looked_up(u)
         for n in np.flatnonzero(blind):
             u[n] = self.searched(quantity, wanted[n], low[n], high[n])
             rows[n] = self.rows(u[n : n + 1])[0]
@@ -245,7 +230,7 @@ def launch_family_of(body: UnitPuck) -> LaunchFamily:
     --------
     >>> from puck_tables.motion.body import body_of
     >>> family = launch_family_of(body_of("uniform", 0.5, 0.5**0.5))
-    >>> family.roots(RIM, np.array([1.0]), exact=False)[1].round(6).tolist()
+    >>> family.roots(RIM, np.array([1.0]))[1].round(6).tolist()
     [1.216315]
     >>> u, fastest = launch_family_of(body_of("uniform", 3.9, 0.1)).extreme(SPEED)
     >>> u > -4.0, fastest > 0.5 * math.log(2.0)

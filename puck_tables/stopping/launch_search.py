@@ -51,15 +51,13 @@ class LaunchSearch:
     """Launches to targets: ``wished`` picks some of each family, within ``bounds``.
 
     ``bounds``: the largest speed and spin, infinite where there is none; ``count``: how many slip
-    angles a sample has, or how many numbers of whole turns are tried for each sense of spin;
-    ``exact``: whether what was looked up is put right by integration.
+    angles a sample has, or how many numbers of whole turns are tried for each sense of spin.
     """
 
     puck: PuckSpec
     wished: str | None
     bounds: tuple[float, float]
     count: int
-    exact: bool
 
     @cached_property
     def family(self) -> LaunchFamily:
@@ -128,7 +126,7 @@ class LaunchSearch:
         """
         fewest, top = np.zeros(len(scales)), self._limits[SPEED]
         if top < math.inf:
-            of, _, rows = self.family.roots(SPEED, top - scales[:, SPEED], exact=False)
+            of, _, rows = self.family.roots(SPEED, top - scales[:, SPEED])
             least = np.full(len(scales), math.inf)
             np.minimum.at(least, of, np.exp(rows[:, TURN] + scales[of, TURN]))
             fewest = np.where(least < math.inf, least, 0.0) * (1.0 - 1e-9)
@@ -140,7 +138,7 @@ class LaunchSearch:
             each = np.repeat(np.arange(len(scales)), self.count)
             with np.errstate(divide="ignore"):
                 log = np.log(turns)
-            which, _, rows = self.family.roots(TURN, log - scales[each, TURN], self.exact)
+            which, _, rows = self.family.roots(TURN, log - scales[each, TURN])
             logs = rows + scales[each[which]]
             logs[:, TURN] = log[which]
             found.append((each[which], np.full(which.size, sense), logs))
@@ -155,14 +153,13 @@ class LaunchSearch:
         """Of which target, and ln v, ln r|ω|, ln t₀, ln θ and arg Z, of all that are wished."""
         if self.wished is None:
             which, u = self._sampled(scales)
-            rows = self.family.rows(u) if self.exact else self.family.looked_up(u)
-            return which, rows + scales[which]
+            return which, self.family.looked_up(u) + scales[which]
         quantity = QUANTITIES[self.wished]
         with np.errstate(divide="ignore"):
             log = np.log(np.abs(wanted))
         log += math.log(self.puck.radius) if quantity == RIM else 0.0
         values = log - scales[:, quantity]
-        which, _, rows = self.family.roots(quantity, values, self.exact)
+        which, _, rows = self.family.roots(quantity, values)
         none = np.bincount(which, minlength=wanted.size) == 0
         if quantity == RIM:
             still = np.flatnonzero(wanted == 0.0)
@@ -187,7 +184,7 @@ class LaunchSearch:
             return np.repeat(np.arange(n), one.size), np.tile(one, n)
         ends: list[set[float]] = [{-math.inf, math.inf} for _ in range(n)]
         for quantity, limit in zip((SPEED, RIM), limits.tolist(), strict=True):
-            of, u, _ = self.family.roots(quantity, limit - scales[:, quantity], self.exact)
+            of, u, _ = self.family.roots(quantity, limit - scales[:, quantity])
             for target, end in zip(of.tolist(), u.tolist(), strict=True):
                 ends[target].add(end)
         intervals = [list(pairwise(sorted(one))) for one in ends]
@@ -238,7 +235,7 @@ class LaunchSearch:
             return f"the spin that is asked for is above the bound of {self.bounds[1]:g} rad/s"
         scales, (fastest, widest) = self._scales(distance), self.bounds
         if self.wished is None:
-            _, _, rows = self.family.roots(SPEED, math.log(fastest) - scales[:, SPEED], True)
+            _, _, rows = self.family.roots(SPEED, math.log(fastest) - scales[:, SPEED])
             if not rows.size:
                 raise InputError(_BEYOND)
             return (
@@ -256,7 +253,7 @@ class LaunchSearch:
             return f"the launch asked for takes {taken}: out of the bounds"
         quantity = QUANTITIES[self.wished]
         u, _ = self.family.extreme(quantity)
-        row = self.family.rows(np.array([u]))[0] + scales[0]
+        row = self.family.looked_up(np.array([u]))[0] + scales[0]
         spin = "no spin"
         if u > -math.inf:
             spin = f"a spin of {self._spin(row[RIM]):.9g} rad/s either way"
