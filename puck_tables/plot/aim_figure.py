@@ -66,11 +66,9 @@ def draw_on(paths: Axes, result: Aim) -> ScalarMappable:
         paths.plot(states.x[n], states.y[n], color=colours.to_rgba(spin), linewidth=1.3)
     paths.plot(0.0, 0.0, **LAUNCH)
     paths.plot(*result.target, "x", color="black", markersize=8, markeredgewidth=1.8, zorder=5)
-    outwards = 1 if result.target[0] >= 0.0 else -1  # labels stand clear of the paths
-    for text, place, side in (
-        ("launch", (0.0, 0.0), -outwards),
-        ("target", result.target, outwards),
-    ):
+    x, y = result.target.tolist()
+    outwards = 1 if x >= 0.0 else -1  # labels stand clear of the paths
+    for text, place, side in (("launch", (0.0, 0.0), -outwards), ("target", (x, y), outwards)):
         paths.annotate(
             text, place, xytext=(9 * side, -3), textcoords="offset points", fontsize=9,
             ha="left" if side > 0 else "right",

@@ -80,12 +80,10 @@ class Aim(Result):
         of = place[self.target_index]
         which = np.flatnonzero(of >= 0)
         which = which[np.argsort(of[which], kind="stable")]
-        columns = (
-            self.launch_velocity, self.launch_spin, self.stop_time, self.body_angle,
-        )  # fmt: skip
         return Aim(
             self.search, self.target[index], np.asarray(self.wanted[index]), of[which],
-            *(column[which] for column in columns), self.threads,
+            self.launch_velocity[which], self.launch_spin[which], self.stop_time[which],
+            self.body_angle[which], self.threads,
         )  # fmt: skip
 
     @property
