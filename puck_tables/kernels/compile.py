@@ -20,12 +20,20 @@ from puck_tables.kernels.as_written import (
     turn_square,
     weighted_rows,
 )
-from puck_tables.kernels.doors import allocating, arrays_at_first, inlined, inner, kernel, look_up
+from puck_tables.kernels.doors import (
+    allocating,
+    arrays_at_first,
+    inlined,
+    inner,
+    kernel,
+    look_up,
+    on_demand,
+)
 from puck_tables.kernels.patience import patience
 
 __all__ = [
     "BLOCK", "LINE", "allocating", "arrays_at_first", "bits_of", "inlined", "inner", "into_line",
-    "into_row", "into_rows", "kernel", "look_up", "number_of", "patience", "row_of", "rows_of",
-    "spline_polynomials", "spline_slopes", "spline_values", "stream_line", "summed", "turn_square",
-    "weighted_rows",
+    "into_row", "into_rows", "kernel", "look_up", "number_of", "on_demand", "patience", "row_of",
+    "rows_of", "spline_polynomials", "spline_slopes", "spline_values", "stream_line", "summed",
+    "turn_square", "weighted_rows",
 ]  # fmt: skip

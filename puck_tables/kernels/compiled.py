@@ -20,6 +20,7 @@ from numba.core.typing.typeof import typeof_impl
 from puck_tables.kernels import as_written, register_blocks, vectors
 from puck_tables.kernels.as_written import behind
 from puck_tables.kernels.cache import cache_folder
+from puck_tables.kernels.on_demand import put_cell, type_of_call
 from puck_tables.kernels.patience import patience
 
 # private parts of numba, worth it while they are there: 2 to 2.5 times the first compile of scenes,
@@ -27,7 +28,7 @@ from puck_tables.kernels.patience import patience
 linked_at_doors: Any = None
 kept_code: Any = None
 with contextlib.suppress(ImportError, AttributeError):
-    from puck_tables.kernels.linking import Called, put_at
+    from puck_tables.kernels.linking import CALLED_LATE, Called, put_at
     from puck_tables.kernels.linking import LinkedAtDoors as linked_at_doors
 with contextlib.suppress(ImportError, AttributeError):
     from puck_tables.kernels.kept_code import KeptCode as kept_code
@@ -62,6 +63,7 @@ _intrinsics: dict[Any, Any] = {patience: vectors.patience} | {
     if hasattr(one, "_defn") and hasattr(as_written, name)
 }
 _dispatchers: dict[tuple[Any, bool], Any] = {}
+_late: dict[Any, Any] = {}  # types of kernels that are compiled on demand
 
 
 class KernelDoor(Protocol):
@@ -70,10 +72,14 @@ class KernelDoor(Protocol):
     py_func: Any
     counts: bool
     fuses: bool
+    returns: str
 
     @property
     def compiled(self) -> Any:
         """Numba's object for it."""
+
+    def announce(self) -> None:
+        """Say that it is compiled."""
 
     def callable_for(self, *args: Any) -> Callable[..., Any]:
         """What to call with such arguments."""
@@ -91,16 +97,44 @@ def _compiling(door: KernelDoor) -> Iterator[None]:
             vectors.fuses = before
 
 
-def type_of(dispatcher: Any) -> Any:
-    """What a function is to those that call it."""
-    return types.Dispatcher(dispatcher)
+def type_at(door: KernelDoor) -> Any:
+    """What a kernel that Python calls is to those that call it."""
+    if not (door.returns and linked_at_doors and kept_code):  # numba's cache keeps no cells
+        return types.Dispatcher(door.compiled)
+    if door not in _late:
+        _late[door] = type_of_call(door.py_func, door.returns, partial(_symbol_for, door))
+    return _late[door]
+
+
+def _symbol_for(door: KernelDoor, kinds: tuple[Any, ...]) -> str:
+    """Under which the address of a kernel for such arguments is found."""
+    name = f"{door.py_func.__module__}.{door.py_func.__qualname__}"
+    symbol = f"{name}({', '.join(map(str, kinds))})"
+    CALLED_LATE[symbol] = Called(door.py_func.__module__, door.py_func.__qualname__, kinds, symbol)
+    put_cell(symbol, partial(_address_of, door, kinds))
+    return symbol
+
+
+def _address_of(door: KernelDoor, kinds: tuple[Any, ...]) -> int:
+    """Where a kernel for such arguments is, compiled or read."""
+    if not (kinds in door.compiled.overloads or door.compiled._cache.keeps(kinds, _target())):
+        door.announce()
+    with _compiling(door):
+        door.compiled.compile(kinds)
+    code = door.compiled.overloads[kinds]
+    address: int = code.library.get_pointer_to_function(code.fndesc.llvm_func_name)
+    return address
+
+
+def _target() -> Any:
+    return cpu_target.target_context
 
 
 @typeof_impl.register(FunctionType)
 def _type_of_function(function: Any, purpose: Any) -> Any:
     """A kernel is its compiled code, where kernels call it."""
     if function in behind:
-        return type_of(dispatcher_of(function, vectors.fuses))
+        return types.Dispatcher(dispatcher_of(function, vectors.fuses))
     if function in _intrinsics:
         context: Any = cpu_target.typing_context
         return context.resolve_value_type(_intrinsics[function])
@@ -177,6 +211,9 @@ def _name_door(function: Any, kinds: tuple[Any, ...], code: Any) -> None:
 def _put_at_hand(called: Any) -> None:
     """Put a door, compiled or read, at the symbol under which kept code calls it."""
     door = getattr(sys.modules[called.module], called.name)  # whoever calls it has imported it
+    if door.returns:
+        _symbol_for(door, called.kinds)
+        return
     with _compiling(door):
         door.compiled.compile(called.kinds)
     code = door.compiled.overloads[called.kinds]

@@ -36,12 +36,13 @@ class Door:
     """A kernel that Python calls.
 
     ``counts``: references to arrays; ``fuses``: a·b + c is rounded once where the machine can;
-    ``at_first``: what runs at first in place of the function as it is written.
+    ``at_first``: what runs at first in place of the function as it is written; ``returns``: the
+    type of what it gives, if it is compiled on demand of compiled code.
     """
 
     def __init__(self, function: Callable[..., Any], counts: bool, fuses: bool) -> None:
         update_wrapper(self, function)
-        self.at_first = function
+        self.at_first, self.returns = function, ""
         self.py_func, self.counts, self.fuses = function, counts, fuses
         self.spent = 0.0  # s of computing, as it is written
         self._ready: Any = None
@@ -68,7 +69,7 @@ class Door:
     @property
     def _numba_type_(self) -> Any:
         """What it is to kernels that call it."""
-        return _from_numba().type_of(self.compiled)
+        return _from_numba().type_at(self)
 
     def callable_for(self, *args: Any) -> Callable[..., Any]:
         """What to call with such arguments: it, as it is written at first, or its compiled code."""
@@ -90,10 +91,15 @@ class Door:
         return there and bool(_from_numba().keeps(self.compiled, args))
 
     def _compile(self, *args: Any) -> Callable[..., Any]:
-        if self.seconds > _SAID and not self._keeps(args):
-            say(self._announcement)
+        if not self._keeps(args):
+            self.announce()
         code: Callable[..., Any] = _from_numba().code_for(self, args)
         return code
+
+    def announce(self) -> None:
+        """Say that it is compiled, if that takes a while."""
+        if self.seconds > _SAID:
+            say(self._announcement)
 
     @cached_property
     def _announcement(self) -> str:
@@ -146,7 +152,7 @@ def _called(door: Door) -> set[Any]:
             names = (function.__globals__.get(name) for name in function.__code__.co_names)
             for one in (*cells, *names):
                 if isinstance(one, Door):
-                    if not is_any_kept(one.py_func):
+                    if not one.returns and not is_any_kept(one.py_func):
                         waiting.append(one.py_func)
                 elif callable(one) and one in behind:
                     waiting.append(one)
@@ -223,6 +229,22 @@ def arrays_at_first(arrays: Callable[..., Any]) -> Callable[[Function], Function
             return arrays  # type: ignore[return-value]
         one.at_first = arrays
         return made
+
+    return door
+
+
+def on_demand(returns: str) -> Callable[[Function], Function]:
+    """A kernel that compiled code compiles when it first calls it: few scenes need it.
+
+    ``returns``: the type of what it gives, as numba writes it.  For what takes seconds to compile:
+    a call takes 2 ns more.
+    """
+
+    def door(function: Function) -> Function:
+        made: Any = kernel(function)
+        if isinstance(made, Door):
+            made.returns = returns
+        return made  # type: ignore[no-any-return]
 
     return door
 

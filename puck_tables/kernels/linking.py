@@ -29,6 +29,9 @@ class Called(NamedTuple):
     symbol: str
 
 
+CALLED_LATE: dict[str, Called] = {}  # by symbol: those that are compiled when they are called
+
+
 def put_at(symbol: str, code: Any) -> None:
     """Put a function that is compiled at a symbol under which others call it."""
     address = code.library.get_pointer_to_function(code.fndesc.llvm_func_name)
@@ -98,6 +101,8 @@ class Behind(Library):  # type: ignore[misc]
         self.calls = tuple(one.door for one in called if hasattr(one, "door"))
         self._linking_libraries = [one for one in called if not hasattr(one, "door")]
         super().finalize()
+        names = [one.name for one in self._final_module.global_variables]
+        self.calls += tuple(CALLED_LATE[name] for name in names if name in CALLED_LATE)
 
 
 class QuickOptions(Options):  # type: ignore[misc]

@@ -24,7 +24,7 @@ from puck_tables.kernels.base_friction import (
 )
 from puck_tables.kernels.base_friction import REACH as BASE_REACH
 from puck_tables.kernels.base_sums import NOTHING, Sums, plus
-from puck_tables.kernels.compile import inlined, inner
+from puck_tables.kernels.compile import inlined, inner, on_demand
 from puck_tables.kernels.contour_sums import contour_sums, look_at, whole_sums
 from puck_tables.kernels.elliptic_sums import Ellipse, elliptic_sums
 from puck_tables.kernels.law_sums import law_sums
@@ -148,7 +148,7 @@ def _in_patch(
     return contour_sums(base, ground, one, end, ux, uy, w)
 
 
-@inner
+@on_demand("UniTuple(float64, 8)")
 def friction_sums(ground: FloatArray, ux: float, uy: float, w: float, moving: float) -> Sums:
     """Sums over the base times f N of what is under each part, in the axes of the base.
 
