@@ -12,7 +12,7 @@ from puck_tables._core.executor import in_slices
 from puck_tables.kernels.compile import inner, kernel, patience
 from puck_tables.scene.friction import VX
 from puck_tables.world.course import COURSE_COLUMNS, LENGTH, trace
-from puck_tables.world.departures import Room, desk_for, room_for
+from puck_tables.world.departures import Room, room_for
 from puck_tables.world.engine import EVERYBODY, NOBODY, advance
 from puck_tables.world.flight import GONE, START, moves_until, state_at
 from puck_tables.world.footing import least_slip, moves_along
@@ -56,17 +56,17 @@ class Ends(NamedTuple):
 @inner
 def _to_the_end(
     game: Game, until: float, limit: float, given: float, struck: int, room: Room,
-    desk: FloatArray | None, work: FloatArray,
+    work: FloatArray,
 ) -> tuple[int, float]:  # fmt: skip
     """Run it until a time, or, if that is inf, until nothing more can happen; how, and when."""
     endless, how, target = until == math.inf, GOES_ON, until
     if endless:
         target = limit if game.surface.spin == 0.0 else game.clock[0]
     while how == GOES_ON:
-        how = advance(game, target, struck, room, desk)
+        how = advance(game, target, struck, room)
         struck = NOBODY
         while how == PAUSED:
-            how = advance(game, target, struck, room, desk)
+            how = advance(game, target, struck, room)
         if endless and how == REACHED:
             how, target = next_target(game, limit, given, room, work)
     return how, target
@@ -76,8 +76,8 @@ def _to_the_end(
 def _follow_all(
     game: Game, fresh: FloatArray, kinds: Whole, hangs: Whole, flights: FloatArray,
     first: FloatArray, discs: Whole, launches: FloatArray, paces: FloatArray, until: float,
-    limits: FloatArray, given: float, watch: Whole, room: Room, desk: FloatArray | None,
-    rows: FloatArray, ends: Ends,
+    limits: FloatArray, given: float, watch: Whole, room: Room, rows: FloatArray,
+    ends: Ends,
 ) -> None:  # fmt: skip
     """Runs from the states ``first`` (n, 6), with launches (runs, m, 3) of the ``discs`` (m,).
 
@@ -114,7 +114,7 @@ def _follow_all(
         for look in range(looks, -1, -1):
             part = game.pace[0] / game.pace[1] * 0.5**look if look > 0 else until
             how, ended = _to_the_end(
-                game, min(part, until), limits[run], given, struck, room, desk, ends.in_play[run]
+                game, min(part, until), limits[run], given, struck, room, ends.in_play[run]
             )
             struck = NOBODY
             if watch[0] >= 0:
@@ -169,7 +169,7 @@ def follow_all(
     )  # fmt: skip
     paces = _paces(game, first, discs, launches)
     limits, given = limits_of(game, paces)
-    room, desk, rows = room_for(count), desk_for(game), 256 + 16 * count
+    room, rows = room_for(count), 256 + 16 * count
     mine = own_game(game, rows)
 
     def work(start: int, stop: int) -> None:
@@ -181,7 +181,7 @@ def follow_all(
         _follow_all(
             mine, game.discs, game.kinds, game.hangs, game.flights, first, discs,
             launches[start:stop], paces[start:stop], until, limits[start:stop], given,
-            np.array(watch), room, desk, np.empty(1 + len(mine.history) + count), part,
+            np.array(watch), room, np.empty(1 + len(mine.history) + count), part,
         )  # fmt: skip
 
     in_slices(work, runs)
@@ -215,7 +215,7 @@ def own_game(game: Game, rows: int, more: int = 0) -> Game:
 
     ``more``: rows for paths beside these.
     """
-    paths = more + (rows + LONGEST if desk_for(game) is not None else 0)
+    paths = more + (rows + LONGEST if game.floors[:, 2].any() else 0)
     pieces = np.zeros((paths, PIECE_COLUMNS))
     return game._replace(
         regions=game.regions._replace(ground=game.regions.ground.copy()),

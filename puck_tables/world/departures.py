@@ -113,6 +113,7 @@ class Room(NamedTuple):
     work: FloatArray
     one: FloatArray
     two: FloatArray
+    workspace: FloatArray
 
 
 def room_for(discs: int) -> Room:
@@ -122,15 +123,8 @@ def room_for(discs: int) -> Room:
         np.zeros((discs, 6)), np.zeros((discs, 6)), np.zeros(discs, np.int64),
         np.zeros(discs, np.int64), np.zeros((contacts, 2), np.int64),
         np.zeros((contacts, CONTACT_COLUMNS)), np.zeros(ROOM), np.zeros(6), np.zeros(6),
+        np.zeros((DESK_ROWS, ROW)),
     )  # fmt: skip
-
-
-def desk_for(game: Game) -> FloatArray | None:
-    """Room to integrate a lone disc; None where none is ever integrated.
-
-    What integrates is then not compiled, a third of the engine.
-    """
-    return np.zeros((DESK_ROWS, ROW)) if game.floors[:, 2].any() else None
 
 
 @inlined
@@ -206,9 +200,9 @@ def lacks_pieces(game: Game) -> bool:
 
 
 @inner
-def integrate(game: Game, i: int, t: float, room: Room, desk: FloatArray) -> bool:
+def integrate(game: Game, i: int, t: float, room: Room) -> bool:
     """The path of a disc alone, from its state; whether it can be followed."""
-    done, until, count = follow_alone(game, i, t, room.states[i], desk)
+    done, until, count = follow_alone(game, i, t, room.states[i], room.workspace)
     game.group[i] = 0
     if until == math.inf:
         stay(game, i, t, room)

@@ -172,9 +172,7 @@ def _is_squeezed(game: Game, t: float, count: int, room: Room) -> bool:
 
 
 @inner
-def _happen(
-    game: Game, i: int, partner: int, t: float, room: Room, desk: FloatArray | None
-) -> int:  # fmt: skip
+def _happen(game: Game, i: int, partner: int, t: float, room: Room) -> int:
     """What comes next for a disc happens; those concerned are marked."""
     discs = game.discs
     for j in range(discs.shape[0]):
@@ -226,11 +224,11 @@ def _happen(
             room.marks[room.contacts[n, 0]] = CONCERNED
             if room.contacts[n, 1] >= 0:
                 room.marks[room.contacts[n, 1]] = CONCERNED
-    return go_on(game, t, count, room, desk)
+    return go_on(game, t, count, room)
 
 
 @inlined
-def _launch(game: Game, row: FloatArray, t: float, room: Room, desk: FloatArray | None) -> int:
+def _launch(game: Game, row: FloatArray, t: float, room: Room) -> int:
     """A later launch of a disc, if it is still in play."""
     i = int(row[LAUNCHED])
     for j in range(game.discs.shape[0]):
@@ -242,7 +240,7 @@ def _launch(game: Game, row: FloatArray, t: float, room: Room, desk: FloatArray 
         room.before[i, column] = math.nan
     room.before[i, VX], room.before[i, VY] = row[LAUNCH_VX], row[LAUNCH_VY]
     room.before[i, SPIN] = row[LAUNCH_SPIN]
-    return put(game, STRUCK, t, room, desk)
+    return put(game, STRUCK, t, room)
 
 
 @inner
@@ -273,9 +271,7 @@ def lacks_rows(game: Game, room: Room) -> bool:
 
 
 @kernel
-def advance(
-    game: Game, until: float, first: int, room: Room, desk: FloatArray | None
-) -> int:  # fmt: skip
+def advance(game: Game, until: float, first: int, room: Room) -> int:
     """All that happens up to a time; how it ended.
 
     After FULL the caller gives more rows and calls again, after PAUSED it just calls again.
@@ -283,15 +279,14 @@ def advance(
     ``first``: what happens before.  An event by hand (STRUCK, PLACED, ...): those who are marked
     get their states, see :func:`puck_tables.world.setting_off.put`; NOBODY; at the start,
     EVERYBODY looks ahead; after FULL, or after PUSHING when the groups that push are on their way,
-    THOSE_LEFT set off.  ``desk``: to integrate on, see
-    :func:`puck_tables.world.departures.desk_for`; None: nothing is.
+    THOSE_LEFT set off.
     """
     count = game.discs.shape[0]
     events = 0
     if first != NOBODY:
         status = REACHED
         if first == THOSE_LEFT:
-            status = take_off_all(game, game.clock[0], room, desk)
+            status = take_off_all(game, game.clock[0], room)
         elif first == EVERYBODY:
             game.pace[3] = 0.0
             for i in range(count):
@@ -303,9 +298,9 @@ def advance(
                 return CROWDED
             for i in range(count):
                 room.marks[i] = CONCERNED
-            status = go_on(game, game.clock[0], contacts, room, desk)
+            status = go_on(game, game.clock[0], contacts, room)
         else:
-            status = put(game, first, game.clock[0], room, desk)
+            status = put(game, first, game.clock[0], room)
         if status != REACHED:
             return status
         _look_again(game, game.clock[0], room)
@@ -337,10 +332,10 @@ def advance(
             return CROWDED
         if launch <= t:
             t = launch
-            status = _launch(game, game.launches[done], t, room, desk)
+            status = _launch(game, game.launches[done], t, room)
             game.counts[N_LAUNCHES] += 1
         else:
-            status = _happen(game, who, game.next_partner[who], t, room, desk)
+            status = _happen(game, who, game.next_partner[who], t, room)
         game.clock[0] = t
         if status != REACHED:
             return status

@@ -14,7 +14,7 @@ import math
 from typing import NamedTuple
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, inner, patience
+from puck_tables.kernels.compile import inlined, inner, on_demand, patience
 from puck_tables.scene.belts import is_rubbed
 from puck_tables.scene.equations import (
     DRY,
@@ -403,7 +403,7 @@ def _put_down(model: Model, t: float, state: FloatArray, desk: Desk) -> None:
         state[n] = desk.y[n]
 
 
-@inner
+@on_demand("Tuple((boolean, float64, int64))")
 def follow_alone(
     game: Game, i: int, t: float, state: FloatArray, work: FloatArray
 ) -> tuple[bool, float, int]:  # fmt: skip

@@ -18,7 +18,7 @@ from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import game as g
 from puck_tables.world import passings
 from puck_tables.world.agreement import called, pieces_of, refuse_endless
-from puck_tables.world.departures import desk_for, room_for
+from puck_tables.world.departures import room_for
 from puck_tables.world.engine import EVERYBODY, NOBODY, THOSE_LEFT, advance, lacks_rows
 from puck_tables.world.flight import GONE, START, moves_until
 from puck_tables.world.impact import FIRST_N, E
@@ -74,7 +74,6 @@ class Running:
         self.scene, self._order = start.scene, start.order
         self._game, self._room = g.copy_of(start.game), room_for(len(start.order))
         self._room.states[:] = start.states
-        self._desk = desk_for(self._game)
         self._told: dict[int, Told] = {}  # until when what pushed back discs was told
         self._named()
         pieces = pieces_of(self.scene)
@@ -276,7 +275,7 @@ class Running:
         if lacks_rows(self._game, self._room):
             self._grow()
         while True:
-            how = advance(self._game, until, first, self._room, self._desk)
+            how = advance(self._game, until, first, self._room)
             if how == REACHED:
                 return
             unit = float(self._game.pace[0] / max(self._game.pace[1], 1e-300))
@@ -315,7 +314,7 @@ class Running:
         other = object.__new__(type(self))
         other.__dict__.update(self.__dict__)
         other._game = g.copy_of(self._game)
-        other._room, other._desk = room_for(len(self.names)), desk_for(other._game)
+        other._room = room_for(len(self.names))
         other._passings = self._passings.copy()
         return other
 

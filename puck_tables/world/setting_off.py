@@ -70,7 +70,7 @@ def _whole_groups(game: Game, count: int, room: Room) -> None:
 
 
 @inlined
-def take_off_all(game: Game, t: float, room: Room, desk: FloatArray | None) -> int:
+def take_off_all(game: Game, t: float, room: Room) -> int:
     """New flights of all that are concerned and not driven; how it ended.
 
     FULL: not yet of all; TOO_SHORT: no step is short enough to follow one.
@@ -79,12 +79,10 @@ def take_off_all(game: Game, t: float, room: Room, desk: FloatArray | None) -> i
         driven = game.drives[j, 0] < game.drives[j, 1]
         if room.marks[j] != CONCERNED or game.kinds[j] == GONE or driven:
             continue
-        if desk is None:
-            take_off(game, j, t, room)
-        elif is_integrated(game, j, room.states[j]):
+        if is_integrated(game, j, room.states[j]):
             if lacks_pieces(game):
                 return FULL
-            if not integrate(game, j, t, room, desk):
+            if not integrate(game, j, t, room):
                 return TOO_SHORT
         else:
             take_off(game, j, t, room)
@@ -93,7 +91,7 @@ def take_off_all(game: Game, t: float, room: Room, desk: FloatArray | None) -> i
 
 
 @inlined
-def go_on(game: Game, t: float, count: int, room: Room, desk: FloatArray | None) -> int:
+def go_on(game: Game, t: float, count: int, room: Room) -> int:
     """New flights of all that are concerned.
 
     PUSHING: some push each other, or slip faster than the friction law is known: before, the caller
@@ -107,7 +105,7 @@ def go_on(game: Game, t: float, count: int, room: Room, desk: FloatArray | None)
         pushes = pushes or (
             room.marks[j] == CONCERNED and sets_off_too_fast(game, j, room.states[j])
         )
-    return PUSHING if pushes else take_off_all(game, t, room, desk)
+    return PUSHING if pushes else take_off_all(game, t, room)
 
 
 @inlined
@@ -178,7 +176,7 @@ def _put_down(game: Game, i: int, what: int, t: float, moved: bool, room: Room) 
 
 
 @inner
-def put(game: Game, what: int, t: float, room: Room, desk: FloatArray | None) -> int:
+def put(game: Game, what: int, t: float, room: Room) -> int:
     """Those marked get the states ``room.before``, as by an impact from outside; how it ended.
 
     NaN in them stays as it is; nothing is PLACED where it is.  REMOVED: they leave play.
@@ -224,4 +222,4 @@ def put(game: Game, what: int, t: float, room: Room, desk: FloatArray | None) ->
         return CROWDED
     for i in range(count):
         room.marks[i] = CONCERNED if room.shares[i] != _KEPT else NOT_CONCERNED
-    return go_on(game, t, contacts, room, desk)
+    return go_on(game, t, contacts, room)

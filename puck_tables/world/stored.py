@@ -328,22 +328,20 @@ def _lay_hands_on(what: int, k: int, orders: Orders, bench: Bench) -> None:
 
 
 @inner
-def _played(
-    what: int, k: int, orders: Orders, bench: Bench, desk: FloatArray | None
-) -> int:  # fmt: skip
+def _played(what: int, k: int, orders: Orders, bench: Bench) -> int:
     """Do what is to be done on the board on the bench; how it ended, as the engine says."""
     game, room, until = bench.game, bench.room, orders.until[k]
     if what != LET_GO:
         _lay_hands_on(what, k, orders, bench)
-        return advance(game, game.clock[0], NOBODY if what == LED else what, room, desk)
+        return advance(game, game.clock[0], NOBODY if what == LED else what, room)
     how, target = GOES_ON, until
     if until < math.inf:
-        how = advance(game, until, NOBODY, room, desk)
+        how = advance(game, until, NOBODY, room)
     else:
         target, given = game.clock[0], given_until(game)
         limit = max(target, given) + orders.longest[k]
         while how == GOES_ON:
-            how = advance(game, target, NOBODY, room, desk)
+            how = advance(game, target, NOBODY, room)
             if how == REACHED:
                 how, target = next_target(game, limit, given, room, bench.ended)
         if how == ROUND:
@@ -377,8 +375,7 @@ def tell(board: int, game: Game, first: int, bench: Bench, passed: int, out: Flo
 
 @kernel
 def play(
-    what: int, orders: Orders, store: Slots, bench: Bench, desk: FloatArray | None, start: int,
-    stop: int, out: FloatArray,
+    what: int, orders: Orders, store: Slots, bench: Bench, start: int, stop: int, out: FloatArray
 ) -> tuple[int, int]:  # fmt: skip
     """Play boards, until all are done or ``out`` may lack rows; how far it came, and rows used.
 
@@ -398,7 +395,7 @@ def play(
             return k, used
         _take(store, source, orders.time[k], bench)
         first, passed = game.counts[N_EVENTS], 0
-        how = _played(what, k, orders, bench, desk)
+        how = _played(what, k, orders, bench)
         if how == REACHED and bench.lines.shape[0] > 0:
             passed = find_passings(
                 game, bench.lines, bench.seen, bench.passed, room.work, room.one, bench.found

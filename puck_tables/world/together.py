@@ -20,7 +20,7 @@ from puck_tables.scene.ingredients import FREE
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import game as g
 from puck_tables.world import stored
-from puck_tables.world.departures import desk_for, room_for
+from puck_tables.world.departures import room_for
 from puck_tables.world.footing import law_goes_to, moves_along
 from puck_tables.world.game import Whole
 from puck_tables.world.lasting import longest_of
@@ -158,12 +158,12 @@ class Together:
         told: list[FloatArray] = []
 
         def work(start: int, stop: int) -> None:
-            bench, desk, out = self._a_bench()
+            bench, out = self._a_bench()
             while start < stop:
-                start, used = stored.play(what, orders, self._store, bench, desk, start, stop, out)
+                start, used = stored.play(what, orders, self._store, bench, start, stop, out)
                 if used:
                     told.append(out[:used].copy())
-            self._free.append((bench, desk, out))
+            self._free.append((bench, out))
 
         while (orders.how == stored.TO_DO).any():
             self._on_all_cores(work, len(orders.how))
@@ -202,7 +202,7 @@ class Together:
             ground = kept if kept.size == own.size else own.copy()
             game = game._replace(regions=regions._replace(ground=ground), floors=floors)
         world._game, world._room, world._told = game, room_for(len(self.names)), {}
-        world._desk, world._passings = desk_for(game), self._first._passings.copy()
+        world._passings = self._first._passings.copy()
         world._passings.seen, world._passings.flights = bench.seen.copy(), bench.passed.copy()
         first = int(game.counts[g.N_EVENTS])
         alone(world, k)
@@ -237,14 +237,14 @@ class Together:
         passings = self._first._passings
         return stored.bench_for(self._first._game, self._order, passings.lines, passings.seen, rows)
 
-    def _a_bench(self) -> tuple[Bench, FloatArray | None, FloatArray]:
-        """One that nobody uses, with a desk, and rows for what happens."""
+    def _a_bench(self) -> tuple[Bench, FloatArray]:
+        """One that nobody uses, and rows for what happens."""
         try:
             return self._free.pop()
         except IndexError:
             bench = self._bench(self._store.pieces.shape[1])
             rows = _ROWS + 2 * len(bench.game.events)
-            return bench, desk_for(bench.game), np.empty((rows, stored.FOUND_COLUMNS))
+            return bench, np.empty((rows, stored.FOUND_COLUMNS))
 
     def _kinds(self, slots: Whole) -> Whole:
         """Of the flights of all discs of boards, (slots, discs)."""

@@ -27,7 +27,7 @@ from puck_tables.world.by_hand import (
     with_force,
     with_room_to_lead,
 )
-from puck_tables.world.departures import CONCERNED, NOT_CONCERNED, desk_for, room_for
+from puck_tables.world.departures import CONCERNED, NOT_CONCERNED, room_for
 from puck_tables.world.flight import GONE
 from puck_tables.world.footing import law_goes_to, moves_along
 from puck_tables.world.game import Whole
@@ -226,7 +226,7 @@ class World(Running):
         with self._or_as_before():
             start, state = with_puck(self._game, board, self._order, self.time)
             self.scene, self._order, self._game = start.scene, start.order, start.game
-            self._room, self._desk = room_for(len(start.order)), desk_for(start.game)
+            self._room = room_for(len(start.order))
             self._passings = self._passings.with_disc(puck.has_rim)
             self._named()
             self._put(g.ADDED, state, len(start.order) - 1)
@@ -347,7 +347,6 @@ class World(Running):
         until = self.time + positive("duration", duration, "s")
         with self._or_as_before():
             self._game = with_force(self._game, self.scene, self._order, i, push, until)
-            self._desk = desk_for(self._game)
             set_pace(self._game, self._all_now())
             self._put(g.FORCED, _row(None, None, None, None), i)
 
