@@ -5,12 +5,14 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from puck_tables.kernels.compile import inlined, inner, kernel
+from puck_tables.kernels.compile import inlined, inner, kernel, on_demand
 from puck_tables.kernels.compiled import dispatcher_of
 from puck_tables.kernels.doors import Door
 from puck_tables.kernels.linking import Behind, Pasted
@@ -80,6 +82,61 @@ def test_a_door_that_was_kept_is_linked_into_others_too():
     assert sum(kept.compiled._cache_hits.values()) == 1
 
 
+@on_demand("Tuple((float64, int64))")
+def _rare(values: np.ndarray, x: float) -> tuple[float, int]:
+    return values[0] * x, values.size
+
+
+@kernel
+def _rarely(values: np.ndarray, x: float, also: bool) -> float:
+    if also:
+        product, size = _rare(values, x)
+        return product + size
+    return x
+
+
+@on_demand("float64")
+def _long(x: float) -> float:
+    return 3.0 * x
+
+
+@kernel
+def _calls_long(x: float) -> float:
+    return _long(x) + 1.0
+
+
+def test_what_is_compiled_on_demand_is_compiled_by_the_first_that_calls_it():
+    values = np.array([3.0, 1.0])
+    assert _rarely(values, 2.0, False) == 2.0
+    assert not _rare.compiled.overloads
+    with ThreadPoolExecutor(8) as pool:
+        answers = list(pool.map(lambda x: _rarely(values, x, True), np.arange(8.0)))
+    assert answers == [3.0 * x + 2.0 for x in range(8)]
+    assert len(_rare.compiled.overloads) == 1
+
+
+def test_an_interrupt_while_something_is_compiled_on_demand_is_raised_after_it():
+    compiles = _long.compiled.compile
+
+    def interrupted(kinds: tuple) -> None:
+        _long.compiled.compile = compiles
+        raise KeyboardInterrupt
+
+    _long.compiled.compile = interrupted
+    with pytest.raises(KeyboardInterrupt):
+        _calls_long(2.0)
+        time.sleep(5.0)
+    assert _calls_long(2.0) == 7.0
+
+
+def test_a_kernel_of_no_module_cannot_be_compiled_on_demand():
+    with pytest.raises(TypeError, match="kernel of a module"):
+
+        @on_demand("float64")
+        def local(x: float) -> float:
+            return x
+
+
 _SAYS = (
     "import sys, numba.core.codegen, numpy as np\n"
     "{}\n"
@@ -120,7 +177,11 @@ def test_a_numba_without_its_private_parts_compiles_the_same(
 _DOORS = """
 import sys
 import numpy as np
-from puck_tables.kernels.compile import kernel
+from puck_tables.kernels.compile import kernel, on_demand
+
+@on_demand("float64")
+def rare(x: float) -> float:
+    return 0.0 * x
 
 @kernel
 def unrelated(x: float) -> float:
@@ -135,7 +196,7 @@ def outside(values) -> float:
     total = 0.0
     for x in values:
         total += inside(x)
-    return total
+    return total + rare(total) if total > 10.0 else total
 
 if __name__ != "__main__":
     from puck_tables.kernels.patience import here
@@ -164,9 +225,10 @@ def test_a_door_behind_a_door_is_called_where_it_is_and_may_be_compiled_anew(tmp
 
     assert told() == ["18.0", "0"]
     names = {path.name.rpartition("-")[0] for path in folder.rglob("*.code")}
-    assert names == {"doors_here-inside", "doors_here-outside"}
+    assert names == {"doors_here-inside", "doors_here-outside", "doors_here-rare"}
     assert told("unrelated") == ["18.0", "1"]
-    for path in folder.rglob("doors_here-inside-*"):
+    for name in ("inside", "rare"):
+        (path,) = folder.rglob(f"doors_here-{name}-*")
         path.unlink()
-    assert told("unrelated", "unrelated") == ["18.0", "1"]
-    assert len(list(folder.rglob("doors_here-inside-*"))) == 1
+        assert told("unrelated", "unrelated") == ["18.0", "1"]
+        assert len(list(folder.rglob(f"doors_here-{name}-*"))) == 1

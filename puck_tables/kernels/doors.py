@@ -234,17 +234,19 @@ def arrays_at_first(arrays: Callable[..., Any]) -> Callable[[Function], Function
 
 
 def on_demand(returns: str) -> Callable[[Function], Function]:
-    """A kernel that compiled code compiles when it first calls it: few scenes need it.
+    """A kernel of a module that compiled code compiles when it first calls it: few scenes need it.
 
     ``returns``: the type of what it gives, as numba writes it.  For what takes seconds to compile:
-    a call takes 2 ns more.
+    a call takes a few ns more.
     """
 
     def door(function: Function) -> Function:
+        if "<locals>" in function.__qualname__:
+            raise TypeError("only a kernel of a module is found again by its name")
         made: Any = kernel(function)
         if isinstance(made, Door):
             made.returns = returns
-        return made  # type: ignore[no-any-return]
+        return made
 
     return door
 

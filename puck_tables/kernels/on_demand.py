@@ -9,18 +9,24 @@ from __future__ import annotations
 import _thread
 import ctypes
 import os
+import threading
 import traceback
 from collections.abc import Callable
 from typing import Any
 
 from llvmlite import binding, ir
-from numba import types
-from numba.core import cgutils
+from numba.core import cgutils, types, typing
 from numba.core.registry import cpu_target
-from numba.core.typing import signature
 from numba.core.typing.templates import AbstractTemplate
 from numba.extending import lower_builtin
 
+# numba's functions have no annotations
+_code: Any = cgutils
+_types: Any = types
+_typing: Any = typing
+_lowers: Any = lower_builtin
+_Call: Any = AbstractTemplate
+_SOON = 0.01  # s, until the code that waited is at work again
 _WORD = ir.IntType(64)
 _READY = ir.FunctionType(ir.VoidType(), [])
 _cells: dict[str, Any] = {}  # by symbol: they live as long as the code that reads them
@@ -43,7 +49,7 @@ def put_cell(symbol: str, address: Callable[[], int]) -> None:
                 traceback.print_exc()
                 os.abort()
         if interrupted:
-            _thread.interrupt_main()
+            threading.Timer(_SOON, _thread.interrupt_main).start()
 
     callback = ctypes.CFUNCTYPE(None)(ready)
     _cells[symbol] = cell, callback
@@ -60,17 +66,14 @@ def type_of_call(key: Any, returns: str, symbol_for: Callable[[Any], str]) -> An
     kind: Any = eval(returns, {}, vars(types))
 
     def typed(_: Any, args: Any, __: Any) -> Any:
-        return signature(kind, *map(types.unliteral, args))  # type: ignore[no-untyped-call]
+        return _typing.signature(kind, *map(_types.unliteral, args))
 
-    @lower_builtin(key, types.VarArg(types.Any))
     def lowered(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         module, symbol = builder.module, symbol_for(sig.args)
         cell = module.globals.get(symbol) or ir.GlobalVariable(module, _WORD, symbol)
         ready = module.globals.get(_ready_of(symbol))
         ready = ready or ir.Function(module, _READY, _ready_of(symbol))
-        with cgutils.if_unlikely(
-            builder, builder.icmp_unsigned("==", builder.load(cell), _WORD(0))
-        ):
+        with _code.if_unlikely(builder, builder.icmp_unsigned("==", builder.load(cell), _WORD(0))):
             builder.call(ready, [])
         called = context.call_conv.get_function_type(sig.return_type, sig.args)
         callee = builder.inttoptr(builder.load(cell), called.as_pointer())
@@ -79,9 +82,9 @@ def type_of_call(key: Any, returns: str, symbol_for: Callable[[Any], str]) -> An
         )
         return result
 
+    _lowers(key, _types.VarArg(_types.Any))(lowered)
     cpu_target.target_context.refresh()
-    call: Any = AbstractTemplate
-    return types.Function(type(key.__name__, (call,), {"key": key, "generic": typed}))
+    return _types.Function(type(key.__name__, (_Call,), {"key": key, "generic": typed}))
 
 
 def _ready_of(symbol: str) -> str:

@@ -57,7 +57,7 @@ class Together:
             np.empty((2 * n + 1, bench.numbers.size)), np.empty((2 * n + 1, bench.whole.size), int),
             np.empty((2 * n + 1, 1, PIECE_COLUMNS)), np.empty(2 * n + 1),
         )  # fmt: skip
-        self._free: list[tuple[Bench, FloatArray | None, FloatArray]] = []
+        self._free: list[tuple[Bench, FloatArray]] = []
         self._apart: dict[int, g.Game] = {}  # slots of boards whose floors know faster slips
         self._at = np.full(n, 2 * n)  # of each board, the slot in which it is; the last: the start
         self.time: FloatArray = np.zeros(n)
