@@ -8,7 +8,7 @@ from collections.abc import Callable
 from puck_tables.bulk.spreads import Normal
 from puck_tables.kernels.patience import compiled_at_once
 from puck_tables.puck import Puck
-from puck_tables.scene.parts import Floor, Launch, Wall
+from puck_tables.scene.parts import Floor, Launch, Patch, Wall
 from puck_tables.world.scene import Piece, Scene
 from puck_tables.world.worlds import Worlds
 
@@ -44,11 +44,13 @@ def _aims() -> None:
 def _scenes() -> None:
     scene = Scene(_PUCKS[0], floor=Floor(slope=0.02), launch=Launch(*_LAUNCH))
     scene.simulate()
+    wet = Patch(0.05, centre=(0.2, 0.0), radius=0.1)  # a base over two frictions is summed
+    Scene(_PUCKS[0], floor=Floor(patches=(wet,)), launch=Launch(*_LAUNCH)).simulate()
     scene.sample(2, 1, {"launch.spin": Normal(5.0, 0.1)})
 
 
 def _boards() -> None:
-    for scene in (_board(), _table()):  # what integrates is compiled apart from what does not
+    for scene in (_board(), _table()):
         world = scene.world()
         world.advance(2.0)
         world.state()

@@ -19,7 +19,8 @@ for puck in (pt.Puck(r, 0.3 * r, f), pt.Puck(r, 0.3 * r, f, pressure="ring")):
     run = puck.simulate(v[0], w[0])
     stops, states = puck.stop(v, w), puck.states(v, w, rng.uniform(0.0, 1.0, 100))
     aim = puck.aim(0.3 * v[0])
-names = rng.permutation(["incline", "skate-blade", "carrom-break", "newtons-row", "bowling-row"])
+names = ["incline", "skate-blade", "carrom-break", "newtons-row", "bowling-row", "wet-patch"]
+rng.shuffle(names)
 for name in names:
     pt.Scene.load(name).simulate()
 world = pt.Scene.load("curling-take-out").world()
