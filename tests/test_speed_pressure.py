@@ -242,7 +242,7 @@ def test_a_tall_puck_under_any_pressure_is_what_its_equations_say(pressure):
     assert run.end == "at rest" and abs(run.energy_residual) < 1e-7
     step = 1e-4
     close = scene.simulate([0.0, step, 2.0 * step])
-    vx, vy = (-1.5 * close[k][0] + 2.0 * close[k][1] - 0.5 * close[k][2] for k in ("vx", "vy"))
+    vx, vy = (-1.5 * v[0] + 2.0 * v[1] - 0.5 * v[2] for v in (close.vx, close.vy))
     speed, rim = float(np.hypot(*LAUNCH.velocity)), 0.05 * LAUNCH.spin
     phi, Q = float(np.arctan2(rim, speed)), float(np.hypot(speed, rim))
     a, b, d, _ = brute(ICE, named(pressure), phi, Q)

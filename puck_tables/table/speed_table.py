@@ -99,7 +99,7 @@ class SpeedTable(SpeedValues):
             cosine, sine = np.cos(phi), np.sin(phi)
             Q = speeds / (cosine + sine) * (1.0 - 1e-15)
             got = self.integrals(phi, Q)
-            truth = truth_at(law, self.load, self.top, slip_direction(phi), Q, plain=True)
+            truth = truth_at(law, self.round_load, self.top, slip_direction(phi), Q, plain=True)
             missed = np.stack([got.a, got.b, got.d, got.e]) - np.moveaxis(truth, -1, 0)
             return np.stack([cosine, sine, sine, cosine]) / unit * missed
 

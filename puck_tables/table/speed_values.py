@@ -109,14 +109,14 @@ class SpeedValues(Table):
         return self.pressure.name + where
 
     @cached_property
-    def load(self) -> RoundLoad:
+    def round_load(self) -> RoundLoad:
         """Its pressure."""
         return RoundLoad(self.pressure, self.reach)
 
     @cached_property
     def patches(self) -> tuple[SlipPatch | RayPatch, ...]:
         """Its patches, in the order of ``cells``."""
-        return patches_of(self.breaks, self._grade, rays_under(self.law, self.load))
+        return patches_of(self.breaks, self._grade, rays_under(self.law, self.round_load))
 
     @property
     def _grade(self) -> int:
@@ -127,9 +127,9 @@ class SpeedValues(Table):
     def compiled(self) -> FloatArray:
         """As :func:`puck_tables.kernels.speed_spline.packed` has it."""
         splines = [quintic_coefficients(values) for values in self.by_patch()]
-        rays, discs = rays_under(self.law, self.load), np.empty((0, 2))
-        if is_pile(self.law, self.load):
-            discs = self.load.discs
+        rays, discs = rays_under(self.law, self.round_load), np.empty((0, 2))
+        if is_pile(self.law, self.round_load):
+            discs = self.round_load.discs
         return packed(self.breaks, rays, discs, self.cells, splines, self._grade)
 
     def by_patch(self) -> list[FloatArray]:
@@ -217,7 +217,7 @@ class SpeedValues(Table):
         >>> Table.build(law, 1e-3, pressure="ring").lever(1.0)  # ⟨x²⟩ = 1/2
         0.5
         """
-        return height_ratio / (4.0 * self.load.mean_square)
+        return height_ratio / (4.0 * self.round_load.mean_square)
 
     def refuse_height(self, height_ratio: float) -> None:
         """Refuse a puck part of whose base would lift anywhere in the table.
@@ -235,7 +235,7 @@ class SpeedValues(Table):
             direction, Q = patch.place(xi, zeta)
             a, b, d, e = np.moveaxis(values, -1, 0)
             p = PatchIntegrals(a, b, b - d, d, e)
-            if is_pile(self.law, self.load):
+            if is_pile(self.law, self.round_load):
                 phi = np.arctan2(np.sqrt(direction.sin_squared), np.sqrt(direction.cos_squared))
                 p = self.integrals(phi, Q * (1.0 - _ROUNDED))
             rho = moment_balance(p, direction, lever)
