@@ -120,8 +120,9 @@ def load_of(base: Base, radius: float) -> RoundLoad | None:
 
     Examples
     --------
-    >>> load_of(Base.annulus(0.08, 0.04), 0.1).edges
-    (0.4, 0.8)
+    >>> load = load_of(Base.annulus(0.08, 0.04), 0.1)
+    >>> load.law.name, round(load.reach, 12)
+    ('annulus:0.5', 0.8)
     >>> load_of(Base.box(0.2, 0.1), 0.2) is None
     True
     """

@@ -164,10 +164,9 @@ def _kept_table(
     of: FrictionLaw | Points, accuracy: float, top: float, load: RoundLoad
 ) -> SpeedTable:  # fmt: skip
     """Kept by the law or its points: a sweep asks for it again and again."""
-    law, under = _law(of), {"pressure": load.law, "reach": load.reach}
-    if isinstance(law, FrictionLaw):
-        return table_for(law, accuracy, top_speed=top, **under)
-    return table_for(law, accuracy, **under)
+    law = _law(of)
+    last = top if isinstance(law, FrictionLaw) else None
+    return table_for(law, accuracy, top_speed=last, pressure=load.law, reach=load.reach)
 
 
 @lru_cache(maxsize=8)

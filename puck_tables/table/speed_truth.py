@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import keep_on
@@ -17,6 +18,7 @@ from puck_tables.kernels.circle_quadrature import fill_load
 from puck_tables.kernels.speed_quadrature_kernel import FEW_POWERS, FINE, fill_integrals
 
 Law = SpeedLaw | FrictionLaw | SpeedFunction
+Truth = npt.NDArray[np.bool_]
 
 _SHORT = 0.3  # of its place
 _AT_ONCE, _ALSO = 20_000, 200  # points between two looks whether to go on: some 0.1 s
@@ -50,7 +52,8 @@ def truth_at(
     total = np.zeros((*np.shape(speed), 4))
     for radius, share in load.discs:
         if radius == 1.0:
-            part, norm = _of_disc(law, top, direction, speed, rules, plain), 1.0
+            part = _of_disc(law, top, direction, speed, rules, plain)
+            norm = np.ones(np.shape(speed))
         else:
             seen, norm = _seen_by(direction, radius)
             part = _of_disc(law, top, seen, speed * norm, rules, plain)
@@ -110,8 +113,8 @@ def _bends(ends: FloatArray, pieces: FloatArray) -> FloatArray:
 
 
 def _flat(
-    ratio: FloatArray, fast: FloatArray, speed: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    ratio: FloatArray, fast: Truth, speed: FloatArray
+) -> tuple[FloatArray, Truth, FloatArray, FloatArray]:
     flat = np.ravel(ratio).copy()
     inside = np.array(np.broadcast_to(fast, np.shape(ratio)), bool).ravel()
     return flat, inside, np.ravel(speed).copy(), np.empty((flat.size, 4))

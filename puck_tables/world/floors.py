@@ -194,7 +194,7 @@ def _by_slip(
         ground = _grounds(scene, pieces, summed, moments_of(law, top))
     ends = np.cumsum([0, *(len(table.compiled) for table in tables.values())])
     spans = dict(zip(tables, pairwise(ends.tolist()), strict=True))
-    laws = np.array([spans.get(own, (0, 0)) for own in under])
+    laws = np.array([(0, 0) if own is None else spans[own] for own in under])
     compiled = [table.compiled for table in tables.values()] or [np.array([1.0, top])]
     by_slip = BySpeed(np.concatenate(compiled), 0.0, 1.0, 1.0)
     return Regions(normals * largest, delta, cuts, by_slip, summed, ground, laws)
