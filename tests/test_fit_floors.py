@@ -137,6 +137,18 @@ def test_a_law_with_more_numbers_leaves_no_more_than_one_friction():
     assert left["uniform+stribeck"] < left["uniform+hyperbola"] < 0.5 * left["uniform"]
 
 
+@pytest.mark.parametrize(("how", "lost"), [({"drag": 0.6}, "friction"), ({}, "friction_rest")])
+def test_a_law_whose_speed_ends_on_its_bound_is_not_determined(how, lost):
+    """All slips of the film are far below, or above, the speed of such a law."""
+    bounds = {"law_speed": (4.0, 9.0) if how else (1e-4, 0.02)}
+    free = ["friction", "friction_rest", "law_speed"]
+    result = pt.fit(film(7, even, frames=110, **how), PUCK, free=free, law="stribeck",
+                    keep_all=True, bounds=bounds)  # fmt: skip
+    assert not result["law_speed"].determined and not result[lost].determined
+    assert any("law_speed is not determined" in text for text in result.blind)
+    assert result.summary()["numbers"]["law_speed"]["determined"] is False
+
+
 def test_what_is_wrong_with_floors_is_said():
     track = film(5, even, frames=60)
     for how, words in (

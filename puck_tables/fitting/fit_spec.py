@@ -309,14 +309,11 @@ class FitSpec:
                 f"(--law, law=): {', '.join(LAWS)}"
             )
 
-    def with_linear_drag(self) -> FitSpec:
-        """The same with linear drag in place of what is integrated: to begin from."""
+    def plain(self) -> FitSpec:
+        """The same without what is integrated: to begin from."""
         free = tuple(name for name in self.free if name not in INTEGRATED)
-        plain = "drag" in self.free or "drag" in self.fixed
-        bounds = self.bounds if plain else {**self.bounds, "drag": (0.0, MOST["drag"])}
         fixed = {name: value for name, value in self.fixed.items() if name not in INTEGRATED}
-        free = free if plain else (*free, "drag")
-        return replace(self, free=free, fixed=fixed, bounds=bounds, law="")
+        return replace(self, free=free, fixed=fixed, law="")
 
     def moving(self, result: Mapping[str, float], tall: bool) -> Moving:
         """What moves the puck."""

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from puck_tables._core.real import instance, positive, real
+from puck_tables._core.real import instance, pair_of, positive, real
 from puck_tables.contact.speed_law import KINDS
 from puck_tables.errors import InputError
 from puck_tables.film.pairs import marks_of_one
@@ -206,12 +206,9 @@ def checked_rows(raw: Any) -> tuple[float, float] | None:
     """Y of the first and the last line of a picture, m."""
     if raw is None:
         return None
-    try:
-        first, last = raw
-    except (TypeError, ValueError):
-        raise InputError(
-            f"rows must be y in m of the first and of the last line of the picture, got {raw!r:.40}"
-        ) from None
+    first, last = pair_of(
+        "rows must be y in m of the first and of the last line of the picture", raw
+    )
     first, last = real("the first of rows", first, "m"), real("the last of rows", last, "m")
     if first == last:
         raise InputError(f"rows must be two different places y (m), got {first:g} twice")
@@ -267,12 +264,8 @@ def checked_walls(raw: Any) -> tuple[Line, ...]:
         raise InputError("walls must be a list, each wall two points ((x, y), (x, y)) on it in m")
     lines = []
     for wall in raw:
-        try:
-            (ax, ay), (bx, by) = wall
-        except (TypeError, ValueError):
-            raise InputError(
-                f"a wall must be two points ((x, y), (x, y)) on it in m, got {wall!r:.60}"
-            ) from None
+        what = "a wall must be two points ((x, y), (x, y)) on it in m"
+        (ax, ay), (bx, by) = (pair_of(what, point) for point in pair_of(what, wall))
         ax, ay, bx, by = (real("a point of a wall", value, "m") for value in (ax, ay, bx, by))
         if (ax, ay) == (bx, by):
             raise InputError(
@@ -286,12 +279,7 @@ def checked_noise(raw: Any) -> tuple[float | None, float | None]:
     """The noise as given, None for what is to be found."""
     if raw is None:
         return None, None
-    try:
-        place, angle = raw
-    except (TypeError, ValueError):
-        raise InputError(
-            f"noise must be (metres, radians), None for what is to be estimated, got {raw!r:.40}"
-        ) from None
+    place, angle = pair_of("noise must be (metres, radians), None for what is to be estimated", raw)
     return (
         None if place is None else positive("the noise of places", place, "m"),
         None if angle is None else positive("the noise of angles", angle, "rad"),

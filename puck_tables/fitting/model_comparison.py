@@ -21,18 +21,17 @@ from puck_tables.errors import InputError
 from puck_tables.fitting.certainty import Z95, Certainty
 from puck_tables.fitting.estimate import Estimate, capped_squares, estimate
 from puck_tables.fitting.fit_spec import FitSpec
-from puck_tables.fitting.least_squares import FROM_AFAR, ROBUST, minimise, multi_start
+from puck_tables.fitting.least_squares import ROBUST, minimise
 from puck_tables.fitting.named_laws import NAMES as LAWS
 from puck_tables.fitting.observations import FEWEST, Observations, rests_from
 from puck_tables.fitting.parameters import LAW_NUMBERS, NODES
-from puck_tables.fitting.problem import ANGLE, PLACE, TURN, UNSEEN, Known, Problem
-from puck_tables.fitting.slowing import begun_or_refused
+from puck_tables.fitting.problem import ANGLE, PLACE, UNSEEN, Known, Problem
+from puck_tables.fitting.slowing import nearest_start, starts_from_slowing
 from puck_tables.fitting.whole_turns import on_another_floor
 
 _ROUGHLY = ROBUST._replace(evaluations=15)
 _FALLS = 0.99  # of the cost before: a floor that still comes nearer is followed
 _NEAR = 3.0  # times the noise: floors that are fitted to the end
-_SHARES_OF_AIR = (0.3, 0.6, 0.9)
 _FRAMES = 80  # that tell whether such a law may be the reason of a misfit
 _LEAST = 0.02  # of the largest friction of a line: the smallest
 _SHARES = (0.0, 0.08, 0.3, 1.0)  # of the fastest slip
@@ -48,41 +47,9 @@ def over_speeds(
     return estimate(replace(moved, spec=spec), lines, known)
 
 
-def with_drags(result: Estimate, spec: FitSpec, known: Known) -> Estimate:
-    """The estimate with drags of the speed squared, or of the spin, from that with a linear one."""
-    problem = result.problem
-    numbers, launches = problem.numbers_at(result.x), problem.launches(result.x)
-    whole = tuple(_near(film, path[TURN]) for film, path in
-                  zip(problem.films, problem.paths(result.x), strict=True))  # fmt: skip
-    moved = replace(problem, spec=spec, weights=(), tall=False, whole=whole)
-    line, speed = numbers.get("drag", 0.0), float(np.hypot(*launches[:, 2:4].T).max())
-    gravity = spec.known()["gravity"]
-    starts = []
-    for share in _SHARES_OF_AIR:  # of the slowing at half the speed that is by air
-        begun = {**dict.fromkeys(spec.free, 0.0), **numbers}
-        begun["air"] = share * max(line, 0.0) / max(0.5 * speed, 1e-9)
-        begun["friction"] = numbers.get("friction", 0.0)
-        begun["friction"] += 0.5 * (1.0 - share) * max(line, 0.0) * speed / gravity
-        if "drag" in spec.free:
-            begun["drag"] = (1.0 - share) * line
-        values = {name: begun[name] for name in spec.free}
-        starts.append((moved, np.clip(moved.unknowns(values, launches), *moved.limits)))
-    (x, _), *_ = multi_start(starts, FROM_AFAR, ROBUST)
-    return estimate(replace(moved, whole=()), x, known)
-
-
-def _near(film: Observations, path: FloatArray) -> FloatArray | None:
-    """The angles of a track in one piece, as near as whole turns let them be to a path (n,)."""
-    if film.angle is None:
-        return None
-    turn = 2.0 * math.pi
-    whole: FloatArray = film.angle + turn * np.round((path - film.angle) / turn)
-    return whole
-
-
 def on_a_floor(problem: Problem, known: Known) -> Estimate:
     """The estimate of a floor that is compared with others: about, where it does not come near."""
-    begun, x = begun_or_refused(problem)
+    begun, x = nearest_start(problem, starts_from_slowing(problem))
     cost, falls = math.inf, True
     while falls:
         x, less = minimise(begun, x, _ROUGHLY)
@@ -103,11 +70,7 @@ def tried(result: Estimate) -> Estimate:
     top = problem.fastest(result.x)
     speeds = tuple(float(f"{1.1 * top * share:.2g}") for share in _SHARES)
     fewer = problem.with_films(tuple(film.thinned(_FRAMES) for film in problem.films))
-    moved, start = _begun(fewer, result.x, speeds)
-    lines, _ = minimise(moved, start, ROBUST)
-    smooth = replace(moved, spec=replace(moved.spec, between="cubic"))
-    x, _ = minimise(smooth, lines, ROBUST)
-    return replace(result, problem=smooth, x=x, minima=())
+    return over_speeds(replace(result, problem=fewer), speeds, "cubic", Known(True, True, True))
 
 
 def _begun(

@@ -29,6 +29,8 @@ _ALL = 0.8  # of the range in which a number is looked for: an interval so wide 
 _TOLD = 0.75  # of the time between frames, twice the error of a readout that the tracks tell
 _DECIMALS = 12  # of a value on the end of its range
 _MUCH = {"friction": 1.0, "decel": 10.0}  # an error that says nothing
+# after the point, of numbers below 1e-3 and of others: more are written with a power of ten
+_DIGITS, _MOST = 9, 12
 FREE, FOLLOWS, KNOWN = "found", "follows", "known"
 
 
@@ -63,6 +65,30 @@ class Number(NamedTuple):
     def shown(self) -> str:
         """The value to six digits; 0 where it differs from 0 by what is computed alone."""
         return f"{round(self.value, _DECIMALS) + 0.0:.6g}"
+
+    @property
+    def unit_behind(self) -> str:
+        """The unit as it stands behind a number, none of a number without one."""
+        return "" if self.unit == "1" else f" {self.unit}"
+
+    @property
+    def written(self) -> str:
+        """Value +- error, to two digits of the error, and the unit.
+
+        Examples
+        --------
+        >>> Number(0.15234, 0.00123, 0.1499, 0.1548, "m/s", FREE).written
+        '0.1523 +- 0.0012 m/s'
+        """
+        if self.at_bound:
+            return f"{self.shown}{self.unit_behind} (at its bound)"
+        if not (self.error > 0.0 and math.isfinite(self.error)):
+            return f"{self.value:.6g}{self.unit_behind}"
+        digits = max(0, 1 - math.floor(math.log10(self.error)))
+        if digits > (_DIGITS if abs(self.value) < 1e-3 else _MOST) and self.value != 0.0:
+            power = max(0, digits + math.floor(math.log10(abs(self.value))))
+            return f"{self.value:.{power}e} +- {self.error:.1e}{self.unit_behind}"
+        return f"{self.value:.{digits}f} +- {self.error:.{digits}f}{self.unit_behind}"
 
 
 class EstimatedLaunch(NamedTuple):
@@ -143,6 +169,12 @@ def numbers_of(
             error = math.inf
         unit = PUCK[name].unit
         puck[name] = Number(values[name], error, low, high, unit, FREE, interval.profiled)
+    speed = puck.get("law_speed")
+    if speed is not None and (speed.at_bound or not speed.determined):
+        # all slips are on one side of it, and tell one of the frictions alone
+        slow = problem.fastest(x) < speed.value
+        for name in {"law_speed", "friction" if slow else "friction_rest"} & {*puck}:
+            puck[name] = puck[name]._replace(error=math.inf)
     # what follows is as much less certain as what it follows from
     widened, profiled = np.ones(x.size), False
     for k, name in enumerate(spec.free):

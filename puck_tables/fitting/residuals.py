@@ -19,7 +19,6 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.certainty import Certainty, shifted_by
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.forward_model import DELTA, RATE, Moving, states_and_slopes, states_of
-from puck_tables.fitting.least_squares import apart, inside
 from puck_tables.fitting.problem import Known, Problem
 
 NO_PATTERN = 1e-3  # probability of residuals so patterned by chance
@@ -288,34 +287,6 @@ def _explained(columns: FloatArray, rows: FloatArray, degrees: int) -> _Explaine
     chance = float(fdtrc(count, degrees - count, less / count / noise)) if count else 1.0
     error = math.sqrt(noise) / float(seen.min()) if count == sizes.size else math.inf
     return _Explained(-(along / seen) @ turned, less / noise, chance, error)
-
-
-def forced(result: Estimate, kind: tuple[int, ...]) -> tuple[list[FloatArray], FloatArray]:
-    """How far a force of a kind leaves the tracks off (3, n), and the force that leaves least."""
-    from scipy.optimize import least_squares
-
-    problem, count = result.problem, result.x.size
-
-    def rows_and_slopes(values: FloatArray) -> tuple[FloatArray, FloatArray]:
-        rows, slopes = problem.residuals_and_jacobian(values[:count])
-        pushed = _weighed(problem, [one[..., kind] for one in _along(problem, values[:count])])
-        slopes = np.column_stack([slopes, pushed])[result.kept]
-        return (rows + pushed @ values[count:])[result.kept], slopes
-
-    start = np.append(result.x, np.zeros(len(kind)))
-    free = np.array([track >= 0 for track, _ in problem.names] + [True] * len(kind))
-    low, high = (
-        np.where(free, far, np.append(ends, np.zeros(len(kind))))
-        for ends, far in zip(problem.limits, (-np.inf, np.inf), strict=True)
-    )
-    residuals, jacobian = apart(rows_and_slopes)
-    found = least_squares(
-        residuals, inside(start, low, high), jacobian, bounds=(low, high), x_scale="jac",
-        max_nfev=_ROUNDS, ftol=_CLOSE, xtol=_CLOSE,
-    ).x  # fmt: skip
-    x, force = found[:count], found[count:]
-    along = [one[..., kind] @ force for one in _along(problem, x)]
-    return [off + one for off, one in zip(problem.deviations(x), along, strict=True)], force
 
 
 def _weighed(problem: Problem, along: list[FloatArray]) -> FloatArray:

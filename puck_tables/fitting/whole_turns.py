@@ -19,6 +19,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.least_squares import ROBUST, minimise
 from puck_tables.fitting.observations import Observations
+from puck_tables.fitting.parameters import NOTHING
 from puck_tables.fitting.problem import ANGLE, PLACE, TURN, Problem
 
 EXCLUDED = 25.0  # of χ²: a spin of less than half a turn a frame
@@ -29,7 +30,7 @@ _DIRECTIONS, _TOLD, _WIDE = 3, 0.3, 3.5  # phases; rad that need no search; stan
 _STEP, _MOST = 0.8, 2e6  # rad; phases of frames that are looked at
 _LOST = 1e4  # rad: places tell nothing of how it turns
 _FOLLOWED = 12
-_LITTLE_DRAG, _MOST_DRAG = 0.01, 10.0  # 1/s
+_MOST_DRAG = 10.0  # 1/s
 
 
 class Judged(NamedTuple):
@@ -86,19 +87,20 @@ def most_of_slow(chi2: float, excess: float) -> float:
     return max(EXCLUDED / excess**2, poor)
 
 
-def on_another_floor(problem: Problem, x: FloatArray) -> tuple[Problem, FloatArray] | None:
-    """The same motion on a floor with drag besides friction, if that may be and is not asked for.
+def on_another_floor(
+    problem: Problem, x: FloatArray, more: tuple[str, ...] = ("drag",)
+) -> tuple[Problem, FloatArray] | None:
+    """The same motion where more is found than friction, if that may be and is not asked for.
 
-    Where such a slow motion fits as well as a fast one it is the floor that is another.
+    Where with drag a slow motion fits as well as a fast one it is the floor that is another.
     """
     spec = problem.spec
-    if spec.speeds or "drag" in spec.free or "drag" in spec.fixed:
+    if spec.speeds or {*more} & {*spec.free, *spec.fixed}:
         return None
-    free = len(spec.free)
-    bounds = {**spec.bounds, "drag": (0.0, _MOST_DRAG)}
-    spec = replace(spec, free=(*spec.free, "drag"), bounds=bounds)
-    moved = replace(problem, spec=spec, weights=())
-    return moved, np.insert(x, free, _LITTLE_DRAG)
+    free, bounds = len(spec.free), {**spec.bounds, "drag": (0.0, _MOST_DRAG)}
+    spec = replace(spec, free=(*spec.free, *more), bounds=bounds)
+    moved = replace(problem, spec=spec, weights=(), tall=problem.tall and not spec.integrates)
+    return moved, np.insert(x, free, [NOTHING[name] for name in more])
 
 
 def in_order(problem: Problem, minima: list[FloatArray]) -> list[FloatArray]:

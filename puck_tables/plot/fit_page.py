@@ -197,14 +197,8 @@ def _words(name: str) -> str:
 
 
 def _written(number: Number) -> str:
-    """Value ± error and unit, to two digits of the error."""
-    unit = "" if number.unit == "1" else f" {number.unit}"
-    if not number.determined:
-        return "not told"
-    if number.at_bound or not (number.error > 0.0 and math.isfinite(number.error)):
-        return f"{number.value:.6g}{unit}"
-    digits = min(max(0, 1 - math.floor(math.log10(number.error))), 9)
-    return f"{number.value:.{digits}f} ± {number.error:.{digits}f}{unit}"
+    """Value ± error and unit."""
+    return number.written.replace("+-", "±") if number.determined else "not told"
 
 
 def _interval(number: Number) -> str:
