@@ -83,11 +83,11 @@ def _lines(entries: dict[str, str]) -> str:
 
 def _noise(result: Fit) -> str:
     """Of places, angles and time stamps, and where it is known from."""
-    of_angles = any(film.angle is not None for film in result.estimate.problem.films)
+    angled = result.estimate.problem.angled
     parts = zip(
         (f"places {1e3 * result.noise[0]:.3g} mm", f"angles {1e3 * result.noise[1]:.3g} mrad",
          f"time stamps {1e3 * result.jitter:.3g} ms"),
-        result.noise_known, (True, of_angles, bool(result.jitter)), strict=True,
+        result.noise_known, (True, angled, bool(result.jitter)), strict=True,
     )  # fmt: skip
     return ", ".join(
         f"{words} ({'given' if known else 'from the residuals'})"
@@ -113,13 +113,12 @@ def _plainly(result: Fit) -> str:
     sentences += [*result.blind, *result.remarks]
     if result.complaints:
         sentences += [text if text.endswith("?") else f"{text}." for text in result.complaints]
-        angled = any(film.angle is not None for film in result.estimate.problem.films)
         said = "Or the radius, the unit of the angles or the way they turn is not as said."
         sentences.append(
             "So this may be no freely sliding puck, or not all of its motion: look at --plot, and "
             "give --since and --until if a hand or a wall touches it."
             + ("" if result.misfit else " Or speed changes its friction, or air slows it, too.")
-            + (f" {said}" if angled and not result.misfit else "")
+            + (f" {said}" if result.estimate.problem.angled and not result.misfit else "")
         )
     return "\n".join(sentences)
 

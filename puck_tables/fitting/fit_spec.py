@@ -298,15 +298,18 @@ class FitSpec:
     def refuse_integrated(self) -> None:
         """Refuse what does not go with motions that are integrated."""
         named = self.integrated
-        if self.puck.body.law.name != "uniform" or "inner" in (*self.free, *self.fixed):
-            raise InputError(
-                f"{' and '.join(named)} are found of uniform pressure alone, not of "
-                f"{self.puck.body.law.name}"
-            )
+        self._refuse_pressure(f"{' and '.join(named)} are")
         if not self.law and any(name in LAW_NUMBERS for name in named):
             raise InputError(
                 f"{' and '.join(LAW_NUMBERS)} are numbers of a law over slip speed: name it "
                 f"(--law, law=): {', '.join(LAWS)}"
+            )
+
+    def _refuse_pressure(self, what: str) -> None:
+        """Refuse pressure under which no such motion is integrated."""
+        if self.puck.body.law.name != "uniform" or "inner" in (*self.free, *self.fixed):
+            raise InputError(
+                f"{what} found of uniform pressure alone, not of {self.puck.body.law.name}"
             )
 
     def plain(self) -> FitSpec:
@@ -355,11 +358,7 @@ class FitSpec:
                 )
         if "friction" not in self.free:
             raise InputError("a friction over slip speed is found: do not give the friction")
-        if self.puck.body.law.name != "uniform":
-            raise InputError(
-                "a friction over slip speed is found of uniform pressure alone, not of "
-                f"{self.puck.body.law.name}"
-            )
+        self._refuse_pressure("a friction over slip speed is")
         nodes = NODES[: len(speeds)]
         free = (*nodes, *(name for name in self.free if name != "friction"))
         limits = {name: self.bounds["friction"] for name in nodes if "friction" in self.bounds}

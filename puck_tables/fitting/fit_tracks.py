@@ -272,15 +272,14 @@ def _compared(
     inputs: Inputs, observed: _Observed, estimates: _Estimates, variants: Mapping[str, FitSpec]
 ) -> tuple[LawScore, ...]:
     """The laws named, best first."""
+    # frames that another law leaves out at the ends may be those that tell
+    jitter, known = estimates.slides.problem.jitter, inputs.known._replace(jitter=True)
 
-    def of_law(one: FitSpec, noise: tuple[float, float], known: Known) -> Estimate:
-        # frames that another law leaves out at the ends may be those that tell
-        same = replace(
-            observed.problem, spec=one, noise=noise, jitter=estimates.slides.problem.jitter
-        )
+    def of_law(one: FitSpec) -> Estimate:
+        same = replace(observed.problem, spec=one, jitter=jitter)
         if one.integrates:
-            return on_a_floor(same, known._replace(jitter=True))
-        return initial_estimate(same, known._replace(jitter=True), refit=False)
+            return on_a_floor(same, known)
+        return initial_estimate(same, known, refit=False)
 
     return compare(variants, observed.problem.noise, inputs.known, of_law)
 

@@ -120,8 +120,7 @@ def initial_estimate(problem: Problem, known: Known, refit: bool) -> Estimate:
             f"{_observations(problem)} observations cannot tell {len(problem.names)} unknowns: "
             "give more frames, or fix something"
         )
-    angled = any(film.angle is not None for film in problem.films)
-    if left < _JUDGED and not (known.place and (known.angle or not angled)):
+    if left < _JUDGED and not (known.place and (known.angle or not problem.angled)):
         raise InputError(
             f"{_observations(problem)} observations of {len(problem.names)} unknowns are too few "
             "to judge their noise by: give the noise, or more frames"

@@ -129,8 +129,7 @@ def observations_of(
 
 def _refuse_far(film: Observations) -> None:
     """Refuse a track, or a time, that is no slide of a puck by its size alone."""
-    size = float(np.ptp(film.place, axis=0).max())
-    for what, extent, unit in (("places", size, "m"), ("times", float(film.time[-1]), "s")):
+    for what, extent, unit in (("places", film.size, "m"), ("times", float(film.time[-1]), "s")):
         if extent and not _NEAREST < extent < _FARTHEST:
             raise InputError(
                 f"{film.name}: its {what} lie up to {extent:.3g} {unit} apart, which no puck "
@@ -288,7 +287,7 @@ def checked_noise(raw: Any) -> tuple[float | None, float | None]:
 
 def begin_noise(judged: float, films: tuple[Observations, ...]) -> float:
     """Noise to begin with."""
-    size = max(float(np.ptp(film.place, axis=0).max()) for film in films)
+    size = max(film.size for film in films)
     least = 1e-9 * (size or 1.0)
     return max(judged, least) if math.isfinite(judged) else max(_GUESS * size, least)
 

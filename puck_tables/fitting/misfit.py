@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,9 +20,8 @@ from puck_tables.fitting.initial_estimate import initial_estimate
 from puck_tables.fitting.model_comparison import tried
 from puck_tables.fitting.parameters import INTEGRATED, NODES
 from puck_tables.fitting.problem import TURN, Known, Problem
-from puck_tables.fitting.residuals import NO_PATTERN, SideForces
+from puck_tables.fitting.residuals import AIR, NO_PATTERN, SLOPE, SideForces, forced
 from puck_tables.fitting.slowing import nearest_start, starts_from_slowing
-from puck_tables.fitting.whole_turns import on_another_floor
 
 _FAR = 1.5  # times smaller are residuals of a reading that is told
 _NEAR = 0.01  # of the radius: it is not another one
@@ -34,8 +33,7 @@ _ANGLES = (
     (_DEGREE, "if angles were in degrees, not in rad: say their unit"),
     (1.0 / _DEGREE, "if angles were in rad, not in degrees: say their unit"),
 )
-DRAG, AIR, SLOPE = ("drag",), ("air",), ("slope_x", "slope_y")
-_FLOORS = (DRAG, AIR, SLOPE)
+_MOST_DRAG = 20.0  # over the time of a film
 _BETTER = math.log(1.2)  # more numbers always fit a little better
 _ALIKE = math.log(1.5)  # readings that fit about as well
 _MUCH = math.log(3.0)  # so much smaller residuals tell, though they are no noise yet
@@ -50,11 +48,12 @@ _Sizes = tuple[FloatArray, FloatArray]  # how far places (m), and angles (rad), 
 
 
 class _Reading(NamedTuple):
-    """What else may be: in words, by how much smaller residuals are, and if it is a floor."""
+    """What else may be: in words, by how much smaller residuals are, if a floor, if it is rough."""
 
     words: str
     gain: float
     floor: bool = False
+    rough: bool = False
 
 
 def misfit(
@@ -65,20 +64,24 @@ def misfit(
     A floor is named before angles or a radius that fit about as well.  ``problem``: what was asked,
     with all frames; ``speeds``: whether a friction over slip speed does not fit, either.
     """
-    told: list[_Reading] = []
-    if not speeds and not problem.impact_specs:
-        floors = [_reading(_by_floor, result, problem, more) for more in _FLOORS]
-        drag, *_ = floors
-        law = _reading(_by_speed, result) if _may_change(problem.spec) else None
+    noise, told = problem.noise[0], []
+    if _may_change(problem.spec) and not speeds:
+        drag = _reading(lambda: _by_drag(result, problem, known))
+        law = _reading(lambda: _by_speed(result, problem))
         if drag and law and law.gain < drag.gain + _BETTER:  # more numbers fit a little better
             law = None
-        told = [one for one in (*floors, law) if one]
+        told = [one for one in (drag, law) if one]
+    if not speeds and not problem.impact_specs:
+        one = _reading(lambda: _by_air(result, problem)) or _by_force(result, AIR, noise)
+        told += [one for one in (one, _by_force(result, SLOPE, noise)) if one]
     told = sorted(told, key=lambda one: -one.gain)[:2]
     told += _otherwise(result, problem, known)
     best = max((one.gain for one in told), default=0.0)
     # sizes and angles are known better than floors: a floor that tells much is named first
     near = [one for one in told if one.gain > best - _ALIKE or (one.floor and one.gain > _MUCH)]
-    near.sort(key=lambda one: (not one.floor, -one.gain))
+    near.sort(
+        key=lambda one: (not one.floor or (one.rough and one.gain < best - _ALIKE), -one.gain)
+    )
     if near:
         words = f"{near[0].words}{f'; or {near[1].words}' if len(near) > 1 else ''}"
         return f"Residuals would be {math.exp(near[0].gain):.2g} times smaller {words}"
@@ -87,10 +90,10 @@ def misfit(
     return ""
 
 
-def _reading(of: Callable[..., _Reading], *given: Any) -> _Reading | None:
+def _reading(of: Callable[[], _Reading]) -> _Reading | None:
     """One that is worth telling; None where there is no such motion, or it gains nothing."""
     try:
-        one = of(*given)
+        one = of()
     except InputError:
         return None
     return one if one.gain else None
@@ -125,36 +128,44 @@ def _gain(result: Estimate, other: _Sizes, noise: float) -> float:
     return gain if fits or (gain > _MUCH and _explained(other)) else 0.0
 
 
-def _by_floor(result: Estimate, problem: Problem, more: tuple[str, ...]) -> _Reading:
-    """A floor, or air, with more numbers than friction, if that fits far better."""
-    begun = on_another_floor(result.problem, result.x, more)
-    if begun is None or problem.spec.bounds.get("delta", (0.0, 1.0))[0] >= 1.0:
+def _by_drag(result: Estimate, problem: Problem, known: Known) -> _Reading:
+    """Drag of speed and spin alike, if that fits far better."""
+    # from a speed e^20 times as slow, or as fast, at the end nothing is told any more
+    most = _MOST_DRAG / max(float(film.time[-1]) for film in problem.films)
+    spec, bounds = problem.spec, {**problem.spec.bounds, "drag": (-most, most)}
+    spec = replace(spec, free=(*spec.free, "drag"), bounds=bounds)
+    one = initial_estimate(replace(problem, spec=spec), known, refit=False)
+    words = f"with drag besides friction: find it, too (--free {','.join(spec.free)})"
+    return _Reading(words, _gain(result, _deviations(one), problem.noise[0]), True)
+
+
+def _by_air(result: Estimate, problem: Problem) -> _Reading:
+    """Drag of the speed squared, if that fits far better; tried where angles can be followed."""
+    spec = problem.spec
+    if not _may_change(spec):
         return _Reading("", 0.0)
-    if begun[0].spec.integrates:
-        begun[0].spec.refuse_integrated()
-    other = replace(begun[0], films=problem.films)
-    x = nearest_start(other, starts_from_slowing(other) or [begun])[1]
-    numbers, launches = other.numbers_at(x), other.launches(x)
-    decel, speed = other.spec.scales(numbers)[0], float(np.hypot(*launches[:, 2:4].T).max())
-    does = {"air": speed**2, "drag": speed}  # m/s² for each 1 of it
-    gravity = {**problem.spec.known(), **numbers}["gravity"]
-    if math.hypot(*(numbers[name] * does.get(name, gravity) for name in more)) < _FAINT * decel:
-        return _Reading("", 0.0)  # it only led to another motion
+    other = replace(problem, spec=replace(spec, free=(*spec.free, "air")), tall=False)
+    x = nearest_start(other, starts_from_slowing(other))[1]
+    air = other.numbers_at(x)["air"]
+    if _faint(result, AIR, air):
+        return _Reading("", 0.0)
     gain = _gain(result, _sizes(other, other.deviations(x)), problem.noise[0])
-    find = f"(--free {','.join((*problem.spec.free, *more))})"
-    if more == DRAG:
-        return _Reading(f"with drag besides friction: find it, too {find}", gain, True)
-    if more == AIR:
-        return _Reading(
-            f"if air slowed it, by {numbers['air']:.2g}/m times the square of its speed (what "
-            f"slows it hardly brakes its spin, as air does): find it, too {find}", gain, True,
-        )  # fmt: skip
-    push = [numbers[name] for name in more]
-    slope, down = math.degrees(math.hypot(*push)), math.degrees(math.atan2(*push[::-1])) % 360.0
-    return _Reading(
-        f"with a table out of level by {slope:.2g} degrees, down along {down:.3g} degrees from x: "
-        f"level it, or find its slope, too {find}", gain if slope < _STEEPEST else 0.0, True,
-    )  # fmt: skip
+    return _Reading(_air_words(air, spec), gain, True)
+
+
+def _faint(result: Estimate, kind: tuple[int, ...], force: float) -> bool:
+    """Whether a force does next to nothing: then it only led to another motion."""
+    speed = float(np.hypot(*result.problem.launches(result.x)[:, 2:4].T).max())
+    slowing = result.problem.spec.scales(result.problem.numbers_at(result.x))[0]
+    faint: bool = force * (speed**2 if kind == AIR else 1.0) < _FAINT * slowing
+    return faint
+
+
+def _air_words(air: float, spec: FitSpec) -> str:
+    return (
+        f"if air slowed it, by {air:.2g}/m times the square of its speed (what slows it hardly "
+        f"brakes its spin, as air does): find it, too (--free {','.join((*spec.free, 'air'))})"
+    )
 
 
 def _may_change(spec: FitSpec) -> bool:
@@ -165,10 +176,10 @@ def _may_change(spec: FitSpec) -> bool:
     return uniform and not named and not spec.speeds and not lifts and "friction" in spec.free
 
 
-def _by_speed(result: Estimate) -> _Reading:
+def _by_speed(result: Estimate, problem: Problem) -> _Reading:
     """A friction over slip speed, if that fits far better."""
     other = tried(result)
-    gain = _gain(result, _deviations(other), result.problem.noise[0])
+    gain = _gain(result, _deviations(other), problem.noise[0])
     speeds, numbers = other.problem.spec.speeds, other.problem.numbers_at(other.x)
     values = [numbers[name] for name in NODES[: len(speeds)]]
     usual = result.problem.numbers_at(result.x)["friction"]
@@ -182,11 +193,30 @@ def _by_speed(result: Estimate) -> _Reading:
     return _Reading(words, gain, True)
 
 
+def _by_force(result: Estimate, kind: tuple[int, ...], noise: float) -> _Reading | None:
+    """A table out of level, or air, to first order, if that fits far better."""
+    off, force = forced(result, kind)
+    gain = _gain(result, _sizes(result.problem, off), noise)
+    if not gain or _faint(result, kind, math.hypot(*force)):
+        return None
+    gravity = {**result.problem.spec.known(), **result.problem.numbers_at(result.x)}["gravity"]
+    slope = math.degrees(math.hypot(*force) / gravity)
+    if kind == AIR:
+        words = _air_words(force[0], result.problem.spec)
+        return _Reading(words, gain, True, True) if force[0] > 0.0 else None
+    words = (
+        f"with a table out of level by {slope:.2g} degrees, down along "
+        f"{math.degrees(math.atan2(force[1], force[0])) % 360.0:.3g} degrees from x: level it, or "
+        "find its slope, too (slope_x, slope_y)"
+    )
+    return _Reading(words, gain, True, True) if slope < _STEEPEST else None
+
+
 def _others(problem: Problem) -> Iterator[tuple[str, Problem, float]]:
     """Other readings, each in words and with the factor of its angles."""
     spec = problem.spec
-    angled = any(film.angle is not None for film in problem.films)
-    if angled and not any(name in given for name in _HELD for given in (spec.fixed, spec.bounds)):
+    held = any(name in given for name in _HELD for given in (spec.fixed, spec.bounds))
+    if problem.angled and not held:
         for factor, words in _ANGLES:
             films = tuple(
                 film if film.angle is None else replace(film, angle=factor * film.angle)
@@ -194,7 +224,7 @@ def _others(problem: Problem) -> Iterator[tuple[str, Problem, float]]:
             )
             noise = problem.noise[0], abs(factor) * problem.noise[1]
             yield words, replace(problem.with_films(films), noise=noise), abs(factor)
-    if angled and "radius" not in (*spec.free, *spec.fixed):  # told by angles alone
+    if problem.angled and "radius" not in (*spec.free, *spec.fixed):  # told by angles alone
         words = "with a radius of {:.3g} m: is " + f"{spec.puck.radius:g} m right?"
         wider = replace(spec, free=(*spec.free, "radius"))
         yield words, replace(problem, spec=wider), 1.0

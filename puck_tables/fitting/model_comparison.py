@@ -23,7 +23,7 @@ from puck_tables.fitting.estimate import Estimate, capped_squares, estimate
 from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.least_squares import ROBUST, minimise
 from puck_tables.fitting.named_laws import NAMES as LAWS
-from puck_tables.fitting.observations import FEWEST, Observations, rests_from
+from puck_tables.fitting.observations import FEWEST, MEDIAN, Observations, rests_from
 from puck_tables.fitting.parameters import LAW_NUMBERS, NODES
 from puck_tables.fitting.problem import ANGLE, PLACE, UNSEEN, Known, Problem
 from puck_tables.fitting.slowing import nearest_start, starts_from_slowing
@@ -57,7 +57,7 @@ def on_a_floor(problem: Problem, known: Known) -> Estimate:
         if problem.usual(rows) < _NEAR:
             return estimate(problem, x, known)
         cost, falls = less, less < _FALLS * cost
-    noise = (problem.usual(rows) / 0.6745 * problem.noise[0], problem.noise[1])
+    noise = (problem.usual(rows) / MEDIAN * problem.noise[0], problem.noise[1])
     wider = problem.with_noise(noise, x) if not known.place else problem
     return Estimate(
         wider, x, problem.kinds != UNSEEN, wider.residuals(x), np.zeros((rows.size, x.size))
@@ -122,9 +122,9 @@ FLOORS = {
     "two-valued": LAW_NUMBERS, "slope": ("slope_x", "slope_y"), "belt": ("belt_x", "belt_y"),
 }  # fmt: skip
 EVERY_FLOOR = "floors"  # of uniform pressure: all of these
-_CONTENDS = 60.0  # of χ²: laws worse than the best by more are not fitted again
+_CONTENDS = 60.0  # of χ²: laws worse than the best by more are not fitted further
 
-Fitted = Callable[[FitSpec, tuple[float, float], Known], Estimate]
+Fitted = Callable[[FitSpec], Estimate]
 
 
 class LawScore(NamedTuple):
@@ -145,40 +145,39 @@ class LawScore(NamedTuple):
 def compare(
     variants: Mapping[str, FitSpec], noise: tuple[float, float], known: Known, fit_law: Fitted
 ) -> tuple[LawScore, ...]:
-    """The laws named, best first; ``fit_law`` fits each with a noise, known or not."""
-    names, questions, first = [], [], []
+    """The laws named, best first; ``fit_law`` fits each, with the noise that is known.
+
+    Those that contend go on from there under the common noise.
+    """
+    fits: dict[str, Estimate] = {}
     for name, question in variants.items():
         try:
-            first.append(fit_law(question, noise, known))
+            fits[name] = fit_law(question)
         except InputError:
             if "+" not in name:  # no such floor leads to such a track
                 raise
-            continue
-        names.append(name)
-        questions.append(question)
-    common = [
-        noise[kind] if known[kind] else min(one.problem.noise[kind] for one in first)
+    place, angle = (
+        noise[kind] if known[kind] else min(one.problem.noise[kind] for one in fits.values())
         for kind in range(2)
-    ]
-    unknowns = np.array([one.x.size for one in first])
-    chi2 = np.array([chi2_under(one, (common[0], common[1])) for one in first])
+    )
+    unknowns = np.array([one.x.size for one in fits.values()])
+    chi2 = np.array([chi2_under(one, (place, angle)) for one in fits.values()])
     score = chi2 + 2.0 * unknowns
-    again = list(first)
-    for k in np.flatnonzero(score < score.min() + _CONTENDS):
-        if not (known.place and known.angle):
-            one = fit_law(questions[k], (common[0], common[1]), Known(True, True, True))
-            less = chi2_under(one, (common[0], common[1]))
-            if less < chi2[k]:  # what was begun anew may have come less near
-                again[k], chi2[k] = one, less
+    for k, name in enumerate(fits):
+        if score[k] < score.min() + _CONTENDS and not (known.place and known.angle):
+            same = fits[name].problem.with_noise((place, angle), fits[name].x)
+            one = estimate(same, fits[name].x, Known(True, True, True))
+            less = chi2_under(one, (place, angle))
+            if less < chi2[k]:
+                fits[name], chi2[k] = one, less
     score = chi2 + 2.0 * unknowns
     weight = np.exp(-0.5 * (score - score.min()))
     weight /= weight.sum()
     result = [
         LawScore(name, float(c), int(m), float(w), one.problem.numbers_at(one.x))
-        for name, c, m, w, one in zip(names, chi2, unknowns, weight, again, strict=True)
+        for (name, one), c, m, w in zip(fits.items(), chi2, unknowns, weight, strict=True)
     ]
-    order = np.argsort(score, kind="stable")
-    return tuple(result[k] for k in order)
+    return tuple(result[k] for k in np.argsort(score, kind="stable"))
 
 
 def variants_of(spec: FitSpec, names: Any) -> dict[str, FitSpec]:

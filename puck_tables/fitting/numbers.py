@@ -128,7 +128,7 @@ def plausible_for(problem: Problem, x: FloatArray) -> FloatArray:
             continue
         launch, film = launches[track], problem.films[track]
         slip = math.hypot(launch[2], launch[3], radius * launch[4]) or 1.0
-        size = float(np.ptp(film.place, axis=0).max()) or radius
+        size = film.size or radius
         sizes.append({
             "launch_x": size, "launch_y": size, "launch_vx": slip, "launch_vy": slip,
             "launch_spin": slip / radius, "launch_angle": 1.0,
@@ -200,7 +200,8 @@ def numbers_of(
         if ends is None and profiled and name == "height" and math.isfinite(error):
             ends = _profiled(result, certainty, name)
         if ends is None and name == "height" and "delta" in puck and puck["delta"].profiled:
-            ends = _height_of_delta(problem, x, puck["delta"])
+            # f and r as found: that of f is far narrower
+            ends = replace(_ends(problem, x, name, "delta", puck["delta"]), profiled=True)
         if ends is not None and ends.profiled:
             half = 0.5 * (ends.high - ends.low) / certainty.reach
             number = number._replace(error=error if math.isnan(error) else half, profiled=True)
@@ -254,12 +255,19 @@ def _follows(
     problem: Problem, x: FloatArray, name: str, slope: FloatArray, puck: Mapping[str, Number]
 ) -> Interval | None:
     """The interval of what follows from one number alone: from the ends of that one's."""
-    spec, values = problem.spec, problem.numbers_at(x)
     of = np.flatnonzero(slope)
-    if of.size != 1 or not math.isfinite(puck[spec.free[of[0]]].high):
+    if of.size != 1 or not math.isfinite(puck[problem.spec.free[of[0]]].high):
         return None
-    one = spec.free[of[0]]
-    ends = [spec.all_at({**values, one: end})[name] for end in (puck[one].low, puck[one].high)]
+    one = problem.spec.free[of[0]]
+    return _ends(problem, x, name, one, puck[one])
+
+
+def _ends(problem: Problem, x: FloatArray, name: str, one: str, number: Number) -> Interval:
+    """The interval of what follows, from the ends of that of one number, the others as found."""
+    values = problem.numbers_at(x)
+    ends = [
+        problem.spec.all_at({**values, one: end})[name] for end in (number.low, number.high)
+    ]  # fmt: skip
     return Interval(min(ends), max(ends), False)
 
 
@@ -287,13 +295,6 @@ def _profiled(result: Estimate, certainty: Certainty, name: str) -> Interval | N
         return None
     ratio = certainty.ratio(k)
     return interval_of(there, own, k).wider(height, ratio, 0.0, math.inf)
-
-
-def _height_of_delta(problem: Problem, x: FloatArray, delta: Number) -> Interval:
-    """The interval of height from the ends of δ's, f and r as found (that of f is far narrower)."""
-    spec, values = problem.spec, problem.numbers_at(x)
-    low, high = (spec.all_at({**values, "delta": end})["height"] for end in (delta.low, delta.high))
-    return Interval(low, high, True)
 
 
 def _slope(problem: Problem, x: FloatArray, name: str) -> FloatArray:

@@ -19,6 +19,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.certainty import Certainty, shifted_by
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.forward_model import DELTA, RATE, Moving, states_and_slopes, states_of
+from puck_tables.fitting.least_squares import apart, inside
 from puck_tables.fitting.problem import Known, Problem
 
 NO_PATTERN = 1e-3  # probability of residuals so patterned by chance
@@ -94,9 +95,8 @@ def misfits(
     what a slope, drag or air would explain.
     """
     told = []
-    size = max(float(np.ptp(film.place, axis=0).max()) for film in result.problem.films)
     # smaller residuals are the errors of what is computed
-    seen = result.problem.noise[0] > _COMPUTED * size
+    seen = result.problem.noise[0] > _COMPUTED * result.problem.size
     excess = excess_of(result, smooth)
     given = any(known[:2])
     if seen and not given and excess > NOISY:
@@ -116,12 +116,11 @@ def hidden(result: Estimate) -> bool:
     """Whether residuals are no more than rounding leaves, which is no noise."""
     films, noise = result.problem.films, result.problem.noise
     steps = [max(film.steps[kind] for film in films) for kind in range(2)]
-    angled = any(film.angle is not None for film in films)
     within = [
         step > 0.0 and result.size * own < _ROUNDED * step
         for step, own in zip(steps, noise, strict=True)
     ]
-    return within[0] or (angled and within[1])
+    return within[0] or (result.problem.angled and within[1])
 
 
 def may_misfit(
@@ -138,13 +137,11 @@ def may_misfit(
 
 def no_answer(result: Estimate, known: Known, smooth: tuple[float, float]) -> str:
     """A sentence where no motion comes near the tracks, and nothing is determined; else none."""
-    size = max(float(np.ptp(film.place, axis=0).max()) for film in result.problem.films)
     usual = result.size
     times = max(excess_of(result, smooth), usual if any(known[:2]) else 0.0)
-    angled = any(film.angle is not None for film in result.problem.films)
-    if times > _NOWHERE and usual * result.problem.noise[0] > _FAR * size:
+    if times > _NOWHERE and usual * result.problem.noise[0] > _FAR * result.problem.size:
         far = f"the nearest is {times:.3g} times the noise off"
-    elif angled and usual * result.problem.noise[1] > _ANY:
+    elif result.problem.angled and usual * result.problem.noise[1] > _ANY:
         far = f"angles are {usual * result.problem.noise[1]:.2g} rad off the nearest"
     else:
         return ""
@@ -287,6 +284,34 @@ def _explained(columns: FloatArray, rows: FloatArray, degrees: int) -> _Explaine
     chance = float(fdtrc(count, degrees - count, less / count / noise)) if count else 1.0
     error = math.sqrt(noise) / float(seen.min()) if count == sizes.size else math.inf
     return _Explained(-(along / seen) @ turned, less / noise, chance, error)
+
+
+def forced(result: Estimate, kind: tuple[int, ...]) -> tuple[list[FloatArray], FloatArray]:
+    """How far a force of a kind leaves the tracks off (3, n), and the force that leaves least."""
+    from scipy.optimize import least_squares
+
+    problem, count = result.problem, result.x.size
+
+    def rows_and_slopes(values: FloatArray) -> tuple[FloatArray, FloatArray]:
+        rows, slopes = problem.residuals_and_jacobian(values[:count])
+        pushed = _weighed(problem, [one[..., kind] for one in _along(problem, values[:count])])
+        slopes = np.column_stack([slopes, pushed])[result.kept]
+        return (rows + pushed @ values[count:])[result.kept], slopes
+
+    start = np.append(result.x, np.zeros(len(kind)))
+    free = np.array([track >= 0 for track, _ in problem.names] + [True] * len(kind))
+    low, high = (
+        np.where(free, far, np.append(ends, np.zeros(len(kind))))
+        for ends, far in zip(problem.limits, (-np.inf, np.inf), strict=True)
+    )
+    residuals, jacobian = apart(rows_and_slopes)
+    found = least_squares(
+        residuals, inside(start, low, high), jacobian, bounds=(low, high), x_scale="jac",
+        max_nfev=_ROUNDS, ftol=_CLOSE, xtol=_CLOSE,
+    ).x  # fmt: skip
+    x, force = found[:count], found[count:]
+    along = [one[..., kind] @ force for one in _along(problem, x)]
+    return [off + one for off, one in zip(problem.deviations(x), along, strict=True)], force
 
 
 def _weighed(problem: Problem, along: list[FloatArray]) -> FloatArray:

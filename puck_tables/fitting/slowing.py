@@ -246,4 +246,5 @@ def _of_law(v: FloatArray, rim: FloatArray, law: str, speed: float) -> FloatArra
     ahead, across = v[:, None] - rim[:, None] * aside, rim[:, None] * along
     slip = np.maximum(np.hypot(ahead, across), 1e-300)
     pull = shape(law, slip / speed) / slip
-    return np.stack([pull * ahead, pull * (across * along - ahead * aside)]).mean(axis=2)
+    pulls = np.stack([pull * ahead, pull * (across * along - ahead * aside)])
+    return np.asarray(pulls.mean(axis=2))

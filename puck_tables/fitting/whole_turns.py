@@ -18,19 +18,17 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.least_squares import ROBUST, minimise
-from puck_tables.fitting.observations import Observations
-from puck_tables.fitting.parameters import NOTHING
+from puck_tables.fitting.observations import MEDIAN, Observations
 from puck_tables.fitting.problem import ANGLE, PLACE, TURN, Problem
 
 EXCLUDED = 25.0  # of χ²: a spin of less than half a turn a frame
 _MISFIT, _LESS = 1.5, 5.0  # residuals over the noise that are none, and how many times less count
 _FARTHEST = 16.0  # of the square of a residual
-_MEDIAN = 0.6744897501960817
 _DIRECTIONS, _TOLD, _WIDE = 3, 0.3, 3.5  # phases; rad that need no search; standard deviations
 _STEP, _MOST = 0.8, 2e6  # rad; phases of frames that are looked at
 _LOST = 1e4  # rad: places tell nothing of how it turns
 _FOLLOWED = 12
-_MOST_DRAG = 10.0  # 1/s
+_LITTLE_DRAG, _MOST_DRAG = 0.01, 10.0  # 1/s
 
 
 class Judged(NamedTuple):
@@ -87,20 +85,19 @@ def most_of_slow(chi2: float, excess: float) -> float:
     return max(EXCLUDED / excess**2, poor)
 
 
-def on_another_floor(
-    problem: Problem, x: FloatArray, more: tuple[str, ...] = ("drag",)
-) -> tuple[Problem, FloatArray] | None:
-    """The same motion where more is found than friction, if that may be and is not asked for.
+def on_another_floor(problem: Problem, x: FloatArray) -> tuple[Problem, FloatArray] | None:
+    """The same motion on a floor with drag besides friction, if that may be and is not asked for.
 
-    Where with drag a slow motion fits as well as a fast one it is the floor that is another.
+    Where such a slow motion fits as well as a fast one it is the floor that is another.
     """
     spec = problem.spec
-    if spec.speeds or {*more} & {*spec.free, *spec.fixed}:
+    if spec.speeds or "drag" in spec.free or "drag" in spec.fixed:
         return None
-    free, bounds = len(spec.free), {**spec.bounds, "drag": (0.0, _MOST_DRAG)}
-    spec = replace(spec, free=(*spec.free, *more), bounds=bounds)
-    moved = replace(problem, spec=spec, weights=(), tall=problem.tall and not spec.integrates)
-    return moved, np.insert(x, free, [NOTHING[name] for name in more])
+    free = len(spec.free)
+    bounds = {**spec.bounds, "drag": (0.0, _MOST_DRAG)}
+    spec = replace(spec, free=(*spec.free, "drag"), bounds=bounds)
+    moved = replace(problem, spec=spec, weights=())
+    return moved, np.insert(x, free, _LITTLE_DRAG)
 
 
 def in_order(problem: Problem, minima: list[FloatArray]) -> list[FloatArray]:
@@ -133,7 +130,7 @@ def _judged(
         mine = problem.kinds == kind
         if mine.any():
             share = max(1.0 - 0.5 * len(problem.names) / mine.sum(), 0.1)
-            told[:, kind] = [float(np.median(np.abs(one[mine]))) / _MEDIAN / share for one in rows]
+            told[:, kind] = [float(np.median(np.abs(one[mine]))) / MEDIAN / share for one in rows]
             scale[:, mine] = np.maximum(1.0, told[:, kind, None])
     best = int(np.argmin([float(np.minimum(one**2, _FARTHEST).sum()) for one in rows]))
     chi2 = [float(np.minimum((one / scale[best]) ** 2, _FARTHEST).sum()) for one in rows]

@@ -113,8 +113,7 @@ def _numbers(result: Fit) -> str:
 
 
 def _left(result: Fit) -> str:
-    angled = any(film.angle is not None for film in result.estimate.problem.films)
-    by_chance = min(result.runs, result.drift)
+    angled, by_chance = result.estimate.problem.angled, min(result.runs, result.drift)
     said = [
         f"A place is off by {1e3 * result.noise[0]:.3g} mm (standard deviation)"
         + (f", an angle by {math.degrees(result.noise[1]):.2g} degrees." if angled else "."),
