@@ -22,12 +22,12 @@ from puck_tables.errors import InputError
               help="Resultants under uniform, galin, hertz, ring, annulus:INNER or a profile "
               "FILE.csv (columns rho in units of r, and W).  [default: uniform]")  # fmt: skip
 @click.option("--speed-law", type=FILE, metavar="FILE", help="Resultants with a coefficient that "
-              "depends on the slip speed: CSV of speed in m/s and f.")  # fmt: skip
+              "depends on the slip speed (CSV of it in m/s, and f).")  # fmt: skip
 @click.option("--accuracy", type=NUMBER, help="Largest error: of resultants 1e-13 to 0.01 "
               "[default: 2e-11], of those under other laws than uniform pressure 1e-11 to 0.01 "
               "[default: 1e-9], of stops 1e-11 to 0.01 in units of Q/(f g) and Q^2/(f g) [default: "
-              "1e-10], with --speed-law 1e-13 to 0.01 of the largest f "
-              "[default: 1e-6].")  # fmt: skip
+              "1e-10], with --speed-law 1e-13, under other pressures 1e-9, to 0.01 of the "
+              "largest f [default: 1e-6].")  # fmt: skip
 @click.option("--cells", type=int, help="Grid size by hand instead: cells on each side of each "
               "singular line, at least 4, for stops 8.")  # fmt: skip
 @click.option("-o", "--output", type=FILE, metavar="FILE",
@@ -48,12 +48,11 @@ def build_tables(
     puck build-tables --kind stops --accuracy 1e-11 -o fine-stops.h5
     puck build-tables --pressure annulus:0.8 -o stone.h5
     puck build-tables --speed-law law.csv -o felt.h5
+    puck build-tables --speed-law law.csv --pressure ring -o cup.h5
     """  # noqa: D301 - click reads the backspace
     if kind != "resultants" and (pressure is not None or speed_law is not None):
         word = "--pressure" if speed_law is None else "--speed-law"
         raise InputError(f"{word} goes with --kind resultants, not with --kind {kind}")
-    if speed_law is not None and pressure not in (None, "uniform"):
-        raise InputError("--speed-law does not go with --pressure: it is under uniform pressure")
     if speed_law is not None and cells is not None:
         raise InputError("--cells does not go with --speed-law: give --accuracy")
     of, stem, words = _wanted(kind, pressure, speed_law)
@@ -63,7 +62,9 @@ def build_tables(
     Outputs(path, overwrite=overwrite).prepare(speed_law, pressure, saved=False)
     options = {"--accuracy": accuracy, "--cells": cells}
     given = [f"{name} {value}" for name, value in options.items() if value is not None]
-    grid = {} if cells is None else {"cells": cells}
+    grid: dict[str, Any] = {} if cells is None else {"cells": cells}
+    if speed_law is not None and pressure is not None:
+        grid["pressure"] = pressure
     with progress("tabulating") as show:
         from puck_tables.table.table import Table
 
@@ -78,7 +79,9 @@ def _wanted(kind: str, pressure: str | None, speed_law: Path | None) -> tuple[An
     if speed_law is not None:
         from puck_tables.contact.speed_law import SpeedLaw
 
-        return SpeedLaw.from_csv(speed_law), "speed", [f"--speed-law {speed_law}"]
+        words = [f"--speed-law {speed_law}"]
+        words += [] if pressure is None else [f"--pressure {pressure}"]
+        return SpeedLaw.from_csv(speed_law), "speed", words
     if kind != "resultants":
         return kind, kind, [f"--kind {kind}"]
     if pressure in (None, "uniform"):

@@ -24,19 +24,21 @@ from puck_tables.cli.values import NumberParam, named, names, not_none, numbers_
 
 from puck_tables.errors import InputError
 
-_UNITS = {
-    "radius": "m", "height": "m", "launch_x": "m", "launch_y": "m", "launch_angle": "rad",
-    "launch_vx": "m/s", "launch_vy": "m/s", "launch_spin": "rad/s", "gravity": "m/s^2",
-    "decel": "m/s^2",
-}  # fmt: skip
-
 _ANY_RADIUS = 0.04  # m: of a slide without spin it does not matter
+
+
+def _unit_of(name: str) -> str:
+    """The unit in which a number of a fit may be written with another behind it."""
+    from puck_tables._core.units import SHOWN
+    from puck_tables.fitting.parameters import ALL
+
+    return ALL[name].unit if name in ALL and ALL[name].unit in SHOWN else ""
 
 
 def _held(texts: tuple[str, ...], option: str) -> dict[str, float]:
     """NAME=VALUE, several times."""
     return {
-        name: numbers_in(text, f"{option} {name}", "", "VALUE", _UNITS.get(name, ""))[0]
+        name: numbers_in(text, f"{option} {name}", "", "VALUE", _unit_of(name))[0]
         for name, text in named(texts, option).items()
     }
 
@@ -44,7 +46,7 @@ def _held(texts: tuple[str, ...], option: str) -> dict[str, float]:
 def _pairs(form: str) -> Any:
     """NAME=NUMBER:NUMBER, several times."""
     return read_as(lambda texts, option: {
-        name: numbers_in(text, f"{option} {name}", ":", f"{name}={form}", _UNITS.get(name, ""))
+        name: numbers_in(text, f"{option} {name}", ":", f"{name}={form}", _unit_of(name))
         for name, text in named(texts, option).items()
     })  # fmt: skip
 

@@ -13,14 +13,14 @@ if TYPE_CHECKING:
     from puck_tables.fitting.numbers import Number
 
 _WIDTH = 15  # of names
-# after the point, of numbers below 1e-3 and of others: more are written with a power of ten
-_DIGITS, _MOST = 9, 12
 
 
 def report(result: Fit) -> str:
     """What was found, plainly first, then the numbers."""
     numbers = result.numbers
-    known = [f"{n} {one.value:g}{_unit(one)}" for n, one in numbers.items() if one.how == "known"]
+    known = [
+        f"{n} {one.value:g}{one.unit_behind}" for n, one in numbers.items() if one.how == "known"
+    ]
     lines = [
         _plainly(result), "",
         _lines({name: _shown(one) for name, one in numbers.items() if one.how != "known"}),
@@ -83,11 +83,11 @@ def _lines(entries: dict[str, str]) -> str:
 
 def _noise(result: Fit) -> str:
     """Of places, angles and time stamps, and where it is known from."""
-    of_angles = any(film.angle is not None for film in result.estimate.problem.films)
+    angled = result.estimate.problem.angled
     parts = zip(
         (f"places {1e3 * result.noise[0]:.3g} mm", f"angles {1e3 * result.noise[1]:.3g} mrad",
          f"time stamps {1e3 * result.jitter:.3g} ms"),
-        result.noise_known, (True, of_angles, bool(result.jitter)), strict=True,
+        result.noise_known, (True, angled, bool(result.jitter)), strict=True,
     )  # fmt: skip
     return ", ".join(
         f"{words} ({'given' if known else 'from the residuals'})"
@@ -101,41 +101,26 @@ def _plainly(result: Fit) -> str:
     friction, tilt = result.numbers["friction"], result.numbers["delta"]
     if friction.determined:
         sentences.append(
-            f"The friction coefficient is {_rounded(friction)}: sliding without spin the puck "
+            f"The friction coefficient is {friction.written}: sliding without spin the puck "
             f"would lose {result['decel'].value:.4g} m/s each second."
         )
     elif result["decel"].determined:
-        sentences.append(f"The puck would slide to rest at {_rounded(result['decel'])}.")
+        sentences.append(f"The puck would slide to rest at {result['decel'].written}.")
     if tilt.determined and tilt.how != "known":
         sentences.append(
-            f"Its dimensionless height is {_rounded(tilt)}: so much friction tips its load forward."
+            f"Its dimensionless height is {tilt.written}: so much friction tips its load forward."
         )
     sentences += [*result.blind, *result.remarks]
     if result.complaints:
         sentences += [text if text.endswith("?") else f"{text}." for text in result.complaints]
-        angled = any(film.angle is not None for film in result.estimate.problem.films)
         said = "Or the radius, the unit of the angles or the way they turn is not as said."
         sentences.append(
             "So this may be no freely sliding puck, or not all of its motion: look at --plot, and "
             "give --since and --until if a hand or a wall touches it."
             + ("" if result.misfit else " Or speed changes its friction, or air slows it, too.")
-            + (f" {said}" if angled and not result.misfit else "")
+            + (f" {said}" if result.estimate.problem.angled and not result.misfit else "")
         )
     return "\n".join(sentences)
-
-
-def _rounded(number: Number) -> str:
-    """Value ± error, to two digits of the error, and the unit."""
-    unit = _unit(number)
-    if number.at_bound:
-        return f"{number.shown}{unit} (at its bound)"
-    if not (number.error > 0.0 and math.isfinite(number.error)):
-        return f"{number.value:.6g}{unit}"
-    digits = max(0, 1 - math.floor(math.log10(number.error)))
-    if digits > (_DIGITS if abs(number.value) < 1e-3 else _MOST) and number.value != 0.0:
-        power = max(0, digits + math.floor(math.log10(abs(number.value))))
-        return f"{number.value:.{power}e} +- {number.error:.1e}{unit}"
-    return f"{number.value:.{digits}f} +- {number.error:.{digits}f}{unit}"
 
 
 def _errors(*numbers: Number) -> str:
@@ -143,14 +128,10 @@ def _errors(*numbers: Number) -> str:
     return f"+- {', '.join(each)}"
 
 
-def _unit(number: Number) -> str:
-    return "" if number.unit == "1" else f" {number.unit}"
-
-
 def _shown(number: Number) -> str:
     """A number with its error and interval."""
     if number.how == "known":
-        return f"{number.value:g}{_unit(number)} (known)"
+        return f"{number.value:g}{number.unit_behind} (known)"
     if not number.determined:
         return "not determined by these tracks"
     how = ", by profile likelihood" if number.profiled else ""
@@ -158,7 +139,7 @@ def _shown(number: Number) -> str:
     interval = ""
     if math.isfinite(number.low) and math.isfinite(number.high):
         interval = f"   95 %: {number.low:.6g} to {number.high:.6g}"
-    return f"{_rounded(number)}{interval}{how}{follows}"
+    return f"{number.written}{interval}{how}{follows}"
 
 
 def _spin(result: Fit, spin: Number) -> str:

@@ -137,6 +137,28 @@ def test_a_law_with_more_numbers_leaves_no_more_than_one_friction():
     assert left["uniform+stribeck"] < left["uniform+hyperbola"] < 0.5 * left["uniform"]
 
 
+@pytest.mark.parametrize("spin", [70.0, 84.0])
+def test_a_step_that_parts_of_the_base_pass_at_other_moments_is_found(spin):
+    """One slip for all of a base that spins leads a fit astray, to a law that seems to fit."""
+    track = film(8, lambda u: np.clip(0.067 + 0.113 * (0.5 + (1.0 - u / 0.85) / 0.1), 0.067, 0.18),
+                 v=2.45, spin=spin, frames=300)  # fmt: skip
+    result = pt.fit(track, PUCK, free="friction", law="two-valued", keep_all=True)
+    for name, value in (("friction", 0.067), ("friction_rest", 0.18), ("law_speed", 0.85)):
+        assert near(result[name], value), (name, result[name])
+
+
+@pytest.mark.parametrize(("how", "lost"), [({"drag": 0.6}, "friction"), ({}, "friction_rest")])
+def test_a_law_whose_speed_ends_on_its_bound_is_not_determined(how, lost):
+    """All slips of the film are far below, or above, the speed of such a law."""
+    bounds = {"law_speed": (4.0, 9.0) if how else (1e-4, 0.02)}
+    free = ["friction", "friction_rest", "law_speed"]
+    result = pt.fit(film(7, even, frames=110, **how), PUCK, free=free, law="stribeck",
+                    keep_all=True, bounds=bounds)  # fmt: skip
+    assert not result["law_speed"].determined and not result[lost].determined
+    assert any("law_speed is not determined" in text for text in result.blind)
+    assert result.summary()["numbers"]["law_speed"]["determined"] is False
+
+
 def test_what_is_wrong_with_floors_is_said():
     track = film(5, even, frames=60)
     for how, words in (

@@ -15,6 +15,8 @@ from scipy.integrate import quad
 from puck_tables import SpeedLaw, Table, resultants
 from puck_tables.contact import speed_resultants
 from puck_tables.contact.integrals import slip_direction
+from puck_tables.contact.laws import law_of
+from puck_tables.contact.round_load import RoundLoad
 from puck_tables.contact.speed_quadrature import speed_integrals
 from puck_tables.errors import AccuracyError, ContactError, InputError, OutputError
 from puck_tables.kernels.speed_quadrature_kernel import FINE, fill_integrals
@@ -29,6 +31,7 @@ EVERY_PHI = np.array([
     1.2, 1.5, np.pi / 2 - 1e-9, np.pi / 2,
 ])  # fmt: skip
 CUBIC = SpeedLaw([0.0, 0.3, 0.7, 1.0, 3.0], [0.3, 0.2, 0.25, 0.25, 0.1])
+DISC = RoundLoad(law_of("uniform"))
 LINEAR = SpeedLaw([0.0, 0.3, 0.7, 1.0, 3.0], [0.3, 0.2, 0.25, 0.25, 0.1], "linear")
 
 
@@ -209,7 +212,7 @@ def test_the_grid_is_cut_at_the_corners_so_that_order_four_holds():
     errors = []
     for cells in (10, 20, 40):
         patches = enumerate(patches_of(CUBIC.speeds))
-        parts = [FilledPatch(patch, CUBIC, 0.3, n, FINE) for n, patch in patches]
+        parts = [FilledPatch(patch, CUBIC, DISC, 0.3, n, FINE) for n, patch in patches]
         for part in parts:
             part.cells = [cells, cells]
             part.fill()
@@ -374,7 +377,7 @@ def test_the_commands(tmp_path):
     assert "FAIL" not in judged.stdout
     for bad, message in (
         ([*words, "--overwrite", "--cells", "9"], "--cells does not go with"),
-        ([*words, "--overwrite", "--pressure", "ring"], "does not go with --pressure"),
+        ([*words, "--overwrite", "--pressure", "sponge"], "no pressure law is called"),
         ([*words, "--overwrite", "--kind", "stops"], "goes with --kind resultants"),
         (["build-tables", "--speed-law", "none.csv", "-o", str(tmp_path / "x.h5")], "cannot read"),
         (["sweep", "--table", str(path), "--w0", "0:1:3"], "stops come from"),

@@ -87,7 +87,8 @@ def test_every_format_that_is_saved_is_read_back(ending):
                 assert_array_equal(one.angle, other.angle)
     if ending == "jsonl":
         assert "does not say the unit" in puck("saved.jsonl").stderr
-    assert "leave columns" in puck(f"saved.{ending}", "--columns", "t,x,y").stderr
+    assert "has 4 columns" in puck(f"saved.{ending}", "--columns", "t,x,y").stderr
+    assert puck(f"saved.{ending}", "--columns", "id,t [s],x [m],y [m]").exit_code == 0
 
 
 def test_the_picture_is_drawn():

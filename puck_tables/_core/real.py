@@ -142,6 +142,21 @@ def shown(value: object) -> str:
     return text if len(text) <= _SHOWN else text[: _SHOWN - 3] + "..."
 
 
+def pair_of(what: str, raw: Any) -> tuple[Any, Any]:
+    """Two values; ``what``: what must be such two, for the message.
+
+    Examples
+    --------
+    >>> pair_of("noise must be two numbers", [1, 2])
+    (1, 2)
+    """
+    try:
+        first, second = raw
+    except (TypeError, ValueError):
+        raise InputError(f"{what}, got {shown(raw)}") from None
+    return first, second
+
+
 def instance(name: str, value: object, *kinds: type) -> None:
     """Refuse a value that is not of one of these kinds.
 

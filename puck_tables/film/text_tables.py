@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import csv
+import io
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -116,6 +118,19 @@ def film_of_columns(
             if found.marks:
                 film.bodies.append(found)
     return film
+
+
+def csv_of(rows: Iterable[Iterable[Any]]) -> bytes:
+    r"""Rows of cells as a CSV file (UTF-8), which is then read as any other; None is left empty.
+
+    Examples
+    --------
+    >>> csv_of([["t", "x"], [0.5, None]])
+    b't,x\n0.5,\n'
+    """
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(rows)
+    return text.getvalue().encode()
 
 
 def film_below(

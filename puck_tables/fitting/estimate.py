@@ -19,6 +19,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.forward_model import RATE
 from puck_tables.fitting.least_squares import ROBUST, SQUARES, compact, minimise
+from puck_tables.fitting.observations import MEDIAN
 from puck_tables.fitting.problem import ANGLE, PLACE, PRIOR, UNSEEN, Known, Problem, likeliest
 
 _AROUND = 4  # frames to either side
@@ -78,7 +79,6 @@ def _leaps(deviations: FloatArray, at: int) -> bool:
 FARTHEST = 4.0  # standard deviations of a frame that counts
 _BY_CHANCE = math.erfc(FARTHEST / math.sqrt(2.0))
 FARTHEST_PLACE = -2.0 * math.log(_BY_CHANCE)  # of two of them, squared
-_MEDIAN = 0.6744897501960817
 _MEDIAN_PLACE = 2.0 * math.log(2.0)  # of the square of two normal deviates
 _WIDE = 1.4
 _FEW = 2.5  # residuals for each unknown
@@ -139,7 +139,7 @@ def estimate(
     x = np.clip(start, *problem.limits)
     problem = problem.with_noise(problem.noise, x)
     rows = problem.residuals(x)
-    if problem.usual(rows) > _AWAY * _MEDIAN:
+    if problem.usual(rows) > _AWAY * MEDIAN:
         x, _ = minimise(problem, x, ROBUST)
         rows = problem.residuals(x)
     count = np.bincount(problem.kinds, minlength=UNSEEN + 1)[: PRIOR + 1]
@@ -217,7 +217,7 @@ def _kept(
     turns = [rows[turn, None] for _, _, turn in each]
     # where most are far off no frame is an outlier, but the noise is larger or the model wrong
     most_place = _farthest(2, degrees[PLACE]) * _wide(places, _MEDIAN_PLACE)
-    most_turn = _farthest(1, degrees[ANGLE]) * _wide(turns, _MEDIAN**2)
+    most_turn = _farthest(1, degrees[ANGLE]) * _wide(turns, MEDIAN**2)
     for (x, y, turn), place, angle in zip(each, places, turns, strict=True):
         kept[x] = kept[y] = ~outliers_of(place, most_place, strict)
         kept[turn] = ~outliers_of(angle, most_turn, strict)

@@ -264,12 +264,12 @@ class Fit(Result):
         place, angle = (
             "given" if known else "that of the residuals" for known in self.noise_known[:2]
         )
-        angled = any(film.angle is not None for film in self.estimate.problem.films)
+        problem = self.estimate.problem
         lines = [
             f"Least squares by scipy's trust region reflective method: {self.estimate.x.size} "
             f"unknowns from {self.estimate.residuals.size} residuals.",
             f"Noise of places {self.noise[0]:.3g} m, {place}.",
-            *([f"Noise of angles {self.noise[1]:.3g} rad, {angle}."] if angled else []),
+            *([f"Noise of angles {self.noise[1]:.3g} rad, {angle}."] if problem.angled else []),
             f"{100.0 * self.outliers:.3g} % of the observations, beyond 4 standard deviations, are "
             "left out: farther off where few frames tell the noise.",
         ]
@@ -284,7 +284,6 @@ class Fit(Result):
                 "The model may not fit, or a number lies on the end of its range: standard errors "
                 "are widened by what halves, quarters and eighths of the frames do to the numbers."
             )
-        problem = self.estimate.problem
         if "readout" in problem.spec.free and problem.read_within is not None:
             half = 500.0 * problem.read_within
             lines.append(

@@ -298,25 +298,25 @@ class FitSpec:
     def refuse_integrated(self) -> None:
         """Refuse what does not go with motions that are integrated."""
         named = self.integrated
-        if self.puck.body.law.name != "uniform" or "inner" in (*self.free, *self.fixed):
-            raise InputError(
-                f"{' and '.join(named)} are found of uniform pressure alone, not of "
-                f"{self.puck.body.law.name}"
-            )
+        self._refuse_pressure(f"{' and '.join(named)} are")
         if not self.law and any(name in LAW_NUMBERS for name in named):
             raise InputError(
                 f"{' and '.join(LAW_NUMBERS)} are numbers of a law over slip speed: name it "
                 f"(--law, law=): {', '.join(LAWS)}"
             )
 
-    def with_linear_drag(self) -> FitSpec:
-        """The same with linear drag in place of what is integrated: to begin from."""
+    def _refuse_pressure(self, what: str) -> None:
+        """Refuse pressure under which no such motion is integrated."""
+        if self.puck.body.law.name != "uniform" or "inner" in (*self.free, *self.fixed):
+            raise InputError(
+                f"{what} found of uniform pressure alone, not of {self.puck.body.law.name}"
+            )
+
+    def plain(self) -> FitSpec:
+        """The same without what is integrated: to begin from."""
         free = tuple(name for name in self.free if name not in INTEGRATED)
-        plain = "drag" in self.free or "drag" in self.fixed
-        bounds = self.bounds if plain else {**self.bounds, "drag": (0.0, MOST["drag"])}
         fixed = {name: value for name, value in self.fixed.items() if name not in INTEGRATED}
-        free = free if plain else (*free, "drag")
-        return replace(self, free=free, fixed=fixed, bounds=bounds, law="")
+        return replace(self, free=free, fixed=fixed, law="")
 
     def moving(self, result: Mapping[str, float], tall: bool) -> Moving:
         """What moves the puck."""
@@ -358,11 +358,7 @@ class FitSpec:
                 )
         if "friction" not in self.free:
             raise InputError("a friction over slip speed is found: do not give the friction")
-        if self.puck.body.law.name != "uniform":
-            raise InputError(
-                "a friction over slip speed is found of uniform pressure alone, not of "
-                f"{self.puck.body.law.name}"
-            )
+        self._refuse_pressure("a friction over slip speed is")
         nodes = NODES[: len(speeds)]
         free = (*nodes, *(name for name in self.free if name != "friction"))
         limits = {name: self.bounds["friction"] for name in nodes if "friction" in self.bounds}

@@ -43,7 +43,6 @@ from puck_tables.fitting.model_comparison import (
     predicted,
     split,
     variants_of,
-    with_drags,
 )
 from puck_tables.fitting.numbers import numbers_of
 from puck_tables.fitting.observations import Observations, noise_of
@@ -51,7 +50,6 @@ from puck_tables.fitting.other_minima import without_spin
 from puck_tables.fitting.parameters import DRAGS
 from puck_tables.fitting.problem import Known, Problem
 from puck_tables.fitting.residuals import NO_PATTERN, NOISY, drift, runs
-from puck_tables.fitting.slowing import begun_or_refused, nearest_start
 from puck_tables.fitting.touches import SlideIndex, slides_apart
 from puck_tables.puck import Puck
 
@@ -244,10 +242,10 @@ def _estimate_all(inputs: Inputs, observed: _Observed) -> _Estimates:
     problem, known = observed.problem, inputs.known
     # what one friction leaves off at the ends need not be foreign where another is looked for
     late = bool(inputs.speeds) and not inputs.impacts
+    drags = {*DRAGS} >= {*inputs.spec.integrated}  # a law may look like a touch
+    best = slides = initial_estimate(problem, known, refit=drags and not late)
     if inputs.spec.integrates:
-        best = slides = _integrated(problem, known)
-    else:
-        best = slides = initial_estimate(problem, known, refit=not late)
+        refuse_opening(best)
     untied = ""
     if inputs.impacts:
         best, untied = couple(
@@ -270,43 +268,18 @@ def _over_speeds(constant: Estimate, inputs: Inputs) -> Estimate:
     return over_speeds(constant, inputs.speeds, inputs.between, inputs.known)
 
 
-def _integrated(problem: Problem, known: Known) -> Estimate:
-    """The estimate with what no look-up has the motions of: drags, a slope, a belt, a law.
-
-    Begun from what slows the puck; where that cannot be told, or does not lead to a motion that
-    fits, from one with linear drag.  Frames at the ends are looked at only then.
-    """
-    drags = {*DRAGS} >= {*problem.spec.integrated}
-    begun = nearest_start(problem) if drags else begun_or_refused(problem)
-    if begun is not None:
-        result = estimate(problem, begun[1], known)
-        if is_clean(result, NOISY, NO_PATTERN) or not drags:
-            refuse_opening(result)
-            return result
-    linear = replace(problem, spec=problem.spec.with_linear_drag())
-    result = with_drags(initial_estimate(linear, known, refit=False), problem.spec, known)
-    if not is_clean(result, NOISY, NO_PATTERN):
-        cut = initial_estimate(linear, known, refit=True)
-        sizes = ([film.time.size for film in one.films] for one in (cut.problem, problem))
-        if next(sizes) != next(sizes):
-            result = with_drags(cut, problem.spec, known)
-    refuse_opening(result)
-    return result
-
-
 def _compared(
     inputs: Inputs, observed: _Observed, estimates: _Estimates, variants: Mapping[str, FitSpec]
 ) -> tuple[LawScore, ...]:
     """The laws named, best first."""
+    # frames that another law leaves out at the ends may be those that tell
+    jitter, known = estimates.slides.problem.jitter, inputs.known._replace(jitter=True)
 
-    def of_law(one: FitSpec, noise: tuple[float, float], known: Known) -> Estimate:
-        # frames that another law leaves out at the ends may be those that tell
-        same = replace(
-            observed.problem, spec=one, noise=noise, jitter=estimates.slides.problem.jitter
-        )
+    def of_law(one: FitSpec) -> Estimate:
+        same = replace(observed.problem, spec=one, jitter=jitter)
         if one.integrates:
-            return on_a_floor(same, known._replace(jitter=True))
-        return initial_estimate(same, known._replace(jitter=True), refit=False)
+            return on_a_floor(same, known)
+        return initial_estimate(same, known, refit=False)
 
     return compare(variants, observed.problem.noise, inputs.known, of_law)
 

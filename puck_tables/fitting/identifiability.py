@@ -159,7 +159,7 @@ def not_identifiable(
     ``lost``: numbers of the puck that are not determined, by whatever; ``minima``: other motions
     that fit about as well; ``unsigned``: tracks that the opposite spin fits as well.
     """
-    marked = any(film.angle is not None for film in result.problem.films)
+    marked = result.problem.angled
     sentences = [minimum_sentence(minimum, marked) for minimum in minima[:_TOLD_ALL]]
     if others := len(minima[_TOLD_ALL:]):
         more = "motion of another spin fits" if others == 1 else "motions of other spins fit"

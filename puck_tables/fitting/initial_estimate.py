@@ -17,9 +17,11 @@ from puck_tables.fitting.certainty import certainty_of
 from puck_tables.fitting.estimate import FARTHEST, Estimate, estimate, only_outliers
 from puck_tables.fitting.numbers import plausible_for
 from puck_tables.fitting.observations import FEWEST, Observations, noise_of, rests_from
+from puck_tables.fitting.parameters import DRAGS, NOTHING
 from puck_tables.fitting.problem import ANGLE, UNSEEN, Known, Problem
 from puck_tables.fitting.residuals import NO_PATTERN, NOISY, drift, excess_of, runs
-from puck_tables.fitting.starts import minima_of
+from puck_tables.fitting.slowing import nearest_start, starts_from_slowing
+from puck_tables.fitting.starts import minima_of, numbers_with
 from puck_tables.fitting.touches import first_touch, pushed
 
 _FEWEST_OUT = 3  # frames at an end that are more than single outliers
@@ -102,6 +104,7 @@ def _foreign(out: npt.NDArray[np.bool_]) -> int:
 
 _LIFTS = 0.995  # δ from which on a uniform puck is fitted with part of its base lifted
 _TRIMS = 3
+_SHARES_OF_AIR = (0.0, 0.3, 0.6, 0.9)
 _JUDGED = 10  # degrees of freedom that tell the noise
 
 
@@ -117,12 +120,26 @@ def initial_estimate(problem: Problem, known: Known, refit: bool) -> Estimate:
             f"{_observations(problem)} observations cannot tell {len(problem.names)} unknowns: "
             "give more frames, or fix something"
         )
-    angled = any(film.angle is not None for film in problem.films)
-    if left < _JUDGED and not (known.place and (known.angle or not angled)):
+    if left < _JUDGED and not (known.place and (known.angle or not problem.angled)):
         raise InputError(
             f"{_observations(problem)} observations of {len(problem.names)} unknowns are too few "
             "to judge their noise by: give the noise, or more frames"
         )
+    result = _looked_up(problem, known) if not problem.spec.integrates \
+        else _integrated(problem, known)  # fmt: skip
+    if not refit:
+        return result
+    result = _trimmed(result, problem, known)
+    if len(problem.films) == 1 and not is_clean(result, NOISY, NO_PATTERN):
+        result = _of_a_part(problem, known) or result
+    if only_outliers(result, known):
+        return result
+    # frames that are off together are good ones: what the model cannot follow is not hidden
+    return replace(estimate(result.problem, result.x, known, strict=True), minima=result.minima)
+
+
+def _looked_up(problem: Problem, known: Known) -> Estimate:
+    """The estimate where motions are looked up, or integrated once and for all."""
     rests = problem.rests or (False,) * len(problem.films)
     parts = [
         replace(problem, films=(film,), rests=(rest,), jitter=0.0)
@@ -132,16 +149,33 @@ def initial_estimate(problem: Problem, known: Known, refit: bool) -> Estimate:
     result = estimate(problem, _joint_start(problem, parts, minima), known)
     if len(parts) == 1:
         result = replace(result, minima=tuple(minima[0]))
-    result = _lifted(result, known)
-    if not refit:
-        return result
-    result = _trimmed(result, problem, known)
-    if len(parts) == 1 and not is_clean(result, NOISY, NO_PATTERN):
-        result = _of_a_part(problem, known) or result
-    if only_outliers(result, known):
-        return result
-    # frames that are off together are good ones: what the model cannot follow is not hidden
-    return replace(estimate(result.problem, result.x, known, strict=True), minima=result.minima)
+    return _lifted(result, known)
+
+
+def _integrated(problem: Problem, known: Known) -> Estimate:
+    """The estimate with what no look-up has the motions of: drags, a slope, a belt, a law.
+
+    Begun from what slows the puck; where that cannot be told, or does not lead to a motion that
+    fits, drags are begun from the motion without them.
+    """
+    spec, starts = problem.spec, starts_from_slowing(problem)
+    drags = {*DRAGS} >= {*spec.integrated}
+    if starts or not drags:
+        result = estimate(problem, nearest_start(problem, starts)[1], known)
+        if not drags or is_clean(result, NOISY, NO_PATTERN):
+            return result
+    plain = initial_estimate(replace(problem, spec=spec.plain()), known, refit=False)
+    numbers, launches = plain.problem.numbers_at(plain.x), plain.problem.launches(plain.x)
+    decel, delta, _ = plain.problem.spec.scales(numbers)
+    speed = float(np.hypot(*launches[:, 2:4].T).max())
+    starts = []
+    for share in _SHARES_OF_AIR:  # of the slowing at half the speed that is by air
+        less = numbers_with(spec, (1.0 - share) * decel, (1.0 - share) * delta)
+        air = 4.0 * share * decel / max(speed, 1e-9) ** 2
+        begun = {**NOTHING, **numbers, **less, "air": air}
+        x = problem.unknowns({name: begun[name] for name in spec.free}, launches)
+        starts.append((problem, np.clip(x, *problem.limits)))
+    return estimate(problem, nearest_start(problem, starts)[1], known)
 
 
 def _with_room(problem: Problem) -> Problem:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from puck_tables._core.real import instance, positive, real
+from puck_tables._core.real import instance, pair_of, positive, real
 from puck_tables.contact.speed_law import KINDS
 from puck_tables.errors import InputError
 from puck_tables.film.pairs import marks_of_one
@@ -129,8 +129,7 @@ def observations_of(
 
 def _refuse_far(film: Observations) -> None:
     """Refuse a track, or a time, that is no slide of a puck by its size alone."""
-    size = float(np.ptp(film.place, axis=0).max())
-    for what, extent, unit in (("places", size, "m"), ("times", float(film.time[-1]), "s")):
+    for what, extent, unit in (("places", film.size, "m"), ("times", float(film.time[-1]), "s")):
         if extent and not _NEAREST < extent < _FARTHEST:
             raise InputError(
                 f"{film.name}: its {what} lie up to {extent:.3g} {unit} apart, which no puck "
@@ -206,12 +205,9 @@ def checked_rows(raw: Any) -> tuple[float, float] | None:
     """Y of the first and the last line of a picture, m."""
     if raw is None:
         return None
-    try:
-        first, last = raw
-    except (TypeError, ValueError):
-        raise InputError(
-            f"rows must be y in m of the first and of the last line of the picture, got {raw!r:.40}"
-        ) from None
+    first, last = pair_of(
+        "rows must be y in m of the first and of the last line of the picture", raw
+    )
     first, last = real("the first of rows", first, "m"), real("the last of rows", last, "m")
     if first == last:
         raise InputError(f"rows must be two different places y (m), got {first:g} twice")
@@ -267,12 +263,8 @@ def checked_walls(raw: Any) -> tuple[Line, ...]:
         raise InputError("walls must be a list, each wall two points ((x, y), (x, y)) on it in m")
     lines = []
     for wall in raw:
-        try:
-            (ax, ay), (bx, by) = wall
-        except (TypeError, ValueError):
-            raise InputError(
-                f"a wall must be two points ((x, y), (x, y)) on it in m, got {wall!r:.60}"
-            ) from None
+        what = "a wall must be two points ((x, y), (x, y)) on it in m"
+        (ax, ay), (bx, by) = (pair_of(what, point) for point in pair_of(what, wall))
         ax, ay, bx, by = (real("a point of a wall", value, "m") for value in (ax, ay, bx, by))
         if (ax, ay) == (bx, by):
             raise InputError(
@@ -286,12 +278,7 @@ def checked_noise(raw: Any) -> tuple[float | None, float | None]:
     """The noise as given, None for what is to be found."""
     if raw is None:
         return None, None
-    try:
-        place, angle = raw
-    except (TypeError, ValueError):
-        raise InputError(
-            f"noise must be (metres, radians), None for what is to be estimated, got {raw!r:.40}"
-        ) from None
+    place, angle = pair_of("noise must be (metres, radians), None for what is to be estimated", raw)
     return (
         None if place is None else positive("the noise of places", place, "m"),
         None if angle is None else positive("the noise of angles", angle, "rad"),
@@ -300,7 +287,7 @@ def checked_noise(raw: Any) -> tuple[float | None, float | None]:
 
 def begin_noise(judged: float, films: tuple[Observations, ...]) -> float:
     """Noise to begin with."""
-    size = max(float(np.ptp(film.place, axis=0).max()) for film in films)
+    size = max(film.size for film in films)
     least = 1e-9 * (size or 1.0)
     return max(judged, least) if math.isfinite(judged) else max(_GUESS * size, least)
 

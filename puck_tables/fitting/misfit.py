@@ -21,7 +21,7 @@ from puck_tables.fitting.model_comparison import tried
 from puck_tables.fitting.parameters import INTEGRATED, NODES
 from puck_tables.fitting.problem import TURN, Known, Problem
 from puck_tables.fitting.residuals import AIR, NO_PATTERN, SLOPE, SideForces, forced
-from puck_tables.fitting.slowing import begun_or_refused
+from puck_tables.fitting.slowing import nearest_start, starts_from_slowing
 
 _FAR = 1.5  # times smaller are residuals of a reading that is told
 _NEAR = 0.01  # of the radius: it is not another one
@@ -145,7 +145,7 @@ def _by_air(result: Estimate, problem: Problem) -> _Reading:
     if not _may_change(spec):
         return _Reading("", 0.0)
     other = replace(problem, spec=replace(spec, free=(*spec.free, "air")), tall=False)
-    x = begun_or_refused(other)[1]
+    x = nearest_start(other, starts_from_slowing(other))[1]
     air = other.numbers_at(x)["air"]
     if _faint(result, AIR, air):
         return _Reading("", 0.0)
@@ -215,8 +215,8 @@ def _by_force(result: Estimate, kind: tuple[int, ...], noise: float) -> _Reading
 def _others(problem: Problem) -> Iterator[tuple[str, Problem, float]]:
     """Other readings, each in words and with the factor of its angles."""
     spec = problem.spec
-    angled = any(film.angle is not None for film in problem.films)
-    if angled and not any(name in given for name in _HELD for given in (spec.fixed, spec.bounds)):
+    held = any(name in given for name in _HELD for given in (spec.fixed, spec.bounds))
+    if problem.angled and not held:
         for factor, words in _ANGLES:
             films = tuple(
                 film if film.angle is None else replace(film, angle=factor * film.angle)
@@ -224,7 +224,7 @@ def _others(problem: Problem) -> Iterator[tuple[str, Problem, float]]:
             )
             noise = problem.noise[0], abs(factor) * problem.noise[1]
             yield words, replace(problem.with_films(films), noise=noise), abs(factor)
-    if angled and "radius" not in (*spec.free, *spec.fixed):  # told by angles alone
+    if problem.angled and "radius" not in (*spec.free, *spec.fixed):  # told by angles alone
         words = "with a radius of {:.3g} m: is " + f"{spec.puck.radius:g} m right?"
         wider = replace(spec, free=(*spec.free, "radius"))
         yield words, replace(problem, spec=wider), 1.0

@@ -21,18 +21,17 @@ from puck_tables.errors import InputError
 from puck_tables.fitting.certainty import Z95, Certainty
 from puck_tables.fitting.estimate import Estimate, capped_squares, estimate
 from puck_tables.fitting.fit_spec import FitSpec
-from puck_tables.fitting.least_squares import FROM_AFAR, ROBUST, minimise, multi_start
+from puck_tables.fitting.least_squares import ROBUST, minimise
 from puck_tables.fitting.named_laws import NAMES as LAWS
-from puck_tables.fitting.observations import FEWEST, Observations, rests_from
+from puck_tables.fitting.observations import FEWEST, MEDIAN, Observations, rests_from
 from puck_tables.fitting.parameters import LAW_NUMBERS, NODES
-from puck_tables.fitting.problem import ANGLE, PLACE, TURN, UNSEEN, Known, Problem
-from puck_tables.fitting.slowing import begun_or_refused
+from puck_tables.fitting.problem import ANGLE, PLACE, UNSEEN, Known, Problem
+from puck_tables.fitting.slowing import nearest_start, starts_from_slowing
 from puck_tables.fitting.whole_turns import on_another_floor
 
 _ROUGHLY = ROBUST._replace(evaluations=15)
 _FALLS = 0.99  # of the cost before: a floor that still comes nearer is followed
 _NEAR = 3.0  # times the noise: floors that are fitted to the end
-_SHARES_OF_AIR = (0.3, 0.6, 0.9)
 _FRAMES = 80  # that tell whether such a law may be the reason of a misfit
 _LEAST = 0.02  # of the largest friction of a line: the smallest
 _SHARES = (0.0, 0.08, 0.3, 1.0)  # of the fastest slip
@@ -48,41 +47,9 @@ def over_speeds(
     return estimate(replace(moved, spec=spec), lines, known)
 
 
-def with_drags(result: Estimate, spec: FitSpec, known: Known) -> Estimate:
-    """The estimate with drags of the speed squared, or of the spin, from that with a linear one."""
-    problem = result.problem
-    numbers, launches = problem.numbers_at(result.x), problem.launches(result.x)
-    whole = tuple(_near(film, path[TURN]) for film, path in
-                  zip(problem.films, problem.paths(result.x), strict=True))  # fmt: skip
-    moved = replace(problem, spec=spec, weights=(), tall=False, whole=whole)
-    line, speed = numbers.get("drag", 0.0), float(np.hypot(*launches[:, 2:4].T).max())
-    gravity = spec.known()["gravity"]
-    starts = []
-    for share in _SHARES_OF_AIR:  # of the slowing at half the speed that is by air
-        begun = {**dict.fromkeys(spec.free, 0.0), **numbers}
-        begun["air"] = share * max(line, 0.0) / max(0.5 * speed, 1e-9)
-        begun["friction"] = numbers.get("friction", 0.0)
-        begun["friction"] += 0.5 * (1.0 - share) * max(line, 0.0) * speed / gravity
-        if "drag" in spec.free:
-            begun["drag"] = (1.0 - share) * line
-        values = {name: begun[name] for name in spec.free}
-        starts.append((moved, np.clip(moved.unknowns(values, launches), *moved.limits)))
-    (x, _), *_ = multi_start(starts, FROM_AFAR, ROBUST)
-    return estimate(replace(moved, whole=()), x, known)
-
-
-def _near(film: Observations, path: FloatArray) -> FloatArray | None:
-    """The angles of a track in one piece, as near as whole turns let them be to a path (n,)."""
-    if film.angle is None:
-        return None
-    turn = 2.0 * math.pi
-    whole: FloatArray = film.angle + turn * np.round((path - film.angle) / turn)
-    return whole
-
-
 def on_a_floor(problem: Problem, known: Known) -> Estimate:
     """The estimate of a floor that is compared with others: about, where it does not come near."""
-    begun, x = begun_or_refused(problem)
+    begun, x = nearest_start(problem, starts_from_slowing(problem))
     cost, falls = math.inf, True
     while falls:
         x, less = minimise(begun, x, _ROUGHLY)
@@ -90,7 +57,7 @@ def on_a_floor(problem: Problem, known: Known) -> Estimate:
         if problem.usual(rows) < _NEAR:
             return estimate(problem, x, known)
         cost, falls = less, less < _FALLS * cost
-    noise = (problem.usual(rows) / 0.6745 * problem.noise[0], problem.noise[1])
+    noise = (problem.usual(rows) / MEDIAN * problem.noise[0], problem.noise[1])
     wider = problem.with_noise(noise, x) if not known.place else problem
     return Estimate(
         wider, x, problem.kinds != UNSEEN, wider.residuals(x), np.zeros((rows.size, x.size))
@@ -103,11 +70,7 @@ def tried(result: Estimate) -> Estimate:
     top = problem.fastest(result.x)
     speeds = tuple(float(f"{1.1 * top * share:.2g}") for share in _SHARES)
     fewer = problem.with_films(tuple(film.thinned(_FRAMES) for film in problem.films))
-    moved, start = _begun(fewer, result.x, speeds)
-    lines, _ = minimise(moved, start, ROBUST)
-    smooth = replace(moved, spec=replace(moved.spec, between="cubic"))
-    x, _ = minimise(smooth, lines, ROBUST)
-    return replace(result, problem=smooth, x=x, minima=())
+    return over_speeds(replace(result, problem=fewer), speeds, "cubic", Known(True, True, True))
 
 
 def _begun(
@@ -159,9 +122,9 @@ FLOORS = {
     "two-valued": LAW_NUMBERS, "slope": ("slope_x", "slope_y"), "belt": ("belt_x", "belt_y"),
 }  # fmt: skip
 EVERY_FLOOR = "floors"  # of uniform pressure: all of these
-_CONTENDS = 60.0  # of χ²: laws worse than the best by more are not fitted again
+_CONTENDS = 60.0  # of χ²: laws worse than the best by more are not fitted further
 
-Fitted = Callable[[FitSpec, tuple[float, float], Known], Estimate]
+Fitted = Callable[[FitSpec], Estimate]
 
 
 class LawScore(NamedTuple):
@@ -182,40 +145,39 @@ class LawScore(NamedTuple):
 def compare(
     variants: Mapping[str, FitSpec], noise: tuple[float, float], known: Known, fit_law: Fitted
 ) -> tuple[LawScore, ...]:
-    """The laws named, best first; ``fit_law`` fits each with a noise, known or not."""
-    names, questions, first = [], [], []
+    """The laws named, best first; ``fit_law`` fits each, with the noise that is known.
+
+    Those that contend go on from there under the common noise.
+    """
+    fits: dict[str, Estimate] = {}
     for name, question in variants.items():
         try:
-            first.append(fit_law(question, noise, known))
+            fits[name] = fit_law(question)
         except InputError:
             if "+" not in name:  # no such floor leads to such a track
                 raise
-            continue
-        names.append(name)
-        questions.append(question)
-    common = [
-        noise[kind] if known[kind] else min(one.problem.noise[kind] for one in first)
+    place, angle = (
+        noise[kind] if known[kind] else min(one.problem.noise[kind] for one in fits.values())
         for kind in range(2)
-    ]
-    unknowns = np.array([one.x.size for one in first])
-    chi2 = np.array([chi2_under(one, (common[0], common[1])) for one in first])
+    )
+    unknowns = np.array([one.x.size for one in fits.values()])
+    chi2 = np.array([chi2_under(one, (place, angle)) for one in fits.values()])
     score = chi2 + 2.0 * unknowns
-    again = list(first)
-    for k in np.flatnonzero(score < score.min() + _CONTENDS):
-        if not (known.place and known.angle):
-            one = fit_law(questions[k], (common[0], common[1]), Known(True, True, True))
-            less = chi2_under(one, (common[0], common[1]))
-            if less < chi2[k]:  # what was begun anew may have come less near
-                again[k], chi2[k] = one, less
+    for k, name in enumerate(fits):
+        if score[k] < score.min() + _CONTENDS and not (known.place and known.angle):
+            same = fits[name].problem.with_noise((place, angle), fits[name].x)
+            one = estimate(same, fits[name].x, Known(True, True, True))
+            less = chi2_under(one, (place, angle))
+            if less < chi2[k]:
+                fits[name], chi2[k] = one, less
     score = chi2 + 2.0 * unknowns
     weight = np.exp(-0.5 * (score - score.min()))
     weight /= weight.sum()
     result = [
         LawScore(name, float(c), int(m), float(w), one.problem.numbers_at(one.x))
-        for name, c, m, w, one in zip(names, chi2, unknowns, weight, again, strict=True)
+        for (name, one), c, m, w in zip(fits.items(), chi2, unknowns, weight, strict=True)
     ]
-    order = np.argsort(score, kind="stable")
-    return tuple(result[k] for k in order)
+    return tuple(result[k] for k in np.argsort(score, kind="stable"))
 
 
 def variants_of(spec: FitSpec, names: Any) -> dict[str, FitSpec]:

@@ -29,6 +29,8 @@ _ALL = 0.8  # of the range in which a number is looked for: an interval so wide 
 _TOLD = 0.75  # of the time between frames, twice the error of a readout that the tracks tell
 _DECIMALS = 12  # of a value on the end of its range
 _MUCH = {"friction": 1.0, "decel": 10.0}  # an error that says nothing
+# after the point, of numbers below 1e-3 and of others: more are written with a power of ten
+_DIGITS, _MOST = 9, 12
 FREE, FOLLOWS, KNOWN = "found", "follows", "known"
 
 
@@ -63,6 +65,30 @@ class Number(NamedTuple):
     def shown(self) -> str:
         """The value to six digits; 0 where it differs from 0 by what is computed alone."""
         return f"{round(self.value, _DECIMALS) + 0.0:.6g}"
+
+    @property
+    def unit_behind(self) -> str:
+        """The unit as it stands behind a number, none of a number without one."""
+        return "" if self.unit == "1" else f" {self.unit}"
+
+    @property
+    def written(self) -> str:
+        """Value +- error, to two digits of the error, and the unit.
+
+        Examples
+        --------
+        >>> Number(0.15234, 0.00123, 0.1499, 0.1548, "m/s", FREE).written
+        '0.1523 +- 0.0012 m/s'
+        """
+        if self.at_bound:
+            return f"{self.shown}{self.unit_behind} (at its bound)"
+        if not (self.error > 0.0 and math.isfinite(self.error)):
+            return f"{self.value:.6g}{self.unit_behind}"
+        digits = max(0, 1 - math.floor(math.log10(self.error)))
+        if digits > (_DIGITS if abs(self.value) < 1e-3 else _MOST) and self.value != 0.0:
+            power = max(0, digits + math.floor(math.log10(abs(self.value))))
+            return f"{self.value:.{power}e} +- {self.error:.1e}{self.unit_behind}"
+        return f"{self.value:.{digits}f} +- {self.error:.{digits}f}{self.unit_behind}"
 
 
 class EstimatedLaunch(NamedTuple):
@@ -102,7 +128,7 @@ def plausible_for(problem: Problem, x: FloatArray) -> FloatArray:
             continue
         launch, film = launches[track], problem.films[track]
         slip = math.hypot(launch[2], launch[3], radius * launch[4]) or 1.0
-        size = float(np.ptp(film.place, axis=0).max()) or radius
+        size = film.size or radius
         sizes.append({
             "launch_x": size, "launch_y": size, "launch_vx": slip, "launch_vy": slip,
             "launch_spin": slip / radius, "launch_angle": 1.0,
@@ -143,6 +169,12 @@ def numbers_of(
             error = math.inf
         unit = PUCK[name].unit
         puck[name] = Number(values[name], error, low, high, unit, FREE, interval.profiled)
+    speed = puck.get("law_speed")
+    if speed is not None and (speed.at_bound or not speed.determined):
+        # all slips are on one side of it, and tell one of the frictions alone
+        slow = problem.fastest(x) < speed.value
+        for name in {"law_speed", "friction" if slow else "friction_rest"} & {*puck}:
+            puck[name] = puck[name]._replace(error=math.inf)
     # what follows is as much less certain as what it follows from
     widened, profiled = np.ones(x.size), False
     for k, name in enumerate(spec.free):
@@ -168,7 +200,8 @@ def numbers_of(
         if ends is None and profiled and name == "height" and math.isfinite(error):
             ends = _profiled(result, certainty, name)
         if ends is None and name == "height" and "delta" in puck and puck["delta"].profiled:
-            ends = _height_of_delta(problem, x, puck["delta"])
+            # f and r as found: that of f is far narrower
+            ends = replace(_ends(problem, x, name, "delta", puck["delta"]), profiled=True)
         if ends is not None and ends.profiled:
             half = 0.5 * (ends.high - ends.low) / certainty.reach
             number = number._replace(error=error if math.isnan(error) else half, profiled=True)
@@ -222,12 +255,19 @@ def _follows(
     problem: Problem, x: FloatArray, name: str, slope: FloatArray, puck: Mapping[str, Number]
 ) -> Interval | None:
     """The interval of what follows from one number alone: from the ends of that one's."""
-    spec, values = problem.spec, problem.numbers_at(x)
     of = np.flatnonzero(slope)
-    if of.size != 1 or not math.isfinite(puck[spec.free[of[0]]].high):
+    if of.size != 1 or not math.isfinite(puck[problem.spec.free[of[0]]].high):
         return None
-    one = spec.free[of[0]]
-    ends = [spec.all_at({**values, one: end})[name] for end in (puck[one].low, puck[one].high)]
+    one = problem.spec.free[of[0]]
+    return _ends(problem, x, name, one, puck[one])
+
+
+def _ends(problem: Problem, x: FloatArray, name: str, one: str, number: Number) -> Interval:
+    """The interval of what follows, from the ends of that of one number, the others as found."""
+    values = problem.numbers_at(x)
+    ends = [
+        problem.spec.all_at({**values, one: end})[name] for end in (number.low, number.high)
+    ]  # fmt: skip
     return Interval(min(ends), max(ends), False)
 
 
@@ -255,13 +295,6 @@ def _profiled(result: Estimate, certainty: Certainty, name: str) -> Interval | N
         return None
     ratio = certainty.ratio(k)
     return interval_of(there, own, k).wider(height, ratio, 0.0, math.inf)
-
-
-def _height_of_delta(problem: Problem, x: FloatArray, delta: Number) -> Interval:
-    """The interval of height from the ends of δ's, f and r as found (that of f is far narrower)."""
-    spec, values = problem.spec, problem.numbers_at(x)
-    low, high = (spec.all_at({**values, "delta": end})["height"] for end in (delta.low, delta.high))
-    return Interval(low, high, True)
 
 
 def _slope(problem: Problem, x: FloatArray, name: str) -> FloatArray:

@@ -79,7 +79,7 @@ def counting(values: FloatArray) -> npt.NDArray[np.bool_]:
 
 FEWEST = 4  # frames of a track
 _ALIKE = 0.1  # of the usual time between frames
-_MEDIAN = 0.6744897501960817  # of |a normal deviate|
+MEDIAN = 0.6744897501960817  # of |a normal deviate|
 _THIRD = math.sqrt(20.0)  # the spread of a third difference of deviates
 _LAST = 5
 _FEW_WINDOWS, _ALIKE_TURNS, _FOLLOWED = 3, 0.5, 1.5  # of turns: mean of e^(iθ); rad
@@ -145,6 +145,11 @@ class Observations:
         chosen = np.zeros(self.time.size, bool)
         chosen[np.linspace(0, self.time.size - 1, count).astype(int)] = True
         return self.part(chosen)
+
+    @property
+    def size(self) -> float:
+        """How far its places go along x or y, m."""
+        return float(np.ptp(self.place, axis=0).max())
 
     @property
     def usual_step(self) -> float:
@@ -268,7 +273,7 @@ def _spread(thirds: list[FloatArray]) -> float:
     values = np.concatenate(thirds) if thirds else np.empty(0)
     if values.size < 2 * FEWEST:
         return math.nan
-    return float(np.median(np.abs(values))) / (_MEDIAN * _THIRD)
+    return float(np.median(np.abs(values))) / (MEDIAN * _THIRD)
 
 
 def wrapped(angle: FloatArray) -> FloatArray:

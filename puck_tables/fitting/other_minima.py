@@ -60,7 +60,7 @@ def other_minima(
     judged.
     """
     problem = result.problem
-    marked = any(film.angle is not None for film in problem.films)
+    marked = problem.angled
     apart = not problem.impact_specs
     signed = marked or not apart  # a wall tells a motion from its mirror image
     single = len(problem.films) == 1
@@ -268,7 +268,7 @@ def without_spin(
     (*scale, _) = (*(name for name in _SCALES if name in spec.free), "")
     if (
         not scale or numbers[scale[0]].determined or _SPIN in spec.fixed or problem.impact_specs
-        or all(problem.spinless) or any(film.angle is not None for film in problem.films)
+        or all(problem.spinless) or problem.angled
     ):  # fmt: skip
         return (), ()
     low, high = spec.bounds.get(_SPIN, (0.0, 0.0))

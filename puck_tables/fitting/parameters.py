@@ -7,7 +7,7 @@ import math
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from puck_tables._core.real import bracketed, real
+from puck_tables._core.real import bracketed, pair_of, real
 from puck_tables.errors import InputError
 from puck_tables.motion.body import LARGEST_GYRATION, SMALLEST_GYRATION
 
@@ -90,6 +90,8 @@ OWN_CURVE = ("gyration", "inner")  # at each value of these unit motions are ano
 DRAGS, LAW_NUMBERS = ("air", "spin_drag"), ("friction_rest", "law_speed")
 # of which no look-up has the motions
 INTEGRATED = (*DRAGS, "slope_x", "slope_y", "belt_x", "belt_y", *LAW_NUMBERS)
+# values that do nothing, or next to it: of no drag at all slopes to it are not computed
+NOTHING = {"drag": 0.01, **dict.fromkeys(INTEGRATED[: -len(LAW_NUMBERS)], 0.0)}
 
 
 def refuse_unknown(name: str, known: Mapping[str, Parameter], what: str) -> None:
@@ -145,9 +147,6 @@ def bounds_of(name: str, pair: Any) -> tuple[float, float]:
 
 
 def _pair(name: str, pair: Any, what: str, words: str) -> tuple[float, float]:
-    try:
-        first, second = pair
-    except (TypeError, ValueError):
-        raise InputError(f"the {what} of {name} must be a {words}, got {pair!r:.40}") from None
+    first, second = pair_of(f"the {what} of {name} must be a {words}", pair)
     unit = ALL[name].unit
     return real(f"the {what} of {name}", first, unit), real(f"the {what} of {name}", second, unit)

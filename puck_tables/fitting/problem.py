@@ -162,6 +162,16 @@ class Problem(Slides):
     weights: tuple[FloatArray, ...] = ()
 
     @cached_property
+    def angled(self) -> bool:
+        """Whether any track has angles."""
+        return any(film.angle is not None for film in self.films)
+
+    @cached_property
+    def size(self) -> float:
+        """How far the farthest of the pucks goes along x or y, m."""
+        return max(film.size for film in self.films)
+
+    @cached_property
     def kinds(self) -> npt.NDArray[np.int64]:
         """What kind each residual is of."""
         kinds: list[npt.NDArray[np.int64]] = []

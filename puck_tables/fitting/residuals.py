@@ -95,9 +95,8 @@ def misfits(
     what a slope, drag or air would explain.
     """
     told = []
-    size = max(float(np.ptp(film.place, axis=0).max()) for film in result.problem.films)
     # smaller residuals are the errors of what is computed
-    seen = result.problem.noise[0] > _COMPUTED * size
+    seen = result.problem.noise[0] > _COMPUTED * result.problem.size
     excess = excess_of(result, smooth)
     given = any(known[:2])
     if seen and not given and excess > NOISY:
@@ -117,12 +116,11 @@ def hidden(result: Estimate) -> bool:
     """Whether residuals are no more than rounding leaves, which is no noise."""
     films, noise = result.problem.films, result.problem.noise
     steps = [max(film.steps[kind] for film in films) for kind in range(2)]
-    angled = any(film.angle is not None for film in films)
     within = [
         step > 0.0 and result.size * own < _ROUNDED * step
         for step, own in zip(steps, noise, strict=True)
     ]
-    return within[0] or (angled and within[1])
+    return within[0] or (result.problem.angled and within[1])
 
 
 def may_misfit(
@@ -139,13 +137,11 @@ def may_misfit(
 
 def no_answer(result: Estimate, known: Known, smooth: tuple[float, float]) -> str:
     """A sentence where no motion comes near the tracks, and nothing is determined; else none."""
-    size = max(float(np.ptp(film.place, axis=0).max()) for film in result.problem.films)
     usual = result.size
     times = max(excess_of(result, smooth), usual if any(known[:2]) else 0.0)
-    angled = any(film.angle is not None for film in result.problem.films)
-    if times > _NOWHERE and usual * result.problem.noise[0] > _FAR * size:
+    if times > _NOWHERE and usual * result.problem.noise[0] > _FAR * result.problem.size:
         far = f"the nearest is {times:.3g} times the noise off"
-    elif angled and usual * result.problem.noise[1] > _ANY:
+    elif result.problem.angled and usual * result.problem.noise[1] > _ANY:
         far = f"angles are {usual * result.problem.noise[1]:.2g} rad off the nearest"
     else:
         return ""

@@ -1,10 +1,10 @@
 """Values to begin with where more than one friction moves a puck: from what slows and turns it.
 
-A polynomial of time through places and angles in one piece tells velocity v and spin ω; what they
-change by, from their means over the film, is linear in friction, drags and a push, for a flat puck
+A polynomial of time through places and angles in one piece tells velocity v and spin ω.  With these
+places and angles are linear in the launch, in friction, drags and a push, for a flat puck
 
-    Δv = −f g ∫ I_a v/|v| dt − c ∫ v dt − k ∫ |v| v dt + p t
-    Δω = −f g (r/k_g²) ∫ I_d sgn ω dt − (c + s) ∫ ω dt
+    Δx = v₀ t + ∬ (−f g I_a v/|v| − c v − k |v| v + p) dt² ,
+    Δφ = ω₀ t + ∬ (−f g (r/k_g²) I_d sgn ω − (c + s) ω) dt² ,
 
 with the integrals I_a, I_d of the base over the direction of slip (uniform pressure).  Over a belt
 v is relative to it; f of a named law counts at the slip √(v² + (rω)²).  What is not linear, the
@@ -24,9 +24,11 @@ from numpy.polynomial import Chebyshev
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact import closed_form
 from puck_tables.errors import InputError
+from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.least_squares import FROM_SLOWING, ROBUST, multi_start
 from puck_tables.fitting.named_laws import shape
 from puck_tables.fitting.observations import Observations, rests_from, turning_of
+from puck_tables.fitting.parameters import NOTHING
 from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.unknowns import NumbersOf
 
@@ -35,19 +37,27 @@ _FAR, _ROUNDS = 4.0, 4  # usual deviations of a frame that counts; so often othe
 _MOMENTS = 60
 _LEAST = 1e-3  # of the friction that slows alone
 _KEPT = 5  # trials that begin a fit
+_FRICTIONS = ("friction", "friction_rest")
 _LINEAR = ("friction", "friction_rest", "drag", "air", "spin_drag", "slope_x", "slope_y")
-_NOTHING = ("drag", "air", "spin_drag", "slope_x", "slope_y", "belt_x", "belt_y")
-_LAW_SPEEDS = (0.03, 0.06, 0.1, 0.16, 0.25, 0.4, 0.6)  # of the fastest slip
+# of the base, by radius and direction: half of it, the other is its mirror image
+_PARTS = np.outer(
+    np.sqrt((np.arange(6) + 0.5) / 6.0), np.exp(1j * np.pi * ((np.arange(16) + 0.5) / 16.0 - 0.5))
+).ravel()  # fmt: skip
+_LAW_SPEEDS = tuple(np.geomspace(0.02, 0.9, 12).tolist())  # of the fastest slip
 _BELT_SPEEDS, _BELT_WAYS = (0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0), 16  # of the fastest speed
 
 
 class _Moments(NamedTuple):
-    """A track at moments (m,) s: velocities (2, m) m/s, speeds of the rim (m,), and its launch."""
+    """A track at moments (m,) s: x, y and the way of the rim (3, m) m, and their speeds (3, m)."""
 
     at: FloatArray
-    velocity: FloatArray
-    rim: FloatArray
-    launch: list[float]
+    place: FloatArray
+    speed: FloatArray
+
+    @property
+    def line(self) -> FloatArray:
+        """What a launch does to each of the places (m, 2), by where and how fast it begins."""
+        return np.stack([np.ones(self.at.size), self.at], axis=1)
 
 
 def starts_from_slowing(problem: Problem) -> list[tuple[Problem, FloatArray]]:
@@ -81,14 +91,16 @@ def starts_from_slowing(problem: Problem) -> list[tuple[Problem, FloatArray]]:
         angle = None if turning is None else turning.angle
         whole.append(angle)
         films.append(_moments(film, angle, rests_from(film, problem.noise[0]), radius))
-    tried = [_linear_fit(problem, films, trial) for trial in _trials(problem, films)]
-    tried = sorted(tried, key=lambda one: one[1])[:_KEPT]
-    alone = {**tried[0][0], **dict.fromkeys(_NOTHING, 0.0), "friction": tried[0][2]}
-    alone["friction_rest"] = alone["friction"]
     spec, known = problem.spec, problem.spec.known()
+    alone = _linear_fit(replace(spec.plain(), free=("friction",)), films, {}, 0.0)
+    one = alone.numbers["friction"]
+    tried = [_linear_fit(spec, films, trial, _LEAST * one) for trial in _trials(problem, films)]
+    tried = sorted(tried, key=lambda one: one.left)[:_KEPT]
+    law_speed = tried[0].numbers.get("law_speed", 0.0)
+    alone.numbers.update({**NOTHING, "friction_rest": one, "law_speed": law_speed})
     moved = replace(problem, whole=tuple(whole), weights=())
-    launches, starts = np.array([film.launch for film in films]), []
-    for numbers in (*(one[0] for one in tried), alone):
+    starts = []
+    for numbers, launches, _ in (*tried, alone):
         begun = {**known, "delta": 0.1, **numbers, **spec.start}
         begun["decel"] = begun["friction"] * known["gravity"]
         x = moved.unknowns({name: begun[name] for name in spec.free}, launches)
@@ -96,35 +108,30 @@ def starts_from_slowing(problem: Problem) -> list[tuple[Problem, FloatArray]]:
     return starts
 
 
-def nearest_start(problem: Problem) -> tuple[Problem, FloatArray] | None:
-    """That of the starts which leads to the deepest minimum, there; None where there are none."""
-    starts = starts_from_slowing(problem)
+def nearest_start(
+    problem: Problem, starts: list[tuple[Problem, FloatArray]]
+) -> tuple[Problem, FloatArray]:
+    """That of the starts which leads to the deepest minimum, there; refused where there are none.
+
+    With its unknowns comes the problem with the angles of each track in one piece.
+    """
     if not starts:
-        return None
-    (x, _), *_ = multi_start(starts, FROM_SLOWING, ROBUST)
-    return starts[0][0], x
-
-
-def begun_or_refused(problem: Problem) -> tuple[Problem, FloatArray]:
-    """The same, refused where none can be followed."""
-    begun = nearest_start(problem)
-    if begun is None:
         raise InputError(
             f"{' and '.join(problem.spec.integrated)} are found of tracks with angles that can be "
             "followed from frame to frame, or along a line: film a mark on the puck"
         )
-    return begun
+    return starts[0][0], multi_start(starts, FROM_SLOWING, ROBUST)[0][0]
 
 
 def _trials(problem: Problem, films: list[_Moments]) -> Iterator[NumbersOf]:
     """Values of what is not linear."""
     spec = problem.spec
-    fastest = max(float(np.hypot(np.hypot(*one.velocity), one.rim).max()) for one in films)
+    fastest = max(float(np.linalg.norm(one.speed, axis=0).max()) for one in films)
     if "law_speed" in spec.free:
         yield from ({"law_speed": share * fastest} for share in _LAW_SPEEDS)
     elif {"belt_x", "belt_y"} & {*spec.free}:
         way = 2.0 * np.pi * np.arange(_BELT_WAYS) / _BELT_WAYS
-        ends = [one.velocity[:, -1] for one in films]
+        ends = [one.speed[:2, -1] for one in films]
         tried = [share * fastest * np.array([np.cos(a), np.sin(a)])
                  for share in _BELT_SPEEDS for a in way]  # fmt: skip
         for belt in (*ends, *tried):
@@ -133,33 +140,51 @@ def _trials(problem: Problem, films: list[_Moments]) -> Iterator[NumbersOf]:
         yield {}
 
 
-def _linear_fit(
-    problem: Problem, films: list[_Moments], trial: NumbersOf
-) -> tuple[NumbersOf, float, float]:  # fmt: skip
-    """The numbers that linear least squares find with those tried, what is left, and f alone."""
-    spec = problem.spec
+class _LinearFit(NamedTuple):
+    """Numbers of the puck, launches (tracks, 6), and the squares that are left, m²."""
+
+    numbers: NumbersOf
+    launches: FloatArray
+    left: float
+
+
+def _linear_fit(spec: FitSpec, films: list[_Moments], trial: NumbersOf, least: float) -> _LinearFit:
+    """What linear least squares find with the numbers tried; ``least``: of a friction."""
+    from scipy.optimize import lsq_linear
+
     known = {**spec.known(), **trial}
     names = [n for n in _LINEAR if n in spec.free or (n == "friction" and "decel" in spec.free)]
-    parts = [_columns(one, spec.law, known) for one in films]
-    every = np.concatenate([columns for columns, _ in parts])
-    change = np.concatenate([lost for _, lost in parts])
     at = [_LINEAR.index(name) for name in names]
-    held = [k for k in range(len(_LINEAR)) if k not in at]
     fixed = np.array([known.get(name, 0.0) for name in _LINEAR])
+    fixed[at] = 0.0
     if spec.law == "":
         fixed[_LINEAR.index("friction_rest")] = 0.0
-    rest = change - every[:, held] @ fixed[held]
-    found = np.linalg.lstsq(every[:, at], rest, rcond=None)[0]
-    left = float(np.sum((every[:, at] @ found - rest) ** 2))
-    alone = float(change @ every[:, 0] / max(every[:, 0] @ every[:, 0], 1e-300))
-    values = dict(zip(names, found.tolist(), strict=True))
-    for name in ("drag", "air", "spin_drag"):
-        if name in values:
-            values[name] = max(values[name], 0.0)
-    for name in ("friction", "friction_rest"):
-        if name in values:
-            values[name] = max(values[name], _LEAST * abs(alone))
-    return {**trial, **values}, left, max(alone, _LEAST)
+    columns = [_columns(one, spec.law, known) for one in films]
+    rest = [one.place.T - column @ fixed for one, column in zip(films, columns, strict=True)]
+    every, seen = (
+        np.concatenate([_without_launch(film, one) for film, one in zip(films, rows, strict=True)])
+        for rows in ([column[..., at] for column in columns], rest)
+    )
+    found, left = np.zeros(len(at)), float(seen @ seen)
+    if names:
+        size = np.maximum(np.linalg.norm(every, axis=0), 1e-300)
+        low, high = np.array([spec.limits(name) for name in names]).T
+        low = np.maximum(low, [least if name in _FRICTIONS else -np.inf for name in names])
+        result = lsq_linear(every / size, seen, (low * size, high * size), method="bvls")
+        found, left = result.x / size, 2.0 * float(result.cost)
+    radius, launches = spec.known()["radius"], []
+    for film, column, one in zip(films, columns, rest, strict=True):
+        begun, speed = np.linalg.lstsq(film.line, one - column[..., at] @ found, rcond=None)[0]
+        launches.append([*begun[:2], *speed[:2], speed[2] / radius, begun[2] / radius])
+    numbers = dict(zip(names, found.tolist(), strict=True))
+    return _LinearFit({**trial, **numbers}, np.array(launches), left)
+
+
+def _without_launch(film: _Moments, rows: FloatArray) -> FloatArray:
+    """What a launch cannot do of places (m, 3, …), one after the other."""
+    way = np.linalg.qr(film.line)[0]
+    left = rows - np.tensordot(way @ way.T, rows, 1)
+    return left.reshape(-1, *rows.shape[2:])
 
 
 def _moments(
@@ -180,45 +205,46 @@ def _moments(
                 break
             kept = again
         smooth.append(one)
-    x, y, turn = smooth
-    vx, vy, spin = (one.deriv()(at) for one in smooth)
-    launch = [float(one) for one in (x(0.0), y(0.0), vx[0], vy[0], spin[0], turn(0.0))]
-    return _Moments(at, np.stack([vx, vy]), radius * spin, launch)
+    speed = np.stack([one.deriv()(at) for one in smooth])
+    size = np.array([[1.0], [1.0], [radius]])
+    return _Moments(at, size * np.stack([one(at) for one in smooth]), size * speed)
 
 
-def _columns(
-    film: _Moments, law: str, known: NumbersOf
-) -> tuple[FloatArray, FloatArray]:  # fmt: skip
-    """What each of the linear numbers does to the speeds along x and y and of the rim (3m, 7).
-
-    And by how much these changed (3m,).
-    """
+def _columns(film: _Moments, law: str, known: NumbersOf) -> FloatArray:
+    """What each of the linear numbers does to x, y and the way of the rim (m, 3, 7)."""
     belt = np.array([known.get("belt_x", 0.0), known.get("belt_y", 0.0)])
-    velocity = film.velocity - belt[:, None]
-    v, rim, g = np.hypot(*velocity), np.abs(film.rim), known["gravity"]
+    velocity, turning = film.speed[:2] - belt[:, None], film.speed[2]
+    v, rim, g = np.hypot(*velocity), np.abs(turning), known["gravity"]
     slip = np.maximum(np.hypot(v, rim), 1e-300)
-    fast = (rim > v).astype(np.float64)
     a, _, d = closed_form.shape_integrals(
-        np.minimum(v, rim) / np.maximum(np.maximum(v, rim), 1e-300), fast
+        np.minimum(v, rim) / np.maximum(np.maximum(v, rim), 1e-300), (rim > v).astype(np.float64)
     )
-    side = np.sign(film.rim)
-    braking = -g * np.stack(
-        [*(velocity / slip * a), side * rim / slip * d / known["gyration"] ** 2]
-    )
-    share = np.zeros(v.size) if law == "" else shape(law, slip / known["law_speed"])
+    whole = np.stack([v / slip * a, rim / slip * d])
+    part = np.zeros_like(whole) if law == "" else _of_law(v, rim, law, known["law_speed"])
+    ways = np.stack([*(velocity / np.maximum(v, 1e-300)), np.sign(turning)])
+    ways[2] /= known["gyration"] ** 2
+    braking, resting = (-g * one[[0, 0, 1]] * ways for one in (whole - part, part))
     none = np.zeros(v.size)
-    rates = [
-        braking * (1.0 - share), braking * share,
-        -np.stack([*velocity, film.rim]), -np.stack([*(v * velocity), none]),
-        -np.stack([none, none, film.rim]),
+    rates = np.stack([
+        braking, resting,
+        -np.stack([*velocity, turning]), -np.stack([*(v * velocity), none]),
+        -np.stack([none, none, turning]),
         np.stack([none + g, none, none]), np.stack([none, none + g, none]),
-    ]  # fmt: skip
-    steps = np.diff(film.at)
-    columns = []
-    for rate in rates:
-        parts = np.cumsum(0.5 * steps * (rate[:, 1:] + rate[:, :-1]), axis=1)
-        columns.append(np.concatenate([np.zeros((3, 1)), parts], axis=1))
-    columns.append(np.concatenate([film.velocity, film.rim[None]]))
-    # from their means: a polynomial is least sure at its ends
-    *columns, moved = [(one - one.mean(axis=1, keepdims=True)).ravel() for one in columns]
-    return np.stack(columns, axis=1), moved
+    ], axis=2)  # fmt: skip
+    for _ in range(2):
+        steps = np.diff(film.at)[:, None] * 0.5 * (rates[:, 1:] + rates[:, :-1])
+        rates = np.concatenate([np.zeros((3, 1, 7)), np.cumsum(steps, axis=1)], axis=1)
+    return np.swapaxes(rates, 0, 1)
+
+
+def _of_law(v: FloatArray, rim: FloatArray, law: str, speed: float) -> FloatArray:
+    """Force and torque of φ of a law over the base, at speeds (m,) of its middle and rim, (2, m).
+
+    Over f N and f N r; summed over parts of the base of equal size.
+    """
+    along, aside = _PARTS.real, _PARTS.imag
+    ahead, across = v[:, None] - rim[:, None] * aside, rim[:, None] * along
+    slip = np.maximum(np.hypot(ahead, across), 1e-300)
+    pull = shape(law, slip / speed) / slip
+    pulls = np.stack([pull * ahead, pull * (across * along - ahead * aside)])
+    return np.asarray(pulls.mean(axis=2))

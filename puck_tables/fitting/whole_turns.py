@@ -18,13 +18,12 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.least_squares import ROBUST, minimise
-from puck_tables.fitting.observations import Observations
+from puck_tables.fitting.observations import MEDIAN, Observations
 from puck_tables.fitting.problem import ANGLE, PLACE, TURN, Problem
 
 EXCLUDED = 25.0  # of χ²: a spin of less than half a turn a frame
 _MISFIT, _LESS = 1.5, 5.0  # residuals over the noise that are none, and how many times less count
 _FARTHEST = 16.0  # of the square of a residual
-_MEDIAN = 0.6744897501960817
 _DIRECTIONS, _TOLD, _WIDE = 3, 0.3, 3.5  # phases; rad that need no search; standard deviations
 _STEP, _MOST = 0.8, 2e6  # rad; phases of frames that are looked at
 _LOST = 1e4  # rad: places tell nothing of how it turns
@@ -131,7 +130,7 @@ def _judged(
         mine = problem.kinds == kind
         if mine.any():
             share = max(1.0 - 0.5 * len(problem.names) / mine.sum(), 0.1)
-            told[:, kind] = [float(np.median(np.abs(one[mine]))) / _MEDIAN / share for one in rows]
+            told[:, kind] = [float(np.median(np.abs(one[mine]))) / MEDIAN / share for one in rows]
             scale[:, mine] = np.maximum(1.0, told[:, kind, None])
     best = int(np.argmin([float(np.minimum(one**2, _FARTHEST).sum()) for one in rows]))
     chi2 = [float(np.minimum((one / scale[best]) ** 2, _FARTHEST).sum()) for one in rows]

@@ -22,21 +22,21 @@ PARTS = 4  # p_a, p_b, p_d, p_e
 _RULES = (14, 8, 5, 12, 7, 5)
 _FAR, _FARTHER = 8.0, 20.0  # half widths
 _NODES = [np.polynomial.legendre.leggauss(n) for n in _RULES]
-_GAUSS = np.concatenate([nodes for nodes, _ in _NODES])
-_WEIGHTS = np.concatenate([weights for _, weights in _NODES])
-_ENDS = (0, *np.cumsum(_RULES).tolist())
+GAUSS = np.concatenate([nodes for nodes, _ in _NODES])
+WEIGHTS = np.concatenate([weights for _, weights in _NODES])
+ENDS = (0, *np.cumsum(_RULES).tolist())
 FINE, COARSE = 0, 3  # which rules to take
 _GROWTH = 3.0  # each edge is so many times farther from the branch point
-_GRADED = 40  # edges at most: 3^-34 is below any difference from 1
+GRADED = 40  # edges at most: 3^-34 is below any difference from 1
 _FACTORIALS = np.array([(-1.0) ** k / math.factorial(2 * k + 3) for k in range(10)])
 _TINY = 1e-300  # the least that is divided by
 ORIGIN, SCALE, FIRST_POWER = range(3)  # columns of a piece
-_FEW_POWERS = FIRST_POWER + 4  # up to cubics a law may have corners
+FEW_POWERS = FIRST_POWER + 4  # up to cubics a law may have corners
 _SAME_PIECE = 0.05  # of half a smooth piece: so far it may be taken beyond its ends
 
 
 @inlined
-def _part(breaks: FloatArray, u: float) -> int:
+def part_at(breaks: FloatArray, u: float) -> int:
     """The cubic piece in which a speed lies; the last one goes on."""
     low, high = 0, len(breaks) - 1
     while high - low > 1:
@@ -57,9 +57,9 @@ def _value(pieces: FloatArray, k: int, u: float) -> float:
 
 
 @inlined
-def _is_smooth(pieces: FloatArray) -> bool:
+def is_smooth(pieces: FloatArray) -> bool:
     """Whether pieces are of a high degree, of a law that bends nowhere."""
-    return pieces.shape[1] > _FEW_POWERS
+    return pieces.shape[1] > FEW_POWERS
 
 
 @inlined
@@ -74,16 +74,18 @@ def _short(x: float) -> float:
 
 
 @inlined
-def _rule(middle: float, half: float, branch: float, smooth: bool, rules: int) -> tuple[int, int]:
+def rule_for(
+    middle: float, half: float, branch: float, smooth: bool, rules: int
+) -> tuple[int, int]:
     """First and last of the nodes to take in a panel."""
     away, square, which = middle * middle + branch * branch, half * half, rules
     if away > _FAR * _FAR * square:
         which += 2 if away > _FARTHER * _FARTHER * square and not smooth else 1
-    return _ENDS[which], _ENDS[which + 1]
+    return ENDS[which], ENDS[which + 1]
 
 
 @inlined
-def _sorted_edges(edges: FloatArray, count: int, last: float, branch: float) -> int:
+def sorted_edges(edges: FloatArray, count: int, last: float, branch: float) -> int:
     """Panel edges: 0, ``last``, the corners that are there, and those that grow from the branch."""
     edges[count], edges[count + 1] = 0.0, last
     count += 2
@@ -126,7 +128,7 @@ def _centre_inside(
 ) -> None:  # fmt: skip
     """|φ| > π/4, s = cot φ < 1: whole circles R ≤ 1 − s, then arcs R = 1 − s cos τ."""
     corners, sine = len(breaks) - 2, 1.0 / math.sqrt(1.0 + s * s)
-    smooth = _is_smooth(pieces)
+    smooth = is_smooth(pieces)
     disc = rules if smooth else FINE + 2  # a polynomial
     rim = speed * sine
     whole, first = 0.0, 0.0
@@ -136,9 +138,9 @@ def _centre_inside(
             last = breaks[k + 1] / rim
         half, middle = 0.5 * (last - first), 0.5 * (last + first)
         if half > 0.0:
-            for i in range(_ENDS[disc], _ENDS[disc + 1]):
-                R = middle + half * _GAUSS[i]
-                whole += half * _WEIGHTS[i] * _value(pieces, k, rim * R) * R * R
+            for i in range(ENDS[disc], ENDS[disc + 1]):
+                R = middle + half * GAUSS[i]
+                whole += half * WEIGHTS[i] * _value(pieces, k, rim * R) * R * R
         first = last
     count = 0
     if s > 0.0 and rim > 0.0:
@@ -148,7 +150,7 @@ def _centre_inside(
                 edges[count] = 2.0 * math.asin(math.sqrt(away))
                 count += 1
     branch = math.sqrt(1.0 - s)
-    count = _sorted_edges(edges, count, math.pi, branch)
+    count = sorted_edges(edges, count, math.pi, branch)
     parallel, across, spin, tilted = 0.0, 0.0, 0.0, 0.0
     for panel in range(count - 1):
         half, middle = (
@@ -157,15 +159,15 @@ def _centre_inside(
         )
         if half <= 0.0:
             continue
-        k = _part(breaks, rim * ((1.0 - s) + 2.0 * s * math.sin(0.5 * middle) ** 2))
-        rule = _rule(middle, half, branch, smooth, rules)
+        k = part_at(breaks, rim * ((1.0 - s) + 2.0 * s * math.sin(0.5 * middle) ** 2))
+        rule = rule_for(middle, half, branch, smooth, rules)
         for i in range(rule[0], rule[1]):
-            tau = middle + half * _GAUSS[i]
+            tau = middle + half * GAUSS[i]
             h, g = math.sin(0.5 * tau), math.cos(0.5 * tau)
             c, sin_tau = 1.0 - 2.0 * h * h, 2.0 * h * g
             R = (1.0 - s) + 2.0 * s * h * h
-            k = _part(breaks, rim * R) if smooth else k
-            weight = half * _WEIGHTS[i] * _value(pieces, k, rim * R) * sin_tau
+            k = part_at(breaks, rim * R) if smooth else k
+            weight = half * WEIGHTS[i] * _value(pieces, k, rim * R) * sin_tau
             root = math.sqrt((R + 1.0 - s) * (R + 1.0 + s))
             if R < _TINY:
                 R = _TINY
@@ -188,14 +190,14 @@ def _centre_inside(
 
 
 @inlined
-def _both(
+def both(
     pieces: FloatArray, far: int, near: int, centre: float, step: float
 ) -> tuple[float, float, float]:
     """f(centre + step), f(centre − step), and their difference over 2 step.
 
     In one piece without subtracting: by Horner's scheme for P(t ± h) = even ± h odd.
     """
-    if far != near and _is_smooth(pieces) and step * pieces[near, SCALE] < _SAME_PIECE:
+    if far != near and is_smooth(pieces) and step * pieces[near, SCALE] < _SAME_PIECE:
         far = near
     if far == near:
         t, h = (centre - pieces[far, ORIGIN]) * pieces[far, SCALE], step * pieces[far, SCALE]
@@ -214,7 +216,7 @@ def _centre_outside(
     edges: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
     """|φ| ≤ π/4, κ = tan φ = 1/s ≤ 1: the circles R = s ± cos τ together, as nothing cancels."""
-    cosine, smooth = 1.0 / math.sqrt(1.0 + kappa * kappa), _is_smooth(pieces)
+    cosine, smooth = 1.0 / math.sqrt(1.0 + kappa * kappa), is_smooth(pieces)
     centre = speed * cosine
     reach, count = centre * kappa, 0
     for k in range(1, len(breaks) - 1):
@@ -223,7 +225,7 @@ def _centre_outside(
             edges[count] = 2.0 * math.asin(math.sqrt(0.5 * (reach - away) / reach))
             count += 1
     branch = math.sqrt(2.0 * (1.0 - kappa))
-    count = _sorted_edges(edges, count, 0.5 * math.pi, branch)
+    count = sorted_edges(edges, count, 0.5 * math.pi, branch)
     parallel, across, spin, tilted = 0.0, 0.0, 0.0, 0.0
     for panel in range(count - 1):
         half, middle = (
@@ -233,17 +235,17 @@ def _centre_outside(
         if half <= 0.0:
             continue
         step = reach * math.cos(middle)
-        far, near = _part(breaks, centre + step), _part(breaks, centre - step)
-        rule = _rule(middle, half, branch, smooth, rules)
+        far, near = part_at(breaks, centre + step), part_at(breaks, centre - step)
+        rule = rule_for(middle, half, branch, smooth, rules)
         for i in range(rule[0], rule[1]):
-            tau = middle + half * _GAUSS[i]
+            tau = middle + half * GAUSS[i]
             h = math.sin(0.5 * tau)
             sin_tau, c = math.sin(tau), math.cos(tau)
-            weight = half * _WEIGHTS[i] * sin_tau
+            weight = half * WEIGHTS[i] * sin_tau
             step = reach * c
             if smooth:  # next to slip zero rounding may put a node into the next piece
-                far, near = _part(breaks, centre + step), _part(breaks, centre - step)
-            f_far, f_near, slope = _both(pieces, far, near, centre, step)
+                far, near = part_at(breaks, centre + step), part_at(breaks, centre - step)
+            f_far, f_near, slope = both(pieces, far, near, centre, step)
             slope *= centre
             # T² = (2 ± κc)² − κ², by factors that do not cancel for κ, c → 1
             outer, inner = 2.0 + kappa * c, 2.0 * (1.0 - kappa) + 2.0 * kappa * h * h
@@ -280,7 +282,7 @@ def fill_integrals(
 ) -> None:  # fmt: skip
     """The four at flat arrays of points into ``out`` (n, 4)."""
     patience(ratio.size)
-    edges = np.empty(len(breaks) + _GRADED)
+    edges = np.empty(len(breaks) + GRADED)
     for n in range(ratio.size):
         patience(1)
         integrals_at(breaks, pieces, ratio[n], fast[n], speed[n], rules, edges, out[n])

@@ -17,6 +17,12 @@ for half powers of the distance from U = b_k and W = b_l, and W² ln W at 0; p =
 r|ω| < v both meet one corner, l = k.  g is 1, for f that is smooth at slip zero; larger where f
 leaves its value there with a power that is no whole number.  One set of patches for r|ω| <
 v, one for r|ω| > v.
+
+Under a load with edges within the rim a patch lies in a slab of U between two rays (v − r|ω|)/U
+on which the centre of rotation crosses an edge; U = b_k + (b_{k+1} − b_k) ξ, and of the way from
+one ray to the other ζ⁴/(ζ⁴ + (1 − ζ)⁴), which clears W² ln W at both.  Where a law has corners and
+the load is that of discs, each is looked up in the table of one
+(:mod:`puck_tables.contact.round_load`).
 """
 
 from __future__ import annotations
@@ -33,23 +39,36 @@ from puck_tables.kernels.spline import cell_at
 DONE, TOO_FAST = 0, 1  # what a look-up ends as
 DEGREE = 5  # of the patches
 EDGE_POWER, CORNER_POWER = 2, 3  # of the grading of nodes at edges, and at corners of the law
+_TINY = 1e-300  # m/s
 _ROUNDING = 1.0 + 1e-12  # a speed so little above the last is the last
 
 
 def packed(
-    breaks: FloatArray, cells: npt.NDArray[np.int64], coefficients: list[FloatArray], grade: int
-) -> FloatArray:
+    breaks: FloatArray, rays: FloatArray, discs: FloatArray, cells: npt.NDArray[np.int64],
+    coefficients: list[FloatArray], grade: int,
+) -> FloatArray:  # fmt: skip
     """A table as one array: a loop that hands it on counts the references of one.
 
-    The number of breaks, the breaks, for each patch where its coefficients begin and its cells
+    The number of breaks, the breaks, the number of rays, the rays, the number of discs that are
+    looked up, their radii and shares, for each patch where its coefficients begin and its cells
     along ξ and ζ, the coefficients, and g.
     """
     sizes = np.array([part.size for part in coefficients])
-    header = 1 + len(breaks) + 3 * len(cells)
+    header = 3 + len(breaks) + len(rays) + discs.size + 3 * len(cells)
     begins = header + np.concatenate([[0], np.cumsum(sizes)[:-1]])
     layout = np.concatenate([begins[:, None], cells], axis=1).ravel()
     return np.concatenate(
-        [[len(breaks)], breaks, layout, *[c.ravel() for c in coefficients], [grade]]
+        [
+            [len(breaks)],
+            breaks,
+            [len(rays)],
+            rays,
+            [len(discs)],
+            discs.ravel(),
+            layout,
+            *[c.ravel() for c in coefficients],
+            [grade],
+        ]
     )
 
 
@@ -107,6 +126,29 @@ def _first_of(slab: int) -> int:
 
 
 @inlined
+def _between_rays(
+    table: FloatArray, slabs: int, rays: int, k: int, U: float, across: float
+) -> tuple[int, float, float]:
+    """The same of a table with rays, in slab k; ``across``: v − r|ω|."""
+    low, high, sector = -1.0, 1.0, 0
+    while sector < rays:
+        ray = table[3 + slabs + sector]
+        if across < ray * U:
+            high = ray
+            break
+        low = ray
+        sector += 1
+    begin, end = table[1 + k], table[2 + k]
+    xi, grade = (U - begin) / (end - begin), table[table.size - 1]
+    if k == 0 and grade != 1.0:
+        xi = xi ** (1.0 / grade)
+    way = across / max(U, _TINY)
+    near = math.sqrt(math.sqrt(max(way - low, 0.0)))
+    far = math.sqrt(math.sqrt(max(high - way, 0.0)))
+    return k * (rays + 1) + sector, xi, near / (near + far)
+
+
+@inlined
 def patch_and_place(
     table: FloatArray, ratio: float, fast: bool, speed: float
 ) -> tuple[int, float, float]:
@@ -120,7 +162,9 @@ def patch_and_place(
     U, W = along * (1.0 + ratio), along * (1.0 - ratio)
     if not (table[1 + slabs] * _ROUNDING >= U):
         return -1, 0.0, 0.0
-    k = _below(table, U, slabs - 1)
+    k, rays = _below(table, U, slabs - 1), int(table[2 + slabs])
+    if rays > 0:
+        return _between_rays(table, slabs, rays, k, U, -W if fast else W)
     first = _first_of(k) + (_first_of(slabs) if fast else 0)
     if k == 0:
         xi, grade = U / table[2], table[table.size - 1]
@@ -151,10 +195,39 @@ def speed_integrals_at(
     ``ratio`` = min(v, r|ω|)/max(v, r|ω|) ∈ [0, 1], ``fast`` whether r|ω| > v, ``speed`` =
     Q = hypot(v, rω) in m/s.
     """
+    breaks = int(table[0])
+    at = 2 + breaks + int(table[1 + breaks])
+    discs = int(table[at])
+    layout = at + 1 + 2 * discs
+    if discs == 0:
+        return _looked_up(table, layout, ratio, fast, speed)
+    small, large = ratio / math.sqrt(1.0 + ratio * ratio), 1.0 / math.sqrt(1.0 + ratio * ratio)
+    alpha, beta = (small, large) if fast else (large, small)
+    if not (table[breaks] * _ROUNDING >= speed * (alpha + beta)):
+        return math.nan, math.nan, math.nan, math.nan
+    a, b, d, e = 0.0, 0.0, 0.0, 0.0
+    for n in range(discs):
+        radius = table[at + 1 + 2 * n]
+        rim, square = radius * beta, radius * radius
+        norm = math.sqrt(alpha * alpha + rim * rim)
+        inside = rim > alpha
+        own = alpha / rim if inside else rim / alpha
+        p = _looked_up(table, layout, own, inside, speed * norm)
+        share = table[at + 2 + 2 * n] / norm
+        a, b = a + share * p[0], b + share * square * p[1]
+        d, e = d + share * square * p[2], e + share * square * p[3]
+    return a, b, d, e
+
+
+@inlined
+def _looked_up(
+    table: FloatArray, layout: int, ratio: float, fast: bool, speed: float
+) -> tuple[float, float, float, float]:
+    """The four of what the patches are of; ``layout``: where these are told."""
     patch, xi, zeta = patch_and_place(table, ratio, fast, speed)
     if patch < 0:
         return math.nan, math.nan, math.nan, math.nan
-    place = 1 + int(table[0]) + 3 * patch
+    place = layout + 3 * patch
     return _spline(table, int(table[place]), int(table[place + 1]), int(table[place + 2]), xi, zeta)
 
 

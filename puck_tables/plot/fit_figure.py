@@ -12,7 +12,6 @@ from numpy.polynomial.polynomial import polyval
 from puck_tables._core.monotone import monotone_cubic
 from puck_tables.fitting.fit_result import Fit
 from puck_tables.fitting.forward_model import states_of
-from puck_tables.fitting.numbers import Number
 from puck_tables.fitting.parameters import NODES
 from puck_tables.plot.style import BLUE, COLORS, GREY, LAUNCH, ORANGE, RED, canvas
 from puck_tables.plot.titles import legend_below, titled
@@ -46,7 +45,7 @@ def draw(result: Fit) -> Figure:
             _draw_friction(figure.add_subplot(inner[0, len(shown)]), result)
         for n, name in enumerate(shown):
             _draw_profile(figure.add_subplot(inner[0, n]), result, name)
-    told = [f"{name} = {_in_words(result.numbers[name])}" for name in names]
+    told = [f"{name} = {result.numbers[name].written.replace('+-', '±')}" for name in names]
     told += [f"{name} is not determined" for name in free if name not in names]
     titled(
         figure,
@@ -176,9 +175,3 @@ def _draw_profile(panel: Axes, result: Fit, name: str) -> None:
     unit = "" if number.unit == "1" else f" / {number.unit}"
     panel.set(xlabel=f"{name}{unit}", title="rise of chi²")
     panel.tick_params(axis="x", labelrotation=30)
-
-
-def _in_words(number: Number) -> str:
-    if number.at_bound:
-        return f"{number.shown} at its bound"
-    return f"{number.value:.6g} ± {number.error:.2g}"

@@ -113,8 +113,7 @@ def _numbers(result: Fit) -> str:
 
 
 def _left(result: Fit) -> str:
-    angled = any(film.angle is not None for film in result.estimate.problem.films)
-    by_chance = min(result.runs, result.drift)
+    angled, by_chance = result.estimate.problem.angled, min(result.runs, result.drift)
     said = [
         f"A place is off by {1e3 * result.noise[0]:.3g} mm (standard deviation)"
         + (f", an angle by {math.degrees(result.noise[1]):.2g} degrees." if angled else "."),
@@ -197,14 +196,8 @@ def _words(name: str) -> str:
 
 
 def _written(number: Number) -> str:
-    """Value ± error and unit, to two digits of the error."""
-    unit = "" if number.unit == "1" else f" {number.unit}"
-    if not number.determined:
-        return "not told"
-    if number.at_bound or not (number.error > 0.0 and math.isfinite(number.error)):
-        return f"{number.value:.6g}{unit}"
-    digits = min(max(0, 1 - math.floor(math.log10(number.error))), 9)
-    return f"{number.value:.{digits}f} ± {number.error:.{digits}f}{unit}"
+    """Value ± error and unit."""
+    return number.written.replace("+-", "±") if number.determined else "not told"
 
 
 def _interval(number: Number) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from puck_tables.contact.friction_laws import NAMED, FrictionLaw
+from puck_tables.contact.round_load import RoundLoad
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import ContactError, InputError
 from puck_tables.scene.floor_patches import patch_faults
@@ -37,8 +38,11 @@ def floor_faults(scene: SceneSpec) -> list[str]:
     if scene.puck.shape is not None:
         wrong = bad_strips(scene.floor) or patch_faults(scene.floor) or _bad_under_base(scene)
         return faults + wrong + _bad_rows(scene) + _bad_axes(scene)
-    if scene.floor.law and (scene.puck.pressure != "uniform"):
-        faults.append("floor.law: known under uniform pressure only, not with puck.pressure")
+    if scene.floor.law:
+        try:
+            RoundLoad(scene.puck.body.law)
+        except InputError as error:
+            faults.append(f"floor.law: {error}")
     faults += bad_strips(scene.floor) or patch_faults(scene.floor) or _bad_astride(scene)
     return faults + _bad_rows(scene) + _bad_axes(scene)
 

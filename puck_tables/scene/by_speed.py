@@ -12,18 +12,21 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import rounded_up
 from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.contact.law_moments import law_moments
+from puck_tables.contact.round_load import RoundLoad, load_of
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import AccuracyError, InputError
+from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.scene.agreement import law_of_rows
 from puck_tables.scene.ingredients import BySpeed
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.table.speed_build import FINEST_ACCURACY
+from puck_tables.table.speed_build import finest_accuracy
 from puck_tables.table.speed_table import SpeedTable
 from puck_tables.table.table_cache import table_for
 
 Points = tuple[tuple[float, float], ...]
 
 LAW_SHARE = 0.1  # of the error wanted: of the friction at any slip, in units of f N
+UNDER_LAW_ERROR = 1e-10  # of integrals of a law over a base that is not round
 NO_LAW = BySpeed(np.zeros(0), 0.0, 0.0, 1.0)
 FARTHER = 4.0  # a law by name holds at all speeds: its table goes on as needed
 _FLAT = 8.0  # times its own scale goes the first table of a launch from rest
@@ -51,7 +54,9 @@ def law_range(scene: SceneSpec, fastest: float) -> tuple[SpeedLaw | FrictionLaw,
     return law, top, law.largest(top)
 
 
-def law_table(scene: SceneSpec, law: SpeedLaw | FrictionLaw, top: float) -> SpeedTable:
+def law_table(
+    scene: SceneSpec, law: SpeedLaw | FrictionLaw, top: float, load: RoundLoad
+) -> SpeedTable:
     """The table of a friction law up to a slip, m/s, that the scene's tolerance asks for.
 
     Raises
@@ -61,7 +66,8 @@ def law_table(scene: SceneSpec, law: SpeedLaw | FrictionLaw, top: float) -> Spee
     """
     try:
         with _one_at_a_time:
-            return _kept_table(_key(law), max(law_error(scene), FINEST_ACCURACY), top)
+            accuracy = max(LAW_SHARE * scene.tol, finest_accuracy(load))
+            return _kept_table(_key(law), accuracy, top, load)
     except AccuracyError as error:
         if error.reachable is None:
             raise
@@ -89,8 +95,30 @@ def _first_top(law: SpeedLaw | FrictionLaw, fastest: float) -> float:
 
 
 def law_error(scene: SceneSpec) -> float:
-    """How wrong friction by slip speed may be, in units of the largest."""
-    return max(LAW_SHARE * scene.tol, FINEST_ACCURACY)
+    """How wrong friction by slip speed may be under a puck, in units of the largest."""
+    load = load_under(scene.puck)
+    if load is None:
+        return UNDER_LAW_ERROR
+    return max(LAW_SHARE * scene.tol, finest_accuracy(load))
+
+
+def load_under(puck: PuckSpec) -> RoundLoad | None:
+    """The round load of a puck; None: its base is another, friction is summed along its contour.
+
+    Raises
+    ------
+    InputError
+        If its pressure law is given by a function.
+
+    Examples
+    --------
+    >>> from puck_tables import Puck
+    >>> load_under(Puck(base="annulus:0.1x0.05")).law.name, load_under(Puck(base="box:0.2x0.1"))
+    ('annulus:0.5', None)
+    """
+    if puck.shape is not None:
+        return load_of(puck.shape, puck.radius)
+    return RoundLoad(puck.body.law)
 
 
 def speed_law(scene: SceneSpec) -> SpeedLaw | FrictionLaw:
@@ -132,12 +160,13 @@ def _key(law: SpeedLaw | FrictionLaw) -> FrictionLaw | Points:
 
 
 @lru_cache(maxsize=8)
-def _kept_table(of: FrictionLaw | Points, accuracy: float, top: float) -> SpeedTable:
+def _kept_table(
+    of: FrictionLaw | Points, accuracy: float, top: float, load: RoundLoad
+) -> SpeedTable:  # fmt: skip
     """Kept by the law or its points: a sweep asks for it again and again."""
     law = _law(of)
-    if isinstance(law, FrictionLaw):
-        return table_for(law, accuracy, top_speed=top)
-    return table_for(law, accuracy)
+    last = top if isinstance(law, FrictionLaw) else None
+    return table_for(law, accuracy, top_speed=last, pressure=load.law, reach=load.reach)
 
 
 @lru_cache(maxsize=8)

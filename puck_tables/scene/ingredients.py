@@ -48,7 +48,8 @@ class BySpeed(NamedTuple):
     """Friction that depends on the slip speed, or on its direction; no ``normal``: there is none.
 
     ``table``: see :func:`puck_tables.kernels.speed_spline.packed`, or of the direction
-    :func:`puck_tables.scene.orthotropic.ellipse_in`; ``height_ratio``: 2h/r;
+    :func:`puck_tables.scene.orthotropic.ellipse_in`; ``height_ratio``: 2h/r
+    over 4⟨x²⟩/r², which is 1 under uniform pressure;
     ``normal``: N; ``moving``: 1, or 0 for the friction at slip zero.
     """
 
@@ -65,7 +66,8 @@ class Regions(NamedTuple):
     :func:`puck_tables.motion.equations_of_motion.ratios_at`; ``by_speed`` takes the place of all.
     ``astride`` (regions,): where the base lies on several frictions of the ``ground``, see
     :mod:`puck_tables.scene.base_on_floor`, or is not round; there load and δ are the largest of
-    them.  A run has its own ground, in which it says where the base is.
+    them.  A run has its own ground, in which it says where the base is.  ``laws`` (discs, 2): where
+    the table by speed of a disc begins and ends in that of ``by_speed``.
     """
 
     load: FloatArray
@@ -74,6 +76,7 @@ class Regions(NamedTuple):
     by_speed: BySpeed
     astride: npt.NDArray[np.bool_]
     ground: FloatArray
+    laws: npt.NDArray[np.int64]
 
 
 class Dry(NamedTuple):

@@ -13,7 +13,7 @@ from puck_tables.kernels.section_spline import HEADER, RATIOS
 from puck_tables.motion.body import body_of, is_plain
 from puck_tables.motion.friction_source import closed_form_friction, table_friction
 from puck_tables.motion.puck_spec import PuckSpec
-from puck_tables.scene.by_speed import law_error
+from puck_tables.scene.by_speed import UNDER_LAW_ERROR, law_error
 from puck_tables.scene.parts import Orthotropic
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.table.friction_section import FINEST_ACCURACY
@@ -21,7 +21,6 @@ from puck_tables.table.resultant_table import ResultantTable
 
 EXACT_BELOW = 1e-9  # friction by closed forms where a table's error would show
 CLOSED_FORM_ERROR, TABLE_ERROR = 1e-14, 2e-11
-UNDER_LAW_ERROR = 1e-10  # of integrals of a law over a base that is not round
 SLICE_SHARE = 0.1  # of the error wanted
 
 
@@ -53,11 +52,10 @@ def axes_of(two: Orthotropic) -> FloatArray:
 def friction_error(scene: SceneSpec) -> float:
     """How wrong the friction ratios under the puck of a scene may be."""
     puck = scene.puck
-    if puck.shape is not None:
-        by_law = scene.floor.law or scene.floor.orthotropic is not None
-        return UNDER_LAW_ERROR if by_law else CLOSED_FORM_ERROR
     if scene.floor.law:
         return law_error(scene)
+    if puck.shape is not None:
+        return CLOSED_FORM_ERROR if scene.floor.orthotropic is None else UNDER_LAW_ERROR
     if scene.floor.orthotropic is not None:
         return CLOSED_FORM_ERROR
     if all(is_plain(puck.pressure, puck.gyration, delta) for delta in scene.heights):

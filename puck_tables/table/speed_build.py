@@ -9,16 +9,20 @@ from typing import TypeVar
 import numpy as np
 
 from puck_tables._core.executor import run_chunks
-from puck_tables._core.real import rounded_up
+from puck_tables._core.real import real, rounded_up
 from puck_tables.contact.friction_laws import FrictionLaw
+from puck_tables.contact.laws import Law as PressureLaw
+from puck_tables.contact.laws import law_of
+from puck_tables.contact.round_load import RoundLoad
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.contact.speed_quadrature import speed_integrals
-from puck_tables.errors import AccuracyError
+from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.speed_quadrature_kernel import COARSE, FINE
 from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import COARSEST
-from puck_tables.table.speed_grid import breaks_of, patches_of
-from puck_tables.table.speed_patch import FilledPatch, Law
+from puck_tables.table.speed_grid import breaks_of, is_pile, patches_of, rays_under
+from puck_tables.table.speed_patch import FilledPatch
+from puck_tables.table.speed_truth import Law
 from puck_tables.table.speed_values import SpeedValues
 from puck_tables.table.table import Progress
 
@@ -26,7 +30,11 @@ K = TypeVar("K", bound=SpeedValues)  # the kind that is made
 
 DEFAULT_ACCURACY = 1e-6  # of f
 FINEST_ACCURACY = 1e-13  # of f: finer is rounding
+_FINEST_OF_OTHERS = 1e-9  # of f, under an annulus or a ring
+_FINEST_OF_CIRCLES = 1e-8  # of f, under piles of circles: a node takes half a millisecond
+LEAST_REACH = 1e-3  # of the radius
 MAX_NODES = 2_000_000  # more is an accuracy out of reach
+MAX_OF_CIRCLES = 300_000  # the same under those
 _NEXT = 0.03  # of the largest error: refined in the same round
 _SAFETY = 2.0  # for points that were not measured
 _COARSE_FROM = 5e-10  # from here on nodes of laws without corners are coarser; probes are not
@@ -40,6 +48,8 @@ def tabulated(
     top_speed: float | None = None,
     scale: float | None = None,
     progress: Progress | None = None,
+    pressure: str | PressureLaw = "uniform",
+    reach: float = 1.0,
 ) -> K:
     """Friction with a coefficient that depends on the slip speed, in full contact, tabulated.
 
@@ -47,7 +57,7 @@ def tabulated(
 
     Parameters
     ----------
-    law, accuracy, top_speed, scale : as in :meth:`puck_tables.Table.build`
+    law, accuracy, top_speed, scale, pressure, reach : as in :meth:`puck_tables.Table.build`
     progress : callable (done, total), optional
         Told how far the errors of all patches have come.
 
@@ -56,7 +66,8 @@ def tabulated(
     InputError
         If a number is out of range or the law gives no f.
     AccuracyError
-        If the accuracy is out of range or would take more than 2 million nodes; it says which
+        If the accuracy is out of range or would take more than 2 million nodes (300,000 under
+        Hertz's or Galin's law or a profile); it says which
         accuracy can be reached.
 
     Examples
@@ -67,18 +78,27 @@ def tabulated(
     (True, 3.0)
     """
     accuracy = DEFAULT_ACCURACY if accuracy is None else accuracy
-    if not FINEST_ACCURACY <= accuracy <= COARSEST:
+    load = load_under(law, pressure, reach)
+    finest = finest_accuracy(load)
+    if not finest <= accuracy <= COARSEST:
         raise AccuracyError(
-            f"the accuracy of a table of speeds must be from {FINEST_ACCURACY:g} to "
+            f"the accuracy of a table of speeds must be from {finest:g} to "
             f"{COARSEST:g} (of the largest f), got {accuracy:g}"
         )
     law = law.checked() if isinstance(law, FrictionLaw) else law
     breaks = breaks_of(law, top_speed, scale)
     largest = largest_f(law, float(breaks[-1]))
-    goal = accuracy / _SAFETY
-    patches = patches_of(breaks, law.grade if isinstance(law, SpeedLaw | FrictionLaw) else 1)
+    piled, most = is_pile(law, load), MAX_OF_CIRCLES if load.is_integrated else MAX_NODES
+    growth = load.growth if piled else 1.0
+    goal = accuracy / _SAFETY / growth
+    grade = law.grade if isinstance(law, SpeedLaw | FrictionLaw) else 1
+    patches = patches_of(breaks, grade, rays_under(law, load))
+    own = RoundLoad(law_of("uniform")) if piled else load
     rules = COARSE if isinstance(law, FrictionLaw) and accuracy >= _COARSE_FROM else FINE
-    parts = [FilledPatch(patch, law, largest or 1.0, n, rules) for n, patch in enumerate(patches)]
+    parts = [
+        FilledPatch(patch, law, own, largest or 1.0, n, rules)
+        for n, patch in enumerate(patches)
+    ]  # fmt: skip
     share, told = 0.0, 0.0
 
     def tell() -> None:
@@ -90,7 +110,7 @@ def tabulated(
 
     _each(parts, FilledPatch.fill, tell)
     while pending := [part for part in parts if part.lacks(goal)]:
-        chosen, room = [], MAX_NODES - sum(part.nodes for part in parts)
+        chosen, room = [], most - sum(part.nodes for part in parts)
         worst = max(part.badness for part in pending)
         for part in sorted(pending, key=lambda part: -part.badness):
             if part.badness < _NEXT * worst:
@@ -100,16 +120,58 @@ def tabulated(
                 break
             chosen.append(part)
         if not chosen:
-            raise _out_of_reach(parts, accuracy)
+            raise _out_of_reach(parts, accuracy, growth)
         _each(chosen, lambda part: part.refine(part.lacks(goal)), tell)
     if not all(part.good(goal) for part in parts):
-        raise _out_of_reach(parts, accuracy)
+        raise _out_of_reach(parts, accuracy, growth)
     cells = np.array([part.cells for part in parts], np.int64)
     values = np.concatenate([part.values.reshape(-1, 4) for part in parts])
     return kind(
-        values, breaks=breaks, cells=cells, tolerance=accuracy, accuracy=_measured(parts),
+        values, breaks=breaks, cells=cells, tolerance=accuracy, accuracy=_measured(parts, growth),
         law=law if isinstance(law, SpeedLaw | FrictionLaw) else None,
+        pressure=load.law, reach=load.reach,
     )  # fmt: skip
+
+
+def load_under(law: Law, pressure: str | PressureLaw, reach: float) -> RoundLoad:
+    """The load of a pressure law on a part of the radius.
+
+    Raises
+    ------
+    InputError
+        If it is none, or friction under it is not known.
+
+    Examples
+    --------
+    >>> load_under(SpeedLaw([0.0, 1.0], [0.2, 0.3]), "annulus:0.5", 1.0).edges
+    (0.5, 1.0)
+    """
+    part = real("reach", reach, "a share of the radius")
+    if not LEAST_REACH <= part <= 1.0:
+        raise InputError(
+            f"reach must be from {LEAST_REACH:g} to 1 (of the radius to the rim), got {part:g}"
+        )
+    load = RoundLoad(pressure if isinstance(pressure, PressureLaw) else law_of(pressure), part)
+    if not isinstance(law, SpeedLaw | FrictionLaw) and not len(load.discs):
+        raise InputError(
+            f"under the pressure law {load.law.name} a friction law must be one of points "
+            "(SpeedLaw) or by name, not a function"
+        )
+    return load
+
+
+def finest_accuracy(load: RoundLoad) -> float:
+    """How good a table under a load can be, of the largest f.
+
+    Examples
+    --------
+    >>> from puck_tables.contact.laws import law_of
+    >>> finest_accuracy(RoundLoad(law_of("uniform"))), finest_accuracy(RoundLoad(law_of("hertz")))
+    (1e-13, 1e-08)
+    """
+    if load.is_integrated:
+        return _FINEST_OF_CIRCLES
+    return FINEST_ACCURACY if len(load.discs) == 1 else _FINEST_OF_OTHERS
 
 
 def _each(
@@ -121,8 +183,8 @@ def _each(
     )
 
 
-def _out_of_reach(parts: list[FilledPatch], accuracy: float) -> AccuracyError:
-    reached = _SAFETY * max(part.badness for part in parts)
+def _out_of_reach(parts: list[FilledPatch], accuracy: float, growth: float) -> AccuracyError:
+    reached = _SAFETY * growth * max(part.badness for part in parts)
     return AccuracyError(
         f"an accuracy of {accuracy:g} is out of reach for this friction law with its "
         f"corners: {rounded_up(reached):g} can be reached",
@@ -144,8 +206,8 @@ def largest_f(law: Law, top: float) -> float:
     return float(np.abs(speed_integrals(0.0, speeds, law).a).max())
 
 
-def _measured(parts: list[FilledPatch]) -> Accuracy:
-    errors = np.concatenate([part.errors for part in parts]).T
+def _measured(parts: list[FilledPatch], growth: float) -> Accuracy:
+    errors = growth * np.concatenate([part.errors for part in parts]).T
     phi = np.concatenate([part.phi for part in parts])
     fastest = np.concatenate([part.speeds for part in parts]) * (np.cos(phi) + np.sin(phi))
     return Accuracy.of(errors, phi, fastest, None)

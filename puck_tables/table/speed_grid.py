@@ -5,22 +5,30 @@ Where the integrals are singular, and in which coordinates they are not, stands 
 the slip of the puck, and the choice of the breaks b_k.  Besides the corners of the law there are
 breaks of convenience, so that no patch is wider than five times its distance from slip zero, the
 scale on which anything varies there.
+
+Under a load with edges within the rim (an annulus, a profile) every edge has such lines, each in
+another direction, and they cross.  Those that matter most are where the centre of rotation crosses
+an edge, rays from slip zero: patches lie between them, and nodes crowd at them.  Smooth laws have
+no others.  Under a profile those of corners are left to the splines: half powers, from 2.5 on.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.contact.integrals import SlipDirection
+from puck_tables.contact.round_load import RoundLoad
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
 from puck_tables.kernels.speed_spline import CORNER_POWER, EDGE_POWER
 
+NO_RAYS = np.empty(0)
 COARSEST_CELLS, HALVINGS = 10, 6  # cells of a patch along an axis, and how often they are halved
 MOST_CORNERS = 40  # patches grow with their square; weaker ones are left to the splines
 _STEEPEST = 6.0  # between neighbouring breaks
@@ -52,6 +60,11 @@ class SlipPatch:
         """The fastest slip in it, m/s."""
         return float(self.breaks[self.slab + 1])
 
+    @property
+    def is_mirrored(self) -> bool:
+        """Whether one half mirrors the other."""
+        return self.slab > 0 and self.part == self.slab + 1
+
     def place(self, xi: FloatArray, zeta: FloatArray) -> tuple[SlipDirection, FloatArray]:
         """Slip direction and Q in m/s at coordinates in [0, 1] that broadcast.
 
@@ -64,7 +77,7 @@ class SlipPatch:
             Q = b[1] * xi**self.grade * np.sqrt(1.0 + ratio**2) / (1.0 + ratio)
         else:
             width = b[k + 1] - b[k]
-            mirrored = self.part == k + 1
+            mirrored = self.is_mirrored
             power = edge_power(k, self.part, self.fast)
             U = b[k] + width * (xi if mirrored else xi**power)
             if mirrored:
@@ -79,19 +92,97 @@ class SlipPatch:
         return SlipDirection(ratio, np.full(ratio.shape, self.fast)), Q
 
 
+@dataclass(frozen=True)
+class RayPatch:
+    """A part of the plane of slips between two rays from slip zero.
+
+    Parameters
+    ----------
+    breaks, slab, grade : as of a :class:`SlipPatch`
+    low, high : of (v − r|ω|)/(v + r|ω|)
+    """
+
+    breaks: FloatArray
+    slab: int
+    low: float
+    high: float
+    grade: int = 1
+
+    @property
+    def top(self) -> float:
+        """The fastest slip in it, m/s."""
+        return float(self.breaks[self.slab + 1])
+
+    @property
+    def is_mirrored(self) -> bool:
+        """Whether one half mirrors the other."""
+        return False
+
+    def place(self, xi: FloatArray, zeta: FloatArray) -> tuple[SlipDirection, FloatArray]:
+        """Slip direction and Q in m/s at coordinates in [0, 1] that broadcast."""
+        begin, end = self.breaks[self.slab : self.slab + 2]
+        U = begin + (end - begin) * (xi**self.grade if self.slab == 0 else xi)
+        near, far = zeta**4, (1.0 - zeta) ** 4
+        way = (self.low * far + self.high * near) / (near + far)
+        U, way = np.broadcast_arrays(U, way)
+        ratio = (1.0 - np.abs(way)) / (1.0 + np.abs(way))
+        return SlipDirection(ratio, way < 0.0), U * np.sqrt(1.0 + ratio**2) / (1.0 + ratio)
+
+
+def is_pile(law: object, load: RoundLoad) -> bool:
+    """Whether the table is that of a disc, in which each disc of a load is looked up.
+
+    Where a law has corners each edge within the rim has lines of its own for every one, and they
+    cross.
+
+    Examples
+    --------
+    >>> from puck_tables.contact.laws import law_of
+    >>> corners = SpeedLaw([0.0, 1.0], [0.2, 0.3])
+    >>> [is_pile(corners, RoundLoad(law_of(name))) for name in ("uniform", "annulus:0.5", "ring")]
+    [False, True, False]
+    """
+    return isinstance(law, SpeedLaw) and not load.is_simple and len(load.discs) > 0
+
+
+def rays_under(law: object, load: RoundLoad) -> FloatArray:
+    """(v − r|ω|)/(v + r|ω|) where the centre of rotation crosses an edge; none of the rim alone.
+
+    Examples
+    --------
+    >>> from puck_tables.contact.laws import law_of
+    >>> rays_under(None, RoundLoad(law_of("annulus:0.5"))).round(6).tolist()
+    [-0.333333, 0.0]
+    """
+    if load.is_simple or is_pile(law, load):
+        return NO_RAYS
+    radii = np.array(load.edges)
+    return np.asarray((radii - 1.0) / (radii + 1.0))
+
+
 def edge_power(slab: int, part: int, fast: bool) -> int:
     """How strongly the nodes of a patch crowd at its singular edges."""
     return CORNER_POWER if part == slab and not fast else EDGE_POWER
 
 
-def patches_of(breaks: FloatArray, grade: int = 1) -> tuple[SlipPatch, ...]:
+def patches_of(
+    breaks: FloatArray, grade: int = 1, rays: FloatArray = NO_RAYS
+) -> tuple[SlipPatch | RayPatch, ...]:  # fmt: skip
     """The patches between breaks, in the order in which compiled code numbers them.
 
     Examples
     --------
     >>> len(patches_of(np.array([0.0, 1.0, 2.0])))
     8
+    >>> len(patches_of(np.array([0.0, 1.0, 2.0]), 1, np.array([-0.5, 0.0])))
+    6
     """
+    if len(rays):
+        ends = [-1.0, *rays.tolist(), 1.0]
+        return tuple(
+            RayPatch(breaks, slab, low, high, grade)
+            for slab in range(len(breaks) - 1) for low, high in pairwise(ends)
+        )  # fmt: skip
     return tuple(
         SlipPatch(breaks, slab, part, fast, grade)
         for fast in (False, True)

@@ -5,32 +5,30 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.executor import keep_on
-from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.contact.integrals import SlipDirection
+from puck_tables.contact.round_load import RoundLoad
 from puck_tables.contact.speed_law import SpeedLaw
-from puck_tables.contact.speed_quadrature import SpeedFunction, speed_integrals
-from puck_tables.kernels.speed_quadrature_kernel import FINE, fill_integrals
 from puck_tables.kernels.speed_spline import fill_patch
 from puck_tables.table.speed_fit import missed_by_half, quintic_coefficients
-from puck_tables.table.speed_grid import COARSEST_CELLS, HALVINGS, SlipPatch
+from puck_tables.table.speed_grid import COARSEST_CELLS, HALVINGS, RayPatch, SlipPatch
+from puck_tables.table.speed_truth import Law, truth_at
 
-Law = SpeedLaw | FrictionLaw | SpeedFunction
-
-_ORDER = 64.0  # to the power 6, of what half the nodes miss: the spline's own share
+_ORDER = 64.0  # 2⁶, of what half the nodes miss: the spline's own share
+_LOW_ORDER = 6.0  # where half powers cross a patch, 2^2.5 to 2^3.5
 _ALSO = 0.2  # of what the other axis misses: refined too
 _PROBES = 100  # random points of a patch
-_AT_ONCE = 20_000  # nodes between two looks whether to go on: some 0.1 s
 
 
 class FilledPatch:
     """A patch with its node values; it is made empty, filled, and refined as long as it lacks."""
 
-    def __init__(self, patch: SlipPatch, law: Law, unit: float, number: int, rules: int):
-        self._law, self._unit, self._rules = law, unit, rules
+    def __init__(
+        self, patch: SlipPatch | RayPatch, law: Law, load: RoundLoad, unit: float, number: int,
+        rules: int,
+    ):  # fmt: skip
+        self._law, self._load, self._unit, self._rules = law, load, unit, rules
         self.patch = patch
         self.cells = [COARSEST_CELLS, COARSEST_CELLS]
         self._probes = _probes(np.random.default_rng([1960, number]), patch)
@@ -51,8 +49,7 @@ class FilledPatch:
     def _at(self, xi: FloatArray, zeta: FloatArray) -> FloatArray:
         """The integrals on a grid, (ξ, ζ, 4)."""
         direction, Q = self.patch.place(xi[:, None], zeta)
-        fast = bool(self.patch.fast)
-        return _truth_at(self._law, self.patch.top, direction.ratio, fast, Q, self._rules)
+        return truth_at(self._law, self._load, self.patch.top, direction, Q, self._rules)
 
     def _judge(self) -> None:
         """Errors (4, probes) of the spline, and what is missed along ξ and ζ by half the nodes."""
@@ -61,9 +58,7 @@ class FilledPatch:
         found = np.empty((xi.size, 4))
         along, across = self.cells
         fill_patch(quintic_coefficients(self.values).ravel(), along, across, xi, zeta, found)
-        truth = _truth_at(
-            self._law, self.patch.top, direction.ratio, bool(self.patch.fast), self.speeds
-        )
+        truth = truth_at(self._law, self._load, self.patch.top, direction, self.speeds)
         self.errors = np.abs(self._weights(direction) * (found - truth))
         self.phi = np.arctan2(np.sqrt(direction.sin_squared), np.sqrt(direction.cos_squared))
         self.worst = float(self.errors.max())
@@ -73,7 +68,9 @@ class FilledPatch:
             np.abs(missed_by_half(self.values) * weights[1::2]),
             np.abs(missed_by_half(self.values.swapaxes(0, 1)) * weights.swapaxes(0, 1)[1::2]),
         )
-        self.missed = [float(part.max()) / _ORDER for part in by_half]
+        crossed = isinstance(self.patch, RayPatch) and isinstance(self._law, SpeedLaw)
+        order = _LOW_ORDER if crossed else _ORDER
+        self.missed = [float(part.max()) / order for part in by_half]
 
     def _weights(self, direction: SlipDirection) -> FloatArray:
         """How the integrals enter the forces, over the largest f, (…, 4)."""
@@ -124,32 +121,12 @@ class FilledPatch:
         return max(0.0, math.log(self.first / self.badness) / math.log(self.first / accuracy))
 
 
-def _truth_at(
-    law: Law, top: float, ratio: FloatArray, fast: npt.ArrayLike, speed: FloatArray,
-    rules: int = FINE,
-) -> FloatArray:  # fmt: skip
-    """p_a, p_b, p_d, p_e by quadrature, (…, 4); ``top``: what the slip goes up to, m/s."""
-    if not isinstance(law, SpeedLaw | FrictionLaw):
-        p = speed_integrals(np.where(fast, np.arctan2(1.0, ratio), np.arctan(ratio)), speed, law)
-        return np.stack([p.a, p.b, p.d, p.e], axis=-1)
-    ends, pieces = law.pieces(top)
-    flat, Q = np.ravel(ratio).copy(), np.ravel(speed).copy()
-    inside = np.array(np.broadcast_to(fast, flat.shape), bool)
-    out = np.empty((flat.size, 4))
-    each = max(1, _AT_ONCE // max(1, len(pieces) // 4))
-    for start in range(0, flat.size, each):
-        keep_on()
-        part = slice(start, start + each)
-        fill_integrals(ends, pieces, flat[part], inside[part], Q[part], rules, out[part])
-    return out.reshape(*np.shape(ratio), 4)
-
-
-def _probes(rng: np.random.Generator, patch: SlipPatch) -> tuple[FloatArray, FloatArray]:
+def _probes(rng: np.random.Generator, patch: SlipPatch | RayPatch) -> tuple[FloatArray, FloatArray]:
     """Points of a patch, ξ and ζ: anywhere, and next to all edges and corners."""
     share = rng.random((2, _PROBES))
     near = rng.random((2, _PROBES)) ** 6
     edge = np.where(rng.random((2, _PROBES)) < 0.5, near, 1.0 - near)
     xi, zeta = np.where(rng.random((2, _PROBES)) < 0.5, share, edge)
-    if patch.slab > 0 and patch.part == patch.slab + 1:  # one half mirrors the other
+    if patch.is_mirrored:
         return np.maximum(xi, zeta), np.minimum(xi, zeta)
     return xi, zeta

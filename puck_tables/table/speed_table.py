@@ -8,12 +8,13 @@ from typing import Any, Self
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.speed_law import SpeedLaw
-from puck_tables.contact.speed_quadrature import speed_integrals
 from puck_tables.errors import InputError
 from puck_tables.table.build import COARSEST
 from puck_tables.table.check import CheckReport, Route, judged
 from puck_tables.table.speed_build import largest_f, tabulated
+from puck_tables.table.speed_truth import truth_at
 from puck_tables.table.speed_values import SpeedValues
 from puck_tables.table.table import Progress
 
@@ -32,6 +33,10 @@ class SpeedTable(SpeedValues):
         Cells along ξ and ζ of every patch, see :mod:`puck_tables.kernels.speed_spline`.
     law : SpeedLaw or FrictionLaw, optional
         The friction law; none if it was given as a function.
+    pressure : Law
+        The pressure law.
+    reach : float
+        The part of the radius on which the load stands.
 
     Notes
     -----
@@ -93,9 +98,10 @@ class SpeedTable(SpeedValues):
         def off(phi: FloatArray, speeds: FloatArray) -> FloatArray:
             cosine, sine = np.cos(phi), np.sin(phi)
             Q = speeds / (cosine + sine) * (1.0 - 1e-15)
-            got, truth = self.integrals(phi, Q), speed_integrals(phi, Q, law)
-            missed = [got.a - truth.a, got.b - truth.b, got.d - truth.d, got.e - truth.e]
-            return np.stack([cosine, sine, sine, cosine]) / unit * np.stack(missed)
+            got = self.integrals(phi, Q)
+            truth = truth_at(law, self.round_load, self.top, slip_direction(phi), Q, plain=True)
+            missed = np.stack([got.a, got.b, got.d, got.e]) - np.moveaxis(truth, -1, 0)
+            return np.stack([cosine, sine, sine, cosine]) / unit * missed
 
         allowed = min(self.tolerance, COARSEST)
         return judged(self.source, self.tolerance, [

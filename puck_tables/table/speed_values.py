@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import KW_ONLY, dataclass, field
 from functools import cached_property
 from typing import ClassVar
 
@@ -14,7 +14,9 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import broadcast
 from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.contact.integrals import PatchIntegrals, checked_phi, slip_direction
+from puck_tables.contact.laws import Law, law_of
 from puck_tables.contact.resultants import Resultants, moment_balance, pressure_tilt
+from puck_tables.contact.round_load import RoundLoad
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.contact.speed_quadrature import (
     checked_height_ratio,
@@ -26,20 +28,22 @@ from puck_tables.errors import InputError
 from puck_tables.io.dataset import Variable
 from puck_tables.kernels.speed_spline import DONE, fill_speed, packed
 from puck_tables.table.speed_fit import quintic_coefficients
-from puck_tables.table.speed_grid import SlipPatch, patches_of
+from puck_tables.table.speed_grid import RayPatch, SlipPatch, is_pile, patches_of, rays_under
 from puck_tables.table.table import Table
 
 IntArray = npt.NDArray[np.int64]
 
+_ROUNDED = 1e-14  # of a slip
 _INTERPRETATION = (
     "Friction on a puck of radius r, height h, mass m sliding with speed v and spin omega on a "
     "rough plane whose coefficient f depends on the local slip speed u by the law in made_of; "
-    "weight N = m g, uniform pressure tilted linearly by the moment balance. phi = atan2(r omega, "
-    "v), Q = hypot(v, r omega), slip directions (e_x, e_y) in units of r: cos(phi) p_a = mean of f "
-    "e_x, sin(phi) p_b = mean of f e_y x, sin(phi) p_d = mean of f (x e_y - y e_x), cos(phi) p_e = "
-    "mean of f (x e_y - y e_x) y, p_c = p_b - p_d. With g = 2h/r, D = 1 - g^2 sin^2(phi) p_b p_c: "
-    "force -N cos(phi) p_a/D along the velocity, -N sin(phi) cos(phi) g p_a p_b/D across it (to "
-    "the left), torque -N r sin(phi) (p_d + g^2 cos^2(phi) p_a p_b p_e/D). Even in phi. "
+    "weight N = m g, the pressure in made_of over its reach of r, tilted linearly by the moment "
+    "balance. phi = atan2(r omega, v), Q = hypot(v, r omega), slip directions (e_x, e_y) in units "
+    "of r, means over the pressure: cos(phi) p_a = mean of f e_x, sin(phi) p_b = mean of f e_y x, "
+    "sin(phi) p_d = mean of f (x e_y - y e_x), cos(phi) p_e = mean of f (x e_y - y e_x) y, p_c = "
+    "p_b - p_d. With g = h/(2 r <x^2>), 2h/r under uniform pressure, D = 1 - g^2 sin^2(phi) p_b "
+    "p_c: force -N cos(phi) p_a/D along the velocity, -N sin(phi) cos(phi) g p_a p_b/D across it "
+    "(to the left), torque -N r sin(phi) (p_d + g^2 cos^2(phi) p_a p_b p_e/D). Even in phi. "
     "Salnikova, Treschev, Gallyamov 2012, section 5, with f inside the integrals."
 )
 _MAP = (
@@ -49,7 +53,13 @@ _MAP = (
     "b_k+1: U = b_k + (b_k+1 - b_k) xi^p; W = b_1/2 zeta^4, then W = b_l - (b_l - left end)(1 - "
     "zeta)^p up to b_k, p = 2 (3 where r|omega| < v and l = k); last U, W = b_k + (b_k+1 - b_k)(xi,"
     " zeta). Nodes uniform in xi and zeta, zeta fastest; quintic not-a-knot splines in both. "
-    "breaks, and cells of every patch along xi and zeta, stand in made_of"
+    "breaks, and cells of every patch along xi and zeta, stand in made_of. Under a pressure that "
+    "begins, ends or bends at other radii a r than r: slabs U = b_k + (b_k+1 - b_k) xi (first xi^g)"
+    " between rays (v - r|omega|)/U = -1, the (a - 1)/(a + 1) ascending, 1, with shares zeta^4 : "
+    "(1 - zeta)^4 of the way from one to the next; but where the law is one of points and the "
+    "pressure uniform or an annulus, the nodes are those of a disc of radius r, and with the share "
+    "s of each disc a r in the load and n = hypot(cos(phi), a sin(phi)), p_a is the sum of s p_a/n "
+    "and the others of s a^2 p/n at v, a omega"
 )
 
 
@@ -64,10 +74,12 @@ class SpeedValues(Table):
     breaks: FloatArray
     cells: IntArray
     law: SpeedLaw | FrictionLaw | None = None
+    pressure: Law = field(default_factory=lambda: law_of("uniform"))
+    reach: float = 1.0
 
     kind = "speed"
     algorithm = (
-        "one integral over circles about the centre of rotation; quintic splines in patches; 2"
+        "one integral over circles about the centre of rotation; quintic splines in patches; 3"
     )
     functions: ClassVar[Mapping[str, str]] = {
         "p_a": "mean of f e_x, over cos(phi)",
@@ -90,10 +102,21 @@ class SpeedValues(Table):
         """The fastest slip v + r|ω| of the table, m/s."""
         return float(self.breaks[-1])
 
+    @property
+    def pressure_law(self) -> str:
+        """The name of the pressure law, and where it ends within the radius."""
+        where = "" if self.reach == 1.0 else f" on {self.reach:.6g} of the radius"
+        return self.pressure.name + where
+
     @cached_property
-    def patches(self) -> tuple[SlipPatch, ...]:
+    def round_load(self) -> RoundLoad:
+        """Its pressure."""
+        return RoundLoad(self.pressure, self.reach)
+
+    @cached_property
+    def patches(self) -> tuple[SlipPatch | RayPatch, ...]:
         """Its patches, in the order of ``cells``."""
-        return patches_of(self.breaks, self._grade)
+        return patches_of(self.breaks, self._grade, rays_under(self.law, self.round_load))
 
     @property
     def _grade(self) -> int:
@@ -104,7 +127,10 @@ class SpeedValues(Table):
     def compiled(self) -> FloatArray:
         """As :func:`puck_tables.kernels.speed_spline.packed` has it."""
         splines = [quintic_coefficients(values) for values in self.by_patch()]
-        return packed(self.breaks, self.cells, splines, self._grade)
+        rays, discs = rays_under(self.law, self.round_load), np.empty((0, 2))
+        if is_pile(self.law, self.round_load):
+            discs = self.round_load.discs
+        return packed(self.breaks, rays, discs, self.cells, splines, self._grade)
 
     def by_patch(self) -> list[FloatArray]:
         """Node values of every patch, (ξ nodes, ζ nodes, 4)."""
@@ -177,9 +203,21 @@ class SpeedValues(Table):
         g = checked_height_ratio(height_ratio)
         p = self.integrals(phi, speed)
         direction = slip_direction(np.broadcast_to(checked_phi(phi), p.a.shape))
-        rho = moment_balance(p, direction, g)
-        refuse_lifting(pressure_tilt(rho, direction, g), g)
+        rho = moment_balance(p, direction, self.lever(g))
+        refuse_lifting(self.reach * pressure_tilt(rho, direction, self.lever(g)), g)
         return rho
+
+    def lever(self, height_ratio: float) -> float:
+        """What 2h/r is in the moment balance: times 1/(4⟨x²⟩), as under uniform pressure.
+
+        Examples
+        --------
+        >>> from puck_tables import SpeedLaw, Table
+        >>> law = SpeedLaw([0.0, 1.0], [0.2, 0.3])
+        >>> round(Table.build(law, 1e-3, pressure="ring").lever(1.0), 12)  # ⟨x²⟩ = 1/2
+        0.5
+        """
+        return height_ratio / (4.0 * self.round_load.mean_square)
 
     def refuse_height(self, height_ratio: float) -> None:
         """Refuse a puck part of whose base would lift anywhere in the table.
@@ -188,14 +226,20 @@ class SpeedValues(Table):
         ------
         ContactError
         """
-        cells = self.cells.tolist()
+        if height_ratio == 0.0:
+            return
+        cells, lever = self.cells.tolist(), self.lever(height_ratio)
         tilts = []
         for patch, values, (u, w) in zip(self.patches, self.by_patch(), cells, strict=True):
             xi, zeta = np.arange(u + 1)[:, None] / u, np.arange(w + 1) / w
-            direction, _ = patch.place(xi, zeta)
+            direction, Q = patch.place(xi, zeta)
             a, b, d, e = np.moveaxis(values, -1, 0)
-            rho = moment_balance(PatchIntegrals(a, b, b - d, d, e), direction, height_ratio)
-            tilts.append(pressure_tilt(rho, direction, height_ratio).max())
+            p = PatchIntegrals(a, b, b - d, d, e)
+            if is_pile(self.law, self.round_load):
+                phi = np.arctan2(np.sqrt(direction.sin_squared), np.sqrt(direction.cos_squared))
+                p = self.integrals(phi, Q * (1.0 - _ROUNDED))
+            rho = moment_balance(p, direction, lever)
+            tilts.append(self.reach * pressure_tilt(rho, direction, lever).max())
         refuse_lifting(np.array(tilts), height_ratio)
 
     # the record of the kind

@@ -104,14 +104,18 @@ class Table(ABC):
             Largest error wanted, up to 0.01.  Resultants (dimensionless): from 1e-13, default
             2e-11, under another law than uniform pressure 1e-11 and 1e-9.  Stops (in units of
             Q/(fg), Q²/(fg) and Q²/(fg r)): from 1e-11, default 1e-10.  Speed (over the largest f):
-            from 1e-13, default 1e-6.  One puck (of its friction ratios): from 5e-13, default 1e-9;
-            of its stops, as above, from 1e-10, default 1e-8.
+            from 1e-13, under an annulus or ring 1e-9, galin, hertz and profiles 1e-8, default 1e-6.
+            One puck (of its friction ratios): from 5e-13, default 1e-9; of its stops, as above,
+            from 1e-10, default 1e-8.
         cells : int, optional
             Resultants and stops: grid size by hand instead, cells on each side of each singular
             line, from 4 (stops: 8) on.
         top_speed, scale : float, optional
             Speed: the fastest slip v + r|ω|, m/s, and the speed below which a function is nearly a
             cubic; a function, and a law by name, need the first.
+        pressure, reach : optional
+            Speed: a pressure law as above, default uniform, and the part of the radius r on which
+            it stands, default 1.
         progress : callable (done, total), optional
 
         Returns

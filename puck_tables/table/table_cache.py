@@ -33,13 +33,14 @@ def table_for(
 @overload
 def table_for(
     law: SpeedLaw | FrictionLaw, accuracy: float | None = None, progress: Progress | None = None,
-    top_speed: float | None = None,
+    top_speed: float | None = None, pressure: str | Law = "uniform", reach: float = 1.0,
 ) -> SpeedTable: ...  # fmt: skip
 
 
 def table_for(
     law: str | Law | SpeedLaw | FrictionLaw, accuracy: float | None = None,
     progress: Progress | None = None, top_speed: float | None = None,
+    pressure: str | Law = "uniform", reach: float = 1.0,
 ) -> ResultantTable | SpeedTable:  # fmt: skip
     """The table of a law: read if it is kept, else built.
 
@@ -55,6 +56,8 @@ def table_for(
         Told while the table is built.
     top_speed : float, optional
         The fastest slip, m/s, of a friction law; a law by name needs it.
+    pressure, reach : optional
+        The pressure law under a friction law, and the part of the radius on which it stands.
 
     Returns
     -------
@@ -90,25 +93,40 @@ def table_for(
     asked = "default" if wanted is None else f"{wanted:g}"
     if isinstance(law, SpeedLaw | FrictionLaw):
         more = {} if top_speed is None else {"top_speed": positive("top_speed", top_speed, "m/s")}
-        friction = law
+        friction, under = law, _known(pressure)
 
         def by_speed() -> SpeedTable:
             with watched("tabulating the friction law, once") as show:
-                return SpeedTable.build(friction, wanted, progress=progress or show, **more)
+                return SpeedTable.build(
+                    friction, wanted, progress=progress or show, pressure=under, reach=reach, **more
+                )
 
-        recipe = {"law": plain(law), "accuracy": wanted, **more}
+        recipe = {
+            "law": plain(law), "accuracy": wanted, "pressure": plain(under), "reach": reach, **more
+        }  # fmt: skip
         return fetch(f"slip-speed-{law.kind}-{asked}", recipe, SpeedTable, by_speed)
-    if isinstance(law, Law) and law.profile is None:
+    known = _known(law)
+    recipe = {"law": plain(known), "accuracy": wanted}
+    return fetch(
+        f"{known.name}-{asked}", recipe, ResultantTable,
+        lambda: ResultantTable.build(known, wanted, progress=progress),
+    )  # fmt: skip
+
+
+def _known(law: str | Law) -> Law:
+    """A pressure law that can be told from others.
+
+    Raises
+    ------
+    InputError
+        If it is given by a function, or not known.
+    """
+    if isinstance(law, Law) and law.profile is None and not is_named(law):
         raise InputError(
             f"the law {law.name} is given by a function, which cannot be told from another: "
             "give its name, or Table.build(law)"
         )
-    pressure = _by_its_values(law if isinstance(law, Law) else law_of(law))
-    recipe = {"law": plain(pressure), "accuracy": wanted}
-    return fetch(
-        f"{pressure.name}-{asked}", recipe, ResultantTable,
-        lambda: ResultantTable.build(pressure, wanted, progress=progress),
-    )  # fmt: skip
+    return _by_its_values(law if isinstance(law, Law) else law_of(law))
 
 
 def _by_its_values(law: Law) -> Law:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from functools import cache, partial
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.section_spline import NO_SECTION
-from puck_tables.scene.by_speed import NO_LAW, law_range, law_table, moments_of
+from puck_tables.scene.by_speed import NO_LAW, law_range, law_table, load_under, moments_of
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ground import NO_GROUND
 from puck_tables.scene.ingredients import BySpeed, Regions, Surface, floor_velocity
@@ -108,7 +109,8 @@ def regions_of(
         ])  # fmt: skip
         by_direction = BySpeed(axes, 0.0, 1.0, 1.0)
         ground = _grounds(scene, pieces, shaped)
-        return Regions(normals * strongest, delta, none, by_direction, shaped, ground)
+        laws = np.tile([0, len(axes)], (len(pieces), 1))
+        return Regions(normals * strongest, delta, none, by_direction, shaped, ground, laws)
     there = [[(piece, f) for f in _strongest_under(scene, piece, 0.0)] for piece in pieces]
     places = [one for rows in zip(*there, strict=True) for one in rows]
     summed = np.array([_is_summed(scene, piece) for piece, _ in places])
@@ -133,7 +135,8 @@ def regions_of(
     if several or summed.any():
         ground = _grounds(scene, pieces, np.ones(len(pieces), np.bool_))
     astride = np.concatenate([summed, np.ones(count - len(places), np.bool_)])
-    return Regions(loads, delta, cuts, NO_LAW, astride, ground)
+    laws = np.zeros((len(pieces), 2), np.int64)
+    return Regions(loads, delta, cuts, NO_LAW, astride, ground, laws)
 
 
 def _is_shaped(piece: PieceSpec) -> bool:
@@ -164,7 +167,7 @@ def _by_slip(
     scene: SceneSpec, pieces: list[PieceSpec], normals: FloatArray, delta: FloatArray,
     cuts: FloatArray, fastest: float,
 ) -> Regions:  # fmt: skip
-    """By a friction law over the slip speed: a table under round bases, integrals under others.
+    """By a friction law over the slip speed: tables under round loads, integrals under others.
 
     Raises
     ------
@@ -176,21 +179,25 @@ def _by_slip(
     law, top, largest = law_range(scene, fastest)
     factor = float(largest_factors(scene.floor)[0])
     largest *= factor
-    shaped = np.array([_is_shaped(piece) for piece in pieces])
-    ratios = [2.0 * one.height / one.radius for one in pieces if one.shape is None and not one.path]
-    compiled, ground = np.array([1.0, top]), NO_GROUND
-    if ratios:
-        table = law_table(scene, law, top)
-        table.refuse_height(max(factor, 1.0) * max(ratios))
-        compiled = table.compiled
-    if shaped.any():
-        for piece in pieces:
-            if piece.shape is not None:
-                piece.shape.refuse_lift(largest, piece.height)
-        moments = moments_of(law, top)
-        ground = _grounds(scene, pieces, shaped, moments)
-    by_slip = BySpeed(compiled, 0.0, 1.0, 1.0)
-    return Regions(normals * largest, delta, cuts, by_slip, shaped, ground)
+    under = [None if piece.path else load_under(piece) for piece in pieces]
+    summed = np.array([
+        own is None and not piece.path for own, piece in zip(under, pieces, strict=True)
+    ])  # fmt: skip
+    tables = {own: law_table(scene, law, top, own) for own in under if own is not None}
+    for piece, own in zip(pieces, under, strict=True):
+        if piece.shape is not None:
+            piece.shape.refuse_lift(largest, piece.height)
+        elif own is not None:
+            tables[own].refuse_height(max(factor, 1.0) * 2.0 * piece.height / piece.radius)
+    ground = NO_GROUND
+    if summed.any():
+        ground = _grounds(scene, pieces, summed, moments_of(law, top))
+    ends = np.cumsum([0, *(len(table.compiled) for table in tables.values())])
+    spans = dict(zip(tables, pairwise(ends.tolist()), strict=True))
+    laws = np.array([(0, 0) if own is None else spans[own] for own in under])
+    compiled = [table.compiled for table in tables.values()] or [np.array([1.0, top])]
+    by_slip = BySpeed(np.concatenate(compiled), 0.0, 1.0, 1.0)
+    return Regions(normals * largest, delta, cuts, by_slip, summed, ground, laws)
 
 
 def slip_of_rim(radius: float, surface: Surface, state: list[float]) -> float:

@@ -114,14 +114,22 @@ def ground_span(regions: Regions, discs: FloatArray, i: int) -> tuple[int, int]:
 
 
 @inlined
+def law_under(regions: Regions, discs: FloatArray, i: int) -> BySpeed:
+    """Friction by speed or direction on a disc, as its own load has it; none: nothing."""
+    law = regions.by_speed
+    if law.normal == 0.0:
+        return law
+    own = law.table[regions.laws[i, 0] : regions.laws[i, 1]]
+    return BySpeed(own, discs[i, HEIGHT_RATIO], discs[i, NORMAL], 1.0)
+
+
+@inlined
 def dry_under(regions: Regions, discs: FloatArray, i: int) -> Dry:
     """The dry friction on a disc where it is."""
-    region, law = int(discs[i, REGION]), regions.by_speed
+    region, law = int(discs[i, REGION]), law_under(regions, discs, i)
     if regions.astride[region]:
         first, last = ground_span(regions, discs, i)
         law = BySpeed(regions.ground[first:last], 0.0, SEVERAL, 1.0)
-    elif law.normal > 0.0:
-        law = BySpeed(law.table, discs[i, HEIGHT_RATIO], discs[i, NORMAL], 1.0)
     return Dry(regions.load[region], regions.delta[region], regions.cuts[region], law)
 
 

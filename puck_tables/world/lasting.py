@@ -30,7 +30,7 @@ from puck_tables.world.flight import (
     UNTIL,
     state_at,
 )
-from puck_tables.world.footing import least_slip
+from puck_tables.world.footing import law_under, least_slip
 from puck_tables.world.game import LAUNCH_TIME, N_EVENTS, N_HISTORY, TIME, Game
 from puck_tables.world.layout import (
     DAMPING,
@@ -216,7 +216,8 @@ def _fill_brakes(game: Game, y: FloatArray, out: FloatArray) -> None:
         i = row % count
         if game.discs[i, TWIST] == 0.0 or regions.astride[row] or regions.load[row] == 0.0:
             continue
-        dry = Dry(regions.load[row], regions.delta[row], regions.cuts[row], regions.by_speed)
+        law = law_under(regions, game.discs, i)
+        dry = Dry(regions.load[row], regions.delta[row], regions.cuts[row], law)
         stretch = Stretch(model_of(game, i), dry, 0, CARRIED_ALONG, NO_WAY, 0.0)
         excess = abs(excess_at_rest(stretch, 0.0, y)[0])
         out[row] = min(excess, regions.load[row]) * game.discs[i, LIGHTNESS]

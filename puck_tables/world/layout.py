@@ -29,7 +29,7 @@ HOLD, HOLD_X, HOLD_Y, HOLD_REACH, HOLD_ANGLE, HOLD_VX, HOLD_VY, HOLD_PLACE = ran
 REGION = 24  # of the dry friction under it: where on the floor it is, times discs, and its number
 SPIN_WAKE = 25  # quadratic drag of the spin, over inertia
 ACROSS, BY_SPEED, BY_SPIN = 26, 27, 28  # a lateral force: its acceleration and exponents
-NORMAL, HEIGHT_RATIO = 29, 30  # N, and 2h/r: where friction depends on the slip
+NORMAL, HEIGHT_RATIO = 29, 30  # N, and 2h/r over 4⟨x²⟩/r²: where friction depends on the slip
 # how the floor moves that it is on, of belts the one nearest to its own velocity, and how that
 # changes
 BELT_X, BELT_Y, BELT_SPIN, BELT_AX, BELT_AY, BELT_TURN = range(31, 37)

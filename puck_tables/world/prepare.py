@@ -9,6 +9,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
+from puck_tables.scene.by_speed import load_under
 from puck_tables.scene.friction import SPIN, THETA, VX, VY
 from puck_tables.scene.holds import allowed_velocity
 from puck_tables.scene.ingredients import RAIL, Surface, hold_of
@@ -215,6 +216,8 @@ def _fill_disc(
     disc[layout.BY_SPIN] = scene.lateral.spin_exponent
     disc[layout.NORMAL] = normal_on(scene, piece)
     disc[layout.HEIGHT_RATIO] = 2.0 * piece.height / piece.radius
+    if scene.floor.law and (load := load_under(piece)) is not None:
+        disc[layout.HEIGHT_RATIO] /= 4.0 * load.mean_square  # of uniform pressure it is 1/4
 
 
 def with_law_up_to(game: Game, scene: SceneSpec, order: Whole, fastest: float) -> Game:

@@ -26,11 +26,11 @@ from puck_tables.errors import InputError
 from puck_tables.film.column_roles import Layout, deeplabcut
 from puck_tables.film.film import Film, Reader
 from puck_tables.film.headings import Heading
-from puck_tables.film.readers.saved import film_of_saved
-from puck_tables.film.text_tables import film_of_columns
+from puck_tables.film.text_tables import csv_of, film_of_columns
 
 _LARGEST = 1 << 27  # numbers in a file, a gigabyte
 _DIMS = ("track", "xy", "node", "frame")
+_DAMAGE = (OSError, RuntimeError, KeyError, ValueError, TypeError, AttributeError)
 
 
 def _film(path: str | Path, head: bytes) -> Film:
@@ -44,32 +44,57 @@ def _film(path: str | Path, head: bytes) -> Film:
             for group in file.values():
                 if isinstance(group, h5py.Group) and isinstance(group.get("table"), h5py.Dataset):
                     return _deeplabcut(path, group["table"])
-            if isinstance(file.get("time"), h5py.Dataset) and "source" in file.attrs:
-                return film_of_saved(path, _columns(path, file))
             if "metadata" in file and "points" in file:
                 raise InputError(
                     f"{path} is a project of SLEAP: export it as Analysis HDF5, or CSV"
                 )
-    except (OSError, RuntimeError, KeyError, ValueError, TypeError, AttributeError) as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(f"{path} is damaged or no film: {error}") from None
+    except _DAMAGE as error:
+        raise _refused(path, error) from None
     raise InputError(
         f"{path} is HDF5, but none of DeepLabCut (a pandas table) or SLEAP (Analysis HDF5): save "
         "the table as CSV"
     )
 
 
-def _columns(path: str | Path, file: Any) -> dict[str, tuple[Any, str]]:
-    """The columns of a file that this program saved."""
+def _refused(path: str | Path, error: Exception) -> InputError:
+    """What is said of a file that cannot be read."""
+    if isinstance(error, InputError):
+        return error
+    return InputError(f"{path} is damaged or no film: {error}")
+
+
+def _is_saved(path: str | Path, head: bytes) -> bool:
+    """Whether it is one that this program saved."""
+    import h5py
+
+    if not head.startswith(HDF5):
+        return False
+    try:
+        with h5py.File(path, "r") as file:
+            return isinstance(file.get("time"), h5py.Dataset) and "source" in file.attrs
+    except (OSError, RuntimeError, KeyError, ValueError):  # damaged
+        return False
+
+
+def _saved_as_csv(path: str | Path, head: bytes) -> bytes:
+    """The columns of a file that this program saved, as a CSV file."""
+    import h5py
+
     columns = {}
-    for name, one in file.items():
-        if getattr(one, "ndim", 0) == 1 and "units" in one.attrs:
-            if one.size > _LARGEST:
-                raise InputError(f"{path}: its column {name} holds more than {_LARGEST} numbers")
-            values = one.asstr()[()] if one.dtype.kind == "O" else one[()]
-            columns[name] = values, str(one.attrs["units"])
-    return columns
+    try:
+        with h5py.File(path, "r") as file:
+            for name, one in file.items():
+                if getattr(one, "ndim", 0) != 1 or "units" not in one.attrs:
+                    continue
+                if one.size > _LARGEST:
+                    raise InputError(
+                        f"{path}: its column {name} holds more than {_LARGEST} numbers"
+                    )
+                values, unit = one.asstr()[()] if one.dtype.kind == "O" else one[()], one.attrs
+                columns[f"{name}[{unit['units']}]" if unit["units"] else name] = values.tolist()
+        return csv_of([columns, *zip(*columns.values(), strict=True)])
+    except _DAMAGE as error:
+        raise _refused(path, error) from None
 
 
 def _deeplabcut(path: str | Path, table: Any) -> Film:
@@ -219,4 +244,7 @@ def _scores(file: Any, shape: tuple[int, ...]) -> FloatArray | None:
     return np.asarray(file["point_scores"], dtype=np.float64)
 
 
-READERS = (Reader(lambda _, head: head.startswith(HDF5), _film),)
+READERS = (
+    Reader(_is_saved, as_text=_saved_as_csv),
+    Reader(lambda _, head: head.startswith(HDF5), _film),
+)

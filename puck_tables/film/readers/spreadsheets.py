@@ -11,8 +11,6 @@ Document 1.3 (``table:table-cell`` with ``office:value``, repeated as they say).
 
 from __future__ import annotations
 
-import csv
-import io
 import zipfile
 import zlib
 from collections.abc import Iterator
@@ -24,6 +22,7 @@ from puck_tables._core.beginning import ZIP
 from puck_tables._core.text import number
 from puck_tables.errors import InputError
 from puck_tables.film.film import Reader
+from puck_tables.film.text_tables import csv_of
 
 _LARGEST = 1 << 28  # bytes of XML
 _WIDEST, _LONGEST = 4096, 1 << 21  # cells of a row, rows
@@ -48,9 +47,7 @@ def _as_csv(path: str | Path, head: bytes) -> bytes:
         if isinstance(error, InputError):
             raise
         raise InputError(f"{path} is a damaged spreadsheet ({error}): save it as CSV") from None
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows(rows)
-    return text.getvalue().encode()
+    return csv_of(rows)
 
 
 def _xml(path: str | Path, archive: zipfile.ZipFile, name: str) -> Element:

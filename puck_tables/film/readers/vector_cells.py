@@ -12,6 +12,7 @@ from puck_tables._core.safe_read import read_whole
 from puck_tables._core.text import COMMENTS, POINT, encoding_of, number
 from puck_tables.errors import InputError
 from puck_tables.film.film import Reader, first_text
+from puck_tables.film.text_tables import csv_of
 
 _LARGEST = 1 << 28  # bytes of such a file
 _AXES = {2: "xy", 3: "xyz", 4: "xyzw"}
@@ -34,20 +35,18 @@ def _as_csv(path: str | Path, head: bytes) -> bytes:
     if form is None:
         return content
     rows = _rows(content.decode(form.encoding, "replace"), form.separator)
-    out = io.StringIO()
-    table = csv.writer(out, lineterminator="\n")
-    table.writerow([
+    table = [[
         name if count not in _AXES else f"{name}_{axis}"
         for name, count in zip(rows[0], form.counts, strict=True)
         for axis in _AXES.get(count, " ")
-    ])  # fmt: skip
+    ]]  # fmt: skip
     for row in rows[1:]:
         cells: list[str] = []
         for cell, count in zip(row, form.counts, strict=False):
             told = _numbers(cell) if count in _AXES else [cell]
             cells += told if len(told) == max(count, 1) else [""] * count
-        table.writerow(cells)
-    return out.getvalue().encode()
+        table.append(cells)
+    return csv_of(table)
 
 
 def _form_of(path: str | Path, head: bytes) -> _Form | None:
