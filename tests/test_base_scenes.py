@@ -2,6 +2,7 @@
 
 import math
 import tomllib
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,7 @@ from puck_tables import (
     Wall,
 )
 from puck_tables.contact.law_moments import law_moments, packed_law
+from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.kernels.base_friction import base_sums, packed
 from puck_tables.kernels.law_sums import law_sums
 from puck_tables.scene.scene_text import as_toml
@@ -275,6 +277,72 @@ def test_a_law_is_integrated_as_exactly_as_a_constant() -> None:
             for ux, uy in (far * rng.normal(size=2) * 0.1, (w * rim[1], -w * rim[0])):
                 own, law = base_sums(shape, ux, uy, w), law_sums(shape, constant, ux, uy, w)
                 assert np.abs((np.array(law) - 0.3 * np.array(own)) / unit).max() < 1e-10
+
+
+STEEP = SpeedLaw([0.0, 0.3, 0.31, 30.0], [0.4, 0.4, 0.1, 0.1])
+
+
+def summed_from(cx: float, cy: float, w: float) -> np.ndarray:
+    """Force of a 0.2 × 0.1 box under the law, by polar coordinates about C, inside."""
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+    corners = [math.atan2(y - cy, x - cx) for x in (-0.1, 0.1) for y in (-0.05, 0.05)]
+    at, total = np.asarray(STEEP.speeds) / abs(w), np.zeros(2)
+    meets = [math.atan2(y, x) for r in at for x, y in on_sides(cx, cy, r)]
+    share = 0.5 + 0.5 * nodes  # half powers of a circle that touches a side are cleared
+    way, part_of = share**2 * (3.0 - 2.0 * share), 3.0 * share * (1.0 - share) * weights
+    for low, high in pairwise(np.unique([*corners, -math.pi, math.pi, *meets])):
+        for angle, part in zip(low + (high - low) * way, (high - low) * part_of, strict=True):
+            c, s = math.cos(angle), math.sin(angle)
+            far = min((math.copysign(0.1, c) - cx) / c, (math.copysign(0.05, s) - cy) / s)
+            breaks = np.unique([0.0, *at[at < far], far])
+            half = 0.5 * np.diff(breaks)[:, None]
+            radius = breaks[:-1, None] + half * (1.0 + nodes)
+            inner = (
+                STEEP((abs(w) * radius).ravel()).reshape(radius.shape) * radius * half * weights
+            ).sum()
+            total += part * inner * math.copysign(1.0, w) * np.array([-s, c])
+    return total
+
+
+def on_sides(cx: float, cy: float, radius: float) -> list[tuple[float, float]]:
+    """Where a circle about C meets the sides of the box, from C."""
+    met = []
+    for x in (-0.1 - cx, 0.1 - cx):
+        if radius > abs(x):
+            y = math.sqrt(radius**2 - x**2)
+            met += [(x, one) for one in (-y, y) if -0.05 <= one + cy <= 0.05]
+    for y in (-0.05 - cy, 0.05 - cy):
+        if radius > abs(y):
+            x = math.sqrt(radius**2 - y**2)
+            met += [(one, y) for one in (-x, x) if -0.1 <= one + cx <= 0.1]
+    return met
+
+
+def test_a_law_that_bends_is_integrated_as_exactly_as_one_that_does_not() -> None:
+    shape = packed(Base.box(0.2, 0.1), 0.0)
+    contour = packed_law(*law_moments(STEEP, STEEP.pieces(30.0)[0]))
+    rng = np.random.default_rng(6)
+    for _ in range(12):
+        w = float(rng.choice([-1.0, 1.0])) * 10.0 ** float(rng.uniform(0.3, 1.2))
+        cx, cy = float(rng.uniform(-0.09, 0.09)), float(rng.uniform(-0.045, 0.045))
+        found = law_sums(shape, contour, w * cy, -w * cx, w)[:2]
+        assert np.abs(found - summed_from(cx, cy, w)).max() < 1e-10 * 0.4 * 0.02
+    nodes, weights = np.polynomial.legendre.leggauss(3)
+    x, y = (
+        (a * (np.arange(n)[:, None] + 0.5 + 0.5 * nodes) / n - 0.5 * a).ravel()
+        for a, n in ((0.2, 1000), (0.1, 500))
+    )
+    part = np.outer(np.tile(weights, 500), np.tile(weights, 1000)) * 0.25 * 0.02 / 500_000
+    for w, speed in ((0.4, 0.305), (-0.02, 0.3), (1e-3, 0.3102)):  # C far away, and farther
+        ux, uy = 0.6 * speed, 0.8 * speed
+        vx, vy = ux - w * y[:, None], uy + w * x
+        slip = np.hypot(vx, vy)
+        along = part * STEEP(slip.ravel()).reshape(slip.shape) / slip
+        truth = np.array([(along * vx).sum(), (along * vy).sum()])
+        found = law_sums(shape, contour, ux, uy, w)[:2]
+        assert np.abs(found - truth).max() < 1e-9 * 0.4 * 0.02
+        other = law_sums.at_first(shape, contour, ux, uy, w)[:2]
+        assert np.abs(np.subtract(found, other)).max() < 1e-12 * 0.4 * 0.02
 
 
 def test_arrays_give_what_the_kernel_gives_before_it_is_compiled() -> None:

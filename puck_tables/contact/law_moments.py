@@ -26,8 +26,8 @@ _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(DEGREE + 3)
 
 def law_moments(
     law: Callable[[FloatArray], FloatArray], speeds: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Ends (n + 1,) of pieces, m/s, and their polynomials (n, 4, 10) in t from −1 to 1.
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Ends (n + 1,) of pieces, m/s, their polynomials (n, 4, 10) in t from −1 to 1, and corners.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def law_moments(
 
     Examples
     --------
-    >>> ends, rows = law_moments(lambda u: 0.3 + 0.0 * u, np.array([0.0, 1.0]))
+    >>> ends, rows, corners = law_moments(lambda u: 0.3 + 0.0 * u, np.array([0.0, 1.0]))
     >>> rows[0, :, 0].round(12).tolist()
     [0.3, 0.15, 0.1, 0.075]
     """
@@ -61,7 +61,7 @@ def law_moments(
         ends.append(high)
         rows.append(powers)
         done = done + _between(law, low, np.array([high]))[:, 0]
-    return np.array(ends), np.array(rows)
+    return np.array(ends), np.array(rows), np.asarray(speeds)[1:-1]
 
 
 def _between(law: Callable[[FloatArray], FloatArray], low: float, to: FloatArray) -> FloatArray:
@@ -92,12 +92,12 @@ def _polynomials(parts: FloatArray) -> FloatArray:
     return np.stack([np.pad(row, (0, DEGREE + 1 - len(row))) for row in powers])
 
 
-def packed_law(ends: FloatArray, rows: FloatArray) -> FloatArray:
-    """Pieces in one array: how many, their ends, and their polynomials.
+def packed_law(ends: FloatArray, rows: FloatArray, corners: FloatArray) -> FloatArray:
+    """Pieces in one array: how many, their ends and polynomials, how many corners, and these.
 
     Examples
     --------
     >>> len(packed_law(*law_moments(lambda u: 0.3 + 0.0 * u, np.array([0.0, 1.0]))))
-    43
+    44
     """
-    return np.concatenate([[len(rows)], ends, rows.ravel()])
+    return np.concatenate([[len(rows)], ends, rows.ravel(), [len(corners)], corners])

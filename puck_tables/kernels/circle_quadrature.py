@@ -51,15 +51,15 @@ _LEAST = 1e-300  # that is divided by
 
 @inner
 def _add_circle(
-    breaks: FloatArray, pieces: FloatArray, bends: FloatArray, alpha: float, beta: float,
+    breaks: FloatArray, pieces: FloatArray, kinks: FloatArray, alpha: float, beta: float,
     speed: float, rho: float, share: float, rules: int, edges: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
     """What a circle adds to p_a, p_b, p_d, p_e that has a share of the load."""
     smooth, rim = is_smooth(pieces), beta * rho
     gap, product, count = alpha - rim, 4.0 * alpha * rim, 0
-    for k in range(len(bends)):
+    for k in range(len(kinks)):
         if product > 0.0 and speed > 0.0:
-            part = (bends[k] / speed) ** 2 - gap * gap
+            part = (kinks[k] / speed) ** 2 - gap * gap
             part = min(part, product - part) / product  # sin²(t/2), of either half
             if 0.0 < part < 0.5:
                 edges[count] = 2.0 * math.asin(math.sqrt(part))
@@ -119,14 +119,14 @@ def _sorted_in(places: FloatArray, count: int, place: float, low: float, high: f
 
 @inner
 def _load_at(
-    breaks: FloatArray, pieces: FloatArray, bends: FloatArray, power: float, parts: FloatArray,
+    breaks: FloatArray, pieces: FloatArray, kinks: FloatArray, power: float, parts: FloatArray,
     reach: float, alpha: float, beta: float, speed: float, rules: int, edges: FloatArray,
     places: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
     """p_a, p_b, p_d, p_e of a load into ``out`` (4,)."""
     out[:] = 0.0
     if power == ALONE:
-        _add_circle(breaks, pieces, bends, alpha, beta, speed, reach, 1.0, rules, edges, out)
+        _add_circle(breaks, pieces, kinks, alpha, beta, speed, reach, 1.0, rules, edges, out)
         return
     curved, rim, fine = power != PROFILE, beta * reach, rules == FINE
     centre = alpha / max(rim, _LEAST)
@@ -137,9 +137,9 @@ def _load_at(
             at = math.asin(centre) if centre < 1.0 else 0.5 * math.pi + math.acosh(centre)
         count = _sorted_in(places, 0, at, low, high)
         if speed * rim > 0.0:
-            for n in range(len(bends)):
+            for n in range(len(kinks)):
                 for way in range(3):
-                    corner = (bends[n] / speed * (1.0 if way < 2 else -1.0)
+                    corner = (kinks[n] / speed * (1.0 if way < 2 else -1.0)
                               + (alpha if way > 0 else -alpha)) / rim  # fmt: skip
                     inside = curved and 0.0 < corner < 1.0
                     corner = math.asin(corner) if inside else corner
@@ -166,7 +166,7 @@ def _load_at(
                 _add_circle(
                     breaks,
                     pieces,
-                    bends,
+                    kinks,
                     alpha,
                     beta,
                     speed,
@@ -181,24 +181,24 @@ def _load_at(
 
 @allocating
 def fill_load(
-    breaks: FloatArray, pieces: FloatArray, bends: FloatArray, power: float, parts: FloatArray,
+    breaks: FloatArray, pieces: FloatArray, kinks: FloatArray, power: float, parts: FloatArray,
     reach: float, ratio: FloatArray, fast: npt.NDArray[np.bool_], speed: FloatArray, rules: int,
     out: FloatArray,
 ) -> None:  # fmt: skip
     """The four at flat arrays of points into ``out`` (n, 4).
 
-    ``bends``: speeds, m/s, at which the law has a corner, or bends much; ``power``, ``parts``: as
+    ``kinks``: speeds, m/s, at which the law has a corner, or bends much; ``power``, ``parts``: as
     :attr:`puck_tables.contact.round_load.RoundLoad.circles`; the rest as
     :func:`puck_tables.kernels.speed_quadrature_kernel.fill_integrals`.
     """
     patience(ratio.size)
-    edges, places = np.empty(len(bends) + GRADED + 4), np.empty(3 * len(bends) + 4)
+    edges, places = np.empty(len(kinks) + GRADED + 4), np.empty(3 * len(kinks) + 4)
     for n in range(ratio.size):
         patience(1)
         small = ratio[n] / math.sqrt(1.0 + ratio[n] * ratio[n])
         large = 1.0 / math.sqrt(1.0 + ratio[n] * ratio[n])
         alpha, beta = (small, large) if fast[n] else (large, small)
         _load_at(
-            breaks, pieces, bends, power, parts, reach, alpha, beta, speed[n], rules, edges, places,
+            breaks, pieces, kinks, power, parts, reach, alpha, beta, speed[n], rules, edges, places,
             out[n],
         )  # fmt: skip

@@ -7,31 +7,23 @@ moments of the law (:mod:`puck_tables.contact.law_moments`) at W R, along a piec
     ∫ f e ⊗ r dA = ∮ e ⊗ r H₂ (r × dr)      (r from C).
 
 On a straight side at the distance d from C, r × dr = d ds, and with y = asinh(s/|d|) the integrands
-are entire: Gauss's rule on panels of y.  On a circle panels shrink towards C.  Where C lies far
-away these cancel: there the inner integral runs from the distance of C to the contour, by a rule of
-its own.
+are entire but for the law: Gauss's rule on panels of y.  On a circle panels shrink towards C.
+Panels end where the law bends (:mod:`puck_tables.kernels.law_panels`).  Where C lies far away these
+cancel: there the inner integral runs from the distance of C to the contour, by a rule of its own.
 """
 
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.law_moments import DEGREE, MOMENTS
 from puck_tables.kernels.base_friction import DISCS, HEAD, REACH, SIDES, disc_in
 from puck_tables.kernels.base_sums import NOTHING, Sums, moved, plus
 from puck_tables.kernels.compile import arrays_at_first, inlined, inner, kernel
-from puck_tables.kernels.law_sums_at_first import (
-    ARC,
-    FAR,
-    LEAST_GAP,
-    NODE,
-    NODES,
-    ON_SIDE,
-    PANEL,
-    WEIGHT,
-    law_sums_at_first,
-)
+from puck_tables.kernels.law_panels import NODES, circle_end, next_end, side_end
+from puck_tables.kernels.law_sums_at_first import FAR, NODE, ON_SIDE, WEIGHT, law_sums_at_first
 from puck_tables.kernels.polygon_sums import (
     BEGIN_X,
     BEGIN_Y,
@@ -95,53 +87,70 @@ def _at(law: FloatArray, spin: float, rx: float, ry: float, distance: float, are
 
 @inner
 def _along_side(
-    law: FloatArray, spin: float, px: float, py: float, tx: float, ty: float, length: float,
-    least: float,
+    law: FloatArray, ux: float, uy: float, w: float, far: bool, px: float, py: float, tx: float,
+    ty: float, length: float, least: float,
 ) -> Sums:  # fmt: skip
-    """A straight side that begins at p from C."""
-    d, begin, sums = px * ty - py * tx, px * tx + py * ty, NOTHING
+    """A straight side that begins at p: both ways from where it is nearest to C.
+
+    ``far``: about the centre of mass, as :func:`_from_far`; else about C.
+    """
+    spin, cx, cy, sums = abs(w), -uy / w, ux / w, NOTHING
+    d, begin = (px - cx) * ty - (py - cy) * tx, (px - cx) * tx + (py - cy) * ty
     away = abs(d)
     if away <= least:
         return sums
     low, high = math.asinh(begin / away), math.asinh((begin + length) / away)
-    panels = 1 + int((high - low) / PANEL)
-    half = 0.5 * (high - low) / panels
-    for panel in range(panels):
-        middle = low + (2 * panel + 1) * half
-        for n in range(NODES):
-            y = middle + half * NODE[n]
-            up = math.exp(y)
-            s, distance = 0.5 * away * (up - 1.0 / up), 0.5 * away * (up + 1.0 / up)
-            rx, ry = d * ty + s * tx, s * ty - d * tx
-            weight = half * WEIGHT[n] * d * distance
-            sums = plus(sums, 1.0, _at(law, spin, rx, ry, distance, weight))
+    for way in range(2):
+        y, last = max(low, 0.0), high
+        if way == 1:
+            y, last = max(-high, 0.0), -low
+        while y < last:
+            end = side_end(law, spin, away, y, last)
+            half = 0.5 * (end - y)
+            for n in range(NODES):
+                up = math.exp(y + half * (1.0 + NODE[n]))
+                s, distance = 0.5 * away * (up - 1.0 / up), 0.5 * away * (up + 1.0 / up)
+                s = s if way == 0 else -s
+                rx, ry = d * ty + s * tx, s * ty - d * tx
+                weight = half * WEIGHT[n] * distance
+                if far:
+                    part = _from_far(
+                        law, ux, uy, w, px + (s - begin) * tx, py + (s - begin) * ty, weight * tx,
+                        weight * ty,
+                    )  # fmt: skip
+                else:
+                    part = _at(law, spin, rx, ry, distance, weight * d)
+                sums = plus(sums, 1.0, part)
+            y = end
     return sums
 
 
 @inner
 def _along_circle(
-    law: FloatArray, spin: float, gx: float, gy: float, size: float
+    law: FloatArray, ux: float, uy: float, w: float, far: bool, x: float, y: float, size: float
 ) -> Sums:  # fmt: skip
-    """A circle about g from C, counter-clockwise: both ways from where it is nearest to C."""
-    off, sums = math.sqrt(gx * gx + gy * gy), NOTHING
-    nearest = math.atan2(-gy, -gx)
-    gap = min(max(abs(off - size) / size, LEAST_GAP), 1.0)
-    near = 0.0
-    while near < math.pi:
-        length = ARC * math.sqrt(gap * gap + near * near)
-        if length >= 0.7 * (math.pi - near):
-            length = math.pi - near if length >= math.pi - near else 0.5 * (math.pi - near)
-        half = 0.5 * length
+    """A circle about a place, counter-clockwise: both ways from where it is nearest to C."""
+    spin, gx, gy, sums = abs(w), x + uy / w, y - ux / w, NOTHING
+    off, nearest, turn = math.sqrt(gx * gx + gy * gy), math.atan2(-gy, -gx), 0.0
+    while turn < math.pi:
+        end = circle_end(law, spin, off, size, turn)
+        half = 0.5 * (end - turn)
         for way in range(2):
             for n in range(NODES):
-                turn = near + half * (1.0 + NODE[n])
-                angle = nearest + turn if way == 0 else nearest - turn
-                c, s = math.cos(angle), math.sin(angle)
-                rx, ry = gx + size * c, gy + size * s
-                distance = math.sqrt(rx * rx + ry * ry)
-                area = half * WEIGHT[n] * size * (size + gx * c + gy * s)
-                sums = plus(sums, 1.0, _at(law, spin, rx, ry, distance, area))
-        near = near + length if length < math.pi - near else math.pi
+                by = turn + half * (1.0 + NODE[n])
+                angle = nearest + by if way == 0 else nearest - by
+                c, s, weight = math.cos(angle), math.sin(angle), half * WEIGHT[n] * size
+                if far:
+                    part = _from_far(
+                        law, ux, uy, w, x + size * c, y + size * s, -weight * s, weight * c
+                    )  # fmt: skip
+                else:
+                    rx, ry = gx + size * c, gy + size * s
+                    distance = math.sqrt(rx * rx + ry * ry)
+                    area = weight * (size + gx * c + gy * s)
+                    part = _at(law, spin, rx, ry, distance, area)
+                sums = plus(sums, 1.0, part)
+        turn = end
     return sums
 
 
@@ -153,11 +162,19 @@ def _from_far(
     speed, spin, sign = math.sqrt(ux * ux + uy * uy), abs(w), -1.0 if w < 0.0 else 1.0
     vx, vy, slip, deep = ray_to(ux, uy, w, qx, qy)
     k0, k1, k2 = 0.0, 0.0, 0.0
-    for n in range(NODES):
-        s = 0.5 * deep * (1.0 + NODE[n])
-        u = speed + spin * s
-        part = 0.5 * deep * WEIGHT[n] * _coefficient(law, u) * u
-        k0, k1, k2 = k0 + part, k1 + part * s, k2 + part * s * s
+    begin, last, out = min(deep, 0.0), max(deep, 0.0), 1.0 if deep > 0.0 else -1.0
+    while begin < last:
+        low = speed + spin * begin
+        cut, end = next_end(law, low), last
+        if cut < speed + spin * last:
+            end = min(begin + (cut - low) / spin, last)
+        half = 0.5 * (end - begin)
+        for n in range(NODES):
+            s = begin + half * (1.0 + NODE[n])
+            u = speed + spin * s
+            part = out * half * WEIGHT[n] * _coefficient(law, u) * u
+            k0, k1, k2 = k0 + part, k1 + part * s, k2 + part * s * s
+        begin = end
     weight = (vx * dx + vy * dy) / (slip * slip)
     outx, outy = sign * vy / slip, -sign * vx / slip
     bx, by = qx - deep * outx, qy - deep * outy
@@ -191,21 +208,41 @@ def _far_sums(base: FloatArray, law: FloatArray, ux: float, uy: float, w: float)
     return sums
 
 
-@arrays_at_first(law_sums_at_first)
+def _at_first(base: FloatArray, law: FloatArray, ux: float, uy: float, w: float) -> Sums:
+    """By arrays, but where the law bends and C is far away."""
+    if _has_corners_far_away(base, law, ux, uy, w):
+        written: Any = law_sums
+        result: Sums = written.py_func(base, law, ux, uy, w)
+        return result
+    return law_sums_at_first(base, law, ux, uy, w)
+
+
+@inlined
+def _has_corners_far_away(
+    base: FloatArray, law: FloatArray, ux: float, uy: float, w: float
+) -> bool:
+    """Whether C is far away, and the law bends between the slips under the base."""
+    speed, rim = math.sqrt(ux * ux + uy * uy), base[REACH] * abs(w)
+    return speed > FAR * rim and next_end(law, speed - rim) < speed + rim
+
+
+@arrays_at_first(_at_first)
 @kernel
 def law_sums(base: FloatArray, law: FloatArray, ux: float, uy: float, w: float) -> Sums:
     """Sums of the slip direction times f(slip speed) over a base, in its axes; not at rest."""
-    if math.sqrt(ux * ux + uy * uy) > FAR * base[REACH] * abs(w):
+    far = _has_corners_far_away(base, law, ux, uy, w)
+    if not far and math.sqrt(ux * ux + uy * uy) > FAR * base[REACH] * abs(w):
         return _far_sums(base, law, ux, uy, w)
-    spin, cx, cy, sums = abs(w), -uy / w, ux / w, NOTHING
-    discs = HEAD + PIECE_COLUMNS * int(base[SIDES])
+    sums, discs = NOTHING, HEAD + PIECE_COLUMNS * int(base[SIDES])
     for i in range(HEAD, discs, PIECE_COLUMNS):
         part = _along_side(
-            law, spin, base[i + BEGIN_X] - cx, base[i + BEGIN_Y] - cy, base[i + TANGENT_X],
+            law, ux, uy, w, far, base[i + BEGIN_X], base[i + BEGIN_Y], base[i + TANGENT_X],
             base[i + TANGENT_Y], base[i + LENGTH], ON_SIDE * base[REACH],
         )  # fmt: skip
         sums = plus(sums, 1.0, part)
     for k in range(int(base[DISCS])):
         x, y, size, sign = disc_in(base, k)
-        sums = plus(sums, sign, _along_circle(law, spin, x - cx, y - cy, size))
-    return plus(NOTHING, 1.0 if w > 0.0 else -1.0, moved(sums, cx, cy))
+        sums = plus(sums, sign, _along_circle(law, ux, uy, w, far, x, y, size))
+    if far:
+        return sums
+    return plus(NOTHING, 1.0 if w > 0.0 else -1.0, moved(sums, -uy / w, ux / w))

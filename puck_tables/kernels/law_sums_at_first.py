@@ -13,6 +13,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.law_moments import DEGREE, MOMENTS
 from puck_tables.kernels.base_friction import DISCS, HEAD, REACH, SIDES
 from puck_tables.kernels.base_sums import Sums, moved
+from puck_tables.kernels.law_panels import NODES, circle_end, side_end
 from puck_tables.kernels.polygon_sums import (
     ABOUT_X,
     ABOUT_Y,
@@ -28,12 +29,8 @@ from puck_tables.kernels.polygon_sums import (
 
 # the rule of both
 FAR = 6.0  # times the reach of the base: nearer, 1e-13 is lost to cancellation at most
-NODES = 8  # of Gauss's rule a panel, and across the base where C is far away
 NODE, WEIGHT = np.polynomial.legendre.leggauss(NODES)
-PANEL = 1.2  # of y
-ARC = 0.9  # of an angle, over how far it is from the singularity next to C
 ON_SIDE = 1e-14  # of the reach: closer, C lies on a side, and nothing is left of it
-LEAST_GAP = 1e-9  # of an angle: closer, C lies on the circle
 
 Points = tuple[FloatArray, FloatArray, FloatArray]  # of a contour, and r × dr, or dx and dy
 
@@ -43,8 +40,8 @@ def law_sums_at_first(base: FloatArray, law: FloatArray, ux: float, uy: float, w
     if math.sqrt(ux * ux + uy * uy) > FAR * base[REACH] * abs(w):
         return _far(base, law, ux, uy, w)
     cx, cy = -uy / w, ux / w
-    parts = [_on_side(row, cx, cy, base[REACH]) for row in _sides(base)]
-    parts += [_on_circle(row, cx, cy) for row in _discs(base)]
+    parts = [_on_side(row, law, abs(w), cx, cy, base[REACH]) for row in _sides(base)]
+    parts += [_on_circle(row, law, abs(w), cx, cy) for row in _discs(base)]
     rx, ry, area = (np.concatenate(rows) for rows in zip(*parts, strict=True))
     distance = np.hypot(rx, ry)
     h = _polynomials(law, abs(w) * distance)
@@ -88,28 +85,31 @@ def _polynomials(law: FloatArray, u: FloatArray) -> FloatArray:
     return found
 
 
-def _on_side(row: FloatArray, cx: float, cy: float, reach: float) -> Points:
+def _on_side(
+    row: FloatArray, law: FloatArray, spin: float, cx: float, cy: float, reach: float
+) -> Points:
     px, py, tx, ty = row[BEGIN_X] - cx, row[BEGIN_Y] - cy, row[TANGENT_X], row[TANGENT_Y]
     d, begin = px * ty - py * tx, px * tx + py * ty
     if abs(d) <= ON_SIDE * reach:
         return np.zeros(0), np.zeros(0), np.zeros(0)
     low, high = math.asinh(begin / abs(d)), math.asinh((begin + row[LENGTH]) / abs(d))
-    panels = 1 + int((high - low) / PANEL)
-    half = 0.5 * (high - low) / panels
-    y = (low + (2.0 * np.arange(panels) + 1.0) * half)[:, None] + half * NODE
-    s, distance = abs(d) * np.sinh(y).ravel(), abs(d) * np.cosh(y).ravel()
-    return d * ty + s * tx, s * ty - d * tx, half * np.tile(WEIGHT, panels) * d * distance
+    found = []
+    for way, y, last in ((1.0, max(low, 0.0), high), (-1.0, max(-high, 0.0), -low)):
+        while y < last:
+            end = side_end(law, spin, abs(d), y, last)
+            half = 0.5 * (end - y)
+            found.append(np.stack([way * (y + half * (1.0 + NODE)), half * WEIGHT]))
+            y = end
+    at, weight = np.concatenate(found, axis=1)
+    s, distance = abs(d) * np.sinh(at), abs(d) * np.cosh(at)
+    return d * ty + s * tx, s * ty - d * tx, weight * d * distance
 
 
-def _on_circle(row: FloatArray, cx: float, cy: float) -> Points:
+def _on_circle(row: FloatArray, law: FloatArray, spin: float, cx: float, cy: float) -> Points:
     gx, gy, size = row[0] - cx, row[1] - cy, row[2]
-    gap = min(max(abs(math.hypot(gx, gy) - size) / size, LEAST_GAP), 1.0)
     ends = [0.0]
     while ends[-1] < math.pi:
-        length, left = ARC * math.hypot(gap, ends[-1]), math.pi - ends[-1]
-        if length >= 0.7 * left:
-            length = left if length >= left else 0.5 * left
-        ends.append(ends[-1] + length if length < left else math.pi)
+        ends.append(circle_end(law, spin, math.hypot(gx, gy), size, ends[-1]))
     panels = np.array(ends)[:, None]
     halves = 0.5 * (panels[1:] - panels[:-1])
     turn, weight = (panels[:-1] + halves * (1.0 + NODE)).ravel(), (halves * WEIGHT).ravel()

@@ -81,7 +81,9 @@ def law_table(
         ) from None
 
 
-def moments_of(law: SpeedLaw | FrictionLaw, top: float) -> tuple[FloatArray, FloatArray]:
+def moments_of(
+    law: SpeedLaw | FrictionLaw, top: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Its moments up to a slip, m/s, see :func:`puck_tables.contact.law_moments.law_moments`."""
     return _kept_moments(_key(law), top)
 
@@ -170,7 +172,9 @@ def _kept_table(
 
 
 @lru_cache(maxsize=8)
-def _kept_moments(of: FrictionLaw | Points, top: float) -> tuple[FloatArray, FloatArray]:
+def _kept_moments(
+    of: FrictionLaw | Points, top: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     law = _law(of)
     return law_moments(law, law.pieces(top)[0])
 

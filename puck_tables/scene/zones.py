@@ -19,7 +19,7 @@ from puck_tables.scene.ground import (
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.stretches import belts_of
 
-Moments = tuple[FloatArray, FloatArray]
+Moments = tuple[FloatArray, FloatArray, FloatArray]
 
 _AT_REST = (-1.0) ** np.arange(DEGREE + 1)  # powers of t at the beginning of a piece
 
@@ -64,7 +64,7 @@ def ground_of(scene: SceneSpec, normal: float, law: Moments | None = None) -> Fl
         base = packed_round(puck.radius, puck.body.law, lever)
         return Ground(*there, base, over_slip, belts_of(floor)).packed()
     if law is not None:
-        over_slip = packed_law(law[0], normal * law[1])
+        over_slip = packed_law(law[0], normal * law[1], law[2])
     if axes is not None:
         turns = float(axes.fixed_to == "floor")
         over_slip = np.array([*np.multiply(normal, axes.friction), axes.direction, turns])

@@ -55,14 +55,14 @@ def truth_at(
             part = _of_disc(law, top, direction, speed, rules, plain)
             norm = np.ones(np.shape(speed))
         else:
-            seen, norm = _seen_by(direction, radius)
+            seen, norm = _of_rim(direction, radius)
             part = _of_disc(law, top, seen, speed * norm, rules, plain)
             part = part * np.array([1.0, radius**2, radius**2, radius**2])
         total += share * part / np.expand_dims(norm, -1)
     return total
 
 
-def _seen_by(direction: SlipDirection, radius: float) -> tuple[SlipDirection, FloatArray]:
+def _of_rim(direction: SlipDirection, radius: float) -> tuple[SlipDirection, FloatArray]:
     """The slip of a disc of another radius: its direction, and its Q over that of the whole."""
     cosine, sine = np.sqrt(direction.cos_squared), radius * np.sqrt(direction.sin_squared)
     fast = sine > cosine
@@ -90,17 +90,17 @@ def _over_circles(
     assert isinstance(law, SpeedLaw | FrictionLaw)  # a function has been refused
     ends, pieces = law.pieces(top)
     power, rows = load.circles
-    bends = _bends(ends, pieces)
+    kinks = _kinks(ends, pieces)
     flat, inside, Q, out = _flat(direction.ratio, direction.fast_spin, speed)
     for part in _parts(Q.size, max(1, _ALSO // max(1, len(rows)))):
         fill_load(
-            ends, pieces, bends, power, rows, load.reach, flat[part], inside[part], Q[part], rules,
+            ends, pieces, kinks, power, rows, load.reach, flat[part], inside[part], Q[part], rules,
             out[part],
         )  # fmt: skip
     return out.reshape(*np.shape(direction.ratio), 4)
 
 
-def _bends(ends: FloatArray, pieces: FloatArray) -> FloatArray:
+def _kinks(ends: FloatArray, pieces: FloatArray) -> FloatArray:
     """Speeds of the corners of a law of cubics; of a smooth one those between which it bends most.
 
     Smooth laws stand in pieces as long as a series allows: such a piece is much shorter than its

@@ -1,0 +1,73 @@
+"""Where the panels of a contour end over which a friction law by the slip speed is summed.
+
+A law bends at its corners, and a steep one is short pieces: a rule that goes across misses that by
+parts in ten thousand.  From the point of a side, or of a circle, that is nearest to the
+instantaneous centre, the slip speed only grows, both ways.
+"""
+
+from __future__ import annotations
+
+import math
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.contact.law_moments import DEGREE, MOMENTS
+from puck_tables.kernels.compile import inlined
+
+NODES = 8  # of Gauss's rule a panel, and across the base where C is far away
+PANEL = 1.2  # of y
+ARC = 0.9  # of an angle, over how far it is from the singularity next to C
+LEAST_GAP = 1e-9  # of an angle: closer, C lies on the circle
+_AHEAD = 4  # pieces of a smooth law: a panel across them is good to 1e-13
+_BEYOND = 1.0 + 1e-9  # times a slip speed: a corner there is passed
+_STEP = 1e-12  # the shortest panel
+
+
+@inlined
+def next_end(law: FloatArray, u: float) -> float:
+    """Up to which slip speed a rule may go from one: the next corner, or some pieces on; or inf."""
+    count = int(law[0])
+    low, high = 1, 1 + count
+    while high - low > 1:
+        middle = (low + high) // 2
+        if u >= law[middle]:
+            low = middle
+        else:
+            high = middle
+    cut = law[low + _AHEAD] if low + _AHEAD <= count else math.inf
+    corners = 2 + count + count * MOMENTS * (DEGREE + 1)
+    for k in range(int(law[corners])):
+        corner = law[corners + 1 + k]
+        if u * _BEYOND < corner < cut:
+            cut = corner
+    return cut
+
+
+@inlined
+def side_end(law: FloatArray, spin: float, away: float, y: float, last: float) -> float:
+    """Where the panel ends that begins at y ≥ 0, s = away sinh y, on the way to ``last``."""
+    up = math.exp(y)
+    reach, end = next_end(law, 0.5 * spin * away * (up + 1.0 / up)) / spin, last
+    if reach < math.inf:
+        there = math.sqrt(max((reach - away) * (reach + away), 0.0)) / away
+        end = min(last, max(math.asinh(there), y + _STEP))
+    panels = 1 + int((end - y) / PANEL)
+    return end if panels == 1 else y + (end - y) / panels
+
+
+@inlined
+def circle_end(law: FloatArray, spin: float, off: float, size: float, turn: float) -> float:
+    """Where the panel ends that begins at a turn from 0 to π; ``off``: how far its middle is."""
+    gap, left = abs(off - size), math.pi - turn
+    near = min(max(gap / size, LEAST_GAP), 1.0)
+    length = ARC * math.sqrt(near * near + turn * turn)
+    if length >= 0.7 * left:
+        length = left if length >= left else 0.5 * left
+    end = turn + length if length < left else math.pi
+    product, h = 4.0 * off * size, math.sin(0.5 * turn)
+    reach = next_end(law, spin * math.sqrt(gap * gap + product * h * h)) / spin
+    if reach < math.inf:
+        square = (reach - gap) * (reach + gap)
+        if square < product:
+            there = 2.0 * math.asin(math.sqrt(max(square, 0.0) / product))
+            end = min(end, max(there, turn + _STEP))
+    return end
