@@ -23,17 +23,23 @@ _STEP = 1e-12  # the shortest panel
 
 
 @inlined
-def next_end(law: FloatArray, u: float) -> float:
-    """Up to which slip speed a rule may go from one: the next corner, or some pieces on; or inf."""
-    count = int(law[0])
-    low, high = 1, 1 + count
+def begin_of(law: FloatArray, u: float) -> int:
+    """Where in a law the begin of the piece stands in which a slip speed lies; the last goes on."""
+    low, high = 1, 1 + int(law[0])
     while high - low > 1:
         middle = (low + high) // 2
         if u >= law[middle]:
             low = middle
         else:
             high = middle
-    cut = law[low + _AHEAD] if low + _AHEAD <= count else math.inf
+    return low
+
+
+@inlined
+def next_end(law: FloatArray, u: float) -> float:
+    """Up to which slip speed a rule may go from one: the next corner, or some pieces on; or inf."""
+    count, after = int(law[0]), begin_of(law, u) + _AHEAD
+    cut = law[after] if after <= count else math.inf
     corners = 2 + count + count * MOMENTS * (DEGREE + 1)
     for k in range(int(law[corners])):
         corner = law[corners + 1 + k]

@@ -22,7 +22,7 @@ from puck_tables.contact.law_moments import DEGREE, MOMENTS
 from puck_tables.kernels.base_friction import DISCS, HEAD, REACH, SIDES, disc_in
 from puck_tables.kernels.base_sums import NOTHING, Sums, moved, plus
 from puck_tables.kernels.compile import arrays_at_first, inlined, inner, kernel
-from puck_tables.kernels.law_panels import NODES, circle_end, next_end, side_end
+from puck_tables.kernels.law_panels import NODES, begin_of, circle_end, next_end, side_end
 from puck_tables.kernels.law_sums_at_first import FAR, NODE, ON_SIDE, WEIGHT, law_sums_at_first
 from puck_tables.kernels.polygon_sums import (
     BEGIN_X,
@@ -39,14 +39,8 @@ _POWERS = DEGREE + 1
 
 @inlined
 def _polynomials_at(law: FloatArray, u: float) -> tuple[int, float]:
-    """Where the polynomials of a slip speed begin, and its t; the last piece goes on."""
-    low, high = 1, 1 + int(law[0])
-    while high - low > 1:
-        middle = (low + high) // 2
-        if u >= law[middle]:
-            low = middle
-        else:
-            high = middle
+    """Where the polynomials of a slip speed begin, and its t."""
+    low = begin_of(law, u)
     begin, end = law[low], law[low + 1]
     first = 2 + int(law[0]) + (low - 1) * MOMENTS * _POWERS
     return first, (2.0 * u - begin - end) / (end - begin)
