@@ -112,6 +112,18 @@ def test_air_and_friction_are_found_with_their_errors():
     assert inside.mean() > 0.8
 
 
+@pytest.mark.parametrize("draw", [148, 553])
+def test_strong_drag_on_much_spin_does_not_end_without_friction(draw: int):
+    """Two of 660 drawn films came to a friction of 1e-9, one with an error of 1e-7."""
+    rng = np.random.default_rng([78, draw])
+    linear = 10.0 ** rng.uniform(-1.3, 0.0)
+    track, truth = film(rng, air=0.0, linear=linear)
+    result = pt.fit(track, PUCK, free=["friction", "drag"])
+    for name, true in (("friction", truth["friction"]), ("drag", linear)):
+        assert result[name].determined
+        assert abs(result[name].value - true) < 4.0 * result[name].error < 0.1 * true
+
+
 @pytest.mark.thorough
 def test_errors_and_coverage_of_air_and_friction():
     z, inside = scores(2, 200)

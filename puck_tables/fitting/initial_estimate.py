@@ -147,6 +147,9 @@ def _looked_up(problem: Problem, known: Known) -> Estimate:
     ]
     minima = [minima_of(part) for part in parts]
     result = estimate(problem, _joint_start(problem, parts, minima), known)
+    if "drag" in problem.spec.free and not is_clean(result, NOISY, NO_PATTERN):
+        begun = [(problem, result.x), *starts_from_slowing(problem)]
+        result = estimate(problem, nearest_start(problem, begun)[1], known)
     if len(parts) == 1:
         result = replace(result, minima=tuple(minima[0]))
     return _lifted(result, known)
@@ -159,23 +162,23 @@ def _integrated(problem: Problem, known: Known) -> Estimate:
     fits, drags are begun from the motion without them.
     """
     spec, starts = problem.spec, starts_from_slowing(problem)
-    drags = {*DRAGS} >= {*spec.integrated}
+    drags, begun = {*DRAGS} >= {*spec.integrated}, []
     if starts or not drags:
         result = estimate(problem, nearest_start(problem, starts)[1], known)
         if not drags or is_clean(result, NOISY, NO_PATTERN):
             return result
+        begun = [(problem, result.x)]
     plain = initial_estimate(replace(problem, spec=spec.plain()), known, refit=False)
     numbers, launches = plain.problem.numbers_at(plain.x), plain.problem.launches(plain.x)
     decel, delta, _ = plain.problem.spec.scales(numbers)
     speed = float(np.hypot(*launches[:, 2:4].T).max())
-    starts = []
     for share in _SHARES_OF_AIR:  # of the slowing at half the speed that is by air
         less = numbers_with(spec, (1.0 - share) * decel, (1.0 - share) * delta)
         air = 4.0 * share * decel / max(speed, 1e-9) ** 2
-        begun = {**NOTHING, **numbers, **less, "air": air}
-        x = problem.unknowns({name: begun[name] for name in spec.free}, launches)
-        starts.append((problem, np.clip(x, *problem.limits)))
-    return estimate(problem, nearest_start(problem, starts)[1], known)
+        given = {**NOTHING, **numbers, **less, "air": air}
+        x = problem.unknowns({name: given[name] for name in spec.free}, launches)
+        begun.append((problem, np.clip(x, *problem.limits)))
+    return estimate(problem, nearest_start(problem, begun)[1], known)
 
 
 def _with_room(problem: Problem) -> Problem:
