@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -82,7 +83,7 @@ def test_a_door_that_was_kept_is_linked_into_others_too():
     assert sum(kept.compiled._cache_hits.values()) == 1
 
 
-@on_demand("Tuple((float64, int64))")
+@on_demand("float64", "int64")
 def _rare(values: np.ndarray, x: float) -> tuple[float, int]:
     return values[0] * x, values.size
 
@@ -123,9 +124,13 @@ def test_an_interrupt_while_something_is_compiled_on_demand_is_raised_after_it()
         raise KeyboardInterrupt
 
     _long.compiled.compile = interrupted
-    with pytest.raises(KeyboardInterrupt):
-        _calls_long(2.0)
-        time.sleep(5.0)
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            _calls_long(2.0)
+            time.sleep(5.0)
+    finally:
+        signal.signal(signal.SIGINT, before)
     assert _calls_long(2.0) == 7.0
 
 

@@ -232,7 +232,7 @@ def test_bad_requests():
         with pytest.raises(InputError, match="accuracy must be a"):
             pt.table_for("ring", accuracy=accuracy)
     with pytest.raises(InputError, match="cannot be told from another"):
-        pt.table_for(pt.law_of("ring"))
+        pt.table_for(replace(pt.law_of("ring"), name="mine"))
 
 
 def test_progress_is_told():

@@ -72,7 +72,7 @@ class KernelDoor(Protocol):
     py_func: Any
     counts: bool
     fuses: bool
-    returns: str
+    returns: tuple[str, ...]
 
     @property
     def compiled(self) -> Any:

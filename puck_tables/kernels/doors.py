@@ -37,12 +37,13 @@ class Door:
 
     ``counts``: references to arrays; ``fuses``: a·b + c is rounded once where the machine can;
     ``at_first``: what runs at first in place of the function as it is written; ``returns``: the
-    type of what it gives, if it is compiled on demand of compiled code.
+    types of the numbers that it gives, if it is compiled on demand of compiled code.
     """
 
     def __init__(self, function: Callable[..., Any], counts: bool, fuses: bool) -> None:
         update_wrapper(self, function)
-        self.at_first, self.returns = function, ""
+        self.at_first = function
+        self.returns: tuple[str, ...] = ()
         self.py_func, self.counts, self.fuses = function, counts, fuses
         self.spent = 0.0  # s of computing, as it is written
         self._ready: Any = None
@@ -233,11 +234,11 @@ def arrays_at_first(arrays: Callable[..., Any]) -> Callable[[Function], Function
     return door
 
 
-def on_demand(returns: str) -> Callable[[Function], Function]:
+def on_demand(*returns: str) -> Callable[[Function], Function]:
     """A kernel of a module that compiled code compiles when it first calls it: few scenes need it.
 
-    ``returns``: the type of what it gives, as numba writes it.  For what takes seconds to compile:
-    a call takes a few ns more.
+    ``returns``: the types of the numbers that it gives.  For what takes seconds to compile: a call
+    takes a few ns more.
     """
 
     def door(function: Function) -> Function:

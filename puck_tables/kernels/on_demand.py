@@ -57,13 +57,14 @@ def put_cell(symbol: str, address: Callable[[], int]) -> None:
     binding.add_symbol(_ready_of(symbol), ctypes.cast(callback, ctypes.c_void_p).value)
 
 
-def type_of_call(key: Any, returns: str, symbol_for: Callable[[Any], str]) -> Any:
+def type_of_call(key: Any, returns: tuple[str, ...], symbol_for: Callable[[Any], str]) -> Any:
     """What such a kernel is to those that call it.
 
-    ``key``: a function that stands for it; ``returns``: its type, as numba writes it;
+    ``key``: a function that stands for it; ``returns``: the types of the numbers that it gives;
     ``symbol_for``: makes the cell for arguments of some types.
     """
-    kind: Any = eval(returns, {}, vars(types))
+    kinds = tuple(getattr(_types, name) for name in returns)
+    kind = kinds[0] if len(kinds) == 1 else _types.Tuple(kinds)
 
     def typed(_: Any, args: Any, __: Any) -> Any:
         return _typing.signature(kind, *map(_types.unliteral, args))

@@ -148,7 +148,7 @@ def _in_patch(
     return contour_sums(base, ground, one, end, ux, uy, w)
 
 
-@on_demand("UniTuple(float64, 8)")
+@on_demand(*["float64"] * 8)
 def friction_sums(ground: FloatArray, ux: float, uy: float, w: float, moving: float) -> Sums:
     """Sums over the base times f N of what is under each part, in the axes of the base.
 

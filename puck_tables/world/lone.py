@@ -403,7 +403,7 @@ def _put_down(model: Model, t: float, state: FloatArray, desk: Desk) -> None:
         state[n] = desk.y[n]
 
 
-@on_demand("Tuple((boolean, float64, int64))")
+@on_demand("boolean", "float64", "int64")
 def follow_alone(
     game: Game, i: int, t: float, state: FloatArray, work: FloatArray
 ) -> tuple[bool, float, int]:  # fmt: skip
