@@ -75,6 +75,8 @@ def law_table(
         bends, smoother = "its exponent", "a law that bends less at its start"
         if isinstance(law, SpeedLaw):
             bends, smoother = "its corners", "a law with fewer points"
+        if load.is_integrated:
+            bends, smoother = f"the pressure law {load.law.name}", "uniform pressure"
         raise AccuracyError(
             f"tol = {scene.tol:g} is out of reach of a table of {law_name(scene)}, with "
             f"{bends}: give a tol (or --tol) of {finest:g} or more, or {smoother}"

@@ -37,7 +37,25 @@ _SAME = 1e-9  # two corners as near as this to each other are one
 
 
 @dataclass(frozen=True)
-class SlipPatch:
+class _InSlab:
+    """A patch in one interval of the breaks, ``slab``, of U = v + r|ω|."""
+
+    breaks: FloatArray
+    slab: int
+
+    @property
+    def top(self) -> float:
+        """The fastest slip in it, m/s."""
+        return float(self.breaks[self.slab + 1])
+
+    @property
+    def is_mirrored(self) -> bool:
+        """Whether one half mirrors the other."""
+        return False
+
+
+@dataclass(frozen=True)
+class SlipPatch(_InSlab):
     """A part of the plane of slips on which the integrals are smooth.
 
     Parameters
@@ -49,16 +67,9 @@ class SlipPatch:
     grade : how strongly the nodes of the first slab crowd at slip zero
     """
 
-    breaks: FloatArray
-    slab: int
     part: int
     fast: bool
     grade: int = 1
-
-    @property
-    def top(self) -> float:
-        """The fastest slip in it, m/s."""
-        return float(self.breaks[self.slab + 1])
 
     @property
     def is_mirrored(self) -> bool:
@@ -93,7 +104,7 @@ class SlipPatch:
 
 
 @dataclass(frozen=True)
-class RayPatch:
+class RayPatch(_InSlab):
     """A part of the plane of slips between two rays from slip zero.
 
     Parameters
@@ -102,21 +113,9 @@ class RayPatch:
     low, high : of (v − r|ω|)/(v + r|ω|)
     """
 
-    breaks: FloatArray
-    slab: int
     low: float
     high: float
     grade: int = 1
-
-    @property
-    def top(self) -> float:
-        """The fastest slip in it, m/s."""
-        return float(self.breaks[self.slab + 1])
-
-    @property
-    def is_mirrored(self) -> bool:
-        """Whether one half mirrors the other."""
-        return False
 
     def place(self, xi: FloatArray, zeta: FloatArray) -> tuple[SlipDirection, FloatArray]:
         """Slip direction and Q in m/s at coordinates in [0, 1] that broadcast."""

@@ -18,10 +18,11 @@ from puck_tables.kernels.circle_quadrature import fill_load
 from puck_tables.kernels.speed_quadrature_kernel import FEW_POWERS, FINE, fill_integrals
 
 Law = SpeedLaw | FrictionLaw | SpeedFunction
-Truth = npt.NDArray[np.bool_]
+Flags = npt.NDArray[np.bool_]
 
 _SHORT = 0.3  # of its place
-_AT_ONCE, _ALSO = 20_000, 200  # points between two looks whether to go on: some 0.1 s
+# points between two looks whether to go on: some 0.1 s
+_AT_ONCE, _OF_CIRCLES = 20_000, 200
 
 
 def truth_at(
@@ -92,7 +93,7 @@ def _over_circles(
     power, rows = load.circles
     kinks = _kinks(ends, pieces)
     flat, inside, Q, out = _flat(direction.ratio, direction.fast_spin, speed)
-    for part in _parts(Q.size, max(1, _ALSO // max(1, len(rows)))):
+    for part in _parts(Q.size, max(1, _OF_CIRCLES // max(1, len(rows)))):
         fill_load(
             ends, pieces, kinks, power, rows, load.reach, flat[part], inside[part], Q[part], rules,
             out[part],
@@ -113,8 +114,8 @@ def _kinks(ends: FloatArray, pieces: FloatArray) -> FloatArray:
 
 
 def _flat(
-    ratio: FloatArray, fast: Truth, speed: FloatArray
-) -> tuple[FloatArray, Truth, FloatArray, FloatArray]:
+    ratio: FloatArray, fast: Flags, speed: FloatArray
+) -> tuple[FloatArray, Flags, FloatArray, FloatArray]:
     flat = np.ravel(ratio).copy()
     inside = np.array(np.broadcast_to(fast, np.shape(ratio)), bool).ravel()
     return flat, inside, np.ravel(speed).copy(), np.empty((flat.size, 4))
