@@ -12,7 +12,7 @@ from astride_judge import Ground
 from scipy.integrate import quad
 
 import puck_tables as pt
-from puck_tables.kernels.circle_arcs import arc_to
+from puck_tables.kernels.circle_arcs import arc_to, circle_at
 from puck_tables.world.floor_forces import friction_at
 
 CORNERS = np.array([[-0.5, -0.9], [1.4, -0.2], [0.1, 0.1], [0.3, 1.2]])
@@ -90,7 +90,7 @@ def against_circles(path, rows, floor, slip):
     (1.0, 0.5), (0.3, 1.0), (0.7, 1.0 - 1e-5), (1.0, 1e-6), (1e-6, 1.0), (1.0, 0.0), (0.0, 1.0),
 ])  # fmt: skip
 def test_arcs_against_quadrature(rates):
-    """From opposite to the centre of rotation on, also next to the circle through it."""
+    """From opposite to the centre of rotation on, from there, and whole; also close to it."""
     (alpha, beta), rho = rates, 0.7
 
     def value(angle, which):
@@ -101,9 +101,18 @@ def test_arcs_against_quadrature(rates):
         return (ex, ey, x * ex, y * ex, x * ey, y * ey, x * m, y * m)[which]
 
     for end in (-3.0, -1.6, 0.4, 2.2):
-        found = arc_to(alpha, beta, rho * math.sin(end), -rho * math.cos(end), rho)
+        point = rho * math.sin(end), -rho * math.cos(end), rho
+        found = arc_to(alpha, beta, *point, 1.0)
         truth = [quad(value, 0.0, end, (k,), epsabs=2e-14, epsrel=1e-12)[0] for k in range(8)]
         np.testing.assert_allclose(found, truth, atol=1e-13)
+        half = [0.0] * 8
+        for k in (0, 3, 4, 7):
+            close = [math.pi - 10.0**-n for n in range(1, 8)]
+            parts = pairwise([0.0, *close, math.pi])
+            half[k] = sum(quad(value, *part, (k,), epsabs=2e-14, epsrel=1e-12)[0] for part in parts)
+        rest = np.array(truth) - math.copysign(1.0, end) * np.array(half)
+        np.testing.assert_allclose(arc_to(alpha, beta, *point, -1.0), rest, atol=2e-13)
+    np.testing.assert_allclose(circle_at(alpha, beta, rho), 2.0 * np.array(half), atol=4e-13)
 
 
 @pytest.mark.parametrize("profile, floor, slip", [

@@ -47,9 +47,9 @@ from puck_tables.kernels.polygon_sums import (
 SIDES, DISCS, REACH, AREA, FIRST_X, FIRST_Y, SECOND_XX, SECOND_XY, SECOND_YY, LEVER = range(10)
 PRESSURE, ROWS = 10, 11
 HEAD = 12
-# of a tabulated pressure follow the radii, and of the pieces of W = A + B ρ, with one on either
-# side where nothing presses, each A and B, flat; then room to work
-_ROOM, _ROOM_A_ROW = 48, 22
+# of a law of pressure follow the radii of a tabulated one, and of its pieces of W = A + B ρ, with
+# one on either side where nothing presses, each A and B, flat; then room to work
+_ROOM, _ROOM_A_ROW = 62, 11
 _PRESSURES = {"ring": RING, "hertz": HERTZ, "galin": GALIN}
 
 
@@ -99,7 +99,7 @@ def packed_round(radius: float, law: Law, lever: float) -> FloatArray:
     base[SECOND_XX] = base[SECOND_YY] = base[AREA] * radius * radius * law.mean_square
     base[PRESSURE] = _PRESSURES.get(law.name, UNIFORM)
     if law.profile is None:
-        return base
+        return np.concatenate([base, np.zeros(2 + _ROOM)])
     rho, weight = law.profile
     middle = 0.25 * (rho[1:] + rho[:-1]) * (weight[1:] + weight[:-1])
     ends = rho * weight

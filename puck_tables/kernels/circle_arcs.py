@@ -17,13 +17,16 @@ and there is no branch, so that a loop over many points does several at once.
 from __future__ import annotations
 
 import math
+from typing import Any
 
+from puck_tables.contact import closed_form
 from puck_tables.kernels.base_sums import Sums
 from puck_tables.kernels.compile import inlined
 from puck_tables.kernels.elementary import angle_of
 
 _LEAST = 3e-5  # of √(1 − r²): closer to the circle through C an arc is as one there
-_TINY = 1e-300
+_ON_C = 1e-28  # of the square of the slip: closer to C its direction is lost
+_elliptic: Any = inlined(closed_form.elliptic)
 
 
 @inlined
@@ -69,25 +72,28 @@ def _incomplete(sine: float, cosine: float, delta: float, shorter: float) -> tup
 
 
 @inlined
-def arc_to(alpha: float, beta: float, x: float, y: float, rho: float) -> Sums:
+def arc_to(alpha: float, beta: float, x: float, y: float, rho: float, far: float) -> Sums:
     """The sums by the angle up to a point at the distance ``rho``; x = 0 counts as right of C.
 
-    Those that are the same on both sides of the line through C begin anywhere.
+    ``far`` 1: from opposite to C on, −1: from next to it.  Those that are the same on both sides of
+    the line through C begin anywhere.
     """
     inverse = 1.0 / rho
     s, c = x * inverse, -y * inverse
     one, two = alpha, beta * rho
     ux, uy = alpha - beta * y, beta * x
-    w = math.sqrt(max(ux * ux + uy * uy, _TINY))
-    far = one >= two  # C is outside the circle
-    long, short = (one, two) if far else (two, one)
+    square = ux * ux + uy * uy
+    lost, w = square < _ON_C, math.sqrt(max(square, _ON_C))
+    outside = one >= two  # C is outside the circle
+    long, short = (one, two) if outside else (two, one)
     per = 1.0 / long
     r = short * per
     back = 1.0 / w
-    sine, cosine = long * s * back, (short + long * c) * back
-    delta = max((long + short * c) * back, _TINY)
-    rest = math.sqrt((long - short) * (long + short)) * per
-    first, d = _incomplete(sine, cosine, delta, max(rest, _LEAST))
+    sine = 0.0 if lost else long * s * back
+    cosine = 1.0 if lost else (short + long * c) * back
+    rest = max(math.sqrt((long - short) * (long + short)) * per, _LEAST)
+    delta = max((long + short * c) * back, rest)
+    first, d = _incomplete(far * sine, far * cosine, delta, rest)
     rr, ss, turn = r * r, sine * sine, sine * cosine * delta
     e = first - rr * d
     t = (d + 2.0 * e - first - turn) / 3.0
@@ -101,12 +107,36 @@ def arc_to(alpha: float, beta: float, x: float, y: float, rho: float) -> Sums:
     l1 = l0 * (4.0 + 2.0 * c - whole * l0) / 6.0
     along = -rho * two * l1
     return (
-        slow if far else fast,
+        slow if outside else fast,
         two * l0,
         rho * (one * l0 + two * l1),
-        -rho * (hard if far else mild),
-        r * aside if far else aside,
+        -rho * (hard if outside else mild),
+        r * aside if outside else aside,
         along,
         rho * rho * (two * l0 + one * l1),
-        -rho * rho * (mild if far else hard),
+        -rho * rho * (mild if outside else hard),
+    )
+
+
+@inlined
+def circle_at(alpha: float, beta: float, rho: float) -> Sums:
+    """The sums by the angle over a whole circle, by complete integrals."""
+    one, two = alpha, beta * rho
+    outside = one >= two
+    long, short = (one, two) if outside else (two, one)
+    r = short / long
+    rest = (1.0 - r) * (1.0 + r)
+    b, d, g = _elliptic(r)
+    mild = 4.0 / 3.0 * (b + 2.0 * rest * d)
+    hard = 4.0 / 3.0 * r * r * r * (d - g)
+    aside = 4.0 / 3.0 * rho * (2.0 * b + rest * d)
+    return (
+        4.0 * (b + rest * d if outside else r * b),
+        0.0,
+        0.0,
+        -rho * (hard if outside else mild),
+        r * aside if outside else aside,
+        0.0,
+        0.0,
+        -rho * rho * (mild if outside else hard),
     )

@@ -16,7 +16,6 @@ from puck_tables.kernels.base_friction import HEAD, PRESSURE, REACH, base_sums
 from puck_tables.kernels.base_sums import (
     NOTHING,
     RING,
-    TABLE,
     UNIFORM,
     Sums,
     from_slip,
@@ -24,8 +23,6 @@ from puck_tables.kernels.base_sums import (
     scaled,
 )
 from puck_tables.kernels.compile import inlined, inner
-from puck_tables.kernels.load_parts import loaded_arc, loaded_line
-from puck_tables.kernels.load_rim import loaded_rim
 from puck_tables.kernels.polygon_sums import (
     ABOUT_X,
     ABOUT_Y,
@@ -39,7 +36,7 @@ from puck_tables.kernels.polygon_sums import (
     TURN,
     polygon_sums,
 )
-from puck_tables.kernels.profile_parts import profile_arc, profile_line, profile_piles
+from puck_tables.kernels.round_sums import pressed_arc, pressed_line, pressed_whole
 
 
 class Slip(NamedTuple):
@@ -63,32 +60,23 @@ def _slip_of(base: FloatArray, ux: float, uy: float, w: float) -> Slip:
 @inner
 def look_at(base: FloatArray, ux: float, uy: float, w: float) -> None:
     """What all sums at a slip have in common, into the room of a base."""
-    if base[PRESSURE] == TABLE:
+    if base[PRESSURE] > RING:
         slip = _slip_of(base, ux, uy, w)
-        profile_piles(base, slip.along, slip.turning)
+        pressed_whole(base, slip.along, slip.turning)
 
 
 @inlined
 def _arc_under(
-    base: FloatArray, slip: Slip, cx: float, cy: float, radius: float, start: float, turn: float,
-    on_rim: bool,
-) -> Sums:  # fmt: skip
-    law, alpha, beta = int(base[PRESSURE]), slip.along, slip.turning
-    if law == UNIFORM:
-        if abs(turn) <= math.pi:
-            return arc_sums(alpha, beta, cx, cy, radius, start, turn, UNIFORM)
-        way = 1.0 if turn > 0.0 else -1.0
-        rest = 2.0 * math.pi * way - turn
-        rest_sums = arc_sums(alpha, beta, cx, cy, radius, start + turn, rest, UNIFORM)
-        sums = plus(NOTHING, way, disc_at(cx, cy, radius, alpha, 0.0, beta))
-        return plus(sums, -1.0, rest_sums)
-    if law == RING:
-        if not on_rim:
-            return NOTHING
-        return plus(NOTHING, 0.5, arc_sums(alpha, beta, 0.0, 0.0, 1.0, start, turn, RING))
-    if on_rim:
-        return loaded_rim(alpha, beta, start, turn, law)
-    return loaded_arc(alpha, beta, cx, cy, radius, start, turn, law)
+    alpha: float, beta: float, cx: float, cy: float, radius: float, start: float, turn: float
+) -> Sums:
+    """Under uniform pressure: of more than half a circle all of it less the rest."""
+    if abs(turn) <= math.pi:
+        return arc_sums(alpha, beta, cx, cy, radius, start, turn, UNIFORM)
+    way = 1.0 if turn > 0.0 else -1.0
+    rest = 2.0 * math.pi * way - turn
+    rest_sums = arc_sums(alpha, beta, cx, cy, radius, start + turn, rest, UNIFORM)
+    sums = plus(NOTHING, way, disc_at(cx, cy, radius, alpha, 0.0, beta))
+    return plus(sums, -1.0, rest_sums)
 
 
 @inlined
@@ -103,21 +91,19 @@ def _under(base: FloatArray, room: FloatArray, at: int, slip: Slip) -> Sums:
     if turn == 0.0:
         if law == UNIFORM:
             return line_sums(alpha, beta, px, py, qx, qy)
-        if law == RING:
-            return NOTHING
-        if law == TABLE:
-            return profile_line(base, alpha, beta, px, py, qx, qy)
-        return loaded_line(alpha, beta, px, py, qx, qy, law)
+        return NOTHING if law == RING else pressed_line(base, alpha, beta, px, py, qx, qy)
     ax, ay, own = room[at + ABOUT_X], room[at + ABOUT_Y], room[at + RADIUS]
     cx, cy, radius = c * ax + s * ay, mirrored * (c * ay - s * ax), unit * own
     start = mirrored * (room[at + START] - math.atan2(s, c))
+    if law == UNIFORM:
+        return _arc_under(alpha, beta, cx, cy, radius, start, turn)
     on_rim = ax == 0.0 and ay == 0.0 and own == base[REACH]
-    if law == TABLE:
-        return profile_arc(
-            base, alpha, beta, cx, cy, 1.0 if on_rim else radius, start, turn, px < 0.0, qx < 0.0,
-            on_rim,
-        )  # fmt: skip
-    return _arc_under(base, slip, cx, cy, radius, start, turn, on_rim)
+    if law == RING:
+        if not on_rim:
+            return NOTHING
+        return plus(NOTHING, 0.5, arc_sums(alpha, beta, 0.0, 0.0, 1.0, start, turn, RING))
+    radius = 1.0 if on_rim else radius
+    return pressed_arc(base, alpha, beta, cx, cy, radius, start, turn, px, py, qx, qy, on_rim)
 
 
 @inner
