@@ -68,6 +68,19 @@ def test_a_centre_of_rotation_anywhere(pressure):
             assert np.abs(found(pressure, surface, slip, 0.8) - truth).max() <= 2e-11, slip
 
 
+@pytest.mark.parametrize("pressure, within", [("hertz", 1e-10), ("galin", 1e-8)])
+@pytest.mark.parametrize("place", [0.0, 0.3])
+def test_a_centre_of_rotation_where_a_border_meets_the_rim(place, pressure, within):
+    """And beside that, and on a border through the centre of the base."""
+    law, square, bends = LAWS[pressure]
+    ground, surface = Ground([place], [0.3, 0.1]), pt.Floor(strips=pt.Strips((place,), (0.3, 0.1)))
+    end = math.sqrt(1.0 - place * place)
+    for x, y in ((place, end), (place + 1e-4, end - 1e-4), (place - 1e-3, end + 2e-3), (0.0, 0.5)):
+        slip = (y, -x, 1.0)
+        truth = pressure_judge.friction(ground, slip, law, 0.5 * 0.8, square, bends)
+        assert np.abs(found(pressure, surface, slip, 0.8) - truth).max() <= within, slip
+
+
 def test_a_patch_that_touches_the_rim_from_inside():
     """Where Galin's pressure has no bound."""
     ground = Ground([], [0.3], [(0.6, 0.0, 0.4, 0.05)])

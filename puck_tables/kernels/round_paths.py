@@ -36,7 +36,7 @@ from puck_tables.kernels.polygon_sums import PIECE_COLUMNS
 _COUNTS, _REACHES = np.array([10, 16, 24]), np.array([2.0, 1.3, 1.13])
 _FINEST, _NODES = 2, 24
 _SHORT = 0.5  # rad: what the first is good for
-_REACH_OF_BENDS = 1.85  # where W bends, to interpolate is as good as a rule of half as many nodes
+_REACH_OF_KINKS = 1.85  # where W bends, to interpolate is as good as a rule of half as many nodes
 _RULES = [np.polynomial.legendre.leggauss(n) for n in _COUNTS]
 _NODE, _WEIGHT = (np.stack([np.pad(r[k], (0, _NODES - len(r[k]))) for r in _RULES]) for k in (0, 1))
 _LEGENDRE = np.ascontiguousarray(
@@ -44,7 +44,7 @@ _LEGENDRE = np.ascontiguousarray(
 )
 _INVERSE = 1.0 / np.arange(1.0, _NODES + 1.0)
 GAP, NONE = 3e-6, 9.0  # rad: closer to the centre a path passes it; what is not there is far off
-_GAP_OF_C, _GAP_OF_BENDS = 1e-5, 0.1  # cubes leave no more of a C as close; where W bends
+_GAP_OF_C, _GAP_OF_KINKS = 1e-5, 0.1  # cubes leave no more of a C as close; where W bends
 _CLOSE = 0.35  # of the length of a path: a C as close
 _CUBE = 1.0 / 3.0
 NEXT_TO_C = 2.0  # in place of a side
@@ -85,8 +85,8 @@ def _cube_root(x: float, y: float) -> tuple[float, float]:
 
 
 @inlined
-def _theta(first: float, stretch: float, cubed: bool, v: float) -> float:
-    return first + stretch * (v * v * v if cubed else v)
+def _theta(first: float, scale: float, cubed: bool, v: float) -> float:
+    return first + scale * (v * v * v if cubed else v)
 
 
 @inlined
@@ -103,7 +103,7 @@ def room_of(base: FloatArray) -> int:
 
 
 @inlined
-def find_bends(base: FloatArray, path: Path) -> None:
+def find_kinks(base: FloatArray, path: Path) -> None:
     """Into the room of a base the θ > 0 of its rows, −1 of those always, 4 of those never met."""
     room = base[room_of(base) :]
     for i in range(int(base[ROWS])):
@@ -115,19 +115,19 @@ def find_bends(base: FloatArray, path: Path) -> None:
 
 
 @inlined
-def _bends_between(base: FloatArray, one: float, other: float) -> bool:
+def _kinks_between(base: FloatArray, one: float, other: float) -> bool:
     """Whether the pressure bends between two θ."""
-    room, low, high, bends = base[room_of(base) :], min(one, other), max(one, other), 0
+    room, low, high, met = base[room_of(base) :], min(one, other), max(one, other), 0
     for i in range(int(base[ROWS])):
-        bends += 1 if room[i] > 0.0 and (low < room[i] < high or low < -room[i] < high) else 0
-    return bends > 0
+        met += 1 if room[i] > 0.0 and (low < room[i] < high or low < -room[i] < high) else 0
+    return met > 0
 
 
 @inlined
 def _fill_weights(
-    base: FloatArray, first: float, stretch: float, cubed: bool, low: float, size: float, rule: int
+    base: FloatArray, first: float, scale: float, cubed: bool, low: float, size: float, rule: int
 ) -> None:
-    """The weights of P and of ρ P in a panel from ``low`` on, θ = ``first`` + ``stretch`` v."""
+    """The weights of P and of ρ P in a panel from ``low`` on, θ = ``first`` + ``scale`` v."""
     count, room = int(base[ROWS]), base[room_of(base) :]
     of_a = base[_FIRST + count : _FIRST + 2 * count + 1]
     of_b = base[_FIRST + 2 * count + 1 : _FIRST + 3 * count + 2]
@@ -135,7 +135,7 @@ def _fill_weights(
     rest = room[count + _WEIGHTS + 2 * _NODES :]
     t, before, here = rest[: 2 * count], rest[2 * count : 4 * count], rest[4 * count : 6 * count]
     more_a, more_b = rest[6 * count : 8 * count], rest[8 * count : 10 * count]
-    begin, end = _theta(first, stretch, cubed, low), _theta(first, stretch, cubed, low + size)
+    begin, end = _theta(first, scale, cubed, low), _theta(first, scale, cubed, low + size)
     begin += 1e-12 * (end - begin)  # past a row where panels meet
     piece, met = 0, 0
     for i in range(count):
@@ -144,10 +144,10 @@ def _fill_weights(
             side = 1.0 if way == 0 else -1.0
             place = side * room[i]
             if room[i] > 0.0 and (place - begin) * (place - end) < 0.0:
-                v = (place - first) / stretch
+                v = (place - first) / scale
                 v = float(np.cbrt(v)) if cubed else v
                 t[met], before[met], here[met] = 2.0 * (v - low) / size - 1.0, 1.0, 1.0
-                half = 0.5 * side if stretch > 0.0 else -0.5 * side
+                half = 0.5 * side if scale > 0.0 else -0.5 * side
                 more_a[met] = half * (of_a[i + 1] - of_a[i])
                 more_b[met] = half * (of_b[i + 1] - of_b[i])
                 met += 1
@@ -181,21 +181,21 @@ def _loaded(
 @inner
 def _panel(
     base: FloatArray, alpha: float, beta: float, path: Path, side: float, first: float,
-    stretch: float, cubed: bool, low: float, size: float, rule: int,
+    scale: float, cubed: bool, low: float, size: float, rule: int,
 ) -> Sums:  # fmt: skip
     """One panel; ``side`` as in :func:`between`."""
     count, law, room = int(base[ROWS]), int(base[PRESSURE]), base[room_of(base) :]
     wa, wb = room[count + _WEIGHTS :], room[count + _WEIGHTS + _NODES :]
     if count > 0:
-        _fill_weights(base, first, stretch, cubed, low, size, rule)
+        _fill_weights(base, first, scale, cubed, low, size, rule)
     hertz, galin = (1.5 if law == HERTZ else 0.0), (0.5 if law == GALIN else 0.0)
     half, sums = 0.5 * size, NOTHING
-    middle, by = low + half, half * abs(stretch) * (3.0 if cubed else 1.0)
+    middle, by = low + half, half * abs(scale) * (3.0 if cubed else 1.0)
     if path.along == 0.0:
         for j in range(_COUNTS[rule]):
             v = middle + half * _NODE[rule, j]
             square = v * v if cubed else 1.0
-            cosine, sine = cosine_sine_of(first + stretch * v * square)
+            cosine, sine = cosine_sine_of(first + scale * v * square)
             weight = _loaded(path, sine, cosine, sine, hertz, galin, _WEIGHT[rule, j], wa[j], wb[j])
             sums = added(sums, by * square * weight, circle_at(alpha, beta, sine))
         return sums
@@ -204,7 +204,7 @@ def _panel(
     for j in range(_COUNTS[rule]):
         v = middle + half * _NODE[rule, j]
         square = v * v if cubed else 1.0
-        cosine, sine = cosine_sine_of(first + stretch * v * square)
+        cosine, sine = cosine_sine_of(first + scale * v * square)
         leg = path.bent * cosine
         ahead, aside = path.along * sine * math.sqrt(rest + leg * leg), path.deep * sine * sine
         x = path.x + ahead * path.tx - aside * path.ty
@@ -226,7 +226,7 @@ def _longest(marks: FloatArray, v: float, reach: float) -> float:
 
 
 @inner
-def _stretch(
+def _interval(
     base: FloatArray, alpha: float, beta: float, path: Path, low: float, high: float, side: float
 ) -> Sums:
     """As :func:`between`, of what does not pass the centre of the base."""
@@ -248,7 +248,7 @@ def _stretch(
             x, y = sign * (path.places[i] - first) / end, path.gaps[i] / end
             marks[i], marks[5 + i] = _cube_root(x, y) if cubed else (x, y)
         if cubed and gap < _GAP_OF_C:
-            marks[5] = _GAP_OF_BENDS if rows else NONE
+            marks[5] = _GAP_OF_KINKS if rows else NONE
         v, by = float(np.cbrt(max(begin / end, 0.0))) if cubed else 0.0, sign * end
         while v < 1.0:
             rule, left = 0 if end * (1.0 - v) < _SHORT else 1, 1.0 - v
@@ -256,10 +256,10 @@ def _stretch(
             while rule < _FINEST and size < left:
                 rule += 1
                 size = _longest(marks, v, _REACHES[rule])
-            if rows and _bends_between(
+            if rows and _kinks_between(
                 base, _theta(first, by, cubed, v), _theta(first, by, cubed, v + size)
             ):
-                rule, size = _FINEST, _longest(marks, v, _REACH_OF_BENDS)
+                rule, size = _FINEST, _longest(marks, v, _REACH_OF_KINKS)
             size = 0.5 * left if 0.5 * left < size < left else size
             part = _panel(base, alpha, beta, path, side, first, by, cubed, v, size, rule)
             sums = plus(sums, 1.0, part)
@@ -277,5 +277,5 @@ def between(
     with the P of arcs that begin next to C, which does not jump on the ray.
     """
     middle = min(max(low, 0.0), high) if path.near < GAP else high
-    sums = _stretch(base, alpha, beta, path, low, middle, side)
-    return plus(sums, 1.0, _stretch(base, alpha, beta, path, middle, high, side))
+    sums = _interval(base, alpha, beta, path, low, middle, side)
+    return plus(sums, 1.0, _interval(base, alpha, beta, path, middle, high, side))

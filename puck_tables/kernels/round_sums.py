@@ -28,7 +28,7 @@ from puck_tables.kernels.round_paths import (
     WHOLE,
     Path,
     between,
-    find_bends,
+    find_kinks,
     room_of,
 )
 
@@ -79,7 +79,7 @@ def _beyond(base: FloatArray, alpha: float, beta: float, low: float) -> Sums:
         0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0,
         (place, -place, math.pi - place, 0.0, 0.0), (gap, other, other, NONE, NONE),
     )  # fmt: skip
-    find_bends(base, path)
+    find_kinks(base, path)
     return between(base, alpha, beta, path, _angle_whose_sine(low), 0.5 * math.pi, 1.0)
 
 
@@ -114,7 +114,7 @@ def _along(
 
     ``before``, ``after``: the side up to ``one`` and after that.
     """
-    find_bends(base, path)
+    find_kinks(base, path)
     one, two = min(max(one, low), high), min(max(two, low), high)
     sums = between(base, alpha, beta, path, low, one, before)
     sums = plus(sums, 1.0, between(base, alpha, beta, path, one, two, after))
@@ -168,11 +168,6 @@ def pressed_line(
     split = _angle_whose_sine(split / half)
     more = _along(base, alpha, beta, path, low, high, split, high, first, second)
     return plus(sums, 1.0, more)
-
-
-@inlined
-def _is_on_rim(x: float, y: float) -> bool:
-    return 1.0 - x * x - y * y < _AT_RIM
 
 
 @inlined
