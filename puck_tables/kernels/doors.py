@@ -122,7 +122,9 @@ class Door:
         begin = time.thread_time()
         here.as_written, here.until = True, begin + self._allowed - self.spent
         here.silent_until = min(here.until, begin + AT_FIRST - self.spent)
-        here.sentence = f"{self._name} is not compiled: it runs in Python, up to {self._allowed:.0f} s"
+        here.sentence = (
+            f"{self._name} is not compiled: it runs in Python, up to {self._allowed:.0f} s"
+        )
         try:
             with np.errstate(all="ignore"):
                 result = self.at_first(*args)
