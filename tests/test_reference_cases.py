@@ -168,6 +168,14 @@ def test_the_force_of_a_body_on_the_floor_is_what_brakes_it():
         assert np.abs(getattr(here, force) + pull).max() < 1e-5
 
 
+def test_the_slip_of_a_box_on_belts_is_over_the_one_under_its_centre():
+    answer = reference_case("box-belts", times=[0.0, 0.6])
+    assert answer.x[0] < 0.0 < answer.x[1]
+    speeds = np.hypot(answer.vx - [0.5, 0.2], answer.vy)
+    turn = reference_case("box-belts").pieces[0].radius * answer.spin
+    np.testing.assert_allclose(answer.slip_speed, np.hypot(speeds, turn), rtol=1e-12, atol=1e-12)
+
+
 def test_the_coin():
     answer = reference_case("coin")
     assert round(answer.end_time, 7) == 0.1238118

@@ -160,6 +160,7 @@ def ours(case: dict[str, Any]) -> list[tuple[float, float]]:
     cost = (time.process_time() - begin) * 1e3 / MANY
     points = [(cost, float(np.hypot(*(found.stop_position[0] - exact))) / length)]
     for tol in OURS:
+        puck.simulate(velocity, launch["spin"], frames=1, tol=tol)
         took = []
         for _ in range(15):
             begin = time.process_time()

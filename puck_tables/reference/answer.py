@@ -43,7 +43,8 @@ class Answer(Result):
     ``floor_fx``, ``floor_fy`` N and ``floor_torque`` N m, what the puck does to the floor.  Of a
     base that is not round r is the reach, how far it extends from the centre of mass.
 
-    ``speed_scale`` Q m/s and ``rate_scale`` J m/s²; ``time_bound`` s, ``place_bound`` m and
+    ``speed_scale`` m/s: Q of the launch, with the speed of a floor that moves added to it;
+    ``rate_scale`` m/s²: f g, of the largest f; ``time_bound`` s, ``place_bound`` m and
     ``speed_bound`` m/s: what times, places (and r times angles), speeds (and r times spins) may at
     most be wrong by.  ``limit_epsilon``: what ε tends to where it stops by friction alone, else
     None.  Called with times it gives the states there.
