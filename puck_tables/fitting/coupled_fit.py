@@ -18,7 +18,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.certainty import Certainty
 from puck_tables.fitting.estimate import Estimate, capped_squares, estimate
 from puck_tables.fitting.fit_spec import FitSpec
-from puck_tables.fitting.impact_law import WallLine
+from puck_tables.fitting.forward_model import WallLine
 from puck_tables.fitting.impact_matching import (
     CoupledFit,
     ImpactMatch,

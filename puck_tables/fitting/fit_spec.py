@@ -16,10 +16,7 @@ from puck_tables._core.real import instance
 from puck_tables.contact.laws import law_of
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
-from puck_tables.fitting.forward_model import Moving
-from puck_tables.fitting.impact_law import Rims
-from puck_tables.fitting.named_laws import NAMES as LAWS
-from puck_tables.fitting.named_laws import law_named
+from puck_tables.fitting.forward_model import Moving, Rims
 from puck_tables.fitting.parameters import (
     ALL,
     DRAGS,
@@ -42,7 +39,7 @@ from puck_tables.fitting.parameters import (
     prior_of,
     refuse_unknown,
 )
-from puck_tables.fitting.speed_motion import Drags, SpeedFriction
+from puck_tables.fitting.speed_motion import LAWS, Drags, SpeedFriction, law_named
 from puck_tables.fitting.unit_motions import unit_motions_of
 from puck_tables.puck import Puck
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 from puck_tables._core.real import instance
@@ -27,11 +28,9 @@ from puck_tables.fitting.inputs import (
     checked_rows,
     checked_walls,
     observations_of,
-    refuse_faster,
     refuse_opening,
     refuse_tipping,
 )
-from puck_tables.fitting.judgement import JudgedMotion, judged_certainty, judged_motion
 from puck_tables.fitting.misfit import misfit
 from puck_tables.fitting.model_comparison import (
     HeldOut,
@@ -46,7 +45,12 @@ from puck_tables.fitting.model_comparison import (
 )
 from puck_tables.fitting.numbers import numbers_of
 from puck_tables.fitting.observations import Observations, noise_of
-from puck_tables.fitting.other_minima import without_spin
+from puck_tables.fitting.other_minima import (
+    JudgedMotion,
+    judged_certainty,
+    judged_motion,
+    without_spin,
+)
 from puck_tables.fitting.parameters import DRAGS
 from puck_tables.fitting.problem import Known, Problem
 from puck_tables.fitting.residuals import NO_PATTERN, NOISY, drift, runs
@@ -253,19 +257,16 @@ def _estimate_all(inputs: Inputs, observed: _Observed) -> _Estimates:
         )
     constant = best
     if inputs.speeds:
-        best = _over_speeds(constant, inputs)
+        over = partial(
+            over_speeds, speeds=inputs.speeds, between=inputs.between, known=inputs.known
+        )
+        best = over(constant)
         if late and not is_clean(best, NOISY, NO_PATTERN):
             slides = initial_estimate(problem, known, refit=True)
             if slides.problem.films != constant.problem.films:
-                constant, best = slides, _over_speeds(slides, inputs)
+                constant, best = slides, over(slides)
         refuse_opening(best)
     return _Estimates(slides, best, constant, untied)
-
-
-def _over_speeds(constant: Estimate, inputs: Inputs) -> Estimate:
-    """The estimate with a friction over slip speed, from that of one for all."""
-    refuse_faster(inputs.speeds, constant)
-    return over_speeds(constant, inputs.speeds, inputs.between, inputs.known)
 
 
 def _compared(
@@ -307,36 +308,20 @@ def _reported(
             best, observed.pieces, certainty, [film.name for film in observed.uncut]
         )
     left_out = _left_out((*observed.problem.films, *observed.uncut), best.problem.films)
-    result = Fit(
-        given=inputs.spec.puck,
-        numbers=numbers,
-        launches=launches,
-        chi2=best.chi2,
-        degrees=best.degrees,
-        noise=best.problem.noise,
-        jitter=best.problem.jitter,
-        noise_known=known,
-        smooth_noise=observed.smooth,
-        outliers=best.outliers,
-        runs=runs(best),
-        drift=drift(best),
-        left_out=left_out,
-        cut_off=_trimmed_ends(estimates.slides, observed.problem, known, left_out),
-        blind=blind,
-        astray=judged.astray,
-        laws=laws,
-        held_out=held_out,
-        impacts=impacts,
-        untied=estimates.untied,
-        not_met=not_met(impacts, best.problem, inputs.lines) if inputs.impacts else (),
-        constant_chi2=(
-            chi2_under(estimates.constant, best.problem.noise) if inputs.speeds else math.nan
-        ),
-        estimate=best,
-        certainty=certainty,
-        forces=judged.forces,
-        uncut=observed.uncut,
+    constant_chi2 = (
+        chi2_under(estimates.constant, best.problem.noise) if inputs.speeds else math.nan
     )
+    result = Fit(
+        given=inputs.spec.puck, numbers=numbers, launches=launches, chi2=best.chi2,
+        degrees=best.degrees, noise=best.problem.noise, jitter=best.problem.jitter,
+        noise_known=known, smooth_noise=observed.smooth, outliers=best.outliers, runs=runs(best),
+        drift=drift(best), left_out=left_out,
+        cut_off=_trimmed_ends(estimates.slides, observed.problem, known, left_out), blind=blind,
+        astray=judged.astray, laws=laws, held_out=held_out, impacts=impacts,
+        untied=estimates.untied, constant_chi2=constant_chi2, estimate=best, certainty=certainty,
+        not_met=not_met(impacts, best.problem, inputs.lines) if inputs.impacts else (),
+        forces=judged.forces, uncut=observed.uncut,
+    )  # fmt: skip
     if result.complaints:
         said = misfit(estimates.slides, observed.problem, known, judged.forces, bool(inputs.speeds))
         result = replace(result, misfit=said)

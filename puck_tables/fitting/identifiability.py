@@ -11,7 +11,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.certainty import Z95, Certainty, OtherMinimum, certainty_of
 from puck_tables.fitting.estimate import Estimate
-from puck_tables.fitting.numbers import KNOWN, EstimatedLaunch, Number, plausible_for
+from puck_tables.fitting.numbers import KNOWN, EstimatedLaunch, Number
 from puck_tables.fitting.observations import Observations
 from puck_tables.fitting.parameters import ALL, LAUNCH, OF_IMPACTS, WALL
 from puck_tables.fitting.problem import PRIOR, Problem
@@ -328,7 +328,7 @@ def _errors(problem: Problem, x: FloatArray, members: list[tuple[int, str]]) -> 
 def _by_tracks(problem: Problem, x: FloatArray) -> Certainty:
     """How well unknowns are known by tracks without priors."""
     slopes = problem.jacobian(x)[problem.kinds != PRIOR]
-    return certainty_of(slopes, plausible_for(problem, x))
+    return certainty_of(slopes, problem.plausible(x))
 
 
 def _longer(film: Observations) -> Observations:

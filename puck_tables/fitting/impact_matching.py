@@ -29,7 +29,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.fit_spec import FitSpec
-from puck_tables.fitting.impact_law import ImpactSpec, Slide, WallLine, state_at
+from puck_tables.fitting.forward_model import ImpactSpec, Slide, WallLine, state_at
 from puck_tables.fitting.least_squares import ROBUST, multi_start
 from puck_tables.fitting.observations import Observations
 from puck_tables.fitting.parameters import OF_PAIRS, OF_WALLS

@@ -13,9 +13,8 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
-from puck_tables.fitting.certainty import certainty_of
+from puck_tables.fitting.certainty import certainty_at, certainty_of
 from puck_tables.fitting.estimate import FARTHEST, Estimate, estimate, only_outliers
-from puck_tables.fitting.numbers import plausible_for
 from puck_tables.fitting.observations import FEWEST, Observations, noise_of, rests_from
 from puck_tables.fitting.parameters import DRAGS, NOTHING
 from puck_tables.fitting.problem import ANGLE, UNSEEN, Known, Problem
@@ -114,15 +113,16 @@ def initial_estimate(problem: Problem, known: Known, refit: bool) -> Estimate:
     ``refit``: whether frames at the ends that are no free motion are left out.
     """
     problem = _with_room(problem)
-    left = _observations(problem) - len(problem.names) + len(problem.priors)
+    count = int((problem.kinds <= ANGLE).sum())
+    left = count - len(problem.names) + len(problem.priors)
     if left <= 0:
         raise InputError(
-            f"{_observations(problem)} observations cannot tell {len(problem.names)} unknowns: "
+            f"{count} observations cannot tell {len(problem.names)} unknowns: "
             "give more frames, or fix something"
         )
     if left < _JUDGED and not (known.place and (known.angle or not problem.angled)):
         raise InputError(
-            f"{_observations(problem)} observations of {len(problem.names)} unknowns are too few "
+            f"{count} observations of {len(problem.names)} unknowns are too few "
             "to judge their noise by: give the noise, or more frames"
         )
     result = _looked_up(problem, known) if not problem.spec.integrates \
@@ -235,8 +235,7 @@ def _lifted(result: Estimate, known: Known) -> Estimate:
     delta = problem.spec.scales(problem.numbers_at(result.x))[1]
     if problem.tall or not law.can_lift or delta < _LIFTS:
         return result
-    certainty = certainty_of(result.jacobian[result.kept], plausible_for(problem, result.x))
-    if certainty.undetermined[: len(problem.spec.free)].count(True):
+    if any(certainty_at(result).undetermined[: len(problem.spec.free)]):
         return result
     return estimate(replace(problem, tall=True), result.x, known)
 
@@ -253,7 +252,7 @@ def _joint_start(
         launches.append(part.launches(x)[0])
         if part.rests[0]:  # it tells nothing of what moves
             continue
-        spread = certainty_of(part.jacobian(x), plausible_for(part, x)).covariance
+        spread = certainty_of(part.jacobian(x), part.plausible(x)).covariance
         if shared:
             weight = np.linalg.pinv(spread[:shared, :shared])
             weights += weight
@@ -263,7 +262,3 @@ def _joint_start(
     return problem.unknowns(
         dict(zip(problem.spec.free, mean.tolist(), strict=True)), np.array(launches)
     )
-
-
-def _observations(problem: Problem) -> int:
-    return int((problem.kinds <= ANGLE).sum())

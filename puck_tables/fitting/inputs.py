@@ -13,8 +13,7 @@ import numpy as np
 from puck_tables._core.real import instance, pair_of, positive, real
 from puck_tables.contact.speed_law import KINDS
 from puck_tables.errors import InputError
-from puck_tables.film.pairs import marks_of_one
-from puck_tables.film.puck_track import Track
+from puck_tables.film.puck_track import Track, marks_of_one
 from puck_tables.fitting.certainty import Certainty
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.fit_spec import FitSpec
@@ -229,16 +228,6 @@ def checked_speeds(raw: Any, between: Any) -> tuple[float, ...]:
             f"{', '.join(f'{speed:g}' for speed in speeds)}"
         )
     return speeds
-
-
-def refuse_faster(speeds: tuple[float, ...], result: Estimate) -> None:
-    """Refuse slip speeds that end below those of the tracks."""
-    fastest = result.problem.fastest(result.x)
-    if fastest > speeds[-1]:
-        raise InputError(
-            f"the puck slips at up to {fastest:.4g} m/s, but the last of the slip speeds is "
-            f"{speeds[-1]:g} m/s: give speeds up to {math.ceil(10.0 * fastest) / 10.0:g}"
-        )
 
 
 def refuse_opening(result: Estimate) -> None:

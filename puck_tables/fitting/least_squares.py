@@ -91,8 +91,10 @@ def minimise(
     moved = np.array([k for k in range(x.size) if k != held], np.int64)
     whole = x.copy()
     limits = [ends[moved] for ends in problem.limits]
+    # ends that count from the first: of the puck, and bounds that are given
+    counts = np.array([of == -1 or name in problem.spec.bounds for of, name in problem.names], bool)
     low, high = (
-        np.where(_near(ends, problem, moved), ends, far)
+        np.where(counts[moved] & (np.abs(ends) < _FAR), ends, far)
         for ends, far in zip(limits, (-np.inf, np.inf), strict=True)
     )
     begun = inside(x[moved], low, high)
@@ -101,7 +103,12 @@ def minimise(
         whole[moved] = values
         rows, slopes = problem.residuals_and_jacobian(whole)
         if not (np.isfinite(slopes).all() and np.isfinite(rows).all()):
-            raise InputError(_astray(problem, whole))
+            told = ", ".join(f"{n} {value:.3g}" for n, value in problem.numbers_at(whole).items())
+            raise InputError(
+                "the fit is led astray, to a motion that cannot be computed"
+                f"{f' ({told})' if told else ''}: give bounds or a prior of what it finds, or find "
+                "less"
+            )
         if how.loss == "linear":  # only their squares and products count
             rows, slopes, _ = compact(problem, rows, slopes, kept)
         return rows, slopes[:, moved]
@@ -143,25 +150,6 @@ def apart(both: Callable[[FloatArray], tuple[FloatArray, FloatArray]]) -> tuple[
     return partial(at, which=0), partial(at, which=1)
 
 
-def _astray(problem: Problem, x: FloatArray) -> str:
-    """A sentence on unknowns of which no motion can be computed."""
-    told = ", ".join(f"{name} {value:.3g}" for name, value in problem.numbers_at(x).items())
-    return (
-        "the fit is led astray, to a motion that cannot be computed"
-        f"{f' ({told})' if told else ''}: give bounds or a prior of what it finds, or find less"
-    )
-
-
-def _near(
-    ends: FloatArray, problem: Problem, moved: npt.NDArray[np.int64]
-) -> npt.NDArray[np.bool_]:
-    """Ends that count from the first: of the puck, and bounds that are given."""
-    given = [problem.names[k][0] == -1 or problem.names[k][1] in problem.spec.bounds
-             for k in moved]  # fmt: skip
-    near: npt.NDArray[np.bool_] = (np.abs(ends) < _FAR) & np.array(given, bool)
-    return near
-
-
 def inside(x: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
     """Strictly within bounds, as the method wants its start."""
     width = np.where(np.isfinite(high - low), high - low, np.maximum(1.0, np.abs(x)))
@@ -200,8 +188,11 @@ def multi_start(
             for _ in range(steps):
                 if not walker.arrived:
                     walker.step()
-        walkers.sort(key=lambda one: one.cost)
-        walkers = _that_differ(walkers)
+        every, walkers = sorted(walkers, key=lambda one: one.cost), []
+        for one in every:  # those that no deeper one has met
+            if all(np.abs(one.x - other.x).max() > _APART * np.abs(other.x).max()
+                   for other in walkers):  # fmt: skip
+                walkers.append(one)
         near = sum(one.cost < walkers[0].cost + allowance for one in walkers)
         walkers = walkers[: max(most, near)]
     return [(walker.x, walker.cost) for walker in walkers]
@@ -266,12 +257,3 @@ def _cost(rows: FloatArray, scale: float) -> float:
     if scale == math.inf:
         return 0.5 * float(rows @ rows)
     return 0.5 * scale * scale * float(np.log1p((rows / scale) ** 2).sum())
-
-
-def _that_differ(walkers: list[_Walker]) -> list[_Walker]:
-    """Those that no deeper one has met."""
-    result: list[_Walker] = []
-    for one in walkers:
-        if all(np.abs(one.x - other.x).max() > _APART * np.abs(other.x).max() for other in result):
-            result.append(one)
-    return result

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -17,10 +18,10 @@ from puck_tables.errors import InputError
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.initial_estimate import initial_estimate
-from puck_tables.fitting.model_comparison import tried
-from puck_tables.fitting.parameters import INTEGRATED, NODES
+from puck_tables.fitting.model_comparison import FLOORS, tried
+from puck_tables.fitting.parameters import INTEGRATED, NODES, NOTHING
 from puck_tables.fitting.problem import TURN, Known, Problem
-from puck_tables.fitting.residuals import AIR, NO_PATTERN, SLOPE, SideForces, forced
+from puck_tables.fitting.residuals import NO_PATTERN, SideForces
 from puck_tables.fitting.slowing import nearest_start, starts_from_slowing
 
 _FAR = 1.5  # times smaller are residuals of a reading that is told
@@ -48,12 +49,11 @@ _Sizes = tuple[FloatArray, FloatArray]  # how far places (m), and angles (rad), 
 
 
 class _Reading(NamedTuple):
-    """What else may be: in words, by how much smaller residuals are, if a floor, if it is rough."""
+    """What else may be: in words, by how much smaller residuals are, and if a floor."""
 
     words: str
     gain: float
     floor: bool = False
-    rough: bool = False
 
 
 def misfit(
@@ -64,24 +64,20 @@ def misfit(
     A floor is named before angles or a radius that fit about as well.  ``problem``: what was asked,
     with all frames; ``speeds``: whether a friction over slip speed does not fit, either.
     """
-    noise, told = problem.noise[0], []
+    told: list[_Reading] = []
     if _may_change(problem.spec) and not speeds:
-        drag = _reading(lambda: _by_drag(result, problem, known))
-        law = _reading(lambda: _by_speed(result, problem))
+        drag, air, slope = (
+            _reading(partial(_by_floor, result, problem, one)) for one in ("drag", "air", "slope")
+        )
+        law = _reading(partial(_by_speed, result, problem))
         if drag and law and law.gain < drag.gain + _BETTER:  # more numbers fit a little better
             law = None
-        told = [one for one in (drag, law) if one]
-    if not speeds and not problem.impact_specs:
-        one = _reading(lambda: _by_air(result, problem)) or _by_force(result, AIR, noise)
-        told += [one for one in (one, _by_force(result, SLOPE, noise)) if one]
-    told = sorted(told, key=lambda one: -one.gain)[:2]
+        told = sorted(filter(None, (drag, law, air, slope)), key=lambda one: -one.gain)[:2]
     told += _otherwise(result, problem, known)
     best = max((one.gain for one in told), default=0.0)
     # sizes and angles are known better than floors: a floor that tells much is named first
     near = [one for one in told if one.gain > best - _ALIKE or (one.floor and one.gain > _MUCH)]
-    near.sort(
-        key=lambda one: (not one.floor or (one.rough and one.gain < best - _ALIKE), -one.gain)
-    )
+    near.sort(key=lambda one: (not one.floor, -one.gain))
     if near:
         words = f"{near[0].words}{f'; or {near[1].words}' if len(near) > 1 else ''}"
         return f"Residuals would be {math.exp(near[0].gain):.2g} times smaller {words}"
@@ -128,44 +124,40 @@ def _gain(result: Estimate, other: _Sizes, noise: float) -> float:
     return gain if fits or (gain > _MUCH and _explained(other)) else 0.0
 
 
-def _by_drag(result: Estimate, problem: Problem, known: Known) -> _Reading:
-    """Drag of speed and spin alike, if that fits far better."""
-    # from a speed e^20 times as slow, or as fast, at the end nothing is told any more
-    most = _MOST_DRAG / max(float(film.time[-1]) for film in problem.films)
-    spec, bounds = problem.spec, {**problem.spec.bounds, "drag": (-most, most)}
-    spec = replace(spec, free=(*spec.free, "drag"), bounds=bounds)
-    one = initial_estimate(replace(problem, spec=spec), known, refit=False)
-    words = f"with drag besides friction: find it, too (--free {','.join(spec.free)})"
-    return _Reading(words, _gain(result, _deviations(one), problem.noise[0]), True)
-
-
-def _by_air(result: Estimate, problem: Problem) -> _Reading:
-    """Drag of the speed squared, if that fits far better; tried where angles can be followed."""
-    spec = problem.spec
-    if not _may_change(spec):
-        return _Reading("", 0.0)
-    other = replace(problem, spec=replace(spec, free=(*spec.free, "air")), tall=False)
-    x = nearest_start(other, starts_from_slowing(other))[1]
-    air = other.numbers_at(x)["air"]
-    if _faint(result, AIR, air):
-        return _Reading("", 0.0)
+def _by_floor(result: Estimate, problem: Problem, floor: str) -> _Reading:
+    """Drag of speed and spin alike, air, or a table out of level, if that fits far better."""
+    at, launches = result.problem.numbers_at(result.x), result.problem.launches(result.x)
+    spec, bounds = problem.spec, problem.spec.bounds
+    if floor == "drag":
+        # from a speed e^20 times as slow, or as fast, at the end nothing is told any more
+        most = _MOST_DRAG / max(float(film.time[-1]) for film in problem.films)
+        bounds = {**bounds, "drag": (-most, most)}
+    spec = replace(spec, free=(*spec.free, *FLOORS[floor]), bounds=bounds)
+    other = replace(problem.with_films(result.problem.films), spec=spec, tall=False)
+    plain = np.clip(other.unknowns({**NOTHING, **at}, launches), *other.limits)
+    x = nearest_start(other, starts_from_slowing(other) or [(other, plain)])[1]
     gain = _gain(result, _sizes(other, other.deviations(x)), problem.noise[0])
-    return _Reading(_air_words(air, spec), gain, True)
-
-
-def _faint(result: Estimate, kind: tuple[int, ...], force: float) -> bool:
-    """Whether a force does next to nothing: then it only led to another motion."""
-    speed = float(np.hypot(*result.problem.launches(result.x)[:, 2:4].T).max())
-    slowing = result.problem.spec.scales(result.problem.numbers_at(result.x))[0]
-    faint: bool = force * (speed**2 if kind == AIR else 1.0) < _FAINT * slowing
-    return faint
-
-
-def _air_words(air: float, spec: FitSpec) -> str:
-    return (
-        f"if air slowed it, by {air:.2g}/m times the square of its speed (what slows it hardly "
-        f"brakes its spin, as air does): find it, too (--free {','.join((*spec.free, 'air'))})"
-    )
+    found, speed = other.numbers_at(x), float(np.hypot(*launches[:, 2:4].T).max())
+    slowing, free = result.problem.spec.scales(at)[0], f"(--free {','.join(spec.free)})"
+    if floor == "drag":
+        force = abs(found["drag"]) * speed
+        words = f"with drag besides friction: find it, too {free}"
+    elif floor == "air":
+        force = found["air"] * speed**2
+        words = (
+            f"if air slowed it, by {found['air']:.2g}/m times the square of its speed (what slows "
+            f"it hardly brakes its spin, as air does): find it, too {free}"
+        )
+    else:
+        pull = found["slope_x"], found["slope_y"]
+        tilt, way = math.degrees(math.hypot(*pull)), math.degrees(math.atan2(pull[1], pull[0]))
+        force = math.hypot(*pull) * spec.known()["gravity"] if tilt < _STEEPEST else 0.0
+        words = (
+            f"with a table out of level by {tilt:.2g} degrees, down along {way % 360.0:.3g} "
+            "degrees from x: level it, or find its slope, too (slope_x, slope_y)"
+        )
+    # a slope bends any path: it is named first only where it leaves least
+    return _Reading(words, gain if force > _FAINT * slowing else 0.0, floor != "slope")
 
 
 def _may_change(spec: FitSpec) -> bool:
@@ -191,25 +183,6 @@ def _by_speed(result: Estimate, problem: Problem) -> _Reading:
         f"{','.join(f'{u:g}' for u in speeds)})"
     )
     return _Reading(words, gain, True)
-
-
-def _by_force(result: Estimate, kind: tuple[int, ...], noise: float) -> _Reading | None:
-    """A table out of level, or air, to first order, if that fits far better."""
-    off, force = forced(result, kind)
-    gain = _gain(result, _sizes(result.problem, off), noise)
-    if not gain or _faint(result, kind, math.hypot(*force)):
-        return None
-    gravity = {**result.problem.spec.known(), **result.problem.numbers_at(result.x)}["gravity"]
-    slope = math.degrees(math.hypot(*force) / gravity)
-    if kind == AIR:
-        words = _air_words(force[0], result.problem.spec)
-        return _Reading(words, gain, True, True) if force[0] > 0.0 else None
-    words = (
-        f"with a table out of level by {slope:.2g} degrees, down along "
-        f"{math.degrees(math.atan2(force[1], force[0])) % 360.0:.3g} degrees from x: level it, or "
-        "find its slope, too (slope_x, slope_y)"
-    )
-    return _Reading(words, gain, True, True) if slope < _STEEPEST else None
 
 
 def _others(problem: Problem) -> Iterator[tuple[str, Problem, float]]:
@@ -255,12 +228,12 @@ def _explained(seen: _Sizes) -> bool:
 
 
 def _deviations(result: Estimate) -> _Sizes:
-    """How far places (m) and angles (rad) are off."""
+    """How far places (m) and angles (rad) of an estimate are off."""
     return _sizes(result.problem, result.problem.deviations(result.x))
 
 
 def _sizes(problem: Problem, deviations: list[FloatArray]) -> _Sizes:
-    """How far places (m) and angles (rad) are off that deviate by (3, n) of each track."""
+    """The same where tracks deviate by (3, n) each."""
     angles = [np.empty(0)] + [
         np.abs(one[TURN, np.isfinite(film.angle)]) for film, one in zip(problem.films, deviations,
         strict=True) if film.angle is not None

@@ -22,11 +22,11 @@ from puck_tables.fitting.certainty import Z95, Certainty
 from puck_tables.fitting.estimate import Estimate, capped_squares, estimate
 from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.least_squares import ROBUST, minimise
-from puck_tables.fitting.named_laws import NAMES as LAWS
 from puck_tables.fitting.observations import FEWEST, MEDIAN, Observations, rests_from
 from puck_tables.fitting.parameters import LAW_NUMBERS, NODES
 from puck_tables.fitting.problem import ANGLE, PLACE, UNSEEN, Known, Problem
 from puck_tables.fitting.slowing import nearest_start, starts_from_slowing
+from puck_tables.fitting.speed_motion import LAWS
 from puck_tables.fitting.whole_turns import on_another_floor
 
 _ROUGHLY = ROBUST._replace(evaluations=15)
@@ -41,6 +41,11 @@ def over_speeds(
     result: Estimate, speeds: tuple[float, ...], between: str, known: Known
 ) -> Estimate:
     """The estimate with a friction coefficient for each slip speed, from that of one for all."""
+    if (fastest := result.problem.fastest(result.x)) > speeds[-1]:
+        raise InputError(
+            f"the puck slips at up to {fastest:.4g} m/s, but the last of the slip speeds is "
+            f"{speeds[-1]:g} m/s: give speeds up to {math.ceil(10.0 * fastest) / 10.0:g}"
+        )
     moved, start = _begun(result.problem, result.x, speeds)
     lines, _ = minimise(moved, start, ROBUST)
     spec = replace(moved.spec, between=between)

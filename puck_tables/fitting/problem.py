@@ -27,8 +27,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.fit_spec import FitSpec
-from puck_tables.fitting.forward_model import RATE
-from puck_tables.fitting.impact_law import ImpactSpec, WallLine
+from puck_tables.fitting.forward_model import RATE, ImpactSpec, WallLine
 from puck_tables.fitting.observations import Observations, wrapped
 from puck_tables.fitting.slides import Slides
 

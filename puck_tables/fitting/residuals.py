@@ -19,8 +19,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.certainty import Certainty, shifted_by
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.forward_model import DELTA, RATE, Moving, states_and_slopes, states_of
-from puck_tables.fitting.least_squares import apart, inside
-from puck_tables.fitting.problem import Known, Problem
+from puck_tables.fitting.problem import ANGLE, PLACE, Known, Problem
 
 NO_PATTERN = 1e-3  # probability of residuals so patterned by chance
 JITTERY = 1.3  # residuals along the motion over those across it: more, and stamps may jitter
@@ -28,6 +27,7 @@ NOISY = 1.5  # times the noise of a smooth motion
 _MAY_NOISY, _MAY_PATTERN = 1.3, 0.01  # the same, where that is hardly seen
 _COMPUTED = 1e-7  # of the path: residuals of tracks that were computed, not seen
 _NOWHERE, _FAR, _ANY = 20.0, 1e-3, 0.5  # times the noise; of the path; rad
+_SELDOM = 3.1  # standard deviations: one film in 1,000
 _PARTS = 8
 _ROUNDED = 0.45  # of a step: residuals of what is rounded, and of some noise
 _MOVING, _ENOUGH = 0.1, 20  # of the greatest speed; frames
@@ -78,26 +78,33 @@ def drift(result: Estimate) -> float:
     return chi_square_tail(total / scale, max(degrees - result.x.size, 1)) if degrees else 1.0
 
 
-def excess_of(result: Estimate, smooth: tuple[float, float]) -> float:
-    """The residuals over the noise (m, rad) that no model judged; 1 where that is not known."""
+def excess_of(result: Estimate, smooth: tuple[float, float], beyond_chance: bool = False) -> float:
+    """The residuals over the noise (m, rad) that no model judged; 1 where that is not known.
+
+    ``beyond_chance``: only where that noise is not so small by chance, as that of few frames is:
+    the logarithm of what n third differences tell of it scatters by 1.5/√n.
+    """
     return max((
-        result.size * own / other for own, other in zip(result.problem.noise, smooth, strict=True)
-        if math.isfinite(other) and other > 0.0
+        result.size * own / other
+        for kind, own, other in zip((PLACE, ANGLE), result.problem.noise, smooth, strict=True)
+        if math.isfinite(other) and other > 0.0 and (
+            not beyond_chance or math.log(result.size * own / other)
+            > _SELDOM * 1.5 / math.sqrt((result.problem.kinds == kind).sum())
+        )
     ), default=1.0)  # fmt: skip
 
 
 def misfits(
     result: Estimate, known: Known, smooth: tuple[float, float], explained: float
 ) -> tuple[str, ...]:
-    """Signs that a model does not fit.
+    """Signs that a model does not fit; ``smooth``: the noise (m, rad) that no model judged.
 
-    ``smooth``: the noise (m, rad) that no model judged; ``explained``: the probability by chance of
-    what a slope, drag or air would explain.
+    ``explained``: the probability by chance of what a slope, drag or air would explain.
     """
     told = []
     # smaller residuals are the errors of what is computed
     seen = result.problem.noise[0] > _COMPUTED * result.problem.size
-    excess = excess_of(result, smooth)
+    excess = excess_of(result, smooth, beyond_chance=True)
     given = any(known[:2])
     if seen and not given and excess > NOISY:
         told.append(f"The residuals are {excess:.3g} times what smooth tracks would leave")
@@ -130,8 +137,8 @@ def may_misfit(
 
     Below what is complained of that may bias numbers by far.
     """
-    noisy = excess_of(result, smooth) > _MAY_NOISY
     pattern = not hidden(result) and min(runs(result), drift(result), explained) < _MAY_PATTERN
+    noisy = excess_of(result, smooth) > _MAY_NOISY
     return noisy or pattern or bool(misfits(result, known, smooth, explained))
 
 
@@ -196,7 +203,6 @@ _REST = 1e-3  # of the greatest slip
 _TRIED = 0.1  # degrees of a table that nobody levelled with care
 _STEEP = 3.0  # degrees: nobody takes that for a level table
 _ALIKE = 6.0  # of χ²: forces that explain about as much
-_ROUNDS, _CLOSE = 40, 1e-4
 _LAW = 0.2  # of a friction, by which it may change up to the fastest slip
 _RANK, _SEEN = 1e-9, 2e-3
 
@@ -284,34 +290,6 @@ def _explained(columns: FloatArray, rows: FloatArray, degrees: int) -> _Explaine
     chance = float(fdtrc(count, degrees - count, less / count / noise)) if count else 1.0
     error = math.sqrt(noise) / float(seen.min()) if count == sizes.size else math.inf
     return _Explained(-(along / seen) @ turned, less / noise, chance, error)
-
-
-def forced(result: Estimate, kind: tuple[int, ...]) -> tuple[list[FloatArray], FloatArray]:
-    """How far a force of a kind leaves the tracks off (3, n), and the force that leaves least."""
-    from scipy.optimize import least_squares
-
-    problem, count = result.problem, result.x.size
-
-    def rows_and_slopes(values: FloatArray) -> tuple[FloatArray, FloatArray]:
-        rows, slopes = problem.residuals_and_jacobian(values[:count])
-        pushed = _weighed(problem, [one[..., kind] for one in _along(problem, values[:count])])
-        slopes = np.column_stack([slopes, pushed])[result.kept]
-        return (rows + pushed @ values[count:])[result.kept], slopes
-
-    start = np.append(result.x, np.zeros(len(kind)))
-    free = np.array([track >= 0 for track, _ in problem.names] + [True] * len(kind))
-    low, high = (
-        np.where(free, far, np.append(ends, np.zeros(len(kind))))
-        for ends, far in zip(problem.limits, (-np.inf, np.inf), strict=True)
-    )
-    residuals, jacobian = apart(rows_and_slopes)
-    found = least_squares(
-        residuals, inside(start, low, high), jacobian, bounds=(low, high), x_scale="jac",
-        max_nfev=_ROUNDS, ftol=_CLOSE, xtol=_CLOSE,
-    ).x  # fmt: skip
-    x, force = found[:count], found[count:]
-    along = [one[..., kind] @ force for one in _along(problem, x)]
-    return [off + one for off, one in zip(problem.deviations(x), along, strict=True)], force
 
 
 def _weighed(problem: Problem, along: list[FloatArray]) -> FloatArray:

@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.forward_model import (
+    AS_LAUNCH,
     DECEL,
     DELTA,
     PLACE,
@@ -23,18 +24,15 @@ from puck_tables.fitting.forward_model import (
     TIME,
     VX,
     VY,
-    Moving,
-    states_and_slopes,
-    states_of,
-)
-from puck_tables.fitting.impact_law import (
-    AS_LAUNCH,
     ImpactSpec,
     ImpactState,
+    Moving,
     Slide,
     after_impact,
     gap_of,
     impact_at,
+    states_and_slopes,
+    states_of,
 )
 from puck_tables.fitting.parameters import LAUNCH, OWN_CURVE
 from puck_tables.fitting.unknowns import NumbersOf, Unknowns
@@ -69,11 +67,10 @@ class Slides(Unknowns):
 
         Times are those after the start of the first track.
         """
-        result = self.numbers_at(x)
-        slides = [
-            [Slide(self._begin(n, result), launch)] for n, launch in enumerate(self.launches(x))
-        ]
-        impacts = []
+        result, slides, impacts = self.numbers_at(x), [], []
+        for film, launch in zip(self.films, self.launches(x), strict=True):
+            late = 0.0 if film.row is None else self.spec.readout(result) * float(film.row[0])
+            slides.append([Slide(film.start - self.films[0].start + late, launch)])
         if self.impact_specs:
             moving, walls = self.moving(result), self.estimated_walls(x)
             gyration = self.gyration(result)
@@ -87,12 +84,6 @@ class Slides(Unknowns):
                 slides[n].append(slide)
             impacts.append(impact)
         return slides, impacts
-
-    def _begin(self, n: int, result: NumbersOf) -> float:
-        """When a track begins, s after the start of the first."""
-        film = self.films[n]
-        late = 0.0 if film.row is None else self.spec.readout(result) * float(film.row[0])
-        return film.start - self.films[0].start + late
 
     def times(self, n: int, result: NumbersOf) -> FloatArray:
         """The times of a track's frames after its first: lines of a picture are read in turn."""

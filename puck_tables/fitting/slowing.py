@@ -26,10 +26,10 @@ from puck_tables.contact import closed_form
 from puck_tables.errors import InputError
 from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.least_squares import FROM_SLOWING, ROBUST, multi_start
-from puck_tables.fitting.named_laws import shape
 from puck_tables.fitting.observations import Observations, rests_from, turning_of
 from puck_tables.fitting.parameters import NOTHING
 from puck_tables.fitting.problem import Problem
+from puck_tables.fitting.speed_motion import shape
 from puck_tables.fitting.unknowns import NumbersOf
 
 _DEGREE = 7  # of the polynomial: motions that slow are smooth

@@ -177,13 +177,16 @@ def kinks(film: Observations, noise: float) -> list[int]:
     before = np.array([_velocity(film, i - _WINDOW + 1, i + 1) for i in places])
     after = np.array([_velocity(film, i + 1, i + 1 + _WINDOW) for i in places])
     change, speed = after - before, np.hypot(*before.T)
-    jump = np.hypot(*(change - _around(change)).T)
+    # less what friction changes near each frame: the median of frames beside it
+    away = np.r_[-3 * _WINDOW : -_WINDOW, _WINDOW + 1 : 3 * _WINDOW + 1]
+    near = (at[(at >= 0) & (at < len(change))] for at in (n + away for n in range(len(change))))
+    jump = np.hypot(*(change - np.array([np.median(change[at], axis=0) for at in near])).T)
     error = noise * math.sqrt(48.0 / _WINDOW**3) / film.usual_step
     high = max(_USUAL * float(np.median(jump)), _NOISY * error)
     result = []
     for n, size in enumerate(jump.tolist()):
-        near = jump[max(0, n - _WINDOW) : n + _WINDOW + 1]
-        top = max(0, n - _WINDOW) + np.flatnonzero(near >= _TOP * near.max())
+        beside = jump[max(0, n - _WINDOW) : n + _WINDOW + 1]
+        top = max(0, n - _WINDOW) + np.flatnonzero(beside >= _TOP * beside.max())
         highest = n == int(top[top.size // 2])
         if highest and size > max(high, _LEAST * float(speed[n])):
             result.append(n + _WINDOW - 1)
@@ -206,15 +209,6 @@ def _jumps(film: Observations, noise: float, start: int, middle: int, stop: int)
     span = min(middle - start, stop - middle)
     error = noise * math.sqrt(2.0 * 192.0 / span**3) / film.usual_step
     return jump > max(_NOISY * error, _LEAST * math.hypot(*(before[1] + 2.0 * at * before[2])))
-
-
-def _around(change: FloatArray) -> FloatArray:
-    """What friction changes near each frame (n, 2): the median of frames beside it."""
-    away = np.r_[-3 * _WINDOW : -_WINDOW, _WINDOW + 1 : 3 * _WINDOW + 1]
-    near = (n + away for n in range(len(change)))
-    return np.array([
-        np.median(change[at[(at >= 0) & (at < len(change))]], axis=0) for at in near
-    ])  # fmt: skip
 
 
 def _velocity(film: Observations, start: int, stop: int) -> FloatArray:

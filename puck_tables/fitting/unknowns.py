@@ -19,7 +19,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.fit_spec import FitSpec
-from puck_tables.fitting.impact_law import WallLine
+from puck_tables.fitting.forward_model import WallLine
 from puck_tables.fitting.observations import Observations
 from puck_tables.fitting.parameters import LAUNCH, MOST, WALL
 
@@ -28,6 +28,9 @@ _FASTER = 10.0  # times the fastest that a track goes from frame to frame
 _RIM = 100.0  # times that speed: the rim, without angles
 _TURNS = 20.0  # a frame, with angles
 _PRIOR = 8.0  # standard deviations of a prior
+_TOLD = 0.75  # of the time between frames, twice the error of a readout that the tracks tell
+# scales are plausible within their own size, but not less than this
+_LEAST = {"friction": 1e-3, "decel": 1e-2, "gravity": 1e-2, "height": 1e-4, "radius": 1e-4}
 _PLACES = ("launch_x", "launch_y")
 _SPEEDS = ("launch_vx", "launch_vy")
 
@@ -160,6 +163,29 @@ class Unknowns:
             pairs.append((low, high))
         low_high = np.array(pairs).reshape(-1, 2)
         return low_high[:, 0], low_high[:, 1]
+
+    def plausible(self, x: FloatArray) -> FloatArray:
+        """What is plausible for every unknown (m,): of scales their own size."""
+        result, launches = self.numbers_at(x), self.launches(x)
+        radius = self.spec.scales(result)[2]
+        sizes = []
+        for track, name in self.names:
+            if name == "readout" and self.read_within is not None:
+                sizes.append(_TOLD * self.read_within)
+            elif track == -1:
+                own, least = self.spec.plausible(name), _LEAST.get(name)
+                sizes.append(own if least is None else max(abs(result[name]), least))
+            elif name in ("launch_angle", "wall_angle"):
+                sizes.append(1.0)
+            elif name in (*_PLACES, "wall_distance"):
+                every = [film.place for film in ([self.films[track]] if track >= 0 else self.films)]
+                sizes.append(float(np.ptp(np.concatenate(every), axis=0).max()) or radius)
+            else:
+                _, _, vx, vy, spin, _ = launches[track]
+                slip = math.hypot(vx, vy, radius * spin) or 1.0
+                sizes.append(slip / radius if name == "launch_spin" else slip)
+        plausible: FloatArray = np.maximum(np.array(sizes), 1e-12)
+        return plausible
 
     def numbers_at(self, x: FloatArray) -> NumbersOf:
         """The numbers of the puck that are found."""
