@@ -80,12 +80,9 @@ class Track:
                 f"the place or the angle of frame {int(endless.argmax()) + 1} is infinite: give a "
                 "number, or NaN where none was seen"
             )
-        fields: tuple[tuple[str, FloatArray | None], ...] = (
-            ("time", time), ("place", place), ("angle", angle),
-        )  # fmt: skip
-        for field, value in fields:
+        fields = {"time": time, "place": place, "angle": angle, "notes": tuple(self.notes)}
+        for field, value in fields.items():
             object.__setattr__(self, field, value)
-        object.__setattr__(self, "notes", tuple(self.notes))
         if (seen := int(np.count_nonzero(self.seen))) < 2:
             raise InputError(
                 f"a track needs two frames or more where the puck is seen, here are {seen}"

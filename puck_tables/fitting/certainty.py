@@ -89,9 +89,8 @@ class Certainty:
     @property
     def spread(self) -> float:
         """A standard deviation of Student's t: by so much few residuals make errors larger."""
-        if self.degrees == math.inf:
-            return 1.0
-        return math.sqrt(self.degrees / max(self.degrees - 2.0, 0.2))
+        few = self.degrees < math.inf
+        return math.sqrt(self.degrees / max(self.degrees - 2.0, 0.2)) if few else 1.0
 
     @property
     def reach(self) -> float:
@@ -269,13 +268,11 @@ def interval_of(result: Estimate, certainty: Certainty, k: int) -> Interval:
     x, error = float(result.x[k]), math.sqrt(float(certainty.covariance[k, k]))
     if certainty.undetermined[k]:
         return Interval(low, high, False)
-    ends, profiled = [], False
-    for side, limit in ((-1.0, low), (1.0, high)):
-        guess = x + side * certainty.quantile * error
-        end, searched = _end(result, certainty, k, side, guess, limit)
-        ends.append(end)
-        profiled |= searched
-    return Interval(ends[0], ends[1], profiled)
+    (one, searched), (other, too) = (
+        _end(result, certainty, k, side, x + side * certainty.quantile * error, limit)
+        for side, limit in ((-1.0, low), (1.0, high))
+    )
+    return Interval(one, other, searched or too)
 
 
 def _end(

@@ -21,7 +21,6 @@ from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.forward_model import WallLine
 from puck_tables.fitting.impact_matching import (
     CoupledFit,
-    ImpactMatch,
     Line,
     candidates_of,
     coupled,
@@ -42,9 +41,8 @@ _WALK = ((8, 16), (12, 8), (25, 4))  # steps from each start, and how many then 
 _RIVAL = 15.0  # what other minima may cost more
 _TRIED = 12  # ways of slides that are not joined, to see whether they have rivals
 _HARDER = 3.0  # times the friction of a rim that slides
+_RUBS = ("rim_friction", "pair_friction")
 _EQUAL = 0.01  # of χ²: two forms of one law
-
-Values = Callable[[FloatArray], FloatArray]
 
 
 class Impact(NamedTuple):
@@ -82,10 +80,9 @@ def couple(
     most = max(len(group[0].problem.impact_specs) for group in groups.values())
     fits = []
     for group in groups.values():
-        whole = group[0]
-        if len(whole.problem.impact_specs) == most:
+        if len(group[0].problem.impact_specs) == most:
             best = _deepest(group, known)
-            fits.append((_rise(slides, best, whole), best))
+            fits.append((_rise(slides, best, group[0]), best))
     least = min(rise for rise, _ in fits)
     near = [fit for fit in fits if fit[0] < least + _EQUAL]
     rise, result = min(near, key=lambda fit: (_unlikely(fit[1]), fit[0]))
@@ -111,8 +108,7 @@ def _deepest(group: list[CoupledFit], known: Known) -> Estimate:
 def _gripping(result: Estimate) -> list[FloatArray]:
     """Unknowns near which rims that slide may grip instead; with angles it is seen that they do."""
     problem = result.problem
-    names = [name for _, name in problem.names]
-    rubs = [names.index(name) for name in ("rim_friction", "pair_friction") if name in names]
+    rubs = [k for k, (_, name) in enumerate(problem.names) if name in _RUBS]
     if not rubs or all(film.angle is not None for film in problem.films):
         return []
     x = result.x.copy()
@@ -126,7 +122,7 @@ def _unlikely(result: Estimate) -> int:
     Last is a friction that no impact tells, as all rims grip.
     """
     problem = result.problem
-    if not {"rim_friction", "pair_friction"} & {*problem.spec.free}:
+    if not {*_RUBS} & {*problem.spec.free}:
         return 1
     numbers = problem.numbers_at(result.x)
     for impact_spec, impact in zip(problem.impact_specs, problem.slides(result.x)[1], strict=True):
@@ -143,17 +139,16 @@ def not_met(impacts: Sequence[Impact], problem: Problem, lines: Sequence[Line]) 
     if not problem.impact_specs:  # nothing is joined at walls
         return ()
     walls = [wall for wall in problem.walls if wall is not None]
+
+    def through(wall: WallLine, point: tuple[float, float]) -> bool:
+        off = point[0] * math.cos(wall.angle) + point[1] * math.sin(wall.angle) - wall.distance
+        return abs(off) <= _SAME * max(*map(abs, point), abs(wall.distance))
+
     return tuple(
-        f"No impact was found on the wall through ({ax:g}, {ay:g}) and ({bx:g}, {by:g}): see that "
-        "its points are in m, along the axes of the tracks"
-        for (ax, ay), (bx, by) in lines
-        if not any(_through(wall, ax, ay) and _through(wall, bx, by) for wall in walls)
-    )
-
-
-def _through(wall: WallLine, x: float, y: float) -> bool:
-    deviations = x * math.cos(wall.angle) + y * math.sin(wall.angle) - wall.distance
-    return abs(deviations) <= _SAME * max(abs(x), abs(y), abs(wall.distance))
+        f"No impact was found on the wall through ({a[0]:g}, {a[1]:g}) and ({b[0]:g}, {b[1]:g}): "
+        "see that its points are in m, along the axes of the tracks"
+        for a, b in lines if not any(through(wall, a) and through(wall, b) for wall in walls)
+    )  # fmt: skip
 
 
 def _rise(slides: Estimate, result: Estimate, whole: CoupledFit) -> float:
@@ -203,8 +198,8 @@ def impacts_apart(
 
     def values(x: FloatArray) -> FloatArray:
         """Restitution, ratio and mass of each; as they are where an impact comes to nothing."""
-        others = {_key(match_): match_ for match_ in matched_impacts(problem, pieces, x)}
-        rows = [others.get(_key(match_), match_) for match_ in matches]
+        others = {one.pieces: one for one in matched_impacts(problem, pieces, x)}
+        rows = [others.get(one.pieces, one) for one in matches]
         return np.array([[one.restitution, one.ratio, one.mass] for one in rows]).ravel()
 
     if not matches:
@@ -227,11 +222,9 @@ def impacts_apart(
     return tuple(impacts)
 
 
-def _key(match_: ImpactMatch) -> tuple[int, ...]:
-    return tuple(kink.piece for kink in match_.kinks_of_slides)
-
-
-def _slopes(result: Estimate, certainty: Certainty, of: Values) -> FloatArray:
+def _slopes(
+    result: Estimate, certainty: Certainty, of: Callable[[FloatArray], FloatArray]
+) -> FloatArray:
     """The derivatives of numbers to the unknowns, (numbers, m)."""
     columns = []
     low, high = result.problem.limits

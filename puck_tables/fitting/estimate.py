@@ -256,11 +256,11 @@ def _noise(
     result, jitter = list(problem.noise), problem.jitter
     if not all(known) and (jitter > 0.0 or not known.jitter):
         count = []
-        for film, (place, across, turn) in zip(problem.films, problem.each(), strict=True):
+        for film, (along, across, turn) in zip(problem.films, problem.each(), strict=True):
             angled = np.zeros(film.time.size, bool)
             if film.angle is not None:
                 angled[np.isfinite(film.angle)] = kept[turn]
-            count.append(np.stack([kept[place], angled, kept[across]]))
+            count.append(np.stack([kept[along], angled, kept[across]]))
         seen = int((kept & (problem.kinds <= ANGLE)).sum())
         found, jitter = likeliest(
             problem.noise, jitter, known, np.concatenate(problem.deviations(x), axis=1),

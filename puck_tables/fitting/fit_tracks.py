@@ -37,7 +37,6 @@ from puck_tables.fitting.model_comparison import (
     LawScore,
     chi2_under,
     compare,
-    on_a_floor,
     over_speeds,
     predicted,
     split,
@@ -62,29 +61,18 @@ _MUCH = 0.1  # of the frames, left out at the ends
 
 
 def fit(
-    tracks: Track | Sequence[Track],
-    puck: Puck,
-    *,
-    free: Iterable[str] | None = None,
+    tracks: Track | Sequence[Track], puck: Puck, *, free: Iterable[str] | None = None,
     fixed: Mapping[str, float] | None = None,
     prior: Mapping[str, tuple[float, float]] | None = None,
     bounds: Mapping[str, tuple[float, float]] | None = None,
     start: Mapping[str, float] | None = None,
-    noise: tuple[float | None, float | None] | None = None,
-    since: float = -math.inf,
-    until: float = math.inf,
-    keep_all: bool = False,
-    jitter: float | str | None = None,
-    rows: tuple[float, float] | None = None,
-    impacts: bool = False,
-    walls: Sequence[Line] = (),
-    slip_speeds: Sequence[float] | None = None,
-    between: str = "cubic",
-    law: str | None = None,
-    laws: Sequence[str] = (),
-    hold_out: float | Sequence[str] | None = None,
+    noise: tuple[float | None, float | None] | None = None, since: float = -math.inf,
+    until: float = math.inf, keep_all: bool = False, jitter: float | str | None = None,
+    rows: tuple[float, float] | None = None, impacts: bool = False, walls: Sequence[Line] = (),
+    slip_speeds: Sequence[float] | None = None, between: str = "cubic", law: str | None = None,
+    laws: Sequence[str] = (), hold_out: float | Sequence[str] | None = None,
     progress: Progress | None = None,
-) -> Fit:
+) -> Fit:  # fmt: skip
     """Find a puck and its launches from tracks of it.
 
     Parameters
@@ -188,7 +176,8 @@ def fit(
     judged = judged_motion(estimates.best, inputs.known, observed.smooth, inputs.spec.bounds)
     scores: tuple[LawScore, ...] = ()
     if variants:
-        scores = _compared(inputs, observed, estimates, variants)
+        same = replace(observed.problem, jitter=estimates.slides.problem.jitter)
+        scores = compare(same, variants, inputs.known)
         say(1 + len(variants), steps)
     held_out = None
     if inputs.hold_out is not None:
@@ -248,7 +237,7 @@ def _estimate_all(inputs: Inputs, observed: _Observed) -> _Estimates:
     late = bool(inputs.speeds) and not inputs.impacts
     drags = {*DRAGS} >= {*inputs.spec.integrated}  # a law may look like a touch
     best = slides = initial_estimate(problem, known, refit=drags and not late)
-    if inputs.spec.integrates:
+    if inputs.spec.integrated:
         refuse_opening(best)
     untied = ""
     if inputs.impacts:
@@ -267,22 +256,6 @@ def _estimate_all(inputs: Inputs, observed: _Observed) -> _Estimates:
                 constant, best = slides, over(slides)
         refuse_opening(best)
     return _Estimates(slides, best, constant, untied)
-
-
-def _compared(
-    inputs: Inputs, observed: _Observed, estimates: _Estimates, variants: Mapping[str, FitSpec]
-) -> tuple[LawScore, ...]:
-    """The laws named, best first."""
-    # frames that another law leaves out at the ends may be those that tell
-    jitter, known = estimates.slides.problem.jitter, inputs.known._replace(jitter=True)
-
-    def of_law(one: FitSpec) -> Estimate:
-        same = replace(observed.problem, spec=one, jitter=jitter)
-        if one.integrates:
-            return on_a_floor(same, known)
-        return initial_estimate(same, known, refit=False)
-
-    return compare(variants, observed.problem.noise, inputs.known, of_law)
 
 
 def _reported(
@@ -307,7 +280,11 @@ def _reported(
         impacts = impacts_apart(
             best, observed.pieces, certainty, [film.name for film in observed.uncut]
         )
-    left_out = _left_out((*observed.problem.films, *observed.uncut), best.problem.films)
+    named = {film.name: film.frame for film in (*observed.uncut, *observed.problem.films)}
+    left_out = tuple(  # how many frames at the start and the end of each are no free motion
+        (film.name, int((named[film.name] < film.frame[0]).sum()),
+         int((named[film.name] > film.frame[-1]).sum())) for film in best.problem.films
+    )  # fmt: skip
     constant_chi2 = (
         chi2_under(estimates.constant, best.problem.noise) if inputs.speeds else math.nan
     )
@@ -328,20 +305,6 @@ def _reported(
     return result
 
 
-def _left_out(
-    before: tuple[Observations, ...], after: tuple[Observations, ...]
-) -> tuple[tuple[str, int, int], ...]:
-    """How many frames at the start and the end of each track are no free motion."""
-    named = {film.name: film for film in reversed(before)}
-    return tuple(
-        (
-            left.name, int((named[left.name].frame < left.frame[0]).sum()),
-            int((named[left.name].frame > left.frame[-1]).sum()),
-        )
-        for left in after
-    )  # fmt: skip
-
-
 def _trimmed_ends(
     best: Estimate, problem: Problem, known: Known, left_out: tuple[tuple[str, int, int], ...]
 ) -> str:
@@ -355,11 +318,9 @@ def _trimmed_ends(
         return ""
     films = tuple(replace(film, cuttable=(False, False)) for film in problem.films)
     kept = initial_estimate(problem.with_films(films), known, refit=True)
-    numbers = ", ".join(
-        f"{name} {value:.4g}" for name, value in kept.problem.numbers_at(kept.x).items()
-    )  # fmt: skip
-    more = kept.problem.noise[0] * math.sqrt(kept.chi2 / max(kept.degrees, 1))
-    more /= best.problem.noise[0] * math.sqrt(best.chi2 / max(best.degrees, 1)) or 1.0
+    found = kept.problem.numbers_at(kept.x)
+    numbers = ", ".join(f"{name} {value:.4g}" for name, value in found.items())
+    more = kept.problem.noise[0] * kept.size / (best.problem.noise[0] * best.size or 1.0)
     return (
         f"{' and '.join(said)} are left out: something seems to touch the puck there. With all "
         f"frames (--keep-all, keep_all=True) it would be {numbers or 'as known'}, residuals "
@@ -372,7 +333,7 @@ def _held_out(best: Estimate, wanted: float | tuple[str, ...], known: Known) -> 
     problem = best.problem
     films, later = split(problem.films, wanted, problem.noise[0])
     fewer = problem.with_films(films)
-    if problem.impact_specs or problem.spec.speeds or problem.spec.integrates:
+    if problem.impact_specs or problem.spec.speeds or problem.spec.integrated:
         part = estimate(fewer, best.x, known)
     else:
         part = initial_estimate(fewer, known, refit=False)

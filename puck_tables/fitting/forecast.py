@@ -59,13 +59,12 @@ class Camera:
 
     def __post_init__(self) -> None:
         for name, (unit, low, high) in _RANGES.items():
-            value = getattr(self, name)
-            if value is None and name in ("angle_noise", "duration"):
-                continue
-            number = positive(name, value, unit)
-            if not low <= number <= high:
-                raise InputError(f"{name} must be from {low:g} to {high:g} {unit}, got {number:g}")
-            object.__setattr__(self, name, number)
+            if getattr(self, name) is not None or name in ("fps", "place_noise"):
+                number = positive(name, getattr(self, name), unit)
+                if not low <= number <= high:
+                    told = f"from {low:g} to {high:g} {unit}, got {number:g}"
+                    raise InputError(f"{name} must be {told}")
+                object.__setattr__(self, name, number)
 
     def film(self, stop_time: float) -> Observations:
         """Its frames of a motion that stops at a time.
@@ -149,11 +148,9 @@ class Forecast(Result):
 
     def dataset(self) -> Dataset:
         """One row a number."""
-        columns = {
-            "number_name": variable("number_name", list(self.names), ("number",)),
-            "number_value": variable("number_value", self.values, ("number",)),
-            "number_error": variable("number_error", self.errors, ("number",)),
-        }
+        told = {"name": list(self.names), "value": self.values, "error": self.errors}
+        columns = {f"number_{key}": variable(f"number_{key}", one, ("number",))
+                   for key, one in told.items()}  # fmt: skip
         attributes = {
             "title": "What a film of a puck would tell", "frames": self.frames,
             "fps": self.camera.fps, "launch_velocity": list(self.velocity),
@@ -203,8 +200,8 @@ def fisher(
     """
     instance("puck", puck, Puck)
     instance("camera", camera, Camera)
-    velocity = one_velocity(getattr(launch, "velocity", None))
-    spin = real("spin", getattr(launch, "spin", None), "rad/s")
+    velocity = one_velocity(getattr(launch, "velocity", None))  # type: ignore[arg-type]
+    spin = real("spin", getattr(launch, "spin", None), "rad/s")  # type: ignore[arg-type]
     seen, known = _forecast_estimate(puck, velocity, spin, camera, free)
     problem, errors = seen.problem, known.errors
     rivals = () if camera.angle_noise is not None else other_minima(seen, known)

@@ -62,9 +62,9 @@ class Inputs:
         checked = checked_speeds(speeds, between)
         if checked:
             spec.over(checked, between)
-        if spec.integrates:
+        if spec.integrated:
             spec.refuse_integrated()
-        if spec.integrates and (impacts or lines):
+        if spec.integrated and (impacts or lines):
             raise InputError(
                 f"{' and '.join(spec.integrated)} cannot be found beside impacts: leave one of "
                 "the two out"
@@ -113,7 +113,12 @@ def observations_of(
         if rows is not None:
             film = replace(film, row=(rows[0] - film.place[:, 1]) / (rows[0] - rows[1]))
         films.append(film)
-        _refuse_far(film)
+        for what, extent, unit in (("places", film.size, "m"), ("times", film.time[-1], "s")):
+            if extent and not _NEAREST < extent < _FARTHEST:  # no slide of a puck by its size
+                raise InputError(
+                    f"{film.name}: its {what} lie up to {extent:.3g} {unit} apart, which no puck "
+                    "slides: say their unit, or leave out what is wrong"
+                )
         _refuse_still(film, np.nan_to_num(noise_of([film])[0]))
     for one, other in combinations(films, 2):
         _refuse_twice(one, other)
@@ -124,16 +129,6 @@ def observations_of(
             "or a part (since, until)"
         )
     return tuple(films)
-
-
-def _refuse_far(film: Observations) -> None:
-    """Refuse a track, or a time, that is no slide of a puck by its size alone."""
-    for what, extent, unit in (("places", film.size, "m"), ("times", float(film.time[-1]), "s")):
-        if extent and not _NEAREST < extent < _FARTHEST:
-            raise InputError(
-                f"{film.name}: its {what} lie up to {extent:.3g} {unit} apart, which no puck "
-                "slides: say their unit, or leave out what is wrong"
-            )
 
 
 def refuse_wobbling(result: Estimate, certainty: Certainty) -> None:

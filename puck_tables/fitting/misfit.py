@@ -49,11 +49,15 @@ _Sizes = tuple[FloatArray, FloatArray]  # how far places (m), and angles (rad), 
 
 
 class _Reading(NamedTuple):
-    """What else may be: in words, by how much smaller residuals are, and if a floor."""
+    """What else may be: in words, by how much smaller residuals are, if a floor.
+
+    ``bends``: if one that bends any path, as a slope does: it is named first only if near the best.
+    """
 
     words: str
     gain: float
     floor: bool = False
+    bends: bool = False
 
 
 def misfit(
@@ -77,7 +81,9 @@ def misfit(
     best = max((one.gain for one in told), default=0.0)
     # sizes and angles are known better than floors: a floor that tells much is named first
     near = [one for one in told if one.gain > best - _ALIKE or (one.floor and one.gain > _MUCH)]
-    near.sort(key=lambda one: (not one.floor, -one.gain))
+    near.sort(
+        key=lambda one: (not one.floor or (one.bends and one.gain < best - _ALIKE), -one.gain)
+    )
     if near:
         words = f"{near[0].words}{f'; or {near[1].words}' if len(near) > 1 else ''}"
         return f"Residuals would be {math.exp(near[0].gain):.2g} times smaller {words}"
@@ -156,8 +162,7 @@ def _by_floor(result: Estimate, problem: Problem, floor: str) -> _Reading:
             f"with a table out of level by {tilt:.2g} degrees, down along {way % 360.0:.3g} "
             "degrees from x: level it, or find its slope, too (slope_x, slope_y)"
         )
-    # a slope bends any path: it is named first only where it leaves least
-    return _Reading(words, gain if force > _FAINT * slowing else 0.0, floor != "slope")
+    return _Reading(words, gain if force > _FAINT * slowing else 0.0, True, floor == "slope")
 
 
 def _may_change(spec: FitSpec) -> bool:
@@ -223,8 +228,7 @@ def _near_noise(seen: _Sizes, noise: float) -> bool:
 
 def _explained(seen: _Sizes) -> bool:
     """Whether angles are explained."""
-    angles = seen[1]
-    return not angles.size or float(np.median(angles)) < _BY_CHANCE
+    return not seen[1].size or float(np.median(seen[1])) < _BY_CHANCE
 
 
 def _deviations(result: Estimate) -> _Sizes:

@@ -120,10 +120,9 @@ def numbers_of(
     puck: dict[str, Number] = {}
     for k, name in enumerate(spec.free):
         interval, error = interval_of(result, certainty, k), float(errors[k])
-        width = interval.high - interval.low
-        if interval.profiled:  # the likelihood is no parabola: half of its width
-            error = max(error, width / (2.0 * certainty.reach))
         low, high = interval.low, interval.high
+        if interval.profiled:  # the likelihood is no parabola: half of its width
+            error = max(error, (high - low) / (2.0 * certainty.reach))
         for minimum in other_fits:
             there = interval_of(minimum.estimate, minimum.certainty, k)
             within = interval.low <= minimum.numbers[name] <= interval.high
@@ -131,12 +130,11 @@ def numbers_of(
                 error = math.inf
             low, high = min(low, there.low), max(high, there.high)
             error = max(error, (high - low) / (2.0 * certainty.reach))
-        width = high - low
         least, largest = (float(limit[k]) for limit in problem.limits)
-        if width >= _ALL * (largest - least) or error > _MUCH.get(name, math.inf):
+        if high - low >= _ALL * (largest - least) or error > _MUCH.get(name, math.inf):
             error = math.inf
-        unit = PUCK[name].unit
-        puck[name] = Number(values[name], error, low, high, unit, FREE, interval.profiled)
+        kind = PUCK[name].unit, FREE, interval.profiled
+        puck[name] = Number(values[name], error, low, high, *kind)
     speed = puck.get("law_speed")
     if speed is not None and (speed.at_bound or not speed.determined):
         # all slips are on one side of it, and tell one of the frictions alone
@@ -226,9 +224,7 @@ def quadratic(value: float, error: float, unit: str, how: str, reach: float) -> 
 def _ends(problem: Problem, x: FloatArray, name: str, one: str, number: Number) -> Interval:
     """The interval of what follows, from the ends of that of one number, the others as found."""
     values = problem.numbers_at(x)
-    ends = [
-        problem.spec.all_at({**values, one: end})[name] for end in (number.low, number.high)
-    ]  # fmt: skip
+    ends = [problem.spec.all_at({**values, one: end})[name] for end in (number.low, number.high)]
     return Interval(min(ends), max(ends), False)
 
 

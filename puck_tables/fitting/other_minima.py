@@ -18,6 +18,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection
 from dataclasses import replace
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -46,10 +47,11 @@ from puck_tables.fitting.residuals import SideForces, excess_of, may_misfit, no_
 from puck_tables.fitting.starts import minima_of, numbers_with
 from puck_tables.fitting.whole_turns import (
     EXCLUDED,
+    LESS,
+    MISFIT,
     Judged,
     half_turns,
     is_slow,
-    most_of_slow,
     on_another_floor,
     preferred,
 )
@@ -78,7 +80,7 @@ def other_minima(
     apart = not problem.impact_specs
     signed = marked or not apart  # a wall tells a motion from its mirror image, as angles do
     single = len(problem.films) == 1
-    if problem.spec.speeds or problem.spec.integrates:
+    if problem.spec.speeds or problem.spec.integrated:
         return ()
     starts = list(result.minima)
     if not starts and apart and single:
@@ -99,7 +101,10 @@ def other_minima(
         ]
         most = far * RISE / (excess**2 if marked else 1.0)
         if is_slow(problem, x) and not is_slow(problem, result.x):
-            most = most_of_slow(far * result.chi2, excess)
+            # as long as it may be taken, in units of the residuals of the fast one
+            most = EXCLUDED / excess**2
+            if excess > MISFIT:
+                most = max(most, (LESS**2 - 1.0) * far * result.chi2)
         if rise < most and all(one.any() for one in deviations):
             # what one motion tells another may not: each summit is as wide as it is
             there = result.at(x)
@@ -148,34 +153,28 @@ def _spun_otherwise(result: Estimate, x: FloatArray, certainty: Certainty) -> tu
     """Tracks that spin otherwise: with angles by whole turns, else by more than their errors."""
     problem = result.problem
     change = np.abs(problem.launches(x)[:, 4] - problem.launches(result.x)[:, 4])
-    errors = _APART * np.sqrt(np.diag(certainty.covariance))
-    tracks = []
-    for n, film in enumerate(problem.films):
-        least = half_turns(film)
-        if film.angle is None and (n, _SPIN) in problem.names:
-            least = errors[problem.names.index((n, _SPIN))]
-        if change[n] > least:
-            tracks.append(n)
-    return tuple(tracks)
+    least = [half_turns(film) for film in problem.films]
+    for (n, name), variance in zip(problem.names, np.diag(certainty.covariance), strict=True):
+        if name == _SPIN and problem.films[n].angle is None:
+            least[n] = _APART * math.sqrt(variance)
+    return tuple(np.flatnonzero(change > least).tolist())
 
 
 def _of_other_turns(result: Estimate) -> list[FloatArray]:
     """Unknowns near other summits of tracks with angles: whole turns more from frame to frame."""
     problem = result.problem
     starts = []
-    for k, (n, name) in enumerate(problem.names):
-        if name != _SPIN or problem.films[n].angle is None:
-            continue
-        turn = 2.0 * half_turns(problem.films[n])
-        for way in (-turn, turn):
-            x = result.x
-            for _ in range(_MORE_TURNS):  # as long as they are near
-                x = x.copy()
-                x[k] += way
-                within = problem.limits[0][k] <= x[k] <= problem.limits[1][k]
-                if not (within and _near(result, x, [])):
-                    break
-                starts.append(x)
+    marked = [(k, n) for k, (n, name) in enumerate(problem.names)
+              if name == _SPIN and problem.films[n].angle is not None]  # fmt: skip
+    for (k, n), way in product(marked, (-2.0, 2.0)):
+        x = result.x
+        for _ in range(_MORE_TURNS):  # as long as they are near
+            x = x.copy()
+            x[k] += way * half_turns(problem.films[n])
+            within = problem.limits[0][k] <= x[k] <= problem.limits[1][k]
+            if not (within and _near(result, x, [])):
+                break
+            starts.append(x)
     return starts
 
 
@@ -197,18 +196,15 @@ def _of_other_spins(result: Estimate) -> list[FloatArray]:
         (np.zeros(limit.size), _TILT), (np.copysign(limit, launches[:, 4]), delta),
         (-np.copysign(limit, launches[:, 4]), 0.0), (-launches[:, 4], delta),
     )  # fmt: skip
+    slip = np.hypot(speed, radius * launches[:, 4]).sum()
     for spins, tilt in ways:
         other = launches.copy()
         other[:, 4] = spins
         # what slows the puck is about J times the share of its speed in the slip
-        shares = [
-            np.hypot(speed, radius * one).sum() / speed.sum() for one in (launches[:, 4], spins)
-        ]
-        found_numbers = numbers_with(problem.spec, decel * shares[1] / shares[0], tilt)
-        starts.append(problem.unknowns({**numbers, **found_numbers}, other))
-    walked = multi_start(
-        [(problem, x) for x in starts], _TO_OTHERS, allowance=RISE, kept=result.kept
-    )
+        slows = decel * np.hypot(speed, radius * spins).sum() / slip
+        x = problem.unknowns({**numbers, **numbers_with(problem.spec, slows, tilt)}, other)
+        starts.append((problem, x))
+    walked = multi_start(starts, _TO_OTHERS, allowance=RISE, kept=result.kept)
     return [x for x, cost in walked if 2.0 * cost < result.chi2 + 2.0 * RISE]
 
 
@@ -234,10 +230,9 @@ def mirrored(result: Estimate, certainty: Certainty) -> tuple[int, ...]:
             if not _near(result, x, tilts if least else []):
                 continue
             there, cost = minimise(problem, x, SQUARES, result.kept)
-            if (
-                there[k] * result.x[k] < 0.0 and abs(there[k] - result.x[k]) > Z95 * errors[k]
-                and 2.0 * cost < result.chi2 + RISE
-            ):  # fmt: skip
+            opposite = there[k] * result.x[k] < 0.0
+            apart = opposite and abs(there[k] - result.x[k]) > Z95 * errors[k]
+            if apart and 2.0 * cost < result.chi2 + RISE:
                 alike.append(n)
                 break
     return tuple(alike)

@@ -52,30 +52,21 @@ def runs(result: Estimate) -> float:
     Of all tracks, x, y and angles together.
     """
     deviations, variance = 0.0, 0.0
-    for rows in _series(result):
-        above = rows > 0.0
+    for above in (rows > 0.0 for rows in _series(result)):
         n, plus = above.size, int(above.sum())
-        minus = n - plus
-        if plus < 2 or minus < 2:
-            continue
-        mean = 2.0 * plus * minus / n
-        changes = int((above[1:] != above[:-1]).sum())
-        deviations += changes - mean
-        variance += mean * (2.0 * plus * minus - n) / (n * (n - 1.0))
-    if variance == 0.0:
-        return 1.0
-    return math.erfc(abs(deviations) / math.sqrt(2.0 * variance))
+        if min(plus, n - plus) >= 2:
+            mean = 2.0 * plus * (n - plus) / n
+            deviations += int((above[1:] != above[:-1]).sum()) - mean
+            variance += mean * (mean * n - n) / (n * (n - 1.0))
+    return math.erfc(abs(deviations) / math.sqrt(2.0 * variance)) if variance else 1.0
 
 
 def drift(result: Estimate) -> float:
     """The probability that means over eighths of the tracks are so far from 0 by chance."""
-    total, degrees = 0.0, 0
-    for rows in _series(result):
-        for part in np.array_split(rows, min(_PARTS, rows.size)):
-            total += part.sum() ** 2 / part.size
-            degrees += 1
-    scale = max(result.size**2, 1e-300)
-    return chi_square_tail(total / scale, max(degrees - result.x.size, 1)) if degrees else 1.0
+    every = [part for rows in _series(result)
+             for part in np.array_split(rows, min(_PARTS, rows.size))]  # fmt: skip
+    total = sum(part.sum() ** 2 / part.size for part in every) / max(result.size**2, 1e-300)
+    return chi_square_tail(total, max(len(every) - result.x.size, 1)) if every else 1.0
 
 
 def excess_of(result: Estimate, smooth: tuple[float, float], beyond_chance: bool = False) -> float:
@@ -121,13 +112,9 @@ def misfits(
 
 def hidden(result: Estimate) -> bool:
     """Whether residuals are no more than rounding leaves, which is no noise."""
-    films, noise = result.problem.films, result.problem.noise
-    steps = [max(film.steps[kind] for film in films) for kind in range(2)]
-    within = [
-        step > 0.0 and result.size * own < _ROUNDED * step
-        for step, own in zip(steps, noise, strict=True)
-    ]
-    return within[0] or (result.problem.angled and within[1])
+    steps = np.max([film.steps for film in result.problem.films], axis=0)
+    place, angle = result.size * np.array(result.problem.noise) < _ROUNDED * steps
+    return bool(place or (result.problem.angled and angle))
 
 
 def may_misfit(
@@ -302,10 +289,8 @@ def _along(problem: Problem, x: FloatArray) -> list[FloatArray]:
     """What a unit of each force does to the places and angles of each track, (3, n, forces)."""
     numbers = problem.numbers_at(x)
     moving = problem.moving(numbers)
-    return [
-        _along_one(moving, launch, problem.times(n, numbers))
-        for n, launch in enumerate(problem.launches(x))
-    ]
+    every = enumerate(problem.launches(x))
+    return [_along_one(moving, launch, problem.times(n, numbers)) for n, launch in every]
 
 
 def _along_one(moving: Moving, launch: FloatArray, times: FloatArray) -> FloatArray:

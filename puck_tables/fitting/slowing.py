@@ -84,9 +84,8 @@ def starts_from_slowing(problem: Problem) -> list[tuple[Problem, FloatArray]]:
     radius = problem.spec.known()["radius"]
     for film in problem.films:
         turning = turning_of(film)
-        if film.angle is not None and (turning is None or not turning.sure):
-            return []
-        if film.angle is None and film.straight is None:
+        followed = film.straight is not None if film.angle is None else turning and turning.sure
+        if not followed:
             return []
         angle = None if turning is None else turning.angle
         whole.append(angle)
@@ -183,8 +182,7 @@ def _linear_fit(spec: FitSpec, films: list[_Moments], trial: NumbersOf, least: f
 def _without_launch(film: _Moments, rows: FloatArray) -> FloatArray:
     """What a launch cannot do of places (m, 3, …), one after the other."""
     way = np.linalg.qr(film.line)[0]
-    left = rows - np.tensordot(way @ way.T, rows, 1)
-    return left.reshape(-1, *rows.shape[2:])
+    return (rows - np.tensordot(way @ way.T, rows, 1)).reshape(-1, *rows.shape[2:])
 
 
 def _moments(

@@ -174,8 +174,8 @@ def kinks(film: Observations, noise: float) -> list[int]:
     places = range(_WINDOW - 1, count - _WINDOW)
     if len(places) < 2 * _WINDOW:
         return []
-    before = np.array([_velocity(film, i - _WINDOW + 1, i + 1) for i in places])
-    after = np.array([_velocity(film, i + 1, i + 1 + _WINDOW) for i in places])
+    every = [_velocity(film, i, i + _WINDOW) for i in range(count - _WINDOW + 1)]
+    before, after = (np.array(every[k : k + len(places)]) for k in (0, _WINDOW))
     change, speed = after - before, np.hypot(*before.T)
     # less what friction changes near each frame: the median of frames beside it
     away = np.r_[-3 * _WINDOW : -_WINDOW, _WINDOW + 1 : 3 * _WINDOW + 1]

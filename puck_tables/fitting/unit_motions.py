@@ -14,7 +14,6 @@ question to the next:
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
 from functools import lru_cache
 
 import numpy as np
@@ -48,23 +47,43 @@ _LOCAL = 1e-9  # of a step
 _BY_DELTA = 4  # of the derivatives of unit states
 
 
-class UnitMotions(ABC):
+class UnitMotions:
     """Motions of pucks of one kind; ``highest``: the largest δ for which they are known."""
 
     highest: float
 
-    @abstractmethod
+    def own(self, delta: float, cosine: float, sine: float, tau: FloatArray) -> FloatArray:
+        """States with Q = J = r = 1 and their derivatives, (n, 6, 6), as of ``unit_states``."""
+        raise NotImplementedError
+
     def states(self, launches: FloatArray, times: FloatArray) -> FloatArray:
         """States (6, m, n), x, y, body angle, vx, vy, ω, of launches from (0, 0).
 
         ``launches`` (6, m): vx, vy, ω, δ, J, r of each; ``times`` (m, n): s, ≥ 0.
         """
+        out = np.zeros((6, *times.shape))
+        for k, launch in enumerate(launches.T):
+            if launch[:3].any():
+                out[:, k] = self.states_and_slopes(launch, times[k])[0]
+        return out
 
-    @abstractmethod
     def states_and_slopes(
         self, launch: FloatArray, times: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
         """States (6, n) of a launch (6,), and their derivatives (n, 6, 7) by it and by time."""
+        vx, vy, spin, _, decel, radius = launch.tolist()
+        frame, slopes = frame_of((vx, vy), spin, decel, radius), np.empty((times.size, 6, 7))
+        ratios = frame.speed / frame.slip, frame.rim / frame.slip
+        own = self.own(float(launch[3]), *ratios, times / frame.time)
+        fill_placed_states(launch, times, own, slopes)
+        x, y, turn, ahead, aside, rim = own[:, :, 0].T
+        pace = frame.slip / frame.length
+        states = np.stack([
+            *frame.place(x, y), frame.side * (frame.length / frame.radius) * turn,
+            *(pace * np.array(frame.place(ahead, aside))),
+            frame.side * (frame.slip / frame.radius) * rim,
+        ])  # fmt: skip
+        return states, slopes
 
 
 class PlainMotions(UnitMotions):
@@ -98,41 +117,7 @@ class PlainMotions(UnitMotions):
         return _cartesian(rows, directions(launch[:1], launch[1:2])), slopes
 
 
-class IntegratedMotions(UnitMotions):
-    """Pucks whose friction is a section."""
-
-    @abstractmethod
-    def own(self, delta: float, cosine: float, sine: float, tau: FloatArray) -> FloatArray:
-        """States with Q = J = r = 1 and their derivatives, (n, 6, 6), as of ``unit_states``."""
-
-    def states(self, launches: FloatArray, times: FloatArray) -> FloatArray:
-        """Each integrated."""
-        out = np.zeros((6, *times.shape))
-        for k, launch in enumerate(launches.T):
-            if launch[:3].any():
-                out[:, k] = self.states_and_slopes(launch, times[k])[0]
-        return out
-
-    def states_and_slopes(
-        self, launch: FloatArray, times: FloatArray
-    ) -> tuple[FloatArray, FloatArray]:
-        """By variational equations."""
-        vx, vy, spin, _, decel, radius = launch.tolist()
-        frame, slopes = frame_of((vx, vy), spin, decel, radius), np.empty((times.size, 6, 7))
-        ratios = frame.speed / frame.slip, frame.rim / frame.slip
-        own = self.own(float(launch[3]), *ratios, times / frame.time)
-        fill_placed_states(launch, times, own, slopes)
-        x, y, turn, ahead, aside, rim = own[:, :, 0].T
-        pace = frame.slip / frame.length
-        states = np.stack([
-            *frame.place(x, y), frame.side * (frame.length / frame.radius) * turn,
-            *(pace * np.array(frame.place(ahead, aside))),
-            frame.side * (frame.slip / frame.radius) * rim,
-        ])  # fmt: skip
-        return states, slopes
-
-
-class LawMotions(IntegratedMotions):
+class LawMotions(UnitMotions):
     """Pucks of any pressure law and spread of mass, in full contact.
 
     Examples
@@ -154,7 +139,7 @@ class LawMotions(IntegratedMotions):
         return unit_states(friction, cosine, sine, tau, _LOCAL)[0]
 
 
-class TallMotions(IntegratedMotions):
+class TallMotions(UnitMotions):
     """Uniform pucks of any height: motions interpolated between those of a few heights.
 
     Examples

@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import cached_property
+from itertools import product
 
 import numpy as np
 
@@ -79,19 +80,14 @@ class Unknowns:
     @cached_property
     def launch_names(self) -> tuple[tuple[str, ...], ...]:
         """The unknowns of each launch."""
-        return tuple(
-            tuple(
-                name for name in LAUNCH
-                if name not in self.spec.fixed
-                and (name != "launch_angle" or film.angle is not None)
-                and not (rests and name in _MOTION)
-                and not (spinless and name == "launch_spin")
-                and (film.straight is None or name not in _ACROSS[film.straight.main])
-            )
-            for film, rests, spinless in zip(
-                self.films, self.rests or [False] * len(self.films), self.spinless, strict=True
-            )
-        )  # fmt: skip
+        result, rests = [], self.rests or (False,) * len(self.films)
+        for film, rest, spinless in zip(self.films, rests, self.spinless, strict=True):
+            known = {*self.spec.fixed, *(_MOTION if rest else ())}
+            known |= {"launch_angle"} if film.angle is None else set()
+            known |= {"launch_spin"} if spinless else set()
+            known |= set() if film.straight is None else {*_ACROSS[film.straight.main]}
+            result.append(tuple(name for name in LAUNCH if name not in known))
+        return tuple(result)
 
     @cached_property
     def spinless(self) -> tuple[bool, ...]:
@@ -110,10 +106,8 @@ class Unknowns:
     def names(self) -> tuple[tuple[int, str], ...]:
         """(track, name) of every unknown; −1 for the puck, −2 for the first wall, and so on."""
         launches = [(n, name) for n, names in enumerate(self.launch_names) for name in names]
-        walls = [
-            (_WALL - n, name) for n, wall in enumerate(self.walls) if wall is None for name in WALL
-        ]
-        return (*((-1, name) for name in self.spec.free), *launches, *walls)
+        found = [_WALL - n for n, wall in enumerate(self.walls) if wall is None]
+        return (*((-1, name) for name in self.spec.free), *launches, *product(found, WALL))
 
     @cached_property
     def priors(self) -> tuple[tuple[int, float, float], ...]:
@@ -121,13 +115,10 @@ class Unknowns:
 
         That of a readout, unless it or bounds are given: a picture is read before the next one.
         """
-        result = []
-        for k, (_, name) in enumerate(self.names):
-            if name in self.spec.priors:
-                result.append((k, *self.spec.priors[name]))
-            elif name == "readout" and self.read_within is not None:
-                result.append((k, 0.5 * self.read_within, 0.5 * self.read_within))
-        return tuple(result)
+        known = {**self.spec.priors}
+        if self.read_within is not None:
+            known["readout"] = 0.5 * self.read_within, 0.5 * self.read_within
+        return tuple((k, *known[name]) for k, (_, name) in enumerate(self.names) if name in known)
 
     @property
     def read_within(self) -> float | None:
@@ -211,16 +202,11 @@ class Unknowns:
         self, result: NumbersOf, launches: FloatArray, walls: tuple[WallLine, ...] = ()
     ) -> FloatArray:
         """The vector of unknowns from what they mean."""
-        order = list(LAUNCH)
-        values = []
-        for track, name in self.names:
-            if track == -1:
-                values.append(result[name])
-            elif track < -1:
-                values.append(walls[_WALL - track][list(WALL).index(name)])
-            else:
-                values.append(launches[track, order.index(name)])
-        return np.array(values, float)
+        launch, wall = list(LAUNCH), list(WALL)
+        return np.array([
+            result[name] if track == -1 else launches[track, launch.index(name)] if track >= 0
+            else walls[_WALL - track][wall.index(name)] for track, name in self.names
+        ], float)  # fmt: skip
 
     def estimated_walls(self, x: FloatArray) -> tuple[WallLine, ...]:
         """All walls, given or found."""

@@ -48,19 +48,14 @@ def _film(path: str | Path, head: bytes) -> Film:
                 raise InputError(
                     f"{path} is a project of SLEAP: export it as Analysis HDF5, or CSV"
                 )
+    except InputError:
+        raise
     except _DAMAGE as error:
-        raise _refused(path, error) from None
+        raise InputError(f"{path} is damaged or no film: {error}") from None
     raise InputError(
         f"{path} is HDF5, but none of DeepLabCut (a pandas table) or SLEAP (Analysis HDF5): save "
         "the table as CSV"
     )
-
-
-def _refused(path: str | Path, error: Exception) -> InputError:
-    """What is said of a file that cannot be read."""
-    if isinstance(error, InputError):
-        return error
-    return InputError(f"{path} is damaged or no film: {error}")
 
 
 def _is_saved(path: str | Path, head: bytes) -> bool:
@@ -93,13 +88,16 @@ def _saved_as_csv(path: str | Path, head: bytes) -> bytes:
                 values, unit = one.asstr()[()] if one.dtype.kind == "O" else one[()], one.attrs
                 columns[f"{name}[{unit['units']}]" if unit["units"] else name] = values.tolist()
         return csv_of([columns, *zip(*columns.values(), strict=True)])
+    except InputError:
+        raise
     except _DAMAGE as error:
-        raise _refused(path, error) from None
+        raise InputError(f"{path} is damaged or no film: {error}") from None
 
 
 def _deeplabcut(path: str | Path, table: Any) -> Film:
     """The film in a table of pandas."""
-    if table.size * sum(_width(table, name) for name in table.dtype.names) > _LARGEST:
+    widths = (np.prod(table.dtype[name].shape, dtype=np.int64) for name in table.dtype.names)
+    if table.size * int(sum(widths)) > _LARGEST:
         raise InputError(f"{path} holds more than {_LARGEST} numbers: cut it into shorter films")
     labels: list[Any] = []
     columns = [np.asarray(table["index"])]
@@ -121,10 +119,6 @@ def _deeplabcut(path: str | Path, table: Any) -> Film:
     columns[0] = columns[0].astype(np.float64)
     layout = deeplabcut((one[1] if len(one) == 4 else "", *one[-2:]) for one in labels)
     return film_of_columns(path, layout, dict(enumerate(columns)), {})
-
-
-def _width(table: Any, name: str) -> int:
-    return int(np.prod(table.dtype[name].shape, dtype=np.int64))
 
 
 class _Texts(pickle._Unpickler):  # in Python: its memo takes no memory that a file asks for
@@ -168,7 +162,10 @@ def _sleap(path: str | Path, file: Any) -> Film:
     names = _names(file, "track_names", values.shape[0], "track")
     if len(names) == 1:
         names = [""]
-    scores = _scores(file, values.shape)
+    count, _, marks, frames = values.shape
+    scores: FloatArray | None = None
+    if "point_scores" in file and file["point_scores"].shape == (count, marks, frames):
+        scores = np.asarray(file["point_scores"], dtype=np.float64)
     columns = [("", Heading("frame"))]
     numbers = [np.arange(values.shape[3], dtype=np.float64)]
     for n, k in np.ndindex(len(names), len(nodes)):
@@ -200,13 +197,6 @@ def _names(file: Any, key: str, count: int, what: str) -> list[str]:
         for one in (np.asarray(file[key]).ravel().tolist() if key in file else ())
     ]
     return result if len(result) == count and all(result) else [f"{what} {n}" for n in range(count)]
-
-
-def _scores(file: Any, shape: tuple[int, ...]) -> FloatArray | None:
-    """The scores of points, (tracks, nodes, frames), where they are in the usual order."""
-    if "point_scores" not in file or file["point_scores"].shape != (shape[0], shape[2], shape[3]):
-        return None
-    return np.asarray(file["point_scores"], dtype=np.float64)
 
 
 READERS = (

@@ -124,10 +124,13 @@ def _film(path: str, content: bytes) -> Film:
             f"{path} holds a {_kind(root)} of Tracker, not a tab with tracks: read the .trk files "
             "of its tabs"
         )
-    masses = [
-        (one, _texts(one)) for one in _items(_property(root, "tracks")) if _kind(one) == _MASS
-    ]
-    result = {name.get("name", "").strip(): _marks(path, mass) for mass, name in masses}
+    result = {}
+    for mass in (one.find("object") for one in _held(root, "tracks")):
+        if mass is not None and _kind(mass) == _MASS:
+            result[_texts(mass).get("name", "").strip()] = {  # its pixels by frame
+                frame: (_number(path, texts, "x"), _number(path, texts, "y"))
+                for frame, texts in _indexed(path, _held(mass, "framedata"))
+            }
     result = {name: marks for name, marks in result.items() if marks}
     if not result:
         raise InputError(f"{path} holds no point mass that was marked in a frame")
@@ -158,24 +161,14 @@ def _film(path: str, content: bytes) -> Film:
     return film
 
 
-def _property(of: Element | None, name: str) -> Element | None:
-    """What an object, or an array, holds under a name."""
-    if of is None:
-        return None
-    return next((one for one in of.findall("property") if one.get("name") == name), None)
-
-
-def _inner(of: Element | None, name: str) -> Element | None:
-    """The object that an object holds under a name."""
-    held = _property(of, name)
-    return None if held is None else held.find("object")
-
-
-def _items(collection: Element | None) -> Iterator[Element]:
-    """The objects in a collection."""
-    for one in () if collection is None else collection.findall("property"):
-        if (item := one.find("object")) is not None:
-            yield item
+def _held(of: Element | None, *names: str) -> list[Element]:
+    """The properties of what an object holds under a name, and that under the next, and so on."""
+    for name in names:
+        held = [] if of is None else of.findall("property")
+        of = next((one for one in held if one.get("name") == name), None)
+        if of is not None and (inner := of.find("object")) is not None:
+            of = inner
+    return [] if of is None else of.findall("property")
 
 
 def _kind(of: Element) -> str:
@@ -183,11 +176,9 @@ def _kind(of: Element) -> str:
     return of.get("class", "").rpartition(".")[2]
 
 
-def _texts(of: Element) -> dict[str, str]:
-    """The plain values of an object by name."""
-    return {
-        one.get("name", ""): one.text or "" for one in of.findall("property") if not len(one)
-    }  # fmt: skip
+def _texts(of: Element | None, *names: str) -> dict[str, str]:
+    """The plain values of an object, or of what it holds, by name."""
+    return {one.get("name", ""): one.text or "" for one in _held(of, *names) if not len(one)}
 
 
 def _number(path: str, texts: dict[str, str], name: str) -> float:
@@ -204,9 +195,9 @@ def _number(path: str, texts: dict[str, str], name: str) -> float:
     return value
 
 
-def _indexed(path: str, array: Element | None) -> Iterator[tuple[int, dict[str, str]]]:
+def _indexed(path: str, array: list[Element]) -> Iterator[tuple[int, dict[str, str]]]:
     """The objects of an array with their numbers: those that are not written are missing."""
-    for one in () if array is None else array.findall("property"):
+    for one in array:
         item, name = one.find("object"), one.get("name", "")
         if item is None:
             continue
@@ -216,23 +207,11 @@ def _indexed(path: str, array: Element | None) -> Iterator[tuple[int, dict[str, 
         yield int(digits), _texts(item)
 
 
-def _marks(path: str, mass: Element) -> dict[int, tuple[float, float]]:
-    """The pixels of a point mass by frame."""
-    return {
-        frame: (_number(path, texts, "x"), _number(path, texts, "y"))
-        for frame, texts in _indexed(path, _property(mass, "framedata"))
-    }
-
-
 def _clock(path: str, root: Element) -> tuple[int, int, float | None, float]:
     """First frame, frames of a step, ms of a frame and of the first; None where it is not said."""
-    clip = _inner(root, "videoclip")
-    texts = {} if clip is None else _texts(clip)
-    control = _inner(root, "clipcontrol")
-    timing = {} if control is None else _texts(control)
+    texts, timing = _texts(root, "videoclip"), _texts(root, "clipcontrol")
     if "delta_t" not in timing:
-        video = _inner(clip, "video")
-        timing = {} if video is None else _texts(video)
+        timing = _texts(root, "videoclip", "video")
     duration = _number(path, timing, "delta_t") if "delta_t" in timing else None
     if duration is not None and duration <= 0.0:
         raise InputError(f"{path}: frames that last {duration:g} ms: give fps (--fps)")
@@ -245,7 +224,7 @@ def _clock(path: str, root: Element) -> tuple[int, int, float | None, float]:
 def _axes(path: str, root: Element) -> dict[int, tuple[float, float, float, float]]:
     """Origin, angle and scale by the frame from which they hold."""
     axes = {}
-    for frame, texts in _indexed(path, _property(_inner(root, "coords"), "framedata")):
+    for frame, texts in _indexed(path, _held(root, "coords", "framedata")):
         names = ("xorigin", "yorigin", "angle", "xscale", "yscale")
         u, v, angle, scale, other = (_number(path, texts, name) for name in names)
         if scale <= 0.0 or not math.isclose(scale, other, rel_tol=1e-9):
