@@ -80,12 +80,18 @@ def couple(
     most = max(len(group[0].problem.impact_specs) for group in groups.values())
     fits = []
     for group in groups.values():
-        if len(group[0].problem.impact_specs) == most:
-            best = _deepest(group, known)
-            fits.append((_rise(slides, best, group[0]), best))
+        if len(group[0].problem.impact_specs) < most:
+            continue
+        best = estimate(group[0].problem, group[0].start, known) if len(group) == 1 else None
+        if best is None:  # from the best of several starts, with other minima near which it may lie
+            walked = multi_start([(one.problem, one.start) for one in group], _WALK, ROBUST, _RIVAL)
+            best = estimate(group[0].problem, walked[0][0], known)
+            near = tuple(x for x, cost in walked if cost < walked[0][1] + _RIVAL)
+            best = replace(best, minima=near)
+        fits.append((_rise(slides, best, group[0]), best))
     least = min(rise for rise, _ in fits)
-    near = [fit for fit in fits if fit[0] < least + _EQUAL]
-    rise, result = min(near, key=lambda fit: (_unlikely(fit[1]), fit[0]))
+    alike = [fit for fit in fits if fit[0] < least + _EQUAL]
+    rise, result = min(alike, key=lambda fit: (_unlikely(fit[1]), fit[0]))
     conditions = slides.x.size - result.x.size
     if chi_square_tail(max(rise, 0.0), max(conditions, 1)) < _BY_CHANCE:
         return replace(slides, minima=tuple(ways[:_TRIED])), (
@@ -93,27 +99,13 @@ def couple(
             f"states that match, would raise chi^2 by {rise:.4g} for {conditions} "
             f"condition{'' if conditions == 1 else 's'}"
         )
-    return replace(result, minima=(*result.minima, *_gripping(result))), ""
-
-
-def _deepest(group: list[CoupledFit], known: Known) -> Estimate:
-    """The estimate from the best of several starts, with other minima near which it may lie."""
-    if len(group) == 1:
-        return estimate(group[0].problem, group[0].start, known)
-    walked = multi_start([(one.problem, one.start) for one in group], _WALK, ROBUST, _RIVAL)
-    result = estimate(group[0].problem, walked[0][0], known)
-    return replace(result, minima=tuple(x for x, cost in walked if cost < walked[0][1] + _RIVAL))
-
-
-def _gripping(result: Estimate) -> list[FloatArray]:
-    """Unknowns near which rims that slide may grip instead; with angles it is seen that they do."""
     problem = result.problem
     rubs = [k for k, (_, name) in enumerate(problem.names) if name in _RUBS]
     if not rubs or all(film.angle is not None for film in problem.films):
-        return []
-    x = result.x.copy()
+        return result, ""
+    x = result.x.copy()  # rims that slide may grip instead: with angles it is seen that they do
     x[rubs] = np.minimum(_HARDER * x[rubs], problem.limits[1][rubs])
-    return [x]
+    return replace(result, minima=(*result.minima, x)), ""
 
 
 def _unlikely(result: Estimate) -> int:

@@ -24,7 +24,6 @@ from puck_tables.fitting.initial_estimate import initial_estimate, is_clean
 from puck_tables.fitting.inputs import (
     Inputs,
     begin_jitter,
-    begin_noise,
     checked_rows,
     checked_walls,
     observations_of,
@@ -57,6 +56,7 @@ from puck_tables.fitting.touches import SlideIndex, slides_apart
 from puck_tables.puck import Puck
 
 Progress = Callable[[int, int], None]
+_GUESS = 1e-3  # of the track: noise to begin with where differences tell none
 _MUCH = 0.1  # of the frames, left out at the ends
 
 
@@ -115,7 +115,7 @@ def fit(
     between : cubic or linear, f between these speeds
         As :class:`SpeedLaw` takes it: a cubic that rises and falls only where f at the speeds does.
     law : 'stribeck', 'hyperbola' or 'two-valued', of friction over slip speed by three numbers
-        friction (of fast slip), friction_rest and law_speed (m/s): :mod:`.named_laws`.
+        friction (of fast slip), friction_rest and law_speed (m/s): :mod:`.speed_motion`.
     laws : names of pressure laws to compare, as :class:`Puck` takes them; with +drag, +air, +slope,
         +belt, +stribeck, +hyperbola or +two-valued what is then found, too; 'floors': all of these
         of uniform pressure, and :attr:`Fit.verdict` says which the film supports
@@ -180,8 +180,14 @@ def fit(
         scores = compare(same, variants, inputs.known)
         say(1 + len(variants), steps)
     held_out = None
-    if inputs.hold_out is not None:
-        held_out = _held_out(judged.best, inputs.hold_out, inputs.known)
+    if inputs.hold_out is not None:  # the later part of tracks, predicted from the rest
+        best, known = judged.best.problem, inputs.known
+        earlier, later = split(best.films, inputs.hold_out, best.noise[0])
+        fewer = best.with_films(earlier)
+        followed = best.impact_specs or best.spec.speeds or best.spec.integrated
+        part = estimate(fewer, judged.best.x, known) if followed \
+            else initial_estimate(fewer, known, refit=False)  # fmt: skip
+        held_out = predicted(part, judged_certainty(part, known), best.films, later)
         say(steps, steps)
     return _reported(inputs, observed, estimates, judged, scores, held_out)
 
@@ -213,9 +219,11 @@ class _Estimates(NamedTuple):
 def _observe(films: tuple[Observations, ...], inputs: Inputs) -> _Observed:
     """What is fitted of the tracks, in the slides between impacts if these are looked for."""
     smooth = noise_of(list(films))
+    size = max(film.size for film in films)
+    guesses = (one if math.isfinite(one) else _GUESS * size for one in smooth)
     begin = [
-        value if value is not None else begin_noise(one, films)
-        for value, one in zip(inputs.noise, smooth, strict=True)
+        max(guess, 1e-9 * (size or 1.0)) if value is None else value
+        for value, guess in zip(inputs.noise, guesses, strict=True)
     ]
     refuse_tipping(inputs.spec, films, begin[0])
     parts = films
@@ -326,15 +334,3 @@ def _trimmed_ends(
         f"frames (--keep-all, keep_all=True) it would be {numbers or 'as known'}, residuals "
         f"{more:.3g} times as large"
     )
-
-
-def _held_out(best: Estimate, wanted: float | tuple[str, ...], known: Known) -> HeldOut:
-    """The later part of tracks, predicted from the rest."""
-    problem = best.problem
-    films, later = split(problem.films, wanted, problem.noise[0])
-    fewer = problem.with_films(films)
-    if problem.impact_specs or problem.spec.speeds or problem.spec.integrated:
-        part = estimate(fewer, best.x, known)
-    else:
-        part = initial_estimate(fewer, known, refit=False)
-    return predicted(part, judged_certainty(part, known), problem.films, later)

@@ -124,7 +124,13 @@ def initial_estimate(problem: Problem, known: Known, refit: bool) -> Estimate:
         return result
     result = _trimmed(result, problem, known)
     if len(problem.films) == 1 and not is_clean(result, NOISY, NO_PATTERN):
-        result = _of_a_part(problem, known) or result
+        # a hand or a wall may lead the fit so far away that no frame is seen to be foreign
+        for film in without_ends(problem.films[0]):
+            part = initial_estimate(problem.with_films((film,)), known, refit=False)
+            part = _trimmed(part, problem, known)
+            if is_clean(part):
+                result = part
+                break
     if only_outliers(result, known):
         return result
     # frames that are off together are good ones: what the model cannot follow is not hidden
@@ -205,19 +211,6 @@ def _trimmed(result: Estimate, problem: Problem, known: Known) -> Estimate:
             break
         result = initial_estimate(problem.with_films(films), known, refit=False)
     return result
-
-
-def _of_a_part(problem: Problem, known: Known) -> Estimate | None:
-    """The estimate of a track without a hand or a wall at its end; None if that is not the matter.
-
-    They may lead the fit of all frames so far away that none of these is seen to be foreign.
-    """
-    for part in without_ends(problem.films[0]):
-        result = initial_estimate(problem.with_films((part,)), known, refit=False)
-        result = _trimmed(result, problem, known)
-        if is_clean(result):
-            return result
-    return None
 
 
 def _lifted(result: Estimate, known: Known) -> Estimate:

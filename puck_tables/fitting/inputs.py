@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
@@ -26,7 +25,6 @@ from puck_tables.fitting.touches import turns
 
 MOST_FRAMES = 100_000
 FIND = "find"
-_GUESS = 1e-3  # of the track: noise to begin with where differences tell none
 _JITTER = 0.3  # times the noise of a place over the speed: to begin with
 _NEAREST, _FARTHEST = 1e-30, 1e6  # m or s, of a track
 _TWICE = 0.5  # of the frames: the same film again
@@ -267,13 +265,6 @@ def checked_noise(raw: Any) -> tuple[float | None, float | None]:
         None if place is None else positive("the noise of places", place, "m"),
         None if angle is None else positive("the noise of angles", angle, "rad"),
     )
-
-
-def begin_noise(judged: float, films: tuple[Observations, ...]) -> float:
-    """Noise to begin with."""
-    size = max(film.size for film in films)
-    least = 1e-9 * (size or 1.0)
-    return max(judged, least) if math.isfinite(judged) else max(_GUESS * size, least)
 
 
 def begin_jitter(films: tuple[Observations, ...], noise: float) -> float:

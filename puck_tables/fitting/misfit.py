@@ -6,7 +6,7 @@ Each is tried out: where residuals then are far smaller, about as noise is, that
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
@@ -41,7 +41,7 @@ _MUCH = math.log(3.0)  # so much smaller residuals tell, though they are no nois
 _LITTLE, _CLEAN = math.log(1.1), 1.4  # less than that is no reason; times the noise of a place
 _MOST, _LEAST = 10.0, 1e-3  # times one friction for all speeds: laws that some floor has
 _FAINT = 1e-3  # of what friction does: no force explains anything by so little
-_STEEPEST = 10.0  # degrees: nobody takes that for a level table
+_STEEP, _STEEPEST = 3.0, 10.0  # degrees: hardly anybody, or nobody, takes that for a level table
 _HELD = ("launch_spin", "launch_angle")  # what is said of these is said of the angles as they are
 
 
@@ -51,7 +51,7 @@ _Sizes = tuple[FloatArray, FloatArray]  # how far places (m), and angles (rad), 
 class _Reading(NamedTuple):
     """What else may be: in words, by how much smaller residuals are, if a floor.
 
-    ``bends``: if one that bends any path, as a slope does: it is named first only if near the best.
+    ``bends``: if one that bends any path, as a slope does: it comes first only if about the best.
     """
 
     words: str
@@ -82,7 +82,7 @@ def misfit(
     # sizes and angles are known better than floors: a floor that tells much is named first
     near = [one for one in told if one.gain > best - _ALIKE or (one.floor and one.gain > _MUCH)]
     near.sort(
-        key=lambda one: (not one.floor or (one.bends and one.gain < best - _ALIKE), -one.gain)
+        key=lambda one: (not one.floor or (one.bends and one.gain < best - _BETTER), -one.gain)
     )
     if near:
         words = f"{near[0].words}{f'; or {near[1].words}' if len(near) > 1 else ''}"
@@ -103,16 +103,29 @@ def _reading(of: Callable[[], _Reading]) -> _Reading | None:
 
 def _otherwise(result: Estimate, problem: Problem, known: Known) -> list[_Reading]:
     """The angles, or the radius, read otherwise, if one of these fits far better."""
-    best, given = _Reading("", math.log(_FAR)), problem.spec.known()["radius"]
-    for words, other, scale in _others(problem):
+    best, spec = _Reading("", math.log(_FAR)), problem.spec
+    given, others = spec.known()["radius"], []
+    held = any(name in said for name in _HELD for said in (spec.fixed, spec.bounds))
+    for factor, words in _ANGLES if problem.angled and not held else ():
+        films = tuple(
+            film if film.angle is None else replace(film, angle=factor * film.angle)
+            for film in problem.films
+        )
+        noise = problem.noise[0], abs(factor) * problem.noise[1]
+        others.append((words, replace(problem.with_films(films), noise=noise), abs(factor)))
+    wider = problem.angled and "radius" not in (*spec.free, *spec.fixed)  # told by angles alone
+    if wider:
+        words = "with a radius of {:.3g} m: is " + f"{spec.puck.radius:g} m right?"
+        other = replace(problem, spec=replace(spec, free=(*spec.free, "radius")))
+        others.append((words, other, 1.0))
+    for words, other, scale in others:  # and the factor of its angles
         try:
             one = initial_estimate(other, known, refit=False)
         except InputError:  # such a puck, or such a track, there is not
             continue
         gain = _size(_deviations(result), 1.0) - _size(_deviations(one), scale)
         radius = one.problem.spec.scales(one.problem.numbers_at(one.x))[2]
-        found_radius = "radius" in other.spec.free and "radius" not in problem.spec.free
-        same = found_radius and abs(radius / given - 1.0) < _NEAR
+        same = wider and "radius" in other.spec.free and abs(radius / given - 1.0) < _NEAR
         if gain > best.gain and not same and _near_noise(_deviations(one), problem.noise[0]):
             best = _Reading(words.format(radius), gain)
     return [best] if best.words else []
@@ -144,6 +157,7 @@ def _by_floor(result: Estimate, problem: Problem, floor: str) -> _Reading:
     x = nearest_start(other, starts_from_slowing(other) or [(other, plain)])[1]
     gain = _gain(result, _sizes(other, other.deviations(x)), problem.noise[0])
     found, speed = other.numbers_at(x), float(np.hypot(*launches[:, 2:4].T).max())
+    tilt = 0.0
     slowing, free = result.problem.spec.scales(at)[0], f"(--free {','.join(spec.free)})"
     if floor == "drag":
         force = abs(found["drag"]) * speed
@@ -162,7 +176,8 @@ def _by_floor(result: Estimate, problem: Problem, floor: str) -> _Reading:
             f"with a table out of level by {tilt:.2g} degrees, down along {way % 360.0:.3g} "
             "degrees from x: level it, or find its slope, too (slope_x, slope_y)"
         )
-    return _Reading(words, gain if force > _FAINT * slowing else 0.0, True, floor == "slope")
+    gain = gain if force > _FAINT * slowing else 0.0
+    return _Reading(words, gain, floor != "slope" or tilt < _STEEP, floor == "slope")
 
 
 def _may_change(spec: FitSpec) -> bool:
@@ -188,24 +203,6 @@ def _by_speed(result: Estimate, problem: Problem) -> _Reading:
         f"{','.join(f'{u:g}' for u in speeds)})"
     )
     return _Reading(words, gain, True)
-
-
-def _others(problem: Problem) -> Iterator[tuple[str, Problem, float]]:
-    """Other readings, each in words and with the factor of its angles."""
-    spec = problem.spec
-    held = any(name in given for name in _HELD for given in (spec.fixed, spec.bounds))
-    if problem.angled and not held:
-        for factor, words in _ANGLES:
-            films = tuple(
-                film if film.angle is None else replace(film, angle=factor * film.angle)
-                for film in problem.films
-            )
-            noise = problem.noise[0], abs(factor) * problem.noise[1]
-            yield words, replace(problem.with_films(films), noise=noise), abs(factor)
-    if problem.angled and "radius" not in (*spec.free, *spec.fixed):  # told by angles alone
-        words = "with a radius of {:.3g} m: is " + f"{spec.puck.radius:g} m right?"
-        wider = replace(spec, free=(*spec.free, "radius"))
-        yield words, replace(problem, spec=wider), 1.0
 
 
 def _size(seen: _Sizes, scale: float) -> float:

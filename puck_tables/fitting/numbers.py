@@ -136,7 +136,7 @@ def numbers_of(
         kind = PUCK[name].unit, FREE, interval.profiled
         puck[name] = Number(values[name], error, low, high, *kind)
     speed = puck.get("law_speed")
-    if speed is not None and (speed.at_bound or not speed.determined):
+    if speed is not None and not math.isfinite(speed.error):
         # all slips are on one side of it, and tell one of the frictions alone
         slow = problem.fastest(x) < speed.value
         for name in {"law_speed", "friction" if slow else "friction_rest"} & {*puck}:
@@ -158,8 +158,8 @@ def numbers_of(
         error = certainty.error_of(slope * widened, size)
         if math.isfinite(error) and certainty.follows_end(slope, size):
             error = math.nan
-        if any(slope[k] and not puck[one].determined for k, one in enumerate(spec.free)
-               if not certainty.undetermined[k]):  # fmt: skip
+        seen = (k for k in np.flatnonzero(slope) if not certainty.undetermined[k])
+        if any(not puck[spec.free[k]].determined for k in seen):
             error = math.inf
         number = quadratic(value, error, PUCK[name].unit, FOLLOWS, certainty.reach)
         of, ends = np.flatnonzero(slope), None

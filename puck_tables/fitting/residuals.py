@@ -19,7 +19,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.certainty import Certainty, shifted_by
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.forward_model import DELTA, RATE, Moving, states_and_slopes, states_of
-from puck_tables.fitting.problem import ANGLE, PLACE, Known, Problem
+from puck_tables.fitting.problem import ANGLE, PLACE, Known
 
 NO_PATTERN = 1e-3  # probability of residuals so patterned by chance
 JITTERY = 1.3  # residuals along the motion over those across it: more, and stamps may jitter
@@ -217,22 +217,24 @@ def side_forces(result: Estimate, certainty: Certainty) -> SideForces:
     problem = result.problem
     if problem.impact_specs or problem.spec.speeds or any(problem.rests):
         return SideForces()
-    kept = result.kept[:, None]
-    columns = _weighed(problem, _along(problem, result.x)) * kept
+    kept, values = result.kept[:, None], problem.numbers_at(result.x)
+    moving, rows = problem.moving(values), []
+    for n, launch in enumerate(problem.launches(result.x)):
+        rows.append(problem.weighed(n, _along(moving, launch, problem.times(n, values))))
+    columns = np.concatenate([*rows, np.zeros((len(problem.priors), _FORCES))]) * kept
     changes = shifted_by(result, certainty, columns)
     slopes = result.jacobian * kept
     slopes = slopes / np.maximum(np.linalg.norm(slopes, axis=0), 1e-300)
     ways, sizes, _ = np.linalg.svd(slopes[:, np.equal(certainty.pinned, 0)], full_matrices=False)
     ways = ways[:, sizes > _RANK * sizes.max(initial=0.0)]
-    rows = result.residuals * result.kept
-    rows = rows - ways @ (ways.T @ rows)
+    left = result.residuals * result.kept
+    left = left - ways @ (ways.T @ left)
     lengths = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
     columns = (columns - ways @ (ways.T @ columns)) / lengths
-    if not rows.any() or result.degrees <= _FORCES:
+    if not left.any() or result.degrees <= _FORCES:
         return SideForces()
-    told = {kind: _explained(columns[:, kind], rows, result.degrees) for kind in _KINDS}
+    told = {kind: _explained(columns[:, kind], left, result.degrees) for kind in _KINDS}
     forces = {kind: one.force / lengths[list(kind)] for kind, one in told.items()}
-    values = problem.numbers_at(result.x)
     decel = problem.spec.scales(values)[0]
     gravity = {**problem.spec.known(), **values}["gravity"]
     tilt = math.degrees(math.hypot(*forces[SLOPE]) / gravity)
@@ -279,22 +281,8 @@ def _explained(columns: FloatArray, rows: FloatArray, degrees: int) -> _Explaine
     return _Explained(-(along / seen) @ turned, less / noise, chance, error)
 
 
-def _weighed(problem: Problem, along: list[FloatArray]) -> FloatArray:
-    """What is along the tracks (3, n, k) each, in units of the noise, (residuals, k)."""
-    rows = [problem.weighed(n, one) for n, one in enumerate(along)]
-    return np.concatenate([*rows, np.zeros((len(problem.priors), along[0].shape[2]))])
-
-
-def _along(problem: Problem, x: FloatArray) -> list[FloatArray]:
-    """What a unit of each force does to the places and angles of each track, (3, n, forces)."""
-    numbers = problem.numbers_at(x)
-    moving = problem.moving(numbers)
-    every = enumerate(problem.launches(x))
-    return [_along_one(moving, launch, problem.times(n, numbers)) for n, launch in every]
-
-
-def _along_one(moving: Moving, launch: FloatArray, times: FloatArray) -> FloatArray:
-    """The same of one motion.
+def _along(moving: Moving, launch: FloatArray, times: FloatArray) -> FloatArray:
+    """What a unit of each force does to the places and angles of one motion, (3, n, forces).
 
     V(t) = ∂(vx, vy, ω)(t)/∂(vx, vy, ω)(0) carries changes on, from each moment to the next.
     """

@@ -128,8 +128,8 @@ class Slides(Unknowns):
         result, slides, changes = self.numbers_at(x), self.slides(x)[0], self.slopes_of_slides(x)
         at, owners = _Along(self, result), np.array([track for track, _ in self.names])
         for n, film in enumerate(self.films):
-            every = bool(self.impact_specs)  # slides may follow from launches of other tracks
-            columns = np.flatnonzero(every | (owners == -1) | (owners == n))
+            # slides may follow from launches of other tracks
+            columns = np.flatnonzero(bool(self.impact_specs) | (owners == -1) | (owners == n))
             path = np.empty((3, film.time.size))
             slopes = np.empty((3, film.time.size, columns.size))
             parts = self._parts(n, result, slides[n])

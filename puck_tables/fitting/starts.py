@@ -233,11 +233,11 @@ def _spins(
             return [(spin, 0)]
         first = float(turning.rate[0])
         return [(spin, round((spin - first) * turning.step / (2.0 * math.pi)))]
-    more = [(spec.start["launch_spin"], 0)] if "launch_spin" in spec.start else []
+    more = [spec.start["launch_spin"]] if "launch_spin" in spec.start else []
     if turning is None:
         scale = max(speed, _LEAST_SPEED) / radius
         spins = sorted({sign * ratio * scale for ratio, sign in product(_RATIOS, (1.0, -1.0))})
-        return [(spin, 0) for spin in spins] + more
+        return [(spin, 0) for spin in (*spins, *more)]
     slope = (turning.rate[1] - turning.rate[0]) / (turning.time[1] - turning.time[0]) \
         if turning.rate.size > 1 else 0.0  # fmt: skip
     first = float(turning.rate[0] - slope * turning.time[0])
@@ -245,8 +245,7 @@ def _spins(
     if rests:
         at_rest = -round(float(turning.rate[-1]) / whole)
         return [(first + at_rest * whole, at_rest)]
-    turns = {round((spin - first) / whole) for spin, _ in more}
-    turns.update(range(-_MOST_TURNS, _MOST_TURNS + 1))
+    turns = {*range(-_MOST_TURNS, _MOST_TURNS + 1), *(round((n - first) / whole) for n in more)}
     return [(first + k * whole, k) for k in sorted(turns)]
 
 

@@ -76,10 +76,9 @@ def pushed(film: Observations, start: int, stop: int) -> bool:
     noise = noise_of([film])[0]
     if width < _FEWEST_BESIDE or not noise > 0.0:
         return False
-    slowest = math.inf
-    error = noise * math.sqrt(12.0 / width**3) / film.usual_step
-    for n in range(_PARTS):
-        part = slice(start + n * width, start + (n + 1) * width)
+    slowest, error = math.inf, noise * math.sqrt(12.0 / width**3) / film.usual_step
+    for at in range(start, start + _PARTS * width, width):
+        part = slice(at, at + width)
         speed = math.hypot(*np.polyfit(film.time[part], film.place[part], 1)[0])
         if speed > max(slowest + _JUMPS * error, _FASTER * slowest):
             return True
@@ -98,10 +97,8 @@ def _gain(
     """
     stops = middle >= rests - _FEWEST_BESIDE
     end = middle + reach if stops else min(middle + reach, rests)
-    sides = [
-        np.flatnonzero(steady[start:stop]) + start
-        for start, stop in ((max(0, middle - reach), middle), (middle, end))
-    ]
+    ends = (max(0, middle - reach), middle), (middle, end)
+    sides = [np.flatnonzero(steady[start:stop]) + start for start, stop in ends]
     if min(side.size for side in sides) < _FEWEST_BESIDE:
         return 0.0
     time = film.time - film.time[middle]

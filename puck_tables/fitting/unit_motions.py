@@ -22,15 +22,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.laws import Law, law_of
 from puck_tables.motion.body import body_of, plain_up_to
 from puck_tables.motion.frame import frame_of
-from puck_tables.motion.state import (
-    HEADING,
-    ORIENTATION,
-    PUCK_X,
-    PUCK_Y,
-    SPEED,
-    SPIN,
-    STATE_ROWS,
-)
+from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED, SPIN, STATE_ROWS
 from puck_tables.stopping.launch_frame import fill_placed_states
 from puck_tables.stopping.plain_states import fill_state_slopes
 from puck_tables.stopping.state_values import directions, looked_up, looked_up_launches

@@ -210,13 +210,9 @@ class Unknowns:
 
     def estimated_walls(self, x: FloatArray) -> tuple[WallLine, ...]:
         """All walls, given or found."""
-        result: list[WallLine] = []
-        at = len(self.names) - len(WALL) * self.walls.count(None)
-        for wall in self.walls:
-            if wall is None:
-                wall, at = WallLine(*x[at : at + len(WALL)].tolist()), at + len(WALL)
-            result.append(wall)
-        return tuple(result)
+        found = x[len(self.names) - len(WALL) * self.walls.count(None) :].reshape(-1, len(WALL))
+        every = iter(found.tolist())
+        return tuple(WallLine(*next(every)) if wall is None else wall for wall in self.walls)
 
     def within(self, x: FloatArray) -> FloatArray:
         """The same, with the height of the tallest puck that moves so: all higher ones do, too."""

@@ -139,7 +139,17 @@ def by_place(problem: Problem, blind: Problem, minima: list[FloatArray]) -> list
     for x in minima:
         whole = problem.unknowns(blind.numbers_at(x), blind.launches(x))
         moved = np.array([k for k, (_, name) in enumerate(problem.names) if name != "launch_angle"])
-        covariance = _covariance(blind, x)
+        # of unknowns that places alone tell, no wider than what may be
+        rows, told = blind.residuals_and_jacobian(x)
+        _, _, vx, vy, spin, _ = blind.launches(x)[0].tolist()
+        rim = math.hypot(vx, vy) / blind.spec.scales(blind.numbers_at(x))[2]
+        wide = {"launch_spin": max(abs(spin), rim), "delta": 1.0}
+        least = 1e-3 * (film.time[-1] or 1.0)
+        sizes = np.array([wide.get(name, max(abs(value), least))
+                          for (_, name), value in zip(blind.names, x, strict=True)])  # fmt: skip
+        excess = max(1.0, float(rows @ rows) / max(rows.size - x.size, 1))
+        square = (told * sizes).T @ (told * sizes) / excess + np.eye(sizes.size)
+        covariance = np.linalg.inv(square) * np.outer(sizes, sizes)
         slopes = problem.jacobian(whole)[problem.kinds == ANGLE][:, moved] * problem.noise[1]
         slopes = slopes - slopes.mean(axis=0)  # where it begins is free
         variances, ways = np.linalg.eigh(slopes @ covariance @ slopes.T)
@@ -169,19 +179,3 @@ def by_place(problem: Problem, blind: Problem, minima: list[FloatArray]) -> list
                 if (0, "launch_angle") in problem.names else 0.0  # fmt: skip
             starts.append((replace(problem, whole=(angle,)), np.clip(one, *problem.limits)))
     return starts
-
-
-def _covariance(blind: Problem, x: FloatArray) -> FloatArray:
-    """Of unknowns that places alone tell, no wider than what may be."""
-    rows, slopes = blind.residuals_and_jacobian(x)
-    (film,) = blind.films
-    radius = blind.spec.scales(blind.numbers_at(x))[2]
-    rim = float(np.hypot(*blind.launches(x)[0, 2:4])) / radius
-    wide = {"launch_spin": max(abs(float(blind.launches(x)[0, 4])), rim), "delta": 1.0}
-    sizes = np.array([wide.get(name, max(abs(float(x[k])), 1e-3 * (film.time[-1] or 1.0)))
-                      for k, (_, name) in enumerate(blind.names)])  # fmt: skip
-    excess = max(1.0, float(rows @ rows) / max(rows.size - x.size, 1))
-    scaled = slopes * sizes
-    square = scaled.T @ scaled / excess + np.eye(sizes.size)
-    covariance: FloatArray = np.linalg.inv(square) * np.outer(sizes, sizes)
-    return covariance

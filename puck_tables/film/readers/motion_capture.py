@@ -56,9 +56,8 @@ def _qualisys(path: str | Path, head: bytes) -> Film:
         count += 1
     rate = number((said.get("FREQUENCY") or [""])[0], False) or 0.0
     unit = unit_word((said.get("UNITS") or ["mm"])[0], "length") or "mm"
-    clocks = [Heading("frame")] if names[:1] == ["Frame"] else []
-    clocks += [Heading("time", "", "s")] if names[1:2] == ["Time"] else []
-    columns = [("", one) for one in clocks]
+    columns = [("", Heading("frame"))] if names[:1] == ["Frame"] else []
+    columns += [("", Heading("time", "", "s"))] if names[1:2] == ["Time"] else []
     if marks := [name for name in said.get("MARKER_NAMES", []) if name]:
         if "2D" in said.get("DATA_INCLUDED", []):
             raise InputError(f"{path} has places on the pictures of cameras (2D): export 3D data")
@@ -156,10 +155,7 @@ def _text(head: bytes) -> str:
 
 READERS = (
     Reader(lambda _, head: _text(head).partition("\t")[0] in _BEGINS, _qualisys),
-    Reader(
-        lambda _, head: "sub frame" in _text(head).lower(),
-        _vicon,
-    ),
+    Reader(lambda _, head: "sub frame" in _text(head).lower(), _vicon),
     Reader(lambda _, head: _text(head).startswith("Format Version,"), _optitrack),
     Reader(lambda _, head: _text(head).startswith("PathFileType"), _trc),
 )

@@ -50,10 +50,7 @@ def _film_of_zip(path: str | Path, head: bytes) -> Film:
         raise InputError(f"{path} is too large: unpack it, and read its .trk file")
     films, left = {}, _LARGEST
     name: PurePosixPath | None = None
-    damage = (
-        zipfile.BadZipFile, zlib.error, lzma.LZMAError, NotImplementedError, RuntimeError, EOFError,
-        ValueError, OSError,
-    )  # fmt: skip
+    damage = (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, ValueError, OSError)
     try:
         with zipfile.ZipFile(path) as archive:
             members = archive.infolist()
@@ -71,10 +68,20 @@ def _film_of_zip(path: str | Path, head: bytes) -> Film:
                     raise InputError(f"{path}: {name} is too large to be a file of Tracker")
                 left -= len(content)
                 films[name.stem] = _film(f"{path}: {name}", content)
+    except InputError:
+        raise
+    except RuntimeError as error:  # encrypted, or packed by an uncommon method
+        raise InputError(
+            f"{path}: {name} cannot be read ({error}): unpack it, and read its .trk file"
+        ) from None
     except damage as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(_damage(path, name, error)) from None
+        where = f"{name} in it cannot be unpacked" if name else (
+            "its list of contents is missing or broken, as of a file that was not copied to its end"
+        )  # fmt: skip
+        raise InputError(
+            f"{path} is a damaged archive: {where} ({error}). Copy it once more, or open it in "
+            "Tracker and save it again"
+        ) from None
     if not films:
         raise InputError(
             f"{path} is an archive without a .trk file of Tracker: unpack it, and read its tables"
@@ -89,19 +96,6 @@ def _film_of_zip(path: str | Path, head: bytes) -> Film:
             body.name = stem
     first.bodies = [body for film in films.values() for body in film.bodies]
     return first
-
-
-def _damage(path: str | Path, member: PurePosixPath | None, error: Exception) -> str:
-    """What is wrong with an archive, and what to do."""
-    if isinstance(error, RuntimeError):  # encrypted, or packed by an uncommon method
-        return f"{path}: {member} cannot be read ({error}): unpack it, and read its .trk file"
-    where = "its list of contents is missing or broken, as of a file that was not copied to its end"
-    if member:
-        where = f"{member} in it cannot be unpacked"
-    return (
-        f"{path} is a damaged archive: {where} ({error}). Copy it once more, or open it in Tracker "
-        "and save it again"
-    )
 
 
 def _film(path: str, content: bytes) -> Film:
@@ -253,14 +247,14 @@ def _world(
     return np.column_stack([p * cos + q * sin, q * cos - p * sin])
 
 
-def _is_archive(path: str | Path, head: bytes) -> bool:
-    """Whether a file is a .trz archive, or one whose first bytes are damaged, which it says."""
-    damaged = Path(path).suffix.lower() == ".trz" and not first_text(path, head)
-    return head.startswith(ZIP) or damaged
-
-
 READERS = (
-    Reader(_is_archive, _film_of_zip),
+    Reader(  # an archive whose first bytes are damaged says that it is one
+        lambda path, head: (
+            head.startswith(ZIP)
+            or (Path(path).suffix.lower() == ".trz" and not first_text(path, head))
+        ),
+        _film_of_zip,
+    ),
     Reader(
         lambda path, head: first_text(path, head).startswith("<"),
         lambda path, _: _film(str(path), read_whole(path, _LARGEST)),
