@@ -27,7 +27,7 @@ NOISY = 1.5  # times the noise of a smooth motion
 _MAY_NOISY, _MAY_PATTERN = 1.3, 0.01  # the same, where that is hardly seen
 _COMPUTED = 1e-7  # of the path: residuals of tracks that were computed, not seen
 _NOWHERE, _FAR, _ANY = 20.0, 1e-3, 0.5  # times the noise; of the path; rad
-_SELDOM = 3.1  # standard deviations: one film in 1,000
+_SELDOM = 3.3  # standard deviations: one film in 1,000, as few differences scatter wider
 _PARTS = 8
 _ROUNDED = 0.45  # of a step: residuals of what is rounded, and of some noise
 _MOVING, _ENOUGH = 0.1, 20  # of the greatest speed; frames
@@ -73,14 +73,16 @@ def excess_of(result: Estimate, smooth: tuple[float, float], beyond_chance: bool
     """The residuals over the noise (m, rad) that no model judged; 1 where that is not known.
 
     ``beyond_chance``: only where that noise is not so small by chance, as that of few frames is:
-    the logarithm of what n third differences tell of it scatters by 1.5/√n.
+    the logarithm of what n third differences tell of it scatters by 1.5/√n, as drawn ones do.
     """
+    films, kinds = len(result.problem.films), result.problem.kinds
+    thirds = [max((kinds == kind).sum() - 3 * films * (2 - kind), 1) for kind in (PLACE, ANGLE)]
     return max((
         result.size * own / other
-        for kind, own, other in zip((PLACE, ANGLE), result.problem.noise, smooth, strict=True)
+        for count, own, other in zip(thirds, result.problem.noise, smooth, strict=True)
         if math.isfinite(other) and other > 0.0 and (
             not beyond_chance or math.log(result.size * own / other)
-            > _SELDOM * 1.5 / math.sqrt((result.problem.kinds == kind).sum())
+            > _SELDOM * 1.5 / math.sqrt(count)
         )
     ), default=1.0)  # fmt: skip
 
