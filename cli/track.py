@@ -67,7 +67,7 @@ def track(files: tuple[Path, ...], how: dict[str, Any], out: Outputs) -> None:
     puck track bare.txt --columns "t [ms],x [mm],y [mm],-"
     """  # noqa: D301 - click reads the backspace
     out.prepare(*files, how["marks"])
-    from puck_tables.film.pairs import marks_of_one
+    from puck_tables.film.puck_track import marks_of_one
     from puck_tables.film.report import dataset, described
 
     tracks = read_all(files, how)

@@ -15,8 +15,8 @@ from film_judge import G
 import puck_tables as pt
 from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.forward_model import RADIUS, SPIN, VX, VY, states_and_slopes
-from puck_tables.fitting.named_laws import law_named
 from puck_tables.fitting.parameters import LAW_NUMBERS
+from puck_tables.fitting.speed_motion import law_named
 
 R = 0.04
 PUCK = pt.Puck(R, height=0.0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from pucks_judge import Disc, Line, play
 from reference import states as flat_states
 from scipy.integrate import solve_ivp
 
-from puck_tables import InputError, floor_friction, reference_case
+from puck_tables import InputError, compare, floor_friction, reference_case
 from puck_tables.reference.cases import CASES, case_named
 
 FREE = ("coin", "slide-spin-0.2", "slide-spin-0.5", "slide-spin-1", "slide-spin-2", "slide-spin-5",
@@ -32,7 +33,9 @@ def puck_of(name: str) -> tuple[float, float, float]:
 
 def test_every_case_says_what_it_is():
     names = [case.name for case in CASES]
-    assert len(set(names)) == len(names) >= 19
+    assert len(set(names)) == len(names)
+    page = Path(__file__).parents[1] / "docs/reference-cases.md"
+    assert f"Here are {len(names)}, named" in page.read_text(encoding="utf-8")
     assert all(case.version >= 1 and case.title and case.tests for case in CASES)
 
 
@@ -135,6 +138,18 @@ def test_bodies_by_an_independent_integrator(name: str):
     assert abs(last["orientation"] - angle - turn) < 2e-10 * q * q / j / judge.k
 
 
+@pytest.mark.parametrize("name", [case.name for case in CASES if "base" in case.tables["puck"]])
+def test_files_of_a_body_have_all_its_numbers(name: str, tmp_path: Path):
+    """And held against itself as a log it has no error."""
+    answer = reference_case(name, dt=0.05)
+    told = json.loads(json.dumps(answer.summary()))
+    assert told["delta"] is None and told["scene"]["puck"]["base"]
+    answer.save(tmp_path / "exact.h5")
+    answer.save(tmp_path / "exact.csv")
+    found = compare(tmp_path / "exact.csv", name).rows()[0]
+    assert found["place_error_max"] == found["speed_error_max"] == found["angle_error_max"] == 0.0
+
+
 def test_a_flat_body_thrown_without_a_spin_goes_straight():
     answer = reference_case("box-straight")
     assert np.abs(answer.orientation - 0.5).max() < 1e-12 and answer.floor_torque.max() < 1e-12
@@ -151,6 +166,14 @@ def test_the_force_of_a_body_on_the_floor_is_what_brakes_it():
     for speed, force in (("vx", "floor_fx"), ("vy", "floor_fy")):
         pull = mass * (getattr(after, speed) - getattr(before, speed)) / (2.0 * gap)
         assert np.abs(getattr(here, force) + pull).max() < 1e-5
+
+
+def test_the_slip_of_a_box_on_belts_is_over_the_one_under_its_centre():
+    answer = reference_case("box-belts", times=[0.0, 0.6])
+    assert answer.x[0] < 0.0 < answer.x[1]
+    speeds = np.hypot(answer.vx - [0.5, 0.2], answer.vy)
+    turn = reference_case("box-belts").pieces[0].radius * answer.spin
+    np.testing.assert_allclose(answer.slip_speed, np.hypot(speeds, turn), rtol=1e-12, atol=1e-12)
 
 
 def test_the_coin():

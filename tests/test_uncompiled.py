@@ -58,7 +58,7 @@ def numbers(told: object) -> list[float]:
 )
 def test_the_command_compiles_nothing(arguments: list[str], tmp_path: Path):
     told, said = run([*PUCK, *arguments, "--json"], NUMBA_CACHE_DIR=str(tmp_path))
-    assert not said
+    assert "compiling" not in said
     assert not list(tmp_path.iterdir())
     assert len(numbers(json.loads(told))) > 5
 
@@ -196,6 +196,22 @@ def test_long_work_goes_on_compiled_from_what_it_was_given(
     spent = count.spent
     count(1, 3, out)
     assert count.spent == spent
+
+
+@pytest.mark.usefixtures("patient")
+def test_what_takes_long_to_compile_runs_longer_and_says_so_once(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    monkeypatch.setattr(doors, "AT_FIRST", 1e-3)
+    monkeypatch.setattr(doors, "is_any_kept", lambda _: False)  # another process may keep some
+    count = counting()
+    count.seconds = 400.0
+    for _ in range(2):
+        count(1, 20_000, np.zeros(2))
+    assert not is_compiled(count)
+    assert capsys.readouterr().err == (
+        "test_uncompiled.counting.<locals>.count is not compiled: it runs in Python, up to 100 s\n"
+    )
 
 
 @pytest.mark.usefixtures("patient")

@@ -27,7 +27,10 @@ from puck_tables.plot.style import COLORS, canvas, save_figure
 from puck_tables.reference.cases import CASES
 
 HERE = Path(__file__).resolve().parent
-SHOWN = ("coin", "slide", "slide-spin-2", "tall-0.5")
+SHOWN = ("coin", "slide-spin-2", "tall-0.5", "box")
+FEET = 61  # of with_mujoco_feet.py
+PLASTIC = (0.7548776662466927, 0.5698402909980532)
+MANY = 100_000  # launches at once
 OURS = (1e-3, 1e-5, 1e-7, 1e-9)  # tol; the cases have 1e-11
 
 
@@ -39,6 +42,8 @@ def main() -> None:
     given.folder.mkdir(parents=True, exist_ok=True)
     folder = given.folder.resolve()
     cases = {case.name: pt.reference_case(case.name, times=[0.0]).summary() for case in CASES}
+    for case in cases.values():
+        describe(case["scene"]["puck"])
     (folder / "cases.json").write_text(json.dumps(cases))
     subprocess.run([given.python, "-W", "ignore", "play.py", str(folder)], cwd=HERE, check=True)
     rows = measured(folder, cases)
@@ -46,6 +51,49 @@ def main() -> None:
     (folder / "table.md").write_text(table(rows))
     draw(rows, cases, folder / "engines.png")
     print((folder / "table.md").read_text())
+
+
+def describe(puck: Any) -> None:
+    """Say of a puck on a base what engines need of it, see task.py."""
+    if isinstance(puck, list) or not puck.get("base"):
+        return
+    named = {name: puck[name] for name in ("friction", "mass", "gravity", "height", "gyration")
+             if name in puck}  # fmt: skip
+    body = pt.Puck(base=puck["base"], **named)
+    base = body.shape
+    middle = np.array(base.middle)
+    parts = [(np.array(outline) - middle).tolist() for outline in base.outlines]
+    parts += [[x - middle[0], y - middle[1], r] for x, y, r, _ in base.discs]
+    area, _, second = base.about_centre
+    torque = abs(body.wrench((0.0, 0.0), 1.0).torque)
+    puck["solid"] = {
+        "parts": parts, "points": spread(parts, base.reach, FEET), "reach": base.reach,
+        "gyration": body.gyration, "arm": float(torque / (body.mass * body.decel)),
+        "square": (np.diag(second) / area).tolist(), "area": float(area),
+    }  # fmt: skip
+
+
+def spread(parts: list[Any], reach: float, count: int) -> list[list[float]]:
+    """So many places spread evenly over parts of a base: a sequence of low discrepancy."""
+    found: list[list[float]] = []
+    n = 0
+    while len(found) < count:
+        n += 1  # by powers of the plastic number
+        x, y = (reach * (2.0 * ((0.5 + n * step) % 1.0) - 1.0) for step in PLASTIC)
+        if any(is_in(part, x, y) for part in parts):
+            found.append([x, y])
+    return found
+
+
+def is_in(part: Any, x: float, y: float) -> bool:
+    """Whether a place lies in a disc or in a convex polygon."""
+    if isinstance(part[0], float):
+        return math.hypot(x - part[0], y - part[1]) <= part[2]
+    ahead = part[1:] + part[:1]
+    return all(
+        (bx - ax) * (y - ay) >= (by - ay) * (x - ax)
+        for (ax, ay), (bx, by) in zip(part, ahead, strict=True)
+    )
 
 
 def measured(folder: Path, cases: dict[str, Any]) -> list[dict[str, Any]]:
@@ -97,24 +145,27 @@ def table(rows: list[dict[str, Any]]) -> str:
 
 
 def ours(case: dict[str, Any]) -> list[tuple[float, float]]:
-    """Cost in ms and error of place of this program: by look-up, then by tol."""
-    tables, launch = case["scene"]["puck"], case["scene"]["launch"]
-    puck = pt.Puck(**tables)
-    exact = np.array([case["stop"]["x"], case["stop"]["y"]])
+    """Cost in ms and error of place of this program: of many at once, then of one by tol."""
+    tables, launch = dict(case["scene"]["puck"]), case["scene"]["launch"]
+    tables.pop("solid", None)
+    puck, angle = pt.Puck(**tables), launch["orientation"]
+    back = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
+    velocity = back @ launch["velocity"]  # in the axes of the puck
+    exact = back @ [case["stop"]["x"], case["stop"]["y"]]
     length = case["speed_scale"] ** 2 / case["rate_scale"]
-    many = np.tile(launch["velocity"], (100_000, 1))
-    spins = np.full(100_000, launch["spin"])
-    puck.stop(many[:10], spins[:10])
+    many, spins = np.tile(velocity, (MANY, 1)), np.full(MANY, launch["spin"])
+    puck.stop(many, spins)
     begin = time.process_time()
     found = puck.stop(many, spins)
-    cost = (time.process_time() - begin) * 1e3 / len(many)
+    cost = (time.process_time() - begin) * 1e3 / MANY
     points = [(cost, float(np.hypot(*(found.stop_position[0] - exact))) / length)]
     for tol in OURS:
+        puck.simulate(velocity, launch["spin"], frames=1, tol=tol)
         took = []
         for _ in range(15):
             begin = time.process_time()
             for _ in range(10):
-                run = puck.simulate(launch["velocity"], launch["spin"], frames=1, tol=tol)
+                run = puck.simulate(velocity, launch["spin"], frames=1, tol=tol)
             took.append(0.1 * (time.process_time() - begin))
         off = float(np.hypot(*(np.array(run.stop_position) - exact))) / length
         points.append((1e3 * median(took), off))
@@ -138,7 +189,7 @@ def draw(rows: list[dict[str, Any]], cases: dict[str, Any], path: Path) -> None:
             markersize=4, label="puck-tables, tol 1e-3 to 1e-9",
         )  # fmt: skip
         panel.loglog(
-            looked_up[0], max(looked_up[1], 1e-16), "k^", label="puck-tables, 1e5 by look-up, each"
+            looked_up[0], max(looked_up[1], 1e-16), "k^", label="puck-tables, of 1e5 at once, each"
         )
         panel.set_title(name)
         panel.set_xlabel("cost of the run / ms")

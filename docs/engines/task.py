@@ -1,7 +1,13 @@
-"""What every adapter is given and gives back, and how a log is written."""
+"""What every adapter is given and gives back, and how a log is written.
+
+Of a puck on a base that is not round run_all.py says the ``solid``: ``parts`` of the base, convex
+polygons [[x, y], ...] and discs [x, y, r], m from the centre of mass; ``points`` spread evenly over
+it; ``area``, ``reach``, ``gyration`` and mean ``arm`` of friction; ``square``: the mean of x², y².
+"""
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -40,15 +46,53 @@ def timed(steps: Callable[[], None]) -> float:
 
 
 def only_puck(scene: dict[str, Any]) -> dict[str, Any]:
-    """The puck of a scene of one, with its launch; in space a disc has at least some height."""
+    """The puck of a scene of one, with its launch; in space a puck has at least some height."""
     height = max(scene["puck"]["height"], 1e-3)
     return {**scene["puck"], "height": height, "launch": scene["launch"]}
 
 
-def moments_of(puck: dict[str, Any]) -> tuple[float, float]:
-    """Moments of inertia about a diameter and about the axis, kg m²."""
-    upright = puck["mass"] * (puck["gyration"] * puck["radius"]) ** 2
-    return 0.5 * upright + puck["mass"] * puck["height"] ** 2 / 12.0, upright
+def moments_of(puck: dict[str, Any]) -> tuple[float, float, float]:
+    """Moments of inertia about two level axes of the puck and about the vertical, kg m²."""
+    m, solid = puck["mass"], puck.get("solid")
+    upright = m * (solid["gyration"] if solid else puck["gyration"] * puck["radius"]) ** 2
+    x2, y2 = solid["square"] if solid else (0.5 * upright / m,) * 2
+    tall = puck["height"] ** 2 / 12.0
+    return m * (y2 + tall), m * (x2 + tall), upright
+
+
+def parts_of(puck: dict[str, Any]) -> list[Any]:
+    """Convex polygons and discs that the base is made of; of a disc itself."""
+    return puck["solid"]["parts"] if "solid" in puck else [[0.0, 0.0, puck["radius"]]]
+
+
+def box_of(part: Any) -> tuple[float, float, float, float] | None:
+    """Middle and half lengths of a part that is a rectangle along the axes; None: it is not."""
+    if isinstance(part[0], float) or len(part) != 4:
+        return None
+    (x0, y0), (x1, y1) = np.min(part, axis=0).tolist(), np.max(part, axis=0).tolist()
+    if {(x0, y0), (x1, y0), (x1, y1), (x0, y1)} != {tuple(corner) for corner in part}:
+        return None
+    return 0.5 * (x0 + x1), 0.5 * (y0 + y1), 0.5 * (x1 - x0), 0.5 * (y1 - y0)
+
+
+def points_of(puck: dict[str, Any], count: int) -> list[tuple[float, float]]:
+    """So many places spread evenly over the base."""
+    if "solid" in puck:
+        return puck["solid"]["points"][:count]
+    golden, radius, hole = math.pi * (3.0 - math.sqrt(5.0)), puck["radius"], hole_of(puck)
+    arms = (radius * math.sqrt(hole**2 + (1.0 - hole**2) * (n + 0.5) / count) for n in range(count))
+    return [(r * math.cos(golden * n), r * math.sin(golden * n)) for n, r in enumerate(arms)]
+
+
+def reach_of(puck: dict[str, Any]) -> float:
+    """How far the base extends from the centre of mass, m."""
+    return puck["solid"]["reach"] if "solid" in puck else puck["radius"]
+
+
+def turned_by(launch: dict[str, Any]) -> tuple[float, float]:
+    """Cosine and sine of half the angle by which a puck is turned at the launch."""
+    half = 0.5 * launch.get("orientation", 0.0)
+    return math.cos(half), math.sin(half)
 
 
 def hole_of(puck: dict[str, Any]) -> float:
@@ -80,8 +124,11 @@ def friction_under(scene: dict[str, Any], puck: dict[str, Any], x: float, y: flo
 
 def joint_limits(scene: dict[str, Any], puck: dict[str, Any], at: Any) -> tuple[float, float]:
     """Force and torque of friction, each by itself: f m g, and f m g times the mean arm."""
-    slope, a = scene.get("floor", {}).get("slope", 0.0), hole_of(puck)
+    slope = scene.get("floor", {}).get("slope", 0.0)
     load = friction_under(scene, puck, *at) * puck["mass"] * puck["gravity"] * np.cos(slope)
+    if "solid" in puck:
+        return float(load), float(load * puck["solid"]["arm"])
+    a = hole_of(puck)
     arm = 2.0 / 3.0 * puck["radius"] * (1.0 - a**3) / (1.0 - a**2)
     return float(load), float(load * arm)
 
@@ -94,6 +141,11 @@ def gravity(scene: dict[str, Any]) -> tuple[float, float, float]:
     return float(flat * np.cos(down)), float(flat * np.sin(down)), float(-g * np.cos(slope))
 
 
+def floor_is_one(scene: dict[str, Any]) -> bool:
+    """Whether no strip of the floor has a velocity of its own."""
+    return "across" not in (scene.get("floor", {}).get("strips") or {})
+
+
 def has_one_puck_and_no_cushion(scene: dict[str, Any]) -> bool:
     """What the adapters in space can run."""
-    return not (isinstance(scene["puck"], list) or scene.get("wall"))
+    return not (isinstance(scene["puck"], list) or scene.get("wall")) and floor_is_one(scene)

@@ -8,13 +8,23 @@ from typing import Any
 
 import Box2D as b2
 import numpy as np
-from task import FLAT, Played, gravity, joint_limits, moments_of, motion_of, strips_of, timed
+from task import (
+    FLAT,
+    Played,
+    gravity,
+    joint_limits,
+    moments_of,
+    motion_of,
+    reach_of,
+    strips_of,
+    timed,
+)
 from with_pymunk import can as can  # the same cases
 from with_pymunk import pucks_of
 
 SETTINGS = (
-    "view from above, lengths in cm; b2FrictionJoint of at most f m g and 2/3 f m g r to a "
-    "kinematic ground, f under the centre, 8 velocity and 3 position iterations, no sleeping"
+    "view from above, lengths in cm; b2FrictionJoint of at most f m g and f m g times the mean arm "
+    "to a kinematic ground, f under the centre, 8 velocity and 3 position iterations, no sleeping"
 )
 STEPS = (4e-3, 2e-3, 1e-3, 5e-4)
 CENTI = 100.0  # it is made for sizes about 1
@@ -55,11 +65,12 @@ def _world(scene: dict[str, Any]) -> tuple[Any, list[Any], Callable[[], None]]:
         )
     of_wall = scene.get("wall", [{}])[0]
     for puck in pucks_of(scene):
-        m, r, launch = puck["mass"], CENTI * puck["radius"], puck["launch"]
+        m, r, launch = puck["mass"], CENTI * reach_of(puck), puck["launch"]
         x, y = launch.get("position", (0.0, 0.0))
         vx, vy = launch.get("velocity") or (0.0, 0.0)
         body = world.CreateDynamicBody(
             position=(CENTI * x, CENTI * y),
+            angle=launch.get("orientation", 0.0),
             linearVelocity=(CENTI * vx, CENTI * vy),
             angularVelocity=launch.get("spin", 0.0),
             bullet=True,
@@ -70,7 +81,7 @@ def _world(scene: dict[str, Any]) -> tuple[Any, list[Any], Callable[[], None]]:
             restitution=puck.get("restitution", of_wall.get("restitution", 0.0)),
             friction=min(puck.get("rim", 1e6), of_wall.get("friction", 1e6)),
         )
-        body.massData = b2.b2MassData(mass=m, center=(0, 0), I=CENTI**2 * moments_of(puck)[1])
+        body.massData = b2.b2MassData(mass=m, center=(0, 0), I=CENTI**2 * moments_of(puck)[2])
         bodies.append(body)
         joints.append((puck, body, joined(puck, body)))
 

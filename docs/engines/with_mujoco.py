@@ -13,19 +13,23 @@ from task import (
     SETTLE,
     SPACE,
     Played,
+    box_of,
     gravity,
     has_one_puck_and_no_cushion,
-    hole_of,
     moments_of,
     motion_of,
     only_puck,
+    parts_of,
+    points_of,
+    reach_of,
     strips_of,
     timed,
+    turned_by,
 )
 
 SETTINGS = (
-    "cylinder on a plane (on boxes where strips differ or the floor moves), condim 3, "
-    "elliptic cone, impratio 10, Newton 100 iterations to 1e-12, "
+    "cylinder, box or mesh of a prism on a plane (on boxes where strips differ or the floor "
+    "moves), condim 3, elliptic cone, impratio 10, Newton 100 iterations to 1e-12, "
     "implicitfast, solref 0.01 1"
 )
 STEPS = (2e-3, 1e-3, 5e-4, 2.5e-4)
@@ -33,18 +37,30 @@ can = has_one_puck_and_no_cushion
 
 
 def _feet(puck: dict[str, Any], count: int) -> str:
-    """Small spheres that share the base evenly, in place of a cylinder."""
-    golden, radius, hole = math.pi * (3.0 - math.sqrt(5.0)), puck["radius"], hole_of(puck)
-    small = 0.02 * radius
-    places = (
-        (radius * math.sqrt(hole**2 + (1.0 - hole**2) * (n + 0.5) / count), golden * n)
-        for n in range(count)
-    )
+    """Small spheres that share the base evenly, in place of a solid."""
+    small = 0.02 * reach_of(puck)
+    low = small - 0.5 * puck["height"]
     return "".join(
-        f'<geom type="sphere" size="{small}" pos="{rho * math.cos(a)} {rho * math.sin(a)} '
-        f'{small - 0.5 * puck["height"]}"/>'
-        for rho, a in places
+        f'<geom type="sphere" size="{small}" pos="{x} {y} {low}"/>'
+        for x, y in points_of(puck, count)
     )
+
+
+def _solid(puck: dict[str, Any]) -> tuple[str, str]:
+    """Cylinders, boxes and other prisms on the base, and the meshes of these."""
+    half, geoms, meshes = 0.5 * puck["height"], [], []
+    for n, part in enumerate(parts_of(puck)):
+        if isinstance(part[0], float):
+            x, y, r = part
+            geoms.append(f'<geom type="cylinder" size="{r} {half}" pos="{x} {y} 0"/>')
+        elif (box := box_of(part)) is not None:
+            x, y, a, b = box
+            geoms.append(f'<geom type="box" size="{a} {b} {half}" pos="{x} {y} 0"/>')
+        else:
+            places = " ".join(f"{x} {y} {z}" for z in (-half, half) for x, y in part)
+            meshes.append(f'<mesh name="part{n}" vertex="{places}"/>')
+            geoms.append(f'<geom type="mesh" mesh="part{n}"/>')
+    return "".join(geoms), "".join(meshes)
 
 
 def _floor(scene: dict[str, Any], friction: float) -> str:
@@ -72,8 +88,8 @@ def _model(scene: dict[str, Any], dt: float, feet: int) -> Any:
     puck = only_puck(scene)
     x, y = puck["launch"].get("position", (0.0, 0.0))
     half = 0.5 * puck["height"]
-    flat, upright = moments_of(puck)
-    body = _feet(puck, feet) if feet else f'<geom type="cylinder" size="{puck["radius"]} {half}"/>'
+    inertia = " ".join(map(str, moments_of(puck)))
+    body, meshes = (_feet(puck, feet), "") if feet else _solid(puck)
     gx, gy, gz = gravity(scene)
     return mujoco.MjModel.from_xml_string(f"""
 <mujoco>
@@ -83,10 +99,11 @@ def _model(scene: dict[str, Any], dt: float, feet: int) -> Any:
   <default>
     <geom friction="0 0 0" condim="3" solref="0.01 1" contype="1" conaffinity="2"/>
   </default>
+  <asset>{meshes}</asset>
   <worldbody>
     <body pos="{x} {y} {half}">
       <freejoint/>
-      <inertial pos="0 0 0" mass="{puck["mass"]}" diaginertia="{flat} {flat} {upright}"/>
+      <inertial pos="0 0 0" mass="{puck["mass"]}" diaginertia="{inertia}"/>
       {body}
     </body>
     {_floor(scene, puck["friction"])}
@@ -102,7 +119,8 @@ def _launched(scene: dict[str, Any], dt: float, feet: int) -> tuple[Any, Any]:
     mujoco.mj_step(model, data, round(SETTLE / dt))
     model.opt.gravity[:] = leaning
     data.time = 0.0
-    data.qpos[:2], data.qpos[3:7] = launch.get("position", (0.0, 0.0)), (1.0, 0.0, 0.0, 0.0)
+    cosine, sine = turned_by(launch)
+    data.qpos[:2], data.qpos[3:7] = launch.get("position", (0.0, 0.0)), (cosine, 0.0, 0.0, sine)
     data.qvel[:6] = [*launch["velocity"], 0.0, 0.0, 0.0, launch["spin"]]
     if any(motion_of(scene)):
         data.qpos[7:], data.qvel[6:] = 0.0, motion_of(scene)

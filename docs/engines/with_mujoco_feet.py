@@ -10,7 +10,9 @@ from with_mujoco import STEPS as STEPS
 from with_mujoco import can as can
 
 FEET = 61
-SETTINGS = with_mujoco.SETTINGS.replace("cylinder", f"{FEET} spheres that share the base")
+SETTINGS = with_mujoco.SETTINGS.replace(
+    "cylinder, box or mesh of a prism", f"{FEET} spheres that share the base"
+)
 
 
 def run(scene: dict[str, Any], dt: float, until: float) -> Played:

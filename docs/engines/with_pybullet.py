@@ -13,21 +13,26 @@ from task import (
     SETTLE,
     SPACE,
     Played,
+    box_of,
     gravity,
     has_one_puck_and_no_cushion,
     moments_of,
     motion_of,
     only_puck,
+    parts_of,
     strips_of,
     timed,
+    turned_by,
 )
 
 SETTINGS = (
-    "GEOM_CYLINDER on a plane (on boxes where strips differ or the floor moves), friction 1 x f, "
-    "200 solver iterations to 1e-12, no damping, "
+    "GEOM_CYLINDER, GEOM_BOX or GEOM_MESH on a plane (on boxes where strips differ or the floor "
+    "moves), friction 1 x f, 200 solver iterations to 1e-12, no damping, "
     "no sleeping, no restitution"
 )
 DEEP = 0.5  # m
+MANY = {"shapeType": "shapeTypes", "radius": "radii", "length": "lengths",
+        "halfExtents": "halfExtents"}  # fmt: skip
 STEPS = (2e-3, 1e-3, 5e-4, 2.5e-4)
 can = has_one_puck_and_no_cushion
 
@@ -70,6 +75,30 @@ def _floor(scene: dict[str, Any], friction: float) -> Callable[[], None]:
     return lambda: p.resetJointState(belt, 0, 0.0, turning or speed)
 
 
+def _solid(puck: dict[str, Any]) -> int:
+    """A cylinder, or the cylinders, boxes and other prisms on the base."""
+    half, alone = 0.5 * puck["height"], len(parts_of(puck)) == 1
+    kinds: list[dict[str, Any]] = []
+    for part in parts_of(puck):
+        if isinstance(part[0], float):
+            x, y, r = part
+            size = {"radius": r, "height" if alone else "length": 2.0 * half}
+            kinds.append({"shapeType": p.GEOM_CYLINDER, **size, "at": [x, y, 0.0]})
+        elif (box := box_of(part)) is not None:
+            x, y, a, b = box
+            size = {"halfExtents": [a, b, half]}
+            kinds.append({"shapeType": p.GEOM_BOX, **size, "at": [x, y, 0.0]})
+        else:
+            corners = [[x, y, z] for z in (-half, half) for x, y in part]
+            kinds.append({"shapeType": p.GEOM_MESH, "vertices": corners, "at": [0.0, 0.0, 0.0]})
+    if alone:
+        (kind,) = kinds
+        return p.createCollisionShape(collisionFramePosition=kind.pop("at"), **kind)
+    places = [kind.pop("at") for kind in kinds]
+    columns = {MANY[name]: [kind[name] for kind in kinds] for name in kinds[0]}
+    return p.createCollisionShapeArray(collisionFramePositions=places, **columns)
+
+
 def _launched(scene: dict[str, Any], dt: float) -> int:
     p.resetSimulation()
     puck = only_puck(scene)
@@ -83,11 +112,10 @@ def _launched(scene: dict[str, Any], dt: float) -> int:
     gx, gy, gz = gravity(scene)
     p.setGravity(0.0, 0.0, gz)
     start = _floor(scene, puck["friction"])
-    shape = p.createCollisionShape(p.GEOM_CYLINDER, radius=puck["radius"], height=puck["height"])
+    shape = _solid(puck)
     launch = puck["launch"]
     x, y = launch.get("position", (0.0, 0.0))
     disc = p.createMultiBody(puck["mass"], shape, basePosition=[x, y, 0.5 * puck["height"]])
-    flat, upright = moments_of(puck)
     p.changeDynamics(
         disc,
         -1,
@@ -98,7 +126,7 @@ def _launched(scene: dict[str, Any], dt: float) -> int:
         linearDamping=0.0,
         angularDamping=0.0,
         contactProcessingThreshold=1.0,
-        localInertiaDiagonal=[flat, flat, upright],
+        localInertiaDiagonal=moments_of(puck),
         activationState=p.ACTIVATION_STATE_DISABLE_SLEEPING,
     )
     for _ in range(round(SETTLE / dt)):
@@ -106,7 +134,8 @@ def _launched(scene: dict[str, Any], dt: float) -> int:
     p.setGravity(gx, gy, gz)
     (_, _, z), _ = p.getBasePositionAndOrientation(disc)
     start()
-    p.resetBasePositionAndOrientation(disc, [x, y, z], [0.0, 0.0, 0.0, 1.0])
+    cosine, sine = turned_by(launch)
+    p.resetBasePositionAndOrientation(disc, [x, y, z], [0.0, 0.0, sine, cosine])
     p.resetBaseVelocity(disc, [*launch["velocity"], 0.0], [0.0, 0.0, launch["spin"]])
     return disc
 

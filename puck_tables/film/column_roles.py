@@ -59,9 +59,8 @@ def layout_of(path: str | Path, form: TextForm, columns: str | None) -> Layout:
         return _named(path, header[0])
     if header[0][0].lower() == _SCORER:
         return _deeplabcut(path, header)
-    names = header[-1]
-    layout = _named(path, names, _owners(header) if len(header) > 1 else ())
-    result = {name.lower() for name in names}
+    layout = _named(path, header[-1], _owners(header) if len(header) > 1 else ())
+    result = {name.lower() for name in header[-1]}
     if any(_ROS.search(name) for name in result):  # in m and rad, by its REP 103
         layout.kind = "table of ROS messages"
         layout.columns = [
@@ -169,14 +168,13 @@ def _one_clock(names: Sequence[str], read: Sequence[Heading]) -> list[Heading]:
     >>> [one.role for one in _one_clock(names, headings(names))]
     ['', 'time', 'x', 'y']
     """
-    result = list(read)
     times = [n for n, one in enumerate(read) if one.role == "time"]
     for word in ("stamp", "elapsed"):
         mine = [n for n in times if re.search(rf"(?<![^\W_]){word}(?![^\W_])", names[n].lower())]
         if len(mine) == 1 < len(times):
-            return [Heading("") if n in times and n not in mine else one
-                    for n, one in enumerate(result)]  # fmt: skip
-    return result
+            others = {*times} - {*mine}
+            return [Heading("") if n in others else one for n, one in enumerate(read)]
+    return list(read)
 
 
 def _own_times(read: Sequence[Heading]) -> list[Heading]:
@@ -189,9 +187,7 @@ def _own_times(read: Sequence[Heading]) -> list[Heading]:
     """
     pucks = {one.puck for one in read if one.role == "x"} | {""}
     known = {one.role for one in read if one.role in _CLOCKS and one.puck in pucks}
-    return [
-        Heading("") if one.role in known and one.puck not in pucks else one for one in read
-    ]  # fmt: skip
+    return [Heading("") if one.role in known and one.puck not in pucks else one for one in read]
 
 
 def _blocks(read: Sequence[Heading]) -> list[str]:
@@ -208,15 +204,13 @@ def _blocks(read: Sequence[Heading]) -> list[str]:
     first = next((n for n, one in enumerate(read) if one.role in ("x", "y")), 0)
     count = [sum(t <= n if times[0] <= first else t < n for t in times) for n in range(len(read))]
     block = [n if times[0] <= first else n + 1 for n in count]
-    owners = {n: {one.puck for at, one in zip(block, read, strict=True)
-                  if at == n and one.role == "x"} for n in block}  # fmt: skip
+    owners: dict[int, set[str]] = {n: set() for n in block}
+    for n, one in zip(block, read, strict=True):
+        if one.role == "x":
+            owners[n].add(one.puck)
     if not all(owners.get(n + 1) for n in range(len(times))):
         return [""] * len(read)  # two kinds of times of the same pucks
-    names = {
-        n: next(iter(named)) if len(named) == 1 and named != {""} else str(n)
-        for n, named in owners.items()
-    }
-    return [names[n] for n in block]
+    return [min(owners[n]) if len(owners[n]) == 1 and owners[n] != {""} else str(n) for n in block]
 
 
 def _deeplabcut(path: str | Path, header: list[list[str]]) -> Layout:
@@ -241,9 +235,8 @@ def deeplabcut(labels: Iterable[tuple[str, str, str]]) -> Layout:
     """
     columns = [("", Heading("frame"))]
     for owner, mark, what in labels:
-        role = what.lower()
-        known = role if role in ("x", "y", "likelihood") else ""
-        columns.append((owner, Heading(known, mark, "")))
+        known = what.lower() in ("x", "y", "likelihood")
+        columns.append((owner, Heading(what.lower() if known else "", mark)))
     return Layout(columns, "DeepLabCut table", jointed=True, pixels=True)
 
 

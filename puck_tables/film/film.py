@@ -61,6 +61,11 @@ class Film:
     rates: str = ""
     notes: list[str] = field(default_factory=list)
 
+    def note(self, text: str) -> None:
+        """Put a sentence to its notes, once."""
+        if text not in self.notes:
+            self.notes.append(text)
+
 
 class Reader(NamedTuple):
     """A format of tracks that is no table of text.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from functools import partial
 from typing import NamedTuple
 
 from puck_tables._core.quantities import function_in
@@ -119,16 +120,12 @@ Heading(role='vx', puck='', unit=''))
     role = next((one for one in _FIRST if one in roles), "")
     if not role:
         return Heading("")
-    kept = [
-        n for n, one in enumerate(lowered) if one not in _FILLING and roles[n] != role
-    ]  # fmt: skip
+    kept = [n for n, one in enumerate(lowered) if one not in _FILLING and roles[n] != role]
     if role in ("x", "y", "z") and (turned := [n for n in kept if lowered[n] in _QUATERNION]):
         role, kept = f"q{role}", [n for n in kept if n not in turned]
     unit = unit_word(unit_text, _KIND[role]) if role in _KIND else ""
     if unit_text and not unit and role in _KIND:
-        if text.rstrip().endswith("]"):
-            unit_named(f"the unit of the column '{text.strip():.40}'", unit_text, _KIND[role])
-        if unit_meant(unit_text):
+        if text.rstrip().endswith("]") or unit_meant(unit_text):
             unit_named(f"the unit of the column '{text.strip():.40}'", unit_text, _KIND[role])
         many = _MANY.fullmatch(unit_text)
         if many is not None and unit_word(many[1], _KIND[role]):
@@ -141,10 +138,9 @@ Heading(role='vx', puck='', unit=''))
             last = n == len(result) - 1
             if last and unit_meant(result[n][0]):
                 unit_named(f"the unit of '{text.strip():.40}'", result[n][0], _KIND[role])
-            if (found_unit := unit_word(result[n][0], _KIND[role])) and (
-                last or found_unit == "px"
-            ):
-                unit = found_unit
+            word = unit_word(result[n][0], _KIND[role])
+            if word and (last or word == "px"):
+                unit = word
                 kept.remove(n)
                 break
     if any(lowered[n] in _OTHER for n in kept):
@@ -226,7 +222,7 @@ def headings(names: Sequence[str]) -> list[Heading]:
         else one._replace(role="angle" if one.role == "qz" else "") for one in read
     ]  # fmt: skip
     lowered = [set(_TOKEN.findall(name.lower())) for name in names]
-    if any({"mx"} & words for words in lowered) and any({"cx"} & words for words in lowered):
+    if {"mx", "cx"} <= set().union(*lowered):
         read = [_centre_or_mark(one, words) for one, words in zip(read, lowered, strict=True)]
     places = [one for one in read if one.role in ("x", "y")]
     if len({(one.role, one.puck) for one in places}) == len(places):
@@ -245,12 +241,9 @@ def headings(names: Sequence[str]) -> list[Heading]:
 
 def _centre_or_mark(one: Heading, words: set[str]) -> Heading:
     """The centre (cx, cy) and a mark (mx, my) of a puck apart."""
-    for axis in "xy":
-        for mark in "cm":
-            if mark + axis in words:
-                return Heading(axis, mark, one.unit or next(
-                    (unit for word in words if (unit := unit_word(word, "length"))), ""
-                ))  # fmt: skip
+    units = filter(None, (unit_word(word, "length") for word in words))
+    for mark, axis in (word for word in ("cx", "mx", "cy", "my") if word in words):
+        return Heading(axis, mark, one.unit or next(units, ""))
     return one
 
 
@@ -272,12 +265,9 @@ def on_a_line(names: Sequence[str], read: Sequence[Heading]) -> list[Heading] | 
     named = [n for n, one in enumerate(read) if not one.role and words[n] & {*_ALONG}]
     bare = [n for n, name in enumerate(names) if parted(name.strip())[0].lower() in _BARE]
     if not told and named:
-        each = re.compile(
-            rf"\b({'|'.join(sorted(_ALONG, key=len, reverse=True))})\b", re.IGNORECASE
-        )
-        result = headings([
-            each.sub("x", name) if n in named else name for n, name in enumerate(names)
-        ])  # fmt: skip
+        words_of = "|".join(sorted(_ALONG, key=len, reverse=True))
+        each = partial(re.compile(rf"\b({words_of})\b", re.IGNORECASE).sub, "x")
+        result = headings([each(name) if n in named else name for n, name in enumerate(names)])
         told = {"x"}
     elif not told and len(bare) == 1:
         unit = parted(names[bare[0]].strip())[1]

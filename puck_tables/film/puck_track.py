@@ -1,8 +1,10 @@
-"""The track of one puck on a film."""
+"""Tracks of pucks on a film, and such as are two marks on one puck."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 import numpy.typing as npt
@@ -10,6 +12,10 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import real_array
 from puck_tables.errors import InputError
+
+_KEPT = 0.05  # of their distance, by which that of two marks varies
+_MOVED = 2.0  # times their distance: how far they go
+_FEWEST, _MOST = 8, 30  # frames; tracks that are compared
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,12 +80,9 @@ class Track:
                 f"the place or the angle of frame {int(endless.argmax()) + 1} is infinite: give a "
                 "number, or NaN where none was seen"
             )
-        fields: tuple[tuple[str, FloatArray | None], ...] = (
-            ("time", time), ("place", place), ("angle", angle),
-        )  # fmt: skip
-        for field, value in fields:
+        fields = {"time": time, "place": place, "angle": angle, "notes": tuple(self.notes)}
+        for field, value in fields.items():
             object.__setattr__(self, field, value)
-        object.__setattr__(self, "notes", tuple(self.notes))
         if (seen := int(np.count_nonzero(self.seen))) < 2:
             raise InputError(
                 f"a track needs two frames or more where the puck is seen, here are {seen}"
@@ -96,3 +99,35 @@ class Track:
         """Frames (n,) where the place is known."""
         known: npt.NDArray[np.bool_] = np.isfinite(self.place[:, 0] + self.place[:, 1])
         return known
+
+
+def marks_of_one(tracks: Sequence[Track], nearest: float = np.inf) -> str:
+    """A sentence if two tracks look like marks on one puck; empty if none do.
+
+    ``nearest`` m: as far apart as two pucks are at least.
+
+    Examples
+    --------
+    >>> t = np.arange(20.0)
+    >>> one, two = (Track(t, np.stack([t, 0.0 * t + y], axis=1), name=f"a: {y}") for y in (0, 1))
+    >>> marks_of_one([one, two])[:66]
+    'a: 0 and a: 1 keep a distance of 1 m: they look like two marks on '
+    """
+    for one, two in combinations(tracks[:_MOST], 2):
+        _, first, second = np.intersect1d(one.time, two.time, return_indices=True)
+        here, there = one.place[first], two.place[second]
+        apart = np.hypot(*(here - there).T)
+        known = np.isfinite(apart)
+        if known.sum() < _FEWEST:
+            continue
+        usual = float(np.median(apart[known]))
+        kept = float(np.median(np.abs(apart[known] - usual))) <= _KEPT * usual
+        moved = float(np.ptp(here[known], axis=0).max()) > _MOVED * usual
+        if kept and moved and 0.0 < usual < nearest:
+            names = [track.name.rpartition(": ")[2] for track in (one, two)]
+            return (
+                f"{one.name} and {two.name} keep a distance of {usual:.3g} m: they look like two "
+                f"marks on one puck, whose centre and angle they tell with centre and toward "
+                f"(--centre {','.join(names)} --toward {names[0]})"
+            )
+    return ""

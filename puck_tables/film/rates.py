@@ -38,8 +38,7 @@ def summed(path: str | Path, film: Film, body: TrackedBody, time: FloatArray) ->
     """
     if not film.rates:
         return body
-    if _WORDS[film.rates] not in film.notes:
-        film.notes.append(_WORDS[film.rates])
+    film.note(_WORDS[film.rates])
 
     def over_time(rates: FloatArray) -> FloatArray:
         known = np.isfinite(rates) & np.isfinite(time)

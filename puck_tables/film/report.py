@@ -32,11 +32,8 @@ def described(track: Track) -> list[str]:
     known = track.place[track.seen]
     (x0, y0), (x1, y1) = known.min(axis=0), known.max(axis=0)
     lines.append(f"  place   x from {x0:.6g} m to {x1:.6g} m, y from {y0:.6g} m to {y1:.6g} m")
-    if track.angle is None or not np.isfinite(track.angle).any():
-        lines.append("  angle   none")
-    else:
-        seen = int(np.isfinite(track.angle).sum())
-        lines.append(f"  angle   seen in {_count(seen, 'frame')}")
+    turned = 0 if track.angle is None else int(np.isfinite(track.angle).sum())
+    lines.append("  angle   " + (f"seen in {_count(turned, 'frame')}" if turned else "none"))
     lines += [f"  hidden  {words}" for words in _hidden(track)]
     lines += [f"  odd     {words}" for words in [*_steps(track), *_leaps(track)]]
     if track.notes:
@@ -130,8 +127,8 @@ def dataset(tracks: Sequence[Track]) -> Dataset:
     ['time', 'x', 'y']
     """
     place = np.concatenate([track.place for track in tracks])
-    columns = {"time": np.concatenate([track.time for track in tracks])}
-    columns |= {"x": place[:, 0], "y": place[:, 1]}
+    time = np.concatenate([track.time for track in tracks])
+    columns = {"time": time, "x": place[:, 0], "y": place[:, 1]}
     if any(track.angle is not None for track in tracks):
         columns["orientation"] = np.concatenate([
             np.full(track.time.size, np.nan) if track.angle is None else track.angle

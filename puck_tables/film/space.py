@@ -50,16 +50,16 @@ def on_the_floor(path: str | Path, film: Film, body: TrackedBody, up: str | None
             )
         marks[name] = flat
     if any(one.shape[1] == 3 for one in body.marks.values()):
-        _note(film, f"places in space, {axis} up: height left out (--up)")
+        film.note(f"places in space, {axis} up: height left out (--up)")
     angles = dict(body.angles)
     for name, turns in body.turns.items():
         angles[name], tilt = about_vertical(turns, at)
         if not np.isfinite(tilt):
             raise InputError(f"{path}: its quaternions are all 0: leave them out (--columns)")
-        _note(
-            film, f"angles about the vertical from quaternions, tilted by {np.degrees(tilt):.2g} "
-            "degrees (median)",
-        )  # fmt: skip
+        film.note(
+            f"angles about the vertical from quaternions, tilted by {np.degrees(tilt):.2g} degrees "
+            "(median)"
+        )
     return replace(body, marks=marks, angles=angles, turns={})
 
 
@@ -91,8 +91,3 @@ def _span(values: FloatArray) -> float:
     """How far values go, but for a few."""
     known = values[np.isfinite(values)]
     return float(np.diff(np.percentile(known, _ENDS))[0]) if known.size else 0.0
-
-
-def _note(film: Film, text: str) -> None:
-    if text not in film.notes:
-        film.notes.append(text)

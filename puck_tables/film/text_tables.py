@@ -24,8 +24,8 @@ from puck_tables.film.rates import ANGLES
 
 MOST_PUCKS = 10_000  # in one file: more is a column of another meaning
 _TURN = ("qx", "qy", "qz", "qw")
-_YES = {"true", "yes", "y", "t", "ja", "j", "oui", "si", "sí", "wahr", "ok"}
-_NO = {"false", "no", "n", "f", "nein", "non", "falsch", ""}
+_YES = {"true", "yes", "y", "t", "ja", "j", "oui", "si", "sí", "wahr", "ok", "1"}
+_NO = {"false", "no", "n", "f", "nein", "non", "falsch", "", "0"}
 _SHOWN = {"visible", "seen", "shown", "detected"}
 _HIDDEN = {"hidden", "occluded", "lost", "missing"}
 
@@ -54,7 +54,14 @@ def film_in_text(
             f"say what they are, such as columns='{example(form.width)}' (--columns), of a puck on "
             "a line with x alone"
         )
-    texts = [n for n in wanted if _holds_text(form, n, layout.columns[n][1])]
+    texts = []
+    for n in wanted:  # ids and flags that are texts, and times of a clock
+        shown, role = [row[n] for row in form.rows if n < len(row)], layout.columns[n][1].role
+        is_text = any(number(cell, form.comma) is None for cell in shown) or not any(shown)
+        if role == "time":
+            is_text = any(map(is_clock, shown))
+        if is_text and role in ("time", "id", "seen", "hidden"):
+            texts.append(n)
     values, words = read_columns(path, form, [n for n in wanted if n not in texts], texts, content)
     for n in texts:
         body, one = layout.columns[n]
@@ -85,10 +92,8 @@ def film_of_columns(
     >>> film_of_columns("a", layout, dict(enumerate(np.eye(3))), {}).bodies[0].marks[""].tolist()
     [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]
     """
-    film = Film(
-        layout.kind, [], jointed=layout.jointed, likely=layout.likely, rates=layout.rates,
-        notes=[*notes],
-    )  # fmt: skip
+    film = Film(layout.kind, [], jointed=layout.jointed, likely=layout.likely, rates=layout.rates)
+    film.notes += notes
     values = dict(values)
     for n, (body, one) in enumerate(layout.columns) if layout.rates else ():
         rate = {"x": "velocity", "y": "velocity", "angle": "spin"}.get(one.role, "")
@@ -110,10 +115,8 @@ def film_of_columns(
     apart = list(dict.fromkeys(body for body, _ in layout.columns if body))
     for name, chosen in rows.items():
         for body in apart or [name]:
-            mine = {
-                n: one for n, (whose, one) in enumerate(layout.columns)
-                if one.role and whose in ("", body)
-            }  # fmt: skip
+            every = enumerate(layout.columns)
+            mine = {n: one for n, (whose, one) in every if one.role and whose in ("", body)}
             found = _body(path, body, mine, values, words, chosen, layout.along, layout.rates)
             if found.marks:
                 film.bodies.append(found)
@@ -173,16 +176,6 @@ def film_below(
     return film
 
 
-def _holds_text(form: TextForm, column: int, what: Heading) -> bool:
-    """Whether a column of ids or flags holds texts, or one of times those of a clock."""
-    cells = [row[column] for row in form.rows if column < len(row)]
-    if what.role == "time":
-        return any(map(is_clock, cells))
-    if what.role not in ("id", "seen", "hidden"):
-        return False
-    return any(number(cell, form.comma) is None for cell in cells) or not any(cells)
-
-
 def _units(path: str | Path, layout: Layout) -> tuple[str, str, bool]:
     """Units of places and angles, and whether that of times is named."""
     headed = [one for _, one in layout.columns]
@@ -223,17 +216,11 @@ def _rows(
         raise InputError(
             f"{path} has {len(names)} pucks, at most {MOST_PUCKS} are read: leave out what is none"
         )
-    by = next(
-        (n for role in ("frame", "time") for n, (_, one) in enumerate(layout.columns)
-         if one.role == role), None,
-    )  # fmt: skip
+    roles = [one.role for _, one in layout.columns]
+    by = next((roles.index(role) for role in ("frame", "time") if role in roles), None)
     order = np.argsort(codes, kind="stable") if by is None else np.lexsort((values[by], codes))
-    ends = np.cumsum(np.bincount(codes, minlength=len(names)))
-    starts = np.concatenate([[0], ends[:-1]])
-    return {
-        name: order[start:end] for name, start, end in zip(names, starts, ends, strict=True)
-        if name != "nan"
-    }  # fmt: skip
+    rows = np.split(order, np.cumsum(np.bincount(codes, minlength=len(names)))[:-1])
+    return {name: mine for name, mine in zip(names, rows, strict=True) if name != "nan"}
 
 
 def _body(
@@ -284,7 +271,7 @@ def _body(
     body = TrackedBody(
         name, marks, angles=of("angle"), likelihoods=of("likelihood"), seen=seen, turns=turns
     )
-    clocks: dict[str, FloatArray | None] = {}
+    clocks: list[FloatArray | None] = []
     for role in ("frame", "time", "step", "nanos"):
         whose = [*of(role).values()]
         if len(whose) > 1:
@@ -292,16 +279,16 @@ def _body(
                 f"{path} has two columns of {role}: read the pucks one by one, with - in columns "
                 "(--columns) for those of others"
             )
-        clocks[role] = whose[0] if whose else None
-    body.frame, body.time = clocks["frame"], clocks["time"]
+        clocks.append(whose[0] if whose else None)
+    body.frame, body.time, steps, nanos = clocks
     if body.time is not None:
         body.time = body.time * factor(units["time"] or "s", "time")
-        if clocks["nanos"] is not None:  # from the first second on: doubles hold no more of a stamp
+        if nanos is not None:  # from the first second on: doubles hold no more of a stamp
             start = body.time[np.isfinite(body.time)].min(initial=np.inf)
-            body.time = body.time - start + 1e-9 * clocks["nanos"]
-    elif clocks["step"] is not None:
-        steps = clocks["step"] * factor(units["step"] or "s", "time")
-        body.time = np.concatenate([[0.0], np.cumsum(steps[1:])])
+            body.time = body.time - start + 1e-9 * nanos
+    elif steps is not None:
+        unit = factor(units["step"] or "s", "time")
+        body.time = unit * np.concatenate([[0.0], np.cumsum(steps[1:])])
     return body
 
 
@@ -314,14 +301,13 @@ def _flags(
         codes, texts = words[column]
         shown = []
         for text in texts:
-            low = text.lower()
-            if low not in _SHOWN | _HIDDEN | _YES | _NO | {"0", "1"}:
+            if (low := text.lower()) not in _SHOWN | _HIDDEN | _YES | _NO:
                 raise InputError(
                     f"{path}, column {column + 1}: '{text:.30}' does not say whether the puck is "
                     "seen: write 1 or 0, true or false"
                 )
-            yes = low in _YES | {"1"}
-            shown.append(low in _SHOWN or (low not in _HIDDEN and yes == (role == "seen")))
+            yes = (low in _YES) == (role == "seen")
+            shown.append(low in _SHOWN or (low not in _HIDDEN and yes))
         return np.asarray(np.array(shown, bool)[codes])
     flags = values[column]
     if not np.isin(flags[~np.isnan(flags)], (0.0, 1.0)).all():

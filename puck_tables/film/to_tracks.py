@@ -110,15 +110,11 @@ def to_si(path: str | Path, film: Film, how: ReaderOptions) -> tuple[Track, ...]
     film.bodies = [on_the_floor(path, film, body, how.up) for body in film.bodies]
     scaled: list[str] = []
     scale = _Scale(path, film, how, scaled)
-    bodies = []
-    for flat in film.bodies:
-        time, body_notes = _times(path, film, flat, how)
-        bodies.append((summed(path, film, flat, time), time, body_notes))
-    film.bodies = [body for body, *_ in bodies]
-    notes = [film.kind, *film.notes, *scaled]
-    tracks = []
-    there: list[str] = []
-    for body, time, body_notes in bodies:
+    times = [_times(path, film, flat, how) for flat in film.bodies]
+    film.bodies = [summed(path, film, flat, time)
+                   for flat, (time, _) in zip(film.bodies, times, strict=True)]  # fmt: skip
+    notes, tracks, there = [film.kind, *film.notes, *scaled], [], list[str]()
+    for body, (time, body_notes) in zip(film.bodies, times, strict=True):
         for mark, (centre, toward) in _pucks(path, film, body, how).items():
             puck = " ".join(filter(None, (body.name, mark)))
             there.append(puck)
@@ -189,7 +185,16 @@ class _Scale:
         down = how.y_down if how.y_down is not None else film.y_down
         self.down = self.plane is None and (unit == PIXEL if down is None else down)
         angles = {key for body in film.bodies for key in body.angles}
-        self.radians = self._radians(path, film, how) if angles else 1.0
+        self.radians = 1.0
+        if angles:
+            if film.angle_unit and how.angle_unit not in (None, film.angle_unit):
+                raise InputError(f"{path} gives angles in {film.angle_unit}: leave angle_unit out")
+            if not (angled := film.angle_unit or how.angle_unit):
+                raise InputError(
+                    f"{path} does not say the unit of its angles: give angle_unit (--angle-unit "
+                    "deg)"
+                )
+            self.radians = factor(angled, "angle")
         if unit != PIXEL:
             notes.append(f"places in {unit}")
         elif how.size is not None:
@@ -204,17 +209,6 @@ class _Scale:
             )  # fmt: skip
         if self.down:
             notes.append("y grows downwards in the file: y, and angles, are turned over")
-
-    @staticmethod
-    def _radians(path: str | Path, film: Film, how: ReaderOptions) -> float:
-        if film.angle_unit and how.angle_unit not in (None, film.angle_unit):
-            raise InputError(f"{path} gives angles in {film.angle_unit}: leave angle_unit out")
-        unit = film.angle_unit or how.angle_unit
-        if not unit:
-            raise InputError(
-                f"{path} does not say the unit of its angles: give angle_unit (--angle-unit deg)"
-            )
-        return factor(unit, "angle")
 
     def place(self, points: FloatArray) -> FloatArray:
         """Places (n, 2) in m; NaN where a point is."""
@@ -253,7 +247,10 @@ def _times(
         what = "frame numbers and no times" if body.frame is not None else "no times"
         row = "" if body.frame is not None else "; each row is then a frame"
         raise InputError(f"{path} has {what}: give frames a second with fps (--fps 120){row}")
-    if not film.timed and (unit := _stamp_unit(film)):
+    earliest = float(_all_times(film).min())
+    stamps = (one for one in ("s", "ms", "us", "ns")
+              if _EPOCH[0] < earliest * factor(one, "time") < _EPOCH[1])  # fmt: skip
+    if not film.timed and (unit := next(stamps, "")):  # where no other gives a year of films
         film.timed = True
         film.notes.append(f"times in {unit} since 1970, as their size tells")
         for one in film.bodies:
@@ -279,13 +276,6 @@ def _all_times(film: Film) -> FloatArray:
     times = [body.time[np.isfinite(body.time)] for body in film.bodies if body.time is not None]
     there = np.concatenate([*times, np.empty(0)])
     return there if there.size else np.zeros(1)
-
-
-def _stamp_unit(film: Film) -> str:
-    """The unit of stamps that count from 1970, where no other gives a year of films; else ''."""
-    first = float(_all_times(film).min())
-    units = ("s", "ms", "us", "ns")
-    return next((one for one in units if _EPOCH[0] < first * factor(one, "time") < _EPOCH[1]), "")
 
 
 def _alike(names: Sequence[str], wanted: Sequence[str]) -> dict[str, dict[str, str]]:
@@ -360,7 +350,7 @@ def _visible(
             if name in body.seen:
                 shown &= body.seen[name]
     notes = []
-    bound = how.likelihood if how.likelihood is not None else film.likely
+    bound = film.likely if how.likelihood is None else how.likelihood
     likely = [body.likelihoods[m] for m in {*used, ""} if m in body.likelihoods]
     if how.likelihood is not None and not likely:
         raise InputError(f"{path} has no likelihoods: leave likelihood (--likelihood) out")

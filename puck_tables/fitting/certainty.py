@@ -89,9 +89,8 @@ class Certainty:
     @property
     def spread(self) -> float:
         """A standard deviation of Student's t: by so much few residuals make errors larger."""
-        if self.degrees == math.inf:
-            return 1.0
-        return math.sqrt(self.degrees / max(self.degrees - 2.0, 0.2))
+        few = self.degrees < math.inf
+        return math.sqrt(self.degrees / max(self.degrees - 2.0, 0.2)) if few else 1.0
 
     @property
     def reach(self) -> float:
@@ -132,11 +131,7 @@ class Certainty:
 
 
 class OtherMinimum(NamedTuple):
-    """Another summit.
-
-    ``estimate``: there; ``certainty``: how well it would tell its unknowns; ``rise``: of χ²;
-    ``tracks``: those that spin otherwise.
-    """
+    """Another summit: the estimate there, its certainty, χ² more, tracks that spin otherwise."""
 
     estimate: Estimate
     certainty: Certainty
@@ -182,6 +177,12 @@ def certainty_of(
     return Certainty(covariance, blind, tuple(lost.tolist()), plausible, degrees)
 
 
+def certainty_at(result: Estimate, degrees: float = math.inf) -> Certainty:
+    """How well the unknowns of an estimate are known."""
+    plausible = result.problem.plausible(result.x)
+    return certainty_of(result.jacobian[result.kept], plausible, degrees)
+
+
 def pinned_of(result: Estimate, certainty: Certainty) -> tuple[int, ...]:
     """Which unknowns that are seen lie on the end of their range: −1 the lower, 1 the upper."""
     seen = np.isfinite(certainty.errors)
@@ -194,20 +195,13 @@ def pinned_of(result: Estimate, certainty: Certainty) -> tuple[int, ...]:
 
 
 def widened(result: Estimate, certainty: Certainty) -> Certainty:
-    """The same of a model that does not fit: what is left of it is no independent noise.
-
-    To the covariance is added what leaving out a part of the frames at a time does to the unknowns,
-    as the jackknife counts it: of halves, of quarters and of eighths.
-    """
+    """The same of a model that does not fit: with the jackknife's of halves, quarters, eighths."""
     by_parts = sum(_without_parts(result, certainty, count) for count in _PARTS)
     return certainty.wider(certainty.covariance + by_parts, True)
 
 
 def of_rounded(result: Estimate, certainty: Certainty) -> Certainty:
-    """The same of tracks that are rounded: what is left of them is about independent noise.
-
-    Errors are those that sixteenths of the frames show, where these are larger.
-    """
+    """The same of rounded tracks: errors that sixteenths of the frames show, where larger."""
     shown = np.diag(_without_parts(result, certainty, _FINE))
     wider = np.sqrt(np.maximum(shown / np.maximum(np.diag(certainty.covariance), 1e-300), 1.0))
     return certainty.wider(certainty.covariance * np.outer(wider, wider), False)
@@ -274,13 +268,11 @@ def interval_of(result: Estimate, certainty: Certainty, k: int) -> Interval:
     x, error = float(result.x[k]), math.sqrt(float(certainty.covariance[k, k]))
     if certainty.undetermined[k]:
         return Interval(low, high, False)
-    ends, profiled = [], False
-    for side, limit in ((-1.0, low), (1.0, high)):
-        guess = x + side * certainty.quantile * error
-        end, searched = _end(result, certainty, k, side, guess, limit)
-        ends.append(end)
-        profiled |= searched
-    return Interval(ends[0], ends[1], profiled)
+    (one, searched), (other, too) = (
+        _end(result, certainty, k, side, x + side * certainty.quantile * error, limit)
+        for side, limit in ((-1.0, low), (1.0, high))
+    )
+    return Interval(one, other, searched or too)
 
 
 def _end(

@@ -18,10 +18,9 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.certainty import Certainty
 from puck_tables.fitting.estimate import Estimate, capped_squares, estimate
 from puck_tables.fitting.fit_spec import FitSpec
-from puck_tables.fitting.impact_law import WallLine
+from puck_tables.fitting.forward_model import WallLine
 from puck_tables.fitting.impact_matching import (
     CoupledFit,
-    ImpactMatch,
     Line,
     candidates_of,
     coupled,
@@ -42,9 +41,8 @@ _WALK = ((8, 16), (12, 8), (25, 4))  # steps from each start, and how many then 
 _RIVAL = 15.0  # what other minima may cost more
 _TRIED = 12  # ways of slides that are not joined, to see whether they have rivals
 _HARDER = 3.0  # times the friction of a rim that slides
+_RUBS = ("rim_friction", "pair_friction")
 _EQUAL = 0.01  # of χ²: two forms of one law
-
-Values = Callable[[FloatArray], FloatArray]
 
 
 class Impact(NamedTuple):
@@ -82,13 +80,18 @@ def couple(
     most = max(len(group[0].problem.impact_specs) for group in groups.values())
     fits = []
     for group in groups.values():
-        whole = group[0]
-        if len(whole.problem.impact_specs) == most:
-            best = _deepest(group, known)
-            fits.append((_rise(slides, best, whole), best))
+        if len(group[0].problem.impact_specs) < most:
+            continue
+        best = estimate(group[0].problem, group[0].start, known) if len(group) == 1 else None
+        if best is None:  # from the best of several starts, with other minima near which it may lie
+            walked = multi_start([(one.problem, one.start) for one in group], _WALK, ROBUST, _RIVAL)
+            best = estimate(group[0].problem, walked[0][0], known)
+            near = tuple(x for x, cost in walked if cost < walked[0][1] + _RIVAL)
+            best = replace(best, minima=near)
+        fits.append((_rise(slides, best, group[0]), best))
     least = min(rise for rise, _ in fits)
-    near = [fit for fit in fits if fit[0] < least + _EQUAL]
-    rise, result = min(near, key=lambda fit: (_unlikely(fit[1]), fit[0]))
+    alike = [fit for fit in fits if fit[0] < least + _EQUAL]
+    rise, result = min(alike, key=lambda fit: (_unlikely(fit[1]), fit[0]))
     conditions = slides.x.size - result.x.size
     if chi_square_tail(max(rise, 0.0), max(conditions, 1)) < _BY_CHANCE:
         return replace(slides, minima=tuple(ways[:_TRIED])), (
@@ -96,28 +99,13 @@ def couple(
             f"states that match, would raise chi^2 by {rise:.4g} for {conditions} "
             f"condition{'' if conditions == 1 else 's'}"
         )
-    return replace(result, minima=(*result.minima, *_gripping(result))), ""
-
-
-def _deepest(group: list[CoupledFit], known: Known) -> Estimate:
-    """The estimate from the best of several starts, with other minima near which it may lie."""
-    if len(group) == 1:
-        return estimate(group[0].problem, group[0].start, known)
-    walked = multi_start([(one.problem, one.start) for one in group], _WALK, ROBUST, _RIVAL)
-    result = estimate(group[0].problem, walked[0][0], known)
-    return replace(result, minima=tuple(x for x, cost in walked if cost < walked[0][1] + _RIVAL))
-
-
-def _gripping(result: Estimate) -> list[FloatArray]:
-    """Unknowns near which rims that slide may grip instead; with angles it is seen that they do."""
     problem = result.problem
-    names = [name for _, name in problem.names]
-    rubs = [names.index(name) for name in ("rim_friction", "pair_friction") if name in names]
+    rubs = [k for k, (_, name) in enumerate(problem.names) if name in _RUBS]
     if not rubs or all(film.angle is not None for film in problem.films):
-        return []
-    x = result.x.copy()
+        return result, ""
+    x = result.x.copy()  # rims that slide may grip instead: with angles it is seen that they do
     x[rubs] = np.minimum(_HARDER * x[rubs], problem.limits[1][rubs])
-    return [x]
+    return replace(result, minima=(*result.minima, x)), ""
 
 
 def _unlikely(result: Estimate) -> int:
@@ -126,7 +114,7 @@ def _unlikely(result: Estimate) -> int:
     Last is a friction that no impact tells, as all rims grip.
     """
     problem = result.problem
-    if not {"rim_friction", "pair_friction"} & {*problem.spec.free}:
+    if not {*_RUBS} & {*problem.spec.free}:
         return 1
     numbers = problem.numbers_at(result.x)
     for impact_spec, impact in zip(problem.impact_specs, problem.slides(result.x)[1], strict=True):
@@ -143,17 +131,16 @@ def not_met(impacts: Sequence[Impact], problem: Problem, lines: Sequence[Line]) 
     if not problem.impact_specs:  # nothing is joined at walls
         return ()
     walls = [wall for wall in problem.walls if wall is not None]
+
+    def through(wall: WallLine, point: tuple[float, float]) -> bool:
+        off = point[0] * math.cos(wall.angle) + point[1] * math.sin(wall.angle) - wall.distance
+        return abs(off) <= _SAME * max(*map(abs, point), abs(wall.distance))
+
     return tuple(
-        f"No impact was found on the wall through ({ax:g}, {ay:g}) and ({bx:g}, {by:g}): see that "
-        "its points are in m, along the axes of the tracks"
-        for (ax, ay), (bx, by) in lines
-        if not any(_through(wall, ax, ay) and _through(wall, bx, by) for wall in walls)
-    )
-
-
-def _through(wall: WallLine, x: float, y: float) -> bool:
-    deviations = x * math.cos(wall.angle) + y * math.sin(wall.angle) - wall.distance
-    return abs(deviations) <= _SAME * max(abs(x), abs(y), abs(wall.distance))
+        f"No impact was found on the wall through ({a[0]:g}, {a[1]:g}) and ({b[0]:g}, {b[1]:g}): "
+        "see that its points are in m, along the axes of the tracks"
+        for a, b in lines if not any(through(wall, a) and through(wall, b) for wall in walls)
+    )  # fmt: skip
 
 
 def _rise(slides: Estimate, result: Estimate, whole: CoupledFit) -> float:
@@ -203,8 +190,8 @@ def impacts_apart(
 
     def values(x: FloatArray) -> FloatArray:
         """Restitution, ratio and mass of each; as they are where an impact comes to nothing."""
-        others = {_key(match_): match_ for match_ in matched_impacts(problem, pieces, x)}
-        rows = [others.get(_key(match_), match_) for match_ in matches]
+        others = {one.pieces: one for one in matched_impacts(problem, pieces, x)}
+        rows = [others.get(one.pieces, one) for one in matches]
         return np.array([[one.restitution, one.ratio, one.mass] for one in rows]).ravel()
 
     if not matches:
@@ -227,11 +214,9 @@ def impacts_apart(
     return tuple(impacts)
 
 
-def _key(match_: ImpactMatch) -> tuple[int, ...]:
-    return tuple(kink.piece for kink in match_.kinks_of_slides)
-
-
-def _slopes(result: Estimate, certainty: Certainty, of: Values) -> FloatArray:
+def _slopes(
+    result: Estimate, certainty: Certainty, of: Callable[[FloatArray], FloatArray]
+) -> FloatArray:
     """The derivatives of numbers to the unknowns, (numbers, m)."""
     columns = []
     low, high = result.problem.limits

@@ -50,7 +50,9 @@ def outliers_of(deviations: FloatArray, limit: float, strict: bool) -> npt.NDArr
         range(len(deviations))
     ])  # fmt: skip
     together = outlying & (((deviations - usual) ** 2).sum(axis=1) <= limit)
-    for start, stop in _intervals(together):
+    filled = np.pad(together, 1)  # over single frames that do not lie off with the others
+    filled[2:-2] |= together[:-2] & together[2:]
+    for start, stop in np.flatnonzero(np.diff(filled)).reshape(-1, 2).tolist():
         ends = (
             start > 0 and not _leaps(deviations, start),
             stop < len(deviations) and not _leaps(deviations, stop),
@@ -58,14 +60,6 @@ def outliers_of(deviations: FloatArray, limit: float, strict: bool) -> npt.NDArr
         if stop - start >= _IN_A_ROW and any(ends):
             result[start:stop] &= ~together[start:stop]
     return result
-
-
-def _intervals(together: npt.NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """From where to where frames lie off together, over single ones that do not."""
-    filled = together.copy()
-    filled[1:-1] |= together[:-2] & together[2:]
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], filled, [False]]).astype(int)))
-    return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
 
 
 def _leaps(deviations: FloatArray, at: int) -> bool:
@@ -120,6 +114,12 @@ class Estimate:
         """The usual size of residuals over the noise."""
         return math.sqrt(self.chi2 / max(self.degrees, 1))
 
+    def at(self, x: FloatArray, problem: Problem | None = None) -> Estimate:
+        """The same at other unknowns, perhaps those of another problem of the same residuals."""
+        problem = problem or self.problem
+        rows, slopes = problem.residuals_and_jacobian(x)
+        return Estimate(problem, x, self.kept, rows, slopes)
+
     @property
     def outliers(self) -> float:
         """The share of observations that are left out."""
@@ -150,9 +150,7 @@ def estimate(
         rows, slopes = problem.residuals_and_jacobian(x)
         degrees = _noise_degrees(_freedoms(problem, rows, slopes, kept), noise_known)
         noise, jitter = _noise(problem, x, rows, degrees, kept, noise_known)
-        noise = _at_least(problem, x, noise, noise_known)
-        change = max(abs(math.log(new / old)) for new, old in
-                     zip(noise, problem.noise, strict=True))  # fmt: skip
+        change = float(np.abs(np.log(np.divide(noise, problem.noise))).max())
         change = max(change, abs(jitter - problem.jitter) / (jitter or 1.0))
         problem = problem.with_noise(noise, x, kept, jitter)
         rows = problem.residuals(x)
@@ -250,17 +248,38 @@ def _noise(
     problem: Problem, x: FloatArray, rows: FloatArray, degrees: list[float],
     kept: npt.NDArray[np.bool_], known: Known,
 ) -> tuple[tuple[float, float], float]:  # fmt: skip
-    """The noise that the residuals show, each kind less what the unknowns take, and the jitter."""
-    if all(known):
-        return problem.noise, problem.jitter
-    if problem.jitter > 0.0 or not known.jitter:
-        return _jittery(problem, x, kept, known)
-    result = list(problem.noise)
-    for kind, free in enumerate(degrees):
-        if not known[kind] and free > 1.0:
-            mine = problem.kinds[kept] == kind
-            result[kind] *= math.sqrt(float(np.sum(rows[kept][mine] ** 2)) / free)
-    return (result[0], result[1]), problem.jitter
+    """The noise that the residuals show, each kind less what the unknowns take, and the jitter.
+
+    It is no smaller than what is computed is known: places or angles that are all the same, as of a
+    column of zeros, have no residuals at all.
+    """
+    result, jitter = list(problem.noise), problem.jitter
+    if not all(known) and (jitter > 0.0 or not known.jitter):
+        count = []
+        for film, (along, across, turn) in zip(problem.films, problem.each(), strict=True):
+            angled = np.zeros(film.time.size, bool)
+            if film.angle is not None:
+                angled[np.isfinite(film.angle)] = kept[turn]
+            count.append(np.stack([kept[along], angled, kept[across]]))
+        seen = int((kept & (problem.kinds <= ANGLE)).sum())
+        found, jitter = likeliest(
+            problem.noise, jitter, known, np.concatenate(problem.deviations(x), axis=1),
+            np.concatenate(problem.states(x), axis=1)[RATE], np.concatenate(count, axis=1),
+            max(1.0 - x.size / seen, 0.1),
+        )  # fmt: skip
+        result = list(found)
+    else:
+        for kind, free in enumerate(degrees):
+            if not known[kind] and free > 1.0:
+                mine = problem.kinds[kept] == kind
+                result[kind] *= math.sqrt(float(np.sum(rows[kept][mine] ** 2)) / free)
+    radius = problem.spec.scales(problem.numbers_at(x))[2]
+    length = max(float((np.ptp(path, axis=1) * [1, 1, radius]).max()) for path in problem.paths(x))
+    place, angle = (
+        one if given else max(one, _COMPUTED * length / unit)
+        for one, given, unit in zip(result, known[:2], (1.0, radius), strict=True)
+    )
+    return (place, angle), jitter
 
 
 def _freedoms(
@@ -283,36 +302,3 @@ def freedom(result: Estimate, known: Known) -> float:
         if not known[kind] and (result.problem.kinds[result.kept] == kind).any()
     ]  # fmt: skip
     return min(told, default=math.inf)
-
-
-def _at_least(
-    problem: Problem, x: FloatArray, noise: tuple[float, float], known: Known
-) -> tuple[float, float]:
-    """Noise of residuals, but no smaller than what is computed is known.
-
-    Places or angles that are all the same, as of a column of zeros, have no residuals at all.
-    """
-    radius = problem.spec.scales(problem.numbers_at(x))[2]
-    length = max(float((np.ptp(path, axis=1) * [1, 1, radius]).max()) for path in problem.paths(x))
-    return (
-        noise[0] if known.place else max(noise[0], _COMPUTED * length),
-        noise[1] if known.angle else max(noise[1], _COMPUTED * length / radius),
-    )
-
-
-def _jittery(
-    problem: Problem, x: FloatArray, kept: npt.NDArray[np.bool_], known: Known
-) -> tuple[tuple[float, float], float]:
-    """The likeliest noise where time stamps jitter."""
-    count = []
-    for film, (place, across, turn) in zip(problem.films, problem.each(), strict=True):
-        angled = np.zeros(film.time.size, bool)
-        if film.angle is not None:
-            angled[np.isfinite(film.angle)] = kept[turn]
-        count.append(np.stack([kept[place], angled, kept[across]]))
-    seen = int((kept & (problem.kinds <= ANGLE)).sum())
-    return likeliest(
-        problem.noise, problem.jitter, known, np.concatenate(problem.deviations(x), axis=1),
-        np.concatenate(problem.states(x), axis=1)[RATE], np.concatenate(count, axis=1),
-        max(1.0 - x.size / seen, 0.1),
-    )  # fmt: skip

@@ -197,10 +197,7 @@ class Fit(Result):
                 "Standard errors are widened by what parts of the frames do to the numbers: they "
                 "may still be too small"
             )
-        if self.untied:
-            found.append(self.untied)
-        if self.misfit:
-            found.append(self.misfit)
+        found += filter(None, (self.untied, self.misfit))
         if self.outliers > 0.2:
             found.append(f"{100.0 * self.outliers:.3g} % of the observations had to be left out")
         return tuple(found)
@@ -219,11 +216,8 @@ class Fit(Result):
             f"{float(getattr(self.given, name)):g}"
             for name in problem.spec.freed if hasattr(self.given, name)
         ]  # fmt: skip
-        straight = [
-            film.name for film, spinless in zip(problem.films, problem.spinless, strict=True)
-            if spinless
-        ]  # fmt: skip
-        if straight:
+        every = zip(problem.films, problem.spinless, strict=True)
+        if straight := [film.name for film, spinless in every if spinless]:
             others = f" and {len(straight) - 1} more lie" if len(straight) > 1 else " lies"
             said.append(
                 f"{straight[0]}{others} along a line and without angles: taken for a slide without "
@@ -352,17 +346,12 @@ class Fit(Result):
         if name not in free:
             raise InputError(f"'{name}' was not found: there are {', '.join(free) or 'none'}")
         k, number = free.index(name), self.numbers[name]
-        low, high = (float(ends[k]) for ends in self.estimate.problem.limits)
-        error = number.error if math.isfinite(number.error) else high - low
-        if not math.isfinite(error):
-            error = abs(number.value)
+        best, (low, high) = self.estimate, (float(ends[k]) for ends in self.estimate.problem.limits)
+        error = next(filter(math.isfinite, (number.error, high - low, abs(number.value))))
         ends = max(low, number.value - reach * error), min(high, number.value + reach * error)
         values = np.linspace(*ends, points)
-        rises = [
-            profile_point(self.estimate, self.certainty, k, value, self.estimate.x)[0]
-            for value in values.tolist()
-        ]
-        return values, np.maximum(np.array(rises) - self.estimate.chi2, 0.0)
+        costs = [profile_point(best, self.certainty, k, at, best.x)[0] for at in values.tolist()]
+        return values, np.maximum(np.array(costs) - best.chi2, 0.0)
 
     def friction_over(
         self, speed: FloatArray | None = None

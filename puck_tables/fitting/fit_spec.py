@@ -16,10 +16,7 @@ from puck_tables._core.real import instance
 from puck_tables.contact.laws import law_of
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
-from puck_tables.fitting.forward_model import Moving
-from puck_tables.fitting.impact_law import Rims
-from puck_tables.fitting.named_laws import NAMES as LAWS
-from puck_tables.fitting.named_laws import law_named
+from puck_tables.fitting.forward_model import Moving, Rims
 from puck_tables.fitting.parameters import (
     ALL,
     DRAGS,
@@ -28,6 +25,7 @@ from puck_tables.fitting.parameters import (
     LAW_NUMBERS,
     MOST,
     NODES,
+    NOTHING,
     OF_IMPACTS,
     OF_PAIRS,
     OF_WALLS,
@@ -42,7 +40,7 @@ from puck_tables.fitting.parameters import (
     prior_of,
     refuse_unknown,
 )
-from puck_tables.fitting.speed_motion import Drags, SpeedFriction
+from puck_tables.fitting.speed_motion import LAWS, Drags, SpeedFriction, law_named
 from puck_tables.fitting.unit_motions import unit_motions_of
 from puck_tables.puck import Puck
 
@@ -192,9 +190,9 @@ class FitSpec:
     def known(self) -> dict[str, float]:
         """All numbers of the puck that are not found."""
         puck = self.puck
-        numbers = {name: float(getattr(puck, name)) for name in
-                   ("radius", "height", "friction", "gravity", "gyration")}  # fmt: skip
-        numbers.update(dict.fromkeys(("drag", *INTEGRATED[: -len(LAW_NUMBERS)]), 0.0))
+        names = ("radius", "height", "friction", "gravity", "gyration")
+        numbers = {name: float(getattr(puck, name)) for name in names}
+        numbers.update(dict.fromkeys(NOTHING, 0.0))
         if _is_annulus(puck):
             numbers["inner"] = float(puck.body.law.name.partition(":")[2])
         return {**numbers, **self.of_impacts, **{n: v for n, v in self.fixed.items() if n in PUCK}}
@@ -216,9 +214,8 @@ class FitSpec:
         decel, delta, radius = self.scales(result)
         friction = decel / numbers["gravity"]
         height = 0.5 * delta * radius / friction if friction != 0.0 else 0.0
-        return {
-            **numbers, "decel": decel, "delta": delta, "friction": friction, "height": height,
-        }  # fmt: skip
+        follows = {"decel": decel, "delta": delta, "friction": friction, "height": height}
+        return {**numbers, **follows}
 
     def slopes(self, result: Mapping[str, float], name: str) -> tuple[float, float, float]:
         """The derivatives of J, δ and r to one that is found, by the complex step."""
@@ -273,17 +270,12 @@ class FitSpec:
 
     def changes_motion(self, name: str) -> bool:
         """Whether a parameter is none of the scales."""
-        scale = self.integrates and name in ("friction", "decel", "gravity")
+        scale = bool(self.integrated) and name in ("friction", "decel", "gravity")
         return name in _KIND or name in NODES or scale
 
     @property
-    def integrates(self) -> bool:
-        """Whether there is something found, or known, with which no look-up has the motions."""
-        return bool(self.integrated)
-
-    @property
     def integrated(self) -> tuple[str, ...]:
-        """What of these is found or known."""
+        """What is found, or known, with which no look-up has the motions."""
         return tuple(name for name in INTEGRATED if name in (*self.free, *self.fixed))
 
     def with_law(self, law: str) -> FitSpec:
@@ -325,18 +317,15 @@ class FitSpec:
         pressure: Any = self.puck.body.law
         if "inner" in result or "inner" in self.fixed:
             pressure = f"annulus:{numbers['inner']!r}"
-        motions = unit_motions_of(pressure, numbers["gyration"], tall and not self.integrates)
+        motions = unit_motions_of(pressure, numbers["gyration"], tall and not self.integrated)
         by_speed = None
-        if self.speeds or self.integrates:
+        if self.speeds or self.integrated:
             g = numbers["gravity"]
-            over = self.speeds or self.law
-            law = self.speed_law(numbers) if over else float(decel / g)
+            law = self.speed_law(numbers) if self.speeds or self.law else float(decel / g)
             drags = Drags(numbers["drag"], *(numbers[name] for name in DRAGS))
-            by_speed = SpeedFriction(
-                law, g, numbers["gyration"], drags,
-                (g * numbers["slope_x"], g * numbers["slope_y"]),
-                (numbers["belt_x"], numbers["belt_y"]),
-            )  # fmt: skip
+            push = g * numbers["slope_x"], g * numbers["slope_y"]
+            belt = numbers["belt_x"], numbers["belt_y"]
+            by_speed = SpeedFriction(law, g, numbers["gyration"], drags, push, belt)
         # while a minimum is sought J, r and h may lead beyond; where it lies is judged in the end
         delta = min(delta, motions.highest)
         return Moving(decel, delta, radius, numbers["drag"], motions, by_speed)
@@ -361,16 +350,17 @@ class FitSpec:
         self._refuse_pressure("a friction over slip speed is")
         nodes = NODES[: len(speeds)]
         free = (*nodes, *(name for name in self.free if name != "friction"))
-        limits = {name: self.bounds["friction"] for name in nodes if "friction" in self.bounds}
-        known = {name: self.priors["friction"] for name in nodes if "friction" in self.priors}
+        bounds, priors = (
+            {**of, **(dict.fromkeys(nodes, of["friction"]) if "friction" in of else {})}
+            for of in (self.bounds, self.priors)
+        )
         return replace(
-            self, free=free, bounds={**self.bounds, **limits}, priors={**self.priors, **known},
-            speeds=speeds, between=between,
-        )  # fmt: skip
+            self, free=free, bounds=bounds, priors=priors, speeds=speeds, between=between
+        )
 
     def highest(self, tall: bool) -> float:
         """The largest δ of which motions are known, of an annulus that is free as of the puck's."""
-        tall = tall and not self.integrates
+        tall = tall and not self.integrated
         pressure = self.puck.body.law
         if "inner" in self.fixed:
             pressure = law_of(f"annulus:{self.fixed['inner']!r}")

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 from puck_tables._core.real import instance
@@ -23,22 +24,18 @@ from puck_tables.fitting.initial_estimate import initial_estimate, is_clean
 from puck_tables.fitting.inputs import (
     Inputs,
     begin_jitter,
-    begin_noise,
     checked_rows,
     checked_walls,
     observations_of,
-    refuse_faster,
     refuse_opening,
     refuse_tipping,
 )
-from puck_tables.fitting.judgement import JudgedMotion, judged_certainty, judged_motion
 from puck_tables.fitting.misfit import misfit
 from puck_tables.fitting.model_comparison import (
     HeldOut,
     LawScore,
     chi2_under,
     compare,
-    on_a_floor,
     over_speeds,
     predicted,
     split,
@@ -46,7 +43,12 @@ from puck_tables.fitting.model_comparison import (
 )
 from puck_tables.fitting.numbers import numbers_of
 from puck_tables.fitting.observations import Observations, noise_of
-from puck_tables.fitting.other_minima import without_spin
+from puck_tables.fitting.other_minima import (
+    JudgedMotion,
+    judged_certainty,
+    judged_motion,
+    without_spin,
+)
 from puck_tables.fitting.parameters import DRAGS
 from puck_tables.fitting.problem import Known, Problem
 from puck_tables.fitting.residuals import NO_PATTERN, NOISY, drift, runs
@@ -54,33 +56,23 @@ from puck_tables.fitting.touches import SlideIndex, slides_apart
 from puck_tables.puck import Puck
 
 Progress = Callable[[int, int], None]
+_GUESS = 1e-3  # of the track: noise to begin with where differences tell none
 _MUCH = 0.1  # of the frames, left out at the ends
 
 
 def fit(
-    tracks: Track | Sequence[Track],
-    puck: Puck,
-    *,
-    free: Iterable[str] | None = None,
+    tracks: Track | Sequence[Track], puck: Puck, *, free: Iterable[str] | None = None,
     fixed: Mapping[str, float] | None = None,
     prior: Mapping[str, tuple[float, float]] | None = None,
     bounds: Mapping[str, tuple[float, float]] | None = None,
     start: Mapping[str, float] | None = None,
-    noise: tuple[float | None, float | None] | None = None,
-    since: float = -math.inf,
-    until: float = math.inf,
-    keep_all: bool = False,
-    jitter: float | str | None = None,
-    rows: tuple[float, float] | None = None,
-    impacts: bool = False,
-    walls: Sequence[Line] = (),
-    slip_speeds: Sequence[float] | None = None,
-    between: str = "cubic",
-    law: str | None = None,
-    laws: Sequence[str] = (),
-    hold_out: float | Sequence[str] | None = None,
+    noise: tuple[float | None, float | None] | None = None, since: float = -math.inf,
+    until: float = math.inf, keep_all: bool = False, jitter: float | str | None = None,
+    rows: tuple[float, float] | None = None, impacts: bool = False, walls: Sequence[Line] = (),
+    slip_speeds: Sequence[float] | None = None, between: str = "cubic", law: str | None = None,
+    laws: Sequence[str] = (), hold_out: float | Sequence[str] | None = None,
     progress: Progress | None = None,
-) -> Fit:
+) -> Fit:  # fmt: skip
     """Find a puck and its launches from tracks of it.
 
     Parameters
@@ -123,7 +115,7 @@ def fit(
     between : cubic or linear, f between these speeds
         As :class:`SpeedLaw` takes it: a cubic that rises and falls only where f at the speeds does.
     law : 'stribeck', 'hyperbola' or 'two-valued', of friction over slip speed by three numbers
-        friction (of fast slip), friction_rest and law_speed (m/s): :mod:`.named_laws`.
+        friction (of fast slip), friction_rest and law_speed (m/s): :mod:`.speed_motion`.
     laws : names of pressure laws to compare, as :class:`Puck` takes them; with +drag, +air, +slope,
         +belt, +stribeck, +hyperbola or +two-valued what is then found, too; 'floors': all of these
         of uniform pressure, and :attr:`Fit.verdict` says which the film supports
@@ -184,11 +176,18 @@ def fit(
     judged = judged_motion(estimates.best, inputs.known, observed.smooth, inputs.spec.bounds)
     scores: tuple[LawScore, ...] = ()
     if variants:
-        scores = _compared(inputs, observed, estimates, variants)
+        same = replace(observed.problem, jitter=estimates.slides.problem.jitter)
+        scores = compare(same, variants, inputs.known)
         say(1 + len(variants), steps)
     held_out = None
-    if inputs.hold_out is not None:
-        held_out = _held_out(judged.best, inputs.hold_out, inputs.known)
+    if inputs.hold_out is not None:  # the later part of tracks, predicted from the rest
+        best, known = judged.best.problem, inputs.known
+        earlier, later = split(best.films, inputs.hold_out, best.noise[0])
+        fewer = best.with_films(earlier)
+        followed = best.impact_specs or best.spec.speeds or best.spec.integrated
+        part = estimate(fewer, judged.best.x, known) if followed \
+            else initial_estimate(fewer, known, refit=False)  # fmt: skip
+        held_out = predicted(part, judged_certainty(part, known), best.films, later)
         say(steps, steps)
     return _reported(inputs, observed, estimates, judged, scores, held_out)
 
@@ -220,9 +219,11 @@ class _Estimates(NamedTuple):
 def _observe(films: tuple[Observations, ...], inputs: Inputs) -> _Observed:
     """What is fitted of the tracks, in the slides between impacts if these are looked for."""
     smooth = noise_of(list(films))
+    size = max(film.size for film in films)
+    guesses = (one if math.isfinite(one) else _GUESS * size for one in smooth)
     begin = [
-        value if value is not None else begin_noise(one, films)
-        for value, one in zip(inputs.noise, smooth, strict=True)
+        max(guess, 1e-9 * (size or 1.0)) if value is None else value
+        for value, guess in zip(inputs.noise, guesses, strict=True)
     ]
     refuse_tipping(inputs.spec, films, begin[0])
     parts = films
@@ -244,7 +245,7 @@ def _estimate_all(inputs: Inputs, observed: _Observed) -> _Estimates:
     late = bool(inputs.speeds) and not inputs.impacts
     drags = {*DRAGS} >= {*inputs.spec.integrated}  # a law may look like a touch
     best = slides = initial_estimate(problem, known, refit=drags and not late)
-    if inputs.spec.integrates:
+    if inputs.spec.integrated:
         refuse_opening(best)
     untied = ""
     if inputs.impacts:
@@ -253,35 +254,16 @@ def _estimate_all(inputs: Inputs, observed: _Observed) -> _Estimates:
         )
     constant = best
     if inputs.speeds:
-        best = _over_speeds(constant, inputs)
+        over = partial(
+            over_speeds, speeds=inputs.speeds, between=inputs.between, known=inputs.known
+        )
+        best = over(constant)
         if late and not is_clean(best, NOISY, NO_PATTERN):
             slides = initial_estimate(problem, known, refit=True)
             if slides.problem.films != constant.problem.films:
-                constant, best = slides, _over_speeds(slides, inputs)
+                constant, best = slides, over(slides)
         refuse_opening(best)
     return _Estimates(slides, best, constant, untied)
-
-
-def _over_speeds(constant: Estimate, inputs: Inputs) -> Estimate:
-    """The estimate with a friction over slip speed, from that of one for all."""
-    refuse_faster(inputs.speeds, constant)
-    return over_speeds(constant, inputs.speeds, inputs.between, inputs.known)
-
-
-def _compared(
-    inputs: Inputs, observed: _Observed, estimates: _Estimates, variants: Mapping[str, FitSpec]
-) -> tuple[LawScore, ...]:
-    """The laws named, best first."""
-    # frames that another law leaves out at the ends may be those that tell
-    jitter, known = estimates.slides.problem.jitter, inputs.known._replace(jitter=True)
-
-    def of_law(one: FitSpec) -> Estimate:
-        same = replace(observed.problem, spec=one, jitter=jitter)
-        if one.integrates:
-            return on_a_floor(same, known)
-        return initial_estimate(same, known, refit=False)
-
-    return compare(variants, observed.problem.noise, inputs.known, of_law)
 
 
 def _reported(
@@ -306,55 +288,29 @@ def _reported(
         impacts = impacts_apart(
             best, observed.pieces, certainty, [film.name for film in observed.uncut]
         )
-    left_out = _left_out((*observed.problem.films, *observed.uncut), best.problem.films)
-    result = Fit(
-        given=inputs.spec.puck,
-        numbers=numbers,
-        launches=launches,
-        chi2=best.chi2,
-        degrees=best.degrees,
-        noise=best.problem.noise,
-        jitter=best.problem.jitter,
-        noise_known=known,
-        smooth_noise=observed.smooth,
-        outliers=best.outliers,
-        runs=runs(best),
-        drift=drift(best),
-        left_out=left_out,
-        cut_off=_trimmed_ends(estimates.slides, observed.problem, known, left_out),
-        blind=blind,
-        astray=judged.astray,
-        laws=laws,
-        held_out=held_out,
-        impacts=impacts,
-        untied=estimates.untied,
-        not_met=not_met(impacts, best.problem, inputs.lines) if inputs.impacts else (),
-        constant_chi2=(
-            chi2_under(estimates.constant, best.problem.noise) if inputs.speeds else math.nan
-        ),
-        estimate=best,
-        certainty=certainty,
-        forces=judged.forces,
-        uncut=observed.uncut,
+    named = {film.name: film.frame for film in (*observed.uncut, *observed.problem.films)}
+    left_out = tuple(  # how many frames at the start and the end of each are no free motion
+        (film.name, int((named[film.name] < film.frame[0]).sum()),
+         int((named[film.name] > film.frame[-1]).sum())) for film in best.problem.films
+    )  # fmt: skip
+    constant_chi2 = (
+        chi2_under(estimates.constant, best.problem.noise) if inputs.speeds else math.nan
     )
+    result = Fit(
+        given=inputs.spec.puck, numbers=numbers, launches=launches, chi2=best.chi2,
+        degrees=best.degrees, noise=best.problem.noise, jitter=best.problem.jitter,
+        noise_known=known, smooth_noise=observed.smooth, outliers=best.outliers, runs=runs(best),
+        drift=drift(best), left_out=left_out,
+        cut_off=_trimmed_ends(estimates.slides, observed.problem, known, left_out), blind=blind,
+        astray=judged.astray, laws=laws, held_out=held_out, impacts=impacts,
+        untied=estimates.untied, constant_chi2=constant_chi2, estimate=best, certainty=certainty,
+        not_met=not_met(impacts, best.problem, inputs.lines) if inputs.impacts else (),
+        forces=judged.forces, uncut=observed.uncut,
+    )  # fmt: skip
     if result.complaints:
         said = misfit(estimates.slides, observed.problem, known, judged.forces, bool(inputs.speeds))
         result = replace(result, misfit=said)
     return result
-
-
-def _left_out(
-    before: tuple[Observations, ...], after: tuple[Observations, ...]
-) -> tuple[tuple[str, int, int], ...]:
-    """How many frames at the start and the end of each track are no free motion."""
-    named = {film.name: film for film in reversed(before)}
-    return tuple(
-        (
-            left.name, int((named[left.name].frame < left.frame[0]).sum()),
-            int((named[left.name].frame > left.frame[-1]).sum()),
-        )
-        for left in after
-    )  # fmt: skip
 
 
 def _trimmed_ends(
@@ -370,25 +326,11 @@ def _trimmed_ends(
         return ""
     films = tuple(replace(film, cuttable=(False, False)) for film in problem.films)
     kept = initial_estimate(problem.with_films(films), known, refit=True)
-    numbers = ", ".join(
-        f"{name} {value:.4g}" for name, value in kept.problem.numbers_at(kept.x).items()
-    )  # fmt: skip
-    more = kept.problem.noise[0] * math.sqrt(kept.chi2 / max(kept.degrees, 1))
-    more /= best.problem.noise[0] * math.sqrt(best.chi2 / max(best.degrees, 1)) or 1.0
+    found = kept.problem.numbers_at(kept.x)
+    numbers = ", ".join(f"{name} {value:.4g}" for name, value in found.items())
+    more = kept.problem.noise[0] * kept.size / (best.problem.noise[0] * best.size or 1.0)
     return (
         f"{' and '.join(said)} are left out: something seems to touch the puck there. With all "
         f"frames (--keep-all, keep_all=True) it would be {numbers or 'as known'}, residuals "
         f"{more:.3g} times as large"
     )
-
-
-def _held_out(best: Estimate, wanted: float | tuple[str, ...], known: Known) -> HeldOut:
-    """The later part of tracks, predicted from the rest."""
-    problem = best.problem
-    films, later = split(problem.films, wanted, problem.noise[0])
-    fewer = problem.with_films(films)
-    if problem.impact_specs or problem.spec.speeds or problem.spec.integrates:
-        part = estimate(fewer, best.x, known)
-    else:
-        part = initial_estimate(fewer, known, refit=False)
-    return predicted(part, judged_certainty(part, known), problem.films, later)

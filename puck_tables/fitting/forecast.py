@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar, Protocol
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -16,7 +16,6 @@ from puck_tables.fitting.certainty import Certainty, certainty_of
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.identifiability import minimum_sentence, mirror_sentence
-from puck_tables.fitting.numbers import plausible_for
 from puck_tables.fitting.observations import FEWEST, Observations
 from puck_tables.fitting.other_minima import mirrored, other_minima
 from puck_tables.fitting.problem import Problem
@@ -30,18 +29,6 @@ _RANGES = {
     "fps": ("1/s", 1e-6, 1e9), "place_noise": ("m", 1e-12, 1e3), "angle_noise": ("rad", 1e-12, 1e3),
     "duration": ("s", 1e-9, 1e9),
 }  # fmt: skip
-
-
-class LaunchLike(Protocol):
-    """A velocity (vx, vy) m/s and a spin rad/s, as :class:`puck_tables.Launch` has them."""
-
-    @property
-    def velocity(self) -> Any:
-        """(vx, vy), m/s."""
-
-    @property
-    def spin(self) -> Any:
-        """Rad/s."""
 
 
 @dataclass(frozen=True)
@@ -72,13 +59,12 @@ class Camera:
 
     def __post_init__(self) -> None:
         for name, (unit, low, high) in _RANGES.items():
-            value = getattr(self, name)
-            if value is None and name in ("angle_noise", "duration"):
-                continue
-            number = positive(name, value, unit)
-            if not low <= number <= high:
-                raise InputError(f"{name} must be from {low:g} to {high:g} {unit}, got {number:g}")
-            object.__setattr__(self, name, number)
+            if getattr(self, name) is not None or name in ("fps", "place_noise"):
+                number = positive(name, getattr(self, name), unit)
+                if not low <= number <= high:
+                    told = f"from {low:g} to {high:g} {unit}, got {number:g}"
+                    raise InputError(f"{name} must be {told}")
+                object.__setattr__(self, name, number)
 
     def film(self, stop_time: float) -> Observations:
         """Its frames of a motion that stops at a time.
@@ -162,11 +148,9 @@ class Forecast(Result):
 
     def dataset(self) -> Dataset:
         """One row a number."""
-        columns = {
-            "number_name": variable("number_name", list(self.names), ("number",)),
-            "number_value": variable("number_value", self.values, ("number",)),
-            "number_error": variable("number_error", self.errors, ("number",)),
-        }
+        told = {"name": list(self.names), "value": self.values, "error": self.errors}
+        columns = {f"number_{key}": variable(f"number_{key}", one, ("number",))
+                   for key, one in told.items()}  # fmt: skip
         attributes = {
             "title": "What a film of a puck would tell", "frames": self.frames,
             "fps": self.camera.fps, "launch_velocity": list(self.velocity),
@@ -176,7 +160,7 @@ class Forecast(Result):
 
 
 def fisher(
-    puck: Puck, launch: LaunchLike, camera: Camera, *, free: Iterable[str] = ("friction", "delta")
+    puck: Puck, launch: Any, camera: Camera, *, free: Iterable[str] = ("friction", "delta")
 ) -> Forecast:
     """What a film of a launch would tell of a puck, before the experiment.
 
@@ -227,22 +211,12 @@ def fisher(
         errors[[k for k, name in enumerate(names) if name in minimum.numbers]] = np.inf
     if unsigned:
         errors[names.index("launch_spin")] = np.inf
+    said = [minimum_sentence(minimum, False) for minimum in rivals]
+    said += [mirror_sentence("the film") for _ in unsigned]
     return Forecast(
-        puck=puck,
-        velocity=velocity,
-        spin=spin,
-        camera=camera,
-        free=problem.spec.free,
-        names=names,
-        values=seen.x,
-        errors=errors,
-        frames=problem.films[0].time.size,
-        rivals=(
-            *(minimum_sentence(minimum, False) for minimum in rivals),
-            *(mirror_sentence("the film") for _ in unsigned),
-        ),
-        correlation=known.correlation,
-    )
+        puck, velocity, spin, camera, problem.spec.free, names, seen.x, errors,
+        problem.films[0].time.size, tuple(said), known.correlation,
+    )  # fmt: skip
 
 
 def _forecast_estimate(
@@ -263,7 +237,7 @@ def _forecast_estimate(
     found = {name: numbers[name] for name in spec.free}
     x = problem.unknowns(found, np.array([[0.0, 0.0, *velocity, spin, 0.0]]))
     rows, slopes = problem.residuals_and_jacobian(x)
-    certainty = certainty_of(slopes, plausible_for(problem, x))
+    certainty = certainty_of(slopes, problem.plausible(x))
     places = rows[: 2 * film.time.size].reshape(2, -1).T * camera.place_noise  # all were seen at 0
     problem = problem.with_films((replace(film, place=places),))
     kept = np.ones(rows.size, bool)

@@ -11,7 +11,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.certainty import Z95, Certainty, OtherMinimum, certainty_of
 from puck_tables.fitting.estimate import Estimate
-from puck_tables.fitting.numbers import KNOWN, EstimatedLaunch, Number, plausible_for
+from puck_tables.fitting.numbers import KNOWN, EstimatedLaunch, Number
 from puck_tables.fitting.observations import Observations
 from puck_tables.fitting.parameters import ALL, LAUNCH, OF_IMPACTS, WALL
 from puck_tables.fitting.problem import PRIOR, Problem
@@ -185,8 +185,14 @@ def not_identifiable(
         if len(names) == 1:
             told = f"{names[0]} is not determined: {_ALIKE}"
         else:
-            told = f"{' and '.join(names)} are not determined one by one: the tracks look alike " \
-                f"when {_together(result.problem, certainty, members)}"  # fmt: skip
+            sizes = np.abs(certainty.blind[:, members[:2]]).sum(axis=1)
+            along = certainty.blind[int(np.argmax(sizes))][members]
+            words = [f"{name} {'rises' if one * along[0] > 0.0 else 'falls'}"
+                     for name, one in zip(names, along, strict=True)]  # fmt: skip
+            told = (
+                f"{' and '.join(names)} are not determined one by one: the tracks look alike when "
+                f"{' and '.join(words)} with it"
+            )
         remedy = _remedy(result, shared, [result.problem.names[k] for k in members])
         sentences.append(f"{told}. {remedy}")
         seen.add(frozenset(members))
@@ -219,23 +225,9 @@ def mirror_sentence(track: str) -> str:
 
 def _name(problem: Problem, k: int) -> str:
     track, name = problem.names[k]
-    if track == -1:
-        return name
     if track < -1:
         return f"{WALL[name].words} {-1 - track}"
-    return f"{ALL[name].words} of {problem.films[track].name}"
-
-
-def _together(problem: Problem, certainty: Certainty, members: list[int]) -> str:
-    """How members of a direction change together."""
-    first, *others = members
-    sizes = np.abs(certainty.blind[:, [first, others[0]]]).sum(axis=1)
-    direction = certainty.blind[int(np.argmax(sizes))]
-    words = [f"{_name(problem, first)} rises"]
-    for k in others:
-        same = direction[k] * direction[first] > 0.0
-        words.append(f"{_name(problem, k)} {'rises' if same else 'falls'}")
-    return " and ".join(words) + " with it"
+    return name if track == -1 else f"{ALL[name].words} of {problem.films[track].name}"
 
 
 def _remedy(result: Estimate, shared: list[str], members: list[tuple[int, str]]) -> str:
@@ -244,35 +236,33 @@ def _remedy(result: Estimate, shared: list[str], members: list[tuple[int, str]])
         return f"Measure one of them otherwise and fix it or give a prior: {' or '.join(shared)}."
     if any(key[0] < -1 or key[1] in OF_IMPACTS for key in members):
         return "Fix it, or give it a prior."
-    now = _errors(result.problem, result.x, members)
-    told: list[str] = []
+
+    def errors(problem: Problem, x: FloatArray) -> FloatArray:
+        """Of members, those of the puck if there are, in units of what is plausible."""
+        known = _by_tracks(problem, x)
+        wanted = [key for key in members if key[0] == -1] or members
+        places = [problem.names.index(key) for key in wanted]
+        return np.asarray((known.errors / known.plausible)[places])
+
+    now, told = errors(result.problem, result.x), list[str]()
     for words, problem, x in _other_films(result):
-        others = _errors(problem, x, members)
+        others = errors(problem, x)
         enough = (others < _TOLD) & (others < _BETTER * now)
         if enough.all() and not any(one in words for one in told):
             told.append(words)
-    if told:
-        return f"What would tell: {', or '.join(told)}."
-    return "Fix it, or give it a prior."
+    return f"What would tell: {', or '.join(told)}." if told else "Fix it, or give it a prior."
 
 
 def _other_films(result: Estimate) -> list[tuple[str, Problem, FloatArray]]:
     """Films that could have been made instead, each with its unknowns."""
     values, launches = result.problem.numbers_at(result.x), result.problem.launches(result.x)
-    problem = replace(
-        result.problem, spec=result.problem.spec.alone(), weights=(), impact_specs=(), walls=(),
-        rests=(),
-    )  # fmt: skip
-    x = problem.unknowns(values, launches)
-    radius = problem.spec.scales(values)[2]
-    films = []
-    marked = problem
+    spec = result.problem.spec.alone()
+    problem = replace(result.problem, spec=spec, weights=(), impact_specs=(), walls=(), rests=())
+    radius, films, marked = spec.scales(values)[2], [], problem
     if any(film.angle is None for film in problem.films):
-        marked = replace(
-            problem, films=tuple(
-                replace(film, angle=np.zeros(film.time.size), counts=None) for film in problem.films
-            ), noise=(problem.noise[0], min(problem.noise[1], 1e-3 * _MARKS)),
-        )  # fmt: skip
+        seen = [replace(one, angle=np.zeros(one.time.size), counts=None) for one in problem.films]
+        noise = problem.noise[0], min(problem.noise[1], 1e-3 * _MARKS)
+        marked = replace(problem, films=tuple(seen), noise=noise)
         films.append(("angle marks on the puck", marked, marked.unknowns(values, launches)))
     faster = launches.copy()
     speed = np.hypot(faster[:, 2], faster[:, 3])
@@ -284,17 +274,20 @@ def _other_films(result: Estimate) -> list[tuple[str, Problem, FloatArray]]:
         moderate = dict(values)
         if "delta" in values:  # at a bound it says nothing of what could be seen
             moderate["delta"] = min(max(values["delta"], 0.05), 0.9)
-        films.append(
-            (f"more spin (some {least:.2g} rad/s)", problem, problem.unknowns(moderate, faster))
-        )
+        words = f"more spin (some {least:.2g} rad/s)"
+        films.append((words, problem, problem.unknowns(moderate, faster)))
         if marked is not problem:
-            films.append((
-                f"more spin (some {least:.2g} rad/s) and angle marks", marked,
-                marked.unknowns(moderate, faster),
-            ))  # fmt: skip
-    longer = replace(problem, films=tuple(_longer(film) for film in problem.films))
-    films.append(("a longer run, to the stop", longer, x))
-    return films
+            films.append((f"{words} and angle marks", marked, marked.unknowns(moderate, faster)))
+    longer = []
+    for film in problem.films:
+        count = math.ceil(_LONGER * film.time.size)
+        longer.append(replace(
+            film, time=film.usual_step * np.arange(float(count)), place=np.zeros((count, 2)),
+            angle=None if film.angle is None else np.zeros(count), frame=np.arange(count),
+            row=None if film.row is None else np.resize(film.row, count), counts=None,
+        ))  # fmt: skip
+    x = problem.unknowns(values, launches)
+    return [*films, ("a longer run, to the stop", replace(problem, films=tuple(longer)), x)]
 
 
 def spin_would_tell(result: Estimate) -> str:
@@ -303,38 +296,16 @@ def spin_would_tell(result: Estimate) -> str:
     For a result whose tracks lie along a line without angles.
     """
     problem = replace(result.problem, spec=replace(result.problem.spec, bounds={}, start={}))
-    for words, other, x in reversed(_other_films(replace(result, problem=problem))):
-        if "spin" not in words or "marks" not in words:
-            continue
-        known = _by_tracks(other, x)
-        told = [
-            f"{name} to +- {error:.2g}"
-            for name, error in zip(other.spec.free, known.errors, strict=False)
-            if math.isfinite(error) and error > 0.0
-        ]
+    films = _other_films(replace(result, problem=problem))
+    for words, other, x in (one for one in films if "spin" in one[0] and "marks" in one[0]):
+        errors = zip(other.spec.free, _by_tracks(other, x).errors, strict=False)
+        told = [f"{name} to +- {error:.2g}" for name, error in errors if 0.0 < error < math.inf]
         if told:
             return f"With {words}, as it is otherwise, the film would tell {' and '.join(told)}"
     return ""
 
 
-def _errors(problem: Problem, x: FloatArray, members: list[tuple[int, str]]) -> FloatArray:
-    """The errors of members, those of the puck if there are, in units of what is plausible."""
-    known = _by_tracks(problem, x)
-    wanted = [key for key in members if key[0] == -1] or members
-    places = [problem.names.index(key) for key in wanted]
-    return np.asarray((known.errors / known.plausible)[places])
-
-
 def _by_tracks(problem: Problem, x: FloatArray) -> Certainty:
     """How well unknowns are known by tracks without priors."""
     slopes = problem.jacobian(x)[problem.kinds != PRIOR]
-    return certainty_of(slopes, plausible_for(problem, x))
-
-
-def _longer(film: Observations) -> Observations:
-    count = math.ceil(_LONGER * film.time.size)
-    return replace(
-        film, time=film.usual_step * np.arange(float(count)), place=np.zeros((count, 2)),
-        angle=None if film.angle is None else np.zeros(count), frame=np.arange(count),
-        row=None if film.row is None else np.resize(film.row, count), counts=None,
-    )  # fmt: skip
+    return certainty_of(slopes, problem.plausible(x))

@@ -21,7 +21,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import combinations, product
+from itertools import combinations, pairwise, product
 from typing import NamedTuple
 
 import numpy as np
@@ -29,7 +29,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.fit_spec import FitSpec
-from puck_tables.fitting.impact_law import ImpactSpec, Slide, WallLine, state_at
+from puck_tables.fitting.forward_model import ImpactSpec, Slide, WallLine, state_at
 from puck_tables.fitting.least_squares import ROBUST, multi_start
 from puck_tables.fitting.observations import Observations
 from puck_tables.fitting.parameters import OF_PAIRS, OF_WALLS
@@ -69,6 +69,11 @@ class ImpactMatch(NamedTuple):
     grip: float
     mass: float
 
+    @property
+    def pieces(self) -> tuple[int, ...]:
+        """The pieces that end there."""
+        return tuple(kink.piece for kink in self.kinks_of_slides)
+
 
 def matched_impacts(
     problem: Problem, pieces: tuple[SlideIndex, ...], x: FloatArray
@@ -94,10 +99,8 @@ def matched_impacts(
             if match_ is not None:
                 matches.append(match_)
                 taken |= {i, k}
-    for k, kink in enumerate(kinks_of_slides):
-        match_ = None if k in taken else _of_wall(problem, x, kink)
-        if match_ is not None:
-            matches.append(match_)
+    alone = [kink for k, kink in enumerate(kinks_of_slides) if k not in taken]
+    matches += filter(None, (_of_wall(problem, x, kink) for kink in alone))
     return sorted(matches, key=lambda one: one.kinks_of_slides[0].time)
 
 
@@ -193,13 +196,9 @@ def coupled(
     matches = matched_impacts(problem, pieces, x)
     if not matches:
         return []
-    follows = {kink.piece + 1 for match_ in matches for kink in match_.kinks_of_slides}
-    chains: list[list[int]] = []
-    for n in range(len(pieces)):
-        if n in follows:
-            chains[-1].append(n)
-        else:
-            chains.append([n])
+    follows = {piece + 1 for match_ in matches for piece in match_.pieces}
+    starts_new = [n for n in range(len(pieces)) if n not in follows]
+    chains = [[*range(*ends)] for ends in pairwise([*starts_new, len(pieces)])]
     tracks, home = [], {}
     for k, chain in enumerate(chains):
         first, last = problem.films[chain[0]], problem.films[chain[-1]]
@@ -217,17 +216,17 @@ def coupled(
     numbers: dict[int, int] = {}
     for match_ in matches:
         kink = match_.kinks_of_slides[0]
-        own = [one.piece for one in match_.kinks_of_slides]
+        own = match_.pieces
         ends = [problem.films[n + more].time[-1] for n in own for more in (0, 1)]
         number = -1
         if len(own) == 1:
-            given = _wall_at(lines, kink, radius)
-            number = numbers.get(given[0], len(walls)) if given else len(walls)
+            given, wall = _wall_at(lines, kink, radius) or (-1 - len(walls), None)
+            number = numbers.setdefault(given, len(walls))
             if number == len(walls):
-                walls.append(given[1] if given else None)
-                starts.append(given[1] if given else _wall(match_, radius))
-            if given:
-                numbers[given[0]] = number
+                normal = np.array([math.cos(match_.toward), math.sin(match_.toward)])
+                away = float(kink.before[:2] @ normal) + radius
+                walls.append(wall)
+                starts.append(wall or WallLine(match_.toward, away))
         films_met = tuple(home[n] for n in own)
         reach = max(_REACH * float(min(ends)), _REACH_FRAMES * step)
         impact_specs.append(ImpactSpec(kink.time + shift, reach, films_met, number))
@@ -236,12 +235,12 @@ def coupled(
     ways = [spec.coupled(sizes, grip)]
     if grip and len(matches) > 1:
         ways += [other for other in [spec.coupled(sizes, False)] if other.free != ways[0].free]
-    launches = problem.launches(x)[[chain[0] for chain in chains]]
-    result = []
+    firsts = [chain[0] for chain in chains]
+    launches, result = problem.launches(x)[firsts], []
     for one in ways:
         tied = Problem(
             one, tuple(tracks), problem.noise, problem.tall,
-            rests=tuple(problem.rests[chain[0]] for chain in chains) if problem.rests else (),
+            rests=tuple(problem.rests[n] for n in firsts) if problem.rests else (),
             walls=tuple(walls), impact_specs=tuple(impact_specs),
         )  # fmt: skip
         values = {**problem.numbers_at(x), **_begin(one, matches)}
@@ -267,12 +266,6 @@ def _begin(spec: FitSpec, matches: list[ImpactMatch]) -> dict[str, float]:
         if mass:
             result[mass[0]] = float(np.median([match_.mass for match_ in mine]))
     return {name: spec.start.get(name, value) for name, value in result.items()}
-
-
-def _wall(match_: ImpactMatch, radius: float) -> WallLine:
-    """The wall where an impact was."""
-    normal = np.array([math.cos(match_.toward), math.sin(match_.toward)])
-    return WallLine(match_.toward, float(match_.kinks_of_slides[0].before[:2] @ normal) + radius)
 
 
 def _wall_at(lines: Sequence[Line], kink: Kink, radius: float) -> tuple[int, WallLine] | None:
@@ -315,8 +308,8 @@ def candidates_of(slides: Estimate) -> list[FloatArray]:
         return [slides.x]
     spec, numbers = problem.spec, problem.numbers_at(slides.x)
     decel, delta, _ = spec.scales(numbers)
-    decels = [decel * one for one in _DECELS] \
-        if {"friction", "decel", "gravity"} & {*spec.free} else [decel]  # fmt: skip
+    slows = {"friction", "decel", "gravity"} & {*spec.free}
+    decels = [decel * one for one in (_DECELS if slows else (1.0,))]
     deltas = _DELTAS if {"delta", "height"} & {*spec.free} else (delta,)
     low, high = (ends[: len(spec.free)] for ends in problem.limits)
     ranked: list[tuple[float, FloatArray]] = []
@@ -328,9 +321,8 @@ def candidates_of(slides: Estimate) -> list[FloatArray]:
             result = dict(zip(spec.free, values, strict=True))
             options = [_spins_of(slides, n, result) for n in range(len(problem.films))]
             for chosen in product(*options):
-                launches = np.array([launch for _, launch in chosen])
-                cost = sum(cost for cost, _ in chosen)
-                mine.append((cost, problem.unknowns(result, launches)))
+                costs, launches = zip(*chosen, strict=True)
+                mine.append((sum(costs), problem.unknowns(result, np.array(launches))))
         ranked += sorted(mine, key=lambda option: option[0])[:_EACH]
     ranked.sort(key=lambda option: option[0])
     return [slides.x, *(x for _, x in ranked)]

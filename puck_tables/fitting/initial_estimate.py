@@ -13,9 +13,8 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
-from puck_tables.fitting.certainty import certainty_of
+from puck_tables.fitting.certainty import certainty_at, certainty_of
 from puck_tables.fitting.estimate import FARTHEST, Estimate, estimate, only_outliers
-from puck_tables.fitting.numbers import plausible_for
 from puck_tables.fitting.observations import FEWEST, Observations, noise_of, rests_from
 from puck_tables.fitting.parameters import DRAGS, NOTHING
 from puck_tables.fitting.problem import ANGLE, UNSEEN, Known, Problem
@@ -32,15 +31,13 @@ _MOSTLY = 0.7  # of them are outliers
 
 
 def trimmed(result: Estimate, uncut: tuple[Observations, ...]) -> tuple[Observations, ...]:
-    """The tracks without what lies at their ends and is not of the motion.
+    """The tracks without what lies at their ends and is not of the motion; ``uncut``: with all.
 
     What is off there is left out where something touches the puck (:mod:`.first_touch`); else it is
     the model that is wrong.  A hand that lets go slows otherwise by about J, and is off by as much
     as an outlier only the time √(2 · 4σ/J) before: so long beside what is foreign is left out, too.
-    ``uncut``: the tracks with all frames.
     """
-    films = []
-    problem = result.problem
+    films, problem = [], result.problem
     decel = problem.spec.scales(problem.numbers_at(result.x))[0]
     hidden = math.sqrt(2.0 * FARTHEST * problem.noise[0] / decel)
     for film, whole, (x, _, _) in zip(problem.films, uncut, problem.each(), strict=True):
@@ -56,8 +53,8 @@ def trimmed(result: Estimate, uncut: tuple[Observations, ...]) -> tuple[Observat
         chosen = (inner >= ends[0]) & (inner < out.size - ends[1])
         same = bool(chosen.all()) or chosen.sum() < FEWEST + 2
         films.append(film if same else film.part(chosen))
-    same = all(a is b for a, b in zip(films, result.problem.films, strict=True))
-    return result.problem.films if same else tuple(films)
+    same = all(a is b for a, b in zip(films, problem.films, strict=True))
+    return problem.films if same else tuple(films)
 
 
 def _ends(whole: Observations, at: int, close: int, first: bool) -> bool:
@@ -81,25 +78,20 @@ def is_clean(result: Estimate, excess: float = 1.2, chance: float = 0.01) -> boo
 
 def without_ends(film: Observations) -> list[Observations]:
     """A track without what lies before or after a touch, where that is the smaller part."""
-    order = np.arange(film.time.size)
+    order, parts = np.arange(film.time.size), []
     count = round(_SMALLER * order.size)
-    parts = []
-    at = first_touch(film, 0, count) if film.cuttable[0] else None
-    if at is not None:
-        parts.append(film.part(order >= at))
-    at = first_touch(film, order.size - count, order.size) if film.cuttable[1] else None
-    if at is not None:
-        parts.append(film.part(order < at))
+    for end, ends in enumerate(((0, count), (order.size - count, order.size))):
+        at = first_touch(film, *ends) if film.cuttable[end] else None
+        if at is not None:
+            parts.append(film.part((order >= at) != bool(end)))
     return [part for part in parts if part.time.size >= FEWEST + 2]
 
 
 def _foreign(out: npt.NDArray[np.bool_]) -> int:
     """How many frames at the beginning are mostly outliers."""
-    counts = np.cumsum(out)
     sizes = np.arange(1, out.size + 1)
-    blocks = out & (counts >= _MOSTLY * sizes) & (sizes >= _FEWEST_OUT)
-    result = np.flatnonzero(blocks)
-    return int(result[-1]) + 1 if result.size else 0
+    mostly = out & (np.cumsum(out) >= _MOSTLY * sizes) & (sizes >= _FEWEST_OUT)
+    return int(sizes[mostly].max(initial=0))
 
 
 _LIFTS = 0.995  # δ from which on a uniform puck is fitted with part of its base lifted
@@ -114,24 +106,31 @@ def initial_estimate(problem: Problem, known: Known, refit: bool) -> Estimate:
     ``refit``: whether frames at the ends that are no free motion are left out.
     """
     problem = _with_room(problem)
-    left = _observations(problem) - len(problem.names) + len(problem.priors)
+    count = int((problem.kinds <= ANGLE).sum())
+    left = count - len(problem.names) + len(problem.priors)
     if left <= 0:
         raise InputError(
-            f"{_observations(problem)} observations cannot tell {len(problem.names)} unknowns: "
+            f"{count} observations cannot tell {len(problem.names)} unknowns: "
             "give more frames, or fix something"
         )
     if left < _JUDGED and not (known.place and (known.angle or not problem.angled)):
         raise InputError(
-            f"{_observations(problem)} observations of {len(problem.names)} unknowns are too few "
+            f"{count} observations of {len(problem.names)} unknowns are too few "
             "to judge their noise by: give the noise, or more frames"
         )
-    result = _looked_up(problem, known) if not problem.spec.integrates \
+    result = _looked_up(problem, known) if not problem.spec.integrated \
         else _integrated(problem, known)  # fmt: skip
     if not refit:
         return result
     result = _trimmed(result, problem, known)
     if len(problem.films) == 1 and not is_clean(result, NOISY, NO_PATTERN):
-        result = _of_a_part(problem, known) or result
+        # a hand or a wall may lead the fit so far away that no frame is seen to be foreign
+        for film in without_ends(problem.films[0]):
+            part = initial_estimate(problem.with_films((film,)), known, refit=False)
+            part = _trimmed(part, problem, known)
+            if is_clean(part):
+                result = part
+                break
     if only_outliers(result, known):
         return result
     # frames that are off together are good ones: what the model cannot follow is not hidden
@@ -175,8 +174,7 @@ def _integrated(problem: Problem, known: Known) -> Estimate:
     for share in _SHARES_OF_AIR:  # of the slowing at half the speed that is by air
         less = numbers_with(spec, (1.0 - share) * decel, (1.0 - share) * delta)
         air = 4.0 * share * decel / max(speed, 1e-9) ** 2
-        given = {**NOTHING, **numbers, **less, "air": air}
-        x = problem.unknowns({name: given[name] for name in spec.free}, launches)
+        x = problem.unknowns({**NOTHING, **numbers, **less, "air": air}, launches)
         begun.append((problem, np.clip(x, *problem.limits)))
     return estimate(problem, nearest_start(problem, begun)[1], known)
 
@@ -215,19 +213,6 @@ def _trimmed(result: Estimate, problem: Problem, known: Known) -> Estimate:
     return result
 
 
-def _of_a_part(problem: Problem, known: Known) -> Estimate | None:
-    """The estimate of a track without a hand or a wall at its end; None if that is not the matter.
-
-    They may lead the fit of all frames so far away that none of these is seen to be foreign.
-    """
-    for part in without_ends(problem.films[0]):
-        result = initial_estimate(problem.with_films((part,)), known, refit=False)
-        result = _trimmed(result, problem, known)
-        if is_clean(result):
-            return result
-    return None
-
-
 def _lifted(result: Estimate, known: Known) -> Estimate:
     """The same with part of the base lifted, where δ seems to be above that of full contact."""
     problem = result.problem
@@ -235,8 +220,7 @@ def _lifted(result: Estimate, known: Known) -> Estimate:
     delta = problem.spec.scales(problem.numbers_at(result.x))[1]
     if problem.tall or not law.can_lift or delta < _LIFTS:
         return result
-    certainty = certainty_of(result.jacobian[result.kept], plausible_for(problem, result.x))
-    if certainty.undetermined[: len(problem.spec.free)].count(True):
+    if any(certainty_at(result).undetermined[: len(problem.spec.free)]):
         return result
     return estimate(replace(problem, tall=True), result.x, known)
 
@@ -248,22 +232,14 @@ def _joint_start(
     if len(parts) == 1:
         return minima[0][0]
     shared = len(problem.spec.free)
-    weights, sums, launches = np.zeros((shared, shared)), np.zeros(shared), []
+    weights, sums = np.zeros((shared, shared)), np.zeros(shared)
     for part, (x, *_) in zip(parts, minima, strict=True):
-        launches.append(part.launches(x)[0])
-        if part.rests[0]:  # it tells nothing of what moves
-            continue
-        spread = certainty_of(part.jacobian(x), plausible_for(part, x)).covariance
-        if shared:
+        if shared and not part.rests[0]:  # which tells nothing of what moves
+            spread = certainty_of(part.jacobian(x), part.plausible(x)).covariance
             weight = np.linalg.pinv(spread[:shared, :shared])
             weights += weight
             sums += weight @ x[:shared]
     mean = np.linalg.solve(weights, sums) if shared else sums
     mean = np.clip(mean, *(ends[:shared] for ends in problem.limits))
-    return problem.unknowns(
-        dict(zip(problem.spec.free, mean.tolist(), strict=True)), np.array(launches)
-    )
-
-
-def _observations(problem: Problem) -> int:
-    return int((problem.kinds <= ANGLE).sum())
+    launches = [part.launches(x)[0] for part, (x, *_) in zip(parts, minima, strict=True)]
+    return problem.unknowns(problem.numbers_at(mean), np.array(launches))

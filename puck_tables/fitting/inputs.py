@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
@@ -13,8 +12,7 @@ import numpy as np
 from puck_tables._core.real import instance, pair_of, positive, real
 from puck_tables.contact.speed_law import KINDS
 from puck_tables.errors import InputError
-from puck_tables.film.pairs import marks_of_one
-from puck_tables.film.puck_track import Track
+from puck_tables.film.puck_track import Track, marks_of_one
 from puck_tables.fitting.certainty import Certainty
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.fit_spec import FitSpec
@@ -27,7 +25,6 @@ from puck_tables.fitting.touches import turns
 
 MOST_FRAMES = 100_000
 FIND = "find"
-_GUESS = 1e-3  # of the track: noise to begin with where differences tell none
 _JITTER = 0.3  # times the noise of a place over the speed: to begin with
 _NEAREST, _FARTHEST = 1e-30, 1e6  # m or s, of a track
 _TWICE = 0.5  # of the frames: the same film again
@@ -63,9 +60,9 @@ class Inputs:
         checked = checked_speeds(speeds, between)
         if checked:
             spec.over(checked, between)
-        if spec.integrates:
+        if spec.integrated:
             spec.refuse_integrated()
-        if spec.integrates and (impacts or lines):
+        if spec.integrated and (impacts or lines):
             raise InputError(
                 f"{' and '.join(spec.integrated)} cannot be found beside impacts: leave one of "
                 "the two out"
@@ -114,7 +111,12 @@ def observations_of(
         if rows is not None:
             film = replace(film, row=(rows[0] - film.place[:, 1]) / (rows[0] - rows[1]))
         films.append(film)
-        _refuse_far(film)
+        for what, extent, unit in (("places", film.size, "m"), ("times", film.time[-1], "s")):
+            if extent and not _NEAREST < extent < _FARTHEST:  # no slide of a puck by its size
+                raise InputError(
+                    f"{film.name}: its {what} lie up to {extent:.3g} {unit} apart, which no puck "
+                    "slides: say their unit, or leave out what is wrong"
+                )
         _refuse_still(film, np.nan_to_num(noise_of([film])[0]))
     for one, other in combinations(films, 2):
         _refuse_twice(one, other)
@@ -125,16 +127,6 @@ def observations_of(
             "or a part (since, until)"
         )
     return tuple(films)
-
-
-def _refuse_far(film: Observations) -> None:
-    """Refuse a track, or a time, that is no slide of a puck by its size alone."""
-    for what, extent, unit in (("places", film.size, "m"), ("times", float(film.time[-1]), "s")):
-        if extent and not _NEAREST < extent < _FARTHEST:
-            raise InputError(
-                f"{film.name}: its {what} lie up to {extent:.3g} {unit} apart, which no puck "
-                "slides: say their unit, or leave out what is wrong"
-            )
 
 
 def refuse_wobbling(result: Estimate, certainty: Certainty) -> None:
@@ -231,16 +223,6 @@ def checked_speeds(raw: Any, between: Any) -> tuple[float, ...]:
     return speeds
 
 
-def refuse_faster(speeds: tuple[float, ...], result: Estimate) -> None:
-    """Refuse slip speeds that end below those of the tracks."""
-    fastest = result.problem.fastest(result.x)
-    if fastest > speeds[-1]:
-        raise InputError(
-            f"the puck slips at up to {fastest:.4g} m/s, but the last of the slip speeds is "
-            f"{speeds[-1]:g} m/s: give speeds up to {math.ceil(10.0 * fastest) / 10.0:g}"
-        )
-
-
 def refuse_opening(result: Estimate) -> None:
     """Refuse a puck so tall, for the largest friction that was found, that its base opens."""
     problem = result.problem
@@ -283,13 +265,6 @@ def checked_noise(raw: Any) -> tuple[float | None, float | None]:
         None if place is None else positive("the noise of places", place, "m"),
         None if angle is None else positive("the noise of angles", angle, "rad"),
     )
-
-
-def begin_noise(judged: float, films: tuple[Observations, ...]) -> float:
-    """Noise to begin with."""
-    size = max(film.size for film in films)
-    least = 1e-9 * (size or 1.0)
-    return max(judged, least) if math.isfinite(judged) else max(_GUESS * size, least)
 
 
 def begin_jitter(films: tuple[Observations, ...], noise: float) -> float:

@@ -14,7 +14,6 @@ track costs.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -24,8 +23,6 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.fitting.problem import ANGLE, PLACE, PRIOR, Problem
-
-Of = Callable[[FloatArray], FloatArray]
 
 
 class Compact(NamedTuple):
@@ -44,9 +41,8 @@ def compact(
         rows, slopes = rows * kept, slopes * kept[:, None]
     few, slope, kinds = [], [], []
     for n, (x, y, turn) in enumerate(problem.each()):
-        moved = [
-            k for k, (of, _) in enumerate(problem.names) if of in (-1, n) or problem.impact_specs
-        ]
+        unknowns = enumerate(problem.names)
+        moved = [k for k, (of, _) in unknowns if of in (-1, n) or problem.impact_specs]
         for part, kind in ((slice(x.start, y.stop), PLACE), (turn, ANGLE)):
             turned: FloatArray = np.column_stack([slopes[part][:, moved], rows[part]])
             if len(turned) > len(moved) + 1:
@@ -56,11 +52,9 @@ def compact(
             few.append(turned[:, -1])
             slope.append(wide)
             kinds.append(np.full(len(turned), kind))
-    of_priors = problem.kinds == PRIOR
-    few.append(rows[of_priors])
-    slope.append(slopes[of_priors])
-    kinds.append(problem.kinds[of_priors])
-    return Compact(np.concatenate(few), np.concatenate(slope), np.concatenate(kinds))
+    priors = problem.kinds == PRIOR
+    every = (*few, rows[priors]), (*slope, slopes[priors]), (*kinds, problem.kinds[priors])
+    return Compact(*(np.concatenate(one) for one in every))
 
 
 class How(NamedTuple):
@@ -91,22 +85,37 @@ def minimise(
     moved = np.array([k for k in range(x.size) if k != held], np.int64)
     whole = x.copy()
     limits = [ends[moved] for ends in problem.limits]
+    # ends that count from the first: of the puck, and bounds that are given
+    counts = np.array([of == -1 or name in problem.spec.bounds for of, name in problem.names], bool)
     low, high = (
-        np.where(_near(ends, problem, moved), ends, far)
+        np.where(counts[moved] & (np.abs(ends) < _FAR), ends, far)
         for ends, far in zip(limits, (-np.inf, np.inf), strict=True)
     )
-    begun = inside(x[moved], low, high)
+    begun = _inside(x[moved], low, high)
 
     def rows_and_slopes(values: FloatArray) -> tuple[FloatArray, FloatArray]:
         whole[moved] = values
         rows, slopes = problem.residuals_and_jacobian(whole)
         if not (np.isfinite(slopes).all() and np.isfinite(rows).all()):
-            raise InputError(_astray(problem, whole))
+            told = ", ".join(f"{n} {value:.3g}" for n, value in problem.numbers_at(whole).items())
+            raise InputError(
+                "the fit is led astray, to a motion that cannot be computed"
+                f"{f' ({told})' if told else ''}: give bounds or a prior of what it finds, or find "
+                "less"
+            )
         if how.loss == "linear":  # only their squares and products count
             rows, slopes, _ = compact(problem, rows, slopes, kept)
         return rows, slopes[:, moved]
 
-    residuals, jacobian = apart(rows_and_slopes)
+    latest: dict[bytes, tuple[FloatArray, FloatArray]] = {}
+
+    def at(values: FloatArray, which: int) -> FloatArray:  # both are of the same motions
+        if (key := values.tobytes()) not in latest:
+            latest.clear()
+            latest[key] = rows_and_slopes(values)
+        return latest[key][which].copy()  # scipy scales them where they are
+
+    residuals, jacobian = partial(at, which=0), partial(at, which=1)
     scale = how.scale
     if how.loss != "linear":  # far from the minimum all residuals are large, none an outlier
         scale = max(scale, 2.0 * problem.usual(residuals(begun)))
@@ -120,54 +129,19 @@ def minimise(
         if beyond.any():  # it ran away: the rest is sought with these on their ends
             low, high = (np.where(beyond, ends, near)
                          for ends, near in zip(limits, (low, high), strict=True))  # fmt: skip
-            begun = inside(np.clip(result.x, *limits), low, high)
+            begun = _inside(np.clip(result.x, *limits), low, high)
             continue
         if scale <= how.scale:
             whole[moved] = np.clip(result.x, *limits)
             return whole, float(result.cost)
-        begun = inside(result.x, low, high)
+        begun = _inside(result.x, low, high)
         scale = max(how.scale, min(0.25 * scale, 2.0 * problem.usual(result.fun)))
 
 
-def apart(both: Callable[[FloatArray], tuple[FloatArray, FloatArray]]) -> tuple[Of, Of]:
-    """Residuals and their derivatives as scipy asks for them, from one call."""
-    latest: dict[bytes, tuple[FloatArray, FloatArray]] = {}
-
-    def at(values: FloatArray, which: int) -> FloatArray:
-        key = values.tobytes()
-        if key not in latest:
-            latest.clear()
-            latest[key] = both(values)
-        return latest[key][which].copy()  # scipy scales them where they are
-
-    return partial(at, which=0), partial(at, which=1)
-
-
-def _astray(problem: Problem, x: FloatArray) -> str:
-    """A sentence on unknowns of which no motion can be computed."""
-    told = ", ".join(f"{name} {value:.3g}" for name, value in problem.numbers_at(x).items())
-    return (
-        "the fit is led astray, to a motion that cannot be computed"
-        f"{f' ({told})' if told else ''}: give bounds or a prior of what it finds, or find less"
-    )
-
-
-def _near(
-    ends: FloatArray, problem: Problem, moved: npt.NDArray[np.int64]
-) -> npt.NDArray[np.bool_]:
-    """Ends that count from the first: of the puck, and bounds that are given."""
-    given = [problem.names[k][0] == -1 or problem.names[k][1] in problem.spec.bounds
-             for k in moved]  # fmt: skip
-    near: npt.NDArray[np.bool_] = (np.abs(ends) < _FAR) & np.array(given, bool)
-    return near
-
-
-def inside(x: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
+def _inside(x: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
     """Strictly within bounds, as the method wants its start."""
-    width = np.where(np.isfinite(high - low), high - low, np.maximum(1.0, np.abs(x)))
-    room = 1e-9 * width
-    within: FloatArray = np.minimum(np.maximum(x, low + room), high - room)
-    return within
+    room = 1e-9 * np.where(np.isfinite(high - low), high - low, np.maximum(1.0, np.abs(x)))
+    return np.asarray(np.minimum(np.maximum(x, low + room), high - room))
 
 
 # steps, and how many starts then go on
@@ -200,8 +174,11 @@ def multi_start(
             for _ in range(steps):
                 if not walker.arrived:
                     walker.step()
-        walkers.sort(key=lambda one: one.cost)
-        walkers = _that_differ(walkers)
+        every, walkers = sorted(walkers, key=lambda one: one.cost), []
+        for one in every:  # those that no deeper one has met
+            if all(np.abs(one.x - other.x).max() > _APART * np.abs(other.x).max()
+                   for other in walkers):  # fmt: skip
+                walkers.append(one)
         near = sum(one.cost < walkers[0].cost + allowance for one in walkers)
         walkers = walkers[: max(most, near)]
     return [(walker.x, walker.cost) for walker in walkers]
@@ -266,12 +243,3 @@ def _cost(rows: FloatArray, scale: float) -> float:
     if scale == math.inf:
         return 0.5 * float(rows @ rows)
     return 0.5 * scale * scale * float(np.log1p((rows / scale) ** 2).sum())
-
-
-def _that_differ(walkers: list[_Walker]) -> list[_Walker]:
-    """Those that no deeper one has met."""
-    result: list[_Walker] = []
-    for one in walkers:
-        if all(np.abs(one.x - other.x).max() > _APART * np.abs(other.x).max() for other in result):
-            result.append(one)
-    return result

@@ -6,8 +6,9 @@ Each is tried out: where residuals then are far smaller, about as noise is, that
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -17,10 +18,10 @@ from puck_tables.errors import InputError
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.initial_estimate import initial_estimate
-from puck_tables.fitting.model_comparison import tried
-from puck_tables.fitting.parameters import INTEGRATED, NODES
+from puck_tables.fitting.model_comparison import FLOORS, tried
+from puck_tables.fitting.parameters import INTEGRATED, NODES, NOTHING
 from puck_tables.fitting.problem import TURN, Known, Problem
-from puck_tables.fitting.residuals import AIR, NO_PATTERN, SLOPE, SideForces, forced
+from puck_tables.fitting.residuals import NO_PATTERN, SideForces
 from puck_tables.fitting.slowing import nearest_start, starts_from_slowing
 
 _FAR = 1.5  # times smaller are residuals of a reading that is told
@@ -40,7 +41,7 @@ _MUCH = math.log(3.0)  # so much smaller residuals tell, though they are no nois
 _LITTLE, _CLEAN = math.log(1.1), 1.4  # less than that is no reason; times the noise of a place
 _MOST, _LEAST = 10.0, 1e-3  # times one friction for all speeds: laws that some floor has
 _FAINT = 1e-3  # of what friction does: no force explains anything by so little
-_STEEPEST = 10.0  # degrees: nobody takes that for a level table
+_STEEP, _STEEPEST = 3.0, 10.0  # degrees: hardly anybody, or nobody, takes that for a level table
 _HELD = ("launch_spin", "launch_angle")  # what is said of these is said of the angles as they are
 
 
@@ -48,12 +49,15 @@ _Sizes = tuple[FloatArray, FloatArray]  # how far places (m), and angles (rad), 
 
 
 class _Reading(NamedTuple):
-    """What else may be: in words, by how much smaller residuals are, if a floor, if it is rough."""
+    """What else may be: in words, by how much smaller residuals are, if a floor.
+
+    ``bends``: if one that bends any path, as a slope does: it comes first only if about the best.
+    """
 
     words: str
     gain: float
     floor: bool = False
-    rough: bool = False
+    bends: bool = False
 
 
 def misfit(
@@ -64,23 +68,21 @@ def misfit(
     A floor is named before angles or a radius that fit about as well.  ``problem``: what was asked,
     with all frames; ``speeds``: whether a friction over slip speed does not fit, either.
     """
-    noise, told = problem.noise[0], []
+    told: list[_Reading] = []
     if _may_change(problem.spec) and not speeds:
-        drag = _reading(lambda: _by_drag(result, problem, known))
-        law = _reading(lambda: _by_speed(result, problem))
+        drag, air, slope = (
+            _reading(partial(_by_floor, result, problem, one)) for one in ("drag", "air", "slope")
+        )
+        law = _reading(partial(_by_speed, result, problem))
         if drag and law and law.gain < drag.gain + _BETTER:  # more numbers fit a little better
             law = None
-        told = [one for one in (drag, law) if one]
-    if not speeds and not problem.impact_specs:
-        one = _reading(lambda: _by_air(result, problem)) or _by_force(result, AIR, noise)
-        told += [one for one in (one, _by_force(result, SLOPE, noise)) if one]
-    told = sorted(told, key=lambda one: -one.gain)[:2]
+        told = sorted(filter(None, (drag, law, air, slope)), key=lambda one: -one.gain)[:2]
     told += _otherwise(result, problem, known)
     best = max((one.gain for one in told), default=0.0)
     # sizes and angles are known better than floors: a floor that tells much is named first
     near = [one for one in told if one.gain > best - _ALIKE or (one.floor and one.gain > _MUCH)]
     near.sort(
-        key=lambda one: (not one.floor or (one.rough and one.gain < best - _ALIKE), -one.gain)
+        key=lambda one: (not one.floor or (one.bends and one.gain < best - _BETTER), -one.gain)
     )
     if near:
         words = f"{near[0].words}{f'; or {near[1].words}' if len(near) > 1 else ''}"
@@ -101,16 +103,29 @@ def _reading(of: Callable[[], _Reading]) -> _Reading | None:
 
 def _otherwise(result: Estimate, problem: Problem, known: Known) -> list[_Reading]:
     """The angles, or the radius, read otherwise, if one of these fits far better."""
-    best, given = _Reading("", math.log(_FAR)), problem.spec.known()["radius"]
-    for words, other, scale in _others(problem):
+    best, spec = _Reading("", math.log(_FAR)), problem.spec
+    given, others = spec.known()["radius"], []
+    held = any(name in said for name in _HELD for said in (spec.fixed, spec.bounds))
+    for factor, words in _ANGLES if problem.angled and not held else ():
+        films = tuple(
+            film if film.angle is None else replace(film, angle=factor * film.angle)
+            for film in problem.films
+        )
+        noise = problem.noise[0], abs(factor) * problem.noise[1]
+        others.append((words, replace(problem.with_films(films), noise=noise), abs(factor)))
+    wider = problem.angled and "radius" not in (*spec.free, *spec.fixed)  # told by angles alone
+    if wider:
+        words = "with a radius of {:.3g} m: is " + f"{spec.puck.radius:g} m right?"
+        other = replace(problem, spec=replace(spec, free=(*spec.free, "radius")))
+        others.append((words, other, 1.0))
+    for words, other, scale in others:  # and the factor of its angles
         try:
             one = initial_estimate(other, known, refit=False)
         except InputError:  # such a puck, or such a track, there is not
             continue
         gain = _size(_deviations(result), 1.0) - _size(_deviations(one), scale)
         radius = one.problem.spec.scales(one.problem.numbers_at(one.x))[2]
-        found_radius = "radius" in other.spec.free and "radius" not in problem.spec.free
-        same = found_radius and abs(radius / given - 1.0) < _NEAR
+        same = wider and "radius" in other.spec.free and abs(radius / given - 1.0) < _NEAR
         if gain > best.gain and not same and _near_noise(_deviations(one), problem.noise[0]):
             best = _Reading(words.format(radius), gain)
     return [best] if best.words else []
@@ -128,44 +143,41 @@ def _gain(result: Estimate, other: _Sizes, noise: float) -> float:
     return gain if fits or (gain > _MUCH and _explained(other)) else 0.0
 
 
-def _by_drag(result: Estimate, problem: Problem, known: Known) -> _Reading:
-    """Drag of speed and spin alike, if that fits far better."""
-    # from a speed e^20 times as slow, or as fast, at the end nothing is told any more
-    most = _MOST_DRAG / max(float(film.time[-1]) for film in problem.films)
-    spec, bounds = problem.spec, {**problem.spec.bounds, "drag": (-most, most)}
-    spec = replace(spec, free=(*spec.free, "drag"), bounds=bounds)
-    one = initial_estimate(replace(problem, spec=spec), known, refit=False)
-    words = f"with drag besides friction: find it, too (--free {','.join(spec.free)})"
-    return _Reading(words, _gain(result, _deviations(one), problem.noise[0]), True)
-
-
-def _by_air(result: Estimate, problem: Problem) -> _Reading:
-    """Drag of the speed squared, if that fits far better; tried where angles can be followed."""
-    spec = problem.spec
-    if not _may_change(spec):
-        return _Reading("", 0.0)
-    other = replace(problem, spec=replace(spec, free=(*spec.free, "air")), tall=False)
-    x = nearest_start(other, starts_from_slowing(other))[1]
-    air = other.numbers_at(x)["air"]
-    if _faint(result, AIR, air):
-        return _Reading("", 0.0)
+def _by_floor(result: Estimate, problem: Problem, floor: str) -> _Reading:
+    """Drag of speed and spin alike, air, or a table out of level, if that fits far better."""
+    at, launches = result.problem.numbers_at(result.x), result.problem.launches(result.x)
+    spec, bounds = problem.spec, problem.spec.bounds
+    if floor == "drag":
+        # from a speed e^20 times as slow, or as fast, at the end nothing is told any more
+        most = _MOST_DRAG / max(float(film.time[-1]) for film in problem.films)
+        bounds = {**bounds, "drag": (-most, most)}
+    spec = replace(spec, free=(*spec.free, *FLOORS[floor]), bounds=bounds)
+    other = replace(problem.with_films(result.problem.films), spec=spec, tall=False)
+    plain = np.clip(other.unknowns({**NOTHING, **at}, launches), *other.limits)
+    x = nearest_start(other, starts_from_slowing(other) or [(other, plain)])[1]
     gain = _gain(result, _sizes(other, other.deviations(x)), problem.noise[0])
-    return _Reading(_air_words(air, spec), gain, True)
-
-
-def _faint(result: Estimate, kind: tuple[int, ...], force: float) -> bool:
-    """Whether a force does next to nothing: then it only led to another motion."""
-    speed = float(np.hypot(*result.problem.launches(result.x)[:, 2:4].T).max())
-    slowing = result.problem.spec.scales(result.problem.numbers_at(result.x))[0]
-    faint: bool = force * (speed**2 if kind == AIR else 1.0) < _FAINT * slowing
-    return faint
-
-
-def _air_words(air: float, spec: FitSpec) -> str:
-    return (
-        f"if air slowed it, by {air:.2g}/m times the square of its speed (what slows it hardly "
-        f"brakes its spin, as air does): find it, too (--free {','.join((*spec.free, 'air'))})"
-    )
+    found, speed = other.numbers_at(x), float(np.hypot(*launches[:, 2:4].T).max())
+    tilt = 0.0
+    slowing, free = result.problem.spec.scales(at)[0], f"(--free {','.join(spec.free)})"
+    if floor == "drag":
+        force = abs(found["drag"]) * speed
+        words = f"with drag besides friction: find it, too {free}"
+    elif floor == "air":
+        force = found["air"] * speed**2
+        words = (
+            f"if air slowed it, by {found['air']:.2g}/m times the square of its speed (what slows "
+            f"it hardly brakes its spin, as air does): find it, too {free}"
+        )
+    else:
+        pull = found["slope_x"], found["slope_y"]
+        tilt, way = math.degrees(math.hypot(*pull)), math.degrees(math.atan2(pull[1], pull[0]))
+        force = math.hypot(*pull) * spec.known()["gravity"] if tilt < _STEEPEST else 0.0
+        words = (
+            f"with a table out of level by {tilt:.2g} degrees, down along {way % 360.0:.3g} "
+            "degrees from x: level it, or find its slope, too (slope_x, slope_y)"
+        )
+    gain = gain if force > _FAINT * slowing else 0.0
+    return _Reading(words, gain, floor != "slope" or tilt < _STEEP, floor == "slope")
 
 
 def _may_change(spec: FitSpec) -> bool:
@@ -193,43 +205,6 @@ def _by_speed(result: Estimate, problem: Problem) -> _Reading:
     return _Reading(words, gain, True)
 
 
-def _by_force(result: Estimate, kind: tuple[int, ...], noise: float) -> _Reading | None:
-    """A table out of level, or air, to first order, if that fits far better."""
-    off, force = forced(result, kind)
-    gain = _gain(result, _sizes(result.problem, off), noise)
-    if not gain or _faint(result, kind, math.hypot(*force)):
-        return None
-    gravity = {**result.problem.spec.known(), **result.problem.numbers_at(result.x)}["gravity"]
-    slope = math.degrees(math.hypot(*force) / gravity)
-    if kind == AIR:
-        words = _air_words(force[0], result.problem.spec)
-        return _Reading(words, gain, True, True) if force[0] > 0.0 else None
-    words = (
-        f"with a table out of level by {slope:.2g} degrees, down along "
-        f"{math.degrees(math.atan2(force[1], force[0])) % 360.0:.3g} degrees from x: level it, or "
-        "find its slope, too (slope_x, slope_y)"
-    )
-    return _Reading(words, gain, True, True) if slope < _STEEPEST else None
-
-
-def _others(problem: Problem) -> Iterator[tuple[str, Problem, float]]:
-    """Other readings, each in words and with the factor of its angles."""
-    spec = problem.spec
-    held = any(name in given for name in _HELD for given in (spec.fixed, spec.bounds))
-    if problem.angled and not held:
-        for factor, words in _ANGLES:
-            films = tuple(
-                film if film.angle is None else replace(film, angle=factor * film.angle)
-                for film in problem.films
-            )
-            noise = problem.noise[0], abs(factor) * problem.noise[1]
-            yield words, replace(problem.with_films(films), noise=noise), abs(factor)
-    if problem.angled and "radius" not in (*spec.free, *spec.fixed):  # told by angles alone
-        words = "with a radius of {:.3g} m: is " + f"{spec.puck.radius:g} m right?"
-        wider = replace(spec, free=(*spec.free, "radius"))
-        yield words, replace(problem, spec=wider), 1.0
-
-
 def _size(seen: _Sizes, scale: float) -> float:
     """The logarithm of the usual size of residuals, that of angles in units of ``scale``.
 
@@ -250,17 +225,16 @@ def _near_noise(seen: _Sizes, noise: float) -> bool:
 
 def _explained(seen: _Sizes) -> bool:
     """Whether angles are explained."""
-    angles = seen[1]
-    return not angles.size or float(np.median(angles)) < _BY_CHANCE
+    return not seen[1].size or float(np.median(seen[1])) < _BY_CHANCE
 
 
 def _deviations(result: Estimate) -> _Sizes:
-    """How far places (m) and angles (rad) are off."""
+    """How far places (m) and angles (rad) of an estimate are off."""
     return _sizes(result.problem, result.problem.deviations(result.x))
 
 
 def _sizes(problem: Problem, deviations: list[FloatArray]) -> _Sizes:
-    """How far places (m) and angles (rad) are off that deviate by (3, n) of each track."""
+    """The same where tracks deviate by (3, n) each."""
     angles = [np.empty(0)] + [
         np.abs(one[TURN, np.isfinite(film.angle)]) for film, one in zip(problem.films, deviations,
         strict=True) if film.angle is not None

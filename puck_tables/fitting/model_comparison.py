@@ -8,7 +8,7 @@ that no law gains by calling frames outliers.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -21,12 +21,13 @@ from puck_tables.errors import InputError
 from puck_tables.fitting.certainty import Z95, Certainty
 from puck_tables.fitting.estimate import Estimate, capped_squares, estimate
 from puck_tables.fitting.fit_spec import FitSpec
+from puck_tables.fitting.initial_estimate import initial_estimate
 from puck_tables.fitting.least_squares import ROBUST, minimise
-from puck_tables.fitting.named_laws import NAMES as LAWS
 from puck_tables.fitting.observations import FEWEST, MEDIAN, Observations, rests_from
 from puck_tables.fitting.parameters import LAW_NUMBERS, NODES
 from puck_tables.fitting.problem import ANGLE, PLACE, UNSEEN, Known, Problem
 from puck_tables.fitting.slowing import nearest_start, starts_from_slowing
+from puck_tables.fitting.speed_motion import LAWS
 from puck_tables.fitting.whole_turns import on_another_floor
 
 _ROUGHLY = ROBUST._replace(evaluations=15)
@@ -41,6 +42,11 @@ def over_speeds(
     result: Estimate, speeds: tuple[float, ...], between: str, known: Known
 ) -> Estimate:
     """The estimate with a friction coefficient for each slip speed, from that of one for all."""
+    if (fastest := result.problem.fastest(result.x)) > speeds[-1]:
+        raise InputError(
+            f"the puck slips at up to {fastest:.4g} m/s, but the last of the slip speeds is "
+            f"{speeds[-1]:g} m/s: give speeds up to {math.ceil(10.0 * fastest) / 10.0:g}"
+        )
     moved, start = _begun(result.problem, result.x, speeds)
     lines, _ = minimise(moved, start, ROBUST)
     spec = replace(moved.spec, between=between)
@@ -58,10 +64,9 @@ def on_a_floor(problem: Problem, known: Known) -> Estimate:
             return estimate(problem, x, known)
         cost, falls = less, less < _FALLS * cost
     noise = (problem.usual(rows) / MEDIAN * problem.noise[0], problem.noise[1])
-    wider = problem.with_noise(noise, x) if not known.place else problem
-    return Estimate(
-        wider, x, problem.kinds != UNSEEN, wider.residuals(x), np.zeros((rows.size, x.size))
-    )
+    wider = problem if known.place else problem.with_noise(noise, x)
+    none = np.zeros((rows.size, x.size))
+    return Estimate(wider, x, problem.kinds != UNSEEN, wider.residuals(x), none)
 
 
 def tried(result: Estimate) -> Estimate:
@@ -124,8 +129,6 @@ FLOORS = {
 EVERY_FLOOR = "floors"  # of uniform pressure: all of these
 _CONTENDS = 60.0  # of χ²: laws worse than the best by more are not fitted further
 
-Fitted = Callable[[FitSpec], Estimate]
-
 
 class LawScore(NamedTuple):
     """One law.
@@ -143,16 +146,18 @@ class LawScore(NamedTuple):
 
 
 def compare(
-    variants: Mapping[str, FitSpec], noise: tuple[float, float], known: Known, fit_law: Fitted
+    problem: Problem, variants: Mapping[str, FitSpec], known: Known
 ) -> tuple[LawScore, ...]:
-    """The laws named, best first; ``fit_law`` fits each, with the noise that is known.
+    """The laws named, best first, of the frames of a problem; those that contend are fitted on.
 
-    Those that contend go on from there under the common noise.
+    Frames that another law leaves out at the ends may be those that tell.
     """
-    fits: dict[str, Estimate] = {}
+    fits, noise, held = dict[str, Estimate](), problem.noise, known._replace(jitter=True)
     for name, question in variants.items():
+        same = replace(problem, spec=question)
         try:
-            fits[name] = fit_law(question)
+            fits[name] = on_a_floor(same, held) if question.integrated \
+                else initial_estimate(same, held, refit=False)  # fmt: skip
         except InputError:
             if "+" not in name:  # no such floor leads to such a track
                 raise
@@ -163,21 +168,21 @@ def compare(
     unknowns = np.array([one.x.size for one in fits.values()])
     chi2 = np.array([chi2_under(one, (place, angle)) for one in fits.values()])
     score = chi2 + 2.0 * unknowns
-    for k, name in enumerate(fits):
-        if score[k] < score.min() + _CONTENDS and not (known.place and known.angle):
-            same = fits[name].problem.with_noise((place, angle), fits[name].x)
-            one = estimate(same, fits[name].x, Known(True, True, True))
-            less = chi2_under(one, (place, angle))
-            if less < chi2[k]:
+    near = score < score.min() + _CONTENDS
+    for k, (name, before) in enumerate(fits.items()):
+        if near[k] and not (known.place and known.angle):
+            same = before.problem.with_noise((place, angle), before.x)
+            one = estimate(same, before.x, Known(True, True, True))
+            if (less := chi2_under(one, (place, angle))) < chi2[k]:
                 fits[name], chi2[k] = one, less
     score = chi2 + 2.0 * unknowns
     weight = np.exp(-0.5 * (score - score.min()))
     weight /= weight.sum()
-    result = [
-        LawScore(name, float(c), int(m), float(w), one.problem.numbers_at(one.x))
-        for (name, one), c, m, w in zip(fits.items(), chi2, unknowns, weight, strict=True)
-    ]
-    return tuple(result[k] for k in np.argsort(score, kind="stable"))
+    every = [*zip(fits.items(), *(one.tolist() for one in (chi2, unknowns, weight)), strict=True)]
+    return tuple(
+        LawScore(name, c, m, w, one.problem.numbers_at(one.x))
+        for (name, one), c, m, w in (every[k] for k in np.argsort(score, kind="stable"))
+    )
 
 
 def variants_of(spec: FitSpec, names: Any) -> dict[str, FitSpec]:
@@ -185,30 +190,23 @@ def variants_of(spec: FitSpec, names: Any) -> dict[str, FitSpec]:
     if isinstance(names, str):
         raise InputError(f"laws must be a list of names, got the text '{names}'")
     floors = ["uniform", *(f"uniform+{one}" for one in FLOORS)]
-    names = [
-        more for name in names for more in (floors if name == EVERY_FLOOR else [name])
-    ]  # fmt: skip
+    names = [more for name in names for more in (floors if name == EVERY_FLOOR else [name])]
     if len(set(names)) < len(names):
         raise InputError(f"laws {', '.join(names)}: name each law once")
-    return {name: _variant(spec, name) for name in names}
-
-
-def _variant(spec: FitSpec, name: str) -> FitSpec:
-    """The same question of another law, and another floor."""
-    pressure, plus, floor = name.partition("+")
-    if plus and floor not in FLOORS:
-        raise InputError(f"laws {name}: behind + may stand {', '.join(FLOORS)}")
-    law = law_of(pressure)
     other = {"inner", *(one for numbers in FLOORS.values() for one in numbers)}
-    free = tuple(n for n in spec.free if n not in other) + FLOORS.get(floor, ())
+    plain = tuple(n for n in spec.free if n not in other)
     fixed = {n: v for n, v in spec.fixed.items() if n not in other}
-    named = floor if floor in LAWS else ""
-    variant = replace(
-        spec, puck=replace(spec.puck, pressure=law), free=free, fixed=fixed, law=named
-    )
-    if variant.integrates:
-        variant.refuse_integrated()
-    return variant
+    variants = {}
+    for name in names:
+        pressure, plus, floor = name.partition("+")
+        if plus and floor not in FLOORS:
+            raise InputError(f"laws {name}: behind + may stand {', '.join(FLOORS)}")
+        puck, law = replace(spec.puck, pressure=law_of(pressure)), floor if floor in LAWS else ""
+        free = plain + FLOORS.get(floor, ())
+        variants[name] = replace(spec, puck=puck, free=free, fixed=fixed, law=law)
+        if variants[name].integrated:
+            variants[name].refuse_integrated()
+    return variants
 
 
 def chi2_under(result: Estimate, noise: tuple[float, float]) -> float:
@@ -243,8 +241,10 @@ chi^2, and no other law leaves less for its numbers.'
     least = best.chi2 + _EACH * best.unknowns
     alike = [one.name for one in ranked[1:] if one.chi2 + _EACH * one.unknowns < least + _ALIKE]
     if best is simplest:
-        said = f"{best.name} is enough: no law with more numbers leaves so much less of chi^2"
-        said += " that they are worth it"
+        said = (
+            f"{best.name} is enough: no law with more numbers leaves so much less of chi^2 that "
+            "they are worth it"
+        )
     else:
         more = best.unknowns - simplest.unknowns
         words = f"{more} more number{'' if more == 1 else 's'} than"
@@ -299,21 +299,18 @@ def split(
     That is the last share of the moving frames of each, or the later half of tracks that are named;
     ``spread`` m: noise of places.
     """
-    if isinstance(hold_out, float):
-        if not LEAST_SHARE <= hold_out <= LARGEST_SHARE:
-            raise InputError(
-                f"hold_out must be a share of the frames from {LEAST_SHARE:g} to {LARGEST_SHARE:g},"
-                f" or names of tracks, got {hold_out:g}"
-            )
-        shares = [hold_out] * len(films)
-    else:
-        known = [film.name for film in films]
-        for name in hold_out:
-            if name not in known:
-                raise InputError(f"hold_out names '{name}': the tracks are {', '.join(known)}")
-        shares = [0.5 if film.name in hold_out else 0.0 for film in films]
+    if isinstance(hold_out, float) and not LEAST_SHARE <= hold_out <= LARGEST_SHARE:
+        raise InputError(
+            f"hold_out must be a share of the frames from {LEAST_SHARE:g} to {LARGEST_SHARE:g}, or "
+            f"names of tracks, got {hold_out:g}"
+        )
+    names = [film.name for film in films]
+    for name in () if isinstance(hold_out, float) else hold_out:
+        if name not in names:
+            raise InputError(f"hold_out names '{name}': the tracks are {', '.join(names)}")
     kept, later = [], []
-    for film, share in zip(films, shares, strict=True):
+    for film in films:
+        share = hold_out if isinstance(hold_out, float) else 0.5 * (film.name in hold_out)
         moving = rests_from(film, spread)
         count = film.time.size if share == 0.0 else round((1.0 - share) * moving)
         if count < FEWEST + 2 and share > 0.0:

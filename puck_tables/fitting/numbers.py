@@ -14,7 +14,7 @@ from puck_tables.fitting.certainty import (
     Certainty,
     Interval,
     OtherMinimum,
-    certainty_of,
+    certainty_at,
     interval_of,
 )
 from puck_tables.fitting.estimate import Estimate
@@ -23,10 +23,7 @@ from puck_tables.fitting.parameters import ALL, INTEGRATED, LAUNCH, PUCK
 from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.touches import slide_name
 
-# Scales are plausible within their own size, but not less than this
-_LEAST = {"friction": 1e-3, "decel": 1e-2, "gravity": 1e-2, "height": 1e-4, "radius": 1e-4}
 _ALL = 0.8  # of the range in which a number is looked for: an interval so wide tells nothing
-_TOLD = 0.75  # of the time between frames, twice the error of a readout that the tracks tell
 _DECIMALS = 12  # of a value on the end of its range
 _MUCH = {"friction": 1.0, "decel": 10.0}  # an error that says nothing
 # after the point, of numbers below 1e-3 and of others: more are written with a power of ten
@@ -108,35 +105,6 @@ class EstimatedLaunch(NamedTuple):
     numbers: Mapping[str, Number]
 
 
-def plausible_for(problem: Problem, x: FloatArray) -> FloatArray:
-    """What is plausible for every unknown (m,): of scales their own size."""
-    result, launches = problem.numbers_at(x), problem.launches(x)
-    radius = problem.spec.scales(result)[2]
-    sizes = []
-    for track, name in problem.names:
-        if name == "readout" and problem.read_within is not None:
-            sizes.append(_TOLD * problem.read_within)
-            continue
-        if track == -1:
-            own, least = problem.spec.plausible(name), _LEAST.get(name)
-            sizes.append(own if least is None else max(abs(result[name]), least))
-            continue
-        if track < -1:
-            every = np.concatenate([film.place for film in problem.films])
-            size = float(np.ptp(every, axis=0).max()) or radius
-            sizes.append({"wall_angle": 1.0, "wall_distance": size}[name])
-            continue
-        launch, film = launches[track], problem.films[track]
-        slip = math.hypot(launch[2], launch[3], radius * launch[4]) or 1.0
-        size = film.size or radius
-        sizes.append({
-            "launch_x": size, "launch_y": size, "launch_vx": slip, "launch_vy": slip,
-            "launch_spin": slip / radius, "launch_angle": 1.0,
-        }[name])  # fmt: skip
-    plausible: FloatArray = np.maximum(np.array(sizes), 1e-12)
-    return plausible
-
-
 def numbers_of(
     result: Estimate, certainty: Certainty, other_fits: tuple[OtherMinimum, ...] = (),
     unsigned: tuple[int, ...] = (),
@@ -152,10 +120,9 @@ def numbers_of(
     puck: dict[str, Number] = {}
     for k, name in enumerate(spec.free):
         interval, error = interval_of(result, certainty, k), float(errors[k])
-        width = interval.high - interval.low
-        if interval.profiled:  # the likelihood is no parabola: half of its width
-            error = max(error, width / (2.0 * certainty.reach))
         low, high = interval.low, interval.high
+        if interval.profiled:  # the likelihood is no parabola: half of its width
+            error = max(error, (high - low) / (2.0 * certainty.reach))
         for minimum in other_fits:
             there = interval_of(minimum.estimate, minimum.certainty, k)
             within = interval.low <= minimum.numbers[name] <= interval.high
@@ -163,14 +130,13 @@ def numbers_of(
                 error = math.inf
             low, high = min(low, there.low), max(high, there.high)
             error = max(error, (high - low) / (2.0 * certainty.reach))
-        width = high - low
         least, largest = (float(limit[k]) for limit in problem.limits)
-        if width >= _ALL * (largest - least) or error > _MUCH.get(name, math.inf):
+        if high - low >= _ALL * (largest - least) or error > _MUCH.get(name, math.inf):
             error = math.inf
-        unit = PUCK[name].unit
-        puck[name] = Number(values[name], error, low, high, unit, FREE, interval.profiled)
+        kind = PUCK[name].unit, FREE, interval.profiled
+        puck[name] = Number(values[name], error, low, high, *kind)
     speed = puck.get("law_speed")
-    if speed is not None and (speed.at_bound or not speed.determined):
+    if speed is not None and not math.isfinite(speed.error):
         # all slips are on one side of it, and tell one of the frictions alone
         slow = problem.fastest(x) < speed.value
         for name in {"law_speed", "friction" if slow else "friction_rest"} & {*puck}:
@@ -192,11 +158,15 @@ def numbers_of(
         error = certainty.error_of(slope * widened, size)
         if math.isfinite(error) and certainty.follows_end(slope, size):
             error = math.nan
-        if any(slope[k] and not puck[one].determined for k, one in enumerate(spec.free)
-               if not certainty.undetermined[k]):  # fmt: skip
+        seen = (k for k in np.flatnonzero(slope) if not certainty.undetermined[k])
+        if any(not puck[spec.free[k]].determined for k in seen):
             error = math.inf
         number = quadratic(value, error, PUCK[name].unit, FOLLOWS, certainty.reach)
-        ends = _follows(problem, x, name, slope, puck)
+        of, ends = np.flatnonzero(slope), None
+        if of.size == 1:  # from the ends of that one's
+            one = spec.free[of[0]]
+            if math.isfinite(puck[one].high):
+                ends = _ends(problem, x, name, one, puck[one])
         if ends is None and profiled and name == "height" and math.isfinite(error):
             ends = _profiled(result, certainty, name)
         if ends is None and name == "height" and "delta" in puck and puck["delta"].profiled:
@@ -251,23 +221,10 @@ def quadratic(value: float, error: float, unit: str, how: str, reach: float) -> 
     return Number(value, error, value - reach * error, value + reach * error, unit, how)
 
 
-def _follows(
-    problem: Problem, x: FloatArray, name: str, slope: FloatArray, puck: Mapping[str, Number]
-) -> Interval | None:
-    """The interval of what follows from one number alone: from the ends of that one's."""
-    of = np.flatnonzero(slope)
-    if of.size != 1 or not math.isfinite(puck[problem.spec.free[of[0]]].high):
-        return None
-    one = problem.spec.free[of[0]]
-    return _ends(problem, x, name, one, puck[one])
-
-
 def _ends(problem: Problem, x: FloatArray, name: str, one: str, number: Number) -> Interval:
     """The interval of what follows, from the ends of that of one number, the others as found."""
     values = problem.numbers_at(x)
-    ends = [
-        problem.spec.all_at({**values, one: end})[name] for end in (number.low, number.high)
-    ]  # fmt: skip
+    ends = [problem.spec.all_at({**values, one: end})[name] for end in (number.low, number.high)]
     return Interval(min(ends), max(ends), False)
 
 
@@ -287,10 +244,8 @@ def _profiled(result: Estimate, certainty: Certainty, name: str) -> Interval | N
     moved = replace(problem, spec=other)
     x = result.x.copy()
     x[k] = height
-    rows, slopes = moved.residuals_and_jacobian(x)
-    there = replace(result, problem=moved, x=x, residuals=rows, jacobian=slopes, minima=())
-    plausible = plausible_for(moved, x)
-    own = certainty_of(slopes[result.kept], plausible, certainty.degrees)
+    there = result.at(x, moved)
+    own = certainty_at(there, certainty.degrees)
     if own.undetermined[k]:
         return None
     ratio = certainty.ratio(k)

@@ -53,11 +53,6 @@ def step_of(*columns: FloatArray) -> float:
     return step if np.abs(deviations).max() < _OFF else 0.0
 
 
-def coarse(step: float, noise: float) -> float:
-    """The step, if noise (NaN where it is not known) does not hide it; else 0."""
-    return 0.0 if step <= _COARSE * noise else step
-
-
 def counting(values: FloatArray) -> npt.NDArray[np.bool_]:
     """Which of some values in the order of time (n,) count, where they are rounded.
 
@@ -192,9 +187,13 @@ def observations_in(
 
 def _on_grid(film: Observations) -> Observations:
     """The same with what is to be known of its rounding."""
-    place, angle = noise_of([film])
     turn = np.full(film.time.size, np.nan) if film.angle is None else film.angle
-    steps = coarse(step_of(*film.place.T), place), coarse(step_of(turn), angle)
+    place, angle = (
+        0.0 if step <= _COARSE * noise else step  # noise (NaN where it is not known) hides it
+        for step, noise in zip((step_of(*film.place.T), step_of(turn)), noise_of([film]),
+        strict=True)
+    )  # fmt: skip
+    steps = place, angle
     if not any(steps):
         return film
     counts = np.ones((film.time.size, 3), bool)

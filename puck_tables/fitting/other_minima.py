@@ -1,4 +1,6 @@
-"""Other motions that fit a track as well: its likelihood may have more than one summit.
+"""Which of the motions that fit a track is taken, and how far it is to be believed.
+
+A likelihood may have more than one summit.
 
 Without angles a puck that slides straight without spin looks as one that spins at the ratio which
 every motion tends to: both lose speed at a constant rate, but not the same share of J.  A path
@@ -14,28 +16,42 @@ most Φ(−√T): of 4², as for outliers, that is one film in 30,000, whatever 
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from dataclasses import replace
+from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
-from puck_tables.fitting.certainty import Z95, Certainty, OtherMinimum, certainty_of
-from puck_tables.fitting.estimate import FARTHEST, Estimate, freedom
+from puck_tables.fitting.certainty import (
+    Z95,
+    Certainty,
+    OtherMinimum,
+    certainty_at,
+    of_rounded,
+    pinned_of,
+    widened,
+)
+from puck_tables.fitting.estimate import FARTHEST, Estimate, estimate, freedom
 from puck_tables.fitting.identifiability import ran_away
 from puck_tables.fitting.initial_estimate import initial_estimate
+from puck_tables.fitting.inputs import refuse_wobbling
 from puck_tables.fitting.least_squares import SQUARES, compact, minimise, multi_start
 from puck_tables.fitting.model_comparison import chi2_under
-from puck_tables.fitting.numbers import Number, numbers_of, plausible_for
+from puck_tables.fitting.numbers import Number, numbers_of
 from puck_tables.fitting.problem import Known
+from puck_tables.fitting.residuals import SideForces, excess_of, may_misfit, no_answer, side_forces
 from puck_tables.fitting.starts import minima_of, numbers_with
 from puck_tables.fitting.whole_turns import (
     EXCLUDED,
+    LESS,
+    MISFIT,
     Judged,
     half_turns,
     is_slow,
-    most_of_slow,
     on_another_floor,
     preferred,
 )
@@ -62,9 +78,9 @@ def other_minima(
     problem = result.problem
     marked = problem.angled
     apart = not problem.impact_specs
-    signed = marked or not apart  # a wall tells a motion from its mirror image
+    signed = marked or not apart  # a wall tells a motion from its mirror image, as angles do
     single = len(problem.films) == 1
-    if problem.spec.speeds or problem.spec.integrates:
+    if problem.spec.speeds or problem.spec.integrated:
         return ()
     starts = list(result.minima)
     if not starts and apart and single:
@@ -80,19 +96,21 @@ def other_minima(
         x, cost = minimise(problem, start, SQUARES, result.kept)
         rise = 2.0 * cost - result.chi2
         deviations = [
-            (np.abs(_words(x, signed) - _words(one, signed)) > far)[seen]
+            (np.abs(x - one if signed else np.abs(x) - np.abs(one)) > far)[seen]
             for one, seen, far in summits
         ]
         most = far * RISE / (excess**2 if marked else 1.0)
         if is_slow(problem, x) and not is_slow(problem, result.x):
-            most = most_of_slow(far * result.chi2, excess)
+            # as long as it may be taken, in units of the residuals of the fast one
+            most = EXCLUDED / excess**2
+            if excess > MISFIT:
+                most = max(most, (LESS**2 - 1.0) * far * result.chi2)
         if rise < most and all(one.any() for one in deviations):
             # what one motion tells another may not: each summit is as wide as it is
-            rows, slopes = problem.residuals_and_jacobian(x)
-            x = np.where(slopes.any(axis=0), x, start)  # what does nothing stays where it was
-            there = replace(result, x=x, residuals=rows, jacobian=slopes, minima=())
-            plausible = plausible_for(problem, x)
-            own = certainty_of(slopes[result.kept], plausible, certainty.degrees)
+            there = result.at(x)
+            x = np.where(there.jacobian.any(axis=0), x, start)  # what does nothing stays
+            there = replace(there, x=x)
+            own = certainty_at(there, certainty.degrees)
             summits.append((x, *_known(there, own)))
             other_fits.append(OtherMinimum(there, own, rise, _spun_otherwise(result, x, certainty)))
     return tuple(other_fits)
@@ -135,34 +153,28 @@ def _spun_otherwise(result: Estimate, x: FloatArray, certainty: Certainty) -> tu
     """Tracks that spin otherwise: with angles by whole turns, else by more than their errors."""
     problem = result.problem
     change = np.abs(problem.launches(x)[:, 4] - problem.launches(result.x)[:, 4])
-    errors = _APART * np.sqrt(np.diag(certainty.covariance))
-    tracks = []
-    for n, film in enumerate(problem.films):
-        least = half_turns(film)
-        if film.angle is None and (n, _SPIN) in problem.names:
-            least = errors[problem.names.index((n, _SPIN))]
-        if change[n] > least:
-            tracks.append(n)
-    return tuple(tracks)
+    least = [half_turns(film) for film in problem.films]
+    for (n, name), variance in zip(problem.names, np.diag(certainty.covariance), strict=True):
+        if name == _SPIN and problem.films[n].angle is None:
+            least[n] = _APART * math.sqrt(variance)
+    return tuple(np.flatnonzero(change > least).tolist())
 
 
 def _of_other_turns(result: Estimate) -> list[FloatArray]:
     """Unknowns near other summits of tracks with angles: whole turns more from frame to frame."""
     problem = result.problem
     starts = []
-    for k, (n, name) in enumerate(problem.names):
-        if name != _SPIN or problem.films[n].angle is None:
-            continue
-        turn = 2.0 * half_turns(problem.films[n])
-        for way in (-turn, turn):
-            x = result.x
-            for _ in range(_MORE_TURNS):  # as long as they are near
-                x = x.copy()
-                x[k] += way
-                within = problem.limits[0][k] <= x[k] <= problem.limits[1][k]
-                if not (within and _near(result, x, [])):
-                    break
-                starts.append(x)
+    marked = [(k, n) for k, (n, name) in enumerate(problem.names)
+              if name == _SPIN and problem.films[n].angle is not None]  # fmt: skip
+    for (k, n), way in product(marked, (-2.0, 2.0)):
+        x = result.x
+        for _ in range(_MORE_TURNS):  # as long as they are near
+            x = x.copy()
+            x[k] += way * half_turns(problem.films[n])
+            within = problem.limits[0][k] <= x[k] <= problem.limits[1][k]
+            if not (within and _near(result, x, [])):
+                break
+            starts.append(x)
     return starts
 
 
@@ -184,18 +196,15 @@ def _of_other_spins(result: Estimate) -> list[FloatArray]:
         (np.zeros(limit.size), _TILT), (np.copysign(limit, launches[:, 4]), delta),
         (-np.copysign(limit, launches[:, 4]), 0.0), (-launches[:, 4], delta),
     )  # fmt: skip
+    slip = np.hypot(speed, radius * launches[:, 4]).sum()
     for spins, tilt in ways:
         other = launches.copy()
         other[:, 4] = spins
         # what slows the puck is about J times the share of its speed in the slip
-        shares = [
-            np.hypot(speed, radius * one).sum() / speed.sum() for one in (launches[:, 4], spins)
-        ]
-        found_numbers = numbers_with(problem.spec, decel * shares[1] / shares[0], tilt)
-        starts.append(problem.unknowns({**numbers, **found_numbers}, other))
-    walked = multi_start(
-        [(problem, x) for x in starts], _TO_OTHERS, allowance=RISE, kept=result.kept
-    )
+        slows = decel * np.hypot(speed, radius * spins).sum() / slip
+        x = problem.unknowns({**numbers, **numbers_with(problem.spec, slows, tilt)}, other)
+        starts.append((problem, x))
+    walked = multi_start(starts, _TO_OTHERS, allowance=RISE, kept=result.kept)
     return [x for x, cost in walked if 2.0 * cost < result.chi2 + 2.0 * RISE]
 
 
@@ -221,10 +230,9 @@ def mirrored(result: Estimate, certainty: Certainty) -> tuple[int, ...]:
             if not _near(result, x, tilts if least else []):
                 continue
             there, cost = minimise(problem, x, SQUARES, result.kept)
-            if (
-                there[k] * result.x[k] < 0.0 and abs(there[k] - result.x[k]) > Z95 * errors[k]
-                and 2.0 * cost < result.chi2 + RISE
-            ):  # fmt: skip
+            opposite = there[k] * result.x[k] < 0.0
+            apart = opposite and abs(there[k] - result.x[k]) > Z95 * errors[k]
+            if apart and 2.0 * cost < result.chi2 + RISE:
                 alike.append(n)
                 break
     return tuple(alike)
@@ -239,20 +247,12 @@ def _near(result: Estimate, x: FloatArray, held: list[int]) -> bool:
     return float(left @ left) < result.chi2 + 2.0 * EXCLUDED
 
 
-def _words(x: FloatArray, signed: bool) -> FloatArray:
-    """Unknowns as they are compared: without angles a mirror image is no other motion."""
-    return x if signed else np.abs(x)
-
-
 def _known(result: Estimate, certainty: Certainty) -> tuple[npt.NDArray[np.bool_], FloatArray]:
     """Which numbers of the puck, and whether its spin, a summit tells; how far off another is."""
     names = result.problem.names
     spec = np.array([track == -1 or name == _SPIN for track, name in names], bool)
     seen = spec & ~np.array(certainty.undetermined, bool)
     return seen, _APART * np.sqrt(np.diag(certainty.covariance))
-
-
-_SCALES = ("friction", "decel")
 
 
 def without_spin(
@@ -265,9 +265,9 @@ def without_spin(
     """
     problem = result.problem
     spec = problem.spec
-    (*scale, _) = (*(name for name in _SCALES if name in spec.free), "")
+    scale = next((name for name in ("friction", "decel") if name in spec.free), "")
     if (
-        not scale or numbers[scale[0]].determined or _SPIN in spec.fixed or problem.impact_specs
+        not scale or numbers[scale].determined or _SPIN in spec.fixed or problem.impact_specs
         or all(problem.spinless) or problem.angled
     ):  # fmt: skip
         return (), ()
@@ -283,15 +283,93 @@ def without_spin(
     noise = result.problem.noise
     if chi2_under(still, noise) > chi2_under(result, noise) + RISE:
         return (), ()
-    plausible = plausible_for(still.problem, still.x)
-    degrees = freedom(still, known)
-    certainty = certainty_of(still.jacobian[still.kept], plausible, degrees)
-    told = numbers_of(still, certainty)[0]
-    number = told[scale[0]]
+    told = numbers_of(still, certainty_at(still, freedom(still, known)))[0]
+    number = told[scale]
     if not number.determined:
         return (), ()
-    unit = "" if number.unit == "1" else f" {number.unit}"
     return (
-        f"{scale[0]} = {number.value:.4g} +- {number.error:.2g}{unit} if it did not spin: --fix "
+        f"{scale} = {number.value:.4g} +- {number.error:.2g}{number.unit_behind} if it did not "
+        "spin: --fix "
         "launch_spin=0 (fixed={'launch_spin': 0}).",
     ), tuple(name for name, one in told.items() if not one.determined)
+
+
+_JUDGED = 2.5  # degrees of freedom that tell the noise of a kind
+_BIAS = 2.0  # times what a force, to first order, would have done
+
+
+class JudgedMotion(NamedTuple):
+    """The motion that is taken, and what is known of it.
+
+    ``seen``: its certainty before anything nobody would believe took it all.
+    """
+
+    best: Estimate
+    certainty: Certainty
+    seen: Certainty
+    other_fits: tuple[OtherMinimum, ...]
+    unsigned: tuple[int, ...]
+    forces: SideForces
+    nowhere: str
+    astray: str
+
+
+def judged_motion(
+    best: Estimate, known: Known, smooth: tuple[float, float], bounds: Collection[str]
+) -> JudgedMotion:
+    """Which motion is taken of those that fit as well, and how far it is to be believed.
+
+    ``smooth``: the noise (m, rad) that no model judged; ``bounds``: names that the caller bounds.
+    """
+    certainty = judged_certainty(best, known)
+    refuse_wobbling(best, certainty)
+    excess = max(excess_of(best, smooth), 1.0)
+    other_fits = other_minima(best, certainty, excess)
+    other = taken(best, other_fits, excess)
+    if other is not None:
+        best = replace(estimate(best.problem, other.estimate.x, known), minima=best.minima)
+        certainty = judged_certainty(best, known)
+        other_fits = other_minima(best, certainty, max(excess_of(best, smooth), 1.0))
+    unsigned = mirrored(best, certainty)
+    forces = side_forces(best, certainty)
+    # bounds that the caller gives may keep every motion away: that is said of the bound
+    held_off = any(best.problem.names[k][1] in bounds for k in np.flatnonzero(certainty.pinned))
+    if held_off:  # no force
+        forces = forces._replace(biases=np.empty((0, 0)))
+    misfits = may_misfit(best, known, smooth, forces.chance)
+    certainty = _wider(best, certainty, misfits, forces, bool(unsigned))
+    nowhere = "" if held_off else no_answer(best, known, smooth)
+    astray = nowhere or ran_away(best.problem, best.x)
+    return JudgedMotion(
+        best, certainty.lost() if astray else certainty, certainty, other_fits, unsigned, forces,
+        nowhere, astray,
+    )  # fmt: skip
+
+
+def judged_certainty(best: Estimate, known: Known) -> Certainty:
+    """How well the unknowns of an estimate are known."""
+    degrees = freedom(best, known)
+    if degrees < _JUDGED:
+        raise InputError(
+            f"{best.residuals.size} observations of {best.x.size} unknowns are too few to judge "
+            "the noise of each kind by: give the noise, or more frames"
+        )
+    certainty = certainty_at(best, degrees)
+    return replace(certainty, pinned=pinned_of(best, certainty))
+
+
+def _wider(
+    best: Estimate, certainty: Certainty, misfits: bool, forces: SideForces, unsigned: bool
+) -> Certainty:
+    """The same where residuals are no independent noise, or nothing tells a floor from a spin."""
+    if misfits or any(certainty.pinned):
+        certainty = widened(best, certainty)
+        if misfits and forces.biases.size:
+            by_force = _BIAS**2 * forces.biases @ forces.biases.T
+            certainty = certainty.wider(certainty.covariance + by_force, True)
+    elif any(any(film.steps) for film in best.problem.films):
+        certainty = of_rounded(best, certainty)
+    if unsigned and forces.by_law.size:  # its slowing alone tells friction from spin
+        by_law = np.outer(forces.by_law, forces.by_law)
+        certainty = certainty.wider(certainty.covariance + by_law, False)
+    return certainty

@@ -27,8 +27,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.fit_spec import FitSpec
-from puck_tables.fitting.forward_model import RATE
-from puck_tables.fitting.impact_law import ImpactSpec, WallLine
+from puck_tables.fitting.forward_model import RATE, ImpactSpec, WallLine
 from puck_tables.fitting.observations import Observations, wrapped
 from puck_tables.fitting.slides import Slides
 
@@ -86,14 +85,8 @@ def likeliest(
     """
     from scipy.optimize import minimize
 
-    angled = kept[1] & np.isfinite(deviations[2])
-    placed = kept[0]
-    x, y, turn = (
-        np.where(placed, deviations[0], 0.0),
-        np.where(placed, deviations[1], 0.0),
-        deviations[2],
-    )
-    turn = np.where(angled, turn, 0.0)
+    placed, angled = kept[0], kept[1] & np.isfinite(deviations[2])
+    x, y, turn = np.where([placed, placed, angled], deviations, 0.0)
     vx, vy, spin = rates
     speed = float(np.sqrt(np.mean(vx**2 + vy**2))) or 1.0
     usual = noise[0] / speed
@@ -101,7 +94,6 @@ def likeliest(
     free = [k for k, one in enumerate(known) if not one and (k != 1 or angled.any())]
     if not free:
         return noise, jitter
-    factor = 1.0 / share
 
     def cost(logs: FloatArray) -> float:
         every = begin.copy()
@@ -113,10 +105,8 @@ def likeliest(
         squares = (x**2 + y**2) / place + turn**2 / angle
         ahead = (x * vx + y * vy) / place + turn * spin / angle
         squares -= stamp * ahead**2 / (1.0 + stamp * gain)
-        logarithm = (placed.sum() + kept[2].sum()) * math.log(place) + angled.sum() * math.log(
-            angle
-        )
-        return float(logarithm + np.log1p(stamp * gain).sum() + factor * squares.sum())
+        logarithm = float(kept[[0, 2]].sum()) * math.log(place) + angled.sum() * math.log(angle)
+        return float(logarithm + np.log1p(stamp * gain).sum() + squares.sum() / share)
 
     bounds = [
         (math.log(_LEAST * usual), math.log(_MOST * usual)) if k == 2
@@ -181,13 +171,13 @@ class Problem(Slides):
             kinds.append(np.where(turn, ANGLE, UNSEEN)[self._angled(film)])
         return np.concatenate([*kinds, np.full(len(self.priors), PRIOR)]).astype(np.int64)
 
-    def deviations(self, x: FloatArray) -> list[FloatArray]:
-        """Model less what was seen (3, n) of each track, m and rad; NaN where no angle was."""
-        return self._deviations(self.paths(x))
+    def deviations(self, x: FloatArray, paths: list[FloatArray] | None = None) -> list[FloatArray]:
+        """Model less what was seen (3, n) of each track, m and rad; NaN where no angle was.
 
-    def _deviations(self, paths: list[FloatArray]) -> list[FloatArray]:
+        ``paths``: of the model, where they are known.
+        """
         rows = []
-        for n, (film, path) in enumerate(zip(self.films, paths, strict=True)):
+        for n, (film, path) in enumerate(zip(self.films, paths or self.paths(x), strict=True)):
             turn = np.full(film.time.size, np.nan)
             if film.angle is not None:
                 whole = self.whole[n] if self.whole else None
@@ -197,12 +187,9 @@ class Problem(Slides):
             rows.append(np.stack([path[X] - film.place[:, 0], path[Y] - film.place[:, 1], turn]))
         return rows
 
-    def residuals(self, x: FloatArray) -> FloatArray:
-        """All of them, in units of the noise."""
-        return self._residuals(x, self.paths(x))
-
-    def _residuals(self, x: FloatArray, paths: list[FloatArray]) -> FloatArray:
-        rows = [self.weighed(n, deviations) for n, deviations in enumerate(self._deviations(paths))]
+    def residuals(self, x: FloatArray, paths: list[FloatArray] | None = None) -> FloatArray:
+        """All of them, in units of the noise; ``paths``: of the model, where they are known."""
+        rows = [self.weighed(n, one) for n, one in enumerate(self.deviations(x, paths))]
         rows += [np.array([(x[k] - value) / spread]) for k, value, spread in self.priors]
         return np.concatenate(rows)
 
@@ -247,7 +234,7 @@ class Problem(Slides):
             paths.append(path)
         for n, (k, _, spread) in enumerate(self.priors):
             out[row + n, k] = 1.0 / spread
-        return self._residuals(x, paths), out
+        return self.residuals(x, paths), out
 
     @staticmethod
     def _angled(film: Observations) -> npt.NDArray[np.bool_]:

@@ -19,8 +19,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.certainty import Certainty, shifted_by
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.forward_model import DELTA, RATE, Moving, states_and_slopes, states_of
-from puck_tables.fitting.least_squares import apart, inside
-from puck_tables.fitting.problem import Known, Problem
+from puck_tables.fitting.problem import ANGLE, PLACE, Known
 
 NO_PATTERN = 1e-3  # probability of residuals so patterned by chance
 JITTERY = 1.3  # residuals along the motion over those across it: more, and stamps may jitter
@@ -28,6 +27,7 @@ NOISY = 1.5  # times the noise of a smooth motion
 _MAY_NOISY, _MAY_PATTERN = 1.3, 0.01  # the same, where that is hardly seen
 _COMPUTED = 1e-7  # of the path: residuals of tracks that were computed, not seen
 _NOWHERE, _FAR, _ANY = 20.0, 1e-3, 0.5  # times the noise; of the path; rad
+_SELDOM = 3.3  # standard deviations: one film in 1,000, as few differences scatter wider
 _PARTS = 8
 _ROUNDED = 0.45  # of a step: residuals of what is rounded, and of some noise
 _MOVING, _ENOUGH = 0.1, 20  # of the greatest speed; frames
@@ -52,52 +52,52 @@ def runs(result: Estimate) -> float:
     Of all tracks, x, y and angles together.
     """
     deviations, variance = 0.0, 0.0
-    for rows in _series(result):
-        above = rows > 0.0
+    for above in (rows > 0.0 for rows in _series(result)):
         n, plus = above.size, int(above.sum())
-        minus = n - plus
-        if plus < 2 or minus < 2:
-            continue
-        mean = 2.0 * plus * minus / n
-        changes = int((above[1:] != above[:-1]).sum())
-        deviations += changes - mean
-        variance += mean * (2.0 * plus * minus - n) / (n * (n - 1.0))
-    if variance == 0.0:
-        return 1.0
-    return math.erfc(abs(deviations) / math.sqrt(2.0 * variance))
+        if min(plus, n - plus) >= 2:
+            mean = 2.0 * plus * (n - plus) / n
+            deviations += int((above[1:] != above[:-1]).sum()) - mean
+            variance += mean * (mean * n - n) / (n * (n - 1.0))
+    return math.erfc(abs(deviations) / math.sqrt(2.0 * variance)) if variance else 1.0
 
 
 def drift(result: Estimate) -> float:
     """The probability that means over eighths of the tracks are so far from 0 by chance."""
-    total, degrees = 0.0, 0
-    for rows in _series(result):
-        for part in np.array_split(rows, min(_PARTS, rows.size)):
-            total += part.sum() ** 2 / part.size
-            degrees += 1
-    scale = max(result.size**2, 1e-300)
-    return chi_square_tail(total / scale, max(degrees - result.x.size, 1)) if degrees else 1.0
+    every = [part for rows in _series(result)
+             for part in np.array_split(rows, min(_PARTS, rows.size))]  # fmt: skip
+    total = sum(part.sum() ** 2 / part.size for part in every) / max(result.size**2, 1e-300)
+    return chi_square_tail(total, max(len(every) - result.x.size, 1)) if every else 1.0
 
 
-def excess_of(result: Estimate, smooth: tuple[float, float]) -> float:
-    """The residuals over the noise (m, rad) that no model judged; 1 where that is not known."""
+def excess_of(result: Estimate, smooth: tuple[float, float], beyond_chance: bool = False) -> float:
+    """The residuals over the noise (m, rad) that no model judged; 1 where that is not known.
+
+    ``beyond_chance``: only where that noise is not so small by chance, as that of few frames is:
+    the logarithm of what n third differences tell of it scatters by 1.5/√n, as drawn ones do.
+    """
+    films, kinds = len(result.problem.films), result.problem.kinds
+    thirds = [max((kinds == kind).sum() - 3 * films * (2 - kind), 1) for kind in (PLACE, ANGLE)]
     return max((
-        result.size * own / other for own, other in zip(result.problem.noise, smooth, strict=True)
-        if math.isfinite(other) and other > 0.0
+        result.size * own / other
+        for count, own, other in zip(thirds, result.problem.noise, smooth, strict=True)
+        if math.isfinite(other) and other > 0.0 and (
+            not beyond_chance or math.log(result.size * own / other)
+            > _SELDOM * 1.5 / math.sqrt(count)
+        )
     ), default=1.0)  # fmt: skip
 
 
 def misfits(
     result: Estimate, known: Known, smooth: tuple[float, float], explained: float
 ) -> tuple[str, ...]:
-    """Signs that a model does not fit.
+    """Signs that a model does not fit; ``smooth``: the noise (m, rad) that no model judged.
 
-    ``smooth``: the noise (m, rad) that no model judged; ``explained``: the probability by chance of
-    what a slope, drag or air would explain.
+    ``explained``: the probability by chance of what a slope, drag or air would explain.
     """
     told = []
     # smaller residuals are the errors of what is computed
     seen = result.problem.noise[0] > _COMPUTED * result.problem.size
-    excess = excess_of(result, smooth)
+    excess = excess_of(result, smooth, beyond_chance=True)
     given = any(known[:2])
     if seen and not given and excess > NOISY:
         told.append(f"The residuals are {excess:.3g} times what smooth tracks would leave")
@@ -114,13 +114,9 @@ def misfits(
 
 def hidden(result: Estimate) -> bool:
     """Whether residuals are no more than rounding leaves, which is no noise."""
-    films, noise = result.problem.films, result.problem.noise
-    steps = [max(film.steps[kind] for film in films) for kind in range(2)]
-    within = [
-        step > 0.0 and result.size * own < _ROUNDED * step
-        for step, own in zip(steps, noise, strict=True)
-    ]
-    return within[0] or (result.problem.angled and within[1])
+    steps = np.max([film.steps for film in result.problem.films], axis=0)
+    place, angle = result.size * np.array(result.problem.noise) < _ROUNDED * steps
+    return bool(place or (result.problem.angled and angle))
 
 
 def may_misfit(
@@ -130,8 +126,8 @@ def may_misfit(
 
     Below what is complained of that may bias numbers by far.
     """
-    noisy = excess_of(result, smooth) > _MAY_NOISY
     pattern = not hidden(result) and min(runs(result), drift(result), explained) < _MAY_PATTERN
+    noisy = excess_of(result, smooth) > _MAY_NOISY
     return noisy or pattern or bool(misfits(result, known, smooth, explained))
 
 
@@ -196,7 +192,6 @@ _REST = 1e-3  # of the greatest slip
 _TRIED = 0.1  # degrees of a table that nobody levelled with care
 _STEEP = 3.0  # degrees: nobody takes that for a level table
 _ALIKE = 6.0  # of χ²: forces that explain about as much
-_ROUNDS, _CLOSE = 40, 1e-4
 _LAW = 0.2  # of a friction, by which it may change up to the fastest slip
 _RANK, _SEEN = 1e-9, 2e-3
 
@@ -224,22 +219,24 @@ def side_forces(result: Estimate, certainty: Certainty) -> SideForces:
     problem = result.problem
     if problem.impact_specs or problem.spec.speeds or any(problem.rests):
         return SideForces()
-    kept = result.kept[:, None]
-    columns = _weighed(problem, _along(problem, result.x)) * kept
+    kept, values = result.kept[:, None], problem.numbers_at(result.x)
+    moving, rows = problem.moving(values), []
+    for n, launch in enumerate(problem.launches(result.x)):
+        rows.append(problem.weighed(n, _along(moving, launch, problem.times(n, values))))
+    columns = np.concatenate([*rows, np.zeros((len(problem.priors), _FORCES))]) * kept
     changes = shifted_by(result, certainty, columns)
     slopes = result.jacobian * kept
     slopes = slopes / np.maximum(np.linalg.norm(slopes, axis=0), 1e-300)
     ways, sizes, _ = np.linalg.svd(slopes[:, np.equal(certainty.pinned, 0)], full_matrices=False)
     ways = ways[:, sizes > _RANK * sizes.max(initial=0.0)]
-    rows = result.residuals * result.kept
-    rows = rows - ways @ (ways.T @ rows)
+    left = result.residuals * result.kept
+    left = left - ways @ (ways.T @ left)
     lengths = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
     columns = (columns - ways @ (ways.T @ columns)) / lengths
-    if not rows.any() or result.degrees <= _FORCES:
+    if not left.any() or result.degrees <= _FORCES:
         return SideForces()
-    told = {kind: _explained(columns[:, kind], rows, result.degrees) for kind in _KINDS}
+    told = {kind: _explained(columns[:, kind], left, result.degrees) for kind in _KINDS}
     forces = {kind: one.force / lengths[list(kind)] for kind, one in told.items()}
-    values = problem.numbers_at(result.x)
     decel = problem.spec.scales(values)[0]
     gravity = {**problem.spec.known(), **values}["gravity"]
     tilt = math.degrees(math.hypot(*forces[SLOPE]) / gravity)
@@ -286,52 +283,8 @@ def _explained(columns: FloatArray, rows: FloatArray, degrees: int) -> _Explaine
     return _Explained(-(along / seen) @ turned, less / noise, chance, error)
 
 
-def forced(result: Estimate, kind: tuple[int, ...]) -> tuple[list[FloatArray], FloatArray]:
-    """How far a force of a kind leaves the tracks off (3, n), and the force that leaves least."""
-    from scipy.optimize import least_squares
-
-    problem, count = result.problem, result.x.size
-
-    def rows_and_slopes(values: FloatArray) -> tuple[FloatArray, FloatArray]:
-        rows, slopes = problem.residuals_and_jacobian(values[:count])
-        pushed = _weighed(problem, [one[..., kind] for one in _along(problem, values[:count])])
-        slopes = np.column_stack([slopes, pushed])[result.kept]
-        return (rows + pushed @ values[count:])[result.kept], slopes
-
-    start = np.append(result.x, np.zeros(len(kind)))
-    free = np.array([track >= 0 for track, _ in problem.names] + [True] * len(kind))
-    low, high = (
-        np.where(free, far, np.append(ends, np.zeros(len(kind))))
-        for ends, far in zip(problem.limits, (-np.inf, np.inf), strict=True)
-    )
-    residuals, jacobian = apart(rows_and_slopes)
-    found = least_squares(
-        residuals, inside(start, low, high), jacobian, bounds=(low, high), x_scale="jac",
-        max_nfev=_ROUNDS, ftol=_CLOSE, xtol=_CLOSE,
-    ).x  # fmt: skip
-    x, force = found[:count], found[count:]
-    along = [one[..., kind] @ force for one in _along(problem, x)]
-    return [off + one for off, one in zip(problem.deviations(x), along, strict=True)], force
-
-
-def _weighed(problem: Problem, along: list[FloatArray]) -> FloatArray:
-    """What is along the tracks (3, n, k) each, in units of the noise, (residuals, k)."""
-    rows = [problem.weighed(n, one) for n, one in enumerate(along)]
-    return np.concatenate([*rows, np.zeros((len(problem.priors), along[0].shape[2]))])
-
-
-def _along(problem: Problem, x: FloatArray) -> list[FloatArray]:
-    """What a unit of each force does to the places and angles of each track, (3, n, forces)."""
-    numbers = problem.numbers_at(x)
-    moving = problem.moving(numbers)
-    return [
-        _along_one(moving, launch, problem.times(n, numbers))
-        for n, launch in enumerate(problem.launches(x))
-    ]
-
-
-def _along_one(moving: Moving, launch: FloatArray, times: FloatArray) -> FloatArray:
-    """The same of one motion.
+def _along(moving: Moving, launch: FloatArray, times: FloatArray) -> FloatArray:
+    """What a unit of each force does to the places and angles of one motion, (3, n, forces).
 
     V(t) = ∂(vx, vy, ω)(t)/∂(vx, vy, ω)(0) carries changes on, from each moment to the next.
     """

@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.forward_model import (
+    AS_LAUNCH,
     DECEL,
     DELTA,
     PLACE,
@@ -23,24 +24,21 @@ from puck_tables.fitting.forward_model import (
     TIME,
     VX,
     VY,
-    Moving,
-    states_and_slopes,
-    states_of,
-)
-from puck_tables.fitting.impact_law import (
-    AS_LAUNCH,
     ImpactSpec,
     ImpactState,
+    Moving,
     Slide,
     after_impact,
     gap_of,
     impact_at,
+    states_and_slopes,
+    states_of,
 )
 from puck_tables.fitting.parameters import LAUNCH, OWN_CURVE
 from puck_tables.fitting.unknowns import NumbersOf, Unknowns
 
 _STEP = 1e-6
-_CURVE_STEP = 1e-4  # of what has a curve of its own at each value, known less well
+_CURVE_STEP = 1e-4  # of what has a curve of its own at each value
 _LEAST = 1e-2
 _FRAMES = list[tuple[slice, FloatArray, Slide]]
 
@@ -69,11 +67,10 @@ class Slides(Unknowns):
 
         Times are those after the start of the first track.
         """
-        result = self.numbers_at(x)
-        slides = [
-            [Slide(self._begin(n, result), launch)] for n, launch in enumerate(self.launches(x))
-        ]
-        impacts = []
+        result, slides, impacts = self.numbers_at(x), [], []
+        for film, launch in zip(self.films, self.launches(x), strict=True):
+            late = 0.0 if film.row is None else self.spec.readout(result) * float(film.row[0])
+            slides.append([Slide(film.start - self.films[0].start + late, launch)])
         if self.impact_specs:
             moving, walls = self.moving(result), self.estimated_walls(x)
             gyration = self.gyration(result)
@@ -87,12 +84,6 @@ class Slides(Unknowns):
                 slides[n].append(slide)
             impacts.append(impact)
         return slides, impacts
-
-    def _begin(self, n: int, result: NumbersOf) -> float:
-        """When a track begins, s after the start of the first."""
-        film = self.films[n]
-        late = 0.0 if film.row is None else self.spec.readout(result) * float(film.row[0])
-        return film.start - self.films[0].start + late
 
     def times(self, n: int, result: NumbersOf) -> FloatArray:
         """The times of a track's frames after its first: lines of a picture are read in turn."""
@@ -137,8 +128,8 @@ class Slides(Unknowns):
         result, slides, changes = self.numbers_at(x), self.slides(x)[0], self.slopes_of_slides(x)
         at, owners = _Along(self, result), np.array([track for track, _ in self.names])
         for n, film in enumerate(self.films):
-            every = bool(self.impact_specs)  # slides may follow from launches of other tracks
-            columns = np.flatnonzero(every | (owners == -1) | (owners == n))
+            # slides may follow from launches of other tracks
+            columns = np.flatnonzero(bool(self.impact_specs) | (owners == -1) | (owners == n))
             path = np.empty((3, film.time.size))
             slopes = np.empty((3, film.time.size, columns.size))
             parts = self._parts(n, result, slides[n])
@@ -156,10 +147,12 @@ class Slides(Unknowns):
         slides, impacts = self.slides(x)
         at = _Along(self, self.numbers_at(x))
         for impact_spec, impact in zip(self.impact_specs, impacts, strict=True):
-            before = [
-                at.of_impact(slides[n][len(slopes[n]) - 1], slopes[n][-1], impact.time)
-                for n in impact_spec.films
-            ]
+            before = []
+            for n in impact_spec.films:  # how a state changes with the unknowns, and with time
+                slide = slides[n][len(slopes[n]) - 1]
+                since = np.array([impact.time - slide.since])
+                _, out, speed = at.states_and_slopes(slide, slopes[n][-1], since, slice(6))
+                before.append((out[AS_LAUNCH, 0], speed[AS_LAUNCH, 0]))
             after = _through(self, x, impact_spec, impact, before)
             for n, one in zip(impact_spec.films, after, strict=True):
                 slopes[n].append(one)
@@ -192,15 +185,20 @@ class _Along:
         self._problem, self._moving = problem, problem.moving(result)
         self._nearby: list[Moving] = []
         self._parts: list[tuple[int, float]] = []  # of the difference of each, by an unknown
-        for k, name in enumerate(spec.free):
-            if spec.changes_motion(name):
-                for change, part in _differences(name, result[name], *spec.limits(name)):
-                    self._nearby.append(problem.moving({**result, name: result[name] + change}))
-                    self._parts.append((k, part))
         self._scales = np.zeros((7, len(spec.free)))  # which are the first unknowns
         for k, name in enumerate(spec.free):
             if not spec.changes_motion(name):
                 self._scales[[DECEL, DELTA, RADIUS], k] = spec.slopes(result, name)
+                continue
+            value, (low, high) = result[name], spec.limits(name)
+            step = _STEP * max(abs(value), _LEAST) * (1.0 if value < high else -1.0)
+            ends = [value + step]
+            if name in OWN_CURVE:  # known less well
+                ends = [min(value + _CURVE_STEP, high), max(value - _CURVE_STEP, low)]
+                step = ends[0] - ends[1]
+            for end, part in zip(ends, (1.0 / step, -1.0 / step), strict=False):
+                self._nearby.append(problem.moving({**result, name: end}))
+                self._parts.append((k, part))
 
     def states_and_slopes(
         self, slide: Slide, change: FloatArray, times: FloatArray, rows: slice,
@@ -222,23 +220,6 @@ class _Along:
         if row is not None and (-1, "readout") in self._problem.spots:
             out[:, :, self._problem.spots[-1, "readout"]] += slopes[:, :, TIME] * row
         return states, out, slopes[:, :, TIME]
-
-    def of_impact(
-        self, slide: Slide, change: FloatArray, time: float
-    ) -> tuple[FloatArray, FloatArray]:
-        """The derivatives (6, m) of a slide's state at a moment, and how fast it changes (6,)."""
-        since = np.array([time - slide.since])
-        _, out, speed = self.states_and_slopes(slide, change, since, slice(6))
-        return out[AS_LAUNCH, 0], speed[AS_LAUNCH, 0]
-
-
-def _differences(name: str, value: float, low: float, high: float) -> list[tuple[float, float]]:
-    """By how much a number that changes the curve itself is changed, and parts of the slope."""
-    if name in OWN_CURVE:
-        up, down = min(value + _CURVE_STEP, high), max(value - _CURVE_STEP, low)
-        return [(up - value, 1.0 / (up - down)), (down - value, -1.0 / (up - down))]
-    step = _STEP * max(abs(value), _LEAST) * (1.0 if value < high else -1.0)
-    return [(step, 1.0 / step)]
 
 
 def _through(

@@ -26,10 +26,10 @@ from puck_tables.contact import closed_form
 from puck_tables.errors import InputError
 from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.least_squares import FROM_SLOWING, ROBUST, multi_start
-from puck_tables.fitting.named_laws import shape
 from puck_tables.fitting.observations import Observations, rests_from, turning_of
 from puck_tables.fitting.parameters import NOTHING
 from puck_tables.fitting.problem import Problem
+from puck_tables.fitting.speed_motion import shape
 from puck_tables.fitting.unknowns import NumbersOf
 
 _DEGREE = 7  # of the polynomial: motions that slow are smooth
@@ -84,9 +84,8 @@ def starts_from_slowing(problem: Problem) -> list[tuple[Problem, FloatArray]]:
     radius = problem.spec.known()["radius"]
     for film in problem.films:
         turning = turning_of(film)
-        if film.angle is not None and (turning is None or not turning.sure):
-            return []
-        if film.angle is None and film.straight is None:
+        followed = film.straight is not None if film.angle is None else turning and turning.sure
+        if not followed:
             return []
         angle = None if turning is None else turning.angle
         whole.append(angle)
@@ -161,10 +160,13 @@ def _linear_fit(spec: FitSpec, films: list[_Moments], trial: NumbersOf, least: f
         fixed[_LINEAR.index("friction_rest")] = 0.0
     columns = [_columns(one, spec.law, known) for one in films]
     rest = [one.place.T - column @ fixed for one, column in zip(films, columns, strict=True)]
-    every, seen = (
-        np.concatenate([_without_launch(film, one) for film, one in zip(films, rows, strict=True)])
-        for rows in ([column[..., at] for column in columns], rest)
-    )
+    lines = [np.linalg.qr(film.line)[0] for film in films]
+    every, seen = (  # what no launch can do of places
+        np.concatenate([
+            (one - np.tensordot(line @ line.T, one, 1)).reshape(-1, *one.shape[2:])
+            for line, one in zip(lines, rows, strict=True)
+        ]) for rows in ([column[..., at] for column in columns], rest)
+    )  # fmt: skip
     found, left = np.zeros(len(at)), float(seen @ seen)
     if names:
         size = np.maximum(np.linalg.norm(every, axis=0), 1e-300)
@@ -178,13 +180,6 @@ def _linear_fit(spec: FitSpec, films: list[_Moments], trial: NumbersOf, least: f
         launches.append([*begun[:2], *speed[:2], speed[2] / radius, begun[2] / radius])
     numbers = dict(zip(names, found.tolist(), strict=True))
     return _LinearFit({**trial, **numbers}, np.array(launches), left)
-
-
-def _without_launch(film: _Moments, rows: FloatArray) -> FloatArray:
-    """What a launch cannot do of places (m, 3, …), one after the other."""
-    way = np.linalg.qr(film.line)[0]
-    left = rows - np.tensordot(way @ way.T, rows, 1)
-    return left.reshape(-1, *rows.shape[2:])
 
 
 def _moments(

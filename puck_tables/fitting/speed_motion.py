@@ -12,6 +12,17 @@ places are right to some 1e-6 of the path, far below what a film tells.
 How motions change with a launch or a law is told by motions nearby, which run abreast: their
 integrals are those of the first, carried on to first order in the direction of slip, its speed and
 the law.
+
+Laws of friction by a name and three numbers are f(u) = f + (f₀ − f) φ(u/w) with f of fast slip, f₀
+at rest and a speed w:
+
+==========  =====================================  ==================
+name        φ(x)                                   known as
+==========  =====================================  ==================
+stribeck    exp(−x)                                Stribeck's
+hyperbola   1/(1 + x)                              a/(u + b) + c
+two-valued  1 below x = 1, 0 above (a short slope)  static and kinetic
+==========  =====================================  ==================
 """
 
 from __future__ import annotations
@@ -37,6 +48,45 @@ AHEAD, ASIDE, RIM, X, Y, TURN, TIME = range(7)  # speeds along x and y, of the r
 # of a slide: one friction for all speeds, 0: the law; 2h/r; over the gyration squared; drags, push
 EVEN, GRAVITY, HEIGHT, INERTIA, RADIUS, LINEAR, AIR, SPINNING, PUSH_X, PUSH_Y = range(10)
 _ANY = np.zeros(2), np.zeros((1, 6))  # of no law
+
+
+_SLOPE = 0.05  # of w: so wide is the slope of the two values, that it can be fitted
+_SHAPES = {
+    "stribeck": np.array([0.0, 0.25, 0.5, 0.8, 1.2, 1.7, 2.4, 3.4, 5.0, 8.0]),
+    "hyperbola": np.array([0.0, 0.2, 0.5, 1.0, 2.0, 4.0, 8.0, 20.0, 60.0]),
+    "two-valued": np.array([0.0, 1.0 - _SLOPE, 1.0 + _SLOPE, 4.0]),
+}
+LAWS = tuple(_SHAPES)
+
+
+def shape(name: str, x: FloatArray) -> FloatArray:
+    """φ of a law at u/w (n,).
+
+    Examples
+    --------
+    >>> shape("stribeck", np.array([0.0, 1.0])).round(4).tolist()
+    [1.0, 0.3679]
+    """
+    if name == "stribeck":
+        return np.exp(-x)
+    if name == "hyperbola":
+        return 1.0 / (1.0 + x)
+    return np.clip(0.5 + (1.0 - x) / (2.0 * _SLOPE), 0.0, 1.0)
+
+
+def law_named(name: str, fast: float, rest: float, speed: float) -> SpeedLaw:
+    """The law with these numbers, between rows that are close where it bends.
+
+    Examples
+    --------
+    >>> law = law_named("stribeck", 0.1, 0.2, 0.05)
+    >>> round(float(law(0.0)), 4), round(float(law(0.05)), 3)
+    (0.2, 0.137)
+    """
+    x = _SHAPES[name]
+    values = fast + (rest - fast) * shape(name, x)
+    return SpeedLaw((speed * x).tolist(), np.maximum(values, 1e-9).tolist(),
+                    "linear" if name == "two-valued" else "cubic")  # fmt: skip
 
 
 class Drags(NamedTuple):

@@ -59,8 +59,11 @@ def minima_of(problem: Problem) -> list[FloatArray]:
     """The unknowns at the deepest minima of a problem of one track, the deepest first."""
     problem = replace(problem, weights=())
     film, spec = problem.films[0], problem.spec
-    if problem.rests and problem.rests[0]:
-        return [_at_rest(problem)]
+    if problem.rests and problem.rests[0]:  # it lies still
+        launch = np.array([*np.median(film.place, axis=0), 0.0, 0.0, 0.0, 0.0])
+        if film.angle is not None:
+            launch[5] = np.angle(np.nanmean(np.exp(1j * film.angle)))
+        return [problem.unknowns(_any(spec), launch[None])]
     moving = _moving_frames(film, problem.noise[0])
     place, velocity, slowing = _first_parabola(film, moving)
     turning = turning_of(film)
@@ -78,36 +81,20 @@ def minima_of(problem: Problem) -> list[FloatArray]:
         pieces = replace(problem, films=(part,), whole=(whole,))
         result = {**_any(spec), **numbers_with(spec, guess.decel, guess.delta)}
         starts.append((pieces, pieces.unknowns(result, launch[None])))
-    more = _from_known(problem, place, velocity)
+    more: list[FloatArray] = []
+    if spec.start:  # where the caller wants to begin
+        launch = np.array([*place, *velocity, 0.0, 0.0])
+        if film.angle is not None:
+            launch[5] = film.angle[np.isfinite(film.angle)][0]
+        launch = np.array(
+            [spec.start.get(name, at) for name, at in zip(LAUNCH, launch, strict=True)]
+        )
+        more = [np.clip(problem.unknowns(_any(spec), launch[None]), *problem.limits)]
     if turning is not None and not turning.sure:
         blind = replace(problem, films=(replace(film, angle=None),))
         by_angle = by_place(problem, blind, minima_of(blind)[:_BLIND])
         more += [x for x, _ in multi_start(by_angle, FROM_AFAR, ROBUST)]
     return _deepest(problem, multi_start(starts, FROM_AFAR, ROBUST, _RIVAL), more)
-
-
-def _from_known(problem: Problem, place: FloatArray, velocity: FloatArray) -> list[FloatArray]:
-    """The unknowns at which the caller wants to begin."""
-    start = problem.spec.start
-    if not start:
-        return []
-    launch = np.array([*place, *velocity, 0.0, 0.0])
-    film = problem.films[0]
-    if film.angle is not None:
-        launch[5] = film.angle[np.isfinite(film.angle)][0]
-    for n, name in enumerate(LAUNCH):
-        launch[n] = start.get(name, launch[n])
-    return [np.clip(problem.unknowns(_any(problem.spec), launch[None]), *problem.limits)]
-
-
-def _at_rest(problem: Problem) -> FloatArray:
-    """The unknowns of a puck that lies still."""
-    film = problem.films[0]
-    launch = np.zeros(6)
-    launch[:2] = np.median(film.place, axis=0)
-    if film.angle is not None:
-        launch[5] = np.angle(np.nanmean(np.exp(1j * film.angle)))
-    return problem.unknowns(_any(problem.spec), launch[None])
 
 
 def _deepest(
@@ -117,8 +104,8 @@ def _deepest(
 
     Spins of less than half a turn from frame to frame come first unless they are excluded.
     """
-    (x, least), *others = minima
-    rivals = [x] + [other for other, cost in others if cost < least + _RIVAL] + more
+    x, least = minima[0]
+    rivals = [x, *(other for other, cost in minima[1:] if cost < least + _RIVAL), *more]
     marked = problem.films[0].angle is not None
     if marked and "launch_spin" not in problem.spec.fixed:
         spin = problem.names.index((0, "launch_spin"))
@@ -232,10 +219,8 @@ def _guesses(
         nearest = {guess.turns: guess for guess in reversed(result)}
         return [*dict.fromkeys((*result[:_KEPT], *nearest.values()))]
     # without angles every spin is a chance, with the height that suits it
-    by_spin: dict[float, _Guess] = {}
-    for guess in result:
-        by_spin.setdefault(guess.spin, guess)
-    return list(by_spin.values())[:_KEPT_BLIND]
+    by_spin = {guess.spin: guess for guess in reversed(result)}
+    return sorted(by_spin.values(), key=lambda guess: guess.score)[:_KEPT_BLIND]
 
 
 def _spins(
@@ -248,11 +233,11 @@ def _spins(
             return [(spin, 0)]
         first = float(turning.rate[0])
         return [(spin, round((spin - first) * turning.step / (2.0 * math.pi)))]
-    more = [(spec.start["launch_spin"], 0)] if "launch_spin" in spec.start else []
+    more = [spec.start["launch_spin"]] if "launch_spin" in spec.start else []
     if turning is None:
         scale = max(speed, _LEAST_SPEED) / radius
         spins = sorted({sign * ratio * scale for ratio, sign in product(_RATIOS, (1.0, -1.0))})
-        return [(spin, 0) for spin in spins] + more
+        return [(spin, 0) for spin in (*spins, *more)]
     slope = (turning.rate[1] - turning.rate[0]) / (turning.time[1] - turning.time[0]) \
         if turning.rate.size > 1 else 0.0  # fmt: skip
     first = float(turning.rate[0] - slope * turning.time[0])
@@ -260,8 +245,7 @@ def _spins(
     if rests:
         at_rest = -round(float(turning.rate[-1]) / whole)
         return [(first + at_rest * whole, at_rest)]
-    turns = {round((spin - first) / whole) for spin, _ in more}
-    turns.update(range(-_MOST_TURNS, _MOST_TURNS + 1))
+    turns = {*range(-_MOST_TURNS, _MOST_TURNS + 1), *(round((n - first) / whole) for n in more)}
     return [(first + k * whole, k) for k in sorted(turns)]
 
 

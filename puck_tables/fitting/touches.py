@@ -76,10 +76,9 @@ def pushed(film: Observations, start: int, stop: int) -> bool:
     noise = noise_of([film])[0]
     if width < _FEWEST_BESIDE or not noise > 0.0:
         return False
-    slowest = math.inf
-    error = noise * math.sqrt(12.0 / width**3) / film.usual_step
-    for n in range(_PARTS):
-        part = slice(start + n * width, start + (n + 1) * width)
+    slowest, error = math.inf, noise * math.sqrt(12.0 / width**3) / film.usual_step
+    for at in range(start, start + _PARTS * width, width):
+        part = slice(at, at + width)
         speed = math.hypot(*np.polyfit(film.time[part], film.place[part], 1)[0])
         if speed > max(slowest + _JUMPS * error, _FASTER * slowest):
             return True
@@ -98,10 +97,8 @@ def _gain(
     """
     stops = middle >= rests - _FEWEST_BESIDE
     end = middle + reach if stops else min(middle + reach, rests)
-    sides = [
-        np.flatnonzero(steady[start:stop]) + start
-        for start, stop in ((max(0, middle - reach), middle), (middle, end))
-    ]
+    ends = (max(0, middle - reach), middle), (middle, end)
+    sides = [np.flatnonzero(steady[start:stop]) + start for start, stop in ends]
     if min(side.size for side in sides) < _FEWEST_BESIDE:
         return 0.0
     time = film.time - film.time[middle]
@@ -174,16 +171,19 @@ def kinks(film: Observations, noise: float) -> list[int]:
     places = range(_WINDOW - 1, count - _WINDOW)
     if len(places) < 2 * _WINDOW:
         return []
-    before = np.array([_velocity(film, i - _WINDOW + 1, i + 1) for i in places])
-    after = np.array([_velocity(film, i + 1, i + 1 + _WINDOW) for i in places])
+    every = [_velocity(film, i, i + _WINDOW) for i in range(count - _WINDOW + 1)]
+    before, after = (np.array(every[k : k + len(places)]) for k in (0, _WINDOW))
     change, speed = after - before, np.hypot(*before.T)
-    jump = np.hypot(*(change - _around(change)).T)
+    # less what friction changes near each frame: the median of frames beside it
+    away = np.r_[-3 * _WINDOW : -_WINDOW, _WINDOW + 1 : 3 * _WINDOW + 1]
+    near = (at[(at >= 0) & (at < len(change))] for at in (n + away for n in range(len(change))))
+    jump = np.hypot(*(change - np.array([np.median(change[at], axis=0) for at in near])).T)
     error = noise * math.sqrt(48.0 / _WINDOW**3) / film.usual_step
     high = max(_USUAL * float(np.median(jump)), _NOISY * error)
     result = []
     for n, size in enumerate(jump.tolist()):
-        near = jump[max(0, n - _WINDOW) : n + _WINDOW + 1]
-        top = max(0, n - _WINDOW) + np.flatnonzero(near >= _TOP * near.max())
+        beside = jump[max(0, n - _WINDOW) : n + _WINDOW + 1]
+        top = max(0, n - _WINDOW) + np.flatnonzero(beside >= _TOP * beside.max())
         highest = n == int(top[top.size // 2])
         if highest and size > max(high, _LEAST * float(speed[n])):
             result.append(n + _WINDOW - 1)
@@ -206,15 +206,6 @@ def _jumps(film: Observations, noise: float, start: int, middle: int, stop: int)
     span = min(middle - start, stop - middle)
     error = noise * math.sqrt(2.0 * 192.0 / span**3) / film.usual_step
     return jump > max(_NOISY * error, _LEAST * math.hypot(*(before[1] + 2.0 * at * before[2])))
-
-
-def _around(change: FloatArray) -> FloatArray:
-    """What friction changes near each frame (n, 2): the median of frames beside it."""
-    away = np.r_[-3 * _WINDOW : -_WINDOW, _WINDOW + 1 : 3 * _WINDOW + 1]
-    near = (n + away for n in range(len(change)))
-    return np.array([
-        np.median(change[at[(at >= 0) & (at < len(change))]], axis=0) for at in near
-    ])  # fmt: skip
 
 
 def _velocity(film: Observations, start: int, stop: int) -> FloatArray:

@@ -14,37 +14,20 @@ question to the next:
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
 from functools import lru_cache
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.accuracy.methods import FrictionForm
 from puck_tables.contact.laws import Law, law_of
 from puck_tables.motion.body import body_of, plain_up_to
-from puck_tables.motion.frame import Frame, frame_of
-from puck_tables.motion.friction_source import Friction, section_friction
-from puck_tables.motion.limits import log_ratio
-from puck_tables.motion.state import (
-    HEADING,
-    ORIENTATION,
-    PUCK_X,
-    PUCK_Y,
-    SPEED,
-    SPIN,
-    STATE_ROWS,
-    T,
-)
-from puck_tables.motion.steppers import Stepping
-from puck_tables.motion.tableaus import DORMAND_PRINCE
-from puck_tables.motion.unit_motion import MotionRun, at_constant_slip, integrated
+from puck_tables.motion.frame import frame_of
+from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED, SPIN, STATE_ROWS
 from puck_tables.stopping.launch_frame import fill_placed_states
 from puck_tables.stopping.plain_states import fill_state_slopes
 from puck_tables.stopping.state_values import directions, looked_up, looked_up_launches
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.stopping.variational import Variations, unit_states, variations_by
-from puck_tables.table.friction_section import section_of_table
 from puck_tables.table.friction_slopes import slopes_at_one_height, slopes_of_table
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.resultant_values import full_contact
@@ -52,28 +35,47 @@ from puck_tables.table.resultant_values import full_contact
 HEIGHT_STEP = 0.05
 HIGHEST = 3.9
 _ACCURACY = 1e-7  # of friction ratios; a film knows places to 1e-4 of the path
-_STEPPING = Stepping(DORMAND_PRINCE, 0.0, 1e-9)
-_KEPT = 8
+_LOCAL = 1e-9  # of a step
 _BY_DELTA = 4  # of the derivatives of unit states
 
 
-class UnitMotions(ABC):
+class UnitMotions:
     """Motions of pucks of one kind; ``highest``: the largest δ for which they are known."""
 
     highest: float
 
-    @abstractmethod
+    def own(self, delta: float, cosine: float, sine: float, tau: FloatArray) -> FloatArray:
+        """States with Q = J = r = 1 and their derivatives, (n, 6, 6), as of ``unit_states``."""
+        raise NotImplementedError
+
     def states(self, launches: FloatArray, times: FloatArray) -> FloatArray:
         """States (6, m, n), x, y, body angle, vx, vy, ω, of launches from (0, 0).
 
         ``launches`` (6, m): vx, vy, ω, δ, J, r of each; ``times`` (m, n): s, ≥ 0.
         """
+        out = np.zeros((6, *times.shape))
+        for k, launch in enumerate(launches.T):
+            if launch[:3].any():
+                out[:, k] = self.states_and_slopes(launch, times[k])[0]
+        return out
 
-    @abstractmethod
     def states_and_slopes(
         self, launch: FloatArray, times: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
         """States (6, n) of a launch (6,), and their derivatives (n, 6, 7) by it and by time."""
+        vx, vy, spin, _, decel, radius = launch.tolist()
+        frame, slopes = frame_of((vx, vy), spin, decel, radius), np.empty((times.size, 6, 7))
+        ratios = frame.speed / frame.slip, frame.rim / frame.slip
+        own = self.own(float(launch[3]), *ratios, times / frame.time)
+        fill_placed_states(launch, times, own, slopes)
+        x, y, turn, ahead, aside, rim = own[:, :, 0].T
+        pace = frame.slip / frame.length
+        states = np.stack([
+            *frame.place(x, y), frame.side * (frame.length / frame.radius) * turn,
+            *(pace * np.array(frame.place(ahead, aside))),
+            frame.side * (frame.slip / frame.radius) * rim,
+        ])  # fmt: skip
+        return states, slopes
 
 
 class PlainMotions(UnitMotions):
@@ -107,42 +109,7 @@ class PlainMotions(UnitMotions):
         return _cartesian(rows, directions(launch[:1], launch[1:2])), slopes
 
 
-class IntegratedMotions(UnitMotions):
-    """Pucks whose friction is a section."""
-
-    @abstractmethod
-    def one(self, launch: FloatArray, times: FloatArray) -> FloatArray:
-        """States (6, n) of one launch (6,)."""
-
-    @abstractmethod
-    def own(self, delta: float, cosine: float, sine: float, tau: FloatArray) -> FloatArray:
-        """States with Q = J = r = 1 and their derivatives, (n, 6, 6), as of ``unit_states``."""
-
-    def states(self, launches: FloatArray, times: FloatArray) -> FloatArray:
-        """Each integrated."""
-        return np.stack([
-            self.one(launch, moments) for launch, moments in zip(launches.T, times, strict=True)
-        ], axis=1)  # fmt: skip
-
-    def states_and_slopes(
-        self, launch: FloatArray, times: FloatArray
-    ) -> tuple[FloatArray, FloatArray]:
-        """By variational equations."""
-        frame, slopes = _frame(launch), np.empty((times.size, 6, 7))
-        ratios = frame.speed / frame.slip, frame.rim / frame.slip
-        own = self.own(float(launch[3]), *ratios, times / frame.time)
-        fill_placed_states(launch, times, own, slopes)
-        x, y, turn, ahead, aside, rim = own[:, :, 0].T
-        pace = frame.slip / frame.length
-        states = np.stack([
-            *frame.place(x, y), frame.side * (frame.length / frame.radius) * turn,
-            *(pace * np.array(frame.place(ahead, aside))),
-            frame.side * (frame.slip / frame.radius) * rim,
-        ])  # fmt: skip
-        return states, slopes
-
-
-class LawMotions(IntegratedMotions):
+class LawMotions(UnitMotions):
     """Pucks of any pressure law and spread of mass, in full contact.
 
     Examples
@@ -157,26 +124,14 @@ class LawMotions(IntegratedMotions):
     def __init__(self, law: Law, gyration: float) -> None:
         self._table, self._gyration = _law_table(law), gyration
         self.highest = full_contact(law)
-        self._kept: dict[float, Friction] = {}
-
-    def one(self, launch: FloatArray, times: FloatArray) -> FloatArray:
-        """By the table of the law; the last few sections are kept."""
-        delta = float(launch[3])
-        if delta not in self._kept:
-            section = section_of_table(self._table, delta, 1.0)
-            cut = section.for_motion(self._gyration)
-            if len(self._kept) >= _KEPT:
-                self._kept.pop(next(iter(self._kept)))
-            self._kept[delta] = Friction(FrictionForm.TABLE, delta, cut, section.tolerance)
-        return _integrated(launch, self._kept[delta], times)
 
     def own(self, delta: float, cosine: float, sine: float, tau: FloatArray) -> FloatArray:
         """By the table of the law."""
         friction = variations_by(slopes_of_table(self._table, delta), self._gyration)
-        return unit_states(friction, cosine, sine, tau, _STEPPING.local)[0]
+        return unit_states(friction, cosine, sine, tau, _LOCAL)[0]
 
 
-class TallMotions(IntegratedMotions):
+class TallMotions(UnitMotions):
     """Uniform pucks of any height: motions interpolated between those of a few heights.
 
     Examples
@@ -192,32 +147,20 @@ class TallMotions(IntegratedMotions):
         self._gyration, self._plain = gyration, PlainMotions()
         self._is_plain = plain_up_to("uniform", gyration) > 0.0
 
-    def one(self, launch: FloatArray, times: FloatArray) -> FloatArray:
-        """Cubic in δ through the motions of four heights; looked up up to δ = 1."""
-        delta = float(launch[3])
-        if self._is_plain and delta <= self._plain.highest:
-            return self._plain.states(launch[:, None], times[None])[:, 0]
-        out = np.zeros((STATE_ROWS, times.size))
-        for height, weight, _ in _heights(delta):
-            if weight != 0.0:
-                body = body_of("uniform", height, self._gyration)
-                out += weight * _integrated(launch, section_friction(body, _ACCURACY), times)
-        return out
-
     def states_and_slopes(
         self, launch: FloatArray, times: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Looked up up to δ = 1."""
+        """Cubic in δ through the motions of four heights; looked up up to δ = 1."""
         if self._is_plain and launch[3] <= self._plain.highest:
             return self._plain.states_and_slopes(launch, times)
         return super().states_and_slopes(launch, times)
 
     def own(self, delta: float, cosine: float, sine: float, tau: FloatArray) -> FloatArray:
-        """Of the same cubic, by δ exactly."""
+        """Of that cubic, by δ exactly."""
         out = np.zeros((tau.size, 6, 6))
         for height, weight, slope in _heights(delta):
             friction = _tall_variations(height, self._gyration)
-            result = unit_states(friction, cosine, sine, tau, _STEPPING.local)[0]
+            result = unit_states(friction, cosine, sine, tau, _LOCAL)[0]
             result[:, :, _BY_DELTA] = 0.0
             out += weight * result
             out[:, :, _BY_DELTA] += slope * result[:, :, 0]
@@ -265,12 +208,6 @@ def unit_motions_of(pressure: str | Law, gyration: float, tall: bool = False) ->
     return LawMotions(law, gyration)
 
 
-def _frame(launch: FloatArray) -> Frame:
-    """The frame of a launch (6,)."""
-    vx, vy, spin, _, decel, radius = launch.tolist()
-    return frame_of((vx, vy), spin, decel, radius)
-
-
 def _cartesian(rows: FloatArray, headings: FloatArray | float) -> FloatArray:
     """States (6, …) with vx and vy from those with speed and heading."""
     heading, speed = rows[HEADING] + headings, rows[SPEED]
@@ -278,21 +215,3 @@ def _cartesian(rows: FloatArray, headings: FloatArray | float) -> FloatArray:
         rows[PUCK_X], rows[PUCK_Y], rows[ORIENTATION], speed * np.cos(heading),
         speed * np.sin(heading), rows[SPIN],
     ])  # fmt: skip
-
-
-def _integrated(launch: FloatArray, friction: Friction, times: FloatArray) -> FloatArray:
-    """States (6, n) of one launch."""
-    frame = _frame(launch)
-    if frame.slip == 0.0:
-        return np.zeros((STATE_ROWS, times.size))
-    run = _run(frame.speed / frame.slip, frame.rim / frame.slip, friction)
-    moments = frame.unit_times(times, float(run.stop[T]) * frame.time)
-    return _cartesian(np.stack(frame.states(*run.states(moments))), frame.heading)
-
-
-def _run(speed: float, rim: float, friction: Friction) -> MotionRun:
-    if rim <= 1e-12:
-        return at_constant_slip("C0", -math.inf, friction)
-    if speed <= 1e-12:
-        return at_constant_slip("B0", math.inf, friction)
-    return integrated(log_ratio(speed, rim), friction, _STEPPING)

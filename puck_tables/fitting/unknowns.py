@@ -14,12 +14,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import cached_property
+from itertools import product
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.fit_spec import FitSpec
-from puck_tables.fitting.impact_law import WallLine
+from puck_tables.fitting.forward_model import WallLine
 from puck_tables.fitting.observations import Observations
 from puck_tables.fitting.parameters import LAUNCH, MOST, WALL
 
@@ -28,6 +29,9 @@ _FASTER = 10.0  # times the fastest that a track goes from frame to frame
 _RIM = 100.0  # times that speed: the rim, without angles
 _TURNS = 20.0  # a frame, with angles
 _PRIOR = 8.0  # standard deviations of a prior
+_TOLD = 0.75  # of the time between frames, twice the error of a readout that the tracks tell
+# scales are plausible within their own size, but not less than this
+_LEAST = {"friction": 1e-3, "decel": 1e-2, "gravity": 1e-2, "height": 1e-4, "radius": 1e-4}
 _PLACES = ("launch_x", "launch_y")
 _SPEEDS = ("launch_vx", "launch_vy")
 
@@ -76,19 +80,14 @@ class Unknowns:
     @cached_property
     def launch_names(self) -> tuple[tuple[str, ...], ...]:
         """The unknowns of each launch."""
-        return tuple(
-            tuple(
-                name for name in LAUNCH
-                if name not in self.spec.fixed
-                and (name != "launch_angle" or film.angle is not None)
-                and not (rests and name in _MOTION)
-                and not (spinless and name == "launch_spin")
-                and (film.straight is None or name not in _ACROSS[film.straight.main])
-            )
-            for film, rests, spinless in zip(
-                self.films, self.rests or [False] * len(self.films), self.spinless, strict=True
-            )
-        )  # fmt: skip
+        result, rests = [], self.rests or (False,) * len(self.films)
+        for film, rest, spinless in zip(self.films, rests, self.spinless, strict=True):
+            known = {*self.spec.fixed, *(_MOTION if rest else ())}
+            known |= {"launch_angle"} if film.angle is None else set()
+            known |= {"launch_spin"} if spinless else set()
+            known |= set() if film.straight is None else {*_ACROSS[film.straight.main]}
+            result.append(tuple(name for name in LAUNCH if name not in known))
+        return tuple(result)
 
     @cached_property
     def spinless(self) -> tuple[bool, ...]:
@@ -107,10 +106,8 @@ class Unknowns:
     def names(self) -> tuple[tuple[int, str], ...]:
         """(track, name) of every unknown; −1 for the puck, −2 for the first wall, and so on."""
         launches = [(n, name) for n, names in enumerate(self.launch_names) for name in names]
-        walls = [
-            (_WALL - n, name) for n, wall in enumerate(self.walls) if wall is None for name in WALL
-        ]
-        return (*((-1, name) for name in self.spec.free), *launches, *walls)
+        found = [_WALL - n for n, wall in enumerate(self.walls) if wall is None]
+        return (*((-1, name) for name in self.spec.free), *launches, *product(found, WALL))
 
     @cached_property
     def priors(self) -> tuple[tuple[int, float, float], ...]:
@@ -118,13 +115,10 @@ class Unknowns:
 
         That of a readout, unless it or bounds are given: a picture is read before the next one.
         """
-        result = []
-        for k, (_, name) in enumerate(self.names):
-            if name in self.spec.priors:
-                result.append((k, *self.spec.priors[name]))
-            elif name == "readout" and self.read_within is not None:
-                result.append((k, 0.5 * self.read_within, 0.5 * self.read_within))
-        return tuple(result)
+        known = {**self.spec.priors}
+        if self.read_within is not None:
+            known["readout"] = 0.5 * self.read_within, 0.5 * self.read_within
+        return tuple((k, *known[name]) for k, (_, name) in enumerate(self.names) if name in known)
 
     @property
     def read_within(self) -> float | None:
@@ -161,6 +155,29 @@ class Unknowns:
         low_high = np.array(pairs).reshape(-1, 2)
         return low_high[:, 0], low_high[:, 1]
 
+    def plausible(self, x: FloatArray) -> FloatArray:
+        """What is plausible for every unknown (m,): of scales their own size."""
+        result, launches = self.numbers_at(x), self.launches(x)
+        radius = self.spec.scales(result)[2]
+        sizes = []
+        for track, name in self.names:
+            if name == "readout" and self.read_within is not None:
+                sizes.append(_TOLD * self.read_within)
+            elif track == -1:
+                own, least = self.spec.plausible(name), _LEAST.get(name)
+                sizes.append(own if least is None else max(abs(result[name]), least))
+            elif name in ("launch_angle", "wall_angle"):
+                sizes.append(1.0)
+            elif name in (*_PLACES, "wall_distance"):
+                every = [film.place for film in ([self.films[track]] if track >= 0 else self.films)]
+                sizes.append(float(np.ptp(np.concatenate(every), axis=0).max()) or radius)
+            else:
+                _, _, vx, vy, spin, _ = launches[track]
+                slip = math.hypot(vx, vy, radius * spin) or 1.0
+                sizes.append(slip / radius if name == "launch_spin" else slip)
+        plausible: FloatArray = np.maximum(np.array(sizes), 1e-12)
+        return plausible
+
     def numbers_at(self, x: FloatArray) -> NumbersOf:
         """The numbers of the puck that are found."""
         return dict(zip(self.spec.free, x[: len(self.spec.free)].tolist(), strict=True))
@@ -185,26 +202,17 @@ class Unknowns:
         self, result: NumbersOf, launches: FloatArray, walls: tuple[WallLine, ...] = ()
     ) -> FloatArray:
         """The vector of unknowns from what they mean."""
-        order = list(LAUNCH)
-        values = []
-        for track, name in self.names:
-            if track == -1:
-                values.append(result[name])
-            elif track < -1:
-                values.append(walls[_WALL - track][list(WALL).index(name)])
-            else:
-                values.append(launches[track, order.index(name)])
-        return np.array(values, float)
+        launch, wall = list(LAUNCH), list(WALL)
+        return np.array([
+            result[name] if track == -1 else launches[track, launch.index(name)] if track >= 0
+            else walls[_WALL - track][wall.index(name)] for track, name in self.names
+        ], float)  # fmt: skip
 
     def estimated_walls(self, x: FloatArray) -> tuple[WallLine, ...]:
         """All walls, given or found."""
-        result: list[WallLine] = []
-        at = len(self.names) - len(WALL) * self.walls.count(None)
-        for wall in self.walls:
-            if wall is None:
-                wall, at = WallLine(*x[at : at + len(WALL)].tolist()), at + len(WALL)
-            result.append(wall)
-        return tuple(result)
+        found = x[len(self.names) - len(WALL) * self.walls.count(None) :].reshape(-1, len(WALL))
+        every = iter(found.tolist())
+        return tuple(WallLine(*next(every)) if wall is None else wall for wall in self.walls)
 
     def within(self, x: FloatArray) -> FloatArray:
         """The same, with the height of the tallest puck that moves so: all higher ones do, too."""

@@ -22,7 +22,7 @@ from puck_tables.fitting.observations import MEDIAN, Observations
 from puck_tables.fitting.problem import ANGLE, PLACE, TURN, Problem
 
 EXCLUDED = 25.0  # of χ²: a spin of less than half a turn a frame
-_MISFIT, _LESS = 1.5, 5.0  # residuals over the noise that are none, and how many times less count
+MISFIT, LESS = 1.5, 5.0  # residuals over the noise that are none, and how many times less count
 _FARTHEST = 16.0  # of the square of a residual
 _DIRECTIONS, _TOLD, _WIDE = 3, 0.3, 3.5  # phases; rad that need no search; standard deviations
 _STEP, _MOST = 0.8, 2e6  # rad; phases of frames that are looked at
@@ -47,9 +47,7 @@ def half_turns(film: Observations) -> float:
 def is_slow(problem: Problem, x: FloatArray) -> bool:
     """Whether no body with angles turns more than half a turn from frame to frame."""
     spins = np.abs(problem.launches(x)[:, 4])
-    return all(
-        spin <= half_turns(film) for spin, film in zip(spins, problem.films, strict=True)
-    )  # fmt: skip
+    return all(spin <= half_turns(film) for spin, film in zip(spins, problem.films, strict=True))
 
 
 def preferred(motions: list[Judged]) -> int:
@@ -72,17 +70,8 @@ def preferred(motions: list[Judged]) -> int:
     slowest = min(slow, key=lambda k: motions[k].chi2)
     one, other = motions[slowest], motions[best]
     near = one.chi2 - other.chi2 <= EXCLUDED
-    poor = other.size > _MISFIT and one.size < _LESS * other.size
+    poor = other.size > MISFIT and one.size < LESS * other.size
     return slowest if near or poor else best
-
-
-def most_of_slow(chi2: float, excess: float) -> float:
-    """By how much χ² of a slow motion may be higher than that of a fast one, where it is taken.
-
-    In units of the residuals of the fast one, which are ``excess`` times the noise.
-    """
-    poor = (_LESS**2 - 1.0) * chi2 if excess > _MISFIT else 0.0
-    return max(EXCLUDED / excess**2, poor)
 
 
 def on_another_floor(problem: Problem, x: FloatArray) -> tuple[Problem, FloatArray] | None:
@@ -93,11 +82,9 @@ def on_another_floor(problem: Problem, x: FloatArray) -> tuple[Problem, FloatArr
     spec = problem.spec
     if spec.speeds or "drag" in spec.free or "drag" in spec.fixed:
         return None
-    free = len(spec.free)
     bounds = {**spec.bounds, "drag": (0.0, _MOST_DRAG)}
-    spec = replace(spec, free=(*spec.free, "drag"), bounds=bounds)
-    moved = replace(problem, spec=spec, weights=())
-    return moved, np.insert(x, free, _LITTLE_DRAG)
+    other = replace(spec, free=(*spec.free, "drag"), bounds=bounds)
+    return replace(problem, spec=other, weights=()), np.insert(x, len(spec.free), _LITTLE_DRAG)
 
 
 def in_order(problem: Problem, minima: list[FloatArray]) -> list[FloatArray]:
@@ -152,7 +139,17 @@ def by_place(problem: Problem, blind: Problem, minima: list[FloatArray]) -> list
     for x in minima:
         whole = problem.unknowns(blind.numbers_at(x), blind.launches(x))
         moved = np.array([k for k, (_, name) in enumerate(problem.names) if name != "launch_angle"])
-        covariance = _covariance(blind, x)
+        # of unknowns that places alone tell, no wider than what may be
+        rows, told = blind.residuals_and_jacobian(x)
+        _, _, vx, vy, spin, _ = blind.launches(x)[0].tolist()
+        rim = math.hypot(vx, vy) / blind.spec.scales(blind.numbers_at(x))[2]
+        wide = {"launch_spin": max(abs(spin), rim), "delta": 1.0}
+        least = 1e-3 * (film.time[-1] or 1.0)
+        sizes = np.array([wide.get(name, max(abs(value), least))
+                          for (_, name), value in zip(blind.names, x, strict=True)])  # fmt: skip
+        excess = max(1.0, float(rows @ rows) / max(rows.size - x.size, 1))
+        square = (told * sizes).T @ (told * sizes) / excess + np.eye(sizes.size)
+        covariance = np.linalg.inv(square) * np.outer(sizes, sizes)
         slopes = problem.jacobian(whole)[problem.kinds == ANGLE][:, moved] * problem.noise[1]
         slopes = slopes - slopes.mean(axis=0)  # where it begins is free
         variances, ways = np.linalg.eigh(slopes @ covariance @ slopes.T)
@@ -182,19 +179,3 @@ def by_place(problem: Problem, blind: Problem, minima: list[FloatArray]) -> list
                 if (0, "launch_angle") in problem.names else 0.0  # fmt: skip
             starts.append((replace(problem, whole=(angle,)), np.clip(one, *problem.limits)))
     return starts
-
-
-def _covariance(blind: Problem, x: FloatArray) -> FloatArray:
-    """Of unknowns that places alone tell, no wider than what may be."""
-    rows, slopes = blind.residuals_and_jacobian(x)
-    (film,) = blind.films
-    radius = blind.spec.scales(blind.numbers_at(x))[2]
-    rim = float(np.hypot(*blind.launches(x)[0, 2:4])) / radius
-    wide = {"launch_spin": max(abs(float(blind.launches(x)[0, 4])), rim), "delta": 1.0}
-    sizes = np.array([wide.get(name, max(abs(float(x[k])), 1e-3 * (film.time[-1] or 1.0)))
-                      for k, (_, name) in enumerate(blind.names)])  # fmt: skip
-    excess = max(1.0, float(rows @ rows) / max(rows.size - x.size, 1))
-    scaled = slopes * sizes
-    square = scaled.T @ scaled / excess + np.eye(sizes.size)
-    covariance: FloatArray = np.linalg.inv(square) * np.outer(sizes, sizes)
-    return covariance

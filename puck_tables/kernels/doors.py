@@ -102,12 +102,15 @@ class Door:
         if self.seconds > _SAID:
             say(self._announcement)
 
+    @property
+    def _name(self) -> str:
+        return f"{self.py_func.__module__}.{self.py_func.__qualname__}"
+
     @cached_property
     def _announcement(self) -> str:
         """What is said before it is compiled: the same by whichever thread."""
-        name = f"{self.py_func.__module__}.{self.py_func.__qualname__}"
         wait = self.seconds + (0.0 if "numba" in sys.modules else _TO_LOAD_NUMBA)
-        return f"compiling {name} for this machine, once: about {wait:.2g} s"
+        return f"compiling {self._name} for this machine, once: about {wait:.2g} s"
 
     def _try(self, *args: Any) -> Any:
         """Run it as it is written while patience lasts, or else compiled from the same arguments.
@@ -118,6 +121,10 @@ class Door:
         before = [(array, array.copy()) for array in _arrays(args) if array.flags.writeable]
         begin = time.thread_time()
         here.as_written, here.until = True, begin + self._allowed - self.spent
+        here.silent_until = min(here.until, begin + AT_FIRST - self.spent)
+        here.sentence = (
+            f"{self._name} is not compiled: it runs in Python, up to {self._allowed:.0f} s"
+        )
         try:
             with np.errstate(all="ignore"):
                 result = self.at_first(*args)

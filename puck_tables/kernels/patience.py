@@ -3,7 +3,8 @@
 To compile what moves one puck takes longer than to move it.  So a kernel that is called from Python
 runs as it is written until a second of computing is spent on it, or many items come; then it goes
 on compiled, from the arguments as they were.  Loops look at the clock by a call of
-:func:`patience`, of which nothing is left in compiled code.
+:func:`patience`, of which nothing is left in compiled code.  What takes so long to compile that it
+may run longer says so.
 """
 
 from __future__ import annotations
@@ -14,6 +15,8 @@ import os
 import threading
 import time
 from collections.abc import Iterator
+
+from puck_tables._core.own_folder import say
 
 AT_FIRST = 1.5  # s of computing of each kernel
 FEW = 64  # items; more are compiled for at once
@@ -29,6 +32,8 @@ class _Thread(threading.local):
 
     as_written = False
     until = math.inf
+    silent_until = math.inf  # at most until then, and then it says
+    sentence = ""
     at_once = os.environ.get("NUMBA_DISABLE_JIT") == "0"  # whether to compile without a try
     kept_first = True  # whether what was compiled before is quicker than a try
 
@@ -48,8 +53,11 @@ def patience(items: int) -> None:
     --------
     >>> patience(1000)  # no kernel runs
     """
-    if here.as_written and (items > FEW or time.thread_time() > here.until):
-        raise OutOfPatience
+    if here.as_written and (items > FEW or time.thread_time() > here.silent_until):
+        if items > FEW or here.silent_until >= here.until:
+            raise OutOfPatience
+        here.silent_until = here.until
+        say(here.sentence)
 
 
 @contextlib.contextmanager

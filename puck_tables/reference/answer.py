@@ -40,9 +40,11 @@ class Answer(Result):
     ``names`` of the pucks, none of a single one; ``time`` (n,) s; ``columns``: arrays (n,), of
     several pucks (n, pucks), by name, each also an attribute: places, angle, velocity and spin,
     ``slip_speed`` Q, ``epsilon`` = v/(r|ω|) and ``slip_ratio`` = r|ω|/v of the slip over the floor,
-    ``floor_fx``, ``floor_fy`` N and ``floor_torque`` N m, what the puck does to the floor.
+    ``floor_fx``, ``floor_fy`` N and ``floor_torque`` N m, what the puck does to the floor.  Of a
+    base that is not round r is the reach, how far it extends from the centre of mass.
 
-    ``speed_scale`` Q m/s and ``rate_scale`` J m/s²; ``time_bound`` s, ``place_bound`` m and
+    ``speed_scale`` m/s: Q of the launch, with the speed of a floor that moves added to it;
+    ``rate_scale`` m/s²: f g, of the largest f; ``time_bound`` s, ``place_bound`` m and
     ``speed_bound`` m/s: what times, places (and r times angles), speeds (and r times spins) may at
     most be wrong by.  ``limit_epsilon``: what ε tends to where it stops by friction alone, else
     None.  Called with times it gives the states there.
@@ -97,6 +99,11 @@ class Answer(Result):
     def pieces(self) -> tuple[PieceSpec, ...]:
         """The pucks."""
         return pieces_of(self.run.scene)
+
+    @property
+    def is_body(self) -> bool:
+        """Whether it is of a body on a base that is not round: it has no δ, and r is its reach."""
+        return self.pieces[0].shape is not None
 
     @property
     def floor(self) -> Floor:
@@ -172,13 +179,7 @@ class Answer(Result):
         None, too, where friction depends on the slip, a base is not round, or pucks are several.
         """
         floor = self.floor
-        if (
-            self.pieces[0].shape is not None
-            or self.names
-            or floor.patches
-            or floor.law
-            or floor.orthotropic
-        ):
+        if self.is_body or self.names or floor.patches or floor.law or floor.orthotropic:
             return None
         puck = self.run.scene.puck
         if floor.strips is None:
@@ -268,7 +269,7 @@ class Answer(Result):
             "tests": self.case.tests, "end": self.end, "end_time": self.end_time,
             "stop": self.last(), "pucks": list(self.names), "speed_scale": self.speed_scale,
             "rate_scale": self.rate_scale, "limit_epsilon": self.limit_epsilon,
-            "delta": [one.delta for one in self.pieces],
+            "delta": None if self.is_body else [one.delta for one in self.pieces],
             **{name: getattr(self, name) for name in BOUNDS},
             "scene": tables_of(self.run.scene),
         }  # fmt: skip

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.scene.parts import Floor
 from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.scene.stretches import belts_of
 from puck_tables.world.floor_forces import friction_at
 
 
@@ -47,18 +48,30 @@ class SlipVelocity(NamedTuple):
 def slip_over(floor: Floor, states: Mapping[str, FloatArray]) -> SlipVelocity:
     """Of states ``x``, ``y``, ``vx``, ``vy``, ``spin`` over a floor that may move.
 
+    Where strips move on their own it is the slip over the one under the centre.
+
     Examples
     --------
     >>> state = {name: np.ones(1) for name in ("x", "y", "vx", "vy", "spin")}
     >>> slip_over(Floor(velocity=(1.0, 0.0), turning=2.0), state)
     SlipVelocity(vx=array([2.]), vy=array([-1.]), spin=array([-1.]))
     """
-    (bx, by), (cx, cy), turning = floor.velocity, floor.centre, floor.turning
+    (bx, by), (cx, cy), turning = _velocity_under(floor, states), floor.centre, floor.turning
     return SlipVelocity(
         states["vx"] - bx + turning * (states["y"] - cy),
         states["vy"] - by - turning * (states["x"] - cx),
         states["spin"] - turning,
     )
+
+
+def _velocity_under(floor: Floor, states: Mapping[str, FloatArray]) -> tuple[Any, Any]:
+    """Of the floor, along x and y, m/s; of strips the one under the centre."""
+    if floor.strips is None:
+        return floor.velocity
+    east, north = math.cos(floor.strips.direction), math.sin(floor.strips.direction)
+    place = east * states["x"] + north * states["y"]
+    found = belts_of(floor)[np.searchsorted(floor.strips.borders, place, "right")]
+    return found[..., 0], found[..., 1]
 
 
 def ratios(slip: SlipVelocity, radius: float) -> tuple[FloatArray, FloatArray]:

@@ -18,7 +18,7 @@ from puck_tables._core.units import unit_word
 from puck_tables.errors import InputError
 from puck_tables.film.film import Film, Reader, TrackedBody
 
-_KEY = 0x50  # the second byte of all C3D files
+_KEY = b"\x50"  # the second byte of all C3D files
 
 
 def _film(path: str | Path, head: bytes) -> Film:
@@ -81,8 +81,6 @@ def _up(said: dict[str, Any]) -> str:
     return axis if axis in ("x", "y", "z") else "z"
 
 
-def _opens(path: str | Path, head: bytes) -> bool:
-    return head[1:2] == bytes([_KEY]) and 1 < head[0] < 40 and b"\0" in head[:512]
-
-
-READERS = (Reader(_opens, _film),)
+READERS = (
+    Reader(lambda _, head: head[1:2] == _KEY and 1 < head[0] < 40 and b"\0" in head[:512], _film),
+)

@@ -24,7 +24,11 @@ def _as_csv(path: str | Path, head: bytes) -> bytes:
     """The same as a CSV file (UTF-8) with the names of its entries as headings."""
     content = read_whole(path, _LARGEST)
     try:
-        data = _parsed(content)
+        data: Any
+        try:
+            data = json.loads(content)
+        except ValueError:  # a value a line
+            data = [json.loads(line) for line in content.splitlines() if line.strip()]
         if isinstance(data, dict):
             if isinstance(data.get("columns"), dict):
                 data = {
@@ -46,16 +50,4 @@ def _as_csv(path: str | Path, head: bytes) -> bytes:
     return csv_of([names, *rows])
 
 
-def _parsed(content: bytes) -> Any:
-    """What a file holds: one value, or one a line."""
-    try:
-        return json.loads(content)
-    except ValueError:
-        return [json.loads(line) for line in content.splitlines() if line.strip()]
-
-
-def _opens(path: str | Path, head: bytes) -> bool:
-    return _BEGINS.match(first_text(path, head)) is not None
-
-
-READERS = (Reader(_opens, as_text=_as_csv),)
+READERS = (Reader(lambda path, head: bool(_BEGINS.match(first_text(path, head))), as_text=_as_csv),)

@@ -50,17 +50,13 @@ def _film(path: str | Path, head: bytes) -> Film:
     film = Film(
         "table of photogates", [], "m", notes=["places along one line, the edges of a flag"]
     )
-    for n in range(len(values["flag"])):
-        one, two, between, width, way = (
-            float(values[name][n]) for name in ("gate 1", "gate 2", "between", "flag", "distance")
-        )
-        if not all(np.isfinite([one, two, between])):
-            continue
-        place = np.array([0.0, width, way, way + width])
-        time = np.array([0.0, one, between, between + two])
-        film.bodies.append(
-            TrackedBody(f"slide {n + 1}", {"": np.stack([place, 0.0 * place], axis=1)}, time=time)
-        )
+    rows = [values[name] for name in ("gate 1", "gate 2", "between", "flag", "distance")]
+    for n, (one, two, between, width, way) in enumerate(np.stack(rows, axis=1).tolist(), start=1):
+        if np.isfinite([one, two, between]).all():
+            place = np.array([0.0, width, way, way + width])
+            marks = {"": np.stack([place, 0.0 * place], axis=1)}
+            time = np.array([0.0, one, between, between + two])
+            film.bodies.append(TrackedBody(f"slide {n}", marks, time=time))
     return film
 
 

@@ -1,8 +1,7 @@
 """Films in HDF5: tables that DeepLabCut wrote with pandas, SLEAP's analysis files, and our own.
 
-pandas keeps the names of columns as pickles.  They are never run: the few signs of which a list of
-names consists are read one by one (:mod:`pickletools` only takes a pickle apart), and all others
-are refused.
+pandas keeps the names of columns as pickles.  They are never run: one that names any class or
+function is refused, as the documentation of :mod:`pickle` has it ("Restricting globals").
 
 References
 ----------
@@ -13,8 +12,9 @@ group ``df_with_missing``.  SLEAP, "Analysis HDF5": ``tracks`` (tracks, 2, nodes
 
 from __future__ import annotations
 
+import io
 import json
-import pickletools
+import pickle
 from pathlib import Path
 from typing import Any
 
@@ -48,19 +48,14 @@ def _film(path: str | Path, head: bytes) -> Film:
                 raise InputError(
                     f"{path} is a project of SLEAP: export it as Analysis HDF5, or CSV"
                 )
+    except InputError:
+        raise
     except _DAMAGE as error:
-        raise _refused(path, error) from None
+        raise InputError(f"{path} is damaged or no film: {error}") from None
     raise InputError(
         f"{path} is HDF5, but none of DeepLabCut (a pandas table) or SLEAP (Analysis HDF5): save "
         "the table as CSV"
     )
-
-
-def _refused(path: str | Path, error: Exception) -> InputError:
-    """What is said of a file that cannot be read."""
-    if isinstance(error, InputError):
-        return error
-    return InputError(f"{path} is damaged or no film: {error}")
 
 
 def _is_saved(path: str | Path, head: bytes) -> bool:
@@ -93,13 +88,16 @@ def _saved_as_csv(path: str | Path, head: bytes) -> bytes:
                 values, unit = one.asstr()[()] if one.dtype.kind == "O" else one[()], one.attrs
                 columns[f"{name}[{unit['units']}]" if unit["units"] else name] = values.tolist()
         return csv_of([columns, *zip(*columns.values(), strict=True)])
+    except InputError:
+        raise
     except _DAMAGE as error:
-        raise _refused(path, error) from None
+        raise InputError(f"{path} is damaged or no film: {error}") from None
 
 
 def _deeplabcut(path: str | Path, table: Any) -> Film:
     """The film in a table of pandas."""
-    if table.size * sum(_width(table, name) for name in table.dtype.names) > _LARGEST:
+    widths = (np.prod(table.dtype[name].shape, dtype=np.int64) for name in table.dtype.names)
+    if table.size * int(sum(widths)) > _LARGEST:
         raise InputError(f"{path} holds more than {_LARGEST} numbers: cut it into shorter films")
     labels: list[Any] = []
     columns = [np.asarray(table["index"])]
@@ -123,64 +121,25 @@ def _deeplabcut(path: str | Path, table: Any) -> Film:
     return film_of_columns(path, layout, dict(enumerate(columns)), {})
 
 
-def _width(table: Any, name: str) -> int:
-    return int(np.prod(table.dtype[name].shape, dtype=np.int64))
+class _Texts(pickle._Unpickler):  # in Python: its memo takes no memory that a file asks for
+    """Reads pickles of texts, lists and tuples; whatever names a class or a function is refused."""
+
+    def find_class(self, module: str, name: str) -> Any:
+        raise InputError(f"more than texts ({module}.{name})")
 
 
 def _names_in(path: str | Path, pickled: bytes) -> list[Any]:
     """The list of texts, and of tuples of texts, in a pickle that holds nothing else."""
-    stack: list[Any] = []
-    memo: dict[int, Any] = {}
-    mark = object()
-
-    def since() -> list[Any]:
-        at = len(stack) - 1 - stack[::-1].index(mark)
-        items = stack[at + 1 :]
-        del stack[at:]
-        return items
-
     try:
-        for sign, value, _ in pickletools.genops(pickled):
-            match sign.name:
-                case "MARK":
-                    stack.append(mark)
-                case "UNICODE" | "BINUNICODE" | "SHORT_BINUNICODE" | "STRING":
-                    stack.append(value)
-                case "LIST" | "TUPLE":
-                    items = since()
-                    stack.append(items if sign.name == "LIST" else tuple(items))
-                case "EMPTY_LIST":
-                    stack.append([])
-                case "TUPLE1" | "TUPLE2" | "TUPLE3":
-                    count = int(sign.name[-1])
-                    items = [stack.pop() for _ in range(count)][::-1]
-                    stack.append(tuple(items))
-                case "APPEND":
-                    item = stack.pop()
-                    stack[-1].append(item)
-                case "APPENDS":
-                    items = since()
-                    stack[-1].extend(items)
-                case "PUT" | "BINPUT" | "LONG_BINPUT":
-                    memo[value] = stack[-1]  # type: ignore[index]
-                case "MEMOIZE":
-                    memo[len(memo)] = stack[-1]
-                case "GET" | "BINGET" | "LONG_BINGET":
-                    stack.append(memo[value])  # type: ignore[index]
-                case "PROTO" | "FRAME" | "STOP":
-                    pass
-                case _:
-                    raise InputError(
-                        f"{path} names its columns by more than texts, which is not read: save "
-                        "the table as CSV"
-                    )
-        (names,) = stack
-        if not isinstance(names, list):
-            raise ValueError
-    except (ValueError, IndexError, KeyError, AttributeError) as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(f"{path} is damaged: its names of columns cannot be read") from None
+        names = _Texts(io.BytesIO(pickled)).load()
+    except InputError as error:
+        raise InputError(
+            f"{path} names its columns by {error}, which is not read: save the table as CSV"
+        ) from None
+    except Exception:  # of whatever bytes may be
+        names = None
+    if not isinstance(names, list):
+        raise InputError(f"{path} is damaged: its names of columns cannot be read")
     return names
 
 
@@ -203,7 +162,10 @@ def _sleap(path: str | Path, file: Any) -> Film:
     names = _names(file, "track_names", values.shape[0], "track")
     if len(names) == 1:
         names = [""]
-    scores = _scores(file, values.shape)
+    count, _, marks, frames = values.shape
+    scores: FloatArray | None = None
+    if "point_scores" in file and file["point_scores"].shape == (count, marks, frames):
+        scores = np.asarray(file["point_scores"], dtype=np.float64)
     columns = [("", Heading("frame"))]
     numbers = [np.arange(values.shape[3], dtype=np.float64)]
     for n, k in np.ndindex(len(names), len(nodes)):
@@ -235,13 +197,6 @@ def _names(file: Any, key: str, count: int, what: str) -> list[str]:
         for one in (np.asarray(file[key]).ravel().tolist() if key in file else ())
     ]
     return result if len(result) == count and all(result) else [f"{what} {n}" for n in range(count)]
-
-
-def _scores(file: Any, shape: tuple[int, ...]) -> FloatArray | None:
-    """The scores of points, (tracks, nodes, frames), where they are in the usual order."""
-    if "point_scores" not in file or file["point_scores"].shape != (shape[0], shape[2], shape[3]):
-        return None
-    return np.asarray(file["point_scores"], dtype=np.float64)
 
 
 READERS = (

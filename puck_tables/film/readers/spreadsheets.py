@@ -105,32 +105,29 @@ def _column(place: str) -> int:
 
 
 def _ods(document: Element) -> Iterator[list[str]]:
-    table = next((one for one in document.iter() if _tag(one) == "table"), None)
-    count = 0
-    for row in table.iter() if table is not None else ():
+    tables, count = (one for one in document.iter() if _tag(one) == "table"), 0
+    for row in next(tables, ElementTree.Element("")).iter():
         if _tag(row) != "table-row":
             continue
         cells: list[str] = []
         for cell in row:
-            told = {_bare(key): value for key, value in cell.attrib.items()}
-            text = told.get("value") or "".join(cell.itertext())
-            times = min(int(told.get("number-columns-repeated", 1)), _WIDEST)
+            text = _said(cell, "value") or "".join(cell.itertext())
+            times = min(int(_said(cell, "number-columns-repeated") or 1), _WIDEST)
             cells += [text] * (times if text else min(times, _WIDEST - len(cells)))
         while cells and not cells[-1]:
             cells.pop()
-        told = {_bare(key): value for key, value in row.attrib.items()}
-        times = int(told.get("number-rows-repeated", 1)) if cells else 1
+        times = int(_said(row, "number-rows-repeated") or 1) if cells else 1
         for _ in range(min(times, _LONGEST - count)):
             count += 1
             yield cells
 
 
 def _tag(one: Element) -> str:
-    return _bare(one.tag) if isinstance(one.tag, str) else ""
+    return one.tag.rpartition("}")[2] if isinstance(one.tag, str) else ""
 
 
-def _bare(name: str) -> str:
-    return name.rpartition("}")[2]
+def _said(one: Element, name: str) -> str:
+    return next((value for key, value in one.attrib.items() if key.rpartition("}")[2] == name), "")
 
 
 def _opens(path: str | Path, head: bytes) -> bool:

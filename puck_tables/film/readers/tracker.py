@@ -50,10 +50,7 @@ def _film_of_zip(path: str | Path, head: bytes) -> Film:
         raise InputError(f"{path} is too large: unpack it, and read its .trk file")
     films, left = {}, _LARGEST
     name: PurePosixPath | None = None
-    damage = (
-        zipfile.BadZipFile, zlib.error, lzma.LZMAError, NotImplementedError, RuntimeError, EOFError,
-        ValueError, OSError,
-    )  # fmt: skip
+    damage = (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, ValueError, OSError)
     try:
         with zipfile.ZipFile(path) as archive:
             members = archive.infolist()
@@ -71,10 +68,20 @@ def _film_of_zip(path: str | Path, head: bytes) -> Film:
                     raise InputError(f"{path}: {name} is too large to be a file of Tracker")
                 left -= len(content)
                 films[name.stem] = _film(f"{path}: {name}", content)
+    except InputError:
+        raise
+    except RuntimeError as error:  # encrypted, or packed by an uncommon method
+        raise InputError(
+            f"{path}: {name} cannot be read ({error}): unpack it, and read its .trk file"
+        ) from None
     except damage as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(_damage(path, name, error)) from None
+        where = f"{name} in it cannot be unpacked" if name else (
+            "its list of contents is missing or broken, as of a file that was not copied to its end"
+        )  # fmt: skip
+        raise InputError(
+            f"{path} is a damaged archive: {where} ({error}). Copy it once more, or open it in "
+            "Tracker and save it again"
+        ) from None
     if not films:
         raise InputError(
             f"{path} is an archive without a .trk file of Tracker: unpack it, and read its tables"
@@ -89,19 +96,6 @@ def _film_of_zip(path: str | Path, head: bytes) -> Film:
             body.name = stem
     first.bodies = [body for film in films.values() for body in film.bodies]
     return first
-
-
-def _damage(path: str | Path, member: PurePosixPath | None, error: Exception) -> str:
-    """What is wrong with an archive, and what to do."""
-    if isinstance(error, RuntimeError):  # encrypted, or packed by an uncommon method
-        return f"{path}: {member} cannot be read ({error}): unpack it, and read its .trk file"
-    where = "its list of contents is missing or broken, as of a file that was not copied to its end"
-    if member:
-        where = f"{member} in it cannot be unpacked"
-    return (
-        f"{path} is a damaged archive: {where} ({error}). Copy it once more, or open it in Tracker "
-        "and save it again"
-    )
 
 
 def _film(path: str, content: bytes) -> Film:
@@ -124,10 +118,13 @@ def _film(path: str, content: bytes) -> Film:
             f"{path} holds a {_kind(root)} of Tracker, not a tab with tracks: read the .trk files "
             "of its tabs"
         )
-    masses = [
-        (one, _texts(one)) for one in _items(_property(root, "tracks")) if _kind(one) == _MASS
-    ]
-    result = {name.get("name", "").strip(): _marks(path, mass) for mass, name in masses}
+    result = {}
+    for mass in (one.find("object") for one in _held(root, "tracks")):
+        if mass is not None and _kind(mass) == _MASS:
+            result[_texts(mass).get("name", "").strip()] = {  # its pixels by frame
+                frame: (_number(path, texts, "x"), _number(path, texts, "y"))
+                for frame, texts in _indexed(path, _held(mass, "framedata"))
+            }
     result = {name: marks for name, marks in result.items() if marks}
     if not result:
         raise InputError(f"{path} holds no point mass that was marked in a frame")
@@ -158,24 +155,14 @@ def _film(path: str, content: bytes) -> Film:
     return film
 
 
-def _property(of: Element | None, name: str) -> Element | None:
-    """What an object, or an array, holds under a name."""
-    if of is None:
-        return None
-    return next((one for one in of.findall("property") if one.get("name") == name), None)
-
-
-def _inner(of: Element | None, name: str) -> Element | None:
-    """The object that an object holds under a name."""
-    held = _property(of, name)
-    return None if held is None else held.find("object")
-
-
-def _items(collection: Element | None) -> Iterator[Element]:
-    """The objects in a collection."""
-    for one in () if collection is None else collection.findall("property"):
-        if (item := one.find("object")) is not None:
-            yield item
+def _held(of: Element | None, *names: str) -> list[Element]:
+    """The properties of what an object holds under a name, and that under the next, and so on."""
+    for name in names:
+        held = [] if of is None else of.findall("property")
+        of = next((one for one in held if one.get("name") == name), None)
+        if of is not None and (inner := of.find("object")) is not None:
+            of = inner
+    return [] if of is None else of.findall("property")
 
 
 def _kind(of: Element) -> str:
@@ -183,11 +170,9 @@ def _kind(of: Element) -> str:
     return of.get("class", "").rpartition(".")[2]
 
 
-def _texts(of: Element) -> dict[str, str]:
-    """The plain values of an object by name."""
-    return {
-        one.get("name", ""): one.text or "" for one in of.findall("property") if not len(one)
-    }  # fmt: skip
+def _texts(of: Element | None, *names: str) -> dict[str, str]:
+    """The plain values of an object, or of what it holds, by name."""
+    return {one.get("name", ""): one.text or "" for one in _held(of, *names) if not len(one)}
 
 
 def _number(path: str, texts: dict[str, str], name: str) -> float:
@@ -204,9 +189,9 @@ def _number(path: str, texts: dict[str, str], name: str) -> float:
     return value
 
 
-def _indexed(path: str, array: Element | None) -> Iterator[tuple[int, dict[str, str]]]:
+def _indexed(path: str, array: list[Element]) -> Iterator[tuple[int, dict[str, str]]]:
     """The objects of an array with their numbers: those that are not written are missing."""
-    for one in () if array is None else array.findall("property"):
+    for one in array:
         item, name = one.find("object"), one.get("name", "")
         if item is None:
             continue
@@ -216,23 +201,11 @@ def _indexed(path: str, array: Element | None) -> Iterator[tuple[int, dict[str, 
         yield int(digits), _texts(item)
 
 
-def _marks(path: str, mass: Element) -> dict[int, tuple[float, float]]:
-    """The pixels of a point mass by frame."""
-    return {
-        frame: (_number(path, texts, "x"), _number(path, texts, "y"))
-        for frame, texts in _indexed(path, _property(mass, "framedata"))
-    }
-
-
 def _clock(path: str, root: Element) -> tuple[int, int, float | None, float]:
     """First frame, frames of a step, ms of a frame and of the first; None where it is not said."""
-    clip = _inner(root, "videoclip")
-    texts = {} if clip is None else _texts(clip)
-    control = _inner(root, "clipcontrol")
-    timing = {} if control is None else _texts(control)
+    texts, timing = _texts(root, "videoclip"), _texts(root, "clipcontrol")
     if "delta_t" not in timing:
-        video = _inner(clip, "video")
-        timing = {} if video is None else _texts(video)
+        timing = _texts(root, "videoclip", "video")
     duration = _number(path, timing, "delta_t") if "delta_t" in timing else None
     if duration is not None and duration <= 0.0:
         raise InputError(f"{path}: frames that last {duration:g} ms: give fps (--fps)")
@@ -245,7 +218,7 @@ def _clock(path: str, root: Element) -> tuple[int, int, float | None, float]:
 def _axes(path: str, root: Element) -> dict[int, tuple[float, float, float, float]]:
     """Origin, angle and scale by the frame from which they hold."""
     axes = {}
-    for frame, texts in _indexed(path, _property(_inner(root, "coords"), "framedata")):
+    for frame, texts in _indexed(path, _held(root, "coords", "framedata")):
         names = ("xorigin", "yorigin", "angle", "xscale", "yscale")
         u, v, angle, scale, other = (_number(path, texts, name) for name in names)
         if scale <= 0.0 or not math.isclose(scale, other, rel_tol=1e-9):
@@ -274,14 +247,14 @@ def _world(
     return np.column_stack([p * cos + q * sin, q * cos - p * sin])
 
 
-def _is_archive(path: str | Path, head: bytes) -> bool:
-    """Whether a file is a .trz archive, or one whose first bytes are damaged, which it says."""
-    damaged = Path(path).suffix.lower() == ".trz" and not first_text(path, head)
-    return head.startswith(ZIP) or damaged
-
-
 READERS = (
-    Reader(_is_archive, _film_of_zip),
+    Reader(  # an archive whose first bytes are damaged says that it is one
+        lambda path, head: (
+            head.startswith(ZIP)
+            or (Path(path).suffix.lower() == ".trz" and not first_text(path, head))
+        ),
+        _film_of_zip,
+    ),
     Reader(
         lambda path, head: first_text(path, head).startswith("<"),
         lambda path, _: _film(str(path), read_whole(path, _LARGEST)),

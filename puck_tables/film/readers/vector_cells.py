@@ -6,7 +6,6 @@ import csv
 import io
 import re
 from pathlib import Path
-from typing import NamedTuple
 
 from puck_tables._core.safe_read import read_whole
 from puck_tables._core.text import COMMENTS, POINT, encoding_of, number
@@ -20,37 +19,30 @@ _LOOKED_AT = 4  # rows that tell
 _THOUSANDS = re.compile(r"[-+]?[1-9][0-9]{0,2}(?:\s[0-9]{3})+")
 
 
-class _Form(NamedTuple):
-    """How such a table is written: encoding, separator, and how many numbers each column holds."""
-
-    encoding: str
-    separator: str
-    counts: list[int]
-
-
 def _as_csv(path: str | Path, head: bytes) -> bytes:
     """The same table (UTF-8, commas) with a column for each number of a cell."""
     form = _form_of(path, head)
     content = read_whole(path, _LARGEST)
     if form is None:
         return content
-    rows = _rows(content.decode(form.encoding, "replace"), form.separator)
+    encoding, separator, counts = form
+    rows = _rows(content.decode(encoding, "replace"), separator)
     table = [[
         name if count not in _AXES else f"{name}_{axis}"
-        for name, count in zip(rows[0], form.counts, strict=True)
+        for name, count in zip(rows[0], counts, strict=True)
         for axis in _AXES.get(count, " ")
     ]]  # fmt: skip
     for row in rows[1:]:
         cells: list[str] = []
-        for cell, count in zip(row, form.counts, strict=False):
+        for cell, count in zip(row, counts, strict=False):
             told = _numbers(cell) if count in _AXES else [cell]
             cells += told if len(told) == max(count, 1) else [""] * count
         table.append(cells)
     return csv_of(table)
 
 
-def _form_of(path: str | Path, head: bytes) -> _Form | None:
-    """How a table with vectors in its cells is written; None for any other file."""
+def _form_of(path: str | Path, head: bytes) -> tuple[str, str, list[int]] | None:
+    """Encoding, separator and how many numbers each column holds; None if none holds several."""
     if first_text(path, head):
         return None
     try:
@@ -65,7 +57,7 @@ def _form_of(path: str | Path, head: bytes) -> _Form | None:
             continue
         counts = [len(_numbers(cell)) for cell in rows[1]]
         if any(count in _AXES for count in counts) and not any(map(_numbers, rows[0])):
-            return _Form(encoding, separator, counts)
+            return encoding, separator, counts
         if not any(counts) and all(number(cell, True) is not None for cell in rows[1]):
             return None
     return None
