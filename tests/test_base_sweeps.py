@@ -103,6 +103,7 @@ def test_the_command_line_simulates(tmp_path: Path):
     assert '"outline":[[[-0.04' in film.read_text("utf-8")
 
 
+@pytest.mark.thorough
 def test_a_gif_of_feet(tmp_path: Path):
     film = tmp_path / "run.gif"
     launch = ("simulate", "--v0", "1,0", "--base", "annulus:0.05x0.02@0.004,0")

@@ -232,7 +232,10 @@ def test_the_examples_of_asperity_show_all_that_happens() -> None:
     assert coarse.leaps > 20 and curves.leaps == 0
 
 
-KINDS = [".png", ".svg", ".pdf", ".html", pytest.param(".gif", marks=pytest.mark.nightly)]
+KINDS = [
+    ".png", ".html", *(pytest.param(kind, marks=pytest.mark.thorough) for kind in (".svg", ".pdf")),
+    pytest.param(".gif", marks=pytest.mark.nightly),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -76,12 +76,12 @@ def compare_with_geometry(seed: int) -> int:
 
 
 def test_hundreds_of_drawn_walls_agree_with_rays_and_circles() -> None:
-    assert sum(map(compare_with_geometry, range(400))) > 800
+    assert sum(map(compare_with_geometry, range(100))) > 200
 
 
 @pytest.mark.nightly
 def test_thousands_of_drawn_walls_agree_with_rays_and_circles() -> None:
-    assert sum(map(compare_with_geometry, range(400, 6400))) > 12_000
+    assert sum(map(compare_with_geometry, range(100, 6400))) > 12_600
 
 
 def square(ends: float, **rim: Any) -> tuple[list[pt.Wall], list[pt.Wall]]:

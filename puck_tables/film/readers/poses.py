@@ -1,7 +1,8 @@
 """Films in HDF5: tables that DeepLabCut wrote with pandas, SLEAP's analysis files, and our own.
 
-pandas keeps the names of columns as pickles.  They are never run: one that names any class or
-function is refused, as the documentation of :mod:`pickle` has it ("Restricting globals").
+pandas keeps the names of columns as pickles.  They are never run: the few signs of which a list of
+names consists are read one by one (:mod:`pickletools` only takes a pickle apart), and all others
+are refused.
 
 References
 ----------
@@ -12,9 +13,8 @@ group ``df_with_missing``.  SLEAP, "Analysis HDF5": ``tracks`` (tracks, 2, nodes
 
 from __future__ import annotations
 
-import io
 import json
-import pickle
+import pickletools
 from pathlib import Path
 from typing import Any
 
@@ -121,25 +121,60 @@ def _deeplabcut(path: str | Path, table: Any) -> Film:
     return film_of_columns(path, layout, dict(enumerate(columns)), {})
 
 
-class _Texts(pickle._Unpickler):  # in Python: its memo takes no memory that a file asks for
-    """Reads pickles of texts, lists and tuples; whatever names a class or a function is refused."""
-
-    def find_class(self, module: str, name: str) -> Any:
-        raise InputError(f"more than texts ({module}.{name})")
-
-
 def _names_in(path: str | Path, pickled: bytes) -> list[Any]:
     """The list of texts, and of tuples of texts, in a pickle that holds nothing else."""
+    stack: list[Any] = []
+    memo: dict[int, Any] = {}
+    mark = object()
+
+    def since() -> list[Any]:
+        at = len(stack) - 1 - stack[::-1].index(mark)
+        items = stack[at + 1 :]
+        del stack[at:]
+        return items
+
     try:
-        names = _Texts(io.BytesIO(pickled)).load()
-    except InputError as error:
-        raise InputError(
-            f"{path} names its columns by {error}, which is not read: save the table as CSV"
-        ) from None
-    except Exception:  # of whatever bytes may be
-        names = None
-    if not isinstance(names, list):
-        raise InputError(f"{path} is damaged: its names of columns cannot be read")
+        for sign, value, _ in pickletools.genops(pickled):
+            match sign.name:
+                case "MARK":
+                    stack.append(mark)
+                case "UNICODE" | "BINUNICODE" | "SHORT_BINUNICODE" | "STRING":
+                    stack.append(value)
+                case "LIST" | "TUPLE":
+                    items = since()
+                    stack.append(items if sign.name == "LIST" else tuple(items))
+                case "EMPTY_LIST":
+                    stack.append([])
+                case "TUPLE1" | "TUPLE2" | "TUPLE3":
+                    count = int(sign.name[-1])
+                    items = [stack.pop() for _ in range(count)][::-1]
+                    stack.append(tuple(items))
+                case "APPEND":
+                    item = stack.pop()
+                    stack[-1].append(item)
+                case "APPENDS":
+                    items = since()
+                    stack[-1].extend(items)
+                case "PUT" | "BINPUT" | "LONG_BINPUT":
+                    memo[value] = stack[-1]  # type: ignore[index]
+                case "MEMOIZE":
+                    memo[len(memo)] = stack[-1]
+                case "GET" | "BINGET" | "LONG_BINGET":
+                    stack.append(memo[value])  # type: ignore[index]
+                case "PROTO" | "FRAME" | "STOP":
+                    pass
+                case _:
+                    raise InputError(
+                        f"{path} names its columns by more than texts, which is not read: save "
+                        "the table as CSV"
+                    )
+        (names,) = stack
+        if not isinstance(names, list):
+            raise ValueError
+    except (ValueError, IndexError, KeyError, AttributeError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"{path} is damaged: its names of columns cannot be read") from None
     return names
 
 
