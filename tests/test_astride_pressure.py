@@ -113,3 +113,29 @@ def test_a_patch_that_reaches_from_the_centre_to_the_rim(pressure):
         for r in (0.5 - 1e-9, 0.5)
     )
     np.testing.assert_allclose(touching, close, atol=1e-8)
+
+
+@pytest.mark.parametrize("pressure", ["uniform", *LAWS, "profile"])
+def test_a_border_that_touches_the_rim_but_for_rounding(pressure):
+    """A strip, a round patch from inside and outside, a corner: friction as close beside that."""
+    law = pt.profile_law([0.0, 0.5, 1.0], [1.0, 0.8, 0.2]) if pressure == "profile" else pressure
+    puck = pt.Puck(1.0, height=0.5, friction=0.3, gravity=1.0, pressure=law)
+    rng = np.random.default_rng(5)
+    corners = [(0.3, 0.2), (9.0, -3.0), (9.0, 6.0)]
+    floors = {
+        (0.0, 0.0, 1.0): pt.Floor(strips=pt.Strips((0.0,), (0.3, 0.1))),
+        (0.3, 0.2, 1.5): pt.Floor(patches=[pt.Patch(0.05, (0.3, 0.2), 2.5)]),
+        (0.3, 0.2, 3.5): pt.Floor(patches=[pt.Patch(0.05, (0.3, 0.2), 2.5)]),
+        (*corners[0], 1.0): pt.Floor(patches=[pt.Patch(0.05, corners=corners)]),
+    }
+    for (x, y, distance), floor in floors.items():
+        angle, slip = rng.uniform(0.0, 2.0 * np.pi, 300), rng.normal(size=(300, 3))
+        angle = np.where(angle < np.pi, 0.0, np.pi) if floor.strips else angle
+
+        def states(apart, angle=angle, slip=slip, x=x, y=y):
+            place = x + apart * np.cos(angle), y + apart * np.sin(angle), 0.0 * angle
+            return np.concatenate([np.stack(place, axis=-1), slip], axis=-1)
+
+        at = friction_at(pt.Scene(puck, floor), states(distance + rng.integers(-2, 3, 300) * 1e-16))
+        beside = friction_at(pt.Scene(puck, floor), states(distance - 1e-9))
+        assert np.abs(at - beside).max() < (1e-4 if pressure == "ring" else 1e-7), distance

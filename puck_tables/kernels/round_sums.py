@@ -36,6 +36,7 @@ _FARTHEST = 20.0  # radii: a C farther away is as good as there
 _BEYOND = 1.2  # of a distance: a path that is as far inside or outside of C's circle
 _AT_RIM = 2e-15  # of 1 − ρ²: an end that is as close to the rim is on it
 _CONCENTRIC = 1e-15  # radii: a circle about a point as close to the centre is one about that
+_TOUCHES = 1e-30  # of ρ²: a patch that enters no farther, or by rounding less than not at all
 _NO_SEAM = 1e-8  # rad: a patch as close to the rim touches it
 
 
@@ -158,7 +159,9 @@ def pressed_line(
         x, y, tx, ty, half, 0.0, 0.0, near, room, 0.0, (place, 0.0, 0.0, 0.0, 0.0),
         (gap, own, NONE, NONE, NONE),
     )  # fmt: skip
-    from_rim, to_rim = _is_on_rim(px, py), _is_on_rim(qx, qy)
+    # a piece of no length may have both ends on one side of the rim
+    from_rim = _is_on_rim(px, py) and begin < 0.0
+    to_rim = _is_on_rim(qx, qy) and begin + length > 0.0
     low = -0.5 * math.pi if from_rim else _angle_whose_sine(begin / half)
     high = 0.5 * math.pi if to_rim else _angle_whose_sine((begin + length) / half)
     if above > 0.0 and from_rim and to_rim and _is_free(alpha, beta, path):
@@ -186,6 +189,7 @@ def _arc_path(alpha: float, beta: float, cx: float, cy: float, radius: float) ->
     apart = math.sqrt(cx * cx + cy * cy)
     tx, ty = -cx / apart, -cy / apart
     room, span = (1.0 - apart + radius) * (1.0 + apart - radius), 4.0 * apart * radius
+    room = max(room, _TOUCHES)
     size = math.sqrt(room / span) if span - room > _AT_RIM else 1.0
     spare = room - span if room - span > _AT_RIM else 0.0
     near, room = abs(apart - radius), min(room, span)
@@ -244,14 +248,15 @@ def pressed_arc(
         return plus(sums, 1.0, _below(base, alpha, beta, -sign, below))
     path = _arc_path(alpha, beta, cx, cy, radius)
     from_rim, to_rim = _is_on_rim(px, py), _is_on_rim(qx, qy)
+    if turn < 0.0:
+        from_rim, to_rim = to_rim, from_rim
+    from_rim, to_rim = from_rim and low < 0.0, to_rim and high > 0.0
     closed, side = (from_rim and to_rim) or abs(turn) >= 2.0 * math.pi, 0.0
     if closed and not jumps and _is_free(alpha, beta, path):
         above, below = (1.0 if above > 0.0 else 0.0), (1.0 if below > 0.0 else 0.0)
         one, two, side = high, high, NEXT_TO_C
     sums = _below(base, alpha, beta, sign, above)
     sums = plus(sums, 1.0, _below(base, alpha, beta, -sign, below))
-    if turn < 0.0:
-        from_rim, to_rim = to_rim, from_rim
     low = -0.5 * math.pi if from_rim else _on_path(path, low)
     high = 0.5 * math.pi if to_rim else _on_path(path, high)
     one, two = _on_path(path, min(one, two)), _on_path(path, max(one, two))
