@@ -10,6 +10,7 @@ import pytest
 from astride_judge import Ground, Motion, sums
 
 import puck_tables as pt
+from puck_tables.world.meeting import arc_step
 
 PUCK = pt.Puck(radius=0.04, height=0.03, friction=0.3, mass=0.2)
 LAUNCH = pt.Launch((1.5, 0.3), spin=-40.0)
@@ -190,3 +191,31 @@ def test_corners_from_a_file(tmp_path):
         with pytest.raises(pt.InputError, match="corners") as caught:
             pt.Scene(PUCK, named, LAUNCH)
         assert words in str(caught.value) and str(path) in str(caught.value)
+
+
+def test_no_arc_is_met_within_a_step_and_no_step_is_needlessly_short():
+    """Of constant accelerations, also where the bound along the velocity is worth nothing."""
+    rng = np.random.default_rng(4)
+    for _ in range(2000):
+        size, gap, speed = rng.uniform(0.01, 1.0, 3)
+        angle, way = rng.uniform(0.0, 2.0 * np.pi, 2)
+        v = speed * np.array([math.cos(angle), math.sin(angle)])
+        half = size * v[0]
+        out = (math.hypot(half, speed * math.sqrt((size + gap) ** 2 - size**2)) - half) / speed**2
+        bend = 2.0 * gap / out**2 * rng.choice([1.0 - 1e-12, 1.0 - 1e-6, 0.3, 3.0])
+        step = arc_step(gap, size, 0.0, *v, bend)
+        least = 2.0 * gap / (speed + math.hypot(speed, math.sqrt(2.0 * bend * gap)))
+        assert step >= least * (1.0 - 1e-12)
+        times = np.linspace(0.0, step, 50)[:, None]
+        a = bend * np.array([math.cos(way), math.sin(way)])
+        place = np.array([size, 0.0]) + times * v + 0.5 * times**2 * a
+        assert np.hypot(*place.T).max() <= (size + gap) * (1.0 + 1e-12)
+
+
+def test_a_puck_that_stays_over_an_edge_does_not_leave_it(tmp_path):
+    (tmp_path / "load.csv").write_text("rho,p\n0,1\n0.4,0.9\n0.7,0.2\n1,0.5\n")
+    puck = pt.Puck(0.04, height=0.02, friction=0.1, mass=0.2, pressure=str(tmp_path / "load.csv"))
+    patch = pt.Patch(0.05, corners=[[0.2, -0.1], [0.4, -0.1], [0.4, 0.15], [0.2, 0.15]])
+    launch = pt.Launch((0.2817774039336951, 0.03674065143074734), -44.97283878350552)
+    scene = pt.Scene(puck, pt.Floor(patches=[patch]), launch, tol=1e-8)
+    assert [event.what for event in scene.world().advance(3.0)] == ["entry"]

@@ -183,14 +183,17 @@ def arc_step(gap: float, dx: float, dy: float, vx: float, vy: float, bend: float
         closes = -along / (size + math.sqrt(max(size * size + along * inwards, 0.0)))
         if 2.0 * closes < bend * inwards:
             inwards = 2.0 * closes / bend
+    speed = math.sqrt(speed2)
+    root = math.sqrt(speed2 + 2.0 * bend * gap)
+    if not speed + root > 0.0:
+        return math.inf
+    least = max(inwards, 2.0 * gap / (speed + root))  # whatever the direction
     if speed2 > 0.0 and gap > 0.0:
         out = _to_circle(along, speed2, reach * reach - size * size)
         nearer = reach - 0.5 * bend * out * out
         if nearer > size:
-            return max(inwards, _to_circle(along, speed2, nearer * nearer - size * size))
-    speed = math.sqrt(speed2)
-    root = math.sqrt(speed2 + 2.0 * bend * gap)
-    return max(inwards, 2.0 * gap / (speed + root)) if speed + root > 0.0 else math.inf
+            return max(least, _to_circle(along, speed2, nearer * nearer - size * size))
+    return least
 
 
 @inlined
