@@ -23,6 +23,7 @@ import numpy as np
 
 import puck_tables as pt
 from puck_tables.errors import PuckError
+from puck_tables.kernels.patience import compiled_at_once
 from puck_tables.plot.style import COLORS, canvas, save_figure
 from puck_tables.reference.cases import CASES
 
@@ -144,6 +145,7 @@ def table(rows: list[dict[str, Any]]) -> str:
     )
 
 
+@compiled_at_once()
 def ours(case: dict[str, Any]) -> list[tuple[float, float]]:
     """Cost in ms and error of place of this program: of many at once, then of one by tol."""
     tables, launch = dict(case["scene"]["puck"]), case["scene"]["launch"]
