@@ -41,7 +41,8 @@ ROOMS = {
     "explore": "export",
     "warming": "bulk kernels puck scene world",
     "reference": "_core errors film io motion result scene trajectory world",
-    "tradeoff": "_core _version accuracy contact io kernels motion puck result stopping table",
+    "tradeoff": "_core _version accuracy contact io kernels motion puck result scene stopping "
+    "table world",
     "plot": "_core _version accuracy bulk chetaev errors film fitting io motion reference "
     "result scene stopping tradeoff trajectory world wrench",
     "gym": "_core contact errors plot scene world",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +21,13 @@ from puck_tables.motion.bulk_stops import fill_stops
 from puck_tables.motion.tableaus import DORMAND_PRINCE, RK4
 from puck_tables.stopping.exact import exact_stops
 from puck_tables.stopping.stop_table import StopTable
-from puck_tables.tradeoff import measurement, resultant_methods, state_methods, stop_methods
+from puck_tables.tradeoff import (
+    body_methods,
+    measurement,
+    resultant_methods,
+    state_methods,
+    stop_methods,
+)
 from puck_tables.tradeoff.bicubic import fill_bicubic, graded_coefficients
 from puck_tables.tradeoff.literature_models import as_table
 from puck_tables.tradeoff.truth import Contender, Question, random_points
@@ -72,6 +79,7 @@ def test_every_row_that_ships_can_be_measured_again():
         *resultant_methods.contenders(points),
         *stop_methods.contenders(points.some(points.inputs[1] == 0.0)),
         *state_methods.contenders(),
+        *body_methods.contenders(),
     ]
     rows = [(one.question.name, one.method, one.setting, one.outsider) for one in contenders]
     shipped = {(m.question, m.method, m.setting, m.outsider): m for m in shipped_errors()}
@@ -170,6 +178,29 @@ def test_unrolled_and_general_runge_kutta_take_the_same_steps():
             assert np.abs(fast[T : Y + 1] - exact).max() <= 2e-7
 
 
+@pytest.mark.parametrize(
+    "name", ["box", *(pytest.param(one, marks=pytest.mark.thorough)
+                      for one in list(body_methods.BODIES)[1:])]
+)  # fmt: skip
+def test_bodies_stop_as_exactly_as_asked(name: str):
+    """Against stops that a script of its own found, by other sums and scipy's DOP853."""
+    asked = [one for one in body_methods.contenders() if one.question.name == name]
+    ours = [one for one in asked if not one.outsider]
+    errors = {one.setting: worst(one) for one in ours}
+    assert all(error <= float(told.partition("=")[2]) for told, error in errors.items()), errors
+    assert len(errors) >= 4
+
+
+def test_patches_tend_to_the_sums_over_a_base():
+    """Finer patches are nearer, and a few points are as wrong as physics engines are."""
+    asked = [one for one in body_methods.contenders() if one.question.name == "box"]
+    *patches, few = [
+        worst(replace(one, question=one.question.some(slice(2)))) for one in asked if one.outsider
+    ]
+    assert patches[0] > patches[1] > patches[2] and patches[2] < 2e-3
+    assert few > 0.02
+
+
 def test_models_of_the_literature():
     table = as_table("limit surface")
     launch = np.array([[1.0], [0.0], [0.0], [0.0], [1.0], [1.0]])
@@ -189,7 +220,7 @@ def test_files(measured: measurement.TradeOff, tmp_path: Path):
     measured.save(tmp_path / "t.csv")
     rows = pandas.read_csv(tmp_path / "t.csv")
     assert len(rows) == len(measured.methods)
-    assert set(rows.question) == {"resultants", "stop", "trajectory", "state"}
+    assert set(rows.question) == {"resultants", "stop", "trajectory", "state", *body_methods.BODIES}
     with pytest.raises(OutputError, match="exists already"):
         measured.save(tmp_path / "t.csv")
 
@@ -231,6 +262,7 @@ def test_every_round_runs_every_way(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(measurement.resultant_methods, "contenders", few)
     monkeypatch.setattr(measurement.stop_methods, "contenders", lambda flat: iter(()))
     monkeypatch.setattr(measurement.state_methods, "contenders", lambda: iter(()))
+    monkeypatch.setattr(measurement.body_methods, "contenders", lambda: iter(()))
     seen: list[tuple[int, int]] = []
     result = measurement.measure(
         quick=True, progress=lambda done, total: seen.append((done, total))

@@ -20,6 +20,9 @@ _TITLES = {
     "resultants": "three resultants at a scattered point",
     "stop": "stop of a launch (time and place)",
     "state": "state at a moment",
+    "box": "stop of a box",
+    "box, friction falls with speed": "stop of a box whose friction falls with the slip speed",
+    "curling stone": "stop of a curling stone on its running band",
 }
 _LOWEST = 1e-16  # the least error drawn, rounding: a logarithm has no 0
 _PAPER = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.4}
@@ -33,8 +36,8 @@ def draw(measured: TradeOff) -> Figure:
     Every point bears its setting, every method its name; the thick grey line is the front, hollow
     points are outsiders.
     """
-    figure = canvas(13.0, 17.0)
-    grid = figure.add_gridspec(3, 1, height_ratios=(1.0, 1.35, 0.75))
+    figure = canvas(13.0, 27.0)
+    grid = figure.add_gridspec(len(_TITLES), 1, height_ratios=(1.0, 1.35, *[0.75] * 4))
     for row, question in enumerate(_TITLES):
         draw_on(figure.add_subplot(grid[row]), measured, question)
     titled(

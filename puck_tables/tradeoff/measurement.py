@@ -19,7 +19,7 @@ from puck_tables.accuracy.method_errors import MeasuredMethod
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.kernels.patience import compiled_at_once
 from puck_tables.result import Result
-from puck_tables.tradeoff import resultant_methods, state_methods, stop_methods
+from puck_tables.tradeoff import body_methods, resultant_methods, state_methods, stop_methods
 from puck_tables.tradeoff.truth import Contender, random_points
 
 Progress = Callable[[int, int], None]
@@ -94,6 +94,7 @@ def measure(quick: bool = False, progress: Progress | None = None) -> TradeOff:
         *resultant_methods.contenders(points),
         *stop_methods.contenders(points.some(points.inputs[1] == 0.0)),
         *state_methods.contenders(),
+        *body_methods.contenders(),
     ]
     total = 2 * len(contenders) + repeats
     runs, methods = [], []

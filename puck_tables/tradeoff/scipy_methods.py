@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -45,12 +46,15 @@ def rates(t: float, state: FloatArray, delta: float) -> FloatArray:
 
 
 def _until_stopped(
-    function: Any, launch: tuple[float, float, float], end: float, **options: Any
+    function: Any, start: tuple[float, ...], end: float, longest: float = 2.0, **options: Any
 ) -> FloatArray:
-    """Time and place when the slip speed has fallen to ``end`` of its start; NaN if never."""
+    """Time and place when the slip speed Q has fallen to ``end`` of its start; NaN if never.
+
+    ``start``: three velocities, x, y and what else there is; ``longest``: time over Q.
+    """
     from scipy.integrate import solve_ivp
 
-    q0, calls = math.hypot(*launch), 0
+    q0, calls = math.hypot(*start[:3]), 0
 
     def left(t: float, state: FloatArray, *_: float) -> float:
         return math.hypot(state[0], state[1], state[2]) - end * q0
@@ -64,12 +68,12 @@ def _until_stopped(
 
     left.terminal = True  # type: ignore[attr-defined]
     try:
-        solution = solve_ivp(counted, (0.0, 2.0 * q0), [*launch, 0.0, 0.0], events=left, **options)
+        solution = solve_ivp(counted, (0.0, longest * q0), start, events=left, **options)
     except TimeoutError:
         return np.full(3, math.nan)
     if solution.status != 1:
         return np.full(3, math.nan)
-    return np.array([solution.t[-1], *solution.y[3:, -1]])
+    return np.array([solution.t[-1], *solution.y[3:5, -1]])
 
 
 def scipy_stop(
@@ -83,33 +87,60 @@ def scipy_stop(
     [4.000189, 2.257241, -0.308477]
     """
     return _until_stopped(
-        rates, (vx, vy, spin), _END, method=method, rtol=rtol, atol=atol, args=(delta,)
+        rates, (vx, vy, spin, 0.0, 0.0), _END, method=method, rtol=rtol, atol=atol, args=(delta,)
     )
 
 
-def patch_script(vx: float, vy: float, spin: float, delta: float) -> FloatArray:
-    """Stop time, x, y with friction summed over patches and scipy's default tolerances.
+def patch_script(
+    points: FloatArray,
+    weights: FloatArray,
+    gyration: float,
+    height: float,
+    gravity: float,
+    friction: Callable[[FloatArray], FloatArray],
+) -> Callable[[float, float, float], FloatArray]:
+    """A function of vx, vy, ω to stop time, x, y: friction summed over patches, scipy's defaults.
+
+    Parameters
+    ----------
+    points (2, n), weights (n,) : patches of the base from the centre of mass, m
+    gyration, height, gravity : k, height of the centre of mass (m), g (m/s²)
+    friction : the coefficient at slip speeds (n,)
 
     Examples
     --------
-    >>> patch_script(1.0, 0.0, 5.0, 1.0).round(2).tolist()
+    >>> stop = patch_script(*disc_patches(), 0.5**0.5, 0.25, 1.0, np.ones_like)  # delta = 1
+    >>> stop(1.0, 0.0, 5.0).round(2).tolist()
     [4.0, 2.26, -0.31]
     """
+    inertia = np.linalg.inv(weights * points @ points.T)
+
+    def motion(t: float, state: FloatArray) -> list[float]:
+        spin, cosine, sine = state[2] / gyration, math.cos(state[5]), math.sin(state[5])
+        turn = np.array([[cosine, -sine], [sine, cosine]])
+        x, y = turn @ points
+        slip = np.stack([state[0] - spin * y, state[1] + spin * x])
+        speed = np.hypot(*slip)
+        pull = -weights * friction(speed) * slip / speed
+        # the force F at the height of the centre of mass tilts the pressure, which changes F
+        tilt = height * turn @ inertia @ turn.T
+        force = np.linalg.solve(np.eye(2) + pull @ np.stack([x, y]).T @ tilt, pull.sum(axis=1))
+        pressure = 1.0 - force @ tilt @ np.stack([x, y])
+        torque = ((x * pull[1] - y * pull[0]) * pressure).sum()
+        return [*(gravity * force), gravity * torque / gyration, state[0], state[1], spin]
+
+    def stop(vx: float, vy: float, spin: float) -> FloatArray:
+        launch = vx, vy, gyration * spin
+        least = gravity * float(friction(np.array([math.hypot(*launch)]))[0])
+        return _until_stopped(motion, (*launch, 0.0, 0.0, 0.0), _PATCH_END, 4.0 / least)
+
+    return stop
+
+
+def disc_patches() -> tuple[FloatArray, FloatArray]:
+    """Points (2, n) and weights (n,) of patches of a disc of radius 1."""
     radial, angular = PATCH_GRID
     rho = (np.arange(radial) + 0.5) / radial
     angle = 2.0 * np.pi * (np.arange(angular) + 0.5) / angular
-    x, y = np.outer(rho, np.cos(angle)).ravel(), np.outer(rho, np.sin(angle)).ravel()
-    weight = np.repeat(rho / (rho.sum() * angular), angular)
-
-    def motion(t: float, state: FloatArray) -> list[float]:
-        u, v = state[0] - state[2] * y, state[1] + state[2] * x
-        pull = -weight / np.sqrt(u * u + v * v)
-        u, v = u * pull, v * pull
-        # the friction force F tilts the pressure by -δ F·(x, y), which changes F
-        tilted = np.array([[u @ x, u @ y], [v @ x, v @ y]])
-        force = np.linalg.solve(np.eye(2) + delta * tilted, [u.sum(), v.sum()])
-        pressure = 1.0 - delta * (force[0] * x + force[1] * y)
-        torque = ((x * v - y * u) * pressure).sum()
-        return [force[0], force[1], 2.0 * torque, state[0], state[1]]
-
-    return _until_stopped(motion, (vx, vy, spin), _PATCH_END)
+    points = np.stack([np.outer(rho, np.cos(angle)), np.outer(rho, np.sin(angle))])
+    return points.reshape(2, -1), np.repeat(rho / (rho.sum() * angular), angular)

@@ -23,7 +23,13 @@ from puck_tables.stopping.lookup import stops_kernel
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.tradeoff.literature_models import PADE_MATCHED, as_table, pade_at_best
-from puck_tables.tradeoff.scipy_methods import PATCH_GRID, SCIPY_SETTINGS, patch_script, scipy_stop
+from puck_tables.tradeoff.scipy_methods import (
+    PATCH_GRID,
+    SCIPY_SETTINGS,
+    disc_patches,
+    patch_script,
+    scipy_stop,
+)
 from puck_tables.tradeoff.truth import DELTA, Contender, Question, Run, filled, golden_starts, kept
 
 _SECTIONS = ((2, 6), (3, 6), (4, 6), (5, 3), (6, 2), (6, 1), (7, 1))  # powers, thinning
@@ -126,7 +132,12 @@ def _outsiders(easy: Question, low: Question, flat: Question) -> Iterator[Conten
         for method, rtol, atol in SCIPY_SETTINGS
     ]  # fmt: skip
     grid = f"patches={PATCH_GRID[0]}x{PATCH_GRID[1]}"
-    for method, setting, stop_of in [*scripts, ("patches and scipy RK45", grid, patch_script)]:
+
+    def by_patches(vx: float, vy: float, spin: float, delta: float) -> FloatArray:
+        script = patch_script(*disc_patches(), 0.5**0.5, 0.25 * delta, 1.0, np.ones_like)
+        return script(vx, vy, spin)
+
+    for method, setting, stop_of in [*scripts, ("patches and scipy RK45", grid, by_patches)]:
         yield Contender(
             easy, method, setting, kept(stop_of),
             lambda stop_of: lambda launches: np.stack([stop_of(*one[:4]) for one in launches.T], 1),

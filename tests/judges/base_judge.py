@@ -69,12 +69,13 @@ class Judge:
                 foot = c + d * np.array([t[1], -t[0]])
                 points.append(foot + abs(d) * np.sinh(y)[:, None] * t)
                 angles.append((half * _WEIGHT).ravel() * np.sign(d) / np.cosh(y))
-        grades = np.pi * 0.5 ** np.arange(45.0)
-        cuts = np.concatenate([-grades, [0.0], grades[::-1]])
-        half = 0.5 * np.diff(cuts)[:, None]
-        turn, width = (cuts[:-1, None] + half + half * _NODE).ravel(), (half * _WEIGHT).ravel()
         for x, y, r, sign in self.discs:
             off = np.array([x, y]) - c
+            gap = abs(r - np.hypot(*off)) / r
+            grades = np.pi * 0.5 ** np.arange(np.clip(np.ceil(4.0 - np.log2(gap + 1e-15)), 4, 45))
+            cuts = np.concatenate([-grades, [0.0], grades[::-1]])
+            half = 0.5 * np.diff(cuts)[:, None]
+            turn, width = (cuts[:-1, None] + half + half * _NODE).ravel(), (half * _WEIGHT).ravel()
             nearest = np.arctan2(-off[1], -off[0])
             out = np.column_stack([np.cos(nearest + turn), np.sin(nearest + turn)])
             place = off + r * out

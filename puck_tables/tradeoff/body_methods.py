@@ -1,0 +1,141 @@
+"""Methods for the stop of bodies: a box, a box whose friction falls with speed, a curling stone."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from functools import partial
+from importlib.resources import files
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.contact.friction_laws import CurlingLaw, FrictionLaw, StribeckLaw
+from puck_tables.puck import Puck
+from puck_tables.scene.parts import Floor, Launch
+from puck_tables.tradeoff.scipy_methods import patch_script
+from puck_tables.tradeoff.truth import Contender, Question, Run, kept
+from puck_tables.world.scene import Scene
+
+_TOLS, _TOLS_OF_A_LAW = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10), (1e-3, 1e-4, 1e-6, 1e-8)
+_GRIDS = (5, 10, 20, 40)  # patches across the shorter way, twice as many along the other
+_LAUNCHES = 24  # judged, and timed
+_BY_SCIPY = 6  # of them asked of what takes a second
+
+
+@dataclass(frozen=True)
+class Body:
+    """A puck on a base, how friction falls with the slip speed (m/s), and patches of the base.
+
+    ``patches``: (x, y), m, of so many, (2, n), and their weights (n,); ``few``: of the points that
+    a physics engine would have it stand on.
+    """
+
+    puck: Puck
+    law: FrictionLaw | None
+    patches: Callable[[int], tuple[FloatArray, FloatArray]]
+    few: tuple[FloatArray, FloatArray]
+
+    def friction(self, speed: FloatArray) -> FloatArray:
+        """The coefficient at slip speeds (m/s)."""
+        return speed * 0.0 + self.puck.friction if self.law is None else self.law.formula(speed)
+
+    def units(self, launches: FloatArray) -> FloatArray:
+        """Q/J, Q²/J and Q²/J of launches (3, n), with J = f g at the speed Q."""
+        q = np.hypot(np.hypot(*launches[:2]), self.puck.inertia_radius * launches[2])
+        return np.stack([q, q * q, q * q]) / (self.puck.gravity * self.friction(q))
+
+    def script(self, points: FloatArray, weights: FloatArray) -> Callable[..., FloatArray]:
+        """What one would write: friction summed over points, scipy's solver over time."""
+        puck = self.puck
+        return patch_script(
+            points, weights, puck.inertia_radius, 0.5 * puck.height, puck.gravity, self.friction
+        )
+
+
+def _of_a_box(count: int) -> tuple[FloatArray, FloatArray]:
+    """Centres of equal patches of the box, and their weights."""
+    x, y = (side * ((np.arange(n) + 0.5) / n - 0.5)
+            for side, n in zip(_SIDES, (2 * count, count), strict=True))  # fmt: skip
+    points = np.stack(np.meshgrid(x, y)).reshape(2, -1)
+    return points, np.full(points.shape[1], 1.0 / points.shape[1])
+
+
+def _of_a_band(count: int) -> tuple[FloatArray, FloatArray]:
+    """The same of an annulus."""
+    outer, inner = _BAND
+    radii = inner + (outer - inner) * (np.arange(count) + 0.5) / count
+    angle = np.pi * (np.arange(12 * count) + 0.5) / (6 * count)
+    points = np.multiply.outer(np.stack([np.cos(angle), np.sin(angle)]), radii).reshape(2, -1)
+    weights = np.tile(radii, angle.size)
+    return points, weights / weights.sum()
+
+
+_SIDES, _BAND = (0.2, 0.1), (0.0635, 0.0555)  # m
+_CORNERS = 0.5 * np.array([[1.0, 1.0, -1.0, -1.0], [1.0, -1.0, 1.0, -1.0]]) * np.c_[_SIDES,]
+_BOX = Puck(base="box:0.2x0.1", friction=0.25, height=0.04)
+BODIES = {
+    "box": Body(_BOX, None, _of_a_box, (_CORNERS, np.full(4, 0.25))),
+    "box, friction falls with speed": Body(
+        replace(_BOX, friction=0.0, height=0.0), StribeckLaw(0.35, 0.2, 0.1), _of_a_box,
+        (_CORNERS, np.full(4, 0.25)),
+    ),
+    "curling stone": Body(
+        Puck(base="annulus:0.0635x0.0555", height=0.114, mass=19.96, gyration=0.1025),
+        CurlingLaw(0.00200985, 0.06385782, 0.00626286), _of_a_band, _of_a_band(1),
+    ),
+}  # fmt: skip
+
+
+def contenders() -> Iterator[Contender]:
+    """All methods to the stop of a body, and what one would write."""
+    for name, body in BODIES.items():
+        question = _asked(name, body)
+        for tol in _TOLS if body.law is None else _TOLS_OF_A_LAW:
+            yield Contender(
+                question, "sums over the base", f"tol={tol:g}", kept(tol),
+                partial(_integrated, body), _LAUNCHES,
+            )  # fmt: skip
+        some = question.some(slice(_BY_SCIPY))
+        scripts = [("patches and scipy RK45", f"patches={body.patches(n)[1].size}", body.patches(n))
+                   for n in _GRIDS]  # fmt: skip
+        for method, setting, patches in [*scripts, ("a few points, RK45", "", body.few)]:
+            yield Contender(
+                some, method, setting, partial(body.script, *patches), partial(_scripted, body),
+                2, outsider=True,
+            )  # fmt: skip
+
+
+def _asked(name: str, body: Body) -> Question:
+    """The launches that come with the package, vx, vy, ω; stops in the units of each."""
+    content = (files("puck_tables.tables") / "body_starts.npz").read_bytes()
+    with np.load(io.BytesIO(content)) as file:
+        rows = file[name]
+    launches = np.ascontiguousarray(rows[:3])
+    return Question(name, launches, rows[3:] / body.units(launches), launches)
+
+
+def _integrated(body: Body, tol: float) -> Run:
+    """Many launches on one thread."""
+    floor = Floor() if body.law is None else Floor(law=body.law)
+
+    def run(launches: FloatArray) -> FloatArray:
+        velocity, spin = launches[:2].T, launches[2]
+        if body.law is None:
+            stops = body.puck.stop(velocity, spin, tol=tol, threads=1)
+            found = stops.stop_time, stops.stop_x, stops.stop_y
+        else:
+            scene = Scene(body.puck, floor, Launch(velocity, spin=spin), tol=tol)
+            ends = scene.sweep(threads=1)
+            found = ends.end_time, ends.x, ends.y
+        return np.stack(found) / body.units(launches)
+
+    return run
+
+
+def _scripted(body: Body, script: Callable[..., FloatArray]) -> Run:
+    """One launch after another."""
+    return lambda launches: (
+        np.stack([script(*one) for one in launches.T], axis=1) / body.units(launches)
+    )
