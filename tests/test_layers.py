@@ -84,7 +84,6 @@ DOORS = {
         "stopping",
         "table.speed_fit",
         "tradeoff",
-        "wrench.models",
         "wrench.push",
     },
     "click": {"cli"},
