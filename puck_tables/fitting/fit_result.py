@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables._core.doubts import unquestioned
 from puck_tables._core.lazy import above
 from puck_tables._core.real import instance
 from puck_tables._core.safe_write import write_bytes
@@ -34,6 +35,8 @@ from puck_tables.result import Result
 
 if TYPE_CHECKING:
     from puck_tables.trajectory import Trajectory
+
+_WIDER = 1.5  # times: an error that is told to be widened
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -109,11 +112,12 @@ class Fit(Result):
         pressure: Any = self.given.body.law
         if self.numbers.get("inner") and self.numbers["inner"].how == "found":
             pressure = f"annulus:{values['inner']!r}"
-        return Puck(
-            radius=values["radius"], height=values["height"], friction=values["friction"],
-            gravity=values["gravity"], gyration=values["gyration"], mass=self.given.mass,
-            pressure=pressure,
-        )  # fmt: skip
+        with unquestioned():  # what nobody would believe of it the remarks say
+            return Puck(
+                radius=values["radius"], height=values["height"], friction=values["friction"],
+                gravity=values["gravity"], gyration=values["gyration"], mass=self.given.mass,
+                pressure=pressure,
+            )  # fmt: skip
 
     @property
     def drag(self) -> float:
@@ -227,6 +231,14 @@ class Fit(Result):
         if all(problem.spinless) and (more := spin_would_tell(self.estimate)):
             said.append(more)
         said += [text for film in problem.films for text in rounded(film)]
+        wider = [self.certainty.ratio(k) for k in range(self.estimate.x.size)]
+        if self.certainty.widened and max(wider) > _WIDER and not self.complaints:
+            name = problem.names[int(np.argmax(wider))][1]
+            said.append(
+                "What is left may be no noise, though that is hardly seen: standard errors are "
+                f"widened by what parts of the frames do to the numbers, {max(wider):.2g} times "
+                f"that of {name}"
+            )
         for k, side in enumerate(self.certainty.pinned):
             if side:
                 end, way = problem.limits[side > 0][k], "above" if side > 0 else "below"
