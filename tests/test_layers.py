@@ -30,7 +30,7 @@ ROOMS = {
     "trajectory": "_core accuracy errors io motion result stopping table",
     "scene": "_core bulk contact errors io kernels motion result stopping table trajectory",
     "wrench": "_core contact errors io kernels motion result scene",
-    "verbs_of_many": "_core contact errors motion stopping table",
+    "verbs_of_many": "_core bulk contact errors motion stopping table",
     "puck": "motion stopping table trajectory verbs_of_many wrench",
     "world": "_core bulk contact errors io kernels motion puck result scene stopping table",
     "film": "_core errors io",

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
+from puck_tables.plot.animation import states_drawn
 from puck_tables.plot.plane_panel import draw_plane
 from puck_tables.plot.style import BLUE, GREEN, GREY, ORANGE, RED, canvas
 from puck_tables.plot.titles import legend_below, noted, titled
@@ -27,8 +26,6 @@ _ENERGIES = {
     "work_given": ("work of forces", "#8b2fa0"),
     "work_support": ("work of supports", GREY),
 }
-_STATES = 2000  # of the picture, at least
-_STATES_A_TURN, _MOST_STATES = 60, 50_000  # points a turn of the puck, and of a picture at the most
 _EVENTS_DRAWN = 60  # as lines over time
 
 
@@ -63,22 +60,6 @@ def draw(run: Run) -> Figure:
 def draw_on(axes: Axes, run: Run) -> None:
     """The plane alone."""
     draw_plane(axes, run, states_drawn(run))
-
-
-def states_drawn(run: Run) -> dict[str, FloatArray]:
-    """States of a run so close that lines between them are its curves, before and after events."""
-    scene = run.scene
-    turns = (
-        abs(run.last["orientation"] - scene.launch.orientation)
-        + (abs(scene.launch.spin) + abs(scene.floor.turning)) * run.end_time
-    ) / (2.0 * math.pi)
-    count = int(min(max(_STATES, _STATES_A_TURN * turns), _MOST_STATES))
-    events = np.array([event.time for event in run.events])
-    times = np.concatenate(
-        [np.linspace(0.0, run.end_time, count), np.nextafter(events, 0.0), events]
-    )
-    times = np.unique(times[times <= run.end_time])
-    return dict(run(times).columns)
 
 
 def _draw_events(axes: Axes, run: Run) -> None:

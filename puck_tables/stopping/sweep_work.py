@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import Progress
+from puck_tables._core.memory import check_memory
 from puck_tables.bulk.work import Columns, Tally, Work
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset, variable
@@ -22,7 +23,8 @@ if TYPE_CHECKING:
     from puck_tables.accuracy.method_errors import Selection
     from puck_tables.stopping.per_height import AnyTable
 
-PART = 1 << 13  # launches that a thread takes at once
+# Arrays, the encoded HDF5 file and working copies; as text (CSV) much more.
+BYTES_PER_LAUNCH, BYTES_PER_ROW = 160, 850
 BLOCKS = (1 << 14, 1 << 18), (1 << 8, 1 << 13)  # launches; the latter where one takes long
 _SLAB = 1 << 20  # pucks whose heights are sorted at once
 Kind = tuple[int, float]  # number of the pressure law, radius of gyration
@@ -74,6 +76,10 @@ class StopWork(Work):
         self._solvers: dict[Kind, SolverPerHeight] = {}
         if launches.axes.keys().isdisjoint(("pressure", "gyration")):  # a wrong one at once
             self._solver((0, float(launches.values.get("gyration", gyration))))
+
+    def refuse_memory(self) -> None:
+        """By its launches."""
+        check_memory(self.shape, BYTES_PER_LAUNCH)
 
     @property
     def block(self) -> int:  # type: ignore[override]
