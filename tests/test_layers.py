@@ -58,6 +58,7 @@ DOORS = {
         "kernels.linking",
         "kernels.on_demand",
         "kernels.numba_settings",
+        "kernels.quick_compiler",
         "kernels.vectors",
     },
     "llvmlite": {
