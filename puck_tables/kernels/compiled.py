@@ -17,7 +17,12 @@ from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import cpu_target
 from numba.core.typing.typeof import typeof_impl
 
-from puck_tables.kernels import as_written, register_blocks, vectors
+from puck_tables.kernels import (
+    as_written,
+    records,  # noqa: F401 - numba knows them from then on
+    register_blocks,
+    vectors,
+)
 from puck_tables.kernels.as_written import behind
 from puck_tables.kernels.cache import cache_folder
 from puck_tables.kernels.on_demand import put_cell, type_of_call
