@@ -20,6 +20,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.base_friction import AREA, REACH, SIDES, base_friction
 from puck_tables.kernels.compile import inlined, inner, patience
+from puck_tables.motion.steppers import times_as_long
 from puck_tables.motion.tableaus import DORMAND_PRINCE_8
 
 # of a motion: velocity, kΩ, angle of the body over Q₀²/(J k), time, place, length of the path, and
@@ -209,8 +210,7 @@ def slide(
                 return STOPPED, steps, residual, 1.0
         elif not h > _SHORTEST_STEP:
             return STEP_LIMIT, steps, residual, 1.0
-        grow = 5.0 if error == 0.0 else 0.9 * (local / error) ** 0.125
-        h = min(_LONGEST_STEP, h * (min(5.0, max(0.2, grow)) if error < math.inf else 0.2))
+        h = min(_LONGEST_STEP, h * times_as_long(error, local, 0.125, 0.2))
         if steps == MOST_STEPS:
             return STEP_LIMIT, steps, residual, 1.0
     stop = y[T] + left
