@@ -24,7 +24,7 @@ def report(result: Fit) -> str:
     lines = [
         _plainly(result), "",
         _lines({name: _shown(one) for name, one in numbers.items() if one.how != "known"}),
-        _lines({"taken as known": ", ".join(known), "pressure": result.puck.body.law.name}),
+        _lines({"taken as known": ", ".join(known), **dict([result.contact])}),
         *_correlations(result),
     ]  # fmt: skip
     for launch in result.launches:
@@ -108,7 +108,8 @@ def _plainly(result: Fit) -> str:
         sentences.append(f"The puck would slide to rest at {result['decel'].written}.")
     if tilt.determined and tilt.how != "known":
         sentences.append(
-            f"Its dimensionless height is {tilt.written}: so much friction tips its load forward."
+            "Its dimensionless height delta, by which friction tips its load forward, is "
+            f"{tilt.written}."
         )
     sentences += [*result.blind, *result.remarks]
     if result.complaints:
@@ -124,6 +125,9 @@ def _plainly(result: Fit) -> str:
 
 
 def _errors(*numbers: Number) -> str:
+    """Of places and velocities; unknown together, where no motion fits."""
+    if any(one.error == math.inf for one in numbers):
+        return "(not determined)"
     each = ("at its bound" if one.at_bound else f"{one.error:.2g}" for one in numbers)
     return f"+- {', '.join(each)}"
 

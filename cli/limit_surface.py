@@ -23,9 +23,9 @@ def limit_surface(points: int | None, choice: PuckChoice, out: Outputs) -> None:
     """Tabulate the limit surface of a puck, and what planar pushing takes for it.
 
     Force and torque that a pusher gives to keep a slip going, over phi = atan2(r w, v) for a
-    velocity along x; the outward normal in (F, M/r), which is the twist for delta = 0.  With --base
-    over the direction of slip, too, with the radius of gyration for r.  The best ellipsoid and the
-    best convex polynomial of order 4 are told on stderr, with their errors.
+    velocity along x; the outward normal in (F_x, F_y, M/r), which is the twist for delta = 0.
+    With --base over the direction of slip, too, with the radius of gyration for r.  The best
+    ellipsoid and the best convex polynomial of order 4 are told on stderr, with their errors.
 
     \b
     puck limit-surface --radius 0.0381 --height 0.0254 --friction 0.1 --mass 0.17 -o surface.csv

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from puck_tables.stopping.stops import Stops
     from puck_tables.table.table import Table
     from puck_tables.trajectory import Trajectory
-    from puck_tables.wrench.base_surface import BaseSurface
     from puck_tables.wrench.friction_force import Wrench
     from puck_tables.wrench.friction_hold import Hold, Twist
     from puck_tables.wrench.surface import LimitSurface
@@ -342,7 +341,7 @@ class Puck(VerbsOfMany):
             max_speed=max_speed, max_spin=max_spin, count=count, threads=threads,
         )  # fmt: skip
 
-    def limit_surface(self, n: int | None = None) -> LimitSurface | BaseSurface:
+    def limit_surface(self, n: int | None = None) -> LimitSurface:
         """What force and torque friction takes up, over the direction of slip.
 
         Parameters
@@ -354,9 +353,8 @@ class Puck(VerbsOfMany):
         Returns
         -------
         LimitSurface
-            With the ellipsoid and the convex polynomial of order 4 that fit it best.
-        BaseSurface
-            With a base: over the direction of slip, too, in the axes of the base.
+            With the ellipsoid and the convex polynomial of order 4 that fit it best; with a base
+            over the direction of slip, too, in the axes of the base.
 
         Raises
         ------

@@ -108,17 +108,16 @@ class VerbsOfMany(PuckSpec):
         >>> Puck(0.04, friction=0.1).sweep(0.0, 1.0, friction=[0.1, 0.2]).stop_x.round(4).tolist()
         [0.5099, 0.2549]
         """
-        from puck_tables.stopping.stop_sweep import SweepOptions, sweep
+        from puck_tables.bulk.finish import Doing
+        from puck_tables.stopping.stop_sweep import sweep
 
         given = {
             "spin": spin, "speed": speed, "velocity": velocity, "heading": heading,
             "radius": radius, "height": height, "friction": friction, "gravity": gravity,
             "delta": delta, "decel": decel, "gyration": gyration, "pressure": pressure,
         }  # fmt: skip
-        how = SweepOptions(
-            tol, method, cast(Any, table), threads, chunk, progress, store, cluster, overwrite
-        )
-        return cast("StopMap", sweep(self, given, launches, how=how))
+        by, how = (tol, method, table), Doing(threads, chunk, progress, store, cluster, overwrite)
+        return cast("StopMap", sweep(self, given, launches, by, how))
 
     def sample(
         self,
@@ -168,14 +167,13 @@ class VerbsOfMany(PuckSpec):
         >>> round(found.mean()["stop_time"], 3), found.chance((2.2, -0.16, 0.1)).value > 0.5
         (3.961, True)
         """
+        from puck_tables.bulk.finish import Doing
         from puck_tables.stopping.population import COLUMN
-        from puck_tables.stopping.stop_sweep import SweepOptions, sample
+        from puck_tables.stopping.stop_sweep import sample
 
         known = {*COLUMN, "velocity"}
         unknown = [name for name in numbers if name not in known]
         if unknown:
             raise InputError(f"{unknown[0]} is no number of a launch: give {', '.join(known)}")
-        how = SweepOptions(
-            tol, method, cast(Any, table), threads, chunk, progress, store, cluster, overwrite
-        )
-        return cast("StopSample", sample(self, count, seed, numbers, how=how))
+        by, how = (tol, method, table), Doing(threads, chunk, progress, store, cluster, overwrite)
+        return cast("StopSample", sample(self, count, seed, numbers, by, how))

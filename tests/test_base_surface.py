@@ -96,10 +96,10 @@ def test_a_round_base_has_the_surface_of_a_round_puck():
     other = pt.Puck(0.05, friction=0.4, mass=2.0).limit_surface()
     torque = np.linspace(0.0, 0.9, 7) * other.torque.max()
     force = np.stack([np.cos(np.arange(7.0)), np.sin(np.arange(7.0))], axis=-1)
-    one = on_base.ellipsoid.gauge(force, torque)
-    np.testing.assert_allclose(one, other.ellipsoid.gauge(np.ones(7), torque), rtol=0.03)
-    two = on_base.quartic.gauge(force, torque)
-    np.testing.assert_allclose(two, other.quartic.gauge(np.ones(7), torque), rtol=0.01)
+    one, two = (surface.ellipsoid.gauge(force, torque) for surface in (on_base, other))
+    np.testing.assert_allclose(one, two, rtol=0.03)
+    one, two = (surface.quartic.gauge(force, torque) for surface in (on_base, other))
+    np.testing.assert_allclose(one, two, rtol=0.01)
 
 
 def test_files_words_and_bad_input(tmp_path: Path):

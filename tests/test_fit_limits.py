@@ -144,8 +144,11 @@ def test_places_on_a_grid_are_no_noise_and_that_is_said(seed):
     step = rng.uniform(2e-3, 10e-3)
     found = pt.fit(pt.Track(times, step * np.round(place / step)), pt.Puck(radius=radius))
     assert any(f"rounded to {step:.3g} m" in text for text in found.remarks), found.remarks
-    number = found["friction"]
-    assert not number.determined or abs(number.value - friction) < 4.0 * number.error
+    number, most = found["friction"], 1.0
+    if any("taken for a slide without spin" in text for text in found.remarks):
+        most = 1.6  # times as much, if it spun: that is said
+    low, high = number.value - 4.0 * number.error, most * number.value + 4.0 * number.error
+    assert not number.determined or low < friction < high
     assert not any("no noise" in text for text in found.complaints)
     fine = pt.fit(pt.Track(times, 1e-5 * np.round(place / 1e-5)), pt.Puck(radius=radius))
     assert not any("rounded" in text for text in fine.remarks)

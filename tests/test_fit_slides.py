@@ -17,11 +17,11 @@ import puck_tables as pt
 G = 9.80665
 
 
-def slide(rng: np.random.Generator) -> tuple[pt.Track, float, float]:
+def slide(rng: np.random.Generator, most: int = 300) -> tuple[pt.Track, float, float]:
     """A drawn slide along a line, its friction, and the bound of a standard error of that."""
     f, v = rng.uniform(0.05, 0.6), rng.uniform(0.6, 2.5)
     stop, fps = v / (f * G), rng.choice([60.0, 120.0, 240.0])
-    frames = int(np.clip(stop * rng.uniform(0.6, 1.3) * fps, 20, 300))
+    frames = int(np.clip(stop * rng.uniform(0.6, 1.3) * fps, 20, most))
     t = np.arange(frames) / fps
     moving = np.minimum(t, stop)
     noise = rng.uniform(2e-4, 1.5e-3)
@@ -47,6 +47,30 @@ def scores(seed: int, count: int):
 def test_friction_of_slides_along_a_line():
     rows = scores(1, 12)
     assert (np.abs(rows[:, :2]) < 4.5).all() and rows[:, 2].mean() > 0.8
+
+
+def test_few_frames_do_not_widen_an_error_by_chance():
+    rng, wide = np.random.default_rng(3), []
+    for _ in range(60):
+        track, _, bound = slide(rng, most=40)
+        found = pt.fit(track, pt.Puck(0.04), free="friction", keep_all=True)["friction"]
+        wide.append(found.error > 2.0 * bound)
+    assert sum(wide) <= 4  # 2 in 100 have what looks like a pattern
+
+
+def test_an_error_that_is_widened_is_told_to_be():
+    track = slide(np.random.default_rng(3), most=120)[0]
+    beat, told = np.sin(np.linspace(0.0, 25.0, track.time.size)), []
+    for size in np.linspace(0.0, 8e-4, 17):
+        swung = np.stack([track.place[:, 0] + size * beat, track.place[:, 1]], axis=1)
+        found = pt.fit(
+            pt.Track(track.time, swung, None, "swung"), pt.Puck(0.04),
+            free="friction", keep_all=True,
+        )  # fmt: skip
+        said = " ".join((*found.complaints, *found.remarks))
+        told.append((found.certainty.widened, "widened" in said, bool(found.complaints)))
+    assert all(wide == said for wide, said, _ in told)
+    assert {(True, False), (True, True), (False, False)} == {(one, two) for one, _, two in told}
 
 
 @pytest.mark.thorough

@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
+import re
 import signal
 import subprocess
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import NamedTuple
 
+import numba
 import numpy as np
 import pytest
 
-from puck_tables.kernels.compile import inlined, inner, kernel, on_demand
+from puck_tables.kernels import compiled, quick_compiler
+from puck_tables.kernels.compile import inlined, inner, kernel, look_up, on_demand
 from puck_tables.kernels.compiled import dispatcher_of
 from puck_tables.kernels.doors import Door
 from puck_tables.kernels.linking import Behind, Pasted
+from puck_tables.kernels.records import Record
+from puck_tables.world.group import Scales, desk_for
 
 
 @inlined
@@ -132,6 +139,46 @@ def test_an_interrupt_while_something_is_compiled_on_demand_is_raised_after_it()
     finally:
         signal.signal(signal.SIGINT, before)
     assert _calls_long(2.0) == 7.0
+
+
+def _larger(door):
+    @door
+    def larger(x: float, y: float) -> float:
+        return max(x * y, x) + abs(y)
+
+    return larger
+
+
+def test_functions_of_numba_that_are_found_once_are_those_found_anew(monkeypatch):
+    texts: list[str] = []
+    optimize = Behind._optimize_final_module
+
+    def written(self):
+        texts.append(re.sub(r"B\d*v\d+B", "", str(self._final_module)))
+        optimize(self)
+
+    monkeypatch.setattr(Behind, "_optimize_final_module", written)
+    monkeypatch.setattr(compiled.kept_code, "load_overload", lambda *_: None)
+    for quickly in (quick_compiler.quick, contextlib.nullcontext):
+        monkeypatch.setattr(compiled, "quick", quickly)
+        for door in (kernel, look_up):  # with other options for the same types
+            assert _larger(door)(3.0, 0.5) == 3.5
+    assert texts[:2] == texts[2:] and texts[0] != texts[1]
+
+
+class _Wide(NamedTuple):
+    one: np.ndarray
+    other: np.ndarray
+    number: float
+    third: np.ndarray
+    fourth: np.ndarray
+
+
+def test_wide_tuples_of_the_package_go_by_their_address_and_those_of_others_as_numba_does_it():
+    assert type(numba.typeof(desk_for(1, 1))) is Record
+    assert type(numba.typeof(Scales(1.0, 1.0, 1e-9))) is not Record  # three numbers
+    square = np.zeros((2, 2))
+    assert type(numba.typeof(_Wide(square, square, 0.5, square, square))) is numba.types.NamedTuple
 
 
 def test_a_kernel_of_no_module_cannot_be_compiled_on_demand():

@@ -10,8 +10,8 @@ from pucks import simulate, sweep
 
 from puck_tables import Table, stop
 from puck_tables._core.executor import run_chunks
+from puck_tables._core.memory import check_memory
 from puck_tables.errors import AccuracyError, InputError
-from puck_tables.stopping.stop_sweep import check_memory
 
 ARRAYS = (
     "stop_time", "stop_x", "stop_y", "path_length", "turn_angle", "body_angle", "status",

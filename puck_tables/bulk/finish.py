@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -83,32 +84,47 @@ class Stored(Result):
         return open_store(self.path)
 
 
-def finish(
-    work: Work, threads: int | None, progress: Progress | None, store: str | Path | None,
-    cluster: str | None, overwrite: bool,
-) -> Any:  # fmt: skip
-    """The result of a work; with ``store`` a :class:`Stored` one.
+@dataclass(frozen=True)
+class Doing:
+    """How a work is done, and where its result goes.
 
     Parameters
     ----------
-    work : what is to be done
     threads : of this process, where there is no cluster
+    chunk : so many items are computed at a time
     progress : callable (done, total), optional
     store : path of a Zarr store, made or gone on with, optional
     cluster : 'local:N' or 'tcp://HOST:PORT', optional; needs a store
     overwrite : whether it replaces a store of other work, when it is whole
+    """
+
+    threads: int | None
+    chunk: int
+    progress: Progress | None
+    store: str | Path | None
+    cluster: str | None
+    overwrite: bool
+
+    def __post_init__(self) -> None:
+        check_part(self.chunk)
+
+
+def finish(work: Work, how: Doing) -> Any:
+    """The result of a work; with a store a :class:`Stored` one.
 
     Raises
     ------
     InputError, OutputError, MissingExtraError, ClusterError
     """
-    checked_progress(progress)
+    threads, store, cluster = how.threads, how.store, how.cluster
+    checked_progress(how.progress)
     if store is None:
+        work.refuse_memory()
         if cluster is not None:
             raise InputError(
                 "a cluster writes to a Zarr store: give -o NAME.zarr (store='NAME.zarr') too"
             )
-        return in_memory(work, threads, progress)
+        return in_memory(work, threads, how.progress)
     instance("store", store, str, Path)
     if Path(store).suffix.lower() != STORE:
         raise InputError(f"{store}: a store must have the ending {STORE}")
@@ -121,15 +137,15 @@ def finish(
     from puck_tables.bulk.store import Store, by_threads
 
     if cluster is None:
-        tell = work.prepared(threads, progress)
-        kept = Store(store, work, begin=True, overwrite=overwrite)
+        tell = work.prepared(threads, how.progress)
+        kept = Store(store, work, begin=True, overwrite=how.overwrite)
         tally = _accepted(kept, work, lambda: by_threads(kept, threads, tell))
     else:
         from puck_tables.bulk.cluster import by_cluster, client_of
 
         with client_of(cluster) as client:
-            tell = work.prepared(threads, progress)
-            kept = Store(store, work, begin=True, overwrite=overwrite)
+            tell = work.prepared(threads, how.progress)
+            kept = Store(store, work, begin=True, overwrite=how.overwrite)
             tally = _accepted(kept, work, lambda: by_cluster(client, kept, tell))
     return Stored(kept.path, work, tally)
 

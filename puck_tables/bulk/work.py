@@ -75,6 +75,15 @@ class Work(ABC):
         InputError
         """
 
+    @abstractmethod
+    def refuse_memory(self) -> None:
+        """Refuse what would not fit in memory.
+
+        Raises
+        ------
+        InputError
+        """
+
     def prepared(self, threads: int | None, progress: Progress | None) -> Progress | None:
         """Make what all items need; returns how to tell the progress of the items themselves."""
         return progress

@@ -31,6 +31,7 @@ _ON_BOUND = 1e-4  # of a bound, or of an error: an unknown lies on it
 _OFF_BOUND = 0.5  # errors from a bound: it does not, however small numbers are
 _ROUNDING = 1e-6
 _PARTS, _FINE = (2, 4, 8), 16
+_UNTOLD = 1e5  # times the variance of a number: what is left does not tell it
 
 
 @dataclass(frozen=True, eq=False)
@@ -222,7 +223,10 @@ def _scaled(result: Estimate, certainty: Certainty) -> tuple[FloatArray, FloatAr
 
 
 def _without_parts(result: Estimate, certainty: Certainty, count: int) -> FloatArray:
-    """The covariance that leaving out a part of the frames at a time shows: the jackknife's."""
+    """The covariance that leaving out a part of the frames at a time shows: the jackknife's.
+
+    Without a part that alone tells a number (all of a slide up to an impact): that shows nothing.
+    """
     slopes, square = _scaled(result, certainty)
     rows, changes = result.residuals * result.kept, []
     # what little is left of a slope at the minimum, parts that hardly tell a number would magnify
@@ -231,9 +235,12 @@ def _without_parts(result: Estimate, certainty: Certainty, count: int) -> FloatA
         parts = zip(*(np.array_split(np.r_[one], count) for one in film), strict=True)
         for frames in (np.concatenate(part) for part in parts):
             mine = slopes[frames]
-            changes.append(np.linalg.solve(square - mine.T @ mine, mine.T @ rows[frames]))
-    each = (np.array(changes) - np.mean(changes, axis=0)) * certainty.plausible
-    covariance: FloatArray = (len(each) - 1.0) / len(each) * each.T @ each
+            left = square - mine.T @ mine
+            if np.linalg.eigvals(np.linalg.solve(left, square)).real.max() < _UNTOLD:
+                changes.append(np.linalg.solve(left, mine.T @ rows[frames]))
+    each = np.reshape(changes, (-1, certainty.plausible.size)) * certainty.plausible
+    each -= each.mean(axis=0) if len(each) else 0.0
+    covariance: FloatArray = (1.0 - 1.0 / max(len(each), 1)) * each.T @ each
     return covariance
 
 

@@ -27,7 +27,7 @@ NOISY = 1.5  # times the noise of a smooth motion
 _MAY_NOISY, _MAY_PATTERN = 1.3, 0.01  # the same, where that is hardly seen
 _COMPUTED = 1e-7  # of the path: residuals of tracks that were computed, not seen
 _NOWHERE, _FAR, _ANY = 20.0, 1e-3, 0.5  # times the noise; of the path; rad
-_SELDOM = 3.3  # standard deviations: one film in 1,000, as few differences scatter wider
+_SELDOM, _RARE = 3.3, 2.4  # standard deviations: one film in 1,000, in 100; few scatter wider
 _PARTS = 8
 _ROUNDED = 0.45  # of a step: residuals of what is rounded, and of some noise
 _MOVING, _ENOUGH = 0.1, 20  # of the greatest speed; frames
@@ -69,11 +69,11 @@ def drift(result: Estimate) -> float:
     return chi_square_tail(total, max(len(every) - result.x.size, 1)) if every else 1.0
 
 
-def excess_of(result: Estimate, smooth: tuple[float, float], beyond_chance: bool = False) -> float:
+def excess_of(result: Estimate, smooth: tuple[float, float], chance: float = 0.0) -> float:
     """The residuals over the noise (m, rad) that no model judged; 1 where that is not known.
 
-    ``beyond_chance``: only where that noise is not so small by chance, as that of few frames is:
-    the logarithm of what n third differences tell of it scatters by 1.5/√n, as drawn ones do.
+    ``chance``: standard deviations by which that noise may be too small by chance, as that of few
+    frames is: the logarithm of what n third differences tell scatters by 1.5/√n, as drawn ones do.
     """
     films, kinds = len(result.problem.films), result.problem.kinds
     thirds = [max((kinds == kind).sum() - 3 * films * (2 - kind), 1) for kind in (PLACE, ANGLE)]
@@ -81,8 +81,8 @@ def excess_of(result: Estimate, smooth: tuple[float, float], beyond_chance: bool
         result.size * own / other
         for count, own, other in zip(thirds, result.problem.noise, smooth, strict=True)
         if math.isfinite(other) and other > 0.0 and (
-            not beyond_chance or math.log(result.size * own / other)
-            > _SELDOM * 1.5 / math.sqrt(count)
+            not chance
+            or math.log(result.size * own / other) > chance * 1.5 / math.sqrt(count)
         )
     ), default=1.0)  # fmt: skip
 
@@ -95,9 +95,8 @@ def misfits(
     ``explained``: the probability by chance of what a slope, drag or air would explain.
     """
     told = []
-    # smaller residuals are the errors of what is computed
-    seen = result.problem.noise[0] > _COMPUTED * result.problem.size
-    excess = excess_of(result, smooth, beyond_chance=True)
+    seen = not computed(result)
+    excess = excess_of(result, smooth, _SELDOM)
     given = any(known[:2])
     if seen and not given and excess > NOISY:
         told.append(f"The residuals are {excess:.3g} times what smooth tracks would leave")
@@ -110,6 +109,11 @@ def misfits(
             f"{by_chance:.1g})"
         )
     return tuple(told)
+
+
+def computed(result: Estimate) -> bool:
+    """Whether residuals are so small that they are the errors of what is computed."""
+    return not result.problem.noise[0] > _COMPUTED * result.problem.size
 
 
 def hidden(result: Estimate) -> bool:
@@ -127,7 +131,7 @@ def may_misfit(
     Below what is complained of that may bias numbers by far.
     """
     pattern = not hidden(result) and min(runs(result), drift(result), explained) < _MAY_PATTERN
-    noisy = excess_of(result, smooth) > _MAY_NOISY
+    noisy = excess_of(result, smooth, _RARE) > _MAY_NOISY
     return noisy or pattern or bool(misfits(result, known, smooth, explained))
 
 

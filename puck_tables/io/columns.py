@@ -162,10 +162,9 @@ COLUMNS = {
     "force_y": Column("N", "force across", "force to the left of the slip, of a base along its y"),
     "torque": Column("N m", "torque", "torque that friction takes up, counter-clockwise"),
     "force": Column("N", "force", "size of the force", ("force_x", "force_y"), np.hypot),
-    "normal_force": Column("1", "normal, force", "outward normal in (F, M/r), part along F"),
-    "normal_x": Column("1", "normal, force x", "outward normal in (F_x, F_y, M/k), part along F_x"),
-    "normal_y": Column("1", "normal, force y", "outward normal in (F_x, F_y, M/k), part along F_y"),
-    "normal_torque": Column("1", "normal, torque", "the same, part along M/r, of a base M/k"),
+    "normal_x": Column("1", "normal, force x", "outward normal in (F_x, F_y, M/l), part along F_x"),
+    "normal_y": Column("1", "normal, force y", "outward normal in (F_x, F_y, M/l), part along F_y"),
+    "normal_torque": Column("1", "normal, torque", "part of it along M/l, l = r, of a base k"),
     # a push by a finger
     "push_x": Column("N", "push x", "force of the finger along x"),
     "push_y": Column("N", "push y", "force of the finger along y"),

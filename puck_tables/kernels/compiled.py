@@ -6,7 +6,7 @@ import contextlib
 import gc
 import sys
 from collections.abc import Callable, Iterator
-from functools import partial
+from functools import partial, update_wrapper
 from types import FunctionType
 from typing import Any, Protocol
 
@@ -17,22 +17,31 @@ from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import cpu_target
 from numba.core.typing.typeof import typeof_impl
 
-from puck_tables.kernels import as_written, register_blocks, vectors
+from puck_tables.kernels import (
+    as_written,
+    records,  # noqa: F401 - numba knows them from then on
+    register_blocks,
+    vectors,
+)
 from puck_tables.kernels.as_written import behind
 from puck_tables.kernels.cache import cache_folder
 from puck_tables.kernels.on_demand import put_cell, type_of_call
 from puck_tables.kernels.patience import patience
 
-# private parts of numba, worth it while they are there: 2 to 2.5 times the first compile of scenes,
+# private parts of numba, worth it while they are there: 2.5 to 3 times the first compile of scenes,
 # and a cache that is safe
 linked_at_doors: Any = None
 kept_code: Any = None
+quick: Any = contextlib.nullcontext
 with contextlib.suppress(ImportError, AttributeError):
     from puck_tables.kernels.linking import CALLED_LATE, Called, put_at
     from puck_tables.kernels.linking import LinkedAtDoors as linked_at_doors
 with contextlib.suppress(ImportError, AttributeError):
     from puck_tables.kernels.kept_code import KeptCode as kept_code
+with contextlib.suppress(ImportError, AttributeError):
+    from puck_tables.kernels.quick_compiler import quick
 _settings: Any = numba.config
+_DEEP = 100_000  # words of a frame, for which Python takes 1 MB of stack at once
 
 
 class _Announcer(event.Listener):
@@ -66,6 +75,20 @@ _dispatchers: dict[tuple[Any, bool], Any] = {}
 _late: dict[Any, Any] = {}  # types of kernels that are compiled on demand
 
 
+def _deep(function: Callable[..., Any]) -> Callable[..., Any]:
+    """A function within which calls lie deep.
+
+    Else Python takes each piece of its stack from the system, and gives it back, at every call that
+    crosses the border of two: 400,000 times while a scene is compiled, a tenth of the time.
+    """
+
+    def run(*args: Any) -> Any:
+        return function(*args)
+
+    run.__code__ = run.__code__.replace(co_stacksize=_DEEP)
+    return update_wrapper(run, function)
+
+
 class KernelDoor(Protocol):
     """What is read of a :class:`puck_tables.kernels.doors.Door`, which stands above."""
 
@@ -89,7 +112,7 @@ class KernelDoor(Protocol):
 def _compiling(door: KernelDoor) -> Iterator[None]:
     """What is compiled within may fuse a·b + c or not, as its door wants it."""
     lock: Any = global_compiler_lock
-    with lock:
+    with lock, quick():
         before, vectors.fuses = vectors.fuses, door.fuses
         try:
             yield
@@ -115,6 +138,7 @@ def _symbol_for(door: KernelDoor, kinds: tuple[Any, ...]) -> str:
     return symbol
 
 
+@_deep
 def _address_of(door: KernelDoor, kinds: tuple[Any, ...]) -> int:
     """Where a kernel for such arguments is, compiled or read."""
     if not (kinds in door.compiled.overloads or door.compiled._cache.keeps(kinds, _target())):
@@ -185,6 +209,7 @@ def keeps(dispatcher: Any, args: tuple[Any, ...]) -> bool:
     return bool(kept_code and dispatcher._cache.keeps(kinds, dispatcher.targetctx))
 
 
+@_deep
 def code_for(door: KernelDoor, args: tuple[Any, ...]) -> Callable[..., Any]:
     """Compiled code for such arguments, from disk if it is kept."""
     with _compiling(door):

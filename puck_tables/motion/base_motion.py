@@ -20,6 +20,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.base_friction import AREA, REACH, SIDES, base_friction
 from puck_tables.kernels.compile import inlined, inner, patience
+from puck_tables.motion.steppers import times_as_long
 from puck_tables.motion.tableaus import DORMAND_PRINCE_8
 
 # of a motion: velocity, kΩ, angle of the body over Q₀²/(J k), time, place, length of the path, and
@@ -166,7 +167,7 @@ def slide(
     base: FloatArray, gyration: float, turning: float, local: float, y: FloatArray,
     work: FloatArray, times: FloatArray, states: FloatArray,
 ) -> tuple[int, int, float, float]:  # fmt: skip
-    """From a launch to the stop.
+    """From a launch to the stop; where moments are asked for, not beyond the step over the last.
 
     Parameters
     ----------
@@ -174,7 +175,8 @@ def slide(
     gyration : k
     turning : Q₀²/(J k)
     local : the error of a step
-    y : array (9,): the launch, of q = 1; then the stop, with velocities just before it
+    y : array (9,): the launch, of q = 1; then the stop, with velocities just before it, or the end
+        of the last step
     work : array (ROWS, 9), work space
     times, states : moments (n,), none before the one before it, and room for states there, (n, 6)
 
@@ -204,10 +206,11 @@ def slide(
             _rates(base, gyration, turning, work, 0, y[VX], y[VY], y[RIM], y[TURN])
             lost = 0.5 * (1.0 - work[0, T] * work[0, T])
             residual = max(residual, 2.0 * abs(lost - y[WORK]))
+            if 0 < times.size == n:
+                return STOPPED, steps, residual, 1.0
         elif not h > _SHORTEST_STEP:
             return STEP_LIMIT, steps, residual, 1.0
-        grow = 5.0 if error == 0.0 else 0.9 * (local / error) ** 0.125
-        h = min(_LONGEST_STEP, h * (min(5.0, max(0.2, grow)) if error < math.inf else 0.2))
+        h = min(_LONGEST_STEP, h * times_as_long(error, local, 0.125, 0.2))
         if steps == MOST_STEPS:
             return STEP_LIMIT, steps, residual, 1.0
     stop = y[T] + left

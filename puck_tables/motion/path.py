@@ -29,7 +29,7 @@ from puck_tables.motion.equations_of_motion import (
     slowest_stop,
 )
 from puck_tables.motion.state import PSI, SIZE, WORK, T, U, X, Y
-from puck_tables.motion.steppers import AT_EVENT, ROWS, estimated, step
+from puck_tables.motion.steppers import AT_EVENT, ROWS, estimated, step, times_as_long
 from puck_tables.motion.tableaus import Tableau
 
 TURN_SHARE = 1e-3  # of Q₀: beyond, the heading turns on without end
@@ -136,10 +136,7 @@ def integrate(
             place = abs(estimated(tableau, work, X)) + abs(estimated(tableau, work, Y))
             error = max(error, abs(trial) * place / place_unit)
         if adaptive and not error <= tolerance:
-            shrink = (
-                0.2 if not error < math.inf else max(0.2, 0.9 * (tolerance / error) ** exponent)
-            )
-            h = trial * shrink
+            h = trial * times_as_long(error, tolerance, exponent, 0.2)
             if z + h == z:
                 return STEP_LIMIT, count
             continue
@@ -166,8 +163,7 @@ def integrate(
             _record(count, z, y, z_path, y_path)
         count += 1
         if adaptive and not crossed:
-            grow = 5.0 if error == 0.0 else 0.9 * (tolerance / error) ** exponent
-            h = min(trial * min(5.0, max(0.2, grow)), 0.5 * (1.0 - z))
+            h = min(trial * times_as_long(error, tolerance, exponent, 0.2), 0.5 * (1.0 - z))
     at_constant_angle(q_of(z), y, 0.0, section, delta, result)
     result[PSI] = turn
     result[SIZE] = max(residual, abs(energy - result[WORK]) / energy)

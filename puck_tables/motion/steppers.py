@@ -56,6 +56,19 @@ AT_EVENT = ROWS - 2
 
 
 @inlined
+def times_as_long(error: float, tolerance: float, power: float, least: float) -> float:
+    """By how much a step may be longer, at most 5, or must be shorter, for its error to be right.
+
+    ``power``: of the error over the length; ``least``: the shortest it may become at once.
+    """
+    if not error < math.inf:
+        return least
+    if error == 0.0:
+        return 5.0
+    return min(max(0.9 * (tolerance / error) ** power, least), 5.0)
+
+
+@inlined
 def estimated(tableau: Tableau, work: FloatArray, i: int) -> float:
     """The error of one number of the state in a step just done, over its length."""
     error, other = 0.0, 0.0

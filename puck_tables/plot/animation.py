@@ -28,11 +28,10 @@ from puck_tables.plot.board_parts import (
     straight_parts,
 )
 from puck_tables.plot.floor_axes import Box
-from puck_tables.plot.scene_figure import states_drawn
 from puck_tables.plot.titles import out_of_sight
 from puck_tables.result import TimedResult
 from puck_tables.scene.parts import Floor
-from puck_tables.scene.run import Run
+from puck_tables.scene.run import STATE, Run
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.sides import line_of
 from puck_tables.trajectory import Trajectory
@@ -44,6 +43,8 @@ PALETTE = (
     "#0072b2", "#e69f00", "#000000", "#56b4e9", "#d55e00", "#f0e442", "#009e73", "#cc79a7",
 )  # fmt: skip
 _STATES = 1500  # at which a way is known before its knots are chosen
+# of the only puck of a scene at least so many, so many a turn, and so many at the most
+_OF_ONE, _A_TURN, _MOST = 2000, 60, 50_000
 _UNSEEN = (1e-4, 0.01)  # of the size of what is in sight, and of the smallest radius
 _FAR = 3.0  # sizes of the ways: corners of the board farther off are left out of sight
 
@@ -127,17 +128,37 @@ def film_of(result: TimedResult) -> Animation:
     if isinstance(result, Run) and result.scene.pucks:
         return _film_of_several(result)
     if isinstance(result, Run):
-        columns = states_drawn(result)
-        names = ("time", "x", "y", "orientation", "vx", "vy", "spin")
-        states = _stacked(*(columns[name] for name in names))
-        happenings = [
-            Happening(e.time, e.what, e.x, e.y) for e in result.events if e.what == "impact"
-        ]
-        body = ("puck", result.scene.puck.radius, "", False, states)
-        scene = result.scene
-        film = _film(scene.title, result.end, result.end_time, [body], happenings, scene)
-        return _outlined(film, [scene.puck])
+        return film_of_one(result, states_drawn(result))
     raise TypeError(f"{type(result).__name__} has no film")
+
+
+def film_of_one(run: Run, columns: dict[str, FloatArray], shape: float = 0.0) -> Animation:
+    """The film of a scene of one puck, from its states close to each other, (n,) by name.
+
+    ``shape``: the width of what is in sight over its height, 0: as it comes.
+    """
+    scene = run.scene
+    states = _stacked(*(columns[name] for name in ("time", *STATE)))
+    happenings = [Happening(e.time, e.what, e.x, e.y) for e in run.events if e.what == "impact"]
+    body = ("puck", scene.puck.radius, "", False, states)
+    film = _film(scene.title, run.end, run.end_time, [body], happenings, scene, shape)
+    return _outlined(film, [scene.puck])
+
+
+def states_drawn(run: Run) -> dict[str, FloatArray]:
+    """States of a run so close that lines between them are its curves, before and after events."""
+    scene = run.scene
+    turns = (
+        abs(run.last["orientation"] - scene.launch.orientation)
+        + (abs(scene.launch.spin) + abs(scene.floor.turning)) * run.end_time
+    ) / (2.0 * math.pi)
+    count = int(min(max(_OF_ONE, _A_TURN * turns), _MOST))
+    events = np.array([event.time for event in run.events])
+    times = np.concatenate(
+        [np.linspace(0.0, run.end_time, count), np.nextafter(events, 0.0), events]
+    )
+    times = np.unique(times[times <= run.end_time])
+    return dict(run(times).columns)
 
 
 def _film_of_several(run: Run) -> Animation:
@@ -149,11 +170,10 @@ def _film_of_several(run: Run) -> Animation:
     in_view = run(np.unique(np.concatenate(times)))
     gone = dict.fromkeys(run.names, math.inf)
     gone |= {event.puck: event.time for event in run.events if event.what in ("pocket", "edge")}
-    names = ("x", "y", "orientation", "vx", "vy", "spin")
     bodies = [
         (
             name, piece.radius, piece.colour, bool(piece.path),
-            _stacked(in_view.time, *(in_view[number][column] for column in names)),
+            _stacked(in_view.time, *(in_view[number][column] for column in STATE)),
         )
         for number, (name, piece) in enumerate(zip(run.names, pieces, strict=True))
     ]  # fmt: skip
@@ -197,7 +217,7 @@ def _stacked(*columns: FloatArray) -> FloatArray:
 
 def _film(
     title: str, end: str, end_time: float, bodies: list[tuple[str, float, str, bool, FloatArray]],
-    happenings: list[Happening] | None = None, scene: SceneSpec | None = None,
+    happenings: list[Happening] | None = None, scene: SceneSpec | None = None, shape: float = 0.0,
 ) -> Animation:  # fmt: skip
     """A film of bodies by name, radius, colour, whether driven, and states close to each other."""
     rounds = [] if scene is None else rounds_of(scene)
@@ -206,6 +226,11 @@ def _film(
     sides = [] if scene is None else straight_parts(scene)
     box = _sight(bodies, rounds, [*painted, *sides])
     box = _with_corners(box, [plane for _, plane in planes])
+    if shape > 0.0:
+        wide, high = 0.5 * (box.right - box.left), 0.5 * (box.high - box.low)
+        x, y = box.left + wide, box.low + high
+        wide, high = max(wide, shape * high), max(high, wide / shape)
+        box = Box(x - wide, x + wide, y - high, y + high)
     size, smallest = max(box[1] - box[0], box[3] - box[2]), min(body[1] for body in bodies)
     unseen = min(_UNSEEN[0] * size, _UNSEEN[1] * smallest)
     lines = [*sides, *_lines(planes, box)]

@@ -10,8 +10,10 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.motion.puck_spec import PuckSpec
+from puck_tables.plot.style import GREY
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.path import Path
 
 MARK = 0.7  # of the reach of a base that is not round: a line so long lies in most of them
@@ -62,6 +64,27 @@ def path_of(outline: Sequence[FloatArray]) -> Path:
 
     closed = [Path(np.concatenate([part, part[:1]]), closed=True) for part in outline]
     return Path.make_compound_path(*closed)
+
+
+def draw_along(
+    axes: Axes, puck: PuckSpec, x: FloatArray, y: FloatArray, angle: FloatArray, most: int,
+    scale: float = 1.0, colour: str = GREY,
+) -> list[int]:  # fmt: skip
+    """A puck at places along its path, at most so many, each with a mark; which they are."""
+    from matplotlib.patches import PathPatch
+
+    outline, radius = outline_of(puck), scale * puck.radius
+    mark = radius * (1.0 if puck.shape is None else MARK)
+    way = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
+    count = min(most, max(2, int(way[-1] / (2.2 * radius or 1.0)) + 1))
+    chosen = np.unique(np.searchsorted(way, np.linspace(0.0, way[-1], count)).clip(0, x.size - 1))
+    for n in chosen:
+        there = path_of(placed(outline, x[n], y[n], angle[n], scale))
+        axes.add_patch(PathPatch(there, fill=False, color=GREY, linewidth=0.8, zorder=2))
+        dx, dy = mark * math.cos(angle[n]), mark * math.sin(angle[n])
+        axes.plot([x[n], x[n] + dx], [y[n], y[n] + dy], color=colour, linewidth=0.9, zorder=2)
+    found: list[int] = chosen.tolist()
+    return found
 
 
 def _circle(x: float, y: float, radius: float, sign: float) -> FloatArray:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
+from puck_tables.plot.base_outlines import outline_of, placed
 from puck_tables.plot.style import BLUE, GREY, ORANGE, canvas
 from puck_tables.plot.titles import legend_below, titled
 from puck_tables.wrench.push import Push
@@ -40,9 +40,10 @@ def draw_on(axes: Axes, run: Push) -> None:
     unit = run.puck.friction * run.puck.mass * run.puck.gravity
     chosen = np.unique(np.linspace(0, run.time.size - 1, _DRAWN).round().astype(int))
     for n in chosen.tolist():
-        for outline in _outlines(run):
-            turned = outline * np.exp(1j * run.orientation[n]) + run.x[n] + 1j * run.y[n]
-            axes.plot(turned.real, turned.imag, color=BLUE if n == chosen[-1] else GREY)
+        there = run.x[n], run.y[n], run.orientation[n]
+        for part in placed(outline_of(run.puck), *there):
+            closed = np.append(part, part[:1], axis=0)
+            axes.plot(*closed.T, color=BLUE if n == chosen[-1] else GREY)
     axes.plot(run.x, run.y, color=BLUE, linewidth=0.9, label="centre of mass")
     axes.plot(run.finger_x, run.finger_y, color=ORANGE, marker="o", markevery=chosen.tolist(),
               label="finger")  # fmt: skip
@@ -54,17 +55,3 @@ def draw_on(axes: Axes, run: Push) -> None:
     axes.set_aspect("equal", adjustable="datalim")
     axes.set(xlabel="x / m", ylabel="y / m")
     legend_below(axes)
-
-
-def _outlines(run: Push) -> list[FloatArray]:
-    """Closed curves of the base, from the centre of mass, as complex numbers."""
-    circle = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 181))
-    base = run.puck.shape
-    if base is None:
-        return [run.puck.radius * circle]
-    middle = complex(*base.middle)
-    curves = [complex(x, y) - middle + radius * circle for x, y, radius, _ in base.discs]
-    for outline in base.outlines:
-        corners = np.array([complex(*one) for one in (*outline, outline[0])]) - middle
-        curves.append(corners)
-    return curves

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from puck_tables.plot.base_outlines import MARK, outline_of, path_of, placed
+from puck_tables.plot.base_outlines import draw_along
 from puck_tables.plot.style import BLUE, GREEN, GREY, LAUNCH, ORANGE, STOP, canvas
 from puck_tables.plot.titles import legend_below, titled
 from puck_tables.trajectory import Trajectory
@@ -106,25 +106,11 @@ def _draw_limit(panel: Axes, limit: float, largest: float) -> None:
 
 
 def _draw_path(axes: Axes, run: Trajectory) -> None:
-    from matplotlib.patches import PathPatch
-
     axes.plot(run.x, run.y, color=BLUE, linewidth=1.6)
     extent = max(np.ptp(run.x), np.ptp(run.y))
     true_size = extent == 0.0 or 0.02 * extent <= run.puck.radius <= 0.3 * extent
-    radius = run.puck.radius if true_size else 0.045 * extent
-    travelled = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(run.x), np.diff(run.y)))])
-    count = min(_PUCKS_DRAWN, 2 + int(travelled[-1] / (2.4 * radius or 1.0)))
-    wanted = np.linspace(0.0, travelled[-1], count)
-    chosen = np.unique(np.searchsorted(travelled, wanted).clip(0, run.time.size - 1))
-    for index in chosen:
-        x, y, angle = run.x[index], run.y[index], run.orientation[index]
-        outline = placed(outline_of(run.puck), x, y, angle, radius / run.puck.radius)
-        axes.add_patch(PathPatch(path_of(outline), fill=False, color=GREY, linewidth=0.9))
-        reach = MARK * radius if run.puck.shape is not None else radius
-        axes.plot(
-            [x, x + reach * math.cos(angle)], [y, y + reach * math.sin(angle)],
-            color=ORANGE, linewidth=1.4,
-        )  # fmt: skip
+    scale = 1.0 if true_size else 0.045 * extent / run.puck.radius
+    draw_along(axes, run.puck, run.x, run.y, run.orientation, _PUCKS_DRAWN, scale, ORANGE)
     axes.plot(run.x[0], run.y[0], **LAUNCH, label="launch")
     axes.plot(*run.stop_position, **STOP, label="stop")
     axes.set_aspect("equal", adjustable="datalim")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -64,6 +64,8 @@ class Aim(Result):
     body_angle: FloatArray
     threads: int | None = None
 
+    picture: ClassVar[str] = "aim"
+
     def __repr__(self) -> str:
         at = f"at ({self.target[0]:g}, {self.target[1]:g}) m: " if self.is_one else ""
         return f"Aim({at}{self.answer})"
@@ -95,11 +97,6 @@ class Aim(Result):
     def is_one(self) -> bool:
         """Whether there is one target, (2,), not an array of them."""
         return self.target.ndim == 1
-
-    @property
-    def picture(self) -> str:  # type: ignore[override]
-        """The module that draws it."""
-        return "aim" if self.is_one else "aims"
 
     @property
     def launches(self) -> npt.NDArray[np.int64]:

@@ -3,42 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Container, Mapping
-from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from puck_tables._core.executor import Progress
-from puck_tables._core.memory import check_memory
 from puck_tables._core.own_folder import say
 from puck_tables._core.real import one_velocity
-from puck_tables.bulk.finish import check_part, finish
+from puck_tables.bulk.finish import Doing, finish
 from puck_tables.bulk.spreads import checked_samples
 from puck_tables.errors import InputError
 from puck_tables.result import Result
-from puck_tables.stopping.base_work import BaseStopWork
 from puck_tables.stopping.population import COLUMN, Population, drawn, labelled, ranged
-from puck_tables.stopping.stop_table import StopTable
-from puck_tables.stopping.sweep_work import StopWork
-from puck_tables.table.resultant_table import ResultantTable
-
-# Arrays, the encoded HDF5 file and working copies; as text (CSV) much more.
-BYTES_PER_LAUNCH, BYTES_PER_ROW = 160, 850
+from puck_tables.stopping.sweep_work import By, StopWork
 
 DEFAULT_SPEED = np.linspace(0.0, 2.0, 41)
 DEFAULT_SPIN = np.linspace(-4.0, 4.0, 41)
 
 
-def sweep(puck: Any, chosen: Mapping[str, Any], launches: Any, *, how: SweepOptions) -> Result:
-    """Stops of all combinations of numbers: :meth:`puck_tables.Puck.sweep`."""
+def sweep(puck: Any, chosen: Mapping[str, Any], launches: Any, by: By, how: Doing) -> Result:
+    """Stops of all combinations of numbers: :meth:`puck_tables.Puck.sweep`; ``by``: computed so."""
     numbers = numbers_of(puck, chosen)
     if launches is None:
         if not {"spin", "speed", "vx", "vy"} & numbers.keys():
             scale = 1.0 if puck.shape is None else 2.0 * puck.inertia_radius
             numbers |= {"spin": DEFAULT_SPIN / scale, "speed": DEFAULT_SPEED}
         laws = numbers.pop("pressure", puck.pressure)
-        return how.done(ranged(_whole(puck, numbers, numbers), laws), puck)
+        return _done(puck, ranged(_whole(puck, numbers, numbers), laws), by, how)
     if not (hasattr(launches, "variables") and hasattr(launches, "sizes")):
         raise InputError("launches must be an xarray.Dataset, with variables such as launch_spin")
     laws = numbers.pop("pressure", puck.pressure)
@@ -47,17 +37,17 @@ def sweep(puck: Any, chosen: Mapping[str, Any], launches: Any, *, how: SweepOpti
     read = set(COLUMN.values())
     if unread := [str(name) for name in launches.data_vars if name not in read]:
         say(f"launches: variables not read: {', '.join(unread)[:400]}")
-    return how.done(labelled(launches, _whole(puck, numbers, names), laws), puck)
+    return _done(puck, labelled(launches, _whole(puck, numbers, names), laws), by, how)
 
 
 def sample(
-    puck: Any, count: int, seed: int, chosen: Mapping[str, Any], *, how: SweepOptions
+    puck: Any, count: int, seed: int, chosen: Mapping[str, Any], by: By, how: Doing
 ) -> Result:
     """Stops of launches that scatter: :meth:`puck_tables.Puck.sample`."""
     checked_samples(count, seed)
     numbers = numbers_of(puck, chosen)
     laws = numbers.pop("pressure", puck.pressure)
-    return how.done(drawn(_whole(puck, numbers, numbers), laws, count, seed), puck)
+    return _done(puck, drawn(_whole(puck, numbers, numbers), laws, count, seed), by, how)
 
 
 def numbers_of(puck: Any, chosen: Mapping[str, Any]) -> dict[str, Any]:
@@ -121,32 +111,7 @@ def _of(names: Container[str]) -> list[str]:
     return [name for name in COLUMN if name in names]
 
 
-@dataclass(frozen=True)
-class SweepOptions:
-    """How stops are computed, and where they go: arguments of :meth:`puck_tables.Puck.sweep`."""
-
-    tol: float
-    method: str | None
-    table: ResultantTable | StopTable | None
-    threads: int | None
-    chunk: int
-    progress: Progress | None
-    store: str | Path | None
-    cluster: str | None
-    overwrite: bool
-
-    def _work(self, launches: Population, puck: Any) -> StopWork:
-        if puck.shape is None:
-            return StopWork(launches, puck.gyration, self.tol, self.method, self.table, self.chunk)
-        puck.refuse_for_round(method=self.method, table=self.table)
-        return BaseStopWork(launches, puck, self.tol, self.chunk)
-
-    def done(self, launches: Population, puck: Any) -> Result:
-        """The result, or what stands in the store."""
-        check_part(self.chunk)
-        work = self._work(launches, puck)
-        if self.store is None:
-            check_memory(launches.shape, BYTES_PER_LAUNCH)
-        where = self.store, self.cluster, self.overwrite
-        found: Result = finish(work, self.threads, self.progress, *where)
-        return found
+def _done(puck: Any, launches: Population, by: By, how: Doing) -> Result:
+    """The result, or what stands in the store."""
+    found: Result = finish(StopWork(launches, puck, by, how.chunk), how)
+    return found

@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, on_demand, patience
+from puck_tables.motion.steppers import times_as_long
 from puck_tables.scene.belts import is_rubbed
 from puck_tables.scene.equations import (
     DRY,
@@ -346,16 +347,6 @@ def _is_stiff(model: Model, load: float, stiff: bool, h: float, q: float, pull: 
 
 
 @inlined
-def _times_as_long(error: float, tol: float, implicit: bool) -> float:
-    """By how much a step may be longer, or must be shorter, for its error to be right."""
-    if not error < math.inf:
-        return 0.1
-    if error == 0.0:
-        return 5.0
-    return min(max(0.9 * (tol / error) ** (0.25 if implicit else 0.125), 0.1), 5.0)
-
-
-@inlined
 def _piece_for(coarse: float, h: float) -> float:
     """How long a piece may be, where one over h was wrong by so many times what it may be."""
     return h * max(0.2, _SAFE * coarse**-0.2) if coarse > 0.0 else math.inf
@@ -377,12 +368,34 @@ def _goes_on(
 
 
 @inlined
-def _is_carried(stretch: Stretch, t: float, h: float, desk: Desk) -> tuple[float, bool]:
-    """How long of a step at rest over h the floor holds the puck, and whether it loses it."""
+def _is_held(stretch: Stretch, t: float, h: float, desk: Desk) -> tuple[float, bool]:
+    """How long of a step over h a puck at rest is held by the floor, and whether it is lost."""
+    if stretch.mode != CARRIED:
+        return h, False
     slips = lost(stretch, t, h, desk.y, desk.scale, desk.stages, desk.new)
     length = min(slips, h)
     step(stretch, t, length, desk.y, desk.scale, desk.stages, desk.new)
     return length, slips < math.inf
+
+
+@inlined
+def _from_rest(
+    model: Model, dry: Dry, rows: int, speed: float, t: float, slow: float, begins: bool, desk: Desk
+) -> tuple[int, bool, float, bool]:  # fmt: skip
+    """How it goes on with no slip but what rounding leaves: mode, whether stiff, slip, and rests.
+
+    ``slow``: the slip it has; where it ``begins`` so, it may be what the path before began.
+    """
+    y = desk.y
+    vx, vy, spin = y[VX], y[VY], y[SPIN]
+    y[VX] = y[VY] = y[SPIN] = 0.0
+    at_rest = Stretch(model, dry, rows, CARRIED, NO_WAY, 0.0)
+    mode, stiff, q = from_standstill(at_rest, speed, t, y, desk.stages)
+    if mode == SLIDES and begins and slow > q:
+        q = _goes_on(Stretch(model, dry, rows, SLIDES, NO_WAY, 0.0), t, vx, vy, spin, q, y,
+                     desk.stages)  # fmt: skip
+    rests = mode == CARRIED and not _swings(model, dry, rows)
+    return mode, stiff, q, rests and rests_on(model, dry, rows, y)
 
 
 @inlined
@@ -431,15 +444,9 @@ def follow_alone(
         if settle:
             before, mode, way = mode, SLIDES, NO_WAY
             if dry.load > 0.0 and q <= REST * speed:
-                vx, vy, spin, slow_q = y[VX], y[VY], y[SPIN], q
-                y[VX] = y[VY] = y[SPIN] = 0.0
-                at_rest = Stretch(model, dry, rows, CARRIED, way, 0.0)
-                mode, stiff, q = from_standstill(at_rest, speed, now, y, stages)
-                if mode == SLIDES and count == 0 and slow_q > q:
-                    q = _goes_on(Stretch(model, dry, rows, SLIDES, NO_WAY, 0.0), now, vx, vy, spin,
-                                 q, y, stages)  # fmt: skip
-                rests = mode == CARRIED and not _swings(model, dry, rows)
-                rests = rests and rests_on(model, dry, rows, y)
+                mode, stiff, q, rests = _from_rest(
+                    model, dry, rows, speed, now, q, count == 0, desk
+                )
                 turns = (mode == CARRIED) != (before == CARRIED)
                 if rests or (turns and count > 0 and now > t):
                     break
@@ -460,7 +467,7 @@ def follow_alone(
         landed = now + (1.0 if mode == STOPS else 1.1) * h >= target
         whole = target - now if landed else h
         error = step(stretch, now, whole, y, desk.scale, stages, new)
-        grows = _times_as_long(error, tol, newton > 0.0)
+        grows = times_as_long(error, tol, 0.25 if newton > 0.0 else 0.125, 0.1)
         if not error <= tol:
             h = whole * grows
             if h < _SHORTEST * unit:
@@ -470,9 +477,7 @@ def follow_alone(
         if not math.isfinite(new[VX]):  # a shorter implicit step, which was not solved
             h = 0.25 * length
             continue
-        slips = False
-        if mode == CARRIED:
-            length, slips = _is_carried(stretch, now, length, desk)
+        length, slips = _is_held(stretch, now, length, desk)
         landed = landed and stuck == NOTHING and not slips
         piece = game.pieces[game.counts[N_PIECES] + count]
         _write_piece(stretch, now, length, piece, desk)

@@ -9,13 +9,13 @@ real steps.
 
 from __future__ import annotations
 
-import math
 from typing import cast
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel, patience
+from puck_tables.motion.steppers import times_as_long
 from puck_tables.scene.friction import VX, VY, X, Y
 from puck_tables.world.footing import is_over, moves_along, nears_another, room_on_floor
 from puck_tables.world.forces import can_rest, count_rows, slip_at
@@ -208,6 +208,92 @@ def _opens_midway(
     return largest
 
 
+@inlined
+def _first_change(
+    group: Group, members: IntArray, modes: IntArray, doings: IntArray, contacts: int, t: float,
+    length: float, still_there: bool, scales: Scales, desk: Desk,
+) -> tuple[int, int, float, bool]:  # fmt: skip
+    """What is the first to change on a step, of which contact or member, when, and if it was cut.
+
+    ``still_there``: whether anybody is at rest whom somebody touches.
+    """
+    how, which, cut = TIME_UP, -1, False
+    while True:
+        c, kind = first_negative(desk, 1, contacts)
+        if c < 0:
+            break
+        how, which, cut = PARTS + kind, c, True
+        length = _moment(group, members, modes, doings, t, length, c, kind, scales, desk)
+        if first_negative(desk, 1, contacts) == (c, kind):
+            break
+    if still_there:
+        goes = sets_off(group, members, modes, doings, scales, desk)
+        if goes < 0:
+            return UNSOLVED, which, length, cut
+        if goes > 0:
+            how, which, cut = SETS_OFF, -1, True
+            length = _moment(group, members, modes, doings, t, length, _NOBODY, BEGIN, scales, desk)
+    if how == TIME_UP and group.discs.shape[1] > LIES:  # there are borders on the floor
+        which = _comes_over(group, members, desk)
+        if which >= 0:
+            how, cut = OFF_BORDER, True
+            length = _moment(
+                group, members, modes, doings, t, length, which, _OVER_BORDER, scales, desk
+            )
+        elif _changes_belts(group, members, desk):
+            how = OFF_BORDER
+    return how, which, length, cut
+
+
+@inlined
+def _slips(
+    group: Group, members: IntArray, doings: IntArray, t: float, length: float, how: int,
+    which: int, scales: Scales, desk: Desk,
+) -> tuple[int, int, bool]:  # fmt: skip
+    """What changes, and of whom, with those that come to rest on a step; and if a slip has begun.
+
+    Then it is so large that it has a direction of its own.
+    """
+    begun = False
+    for place in range(members.shape[0]):
+        number = members[place]
+        earlier = slip_at(group, number, desk.states[0, place], t)
+        q = slip_at(group, number, desk.states[1, place], t + length)
+        if doings[place] == YIELDS and (q > small_slip(scales) or q < earlier):
+            doings[place], begun = MOVES, True
+        elif how == TIME_UP and doings[place] == MOVES and can_rest(group, number):
+            how = RESTS if q <= STILL * scales.speed and q < earlier else how
+            which = place if how == RESTS else which
+    return how, which, begun
+
+
+@inlined
+def _go_on_from(size: int, contacts: int, desk: Desk) -> None:
+    """The end of a step is the start of the next."""
+    for place in range(size):
+        for i in range(6):
+            desk.states[0, place, i] = desk.states[1, place, i]
+            desk.stages[0, place, i] = desk.stages[END, place, i]
+    for i in range(LEDGER):
+        desk.powers[0, i] = desk.powers[END, i]
+    for c in range(contacts):
+        for i in range(desk.watched.shape[2]):
+            desk.watched[0, c, i] = desk.watched[1, c, i]
+
+
+@inlined
+def _is_touched_at_rest(group: Group, members: IntArray, contacts: int, doings: IntArray) -> bool:
+    """Whether anybody is at rest whom somebody touches, or what acts on whom changes."""
+    for place in range(members.shape[0]):
+        number = members[place]
+        forced = group.spans[number, 0] < group.spans[number, 1]
+        over = is_over(group.regions, group.discs, number) and moves_along(group.surface)
+        changes = contacts > 0 or forced or over or group.surface.spin != 0.0
+        if doings[place] == HELD and changes:
+            return True
+    return False
+
+
 @kernel
 def follow(
     group: Group, members: IntArray, contacts: IntArray, states: FloatArray, t: float,
@@ -237,7 +323,7 @@ def follow(
     """
     size = members.shape[0]
     find_places(members, contacts, desk)
-    y, new = desk.states[0], desk.states[1]
+    y = desk.states[0]
     for place in range(size):
         for i in range(6):
             y[place, i] = states[members[place], i]
@@ -245,14 +331,7 @@ def follow(
     count_rows(group, members, t, desk)
     rates_at(group, members, modes, doings, t, y, BEGIN, scales, desk)
     watch(desk, modes, scales, False)
-    still_there = False  # anybody at rest whom somebody touches
-    for place in range(size):
-        number = members[place]
-        forced = group.spans[number, 0] < group.spans[number, 1]
-        over = is_over(group.regions, group.discs, number) and moves_along(group.surface)
-        changes = contacts.shape[0] > 0 or forced or over or group.surface.spin != 0.0
-        still_there = still_there or (doings[place] == HELD and changes)
-    borders = group.discs.shape[1] > LIES  # anywhere on the floor
+    still_there = _is_touched_at_rest(group, members, contacts.shape[0], doings)
     h, start, passed, count = _FIRST * unit, t, 0.0, 0
     how, which = TIME_UP, -1
     c, kind = first_negative(desk, 0, contacts.shape[0])
@@ -269,83 +348,37 @@ def follow(
         landed = 1.1 * h >= target - t
         length = target - t if landed else h
         error = _advance(group, members, modes, doings, t, length, scales, desk)
+        grows = times_as_long(error, scales.tol, 0.2, 0.1)
         if not error <= scales.tol:
-            shrink = max(0.1, 0.9 * (scales.tol / error) ** 0.2) if error < math.inf else 0.1
-            h = length * shrink
+            h = length * grows
             if h < _SHORTEST * unit:
                 how = NOT_FINITE
                 break
             continue
         opens = _opens_midway(
-            group,
-            members,
-            contacts.shape[0],
-            pieces,
-            count,
-            start + passed,
-            length,
-            scales.tol,
+            group, members, contacts.shape[0], pieces, count, start + passed, length, scales.tol,
             desk,
-        )
+        )  # fmt: skip
         shorter = 5.0 if opens <= 1e-6 else 0.9 * opens ** (-1.0 / 6.0)
         if opens > 1.0 and length * shorter > _BRIEF * unit:
             h = length * shorter
             continue
-        h = length * min(shorter, 5.0 if error == 0.0 else 0.9 * (scales.tol / error) ** 0.2)
-        while True:
-            c, kind = first_negative(desk, 1, contacts.shape[0])
-            if c < 0:
-                break
-            how, which, landed = PARTS + kind, c, False
-            length = _moment(group, members, modes, doings, t, length, c, kind, scales, desk)
-            if first_negative(desk, 1, contacts.shape[0]) == (c, kind):
-                break
-        if still_there:
-            goes = sets_off(group, members, modes, doings, scales, desk)
-            if goes < 0:
-                how = UNSOLVED
-                break
-            if goes > 0:
-                how, which, landed = SETS_OFF, -1, False
-                length = _moment(
-                    group, members, modes, doings, t, length, _NOBODY, BEGIN, scales, desk
-                )
-        if how == TIME_UP and borders:
-            which = _comes_over(group, members, desk)
-            if which >= 0:
-                how, landed = OFF_BORDER, False
-                length = _moment(
-                    group, members, modes, doings, t, length, which, _OVER_BORDER, scales, desk
-                )
-            elif _changes_belts(group, members, desk):
-                how = OFF_BORDER
+        h = length * min(shorter, grows)
+        how, which, length, cut = _first_change(
+            group, members, modes, doings, contacts.shape[0], t, length, still_there, scales, desk
+        )
+        if how == UNSOLVED:
+            break
         add_work(length, start + passed, works[count], desk)
-        begun = False  # whether anybody's slip is so large that it has a direction of its own
         for place in range(size):
             write_piece(pieces[place, count], start + passed, length, place, desk)
-            before, after = y[place], new[place]
-            number = members[place]
-            earlier = slip_at(group, number, before, t)
-            q = slip_at(group, number, after, t + length)
-            if doings[place] == YIELDS and (q > small_slip(scales) or q < earlier):
-                doings[place], begun = MOVES, True
-            elif how == TIME_UP and doings[place] == MOVES and can_rest(group, number):
-                how = RESTS if q <= STILL * scales.speed and q < earlier else how
-                which = place if how == RESTS else which
+        how, which, begun = _slips(group, members, doings, t, length, how, which, scales, desk)
         count += 1
         passed += length
-        t = target if landed else start + passed
-        for place in range(size):
-            for i in range(6):
-                y[place, i] = new[place, i]
-                desk.stages[0, place, i] = desk.stages[END, place, i]
-        for i in range(LEDGER):
-            desk.powers[0, i] = desk.powers[END, i]
+        t = target if landed and not cut else start + passed
+        _go_on_from(size, contacts.shape[0], desk)
         if begun:
             rates_at(group, members, modes, doings, t, y, BEGIN, scales, desk)
-        for c in range(contacts.shape[0]):
-            for i in range(desk.watched.shape[2]):
-                desk.watched[0, c, i] = desk.watched[1, c, i]
         if how != TIME_UP:
             break
     for place in range(size):

@@ -8,17 +8,15 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from functools import lru_cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.digest import files_named, refuse_changed
-from puck_tables._core.executor import Progress
 from puck_tables._core.memory import check_memory
 from puck_tables._core.real import instance
-from puck_tables.bulk.finish import check_part, finish
+from puck_tables.bulk.finish import Doing, finish
 from puck_tables.bulk.spreads import Spread, checked_samples
 from puck_tables.bulk.work import Columns, Tally, Work
 from puck_tables.contact.laws import Law
@@ -39,33 +37,18 @@ FEWEST, MOST = 1 << 6, 1 << 13  # runs kept together in a store
 _COPIES = 4  # of the columns: as made, in their shape, and what follows from them
 
 
-def sweep(
-    scene: SceneSpec, *, threads: int | None, chunk: int, progress: Progress | None,
-    store: str | Path | None, cluster: str | None, overwrite: bool,
-) -> Any:  # fmt: skip
+def sweep(scene: SceneSpec, how: Doing) -> Any:
     """The map over a scene, as :meth:`puck_tables.Scene.sweep` has it."""
-    return _done(Runs(scene, chunk), threads, progress, store, cluster, overwrite)
+    return finish(Runs(scene, how.chunk), how)
 
 
 def sample(
-    scene: SceneSpec, count: int, seed: int, spreads: Mapping[str, Spread], *, threads: int | None,
-    chunk: int, progress: Progress | None, store: str | Path | None, cluster: str | None,
-    overwrite: bool,
-) -> Any:  # fmt: skip
+    scene: SceneSpec, count: int, seed: int, spreads: Mapping[str, Spread], how: Doing
+) -> Any:
     """Samples of a scene, as :meth:`puck_tables.Scene.sample` has it."""
     checked_samples(count, seed)
     instance("spreads", spreads, Mapping)
-    work = DrawnRuns(scene, chunk, None, count, seed, dict(spreads))
-    return _done(work, threads, progress, store, cluster, overwrite)
-
-
-def _done(
-    work: Runs, threads: int | None, progress: Progress | None, store: str | Path | None,
-    cluster: str | None, overwrite: bool,
-) -> Any:  # fmt: skip
-    if store is None:
-        work.refuse_memory()
-    return finish(work, threads, progress, store, cluster, overwrite)
+    return finish(DrawnRuns(scene, how.chunk, None, count, seed, dict(spreads)), how)
 
 
 class Runs(Work):
@@ -85,7 +68,6 @@ class Runs(Work):
         self, scene: SceneSpec, part: int, read: dict[str, str] | None = None,
         axes: Mapping[str, FloatArray] | None = None, shape: tuple[int, ...] | None = None,
     ) -> None:  # fmt: skip
-        check_part(part)
         self.scene, self.part = scene, part
         self.axes = axes_of(scene) if axes is None else axes
         if not self.axes:
@@ -122,12 +104,7 @@ class Runs(Work):
         return pucks if isinstance(pucks, list) else [pucks]
 
     def refuse_memory(self) -> None:
-        """Refuse what would not fit in memory.
-
-        Raises
-        ------
-        InputError
-        """
+        """By its columns."""
         check_memory(self.shape, 8 * _COPIES * sum(math.prod(one) for one in self.columns.values()))
 
     def numbers(self, start: int, stop: int) -> dict[str, FloatArray]:

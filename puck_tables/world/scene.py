@@ -207,12 +207,10 @@ class Scene(SceneSpec):
         >>> Scene(puck, launch=Launch(velocities, spin=[0.0, 9.0])).sweep().y.round(6).tolist()
         [0.0, 2.056068]
         """
+        from puck_tables.bulk.finish import Doing
         from puck_tables.world.runs import sweep
 
-        ends: Map = sweep(
-            self, threads=threads, chunk=chunk, progress=progress, store=store, cluster=cluster,
-            overwrite=overwrite,
-        )  # fmt: skip
+        ends: Map = sweep(self, Doing(threads, chunk, progress, store, cluster, overwrite))
         return ends
 
     def sample(
@@ -263,12 +261,11 @@ class Scene(SceneSpec):
         >>> round(found.of("red").mean()["x"], 3)
         0.569
         """
+        from puck_tables.bulk.finish import Doing
         from puck_tables.world.runs import sample
 
-        found: Sample = sample(
-            self, count, seed, spreads, threads=threads, chunk=chunk, progress=progress,
-            store=store, cluster=cluster, overwrite=overwrite,
-        )  # fmt: skip
+        how = Doing(threads, chunk, progress, store, cluster, overwrite)
+        found: Sample = sample(self, count, seed, spreads, how)
         return found
 
     def world(self) -> World:

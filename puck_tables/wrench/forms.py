@@ -1,9 +1,9 @@
-"""What planar pushing takes for the limit surface of a base: positive forms of the wrench.
+"""What planar pushing takes for a limit surface: positive forms of the wrench.
 
-As of round pucks (:mod:`puck_tables.wrench.models`) a form q of order 2, an ellipsoid, or 4 has the
-surface at q = 1 and the twist along its gradient; here it has all terms in F_x, F_y and M.  It is
-fitted by least squares of the radial error, g = q^(1/order), over wrenches of all directions; a
-form of order 4 that is not convex is mixed with the square of the ellipsoid until it is.
+A form q of F_x, F_y and M of order 2, an ellipsoid (Howe and Cutkosky 1996), or 4 (Zhou, Paolini,
+Bagnell, Mason 2016) has the surface at q = 1 and the twist along its gradient.  It is fitted by
+least squares of the radial error, g = q^(1/order), over wrenches of all directions; a form of order
+4 that is not convex is mixed with the square of the ellipsoid until it is.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _SLACK = 1e-12  # of the largest curvature: less is rounding
 
 @dataclass(frozen=True, eq=False)
 class WrenchForm:
-    """A form fitted to the limit surface of a base.
+    """A form fitted to a limit surface.
 
     Parameters
     ----------
@@ -101,41 +101,51 @@ class WrenchForm:
         return slip[..., :2], slip[..., 2]
 
 
-def ellipsoid(points: FloatArray, normals: FloatArray, unit: float, length: float) -> WrenchForm:
+def ellipsoid(
+    points: FloatArray, normals: FloatArray, roots: FloatArray, unit: float, length: float
+) -> WrenchForm:
     """The best ellipsoid through points (n, 3) of a surface, whose normals tell how good it is.
+
+    ``roots`` (n,): of what each counts.
 
     Examples
     --------
     >>> rows = np.random.default_rng(1).normal(size=(200, 3))
     >>> rows /= np.linalg.norm(rows, axis=1)[:, None]
-    >>> found = ellipsoid(rows, rows, 3.0, 0.1)
+    >>> found = ellipsoid(rows, rows, np.ones(200), 3.0, 0.1)
     >>> found.order, found.error < 1e-12, found.normal_error < 1e-7
     (2, True, True)
     """
     powers = _powers(2)
-    return _judged(powers, _fit(points, powers), points, normals, unit, length)
+    return _judged(powers, _fit(points, roots, powers), points, normals, unit, length)
 
 
-def quartic(points: FloatArray, normals: FloatArray, unit: float, length: float) -> WrenchForm:
+def quartic(
+    points: FloatArray, normals: FloatArray, roots: FloatArray, unit: float, length: float
+) -> WrenchForm:
     """The best form of order 4 likewise, convex.
 
     Examples
     --------
     >>> rows = np.random.default_rng(1).normal(size=(200, 3))
     >>> rows /= np.linalg.norm(rows, axis=1)[:, None]
-    >>> quartic(rows, rows, 3.0, 0.1).error < 1e-12  # an ellipsoid is one
+    >>> quartic(rows, rows, np.ones(200), 3.0, 0.1).error < 1e-12  # an ellipsoid is one
     True
     """
     powers = _powers(4)
-    best, round_ = _fit(points, powers), _square(_fit(points, _powers(2)), powers)
+    best = _fit(points, roots, powers)
+    round_ = _square(_fit(points, roots, _powers(2)), powers)
     directions = points / np.linalg.norm(points, axis=1)[:, None]
-    low, high = 0.0, 1.0
-    if _is_convex(directions, powers, best):
-        high = 0.0
+    one, other = (_hessians(directions, powers, form) for form in (best, round_))
+
+    def is_convex(share: float) -> bool:
+        curvature = np.linalg.eigvalsh((1.0 - share) * one + share * other)
+        return bool(curvature.min() >= -_SLACK * curvature.max())
+
+    low, high = 0.0, 0.0 if is_convex(0.0) else 1.0
     for _ in range(_HALVES if high > 0.0 else 0):
         share = 0.5 * (low + high)
-        mixed = (1.0 - share) * best + share * round_
-        low, high = (low, share) if _is_convex(directions, powers, mixed) else (share, high)
+        low, high = (low, share) if is_convex(share) else (share, high)
     return _judged(powers, (1.0 - high) * best + high * round_, points, normals, unit, length)
 
 
@@ -183,21 +193,19 @@ def _powers(order: int) -> npt.NDArray[np.int64]:
     )
 
 
-def _fit(points: FloatArray, powers: npt.NDArray[np.int64]) -> FloatArray:
+def _fit(points: FloatArray, roots: FloatArray, powers: npt.NDArray[np.int64]) -> FloatArray:
     """Coefficients of the least squares of 1/g − 1."""
     order, parts = int(powers[0].sum()), monomials(points, powers)
-    found = _least_squares(parts, np.ones(len(points)))
+    found = _least_squares(roots[:, None] * parts, roots)
     for _ in range(_ROUNDS):
         g = np.maximum(parts @ found, 1e-3) ** (1.0 / order)
-        change = parts * (-(g ** -(order + 1.0)) / order)[:, None]
-        found = found - _least_squares(change, 1.0 / g - 1.0)
+        change = parts * (-roots * g ** -(order + 1.0) / order)[:, None]
+        found = found - _least_squares(change, roots * (1.0 / g - 1.0))
     return found
 
 
 def _least_squares(parts: FloatArray, wanted: FloatArray) -> FloatArray:
-    q, r = np.linalg.qr(parts)
-    found: FloatArray = np.linalg.solve(r, q.T @ wanted)
-    return found
+    return np.asarray(np.linalg.solve(parts.T @ parts, parts.T @ wanted))  # rounds make it right
 
 
 def _square(two: FloatArray, powers: npt.NDArray[np.int64]) -> FloatArray:
@@ -210,16 +218,14 @@ def _square(two: FloatArray, powers: npt.NDArray[np.int64]) -> FloatArray:
     return found
 
 
-def _is_convex(
+def _hessians(
     directions: FloatArray, powers: npt.NDArray[np.int64], coefficients: FloatArray
-) -> bool:
-    """Whether a form is convex, in so many directions."""
+) -> FloatArray:
+    """Second derivatives (n, 3, 3) of a form in directions (n, 3)."""
     hessian = np.empty((len(directions), 3, 3))
     for axis in range(3):
-        lower, factors = _along(powers, coefficients, axis)
-        hessian[:, axis] = gradient(directions, lower, factors)
-    curvature = np.linalg.eigvalsh(hessian)
-    return bool(curvature.min() >= -_SLACK * curvature.max())
+        hessian[:, axis] = gradient(directions, *_along(powers, coefficients, axis))
+    return hessian
 
 
 def _judged(

@@ -63,7 +63,7 @@ def wrench(
     rows = np.stack([one.ravel() for one in (vx, vy, turning)]) / size
     slopes = np.empty((size.size, 3, 3)) if jacobian else np.empty((0, 3, 3))
     if puck.shape is None and not (puck.body.law.can_lift and puck.delta <= 1.0):
-        found = _round(puck.body.law, puck.delta, puck.radius, rows, slopes)
+        found = of_round(puck.body.law, puck.delta, puck.radius, rows, slopes)
     else:
         base = puck.shape or Base.disc(puck.radius)
         found = np.empty((3, size.size))
@@ -91,10 +91,10 @@ def wrenches(law: Law, delta: float, phi: FloatArray) -> tuple[FloatArray, Float
     return cosine * rho.parallel, sine * cosine * rho.perpendicular, 0.5 * sine * rho.spin
 
 
-def _round(
+def of_round(
     law: Law, delta: float, radius: float, rows: FloatArray, slopes: FloatArray
 ) -> FloatArray:
-    """Friction over f N of slips (3, n) by the resultants, and if wanted derivatives (n, 3, 3)."""
+    """Friction (3, n) over f N of slips (3, n) by the resultants; derivatives (n or 0, 3, 3)."""
     speed, rim = np.hypot(rows[0], rows[1]), radius * rows[2]
     phi, slip = np.arctan2(rim, speed), np.hypot(speed, rim)
     way = np.where(speed > 0.0, rows[0] + 1j * rows[1], 1.0)

@@ -1,12 +1,11 @@
 """The limit surface: what force and torque friction takes up, over the direction of slip.
 
-With the twist (v, ω) = Q (cos φ, sin φ/r), v along x, a pusher that keeps the slip going gives
-
-    F_x = f N cos φ ρ_∥,   F_y = f N sin φ cos φ ρ_⊥,   M = ½ f N r sin φ ρ_ω.
-
-Turned about the axis of the torque this curve is the surface.  For δ = 0 it is convex, F_y = 0, and
-the twist is its outward normal: of all wrenches inside, the one on it takes the most power
-(Goyal, Ruina, Papadopoulos 1991).  For δ > 0 friction tilts the load, and neither holds exactly.
+With the twist Q (cos φ cos ψ, cos φ sin ψ, sin φ/ℓ), ψ its direction in the axes of the base, ℓ the
+radius of a round puck or the radius of gyration of another base, a pusher that keeps the slip going
+gives the force and torque of :meth:`puck_tables.Puck.wrench`, the other way.  Of a flat body the
+surface is convex, and the twist is its outward normal: of all wrenches inside, the one on it takes
+the most power (Goyal, Ruina, Papadopoulos 1991); a centre of rotation in a foot is a facet.  Where
+friction tilts the load neither holds exactly.
 """
 
 from __future__ import annotations
@@ -20,143 +19,217 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import real
-from puck_tables.contact.laws import Law
 from puck_tables.errors import InputError
+from puck_tables.io.columns import following
 from puck_tables.io.dataset import Dataset, variable
-from puck_tables.wrench.base_surface import BaseSurface, base_surface
-from puck_tables.wrench.friction_force import wrenches
-from puck_tables.wrench.friction_surface import FrictionSurface
-from puck_tables.wrench.models import SurfaceModel, ellipsoid, quartic
+from puck_tables.result import Result
+from puck_tables.wrench.forms import WrenchForm, ellipsoid, quartic
+from puck_tables.wrench.friction_force import of_round, wrench
+from puck_tables.wrench.friction_hold import holds, slip_length, twist
 
 if TYPE_CHECKING:
     from puck_tables.motion.puck_spec import PuckSpec
 
-LEAST, MOST, OF_A_ROUND = 5, 1_000_001, 181  # points of a curve
-MOST_OF_A_BASE, OF_A_BASE = 1001, 31  # slip angles of a surface
-_FINE = 1441  # angles for what does not depend on how many were asked for
-_STEP = 1e-5  # rad, of differences for the normals
-_COLUMNS = ("force_x", "force_y", "torque", "normal_force", "normal_torque")
+LEAST, MOST, OF_A_ROUND = 5, 1_000_001, 181  # slip angles
+MOST_OF_A_BASE, OF_A_BASE = 1001, 31
+# wrenches for models and convexity: slip angles by headings, enough for all products of order 8;
+# directions in which those of a base lie
+_ANGLES, _HEADINGS, _DIRECTIONS = 181, 9, 2000
+_SLACK = 1e-9  # of f m g: so much a convex surface may seem to bend in
+_COLUMNS = ("force_x", "force_y", "torque", "normal_x", "normal_y", "normal_torque")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class LimitSurface(FrictionSurface):
+class LimitSurface(Result):
     """Force and torque that friction takes up, over the direction of slip.
 
     Attributes
     ----------
     puck : Puck
+    heading : array (m,), rad, or None
+        ψ, of the slip in the axes of the base; of a round puck None, its slip is along x.
     slip_angle : array (n,), rad
-        φ = atan2(rω, v), from −π/2 to π/2, for a velocity along x.
-    force_x, force_y, torque : arrays (n,), N, N, N m
+        φ = atan2(ℓω, v), from −π/2 to π/2; ℓ is the radius of a round puck, or the radius of
+        gyration.
+    force_x, force_y, torque : arrays (m, n), of a round puck (n,); N, N, N m
         What a pusher gives that keeps this slip going; friction on the puck is against it.  With
         the mass of the puck, 1 kg where none was given; over ``unit_force`` f m g pure numbers.
-    normal_force, normal_torque : arrays (n,)
-        Outward unit normal of the surface in (|F|, M/r), good to 1e-6 but on singular lines of the
-        pressure law.  For δ = 0 it is the twist, (cos φ, sin φ).
-    ellipsoid, quartic : Model
+    normal_x, normal_y, normal_torque : arrays of the same shape
+        Outward unit normal of the surface in (F_x, F_y, M/ℓ), good to 1e-6 but on singular lines of
+        a pressure law; of a flat body it is the twist.
+    ellipsoid, quartic : WrenchForm
         What planar pushing takes for the surface, fitted to it, with their errors.
     """
 
+    puck: PuckSpec
+    heading: FloatArray | None
     slip_angle: FloatArray
     force_x: FloatArray
     force_y: FloatArray
     torque: FloatArray
-    normal_force: FloatArray = field(repr=False)
+    normal_x: FloatArray = field(repr=False)
+    normal_y: FloatArray = field(repr=False)
     normal_torque: FloatArray = field(repr=False)
 
     picture: ClassVar[str] = "limit_surface"
 
+    def __getattr__(self, name: str) -> FloatArray:
+        """A column that follows from others: ``force``, N."""
+        column: FloatArray = following(self, name)
+        return column
+
     def __repr__(self) -> str:
-        return self._said(f"delta = {self.puck.delta:.6g}")
-
-    @cached_property
-    def _section(self) -> FloatArray:
-        """|F|, M/r over f m g and the normals at many angles, (4, n): the models are its own."""
-        phi = np.linspace(-0.5 * np.pi, 0.5 * np.pi, _FINE)
-        law, delta = self.puck.body.law, self.puck.delta
-        along, across, turning = wrenches(law, delta, phi)
-        return np.stack([np.hypot(along, across), turning, *_normals(law, delta, phi)])
-
-    @cached_property
-    def ellipsoid(self) -> SurfaceModel:
-        """The best ellipsoid (F/a)² + (M/b)² = 1, by least squares of the radial error."""
-        return ellipsoid(self._section, self.unit_force, self.puck.radius)
-
-    @cached_property
-    def quartic(self) -> SurfaceModel:
-        """The best convex polynomial of order 4, A F⁴ + B F² M² + C M⁴ = 1, likewise."""
-        return quartic(self._section, self.unit_force, self.puck.radius)
+        return (
+            f"LimitSurface({self.torque.size} twists, {_named(self.puck)}, up to "
+            f"{float(np.max(self.force)):.6g} N and {float(np.max(self.torque)):.6g} N m)"
+        )
 
     @property
+    def unit_force(self) -> float:
+        """F m g, N: what slides without spin."""
+        return self.puck.mass * self.puck.decel
+
+    @cached_property
+    def _sampled(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Points (n, 3) of it over f m g and ℓ, its normals, and the roots of weights (n,)."""
+        if self.puck.shape is None:
+            phi = np.linspace(-0.5 * np.pi, 0.5 * np.pi, _ANGLES)
+            parts = _of_twists(self.puck, np.zeros(1), phi)[0]
+            scaled = np.arctan2(parts[:, 2] / parts[-1, 2], np.hypot(parts[:, 0], parts[:, 1]))
+            share = np.sqrt(np.gradient(scaled) * len(scaled))  # of the angle that each covers
+            turn = 2.0 * np.pi * np.arange(_HEADINGS) / _HEADINGS
+            c, s, none = np.cos(turn), np.sin(turn), 0.0 * turn
+            about = np.array([[c, s, none], [-s, c, none], [none, none, none + 1.0]])
+            turned = np.einsum("npi,ijk->kpnj", parts.reshape(-1, 2, 3), about)
+            points, normals = turned.swapaxes(0, 1).reshape(2, -1, 3)
+            return points, normals, np.tile(share, _HEADINGS)
+        length = self.puck.inertia_radius
+        z = 1.0 - (2.0 * np.arange(_DIRECTIONS) + 1.0) / _DIRECTIONS
+        around = np.arange(_DIRECTIONS) * math.pi * (3.0 - math.sqrt(5.0))  # Fibonacci's lattice
+        rows = np.stack([*(np.sqrt(1.0 - z * z) * (np.cos(around), np.sin(around))), z], axis=1)
+        torque = length * rows[:, 2]
+        margin = holds(self.puck, rows[:, :2], torque, 0.0).margin / self.unit_force
+        found = twist(self.puck, -rows[:, :2], -torque, 0.0)
+        slip = np.concatenate([found.velocity, found.spin[:, None]], axis=1)
+        return margin[:, None] * rows, _normals(self.puck, slip), np.ones(_DIRECTIONS)
+
+    @cached_property
+    def ellipsoid(self) -> WrenchForm:
+        """The best ellipsoid, by least squares of the radial error."""
+        return ellipsoid(*self._sampled, self.unit_force, slip_length(self.puck))
+
+    @cached_property
+    def quartic(self) -> WrenchForm:
+        """The best convex form of order 4 likewise."""
+        return quartic(*self._sampled, self.unit_force, slip_length(self.puck))
+
+    @cached_property
     def is_convex(self) -> bool:
-        """Whether the surface is convex: its tangent turns one way, but for rounding.
+        """Whether the surface is convex: all of it lies behind each of its tangent planes.
 
         Examples
         --------
         >>> from puck_tables import Puck
-        >>> Puck.similar(delta=0.0).limit_surface().is_convex
+        >>> Puck(base="box:0.2x0.1", friction=0.3).limit_surface(7).is_convex
         True
         """
-        f, m = np.diff(self._section[:2])
-        return bool(np.all(f[:-1] * m[1:] - f[1:] * m[:-1] >= -1e-15))
+        points, normals, _ = self._sampled
+        beyond = points @ normals.T - np.einsum("ni,ni->n", points, normals)
+        return bool(beyond.max() <= _SLACK)
 
     def explain(self) -> str:
         """How it was got, and how well the models fit."""
-        one, two = self.ellipsoid, self.quartic
-        return (
-            f"friction of the law {self.puck.body.law.name}, delta = {self.puck.delta:.6g}; "
-            f"{'convex' if self.is_convex else 'not convex'}\n"
-            f"ellipsoid {one.formula}: off by at most {100.0 * one.error:.2g} % of the wrench, "
-            f"normals by {math.degrees(one.normal_error):.2g} deg\n"
-            f"quartic {two.formula}: off by at most {100.0 * two.error:.2g} %, normals by "
-            f"{math.degrees(two.normal_error):.2g} deg"
-        )
+        lines = [
+            f"friction under {_named(self.puck)}; {'convex' if self.is_convex else 'not convex'}"
+        ]
+        for name, form in (("ellipsoid", self.ellipsoid), ("quartic", self.quartic)):
+            lines.append(
+                f"{name}: off by at most {100.0 * form.error:.2g} % of the wrench, normals by "
+                f"{math.degrees(form.normal_error):.2g} deg"
+            )
+        return "\n".join(lines)
 
     def dataset(self) -> Dataset:
-        """Forces, torques and normals over the slip angle."""
-        dims = ("slip_angle",)
+        """Forces, torques and normals over the twist."""
+        dims = ("slip_angle",) if self.heading is None else ("heading", "slip_angle")
         columns = {name: variable(name, getattr(self, name), dims) for name in _COLUMNS}
-        axes = {"slip_angle": variable("slip_angle", self.slip_angle, dims)}
+        axes = {name: variable(name, getattr(self, name), (name,)) for name in dims}
         return Dataset(axes, columns, {
             "title": "Limit surface of a puck", **self.puck.described(),
             "unit_force": self.unit_force,
-            "ellipsoid": list(self.ellipsoid.coefficients),
+            "ellipsoid": self.ellipsoid.coefficients.tolist(),
             "ellipsoid_error": self.ellipsoid.error,
-            "quartic": list(self.quartic.coefficients), "quartic_error": self.quartic.error,
+            "quartic": self.quartic.coefficients.tolist(), "quartic_error": self.quartic.error,
         })  # fmt: skip
 
 
-def limit_surface(puck: PuckSpec, count: int | None) -> LimitSurface | BaseSurface:
+def limit_surface(puck: PuckSpec, count: int | None) -> LimitSurface:
     """The limit surface of a puck, as :meth:`puck_tables.Puck.limit_surface` has it."""
+    is_round = puck.shape is None
     if count is None:
-        count = OF_A_ROUND if puck.shape is None else OF_A_BASE
-    number, most = real("n", count, "points"), MOST if puck.shape is None else MOST_OF_A_BASE
+        count = OF_A_ROUND if is_round else OF_A_BASE
+    number, most = real("n", count, "points"), MOST if is_round else MOST_OF_A_BASE
     if not (number == int(number) and LEAST <= number <= most):
         raise InputError(f"n must be a whole number from {LEAST} to {most}, got {count}")
     if puck.friction == 0.0:
         raise InputError("a puck with friction = 0 has no limit surface: give friction > 0")
-    if puck.shape is not None:
-        return base_surface(puck, int(number))
     phi = np.linspace(-0.5 * np.pi, 0.5 * np.pi, int(number))
-    law, delta, unit = puck.body.law, puck.delta, puck.mass * puck.decel
-    along, across, turning = wrenches(law, delta, phi)
-    normal = _normals(law, delta, phi)
-    return LimitSurface(
-        puck, phi, unit * along, unit * across, unit * puck.radius * turning, normal[0], normal[1]
+    psi = np.zeros(1) if is_round else np.linspace(-np.pi, np.pi, 2 * int(number) - 1)
+    unit = puck.mass * puck.decel
+    parts = _of_twists(puck, psi, phi) * [unit, unit, unit * slip_length(puck), 1.0, 1.0, 1.0]
+    columns = np.moveaxis(parts[0] if is_round else parts, -1, 0)
+    return LimitSurface(puck, None if is_round else psi, phi, *columns)
+
+
+def _of_twists(puck: PuckSpec, psi: FloatArray, phi: FloatArray) -> FloatArray:
+    """Forces over f m g, torques over ℓ too, and normals of twists, (m, n, 6)."""
+    cosine = np.where(np.abs(phi) == 0.5 * np.pi, 0.0, np.cos(phi))
+    directions = np.stack([np.cos(psi), np.sin(psi)], axis=-1)
+    velocity = cosine[None, :, None] * directions[:, None]
+    spin = np.broadcast_to(np.sin(phi) / slip_length(puck), velocity.shape[:2])
+    slip = np.concatenate([velocity, spin[..., None]], axis=-1)
+    back, _ = _friction(puck, slip, False)
+    return np.concatenate([-back + 0.0, _normals(puck, slip)], axis=-1)
+
+
+def _friction(puck: PuckSpec, slip: FloatArray, slopes: bool) -> tuple[FloatArray, FloatArray]:
+    """Friction over f m g and ℓ of slips (…, 3), and its derivatives (…, 3, 3) by (v, ℓω)."""
+    scale = np.array([1.0, 1.0, slip_length(puck)])
+    if puck.shape is None:
+        rows, out = slip.reshape(-1, 3).T, np.empty((slip.size // 3 if slopes else 0, 3, 3))
+        force = of_round(puck.body.law, puck.delta, puck.radius, rows, out).T
+        found, change = force.reshape(slip.shape), out.reshape(-1, *slip.shape[1:], 3)
+    else:
+        unit = puck.mass * puck.decel
+        whole = wrench(puck, slip[..., :2], slip[..., 2], 0.0, slopes)
+        found = np.concatenate([whole.force, whole.torque[..., None]], axis=-1) / unit
+        change = np.empty(0) if whole.jacobian is None else whole.jacobian / unit
+    return found / scale, change / scale / scale[:, None] if slopes else change
+
+
+def _normals(puck: PuckSpec, velocities: FloatArray) -> FloatArray:
+    """Outward unit normals (…, 3), in (F_x, F_y, M/ℓ), where friction is that of twists (…, 3).
+
+    Friction does not change along the twist t, and by J dt it moves in the surface; so the
+    cofactors of J, scaled, are n ⊗ t.
+    """
+    slip = velocities * [1.0, 1.0, slip_length(puck)]
+    slip = slip / np.linalg.norm(slip, axis=-1)[..., None]
+    if puck.lever == 0.0:
+        twists: FloatArray = slip
+        return twists
+    back, slopes = _friction(puck, velocities, True)
+    columns = np.moveaxis(slopes, -1, 0)
+    normal = sum(
+        slip[..., i, None] * np.cross(columns[(i + 1) % 3], columns[(i + 2) % 3]) for i in range(3)
     )
+    outward = -np.sign(np.einsum("...i,...i->...", back, normal))
+    unit: FloatArray = normal * (outward / np.linalg.norm(normal, axis=-1))[..., None]
+    return unit
 
 
-def _normals(law: Law, delta: float, phi: FloatArray) -> FloatArray:
-    """Outward unit normals of the curve (|F|, M/r), array (2, n)."""
-    end = 0.5 * np.pi
-    inside = np.clip(phi, -end + _STEP, end - _STEP)
-
-    def section_at(angle: FloatArray) -> FloatArray:
-        along, across, turning = wrenches(law, delta, np.clip(angle, -end, end))
-        return np.stack([np.hypot(along, across), turning])
-
-    tangent = section_at(inside + _STEP) - section_at(inside - _STEP)
-    normal: FloatArray = np.stack([tangent[1], -tangent[0]]) / np.hypot(*tangent)
-    normal[:, np.abs(phi) == end] = 0.0  # there F vanishes like cos φ, and M is level
-    normal[1] = np.where(np.abs(phi) == end, np.sign(phi), normal[1])
-    return normal
+def _named(puck: PuckSpec) -> str:
+    if puck.shape is None:
+        return f"the law {puck.body.law.name}, delta = {puck.delta:.6g}"
+    tall = f", f h/2 = {puck.lever:.6g} m" if puck.lever else ", flat"
+    return f"the base {puck.shape.name}{tall}"
