@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -188,17 +187,15 @@ def test_bodies_stop_as_exactly_as_asked(name: str):
     ours = [one for one in asked if not one.outsider]
     errors = {one.setting: worst(one) for one in ours}
     assert all(error <= float(told.partition("=")[2]) for told, error in errors.items()), errors
-    assert len(errors) >= 4
+    assert len(errors) >= 2
 
 
-def test_patches_tend_to_the_sums_over_a_base():
-    """Finer patches are nearer, and a few points are as wrong as physics engines are."""
+def test_scripts_over_patches_err_by_thousandths_and_a_few_points_by_tenths():
+    """Beyond some hundred patches what is left is the tolerance that scipy has by itself."""
     asked = [one for one in body_methods.contenders() if one.question.name == "box"]
-    *patches, few = [
-        worst(replace(one, question=one.question.some(slice(2)))) for one in asked if one.outsider
-    ]
-    assert patches[0] > patches[1] > patches[2] and patches[2] < 2e-3
-    assert few > 0.02
+    *patches, few = [worst(one) for one in asked if one.outsider]
+    assert all(1e-4 < error < 1e-2 for error in patches) and patches[1] < 0.5 * patches[0]
+    assert few > 0.1
 
 
 def test_models_of_the_literature():
