@@ -112,6 +112,25 @@ def test_slopes_are_those_of_motions_nearby():
     assert kept.max() < 1e-3, dict(zip(problem.names, kept, strict=True))
 
 
+def test_a_disc_as_a_base_is_a_round_puck():
+    """The forecast of a film, and what is found of it."""
+    numbers, launch = {"friction": 0.2, "height": 0.02}, pt.Launch((1.2, 0.3), spin=20.0)
+    pucks = pt.Puck(base="disc:0.04", **numbers), pt.Puck(0.04, **numbers)
+    on_base, plain = (pt.fisher(puck, launch, pt.Camera(120.0, *NOISE)) for puck in pucks)
+    assert on_base.names == plain.names
+    np.testing.assert_allclose(on_base.errors, plain.errors, rtol=1e-3)
+    with pytest.raises(pt.InputError, match="give angle_noise"):
+        pt.fisher(pucks[0], launch, pt.Camera(120.0, NOISE[0]))
+    rng, t = np.random.default_rng(38), np.arange(50) / 120.0
+    true = pucks[1].states(launch.velocity, launch.spin, t)
+    place = np.stack([true.x, true.y], axis=1) + NOISE[0] * rng.normal(size=(50, 2))
+    track = pt.Track(t, place, true.orientation + NOISE[1] * rng.normal(size=50), "disc")
+    one, two = (pt.fit(track, replace(puck, height=0.0)) for puck in pucks)
+    for name in ("friction", "delta"):
+        assert abs(one[name].value - two[name].value) < 0.01 * two[name].error
+        assert one[name].error == pytest.approx(two[name].error, rel=0.01)
+
+
 def test_what_is_of_round_pucks_is_refused():
     track, puck, _ = film(np.random.default_rng([38, 3]), "box:0.2x0.1")
     flat = replace(puck, height=0.0)
