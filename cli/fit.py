@@ -14,6 +14,7 @@ from puck_tables.cli.options import (
     RESULTS,
     TIME,
     Outputs,
+    base_option,
     body_options,
     outputs,
     packed,
@@ -105,6 +106,7 @@ def _held_out(text: str, option: str) -> float | list[str]:
     click.option("--gravity", type=NumberParam("m/s^2"),
                  help="Gravity in m/s^2.  [default: 9.80665]"),
     *body_options(),
+    base_option,
 )  # fmt: skip
 @packed(
     "wanted", dict,
@@ -180,6 +182,7 @@ def fit(
     puck fit run.csv --fps 120 --unit px --scale 0.5mm --radius 0.0381 --height 0.0254
     puck fit one.csv two.csv --radius 0.0381 --laws uniform,hertz,ring --plot fit.png
     puck fit slide.csv --unit cm --report page.html
+    puck fit block.csv --base box:20cmx10cm --height 4cm
     puck fit run.csv --radius 0.0381 --prior friction=0.2:0.05 --hold-out 0.3 -o fit.json
     puck simulate --fit fit.json
     """  # noqa: D301 - click reads the backspace
@@ -192,9 +195,11 @@ def fit(
     from puck_tables.puck import Puck
 
     tracks = read_all(files, how)
-    if known["radius"] is None:
+    if known["radius"] is None and known["base"] is None:
         if not all(one.angle is None and one.along_line for one in tracks):
-            raise InputError("give the radius of the puck (--radius 38mm)")
+            raise InputError(
+                "give the radius of the puck (--radius 38mm), or its base (--base box:20cmx10cm)"
+            )
         known["radius"] = _ANY_RADIUS
         if wanted["free"] is None and known["height"] is None:
             wanted["free"] = [] if known["friction"] is not None else ["friction"]

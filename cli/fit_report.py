@@ -24,7 +24,7 @@ def report(result: Fit) -> str:
     lines = [
         _plainly(result), "",
         _lines({name: _shown(one) for name, one in numbers.items() if one.how != "known"}),
-        _lines({"taken as known": ", ".join(known), "pressure": result.puck.body.law.name}),
+        _lines({"taken as known": ", ".join(known), **dict([result.contact])}),
         *_correlations(result),
     ]  # fmt: skip
     for launch in result.launches:

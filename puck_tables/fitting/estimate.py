@@ -194,7 +194,10 @@ def _foreseen(slopes: FloatArray, kept: npt.NDArray[np.bool_]) -> FloatArray:
         scaled = slopes / size
         covariance = np.linalg.pinv(scaled[kept].T @ scaled[kept], hermitian=True)
         out = scaled[~kept]
-        result[~kept] = np.sqrt(1.0 + np.einsum("nk,kl,nl->n", out, covariance, out))
+        result[~kept] = np.sqrt(
+            1.0
+            + np.maximum(np.einsum("nk,kl,nl->n", out, covariance, out), 0.0)  # but for rounding
+        )
     return result
 
 

@@ -117,6 +117,11 @@ def puck_and_launch(
         raise InputError(told)
     try:
         launches = {str(one["track"]): one for one in data["launches"]}
+        if "base" in data["puck"]:
+            raise InputError(
+                f"{path}: this puck stands on a base, and at an angle: make a scene of it, with "
+                "puck.base and launch.orientation"
+            )
         puck = Puck(**{name: data["puck"][name] for name in _PUCK})
         drags = {
             name: real(name, data["numbers"][name]["value"], "")

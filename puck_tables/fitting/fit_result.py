@@ -27,7 +27,14 @@ from puck_tables.fitting.numbers import EstimatedLaunch, Number
 from puck_tables.fitting.observations import Observations
 from puck_tables.fitting.parameters import INTEGRATED
 from puck_tables.fitting.problem import Known
-from puck_tables.fitting.residuals import JITTERY, NO_PATTERN, SideForces, lengthways, misfits
+from puck_tables.fitting.residuals import (
+    JITTERY,
+    NO_PATTERN,
+    SideForces,
+    computed,
+    lengthways,
+    misfits,
+)
 from puck_tables.io.dataset import Dataset
 from puck_tables.io.formats import FORMATS, ending_of
 from puck_tables.puck import Puck
@@ -112,12 +119,26 @@ class Fit(Result):
         pressure: Any = self.given.body.law
         if self.numbers.get("inner") and self.numbers["inner"].how == "found":
             pressure = f"annulus:{values['inner']!r}"
+        base = self.estimate.problem.spec.base
         with unquestioned():  # what nobody would believe of it the remarks say
+            if base is not None:
+                return Puck(
+                    base=base, height=values["height"], friction=values["friction"],
+                    gravity=values["gravity"], gyration=values["gyration"] * base.reach,
+                    mass=self.given.mass,
+                )  # fmt: skip
             return Puck(
                 radius=values["radius"], height=values["height"], friction=values["friction"],
                 gravity=values["gravity"], gyration=values["gyration"], mass=self.given.mass,
                 pressure=pressure,
             )  # fmt: skip
+
+    @property
+    def contact(self) -> tuple[str, str]:
+        """How the puck touches the floor: what is said of it, and that."""
+        if (base := self.estimate.problem.spec.base) is not None:
+            return "base", f"{base.name}, whose reach is the radius r"
+        return "pressure", self.puck.body.law.name
 
     @property
     def drag(self) -> float:
@@ -166,6 +187,11 @@ class Fit(Result):
                     f"the puck was found with {name} of {number.value:.3g} {number.unit}, which a "
                     "free puck has not: put it into a Scene"
                 )
+        if self.estimate.problem.spec.base is not None:
+            raise InputError(
+                "a puck on a base starts at an angle: put it into a Scene, with the launch's angle "
+                "as its orientation"
+            )
         return self.puck.simulate(launch.velocity, launch.spin, **how)
 
     def report(self, path: str | Path, overwrite: bool = False) -> None:
@@ -232,7 +258,8 @@ class Fit(Result):
             said.append(more)
         said += [text for film in problem.films for text in rounded(film)]
         wider = [self.certainty.ratio(k) for k in range(self.estimate.x.size)]
-        if self.certainty.widened and max(wider) > _WIDER and not self.complaints:
+        told = bool(self.complaints) or computed(self.estimate)
+        if self.certainty.widened and max(wider) > _WIDER and not told:
             name = problem.names[int(np.argmax(wider))][1]
             said.append(
                 "What is left may be no noise, though that is hardly seen: standard errors are "

@@ -13,9 +13,11 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from puck_tables._core.real import instance
+from puck_tables.contact.base import Base
 from puck_tables.contact.laws import law_of
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
+from puck_tables.fitting.base_motions import base_motions_of
 from puck_tables.fitting.forward_model import Moving, Rims
 from puck_tables.fitting.parameters import (
     ALL,
@@ -41,7 +43,7 @@ from puck_tables.fitting.parameters import (
     refuse_unknown,
 )
 from puck_tables.fitting.speed_motion import LAWS, Drags, SpeedFriction, law_named
-from puck_tables.fitting.unit_motions import unit_motions_of
+from puck_tables.fitting.unit_motions import UnitMotions, unit_motions_of
 from puck_tables.puck import Puck
 
 _KIND = (*OWN_CURVE, "drag", *INTEGRATED)  # change the curve itself
@@ -69,6 +71,7 @@ class FitSpec:
     speeds : slip speeds (m/s) at which friction coefficients are found, friction_0 and so on
     between : cubic or linear, f between these speeds
     law : a law over slip speed by its name, '' for none
+    base : of a puck that is not round; its reach is then the radius of ``puck``
 
     Raises
     ------
@@ -96,6 +99,7 @@ class FitSpec:
     speeds: tuple[float, ...] = ()
     between: str = "cubic"
     law: str = ""
+    base: Base | None = None
 
     @classmethod
     def of(
@@ -110,6 +114,7 @@ class FitSpec:
                 f"the radius of a puck on a film is from {SMALLEST:g} to {LARGEST:g} m, got "
                 f"{puck.radius:g}: say it in m"
             )
+        base, puck = puck.shape, _round(puck)
         known = {name: in_range(name, value) for name, value in fixed.items()}
         freed: tuple[str, ...] = ()
         if free is None:
@@ -159,6 +164,8 @@ class FitSpec:
         for one, other, since in _CLASHES:
             if {one, other} <= {*wanted, *known}:
                 raise InputError(f"{one} and {other} say the same{since}: leave out one of them")
+        if base is not None:
+            _refuse_for_base({*wanted, *known}, impacts)
         if "inner" in (*wanted, *known) and not _is_annulus(puck):
             raise InputError(
                 "inner is the inner radius of an annulus: give the puck the pressure 'annulus:0.8'"
@@ -166,7 +173,7 @@ class FitSpec:
         return cls(
             puck, wanted, known, {n: prior_of(n, v) for n, v in priors.items()},
             {n: bounds_of(n, v) for n, v in bounds.items()},
-            {n: in_range(n, v) for n, v in start.items()}, freed,
+            {n: in_range(n, v) for n, v in start.items()}, freed, base=base,
         )  # fmt: skip
 
     def __post_init__(self) -> None:
@@ -298,7 +305,9 @@ class FitSpec:
             )
 
     def _refuse_pressure(self, what: str) -> None:
-        """Refuse pressure under which no such motion is integrated."""
+        """Refuse pressure, or a base, under which no such motion is integrated."""
+        if self.base is not None:
+            raise InputError(f"{what} found of round pucks alone, not of base {self.base.name}")
         if self.puck.body.law.name != "uniform" or "inner" in (*self.free, *self.fixed):
             raise InputError(
                 f"{what} found of uniform pressure alone, not of {self.puck.body.law.name}"
@@ -317,7 +326,7 @@ class FitSpec:
         pressure: Any = self.puck.body.law
         if "inner" in result or "inner" in self.fixed:
             pressure = f"annulus:{numbers['inner']!r}"
-        motions = unit_motions_of(pressure, numbers["gyration"], tall and not self.integrated)
+        motions = self._motions(pressure, numbers["gyration"], tall)
         by_speed = None
         if self.speeds or self.integrated:
             g = numbers["gravity"]
@@ -360,11 +369,15 @@ class FitSpec:
 
     def highest(self, tall: bool) -> float:
         """The largest δ of which motions are known, of an annulus that is free as of the puck's."""
-        tall = tall and not self.integrated
-        pressure = self.puck.body.law
+        pressure: Any = self.puck.body.law
         if "inner" in self.fixed:
             pressure = law_of(f"annulus:{self.fixed['inner']!r}")
-        return unit_motions_of(pressure, self.known()["gyration"], tall).highest
+        return self._motions(pressure, self.known()["gyration"], tall).highest
+
+    def _motions(self, pressure: Any, gyration: float, tall: bool) -> UnitMotions:
+        if self.base is not None:
+            return base_motions_of(self.base, gyration)
+        return unit_motions_of(pressure, gyration, tall and not self.integrated)
 
     def steepest(self, name: str) -> float:
         """The largest friction, or J, of a puck of known height and radius: 2fh/r is its δ."""
@@ -394,6 +407,26 @@ class FitSpec:
         if name in ("height", "radius"):
             return self.puck.radius
         return PUCK[name].plausible
+
+
+def _round(puck: Puck) -> Puck:
+    """A round puck that reaches as far, whose numbers stand for those of a puck on a base."""
+    if puck.shape is None:
+        return puck
+    reach = puck.shape.reach
+    return Puck(
+        reach, height=puck.height, friction=puck.friction, mass=puck.mass, gravity=puck.gravity,
+        gyration=puck.gyration / reach,
+    )  # fmt: skip
+
+
+def _refuse_for_base(named: Collection[str], impacts: bool) -> None:
+    """Refuse what is of round pucks alone."""
+    if impacts:
+        raise InputError("impacts are fitted of round pucks: cut the film before the first")
+    for name in ("radius", "drag", "inner", *INTEGRATED):
+        if name in named:
+            raise InputError(f"{name} is found, or held, of round pucks: leave it out with a base")
 
 
 def _is_annulus(puck: Puck) -> bool:

@@ -27,6 +27,7 @@ from puck_tables.fitting.inputs import (
     checked_rows,
     checked_walls,
     observations_of,
+    refuse_for_base,
     refuse_opening,
     refuse_tipping,
 )
@@ -82,7 +83,10 @@ def fit(
         either end before or after something touches the puck are left out, if they are the smaller
         part: velocity or acceleration jump there, or it gets faster.
     puck : Puck
-        What is known of it: its radius, and whatever ``free`` does not name.
+        What is known of it: its radius, and whatever ``free`` does not name.  On a base that is
+        not round the angles of the tracks are those of its x axis; f and the height are then found
+        (δ = 2fh/r and the gyration with its reach for r), without drags, laws and impacts, and the
+        spin is taken as less than half a turn a frame.
     free : names, optional
         What is found besides the launches: friction or decel (f g), delta or height
         (δ = 2fh/r), radius, gravity, gyration, inner (radius of an annulus), drag (1/s, of speed
@@ -167,6 +171,8 @@ def fit(
         spec = spec.with_law(law)
     inputs = Inputs.of(spec, noise, jitter, slip_speeds, between, impacts, lines, hold_out)
     films = observations_of(tracks, since, until, keep_all, checked_rows(rows), puck.radius)
+    if spec.base is not None:
+        refuse_for_base(films, laws)
     observed = _observe(films, inputs)
     variants = variants_of(spec.alone(), laws)
     steps = 1 + len(variants) + (inputs.hold_out is not None)
@@ -307,7 +313,7 @@ def _reported(
         not_met=not_met(impacts, best.problem, inputs.lines) if inputs.impacts else (),
         forces=judged.forces, uncut=observed.uncut,
     )  # fmt: skip
-    if result.complaints:
+    if result.complaints and inputs.spec.base is None:  # other readings are of round pucks
         said = misfit(estimates.slides, observed.problem, known, judged.forces, bool(inputs.speeds))
         result = replace(result, misfit=said)
     return result

@@ -167,6 +167,7 @@ def fisher(
     Parameters
     ----------
     puck : Puck
+        On a base that is not round its x axis points along x at the launch.
     launch : :class:`puck_tables.Launch`, or anything with ``velocity`` (m/s) and ``spin`` (rad/s)
     camera : Camera
     free : names of what would be found of the puck, as :func:`fit` takes them
@@ -224,6 +225,10 @@ def _forecast_estimate(
 ) -> tuple[Estimate, Certainty]:
     """What would be found of a film of a launch without noise, and how well it is told."""
     spec = FitSpec.of(puck, free, {}, {}, {}, {})
+    if spec.base is not None and camera.angle_noise is None:
+        raise InputError(
+            "a film of a puck on a base tells something by its angles: give angle_noise"
+        )
     slip = math.hypot(*velocity, puck.radius * spin)
     if not 0.0 < slip <= _FASTEST:
         raise InputError(
@@ -232,8 +237,8 @@ def _forecast_estimate(
         )
     film = camera.film(float(puck.stop(velocity, spin).stop_time))
     noise = camera.place_noise, camera.angle_noise or 1.0
-    problem = Problem(spec, (film,), noise, tall=puck.delta > 1.0)
-    numbers = {**spec.known(), "decel": puck.decel, "delta": puck.delta}
+    problem = Problem(spec, (film,), noise, tall=spec.puck.delta > 1.0)
+    numbers = {**spec.known(), "decel": puck.decel, "delta": spec.puck.delta}
     found = {name: numbers[name] for name in spec.free}
     x = problem.unknowns(found, np.array([[0.0, 0.0, *velocity, spin, 0.0]]))
     rows, slopes = problem.residuals_and_jacobian(x)

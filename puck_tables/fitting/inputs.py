@@ -223,6 +223,18 @@ def checked_speeds(raw: Any, between: Any) -> tuple[float, ...]:
     return speeds
 
 
+def refuse_for_base(films: Sequence[Observations], laws: Any) -> None:
+    """Refuse what tells too little of a body on a base, how it stands to its velocity above all."""
+    for film in films:
+        if film.angle is None:
+            raise InputError(
+                f"{film.name} has no angles: a body on a base slides as it stands to its velocity; "
+                "give the angle of its x axis (two marks will do), or the radius of a round puck"
+            )
+    if laws:
+        raise InputError("laws are compared of round pucks: leave them out with a base")
+
+
 def refuse_opening(result: Estimate) -> None:
     """Refuse a puck so tall, for the largest friction that was found, that its base opens."""
     problem = result.problem

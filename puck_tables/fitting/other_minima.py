@@ -80,7 +80,7 @@ def other_minima(
     apart = not problem.impact_specs
     signed = marked or not apart  # a wall tells a motion from its mirror image, as angles do
     single = len(problem.films) == 1
-    if problem.spec.speeds or problem.spec.integrated:
+    if problem.spec.speeds or problem.spec.integrated or problem.spec.base is not None:
         return ()
     starts = list(result.minima)
     if not starts and apart and single:

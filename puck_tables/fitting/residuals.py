@@ -95,8 +95,7 @@ def misfits(
     ``explained``: the probability by chance of what a slope, drag or air would explain.
     """
     told = []
-    # smaller residuals are the errors of what is computed
-    seen = result.problem.noise[0] > _COMPUTED * result.problem.size
+    seen = not computed(result)
     excess = excess_of(result, smooth, _SELDOM)
     given = any(known[:2])
     if seen and not given and excess > NOISY:
@@ -110,6 +109,11 @@ def misfits(
             f"{by_chance:.1g})"
         )
     return tuple(told)
+
+
+def computed(result: Estimate) -> bool:
+    """Whether residuals are so small that they are the errors of what is computed."""
+    return not result.problem.noise[0] > _COMPUTED * result.problem.size
 
 
 def hidden(result: Estimate) -> bool:

@@ -208,18 +208,28 @@ class _Along:
 
         ``change`` (7, m): of the slide; ``row`` (n,): how far down the picture the frames show it.
         """
-        states, slopes, differ = states_and_slopes(self._moving, slide.launch, times, self._nearby)
-        slopes = slopes[:, rows].swapaxes(0, 1)
+        states, every, differ = states_and_slopes(self._moving, slide.launch, times, self._nearby)
+        slopes = every[:, rows].swapaxes(0, 1)
         by = np.zeros(change.shape)
         by[[VX, VY, SPIN]], by[TIME] = change[3:6], -change[0]
         by[:, : self._scales.shape[1]] += self._scales
         out: FloatArray = (slopes.reshape(-1, 7) @ by).reshape(*slopes.shape[:2], -1)
         out[PLACE] += change[[1, 2, 6], None]
+        if self._moving.motions.angle is not None:
+            out += _turned(slide.launch, states, every)[rows, :, None] * change[6]
         for (k, part), difference in zip(self._parts, differ, strict=True):
             out[:, :, k] += part * difference[rows]
         if row is not None and (-1, "readout") in self._problem.spots:
             out[:, :, self._problem.spots[-1, "readout"]] += slopes[:, :, TIME] * row
         return states, out, slopes[:, :, TIME]
+
+
+def _turned(launch: FloatArray, states: FloatArray, slopes: FloatArray) -> FloatArray:
+    """How states (6, n) change with the angle at which a body that is not round is launched."""
+    out: FloatArray = -slopes[:, :, [VX, VY]] @ np.array([-launch[3], launch[2]])
+    out[:, [0, 1]] += np.stack([launch[1] - states[1], states[0] - launch[0]], axis=1)
+    out[:, [3, 4]] += np.stack([-states[4], states[3]], axis=1)
+    return out.T.copy()
 
 
 def _through(

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
+from typing import Self
 
 import numpy as np
 
@@ -40,9 +41,17 @@ _BY_DELTA = 4  # of the derivatives of unit states
 
 
 class UnitMotions:
-    """Motions of pucks of one kind; ``highest``: the largest δ for which they are known."""
+    """Motions of pucks of one kind; ``highest``: the largest δ for which they are known.
+
+    ``angle``: at which a body stands at the launch, rad; None of round ones, which look alike.
+    """
 
     highest: float
+    angle: float | None = None
+
+    def facing(self, angle: float) -> Self:
+        """The same of a body that stands at an angle (rad) at the launch."""
+        return self
 
     def own(self, delta: float, cosine: float, sine: float, tau: FloatArray) -> FloatArray:
         """States with Q = J = r = 1 and their derivatives, (n, 6, 6), as of ``unit_states``."""
@@ -96,7 +105,7 @@ class PlainMotions(UnitMotions):
         which = np.repeat(np.arange(len(times)), times.shape[1])
         rows = looked_up(table, looked_up_launches(table, launches), which, times.ravel())
         headings = directions(launches[0], launches[1])[:, None]
-        return _cartesian(rows.reshape(STATE_ROWS, *times.shape), headings)
+        return cartesian(rows.reshape(STATE_ROWS, *times.shape), headings)
 
     def states_and_slopes(
         self, launch: FloatArray, times: FloatArray
@@ -106,7 +115,7 @@ class PlainMotions(UnitMotions):
         pucks = looked_up_launches(table, launch[:, None])
         rows, slopes = looked_up(table, pucks, one, times), np.empty((times.size, 6, 7))
         fill_state_slopes(table, pucks, one, times, rows, slopes)
-        return _cartesian(rows, directions(launch[:1], launch[1:2])), slopes
+        return cartesian(rows, directions(launch[:1], launch[1:2])), slopes
 
 
 class LawMotions(UnitMotions):
@@ -208,7 +217,7 @@ def unit_motions_of(pressure: str | Law, gyration: float, tall: bool = False) ->
     return LawMotions(law, gyration)
 
 
-def _cartesian(rows: FloatArray, headings: FloatArray | float) -> FloatArray:
+def cartesian(rows: FloatArray, headings: FloatArray | float) -> FloatArray:
     """States (6, …) with vx and vy from those with speed and heading."""
     heading, speed = rows[HEADING] + headings, rows[SPEED]
     return np.stack([

@@ -167,7 +167,7 @@ def slide(
     base: FloatArray, gyration: float, turning: float, local: float, y: FloatArray,
     work: FloatArray, times: FloatArray, states: FloatArray,
 ) -> tuple[int, int, float, float]:  # fmt: skip
-    """From a launch to the stop.
+    """From a launch to the stop; where moments are asked for, not beyond the step over the last.
 
     Parameters
     ----------
@@ -175,7 +175,8 @@ def slide(
     gyration : k
     turning : Q₀²/(J k)
     local : the error of a step
-    y : array (9,): the launch, of q = 1; then the stop, with velocities just before it
+    y : array (9,): the launch, of q = 1; then the stop, with velocities just before it, or the end
+        of the last step
     work : array (ROWS, 9), work space
     times, states : moments (n,), none before the one before it, and room for states there, (n, 6)
 
@@ -205,6 +206,8 @@ def slide(
             _rates(base, gyration, turning, work, 0, y[VX], y[VY], y[RIM], y[TURN])
             lost = 0.5 * (1.0 - work[0, T] * work[0, T])
             residual = max(residual, 2.0 * abs(lost - y[WORK]))
+            if 0 < times.size == n:
+                return STOPPED, steps, residual, 1.0
         elif not h > _SHORTEST_STEP:
             return STEP_LIMIT, steps, residual, 1.0
         h = min(_LONGEST_STEP, h * times_as_long(error, local, 0.125, 0.2))

@@ -68,8 +68,8 @@ def fill_slides(
 
     ``base``: as :func:`puck_tables.kernels.base_friction.packed` has it; ``moments`` (m,): times in
     Q₀/J, those of launch i from ``ends[i]`` to ``ends[i + 1]``, in order; into ``out``
-    (OUT_ROWS, n), ``states`` (m, 6) as :mod:`puck_tables.motion.state` has those of a puck, and
-    ``status`` (n,).
+    (OUT_ROWS, n) (of the stop, but of a launch with moments), ``states`` (m, 6) as
+    :mod:`puck_tables.motion.state` has those of a puck, and ``status`` (n,).
     One launch never influences another, so any cutting into chunks gives the same bits.
     """
     patience(A_MOTION * launches.shape[1])

@@ -130,13 +130,12 @@ def _assumed(result: Fit) -> str:
         f"{_words(name)}: {_written(number)}" for name, number in result.numbers.items()
         if number.how == "known"
     ]  # fmt: skip
-    law = result.puck.body.law.name
     said = [
         "The table is level, hard and alike everywhere, and only friction (and what was found "
         "beside it) slows the puck.",
         "Friction does not depend on how hard a point is pressed; its coefficient is the same for "
         "all speeds unless a law was found.",
-        f"The base is pressed to the floor by the law '{law}'.",
+        f"How it touches the floor: {': '.join(result.contact)}.",
         *(f"Known, not found: {one}." for one in known),
         *result.remarks,
     ]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from puck_tables.plot import run_figure as picture
+from puck_tables.plot import run_figure
 from puck_tables.plot.style import (
     BLUE,
     COLORS,
@@ -78,7 +78,7 @@ def _tame(panel: Axes, epsilon: np.ndarray) -> None:
 
 def draw_on(axes: Axes, answer: Answer) -> None:
     """The plane to scale: floor and walls, the pucks, and their ways."""
-    picture.draw_on(axes, answer.run)
+    run_figure.draw_on(axes, answer.run)
 
 
 def _draw_path(axes: Axes, answer: Answer, whole: Answer) -> None:

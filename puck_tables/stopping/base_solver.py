@@ -59,11 +59,6 @@ class BaseSolver:
         """What determines the bits besides the launches."""
         return {"by": self.method, "base": self._base, "local": self.local}
 
-    def named(self, out: FloatArray) -> dict[str, FloatArray]:
-        """Those of the outputs (6, n) that there are, by their names."""
-        found = dict(zip(OUTPUTS, out, strict=True))
-        return {name: found[name] for name in self.outputs}
-
     def first(self, launches: Launches, threads: int | None) -> First:
         """All of the outputs of checked launches."""
         values, status = self.all(launches.matrix, threads)

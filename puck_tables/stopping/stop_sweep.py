@@ -13,13 +13,11 @@ from puck_tables.bulk.finish import Doing, finish
 from puck_tables.bulk.spreads import checked_samples
 from puck_tables.errors import InputError
 from puck_tables.result import Result
-from puck_tables.stopping.base_work import BaseStopWork
 from puck_tables.stopping.population import COLUMN, Population, drawn, labelled, ranged
-from puck_tables.stopping.sweep_work import StopWork
+from puck_tables.stopping.sweep_work import By, StopWork
 
 DEFAULT_SPEED = np.linspace(0.0, 2.0, 41)
 DEFAULT_SPIN = np.linspace(-4.0, 4.0, 41)
-By = tuple[float, str | None, Any]  # tolerance, method, table
 
 
 def sweep(puck: Any, chosen: Mapping[str, Any], launches: Any, by: By, how: Doing) -> Result:
@@ -115,12 +113,5 @@ def _of(names: Container[str]) -> list[str]:
 
 def _done(puck: Any, launches: Population, by: By, how: Doing) -> Result:
     """The result, or what stands in the store."""
-    work: StopWork
-    if puck.shape is None:
-        work = StopWork(launches, puck.gyration, *by, how.chunk)
-    else:
-        tol, method, table = by
-        puck.refuse_for_round(method=method, table=table)
-        work = BaseStopWork(launches, puck, tol, how.chunk)
-    found: Result = finish(work, how)
+    found: Result = finish(StopWork(launches, puck, by, how.chunk), how)
     return found

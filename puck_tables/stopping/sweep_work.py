@@ -12,8 +12,9 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import Progress
 from puck_tables._core.memory import check_memory
 from puck_tables.bulk.work import Columns, Tally, Work
-from puck_tables.errors import InputError
+from puck_tables.errors import ContactError, InputError
 from puck_tables.io.dataset import Dataset, variable
+from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.stopping.per_height import HEIGHT_COST, MOST_HEIGHTS, SolverPerHeight, refuse_many
 from puck_tables.stopping.population import COLUMN, Population, law_name
 from puck_tables.stopping.solvers import OUTPUTS, STATUS_MEANINGS
@@ -21,13 +22,13 @@ from puck_tables.stopping.stop_map import StopMap, StopSample
 
 if TYPE_CHECKING:
     from puck_tables.accuracy.method_errors import Selection
-    from puck_tables.stopping.per_height import AnyTable
 
 # Arrays, the encoded HDF5 file and working copies; as text (CSV) much more.
 BYTES_PER_LAUNCH, BYTES_PER_ROW = 160, 850
 BLOCKS = (1 << 14, 1 << 18), (1 << 8, 1 << 13)  # launches; the latter where one takes long
 _SLAB = 1 << 20  # pucks whose heights are sorted at once
 Kind = tuple[int, float]  # number of the pressure law, radius of gyration
+By = tuple[float, str | None, Any]  # tolerance, method, table
 
 
 def velocities(one: Mapping[str, Any], count: int) -> FloatArray:
@@ -55,27 +56,31 @@ class StopWork(Work):
     Parameters
     ----------
     launches : their numbers
-    gyration : of the puck, where it is not among them
-    tol, method, table, part
-        As :meth:`puck_tables.Puck.sweep` takes them.
+    puck : whose base they have, if it is not round, and whose gyration where it is not among them
+    by : tolerance, method and table
+    part : as ``chunk`` of :meth:`puck_tables.Puck.sweep`
     """
 
     code = "status"
 
-    def __init__(
-        self, launches: Population, gyration: float, tol: float, method: str | None,
-        table: AnyTable, part: int,
-    ) -> None:  # fmt: skip
-        self.launches, self.tol, self.part = launches, tol, part
+    def __init__(self, launches: Population, puck: PuckSpec, by: By, part: int) -> None:
+        self.launches, self.tol, self.part = launches, by[0], part
         self.shape = launches.shape
         self.columns = {COLUMN[name]: () for name in launches.spreads}
-        self.columns |= dict.fromkeys(OUTPUTS, ())
         self.is_sample = bool(launches.spreads)
-        self._gyration = gyration
-        self._how = tol, method, table
-        self._solvers: dict[Kind, SolverPerHeight] = {}
+        self._how, self._base = by, puck.shape
+        self._gyration = puck.gyration if puck.shape is None else puck.inertia_radius
+        self._solvers: dict[Kind, Any] = {}  # a SolverPerHeight each, or one BaseSolver
+        if puck.shape is not None:
+            from puck_tables.stopping.base_solver import BaseSolver
+
+            puck.refuse_for_round(method=by[1], table=by[2])
+            self._solvers[0, self._gyration] = BaseSolver(puck.shape, self.tol)
+            self.columns |= dict.fromkeys(BaseSolver.outputs, ())
+            return
+        self.columns |= dict.fromkeys(OUTPUTS, ())
         if launches.axes.keys().isdisjoint(("pressure", "gyration")):  # a wrong one at once
-            self._solver((0, float(launches.values.get("gyration", gyration))))
+            self._solver((0, float(launches.values.get("gyration", self._gyration))))
 
     def refuse_memory(self) -> None:
         """By its launches."""
@@ -87,13 +92,15 @@ class StopWork(Work):
         fewest, most = BLOCKS[self.method != "look-up"]
         return min(most, max(fewest, self.size // 64))
 
-    def _solver(self, kind: Kind) -> SolverPerHeight:
+    def _solver(self, kind: Kind) -> Any:
         if kind not in self._solvers:
             self._solvers[kind] = SolverPerHeight(self.launches.laws[kind[0]], kind[1], *self._how)
         return self._solvers[kind]
 
     def prepared(self, threads: int | None, progress: Progress | None) -> Progress | None:
-        """Make the solvers of all pucks there are."""
+        """Make the solvers of all pucks there are; on a base that is not round none is made."""
+        if self._base is not None:
+            return progress
         heights = self._heights()
         wanted = {
             kind: int(np.count_nonzero(self._solver(kind).needs_preparation(sought)))
@@ -178,20 +185,32 @@ class StopWork(Work):
         )
 
     def _rows(self, one: Mapping[str, Any], count: int) -> FloatArray:
-        """Rows vx, vy, ω, δ, J, r, law, k of launches by their numbers, array (8, count)."""
-        rows = np.empty((8, count))
+        """Rows vx, vy, ω, δ, J, r, law, k of launches by their numbers, array (8, count).
+
+        On a base that is not round f z in place of δ, and k in place of r.
+        """
+        rows, base = np.empty((8, count)), self._base
         rows[:2] = velocities(one, count)
-        rows[2], rows[5] = one.get("spin", 0.0), one["radius"]
-        friction = one.get("friction", 1.0)
+        rows[2], friction = one.get("spin", 0.0), one.get("friction", 1.0)
+        rows[5] = self._gyration if base is not None else one["radius"]
         with np.errstate(over="ignore", under="ignore"):
-            rows[3] = (
-                one["delta"] if "delta" in one else 2.0 * friction * one["height"] / one["radius"]
-            )
+            if base is not None:
+                rows[3] = 0.5 * friction * one["height"]
+            elif "delta" in one:
+                rows[3] = one["delta"]
+            else:
+                rows[3] = 2.0 * friction * one["height"] / one["radius"]
             rows[4] = one["decel"] if "decel" in one else friction * one["gravity"]
         if not (np.isfinite(rows[3]).all() and np.isfinite(rows[4]).all() and rows[4].all()):
+            radius, delta = ("radius, ", "a delta or ") if base is None else ("", "")
             raise InputError(
-                "radius, height, friction and gravity give a delta or a J out of the range of "
+                f"{radius}height, friction and gravity give {delta}a J out of the range of "
                 "floating point: use numbers of a real puck"
+            )
+        if base is not None and count and rows[3].max() > base.highest_lever:
+            raise ContactError(
+                f"friction times height = {2.0 * rows[3].max():.6g} m: part of the base would "
+                f"lift; it stays down up to {2.0 * base.highest_lever:.6g} m"
             )
         rows[6], rows[7] = one.get("pressure", 0.0), one.get("gyration", self._gyration)
         return rows
@@ -208,7 +227,9 @@ class StopWork(Work):
             for kind, mine in kinds:
                 out[:, mine], status[mine] = self._solver(kind).all(numbers[:6, mine])
         sought: Columns = {COLUMN[name]: one[name] for name in self.launches.spreads}
-        return sought | dict(zip(OUTPUTS, out, strict=True)) | {self.code: status}
+        found = zip(OUTPUTS, out, strict=True)
+        sought |= {name: row for name, row in found if name in self.columns}
+        return sought | {self.code: status}
 
     @property
     def identity(self) -> Mapping[str, Any]:
@@ -240,6 +261,8 @@ class StopWork(Work):
             drawn = {COLUMN[name]: str(one) for name, one in self.launches.spreads.items()}
             attributes |= {f"drawn_{name}": text for name, text in drawn.items()}
             attributes["seed"] = self.launches.seed
+        if self._base is not None:
+            attributes |= {"base": self._base.name, "gyration": self._gyration}
         return Dataset(axes, labels, attributes)
 
     def result(self, columns: Columns) -> StopMap:
@@ -275,5 +298,5 @@ class StopWork(Work):
         return "\n".join(texts)
 
     @property
-    def _used(self) -> list[SolverPerHeight]:
+    def _used(self) -> list[Any]:
         return [solver for _, solver in sorted(self._solvers.items())]

@@ -1,0 +1,169 @@
+"""Films of bodies on a base that is not round: a block of wood, a slider with three corners.
+
+Truth is scipy's DOP853 over friction by ``judges/base_judge.py``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from base_judge import Judge
+from click.testing import CliRunner
+from puck_tables.cli.main import main
+from rarely import few
+from scipy.integrate import solve_ivp
+
+import puck_tables as pt
+
+G = 9.80665
+NOISE = 3e-4, 4e-3
+OUTLINES = {
+    "box:0.2x0.1": [[-0.1, -0.05], [0.1, -0.05], [0.1, 0.05], [-0.1, 0.05]],
+    "polygon:-0.05,-0.04;0.08,-0.03;0,0.07": [[-0.05, -0.04], [0.08, -0.03], [0.0, 0.07]],
+}
+
+
+def turn(angle: float) -> np.ndarray:
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.array([[cosine, -sine], [sine, cosine]])
+
+
+def film(rng: np.random.Generator, name: str) -> tuple[pt.Track, pt.Puck, np.ndarray]:
+    """A noisy film of a launch, the puck, and the launch: place, velocity, spin, angle."""
+    friction, flat = rng.uniform(0.1, 0.4), pt.Puck(base=name)
+    height = min(rng.uniform(0.02, 0.05), 1.8 * flat.shape.highest_lever / friction)
+    puck = replace(flat, friction=friction, height=height)
+    corners = np.array(OUTLINES[name]) - puck.shape.middle
+    judge = Judge([corners], [], 0.5 * puck.friction * puck.height, puck.gyration)
+    way, speed = rng.uniform(-np.pi, np.pi), rng.uniform(0.8, 2.0)
+    spin, angle = rng.uniform(3.0, 15.0) * rng.choice([-1.0, 1.0]), rng.uniform(-3.0, 3.0)
+    start = np.array([0.1, 0.2, speed * np.cos(way), speed * np.sin(way), spin, angle])
+
+    def rates(_: float, y: np.ndarray) -> np.ndarray:
+        force, torque = judge.friction(*(turn(y[5]).T @ y[2:4]), y[4])
+        pull = puck.friction * G
+        push = pull * turn(y[5]) @ force
+        return np.array([*y[2:4], *push, pull * torque / puck.gyration**2, y[4]])
+
+    slip = np.hypot(speed, puck.gyration * start[4])
+    t = np.arange(0.0, rng.uniform(0.5, 0.8) * slip / (puck.friction * G), 1.0 / 120.0)
+    true = solve_ivp(rates, (0.0, t[-1]), start, "DOP853", t, rtol=1e-9, atol=1e-11).y
+    place = true[:2].T + NOISE[0] * rng.normal(size=(t.size, 2))
+    return pt.Track(t, place, true[5] + NOISE[1] * rng.normal(size=t.size), "slide"), puck, start
+
+
+def off(found: pt.Fit, puck: pt.Puck, start: np.ndarray) -> np.ndarray:
+    """Friction, height, velocity, spin and angle less the truth, in standard errors."""
+    launch = found.launches[0].numbers
+    names = ("launch_vx", "launch_vy", "launch_spin", "launch_angle")
+    rows = [(found["friction"], puck.friction), (found["height"], puck.height)]
+    rows = rows[: 1 + (found["height"].how != "known")]
+    rows += [(launch[name], true) for name, true in zip(names, start[2:], strict=True)]
+    assert all(number.determined for number, _ in rows)
+    return np.array([(number.value - true) / number.error for number, true in rows])
+
+
+@pytest.mark.parametrize("name", OUTLINES)
+@pytest.mark.parametrize("seed", few(1, range(6)))
+def test_friction_and_height_of_a_block_are_found(seed: int, name: str):
+    track, puck, start = film(np.random.default_rng([38, seed]), name)
+    found = pt.fit(track, pt.Puck(base=name))
+    assert np.abs(off(found, puck, start)).max() < 4.0
+    assert found["friction"].error < 0.02 * puck.friction
+    assert found.complaints == () and found.puck.shape == puck.shape
+    assert found.puck.gyration == pytest.approx(puck.gyration)
+
+
+@pytest.mark.thorough
+def test_errors_of_blocks_are_right():
+    rows = []
+    for seed in range(60):
+        track, puck, start = film(np.random.default_rng([39, seed]), [*OUTLINES][seed % 2])
+        rows.append(off(pt.fit(track, pt.Puck(base=puck.base, height=puck.height)), puck, start))
+    rows = np.array(rows)
+    assert np.abs(rows).max() < 4.5
+    assert ((rows**2).mean(axis=0) > 0.5).all() and ((rows**2).mean(axis=0) < 1.7).all()
+
+
+def test_a_box_is_not_a_disc():
+    """A round puck of the same reach and gyration does not fit a block's film, which is said."""
+    name = "box:0.2x0.1"
+    track, puck, _ = film(np.random.default_rng([38, 1]), name)
+    found = pt.fit(track, pt.Puck(base=name))
+    reach = puck.shape.reach
+    disc = pt.fit(track, pt.Puck(reach, gyration=puck.gyration / reach))
+    assert found.complaints == () and disc.complaints
+    assert disc["friction"].error > 10.0 * found["friction"].error
+
+
+def test_slopes_are_those_of_motions_nearby():
+    track, puck, _ = film(np.random.default_rng([38, 2]), "box:0.2x0.1")
+    best = pt.fit(track, pt.Puck(base=puck.base), free=("friction", "delta", "gyration")).estimate
+    problem, x = best.problem, best.x
+    slopes, kept = problem.jacobian(x), np.ones(x.size)
+    for k in range(x.size):
+        step = 1e-4 * max(abs(x[k]), 0.1)
+        moved = [problem.residuals(x + sign * step * np.eye(x.size)[k]) for sign in (1.0, -1.0)]
+        by = (moved[0] - moved[1]) / (2.0 * step)
+        kept[k] = np.abs(slopes[:, k] - by).max() / np.abs(by).max()
+    assert kept.max() < 1e-3, dict(zip(problem.names, kept, strict=True))
+
+
+def test_a_disc_as_a_base_is_a_round_puck():
+    """The forecast of a film, and what is found of it."""
+    numbers, launch = {"friction": 0.2, "height": 0.02}, pt.Launch((1.2, 0.3), spin=20.0)
+    pucks = pt.Puck(base="disc:0.04", **numbers), pt.Puck(0.04, **numbers)
+    on_base, plain = (pt.fisher(puck, launch, pt.Camera(120.0, *NOISE)) for puck in pucks)
+    assert on_base.names == plain.names
+    np.testing.assert_allclose(on_base.errors, plain.errors, rtol=1e-3)
+    with pytest.raises(pt.InputError, match="give angle_noise"):
+        pt.fisher(pucks[0], launch, pt.Camera(120.0, NOISE[0]))
+    rng, t = np.random.default_rng(38), np.arange(50) / 120.0
+    true = pucks[1].states(launch.velocity, launch.spin, t)
+    place = np.stack([true.x, true.y], axis=1) + NOISE[0] * rng.normal(size=(50, 2))
+    track = pt.Track(t, place, true.orientation + NOISE[1] * rng.normal(size=50), "disc")
+    one, two = (pt.fit(track, replace(puck, height=0.0)) for puck in pucks)
+    for name in ("friction", "delta"):
+        assert abs(one[name].value - two[name].value) < 0.01 * two[name].error
+        assert one[name].error == pytest.approx(two[name].error, rel=0.01)
+
+
+def test_what_is_of_round_pucks_is_refused():
+    track, puck, _ = film(np.random.default_rng([38, 3]), "box:0.2x0.1")
+    flat = replace(puck, height=0.0)
+    for how, words in (
+        ({"impacts": True}, "cut the film before the first"),
+        ({"free": ("friction", "radius")}, "radius is found"),
+        ({"free": ("friction", "drag")}, "drag is found"),
+        ({"free": ("friction", "air")}, "air is found"),
+        ({"slip_speeds": (0.0, 1.0)}, "of round pucks alone"),
+        ({"law": "stribeck"}, "of round pucks alone"),
+        ({"laws": ["uniform", "hertz"]}, "laws are compared of round pucks"),
+    ):
+        with pytest.raises(pt.InputError, match=words):
+            pt.fit(track, flat, **how)
+    with pytest.raises(pt.InputError, match="has no angles"):
+        pt.fit(replace(track, angle=None), flat)
+    with pytest.raises(pt.InputError, match="put it into a Scene"):
+        pt.fit(track, pt.Puck(base=puck.base, height=puck.height)).simulate()
+
+
+def test_the_command(tmp_path: Path):
+    track, puck, _ = film(np.random.default_rng([38, 4]), "box:0.2x0.1")
+    rows = np.column_stack([track.time, track.place, track.angle])
+    file, saved = tmp_path / "block.csv", tmp_path / "fit.json"
+    np.savetxt(file, rows, delimiter=",", header="t [s],x [m],y [m],angle [rad]", comments="")
+    words = ["fit", str(file), "--base", "box:20cmx10cm", "--height", str(puck.height)]
+    result = CliRunner().invoke(main, [*words, "-o", str(saved), "--plot", str(tmp_path / "a.png")])
+    assert result.exit_code == 0, result.stderr
+    assert "base            box:0.2x0.1" in result.stdout
+    assert "not determined" not in result.stdout
+    value = float(result.stdout.split("The friction coefficient is ")[1].split()[0])
+    assert value == pytest.approx(puck.friction, rel=0.02)
+    again = CliRunner().invoke(main, ["simulate", "--fit", str(saved)])
+    assert again.exit_code and "make a scene of it" in again.stderr
+    both = CliRunner().invoke(main, [*words, "--pressure", "hertz"])
+    assert both.exit_code and "round pucks" in both.stderr
