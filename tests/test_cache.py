@@ -82,6 +82,17 @@ def test_an_edit_of_any_file_empties_the_cache(tmp_path: Path, monkeypatch: pyte
     assert digest() not in seen
 
 
+def test_a_clone_and_what_is_installed_from_it_share_compiled_code(tmp_path, monkeypatch):
+    """Installed, the commands and tables lie in the package."""
+    monkeypatch.setattr(sources, "_PACKAGE", tmp_path)
+    digest = sources.source_digest.__wrapped__
+    for name in ("kernels", "cli", "tables", "motion"):
+        before = digest()
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "main.py").write_text(name)
+        assert (digest() == before) is (name in ("cli", "tables"))
+
+
 def test_every_compiled_function_is_kept_in_that_folder():
     folder = Path(cache_folder() or "")
     kept = set()

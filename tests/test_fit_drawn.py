@@ -114,9 +114,15 @@ def test_frames_are_left_out_where_a_hand_touches_and_that_is_said():
     ((_, first, last),) = found.left_out
     assert film.foreign <= first <= 1.2 * film.foreign + 5 and last == 0
     assert "--keep-all" in found.cut_off and "friction" in found.cut_off
-    for how in ({"keep_all": True}, {"since": -1.0}):
-        kept = pt.fit(film.track, film.puck, **how)
-        assert kept.left_out[0][1:] == (0, 0) and kept.complaints and not kept.cut_off
+
+
+@pytest.mark.parametrize(
+    "how", [{"keep_all": True}, pytest.param({"since": -1.0}, marks=pytest.mark.thorough)]
+)
+def test_frames_that_a_hand_touches_are_kept_if_asked(how):
+    film = drawn("hand", 2)
+    kept = pt.fit(film.track, film.puck, **how)
+    assert kept.left_out[0][1:] == (0, 0) and kept.complaints and not kept.cut_off
 
 
 def test_what_no_motion_comes_near_determines_nothing():

@@ -205,7 +205,7 @@ def test_what_takes_long_to_compile_runs_longer_and_says_so_once(
     monkeypatch.setattr(doors, "AT_FIRST", 1e-3)
     monkeypatch.setattr(doors, "is_any_kept", lambda _: False)  # another process may keep some
     count = counting()
-    count.seconds = 400.0
+    count.seconds = 250.0
     for _ in range(2):
         count(1, 20_000, np.zeros(2))
     assert not is_compiled(count)
