@@ -26,7 +26,7 @@ _BY_SCIPY = 6  # of them asked of what takes a second
 
 
 @dataclass(frozen=True)
-class Body:
+class ThrownBody:
     """A puck on a base, how friction falls with the slip speed (m/s), and patches of the base.
 
     ``patches``: (x, y), m, of so many, (2, n), and their weights (n,); ``few``: of the points that
@@ -77,12 +77,12 @@ _SIDES, _BAND = (0.2, 0.1), (0.0635, 0.0555)  # m
 _CORNERS = 0.5 * np.array([[1.0, 1.0, -1.0, -1.0], [1.0, -1.0, 1.0, -1.0]]) * np.c_[_SIDES,]
 _BOX = Puck(base="box:0.2x0.1", friction=0.25, height=0.04)
 BODIES = {
-    "box": Body(_BOX, None, _of_a_box, (_CORNERS, np.full(4, 0.25))),
-    "box, friction falls with speed": Body(
+    "box": ThrownBody(_BOX, None, _of_a_box, (_CORNERS, np.full(4, 0.25))),
+    "box, friction falls with speed": ThrownBody(
         replace(_BOX, friction=0.0, height=0.0), StribeckLaw(0.35, 0.2, 0.1), _of_a_box,
         (_CORNERS, np.full(4, 0.25)),
     ),
-    "curling stone": Body(
+    "curling stone": ThrownBody(
         Puck(base="annulus:0.0635x0.0555", height=0.114, mass=19.96, gyration=0.1025),
         CurlingLaw(0.00200985, 0.06385782, 0.00626286), _of_a_band, _of_a_band(1),
     ),
@@ -92,7 +92,7 @@ BODIES = {
 def contenders() -> Iterator[Contender]:
     """All methods to the stop of a body, and what one would write."""
     for name, body in BODIES.items():
-        question = _asked(name, body)
+        question = _question(name, body)
         for tol in _TOLS if body.law is None else _TOLS_OF_A_LAW:
             yield Contender(
                 question, "sums over the base", f"tol={tol:g}", kept(tol),
@@ -108,7 +108,7 @@ def contenders() -> Iterator[Contender]:
             )  # fmt: skip
 
 
-def _asked(name: str, body: Body) -> Question:
+def _question(name: str, body: ThrownBody) -> Question:
     """The launches that come with the package, vx, vy, ω; stops in the units of each."""
     content = (files("puck_tables.tables") / "body_starts.npz").read_bytes()
     with np.load(io.BytesIO(content)) as file:
@@ -117,7 +117,7 @@ def _asked(name: str, body: Body) -> Question:
     return Question(name, launches, rows[3:] / body.units(launches), launches)
 
 
-def _integrated(body: Body, tol: float) -> Run:
+def _integrated(body: ThrownBody, tol: float) -> Run:
     """Many launches on one thread."""
 
     def run(launches: FloatArray) -> FloatArray:
@@ -135,7 +135,7 @@ def _integrated(body: Body, tol: float) -> Run:
     return run
 
 
-def _scripted(body: Body, script: Callable[..., FloatArray]) -> Run:
+def _scripted(body: ThrownBody, script: Callable[..., FloatArray]) -> Run:
     """One launch after another."""
     return lambda launches: (
         np.stack([script(*one) for one in launches.T], axis=1) / body.units(launches)
