@@ -73,7 +73,7 @@ def _jitter(text: str, option: str) -> float | str:
 
 
 def _point(text: str, option: str) -> tuple[float, ...]:
-    return numbers_in(text, option, ",", "two numbers in m with a comma, like 0.1,0.5", "m")
+    return numbers_in(text, option, ",", "X,Y: two numbers in m", "m")
 
 
 def _walls(texts: tuple[str, ...], option: str) -> list[tuple[tuple[float, ...], ...]]:

@@ -114,7 +114,13 @@ def _plainly(result: Fit) -> str:
     sentences += [*result.blind, *result.remarks]
     if result.complaints:
         sentences += [text if text.endswith("?") else f"{text}." for text in result.complaints]
-        said = "Or the radius, the unit of the angles or the way they turn is not as said."
+        based = result.estimate.problem.spec.base is not None
+        said = (
+            "Or the base, its x axis from which angles count, their unit or the way they turn is "
+            "not as said."
+            if based else
+            "Or the radius, the unit of the angles or the way they turn is not as said."
+        )  # fmt: skip
         sentences.append(
             "So this may be no freely sliding puck, or not all of its motion: look at --plot, and "
             "give --since and --until if a hand or a wall touches it."

@@ -39,7 +39,8 @@ def film(rng: np.random.Generator, name: str) -> tuple[pt.Track, pt.Puck, np.nda
     corners = np.array(OUTLINES[name]) - puck.shape.middle
     judge = Judge([corners], [], 0.5 * puck.friction * puck.height, puck.gyration)
     way, speed = rng.uniform(-np.pi, np.pi), rng.uniform(0.8, 2.0)
-    spin, angle = rng.uniform(3.0, 15.0) * rng.choice([-1.0, 1.0]), rng.uniform(-3.0, 3.0)
+    spin = np.exp(rng.uniform(np.log(3.0), np.log(60.0))) * rng.choice([-1.0, 1.0])
+    angle = rng.uniform(-3.0, 3.0)
     start = np.array([0.1, 0.2, speed * np.cos(way), speed * np.sin(way), spin, angle])
 
     def rates(_: float, y: np.ndarray) -> np.ndarray:
@@ -97,6 +98,30 @@ def test_a_box_is_not_a_disc():
     disc = pt.fit(track, pt.Puck(reach, gyration=puck.gyration / reach))
     assert found.complaints == () and disc.complaints
     assert disc["friction"].error > 10.0 * found["friction"].error
+
+
+@pytest.mark.parametrize(
+    ("factor", "more", "words"),
+    [(1.0, 0.5 * np.pi, "those of the y axis"),
+     pytest.param(-1.0, 0.0, "grew the other way", marks=pytest.mark.thorough),
+     pytest.param(np.degrees(1.0), 0.0, "were in degrees", marks=pytest.mark.thorough)],
+)  # fmt: skip
+def test_angles_that_are_told_otherwise_are_named(factor: float, more: float, words: str):
+    track, puck, _ = film(np.random.default_rng([38, 1]), "box:0.2x0.1")
+    told = replace(track, angle=factor * track.angle + more)
+    found = pt.fit(told, pt.Puck(base=puck.base, height=puck.height))
+    assert found.complaints and words in found.misfit
+
+
+def test_what_follows_from_a_tilt_that_is_not_told_is_not_told():
+    """A block that hardly turns tells f, and no height: neither has an error."""
+    t, rng = np.arange(60) / 120.0, np.random.default_rng(38)
+    place = np.stack([1.5 * t - 0.5 * 0.2 * G * t * t, 0.0 * t], axis=1)
+    place += NOISE[0] * rng.normal(size=place.shape)
+    track = pt.Track(t, place, NOISE[1] * rng.normal(size=t.size), "straight")
+    found = pt.fit(track, pt.Puck(base="box:0.2x0.1"))
+    assert abs(found["friction"].value - 0.2) < 4.0 * found["friction"].error
+    assert not found["delta"].determined and not found["height"].determined
 
 
 def test_slopes_are_those_of_motions_nearby():

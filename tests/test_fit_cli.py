@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -131,3 +132,19 @@ def test_a_number_at_its_bound_has_no_error(film, tmp_path):
         names = [name.decode() for name in saved["number_name"][()]]
         errors = dict(zip(names, saved["number_error"][()], strict=True))
     assert np.isnan([errors["friction"], errors["decel"]]).all() and errors["delta"] > 0.0
+
+
+def test_walls_and_rows_are_read(tmp_path: Path):
+    """Points on the command line, as help shows them; a bad one is named."""
+    saved = str(tmp_path / "run.csv")
+    words = ["--v0", "2,0.3", "--w0", "40", "--radius", "0.0381"]
+    words += ["--height", "0.0254", "--friction", "0.15"]
+    command = CliRunner().invoke(main, ["simulate", *words, "--frames", "60", "-o", saved])
+    assert command.exit_code == 0, command.stderr
+    for option in (["--rows", "1.0,-0.2"], ["--wall", "9,0:9,2"]):
+        found = CliRunner().invoke(main, ["fit", saved, "--radius", "0.0381", *option])
+        assert found.exit_code == 0, found.stderr
+        value = found.stdout.split("The friction coefficient is ")[1].split()[0]
+        assert float(value) == pytest.approx(0.15, rel=1e-6)
+    wrong = CliRunner().invoke(main, ["fit", saved, "--radius", "0.0381", "--rows", "1.0"])
+    assert wrong.exit_code and "--rows=1.0 must be X,Y: two numbers in m" in wrong.stderr

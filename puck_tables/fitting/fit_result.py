@@ -269,6 +269,9 @@ class Fit(Result):
         for k, side in enumerate(self.certainty.pinned):
             if side:
                 end, way = problem.limits[side > 0][k], "above" if side > 0 else "below"
+                name = problem.names[k][1]
+                if side > 0 and name == "friction" and end == problem.spec.steepest(name):
+                    way += " (with more part of the base would lift: is the height right?)"
                 said.append(
                     f"{problem.names[k][1]} lies on the end of its range, {end:.6g}: what fits "
                     f"best may be {way}. So it has no standard error, and its interval, and errors "

@@ -313,7 +313,7 @@ def _reported(
         not_met=not_met(impacts, best.problem, inputs.lines) if inputs.impacts else (),
         forces=judged.forces, uncut=observed.uncut,
     )  # fmt: skip
-    if result.complaints and inputs.spec.base is None:  # other readings are of round pucks
+    if result.complaints:
         said = misfit(estimates.slides, observed.problem, known, judged.forces, bool(inputs.speeds))
         result = replace(result, misfit=said)
     return result

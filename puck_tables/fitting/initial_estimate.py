@@ -118,12 +118,8 @@ def initial_estimate(problem: Problem, known: Known, refit: bool) -> Estimate:
             f"{count} observations of {len(problem.names)} unknowns are too few "
             "to judge their noise by: give the noise, or more frames"
         )
-    if problem.spec.base is not None:
-        result = _on_base(problem, known)
-    elif problem.spec.integrated:
-        result = _integrated(problem, known)
-    else:
-        result = _looked_up(problem, known)
+    result = _looked_up(problem, known) if not problem.spec.integrated \
+        else _integrated(problem, known)  # fmt: skip
     if not refit:
         return result
     result = _trimmed(result, problem, known)
@@ -156,14 +152,6 @@ def _looked_up(problem: Problem, known: Known) -> Estimate:
     if len(parts) == 1:
         result = replace(result, minima=tuple(minima[0]))
     return _lifted(result, known)
-
-
-def _on_base(problem: Problem, known: Known) -> Estimate:
-    """The estimate of a puck on a base, begun from that of a round one that reaches as far."""
-    like = replace(problem, spec=replace(problem.spec, base=None))
-    found = initial_estimate(like, known, refit=False)
-    x = problem.unknowns(like.numbers_at(found.x), like.launches(found.x))
-    return estimate(problem.with_noise(found.problem.noise, x), np.clip(x, *problem.limits), known)
 
 
 def _integrated(problem: Problem, known: Known) -> Estimate:

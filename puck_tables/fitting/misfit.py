@@ -29,11 +29,15 @@ _NEAR = 0.01  # of the radius: it is not another one
 _BY_CHANCE = 0.5  # rad, as angles are off that nothing explains
 _AS_NOISE = 3.0  # times the noise of a place: a reading that fits
 _DEGREE = math.pi / 180.0
-_ANGLES = (
-    (-1.0, "if angles, or y, grew the other way: negate one of them in the file"),
-    (_DEGREE, "if angles were in degrees, not in rad: say their unit"),
-    (1.0 / _DEGREE, "if angles were in rad, not in degrees: say their unit"),
+_ANGLES = (  # times a factor, and more by so much
+    (-1.0, 0.0, "if angles, or y, grew the other way: negate one of them in the file"),
+    (_DEGREE, 0.0, "if angles were in degrees, not in rad: say their unit"),
+    (1.0 / _DEGREE, 0.0, "if angles were in rad, not in degrees: say their unit"),
 )
+_ACROSS = (
+    1.0, 0.5 * math.pi,
+    "if angles were those of the y axis of the base: add a quarter turn, or swap its sides",
+)  # fmt: skip
 _MOST_DRAG = 20.0  # over the time of a film
 _BETTER = math.log(1.2)  # more numbers always fit a little better
 _ALIKE = math.log(1.5)  # readings that fit about as well
@@ -69,7 +73,7 @@ def misfit(
     with all frames; ``speeds``: whether a friction over slip speed does not fit, either.
     """
     told: list[_Reading] = []
-    if _may_change(problem.spec) and not speeds:
+    if problem.spec.base is None and _may_change(problem.spec) and not speeds:
         drag, air, slope = (
             _reading(partial(_by_floor, result, problem, one)) for one in ("drag", "air", "slope")
         )
@@ -106,14 +110,16 @@ def _otherwise(result: Estimate, problem: Problem, known: Known) -> list[_Readin
     best, spec = _Reading("", math.log(_FAR)), problem.spec
     given, others = spec.known()["radius"], []
     held = any(name in said for name in _HELD for said in (spec.fixed, spec.bounds))
-    for factor, words in _ANGLES if problem.angled and not held else ():
+    angles = _ANGLES if spec.base is None else (*_ANGLES, _ACROSS)
+    for factor, more, words in angles if problem.angled and not held else ():
         films = tuple(
-            film if film.angle is None else replace(film, angle=factor * film.angle)
+            film if film.angle is None else replace(film, angle=factor * film.angle + more)
             for film in problem.films
         )
         noise = problem.noise[0], abs(factor) * problem.noise[1]
         others.append((words, replace(problem.with_films(films), noise=noise), abs(factor)))
     wider = problem.angled and "radius" not in (*spec.free, *spec.fixed)  # told by angles alone
+    wider = wider and spec.base is None
     if wider:
         words = "with a radius of {:.3g} m: is " + f"{spec.puck.radius:g} m right?"
         other = replace(problem, spec=replace(spec, free=(*spec.free, "radius")))

@@ -167,15 +167,18 @@ def numbers_of(
             one = spec.free[of[0]]
             if math.isfinite(puck[one].high):
                 ends = _ends(problem, x, name, one, puck[one])
-        if ends is None and profiled and name == "height" and math.isfinite(error):
+        known = not math.isinf(error)
+        # where part of a base would lift the likelihood of a height ends, and has no width
+        if ends is None and profiled and name == "height" and known and spec.base is None:
             ends = _profiled(result, certainty, name)
-        if ends is None and name == "height" and "delta" in puck and puck["delta"].profiled:
+        tilt = puck.get("delta")
+        if ends is None and known and name == "height" and tilt is not None and tilt.profiled:
             # f and r as found: that of f is far narrower
-            ends = replace(_ends(problem, x, name, "delta", puck["delta"]), profiled=True)
-        if ends is not None and ends.profiled:
+            ends = replace(_ends(problem, x, name, "delta", tilt), profiled=True)
+        if ends is not None and ends.profiled and known:
             half = 0.5 * (ends.high - ends.low) / certainty.reach
             number = number._replace(error=error if math.isnan(error) else half, profiled=True)
-        if ends is not None:
+        if ends is not None and known:
             number = number._replace(low=ends.low, high=ends.high)
         puck[name] = number._replace(low=max(number.low, PUCK[name].low))
     puck = {name: puck[name] for name in PUCK if name in puck}

@@ -67,7 +67,11 @@ def minima_of(problem: Problem) -> list[FloatArray]:
     moving = _moving_frames(film, problem.noise[0])
     place, velocity, slowing = _first_parabola(film, moving)
     turning = turning_of(film)
-    guesses = _guesses(problem, velocity, slowing, turning, rests=moving < film.time.size)
+    # on a base from those of a round puck that reaches as far, of less than half a turn a frame
+    like = replace(problem, spec=replace(spec, base=None))
+    guesses = _guesses(like, velocity, slowing, turning, rests=moving < film.time.size)
+    if spec.base is not None:
+        guesses = [guess for guess in guesses if guess.turns == 0]
     part = film.thinned(_FITTED)
     few = np.isin(film.frame, part.frame)
     starts = []
@@ -90,7 +94,7 @@ def minima_of(problem: Problem) -> list[FloatArray]:
             [spec.start.get(name, at) for name, at in zip(LAUNCH, launch, strict=True)]
         )
         more = [np.clip(problem.unknowns(_any(spec), launch[None]), *problem.limits)]
-    if turning is not None and not turning.sure:
+    if turning is not None and not turning.sure and spec.base is None:
         blind = replace(problem, films=(replace(film, angle=None),))
         by_angle = by_place(problem, blind, minima_of(blind)[:_BLIND])
         more += [x for x, _ in multi_start(by_angle, FROM_AFAR, ROBUST)]
