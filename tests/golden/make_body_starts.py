@@ -18,7 +18,7 @@ import numpy as np
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "judges"))
-from base_judge import _FAR, Judge  # noqa: E402
+from base_judge import Judge  # noqa: E402
 
 COUNT, OF_STONES = 24, 12
 G = 9.80665
@@ -36,33 +36,14 @@ class LawJudge(Judge):
         super().__init__(*base)
         self.law, self.unit = law, 1.0  # m/s, of the velocities that a slide is told in
 
-    def sums(self, ux: float, uy: float, w: float) -> tuple[np.ndarray, np.ndarray]:
-        if np.hypot(ux, uy) > _FAR * self.reach * abs(w):
-            x, y = self.points.T
-            e = np.column_stack([ux - w * y, uy + w * x])
-            speed = np.hypot(*e.T)
-            e *= (self.law(self.unit * speed) / speed)[:, None]
-            ones = self._one_x_y(self.points) * self.weights[:, None]
-            return e.T @ ones, (x * e[:, 1] - y * e[:, 0]) @ ones
-        c = np.array([-uy, ux]) / w
-        place, angle = self._panels(c)
-        ray = place - c
-        far = np.hypot(*ray.T)
-        ray = ray / np.maximum(far, 1e-300)[:, None]
-        e = np.sign(w) * np.column_stack([-ray[:, 1], ray[:, 0]])
-        lever = c[0] * e[:, 1] - c[1] * e[:, 0]
+    def friction_at(self, speed: np.ndarray) -> np.ndarray:
+        return self.law(self.unit * speed)
+
+    def along_rays(self, far: np.ndarray, w: float) -> list[np.ndarray]:
         # the law bends near the centre: nodes crowd there, R = far t²
         along = far[:, None] * _NODE**2
-        pull = self.law(self.unit * abs(w) * along) * 2.0 * _NODE * _WEIGHT * far[:, None]
-        moments = [(pull * along**power).sum(axis=1) for power in (1, 2, 3)]
-
-        def inward(power: int) -> np.ndarray:
-            one, more = moments[power - 1], moments[power]
-            return np.column_stack([one, one[:, None] * c + more[:, None] * ray])
-
-        first, second = inward(1), inward(2)
-        turn = lever[:, None] * first + np.sign(w) * second
-        return (e * angle[:, None]).T @ first, angle @ turn
+        pull = self.friction_at(w * along) * 2.0 * _NODE * _WEIGHT * far[:, None]
+        return [(pull * along**n).sum(axis=1) for n in (1, 2, 3)]
 
 
 def stribeck(u: np.ndarray) -> np.ndarray:

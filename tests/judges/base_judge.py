@@ -8,6 +8,8 @@ The state moves in the axes of the body, in dτ = dt/Q, to Q = 1e-13 Q₀.
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 from scipy.integrate import solve_ivp
 
@@ -92,7 +94,8 @@ class Judge:
         if np.hypot(ux, uy) > _FAR * self.reach * abs(w):
             x, y = self.points.T
             e = np.column_stack([ux - w * y, uy + w * x])
-            e /= np.hypot(*e.T)[:, None]
+            speed = np.hypot(*e.T)
+            e *= (self.friction_at(speed) / speed)[:, None]
             ones = self._one_x_y(self.points) * self.weights[:, None]
             return e.T @ ones, (x * e[:, 1] - y * e[:, 0]) @ ones
         c = np.array([-uy, ux]) / w
@@ -102,15 +105,21 @@ class Judge:
         ray = ray / np.maximum(far, 1e-300)[:, None]
         e = np.sign(w) * np.column_stack([-ray[:, 1], ray[:, 0]])
         lever = c[0] * e[:, 1] - c[1] * e[:, 0]
-
-        def inward(power: int) -> np.ndarray:  # the integral of R^power (1, x, y) along a ray
-            one = far ** (power + 1) / (power + 1)
-            more = far ** (power + 2) / (power + 2)
-            return np.column_stack([one, one[:, None] * c + more[:, None] * ray])
-
-        first, second = inward(1), inward(2)
+        powers = self.along_rays(far, abs(w))
+        first, second = (  # the integral of R and of R² times (1, x, y) along a ray
+            np.column_stack([one, one[:, None] * c + more[:, None] * ray])
+            for one, more in pairwise(powers)
+        )
         turn = lever[:, None] * first + np.sign(w) * second
         return (e * angle[:, None]).T @ first, angle @ turn
+
+    def friction_at(self, speed: np.ndarray) -> np.ndarray:
+        """Friction at slip speeds, over f."""
+        return np.ones_like(speed)
+
+    def along_rays(self, far: np.ndarray, w: float) -> list[np.ndarray]:
+        """∫ friction R^n dR along rays so long from the instantaneous centre, n = 1, 2, 3."""
+        return [far ** (n + 1) / (n + 1) for n in (1, 2, 3)]
 
     def friction(self, ux: float, uy: float, w: float) -> tuple[np.ndarray, float]:
         """Force and torque over f N, in the axes of the body."""
