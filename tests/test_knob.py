@@ -23,6 +23,7 @@ from puck_tables.accuracy.method_errors import (
 from puck_tables.accuracy.methods import INTEGRATED, LOOK_UP
 from puck_tables.errors import AccuracyError, InputError, TableError
 from puck_tables.stopping.stop_table import StopTable
+from puck_tables.tradeoff.body_methods import BODIES
 
 GOLDEN = Path(__file__).parent / "golden"
 TOLERANCES = 10.0 ** -np.arange(3, 12)
@@ -151,7 +152,8 @@ def test_what_it_cannot_reach_it_says():
 
 def test_the_shipped_front_is_read_and_damage_is_named():
     ways = shipped_errors()
-    assert {way.question for way in ways} == {"resultants", "stop", "trajectory", "state"}
+    questions = {"resultants", "stop", "trajectory", "state", *BODIES}
+    assert {way.question for way in ways} == questions
     with pytest.raises(TableError, match="damaged"):
         errors_from_csv("question,method\nstop,look-up\n")
     front = pareto(way for way in ways if way.question == "stop" and not way.outsider)

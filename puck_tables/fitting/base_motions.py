@@ -92,6 +92,6 @@ def base_motions_of(base: Base, gyration: float) -> BaseMotions:
     Examples
     --------
     >>> round(base_motions_of(Base.disc(0.05), 0.5**0.5).highest, 9)
-    0.8
+    1.0
     """
     return BaseMotions(base, gyration)

@@ -49,7 +49,7 @@ def draw(run: Run) -> Figure:
     for name, (label, color) in _ENERGIES.items():
         if np.abs(columns[name]).max() > 1e-9 * largest:
             energies.plot(time, columns[name], color=color, label=label)
-    for axes, unit in ((speeds, "m/s"), (energies, "J")):
+    for axes, unit in ((speeds, "m/s"), (energies, "joule")):
         axes.axhline(0.0, color=GREY, linewidth=0.6)
         axes.set(xlabel="time / s", ylabel=unit)
         _draw_events(axes, run)

@@ -103,15 +103,17 @@ def patch_script(
 
     Parameters
     ----------
-    points (2, n), weights (n,) : patches of the base from the centre of mass, m
+    points, weights : arrays (2, n), m, and (n,)
+        Patches of the base, from the centre of mass.
     gyration, height, gravity : k, height of the centre of mass (m), g (m/s²)
     friction : the coefficient at slip speeds (n,)
 
     Examples
     --------
-    >>> stop = patch_script(*disc_patches(), 0.5**0.5, 0.25, 1.0, np.ones_like)  # delta = 1
-    >>> stop(1.0, 0.0, 5.0).round(2).tolist()
-    [4.0, 2.26, -0.31]
+    >>> corners = 0.1 * np.array([[1.0, 1.0, -1.0, -1.0], [1.0, -1.0, 1.0, -1.0]])
+    >>> stop = patch_script(corners, np.full(4, 0.25), 0.1, 0.0, 10.0, np.ones_like)
+    >>> stop(1.0, 0.0, 0.0).round(3).tolist()  # v/J, v²/2J
+    [0.1, 0.05, 0.0]
     """
     inertia = np.linalg.inv(weights * points @ points.T)
 
@@ -137,10 +139,17 @@ def patch_script(
     return stop
 
 
-def disc_patches() -> tuple[FloatArray, FloatArray]:
-    """Points (2, n) and weights (n,) of patches of a disc of radius 1."""
+def disc_by_patches(vx: float, vy: float, spin: float, delta: float) -> FloatArray:
+    """Stop time, x, y of a homogeneous round puck (J = r = 1) by such a script.
+
+    Examples
+    --------
+    >>> disc_by_patches(1.0, 0.0, 5.0, 1.0).round(2).tolist()
+    [4.0, 2.26, -0.31]
+    """
     radial, angular = PATCH_GRID
     rho = (np.arange(radial) + 0.5) / radial
     angle = 2.0 * np.pi * (np.arange(angular) + 0.5) / angular
-    points = np.stack([np.outer(rho, np.cos(angle)), np.outer(rho, np.sin(angle))])
-    return points.reshape(2, -1), np.repeat(rho / (rho.sum() * angular), angular)
+    points = np.stack([np.outer(rho, np.cos(angle)), np.outer(rho, np.sin(angle))]).reshape(2, -1)
+    weights = np.repeat(rho / (rho.sum() * angular), angular)
+    return patch_script(points, weights, 0.5**0.5, 0.25 * delta, 1.0, np.ones_like)(vx, vy, spin)

@@ -26,8 +26,7 @@ from puck_tables.tradeoff.literature_models import PADE_MATCHED, as_table, pade_
 from puck_tables.tradeoff.scipy_methods import (
     PATCH_GRID,
     SCIPY_SETTINGS,
-    disc_patches,
-    patch_script,
+    disc_by_patches,
     scipy_stop,
 )
 from puck_tables.tradeoff.truth import DELTA, Contender, Question, Run, filled, golden_starts, kept
@@ -132,12 +131,7 @@ def _outsiders(easy: Question, low: Question, flat: Question) -> Iterator[Conten
         for method, rtol, atol in SCIPY_SETTINGS
     ]  # fmt: skip
     grid = f"patches={PATCH_GRID[0]}x{PATCH_GRID[1]}"
-
-    def by_patches(vx: float, vy: float, spin: float, delta: float) -> FloatArray:
-        script = patch_script(*disc_patches(), 0.5**0.5, 0.25 * delta, 1.0, np.ones_like)
-        return script(vx, vy, spin)
-
-    for method, setting, stop_of in [*scripts, ("patches and scipy RK45", grid, by_patches)]:
+    for method, setting, stop_of in [*scripts, ("patches and scipy RK45", grid, disc_by_patches)]:
         yield Contender(
             easy, method, setting, kept(stop_of),
             lambda stop_of: lambda launches: np.stack([stop_of(*one[:4]) for one in launches.T], 1),

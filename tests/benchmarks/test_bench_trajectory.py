@@ -40,7 +40,7 @@ from puck_tables.motion.tableaus import DORMAND_PRINCE
 from puck_tables.stopping.per_height import SolverPerHeight
 from puck_tables.stopping.solvers import Integration
 from puck_tables.table.resultant_table import ResultantTable
-from puck_tables.tradeoff.scipy_methods import patch_script
+from puck_tables.tradeoff.scipy_methods import disc_by_patches
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -274,9 +274,9 @@ def test_stop_rival_scipy(measure: Any, method: str) -> None:
 def test_stop_rival_patch_script(measure: Any) -> None:
     measure(
         "rival: plain script, 20 x 40 patches",
-        lambda: patch_script(*LAUNCH, DELTA),
+        lambda: disc_by_patches(*LAUNCH, DELTA),
         unit="trajectory",
-        error=error_of(patch_script(*LAUNCH, DELTA), LAUNCH),
+        error=error_of(disc_by_patches(*LAUNCH, DELTA), LAUNCH),
     )
 
 
