@@ -195,10 +195,18 @@ def pinned_of(result: Estimate, certainty: Certainty) -> tuple[int, ...]:
     return tuple(np.where(on[0], -1, on[1].astype(int)).tolist())
 
 
-def widened(result: Estimate, certainty: Certainty) -> Certainty:
-    """The same of a model that does not fit: with the jackknife's of halves, quarters, eighths."""
-    by_parts = sum(_without_parts(result, certainty, count) for count in _PARTS)
-    return certainty.wider(certainty.covariance + by_parts, True)
+def widened(
+    result: Estimate, certainty: Certainty, biases: FloatArray, most: float = math.inf
+) -> Certainty:
+    """The same of a model that does not fit: with the jackknife's of halves, quarters, eighths.
+
+    ``biases`` (m, k): what k forces may have done to the unknowns, too; ``most``: no error becomes
+    so many times wider: parts of few frames, and forces, tell little, what they do is mostly noise.
+    """
+    more = biases @ biases.T + sum(_without_parts(result, certainty, count) for count in _PARTS)
+    own, shown = np.diag(certainty.covariance), np.maximum(np.diag(more), 1e-300)
+    share = np.sqrt(np.minimum((most * most - 1.0) * own / shown, 1.0))
+    return certainty.wider(certainty.covariance + more * np.outer(share, share), True)
 
 
 def of_rounded(result: Estimate, certainty: Certainty) -> Certainty:

@@ -257,7 +257,8 @@ class Fit(Result):
         if all(problem.spinless) and (more := spin_would_tell(self.estimate)):
             said.append(more)
         said += [text for film in problem.films for text in rounded(film)]
-        wider = [self.certainty.ratio(k) for k in range(self.estimate.x.size)]
+        own = len(problem.spec.free) or self.estimate.x.size  # of the puck, if any is found
+        wider = [self.certainty.ratio(k) for k in range(own)]
         told = bool(self.complaints) or computed(self.estimate)
         if self.certainty.widened and max(wider) > _WIDER and not told:
             name = problem.names[int(np.argmax(wider))][1]

@@ -43,7 +43,14 @@ from puck_tables.fitting.least_squares import SQUARES, compact, minimise, multi_
 from puck_tables.fitting.model_comparison import chi2_under
 from puck_tables.fitting.numbers import Number, numbers_of
 from puck_tables.fitting.problem import Known
-from puck_tables.fitting.residuals import SideForces, excess_of, may_misfit, no_answer, side_forces
+from puck_tables.fitting.residuals import (
+    SideForces,
+    excess_of,
+    may_misfit,
+    misfits,
+    no_answer,
+    side_forces,
+)
 from puck_tables.fitting.starts import minima_of, numbers_with
 from puck_tables.fitting.whole_turns import (
     EXCLUDED,
@@ -296,6 +303,7 @@ def without_spin(
 
 _JUDGED = 2.5  # degrees of freedom that tell the noise of a kind
 _BIAS = 2.0  # times what a force, to first order, would have done
+_HARDLY = 10.0  # times: what is hardly seen makes no error wider than that
 
 
 class JudgedMotion(NamedTuple):
@@ -336,8 +344,9 @@ def judged_motion(
     held_off = any(best.problem.names[k][1] in bounds for k in np.flatnonzero(certainty.pinned))
     if held_off:  # no force
         forces = forces._replace(biases=np.empty((0, 0)))
-    misfits = may_misfit(best, known, smooth, forces.chance)
-    certainty = _wider(best, certainty, misfits, forces, bool(unsigned))
+    most = math.inf if misfits(best, known, smooth, forces.chance) else _HARDLY
+    may = may_misfit(best, known, smooth, forces.chance)
+    certainty = _wider(best, certainty, may, most, forces, bool(unsigned))
     nowhere = "" if held_off else no_answer(best, known, smooth)
     astray = nowhere or ran_away(best.problem, best.x)
     return JudgedMotion(
@@ -359,14 +368,14 @@ def judged_certainty(best: Estimate, known: Known) -> Certainty:
 
 
 def _wider(
-    best: Estimate, certainty: Certainty, misfits: bool, forces: SideForces, unsigned: bool
-) -> Certainty:
+    best: Estimate, certainty: Certainty, may_misfit: bool, most: float, forces: SideForces,
+    unsigned: bool,
+) -> Certainty:  # fmt: skip
     """The same where residuals are no independent noise, or nothing tells a floor from a spin."""
-    if misfits or any(certainty.pinned):
-        certainty = widened(best, certainty)
-        if misfits and forces.biases.size:
-            by_force = _BIAS**2 * forces.biases @ forces.biases.T
-            certainty = certainty.wider(certainty.covariance + by_force, True)
+    if may_misfit or any(certainty.pinned):
+        forced = may_misfit and forces.biases.size
+        biases = _BIAS * forces.biases if forced else np.zeros((best.x.size, 1))
+        certainty = widened(best, certainty, biases, most)
     elif any(any(film.steps) for film in best.problem.films):
         certainty = of_rounded(best, certainty)
     if unsigned and forces.by_law.size:  # its slowing alone tells friction from spin
