@@ -11,6 +11,7 @@ so what is known of θ = 0 tells all.  Derivatives are differences of motions ne
 from __future__ import annotations
 
 import math
+from copy import copy
 from functools import lru_cache
 from typing import Self
 
@@ -39,19 +40,23 @@ class BaseMotions(UnitMotions):
     [[0.1875, 0.25]]
     """
 
-    def __init__(self, base: Base, gyration: float, angle: float = 0.0) -> None:
-        self._base, self._gyration, self.angle = base, gyration, angle
+    angle: float = 0.0
+
+    def __init__(self, base: Base, gyration: float) -> None:
+        self._gyration = gyration
         self.reach, self._packed = base.reach, packed(base, 0.0)
         self.highest = (4.0 - 1e-12) * base.highest_lever / base.reach  # a puck of it is one, too
 
     def facing(self, angle: float) -> Self:
         """The same, standing otherwise at the launch."""
-        return type(self)(self._base, self._gyration, angle)
+        found = copy(self)
+        found.angle = angle
+        return found
 
     def states(self, launches: FloatArray, times: FloatArray) -> FloatArray:
         """Integrated, at times that ascend."""
         rows = launches.copy()
-        cosine, sine = math.cos(self.angle or 0.0), math.sin(self.angle or 0.0)
+        cosine, sine = math.cos(self.angle), math.sin(self.angle)
         turn = np.array([[cosine, -sine], [sine, cosine]])
         rows[:2] = turn.T @ launches[:2]
         rows[3], rows[5] = 0.25 * launches[3] * launches[5], self._gyration * launches[5]

@@ -62,10 +62,6 @@ class Moving(NamedTuple):
     motions: UnitMotions
     by_speed: SpeedFriction | None = None
 
-    def facing(self, angle: float) -> Moving:
-        """The same of a body that stands at an angle (rad) at the launch."""
-        return self._replace(motions=self.motions.facing(angle))
-
     def speed_launch(self, at: FloatArray) -> SpeedLaunch:
         """What is integrated of arguments (6,); J does nothing, f of the law is in its place."""
         assert self.by_speed is not None
@@ -123,7 +119,8 @@ def _path(
     moving: Moving, launch: FloatArray, times: FloatArray, want: bool
 ) -> tuple[FloatArray, FloatArray]:
     """States from (0, 0) on, and derivatives if they are wanted."""
-    c, at, moving = moving.drag, moving.arguments(launch), moving.facing(launch[5])
+    c, at = moving.drag, moving.arguments(launch)
+    moving = moving._replace(motions=moving.motions.facing(launch[5]))
     if not at[:3].any():
         return np.zeros((6, times.size)), np.zeros((times.size, 6, 7))
     if c == 0.0:

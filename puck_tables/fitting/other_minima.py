@@ -344,8 +344,9 @@ def judged_motion(
     held_off = any(best.problem.names[k][1] in bounds for k in np.flatnonzero(certainty.pinned))
     if held_off:  # no force
         forces = forces._replace(biases=np.empty((0, 0)))
-    most = math.inf if misfits(best, known, smooth, forces.chance) else _HARDLY
-    may = may_misfit(best, known, smooth, forces.chance)
+    complained = bool(misfits(best, known, smooth, forces.chance))
+    most = math.inf if complained else _HARDLY
+    may = complained or may_misfit(best, smooth, forces.chance)
     certainty = _wider(best, certainty, may, most, forces, bool(unsigned))
     nowhere = "" if held_off else no_answer(best, known, smooth)
     astray = nowhere or ran_away(best.problem, best.x)

@@ -123,16 +123,10 @@ def hidden(result: Estimate) -> bool:
     return bool(place or (result.problem.angled and angle))
 
 
-def may_misfit(
-    result: Estimate, known: Known, smooth: tuple[float, float], explained: float
-) -> bool:
-    """Whether a model may not fit, or what is left is no noise; as :func:`misfits`.
-
-    Below what is complained of that may bias numbers by far.
-    """
+def may_misfit(result: Estimate, smooth: tuple[float, float], explained: float) -> bool:
+    """Whether a model may not fit, though :func:`misfits` has no sign: that may bias numbers."""
     pattern = not hidden(result) and min(runs(result), drift(result), explained) < _MAY_PATTERN
-    noisy = excess_of(result, smooth, _RARE) > _MAY_NOISY
-    return noisy or pattern or bool(misfits(result, known, smooth, explained))
+    return pattern or excess_of(result, smooth, _RARE) > _MAY_NOISY
 
 
 def no_answer(result: Estimate, known: Known, smooth: tuple[float, float]) -> str:
