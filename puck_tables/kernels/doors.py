@@ -26,7 +26,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 _PER_INSTRUCTION = 3e-4  # s, to compile an instruction of Python; of some machine
 _TO_LOAD_NUMBA = 0.6  # s, of such a machine
-_SAID = 1.0  # s; what takes less is not worth a sentence
+_SAID = 0.5  # s; what takes less is not worth a sentence
 _WORTH = 0.4  # of the time of compiling that is tried without: so little is lost where it ends so
 _WORTH_OF_ARRAYS = 3.3  # of it where arrays answer, which mostly are done by then
 _importing = threading.RLock()
