@@ -202,7 +202,7 @@ def test_long_work_goes_on_compiled_from_what_it_was_given(
 def test_what_takes_long_to_compile_runs_longer_and_says_so_once(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):
-    monkeypatch.setattr(doors, "AT_FIRST", 1e-3)
+    monkeypatch.setattr(doors, "_SILENT", 1e-3)
     monkeypatch.setattr(doors, "is_any_kept", lambda _: False)  # another process may keep some
     count = counting()
     count.seconds = 250.0

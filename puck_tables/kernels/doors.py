@@ -27,6 +27,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 _PER_INSTRUCTION = 3e-4  # s, to compile an instruction of Python; of some machine
 _TO_LOAD_NUMBA = 0.6  # s, of such a machine
 _SAID = 0.5  # s; what takes less is not worth a sentence
+_SILENT = 1.0  # s of computing as it is written; then it is said, as other kernels take as long
 _WORTH = 0.4  # of the time of compiling that is tried without: so little is lost where it ends so
 _WORTH_OF_ARRAYS = 3.3  # of it where arrays answer, which mostly are done by then
 _importing = threading.RLock()
@@ -121,7 +122,7 @@ class Door:
         before = [(array, array.copy()) for array in _arrays(args) if array.flags.writeable]
         begin = time.thread_time()
         here.as_written, here.until = True, begin + self._allowed - self.spent
-        here.silent_until = min(here.until, begin + AT_FIRST - self.spent)
+        here.silent_until = min(here.until, begin + _SILENT - self.spent)
         here.sentence = (
             f"{self._name} is not compiled: it runs in Python, up to {self._allowed:.0f} s"
         )
