@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import puck_tables as pt
+from puck_tables.world.prepare import STEP_SHARE, prepared
 
 SPINS = list(np.linspace(-20.0, 20.0, 8))  # all of them are checked
 
@@ -60,3 +61,43 @@ def test_a_run_alone_is_done_once_and_its_estimate_holds(slope: float) -> None:
         late = abs(run.end_time - fine.end_time) * run.rate_scale / run.speed_scale
         error = max(far * run.rate_scale / run.speed_scale**2, late)
         assert error <= run.error_estimate <= one.tol
+
+
+STRIPS = pt.Floor(strips=pt.Strips((0.1, 0.18, 0.21), (0.2, 0.05, 0.4, 0.1), direction=0.4))
+
+
+def _ends(scene: pt.Scene, share: float) -> np.ndarray:
+    """Place and turned rim at rest of a puck of 5 cm, in Q²/J, with steps of a share of ``tol``."""
+    start = prepared(scene)
+    start.game.pace[2] *= share / STEP_SHARE
+    world = pt.World.since(start)
+    world.come_to_rest()
+    speed, rate = start.game.pace[:2]
+    return world.state()[0, :3] * [1.0, 1.0, 0.05] * rate / speed**2
+
+
+def test_steps_are_as_long_as_tol_allows() -> None:
+    """No check run mends these: they keep ``tol``, and with steps of ten times the error do not."""
+    rng, misses = np.random.default_rng(5), []
+    for _ in range(24):
+        launch = pt.Launch(tuple(rng.normal(size=2).tolist()), float(rng.normal() * 12.0))
+        one = pt.Scene(pt.Puck(0.05, 0.03, 0.2), STRIPS, launch, tol=1e-6)
+        true = _ends(replace(one, tol=1e-10), STEP_SHARE)
+        misses.append([np.abs(_ends(one, k * STEP_SHARE) - true).max() / 1e-6 for k in (1, 10)])
+    rough = np.max(misses, axis=0)
+    assert rough[0] <= 1.0 < rough[1]
+
+
+@pytest.mark.parametrize("tol", [1e-3, 1e-6, 1e-9])
+@pytest.mark.parametrize("over", [1e-2, 1e-3, 1e-4])
+def test_a_slip_that_hardly_begins_is_told(tol: float, over: float) -> None:
+    """A force that passes what friction holds by so little, for a moment, as its rows go up."""
+    hold = 0.2 * 9.80665
+    rows = [[0, 0, 0, 0], [0.7, 0, 0, 0], [0.8, (1.0 + over) * hold, 0, 0], [0.9, 0, 0, 0]]
+    puck, force = pt.Puck(0.1, friction=0.2, mass=1.0), pt.Force(over_time=rows)
+    run = pt.Scene(puck, launch=pt.Launch((1.0, 0.0)), force=force, time=2.0, tol=tol).simulate()
+    assert [event.what for event in run.events] == ["stick", "slip", "stick"]
+    longer = 0.1 * over / (1.0 + over)  # it slips before the peak; v is 0 again after √2 + 1 of it
+    unit = run.speed_scale / run.rate_scale
+    stop = 0.8 + (1.0 + math.sqrt(2.0)) * longer
+    assert run.stop_times[0] == pytest.approx(stop, abs=tol * unit, rel=0.0)

@@ -205,6 +205,9 @@ def goes_straight(
     blurred = q <= _BLURRED * tolerance * speed
     quick = brakes > small / mass / slow and across <= brakes
     quick = quick and (blurred or late <= tolerance * unit)
+    if quick and len(stretch.model.forces.drive) > 0:  # what brakes it may change until then
+        change = excess_at_rest(stretch, t + q / brakes, y)[0] - excess
+        quick = 0.5 * q / brakes * abs(change) <= tolerance * unit * mass * brakes
     if excess > SLACK * stretch.dry.load or not (quick or still):
         return NO_WAY, 0.0
     return way, late

@@ -99,7 +99,7 @@ def with_puck(game: Game, board: SceneSpec, order: Whole, now: float) -> tuple[S
         "hangs": np.vstack([game.hangs, np.zeros_like(new.hangs[:1])]),
         "history": np.vstack([game.history, np.zeros_like(game.history[:1])]),
         "counts": game.counts.copy(),
-        "pace": np.append(np.maximum(game.pace[:2], new.pace[:2]), game.pace[2:]),
+        "pace": np.append(np.maximum(game.pace, new.pace)[:2], [new.pace[2], *game.pace[3:]]),
     }
     before = np.concatenate([[count, GONE], flight])  # until now it was not there
     longer["history"][game.counts[N_HISTORY]] = before

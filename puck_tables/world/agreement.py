@@ -153,6 +153,20 @@ def flight_error(scene: SceneSpec) -> float:
     return min(TABLE_ERROR, scene.tol)
 
 
+def steps_for(scene: SceneSpec) -> float:
+    """What integrated flights may be wrong by, in the same units: of one puck what is asked.
+
+    Impacts of several multiply errors, and those that push each other have to stay in touch.
+
+    Examples
+    --------
+    >>> from puck_tables import Piece, Puck, Scene
+    >>> steps_for(Scene(Puck(0.1), tol=1e-7)), steps_for(Scene(pucks=[Piece(0.1)] * 2, tol=1e-7))
+    (1e-07, 1e-09)
+    """
+    return scene.tol if len(pieces_of(scene)) == 1 else flight_error(scene)
+
+
 def is_integrated(scene: SceneSpec, piece: PieceSpec, friction: float) -> bool:
     """Whether the motion of a puck is integrated, on this friction, also while nothing touches it.
 

@@ -28,9 +28,9 @@ OF_ONE = 0.5
 def error_of(world: World, start: Start) -> float:
     """How far check runs are from a run at its end, and of one puck on the way and in time.
 
-    Their steps are coarser; where anything is looked up, their launches are off by what that may be
-    wrong by, and friction that is integrated by what its table may.  With the rounding of the
-    look-up, for pucks that could slide far.  In units of Q/J and Q²/J.
+    Their steps are coarser; their launches are off by the error of a step, where anything is looked
+    up by what that may be wrong by, and friction that is integrated by what its table may.  With
+    the rounding of the look-up, for pucks that could slide far.  In units of Q/J and Q²/J.
     """
     pieces = pieces_of(start.scene)
     speed, rate = world._game.pace[:2].tolist()
@@ -65,10 +65,11 @@ def error_of(world: World, start: Start) -> float:
 
 
 def _launches_off(start: Start, alone: bool) -> float:
-    """By what share launches of check runs are off: nothing where one puck is integrated."""
+    """By what share launches of check runs are off: of one puck by the error of a step at least."""
     if not alone:
         return flight_error(start.scene)
-    return 0.0 if start.game.floors[:, 2].all() else OF_ONE * flight_error(start.scene)
+    looked_up = 0.0 if start.game.floors[:, 2].all() else OF_ONE * flight_error(start.scene)
+    return max(looked_up, float(start.game.pace[2]))
 
 
 def _otherwise(start: Start, coarser: float, share: float, friction: float) -> Start:

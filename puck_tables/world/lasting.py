@@ -46,7 +46,7 @@ from puck_tables.world.paths import DURATION, FOR_EVER
 from puck_tables.world.paths import START as PIECE_START
 from puck_tables.world.setting_off import MISPLACED, REACHED
 
-_STUCK, _WITHIN = 1e-11, 10.0  # of the scale of speeds, and times the error of a step in it
+STUCK, _WITHIN = 1e-11, 10.0  # of the scale of speeds, and times the error of a step in it
 LONG = 100.0  # times what friction takes, at most: whatever moves then may never stop
 _FAR = 10.0  # times that limit: what a belt carries discs to by then is waited for
 _SLOWEST = 1e-9  # of the largest friction: what brakes less than that does not brake
@@ -59,17 +59,17 @@ ROUND, NEVER_ENDS, LEADS_ON = range(MISPLACED + 1, MISPLACED + 4)
 @inlined
 def at_rest_below(game: Game) -> float:
     """A slip, m/s, that is none: steps end at 1e-12 of the scale; within one less is known."""
-    return max(_STUCK, _WITHIN * game.pace[2]) * game.pace[0]
+    return max(STUCK, _WITHIN * game.pace[2]) * game.pace[0]
 
 
 @inlined
-def _slips_at(game: Game, n: int, t: float, room: Room) -> bool:
-    """Whether the disc of a flight, a row of the history, slips on it at t."""
+def _slip_at(game: Game, n: int, t: float, room: Room) -> float:
+    """The slip, m/s, of the disc of a flight, a row of the history, on it at t."""
     flight = game.history[n]
     i, state = int(flight[0]), room.one
     state_at(int(flight[1]), flight[2:], game.discs[i], game.curves, game.pieces, t, room.work,
              state)  # fmt: skip
-    return least_slip(game, i, state, t) > at_rest_below(game)
+    return least_slip(game, i, state, t)
 
 
 @inlined
@@ -79,8 +79,11 @@ def middle_of(game: Game, n: int) -> float:
     A path that leads from rest to rest slips there.
     """
     flight = game.history[n, 2:]
-    first, last = int(flight[FIRST_PIECE]), int(flight[LAST_PIECE])
-    return game.pieces[(first + last) // 2, PIECE_START]
+    piece, last = int(flight[FIRST_PIECE]), int(flight[LAST_PIECE]) - 1
+    half = 0.5 * (game.pieces[piece, PIECE_START] + game.pieces[last, PIECE_START])
+    while game.pieces[piece, PIECE_START] < half:
+        piece += 1
+    return game.pieces[piece, PIECE_START]
 
 
 @inner
@@ -97,8 +100,11 @@ def moves_on(game: Game, n: int, end: float, room: Room) -> float:
     if kind == PATH:
         driven = game.discs[int(game.history[n, 0]), LIGHTNESS] == 0.0
         end = min(end, flight[UNTIL])
-        middle = min(middle_of(game, n), end)
-        if driven or _slips_at(game, n, middle, room) or _slips_at(game, n, start, room):
+        middle, near, least = middle_of(game, n), at_rest_below(game), STUCK * game.pace[0]
+        if middle >= end:
+            middle, least = end, near
+        slips = _slip_at(game, n, middle, room) > least or _slip_at(game, n, start, room) > near
+        if driven or slips:
             return end
     return -math.inf
 

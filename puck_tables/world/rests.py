@@ -14,7 +14,7 @@ from puck_tables.scene.parts import Floor
 from puck_tables.world import game as g
 from puck_tables.world.flight import GONE, LOOKED_UP, PATH, START, UNTIL
 from puck_tables.world.footing import least_slip
-from puck_tables.world.lasting import at_rest_below, middle_of
+from puck_tables.world.lasting import STUCK, at_rest_below, middle_of
 from puck_tables.world.layout import DECEL, INTEGRATED, LIGHTNESS
 from puck_tables.world.record import flights_of, states_on
 
@@ -44,9 +44,10 @@ def _told(game: g.Game) -> list[Rest]:
     moves: npt.NDArray[np.bool_] = np.logical_not(resting.all(axis=1))
     unsure = np.flatnonzero((kinds == PATH) & ~moves & (starts < ends))  # perhaps rest to rest
     if unsure.size:
-        middles = np.minimum([middle_of(game, n) for n in unsure.tolist()], ends[unsure])
+        middles = np.array([middle_of(game, n) for n in unsure.tolist()])
+        middles = np.where(middles < ends[unsure], middles, starts[unsure])
         there = states_on(game, unsure, middles)
-        moves[unsure] = slips_over(game, discs[unsure], there, middles) > near
+        moves[unsure] = slips_over(game, discs[unsure], there, middles) > STUCK * game.pace[0]
     # none of what is driven, or what nothing can hold
     held = (rows[:, LIGHTNESS] > 0.0) & ((rows[:, DECEL] > 0.0) | (rows[:, INTEGRATED] > 0.0))
     own = np.argsort(discs, kind="stable")

@@ -13,12 +13,12 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import keep_on
 from puck_tables.errors import PuckError
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.agreement import frictions_under, is_integrated, pieces_of
+from puck_tables.world.agreement import flight_error, frictions_under, is_integrated, pieces_of
 from puck_tables.world.bulk import follow_all
 from puck_tables.world.course import FATE, LENGTH, PASSES, PRINT, trace
 from puck_tables.world.floors import has_several
 from puck_tables.world.game import Whole
-from puck_tables.world.prepare import order_of, prepared
+from puck_tables.world.prepare import STEP_SHARE, Start, order_of, prepared
 from puck_tables.world.setting_off import PUSHING, REACHED
 from puck_tables.world.world import World
 
@@ -74,7 +74,7 @@ class Shots:
         self.scene, self.striker, self.velocities = scene, striker, velocities
         self._path = f"puck[{striker}].launch" if scene.pucks else "launch"
         self.until = math.inf if scene.time is None else scene.time
-        start = prepared(scene)
+        start = _finely(scene)
         self._game, self._first, place = start.game, start.states, np.argsort(start.order)
         self._disc = int(place[striker])
         self._watch = int(place[puck]), int(place[through]) if through >= 0 else -1, most
@@ -126,7 +126,7 @@ class Shots:
         """A run in which pucks push each other, or are integrated."""
         prints, marks = np.zeros(len(states), np.int64), np.zeros(len(states), np.int64)
         try:
-            world = World(self.board(start))
+            world = World.since(_finely(self.board(start)))
             for share in (*_SHARES, math.inf):
                 world.advance(min(self.until, share * self._span(start)) - world.time)
                 trace(world._game, *self._watch[:2], prints, marks, course)
@@ -170,3 +170,10 @@ class Shots:
                 same = there.prints == here.prints
                 out[same, column] = moved[same]
         return out
+
+
+def _finely(scene: SceneSpec) -> Start:
+    """The start of runs whose differences are slopes: they step as finely as look-ups are good."""
+    start = prepared(scene.single())
+    start.game.pace[2] = STEP_SHARE * flight_error(scene)
+    return start
