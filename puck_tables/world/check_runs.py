@@ -90,7 +90,7 @@ def _otherwise(start: Start, coarser: float, share: float, friction: float) -> S
     free = (game.discs[:, LIGHTNESS] > 0.0) & (game.discs[:, HOLD] == FREE)
     floor = velocities_under(game, states)[free]
     states[free, VX:] = floor + (states[free, VX:] - floor) @ turned.T
-    game.pace[2] *= coarser
+    game.pace[[2, g.FINE]] *= coarser
     game.discs[:, NORMAL] *= 1.0 + friction
     regions = game.regions._replace(load=game.regions.load * (1.0 + friction))
     return start._replace(game=game._replace(launches=launches, regions=regions), states=states)

@@ -36,7 +36,7 @@ from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.world.alone import acceleration
 from puck_tables.world.footing import over_floor
-from puck_tables.world.game import Game, Whole
+from puck_tables.world.game import FINE, Game, Whole
 from puck_tables.world.holds import response
 from puck_tables.world.layout import (
     ARC,
@@ -177,7 +177,7 @@ def _dies_out(game: Game, i: int, j: int, t: float, row: FloatArray, states: Flo
     if j >= 0:
         way = max(way, _slip2(game, j, states))
     rounded = LOW * (abs(states[i, X]) + abs(states[i, Y]))
-    least = LEAST * game.pace[2] * way / game.pace[1]
+    least = LEAST * game.pace[FINE] * way / game.pace[1]
     height = max(rounded, FLAT * game.discs[i, RADIUS], least)
     if not (closing > 0.0 and un <= 0.0 and un * un <= 2.0 * closing * height):
         return False

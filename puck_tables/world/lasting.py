@@ -73,13 +73,17 @@ def _slip_at(game: Game, n: int, t: float, room: Room) -> float:
 
 
 @inlined
-def middle_of(game: Game, n: int) -> float:
-    """A moment within a path, between two pieces, where its velocities are as good as at its end.
+def middle_of(game: Game, n: int, end: float) -> float:
+    """A moment on a path up to its end, between two pieces, where its velocities are known best.
 
-    A path that leads from rest to rest slips there.
+    A path that leads from rest to rest, or is cut short before it is fast, slips there.
     """
     flight = game.history[n, 2:]
     piece, last = int(flight[FIRST_PIECE]), int(flight[LAST_PIECE]) - 1
+    while last > piece and game.pieces[last, PIECE_START] >= end:
+        last -= 1
+    if piece == last:
+        return game.pieces[last, PIECE_START] + game.pieces[last, DURATION]
     half = 0.5 * (game.pieces[piece, PIECE_START] + game.pieces[last, PIECE_START])
     while game.pieces[piece, PIECE_START] < half:
         piece += 1
@@ -100,11 +104,9 @@ def moves_on(game: Game, n: int, end: float, room: Room) -> float:
     if kind == PATH:
         driven = game.discs[int(game.history[n, 0]), LIGHTNESS] == 0.0
         end = min(end, flight[UNTIL])
-        middle, near, least = middle_of(game, n), at_rest_below(game), STUCK * game.pace[0]
-        if middle >= end:
-            middle, least = end, near
-        slips = _slip_at(game, n, middle, room) > least or _slip_at(game, n, start, room) > near
-        if driven or slips:
+        if driven or _slip_at(game, n, start, room) > at_rest_below(game):
+            return end
+        if _slip_at(game, n, middle_of(game, n, end), room) > STUCK * game.pace[0]:
             return end
     return -math.inf
 

@@ -27,7 +27,7 @@ from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.stretches import belts_of
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.world import layout
-from puck_tables.world.agreement import pieces_of, start_of, steps_for
+from puck_tables.world.agreement import flight_error, pieces_of, start_of, steps_for
 from puck_tables.world.departures import drive_on, hang_over, room_for
 from puck_tables.world.drive import pieces_along, rows_of
 from puck_tables.world.flight import (
@@ -178,7 +178,7 @@ def prepared(scene: SceneSpec, order: Whole | None = None) -> Start:
         history=np.zeros((ROWS + 4 * count, HISTORY_COLUMNS)),
         works=np.zeros((steps, WORK_COLUMNS)),
         counts=np.zeros(COUNTS, np.int64),
-        pace=np.array([0.0, 0.0, STEP_SHARE * steps_for(scene), 0.0, 0.0]),
+        pace=STEP_SHARE * np.array([0.0, 0.0, steps_for(scene), 0.0, 0.0, flight_error(scene)]),
     )
     for i in range(count):
         lay_down(game, i, states[i])

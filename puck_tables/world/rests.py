@@ -44,8 +44,7 @@ def _told(game: g.Game) -> list[Rest]:
     moves: npt.NDArray[np.bool_] = np.logical_not(resting.all(axis=1))
     unsure = np.flatnonzero((kinds == PATH) & ~moves & (starts < ends))  # perhaps rest to rest
     if unsure.size:
-        middles = np.array([middle_of(game, n) for n in unsure.tolist()])
-        middles = np.where(middles < ends[unsure], middles, starts[unsure])
+        middles = np.array([middle_of(game, n, ends[n]) for n in unsure.tolist()])
         there = states_on(game, unsure, middles)
         moves[unsure] = slips_over(game, discs[unsure], there, middles) > STUCK * game.pace[0]
     # none of what is driven, or what nothing can hold

@@ -13,12 +13,12 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import keep_on
 from puck_tables.errors import PuckError
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.agreement import flight_error, frictions_under, is_integrated, pieces_of
+from puck_tables.world.agreement import frictions_under, is_integrated, pieces_of
 from puck_tables.world.bulk import follow_all
 from puck_tables.world.course import FATE, LENGTH, PASSES, PRINT, trace
 from puck_tables.world.floors import has_several
-from puck_tables.world.game import Whole
-from puck_tables.world.prepare import STEP_SHARE, Start, order_of, prepared
+from puck_tables.world.game import FINE, Whole
+from puck_tables.world.prepare import Start, order_of, prepared
 from puck_tables.world.setting_off import PUSHING, REACHED
 from puck_tables.world.world import World
 
@@ -175,5 +175,5 @@ class Shots:
 def _finely(scene: SceneSpec) -> Start:
     """The start of runs whose differences are slopes: they step as finely as look-ups are good."""
     start = prepared(scene.single())
-    start.game.pace[2] = STEP_SHARE * flight_error(scene)
+    start.game.pace[2] = start.game.pace[FINE]
     return start

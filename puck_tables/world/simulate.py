@@ -209,5 +209,5 @@ def _close_enough(scene: SceneSpec, moments: FloatArray | None) -> _Done:
 
 def _late(world: World) -> float:
     """How long, in units of Q/J, the rebounds of one puck would have lasted that died out."""
-    speed, rate, *_, late = world._game.pace.tolist()
+    speed, rate, *_, late, _ = world._game.pace.tolist()
     return late * rate / speed if len(world.names) == 1 else 0.0
