@@ -3,7 +3,7 @@
 A law is a small class.  What the engine needs of it is a row of numbers, the first of which says
 whose formula holds (:mod:`puck_tables.scene.restitution_at`).  A plain number is the law of Newton,
 restitution that does not depend on speed.  Whatever the law, what happens along the rims is
-Walton's (tangential restitution and Coulomb's friction, see :mod:`puck_tables.world.impact`).
+Walton's (tangential restitution and Coulomb's friction, see :mod:`puck_tables.motion.impact_law`).
 """
 
 from __future__ import annotations
