@@ -282,15 +282,15 @@ def _wall_at(lines: Sequence[Line], kink: Kink, radius: float) -> tuple[int, Wal
 
 
 _DECELS = (0.5, 0.62, 0.77, 1.0, 1.3, 1.65)  # times the one that was found
-_DELTAS = (0.05, 0.2, 0.5)
+_DELTAS = (0.05, 0.2, 0.5)  # δ to begin from
 _RATIOS = (0.2, 0.8, 2.0)  # rω/v, of either sign
-_MODERATE = 4.0
+_MODERATE = 4.0  # rω/v: the width of the prior of spins, of which few frames tell nothing
 _STEPS = ((2, 4), (8, 3))  # and how many spins then go on
-_FRAMES = 40
+_FRAMES = 40  # to which those spins are fitted: enough for a start
 _CLOSE = 60.0  # what another spin of a slide may cost more
 _ALIKE = 0.15  # of v/r: spins so near are one
 _EACH = 6  # ways of one friction
-_LEAST_SPEED = 1e-6
+_LEAST_SPEED = 1e-6  # m/s, that is divided by
 
 Option = tuple[float, FloatArray]
 

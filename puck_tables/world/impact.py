@@ -60,10 +60,10 @@ LOW = 1e-14  # of the places: as these, whose height is rounding,
 LEAST = 1e-2  # and of the error of a step, in units of Q²/J
 LASTING = 0.99  # of the rebound before, at most: so long is the next one taken to be
 PRESSED = 1e-3  # of the scale of accelerations: what presses less brings no rebounds to an end
-MOST_ROUNDS = 2_000
+MOST_ROUNDS = 2_000  # at one moment: ten times those after which turns are resolved together
 TURNS = 200  # rounds after which contacts that take turns are resolved together, with e = 0
-_MOST_ITERATIONS = 50_000
-_SOLVED = 1e-15
+_MOST_ITERATIONS = 50_000  # sweeps over all contacts: beyond, the impulses are not found
+_SOLVED = 1e-15  # of the largest impulse: what changes by less is rounding
 
 
 @inlined
