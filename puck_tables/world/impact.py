@@ -6,8 +6,8 @@ it is that at u_n, in every round anew.
 
 Of discs that touch, those contacts that approach are resolved, then those that approach then, and
 so on: a row of pucks passes an impact on, as if there were gaps between them (after 200 rounds
-those that take turns are resolved together with e = 0; those that are squeezed at once, also with
-β = 0).  Contacts of one round that share a disc are resolved together: the impulses for e = β = 0
+those that take turns are resolved together with e = β = 0; those that are squeezed at once).
+Contacts of one round that share a disc are resolved together: the impulses for e = β = 0
 (P_n ≥ 0) are found by an iteration that treats all alike, then enlarged by 1 + e and 1 + β, as
 Poisson has it, and lessened together should energy grow.  So no numbering matters, and what is
 symmetric stays so.
@@ -52,6 +52,8 @@ ONE, OTHER = 15, 16
 CROSS = 17  # how much a unit of one impulse changes what the other one is against: of what is led
 CONTACT_COLUMNS = 18
 
+# of ACTS besides 0 and 1: rims that nothing presses grip nothing in this round; or do, after all
+ASIDE, BACK, FOR_GOOD = -1.0, -2.0, 2.0
 NO_END, TOO_FAST = -1, -2  # how impacts fail: rounds without end; faster than a table goes
 
 NEGLIGIBLE = 1e-13  # of the scale of speeds: an approach as slow is none
@@ -78,6 +80,12 @@ def approach(
         vy -= states[j, VY]
         rim += game.discs[j, RADIUS] * states[j, SPIN]
     return along_normal(vx, vy, rim, nx, ny)
+
+
+@inlined
+def was_hit(row: FloatArray) -> bool:
+    """Whether a contact has had an impulse; rims without bound may have one along them alone."""
+    return row[SUM_N] > 0.0 or row[SUM_T] != 0.0
 
 
 @inlined
@@ -288,30 +296,44 @@ def _shared_out(
     return False
 
 
+@inlined
+def _is_idle(row: FloatArray) -> bool:
+    """Whether rims grip that nothing presses, though not for good."""
+    return row[ACTS] == 1.0 and row[PN] == 0.0 and row[PT] != 0.0
+
+
 @inner
 def _together(
     game: Game, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
-    states: FloatArray, weight: float,
+    states: FloatArray, weight: float, last: bool,
 ) -> bool:  # fmt: skip
     """The law for contacts that share discs, at most 1/weight each, or bear on what is led.
 
     A rim without bound on its friction does not grip where nothing presses it in the end: such a
-    contact takes no part in this round.  Whether impulses were found.
+    contact takes no part in this round; ``last``: unless then it would approach.  Whether impulses
+    were found.
     """
     again, solved = True, True
     while again:
         solved = _shared_out(game, contacts, count, rows, before, states, weight)
-        pressed, idle = 0, 0
+        pressed, idle, again = False, False, False
         for n in range(count):
-            if rows[n, ACTS] > 0.0:
-                pressed += rows[n, PN] > 0.0
-                idle += rows[n, PN] == 0.0 and rows[n, PT] != 0.0
-        again = pressed > 0 and idle > 0
+            row = rows[n]
+            pressed = pressed or (row[ACTS] > 0.0 and row[PN] > 0.0)
+            idle = idle or _is_idle(row)
+            if last and row[ACTS] == ASIDE:
+                un, _ = approach(game, contacts[n, 0], contacts[n, 1], row[NX], row[NY], states)
+                if un > NEGLIGIBLE * game.pace[0]:
+                    row[ACTS], again = BACK, True
+        again = again or (pressed and idle)
         if again:
             _recall(game, contacts, count, rows, before, states)
             for n in range(count):
-                if rows[n, ACTS] > 0.0 and rows[n, PN] == 0.0 and rows[n, PT] != 0.0:
-                    rows[n, ACTS] = rows[n, PT] = 0.0
+                row = rows[n]
+                if row[ACTS] == BACK:
+                    row[ACTS] = FOR_GOOD
+                elif _is_idle(row):
+                    row[ACTS], row[PT] = ASIDE, 0.0
     gain, cost = 0.0, 0.0
     for n in range(count):
         rows[n, PN] *= 1.0 + rows[n, E]
@@ -395,13 +417,14 @@ def collide(
                         before[j, column] = states[j, column]
         if acting == 0:
             return turn
-        if turn >= TURNS or squeezed:  # such as of a light disc between a heavy one and a wall
+        last = turn >= TURNS or squeezed
+        if last:  # such as of a light disc between a heavy one and a wall
             for n in range(count):
                 row, i, j = rows[n], contacts[n, 0], contacts[n, 1]
                 un, _ = approach(game, i, j, row[NX], row[NY], states)
-                if row[SUM_N] > 0.0 or (squeezed and un >= -HARDLY * game.pace[0]):
+                if was_hit(row) or (squeezed and un >= -HARDLY * game.pace[0]):
                     row[ACTS], row[E], row[ONE], row[OTHER] = 1.0, 0.0, 0.0, 0.0
-                    if squeezed and row[BETA] > -1.0:
+                    if row[BETA] > -1.0:
                         row[BETA] = 0.0  # rims that are pressed, as in a contact that lasts
                     for column in range(VX, SPIN + 1):
                         before[i, column] = states[i, column]
@@ -419,7 +442,7 @@ def collide(
                     if rows[n, ACTS] > 0.0:
                         _alone(game, contacts[n, 0], contacts[n, 1], rows[n], states)
             else:
-                solved = _together(game, contacts, count, rows, before, states, 1.0 / most)
+                solved = _together(game, contacts, count, rows, before, states, 1.0 / most, last)
                 if not solved and _is_driven(game, contacts, count):
                     return NO_END  # it squeezes somebody: no impulses would do
             again = False
