@@ -62,7 +62,7 @@ if TYPE_CHECKING:
         Strips,
         Wall,
     )
-    from puck_tables.scene.pieces import Arc, Line, Pocket, Post, Rim
+    from puck_tables.scene.pucks_and_posts import Arc, Line, Pocket, Post, Rim
     from puck_tables.scene.restitution import Plastic, RestitutionTable, Viscoelastic
     from puck_tables.scene.run import Run
     from puck_tables.stopping.aim_at_targets import Aim
@@ -78,7 +78,7 @@ if TYPE_CHECKING:
     from puck_tables.world.aimed import BoardAim
     from puck_tables.world.map import Map
     from puck_tables.world.sample import Sample
-    from puck_tables.world.scene import Piece, Scene
+    from puck_tables.world.scene import Scene
     from puck_tables.world.world import World
     from puck_tables.world.worlds import Worlds
     from puck_tables.wrench.friction_hold import Hold
@@ -111,7 +111,7 @@ _HOMES = {  # names of this package by the modules that hold them
     "scene.driven": "path_along",
     "scene.parts": "Constraint Drag Edge Floor Force Grip Lateral Launch Orthotropic Patch Strips "
     "Wall",
-    "scene.pieces": "Arc Line Pocket Post Rim",
+    "scene.pucks_and_posts": "Arc Line Pocket Post Rim",
     "scene.restitution": "Plastic RestitutionTable Viscoelastic",
     "scene.run": "Run",
     "stopping.aim_at_targets": "Aim",
@@ -127,7 +127,7 @@ _HOMES = {  # names of this package by the modules that hold them
     "world.aimed": "BoardAim",
     "world.map": "Map",
     "world.sample": "Sample",
-    "world.scene": "Piece Scene",
+    "world.scene": "Scene",
     "world.world": "World",
     "world.worlds": "Worlds",
     "wrench.friction_hold": "Hold",
@@ -140,7 +140,7 @@ __all__ = [
     "ClusterError", "Comparison", "Constraint", "ContactError", "CurlingLaw", "Drag", "Edge", "Fit",
     "Floor", "FloorFriction", "Force", "Forecast", "Grip", "Hold", "InputError", "Lateral",
     "Launch", "Law", "LimitSurface", "Line", "Map", "MissingExtraError", "Normal", "Orthotropic",
-    "OutputError", "Patch", "Piece", "Plastic", "Pocket", "Post", "PowerLaw", "Puck", "PuckError",
+    "OutputError", "Patch", "Plastic", "Pocket", "Post", "PowerLaw", "Puck", "PuckError",
     "Push", "RestitutionTable", "Result", "Rim", "Run", "Sample", "Scene", "Source", "SpeedLaw",
     "States", "StopMap", "StopSample", "Stops", "StribeckLaw", "Strips", "Table", "TableError",
     "Track", "Trajectory", "Uniform", "Viscoelastic", "Wall", "World", "Worlds", "__version__",

@@ -18,7 +18,6 @@ from puck_tables import (
     InputError,
     Launch,
     Patch,
-    Piece,
     Puck,
     Scene,
     StribeckLaw,
@@ -382,7 +381,7 @@ def test_a_block_holds_on_a_slope_to_its_angle_of_friction() -> None:
 
 
 def test_a_stone_on_a_running_band_meets_a_wall_by_its_rim() -> None:
-    stone = Piece(
+    stone = Puck(
         0.14, base="annulus:0.065x0.06", friction=0.1, gyration=0.1, restitution=0.8,
         launch=Launch(velocity=(1.0, 0.0), spin=2.0), name="stone",
     )  # fmt: skip

@@ -30,7 +30,7 @@ ROOMS = {
     "trajectory": "_core accuracy errors io motion result stopping table",
     "scene": "_core bulk contact errors io kernels motion result stopping table trajectory",
     "wrench": "_core contact errors io kernels motion result scene",
-    "verbs_of_many": "_core bulk contact errors motion stopping table",
+    "verbs_of_many": "_core bulk contact errors scene stopping table",
     "puck": "motion stopping table trajectory verbs_of_many wrench",
     "world": "_core bulk contact errors io kernels motion puck result scene stopping table",
     "film": "_core errors io",
@@ -45,7 +45,7 @@ ROOMS = {
     "table world",
     "plot": "_core _version accuracy bulk chetaev errors film fitting io motion reference "
     "result scene stopping tradeoff trajectory world wrench",
-    "gym": "_core contact errors plot scene world",
+    "gym": "_core contact errors plot puck scene world",
     "cli": "_core _version accuracy bulk chetaev contact errors explore export film fitting io "
     "kernels motion plot puck reference result scene stopping table tradeoff trajectory warming "
     "world",

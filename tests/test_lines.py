@@ -11,7 +11,7 @@ from click.testing import CliRunner
 from puck_tables.cli.main import main
 
 import puck_tables as pt
-from puck_tables import Floor, InputError, Launch, Line, Piece, Puck, Scene, Wall
+from puck_tables import Floor, InputError, Launch, Line, Puck, Scene, Wall
 
 DECEL = 0.1 * 9.80665  # of the puck below
 HOG = Line((0.5, -1.0), (0.5, 1.0), name="hog")
@@ -116,8 +116,8 @@ def test_all_that_passes_is_told_and_nothing_else(kind: str):
 
 def test_a_world_tells_the_same_in_parts_and_in_copies():
     pieces = [
-        Piece(0.03, friction=0.1, launch=Launch((1.4, 0.1), 20.0, (-0.5, 0.0))),
-        Piece(0.03, friction=0.1, launch=Launch(position=(0.0, 0.0))),
+        Puck(0.03, friction=0.1, launch=Launch((1.4, 0.1), 20.0, (-0.5, 0.0))),
+        Puck(0.03, friction=0.1, launch=Launch(position=(0.0, 0.0))),
     ]
     goal = Line((0.3, 1.0), (0.3, -1.0), name="goal")
     scene = Scene(pucks=pieces, lines=[goal, Line(centre=(0.0, 0.0), radius=0.2)])

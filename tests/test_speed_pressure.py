@@ -257,16 +257,16 @@ def test_a_tall_puck_under_any_pressure_is_what_its_equations_say(pressure):
 
 def test_pucks_of_several_loads_slide_on_one_law_each_as_alone():
     kinds = [
-        pt.Piece(0.05, launch=pt.Launch(position=(0.0, 0.0), velocity=(0.8, 0.0), spin=9.0)),
-        pt.Piece(
+        pt.Puck(0.05, launch=pt.Launch(position=(0.0, 0.0), velocity=(0.8, 0.0), spin=9.0)),
+        pt.Puck(
             0.05, pressure="ring",
             launch=pt.Launch(position=(0.0, 1.0), velocity=(0.7, 0.0), spin=-5.0),
         ),
-        pt.Piece(
+        pt.Puck(
             0.06, base="annulus:0.05x0.04", height=0.04,
             launch=pt.Launch(position=(0.0, 2.0), velocity=(0.8, 0.1), spin=9.0),
         ),
-        pt.Piece(
+        pt.Puck(
             0.12, base="box:0.1x0.1",
             launch=pt.Launch(position=(0.0, 3.0), velocity=(0.8, 0.1), spin=9.0),
         ),
