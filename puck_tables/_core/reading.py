@@ -69,7 +69,7 @@ def read_part(
     ``made``: what is made of the fields of ``kind``, which it has too.
     """
     if isinstance(data, kind):
-        given = entries_in(data)
+        given = entries_in(data, specs(made or kind))
         if (
             isinstance(data, made or kind)
             and "_checked" in vars(data)
@@ -107,12 +107,16 @@ def mark_checked(part: Any) -> None:
     object.__setattr__(part, "_checked", True)
 
 
-def entries_in(part: Any) -> dict[str, Any]:
-    """The values of a dataclass by their names in tables; defaults are left out."""
+def entries_in(part: Any, names: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    """The values of a dataclass by their names in tables; what is left at its default is left out.
+
+    Fields that are not among ``names``, if these are given, are told of whatever they hold.
+    """
     return {
         name: value
         for name, spec in specs(type(part)).items()
         if (value := getattr(part, spec.name)) is not spec.default
+        or (names is not None and name not in names)
     }
 
 
