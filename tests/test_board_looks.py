@@ -17,12 +17,13 @@ from matplotlib.patches import Circle
 from PIL import Image
 from scipy.integrate import solve_ivp
 
-from puck_tables import Edge, Floor, InputError, Launch, Post, Puck, Scene, Trajectory, Wall
+from puck_tables import Edge, Floor, InputError, Launch, Post, Puck, Scene, Wall
 from puck_tables._core.colours import brightness, is_colour
 from puck_tables.errors import MissingExtraError, OutputError
 from puck_tables.plot.animation import PALETTE, between, colour_of, film_of, path_of
 from puck_tables.plot.movie import page
 from puck_tables.plot.style import RED
+from puck_tables.results import Trajectory
 
 BOARDS = ("carrom-break", "crokinole", "curling-take-out", "air-hockey-mallet", "newtons-row")
 

@@ -17,11 +17,13 @@ DECEL = 0.1 * 9.80665  # of the puck below
 HOG = Line((0.5, -1.0), (0.5, 1.0), name="hog")
 
 
-def slide(*lines: Line, velocity: tuple[float, float] = (1.5, 0.0), **more: object) -> pt.Run:
+def slide(
+    *lines: Line, velocity: tuple[float, float] = (1.5, 0.0), **more: object
+) -> pt.results.Run:
     return Scene(Puck(0.05, friction=0.1), launch=Launch(velocity), lines=lines, **more).simulate()
 
 
-def passed(run: pt.Run) -> list[tuple[str, str]]:
+def passed(run: pt.results.Run) -> list[tuple[str, str]]:
     return [(event.what, event.partner) for event in run.events if event.what != "stick"]
 
 

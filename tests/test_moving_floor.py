@@ -28,7 +28,7 @@ def shakes(rate: float, turns: int = 3) -> pt.Floor:
     return pt.Floor(over_time=rows)
 
 
-def run_of(puck: pt.Puck, floor: pt.Floor, **parts: Any) -> pt.Run:
+def run_of(puck: pt.Puck, floor: pt.Floor, **parts: Any) -> pt.results.Run:
     run = pt.Scene(puck, floor, **parts).simulate([0.0])
     assert abs(run.energy_residual) < 1e-9
     return run

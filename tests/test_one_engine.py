@@ -66,7 +66,7 @@ def test_a_far_post_changes_nothing(first: int, tmp_path: Path):
         assert apart(now, before).max() < 1.0, seed
 
 
-def told(run: pt.Run, length: float) -> list[tuple[Any, ...]]:
+def told(run: pt.results.Run, length: float) -> list[tuple[Any, ...]]:
     """The events of a run but those at walls and at its start."""
     return [
         (event.what, event.partner, event.time, event.x / length, event.y / length)

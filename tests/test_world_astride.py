@@ -48,7 +48,7 @@ FLOORS = {
 }  # fmt: skip
 
 
-def entered(run: pt.Run) -> list[tuple[str, float]]:
+def entered(run: pt.results.Run) -> list[tuple[str, float]]:
     """What happened to the first puck on the floor."""
     found = [event for event in run.events if event.what in ("entry", "exit")]
     return [(e.what, e.time) for e in found if e.puck == "puck 0"]

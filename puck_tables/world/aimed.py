@@ -34,7 +34,7 @@ class BoardAim(Result):
     Arrays (n,), the least sensitive first: ``launch_spin`` rad/s, ``launch_vx``, ``launch_vy``,
     ``launch_speed`` m/s, ``launch_heading`` rad; of a run of the whole board with each:
     ``stop_time`` s, ``miss`` m (of a pocket 0: it falls in), ``end_error`` m, as
-    :class:`puck_tables.Run` has it, ``impacts`` that lead there, and ``courses``
+    :class:`puck_tables.results.Run` has it, ``impacts`` that lead there, and ``courses``
     in words.  Of a target: ``per_degree``, ``per_percent`` m, how far the end moves per degree of
     heading and per cent of speed.  Of a pocket: ``heading_width`` rad and ``speed_width`` m/s (or
     ``spin_width`` rad/s), the intervals through the launch from which the puck falls in.
