@@ -116,7 +116,7 @@ def remove_dead(folder: Path) -> None:
 
 @cache
 def remove_dead_once(folder: Path) -> None:
-    """The same, once in a process: a folder may be large, and written to often."""
+    """Remove the parts of the dead once in a process: a folder may be large, written to often."""
     remove_dead(folder)
 
 

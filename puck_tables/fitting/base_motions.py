@@ -48,7 +48,7 @@ class BaseMotions(UnitMotions):
         self.highest = (4.0 - 1e-12) * base.highest_lever / base.reach  # a puck of it is one, too
 
     def facing(self, angle: float) -> Self:
-        """The same, standing otherwise at the launch."""
+        """Motions of a base that stands at an angle (rad) at the launch."""
         found = copy(self)
         found.angle = angle
         return found

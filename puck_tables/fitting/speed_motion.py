@@ -42,7 +42,7 @@ from puck_tables.kernels.speed_quadrature_kernel import COARSE, integrals_at
 
 _STEP, _LARGEST, _STEPS = 0.08, 0.32, 440  # of s, of which friction alone takes about 50
 _REST = 1e-4  # of the slip at the launch: what is left of the path is the square of it
-_ROOM = 48
+_ROOM = 48  # edges of panels, besides those at corners of the law
 _NEARBY = 1e-5  # of ratios and of slip speeds: so close integrals are differenced
 AHEAD, ASIDE, RIM, X, Y, TURN, TIME = range(7)  # speeds along x and y, of the rim; place, angle
 # of a slide: one friction for all speeds, 0: the law; 2h/r; over the gyration squared; drags, push

@@ -71,7 +71,7 @@ def local_friction(law: Ellipse, ex: float, ey: float) -> tuple[float, float]:
 
 @inlined
 def _friction_along(law: Ellipse, ex: float, ey: float) -> tuple[float, float]:
-    """The same, in the axes in which the ellipse is turned."""
+    """What keeps an element of the load 1 slipping along (ex, ey), in axes of the base."""
     c, s = law.cosine, law.sine
     one, two = local_friction(law, c * ex + s * ey, c * ey - s * ex)
     return c * one - s * two, s * one + c * two

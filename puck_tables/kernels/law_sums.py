@@ -34,7 +34,7 @@ from puck_tables.kernels.polygon_sums import (
     ray_to,
 )
 
-_POWERS = DEGREE + 1
+_POWERS = DEGREE + 1  # coefficients of a moment on a piece
 
 
 @inlined

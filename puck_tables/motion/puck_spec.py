@@ -272,7 +272,7 @@ class PuckSpec:
 
     @property
     def limit_epsilon(self) -> float:
-        """The same as ε = v/(rω), as several papers write it.
+        """The limit ratio as ε = v/(rω), as several papers write it.
 
         Examples
         --------
@@ -295,7 +295,7 @@ class PuckSpec:
             )
 
     def arguments(self) -> dict[str, Any]:
-        """As the functions over arrays of pucks take it."""
+        """Keyword arguments of functions over arrays of pucks."""
         self.refuse_unless_free()
         return {
             "delta": self.delta, "decel": self.decel, "radius": self.radius,

@@ -304,7 +304,7 @@ def path_of(body: MovingDisc, until: float = math.inf) -> FloatArray:
 
 
 def _knots(states: FloatArray, radius: float, unseen: float) -> FloatArray:
-    """As few of the states as tell the others to what is not seen, on a rim the angle included."""
+    """The fewest states that tell the others to what is not seen, on a rim the angle included."""
     sudden = np.flatnonzero(_leaps(states))  # the states just before
     chosen = {0, len(states) - 1, *sudden.tolist(), *(sudden + 1).tolist()}
     waiting = list(itertools.pairwise(sorted(chosen)))

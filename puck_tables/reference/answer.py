@@ -58,7 +58,7 @@ class Answer(Result):
     picture: ClassVar[str] = "reference"
 
     def __call__(self, times: npt.ArrayLike) -> Answer:
-        """The same case with its states at other times, s, ≥ 0, in any order.
+        """The answer with its states at other times, s, ≥ 0, in any order.
 
         Raises
         ------

@@ -12,7 +12,7 @@ from puck_tables._core.real import positive
 from puck_tables.errors import InputError
 from puck_tables.scene.parts import Rows
 
-MOST_ROWS = 100_000
+MOST_ROWS = 100_000  # of a path: more is no smooth function, or too fine an accuracy
 _FIRST = 64  # intervals at first
 _LOOKED_AT = (0.5, 0.2265, 0.7149)  # of an interval: no multiples of one another
 _SHORTEST = 1e-9  # of the whole time: what happens faster is a jump

@@ -47,10 +47,10 @@ from puck_tables.scene.ingredients import (
 )
 from puck_tables.scene.over_time import has_factors
 
-SIZE = 10
+SIZE = 10  # numbers that are integrated: six of the state, the four works
 GIVEN, DRY, VISCOUS, SUPPORT = range(6, SIZE)
 LAMBDA = SIZE  # the two multipliers follow the state; they are not integrated
-ROW = SIZE + 2
+ROW = SIZE + 2  # with the multipliers
 # rows; plain numbers would compile ``rates`` once for each
 FIRST, SECOND = cast(int, np.int64(0)), cast(int, np.int64(1))
 

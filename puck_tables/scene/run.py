@@ -110,9 +110,9 @@ class Run(TimedResult):
     picture: ClassVar[str] = "run"
 
     def __call__(self, times: npt.ArrayLike) -> Run:
-        """The same run with its states at other times, s, ascending.
+        """The run with its states at other times, s, ascending.
 
-        Those after its end are left out, unless all rests there.
+        Times after its end are left out, unless all rests there.
 
         Raises
         ------

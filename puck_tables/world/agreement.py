@@ -24,7 +24,7 @@ from puck_tables.world.drive import rows_of
 TOUCH = 1e-12  # of the radius: pucks that overlap less touch
 CUSHIONS = ("wall", "post", "arc")  # what rims may meet besides pucks
 TABLE_ERROR = 1e-9  # of looked-up states: of places in Q²/J, of velocities in Q
-_SMALLEST, _LARGEST = 1e-100, 1e100
+_SMALLEST, _LARGEST = 1e-100, 1e100  # m, kg: squares of both are numbers
 
 
 def pucks_of(scene: SceneSpec) -> tuple[ScenePuck, ...]:

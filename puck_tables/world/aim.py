@@ -21,7 +21,7 @@ from puck_tables.world.shots import Shots
 from puck_tables.world.solving import stops_at
 from puck_tables.world.targets import Target, lying_there, out_of_reach, target_of, without_pocket
 
-MOST_COUNT, MOST_IMPACTS, MOST_SPINS = 1000, 20, 1000
+MOST_COUNT, MOST_IMPACTS, MOST_SPINS = 1000, 20, 1000  # launches, impacts of one, spins asked for
 PLENTY = 3.0  # the greatest speed over that which slides the whole way
 PLENTY_SPIN = 2.0  # the greatest rim speed over the speed
 _LEAST = 1e-6  # of the greatest speed

@@ -36,7 +36,7 @@ from puck_tables.world.paths import DURATION, START, jerk_on, on_piece, piece_at
 _JERK = 2.4  # J² v/Q² while Q is more than half of what it was: 4 times 0.5, and some more
 _HALF = 0.375  # Q/J, in which Q falls by half at most
 _UNSURE = 1e-9  # of accelerations that are looked up
-_HALVINGS = 60
+_HALVINGS = 60  # of an interval by its logarithm: 17 take 30 decades to a thousandth
 
 
 @inlined

@@ -45,7 +45,6 @@ from puck_tables.world.paths import on_piece
 
 SHORT_OF = 1e-9  # of its radius: so far from cushions stops what is led, and never presses them
 _OFF = 1e-9  # of its radius: farther off its constraint a puck cannot be put
-_FULL_TURN = 2.0 * math.pi
 
 
 def led_state(game: Game, i: int) -> FloatArray:
@@ -124,7 +123,7 @@ def _free_for(obstacles: FloatArray, radius: float, state: FloatArray) -> float:
             elif row[KIND] == ARC and speed2 > 0.0 and math.hypot(dx, dy) < row[C]:
                 out = max((math.sqrt(max(root, 0.0)) - along) / speed2, 0.0)
                 angle = math.atan2(dy + out * vy, dx + out * vx)
-                if row[SPAN] >= _FULL_TURN or in_span(angle, row[FROM], row[SPAN]):
+                if row[SPAN] >= 2.0 * math.pi or in_span(angle, row[FROM], row[SPAN]):
                     longest = min(longest, out)
     return longest
 

@@ -52,12 +52,12 @@ from puck_tables.world.paths import on_piece, piece_at
 STILL, LOOKED_UP, DAMPED, PATH, GONE, CARRIED = range(6)
 
 KNOWN = LAUNCH_COLUMNS  # before it the launch: vx, vy, ω, δ, J, r
-START = LAUNCH_COLUMNS + LAUNCH_ROWS
+START = LAUNCH_COLUMNS + LAUNCH_ROWS  # s, when; behind what is known of the launch
 PLACE_X, PLACE_Y, ANGLE, UNTIL, FASTEST, STRONGEST = range(START + 1, START + 7)
-FIRST_PIECE, LAST_PIECE = START + 7, START + 8
+FIRST_PIECE, LAST_PIECE = START + 7, START + 8  # of its path, of all pieces of the game
 OFF_X, OFF_Y, OFF_ANGLE = range(START + 9, START + 12)  # what the look-up says just after the start
 DRIFT_X, DRIFT_Y = START + 12, START + 13  # velocity of the belt on which it moves or rests
-FLIGHT_COLUMNS = START + 14
+FLIGHT_COLUMNS = START + 14  # all
 
 ROOM = 9  # numbers to work in: a piece of a path
 _SOON = 1e-16  # of the time until rest

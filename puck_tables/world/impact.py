@@ -1,17 +1,8 @@
 """Impacts: of two discs, of a disc and an obstacle, and of as many at once as touch.
 
-With n from the disc i to its partner j, t = n turned by +90°, e, β and μ of the pair,
-
-    u_n = (v_i − v_j)·n,   u_t = (v_i − v_j)·t + R_i ω_i + R_j ω_j,
-    1/m_n = 1/m_i + 1/m_j,   1/m_t = 1/m_n + R_i²/I_i + R_j²/I_j,
-    P_n = (1 + e) m_n u_n,   P_t = (1 + β) m_t u_t, at most μ P_n in size,
-    v_i −= (P_n n + P_t t)/m_i,   v_j += …/m_j,   ω_i −= R_i P_t/I_i,   ω_j −= R_j P_t/I_j:
-
-restitution e and tangential restitution β (−1: smooth, 0: the rims stop on each other, 1: their
-slip reverses) after Walton 1993, with Coulomb's friction μ.  An obstacle has no 1/m and no 1/I.
-The energy lost is ½ m_n (1 − e²) u_n² with ½ m_t (1 − β²) u_t², or where the rims
-slide μ P_n |u_t| − P_t²/2m_t; never less than nothing.  Where e falls with speed it is that at u_n
-(:mod:`puck_tables.world.rims`), in every round anew.
+A contact follows the law of :mod:`puck_tables.motion.impact_law`, with restitution e, tangential
+restitution β and friction μ of its pair (:mod:`puck_tables.world.rims`); where e falls with speed
+it is that at u_n, in every round anew.
 
 Of discs that touch, those contacts that approach are resolved, then those that approach then, and
 so on: a row of pucks passes an impact on, as if there were gaps between them (after 200 rounds
@@ -33,6 +24,7 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
+from puck_tables.motion.impact_law import along_normal, impulses
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.world.alone import acceleration
 from puck_tables.world.footing import over_floor
@@ -68,10 +60,10 @@ LOW = 1e-14  # of the places: as these, whose height is rounding,
 LEAST = 1e-2  # and of the error of a step, in units of Q²/J
 LASTING = 0.99  # of the rebound before, at most: so long is the next one taken to be
 PRESSED = 1e-3  # of the scale of accelerations: what presses less brings no rebounds to an end
-MOST_ROUNDS = 2_000
+MOST_ROUNDS = 2_000  # at one moment: ten times those after which turns are resolved together
 TURNS = 200  # rounds after which contacts that take turns are resolved together, with e = 0
-_MOST_ITERATIONS = 50_000
-_SOLVED = 1e-15
+_MOST_ITERATIONS = 50_000  # sweeps over all contacts: beyond, the impulses are not found
+_SOLVED = 1e-15  # of the largest impulse: what changes by less is rounding
 
 
 @inlined
@@ -85,7 +77,7 @@ def approach(
         vx -= states[j, VX]
         vy -= states[j, VY]
         rim += game.discs[j, RADIUS] * states[j, SPIN]
-    return vx * nx + vy * ny, vy * nx - vx * ny + rim
+    return along_normal(vx, vy, rim, nx, ny)
 
 
 @inlined
@@ -243,13 +235,10 @@ def _push_all(
 
 
 @inlined
-def _alone(game: Game, i: int, j: int, row: FloatArray, states: FloatArray, e: float) -> None:
+def _alone(game: Game, i: int, j: int, row: FloatArray, states: FloatArray) -> None:
     """The law for one contact."""
     un, ut = approach(game, i, j, row[NX], row[NY], states)
-    row[PN] = (1.0 + e) * un / row[SOFT]
-    row[PT] = (1.0 + row[BETA]) * ut / row[SLICK]
-    if abs(row[PT]) > row[MU] * row[PN]:
-        row[PT] = math.copysign(row[MU] * row[PN], ut)
+    row[PN], row[PT] = impulses(un, ut, row[SOFT], row[SLICK], row[E], row[BETA], row[MU])
     _push(game, i, j, row, states)
 
 
@@ -428,7 +417,7 @@ def collide(
             if most == 1:
                 for n in range(count):
                     if rows[n, ACTS] > 0.0:
-                        _alone(game, contacts[n, 0], contacts[n, 1], rows[n], states, rows[n, E])
+                        _alone(game, contacts[n, 0], contacts[n, 1], rows[n], states)
             else:
                 solved = _together(game, contacts, count, rows, before, states, 1.0 / most)
                 if not solved and _is_driven(game, contacts, count):

@@ -210,7 +210,7 @@ def _brakes(game: Game) -> FloatArray:
 
 @kernel
 def _fill_brakes(game: Game, y: FloatArray, out: FloatArray) -> None:
-    """The same of discs that a torque turns: how far friction is from what it could just hold."""
+    """What brakes discs that a torque turns: how far friction is from what it could just hold."""
     regions, count = game.regions, game.discs.shape[0]
     for row in range(out.size):
         i = row % count

@@ -29,7 +29,7 @@ class Effort(NamedTuple):
 
 _FULL, _MANY, _SLOW = Effort(540, 28, 8000), Effort(360, 20, 4000), Effort(120, 10, 600)
 _CROWD = 8  # pucks: runs of more take longer
-_ROUNDS = 3
+_ROUNDS = 3  # times that gaps get three launches each: to 1/64 of a step of the sample
 
 
 def effort_for(shots: Shots) -> Effort:

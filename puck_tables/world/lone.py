@@ -137,6 +137,7 @@ class Desk(NamedTuple):
     ledgers: FloatArray
 
 
+# rows of a desk, in the order of its arrays
 _ENDS, _MIDDLE, _STATES = STAGES, STAGES + 2, STAGES + 3
 _BOOKS = _STATES + 5
 DESK_ROWS = _BOOKS + 4

@@ -70,7 +70,7 @@ TOUCH = 1e-12  # of the radius: a gap as small is none
 ROUNDED = 1e-15  # of the places: a gap as small is none
 QUIET = 1e-12  # of the scale of speeds: an approach as slow is none
 HARDLY = 1e-11  # of the scales of speeds and accelerations: as good as none, of what touches
-MOST_LOOKS = 20_000
+MOST_LOOKS = 20_000  # at one pair in a row: then others have their turn
 PATIENCE = 8  # looks, before those who go beside each other are bounded closer
 
 
@@ -359,7 +359,7 @@ def next_meeting(
 def next_crossing(
     game: Game, i: int, k: int, now: float, horizon: float, room: FloatArray, one: FloatArray
 ) -> float:
-    """The same of a disc and what stands: the obstacle k, or where its centre or rim passes it."""
+    """When a disc touches obstacle k next, or its centre or rim passes it; else inf; −1 − t."""
     kind, flight = game.kinds[i], game.flights[i]
     last = min(horizon, moves_until(kind, flight), once_round(kind, flight, now))
     if kind == GONE or not last > now or are_held(game, i, -1 - k):

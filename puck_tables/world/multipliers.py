@@ -29,7 +29,7 @@ from puck_tables.world.group import (
 )
 
 _RAISED = 1e-9  # of the diagonal
-_ROUNDS = 4
+_ROUNDS = 4  # of solving for what is left, at most
 RIGHT, SOLUTION, LEFT, STEP = range(4)  # vectors of the desk
 
 

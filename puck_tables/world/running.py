@@ -50,7 +50,7 @@ from puck_tables.world.setting_off import (
     TOO_SHORT,
 )
 
-MOST_EVENTS, MOST_STEPS = 1_000_000, 1_000_000
+MOST_EVENTS, MOST_STEPS = 1_000_000, 1_000_000  # of a run: some 120 and 170 MB
 CROWD = 1e-7  # of Q/J: 2000 events in less are a crowd
 CROWDED_PUSHES, PUSHED_IN = 3000, 1e-3  # and so many new groups that push, in that share of Q/J
 
@@ -150,11 +150,11 @@ class Running:
         return state
 
     def _all_now(self) -> FloatArray:
-        """The same in the order of the engine."""
+        """States of every puck now, (pucks, 6), in the order of the engine."""
         return states_now(self._game, self._room.work)
 
     def at(self, time: float) -> FloatArray:
-        """The same at any time: as it was, or as it will be if nobody interferes.
+        """States (pucks, 6) at any time: as they were, or will be if nobody interferes.
 
         Raises
         ------
@@ -171,7 +171,7 @@ class Running:
         return world._states(np.array([moment]))[0]
 
     def over(self, times: npt.ArrayLike) -> FloatArray:
-        """The same at times of the past, ascending, array (times, pucks, 6)."""
+        """States at times of the past, ascending, array (times, pucks, 6)."""
         moments = np.atleast_1d(finite_array("times", times, "s"))
         if moments.ndim != 1 or (np.diff(moments) < 0.0).any() or (moments < 0.0).any():
             raise InputError("times must be a list of ascending numbers >= 0 s")
@@ -324,7 +324,7 @@ class Running:
         return {**self.__dict__, "_game": parts._replace(curves=None)}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        """As it was, with the table that comes along."""
+        """Take up what was written, with the table that comes along."""
         self.__dict__.update(state)
         self._game = self._game._replace(curves=shipped_curves())
 

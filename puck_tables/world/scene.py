@@ -234,7 +234,7 @@ class Scene(SceneSpec):
         return found
 
     def world(self) -> World:
-        """The same board to play on: advance it, strike pucks, look ahead.
+        """The scene as a board to play on: advance it, strike pucks, look ahead.
 
         Raises
         ------

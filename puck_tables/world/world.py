@@ -39,7 +39,7 @@ from puck_tables.world.prepare import set_pace
 from puck_tables.world.pushed_back import Told, pushed_back
 from puck_tables.world.running import Running
 
-_SURELY = 1.0 - 1e-12
+_SURELY = 1.0 - 1e-12  # of the fastest slip yet: below it rounding makes none faster
 
 
 class World(Running):
