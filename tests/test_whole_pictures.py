@@ -18,7 +18,6 @@ from scenes import sweep_scene
 from puck_tables import (
     InputError,
     Launch,
-    Map,
     Normal,
     Post,
     Puck,
@@ -37,6 +36,7 @@ from puck_tables.plot import (
     tradeoff_figure,
 )
 from puck_tables.plot.animation import PALETTE, colour_of
+from puck_tables.results import Map
 from puck_tables.scene.outcome import ENDS, LAST_END
 
 LONG = "Of a title that goes on and on, as of whoever names all that there is in a scene, " * 3

@@ -44,7 +44,9 @@ from puck_tables.kernels.polygon_sums import (
     ray_to,
 )
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(14)
+# of Gauss's rule a panel, to 2e-12: test_resultants_are_those_of_a_grid_over_the_base
+_COUNT = 14
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(_COUNT)
 _GROWTH = 2.0  # of a panel, over its distance from what is nearly singular
 _CLOSEST = 1e-9  # nearer than this nothing is singular that could be seen
 _PANEL = 1.8  # of y
