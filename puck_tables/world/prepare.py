@@ -10,6 +10,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.scene.by_speed import load_under
+from puck_tables.scene.forces import drags_of
 from puck_tables.scene.friction import SPIN, THETA, VX, VY
 from puck_tables.scene.holds import allowed_velocity
 from puck_tables.scene.ingredients import RAIL, Surface, hold_of
@@ -207,13 +208,7 @@ def _fill_disc(
     disc[layout.LIGHTNESS], disc[layout.TURNABILITY] = 1.0 / puck.mass, 1.0 / inertia
     disc[layout.PULL_X : layout.TWIST + 1] = _pull_on(scene, puck, inertia)
     disc[layout.HOLD : layout.HOLD_PLACE + 1] = _hold_on(puck)
-    disc[layout.DAMPING] = scene.drag.sliding / puck.mass
-    disc[layout.WAKE] = scene.drag.quadratic / puck.mass
-    disc[layout.SPIN_DAMPING] = scene.drag.spinning / inertia
-    disc[layout.SPIN_WAKE] = scene.drag.spinning_quadratic / inertia
-    disc[layout.ACROSS] = scene.lateral.strength / puck.mass
-    disc[layout.BY_SPEED] = scene.lateral.speed_exponent
-    disc[layout.BY_SPIN] = scene.lateral.spin_exponent
+    disc[layout.DRAG : layout.LIES] = drags_of(scene.drag, scene.lateral, puck.mass, inertia)
     disc[layout.NORMAL] = normal_on(scene, puck)
     disc[layout.HEIGHT_RATIO] = 2.0 * puck.height / puck.radius
     if scene.floor.law and (load := load_under(puck)) is not None:
