@@ -33,10 +33,10 @@ from puck_tables.table.friction_slopes import slopes_at_one_height, slopes_of_ta
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.resultant_values import full_contact
 
-HEIGHT_STEP = 0.05  # of δ, between heights
+HEIGHT_STEP = 0.05  # of δ, between heights: a cubic through four errs by 1e-8 of the path
 HIGHEST = 3.9  # δ, below the fold of the balance at 3.96 (contact.one_sided)
 _ACCURACY = 1e-7  # of friction ratios; a film knows places to 1e-4 of the path
-_LOCAL = 1e-9  # of a step
+_LOCAL = 1e-9  # of a step: a hundredth of that
 _BY_DELTA = 4  # of the derivatives of unit states
 
 
