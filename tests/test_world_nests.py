@@ -41,7 +41,7 @@ def nest(seed: int) -> pt.Scene:
         if rng.random() < 0.25:
             launch["spin"] = float(rng.choice([20, -20, 5]))
         height = float(rng.choice([0, 0, 0.01]))
-        pucks.append(pt.Piece(
+        pucks.append(pt.Puck(
             RADIUS, friction=0.1, height=height, name=f"p{number}", launch=pt.Launch(**launch),
             **rim,
         ))  # fmt: skip
@@ -55,7 +55,7 @@ def nest(seed: int) -> pt.Scene:
         tuple(start),
     )  # fmt: skip
     rim = common if same else law(rng)
-    pucks.append(pt.Piece(RADIUS, friction=0.1, name="striker", launch=launch, **rim))
+    pucks.append(pt.Puck(RADIUS, friction=0.1, name="striker", launch=launch, **rim))
     return pt.Scene(pucks=pucks)
 
 
@@ -84,7 +84,7 @@ def rack(rng: np.random.Generator, **rim: float) -> pt.Scene:
     launches = [pt.Launch((rng.uniform(0.5, 3.0), 0.0), position=(-rng.uniform(0.1, 0.4), 0.0))]
     launches += [pt.Launch(position=place) for place in places]
     return pt.Scene(
-        pucks=[pt.Piece(RADIUS, friction=friction, launch=one, **rim) for one in launches]
+        pucks=[pt.Puck(RADIUS, friction=friction, launch=one, **rim) for one in launches]
     )
 
 
@@ -133,16 +133,16 @@ def test_a_rim_without_bound_grips_nothing_that_is_not_pressed():
     """Four at once; two of them part without an impulse, and so one keeps all of its spin."""
     high = RADIUS * math.sqrt(3.0)
 
-    def piece(x: float, y: float, e: float, rim: float, **launch: object) -> pt.Piece:
+    def puck_at(x: float, y: float, e: float, rim: float, **launch: object) -> pt.Puck:
         start = pt.Launch(position=(x, y), **launch)
-        return pt.Piece(
+        return pt.Puck(
             RADIUS, friction=0.1, restitution=e, tangential=0.0, rim=rim, launch=start
         )  # fmt: skip
 
     pucks = [
-        piece(-0.06, 0.0, 0.5, 0.0, velocity=(1.0, 0.0)), piece(0.0, 0.0, 0.5, 0.0),
-        piece(0.06, 0.0, 0.8, math.inf),
-        piece(0.03, high, 0.5, math.inf, velocity=(-0.1, -0.2), spin=20.0),
+        puck_at(-0.06, 0.0, 0.5, 0.0, velocity=(1.0, 0.0)), puck_at(0.0, 0.0, 0.5, 0.0),
+        puck_at(0.06, 0.0, 0.8, math.inf),
+        puck_at(0.03, high, 0.5, math.inf, velocity=(-0.1, -0.2), spin=20.0),
     ]  # fmt: skip
     scene = pt.Scene(pucks=pucks)
     run = scene.simulate()

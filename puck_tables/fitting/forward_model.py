@@ -32,7 +32,9 @@ from puck_tables.fitting.unit_motions import UnitMotions
 from puck_tables.motion.impact_law import along_normal, impulses
 
 _SPEED_STEP = 1e-6  # of a slip at the rim, of a radius, of δ
-_MOMENTS = 129  # from the launch on, besides those asked for: places to some 1e-8 of the path
+# from the launch on, besides those asked for: places to 1e-8 of the path, as
+# test_a_slide_with_drag_is_elementary tells
+_MOMENTS = 129
 
 VX, VY, SPIN, DELTA, DECEL, RADIUS, TIME = range(7)  # what states are differentiated to
 PLACE, RATE = slice(0, 3), slice(3, 6)  # of a state: x, y, angle and vx, vy, spin

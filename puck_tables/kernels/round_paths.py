@@ -32,7 +32,8 @@ from puck_tables.kernels.elementary import angle_of, cosine_sine_of
 from puck_tables.kernels.polygon_sums import PIECE_COLUMNS
 
 # how many nodes Gauss's rules have, and how short panels are for them: ellipses about them of
-# which what is singular is not inside, by their long axes over the distances of their foci
+# which what is singular is not inside, by their long axes over the distances of their foci; 1e-10:
+# test_resultants_against_circles
 _COUNTS, _REACHES = np.array([10, 16, 24]), np.array([2.0, 1.3, 1.13])
 _FINEST, _NODES = 2, 24
 _SHORT = 0.5  # rad: what the first is good for

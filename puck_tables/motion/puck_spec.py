@@ -70,7 +70,7 @@ class PuckSpec:
 
     def __post_init__(self) -> None:
         reading = Reading([], None)
-        values = read_values(type(self), entries_in(self, {}), "", reading)
+        values = read_values(type(self), entries_in(self), "", reading)
         if values is None:
             raise InputError("; ".join(reading.errors))
         for name, value in values.items():
@@ -282,8 +282,8 @@ class PuckSpec:
         ratio = self.limit_ratio
         return math.inf if ratio == 0.0 else 1.0 / ratio
 
-    def refuse_frictionless(self) -> None:
-        """Refuse what asks for the stop of a puck that nothing brakes.
+    def refuse_unless_free(self) -> None:
+        """Refuse what asks for the stop of a puck that nothing brakes, or more than friction moves.
 
         Raises
         ------
@@ -296,7 +296,7 @@ class PuckSpec:
 
     def arguments(self) -> dict[str, Any]:
         """Keyword arguments of functions over arrays of pucks."""
-        self.refuse_frictionless()
+        self.refuse_unless_free()
         return {
             "delta": self.delta, "decel": self.decel, "radius": self.radius,
             "pressure": self.pressure, "gyration": self.gyration,

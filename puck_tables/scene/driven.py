@@ -19,7 +19,7 @@ _SHORTEST = 1e-9  # of the whole time: what happens faster is a jump
 
 
 def path_along(place: Callable[[float], Any], until: float, accuracy: float = 1e-6) -> Rows:
-    """Rows t, x, y (and angle) of a body that a function of time drives, for ``Piece.path``.
+    """Rows t, x, y (and angle) of a body that a function of time drives, for ``Puck.path``.
 
     Parameters
     ----------

@@ -18,7 +18,7 @@ from puck_tables.io.dataset import Dataset, Variable, variable
 from puck_tables.result import TimedResult
 from puck_tables.scene.entries import tables_of, units_of
 from puck_tables.scene.outcome import column_of, refuse_changed, scene_texts
-from puck_tables.scene.pieces import called_line
+from puck_tables.scene.pucks_and_posts import called_line
 from puck_tables.scene.scene_spec import SceneSpec
 
 STATE = ("x", "y", "orientation", "vx", "vy", "spin")

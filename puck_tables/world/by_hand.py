@@ -14,7 +14,7 @@ from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.over_time import ON_ALL
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.agreement import pieces_of
+from puck_tables.world.agreement import pucks_of
 from puck_tables.world.drive import fill_straight
 from puck_tables.world.flight import ANGLE, FIRST_PIECE, PATH, PLACE_X
 from puck_tables.world.floors import INTEGRATED, regions_of
@@ -187,8 +187,8 @@ def with_integrated(game: Game, scene: SceneSpec, order: Whole, discs: Whole) ->
     how[:, discs] = np.maximum(how[:, discs], INTEGRATED)
     regions = game.regions
     if not game.floors[:, 2].any():  # its friction is asked for often from now on
-        pieces = [pieces_of(scene)[number] for number in order]
-        regions = regions_of(scene, pieces, floors, 0.0)
+        pucks = [pucks_of(scene)[number] for number in order]
+        regions = regions_of(scene, pucks, floors, 0.0)
     game = game._replace(floors=floors, regions=regions)
     for i in discs.tolist():
         step_onto(game, i)
