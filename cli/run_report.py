@@ -147,22 +147,22 @@ def _some(texts: list[str], sign: str = ", ") -> str:
 
 def plainly(run: Run) -> str:
     """How it ends and who leaves the board."""
-    from puck_tables.world.agreement import pieces_of
+    from puck_tables.world.agreement import pucks_of
 
-    free = [not piece.path for piece in pieces_of(run.scene)]  # none is driven
-    pucks = _counted(sum(free), "puck")
+    free = [not puck.path for puck in pucks_of(run.scene)]  # none is driven
+    counted = _counted(sum(free), "puck")
     if run.end_time == 0.0 and all(event.what == "overhang" for event in run.events):
-        return f"{pucks}: nothing moves.\nSend one off: --set puck[0].launch.velocity=[1,0]"
+        return f"{counted}: nothing moves.\nSend one off: --set puck[0].launch.velocity=[1,0]"
     after = f"{run.end_time:.4g} s and {_counted(run.impacts, 'impact')}"
     left = {what: [event.puck for event in run.events if event.what == what] for what in _LEAVES}
     rest = sum(free) - sum(map(len, left.values()))
     if run.end in ("at rest", "over the edge", "in a pocket"):
-        who = pucks if rest == sum(free) else f"{rest} of {pucks}"
+        who = counted if rest == sum(free) else f"{rest} of {counted}"
         first = f"{who} {'comes' if rest == 1 else 'come'} to rest after {after}."
         first = first if rest else f"No puck is left after {after}."
     elif run.end == "time is up":
         moving = int((run.stop_times > run.end_time)[free].sum())
-        who = pucks if moving == sum(free) else f"{moving} of {pucks}"
+        who = counted if moving == sum(free) else f"{moving} of {counted}"
         verb = "moves" if moving == 1 else "move"
         first = f"Time is up after {after}: {who} still {verb}."
     else:
@@ -182,16 +182,16 @@ def _counted(count: int, noun: str) -> str:
 
 def _pucks(run: Run) -> str:
     """A line for each puck: where it ends, how far from its start, and when."""
-    from puck_tables.world.agreement import pieces_of, start_of
+    from puck_tables.world.agreement import pucks_of, start_of
 
     rows = []
-    for number, (name, piece) in enumerate(zip(run.names, pieces_of(run.scene), strict=True)):
+    for number, (name, puck) in enumerate(zip(run.names, pucks_of(run.scene), strict=True)):
         if number == MOST_PUCKS:
             break
         last = run.last_of(number)
         end = last["x"], last["y"]
-        unseen = 1e-9 * piece.radius  # what rounding leaves
-        lengths = (*end, math.dist(end, start_of(piece)))
+        unseen = 1e-9 * puck.radius  # what rounding leaves
+        lengths = (*end, math.dist(end, start_of(puck)))
         shown = (0.0 if abs(length) < unseen else length for length in lengths)
         rows.append((name, *shown, _ending(run, number)))
     heads = {"puck": "", "end x m": ".6g", "end y m": ".6g", "moved m": ".4g", "how it ends": ""}
@@ -255,14 +255,14 @@ def _reaction(run: Run) -> str:
 
 def _error(run: Run) -> str:
     """What times and places may be wrong by; where tol could not be kept, or nobody can know."""
-    from puck_tables.world.agreement import pieces_of
+    from puck_tables.world.agreement import pucks_of
 
     tol, several = run.scene.tol, bool(run.scene.pucks)
     time = run.speed_scale / run.rate_scale if run.rate_scale > 0.0 else 0.0
     wanted = f"tol = {tol:g}"
     if time > 0.0:
         wanted += f" ({tol * time:.1e} s, {tol * time * run.speed_scale:.1e} m)"
-    if run.end_error > min(piece.radius for piece in pieces_of(run.scene)):
+    if run.end_error > min(puck.radius for puck in pucks_of(run.scene)):
         return (
             "nobody can know the end: launches that differ by 1e-9 end up to "
             f"{run.end_error:.2g} m apart, for every impact multiplies what is not known"

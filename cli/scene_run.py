@@ -31,7 +31,7 @@ class SceneChoice:
 
     @property
     def name(self) -> str:
-        """As refusals have it."""
+        """Which file refusals name."""
         return self.scene or "scene"
 
     def reads(self, tables: dict[str, Any]) -> list[str]:

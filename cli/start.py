@@ -20,7 +20,7 @@ from puck_tables.cli.endings import ENDINGS, end_at_once
 if TYPE_CHECKING:  # the less is imported before the handler stands, the better
     from sys import UnraisableHookArgs
 
-PATIENCE = 0.7  # s
+PATIENCE = 0.7  # s after a signal: then it is ended at once, whatever it does
 
 
 def _watch() -> None:

@@ -119,7 +119,7 @@ class Whole:
 
     @property
     def how(self) -> dict[str, Any]:
-        """As the library takes it."""
+        """Keyword arguments of a sweep of the library."""
         return {
             "threads": self.threads, "cluster": self.cluster, "overwrite": self.out.overwrite,
             "store": self.store,

@@ -104,7 +104,7 @@ class Times(NumberParam):
 
 
 def not_none(values: dict[str, Any]) -> dict[str, Any]:
-    """Those that were given."""
+    """The values that were given, without those that are None."""
     return {name: value for name, value in values.items() if value is not None}
 
 
@@ -141,7 +141,7 @@ def named(
 
 
 def numbers_in(text: str, option: str, sign: str, form: str, unit: str = "") -> tuple[float, ...]:
-    """As many numbers as ``form`` shows, parted by a sign, each with its unit or none of them.
+    """Numbers parted by a sign, as many as ``form`` shows, each with its unit or none of them.
 
     Examples
     --------

@@ -1,8 +1,9 @@
 """Exact motion of a flat puck that slides and spins under dry friction, until it stops.
 
 Importing the package stays light: numpy and numba are loaded when something is computed.  The names
-here are what most need; :mod:`puck_tables.contact` holds more of the friction of a contact,
-:mod:`puck_tables.motion` what can be said of motions without following them,
+here are what most need; :mod:`puck_tables.results` holds the classes of what calls give,
+:mod:`puck_tables.errors` what they raise, :mod:`puck_tables.contact` more of the friction of a
+contact, :mod:`puck_tables.motion` what can be said of motions without following them,
 :mod:`puck_tables.chetaev` constraints with friction, and friction from asperities.
 
 >>> import puck_tables as pt
@@ -19,34 +20,23 @@ from puck_tables._core.lazy import lazily, lead_up, with_neighbours
 from puck_tables._version import __version__
 
 if TYPE_CHECKING:
-    from puck_tables import chetaev, contact, motion
+    from puck_tables import chetaev, contact, errors, motion, results
     from puck_tables.bulk.spreads import Normal, Uniform
     from puck_tables.contact.base import Base
     from puck_tables.contact.friction_laws import CurlingLaw, PowerLaw, StribeckLaw
     from puck_tables.contact.laws import Law, law_of, profile_law
     from puck_tables.contact.speed_law import SpeedLaw
-    from puck_tables.errors import (
-        AccuracyError,
-        ClusterError,
-        ContactError,
-        InputError,
-        MissingExtraError,
-        OutputError,
-        PuckError,
-        TableError,
-    )
-    from puck_tables.export.source import Source, export_source
+    from puck_tables.errors import InputError, PuckError
+    from puck_tables.export.source import export_source
     from puck_tables.film.puck_track import Track
     from puck_tables.film.track_files import read_tracks
-    from puck_tables.fitting.fit_result import Fit
     from puck_tables.fitting.fit_tracks import fit
-    from puck_tables.fitting.forecast import Camera, Forecast, fisher
+    from puck_tables.fitting.forecast import Camera, fisher
     from puck_tables.kernels.closed_form_kernel import resultants
     from puck_tables.puck import Puck
-    from puck_tables.reference.answer import Answer, reference_case
-    from puck_tables.reference.comparison import Comparison, compare
-    from puck_tables.reference.floor_friction import FloorFriction, floor_friction
-    from puck_tables.result import Result
+    from puck_tables.reference.answer import reference_case
+    from puck_tables.reference.comparison import compare
+    from puck_tables.reference.floor_friction import floor_friction
     from puck_tables.scene.driven import path_along
     from puck_tables.scene.parts import (
         Constraint,
@@ -62,90 +52,64 @@ if TYPE_CHECKING:
         Strips,
         Wall,
     )
-    from puck_tables.scene.pieces import Arc, Line, Pocket, Post, Rim
+    from puck_tables.scene.pucks_and_posts import Arc, Line, Pocket, Post, Rim
     from puck_tables.scene.restitution import Plastic, RestitutionTable, Viscoelastic
-    from puck_tables.scene.run import Run
-    from puck_tables.stopping.aim_at_targets import Aim
     from puck_tables.stopping.array_functions import state_arrays, stop_arrays
-    from puck_tables.stopping.states import States, states
-    from puck_tables.stopping.stop_map import StopMap, StopSample
-    from puck_tables.stopping.stops import Stops, stop
-    from puck_tables.table.check import CheckReport
+    from puck_tables.stopping.states import states
+    from puck_tables.stopping.stops import stop
     from puck_tables.table.table import Table
     from puck_tables.table.table_cache import table_for
-    from puck_tables.trajectory import Trajectory
     from puck_tables.warming import warm_up
-    from puck_tables.world.aimed import BoardAim
-    from puck_tables.world.map import Map
-    from puck_tables.world.sample import Sample
-    from puck_tables.world.scene import Piece, Scene
+    from puck_tables.world.scene import Scene
     from puck_tables.world.world import World
     from puck_tables.world.worlds import Worlds
-    from puck_tables.wrench.friction_hold import Hold
-    from puck_tables.wrench.push import Push, push
-    from puck_tables.wrench.surface import LimitSurface
+    from puck_tables.wrench.push import push
 
 with_neighbours(__name__, __file__)
 
 _HOMES = {  # names of this package by the modules that hold them
-    "": "chetaev contact motion",
+    "": "chetaev contact errors motion results",
     "bulk.spreads": "Normal Uniform",
     "contact.base": "Base",
     "contact.friction_laws": "CurlingLaw PowerLaw StribeckLaw",
     "contact.laws": "Law law_of profile_law",
     "contact.speed_law": "SpeedLaw",
-    "errors": "AccuracyError ClusterError ContactError InputError MissingExtraError OutputError "
-    "PuckError TableError",
-    "export.source": "Source export_source",
+    "errors": "InputError PuckError",
+    "export.source": "export_source",
     "film.puck_track": "Track",
     "film.track_files": "read_tracks",
-    "fitting.fit_result": "Fit",
     "fitting.fit_tracks": "fit",
-    "fitting.forecast": "Camera Forecast fisher",
+    "fitting.forecast": "Camera fisher",
     "kernels.closed_form_kernel": "resultants",
     "puck": "Puck",
-    "reference.answer": "Answer reference_case",
-    "reference.comparison": "Comparison compare",
-    "reference.floor_friction": "FloorFriction floor_friction",
-    "result": "Result",
+    "reference.answer": "reference_case",
+    "reference.comparison": "compare",
+    "reference.floor_friction": "floor_friction",
     "scene.driven": "path_along",
     "scene.parts": "Constraint Drag Edge Floor Force Grip Lateral Launch Orthotropic Patch Strips "
     "Wall",
-    "scene.pieces": "Arc Line Pocket Post Rim",
+    "scene.pucks_and_posts": "Arc Line Pocket Post Rim",
     "scene.restitution": "Plastic RestitutionTable Viscoelastic",
-    "scene.run": "Run",
-    "stopping.aim_at_targets": "Aim",
     "stopping.array_functions": "state_arrays stop_arrays",
-    "stopping.states": "States states",
-    "stopping.stop_map": "StopMap StopSample",
-    "stopping.stops": "Stops stop",
-    "table.check": "CheckReport",
+    "stopping.states": "states",
+    "stopping.stops": "stop",
     "table.table": "Table",
     "table.table_cache": "table_for",
-    "trajectory": "Trajectory",
     "warming": "warm_up",
-    "world.aimed": "BoardAim",
-    "world.map": "Map",
-    "world.sample": "Sample",
-    "world.scene": "Piece Scene",
+    "world.scene": "Scene",
     "world.world": "World",
     "world.worlds": "Worlds",
-    "wrench.friction_hold": "Hold",
-    "wrench.push": "Push push",
-    "wrench.surface": "LimitSurface",
+    "wrench.push": "push",
 }
 
 __all__ = [
-    "AccuracyError", "Aim", "Answer", "Arc", "Base", "BoardAim", "Camera", "CheckReport",
-    "ClusterError", "Comparison", "Constraint", "ContactError", "CurlingLaw", "Drag", "Edge", "Fit",
-    "Floor", "FloorFriction", "Force", "Forecast", "Grip", "Hold", "InputError", "Lateral",
-    "Launch", "Law", "LimitSurface", "Line", "Map", "MissingExtraError", "Normal", "Orthotropic",
-    "OutputError", "Patch", "Piece", "Plastic", "Pocket", "Post", "PowerLaw", "Puck", "PuckError",
-    "Push", "RestitutionTable", "Result", "Rim", "Run", "Sample", "Scene", "Source", "SpeedLaw",
-    "States", "StopMap", "StopSample", "Stops", "StribeckLaw", "Strips", "Table", "TableError",
-    "Track", "Trajectory", "Uniform", "Viscoelastic", "Wall", "World", "Worlds", "__version__",
-    "chetaev", "compare", "contact", "export_source", "fisher", "fit", "floor_friction", "law_of",
-    "motion", "path_along", "profile_law", "push", "read_tracks", "reference_case", "resultants",
+    "Arc", "Base", "Camera", "Constraint", "CurlingLaw", "Drag", "Edge", "Floor", "Force",
+    "Grip", "InputError", "Lateral", "Launch", "Law", "Line", "Normal", "Orthotropic", "Patch",
+    "Plastic", "Pocket", "Post", "PowerLaw", "Puck", "PuckError", "RestitutionTable", "Rim",
+    "Scene", "SpeedLaw", "StribeckLaw", "Strips", "Table", "Track", "Uniform", "Viscoelastic",
+    "Wall", "World", "Worlds", "__version__", "chetaev", "compare", "contact", "errors",
+    "export_source", "fisher", "fit", "floor_friction", "law_of", "motion", "path_along",
+    "profile_law", "push", "read_tracks", "reference_case", "resultants", "results",
     "state_arrays", "states", "stop", "stop_arrays", "table_for", "warm_up",
 ]  # fmt: skip
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from puck_tables.wrench.surface import LimitSurface
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Puck(VerbsOfMany):
     """A flat puck on a rough floor.
 
@@ -47,6 +47,23 @@ class Puck(VerbsOfMany):
     base : Base, or a text as :func:`puck_tables.contact.base.base_of` takes it, in place of radius
         ``simulate``, ``stop``, ``states`` then integrate (:mod:`puck_tables.motion.base_motion`),
         with Q = hypot(v, kω); what is looked up or differentiated is refused.
+    name, colour : in reports and pictures of a scene of several pucks, for which all below is
+        A colour is '#rrggbb' or a name of CSS, such as 'steelblue'.
+    launch : Launch
+        Its place, and how it is sent; left out it lies at rest until it is hit.  Before
+        ``launch.time`` it lies at its place.  Velocities (n, 2) are many launches, of one puck of
+        a scene: an axis of its sweep.
+    restitution, tangential, rim : impacts with other pucks
+        e, 0 to 1, or a law by which it falls with the speed of approach, see
+        :mod:`puck_tables.scene.restitution`; tangential restitution, −1 smooth, 0 the rims stop on
+        each other, 1 their slip reverses; Coulomb's coefficient of the rims, which limits the
+        tangential impulse.  Where two pucks meet the smaller of each counts, of restitutions at
+        that speed; cushions have their own; a :class:`Rim` of a pair comes before both.
+    path : rows or CSV of t, x, y and perhaps the angle
+        A body that is driven there, straight between the rows, such as a mallet: pucks bounce off
+        it, and nothing stops it.  :func:`puck_tables.path_along` makes rows of a function.
+    force, constraint : Force and Constraint, optional
+        What acts on this puck alone, and what leads it.
 
     Raises
     ------
@@ -69,6 +86,9 @@ class Puck(VerbsOfMany):
     >>> box = Puck(base="box:0.2x0.1", friction=0.3)
     >>> round(box.simulate((1.0, 0.0), 10.0).stop_time, 6)
     0.448246
+    >>> from puck_tables import Launch
+    >>> Puck(0.0206, friction=0.1, name="striker", launch=Launch((3.0, 0.0))).launch.spin
+    0.0
     """
 
     def regime(self, velocity: npt.ArrayLike, spin: float = 0.0) -> str:
@@ -157,7 +177,7 @@ class Puck(VerbsOfMany):
         """
         from puck_tables.trajectory import simulate, simulate_on_base
 
-        self.refuse_frictionless()
+        self.refuse_unless_free()
         if self.shape is not None:
             self.refuse_for_round(method=method, exact=exact, table=table)
             return simulate_on_base(
@@ -201,7 +221,7 @@ class Puck(VerbsOfMany):
         if self.shape is not None:
             from puck_tables.stopping.base_stops import stop_on_base
 
-            self.refuse_frictionless()
+            self.refuse_unless_free()
             self.refuse_for_round(method=method, table=table, jacobian=jacobian)
             return stop_on_base(self, velocity, spin, tol, threads)
         from puck_tables.stopping.stops import stop
@@ -245,7 +265,7 @@ class Puck(VerbsOfMany):
         if self.shape is not None:
             from puck_tables.stopping.base_stops import states_on_base
 
-            self.refuse_frictionless()
+            self.refuse_unless_free()
             self.refuse_for_round(table=table, jacobian=jacobian)
             return states_on_base(self, velocity, spin, time, threads)
         from puck_tables.stopping.states import states
@@ -335,7 +355,7 @@ class Puck(VerbsOfMany):
         from puck_tables.stopping.aim_at_targets import aim
 
         self.refuse_base("aim")
-        self.refuse_frictionless()
+        self.refuse_unless_free()
         return aim(
             self, target, spin=spin, speed=speed, stop_time=stop_time, angle=angle,
             max_speed=max_speed, max_spin=max_spin, count=count, threads=threads,

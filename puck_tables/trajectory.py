@@ -114,7 +114,7 @@ class Trajectory(TimedResult):
     picture: ClassVar[str] = "trajectory"
 
     def __call__(self, times: npt.ArrayLike) -> Trajectory:
-        """The same motion with its states at other times; of a round puck it is not done anew.
+        """The motion with its states at other times; of a round puck it is not done anew.
 
         Parameters
         ----------
@@ -336,7 +336,7 @@ def _integrated(
 def _looked_up(
     puck: PuckSpec, launch: tuple[float, float], spin: float, moments: FloatArray, stop_time: float
 ) -> dict[str, FloatArray]:
-    """The same by look-up: cheaper for many states."""
+    """States by look-up as columns of a trajectory: cheaper for many."""
     from puck_tables.stopping.states import states
 
     till_rest = np.where(moments < stop_time, moments, 2.0 * stop_time)

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from puck_tables._core.executor import Progress
 from puck_tables.errors import InputError
-from puck_tables.motion.puck_spec import PuckSpec
+from puck_tables.scene.pucks_and_posts import ScenePuck
 
 if TYPE_CHECKING:
     import xarray
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from puck_tables.table.table import Table
 
 
-@dataclass(frozen=True)
-class VerbsOfMany(PuckSpec):
+@dataclass(frozen=True, repr=False)
+class VerbsOfMany(ScenePuck):
     """A puck, and the questions about many launches of it; :class:`puck_tables.Puck` has all."""
 
     def sweep(

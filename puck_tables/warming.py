@@ -9,7 +9,7 @@ from puck_tables.bulk.spreads import Normal
 from puck_tables.kernels.patience import compiled_at_once
 from puck_tables.puck import Puck
 from puck_tables.scene.parts import Floor, Launch, Patch, Wall
-from puck_tables.world.scene import Piece, Scene
+from puck_tables.world.scene import Scene
 from puck_tables.world.worlds import Worlds
 
 _PUCKS = [Puck(0.04, 0.02, 0.15), Puck(0.04, 0.02, 0.15, pressure="ring")]
@@ -57,7 +57,7 @@ def _boards() -> None:
 
 
 def _boards_of_many() -> None:
-    one, two = (Piece(0.04, friction=0.1, launch=Launch(position=(x, 0.0))) for x in (0.0, 0.2))
+    one, two = (Puck(0.04, friction=0.1, launch=Launch(position=(x, 0.0))) for x in (0.0, 0.2))
     Scene(pucks=(one, two)).aim((0.5, 0.0), puck=1, striker=0, max_speed=2.0)
     worlds = Worlds(_table(), 2)
     worlds.strike(0, (0.5, 0.0))
@@ -68,7 +68,7 @@ def _boards_of_many() -> None:
 def _board() -> Scene:
     """Two pucks that slide down to a cushion and push each other there."""
     sent, there = Launch((1.0, 0.0)), Launch(position=(0.1, 0.01))
-    one, two = (Piece(0.04, friction=0.1, restitution=0.2, launch=n) for n in (sent, there))
+    one, two = (Puck(0.04, friction=0.1, restitution=0.2, launch=n) for n in (sent, there))
     wall = Wall((0.3, 0.0), normal=(-1.0, 0.0), restitution=0.2)
     return Scene(pucks=(one, two), floor=Floor(slope=0.3), walls=(wall,))
 
@@ -76,7 +76,7 @@ def _board() -> Scene:
 def _table() -> Scene:
     """Two pucks that meet on a level floor."""
     sent, there = Launch((1.0, 0.0)), Launch(position=(0.2, 0.01))
-    return Scene(pucks=tuple(Piece(0.04, friction=0.1, launch=n) for n in (sent, there)))
+    return Scene(pucks=tuple(Puck(0.04, friction=0.1, launch=n) for n in (sent, there)))
 
 
 _PARTS: tuple[tuple[str, Callable[[], None]], ...] = (

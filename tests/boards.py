@@ -11,10 +11,10 @@ from pucks_judge import Disc, Line, Straight
 import puck_tables as pt
 
 
-def piece(x: float, y: float, velocity: Any = None, spin: float = 0.0, **how: Any) -> pt.Piece:
+def puck_at(x: float, y: float, velocity: Any = None, spin: float = 0.0, **how: Any) -> pt.Puck:
     """A puck of 3 cm, 0.1 kg, f = 0.2."""
     kept = {"radius": 0.03, "mass": 0.1, "friction": 0.2, "height": 0.01, **how}
-    return pt.Piece(launch=pt.Launch(velocity, spin, (x, y)), **kept)
+    return pt.Puck(launch=pt.Launch(velocity, spin, (x, y)), **kept)
 
 
 def draw(
@@ -22,15 +22,15 @@ def draw(
 ) -> pt.Scene:
     """Random pucks in a square: different sizes, masses, rims, some at rest."""
     rng = np.random.default_rng(seed)
-    pieces: list[pt.Piece] = []
-    while len(pieces) < count:
+    pucks: list[pt.Puck] = []
+    while len(pucks) < count:
         radius = rng.uniform(0.015, 0.04)
         place = rng.uniform(-side + radius, side - radius, 2)
-        clear = (math.dist(place, p.launch.position) - p.radius - radius for p in pieces)
+        clear = (math.dist(place, p.launch.position) - p.radius - radius for p in pucks)
         if min(clear, default=1.0) <= 1e-3:
             continue
-        moves = rng.random() < 0.6 or not pieces
-        pieces.append(piece(
+        moves = rng.random() < 0.6 or not pucks
+        pucks.append(puck_at(
             *place.tolist(),
             (speed * rng.normal(size=2)).tolist() if moves else None,
             float(rng.normal() * speed / radius) if moves else 0.0,
@@ -45,10 +45,10 @@ def draw(
                 tangential=float(rng.uniform(-1.0, 0.8)), friction=float(rng.uniform(0.0, 0.5)))
         for nx, ny in ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
     ]  # fmt: skip
-    return pt.Scene(pucks=pieces, walls=cushions if walls else [])
+    return pt.Scene(pucks=pucks, walls=cushions if walls else [])
 
 
-def draw_pieces(seed: int, count: int) -> pt.Scene:
+def draw_pucks(seed: int, count: int) -> pt.Scene:
     """The same in a frame of four walls with ends, and four such walls among the pucks."""
     rng, bare = np.random.default_rng([seed, 3]), draw(seed, count, walls=False)
     corners = [(-0.4, -0.4), (0.4, -0.4), (0.4, 0.4), (-0.4, 0.4)]

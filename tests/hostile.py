@@ -57,8 +57,8 @@ def scene() -> pt.Scene:
 
 @cache
 def board() -> pt.Scene:
-    cue = pt.Piece(0.03, friction=0.1, name="cue", launch=pt.Launch((1.0, 0.0)))
-    red = pt.Piece(0.03, friction=0.1, name="red", launch=pt.Launch(position=(0.3, 0.0)))
+    cue = pt.Puck(0.03, friction=0.1, name="cue", launch=pt.Launch((1.0, 0.0)))
+    red = pt.Puck(0.03, friction=0.1, name="red", launch=pt.Launch(position=(0.3, 0.0)))
     return pt.Scene(pucks=[cue, red])
 
 
@@ -69,7 +69,7 @@ def world() -> pt.World:
 
 @cache
 def led_world() -> pt.World:
-    return pt.Scene(pucks=[pt.Piece(0.03, path=[[0.0, 0.0, 0.0]], name="mallet")]).world()
+    return pt.Scene(pucks=[pt.Puck(0.03, path=[[0.0, 0.0, 0.0]], name="mallet")]).world()
 
 
 def on_copy(verb: str) -> Callable[..., Any]:
@@ -231,7 +231,7 @@ def _of_scenes() -> dict[str, Door]:
         "Strips": (pt.Strips, {"borders": (0.0,), "friction": (0.1, 0.2), "direction": 0.1}),
         "Grip": (pt.Grip, {"over_time": ((0.0, 1.0), (1.0, 0.5)), "where": "floor"}),
         "Patch": (pt.Patch, {"friction": 0.1, "centre": TWO, "radius": 0.1, "corners": ()}),
-        "Piece": (pt.Piece, {
+        "Puck": (pt.Puck, {
             "radius": 0.03, "friction": 0.1, "name": "a", "colour": "", "launch": pt.Launch()}),
         "Arc": (pt.Arc, {
             "point": TWO, "radius": 0.1, "start": 0.0, "span": 1.0, "restitution": 1.0}),
@@ -278,7 +278,7 @@ def _of_scenes() -> dict[str, Door]:
             "states": [[0.0, 0.0, 0.0, 1.0, 0.0, 0.0], [0.3, *(0.0,) * 5]]}),
         "World.remove": (on_copy("remove"), {"puck": "cue"}),
         "World.add": (on_copy("add"), {
-            "puck": pt.Piece(0.01, friction=0.1, launch=pt.Launch(position=(0.1, 0.4)))}),
+            "puck": pt.Puck(0.01, friction=0.1, launch=pt.Launch(position=(0.1, 0.4)))}),
         "World.drive": (lambda **given: led_world().copy().drive(**given), {
             "puck": "mallet", "velocity": TWO, "spin": 1.0}),
         "World.reaction": (lambda **given: led_world().copy().reaction(**given), {

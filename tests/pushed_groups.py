@@ -8,6 +8,7 @@ import numpy as np
 
 from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.scene.by_speed import NO_LAW
+from puck_tables.scene.forces import QUADRATIC, SLIDING, SPINNING
 from puck_tables.scene.ground import NO_GROUND
 from puck_tables.scene.ingredients import Regions, Surface
 from puck_tables.world.group import (
@@ -20,11 +21,14 @@ from puck_tables.world.group import (
 from puck_tables.world.layout import (
     ARC,
     DISC_COLUMNS,
+    DRAG,
+    FRICTION,
     OBSTACLE_COLUMNS,
     POST,
     PULL_X,
     PULL_Y,
     REGION,
+    TANGENTIAL,
     WALL,
 )
 from puck_tables.world.paths import PIECE_COLUMNS
@@ -38,10 +42,11 @@ def disc(radius=0.05, mass=0.2, decel=1.0, delta=0.0, grip=0.0, gyration=0.5**0.
          spin_damping=0.0, wake=0.0, tangential=0.0):  # fmt: skip
     """A row of discs; no mass: driven."""
     light = 1.0 / mass if mass else 0.0
-    return [
-        radius, light, light / (gyration * radius) ** 2, decel, delta, damping, spin_damping, wake,
-        0.0, tangential, grip, *[0.0] * (DISC_COLUMNS - 11),
-    ]  # fmt: skip
+    row = [0.0] * DISC_COLUMNS
+    row[:5] = radius, light, light / (gyration * radius) ** 2, decel, delta
+    row[TANGENTIAL], row[FRICTION] = tangential, grip
+    row[DRAG + SLIDING], row[DRAG + SPINNING], row[DRAG + QUADRATIC] = damping, spin_damping, wake
+    return row
 
 
 def wall(nx, ny, place, grip=0.0):
@@ -175,7 +180,9 @@ def judged_discs(group):
     rows = []
     for d in group.discs:
         mass, inertia = (1.0 / d[1], 1.0 / d[2]) if d[1] > 0.0 else (1.0, 1.0)
-        rows.append([d[0], mass, inertia, d[3], d[5], d[6], d[7]])
+        rows.append(
+            [d[0], mass, inertia, d[3], *d[[DRAG + n for n in (SLIDING, SPINNING, QUADRATIC)]]]
+        )
     return rows
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from puck_tables import Map, Run, Scene
+from puck_tables import Scene
+from puck_tables.results import Map, Run
 
 
 def simulate_scene(tables: Any, times: Any = None) -> Run:

@@ -201,10 +201,10 @@ def test_a_puck_that_rests_beside_a_belt_that_rubs_it() -> None:
 
 def test_pucks_that_meet_on_belts() -> None:
     pucks = [
-        pt.Piece(0.05, 0.02, launch=pt.Launch((0.5, 0.1), 3.0, (-0.3, 0.0)), name="a",
+        pt.Puck(0.05, 0.02, launch=pt.Launch((0.5, 0.1), 3.0, (-0.3, 0.0)), name="a",
                  restitution=0.3),
-        pt.Piece(0.05, 0.02, launch=pt.Launch((0.2, 0.0), 0.0, (0.02, 0.03)), name="b"),
-        pt.Piece(0.05, launch=pt.Launch((0.2, 0.0), 0.0, (0.125, 0.03)), name="c",
+        pt.Puck(0.05, 0.02, launch=pt.Launch((0.2, 0.0), 0.0, (0.02, 0.03)), name="b"),
+        pt.Puck(0.05, launch=pt.Launch((0.2, 0.0), 0.0, (0.125, 0.03)), name="c",
                  restitution=0.0),
     ]  # fmt: skip
     walls = [pt.Wall((0.4, 0.0), normal=(-1.0, 0.0), restitution=0.2)]

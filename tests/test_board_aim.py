@@ -7,20 +7,20 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from boards import draw, piece
+from boards import draw, puck_at
 from scipy.constants import g
 
 import puck_tables as pt
 from puck_tables import InputError
 
-R, J = 0.03, 0.2 * g  # of the pucks of ``piece``, without height: straight ways
+R, J = 0.03, 0.2 * g  # of the pucks of ``puck_at``, without height: straight ways
 FLAT = {"height": 0.0, "name": ""}
 
 
 def two(x: float = 0.4, y: float = 0.0, **more: object) -> pt.Scene:
     """A cue at the origin and a red puck, smooth and elastic."""
-    cue = piece(0.0, 0.0, **{**FLAT, "name": "cue"})
-    return pt.Scene(pucks=[cue, piece(x, y, **{**FLAT, "name": "red"})], **more)
+    cue = puck_at(0.0, 0.0, **{**FLAT, "name": "cue"})
+    return pt.Scene(pucks=[cue, puck_at(x, y, **{**FLAT, "name": "red"})], **more)
 
 
 def test_a_cut_is_the_ghost_of_the_striker() -> None:
@@ -43,7 +43,7 @@ def test_a_cut_is_the_ghost_of_the_striker() -> None:
 def test_a_cushion_is_a_mirror() -> None:
     """One puck alone, e = 1: it ends where it would end behind the mirror."""
     board = pt.Scene(
-        pucks=[piece(0.0, 0.0, **FLAT)],
+        pucks=[puck_at(0.0, 0.0, **FLAT)],
         walls=[pt.Wall((0.0, 0.5), normal=(0.0, -1.0), restitution=1.0)],
     )
     found = board.aim((0.6, 0.1), max_impacts=1)
@@ -73,7 +73,7 @@ def test_the_striker_itself_ends_there_after_it_hit_one() -> None:
 
 def test_a_pocket_has_a_width_and_a_least_speed() -> None:
     """A slide without spin at a hole: a wedge of headings, speeds from the rim on."""
-    board = pt.Scene(pucks=[piece(0.0, 0.0, **FLAT)], pockets=[pt.Pocket((0.8, 0.6), 0.05)])
+    board = pt.Scene(pucks=[puck_at(0.0, 0.0, **FLAT)], pockets=[pt.Pocket((0.8, 0.6), 0.05)])
     found = board.aim(pocket=0, max_speed=4.0)
     assert len(found) == 1 and found.miss[0] == 0.0
     speed, heading = found.launch_speed[0], found.launch_heading[0]
@@ -163,7 +163,7 @@ def test_bad_aims(how: dict, words: str) -> None:
 
 
 def test_what_is_driven_or_ranges_cannot_be_aimed() -> None:
-    mallet = pt.Piece(0.05, name="mallet", path=((0.0, 2.0, 0.0), (1.0, 2.0, 0.5)))
+    mallet = pt.Puck(0.05, name="mallet", path=((0.0, 2.0, 0.0), (1.0, 2.0, 0.5)))
     board = pt.Scene(pucks=[*two().pucks, mallet])
     with pytest.raises(InputError, match="driven along its path and cannot be sent off"):
         board.aim((0.7, 0.0), puck="red", striker="mallet")

@@ -17,13 +17,13 @@ from matplotlib.patches import Circle
 from PIL import Image
 from scipy.integrate import solve_ivp
 
-from puck_tables import Edge, Floor, InputError, Launch, Piece, Post, Scene, Trajectory, Wall
+from puck_tables import Edge, Floor, InputError, Launch, Post, Puck, Scene, Wall
 from puck_tables._core.colours import brightness, is_colour
 from puck_tables.errors import MissingExtraError, OutputError
 from puck_tables.plot.animation import PALETTE, between, colour_of, film_of, path_of
 from puck_tables.plot.movie import page
 from puck_tables.plot.style import RED
-from puck_tables.puck import Puck
+from puck_tables.results import Trajectory
 
 BOARDS = ("carrom-break", "crokinole", "curling-take-out", "air-hockey-mallet", "newtons-row")
 
@@ -88,7 +88,7 @@ def test_impacts_are_exact_in_a_movie(runs: dict[str, Any]) -> None:
 
 def test_a_page_loads_nothing_and_names_end_no_script(tmp_path: Path) -> None:
     name = "</script><script>alert(1)</script>"
-    scene = Scene(pucks=[Piece(0.1, friction=0.1, name=name)], title="<b>&amp;</b>\u2028")
+    scene = Scene(pucks=[Puck(0.1, friction=0.1, name=name)], title="<b>&amp;</b>\u2028")
     scene.simulate().movie(tmp_path / "run.html")
     page = (tmp_path / "run.html").read_text(encoding="utf-8")
     assert page.count("<script>") == page.count("</script>") == 1
@@ -213,7 +213,7 @@ def test_a_trail_bends_up_to_its_puck() -> None:
 
 
 def test_what_lies_still_has_a_movie_too(tmp_path: Path) -> None:
-    still = Scene(pucks=[Piece(0.1, friction=0.1)]).simulate()
+    still = Scene(pucks=[Puck(0.1, friction=0.1)]).simulate()
     still.movie(tmp_path / "still.html")
     still.movie(tmp_path / "still.gif")
     still.plot(tmp_path / "still.png")
@@ -223,7 +223,7 @@ def test_what_lies_still_has_a_movie_too(tmp_path: Path) -> None:
 @pytest.mark.thorough
 def test_a_gif_moves(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("puck_tables.plot.movie._SHORTEST", 1.0)
-    puck = Piece(0.1, friction=0.5, launch=Launch((1.0, 0.0)))
+    puck = Puck(0.1, friction=0.5, launch=Launch((1.0, 0.0)))
     Scene(pucks=[puck]).simulate().movie(tmp_path / "run.gif")
     with Image.open(tmp_path / "run.gif") as movie:
         assert movie.n_frames > 20  # type: ignore[attr-defined]
@@ -267,8 +267,8 @@ def test_discs_and_impacts_stand_where_they_are(runs: dict[str, Any], name: str)
     run = runs[name]
     axes = run.plot().axes[0]
     drawn = np.array(circles(axes))
-    for number, piece in enumerate(run.scene.pucks):
-        end = (run.last["x"][number], run.last["y"][number], piece.radius)
+    for number, puck in enumerate(run.scene.pucks):
+        end = (run.last["x"][number], run.last["y"][number], puck.radius)
         assert np.abs(drawn - end).max(axis=1).min() < 1e-6
     assert axes.get_aspect() == 1.0
     marked = [line for line in axes.lines if line.get_color() == RED and line.get_marker() == "o"]
@@ -298,7 +298,7 @@ def test_small_pucks_have_a_close_up(runs: dict[str, Any]) -> None:
 def test_names_are_drawn_as_they_stand() -> None:
     names = ("$x_1^{", "_hidden", "a $\\frac{1}{2}$")
     pucks = [
-        Piece(0.1, friction=0.1, name=name, launch=Launch((1.0, 0.0), position=(0.0, float(n))))
+        Puck(0.1, friction=0.1, name=name, launch=Launch((1.0, 0.0), position=(0.0, float(n))))
         for n, name in enumerate(names)
     ]
     figure = Scene(pucks=pucks).simulate().plot()
@@ -315,13 +315,13 @@ def test_a_board_is_drawn_to_its_corners() -> None:
         Wall((0.0, 0.0), normal=(2.0, 0.0)),
         Wall((1.0, 0.0), normal=(-1.0, -1.0)),
     ]
-    film = film_of(Scene(pucks=[Piece(0.01, friction=0.1, launch=Launch(position=(0.1, 0.1)))],
+    film = film_of(Scene(pucks=[Puck(0.01, friction=0.1, launch=Launch(position=(0.1, 0.1)))],
                          walls=walls, posts=[post]).simulate())  # fmt: skip
     corners = {tuple(np.round(end, 9) + 0.0) for line in film.lines
                for end in zip(line.x, line.y, strict=True)}  # fmt: skip
     assert corners == {(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)}
     assert film.box[0] < 0.0 and film.box[1] > 1.0
-    open_side = film_of(Scene(pucks=[Piece(0.01, friction=0.1)],
+    open_side = film_of(Scene(pucks=[Puck(0.01, friction=0.1)],
                               edges=[Edge((5e6, 0.0), normal=(-1.0, 0.0))]).simulate())  # fmt: skip
     assert open_side.lines == [] and open_side.box[1] < 0.1
 
@@ -337,7 +337,7 @@ def test_colours_differ_also_in_grey() -> None:
 @pytest.mark.parametrize("colour", ["blau", "#12345", "red;", 3, "C0", "#12345g", "url(x)"])
 def test_a_colour_that_nobody_knows_is_refused_where_it_is_given(colour: Any) -> None:
     with pytest.raises(InputError, match="must be a colour, '#rrggbb' or a name of CSS"):
-        Piece(0.1, colour=colour)
+        Puck(0.1, colour=colour)
     with pytest.raises(InputError, match=r"puck\[0\]\.colour = "):
         Scene.from_tables({"puck": [{"radius": 0.1, "friction": 0.1, "colour": colour}]})
 
@@ -350,7 +350,7 @@ def test_every_colour_that_is_taken_can_be_drawn() -> None:
     assert {name: f"#{digits}" for name, digits in _NAMED.items()} == {
         name: to_hex(colour) for name, colour in CSS4_COLORS.items()
     }
-    Scene(pucks=[Piece(0.1, friction=0.1, colour="CornflowerBlue")]).simulate().plot()
+    Scene(pucks=[Puck(0.1, friction=0.1, colour="CornflowerBlue")]).simulate().plot()
 
 
 def test_maps_of_long_boards_have_a_close_up_too(runs: dict[str, Any]) -> None:

@@ -10,12 +10,12 @@ import puck_tables as pt
 from puck_tables.scene.restitution import restitution_law
 from puck_tables.scene.scene_text import as_toml
 
-PUCK = pt.Piece(0.03, friction=0.1, name="puck", launch=pt.Launch((1.0, 0.0)))
-OTHER = pt.Piece(0.03, friction=0.1, name="other", launch=pt.Launch(position=(0.3, 0.0)))
+PUCK = pt.Puck(0.03, friction=0.1, name="puck", launch=pt.Launch((1.0, 0.0)))
+OTHER = pt.Puck(0.03, friction=0.1, name="other", launch=pt.Launch(position=(0.3, 0.0)))
 
 
-def mallet(*rows: tuple[float, float, float]) -> pt.Piece:
-    return pt.Piece(0.05, name="mallet", path=rows)
+def mallet(*rows: tuple[float, float, float]) -> pt.Puck:
+    return pt.Puck(0.05, name="mallet", path=rows)
 
 
 @pytest.mark.parametrize(("place", "words"), [
@@ -50,7 +50,7 @@ def test_a_puck_that_is_to_hit_itself_is_refused(hits: str, who: str):
 
 def test_a_table_of_restitution_made_in_python_stands_in_a_file():
     law = pt.RestitutionTable([0.0, 1.0, 3.0], [0.9, 0.8, 1.0 / 3.0])
-    scene = pt.Scene(pucks=[pt.Piece(0.03, friction=0.1, restitution=law), OTHER])
+    scene = pt.Scene(pucks=[pt.Puck(0.03, friction=0.1, restitution=law), OTHER])
     again = pt.Scene.from_tables(tomllib.loads(as_toml(scene)))
     assert again.pucks[0].restitution == law.name
     assert restitution_law(again.pucks[0].restitution) == law
@@ -58,12 +58,12 @@ def test_a_table_of_restitution_made_in_python_stands_in_a_file():
 
 def test_points_that_are_none_are_refused():
     with pytest.raises(pt.InputError, match="must be speeds, m/s, and restitutions"):
-        pt.Scene(pucks=[PUCK, pt.Piece(0.03, restitution="table:0.9")])
+        pt.Scene(pucks=[PUCK, pt.Puck(0.03, restitution="table:0.9")])
 
 
 @pytest.mark.parametrize(("more", "words"), [
     ({"floor": pt.Floor(turning=1.0), "time": 1.0}, "not for a moving floor"),
-    ({"pucks": [pt.Piece(0.03, friction=0.1, constraint=pt.Constraint("rail"), name="led",
+    ({"pucks": [pt.Puck(0.03, friction=0.1, constraint=pt.Constraint("rail"), name="led",
                          launch=pt.Launch((1.0, 0.0))), OTHER]}, "striker led is led by a rail"),
 ])  # fmt: skip
 def test_aim_is_not_for_what_is_carried_or_led(more: dict, words: str):

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from boards import draw, piece
+from boards import draw, puck_at
 from click.testing import CliRunner
 from puck_tables.cli.main import main
 
@@ -24,7 +24,7 @@ SHOT: dict[str, Any] = {
 
 def shot(**more: Any) -> Scene:
     """A cue sent at a red before a pocket, into which it may fall."""
-    cue, red = piece(0.0, 0.0, (1.9, 0.0), name="cue"), piece(0.3, 0.0, name="red")
+    cue, red = puck_at(0.0, 0.0, (1.9, 0.0), name="cue"), puck_at(0.3, 0.0, name="red")
     return Scene(pucks=[cue, red], pockets=[pt.Pocket((0.8, 0.02), 0.06)], **more)
 
 
@@ -76,7 +76,7 @@ def test_a_sample_of_a_board_is_what_runs_alone_give():
 
 def test_a_draw_that_fails_is_counted_and_said():
     """Drawn places of which some overlap, by plain geometry."""
-    cue, red = piece(0.0, 0.0, (1.0, 0.0)), piece(0.065, 0.0)
+    cue, red = puck_at(0.0, 0.0, (1.0, 0.0)), puck_at(0.065, 0.0)
     spreads = {"puck[1].launch.position[0]": Normal(0.065, 0.01)}
     found = Scene(pucks=[cue, red]).sample(40, 3, spreads)
     overlap = found.columns["puck_1_launch_position_0"] < 0.06
@@ -93,11 +93,11 @@ def test_a_draw_that_fails_is_counted_and_said():
 @pytest.mark.parametrize("order", [1, -1])
 @pytest.mark.parametrize("board", [False, True])
 def test_a_launch_that_cannot_be_takes_no_other_along(board: bool, order: int):
-    puck = piece(0.0, 0.0, (1.0, 0.0))
+    puck = puck_at(0.0, 0.0, (1.0, 0.0))
     path, values = "launch.velocity[0]", [1.0, 2.0, 1e160][::order]
     one = Scene(pt.Puck(0.03, friction=0.2), launch=pt.Launch((1.0, 0.0)), ranges={path: values},
                 floor=pt.Floor(slope=0.01))  # fmt: skip
-    two = Scene(pucks=[puck, piece(5.0, 1.0)], ranges={f"puck[0].{path}": values})
+    two = Scene(pucks=[puck, puck_at(5.0, 1.0)], ranges={f"puck[0].{path}": values})
     ends = (two if board else one).sweep()
     assert ends.end.tolist() == [0, 0, REFUSED][::order]
 
@@ -106,7 +106,7 @@ def test_a_launch_that_cannot_be_takes_no_other_along(board: bool, order: int):
 def test_what_stands_far_away_changes_no_map_and_no_sample(pucks: int):
     """A post makes a board of it; its columns stay what they were, and so does their shape."""
     puck, launch = pt.Puck(0.03, friction=0.2), pt.Launch((1.0, 0.1), spin=9.0)
-    parts: Any = {"pucks": [piece(0.0, 0.0, (1.0, 0.1), 9.0)]} if pucks else {
+    parts: Any = {"pucks": [puck_at(0.0, 0.0, (1.0, 0.1), 9.0)]} if pucks else {
         "puck": puck, "launch": launch}  # fmt: skip
     own = "puck[0]." if pucks else ""
     free, far = Scene(**parts), Scene(**parts, posts=[pt.Post((7.0, 0.0), 0.1)])

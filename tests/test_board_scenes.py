@@ -44,13 +44,13 @@ def test_a_scene_tells_its_story(runs: dict[str, Any], name: str) -> None:
     assert run.impacts >= impacts
     assert {event.puck for event in run.events if event.what in ("pocket", "edge")} == gone
     assert run.energy_residual < 1e-12
-    assert run.end_error < 1e-2 * min(piece.radius for piece in run.scene.pucks)  # to be retold
+    assert run.end_error < 1e-2 * min(puck.radius for puck in run.scene.pucks)  # to be retold
 
 
 @pytest.mark.parametrize("name", BOARDS)
 def test_no_pucks_overlap_between_frames(runs: dict[str, Any], name: str) -> None:
     run = runs[name]
-    radii = [piece.radius for piece in run.scene.pucks]
+    radii = [puck.radius for puck in run.scene.pucks]
     for one, other in itertools.combinations(range(len(radii)), 2):
         both = (run.in_play[:, one] > 0.0) & (run.in_play[:, other] > 0.0)
         apart = np.hypot(run.x[:, one] - run.x[:, other], run.y[:, one] - run.y[:, other])

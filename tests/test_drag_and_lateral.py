@@ -62,9 +62,9 @@ def test_several_pucks_feel_drag_and_lateral_force_as_one_does(friction):
             time=0.4, **across,
         )  # fmt: skip
         launch = pt.Launch((1.0, 0.2), -60.0)
-        piece = pt.Piece(RADIUS, friction=friction, mass=MASS, launch=launch)
-        far = pt.Piece(RADIUS, friction=friction, mass=MASS, launch=pt.Launch(position=(0.0, 9.0)))
-        board = pt.Scene(pucks=[piece, far], drag=drag, time=0.4, **across)
+        puck = pt.Puck(RADIUS, friction=friction, mass=MASS, launch=launch)
+        far = pt.Puck(RADIUS, friction=friction, mass=MASS, launch=pt.Launch(position=(0.0, 9.0)))
+        board = pt.Scene(pucks=[puck, far], drag=drag, time=0.4, **across)
         many = board.simulate(times)
         for name in ("x", "y", "orientation", "spin"):
             unit = 1.0 / RADIUS if name in ("orientation", "spin") else 1.0
@@ -149,8 +149,8 @@ def test_what_is_refused_and_what_is_said():
     words = "--v0 1,0 --w0 1 --radius 0.05 --friction 0.1 --mass 1 --set lateral.strength=0.1"
     said = CliRunner().invoke(main, ["simulate", *words.split()])
     assert "lateral    strength 0.1 N; empirical: no dry friction over" in said.stdout
-    piece = pt.Piece(RADIUS, friction=0.1, launch=pt.Launch((1.0, 0.0), 1.0))
-    board = pt.Scene(pucks=[piece], lateral=pt.Lateral(0.1)).simulate()
+    puck = pt.Puck(RADIUS, friction=0.1, launch=pt.Launch((1.0, 0.0), 1.0))
+    board = pt.Scene(pucks=[puck], lateral=pt.Lateral(0.1)).simulate()
     assert "no dry friction over the contact explains it" in board.explain()
 
 

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from boards import piece
+from boards import puck_at
 
 import puck_tables as pt
 from puck_tables import InputError
@@ -30,8 +30,8 @@ def test_rows_keep_the_accuracy_between_them(accuracy: float) -> None:
 def test_a_mallet_by_a_function_hits_as_one_by_rows() -> None:
     """A heavy elastic body at speed u sends a puck at rest off at 2 u."""
 
-    def body(path: pt.Piece) -> pt.Scene:
-        return pt.Scene(pucks=[pt.Piece(0.05, name="mallet", path=path), piece(0.0, 0.0)])
+    def body(path: pt.Puck) -> pt.Scene:
+        return pt.Scene(pucks=[pt.Puck(0.05, name="mallet", path=path), puck_at(0.0, 0.0)])
 
     run = body(pt.path_along(lambda t: (-0.5 + 0.8 * t, 0.0), 0.6)).simulate()
     plain = body(((0.0, -0.5, 0.0), (0.6, -0.02, 0.0))).simulate()

@@ -74,7 +74,7 @@ def test_heights_beyond_full_contact_are_refused():
 def test_states_that_cannot_be_kept_are_refused_and_stops_are_not():
     """Under Hertz's law a homogeneous flat puck ends in pure spin: states have no limit inside."""
     homogeneous = puck_under("hertz", 0.5**0.5)
-    with pytest.raises(pt.AccuracyError, match="stops and resultants alone"):
+    with pytest.raises(pt.errors.AccuracyError, match="stops and resultants alone"):
         pt.export_source("c", "state", 1e-4, homogeneous)
     assert "hertz" in repr(pt.export_source("c", "stop", 1e-4, homogeneous))
 

@@ -13,7 +13,7 @@ import puck_tables as pt
 from puck_tables.fitting.forward_model import Moving, states_and_slopes, states_of
 from puck_tables.fitting.least_squares import compact
 from puck_tables.fitting.problem import ANGLE, PLACE, PRIOR
-from puck_tables.fitting.unit_motions import unit_motions_of
+from puck_tables.fitting.unit_motions import TallMotions, unit_motions_of
 from puck_tables.plot.fit_figure import draw
 
 RADIUS, DECEL, DELTA = 0.0381, 0.15 * film_judge.G, 0.2
@@ -107,6 +107,17 @@ def test_derivatives_of_a_path_are_those_of_the_judge():
             ends.append(film_judge.path((vx, vy), w, j, d, r, times))
         expected = (ends[0] - ends[1]) / (2.0 * step)
         assert np.abs(slopes[k] - expected).max() < 1e-4 * np.abs(expected).max(), k
+
+
+@pytest.mark.thorough
+def test_motions_between_the_heights_of_tall_pucks_are_those_of_the_puck():
+    """Closest to the fold, where the cubic in δ errs most."""
+    times, height = np.array([0.5, 1.5, 3.0]), 3.83
+    truth = pt.Puck.similar(delta=height).simulate((1.0, 0.0), 0.7, frames=2)(times)
+    launch = np.array([[1.0, 0.0, 0.7, height, 1.0, 1.0]]).T
+    x, y = TallMotions(0.5**0.5).states(launch, times[None])[:2, 0]
+    off = np.hypot(x - truth.x, y - truth.y)
+    assert off.max() < 1e-4 * math.hypot(truth.x[-1], truth.y[-1])
 
 
 def test_drag_by_look_up_is_drag_integrated():

@@ -56,7 +56,7 @@ def film(rng: np.random.Generator, name: str) -> tuple[pt.Track, pt.Puck, np.nda
     return pt.Track(t, place, true[5] + NOISE[1] * rng.normal(size=t.size), "slide"), puck, start
 
 
-def off(found: pt.Fit, puck: pt.Puck, start: np.ndarray) -> np.ndarray:
+def off(found: pt.results.Fit, puck: pt.Puck, start: np.ndarray) -> np.ndarray:
     """Friction, height, velocity, spin and angle less the truth, in standard errors."""
     launch = found.launches[0].numbers
     names = ("launch_vx", "launch_vy", "launch_spin", "launch_angle")

@@ -14,7 +14,9 @@ from scipy.integrate import solve_ivp
 from scipy.special import ellipe, ellipk
 
 import puck_tables as pt
+from puck_tables.fitting.forward_model import Moving, states_of
 from puck_tables.fitting.speed_motion import Drags, SpeedFriction, SpeedLaunch, speed_paths
+from puck_tables.fitting.unit_motions import PlainMotions
 
 G, R = 9.80665, 0.03165
 PUCK = pt.Puck(R, height=0.0)
@@ -86,6 +88,17 @@ def test_motions_are_those_of_an_independent_integrator():
         x, y, angle = states[0, :3]
         assert np.abs(x - way).max() < 3e-6 * way[-1] and not y.any()
         assert np.abs(angle - turn).max() < 3e-6 * abs(turn[-1]) + 1e-6
+
+
+def test_a_slide_with_drag_is_elementary():
+    """v′ = −J − c v: x = (v + J/c)(1 − e^(−ct))/c − J t/c, up to the stop."""
+    v, decel = 1.3, 1.0
+    for c in (0.5, 2.0, 6.0):
+        t = np.linspace(0.0, math.log1p(c * v / decel) / c, 7)[1:]
+        moving = Moving(decel, 0.0, 1.0, c, PlainMotions(), None)
+        x = states_of(moving, np.array([0.0, 0.0, v, 0.0, 0.0, 0.0]), t)[0]
+        truth = -(v + decel / c) * np.expm1(-c * t) / c - decel * t / c
+        assert np.abs(x - truth).max() < 1e-8 * truth[-1]
 
 
 def scores(seed: int, count: int, spin_drag: bool = False):

@@ -16,7 +16,7 @@ UNSEEN = ("drag", "hand", "push")
 GOOD = ("marked", "unmarked", "straight", "straight unmarked", "fast", "few", "grid")
 
 
-def misleads(film, found: pt.Fit) -> dict[str, float]:
+def misleads(film, found: pt.results.Fit) -> dict[str, float]:
     """What is wrong, but for what a table out of level by so much is said to do, unseen."""
     said = any("A level table is taken for granted" in text for text in found.remarks)
     return {} if film.slope and said else wrong(film, found)

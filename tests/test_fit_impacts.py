@@ -96,7 +96,7 @@ def seen(true: np.ndarray, seed: int, name: str = "film") -> pt.Track:
     return pt.Track(TIMES, *film_judge.noisy(np.random.default_rng(seed), true, NOISE), name)
 
 
-def scatter(true: np.ndarray, seeds: range) -> tuple[np.ndarray, np.ndarray, pt.Fit]:
+def scatter(true: np.ndarray, seeds: range) -> tuple[np.ndarray, np.ndarray, pt.results.Fit]:
     """Errors of e and the rim's friction over their bounds, whether within 95 %; the last fit."""
     bound = impacts_judge.bound(two_walls, TRUTH, STEPS, NOISE)[12:]
     off, inside = [], []

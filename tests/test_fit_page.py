@@ -75,7 +75,7 @@ def test_python_and_the_command_write_the_same(found, tmp_path: Path, monkeypatc
     monkeypatch.chdir(tmp_path)
     found.report("one.html")
     assert Path("one.html").read_text("utf-8").startswith("<!DOCTYPE html>")
-    with pytest.raises(pt.OutputError):
+    with pytest.raises(pt.errors.OutputError):
         found.report("one.html")
     found.report("one.html", overwrite=True)
     with pytest.raises(pt.InputError, match=r"\.html"):

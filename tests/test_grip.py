@@ -171,8 +171,8 @@ def test_a_stretch_has_factors_of_its_own() -> None:
 def test_pucks_that_meet_on_a_floor_that_gets_wet() -> None:
     def board(friction: float, **floor: Any) -> pt.Scene:
         pucks = [
-            pt.Piece(0.05, 0.03, friction, launch=pt.Launch((1.5, 0.1), 5.0), name="a"),
-            pt.Piece(0.05, 0.03, friction, launch=pt.Launch(position=(0.2, 0.03)), name="b"),
+            pt.Puck(0.05, 0.03, friction, launch=pt.Launch((1.5, 0.1), 5.0), name="a"),
+            pt.Puck(0.05, 0.03, friction, launch=pt.Launch(position=(0.2, 0.03)), name="b"),
         ]
         walls = [pt.Wall((0.5, 0.0), normal=(-1.0, 0.0), restitution=0.5)]
         return pt.Scene(pucks=pucks, walls=walls, floor=pt.Floor(**floor))
@@ -191,7 +191,7 @@ def test_pucks_that_meet_on_a_floor_that_gets_wet() -> None:
 def test_two_that_lean_on_each_other_slip_when_it_gets_slippery() -> None:
     slope, friction = 0.1, 0.3
     pucks = [
-        pt.Piece(0.05, friction=friction, launch=pt.Launch(position=(0.1 * n, 0.0)))
+        pt.Puck(0.05, friction=friction, launch=pt.Launch(position=(0.1 * n, 0.0)))
         for n in range(2)
     ]
     scene = pt.Scene(

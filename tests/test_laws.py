@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from scipy.special import ellipe, ellipk
 
 from puck_tables.contact import closed_form
 from puck_tables.contact.laws import law_of, limit_ratio, profile_law
@@ -148,6 +149,32 @@ def test_profiles_that_are_other_laws():
         got, truth = np.array(law.integrals(phi)), np.array(law_of(name).integrals(phi))
         np.testing.assert_allclose(got, truth, rtol=0.0, atol=1e-13)
     assert washer.edges == (0.8, 1.0) and flat.edges == (1.0,)
+
+
+CENTRES = (3.0, 1.16, 0.8, 0.54, 0.5 + 1e-6, 0.4, 0.28, 0.1)  # of rotation: how far from the middle
+
+
+@pytest.mark.parametrize("phi", [math.atan(1.0 / c) for c in CENTRES])
+def test_a_profile_is_its_rings_by_elliptic_integrals(phi):
+    """C outside, between rows, beside a row, in the hole: the mean slip along v of each ring."""
+    radii, pressure = np.array([0.2, 0.3, 0.5, 0.7, 1.0]), [0.9, 0.2, 0.7, 0.3, 0.6]
+    found = float(profile_law(radii, pressure).integrals(phi).a) * math.cos(phi)
+    centre = 1.0 / math.tan(phi)
+
+    def along(rho: float) -> float:
+        a, b = math.cos(phi), rho * math.sin(phi)
+        m = min(4.0 * a * b / (a + b) ** 2, 1.0)
+        k = ellipk(m) if m < 1.0 else 0.0  # times a − b
+        return ((a + b) * ellipe(m) + (a - b) * k) / (math.pi * a)
+
+    def summed(of) -> float:
+        return sum(
+            quad(lambda rho: float(np.interp(rho, radii, pressure)) * rho * of(rho), *ends,
+                 epsabs=1e-14, epsrel=1e-14, limit=200)[0]
+            for ends in pairwise(np.unique([*radii, *([centre] if 0.2 < centre < 1.0 else [])]))
+        )  # fmt: skip
+
+    assert found == pytest.approx(summed(along) / summed(lambda _: 1.0), abs=2e-13)
 
 
 def test_a_tabulated_law_converges_with_its_rows():

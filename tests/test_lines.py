@@ -11,17 +11,19 @@ from click.testing import CliRunner
 from puck_tables.cli.main import main
 
 import puck_tables as pt
-from puck_tables import Floor, InputError, Launch, Line, Piece, Puck, Scene, Wall
+from puck_tables import Floor, InputError, Launch, Line, Puck, Scene, Wall
 
 DECEL = 0.1 * 9.80665  # of the puck below
 HOG = Line((0.5, -1.0), (0.5, 1.0), name="hog")
 
 
-def slide(*lines: Line, velocity: tuple[float, float] = (1.5, 0.0), **more: object) -> pt.Run:
+def slide(
+    *lines: Line, velocity: tuple[float, float] = (1.5, 0.0), **more: object
+) -> pt.results.Run:
     return Scene(Puck(0.05, friction=0.1), launch=Launch(velocity), lines=lines, **more).simulate()
 
 
-def passed(run: pt.Run) -> list[tuple[str, str]]:
+def passed(run: pt.results.Run) -> list[tuple[str, str]]:
     return [(event.what, event.partner) for event in run.events if event.what != "stick"]
 
 
@@ -116,8 +118,8 @@ def test_all_that_passes_is_told_and_nothing_else(kind: str):
 
 def test_a_world_tells_the_same_in_parts_and_in_copies():
     pieces = [
-        Piece(0.03, friction=0.1, launch=Launch((1.4, 0.1), 20.0, (-0.5, 0.0))),
-        Piece(0.03, friction=0.1, launch=Launch(position=(0.0, 0.0))),
+        Puck(0.03, friction=0.1, launch=Launch((1.4, 0.1), 20.0, (-0.5, 0.0))),
+        Puck(0.03, friction=0.1, launch=Launch(position=(0.0, 0.0))),
     ]
     goal = Line((0.3, 1.0), (0.3, -1.0), name="goal")
     scene = Scene(pucks=pieces, lines=[goal, Line(centre=(0.0, 0.0), radius=0.2)])

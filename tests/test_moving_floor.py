@@ -28,7 +28,7 @@ def shakes(rate: float, turns: int = 3) -> pt.Floor:
     return pt.Floor(over_time=rows)
 
 
-def run_of(puck: pt.Puck, floor: pt.Floor, **parts: Any) -> pt.Run:
+def run_of(puck: pt.Puck, floor: pt.Floor, **parts: Any) -> pt.results.Run:
     run = pt.Scene(puck, floor, **parts).simulate([0.0])
     assert abs(run.energy_residual) < 1e-9
     return run
@@ -134,8 +134,8 @@ def test_a_puck_on_a_turntable_that_speeds_up_as_another_program_has_it() -> Non
 
 
 def test_pucks_on_a_tray_meet_and_are_carried_together() -> None:
-    def pucks(*launches: pt.Launch) -> list[pt.Piece]:
-        return [pt.Piece(0.05, 0.02, 0.2, launch=one, restitution=0.6) for one in launches]
+    def pucks(*launches: pt.Launch) -> list[pt.Puck]:
+        return [pt.Puck(0.05, 0.02, 0.2, launch=one, restitution=0.6) for one in launches]
 
     rest = pucks(pt.Launch(position=(0.0, 0.0)), pt.Launch(position=(0.1, 0.0)))
     run = pt.Scene(pucks=rest, floor=shakes(1.5), time=0.8).simulate([0.0])

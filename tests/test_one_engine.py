@@ -66,7 +66,7 @@ def test_a_far_post_changes_nothing(first: int, tmp_path: Path):
         assert apart(now, before).max() < 1.0, seed
 
 
-def told(run: pt.Run, length: float) -> list[tuple[Any, ...]]:
+def told(run: pt.results.Run, length: float) -> list[tuple[Any, ...]]:
     """The events of a run but those at walls and at its start."""
     return [
         (event.what, event.partner, event.time, event.x / length, event.y / length)
@@ -129,8 +129,8 @@ def test_pucks_that_never_press_are_not_sent_off_one_by_one(monkeypatch: pytest.
         slow = pt.Launch(tuple((0.1 * rng.normal(size=2)).tolist()), 0.0, (-0.5, 0.6))
         force = pt.Force(over_time=[[0.0, 0.0, 0.0], [0.2, 0.1, 0.05], [0.4, 0.0, 0.0]])
         pucks = [
-            pt.Piece(0.04, 0.02, 0.3, launch=fast),
-            pt.Piece(0.05, 0.0, 0.2, launch=slow, force=force),
+            pt.Puck(0.04, 0.02, 0.3, launch=fast),
+            pt.Puck(0.05, 0.0, 0.2, launch=slow, force=force),
         ]
         board = Scene(pucks=pucks, walls=[wall], floor=pt.Floor(0.1, float(rng.uniform(2.0, 4.0))))
         run = board.simulate()

@@ -13,7 +13,7 @@ import pytest
 from click.testing import CliRunner
 from puck_tables.cli.main import main
 
-from puck_tables import Edge, Floor, Launch, Piece, Post, Puck, Scene, Wall
+from puck_tables import Edge, Floor, Launch, Post, Puck, Scene, Wall
 
 
 def slide(seed: int) -> tuple[Puck, Launch, list[Edge], list[tuple[float, int]], bool]:
@@ -57,7 +57,7 @@ def test_it_is_told_when_a_rim_comes_over_an_edge(several: bool):
     for seed in range(24):
         puck, launch, edges, events, falls = slide(seed)
         if several:
-            piece = Piece(puck.radius, friction=puck.friction, name="a", launch=launch)
+            piece = Puck(puck.radius, friction=puck.friction, name="a", launch=launch)
             run: Any = Scene(pucks=[piece], edges=edges).simulate()
             assert falls == any(event.what == "edge" for event in run.events)
         else:
@@ -72,7 +72,7 @@ def test_it_is_told_when_a_rim_comes_over_an_edge(several: bool):
 
 def test_the_motion_is_none_other():
     launch, puck = Launch((0.5, 0.1), 30.0), Puck(0.03, friction=0.2)
-    piece = Piece(0.03, friction=0.2, launch=launch)
+    piece = Puck(0.03, friction=0.2, launch=launch)
     boards: list[dict[str, Any]] = [
         {"puck": puck, "floor": Floor(slope=0.02), "launch": launch}, {"pucks": [piece]}
     ]  # fmt: skip
@@ -88,7 +88,7 @@ def test_the_motion_is_none_other():
 
 def test_one_that_comes_back_is_told_of_again():
     edge, post = Edge((0.3, 0.0), normal=(-1.0, 0.0)), Post((0.355, 0.0), 0.03)
-    piece = Piece(0.03, friction=0.02, launch=Launch((1.0, 0.0)))
+    piece = Puck(0.03, friction=0.02, launch=Launch((1.0, 0.0)))
     back = Wall((-0.2, 0.0), normal=(1.0, 0.0))
     run: Any = Scene(pucks=[piece], posts=[post], edges=[edge], walls=[back]).simulate()
     assert len(overhangs(run)) > 2

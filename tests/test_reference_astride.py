@@ -36,7 +36,7 @@ def by_scipy(answer: Answer, times: np.ndarray) -> np.ndarray:
     """States (6, n): from border to border, since friction bends where the rim meets one."""
     motion, launch = Motion(answer.run.scene), answer.run.scene.launch
     start = np.array([*launch.position, 0.0, *launch.velocity, launch.spin])
-    strips, r = answer.floor.strips, answer.pieces[0].radius
+    strips, r = answer.floor.strips, answer.pucks[0].radius
     way = np.array([math.cos(strips.direction), math.sin(strips.direction)])
 
     def meets(place: float):
@@ -75,7 +75,7 @@ def test_states_by_an_independent_integrator(name: str):
     assert answer.share_bound <= (2e-10 if name == "astride-stop" else 1e-10)
     times = np.append(np.linspace(0.08, 0.95, 9), NOT_YET) * answer.end_time
     truth, ours = by_scipy(answer, times), answer(times)
-    q, j, r = answer.speed_scale, answer.rate_scale, answer.pieces[0].radius
+    q, j, r = answer.speed_scale, answer.rate_scale, answer.pucks[0].radius
     length = q * q / j
     for row, mine, unit in zip(
         truth, (ours.x, ours.y, ours.orientation, ours.vx, ours.vy, ours.spin),
@@ -89,7 +89,7 @@ def test_forces_on_the_floor_by_scans_of_the_base(name: str):
     """All along, astride and not."""
     answer = reference_case(name)
     answer = answer(np.linspace(0.0, 0.99, 12) * answer.end_time)
-    motion, puck = Motion(answer.run.scene), answer.pieces[0]
+    motion, puck = Motion(answer.run.scene), answer.pucks[0]
     load = 0.78 * puck.mass * puck.gravity
     states = np.stack([
         answer.x, answer.y, answer.orientation, answer.vx, answer.vy, answer.spin
@@ -103,7 +103,7 @@ def test_forces_on_the_floor_by_scans_of_the_base(name: str):
 
 def test_a_spin_is_pushed_along_the_border():
     answer = reference_case("astride-spin", times=[0.0])
-    mass = answer.pieces[0].mass
+    mass = answer.pucks[0].mass
     pushed = -answer.floor_fy[0] / mass  # towards +y, where the rim of more friction comes from
     assert pushed == pytest.approx(0.11 * 10.0 / math.pi, rel=1e-12)
     assert round(pushed, 4) == 0.3501

@@ -172,7 +172,7 @@ def test_the_slip_of_a_box_on_belts_is_over_the_one_under_its_centre():
     answer = reference_case("box-belts", times=[0.0, 0.6])
     assert answer.x[0] < 0.0 < answer.x[1]
     speeds = np.hypot(answer.vx - [0.5, 0.2], answer.vy)
-    turn = reference_case("box-belts").pieces[0].radius * answer.spin
+    turn = reference_case("box-belts").pucks[0].radius * answer.spin
     np.testing.assert_allclose(answer.slip_speed, np.hypot(speeds, turn), rtol=1e-12, atol=1e-12)
 
 
@@ -267,7 +267,7 @@ def test_the_take_out_on_its_way(time: float):
     truth = play(discs_of_the_take_out(), [], time).states
     answer = reference_case("take-out")
     ours = answer([time])
-    r, place = answer.pieces[0].radius, answer.place_bound
+    r, place = answer.pucks[0].radius, answer.place_bound
     for n, (name, bound) in enumerate((
         ("x", place), ("y", place), ("orientation", place / r), ("vx", answer.speed_bound),
         ("vy", answer.speed_bound), ("spin", answer.speed_bound / r),
@@ -306,7 +306,7 @@ def test_other_pucks_by_another_integrator(name: str):
     puck, launch = tables["puck"], tables["launch"]
     ratio = puck["radius"] * launch["spin"] / launch["velocity"][0]
     law, gyration = puck.get("pressure", "uniform"), puck.get("gyration", math.sqrt(0.5))
-    truth = stops_by_truth(law, answer.pieces[0].delta, gyration, np.array([math.log(ratio)]))
+    truth = stops_by_truth(law, answer.pucks[0].delta, gyration, np.array([math.log(ratio)]))
     q, j = answer.speed_scale, answer.rate_scale
     last = answer.last()
     ours = [answer.end_time * j / q, last["x"] * j / q**2, last["y"] * j / q**2]
@@ -320,7 +320,7 @@ def test_forces_on_the_floor_are_what_the_puck_lacks(name: str):
     step = 1e-5 * answer.end_time
     middle = np.linspace(0.2, 0.8, 4) * answer.end_time
     before, at, after = (answer(middle + n * step) for n in (-1.0, 0.0, 1.0))
-    puck, floor = answer.pieces[0], answer.floor
+    puck, floor = answer.pucks[0], answer.floor
     down = puck.gravity * math.sin(floor.slope)
     rates = [(getattr(after, n) - getattr(before, n)) / (2.0 * step) for n in ("vx", "vy", "spin")]
     fx = puck.mass * (down * math.cos(floor.downhill) - rates[0])

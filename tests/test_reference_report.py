@@ -63,7 +63,7 @@ def test_pictures_show_floor_walls_and_pucks(name: str, labels: set[str], outlin
     assert labels <= set(plane.get_legend_handles_labels()[1])
     drawn = [(one.get_path(), one.get_patch_transform()) for one in plane.patches]
     widths = [np.ptp(part[:, 0]) for path, there in drawn for part in path.to_polygons(there)]
-    assert np.isclose(widths, 2 * answer.pieces[0].radius, rtol=1e-3).sum() == outlines
+    assert np.isclose(widths, 2 * answer.pucks[0].radius, rtol=1e-3).sum() == outlines
 
 
 def test_pictures_show_the_bend_and_no_rounding():

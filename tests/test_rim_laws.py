@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from boards import draw, piece
+from boards import draw, puck_at
 from scipy.integrate import solve_ivp
 
 import puck_tables as pt
@@ -17,7 +17,7 @@ from puck_tables.scene.scene_text import as_toml
 ROWS = "speed,e\n0,0.9\n0.5,0.8\n1,0.6\n4,0.5\n"
 
 
-def bounced(*pucks: pt.Piece, **board: object) -> tuple[float, float]:
+def bounced(*pucks: pt.Puck, **board: object) -> tuple[float, float]:
     """Approach at the first impact of the first puck, and its restitution from the states then."""
     world = pt.Scene(pucks=pucks, **board).world()  # type: ignore[arg-type]
     event = world.copy().advance(2.0)[0]
@@ -28,8 +28,8 @@ def bounced(*pucks: pt.Piece, **board: object) -> tuple[float, float]:
 
 def meets(law: object, speed: float, other: object = 1.0, **board: object) -> tuple[float, float]:
     """The same of two that meet head-on, next to each other and fast."""
-    one = piece(0.0, 0.0, (speed, 0.0), friction=1e-6, restitution=law, name="one", colour="red")
-    two = piece(0.060001, 0.0, friction=1e-6, restitution=other, name="two", colour="blue")
+    one = puck_at(0.0, 0.0, (speed, 0.0), friction=1e-6, restitution=law, name="one", colour="red")
+    two = puck_at(0.060001, 0.0, friction=1e-6, restitution=other, name="two", colour="blue")
     return bounced(one, two, **board)
 
 
@@ -109,7 +109,7 @@ def test_of_two_laws_the_smaller_counts_at_that_speed():
 
 def test_a_cushion_may_have_a_law_also_for_a_single_puck():
     wall = {"point": (0.031, 0.0), "normal": (-1.0, 0.0)}
-    one = piece(0.0, 0.0, (1.0, 0.0), friction=1e-6)
+    one = puck_at(0.0, 0.0, (1.0, 0.0), friction=1e-6)
     for board in (
         {"walls": [pt.Wall(**wall, restitution="plastic:0.1")]},
         {"posts": [pt.Post((0.131, 0.0), 0.1, restitution="plastic:0.1")]},
@@ -129,8 +129,8 @@ def test_faster_than_the_table_is_refused_in_a_sentence(tmp_path: Path):
     table.write_text(ROWS)
     with pytest.raises(pt.PuckError, match=r"two meet at 5\.\d* m/s, faster than their table"):
         meets(str(table), 5.001)
-    one = piece(0, 0, (1.0, 0.0), restitution=str(table))
-    scene = pt.Scene(pucks=[one, piece(0.1, 0)], ranges={"puck[0].launch.velocity[0]": [1, 3, 9]})
+    one = puck_at(0, 0, (1.0, 0.0), restitution=str(table))
+    scene = pt.Scene(pucks=[one, puck_at(0.1, 0)], ranges={"puck[0].launch.velocity[0]": [1, 3, 9]})
     ends = scene.sweep()
     assert [ends.meanings[end] for end in ends.end.tolist()] == [
         "at rest", "at rest", "faster than a table of restitution goes",
@@ -146,7 +146,7 @@ def test_faster_than_the_table_is_refused_in_a_sentence(tmp_path: Path):
 ])  # fmt: skip
 def test_a_law_that_does_not_exist_is_told(given: object, says: str):
     with pytest.raises(pt.InputError, match=says):
-        pt.Scene(pucks=[piece(0, 0, restitution=given)])
+        pt.Scene(pucks=[puck_at(0, 0, restitution=given)])
 
 
 @pytest.mark.parametrize(("text", "says"), [
@@ -158,7 +158,7 @@ def test_a_law_that_does_not_exist_is_told(given: object, says: str):
 def test_a_bad_table_is_told(tmp_path: Path, text: str, says: str):
     (tmp_path / "e.csv").write_text(text)
     with pytest.raises(pt.InputError, match=says) as told:
-        pt.Scene(pucks=[piece(0, 0, restitution=str(tmp_path / "e.csv"))])
+        pt.Scene(pucks=[puck_at(0, 0, restitution=str(tmp_path / "e.csv"))])
     assert "e.csv" in str(told.value)
 
 
@@ -183,8 +183,8 @@ def test_of_several_rims_the_last_counts_and_others_are_not_meant():
 
 
 def test_a_pair_has_its_own_friction_along_the_rims():
-    one = piece(0, 0, (1.0, 0.0), 50.0, friction=1e-6, name="one")
-    two = piece(0.060001, 0, friction=1e-6, name="two")
+    one = puck_at(0, 0, (1.0, 0.0), 50.0, friction=1e-6, name="one")
+    two = puck_at(0.060001, 0, friction=1e-6, name="two")
     rim = pt.Rim("one", "two", tangential=0.0, friction=0.05)
     event = pt.Scene(pucks=[one, two], rims=[rim]).world().advance(0.5)[0]
     assert event.rub == pytest.approx(0.05 * event.impulse, rel=1e-12)
@@ -197,7 +197,7 @@ def test_a_puck_may_meet_a_cushion_by_a_law_of_its_own(cushion: str):
         pt.Wall((-9.0, 0.0), normal=(1.0, 0.0)),
         pt.Wall((0.031, 0.0), normal=(-1.0, 0.0), restitution=0.8),
     ]
-    one = piece(0.0, 0.0, (1.0, 0.0), friction=1e-6, name="one")
+    one = puck_at(0.0, 0.0, (1.0, 0.0), friction=1e-6, name="one")
     rims = [pt.Rim("one", cushion, restitution=0.2)]
     assert bounced(one, walls=walls, rims=rims)[1] == pytest.approx(0.2, abs=1e-9)
     other = [pt.Rim("one", "wall 0", restitution=0.2)]
@@ -259,7 +259,7 @@ def test_boards_with_laws_lose_no_energy_and_know_no_numbering(seed: int):
     plain = draw(seed, 8)
     laws = ["plastic:0.05", "viscoelastic:0.3", 0.7, pt.RestitutionTable([0, 1, 50], [1, 0.8, 0.4])]
     pucks = [
-        pt.Piece(**{**{n: getattr(p, n) for n in p.__dataclass_fields__},
+        pt.Puck(**{**{n: getattr(p, n) for n in p.__dataclass_fields__},
                     "restitution": laws[k % 4], "name": f"p{k}"})
         for k, p in enumerate(plain.pucks)
     ]  # fmt: skip

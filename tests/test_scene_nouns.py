@@ -248,3 +248,33 @@ def test_a_normal_has_any_length(length: float):
     assert [ends[0][name] for name in ("x", "y")] == pytest.approx(
         [ends[1][name] for name in ("x", "y")], rel=1e-9
     )
+
+
+def test_a_puck_of_a_board_is_a_puck():
+    free, sent = pt.Puck(0.03, friction=0.1), pt.Launch((1.0, 0.0))
+    puck = pt.Puck(0.03, friction=0.1, name="red", launch=sent)
+    assert repr(puck).startswith("Puck(radius=0.03, friction=0.1, ")
+    assert "colour" not in repr(puck)
+    assert puck.stop((1.0, 0.0)).stop_time == free.stop((1.0, 0.0)).stop_time
+    with pytest.raises(InputError, match=r"its own name, launch: .* beside it, Scene\(puck, la"):
+        pt.Scene(puck)
+    alone, board = pt.Scene(free, launch=sent).simulate(), pt.Scene(pucks=[puck]).simulate()
+    assert alone.last["x"] == board.last["x"][0]
+
+
+FORCED = [
+    {"force": pt.Force((0.0, 0.1))}, {"path": [[0, 0, 0]]}, {"constraint": pt.Constraint("rail")},
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("what", FORCED, ids=lambda what: next(iter(what)))
+@pytest.mark.parametrize("verb", ["simulate", "stop", "states", "sweep", "sample", "aim"])
+def test_what_moves_a_puck_besides_friction_is_not_left_out(what: dict, verb: str):
+    puck = pt.Puck(0.03, friction=0.1, **what)
+    asked = {
+        "states": {"velocity": (1.0, 0.0), "spin": 0.0, "time": 0.1},
+        "sweep": {"speed": [1.0, 2.0]}, "aim": {"target": (1.0, 0.0)},
+        "sample": {"speed": pt.Normal(1.0, 0.1), "count": 9},
+    }  # fmt: skip
+    with pytest.raises(InputError, match=f"has a {next(iter(what))}, which acts in a scene alone"):
+        getattr(puck, verb)(**asked.get(verb, {"velocity": (1.0, 0.0)}))

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from scenes import simulate_scene, sweep_scene
 
-from puck_tables import Map
 from puck_tables.errors import InputError
+from puck_tables.results import Map
 from puck_tables.scene.entries import set_path
 from puck_tables.scene.outcome import ENDS
 

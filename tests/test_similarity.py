@@ -4,19 +4,22 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from pucks import simulate, sweep
 from reference import REFERENCE_RUNS
 from reference import states as reference_states
+from scipy.integrate import quad
 
 from puck_tables import Table, states, stop
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.motion import limit_ratio
-from puck_tables.stopping.axes import SlipAxis, heights
+from puck_tables.stopping import similarity
+from puck_tables.stopping.axes import SlipAxis, height_polynomials, heights, ratio_at
 from puck_tables.stopping.exact import end_values, exact_stops
-from puck_tables.stopping.similarity import limits, regular_slopes
+from puck_tables.stopping.similarity import limits, regular_parts, regular_slopes
 from puck_tables.stopping.similarity_lookup import STOP_X, STOP_Y
 from puck_tables.stopping.stop_check import launch_points, launches_at, looked_up, tabulate
 from puck_tables.stopping.stop_table import StopTable
@@ -146,13 +149,44 @@ def test_end_values_are_those_of_the_motion():
 
 
 def test_regular_slopes_pass_the_limit_smoothly():
-    delta = 0.8
-    u0 = limits(delta).u
-    tiny = 1e-9
-    near = u0 + np.array([-0.15 - tiny, -0.15 + tiny, -tiny, tiny, 0.15 - tiny, 0.15 + tiny])
-    for slope in regular_slopes(near, delta):
-        assert np.all(np.abs(np.diff(slope)[[0, 2, 4]]) < 1e-8)
-        assert np.all(np.isfinite(slope))
+    tiny, wide = 1e-12, similarity._NEAR_LIMIT
+    for delta in (0.1, 0.4, 0.8, 1.0):
+        u0 = limits(delta).u
+        near = u0 + np.array([-wide - tiny, -wide + tiny, -tiny, tiny, wide - tiny, wide + tiny])
+        for slope in regular_slopes(near, delta):
+            assert np.all(np.abs(np.diff(slope)[[0, 2, 4]]) < 4e-12)
+
+
+def test_parts_are_the_integrals_of_their_slopes():
+    cells, delta = 24, 0.6
+    ends = np.log(ratio_at(np.array([0.5, 0.75, 1.0])))
+    parts = regular_parts(SlipAxis(cells), delta)[[12, 18, 24]]
+    for k in range(2):
+        truth = [
+            quad(lambda u, k=k: float(regular_slopes(np.array(u), delta)[k]), *pair, epsabs=1e-13)[
+                0
+            ]
+            for pair in pairwise(ends)
+        ]
+        np.testing.assert_allclose(np.diff(parts[:, k]), truth, rtol=0, atol=3e-12)
+
+
+def test_polynomials_of_the_height_are_as_exact_as_they_say():
+    """The constants of the curve, and stops of launches between the heights of the table."""
+    delta = np.random.default_rng(2).uniform(0.05, 1.0, 12)
+    at = [limits(float(one)) for one in delta]
+    truth = np.array([[math.tanh(0.5 * one.u), one.kappa, one.turn] for one in at])
+    truth[:, 2] /= delta
+    constants = Table.shipped("stops").constants[:3].T
+    found = np.polynomial.polynomial.polyval(2.0 * delta**2 - 1.0, constants).T
+    np.testing.assert_allclose(found, truth, rtol=0, atol=1e-12)
+    nodes = heights()
+    for u in (-1.0, 0.5):
+        stops = exact_stops(np.full(nodes.size, u), nodes)
+        stops[:, 2] /= nodes  # Y is odd in δ
+        found = np.polynomial.polynomial.polyval(2.0 * delta**2 - 1.0, height_polynomials(stops)).T
+        found[:, 2] *= delta
+        np.testing.assert_allclose(found, exact_stops(np.full(12, u), delta), rtol=0, atol=1e-11)
 
 
 # ---- states

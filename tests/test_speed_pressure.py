@@ -116,9 +116,9 @@ def test_a_constant_coefficient_is_that_of_the_pressure_at_every_height(pressure
         found = np.stack(table.resultants(phi, 2.0, delta / 0.4))
         error = weight * (found - 0.4 * np.stack(law.resultants(phi, delta)))
         assert np.abs(error).max() < 10.0 * accuracy
-    with pytest.raises(pt.ContactError, match="would lift"):
+    with pytest.raises(pt.errors.ContactError, match="would lift"):
         table.resultants(phi, 2.0, 1.01 * law.delta_max / 0.4)
-    with pytest.raises(pt.ContactError, match="would lift"):
+    with pytest.raises(pt.errors.ContactError, match="would lift"):
         table.refuse_height(1.01 * law.delta_max / 0.4)
     table.refuse_height(0.99 * law.delta_max / 0.4)
 
@@ -257,16 +257,16 @@ def test_a_tall_puck_under_any_pressure_is_what_its_equations_say(pressure):
 
 def test_pucks_of_several_loads_slide_on_one_law_each_as_alone():
     kinds = [
-        pt.Piece(0.05, launch=pt.Launch(position=(0.0, 0.0), velocity=(0.8, 0.0), spin=9.0)),
-        pt.Piece(
+        pt.Puck(0.05, launch=pt.Launch(position=(0.0, 0.0), velocity=(0.8, 0.0), spin=9.0)),
+        pt.Puck(
             0.05, pressure="ring",
             launch=pt.Launch(position=(0.0, 1.0), velocity=(0.7, 0.0), spin=-5.0),
         ),
-        pt.Piece(
+        pt.Puck(
             0.06, base="annulus:0.05x0.04", height=0.04,
             launch=pt.Launch(position=(0.0, 2.0), velocity=(0.8, 0.1), spin=9.0),
         ),
-        pt.Piece(
+        pt.Puck(
             0.12, base="box:0.1x0.1",
             launch=pt.Launch(position=(0.0, 3.0), velocity=(0.8, 0.1), spin=9.0),
         ),
@@ -284,7 +284,7 @@ def test_a_scene_says_what_its_pressure_does_not_allow():
     with pytest.raises(pt.InputError, match=r"floor.law: .*profile_law"):
         pt.Scene(own, pt.Floor(law=ICE), launch=LAUNCH).simulate()
     tall = pt.Puck(radius=0.05, pressure="ring", height=0.4)
-    with pytest.raises(pt.ContactError, match="would lift"):
+    with pytest.raises(pt.errors.ContactError, match="would lift"):
         pt.Scene(
             tall, pt.Floor(law=CurlingLaw(0.02, 0.064, 0.1)), launch=LAUNCH, tol=1e-5
         ).simulate()

@@ -74,7 +74,7 @@ def scene(pt, puck, v, w, at):
     return pt.Scene(puck, launch=launch, floor=floor).simulate([at]).last["x"]
 def board(pt, puck, v, w, at):
     r, there = puck.radius, pt.Launch(position=(2.5 * puck.radius, 0.01 * puck.radius))
-    one, two = (pt.Piece(r, friction=0.2, launch=one) for one in (pt.Launch(v, w), there))
+    one, two = (pt.Puck(r, friction=0.2, launch=one) for one in (pt.Launch(v, w), there))
     world = pt.Scene(pucks=[one, two]).world()
     for _ in range(6):
         world.advance(at)

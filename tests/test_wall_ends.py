@@ -20,7 +20,7 @@ MOST = 20  # impacts: one that is wedged between two walls has hundreds, in the 
 
 def thrown(place: Any, velocity: Any, walls: list[pt.Wall], **how: Any) -> pt.Scene:
     spin = how.pop("spin", 0.0)
-    puck = pt.Piece(R, friction=F, mass=0.2, launch=pt.Launch(velocity, spin, place))
+    puck = pt.Puck(R, friction=F, mass=0.2, launch=pt.Launch(velocity, spin, place))
     return pt.Scene(pucks=[puck], walls=walls, **how)
 
 
@@ -130,7 +130,7 @@ def test_a_puck_that_slides_off_an_end_rolls_over_it_and_flies(v: float) -> None
     """Down a slope without friction: as a bead on a sphere it leaves at cos θ = 2/3 + v²/3gR."""
     g, slope = 9.80665, 0.3
     pull = g * math.sin(slope)
-    puck = pt.Piece(R, friction=0.0, mass=0.2,
+    puck = pt.Puck(R, friction=0.0, mass=0.2,
                     launch=pt.Launch((v, 0.0), position=(-0.1, R)))  # fmt: skip
     scene = pt.Scene(
         pucks=[puck], walls=[pt.Wall((-1.0, 0.0), (0.0, 0.0), restitution=0.5)],

@@ -53,7 +53,7 @@ def board(tmp_path: Path) -> Path:
 def test_a_file_says_the_same_as_python(board: Path) -> None:
     told = pt.Scene.load(board)
     said = pt.Scene(
-        pucks=[pt.Piece(0.05, friction=0.1, launch=pt.Launch((-2.0, 0.1)))],
+        pucks=[pt.Puck(0.05, friction=0.1, launch=pt.Launch((-2.0, 0.1)))],
         walls=[
             pt.Wall((-0.5, -0.3), (-0.5, 0.3), restitution=0.8),
             pt.Wall(corners=[[0.3, -0.2], [0.5, -0.2], [0.5, 0.2], [0.3, 0.2]],
@@ -111,19 +111,19 @@ def test_what_is_no_wall_is_refused(wall: dict[str, Any], why: str) -> None:
 
 
 def test_a_mallet_is_not_driven_through_it() -> None:
-    puck = pt.Piece(0.03, friction=0.1, launch=pt.Launch(position=(0.0, 1.0)))
+    puck = pt.Puck(0.03, friction=0.1, launch=pt.Launch(position=(0.0, 1.0)))
     wall = pt.Wall((0.3, -0.2), (0.3, 0.2))
-    through = pt.Piece(0.05, path=[[0, 0, 0], [1, 0.6, 0.1], [2, 0.6, 0.4]])
+    through = pt.Puck(0.05, path=[[0, 0, 0], [1, 0.6, 0.1], [2, 0.6, 0.4]])
     with pytest.raises(pt.InputError, match=re.escape("wall[0]: puck 1 is driven through it")):
         pt.Scene(pucks=[puck, through], walls=[wall], time=3.0)
-    around = pt.Piece(0.05, path=[[0, 0, 0], [1, 0.3, 0.28], [2, 0.6, 0.0]])
+    around = pt.Puck(0.05, path=[[0, 0, 0], [1, 0.3, 0.28], [2, 0.6, 0.0]])
     pt.Scene(pucks=[puck, around], walls=[wall], time=3.0).simulate()
 
 
 def game() -> Any:
     """A mallet below a wall that ends on its right, and a disc."""
-    mallet = pt.Piece(0.05, path=[[0, 0.0, -0.3]], name="mallet")
-    disc = pt.Piece(0.03, friction=0.1, name="disc", launch=pt.Launch(position=(0.0, 0.5)))
+    mallet = pt.Puck(0.05, path=[[0, 0.0, -0.3]], name="mallet")
+    disc = pt.Puck(0.03, friction=0.1, name="disc", launch=pt.Launch(position=(0.0, 0.5)))
     return pt.Scene(pucks=[mallet, disc], walls=[pt.Wall((-0.2, 0.0), (0.2, 0.0))]).world()
 
 
@@ -152,7 +152,7 @@ def test_nothing_is_put_into_it() -> None:
 
 def test_a_rim_law_of_a_wall_is_that_of_its_ends() -> None:
     def off_the_end(**how: Any) -> Any:
-        puck = pt.Piece(
+        puck = pt.Puck(
             0.05, friction=0.1, name="puck", launch=pt.Launch((0, -1), position=(0.42, 0.5))
         )
         return pt.Scene(
@@ -166,7 +166,7 @@ def test_a_rim_law_of_a_wall_is_that_of_its_ends() -> None:
 
 
 def test_an_aim_goes_around_the_end_and_off_it() -> None:
-    cue = pt.Piece(0.03, friction=0.1, name="cue")
+    cue = pt.Puck(0.03, friction=0.1, name="cue")
     wall = pt.Wall((0.3, -0.1), (0.3, 0.1), restitution=0.8)
     cushion = pt.Wall((0.0, 0.4), (0.8, 0.4), restitution=0.8)
     found = pt.Scene(pucks=[cue], walls=[wall, cushion]).aim(

@@ -18,9 +18,7 @@ from scenes import sweep_scene
 from puck_tables import (
     InputError,
     Launch,
-    Map,
     Normal,
-    Piece,
     Post,
     Puck,
     Scene,
@@ -38,6 +36,7 @@ from puck_tables.plot import (
     tradeoff_figure,
 )
 from puck_tables.plot.animation import PALETTE, colour_of
+from puck_tables.results import Map
 from puck_tables.scene.outcome import ENDS, LAST_END
 
 LONG = "Of a title that goes on and on, as of whoever names all that there is in a scene, " * 3
@@ -57,7 +56,7 @@ def drawn_ends(figure: Figure) -> tuple[int, int]:
 def a_map(pucks: int, rng: np.random.Generator, shape: tuple[int, ...]) -> Map:
     """A map with ends of all kinds, drawn: of pucks in play, of such that left, and none."""
     pieces = [
-        Piece(0.03, friction=0.1, name=f"{n} {WORD[: 40 * n]}", launch=Launch(position=(n, 0.0)))
+        Puck(0.03, friction=0.1, name=f"{n} {WORD[: 40 * n]}", launch=Launch(position=(n, 0.0)))
         for n in range(pucks)
     ]
     ranges = {f"puck[0].launch.{name}": np.linspace(0.1, 1.0, n)
@@ -256,7 +255,7 @@ def test_what_is_out_of_sight_is_said() -> None:
     puck = Puck(0.02, friction=0.3)
     one = Scene(puck, launch=Launch((0.5, 0.0)), walls=[near, far]).simulate().plot()
     assert one.axes[0].get_title("left") == "out of sight: 1 wall"
-    piece = Piece(0.02, friction=0.3, launch=Launch((0.5, 0.0)))
+    piece = Puck(0.02, friction=0.3, launch=Launch((0.5, 0.0)))
     two = Scene(pucks=[piece], walls=[near, far]).simulate().plot()
     assert two.axes[0].get_title("left") == "out of sight: 1 wall"
 

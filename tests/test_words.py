@@ -1,11 +1,11 @@
-"""The words of the code: the field's own, one for each thing, and no name twice."""
+"""The words of the code: the field's own, one for each thing, no name twice; reasons of numbers."""
 
 from __future__ import annotations
 
 import ast
 import re
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import pytest
 from test_layers import modules
@@ -66,6 +66,52 @@ def refused_in(name: str) -> list[str]:
     """The words of a name that are refused; of ``TradeOff``: trade, off."""
     words = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower().split("_")
     return [word for word in words if word in REFUSED and name not in OWN]
+
+
+def is_number(value: ast.AST | None) -> bool:
+    """Whether a value is a number, an expression, or some of these in a row."""
+    if isinstance(value, ast.Tuple):
+        return all(is_number(one) for one in value.elts)
+    number = isinstance(value, ast.Constant) and isinstance(value.value, int | float)
+    return number or isinstance(value, ast.UnaryOp | ast.BinOp)
+
+
+def bare_constants(source: str) -> Iterator[str]:
+    """Constants without a comment in their lines, above, or above their unbroken group."""
+    lines, said, after = source.splitlines(), False, 0
+    for node in ast.parse(source).body:
+        if not isinstance(node, ast.Assign | ast.AnnAssign):
+            after = 0
+            continue
+        said = lines[node.lineno - 2].startswith("#") or (said and node.lineno == after)
+        after = node.end_lineno + 1
+        target = node.targets[0] if isinstance(node, ast.Assign) else node.target
+        constant = is_number(node.value) and ast.unparse(target).isupper()
+        if constant and not said and "#" not in "".join(lines[node.lineno - 1 : after - 1]):
+            yield lines[node.lineno - 1]
+
+
+def dependent_docstrings(source: str) -> Iterator[str]:
+    """Docstrings that cannot be read alone."""
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
+            text = ast.get_docstring(node) or ""
+            if text.startswith(("The same", "Those", "Another", "As ")):
+                yield text.partition("\n")[0]
+
+
+@pytest.mark.parametrize("fault", [bare_constants, dependent_docstrings])
+def test_every_constant_has_its_reason_and_every_docstring_stands_alone(
+    fault: Callable[[str], Iterator[str]],
+):
+    bad = {name: [*fault(path.read_text("utf-8"))] for name, path in modules().items()}
+    assert not {name: faults for name, faults in bad.items() if faults}
+
+
+def test_a_bare_constant_and_a_dependent_docstring_are_noticed():
+    source = "# rows\nA = 1\nB = A + 1\n\nC = -2.0\nD, E = 1, 2.0\nF = 3  # m\nG = 'text'\n"
+    assert [*bare_constants(source)] == ["C = -2.0", "D, E = 1, 2.0"]
+    assert [*dependent_docstrings('def f(): "The same."\n\ndef g(): "Places."\n')] == ["The same."]
 
 
 @pytest.mark.parametrize("room", CLEAN.split())

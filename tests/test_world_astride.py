@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from boards import piece
+from boards import puck_at
 from floors_judge import Disc, Floor, play
 from scipy.integrate import quad
 from scipy.optimize import brentq
@@ -48,7 +48,7 @@ FLOORS = {
 }  # fmt: skip
 
 
-def entered(run: pt.Run) -> list[tuple[str, float]]:
+def entered(run: pt.results.Run) -> list[tuple[str, float]]:
     """What happened to the first puck on the floor."""
     found = [event for event in run.events if event.what in ("entry", "exit")]
     return [(e.what, e.time) for e in found if e.puck == "puck 0"]
@@ -59,9 +59,9 @@ def test_beside_another_far_away_a_puck_moves_as_alone(case: str):
     floor, launch = FLOORS[case]
     tol = 1e-9 if floor.law else 1e-11
     alone = pt.Scene(pt.Puck(**PUCK), floor, launch, time=0.8, tol=tol)
-    far = piece(-0.5, 0.7, (0.0, 0.5))
+    far = puck_at(-0.5, 0.7, (0.0, 0.5))
     board = pt.Scene(
-        pucks=[pt.Piece(**PUCK, launch=launch), far], floor=floor, time=alone.time, tol=alone.tol
+        pucks=[pt.Puck(**PUCK, launch=launch), far], floor=floor, time=alone.time, tol=alone.tol
     )
     one, two = alone.simulate(), board.simulate()
     times = np.linspace(0.0, min(one.end_time, two.end_time), 31)
@@ -83,7 +83,7 @@ def test_each_has_its_own_pressure_over_a_border(tmp_path: Path):
     ring, rows = {**PUCK, "pressure": "ring"}, tmp_path / "rows.csv"
     rows.write_text("rho,W\n0,1\n0.5,0.8\n1,0.3\n")
     alone = pt.Scene(pt.Puck(**ring), floor, launch, time=0.2, tol=1e-9)
-    pucks = [pt.Piece(**ring, launch=launch), piece(0.1, 0.5, pressure=str(rows))]
+    pucks = [pt.Puck(**ring, launch=launch), puck_at(0.1, 0.5, pressure=str(rows))]
     one = alone.simulate()
     two = pt.Scene(pucks=pucks, floor=floor, time=alone.time, tol=alone.tol).simulate()
     for name in ("x", "y"):
@@ -93,8 +93,8 @@ def test_each_has_its_own_pressure_over_a_border(tmp_path: Path):
 def test_two_that_meet_astride_a_patch_are_judged_by_another_integrator():
     spot = (0.1, 0.0, 0.05, 0.6)
     pucks = [
-        piece(-0.1, 0.01, (1.5, 0.0), 20.0, restitution=0.8, tangential=0.3, rim=0.25),
-        piece(0.06, -0.01, None, restitution=0.8, tangential=0.3, rim=0.25, mass=0.2),
+        puck_at(-0.1, 0.01, (1.5, 0.0), 20.0, restitution=0.8, tangential=0.3, rim=0.25),
+        puck_at(0.06, -0.01, None, restitution=0.8, tangential=0.3, rim=0.25, mass=0.2),
     ]
     floor = pt.Floor(patches=[pt.Patch(spot[3], spot[:2], spot[2])])
     run = pt.Scene(pucks=pucks, floor=floor, time=0.12).simulate()
@@ -135,7 +135,9 @@ def test_one_that_brakes_on_a_rough_strip_is_pushed_by_the_one_behind():
         return 0.5 * speed**2 - 9.80665 * taken
 
     way = brentq(left, 0.0, 1.0, xtol=1e-13)
-    pucks = [piece(x, 0.0, (speed, 0.0), height=0.0, restitution=0.0, rim=0.0) for x in (0.0, 0.06)]
+    pucks = [
+        puck_at(x, 0.0, (speed, 0.0), height=0.0, restitution=0.0, rim=0.0) for x in (0.0, 0.06)
+    ]
     floor = pt.Floor(strips=pt.Strips((border,), (low, high)))
     run = pt.Scene(pucks=pucks, floor=floor).simulate()
     assert run.last["x"] == pytest.approx([way, way + 2 * radius], abs=1e-9)
@@ -149,8 +151,8 @@ def test_who_lies_astride_is_held_by_all_that_is_under_it():
     strips, ends = pt.Strips((0.0,), (0.1, 0.5)), []
     for slope in (0.29, 0.31):
         floor = pt.Floor(math.atan(slope), strips=strips)
-        far = piece(1.0, 0.0, height=0.0)
-        board = pt.Scene(pucks=[piece(0.0, 0.0, height=0.0), far], floor=floor, time=0.05)
+        far = puck_at(1.0, 0.0, height=0.0)
+        board = pt.Scene(pucks=[puck_at(0.0, 0.0, height=0.0), far], floor=floor, time=0.05)
         ends.append(board.simulate().last["x"][0])
     assert ends[0] == 0.0
     assert ends[1] > 1e-5
@@ -158,7 +160,7 @@ def test_who_lies_astride_is_held_by_all_that_is_under_it():
 
 def test_copies_and_what_was_saved_go_on_alike_and_apart():
     board = pt.Scene(
-        pucks=[pt.Piece(**PUCK, launch=LAUNCH), piece(0.45, 0.1)],
+        pucks=[pt.Puck(**PUCK, launch=LAUNCH), puck_at(0.45, 0.1)],
         floor=FLOORS["strips that slope"][0],
     )
     world = board.world()
@@ -174,7 +176,7 @@ def test_copies_and_what_was_saved_go_on_alike_and_apart():
 
 def test_a_sweep_over_strips_is_the_runs_one_by_one():
     board = pt.Scene(
-        pucks=[pt.Piece(**PUCK, launch=LAUNCH), piece(0.45, 0.1)],
+        pucks=[pt.Puck(**PUCK, launch=LAUNCH), puck_at(0.45, 0.1)],
         floor=FLOORS["a round patch"][0],
         ranges={"puck[0].launch.spin": np.array([20.0, -40.0])},
     )
@@ -184,8 +186,8 @@ def test_a_sweep_over_strips_is_the_runs_one_by_one():
 
 
 def test_a_law_by_name_goes_on_as_they_slip_and_rows_end_with_a_sentence():
-    light = piece(0.2, 0.01, mass=0.02)
-    striker = pt.Piece(**PUCK, launch=pt.Launch((2.0, 0.0), 10.0))
+    light = puck_at(0.2, 0.01, mass=0.02)
+    striker = pt.Puck(**PUCK, launch=pt.Launch((2.0, 0.0), 10.0))
     named = pt.Scene(pucks=[striker, light], floor=pt.Floor(law=STRIBECK), time=0.5)
     rows = pt.Scene(pucks=[striker, light], floor=pt.Floor(law=[[0.0, 0.3], [3.0, 0.35]]), time=0.5)
     assert named.simulate().impacts == 1
@@ -201,4 +203,6 @@ def test_a_law_by_name_goes_on_as_they_slip_and_rows_end_with_a_sentence():
 
 def test_whose_base_does_not_fit_a_floor_is_named():
     with pytest.raises(pt.InputError, match=r"puck 1: floor.strips: .*loaded everywhere"):
-        pt.Scene(pucks=[piece(0.0, 0.0), piece(0.3, 0.0, height=0.2)], floor=pt.Floor(strips=WIDE))
+        pt.Scene(
+            pucks=[puck_at(0.0, 0.0), puck_at(0.3, 0.0, height=0.2)], floor=pt.Floor(strips=WIDE)
+        )

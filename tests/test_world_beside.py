@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from boards import draw, piece
+from boards import draw, puck_at
 
 import puck_tables as pt
 from puck_tables.world.game import N_LOOKS
@@ -43,16 +43,16 @@ def test_a_puck_that_spins_beside_one_at_rest(drift: float, way: tuple[float, fl
     """Its friction is along its spin, so that it hardly slows down the little drift it has."""
     velocity = (drift * way[0], drift * way[1])
     for height in (0.0, 0.02):
-        spins = piece(0.0, 0.0, velocity, 30.0, restitution=0.5, height=height)
-        depth, looks = depth_and_looks(pt.Scene(pucks=[spins, piece(0.06, 0, restitution=0.5)]))
+        spins = puck_at(0.0, 0.0, velocity, 30.0, restitution=0.5, height=height)
+        depth, looks = depth_and_looks(pt.Scene(pucks=[spins, puck_at(0.06, 0, restitution=0.5)]))
         assert depth <= 1e-12
         assert looks < MOST_LOOKS
 
 
 @pytest.mark.parametrize("drift", DRIFTS)
 def test_pucks_side_by_side_whose_frictions_hardly_differ(drift: float):
-    other = piece(0.06, 0.0, (0.0, 1.0), friction=0.2 * (1.0 + drift))
-    depth, looks = depth_and_looks(pt.Scene(pucks=[piece(0, 0, (0.0, 1.0)), other]))
+    other = puck_at(0.06, 0.0, (0.0, 1.0), friction=0.2 * (1.0 + drift))
+    depth, looks = depth_and_looks(pt.Scene(pucks=[puck_at(0, 0, (0.0, 1.0)), other]))
     assert depth <= 1e-12
     assert looks < MOST_LOOKS
 
@@ -65,7 +65,7 @@ def test_pucks_side_by_side_whose_frictions_hardly_differ(drift: float):
 ], ids=["wall", "post", "arc"])  # fmt: skip
 def test_a_puck_that_spins_beside_a_cushion(drift: float, cushion: dict):
     for velocity in ((0.0, drift), (drift, 0.0), (0.0, -drift)):
-        pucks = [piece(0.0, 0.0, velocity, 30.0), piece(0.0, 0.07, friction=0.5)]
+        pucks = [puck_at(0.0, 0.0, velocity, 30.0), puck_at(0.0, 0.07, friction=0.5)]
         depth, looks = depth_and_looks(pt.Scene(pucks=pucks, **cushion))
         assert depth <= 1e-12
         assert looks < MOST_LOOKS
@@ -73,7 +73,7 @@ def test_a_puck_that_spins_beside_a_cushion(drift: float, cushion: dict):
 
 @pytest.mark.parametrize("count", [2, 5])
 def test_a_row_beside_each_other_stays_one(count: int):
-    row = [piece(0.06 * n, 0.0, (0.0, 1.0)) for n in range(count)]
+    row = [puck_at(0.06 * n, 0.0, (0.0, 1.0)) for n in range(count)]
     depth, looks = depth_and_looks(pt.Scene(pucks=row))
     assert depth <= 1e-12
     assert looks < MOST_LOOKS

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from boards import piece
+from boards import puck_at
 from floors_judge import Disc, Floor, Line, blade, pivot, play, rail
 
 import puck_tables as pt
@@ -27,7 +27,7 @@ def scene(floor: pt.Floor, until: float, **of_the_second: object) -> pt.Scene:
         more = of_the_second if n == 1 else {}
         if more.get("constraint"):
             velocity = None
-        pucks.append(piece(*place, velocity, spin, mass=0.1 * (1 + n), **RIM, **more))
+        pucks.append(puck_at(*place, velocity, spin, mass=0.1 * (1 + n), **RIM, **more))
     walls = [
         pt.Wall((c * n[0], c * n[1]), normal=n, restitution=0.7, tangential=0.0, friction=0.2)
         for n, c in LINES
@@ -110,8 +110,8 @@ def test_places_and_works_are_those_of_another_integrator(case: str):
 
 def test_where_more_acts_is_said():
     """Of two pucks one is led: the other one is still looked up."""
-    one = piece(0.0, 0.0, (1.0, 0.0), constraint=pt.Constraint("rail"), name="led")
-    run = pt.Scene(pucks=[one, piece(0.3, 0.1, name="free")]).simulate()
+    one = puck_at(0.0, 0.0, (1.0, 0.0), constraint=pt.Constraint("rail"), name="led")
+    run = pt.Scene(pucks=[one, puck_at(0.3, 0.1, name="free")]).simulate()
     assert run.explain().splitlines()[:2] == [
         "1 puck integrated from impact to impact: rail (led)",
         "1 puck looked up from impact to impact (free)",
@@ -121,7 +121,7 @@ def test_where_more_acts_is_said():
 def test_a_puck_at_rest_on_a_belt_is_carried_into_a_wall_and_leans_there():
     """Two bodies of one floor never meet; at the wall friction works at the speed of the belt."""
     belt, f, m = 0.4, 0.2, 0.1
-    one, two = piece(0.0, 0.0, (belt, 0.0), restitution=0.0), piece(-0.2, 0.3, (belt, 0.0))
+    one, two = puck_at(0.0, 0.0, (belt, 0.0), restitution=0.0), puck_at(-0.2, 0.3, (belt, 0.0))
     wall = pt.Wall((0.13, 0.0), normal=(-1.0, 0.0), restitution=0.0)
     floor = pt.Floor(velocity=(belt, 0.0))
     run = pt.Scene(pucks=[one, two], walls=[wall], floor=floor, time=0.75).simulate()
@@ -138,8 +138,10 @@ def test_a_puck_at_rest_on_a_belt_is_carried_into_a_wall_and_leans_there():
 def test_a_turntable_holds_who_lies_near_its_middle():
     """m W^2 R <= f m g; the pair that touches goes round as one, and meets nobody."""
     turning, edge = 2.0, 0.2 * 9.80665 / 2.0**2
-    near = [piece(0.8 * edge, y, (-turning * y, turning * 0.8 * edge), turning) for y in (0, 0.06)]
-    far = piece(-1.2 * edge, 0.0, (0.0, -1.2 * turning * edge), turning)
+    near = [
+        puck_at(0.8 * edge, y, (-turning * y, turning * 0.8 * edge), turning) for y in (0, 0.06)
+    ]
+    far = puck_at(-1.2 * edge, 0.0, (0.0, -1.2 * turning * edge), turning)
     floor = pt.Floor(turning=turning)
     run = pt.Scene(pucks=[*near, far], floor=floor, time=0.7).simulate()
     start = np.array([[0.8 * edge, 0.0], [0.8 * edge, 0.06]])
@@ -162,12 +164,12 @@ def test_a_turntable_holds_who_lies_near_its_middle():
 ])  # fmt: skip
 def test_what_cannot_be_is_said(more: dict, words: str):
     with pytest.raises(pt.InputError, match=words):
-        pt.Scene(pucks=[piece(0.0, 0.0, (1.0, 0.0)), piece(0.3, 0.0)], **more).simulate()
+        pt.Scene(pucks=[puck_at(0.0, 0.0, (1.0, 0.0)), puck_at(0.3, 0.0)], **more).simulate()
 
 
 def test_a_strike_that_a_rail_does_not_allow_is_refused():
-    led = piece(0.0, 0.0, (1.0, 0.0), constraint=pt.Constraint("rail"))
-    world = pt.Scene(pucks=[led, piece(0.3, 0.2)]).world()
+    led = puck_at(0.0, 0.0, (1.0, 0.0), constraint=pt.Constraint("rail"))
+    world = pt.Scene(pucks=[led, puck_at(0.3, 0.2)]).world()
     with pytest.raises(pt.InputError, match=r"puck 0: velocity = \[0.5, 0.5\]: the rail allows"):
         world.strike(0, (0.5, 0.5))
     world.strike(0, impulse=(0.0, 5.0))  # a push across it is the rail's

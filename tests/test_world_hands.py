@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from boards import draw, piece
+from boards import draw, puck_at
 
 import puck_tables as pt
 from puck_tables.scene.run import residual
@@ -20,8 +20,8 @@ G = 9.80665
 FRAME = 1.0 / 64.0  # s: times are exact
 
 
-def mallet(x: float, y: float, **how: Any) -> pt.Piece:
-    return pt.Piece(0.05, path=[[0.0, x, y]], name="mallet", **how)
+def mallet(x: float, y: float, **how: Any) -> pt.Puck:
+    return pt.Puck(0.05, path=[[0.0, x, y]], name="mallet", **how)
 
 
 def cushions(side: float = 0.6) -> list[pt.Wall]:
@@ -33,7 +33,12 @@ def cushions(side: float = 0.6) -> list[pt.Wall]:
 
 def table() -> pt.Scene:
     """A mallet, three pucks, four walls, a pocket."""
-    pucks = [mallet(-0.4, 0.0), piece(0.0, 0.0), piece(0.2, 0.1), piece(0.2, -0.1, name="last")]
+    pucks = [
+        mallet(-0.4, 0.0),
+        puck_at(0.0, 0.0),
+        puck_at(0.2, 0.1),
+        puck_at(0.2, -0.1, name="last"),
+    ]
     return pt.Scene(pucks=pucks, walls=cushions(), pockets=[pt.Pocket((0.55, 0.55), 0.03)])
 
 
@@ -62,7 +67,7 @@ def in_state(scene: pt.Scene, states: np.ndarray) -> pt.World:
         if old.path:
             more = {"path": [[0.0, x, y, angle]]}
         own = ("radius", "height", "friction", "mass", "restitution", "tangential", "rim", "name")
-        pucks.append(pt.Piece(**{name: getattr(old, name) for name in own}, **more))
+        pucks.append(pt.Puck(**{name: getattr(old, name) for name in own}, **more))
     world = pt.Scene(pucks=pucks, walls=scene.walls, pockets=scene.pockets).world()
     for n, old in enumerate(scene.pucks):
         if old.path:
@@ -156,11 +161,11 @@ def test_added_pucks_are_as_if_they_had_been_there(seed: int):
 
 
 def test_a_puck_that_is_added_later_was_not_there():
-    board = pt.Scene(pucks=[piece(0.0, 0.0, (1.0, 0.0))], walls=cushions())
+    board = pt.Scene(pucks=[puck_at(0.0, 0.0, (1.0, 0.0))], walls=cushions())
     world = board.world()
     world.advance(0.25)
     before = world.over([0.0, 0.1, 0.25])
-    late = piece(
+    late = puck_at(
         0.4, 0.3, (-0.5, 0.0), name="late", force=pt.Force(over_time=[[0, 1, 0], [1, 1, 0]])
     )
     assert world.add(late) == 1
@@ -168,14 +173,14 @@ def test_a_puck_that_is_added_later_was_not_there():
     assert world.at(0.1)[1].tolist() == [0.4, 0.3, 0.0, 0.0, 0.0, 0.0]
     assert world.state()[1].tolist() == [0.4, 0.3, 0.0, -0.5, 0.0, 0.0]
     soon = pt.Scene(
-        pucks=[piece(0.4, 0.3, (-0.5, 0.0), force=late.force)], walls=cushions()
+        pucks=[puck_at(0.4, 0.3, (-0.5, 0.0), force=late.force)], walls=cushions()
     ).world()
     world.advance(0.3)
     assert world.state()[1] == pytest.approx(soon.at(0.3)[0], abs=1e-12)
     with pytest.raises(pt.InputError, match="there is one of that name"):
         world.add(late)
     one = pt.Scene(pt.Puck(0.03, friction=0.2)).world()  # a scene of one puck gets a second one
-    assert one.add(piece(0.3, 0.0, (-1.0, 0.0))) == 1
+    assert one.add(puck_at(0.3, 0.0, (-1.0, 0.0))) == 1
     assert "impact" in [event.what for event in one.advance(1.0)]
 
 
@@ -196,7 +201,7 @@ def test_a_mallet_led_frame_by_frame_is_one_with_a_path():
     places = np.column_stack([-0.4 + 1.2 * times, 0.1 * np.sin(9.0 * times)])
     scene = table()
     rows = np.column_stack([times, places]).tolist()
-    given = pt.Piece(0.05, path=rows, name="mallet")
+    given = pt.Puck(0.05, path=rows, name="mallet")
     path = pt.Scene(pucks=[given, *scene.pucks[1:]], walls=scene.walls, pockets=scene.pockets)
     truth, world = path.world(), scene.world()
     for n in range(40):
@@ -234,14 +239,14 @@ def test_a_mallet_stops_where_it_was_to_go_and_at_cushions():
 
 
 def test_a_mallet_that_touches_its_wall_from_the_start_goes_along_it():
-    world = pt.Scene(pucks=[mallet(-0.55, 0.0), piece(0, 0)], walls=cushions()).world()
+    world = pt.Scene(pucks=[mallet(-0.55, 0.0), puck_at(0, 0)], walls=cushions()).world()
     world.drive(0, (0.0, 1.0))
     world.advance(0.2)
     assert world.state()[0, :2] == pytest.approx([-0.55, 0.2], abs=1e-12)
 
 
 def test_a_mallet_that_goes_on_has_no_end():
-    world = pt.Scene(pucks=[mallet(0.0, 0.0), piece(1.0, 0.0)]).world()
+    world = pt.Scene(pucks=[mallet(0.0, 0.0), puck_at(1.0, 0.0)]).world()
     world.drive(0, (-1.0, 0.0))
     assert world.stop_times.tolist() == [math.inf, 0.0]
     before = bits(world)
@@ -254,7 +259,7 @@ def test_a_mallet_that_goes_on_has_no_end():
 
 def test_what_pushes_back_is_told():
     """E = 0: m v at the impact, then f m g for as long as it is pushed."""
-    world = pt.Scene(pucks=[mallet(-0.2, 0.0), piece(0.0, 0.0, restitution=0.0)]).world()
+    world = pt.Scene(pucks=[mallet(-0.2, 0.0), puck_at(0.0, 0.0, restitution=0.0)]).world()
     world.drive(0, (0.5, 0.0))
     assert world.reaction(0).tolist() == [0.0, 0.0]
     world.advance(0.24)  # it is there
@@ -279,7 +284,7 @@ def test_what_pushes_back_is_told():
 def test_what_a_mallet_gave_is_what_its_puck_has(aside: float):
     """Without friction of the floor momentum goes from one to the other alone."""
     how = {"restitution": 0.0, "tangential": 0.0, "rim": 0.2, "friction": 0.0}
-    world = pt.Scene(pucks=[mallet(-0.2, 0.0, rim=0.2, tangential=0.0), piece(0, aside, **how)],
+    world = pt.Scene(pucks=[mallet(-0.2, 0.0, rim=0.2, tangential=0.0), puck_at(0, aside, **how)],
                      drag=pt.Drag(sliding=0.05), time=1.0).world()  # fmt: skip
     total = np.zeros(2)
     for n in range(60):
@@ -296,9 +301,11 @@ def test_a_push_over_a_time_is_that_of_a_scene():
     force, torque = (0.5, -0.2), 2e-3
     rows = [[0.0, *force, torque], [0.2, *force, torque]]
     launch = {"velocity": (0.4, 0.3), "spin": 9.0}
-    alone = piece(0.0, 0.0, **launch, force=pt.Force(over_time=rows))
-    truth = pt.Scene(pucks=[alone, piece(0.3, 0.1)], walls=cushions()).world()
-    world = pt.Scene(pucks=[piece(0.0, 0.0, **launch), piece(0.3, 0.1)], walls=cushions()).world()
+    alone = puck_at(0.0, 0.0, **launch, force=pt.Force(over_time=rows))
+    truth = pt.Scene(pucks=[alone, puck_at(0.3, 0.1)], walls=cushions()).world()
+    world = pt.Scene(
+        pucks=[puck_at(0.0, 0.0, **launch), puck_at(0.3, 0.1)], walls=cushions()
+    ).world()
     world.apply_force(0, force, torque, duration=0.2)
     truth.advance(0.4)
     world.advance(0.4)
@@ -309,7 +316,7 @@ def test_a_push_over_a_time_is_that_of_a_scene():
 
 def test_pushes_add_up_in_closed_form():
     """Two that overlap, of one that nothing brakes."""
-    world = pt.Scene(pucks=[piece(0, 0, mass=1.0, friction=0.0)], time=1.0).world()
+    world = pt.Scene(pucks=[puck_at(0, 0, mass=1.0, friction=0.0)], time=1.0).world()
     world.advance(0.1)
     world.apply_force(0, (1.0, 0.0), duration=0.4)
     world.advance(0.2)
@@ -322,7 +329,7 @@ def test_pushes_add_up_in_closed_form():
 
 
 def test_a_push_too_weak_leaves_it_lying_and_one_in_a_row_moves_all():
-    pucks = [piece(0.06 * n, 0.0, restitution=0.0) for n in range(3)]
+    pucks = [puck_at(0.06 * n, 0.0, restitution=0.0) for n in range(3)]
     world = pt.Scene(pucks=pucks).world()
     weight = 0.2 * 0.1 * G
     world.apply_force(0, (2.9 * weight, 0.0), duration=0.2)
@@ -336,7 +343,7 @@ def test_a_push_too_weak_leaves_it_lying_and_one_in_a_row_moves_all():
 
 def test_what_leant_on_a_puck_that_is_taken_away_slides_on():
     wall = pt.Wall((0.5, 0.0), normal=(-1.0, 0.0), restitution=0.5)
-    pucks = [piece(x, 0.0, friction=0.15, restitution=0.5, height=0.0) for x in (0.0, 0.2)]
+    pucks = [puck_at(x, 0.0, friction=0.15, restitution=0.5, height=0.0) for x in (0.0, 0.2)]
     world = pt.Scene(pucks=pucks, floor=pt.Floor(slope=0.3), walls=[wall]).world()
     world.advance(math.inf)
     assert world.state()[:, 0] == pytest.approx([0.41, 0.47], abs=1e-9)
@@ -349,7 +356,7 @@ def test_what_leant_on_a_puck_that_is_taken_away_slides_on():
 
 def test_back_from_a_pocket():
     pockets = [pt.Pocket((0.2, 0.0), 0.03)]
-    world = pt.Scene(pucks=[piece(0, 0, (2.0, 0.0))], pockets=pockets).world()
+    world = pt.Scene(pucks=[puck_at(0, 0, (2.0, 0.0))], pockets=pockets).world()
     world.advance(1.0)
     assert not world.in_play[0]
     with pytest.raises(pt.InputError, match="puck 0 is not in play: give the position"):
@@ -369,9 +376,9 @@ def test_back_from_a_pocket():
 def test_a_puck_put_over_a_border_and_an_edge_knows_it():
     floor = pt.Floor(strips=pt.Strips((0.2,), (0.1, 0.4)))
     edge = pt.Edge((0.6, 0.0), normal=(-1.0, 0.0))
-    world = pt.Scene(pucks=[piece(0, 0)], floor=floor, edges=[edge]).world()
+    world = pt.Scene(pucks=[puck_at(0, 0)], floor=floor, edges=[edge]).world()
     world.place(0, (0.4, 0.0), velocity=(-0.5, 0.0))
-    truth = pt.Scene(pucks=[piece(0.4, 0.0, (-0.5, 0.0))], floor=floor, edges=[edge]).world()
+    truth = pt.Scene(pucks=[puck_at(0.4, 0.0, (-0.5, 0.0))], floor=floor, edges=[edge]).world()
     world.advance(1.0)
     truth.advance(1.0)
     assert world.state() == pytest.approx(truth.state(), abs=1e-12)
@@ -381,10 +388,10 @@ def test_a_puck_put_over_a_border_and_an_edge_knows_it():
 
 def test_lines_are_passed_by_motion_and_by_no_hand():
     goal = pt.Line((0.3, -1.0), (0.3, 1.0), name="goal")
-    world = pt.Scene(pucks=[piece(0, 0, friction=0.05)], lines=[goal]).world()
+    world = pt.Scene(pucks=[puck_at(0, 0, friction=0.05)], lines=[goal]).world()
     world.place(0, (0.4, 0.0))
     world.place(0, (0.1, 0.0), velocity=(1.0, 0.0))
-    assert world.add(piece(0.6, 0.2, (-1.0, 0.0), friction=0.05)) == 1
+    assert world.add(puck_at(0.6, 0.2, (-1.0, 0.0), friction=0.05)) == 1
     told = [(e.what, e.puck) for e in world.advance(1.0) if e.partner == "goal"]
     for who in ("puck 0", "puck 1"):
         assert [what for what, one in told if one == who] == ["entry", "line", "exit"]
@@ -401,10 +408,10 @@ REFUSED: list[tuple[Callable[[pt.World], Any], str]] = [
     (lambda w: w.place(1, velocity=(1e200, 0.0)), "use other units"),
     (lambda w: w.set_state(np.zeros((4, 6))), "would overlap"),
     (lambda w: w.set_state(np.zeros((3, 6))), "rows of 6 numbers for 4 pucks"),
-    (lambda w: w.add(piece(0.0, 0.01)), r"puck 4 would overlap puck 1 by 0\.0186 m"),
-    (lambda w: w.add(piece(0.6, 0.0)), "reaches through it"),
-    (lambda w: w.add(piece(0.5, 0.0, gravity=1.6)), "the pucks of this world have 9.8"),
-    (lambda w: w.add("puck"), "puck must be a Piece, got a str"),
+    (lambda w: w.add(puck_at(0.0, 0.01)), r"puck 4 would overlap puck 1 by 0\.0186 m"),
+    (lambda w: w.add(puck_at(0.6, 0.0)), "reaches through it"),
+    (lambda w: w.add(puck_at(0.5, 0.0, gravity=1.6)), "the pucks of this world have 9.8"),
+    (lambda w: w.add("puck"), "puck must be a Puck, got a str"),
     (lambda w: w.drive(1, (1.0, 0.0)), "is not led by hand: give it a path of one row"),
     (lambda w: w.drive(0), "give a velocity, or towards"),
     (lambda w: w.drive(0, (1.0, 0.0), speed=1.0), "give a velocity, or towards"),
@@ -432,7 +439,7 @@ def test_what_is_refused_changes_no_bit(call: Callable[[pt.World], Any], words: 
 
 def test_a_puck_on_a_rail_stays_on_it():
     rail = pt.Constraint("rail", angle=0.0)
-    world = pt.Scene(pucks=[piece(0.0, 0.1, constraint=rail)]).world()
+    world = pt.Scene(pucks=[puck_at(0.0, 0.1, constraint=rail)]).world()
     world.place(0, (0.3, 0.1), velocity=(0.5, 0.0))
     with pytest.raises(pt.InputError, match=r"puck 0 would be 0\.05 m off the rail"):
         world.place(0, (0.3, 0.15))
@@ -443,7 +450,7 @@ def test_a_puck_on_a_rail_stays_on_it():
 @pytest.mark.thorough
 @pytest.mark.parametrize("restitution", [0.0, 0.7])
 def test_a_squeeze_is_told_and_the_world_is_as_before(restitution: float):
-    squeezed = piece(0.4, 0.0, restitution=restitution)
+    squeezed = puck_at(0.4, 0.0, restitution=restitution)
     world = pt.Scene(pucks=[mallet(0.0, 0.0), squeezed], walls=cushions()).world()
     world.drive(0, (1.0, 0.0))
     before, state = bits(world), world.state()
@@ -463,7 +470,7 @@ def test_copies_and_pickles_know_what_hands_did():
     rng, world = np.random.default_rng(5), table().world()
     for _ in range(20):
         meddle(rng, world)
-    world.add(piece(-0.5, -0.5))
+    world.add(puck_at(-0.5, -0.5))
     copy, again = world.copy(), pickle.loads(pickle.dumps(world))
     before = bits(world)
     assert bits(copy) == before == bits(again)

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 import pytest
-from boards import draw, draw_pieces, judged
+from boards import draw, draw_pucks, judged
 from pucks_judge import Straight, play
 
 import puck_tables as pt
@@ -60,13 +60,13 @@ def test_the_first_three_impacts_of_more_boards(seed: int):
 
 @pytest.mark.parametrize("seed", range(2, 12))
 def test_the_first_three_impacts_among_walls_with_ends(seed: int):
-    agree_with_the_judge(draw_pieces(seed, 2 + seed % 3))
+    agree_with_the_judge(draw_pucks(seed, 2 + seed % 3))
 
 
 @pytest.mark.nightly
 @pytest.mark.parametrize("seed", range(12, 162))
 def test_the_first_three_impacts_among_more_walls_with_ends(seed: int):
-    agree_with_the_judge(draw_pieces(seed, 2 + seed % 3))
+    agree_with_the_judge(draw_pucks(seed, 2 + seed % 3))
 
 
 class Film:
@@ -139,7 +139,7 @@ def test_no_puck_reaches_into_another_or_a_wall(seed: int):
 
 @pytest.mark.parametrize("seed", range(2000, 2012))
 def test_no_puck_reaches_into_a_wall_with_ends(seed: int):
-    assert Film(draw_pieces(seed, 2 + seed % 6), 1000, seed).deepest() <= 1e-12
+    assert Film(draw_pucks(seed, 2 + seed % 6), 1000, seed).deepest() <= 1e-12
 
 
 @pytest.mark.nightly
@@ -169,7 +169,7 @@ def test_where_the_energy_goes(seed: int):
 
 @pytest.mark.parametrize("seed", range(1000, 1040))
 def test_where_the_energy_goes_among_walls_with_ends(seed: int):
-    energy_is_kept(draw_pieces(seed, 2 + seed % 6), seed)
+    energy_is_kept(draw_pucks(seed, 2 + seed % 6), seed)
 
 
 @pytest.mark.nightly

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from boards import draw, hexagon, piece
+from boards import draw, hexagon, puck_at
 
 import puck_tables as pt
 
@@ -25,7 +25,7 @@ def just_after(scene: pt.Scene) -> np.ndarray:
 
 
 def test_equal_smooth_pucks_swap_their_velocities_head_on():
-    one, two = piece(0.0, 0.0, (1.0, 0.0)), piece(0.2, 0.0, (-0.5, 0.0))
+    one, two = puck_at(0.0, 0.0, (1.0, 0.0)), puck_at(0.2, 0.0, (-0.5, 0.0))
     before = pt.Scene(pucks=[one, two]).world()
     scene = pt.Scene(pucks=[one, two])
     time = impacts(scene)[0].time
@@ -37,14 +37,14 @@ def test_equal_smooth_pucks_swap_their_velocities_head_on():
 
 @pytest.mark.parametrize("aside", [0.01, 0.03, 0.055])
 def test_equal_smooth_pucks_part_at_a_right_angle(aside: float):
-    after = just_after(pt.Scene(pucks=[piece(0, 0, (2.0, 0.0)), piece(0.3, aside)]))
+    after = just_after(pt.Scene(pucks=[puck_at(0, 0, (2.0, 0.0)), puck_at(0.3, aside)]))
     assert abs(after[0, 3:5] @ after[1, 3:5]) < 1e-12
 
 
 def test_a_spinning_puck_against_one_at_rest_by_hand():
     """E = .8, β = 0, μ large: m_n = m/2, m_t = m/6 of equal discs, whose slip is v t + r ω."""
-    one = piece(0, 0, (1.0, 0.0), 40.0, friction=1e-9, restitution=0.8, tangential=0.0)
-    two = piece(0.1, 0.0, friction=1e-9, restitution=0.8, tangential=0.0)
+    one = puck_at(0, 0, (1.0, 0.0), 40.0, friction=1e-9, restitution=0.8, tangential=0.0)
+    two = puck_at(0.1, 0.0, friction=1e-9, restitution=0.8, tangential=0.0)
     after = just_after(pt.Scene(pucks=[one, two]))
     m, r = 0.1, 0.03
     push, rub = 1.8 * (m / 2) * 1.0, (m / 6) * r * 40.0
@@ -54,8 +54,8 @@ def test_a_spinning_puck_against_one_at_rest_by_hand():
 
 
 def test_rims_that_slide_take_no_more_than_friction():
-    one = piece(0, 0, (1.0, 0.0), 400.0, friction=1e-9, tangential=0.5, rim=0.1)
-    scene = pt.Scene(pucks=[one, piece(0.1, 0.0, friction=1e-9, tangential=0.5)])
+    one = puck_at(0, 0, (1.0, 0.0), 400.0, friction=1e-9, tangential=0.5, rim=0.1)
+    scene = pt.Scene(pucks=[one, puck_at(0.1, 0.0, friction=1e-9, tangential=0.5)])
     event = impacts(scene, 1.0)[0]
     assert event.rub == pytest.approx(0.1 * event.impulse)
     assert event.lost == pytest.approx(
@@ -67,9 +67,9 @@ def test_a_wall_is_the_mirror_image_of_a_puck():
     launch, spin = (1.0, 0.4), 25.0
     how = {"restitution": 0.7}  # smooth: the rim of an image slides along with it
     wall = pt.Wall((0.2, 0.0), normal=(-1.0, 0.0), restitution=0.7)
-    puck, far = piece(0, 0, launch, spin, **how), piece(-9.0, 9.0)  # a lone one may be refined
+    puck, far = puck_at(0, 0, launch, spin, **how), puck_at(-9.0, 9.0)  # a lone one may be refined
     alone = pt.Scene(pucks=[puck, far], walls=[wall]).simulate([0.4, 1.0])
-    image = piece(0.4, 0.0, (-1.0, 0.4), -spin, **how)
+    image = puck_at(0.4, 0.0, (-1.0, 0.4), -spin, **how)
     both = pt.Scene(pucks=[puck, image]).simulate([0.4, 1.0])
     for name in ("x", "y", "orientation", "spin", "vx"):
         assert both[0][name] == pytest.approx(alone[0][name], abs=1e-12), name
@@ -77,7 +77,7 @@ def test_a_wall_is_the_mirror_image_of_a_puck():
 
 def test_a_wall_does_what_it_does_to_one_puck_alone():
     wall = pt.Wall((0.3, 0.0), normal=(-1.0, 0.2), restitution=0.6, tangential=-0.3, friction=0.25)
-    many = pt.Scene(pucks=[piece(0, 0, (1.0, 0.3), 20.0, friction=0.1)], walls=[wall]).simulate()
+    many = pt.Scene(pucks=[puck_at(0, 0, (1.0, 0.3), 20.0, friction=0.1)], walls=[wall]).simulate()
     puck = pt.Puck(0.03, 0.01, 0.1, 0.1)
     one = pt.Scene(puck, launch=pt.Launch((1.0, 0.3), 20.0), walls=[wall]).simulate()
     assert many.end_time == pytest.approx(one.end_time, abs=1e-9)
@@ -87,16 +87,16 @@ def test_a_wall_does_what_it_does_to_one_puck_alone():
 
 @pytest.mark.parametrize("count", [3, 5, 9])
 def test_a_row_passes_an_impact_on(count: int):
-    row = [piece(0.2 + 0.06 * n, 0.0) for n in range(count)]
-    after = just_after(pt.Scene(pucks=[piece(0.0, 0.0, (1.0, 0.0)), *row]))
+    row = [puck_at(0.2 + 0.06 * n, 0.0) for n in range(count)]
+    after = just_after(pt.Scene(pucks=[puck_at(0.0, 0.0, (1.0, 0.0)), *row]))
     assert after[-1, 3] > 0.5
     assert np.abs(after[:-1, 3:]).max() < 1e-12
 
 
 def test_a_puck_between_two_is_hit_by_both_at_once():
     scene = pt.Scene(pucks=[
-        piece(-0.2, 0.0, (1.0, 0.0), restitution=0.5), piece(0.0, 0.0, restitution=0.5),
-        piece(0.2, 0.0, (-1.0, 0.0), restitution=0.5),
+        puck_at(-0.2, 0.0, (1.0, 0.0), restitution=0.5), puck_at(0.0, 0.0, restitution=0.5),
+        puck_at(0.2, 0.0, (-1.0, 0.0), restitution=0.5),
     ])  # fmt: skip
     after = just_after(scene)
     assert after[1, 3:] == pytest.approx([0.0, 0.0, 0.0], abs=1e-12)
@@ -105,8 +105,8 @@ def test_a_puck_between_two_is_hit_by_both_at_once():
 
 
 def test_a_symmetric_break_stays_symmetric():
-    rack = [piece(x, y, restitution=0.9) for x, y in hexagon(2, 0.06)]
-    striker = piece(-0.4, 0.0, (3.0, 0.0), restitution=0.9)
+    rack = [puck_at(x, y, restitution=0.9) for x, y in hexagon(2, 0.06)]
+    striker = puck_at(-0.4, 0.0, (3.0, 0.0), restitution=0.9)
     scene = pt.Scene(pucks=[*rack, striker])
     first = impacts(scene)[0].time
     states = scene.world().at(first + 0.05)[:-1]
@@ -137,10 +137,10 @@ def test_walls_in_another_order_change_nothing(seed: int):
 @pytest.mark.parametrize("scale", [0.5, 2.0, 8.0])
 def test_faster_is_the_same_on_a_larger_board(scale: float):
     """On a level floor velocities × λ and places × λ² give the same picture, times × λ."""
-    slow = [piece(0, 0, (1.0, 0.1), 30.0, height=0.0), piece(0.15, 0.02, height=0.0)]
+    slow = [puck_at(0, 0, (1.0, 0.1), 30.0, height=0.0), puck_at(0.15, 0.02, height=0.0)]
     wide = scale**2
     fast = [
-        piece(
+        puck_at(
             wide * p.launch.position[0], wide * p.launch.position[1],
             None if p.launch.velocity is None else tuple(scale * v for v in p.launch.velocity),
             p.launch.spin / scale, radius=wide * p.radius, height=0.0,
@@ -154,15 +154,15 @@ def test_faster_is_the_same_on_a_larger_board(scale: float):
 
 
 def test_the_height_of_the_pucks_enters_only_by_delta():
-    tall = [piece(0, 0, (1.0, 0.0), 30.0, height=0.03, friction=0.2), piece(0.15, 0.0)]
-    flat = [piece(0, 0, (1.0, 0.0), 30.0, height=0.0, friction=0.2), piece(0.15, 0.0)]
+    tall = [puck_at(0, 0, (1.0, 0.0), 30.0, height=0.03, friction=0.2), puck_at(0.15, 0.0)]
+    flat = [puck_at(0, 0, (1.0, 0.0), 30.0, height=0.0, friction=0.2), puck_at(0.15, 0.0)]
     ends = [pt.Scene(pucks=pucks).simulate().last["y"][0] for pucks in (tall, flat)]
     assert abs(ends[1]) < 1e-12 < 1e-4 < abs(ends[0])
 
 
 def test_a_post_stands():
     scene = pt.Scene(
-        pucks=[piece(0, 0, (1.0, 0.0), restitution=0.5)],
+        pucks=[puck_at(0, 0, (1.0, 0.0), restitution=0.5)],
         posts=[pt.Post((0.2, 0.0), 0.01, restitution=0.5)],
     )
     event = impacts(scene)[0]
@@ -175,21 +175,21 @@ def test_a_post_stands():
 
 def test_an_arc_is_a_cushion_from_inside():
     whole = pt.Arc((0.0, 0.0), 0.3, restitution=1.0)
-    scene = pt.Scene(pucks=[piece(0.1, 0.05, (3.0, 1.0), friction=0.05)], arcs=[whole])
+    scene = pt.Scene(pucks=[puck_at(0.1, 0.05, (3.0, 1.0), friction=0.05)], arcs=[whole])
     run = scene.simulate()
     assert run.impacts > 5
     assert np.hypot(run.x, run.y).max() <= 0.27 * (1 + 1e-12)
     half = pt.Arc((0.0, 0.0), 0.3, start=math.pi / 2, span=math.pi)
-    out = pt.Scene(pucks=[piece(0.1, 0.0, (1.5, 0.0), friction=0.05)], arcs=[half]).simulate()
+    out = pt.Scene(pucks=[puck_at(0.1, 0.0, (1.5, 0.0), friction=0.05)], arcs=[half]).simulate()
     assert out.impacts == 0
     assert out.last["x"][0] > 0.4
-    back = pt.Scene(pucks=[piece(0.1, 0.0, (-1.5, 0.0), friction=0.05)], arcs=[half]).simulate()
+    back = pt.Scene(pucks=[puck_at(0.1, 0.0, (-1.5, 0.0), friction=0.05)], arcs=[half]).simulate()
     assert back.impacts == 1
 
 
 def test_a_pocket_takes_the_puck_whose_centre_passes_its_rim():
     scene = pt.Scene(
-        pucks=[piece(0, 0, (1.0, 0.0)), piece(0.0, 0.2, (1.0, 0.0))],
+        pucks=[puck_at(0, 0, (1.0, 0.0)), puck_at(0.0, 0.2, (1.0, 0.0))],
         pockets=[pt.Pocket((0.2, 0.0), 0.03)],
     )
     run = scene.simulate()
@@ -203,7 +203,7 @@ def test_a_pocket_takes_the_puck_whose_centre_passes_its_rim():
 
 def test_over_the_edge():
     scene = pt.Scene(
-        pucks=[piece(0, 0, (1.0, 0.0))], edges=[pt.Edge((0.1, 0.0), normal=(-1.0, 0.0))]
+        pucks=[puck_at(0, 0, (1.0, 0.0))], edges=[pt.Edge((0.1, 0.0), normal=(-1.0, 0.0))]
     )
     run = scene.simulate()
     assert [event.what for event in run.events] == ["overhang", "edge"]
@@ -214,8 +214,8 @@ def test_over_the_edge():
 
 def test_a_driven_disc_hits_and_is_not_moved():
     way = [[0.0, -0.2, 0.0], [1.0, 0.8, 0.0], [2.0, 0.8, 0.0]]
-    mallet = pt.Piece(0.05, path=way, name="mallet")
-    run = pt.Scene(pucks=[mallet, piece(0.2, 0.0)]).simulate()
+    mallet = pt.Puck(0.05, path=way, name="mallet")
+    run = pt.Scene(pucks=[mallet, puck_at(0.2, 0.0)]).simulate()
     event = run.events[0]
     assert event.time == pytest.approx(0.32, abs=1e-12)
     assert event.approach == pytest.approx(1.0, abs=1e-12)
@@ -226,7 +226,7 @@ def test_a_driven_disc_hits_and_is_not_moved():
 
 def test_air_hockey_without_dry_friction_is_in_closed_form():
     drag = pt.Drag(sliding=0.006, quadratic=0.002, spinning=1e-6)
-    one = piece(0, 0, (2.0, 1.0), 30.0, friction=0.0, mass=0.03)
+    one = puck_at(0, 0, (2.0, 1.0), 30.0, friction=0.0, mass=0.03)
     run = pt.Scene(pucks=[one], drag=drag, time=3.0).simulate([0.0, 1.0, 3.0])
     assert run.end == "time is up"
     rate, wake, speed = 0.2, 0.002 / 0.03, math.hypot(2.0, 1.0)
@@ -240,8 +240,8 @@ def test_air_hockey_without_dry_friction_is_in_closed_form():
 
 
 def test_a_later_launch_is_like_one_with_the_clock_set_back():
-    late = pt.Piece(0.03, friction=0.2, launch=pt.Launch((1.0, 0.0), 5.0, time=0.75))
-    soon = pt.Piece(0.03, friction=0.2, launch=pt.Launch((1.0, 0.0), 5.0))
+    late = pt.Puck(0.03, friction=0.2, launch=pt.Launch((1.0, 0.0), 5.0, time=0.75))
+    soon = pt.Puck(0.03, friction=0.2, launch=pt.Launch((1.0, 0.0), 5.0))
     one, two = (pt.Scene(pucks=[p]).simulate() for p in (late, soon))
     assert one.end_time == pytest.approx(two.end_time + 0.75, abs=1e-12)
     assert one.last["x"] == pytest.approx(two.last["x"], abs=1e-12)

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from boards import draw, piece
+from boards import draw, puck_at
 from pushing_judge import Judge
 
 import puck_tables as pt
@@ -19,8 +19,8 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 def test_a_mallet_that_pushes_works_against_the_floor():
     """It comes at v, e = 0, and goes on for s at v: m v² in the impact, f m g s after it."""
-    mallet = pt.Piece(0.05, path=[[0.0, -0.2, 0.0], [1.0, 0.3, 0.0], [3.0, 0.3, 0.0]])
-    puck = piece(0.0, 0.0, restitution=0.0)
+    mallet = pt.Puck(0.05, path=[[0.0, -0.2, 0.0], [1.0, 0.3, 0.0], [3.0, 0.3, 0.0]])
+    puck = puck_at(0.0, 0.0, restitution=0.0)
     run = pt.Scene(pucks=[mallet, puck]).simulate()
     m, v, pushed = 0.1, 0.5, 0.2 * 0.1 * G * 0.5 * (1.0 - 0.24)
     assert run.last["work_driven"] == pytest.approx(m * v * v + pushed, rel=1e-9)
@@ -77,8 +77,8 @@ def test_an_oblique_push_is_booked_as_another_integrator_has_it(
 ):
     way = [[0.0, -0.12, 0.0, 0.0], [2.0, 0.88, 0.0, 2.0 * turning]]
     how = {"restitution": 0.0, "tangential": 0.0, "rim": friction}
-    puck = piece(0.0, 0.02, (0.0, 0.0), -4.0, height=0.0, **how)
-    mallet = pt.Piece(0.05, path=way, restitution=0.0, tangential=0.0, rim=friction)
+    puck = puck_at(0.0, 0.02, (0.0, 0.0), -4.0, height=0.0, **how)
+    mallet = pt.Puck(0.05, path=way, restitution=0.0, tangential=0.0, rim=friction)
     world = pt.Scene(pucks=[mallet, puck]).world()
     first = next(e for e in world.copy().advance(1.0) if e.what == "contact")
     world.advance(first.time)
@@ -101,8 +101,8 @@ def test_an_oblique_push_is_booked_as_another_integrator_has_it(
 
 def test_rims_of_a_group_are_booked_as_another_integrator_has_them():
     how = {"radius": 0.05, "restitution": 0.0, "tangential": 0.0, "rim": 0.3, "height": 0.0}
-    one = piece(0.0, 0.0, (1.0, 0.0), 30.0, mass=0.4, friction=0.5 / G, **how)
-    two = piece(0.1, 0.0, (1.0, 0.0), mass=0.1, friction=2.0 / G, **how)
+    one = puck_at(0.0, 0.0, (1.0, 0.0), 30.0, mass=0.4, friction=0.5 / G, **how)
+    two = puck_at(0.1, 0.0, (1.0, 0.0), mass=0.1, friction=2.0 / G, **how)
     world = pt.Scene(pucks=[one, two]).world()
     discs = [[0.05, m, 0.5 * m * 0.05**2, decel, 0, 0, 0] for m, decel in ((0.4, 0.5), (0.1, 2.0))]
     truth = judged(world, Judge(discs, [(0, 1, 0.3, 1)]), 0.1)
@@ -115,7 +115,7 @@ def test_rims_of_a_group_are_booked_as_another_integrator_has_them():
 
 def test_a_slope_works_and_the_floor_heats():
     """F m g cos α s is heat; straight down, from rest to rest at a wall, e = 0."""
-    slope, puck = 0.3, piece(0.0, 0.0, (0.0, -0.1), restitution=0.0)
+    slope, puck = 0.3, puck_at(0.0, 0.0, (0.0, -0.1), restitution=0.0)
     wall = pt.Wall((0.0, -0.2), normal=(0.0, 1.0), restitution=0.0)
     floor = pt.Floor(slope=slope, downhill=-0.5 * math.pi)
     run = pt.Scene(pucks=[puck], walls=[wall], floor=floor, posts=[pt.Post((9, 9), 1)]).simulate()
@@ -146,7 +146,7 @@ def test_a_mallet_in_a_crowd_keeps_its_books(seed: int):
     crowd = draw(seed, 6, walls=False, speed=0.2)
     aim = crowd.pucks[0].launch.position[1]
     way = [[0.0, -0.9, aim - 0.01], [2.4, 0.5, aim], [2.7, 0.5, aim]]
-    mallet = pt.Piece(0.06, path=way, restitution=0.2, tangential=0.0, rim=0.3)
+    mallet = pt.Puck(0.06, path=way, restitution=0.2, tangential=0.0, rim=0.3)
     run = pt.Scene(pucks=[*crowd.pucks, mallet]).simulate()
     assert run.energy_residual < 1e-9
     assert run.last["work_driven"] > 0.0
@@ -157,8 +157,8 @@ def test_a_mallet_in_a_crowd_keeps_its_books(seed: int):
 
 def test_rims_that_grip_at_the_start():
     """Nothing presses them together, but a rim without a bound on its friction grips at once."""
-    one = pt.Piece(0.03, friction=0.1, tangential=0.0, launch=pt.Launch(spin=20.0))
-    two = pt.Piece(0.03, friction=0.1, tangential=0.0, launch=pt.Launch(position=(0.06, 0.0)))
+    one = pt.Puck(0.03, friction=0.1, tangential=0.0, launch=pt.Launch(spin=20.0))
+    two = pt.Puck(0.03, friction=0.1, tangential=0.0, launch=pt.Launch(position=(0.06, 0.0)))
     run = pt.Scene(pucks=[one, two]).simulate()
     assert run.last["energy_given"] == pytest.approx(0.25 * 0.03**2 * 20.0**2, rel=1e-14)
     assert run.energy_residual < 1e-9
@@ -168,15 +168,15 @@ def test_a_stint_that_is_over_at_once_has_no_heat():
     """A row in touch and one in its nook; the striker is there at the same moment."""
     high = 0.03 * math.sqrt(3.0)
 
-    def piece(x: float, y: float, velocity: tuple[float, float] = (0.0, 0.0), spin: float = 0.0):
+    def puck_at(x: float, y: float, velocity: tuple[float, float] = (0.0, 0.0), spin: float = 0.0):
         launch = pt.Launch(velocity, spin, (x, y))
-        return pt.Piece(0.03, friction=0.1, tangential=0.0, rim=0.3, launch=launch)
+        return pt.Puck(0.03, friction=0.1, tangential=0.0, rim=0.3, launch=launch)
 
     pucks = [
-        piece(-0.06, 0, (1.0, 0.0)),
-        piece(0, 0),
-        piece(0.06, 0),
-        piece(0.03, high, spin=-20.0),
+        puck_at(-0.06, 0, (1.0, 0.0)),
+        puck_at(0, 0),
+        puck_at(0.06, 0),
+        puck_at(0.03, high, spin=-20.0),
     ]
     run = pt.Scene(pucks=pucks).simulate()
     assert run.last["energy_given"] == pytest.approx(0.5 + 0.09, rel=1e-14)
@@ -189,12 +189,12 @@ def test_a_map_books_what_its_runs_do(seed: int):
     rng = np.random.default_rng([seed, 5036])
     how: dict[str, float] = {"height": 0.01, "friction": float(rng.uniform(0.1, 0.3))}
     speeds = rng.uniform(0.3, 2.5, 3).tolist()
-    cue = pt.Piece(0.04, **how, launch=pt.Launch((speeds, 0.1), float(rng.normal(0.0, 9.0))))
+    cue = pt.Puck(0.04, **how, launch=pt.Launch((speeds, 0.1), float(rng.normal(0.0, 9.0))))
     rail = pt.Constraint("rail", angle=1.5, velocity=(0.2, 0.0)) if seed == 1 else None
     launch = pt.Launch((0.2, 0.0) if rail else None, position=(0.3, float(rng.uniform(0.0, 0.02))))
-    pucks = [cue, pt.Piece(0.05, **how, launch=launch, constraint=rail)]
+    pucks = [cue, pt.Puck(0.05, **how, launch=launch, constraint=rail)]
     if seed == 2:
-        pucks.append(pt.Piece(0.05, path=[[0.0, 0.9, 0.0], [1.0, 0.1, 0.0], [2.0, 0.9, 0.0]]))
+        pucks.append(pt.Puck(0.05, path=[[0.0, 0.9, 0.0], [1.0, 0.1, 0.0], [2.0, 0.9, 0.0]]))
     floor = [pt.Floor(slope=0.08), pt.Floor(velocity=(0.05, 0.1)), pt.Floor()][seed]
     edge = pt.Edge((0.5, 0.0), normal=(-1.0, 0.2))
     board = pt.Scene(pucks=pucks, floor=floor, edges=[edge] if seed != 2 else [], time=1.2)

@@ -35,6 +35,7 @@ from puck_tables.world.group import (
     TIME_UP,
     YIELDS,
 )
+from puck_tables.world.layout import FRICTION
 from puck_tables.world.paths import on_piece
 
 ALONG, UP = math.cos(0.5), math.sin(0.5)
@@ -358,7 +359,7 @@ def judge_first_stretch(seed: int) -> bool:
         return False
     judged = []
     for (i, j), mode in zip(ride.contacts, ride.modes_then[0], strict=True):
-        grip = min(group.discs[i, 10], group.discs[j, 10]) if j >= 0 else 0.2
+        grip = min(group.discs[i, FRICTION], group.discs[j, FRICTION]) if j >= 0 else 0.2
         judged.append(
             (int(i), int(j) if j >= 0 else ("wall", 0, 1, 0), grip, int(mode) if grip else None)
         )

@@ -12,11 +12,11 @@ from puck_tables.scene.scene_text import as_toml
 
 VELOCITIES = [[1.0, 0.0], [1.2, 0.1], [0.8, -0.05]]
 SPINS = [0.0, 5.0, -9.0]
-RED = pt.Piece(0.03, friction=0.2, name="red", launch=pt.Launch(position=(0.3, 0.01)))
+RED = pt.Puck(0.03, friction=0.2, name="red", launch=pt.Launch(position=(0.3, 0.01)))
 
 
-def cue(velocity: object, spin: object = 0.0, **more: object) -> pt.Piece:
-    return pt.Piece(0.03, friction=0.2, name="cue", launch=pt.Launch(velocity, spin, **more))
+def cue(velocity: object, spin: object = 0.0, **more: object) -> pt.Puck:
+    return pt.Puck(0.03, friction=0.2, name="cue", launch=pt.Launch(velocity, spin, **more))
 
 
 def test_rows_go_one_by_one_to_the_bit():
@@ -39,7 +39,7 @@ def test_rows_of_places_and_ranges_of_others_are_a_product():
     ends = scene.sweep()
     one = pt.Scene(pucks=[
         cue(VELOCITIES[1], position=places[1]),
-        pt.Piece(0.03, friction=0.3, name="red", launch=pt.Launch(position=(0.3, 0.01))),
+        pt.Puck(0.03, friction=0.3, name="red", launch=pt.Launch(position=(0.3, 0.01))),
     ]).simulate()  # fmt: skip
     assert ends.x.shape == (3, 2, 2)
     assert ends.x[1, 1].tolist() == one.last["x"].tolist()
@@ -54,7 +54,7 @@ def test_thousands_of_rows_are_an_array():
 
 
 def test_rows_of_two_pucks_are_refused_by_name():
-    other = pt.Piece(0.03, friction=0.1, launch=pt.Launch(VELOCITIES, position=(0.9, 0.9)))
+    other = pt.Puck(0.03, friction=0.1, launch=pt.Launch(VELOCITIES, position=(0.9, 0.9)))
     with pytest.raises(pt.InputError, match=r"puck\[0\]\.launch\.velocity, puck\[1\].*of one puck"):
         pt.Scene(pucks=[cue(VELOCITIES), other])
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from boards import draw, draw_pieces, piece
+from boards import draw, draw_pucks, puck_at
 
 import puck_tables as pt
 from puck_tables._core import executor
@@ -26,8 +26,8 @@ def cushions(side: float = 0.6, restitution: float = 0.8) -> list[pt.Wall]:
 
 def table(**how: Any) -> pt.Scene:
     """A mallet, three pucks, walls, a pocket, an edge and two lines."""
-    mallet = pt.Piece(0.05, path=[[0.0, -0.3, 0.0]], name="mallet")
-    pucks = [piece(0.0, 0.0), piece(0.2, 0.1), piece(0.2, -0.1, name="last")]
+    mallet = pt.Puck(0.05, path=[[0.0, -0.3, 0.0]], name="mallet")
+    pucks = [puck_at(0.0, 0.0), puck_at(0.2, 0.1), puck_at(0.2, -0.1, name="last")]
     return pt.Scene(
         pucks=[mallet, *pucks], walls=cushions(), pockets=[pt.Pocket((0.5, 0.5), 0.04)],
         edges=[pt.Edge((0.0, -0.58), normal=(0.0, 1.0))], **how,
@@ -37,7 +37,7 @@ def table(**how: Any) -> pt.Scene:
 
 def push() -> pt.Scene:
     """Pucks that stay together after impacts, so that groups of them push each other."""
-    pucks = [piece(0.1 * n, 0.01 * n, restitution=0.0, tangential=0.0) for n in range(4)]
+    pucks = [puck_at(0.1 * n, 0.01 * n, restitution=0.0, tangential=0.0) for n in range(4)]
     return pt.Scene(pucks=pucks, walls=cushions(restitution=0.0))
 
 
@@ -46,19 +46,19 @@ def slope() -> pt.Scene:
     floor = pt.Floor(
         slope=0.1, strips=pt.Strips((0.1,), (0.2, 0.1)), patches=[pt.Patch(0.4, (0, -0.2), 0.1)]
     )
-    return pt.Scene(pucks=[piece(0.2 * n, 0.1 * n) for n in range(3)], floor=floor,
+    return pt.Scene(pucks=[puck_at(0.2 * n, 0.1 * n) for n in range(3)], floor=floor,
                     walls=cushions(), time=9.0)  # fmt: skip
 
 
 def turning() -> pt.Scene:
-    return pt.Scene(pucks=[piece(0.1 * n, 0.1) for n in range(3)], floor=pt.Floor(turning=0.5),
+    return pt.Scene(pucks=[puck_at(0.1 * n, 0.1) for n in range(3)], floor=pt.Floor(turning=0.5),
                     walls=cushions(), time=9.0)  # fmt: skip
 
 
 def by_law() -> pt.Scene:
     """A floor whose friction law is known up to the fastest slip yet."""
     floor = pt.Floor(law=pt.StribeckLaw(0.3, 0.1, 0.2))
-    pucks = [piece(0.1 * n, 0.1, (0.1, 0.0)) for n in range(2)]
+    pucks = [puck_at(0.1 * n, 0.1, (0.1, 0.0)) for n in range(2)]
     return pt.Scene(pucks=pucks, floor=floor, walls=cushions())
 
 
@@ -66,7 +66,7 @@ def by_law_on_rings() -> pt.Scene:
     """The same under bases over which friction is summed: what is known of the law lies there."""
     law = pt.CurlingLaw(0.02, 0.06, 0.1)
     pucks = [
-        pt.Piece(0.03, base="annulus:0.02x0.015", friction=0.1, restitution=0.8, tangential=0.0,
+        pt.Puck(0.03, base="annulus:0.02x0.015", friction=0.1, restitution=0.8, tangential=0.0,
                  rim=0.2, launch=pt.Launch((v, 0.0), position=(0.1 * n, 0.01 * n)))
         for n, v in enumerate((0.1, 0.0))
     ]  # fmt: skip
@@ -74,9 +74,9 @@ def by_law_on_rings() -> pt.Scene:
 
 
 def rail() -> pt.Scene:
-    held = pt.Piece(0.03, friction=0.2, constraint=pt.Constraint("rail", angle=0.0),
+    held = pt.Puck(0.03, friction=0.2, constraint=pt.Constraint("rail", angle=0.0),
                     launch=pt.Launch((0.5, 0.0)))  # fmt: skip
-    return pt.Scene(pucks=[held, piece(0.3, 0.01)], walls=cushions())
+    return pt.Scene(pucks=[held, puck_at(0.3, 0.01)], walls=cushions())
 
 
 class Pair:
@@ -264,7 +264,7 @@ def test_boards_are_worlds_of_their_own_whatever_is_done(board: str, seed: int):
     scenes = {
         "table": table,
         "drawn": lambda: draw(seed, 5),
-        "pieces": lambda: draw_pieces(seed, 4),
+        "pieces": lambda: draw_pucks(seed, 4),
     }
     pair = chain(scenes[board](), seed)
     if board != "table":
@@ -340,7 +340,7 @@ def test_lines_passed_more_often_than_a_bench_notes(monkeypatch: pytest.MonkeyPa
 
 def test_a_mallet_that_squeezes_changes_no_board_and_says_on_which():
     scene = pt.Scene(
-        pucks=[pt.Piece(0.05, path=[[0, 0.4, 0]], name="mallet"), piece(0.57, 0.0)],
+        pucks=[pt.Puck(0.05, path=[[0, 0.4, 0]], name="mallet"), puck_at(0.57, 0.0)],
         walls=cushions(),
     )
     worlds = pt.Worlds(scene, 4)

@@ -18,7 +18,7 @@ from puck_tables._core.safe_read import read_whole
 from puck_tables._core.sources import source_digest
 from puck_tables.errors import InputError
 
-_LARGEST_FILE = 1 << 26
+_LARGEST_FILE = 1 << 26  # bytes, 64 MiB: a file that work names is read whole for its digest
 
 
 def work_digest(**what: Any) -> str:

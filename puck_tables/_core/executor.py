@@ -14,7 +14,7 @@ from typing import Any
 Progress = Callable[[int, int], None]
 
 _FIRST_SLICE, _GROWTH = 4, 8.0  # items; times the slice before
-_SLICE_TIME = 0.2  # s
+_SLICE_TIME = 0.2  # s, about, of a slice: between two Ctrl-C is heard
 _LOOK = 0.2  # s between two looks for Ctrl-C while all threads work
 _this_thread = threading.local()  # holds the event that says that its run was given up
 

@@ -44,6 +44,7 @@ class Kind:
     usual: float = 0.0  # what is larger is questioned, see puck_tables._core.doubts
     choices: tuple[str, ...] = ()
     part: Any = None
+    made: Any = None  # what is made of the entries of a part, if it is another class
     file: str | None = None  # a text that names a file where it ends so
     objects: tuple[type, ...] = ()  # taken as they are, in place of a text
     batch: bool = False  # a pair of which there may be many, one for each launch

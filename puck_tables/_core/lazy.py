@@ -16,15 +16,16 @@ _CLONE = _ROOT if (_ROOT / "pyproject.toml").is_file() else None
 
 
 def lazily(
-    package: str, homes: Mapping[str, str]
+    package: str, homes: Mapping[str, str], root: str = ""
 ) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
-    """``__getattr__`` and ``__dir__`` of a package.
+    """``__getattr__`` and ``__dir__`` of a package or module.
 
     Parameters
     ----------
     package : its ``__name__``
     homes : names that modules of it hold, by these; ``there:name`` where a name is another there;
         modules themselves stand under no name
+    root : the package that these modules are in, if it is another
 
     Examples
     --------
@@ -43,7 +44,7 @@ def lazily(
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
         module, there = places[name]
         try:
-            value: Any = import_module(f"{package}.{module or name}")
+            value: Any = import_module(f"{root or package}.{module or name}")
         except ModuleNotFoundError as error:
             if error.name not in NEEDED:
                 raise

@@ -24,7 +24,7 @@ except ImportError:  # a system without such locks: parts are of the dead when t
 
 _PREFIX, _SUFFIX = ".puck-", ".part"
 _NAME = re.compile(re.escape(_PREFIX) + "[0-9a-f]{16}" + re.escape(_SUFFIX))
-_OLD = 86400.0  # s
+_OLD = 86400.0  # s: a part as old is nobody's, where no locks tell
 _own: set[Path] = set()  # of this process
 
 
@@ -116,7 +116,7 @@ def remove_dead(folder: Path) -> None:
 
 @cache
 def remove_dead_once(folder: Path) -> None:
-    """The same, once in a process: a folder may be large, and written to often."""
+    """Remove the parts of the dead once in a process: a folder may be large, written to often."""
     remove_dead(folder)
 
 

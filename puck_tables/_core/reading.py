@@ -61,13 +61,22 @@ def _shown(value: Any) -> str:
     return "a table" if isinstance(value, Mapping) else shown(value)
 
 
-def read_part(kind: type[T], data: Any, path: str, reading: Reading) -> T | None:
-    """A dataclass from a table, or from an unchecked one; None if something in it is wrong."""
+def read_part(
+    kind: type[T], data: Any, path: str, reading: Reading, made: type[T] | None = None
+) -> T | None:
+    """A dataclass from a table, or from an unchecked one; None if something in it is wrong.
+
+    ``made``: what is made of the fields of ``kind``, which it has too.
+    """
     if isinstance(data, kind):
-        same = type(data) is kind or specs(type(data)).keys() == specs(kind).keys()
-        if same and "_checked" in vars(data):  # it, or one with verbs besides
+        given = entries_in(data, specs(made or kind))
+        if (
+            isinstance(data, made or kind)
+            and "_checked" in vars(data)
+            and given.keys() <= (specs(kind).keys())
+        ):
             return data
-        data = entries_in(data, specs(kind))
+        data = given
     if not isinstance(data, Mapping):
         reading.fault(path or kind.__name__.lower(), data, f"a table or a {kind.__name__}")
         return None
@@ -75,7 +84,7 @@ def read_part(kind: type[T], data: Any, path: str, reading: Reading) -> T | None
     if values is None:
         return None
     try:
-        part = kind(**values)
+        part = (made or kind)(**values)
     except PuckError as error:  # one that judges itself; of a range one end may do
         last = {
             name: (reading.ranges or {})[f"{path}.{name}"].stop
@@ -85,7 +94,7 @@ def read_part(kind: type[T], data: Any, path: str, reading: Reading) -> T | None
         try:
             if not last:
                 raise
-            part = kind(**{**values, **last})
+            part = (made or kind)(**{**values, **last})
         except PuckError:
             reading.errors.append(f"{path}: {error}")
             return None
@@ -98,15 +107,16 @@ def mark_checked(part: Any) -> None:
     object.__setattr__(part, "_checked", True)
 
 
-def entries_in(part: Any, names: Mapping[str, Any]) -> dict[str, Any]:
+def entries_in(part: Any, names: Mapping[str, Any] | None = None) -> dict[str, Any]:
     """The values of a dataclass by their names in tables; what is left at its default is left out.
 
-    Fields that are not ``names`` are told of, whatever they hold.
+    Fields that are not among ``names``, if these are given, are told of whatever they hold.
     """
     return {
-        name: getattr(part, spec.name)
+        name: value
         for name, spec in specs(type(part)).items()
-        if name not in names or getattr(part, spec.name) is not spec.default
+        if (value := getattr(part, spec.name)) is not spec.default
+        or (names is not None and name not in names)
     }
 
 
@@ -151,7 +161,7 @@ def _read(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -> 
     if value is default or (kind.objects and isinstance(value, kind.objects)):
         return value
     if kind.shape == "part":
-        return read_part(kind.part, value, path, reading)
+        return read_part(kind.part, value, path, reading, kind.made)
     if kind.shape in ("text", "choice") or (kind.shape == "rows" and isinstance(value, str)):
         good = isinstance(value, str) and kind.takes(value)
         if not good or (kind.choices and value not in kind.choices):

@@ -97,7 +97,7 @@ def number_in(name: str, text: str, unit: str) -> float:
 
 
 def real_view(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
-    """As :func:`real_array`, but an array of float64 is given back as it is, not copied.
+    """Real numbers as an array; one of float64 is given back as it is, not copied.
 
     Examples
     --------

@@ -13,7 +13,7 @@ from pathlib import Path
 from puck_tables.errors import InputError
 
 HEAD = 1 << 18  # bytes from which encoding, separator and header are told
-_SAMPLE, _HEADER_ROWS = 100, 20
+_SAMPLE, _HEADER_ROWS = 100, 20  # lines that tell the form of a table; of them a header
 COMMENTS = ("#", "%", "//")
 _MISSING = {"", "nan", "na", "n/a", "none", "null", "-", "--", "nil", "?", "<na>"}
 POINT = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")

@@ -46,6 +46,7 @@ _FORCES = {"N": 1.0, "mN": 1e-3, "uN": 1e-6, "µN": 1e-6, "μN": 1e-6, "cN": 1e-
 _RATIOS = dict.fromkeys(("1", "-", "–", "—", "dimensionless", "unitless", "ratio", "none"), 1.0)
 _RATIOS |= dict.fromkeys(("%", "percent", "per cent", "prozent"), 0.01)
 _RATIOS |= dict.fromkeys(("‰", "permille", "per mille", "promille"), 1e-3) | {"ppm": 1e-6}
+# m/s: international nautical miles an hour, miles an hour
 _SPEEDS = dict.fromkeys(("knot", "knots", "kt", "kts", "kn"), 1852.0 / 3600.0) | {"mph": 0.44704}
 _WHOLE = {
     "mps": "m/s", "rpm": "turn/min", "rps": "turn/s", "mmps": "mm/s", "mms": "mm/s", "cmps": "cm/s",

@@ -139,7 +139,7 @@ def shipped_errors() -> tuple[MeasuredMethod, ...]:
 
 
 def pareto(rows: Iterable[MeasuredMethod]) -> list[MeasuredMethod]:
-    """Those that no other beats in both error and cost, the cheapest first.
+    """The methods that no other beats in both error and cost, the cheapest first.
 
     Examples
     --------

@@ -63,7 +63,7 @@ class Scheme(NamedTuple):
 
     @property
     def name(self) -> str:
-        """As the measured front has it."""
+        """Its name in the table of measured errors."""
         return self.method.value if self.source is None else f"{self.method}, {self.source}"
 
 

@@ -29,7 +29,7 @@ NAMES = (
     "box:LENGTHxWIDTH, disc:RADIUS, annulus:RADIUSxINNER, polygon:X,Y;X,Y;X,Y, feet:RADIUS;X,Y;X,Y "
     "(m, or with units), or a CSV of x, y"
 )
-MOST_CORNERS = 10_000
+MOST_CORNERS = 10_000  # of an outline: all pairs of its sides are looked at for crossings
 MAX_BYTES = 1 << 24  # of a file of corners: more is no base
 _RIM_POINTS = 4096  # of a disc, at which its pressure is looked at: it errs by 3e-7 of it
 _CENTRED = 1e-9  # of the reach: the centre of mass is the middle of the base

@@ -34,7 +34,8 @@ from puck_tables.contact.resultants import (
 Elliptic = Callable[[FloatArray], tuple[FloatArray, FloatArray, FloatArray]]
 ShapeIntegrals = Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray, FloatArray]]
 
-AGM_STEPS = 8  # six would leave 4e-7 next to φ = π/4, where the modulus reaches 1
+# six would leave 4e-7 next to φ = π/4, where the modulus reaches 1: test_uncompiled_closed_form
+AGM_STEPS = 8
 
 
 def elliptic_with(steps: int) -> Elliptic:

@@ -12,7 +12,8 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 
-_DEGREE = 15  # of Chebyshev's series of a piece
+# of Chebyshev's series of a piece: its degree, its nodes, and places that judge it between them
+_DEGREE = 15
 _ANGLES = np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1)
 _NODES = np.cos(_ANGLES)
 _PROBES = np.linspace(-1.0, 1.0, 37)

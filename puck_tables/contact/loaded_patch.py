@@ -27,7 +27,8 @@ from puck_tables._core.arrays import FloatArray
 
 BoolArray = npt.NDArray[np.bool_]
 
-SEGMENT_RULE = np.stack(np.polynomial.legendre.leggauss(20))  # nodes and weights on [−1, 1]
+_SEGMENT_NODES = 20  # to rounding: test_segment_and_patch_rule
+SEGMENT_RULE = np.stack(np.polynomial.legendre.leggauss(_SEGMENT_NODES))  # on [−1, 1]
 _GAUSS_2 = 3.0**-0.5  # node of Gauss's rule of two points, exact up to degree 3
 
 
@@ -39,7 +40,8 @@ def _tanh_sinh(nodes: int, reach: float) -> tuple[FloatArray, FloatArray]:
     return np.tanh(v), 2.0 * weight / weight.sum()
 
 
-LINE_RULE = np.stack(_tanh_sinh(81, 3.2))  # 2e-13 in the resultants, see tests/test_partial.py
+_LINE_NODES = 81  # 2e-13 in the resultants: test_against_strips
+LINE_RULE = np.stack(_tanh_sinh(_LINE_NODES, 3.2))
 
 
 class Segment(NamedTuple):

@@ -176,7 +176,7 @@ def balance(phi: FloatArray, delta: FloatArray) -> tuple[Resultants, Chord]:
 
 
 def balanced(direction: SlipDirection, delta: FloatArray) -> tuple[Resultants, Chord]:
-    """As :func:`balance`, of slip directions at which the balance is unique.
+    """Resultants and chord of one-sided contact where the balance of moments is unique.
 
     Parameters
     ----------

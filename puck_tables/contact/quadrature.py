@@ -23,7 +23,7 @@ from puck_tables.contact.pressure import UNIFORM, PressureLaw
 
 # Composite Gauss-Legendre rule on [0, π/2], panels halved towards π/2: near |φ| = π/4 the integrand
 # has a branch point at any distance from the end, and every panel stays as far from it as it is
-# long, so the error is below rounding at every φ.
+# long, so the error is below rounding at every φ: test_quadrature; an eighth of them are too few.
 _PANELS = 32
 _GAUSS_NODES = 14  # of Gauss's rule a panel
 

@@ -149,7 +149,7 @@ class SpeedLaw:
         return self.extended(u)
 
     def extended(self, speed: FloatArray) -> FloatArray:
-        """The same without a check: the last piece goes on for what rounding puts beyond it."""
+        """Friction at speeds not checked: the last piece goes on for what rounding puts beyond."""
         x = np.asarray(self.speeds)
         cell = np.clip(np.searchsorted(x, speed, side="right") - 1, 0, x.size - 2)
         c, t = self.coefficients[cell], speed - x[cell]

@@ -45,7 +45,8 @@ from puck_tables.errors import ContactError, InputError
 
 SpeedFunction = Callable[[FloatArray], npt.ArrayLike]
 
-_GAUSS_NODES = 12  # of Gauss's rule a panel
+# of Gauss's rule a panel, to 1e-14: test_a_constant_coefficient_gives_the_closed_forms
+_GAUSS_NODES = 12
 _NODE, _WEIGHT = np.polynomial.legendre.leggauss(_GAUSS_NODES)
 # Panels halved towards τ = 0, where for s → 1 a root has its branch point.
 _EDGES = np.append(0.5 ** np.arange(34), 0.0)[::-1]

@@ -19,10 +19,13 @@ from puck_tables.contact.integrals import PatchIntegrals, slip_direction
 from puck_tables.contact.quadrature import FROM_END, WEIGHT
 
 # Between the radii of a profile: tanh-sinh on [0, 1], at home where the centre of rotation lies on
-# the edge of a disc, a = cot φ (x² ln|x|).
-_T = 0.5 * np.pi * np.sinh(np.linspace(-2.9, 2.9, 41))
+# the edge of a disc, a = cot φ (x² ln|x|), to rounding, as
+# test_a_profile_is_its_rings_by_elliptic_integrals tells
+_COUNT = 41
+_AT = np.linspace(-2.9, 2.9, _COUNT)
+_T = 0.5 * np.pi * np.sinh(_AT)
 _NODES = 0.5 * (1.0 + np.tanh(_T))
-_SHARES = np.cosh(np.linspace(-2.9, 2.9, 41)) / np.cosh(_T) ** 2
+_SHARES = np.cosh(_AT) / np.cosh(_T) ** 2
 _SHARES /= _SHARES.sum()
 # and farther from there than half their width they are analytic
 _FAR_NODES, _FAR_SHARES = np.polynomial.legendre.leggauss(14)

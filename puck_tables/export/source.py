@@ -278,7 +278,7 @@ def _modules(parts: tuple[str, ...]) -> set[ModuleType]:
 def _needed(
     functions: Mapping[str, ast.FunctionDef], public: Sequence[str]
 ) -> dict[str, ast.FunctionDef]:
-    """Those that these call, each after what it calls."""
+    """The functions that public ones call, each after what it calls."""
     result: dict[str, ast.FunctionDef] = {}
 
     def add(name: str) -> None:

@@ -13,7 +13,7 @@ from puck_tables.io.dataset import Dataset, variable
 _GAP = 1.5  # of the usual time from frame to frame
 _JITTER = 0.01  # of a frame: less is rounding of stamps
 _LEAP = 6.0  # of what it moves in frames near by
-_NEAR = 7  # frames
+_NEAR = 7  # frames: three strays do not move their median
 
 
 def described(track: Track) -> list[str]:

@@ -23,7 +23,7 @@ from puck_tables.fitting.unit_motions import UnitMotions, cartesian
 from puck_tables.kernels.base_friction import packed
 from puck_tables.stopping.base_solver import followed
 
-_LOCAL = 1e-8  # of a step
+_LOCAL = 1e-8  # of a step; a film knows places to 1e-4 of the path
 _STEP = 1e-3  # of each argument, to both sides: slopes to some 1e-5
 
 
@@ -48,7 +48,7 @@ class BaseMotions(UnitMotions):
         self.highest = (4.0 - 1e-12) * base.highest_lever / base.reach  # a puck of it is one, too
 
     def facing(self, angle: float) -> Self:
-        """The same, standing otherwise at the launch."""
+        """Motions of a base that stands at an angle (rad) at the launch."""
         found = copy(self)
         found.angle = angle
         return found

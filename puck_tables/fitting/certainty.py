@@ -19,18 +19,18 @@ from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.least_squares import FROM_BESIDE, multi_start
 from puck_tables.fitting.unknowns import NumbersOf
 
-Z95 = 1.959963984540054
+Z95 = 1.959963984540054  # standard deviations to the ends of a 95 % interval of a normal
 BLIND = 2.0  # plausible ranges per standard deviation
 _MEMBER = 0.2  # component of a direction that counts
 _PARABOLIC = 0.04  # of the drop of the likelihood
-_SEARCHES = 14
-_OUTWARDS, _BEYOND, _LOOKS = 3.0, 1.15, 3
-_FAR, _NARROW = 2.0, 0.005
-_HARDLY = 0.05
+_SEARCHES = 14  # values tried for an end of an interval; each is a fit
+_OUTWARDS, _BEYOND, _LOOKS = 3.0, 1.15, 3  # times a way; times the root foreseen; tries of it
+_FAR, _NARROW = 2.0, 0.005  # times the rise wanted; of the way: a jump, where two minima meet
+_HARDLY = 0.05  # of a spin: from there another minimum with hardly any is looked for
 _ON_BOUND = 1e-4  # of a bound, or of an error: an unknown lies on it
 _OFF_BOUND = 0.5  # errors from a bound: it does not, however small numbers are
-_ROUNDING = 1e-6
-_PARTS, _FINE = (2, 4, 8), 16
+_ROUNDING = 1e-6  # of what is plausible: by less nothing follows from an end
+_PARTS, _FINE = (2, 4, 8), 16  # parts that a jackknife leaves out one by one
 _UNTOLD = 1e5  # times the variance of a number: what is left does not tell it
 
 
@@ -57,7 +57,7 @@ class Certainty:
     narrow: FloatArray | None = None
 
     def lost(self) -> Certainty:
-        """The same where nothing is seen: no motion comes near the tracks."""
+        """Certainty where nothing is seen: no motion comes near the tracks."""
         count = self.plausible.size
         return replace(self, blind=np.eye(count), undetermined=(True,) * count)
 
@@ -77,7 +77,7 @@ class Certainty:
         return replace(self, covariance=covariance, widened=widened, narrow=narrow)
 
     def observed(self) -> Certainty:
-        """As the film has it, before anything widened it."""
+        """The certainty that the film alone gives, before anything widened it."""
         covariance = self.covariance if self.narrow is None else self.narrow
         return replace(self, covariance=covariance, narrow=None)
 
@@ -132,7 +132,7 @@ class Certainty:
 
 
 class OtherMinimum(NamedTuple):
-    """Another summit: the estimate there, its certainty, χ² more, tracks that spin otherwise."""
+    """A minimum beside the best: estimate, certainty, χ² more, tracks that spin otherwise."""
 
     estimate: Estimate
     certainty: Certainty
@@ -198,7 +198,7 @@ def pinned_of(result: Estimate, certainty: Certainty) -> tuple[int, ...]:
 def widened(
     result: Estimate, certainty: Certainty, biases: FloatArray, most: float = math.inf
 ) -> Certainty:
-    """The same of a model that does not fit: with the jackknife's of halves, quarters, eighths.
+    """Certainty under a model that misfits: with the jackknife's of halves, quarters, eighths.
 
     ``biases`` (m, k): what k forces may have done to the unknowns, too; ``most``: no error becomes
     so many times wider: parts of few frames, and forces, tell little, what they do is mostly noise.
@@ -210,7 +210,7 @@ def widened(
 
 
 def of_rounded(result: Estimate, certainty: Certainty) -> Certainty:
-    """The same of rounded tracks: errors that sixteenths of the frames show, where larger."""
+    """Certainty of rounded tracks: errors that sixteenths of the frames show, where larger."""
     shown = np.diag(_without_parts(result, certainty, _FINE))
     wider = np.sqrt(np.maximum(shown / np.maximum(np.diag(certainty.covariance), 1e-300), 1.0))
     return certainty.wider(certainty.covariance * np.outer(wider, wider), False)
@@ -264,7 +264,7 @@ class Interval:
     profiled: bool
 
     def wider(self, value: float, ratio: float, low: float, high: float) -> Interval:
-        """The same, its ends farther from a value by a ratio, within a range."""
+        """An interval whose ends are farther from a value by a ratio, within a range."""
         ends = [value + ratio * (end - value) for end in (self.low, self.high)]
         return replace(self, low=max(ends[0], low), high=min(ends[1], high))
 

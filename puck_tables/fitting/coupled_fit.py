@@ -35,7 +35,7 @@ from puck_tables.fitting.residuals import chi_square_tail
 from puck_tables.fitting.touches import SlideIndex
 
 _BY_CHANCE = 1e-5  # of the rise of χ²: less, and the law of impact is not that of these slides
-_STEP = 1e-6
+_STEP = 1e-6  # of an unknown, in differences; of friction: a rim that is as close to it slides
 _SAME = 1e-9  # of the size of coordinates: a point lies on a wall
 _WALK = ((8, 16), (12, 8), (25, 4))  # steps from each start, and how many then go on
 _RIVAL = 15.0  # what other minima may cost more

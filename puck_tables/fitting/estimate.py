@@ -74,10 +74,10 @@ FARTHEST = 4.0  # standard deviations of a frame that counts
 _BY_CHANCE = math.erfc(FARTHEST / math.sqrt(2.0))
 FARTHEST_PLACE = -2.0 * math.log(_BY_CHANCE)  # of two of them, squared
 _MEDIAN_PLACE = 2.0 * math.log(2.0)  # of the square of two normal deviates
-_WIDE = 1.4
+_WIDE = 1.4  # times the usual median: up to it a scatter may be chance
 _FEW = 2.5  # residuals for each unknown
 _LEAST_DEGREES = 0.5  # residuals: of less nothing is an outlier
-_ROUNDS = 6
+_ROUNDS = 6  # of a fit, its noise and what is left out, at most
 _SETTLED = 1e-3  # of a standard deviation of the noise
 _COMPUTED = 1e-10  # of a path, as well as motions are known: no residuals tell a smaller noise
 _AWAY = 1.5  # times the noise: a start so far off is fitted robustly first
@@ -115,7 +115,7 @@ class Estimate:
         return math.sqrt(self.chi2 / max(self.degrees, 1))
 
     def at(self, x: FloatArray, problem: Problem | None = None) -> Estimate:
-        """The same at other unknowns, perhaps those of another problem of the same residuals."""
+        """An estimate at other unknowns, perhaps of another problem with as many residuals."""
         problem = problem or self.problem
         rows, slopes = problem.residuals_and_jacobian(x)
         return Estimate(problem, x, self.kept, rows, slopes)

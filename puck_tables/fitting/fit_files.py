@@ -66,7 +66,7 @@ def numbers_as_json(numbers: Mapping[str, Number]) -> dict[str, Variable]:
 
 
 def as_json(value: Any) -> Any:
-    """The same as JSON has it, by names, with None for what is no number: JSON has none."""
+    """What JSON holds of a result, by names, with None for NaN and infinity: JSON has none."""
     if isinstance(value, Number):
         value = {**value._asdict(), "determined": value.determined, "at_bound": value.at_bound}
     elif isinstance(value, EstimatedLaunch):

@@ -49,7 +49,7 @@ from puck_tables.puck import Puck
 _KIND = (*OWN_CURVE, "drag", *INTEGRATED)  # change the curve itself
 _CLASHES = (("friction", "decel", ", decel is f g"), ("delta", "height", ""))
 TINY = 1e-30  # step of derivatives along the imaginary axis
-_LEAST = 1e-9
+_LEAST = 1e-9  # in its unit, of what must be more than 0
 
 
 @dataclass(frozen=True)
@@ -231,13 +231,13 @@ class FitSpec:
         return decel, delta, radius
 
     def alone(self) -> FitSpec:
-        """The same without the numbers of impacts: of slides that nothing joins."""
+        """What is asked without numbers of impacts: of slides that nothing joins."""
         own = tuple(name for name in self.free if name not in OF_IMPACTS)
         priors = {name: one for name, one in self.priors.items() if name not in OF_IMPACTS}
         return replace(self, free=own, priors=priors, of_impacts={})
 
     def spinning(self, spin: float) -> FitSpec:
-        """The same with the launch spin (rad/s) held."""
+        """What is asked with the launch spin (rad/s) held."""
         priors, bounds, start = {**self.priors}, {**self.bounds}, {**self.start}
         for given in (priors, bounds, start):
             given.pop("launch_spin", None)
@@ -245,7 +245,7 @@ class FitSpec:
         return replace(self, fixed=fixed, priors=priors, bounds=bounds, start=start)
 
     def coupled(self, sizes: Collection[int], grips: bool) -> FitSpec:
-        """The same with the numbers of the impacts that there are.
+        """What is asked with the numbers of the impacts that there are.
 
         ``sizes``: how many pucks meet, 1 those with walls; ``grips``: whether rims stop on what
         they meet in all of them, so that nothing tells their friction.
@@ -286,7 +286,7 @@ class FitSpec:
         return tuple(name for name in INTEGRATED if name in (*self.free, *self.fixed))
 
     def with_law(self, law: str) -> FitSpec:
-        """The same with a law over slip speed by its name, whose numbers are found too."""
+        """What is asked with a law over slip speed by its name, whose numbers are found too."""
         if law not in LAWS:
             raise InputError(f"law must be one of {', '.join(LAWS)}, got {law!r:.40}")
         if "friction" not in self.free:
@@ -314,7 +314,7 @@ class FitSpec:
             )
 
     def plain(self) -> FitSpec:
-        """The same without what is integrated: to begin from."""
+        """What is asked without what is integrated: to begin from."""
         free = tuple(name for name in self.free if name not in INTEGRATED)
         fixed = {name: value for name, value in self.fixed.items() if name not in INTEGRATED}
         return replace(self, free=free, fixed=fixed, law="")
@@ -347,7 +347,7 @@ class FitSpec:
         return SpeedLaw(list(self.speeds), values, self.between)
 
     def over(self, speeds: tuple[float, ...], between: str) -> FitSpec:
-        """The same with a friction coefficient for each of these slip speeds."""
+        """What is asked with a friction coefficient for each of these slip speeds."""
         for name in ("decel", "gravity", "drag", *INTEGRATED, "inner"):
             if name in self.free or name in self.fixed:
                 raise InputError(

@@ -23,7 +23,7 @@ from puck_tables.io.dataset import Dataset, variable
 from puck_tables.puck import Puck
 from puck_tables.result import Result
 
-MOST_FRAMES = 1_000_000
+MOST_FRAMES = 1_000_000  # of a film that is planned: more is a slip of the hand
 _FASTEST = 1e6  # m/s
 _RANGES = {
     "fps": ("1/s", 1e-6, 1e9), "place_noise": ("m", 1e-12, 1e3), "angle_noise": ("rad", 1e-12, 1e3),

@@ -138,7 +138,7 @@ def ran_away(problem: Problem, x: FloatArray) -> str:
     return ""
 
 
-_MEMBER = 0.2
+_MEMBER = 0.2  # component of a direction that is named
 _TOLD_ALL = 2  # other motions that are told in full
 _TOLD = 0.1  # of what is plausible: an error that says something
 _BETTER = 0.2  # times the error of the film that there is
@@ -200,7 +200,7 @@ def not_identifiable(
 
 
 def minimum_sentence(minimum: OtherMinimum, marked: bool) -> str:
-    """Another motion that fits about as well; ``marked``: whether angles are seen."""
+    """A sentence on a minimum that fits about as well; ``marked``: whether angles are seen."""
     more = "more frames a second" if marked else "angle marks on the puck"
     words = ", ".join(
         f"{name.replace('_', ' ')} {value:.4g}" for name, value in minimum.numbers.items()

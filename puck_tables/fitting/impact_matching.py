@@ -2,12 +2,10 @@
 
 The states before and after a kink say what was met.  Two tracks that bend at the same moment, two
 radii apart, are two pucks that meet; any other kink is a wall, one of those given or one to be
-found.  From a wall follow, per unit of mass,
-
-    P_t = −k² Δω/r ,   P_n = √(|Δv|² − P_t²) ,   e = P_n/u_n − 1 ,
-
-with n the direction to the wall, so that −Δv = P_n n + P_t t, and u_n the speed of approach.  These
-are the values that the joint fit begins with, or what is told where slides cannot be joined.
+found.  From a wall follow P_t = −k² Δω/r and P_n = √(|Δv|² − P_t²) per unit of mass, with n the
+direction to the wall, so that −Δv = P_n n + P_t t.  What the law of impacts
+(:mod:`puck_tables.motion.impact_law`) says of them are the values that the joint fit begins with,
+or what is told where slides cannot be joined.
 
 Without angles a slide tells its spin by how it slows and bends: each friction has spins of its own,
 of either sign where the path hardly bends, and what the law of impact makes of them differs.  So
@@ -36,6 +34,7 @@ from puck_tables.fitting.parameters import OF_PAIRS, OF_WALLS
 from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.starts import numbers_with
 from puck_tables.fitting.touches import SlideIndex
+from puck_tables.motion.impact_law import along_normal, law_of_impulses
 
 _TOGETHER = 2.0  # steps between frames within which two tracks bend at one moment
 _NEAR = 1.0  # radii: how far off two pucks, or a puck and a wall that was given, may seem to be
@@ -60,13 +59,16 @@ class Kink(NamedTuple):
 
 
 class ImpactMatch(NamedTuple):
-    """An impact as both sides show it: of one bend with a wall, or of two."""
+    """An impact as both sides show it: of one bend with a wall, or of two.
+
+    ``tangential``: β, if the rims did not slide all the time; ``ratio``: μ, if they did.
+    """
 
     kinks_of_slides: tuple[Kink, ...]
     toward: float
     restitution: float
+    tangential: float
     ratio: float
-    grip: float
     mass: float
 
     @property
@@ -141,35 +143,30 @@ def _of_wall(problem: Problem, x: FloatArray, kink: Kink) -> ImpactMatch | None:
         rub = 0.0
     push = math.sqrt(max(float(kick @ kick) - rub * rub, 0.0))
     toward = math.atan2(kick[1], kick[0]) - math.atan2(rub, push)
-    normal = np.array([math.cos(toward), math.sin(toward)])
-    approach = float(kink.before[2:4] @ normal)
+    vx, vy, spin = kink.before[2:5].tolist()
+    approach, slip = along_normal(vx, vy, radius * spin, math.cos(toward), math.sin(toward))
     if not (approach > 0.0 and approach < push < (1.0 + _BOUNCES) * approach):
         return None
-    slip = float(kink.before[3] * normal[0] - kink.before[2] * normal[1])
-    slip += radius * float(kink.before[4])
-    grip = rub * (1.0 + gyration**-2) / slip if slip != 0.0 else 1.0
-    return ImpactMatch((kink,), toward, push / approach - 1.0, rub / push, grip, math.inf)
+    law = law_of_impulses(approach, slip, 1.0, 1.0 + gyration**-2, push, rub)
+    return ImpactMatch((kink,), toward, *law, math.inf)
 
 
 def _of_two(problem: Problem, x: FloatArray, one: Kink, two: Kink) -> ImpactMatch | None:
     """An impact of two pucks; None if they were not pushed apart."""
     radius, gyration = _numbers(problem, x)
-    across = two.before[:2] - one.before[:2]
-    normal = across / (math.hypot(*across) or 1.0)
-    tangent = np.array([-normal[1], normal[0]])
-    kick, other = one.before[2:4] - one.after[2:4], two.after[2:4] - two.before[2:4]
-    push, answer = float(kick @ normal), float(other @ normal)
-    approach = float((one.before[2:4] - two.before[2:4]) @ normal)
+    dx, dy, vx, vy, _ = (two.before - one.before).tolist()
+    apart = math.hypot(dx, dy) or 1.0
+    nx, ny = dx / apart, dy / apart
+    rims = radius * float(one.before[4] + two.before[4])
+    approach, slip = along_normal(-vx, -vy, rims, nx, ny)
+    kick, other = (one.before - one.after).tolist(), (two.after - two.before).tolist()
+    push, rub = along_normal(kick[2], kick[3], 0.0, nx, ny)
+    answer, _ = along_normal(other[2], other[3], 0.0, nx, ny)
     if not (push > 0.0 and answer > 0.0 and approach > 0.0):
         return None
-    leaving = float((two.after[2:4] - one.after[2:4]) @ normal)
-    slip = float((one.before[2:4] - two.before[2:4]) @ tangent)
-    slip += radius * float(one.before[4] + two.before[4])
-    rub, mass = float(kick @ tangent), push / answer
-    lightness = (1.0 + gyration**-2) * (1.0 + 1.0 / mass)
-    grip = rub * lightness / slip if slip != 0.0 else 1.0
-    toward = math.atan2(normal[1], normal[0])
-    return ImpactMatch((one, two), toward, leaving / approach, rub / push, grip, mass)
+    mass, soft = push / answer, 1.0 + answer / push
+    law = law_of_impulses(approach, slip, soft, (1.0 + gyration**-2) * soft, push, rub)
+    return ImpactMatch((one, two), math.atan2(ny, nx), *law, mass)
 
 
 class CoupledFit(NamedTuple):
@@ -231,7 +228,7 @@ def coupled(
         reach = max(_REACH * float(min(ends)), _REACH_FRAMES * step)
         impact_specs.append(ImpactSpec(kink.time + shift, reach, films_met, number))
     sizes = {len(match_.kinks_of_slides) for match_ in matches}
-    grip = all(abs(match_.grip) > _GRIPS for match_ in matches)
+    grip = all(abs(1.0 + match_.tangential) > _GRIPS for match_ in matches)
     ways = [spec.coupled(sizes, grip)]
     if grip and len(matches) > 1:
         ways += [other for other in [spec.coupled(sizes, False)] if other.free != ways[0].free]
@@ -262,7 +259,7 @@ def _begin(spec: FitSpec, matches: list[ImpactMatch]) -> dict[str, float]:
         e, mu, turned, *mass = names
         result[e] = float(np.median([match_.restitution for match_ in mine]))
         result[mu] = max(abs(match_.ratio) for match_ in mine)  # rims that grip rub less
-        result[turned] = float(np.median([match_.grip for match_ in mine])) - 1.0
+        result[turned] = float(np.median([match_.tangential for match_ in mine]))
         if mass:
             result[mass[0]] = float(np.median([match_.mass for match_ in mine]))
     return {name: spec.start.get(name, value) for name, value in result.items()}
@@ -285,15 +282,15 @@ def _wall_at(lines: Sequence[Line], kink: Kink, radius: float) -> tuple[int, Wal
 
 
 _DECELS = (0.5, 0.62, 0.77, 1.0, 1.3, 1.65)  # times the one that was found
-_DELTAS = (0.05, 0.2, 0.5)
+_DELTAS = (0.05, 0.2, 0.5)  # δ to begin from
 _RATIOS = (0.2, 0.8, 2.0)  # rω/v, of either sign
-_MODERATE = 4.0
+_MODERATE = 4.0  # rω/v: the width of the prior of spins, of which few frames tell nothing
 _STEPS = ((2, 4), (8, 3))  # and how many spins then go on
-_FRAMES = 40
+_FRAMES = 40  # to which those spins are fitted: enough for a start
 _CLOSE = 60.0  # what another spin of a slide may cost more
 _ALIKE = 0.15  # of v/r: spins so near are one
 _EACH = 6  # ways of one friction
-_LEAST_SPEED = 1e-6
+_LEAST_SPEED = 1e-6  # m/s, that is divided by
 
 Option = tuple[float, FloatArray]
 

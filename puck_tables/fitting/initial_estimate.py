@@ -95,8 +95,8 @@ def _foreign(out: npt.NDArray[np.bool_]) -> int:
 
 
 _LIFTS = 0.995  # δ from which on a uniform puck is fitted with part of its base lifted
-_TRIMS = 3
-_SHARES_OF_AIR = (0.0, 0.3, 0.6, 0.9)
+_TRIMS = 3  # times that ends are cut off and fitted anew, at most
+_SHARES_OF_AIR = (0.0, 0.3, 0.6, 0.9)  # of the slowing, to begin from
 _JUDGED = 10  # degrees of freedom that tell the noise
 
 
@@ -180,7 +180,7 @@ def _integrated(problem: Problem, known: Known) -> Estimate:
 
 
 def _with_room(problem: Problem) -> Problem:
-    """The same, of pucks so tall as the bounds of δ want them."""
+    """A problem whose pucks may be as tall as the bounds of δ want them."""
     low, high = problem.limits
     narrow = np.flatnonzero(low >= high)
     if not narrow.size:
@@ -199,7 +199,7 @@ def _with_room(problem: Problem) -> Problem:
 
 
 def _trimmed(result: Estimate, problem: Problem, known: Known) -> Estimate:
-    """The same without frames at the ends that are no free motion, the smaller part of each track.
+    """An estimate without frames at the ends that are no free motion, a lesser part of a track.
 
     What they did to the fit may have hidden more of them.
     """
@@ -214,7 +214,7 @@ def _trimmed(result: Estimate, problem: Problem, known: Known) -> Estimate:
 
 
 def _lifted(result: Estimate, known: Known) -> Estimate:
-    """The same with part of the base lifted, where δ seems to be above that of full contact."""
+    """An estimate with part of the base lifted, where δ seems above that of full contact."""
     problem = result.problem
     law = problem.spec.puck.body.law
     delta = problem.spec.scales(problem.numbers_at(result.x))[1]

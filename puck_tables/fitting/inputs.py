@@ -23,7 +23,7 @@ from puck_tables.fitting.problem import Known
 from puck_tables.fitting.starts import slowing_of
 from puck_tables.fitting.touches import turns
 
-MOST_FRAMES = 100_000
+MOST_FRAMES = 100_000  # of all tracks: memory and time of a fit grow with them
 FIND = "find"
 _JITTER = 0.3  # times the noise of a place over the speed: to begin with
 _NEAREST, _FARTHEST = 1e-30, 1e6  # m or s, of a track

@@ -36,7 +36,7 @@ class Compact(NamedTuple):
 def compact(
     problem: Problem, rows: FloatArray, slopes: FloatArray, kept: npt.NDArray[np.bool_] | None
 ) -> Compact:
-    """Those of residuals (n,) with derivatives (n, m); ``kept``: which count, all if left out."""
+    """Fewer rows for residuals (n,), derivatives (n, m); ``kept``: which count, all if None."""
     if kept is not None:
         rows, slopes = rows * kept, slopes * kept[:, None]
     few, slope, kinds = [], [], []

@@ -28,7 +28,7 @@ _FAR = 1.5  # times smaller are residuals of a reading that is told
 _NEAR = 0.01  # of the radius: it is not another one
 _BY_CHANCE = 0.5  # rad, as angles are off that nothing explains
 _AS_NOISE = 3.0  # times the noise of a place: a reading that fits
-_DEGREE = math.pi / 180.0
+_DEGREE = math.pi / 180.0  # rad
 _ANGLES = (  # times a factor, and more by so much
     (-1.0, 0.0, "if angles, or y, grew the other way: negate one of them in the file"),
     (_DEGREE, 0.0, "if angles were in degrees, not in rad: say their unit"),
@@ -240,7 +240,7 @@ def _deviations(result: Estimate) -> _Sizes:
 
 
 def _sizes(problem: Problem, deviations: list[FloatArray]) -> _Sizes:
-    """The same where tracks deviate by (3, n) each."""
+    """How far places (m) and angles (rad) are off where tracks deviate by (3, n) each."""
     angles = [np.empty(0)] + [
         np.abs(one[TURN, np.isfinite(film.angle)]) for film, one in zip(problem.films, deviations,
         strict=True) if film.angle is not None

@@ -258,6 +258,7 @@ chi^2, and no other law leaves less for its numbers.'
     return f"{said}."
 
 
+# of the frames, that may be held out: some that judge, and some to fit to
 LEAST_SHARE, LARGEST_SHARE = 0.05, 0.9
 
 

@@ -76,7 +76,7 @@ FEWEST = 4  # frames of a track
 _ALIKE = 0.1  # of the usual time between frames
 MEDIAN = 0.6744897501960817  # of |a normal deviate|
 _THIRD = math.sqrt(20.0)  # the spread of a third difference of deviates
-_LAST = 5
+_LAST = 5  # frames whose median is where the puck rests: two strays do not move it
 _FEW_WINDOWS, _ALIKE_TURNS, _FOLLOWED = 3, 0.5, 1.5  # of turns: mean of e^(iθ); rad
 
 
@@ -186,7 +186,7 @@ def observations_in(
 
 
 def _on_grid(film: Observations) -> Observations:
-    """The same with what is to be known of its rounding."""
+    """A film with what is to be known of its rounding."""
     turn = np.full(film.time.size, np.nan) if film.angle is None else film.angle
     place, angle = (
         0.0 if step <= _COARSE * noise else step  # noise (NaN where it is not known) hides it

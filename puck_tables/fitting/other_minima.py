@@ -68,7 +68,7 @@ _APART = 4.0  # standard errors: another summit
 _SPIN = "launch_spin"
 _LIMIT = 1.5  # about rω/v that all motions tend to
 _TILT = 0.2  # any: without spin it does nothing
-_MORE_TURNS = 3
+_MORE_TURNS = 3  # whole turns more from frame to frame, to either side
 _TO_OTHERS = ((3, 6), (12, 3))  # steps, and how many starts then go on
 
 
@@ -372,7 +372,7 @@ def _wider(
     best: Estimate, certainty: Certainty, may_misfit: bool, most: float, forces: SideForces,
     unsigned: bool,
 ) -> Certainty:  # fmt: skip
-    """The same where residuals are no independent noise, or nothing tells a floor from a spin."""
+    """Certainty where residuals are no independent noise, or nothing tells a floor from a spin."""
     if may_misfit or any(certainty.pinned):
         forced = may_misfit and forces.biases.size
         biases = _BIAS * forces.biases if forced else np.zeros((best.x.size, 1))

@@ -51,7 +51,7 @@ PUCK = {
     "pair_tangential": Parameter("1", -1.0, 1.0, 1.0, "tangential restitution of two pucks"),
     "mass_ratio": Parameter("1", 0.0, math.inf, 1.0, "mass of the second puck over the first's"),
 }
-MOST_NODES = 8
+MOST_NODES = 8  # slip speeds of a law over speed: each is one more number to find
 NODES = tuple(f"friction_{k}" for k in range(MOST_NODES))  # f at slip speeds that are given
 PUCK.update({
     name: Parameter("1", 0.0, math.inf, 1.0, "friction coefficient at a slip speed")

@@ -257,7 +257,7 @@ class Problem(Slides):
         self, noise: tuple[float, float], x: FloatArray,
         kept: npt.NDArray[np.bool_] | None = None, jitter: float | None = None,
     ) -> Problem:  # fmt: skip
-        """The same with other noise; where time stamps jitter it depends on the motion ``x``.
+        """A problem with other noise; where time stamps jitter it depends on the motion ``x``.
 
         ``kept``: residuals that count: an angle is seen beside its place, if that counts.
         """
@@ -271,7 +271,7 @@ class Problem(Slides):
         return replace(moved, weights=tuple(weights))
 
     def with_films(self, films: tuple[Observations, ...]) -> Problem:
-        """The same of other frames, before anything is known of their motion."""
+        """A problem of other frames, before anything is known of their motion."""
         return replace(self, films=films, whole=(), weights=())
 
 

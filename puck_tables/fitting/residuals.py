@@ -28,7 +28,7 @@ _MAY_NOISY, _MAY_PATTERN = 1.3, 0.01  # the same, where that is hardly seen
 _COMPUTED = 1e-7  # of the path: residuals of tracks that were computed, not seen
 _NOWHERE, _FAR, _ANY = 20.0, 1e-3, 0.5  # times the noise; of the path; rad
 _SELDOM, _RARE = 3.3, 2.4  # standard deviations: one film in 1,000, in 100; few scatter wider
-_PARTS = 8
+_PARTS = 8  # of a track, whose means tell a drift
 _ROUNDED = 0.45  # of a step: residuals of what is rounded, and of some noise
 _MOVING, _ENOUGH = 0.1, 20  # of the greatest speed; frames
 
@@ -183,15 +183,15 @@ def _series(result: Estimate) -> list[FloatArray]:
 
 SLOPE, DRAG, AIR = (0, 1), (2,), (3,)  # forces: m/s² along x and y; 1/s; 1/m
 _KINDS = {SLOPE: "a table out of level by {:.2g} degrees", DRAG: "drag", AIR: "air"}
-_FORCES = 4
-_MOMENTS = 32
+_FORCES = 4  # columns of the four above
+_MOMENTS = 32  # of a motion, between which the change by a force is a cubic
 _ENDS = 0.9995  # of the motion: at its end nothing is carried on
 _REST = 1e-3  # of the greatest slip
 _TRIED = 0.1  # degrees of a table that nobody levelled with care
 _STEEP = 3.0  # degrees: nobody takes that for a level table
 _ALIKE = 6.0  # of χ²: forces that explain about as much
 _LAW = 0.2  # of a friction, by which it may change up to the fastest slip
-_RANK, _SEEN = 1e-9, 2e-3
+_RANK, _SEEN = 1e-9, 2e-3  # of the largest slope; of what a force does: less is computed inexactly
 
 
 class SideForces(NamedTuple):

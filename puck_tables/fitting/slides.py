@@ -37,9 +37,9 @@ from puck_tables.fitting.forward_model import (
 from puck_tables.fitting.parameters import LAUNCH, OWN_CURVE
 from puck_tables.fitting.unknowns import NumbersOf, Unknowns
 
-_STEP = 1e-6
+_STEP = 1e-6  # of a number: of differences, forward and central
 _CURVE_STEP = 1e-4  # of what has a curve of its own at each value
-_LEAST = 1e-2
+_LEAST = 1e-2  # that a number is taken to be at least, in its unit, for a step
 _FRAMES = list[tuple[slice, FloatArray, Slide]]
 
 
@@ -124,7 +124,7 @@ class Slides(Unknowns):
     def paths_and_slopes(
         self, x: FloatArray
     ) -> Iterator[tuple[FloatArray, FloatArray, npt.NDArray[np.int64]]]:
-        """The same of each track in turn, their derivatives (3, n, k), and to which unknowns."""
+        """Places and angles (3, n) of each track, derivatives (3, n, k), and to which unknowns."""
         result, slides, changes = self.numbers_at(x), self.slides(x)[0], self.slopes_of_slides(x)
         at, owners = _Along(self, result), np.array([track for track, _ in self.names])
         for n, film in enumerate(self.films):

@@ -34,7 +34,7 @@ from puck_tables.fitting.unknowns import NumbersOf
 
 _DEGREE = 7  # of the polynomial: motions that slow are smooth
 _FAR, _ROUNDS = 4.0, 4  # usual deviations of a frame that counts; so often others are left out
-_MOMENTS = 60
+_MOMENTS = 60  # at which polynomials stand for a track
 _LEAST = 1e-3  # of the friction that slows alone
 _KEPT = 5  # trials that begin a fit
 _FRICTIONS = ("friction", "friction_rest")

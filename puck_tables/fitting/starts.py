@@ -30,8 +30,8 @@ from puck_tables.fitting.unknowns import NumbersOf
 from puck_tables.fitting.whole_turns import by_place, half_turns, in_order
 
 _SHARE, _FEW = 0.25, 6  # of the moving frames, and at least: the parabola
-_MOST_TURNS = 3
-_HEIGHTS = (0.05, 0.2, 0.5, 0.9)
+_MOST_TURNS = 3  # whole turns more from frame to frame, to either side
+_HEIGHTS = (0.05, 0.2, 0.5, 0.9)  # δ to begin from, all of full contact
 # rω/v tried where no angle is seen
 _RATIOS = (0.0, 0.15, 0.3, 0.5, 0.75, 1.1, 1.6, 2.3, 3.5, 6.0, 12.0)
 _DECELS = 2.0 ** np.arange(-3.0, 3.1, 0.5)  # times the one that fits the loss of speed
@@ -40,9 +40,9 @@ _FITTED = 60  # frames to which the guesses are fitted
 _KEPT, _KEPT_BLIND = 9, 22  # guesses that are fitted; of tracks without angles
 _RIVAL = 15.0  # what minima that are compared on all frames may cost more
 _BLIND = 4  # motions that places alone allow
-_NEARER = 2.0 ** np.arange(-0.4, 0.41, 0.05)
+_NEARER = 2.0 ** np.arange(-0.4, 0.41, 0.05)  # times the best of these: their gap, finer
 _PLACE_SHARE, _FINER_SHARE, _RATE_SHARE = 0.02, 0.005, 0.05
-_LEAST_SPEED = 1e-6
+_LEAST_SPEED = 1e-6  # m/s, that is divided by
 
 
 class _Guess(NamedTuple):

@@ -28,7 +28,7 @@ FAR = 25.0  # of χ²: by so much nearer, and by as much for each 1 of it that i
 _REACHES = (6, 12, 24, 48)  # frames to either side
 _FEWEST_BESIDE, _CURVED = 3, 5  # frames of a side, and those that tell a curvature
 _SPIKE = 6.0  # standard deviations of a frame that is no motion
-_JUMPS, _PARTS, _FASTER = 5.0, 4, 1.1
+_JUMPS, _PARTS, _FASTER = 5.0, 4, 1.1  # standard errors; parts of a track; times a speed before
 
 
 def first_touch(film: Observations, first: int, last: int) -> int | None:

@@ -215,7 +215,7 @@ class Unknowns:
         return tuple(WallLine(*next(every)) if wall is None else wall for wall in self.walls)
 
     def within(self, x: FloatArray) -> FloatArray:
-        """The same, with the height of the tallest puck that moves so: all higher ones do, too."""
+        """Unknowns with the height of the lowest of all pucks that move so, where many do."""
         delta, highest = self.spec.scales(self.numbers_at(x))[1], self.spec.highest(self.tall)
         if "height" not in self.spec.free or not delta > highest:
             return x

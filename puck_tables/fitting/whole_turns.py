@@ -27,7 +27,7 @@ _FARTHEST = 16.0  # of the square of a residual
 _DIRECTIONS, _TOLD, _WIDE = 3, 0.3, 3.5  # phases; rad that need no search; standard deviations
 _STEP, _MOST = 0.8, 2e6  # rad; phases of frames that are looked at
 _LOST = 1e4  # rad: places tell nothing of how it turns
-_FOLLOWED = 12
+_FOLLOWED = 12  # starts of a search that agree best
 _LITTLE_DRAG, _MOST_DRAG = 0.01, 10.0  # 1/s
 
 
@@ -75,7 +75,7 @@ def preferred(motions: list[Judged]) -> int:
 
 
 def on_another_floor(problem: Problem, x: FloatArray) -> tuple[Problem, FloatArray] | None:
-    """The same motion on a floor with drag besides friction, if that may be and is not asked for.
+    """The motion on a floor with drag besides friction, if that may be and is not asked for.
 
     Where such a slow motion fits as well as a fast one it is the floor that is another.
     """

@@ -8,9 +8,10 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.gym.table_game import TableGame, Tables, Truth, Whole, sent
+from puck_tables.puck import Puck
 from puck_tables.scene.parts import Launch
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.scene import Piece, Scene
+from puck_tables.world.scene import Scene
 
 _LONG, _WIDE = 2.2, 1.1  # m, of the table
 _MALLET, _MASS = 0.0508, 0.17  # its radius, m, and mass, kg
@@ -26,7 +27,7 @@ def _scene() -> SceneSpec:
     scene = Scene.load("air-hockey-goals")
     puck = replace(scene.pucks[0], launch=Launch(position=(0.5 * _LONG, 0.5 * _WIDE)))
     mallets = [
-        Piece(
+        Puck(
             _MALLET, friction=0.0, mass=_MASS, restitution=0.9, tangential=0.0, rim=0.2,
             name=name, colour=colour, launch=Launch(position=(x, 0.5 * _WIDE)),
         )

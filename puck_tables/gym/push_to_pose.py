@@ -6,8 +6,9 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.gym.table_game import TableGame, Tables, Truth, Whole, sent
-from puck_tables.scene.pieces import Line
-from puck_tables.world.scene import Piece, Scene
+from puck_tables.puck import Puck
+from puck_tables.scene.pucks_and_posts import Line
+from puck_tables.world.scene import Scene
 
 _RADIUS, _FINGER = 0.05, 0.01  # m
 _FASTEST = 0.25  # m/s, of the finger
@@ -26,9 +27,9 @@ class PushToPose(TableGame):
     actions, limit, span, places = 2, 200, 0.05, slice(0, 4)
 
     def __init__(self) -> None:
-        disc = Piece(_RADIUS, friction=0.3, restitution=0.0, tangential=0.0, rim=0.4, name="disc",
+        disc = Puck(_RADIUS, friction=0.3, restitution=0.0, tangential=0.0, rim=0.4, name="disc",
                      colour="steelblue")  # fmt: skip
-        finger = Piece(
+        finger = Puck(
             _FINGER, path=((0.0, -0.3, 0.0),), restitution=0.0, tangential=0.0, rim=0.4,
             name="finger", colour="black",
         )  # fmt: skip

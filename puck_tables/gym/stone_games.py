@@ -9,10 +9,11 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.gym.disc_games import ShotGame
 from puck_tables.gym.table_game import Tables, Truth, Whole, between, pucks_seen, sent
+from puck_tables.puck import Puck
 from puck_tables.scene.parts import Edge, Launch
-from puck_tables.scene.pieces import Line
+from puck_tables.scene.pucks_and_posts import Line
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.scene import Piece, Scene
+from puck_tables.world.scene import Scene
 
 _INCH = 0.0254  # m
 
@@ -26,7 +27,7 @@ class StoneGame(ShotGame):
     start: tuple[float, float]
     fastest: float  # slip of a throw, m/s
 
-    def __init__(self, scene: SceneSpec, own: Piece, their: Piece, high: float) -> None:
+    def __init__(self, scene: SceneSpec, own: Puck, their: Puck, high: float) -> None:
         x, gap = self.start[0], 2.5 * own.radius
         pucks = [
             replace(
@@ -107,7 +108,7 @@ class Curling(StoneGame):
 
     def __init__(self) -> None:
         scene = Scene.load("curling-draw")
-        stone = Piece(
+        stone = Puck(
             radius=scene.puck.radius, base=scene.puck.base, height=scene.puck.height,
             mass=scene.puck.mass, gyration=scene.puck.gyration, friction=scene.puck.friction,
             restitution=0.9, tangential=0.0, rim=0.1,

@@ -79,7 +79,7 @@ def spline_polynomials(
 def spline_slopes(
     c: FloatArray, k: int, weights: Sequence[float], s: float, width: int, powers: int
 ) -> Any:
-    """As :func:`spline_polynomials`, but rows are evaluated first, then weighted and added.
+    """Splined polynomials in s and their derivatives by s: rows are evaluated, then weighted.
 
     Examples
     --------

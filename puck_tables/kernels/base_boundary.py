@@ -26,7 +26,7 @@ from puck_tables.kernels.closed_form_kernel import few_elliptic
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.kernels.elementary import cosine_sine_of
 
-_NODES = 16  # of Gauss's rule a panel
+_NODES = 16  # of Gauss's rule a panel: test_strips_against_scans
 _NODE, _WEIGHT = np.polynomial.legendre.leggauss(_NODES)
 _FAR = 2.0  # radii from which on the centre of rotation is no trouble for Gauss's rule
 _PANEL = 2.4  # the length of a panel over its distance from the centre of rotation

@@ -33,7 +33,7 @@ from puck_tables.kernels.polygon_sums import (
 
 _A_SIDE, _AN_ARC = 8, 32  # pieces that three cuts make of one at most
 _MORE = 160  # pieces: room for more cuts of the parts of most bases
-_WHOLE = 2.0 * math.pi
+_WHOLE = 2.0 * math.pi  # rad: a whole turn
 _SLIVER = 1e-9  # of a circle: a base that has less of it, or all but that, is told by its middle
 
 Angles = tuple[int, float, float, float, float]
@@ -72,7 +72,7 @@ def _arc(
     room: FloatArray, end: int, cx: float, cy: float, radius: float, start: float, turn: float,
     px: float, py: float, qx: float, qy: float,
 ) -> int:  # fmt: skip
-    """The same of an arc from p to q, clockwise where it turns by less than 0."""
+    """Put an arc from p to q at a place, clockwise where turn < 0; where the next goes."""
     if turn == 0.0:
         return end
     room[end + BEGIN_X], room[end + BEGIN_Y], room[end + END_X], room[end + END_Y] = px, py, qx, qy

@@ -147,7 +147,7 @@ def pressure_on(base: FloatArray, sums: Sums) -> tuple[float, float, float]:
 
 @inlined
 def pressure_at(base: FloatArray, mx: float, my: float) -> tuple[float, float, float]:
-    """The same at rest: where the load stands at (mx, my), m, from the centre of mass."""
+    """A, b_x and b_y of a + b·x at rest; the load stands (mx, my), m, from the centre of mass."""
     sx, sy, area = base[FIRST_X], base[FIRST_Y], base[AREA]
     xx, xy = base[SECOND_XX] - sx * sx / area, base[SECOND_XY] - sx * sy / area
     yy = base[SECOND_YY] - sy * sy / area

@@ -60,7 +60,7 @@ from puck_tables.kernels.polygon_sums import (
 
 Hessian = tuple[float, float, float, float, float, float]  # xx, xy, yy, xw, yw, ww
 Wrench = tuple[float, float, float]
-_FLAT: Hessian = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+_FLAT: Hessian = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)  # where force does not change with motion
 _TINY = 1e-300  # of a distance: C at a corner, where what is divided by it is 0
 _FEW = 0.99  # of the smaller rate over the larger: up to it few steps of the mean do
 _SMALL = 0.01  # of k²: below it 4 (D − G) − 3 B cancels, and eight terms of its series do

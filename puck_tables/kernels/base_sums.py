@@ -8,7 +8,7 @@ from __future__ import annotations
 from puck_tables.kernels.compile import inlined, summed
 
 Sums = tuple[float, float, float, float, float, float, float, float]
-NOTHING: Sums = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+NOTHING: Sums = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)  # over no part
 
 # laws of pressure; those but the first under round bases alone
 UNIFORM, RING, HERTZ, GALIN, TABLE = range(5)

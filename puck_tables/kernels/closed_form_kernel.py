@@ -20,7 +20,9 @@ _BLOCK = 256  # points at once: their numbers fit the first cache
 _HALF_PI_REST = 6.123233995736766e-17  # of π/2 beyond its double
 
 
-_FEW_STEPS = 4  # of the arithmetic-geometric mean: exact to rounding from a modulus k² ≤ 63/64 on
+# of the arithmetic-geometric mean: exact to rounding from a modulus k² ≤ 63/64 on:
+# test_compiled_resultants
+_FEW_STEPS = 4
 _NEAR_QUARTER = 1.0 / 64.0  # of 1 − k²: nearer to φ = π/4 it takes more steps
 
 

@@ -13,7 +13,9 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.law_moments import DEGREE, MOMENTS
 from puck_tables.kernels.compile import inlined
 
-NODES = 8  # of Gauss's rule a panel, and across the base where C is far away
+# of Gauss's rule a panel, and across the base where C is far away; on it and on ARC rests that sums
+# are good to 1e-10: test_a_law_is_integrated_as_exactly_as_a_constant
+NODES = 8
 PANEL = 1.2  # of y
 ARC = 0.9  # of an angle, over how far it is from the singularity next to C
 LEAST_GAP = 1e-9  # of an angle: closer, C lies on the circle

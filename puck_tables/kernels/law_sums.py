@@ -15,7 +15,6 @@ cancel: there the inner integral runs from the distance of C to the contour, by 
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.law_moments import DEGREE, MOMENTS
@@ -34,7 +33,7 @@ from puck_tables.kernels.polygon_sums import (
     ray_to,
 )
 
-_POWERS = DEGREE + 1
+_POWERS = DEGREE + 1  # coefficients of a moment on a piece
 
 
 @inlined
@@ -205,9 +204,7 @@ def _far_sums(base: FloatArray, law: FloatArray, ux: float, uy: float, w: float)
 def _at_first(base: FloatArray, law: FloatArray, ux: float, uy: float, w: float) -> Sums:
     """By arrays, but where the law bends and C is far away."""
     if _has_corners_far_away(base, law, ux, uy, w):
-        written: Any = law_sums
-        result: Sums = written.py_func(base, law, ux, uy, w)
-        return result
+        return _as_written(base, law, ux, uy, w, True)
     return law_sums_at_first(base, law, ux, uy, w)
 
 
@@ -220,11 +217,11 @@ def _has_corners_far_away(
     return speed > FAR * rim and next_end(law, speed - rim) < speed + rim
 
 
-@arrays_at_first(_at_first)
-@kernel
-def law_sums(base: FloatArray, law: FloatArray, ux: float, uy: float, w: float) -> Sums:
-    """Sums of the slip direction times f(slip speed) over a base, in its axes; not at rest."""
-    far = _has_corners_far_away(base, law, ux, uy, w)
+@inlined
+def _as_written(
+    base: FloatArray, law: FloatArray, ux: float, uy: float, w: float, far: bool
+) -> Sums:
+    """The sums; ``far``: C is far away, and the law bends between the slips under the base."""
     if not far and math.sqrt(ux * ux + uy * uy) > FAR * base[REACH] * abs(w):
         return _far_sums(base, law, ux, uy, w)
     sums, discs = NOTHING, HEAD + PIECE_COLUMNS * int(base[SIDES])
@@ -240,3 +237,10 @@ def law_sums(base: FloatArray, law: FloatArray, ux: float, uy: float, w: float) 
     if far:
         return sums
     return plus(NOTHING, 1.0 if w > 0.0 else -1.0, moved(sums, -uy / w, ux / w))
+
+
+@arrays_at_first(_at_first)
+@kernel
+def law_sums(base: FloatArray, law: FloatArray, ux: float, uy: float, w: float) -> Sums:
+    """Sums of the slip direction times f(slip speed) over a base, in its axes; not at rest."""
+    return _as_written(base, law, ux, uy, w, _has_corners_far_away(base, law, ux, uy, w))

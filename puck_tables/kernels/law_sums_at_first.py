@@ -36,7 +36,7 @@ Points = tuple[FloatArray, FloatArray, FloatArray]  # of a contour, and r × dr,
 
 
 def law_sums_at_first(base: FloatArray, law: FloatArray, ux: float, uy: float, w: float) -> Sums:
-    """As :func:`puck_tables.kernels.law_sums.law_sums`."""
+    """Sums over a base under a law of the slip speed, before their kernel is compiled."""
     if math.sqrt(ux * ux + uy * uy) > FAR * base[REACH] * abs(w):
         return _far(base, law, ux, uy, w)
     cx, cy = -uy / w, ux / w

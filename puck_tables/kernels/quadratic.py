@@ -37,7 +37,6 @@ TERMS = 5  # of the ratios over δ (table.fit.height_terms)
 NO_COLUMNS = np.empty((2, 0, TERMS))  # closed forms; read-only like those of a table
 NO_COLUMNS.flags.writeable = False
 _BLOCK = 128  # points at once: their numbers fit the first cache
-_QUARTER = 0.25 * np.pi
 _HALF_ROOT = math.sqrt(0.5)
 
 
@@ -48,7 +47,7 @@ def _side_and_eta(phi: float, sides: FloatArray) -> tuple[int, float]:
     side = 0
     while side < len(sides) - 1 and angle > max(sides[side, 0], sides[side, 1]):
         side += 1
-    _, eta = side_and_eta(_QUARTER + angle - sides[side, 0])
+    _, eta = side_and_eta(0.25 * np.pi + angle - sides[side, 0])
     return side, min(eta / abs(sides[side, 2]) ** 0.25, 1.0)
 
 

@@ -17,7 +17,7 @@ from numba.core.imputils import impl_ret_borrowed
 from numba.core.typing.typeof import Purpose, typeof_impl
 
 _WIDE = 30  # numbers and addresses: fewer go into registers
-_PACKAGE = __name__.partition(".")[0] + "."
+_PACKAGE = __name__.partition(".")[0] + "."  # of own classes of records
 _FIRST = ir.Constant(ir.IntType(32), 0)
 
 # numba's objects have no annotations

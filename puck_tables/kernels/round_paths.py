@@ -32,7 +32,8 @@ from puck_tables.kernels.elementary import angle_of, cosine_sine_of
 from puck_tables.kernels.polygon_sums import PIECE_COLUMNS
 
 # how many nodes Gauss's rules have, and how short panels are for them: ellipses about them of
-# which what is singular is not inside, by their long axes over the distances of their foci
+# which what is singular is not inside, by their long axes over the distances of their foci; 1e-10:
+# test_resultants_against_circles
 _COUNTS, _REACHES = np.array([10, 16, 24]), np.array([2.0, 1.3, 1.13])
 _FINEST, _NODES = 2, 24
 _SHORT = 0.5  # rad: what the first is good for
@@ -42,11 +43,10 @@ _NODE, _WEIGHT = (np.stack([np.pad(r[k], (0, _NODES - len(r[k]))) for r in _RULE
 _LEGENDRE = np.ascontiguousarray(
     (np.polynomial.legendre.legvander(_NODE[_FINEST], _NODES - 1) * _WEIGHT[_FINEST][:, None]).T
 )
-_INVERSE = 1.0 / np.arange(1.0, _NODES + 1.0)
+_INVERSE = 1.0 / np.arange(1.0, _NODES + 1.0)  # to multiply is quicker than to divide
 GAP, NONE = 3e-6, 9.0  # rad: closer to the centre a path passes it; what is not there is far off
 _GAP_OF_C, _GAP_OF_KINKS = 1e-5, 0.1  # cubes leave no more of a C as close; where W bends
 _CLOSE = 0.35  # of the length of a path: a C as close
-_CUBE = 1.0 / 3.0
 NEXT_TO_C = 2.0  # in place of a side
 _FIRST = HEAD + PIECE_COLUMNS  # behind the contour of a base
 WHOLE, _MARKS, _WEIGHTS = 0, 4, 14  # in the room of a base, behind the θ of its rows
@@ -80,7 +80,7 @@ class Path(NamedTuple):
 def _cube_root(x: float, y: float) -> tuple[float, float]:
     """Of x + iy, y ≥ 0."""
     size, angle = float(np.cbrt(math.sqrt(x * x + y * y))), angle_of(y, abs(x))
-    cosine, sine = cosine_sine_of(_CUBE * (angle if x > 0.0 else math.pi - angle))
+    cosine, sine = cosine_sine_of((1.0 / 3.0) * (angle if x > 0.0 else math.pi - angle))
     return size * cosine, size * sine
 
 
@@ -229,7 +229,7 @@ def _longest(marks: FloatArray, v: float, reach: float) -> float:
 def _interval(
     base: FloatArray, alpha: float, beta: float, path: Path, low: float, high: float, side: float
 ) -> Sums:
-    """As :func:`between`, of what does not pass the centre of the base."""
+    """Sums over angles from low to high of a path that does not pass the centre of the base."""
     if not low < high:
         return NOTHING
     centre, gap, sums, rows = path.places[0], path.gaps[0], NOTHING, base[ROWS] > 0.0

@@ -129,7 +129,7 @@ def _first_of(slab: int) -> int:
 def _between_rays(
     table: FloatArray, slabs: int, rays: int, k: int, U: float, across: float
 ) -> tuple[int, float, float]:
-    """The same of a table with rays, in slab k; ``across``: v − r|ω|."""
+    """Patch, ξ and ζ in slab k of a table with rays; ``across``: v − r|ω|."""
     low, high, sector = -1.0, 1.0, 0
     while sector < rays:
         ray = table[3 + slabs + sector]
@@ -267,7 +267,7 @@ def fill_patch(
     coefficients: FloatArray, cells_u: int, cells_w: int, xi: FloatArray, zeta: FloatArray,
     out: FloatArray,
 ) -> None:  # fmt: skip
-    """The same by ξ and ζ within one patch, into ``out`` (n, 4)."""
+    """p_a, p_b, p_d, p_e at ξ and ζ within one patch, into ``out`` (n, 4)."""
     for n in range(xi.size):
         patience(1)
         a, b, d, e = _spline(coefficients, 0, cells_u, cells_w, xi[n], zeta[n])

@@ -209,7 +209,7 @@ def _spline_values(
 def _spline_slopes(
     typing: Any, c: Any, k: Any, weights: Any, s: Any, width: Any, powers: Any
 ) -> Any:
-    """As :func:`spline_values`, and behind the values their derivatives by s."""
+    """Compiled like :func:`spline_values`, with derivatives by s behind the values."""
     return _rows_first(True, c, k, weights, s, width, powers)
 
 

@@ -39,7 +39,7 @@ _SECOND = np.array([[*np.flatnonzero(row), n, n][1] for n, row in enumerate(_A)]
 _LATE = int(_SECOND[-1])
 _PART, _END = STAGES, STAGES + 1
 
-_FIRST_STEP, _SHORTEST_STEP, _LONGEST_STEP = 0.05, 1e-12, 1.5
+_FIRST_STEP, _SHORTEST_STEP, _LONGEST_STEP = 0.05, 1e-12, 1.5  # of τ, in which q falls like e^(−τ)
 _ROUNDING = 1e-14  # of friction over f N, and so much more of a long, thin base
 _TAIL = 0.1  # of the local error that is allowed: what the slide at one direction may miss
 MOST_STEPS = 1_000_000  # more is a body that turns for hours

@@ -133,7 +133,7 @@ class FullContact:
         return integration_selected(question, tol, method, self.table, self.exact)
 
     def first(self, selection: Selection) -> Setting:
-        """As selected; an accuracy of 0 are closed forms, else it is that of the table."""
+        """The setting that was selected: its accuracy is 0 with closed forms, else the table's."""
         exact = self.exact or selection.scheme.source is FrictionForm.CLOSED_FORMS
         accuracy = 0.0 if exact else ResultantTable.shipped().tolerance
         if self.table is not None:
@@ -209,7 +209,7 @@ class Sections:
         return select(question, tol, schemes)
 
     def first(self, selection: Selection) -> Setting:
-        """As selected, the friction to half of the tolerance."""
+        """The setting that was selected, with friction to half of the tolerance."""
         accuracy = max(0.5 * selection.tol, FINEST_ACCURACY)
         return Setting(stepping_of(selection, LOOSEST_LOCAL), accuracy)
 

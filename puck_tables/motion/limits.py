@@ -301,7 +301,7 @@ def elementary_stop_time(
 
 
 def regime_of(speed: float, rim_speed: float, limit: float, width: float = LIMIT_WIDTH) -> str:
-    """The same from v and r|ω|, checked before.
+    """The regime of a launch from v and r|ω|, checked before.
 
     Parameters
     ----------

@@ -33,7 +33,7 @@ from puck_tables.motion.steppers import AT_EVENT, ROWS, estimated, step, times_a
 from puck_tables.motion.tableaus import Tableau
 
 TURN_SHARE = 1e-3  # of Q₀: beyond, the heading turns on without end
-TURN_Z = 1.0 - TURN_SHARE**0.25
+TURN_Z = 1.0 - TURN_SHARE**0.25  # z there: Q/Q₀ = (1 − z)⁴
 
 STOPPED, STEP_LIMIT = 0, 1  # how an integration ends
 

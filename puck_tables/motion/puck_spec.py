@@ -70,7 +70,7 @@ class PuckSpec:
 
     def __post_init__(self) -> None:
         reading = Reading([], None)
-        values = read_values(type(self), entries_in(self, {}), "", reading)
+        values = read_values(type(self), entries_in(self), "", reading)
         if values is None:
             raise InputError("; ".join(reading.errors))
         for name, value in values.items():
@@ -272,7 +272,7 @@ class PuckSpec:
 
     @property
     def limit_epsilon(self) -> float:
-        """The same as ε = v/(rω), as several papers write it.
+        """The limit ratio as ε = v/(rω), as several papers write it.
 
         Examples
         --------
@@ -282,8 +282,8 @@ class PuckSpec:
         ratio = self.limit_ratio
         return math.inf if ratio == 0.0 else 1.0 / ratio
 
-    def refuse_frictionless(self) -> None:
-        """Refuse what asks for the stop of a puck that nothing brakes.
+    def refuse_unless_free(self) -> None:
+        """Refuse what asks for the stop of a puck that nothing brakes, or more than friction moves.
 
         Raises
         ------
@@ -295,8 +295,8 @@ class PuckSpec:
             )
 
     def arguments(self) -> dict[str, Any]:
-        """As the functions over arrays of pucks take it."""
-        self.refuse_frictionless()
+        """Keyword arguments of functions over arrays of pucks."""
+        self.refuse_unless_free()
         return {
             "delta": self.delta, "decel": self.decel, "radius": self.radius,
             "pressure": self.pressure, "gyration": self.gyration,

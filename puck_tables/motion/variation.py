@@ -33,7 +33,7 @@ from puck_tables.motion.tableaus import Tableau
 KEPT = 7  # of the state: all but the work of friction
 BY_U, BY_HEIGHT, BY_GYRATION = 1, 2, 3  # blocks; the first is the motion itself
 BLOCKS = 4  # with the motion itself
-VARIED = BLOCKS * KEPT
+VARIED = BLOCKS * KEPT  # numbers of all blocks
 _STAGES = 6  # Dormand and Prince's seventh only tells the error
 _STEP_LIMIT = 20_000  # more is a motion that does not end
 _SHARE, _NEAREST = 0.5, 1e-8  # of the distance to a line; how near to it a step may be as long

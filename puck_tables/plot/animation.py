@@ -35,7 +35,7 @@ from puck_tables.scene.run import STATE, Run
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.sides import line_of
 from puck_tables.trajectory import Trajectory
-from puck_tables.world.agreement import called, frictions_under, pieces_of, start_of
+from puck_tables.world.agreement import called, frictions_under, pucks_of, start_of
 from puck_tables.world.drive import rows_of
 
 # dark and light by turns, so that neighbours differ in grey as well (Okabe and Ito)
@@ -162,8 +162,8 @@ def states_drawn(run: Run) -> dict[str, FloatArray]:
 
 
 def _film_of_several(run: Run) -> Animation:
-    scene, pieces = run.scene, pieces_of(run.scene)
-    kinks = [rows_of(piece.path)[:, 0] for piece in pieces if piece.path]
+    scene, pucks = run.scene, pucks_of(run.scene)
+    kinks = [rows_of(puck.path)[:, 0] for puck in pucks if puck.path]
     sudden = np.concatenate([[event.time for event in run.events], *kinks])
     sudden = sudden[(sudden > 0.0) & (sudden <= run.end_time)]
     times = [np.linspace(0.0, run.end_time, _STATES), sudden, np.nextafter(sudden, -np.inf)]
@@ -172,10 +172,10 @@ def _film_of_several(run: Run) -> Animation:
     gone |= {event.puck: event.time for event in run.events if event.what in ("pocket", "edge")}
     bodies = [
         (
-            name, piece.radius, piece.colour, bool(piece.path),
+            name, puck.radius, puck.colour, bool(puck.path),
             _stacked(in_view.time, *(in_view[number][column] for column in STATE)),
         )
-        for number, (name, piece) in enumerate(zip(run.names, pieces, strict=True))
+        for number, (name, puck) in enumerate(zip(run.names, pucks, strict=True))
     ]  # fmt: skip
     happenings = [
         Happening(event.time, event.what, event.x, event.y)
@@ -183,7 +183,7 @@ def _film_of_several(run: Run) -> Animation:
     ]  # fmt: skip
     film = _film(scene.title, run.end, run.end_time, bodies, happenings, scene)
     film = film._replace(bodies=[body._replace(gone=gone[body.name]) for body in film.bodies])
-    return _outlined(film, pieces)
+    return _outlined(film, pucks)
 
 
 def at_start(scene: SceneSpec) -> Animation:
@@ -195,13 +195,13 @@ def at_start(scene: SceneSpec) -> Animation:
     >>> len(at_start(Scene.load("crokinole")).bodies)
     4
     """
-    pieces = pieces_of(scene)
+    pucks = pucks_of(scene)
     bodies = [
-        (called(piece, n), piece.radius, piece.colour, bool(piece.path),
-         np.array([[0.0, *start_of(piece), piece.launch.orientation, 0.0, 0.0, 0.0]]))
-        for n, piece in enumerate(pieces)
+        (called(puck, n), puck.radius, puck.colour, bool(puck.path),
+         np.array([[0.0, *start_of(puck), puck.launch.orientation, 0.0, 0.0, 0.0]]))
+        for n, puck in enumerate(pucks)
     ]  # fmt: skip
-    return _outlined(_film(scene.title, "", 0.0, bodies, scene=scene), pieces)
+    return _outlined(_film(scene.title, "", 0.0, bodies, scene=scene), pucks)
 
 
 def _outlined(film: Animation, pucks: Sequence[PuckSpec]) -> Animation:
@@ -251,7 +251,7 @@ def _film(
 
 def _frictions(scene: SceneSpec) -> tuple[float, ...]:
     """All coefficients of the floor under its pucks."""
-    under = (frictions_under(scene, piece) for piece in pieces_of(scene))
+    under = (frictions_under(scene, puck) for puck in pucks_of(scene))
     return tuple(friction for one in under for friction in one)
 
 
@@ -304,7 +304,7 @@ def path_of(body: MovingDisc, until: float = math.inf) -> FloatArray:
 
 
 def _knots(states: FloatArray, radius: float, unseen: float) -> FloatArray:
-    """As few of the states as tell the others to what is not seen, on a rim the angle included."""
+    """The fewest states that tell the others to what is not seen, on a rim the angle included."""
     sudden = np.flatnonzero(_leaps(states))  # the states just before
     chosen = {0, len(states) - 1, *sudden.tolist(), *(sudden + 1).tolist()}
     waiting = list(itertools.pairwise(sorted(chosen)))

@@ -133,7 +133,7 @@ def _close_up(ends: SceneEnds, film: Animation) -> list[Box]:
 def _box(ends: SceneEnds, film: Animation) -> Box:
     """What shows the board and all ends."""
     left, right, low, top = film.box
-    radius = max(piece.radius for piece in ends.scene.pucks) if ends.scene.pucks else 0.0
+    radius = max(puck.radius for puck in ends.scene.pucks) if ends.scene.pucks else 0.0
 
     def sides(name: str) -> tuple[float, float]:
         result: FloatArray = ends.columns[name]

@@ -62,7 +62,7 @@ def draw_on(axes: Axes, result: Comparison) -> None:
 
 def _draw_speeds(axes: Axes, result: Comparison) -> None:
     times, exact = _exact(result)
-    radius = result.answer.pieces[result.puck or 0].radius
+    radius = result.answer.pucks[result.puck or 0].radius
     speed, rim, _ = slip_over(result.answer.floor, exact).sizes(radius)
     axes.plot(times, speed, label="v over the floor", **_EXACT)
     axes.plot(times, rim, linestyle="--", label="r|ω|", **_EXACT)
@@ -77,7 +77,7 @@ def _draw_speeds(axes: Axes, result: Comparison) -> None:
 
 def _draw_ratio(axes: Axes, result: Comparison) -> None:
     times, exact = _exact(result)
-    radius = result.answer.pieces[result.puck or 0].radius
+    radius = result.answer.pucks[result.puck or 0].radius
     epsilon, _ = ratios(slip_over(result.answer.floor, exact), radius)
     axes.plot(times, epsilon, label="exact", **_EXACT)
     for run, colour in zip(result.runs, _colours(result), strict=True):

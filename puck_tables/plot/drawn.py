@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def draw(result: Result, path: str | Path | None, ax: Axes | None, overwrite: bool) -> Figure:
-    """Draw a result, as :meth:`puck_tables.Result.plot` has it."""
+    """Draw a result, as :meth:`puck_tables.results.Result.plot` has it."""
     require_matplotlib()
     if path is not None:
         checked_kind(path)

@@ -25,7 +25,7 @@ def draw(result: Stops | States) -> Figure:
 
 
 def draw_on(axes: Axes, result: Stops | States) -> None:
-    """The same on given axes."""
+    """Places, coloured by time, on given axes."""
     names = ("x", "y", "time") if isinstance(result, States) else ("stop_x", "stop_y", "stop_time")
     columns = result.dataset().columns
     x, y, time = (columns[name].values.ravel() for name in names)

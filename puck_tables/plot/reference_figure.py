@@ -38,7 +38,7 @@ def draw(answer: Answer) -> Figure:
     panels = [figure.add_subplot(grid[n]) for n in ((1, 0), (1, 1), (2, 0), (2, 1))]
     whole = answer(np.linspace(0.0, answer.end_time, _CURVE))
     _draw_path(panels[0], answer, whole)
-    radii = [piece.radius for piece in answer.pieces]
+    radii = [puck.radius for puck in answer.pucks]
     for n, (radius, style) in enumerate(zip(radii, ("-", "--", ":") * len(radii), strict=False)):
         name = f" ({answer.names[n]})" if answer.names else ""
 
@@ -83,12 +83,12 @@ def draw_on(axes: Axes, answer: Answer) -> None:
 
 def _draw_path(axes: Axes, answer: Answer, whole: Answer) -> None:
     """The path with the states asked for, as wide and as high as there is room: bends are seen."""
-    for n, piece in enumerate(answer.pieces):
+    for n, puck in enumerate(answer.pucks):
         x, y, px, py = (
             np.asarray(row)[:, n] if answer.names else row
             for row in (whole.x, whole.y, answer.x, answer.y)
         )
-        colour = piece.colour or COLORS[n % len(COLORS)]
+        colour = puck.colour or COLORS[n % len(COLORS)]
         axes.plot(x, y, color=colour, label=answer.names[n] if answer.names else None)
         if answer.time.size <= _DOTS:
             axes.plot(px, py, ".", color=colour if answer.names else GREEN, markersize=4)

@@ -24,7 +24,7 @@ def draw(friction: FloorFriction) -> Figure:
 
 
 def draw_on(axes: Axes, friction: FloorFriction) -> None:
-    """The same on given axes."""
+    """Shares of fN and fNr over ε on given axes."""
     order = np.argsort(friction.epsilon)
     shown = order[(friction.epsilon[order] > 0.0) & np.isfinite(friction.epsilon[order])]
     for name, colour, label in (

@@ -22,9 +22,9 @@ from puck_tables.reference.frame_times import frame_times
 from puck_tables.result import Result
 from puck_tables.scene.entries import tables_of
 from puck_tables.scene.parts import Floor
-from puck_tables.scene.pieces import PieceSpec
+from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.run import Run
-from puck_tables.world.agreement import pieces_of
+from puck_tables.world.agreement import pucks_of
 
 STATE = ("x", "y", "orientation", "vx", "vy", "spin")
 ON_FLOOR = ("slip_speed", "epsilon", "slip_ratio", "floor_fx", "floor_fy", "floor_torque")
@@ -58,7 +58,7 @@ class Answer(Result):
     picture: ClassVar[str] = "reference"
 
     def __call__(self, times: npt.ArrayLike) -> Answer:
-        """The same case with its states at other times, s, ≥ 0, in any order.
+        """The answer with its states at other times, s, ≥ 0, in any order.
 
         Raises
         ------
@@ -96,14 +96,14 @@ class Answer(Result):
         return self.run.names if self.run.scene.pucks else ()
 
     @property
-    def pieces(self) -> tuple[PieceSpec, ...]:
+    def pucks(self) -> tuple[ScenePuck, ...]:
         """The pucks."""
-        return pieces_of(self.run.scene)
+        return pucks_of(self.run.scene)
 
     @property
     def is_body(self) -> bool:
         """Whether it is of a body on a base that is not round: it has no δ, and r is its reach."""
-        return self.pieces[0].shape is not None
+        return self.pucks[0].shape is not None
 
     @property
     def floor(self) -> Floor:
@@ -131,7 +131,7 @@ class Answer(Result):
                     np.hypot(*(one.launch.velocity or (0.0, 0.0))), one.radius * one.launch.spin
                 )
             )
-            for one in self.pieces
+            for one in self.pucks
         )
 
     @property
@@ -139,7 +139,7 @@ class Answer(Result):
         """J, m/s²."""
         if not self.names:
             return self.run.rate_scale
-        return max(one.decel for one in self.pieces)
+        return max(one.decel for one in self.pucks)
 
     @property
     def share_bound(self) -> float:
@@ -232,12 +232,12 @@ class Answer(Result):
     def _on_floor(self) -> dict[str, FloatArray]:
         """Slip and forces, of every puck."""
         rows = []
-        for n, piece in enumerate(self.pieces):
+        for n, puck in enumerate(self.pucks):
             mine = {k: v if v.ndim == 1 else v[:, n] for k, v in self.columns.items()}
             slip = slip_over(self.floor, mine)
-            epsilon, ratio = ratios(slip, piece.radius)
-            fx, fy, torque = on_the_floor(piece, self.run.scene, mine)
-            q = slip.sizes(piece.radius)[2]
+            epsilon, ratio = ratios(slip, puck.radius)
+            fx, fy, torque = on_the_floor(puck, self.run.scene, mine)
+            q = slip.sizes(puck.radius)[2]
             rows.append((q, epsilon, ratio, fx, fy, torque))
         whole = (np.stack(one, axis=-1) for one in zip(*rows, strict=True))
         return {
@@ -269,7 +269,7 @@ class Answer(Result):
             "tests": self.case.tests, "end": self.end, "end_time": self.end_time,
             "stop": self.last(), "pucks": list(self.names), "speed_scale": self.speed_scale,
             "rate_scale": self.rate_scale, "limit_epsilon": self.limit_epsilon,
-            "delta": None if self.is_body else [one.delta for one in self.pieces],
+            "delta": None if self.is_body else [one.delta for one in self.pucks],
             **{name: getattr(self, name) for name in BOUNDS},
             "scene": tables_of(self.run.scene),
         }  # fmt: skip

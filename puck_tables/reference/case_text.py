@@ -25,13 +25,13 @@ def lines_of(answer: Answer) -> dict[str, str]:
     case = answer.case
     lines = {"case": f"{case.label}: {case.title}", "tests": case.tests}
     units = units_of(answer.run.scene)
-    for n, (piece, name) in enumerate(zip(answer.pieces, answer.names or ("puck",), strict=True)):
-        lines[name] = _puck(piece)
+    for n, (puck, name) in enumerate(zip(answer.pucks, answer.names or ("puck",), strict=True)):
+        lines[name] = _puck(puck)
         if answer.names:
             given = case.tables["puck"][n]
             rim = {one: given[one] for one in _RIM if one in given}
             lines[name] += "".join(f", {told}" for told in _entries(rim, units, "puck."))
-        lines["launch" if n == 0 else f"launch {n + 1}"] = _launch(piece.launch)
+        lines["launch" if n == 0 else f"launch {n + 1}"] = _launch(puck.launch)
     for what in ("floor", "wall"):
         parts = case.tables.get(what, {})
         for n, part in enumerate(parts if isinstance(parts, list) else [parts] if parts else []):

@@ -17,7 +17,7 @@ from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.reference.cases import ReferenceCase, case_named
 from puck_tables.reference.floor_reaction import is_one_friction, wrench
 from puck_tables.result import Result
-from puck_tables.world.agreement import pieces_of
+from puck_tables.world.agreement import pucks_of
 
 USUAL = np.geomspace(0.01, 100.0, 81)
 BOUND = 1e-11  # of a share: what the file promises
@@ -139,9 +139,9 @@ def floor_friction(name: str, epsilon: npt.ArrayLike | None = None) -> FloorFric
             "from place and direction too, not from v/(r w) alone; take them over time from its "
             "states (floor_fx, floor_fy, floor_torque)"
         )
-    piece = pieces_of(scene)[0]
-    piece.refuse_base(f"a table of friction over v/(r w) of case {case.name}")
+    puck = pucks_of(scene)[0]
+    puck.refuse_base(f"a table of friction over v/(r w) of case {case.name}")
     with np.errstate(divide="ignore"):
         inverse = 1.0 / ratios
     slope = scene.floor.slope
-    return FloorFriction(case, piece, slope, ratios, inverse, phi, *wrench(piece, phi, slope))
+    return FloorFriction(case, puck, slope, ratios, inverse, phi, *wrench(puck, phi, slope))

@@ -93,7 +93,7 @@ def measured(
     rows = log.time <= until * (1.0 + 1e-12)
     time = np.minimum(log.time[rows], until)
     exact = states_of(answer(np.maximum(time, 0.0)), puck)
-    piece = answer.pieces[puck or 0]
+    radius = answer.pucks[puck or 0].radius
     dx, dy = log.x[rows] - exact["x"], log.y[rows] - exact["y"]
     angle = None
     if log.angle is not None:
@@ -101,7 +101,7 @@ def measured(
         off -= off[0] if log.time[0] == 0.0 else 2.0 * np.pi * np.round(off[0] / (2.0 * np.pi))
         angle = np.unwrap(off)
     mine = slip_over(answer.floor, exact)
-    exact_epsilon, _ = ratios(mine, piece.radius)
+    exact_epsilon, _ = ratios(mine, radius)
     speed = spin = seen_speed = seen_rim = seen_epsilon = None
     theirs = {"x": log.x, "y": log.y}
     if log.spin is not None:
@@ -116,8 +116,8 @@ def measured(
     why = f"no {without} in it, so nothing of rest" if without else ""
     if len(theirs) == 5:
         slip = slip_over(answer.floor, {name: row[rows] for name, row in theirs.items()})
-        seen_epsilon, _ = ratios(slip, piece.radius)
-        seen_speed, seen_rim, _ = slip.sizes(piece.radius)
+        seen_epsilon, _ = ratios(slip, radius)
+        seen_speed, seen_rim, _ = slip.sizes(radius)
         if answer.end != "time is up":
             rest = rest_of_rows(time, theirs, answer, puck, thresholds)
             why = why_no_rest(time, theirs, answer, puck, thresholds) if rest is None else ""
@@ -159,7 +159,7 @@ def _refuse_other_launch(log: Log, answer: Answer, puck: int | None) -> None:
             continue
         theirs = [float(row[0]) for row in rows]
         ours = [float(exact[name][0]) for name in names]
-        size = q / answer.pieces[puck or 0].radius if names == ("spin",) else scale
+        size = q / answer.pucks[puck or 0].radius if names == ("spin",) else scale
         allowed = _OFF * size + (late * size / q)
         if math.dist(theirs, ours) > allowed:
             shown = [f"({', '.join(f'{one:.6g}' for one in both)})" for both in (theirs, ours)]

@@ -95,7 +95,7 @@ def rest_of_rows(
     thresholds: tuple[Threshold, ...],
 ) -> Rest | None:  # fmt: skip
     """From when on a run is below the thresholds, by straight lines between its rows."""
-    radius = answer.pieces[puck or 0].radius
+    radius = answer.pucks[puck or 0].radius
     slip = slip_over(answer.floor, states)
     last, share = -1, 0.0
     for one in thresholds:
@@ -125,7 +125,7 @@ def why_no_rest(
     """Why :func:`rest_of_rows` has found none: the threshold above which a run ends."""
     slip = slip_over(answer.floor, states)
     for one in thresholds:
-        above = one.excess(slip, answer.pieces[puck or 0].radius) >= 0.0
+        above = one.excess(slip, answer.pucks[puck or 0].radius) >= 0.0
         if above.all():
             return f"never below {one} in its {time[-1]:.4g} s"
         if above[-1]:
@@ -150,7 +150,7 @@ def exact_rest(answer: Answer, puck: int | None, thresholds: tuple[Threshold, ..
     for _ in range(_ROUNDS):
         times = np.linspace(low, high, _LOOKS)
         states = states_of(answer(times), puck)
-        radius = answer.pieces[puck or 0].radius
+        radius = answer.pucks[puck or 0].radius
         slip = slip_over(answer.floor, states)
         above = np.max([one.excess(slip, radius) for one in thresholds], axis=0) >= 0.0
         n = int(np.flatnonzero(above)[-1]) if above.any() else 0

@@ -12,14 +12,14 @@ from puck_tables._core.real import positive
 from puck_tables.errors import InputError
 from puck_tables.scene.parts import Rows
 
-MOST_ROWS = 100_000
+MOST_ROWS = 100_000  # of a path: more is no smooth function, or too fine an accuracy
 _FIRST = 64  # intervals at first
 _LOOKED_AT = (0.5, 0.2265, 0.7149)  # of an interval: no multiples of one another
 _SHORTEST = 1e-9  # of the whole time: what happens faster is a jump
 
 
 def path_along(place: Callable[[float], Any], until: float, accuracy: float = 1e-6) -> Rows:
-    """Rows t, x, y (and angle) of a body that a function of time drives, for ``Piece.path``.
+    """Rows t, x, y (and angle) of a body that a function of time drives, for ``Puck.path``.
 
     Parameters
     ----------

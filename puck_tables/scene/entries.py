@@ -55,8 +55,8 @@ class Entry(NamedTuple):
     acts: str | None
 
 
-def entries(part: Any, prefix: str = "") -> Iterator[Entry]:
-    """Every entry of a scene or of a part of it, also those left out.
+def entries(part: Any, prefix: str = "", kind: Any = None) -> Iterator[Entry]:
+    """Every entry of a scene or of a part of it, also those left out; of a ``kind`` its fields.
 
     Examples
     --------
@@ -64,11 +64,11 @@ def entries(part: Any, prefix: str = "") -> Iterator[Entry]:
     >>> [entry.path for entry in entries(Edge((0.0, 1.0), normal=(0.0, -1.0)), "edge[0].")]
     ['edge[0].point', 'edge[0].normal']
     """
-    whole: Any = type(part)
+    whole: Any = kind or type(part)
     for name, table, kind, doc, default, acts in _told(whole):
         value, path = getattr(part, name), prefix + table
         if kind.shape == "part" and value is not None:
-            yield from entries(value, f"{path}.")
+            yield from entries(value, f"{path}.", kind.part)
         elif kind.shape == "parts":
             for i, item in enumerate(value):
                 yield from entries(item, f"{path}[{i}].")
@@ -121,11 +121,11 @@ def entry_at(scene: Any, path: str) -> Entry:
     return found
 
 
-def tables_of(part: Any) -> dict[str, Any]:
+def tables_of(part: Any, kind: Any = None) -> dict[str, Any]:
     """A scene as nested tables that :meth:`puck_tables.Scene.from_tables` takes, without ranges.
 
     What is left out stays out, and so does a number without bound, and a gravity that a puck was
-    not given.
+    not given; of a ``kind`` its fields.
 
     Examples
     --------
@@ -134,8 +134,8 @@ def tables_of(part: Any) -> dict[str, Any]:
     [0.0, 0.0]
     """
     tables: dict[str, Any] = {}
-    for name, spec in specs(type(part)).items():
-        value = _plain(getattr(part, spec.name))
+    for name, spec in specs(kind or type(part)).items():
+        value = _plain(getattr(part, spec.name), spec.metadata["kind"].part)
         unsaid = isinstance(value, Unsaid) and spec.default in (None, value)
         if not (
             unsaid or value is None or value == [] or (type(value) is float and value == np.inf)
@@ -149,14 +149,14 @@ def tables_of(part: Any) -> dict[str, Any]:
     return tables
 
 
-def _plain(value: Any) -> Any:
-    """A record as a table, a tuple as a list."""
+def _plain(value: Any, kind: Any = None) -> Any:
+    """A record as a table, a tuple as a list; of a ``kind`` its fields."""
     if isinstance(value, Mapping):
         return {name: _plain(one) for name, one in value.items()}
     if isinstance(value, tuple | list | np.ndarray):
-        return [_plain(one) for one in value]
+        return [_plain(one, kind) for one in value]
     read = dataclasses.is_dataclass(value) and bool(specs(type(value)))
-    return tables_of(value) if read else value
+    return tables_of(value, kind) if read else value
 
 
 def columns_of(path: str, values: Any) -> list[tuple[str, Any]]:

@@ -18,7 +18,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.belts import heat_at_rest
-from puck_tables.scene.forces import damping, drag_force, given_force
+from puck_tables.scene.forces import damping, dragged, given_force
 from puck_tables.scene.friction import (
     SPIN,
     THETA,
@@ -47,10 +47,10 @@ from puck_tables.scene.ingredients import (
 )
 from puck_tables.scene.over_time import has_factors
 
-SIZE = 10
+SIZE = 10  # numbers that are integrated: six of the state, the four works
 GIVEN, DRY, VISCOUS, SUPPORT = range(6, SIZE)
 LAMBDA = SIZE  # the two multipliers follow the state; they are not integrated
-ROW = SIZE + 2
+ROW = SIZE + 2  # with the multipliers
 # rows; plain numbers would compile ``rates`` once for each
 FIRST, SECOND = cast(int, np.int64(0)), cast(int, np.int64(1))
 
@@ -88,7 +88,7 @@ def settling_rates(model: Model, load: float) -> tuple[float, float]:
     body = model.body
     lever = body.mass * body.radius * body.radius / body.inertia
     return (
-        damping(model.forces, body.mass, body.inertia),
+        damping(model.forces.drags),
         load / body.mass * max(1.0, 0.5 * lever),
     )
 
@@ -147,7 +147,9 @@ def rates_here(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: 
         hx, hy, hm, heat = dry_friction(dry, body.radius, y[VX], y[VY], y[SPIN])
     else:
         hx, hy, hm, heat = dry_friction_here(stretch.dry, body.radius, y[VX], y[VY], y[SPIN])
-    dx, dy, dm, warmth = drag_force(model.forces, y[VX], y[VY], y[SPIN])
+    ax, ay, aw, warmth, spin_warmth = dragged(model.forces.drags, y[VX], y[VY], y[SPIN])
+    dx, dy, dm = body.mass * ax, body.mass * ay, body.inertia * aw
+    warmth = body.mass * warmth + body.inertia * spin_warmth
     fx, fy, fm = gx + hx + dx, gy + hy + dy, gm + hm + dm
     rx, ry, rm, first, second, power = held(model.hold, body, surface, y, fx, fy, fm)
     out[row, VX] = (fx + rx) / body.mass - cx

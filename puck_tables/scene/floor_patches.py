@@ -17,7 +17,7 @@ from puck_tables.errors import InputError
 if TYPE_CHECKING:
     from puck_tables.scene.parts import Floor, Patch, Wall
 
-MOST_CORNERS = 200
+MOST_CORNERS = 200  # of a patch: each side adds to the cost of a look
 _MOST_BYTES = 1 << 16  # of a file of corners
 _FLAT = 1e-12  # of the square of its size: the area of a polygon that has none
 

@@ -60,7 +60,7 @@ def dry_friction(
 def dry_friction_here(
     dry: Dry, radius: float, ux: float, uy: float, w: float
 ) -> tuple[float, float, float, float]:
-    """The same; where it depends on nothing but the direction of the slip, pasted into the caller.
+    """Force, torque and power of dry friction; where only its direction counts, pasted in.
 
     To hand on a record takes as long as to look friction up.
     """

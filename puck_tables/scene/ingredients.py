@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 
 FREE, RAIL, PIVOT, BLADE = range(4)
 SLIDES, CARRIED, STOPS = range(3)
-ASTRIDE = -1.0
-NO_WAY = (0.0, 0.0, 0.0, 0.0)
+ASTRIDE = -1.0  # in place of a normal force: where a base lies on several frictions
+NO_WAY = (0.0, 0.0, 0.0, 0.0)  # of a stretch that is no stop
 
 
 class Body(NamedTuple):

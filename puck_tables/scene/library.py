@@ -18,7 +18,7 @@ from puck_tables._core.safe_read import read_whole
 from puck_tables.errors import InputError
 from puck_tables.scene.scene_spec import SceneSpec
 
-MAX_FILE = 1 << 20
+MAX_FILE = 1 << 20  # bytes of a scene: more is no scene
 _PARTS = 50  # of a dotted key
 _POINT = re.compile(r"(?<!\.)\.(?!\.)")
 MAX_NAMED = 1 << 26  # bytes of a file that a scene names

@@ -137,7 +137,7 @@ def cut_short(
         what = NOTHING
         if passed == 0 and stretch.mode == SLIDES:
             what = EQUAL if slip_side(radius, y) * slip_side(radius, new) < 0.0 else what
-        turns_over = y[SPIN] * new[SPIN] < 0.0 and jumps(stretch.model.forces)
+        turns_over = y[SPIN] * new[SPIN] < 0.0 and jumps(stretch.model.forces.drags)
         turns_over = turns_over and (
             has_sign(y[SPIN], size(y[VX], y[VY], 0.0))
             or has_sign(new[SPIN], size(new[VX], new[VY], 0.0))

@@ -34,7 +34,7 @@ class Elliptic(NamedTuple):
     normal: float
 
 
-_NUMBERS = 4
+_NUMBERS = 4  # in the table of an ellipse: f along and across, cosine, sine
 
 
 @inlined
@@ -97,7 +97,7 @@ def _narrowed(
 def elliptic_demand(
     law: Elliptic, radius: float, fx: float, fy: float, torque: float, guided: bool
 ) -> tuple[float, float, float, float, float]:
-    """As :func:`puck_tables.scene.rest.demand` has it, where friction is by an ellipse.
+    """The share of friction by an ellipse that a force and a torque take up; W and the slip.
 
     The slip is sought whose friction is against the force and the torque: a share φ of it is spin,
     and the rest has a direction less than a right angle from the force, as friction brakes.

@@ -35,12 +35,13 @@ _A = np.array([
     [(16 - _ROOT) / 36, (16 + _ROOT) / 36, 1 / 9],
 ])  # fmt: skip
 _C = _A.sum(axis=1)
+# the estimate of the error: its weights e, and μ, the real eigenvalue of A⁻¹
 _ERROR = np.array([-13 - 7 * _ROOT, -13 + 7 * _ROOT, -1.0]) / 3.0
 _MU = 3.0 + 3.0 ** (2 / 3) - 3.0 ** (1 / 3)
 _STIFF = 3  # vx, vy, spin
 _LEAST = 0.1  # of the slip: that a step leaves, as Newton's iteration foresees it
 _NUDGE = 1e-7  # of the slip: of the differences
-_ITERATIONS = 12
+_ITERATIONS = 12  # of Newton's method: beyond, the step is shortened
 _RELATIVE = 1e-3  # of the slip: no step is worse
 _ROUNDING = 1e-12  # of the scales: what no iteration makes better, and
 _NOISE = 1e-14  # of what friction alone would do in the step

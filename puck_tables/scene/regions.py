@@ -20,7 +20,7 @@ from puck_tables.table.friction_section import FINEST_ACCURACY
 from puck_tables.table.resultant_table import ResultantTable
 
 EXACT_BELOW = 1e-9  # friction by closed forms where a table's error would show
-CLOSED_FORM_ERROR, TABLE_ERROR = 1e-14, 2e-11
+CLOSED_FORM_ERROR, TABLE_ERROR = 1e-14, 2e-11  # of friction over f N
 SLICE_SHARE = 0.1  # of the error wanted
 
 
@@ -86,7 +86,7 @@ def of_one_shape(slices: list[FloatArray]) -> FloatArray:
 
 
 def _halved(part: FloatArray) -> FloatArray:
-    """The same uniform cubic splines on cells of half the width, by knot insertion."""
+    """Uniform cubic splines, unchanged, on cells of half the width, by knot insertion."""
     weights = part[:, HEADER:].reshape(len(part), -1, RATIOS)
     cells = weights.shape[1] - 3
     finer = np.empty((len(part), 2 * cells + 3, RATIOS))

@@ -49,7 +49,7 @@ Yield = tuple[float, float, float, float]
 def _pivot_yield(
     dry: Dry, hold: Hold, radius: float, theta: float, fx: float, fy: float, torque: float
 ) -> Yield:
-    """The same where the only slip is a turn about the pivot: one direction, φ = atan(r/reach)."""
+    """The yield where the only slip is a turn about the pivot: one direction, φ = atan(r/reach)."""
     cosine, sine = math.cos(theta + hold.angle), math.sin(theta + hold.angle)
     reach = hold.reach
     demand = torque - reach * (cosine * fy - sine * fx)
@@ -104,7 +104,7 @@ def demand(
 
 @inner
 def free_yield(dry: Dry, radius: float, fx: float, fy: float, torque: float, guided: bool) -> Yield:
-    """The same where the puck may slip and turn; ``guided``: along the force only."""
+    """The yield where the puck may slip and turn; ``guided``: along the force only."""
     if dry.load == 0.0:
         size = math.hypot(math.hypot(fx, fy), torque / radius)
         if size == 0.0:

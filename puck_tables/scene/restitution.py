@@ -3,7 +3,7 @@
 A law is a small class.  What the engine needs of it is a row of numbers, the first of which says
 whose formula holds (:mod:`puck_tables.scene.restitution_at`).  A plain number is the law of Newton,
 restitution that does not depend on speed.  Whatever the law, what happens along the rims is
-Walton's (tangential restitution and Coulomb's friction, see :mod:`puck_tables.world.impact`).
+Walton's (tangential restitution and Coulomb's friction, see :mod:`puck_tables.motion.impact_law`).
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from puck_tables._core.safe_read import is_number
 from puck_tables.errors import InputError
 from puck_tables.scene.restitution_at import PLASTIC, TABLE, VISCOELASTIC, restitution_at
 
-MAX_BYTES = 1 << 24
+MAX_BYTES = 1 << 24  # of a file of speeds: more is no law
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Restitution:
 
     @property
     def name(self) -> str:
-        """As it stands in a scene file."""
+        """Its text in a scene file."""
         raise NotImplementedError
 
     @property
@@ -97,7 +97,7 @@ class Viscoelastic(Restitution):
 
     @property
     def name(self) -> str:
-        """As it stands in a scene file."""
+        """Its text in a scene file."""
         return f"viscoelastic:{self.loss!r}"
 
     @property
@@ -133,7 +133,7 @@ class Plastic(Restitution):
 
     @property
     def name(self) -> str:
-        """As it stands in a scene file."""
+        """Its text in a scene file."""
         return f"plastic:{self.yield_speed!r}"
 
     @property
@@ -199,7 +199,7 @@ class RestitutionTable(Restitution):
 
     @property
     def name(self) -> str:
-        """As it stands in a scene file."""
+        """Its text in a scene file."""
         points = zip(np.asarray(self.speeds), np.asarray(self.values), strict=True)
         return self.file or "table:" + ",".join(f"{v!r}={e!r}" for v, e in _floats(points))
 

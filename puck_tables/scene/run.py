@@ -18,7 +18,7 @@ from puck_tables.io.dataset import Dataset, Variable, variable
 from puck_tables.result import TimedResult
 from puck_tables.scene.entries import tables_of, units_of
 from puck_tables.scene.outcome import column_of, refuse_changed, scene_texts
-from puck_tables.scene.pieces import called_line
+from puck_tables.scene.pucks_and_posts import called_line
 from puck_tables.scene.scene_spec import SceneSpec
 
 STATE = ("x", "y", "orientation", "vx", "vy", "spin")
@@ -110,9 +110,9 @@ class Run(TimedResult):
     picture: ClassVar[str] = "run"
 
     def __call__(self, times: npt.ArrayLike) -> Run:
-        """The same run with its states at other times, s, ascending.
+        """The run with its states at other times, s, ascending.
 
-        Those after its end are left out, unless all rests there.
+        Times after its end are left out, unless all rests there.
 
         Raises
         ------

@@ -28,7 +28,7 @@ from puck_tables.scene.parts import (
     Launch,
     Wall,
 )
-from puck_tables.scene.pieces import Arc, Line, PieceSpec, Pocket, Post, Rim
+from puck_tables.scene.pucks_and_posts import Arc, Line, Pocket, Post, Rim, ScenePuck
 from puck_tables.scene.ranges import Ranges, batch_of, launch_rows, owner_of, refuse_twice
 
 MAX_RUNS = 1_000_000_000  # of one sweep
@@ -53,7 +53,7 @@ class SceneSpec:
     drag: Drag = of("part", Drag(), part=Drag)
     lateral: Lateral = of("part", Lateral(), part=Lateral)
     force: Force = of("part", Force(), part=Force)
-    pucks: tuple[PieceSpec, ...] = of("parts", (), part=PieceSpec, table="puck[]")
+    pucks: tuple[ScenePuck, ...] = of("parts", (), part=ScenePuck, table="puck[]")
     walls: tuple[Wall, ...] = of("parts", (), part=Wall, table="wall")
     posts: tuple[Post, ...] = of("parts", (), part=Post, table="post")
     arcs: tuple[Arc, ...] = of("parts", (), part=Arc, table="arc")
@@ -81,7 +81,7 @@ class SceneSpec:
     ranges: Mapping[str, FloatArray] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        tables, ranges, before = entries_in(self, {}), self.ranges, None
+        tables, ranges, before = entries_in(self), self.ranges, None
         if isinstance(ranges, Ranges):  # of the scene of which this one is a changed copy
             before, ranges = ranges.parts["gravity"], ranges.of_the_same(self._parts())
         else:
@@ -172,7 +172,7 @@ class SceneSpec:
 
         Examples
         --------
-        >>> board = SceneSpec(pucks=[PieceSpec(0.5, friction=0.1)])
+        >>> board = SceneSpec(pucks=[ScenePuck(0.5, friction=0.1)])
         >>> board.alone(board.pucks[0]).frictions
         (0.1,)
         """
@@ -229,6 +229,15 @@ class SceneSpec:
         """Check all that is given, and take it; pucks may have got the gravity ``before``."""
         found: dict[str, Range] = {}
         reading = Reading([], found)
+        puck = tables.get("puck")
+        if isinstance(puck, ScenePuck) and (stray := puck.only_on_boards):
+            raise _refusal(
+                [
+                    f"the puck has its own {', '.join(stray)}: give launch, force and constraint "
+                    "of one puck beside it, Scene(puck, launch=...), or Scene(pucks=[puck])"
+                ],
+                source,
+            )
         values = read_values(type(self), tables, "", reading)
         batch = batch_of(reading.batches, found, reading.errors)
         runs = math.prod([one.count for one in found.values()], start=max(len(batch), 1))

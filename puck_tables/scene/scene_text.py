@@ -34,7 +34,7 @@ def as_toml(scene: SceneSpec) -> str:
 
 
 def _range(values: FloatArray) -> str | list[float]:
-    """As 'START:STOP:COUNT' where that gives the same numbers."""
+    """A range as 'START:STOP:COUNT' where that gives the same numbers, else the numbers."""
     first, last = float(values[0]), float(values[-1])
     if values.size > 1 and np.array_equal(values, np.linspace(first, last, values.size)):
         return f"{first!r}:{last!r}:{values.size}"

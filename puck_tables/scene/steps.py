@@ -56,7 +56,7 @@ def _put_right(hold: Hold, surface: Surface, t: float, y: FloatArray) -> None:
 def accelerations(
     surface: Surface, y: FloatArray, work: FloatArray, row: int
 ) -> tuple[float, float, float]:  # fmt: skip
-    """Those of the centre in the laboratory and of the spin, by a row of rates of the state."""
+    """Accelerations of the centre in the laboratory and of the spin, by a row of rates."""
     cx, cy = carried_along(surface, y[X], y[Y], work[row, X], work[row, Y])
     return work[row, VX] + cx, work[row, VY] + cy, work[row, SPIN] + surface.turn
 

@@ -21,7 +21,7 @@ from puck_tables.kernels.spline import basis
 from puck_tables.stopping.lookup import WIDTH, slip_place
 
 SPEED, RIM, TIME, TURN, BEND = range(5)
-LOGS = 5
+LOGS = 5  # quantities of a piece, the five above
 SLIDE = 0.5 * math.log(2.0)  # ln v = ln t₀ of the slide without spin
 POWERS = 6  # of a piece
 PIECE = 2 + LOGS * POWERS  # where it begins, 1/width, then the powers of each quantity, ascending

@@ -24,8 +24,11 @@ from numpy.polynomial import chebyshev
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 
-HEIGHTS = 9  # nodes over δ: the polynomials through them err by 5e-12
-CONSTANT_HEIGHTS = 14  # for what depends on δ alone; next to the limit its error is magnified
+# nodes over δ: the polynomials through them err by 5e-12; and, to 1e-12, for what depends on δ
+# alone, as next to the limit its error is magnified:
+# test_polynomials_of_the_height_are_as_exact_as_they_say
+HEIGHTS = 9
+CONSTANT_HEIGHTS = 14
 MAX_CELLS = 1 << 16  # of an axis: more is a damaged file
 
 

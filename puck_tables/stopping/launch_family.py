@@ -114,7 +114,7 @@ class LaunchFamily:
         return inside
 
     def looked_up(self, u: FloatArray) -> FloatArray:
-        """As :meth:`rows`, to 1e-10, integrated only where it is not tabulated."""
+        """The columns of :meth:`rows` to 1e-10, integrated only where they are not tabulated."""
         slides = u == -math.inf
         inside = self.is_tabulated(u)
         out = np.empty((u.size, LOGS))

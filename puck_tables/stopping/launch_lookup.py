@@ -64,6 +64,7 @@ from puck_tables.stopping.similarity_lookup import (
 )
 from puck_tables.stopping.state_lookup import PUCK_ROWS, fill_states_at
 
+# numbers from one node to the next: of stops, of the curve, of turns
 _ROW, _CURVE_ROW = WIDTH * STOP_POWERS, CURVE_WIDTH * HEIGHTS
 _TURNS_ROW = TURN_STEP * TURN_POWERS
 _REST, _ALL = 3, 6  # rows of what a stop has besides time and place, and with them

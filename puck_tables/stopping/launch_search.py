@@ -120,7 +120,7 @@ class LaunchSearch:
     def _turned(
         self, scales: FloatArray, wanted: FloatArray
     ) -> tuple[npt.NDArray[Any], FloatArray, FloatArray]:
-        """Those that end at an angle of the body: of each sense the fewest whole turns first.
+        """Launches that end at an angle of the body: of each sense the fewest whole turns first.
 
         The slower a launch the more it turns, so that a largest speed says the fewest.
         """

@@ -81,7 +81,7 @@ def quick_place(speed: float, rim: float, cells: float) -> tuple[float, float]:
 
 @inlined
 def _cell(place: float, cells: float) -> float:
-    """As :func:`puck_tables.kernels.spline.cell_at`, without leaving floating point."""
+    """The cell in which a place lies, found without leaving floating point."""
     inside = place if place > 0.0 else 0.0
     last = cells - 1.0
     cell: float = np.floor(inside if inside < last else last)
@@ -121,7 +121,7 @@ def place_block(room: FloatArray, count: int, coefficients: FloatArray, row: int
 def _place_with_care(
     room: FloatArray, count: int, cells: float, row: float, side_stride: float
 ) -> int:
-    """The same anew for the largest and smallest numbers, and how many are no launches."""
+    """Place a block with care for the largest and smallest numbers; how many are no launches."""
     bad = 0
     for n in range(count):
         vx, vy, edge = row_of(room, VX, n), row_of(room, VY, n), row_of(room, EDGE, n)

@@ -345,7 +345,7 @@ class SolverPerHeight:
 
 @lru_cache(maxsize=64)
 def _shipped_look_up(selection: Selection) -> tuple[LookUp, str]:
-    """As fine as was selected, from the stop table that comes along; and its name."""
+    """The look-up that was selected, from the stop table that comes along; and its name."""
     shipped = StopTable.shipped()
     powers, thinning = int(selection.number("powers")), int(selection.number("thinning"))
     return LookUp(shipped, powers, thinning, selection.error), shipped.source

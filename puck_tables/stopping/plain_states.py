@@ -73,7 +73,7 @@ def _fill_slopes(
     table: StopTable, pucks: FloatArray, which: npt.NDArray[np.int64], moments: FloatArray,
     result: FloatArray, out: FloatArray, begin: int, end: int, threads: int | None,
 ) -> None:  # fmt: skip
-    """The same from ``begin`` to ``end``, of which the first puck is where ``which`` is (0,)."""
+    """Derivatives from ``begin`` to ``end``; where ``which`` is (0,) pucks begin there, too."""
     from puck_tables.stopping.state_jacobian import fill_state_jacobians
     from puck_tables.stopping.stop_jacobian import is_streamed
 

@@ -15,7 +15,7 @@ from puck_tables.stopping.lookup import LARGEST, SMALLEST
 from puck_tables.stopping.stop_jacobian import LAUNCH_COLUMNS, OWN, STOP_ROWS, placed_stop
 
 _FUNCTIONS = 6  # outputs of a stop
-_OUT = STOP_ROWS * LAUNCH_COLUMNS
+_OUT = STOP_ROWS * LAUNCH_COLUMNS  # derivatives of a stop
 _LOWEST = 1e-290  # below, a ratio of speeds loses digits: both are raised by a power of two
 
 

@@ -30,9 +30,12 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.closed_form import shape_integrals
 from puck_tables.stopping.axes import SlipAxis, ratio_at
 
-_NEAR_LIMIT = 0.15  # half width in u of the neighbourhood of u₀ that is treated by polynomials
-_DEGREE = 23  # of the polynomials within that width
-_GAUSS_NODES, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(10)
+# half width in u of the neighbourhood of u₀ that is treated by polynomials, and their degree: both
+# ways to the slopes meet to 4e-12, as test_regular_slopes_pass_the_limit_smoothly tells
+_NEAR_LIMIT = 0.15
+_DEGREE = 23
+_COUNT = 10  # of Gauss's rule a cell: test_parts_are_the_integrals_of_their_slopes
+_GAUSS_NODES, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(_COUNT)
 
 
 class Limits(NamedTuple):

@@ -42,8 +42,9 @@ from puck_tables.stopping.stop_jacobian import Numbers, direction, stop_by_speed
 
 PART = 32  # places of a block: with so many rows the nearest cache holds no more
 _SHARED = 2  # rows for each place for which it pays to have them evaluated once
+# numbers of a node: of states, of rates
 _STATE_ROW, _RATE_ROW = HEIGHTS * STATE_WIDTH, STOP_POWERS * RATE_WIDTH
-SECTION_WIDTH = 2 * STATE_WIDTH + RATE_WIDTH
+SECTION_WIDTH = 2 * STATE_WIDTH + RATE_WIDTH  # numbers found at a place: states, slopes, rates
 
 # rows of a block: what is known of a launch: its puck, its place on the curve in natural units
 EAST, NORTH, SPIN, DELTA, DECEL, RADIUS, ONE_TIME, SLIP, UNIT, BEND = range(10)
@@ -72,8 +73,8 @@ CURVE, CURVE_TILT, TURN_SLOPE, TURN_TILT = range(4)
 
 _NEAR_LIMIT = 0.05  # of c − c₀
 _CONSTANTS = 4  # c₀, κ, h₀/δ and another
-_WITH_SLOPES = 2 * _CONSTANTS
-_KAPPA, _H0 = FIXED + KAPPA, FIXED + H0
+_WITH_SLOPES = 2 * _CONSTANTS  # the four, then their slopes by δ
+_KAPPA, _H0 = FIXED + KAPPA, FIXED + H0  # their rows
 # rows that hold for a while what is known of pucks, and of their neighbours
 _OF_PUCK = (
     *enumerate(range(LAUNCH_COLUMNS)), (ONE_TIME, LAUNCH_COLUMNS + known.TIME),

@@ -117,7 +117,7 @@ class SectionLookUp:
         return self._filled(launches.shape[1], lambda a, b: launches[:, a:b], threads)
 
     def of(self, launches: Launches, threads: int | None) -> tuple[FloatArray, Status]:
-        """The same of checked launches, copied chunk by chunk."""
+        """All outputs (6, n) and status (n,) of checked launches, copied chunk by chunk."""
         return self._filled(launches.size, launches.rows, threads)
 
     def _filled(

@@ -120,7 +120,7 @@ def spread_of(
     arguments : array (columns, n), launches in the order of the columns
     again : results (rows, m) of arguments (columns, m)
     covariance, of, samples, seed
-        As :meth:`puck_tables.Stops.spread`.
+        As :meth:`puck_tables.results.Stops.spread`.
     highest : the largest δ of a sample that ``again`` takes; it may refuse others itself
     """
     which = [_place(name, columns) for name in listed("of", of, "arguments")]

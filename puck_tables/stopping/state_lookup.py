@@ -33,8 +33,8 @@ from puck_tables.stopping.similarity_lookup import (
     state_there,
 )
 
-PUCK_ROWS = LAUNCH_COLUMNS + LAUNCH_ROWS
-_ROW = ORBIT_WIDTH * HEIGHTS
+PUCK_ROWS = LAUNCH_COLUMNS + LAUNCH_ROWS  # of a puck: its launch, and what is known of that
+_ROW = ORBIT_WIDTH * HEIGHTS  # numbers of a node
 # rows of a block: those of the puck, of its place on the curve, of the functions, of the state
 _VX, _VY, _SPIN, _DELTA, _DECEL, _RADIUS, _TIME, _X, _Y, _, _BODY, _TURN = range(12)
 _Q, _V, _T, _LOG_N, _SIGN_N, _HEADING, _KAPPA, _TURNING = range(12, PUCK_ROWS)

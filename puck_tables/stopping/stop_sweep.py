@@ -66,7 +66,7 @@ def numbers_of(puck: Any, chosen: Mapping[str, Any]) -> dict[str, Any]:
 def _whole(puck: Any, numbers: Mapping[str, Any], names: Container[str]) -> dict[str, Any]:
     """The numbers given, of arguments of these names, and what else a launch needs."""
     if "friction" not in names:
-        puck.refuse_frictionless()
+        puck.refuse_unless_free()
     whole: dict[str, Any] = {}
     if not any(name in names for name in ("speed", "vx", "vy")):
         whole["speed"] = 1.0

@@ -269,7 +269,7 @@ class StopValues(Table):
 
     @cached_property
     def height_constants(self) -> FloatArray:
-        """The same, those of a power side by side, (14, 4)."""
+        """The constants of a height, those of a power side by side, (14, 4)."""
         return np.ascontiguousarray(self.constants.T)
 
     @cached_property

@@ -77,7 +77,7 @@ def variations_of(body: UnitPuck) -> Variations:
 
 
 def variations_by(source: FrictionSlopes, gyration: float) -> Variations:
-    """The same from a section."""
+    """The friction of a puck, with its slopes, from a section."""
     ratios, slopes = source.for_motion(gyration), source.for_slopes(gyration)
     limits = np.unique(slopes[np.isinf(ratios[:, LINE]), LINE])
     return Variations(source.delta, ratios, slopes, tuple(limits.tolist()))

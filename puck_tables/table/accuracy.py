@@ -57,7 +57,7 @@ class Accuracy:
         )  # fmt: skip
 
     def text(self) -> str:
-        """As JSON."""
+        """The measured errors in JSON."""
         return json.dumps(asdict(self))
 
     @classmethod

@@ -29,7 +29,7 @@ from puck_tables.io.dataset import Dataset, Variable
 
 FORMAT, FORMAT_VERSION = "puck-tables", "4.0"
 MAX_FILE_BYTES = 1 << 31  # bytes: more is no table
-_SEAL = b"\npuck-tables sha256 "
+_SEAL = b"\npuck-tables sha256 "  # before the digest of all that stands above it
 AGAIN = "build it again with 'puck build-tables'"
 _MADE_OF = "made_of"
 

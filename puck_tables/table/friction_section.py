@@ -93,7 +93,7 @@ class FrictionSection(SectionTable):
         return self.spline.with_inertia(0.5, np.ones(3))
 
     def for_motion(self, gyration: float, coarser: bool = False) -> FloatArray:
-        """The same for the motion of a puck with radius of gyration k (in units of r).
+        """Coefficients for the motion of a puck with radius of gyration k (in units of r).
 
         The third ratio is multiplied by r²/(2k²): only r ω' = −(r²/2k²) J sin φ ρ_ω feels how the
         mass is spread.
@@ -110,7 +110,7 @@ class FrictionSection(SectionTable):
         return self.spline.at(phi)
 
     def at_ends(self) -> FloatArray:
-        """The same at φ = 0 and π/2, (2, 3), as tabulated: without an error of the spline."""
+        """The ratios at φ = 0 and π/2, (2, 3), as tabulated: without an error of the spline."""
         return np.stack([self.spline.values[0, -1], self.spline.values[-1, -1]])
 
     def validate(self, progress: Progress | None = None, points: int = 600) -> CheckReport:
@@ -212,7 +212,7 @@ def friction_ratios(law: Law, phi: FloatArray, delta: float) -> FloatArray:
 
 
 def many_ratios(law: Law, phi: FloatArray, delta: float) -> FloatArray:
-    """The same for many angles, by compiled truth where contact opens."""
+    """The friction ratios of many angles, (n, 3), by compiled truth where contact opens."""
     tall = law.can_lift and delta > _FULL_CONTACT
     return _ratios(tall_resultants(phi, delta)) if tall else friction_ratios(law, phi, delta)
 

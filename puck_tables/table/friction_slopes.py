@@ -76,7 +76,7 @@ def friction_slopes_of(law: Law, delta: float, accuracy: float = FLOW_ACCURACY) 
 
 
 def slopes_of_table(table: ResultantTable, delta: float) -> FrictionSlopes:
-    """The same from a table of resultants: all that is asked.
+    """Friction with its derivatives by the height, from a table of resultants.
 
     Examples
     --------
@@ -92,7 +92,7 @@ def slopes_of_table(table: ResultantTable, delta: float) -> FrictionSlopes:
 
 
 def slopes_at_one_height(section: FrictionSection) -> FrictionSlopes:
-    """The same from a friction section, for who asks nothing about other heights: slopes by δ 0."""
+    """Friction from a section, for who asks nothing about other heights: slopes by δ are 0."""
     spline = section.spline
     values = np.concatenate([spline.values, np.zeros_like(spline.values)], axis=2)
     return FrictionSlopes(SlipSpline(spline.sides, values, True), section.delta, section.error)

@@ -125,7 +125,7 @@ class SpeedValues(Table):
 
     @cached_property
     def compiled(self) -> FloatArray:
-        """As :func:`puck_tables.kernels.speed_spline.packed` has it."""
+        """All in one array, as :func:`puck_tables.kernels.speed_spline.packed` lays it out."""
         splines = [quintic_coefficients(values) for values in self.by_patch()]
         rays, discs = rays_under(self.law, self.round_load), np.empty((0, 2))
         if is_pile(self.law, self.round_load):

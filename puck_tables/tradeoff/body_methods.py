@@ -19,6 +19,7 @@ from puck_tables.tradeoff.scipy_methods import patch_script
 from puck_tables.tradeoff.truth import Contender, Question, Run, kept
 from puck_tables.world.scene import Scene
 
+# of Q/(fg), Q²/(fg), asked for; sums under a law by speed take longer
 _TOLS, _TOLS_OF_A_LAW = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10), (1e-3, 1e-6, 1e-8)
 _GRIDS = (5, 10, 20)  # patches across the shorter way, twice as many along the other
 _LAUNCHES = 24  # judged, and timed
@@ -64,7 +65,7 @@ def _of_a_box(count: int) -> tuple[FloatArray, FloatArray]:
 
 
 def _of_a_band(count: int) -> tuple[FloatArray, FloatArray]:
-    """The same of an annulus."""
+    """Centres of patches of the annulus, and their weights."""
     outer, inner = _BAND
     radii = inner + (outer - inner) * (np.arange(count) + 0.5) / count
     angle = np.pi * (np.arange(12 * count) + 0.5) / (6 * count)
@@ -74,6 +75,7 @@ def _of_a_band(count: int) -> tuple[FloatArray, FloatArray]:
 
 
 _SIDES, _BAND = (0.2, 0.1), (0.0635, 0.0555)  # m
+# m: of the box, (2, 4)
 _CORNERS = 0.5 * np.array([[1.0, 1.0, -1.0, -1.0], [1.0, -1.0, 1.0, -1.0]]) * np.c_[_SIDES,]
 _BOX = Puck(base="box:0.2x0.1", friction=0.25, height=0.04)
 BODIES = {

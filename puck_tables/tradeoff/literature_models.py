@@ -22,7 +22,7 @@ from puck_tables.table.resultant_values import HEIGHTS
 from puck_tables.table.slip_axis import LawAxis
 from puck_tables.tradeoff.truth import Question
 
-PADE_MATCHED = (1.0, 8.0 / 3.0)
+PADE_MATCHED = (1.0, 8.0 / 3.0)  # a, b: so that slopes at pure spin and pure sliding are right
 
 
 @kernel

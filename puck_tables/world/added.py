@@ -14,10 +14,10 @@ from puck_tables.scene.friction import VX
 from puck_tables.scene.ground import OVER_X, OVER_Y
 from puck_tables.scene.over_time import drive_of, over_time
 from puck_tables.scene.parts import Force, Launch
-from puck_tables.scene.pieces import PieceSpec
+from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import layout
-from puck_tables.world.agreement import pieces_of
+from puck_tables.world.agreement import pucks_of
 from puck_tables.world.by_hand import with_integrated
 from puck_tables.world.flight import ANGLE, FLIGHT_COLUMNS, GONE, PLACE_X, START, UNTIL
 from puck_tables.world.footing import law_goes_to
@@ -26,7 +26,7 @@ from puck_tables.world.paths import START as BEGINS
 from puck_tables.world.prepare import Start, prepared, with_law_up_to
 
 
-def board_with(scene: SceneSpec, piece: PieceSpec) -> SceneSpec:
+def board_with(scene: SceneSpec, puck: ScenePuck) -> SceneSpec:
     """A scene with a puck more, which fits its board; its pucks may have moved since.
 
     Raises
@@ -34,11 +34,11 @@ def board_with(scene: SceneSpec, piece: PieceSpec) -> SceneSpec:
     InputError
         If the puck does not go with the board, or its name is taken.
     """
-    if not isinstance(piece, PieceSpec):
-        raise InputError(f"puck must be a Piece, got a {type(piece).__name__}")
-    there = pieces_of(scene)
+    if not isinstance(puck, ScenePuck):
+        raise InputError(f"puck must be a Puck, got a {type(puck).__name__}")
+    there = pucks_of(scene)
     bare: dict[str, Any] = {"puck": None, "launch": Launch(), "force": Force(), "constraint": None}
-    alone = replace(scene, **bare, pucks=(piece,), rims=()).single()
+    alone = replace(scene, **bare, pucks=(puck,), rims=()).single()
     own = alone.pucks[0]
     if own.name and own.name in {one.name for one in there}:
         raise InputError(f"puck.name = {own.name!r}: there is one of that name")
@@ -51,7 +51,7 @@ def board_with(scene: SceneSpec, piece: PieceSpec) -> SceneSpec:
             f"puck.constraint: a {own.constraint.kind} that moves must be there from the start"
         )
     board = object.__new__(type(scene))
-    parts = {name: part for name, part in vars(scene).items() if name != "_pieces"}
+    parts = {name: part for name, part in vars(scene).items() if name != "_pucks"}
     parts |= {name: getattr(alone, name) for name in bare}
     vars(board).update(parts | {"pucks": (*there, own)})
     return board

@@ -12,10 +12,11 @@ from puck_tables.errors import InputError
 from puck_tables.motion.body import is_plain
 from puck_tables.scene.agreement import floor_faults
 from puck_tables.scene.by_speed import law_name, speed_law
+from puck_tables.scene.forces import is_stepped
 from puck_tables.scene.holds import misfits
 from puck_tables.scene.over_time import drive_of, last_factors
 from puck_tables.scene.parts import Drag, Force, Lateral, Launch
-from puck_tables.scene.pieces import PieceSpec
+from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.sides import gap_on_way, gap_to, line_of, shape_faults
 from puck_tables.scene.stretches import belts_of, has_belts
@@ -24,43 +25,43 @@ from puck_tables.world.drive import rows_of
 TOUCH = 1e-12  # of the radius: pucks that overlap less touch
 CUSHIONS = ("wall", "post", "arc")  # what rims may meet besides pucks
 TABLE_ERROR = 1e-9  # of looked-up states: of places in Q²/J, of velocities in Q
-_SMALLEST, _LARGEST = 1e-100, 1e100
+_SMALLEST, _LARGEST = 1e-100, 1e100  # m, kg: squares of both are numbers
 
 
-def pieces_of(scene: SceneSpec) -> tuple[PieceSpec, ...]:
+def pucks_of(scene: SceneSpec) -> tuple[ScenePuck, ...]:
     """The pucks of a scene; a single one with its launch.
 
     Examples
     --------
     >>> from puck_tables import Pocket, Puck, Scene
-    >>> pieces_of(Scene(Puck(0.04), pockets=[Pocket((1.0, 0.0), 0.1)]))[0].radius
+    >>> pucks_of(Scene(Puck(0.04), pockets=[Pocket((1.0, 0.0), 0.1)]))[0].radius
     0.04
     """
     if scene.pucks:
         return scene.pucks
-    kept: dict[str, tuple[PieceSpec, ...]] = vars(scene)  # it is asked for often, and checked anew
-    if "_pieces" not in kept:
+    kept: dict[str, tuple[ScenePuck, ...]] = vars(scene)  # it is asked for often, and checked anew
+    if "_pucks" not in kept:
         puck = scene.puck
-        kept["_pieces"] = (
-            PieceSpec(
+        kept["_pucks"] = (
+            ScenePuck(
                 puck.radius, puck.height, puck.friction, puck.mass, puck.gravity, puck.pressure,
                 puck.gyration, puck.base, launch=scene.launch, force=scene.force,
                 constraint=scene.constraint,
             ),
         )  # fmt: skip
-    return kept["_pieces"]
+    return kept["_pucks"]
 
 
-def called(piece: PieceSpec, number: int) -> str:
+def called(puck: ScenePuck, number: int) -> str:
     """A puck in a message, a table and a legend.
 
     Examples
     --------
-    >>> from puck_tables import Piece
-    >>> called(Piece(0.1, name="striker"), 3), called(Piece(0.1), 3)
+    >>> from puck_tables import Puck
+    >>> called(Puck(0.1, name="striker"), 3), called(Puck(0.1), 3)
     ('striker', 'puck 3')
     """
-    return piece.name or f"puck {number}"
+    return puck.name or f"puck {number}"
 
 
 def who(scene: SceneSpec, number: int) -> str:
@@ -86,15 +87,15 @@ def refuse_endless(scene: SceneSpec) -> None:
         return
     floor = scene.floor
     moves = bool(belts_of(floor).any()) or floor.turning != 0.0 or bool(floor.over_time)
-    for number, piece in enumerate(pieces_of(scene)):
-        under = frictions_under(scene, piece)
-        grips = any(under) or bool(piece.path)
+    for number, puck in enumerate(pucks_of(scene)):
+        under = frictions_under(scene, puck)
+        grips = any(under) or bool(puck.path)
         if not grips and floor.law:
             raise InputError(
                 f"{law_name(scene)}: its friction is 0 at slip zero, so that nothing comes to "
                 "rest: give a time"
             )
-        if grips and not piece.path and not np.multiply(under, last_factors(floor)).any():
+        if grips and not puck.path and not np.multiply(under, last_factors(floor)).any():
             raise InputError(
                 f"floor.grip: friction is 0 in the end, so that {who(scene, number)} may never "
                 "come to rest: give a time"
@@ -104,7 +105,7 @@ def refuse_endless(scene: SceneSpec) -> None:
                 f"nothing brings {who(scene, number)} to rest (its friction is 0): give "
                 "a time, or friction"
             )
-        hold = piece.constraint
+        hold = puck.constraint
         if hold is not None and ((any(hold.velocity) and not moves) or hold.side_slip != 0.0):
             raise InputError(
                 f"the {hold.kind} of {who(scene, number)} moves, so it never comes to rest: "
@@ -112,15 +113,15 @@ def refuse_endless(scene: SceneSpec) -> None:
             )
 
 
-def frictions_under(scene: SceneSpec, piece: PieceSpec, fastest: float = 0.0) -> tuple[float, ...]:
+def frictions_under(scene: SceneSpec, puck: ScenePuck, fastest: float = 0.0) -> tuple[float, ...]:
     """Coulomb's coefficients under a puck: on each strip of the floor, then on each patch.
 
     Where they depend on the slip the largest, up to slips of ``fastest`` m/s: at 0 that at rest.
 
     Examples
     --------
-    >>> from puck_tables import Piece, Scene
-    >>> frictions_under(Scene(pucks=[Piece(0.1, friction=0.2)]), Piece(0.1, friction=0.2))
+    >>> from puck_tables import Puck, Scene
+    >>> frictions_under(Scene(pucks=[Puck(0.1, friction=0.2)]), Puck(0.1, friction=0.2))
     (0.2,)
     """
     floor = scene.floor
@@ -128,16 +129,16 @@ def frictions_under(scene: SceneSpec, piece: PieceSpec, fastest: float = 0.0) ->
         return (speed_law(scene).largest(fastest),)
     if floor.orthotropic is not None:
         return (max(floor.orthotropic.friction),)
-    base = (piece.friction,) if floor.strips is None else floor.strips.friction
+    base = (puck.friction,) if floor.strips is None else floor.strips.friction
     return (*base, *(patch.friction for patch in floor.patches))
 
 
-def has_closed_forms(piece: PieceSpec, friction: float) -> bool:
+def has_closed_forms(puck: ScenePuck, friction: float) -> bool:
     """Whether closed forms hold for a friction of a puck, or it is 0."""
-    delta = 2.0 * friction * piece.height / piece.radius
-    if piece.shape is not None:
+    delta = 2.0 * friction * puck.height / puck.radius
+    if puck.shape is not None:
         return True  # in sums of its own, which are exact
-    return friction == 0.0 or is_plain(piece.pressure, piece.gyration, delta)
+    return friction == 0.0 or is_plain(puck.pressure, puck.gyration, delta)
 
 
 def flight_error(scene: SceneSpec) -> float:
@@ -145,8 +146,8 @@ def flight_error(scene: SceneSpec) -> float:
 
     Examples
     --------
-    >>> from puck_tables import Piece, Scene
-    >>> men = [Piece(0.1, friction=0.2)]
+    >>> from puck_tables import Puck, Scene
+    >>> men = [Puck(0.1, friction=0.2)]
     >>> [flight_error(Scene(pucks=men, tol=tol)) for tol in (1e-6, 1e-11)]
     [1e-09, 1e-11]
     """
@@ -160,36 +161,36 @@ def steps_for(scene: SceneSpec) -> float:
 
     Examples
     --------
-    >>> from puck_tables import Piece, Puck, Scene
-    >>> steps_for(Scene(Puck(0.1), tol=1e-7)), steps_for(Scene(pucks=[Piece(0.1)] * 2, tol=1e-7))
+    >>> from puck_tables import Puck, Scene
+    >>> steps_for(Scene(Puck(0.1), tol=1e-7)), steps_for(Scene(pucks=[Puck(0.1)] * 2, tol=1e-7))
     (1e-07, 1e-09)
     """
-    return scene.tol if len(pieces_of(scene)) == 1 else flight_error(scene)
+    return scene.tol if len(pucks_of(scene)) == 1 else flight_error(scene)
 
 
-def is_integrated(scene: SceneSpec, piece: PieceSpec, friction: float) -> bool:
+def is_integrated(scene: SceneSpec, puck: ScenePuck, friction: float) -> bool:
     """Whether the motion of a puck is integrated, on this friction, also while nothing touches it.
 
     Examples
     --------
-    >>> from puck_tables import Floor, Piece, Scene
-    >>> is_integrated(Scene(pucks=[Piece(0.1)], floor=Floor(slope=0.1)), Piece(0.1), 0.1)
+    >>> from puck_tables import Floor, Puck, Scene
+    >>> is_integrated(Scene(pucks=[Puck(0.1)], floor=Floor(slope=0.1)), Puck(0.1), 0.1)
     True
     """
     drags, floor = scene.drag != Drag(), scene.floor
     unlike = bool(floor.law) or floor.orthotropic is not None or flight_error(scene) < TABLE_ERROR
-    unlike = unlike or piece.shape is not None or bool(floor.grips) or bool(floor.over_time)
-    rough = friction > 0.0 and (drags or unlike or not has_closed_forms(piece, friction))
+    unlike = unlike or puck.shape is not None or bool(floor.grips) or bool(floor.over_time)
+    rough = friction > 0.0 and (drags or unlike or not has_closed_forms(puck, friction))
     turns = floor.turning != 0.0 and (friction > 0.0 or drags)
-    more = floor.slope > 0.0 or piece.force != Force() or piece.constraint is not None
-    more = more or scene.lateral.strength != 0.0
-    return not piece.path and (rough or turns or more)
+    more = floor.slope > 0.0 or puck.force != Force() or puck.constraint is not None
+    more = more or is_stepped(scene.drag, scene.lateral)
+    return not puck.path and (rough or turns or more)
 
 
 def disagreements(scene: SceneSpec) -> list[str]:
     """What is wrong between fields that are each in range."""
-    pieces = pieces_of(scene)
-    faults = [*_not_here(scene), *_bad_floors(scene, pieces)]
+    pucks = pucks_of(scene)
+    faults = [*_not_here(scene), *_bad_floors(scene, pucks)]
     if not faults and has_belts(scene.floor):
         for name in ("drag", "lateral"):
             if getattr(scene, name) != (Drag() if name == "drag" else Lateral()):
@@ -197,11 +198,11 @@ def disagreements(scene: SceneSpec) -> list[str]:
                     f"{name}: not known on belts of several velocities, floor.strips or "
                     "floor.patch; leave one out"
                 )
-    names = [piece.name for piece in pieces if piece.name]
+    names = [puck.name for puck in pucks if puck.name]
     for name in sorted({name for name in names if names.count(name) > 1}):
         faults.append(f"puck.name = {name!r}: {names.count(name)} pucks have it, it must be of one")
-    for number, piece in enumerate(pieces):
-        faults += _of_one(scene, piece, f"puck[{number}]" if scene.pucks else "puck")
+    for number, puck in enumerate(pucks):
+        faults += _of_one(scene, puck, f"puck[{number}]" if scene.pucks else "puck")
     for k, wall in enumerate(scene.walls):
         faults += [f"wall[{k}]: {fault}" for fault in shape_faults(wall)]
     normals = [(f"wall[{k}]", wall.normal) for k, wall in enumerate(scene.walls)]
@@ -216,7 +217,7 @@ def disagreements(scene: SceneSpec) -> list[str]:
     if faults:
         return faults
     return [
-        *_overlaps(pieces), *_out_of_bounds(scene, pieces), *_driven_through(scene, pieces),
+        *_overlaps(pucks), *_out_of_bounds(scene, pucks), *_driven_through(scene, pucks),
         *_wide_pockets(scene),
     ]  # fmt: skip
 
@@ -246,46 +247,46 @@ def _not_here(scene: SceneSpec) -> Iterator[str]:
             yield f"{name}: each of several pucks has its own, puck[0].{name}"
 
 
-def _bad_floors(scene: SceneSpec, pieces: tuple[PieceSpec, ...]) -> Iterator[str]:
+def _bad_floors(scene: SceneSpec, pucks: tuple[ScenePuck, ...]) -> Iterator[str]:
     """What is wrong with the friction of the floor, and whose base it does not fit."""
     found: dict[str, list[str]] = {}
-    for number, piece in enumerate(pieces):
-        for fault in () if piece.path else floor_faults(scene.alone(piece)):
+    for number, puck in enumerate(pucks):
+        for fault in () if puck.path else floor_faults(scene.alone(puck)):
             found.setdefault(fault, []).append(who(scene, number))
-    slides = sum(not piece.path for piece in pieces)
+    slides = sum(not puck.path for puck in pucks)
     for fault, names in found.items():
         yield fault if len(names) == slides else f"{', '.join(names)}: {fault}"
 
 
-def _of_one(scene: SceneSpec, piece: PieceSpec, path: str) -> Iterator[str]:
+def _of_one(scene: SceneSpec, puck: ScenePuck, path: str) -> Iterator[str]:
     """What is wrong with one of them."""
-    for name, value in (("radius", piece.radius), ("mass", piece.mass)):
+    for name, value in (("radius", puck.radius), ("mass", puck.mass)):
         if not _SMALLEST <= value <= _LARGEST:
             yield (
                 f"{path}.{name} = {value:g}: must be from {_SMALLEST:g} to {_LARGEST:g} in a "
                 "scene, use other units"
             )
-    yield from _bad_base(scene, piece, path)
-    if piece.path:
+    yield from _bad_base(scene, puck, path)
+    if puck.path:
         for name, part, default in (
-            ("launch", piece.launch, Launch(position=piece.launch.position)),
-            ("force", piece.force, Force()), ("constraint", piece.constraint, None),
+            ("launch", puck.launch, Launch(position=puck.launch.position)),
+            ("force", puck.force, Force()), ("constraint", puck.constraint, None),
         ):  # fmt: skip
             if part != default:
                 yield f"{path}.{name}: what is driven along a path has none, leave it out"
         try:
-            rows_of(piece.path)
+            rows_of(puck.path)
         except InputError as error:
             yield f"{path}.path: {error}"
         return
-    rows = piece.force.over_time
+    rows = puck.force.over_time
     if rows and not isinstance(rows, str):
         try:
             drive_of(rows)
         except InputError as error:
             yield f"{path}.{error}"
-    hold, alone = piece.constraint, f"{path}." if scene.pucks else ""
-    yield from misfits(piece.launch, hold, scene.floor, alone)
+    hold, alone = puck.constraint, f"{path}." if scene.pucks else ""
+    yield from misfits(puck.launch, hold, scene.floor, alone)
     if hold is not None and scene.floor.over_time:
         yield f"{path}.constraint: not known beside floor.over_time; leave one out"
     if hold is not None and has_belts(scene.floor):
@@ -293,41 +294,41 @@ def _of_one(scene: SceneSpec, piece: PieceSpec, path: str) -> Iterator[str]:
             f"{path}.constraint: not known on belts of several velocities, floor.strips or "
             "floor.patch; leave one out"
         )
-    if hold is not None and any(hold.velocity) and piece.launch.time > 0.0:
+    if hold is not None and any(hold.velocity) and puck.launch.time > 0.0:
         yield (
-            f"{path}.launch.time = {piece.launch.time:g}: a {hold.kind} that moves leads it "
+            f"{path}.launch.time = {puck.launch.time:g}: a {hold.kind} that moves leads it "
             "at once, leave it out"
         )
 
 
-def _bad_base(scene: SceneSpec, piece: PieceSpec, path: str) -> Iterator[str]:
+def _bad_base(scene: SceneSpec, puck: ScenePuck, path: str) -> Iterator[str]:
     """What does not go with a base that is not round."""
-    if piece.shape is None:
+    if puck.shape is None:
         return
-    if piece.path:
+    if puck.path:
         yield f"{path}.base: what is driven along a path needs no base, give its radius"
-    if piece.has_rim:
+    if puck.has_rim:
         return
     met = [name for name in CUSHIONS if getattr(scene, f"{name}s")]
-    met += ["puck"] if len(pieces_of(scene)) > 1 else []
+    met += ["puck"] if len(pucks_of(scene)) > 1 else []
     if met:
         yield (
             f"{path}.radius is missing: a body that may meet a {met[0]} needs a round rim around "
-            f"its base, {path}.radius, of at least {piece.shape.reach:.6g} m"
+            f"its base, {path}.radius, of at least {puck.shape.reach:.6g} m"
         )
-    usual = PieceSpec(1.0)
+    usual = ScenePuck(1.0)
     for name in ("restitution", "tangential", "rim"):
-        if getattr(piece, name) != getattr(usual, name):
+        if getattr(puck, name) != getattr(usual, name):
             yield f"{path}.{name}: a base without a rim meets nothing, give {path}.radius, or none"
 
 
 def _strange_rims(scene: SceneSpec) -> Iterator[str]:
     """What is wrong with the rims of pairs."""
-    pieces = pieces_of(scene)
-    known = {piece.name for piece in pieces} | {piece.colour for piece in pieces}
+    pucks = pucks_of(scene)
+    known = {puck.name for puck in pucks} | {puck.colour for puck in pucks}
     for kind, ones in zip(CUSHIONS, (scene.walls, scene.posts, scene.arcs), strict=True):
         known |= {kind, *(f"{kind} {k}" for k in range(len(ones)))} if ones else set()
-    pucks = {name for one in pieces for name in (one.name, one.colour)} - {""}
+    called_so = {name for one in pucks for name in (one.name, one.colour)} - {""}
     for number, rim in enumerate(scene.rims):
         if rim.restitution is None and rim.tangential is None and rim.friction is None:
             yield (
@@ -335,7 +336,7 @@ def _strange_rims(scene: SceneSpec) -> Iterator[str]:
                 "it out"
             )
         for side in ("puck", "partner"):
-            given, may = getattr(rim, side), (pucks if side == "puck" else known - {""})
+            given, may = getattr(rim, side), (called_so if side == "puck" else known - {""})
             if given not in may:
                 near = get_close_matches(given, sorted(may), 1, 0.6)
                 meant = f" (did you mean {near[0]!r}?)" if near else ""
@@ -346,41 +347,41 @@ def _strange_rims(scene: SceneSpec) -> Iterator[str]:
                 )
 
 
-def _overlaps(pieces: tuple[PieceSpec, ...]) -> Iterator[str]:
+def _overlaps(pucks: tuple[ScenePuck, ...]) -> Iterator[str]:
     """Pucks that overlap at the start."""
-    places = np.array([start_of(piece) for piece in pieces])
-    radii = np.array([piece.radius for piece in pieces])
-    for number in range(len(pieces)):
+    places = np.array([start_of(puck) for puck in pucks])
+    radii = np.array([puck.radius for puck in pucks])
+    for number in range(len(pucks)):
         gaps = np.hypot(*(places[:number] - places[number]).T) - radii[:number] - radii[number]
         for other in np.flatnonzero(gaps < -TOUCH * radii[number]):
             yield (
-                f"{called(pieces[other], int(other))} and {called(pieces[number], number)} overlap "
+                f"{called(pucks[other], int(other))} and {called(pucks[number], number)} overlap "
                 f"by {-gaps[other]:.3g} m at the start: move one of them"
             )
 
 
-def start_of(piece: PieceSpec) -> tuple[float, float]:
+def start_of(puck: ScenePuck) -> tuple[float, float]:
     """Where a puck is at first."""
-    if piece.path:
-        rows = rows_of(piece.path)
+    if puck.path:
+        rows = rows_of(puck.path)
         return float(rows[0, 1]), float(rows[0, 2])
-    return piece.launch.position
+    return puck.launch.position
 
 
-def _out_of_bounds(scene: SceneSpec, pieces: tuple[PieceSpec, ...]) -> Iterator[str]:
+def _out_of_bounds(scene: SceneSpec, pucks: tuple[ScenePuck, ...]) -> Iterator[str]:
     """Pucks that start in a cushion or a hole."""
-    for number, piece in enumerate(pieces):
-        place, name = start_of(piece), who(scene, number)
-        for path, what, depth in in_the_way(scene, place, piece.radius, holes=not piece.path):
+    for number, puck in enumerate(pucks):
+        place, name = start_of(puck), who(scene, number)
+        for path, what, depth in in_the_way(scene, place, puck.radius, holes=not puck.path):
             yield f"{path}: {name} at {list(place)} {what} by {depth:.3g} m: move one of them"
 
 
-def _driven_through(scene: SceneSpec, pieces: tuple[PieceSpec, ...]) -> Iterator[str]:
+def _driven_through(scene: SceneSpec, pucks: tuple[ScenePuck, ...]) -> Iterator[str]:
     """Paths of driven bodies that lead through what stands, at rest at their start or later."""
-    for number, piece in enumerate(pieces):
-        if not piece.path:
+    for number, puck in enumerate(pucks):
+        if not puck.path:
             continue
-        rows = rows_of(piece.path)
+        rows = rows_of(puck.path)
         before, after = rows[:-1, 1:3], rows[1:, 1:3]
         gaps = {}
         for k, wall in enumerate(scene.walls):
@@ -396,15 +397,15 @@ def _driven_through(scene: SceneSpec, pieces: tuple[PieceSpec, ...]) -> Iterator
         for k, arc in enumerate(scene.arcs):
             if arc.span >= 2.0 * math.pi:
                 gaps[f"arc[{k}]"] = arc.radius - np.hypot(*(after - arc.point).T)
-        starts_in = [one for one, *_ in in_the_way(scene, start_of(piece), piece.radius, False)]
+        starts_in = [one for one, *_ in in_the_way(scene, start_of(puck), puck.radius, False)]
         for path, gap in gaps.items():
-            deep = np.flatnonzero(gap - piece.radius < -TOUCH * piece.radius)
+            deep = np.flatnonzero(gap - puck.radius < -TOUCH * puck.radius)
             if deep.size and path not in starts_in:
                 row = int(deep[0])
                 start, end = rows[row : row + 2, 0]
                 yield (
                     f"{path}: {who(scene, number)} is driven through it between {start:g} s and "
-                    f"{end:g} s, {piece.radius - gap[row]:.3g} m deep: lead its path around it"
+                    f"{end:g} s, {puck.radius - gap[row]:.3g} m deep: lead its path around it"
                 )
 
 
@@ -417,8 +418,8 @@ def in_the_way(
 
     Examples
     --------
-    >>> from puck_tables import Piece, Scene, Wall
-    >>> board = Scene(pucks=[Piece(0.1)], walls=[Wall((0.0, 0.5), normal=(0.0, -1.0))])
+    >>> from puck_tables import Puck, Scene, Wall
+    >>> board = Scene(pucks=[Puck(0.1)], walls=[Wall((0.0, 0.5), normal=(0.0, -1.0))])
     >>> list(in_the_way(board, (0.0, 0.45), 0.1, holes=True))[0][:2]
     ('wall[0]', 'reaches through it')
     """

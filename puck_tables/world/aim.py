@@ -13,7 +13,7 @@ from puck_tables._core.executor import Progress
 from puck_tables._core.real import checked_progress, finite_array, positive, real, shown
 from puck_tables.errors import InputError
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.agreement import pieces_of, start_of
+from puck_tables.world.agreement import pucks_of, start_of
 from puck_tables.world.aimed import BoardAim, aimed
 from puck_tables.world.launches import effort_for, good, headings_for, take_sample
 from puck_tables.world.pocketing import Pocketing
@@ -21,7 +21,7 @@ from puck_tables.world.shots import Shots
 from puck_tables.world.solving import stops_at
 from puck_tables.world.targets import Target, lying_there, out_of_reach, target_of, without_pocket
 
-MOST_COUNT, MOST_IMPACTS, MOST_SPINS = 1000, 20, 1000
+MOST_COUNT, MOST_IMPACTS, MOST_SPINS = 1000, 20, 1000  # launches, impacts of one, spins asked for
 PLENTY = 3.0  # the greatest speed over that which slides the whole way
 PLENTY_SPIN = 2.0  # the greatest rim speed over the speed
 _LEAST = 1e-6  # of the greatest speed
@@ -93,8 +93,8 @@ def aim(
     wanted = target_of(scene, target, pocket, puck, striker, hits)
     searches = _searches(scene, wanted, spin, speed, max_speed, max_spin)
     if wanted.pocket < 0 and wanted.puck != wanted.striker:
-        piece = pieces_of(scene)[wanted.puck]
-        if math.dist(start_of(piece), wanted.place) == 0.0 and piece.launch.velocity is None:
+        lying = pucks_of(scene)[wanted.puck]
+        if math.dist(start_of(lying), wanted.place) == 0.0 and lying.launch.velocity is None:
             return aimed(
                 scene, wanted, "{puck} lies there: any launch that leaves it alone will do"
             )
@@ -150,7 +150,7 @@ def _searches(
     max_speed: float | None, max_spin: float | None,
 ) -> list[Search]:  # fmt: skip
     """One for each spin, or one over spins."""
-    piece = pieces_of(scene)[wanted.striker]
+    puck = pucks_of(scene)[wanted.striker]
     if spin is not None and speed is not None:
         raise InputError(
             "spin and speed are both given: a heading alone reaches no place; give one of them"
@@ -161,11 +161,9 @@ def _searches(
         given = positive("speed", speed, "m/s")
         if fastest is not None and given > fastest:
             raise InputError(f"speed = {given:g} m/s is above max_speed = {fastest:g} m/s")
-        widest = PLENTY_SPIN * given / piece.radius if widest is None else widest
+        widest = PLENTY_SPIN * given / puck.radius if widest is None else widest
         return [Search(None, given, -widest, widest)]
-    spins = np.atleast_1d(
-        finite_array("spin", piece.launch.spin if spin is None else spin, "rad/s")
-    )
+    spins = np.atleast_1d(finite_array("spin", puck.launch.spin if spin is None else spin, "rad/s"))
     if spins.ndim != 1 or not 1 <= spins.size <= MOST_SPINS:
         raise InputError(f"spin must be a number or a list of at most {MOST_SPINS}")
     if widest is not None and np.abs(spins).max() > widest:
@@ -185,14 +183,14 @@ def _plenty(scene: SceneSpec, wanted: Target) -> float:
     InputError
         If nothing brakes the striker.
     """
-    pieces = pieces_of(scene)
-    striker, puck = pieces[wanted.striker], pieces[wanted.puck]
+    pucks = pucks_of(scene)
+    striker, puck = pucks[wanted.striker], pucks[wanted.puck]
     start = start_of(striker)
     way = math.dist(start, wanted.place)
     if wanted.puck != wanted.striker:
         way = math.dist(start, start_of(puck)) + math.dist(start_of(puck), wanted.place)
     if wanted.through >= 0:
-        way += 2.0 * math.dist(start, start_of(pieces[wanted.through]))
+        way += 2.0 * math.dist(start, start_of(pucks[wanted.through]))
     share = min(1.0, 2.0 * striker.mass / (striker.mass + puck.mass))
     decel = max(striker.decel, puck.decel)
     if striker.friction == 0.0:

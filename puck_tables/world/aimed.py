@@ -19,7 +19,7 @@ from puck_tables.scene.library import files_of
 from puck_tables.scene.outcome import column_of, scene_texts
 from puck_tables.scene.run import Run
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.agreement import called, pieces_of, start_of
+from puck_tables.world.agreement import called, pucks_of, start_of
 from puck_tables.world.simulate import simulate
 from puck_tables.world.targets import Target
 
@@ -34,7 +34,7 @@ class BoardAim(Result):
     Arrays (n,), the least sensitive first: ``launch_spin`` rad/s, ``launch_vx``, ``launch_vy``,
     ``launch_speed`` m/s, ``launch_heading`` rad; of a run of the whole board with each:
     ``stop_time`` s, ``miss`` m (of a pocket 0: it falls in), ``end_error`` m, as
-    :class:`puck_tables.Run` has it, ``impacts`` that lead there, and ``courses``
+    :class:`puck_tables.results.Run` has it, ``impacts`` that lead there, and ``courses``
     in words.  Of a target: ``per_degree``, ``per_percent`` m, how far the end moves per degree of
     heading and per cent of speed.  Of a pocket: ``heading_width`` rad and ``speed_width`` m/s (or
     ``spin_width`` rad/s), the intervals through the launch from which the puck falls in.
@@ -75,9 +75,9 @@ class BoardAim(Result):
     @property
     def start(self) -> tuple[float, float, float]:
         """Where the striker starts, m, and its radius, m."""
-        for number, piece in enumerate(pieces_of(self.scene)):
-            if called(piece, number) == self.striker:
-                return *start_of(piece), piece.radius
+        for number, puck in enumerate(pucks_of(self.scene)):
+            if called(puck, number) == self.striker:
+                return *start_of(puck), puck.radius
         raise InputError(f"no puck {self.striker!r}")
 
     def board(self, number: int = 0) -> SceneSpec:
@@ -142,8 +142,8 @@ def aimed(
     ``margins`` (n, 2): how their ends change, or the widths of their intervals; ``answer``: what to
     say where there are none.
     """
-    pieces = pieces_of(scene)
-    names = tuple(called(piece, number) for number, piece in enumerate(pieces))
+    pucks = pucks_of(scene)
+    names = tuple(called(puck, number) for number, puck in enumerate(pucks))
     starts = np.empty((0, 3)) if starts is None else starts
     margins = np.empty((0, 2)) if margins is None else margins
     pocketing = wanted.pocket >= 0
@@ -190,8 +190,8 @@ def aimed(
 
 def _sent(scene: SceneSpec, striker: str, vx: float, vy: float, spin: float) -> SceneSpec:
     """The board with a launch of the striker."""
-    pieces = pieces_of(scene)
-    number = next(n for n, piece in enumerate(pieces) if called(piece, n) == striker)
+    pucks = pucks_of(scene)
+    number = next(n for n, puck in enumerate(pucks) if called(puck, n) == striker)
     path = f"puck[{number}].launch" if scene.pucks else "launch"
     return scene.at({f"{path}.velocity": [vx, vy], f"{path}.spin": spin})
 

@@ -6,6 +6,7 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
+from puck_tables.scene.forces import dragged
 from puck_tables.scene.friction import VX, VY, X, Y, at_slip_zero, dry_friction, size
 from puck_tables.scene.ingredients import carried_along
 from puck_tables.scene.over_time import FORCED, given_by, rows_passed
@@ -14,13 +15,13 @@ from puck_tables.world.game import Game, Whole
 from puck_tables.world.holds import led
 from puck_tables.world.layout import (
     DECEL,
+    DRAG,
     LIGHTNESS,
     PULL_X,
     PULL_Y,
     RADIUS,
     TURNABILITY,
     TWIST,
-    dragged,
 )
 
 
@@ -65,7 +66,7 @@ def acceleration(game: Game, i: int, t: float, state: FloatArray) -> tuple[float
     else:
         dry = dry_now(game.regions, game.discs, game.tides, game.spans, i, passed, t, state)
         fx, fy, torque, _ = dry_friction(dry, disc[RADIUS], ux, uy, w)
-        dx, dy, slows, _, _ = dragged(disc, ux, uy, w)
+        dx, dy, slows, _, _ = dragged(disc[DRAG:], ux, uy, w)
         ax += disc[LIGHTNESS] * fx + dx
         ay += disc[LIGHTNESS] * fy + dy
         turn += disc[TURNABILITY] * torque + slows

@@ -16,6 +16,7 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
+from puck_tables.scene.forces import per_change, per_speed
 from puck_tables.scene.friction import SPIN, VX, VY, dry_friction, size
 from puck_tables.scene.ingredients import Dry
 from puck_tables.world.flight import (
@@ -30,13 +31,13 @@ from puck_tables.world.flight import (
     UNTIL,
 )
 from puck_tables.world.game import Game
-from puck_tables.world.layout import DAMPING, DECEL, LIGHTNESS, RADIUS, REGION, WAKE
+from puck_tables.world.layout import DECEL, DRAG, LIGHTNESS, RADIUS, REGION
 from puck_tables.world.paths import DURATION, START, jerk_on, on_piece, piece_at
 
 _JERK = 2.4  # J² v/Q² while Q is more than half of what it was: 4 times 0.5, and some more
 _HALF = 0.375  # Q/J, in which Q falls by half at most
 _UNSURE = 1e-9  # of accelerations that are looked up
-_HALVINGS = 60
+_HALVINGS = 60  # of an interval by its logarithm: 17 take 30 decades to a thousandth
 
 
 @inlined
@@ -58,8 +59,8 @@ def _knows(
         return room[6], room[7], jerk_on(row), row[START] + row[DURATION] - t
     if kind == DAMPED:
         speed = math.hypot(vx, vy)
-        drag = disc[DAMPING] + disc[WAKE] * speed
-        jerk = drag * (disc[DAMPING] + 2.0 * disc[WAKE] * speed) * speed
+        drag = per_speed(disc[DRAG:], speed)
+        jerk = drag * per_change(disc[DRAG:], speed) * speed
         return -drag * vx, -drag * vy, jerk, math.inf
     slip = size(vx, vy, disc[RADIUS] * state[SPIN])
     if kind != LOOKED_UP or slip == 0.0 or not t < flight[UNTIL]:

@@ -31,7 +31,7 @@ from puck_tables.scene.outcome import (
 from puck_tables.scene.parts import Edge
 from puck_tables.scene.run import STATE, ledger, residual
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.agreement import called, pieces_of, refuse_endless
+from puck_tables.world.agreement import called, pucks_of, refuse_endless
 from puck_tables.world.bulk import Ends, follow_all
 from puck_tables.world.footing import moves_along
 from puck_tables.world.lasting import LEADS_ON, NEVER_ENDS, ROUND
@@ -69,7 +69,7 @@ class BoardCase:
     """
 
     def __init__(self, scene: SceneSpec) -> None:
-        self.scene, self.pieces = scene, pieces_of(scene)
+        self.scene, self.pucks = scene, pucks_of(scene)
         refuse_endless(scene)
         self.model, self.explanation = plan_of(scene)
         self.until = math.inf if scene.time is None else scene.time
@@ -79,14 +79,14 @@ class BoardCase:
     @staticmethod
     def names(scene: SceneSpec) -> tuple[str, ...]:
         """What its pucks are called; of a scene of one puck none, it has no dimension of them."""
-        return tuple(called(piece, number) for number, piece in enumerate(scene.pucks))
+        return tuple(called(puck, number) for number, puck in enumerate(scene.pucks))
 
     @staticmethod
     def columns(scene: SceneSpec) -> dict[str, tuple[int, ...]]:
         """What is known of an end, by name, and its shape."""
         each: tuple[int, ...] = (len(scene.pucks),) if scene.pucks else ()
         found = dict.fromkeys((*STATE, "in_play", "carried", "kinetic_energy"), each)
-        if any(piece.constraint for piece in pieces_of(scene)):
+        if any(puck.constraint for puck in pucks_of(scene)):
             found |= dict.fromkeys(("lambda_1", "lambda_2"), each)
         shared = (*NAMES, "energy_residual", "end_time", "impacts")
         return found | dict.fromkeys(shared, ())
@@ -103,11 +103,11 @@ class BoardCase:
             if (values[:, 3:] != values[0, 3:]).any():
                 return ()
             paths = launch_paths(path)[:3]
-        pieces, found = pieces_of(scene), []
+        pucks, found = pucks_of(scene), []
         for one in paths:
             match = _LAUNCH.fullmatch(one)
-            piece = pieces[int(match[1] or 0)] if match is not None else None
-            if piece is None or piece.launch.time > 0.0 or piece.path or piece.constraint:
+            puck = pucks[int(match[1] or 0)] if match is not None else None
+            if puck is None or puck.launch.time > 0.0 or puck.path or puck.constraint:
                 return ()
             found.append(one)
         return tuple(found)
@@ -133,7 +133,7 @@ class BoardCase:
         numbers = sorted({number for number, _ in parts.values()})
         starts = np.empty((count, len(numbers), 3))
         for m, number in enumerate(numbers):
-            launch = self.pieces[number].launch
+            launch = self.pucks[number].launch
             starts[:, m] = *(launch.velocity or (0.0, 0.0)), launch.spin
         for path, values in launches.items():
             number, part = parts[path]
@@ -154,11 +154,11 @@ class BoardCase:
             carried[:] = False
         status = np.where(carried.all(axis=1), CARRIED_AWAY, TIME_UP).astype(np.int8)
         status[~moves.any(axis=1)] = AT_REST
-        if len(self.pieces) == 1:
+        if len(self.pucks) == 1:
             gone, places = ends.in_play[:, 0] == 0.0, ends.states[:, 0, :2]
             status[gone] = IN_POCKET
             for edge in self.scene.edges:
-                near = _off(edge, places) <= _ON_EDGE * self.pieces[0].radius
+                near = _off(edge, places) <= _ON_EDGE * self.pucks[0].radius
                 status[gone & near] = OVER_EDGE
         for how, code in _ENDS.items():
             status[ends.how == how] = code
@@ -168,7 +168,7 @@ class BoardCase:
         found = {name: ends.states[..., n] for n, name in enumerate(STATE)}
         found |= {"in_play": ends.in_play, "carried": ends.carried}
         found["kinetic_energy"] = kinetic_of(self.game, ends.states)
-        if any(piece.constraint for piece in self.pieces):
+        if any(puck.constraint for puck in self.pucks):
             forces = reactions(self.game, ends.time, ends.states, ends.in_play)
             found |= {"lambda_1": forces[..., 0], "lambda_2": forces[..., 1]}
         out = {
@@ -204,7 +204,7 @@ class BoardCase:
             last["in_play"][-1, order],
             last["carried"][-1, order],
         )
-        gone = len(self.pieces) == 1 and not world.in_play[0]
+        gone = len(self.pucks) == 1 and not world.in_play[0]
         when = np.nextafter(ends.time[run], 0.0) if gone else ends.time[run]
         ends.ledgers[run] = ledgers_of(world, np.array([min(when, world.time)]))[0]
         ends.impacts[run] = sum(event.what == "impact" for event in world.events_since(0.0))

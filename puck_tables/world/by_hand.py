@@ -14,7 +14,7 @@ from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.over_time import ON_ALL
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.agreement import pieces_of
+from puck_tables.world.agreement import pucks_of
 from puck_tables.world.drive import fill_straight
 from puck_tables.world.flight import ANGLE, FIRST_PIECE, PATH, PLACE_X
 from puck_tables.world.floors import INTEGRATED, regions_of
@@ -45,7 +45,6 @@ from puck_tables.world.paths import on_piece
 
 SHORT_OF = 1e-9  # of its radius: so far from cushions stops what is led, and never presses them
 _OFF = 1e-9  # of its radius: farther off its constraint a puck cannot be put
-_FULL_TURN = 2.0 * math.pi
 
 
 def led_state(game: Game, i: int) -> FloatArray:
@@ -124,7 +123,7 @@ def _free_for(obstacles: FloatArray, radius: float, state: FloatArray) -> float:
             elif row[KIND] == ARC and speed2 > 0.0 and math.hypot(dx, dy) < row[C]:
                 out = max((math.sqrt(max(root, 0.0)) - along) / speed2, 0.0)
                 angle = math.atan2(dy + out * vy, dx + out * vx)
-                if row[SPAN] >= _FULL_TURN or in_span(angle, row[FROM], row[SPAN]):
+                if row[SPAN] >= 2.0 * math.pi or in_span(angle, row[FROM], row[SPAN]):
                     longest = min(longest, out)
     return longest
 
@@ -188,8 +187,8 @@ def with_integrated(game: Game, scene: SceneSpec, order: Whole, discs: Whole) ->
     how[:, discs] = np.maximum(how[:, discs], INTEGRATED)
     regions = game.regions
     if not game.floors[:, 2].any():  # its friction is asked for often from now on
-        pieces = [pieces_of(scene)[number] for number in order]
-        regions = regions_of(scene, pieces, floors, 0.0)
+        pucks = [pucks_of(scene)[number] for number in order]
+        regions = regions_of(scene, pucks, floors, 0.0)
     game = game._replace(floors=floors, regions=regions)
     for i in discs.tolist():
         step_onto(game, i)

@@ -11,7 +11,7 @@ from puck_tables.scene.friction import THETA, VX, X, Y
 from puck_tables.scene.ingredients import FREE
 from puck_tables.scene.regions import friction_error
 from puck_tables.world import game as g
-from puck_tables.world.agreement import flight_error, pieces_of
+from puck_tables.world.agreement import flight_error, pucks_of
 from puck_tables.world.floors import velocities_under
 from puck_tables.world.layout import HOLD, LIGHTNESS, NORMAL
 from puck_tables.world.prepare import Start
@@ -32,17 +32,17 @@ def error_of(world: World, start: Start) -> float:
     up by what that may be wrong by, and friction that is integrated by what its table may.  With
     the rounding of the look-up, for pucks that could slide far.  In units of Q/J and Q²/J.
     """
-    pieces = pieces_of(start.scene)
+    pucks = pucks_of(start.scene)
     speed, rate = world._game.pace[:2].tolist()
     length, now = speed * speed / rate, world.time
-    radii, alone = np.array([piece.radius for piece in pieces]), len(pieces) == 1
+    radii, alone = np.array([puck.radius for puck in pucks]), len(pucks) == 1
     probes = now * np.arange(1, PROBES + 1) / PROBES if alone else np.array([now])
     states, stops = world.over(probes), world.motion_ends
     share, off = _launches_off(start, alone), 0.0
     if start.game.floors[:, 2].any():
         slides = {
             (one.height, one.friction, one.pressure, one.shape is None): one
-            for one in pieces
+            for one in pucks
             if not one.path
         }
         off = max(friction_error(start.scene.alone(one)) for one in slides.values())

@@ -33,7 +33,7 @@ from puck_tables.world.multipliers import (
     right_hand_side,
 )
 
-_GUESSES, _TRIES = 25, 5
+_GUESSES, _TRIES = 25, 5  # of modes from those before; of modes from forces
 _STEPS = 400  # of forces, before modes are guessed from them; four times as many each time
 _LEFT_OVER = 1e-9  # of what is given: the equations have no solution
 

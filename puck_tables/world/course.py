@@ -17,7 +17,7 @@ from puck_tables.world.game import (
 )
 
 PRINT, LENGTH, FATE, PASSES = range(4)  # columns of a course
-COURSE_COLUMNS = 4
+COURSE_COLUMNS = 4  # the four above
 
 _PRIME = 2147483647  # products of two numbers below it fit 64 bits
 

@@ -79,6 +79,7 @@ from puck_tables.world.impact import (
     NY,
     SUM_N,
     SUM_T,
+    was_hit,
 )
 from puck_tables.world.layout import (
     EDGE_NUMBER,
@@ -268,7 +269,7 @@ def note_impacts(game: Game, t: float, count: int, room: Room) -> None:
     """Write down the impacts of contacts that had an impulse."""
     for n in range(count):
         row, i = room.rows[n], room.contacts[n, 0]
-        if row[SUM_N] > 0.0:
+        if was_hit(row):
             radius = game.discs[i, RADIUS]
             note(
                 game, t, IMPACT, i, room.contacts[n, 1],

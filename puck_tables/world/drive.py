@@ -12,7 +12,7 @@ from puck_tables.kernels.compile import inlined
 from puck_tables.scene.parts import Rows
 from puck_tables.world.paths import DURATION, FIRST, PIECE_COLUMNS, START
 
-MAX_BYTES = 1 << 26
+MAX_BYTES = 1 << 26  # of a file of a path: more is none
 
 
 def rows_of(given: str | Rows) -> FloatArray:
@@ -73,7 +73,7 @@ def straight_piece(start: float, duration: float, state: FloatArray) -> FloatArr
 
 @inlined
 def fill_straight(start: float, duration: float, state: FloatArray, piece: FloatArray) -> None:
-    """The same into a row."""
+    """Write one straight piece from a state (6,) on into a row (21,)."""
     for column in range(PIECE_COLUMNS):
         piece[column] = 0.0
     piece[START], piece[DURATION] = start, duration

@@ -65,6 +65,7 @@ from puck_tables.world.impact import (
     E,
     approach,
     collide,
+    was_hit,
 )
 from puck_tables.world.layout import (
     EDGE,
@@ -220,7 +221,7 @@ def _happen(game: Game, i: int, partner: int, t: float, room: Room) -> int:
         room.marks[j] = CONCERNED if with_them else NOT_CONCERNED
     room.marks[i] = CONCERNED
     for n in range(count):
-        if room.rows[n, SUM_N] > 0.0:
+        if was_hit(room.rows[n]):
             room.marks[room.contacts[n, 0]] = CONCERNED
             if room.contacts[n, 1] >= 0:
                 room.marks[room.contacts[n, 1]] = CONCERNED

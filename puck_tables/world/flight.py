@@ -25,6 +25,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED
 from puck_tables.motion.state import SPIN as PUCK_SPIN
+from puck_tables.scene.forces import damped, farthest, per_speed
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.ingredients import Surface, floor_velocity
 from puck_tables.stopping.similarity_lookup import (
@@ -38,13 +39,10 @@ from puck_tables.stopping.similarity_lookup import (
     look_up_state,
 )
 from puck_tables.world.layout import (
-    DAMPING,
     DECEL,
     DELTA,
+    DRAG,
     RADIUS,
-    SPIN_DAMPING,
-    SPIN_WAKE,
-    WAKE,
     feels_floor,
 )
 from puck_tables.world.paths import on_piece, piece_at
@@ -52,12 +50,12 @@ from puck_tables.world.paths import on_piece, piece_at
 STILL, LOOKED_UP, DAMPED, PATH, GONE, CARRIED = range(6)
 
 KNOWN = LAUNCH_COLUMNS  # before it the launch: vx, vy, ω, δ, J, r
-START = LAUNCH_COLUMNS + LAUNCH_ROWS
+START = LAUNCH_COLUMNS + LAUNCH_ROWS  # s, when; behind what is known of the launch
 PLACE_X, PLACE_Y, ANGLE, UNTIL, FASTEST, STRONGEST = range(START + 1, START + 7)
-FIRST_PIECE, LAST_PIECE = START + 7, START + 8
+FIRST_PIECE, LAST_PIECE = START + 7, START + 8  # of its path, of all pieces of the game
 OFF_X, OFF_Y, OFF_ANGLE = range(START + 9, START + 12)  # what the look-up says just after the start
 DRIFT_X, DRIFT_Y = START + 12, START + 13  # velocity of the belt on which it moves or rests
-FLIGHT_COLUMNS = START + 14
+FLIGHT_COLUMNS = START + 14  # all
 
 ROOM = 9  # numbers to work in: a piece of a path
 _SOON = 1e-16  # of the time until rest
@@ -73,25 +71,9 @@ class Curves(NamedTuple):
 
 
 @inlined
-def _grown(rate: float, time: float) -> float:
-    """(1 − e^{−rate·time})/rate."""
-    return -math.expm1(-rate * time) / rate if rate > 0.0 else time
-
-
-@inlined
-def _damped(start: float, damping: float, wake: float, time: float) -> tuple[float, float]:
-    """What v′ = −γ v − w |v| v leaves of a speed, as a share, and its path over that speed."""
-    grown, start = _grown(damping, time), abs(start)
-    slowed = 1.0 + wake * start * grown
-    way = math.log(slowed) / (wake * start) if wake * start * grown > 1e-12 else grown
-    return math.exp(-damping * time) / slowed, way
-
-
-@inlined
 def _damped_state(flight: FloatArray, disc: FloatArray, time: float, out: FloatArray) -> None:
     vx, vy, spin = flight[0], flight[1], flight[2]
-    left, way = _damped(math.hypot(vx, vy), disc[DAMPING], disc[WAKE], time)
-    turns, angle = _damped(spin, disc[SPIN_DAMPING], disc[SPIN_WAKE], time)
+    left, way, turns, angle = damped(disc[DRAG:], math.hypot(vx, vy), spin, time)
     out[X], out[Y] = flight[PLACE_X] + vx * way, flight[PLACE_Y] + vy * way
     out[THETA] = flight[ANGLE] + spin * angle
     out[VX], out[VY] = vx * left, vy * left
@@ -201,7 +183,7 @@ def start_flight(
         flight[OFF_ANGLE] = found[ORIENTATION]
         flight[STRONGEST] = disc[DECEL]
         return LOOKED_UP
-    flight[STRONGEST] = speed * (disc[DAMPING] + disc[WAKE] * speed)
+    flight[STRONGEST] = speed * per_speed(disc[DRAG:], speed)
     return DAMPED
 
 
@@ -228,9 +210,7 @@ def corridor(
     if kind in (DAMPED, PATH):
         x, y = state[X], state[Y]
     if kind == DAMPED:
-        way = horizon - now
-        if disc[DAMPING] > 0.0:
-            way = min(way, 1.0 / disc[DAMPING])
+        way = min(horizon - now, farthest(disc[DRAG:], 1.0))
         if way == math.inf:
             return x, y, x, y, math.inf
         return x, y, x + way * state[VX], y + way * state[VY], 0.0

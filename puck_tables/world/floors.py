@@ -21,7 +21,7 @@ from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ground import NO_GROUND
 from puck_tables.scene.ingredients import BySpeed, Regions, Surface, floor_velocity
 from puck_tables.scene.over_time import largest_factors
-from puck_tables.scene.pieces import PieceSpec
+from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.regions import axes_of, of_one_shape, plain_cut, section_of
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.stretches import belts_of
@@ -33,9 +33,9 @@ from puck_tables.world.game import Game
 INTEGRATED, NOT_HELD = 1.0, 2.0  # see :mod:`puck_tables.world.layout`
 
 
-def normal_on(scene: SceneSpec, piece: PieceSpec) -> float:
+def normal_on(scene: SceneSpec, puck: ScenePuck) -> float:
     """The force that presses a puck on the floor, N."""
-    return piece.mass * piece.gravity * math.cos(scene.floor.slope)
+    return puck.mass * puck.gravity * math.cos(scene.floor.slope)
 
 
 def has_several(scene: SceneSpec) -> bool:
@@ -43,47 +43,47 @@ def has_several(scene: SceneSpec) -> bool:
     return scene.floor.strips is not None or bool(scene.floor.patches)
 
 
-def floors_of(scene: SceneSpec, pieces: list[PieceSpec], fastest: float) -> FloatArray:
+def floors_of(scene: SceneSpec, pucks: list[ScenePuck], fastest: float) -> FloatArray:
     """Deceleration, δ, whether it is integrated, and the velocity of the floor, (n, 5).
 
     Of every puck at every place of the floor.
 
     Astride the largest of them.  ``fastest``: a slip to which a friction law is looked at, m/s.
     """
-    frictions = [_strongest_under(scene, piece, fastest) for piece in pieces]
+    frictions = [_strongest_under(scene, puck, fastest) for puck in pucks]
     by_slip = bool(scene.floor.law) or scene.floor.orthotropic is not None
     rows = []
     for place in range(len(frictions[0])):
-        for piece, given in zip(pieces, frictions, strict=True):
-            unheld = by_slip or bool(scene.floor.over_time) or _is_summed(scene, piece)
-            how = NOT_HELD if unheld else float(is_integrated(scene, piece, given[place]))
-            rows.append(_row(scene, piece, given[place], how))
+        for puck, given in zip(pucks, frictions, strict=True):
+            unheld = by_slip or bool(scene.floor.over_time) or _is_summed(scene, puck)
+            how = NOT_HELD if unheld else float(is_integrated(scene, puck, given[place]))
+            rows.append(_row(scene, puck, given[place], how))
     if has_several(scene):
-        for piece, given in zip(pieces, frictions, strict=True):
-            rows.append(_row(scene, piece, max(given), NOT_HELD))
-    belts = np.repeat(belts_of(scene.floor), len(pieces), axis=0)
+        for puck, given in zip(pucks, frictions, strict=True):
+            rows.append(_row(scene, puck, max(given), NOT_HELD))
+    belts = np.repeat(belts_of(scene.floor), len(pucks), axis=0)
     missing = len(rows) - len(belts)  # astride, where it depends
     belts = np.concatenate([belts, np.tile(belts[:1], (missing, 1))])
     return np.column_stack([rows, belts])
 
 
-def _strongest_under(scene: SceneSpec, piece: PieceSpec, fastest: float) -> list[float]:
+def _strongest_under(scene: SceneSpec, puck: ScenePuck, fastest: float) -> list[float]:
     """The coefficients under a puck, on every stretch the largest that it ever has."""
-    under = frictions_under(scene, piece, fastest)
+    under = frictions_under(scene, puck, fastest)
     return (largest_factors(scene.floor) * under).tolist()
 
 
-def _row(scene: SceneSpec, piece: PieceSpec, friction: float, how: float) -> list[float]:
-    if piece.path:
+def _row(scene: SceneSpec, puck: ScenePuck, friction: float, how: float) -> list[float]:
+    if puck.path:
         return [0.0, 0.0, 0.0]
-    decel = friction * piece.gravity * math.cos(scene.floor.slope)
-    if piece.shape is not None:
+    decel = friction * puck.gravity * math.cos(scene.floor.slope)
+    if puck.shape is not None:
         return [decel, 0.0, how]  # its height stands with its base
-    return [decel, 2.0 * friction * piece.height / piece.radius, how]
+    return [decel, 2.0 * friction * puck.height / puck.radius, how]
 
 
 def regions_of(
-    scene: SceneSpec, pieces: list[PieceSpec], floors: FloatArray, fastest: float
+    scene: SceneSpec, pucks: list[ScenePuck], floors: FloatArray, fastest: float
 ) -> Regions:
     """The dry friction of every puck everywhere: closed forms, or tables if one needs them.
 
@@ -96,26 +96,26 @@ def regions_of(
     AccuracyError
         If the friction of one cannot be tabulated as fine as the scene asks.
     """
-    normals = np.array([0.0 if piece.path else normal_on(scene, piece) for piece in pieces])
+    normals = np.array([0.0 if puck.path else normal_on(scene, puck) for puck in pucks])
     count, delta = len(floors), floors[:, 1].copy()
     none = np.empty((count, *NO_SECTION.shape))
     if scene.floor.law:
-        return _by_slip(scene, pieces, normals, delta, none, fastest)
+        return _by_slip(scene, pucks, normals, delta, none, fastest)
     if scene.floor.orthotropic is not None:
         axes = axes_of(scene.floor.orthotropic)
         strongest = axes[:2].max() * largest_factors(scene.floor)[0]
         shaped = np.array([
-            shape_under(scene.alone(piece)) is not None and not piece.path for piece in pieces
+            shape_under(scene.alone(puck)) is not None and not puck.path for puck in pucks
         ])  # fmt: skip
         by_direction = BySpeed(axes, 0.0, 1.0, 1.0)
-        ground = _grounds(scene, pieces, shaped)
-        laws = np.tile([0, len(axes)], (len(pieces), 1))
+        ground = _grounds(scene, pucks, shaped)
+        laws = np.tile([0, len(axes)], (len(pucks), 1))
         return Regions(normals * strongest, delta, none, by_direction, shaped, ground, laws)
-    there = [[(piece, f) for f in _strongest_under(scene, piece, 0.0)] for piece in pieces]
+    there = [[(puck, f) for f in _strongest_under(scene, puck, 0.0)] for puck in pucks]
     places = [one for rows in zip(*there, strict=True) for one in rows]
-    summed = np.array([_is_summed(scene, piece) for piece, _ in places])
+    summed = np.array([_is_summed(scene, puck) for puck, _ in places])
     loads = np.array([
-        0.0 if piece.path else normal_on(scene, piece) * friction for piece, friction in places
+        0.0 if puck.path else normal_on(scene, puck) * friction for puck, friction in places
     ])  # fmt: skip
     cuts = none[: len(places)]
     if all(sums or has_closed_forms(*one) for one, sums in zip(places, summed, strict=True)):
@@ -124,47 +124,47 @@ def regions_of(
             cuts = np.stack([cut(height) for height in delta[: len(places)].tolist()])
     else:
         cuts = of_one_shape([
-            plain_cut(scene.tol, 0.0) if _is_summed(scene, piece) else
-            section_of(piece, 2.0 * friction * piece.height / piece.radius, scene.tol)
-            for piece, friction in places
+            plain_cut(scene.tol, 0.0) if _is_summed(scene, puck) else
+            section_of(puck, 2.0 * friction * puck.height / puck.radius, scene.tol)
+            for puck, friction in places
         ])  # fmt: skip
     ground, several = NO_GROUND, has_several(scene)
     if several:
-        most = loads.reshape(-1, len(pieces)).max(axis=0)
-        loads, cuts = np.concatenate([loads, most]), np.concatenate([cuts, cuts[: len(pieces)]])
+        most = loads.reshape(-1, len(pucks)).max(axis=0)
+        loads, cuts = np.concatenate([loads, most]), np.concatenate([cuts, cuts[: len(pucks)]])
     if several or summed.any():
-        ground = _grounds(scene, pieces, np.ones(len(pieces), np.bool_))
+        ground = _grounds(scene, pucks, np.ones(len(pucks), np.bool_))
     astride = np.concatenate([summed, np.ones(count - len(places), np.bool_)])
-    laws = np.zeros((len(pieces), 2), np.int64)
+    laws = np.zeros((len(pucks), 2), np.int64)
     return Regions(loads, delta, cuts, NO_LAW, astride, ground, laws)
 
 
-def _is_shaped(piece: PieceSpec) -> bool:
+def _is_shaped(puck: ScenePuck) -> bool:
     """Whether it slides on a base that is not round."""
-    return piece.shape is not None and not piece.path
+    return puck.shape is not None and not puck.path
 
 
-def _is_summed(scene: SceneSpec, piece: PieceSpec) -> bool:
+def _is_summed(scene: SceneSpec, puck: ScenePuck) -> bool:
     """Whether its friction is summed over its base everywhere, not looked up."""
     changes = bool(scene.floor.grips) and scene.floor.orthotropic is None and not scene.floor.law
-    return _is_shaped(piece) or (changes and not piece.path)
+    return _is_shaped(puck) or (changes and not puck.path)
 
 
 def _grounds(
-    scene: SceneSpec, pieces: list[PieceSpec], summed: npt.NDArray[np.bool_],
+    scene: SceneSpec, pucks: list[ScenePuck], summed: npt.NDArray[np.bool_],
     moments: Moments | None = None,
 ) -> FloatArray:  # fmt: skip
     """The frictions under those pucks over whose bases they are summed, all of one length."""
     grounds = [
-        ground_of(scene.alone(piece), normal_on(scene, piece), moments) if sums else NO_GROUND
-        for piece, sums in zip(pieces, summed, strict=True)
+        ground_of(scene.alone(puck), normal_on(scene, puck), moments) if sums else NO_GROUND
+        for puck, sums in zip(pucks, summed, strict=True)
     ]
     size = max(map(len, grounds))  # what they end with is room to work
     return np.concatenate([np.pad(own, (0, size - len(own))) for own in grounds])
 
 
 def _by_slip(
-    scene: SceneSpec, pieces: list[PieceSpec], normals: FloatArray, delta: FloatArray,
+    scene: SceneSpec, pucks: list[ScenePuck], normals: FloatArray, delta: FloatArray,
     cuts: FloatArray, fastest: float,
 ) -> Regions:  # fmt: skip
     """By a friction law over the slip speed: tables under round loads, integrals under others.
@@ -179,19 +179,19 @@ def _by_slip(
     law, top, largest = law_range(scene, fastest)
     factor = float(largest_factors(scene.floor)[0])
     largest *= factor
-    under = [None if piece.path else load_under(piece) for piece in pieces]
+    under = [None if puck.path else load_under(puck) for puck in pucks]
     summed = np.array([
-        own is None and not piece.path for own, piece in zip(under, pieces, strict=True)
+        own is None and not puck.path for own, puck in zip(under, pucks, strict=True)
     ])  # fmt: skip
     tables = {own: law_table(scene, law, top, own) for own in under if own is not None}
-    for piece, own in zip(pieces, under, strict=True):
-        if piece.shape is not None:
-            piece.shape.refuse_lift(largest, piece.height)
+    for puck, own in zip(pucks, under, strict=True):
+        if puck.shape is not None:
+            puck.shape.refuse_lift(largest, puck.height)
         elif own is not None:
-            tables[own].refuse_height(max(factor, 1.0) * 2.0 * piece.height / piece.radius)
+            tables[own].refuse_height(max(factor, 1.0) * 2.0 * puck.height / puck.radius)
     ground = NO_GROUND
     if summed.any():
-        ground = _grounds(scene, pieces, summed, moments_of(law, top))
+        ground = _grounds(scene, pucks, summed, moments_of(law, top))
     ends = np.cumsum([0, *(len(table.compiled) for table in tables.values())])
     spans = dict(zip(tables, pairwise(ends.tolist()), strict=True))
     laws = np.array([(0, 0) if own is None else spans[own] for own in under])
@@ -215,14 +215,14 @@ def velocities_under(game: Game, states: FloatArray) -> FloatArray:
     return under
 
 
-def fastest_rim(pieces: list[PieceSpec], states: FloatArray, surface: Surface) -> float:
+def fastest_rim(pucks: list[ScenePuck], states: FloatArray, surface: Surface) -> float:
     """The fastest in states (n, 6) and in launches to come, of all that slide, m/s."""
     most = 0.0
-    for piece, state in zip(pieces, states.tolist(), strict=True):
-        launch, ways = piece.launch, [state]
+    for puck, state in zip(pucks, states.tolist(), strict=True):
+        launch, ways = puck.launch, [state]
         if launch.time > 0.0:
             velocity = launch.velocity or (0.0, 0.0)
             ways.append([*state[: Y + 1], 0.0, *velocity, launch.spin])
-        for way in () if piece.path else ways:
-            most = max(most, slip_of_rim(piece.radius, surface, way))
+        for way in () if puck.path else ways:
+            most = max(most, slip_of_rim(puck.radius, surface, way))
     return most

@@ -5,6 +5,7 @@ from __future__ import annotations
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.belts import heat_at_rest
+from puck_tables.scene.forces import dragged
 from puck_tables.scene.friction import (
     SPIN,
     THETA,
@@ -41,6 +42,7 @@ from puck_tables.world.group import (
     IntArray,
 )
 from puck_tables.world.layout import (
+    DRAG,
     HOLD,
     HOLD_ANGLE,
     HOLD_REACH,
@@ -52,7 +54,6 @@ from puck_tables.world.layout import (
     RADIUS,
     REGION,
     TURNABILITY,
-    dragged,
 )
 from puck_tables.world.paths import on_piece, piece_at
 from puck_tables.world.works import (
@@ -192,7 +193,7 @@ def act(
             heat = others - (fx * ux + fy * uy + torque * w)
         else:
             fx, fy, torque, heat = dry_friction(dry, radius, ux, uy, w)
-        ax, ay, turn, warmth, turning_warmth = dragged(disc, ux, uy, w)
+        ax, ay, turn, warmth, turning_warmth = dragged(disc[DRAG:], ux, uy, w)
         ax, ay, turn = ax + fx * light, ay + fy * light, turn + torque * turns
         own[0], own[1], own[2] = px + ax, py + ay, pull + turn
         if rubbed:  # what others of the belts do

@@ -92,8 +92,8 @@ from puck_tables.world.works import START as WORK_START
 
 ROWS = 400  # steps of a group before its flights end for a new look
 FINEST = 1e-13  # error of a step in units of the scales: finer is rounding
-_TRIES = 100
-LOST_SHARE = 1e-15
+_TRIES = 100  # contacts given up at one moment, at most: more is no motion
+LOST_SHARE = 1e-15  # of the energy of free pucks: less lost as rims grip is rounding
 
 
 def push_on(game: Game, room: Room) -> Game:

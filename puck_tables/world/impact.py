@@ -1,22 +1,13 @@
 """Impacts: of two discs, of a disc and an obstacle, and of as many at once as touch.
 
-With n from the disc i to its partner j, t = n turned by +90°, e, β and μ of the pair,
-
-    u_n = (v_i − v_j)·n,   u_t = (v_i − v_j)·t + R_i ω_i + R_j ω_j,
-    1/m_n = 1/m_i + 1/m_j,   1/m_t = 1/m_n + R_i²/I_i + R_j²/I_j,
-    P_n = (1 + e) m_n u_n,   P_t = (1 + β) m_t u_t, at most μ P_n in size,
-    v_i −= (P_n n + P_t t)/m_i,   v_j += …/m_j,   ω_i −= R_i P_t/I_i,   ω_j −= R_j P_t/I_j:
-
-restitution e and tangential restitution β (−1: smooth, 0: the rims stop on each other, 1: their
-slip reverses) after Walton 1993, with Coulomb's friction μ.  An obstacle has no 1/m and no 1/I.
-The energy lost is ½ m_n (1 − e²) u_n² with ½ m_t (1 − β²) u_t², or where the rims
-slide μ P_n |u_t| − P_t²/2m_t; never less than nothing.  Where e falls with speed it is that at u_n
-(:mod:`puck_tables.world.rims`), in every round anew.
+A contact follows the law of :mod:`puck_tables.motion.impact_law`, with restitution e, tangential
+restitution β and friction μ of its pair (:mod:`puck_tables.world.rims`); where e falls with speed
+it is that at u_n, in every round anew.
 
 Of discs that touch, those contacts that approach are resolved, then those that approach then, and
 so on: a row of pucks passes an impact on, as if there were gaps between them (after 200 rounds
-those that take turns are resolved together with e = 0; those that are squeezed at once, also with
-β = 0).  Contacts of one round that share a disc are resolved together: the impulses for e = β = 0
+those that take turns are resolved together with e = β = 0; those that are squeezed at once).
+Contacts of one round that share a disc are resolved together: the impulses for e = β = 0
 (P_n ≥ 0) are found by an iteration that treats all alike, then enlarged by 1 + e and 1 + β, as
 Poisson has it, and lessened together should energy grow.  So no numbering matters, and what is
 symmetric stays so.
@@ -33,6 +24,7 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
+from puck_tables.motion.impact_law import along_normal, impulses
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.world.alone import acceleration
 from puck_tables.world.footing import over_floor
@@ -60,6 +52,8 @@ ONE, OTHER = 15, 16
 CROSS = 17  # how much a unit of one impulse changes what the other one is against: of what is led
 CONTACT_COLUMNS = 18
 
+# of ACTS besides 0 and 1: rims that nothing presses grip nothing in this round; or do, after all
+ASIDE, BACK, FOR_GOOD = -1.0, -2.0, 2.0
 NO_END, TOO_FAST = -1, -2  # how impacts fail: rounds without end; faster than a table goes
 
 NEGLIGIBLE = 1e-13  # of the scale of speeds: an approach as slow is none
@@ -68,10 +62,10 @@ LOW = 1e-14  # of the places: as these, whose height is rounding,
 LEAST = 1e-2  # and of the error of a step, in units of Q²/J
 LASTING = 0.99  # of the rebound before, at most: so long is the next one taken to be
 PRESSED = 1e-3  # of the scale of accelerations: what presses less brings no rebounds to an end
-MOST_ROUNDS = 2_000
+MOST_ROUNDS = 2_000  # at one moment: ten times those after which turns are resolved together
 TURNS = 200  # rounds after which contacts that take turns are resolved together, with e = 0
-_MOST_ITERATIONS = 50_000
-_SOLVED = 1e-15
+_MOST_ITERATIONS = 50_000  # sweeps over all contacts: beyond, the impulses are not found
+_SOLVED = 1e-15  # of the largest impulse: what changes by less is rounding
 
 
 @inlined
@@ -85,7 +79,13 @@ def approach(
         vx -= states[j, VX]
         vy -= states[j, VY]
         rim += game.discs[j, RADIUS] * states[j, SPIN]
-    return vx * nx + vy * ny, vy * nx - vx * ny + rim
+    return along_normal(vx, vy, rim, nx, ny)
+
+
+@inlined
+def was_hit(row: FloatArray) -> bool:
+    """Whether a contact has had an impulse; rims without bound may have one along them alone."""
+    return row[SUM_N] > 0.0 or row[SUM_T] != 0.0
 
 
 @inlined
@@ -243,13 +243,10 @@ def _push_all(
 
 
 @inlined
-def _alone(game: Game, i: int, j: int, row: FloatArray, states: FloatArray, e: float) -> None:
+def _alone(game: Game, i: int, j: int, row: FloatArray, states: FloatArray) -> None:
     """The law for one contact."""
     un, ut = approach(game, i, j, row[NX], row[NY], states)
-    row[PN] = (1.0 + e) * un / row[SOFT]
-    row[PT] = (1.0 + row[BETA]) * ut / row[SLICK]
-    if abs(row[PT]) > row[MU] * row[PN]:
-        row[PT] = math.copysign(row[MU] * row[PN], ut)
+    row[PN], row[PT] = impulses(un, ut, row[SOFT], row[SLICK], row[E], row[BETA], row[MU])
     _push(game, i, j, row, states)
 
 
@@ -299,30 +296,44 @@ def _shared_out(
     return False
 
 
+@inlined
+def _is_idle(row: FloatArray) -> bool:
+    """Whether rims grip that nothing presses, though not for good."""
+    return row[ACTS] == 1.0 and row[PN] == 0.0 and row[PT] != 0.0
+
+
 @inner
 def _together(
     game: Game, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
-    states: FloatArray, weight: float,
+    states: FloatArray, weight: float, last: bool,
 ) -> bool:  # fmt: skip
     """The law for contacts that share discs, at most 1/weight each, or bear on what is led.
 
     A rim without bound on its friction does not grip where nothing presses it in the end: such a
-    contact takes no part in this round.  Whether impulses were found.
+    contact takes no part in this round; ``last``: unless then it would approach.  Whether impulses
+    were found.
     """
     again, solved = True, True
     while again:
         solved = _shared_out(game, contacts, count, rows, before, states, weight)
-        pressed, idle = 0, 0
+        pressed, idle, again = False, False, False
         for n in range(count):
-            if rows[n, ACTS] > 0.0:
-                pressed += rows[n, PN] > 0.0
-                idle += rows[n, PN] == 0.0 and rows[n, PT] != 0.0
-        again = pressed > 0 and idle > 0
+            row = rows[n]
+            pressed = pressed or (row[ACTS] > 0.0 and row[PN] > 0.0)
+            idle = idle or _is_idle(row)
+            if last and row[ACTS] == ASIDE:
+                un, _ = approach(game, contacts[n, 0], contacts[n, 1], row[NX], row[NY], states)
+                if un > NEGLIGIBLE * game.pace[0]:
+                    row[ACTS], again = BACK, True
+        again = again or (pressed and idle)
         if again:
             _recall(game, contacts, count, rows, before, states)
             for n in range(count):
-                if rows[n, ACTS] > 0.0 and rows[n, PN] == 0.0 and rows[n, PT] != 0.0:
-                    rows[n, ACTS] = rows[n, PT] = 0.0
+                row = rows[n]
+                if row[ACTS] == BACK:
+                    row[ACTS] = FOR_GOOD
+                elif _is_idle(row):
+                    row[ACTS], row[PT] = ASIDE, 0.0
     gain, cost = 0.0, 0.0
     for n in range(count):
         rows[n, PN] *= 1.0 + rows[n, E]
@@ -406,13 +417,14 @@ def collide(
                         before[j, column] = states[j, column]
         if acting == 0:
             return turn
-        if turn >= TURNS or squeezed:  # such as of a light disc between a heavy one and a wall
+        last = turn >= TURNS or squeezed
+        if last:  # such as of a light disc between a heavy one and a wall
             for n in range(count):
                 row, i, j = rows[n], contacts[n, 0], contacts[n, 1]
                 un, _ = approach(game, i, j, row[NX], row[NY], states)
-                if row[SUM_N] > 0.0 or (squeezed and un >= -HARDLY * game.pace[0]):
+                if was_hit(row) or (squeezed and un >= -HARDLY * game.pace[0]):
                     row[ACTS], row[E], row[ONE], row[OTHER] = 1.0, 0.0, 0.0, 0.0
-                    if squeezed and row[BETA] > -1.0:
+                    if row[BETA] > -1.0:
                         row[BETA] = 0.0  # rims that are pressed, as in a contact that lasts
                     for column in range(VX, SPIN + 1):
                         before[i, column] = states[i, column]
@@ -428,9 +440,9 @@ def collide(
             if most == 1:
                 for n in range(count):
                     if rows[n, ACTS] > 0.0:
-                        _alone(game, contacts[n, 0], contacts[n, 1], rows[n], states, rows[n, E])
+                        _alone(game, contacts[n, 0], contacts[n, 1], rows[n], states)
             else:
-                solved = _together(game, contacts, count, rows, before, states, 1.0 / most)
+                solved = _together(game, contacts, count, rows, before, states, 1.0 / most, last)
                 if not solved and _is_driven(game, contacts, count):
                     return NO_END  # it squeezes somebody: no impulses would do
             again = False

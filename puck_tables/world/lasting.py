@@ -14,6 +14,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel
 from puck_tables.scene.equations import SIZE
+from puck_tables.scene.forces import SLIDING
 from puck_tables.scene.ingredients import CARRIED as CARRIED_ALONG
 from puck_tables.scene.ingredients import NO_WAY, Dry, Stretch
 from puck_tables.scene.rest import excess_at_rest
@@ -33,7 +34,7 @@ from puck_tables.world.flight import (
 from puck_tables.world.footing import law_under, least_slip
 from puck_tables.world.game import LAUNCH_TIME, N_EVENTS, N_HISTORY, TIME, Game
 from puck_tables.world.layout import (
-    DAMPING,
+    DRAG,
     LIGHTNESS,
     PULL_X,
     PULL_Y,
@@ -200,7 +201,7 @@ def longest_of(game: Game, paces: FloatArray) -> FloatArray:
     arms = free[:, LIGHTNESS] / (free[:, TURNABILITY] * free[:, RADIUS] ** 2)  # k²
     fast = paces[:, 0] + float(_pushed(game).max())
     times = float((2.0 * arms).max(initial=1.0)) * fast / float(brakes.min(initial=math.inf))
-    drags = free[free[:, DAMPING] > 0.0, DAMPING]
+    drags = free[free[:, DRAG + SLIDING] > 0.0, DRAG + SLIDING]
     times = np.maximum(times, paces[:, 0] / paces[:, 1])
     times = np.maximum(times, float((1.0 / drags).max(initial=0.0)))
     return LONG * times
@@ -218,7 +219,7 @@ def _brakes(game: Game) -> FloatArray:
 
 @kernel
 def _fill_brakes(game: Game, y: FloatArray, out: FloatArray) -> None:
-    """The same of discs that a torque turns: how far friction is from what it could just hold."""
+    """What brakes discs that a torque turns: how far friction is from what it could just hold."""
     regions, count = game.regions, game.discs.shape[0]
     for row in range(out.size):
         i = row % count

@@ -9,7 +9,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.agreement import pieces_of, start_of
+from puck_tables.world.agreement import pucks_of, start_of
 from puck_tables.world.game import Whole
 from puck_tables.world.shots import NO_COURSE, Landings, Shots
 
@@ -29,14 +29,14 @@ class Effort(NamedTuple):
 
 _FULL, _MANY, _SLOW = Effort(540, 28, 8000), Effort(360, 20, 4000), Effort(120, 10, 600)
 _CROWD = 8  # pucks: runs of more take longer
-_ROUNDS = 3
+_ROUNDS = 3  # times that gaps get three launches each: to 1/64 of a step of the sample
 
 
 def effort_for(shots: Shots) -> Effort:
     """The less, the longer a run takes."""
     if shots.patient:
         return _SLOW
-    return _FULL if len(pieces_of(shots.scene)) <= _CROWD else _MANY
+    return _FULL if len(pucks_of(shots.scene)) <= _CROWD else _MANY
 
 
 class TriedLaunches(NamedTuple):
@@ -51,13 +51,13 @@ def headings_for(scene: SceneSpec, striker: int, count: int) -> FloatArray:
     """Headings all around, rad, and closer ones towards pucks and posts that look small."""
     step = 2.0 * math.pi / count
     parts = [np.arange(count) * step]
-    pieces = pieces_of(scene)
-    x, y = start_of(pieces[striker])
-    rims = [(start_of(piece), piece.radius) for piece in pieces]
+    pucks = pucks_of(scene)
+    x, y = start_of(pucks[striker])
+    rims = [(start_of(puck), puck.radius) for puck in pucks]
     del rims[striker]
     rims += [(post.point, post.radius) for post in scene.posts]
     for (px, py), radius in rims:
-        reach, distance = radius + pieces[striker].radius, math.hypot(px - x, py - y)
+        reach, distance = radius + pucks[striker].radius, math.hypot(px - x, py - y)
         half = math.asin(min(reach / max(distance, 1e-300), 1.0))
         if 2.0 * half < _SMALL * step:
             parts.append(

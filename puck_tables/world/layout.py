@@ -9,34 +9,30 @@ law as ``−1`` less its place, see :mod:`puck_tables.world.rims`.
 
 from __future__ import annotations
 
-import math
-
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
-from puck_tables.scene.forces import sideways
+from puck_tables.scene.forces import DRAGS, acts
 
 # columns of a disc; one whose motion is given has the inverses 0
 RADIUS, LIGHTNESS, TURNABILITY, DECEL, DELTA = range(5)  # r, 1/m, 1/I, J = f g, 2 f h/r
-DAMPING, SPIN_DAMPING, WAKE = 5, 6, 7  # drag over mass, over inertia, 1/s; quadratic, 1/m
-RESTITUTION, TANGENTIAL, FRICTION = 8, 9, 10  # of its rim
+RESTITUTION, TANGENTIAL, FRICTION = 5, 6, 7  # of its rim
 # 1: also alone; what is known of its motion is an integral, no table.  2: nor does DECEL say what
 # holds it at rest
-INTEGRATED = 11
-MAKE = 12  # which kind of rim it has, where pairs of kinds have a law of their own
-PULL_X, PULL_Y, TWIST = 13, 14, 15  # accelerations of slope and given forces, m/s², rad/s²
+INTEGRATED = 8
+MAKE = 9  # which kind of rim it has, where pairs of kinds have a law of their own
+PULL_X, PULL_Y, TWIST = 10, 11, 12  # accelerations of slope and given forces, m/s², rad/s²
 # a constraint, see :class:`puck_tables.scene.ingredients.Hold`, fixed in place at t = 0
-HOLD, HOLD_X, HOLD_Y, HOLD_REACH, HOLD_ANGLE, HOLD_VX, HOLD_VY, HOLD_PLACE = range(16, 24)
-REGION = 24  # of the dry friction under it: where on the floor it is, times discs, and its number
-SPIN_WAKE = 25  # quadratic drag of the spin, over inertia
-ACROSS, BY_SPEED, BY_SPIN = 26, 27, 28  # a lateral force: its acceleration and exponents
-NORMAL, HEIGHT_RATIO = 29, 30  # N, and 2h/r over 4⟨x²⟩/r²: where friction depends on the slip
+HOLD, HOLD_X, HOLD_Y, HOLD_REACH, HOLD_ANGLE, HOLD_VX, HOLD_VY, HOLD_PLACE = range(13, 21)
+REGION = 21  # of the dry friction under it: where on the floor it is, times discs, and its number
+NORMAL, HEIGHT_RATIO = 22, 23  # N, and 2h/r over 4⟨x²⟩/r²: where friction depends on the slip
 # how the floor moves that it is on, of belts the one nearest to its own velocity, and how that
 # changes
-BELT_X, BELT_Y, BELT_SPIN, BELT_AX, BELT_AY, BELT_TURN = range(31, 37)
+BELT_X, BELT_Y, BELT_SPIN, BELT_AX, BELT_AY, BELT_TURN = range(24, 30)
+DRAG = 30  # the first of what acts over the floor, see :func:`puck_tables.scene.forces.drags_of`
 # from here on how its base lies to every border of strips, and then to every patch
 # (:mod:`puck_tables.world.footing`)
-LIES = 37
-DISC_COLUMNS = 37  # without those
+LIES = DRAG + DRAGS
+DISC_COLUMNS = LIES  # without those
 
 # columns of an obstacle: for a wall or edge (A, B) is its unit normal, into the field, and C its
 # place along it; for the others (A, B) is the centre, C the radius; [FROM, FROM + SPAN] are the
@@ -68,27 +64,5 @@ def kinetic(disc: FloatArray, vx: float, vy: float, spin: float) -> float:
 
 @inlined
 def feels_floor(disc: FloatArray) -> bool:
-    """Whether dry friction or drag acts on a disc."""
-    drag = disc[DAMPING] + disc[WAKE] + disc[SPIN_DAMPING] + disc[SPIN_WAKE]
-    return disc[DECEL] + drag + abs(disc[ACROSS]) > 0.0
-
-
-@inlined
-def dragged(
-    disc: FloatArray, ux: float, uy: float, w: float
-) -> tuple[float, float, float, float, float]:
-    """Accelerations by drag and a lateral force over the floor, and the power drag takes over m, I.
-
-    The latter takes none.
-    """
-    speed = math.sqrt(ux * ux + uy * uy)
-    drag = disc[DAMPING] + disc[WAKE] * speed
-    turn_drag = disc[SPIN_DAMPING] + disc[SPIN_WAKE] * abs(w)
-    side = sideways(disc[ACROSS], disc[BY_SPEED], disc[BY_SPIN], speed, w)
-    return (
-        -drag * ux - side * uy,
-        -drag * uy + side * ux,
-        -turn_drag * w,
-        drag * speed * speed,
-        turn_drag * w * w,
-    )
+    """Whether dry friction, or anything else over the floor, acts on a disc."""
+    return disc[DECEL] > 0.0 or acts(disc[DRAG:])

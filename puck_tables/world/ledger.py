@@ -56,7 +56,7 @@ if TYPE_CHECKING:
     from puck_tables.world.world import World
 
 LAUNCHED, LEFT, IMPACT_HEAT = range(LEDGER, LEDGER + 3)
-LEDGER_COLUMNS = LEDGER + 3
+LEDGER_COLUMNS = LEDGER + 3  # those of works, and these
 NAMES = {
     "energy_given": LAUNCHED, "energy_gone": LEFT, "work_given": PULL_WORK,
     "work_driven": DRIVE_WORK, "work_support": SUPPORT_WORK, "heat_dry": FLOOR_HEAT,

@@ -70,12 +70,9 @@ from puck_tables.world.footing import (
 )
 from puck_tables.world.game import N_HISTORY, N_PIECES, N_WORKS, Game
 from puck_tables.world.layout import (
-    ACROSS,
     BELT_X,
     BELT_Y,
-    BY_SPEED,
-    BY_SPIN,
-    DAMPING,
+    DRAG,
     HOLD,
     HOLD_ANGLE,
     HOLD_REACH,
@@ -88,11 +85,8 @@ from puck_tables.world.layout import (
     PULL_X,
     PULL_Y,
     RADIUS,
-    SPIN_DAMPING,
-    SPIN_WAKE,
     TURNABILITY,
     TWIST,
-    WAKE,
 )
 from puck_tables.world.paths import DURATION, on_piece
 from puck_tables.world.paths import FIRST as PLACES
@@ -137,6 +131,7 @@ class Desk(NamedTuple):
     ledgers: FloatArray
 
 
+# rows of a desk, in the order of its arrays
 _ENDS, _MIDDLE, _STATES = STAGES, STAGES + 2, STAGES + 3
 _BOOKS = _STATES + 5
 DESK_ROWS = _BOOKS + 4
@@ -160,8 +155,7 @@ def model_of(game: Game, i: int) -> Model:
     drive = game.tides[game.spans[i, 0] : game.spans[i, 1]]
     forces = Forces(
         mass * disc[PULL_X], mass * disc[PULL_Y], inertia * disc[TWIST], drive,
-        mass * disc[DAMPING], inertia * disc[SPIN_DAMPING], mass * disc[WAKE],
-        inertia * disc[SPIN_WAKE], mass * disc[ACROSS], disc[BY_SPEED], disc[BY_SPIN],
+        disc[DRAG:],
     )  # fmt: skip
     hold = Hold(
         int(disc[HOLD]), disc[HOLD_X], disc[HOLD_Y], disc[HOLD_REACH], disc[HOLD_ANGLE],

@@ -22,6 +22,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
+from puck_tables.scene.forces import farthest, per_speed
 from puck_tables.scene.friction import VX, VY, X, Y
 from puck_tables.world.beside import stays_apart
 from puck_tables.world.flight import (
@@ -44,7 +45,7 @@ from puck_tables.world.game import N_HELD, N_LOOKS, Game
 from puck_tables.world.layout import (
     ARC,
     CORNER,
-    DAMPING,
+    DRAG,
     EDGE,
     EDGE_NUMBER,
     END_X,
@@ -58,7 +59,6 @@ from puck_tables.world.layout import (
     SPAN,
     START_X,
     START_Y,
-    WAKE,
     WALL,
     A,
     B,
@@ -70,7 +70,7 @@ TOUCH = 1e-12  # of the radius: a gap as small is none
 ROUNDED = 1e-15  # of the places: a gap as small is none
 QUIET = 1e-12  # of the scale of speeds: an approach as slow is none
 HARDLY = 1e-11  # of the scales of speeds and accelerations: as good as none, of what touches
-MOST_LOOKS = 20_000
+MOST_LOOKS = 20_000  # at one pair in a row: then others have their turn
 PATIENCE = 8  # looks, before those who go beside each other are bounded closer
 
 
@@ -263,7 +263,7 @@ def bend_of(kind: int, flight: FloatArray, disc: FloatArray, state: FloatArray, 
     """The largest acceleration from now on; of drag alone it falls with the speed."""
     if kind == DAMPED:
         speed = math.hypot(state[VX] - flight[DRIFT_X], state[VY] - flight[DRIFT_Y])
-        return speed * (disc[DAMPING] + disc[WAKE] * speed)
+        return speed * per_speed(disc[DRAG:], speed)
     return flight[STRONGEST] if kind != LOOKED_UP or t < flight[UNTIL] else 0.0
 
 
@@ -280,7 +280,7 @@ def way_left(kind: int, flight: FloatArray, disc: FloatArray, state: FloatArray,
     if drifts(flight) or kind in (PATH, CARRIED):
         return math.inf
     if kind == DAMPED:
-        return speed / disc[DAMPING] if disc[DAMPING] > 0.0 else math.inf
+        return farthest(disc[DRAG:], speed)
     return speed * max(flight[UNTIL] - t, 0.0) if kind == LOOKED_UP else 0.0
 
 
@@ -359,7 +359,7 @@ def next_meeting(
 def next_crossing(
     game: Game, i: int, k: int, now: float, horizon: float, room: FloatArray, one: FloatArray
 ) -> float:
-    """The same of a disc and what stands: the obstacle k, or where its centre or rim passes it."""
+    """When a disc touches obstacle k next, or its centre or rim passes it; else inf; −1 − t."""
     kind, flight = game.kinds[i], game.flights[i]
     last = min(horizon, moves_until(kind, flight), once_round(kind, flight, now))
     if kind == GONE or not last > now or are_held(game, i, -1 - k):

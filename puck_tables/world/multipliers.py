@@ -1,10 +1,11 @@
 """The forces of contacts whose modes are known: as many linear equations as there are forces.
 
 A contact that presses has gap″ = 0, a rim that sticks u′ = 0; on a rim that slides τ = ±μλ follows
-λ.  So a row of the constraints and a column of the forces differ where rims slide.  In a rack there
-are more contacts than directions to move: then many forces do the same, the matrix is singular, and
-of all solutions the smallest is taken, that of equally stiff contacts.  For this the diagonal is
-raised by a little, and what this leaves is solved for again until nothing is left.
+λ, or is 0 where μ is without bound.  So a row of the constraints and a column of the forces differ
+where rims slide.  In a rack there are more contacts than directions to move: then many forces do
+the same, the matrix is singular, and of all solutions the smallest is taken, that of equally stiff
+contacts.  For this the diagonal is raised by a little, and what this leaves is solved for again
+until nothing is left.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ from puck_tables.world.group import (
 )
 
 _RAISED = 1e-9  # of the diagonal
-_ROUNDS = 4
+_ROUNDS = 4  # of solving for what is left, at most
 RIGHT, SOLUTION, LEFT, STEP = range(4)  # vectors of the desk
 
 
@@ -71,7 +72,7 @@ def constrain(desk: Desk, modes: IntArray, sticks: bool, slides: bool) -> int:
                 desk.owners[count, side] = desk.pairs[c, side]
             _row_of(desk.rows[count], sight, along == 1)
             _row_of(desk.columns[count], sight, along == 1)
-            if slides and along == 0 and modes[c] != STICKS and sight[GRIP] > 0.0:
+            if slides and along == 0 and modes[c] != STICKS and 0.0 < sight[GRIP] < math.inf:
                 rim = modes[c] * sight[GRIP]
                 column = desk.columns[count]
                 column[0] -= rim * sight[NY]
@@ -235,13 +236,12 @@ def push_and_move(desk: Desk, modes: IntArray, members: int) -> float:
             continue
         desk.pushes[c, 0] = desk.vectors[SOLUTION, number]
         number += 1
-        if desk.sights[c, GRIP] == 0.0:
-            continue
-        if modes[c] == STICKS:
+        grip = desk.sights[c, GRIP]
+        if modes[c] == STICKS and grip > 0.0:
             desk.pushes[c, 1] = desk.vectors[SOLUTION, number]
             number += 1
-        else:
-            desk.pushes[c, 1] = modes[c] * desk.sights[c, GRIP] * desk.pushes[c, 0]
+        elif grip < math.inf:
+            desk.pushes[c, 1] = modes[c] * grip * desk.pushes[c, 0]
     for tie in range(desk.number[0]):
         desk.tautness[tie] = desk.vectors[SOLUTION, number + tie]
     for place in range(members):

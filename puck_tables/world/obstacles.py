@@ -6,7 +6,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.scene.parts import Wall
-from puck_tables.scene.pieces import Arc, Post
+from puck_tables.scene.pucks_and_posts import Arc, Post
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.sides import corners_in, cushions_in, line_of, sides_in
 from puck_tables.world import layout

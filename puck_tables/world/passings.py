@@ -16,7 +16,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel, patience
 from puck_tables.scene.friction import VX, VY, X, Y
 from puck_tables.scene.patches import ASTRIDE, INSIDE, OUTSIDE
-from puck_tables.scene.pieces import Line
+from puck_tables.scene.pucks_and_posts import Line
 from puck_tables.world.borders import to_round
 from puck_tables.world.flight import GONE, ROOM, START, moves_until, state_at
 from puck_tables.world.footing import lies_to

@@ -13,7 +13,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 
 START, DURATION, FIRST = range(3)  # FIRST: nine numbers at its start, nine at its end
-PIECE_COLUMNS = FIRST + 18
+PIECE_COLUMNS = FIRST + 18  # all
 FOR_EVER = 1e9  # s: what lasts as long has no end; its places are still good to 1e-16 of the way
 _ROUNDED = 1e-15  # of a place
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from puck_tables._core.fields import specs
 from puck_tables.scene.acting import EMPIRICAL, acting
-from puck_tables.scene.pieces import PieceSpec
+from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.stretches import belts_of
 from puck_tables.world.agreement import (
@@ -14,7 +14,7 @@ from puck_tables.world.agreement import (
     frictions_under,
     has_closed_forms,
     is_integrated,
-    pieces_of,
+    pucks_of,
 )
 from puck_tables.world.floors import has_several
 from puck_tables.world.rim_laws import rule_of
@@ -45,19 +45,19 @@ def plan_of(scene: SceneSpec) -> tuple[str, str]:
     1 puck integrated from impact to impact: slope
     a look-up would be cheaper: of round pucks on which only dry friction and a belt act
     """
-    pieces = pieces_of(scene)
+    pucks = pucks_of(scene)
     ways: dict[str, list[str]] = {}
     known: dict[tuple[object, ...], str] = {}
-    for number, piece in enumerate(pieces):
-        force, hold = piece.force, piece.constraint
+    for number, puck in enumerate(pucks):
+        force, hold = puck.force, puck.constraint
         key = (
-            piece.radius, piece.height, piece.friction, piece.gravity, str(piece.pressure),
-            piece.gyration, str(piece.base), force.constant, force.torque, bool(force.over_time),
-            hold and hold.kind, bool(piece.path),
+            puck.radius, puck.height, puck.friction, puck.gravity, str(puck.pressure),
+            puck.gyration, str(puck.base), force.constant, force.torque, bool(force.over_time),
+            hold and hold.kind, bool(puck.path),
         )  # fmt: skip
         if key not in known:
-            known[key] = _way_of(scene, piece)
-        ways.setdefault(known[key], []).append(called(piece, number))
+            known[key] = _way_of(scene, puck)
+        ways.setdefault(known[key], []).append(called(puck, number))
     lines = []
     for way, names in ways.items():
         shown = ""
@@ -71,19 +71,19 @@ def plan_of(scene: SceneSpec) -> tuple[str, str]:
             "a look-up would be cheaper: of round pucks on which only dry friction and a belt act"
         )
     if has_several(scene):
-        piled = any(one.shape is None and one.body.law.profile is not None for one in pieces)
+        piled = any(one.shape is None and one.body.law.profile is not None for one in pucks)
         lines.append(
             "while a base is astride several frictions they are integrated over its parts, about "
             f"{'forty' if piled else 'ten'} times the cost of a step elsewhere"
         )
     if scene.lateral.strength != 0.0:
         lines.append(EMPIRICAL)
-    if len(pieces) > 1 or scene.walls or scene.posts or scene.arcs:
+    if len(pucks) > 1 or scene.walls or scene.posts or scene.arcs:
         lines.append(rule_of(scene))
     return model, "\n".join(lines)
 
 
-def _acting_on(scene: SceneSpec, piece: PieceSpec) -> list[str]:
+def _acting_on(scene: SceneSpec, puck: ScenePuck) -> list[str]:
     """What acts on a puck beside dry friction on a level floor that moves steadily or not at all.
 
     Raises
@@ -91,26 +91,26 @@ def _acting_on(scene: SceneSpec, piece: PieceSpec) -> list[str]:
     PuckError
         As :func:`puck_tables.scene.acting.acting`.
     """
-    one = scene.alone(piece)
+    one = scene.alone(puck)
     for spec in specs(type(scene)).values():
         name = spec.name
         if name not in _OF_OTHERS:
-            value = getattr(piece if name in _OF_EACH else scene, name)
+            value = getattr(puck if name in _OF_EACH else scene, name)
             object.__setattr__(one, name, value)
     return [what for what in acting(one) if what not in _ON_FLOOR]
 
 
-def _way_of(scene: SceneSpec, piece: PieceSpec) -> str:
+def _way_of(scene: SceneSpec, puck: ScenePuck) -> str:
     """How a puck is moved, and why it is not looked up."""
-    acts = _acting_on(scene, piece)
-    if piece.path:
+    acts = _acting_on(scene, puck)
+    if puck.path:
         return "driven along a path"
-    frictions = frictions_under(scene, piece)
-    integrated = [is_integrated(scene, piece, friction) for friction in frictions]
+    frictions = frictions_under(scene, puck)
+    integrated = [is_integrated(scene, puck, friction) for friction in frictions]
     if any(integrated):
-        if not all(has_closed_forms(piece, one) for one in frictions):
+        if not all(has_closed_forms(puck, one) for one in frictions):
             acts.append("no closed forms")
-        if piece.shape is not None:
+        if puck.shape is not None:
             acts.append("a base that is not round")
         if flight_error(scene) < TABLE_ERROR:
             acts.append(_CLOSER)

@@ -10,6 +10,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.scene.by_speed import load_under
+from puck_tables.scene.forces import drags_of
 from puck_tables.scene.friction import SPIN, THETA, VX, VY
 from puck_tables.scene.holds import allowed_velocity
 from puck_tables.scene.ingredients import RAIL, Surface, hold_of
@@ -22,12 +23,12 @@ from puck_tables.scene.over_time import (
     over_time,
 )
 from puck_tables.scene.parts import Floor
-from puck_tables.scene.pieces import PieceSpec
+from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.stretches import belts_of
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.world import layout
-from puck_tables.world.agreement import flight_error, pieces_of, start_of, steps_for
+from puck_tables.world.agreement import flight_error, pucks_of, start_of, steps_for
 from puck_tables.world.departures import drive_on, hang_over, room_for
 from puck_tables.world.drive import pieces_along, rows_of
 from puck_tables.world.flight import (
@@ -66,8 +67,8 @@ from puck_tables.world.works import WORK_COLUMNS
 SWIFTEST = 1e100  # m/s: its square is a number
 FAR = 1e12  # radii that a puck may slide: its rounding is a thousandth of a radius
 ROWS = 256  # of events and flights at first
-# of what steps are for, of each: one of 358 drawn scenes errs by more than all are for, of ten
-# times as much twelve
+# of what steps are for, of each: one of 358 drawn scenes errs by more than all are for, with ten
+# times as much twelve (test_scene_checked)
 STEP_SHARE = 1e-2
 
 
@@ -90,7 +91,7 @@ def order_of(scene: SceneSpec) -> Whole:
 
     It depends on where they are, not on how they are numbered: so no bit of a result does.
     """
-    places = np.array([start_of(piece) for piece in pieces_of(scene)])
+    places = np.array([start_of(puck) for puck in pucks_of(scene)])
     return np.lexsort((places[:, 1], places[:, 0]))
 
 
@@ -120,8 +121,8 @@ def prepared(scene: SceneSpec, order: Whole | None = None) -> Start:
         If a file or a law that it names does not serve, or numbers in it are too large.
     """
     order = order_of(scene) if order is None else order
-    pieces = [pieces_of(scene)[number] for number in order]
-    count = len(pieces)
+    pucks = [pucks_of(scene)[number] for number in order]
+    count = len(pucks)
     lies = len(borders_of(scene)) + len(scene.floor.patches)
     discs, states = np.zeros((count, layout.DISC_COLUMNS + lies)), np.zeros((count, 6))
     surface = _surface_of(scene.floor)
@@ -129,29 +130,29 @@ def prepared(scene: SceneSpec, order: Whole | None = None) -> Start:
     tides: list[FloatArray] = []
     drives, ways = np.zeros((count, 2), np.int64), [np.zeros((0, PIECE_COLUMNS))]
     launches = []
-    rims, discs[:, layout.MAKE], makes, called = rims_of(scene, pieces)
-    for i, piece in enumerate(pieces):
-        driven = bool(piece.path)
-        _fill_disc(scene, piece, called, discs[i])
+    rims, discs[:, layout.MAKE], makes, called = rims_of(scene, pucks)
+    for i, puck in enumerate(pucks):
+        driven = bool(puck.path)
+        _fill_disc(scene, puck, called, discs[i])
         if not driven:
             first = sum(map(len, tides))
-            tides.append(over_time(scene.floor, piece.force))
+            tides.append(over_time(scene.floor, puck.force))
             spans[i] = first, first + len(tides[-1])
-        launch = piece.launch
-        velocity = allowed_velocity(launch, piece.constraint, scene.floor)
-        states[i, :2], states[i, 2] = start_of(piece), launch.orientation
+        launch = puck.launch
+        velocity = allowed_velocity(launch, puck.constraint, scene.floor)
+        states[i, :2], states[i, 2] = start_of(puck), launch.orientation
         if driven:
             first = sum(map(len, ways))
-            ways.append(pieces_along(rows_of(piece.path)))
+            ways.append(pieces_along(rows_of(puck.path)))
             drives[i] = first, first + len(ways[-1])
             states[i, THETA] = ways[-1][0, FIRST + THETA]
         elif launch.time > 0.0:
             launches.append([launch.time, i, *velocity, launch.spin])
         else:
             states[i, 3:5], states[i, 5] = velocity, launch.spin
-    rim = fastest_rim(pieces, states, surface)
-    floors = floors_of(scene, pieces, rim)
-    regions = regions_of(scene, pieces, floors, rim)
+    rim = fastest_rim(pucks, states, surface)
+    floors = floors_of(scene, pucks, rim)
+    regions = regions_of(scene, pucks, floors, rim)
     steps = 2 * LONGEST if floors[:, 2].any() else 0  # the first path, and room for another
     game = Game(
         discs=discs,
@@ -197,37 +198,31 @@ def prepared(scene: SceneSpec, order: Whole | None = None) -> Start:
 
 
 def _fill_disc(
-    scene: SceneSpec, piece: PieceSpec, called: dict[object, float], disc: FloatArray
+    scene: SceneSpec, puck: ScenePuck, called: dict[object, float], disc: FloatArray
 ) -> None:
     """What a disc is, and what acts on it."""
-    disc[layout.RADIUS], disc[layout.TANGENTIAL] = piece.radius, piece.tangential
-    disc[layout.RESTITUTION] = number_for(piece.restitution, called)
-    disc[layout.FRICTION] = piece.rim
-    if piece.path:
+    disc[layout.RADIUS], disc[layout.TANGENTIAL] = puck.radius, puck.tangential
+    disc[layout.RESTITUTION] = number_for(puck.restitution, called)
+    disc[layout.FRICTION] = puck.rim
+    if puck.path:
         return
-    inertia = piece.mass * piece.inertia_radius**2
-    disc[layout.LIGHTNESS], disc[layout.TURNABILITY] = 1.0 / piece.mass, 1.0 / inertia
-    disc[layout.PULL_X : layout.TWIST + 1] = _pull_on(scene, piece, inertia)
-    disc[layout.HOLD : layout.HOLD_PLACE + 1] = _hold_on(piece)
-    disc[layout.DAMPING] = scene.drag.sliding / piece.mass
-    disc[layout.WAKE] = scene.drag.quadratic / piece.mass
-    disc[layout.SPIN_DAMPING] = scene.drag.spinning / inertia
-    disc[layout.SPIN_WAKE] = scene.drag.spinning_quadratic / inertia
-    disc[layout.ACROSS] = scene.lateral.strength / piece.mass
-    disc[layout.BY_SPEED] = scene.lateral.speed_exponent
-    disc[layout.BY_SPIN] = scene.lateral.spin_exponent
-    disc[layout.NORMAL] = normal_on(scene, piece)
-    disc[layout.HEIGHT_RATIO] = 2.0 * piece.height / piece.radius
-    if scene.floor.law and (load := load_under(piece)) is not None:
+    inertia = puck.mass * puck.inertia_radius**2
+    disc[layout.LIGHTNESS], disc[layout.TURNABILITY] = 1.0 / puck.mass, 1.0 / inertia
+    disc[layout.PULL_X : layout.TWIST + 1] = _pull_on(scene, puck, inertia)
+    disc[layout.HOLD : layout.HOLD_PLACE + 1] = _hold_on(puck)
+    disc[layout.DRAG : layout.LIES] = drags_of(scene.drag, scene.lateral, puck.mass, inertia)
+    disc[layout.NORMAL] = normal_on(scene, puck)
+    disc[layout.HEIGHT_RATIO] = 2.0 * puck.height / puck.radius
+    if scene.floor.law and (load := load_under(puck)) is not None:
         disc[layout.HEIGHT_RATIO] /= 4.0 * load.mean_square  # of uniform pressure it is 1/4
 
 
 def with_law_up_to(game: Game, scene: SceneSpec, order: Whole, fastest: float) -> Game:
     """With the table of a friction law by name for slips of the rim up to ``fastest``, m/s."""
-    pieces = [pieces_of(scene)[number] for number in order]
-    floors = floors_of(scene, pieces, fastest)
-    game = game._replace(regions=regions_of(scene, pieces, floors, fastest), floors=floors)
-    for i in range(len(pieces)):
+    pucks = [pucks_of(scene)[number] for number in order]
+    floors = floors_of(scene, pucks, fastest)
+    game = game._replace(regions=regions_of(scene, pucks, floors, fastest), floors=floors)
+    for i in range(len(pucks)):
         step_onto(game, i)
     return game
 
@@ -322,19 +317,19 @@ def _strongest(game: Game) -> float:
     return max(float(np.hypot(ax, ay).max()), float(np.abs(rim).max()))
 
 
-def _pull_on(scene: SceneSpec, piece: PieceSpec, inertia: float) -> tuple[float, float, float]:
+def _pull_on(scene: SceneSpec, puck: ScenePuck, inertia: float) -> tuple[float, float, float]:
     """Accelerations by the slope and the constant forces, m/s², rad/s²."""
-    floor, (fx, fy) = scene.floor, piece.force.constant
-    pull = piece.gravity * math.sin(floor.slope)
+    floor, (fx, fy) = scene.floor, puck.force.constant
+    pull = puck.gravity * math.sin(floor.slope)
     return (
-        pull * math.cos(floor.downhill) + fx / piece.mass,
-        pull * math.sin(floor.downhill) + fy / piece.mass,
-        piece.force.torque / inertia,
+        pull * math.cos(floor.downhill) + fx / puck.mass,
+        pull * math.sin(floor.downhill) + fy / puck.mass,
+        puck.force.torque / inertia,
     )
 
 
-def _hold_on(piece: PieceSpec) -> tuple[float, ...]:
+def _hold_on(puck: ScenePuck) -> tuple[float, ...]:
     """The constraint of a puck, with the place of a rail along its normal."""
-    hold, (x, y) = hold_of(piece.constraint, piece.launch), piece.launch.position
+    hold, (x, y) = hold_of(puck.constraint, puck.launch), puck.launch.position
     place = hold.ax * x + hold.ay * y if hold.kind == RAIL else 0.0
     return (*hold, place)

@@ -94,6 +94,35 @@ def _stop_creeping(
     return heat
 
 
+@inlined
+def _let_go(
+    group: Group, members: IntArray, modes: IntArray, doings: IntArray, y: FloatArray,
+    scales: Scales, desk: Desk,
+) -> bool:  # fmt: skip
+    """Forces where rims without bound on their friction leave none; whether found.
+
+    Such rims then grip where they press without a grip, or else nowhere: the others are smooth.
+    """
+    count = modes.shape[0]
+    sights, seen = desk.sights, desk.midway
+    look(group, members, desk.pairs[:count], y, seen)
+    for attempt in range(2):
+        for c in range(count):
+            if seen[c, GRIP] == math.inf:
+                sights[c, GRIP] = 0.0
+                modes[c] = rim_mode(sights[c], scales.speed)
+        if not settle(group, members, modes, doings, y, scales, desk):
+            return False
+        if attempt == 0:
+            for c in range(count):
+                still = seen[c, GRIP] == math.inf and rim_mode(seen[c], scales.speed) == STICKS
+                if still and modes[c] != APART:
+                    sights[c, GRIP], modes[c] = math.inf, STICKS
+            if settle(group, members, modes, doings, y, scales, desk):
+                return True
+    return True
+
+
 @kernel
 def press(
     group: Group, members: IntArray, contacts: IntArray, states: FloatArray, t: float,
@@ -149,7 +178,8 @@ def press(
             stopped[c] = STICKS
             if modes[c] != STICKS and desk.sights[c, GRIP] == math.inf:
                 desk.sights[c, GRIP], stopped[c] = 0.0, APART  # first it is seen whether it presses
-        if not settle(group, members, modes, doings, y, scales, desk):
+        found = settle(group, members, modes, doings, y, scales, desk)
+        if not found and not _let_go(group, members, modes, doings, y, scales, desk):
             return UNSOLVED
         again = False
         for place in range(count):

@@ -18,7 +18,7 @@ from puck_tables.world.layout import DECEL, LIGHTNESS, PULL_X, PULL_Y
 from puck_tables.world.meeting import QUIET
 
 _ROUNDED = 4e-16  # of the speeds of both: less cannot be taken out
-_ROUNDS = 200
+_ROUNDS = 200  # rounds: where contacts share a disc, each takes out a part
 
 
 @inlined

@@ -18,7 +18,7 @@ from puck_tables.world.lasting import STUCK, at_rest_below, middle_of
 from puck_tables.world.layout import DECEL, INTEGRATED, LIGHTNESS
 from puck_tables.world.record import flights_of, states_on
 
-STATE = SPIN + 1
+STATE = SPIN + 1  # numbers of a state
 Rest = tuple[float, str, int, float, float]  # when, stick or slip, which disc, where
 
 

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.scene.pieces import PieceSpec
+from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.restitution import Restitution, restitution_law
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.sides import cushions_in
-from puck_tables.world.agreement import pieces_of
+from puck_tables.world.agreement import pucks_of
 
 
 def _laws_of(scene: SceneSpec, first: int) -> tuple[FloatArray, dict[object, float]]:
@@ -40,7 +40,7 @@ def number_for(given: float | str | Restitution | None, called: dict[object, flo
 def _restitutions(scene: SceneSpec) -> Iterator[float | str | Restitution]:
     """All restitutions of a scene."""
     parts: tuple[Any, ...] = (
-        *pieces_of(scene), *scene.walls, *scene.posts, *scene.arcs, *scene.rims
+        *pucks_of(scene), *scene.walls, *scene.posts, *scene.arcs, *scene.rims
     )  # fmt: skip
     for part in parts:
         if part.restitution is not None:
@@ -48,7 +48,7 @@ def _restitutions(scene: SceneSpec) -> Iterator[float | str | Restitution]:
 
 
 def rims_of(
-    scene: SceneSpec, pieces: list[PieceSpec]
+    scene: SceneSpec, pucks: list[ScenePuck]
 ) -> tuple[FloatArray, FloatArray, FloatArray, dict[object, float]]:
     """The array of :mod:`puck_tables.world.rims`; which kinds of rims discs and obstacles have.
 
@@ -61,10 +61,10 @@ def rims_of(
     if not scene.rims:
         laws, called = _laws_of(scene, 1)
         rims = np.concatenate([[0.0], laws])
-        return rims, np.zeros(len(pieces)), np.zeros(len(names)), called
+        return rims, np.zeros(len(pucks)), np.zeros(len(names)), called
     sides = [side for rim in scene.rims for side in (rim.puck, rim.partner)]
-    named = {piece.name for piece in pieces if piece.name}
-    signs = [tuple(_is(piece, side, named) for side in sides) for piece in pieces]
+    named = {puck.name for puck in pucks if puck.name}
+    signs = [tuple(_is(puck, side, named) for side in sides) for puck in pucks]
     signs += [tuple(side in name and bool(side) for side in sides) for name in names]
     kinds = {sign: number for number, sign in enumerate(dict.fromkeys(signs))}
     first = 1 + len(kinds) ** 2
@@ -81,12 +81,12 @@ def rims_of(
     ]  # fmt: skip
     makes = np.array([kinds[sign] for sign in signs], np.float64)
     rims = np.concatenate([[len(kinds)], meets.ravel(), np.ravel(pairs), laws])
-    return rims, makes[: len(pieces)], makes[len(pieces) :], called
+    return rims, makes[: len(pucks)], makes[len(pucks) :], called
 
 
-def _is(piece: PieceSpec, side: str, named: set[str]) -> bool:
+def _is(puck: ScenePuck, side: str, named: set[str]) -> bool:
     """Whether a side of a rim means a puck: its name, or else its colour."""
-    return piece.name == side if side in named else bool(side) and piece.colour == side
+    return puck.name == side if side in named else bool(side) and puck.colour == side
 
 
 def rule_of(scene: SceneSpec) -> str:
@@ -94,8 +94,8 @@ def rule_of(scene: SceneSpec) -> str:
 
     Examples
     --------
-    >>> from puck_tables import Piece, Scene
-    >>> print(rule_of(Scene(pucks=[Piece(0.1, restitution="plastic:0.1")])))
+    >>> from puck_tables import Puck, Scene
+    >>> print(rule_of(Scene(pucks=[Puck(0.1, restitution="plastic:0.1")])))
     impacts by Walton's law: of two pucks the smaller of each number counts, a cushion has its own
     restitution plastic:0.1 at the speed of approach: Thornton 1997, Journal of Applied Mechanics 64
     """

@@ -12,12 +12,12 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import finite_array, real
 from puck_tables.errors import InputError, PuckError
-from puck_tables.scene.pieces import called_line
+from puck_tables.scene.pucks_and_posts import called_line
 from puck_tables.scene.run import Event
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import game as g
 from puck_tables.world import passings
-from puck_tables.world.agreement import called, pieces_of, refuse_endless
+from puck_tables.world.agreement import called, pucks_of, refuse_endless
 from puck_tables.world.departures import room_for
 from puck_tables.world.engine import EVERYBODY, NOBODY, THOSE_LEFT, advance, lacks_rows
 from puck_tables.world.flight import GONE, START, moves_until
@@ -50,7 +50,7 @@ from puck_tables.world.setting_off import (
     TOO_SHORT,
 )
 
-MOST_EVENTS, MOST_STEPS = 1_000_000, 1_000_000
+MOST_EVENTS, MOST_STEPS = 1_000_000, 1_000_000  # of a run: some 120 and 170 MB
 CROWD = 1e-7  # of Q/J: 2000 events in less are a crowd
 CROWDED_PUSHES, PUSHED_IN = 3000, 1e-3  # and so many new groups that push, in that share of Q/J
 
@@ -76,16 +76,16 @@ class Running:
         self._room.states[:] = start.states
         self._told: dict[int, Told] = {}  # until when what pushed back discs was told
         self._named()
-        pieces = pieces_of(self.scene)
-        rimless = [not pieces[number].has_rim for number in self._order]
+        pucks = pucks_of(self.scene)
+        rimless = [not pucks[number].has_rim for number in self._order]
         self._passings = Passings(self.scene.lines, len(self.names), rimless)
         self._advance(0.0, EVERYBODY)
 
     def _named(self) -> None:
         """Who is where in the engine's order, and what they are called."""
         self._place = np.argsort(self._order)
-        pieces = pieces_of(self.scene)
-        self.names = tuple(called(piece, number) for number, piece in enumerate(pieces))
+        pucks = pucks_of(self.scene)
+        self.names = tuple(called(puck, number) for number, puck in enumerate(pucks))
         self._obstacles = obstacle_names(self.scene)
 
     def __repr__(self) -> str:
@@ -150,11 +150,11 @@ class Running:
         return state
 
     def _all_now(self) -> FloatArray:
-        """The same in the order of the engine."""
+        """States of every puck now, (pucks, 6), in the order of the engine."""
         return states_now(self._game, self._room.work)
 
     def at(self, time: float) -> FloatArray:
-        """The same at any time: as it was, or as it will be if nobody interferes.
+        """States (pucks, 6) at any time: as they were, or will be if nobody interferes.
 
         Raises
         ------
@@ -171,7 +171,7 @@ class Running:
         return world._states(np.array([moment]))[0]
 
     def over(self, times: npt.ArrayLike) -> FloatArray:
-        """The same at times of the past, ascending, array (times, pucks, 6)."""
+        """States at times of the past, ascending, array (times, pucks, 6)."""
         moments = np.atleast_1d(finite_array("times", times, "s"))
         if moments.ndim != 1 or (np.diff(moments) < 0.0).any() or (moments < 0.0).any():
             raise InputError("times must be a list of ascending numbers >= 0 s")
@@ -324,7 +324,7 @@ class Running:
         return {**self.__dict__, "_game": parts._replace(curves=None)}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        """As it was, with the table that comes along."""
+        """Take up what was written, with the table that comes along."""
         self.__dict__.update(state)
         self._game = self._game._replace(curves=shipped_curves())
 
@@ -335,10 +335,10 @@ class Running:
                 f"at {self.time:.6g} s no step is short enough to follow a puck that is "
                 "integrated: ask for a shorter run.time"
             )
-        radii = np.array([piece.radius for piece in pieces_of(self.scene)])
+        radii = np.array([puck.radius for puck in pucks_of(self.scene)])
         places = self.state()[:, :2]
-        for number, piece in enumerate(pieces_of(self.scene)):
-            if piece.path:
+        for number, puck in enumerate(pucks_of(self.scene)):
+            if puck.path:
                 gaps = np.hypot(*(places - places[number]).T) - radii - radii[number]
                 near = np.flatnonzero(np.abs(gaps) < 1e-6 * radii[number])
                 if near.size:

@@ -27,7 +27,7 @@ from puck_tables.scene.entries import is_batch, launch_paths, tables_of
 from puck_tables.scene.library import files_of
 from puck_tables.scene.outcome import ENDS, LAST_END, REFUSED, plain_name
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.agreement import pieces_of
+from puck_tables.world.agreement import pucks_of
 from puck_tables.world.board_case import BoardCase
 from puck_tables.world.map import Map
 from puck_tables.world.sample import Sample
@@ -93,7 +93,7 @@ class Runs(Work):
         """The scene, its ranges, and what stands in the files that it names."""
         pucks = [
             {**table, "pressure": _told_apart(puck)} if isinstance(puck.pressure, Law) else table
-            for puck, table in zip(pieces_of(self.scene), self._tables, strict=True)
+            for puck, table in zip(pucks_of(self.scene), self._tables, strict=True)
         ]
         ranges = list(self.scene.ranges.items())
         return {"scene": {**self._whole, "puck": pucks}, "axes": ranges, "files": self._read}

@@ -14,9 +14,9 @@ import numpy.typing as npt
 
 from puck_tables._core.executor import Progress
 from puck_tables._core.fields import of
+from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.puck import Puck
 from puck_tables.scene.library import find_scene
-from puck_tables.scene.pieces import PieceSpec
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import disagreements
 
@@ -27,41 +27,6 @@ if TYPE_CHECKING:
     from puck_tables.world.map import Map
     from puck_tables.world.sample import Sample
     from puck_tables.world.world import World
-
-
-@dataclass(frozen=True)
-class Piece(PieceSpec, Puck):
-    """One of several pucks: a puck with a name, a place or a launch, and a rim that others meet.
-
-    Parameters
-    ----------
-    radius, height, friction, mass, gravity, pressure, gyration
-        As :class:`puck_tables.Puck`.
-    name, colour : in reports and pictures
-        A colour is '#rrggbb' or a name of CSS, such as 'steelblue'.
-    launch : Launch
-        Its place, and how it is sent; left out it lies at rest until it is hit.  Before
-        ``launch.time`` it lies at its place.  Velocities (n, 2) are many launches, of one puck of
-        a scene: an axis of its sweep.
-    restitution, tangential, rim : impacts with other pucks
-        e, 0 to 1, or a law by which it falls with the speed of approach, see
-        :mod:`puck_tables.scene.restitution`; tangential restitution, −1 smooth, 0 the rims stop on
-        each other, 1 their slip reverses; Coulomb's coefficient of the rims, which limits the
-        tangential impulse.  Where two pucks meet the smaller of each counts, of restitutions at
-        that speed; cushions have their own; a :class:`Rim` of a pair comes before both.
-    path : rows or CSV of t, x, y and perhaps the angle
-        A body that is driven there, straight between the rows, such as a mallet: pucks bounce off
-        it, and nothing stops it.  :func:`puck_tables.path_along` makes rows of a function.
-    force, constraint : Force and Constraint, optional
-        What acts on this puck alone, and what leads it.
-
-    Examples
-    --------
-    >>> from puck_tables import Launch
-    >>> striker = Piece(0.0206, friction=0.1, name="striker", launch=Launch((3.0, 0.0)))
-    >>> striker.name, striker.rim
-    ('striker', inf)
-    """
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +46,7 @@ class Scene(SceneSpec):
         As :mod:`puck_tables.scene.parts` has them.
     walls, edges : sequences of Wall, of Edge, optional
     pucks, posts, arcs, pockets, lines, rims : sequences, optional
-        As :mod:`puck_tables.scene.pieces` has them.
+        As :mod:`puck_tables.scene.pucks_and_posts` has them.
     constraint : Constraint, optional
     time : s, > 0, optional
         How long; left out, until rest.
@@ -109,8 +74,8 @@ class Scene(SceneSpec):
     [0.0, 5.0]
     """
 
-    puck: Puck = of("part", None, part=Puck)
-    pucks: tuple[Piece, ...] = of("parts", (), part=Piece, table="puck[]")
+    puck: Puck = of("part", None, part=PuckSpec, made=Puck)
+    pucks: tuple[Puck, ...] = of("parts", (), part=Puck, table="puck[]")
 
     def _disagreements(self) -> list[str]:
         """What is wrong between its parts."""
@@ -253,9 +218,9 @@ class Scene(SceneSpec):
         >>> found = scene.sample(1000, 7, {"launch.velocity[0]": Normal(1.0, 0.01)})
         >>> round(found.mean()["x"], 3)
         0.51
-        >>> from puck_tables import Launch, Piece
-        >>> cue = Piece(0.03, friction=0.1, name="cue", launch=Launch((1.0, 0.0)))
-        >>> red = Piece(0.03, friction=0.1, name="red", launch=Launch(position=(0.3, 0.0)))
+        >>> from puck_tables import Launch, Puck
+        >>> cue = Puck(0.03, friction=0.1, name="cue", launch=Launch((1.0, 0.0)))
+        >>> red = Puck(0.03, friction=0.1, name="red", launch=Launch(position=(0.3, 0.0)))
         >>> spreads = {"puck[0].launch.velocity[1]": Normal(0.0, 0.01)}
         >>> found = Scene(pucks=[cue, red]).sample(100, 7, spreads)
         >>> round(found.of("red").mean()["x"], 3)
@@ -269,7 +234,7 @@ class Scene(SceneSpec):
         return found
 
     def world(self) -> World:
-        """The same board to play on: advance it, strike pucks, look ahead.
+        """The scene as a board to play on: advance it, strike pucks, look ahead.
 
         Raises
         ------
@@ -278,8 +243,8 @@ class Scene(SceneSpec):
 
         Examples
         --------
-        >>> from puck_tables import Piece, Scene
-        >>> Scene(pucks=[Piece(0.03, friction=0.1)]).world()
+        >>> from puck_tables import Puck, Scene
+        >>> Scene(pucks=[Puck(0.03, friction=0.1)]).world()
         World(1 pucks, 0 moving, at 0 s)
         """
         from puck_tables.world.world import World
@@ -339,9 +304,9 @@ class Scene(SceneSpec):
 
         Examples
         --------
-        >>> from puck_tables import Launch, Piece, Scene
-        >>> cue = Piece(0.03, friction=0.1, name="cue")
-        >>> red = Piece(0.03, friction=0.1, name="red", launch=Launch(position=(0.3, 0.0)))
+        >>> from puck_tables import Launch, Puck, Scene
+        >>> cue = Puck(0.03, friction=0.1, name="cue")
+        >>> red = Puck(0.03, friction=0.1, name="red", launch=Launch(position=(0.3, 0.0)))
         >>> found = Scene(pucks=[cue, red]).aim((0.8, 0.1), striker="cue")
         >>> found.courses, found.launch_speed.round(6).tolist()
         (('cue - red',), [1.23967])

@@ -61,7 +61,7 @@ class SceneEnds(Result):
         }
 
     def of(self, puck: int | str) -> Any:
-        """The same of one puck alone, by its name or number.
+        """The ends of one puck alone, by its name or number.
 
         Raises
         ------

@@ -51,7 +51,6 @@ REACHED, FULL, CROWDED, TANGLED, PAUSED, PUSHING, OFF_TABLE, TOO_SHORT, MISPLACE
 
 OVERLAP = 1e-11  # of the radius: what pushes overlaps by less, and may be put where it was
 _KEPT, _PUT, _MOVED, _MATE = range(4)  # what is done to a disc: nothing, a state, also a place
-_TURN = 2.0 * math.pi
 
 
 @inlined
@@ -115,7 +114,7 @@ def _depth_in(obstacle: FloatArray, disc: FloatArray, x: float, y: float) -> flo
     if shape >= OVERHANG or (driven and shape in (POCKET, EDGE)):
         return 0.0
     gap, _, _, there = normal_to(obstacle, disc[RADIUS], x, y, 0.0)
-    if shape == ARC and obstacle[SPAN] < _TURN and (not there or gap < -2.0 * disc[RADIUS]):
+    if shape == ARC and obstacle[SPAN] < 2.0 * math.pi and (not there or gap < -2.0 * disc[RADIUS]):
         return 0.0  # beside it, or behind
     if shape in (SIDE, CORNER) and not there:
         return 0.0
@@ -177,7 +176,7 @@ def _put_down(game: Game, i: int, what: int, t: float, moved: bool, room: Room) 
 
 @inner
 def put(game: Game, what: int, t: float, room: Room) -> int:
-    """Those marked get the states ``room.before``, as by an impact from outside; how it ended.
+    """Give marked pucks the states ``room.before``, as by an impact from outside; how it ended.
 
     NaN in them stays as it is; nothing is PLACED where it is.  REMOVED: they leave play.
     MISPLACED: nothing was changed, for one would overlap, see :func:`_overlaps`.

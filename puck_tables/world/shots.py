@@ -13,7 +13,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import keep_on
 from puck_tables.errors import PuckError
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.agreement import frictions_under, is_integrated, pieces_of
+from puck_tables.world.agreement import frictions_under, is_integrated, pucks_of
 from puck_tables.world.bulk import follow_all
 from puck_tables.world.course import FATE, LENGTH, PASSES, PRINT, trace
 from puck_tables.world.floors import has_several
@@ -78,14 +78,14 @@ class Shots:
         self._game, self._first, place = start.game, start.states, np.argsort(start.order)
         self._disc = int(place[striker])
         self._watch = int(place[puck]), int(place[through]) if through >= 0 else -1, most
-        pieces = pieces_of(scene)
+        pucks = pucks_of(scene)
         self.patient = (
             patient
             or has_several(scene)
             or any(
-                is_integrated(scene, piece, friction)
-                for piece in pieces
-                for friction in frictions_under(scene, piece)
+                is_integrated(scene, puck, friction)
+                for puck in pucks
+                for friction in frictions_under(scene, puck)
             )
         )
         self.runs = self.left_out = 0
@@ -141,14 +141,14 @@ class Shots:
 
     def _span(self, start: FloatArray) -> float:
         """How long the striker may slide, s."""
-        decel = pieces_of(self.scene)[self.striker].decel
+        decel = pucks_of(self.scene)[self.striker].decel
         return math.hypot(start[0], start[1]) / decel if decel > 0.0 else math.inf
 
     def close_to(self, speed: float) -> float:
         """How near to a target is on it, m: the tolerance of the scene at a speed, m/s."""
-        piece = pieces_of(self.scene)[self.striker]
-        reach = speed * speed / piece.decel if piece.decel > 0.0 else piece.radius
-        return self.scene.tol * max(reach, piece.radius)
+        puck = pucks_of(self.scene)[self.striker]
+        reach = speed * speed / puck.decel if puck.decel > 0.0 else puck.radius
+        return self.scene.tol * max(reach, puck.radius)
 
     def sensitivities(self, starts: FloatArray) -> FloatArray:
         """How far the end moves per degree of heading and per cent of speed, (n, 2) m.

@@ -15,6 +15,7 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel, patience
+from puck_tables.motion.impact_law import along_normal
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ingredients import FREE
 from puck_tables.world.group import (
@@ -132,8 +133,7 @@ def look(group: Group, members: IntArray, pairs: IntArray, y: FloatArray, out: F
             sight[FAR_ARM] = 0.0
             vx, vy, turning = y[one, VX], y[one, VY], radius * y[one, SPIN]
         sight[ARM] = radius
-        sight[APPROACH] = vx * sight[NX] + vy * sight[NY]
-        sight[ALONG] = vy * sight[NX] - vx * sight[NY]
+        sight[APPROACH], sight[ALONG] = along_normal(vx, vy, 0.0, sight[NX], sight[NY])
         sight[SLIP] = sight[ALONG] + turning
         tangential, friction = along_of_pair(group.rims, group.discs, group.obstacles, i, j)
         sight[GRIP] = friction if tangential > -1.0 else 0.0  # −1: smooth

@@ -17,10 +17,10 @@ Which = np.ndarray
 _STEP = 1e-7  # of a difference, of the range of the heading or the speed
 _NEAR = 2.0  # steps of the sample that a start may be from what it leads to
 _INSIDE = 1.2  # half steps, of a cell of one course
-_MOST_STARTS = 2000
-_ITERATIONS, _HALVINGS = 30, 8
+_MOST_STARTS = 2000  # of Newton's method, those that end nearest to the place
+_ITERATIONS, _HALVINGS = 30, 8  # of Newton's method; of one of its steps
 _SAME = 1e-6  # of the ranges: launches closer than this are one
-HEADINGS = 2.0 * math.pi
+HEADINGS = 2.0 * math.pi  # rad: their range
 
 
 class Roots(NamedTuple):

@@ -292,7 +292,7 @@ def _put_away(game: Game, bench: Bench, store: Slots, slot: int) -> bool:
 
 @kernel
 def put_away(game: Game, bench: Bench, store: Slots, slot: int) -> bool:
-    """The same of a game that :func:`lay_out` gave."""
+    """Copy a game that :func:`lay_out` gave to a slot, if its pieces have room there."""
     patience(1 + bench.numbers.size // 1000)
     return _put_away(game, bench, store, slot)
 

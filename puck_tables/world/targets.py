@@ -11,7 +11,7 @@ import numpy.typing as npt
 from puck_tables._core.real import finite_array
 from puck_tables.errors import InputError
 from puck_tables.scene.parts import Floor, Force
-from puck_tables.scene.pieces import PieceSpec
+from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.run import number_of
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import (
@@ -20,7 +20,7 @@ from puck_tables.world.agreement import (
     disagreements,
     has_closed_forms,
     in_the_way,
-    pieces_of,
+    pucks_of,
     refuse_endless,
     start_of,
 )
@@ -63,10 +63,10 @@ def target_of(
     refuse_endless(scene)
     if any(scene.floor.velocity) or scene.floor.turning != 0.0:
         raise InputError("aim is for boards on which pucks come to rest, not for a moving floor")
-    pieces = pieces_of(scene)
-    names = tuple(called(piece, number) for number, piece in enumerate(pieces))
-    sent = _striker(pieces, names, striker)
-    aimed = _puck(pieces, names, puck, sent)
+    pucks = pucks_of(scene)
+    names = tuple(called(puck, number) for number, puck in enumerate(pucks))
+    sent = _striker(pucks, names, striker)
+    aimed = _puck(pucks, names, puck, sent)
     through = -1
     if hits is not None:
         through = number_of(hits, names)
@@ -83,18 +83,18 @@ def target_of(
     if place.shape != (2,):
         raise InputError(f"target must be one place (x, y) in m, got shape {place.shape}")
     x, y = place.tolist()
-    _refuse_where_nothing_lies(scene, (x, y), pieces[aimed].radius, names[aimed])
+    _refuse_where_nothing_lies(scene, (x, y), pucks[aimed].radius, names[aimed])
     return Target(sent, aimed, through, (x, y), -1)
 
 
-def _striker(pieces: tuple[PieceSpec, ...], names: tuple[str, ...], given: int | str | None) -> int:
+def _striker(pucks: tuple[ScenePuck, ...], names: tuple[str, ...], given: int | str | None) -> int:
     """The puck that is named, or the one that the scene sends off."""
     if given is None:
         moving = [
-            number for number, piece in enumerate(pieces)
-            if piece.launch.velocity not in (None, (0.0, 0.0)) or piece.launch.spin != 0.0
+            number for number, puck in enumerate(pucks)
+            if puck.launch.velocity not in (None, (0.0, 0.0)) or puck.launch.spin != 0.0
         ]  # fmt: skip
-        if len(pieces) == 1:
+        if len(pucks) == 1:
             moving = [0]
         if len(moving) != 1:
             which = "none" if not moving else ", ".join(names[number] for number in moving)
@@ -104,42 +104,42 @@ def _striker(pieces: tuple[PieceSpec, ...], names: tuple[str, ...], given: int |
         number = moving[0]
     else:
         number = number_of(given, names)
-    _refuse_driven(pieces, names, number, "be sent off")
-    hold = pieces[number].constraint
+    _refuse_driven(pucks, names, number, "be sent off")
+    hold = pucks[number].constraint
     if hold is not None:
         raise InputError(
             f"striker {names[number]} is led by a {hold.kind}: aim is for pucks that go where they "
             "are sent"
         )
-    if pieces[number].launch.time > 0.0:
+    if pucks[number].launch.time > 0.0:
         raise InputError(
-            f"striker {names[number]} is sent off at {pieces[number].launch.time:g} s: aim is for "
+            f"striker {names[number]} is sent off at {pucks[number].launch.time:g} s: aim is for "
             "launches at the start, set its launch.time to 0"
         )
     return number
 
 
 def _puck(
-    pieces: tuple[PieceSpec, ...], names: tuple[str, ...], given: int | str | None, striker: int
+    pucks: tuple[ScenePuck, ...], names: tuple[str, ...], given: int | str | None, striker: int
 ) -> int:
     """The puck that is named, or the only one that can be meant."""
-    others = [n for n, piece in enumerate(pieces) if n != striker and not piece.path]
+    others = [n for n, puck in enumerate(pucks) if n != striker and not puck.path]
     if given is None:
         if len(others) > 1:
             raise InputError(
-                f"puck: which is to end there? Name one of the {len(pieces)}, such as "
+                f"puck: which is to end there? Name one of the {len(pucks)}, such as "
                 f"{names[others[0]]}, or {names[striker]} itself"
             )
         return others[0] if others else striker
     number = number_of(given, names)
-    _refuse_driven(pieces, names, number, "be aimed")
+    _refuse_driven(pucks, names, number, "be aimed")
     return number
 
 
 def _refuse_driven(
-    pieces: tuple[PieceSpec, ...], names: tuple[str, ...], number: int, what: str
+    pucks: tuple[ScenePuck, ...], names: tuple[str, ...], number: int, what: str
 ) -> None:
-    if pieces[number].path:
+    if pucks[number].path:
         raise InputError(
             f"{names[number]} is driven along its path and cannot {what}: name another"
         )
@@ -170,13 +170,13 @@ def _refuse_where_nothing_lies(
 
 def lying_there(scene: SceneSpec, target: Target) -> str:
     """Who lies so close to the target that it would have to be moved away; '' if nobody does."""
-    pieces = pieces_of(scene)
-    radius = pieces[target.puck].radius
-    for number, piece in enumerate(pieces):
-        if number in (target.puck, target.striker) or target.pocket >= 0 or piece.path:
+    pucks = pucks_of(scene)
+    radius = pucks[target.puck].radius
+    for number, puck in enumerate(pucks):
+        if number in (target.puck, target.striker) or target.pocket >= 0 or puck.path:
             continue
-        if math.dist(start_of(piece), target.place) < (radius + piece.radius) * (1.0 - TOUCH):
-            return called(piece, number)
+        if math.dist(start_of(puck), target.place) < (radius + puck.radius) * (1.0 - TOUCH):
+            return called(puck, number)
     return ""
 
 
@@ -198,15 +198,15 @@ def out_of_reach(scene: SceneSpec, target: Target, speed: float, spin: float) ->
     shorter than (1 − δ²/4) of the way of the centre: 3/4 of it for a plain puck with δ ≤ 1.  No
     impact gives energy.
     """
-    pieces = pieces_of(scene)
-    striker, puck = pieces[target.striker], pieces[target.puck]
-    others = [piece for number, piece in enumerate(pieces) if number != target.striker]
+    pucks = pucks_of(scene)
+    striker, puck = pucks[target.striker], pucks[target.puck]
+    others = [puck for number, puck in enumerate(pucks) if number != target.striker]
     at_rest = not any(
         one.path or one.launch.velocity not in (None, (0.0, 0.0)) or one.launch.spin
         for one in others
     )
     plain = all(has_closed_forms(one, one.friction) and one.delta <= 1.0 for one in (striker, puck))
-    pushed = scene.floor != Floor() or any(one.force != Force() for one in pieces)
+    pushed = scene.floor != Floor() or any(one.force != Force() for one in pucks)
     if not (at_rest and plain) or pushed:
         return ""
     way = math.dist(start_of(puck), target.place)

@@ -15,11 +15,11 @@ from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.holds import misfits
 from puck_tables.scene.ingredients import FREE
 from puck_tables.scene.parts import Launch
-from puck_tables.scene.pieces import PieceSpec
+from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.run import number_of
 from puck_tables.world import game as g
 from puck_tables.world.added import board_with, with_puck
-from puck_tables.world.agreement import pieces_of
+from puck_tables.world.agreement import pucks_of
 from puck_tables.world.by_hand import (
     lead,
     led_state,
@@ -39,7 +39,7 @@ from puck_tables.world.prepare import set_pace
 from puck_tables.world.pushed_back import Told, pushed_back
 from puck_tables.world.running import Running
 
-_SURELY = 1.0 - 1e-12
+_SURELY = 1.0 - 1e-12  # of the fastest slip yet: below it rounding makes none faster
 
 
 class World(Running):
@@ -66,9 +66,9 @@ class World(Running):
 
     Examples
     --------
-    >>> from puck_tables import Launch, Piece, Scene
-    >>> one = Piece(0.03, friction=0.1, launch=Launch((1.0, 0.0)))
-    >>> two = Piece(0.03, friction=0.1, launch=Launch(position=(0.2, 0.0)))
+    >>> from puck_tables import Launch, Puck, Scene
+    >>> one = Puck(0.03, friction=0.1, launch=Launch((1.0, 0.0)))
+    >>> two = Puck(0.03, friction=0.1, launch=Launch(position=(0.2, 0.0)))
     >>> world = Scene(pucks=[one, two]).world()
     >>> [event.what for event in world.advance(0.2)]
     ['impact']
@@ -135,8 +135,8 @@ class World(Running):
 
         Examples
         --------
-        >>> from puck_tables import Piece, Scene
-        >>> world = Scene(pucks=[Piece(0.03, friction=0.1)]).world()
+        >>> from puck_tables import Puck, Scene
+        >>> world = Scene(pucks=[Puck(0.03, friction=0.1)]).world()
         >>> world.place(0, (0.5, 0.0), velocity=(0.2, 0.0))
         >>> world.advance(9.0), world.state()[0, 0].round(6).item()      # 0.5 + v^2/2fg
         ([], 0.520394)
@@ -163,8 +163,8 @@ class World(Running):
 
         Examples
         --------
-        >>> from puck_tables import Launch, Piece, Scene
-        >>> world = Scene(pucks=[Piece(0.03, friction=0.1, launch=Launch((1.0, 0.0)))]).world()
+        >>> from puck_tables import Launch, Puck, Scene
+        >>> world = Scene(pucks=[Puck(0.03, friction=0.1, launch=Launch((1.0, 0.0)))]).world()
         >>> start = world.state()
         >>> _ = world.advance(0.3)
         >>> world.set_state(start)                                       # again from where it was
@@ -193,15 +193,15 @@ class World(Running):
 
         Examples
         --------
-        >>> from puck_tables import Piece, Scene
-        >>> world = Scene(pucks=[Piece(0.03, friction=0.1)]).world()
+        >>> from puck_tables import Puck, Scene
+        >>> world = Scene(pucks=[Puck(0.03, friction=0.1)]).world()
         >>> world.remove(0)
         >>> world.in_play.tolist(), world.events_since(0.0)[0].what
         ([False], 'removed')
         """
         self._put(g.REMOVED, _row(None, None, None, None), self._in_play(puck))
 
-    def add(self, puck: PieceSpec) -> int:
+    def add(self, puck: ScenePuck) -> int:
         """Put a new puck on the board, now, with its launch; its number.  An event says "added".
 
         Times of its launch, its path and its force count from now.  It takes some ms: arrays are
@@ -215,9 +215,9 @@ class World(Running):
 
         Examples
         --------
-        >>> from puck_tables import Launch, Piece, Scene
-        >>> world = Scene(pucks=[Piece(0.03, friction=0.1)]).world()
-        >>> world.add(Piece(0.02, friction=0.1, launch=Launch((1.0, 0.0), position=(-0.2, 0.0))))
+        >>> from puck_tables import Launch, Puck, Scene
+        >>> world = Scene(pucks=[Puck(0.03, friction=0.1)]).world()
+        >>> world.add(Puck(0.02, friction=0.1, launch=Launch((1.0, 0.0), position=(-0.2, 0.0))))
         1
         >>> [event.what for event in world.advance(0.2)]
         ['impact']
@@ -258,9 +258,9 @@ class World(Running):
 
         Examples
         --------
-        >>> from puck_tables import Piece, Scene
-        >>> mallet = Piece(0.05, path=[[0, -0.2, 0]], name="mallet")
-        >>> world = Scene(pucks=[mallet, Piece(0.03, friction=0.1)]).world()
+        >>> from puck_tables import Puck, Scene
+        >>> mallet = Puck(0.05, path=[[0, -0.2, 0]], name="mallet")
+        >>> world = Scene(pucks=[mallet, Puck(0.03, friction=0.1)]).world()
         >>> world.drive("mallet", towards=(0.0, 0.0), speed=1.0)
         >>> [event.what for event in world.advance(9.0)]
         ['impact']
@@ -300,9 +300,9 @@ class World(Running):
 
         Examples
         --------
-        >>> from puck_tables import Piece, Scene
-        >>> mallet = Piece(0.05, path=[[0, -0.2, 0]], name="mallet")
-        >>> world = Scene(pucks=[mallet, Piece(0.03, mass=0.1, friction=0.1)]).world()
+        >>> from puck_tables import Puck, Scene
+        >>> mallet = Puck(0.05, path=[[0, -0.2, 0]], name="mallet")
+        >>> world = Scene(pucks=[mallet, Puck(0.03, mass=0.1, friction=0.1)]).world()
         >>> world.drive("mallet", (1.0, 0.0))
         >>> _ = world.advance(0.5)
         >>> world.reaction("mallet").round(6).tolist()                     # 2 m v, e = 1
@@ -333,8 +333,8 @@ class World(Running):
 
         Examples
         --------
-        >>> from puck_tables import Piece, Scene
-        >>> world = Scene(pucks=[Piece(0.03, mass=1.0, friction=0.0, gravity=10.0)]).world()
+        >>> from puck_tables import Puck, Scene
+        >>> world = Scene(pucks=[Puck(0.03, mass=1.0, friction=0.0, gravity=10.0)]).world()
         >>> world.apply_force(0, (2.0, 0.0), duration=0.5)
         >>> _ = world.advance(1.0)
         >>> world.state()[0, [0, 3]].round(9).tolist()            # F t^2/2m + F t/m 0.5 s
@@ -424,7 +424,7 @@ class World(Running):
         """Refuse a velocity that the constraint of a puck does not allow."""
         x, y, angle, vx, vy, spin = state.tolist()
         launch = Launch((vx, vy), spin, (x, y), angle)
-        hold = pieces_of(self.scene)[number].constraint
+        hold = pucks_of(self.scene)[number].constraint
         for fault in misfits(launch, hold, self.scene.floor, ""):
             raise InputError(f"{self.names[number]}: {fault}".replace("launch.", ""))
 

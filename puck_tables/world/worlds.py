@@ -12,7 +12,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import finite_array, real, shown
 from puck_tables.errors import InputError
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
-from puck_tables.scene.pieces import called_line
+from puck_tables.scene.pucks_and_posts import called_line
 from puck_tables.scene.run import Event, number_of
 from puck_tables.world import game as g
 from puck_tables.world import stored
@@ -56,8 +56,8 @@ class Worlds(Together):
 
     Examples
     --------
-    >>> from puck_tables import Piece, Scene, Worlds
-    >>> worlds = Worlds(Scene(pucks=[Piece(0.03, friction=0.1)]), 3)
+    >>> from puck_tables import Puck, Scene, Worlds
+    >>> worlds = Worlds(Scene(pucks=[Puck(0.03, friction=0.1)]), 3)
     >>> worlds.strike(0, [[0.5, 0.0], [1.0, 0.0], [1.5, 0.0]])
     >>> worlds.advance(float("inf"))
     >>> worlds.state()[:, 0, 0].round(6).tolist()                      # v^2/2fg
@@ -95,9 +95,9 @@ class Worlds(Together):
 
         Examples
         --------
-        >>> from puck_tables import Launch, Piece, Scene, Worlds
-        >>> one = Piece(0.03, friction=0.1, launch=Launch((1.0, 0.0)))
-        >>> two = Piece(0.03, friction=0.1, launch=Launch(position=(0.2, 0.0)))
+        >>> from puck_tables import Launch, Puck, Scene, Worlds
+        >>> one = Puck(0.03, friction=0.1, launch=Launch((1.0, 0.0)))
+        >>> two = Puck(0.03, friction=0.1, launch=Launch(position=(0.2, 0.0)))
         >>> worlds = Worlds(Scene(pucks=[one, two]), 2)
         >>> worlds.advance(0.2)
         >>> [worlds.events[name].tolist() for name in ("board", "what", "partner")]
@@ -160,8 +160,8 @@ class Worlds(Together):
 
         Examples
         --------
-        >>> from puck_tables import Piece, Scene, Worlds
-        >>> worlds = Worlds(Scene(pucks=[Piece(0.03, friction=0.1)]), 3)
+        >>> from puck_tables import Puck, Scene, Worlds
+        >>> worlds = Worlds(Scene(pucks=[Puck(0.03, friction=0.1)]), 3)
         >>> worlds.strike(0, (1.0, 0.0), boards=[2])
         >>> worlds.state()[:, 0, 3].tolist()
         [0.0, 0.0, 1.0]
@@ -198,8 +198,8 @@ class Worlds(Together):
 
         Examples
         --------
-        >>> from puck_tables import Piece, Scene, Worlds
-        >>> worlds = Worlds(Scene(pucks=[Piece(0.03, friction=0.1)]), 2)
+        >>> from puck_tables import Puck, Scene, Worlds
+        >>> worlds = Worlds(Scene(pucks=[Puck(0.03, friction=0.1)]), 2)
         >>> worlds.place(0, [[0.5, 0.0], [0.6, 0.0]], velocity=(0.2, 0.0))
         >>> worlds.advance(9.0)
         >>> worlds.state()[:, 0, 0].round(6).tolist()                    # 0.5 + v^2/2fg
@@ -220,8 +220,8 @@ class Worlds(Together):
 
         Examples
         --------
-        >>> from puck_tables import Piece, Scene, Worlds
-        >>> worlds = Worlds(Scene(pucks=[Piece(0.03, friction=0.1)]), 2)
+        >>> from puck_tables import Puck, Scene, Worlds
+        >>> worlds = Worlds(Scene(pucks=[Puck(0.03, friction=0.1)]), 2)
         >>> worlds.remove(0, boards=[1])
         >>> worlds.in_play[:, 0].tolist()
         [True, False]
@@ -245,8 +245,8 @@ class Worlds(Together):
 
         Examples
         --------
-        >>> from puck_tables import Piece, Scene, Worlds
-        >>> worlds = Worlds(Scene(pucks=[Piece(0.03, friction=0.1)]), 2)
+        >>> from puck_tables import Puck, Scene, Worlds
+        >>> worlds = Worlds(Scene(pucks=[Puck(0.03, friction=0.1)]), 2)
         >>> worlds.strike(0, (1.0, 0.0), boards=[1])
         >>> tries = worlds.copy([1, 1, 0])
         >>> tries.state()[:, 0, 3].tolist(), len(worlds)
@@ -278,9 +278,9 @@ class Worlds(Together):
 
         Examples
         --------
-        >>> from puck_tables import Piece, Scene, Worlds
-        >>> mallet = Piece(0.05, path=[[0, -0.2, 0]], name="mallet")
-        >>> worlds = Worlds(Scene(pucks=[mallet, Piece(0.03, friction=0.1)]), 2)
+        >>> from puck_tables import Puck, Scene, Worlds
+        >>> mallet = Puck(0.05, path=[[0, -0.2, 0]], name="mallet")
+        >>> worlds = Worlds(Scene(pucks=[mallet, Puck(0.03, friction=0.1)]), 2)
         >>> worlds.drive("mallet", [[1.0, 0.0], [2.0, 0.0]])
         >>> worlds.advance(0.25)
         >>> worlds.state()[:, 1, 3].round(6).tolist()         # 2 V - f g t, from the impact on
@@ -328,8 +328,8 @@ class Worlds(Together):
 
         Examples
         --------
-        >>> from puck_tables import Launch, Piece, Scene, Worlds
-        >>> worlds = Worlds(Scene(pucks=[Piece(0.03, friction=0.1, launch=Launch((1, 0)))]), 2)
+        >>> from puck_tables import Launch, Puck, Scene, Worlds
+        >>> worlds = Worlds(Scene(pucks=[Puck(0.03, friction=0.1, launch=Launch((1, 0)))]), 2)
         >>> worlds.advance(0.25)
         >>> worlds.reset([1])
         >>> worlds.time.tolist(), worlds.state()[:, 0, 3].round(6).tolist()

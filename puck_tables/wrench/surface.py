@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from puck_tables.motion.puck_spec import PuckSpec
 
 LEAST, MOST, OF_A_ROUND = 5, 1_000_001, 181  # slip angles
-MOST_OF_A_BASE, OF_A_BASE = 1001, 31
+MOST_OF_A_BASE, OF_A_BASE = 1001, 31  # points along a side of its grid: at most, unasked
 # wrenches for models and convexity: slip angles by headings, enough for all products of order 8;
 # directions in which those of a base lie
 _ANGLES, _HEADINGS, _DIRECTIONS = 181, 9, 2000

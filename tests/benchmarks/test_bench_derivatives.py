@@ -27,7 +27,7 @@ def launches() -> FloatArray:
                      one, one])  # fmt: skip
 
 
-def stops(launches: FloatArray, jacobian: bool = False) -> puck_tables.Stops:
+def stops(launches: FloatArray, jacobian: bool = False) -> puck_tables.results.Stops:
     vx, vy, spin, delta, decel, radius = launches
     velocity = np.stack([vx, vy], axis=-1)
     return puck_tables.stop(

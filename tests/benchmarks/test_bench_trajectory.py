@@ -211,7 +211,7 @@ def test_stop_kernel(measure: Any, launches: FloatArray, way: str) -> None:
 def test_stop_public(measure: Any, table: ResultantTable, launches: FloatArray) -> None:
     velocity, spin = launches[:, :2].copy(), launches[:, 2].copy()
 
-    def stop() -> puck_tables.Stops:
+    def stop() -> puck_tables.results.Stops:
         return puck_tables.stop(velocity, spin, delta=DELTA, tol=ACCURACY)
 
     stops = np.column_stack([stop().stop_time, stop().stop_position])
@@ -229,7 +229,7 @@ def test_stop_public(measure: Any, table: ResultantTable, launches: FloatArray) 
 def test_stop_public_single(measure: Any, table: ResultantTable, given: bool) -> None:
     chosen = table if given else None
 
-    def stop() -> puck_tables.Stops:
+    def stop() -> puck_tables.results.Stops:
         return puck_tables.stop(LAUNCH[:2], LAUNCH[2], delta=DELTA, tol=ACCURACY, table=chosen)
 
     measure(
@@ -312,7 +312,7 @@ def test_tight_integrator(measure: Any, table: ResultantTable, source: str) -> N
 def test_tight_simulate(measure: Any, table: ResultantTable, source: str) -> None:
     exact = source != "table"
 
-    def run() -> puck_tables.Trajectory:
+    def run() -> puck_tables.results.Trajectory:
         return PUCK.simulate(
             LAUNCH[:2], LAUNCH[2], tol=TIGHT_TOL, exact=exact,
             table=None if exact else table,

@@ -30,11 +30,11 @@ def carrom(gap: float) -> pt.Scene:
     """19 men and a striker on a 29-inch board; ``gap`` between the men, m."""
     rim = {"friction": 0.1, "restitution": 0.9, "tangential": 0.0, "rim": 0.2}
     men = [
-        pt.Piece(MAN, mass=0.0053, launch=pt.Launch(position=place), **rim)
+        pt.Puck(MAN, mass=0.0053, launch=pt.Launch(position=place), **rim)
         for place in hexagon(2, 2.0 * MAN + gap)
     ]
     strike = pt.Launch((0.05, 4.0), position=(-0.004, -0.3))
-    striker = pt.Piece(STRIKER, mass=0.015, launch=strike, name="striker", **rim)
+    striker = pt.Puck(STRIKER, mass=0.015, launch=strike, name="striker", **rim)
     side = 0.5 * BOARD
     walls = [
         pt.Wall(
@@ -129,9 +129,9 @@ def crowd(count: int) -> pt.Scene:
     places = np.array(hexagon(13, pitch)[: count - 1])
     places += rng.uniform(-0.01, 0.01, places.shape)
     rim = {"friction": 0.05, "restitution": 0.95}
-    rest = [pt.Piece(0.03, mass=0.1, launch=pt.Launch(position=p), **rim) for p in places.tolist()]
+    rest = [pt.Puck(0.03, mass=0.1, launch=pt.Launch(position=p), **rim) for p in places.tolist()]
     launch = pt.Launch((10.0, 0.3), position=(float(places[:, 0].min()) - 0.1, 0.0))
-    return pt.Scene(pucks=[*rest, pt.Piece(0.03, mass=1.0, launch=launch, **rim)])
+    return pt.Scene(pucks=[*rest, pt.Puck(0.03, mass=1.0, launch=launch, **rim)])
 
 
 @GROWTH
@@ -153,9 +153,9 @@ def hockey() -> pt.Scene:
             for t in times.tolist()
         ]
 
-    puck = pt.Piece(0.04, friction=0.0, mass=0.03, restitution=0.9, tangential=-0.5,
+    puck = pt.Puck(0.04, friction=0.0, mass=0.03, restitution=0.9, tangential=-0.5,
                     launch=pt.Launch((3.0, 1.3), 10.0))  # fmt: skip
-    mallets = [pt.Piece(0.05, path=way(x, x), restitution=0.9) for x in (-0.75, 0.75)]
+    mallets = [pt.Puck(0.05, path=way(x, x), restitution=0.9) for x in (-0.75, 0.75)]
     walls = [
         pt.Wall((-1.0 * nx, -0.5 * ny), normal=(nx, ny), restitution=0.9)
         for nx, ny in ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
@@ -193,7 +193,7 @@ def test_air_hockey(measure: Any) -> None:
 def led() -> pt.World:
     """The same table with one mallet, which a hand leads."""
     scene = hockey()
-    mallet = pt.Piece(0.05, path=[[0.0, -0.75, 0.0]], restitution=0.9)
+    mallet = pt.Puck(0.05, path=[[0.0, -0.75, 0.0]], restitution=0.9)
     return pt.Scene(
         pucks=[scene.pucks[0], mallet], walls=scene.walls, drag=scene.drag, time=60.0
     ).world()

@@ -33,7 +33,7 @@ def led(n: int) -> np.ndarray:
 def table() -> pt.Scene:
     """The table that comes along, its mallet led by hand."""
     scene = pt.Scene.load("air-hockey-goals")
-    mallet = pt.Piece(0.0508, path=[[0.0, 1.9, 0.55]], restitution=0.9, name="mallet")
+    mallet = pt.Puck(0.0508, path=[[0.0, 1.9, 0.55]], restitution=0.9, name="mallet")
     return pt.Scene(
         pucks=[scene.pucks[0], mallet], walls=scene.walls, edges=scene.edges, lines=scene.lines,
         drag=scene.drag, time=3.0,

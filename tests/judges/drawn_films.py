@@ -176,7 +176,7 @@ def summed(
     return np.stack([*np.outer(np.array(velocity) / speed, way), angle])
 
 
-def wrong(film: Drawn, found: pt.Fit, errors: float = 4.0) -> dict[str, float]:
+def wrong(film: Drawn, found: pt.results.Fit, errors: float = 4.0) -> dict[str, float]:
     """Numbers called determined that are off by more than so many errors, and by how many."""
     launch = found.launch().numbers
     off = {}
@@ -196,7 +196,7 @@ def wrong(film: Drawn, found: pt.Fit, errors: float = 4.0) -> dict[str, float]:
     return off
 
 
-def cut(film: Drawn, found: pt.Fit) -> float:
+def cut(film: Drawn, found: pt.results.Fit) -> float:
     """The share of free frames that are cut off the ends; negative of foreign ones that are not."""
     ((_, first, last),) = found.left_out
     return (first + last - film.foreign) / (film.track.time.size - film.foreign)

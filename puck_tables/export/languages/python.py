@@ -38,7 +38,7 @@ class Python(Language):
         return f"{name} = (\n{rows_of(numbers)},\n)" if numbers else f"{name} = ()"
 
     def function(self, node: ast.FunctionDef) -> str:
-        """As it is, but for the kinds of its variables."""
+        """The source of a function without the kinds of its variables."""
         plain = ast.fix_missing_locations(_Plain().visit(node))
         return "\n" + re.sub(r"^( {4})+", _tabs, ast.unparse(plain), flags=re.MULTILINE) + "\n"
 

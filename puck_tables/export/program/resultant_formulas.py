@@ -8,7 +8,7 @@ from puck_tables.export.program.intrinsics import TALLEST, Out, room
 from puck_tables.export.program.places import refused
 
 MOST_STEPS = 9  # of the arithmetic-geometric mean, each of which doubles its digits
-HALF_PI = 0.5 * pi
+HALF_PI = 0.5 * pi  # of φ and θ: pure spin
 
 
 def shape_integrals(ratio: float, fast: bool, p: Out) -> None:

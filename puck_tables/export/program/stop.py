@@ -44,7 +44,7 @@ def table_at(side: int, share: float, delta: float, f: Out) -> None:
 
 
 def stop_functions(side: int, share: float, delta: float, f: Out) -> None:
-    """The same, and the exact values in pure sliding and in pure spin."""
+    """The functions of a stop: by look-up, in pure sliding and in pure spin exactly."""
     table_at(side, share, delta, f)
     if share == 0.0 and side == 0:
         f[TIME] = 1.0

@@ -21,7 +21,7 @@ _BEGINS = re.compile(r"\[\s*\{|\{")
 
 
 def _as_csv(path: str | Path, head: bytes) -> bytes:
-    """The same as a CSV file (UTF-8) with the names of its entries as headings."""
+    """A JSON table as a CSV file (UTF-8) with the names of its entries as headings."""
     content = read_whole(path, _LARGEST)
     try:
         data: Any

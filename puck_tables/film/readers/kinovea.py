@@ -23,7 +23,7 @@ _ROW = re.compile(r"(?:(\d+):)?(\d+):(\d+):(\d+)\s+(\S+)\s+(\S+)\s*")
 
 
 def _as_csv(path: str | Path, head: bytes) -> bytes:
-    """The same as a table (UTF-8, semicolons) of trajectory, time, x and y."""
+    """A file of Kinovea as a table (UTF-8, semicolons) of trajectory, time, x and y."""
     content = read_whole(path, _LARGEST)
     rows, track, apart = ["track;t [s];x;y"], 0, True
     for n, line in enumerate(content.decode(encoding_of(path, content)).splitlines(), start=1):

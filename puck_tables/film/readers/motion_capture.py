@@ -34,7 +34,7 @@ from puck_tables.film.text_tables import film_below
 _BEGINS = ("FILE_VERSION", "NO_OF_FRAMES", "NO_OF_CAMERAS", "NO_OF_MARKERS", "NO_OF_BODIES")
 _WORDS = ("FREQUENCY", "DESCRIPTION", "EVENT")  # over the table, without a _
 _POSE = ("x", "y", "z", "", "", "angle")  # X Y Z Roll Pitch Yaw, then residual and matrix
-_POSE_WIDTH = 16
+_POSE_WIDTH = 16  # columns of a body: the six, the residual, nine of the matrix
 _SECTION = "trajectories"
 _LARGEST = 1 << 30  # bytes
 _FEWEST = 5  # lines over a table of Motive

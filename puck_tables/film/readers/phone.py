@@ -9,7 +9,7 @@ from puck_tables.errors import InputError
 from puck_tables.film.film import Reader
 from puck_tables.film.rates import NO_ACCELERATIONS
 
-_BEGINS = b"time,seconds_elapsed,"
+_BEGINS = b"time,seconds_elapsed,"  # as Sensor Logger writes
 _LARGEST = 1 << 28  # bytes
 _NAMES = {"x": "wx [rad/s]", "y": "wy [rad/s]", "z": "wz [rad/s]", "seconds_elapsed": "t [s]"}
 

@@ -15,7 +15,7 @@ _LOOKED_AT = 4  # rows that tell
 
 
 def _as_csv(path: str | Path, head: bytes) -> bytes:
-    """The same table with the number of the tick beside each place (UTF-8, semicolons)."""
+    """A table of dots with the number of the tick beside each place (UTF-8, semicolons)."""
     content = read_whole(path, _LARGEST)
     name, *dots = _lines(content.decode(encoding_of(path, content), "replace"))
     return "".join(

@@ -20,7 +20,7 @@ _THOUSANDS = re.compile(r"[-+]?[1-9][0-9]{0,2}(?:\s[0-9]{3})+")
 
 
 def _as_csv(path: str | Path, head: bytes) -> bytes:
-    """The same table (UTF-8, commas) with a column for each number of a cell."""
+    """A table of vectors (UTF-8, commas) with a column for each number of a cell."""
     form = _form_of(path, head)
     content = read_whole(path, _LARGEST)
     if form is None:

@@ -1,4 +1,4 @@
-"""What stands on a board besides straight cushions: several pucks, posts, arcs and pockets.
+"""What stands on a board besides straight cushions: pucks, posts, arcs and pockets.
 
 Plain records, checked when a :class:`puck_tables.Scene` is made of them.
 """
@@ -13,15 +13,19 @@ from typing import Any
 import numpy as np
 
 from puck_tables._core.doubts import OF_A_PUCK
-from puck_tables._core.fields import of
+from puck_tables._core.fields import Unsaid, of, specs
+from puck_tables._core.reading import entries_in
+from puck_tables.errors import InputError
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.scene.parts import Constraint, Force, Launch, Rows
 from puck_tables.scene.restitution import Restitution, restitution_of
 
+_NOT_FREE = {"path", "force", "constraint"}  # what moves a puck besides friction
 
-@dataclass(frozen=True)
-class PieceSpec(PuckSpec):
-    """The numbers of one of several pucks; :class:`puck_tables.Piece` adds the verbs of a puck."""
+
+@dataclass(frozen=True, repr=False)
+class ScenePuck(PuckSpec):
+    """A puck as a board has it: named, sent, with a rim; :class:`puck_tables.Puck` adds verbs."""
 
     name: str = of("text", "")
     colour: str = of("colour", "", doc="in pictures and movies")
@@ -37,6 +41,40 @@ class PieceSpec(PuckSpec):
     )
     force: Force = of("part", Force(), part=Force)
     constraint: Constraint | None = of("part", None, part=Constraint)
+
+    def __repr__(self) -> str:
+        """What it was given."""
+        told = (
+            f"{name}={value!r}" for name, value in entries_in(self).items()
+            if not isinstance(value, Unsaid)
+        )  # fmt: skip
+        return f"{type(self).__name__}({', '.join(told)})"
+
+    @property
+    def only_on_boards(self) -> dict[str, Any]:
+        """What it was given besides the numbers of a free puck, by name.
+
+        Examples
+        --------
+        >>> ScenePuck(0.02, friction=0.1, name="red").only_on_boards
+        {'name': 'red'}
+        """
+        own = specs(PuckSpec)
+        return {name: value for name, value in entries_in(self).items() if name not in own}
+
+    def refuse_unless_free(self) -> None:
+        """Refuse what asks how it slides by friction alone, where it would not.
+
+        Raises
+        ------
+        InputError
+        """
+        super().refuse_unless_free()
+        for name in _NOT_FREE & self.only_on_boards.keys():
+            raise InputError(
+                f"this puck has a {name}, which acts in a scene alone: "
+                "Scene(pucks=[puck]).simulate() follows it"
+            )
 
     def __post_init__(self) -> None:
         launch = self.launch
