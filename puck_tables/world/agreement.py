@@ -161,8 +161,9 @@ def steps_for(scene: SceneSpec) -> float:
 
     Examples
     --------
-    >>> from puck_tables import Puck, Scene
-    >>> steps_for(Scene(Puck(0.1), tol=1e-7)), steps_for(Scene(pucks=[Puck(0.1)] * 2, tol=1e-7))
+    >>> from puck_tables import Launch, Puck, Scene
+    >>> two = [Puck(0.1), Puck(0.1, launch=Launch(position=(1.0, 0.0)))]
+    >>> steps_for(Scene(Puck(0.1), tol=1e-7)), steps_for(Scene(pucks=two, tol=1e-7))
     (1e-07, 1e-09)
     """
     return scene.tol if len(pucks_of(scene)) == 1 else flight_error(scene)
