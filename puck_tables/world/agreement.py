@@ -155,9 +155,9 @@ def flight_error(scene: SceneSpec) -> float:
 
 
 def steps_for(scene: SceneSpec) -> float:
-    """What integrated flights may be wrong by, in the same units: of one puck what is asked.
+    """What integrated flights may be wrong by, in the same units: alone what is asked.
 
-    Impacts of several multiply errors, and those that push each other have to stay in touch.
+    Impacts multiply errors, and what presses cushions or pucks has to stay in touch.
 
     Examples
     --------
@@ -166,7 +166,8 @@ def steps_for(scene: SceneSpec) -> float:
     >>> steps_for(Scene(Puck(0.1), tol=1e-7)), steps_for(Scene(pucks=two, tol=1e-7))
     (1e-07, 1e-09)
     """
-    return scene.tol if len(pucks_of(scene)) == 1 else flight_error(scene)
+    meets = len(pucks_of(scene)) > 1 or any(getattr(scene, f"{name}s") for name in CUSHIONS)
+    return flight_error(scene) if meets else scene.tol
 
 
 def is_integrated(scene: SceneSpec, puck: ScenePuck, friction: float) -> bool:
