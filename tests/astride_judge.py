@@ -23,7 +23,7 @@ _RULE = (0.5 * math.pi * np.cosh(_T) * (_T[1] - _T[0])) * 2.0 * _FROM_END * (1.0
 Spans = Callable[[np.ndarray], list[tuple[float, np.ndarray, np.ndarray]]]
 
 
-class Ground:
+class FloorMap:
     """Frictions around (0, 0) in axes across the borders; places in radii.
 
     ``borders``, ``values``: of strips; ``discs``: (x, y, radius, f); ``polygons``: (corners, f).
@@ -85,18 +85,18 @@ class Ground:
         return found
 
 
-def sums(ground: Ground, ux: float, uy: float, w: float, size: float = 1.0) -> np.ndarray:
+def sums(floor_map: FloorMap, ux: float, uy: float, w: float, size: float = 1.0) -> np.ndarray:
     """∫ f e_j, ∫ f x_k e_j and ∫ f x_k (x e_y − y e_x) over a disc; e of the slip (ux, uy), w."""
     straight = abs(w) <= 1e-12 * math.hypot(ux, uy)  # else its centre is too far away to be told
     centre = (0.0, 0.0) if straight else (-uy / w, ux / w)
-    stops = {-size, size, *(s for s in [*ground.stops(size), centre[0]] if -size < s < size)}
+    stops = {-size, size, *(s for s in [*floor_map.stops(size), centre[0]] if -size < s < size)}
     ordered = sorted(stops)
     total = np.zeros(8)
     for low, high in pairwise(ordered):
         step = (high - low) * _FROM_END
         p, weight = np.where(_T < 0.0, low + step, high - step), (high - low) * _RULE
         off = np.where(_T < 0.0, (low - centre[0]) + step, (high - centre[0]) - step)
-        for f, begin, end in ground.spans(p, size):
+        for f, begin, end in floor_map.spans(p, size):
             if straight:
                 one = _straight(p, begin, end, ux, uy)
             else:
@@ -133,12 +133,12 @@ def _lines(p: np.ndarray, off: np.ndarray, begin: np.ndarray, end: np.ndarray, c
 
 
 def friction(
-    ground: Ground, ux: float, uy: float, w: float, lever: float = 0.0, hole: float = 0.0
+    floor_map: FloorMap, ux: float, uy: float, w: float, lever: float = 0.0, hole: float = 0.0
 ) -> np.ndarray:
     """∫ f σ e dA / N and its moment over r, for σ = (1 + b·x)/A with b = lever · ∫ f σ e dA / N."""
-    m = sums(ground, ux, uy, w)
+    m = sums(floor_map, ux, uy, w)
     if hole:
-        m = m - sums(ground, ux, uy, w, hole)
+        m = m - sums(floor_map, ux, uy, w, hole)
     m = m / (math.pi * (1.0 - hole * hole))
     b = np.linalg.solve(np.eye(2) - lever * np.array([[m[2], m[3]], [m[4], m[5]]]), lever * m[:2])
     return np.array([
@@ -164,7 +164,7 @@ class Motion:
         self.floor, self.friction = floor, puck.friction
         self.belt = np.array(floor.velocity)
 
-    def ground(self, x: float, y: float) -> tuple[Ground, float]:
+    def floor_map(self, x: float, y: float) -> tuple[FloorMap, float]:
         strips, r = self.floor.strips, self.radius
         turn = 0.0 if strips is None else strips.direction
         c, s = math.cos(turn), math.sin(turn)
@@ -179,15 +179,15 @@ class Motion:
             else:
                 middle = (frame @ patch.centre - place) / r
                 discs.append((*middle.tolist(), patch.radius / r, patch.friction))
-        return Ground(borders, values, discs, polygons), turn
+        return FloorMap(borders, values, discs, polygons), turn
 
     def force(self, y: np.ndarray) -> np.ndarray:
         """Force and torque of the floor at a state x, y, θ, vx, vy, ω."""
-        ground, turn = self.ground(y[0], y[1])
+        floor_map, turn = self.floor_map(y[0], y[1])
         c, s = math.cos(turn), math.sin(turn)
         ux, uy = y[3] - self.belt[0], y[4] - self.belt[1]
         found = self.normal * friction(
-            ground, c * ux + s * uy, c * uy - s * ux, self.radius * y[5], self.lever, self.hole
+            floor_map, c * ux + s * uy, c * uy - s * ux, self.radius * y[5], self.lever, self.hole
         )
         return -np.array([
             c * found[0] - s * found[1], s * found[0] + c * found[1], self.radius * found[2],

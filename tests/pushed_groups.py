@@ -8,15 +8,15 @@ import numpy as np
 
 from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.scene.by_speed import NO_LAW
+from puck_tables.scene.floor_map import NO_GROUND
 from puck_tables.scene.forces import QUADRATIC, SLIDING, SPINNING
-from puck_tables.scene.ground import NO_GROUND
 from puck_tables.scene.ingredients import Regions, Surface
 from puck_tables.world.group import (
     APART,
     HELD,
     Group,
     Scales,
-    desk_for,
+    buffer_for,
 )
 from puck_tables.world.layout import (
     ARC,
@@ -35,7 +35,7 @@ from puck_tables.world.paths import PIECE_COLUMNS
 from puck_tables.world.pressing import press
 from puck_tables.world.pushing import follow
 from puck_tables.world.rims import PLAIN_RIMS
-from puck_tables.world.works import DONE, LEDGER, WORK_COLUMNS
+from puck_tables.world.step_ledger import DONE, LEDGER, WORK_COLUMNS
 
 
 def disc(radius=0.05, mass=0.2, decel=1.0, delta=0.0, grip=0.0, gyration=0.5**0.5, damping=0.0,
@@ -115,33 +115,33 @@ class Ride:
             rate = max(group.discs[:, 3].max(), pulls.max())
             rate = rate if rate > 0.0 else speed**2 / r.min()
             scales = Scales(speed if speed > 0.0 else np.sqrt(rate * r.max()), rate, tol)
-        desk = desk_for(len(self.members), len(contacts))
+        buffer = buffer_for(len(self.members), len(contacts))
         self.ledger, self.t = np.zeros(LEDGER), 0.0
         self.hows, self.times, self.rows, self.starts = [], [], [], [self.states.copy()]
         self.modes_then, self.doings_then, self.pushes_then = [], [], []
         while self.t < t_end and len(self.hows) < most:
             modes = np.zeros(len(contacts), np.int64)
-            doings = np.zeros(len(self.members), np.int64)
+            motions = np.zeros(len(self.members), np.int64)
             status = press(
-                group, self.members, contacts, self.states, self.t, scales, modes, doings,
-                self.ledger, desk,
+                group, self.members, contacts, self.states, self.t, scales, modes, motions,
+                self.ledger, buffer,
             )  # fmt: skip
             assert status == 0
             kept = modes != APART
-            self.pushes_then.append(desk.pushes[: len(contacts)].copy())
-            self.desk = desk
+            self.pushes_then.append(buffer.pushes[: len(contacts)].copy())
+            self.buffer = buffer
             contacts, modes = contacts[kept], modes[kept]
             self.modes_then.append(modes.copy())
-            self.doings_then.append(doings.copy())
-            if (doings == HELD).all():
+            self.doings_then.append(motions.copy())
+            if (motions == HELD).all():
                 break
             pieces = np.zeros((len(self.members), rooms, PIECE_COLUMNS))
-            works = np.zeros((rooms, WORK_COLUMNS))
+            work_rows = np.zeros((rooms, WORK_COLUMNS))
             how, which, self.t, count = follow(
-                group, self.members, contacts, self.states, self.t, t_end, scales, modes, doings,
-                pieces, works, desk,
+                group, self.members, contacts, self.states, self.t, t_end, scales, modes, motions,
+                pieces, work_rows, buffer,
             )  # fmt: skip
-            self.ledger += works[:count, DONE : DONE + LEDGER].sum(axis=0)
+            self.ledger += work_rows[:count, DONE : DONE + LEDGER].sum(axis=0)
             self.hows.append((how, which))
             self.times.append(self.t)
             self.rows.append(pieces[:, :count].copy())

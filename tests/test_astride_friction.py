@@ -11,21 +11,21 @@ import pytest
 import puck_tables as pt
 from puck_tables.kernels.base_friction import packed
 from puck_tables.kernels.compile import kernel
-from puck_tables.scene.astride_rest import astride_yield
 from puck_tables.scene.belts import friction_on_floor
-from puck_tables.scene.ground import PLACE_X, PLACE_Y, Ground
+from puck_tables.scene.floor_map import PLACE_X, PLACE_Y, FloorMap
+from puck_tables.scene.mixed_rest import mixed_yield
 
 NO_PATCHES, NO_CORNERS = np.empty((0, 6)), np.empty((0, 2))
 
 
 @kernel
-def _friction(ground, ux, uy, w):
-    return friction_on_floor(ground, ux, uy, w, 1.0)
+def _friction(floor_map, ux, uy, w):
+    return friction_on_floor(floor_map, ux, uy, w, 1.0)
 
 
-def friction(ground: Ground, slip: tuple[float, float, float], x: float = 0.0, y: float = 0.0):
+def friction(floor_map: FloorMap, slip: tuple[float, float, float], x: float = 0.0, y: float = 0.0):
     """Of a base of radius 1 under a load of 1, against the puck: force and torque; and power."""
-    there = ground.packed()
+    there = floor_map.packed()
     there[PLACE_X], there[PLACE_Y] = x, y
     fx, fy, torque, power = _friction(there, *slip)
     return np.array([-fx, -fy, -torque]), power
@@ -37,9 +37,9 @@ def round_base(lever: float, inner: float = 0.0) -> np.ndarray:
     return packed(base, 0.25 * lever * (1.0 + inner * inner))
 
 
-def strips(borders, loads, lever=0.0, inner=0.0) -> Ground:
+def strips(borders, loads, lever=0.0, inner=0.0) -> FloorMap:
     base = round_base(lever, inner)
-    return Ground(1.0, 0.0, np.array(borders), np.array(loads), NO_PATCHES, NO_CORNERS, base)
+    return FloorMap(1.0, 0.0, np.array(borders), np.array(loads), NO_PATCHES, NO_CORNERS, base)
 
 
 SLIPS = {
@@ -61,7 +61,7 @@ def test_strips_against_scans(floor, lever, inner):
     for name, slip in SLIPS.items():
         found, power = friction(strips(borders, loads, lever, inner), slip)
         truth = astride_judge.friction(
-            astride_judge.Ground(borders, loads), *slip, lever=lever, hole=inner
+            astride_judge.FloorMap(borders, loads), *slip, lever=lever, hole=inner
         )
         assert np.abs(found - truth).max() <= 3e-12, name
         assert power == pytest.approx(found @ slip, rel=1e-12)
@@ -75,28 +75,28 @@ CORNERS = np.array([[-0.5, -0.9], [1.4, -0.2], [0.1, 0.1], [0.3, 1.2]])
     ("x", "y", "size"), [(0.5, -0.4, 0.7), (0.1, 0.2, 0.3), (-0.6, 0.9, 1.5), (0.3, 0.0, 0.7)]
 )
 def test_round_patches_against_scans(x, y, size, lever):
-    ground = Ground(
+    floor_map = FloorMap(
         1.0, 0.0, np.array([-0.95]), np.array([0.2, 0.3]),
         np.array([[x, y, size, 0.0, 0.0, 0.05]]), NO_CORNERS, round_base(lever),
     )  # fmt: skip
-    judge = astride_judge.Ground([-0.95], [0.2, 0.3], [(x, y, size, 0.05)])
+    judge = astride_judge.FloorMap([-0.95], [0.2, 0.3], [(x, y, size, 0.05)])
     for name, slip in SLIPS.items():
         truth = astride_judge.friction(judge, *slip, lever=lever)
-        assert np.abs(friction(ground, slip)[0] - truth).max() <= 3e-12, name
+        assert np.abs(friction(floor_map, slip)[0] - truth).max() <= 3e-12, name
 
 
 @pytest.mark.parametrize(("x", "y"), [(0.0, 0.0), (0.4, -0.3), (-0.8, 0.5), (0.1, 0.1)])
 def test_polygons_against_scans(x, y):
     middle = 0.5 * (CORNERS.min(axis=0) + CORNERS.max(axis=0))
     reach = np.hypot(*(CORNERS - middle).T).max()
-    ground = Ground(
+    floor_map = FloorMap(
         1.0, 0.0, np.empty(0), np.array([0.3]), np.array([[*middle, reach, 0.0, 4.0, 0.05]]),
         CORNERS, round_base(0.4),
     )  # fmt: skip
-    judge = astride_judge.Ground([], [0.3], polygons=[(CORNERS - (x, y), 0.05)])
+    judge = astride_judge.FloorMap([], [0.3], polygons=[(CORNERS - (x, y), 0.05)])
     for name, slip in SLIPS.items():
         truth = astride_judge.friction(judge, *slip, lever=0.4)
-        assert np.abs(friction(ground, slip, x, y)[0] - truth).max() <= 3e-12, name
+        assert np.abs(friction(floor_map, slip, x, y)[0] - truth).max() <= 3e-12, name
 
 
 def test_a_spin_over_a_border_is_pushed_along_it():
@@ -130,8 +130,8 @@ def test_one_friction_is_that_of_the_closed_forms():
 
 
 @kernel
-def _yield(ground, most, fx, fy, torque, guided):
-    return astride_yield(ground, most, 1.0, fx, fy, torque, guided)
+def _yield(floor_map, most, fx, fy, torque, guided):
+    return mixed_yield(floor_map, most, 1.0, fx, fy, torque, guided)
 
 
 @pytest.mark.parametrize("guided", [False, True])
@@ -143,7 +143,7 @@ def test_what_friction_takes_up_in_a_slip_is_held_only_just(guided, lever):
         east, north = math.cos(ahead), math.sin(ahead)
         slip = east * math.cos(turns), north * math.cos(turns), math.sin(turns)
         fx, fy, torque = astride_judge.friction(
-            astride_judge.Ground(borders, loads), *slip, lever=lever, hole=0.0
+            astride_judge.FloorMap(borders, loads), *slip, lever=lever, hole=0.0
         )
         if guided:
             along = fx * east + fy * north

@@ -7,18 +7,18 @@ import math
 import numpy as np
 import pressure_judge
 import pytest
-from astride_judge import Ground
+from astride_judge import FloorMap
 
 import puck_tables as pt
 from puck_tables.world.floor_forces import friction_at
 
 CORNERS = np.array([[-0.5, -0.9], [1.4, -0.2], [0.1, 0.1], [0.3, 1.2]])
 FLOORS = {
-    "strips": (Ground([-0.3, 0.4], [0.3, 0.1, 0.2]),
+    "strips": (FloorMap([-0.3, 0.4], [0.3, 0.1, 0.2]),
                pt.Floor(strips=pt.Strips((-0.3, 0.4), (0.3, 0.1, 0.2)))),
-    "round": (Ground([], [0.3], [(0.5, -0.4, 0.7, 0.05)]),
+    "round": (FloorMap([], [0.3], [(0.5, -0.4, 0.7, 0.05)]),
               pt.Floor(patches=[pt.Patch(0.05, (0.5, -0.4), 0.7)])),
-    "polygon": (Ground([], [0.3], polygons=[(CORNERS, 0.05)]),
+    "polygon": (FloorMap([], [0.3], polygons=[(CORNERS, 0.05)]),
                 pt.Floor(patches=[pt.Patch(0.05, corners=CORNERS.tolist())])),
 }  # fmt: skip
 LAWS = {
@@ -41,9 +41,9 @@ def found(pressure: str, floor: pt.Floor, slip: tuple[float, float, float], heig
 @pytest.mark.parametrize("pressure", LAWS)
 def test_resultants_against_circles(pressure, floor):
     law, square, bends = LAWS[pressure]
-    ground, surface = FLOORS[floor]
+    floor_map, surface = FLOORS[floor]
     for slip in SLIPS if pressure == "ring" else SLIPS[1:4]:
-        truth = pressure_judge.friction(ground, slip, law, 0.5 * 0.8, square, bends)
+        truth = pressure_judge.friction(floor_map, slip, law, 0.5 * 0.8, square, bends)
         assert np.abs(found(pressure, surface, slip, 0.8) - truth).max() <= 1e-10, slip
 
 
@@ -54,17 +54,17 @@ def test_a_centre_of_rotation_anywhere(pressure):
     law, square, bends = LAWS[pressure]
     rounds = [(0.2, -0.1, 0.5), (0.1, 0.05, 1.0), (0.0, 0.3, 0.4), (0.05, 0.0, 0.8)]
     floors = [*FLOORS.values()] + [
-        (Ground([], [0.3], [(x, y, r, 0.05)]), pt.Floor(patches=[pt.Patch(0.05, (x, y), r)]))
+        (FloorMap([], [0.3], [(x, y, r, 0.05)]), pt.Floor(patches=[pt.Patch(0.05, (x, y), r)]))
         for x, y, r in rounds
     ]
     slips = [
         (1.0, 0.4, 0.0), (1.0, 0.3, 0.05), (0.3, -0.4, 1.0), (0.1, 0.4 - 1e-7, -1.0),
         (0.0, 0.0, 1.0), (0.7, 0.7, -0.97), (0.6, 0.8, -1.0), (0.0, 0.7, 1.0),
     ]  # fmt: skip
-    for ground, surface in floors:
+    for floor_map, surface in floors:
         for slip in slips:
             also = (*bends, 0.5, math.hypot(0.4, 0.1))
-            truth = pressure_judge.friction(ground, slip, law, 0.5 * 0.8, square, also)
+            truth = pressure_judge.friction(floor_map, slip, law, 0.5 * 0.8, square, also)
             assert np.abs(found(pressure, surface, slip, 0.8) - truth).max() <= 2e-11, slip
 
 
@@ -73,21 +73,24 @@ def test_a_centre_of_rotation_anywhere(pressure):
 def test_a_centre_of_rotation_where_a_border_meets_the_rim(place, pressure, within):
     """And beside that, and on a border through the centre of the base."""
     law, square, bends = LAWS[pressure]
-    ground, surface = Ground([place], [0.3, 0.1]), pt.Floor(strips=pt.Strips((place,), (0.3, 0.1)))
+    floor_map, surface = (
+        FloorMap([place], [0.3, 0.1]),
+        pt.Floor(strips=pt.Strips((place,), (0.3, 0.1))),
+    )
     end = math.sqrt(1.0 - place * place)
     for x, y in ((place, end), (place + 1e-4, end - 1e-4), (place - 1e-3, end + 2e-3), (0.0, 0.5)):
         slip = (y, -x, 1.0)
-        truth = pressure_judge.friction(ground, slip, law, 0.5 * 0.8, square, bends)
+        truth = pressure_judge.friction(floor_map, slip, law, 0.5 * 0.8, square, bends)
         assert np.abs(found(pressure, surface, slip, 0.8) - truth).max() <= within, slip
 
 
 def test_a_patch_that_touches_the_rim_from_inside():
     """Where Galin's pressure has no bound."""
-    ground = Ground([], [0.3], [(0.6, 0.0, 0.4, 0.05)])
+    floor_map = FloorMap([], [0.3], [(0.6, 0.0, 0.4, 0.05)])
     surface = pt.Floor(patches=[pt.Patch(0.05, (0.6, 0.0), 0.4)])
     law, square, bends = LAWS["galin"]
     for slip in SLIPS[1:3]:
-        truth = pressure_judge.friction(ground, slip, law, 0.5 * 0.8, square, bends)
+        truth = pressure_judge.friction(floor_map, slip, law, 0.5 * 0.8, square, bends)
         assert np.abs(found("galin", surface, slip, 0.8) - truth).max() <= 1e-9, slip
 
 

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pressure_judge
 import pytest
-from astride_judge import Ground
+from astride_judge import FloorMap
 from scipy.integrate import quad
 
 import puck_tables as pt
@@ -19,12 +19,12 @@ CORNERS = np.array([[-0.5, -0.9], [1.4, -0.2], [0.1, 0.1], [0.3, 1.2]])
 
 
 def strips(borders, values):
-    return Ground(borders, values), pt.Floor(strips=pt.Strips(tuple(borders), tuple(values)))
+    return FloorMap(borders, values), pt.Floor(strips=pt.Strips(tuple(borders), tuple(values)))
 
 
 def disc(x, y, radius):
-    ground = Ground([], [0.3], [(x, y, radius, 0.05)])
-    return ground, pt.Floor(patches=[pt.Patch(0.05, (x, y), radius)])
+    floor_map = FloorMap([], [0.3], [(x, y, radius, 0.05)])
+    return floor_map, pt.Floor(patches=[pt.Patch(0.05, (x, y), radius)])
 
 
 FLOORS = {
@@ -35,7 +35,7 @@ FLOORS = {
     "round, within": disc(0.2, -0.1, 0.5),
     "round, about the centre": disc(0.0, 0.0, 0.5),
     "round, of most of it": disc(5.0, 0.0, 5.2),
-    "polygon": (Ground([], [0.3], polygons=[(CORNERS, 0.05)]),
+    "polygon": (FloorMap([], [0.3], polygons=[(CORNERS, 0.05)]),
                 pt.Floor(patches=[pt.Patch(0.05, corners=CORNERS.tolist())])),
 }  # fmt: skip
 ROUGH = np.random.default_rng(5)
@@ -77,10 +77,10 @@ def against_circles(path, rows, floor, slip):
     def law(at: float, _: float) -> float:
         return float(np.interp(at, radii, heights)) * 0.5 / load if at >= radii[0] else 0.0
 
-    ground, surface = FLOORS[floor]
+    floor_map, surface = FLOORS[floor]
     # also where the circle is as close to a border as the centre of rotation of one slip
     bends = (math.hypot(0.4, 0.1), *(float(rho) for rho in radii if 0.0 < rho < 1.0))
-    truth = pressure_judge.friction(ground, slip, law, 0.4, square, bends)
+    truth = pressure_judge.friction(floor_map, slip, law, 0.4, square, bends)
     puck = pt.Puck(1.0, height=0.8, friction=0.3, gravity=1.0, pressure=str(path))
     state = np.array([[0.0, 0.0, 0.0, *slip]])
     return np.abs(-friction_at(pt.Scene(puck, surface), state)[0] - truth).max()

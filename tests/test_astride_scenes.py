@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from astride_judge import Ground, Motion, sums
+from astride_judge import FloorMap, Motion, sums
 
 import puck_tables as pt
-from puck_tables.world.meeting import arc_step
+from puck_tables.world.contact_search import arc_step
 
 PUCK = pt.Puck(radius=0.04, height=0.03, friction=0.3, mass=0.2)
 LAUNCH = pt.Launch((1.5, 0.3), spin=-40.0)
@@ -87,7 +87,7 @@ def test_a_spin_walks_along_the_border():
 def test_what_holds_at_rest(height, at, downhill):
     """Held while no slip gains energy; the pressure is tilted by the pull."""
     floor, values = pt.Strips((at,), (0.2, 0.4)), [0.2, 0.4]
-    puck, ground = pt.Puck(radius=1.0, height=height, gravity=10.0), Ground([at], values)
+    puck, floor_map = pt.Puck(radius=1.0, height=height, gravity=10.0), FloorMap([at], values)
 
     def gain(slope: float) -> float:
         pull = math.tan(slope) * np.array([math.cos(downhill), math.sin(downhill), 0.0])
@@ -96,7 +96,7 @@ def test_what_holds_at_rest(height, at, downhill):
         def over(a: float, b: float) -> float:
             way = downhill + a
             n = np.array([math.cos(b) * math.cos(way), math.cos(b) * math.sin(way), math.sin(b)])
-            m = sums(ground, *n) / math.pi
+            m = sums(floor_map, *n) / math.pi
             held = np.array([
                 m[0] + tilt @ m[2:4], m[1] + tilt @ m[4:6], m[4] - m[3] + tilt @ m[6:8]
             ])  # fmt: skip

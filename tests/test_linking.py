@@ -23,7 +23,7 @@ from puck_tables.kernels.compiled import dispatcher_of
 from puck_tables.kernels.doors import Door
 from puck_tables.kernels.linking import Behind, Pasted
 from puck_tables.kernels.records import Record
-from puck_tables.world.group import Scales, desk_for
+from puck_tables.world.group import Scales, buffer_for
 
 
 @inlined
@@ -175,7 +175,7 @@ class _Wide(NamedTuple):
 
 
 def test_wide_tuples_of_the_package_go_by_their_address_and_those_of_others_as_numba_does_it():
-    assert type(numba.typeof(desk_for(1, 1))) is Record
+    assert type(numba.typeof(buffer_for(1, 1))) is Record
     assert type(numba.typeof(Scales(1.0, 1.0, 1e-9))) is not Record  # three numbers
     square = np.zeros((2, 2))
     assert type(numba.typeof(_Wide(square, square, 0.5, square, square))) is numba.types.NamedTuple

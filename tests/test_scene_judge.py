@@ -20,7 +20,7 @@ NAMES = ("x", "y", "orientation", "vx", "vy", "spin")
 def scales(scene: dict[str, Any]) -> np.ndarray:
     """Q²/J, Q²/(J r), Q, Q/r of the launch, for x, y, θ, vx, vy, ω."""
     world = Scene.from_tables(scene).world()
-    speed, rate = world._game.pace[:2].tolist()
+    speed, rate = world._engine.scale[:2].tolist()
     radius, length = world.scene.puck.radius, speed * speed / rate
     slow = max(1.0, 2.0 * world.scene.puck.gyration**2)
     return np.array([length, length, length / radius, speed, speed, speed / (slow * radius)])

@@ -85,7 +85,7 @@ def test_slices_of_strips_are_brought_to_one_shape_and_stay_the_same_splines():
     strips = {"borders": [0.1, 0.2], "friction": [0.02, 0.2, 0.1]}
     puck = {"radius": 0.04, "height": 0.09, "pressure": "annulus:0.5"}
     scene = Scene.from_tables({"puck": puck, "floor": {"strips": strips}, "launch": LAUNCH})
-    regions = scene.world()._game.regions
+    regions = scene.world()._engine.regions
     from puck_tables.kernels.section_spline import section_ratios
 
     alone = regions.cuts[~regions.astride]

@@ -9,7 +9,7 @@ import pytest
 from boards import draw, puck_at
 
 import puck_tables as pt
-from puck_tables.world.game import N_LOOKS
+from puck_tables.world.engine_state import N_LOOKS
 
 MOST_LOOKS = 100_000  # some 50 ms
 
@@ -31,7 +31,7 @@ def depth_and_looks(scene: pt.Scene, until: float = math.inf) -> tuple[float, in
         for arc in scene.arcs:
             gaps = arc.radius - np.hypot(*(places[:, i] - arc.point).T) - radii[i]
             deepest = max(deepest, -float(gaps.min()) / radii[i])
-    return deepest, int(world._game.counts[N_LOOKS])
+    return deepest, int(world._engine.counts[N_LOOKS])
 
 
 DRIFTS = [1e-12, 1e-9, 1e-6, 1e-3]

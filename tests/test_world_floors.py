@@ -84,13 +84,13 @@ CASES = {
 @pytest.mark.thorough
 @pytest.mark.parametrize("case", CASES)
 def test_places_and_works_are_those_of_another_integrator(case: str):
-    floor, ground, ours, theirs = CASES[case]
+    floor, floor_map, ours, theirs = CASES[case]
     # friction astride costs the judge a millisecond
     until = {"blade on a belt": 0.3, "strips": 0.2, "strips of a belt that slopes": 0.2}
     board = scene(floor, until.get(case, 0.6), **ours)
     if "slopes" in case:  # the judge knows no height over a slope
         board = replace(board, pucks=[replace(p, height=0.0) for p in board.pucks])
-    world, truth = judged(ground, board, **theirs)
+    world, truth = judged(floor_map, board, **theirs)
     run = board.simulate()
     hits = [(event.time, event.puck, event.partner) for event in run.events
             if event.what == "impact"]  # fmt: skip

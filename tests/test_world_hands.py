@@ -13,7 +13,7 @@ from boards import draw, puck_at
 
 import puck_tables as pt
 from puck_tables.scene.run import residual
-from puck_tables.world import game as g
+from puck_tables.world import engine_state as g
 from puck_tables.world.ledger import energies_of, energy_scale
 
 G = 9.80665
@@ -44,19 +44,24 @@ def table() -> pt.Scene:
 
 def bits(world: pt.World) -> list[bytes]:
     """All that a world knows."""
-    game, counts = world._game, world._game.counts
-    rows = {"events": g.N_EVENTS, "history": g.N_HISTORY, "works": g.N_WORKS, "pieces": g.N_PIECES}
-    names = ("clock", "discs", "kinds", "flights", "group", "next_time", "next_partner", "counts",
-             "drives", "hangs", "pace", "tides", "spans", "launches")  # fmt: skip
-    parts = [getattr(game, name) for name in names]
-    parts += [getattr(game, name)[: counts[count]] for name, count in rows.items()]
+    engine, counts = world._engine, world._engine.counts
+    rows = {
+        "events": g.N_EVENTS,
+        "history": g.N_HISTORY,
+        "work_rows": g.N_WORKS,
+        "pieces": g.N_PIECES,
+    }
+    names = ("clock", "discs", "kinds", "segments", "group", "next_time", "next_partner", "counts",
+             "drives", "hangs", "scale", "forcing", "spans", "launches")  # fmt: skip
+    parts = [getattr(engine, name) for name in names]
+    parts += [getattr(engine, name)[: counts[count]] for name, count in rows.items()]
     return [np.ascontiguousarray(part).tobytes() for part in parts] + [repr(world.names).encode()]
 
 
 def missed(world: pt.World) -> float:
     """What the ledger misses, as a share."""
     moments = np.linspace(0.0, world.time, 7)
-    return residual(energies_of(world, moments, world.over(moments)), energy_scale(world._game))
+    return residual(energies_of(world, moments, world.over(moments)), energy_scale(world._engine))
 
 
 def in_state(scene: pt.Scene, states: np.ndarray) -> pt.World:

@@ -12,7 +12,7 @@ from boards import draw, draw_pucks, puck_at
 import puck_tables as pt
 from puck_tables._core import executor
 from puck_tables.scene.run import Event
-from puck_tables.world import game as g
+from puck_tables.world import engine_state as g
 from puck_tables.world import stored
 
 SIDES = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
@@ -93,7 +93,7 @@ class Pair:
         failed = {}
         for k, board in enumerate(boards):
             world = done[board]
-            first, passed = int(world._game.counts[g.N_EVENTS]), len(world._passings.rows)
+            first, passed = int(world._engine.counts[g.N_EVENTS]), len(world._passings.rows)
             try:
                 done[board] = one(world, k) or world
                 fresh = done[board] is not world

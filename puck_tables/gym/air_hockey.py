@@ -84,9 +84,9 @@ class AirHockey(TableGame):
 
     def seen(self, tables: Tables) -> FloatArray:
         """By who plays."""
-        return np.concatenate([self.seen_by(tables, side) for side in self.sides], axis=1)
+        return np.concatenate([self.observed_by(tables, side) for side in self.sides], axis=1)
 
-    def seen_by(self, tables: Tables, side: int) -> FloatArray:
+    def observed_by(self, tables: Tables, side: int) -> FloatArray:
         """By the left player, 0, or the right one, 1, array (n, 13)."""
         states = tables.worlds.state()[:, [2, 1, 0] if side else [1, 2, 0]]
         if side:
@@ -111,7 +111,7 @@ class AirHockeyAlone(AirHockey):
         self, tables: Tables, boards: Whole, actions: FloatArray, rng: np.random.Generator
     ) -> tuple[FloatArray, Truth]:
         """A frame, in which the other player moves, too."""
-        theirs = guard(self.seen_by(tables, 1)[boards])
+        theirs = guard(self.observed_by(tables, 1)[boards])
         return super().move(tables, boards, np.concatenate([actions, theirs], axis=1), rng)
 
 

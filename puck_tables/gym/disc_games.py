@@ -7,7 +7,15 @@ from dataclasses import replace
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.gym.table_game import TableGame, Tables, Truth, Whole, between, pucks_seen, sent
+from puck_tables.gym.table_game import (
+    TableGame,
+    Tables,
+    Truth,
+    Whole,
+    between,
+    observed_pucks,
+    sent,
+)
 from puck_tables.scene.parts import Launch
 from puck_tables.world.scene import Scene
 
@@ -124,7 +132,7 @@ class Carrom(ShotGame):
 
     def seen(self, tables: Tables) -> FloatArray:
         """All men."""
-        men = pucks_seen(tables.worlds.state()[:, :-1], tables.worlds.in_play[:, :-1])
+        men = observed_pucks(tables.worlds.state()[:, :-1], tables.worlds.in_play[:, :-1])
         return np.column_stack([men, tables.moves / self.limit])
 
 
@@ -196,5 +204,5 @@ class Crokinole(ShotGame):
 
     def seen(self, tables: Tables) -> FloatArray:
         """All discs."""
-        discs = pucks_seen(tables.worlds.state(), tables.worlds.in_play)
+        discs = observed_pucks(tables.worlds.state(), tables.worlds.in_play)
         return np.column_stack([discs, tables.moves / self.limit])

@@ -107,7 +107,7 @@ class ManyTables(VectorEnv[Seen, Any, Any]):
             self.game.scene = varied(self._scene, self._spread, self.np_random)
             self.tables = self._laid_out()
         self._begin(np.arange(self.num_envs))
-        return self._seen(), {}
+        return self._observed(), {}
 
     def step(self, actions: npt.ArrayLike) -> tuple[Seen, FloatArray, Truth, Truth, dict[str, Any]]:
         """Make a move on every board: what is seen, earned, where a game ended, or was cut off.
@@ -136,7 +136,7 @@ class ManyTables(VectorEnv[Seen, Any, Any]):
             cut[anew] = False
             self._begin(anew)
         self._over = ended | cut
-        return self._seen(), earned, ended, cut, {}
+        return self._observed(), earned, ended, cut, {}
 
     def outcomes(self, actions: npt.ArrayLike, moves: int = 1, board: int = 0) -> FloatArray:
         """What each of several actions would earn now, array (n,): to look ahead.
@@ -209,7 +209,7 @@ class ManyTables(VectorEnv[Seen, Any, Any]):
         for row in self._old:
             row[boards] = now[boards]
 
-    def _seen(self) -> Seen:
+    def _observed(self) -> Seen:
         """What is seen, late and with errors."""
         self._old = [*self._old[1:], self.game.seen(self.tables)]
         seen = self._old[0].copy()

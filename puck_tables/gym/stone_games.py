@@ -8,7 +8,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.gym.disc_games import ShotGame
-from puck_tables.gym.table_game import Tables, Truth, Whole, between, pucks_seen, sent
+from puck_tables.gym.table_game import Tables, Truth, Whole, between, observed_pucks, sent
 from puck_tables.puck import Puck
 from puck_tables.scene.parts import Edge, Launch
 from puck_tables.scene.pucks_and_posts import Line
@@ -87,7 +87,7 @@ class StoneGame(ShotGame):
         """All stones that were thrown, own first."""
         thrown = np.arange(self.limit) < tables.moves[:, None]
         there = tables.worlds.in_play & np.concatenate([thrown, thrown], axis=1)
-        stones = pucks_seen(tables.worlds.state(), there)
+        stones = observed_pucks(tables.worlds.state(), there)
         return np.column_stack([stones, tables.moves / self.limit])
 
 

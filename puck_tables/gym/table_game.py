@@ -95,19 +95,19 @@ def between(action: FloatArray, low: float, high: float) -> FloatArray:
     return low + 0.5 * (action + 1.0) * (high - low)
 
 
-def pucks_seen(states: FloatArray, there: Truth) -> FloatArray:
+def observed_pucks(states: FloatArray, there: Truth) -> FloatArray:
     """X, y, m, of pucks (n, pucks, 6), and 1; zeros of those that are not there, (n, 3 pucks).
 
     Examples
     --------
-    >>> pucks_seen(np.ones((1, 2, 6)), np.array([[True, False]])).tolist()
+    >>> observed_pucks(np.ones((1, 2, 6)), np.array([[True, False]])).tolist()
     [[1.0, 1.0, 0.0, 0.0, 1.0, 0.0]]
     """
     places = np.where(there[:, :, None], states[:, :, :2], 0.0)
     return np.concatenate([places.reshape(len(states), -1), there], axis=1)
 
 
-def sent(speed: FloatArray, way: FloatArray) -> FloatArray:
+def sent(speed: FloatArray, direction: FloatArray) -> FloatArray:
     """Velocities (n, 2), m/s, of speeds along ways, rad from x.
 
     Examples
@@ -115,4 +115,4 @@ def sent(speed: FloatArray, way: FloatArray) -> FloatArray:
     >>> sent(np.array([2.0]), np.array([0.0])).tolist()
     [[2.0, 0.0]]
     """
-    return np.asarray(speed[:, None] * np.column_stack([np.cos(way), np.sin(way)]))
+    return np.asarray(speed[:, None] * np.column_stack([np.cos(direction), np.sin(direction)]))

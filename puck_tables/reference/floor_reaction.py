@@ -18,9 +18,9 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.motion.puck_spec import PuckSpec
+from puck_tables.scene.floor_parts import belts_of
 from puck_tables.scene.parts import Floor
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.scene.stretches import belts_of
 from puck_tables.world.floor_forces import friction_at
 
 

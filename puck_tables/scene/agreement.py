@@ -8,12 +8,12 @@ from puck_tables.contact.friction_laws import NAMED, FrictionLaw
 from puck_tables.contact.round_load import RoundLoad
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import ContactError, InputError
+from puck_tables.scene.floor_parts import belt_faults, has_belts
 from puck_tables.scene.floor_patches import patch_faults
 from puck_tables.scene.holds import allowed_velocity
 from puck_tables.scene.orthotropic import LEAST_RATIO
 from puck_tables.scene.over_time import drive_of, grip_faults, largest_factors, motion_of
 from puck_tables.scene.parts import Floor, Rows
-from puck_tables.scene.stretches import belt_faults, has_belts
 
 if TYPE_CHECKING:
     from puck_tables.scene.scene_spec import SceneSpec
@@ -43,7 +43,7 @@ def floor_faults(scene: SceneSpec) -> list[str]:
             RoundLoad(scene.puck.body.law)
         except InputError as error:
             faults.append(f"floor.law: {error}")
-    faults += bad_strips(scene.floor) or patch_faults(scene.floor) or _bad_astride(scene)
+    faults += bad_strips(scene.floor) or patch_faults(scene.floor) or _bad_mixed(scene)
     return faults + _bad_rows(scene) + _bad_axes(scene)
 
 
@@ -89,7 +89,7 @@ def _strongest(scene: SceneSpec) -> float:
     return float((largest_factors(scene.floor) * frictions).max())
 
 
-def _bad_astride(scene: SceneSpec) -> list[str]:
+def _bad_mixed(scene: SceneSpec) -> list[str]:
     """Why friction is not known that is summed over the base: on several, or over time."""
     floor, law = scene.floor, scene.puck.body.law
     if floor.law or floor.orthotropic is not None:

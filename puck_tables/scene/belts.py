@@ -15,7 +15,7 @@ from puck_tables.kernels.base_friction import pressure_at, pressure_on, under_lo
 from puck_tables.kernels.base_sums import NOTHING, Sums, plus
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.base_on_floor import friction_of_base, friction_sums
-from puck_tables.scene.ground import (
+from puck_tables.scene.floor_map import (
     ACROSS_X,
     ACROSS_Y,
     ANGLE,
@@ -30,7 +30,7 @@ from puck_tables.scene.ground import (
     PLACE_Y,
     belt_of,
     border_of,
-    stretches_in,
+    parts_in,
     sum_over,
 )
 from puck_tables.scene.patches import distance_to
@@ -39,28 +39,28 @@ Far = tuple[float, float, float]  # Σ over the parts of velocity times e, x e a
 
 
 @inner
-def lies_on(ground: FloatArray, stretch: int, x: float, y: float, radius: float) -> bool:
+def lies_on(floor_map: FloatArray, area: int, x: float, y: float, radius: float) -> bool:
     """Whether a base at a place may have a part on a strip, or after all of them a patch."""
-    strips = int(ground[BORDERS]) + 1
-    if stretch >= strips:
-        return distance_to(ground, stretch - strips, x, y) < radius
-    place = ground[ACROSS_X] * x + ground[ACROSS_Y] * y
-    if stretch > 0 and place + radius <= border_of(ground, stretch - 1):
+    strips = int(floor_map[BORDERS]) + 1
+    if area >= strips:
+        return distance_to(floor_map, area - strips, x, y) < radius
+    place = floor_map[ACROSS_X] * x + floor_map[ACROSS_Y] * y
+    if area > 0 and place + radius <= border_of(floor_map, area - 1):
         return False
-    if stretch < strips - 1 and place - radius >= border_of(ground, stretch):
+    if area < strips - 1 and place - radius >= border_of(floor_map, area):
         return False
     covered = False
-    for k in range(int(ground[PATCHES])):
-        covered = covered or distance_to(ground, k, x, y) <= -radius
+    for k in range(int(floor_map[PATCHES])):
+        covered = covered or distance_to(floor_map, k, x, y) <= -radius
     return not covered
 
 
 @inlined
-def _is_first(ground: FloatArray, stretch: int) -> bool:
+def _is_first(floor_map: FloatArray, area: int) -> bool:
     """Whether no stretch before has the same velocity."""
-    vx, vy = belt_of(ground, stretch)
-    for before in range(stretch):
-        ox, oy = belt_of(ground, before)
+    vx, vy = belt_of(floor_map, area)
+    for before in range(area):
+        ox, oy = belt_of(floor_map, before)
         if ox == vx and oy == vy:
             return False
     return True
@@ -68,62 +68,69 @@ def _is_first(ground: FloatArray, stretch: int) -> bool:
 
 @inner
 def nearest_belt(
-    ground: FloatArray, x: float, y: float, radius: float, vx: float, vy: float
+    floor_map: FloatArray, x: float, y: float, radius: float, vx: float, vy: float
 ) -> tuple[float, float, float]:
     """Of the velocities under a base at a place the one nearest to (vx, vy), and how far it is."""
-    least, bx, by = math.inf, ground[OVER_X], ground[OVER_Y]
-    for stretch in range(stretches_in(ground)):
-        ox, oy = belt_of(ground, stretch)
+    least, bx, by = math.inf, floor_map[OVER_X], floor_map[OVER_Y]
+    for area in range(parts_in(floor_map)):
+        ox, oy = belt_of(floor_map, area)
         off = math.sqrt((vx - ox) * (vx - ox) + (vy - oy) * (vy - oy))
-        if off < least and lies_on(ground, stretch, x, y, radius):
+        if off < least and lies_on(floor_map, area, x, y, radius):
             least, bx, by = off, ox, oy
     return bx, by, least
 
 
 @inner
-def is_rubbed(ground: FloatArray, radius: float) -> bool:
+def is_rubbed(floor_map: FloatArray, radius: float) -> bool:
     """Whether parts of a base may lie on velocities that differ."""
-    if ground[BELTS] == 0.0:
+    if floor_map[BELTS] == 0.0:
         return False
-    for stretch in range(stretches_in(ground)):
-        ox, oy = belt_of(ground, stretch)
-        other = ox != ground[OVER_X] or oy != ground[OVER_Y]
-        if other and lies_on(ground, stretch, ground[PLACE_X], ground[PLACE_Y], radius):
+    for area in range(parts_in(floor_map)):
+        ox, oy = belt_of(floor_map, area)
+        other = ox != floor_map[OVER_X] or oy != floor_map[OVER_Y]
+        if other and lies_on(floor_map, area, floor_map[PLACE_X], floor_map[PLACE_Y], radius):
             return True
     return False
 
 
 @inner
 def _all_sums(
-    ground: FloatArray, ux: float, uy: float, w: float, moving: float
+    floor_map: FloatArray, ux: float, uy: float, w: float, moving: float
 ) -> tuple[Sums, Far]:
     """Sums over all parts that slip, each at its own velocity, and what they take to far off."""
-    c, s = math.cos(ground[ANGLE]), math.sin(ground[ANGLE])
+    c, s = math.cos(floor_map[ANGLE]), math.sin(floor_map[ANGLE])
     sums, one, two, three = NOTHING, 0.0, 0.0, 0.0
-    for stretch in range(stretches_in(ground)):
-        bx, by = belt_of(ground, stretch)
-        ox, oy = bx - ground[OVER_X], by - ground[OVER_Y]
+    for area in range(parts_in(floor_map)):
+        bx, by = belt_of(floor_map, area)
+        ox, oy = bx - floor_map[OVER_X], by - floor_map[OVER_Y]
         vx, vy = ux - ox, uy - oy
-        if (vx == 0.0 and vy == 0.0 and w == 0.0) or not _is_first(ground, stretch):
+        if (vx == 0.0 and vy == 0.0 and w == 0.0) or not _is_first(floor_map, area):
             continue
-        sum_over(ground, bx, by, False)
-        part = friction_sums(ground, c * vx + s * vy, c * vy - s * vx, w, moving)
+        sum_over(floor_map, bx, by, False)
+        part = friction_sums(floor_map, c * vx + s * vy, c * vy - s * vx, w, moving)
         sums = plus(sums, 1.0, part)
         px, py = c * ox + s * oy, c * oy - s * ox
         one += px * part[0] + py * part[1]
         two += px * part[2] + py * part[4]
         three += px * part[3] + py * part[5]
-    sum_over(ground, 0.0, 0.0, True)
+    sum_over(floor_map, 0.0, 0.0, True)
     return sums, (one, two, three)
 
 
 @inlined
 def _done(
-    ground: FloatArray, ux: float, uy: float, w: float, sums: Sums, far: Far, a: float, bx: float,
+    floor_map: FloatArray,
+    ux: float,
+    uy: float,
+    w: float,
+    sums: Sums,
+    far: Far,
+    a: float,
+    bx: float,
     by: float,
-) -> tuple[float, float, float, float]:  # fmt: skip
+) -> tuple[float, float, float, float]:
     """Force, torque and heat of sums under the pressure a + b·x."""
-    c, s = math.cos(ground[ANGLE]), math.sin(ground[ANGLE])
+    c, s = math.cos(floor_map[ANGLE]), math.sin(floor_map[ANGLE])
     x, y, torque = under_load(sums, a, bx, by)
     fx, fy = c * x - s * y, s * x + c * y
     heat = fx * ux + fy * uy + torque * w - (a * far[0] + bx * far[1] + by * far[2])
@@ -132,29 +139,29 @@ def _done(
 
 @inner
 def friction_on_floor(
-    ground: FloatArray, ux: float, uy: float, w: float, moving: float
+    floor_map: FloatArray, ux: float, uy: float, w: float, moving: float
 ) -> tuple[float, float, float, float]:
     """Force, torque, and the heat of all parts; of who rests what other belts do.
 
     At velocities relative to the floor; ``moving`` 0: with the friction at slip zero.
     """
-    if ground[BELTS] == 0.0:
-        return friction_of_base(ground, ux, uy, w, moving)
-    sums, far = _all_sums(ground, ux, uy, w, moving)
-    a, bx, by = pressure_on(ground[int(ground[BASE]) :], sums)
-    return _done(ground, ux, uy, w, sums, far, a, bx, by)
+    if floor_map[BELTS] == 0.0:
+        return friction_of_base(floor_map, ux, uy, w, moving)
+    sums, far = _all_sums(floor_map, ux, uy, w, moving)
+    a, bx, by = pressure_on(floor_map[int(floor_map[BASE]) :], sums)
+    return _done(floor_map, ux, uy, w, sums, far, a, bx, by)
 
 
 @inner
-def rub_at_rest(ground: FloatArray, mx: float, my: float) -> tuple[float, float, float, float]:
+def rub_at_rest(floor_map: FloatArray, mx: float, my: float) -> tuple[float, float, float, float]:
     """Force, torque and heat of other belts on who rests, whose load stands at (mx, my), m."""
-    sums, far = _all_sums(ground, 0.0, 0.0, 0.0, 0.0)
-    c, s = math.cos(ground[ANGLE]), math.sin(ground[ANGLE])
-    a, bx, by = pressure_at(ground[int(ground[BASE]) :], c * mx + s * my, c * my - s * mx)
-    return _done(ground, 0.0, 0.0, 0.0, sums, far, a, bx, by)
+    sums, far = _all_sums(floor_map, 0.0, 0.0, 0.0, 0.0)
+    c, s = math.cos(floor_map[ANGLE]), math.sin(floor_map[ANGLE])
+    a, bx, by = pressure_at(floor_map[int(floor_map[BASE]) :], c * mx + s * my, c * my - s * mx)
+    return _done(floor_map, 0.0, 0.0, 0.0, sums, far, a, bx, by)
 
 
 @inlined
-def heat_at_rest(ground: FloatArray, fx: float, fy: float) -> float:
+def heat_at_rest(floor_map: FloatArray, fx: float, fy: float) -> float:
     """The heat of other belts under who rests, where the floor does the force (fx, fy) to it."""
-    return rub_at_rest(ground, -ground[LEVER] * fx, -ground[LEVER] * fy)[3]
+    return rub_at_rest(floor_map, -floor_map[LEVER] * fx, -floor_map[LEVER] * fy)[3]

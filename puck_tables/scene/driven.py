@@ -61,7 +61,7 @@ def path_along(place: Callable[[float], Any], until: float, accuracy: float = 1e
     values = np.stack([_place(place, t, width) for t in times.tolist()])
     bent = np.arange(_FIRST)
     while True:
-        bent = bent[[_bends(place, times, values, n, close) for n in bent.tolist()]]
+        bent = bent[[_coefficients(place, times, values, n, close) for n in bent.tolist()]]
         if not len(bent):
             break
         if len(times) + len(bent) > MOST_ROWS:
@@ -104,7 +104,7 @@ def _place(place: Callable[[float], Any], time: float, width: int | None) -> Flo
     return numbers
 
 
-def _bends(
+def _coefficients(
     place: Callable[[float], Any], times: FloatArray, values: FloatArray, n: int, close: float
 ) -> bool:
     """Whether the function is too far from the line between two rows."""

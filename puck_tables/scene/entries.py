@@ -65,7 +65,7 @@ def entries(part: Any, prefix: str = "", kind: Any = None) -> Iterator[Entry]:
     ['edge[0].point', 'edge[0].normal']
     """
     whole: Any = kind or type(part)
-    for name, table, kind, doc, default, acts in _told(whole):
+    for name, table, kind, doc, default, acts in _described(whole):
         value, path = getattr(part, name), prefix + table
         if kind.shape == "part" and value is not None:
             yield from entries(value, f"{path}.", kind.part)
@@ -79,7 +79,7 @@ def entries(part: Any, prefix: str = "", kind: Any = None) -> Iterator[Entry]:
 
 
 @lru_cache(maxsize=64)
-def _told(part: Any) -> list[tuple[str, str, Kind, str, Any, str | None]]:
+def _described(part: Any) -> list[tuple[str, str, Kind, str, Any, str | None]]:
     """Of a part's fields: name, that in tables, what it allows, what it is, default, what acts."""
     return [
         (spec.name, in_tables(name), spec.metadata["kind"], spec.metadata["doc"], spec.default,

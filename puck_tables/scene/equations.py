@@ -18,7 +18,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.belts import heat_at_rest
-from puck_tables.scene.forces import damping, dragged, given_force
+from puck_tables.scene.forces import damping, dragged, prescribed_force
 from puck_tables.scene.friction import (
     SPIN,
     THETA,
@@ -26,8 +26,8 @@ from puck_tables.scene.friction import (
     VY,
     X,
     Y,
-    dry_friction,
-    dry_friction_here,
+    friction_force,
+    friction_force_here,
     size,
 )
 from puck_tables.scene.ingredients import (
@@ -35,11 +35,11 @@ from puck_tables.scene.ingredients import (
     SLIDES,
     Body,
     Model,
-    Stretch,
+    Phase,
     Surface,
-    carried_along,
-    dry_at,
+    floor_acceleration,
     floor_velocity,
+    friction_at,
     held,
     is_over_belts,
     put_at,
@@ -101,52 +101,52 @@ def stopping(radius: float, y: FloatArray, work: FloatArray) -> tuple[float, flo
 
 
 @inner
-def rates(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: int) -> None:
+def rates(phase: Phase, t: float, y: FloatArray, out: FloatArray, row: int) -> None:
     """:func:`rates_here` for callers whose time it is not worth to paste it in."""
-    rates_here(stretch, t, y, out, row)
+    rates_here(phase, t, y, out, row)
 
 
 @inlined
-def rates_here(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: int) -> None:
+def rates_here(phase: Phase, t: float, y: FloatArray, out: FloatArray, row: int) -> None:
     """d/dt of the state and λ into out[row] (12,); λ is not determined at rest.
 
     At rest the puck moves with the floor.  What is about to rest slips in the direction that
     ``way`` gives: to follow how that settles would take steps without number.
     """
-    model = stretch.model
+    model = phase.model
     body = model.body
-    surface = surface_now(stretch, t)
+    surface = surface_now(phase, t)
     sx, sy, turning = floor_velocity(surface, y[X], y[Y])
     vx, vy, spin = y[VX] + sx, y[VY] + sy, y[SPIN] + turning
-    cx, cy = carried_along(surface, y[X], y[Y], vx, vy)
-    gx, gy, gm = given_force(model.forces, stretch.piece, t)
+    cx, cy = floor_acceleration(surface, y[X], y[Y], vx, vy)
+    gx, gy, gm = prescribed_force(model.forces, phase.piece, t)
     out[row, X], out[row, Y], out[row, THETA] = vx, vy, spin
     out[row, GIVEN] = gx * vx + gy * vy + gm * spin
-    if stretch.mode != SLIDES:
-        nx, ny, nw, gain = stretch.way
-        gain = 0.0 if stretch.mode == CARRIED else gain
+    if phase.mode != SLIDES:
+        nx, ny, nw, gain = phase.way
+        gain = 0.0 if phase.mode == CARRIED else gain
         ax, ay, aw = gain * nx, gain * ny, gain * nw
         out[row, VX], out[row, VY], out[row, SPIN] = ax, ay, aw
         fx, fy, fm = gx - body.mass * cx, gy - body.mass * cy, gm - body.inertia * surface.turn
         # what the floor and what holds the puck there do besides the given forces
         fx, fy, fm = body.mass * ax - fx, body.mass * ay - fy, body.inertia * aw - fm
         rubs = 0.0
-        if is_over_belts(stretch.dry):
-            put_at(stretch.dry, y[X], y[Y], y[THETA])
-            dry = dry_at(stretch.dry, model.forces.drive, stretch.piece, t)
-            rubs = heat_at_rest(dry.by_speed.table, fx, fy)
+        if is_over_belts(phase.friction):
+            put_at(phase.friction, y[X], y[Y], y[THETA])
+            friction = friction_at(phase.friction, model.forces.drive, phase.piece, t)
+            rubs = heat_at_rest(friction.by_speed.table, fx, fy)
         out[row, DRY] = rubs - (fx * y[VX] + fy * y[VY] + fm * y[SPIN])
         out[row, VISCOUS] = 0.0
         out[row, SUPPORT] = rubs + fx * sx + fy * sy + fm * turning
         out[row, LAMBDA], out[row, LAMBDA + 1] = 0.0, 0.0
         return
-    put_at(stretch.dry, y[X], y[Y], y[THETA])
+    put_at(phase.friction, y[X], y[Y], y[THETA])
     drive = model.forces.drive
     if has_factors(drive):
-        dry = dry_at(stretch.dry, drive, stretch.piece, t)
-        hx, hy, hm, heat = dry_friction(dry, body.radius, y[VX], y[VY], y[SPIN])
+        friction = friction_at(phase.friction, drive, phase.piece, t)
+        hx, hy, hm, heat = friction_force(friction, body.radius, y[VX], y[VY], y[SPIN])
     else:
-        hx, hy, hm, heat = dry_friction_here(stretch.dry, body.radius, y[VX], y[VY], y[SPIN])
+        hx, hy, hm, heat = friction_force_here(phase.friction, body.radius, y[VX], y[VY], y[SPIN])
     ax, ay, aw, warmth, spin_warmth = dragged(model.forces.drags, y[VX], y[VY], y[SPIN])
     dx, dy, dm = body.mass * ax, body.mass * ay, body.inertia * aw
     warmth = body.mass * warmth + body.inertia * spin_warmth
@@ -157,7 +157,7 @@ def rates_here(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: 
     out[row, SPIN] = (fm + rm) / body.inertia - surface.turn
     out[row, DRY], out[row, VISCOUS] = heat, warmth
     out[row, SUPPORT] = (hx + dx) * sx + (hy + dy) * sy + (hm + dm) * turning + power
-    if is_over_belts(stretch.dry):  # what others of them do
+    if is_over_belts(phase.friction):  # what others of them do
         out[row, SUPPORT] += heat + hx * y[VX] + hy * y[VY] + hm * y[SPIN]
     out[row, LAMBDA], out[row, LAMBDA + 1] = first, second
 

@@ -16,7 +16,7 @@ from puck_tables.motion.tableaus import DORMAND_PRINCE_8
 from puck_tables.scene.blade_axes import by_floor, has_axes, rates_by_blade
 from puck_tables.scene.equations import SIZE, rates_here
 from puck_tables.scene.friction import VX, VY
-from puck_tables.scene.ingredients import Stretch
+from puck_tables.scene.ingredients import Phase
 
 STAGES = len(DORMAND_PRINCE_8.c)  # the last one stands at the end of the step
 
@@ -58,7 +58,7 @@ def _five(y: FloatArray, i: int, h: float, stage: int, work: FloatArray, new: Fl
 
 @inlined
 def explicit_step(
-    stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
+    phase: Phase, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
     new: FloatArray,
 ) -> float:  # fmt: skip
     """A step from (t, y) over h into ``new``; its error in ``scale``.
@@ -66,18 +66,18 @@ def explicit_step(
     On entry work[0] is dy/dt at t, on return work[STAGES − 1] that at the end.  Velocities of a
     blade are by its own axes, on entry and on return.
     """
-    own = has_axes(stretch)
+    own = has_axes(phase)
     for stage in range(1, STAGES):
         moment = t + h * _C[stage]
         _five(y, 0, h, stage, work, new)
         _five(y, 5, h, stage, work, new)
         along, across = new[VX], new[VY]
         if own:
-            by_floor(stretch, new)
-        rates_here(stretch, moment, new, work, stage)
+            by_floor(phase, new)
+        rates_here(phase, moment, new, work, stage)
         if own:
             new[VX], new[VY] = along, across
-            rates_by_blade(stretch, new, work, stage)
+            rates_by_blade(phase, new, work, stage)
     largest = 0.0
     for i in range(SIZE):
         rate = work[0, i]

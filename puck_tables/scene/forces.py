@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
-from puck_tables.scene.over_time import given_by
+from puck_tables.scene.over_time import prescribed_by
 from puck_tables.scene.parts import Drag, Lateral
 
 # numbers of what acts over the floor, over mass or inertia: drag by speed and spin, 1/s, by their
@@ -165,7 +165,7 @@ def jumps(row: FloatArray) -> bool:
 
 
 @inlined
-def given_force(forces: Forces, piece: int, t: float) -> tuple[float, float, float]:
+def prescribed_force(forces: Forces, piece: int, t: float) -> tuple[float, float, float]:
     """Given force and torque at a time, on the piece of the drive that ``piece`` rows precede."""
-    fx, fy, torque = given_by(forces.drive, piece, t)
+    fx, fy, torque = prescribed_by(forces.drive, piece, t)
     return forces.x + fx, forces.y + fy, forces.torque + torque

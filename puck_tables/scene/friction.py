@@ -19,7 +19,7 @@ from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.kernels.speed_spline import speed_ratios
 from puck_tables.motion.equations_of_motion import ratios_at
 from puck_tables.scene.belts import friction_on_floor
-from puck_tables.scene.ingredients import BySpeed, Dry, is_astride, is_over_belts
+from puck_tables.scene.ingredients import BySpeed, DryFriction, is_mixed, is_over_belts
 from puck_tables.scene.orthotropic import ellipse_in, elliptic_friction, is_elliptic
 
 X, Y, THETA, VX, VY, SPIN = range(6)  # of a state; integrated, the last three are over the floor
@@ -32,14 +32,14 @@ def size(a: float, b: float, c: float) -> float:
 
 
 @kernel
-def dry_friction(
-    dry: Dry, radius: float, ux: float, uy: float, w: float
+def friction_force(
+    friction: DryFriction, radius: float, ux: float, uy: float, w: float
 ) -> tuple[float, float, float, float]:
     """Force, torque and the power they take, at velocities relative to the floor."""
-    law, slip = dry.by_speed, size(ux, uy, radius * w)
-    if law.normal == 0.0 or dry.load == 0.0 or (slip == 0.0 and not is_over_belts(dry)):
-        return _plain_friction(dry, radius, ux, uy, w)
-    if is_astride(dry):
+    law, slip = friction.by_speed, size(ux, uy, radius * w)
+    if law.normal == 0.0 or friction.load == 0.0 or (slip == 0.0 and not is_over_belts(friction)):
+        return _plain_friction(friction, radius, ux, uy, w)
+    if is_mixed(friction):
         return friction_on_floor(law.table, ux, uy, w, law.moving)
     if is_elliptic(law.table):
         axes = ellipse_in(law.table, law.height_ratio, law.normal)
@@ -57,32 +57,32 @@ def dry_friction(
 
 
 @inlined
-def dry_friction_here(
-    dry: Dry, radius: float, ux: float, uy: float, w: float
+def friction_force_here(
+    friction: DryFriction, radius: float, ux: float, uy: float, w: float
 ) -> tuple[float, float, float, float]:
     """Force, torque and power of dry friction; where only its direction counts, pasted in.
 
     To hand on a record takes as long as to look friction up.
     """
-    if dry.by_speed.normal != 0.0:
-        return dry_friction(dry, radius, ux, uy, w)
-    return _plain_friction(dry, radius, ux, uy, w)
+    if friction.by_speed.normal != 0.0:
+        return friction_force(friction, radius, ux, uy, w)
+    return _plain_friction(friction, radius, ux, uy, w)
 
 
 @inlined
 def _plain_friction(
-    dry: Dry, radius: float, ux: float, uy: float, w: float
+    friction: DryFriction, radius: float, ux: float, uy: float, w: float
 ) -> tuple[float, float, float, float]:
-    load, rim = dry.load, radius * abs(w)
+    load, rim = friction.load, radius * abs(w)
     slip = size(ux, uy, rim)
     if load == 0.0 or slip == 0.0:
         return 0.0, 0.0, 0.0, 0.0
     speed = size(ux, uy, 0.0)
     fast = rim > speed
     ratio = speed / rim if fast else rim / speed
-    inverse, bend, spin = ratios_at(ratio, fast, dry.cut, dry.delta)
+    inverse, accel, spin = ratios_at(ratio, fast, friction.cut, friction.delta)
     along = load / inverse
-    return _against(radius, ux, uy, w, speed, slip, along, bend * along, spin * along)
+    return _against(radius, ux, uy, w, speed, slip, along, accel * along, spin * along)
 
 
 @inlined
@@ -103,8 +103,8 @@ def _against(
 
 
 @inlined
-def at_slip_zero(dry: Dry) -> Dry:
+def at_slip_zero(friction: DryFriction) -> DryFriction:
     """The friction that a puck at rest would start against, whatever its coefficient does later."""
-    law = dry.by_speed
+    law = friction.by_speed
     still = BySpeed(law.table, law.height_ratio, law.normal, 0.0)
-    return Dry(dry.load, dry.delta, dry.cut, still)
+    return DryFriction(friction.load, friction.delta, friction.cut, still)

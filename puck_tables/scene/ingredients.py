@@ -14,14 +14,14 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
+from puck_tables.scene.floor_map import ANGLE, BELTS, PLACE_X, PLACE_Y, SHARE, parts_in, set_factor
 from puck_tables.scene.forces import Forces
-from puck_tables.scene.ground import ANGLE, BELTS, PLACE_X, PLACE_Y, SHARE, set_factor, stretches_in
 from puck_tables.scene.over_time import (
     FLOOR_SPIN,
     FLOOR_X,
     FLOOR_Y,
     ON_ALL,
-    ON_STRETCH,
+    ON_PART,
     has_factors,
     held_at,
     rate_at,
@@ -64,7 +64,7 @@ class Regions(NamedTuple):
 
     ``load``, ``delta``: arrays (regions,); ``cuts``: (regions, …), see
     :func:`puck_tables.motion.equations_of_motion.ratios_at`; ``by_speed`` takes the place of all.
-    ``astride`` (regions,): where the base lies on several frictions of the ``ground``, see
+    ``astride`` (regions,): where the base lies on several frictions of the ``floor_map``, see
     :mod:`puck_tables.scene.base_on_floor`, or is not round; there load and δ are the largest of
     them.  A run has its own ground, in which it says where the base is.  ``laws`` (discs, 2): where
     the table by speed of a disc begins and ends in that of ``by_speed``.
@@ -75,11 +75,11 @@ class Regions(NamedTuple):
     cuts: FloatArray
     by_speed: BySpeed
     astride: npt.NDArray[np.bool_]
-    ground: FloatArray
+    floor_map: FloatArray
     laws: npt.NDArray[np.int64]
 
 
-class Dry(NamedTuple):
+class DryFriction(NamedTuple):
     """Dry friction in one region; no load: none.
 
     Of a base astride several frictions, or of one that is not round, ``by_speed.table`` is their
@@ -94,40 +94,40 @@ class Dry(NamedTuple):
 
 
 @inlined
-def is_astride(dry: Dry) -> bool:
+def is_mixed(friction: DryFriction) -> bool:
     """Whether the base lies on several frictions, or is not round."""
-    return dry.by_speed.normal < 0.0
+    return friction.by_speed.normal < 0.0
 
 
 @inlined
-def is_over_belts(dry: Dry) -> bool:
+def is_over_belts(friction: DryFriction) -> bool:
     """Whether velocities of the floor differ, so that parts of a base may slip each its own way."""
-    return is_astride(dry) and dry.by_speed.table[BELTS] != 0.0
+    return is_mixed(friction) and friction.by_speed.table[BELTS] != 0.0
 
 
 @inlined
-def put_at(dry: Dry, x: float, y: float, angle: float) -> None:
+def put_at(friction: DryFriction, x: float, y: float, angle: float) -> None:
     """Put the base at a place, turned, which matters where it is astride, or not round."""
-    if is_astride(dry):
-        ground = dry.by_speed.table
-        ground[PLACE_X], ground[PLACE_Y], ground[ANGLE] = x, y, angle
+    if is_mixed(friction):
+        floor_map = friction.by_speed.table
+        floor_map[PLACE_X], floor_map[PLACE_Y], floor_map[ANGLE] = x, y, angle
 
 
 @inlined
-def dry_at(dry: Dry, drive: FloatArray, piece: int, t: float) -> Dry:
+def friction_at(friction: DryFriction, drive: FloatArray, piece: int, t: float) -> DryFriction:
     """The dry friction at a time, on the piece of what is given over time that rows precede."""
-    law, factor = dry.by_speed, 1.0
+    law, factor = friction.by_speed, 1.0
     if has_factors(drive):
         factor = held_at(drive, piece, ON_ALL, t)
     height_ratio, normal = factor * law.height_ratio, factor * law.normal
-    if is_astride(dry):
+    if is_mixed(friction):
         height_ratio, normal = law.height_ratio, law.normal
         if has_factors(drive):
             law.table[SHARE] = factor
-            for stretch in range(stretches_in(law.table)):
-                set_factor(law.table, stretch, held_at(drive, piece, ON_STRETCH + stretch, t))
-    return Dry(
-        factor * dry.load, factor * dry.delta, dry.cut,
+            for phase in range(parts_in(law.table)):
+                set_factor(law.table, phase, held_at(drive, piece, ON_PART + phase, t))
+    return DryFriction(
+        factor * friction.load, factor * friction.delta, friction.cut,
         BySpeed(law.table, height_ratio, normal, law.moving),
     )  # fmt: skip
 
@@ -189,7 +189,7 @@ class Model(NamedTuple):
     hold: Hold
 
 
-class Stretch(NamedTuple):
+class Phase(NamedTuple):
     """What acts between two events.
 
     ``piece``: how many rows of ``forces.drive`` have passed; ``mode`` SLIDES, CARRIED (at rest on
@@ -199,7 +199,7 @@ class Stretch(NamedTuple):
     """
 
     model: Model
-    dry: Dry
+    friction: DryFriction
     piece: int
     mode: int
     way: tuple[float, float, float, float]
@@ -241,7 +241,7 @@ def floor_velocity(surface: Surface, x: float, y: float) -> tuple[float, float, 
 
 
 @inlined
-def carried_along(
+def floor_acceleration(
     surface: Surface, x: float, y: float, vx: float, vy: float
 ) -> tuple[float, float]:  # fmt: skip
     """How fast the velocity of the floor under a puck changes while the puck moves at (vx, vy)."""
@@ -252,10 +252,10 @@ def carried_along(
 
 
 @inlined
-def surface_now(stretch: Stretch, t: float) -> Surface:
+def surface_now(phase: Phase, t: float) -> Surface:
     """How the floor of a stretch moves at a time."""
-    model = stretch.model
-    return surface_at(model.surface, model.forces.drive, stretch.piece, t)
+    model = phase.model
+    return surface_at(model.surface, model.forces.drive, phase.piece, t)
 
 
 @inlined
@@ -279,7 +279,7 @@ def held(
     if hold.kind == BLADE:
         # n = (−sin, cos), n′ u = −ω (cos, sin)·u
         sx, sy, _ = floor_velocity(surface, y[0], y[1])
-        cx, cy = carried_along(surface, y[0], y[1], y[3] + sx, y[4] + sy)
+        cx, cy = floor_acceleration(surface, y[0], y[1], y[3] + sx, y[4] + sy)
         swing = spin * (cosine * y[3] + sine * y[4])
         reaction = sine * fx - cosine * fy + body.mass * (swing - sine * cx + cosine * cy)
         power = reaction * (hold.vx - sine * sx + cosine * sy)

@@ -13,10 +13,10 @@ from puck_tables.scene.ingredients import (
     CARRIED,
     NO_WAY,
     SLIDES,
-    Dry,
+    DryFriction,
     Model,
-    Stretch,
-    is_astride,
+    Phase,
+    is_mixed,
     surface_now,
 )
 from puck_tables.scene.orthotropic import is_elliptic
@@ -35,7 +35,7 @@ _CLOSE = 1e-12  # of a step: how well a moment in it is known
 
 @inner
 def lost(
-    stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
+    phase: Phase, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
     new: FloatArray,
 ) -> float:  # fmt: skip
     """When within a step to ``new`` the floor loses a puck that it carries; inf: it does not.
@@ -43,60 +43,60 @@ def lost(
     On a floor that turns the demand swings, and astride what holds changes: it is looked at where a
     parabola has its top, too.
     """
-    slack = SLACK * stretch.dry.load
-    first, last = excess_at_rest(stretch, t, y)[0], excess_at_rest(stretch, t + h, new)[0]
+    slack = SLACK * phase.friction.load
+    first, last = excess_at_rest(phase, t, y)[0], excess_at_rest(phase, t + h, new)[0]
     low, high = 0.0, h if last > slack else math.inf
-    swings = stretch.model.surface.spin != 0.0 or stretch.model.surface.changes != 0.0
-    if (swings or is_astride(stretch.dry)) and last <= slack:
-        step(stretch, t, 0.5 * h, y, scale, work, new)
-        middle = excess_at_rest(stretch, t + 0.5 * h, new)[0]
-        bend = 2.0 * (first - 2.0 * middle + last)
-        top = 0.25 - (last - first) / (2.0 * bend) + 0.25 if bend < 0.0 else 0.5
+    swings = phase.model.surface.spin != 0.0 or phase.model.surface.changes != 0.0
+    if (swings or is_mixed(phase.friction)) and last <= slack:
+        step(phase, t, 0.5 * h, y, scale, work, new)
+        middle = excess_at_rest(phase, t + 0.5 * h, new)[0]
+        accel = 2.0 * (first - 2.0 * middle + last)
+        top = 0.25 - (last - first) / (2.0 * accel) + 0.25 if accel < 0.0 else 0.5
         top = min(max(top, 0.0), 1.0) * h
-        step(stretch, t, top, y, scale, work, new)
-        high = top if excess_at_rest(stretch, t + top, new)[0] > slack else math.inf
+        step(phase, t, top, y, scale, work, new)
+        high = top if excess_at_rest(phase, t + top, new)[0] > slack else math.inf
     if high == math.inf:
         return high
     while True:
         middle = 0.5 * (low + high)
         if middle <= low or middle >= high:
             return high
-        step(stretch, t, middle, y, scale, work, new)
-        if held_by_floor(stretch, t + middle, new):
+        step(phase, t, middle, y, scale, work, new)
+        if held_by_floor(phase, t + middle, new):
             low = middle
         else:
             high = middle
 
 
 @inlined
-def rests_on(model: Model, dry: Dry, piece: int, y: FloatArray) -> bool:
+def rests_on(model: Model, friction: DryFriction, piece: int, y: FloatArray) -> bool:
     """Whether the floor, at rest, holds a puck whatever forces are still to come.
 
     Between two rows a force lies between theirs; a curve that bulges inwards is given a margin.
     """
-    law = dry.by_speed
+    law = friction.by_speed
     uniform = law.normal == 0.0 or (is_elliptic(law.table) and law.height_ratio == 0.0)
-    flat = dry.delta == 0.0 and uniform
-    level, rows = (SLACK if flat else -_MARGIN) * dry.load, len(model.forces.drive)
+    flat = friction.delta == 0.0 and uniform
+    level, rows = (SLACK if flat else -_MARGIN) * friction.load, len(model.forces.drive)
     if piece == rows:
         return True
     for row in range(piece, rows + 1):  # at last what is left when the rows have ended
         at = row if row == rows else max(row, 1)
-        stretch = Stretch(model, dry, at, CARRIED, NO_WAY, 0.0)
-        if excess_at_rest(stretch, model.forces.drive[min(row, rows - 1), 0], y)[0] > level:
+        phase = Phase(model, friction, at, CARRIED, NO_WAY, 0.0)
+        if excess_at_rest(phase, model.forces.drive[min(row, rows - 1), 0], y)[0] > level:
             return False
     return True
 
 
 @inlined
-def watched(stretch: Stretch, what: int, y: FloatArray) -> float:
+def watched(phase: Phase, what: int, y: FloatArray) -> float:
     """What changes its sign at a moment that is looked for."""
-    return slip_side(stretch.model.body.radius, y) if what == EQUAL else float(y[SPIN])
+    return slip_side(phase.model.body.radius, y) if what == EQUAL else float(y[SPIN])
 
 
 @inner
 def zero(
-    stretch: Stretch, what: int, t: float, h: float, y: FloatArray, scale: FloatArray,
+    phase: Phase, what: int, t: float, h: float, y: FloatArray, scale: FloatArray,
     work: FloatArray, new: FloatArray,
 ) -> float:  # fmt: skip
     """When within a step what is watched passes 0; ``new`` then.
@@ -105,65 +105,65 @@ def zero(
     a step is not solved, ``new`` is NaN.
     """
     low, high, close = 0.0, h, 0.5 * _CLOSE * h
-    first, last = watched(stretch, what, y), watched(stretch, what, new)
+    first, last = watched(phase, what, y), watched(phase, what, new)
     sign, stays = 1.0 if last > 0.0 else -1.0, 0
     for _ in range(60):
         if high - low <= _CLOSE * h or last == 0.0:
             break
         middle = (low * last - high * first) / (last - first)
         middle = min(max(middle, low + close), high - close)  # past it, where it is an end
-        error = step(stretch, t, middle, y, scale, work, new)
+        error = step(phase, t, middle, y, scale, work, new)
         if not error < math.inf:  # an implicit step that is not solved
             return middle
-        value = watched(stretch, what, new)
+        value = watched(phase, what, new)
         if sign * value >= 0.0:
             first = 0.5 * first if stays > 0 else first
             high, last, stays = middle, value, 1
         else:
             last = 0.5 * last if stays < 0 else last
             low, first, stays = middle, value, -1
-    step(stretch, t, high, y, scale, work, new)
+    step(phase, t, high, y, scale, work, new)
     return high
 
 
 @inlined
-def cut_short(
-    stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
+def first_event_on(
+    phase: Phase, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
     new: FloatArray,
 ) -> tuple[int, float]:  # fmt: skip
     """What happens first on a step to ``new`` that is no line, or NOTHING; when; ``new`` then."""
-    radius, first = stretch.model.body.radius, NOTHING
+    radius, first = phase.model.body.radius, NOTHING
     for passed in range(2):
         what = NOTHING
-        if passed == 0 and stretch.mode == SLIDES:
+        if passed == 0 and phase.mode == SLIDES:
             what = EQUAL if slip_side(radius, y) * slip_side(radius, new) < 0.0 else what
-        turns_over = y[SPIN] * new[SPIN] < 0.0 and jumps(stretch.model.forces.drags)
+        turns_over = y[SPIN] * new[SPIN] < 0.0 and jumps(phase.model.forces.drags)
         turns_over = turns_over and (
             has_sign(y[SPIN], size(y[VX], y[VY], 0.0))
             or has_sign(new[SPIN], size(new[VX], new[VY], 0.0))
         )
-        if passed == 1 and stretch.mode == SLIDES and turns_over:
+        if passed == 1 and phase.mode == SLIDES and turns_over:
             what = SPINLESS
         if what != NOTHING:
-            when = zero(stretch, what, t, h, y, scale, work, new)
+            when = zero(phase, what, t, h, y, scale, work, new)
             if what == EQUAL and t + when == t:  # the slip is too small for a step to tell
-                step(stretch, t, h, y, scale, work, new)
+                step(phase, t, h, y, scale, work, new)
             else:
                 first, h = what, when
     return first, h
 
 
 @inner
-def settle_way(stretch: Stretch, t: float, q: float, y: FloatArray, work: FloatArray) -> None:
+def direction_of_end(phase: Phase, t: float, q: float, y: FloatArray, work: FloatArray) -> None:
     """Turn a slip of size q that begins into the direction that it keeps.
 
     A small slip turns by Q n′ = a − (a·n) n, much faster than it grows; that is followed.
     """
-    radius = stretch.model.body.radius
-    load, mass = stretch.dry.load, stretch.model.body.mass
-    pace, before = 0.3 * mass / load, math.inf
+    radius = phase.model.body.radius
+    load, mass = phase.friction.load, phase.model.body.mass
+    scale, before = 0.3 * mass / load, math.inf
     for _ in range(_TURNS):
-        rates(stretch, t, y, work, SECOND)
+        rates(phase, t, y, work, SECOND)
         wx, wy, ww = y[VX] / q, y[VY] / q, radius * y[SPIN] / q
         ax, ay, aw = work[SECOND, VX], work[SECOND, VY], radius * work[SECOND, SPIN]
         gain = ax * wx + ay * wy + aw * ww
@@ -171,16 +171,16 @@ def settle_way(stretch: Stretch, t: float, q: float, y: FloatArray, work: FloatA
         off = size(ox, oy, ow)
         if not off > _SETTLED * load / mass:
             return
-        pace *= 0.7 if off > before else 1.03
+        scale *= 0.7 if off > before else 1.03
         before = off
-        wx, wy, ww = wx + pace * ox, wy + pace * oy, ww + pace * ow
+        wx, wy, ww = wx + scale * ox, wy + scale * oy, ww + scale * ow
         whole = q / size(wx, wy, ww)
         y[VX], y[VY], y[SPIN] = whole * wx, whole * wy, whole * ww / radius
 
 
 @inlined
 def goes_straight(
-    stretch: Stretch, speed: float, tolerance: float, unit: float, t: float, q: float, pull: float,
+    phase: Phase, speed: float, tolerance: float, unit: float, t: float, q: float, pull: float,
     slow: float, y: FloatArray, work: FloatArray,
 ) -> tuple[tuple[float, float, float, float], float]:  # fmt: skip
     """The way of a slip that is about to stop: its direction and rate; no rate: not yet.
@@ -190,24 +190,24 @@ def goes_straight(
     ``unit``, s, or the slip not be more than such errors are, ``tolerance``, of ``speed``: nobody
     knows which way it is turned.  What brakes slowly must have settled, and all else be small.
     """
-    if slip_led(stretch.model.hold, surface_now(stretch, t), y) > 2.0 * REST * speed:
+    if slip_led(phase.model.hold, surface_now(phase, t), y) > 2.0 * REST * speed:
         return NO_WAY, 0.0  # a constraint leads it on
-    way = stopping(stretch.model.body.radius, y, work)
-    brakes, mass = -way[3], stretch.model.body.mass
+    way = stopping(phase.model.body.radius, y, work)
+    brakes, mass = -way[3], phase.model.body.mass
     if not brakes > 0.0:
         return NO_WAY, 0.0
     still = q <= 2.0 * REST * speed
     across = math.sqrt(max(pull * pull - brakes * brakes, 0.0))
-    small = _SLOW * stretch.dry.load
-    excess = excess_at_rest(stretch, t, y)[0]
+    small = _SLOW * phase.friction.load
+    excess = excess_at_rest(phase, t, y)[0]
     least = max(-excess, small) / (mass * slow)
     late = max(q / least - q / brakes, 0.0) * min(across / brakes, 1.0)
     blurred = q <= _BLURRED * tolerance * speed
     quick = brakes > small / mass / slow and across <= brakes
     quick = quick and (blurred or late <= tolerance * unit)
-    if quick and len(stretch.model.forces.drive) > 0:  # what brakes it may change until then
-        change = excess_at_rest(stretch, t + q / brakes, y)[0] - excess
+    if quick and len(phase.model.forces.drive) > 0:  # what brakes it may change until then
+        change = excess_at_rest(phase, t + q / brakes, y)[0] - excess
         quick = 0.5 * q / brakes * abs(change) <= tolerance * unit * mass * brakes
-    if excess > SLACK * stretch.dry.load or not (quick or still):
+    if excess > SLACK * phase.friction.load or not (quick or still):
         return NO_WAY, 0.0
     return way, late

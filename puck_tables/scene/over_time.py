@@ -26,16 +26,16 @@ from puck_tables._core.quantities import (
 from puck_tables._core.read_columns import numbers_of
 from puck_tables.errors import InputError
 from puck_tables.kernels.compile import inlined
+from puck_tables.scene.floor_parts import count_parts, floor_part
 from puck_tables.scene.parts import Floor, Force, Grip, Rows
-from puck_tables.scene.stretches import stretch_of, stretches_of
 
 MAX_DRIVE = 1 << 26  # bytes of a file of forces
 _MOST_BYTES = 1 << 20  # of one of factors
 FORCED, FLOOR_X, FLOOR_Y, FLOOR_SPIN = 4, 4, 5, 6  # columns of forces alone; of a floor that moves
-ON_ALL, ON_STRETCH = 7, 8  # of factors
+ON_ALL, ON_PART = 7, 8  # of factors
 
 
-def drive_of(given: str | Rows) -> FloatArray:
+def drive_of(path: str | Rows) -> FloatArray:
     """Rows (n, 4) of t, Fx, Fy and torque, given or from a CSV file; they may lack the torque.
 
     Raises
@@ -43,7 +43,7 @@ def drive_of(given: str | Rows) -> FloatArray:
     InputError
         If it cannot be read, or is no such file.
     """
-    return _rows_of(given, (TIME, FORCE_X, FORCE_Y, TORQUE), "force.over_time")
+    return _rows_of(path, (TIME, FORCE_X, FORCE_Y, TORQUE), "force.over_time")
 
 
 def motion_of(floor: Floor) -> FloatArray:
@@ -57,9 +57,9 @@ def motion_of(floor: Floor) -> FloatArray:
     return _rows_of(floor.over_time, (TIME, SPEED_X, SPEED_Y, SPIN), "floor.over_time")
 
 
-def _rows_of(given: str | Rows, columns: tuple[InputColumn, ...], name: str) -> FloatArray:
+def _rows_of(path: str | Rows, columns: tuple[InputColumn, ...], name: str) -> FloatArray:
     """Rows (n, 4) that may lack the last column, which is then 0."""
-    numbers = numbers_of(given, columns, 3, MAX_DRIVE, name)
+    numbers = numbers_of(path, columns, 3, MAX_DRIVE, name)
     numbers.refuse_unless_ascending("the times")
     rows = numbers.rows
     return np.pad(rows, ((0, 0), (0, 4 - rows.shape[1])))
@@ -95,9 +95,9 @@ def grip_faults(floor: Floor) -> list[str]:
     faults, taken = [], set()
     for i, grip in enumerate(floor.grips):
         try:
-            if stretch_of(floor, grip.where) in taken:
+            if floor_part(floor, grip.where) in taken:
                 raise InputError(f"where = {grip.where!r} stands twice: give one table of factors")
-            taken.add(stretch_of(floor, grip.where))
+            taken.add(floor_part(floor, grip.where))
             factors_of(grip)
         except InputError as error:
             faults.append(f"floor.grip[{i}]: {error}")
@@ -112,7 +112,7 @@ def largest_factors(floor: Floor) -> FloatArray:
     >>> largest_factors(Floor(grips=[Grip([[0.0, 1.0], [1.0, 2.5]])])).tolist()
     [2.5]
     """
-    return _on_stretches(floor, np.max)
+    return _on_parts(floor, np.max)
 
 
 def last_factors(floor: Floor) -> FloatArray:
@@ -123,13 +123,13 @@ def last_factors(floor: Floor) -> FloatArray:
     >>> last_factors(Floor(grips=[Grip([[0.0, 1.0], [1.0, 2.5]])])).tolist()
     [2.5]
     """
-    return _on_stretches(floor, lambda factors: factors[-1])
+    return _on_parts(floor, lambda factors: factors[-1])
 
 
-def _on_stretches(floor: Floor, taken: Callable[[FloatArray], float]) -> FloatArray:
-    found = np.ones(stretches_of(floor))
+def _on_parts(floor: Floor, taken: Callable[[FloatArray], float]) -> FloatArray:
+    found = np.ones(count_parts(floor))
     for grip in floor.grips:
-        place = stretch_of(floor, grip.where)
+        place = floor_part(floor, grip.where)
         factor = taken(factors_of(grip)[:, 1])
         found[place if place >= 0 else slice(None)] *= factor
     return found
@@ -149,7 +149,7 @@ def over_time(floor: Floor, force: Force) -> FloatArray:
     drive = drive_of(force.over_time) if force.over_time else np.empty((0, FORCED))
     if not floor.grips and not floor.over_time:
         return drive
-    width = ON_STRETCH + stretches_of(floor)
+    width = ON_PART + count_parts(floor)
     tables: list[tuple[int, FloatArray]] = []
     if len(drive):
         ends = np.zeros((2, 4))
@@ -158,7 +158,7 @@ def over_time(floor: Floor, force: Force) -> FloatArray:
     if floor.over_time:
         tables.append((FLOOR_X, motion_of(floor)))
     for grip in floor.grips:
-        tables.append((ON_STRETCH + stretch_of(floor, grip.where), factors_of(grip)))
+        tables.append((ON_PART + floor_part(floor, grip.where), factors_of(grip)))
     rows: list[FloatArray] = []
     for t in np.unique(np.concatenate([table[:, 0] for _, table in tables])).tolist():
         for after in (False, True):
@@ -200,7 +200,7 @@ def _share(drive: FloatArray, piece: int, t: float) -> float:
 
 
 @inlined
-def given_by(drive: FloatArray, piece: int, t: float) -> tuple[float, float, float]:
+def prescribed_by(drive: FloatArray, piece: int, t: float) -> tuple[float, float, float]:
     """Force and torque of rows over time alone, of which so many have passed."""
     if piece == 0 or piece == len(drive):
         return 0.0, 0.0, 0.0
@@ -214,12 +214,12 @@ def given_by(drive: FloatArray, piece: int, t: float) -> tuple[float, float, flo
 
 
 @inlined
-def rows_passed(tides: FloatArray, first: int, last: int, t: float) -> int:
+def rows_passed(forcing: FloatArray, first: int, last: int, t: float) -> int:
     """How many of the rows first … last − 1 have passed."""
     low, high = first, last
     while low < high:
         middle = (low + high) // 2
-        if tides[middle, 0] <= t:
+        if forcing[middle, 0] <= t:
             low = middle + 1
         else:
             high = middle

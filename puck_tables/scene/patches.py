@@ -6,7 +6,7 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inner
-from puck_tables.scene.ground import (
+from puck_tables.scene.floor_map import (
     CORNER,
     CORNERS,
     MIDDLE_X,
@@ -20,16 +20,19 @@ OUTSIDE, ASTRIDE, INSIDE = range(3)  # how a base lies to a patch
 
 
 @inner
-def distance_to(ground: FloatArray, number: int, x: float, y: float) -> float:
+def distance_to(floor_map: FloatArray, number: int, x: float, y: float) -> float:
     """How far a point is from the border of a patch; inside it that is negative."""
-    dx, dy = x - patch_of(ground, number, MIDDLE_X), y - patch_of(ground, number, MIDDLE_Y)
-    count, first = int(patch_of(ground, number, CORNERS)), int(patch_of(ground, number, CORNER))
+    dx, dy = x - patch_of(floor_map, number, MIDDLE_X), y - patch_of(floor_map, number, MIDDLE_Y)
+    count, first = (
+        int(patch_of(floor_map, number, CORNERS)),
+        int(patch_of(floor_map, number, CORNER)),
+    )
     if count == 0:
-        return math.sqrt(dx * dx + dy * dy) - patch_of(ground, number, REACH)
+        return math.sqrt(dx * dx + dy * dy) - patch_of(floor_map, number, REACH)
     nearest, within = math.inf, False
     for n in range(count):
-        one = corner_of(ground, first + n)
-        two = corner_of(ground, first + (n + 1 if n + 1 < count else 0))
+        one = corner_of(floor_map, first + n)
+        two = corner_of(floor_map, first + (n + 1 if n + 1 < count else 0))
         ax, ay, bx, by = x - one[0], y - one[1], two[0] - one[0], two[1] - one[1]
         share = min(max((ax * bx + ay * by) / (bx * bx + by * by), 0.0), 1.0)
         ox, oy = ax - share * bx, ay - share * by

@@ -26,7 +26,7 @@ from puck_tables.scene.equations import (
     stopping,
 )
 from puck_tables.scene.friction import SPIN, VX, X
-from puck_tables.scene.ingredients import Stretch
+from puck_tables.scene.ingredients import Phase
 
 _ROOT = math.sqrt(6.0)
 _A = np.array([
@@ -85,35 +85,35 @@ def _solve(matrix: FloatArray, order: npt.NDArray[np.int64], b: FloatArray) -> N
 
 @inlined
 def _jacobian(
-    stretch: Stretch, t: float, y: FloatArray, at: FloatArray, rows: FloatArray, out: FloatArray
+    phase: Phase, t: float, y: FloatArray, at: FloatArray, rows: FloatArray, out: FloatArray
 ) -> None:
     """∂(vx, vy, spin)′/∂(vx, vy, spin) at (t, y) by one-sided differences into ``out`` (3, 3)."""
-    slip, radius = slip_speed(stretch.model.body.radius, y), stretch.model.body.radius
-    rates_in_step(stretch, t, y, rows, FIRST)
+    slip, radius = slip_speed(phase.model.body.radius, y), phase.model.body.radius
+    rates_in_step(phase, t, y, rows, FIRST)
     for j in range(_STIFF):
         nudge = _NUDGE * (slip if slip > 0.0 else 1.0) / (radius if VX + j == SPIN else 1.0)
         for i in range(SIZE):
             at[i] = y[i]
         at[VX + j] += nudge
-        rates_in_step(stretch, t, at, rows, SECOND)
+        rates_in_step(phase, t, at, rows, SECOND)
         for i in range(_STIFF):
             out[i, j] = (rows[1, VX + i] - rows[0, VX + i]) / nudge
 
 
 @inlined
-def _stiffer(stretch: Stretch, h: float, y: FloatArray, work: FloatArray) -> float:
+def _stiffer(phase: Phase, h: float, y: FloatArray, work: FloatArray) -> float:
     """By what the slip settles faster after h, when it has changed at its rate of now, work[0]."""
-    model, q = stretch.model, slip_speed(stretch.model.body.radius, y)
+    model, q = phase.model, slip_speed(phase.model.body.radius, y)
     if not q > 0.0:
         return 1.0
-    damps, turns = settling_rates(model, stretch.dry.load)
+    damps, turns = settling_rates(model, phase.friction.load)
     later = max(q + h * stopping(model.body.radius, y, work)[3], _LEAST * q)
     return (damps + turns / later) / (damps + turns / q)
 
 
 @allocating
 def radau_step(
-    stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
+    phase: Phase, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
     new: FloatArray,
 ) -> float:  # fmt: skip
     """A step from (t, y) over h into ``new``; its error in ``scale``.
@@ -123,9 +123,9 @@ def radau_step(
     rows, z, at = np.empty((3, work.shape[1])), np.empty((3, SIZE)), np.empty(SIZE)
     jacobian, step = np.empty((_STIFF, _STIFF)), np.empty(3 * _STIFF)
     matrix, order = np.empty((3 * _STIFF, 3 * _STIFF)), np.empty(3 * _STIFF, np.int64)
-    _jacobian(stretch, t, y, at, rows, jacobian)
+    _jacobian(phase, t, y, at, rows, jacobian)
     for stage in range(3):
-        stiffer = h * _stiffer(stretch, _C[stage] * h, y, work)
+        stiffer = h * _stiffer(phase, _C[stage] * h, y, work)
         for j in range(_STIFF):
             column = _STIFF * stage + j
             for i in range(3 * _STIFF):
@@ -138,15 +138,15 @@ def radau_step(
             settles = VX <= i < VX + _STIFF  # within the step, so its rate now says nothing of it
             z[stage, i] = 0.0 if settles else h * _C[stage] * work[0, i]
     before, slip_scale = math.inf, scale[VX]
-    dry, body = stretch.dry, stretch.model.body
-    brakes = abs(h) * dry.load / (body.mass * slip_scale)
+    friction, body = phase.friction, phase.model.body
+    brakes = abs(h) * friction.load / (body.mass * slip_scale)
     rounding = _ROUNDING + _NOISE * brakes
     new[:] = math.nan
     for iteration in range(_ITERATIONS):
         for stage in range(3):
             for i in range(SIZE):
                 at[i] = y[i] + z[stage, i]
-            rates_in_step(stretch, t + _C[stage] * h, at, rows, stage)
+            rates_in_step(phase, t + _C[stage] * h, at, rows, stage)
         largest, carried = 0.0, 0.0
         for stage in range(3):
             for i in range(SIZE):
@@ -175,7 +175,7 @@ def radau_step(
         noise = max(largest, carried / (1.0 + brakes))
         largest = max(largest, carried)
         stalls = iteration > 1 and largest >= 0.3 * before and noise <= rounding
-        if sure and (largest <= stretch.newton or stalls):
+        if sure and (largest <= phase.newton or stalls):
             break
         if not largest < math.inf or (iteration > 2 and largest > 0.9 * before):
             return math.inf
@@ -185,12 +185,12 @@ def radau_step(
     for i in range(SIZE):
         new[i] = y[i] + z[2, i]
     matrix, order = matrix[:_STIFF, :_STIFF], order[:_STIFF]
-    return _error(stretch, h, y, scale, work, z, new, jacobian, matrix, order, step[:_STIFF])
+    return _error(phase, h, y, scale, work, z, new, jacobian, matrix, order, step[:_STIFF])
 
 
 @inlined
 def _error(
-    stretch: Stretch, h: float, y: FloatArray, scale: FloatArray, work: FloatArray, z: FloatArray,
+    phase: Phase, h: float, y: FloatArray, scale: FloatArray, work: FloatArray, z: FloatArray,
     new: FloatArray, jacobian: FloatArray, matrix: FloatArray, order: npt.NDArray[np.int64],
     b: FloatArray,
 ) -> float:  # fmt: skip
@@ -203,7 +203,7 @@ def _error(
             matrix[i, j] = (_MU / h if i == j else 0.0) - jacobian[i, j]
     if not _factored(matrix, order):
         return math.inf
-    largest, radius = 0.0, stretch.model.body.radius
+    largest, radius = 0.0, phase.model.body.radius
     left = max(slip_speed(radius, y), slip_speed(radius, new))
     for i in range(SIZE):
         defect = work[0, i]

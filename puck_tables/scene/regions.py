@@ -63,7 +63,7 @@ def friction_error(scene: SceneSpec) -> float:
     return max(SLICE_SHARE * scene.tol, FINEST_ACCURACY)
 
 
-def plain_cut(tol: float, delta: float) -> FloatArray:
+def load_limit(tol: float, delta: float) -> FloatArray:
     """The friction ratios of a plain puck, good enough for an error wanted; empty: closed forms.
 
     From the table, which takes a tenth of the time, unless its errors would show.

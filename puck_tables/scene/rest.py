@@ -16,27 +16,27 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel, patience
-from puck_tables.scene.astride_rest import astride_yield, least_under
-from puck_tables.scene.forces import given_force
-from puck_tables.scene.friction import THETA, X, Y, at_slip_zero, dry_friction
+from puck_tables.scene.forces import prescribed_force
+from puck_tables.scene.friction import THETA, X, Y, at_slip_zero, friction_force
 from puck_tables.scene.ingredients import (
     BLADE,
     FREE,
     PIVOT,
     RAIL,
     Body,
-    Dry,
+    DryFriction,
     Hold,
-    Stretch,
+    Phase,
     Surface,
-    carried_along,
-    dry_at,
+    floor_acceleration,
     floor_velocity,
-    is_astride,
+    friction_at,
+    is_mixed,
     is_over_belts,
     put_at,
     surface_now,
 )
+from puck_tables.scene.mixed_rest import least_under, mixed_yield
 from puck_tables.scene.orthotropic import ellipse_in, elliptic_demand, is_elliptic
 
 SLACK = 1e-12  # of f N: a demand this close to the limit is held
@@ -47,7 +47,13 @@ Yield = tuple[float, float, float, float]
 
 @inlined
 def _pivot_yield(
-    dry: Dry, hold: Hold, radius: float, theta: float, fx: float, fy: float, torque: float
+    friction: DryFriction,
+    hold: Hold,
+    radius: float,
+    theta: float,
+    fx: float,
+    fy: float,
+    torque: float,
 ) -> Yield:
     """The yield where the only slip is a turn about the pivot: one direction, φ = atan(r/reach)."""
     cosine, sine = math.cos(theta + hold.angle), math.sin(theta + hold.angle)
@@ -55,19 +61,19 @@ def _pivot_yield(
     demand = torque - reach * (cosine * fy - sine * fx)
     length = math.hypot(reach, radius)
     way = (1.0 if demand >= 0.0 else -1.0) / length
-    _, _, _, heat = dry_friction(dry, radius, way * reach * sine, -way * reach * cosine, way)
+    _, _, _, heat = friction_force(friction, radius, way * reach * sine, -way * reach * cosine, way)
     return abs(demand) / length - heat, way * reach * sine, -way * reach * cosine, way
 
 
 @kernel
 def demand(
-    dry: Dry, radius: float, fx: float, fy: float, torque: float, guided: bool
+    friction: DryFriction, radius: float, fx: float, fy: float, torque: float, guided: bool
 ) -> tuple[float, float, float, float, float]:
     """A force and a torque as a share of what friction takes up of their kind; W and the slip.
 
     ``guided``: the slip is along the force only.
     """
-    law = dry.by_speed
+    law = friction.by_speed
     if is_elliptic(law.table):
         axes = ellipse_in(law.table, law.height_ratio, law.normal)
         return elliptic_demand(axes, radius, fx, fy, torque, guided)
@@ -78,7 +84,7 @@ def demand(
     while True:
         patience(1)
         cosine, sine = math.cos(phi), way * math.sin(phi) / radius
-        along, across, turning, heat = dry_friction(dry, radius, cosine, 0.0, sine)
+        along, across, turning, heat = friction_force(friction, radius, cosine, 0.0, sine)
         across = 0.0 if guided else across
         resist = math.hypot(along, across)
         if torque == 0.0:
@@ -103,16 +109,18 @@ def demand(
 
 
 @inner
-def free_yield(dry: Dry, radius: float, fx: float, fy: float, torque: float, guided: bool) -> Yield:
+def free_yield(
+    friction: DryFriction, radius: float, fx: float, fy: float, torque: float, guided: bool
+) -> Yield:
     """The yield where the puck may slip and turn; ``guided``: along the force only."""
-    if dry.load == 0.0:
+    if friction.load == 0.0:
         size = math.hypot(math.hypot(fx, fy), torque / radius)
         if size == 0.0:
             return 0.0, 1.0, 0.0, 0.0
         return size, fx / size, fy / size, torque / radius / size / radius
-    if is_astride(dry):
-        return astride_yield(dry.by_speed.table, dry.load, radius, fx, fy, torque, guided)
-    share, heat, ux, uy, w = demand(dry, radius, fx, fy, torque, guided)
+    if is_mixed(friction):
+        return mixed_yield(friction.by_speed.table, friction.load, radius, fx, fy, torque, guided)
+    share, heat, ux, uy, w = demand(friction, radius, fx, fy, torque, guided)
     return (share - 1.0) * heat, ux, uy, w
 
 
@@ -133,9 +141,18 @@ def slip_led(hold: Hold, surface: Surface, y: FloatArray) -> float:
 
 @inlined
 def constrained_yield(
-    dry: Dry, hold: Hold, body: Body, theta: float, ax: float, ay: float, turning: float,
-    fx: float, fy: float, torque: float, guided: bool,
-) -> Yield:  # fmt: skip
+    friction: DryFriction,
+    hold: Hold,
+    body: Body,
+    theta: float,
+    ax: float,
+    ay: float,
+    turning: float,
+    fx: float,
+    fy: float,
+    torque: float,
+    guided: bool,
+) -> Yield:
     """By kind of constraint; a floor whose motion a constraint forbids never holds the puck."""
     cosine, sine = math.cos(theta + hold.angle), math.sin(theta + hold.angle)
     if hold.kind == PIVOT:
@@ -143,49 +160,49 @@ def constrained_yield(
         gap = math.hypot(ax - centripetal * cosine, ay - centripetal * sine)
         if gap > 1e-9 * math.hypot(ax, ay):
             return math.inf, 0.0, 0.0, 0.0
-        return _pivot_yield(dry, hold, body.radius, theta, fx, fy, torque)
+        return _pivot_yield(friction, hold, body.radius, theta, fx, fy, torque)
     if (hold.kind == RAIL and turning != 0.0) or (hold.kind == BLADE and hold.vx != 0.0):
         return math.inf, 0.0, 0.0, 0.0
     ex, ey = (-hold.ay, hold.ax) if hold.kind == RAIL else (cosine, sine)
     along = fx * ex + fy * ey
-    if along == 0.0 and is_astride(dry):  # a turn leads along it, even so
+    if along == 0.0 and is_mixed(friction):  # a turn leads along it, even so
         along = _HINT * torque / body.radius
-    return free_yield(dry, body.radius, along * ex, along * ey, torque, guided)
+    return free_yield(friction, body.radius, along * ex, along * ey, torque, guided)
 
 
 @kernel
-def excess_at_rest(stretch: Stretch, t: float, y: FloatArray) -> Yield:
+def excess_at_rest(phase: Phase, t: float, y: FloatArray) -> Yield:
     """By how much the power of the best slip at Q = 1 exceeds friction, W, and that slip.
 
     The slip is a direction (ux, uy, w), scaled to Q = 1; friction holds while nothing exceeds it.
     """
-    model = stretch.model
+    model = phase.model
     body = model.body
-    surface = surface_now(stretch, t)
+    surface = surface_now(phase, t)
     sx, sy, turning = floor_velocity(surface, y[X], y[Y])
-    ax, ay = carried_along(surface, y[X], y[Y], sx, sy)
-    gx, gy, torque = given_force(model.forces, stretch.piece, t)
+    ax, ay = floor_acceleration(surface, y[X], y[Y], sx, sy)
+    gx, gy, torque = prescribed_force(model.forces, phase.piece, t)
     torque -= body.inertia * surface.turn
     fx, fy = gx - body.mass * ax, gy - body.mass * ay
-    dry = at_slip_zero(dry_at(stretch.dry, model.forces.drive, stretch.piece, t))
-    put_at(dry, y[X], y[Y], y[THETA])
+    friction = at_slip_zero(friction_at(phase.friction, model.forces.drive, phase.piece, t))
+    put_at(friction, y[X], y[Y], y[THETA])
     guided = model.hold.kind != FREE
     if guided:
         return constrained_yield(
-            dry, model.hold, body, y[THETA], ax, ay, turning, fx, fy, torque, guided
+            friction, model.hold, body, y[THETA], ax, ay, turning, fx, fy, torque, guided
         )
     carried = torque == 0.0 and (sx != 0.0 or sy != 0.0)
-    if carried and is_astride(dry) and not is_over_belts(dry):
+    if carried and is_mixed(friction) and not is_over_belts(friction):
         # Without a torque b = κ F, and as |u| is convex no slip gains where F is below the least f
         # alone: ∫ σ |u| dA ≥ N |u at the centre of pressure|.  A puck that is carried asks often.
         force = math.sqrt(fx * fx + fy * fy)
-        least = least_under(dry.by_speed.table, body.radius)
+        least = least_under(friction.by_speed.table, body.radius)
         if force < least:
             return force - least, fx / force if force > 0.0 else 1.0, fy / max(force, 1e-300), 0.0
-    return free_yield(dry, body.radius, fx, fy, torque, False)
+    return free_yield(friction, body.radius, fx, fy, torque, False)
 
 
 @inlined
-def held_by_floor(stretch: Stretch, t: float, y: FloatArray) -> bool:
+def held_by_floor(phase: Phase, t: float, y: FloatArray) -> bool:
     """Whether friction holds a puck at rest on the floor."""
-    return excess_at_rest(stretch, t, y)[0] <= SLACK * stretch.dry.load
+    return excess_at_rest(phase, t, y)[0] <= SLACK * phase.friction.load

@@ -229,7 +229,7 @@ NAMED = {"viscoelastic": Viscoelastic, "plastic": Plastic}
 LISTED = "'viscoelastic:C', 'plastic:V', or the name of a CSV file of speed in m/s and restitution"
 
 
-def restitution_law(given: str | Restitution) -> Restitution:
+def restitution_law(law: str | Restitution) -> Restitution:
     """A law from its name, as ``"viscoelastic:0.2"``, or from a CSV file.
 
     Raises
@@ -248,28 +248,28 @@ def restitution_law(given: str | Restitution) -> Restitution:
 viscoelastic?): give a number from 0 to 1, 'viscoelastic:C', 'plastic:V', or the name of a CSV \
 file of speed in m/s and restitution
     """
-    if isinstance(given, Restitution):
-        return given
-    if given.lower().endswith(".csv"):
-        numbers = numbers_of(given, (SPEED, RESTITUTION), 2, MAX_BYTES)
+    if isinstance(law, Restitution):
+        return law
+    if law.lower().endswith(".csv"):
+        numbers = numbers_of(law, (SPEED, RESTITUTION), 2, MAX_BYTES)
         numbers.refuse_unless_ascending("the speeds", equal=True)
         try:
-            points = from_rest(numbers.rows[:, 0], numbers.rows[:, 1], given)
-            return RestitutionTable(*points, given)
+            points = from_rest(numbers.rows[:, 0], numbers.rows[:, 1], law)
+            return RestitutionTable(*points, law)
         except InputError as error:
-            raise InputError(f"{given}: {error}") from None
-    name, _, number = given.partition(":")
+            raise InputError(f"{law}: {error}") from None
+    name, _, number = law.partition(":")
     if name == "table":
         return _table_of(number)
     if name not in NAMED:
         near = get_close_matches(name.lower(), NAMED, 1, 0.6)
         meant = f" (did you mean {near[0]}?)" if near else ""
         raise InputError(
-            f"there is no law of restitution {given[:60]!r}{meant}: give a number from 0 to 1, "
+            f"there is no law of restitution {law[:60]!r}{meant}: give a number from 0 to 1, "
             + LISTED
         )
     if not is_number(number):
-        raise InputError(f"{given[:60]!r}: the law needs a number, such as '{name}:0.1'")
+        raise InputError(f"{law[:60]!r}: the law needs a number, such as '{name}:0.1'")
     return NAMED[name](float(number))
 
 

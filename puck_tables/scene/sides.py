@@ -155,8 +155,8 @@ def corners_in(scene: SceneSpec) -> list[Corner]:
     return found
 
 
-def _angle(way: tuple[Point, int]) -> float:
-    return math.atan2(way[0][1], way[0][0])
+def _angle(direction: tuple[Point, int]) -> float:
+    return math.atan2(direction[0][1], direction[0][0])
 
 
 def _covered(scene: SceneSpec, sides: list[WallSide], points: list[Point]) -> list[bool]:
@@ -213,12 +213,12 @@ def gap_to(wall: Wall, place: Point) -> float:
     return min(point_to_edge(there, *map(np.array, side[1:])) for side in sides_of(wall))
 
 
-def gap_on_way(wall: Wall, before: FloatArray, after: FloatArray) -> float:
+def gap_along(wall: Wall, before: FloatArray, after: FloatArray) -> float:
     """How far a straight way (2,) to (2,) stays from a wall with ends, m; 0 across it.
 
     Examples
     --------
-    >>> gap_on_way(Wall((0.0, 0.0), (1.0, 0.0)), np.array([0.5, 1.0]), np.array([0.5, -1.0]))
+    >>> gap_along(Wall((0.0, 0.0), (1.0, 0.0)), np.array([0.5, 1.0]), np.array([0.5, -1.0]))
     0.0
     """
     return min(edges_apart(before, after, *map(np.array, side[1:])) for side in sides_of(wall))

@@ -11,9 +11,9 @@ from puck_tables.scene.ingredients import (
     CARRIED,
     NO_WAY,
     SLIDES,
-    Stretch,
+    Phase,
 )
-from puck_tables.scene.moments import REST, settle_way
+from puck_tables.scene.moments import REST, direction_of_end
 from puck_tables.scene.rest import SLACK, excess_at_rest
 
 _FIRST = 1e-16  # of the scale of speeds: what a slip begins with, for its direction
@@ -22,14 +22,14 @@ _QUICK = 0.01  # of friction: a slip that grows faster has its direction from th
 
 @inner
 def from_standstill(
-    stretch: Stretch, speed: float, t: float, y: FloatArray, work: FloatArray
+    phase: Phase, speed: float, t: float, y: FloatArray, work: FloatArray
 ) -> tuple[int, bool, float]:
     """Its mode from now on, whether the slip that begins settles fast, and its size in ``y``.
 
-    ``stretch``: as it would be carried; ``speed``: the scale of speeds; ``work``: to work in.
+    ``phase``: as it would be carried; ``speed``: the scale of speeds; ``work``: to work in.
     """
-    model, load = stretch.model, stretch.dry.load
-    excess, nx, ny, nw = excess_at_rest(stretch, t, y)
+    model, load = phase.model, phase.friction.load
+    excess, nx, ny, nw = excess_at_rest(phase, t, y)
     if excess <= SLACK * load:
         return CARRIED, False, 0.0
     q = 2.0 * REST * speed
@@ -40,6 +40,6 @@ def from_standstill(
         y[VX], y[VY], y[SPIN] = q * nx, q * ny, q * nw
         return SLIDES, True, q
     y[VX], y[VY], y[SPIN] = q * nx, q * ny, q * nw
-    slips = Stretch(model, stretch.dry, stretch.piece, SLIDES, NO_WAY, 0.0)
-    settle_way(slips, t, q, y, work)
+    slips = Phase(model, phase.friction, phase.piece, SLIDES, NO_WAY, 0.0)
+    direction_of_end(slips, t, q, y, work)
     return SLIDES, True, q

@@ -7,7 +7,7 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 from puck_tables.scene.equations import GIVEN, SIZE, kinetic_energy, slip_change
-from puck_tables.scene.ingredients import Body, Stretch
+from puck_tables.scene.ingredients import Body, Phase
 
 _ULP = 4e-16  # of a number: rounding of steps to it
 
@@ -29,7 +29,7 @@ def follow_scales(scale: FloatArray, tolerance: float, body: Body, y: FloatArray
 
 @inlined
 def up_to_the_stop(
-    stretch: Stretch, h: float, q: float, least: float, pull: float, reach: float, y: FloatArray,
+    phase: Phase, h: float, q: float, least: float, pull: float, reach: float, y: FloatArray,
     work: FloatArray,
 ) -> float:  # fmt: skip
     """The length of a step, no longer than where a slip q ≥ 0 leads.
@@ -38,9 +38,9 @@ def up_to_the_stop(
     time in which that is as much as the slip, or ``least``; explicit ones that share of what brakes
     it, or turns it.
     """
-    near, radius = max(q, least), stretch.model.body.radius
+    near, radius = max(q, least), phase.model.body.radius
     brakes = -slip_change(radius, y, work) if q > 0.0 else 0.0
     most = pull / reach
-    if stretch.newton == 0.0 and brakes > 0.0:
+    if phase.newton == 0.0 and brakes > 0.0:
         most = max(math.sqrt(max(pull * pull - brakes * brakes, 0.0)), brakes) / reach
     return near / most if h * most > near else h

@@ -21,9 +21,9 @@ from puck_tables.scene.ingredients import (
     RAIL,
     SLIDES,
     Hold,
-    Stretch,
+    Phase,
     Surface,
-    carried_along,
+    floor_acceleration,
     floor_velocity,
 )
 from puck_tables.scene.radau import radau_step
@@ -57,38 +57,38 @@ def accelerations(
     surface: Surface, y: FloatArray, work: FloatArray, row: int
 ) -> tuple[float, float, float]:  # fmt: skip
     """Accelerations of the centre in the laboratory and of the spin, by a row of rates."""
-    cx, cy = carried_along(surface, y[X], y[Y], work[row, X], work[row, Y])
+    cx, cy = floor_acceleration(surface, y[X], y[Y], work[row, X], work[row, Y])
     return work[row, VX] + cx, work[row, VY] + cy, work[row, SPIN] + surface.turn
 
 
 @inner
 def step(
-    stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
+    phase: Phase, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
     new: FloatArray,
 ) -> float:  # fmt: skip
     """A step from (t, y) over h into ``new``; its error in ``scale``.
 
     On entry work[0] is dy/dt at t; on return work[STAGES − 1] is that at the end.
     """
-    own, implicit = has_axes(stretch), stretch.newton > 0.0 and h > 0.0  # something is at once
+    own, implicit = has_axes(phase), phase.newton > 0.0 and h > 0.0  # something is at once
     ux, uy, ax, ay = y[VX], y[VY], work[0, VX], work[0, VY]
     if own:
-        by_blade(stretch, y)
-        rates_by_blade(stretch, y, work, FIRST)
+        by_blade(phase, y)
+        rates_by_blade(phase, y, work, FIRST)
     if implicit:
-        error = radau_step(stretch, t, h, y, scale, work, new)
+        error = radau_step(phase, t, h, y, scale, work, new)
     else:
-        error = explicit_step(stretch, t, h, y, scale, work, new)
+        error = explicit_step(phase, t, h, y, scale, work, new)
     if own:
         y[VX], y[VY], work[0, VX], work[0, VY] = ux, uy, ax, ay
-        by_floor(stretch, new)
+        by_floor(phase, new)
     if own or implicit:
-        rates(stretch, t + h, new, work, STAGES - 1)
-    model = stretch.model
-    if stretch.mode == CARRIED:
+        rates(phase, t + h, new, work, STAGES - 1)
+    model = phase.model
+    if phase.mode == CARRIED:
         new[VX] = new[VY] = new[SPIN] = 0.0
         if model.surface.spin == 0.0 and model.surface.changes == 0.0:
             error = 0.0  # straight on: what looks like an error is rounding
-    elif stretch.mode == SLIDES and model.hold.kind != FREE:
+    elif phase.mode == SLIDES and model.hold.kind != FREE:
         _put_right(model.hold, model.surface, t + h, new)
     return error

@@ -10,8 +10,8 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
+from puck_tables.scene.floor_map import OVER_X, OVER_Y
 from puck_tables.scene.friction import VX
-from puck_tables.scene.ground import OVER_X, OVER_Y
 from puck_tables.scene.over_time import drive_of, over_time
 from puck_tables.scene.parts import Force, Launch
 from puck_tables.scene.pucks_and_posts import ScenePuck
@@ -19,11 +19,11 @@ from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import layout
 from puck_tables.world.agreement import pucks_of
 from puck_tables.world.by_hand import with_integrated
-from puck_tables.world.flight import ANGLE, FLIGHT_COLUMNS, GONE, PLACE_X, START, UNTIL
-from puck_tables.world.footing import law_goes_to
-from puck_tables.world.game import LAUNCHED, N_HISTORY, N_LAUNCHES, N_PIECES, Game, Whole
+from puck_tables.world.engine_state import LAUNCHED, N_HISTORY, N_LAUNCHES, N_PIECES, Engine, Whole
+from puck_tables.world.floor_under import law_goes_to
 from puck_tables.world.paths import START as BEGINS
 from puck_tables.world.prepare import Start, prepared, with_law_up_to
+from puck_tables.world.segment import ANGLE, GONE, PLACE_X, SEGMENT_COLUMNS, START, UNTIL
 
 
 def board_with(scene: SceneSpec, puck: ScenePuck) -> SceneSpec:
@@ -57,70 +57,74 @@ def board_with(scene: SceneSpec, puck: ScenePuck) -> SceneSpec:
     return board
 
 
-def with_puck(game: Game, board: SceneSpec, order: Whole, now: float) -> tuple[Start, FloatArray]:
+def with_puck(
+    engine: Engine, board: SceneSpec, order: Whole, now: float
+) -> tuple[Start, FloatArray]:
     """The world of a board with a puck more, the last, which is out of play; and its state (6,)."""
     count = len(order)
     order = np.append(order, count)
     fresh = prepared(board, order)
-    new, state = fresh.game, fresh.states[count]
-    top = law_goes_to(game.regions)
+    new, state = fresh.engine, fresh.states[count]
+    top = law_goes_to(engine.regions)
     if law_goes_to(new.regions) < top < math.inf:
         new = with_law_up_to(new, board, order, top)
     discs = new.discs.copy()
     own = [layout.RESTITUTION, layout.MAKE]  # which law is called how may be another
     mine = discs[:count, own]
-    discs[:count] = game.discs
+    discs[:count] = engine.discs
     discs[:count, own] = mine
-    strips = game.discs[:, layout.REGION] // count
+    strips = engine.discs[:, layout.REGION] // count
     discs[:count, layout.REGION] = strips * (count + 1) + np.arange(count)
-    _keep_belts(game, new, count)
-    tides = game.tides
+    _keep_belts(engine, new, count)
+    forcing = engine.forcing
     if not board.pucks[-1].path:
-        tides = np.vstack([tides, _rows_from(board, now)])
-    spans = np.vstack([game.spans, [[len(game.tides), len(tides)]]])
-    used, way = int(game.counts[N_PIECES]), new.pieces[slice(*new.drives[count])].copy()
+        forcing = np.vstack([forcing, _rows_from(board, now)])
+    spans = np.vstack([engine.spans, [[len(engine.forcing), len(forcing)]]])
+    used, way = int(engine.counts[N_PIECES]), new.pieces[slice(*new.drives[count])].copy()
     way[:, BEGINS] += now
-    pieces = np.vstack([game.pieces[:used], way, np.zeros((max(used, 128), way.shape[1]))])
+    pieces = np.vstack([engine.pieces[:used], way, np.zeros((max(used, 128), way.shape[1]))])
     launch = new.launches[new.launches[:, LAUNCHED] == count] + np.array([now, 0, 0, 0, 0])
-    done = int(game.counts[N_LAUNCHES])
-    later = np.vstack([game.launches[done:], launch])
+    done = int(engine.counts[N_LAUNCHES])
+    later = np.vstack([engine.launches[done:], launch])
     later = later[np.argsort(later[:, 0], kind="stable")]
-    flight = np.zeros(FLIGHT_COLUMNS)
-    flight[PLACE_X : ANGLE + 1], flight[UNTIL], flight[START] = state[:3], math.inf, 0.0
+    segment = np.zeros(SEGMENT_COLUMNS)
+    segment[PLACE_X : ANGLE + 1], segment[UNTIL], segment[START] = state[:3], math.inf, 0.0
     longer: dict[str, Any] = {
-        "kinds": np.append(game.kinds, GONE),
-        "flights": np.vstack([game.flights, flight]),
-        "group": np.append(game.group, 0),
-        "held": np.vstack([game.held, np.zeros((6, 2), np.int64)]),
-        "next_time": np.append(game.next_time, math.inf),
-        "next_partner": np.append(game.next_partner, new.next_partner[count]),
-        "launches": np.vstack([game.launches[:done], later]),
-        "drives": np.vstack([game.drives, [[used, used + len(way)]]]),
-        "hangs": np.vstack([game.hangs, np.zeros_like(new.hangs[:1])]),
-        "history": np.vstack([game.history, np.zeros_like(game.history[:1])]),
-        "counts": game.counts.copy(),
-        "pace": np.append(np.maximum(game.pace, new.pace)[:2], [new.pace[2], *game.pace[3:]]),
+        "kinds": np.append(engine.kinds, GONE),
+        "segments": np.vstack([engine.segments, segment]),
+        "group": np.append(engine.group, 0),
+        "held": np.vstack([engine.held, np.zeros((6, 2), np.int64)]),
+        "next_time": np.append(engine.next_time, math.inf),
+        "next_partner": np.append(engine.next_partner, new.next_partner[count]),
+        "launches": np.vstack([engine.launches[:done], later]),
+        "drives": np.vstack([engine.drives, [[used, used + len(way)]]]),
+        "hangs": np.vstack([engine.hangs, np.zeros_like(new.hangs[:1])]),
+        "history": np.vstack([engine.history, np.zeros_like(engine.history[:1])]),
+        "counts": engine.counts.copy(),
+        "scale": np.append(
+            np.maximum(engine.scale, new.scale)[:2], [new.scale[2], *engine.scale[3:]]
+        ),
     }
-    before = np.concatenate([[count, GONE], flight])  # until now it was not there
-    longer["history"][game.counts[N_HISTORY]] = before
+    before = np.concatenate([[count, GONE], segment])  # until now it was not there
+    longer["history"][engine.counts[N_HISTORY]] = before
     longer["counts"][N_HISTORY] += 1
     longer["counts"][N_PIECES] += len(way)
-    whole = game._replace(
+    whole = engine._replace(
         discs=discs, regions=new.regions, floors=new.floors, rims=new.rims,
-        obstacles=new.obstacles, tides=tides, spans=spans, pieces=pieces, **longer,
+        obstacles=new.obstacles, forcing=forcing, spans=spans, pieces=pieces, **longer,
     )  # fmt: skip
-    integrated = game.floors[:, 2].reshape(-1, count).any(axis=0)
+    integrated = engine.floors[:, 2].reshape(-1, count).any(axis=0)
     whole = with_integrated(whole, board, order, np.flatnonzero(integrated))
     if len(way):
         state[VX:] = 0.0  # it goes on as its way has it
     return Start(board, order, whole, fresh.states), state
 
 
-def _keep_belts(game: Game, new: Game, count: int) -> None:
+def _keep_belts(engine: Engine, new: Engine, count: int) -> None:
     """The velocities of the floor that states of the discs there are relative to stay."""
-    if new.regions.ground.size:
-        before = game.regions.ground.reshape(count, -1)
-        after = new.regions.ground.reshape(count + 1, -1)
+    if new.regions.floor_map.size:
+        before = engine.regions.floor_map.reshape(count, -1)
+        after = new.regions.floor_map.reshape(count + 1, -1)
         after[:count, [OVER_X, OVER_Y]] = before[:, [OVER_X, OVER_Y]]
 
 

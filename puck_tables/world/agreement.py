@@ -12,14 +12,14 @@ from puck_tables.errors import InputError
 from puck_tables.motion.body import is_plain
 from puck_tables.scene.agreement import floor_faults
 from puck_tables.scene.by_speed import law_name, speed_law
+from puck_tables.scene.floor_parts import belts_of, has_belts
 from puck_tables.scene.forces import is_stepped
 from puck_tables.scene.holds import misfits
 from puck_tables.scene.over_time import drive_of, last_factors
 from puck_tables.scene.parts import Drag, Force, Lateral, Launch
 from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.scene.sides import gap_on_way, gap_to, line_of, shape_faults
-from puck_tables.scene.stretches import belts_of, has_belts
+from puck_tables.scene.sides import gap_along, gap_to, line_of, shape_faults
 from puck_tables.world.drive import rows_of
 
 TOUCH = 1e-12  # of the radius: pucks that overlap less touch
@@ -141,21 +141,21 @@ def has_closed_forms(puck: ScenePuck, friction: float) -> bool:
     return friction == 0.0 or is_plain(puck.pressure, puck.gyration, delta)
 
 
-def flight_error(scene: SceneSpec) -> float:
-    """What flights may be wrong by, in units of Q²/J and Q; below that of tables none is looked up.
+def segment_error(scene: SceneSpec) -> float:
+    """What segments may be wrong by, of Q²/J and Q; below that of tables none is looked up.
 
     Examples
     --------
     >>> from puck_tables import Puck, Scene
     >>> men = [Puck(0.1, friction=0.2)]
-    >>> [flight_error(Scene(pucks=men, tol=tol)) for tol in (1e-6, 1e-11)]
+    >>> [segment_error(Scene(pucks=men, tol=tol)) for tol in (1e-6, 1e-11)]
     [1e-09, 1e-11]
     """
     return min(TABLE_ERROR, scene.tol)
 
 
 def steps_for(scene: SceneSpec) -> float:
-    """What integrated flights may be wrong by, in the same units: alone what is asked.
+    """What integrated segments may be wrong by, in the same units: alone what is asked.
 
     Impacts multiply errors, and what presses cushions or pucks has to stay in touch.
 
@@ -167,7 +167,7 @@ def steps_for(scene: SceneSpec) -> float:
     (1e-07, 1e-09)
     """
     meets = len(pucks_of(scene)) > 1 or any(getattr(scene, f"{name}s") for name in CUSHIONS)
-    return flight_error(scene) if meets else scene.tol
+    return segment_error(scene) if meets else scene.tol
 
 
 def is_integrated(scene: SceneSpec, puck: ScenePuck, friction: float) -> bool:
@@ -180,7 +180,7 @@ def is_integrated(scene: SceneSpec, puck: ScenePuck, friction: float) -> bool:
     True
     """
     drags, floor = scene.drag != Drag(), scene.floor
-    unlike = bool(floor.law) or floor.orthotropic is not None or flight_error(scene) < TABLE_ERROR
+    unlike = bool(floor.law) or floor.orthotropic is not None or segment_error(scene) < TABLE_ERROR
     unlike = unlike or puck.shape is not None or bool(floor.grips) or bool(floor.over_time)
     rough = friction > 0.0 and (drags or unlike or not has_closed_forms(puck, friction))
     turns = floor.turning != 0.0 and (friction > 0.0 or drags)
@@ -374,7 +374,7 @@ def _out_of_bounds(scene: SceneSpec, pucks: tuple[ScenePuck, ...]) -> Iterator[s
     """Pucks that start in a cushion or a hole."""
     for number, puck in enumerate(pucks):
         place, name = start_of(puck), who(scene, number)
-        for path, what, depth in in_the_way(scene, place, puck.radius, holes=not puck.path):
+        for path, what, depth in obstructing(scene, place, puck.radius, holes=not puck.path):
             yield f"{path}: {name} at {list(place)} {what} by {depth:.3g} m: move one of them"
 
 
@@ -389,7 +389,7 @@ def _driven_through(scene: SceneSpec, pucks: tuple[ScenePuck, ...]) -> Iterator[
         for k, wall in enumerate(scene.walls):
             gaps[f"wall[{k}]"] = np.array(
                 [gap_to(wall, tuple(place)) for place in after] if wall.point is not None
-                else [gap_on_way(wall, *way) for way in zip(before, after, strict=True)]
+                else [gap_along(wall, *way) for way in zip(before, after, strict=True)]
             )  # fmt: skip
         for k, post in enumerate(scene.posts):
             way, off = after - before, np.array(post.point) - before
@@ -399,7 +399,7 @@ def _driven_through(scene: SceneSpec, pucks: tuple[ScenePuck, ...]) -> Iterator[
         for k, arc in enumerate(scene.arcs):
             if arc.span >= 2.0 * math.pi:
                 gaps[f"arc[{k}]"] = arc.radius - np.hypot(*(after - arc.point).T)
-        starts_in = [one for one, *_ in in_the_way(scene, start_of(puck), puck.radius, False)]
+        starts_in = [one for one, *_ in obstructing(scene, start_of(puck), puck.radius, False)]
         for path, gap in gaps.items():
             deep = np.flatnonzero(gap - puck.radius < -TOUCH * puck.radius)
             if deep.size and path not in starts_in:
@@ -411,7 +411,7 @@ def _driven_through(scene: SceneSpec, pucks: tuple[ScenePuck, ...]) -> Iterator[
                 )
 
 
-def in_the_way(
+def obstructing(
     scene: SceneSpec, place: tuple[float, float], radius: float, holes: bool
 ) -> Iterator[tuple[str, str, float]]:
     """What keeps a puck from lying at a place: its path, how, and by how much, m.
@@ -422,7 +422,7 @@ def in_the_way(
     --------
     >>> from puck_tables import Puck, Scene, Wall
     >>> board = Scene(pucks=[Puck(0.1)], walls=[Wall((0.0, 0.5), normal=(0.0, -1.0))])
-    >>> list(in_the_way(board, (0.0, 0.45), 0.1, holes=True))[0][:2]
+    >>> list(obstructing(board, (0.0, 0.45), 0.1, holes=True))[0][:2]
     ('wall[0]', 'reaches through it')
     """
     gaps = {f"wall[{k}]": gap_to(one, place) - radius for k, one in enumerate(scene.walls)}

@@ -49,7 +49,7 @@ class Search(NamedTuple):
             return f"up to {self.high:.6g} m/s"
         return f"at {self.speed:.6g} m/s and up to {self.high:.6g} rad/s either way"
 
-    def run(self, shots: Shots, wanted: Target, most: int, spare: Shots | None) -> Found:
+    def run(self, shots: Shots, wanted: Target, most: int, spare: Shots | None) -> Solutions:
         """What it finds; ``spare``: shots on the board without the pocket."""
         aimed_at = spare or shots
         effort = effort_for(shots)
@@ -63,17 +63,17 @@ class Search(NamedTuple):
         roots = stops_at(aimed_at, sample, fine, wanted.place, close, self.low, self.high)
         if spare is None:
             starts = self.velocities(roots.launches)
-            return Found(starts, shots.sensitivities(starts))
+            return Solutions(starts, shots.sensitivities(starts))
         falling = Pocketing(
             shots, wanted.obstacle(shots.scene), most, asked, self.low, self.high
         )  # fmt: skip
         sample = take_sample(shots, headings, seconds, most, effort)
         some = sample.launches[falling.falls(sample.landings)]
         regions = falling.regions(np.vstack([roots.launches, some]))
-        return Found(self.velocities(regions.launches), regions.widths)
+        return Solutions(self.velocities(regions.launches), regions.widths)
 
 
-class Found(NamedTuple):
+class Solutions(NamedTuple):
     """Launches vx, vy, spin (n, 3); (n, 2) how their ends change, or widths of their intervals."""
 
     starts: FloatArray
@@ -105,7 +105,7 @@ def aim(
         return aimed(scene, wanted, f"no launch {searches[-1].limit} {never}")
     spare = without_pocket(scene, wanted)
     runs = left_out = 0
-    found: list[Found] = []
+    found: list[Solutions] = []
     for patient in (False, True):
         for n, search in enumerate(searches):
             both = [

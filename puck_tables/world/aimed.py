@@ -163,7 +163,7 @@ def aimed(
         miss = _miss(run, wanted)
         if miss is None:
             continue
-        course = _course(run, names[wanted.puck])
+        course = _sequence(run, names[wanted.puck])
         rows.append([float(run.stop_times[wanted.puck]), miss, run.end_error, len(course)])
         courses.append(", ".join(course))
         kept.append(n)
@@ -207,7 +207,7 @@ def _miss(run: Run, wanted: Target) -> float | None:
     return None if fallen else math.dist(place, wanted.place)
 
 
-def _course(run: Run, puck: str) -> list[str]:
+def _sequence(run: Run, puck: str) -> list[str]:
     """The impacts that led a puck where it ends, in words."""
     concerned, course = {puck}, []
     for event in reversed(run.events):

@@ -33,7 +33,7 @@ from puck_tables.scene.run import STATE, ledger, residual
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import called, pucks_of, refuse_endless
 from puck_tables.world.bulk import Ends, follow_all
-from puck_tables.world.footing import moves_along
+from puck_tables.world.floor_under import moves_along
 from puck_tables.world.lasting import LEADS_ON, NEVER_ENDS, ROUND
 from puck_tables.world.ledger import NAMES, energies_of, energy_scale, kinetic_of, ledgers_of
 from puck_tables.world.plan import plan_of
@@ -74,7 +74,7 @@ class BoardCase:
         self.model, self.explanation = plan_of(scene)
         self.until = math.inf if scene.time is None else scene.time
         start = prepared(scene)
-        self.game, self.first, self.place = start.game, start.states, np.argsort(start.order)
+        self.engine, self.first, self.place = start.engine, start.states, np.argsort(start.order)
 
     @staticmethod
     def names(scene: SceneSpec) -> tuple[str, ...]:
@@ -139,7 +139,7 @@ class BoardCase:
             number, part = parts[path]
             starts[:, numbers.index(number), part] = values
         discs = self.place[np.array(numbers, np.int64)]
-        ends = follow_all(self.game, self.first, discs, starts, self.until)
+        ends = follow_all(self.engine, self.first, discs, starts, self.until)
         status = self._status(ends)
         for run in np.flatnonzero(ends.how == PUSHING).tolist():  # or much happens
             numbers_of = {path: float(values[run]) for path, values in launches.items()}
@@ -150,7 +150,7 @@ class BoardCase:
         """How each run ends, a place in :data:`puck_tables.scene.outcome.ENDS`."""
         moves = (ends.states[:, :, 3:6] != 0.0).any(axis=2) & (ends.in_play > 0.0)
         carried = (ends.carried > 0.0) | ~moves
-        if not moves_along(self.game.surface):
+        if not moves_along(self.engine.surface):
             carried[:] = False
         status = np.where(carried.all(axis=1), CARRIED_AWAY, TIME_UP).astype(np.int8)
         status[~moves.any(axis=1)] = AT_REST
@@ -167,9 +167,9 @@ class BoardCase:
     def _columns(self, ends: Ends, status: npt.NDArray[np.int8]) -> dict[str, FloatArray]:
         found = {name: ends.states[..., n] for n, name in enumerate(STATE)}
         found |= {"in_play": ends.in_play, "carried": ends.carried}
-        found["kinetic_energy"] = kinetic_of(self.game, ends.states)
+        found["kinetic_energy"] = kinetic_of(self.engine, ends.states)
         if any(puck.constraint for puck in self.pucks):
-            forces = reactions(self.game, ends.time, ends.states, ends.in_play)
+            forces = reactions(self.engine, ends.time, ends.states, ends.in_play)
             found |= {"lambda_1": forces[..., 0], "lambda_2": forces[..., 1]}
         out = {
             name: values[:, self.place] if self.scene.pucks else values[:, 0]
@@ -177,7 +177,7 @@ class BoardCase:
         }
         out |= {name: ends.ledgers[:, n] for name, n in NAMES.items()}
         missing, largest = ledger(out)
-        least = energy_scale(self.game)
+        least = energy_scale(self.engine)
         out["energy_residual"] = missing / np.maximum(largest, least)
         out |= {"end_time": ends.time, "impacts": ends.impacts.astype(np.float64)}
         for values in out.values():
@@ -191,7 +191,7 @@ class BoardCase:
             end, ends.time[run] = run_on(world, None)
             if world.groups > 0:  # what simulate refuses by its ledger
                 now = energies_of(world, np.array([world.time]), world.state()[None])
-                if not residual(now, energy_scale(world._game)) <= most_missed(self.scene):
+                if not residual(now, energy_scale(world._engine)) <= most_missed(self.scene):
                     raise PuckError
         except InputError:
             return NO_END

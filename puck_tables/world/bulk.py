@@ -11,23 +11,23 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import in_slices
 from puck_tables.kernels.compile import inner, kernel, patience
 from puck_tables.scene.friction import VX
-from puck_tables.world.course import COURSE_COLUMNS, LENGTH, trace
-from puck_tables.world.departures import Room, room_for
 from puck_tables.world.engine import EVERYBODY, NOBODY, advance
-from puck_tables.world.flight import GONE, START, moves_until, state_at
-from puck_tables.world.footing import least_slip, moves_along
-from puck_tables.world.game import COUNTS, N_HISTORY, N_IMPACTS, N_PIECES, Game, Whole
+from puck_tables.world.engine_state import COUNTS, N_HISTORY, N_IMPACTS, N_PIECES, Engine, Whole
+from puck_tables.world.floor_under import least_slip, moves_along
+from puck_tables.world.impact_sequence import COURSE_COLUMNS, LENGTH, trace
 from puck_tables.world.lasting import GOES_ON, at_rest_below, limits_of, next_target
 from puck_tables.world.layout import RADIUS
 from puck_tables.world.ledger import LEDGER_COLUMNS, tally
 from puck_tables.world.lone import LONGEST
 from puck_tables.world.paths import PIECE_COLUMNS
 from puck_tables.world.prepare import fastest, scales_of
+from puck_tables.world.segment import GONE, START, moves_until, state_at
+from puck_tables.world.segment_starts import Room, room_for
 from puck_tables.world.setting_off import FULL, PAUSED, PUSHING, REACHED
-from puck_tables.world.works import WORK_COLUMNS
+from puck_tables.world.step_ledger import WORK_COLUMNS
 
 _LOOKS = 6  # at a course before its end: at Q/2J, Q/4J, ...
-MOST_ROWS = 1 << 16  # of events and flights, and of steps: 60 MB
+MOST_ROWS = 1 << 16  # of events and segments, and of steps: 60 MB
 END_COLUMNS = 6  # of a puck: its state at the end
 _JUST = 1e-15  # of a time: before it
 
@@ -39,7 +39,8 @@ class Ends(NamedTuple):
 
     ``how`` (runs,): as :func:`puck_tables.world.engine.advance` says, or without a time
     :func:`puck_tables.world.lasting.next_target`.  ``courses`` (runs, 4): of
-    the disc that is watched, see :func:`puck_tables.world.course.trace`.  ``ledgers`` (runs, 9):
+    the disc that is watched, see :func:`puck_tables.world.impact_sequence.trace`.
+    ``ledgers`` (runs, 9):
     where energy went, see :mod:`puck_tables.world.ledger`; of runs that are watched none.
     """
 
@@ -55,54 +56,54 @@ class Ends(NamedTuple):
 
 @inner
 def _to_the_end(
-    game: Game, until: float, limit: float, given: float, struck: int, room: Room,
+    engine: Engine, until: float, limit: float, prescribed: float, struck: int, room: Room,
     work: FloatArray,
 ) -> tuple[int, float]:  # fmt: skip
     """Run it until a time, or, if that is inf, until nothing more can happen; how, and when."""
     endless, how, target = until == math.inf, GOES_ON, until
     if endless:
-        target = limit if game.surface.spin == 0.0 else game.clock[0]
+        target = limit if engine.surface.spin == 0.0 else engine.clock[0]
     while how == GOES_ON:
-        how = advance(game, target, struck, room)
+        how = advance(engine, target, struck, room)
         struck = NOBODY
         while how == PAUSED:
-            how = advance(game, target, struck, room)
+            how = advance(engine, target, struck, room)
         if endless and how == REACHED:
-            how, target = next_target(game, limit, given, room, work)
+            how, target = next_target(engine, limit, prescribed, room, work)
     return how, target
 
 
 @kernel
 def _follow_all(
-    game: Game, fresh: FloatArray, kinds: Whole, hangs: Whole, flights: FloatArray,
-    first: FloatArray, discs: Whole, launches: FloatArray, paces: FloatArray, until: float,
-    limits: FloatArray, given: float, watch: Whole, room: Room, rows: FloatArray,
+    engine: Engine, fresh: FloatArray, kinds: Whole, hangs: Whole, segments: FloatArray,
+    first: FloatArray, discs: Whole, launches: FloatArray, scales: FloatArray, until: float,
+    limits: FloatArray, prescribed: float, watch: Whole, room: Room, rows: FloatArray,
     ends: Ends,
 ) -> None:  # fmt: skip
     """Runs from the states ``first`` (n, 6), with launches (runs, m, 3) of the ``discs`` (m,).
 
-    ``paces`` (runs, 2): the scales of each, so that none depends on others; ``limits`` (runs,) and
-    ``given``: see :func:`puck_tables.world.lasting.limits_of`.  ``watch`` (3,): the
+    ``scales`` (runs, 2): the scales of each, so that none depends on others; ``limits`` (runs,) and
+    ``prescribed``: see :func:`puck_tables.world.lasting.limits_of`.  ``watch`` (3,): the
     disc whose courses are wanted, −1: none; the one that they are to pass; and how many impacts
     they may have: a run is given up when there are more.
     """
     patience(launches.shape[0])
     count, driven = first.shape[0], 0
     for i in range(count):
-        driven = max(driven, game.drives[i, 1])
+        driven = max(driven, engine.drives[i, 1])
     for run in range(launches.shape[0]):
-        game.clock[0] = 0.0
-        game.pace[0], game.pace[1] = paces[run, 0], paces[run, 1]
+        engine.clock[0] = 0.0
+        engine.scale[0], engine.scale[1] = scales[run, 0], scales[run, 1]
         for column in range(COUNTS):
-            game.counts[column] = driven if column == N_PIECES else 0
+            engine.counts[column] = driven if column == N_PIECES else 0
         for i in range(count):
-            game.kinds[i], game.group[i] = kinds[i], 0
+            engine.kinds[i], engine.group[i] = kinds[i], 0
             for column in range(fresh.shape[1]):
-                game.discs[i, column] = fresh[i, column]
-            for column in range(flights.shape[1]):
-                game.flights[i, column] = flights[i, column]
+                engine.discs[i, column] = fresh[i, column]
+            for column in range(segments.shape[1]):
+                engine.segments[i, column] = segments[i, column]
             for column in range(hangs.shape[1]):
-                game.hangs[i, column] = hangs[i, column]
+                engine.hangs[i, column] = hangs[i, column]
         for i in range(count):
             for column in range(6):
                 room.states[i, column] = first[i, column]
@@ -112,13 +113,13 @@ def _follow_all(
         looks = _LOOKS if watch[0] >= 0 else 0
         struck = EVERYBODY
         for look in range(looks, -1, -1):
-            part = game.pace[0] / game.pace[1] * 0.5**look if look > 0 else until
+            part = engine.scale[0] / engine.scale[1] * 0.5**look if look > 0 else until
             how, ended = _to_the_end(
-                game, min(part, until), limits[run], given, struck, room, ends.in_play[run]
+                engine, min(part, until), limits[run], prescribed, struck, room, ends.in_play[run]
             )
             struck = NOBODY
             if watch[0] >= 0:
-                trace(game, watch[0], watch[1], room.shares, room.marks, ends.courses[run])
+                trace(engine, watch[0], watch[1], room.shares, room.marks, ends.courses[run])
                 if ends.courses[run, LENGTH] > watch[2]:
                     break
             if how != REACHED:
@@ -126,33 +127,33 @@ def _follow_all(
         ends.how[run] = how
         last = 0.0
         for i in range(count):
-            kind, flight = game.kinds[i], game.flights[i]
-            last = max(last, flight[START], moves_until(kind, flight))
-        if until == math.inf and moves_along(game.surface):
+            kind, segment = engine.kinds[i], engine.segments[i]
+            last = max(last, segment[START], moves_until(kind, segment))
+        if until == math.inf and moves_along(engine.surface):
             last = at = ended
         else:
             last, at = min(last, until), until
-        ends.time[run], ends.impacts[run] = last, game.counts[N_IMPACTS]
+        ends.time[run], ends.impacts[run] = last, engine.counts[N_IMPACTS]
         for i in range(count):
-            kind, flight = game.kinds[i], game.flights[i]
+            kind, segment = engine.kinds[i], engine.segments[i]
             if kind == GONE and count == 1:  # its run ends as it leaves
-                row = game.history[game.counts[N_HISTORY] - 2]
-                kind, at, flight = int(row[1]), flight[START], row[2:]
+                row = engine.history[engine.counts[N_HISTORY] - 2]
+                kind, at, segment = int(row[1]), segment[START], row[2:]
                 last = at * (1.0 - _JUST)  # before what leaves takes its energy along
             state_at(
-                kind, flight, game.discs[i], game.curves, game.pieces, at, room.work,
+                kind, segment, engine.discs[i], engine.lookups, engine.pieces, at, room.work,
                 ends.states[run, i],
             )  # fmt: skip
-            ends.in_play[run, i] = 0.0 if game.kinds[i] == GONE else 1.0
-            slip = least_slip(game, i, ends.states[run, i], at)
-            ends.carried[run, i] = ends.in_play[run, i] if slip <= at_rest_below(game) else 0.0
+            ends.in_play[run, i] = 0.0 if engine.kinds[i] == GONE else 1.0
+            slip = least_slip(engine, i, ends.states[run, i], at)
+            ends.carried[run, i] = ends.in_play[run, i] if slip <= at_rest_below(engine) else 0.0
         if watch[0] < 0:
             rows[0] = last
-            tally(game, rows[:1], room, rows[1:], ends.ledgers[run : run + 1])
+            tally(engine, rows[:1], room, rows[1:], ends.ledgers[run : run + 1])
 
 
 def follow_all(
-    game: Game, first: FloatArray, discs: Whole, launches: FloatArray, until: float,
+    engine: Engine, first: FloatArray, discs: Whole, launches: FloatArray, until: float,
     watch: tuple[int, int, int] = (-1, -1, 0),
 ) -> Ends:  # fmt: skip
     """The ends of runs of a board at its start, with launches (runs, m, 3) of some discs.
@@ -161,16 +162,16 @@ def follow_all(
     impacts they may have: runs with more are given up where they are.  A board where more happens
     than rows are there for gets more rows, and is run again.
     """
-    runs, count = len(launches), len(game.discs)
+    runs, count = len(launches), len(engine.discs)
     ends = Ends(
         np.empty((runs, count, END_COLUMNS)), np.empty((runs, count)), np.empty((runs, count)),
         np.empty(runs), np.empty(runs), np.empty(runs, np.int64),
         np.zeros((runs, COURSE_COLUMNS), np.int64), np.zeros((runs, LEDGER_COLUMNS)),
     )  # fmt: skip
-    paces = _paces(game, first, discs, launches)
-    limits, given = limits_of(game, paces)
+    scales = _scales(engine, first, discs, launches)
+    limits, given = limits_of(engine, scales)
     room, rows = room_for(count), 256 + 16 * count
-    mine = own_game(game, rows)
+    mine = own_engine(engine, rows)
 
     def work(start: int, stop: int) -> None:
         part = Ends(
@@ -179,8 +180,8 @@ def follow_all(
             ends.courses[start:stop], ends.ledgers[start:stop],
         )  # fmt: skip
         _follow_all(
-            mine, game.discs, game.kinds, game.hangs, game.flights, first, discs,
-            launches[start:stop], paces[start:stop], until, limits[start:stop], given,
+            mine, engine.discs, engine.kinds, engine.hangs, engine.segments, first, discs,
+            launches[start:stop], scales[start:stop], until, limits[start:stop], given,
             np.array(watch), room, np.empty(1 + len(mine.history) + count), part,
         )  # fmt: skip
 
@@ -191,40 +192,40 @@ def follow_all(
             ends.how[full] = PUSHING
             break
         rows *= 4
-        mine = own_game(game, rows)
+        mine = own_engine(engine, rows)
         for run in full:
             work(int(run), int(run) + 1)
         full = full[ends.how[full] == FULL]
     return ends
 
 
-def _paces(game: Game, first: FloatArray, discs: Whole, launches: FloatArray) -> FloatArray:
+def _scales(engine: Engine, first: FloatArray, discs: Whole, launches: FloatArray) -> FloatArray:
     """The scales of every run, (runs, 2), see :func:`puck_tables.world.prepare.scales_of`."""
     others = first.copy()
     others[discs, VX:] = 0.0
     slips = np.hypot(
         np.hypot(launches[:, :, 0], launches[:, :, 1]),
-        game.discs[discs, RADIUS] * launches[:, :, 2],
+        engine.discs[discs, RADIUS] * launches[:, :, 2],
     )
-    slowest = fastest(game, others)
-    return scales_of(game, np.maximum(slowest, slips.max(axis=1, initial=0.0)))
+    slowest = fastest(engine, others)
+    return scales_of(engine, np.maximum(slowest, slips.max(axis=1, initial=0.0)))
 
 
-def own_game(game: Game, rows: int, more: int = 0) -> Game:
-    """A copy to run on, with so many rows for events and flights; for paths if there are any.
+def own_engine(engine: Engine, rows: int, more: int = 0) -> Engine:
+    """A copy to run on, with so many rows for events and segments; for paths if there are any.
 
     ``more``: rows for paths beside these.
     """
-    paths = more + (rows + LONGEST if game.floors[:, 2].any() else 0)
+    paths = more + (rows + LONGEST if engine.floors[:, 2].any() else 0)
     pieces = np.zeros((paths, PIECE_COLUMNS))
-    return game._replace(
-        regions=game.regions._replace(ground=game.regions.ground.copy()),
-        discs=game.discs.copy(), hangs=game.hangs.copy(), clock=np.zeros(1),
-        kinds=game.kinds.copy(),
-        flights=game.flights.copy(), group=game.group.copy(), held=game.held.copy(),
-        next_time=game.next_time.copy(), next_partner=game.next_partner.copy(),
-        pieces=np.vstack([game.pieces, pieces]), works=np.zeros((paths - more, WORK_COLUMNS)),
-        events=np.zeros((rows, game.events.shape[1])),
-        history=np.zeros((rows, game.history.shape[1])), counts=game.counts.copy(),
-        pace=game.pace.copy(),
+    return engine._replace(
+        regions=engine.regions._replace(floor_map=engine.regions.floor_map.copy()),
+        discs=engine.discs.copy(), hangs=engine.hangs.copy(), clock=np.zeros(1),
+        kinds=engine.kinds.copy(),
+        segments=engine.segments.copy(), group=engine.group.copy(), held=engine.held.copy(),
+        next_time=engine.next_time.copy(), next_partner=engine.next_partner.copy(),
+        pieces=np.vstack([engine.pieces, pieces]), work_rows=np.zeros((paths - more, WORK_COLUMNS)),
+        events=np.zeros((rows, engine.events.shape[1])),
+        history=np.zeros((rows, engine.history.shape[1])), counts=engine.counts.copy(),
+        scale=engine.scale.copy(),
     )  # fmt: skip

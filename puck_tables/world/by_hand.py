@@ -15,11 +15,11 @@ from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.over_time import ON_ALL
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import pucks_of
+from puck_tables.world.contact_search import in_span
 from puck_tables.world.drive import fill_straight
-from puck_tables.world.flight import ANGLE, FIRST_PIECE, PATH, PLACE_X
+from puck_tables.world.engine_state import N_PIECES, Engine, Whole
+from puck_tables.world.floor_under import step_onto
 from puck_tables.world.floors import INTEGRATED, regions_of
-from puck_tables.world.footing import step_onto
-from puck_tables.world.game import N_PIECES, Game, Whole
 from puck_tables.world.holds import forbid
 from puck_tables.world.layout import (
     ARC,
@@ -40,42 +40,47 @@ from puck_tables.world.layout import (
     C,
 )
 from puck_tables.world.lone import LONGEST
-from puck_tables.world.meeting import in_span
 from puck_tables.world.paths import on_piece
+from puck_tables.world.segment import ANGLE, FIRST_PIECE, PATH, PLACE_X
 
 SHORT_OF = 1e-9  # of its radius: so far from cushions stops what is led, and never presses them
 _OFF = 1e-9  # of its radius: farther off its constraint a puck cannot be put
 
 
-def led_state(game: Game, i: int) -> FloatArray:
+def led_state(engine: Engine, i: int) -> FloatArray:
     """The state (6,) of a disc that is driven, now."""
-    flight = game.flights[i]
-    if game.kinds[i] != PATH:
-        return np.array([*flight[PLACE_X : ANGLE + 1].tolist(), 0.0, 0.0, 0.0])
-    piece: Any = game.pieces[int(flight[FIRST_PIECE])].tolist()  # lists are faster, from Python
+    segment = engine.segments[i]
+    if engine.kinds[i] != PATH:
+        return np.array([*segment[PLACE_X : ANGLE + 1].tolist(), 0.0, 0.0, 0.0])
+    piece: Any = engine.pieces[int(segment[FIRST_PIECE])].tolist()  # lists are faster, from Python
     state: Any = [0.0] * 9
-    on_piece(piece, float(game.clock[0]), state)
+    on_piece(piece, float(engine.clock[0]), state)
     return np.array(state[:6])
 
 
-def with_room_to_lead(game: Game) -> Game:
+def with_room_to_lead(engine: Engine) -> Engine:
     """With room for one piece more."""
-    count = int(game.counts[N_PIECES])
-    if count < len(game.pieces):
-        return game
-    more = np.zeros((max(LONGEST, count), game.pieces.shape[1]))
-    return game._replace(pieces=np.vstack([game.pieces, more]))
+    count = int(engine.counts[N_PIECES])
+    if count < len(engine.pieces):
+        return engine
+    more = np.zeros((max(LONGEST, count), engine.pieces.shape[1]))
+    return engine._replace(pieces=np.vstack([engine.pieces, more]))
 
 
 @inlined
-def lead(game: Game, i: int, state: FloatArray, duration: float) -> None:
+def lead(engine: Engine, i: int, state: FloatArray, duration: float) -> None:
     """A disc is to go straight on from a state for so long, or until it is at a cushion."""
-    count = game.counts[N_PIECES]
+    count = engine.counts[N_PIECES]
     go_straight(
-        game.obstacles, game.discs[i, RADIUS], game.clock[0], duration, state, game.pieces[count]
+        engine.obstacles,
+        engine.discs[i, RADIUS],
+        engine.clock[0],
+        duration,
+        state,
+        engine.pieces[count],
     )
-    game.drives[i, 0], game.drives[i, 1] = count, count + 1
-    game.counts[N_PIECES] = count + 1
+    engine.drives[i, 0], engine.drives[i, 1] = count, count + 1
+    engine.counts[N_PIECES] = count + 1
 
 
 @kernel
@@ -128,7 +133,7 @@ def _free_for(obstacles: FloatArray, radius: float, state: FloatArray) -> float:
     return longest
 
 
-def refuse_off_hold(game: Game, i: int, state: FloatArray, name: str) -> None:
+def refuse_off_hold(engine: Engine, i: int, state: FloatArray, name: str) -> None:
     """Refuse a place where the constraint of a puck does not let it be.
 
     Raises
@@ -136,20 +141,20 @@ def refuse_off_hold(game: Game, i: int, state: FloatArray, name: str) -> None:
     InputError
     """
     rows, off = np.zeros((2, 3)), np.zeros((2, 3))
-    forbid(game.discs[i], game.surface, float(game.clock[0]), state, rows, off)
+    forbid(engine.discs[i], engine.surface, float(engine.clock[0]), state, rows, off)
     away = float(np.abs(off[:, 0]).max())
-    if away > _OFF * game.discs[i, RADIUS]:
+    if away > _OFF * engine.discs[i, RADIUS]:
         raise InputError(
             f"{name} would be {away:.3g} m off the rail or pivot that leads it: put it on that"
         )
 
 
 def with_force(
-    game: Game, scene: SceneSpec, order: Whole, i: int, force: FloatArray, until: float
-) -> Game:
+    engine: Engine, scene: SceneSpec, order: Whole, i: int, force: FloatArray, until: float
+) -> Engine:
     """With a force (Fx, Fy, torque) on a disc from now to then, N and N m, beside all others."""
-    begin = float(game.clock[0])
-    mine = game.tides[slice(*game.spans[i])]
+    begin = float(engine.clock[0])
+    mine = engine.forcing[slice(*engine.spans[i])]
     times = np.unique(np.concatenate([mine[:, 0], [begin, until]])).tolist()
     rows: list[FloatArray] = []
     for start, end in pairwise(times):
@@ -158,12 +163,12 @@ def with_force(
                 row[1:ON_ALL] += force
             if not rows or (row != rows[-1]).any():
                 rows.append(row)
-    parts = [game.tides[slice(*span)] for span in game.spans]
+    parts = [engine.forcing[slice(*span)] for span in engine.spans]
     parts[i] = np.array(rows)
     ends = np.cumsum([0, *map(len, parts)])
     spans = np.stack([ends[:-1], ends[1:]], axis=1)
-    game = game._replace(tides=np.vstack(parts), spans=spans)
-    return with_integrated(game, scene, order, np.array([i]))
+    engine = engine._replace(forcing=np.vstack(parts), spans=spans)
+    return with_integrated(engine, scene, order, np.array([i]))
 
 
 def _just(rows: FloatArray, t: float, after: bool) -> FloatArray:
@@ -179,17 +184,17 @@ def _just(rows: FloatArray, t: float, after: bool) -> FloatArray:
     return row
 
 
-def with_integrated(game: Game, scene: SceneSpec, order: Whole, discs: Whole) -> Game:
+def with_integrated(engine: Engine, scene: SceneSpec, order: Whole, discs: Whole) -> Engine:
     """With motions of discs that are integrated from now on, wherever they are."""
-    count = len(game.discs)
-    floors = game.floors.copy()
+    count = len(engine.discs)
+    floors = engine.floors.copy()
     how = floors.reshape(-1, count, floors.shape[1])[:, :, 2]
     how[:, discs] = np.maximum(how[:, discs], INTEGRATED)
-    regions = game.regions
-    if not game.floors[:, 2].any():  # its friction is asked for often from now on
+    regions = engine.regions
+    if not engine.floors[:, 2].any():  # its friction is asked for often from now on
         pucks = [pucks_of(scene)[number] for number in order]
         regions = regions_of(scene, pucks, floors, 0.0)
-    game = game._replace(floors=floors, regions=regions)
+    engine = engine._replace(floors=floors, regions=regions)
     for i in discs.tolist():
-        step_onto(game, i)
-    return game
+        step_onto(engine, i)
+    return engine

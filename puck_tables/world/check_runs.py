@@ -10,8 +10,8 @@ from puck_tables.errors import PuckError
 from puck_tables.scene.friction import THETA, VX, X, Y
 from puck_tables.scene.ingredients import FREE
 from puck_tables.scene.regions import friction_error
-from puck_tables.world import game as g
-from puck_tables.world.agreement import flight_error, pucks_of
+from puck_tables.world import engine_state as g
+from puck_tables.world.agreement import pucks_of, segment_error
 from puck_tables.world.floors import velocities_under
 from puck_tables.world.layout import HOLD, LIGHTNESS, NORMAL
 from puck_tables.world.prepare import Start
@@ -33,13 +33,13 @@ def error_of(world: World, start: Start) -> float:
     the rounding of the look-up, for pucks that could slide far.  In units of Q/J and Q²/J.
     """
     pucks = pucks_of(start.scene)
-    speed, rate = world._game.pace[:2].tolist()
+    speed, rate = world._engine.scale[:2].tolist()
     length, now = speed * speed / rate, world.time
     radii, alone = np.array([puck.radius for puck in pucks]), len(pucks) == 1
     probes = now * np.arange(1, PROBES + 1) / PROBES if alone else np.array([now])
     states, stops = world.over(probes), world.motion_ends
     share, off = _launches_off(start, alone), 0.0
-    if start.game.floors[:, 2].any():
+    if start.engine.floors[:, 2].any():
         slides = {
             (one.height, one.friction, one.pressure, one.shape is None): one
             for one in pucks
@@ -67,9 +67,9 @@ def error_of(world: World, start: Start) -> float:
 def _launches_off(start: Start, alone: bool) -> float:
     """By what share launches of check runs are off: of one puck by the error of a step at least."""
     if not alone:
-        return flight_error(start.scene)
-    looked_up = 0.0 if start.game.floors[:, 2].all() else OF_ONE * flight_error(start.scene)
-    return max(looked_up, float(start.game.pace[2]))
+        return segment_error(start.scene)
+    looked_up = 0.0 if start.engine.floors[:, 2].all() else OF_ONE * segment_error(start.scene)
+    return max(looked_up, float(start.engine.scale[2]))
 
 
 def _otherwise(start: Start, coarser: float, share: float, friction: float) -> Start:
@@ -81,16 +81,16 @@ def _otherwise(start: Start, coarser: float, share: float, friction: float) -> S
     share : of their velocities and spins launches are off by so much, and in rad their headings
     friction : of what is integrated, off by so much
     """
-    game = g.copy_of(start.game)
-    states, launches = start.states.copy(), game.launches.copy()
+    engine = g.copy_of(start.engine)
+    states, launches = start.states.copy(), engine.launches.copy()
     scale = 1.0 + share
     cosine, sine = scale * math.cos(share), scale * math.sin(share)
     turned = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, scale]])
     launches[:, g.LAUNCH_VX :] = launches[:, g.LAUNCH_VX :] @ turned.T
-    free = (game.discs[:, LIGHTNESS] > 0.0) & (game.discs[:, HOLD] == FREE)
-    floor = velocities_under(game, states)[free]
+    free = (engine.discs[:, LIGHTNESS] > 0.0) & (engine.discs[:, HOLD] == FREE)
+    floor = velocities_under(engine, states)[free]
     states[free, VX:] = floor + (states[free, VX:] - floor) @ turned.T
-    game.pace[[2, g.FINE]] *= coarser
-    game.discs[:, NORMAL] *= 1.0 + friction
-    regions = game.regions._replace(load=game.regions.load * (1.0 + friction))
-    return start._replace(game=game._replace(launches=launches, regions=regions), states=states)
+    engine.scale[[2, g.FINE]] *= coarser
+    engine.discs[:, NORMAL] *= 1.0 + friction
+    regions = engine.regions._replace(load=engine.regions.load * (1.0 + friction))
+    return start._replace(engine=engine._replace(launches=launches, regions=regions), states=states)

@@ -18,7 +18,7 @@ from puck_tables.world.group import (
     SLIP,
     SMOOTH_SLIP,
     STICKS,
-    Desk,
+    GroupBuffer,
     IntArray,
     Scales,
 )
@@ -54,13 +54,13 @@ def most(sight: FloatArray, push: float) -> float:
 
 
 @inlined
-def better_mode(desk: Desk, c: int, mode: int, scales: Scales) -> int:
+def better_mode(buffer: GroupBuffer, c: int, mode: int, scales: Scales) -> int:
     """The mode that forces and accelerations ask for, when it was supposed to be ``mode``."""
-    gap, slip, soft, rolls = leads(desk, c)
+    gap, slip, soft, rolls = leads(buffer, c)
     slack = 0.5 * LEVEL * scales.rate
     if soft == 0.0:  # between two that cannot move nothing is known, if they do not part
         return APART if gap > slack else mode
-    sight, push, rim = desk.sights[c], desk.pushes[c, 0], desk.pushes[c, 1]
+    sight, push, rim = buffer.sights[c], buffer.pushes[c, 0], buffer.pushes[c, 1]
     if mode == APART:
         return rim_mode(sight, scales.speed) if gap < -slack else APART
     if push * soft < -slack:
@@ -76,46 +76,48 @@ def better_mode(desk: Desk, c: int, mode: int, scales: Scales) -> int:
 
 
 @inner
-def find_modes(desk: Desk, modes: IntArray, members: int, scales: Scales) -> bool:
+def find_modes(buffer: GroupBuffer, modes: IntArray, members: int, scales: Scales) -> bool:
     """Modes that contradict nothing, from those given; pushes and accelerations.  Whether found."""
     count = modes.shape[0]
     for attempt in range(_TRIES):
         for _ in range(_GUESSES):
-            left = push_and_move(desk, modes, members)
+            left = push_and_move(buffer, modes, members)
             changed = False
             for c in range(count):
-                mode = better_mode(desk, c, modes[c], scales)
-                desk.order[c] = mode
+                mode = better_mode(buffer, c, modes[c], scales)
+                buffer.order[c] = mode
                 changed = changed or mode != modes[c]
             if not changed:
                 return left <= _LEFT_OVER
             for c in range(count):
-                modes[c] = desk.order[c]
-        _by_small_steps(desk, modes, members, scales, _STEPS * 4**attempt // 4)
+                modes[c] = buffer.order[c]
+        _by_small_steps(buffer, modes, members, scales, _STEPS * 4**attempt // 4)
     return False
 
 
 @inlined
-def _by_small_steps(desk: Desk, modes: IntArray, members: int, scales: Scales, steps: int) -> None:
+def _by_small_steps(
+    buffer: GroupBuffer, modes: IntArray, members: int, scales: Scales, steps: int
+) -> None:
     """Modes from forces that go, all at once, by small steps to where they should be."""
     for c in range(modes.shape[0]):
         modes[c] = STICKS
-    count = constrain(desk, modes, True, False)
-    fill_matrix(desk, count)
-    right_hand_side(desk, modes)
-    v = desk.vectors
+    count = constrain(buffer, modes, True, False)
+    fill_matrix(buffer, count)
+    right_hand_side(buffer, modes)
+    v = buffer.vectors
     for r in range(count):
         v[SOLUTION, r] = 0.0
     for _ in range(steps):
         for r in range(count):
             total, weight = v[RIGHT, r], 0.0
             for c in range(count):
-                total -= desk.matrix[r, c] * v[SOLUTION, c]
-                weight += abs(desk.matrix[r, c])
+                total -= buffer.matrix[r, c] * v[SOLUTION, c]
+                weight += abs(buffer.matrix[r, c])
             v[LEFT, r] = total / weight if weight > 0.0 else 0.0
         number = 0
         for c in range(modes.shape[0]):
-            sight = desk.sights[c]
+            sight = buffer.sights[c]
             push = max(v[SOLUTION, number] + v[LEFT, number], 0.0)
             v[SOLUTION, number] = push
             number += 1
@@ -130,7 +132,7 @@ def _by_small_steps(desk: Desk, modes: IntArray, members: int, scales: Scales, s
             v[SOLUTION, tie] += v[LEFT, tie]
     number = 0
     for c in range(modes.shape[0]):
-        sight = desk.sights[c]
+        sight = buffer.sights[c]
         push, bound = v[SOLUTION, number], most(sight, v[SOLUTION, number])
         number += 1
         modes[c] = rim_mode(sight, scales.speed)

@@ -15,7 +15,7 @@ from puck_tables.world.paths import DURATION, FIRST, PIECE_COLUMNS, START
 MAX_BYTES = 1 << 26  # of a file of a path: more is none
 
 
-def rows_of(given: str | Rows) -> FloatArray:
+def rows_of(path: str | Rows) -> FloatArray:
     """Rows (n, 4) of t, x, y, angle, given or from a CSV file; they may lack the angle.
 
     One row, of t = 0, is a body that is led by hand.
@@ -30,7 +30,7 @@ def rows_of(given: str | Rows) -> FloatArray:
     >>> rows_of(((0.0, 1.0, 2.0), (0.5, 1.0, 3.0)))[1].tolist()
     [0.5, 1.0, 3.0, 0.0]
     """
-    numbers = numbers_of(given, (TIME, X, Y, ANGLE), 3, MAX_BYTES)
+    numbers = numbers_of(path, (TIME, X, Y, ANGLE), 3, MAX_BYTES)
     rows = numbers.rows
     if len(rows) != 1:
         numbers.refuse_unless_ascending("the times")

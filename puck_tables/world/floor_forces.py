@@ -6,28 +6,30 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import kernel, patience
-from puck_tables.scene.friction import SPIN, VX, VY, dry_friction
-from puck_tables.scene.ground import OVER_X, OVER_Y
+from puck_tables.scene.floor_map import OVER_X, OVER_Y
+from puck_tables.scene.floor_parts import has_belts
+from puck_tables.scene.friction import SPIN, VX, VY, friction_force
 from puck_tables.scene.over_time import rows_passed
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.scene.stretches import has_belts
-from puck_tables.world.footing import dry_now
-from puck_tables.world.game import Game
+from puck_tables.world.engine_state import Engine
+from puck_tables.world.floor_under import friction_now
 from puck_tables.world.layout import RADIUS, REGION
 from puck_tables.world.prepare import prepared
 
 
 @kernel
-def _forces(game: Game, states: FloatArray, out: FloatArray) -> None:
+def _forces(engine: Engine, states: FloatArray, out: FloatArray) -> None:
     """Force and torque on the puck into out (n, 3) at states (n, 6) over the floor."""
     patience(states.shape[0])
-    radius = game.discs[0, RADIUS]
-    passed = rows_passed(game.tides, game.spans[0, 0], game.spans[0, 1], 0.0)
+    radius = engine.discs[0, RADIUS]
+    passed = rows_passed(engine.forcing, engine.spans[0, 0], engine.spans[0, 1], 0.0)
     for n in range(states.shape[0]):
         patience(1)
         y = states[n]
-        dry = dry_now(game.regions, game.discs, game.tides, game.spans, 0, passed, 0.0, y)
-        fx, fy, torque, _ = dry_friction(dry, radius, y[VX], y[VY], y[SPIN])
+        friction = friction_now(
+            engine.regions, engine.discs, engine.forcing, engine.spans, 0, passed, 0.0, y
+        )
+        fx, fy, torque, _ = friction_force(friction, radius, y[VX], y[VY], y[SPIN])
         out[n, 0], out[n, 1], out[n, 2] = fx, fy, torque
 
 
@@ -61,10 +63,10 @@ def friction_at(scene: SceneSpec, states: FloatArray) -> FloatArray:
     >>> force.round(9).tolist()                              # (0.78 - 0.67) g/pi along the border
     [[0.0, 0.350140875, -4.833333333]]
     """
-    game = prepared(scene).game
-    game.discs[0, REGION] = int(np.argmax(game.regions.astride))
+    engine = prepared(scene).engine
+    engine.discs[0, REGION] = int(np.argmax(engine.regions.astride))
     if has_belts(scene.floor):
-        game.regions.ground[[OVER_X, OVER_Y]] = 0.0
+        engine.regions.floor_map[[OVER_X, OVER_Y]] = 0.0
     out = np.zeros((len(states), 3))
-    _forces(game, states, out)
+    _forces(engine, states, out)
     return out

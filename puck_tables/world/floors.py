@@ -1,7 +1,7 @@
 """The dry friction of the floor under every puck, as the compiled engine reads it.
 
 Rows are all pucks at one place of the floor after the other, see
-:mod:`puck_tables.world.footing`.
+:mod:`puck_tables.world.floor_under`.
 """
 
 from __future__ import annotations
@@ -17,18 +17,18 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.scene.by_speed import NO_LAW, law_range, law_table, load_under, moments_of
+from puck_tables.scene.floor_map import NO_GROUND
+from puck_tables.scene.floor_parts import belts_of
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
-from puck_tables.scene.ground import NO_GROUND
 from puck_tables.scene.ingredients import BySpeed, Regions, Surface, floor_velocity
+from puck_tables.scene.map_of_floor import Moments, floor_map_of, shape_under
 from puck_tables.scene.over_time import largest_factors
 from puck_tables.scene.pucks_and_posts import ScenePuck
-from puck_tables.scene.regions import axes_of, of_one_shape, plain_cut, section_of
+from puck_tables.scene.regions import axes_of, load_limit, of_one_shape, section_of
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.scene.stretches import belts_of
-from puck_tables.scene.zones import Moments, ground_of, shape_under
 from puck_tables.world.agreement import frictions_under, has_closed_forms, is_integrated
-from puck_tables.world.footing import floor_of
-from puck_tables.world.game import Game
+from puck_tables.world.engine_state import Engine
+from puck_tables.world.floor_under import floor_of
 
 INTEGRATED, NOT_HELD = 1.0, 2.0  # see :mod:`puck_tables.world.layout`
 
@@ -108,9 +108,9 @@ def regions_of(
             shape_under(scene.alone(puck)) is not None and not puck.path for puck in pucks
         ])  # fmt: skip
         by_direction = BySpeed(axes, 0.0, 1.0, 1.0)
-        ground = _grounds(scene, pucks, shaped)
+        floor_map = _grounds(scene, pucks, shaped)
         laws = np.tile([0, len(axes)], (len(pucks), 1))
-        return Regions(normals * strongest, delta, none, by_direction, shaped, ground, laws)
+        return Regions(normals * strongest, delta, none, by_direction, shaped, floor_map, laws)
     there = [[(puck, f) for f in _strongest_under(scene, puck, 0.0)] for puck in pucks]
     places = [one for rows in zip(*there, strict=True) for one in rows]
     summed = np.array([_is_summed(scene, puck) for puck, _ in places])
@@ -120,23 +120,23 @@ def regions_of(
     cuts = none[: len(places)]
     if all(sums or has_closed_forms(*one) for one, sums in zip(places, summed, strict=True)):
         if floors[:, 2].any():  # those that are integrated ask for friction often
-            cut = cache(partial(plain_cut, scene.tol))
+            cut = cache(partial(load_limit, scene.tol))
             cuts = np.stack([cut(height) for height in delta[: len(places)].tolist()])
     else:
         cuts = of_one_shape([
-            plain_cut(scene.tol, 0.0) if _is_summed(scene, puck) else
+            load_limit(scene.tol, 0.0) if _is_summed(scene, puck) else
             section_of(puck, 2.0 * friction * puck.height / puck.radius, scene.tol)
             for puck, friction in places
         ])  # fmt: skip
-    ground, several = NO_GROUND, has_several(scene)
+    floor_map, several = NO_GROUND, has_several(scene)
     if several:
         most = loads.reshape(-1, len(pucks)).max(axis=0)
         loads, cuts = np.concatenate([loads, most]), np.concatenate([cuts, cuts[: len(pucks)]])
     if several or summed.any():
-        ground = _grounds(scene, pucks, np.ones(len(pucks), np.bool_))
+        floor_map = _grounds(scene, pucks, np.ones(len(pucks), np.bool_))
     astride = np.concatenate([summed, np.ones(count - len(places), np.bool_)])
     laws = np.zeros((len(pucks), 2), np.int64)
-    return Regions(loads, delta, cuts, NO_LAW, astride, ground, laws)
+    return Regions(loads, delta, cuts, NO_LAW, astride, floor_map, laws)
 
 
 def _is_shaped(puck: ScenePuck) -> bool:
@@ -156,7 +156,7 @@ def _grounds(
 ) -> FloatArray:  # fmt: skip
     """The frictions under those pucks over whose bases they are summed, all of one length."""
     grounds = [
-        ground_of(scene.alone(puck), normal_on(scene, puck), moments) if sums else NO_GROUND
+        floor_map_of(scene.alone(puck), normal_on(scene, puck), moments) if sums else NO_GROUND
         for puck, sums in zip(pucks, summed, strict=True)
     ]
     size = max(map(len, grounds))  # what they end with is room to work
@@ -165,7 +165,7 @@ def _grounds(
 
 def _by_slip(
     scene: SceneSpec, pucks: list[ScenePuck], normals: FloatArray, delta: FloatArray,
-    cuts: FloatArray, fastest: float,
+    limits: FloatArray, fastest: float,
 ) -> Regions:  # fmt: skip
     """By a friction law over the slip speed: tables under round loads, integrals under others.
 
@@ -189,15 +189,15 @@ def _by_slip(
             puck.shape.refuse_lift(largest, puck.height)
         elif own is not None:
             tables[own].refuse_height(max(factor, 1.0) * 2.0 * puck.height / puck.radius)
-    ground = NO_GROUND
+    floor_map = NO_GROUND
     if summed.any():
-        ground = _grounds(scene, pucks, summed, moments_of(law, top))
+        floor_map = _grounds(scene, pucks, summed, moments_of(law, top))
     ends = np.cumsum([0, *(len(table.compiled) for table in tables.values())])
     spans = dict(zip(tables, pairwise(ends.tolist()), strict=True))
     laws = np.array([(0, 0) if own is None else spans[own] for own in under])
     compiled = [table.compiled for table in tables.values()] or [np.array([1.0, top])]
     by_slip = BySpeed(np.concatenate(compiled), 0.0, 1.0, 1.0)
-    return Regions(normals * largest, delta, cuts, by_slip, summed, ground, laws)
+    return Regions(normals * largest, delta, limits, by_slip, summed, floor_map, laws)
 
 
 def slip_of_rim(radius: float, surface: Surface, state: list[float]) -> float:
@@ -206,9 +206,9 @@ def slip_of_rim(radius: float, surface: Surface, state: list[float]) -> float:
     return math.hypot(state[VX] - sx, state[VY] - sy) + radius * abs(state[SPIN] - turning)
 
 
-def velocities_under(game: Game, states: FloatArray) -> FloatArray:
+def velocities_under(engine: Engine, states: FloatArray) -> FloatArray:
     """Velocities and spins (n, 3) of the floor that discs in states (n, 6) are on."""
-    belts: Any = floor_of(game.surface, game.discs.T)  # the same for arrays
+    belts: Any = floor_of(engine.surface, engine.discs.T)  # the same for arrays
     places: Any = states[:, X], states[:, Y]
     under = np.empty((len(states), 3))
     under[:, 0], under[:, 1], under[:, 2] = floor_velocity(belts, *places)

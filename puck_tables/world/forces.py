@@ -14,21 +14,27 @@ from puck_tables.scene.friction import (
     X,
     Y,
     at_slip_zero,
-    dry_friction,
+    friction_force,
     size,
 )
 from puck_tables.scene.ingredients import (
     FREE,
     Body,
-    Dry,
+    DryFriction,
     Hold,
-    carried_along,
+    floor_acceleration,
     floor_velocity,
 )
 from puck_tables.scene.over_time import rows_passed
 from puck_tables.scene.rest import constrained_yield, free_yield
 from puck_tables.world.alone import pull_on
-from puck_tables.world.footing import dry_now, floor_of, is_over_belts, move_floor, over_floor
+from puck_tables.world.floor_under import (
+    floor_of,
+    friction_now,
+    is_over_belts,
+    move_floor,
+    over_floor,
+)
 from puck_tables.world.group import (
     ARM,
     DRIVEN,
@@ -37,8 +43,8 @@ from puck_tables.world.group import (
     NY,
     SLIP,
     YIELDS,
-    Desk,
     Group,
+    GroupBuffer,
     IntArray,
 )
 from puck_tables.world.layout import (
@@ -56,7 +62,7 @@ from puck_tables.world.layout import (
     TURNABILITY,
 )
 from puck_tables.world.paths import on_piece, piece_at
-from puck_tables.world.works import (
+from puck_tables.world.step_ledger import (
     BACK_X,
     BACK_Y,
     DRAG_HEAT,
@@ -93,7 +99,7 @@ def rest_on_floor(group: Group, number: int, y: FloatArray) -> None:
 @inlined
 def _move_floor(group: Group, number: int, t: float) -> None:
     """Let the floor under a disc move as it does at a time."""
-    move_floor(group.surface, group.discs, group.tides, group.spans, number, t)
+    move_floor(group.surface, group.discs, group.forcing, group.spans, number, t)
 
 
 @inlined
@@ -104,52 +110,72 @@ def slip_at(group: Group, number: int, y: FloatArray, t: float) -> float:
 
 
 @inlined
-def count_rows(group: Group, members: IntArray, t: float, desk: Desk) -> None:
+def count_rows(group: Group, members: IntArray, t: float, buffer: GroupBuffer) -> None:
     """How many rows over time of the members have passed, and how their floors move."""
     for place in range(members.shape[0]):
         number = members[place]
         first, last = group.spans[number, 0], group.spans[number, 1]
-        desk.passed[place] = rows_passed(group.tides, first, last, t)
+        buffer.passed[place] = rows_passed(group.forcing, first, last, t)
         _move_floor(group, number, t)
 
 
 @inlined
 def place_driven(
-    group: Group, members: IntArray, doings: IntArray, t: float, y: FloatArray, desk: Desk
+    group: Group, members: IntArray, motions: IntArray, t: float, y: FloatArray, buffer: GroupBuffer
 ) -> None:
     """Put the driven members where their films have them at t, and their accelerations."""
-    desk.clock[0] = t
+    buffer.clock[0] = t
     for place in range(members.shape[0]):
         _move_floor(group, members[place], t)
-        if doings[place] == DRIVEN:
+        if motions[place] == DRIVEN:
             first, last = group.reels[members[place], 0], group.reels[members[place], 1]
-            on_piece(group.films[piece_at(group.films, first, last, t)], t, desk.film)
+            on_piece(group.films[piece_at(group.films, first, last, t)], t, buffer.film)
             for i in range(6):
-                y[place, i] = desk.film[i]
+                y[place, i] = buffer.film[i]
             for i in range(3):
-                desk.own[place, i] = desk.film[6 + i]
+                buffer.own[place, i] = buffer.film[6 + i]
 
 
 @inlined
-def _pull_on(group: Group, members: IntArray, place: int, desk: Desk) -> tuple[float, float, float]:
+def _pull_on(
+    group: Group, members: IntArray, place: int, buffer: GroupBuffer
+) -> tuple[float, float, float]:
     """Accelerations of a member by slope and given forces, now."""
     return pull_on(
-        group.discs, group.tides, group.spans, members[place], desk.passed[place], desk.clock[0]
+        group.discs,
+        group.forcing,
+        group.spans,
+        members[place],
+        buffer.passed[place],
+        buffer.clock[0],
     )
 
 
 @inlined
-def _dry_under(group: Group, members: IntArray, place: int, y: FloatArray, desk: Desk) -> Dry:
+def _friction_under(
+    group: Group, members: IntArray, place: int, y: FloatArray, buffer: GroupBuffer
+) -> DryFriction:
     """The dry friction on a member, now."""
-    return dry_now(
-        group.regions, group.discs, group.tides, group.spans, members[place], desk.passed[place],
-        desk.clock[0], y[place],
-    )  # fmt: skip
+    return friction_now(
+        group.regions,
+        group.discs,
+        group.forcing,
+        group.spans,
+        members[place],
+        buffer.passed[place],
+        buffer.clock[0],
+        y[place],
+    )
 
 
 @inner
 def act(
-    group: Group, members: IntArray, doings: IntArray, y: FloatArray, power: FloatArray, desk: Desk
+    group: Group,
+    members: IntArray,
+    motions: IntArray,
+    y: FloatArray,
+    power: FloatArray,
+    buffer: GroupBuffer,
 ) -> None:
     """Accelerations of the members as if there were no contacts, and the power of what acts.
 
@@ -159,40 +185,40 @@ def act(
         power[i] = 0.0
     for place in range(members.shape[0]):
         number = members[place]
-        disc, own, inverse = group.discs[number], desk.own[place], desk.inverse[place]
-        doing, radius = doings[place], disc[RADIUS]
+        disc, own, inverse = group.discs[number], buffer.own[place], buffer.inverse[place]
+        doing, radius = motions[place], disc[RADIUS]
         inverse[0] = inverse[1] = 0.0
         vx, vy, spin = y[place, VX], y[place, VY], y[place, SPIN]
         floor = floor_of(group.surface, disc)
-        cx, cy = carried_along(floor, y[place, X], y[place, Y], vx, vy)
-        carried = desk.carried[place]
+        cx, cy = floor_acceleration(floor, y[place, X], y[place, Y], vx, vy)
+        carried = buffer.carried[place]
         carried[0], carried[1], carried[2] = cx, cy, floor.turn
         if doing == DRIVEN:
             continue
-        px, py, pull = _pull_on(group, members, place, desk)
+        px, py, pull = _pull_on(group, members, place, buffer)
         light, turns = disc[LIGHTNESS], disc[TURNABILITY]
         power[PULL_WORK] += (px * vx + py * vy) / light + pull * spin / turns
         rubbed = is_over_belts(group.regions, group.discs, number)
         if doing == HELD:
             own[0], own[1], own[2] = cx, cy, floor.turn
             if rubbed:
-                dry = _dry_under(group, members, place, y, desk)
-                heat = heat_at_rest(dry.by_speed.table, -px / light, -py / light)
+                friction = _friction_under(group, members, place, y, buffer)
+                heat = heat_at_rest(friction.by_speed.table, -px / light, -py / light)
                 power[FLOOR_HEAT] += heat
                 power[SUPPORT_WORK] += heat
             continue
         inverse[0], inverse[1] = light, turns
         sx, sy, turning = floor_velocity(floor, y[place, X], y[place, Y])
         ux, uy, w = vx - sx, vy - sy, spin - turning
-        dry = _dry_under(group, members, place, y, desk)
+        friction = _friction_under(group, members, place, y, buffer)
         if doing == YIELDS:
-            way, small = desk.ways[place], _BEGUN if rubbed else 1.0  # other belts slip by more
+            way, small = buffer.ways[place], _BEGUN if rubbed else 1.0  # other belts slip by more
             nx, ny, nw = small * way[0], small * way[1], small * way[2]
-            fx, fy, torque, heat = dry_friction(at_slip_zero(dry), radius, nx, ny, nw)
+            fx, fy, torque, heat = friction_force(at_slip_zero(friction), radius, nx, ny, nw)
             others = heat + fx * nx + fy * ny + torque * nw if rubbed else 0.0
             heat = others - (fx * ux + fy * uy + torque * w)
         else:
-            fx, fy, torque, heat = dry_friction(dry, radius, ux, uy, w)
+            fx, fy, torque, heat = friction_force(friction, radius, ux, uy, w)
         ax, ay, turn, warmth, turning_warmth = dragged(disc[DRAG:], ux, uy, w)
         ax, ay, turn = ax + fx * light, ay + fy * light, turn + torque * turns
         own[0], own[1], own[2] = px + ax, py + ay, pull + turn
@@ -204,71 +230,71 @@ def act(
 
 
 @inlined
-def force_of_contacts(desk: Desk, count: int, place: int) -> tuple[float, float, float]:
+def force_of_contacts(buffer: GroupBuffer, count: int, place: int) -> tuple[float, float, float]:
     """Force and torque of all contacts on a member."""
     fx, fy, torque = 0.0, 0.0, 0.0
     for c in range(count):
-        push, rim = desk.pushes[c, 0], desk.pushes[c, 1]
-        nx, ny = desk.sights[c, NX], desk.sights[c, NY]
+        push, rim = buffer.pushes[c, 0], buffer.pushes[c, 1]
+        nx, ny = buffer.sights[c, NX], buffer.sights[c, NY]
         for side in range(2):
-            if desk.pairs[c, side] == place:
+            if buffer.pairs[c, side] == place:
                 sign = 2.0 * side - 1.0
                 fx += sign * (push * nx - rim * ny)
                 fy += sign * (push * ny + rim * nx)
-                torque -= desk.sights[c, ARM + side] * rim
+                torque -= buffer.sights[c, ARM + side] * rim
     return fx, fy, torque
 
 
 @inlined
 def power_of_contacts(
-    group: Group, members: IntArray, doings: IntArray, count: int, y: FloatArray,
-    power: FloatArray, desk: Desk,
+    group: Group, members: IntArray, motions: IntArray, count: int, y: FloatArray,
+    power: FloatArray, buffer: GroupBuffer,
 ) -> None:  # fmt: skip
     """Heat of the rims, and work of what drives, leads and carries, into ``power``."""
     for c in range(count):
-        power[RIM_HEAT] += desk.pushes[c, 1] * desk.sights[c, SLIP]
-    for place in range(doings.shape[0]):
+        power[RIM_HEAT] += buffer.pushes[c, 1] * buffer.sights[c, SLIP]
+    for place in range(motions.shape[0]):
         vx, vy, spin = y[place, VX], y[place, VY], y[place, SPIN]
-        if doings[place] == DRIVEN:
-            fx, fy, torque = force_of_contacts(desk, count, place)
+        if motions[place] == DRIVEN:
+            fx, fy, torque = force_of_contacts(buffer, count, place)
             power[DRIVE_WORK] -= fx * vx + fy * vy + torque * spin
             power[BACK_X] += fx
             power[BACK_Y] += fy
-        elif doings[place] == HELD and size(vx, vy, spin) > 0.0:
-            fx, fy, torque = _asked_of_floor(group, members, place, count, desk)
+        elif motions[place] == HELD and size(vx, vy, spin) > 0.0:
+            fx, fy, torque = _wanted_of_floor(group, members, place, count, buffer)
             power[SUPPORT_WORK] -= fx * vx + fy * vy + torque * spin
-    for tie in range(desk.number[0]):
-        place, row = desk.tied[tie], desk.ties[tie]
-        if doings[place] != HELD:
+    for tie in range(buffer.number[0]):
+        place, row = buffer.tied[tie], buffer.ties[tie]
+        if motions[place] != HELD:
             way = row[0] * y[place, VX] + row[1] * y[place, VY] + row[2] * y[place, SPIN]
-            power[SUPPORT_WORK] -= desk.tautness[tie] * way
+            power[SUPPORT_WORK] -= buffer.tautness[tie] * way
 
 
 @inlined
-def _asked_of_floor(
-    group: Group, members: IntArray, place: int, count: int, desk: Desk
+def _wanted_of_floor(
+    group: Group, members: IntArray, place: int, count: int, buffer: GroupBuffer
 ) -> tuple[float, float, float]:
     """Force and torque that a member at rest exerts on the floor."""
     disc = group.discs[members[place]]
-    fx, fy, torque = force_of_contacts(desk, count, place)
-    px, py, pull = _pull_on(group, members, place, desk)
+    fx, fy, torque = force_of_contacts(buffer, count, place)
+    px, py, pull = _pull_on(group, members, place, buffer)
     light, turns = disc[LIGHTNESS], disc[TURNABILITY]
-    ax, ay, turn = desk.carried[place, 0], desk.carried[place, 1], desk.carried[place, 2]
+    ax, ay, turn = buffer.carried[place, 0], buffer.carried[place, 1], buffer.carried[place, 2]
     return fx + (px - ax) / light, fy + (py - ay) / light, torque + (pull - turn) / turns
 
 
 @inlined
 def excess_on(
-    group: Group, members: IntArray, place: int, count: int, y: FloatArray, desk: Desk
+    group: Group, members: IntArray, place: int, count: int, y: FloatArray, buffer: GroupBuffer
 ) -> tuple[float, float, float, float]:
     """By how much what acts on a disc at rest exceeds its friction, over f N, and the slip then."""
     disc = group.discs[members[place]]
-    dry = at_slip_zero(_dry_under(group, members, place, y, desk))
+    friction = at_slip_zero(_friction_under(group, members, place, y, buffer))
     load = load_on(group, members[place])
-    fx, fy, torque = _asked_of_floor(group, members, place, count, desk)
+    fx, fy, torque = _wanted_of_floor(group, members, place, count, buffer)
     kind = int(disc[HOLD])
     if kind == FREE:
-        excess, ux, uy, w = free_yield(dry, disc[RADIUS], fx, fy, torque, False)
+        excess, ux, uy, w = free_yield(friction, disc[RADIUS], fx, fy, torque, False)
         return excess / load, ux, uy, w
     hold = Hold(
         kind, disc[HOLD_X], disc[HOLD_Y], disc[HOLD_REACH], disc[HOLD_ANGLE], disc[HOLD_VX],
@@ -276,17 +302,17 @@ def excess_on(
     )  # fmt: skip
     body = Body(1.0 / disc[LIGHTNESS], 1.0 / disc[TURNABILITY], disc[RADIUS])
     excess, ux, uy, w = constrained_yield(
-        dry, hold, body, y[place, THETA], 0.0, 0.0, 0.0, fx, fy, torque, True
+        friction, hold, body, y[place, THETA], 0.0, 0.0, 0.0, fx, fy, torque, True
     )
     return excess / load, ux, uy, w
 
 
 @inlined
-def gain_of(group: Group, number: int, place: int, desk: Desk) -> float:
+def gain_of(group: Group, number: int, place: int, buffer: GroupBuffer) -> float:
     """How fast a disc that yields gains speed along its way."""
-    way, rate, radius = desk.ways[place], desk.rates[place], group.discs[number, RADIUS]
-    ax, ay = rate[0] - desk.carried[place, 0], rate[1] - desk.carried[place, 1]
-    turn = rate[2] - desk.carried[place, 2]
+    way, rate, radius = buffer.ways[place], buffer.rates[place], group.discs[number, RADIUS]
+    ax, ay = rate[0] - buffer.carried[place, 0], rate[1] - buffer.carried[place, 1]
+    turn = rate[2] - buffer.carried[place, 2]
     return way[0] * ax + way[1] * ay + radius * radius * way[2] * turn
 
 

@@ -17,7 +17,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 from puck_tables.motion.tableaus import DORMAND_PRINCE
 from puck_tables.scene.ingredients import Regions, Surface
-from puck_tables.world.works import LEDGER
+from puck_tables.world.step_ledger import LEDGER
 
 IntArray = npt.NDArray[np.int64]
 
@@ -54,8 +54,8 @@ class Group(NamedTuple):
     ``discs`` (n, 25), ``obstacles`` (k, 10): :mod:`puck_tables.world.layout`; ``regions``: the dry
     friction of every disc under its REGION; ``surface``: how the floor moves; ``rims``: their laws;
     ``films`` (f, 20) and ``reels`` (n, 2): rows of the motions that are given, and of each disc the
-    first and last + 1; ``tides`` (g, 4) and ``spans`` (n, 2): rows t, Fx, Fy, torque of forces over
-    time (s, N, N m), and the same.
+    first and last + 1; ``forcing`` (g, 4) and ``spans`` (n, 2): rows t, Fx, Fy, torque of forces
+    over time (s, N, N m), and the same.
     """
 
     discs: FloatArray
@@ -65,7 +65,7 @@ class Group(NamedTuple):
     rims: FloatArray
     films: FloatArray
     reels: IntArray
-    tides: FloatArray
+    forcing: FloatArray
     spans: IntArray
 
 
@@ -80,7 +80,7 @@ class Scales(NamedTuple):
     tol: float
 
 
-class Desk(NamedTuple):
+class GroupBuffer(NamedTuple):
     """Arrays to work in for m members and c contacts, of which h members are led.
 
     ``pairs``: the contacts by places of members; ``states``: at the start and the end of a step and
@@ -88,12 +88,12 @@ class Desk(NamedTuple):
     ``own``, ``rates`` (m, 3): accelerations without and with contacts; ``inverse`` (m, 2): 1/m, 1/I
     of those that can move; ``sights``, ``midway`` (c, 11): at the end and in the middle of a step;
     ``watched`` (2, c, 4): see :func:`puck_tables.world.moments.watch`; ``pushes`` (c, 2): λ, τ;
-    ``ways`` (m, 3), ``paces`` (m, 2): where what yields slips to, and how fast that turns;
+    ``ways`` (m, 3), ``turn_rates`` (m, 2): where what yields slips to, and how fast that turns;
     ``ties`` (2h, 3), ``tied``, ``tautness`` (2h,): what leads members, whom, and how it pulls,
     ``strays`` (2h, 3): see :func:`puck_tables.world.holds.forbid`, ``number`` (1,): how many there
     are; ``rows``, ``columns`` (k, 6), ``owners`` (k, 2), ``order`` (k,), k = 2c + 2h: the
     constraints, and the members concerned; ``matrix``, ``factors`` (k, k), ``vectors`` (4, k);
-    ``modes`` (2, c), ``doings`` (m,): trials; ``film`` (9,); ``carried`` (m, 3): what the floor
+    ``modes`` (2, c), ``motions`` (m,): trials; ``film`` (9,); ``carried`` (m, 3): what the floor
     asks of each acceleration; ``passed`` (m,): rows of forces over time; ``clock`` (1,): now.
     """
 
@@ -109,7 +109,7 @@ class Desk(NamedTuple):
     watched: FloatArray
     pushes: FloatArray
     ways: FloatArray
-    paces: FloatArray
+    turn_rates: FloatArray
     ties: FloatArray
     tied: IntArray
     tautness: FloatArray
@@ -123,36 +123,36 @@ class Desk(NamedTuple):
     factors: FloatArray
     vectors: FloatArray
     modes: IntArray
-    doings: IntArray
+    motions: IntArray
     film: FloatArray
     carried: FloatArray
     passed: IntArray
     clock: FloatArray
 
 
-def desk_for(members: int, contacts: int, led: int = 0) -> Desk:
-    """A desk for groups of up to so many members and contacts, of whom so many are led.
+def buffer_for(members: int, contacts: int, led: int = 0) -> GroupBuffer:
+    """A buffer for groups of up to so many members and contacts, of whom so many are led.
 
     Examples
     --------
-    >>> desk_for(3, 2).matrix.shape, desk_for(3, 2, 1).matrix.shape
+    >>> buffer_for(3, 2).matrix.shape, buffer_for(3, 2, 1).matrix.shape
     ((4, 4), (6, 6))
     """
     m, c, h, k = max(members, 1), max(contacts, 1), max(2 * led, 1), max(2 * (contacts + led), 1)
     stages = len(DORMAND_PRINCE.c)
-    return Desk(
+    return GroupBuffer(
         pairs=np.zeros((c, 2), np.int64), states=np.zeros((3, m, 6)),
         stages=np.zeros((stages + 1, m, 6)), powers=np.zeros((stages + 3, LEDGER)),
         own=np.zeros((m, 3)), rates=np.zeros((m, 3)), inverse=np.zeros((m, 2)),
         sights=np.zeros((c, SIGHT)), midway=np.zeros((c, SIGHT)),
         watched=np.zeros((2, c, WATCHES)), pushes=np.zeros((c, 2)),
-        ways=np.zeros((m, 3)), paces=np.zeros((m, 2)), ties=np.zeros((h, 3)),
+        ways=np.zeros((m, 3)), turn_rates=np.zeros((m, 2)), ties=np.zeros((h, 3)),
         tied=np.zeros(h, np.int64), tautness=np.zeros(h), strays=np.zeros((h, 3)),
         number=np.zeros(1, np.int64),
         rows=np.zeros((k, 6)), columns=np.zeros((k, 6)), owners=np.zeros((k, 2), np.int64),
         order=np.zeros(k, np.int64), matrix=np.zeros((k, k)), factors=np.zeros((k, k)),
         vectors=np.zeros((4, k)), modes=np.zeros((2, c), np.int64),
-        doings=np.zeros(m, np.int64), film=np.zeros(9), carried=np.zeros((m, 3)),
+        motions=np.zeros(m, np.int64), film=np.zeros(9), carried=np.zeros((m, 3)),
         passed=np.zeros(m, np.int64), clock=np.zeros(1),
     )  # fmt: skip
 
@@ -164,12 +164,12 @@ def small_slip(scales: Scales) -> float:
 
 
 @inlined
-def find_places(members: IntArray, contacts: IntArray, desk: Desk) -> None:
+def find_places(members: IntArray, contacts: IntArray, buffer: GroupBuffer) -> None:
     """The contacts, given by numbers of discs, by places of members."""
     for c in range(contacts.shape[0]):
         for side in range(2):
             number = contacts[c, side]
-            desk.pairs[c, side] = number
+            buffer.pairs[c, side] = number
             for place in range(members.shape[0]):
                 if members[place] == number:
-                    desk.pairs[c, side] = place
+                    buffer.pairs[c, side] = place

@@ -19,7 +19,7 @@ from puck_tables.scene.ingredients import (
     PIVOT,
     RAIL,
     Surface,
-    carried_along,
+    floor_acceleration,
     floor_velocity,
 )
 from puck_tables.world.layout import (
@@ -106,7 +106,7 @@ def led(
 def _swing(surface: Surface, state: FloatArray, ex: float, ey: float) -> float:
     """The acceleration across a blade, by which its side slip over the floor stays."""
     sx, sy, _ = floor_velocity(surface, state[X], state[Y])
-    cx, cy = carried_along(surface, state[X], state[Y], state[VX], state[VY])
+    cx, cy = floor_acceleration(surface, state[X], state[Y], state[VX], state[VY])
     return state[SPIN] * (ex * (state[VX] - sx) + ey * (state[VY] - sy)) + ex * cy - ey * cx
 
 

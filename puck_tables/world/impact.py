@@ -27,8 +27,9 @@ from puck_tables.kernels.compile import inlined, inner
 from puck_tables.motion.impact_law import along_normal, impulses
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.world.alone import acceleration
-from puck_tables.world.footing import over_floor
-from puck_tables.world.game import FINE, Game, Whole
+from puck_tables.world.contact_search import HARDLY, normal_to
+from puck_tables.world.engine_state import FINE, Engine, Whole
+from puck_tables.world.floor_under import over_floor
 from puck_tables.world.holds import response
 from puck_tables.world.layout import (
     ARC,
@@ -41,7 +42,6 @@ from puck_tables.world.layout import (
     WALL,
     C,
 )
-from puck_tables.world.meeting import HARDLY, normal_to
 from puck_tables.world.rims import along_of_pair, restitutions_of_pair, smaller_at
 
 # columns of a contact in work: normal, slownesses 1/m_n and 1/m_t, law, whether it acts in this
@@ -70,30 +70,30 @@ _SOLVED = 1e-15  # of the largest impulse: what changes by less is rounding
 
 @inlined
 def approach(
-    game: Game, i: int, j: int, nx: float, ny: float, states: FloatArray
+    engine: Engine, i: int, j: int, nx: float, ny: float, states: FloatArray
 ) -> tuple[float, float]:
     """u_n and u_t."""
     vx, vy = states[i, VX], states[i, VY]
-    rim = game.discs[i, RADIUS] * states[i, SPIN]
+    rim = engine.discs[i, RADIUS] * states[i, SPIN]
     if j >= 0:
         vx -= states[j, VX]
         vy -= states[j, VY]
-        rim += game.discs[j, RADIUS] * states[j, SPIN]
+        rim += engine.discs[j, RADIUS] * states[j, SPIN]
     return along_normal(vx, vy, rim, nx, ny)
 
 
 @inlined
-def was_hit(row: FloatArray) -> bool:
+def got_impulse(row: FloatArray) -> bool:
     """Whether a contact has had an impulse; rims without bound may have one along them alone."""
     return row[SUM_N] > 0.0 or row[SUM_T] != 0.0
 
 
 @inlined
-def _push(game: Game, i: int, j: int, row: FloatArray, states: FloatArray) -> None:
+def _push(engine: Engine, i: int, j: int, row: FloatArray, states: FloatArray) -> None:
     """What impulses along n and t do to the velocities."""
     pn, pt = row[PN], row[PT]
     px, py = pn * row[NX] - pt * row[NY], pn * row[NY] + pt * row[NX]
-    discs = game.discs
+    discs = engine.discs
     dx, dy, turn = response(discs[i], states[i], px, py, discs[i, RADIUS] * pt)
     states[i, VX] -= dx
     states[i, VY] -= dy
@@ -120,75 +120,77 @@ def _slownesses(
 
 
 @inlined
-def prepare_contact(game: Game, i: int, j: int, states: FloatArray, row: FloatArray) -> None:
+def prepare_contact(engine: Engine, i: int, j: int, states: FloatArray, row: FloatArray) -> None:
     """Normal, slownesses and law of a contact that has had no impulse yet."""
-    discs = game.discs
+    discs = engine.discs
     if j >= 0:
         dx, dy = states[j, X] - states[i, X], states[j, Y] - states[i, Y]
         size = math.hypot(dx, dy)
         row[NX], row[NY] = dx / size, dy / size
     else:
         _, row[NX], row[NY], _ = normal_to(
-            game.obstacles[-1 - j], discs[i, RADIUS], states[i, X], states[i, Y], 0.0
+            engine.obstacles[-1 - j], discs[i, RADIUS], states[i, X], states[i, Y], 0.0
         )
     soft, slick, cross = _slownesses(discs[i], states[i], row[NX], row[NY])
     if j >= 0:
         more, slicker, twist = _slownesses(discs[j], states[j], -row[NX], -row[NY])
         soft, slick, cross = soft + more, slick + slicker, cross + twist
     row[SOFT], row[SLICK], row[CROSS] = soft, slick, cross
-    row[BETA], row[MU] = along_of_pair(game.rims, discs, game.obstacles, i, j)
-    row[ONE], row[OTHER] = restitutions_of_pair(game.rims, discs, game.obstacles, i, j)
+    row[BETA], row[MU] = along_of_pair(engine.rims, discs, engine.obstacles, i, j)
+    row[ONE], row[OTHER] = restitutions_of_pair(engine.rims, discs, engine.obstacles, i, j)
     row[E] = min(row[ONE], row[OTHER])
     row[ACTS] = row[PN] = row[PT] = row[SUM_N] = row[SUM_T] = 0.0
     row[FIRST_N] = row[FIRST_T] = row[LOSS] = 0.0
 
 
 @inlined
-def opening(game: Game, i: int, j: int, t: float, row: FloatArray, states: FloatArray) -> float:
+def opening(engine: Engine, i: int, j: int, t: float, row: FloatArray, states: FloatArray) -> float:
     """The second derivative of the gap of a contact if its discs flew on alone."""
     nx, ny = row[NX], row[NY]
     wx, wy = states[i, VX], states[i, VY]
-    size = game.discs[i, RADIUS]
-    ax, ay = acceleration(game, i, t, states[i])
+    size = engine.discs[i, RADIUS]
+    ax, ay = acceleration(engine, i, t, states[i])
     pull = ax * nx + ay * ny
     if j >= 0:
         wx -= states[j, VX]
         wy -= states[j, VY]
-        size += game.discs[j, RADIUS]
-        ax, ay = acceleration(game, j, t, states[j])
+        size += engine.discs[j, RADIUS]
+        ax, ay = acceleration(engine, j, t, states[j])
         pull -= ax * nx + ay * ny
     else:
-        obstacle = game.obstacles[-1 - j]
+        obstacle = engine.obstacles[-1 - j]
         size = math.inf if obstacle[KIND] in (WALL, SIDE) else size + obstacle[C]
         if obstacle[KIND] == ARC:
-            size = game.discs[i, RADIUS] - obstacle[C]  # it bends the other way
+            size = engine.discs[i, RADIUS] - obstacle[C]  # it bends the other way
     across = wy * nx - wx * ny
     return across * across / size - pull
 
 
 @inlined
-def _dies_out(game: Game, i: int, j: int, t: float, row: FloatArray, states: FloatArray) -> bool:
+def _dies_out(
+    engine: Engine, i: int, j: int, t: float, row: FloatArray, states: FloatArray
+) -> bool:
     """Whether both press on each other so that this rebound and those after it are too low."""
     if row[E] >= 1.0:
         return False
-    un, _ = approach(game, i, j, row[NX], row[NY], states)
-    closing = -opening(game, i, j, t, row, states)
-    way = _slip2(game, i, states)
+    un, _ = approach(engine, i, j, row[NX], row[NY], states)
+    closing = -opening(engine, i, j, t, row, states)
+    way = _slip2(engine, i, states)
     if j >= 0:
-        way = max(way, _slip2(game, j, states))
+        way = max(way, _slip2(engine, j, states))
     rounded = LOW * (abs(states[i, X]) + abs(states[i, Y]))
-    least = LEAST * game.pace[FINE] * way / game.pace[1]
-    height = max(rounded, FLAT * game.discs[i, RADIUS], least)
+    least = LEAST * engine.scale[FINE] * way / engine.scale[1]
+    height = max(rounded, FLAT * engine.discs[i, RADIUS], least)
     if not (closing > 0.0 and un <= 0.0 and un * un <= 2.0 * closing * height):
         return False
     if j < 0:
-        game.pace[4] += _lasting(game, i, j, t, row, states, -un, closing)
+        engine.scale[4] += _lasting(engine, i, j, t, row, states, -un, closing)
     return True
 
 
 @inlined
 def _lasting(
-    game: Game, i: int, j: int, t: float, row: FloatArray, states: FloatArray, un: float,
+    engine: Engine, i: int, j: int, t: float, row: FloatArray, states: FloatArray, un: float,
     rising: float,
 ) -> float:  # fmt: skip
     """How long rebounds from an obstacle would last, of which the first begins at un.
@@ -200,24 +202,24 @@ def _lasting(
         states[i, VX] += turn * row[NX]
         states[i, VY] += turn * row[NY]
         if side == 0:
-            falling = -opening(game, i, j, t, row, states)
-    if falling <= 0.0 or rising <= PRESSED * game.pace[1]:
+            falling = -opening(engine, i, j, t, row, states)
+    if falling <= 0.0 or rising <= PRESSED * engine.scale[1]:
         return 0.0
     share = math.sqrt(falling / rising)
     return un / rising * (1.0 + 1.0 / share) / (1.0 - min(row[E] * share, LASTING))
 
 
 @inlined
-def _slip2(game: Game, i: int, states: FloatArray) -> float:
+def _slip2(engine: Engine, i: int, states: FloatArray) -> float:
     """Q² of a disc over the floor."""
-    vx, vy, spin = over_floor(game.surface, game.discs[i], states[i])
-    rim = game.discs[i, RADIUS] * spin
+    vx, vy, spin = over_floor(engine.surface, engine.discs[i], states[i])
+    rim = engine.discs[i, RADIUS] * spin
     return vx**2 + vy**2 + rim * rim
 
 
 @inlined
 def _recall(
-    game: Game, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
+    engine: Engine, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
     states: FloatArray,
 ) -> None:  # fmt: skip
     """The velocities before this round."""
@@ -232,36 +234,36 @@ def _recall(
 
 @inlined
 def _push_all(
-    game: Game, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
+    engine: Engine, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
     states: FloatArray,
 ) -> None:  # fmt: skip
     """The velocities after the impulses of this round."""
-    _recall(game, contacts, count, rows, before, states)
+    _recall(engine, contacts, count, rows, before, states)
     for n in range(count):
         if rows[n, ACTS] > 0.0:
-            _push(game, contacts[n, 0], contacts[n, 1], rows[n], states)
+            _push(engine, contacts[n, 0], contacts[n, 1], rows[n], states)
 
 
 @inlined
-def _alone(game: Game, i: int, j: int, row: FloatArray, states: FloatArray) -> None:
+def _alone(engine: Engine, i: int, j: int, row: FloatArray, states: FloatArray) -> None:
     """The law for one contact."""
-    un, ut = approach(game, i, j, row[NX], row[NY], states)
+    un, ut = approach(engine, i, j, row[NX], row[NY], states)
     row[PN], row[PT] = impulses(un, ut, row[SOFT], row[SLICK], row[E], row[BETA], row[MU])
-    _push(game, i, j, row, states)
+    _push(engine, i, j, row, states)
 
 
 @inlined
-def _speeds(game: Game, i: int, states: FloatArray) -> float:
+def _speeds(engine: Engine, i: int, states: FloatArray) -> float:
     """|v| + R |ω| of a disc; 0 of an obstacle."""
     if i < 0:
         return 0.0
-    rim = game.discs[i, RADIUS] * abs(states[i, SPIN])
+    rim = engine.discs[i, RADIUS] * abs(states[i, SPIN])
     return math.hypot(states[i, VX], states[i, VY]) + rim
 
 
 @inlined
 def _shared_out(
-    game: Game, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
+    engine: Engine, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
     states: FloatArray, weight: float,
 ) -> bool:  # fmt: skip
     """The impulses for e = β = 0 of contacts that share discs; whether they were found.
@@ -272,7 +274,7 @@ def _shared_out(
     for n in range(count):
         rows[n, PN] = rows[n, PT] = 0.0
         if rows[n, ACTS] > 0.0:
-            fast = _speeds(game, contacts[n, 0], states) + _speeds(game, contacts[n, 1], states)
+            fast = _speeds(engine, contacts[n, 0], states) + _speeds(engine, contacts[n, 1], states)
             rounding = max(rounding, _SOLVED * fast / rows[n, SOFT])
     for _ in range(_MOST_ITERATIONS):
         change, largest = 0.0, 0.0
@@ -280,7 +282,7 @@ def _shared_out(
             row = rows[n]
             if row[ACTS] == 0.0:
                 continue
-            un, ut = approach(game, contacts[n, 0], contacts[n, 1], row[NX], row[NY], states)
+            un, ut = approach(engine, contacts[n, 0], contacts[n, 1], row[NX], row[NY], states)
             old_n, old_t = row[PN], row[PT]
             row[PN] = max(old_n + weight * un / row[SOFT], 0.0)
             if row[BETA] > -1.0:
@@ -290,7 +292,7 @@ def _shared_out(
                     row[PT] = min(max(row[PT], -most), most)
             change = max(change, abs(row[PN] - old_n), abs(row[PT] - old_t))
             largest = max(largest, row[PN], abs(row[PT]))
-        _push_all(game, contacts, count, rows, before, states)
+        _push_all(engine, contacts, count, rows, before, states)
         if change <= max(_SOLVED * largest, rounding):
             return True
     return False
@@ -304,7 +306,7 @@ def _is_idle(row: FloatArray) -> bool:
 
 @inner
 def _together(
-    game: Game, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
+    engine: Engine, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
     states: FloatArray, weight: float, last: bool,
 ) -> bool:  # fmt: skip
     """The law for contacts that share discs, at most 1/weight each, or bear on what is led.
@@ -315,19 +317,19 @@ def _together(
     """
     again, solved = True, True
     while again:
-        solved = _shared_out(game, contacts, count, rows, before, states, weight)
+        solved = _shared_out(engine, contacts, count, rows, before, states, weight)
         pressed, idle, again = False, False, False
         for n in range(count):
             row = rows[n]
             pressed = pressed or (row[ACTS] > 0.0 and row[PN] > 0.0)
             idle = idle or _is_idle(row)
             if last and row[ACTS] == ASIDE:
-                un, _ = approach(game, contacts[n, 0], contacts[n, 1], row[NX], row[NY], states)
-                if un > NEGLIGIBLE * game.pace[0]:
+                un, _ = approach(engine, contacts[n, 0], contacts[n, 1], row[NX], row[NY], states)
+                if un > NEGLIGIBLE * engine.scale[0]:
                     row[ACTS], again = BACK, True
         again = again or (pressed and idle)
         if again:
-            _recall(game, contacts, count, rows, before, states)
+            _recall(engine, contacts, count, rows, before, states)
             for n in range(count):
                 row = rows[n]
                 if row[ACTS] == BACK:
@@ -338,30 +340,30 @@ def _together(
     for n in range(count):
         rows[n, PN] *= 1.0 + rows[n, E]
         rows[n, PT] *= 1.0 + rows[n, BETA]
-    _push_all(game, contacts, count, rows, before, states)
+    _push_all(engine, contacts, count, rows, before, states)
     for n in range(count):
         row = rows[n]
         if row[ACTS] > 0.0:
             i, j = contacts[n, 0], contacts[n, 1]
-            un, ut = approach(game, i, j, row[NX], row[NY], before)
-            vn, vt = approach(game, i, j, row[NX], row[NY], states)
+            un, ut = approach(engine, i, j, row[NX], row[NY], before)
+            vn, vt = approach(engine, i, j, row[NX], row[NY], states)
             gain += row[PN] * un + row[PT] * ut
             cost += 0.5 * (row[PN] * (un - vn) + row[PT] * (ut - vt))
     if cost > gain:  # impulses of this share of them keep the energy
         for n in range(count):
             rows[n, PN] *= gain / cost
             rows[n, PT] *= gain / cost
-        _push_all(game, contacts, count, rows, before, states)
+        _push_all(engine, contacts, count, rows, before, states)
     return solved
 
 
 @inlined
-def _is_driven(game: Game, contacts: Whole, count: int) -> bool:
+def _is_driven(engine: Engine, contacts: Whole, count: int) -> bool:
     """Whether one of the discs of contacts is driven."""
     for n in range(count):
         for m in range(2):
             i = contacts[n, m]
-            if i >= 0 and game.discs[i, LIGHTNESS] == 0.0:
+            if i >= 0 and engine.discs[i, LIGHTNESS] == 0.0:
                 return True
     return False
 
@@ -385,7 +387,7 @@ def _most_shared(contacts: Whole, count: int, rows: FloatArray, shares: Whole) -
 
 @inner
 def collide(
-    game: Game, t: float, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
+    engine: Engine, t: float, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
     states: FloatArray, shares: Whole, squeezed: bool,
 ) -> int:  # fmt: skip
     """All impacts of discs that touch, at one instant; how many rounds there were.
@@ -400,12 +402,12 @@ def collide(
         acting = 0
         for n in range(count):
             row, i, j = rows[n], contacts[n, 0], contacts[n, 1]
-            un, ut = approach(game, i, j, row[NX], row[NY], states)
-            row[ACTS] = 1.0 if un > NEGLIGIBLE * game.pace[0] else 0.0
+            un, ut = approach(engine, i, j, row[NX], row[NY], states)
+            row[ACTS] = 1.0 if un > NEGLIGIBLE * engine.scale[0] else 0.0
             if row[ACTS] > 0.0:
                 acting += 1
                 if row[ONE] < 0.0 or row[OTHER] < 0.0:
-                    row[E] = smaller_at(game.rims, row[ONE], row[OTHER], un)
+                    row[E] = smaller_at(engine.rims, row[ONE], row[OTHER], un)
                     if row[E] < 0.0:
                         row[FIRST_N] = un
                         return TOO_FAST
@@ -421,8 +423,8 @@ def collide(
         if last:  # such as of a light disc between a heavy one and a wall
             for n in range(count):
                 row, i, j = rows[n], contacts[n, 0], contacts[n, 1]
-                un, _ = approach(game, i, j, row[NX], row[NY], states)
-                if was_hit(row) or (squeezed and un >= -HARDLY * game.pace[0]):
+                un, _ = approach(engine, i, j, row[NX], row[NY], states)
+                if got_impulse(row) or (squeezed and un >= -HARDLY * engine.scale[0]):
                     row[ACTS], row[E], row[ONE], row[OTHER] = 1.0, 0.0, 0.0, 0.0
                     if row[BETA] > -1.0:
                         row[BETA] = 0.0  # rims that are pressed, as in a contact that lasts
@@ -440,25 +442,25 @@ def collide(
             if most == 1:
                 for n in range(count):
                     if rows[n, ACTS] > 0.0:
-                        _alone(game, contacts[n, 0], contacts[n, 1], rows[n], states)
+                        _alone(engine, contacts[n, 0], contacts[n, 1], rows[n], states)
             else:
-                solved = _together(game, contacts, count, rows, before, states, 1.0 / most, last)
-                if not solved and _is_driven(game, contacts, count):
+                solved = _together(engine, contacts, count, rows, before, states, 1.0 / most, last)
+                if not solved and _is_driven(engine, contacts, count):
                     return NO_END  # it squeezes somebody: no impulses would do
             again = False
             for n in range(count):
                 row = rows[n]
                 i, j = contacts[n, 0], contacts[n, 1]
-                if row[ACTS] * row[E] > 0.0 and _dies_out(game, i, j, t, row, states):
+                if row[ACTS] * row[E] > 0.0 and _dies_out(engine, i, j, t, row, states):
                     row[E] = row[ONE] = row[OTHER] = 0.0
                     again = True
             if again:
-                _recall(game, contacts, count, rows, before, states)
+                _recall(engine, contacts, count, rows, before, states)
         for n in range(count):
             row, i, j = rows[n], contacts[n, 0], contacts[n, 1]
             if row[ACTS] > 0.0:
-                un, ut = approach(game, i, j, row[NX], row[NY], before)
-                vn, vt = approach(game, i, j, row[NX], row[NY], states)
+                un, ut = approach(engine, i, j, row[NX], row[NY], before)
+                vn, vt = approach(engine, i, j, row[NX], row[NY], states)
                 row[SUM_N] += row[PN]
                 row[SUM_T] += row[PT]
                 row[LOSS] += 0.5 * (row[PN] * (un + vn) + row[PT] * (ut + vt))

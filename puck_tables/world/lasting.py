@@ -16,23 +16,10 @@ from puck_tables.kernels.compile import inlined, inner, kernel
 from puck_tables.scene.equations import SIZE
 from puck_tables.scene.forces import SLIDING
 from puck_tables.scene.ingredients import CARRIED as CARRIED_ALONG
-from puck_tables.scene.ingredients import NO_WAY, Dry, Stretch
+from puck_tables.scene.ingredients import NO_WAY, DryFriction, Phase
 from puck_tables.scene.rest import excess_at_rest
-from puck_tables.world.departures import Room
-from puck_tables.world.flight import (
-    CARRIED,
-    DAMPED,
-    FIRST_PIECE,
-    GONE,
-    LAST_PIECE,
-    LOOKED_UP,
-    PATH,
-    START,
-    UNTIL,
-    state_at,
-)
-from puck_tables.world.footing import law_under, least_slip
-from puck_tables.world.game import LAUNCH_TIME, N_EVENTS, N_HISTORY, TIME, Game
+from puck_tables.world.engine_state import LAUNCH_TIME, N_EVENTS, N_HISTORY, TIME, Engine
+from puck_tables.world.floor_under import law_under, least_slip
 from puck_tables.world.layout import (
     DRAG,
     LIGHTNESS,
@@ -45,6 +32,19 @@ from puck_tables.world.layout import (
 from puck_tables.world.lone import model_of
 from puck_tables.world.paths import DURATION, FOR_EVER
 from puck_tables.world.paths import START as PIECE_START
+from puck_tables.world.segment import (
+    CARRIED,
+    DAMPED,
+    FIRST_PIECE,
+    GONE,
+    LAST_PIECE,
+    LOOKED_UP,
+    PATH,
+    START,
+    UNTIL,
+    state_at,
+)
+from puck_tables.world.segment_starts import Room
 from puck_tables.world.setting_off import MISPLACED, REACHED
 
 STUCK, _WITHIN = 1e-11, 10.0  # of the scale of speeds, and times the error of a step in it
@@ -58,86 +58,94 @@ ROUND, NEVER_ENDS, LEADS_ON = range(MISPLACED + 1, MISPLACED + 4)
 
 
 @inlined
-def at_rest_below(game: Game) -> float:
+def at_rest_below(engine: Engine) -> float:
     """A slip, m/s, that is none: steps end at 1e-12 of the scale; within one less is known."""
-    return max(STUCK, _WITHIN * game.pace[2]) * game.pace[0]
+    return max(STUCK, _WITHIN * engine.scale[2]) * engine.scale[0]
 
 
 @inlined
-def _slip_at(game: Game, n: int, t: float, room: Room) -> float:
-    """The slip, m/s, of the disc of a flight, a row of the history, on it at t."""
-    flight = game.history[n]
-    i, state = int(flight[0]), room.one
-    state_at(int(flight[1]), flight[2:], game.discs[i], game.curves, game.pieces, t, room.work,
-             state)  # fmt: skip
-    return least_slip(game, i, state, t)
+def _slip_at(engine: Engine, n: int, t: float, room: Room) -> float:
+    """The slip, m/s, of the disc of a segment, a row of the history, on it at t."""
+    segment = engine.history[n]
+    i, state = int(segment[0]), room.one
+    state_at(
+        int(segment[1]),
+        segment[2:],
+        engine.discs[i],
+        engine.lookups,
+        engine.pieces,
+        t,
+        room.work,
+        state,
+    )
+    return least_slip(engine, i, state, t)
 
 
 @inlined
-def middle_of(game: Game, n: int, end: float) -> float:
+def middle_of(engine: Engine, n: int, end: float) -> float:
     """A moment on a path up to its end, between two pieces, where its velocities are known best.
 
     A path that leads from rest to rest, or is cut short before it is fast, slips there.
     """
-    flight = game.history[n, 2:]
-    piece, last = int(flight[FIRST_PIECE]), int(flight[LAST_PIECE]) - 1
-    while last > piece and game.pieces[last, PIECE_START] >= end:
+    segment = engine.history[n, 2:]
+    piece, last = int(segment[FIRST_PIECE]), int(segment[LAST_PIECE]) - 1
+    while last > piece and engine.pieces[last, PIECE_START] >= end:
         last -= 1
     if piece == last:
-        return game.pieces[last, PIECE_START] + game.pieces[last, DURATION]
-    half = 0.5 * (game.pieces[piece, PIECE_START] + game.pieces[last, PIECE_START])
-    while game.pieces[piece, PIECE_START] < half:
+        return engine.pieces[last, PIECE_START] + engine.pieces[last, DURATION]
+    half = 0.5 * (engine.pieces[piece, PIECE_START] + engine.pieces[last, PIECE_START])
+    while engine.pieces[piece, PIECE_START] < half:
         piece += 1
-    return game.pieces[piece, PIECE_START]
+    return engine.pieces[piece, PIECE_START]
 
 
 @inner
-def moves_on(game: Game, n: int, end: float, room: Room) -> float:
-    """Until when somebody moves over the floor on a flight that ended so; −inf: not at all."""
-    kind, flight = int(game.history[n, 1]), game.history[n, 2:]
-    start = flight[START]
+def moves_on(engine: Engine, n: int, end: float, room: Room) -> float:
+    """Until when somebody moves over the floor on a segment that ended so; −inf: not at all."""
+    kind, segment = int(engine.history[n, 1]), engine.history[n, 2:]
+    start = segment[START]
     if kind == GONE:
         return start
     if kind == LOOKED_UP:
-        return min(flight[UNTIL], end)
+        return min(segment[UNTIL], end)
     if kind == DAMPED:
         return end
     if kind == PATH:
-        driven = game.discs[int(game.history[n, 0]), LIGHTNESS] == 0.0
-        end = min(end, flight[UNTIL])
-        if driven or _slip_at(game, n, start, room) > at_rest_below(game):
+        driven = engine.discs[int(engine.history[n, 0]), LIGHTNESS] == 0.0
+        end = min(end, segment[UNTIL])
+        if driven or _slip_at(engine, n, start, room) > at_rest_below(engine):
             return end
-        if _slip_at(game, n, middle_of(game, n, end), room) > STUCK * game.pace[0]:
+        if _slip_at(engine, n, middle_of(engine, n, end), room) > STUCK * engine.scale[0]:
             return end
     return -math.inf
 
 
 @kernel
-def fill_motion_ends(game: Game, room: Room, out: FloatArray) -> None:
+def fill_motion_ends(engine: Engine, room: Room, out: FloatArray) -> None:
     """Until when each disc has moved over the floor (n,), or when it left play; inf: it still does.
 
     0: it has lain there since the start.
     """
-    now = game.clock[0]
+    now = engine.clock[0]
     for i in range(out.size):
         out[i], room.before[i, 0] = _UNKNOWN, now
-    for n in range(game.counts[N_HISTORY] - 1, -1, -1):
-        i = int(game.history[n, 0])
+    for n in range(engine.counts[N_HISTORY] - 1, -1, -1):
+        i = int(engine.history[n, 0])
         if out[i] >= 0.0:
             continue
-        current = out[i] == _UNKNOWN and int(game.history[n, 1]) != GONE
-        end = moves_on(game, n, room.before[i, 0], room)
-        if current and end >= now and game.history[n, 2 + UNTIL] > now:
+        current = out[i] == _UNKNOWN and int(engine.history[n, 1]) != GONE
+        end = moves_on(engine, n, room.before[i, 0], room)
+        if current and end >= now and engine.history[n, 2 + UNTIL] > now:
             end = math.inf
         out[i] = max(end, _NOT_YET)
-        room.before[i, 0] = game.history[n, 2 + START]
+        room.before[i, 0] = engine.history[n, 2 + START]
     for i in range(out.size):
         out[i] = max(out[i], 0.0)
 
 
 @kernel
 def next_target(
-    game: Game, limit: float, scheduled: float, room: Room, ends: FloatArray
+    engine: Engine, limit: float, scheduled: float, room: Room, ends: FloatArray
 ) -> tuple[int, float]:
     """Whether a run without a time goes on from now, and until when; or how it ended, and when.
 
@@ -145,15 +153,15 @@ def next_target(
     where it may slip; ROUND: the floor carries discs over the same borders again and again.
     ``scheduled``: when the last launch, force or film is over; ``ends`` (n,): to work in.
     """
-    now, turning = game.clock[0], abs(game.surface.spin)
+    now, turning = engine.clock[0], abs(engine.surface.spin)
     turn = 2.0 * math.pi / turning if turning > 0.0 else math.inf
-    fill_motion_ends(game, room, ends)
+    fill_motion_ends(engine, room, ends)
     last, pending, carries = 0.0, math.inf, False
     for i in range(ends.size):
-        last, pending = max(last, ends[i]), min(pending, game.next_time[i])
-        carries = carries or game.kinds[i] in (CARRIED, PATH)
-    count = game.counts[N_EVENTS]
-    happened = game.events[count - 1, TIME] if count > 0 else 0.0
+        last, pending = max(last, ends[i]), min(pending, engine.next_time[i])
+        carries = carries or engine.kinds[i] in (CARRIED, PATH)
+    count = engine.counts[N_EVENTS]
+    happened = engine.events[count - 1, TIME] if count > 0 else 0.0
     if last == math.inf:
         return (NEVER_ENDS, now) if now >= limit else (GOES_ON, min(limit, now + turn))
     if carries and turning > 0.0:
@@ -168,75 +176,75 @@ def next_target(
     return (GOES_ON, pending) if pending <= _FAR * limit else (LEADS_ON, now)
 
 
-def limits_of(game: Game, paces: FloatArray) -> tuple[FloatArray, float]:
+def limits_of(engine: Engine, scales: FloatArray) -> tuple[FloatArray, float]:
     """Until when runs without a time are followed, s, and when all that they are given is over.
 
-    ``paces`` (n, 2): their scales of speed and acceleration.
+    ``scales`` (n, 2): their scales of speed and acceleration.
     """
-    given = given_until(game)
-    return max(float(game.clock[0]), given) + longest_of(game, paces), given
+    given = prescribed_until(engine)
+    return max(float(engine.clock[0]), given) + longest_of(engine, scales), given
 
 
 @kernel
-def given_until(game: Game) -> float:
+def prescribed_until(engine: Engine) -> float:
     """When the last launch, force or film is over, s."""
     given = 0.0
-    for row in range(game.launches.shape[0]):
-        given = max(given, game.launches[row, LAUNCH_TIME])
-    for row in range(game.tides.shape[0]):
-        given = max(given, game.tides[row, 0])
-    for i in range(game.drives.shape[0]):
-        for row in range(game.drives[i, 0], game.drives[i, 1]):
-            if game.pieces[row, DURATION] < FOR_EVER:
-                given = max(given, game.pieces[row, PIECE_START] + game.pieces[row, DURATION])
+    for row in range(engine.launches.shape[0]):
+        given = max(given, engine.launches[row, LAUNCH_TIME])
+    for row in range(engine.forcing.shape[0]):
+        given = max(given, engine.forcing[row, 0])
+    for i in range(engine.drives.shape[0]):
+        for row in range(engine.drives[i, 0], engine.drives[i, 1]):
+            if engine.pieces[row, DURATION] < FOR_EVER:
+                given = max(given, engine.pieces[row, PIECE_START] + engine.pieces[row, DURATION])
     return given
 
 
-def longest_of(game: Game, paces: FloatArray) -> FloatArray:
+def longest_of(engine: Engine, scales: FloatArray) -> FloatArray:
     """LONG times what the least friction takes at such scales of speed and acceleration, s."""
-    free = game.discs[game.discs[:, LIGHTNESS] > 0.0]
-    decels = game.floors[:, 0]
-    brakes = _brakes(game)
+    free = engine.discs[engine.discs[:, LIGHTNESS] > 0.0]
+    decels = engine.floors[:, 0]
+    brakes = _brakes(engine)
     brakes = brakes[(decels > 0.0) & (brakes > _SLOWEST * decels.max())]
     arms = free[:, LIGHTNESS] / (free[:, TURNABILITY] * free[:, RADIUS] ** 2)  # k²
-    fast = paces[:, 0] + float(_pushed(game).max())
+    fast = scales[:, 0] + float(_pushed(engine).max())
     times = float((2.0 * arms).max(initial=1.0)) * fast / float(brakes.min(initial=math.inf))
     drags = free[free[:, DRAG + SLIDING] > 0.0, DRAG + SLIDING]
-    times = np.maximum(times, paces[:, 0] / paces[:, 1])
+    times = np.maximum(times, scales[:, 0] / scales[:, 1])
     times = np.maximum(times, float((1.0 / drags).max(initial=0.0)))
     return LONG * times
 
 
-def _brakes(game: Game) -> FloatArray:
+def _brakes(engine: Engine) -> FloatArray:
     """What friction leaves to brake every disc beside what pulls at it, by rows of floors, m/s²."""
-    discs = game.discs
+    discs = engine.discs
     pulls = np.hypot(discs[:, PULL_X], discs[:, PULL_Y])
-    brakes = np.abs(game.floors[:, 0].reshape(-1, len(discs)) - pulls).ravel()
+    brakes = np.abs(engine.floors[:, 0].reshape(-1, len(discs)) - pulls).ravel()
     if discs[:, TWIST].any():
-        _fill_brakes(game, np.zeros(SIZE), brakes)
+        _fill_brakes(engine, np.zeros(SIZE), brakes)
     return brakes
 
 
 @kernel
-def _fill_brakes(game: Game, y: FloatArray, out: FloatArray) -> None:
+def _fill_brakes(engine: Engine, y: FloatArray, out: FloatArray) -> None:
     """What brakes discs that a torque turns: how far friction is from what it could just hold."""
-    regions, count = game.regions, game.discs.shape[0]
+    regions, count = engine.regions, engine.discs.shape[0]
     for row in range(out.size):
         i = row % count
-        if game.discs[i, TWIST] == 0.0 or regions.astride[row] or regions.load[row] == 0.0:
+        if engine.discs[i, TWIST] == 0.0 or regions.astride[row] or regions.load[row] == 0.0:
             continue
-        law = law_under(regions, game.discs, i)
-        dry = Dry(regions.load[row], regions.delta[row], regions.cuts[row], law)
-        stretch = Stretch(model_of(game, i), dry, 0, CARRIED_ALONG, NO_WAY, 0.0)
-        excess = abs(excess_at_rest(stretch, 0.0, y)[0])
-        out[row] = min(excess, regions.load[row]) * game.discs[i, LIGHTNESS]
+        law = law_under(regions, engine.discs, i)
+        friction = DryFriction(regions.load[row], regions.delta[row], regions.cuts[row], law)
+        phase = Phase(model_of(engine, i), friction, 0, CARRIED_ALONG, NO_WAY, 0.0)
+        excess = abs(excess_at_rest(phase, 0.0, y)[0])
+        out[row] = min(excess, regions.load[row]) * engine.discs[i, LIGHTNESS]
 
 
-def _pushed(game: Game) -> FloatArray:
+def _pushed(engine: Engine) -> FloatArray:
     """What speed forces over time give every disc at most, m/s."""
-    found = np.zeros(len(game.discs))
-    for i in np.flatnonzero(game.spans[:, 0] < game.spans[:, 1]).tolist():
-        rows, disc = game.tides[slice(*game.spans[i])], game.discs[i]
+    found = np.zeros(len(engine.discs))
+    for i in np.flatnonzero(engine.spans[:, 0] < engine.spans[:, 1]).tolist():
+        rows, disc = engine.forcing[slice(*engine.spans[i])], engine.discs[i]
         strength = np.hypot(rows[:, 1], rows[:, 2]) + np.abs(rows[:, 3]) / disc[RADIUS]
         found[i] = disc[LIGHTNESS] * np.trapezoid(strength, rows[:, 0])
     return found

@@ -10,7 +10,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import pucks_of, start_of
-from puck_tables.world.game import Whole
+from puck_tables.world.engine_state import Whole
 from puck_tables.world.shots import NO_COURSE, Landings, Shots
 
 _AT_ONE = 48  # headings towards one disc that looks small
@@ -126,7 +126,7 @@ def _with_more(shots: Shots, sample: TriedLaunches, gaps: Whole) -> TriedLaunche
     return TriedLaunches(launches[order], rows[order], landings.at(order))
 
 
-def good(landings: Landings, most: int, asked: bool) -> FloatArray:
+def good(landings: Landings, most: int, wanted: bool) -> FloatArray:
     """Which landings count: few enough impacts, by the way asked for, with an end."""
     fine = (landings.prints != NO_COURSE) & (landings.lengths <= most)
-    return fine & (landings.passes == 1) if asked else fine
+    return fine & (landings.passes == 1) if wanted else fine

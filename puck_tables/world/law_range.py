@@ -12,24 +12,24 @@ from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import ContactError, InputError
 from puck_tables.scene.by_speed import FARTHER, law_name, speed_law
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.departures import CONCERNED, Room
+from puck_tables.world.engine_state import Engine, Whole
+from puck_tables.world.floor_under import SURE, floor_of, law_goes_to
 from puck_tables.world.floors import slip_of_rim
-from puck_tables.world.footing import SURE, floor_of, law_goes_to
-from puck_tables.world.game import Game, Whole
 from puck_tables.world.layout import LIGHTNESS, RADIUS
 from puck_tables.world.prepare import with_law_up_to
+from puck_tables.world.segment_starts import CONCERNED, Room
 
 
-def refuse_too_fast(game: Game, scene: SceneSpec, name: str, i: int, state: FloatArray) -> None:
+def refuse_too_fast(engine: Engine, scene: SceneSpec, name: str, i: int, state: FloatArray) -> None:
     """Refuse a strike beyond what rows of the friction law of the floor say.
 
     Raises
     ------
     InputError
     """
-    top = law_goes_to(game.regions)
+    top = law_goes_to(engine.regions)
     fastest = slip_of_rim(
-        game.discs[i, RADIUS], floor_of(game.surface, game.discs[i]), state.tolist()
+        engine.discs[i, RADIUS], floor_of(engine.surface, engine.discs[i]), state.tolist()
     )
     if fastest > top and isinstance(speed_law(scene), SpeedLaw):
         raise InputError(
@@ -39,23 +39,25 @@ def refuse_too_fast(game: Game, scene: SceneSpec, name: str, i: int, state: Floa
 
 
 def with_law_for(
-    game: Game, room: Room, scene: SceneSpec, order: Whole, names: Sequence[str], time: float
-) -> Game:
-    """The game with friction that is known at all slips of those that set off now.
+    engine: Engine, room: Room, scene: SceneSpec, order: Whole, names: Sequence[str], time: float
+) -> Engine:
+    """The state of the engine with friction that is known at all slips of those that set off now.
 
     Raises
     ------
     InputError
         If its law ends below one, or lifts part of a base there.
     """
-    top = law_goes_to(game.regions)
+    top = law_goes_to(engine.regions)
     if top == math.inf:
-        return game
+        return engine
     for i in np.flatnonzero(room.marks == CONCERNED):
         fastest = slip_of_rim(
-            game.discs[i, RADIUS], floor_of(game.surface, game.discs[i]), room.states[i].tolist()
+            engine.discs[i, RADIUS],
+            floor_of(engine.surface, engine.discs[i]),
+            room.states[i].tolist(),
         )
-        if game.discs[i, LIGHTNESS] == 0.0 or fastest < SURE * top:
+        if engine.discs[i, LIGHTNESS] == 0.0 or fastest < SURE * top:
             continue
         if isinstance(speed_law(scene), SpeedLaw):
             raise InputError(
@@ -65,11 +67,11 @@ def with_law_for(
             )
         top = FARTHER * fastest
         try:
-            game = with_law_up_to(game, scene, order, top)
+            engine = with_law_up_to(engine, scene, order, top)
         except ContactError as error:  # at the launch the heights were in order
             raise InputError(
                 f"at {time:.6g} s the rim slips at {fastest:.6g} m/s, where friction by the law "
                 f"{law_name(scene)} tilts the pressure so much that part of a base would lift: a "
                 "slip that grows may never stop; give a shorter time, or less that drives it"
             ) from error
-    return game
+    return engine

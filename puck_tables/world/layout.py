@@ -30,7 +30,7 @@ NORMAL, HEIGHT_RATIO = 22, 23  # N, and 2h/r over 4⟨x²⟩/r²: where friction
 BELT_X, BELT_Y, BELT_SPIN, BELT_AX, BELT_AY, BELT_TURN = range(24, 30)
 DRAG = 30  # the first of what acts over the floor, see :func:`puck_tables.scene.forces.drags_of`
 # from here on how its base lies to every border of strips, and then to every patch
-# (:mod:`puck_tables.world.footing`)
+# (:mod:`puck_tables.world.floor_under`)
 LIES = DRAG + DRAGS
 DISC_COLUMNS = LIES  # without those
 

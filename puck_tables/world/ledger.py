@@ -1,8 +1,8 @@
 """Where the energy of pucks went until any moment: floor, drag, rims, impacts; what drives.
 
-A row holds what :mod:`puck_tables.world.works` has, and what launches gave, what went
+A row holds what :mod:`puck_tables.world.step_ledger` has, and what launches gave, what went
 with who left play, and the heat of impacts.  Of motions that are looked up the heat of the floor is
-what the flights lose; of those that are integrated heats and works are integrated with them.
+what the segments lose; of those that are integrated heats and works are integrated with them.
 """
 
 from __future__ import annotations
@@ -16,9 +16,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel, patience
 from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.over_time import rows_passed
-from puck_tables.world.departures import Room
-from puck_tables.world.flight import DAMPED, DRIFT_X, DRIFT_Y, GONE, PATH, START, STILL, state_at
-from puck_tables.world.game import (
+from puck_tables.world.engine_state import (
     ADDED,
     GOT,
     IMPACT,
@@ -34,23 +32,25 @@ from puck_tables.world.game import (
     STRUCK,
     TIME,
     WHAT,
-    Game,
+    Engine,
 )
 from puck_tables.world.layout import LIGHTNESS, PULL_X, PULL_Y, TURNABILITY, kinetic
 from puck_tables.world.record import first_from
-from puck_tables.world.works import (
+from puck_tables.world.segment import DAMPED, DRIFT_X, DRIFT_Y, GONE, PATH, START, STILL, state_at
+from puck_tables.world.segment_starts import Room
+from puck_tables.world.step_ledger import (
     DRAG_HEAT,
     DRIVE_WORK,
     DURATION,
-    FLIGHT,
     FLOOR_HEAT,
     LEDGER,
     PULL_WORK,
     RIM_HEAT,
+    SEGMENT,
     SUPPORT_WORK,
     add_worked,
 )
-from puck_tables.world.works import START as BEGINS
+from puck_tables.world.step_ledger import START as BEGINS
 
 if TYPE_CHECKING:
     from puck_tables.world.world import World
@@ -67,19 +67,19 @@ NAMES = {
 _NOTHING = 1e-6  # of what the pucks hold at the scale of speeds: an energy next to their rounding
 
 
-def energy_scale(game: Game) -> float:
+def energy_scale(engine: Engine) -> float:
     """The least energy to which what a ledger misses is compared, J."""
-    light = game.discs[:, LIGHTNESS]
-    return _NOTHING * 0.5 * float((1.0 / light[light > 0.0]).sum() * game.pace[0] ** 2)
+    light = engine.discs[:, LIGHTNESS]
+    return _NOTHING * 0.5 * float((1.0 / light[light > 0.0]).sum() * engine.scale[0] ** 2)
 
 
 @inner
-def _pulled(game: Game, i: int, start: float, t: float, vx: float, vy: float) -> float:
+def _pulled(engine: Engine, i: int, start: float, t: float, vx: float, vy: float) -> float:
     """What slope and given forces work on a disc that a belt carries, from the start to t, J."""
-    disc, first, last = game.discs[i], game.spans[i, 0], game.spans[i, 1]
+    disc, first, last = engine.discs[i], engine.spans[i, 0], engine.spans[i, 1]
     work = (disc[PULL_X] * vx + disc[PULL_Y] * vy) / disc[LIGHTNESS] * (t - start)
-    for n in range(first + max(rows_passed(game.tides, first, last, start), 1), last):
-        one, two = game.tides[n - 1], game.tides[n]
+    for n in range(first + max(rows_passed(engine.forcing, first, last, start), 1), last):
+        one, two = engine.forcing[n - 1], engine.forcing[n]
         begin, end = max(one[0], start), min(two[0], t)
         if begin >= end:
             continue
@@ -90,25 +90,33 @@ def _pulled(game: Game, i: int, start: float, t: float, vx: float, vy: float) ->
 
 
 @inner
-def _begin_flown(game: Game, n: int, room: Room) -> bool:
-    """The state at the start of a flight into ``room.one``; False: it is integrated, or driven."""
-    row = game.history[n]
-    i, kind, flight = int(row[0]), int(row[1]), row[2:]
-    if game.discs[i, LIGHTNESS] == 0.0 or kind in (PATH, GONE):
+def _begin_flown(engine: Engine, n: int, room: Room) -> bool:
+    """The state at the start of a segment into ``room.one``; False: it is integrated, or driven."""
+    row = engine.history[n]
+    i, kind, segment = int(row[0]), int(row[1]), row[2:]
+    if engine.discs[i, LIGHTNESS] == 0.0 or kind in (PATH, GONE):
         return False
-    state_at(kind, flight, game.discs[i], game.curves, game.pieces, flight[START], room.work,
-             room.one)  # fmt: skip
+    state_at(
+        kind,
+        segment,
+        engine.discs[i],
+        engine.lookups,
+        engine.pieces,
+        segment[START],
+        room.work,
+        room.one,
+    )
     return True
 
 
 @inner
-def _add_flown(game: Game, n: int, t: float, room: Room, ledger: FloatArray) -> None:
-    """Add what a flight has lost by t, since its start as it stands in ``room.one``."""
-    row = game.history[n]
-    i, kind, flight = int(row[0]), int(row[1]), row[2:]
-    disc, one, two = game.discs[i], room.one, room.two
-    start, vx, vy = flight[START], flight[DRIFT_X], flight[DRIFT_Y]
-    state_at(kind, flight, disc, game.curves, game.pieces, t, room.work, two)
+def _add_flown(engine: Engine, n: int, t: float, room: Room, ledger: FloatArray) -> None:
+    """Add what a segment has lost by t, since its start as it stands in ``room.one``."""
+    row = engine.history[n]
+    i, kind, segment = int(row[0]), int(row[1]), row[2:]
+    disc, one, two = engine.discs[i], room.one, room.two
+    start, vx, vy = segment[START], segment[DRIFT_X], segment[DRIFT_Y]
+    state_at(kind, segment, disc, engine.lookups, engine.pieces, t, room.work, two)
     lost = kinetic(disc, one[VX], one[VY], one[SPIN]) - kinetic(disc, two[VX], two[VY], two[SPIN])
     over = kinetic(disc, one[VX] - vx, one[VY] - vy, one[SPIN]) - kinetic(
         disc, two[VX] - vx, two[VY] - vy, two[SPIN]
@@ -116,7 +124,7 @@ def _add_flown(game: Game, n: int, t: float, room: Room, ledger: FloatArray) -> 
     ledger[DRAG_HEAT if kind == DAMPED else FLOOR_HEAT] += over
     ledger[SUPPORT_WORK] += over - lost
     if kind == STILL and (vx != 0.0 or vy != 0.0):  # the floor holds it against what pulls
-        work = _pulled(game, i, start, t, vx, vy)
+        work = _pulled(engine, i, start, t, vx, vy)
         ledger[PULL_WORK] += work
         ledger[SUPPORT_WORK] -= work
 
@@ -135,62 +143,62 @@ def _add_event(event: FloatArray, ledger: FloatArray) -> None:
 
 
 @kernel
-def tally(game: Game, times: FloatArray, room: Room, ends: FloatArray, out: FloatArray) -> None:
-    """Ledgers at ascending times, J, one a row; ``ends``: room for all flights and discs."""
-    flights, last = game.counts[N_HISTORY], times.size
-    for i in range(game.discs.shape[0]):
-        ends[flights + i] = math.inf
-    for n in range(flights - 1, -1, -1):
-        i = int(game.history[n, 0])
-        ends[n], ends[flights + i] = ends[flights + i], game.history[n, 2 + START]
+def tally(engine: Engine, times: FloatArray, room: Room, ends: FloatArray, out: FloatArray) -> None:
+    """Ledgers at ascending times, J, one a row; ``ends``: room for all segments and discs."""
+    segments, last = engine.counts[N_HISTORY], times.size
+    for i in range(engine.discs.shape[0]):
+        ends[segments + i] = math.inf
+    for n in range(segments - 1, -1, -1):
+        i = int(engine.history[n, 0])
+        ends[n], ends[segments + i] = ends[segments + i], engine.history[n, 2 + START]
     for k in range(last):
         for column in range(LEDGER_COLUMNS):
             out[k, column] = 0.0
-        out[k, LAUNCHED] = game.pace[3] if k == 0 else 0.0
-    for n in range(flights):  # all of it, from its end on
+        out[k, LAUNCHED] = engine.scale[3] if k == 0 else 0.0
+    for n in range(segments):  # all of it, from its end on
         patience(1)
         k = first_from(times, ends[n])
-        if k < last and _begin_flown(game, n, room):
-            _add_flown(game, n, ends[n], room, out[k])
-    for n in range(game.counts[N_WORKS]):
-        end = _end_of(game, n, ends)
+        if k < last and _begin_flown(engine, n, room):
+            _add_flown(engine, n, ends[n], room, out[k])
+    for n in range(engine.counts[N_WORKS]):
+        end = _end_of(engine, n, ends)
         k = first_from(times, end)
         if k < last:
-            add_worked(game.works[n], end, out[k])
-    for n in range(game.counts[N_EVENTS]):
-        k = first_from(times, game.events[n, TIME])
+            add_worked(engine.work_rows[n], end, out[k])
+    for n in range(engine.counts[N_EVENTS]):
+        k = first_from(times, engine.events[n, TIME])
         if k < last:
-            _add_event(game.events[n], out[k])
+            _add_event(engine.events[n], out[k])
     for k in range(1, last):
         for column in range(LEDGER_COLUMNS):
             out[k, column] += out[k - 1, column]
-    for n in range(flights):  # and a part of it, on the way
+    for n in range(segments):  # and a part of it, on the way
         patience(1)
-        begin, end = first_from(times, game.history[n, 2 + START]), first_from(times, ends[n])
-        if begin == end or not _begin_flown(game, n, room):
+        begin, end = first_from(times, engine.history[n, 2 + START]), first_from(times, ends[n])
+        if begin == end or not _begin_flown(engine, n, room):
             continue
         for k in range(begin, end):
-            _add_flown(game, n, times[k], room, out[k])
-    for n in range(game.counts[N_WORKS]):
-        begin = first_from(times, game.works[n, BEGINS])
-        for k in range(begin, first_from(times, _end_of(game, n, ends))):
-            add_worked(game.works[n], times[k], out[k])
+            _add_flown(engine, n, times[k], room, out[k])
+    for n in range(engine.counts[N_WORKS]):
+        begin = first_from(times, engine.work_rows[n, BEGINS])
+        for k in range(begin, first_from(times, _end_of(engine, n, ends))):
+            add_worked(engine.work_rows[n], times[k], out[k])
 
 
 @inlined
-def _end_of(game: Game, n: int, ends: FloatArray) -> float:
-    """When a row of works ends, perhaps with the flight of those who were sent on with it."""
-    row = game.works[n]
-    end, flight = row[BEGINS] + row[DURATION], int(row[FLIGHT])
-    return min(end, ends[flight]) if flight >= 0 else end
+def _end_of(engine: Engine, n: int, ends: FloatArray) -> float:
+    """When a row of works ends, perhaps with the segment of those who were sent on with it."""
+    row = engine.work_rows[n]
+    end, segment = row[BEGINS] + row[DURATION], int(row[SEGMENT])
+    return min(end, ends[segment]) if segment >= 0 else end
 
 
 def ledgers_of(world: World, times: FloatArray) -> FloatArray:
     """Ledgers (times, LEDGER_COLUMNS) of a world at ascending times up to now, J."""
-    game = world._game
+    engine = world._engine
     out = np.empty((len(times), LEDGER_COLUMNS))
-    ends = np.empty(int(game.counts[N_HISTORY]) + len(game.discs))
-    tally(game, np.asarray(times, np.float64), world._room, ends, out)
+    ends = np.empty(int(engine.counts[N_HISTORY]) + len(engine.discs))
+    tally(engine, np.asarray(times, np.float64), world._room, ends, out)
     return out
 
 
@@ -201,13 +209,13 @@ def energies_of(world: World, times: FloatArray, states: FloatArray) -> dict[str
     play.
     """
     ledgers = ledgers_of(world, times)
-    energies = kinetic_of(world._game, states[:, world._order])[:, world._place]
+    energies = kinetic_of(world._engine, states[:, world._order])[:, world._place]
     return {"kinetic_energy": energies, **{name: ledgers[:, n] for name, n in NAMES.items()}}
 
 
-def kinetic_of(game: Game, states: FloatArray) -> FloatArray:
+def kinetic_of(engine: Engine, states: FloatArray) -> FloatArray:
     """½ m v² + ½ I ω² of states (..., discs, 6), J; nothing of what is driven."""
-    light, turn = game.discs[:, LIGHTNESS], game.discs[:, TURNABILITY]
+    light, turn = engine.discs[:, LIGHTNESS], engine.discs[:, TURNABILITY]
     with np.errstate(divide="ignore", invalid="ignore"):
         energy = 0.5 * (states[..., VX] ** 2 + states[..., VY] ** 2) / light
         energy = energy + 0.5 * states[..., SPIN] ** 2 / turn

@@ -42,33 +42,33 @@ from puck_tables.scene.ingredients import (
     SLIDES,
     STOPS,
     Body,
-    Dry,
+    DryFriction,
     Hold,
     Model,
-    Stretch,
+    Phase,
     Surface,
     floor_velocity,
-    is_astride,
+    is_mixed,
     is_over_belts,
     surface_at,
     surface_now,
 )
-from puck_tables.scene.moments import NOTHING, REST, cut_short, goes_straight, lost, rests_on
+from puck_tables.scene.moments import NOTHING, REST, first_event_on, goes_straight, lost, rests_on
 from puck_tables.scene.over_time import rows_passed
 from puck_tables.scene.standstill import from_standstill
 from puck_tables.scene.step_size import follow_scales, up_to_the_stop
 from puck_tables.scene.steps import accelerations, step
-from puck_tables.world import works
-from puck_tables.world.footing import (
+from puck_tables.world import step_ledger
+from puck_tables.world.engine_state import N_HISTORY, N_PIECES, N_WORKS, Engine
+from puck_tables.world.floor_under import (
     choose_belt,
-    dry_under,
     floor_of,
+    friction_under_disc,
     moves_along,
     nears_another,
     outruns_law,
     room_on_floor,
 )
-from puck_tables.world.game import N_HISTORY, N_PIECES, N_WORKS, Game
 from puck_tables.world.layout import (
     BELT_X,
     BELT_Y,
@@ -112,7 +112,7 @@ _OVER = 1e-12  # of a radius: beyond a border
 _PLACE, _RATE = 1.0 / 24.0, 0.144  # its places are off by so much d h² at most, its rates d h
 
 
-class Desk(NamedTuple):
+class LoneBuffer(NamedTuple):
     """Where to work: rows of one array, for each array that comes from Python costs its call.
 
     Rates of the stages of a step (13, 12), and at its start and end (2, 12) and middle (1, 12);
@@ -131,28 +131,28 @@ class Desk(NamedTuple):
     ledgers: FloatArray
 
 
-# rows of a desk, in the order of its arrays
+# rows of a buffer, in the order of its arrays
 _ENDS, _MIDDLE, _STATES = STAGES, STAGES + 2, STAGES + 3
 _BOOKS = _STATES + 5
-DESK_ROWS = _BOOKS + 4
+BUFFER_ROWS = _BOOKS + 4
 
 
 @inlined
-def _desk_on(rows: FloatArray) -> Desk:
-    """A desk on rows (25, 12)."""
-    return Desk(
+def _buffer_on(rows: FloatArray) -> LoneBuffer:
+    """A buffer on rows (25, 12)."""
+    return LoneBuffer(
         rows[:STAGES], rows[_ENDS:_MIDDLE], rows[_MIDDLE:_STATES], rows[_STATES],
         rows[_STATES + 1], rows[_STATES + 2], rows[_STATES + 3], rows[_STATES + 4],
-        rows[_BOOKS:DESK_ROWS],
+        rows[_BOOKS:BUFFER_ROWS],
     )  # fmt: skip
 
 
 @inlined
-def model_of(game: Game, i: int) -> Model:
+def model_of(engine: Engine, i: int) -> Model:
     """All that acts on a disc but dry friction."""
-    disc = game.discs[i]
+    disc = engine.discs[i]
     mass, inertia = 1.0 / disc[LIGHTNESS], 1.0 / disc[TURNABILITY]
-    drive = game.tides[game.spans[i, 0] : game.spans[i, 1]]
+    drive = engine.forcing[engine.spans[i, 0] : engine.spans[i, 1]]
     forces = Forces(
         mass * disc[PULL_X], mass * disc[PULL_Y], inertia * disc[TWIST], drive,
         disc[DRAG:],
@@ -161,7 +161,7 @@ def model_of(game: Game, i: int) -> Model:
         int(disc[HOLD]), disc[HOLD_X], disc[HOLD_Y], disc[HOLD_REACH], disc[HOLD_ANGLE],
         disc[HOLD_VX], disc[HOLD_VY],
     )  # fmt: skip
-    return Model(Body(mass, inertia, disc[RADIUS]), floor_of(game.surface, disc), forces, hold)
+    return Model(Body(mass, inertia, disc[RADIUS]), floor_of(engine.surface, disc), forces, hold)
 
 
 @inlined
@@ -179,19 +179,19 @@ def _is_pulled(model: Model) -> bool:
 
 
 @inlined
-def _swings(model: Model, dry: Dry, rows: int) -> bool:
+def _swings(model: Model, friction: DryFriction, rows: int) -> bool:
     """Whether what the floor has to do for a puck at rest on it changes as it is carried."""
     surface = model.surface
     if surface.changes != 0.0 and rows < len(model.forces.drive):
         return True
     turns = surface.spin != 0.0 and _is_pulled(model)
-    if is_over_belts(dry) and is_rubbed(dry.by_speed.table, model.body.radius):
+    if is_over_belts(friction) and is_rubbed(friction.by_speed.table, model.body.radius):
         return True  # it gets warm
-    return turns or (is_astride(dry) and moves_along(surface))
+    return turns or (is_mixed(friction) and moves_along(surface))
 
 
 @inlined
-def _horizon(game: Game, model: Model, t: float) -> float:
+def _horizon(engine: Engine, model: Model, t: float) -> float:
     """Until when a path is followed: what is pulled or carried may get faster for ever.
 
     Ever farther, so that what goes on for long takes few paths.
@@ -199,134 +199,145 @@ def _horizon(game: Game, model: Model, t: float) -> float:
     hold, rows = model.hold, len(model.forces.drive)
     pulled = rows > 0 and model.forces.drive[rows - 1, 0] > t
     pulled = pulled or model.forces.x != 0.0 or model.forces.y != 0.0 or model.forces.torque != 0.0
-    if pulled or moves_along(game.surface) or hold.vx != 0.0 or hold.vy != 0.0:
-        return t + max(2.0 * game.pace[0] / game.pace[1], _FARTHER * t)
+    if pulled or moves_along(engine.surface) or hold.vx != 0.0 or hold.vy != 0.0:
+        return t + max(2.0 * engine.scale[0] / engine.scale[1], _FARTHER * t)
     return math.inf
 
 
 @inlined
 def _lay_out(
-    game: Game, i: int, model: Model, t: float, state: FloatArray, tol: float, desk: Desk
-) -> None:  # fmt: skip
+    engine: Engine,
+    i: int,
+    model: Model,
+    t: float,
+    state: FloatArray,
+    tol: float,
+    buffer: LoneBuffer,
+) -> None:
     """The state at the start, relative to the floor, and the scales of errors."""
-    body, speed = model.body, game.pace[0]
-    length, energy = speed * speed / game.pace[1], body.mass * speed * speed
+    body, speed = model.body, engine.scale[0]
+    length, energy = speed * speed / engine.scale[1], body.mass * speed * speed
     slow = max(1.0, 2.0 * body.inertia / (body.mass * body.radius * body.radius))
     for n in range(SIZE):
-        desk.y[n] = state[n] if n < GIVEN else 0.0
-        desk.scale[n] = length if n < VX else (speed if n < GIVEN else energy)
-    desk.scale[THETA] = length / body.radius
-    desk.scale[SPIN] = speed / (slow * body.radius)
-    follow_scales(desk.scale, tol, body, desk.y)
-    to_laboratory(_surface_at(model, t), desk.y, -1.0)
+        buffer.y[n] = state[n] if n < GIVEN else 0.0
+        buffer.scale[n] = length if n < VX else (speed if n < GIVEN else energy)
+    buffer.scale[THETA] = length / body.radius
+    buffer.scale[SPIN] = speed / (slow * body.radius)
+    follow_scales(buffer.scale, tol, body, buffer.y)
+    to_laboratory(_surface_at(model, t), buffer.y, -1.0)
 
 
 @inlined
-def _write_piece(stretch: Stretch, begin: float, h: float, row: FloatArray, desk: Desk) -> None:
+def _write_piece(phase: Phase, begin: float, h: float, row: FloatArray, buffer: LoneBuffer) -> None:
     """A step as a piece of the path; the rates at its ends are kept."""
     for n in range(ROW):
-        desk.ends[0, n], desk.ends[1, n] = desk.stages[0, n], desk.stages[STAGES - 1, n]
+        buffer.ends[0, n], buffer.ends[1, n] = buffer.stages[0, n], buffer.stages[STAGES - 1, n]
     row[BEGINS], row[DURATION] = begin, h
     for end in range(2):
-        state = desk.y if end == 0 else desk.new
-        floor = surface_now(stretch, begin + end * h)
-        ax, ay, turn = accelerations(floor, state, desk.ends, end)
+        state = buffer.y if end == 0 else buffer.new
+        floor = surface_now(phase, begin + end * h)
+        ax, ay, turn = accelerations(floor, state, buffer.ends, end)
         first = PLACES + 9 * end
         for n in range(3):
-            row[first + n], row[first + 3 + n] = state[n], desk.ends[end, n]
+            row[first + n], row[first + 3 + n] = state[n], buffer.ends[end, n]
         row[first + 6], row[first + 7], row[first + 8] = ax, ay, turn
 
 
 @inlined
-def _write_work(game: Game, begin: float, h: float, count: int, desk: Desk) -> None:
+def _write_work(engine: Engine, begin: float, h: float, count: int, buffer: LoneBuffer) -> None:
     """What a step, after so many others, did to the energies."""
-    row = game.works[game.counts[N_WORKS] + count]
-    before, done, after, half = desk.ledgers[0], desk.ledgers[1], desk.ledgers[2], desk.ledgers[3]
+    row = engine.work_rows[engine.counts[N_WORKS] + count]
+    before, done, after, half = (
+        buffer.ledgers[0],
+        buffer.ledgers[1],
+        buffer.ledgers[2],
+        buffer.ledgers[3],
+    )
     for n in range(GIVEN, SIZE):
-        entry = works.PULL_WORK
+        entry = step_ledger.PULL_WORK
         if n == DRY:
-            entry = works.FLOOR_HEAT
+            entry = step_ledger.FLOOR_HEAT
         elif n == VISCOUS:
-            entry = works.DRAG_HEAT
+            entry = step_ledger.DRAG_HEAT
         elif n == SUPPORT:
-            entry = works.SUPPORT_WORK
-        before[entry], after[entry] = desk.ends[0, n], desk.ends[1, n]
-        done[entry], half[entry] = desk.new[n] - desk.y[n], desk.trial[n]
-    row[works.FLIGHT] = game.counts[N_HISTORY]
-    works.write_work(row, begin, h, before, done, after, half)
+            entry = step_ledger.SUPPORT_WORK
+        before[entry], after[entry] = buffer.ends[0, n], buffer.ends[1, n]
+        done[entry], half[entry] = buffer.new[n] - buffer.y[n], buffer.trial[n]
+    row[step_ledger.SEGMENT] = engine.counts[N_HISTORY]
+    step_ledger.write_work(row, begin, h, before, done, after, half)
 
 
 @inner
 def _misfit(
-    stretch: Stretch, t: float, h: float, piece: FloatArray, tol: float, desk: Desk
+    phase: Phase, t: float, h: float, piece: FloatArray, tol: float, buffer: LoneBuffer
 ) -> float:
     """How wrong a piece is in its middle, over what it may be, and what came half way.
 
     Of an explicit step by what its acceleration there lacks of what acts; of an implicit one, where
     friction magnifies that, by half a step.
     """
-    on_piece(piece, t + 0.5 * h, desk.place)
-    trial, place, scale = desk.trial, desk.place, desk.scale
-    floor = surface_now(stretch, t + 0.5 * h)
+    on_piece(piece, t + 0.5 * h, buffer.place)
+    trial, place, scale = buffer.trial, buffer.place, buffer.scale
+    floor = surface_now(phase, t + 0.5 * h)
     largest = 0.0
-    if stretch.newton > 0.0:
-        error = step(stretch, t, 0.5 * h, desk.y, scale, desk.stages, trial)
+    if phase.newton > 0.0:
+        error = step(phase, t, 0.5 * h, buffer.y, scale, buffer.stages, trial)
         if not error < math.inf:
             return math.inf
         to_laboratory(floor, trial, 1.0)
         for n in range(GIVEN):
             largest = max(largest, abs(place[n] - trial[n]) / scale[n])
         for n in range(GIVEN, SIZE):
-            trial[n] -= desk.y[n]
+            trial[n] -= buffer.y[n]
         return largest / (COARSER * tol)
     for n in range(GIVEN):
         trial[n] = place[n]
     to_laboratory(floor, trial, -1.0)
-    rates(stretch, t + 0.5 * h, trial, desk.middle, FIRST)
-    acts = accelerations(floor, trial, desk.middle, 0)
+    rates(phase, t + 0.5 * h, trial, buffer.middle, FIRST)
+    acts = accelerations(floor, trial, buffer.middle, 0)
     for n in range(3):
         gap = h * abs(place[6 + n] - acts[n])
         largest = max(largest, _PLACE * h * gap / scale[n], _RATE * gap / scale[VX + n])
     for n in range(GIVEN, SIZE):
         total = 0.0
         for stage in range(STAGES):
-            total += HALFWAY_STAGES[stage] * desk.stages[stage, n]
+            total += HALFWAY_STAGES[stage] * buffer.stages[stage, n]
         trial[n] = h * total
     return largest / (COARSER * tol)
 
 
 @inlined
-def _leads_off(game: Game, i: int, desk: Desk) -> bool:
+def _leads_off(engine: Engine, i: int, buffer: LoneBuffer) -> bool:
     """Whether a step has led to where there is another friction, or none is known.
 
     The rim has come over a border, or left it, or it slips faster than a law goes, or least over
     another belt.
     """
-    y, disc, radius = desk.new, game.discs[i], game.discs[i, RADIUS]
+    y, disc, radius = buffer.new, engine.discs[i], engine.discs[i, RADIUS]
     vx, vy = y[VX] + disc[BELT_X], y[VY] + disc[BELT_Y]
-    if nears_another(game.regions, game.discs, i, y[X], y[X + 1], vx, vy):
+    if nears_another(engine.regions, engine.discs, i, y[X], y[X + 1], vx, vy):
         return True
-    if outruns_law(game.regions, radius, y[VX], y[VY], y[SPIN]):
+    if outruns_law(engine.regions, radius, y[VX], y[VY], y[SPIN]):
         return True
-    if game.discs.shape[1] == LIES:
+    if engine.discs.shape[1] == LIES:
         return False
-    before = room_on_floor(game.regions, game.discs, i, desk.y) + _OVER * radius
-    return before > 0.0 > room_on_floor(game.regions, game.discs, i, y) + _OVER * radius
+    before = room_on_floor(engine.regions, engine.discs, i, buffer.y) + _OVER * radius
+    return before > 0.0 > room_on_floor(engine.regions, engine.discs, i, y) + _OVER * radius
 
 
 @inlined
 def _longest(
-    stretch: Stretch, t: float, h: float, q: float, speed: float, desk: Desk
+    phase: Phase, t: float, h: float, q: float, speed: float, buffer: LoneBuffer
 ) -> float:  # fmt: skip
     """A step where the slip is about to end, or may turn; at rest, where what holds it changes."""
-    y, surface, radius = desk.y, surface_now(stretch, t), stretch.model.body.radius
-    if stretch.mode == SLIDES and stretch.dry.load > 0.0:
-        pull, least = slip_rate(radius, desk.stages), REST * speed
-        h = up_to_the_stop(stretch, h, q, least, pull, _NEAR, y, desk.stages)
-    elif stretch.mode == CARRIED:
+    y, surface, radius = buffer.y, surface_now(phase, t), phase.model.body.radius
+    if phase.mode == SLIDES and phase.friction.load > 0.0:
+        pull, least = slip_rate(radius, buffer.stages), REST * speed
+        h = up_to_the_stop(phase, h, q, least, pull, _NEAR, y, buffer.stages)
+    elif phase.mode == CARRIED:
         if surface.spin != 0.0:
             h = min(h, _SWING / abs(surface.spin))
-        if is_astride(stretch.dry):
+        if is_mixed(phase.friction):
             sx, sy, _ = floor_velocity(surface, y[X], y[X + 1])
             h = min(h, _SWING * radius / max(math.hypot(sx, sy), 1e-300))
     return h
@@ -348,13 +359,13 @@ def _piece_for(coarse: float, h: float) -> float:
 
 @inlined
 def _goes_on(
-    stretch: Stretch, t: float, vx: float, vy: float, spin: float, q: float, y: FloatArray,
+    phase: Phase, t: float, vx: float, vy: float, spin: float, q: float, y: FloatArray,
     work: FloatArray,
 ) -> float:  # fmt: skip
     """Let a slip go on that the path before began, where it grows; else it begins anew, with q."""
-    radius, begun = stretch.model.body.radius, (y[VX], y[VY], y[SPIN])
+    radius, begun = phase.model.body.radius, (y[VX], y[VY], y[SPIN])
     y[VX], y[VY], y[SPIN] = vx, vy, spin
-    rates(stretch, t, y, work, FIRST)
+    rates(phase, t, y, work, FIRST)
     if slip_change(radius, y, work) > 0.0:
         return slip_speed(radius, y)
     y[VX], y[VY], y[SPIN] = begun
@@ -362,57 +373,64 @@ def _goes_on(
 
 
 @inlined
-def _is_held(stretch: Stretch, t: float, h: float, desk: Desk) -> tuple[float, bool]:
+def _is_held(phase: Phase, t: float, h: float, buffer: LoneBuffer) -> tuple[float, bool]:
     """How long of a step over h a puck at rest is held by the floor, and whether it is lost."""
-    if stretch.mode != CARRIED:
+    if phase.mode != CARRIED:
         return h, False
-    slips = lost(stretch, t, h, desk.y, desk.scale, desk.stages, desk.new)
+    slips = lost(phase, t, h, buffer.y, buffer.scale, buffer.stages, buffer.new)
     length = min(slips, h)
-    step(stretch, t, length, desk.y, desk.scale, desk.stages, desk.new)
+    step(phase, t, length, buffer.y, buffer.scale, buffer.stages, buffer.new)
     return length, slips < math.inf
 
 
 @inlined
 def _from_rest(
-    model: Model, dry: Dry, rows: int, speed: float, t: float, slow: float, begins: bool, desk: Desk
-) -> tuple[int, bool, float, bool]:  # fmt: skip
+    model: Model,
+    friction: DryFriction,
+    rows: int,
+    speed: float,
+    t: float,
+    slow: float,
+    begins: bool,
+    buffer: LoneBuffer,
+) -> tuple[int, bool, float, bool]:
     """How it goes on with no slip but what rounding leaves: mode, whether stiff, slip, and rests.
 
     ``slow``: the slip it has; where it ``begins`` so, it may be what the path before began.
     """
-    y = desk.y
+    y = buffer.y
     vx, vy, spin = y[VX], y[VY], y[SPIN]
     y[VX] = y[VY] = y[SPIN] = 0.0
-    at_rest = Stretch(model, dry, rows, CARRIED, NO_WAY, 0.0)
-    mode, stiff, q = from_standstill(at_rest, speed, t, y, desk.stages)
+    at_rest = Phase(model, friction, rows, CARRIED, NO_WAY, 0.0)
+    mode, stiff, q = from_standstill(at_rest, speed, t, y, buffer.stages)
     if mode == SLIDES and begins and slow > q:
-        q = _goes_on(Stretch(model, dry, rows, SLIDES, NO_WAY, 0.0), t, vx, vy, spin, q, y,
-                     desk.stages)  # fmt: skip
-    rests = mode == CARRIED and not _swings(model, dry, rows)
-    return mode, stiff, q, rests and rests_on(model, dry, rows, y)
+        q = _goes_on(Phase(model, friction, rows, SLIDES, NO_WAY, 0.0), t, vx, vy, spin, q, y,
+                     buffer.stages)  # fmt: skip
+    rests = mode == CARRIED and not _swings(model, friction, rows)
+    return mode, stiff, q, rests and rests_on(model, friction, rows, y)
 
 
 @inlined
-def _go_on_from(model: Model, tol: float, desk: Desk) -> None:
+def _go_on_from(model: Model, tol: float, buffer: LoneBuffer) -> None:
     """The end of a step is the start of the next."""
     for n in range(SIZE):
-        desk.y[n] = desk.new[n]
+        buffer.y[n] = buffer.new[n]
     for n in range(ROW):
-        desk.stages[0, n] = desk.ends[1, n]
-    follow_scales(desk.scale, tol, model.body, desk.y)
+        buffer.stages[0, n] = buffer.ends[1, n]
+    follow_scales(buffer.scale, tol, model.body, buffer.y)
 
 
 @inlined
-def _put_down(model: Model, t: float, state: FloatArray, desk: Desk) -> None:
+def _put_down(model: Model, t: float, state: FloatArray, buffer: LoneBuffer) -> None:
     """Where it rests, in the laboratory, into ``state`` (6,)."""
-    to_laboratory(_surface_at(model, t), desk.y, 1.0)
+    to_laboratory(_surface_at(model, t), buffer.y, 1.0)
     for n in range(GIVEN):
-        state[n] = desk.y[n]
+        state[n] = buffer.y[n]
 
 
 @on_demand("boolean", "float64", "int64")
 def follow_alone(
-    game: Game, i: int, t: float, state: FloatArray, work: FloatArray
+    engine: Engine, i: int, t: float, state: FloatArray, work: FloatArray
 ) -> tuple[bool, float, int]:  # fmt: skip
     """Follow a disc from its state at t: whether it can be, until when, and by how many pieces.
 
@@ -420,80 +438,86 @@ def follow_alone(
     uncounted.  Where it rests for good there are none, until inf; ``state`` (6,) is moved to rest.
     ``work`` (25, 12): to work on.
     """
-    choose_belt(game.regions, game.discs, i, state)
-    model, dry, desk = model_of(game, i), dry_under(game.regions, game.discs, i), _desk_on(work)
-    y, new, stages = desk.y, desk.new, desk.stages
-    speed, unit, radius = game.pace[0], game.pace[0] / game.pace[1], model.body.radius
-    tol, drive = max(game.pace[2], FINEST), model.forces.drive
-    _lay_out(game, i, model, t, state, tol, desk)
+    choose_belt(engine.regions, engine.discs, i, state)
+    model, friction, buffer = (
+        model_of(engine, i),
+        friction_under_disc(engine.regions, engine.discs, i),
+        _buffer_on(work),
+    )
+    y, new, stages = buffer.y, buffer.new, buffer.stages
+    speed, unit, radius = engine.scale[0], engine.scale[0] / engine.scale[1], model.body.radius
+    tol, drive = max(engine.scale[2], FINEST), model.forces.drive
+    _lay_out(engine, i, model, t, state, tol, buffer)
     slow = max(1.0, 2.0 * model.body.inertia / (model.body.mass * radius * radius))
-    straight, horizon = _LAST * math.sqrt(tol) * speed, _horizon(game, model, t)
+    straight, horizon = _LAST * math.sqrt(tol) * speed, _horizon(engine, model, t)
     now, passed, h, count, mode, way = t, 0.0, _BEGIN * unit, 0, SLIDES, NO_WAY
-    settle, known, stiff, over, rests = True, False, False, False, False
+    find_break_away, known, stiff, over, rests = True, False, False, False, False
     while now < horizon and count < LONGEST and not over:
         patience(1)
         rows = rows_passed(drive, 0, len(drive), now)
         target = min(drive[rows, 0], horizon) if rows < len(drive) else horizon
         q = slip_speed(radius, y)
-        if settle:
+        if find_break_away:
             before, mode, way = mode, SLIDES, NO_WAY
-            if dry.load > 0.0 and q <= REST * speed:
+            if friction.load > 0.0 and q <= REST * speed:
                 mode, stiff, q, rests = _from_rest(
-                    model, dry, rows, speed, now, q, count == 0, desk
+                    model, friction, rows, speed, now, q, count == 0, buffer
                 )
                 turns = (mode == CARRIED) != (before == CARRIED)
                 if rests or (turns and count > 0 and now > t):
                     break
                 h = target - now if mode == CARRIED else h
         newton = max(_NEWTON * tol, _FINEST_NEWTON) if stiff and mode == SLIDES else 0.0
-        stretch = Stretch(model, dry, rows, mode, way, newton)
-        if settle or not known:
-            rates(stretch, now, y, stages, FIRST)
-        settle, known = False, True
-        if mode == SLIDES and dry.load > 0.0 and 0.0 < q <= straight:
+        phase = Phase(model, friction, rows, mode, way, newton)
+        if find_break_away or not known:
+            rates(phase, now, y, stages, FIRST)
+        find_break_away, known = False, True
+        if mode == SLIDES and friction.load > 0.0 and 0.0 < q <= straight:
             pull = slip_rate(radius, stages)
-            way, _ = goes_straight(stretch, speed, tol, unit, now, q, pull, slow, y, stages)
+            way, _ = goes_straight(phase, speed, tol, unit, now, q, pull, slow, y, stages)
             if way[3] < 0.0:
                 mode, h, newton = STOPS, -q / way[3], 0.0
-                stretch = Stretch(model, dry, rows, mode, way, newton)
-                rates(stretch, now, y, stages, FIRST)
-        h = _longest(stretch, now, h, q, speed, desk)
+                phase = Phase(model, friction, rows, mode, way, newton)
+                rates(phase, now, y, stages, FIRST)
+        h = _longest(phase, now, h, q, speed, buffer)
         landed = now + (1.0 if mode == STOPS else 1.1) * h >= target
         whole = target - now if landed else h
-        error = step(stretch, now, whole, y, desk.scale, stages, new)
+        error = step(phase, now, whole, y, buffer.scale, stages, new)
         grows = times_as_long(error, tol, 0.25 if newton > 0.0 else 0.125, 0.1)
         if not error <= tol:
             h = whole * grows
             if h < _SHORTEST * unit:
                 break
             continue
-        stuck, length = cut_short(stretch, now, whole, y, desk.scale, stages, new)
+        stuck, length = first_event_on(phase, now, whole, y, buffer.scale, stages, new)
         if not math.isfinite(new[VX]):  # a shorter implicit step, which was not solved
             h = 0.25 * length
             continue
-        length, slips = _is_held(stretch, now, length, desk)
+        length, slips = _is_held(phase, now, length, buffer)
         landed = landed and stuck == NOTHING and not slips
-        piece = game.pieces[game.counts[N_PIECES] + count]
-        _write_piece(stretch, now, length, piece, desk)
-        coarse = _misfit(stretch, now, length, piece, tol, desk)
+        piece = engine.pieces[engine.counts[N_PIECES] + count]
+        _write_piece(phase, now, length, piece, buffer)
+        coarse = _misfit(phase, now, length, piece, tol, buffer)
         longest = _piece_for(coarse, length) if length > _BRIEF * unit else math.inf
         if coarse > 1.0 and longest < length:
             h = longest
             continue
         h = min(whole * grows, longest)
-        over = _leads_off(game, i, desk)
+        over = _leads_off(engine, i, buffer)
         if length > _SHORTEST * unit:
-            _write_work(game, now, length, count, desk)
+            _write_work(engine, now, length, count, buffer)
             count += 1
         passed += length
         now = target if landed else t + passed
-        _go_on_from(model, tol, desk)
+        _go_on_from(model, tol, buffer)
         larger, q = q, slip_speed(radius, y)
         if mode == SLIDES:
-            stiff = _is_stiff(model, dry.load, newton > 0.0, length, q, slip_rate(radius, stages))
-        settle = landed or slips or mode == STOPS or (q <= REST * speed and q < larger)
-        known = not settle and model.hold.kind == FREE
+            stiff = _is_stiff(
+                model, friction.load, newton > 0.0, length, q, slip_rate(radius, stages)
+            )
+        find_break_away = landed or slips or mode == STOPS or (q <= REST * speed and q < larger)
+        known = not find_break_away and model.hold.kind == FREE
     if count > 0 and now > t:
         return True, now, count
-    _put_down(model, now, state, desk)
+    _put_down(model, now, state, buffer)
     return rests, math.inf, 0

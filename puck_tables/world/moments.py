@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 from puck_tables.kernels.compile import inlined, inner
+from puck_tables.world.break_away import find_break_away, overborne
 from puck_tables.world.complementarity import most
 from puck_tables.world.forces import gain_of
 from puck_tables.world.group import (
@@ -27,29 +28,28 @@ from puck_tables.world.group import (
     TO_END,
     WATCHES,
     YIELDS,
-    Desk,
     Group,
+    GroupBuffer,
     IntArray,
     Scales,
 )
 from puck_tables.world.multipliers import leads
-from puck_tables.world.yielding import overborne, settle
 
 
 @inner
-def watch(desk: Desk, modes: IntArray, scales: Scales, end: bool) -> None:
+def watch(buffer: GroupBuffer, modes: IntArray, scales: Scales, end: bool) -> None:
     """What is watched at the start or end of a step, from sights and pushes."""
     for c in range(modes.shape[0]):
-        seen, sight = desk.watched[1 if end else 0, c], desk.sights[c]
+        seen, sight = buffer.watched[1 if end else 0, c], buffer.sights[c]
         for i in range(WATCHES):
             seen[i] = math.inf
         if modes[c] == APART:
             continue
         seen[RUNS_OFF - PARTS] = sight[TO_END]
-        _, _, soft, rolls = leads(desk, c)
+        _, _, soft, rolls = leads(buffer, c)
         if soft == 0.0:
             continue
-        push, rim = desk.pushes[c, 0], desk.pushes[c, 1]
+        push, rim = buffer.pushes[c, 0], buffer.pushes[c, 1]
         seen[0] = push * soft + LEVEL * scales.rate
         if sight[GRIP] == 0.0 or sight[GRIP] == math.inf:
             continue
@@ -61,37 +61,42 @@ def watch(desk: Desk, modes: IntArray, scales: Scales, end: bool) -> None:
 
 
 @inlined
-def first_negative(desk: Desk, end: int, count: int) -> tuple[int, int]:
+def first_negative(buffer: GroupBuffer, end: int, count: int) -> tuple[int, int]:
     """A contact and what of it is negative at the start or end of a step; −1: nothing."""
     for c in range(count):
         for i in range(WATCHES):
-            if desk.watched[end, c, i] < 0.0:
+            if buffer.watched[end, c, i] < 0.0:
                 return c, i
     return -1, 0
 
 
 @inner
 def sets_off(
-    group: Group, members: IntArray, modes: IntArray, doings: IntArray, scales: Scales, desk: Desk
+    group: Group,
+    members: IntArray,
+    modes: IntArray,
+    motions: IntArray,
+    scales: Scales,
+    buffer: GroupBuffer,
 ) -> int:
     """Whether what presses on the discs at rest moves one: 1, or 0; −1: not solved.
 
-    From the pushes of the state at the end of a step, which is that of ``desk.states[1]``; only
+    From the pushes of the state at the end of a step, which is that of ``buffer.states[1]``; only
     where a disc alone could not bear them all is it looked at who moves.
     """
     contacts = modes.shape[0]
-    y = desk.states[1]
-    if not overborne(group, members, doings, contacts, y, scales, False, desk):
+    y = buffer.states[1]
+    if not overborne(group, members, motions, contacts, y, scales, False, buffer):
         return 0
-    trial, does = desk.modes[0, :contacts], desk.doings[: members.shape[0]]
+    trial, does = buffer.modes[0, :contacts], buffer.motions[: members.shape[0]]
     for c in range(contacts):
         trial[c] = modes[c]
     for place in range(members.shape[0]):
-        does[place] = doings[place]
-    if not settle(group, members, trial, does, y, scales, desk):
+        does[place] = motions[place]
+    if not find_break_away(group, members, trial, does, y, scales, buffer):
         return -1
     for place in range(members.shape[0]):
-        begins = doings[place] == HELD and does[place] == YIELDS
-        if begins and gain_of(group, members[place], place, desk) > GAINS * scales.rate:
+        begins = motions[place] == HELD and does[place] == YIELDS
+        if begins and gain_of(group, members[place], place, buffer) > GAINS * scales.rate:
             return 1
     return 0

@@ -25,13 +25,13 @@ from puck_tables.world.group import (
     NX,
     NY,
     STICKS,
-    Desk,
+    GroupBuffer,
     IntArray,
 )
 
 _RAISED = 1e-9  # of the diagonal
 _ROUNDS = 4  # of solving for what is left, at most
-RIGHT, SOLUTION, LEFT, STEP = range(4)  # vectors of the desk
+RIGHT, SOLUTION, LEFT, STEP = range(4)  # vectors of the buffer
 
 
 @inlined
@@ -43,11 +43,11 @@ def _row_of(row: FloatArray, sight: FloatArray, along: bool) -> None:
 
 
 @inlined
-def times_row(desk: Desk, number: int, rates: FloatArray, first: int) -> float:
+def times_row(buffer: GroupBuffer, number: int, rates: FloatArray, first: int) -> float:
     """A row of the constraints times velocities or accelerations (m, …), from a column on."""
-    total, row = 0.0, desk.rows[number]
+    total, row = 0.0, buffer.rows[number]
     for side in range(2):
-        place = desk.owners[number, side]
+        place = buffer.owners[number, side]
         if place >= 0:
             for i in range(3):
                 total += row[3 * side + i] * rates[place, first + i]
@@ -55,7 +55,7 @@ def times_row(desk: Desk, number: int, rates: FloatArray, first: int) -> float:
 
 
 @inlined
-def constrain(desk: Desk, modes: IntArray, sticks: bool, slides: bool) -> int:
+def constrain(buffer: GroupBuffer, modes: IntArray, sticks: bool, slides: bool) -> int:
     """Rows and columns of what contacts in these modes forbid, and then ties; their number.
 
     ``sticks``: also that rims that stick slip; ``slides``: with the forces of rims that slide.
@@ -64,68 +64,68 @@ def constrain(desk: Desk, modes: IntArray, sticks: bool, slides: bool) -> int:
     for c in range(modes.shape[0]):
         if modes[c] == APART:
             continue
-        sight = desk.sights[c]
+        sight = buffer.sights[c]
         for along in range(2):
             if along == 1 and not (sticks and modes[c] == STICKS and sight[GRIP] > 0.0):
                 continue
             for side in range(2):
-                desk.owners[count, side] = desk.pairs[c, side]
-            _row_of(desk.rows[count], sight, along == 1)
-            _row_of(desk.columns[count], sight, along == 1)
+                buffer.owners[count, side] = buffer.pairs[c, side]
+            _row_of(buffer.rows[count], sight, along == 1)
+            _row_of(buffer.columns[count], sight, along == 1)
             if slides and along == 0 and modes[c] != STICKS and 0.0 < sight[GRIP] < math.inf:
                 rim = modes[c] * sight[GRIP]
-                column = desk.columns[count]
+                column = buffer.columns[count]
                 column[0] -= rim * sight[NY]
                 column[1] += rim * sight[NX]
                 column[3] += rim * sight[NY]
                 column[4] -= rim * sight[NX]
                 column[2], column[5] = rim * sight[ARM], rim * sight[FAR_ARM]
             count += 1
-    for tie in range(desk.number[0]):
-        desk.owners[count, 0], desk.owners[count, 1] = desk.tied[tie], -1
+    for tie in range(buffer.number[0]):
+        buffer.owners[count, 0], buffer.owners[count, 1] = buffer.tied[tie], -1
         for i in range(3):
-            desk.rows[count, i] = desk.columns[count, i] = desk.ties[tie, i]
-            desk.rows[count, 3 + i] = desk.columns[count, 3 + i] = 0.0
+            buffer.rows[count, i] = buffer.columns[count, i] = buffer.ties[tie, i]
+            buffer.rows[count, 3 + i] = buffer.columns[count, 3 + i] = 0.0
         count += 1
     return count
 
 
 @inlined
-def stray(desk: Desk, first: int, what: int) -> None:
+def stray(buffer: GroupBuffer, first: int, what: int) -> None:
     """By how much places (0) or velocities (1) of what is led are off, as what forces take out."""
-    for tie in range(desk.number[0]):
-        desk.vectors[RIGHT, first + tie] = desk.strays[tie, what]
+    for tie in range(buffer.number[0]):
+        buffer.vectors[RIGHT, first + tie] = buffer.strays[tie, what]
 
 
 @inlined
-def fill_matrix(desk: Desk, count: int) -> None:
+def fill_matrix(buffer: GroupBuffer, count: int) -> None:
     """The matrix: how much a unit of one force changes what another one forbids."""
     for r in range(count):
         for c in range(count):
             total = 0.0
             for side in range(2):
-                place = desk.owners[r, side]
+                place = buffer.owners[r, side]
                 if place < 0:
                     continue
-                light, turns = desk.inverse[place, 0], desk.inverse[place, 1]
+                light, turns = buffer.inverse[place, 0], buffer.inverse[place, 1]
                 for other in range(2):
-                    if desk.owners[c, other] == place:
+                    if buffer.owners[c, other] == place:
                         i, j = 3 * side, 3 * other
                         total += light * (
-                            desk.rows[r, i] * desk.columns[c, j]
-                            + desk.rows[r, i + 1] * desk.columns[c, j + 1]
-                        ) + turns * (desk.rows[r, i + 2] * desk.columns[c, j + 2])
-            desk.matrix[r, c] = total
+                            buffer.rows[r, i] * buffer.columns[c, j]
+                            + buffer.rows[r, i + 1] * buffer.columns[c, j + 1]
+                        ) + turns * (buffer.rows[r, i + 2] * buffer.columns[c, j + 2])
+            buffer.matrix[r, c] = total
 
 
 @inlined
-def _factor(desk: Desk, count: int) -> None:
+def _factor(buffer: GroupBuffer, count: int) -> None:
     """LU with row exchanges, of the matrix with its diagonal raised."""
-    lu, order = desk.factors, desk.order
+    lu, order = buffer.factors, buffer.order
     for r in range(count):
         order[r] = r
         for c in range(count):
-            lu[r, c] = desk.matrix[r, c]
+            lu[r, c] = buffer.matrix[r, c]
         lu[r, r] += _RAISED * abs(lu[r, r])
         if lu[r, r] == 0.0:
             lu[r, r] = 1.0  # between two that cannot move: no force
@@ -147,20 +147,20 @@ def _factor(desk: Desk, count: int) -> None:
 
 
 @inner
-def solve(desk: Desk, count: int) -> float:
+def solve(buffer: GroupBuffer, count: int) -> float:
     """Solve for the forces to ``vectors[RIGHT]``; what is left, over what was given."""
-    fill_matrix(desk, count)
-    _factor(desk, count)
-    lu, v = desk.factors, desk.vectors
+    fill_matrix(buffer, count)
+    _factor(buffer, count)
+    lu, v = buffer.factors, buffer.vectors
     given, left = 0.0, 0.0
     for r in range(count):
         v[SOLUTION, r], v[LEFT, r] = 0.0, v[RIGHT, r]
-        if desk.matrix[r, r] == 0.0:
+        if buffer.matrix[r, r] == 0.0:
             v[LEFT, r] = 0.0
         given = max(given, abs(v[LEFT, r]))
     for _ in range(_ROUNDS):
         for r in range(count):
-            total = v[LEFT, desk.order[r]]
+            total = v[LEFT, buffer.order[r]]
             for c in range(r):
                 total -= lu[r, c] * v[STEP, c]
             v[STEP, r] = total
@@ -176,8 +176,8 @@ def solve(desk: Desk, count: int) -> float:
         for r in range(count):
             total = v[RIGHT, r]
             for c in range(count):
-                total -= desk.matrix[r, c] * v[SOLUTION, c]
-            if desk.matrix[r, r] == 0.0:
+                total -= buffer.matrix[r, c] * v[SOLUTION, c]
+            if buffer.matrix[r, r] == 0.0:
                 total = 0.0
             v[LEFT, r] = total
             left = max(left, abs(total))
@@ -187,94 +187,96 @@ def solve(desk: Desk, count: int) -> float:
 
 
 @inlined
-def add_forces(desk: Desk, count: int, target: FloatArray, first: int) -> None:
+def add_forces(buffer: GroupBuffer, count: int, target: FloatArray, first: int) -> None:
     """Change velocities, accelerations or places (m, …), from a column on, by the solution."""
     for r in range(count):
-        force = desk.vectors[SOLUTION, r]
+        force = buffer.vectors[SOLUTION, r]
         for side in range(2):
-            place = desk.owners[r, side]
+            place = buffer.owners[r, side]
             if place >= 0:
-                column = desk.columns[r]
-                target[place, first] -= force * desk.inverse[place, 0] * column[3 * side]
-                target[place, first + 1] -= force * desk.inverse[place, 0] * column[3 * side + 1]
-                target[place, first + 2] -= force * desk.inverse[place, 1] * column[3 * side + 2]
+                column = buffer.columns[r]
+                target[place, first] -= force * buffer.inverse[place, 0] * column[3 * side]
+                target[place, first + 1] -= force * buffer.inverse[place, 0] * column[3 * side + 1]
+                target[place, first + 2] -= force * buffer.inverse[place, 1] * column[3 * side + 2]
 
 
 @inlined
-def right_hand_side(desk: Desk, modes: IntArray) -> None:
+def right_hand_side(buffer: GroupBuffer, modes: IntArray) -> None:
     """What the forces have to bring to nothing: gap″ and u′ without them."""
     number = 0
     for c in range(modes.shape[0]):
         if modes[c] == APART:
             continue
-        sight = desk.sights[c]
-        bend = sight[BEND] * sight[ALONG]
-        desk.vectors[RIGHT, number] = times_row(desk, number, desk.own, 0) - bend * sight[ALONG]
+        sight = buffer.sights[c]
+        accel = sight[BEND] * sight[ALONG]
+        buffer.vectors[RIGHT, number] = (
+            times_row(buffer, number, buffer.own, 0) - accel * sight[ALONG]
+        )
         number += 1
         if modes[c] == STICKS and sight[GRIP] > 0.0:
-            desk.vectors[RIGHT, number] = (
-                times_row(desk, number, desk.own, 0) + bend * sight[APPROACH]
+            buffer.vectors[RIGHT, number] = (
+                times_row(buffer, number, buffer.own, 0) + accel * sight[APPROACH]
             )
             number += 1
-    for tie in range(desk.number[0]):
-        right = times_row(desk, number, desk.own, 0) - desk.strays[tie, 2]
-        desk.vectors[RIGHT, number] = right
+    for tie in range(buffer.number[0]):
+        right = times_row(buffer, number, buffer.own, 0) - buffer.strays[tie, 2]
+        buffer.vectors[RIGHT, number] = right
         number += 1
 
 
 @inner
-def push_and_move(desk: Desk, modes: IntArray, members: int) -> float:
+def push_and_move(buffer: GroupBuffer, modes: IntArray, members: int) -> float:
     """Forces of the contacts in ``pushes``, accelerations in ``rates``; what was left over."""
-    count, left = constrain(desk, modes, True, True), 0.0
+    count, left = constrain(buffer, modes, True, True), 0.0
     if count > 0:
-        right_hand_side(desk, modes)
-        left = solve(desk, count)
+        right_hand_side(buffer, modes)
+        left = solve(buffer, count)
     number = 0
     for c in range(modes.shape[0]):
-        desk.pushes[c, 0] = desk.pushes[c, 1] = 0.0
+        buffer.pushes[c, 0] = buffer.pushes[c, 1] = 0.0
         if modes[c] == APART:
             continue
-        desk.pushes[c, 0] = desk.vectors[SOLUTION, number]
+        buffer.pushes[c, 0] = buffer.vectors[SOLUTION, number]
         number += 1
-        grip = desk.sights[c, GRIP]
+        grip = buffer.sights[c, GRIP]
         if modes[c] == STICKS and grip > 0.0:
-            desk.pushes[c, 1] = desk.vectors[SOLUTION, number]
+            buffer.pushes[c, 1] = buffer.vectors[SOLUTION, number]
             number += 1
         elif grip < math.inf:
-            desk.pushes[c, 1] = modes[c] * grip * desk.pushes[c, 0]
-    for tie in range(desk.number[0]):
-        desk.tautness[tie] = desk.vectors[SOLUTION, number + tie]
+            buffer.pushes[c, 1] = modes[c] * grip * buffer.pushes[c, 0]
+    for tie in range(buffer.number[0]):
+        buffer.tautness[tie] = buffer.vectors[SOLUTION, number + tie]
     for place in range(members):
         for i in range(3):
-            desk.rates[place, i] = desk.own[place, i]
-    add_forces(desk, count, desk.rates, 0)
+            buffer.rates[place, i] = buffer.own[place, i]
+    add_forces(buffer, count, buffer.rates, 0)
     return left
 
 
 @inlined
-def leads(desk: Desk, c: int) -> tuple[float, float, float, float]:
+def leads(buffer: GroupBuffer, c: int) -> tuple[float, float, float, float]:
     """Of a contact: gap″, u′, and how much a unit of λ and of τ changes them."""
-    sight = desk.sights[c]
+    sight = buffer.sights[c]
     across, along, soft, rolls = 0.0, 0.0, 0.0, 0.0
     for side in range(2):
-        place = desk.pairs[c, side]
+        place = buffer.pairs[c, side]
         if place < 0:
             continue
         sign, arm = 1.0 - 2.0 * side, sight[ARM + side]
-        ax, ay, aw = desk.rates[place, 0], desk.rates[place, 1], desk.rates[place, 2]
+        ax, ay, aw = buffer.rates[place, 0], buffer.rates[place, 1], buffer.rates[place, 2]
         across += sign * (ax * sight[NX] + ay * sight[NY])
         along += sign * (ay * sight[NX] - ax * sight[NY]) + arm * aw
-        soft += desk.inverse[place, 0]
-        rolls += desk.inverse[place, 0] + arm * arm * desk.inverse[place, 1]
-    bend = sight[BEND] * sight[ALONG]
-    return bend * sight[ALONG] - across, along + bend * sight[APPROACH], soft, rolls
+        soft += buffer.inverse[place, 0]
+        rolls += buffer.inverse[place, 0] + arm * arm * buffer.inverse[place, 1]
+    accel = sight[BEND] * sight[ALONG]
+    return accel * sight[ALONG] - across, along + accel * sight[APPROACH], soft, rolls
 
 
 @inlined
-def finite(desk: Desk, members: int) -> bool:
+def finite(buffer: GroupBuffer, members: int) -> bool:
     """Whether all accelerations are numbers."""
     total = 0.0
     for place in range(members):
         for i in range(3):
-            total += abs(desk.rates[place, i])
+            total += abs(buffer.rates[place, i])
     return math.isfinite(total)

@@ -18,20 +18,20 @@ from puck_tables.scene.friction import VX, VY, X, Y
 from puck_tables.scene.patches import ASTRIDE, INSIDE, OUTSIDE
 from puck_tables.scene.pucks_and_posts import Line
 from puck_tables.world.borders import to_round
-from puck_tables.world.flight import GONE, ROOM, START, moves_until, state_at
-from puck_tables.world.footing import lies_to
-from puck_tables.world.game import ENTERS, LEAVES, N_HISTORY, PASSES, Game, Whole
-from puck_tables.world.layout import RADIUS
-from puck_tables.world.meeting import (
+from puck_tables.world.contact_search import (
     QUIET,
     ROUNDED,
     arc_step,
-    bend_of,
+    distance_left,
+    largest_accel,
     moment_there,
     once_round,
     safe_step,
-    way_left,
 )
+from puck_tables.world.engine_state import ENTERS, LEAVES, N_HISTORY, PASSES, Engine, Whole
+from puck_tables.world.floor_under import lies_to
+from puck_tables.world.layout import RADIUS
+from puck_tables.world.segment import GONE, ROOM, START, moves_until, state_at
 
 # columns of a line: a straight one goes from (A, B) to (C, D); a round one has the radius R > 0
 # about (A, B)
@@ -66,7 +66,7 @@ class Passings:
     """What passed the lines of a world so far.
 
     ``seen`` (discs, lines, 2, 3): where each lies to each line, with its centre and its rim;
-    ``flights`` (discs + 1,): on which rows of the history they are, and how many were looked at.
+    ``segments`` (discs + 1,): on which rows of the history they are, and how many were looked at.
 
     Examples
     --------
@@ -78,7 +78,7 @@ class Passings:
         self.lines = rows_of(lines)
         self.seen = np.tile([UNKNOWN, 0.0, -1.0], (discs, len(lines), 2, 1))
         self.seen[np.flatnonzero(rimless), :, RIM, FROM:] = math.inf
-        self.flights = np.append(np.full(discs, -1), 0)
+        self.segments = np.append(np.full(discs, -1), 0)
         self.rows: FloatArray = np.zeros((0, COLUMNS))
 
     def copy(self) -> Passings:
@@ -94,16 +94,16 @@ class Passings:
         if not has_rim:
             own[:, :, RIM, FROM:] = math.inf
         other.seen = np.concatenate([self.seen, own])
-        other.flights = np.insert(self.flights, -1, -1)
+        other.segments = np.insert(self.segments, -1, -1)
         return other
 
-    def follow(self, game: Game) -> None:
+    def follow(self, engine: Engine) -> None:
         """See what passed until now."""
         size = 16
         while self.lines.size:
             own, found = self.copy(), np.zeros((size, COLUMNS))
             count = find_passings(
-                game, own.lines, own.seen, own.flights, np.empty(ROOM), np.empty(6), found
+                engine, own.lines, own.seen, own.segments, np.empty(ROOM), np.empty(6), found
             )
             if count <= size:
                 order = np.lexsort((found[:count, LINE], found[:count, WHO], found[:count, TIME]))
@@ -127,13 +127,13 @@ def _away(line: FloatArray, part: int, x: float, y: float) -> float:
 
 @inlined
 def _look(
-    line: FloatArray, part: int, side: int, radius: float, state: FloatArray, bend: float
+    line: FloatArray, part: int, side: int, radius: float, state: FloatArray, accel: float
 ) -> tuple[float, float, float]:
     """The room that is left on a side, how fast it changes, and how long it surely stays."""
     x, y, vx, vy = state[X], state[Y], state[VX], state[VY]
     if line[R] > 0.0:
         room, rate, step, _, _, _ = to_round(
-            line[A] - x, line[B] - y, vx, vy, line[R], side, radius, bend
+            line[A] - x, line[B] - y, vx, vy, line[R], side, radius, accel
         )
         return room, rate, step
     ax, ay, bx, by = x - line[A], y - line[B], line[C] - line[A], line[D] - line[B]
@@ -141,14 +141,14 @@ def _look(
     if part == CENTRE:
         sign = 1.0 if side == OUTSIDE else -1.0
         room, rate = sign * (ax * by - ay * bx) / long, sign * (vx * by - vy * bx) / long
-        return room, rate, safe_step(max(room, 0.0), rate, bend)
+        return room, rate, safe_step(max(room, 0.0), rate, accel)
     share = min(max((ax * bx + ay * by) / (long * long), 0.0), 1.0)
     ox, oy = ax - share * bx, ay - share * by
     far = math.hypot(ox, oy)
     rate = (ox * vx + oy * vy) / far if far > 0.0 else 0.0
     if side == ASTRIDE:
-        return radius - far, -rate, arc_step(max(radius - far, 0.0), ox, oy, vx, vy, bend)
-    return far - radius, rate, safe_step(max(far - radius, 0.0), rate, bend)
+        return radius - far, -rate, arc_step(max(radius - far, 0.0), ox, oy, vx, vy, accel)
+    return far - radius, rate, safe_step(max(far - radius, 0.0), rate, accel)
 
 
 @inlined
@@ -185,7 +185,7 @@ def _beyond(line: FloatArray, side: int, radius: float, state: FloatArray) -> in
 def _side_at_start(
     line: FloatArray, part: int, before: int, radius: float, rounded: float, state: FloatArray
 ) -> int:  # fmt: skip
-    """On which side a flight begins; on the line itself it is the side from which one came."""
+    """On which side a segment begins; on the line itself it is the side from which one came."""
     away = _away(line, part, state[X], state[Y])
     if abs(abs(away) - radius) > rounded:
         return lies_to(away, radius)
@@ -200,28 +200,35 @@ def _side_at_start(
 
 @inner
 def _next_passing(
-    game: Game, n: int, last: float, until: float, line: FloatArray, part: int, seen: FloatArray,
-    room: FloatArray, state: FloatArray,
-) -> float:  # fmt: skip
-    """When a side is left on a flight, up to a time, else inf; the state then in ``state``.
+    engine: Engine,
+    n: int,
+    last: float,
+    until: float,
+    line: FloatArray,
+    part: int,
+    seen: FloatArray,
+    room: FloatArray,
+    state: FloatArray,
+) -> float:
+    """When a side is left on a segment, up to a time, else inf; the state then in ``state``.
 
     < 0: not until then, nor before ``seen[FROM]``.
     """
-    kind, flight = int(game.history[n, 1]), game.history[n, 2:]
-    disc, t, side = game.discs[int(game.history[n, 0])], seen[FROM], int(seen[SIDE])
+    kind, segment = int(engine.history[n, 1]), engine.history[n, 2:]
+    disc, t, side = engine.discs[int(engine.history[n, 0])], seen[FROM], int(seen[SIDE])
     radius = disc[RADIUS] if part == RIM else 0.0
     while True:
         patience(1)
-        state_at(kind, flight, disc, game.curves, game.pieces, t, room, state)
+        state_at(kind, segment, disc, engine.lookups, engine.pieces, t, room, state)
         rounded = ROUNDED * (abs(state[X]) + abs(state[Y]) + radius + line[R])
-        bend = bend_of(kind, flight, disc, state, t)
-        gap, rate, step = _look(line, part, side, radius, state, bend)
-        if gap > way_left(kind, flight, disc, state, t) * (1.0 + 1e-9):
+        accel = largest_accel(kind, segment, disc, state, t)
+        gap, rate, step = _look(line, part, side, radius, state, accel)
+        if gap > distance_left(kind, segment, disc, state, t) * (1.0 + 1e-9):
             return math.inf
         if gap <= rounded:
-            if rate < -QUIET * game.pace[0]:
+            if rate < -QUIET * engine.scale[0]:
                 return t
-            step = max(step, moment_there(rounded, abs(rate), bend, t))
+            step = max(step, moment_there(rounded, abs(rate), accel, t))
         if t + step > last or step == math.inf:
             return math.inf
         t = max(t + step, t * (1.0 + _NEXT) + _NEXT * _NEXT)
@@ -232,31 +239,40 @@ def _next_passing(
 
 @inner
 def _along(
-    game: Game, n: int, until: float, line: FloatArray, part: int, seen: FloatArray,
-    room: FloatArray, state: FloatArray, found: FloatArray, count: int,
+    engine: Engine, n: int, until: float, line: FloatArray, part: int, seen: FloatArray,
+    room: FloatArray, state: FloatArray, passings: FloatArray, count: int,
 ) -> int:  # fmt: skip
-    """What passes a line on a flight; how many rows of ``found`` are used, or would be."""
-    i, kind, flight = int(game.history[n, 0]), int(game.history[n, 1]), game.history[n, 2:]
+    """What passes a line on a segment; how many rows of ``passings`` are used, or would be."""
+    i, kind, segment = int(engine.history[n, 0]), int(engine.history[n, 1]), engine.history[n, 2:]
     if kind == GONE:
         return count
-    radius = game.discs[i, RADIUS] if part == RIM else 0.0
-    if seen[SIDE] == UNKNOWN or seen[FROM] == flight[START]:
-        state_at(kind, flight, game.discs[i], game.curves, game.pieces, flight[START], room, state)
+    radius = engine.discs[i, RADIUS] if part == RIM else 0.0
+    if seen[SIDE] == UNKNOWN or seen[FROM] == segment[START]:
+        state_at(
+            kind,
+            segment,
+            engine.discs[i],
+            engine.lookups,
+            engine.pieces,
+            segment[START],
+            room,
+            state,
+        )
         rounded = ROUNDED * (abs(state[X]) + abs(state[Y]) + radius + line[R])
         seen[SIDE] = _side_at_start(line, part, int(seen[SIDE]), radius, rounded, state)
     while seen[NEXT] <= until and seen[SIDE] != UNKNOWN:
         if seen[NEXT] < 0.0:
-            last = min(moves_until(kind, flight), once_round(kind, flight, seen[FROM]))
+            last = min(moves_until(kind, segment), once_round(kind, segment, seen[FROM]))
             far = until if last == math.inf else math.inf
             if seen[FROM] <= far:
-                seen[NEXT] = _next_passing(game, n, last, far, line, part, seen, room, state)
+                seen[NEXT] = _next_passing(engine, n, last, far, line, part, seen, room, state)
             if seen[NEXT] < 0.0:
                 return count
             continue
         side, at = int(seen[SIDE]), seen[NEXT]
-        state_at(kind, flight, game.discs[i], game.curves, game.pieces, at, room, state)
+        state_at(kind, segment, engine.discs[i], engine.lookups, engine.pieces, at, room, state)
         to = _beyond(line, side, radius, state)
-        row = found[min(count, found.shape[0] - 1)]
+        row = passings[min(count, passings.shape[0] - 1)]
         if _note(line, side, to, state, row):
             row[TIME], row[WHO] = at, i
             count += 1
@@ -266,32 +282,32 @@ def _along(
 
 @kernel
 def find_passings(
-    game: Game, lines: FloatArray, seen: FloatArray, flights: Whole, room: FloatArray,
-    state: FloatArray, found: FloatArray,
+    engine: Engine, lines: FloatArray, seen: FloatArray, segments: Whole, room: FloatArray,
+    state: FloatArray, passings: FloatArray,
 ) -> int:  # fmt: skip
-    """All that passed until now; how many rows of ``found`` that takes, perhaps more than it has.
+    """All that passed until now; how many rows of ``passings`` it takes, perhaps too many.
 
-    ``flights`` (discs + 1,): the row of the history on which a disc is; how many there were.
+    ``segments`` (discs + 1,): the row of the history on which a disc is; how many there were.
     """
-    count, discs = 0, game.discs.shape[0]
-    begun = int(game.counts[N_HISTORY])
-    for n in range(flights[discs], begun + discs):
+    count, discs = 0, engine.discs.shape[0]
+    begun = int(engine.counts[N_HISTORY])
+    for n in range(segments[discs], begun + discs):
         patience(1)
-        i = int(game.history[n, 0]) if n < begun else n - begun
-        until = game.history[n, 2 + START] if n < begun else game.clock[0]
+        i = int(engine.history[n, 0]) if n < begun else n - begun
+        until = engine.history[n, 2 + START] if n < begun else engine.clock[0]
         for k in range(lines.shape[0]):
             for part in range(2):
-                if flights[i] >= 0 and seen[i, k, part, NEXT] <= until:
+                if segments[i] >= 0 and seen[i, k, part, NEXT] <= until:
                     used = count
                     count = _along(
-                        game, flights[i], until, lines[k], part, seen[i, k, part], room, state,
-                        found, count,
+                        engine, segments[i], until, lines[k], part, seen[i, k, part], room, state,
+                        passings, count,
                     )  # fmt: skip
-                    for row in range(used, min(count, found.shape[0])):
-                        found[row, LINE] = k
+                    for row in range(used, min(count, passings.shape[0])):
+                        passings[row, LINE] = k
                 if n < begun and seen[i, k, part, FROM] < math.inf:
                     seen[i, k, part, FROM], seen[i, k, part, NEXT] = until, -1.0
         if n < begun:
-            flights[i] = n
-    flights[discs] = begun
+            segments[i] = n
+    segments[discs] = begun
     return count

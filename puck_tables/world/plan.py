@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from puck_tables._core.fields import specs
 from puck_tables.scene.acting import EMPIRICAL, acting
+from puck_tables.scene.floor_parts import belts_of
 from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.scene.stretches import belts_of
 from puck_tables.world.agreement import (
     TABLE_ERROR,
     called,
-    flight_error,
     frictions_under,
     has_closed_forms,
     is_integrated,
     pucks_of,
+    segment_error,
 )
 from puck_tables.world.floors import has_several
 from puck_tables.world.rim_laws import rule_of
@@ -56,7 +56,7 @@ def plan_of(scene: SceneSpec) -> tuple[str, str]:
             hold and hold.kind, bool(puck.path),
         )  # fmt: skip
         if key not in known:
-            known[key] = _way_of(scene, puck)
+            known[key] = _method_of(scene, puck)
         ways.setdefault(known[key], []).append(called(puck, number))
     lines = []
     for way, names in ways.items():
@@ -100,7 +100,7 @@ def _acting_on(scene: SceneSpec, puck: ScenePuck) -> list[str]:
     return [what for what in acting(one) if what not in _ON_FLOOR]
 
 
-def _way_of(scene: SceneSpec, puck: ScenePuck) -> str:
+def _method_of(scene: SceneSpec, puck: ScenePuck) -> str:
     """How a puck is moved, and why it is not looked up."""
     acts = _acting_on(scene, puck)
     if puck.path:
@@ -112,7 +112,7 @@ def _way_of(scene: SceneSpec, puck: ScenePuck) -> str:
             acts.append("no closed forms")
         if puck.shape is not None:
             acts.append("a base that is not round")
-        if flight_error(scene) < TABLE_ERROR:
+        if segment_error(scene) < TABLE_ERROR:
             acts.append(_CLOSER)
         where = "" if all(integrated) else " on some of the floor"
         return f"integrated from impact to impact{where}: {', '.join(acts)}"

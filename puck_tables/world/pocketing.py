@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.world.game import Whole
+from puck_tables.world.engine_state import Whole
 from puck_tables.world.launches import good
 from puck_tables.world.shots import Landings, Shots
 from puck_tables.world.solving import HEADINGS, Which
@@ -37,9 +37,9 @@ class Pocketing:
     """
 
     def __init__(
-        self, shots: Shots, fate: int, most: int, asked: bool, low: float, high: float
+        self, shots: Shots, outcome: int, most: int, wanted: bool, low: float, high: float
     ) -> None:
-        self.shots, self.fate, self.most, self.asked = shots, fate, most, asked
+        self.shots, self.fate, self.most, self.asked = shots, outcome, most, wanted
         self.low, self.high = low, high
 
     def falls(self, landings: Landings) -> Which:

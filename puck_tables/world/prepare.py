@@ -10,6 +10,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.scene.by_speed import load_under
+from puck_tables.scene.floor_parts import belts_of
 from puck_tables.scene.forces import drags_of
 from puck_tables.scene.friction import SPIN, THETA, VX, VY
 from puck_tables.scene.holds import allowed_velocity
@@ -25,20 +26,22 @@ from puck_tables.scene.over_time import (
 from puck_tables.scene.parts import Floor
 from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.scene.stretches import belts_of
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.world import layout
-from puck_tables.world.agreement import flight_error, pucks_of, start_of, steps_for
-from puck_tables.world.departures import drive_on, hang_over, room_for
+from puck_tables.world.agreement import pucks_of, segment_error, start_of, steps_for
 from puck_tables.world.drive import pieces_along, rows_of
-from puck_tables.world.flight import (
-    ANGLE,
-    FIRST_PIECE,
-    FLIGHT_COLUMNS,
-    PLACE_X,
-    PLACE_Y,
-    Curves,
+from puck_tables.world.engine_state import (
+    COUNTS,
+    EVENT_COLUMNS,
+    HISTORY_COLUMNS,
+    LAUNCH_COLUMNS,
+    N_PIECES,
+    NOTHING,
+    Engine,
+    Whole,
+    led_rows,
 )
+from puck_tables.world.floor_under import lay_down, step_onto
 from puck_tables.world.floors import (
     fastest_rim,
     floors_of,
@@ -46,27 +49,24 @@ from puck_tables.world.floors import (
     regions_of,
     velocities_under,
 )
-from puck_tables.world.footing import lay_down, step_onto
-from puck_tables.world.game import (
-    COUNTS,
-    EVENT_COLUMNS,
-    HISTORY_COLUMNS,
-    LAUNCH_COLUMNS,
-    N_PIECES,
-    NOTHING,
-    Game,
-    Whole,
-    led_rows,
-)
 from puck_tables.world.lone import LONGEST
 from puck_tables.world.obstacles import borders_of, obstacles_of
 from puck_tables.world.paths import FIRST, PIECE_COLUMNS
 from puck_tables.world.rim_laws import number_for, rims_of
-from puck_tables.world.works import WORK_COLUMNS
+from puck_tables.world.segment import (
+    ANGLE,
+    FIRST_PIECE,
+    PLACE_X,
+    PLACE_Y,
+    SEGMENT_COLUMNS,
+    Lookups,
+)
+from puck_tables.world.segment_starts import drive_on, hang_over, room_for
+from puck_tables.world.step_ledger import WORK_COLUMNS
 
 SWIFTEST = 1e100  # m/s: its square is a number
 FAR = 1e12  # radii that a puck may slide: its rounding is a thousandth of a radius
-ROWS = 256  # of events and flights at first
+ROWS = 256  # of events and segments at first
 # of what steps are for, of each: one of 358 drawn scenes errs by more than all are for, with ten
 # times as much twelve (test_scene_checked)
 STEP_SHARE = 1e-2
@@ -75,14 +75,14 @@ STEP_SHARE = 1e-2
 class Start(NamedTuple):
     """A scene at its start, prepared once for all its runs.
 
-    ``order``: the numbers of the pucks in the order in which the engine has them; ``game``: its
+    ``order``: the numbers of the pucks in the order in which the engine has them; ``engine``: its
     arrays, nothing has taken off yet, so EVERYBODY is to look ahead; ``states`` (n, 6): then.  A
     run takes copies.
     """
 
     scene: SceneSpec
     order: Whole
-    game: Game
+    engine: Engine
     states: FloatArray
 
 
@@ -95,10 +95,10 @@ def order_of(scene: SceneSpec) -> Whole:
     return np.lexsort((places[:, 1], places[:, 0]))
 
 
-def shipped_curves() -> Curves:
+def shipped_lookups() -> Lookups:
     """The table of stops that comes along, as the engine reads it."""
     table = StopTable.shipped()
-    return Curves(
+    return Lookups(
         table.thinned(), table.launch_coefficients, table.state_coefficients, table.constants
     )
 
@@ -127,7 +127,7 @@ def prepared(scene: SceneSpec, order: Whole | None = None) -> Start:
     discs, states = np.zeros((count, layout.DISC_COLUMNS + lies)), np.zeros((count, 6))
     surface = _surface_of(scene.floor)
     spans = np.zeros((count, 2), np.int64)
-    tides: list[FloatArray] = []
+    forcing: list[FloatArray] = []
     drives, ways = np.zeros((count, 2), np.int64), [np.zeros((0, PIECE_COLUMNS))]
     launches = []
     rims, discs[:, layout.MAKE], makes, called = rims_of(scene, pucks)
@@ -135,9 +135,9 @@ def prepared(scene: SceneSpec, order: Whole | None = None) -> Start:
         driven = bool(puck.path)
         _fill_disc(scene, puck, called, discs[i])
         if not driven:
-            first = sum(map(len, tides))
-            tides.append(over_time(scene.floor, puck.force))
-            spans[i] = first, first + len(tides[-1])
+            first = sum(map(len, forcing))
+            forcing.append(over_time(scene.floor, puck.force))
+            spans[i] = first, first + len(forcing[-1])
         launch = puck.launch
         velocity = allowed_velocity(launch, puck.constraint, scene.floor)
         states[i, :2], states[i, 2] = start_of(puck), launch.orientation
@@ -154,19 +154,19 @@ def prepared(scene: SceneSpec, order: Whole | None = None) -> Start:
     floors = floors_of(scene, pucks, rim)
     regions = regions_of(scene, pucks, floors, rim)
     steps = 2 * LONGEST if floors[:, 2].any() else 0  # the first path, and room for another
-    game = Game(
+    engine = Engine(
         discs=discs,
         regions=regions,
         floors=floors,
         surface=surface,
-        tides=np.vstack(tides) if tides else np.empty((0, FORCED)),
+        forcing=np.vstack(forcing) if forcing else np.empty((0, FORCED)),
         spans=spans,
         rims=rims,
         obstacles=obstacles_of(scene, called, makes),
-        curves=shipped_curves(),
+        lookups=shipped_lookups(),
         clock=np.zeros(1),
         kinds=np.zeros(count, np.int64),
-        flights=np.zeros((count, FLIGHT_COLUMNS)),
+        segments=np.zeros((count, SEGMENT_COLUMNS)),
         group=np.zeros(count, np.int64),
         held=np.zeros((6 * count + 16, 2), np.int64),
         next_time=np.full(count, math.inf),
@@ -177,24 +177,24 @@ def prepared(scene: SceneSpec, order: Whole | None = None) -> Start:
         hangs=np.zeros((count, len(scene.edges)), np.int64),
         events=np.zeros((ROWS + (8 + len(scene.edges)) * count, EVENT_COLUMNS)),
         history=np.zeros((ROWS + 4 * count, HISTORY_COLUMNS)),
-        works=np.zeros((steps, WORK_COLUMNS)),
+        work_rows=np.zeros((steps, WORK_COLUMNS)),
         counts=np.zeros(COUNTS, np.int64),
-        pace=STEP_SHARE * np.array([0.0, 0.0, steps_for(scene), 0.0, 0.0, flight_error(scene)]),
+        scale=STEP_SHARE * np.array([0.0, 0.0, steps_for(scene), 0.0, 0.0, segment_error(scene)]),
     )
     for i in range(count):
-        lay_down(game, i, states[i])
+        lay_down(engine, i, states[i])
         if scene.edges:
-            hang_over(game, i, 0.0, states[i])
-    game.counts[N_PIECES] = drives.max()
-    game.flights[:, [PLACE_X, PLACE_Y, ANGLE]] = states[:, :3]
+            hang_over(engine, i, 0.0, states[i])
+    engine.counts[N_PIECES] = drives.max()
+    engine.segments[:, [PLACE_X, PLACE_Y, ANGLE]] = states[:, :3]
     for i in np.flatnonzero(drives[:, 0] < drives[:, 1]).tolist():
-        states[i, VX:] = game.pieces[drives[i, 0], FIRST + VX : FIRST + SPIN + 1]
-        game.flights[i, FIRST_PIECE] = drives[i, 0]
+        states[i, VX:] = engine.pieces[drives[i, 0], FIRST + VX : FIRST + SPIN + 1]
+        engine.segments[i, FIRST_PIECE] = drives[i, 0]
         room = room_for(count)
         room.states[i] = states[i]
-        drive_on(game, i, 0.0, room)
-    set_pace(game, states)
-    return Start(scene, order, game, states)
+        drive_on(engine, i, 0.0, room)
+    set_scales(engine, states)
+    return Start(scene, order, engine, states)
 
 
 def _fill_disc(
@@ -217,37 +217,38 @@ def _fill_disc(
         disc[layout.HEIGHT_RATIO] /= 4.0 * load.mean_square  # of uniform pressure it is 1/4
 
 
-def with_law_up_to(game: Game, scene: SceneSpec, order: Whole, fastest: float) -> Game:
+def with_law_up_to(engine: Engine, scene: SceneSpec, order: Whole, fastest: float) -> Engine:
     """With the table of a friction law by name for slips of the rim up to ``fastest``, m/s."""
     pucks = [pucks_of(scene)[number] for number in order]
     floors = floors_of(scene, pucks, fastest)
-    game = game._replace(regions=regions_of(scene, pucks, floors, fastest), floors=floors)
+    engine = engine._replace(regions=regions_of(scene, pucks, floors, fastest), floors=floors)
     for i in range(len(pucks)):
-        step_onto(game, i)
-    return game
+        step_onto(engine, i)
+    return engine
 
 
-def set_pace(game: Game, states: FloatArray) -> None:
+def set_scales(engine: Engine, states: FloatArray) -> None:
     """Scales of speed and acceleration that hold for these states, and for those before."""
-    speed, rate = scales_of(game, np.array([fastest(game, states)]))[0]
-    game.pace[:2] = max(game.pace[0], speed), max(game.pace[1], rate)
+    speed, rate = scales_of(engine, np.array([fastest(engine, states)]))[0]
+    engine.scale[:2] = max(engine.scale[0], speed), max(engine.scale[1], rate)
 
 
-def fastest(game: Game, states: FloatArray) -> float:
+def fastest(engine: Engine, states: FloatArray) -> float:
     """The largest slip of these states, of launches to come and of what is driven, m/s."""
-    rims = game.discs[:, layout.RADIUS] * np.abs(states[:, SPIN])
-    driven = led_rows(game)[:, FIRST + VX : FIRST + VY + 1]
-    launched = np.hypot(game.launches[:, 2], game.launches[:, 3])
-    led = np.hypot(*game.discs[:, [layout.HOLD_VX, layout.HOLD_VY]].T)
-    floor = velocities_under(game, states)
+    rims = engine.discs[:, layout.RADIUS] * np.abs(states[:, SPIN])
+    driven = led_rows(engine)[:, FIRST + VX : FIRST + VY + 1]
+    launched = np.hypot(engine.launches[:, 2], engine.launches[:, 3])
+    led = np.hypot(*engine.discs[:, [layout.HOLD_VX, layout.HOLD_VY]].T)
+    floor = velocities_under(engine, states)
     return max(
         float(np.hypot(np.hypot(states[:, VX], states[:, VY]), rims).max()),
-        float(np.hypot(*driven.T).max(initial=0.0)), float(launched.max(initial=0.0)),
+        float(np.hypot(*driven.T).max(initial=0.0)),
+        float(launched.max(initial=0.0)),
         float(led.max(initial=0.0)),
-    ) + max(float(np.hypot(*floor[:, :2].T).max(initial=0.0)), _swiftest(game, states))  # fmt: skip
+    ) + max(float(np.hypot(*floor[:, :2].T).max(initial=0.0)), _swiftest(engine, states))
 
 
-def scales_of(game: Game, speeds: FloatArray) -> FloatArray:
+def scales_of(engine: Engine, speeds: FloatArray) -> FloatArray:
     """Scales of speed and acceleration (n, 2) where the largest slips are ``speeds`` (n,).
 
     What is at rest on a steep slope has the speed that it gets within a radius.
@@ -257,43 +258,43 @@ def scales_of(game: Game, speeds: FloatArray) -> FloatArray:
     InputError
         If a puck would slide so far that its places, good to a share of that, mean nothing here.
     """
-    radius = float(game.discs[:, layout.RADIUS].min())
-    _refuse_far(game, float(speeds.max(initial=0.0)), radius)
-    steady = max(float(game.floors[:, 0].max()), _strongest(game))
-    turning = abs(game.surface.spin)
-    steady = max(steady, turning * float(speeds.max(initial=0.0)), _shaken(game))
+    radius = float(engine.discs[:, layout.RADIUS].min())
+    _refuse_far(engine, float(speeds.max(initial=0.0)), radius)
+    steady = max(float(engine.floors[:, 0].max()), _strongest(engine))
+    turning = abs(engine.surface.spin)
+    steady = max(steady, turning * float(speeds.max(initial=0.0)), _shaken(engine))
     speeds = np.where(speeds > 0.0, speeds, np.sqrt(steady * radius))
     return np.stack([speeds, np.where(steady > 0.0, steady, speeds**2 / radius)], axis=1)
 
 
-def _swiftest(game: Game, states: FloatArray) -> float:
+def _swiftest(engine: Engine, states: FloatArray) -> float:
     """The largest velocity that a floor over time ever has under these states, m/s."""
-    if game.surface.changes == 0.0:
+    if engine.surface.changes == 0.0:
         return 0.0
-    far = np.hypot(states[:, 0] - game.surface.cx, states[:, 1] - game.surface.cy).max()
-    rows = game.tides
+    far = np.hypot(states[:, 0] - engine.surface.cx, states[:, 1] - engine.surface.cy).max()
+    rows = engine.forcing
     speeds = np.hypot(rows[:, FLOOR_X], rows[:, FLOOR_Y]) + far * np.abs(rows[:, FLOOR_SPIN])
     return float(speeds.max(initial=0.0))
 
 
-def _shaken(game: Game) -> float:
+def _shaken(engine: Engine) -> float:
     """The largest acceleration of a floor over time at its centre, m/s²."""
-    if game.surface.changes == 0.0:
+    if engine.surface.changes == 0.0:
         return 0.0
-    free = int(np.argmax(np.diff(game.spans)[:, 0]))  # what is driven has no rows
-    rows = game.tides[slice(*game.spans[free])]
+    free = int(np.argmax(np.diff(engine.spans)[:, 0]))  # what is driven has no rows
+    rows = engine.forcing[slice(*engine.spans[free])]
     steps = np.diff(rows[:, 0])
     rates = np.hypot(*np.diff(rows[:, [FLOOR_X, FLOOR_Y]], axis=0)[steps > 0.0].T)
     return float((rates / steps[steps > 0.0]).max(initial=0.0))
 
 
-def _refuse_far(game: Game, speed: float, radius: float) -> None:
+def _refuse_far(engine: Engine, speed: float, radius: float) -> None:
     """Refuse looked-up pucks whose slide, at the largest slip, is beyond what digits can tell."""
     if not speed < SWIFTEST:
         raise InputError(
             f"a slip of {speed:.3g} m/s is too fast for floating point: use other units"
         )
-    decels = game.floors[(game.floors[:, 2] == 0.0) & (game.floors[:, 0] > 0.0), 0]
+    decels = engine.floors[(engine.floors[:, 2] == 0.0) & (engine.floors[:, 0] > 0.0), 0]
     least = float(decels.min(initial=math.inf))
     if speed > 0.0 and speed / least > FAR * radius / speed:
         raise InputError(
@@ -303,12 +304,12 @@ def _refuse_far(game: Game, speed: float, radius: float) -> None:
         )
 
 
-def _strongest(game: Game) -> float:
+def _strongest(engine: Engine) -> float:
     """The largest acceleration by slope and given forces, m/s²."""
-    counts = game.spans[:, 1] - game.spans[:, 0]
-    discs, forced = game.discs, np.repeat(np.arange(len(counts)), counts)
+    counts = engine.spans[:, 1] - engine.spans[:, 0]
+    discs, forced = engine.discs, np.repeat(np.arange(len(counts)), counts)
     of = np.concatenate([np.arange(len(counts)), forced])  # each without its force, and with it
-    given = game.tides[:, :FORCED]
+    given = engine.forcing[:, :FORCED]
     rows, discs = np.vstack([np.zeros((len(counts), FORCED)), given]), discs[of]
     light, turns = discs[:, layout.LIGHTNESS], discs[:, layout.TURNABILITY]
     ax = discs[:, layout.PULL_X] + light * rows[:, 1]

@@ -17,7 +17,9 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel, patience
 from puck_tables.motion.steppers import times_as_long
 from puck_tables.scene.friction import VX, VY, X, Y
-from puck_tables.world.footing import is_over, moves_along, nears_another, room_on_floor
+from puck_tables.world.contact_kinematics import look
+from puck_tables.world.contact_search import ROUNDED
+from puck_tables.world.floor_under import is_over, moves_along, nears_another, room_on_floor
 from puck_tables.world.forces import can_rest, count_rows, slip_at
 from puck_tables.world.group import (
     DRIVEN,
@@ -34,18 +36,17 @@ from puck_tables.world.group import (
     TIME_UP,
     UNSOLVED,
     YIELDS,
-    Desk,
     Group,
+    GroupBuffer,
     IntArray,
     Scales,
     find_places,
     small_slip,
 )
 from puck_tables.world.layout import LIES, LIGHTNESS, RADIUS
-from puck_tables.world.meeting import ROUNDED
 from puck_tables.world.moments import first_negative, sets_off, watch
 from puck_tables.world.paths import DURATION, START, on_piece, piece_at
-from puck_tables.world.sights import look
+from puck_tables.world.step_ledger import LEDGER
 from puck_tables.world.stepping import (
     BEGIN,
     END,
@@ -55,7 +56,6 @@ from puck_tables.world.stepping import (
     step,
     write_piece,
 )
-from puck_tables.world.works import LEDGER
 
 _CLOSED = 0.05  # of a radius times the error of a step: the gap of discs in touch between steps
 _FIRST = 1e-3  # of Q/J: the first step
@@ -69,15 +69,15 @@ _NOBODY = _OVER_BORDER = cast(int, np.int64(-1))  # in place of a contact, of wh
 
 @inlined
 def _next_row(
-    group: Group, members: IntArray, doings: IntArray, t: float, t_end: float, desk: Desk
+    group: Group, members: IntArray, motions: IntArray, t: float, t_end: float, buffer: GroupBuffer
 ) -> float:
     """The next moment, at most ``t_end``, at which a film or a force turns to its next row."""
     end = t_end
     for place in range(members.shape[0]):
-        row = group.spans[members[place], 0] + desk.passed[place]
+        row = group.spans[members[place], 0] + buffer.passed[place]
         if row < group.spans[members[place], 1]:
-            end = min(end, group.tides[row, 0])
-        if doings[place] == DRIVEN:
+            end = min(end, group.forcing[row, 0])
+        if motions[place] == DRIVEN:
             first, last = group.reels[members[place], 0], group.reels[members[place], 1]
             row = group.films[piece_at(group.films, first, last, t)]
             turns = row[START] + row[DURATION]
@@ -88,12 +88,12 @@ def _next_row(
 
 @inner
 def _advance(
-    group: Group, members: IntArray, modes: IntArray, doings: IntArray, t: float, h: float,
-    scales: Scales, desk: Desk,
+    group: Group, members: IntArray, modes: IntArray, motions: IntArray, t: float, h: float,
+    scales: Scales, buffer: GroupBuffer,
 ) -> float:  # fmt: skip
     """A step, and what is watched at its end; the error."""
-    error = step(group, members, modes, doings, t, h, scales, desk)
-    watch(desk, modes, scales, True)
+    error = step(group, members, modes, motions, t, h, scales, buffer)
+    watch(buffer, modes, scales, True)
     return error
 
 
@@ -106,24 +106,24 @@ def _room_of(group: Group, members: IntArray, place: int, y: FloatArray) -> floa
 
 
 @inlined
-def _comes_over(group: Group, members: IntArray, desk: Desk) -> int:
+def _comes_over(group: Group, members: IntArray, buffer: GroupBuffer) -> int:
     """Which member has come over a border, or left it, on a step: there friction bends; −1: none.
 
     One that only just touches one has long been there.
     """
     for place in range(members.shape[0]):
         if group.discs[members[place], LIGHTNESS] > 0.0:
-            before = _room_of(group, members, place, desk.states[0])
-            if before > 0.0 > _room_of(group, members, place, desk.states[1]):
+            before = _room_of(group, members, place, buffer.states[0])
+            if before > 0.0 > _room_of(group, members, place, buffer.states[1]):
                 return place
     return -1
 
 
 @inlined
-def _changes_belts(group: Group, members: IntArray, desk: Desk) -> bool:
+def _changes_belts(group: Group, members: IntArray, buffer: GroupBuffer) -> bool:
     """Whether a member has come nearer to the velocity of another belt under it, on a step."""
     for place in range(members.shape[0]):
-        y = desk.states[1, place]
+        y = buffer.states[1, place]
         if nears_another(
             group.regions, group.discs, members[place], y[X], y[Y], y[VX], y[VY]
         ):  # fmt: skip
@@ -133,21 +133,21 @@ def _changes_belts(group: Group, members: IntArray, desk: Desk) -> bool:
 
 @inlined
 def _watched(
-    group: Group, members: IntArray, modes: IntArray, doings: IntArray, c: int, kind: int,
-    scales: Scales, desk: Desk,
+    group: Group, members: IntArray, modes: IntArray, motions: IntArray, c: int, kind: int,
+    scales: Scales, buffer: GroupBuffer,
 ) -> float:  # fmt: skip
     """What turns negative, at the end of a step."""
     if kind == _OVER_BORDER:
-        return _room_of(group, members, c, desk.states[1])
+        return _room_of(group, members, c, buffer.states[1])
     if c >= 0:
-        return desk.watched[1, c, kind]
-    return -1.0 if sets_off(group, members, modes, doings, scales, desk) != 0 else 1.0
+        return buffer.watched[1, c, kind]
+    return -1.0 if sets_off(group, members, modes, motions, scales, buffer) != 0 else 1.0
 
 
 @inner
 def _moment(
-    group: Group, members: IntArray, modes: IntArray, doings: IntArray, t: float, h: float,
-    c: int, kind: int, scales: Scales, desk: Desk,
+    group: Group, members: IntArray, modes: IntArray, motions: IntArray, t: float, h: float,
+    c: int, kind: int, scales: Scales, buffer: GroupBuffer,
 ) -> float:  # fmt: skip
     """Until when within a step what is watched is positive; the step ends just after.
 
@@ -159,30 +159,30 @@ def _moment(
     if c < 0 and kind != _OVER_BORDER:
         close = max(close, _ULP * t)  # a moment after t, or nothing ever moves on
     if kind == _OVER_BORDER:
-        first, enough = _room_of(group, members, c, desk.states[0]), -_OVER
-        last = _room_of(group, members, c, desk.states[1])
+        first, enough = _room_of(group, members, c, buffer.states[0]), -_OVER
+        last = _room_of(group, members, c, buffer.states[1])
     elif c >= 0:
-        first, last = desk.watched[0, c, kind], desk.watched[1, c, kind]
+        first, last = buffer.watched[0, c, kind], buffer.watched[1, c, kind]
     for _ in range(80):
         middle = (low * last - high * first) / (last - first)
         if c < 0 or not low < middle < high:
             middle = 0.5 * (low + high)
         if high - low <= close or last > enough or not low < middle < high:
             break
-        _advance(group, members, modes, doings, t, middle, scales, desk)
-        value = _watched(group, members, modes, doings, c, kind, scales, desk)
+        _advance(group, members, modes, motions, t, middle, scales, buffer)
+        value = _watched(group, members, modes, motions, c, kind, scales, buffer)
         if value < 0.0:
             high, last, first = middle, value, 0.5 * first
         else:
             low, first, last = middle, value, 0.5 * last
-    _advance(group, members, modes, doings, t, high, scales, desk)
+    _advance(group, members, modes, motions, t, high, scales, buffer)
     return high
 
 
 @inlined
 def _opens_midway(
     group: Group, members: IntArray, contacts: int, pieces: FloatArray, count: int, start: float,
-    h: float, tol: float, desk: Desk,
+    h: float, tol: float, buffer: GroupBuffer,
 ) -> float:  # fmt: skip
     """How far apart, or into each other, discs in touch are midway, over what they may be.
 
@@ -190,28 +190,28 @@ def _opens_midway(
     """
     if contacts == 0:
         return 0.0
-    trial, largest = desk.states[2], 0.0
+    trial, largest = buffer.states[2], 0.0
     for place in range(members.shape[0]):
         piece = pieces[place, count]
-        write_piece(piece, start, h, place, desk)
-        on_piece(piece, start + 0.5 * h, desk.film)
+        write_piece(piece, start, h, place, buffer)
+        on_piece(piece, start + 0.5 * h, buffer.film)
         for i in range(6):
-            trial[place, i] = desk.film[i]
-    look(group, members, desk.pairs[:contacts], trial, desk.midway)
+            trial[place, i] = buffer.film[i]
+    look(group, members, buffer.pairs[:contacts], trial, buffer.midway)
     for c in range(contacts):
-        place = desk.pairs[c, 0]
+        place = buffer.pairs[c, 0]
         radius = group.discs[members[place], RADIUS]
         rounded = ROUNDED * (abs(trial[place, X]) + abs(trial[place, Y]) + radius)
-        if desk.pairs[c, 1] >= 0:
-            radius = min(radius, group.discs[members[desk.pairs[c, 1]], RADIUS])
-        largest = max(largest, abs(desk.midway[c, GAP]) / (_CLOSED * tol * radius + rounded))
+        if buffer.pairs[c, 1] >= 0:
+            radius = min(radius, group.discs[members[buffer.pairs[c, 1]], RADIUS])
+        largest = max(largest, abs(buffer.midway[c, GAP]) / (_CLOSED * tol * radius + rounded))
     return largest
 
 
 @inlined
 def _first_change(
-    group: Group, members: IntArray, modes: IntArray, doings: IntArray, contacts: int, t: float,
-    length: float, still_there: bool, scales: Scales, desk: Desk,
+    group: Group, members: IntArray, modes: IntArray, motions: IntArray, contacts: int, t: float,
+    length: float, still_there: bool, scales: Scales, buffer: GroupBuffer,
 ) -> tuple[int, int, float, bool]:  # fmt: skip
     """What is the first to change on a step, of which contact or member, when, and if it was cut.
 
@@ -219,36 +219,38 @@ def _first_change(
     """
     how, which, cut = TIME_UP, -1, False
     while True:
-        c, kind = first_negative(desk, 1, contacts)
+        c, kind = first_negative(buffer, 1, contacts)
         if c < 0:
             break
         how, which, cut = PARTS + kind, c, True
-        length = _moment(group, members, modes, doings, t, length, c, kind, scales, desk)
-        if first_negative(desk, 1, contacts) == (c, kind):
+        length = _moment(group, members, modes, motions, t, length, c, kind, scales, buffer)
+        if first_negative(buffer, 1, contacts) == (c, kind):
             break
     if still_there:
-        goes = sets_off(group, members, modes, doings, scales, desk)
+        goes = sets_off(group, members, modes, motions, scales, buffer)
         if goes < 0:
             return UNSOLVED, which, length, cut
         if goes > 0:
             how, which, cut = SETS_OFF, -1, True
-            length = _moment(group, members, modes, doings, t, length, _NOBODY, BEGIN, scales, desk)
+            length = _moment(
+                group, members, modes, motions, t, length, _NOBODY, BEGIN, scales, buffer
+            )
     if how == TIME_UP and group.discs.shape[1] > LIES:  # there are borders on the floor
-        which = _comes_over(group, members, desk)
+        which = _comes_over(group, members, buffer)
         if which >= 0:
             how, cut = OFF_BORDER, True
             length = _moment(
-                group, members, modes, doings, t, length, which, _OVER_BORDER, scales, desk
+                group, members, modes, motions, t, length, which, _OVER_BORDER, scales, buffer
             )
-        elif _changes_belts(group, members, desk):
+        elif _changes_belts(group, members, buffer):
             how = OFF_BORDER
     return how, which, length, cut
 
 
 @inlined
 def _slips(
-    group: Group, members: IntArray, doings: IntArray, t: float, length: float, how: int,
-    which: int, scales: Scales, desk: Desk,
+    group: Group, members: IntArray, motions: IntArray, t: float, length: float, how: int,
+    which: int, scales: Scales, buffer: GroupBuffer,
 ) -> tuple[int, int, bool]:  # fmt: skip
     """What changes, and of whom, with those that come to rest on a step; and if a slip has begun.
 
@@ -257,39 +259,39 @@ def _slips(
     begun = False
     for place in range(members.shape[0]):
         number = members[place]
-        earlier = slip_at(group, number, desk.states[0, place], t)
-        q = slip_at(group, number, desk.states[1, place], t + length)
-        if doings[place] == YIELDS and (q > small_slip(scales) or q < earlier):
-            doings[place], begun = MOVES, True
-        elif how == TIME_UP and doings[place] == MOVES and can_rest(group, number):
+        earlier = slip_at(group, number, buffer.states[0, place], t)
+        q = slip_at(group, number, buffer.states[1, place], t + length)
+        if motions[place] == YIELDS and (q > small_slip(scales) or q < earlier):
+            motions[place], begun = MOVES, True
+        elif how == TIME_UP and motions[place] == MOVES and can_rest(group, number):
             how = RESTS if q <= STILL * scales.speed and q < earlier else how
             which = place if how == RESTS else which
     return how, which, begun
 
 
 @inlined
-def _go_on_from(size: int, contacts: int, desk: Desk) -> None:
+def _go_on_from(size: int, contacts: int, buffer: GroupBuffer) -> None:
     """The end of a step is the start of the next."""
     for place in range(size):
         for i in range(6):
-            desk.states[0, place, i] = desk.states[1, place, i]
-            desk.stages[0, place, i] = desk.stages[END, place, i]
+            buffer.states[0, place, i] = buffer.states[1, place, i]
+            buffer.stages[0, place, i] = buffer.stages[END, place, i]
     for i in range(LEDGER):
-        desk.powers[0, i] = desk.powers[END, i]
+        buffer.powers[0, i] = buffer.powers[END, i]
     for c in range(contacts):
-        for i in range(desk.watched.shape[2]):
-            desk.watched[0, c, i] = desk.watched[1, c, i]
+        for i in range(buffer.watched.shape[2]):
+            buffer.watched[0, c, i] = buffer.watched[1, c, i]
 
 
 @inlined
-def _is_touched_at_rest(group: Group, members: IntArray, contacts: int, doings: IntArray) -> bool:
+def _is_touched_at_rest(group: Group, members: IntArray, contacts: int, motions: IntArray) -> bool:
     """Whether anybody is at rest whom somebody touches, or what acts on whom changes."""
     for place in range(members.shape[0]):
         number = members[place]
         forced = group.spans[number, 0] < group.spans[number, 1]
         over = is_over(group.regions, group.discs, number) and moves_along(group.surface)
         changes = contacts > 0 or forced or over or group.surface.spin != 0.0
-        if doings[place] == HELD and changes:
+        if motions[place] == HELD and changes:
             return True
     return False
 
@@ -297,8 +299,8 @@ def _is_touched_at_rest(group: Group, members: IntArray, contacts: int, doings: 
 @kernel
 def follow(
     group: Group, members: IntArray, contacts: IntArray, states: FloatArray, t: float,
-    t_end: float, scales: Scales, modes: IntArray, doings: IntArray, pieces: FloatArray,
-    works: FloatArray, desk: Desk,
+    t_end: float, scales: Scales, modes: IntArray, motions: IntArray, pieces: FloatArray,
+    work_rows: FloatArray, buffer: GroupBuffer,
 ) -> tuple[int, int, float, int]:  # fmt: skip
     """Follow a group from t until something changes, at most until ``t_end``.
 
@@ -308,13 +310,13 @@ def follow(
     contacts : (c, 2) pairs of a disc and its partner, see :mod:`puck_tables.world.layout`
     states : (n, 6) of all discs at t in the laboratory; those of members are moved on
     scales : what errors refer to
-    modes, doings : (c,) and (m,), as :func:`puck_tables.world.pressing.press` leaves them
+    modes, motions : (c,) and (m,), as :func:`puck_tables.world.pressing.press` leaves them
         Contacts that are APART are not looked at.
     pieces : (≥ m, rows, 20), the ways, see :mod:`puck_tables.world.paths`
         ``pieces[a, :count]`` are those of member a, one row for each step.
-    works : (rows, 37), where the energy went, see :mod:`puck_tables.world.works`
-        ``works[:count]``, one row for each step, but for its first two columns.
-    desk : to work on
+    work_rows : (rows, 37), where the energy went, see :mod:`puck_tables.world.step_ledger`
+        ``work_rows[:count]``, one row for each step, but for its first two columns.
+    buffer : to work on
 
     Returns
     -------
@@ -322,19 +324,19 @@ def follow(
     of rows for each member
     """
     size = members.shape[0]
-    find_places(members, contacts, desk)
-    y = desk.states[0]
+    find_places(members, contacts, buffer)
+    y = buffer.states[0]
     for place in range(size):
         for i in range(6):
             y[place, i] = states[members[place], i]
     unit = scales.speed / scales.rate
-    count_rows(group, members, t, desk)
-    rates_at(group, members, modes, doings, t, y, BEGIN, scales, desk)
-    watch(desk, modes, scales, False)
-    still_there = _is_touched_at_rest(group, members, contacts.shape[0], doings)
+    count_rows(group, members, t, buffer)
+    rates_at(group, members, modes, motions, t, y, BEGIN, scales, buffer)
+    watch(buffer, modes, scales, False)
+    still_there = _is_touched_at_rest(group, members, contacts.shape[0], motions)
     h, start, passed, count = _FIRST * unit, t, 0.0, 0
     how, which = TIME_UP, -1
-    c, kind = first_negative(desk, 0, contacts.shape[0])
+    c, kind = first_negative(buffer, 0, contacts.shape[0])
     if c >= 0:
         return PARTS + kind, c, t, 0
     while t < t_end:
@@ -342,12 +344,12 @@ def follow(
         if count == pieces.shape[1]:
             how = FULL
             break
-        count_rows(group, members, t, desk)
-        target = _next_row(group, members, doings, t, t_end, desk)
-        h = min(h, longest_step(group, members, doings, desk))
+        count_rows(group, members, t, buffer)
+        target = _next_row(group, members, motions, t, t_end, buffer)
+        h = min(h, longest_step(group, members, motions, buffer))
         landed = 1.1 * h >= target - t
         length = target - t if landed else h
-        error = _advance(group, members, modes, doings, t, length, scales, desk)
+        error = _advance(group, members, modes, motions, t, length, scales, buffer)
         grows = times_as_long(error, scales.tol, 0.2, 0.1)
         if not error <= scales.tol:
             h = length * grows
@@ -357,7 +359,7 @@ def follow(
             continue
         opens = _opens_midway(
             group, members, contacts.shape[0], pieces, count, start + passed, length, scales.tol,
-            desk,
+            buffer,
         )  # fmt: skip
         shorter = 5.0 if opens <= 1e-6 else 0.9 * opens ** (-1.0 / 6.0)
         if opens > 1.0 and length * shorter > _BRIEF * unit:
@@ -365,20 +367,29 @@ def follow(
             continue
         h = length * min(shorter, grows)
         how, which, length, cut = _first_change(
-            group, members, modes, doings, contacts.shape[0], t, length, still_there, scales, desk
+            group,
+            members,
+            modes,
+            motions,
+            contacts.shape[0],
+            t,
+            length,
+            still_there,
+            scales,
+            buffer,
         )
         if how == UNSOLVED:
             break
-        add_work(length, start + passed, works[count], desk)
+        add_work(length, start + passed, work_rows[count], buffer)
         for place in range(size):
-            write_piece(pieces[place, count], start + passed, length, place, desk)
-        how, which, begun = _slips(group, members, doings, t, length, how, which, scales, desk)
+            write_piece(pieces[place, count], start + passed, length, place, buffer)
+        how, which, begun = _slips(group, members, motions, t, length, how, which, scales, buffer)
         count += 1
         passed += length
         t = target if landed and not cut else start + passed
-        _go_on_from(size, contacts.shape[0], desk)
+        _go_on_from(size, contacts.shape[0], buffer)
         if begun:
-            rates_at(group, members, modes, doings, t, y, BEGIN, scales, desk)
+            rates_at(group, members, modes, motions, t, y, BEGIN, scales, buffer)
         if how != TIME_UP:
             break
     for place in range(size):

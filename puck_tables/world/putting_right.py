@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inner
-from puck_tables.world.group import APART, GAP, GRIP, STICKS, Desk, IntArray
+from puck_tables.world.group import APART, GAP, GRIP, STICKS, GroupBuffer, IntArray
 from puck_tables.world.multipliers import (
     RIGHT,
     SOLUTION,
@@ -21,39 +21,39 @@ from puck_tables.world.multipliers import (
 
 
 @inner
-def close_gaps(desk: Desk, modes: IntArray, y: FloatArray) -> None:
+def close_gaps(buffer: GroupBuffer, modes: IntArray, y: FloatArray) -> None:
     """Places where all that presses touches and all that is led is; the sights are of y (m, 6)."""
-    count = constrain(desk, modes, False, False)
+    count = constrain(buffer, modes, False, False)
     number = 0
     for c in range(modes.shape[0]):
         if modes[c] != APART:
-            desk.vectors[RIGHT, number] = -desk.sights[c, GAP]
+            buffer.vectors[RIGHT, number] = -buffer.sights[c, GAP]
             number += 1
-    stray(desk, number, 0)
-    solve(desk, count)
-    add_forces(desk, count, y, 0)
+    stray(buffer, number, 0)
+    solve(buffer, count)
+    add_forces(buffer, count, y, 0)
 
 
 @inner
-def stop_slips(desk: Desk, modes: IntArray, y: FloatArray) -> float:
+def stop_slips(buffer: GroupBuffer, modes: IntArray, y: FloatArray) -> float:
     """Velocities with which nothing that presses approaches, and no rim slips that sticks.
 
     The heat of it: a force that stops a slip works at half of it.
     """
-    count = constrain(desk, modes, True, False)
+    count = constrain(buffer, modes, True, False)
     number = 0
     for c in range(modes.shape[0]):
         if modes[c] == APART:
             continue
-        desk.vectors[RIGHT, number] = times_row(desk, number, y, 3)
+        buffer.vectors[RIGHT, number] = times_row(buffer, number, y, 3)
         number += 1
-        if modes[c] == STICKS and desk.sights[c, GRIP] > 0.0:
-            desk.vectors[RIGHT, number] = times_row(desk, number, y, 3)
+        if modes[c] == STICKS and buffer.sights[c, GRIP] > 0.0:
+            buffer.vectors[RIGHT, number] = times_row(buffer, number, y, 3)
             number += 1
-    stray(desk, number, 1)
-    solve(desk, count)
-    add_forces(desk, count, y, 3)
+    stray(buffer, number, 1)
+    solve(buffer, count)
+    add_forces(buffer, count, y, 3)
     heat = 0.0
     for r in range(count):
-        heat += 0.5 * desk.vectors[RIGHT, r] * desk.vectors[SOLUTION, r]
+        heat += 0.5 * buffer.vectors[RIGHT, r] * buffer.vectors[SOLUTION, r]
     return heat

@@ -19,19 +19,27 @@ from puck_tables.scene.equations import (
     to_laboratory,
 )
 from puck_tables.scene.friction import X, Y
-from puck_tables.scene.ingredients import FREE, NO_WAY, SLIDES, Stretch
+from puck_tables.scene.ingredients import FREE, NO_WAY, SLIDES, Phase
 from puck_tables.scene.over_time import rows_passed
-from puck_tables.world.footing import dry_under, ground_span, lies_to, off_border, step_onto
-from puck_tables.world.game import Game
+from puck_tables.world.contact_search import normal_to
+from puck_tables.world.engine_state import Engine
+from puck_tables.world.floor_under import (
+    floor_map_span,
+    friction_under_disc,
+    lies_to,
+    off_border,
+    step_onto,
+)
 from puck_tables.world.lasting import at_rest_below
 from puck_tables.world.layout import HOLD, KIND, LIES, NO_CUSHION, RADIUS
 from puck_tables.world.lone import model_of
-from puck_tables.world.meeting import normal_to
 
 _NEAR = 1e-9  # of the radius: what is as near may press
 
 
-def reactions(game: Game, times: FloatArray, states: FloatArray, in_play: FloatArray) -> FloatArray:
+def reactions(
+    engine: Engine, times: FloatArray, states: FloatArray, in_play: FloatArray
+) -> FloatArray:
     """The multipliers λ of every disc (times, discs, 2), N, at states (times, discs, 6).
 
     ``in_play`` (times, discs): 0 of those that have left.
@@ -39,55 +47,55 @@ def reactions(game: Game, times: FloatArray, states: FloatArray, in_play: FloatA
     0 of what is free, and of what rests: there the floor shares the force, and nobody knows how.
     NaN where a disc touches another or a cushion, which may press it too.
     """
-    regions = game.regions._replace(ground=game.regions.ground.copy())
-    own = game._replace(discs=game.discs.copy(), regions=regions)
-    out = np.zeros((len(times), len(game.discs), 2))
+    regions = engine.regions._replace(floor_map=engine.regions.floor_map.copy())
+    own = engine._replace(discs=engine.discs.copy(), regions=regions)
+    out = np.zeros((len(times), len(engine.discs), 2))
     _fill(own, times, in_play, states, np.empty(SIZE), np.empty((1, ROW)), out)
     return out
 
 
 @kernel
 def _fill(
-    game: Game, times: FloatArray, in_play: FloatArray, states: FloatArray,
+    engine: Engine, times: FloatArray, in_play: FloatArray, states: FloatArray,
     y: FloatArray, work: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
-    for i in range(game.discs.shape[0]):
-        if int(game.discs[i, HOLD]) == FREE:
+    for i in range(engine.discs.shape[0]):
+        if int(engine.discs[i, HOLD]) == FREE:
             continue
-        model, drive = model_of(game, i), game.tides[game.spans[i, 0] : game.spans[i, 1]]
-        first, last = ground_span(game.regions, game.discs, i)
+        model, drive = model_of(engine, i), engine.forcing[engine.spans[i, 0] : engine.spans[i, 1]]
+        first, last = floor_map_span(engine.regions, engine.discs, i)
         for n in range(times.size):
             patience(1)
             for k in range(SIZE):
                 y[k] = states[n, i, k] if k < GIVEN else 0.0
-            for number in range(game.discs.shape[1] - LIES):
-                away = off_border(game.regions.ground[first:last], number, y[X], y[Y])
-                game.discs[i, LIES + number] = lies_to(away, game.discs[i, RADIUS])
-            step_onto(game, i)
+            for number in range(engine.discs.shape[1] - LIES):
+                away = off_border(engine.regions.floor_map[first:last], number, y[X], y[Y])
+                engine.discs[i, LIES + number] = lies_to(away, engine.discs[i, RADIUS])
+            step_onto(engine, i)
             to_laboratory(model.surface, y, -1.0)
-            slips = slip_speed(game.discs[i, RADIUS], y) > at_rest_below(game)
+            slips = slip_speed(engine.discs[i, RADIUS], y) > at_rest_below(engine)
             if in_play[n, i] == 0.0 or not slips:
                 continue
-            if _touches(game, i, states[n]):
+            if _touches(engine, i, states[n]):
                 out[n, i, 0] = out[n, i, 1] = math.nan
                 continue
             rows = rows_passed(drive, 0, len(drive), times[n])
-            dry = dry_under(game.regions, game.discs, i)
-            stretch = Stretch(model, dry, rows, SLIDES, NO_WAY, 0.0)
-            rates(stretch, times[n], y, work, FIRST)
+            friction = friction_under_disc(engine.regions, engine.discs, i)
+            phase = Phase(model, friction, rows, SLIDES, NO_WAY, 0.0)
+            rates(phase, times[n], y, work, FIRST)
             out[n, i, 0], out[n, i, 1] = work[0, LAMBDA], work[0, LAMBDA + 1]
 
 
 @inlined
-def _touches(game: Game, i: int, states: FloatArray) -> bool:
+def _touches(engine: Engine, i: int, states: FloatArray) -> bool:
     """Whether a disc touches a cushion or another disc, at states (n, 6)."""
-    x, y, radius = states[i, X], states[i, Y], game.discs[i, RADIUS]
-    for k in range(game.obstacles.shape[0]):
-        gap, _, _, there = normal_to(game.obstacles[k], radius, x, y, 0.0)
-        if there and gap < _NEAR * radius and int(game.obstacles[k, KIND]) < NO_CUSHION:
+    x, y, radius = states[i, X], states[i, Y], engine.discs[i, RADIUS]
+    for k in range(engine.obstacles.shape[0]):
+        gap, _, _, there = normal_to(engine.obstacles[k], radius, x, y, 0.0)
+        if there and gap < _NEAR * radius and int(engine.obstacles[k, KIND]) < NO_CUSHION:
             return True
-    for j in range(game.discs.shape[0]):
-        gap = math.hypot(states[j, X] - x, states[j, Y] - y) - radius - game.discs[j, RADIUS]
+    for j in range(engine.discs.shape[0]):
+        gap = math.hypot(states[j, X] - x, states[j, Y] - y) - radius - engine.discs[j, RADIUS]
         if j != i and gap < _NEAR * radius:
             return True
     return False

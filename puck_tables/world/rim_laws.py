@@ -28,13 +28,15 @@ def _laws_of(scene: SceneSpec, first: int) -> tuple[FloatArray, dict[object, flo
     return np.concatenate(laws), called
 
 
-def number_for(given: float | str | Restitution | None, called: dict[object, float]) -> float:
+def number_for(restitution: float | str | Restitution | None, called: dict[object, float]) -> float:
     """A restitution as one number: itself, or the place of its law; NaN where it is left out."""
-    if given is None:
+    if restitution is None:
         return math.nan
-    if isinstance(given, float | int):
-        return float(given)
-    return called[given.numbers.tobytes() if isinstance(given, Restitution) else given]
+    if isinstance(restitution, float | int):
+        return float(restitution)
+    return called[
+        restitution.numbers.tobytes() if isinstance(restitution, Restitution) else restitution
+    ]
 
 
 def _restitutions(scene: SceneSpec) -> Iterator[float | str | Restitution]:

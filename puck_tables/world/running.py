@@ -15,12 +15,10 @@ from puck_tables.errors import InputError, PuckError
 from puck_tables.scene.pucks_and_posts import called_line
 from puck_tables.scene.run import Event
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world import game as g
+from puck_tables.world import engine_state as g
 from puck_tables.world import passings
 from puck_tables.world.agreement import called, pucks_of, refuse_endless
-from puck_tables.world.departures import room_for
 from puck_tables.world.engine import EVERYBODY, NOBODY, THOSE_LEFT, advance, lacks_rows
-from puck_tables.world.flight import GONE, START, moves_until
 from puck_tables.world.impact import FIRST_N, E
 from puck_tables.world.lasting import (
     GOES_ON,
@@ -36,9 +34,11 @@ from puck_tables.world.layout import EDGE, KIND, POCKET
 from puck_tables.world.lone import LONGEST
 from puck_tables.world.obstacles import obstacle_names
 from puck_tables.world.passings import Passings
-from puck_tables.world.prepare import Start, prepared, shipped_curves
-from puck_tables.world.pushed_back import Told
+from puck_tables.world.prepare import Start, prepared, shipped_lookups
+from puck_tables.world.pushed_back import Reported
 from puck_tables.world.record import states_at, states_now
+from puck_tables.world.segment import GONE, START, moves_until
+from puck_tables.world.segment_starts import room_for
 from puck_tables.world.setting_off import (
     CROWDED,
     FULL,
@@ -72,9 +72,9 @@ class Running:
 
     def _set_off(self, start: Start) -> None:
         self.scene, self._order = start.scene, start.order
-        self._game, self._room = g.copy_of(start.game), room_for(len(start.order))
+        self._engine, self._room = g.copy_of(start.engine), room_for(len(start.order))
         self._room.states[:] = start.states
-        self._told: dict[int, Told] = {}  # until when what pushed back discs was told
+        self._described: dict[int, Reported] = {}  # until when what pushed back discs was told
         self._named()
         pucks = pucks_of(self.scene)
         rimless = [not pucks[number].has_rim for number in self._order]
@@ -97,17 +97,17 @@ class Running:
     @property
     def time(self) -> float:
         """Now, s."""
-        return float(self._game.clock[0])
+        return float(self._engine.clock[0])
 
     @property
     def in_play(self) -> npt.NDArray[np.bool_]:
         """Which pucks are in no pocket and over no edge, array (pucks,)."""
-        return self._game.kinds[self._place] != GONE
+        return self._engine.kinds[self._place] != GONE
 
     @property
     def groups(self) -> int:
         """How many groups of pucks have pushed each other."""
-        return int(self._game.counts[g.N_GROUPS])
+        return int(self._engine.counts[g.N_GROUPS])
 
     @property
     def moving(self) -> npt.NDArray[np.bool_]:
@@ -117,8 +117,8 @@ class Running:
     @property
     def _rests(self) -> FloatArray:
         """When each disc comes to rest if nothing happens before; −inf: it lies, inf: never."""
-        flights = zip(self._game.kinds.tolist(), self._game.flights, strict=True)
-        return np.array([moves_until(kind, flight) for kind, flight in flights])
+        segments = zip(self._engine.kinds.tolist(), self._engine.segments, strict=True)
+        return np.array([moves_until(kind, segment) for kind, segment in segments])
 
     @property
     def stop_times(self) -> FloatArray:
@@ -126,7 +126,7 @@ class Running:
 
         Of one that has left play: when it left; inf: never.
         """
-        rests: FloatArray = np.maximum(self._rests, self._game.flights[:, START])
+        rests: FloatArray = np.maximum(self._rests, self._engine.segments[:, START])
         return rests[self._place]
 
     @property
@@ -141,7 +141,7 @@ class Running:
         inf: it still moves; 0: it has lain there since the start.
         """
         found = np.empty(len(self.names))
-        fill_motion_ends(self._game, self._room, found)
+        fill_motion_ends(self._engine, self._room, found)
         return found[self._place]
 
     def state(self) -> FloatArray:
@@ -151,7 +151,7 @@ class Running:
 
     def _all_now(self) -> FloatArray:
         """States of every puck now, (pucks, 6), in the order of the engine."""
-        return states_now(self._game, self._room.work)
+        return states_now(self._engine, self._room.work)
 
     def at(self, time: float) -> FloatArray:
         """States (pucks, 6) at any time: as they were, or will be if nobody interferes.
@@ -182,7 +182,7 @@ class Running:
         return self._states(moments)
 
     def _states(self, times: FloatArray) -> FloatArray:
-        states: FloatArray = states_at(self._game, times)[:, self._place]
+        states: FloatArray = states_at(self._engine, times)[:, self._place]
         return states
 
     def advance(self, duration: float) -> list[Event]:
@@ -203,22 +203,22 @@ class Running:
         span = math.inf if endless else real("duration", duration, "s")
         if not span >= 0.0:
             raise InputError(f"duration must not be negative, got {span:g} s")
-        before, until = int(self._game.counts[g.N_EVENTS]), self.time + span
+        before, until = int(self._engine.counts[g.N_EVENTS]), self.time + span
         passed = len(self._passings.rows)
         if span == math.inf:
             self.come_to_rest()
         elif self._next_moment() > until:
-            self._game.clock[0] = until
+            self._engine.clock[0] = until
         else:
             with self._or_as_before():
                 self._advance(until)
-        self._passings.follow(self._game)
+        self._passings.follow(self._engine)
         return self._events(before, passed)
 
     def _next_moment(self) -> float:
         """When something happens next, s."""
-        done, later = int(self._game.counts[g.N_LAUNCHES]), self._game.launches
-        coming = float(self._game.next_time.min())
+        done, later = int(self._engine.counts[g.N_LAUNCHES]), self._engine.launches
+        coming = float(self._engine.next_time.min())
         return min(coming, float(later[done, 0])) if done < len(later) else coming
 
     def come_to_rest(self) -> tuple[float, bool]:
@@ -237,11 +237,11 @@ class Running:
             return self._come_to_rest()
 
     def _come_to_rest(self) -> tuple[float, bool]:
-        limits, given = limits_of(self._game, self._game.pace[None, :2])
+        limits, given = limits_of(self._engine, self._engine.scale[None, :2])
         ends, how, target = np.empty(len(self.names)), GOES_ON, self.time
         while how == GOES_ON:
             self._advance(target)
-            how, target = next_target(self._game, float(limits[0]), given, self._room, ends)
+            how, target = next_target(self._engine, float(limits[0]), given, self._room, ends)
         who = "a puck" if len(self.names) > 1 else "the puck"
         if how == NEVER_ENDS:
             raise InputError(
@@ -253,15 +253,15 @@ class Running:
                 f"after {target:.4g} s the floor still carries {who} towards a wall, an edge, a "
                 "border or a patch, and it may slip there again; give a time"
             )
-        if self._game.surface.spin == 0.0:  # it was waited for what may come
-            self._game.clock[0] = target
+        if self._engine.surface.spin == 0.0:  # it was waited for what may come
+            self._engine.clock[0] = target
         return target, how == ROUND
 
     def events_since(self, time: float) -> list[Event]:
         """What happened from a time on."""
         moment = real("time", time, "s")
-        self._passings.follow(self._game)
-        times = self._game.events[: self._game.counts[g.N_EVENTS], g.TIME]
+        self._passings.follow(self._engine)
+        times = self._engine.events[: self._engine.counts[g.N_EVENTS], g.TIME]
         passed = self._passings.rows[:, passings.TIME]
         return self._events(*(int(np.searchsorted(one, moment)) for one in (times, passed)))
 
@@ -272,13 +272,13 @@ class Running:
     def _advance(self, until: float, first: int = NOBODY) -> None:
         """Let time pass, after an event by hand."""
         mark, pushes = -math.inf, deque[float](maxlen=CROWDED_PUSHES)
-        if lacks_rows(self._game, self._room):
+        if lacks_rows(self._engine, self._room):
             self._grow()
         while True:
-            how = advance(self._game, until, first, self._room)
+            how = advance(self._engine, until, first, self._room)
             if how == REACHED:
                 return
-            unit = float(self._game.pace[0] / max(self._game.pace[1], 1e-300))
+            unit = float(self._engine.scale[0] / max(self._engine.scale[1], 1e-300))
             first = NOBODY
             if how == FULL:
                 self._grow()
@@ -286,16 +286,16 @@ class Running:
             elif how == PUSHING:
                 from puck_tables.world.groups import push_on  # compiled where it is needed
 
-                if self._game.counts[g.N_PIECES] > MOST_STEPS:
+                if self._engine.counts[g.N_PIECES] > MOST_STEPS:
                     raise self._no_end()
-                self._game = with_law_for(
-                    self._game, self._room, self.scene, self._order, self.names, self.time
+                self._engine = with_law_for(
+                    self._engine, self._room, self.scene, self._order, self.names, self.time
                 )
                 full = len(pushes) == CROWDED_PUSHES
                 if full and self.time - pushes[0] <= PUSHED_IN * unit:
                     raise PuckError(self._failure(CROWDED))
                 pushes.append(self.time)
-                self._game, first = push_on(self._game, self._room), THOSE_LEFT
+                self._engine, first = push_on(self._engine, self._room), THOSE_LEFT
             elif how == MISPLACED:
                 raise InputError(self._overlap())
             elif how == PAUSED and self.time - mark > CROWD * unit:
@@ -306,27 +306,27 @@ class Running:
     @property
     def place_error(self) -> float:
         """The rounding of looked-up places, m: 1e-15 of Q²/J of the largest slip."""
-        speed, rate = self._game.pace[:2].tolist()
+        speed, rate = self._engine.scale[:2].tolist()
         return 1e-15 * speed / rate * speed
 
     def copy(self) -> Self:
         """A world of its own that goes on from here, to look ahead."""
         other = object.__new__(type(self))
         other.__dict__.update(self.__dict__)
-        other._game = g.copy_of(self._game)
+        other._engine = g.copy_of(self._engine)
         other._room = room_for(len(self.names))
         other._passings = self._passings.copy()
         return other
 
     def __getstate__(self) -> dict[str, Any]:
         """All but the table that comes along: read back, it would be of another type to numba."""
-        parts: Any = self._game
-        return {**self.__dict__, "_game": parts._replace(curves=None)}
+        parts: Any = self._engine
+        return {**self.__dict__, "_engine": parts._replace(lookups=None)}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """Take up what was written, with the table that comes along."""
         self.__dict__.update(state)
-        self._game = self._game._replace(curves=shipped_curves())
+        self._engine = self._engine._replace(lookups=shipped_lookups())
 
     def _failure(self, how: int) -> str:
         """Why it does not go on, in words."""
@@ -358,13 +358,13 @@ class Running:
         name, depth, partner = self._name(one), float(self._room.work[0]), self._name(other)
         how = f"overlap {partner}"
         if other < 0:
-            hole = self._game.obstacles[-1 - other, KIND] in (POCKET, EDGE)
+            hole = self._engine.obstacles[-1 - other, KIND] in (POCKET, EDGE)
             how = f"lie in {partner}" if hole else f"reach through {partner}"
         return f"{name} would {how} by {depth:.3g} m: put it elsewhere"
 
     def _off_table(self) -> str:
         """Which impact is faster than its table of restitution goes."""
-        count = self._game.counts[g.N_CONTACTS]
+        count = self._engine.counts[g.N_CONTACTS]
         n = int(np.flatnonzero(self._room.rows[:count, E] < 0.0)[0])
         one, other = (self._name(number) for number in self._room.contacts[n])
         return (
@@ -373,19 +373,19 @@ class Running:
         )
 
     def _grow(self) -> None:
-        """Twice the rows of what lacks some: events and flights, or pieces of paths and works."""
-        if len(self._game.events) > MOST_EVENTS:
+        """Twice the rows of what lacks some: events and segments, or pieces of paths and works."""
+        if len(self._engine.events) > MOST_EVENTS:
             raise PuckError(self._failure(CROWDED))
         few, names = 0, ("events", "history")
-        if not lacks_rows(self._game, self._room):
-            few, names = LONGEST, ("pieces", "works")
-            if len(self._game.pieces) > MOST_STEPS:
+        if not lacks_rows(self._engine, self._room):
+            few, names = LONGEST, ("pieces", "work_rows")
+            if len(self._engine.pieces) > MOST_STEPS:
                 raise self._no_end()
         more: dict[str, Any] = {}
         for name in names:
-            part = getattr(self._game, name)
+            part = getattr(self._engine, name)
             more[name] = np.vstack([part, np.zeros((max(few, len(part)), part.shape[1]))])
-        self._game = self._game._replace(**more)
+        self._engine = self._engine._replace(**more)
 
     def _no_end(self) -> PuckError:
         """After a million steps."""
@@ -399,10 +399,10 @@ class Running:
         return PuckError(f"{long}, and no end: ask for a shorter time")
 
     def _events(self, first: int, passed: int) -> list[Event]:
-        count, lines = int(self._game.counts[g.N_EVENTS]), self.scene.lines
+        count, lines = int(self._engine.counts[g.N_EVENTS]), self.scene.lines
         if first == count and passed == len(self._passings.rows):
             return []
-        rows = self._game.events[first:count]
+        rows = self._engine.events[first:count]
         columns = [g.TIME, g.WHAT, g.WHO, g.PARTNER, g.AT_X, g.AT_Y, g.APPROACH, g.SLIDE, g.PUSH,
                    g.RUB, g.LOST]  # fmt: skip
         found = [
@@ -428,7 +428,7 @@ class _OrAsBefore:
         self._world = world
 
     def __enter__(self) -> None:
-        self._kept = {**self._world.__dict__, "_game": g.kept(self._world._game)}
+        self._kept = {**self._world.__dict__, "_engine": g.kept(self._world._engine)}
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         if kind is not None:

@@ -92,7 +92,7 @@ class Runs(Work):
     def identity(self) -> Mapping[str, Any]:
         """The scene, its ranges, and what stands in the files that it names."""
         pucks = [
-            {**table, "pressure": _told_apart(puck)} if isinstance(puck.pressure, Law) else table
+            {**table, "pressure": _differences(puck)} if isinstance(puck.pressure, Law) else table
             for puck, table in zip(pucks_of(self.scene), self._tables, strict=True)
         ]
         ranges = list(self.scene.ranges.items())
@@ -157,7 +157,7 @@ class Runs(Work):
 
     def _together(
         self, fixed: tuple[tuple[str, float], ...], numbers: Mapping[str, FloatArray],
-        found: Columns, start: int, stop: int,
+        parts: Columns, start: int, stop: int,
     ) -> None:  # fmt: skip
         """Ends of runs that differ in nothing but launches, of which one may not be allowed."""
         launches = {path: values for path, values in numbers.items() if path in self._inner}
@@ -172,11 +172,11 @@ class Runs(Work):
         if end is None and launches and stop - start > 1:
             for i in range(stop - start):
                 one = {path: values[i : i + 1] for path, values in numbers.items()}
-                self._together(fixed, one, found, start + i, start + i + 1)
+                self._together(fixed, one, parts, start + i, start + i + 1)
             return
         for name in self._found:
-            found[name][start:stop] = np.nan if end is None else ends[name]
-        found[self.code][start:stop] = REFUSED if end is None else end
+            parts[name][start:stop] = np.nan if end is None else ends[name]
+        parts[self.code][start:stop] = REFUSED if end is None else end
 
     def _alone(self, numbers: Mapping[str, FloatArray]) -> Any:
         """The end of one run, in a case of its own."""
@@ -236,13 +236,13 @@ class Runs(Work):
         return self._result(columns, case.model, case.explanation, told)
 
     def _result(
-        self, columns: Columns, model: str, explanation: str, told: tuple[str, ...]
+        self, columns: Columns, model: str, explanation: str, parts: tuple[str, ...]
     ) -> SceneEnds:
         kept = dict(columns)
         end = kept.pop(self.code)
         return Map(
             scene=self.scene, names=self.names, columns=kept, end=end, model=model,
-            explanation=explanation, told=told, files=self.files,
+            explanation=explanation, told=parts, files=self.files,
         )  # fmt: skip
 
 
@@ -306,18 +306,18 @@ class DrawnRuns(Runs):
         return {**super().of(start, stop), **drawn}
 
     def _result(
-        self, columns: Columns, model: str, explanation: str, told: tuple[str, ...]
+        self, columns: Columns, model: str, explanation: str, parts: tuple[str, ...]
     ) -> SceneEnds:
         kept = dict(columns)
         end = kept.pop(self.code)
         return Sample(
             scene=self.scene, names=self.names, columns=kept, end=end, model=model,
-            explanation=explanation, told=told, files=self.files, spreads=self.spreads,
+            explanation=explanation, told=parts, files=self.files, spreads=self.spreads,
             seed=self.seed,
         )  # fmt: skip
 
 
-def _told_apart(puck: PuckSpec) -> dict[str, Any]:
+def _differences(puck: PuckSpec) -> dict[str, Any]:
     """What tells a pressure law that is given as an object from another."""
     law = puck.body.law
     ratios = np.stack(law.friction(np.linspace(0.0, 0.5 * np.pi, 99), 0.0))

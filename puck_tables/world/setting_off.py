@@ -7,23 +7,9 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
-from puck_tables.world.departures import (
-    CONCERNED,
-    NOT_CONCERNED,
-    SENT,
-    Room,
-    drive_on,
-    hang_over,
-    integrate,
-    lacks_pieces,
-    leave,
-    locate,
-    note,
-    take_off,
-)
-from puck_tables.world.flight import GONE, STILL
-from puck_tables.world.footing import lay_down
-from puck_tables.world.game import GOT, N_CONTACTS, N_EVENTS, PLACED, REMOVED, Game
+from puck_tables.world.contact_search import ROUNDED, normal_to
+from puck_tables.world.engine_state import GOT, N_CONTACTS, N_EVENTS, PLACED, REMOVED, Engine
+from puck_tables.world.floor_under import lay_down
 from puck_tables.world.layout import (
     ARC,
     CORNER,
@@ -37,8 +23,22 @@ from puck_tables.world.layout import (
     SPAN,
     kinetic,
 )
-from puck_tables.world.meeting import ROUNDED, normal_to
-from puck_tables.world.quiet import quieten
+from puck_tables.world.rounded_approaches import quieten
+from puck_tables.world.segment import GONE, STILL
+from puck_tables.world.segment_starts import (
+    CONCERNED,
+    NOT_CONCERNED,
+    SENT,
+    Room,
+    drive_on,
+    hang_over,
+    integrate,
+    lacks_pieces,
+    leave,
+    locate,
+    note,
+    take_off,
+)
 from puck_tables.world.touching import (
     find_touching,
     is_integrated,
@@ -54,14 +54,14 @@ _KEPT, _PUT, _MOVED, _MATE = range(4)  # what is done to a disc: nothing, a stat
 
 
 @inlined
-def _whole_groups(game: Game, count: int, room: Room) -> None:
+def _whole_groups(engine: Engine, count: int, room: Room) -> None:
     """Mark the groups of those concerned."""
     grown = True
     while grown:
         grown = False
         for n in range(count):
             i, j = room.contacts[n, 0], room.contacts[n, 1]
-            if j < 0 or game.group[i] == 0 or game.group[i] != game.group[j]:
+            if j < 0 or engine.group[i] == 0 or engine.group[i] != engine.group[j]:
                 continue
             if (room.marks[i] == CONCERNED) != (room.marks[j] == CONCERNED):
                 room.marks[i] = room.marks[j] = CONCERNED
@@ -69,42 +69,42 @@ def _whole_groups(game: Game, count: int, room: Room) -> None:
 
 
 @inlined
-def take_off_all(game: Game, t: float, room: Room) -> int:
-    """New flights of all that are concerned and not driven; how it ended.
+def take_off_all(engine: Engine, t: float, room: Room) -> int:
+    """New segments of all that are concerned and not driven; how it ended.
 
     FULL: not yet of all; TOO_SHORT: no step is short enough to follow one.
     """
-    for j in range(game.discs.shape[0]):
-        driven = game.drives[j, 0] < game.drives[j, 1]
-        if room.marks[j] != CONCERNED or game.kinds[j] == GONE or driven:
+    for j in range(engine.discs.shape[0]):
+        driven = engine.drives[j, 0] < engine.drives[j, 1]
+        if room.marks[j] != CONCERNED or engine.kinds[j] == GONE or driven:
             continue
-        if is_integrated(game, j, room.states[j]):
-            if lacks_pieces(game):
+        if is_integrated(engine, j, room.states[j]):
+            if lacks_pieces(engine):
                 return FULL
-            if not integrate(game, j, t, room):
+            if not integrate(engine, j, t, room):
                 return TOO_SHORT
         else:
-            take_off(game, j, t, room)
+            take_off(engine, j, t, room)
         room.marks[j] = SENT
     return REACHED
 
 
 @inlined
-def go_on(game: Game, t: float, count: int, room: Room) -> int:
-    """New flights of all that are concerned.
+def go_on(engine: Engine, t: float, count: int, room: Room) -> int:
+    """New segments of all that are concerned.
 
     PUSHING: some push each other, or slip faster than the friction law is known: before, the caller
     does what is to be done.
     """
-    game.counts[N_CONTACTS] = count
-    if quieten(game, count, room):
-        _whole_groups(game, count, room)
-    pushes = press_somewhere(game, count, t, room)
-    for j in range(game.discs.shape[0]):
+    engine.counts[N_CONTACTS] = count
+    if quieten(engine, count, room):
+        _whole_groups(engine, count, room)
+    pushes = press_somewhere(engine, count, t, room)
+    for j in range(engine.discs.shape[0]):
         pushes = pushes or (
-            room.marks[j] == CONCERNED and sets_off_too_fast(game, j, room.states[j])
+            room.marks[j] == CONCERNED and sets_off_too_fast(engine, j, room.states[j])
         )
-    return PUSHING if pushes else take_off_all(game, t, room)
+    return PUSHING if pushes else take_off_all(engine, t, room)
 
 
 @inlined
@@ -122,30 +122,30 @@ def _depth_in(obstacle: FloatArray, disc: FloatArray, x: float, y: float) -> flo
 
 
 @inner
-def _overlaps(game: Game, t: float, room: Room) -> bool:
+def _overlaps(engine: Engine, t: float, room: Room) -> bool:
     """Whether a disc that is moved would overlap: who and whom in ``room.contacts[0]``.
 
     And by how much, m, in ``room.work[0]``; all discs are located.
     """
-    count = game.discs.shape[0]
+    count = engine.discs.shape[0]
     for j in range(count):
-        if room.shares[j] == _KEPT and game.kinds[j] != GONE:
-            locate(game, j, t, room)
+        if room.shares[j] == _KEPT and engine.kinds[j] != GONE:
+            locate(engine, j, t, room)
     for i in range(count):
         if room.shares[i] != _MOVED:
             continue
-        x, y, radius = room.before[i, X], room.before[i, Y], game.discs[i, RADIUS]
+        x, y, radius = room.before[i, X], room.before[i, Y], engine.discs[i, RADIUS]
         far = abs(x) + abs(y) + radius
-        for k in range(game.obstacles.shape[0]):
-            depth = _depth_in(game.obstacles[k], game.discs[i], x, y)
+        for k in range(engine.obstacles.shape[0]):
+            depth = _depth_in(engine.obstacles[k], engine.discs[i], x, y)
             if depth > OVERLAP * radius + 2.0 * ROUNDED * far:
                 room.contacts[0, 0], room.contacts[0, 1], room.work[0] = i, -1 - k, depth
                 return True
         for j in range(count):
-            if j == i or (room.shares[j] == _KEPT and game.kinds[j] == GONE):
+            if j == i or (room.shares[j] == _KEPT and engine.kinds[j] == GONE):
                 continue
             at = room.states[j] if room.shares[j] == _KEPT else room.before[j]
-            depth = radius + game.discs[j, RADIUS] - math.hypot(at[X] - x, at[Y] - y)
+            depth = radius + engine.discs[j, RADIUS] - math.hypot(at[X] - x, at[Y] - y)
             if depth > OVERLAP * radius + 2.0 * ROUNDED * far:
                 room.contacts[0, 0], room.contacts[0, 1], room.work[0] = i, j, depth
                 return True
@@ -153,41 +153,41 @@ def _overlaps(game: Game, t: float, room: Room) -> bool:
 
 
 @inlined
-def _put_down(game: Game, i: int, what: int, t: float, moved: bool, room: Room) -> None:
+def _put_down(engine: Engine, i: int, what: int, t: float, moved: bool, room: Room) -> None:
     """A disc gets its state, and an event says what that gave."""
-    disc, state = game.discs[i], room.states[i]
+    disc, state = engine.discs[i], room.states[i]
     before = 0.0
-    if game.kinds[i] != GONE:
+    if engine.kinds[i] != GONE:
         before = kinetic(disc, state[VX], state[VY], state[SPIN])
     for column in range(6):
         state[column] = room.before[i, column]
-    if game.kinds[i] == GONE:
-        game.kinds[i] = STILL
-    note(game, t, what, i, i, state[X], state[Y])
+    if engine.kinds[i] == GONE:
+        engine.kinds[i] = STILL
+    note(engine, t, what, i, i, state[X], state[Y])
     after = kinetic(disc, state[VX], state[VY], state[SPIN])
-    game.events[game.counts[N_EVENTS] - 1, GOT] = after - before
+    engine.events[engine.counts[N_EVENTS] - 1, GOT] = after - before
     if moved:
-        lay_down(game, i, state)
-        hang_over(game, i, t, state)
-    if game.drives[i, 0] < game.drives[i, 1]:
-        drive_on(game, i, t, room)
-        locate(game, i, t, room)
+        lay_down(engine, i, state)
+        hang_over(engine, i, t, state)
+    if engine.drives[i, 0] < engine.drives[i, 1]:
+        drive_on(engine, i, t, room)
+        locate(engine, i, t, room)
 
 
 @inner
-def put(game: Game, what: int, t: float, room: Room) -> int:
+def put(engine: Engine, what: int, t: float, room: Room) -> int:
     """Give marked pucks the states ``room.before``, as by an impact from outside; how it ended.
 
     NaN in them stays as it is; nothing is PLACED where it is.  REMOVED: they leave play.
     MISPLACED: nothing was changed, for one would overlap, see :func:`_overlaps`.
     """
-    count, moves = game.discs.shape[0], False
+    count, moves = engine.discs.shape[0], False
     for i in range(count):
         room.shares[i] = _KEPT
         if room.marks[i] != CONCERNED:
             continue
-        locate(game, i, t, room)
-        changed, moved = what != PLACED, game.kinds[i] == GONE and what != REMOVED
+        locate(engine, i, t, room)
+        changed, moved = what != PLACED, engine.kinds[i] == GONE and what != REMOVED
         for column in range(6):
             given = room.before[i, column]
             if math.isnan(given) or given == room.states[i, column]:
@@ -198,27 +198,27 @@ def put(game: Game, what: int, t: float, room: Room) -> int:
             room.shares[i], moves = _MOVED, True
         elif changed:
             room.shares[i] = _PUT
-    if moves and _overlaps(game, t, room):
+    if moves and _overlaps(engine, t, room):
         return MISPLACED
     for i in range(count):  # and whoever pushes them, or is pushed by them
-        if game.group[i] == 0 or room.shares[i] in (_KEPT, _MATE):
+        if engine.group[i] == 0 or room.shares[i] in (_KEPT, _MATE):
             continue
         for j in range(count):
-            if room.shares[j] == _KEPT and game.group[j] == game.group[i]:
-                locate(game, j, t, room)
+            if room.shares[j] == _KEPT and engine.group[j] == engine.group[i]:
+                locate(engine, j, t, room)
                 room.shares[j] = _MATE
     for i in range(count):
         if room.shares[i] in (_PUT, _MOVED):
             if what == REMOVED:
-                leave(game, i, t, REMOVED, i, room)
+                leave(engine, i, t, REMOVED, i, room)
                 room.shares[i] = _KEPT
             else:
-                _put_down(game, i, what, t, room.shares[i] == _MOVED, room)
+                _put_down(engine, i, what, t, room.shares[i] == _MOVED, room)
     for i in range(count):
         room.marks[i] = CONCERNED if room.shares[i] != _KEPT else NOT_CONCERNED
-    contacts = find_touching(game, t, room)
+    contacts = find_touching(engine, t, room)
     if contacts < 0:
         return CROWDED
     for i in range(count):
         room.marks[i] = CONCERNED if room.shares[i] != _KEPT else NOT_CONCERNED
-    return go_on(game, t, contacts, room)
+    return go_on(engine, t, contacts, room)

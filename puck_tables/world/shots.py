@@ -15,9 +15,9 @@ from puck_tables.errors import PuckError
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import frictions_under, is_integrated, pucks_of
 from puck_tables.world.bulk import follow_all
-from puck_tables.world.course import FATE, LENGTH, PASSES, PRINT, trace
+from puck_tables.world.engine_state import FINE, Whole
 from puck_tables.world.floors import has_several
-from puck_tables.world.game import FINE, Whole
+from puck_tables.world.impact_sequence import FATE, LENGTH, PASSES, PRINT, trace
 from puck_tables.world.prepare import Start, order_of, prepared
 from puck_tables.world.setting_off import PUSHING, REACHED
 from puck_tables.world.world import World
@@ -28,7 +28,7 @@ NO_COURSE = -1  # the print of a run without an end
 
 
 class Landings(NamedTuple):
-    """Where runs end: x, y (n,) m, and by which course, see :mod:`puck_tables.world.course`."""
+    """Where runs end: x, y (n,) m, and after which impacts."""
 
     x: FloatArray
     y: FloatArray
@@ -75,7 +75,7 @@ class Shots:
         self._path = f"puck[{striker}].launch" if scene.pucks else "launch"
         self.until = math.inf if scene.time is None else scene.time
         start = _finely(scene)
-        self._game, self._first, place = start.game, start.states, np.argsort(start.order)
+        self._engine, self._first, place = start.engine, start.states, np.argsort(start.order)
         self._disc = int(place[striker])
         self._watch = int(place[puck]), int(place[through]) if through >= 0 else -1, most
         pucks = pucks_of(scene)
@@ -98,7 +98,7 @@ class Shots:
         """Where it ends after launches vx, vy, spin (n, 3)."""
         self.runs += len(starts)
         ends = follow_all(
-            self._game, self._first, np.array([self._disc]), starts[:, None], self.until,
+            self._engine, self._first, np.array([self._disc]), starts[:, None], self.until,
             self._watch,
         )  # fmt: skip
         x, y = ends.states[:, self._watch[0], 0], ends.states[:, self._watch[0], 1]
@@ -121,7 +121,7 @@ class Shots:
         return self.scene.at({f"{self._path}.velocity": [vx, vy], f"{self._path}.spin": spin})
 
     def _alone(
-        self, start: FloatArray, course: Whole, states: FloatArray, how: Whole, run: int
+        self, start: FloatArray, sequence: Whole, states: FloatArray, how: Whole, run: int
     ) -> None:
         """A run in which pucks push each other, or are integrated."""
         prints, marks = np.zeros(len(states), np.int64), np.zeros(len(states), np.int64)
@@ -129,8 +129,8 @@ class Shots:
             world = World.since(_finely(self.board(start)))
             for share in (*_SHARES, math.inf):
                 world.advance(min(self.until, share * self._span(start)) - world.time)
-                trace(world._game, *self._watch[:2], prints, marks, course)
-                if course[LENGTH] > self._watch[2]:
+                trace(world._engine, *self._watch[:2], prints, marks, sequence)
+                if sequence[LENGTH] > self._watch[2]:
                     break
         except PuckError:
             return
@@ -175,5 +175,5 @@ class Shots:
 def _finely(scene: SceneSpec) -> Start:
     """The start of runs whose differences are slopes: they step as finely as look-ups are good."""
     start = prepared(scene.single())
-    start.game.pace[2] = start.game.pace[FINE]
+    start.engine.scale[2] = start.engine.scale[FINE]
     return start

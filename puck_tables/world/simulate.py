@@ -26,10 +26,10 @@ from puck_tables.scene.outcome import (
 )
 from puck_tables.scene.run import STATE, Event, Run, residual
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world import game as g
-from puck_tables.world.agreement import flight_error, steps_for
+from puck_tables.world import engine_state as g
+from puck_tables.world.agreement import segment_error, steps_for
 from puck_tables.world.check_runs import error_of
-from puck_tables.world.footing import moves_along
+from puck_tables.world.floor_under import moves_along
 from puck_tables.world.lasting import at_rest_below
 from puck_tables.world.layout import HOLD
 from puck_tables.world.ledger import energies_of, energy_scale
@@ -56,10 +56,10 @@ def simulate(scene: SceneSpec, times: npt.ArrayLike | None = None) -> Run:
     columns = columns_of(world, moments, end_time)
     if not scene.pucks:
         columns = {n: one if one.ndim == 1 else one[:, 0] for n, one in columns.items()}
-    missed = residual(columns, energy_scale(world._game))
+    missed = residual(columns, energy_scale(world._engine))
     if world.groups > 0 and not missed <= most_missed(scene):
         raise PuckError(g.TOGETHER.format(time=world.time))
-    speed, rate = world._game.pace[:2].tolist()
+    speed, rate = world._engine.scale[:2].tolist()
     model, why = plan_of(world.scene)  # with the finer steps that it took
     return Run(
         simulated=simulate,
@@ -75,7 +75,7 @@ def simulate(scene: SceneSpec, times: npt.ArrayLike | None = None) -> Run:
         error_estimate=error + _late(world),
         speed_scale=speed,
         rate_scale=rate,
-        steps=int(world._game.counts[g.N_PIECES]),
+        steps=int(world._engine.counts[g.N_PIECES]),
         last={name: _number(row[-1]) for name, row in columns.items()},
         columns={name: row[:-1] for name, row in columns.items()},
         files=files,
@@ -102,14 +102,14 @@ def run_on(world: World, moments: FloatArray | None) -> tuple[str, float]:
     asked for.
     """
     until = world.scene.time
-    if until is None and moves_along(world._game.surface) and moments is not None:
+    if until is None and moves_along(world._engine.surface) and moments is not None:
         until = float(moments[-1]) if moments.size and moments[-1] > 0.0 else None
     if until is not None:
         world.advance(until)
         ends_of_motion = world.motion_ends
         moving = bool(world.moving.any())
         end_time = world.time if moving else float(ends_of_motion.max())
-        along = moving and moves_along(world._game.surface)
+        along = moving and moves_along(world._engine.surface)
         carried = along and bool((ends_of_motion < math.inf).all())
         if carried and not world.state()[:, VX:].any():  # other belts rub it
             moving = carried = False
@@ -136,23 +136,23 @@ def columns_of(world: World, moments: FloatArray, end_time: float) -> dict[str, 
     if alone_gone:  # its run ends as it leaves
         times = np.minimum(times, np.nextafter(end_time, 0.0))
     states = world.over(times)
-    near = at_rest_below(world._game)
+    near = at_rest_below(world._engine)
     in_play = np.ones(states.shape[:2])
-    events = world._game.events[: world._game.counts[g.N_EVENTS]]
+    events = world._engine.events[: world._engine.counts[g.N_EVENTS]]
     for event in events[np.isin(events[:, g.WHAT], (g.POCKETED, g.OVER_EDGE))]:
         in_play[times >= event[g.TIME], world._order[int(event[g.WHO])]] = 0.0
     in_play[back[-1]] *= 0.0 if alone_gone else 1.0
     discs = world._place
     every, then = np.tile(discs, len(times)), np.repeat(times, len(discs))
-    slips = slips_over(world._game, every, states.reshape(-1, 6), then).reshape(in_play.shape)
+    slips = slips_over(world._engine, every, states.reshape(-1, 6), then).reshape(in_play.shape)
     columns = {
         **{name: states[..., n] for n, name in enumerate(STATE)},
         "in_play": in_play, "carried": np.where((slips <= near) & (in_play > 0.0), 1.0, 0.0),
         **energies_of(world, times, states),
     }  # fmt: skip
-    if (world._game.discs[:, HOLD] != FREE).any():
+    if (world._engine.discs[:, HOLD] != FREE).any():
         own = world._order
-        forces = reactions(world._game, times, states[:, own], in_play[:, own])[:, discs]
+        forces = reactions(world._engine, times, states[:, own], in_play[:, own])[:, discs]
         columns |= {"lambda_1": forces[..., 0], "lambda_2": forces[..., 1]}
     found = {name: values[back] for name, values in columns.items()}
     return {"time": np.append(moments, end_time), **found}
@@ -167,7 +167,7 @@ def _events(world: World) -> list[Event]:
     floor = world.scene.floor
     rests = [
         Event(time, what, world.names[world._order[disc]], floor_under(floor, x, y), x, y)
-        for time, what, disc, x, y in rests_of(world._game)
+        for time, what, disc, x, y in rests_of(world._engine)
     ]
     return sorted([*world.events_since(0.0), *rests], key=lambda event: event.time)
 
@@ -194,8 +194,8 @@ def _close_enough(scene: SceneSpec, moments: FloatArray | None) -> _Done:
     Of several launches decide, which nobody knows so well.
     """
     best, in_vain = _done(scene.single(), moments), 0
-    alone, integrated = len(best.world.names) == 1, best.world._game.floors[:, 2].all()
-    tol = steps_for(scene) if integrated else flight_error(scene)
+    alone, integrated = len(best.world.names) == 1, best.world._engine.floors[:, 2].all()
+    tol = steps_for(scene) if integrated else segment_error(scene)
     while alone and best.error > scene.tol and tol > FINEST and in_vain < MOST_IN_VAIN:
         tol = max(FINER * tol, FINEST)
         try:
@@ -209,5 +209,5 @@ def _close_enough(scene: SceneSpec, moments: FloatArray | None) -> _Done:
 
 def _late(world: World) -> float:
     """How long, in units of Q/J, the rebounds of one puck would have lasted that died out."""
-    speed, rate, *_, late, _ = world._game.pace.tolist()
+    speed, rate, *_, late, _ = world._engine.scale.tolist()
     return late * rate / speed if len(world.names) == 1 else 0.0

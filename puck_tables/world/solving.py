@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.world.game import Whole
+from puck_tables.world.engine_state import Whole
 from puck_tables.world.launches import TriedLaunches
 from puck_tables.world.shots import Landings, Shots
 
@@ -42,7 +42,7 @@ def stops_at(
     """
     place = np.array(target)
     inside = _in_cells(sample, fine, place)
-    beside = _beside(shots, sample, fine, place, low, high)
+    beside = _clear_of(shots, sample, fine, place, low, high)
     starts = np.vstack([inside, beside])
     starts[:, 1] = np.clip(starts[:, 1], low, high)
     landings = shots.land(starts)
@@ -84,7 +84,7 @@ def _in_cells(sample: TriedLaunches, fine: Which, place: FloatArray) -> FloatArr
     )  # fmt: skip
 
 
-def _beside(
+def _clear_of(
     shots: Shots, sample: TriedLaunches, fine: Which, place: FloatArray, low: float, high: float
 ) -> FloatArray:
     """Starts where courses change, or close to it, by the slopes at launches themselves."""

@@ -11,8 +11,10 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.motion.tableaus import DORMAND_PRINCE
 from puck_tables.scene.friction import X, Y, size
-from puck_tables.scene.ingredients import carried_along
-from puck_tables.world.footing import floor_of
+from puck_tables.scene.ingredients import floor_acceleration
+from puck_tables.world.break_away import turn_directions
+from puck_tables.world.contact_kinematics import look, look_at_ties
+from puck_tables.world.floor_under import floor_of
 from puck_tables.world.forces import (
     act,
     can_rest,
@@ -27,8 +29,8 @@ from puck_tables.world.group import (
     HELD,
     MOVES,
     YIELDS,
-    Desk,
     Group,
+    GroupBuffer,
     IntArray,
     Scales,
 )
@@ -36,9 +38,7 @@ from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY
 from puck_tables.world.multipliers import push_and_move
 from puck_tables.world.paths import DURATION, FIRST, START
 from puck_tables.world.putting_right import close_gaps, stop_slips
-from puck_tables.world.sights import look, look_at_ties
-from puck_tables.world.works import LEDGER, write_work
-from puck_tables.world.yielding import turn_ways
+from puck_tables.world.step_ledger import LEDGER, write_work
 
 _A, _C, _E = DORMAND_PRINCE.a, DORMAND_PRINCE.c, DORMAND_PRINCE.e[0]
 STAGES = len(_C)
@@ -55,37 +55,37 @@ _TURN = 1.5  # and of that in which friction turns it; three times as long steps
 
 @inner
 def rates_at(
-    group: Group, members: IntArray, modes: IntArray, doings: IntArray, t: float, y: FloatArray,
-    stage: int, scales: Scales, desk: Desk,
+    group: Group, members: IntArray, modes: IntArray, motions: IntArray, t: float, y: FloatArray,
+    stage: int, scales: Scales, buffer: GroupBuffer,
 ) -> None:  # fmt: skip
     """Rates of states y (m, 6) and of the ledger into a stage; the driven are put into place."""
-    contacts, power = modes.shape[0], desk.powers[stage]
-    place_driven(group, members, doings, t, y, desk)
-    act(group, members, doings, y, power, desk)
-    look(group, members, desk.pairs[:contacts], y, desk.sights)
-    look_at_ties(group, members, t, y, desk)
-    push_and_move(desk, modes, members.shape[0])
+    contacts, power = modes.shape[0], buffer.powers[stage]
+    place_driven(group, members, motions, t, y, buffer)
+    act(group, members, motions, y, power, buffer)
+    look(group, members, buffer.pairs[:contacts], y, buffer.sights)
+    look_at_ties(group, members, t, y, buffer)
+    push_and_move(buffer, modes, members.shape[0])
     for place in range(members.shape[0]):
-        if doings[place] == YIELDS:
-            turn_ways(group, members, modes, doings, y, scales, False, power, desk)
+        if motions[place] == YIELDS:
+            turn_directions(group, members, modes, motions, y, scales, False, power, buffer)
             break
-    power_of_contacts(group, members, doings, contacts, y, power, desk)
+    power_of_contacts(group, members, motions, contacts, y, power, buffer)
     for place in range(members.shape[0]):
         for i in range(3):
-            desk.stages[stage, place, i] = y[place, 3 + i]
-            desk.stages[stage, place, 3 + i] = desk.rates[place, i]
+            buffer.stages[stage, place, i] = y[place, 3 + i]
+            buffer.stages[stage, place, 3 + i] = buffer.rates[place, i]
 
 
 @inner
 def step(
-    group: Group, members: IntArray, modes: IntArray, doings: IntArray, t: float, h: float,
-    scales: Scales, desk: Desk,
+    group: Group, members: IntArray, modes: IntArray, motions: IntArray, t: float, h: float,
+    scales: Scales, buffer: GroupBuffer,
 ) -> float:  # fmt: skip
     """From states[0] at t, with its rates in stage 0, over h into states[1]; the error.
 
     The error is in units of ``scales``.  Rates at the end stand in stage END.
     """
-    y, new, stages = desk.states[0], desk.states[1], desk.stages
+    y, new, stages = buffer.states[0], buffer.states[1], buffer.stages
     for stage in range(1, STAGES):
         for place in range(members.shape[0]):
             for i in range(6):
@@ -93,12 +93,12 @@ def step(
                 for j in range(stage):
                     total += _A[stage, j] * stages[j, place, i]
                 new[place, i] = y[place, i] + h * total
-        rates_at(group, members, modes, doings, t + _C[stage] * h, new, stage, scales, desk)
+        rates_at(group, members, modes, motions, t + _C[stage] * h, new, stage, scales, buffer)
     largest, turning = 0.0, group.surface.spin != 0.0 or group.surface.changes != 0.0
     for place in range(members.shape[0]):
-        if doings[place] == HELD:
+        if motions[place] == HELD:
             rest_on_floor(group, members[place], new[place])
-        if doings[place] == DRIVEN or (doings[place] == HELD and not turning):
+        if motions[place] == DRIVEN or (motions[place] == HELD and not turning):
             continue
         for i in range(6):
             error = 0.0
@@ -110,31 +110,31 @@ def step(
             share = abs(h * error) / scale
             if not share <= largest:
                 largest = share
-    if modes.shape[0] + desk.number[0] == 0 and not turning:
+    if modes.shape[0] + buffer.number[0] == 0 and not turning:
         for place in range(members.shape[0]):
             for i in range(6):
                 stages[END, place, i] = stages[STAGES - 1, place, i]
         for i in range(LEDGER):
-            desk.powers[END, i] = desk.powers[STAGES - 1, i]
+            buffer.powers[END, i] = buffer.powers[STAGES - 1, i]
     elif largest < math.inf:
-        close_gaps(desk, modes, new)
-        look(group, members, desk.pairs[: modes.shape[0]], new, desk.sights)
-        look_at_ties(group, members, t + h, new, desk)
-        stop_slips(desk, modes, new)
-        rates_at(group, members, modes, doings, t + h, new, END, scales, desk)
+        close_gaps(buffer, modes, new)
+        look(group, members, buffer.pairs[: modes.shape[0]], new, buffer.sights)
+        look_at_ties(group, members, t + h, new, buffer)
+        stop_slips(buffer, modes, new)
+        rates_at(group, members, modes, motions, t + h, new, END, scales, buffer)
     return largest
 
 
 @inlined
-def longest_step(group: Group, members: IntArray, doings: IntArray, desk: Desk) -> float:
+def longest_step(group: Group, members: IntArray, motions: IntArray, buffer: GroupBuffer) -> float:
     """What steps from states[0] may have where a slip is about to end, or has just begun."""
     longest = math.inf
     for place in range(members.shape[0]):
         number = members[place]
-        if doings[place] == MOVES and can_rest(group, number):
-            radius, rate = group.discs[number, RADIUS], desk.stages[0, place]
-            floor, y = floor_of(group.surface, group.discs[number]), desk.states[0, place]
-            cx, cy = carried_along(floor, y[X], y[Y], rate[0], rate[1])
+        if motions[place] == MOVES and can_rest(group, number):
+            radius, rate = group.discs[number, RADIUS], buffer.stages[0, place]
+            floor, y = floor_of(group.surface, group.discs[number]), buffer.states[0, place]
+            cx, cy = floor_acceleration(floor, y[X], y[Y], rate[0], rate[1])
             pull = size(rate[3] - cx, rate[4] - cy, radius * (rate[5] - floor.turn))
             q = slip_of(group, number, y)
             disc = group.discs[number]
@@ -146,25 +146,25 @@ def longest_step(group: Group, members: IntArray, doings: IntArray, desk: Desk) 
 
 
 @inlined
-def add_work(h: float, start: float, row: FloatArray, desk: Desk) -> None:
+def add_work(h: float, start: float, row: FloatArray, buffer: GroupBuffer) -> None:
     """Write down what a step adds to the ledger."""
-    done, halfway = desk.powers[END + 1], desk.powers[END + 2]
+    done, halfway = buffer.powers[END + 1], buffer.powers[END + 2]
     for i in range(LEDGER):
-        total, half = 0.0, _HALF[STAGES - 1] * desk.powers[STAGES - 1, i]
+        total, half = 0.0, _HALF[STAGES - 1] * buffer.powers[STAGES - 1, i]
         for j in range(STAGES - 1):
-            total += _A[STAGES - 1, j] * desk.powers[j, i]
-            half += _HALF[j] * desk.powers[j, i]
+            total += _A[STAGES - 1, j] * buffer.powers[j, i]
+            half += _HALF[j] * buffer.powers[j, i]
         done[i], halfway[i] = h * total, h * half
-    write_work(row, start, h, desk.powers[0], done, desk.powers[END], halfway)
+    write_work(row, start, h, buffer.powers[0], done, buffer.powers[END], halfway)
 
 
 @inlined
-def write_piece(piece: FloatArray, start: float, h: float, place: int, desk: Desk) -> None:
+def write_piece(piece: FloatArray, start: float, h: float, place: int, buffer: GroupBuffer) -> None:
     """The way of a member on a step as a piece of its path."""
     piece[START], piece[DURATION] = start, h
     for i in range(6):
-        piece[FIRST + i] = desk.states[0, place, i]
-        piece[FIRST + 9 + i] = desk.states[1, place, i]
+        piece[FIRST + i] = buffer.states[0, place, i]
+        piece[FIRST + 9 + i] = buffer.states[1, place, i]
     for i in range(3):
-        piece[FIRST + 6 + i] = desk.stages[0, place, 3 + i]
-        piece[FIRST + 15 + i] = desk.stages[END, place, 3 + i]
+        piece[FIRST + 6 + i] = buffer.stages[0, place, 3 + i]
+        piece[FIRST + 15 + i] = buffer.stages[END, place, 3 + i]

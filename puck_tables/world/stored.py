@@ -1,8 +1,8 @@
 """Boards between calls, each a row of numbers in a store, and the kernel that plays them.
 
-Of what was a board keeps what is still asked for: until when its discs moved before their flights,
+Of what was a board keeps what is still asked for: until when its discs moved before their segments,
 and its last events, by which the engine tells what is squeezed.  To play it, its row is copied to a
-bench, a game with room for much that happens; done without a hitch it goes to another row, so that
+bench, an engine with room for much; done without a hitch it goes to another row, so that
 what fails leaves all boards as they were.
 """
 
@@ -16,23 +16,10 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel, patience
 from puck_tables.scene.friction import SPIN, VX
-from puck_tables.world.bulk import own_game
+from puck_tables.world.bulk import own_engine
 from puck_tables.world.by_hand import lead
-from puck_tables.world.departures import CONCERNED, NOT_CONCERNED, Room, locate, room_for
 from puck_tables.world.engine import MOST_BACK, NOBODY, advance
-from puck_tables.world.flight import (
-    FIRST_PIECE,
-    FLIGHT_COLUMNS,
-    GONE,
-    LAST_PIECE,
-    LOOKED_UP,
-    PATH,
-    START,
-    UNTIL,
-    moves_until,
-    state_at,
-)
-from puck_tables.world.game import (
+from puck_tables.world.engine_state import (
     APPROACH,
     AT_X,
     AT_Y,
@@ -53,22 +40,35 @@ from puck_tables.world.game import (
     TIME,
     WHAT,
     WHO,
-    Game,
+    Engine,
     Whole,
 )
-from puck_tables.world.lasting import GOES_ON, ROUND, given_until, moves_on, next_target
+from puck_tables.world.lasting import GOES_ON, ROUND, moves_on, next_target, prescribed_until
 from puck_tables.world.layout import LIGHTNESS
 from puck_tables.world.passings import COLUMNS, FROM, LINE, NEXT, SIDE, UNKNOWN, find_passings
 from puck_tables.world.paths import FOR_EVER
+from puck_tables.world.segment import (
+    FIRST_PIECE,
+    GONE,
+    LAST_PIECE,
+    LOOKED_UP,
+    PATH,
+    SEGMENT_COLUMNS,
+    START,
+    UNTIL,
+    moves_until,
+    state_at,
+)
+from puck_tables.world.segment_starts import CONCERNED, NOT_CONCERNED, Room, locate, room_for
 from puck_tables.world.setting_off import FULL, REACHED
 
 LET_GO, LED = -1, -2  # what is done to boards beside an event by hand: time passes; a disc is led
 # how, beside what the engine says
 WAITS, TO_DO, ALONE, LACKS_PIECES = -1, -2, -3, -4
-ROWS = 2048  # of events and flights of a board in one call; beyond them it is played alone
+ROWS = 2048  # of events and segments of a board in one call; beyond them it is played alone
 FOUND_COLUMNS = 12  # of an event that is told: its board, then as an Event has them
 _FOUND = 64  # passings of lines in one call
-_NUMBERS = ("pace", "discs", "flights", "next_time")
+_NUMBERS = ("scale", "discs", "segments", "next_time")
 _WHOLE = ("kinds", "group", "next_partner", "counts", "drives", "hangs", "held")
 PACE = slice(0, 2)  # where in a row the scales of a board are
 
@@ -86,14 +86,14 @@ class Slots(NamedTuple):
 
 
 class Bench(NamedTuple):
-    """Where a board is played: a game whose arrays lie in two rows, as in a slot.
+    """Where a board is played: a state of the engine whose arrays lie in two rows, as in a slot.
 
-    So do ``ended`` (discs,), until when each moved before its flight, ``tail``, the last events,
+    So do ``ended`` (discs,), until when each moved before its segment, ``tail``, the last events,
     and ``seen``, see :class:`puck_tables.world.passings.Passings`.  ``shared``: the pieces of ways
     that all boards have; ``order``: of discs, the number of each puck.
     """
 
-    game: Game
+    engine: Engine
     numbers: FloatArray
     whole: Whole
     ended: FloatArray
@@ -111,7 +111,7 @@ class Orders(NamedTuple):
     """What is to be done, a row for each board.
 
     ``boards``; from which slot to which; ``time`` and ``until``, s; ``discs`` (m,) by hand, with
-    ``rows`` (n, m, 6) as :meth:`puck_tables.world.world.World._put` has them and scales ``paces``
+    ``rows`` (n, m, 6) as :meth:`puck_tables.world.world.World._put` has them and scales ``scales``
     (n, 2) from then on; ``longest``: see :func:`puck_tables.world.lasting.longest_of`.  ``after``,
     to be filled: the time then; ``how``: TO_DO, or what became of it.
     """
@@ -123,30 +123,32 @@ class Orders(NamedTuple):
     until: FloatArray
     discs: Whole
     rows: FloatArray
-    paces: FloatArray
+    scales: FloatArray
     longest: FloatArray
     after: FloatArray
     how: Whole
 
 
-def bench_for(game: Game, order: Whole, lines: FloatArray, seen: FloatArray, more: int) -> Bench:
-    """Room to play boards that began as a game did; ``more``: rows for pieces that are kept."""
-    count = len(game.discs)
-    own = own_game(game, ROWS + 16 * count, more + count)
+def bench_for(
+    engine: Engine, order: Whole, lines: FloatArray, seen: FloatArray, more: int
+) -> Bench:
+    """Room to play boards that began as an engine did; ``more``: rows for pieces that are kept."""
+    count = len(engine.discs)
+    own = own_engine(engine, ROWS + 16 * count, more + count)
     parts: dict[str, Any] = own._asdict()
     numbers, floats = _in_a_row(
         [parts[name] for name in _NUMBERS]
-        + [own.regions.ground, np.zeros(count), np.zeros((MOST_BACK, 4)), seen]
+        + [own.regions.floor_map, np.zeros(count), np.zeros((MOST_BACK, 4)), seen]
     )
     whole, ints = _in_a_row([parts[name] for name in _WHOLE])
-    *held, ground, ended, tail, seen = floats
+    *held, floor_map, ended, tail, seen = floats
     own = own._replace(
-        regions=own.regions._replace(ground=ground),
+        regions=own.regions._replace(floor_map=floor_map),
         **dict(zip(_NUMBERS, held, strict=True)), **dict(zip(_WHOLE, ints, strict=True)),
     )  # fmt: skip
     return Bench(
         own, numbers, whole, ended, tail, seen, np.zeros(count + 1, np.int64), lines,
-        np.zeros((_FOUND, COLUMNS)), int(game.drives.max()), order, room_for(count),
+        np.zeros((_FOUND, COLUMNS)), int(engine.drives.max()), order, room_for(count),
     )  # fmt: skip
 
 
@@ -157,43 +159,46 @@ def _in_a_row(arrays: list[Any]) -> tuple[Any, list[Any]]:
     return row, [part.reshape(array.shape) for part, array in zip(parts, arrays, strict=True)]
 
 
-def lay_out(bench: Bench, game: Game, seen: FloatArray) -> Game:
-    """A game that was played alone, in the arrays of a bench; rows of what was as it has them."""
-    theirs: Any = game._asdict()
-    mine: Any = bench.game._asdict()
+def lay_out(bench: Bench, engine: Engine, seen: FloatArray) -> Engine:
+    """An engine played alone, in the arrays of a bench; rows of what was as it has them."""
+    theirs: Any = engine._asdict()
+    mine: Any = bench.engine._asdict()
     for name in ("clock", *_NUMBERS, *_WHOLE):
         mine[name][...] = theirs[name]
-    if bench.game.regions.ground.size == game.regions.ground.size:  # no law that grew
-        bench.game.regions.ground[...] = game.regions.ground
+    if bench.engine.regions.floor_map.size == engine.regions.floor_map.size:  # no law that grew
+        bench.engine.regions.floor_map[...] = engine.regions.floor_map
     bench.seen[...] = seen
-    return bench.game._replace(
-        events=game.events, history=game.history, pieces=game.pieces, works=game.works
+    return bench.engine._replace(
+        events=engine.events,
+        history=engine.history,
+        pieces=engine.pieces,
+        work_rows=engine.work_rows,
     )
 
 
 @inlined
 def _take(store: Slots, slot: int, time: float, bench: Bench) -> None:
-    """Copy a board to the bench, with a flight before that of each disc: until when it moved."""
-    game, count = bench.game, bench.ended.size
+    """Copy a board to the bench, with a segment before that of each disc: until when it moved."""
+    engine, count = bench.engine, bench.ended.size
     for column in range(bench.numbers.size):
         bench.numbers[column] = store.numbers[slot, column]
     for column in range(bench.whole.size):
         bench.whole[column] = store.whole[slot, column]
-    game.clock[0] = time
-    for row in range(bench.shared, game.counts[N_PIECES]):
-        for column in range(game.pieces.shape[1]):
-            game.pieces[row, column] = store.pieces[slot, row - bench.shared, column]
+    engine.clock[0] = time
+    for row in range(bench.shared, engine.counts[N_PIECES]):
+        for column in range(engine.pieces.shape[1]):
+            engine.pieces[row, column] = store.pieces[slot, row - bench.shared, column]
     for i in range(count):
-        before, row = game.history[i], game.history[count + i]
+        before, row = engine.history[i], engine.history[count + i]
         before[0], before[1] = i, LOOKED_UP
         before[2 + START], before[2 + UNTIL] = 0.0, bench.ended[i]
-        row[0], row[1] = i, game.kinds[i]
-        for column in range(FLIGHT_COLUMNS):
-            row[2 + column] = game.flights[i, column]
+        row[0], row[1] = i, engine.kinds[i]
+        for column in range(SEGMENT_COLUMNS):
+            row[2 + column] = engine.segments[i, column]
         bench.passed[i] = count + i
     bench.passed[count] = 2 * count
-    for n in range(game.counts[N_EVENTS]):
-        event, kept = game.events[n], bench.tail[n]
+    for n in range(engine.counts[N_EVENTS]):
+        event, kept = engine.events[n], bench.tail[n]
         event[TIME], event[WHAT], event[WHO], event[PARTNER] = kept[0], kept[1], kept[2], kept[3]
 
 
@@ -205,63 +210,63 @@ def take(store: Slots, slot: int, time: float, bench: Bench) -> None:
 
 
 @inlined
-def _own_rows(game: Game, i: int, shared: int) -> tuple[int, int]:
-    """The pieces of a disc that other boards do not have: of its way, or of its flight."""
-    first, last = game.drives[i, 0], game.drives[i, 1]
-    if first >= last and game.kinds[i] == PATH:
-        first, last = int(game.flights[i, FIRST_PIECE]), int(game.flights[i, LAST_PIECE])
+def _own_rows(engine: Engine, i: int, shared: int) -> tuple[int, int]:
+    """The pieces of a disc that other boards do not have: of its way, or of its segment."""
+    first, last = engine.drives[i, 0], engine.drives[i, 1]
+    if first >= last and engine.kinds[i] == PATH:
+        first, last = int(engine.segments[i, FIRST_PIECE]), int(engine.segments[i, LAST_PIECE])
     return (first, last) if shared <= first < last else (0, 0)
 
 
 @inlined
-def _keep_pieces(game: Game, shared: int, pieces: FloatArray) -> bool:
+def _keep_pieces(engine: Engine, shared: int, pieces: FloatArray) -> bool:
     """Keep the pieces that boards do not share, one after the other, if there is room."""
-    count, own = game.discs.shape[0], 0
+    count, own = engine.discs.shape[0], 0
     for i in range(count):
-        first, last = _own_rows(game, i, shared)
+        first, last = _own_rows(engine, i, shared)
         own += last - first
     if own > pieces.shape[0]:
         return False
     own = 0
     for i in range(count):
-        first, last = _own_rows(game, i, shared)
+        first, last = _own_rows(engine, i, shared)
         for row in range(first, last):
             for column in range(pieces.shape[1]):
-                pieces[own + row - first, column] = game.pieces[row, column]
+                pieces[own + row - first, column] = engine.pieces[row, column]
         if last > first:
-            if game.kinds[i] == PATH:
-                game.flights[i, FIRST_PIECE] += shared + own - first
-                game.flights[i, LAST_PIECE] += shared + own - first
-            if game.drives[i, 0] < game.drives[i, 1]:
-                game.drives[i, 0], game.drives[i, 1] = shared + own, shared + own + last - first
+            if engine.kinds[i] == PATH:
+                engine.segments[i, FIRST_PIECE] += shared + own - first
+                engine.segments[i, LAST_PIECE] += shared + own - first
+            if engine.drives[i, 0] < engine.drives[i, 1]:
+                engine.drives[i, 0], engine.drives[i, 1] = shared + own, shared + own + last - first
         own += last - first
-    game.counts[N_PIECES] = shared + own
+    engine.counts[N_PIECES] = shared + own
     return True
 
 
 @inlined
-def _find_ends(game: Game, room: Room, ended: FloatArray) -> None:
-    """Until when discs moved before their flights of now, s; 0: they never did."""
+def _find_ends(engine: Engine, room: Room, ended: FloatArray) -> None:
+    """Until when discs moved before their segments of now, s; 0: they never did."""
     for i in range(ended.size):
         ended[i], end = 0.0, -1.0
-        for n in range(game.counts[N_HISTORY] - 1, -1, -1):
-            if int(game.history[n, 0]) == i:
-                moved = moves_on(game, n, end, room) if end >= 0.0 else -math.inf
+        for n in range(engine.counts[N_HISTORY] - 1, -1, -1):
+            if int(engine.history[n, 0]) == i:
+                moved = moves_on(engine, n, end, room) if end >= 0.0 else -math.inf
                 if moved >= 0.0:
                     ended[i] = moved
                     break
-                end = game.history[n, 2 + START]
+                end = engine.history[n, 2 + START]
 
 
 @inlined
-def _next_due(game: Game, seen: FloatArray) -> float:
+def _next_due(engine: Engine, seen: FloatArray) -> float:
     """Before when nothing happens, nor is passed; −inf: perhaps now."""
-    due, done = math.inf, game.counts[N_LAUNCHES]
-    if done < game.launches.shape[0]:
-        due = game.launches[done, LAUNCH_TIME]
-    for i in range(game.discs.shape[0]):
-        due = min(due, game.next_time[i])
-        for k in range(seen.shape[1] if game.kinds[i] != GONE else 0):
+    due, done = math.inf, engine.counts[N_LAUNCHES]
+    if done < engine.launches.shape[0]:
+        due = engine.launches[done, LAUNCH_TIME]
+    for i in range(engine.discs.shape[0]):
+        due = min(due, engine.next_time[i])
+        for k in range(seen.shape[1] if engine.kinds[i] != GONE else 0):
             for part in range(2):
                 if seen[i, k, part, SIDE] != UNKNOWN:
                     looked = seen[i, k, part, NEXT]
@@ -270,19 +275,19 @@ def _next_due(game: Game, seen: FloatArray) -> float:
 
 
 @inner
-def _put_away(game: Game, bench: Bench, store: Slots, slot: int) -> bool:
+def _put_away(engine: Engine, bench: Bench, store: Slots, slot: int) -> bool:
     """Copy what a board keeps to a slot, if its pieces have room there."""
     count = bench.ended.size
-    _find_ends(game, bench.room, bench.ended)
-    if not _keep_pieces(game, bench.shared, store.pieces[slot]):
+    _find_ends(engine, bench.room, bench.ended)
+    if not _keep_pieces(engine, bench.shared, store.pieces[slot]):
         return False
-    events = game.counts[N_EVENTS]
+    events = engine.counts[N_EVENTS]
     kept = min(events, MOST_BACK)
     for n in range(kept):
-        event, row = game.events[events - kept + n], bench.tail[n]
+        event, row = engine.events[events - kept + n], bench.tail[n]
         row[0], row[1], row[2], row[3] = event[TIME], event[WHAT], event[WHO], event[PARTNER]
-    game.counts[N_EVENTS], game.counts[N_HISTORY], game.counts[N_WORKS] = kept, 2 * count, 0
-    store.due[slot] = _next_due(game, bench.seen)
+    engine.counts[N_EVENTS], engine.counts[N_HISTORY], engine.counts[N_WORKS] = kept, 2 * count, 0
+    store.due[slot] = _next_due(engine, bench.seen)
     for column in range(bench.numbers.size):
         store.numbers[slot, column] = bench.numbers[column]
     for column in range(bench.whole.size):
@@ -291,37 +296,37 @@ def _put_away(game: Game, bench: Bench, store: Slots, slot: int) -> bool:
 
 
 @kernel
-def put_away(game: Game, bench: Bench, store: Slots, slot: int) -> bool:
-    """Copy a game that :func:`lay_out` gave to a slot, if its pieces have room there."""
+def put_away(engine: Engine, bench: Bench, store: Slots, slot: int) -> bool:
+    """Copy an engine that :func:`lay_out` gave to a slot, if its pieces have room there."""
     patience(1 + bench.numbers.size // 1000)
-    return _put_away(game, bench, store, slot)
+    return _put_away(engine, bench, store, slot)
 
 
 @inlined
 def _lay_hands_on(what: int, k: int, orders: Orders, bench: Bench) -> None:
     """What a hand does to a board, up to what the engine does of it."""
-    game, room, t = bench.game, bench.room, bench.game.clock[0]
-    game.counts[N_AT_ONCE] = 0
-    game.pace[0], game.pace[1] = orders.paces[k, 0], orders.paces[k, 1]
-    for i in range(game.discs.shape[0]):
+    engine, room, t = bench.engine, bench.room, bench.engine.clock[0]
+    engine.counts[N_AT_ONCE] = 0
+    engine.scale[0], engine.scale[1] = orders.scales[k, 0], orders.scales[k, 1]
+    for i in range(engine.discs.shape[0]):
         room.marks[i] = NOT_CONCERNED
     for m in range(orders.discs.size):
         i, row, changed = orders.discs[m], orders.rows[k, m], False
-        locate(game, i, t, room)
+        locate(engine, i, t, room)
         state = room.states[i]
         for column in range(6):
             changed = changed or (row[column] == row[column] and row[column] != state[column])
         if what == LED:
             for column in range(VX, SPIN + 1):
                 state[column] = row[column]
-            lead(game, i, state, FOR_EVER)
-            game.next_time[i], game.next_partner[i] = t, PATH_ENDS
-        elif changed or what != PLACED or game.kinds[i] != GONE:
-            if changed and what == PLACED and game.discs[i, LIGHTNESS] == 0.0:
+            lead(engine, i, state, FOR_EVER)
+            engine.next_time[i], engine.next_partner[i] = t, PATH_ENDS
+        elif changed or what != PLACED or engine.kinds[i] != GONE:
+            if changed and what == PLACED and engine.discs[i, LIGHTNESS] == 0.0:
                 for column in range(6):
                     if row[column] == row[column]:  # not NaN
                         state[column] = row[column]
-                lead(game, i, state, FOR_EVER)
+                lead(engine, i, state, FOR_EVER)
             room.marks[i] = CONCERNED
             for column in range(6):
                 room.before[i, column] = row[column]
@@ -330,33 +335,33 @@ def _lay_hands_on(what: int, k: int, orders: Orders, bench: Bench) -> None:
 @inner
 def _played(what: int, k: int, orders: Orders, bench: Bench) -> int:
     """Do what is to be done on the board on the bench; how it ended, as the engine says."""
-    game, room, until = bench.game, bench.room, orders.until[k]
+    engine, room, until = bench.engine, bench.room, orders.until[k]
     if what != LET_GO:
         _lay_hands_on(what, k, orders, bench)
-        return advance(game, game.clock[0], NOBODY if what == LED else what, room)
+        return advance(engine, engine.clock[0], NOBODY if what == LED else what, room)
     how, target = GOES_ON, until
     if until < math.inf:
-        how = advance(game, until, NOBODY, room)
+        how = advance(engine, until, NOBODY, room)
     else:
-        target, given = game.clock[0], given_until(game)
+        target, given = engine.clock[0], prescribed_until(engine)
         limit = max(target, given) + orders.longest[k]
         while how == GOES_ON:
-            how = advance(game, target, NOBODY, room)
+            how = advance(engine, target, NOBODY, room)
             if how == REACHED:
-                how, target = next_target(game, limit, given, room, bench.ended)
+                how, target = next_target(engine, limit, given, room, bench.ended)
         if how == ROUND:
             how = REACHED
-        if how == REACHED and game.surface.spin == 0.0:  # it was waited for what may come
-            game.clock[0] = target
+        if how == REACHED and engine.surface.spin == 0.0:  # it was waited for what may come
+            engine.clock[0] = target
     return how
 
 
 @inlined
-def tell(board: int, game: Game, first: int, bench: Bench, passed: int, out: FloatArray) -> int:
+def tell(board: int, engine: Engine, first: int, bench: Bench, passed: int, out: FloatArray) -> int:
     """Write down what happened on a board from an event on, and what passed; how many rows."""
     used = 0
-    for n in range(first, game.counts[N_EVENTS]):
-        event, row = game.events[n], out[used]
+    for n in range(first, engine.counts[N_EVENTS]):
+        event, row = engine.events[n], out[used]
         row[0], row[1], row[2], row[3] = board, event[TIME], event[WHAT], event[WHO]
         row[4], row[5], row[6], row[7] = event[PARTNER], event[AT_X], event[AT_Y], event[APPROACH]
         row[8], row[9], row[10], row[11] = event[SLIDE], event[PUSH], event[RUB], event[LOST]
@@ -366,7 +371,7 @@ def tell(board: int, game: Game, first: int, bench: Bench, passed: int, out: Flo
         row[0] = board
         for column in range(COLUMNS):
             row[1 + column] = found[column]
-        row[4] = -1.0 - game.obstacles.shape[0] - found[LINE]
+        row[4] = -1.0 - engine.obstacles.shape[0] - found[LINE]
         for column in range(1 + COLUMNS, FOUND_COLUMNS):
             row[column] = 0.0
         used += 1
@@ -383,7 +388,7 @@ def play(
     was, to be played alone.
     """
     patience((stop - start) * (1 + bench.numbers.size // 1000))  # all of them are copied
-    game, room, used = bench.game, bench.room, 0
+    engine, room, used = bench.engine, bench.room, 0
     for k in range(start, stop):
         source = orders.source[k]
         if orders.how[k] != TO_DO:
@@ -391,21 +396,21 @@ def play(
         if what == LET_GO and store.due[source] > orders.until[k]:
             orders.how[k], orders.after[k] = WAITS, orders.until[k]
             continue
-        if used + game.events.shape[0] + bench.found.shape[0] > out.shape[0]:
+        if used + engine.events.shape[0] + bench.found.shape[0] > out.shape[0]:
             return k, used
         _take(store, source, orders.time[k], bench)
-        first, passed = game.counts[N_EVENTS], 0
+        first, passed = engine.counts[N_EVENTS], 0
         how = _played(what, k, orders, bench)
         if how == REACHED and bench.lines.shape[0] > 0:
             passed = find_passings(
-                game, bench.lines, bench.seen, bench.passed, room.work, room.one, bench.found
+                engine, bench.lines, bench.seen, bench.passed, room.work, room.one, bench.found
             )
             if passed > bench.found.shape[0]:
                 how = FULL
         if how == REACHED:
-            rows = tell(orders.boards[k], game, first, bench, passed, out[used:])
-            if _put_away(game, bench, store, orders.target[k]):
-                used, orders.after[k] = used + rows, game.clock[0]
+            rows = tell(orders.boards[k], engine, first, bench, passed, out[used:])
+            if _put_away(engine, bench, store, orders.target[k]):
+                used, orders.after[k] = used + rows, engine.clock[0]
             else:
                 how = LACKS_PIECES
         orders.how[k] = how
@@ -419,13 +424,19 @@ def fill_states(
 ) -> None:  # fmt: skip
     """States (n, pucks, 6) of boards in slots, and which pucks move."""
     patience((stop - start) * (1 + bench.numbers.size // 1000))  # all of them are copied
-    game = bench.game
+    engine = bench.engine
     for k in range(start, stop):
         _take(store, slots[k], times[k], bench)
-        for i in range(game.discs.shape[0]):
-            kind, flight, n = game.kinds[i], game.flights[i], bench.order[i]
+        for i in range(engine.discs.shape[0]):
+            kind, segment, n = engine.kinds[i], engine.segments[i], bench.order[i]
             state_at(
-                kind, flight, game.discs[i], game.curves, game.pieces, times[k], bench.room.work,
+                kind,
+                segment,
+                engine.discs[i],
+                engine.lookups,
+                engine.pieces,
+                times[k],
+                bench.room.work,
                 states[k, n],
-            )  # fmt: skip
-            moving[k, n] = 1 if moves_until(kind, flight) > times[k] else 0
+            )
+            moving[k, n] = 1 if moves_until(kind, segment) > times[k] else 0

@@ -19,7 +19,7 @@ from puck_tables.world.agreement import (
     called,
     disagreements,
     has_closed_forms,
-    in_the_way,
+    obstructing,
     pucks_of,
     refuse_endless,
     start_of,
@@ -87,9 +87,9 @@ def target_of(
     return Target(sent, aimed, through, (x, y), -1)
 
 
-def _striker(pucks: tuple[ScenePuck, ...], names: tuple[str, ...], given: int | str | None) -> int:
+def _striker(pucks: tuple[ScenePuck, ...], names: tuple[str, ...], wanted: int | str | None) -> int:
     """The puck that is named, or the one that the scene sends off."""
-    if given is None:
+    if wanted is None:
         moving = [
             number for number, puck in enumerate(pucks)
             if puck.launch.velocity not in (None, (0.0, 0.0)) or puck.launch.spin != 0.0
@@ -103,7 +103,7 @@ def _striker(pucks: tuple[ScenePuck, ...], names: tuple[str, ...], given: int | 
             )
         number = moving[0]
     else:
-        number = number_of(given, names)
+        number = number_of(wanted, names)
     _refuse_driven(pucks, names, number, "be sent off")
     hold = pucks[number].constraint
     if hold is not None:
@@ -120,18 +120,18 @@ def _striker(pucks: tuple[ScenePuck, ...], names: tuple[str, ...], given: int | 
 
 
 def _puck(
-    pucks: tuple[ScenePuck, ...], names: tuple[str, ...], given: int | str | None, striker: int
+    pucks: tuple[ScenePuck, ...], names: tuple[str, ...], wanted: int | str | None, striker: int
 ) -> int:
     """The puck that is named, or the only one that can be meant."""
     others = [n for n, puck in enumerate(pucks) if n != striker and not puck.path]
-    if given is None:
+    if wanted is None:
         if len(others) > 1:
             raise InputError(
                 f"puck: which is to end there? Name one of the {len(pucks)}, such as "
                 f"{names[others[0]]}, or {names[striker]} itself"
             )
         return others[0] if others else striker
-    number = number_of(given, names)
+    number = number_of(wanted, names)
     _refuse_driven(pucks, names, number, "be aimed")
     return number
 
@@ -145,14 +145,14 @@ def _refuse_driven(
         )
 
 
-def _pocket(scene: SceneSpec, given: int | str) -> int:
+def _pocket(scene: SceneSpec, wanted: int | str) -> int:
     """The number of a pocket, from itself or from 'pocket 2'."""
     count = len(scene.pockets)
     if not count:
         raise InputError("pocket: the board has none; give a target (x, y), or add [[pocket]]")
-    text = str(given).removeprefix("pocket ").strip()
-    if isinstance(given, bool) or not text.isascii() or not text.isdecimal() or int(text) >= count:
-        raise InputError(f"no pocket {given!r}: the board has {count}, from 0 to {count - 1}")
+    text = str(wanted).removeprefix("pocket ").strip()
+    if isinstance(wanted, bool) or not text.isascii() or not text.isdecimal() or int(text) >= count:
+        raise InputError(f"no pocket {wanted!r}: the board has {count}, from 0 to {count - 1}")
     return int(text)
 
 
@@ -160,7 +160,7 @@ def _refuse_where_nothing_lies(
     scene: SceneSpec, place: tuple[float, float], radius: float, name: str
 ) -> None:
     """Refuse a place in a cushion, a post, a pocket or over an edge."""
-    for path, what, depth in in_the_way(scene, place, radius, holes=True):
+    for path, what, depth in obstructing(scene, place, radius, holes=True):
         hint = f", or ask for pocket {path[7:-1]}" if path.startswith("pocket") else ""
         raise InputError(
             f"target {list(place)}: {name} cannot rest there, with {path} in the way it {what} by "

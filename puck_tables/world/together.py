@@ -18,15 +18,15 @@ from puck_tables.kernels.patience import FEW, compiled_at_once
 from puck_tables.scene.friction import VX, VY
 from puck_tables.scene.ingredients import FREE
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world import game as g
+from puck_tables.world import engine_state as g
 from puck_tables.world import stored
-from puck_tables.world.departures import room_for
-from puck_tables.world.footing import law_goes_to, moves_along
-from puck_tables.world.game import Whole
+from puck_tables.world.engine_state import Whole
+from puck_tables.world.floor_under import law_goes_to, moves_along
 from puck_tables.world.lasting import longest_of
 from puck_tables.world.layout import HOLD, LIGHTNESS
 from puck_tables.world.paths import PIECE_COLUMNS
 from puck_tables.world.prepare import scales_of
+from puck_tables.world.segment_starts import room_for
 from puck_tables.world.setting_off import REACHED
 from puck_tables.world.stored import LED, LET_GO, Bench, Orders, Slots
 from puck_tables.world.world import World, slips_of
@@ -47,9 +47,9 @@ class Together:
             raise InputError(f"n must be a whole number from 1 on, got {shown(n)}")
         self._first = first = World(scene)
         self.scene, self.names, self._n = first.scene, first.names, int(n)
-        self._order, self._place, game = first._order, first._place, first._game
-        held = (game.discs[:, HOLD] != FREE).any() or game.surface.changes != 0.0
-        self._plain = not (held or moves_along(game.surface))
+        self._order, self._place, engine = first._order, first._place, first._engine
+        held = (engine.discs[:, HOLD] != FREE).any() or engine.surface.changes != 0.0
+        self._plain = not (held or moves_along(engine.surface))
         bench = self._bench(0)
         self._columns = bench.numbers.size + bench.whole.size + len(self._order) * PIECE_COLUMNS
         self._refuse_many(n)
@@ -58,11 +58,11 @@ class Together:
             np.empty((2 * n + 1, 1, PIECE_COLUMNS)), np.empty(2 * n + 1),
         )  # fmt: skip
         self._free: list[tuple[Bench, FloatArray]] = []
-        self._apart: dict[int, g.Game] = {}  # slots of boards whose floors know faster slips
+        self._apart: dict[int, g.Engine] = {}  # slots of boards whose floors know faster slips
         self._at = np.full(n, 2 * n)  # of each board, the slot in which it is; the last: the start
         self.time: FloatArray = np.zeros(n)
-        self._told: list[FloatArray] = []
-        first._passings.follow(first._game)
+        self._described: list[FloatArray] = []
+        first._passings.follow(first._engine)
         self._keep(bench, first, 2 * n)
 
     def _refuse_many(self, n: int) -> None:
@@ -80,7 +80,7 @@ class Together:
         other.__dict__.update(self.__dict__)
         other._n, other._at, other.time = count, np.arange(count), self.time[some]
         other._store = Slots(*(part[slots] for part in old))
-        other._free, other._told = [], []
+        other._free, other._described = [], []
         apart = enumerate(slots[:count].tolist())
         other._apart = {k: self._apart[slot] for k, slot in apart if slot in self._apart}
         return other
@@ -95,20 +95,20 @@ class Together:
         time = np.zeros(count) if anew else self.time[some]
         target = np.where(self._at[some] == some, some + n, some)
         how, longest = np.full(count, stored.TO_DO), np.zeros(count)
-        paces = self._store.numbers[source, stored.PACE]
+        scales = self._store.numbers[source, stored.PACE]
         if what != LET_GO and not self._plain:
             how[:] = stored.ALONE
         elif rows is not None and discs is not None:
-            self._quicken(what, rows, discs, source, time, paces)
+            self._quicken(what, rows, discs, source, time, scales)
         elif span == math.inf:
-            longest = longest_of(self._first._game, paces)
+            longest = longest_of(self._first._engine, scales)
         how[np.isin(source, list(self._apart))] = stored.ALONE
         orders = Orders(
             some, source, target, time, time + span, np.zeros(0, int) if discs is None else discs,
-            np.zeros((0, 0, 6)) if rows is None else rows, paces, longest, np.empty(count), how,
+            np.zeros((0, 0, 6)) if rows is None else rows, scales, longest, np.empty(count), how,
         )  # fmt: skip
         told = self._play(what, orders)
-        apart: dict[int, g.Game] = {}
+        apart: dict[int, g.Engine] = {}
         failed: dict[int, PuckError] = {}
         for k in np.flatnonzero((how != REACHED) & (how != stored.WAITS)).tolist():
             try:
@@ -119,39 +119,39 @@ class Together:
             raise of_boards(failed)
         self._at[some] = np.where(how == stored.WAITS, source, target)
         self.time = self.time.copy()
-        self.time[some], self._told = orders.after, told
+        self.time[some], self._described = orders.after, told
         if self._apart or apart:
             still = np.setdiff1d(self._at, target)
             self._apart = {slot: one for slot, one in self._apart.items() if slot in still} | apart
 
     def _quicken(
         self, what: int, rows: FloatArray, discs: Whole, slots: Whole, time: FloatArray,
-        paces: FloatArray,
+        scales: FloatArray,
     ) -> None:  # fmt: skip
         """Scales that hold for what a hand gives, too: as World sets them, to the bit."""
         if what == g.REMOVED:
             return
-        game = self._first._game
-        own = game.discs[discs]
+        engine = self._first._engine
+        own = engine.discs[discs]
         given = slips_of(own, rows)
         if what == LED:
             fastest = np.hypot(rows[:, 0, VX], rows[:, 0, VY])
-            new = np.flatnonzero(fastest > paces[:, 0])
+            new = np.flatnonzero(fastest > scales[:, 0])
             fastest = fastest[new]
         else:
-            faster = ~(given <= paces[:, :1]).all(axis=1)
+            faster = ~(given <= scales[:, :1]).all(axis=1)
             if what == g.STRUCK:
                 faster &= ~np.isnan(rows[:, 0, [VX, -1]]).all(axis=1)
-            led = bool((own[:, LIGHTNESS] == 0.0).any()) or law_goes_to(game.regions) < math.inf
+            led = bool((own[:, LIGHTNESS] == 0.0).any()) or law_goes_to(engine.regions) < math.inf
             new = np.flatnonzero(faster | led)
             states = self._states(slots[new], time[new])[0][:, self._order]
             states[:, discs] = np.where(np.isnan(rows[new]), states[:, discs], rows[new])
             if not led:
-                faster = (slips_of(own, states[:, discs]) > paces[new, :1]).any(axis=1)
+                faster = (slips_of(own, states[:, discs]) > scales[new, :1]).any(axis=1)
                 new, states = new[faster], states[faster]
-            fastest = slips_of(game.discs, states).max(axis=1, initial=0.0)
+            fastest = slips_of(engine.discs, states).max(axis=1, initial=0.0)
         if new.size:
-            paces[new] = np.maximum(paces[new], scales_of(game, fastest))
+            scales[new] = np.maximum(scales[new], scales_of(engine, fastest))
 
     def _play(self, what: int, orders: Orders) -> list[FloatArray]:
         """Play boards together; what happened."""
@@ -187,7 +187,7 @@ class Together:
         run_chunks(work if few else at_once, count, max(FEW, -(-count // _PARTS)))
 
     def _play_alone(
-        self, orders: Orders, k: int, alone: Callable[[World, int], Any], apart: dict[int, g.Game]
+        self, orders: Orders, k: int, alone: Callable[[World, int], Any], apart: dict[int, g.Engine]
     ) -> FloatArray:
         """Play a board as a world of its own; what happened."""
         mine, source, board = self._a_bench(), int(orders.source[k]), int(orders.boards[k])
@@ -195,24 +195,27 @@ class Together:
         stored.take(self._store, source, float(orders.time[k]), bench)
         world = object.__new__(World)
         world.__dict__.update(self._first.__dict__)
-        game = bench.game
+        engine = bench.engine
         if source in self._apart:
             floors, regions = self._apart[source].floors, self._apart[source].regions
-            own, kept = regions.ground, game.regions.ground  # of one size, it is in the slot
-            ground = kept if kept.size == own.size else own.copy()
-            game = game._replace(regions=regions._replace(ground=ground), floors=floors)
-        world._game, world._room, world._told = game, room_for(len(self.names)), {}
+            own, kept = (
+                regions.floor_map,
+                engine.regions.floor_map,
+            )  # of one size, it is in the slot
+            floor_map = kept if kept.size == own.size else own.copy()
+            engine = engine._replace(regions=regions._replace(floor_map=floor_map), floors=floors)
+        world._engine, world._room, world._described = engine, room_for(len(self.names)), {}
         world._passings = self._first._passings.copy()
-        world._passings.seen, world._passings.flights = bench.seen.copy(), bench.passed.copy()
-        first = int(game.counts[g.N_EVENTS])
+        world._passings.seen, world._passings.segments = bench.seen.copy(), bench.passed.copy()
+        first = int(engine.counts[g.N_EVENTS])
         alone(world, k)
-        world._passings.follow(world._game)
-        if world._game.floors is not self._first._game.floors:
-            apart[int(orders.target[k])] = world._game
+        world._passings.follow(world._engine)
+        if world._engine.floors is not self._first._engine.floors:
+            apart[int(orders.target[k])] = world._engine
         passed = world._passings.rows
-        out = np.empty((int(world._game.counts[g.N_EVENTS]) + len(passed), stored.FOUND_COLUMNS))
+        out = np.empty((int(world._engine.counts[g.N_EVENTS]) + len(passed), stored.FOUND_COLUMNS))
         used = stored.tell(
-            board, world._game, first, bench._replace(found=passed), len(passed), out
+            board, world._engine, first, bench._replace(found=passed), len(passed), out
         )
         orders.after[k], orders.how[k] = world.time, REACHED
         self._free.append(mine)
@@ -221,8 +224,8 @@ class Together:
 
     def _keep(self, bench: Bench, world: World, slot: int) -> None:
         """Put a world away in a slot."""
-        game = stored.lay_out(bench, world._game, world._passings.seen)
-        while not stored.put_away(game, bench, self._store, slot):
+        engine = stored.lay_out(bench, world._engine, world._passings.seen)
+        while not stored.put_away(engine, bench, self._store, slot):
             self._grow()
 
     def _grow(self) -> None:
@@ -235,7 +238,9 @@ class Together:
     def _bench(self, rows: int) -> Bench:
         """A new one."""
         passings = self._first._passings
-        return stored.bench_for(self._first._game, self._order, passings.lines, passings.seen, rows)
+        return stored.bench_for(
+            self._first._engine, self._order, passings.lines, passings.seen, rows
+        )
 
     def _a_bench(self) -> tuple[Bench, FloatArray]:
         """One that nobody uses, and rows for what happens."""
@@ -243,11 +248,11 @@ class Together:
             return self._free.pop()
         except IndexError:
             bench = self._bench(self._store.pieces.shape[1])
-            rows = _ROWS + 2 * len(bench.game.events)
+            rows = _ROWS + 2 * len(bench.engine.events)
             return bench, np.empty((rows, stored.FOUND_COLUMNS))
 
     def _kinds(self, slots: Whole) -> Whole:
-        """Of the flights of all discs of boards, (slots, discs)."""
+        """Of the segments of all discs of boards, (slots, discs)."""
         return self._store.whole[slots, : len(self.names)]
 
     def _states(

@@ -7,12 +7,11 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, patience
 from puck_tables.scene.friction import X, Y
-from puck_tables.world.departures import CONCERNED, LOOKED_AT, NOT_CONCERNED, Room, locate
-from puck_tables.world.flight import GONE, PLACE_X, PLACE_Y, STILL, drifts
-from puck_tables.world.footing import is_over_belts, outruns_law, over_floor, slips
-from puck_tables.world.game import (
-    Game,
+from puck_tables.world.contact_search import HARDLY, ROUNDED, TOUCH, normal_to, slack_of
+from puck_tables.world.engine_state import (
+    Engine,
 )
+from puck_tables.world.floor_under import is_over_belts, outruns_law, over_floor, slips
 from puck_tables.world.impact import (
     ACTS,
     NX,
@@ -32,7 +31,8 @@ from puck_tables.world.layout import (
     RADIUS,
     TWIST,
 )
-from puck_tables.world.meeting import HARDLY, ROUNDED, TOUCH, normal_to, slack_of
+from puck_tables.world.segment import GONE, PLACE_X, PLACE_Y, STILL, drifts
+from puck_tables.world.segment_starts import CONCERNED, LOOKED_AT, NOT_CONCERNED, Room, locate
 
 BLUR = 1e-15  # of the time since the start, at full speed: another
 
@@ -48,9 +48,9 @@ def _contact_of(room: Room, count: int, i: int, j: int) -> bool:
 
 
 @inner
-def find_touching(game: Game, t: float, room: Room) -> int:
+def find_touching(engine: Engine, t: float, room: Room) -> int:
     """All contacts of those marked, of those that they touch, and so on; how many."""
-    count, discs = 0, game.discs
+    count, discs = 0, engine.discs
     grown = True
     while grown:
         grown = False
@@ -61,12 +61,12 @@ def find_touching(game: Game, t: float, room: Room) -> int:
             room.marks[i] = LOOKED_AT
             # moments are rounded, and so are the gaps at them
             far = abs(room.states[i, X]) + abs(room.states[i, Y])
-            near = TOUCH * discs[i, RADIUS] + BLUR * t * game.pace[0] + 2.0 * ROUNDED * far
+            near = TOUCH * discs[i, RADIUS] + BLUR * t * engine.scale[0] + 2.0 * ROUNDED * far
             slack = slack_of(discs[i, RADIUS], room.states[i, X], room.states[i, Y])
-            for k in range(game.obstacles.shape[0]):
-                shape = int(game.obstacles[k, KIND])
+            for k in range(engine.obstacles.shape[0]):
+                shape = int(engine.obstacles[k, KIND])
                 gap, _, _, there = normal_to(
-                    game.obstacles[k], discs[i, RADIUS], room.states[i, X], room.states[i, Y],
+                    engine.obstacles[k], discs[i, RADIUS], room.states[i, X], room.states[i, Y],
                     slack,
                 )  # fmt: skip
                 if gap <= near and there and shape < NO_CUSHION:
@@ -75,19 +75,19 @@ def find_touching(game: Game, t: float, room: Room) -> int:
                     room.contacts[count, 0], room.contacts[count, 1] = i, -1 - k
                     count += 1
             for j in range(discs.shape[0]):
-                if j == i or game.kinds[j] == GONE:
+                if j == i or engine.kinds[j] == GONE:
                     continue
                 reach = discs[i, RADIUS] + discs[j, RADIUS]
-                if game.kinds[j] == STILL and not drifts(game.flights[j]):
-                    flight = game.flights[j]
+                if engine.kinds[j] == STILL and not drifts(engine.segments[j]):
+                    segment = engine.segments[j]
                     dx, dy = (
-                        flight[PLACE_X] - room.states[i, X],
-                        flight[PLACE_Y] - room.states[i, Y],
+                        segment[PLACE_X] - room.states[i, X],
+                        segment[PLACE_Y] - room.states[i, Y],
                     )
                     if abs(dx) > 1.01 * reach or abs(dy) > 1.01 * reach:
                         continue
                 if room.marks[j] == NOT_CONCERNED:
-                    locate(game, j, t, room)
+                    locate(engine, j, t, room)
                 dx = room.states[j, X] - room.states[i, X]
                 dy = room.states[j, Y] - room.states[i, Y]
                 if abs(dx) > 1.01 * reach or math.hypot(dx, dy) - reach > near:
@@ -100,12 +100,12 @@ def find_touching(game: Game, t: float, room: Room) -> int:
                 if room.marks[j] == NOT_CONCERNED:
                     room.marks[j], grown = CONCERNED, True
     for n in range(count):
-        prepare_contact(game, room.contacts[n, 0], room.contacts[n, 1], room.states, room.rows[n])
+        prepare_contact(engine, room.contacts[n, 0], room.contacts[n, 1], room.states, room.rows[n])
     return count
 
 
 @inlined
-def press_somewhere(game: Game, count: int, t: float, room: Room) -> bool:
+def press_somewhere(engine: Engine, count: int, t: float, room: Room) -> bool:
     """Whether contacts that do not approach would, if all flew on alone; they are marked.
 
     If none would, no force acts in any: that is a solution, and accelerations have but one.
@@ -113,35 +113,35 @@ def press_somewhere(game: Game, count: int, t: float, room: Room) -> bool:
     found = False
     for n in range(count):
         i, j, row = room.contacts[n, 0], room.contacts[n, 1], room.rows[n]
-        un, _ = approach(game, i, j, row[NX], row[NY], room.states)
-        row[ACTS] = 1.0 if abs(un) <= HARDLY * game.pace[0] else 0.0
+        un, _ = approach(engine, i, j, row[NX], row[NY], room.states)
+        row[ACTS] = 1.0 if abs(un) <= HARDLY * engine.scale[0] else 0.0
         # what neither presses nor parts is a group, too: alone, both would look for each other
-        moves = slips(game.surface, game.discs[i], room.states[i])
-        moves = moves or (j >= 0 and slips(game.surface, game.discs[j], room.states[j]))
-        least = HARDLY * game.pace[1] if moves else -HARDLY * game.pace[1]
-        if row[ACTS] > 0.0 and opening(game, i, j, t, row, room.states) < least:
+        moves = slips(engine.surface, engine.discs[i], room.states[i])
+        moves = moves or (j >= 0 and slips(engine.surface, engine.discs[j], room.states[j]))
+        least = HARDLY * engine.scale[1] if moves else -HARDLY * engine.scale[1]
+        if row[ACTS] > 0.0 and opening(engine, i, j, t, row, room.states) < least:
             found = True
     return found
 
 
 @inlined
-def sets_off_too_fast(game: Game, i: int, state: FloatArray) -> bool:
+def sets_off_too_fast(engine: Engine, i: int, state: FloatArray) -> bool:
     """Whether its rim slips faster than the friction law of the floor is known."""
-    ux, uy, w = over_floor(game.surface, game.discs[i], state)
-    free = game.discs[i, LIGHTNESS] > 0.0
-    return free and outruns_law(game.regions, game.discs[i, RADIUS], ux, uy, w)
+    ux, uy, w = over_floor(engine.surface, engine.discs[i], state)
+    free = engine.discs[i, LIGHTNESS] > 0.0
+    return free and outruns_law(engine.regions, engine.discs[i, RADIUS], ux, uy, w)
 
 
 @inlined
-def is_integrated(game: Game, i: int, state: FloatArray) -> bool:
+def is_integrated(engine: Engine, i: int, state: FloatArray) -> bool:
     """Whether the motion of a disc from here, alone, is to be integrated, or may be."""
-    disc = game.discs[i]
-    if disc[INTEGRATED] == 0.0 or game.kinds[i] == GONE:
+    disc = engine.discs[i]
+    if disc[INTEGRATED] == 0.0 or engine.kinds[i] == GONE:
         return False
-    if slips(game.surface, disc, state) or game.surface.spin != 0.0 or disc[TWIST] != 0.0:
+    if slips(engine.surface, disc, state) or engine.surface.spin != 0.0 or disc[TWIST] != 0.0:
         return True
-    if is_over_belts(game.regions, game.discs, i):
+    if is_over_belts(engine.regions, engine.discs, i):
         return True
-    forced = game.spans[i, 0] < game.spans[i, 1]
+    forced = engine.spans[i, 0] < engine.spans[i, 1]
     holds = disc[DECEL] if disc[INTEGRATED] == 1.0 else 0.0
     return forced or math.hypot(disc[PULL_X], disc[PULL_Y]) > holds

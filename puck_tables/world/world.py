@@ -17,7 +17,7 @@ from puck_tables.scene.ingredients import FREE
 from puck_tables.scene.parts import Launch
 from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.run import number_of
-from puck_tables.world import game as g
+from puck_tables.world import engine_state as g
 from puck_tables.world.added import board_with, with_puck
 from puck_tables.world.agreement import pucks_of
 from puck_tables.world.by_hand import (
@@ -27,17 +27,17 @@ from puck_tables.world.by_hand import (
     with_force,
     with_room_to_lead,
 )
-from puck_tables.world.departures import CONCERNED, NOT_CONCERNED, room_for
-from puck_tables.world.flight import GONE
-from puck_tables.world.footing import law_goes_to, moves_along
-from puck_tables.world.game import Whole
+from puck_tables.world.engine_state import Whole
+from puck_tables.world.floor_under import law_goes_to, moves_along
 from puck_tables.world.holds import response
 from puck_tables.world.law_range import refuse_too_fast
 from puck_tables.world.layout import HOLD, LIGHTNESS, RADIUS
 from puck_tables.world.paths import FOR_EVER
-from puck_tables.world.prepare import set_pace
-from puck_tables.world.pushed_back import Told, pushed_back
+from puck_tables.world.prepare import set_scales
+from puck_tables.world.pushed_back import Reported, pushed_back
 from puck_tables.world.running import Running
+from puck_tables.world.segment import GONE
+from puck_tables.world.segment_starts import CONCERNED, NOT_CONCERNED, room_for
 
 _SURELY = 1.0 - 1e-12  # of the fastest slip yet: below it rounding makes none faster
 
@@ -96,11 +96,11 @@ class World(Running):
             If there is no such puck, it is not in play or driven, or a number is not finite.
         """
         i = self._in_play(puck)
-        if self._game.discs[i, LIGHTNESS] == 0.0:
+        if self._engine.discs[i, LIGHTNESS] == 0.0:
             raise InputError(f"{self._name(i)} is driven along its path")
         row = _row(None, None, velocity, spin)
         if impulse is not None:
-            state, disc = self._all_now()[i], self._game.discs[i]
+            state, disc = self._all_now()[i], self._engine.discs[i]
             state = np.where(np.isnan(row), state, row)
             push = _pair("impulse", impulse, "N s")
             arm = np.zeros(2) if point is None else _pair("point", point, "m") - state[:2]
@@ -143,7 +143,7 @@ class World(Running):
         """
         i = int(self._place[number_of(puck, self.names)])
         row = _row(position, angle, velocity, spin)
-        if self._game.kinds[i] == GONE and position is None:
+        if self._engine.kinds[i] == GONE and position is None:
             raise InputError(f"{self._name(i)} is not in play: give the position to put it at")
         self._put(g.PLACED, row, i)
 
@@ -178,7 +178,7 @@ class World(Running):
                 f"{rows.shape}"
             )
         rows, discs = rows[self._order], np.arange(len(rows))
-        gone = self._game.kinds == GONE
+        gone = self._engine.kinds == GONE
         if gone.any():
             discs = discs[~gone | (rows != self._all_now()).any(axis=1)]
         self._put(g.PLACED, rows[discs], discs)
@@ -224,8 +224,8 @@ class World(Running):
         """
         board = board_with(self.scene, puck)
         with self._or_as_before():
-            start, state = with_puck(self._game, board, self._order, self.time)
-            self.scene, self._order, self._game = start.scene, start.order, start.game
+            start, state = with_puck(self._engine, board, self._order, self.time)
+            self.scene, self._order, self._engine = start.scene, start.order, start.engine
             self._room = room_for(len(start.order))
             self._passings = self._passings.with_disc(puck.has_rim)
             self._named()
@@ -268,7 +268,7 @@ class World(Running):
         [0.0, 2.039432]
         """
         i = self._led(puck)
-        turn, state, duration = real("spin", spin, "rad/s"), led_state(self._game, i), FOR_EVER
+        turn, state, duration = real("spin", spin, "rad/s"), led_state(self._engine, i), FOR_EVER
         if velocity is not None and towards is None and speed is None:
             state[VX : VY + 1] = _pair("velocity", velocity, "m/s")
         elif velocity is None and towards is not None and speed is not None:
@@ -281,8 +281,8 @@ class World(Running):
         state[SPIN] = turn
         with self._or_as_before():
             self._lead(i, state, duration)
-            self._game.next_time[i], self._game.next_partner[i] = self.time, g.PATH_ENDS
-            self._game.counts[g.N_AT_ONCE] = 0
+            self._engine.next_time[i], self._engine.next_partner[i] = self.time, g.PATH_ENDS
+            self._engine.counts[g.N_AT_ONCE] = 0
             self._advance(self.time)
 
     def reaction(self, puck: int | str) -> FloatArray:
@@ -309,8 +309,8 @@ class World(Running):
         [-0.2, 0.0]
         """
         i = self._led(puck, False)
-        impulse, told = pushed_back(self._game, i, self._told.get(i, Told()))
-        self._told = {**self._told, i: told}
+        impulse, told = pushed_back(self._engine, i, self._described.get(i, Reported()))
+        self._described = {**self._described, i: told}
         return impulse
 
     def apply_force(
@@ -341,26 +341,26 @@ class World(Running):
         [0.75, 1.0]
         """
         i = self._in_play(puck)
-        if self._game.discs[i, LIGHTNESS] == 0.0:
+        if self._engine.discs[i, LIGHTNESS] == 0.0:
             raise InputError(f"{self._name(i)} is driven: no force moves it")
         push = np.append(_pair("force", force, "N"), real("torque", torque, "N m"))
         until = self.time + positive("duration", duration, "s")
         with self._or_as_before():
-            self._game = with_force(self._game, self.scene, self._order, i, push, until)
-            set_pace(self._game, self._all_now())
+            self._engine = with_force(self._engine, self.scene, self._order, i, push, until)
+            set_scales(self._engine, self._all_now())
             self._put(g.FORCED, _row(None, None, None, None), i)
 
     def _in_play(self, puck: int | str) -> int:
         """The disc of a puck."""
         i = int(self._place[number_of(puck, self.names)])
-        if self._game.kinds[i] == GONE:
+        if self._engine.kinds[i] == GONE:
             raise InputError(f"{self._name(i)} is no longer in play: place puts it back")
         return i
 
     def _led(self, puck: int | str, in_play: bool = True) -> int:
         """The disc of a puck that is led."""
         i = self._in_play(puck) if in_play else int(self._place[number_of(puck, self.names)])
-        if self._game.discs[i, LIGHTNESS] > 0.0:
+        if self._engine.discs[i, LIGHTNESS] > 0.0:
             raise InputError(
                 f"{self._name(i)} is not led by hand: give it a path of one row, path=[[0, x, y]], "
                 "or strike it"
@@ -369,16 +369,16 @@ class World(Running):
 
     def _lead(self, i: int, state: FloatArray, duration: float) -> None:
         """What is led goes on from a state."""
-        self._game = with_room_to_lead(self._game)
-        lead(self._game, i, state, duration)
-        if not np.hypot(state[VX], state[VY]) <= self._game.pace[0]:
-            set_pace(self._game, np.zeros((len(self.names), 6)))
+        self._engine = with_room_to_lead(self._engine)
+        lead(self._engine, i, state, duration)
+        if not np.hypot(state[VX], state[VY]) <= self._engine.scale[0]:
+            set_scales(self._engine, np.zeros((len(self.names), 6)))
 
     def _put(self, what: int, rows: FloatArray, discs: int | Whole) -> None:
         """Give discs their states, NaN: as it is, by an event; all or nothing."""
-        game, room = self._game, self._room
+        engine, room = self._engine, self._room
         with self._or_as_before():
-            game.counts[g.N_AT_ONCE] = 0
+            engine.counts[g.N_AT_ONCE] = 0
             if what in (g.STRUCK, g.PLACED, g.ADDED) and not self._is_slow(rows, discs):
                 self._see_to(what, np.atleast_2d(rows), np.atleast_1d(discs))
             room.marks[:] = NOT_CONCERNED
@@ -390,35 +390,35 @@ class World(Running):
         """Whether one free disc does not slip faster than anything has yet, on a floor at rest."""
         if not isinstance(discs, int):
             return False
-        disc, (*_, vx, vy, spin) = self._game.discs[discs], rows.tolist()
-        if disc[HOLD] != FREE or disc[LIGHTNESS] == 0.0 or moves_along(self._game.surface):
+        disc, (*_, vx, vy, spin) = self._engine.discs[discs], rows.tolist()
+        if disc[HOLD] != FREE or disc[LIGHTNESS] == 0.0 or moves_along(self._engine.surface):
             return False
         fast = math.hypot(vx, vy, disc[RADIUS] * spin)
-        slow = fast <= _SURELY * self._game.pace[0]  # not of NaN; what is near is seen to
+        slow = fast <= _SURELY * self._engine.scale[0]  # not of NaN; what is near is seen to
         stays = vx != vx and spin != spin
-        return bool(slow or stays) and law_goes_to(self._game.regions) == math.inf
+        return bool(slow or stays) and law_goes_to(self._engine.regions) == math.inf
 
     def _see_to(self, what: int, rows: FloatArray, discs: Whole) -> None:
         """Refuse what does not fit, see to the scales, and lead what is led from there."""
-        game, own = self._game, self._game.discs[discs]
+        engine, own = self._engine, self._engine.discs[discs]
         held, led = own[:, HOLD] != FREE, (own[:, LIGHTNESS] == 0.0) & (what != g.ADDED)
-        law = law_goes_to(game.regions) < math.inf
-        sure = not (law or held.any() or led.any() or moves_along(game.surface))
-        if sure and (slips_of(own, rows) <= game.pace[0]).all():
+        law = law_goes_to(engine.regions) < math.inf
+        sure = not (law or held.any() or led.any() or moves_along(engine.surface))
+        if sure and (slips_of(own, rows) <= engine.scale[0]).all():
             return
         now = self._all_now()
         states = now.copy()
         states[discs] = np.where(np.isnan(rows), states[discs], rows)
         for i, is_held, is_led in zip(discs.tolist(), held.tolist(), led.tolist(), strict=True):
             if is_held:
-                refuse_off_hold(game, i, states[i], self._name(i))
+                refuse_off_hold(engine, i, states[i], self._name(i))
                 self._refuse_misfit(int(self._order[i]), states[i])
             if is_led and (states[i] != now[i]).any():
                 self._lead(i, states[i], FOR_EVER)
             elif law:
-                refuse_too_fast(game, self.scene, self._name(i), i, states[i])
-        if not sure or (slips_of(own, states[discs]) > game.pace[0]).any():
-            set_pace(self._game, states)
+                refuse_too_fast(engine, self.scene, self._name(i), i, states[i])
+        if not sure or (slips_of(own, states[discs]) > engine.scale[0]).any():
+            set_scales(self._engine, states)
 
     def _refuse_misfit(self, number: int, state: FloatArray) -> None:
         """Refuse a velocity that the constraint of a puck does not allow."""

@@ -14,12 +14,12 @@ from puck_tables.errors import InputError
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.pucks_and_posts import called_line
 from puck_tables.scene.run import Event, number_of
-from puck_tables.world import game as g
+from puck_tables.world import engine_state as g
 from puck_tables.world import stored
 from puck_tables.world.agreement import refuse_endless
-from puck_tables.world.flight import GONE
-from puck_tables.world.game import Whole
+from puck_tables.world.engine_state import Whole
 from puck_tables.world.layout import LIGHTNESS
+from puck_tables.world.segment import GONE
 from puck_tables.world.stored import LED, LET_GO
 from puck_tables.world.together import Together, of_boards
 
@@ -103,7 +103,7 @@ class Worlds(Together):
         >>> [worlds.events[name].tolist() for name in ("board", "what", "partner")]
         [[0, 1], ['impact', 'impact'], ['puck 1', 'puck 1']]
         """
-        rows = np.concatenate([np.zeros((0, stored.FOUND_COLUMNS)), *self._told])
+        rows = np.concatenate([np.zeros((0, stored.FOUND_COLUMNS)), *self._described])
         obstacles, lines = self._first._obstacles, self.scene.lines
         late = rows[:, 4] < -len(obstacles)  # a line: sorted in as World does
         order = np.lexsort((-rows[:, 4] * late, rows[:, 3] * late, late, rows[:, 1] * bool(lines),
@@ -167,7 +167,7 @@ class Worlds(Together):
         [0.0, 0.0, 1.0]
         """
         i, some = int(self._place[number_of(puck, self.names)]), self._some(boards)
-        if self._first._game.discs[i, LIGHTNESS] == 0.0:
+        if self._first._engine.discs[i, LIGHTNESS] == 0.0:
             raise InputError(f"{self.names[self._order[i]]} is driven along its path")
         self._refuse_gone(i, some)
         self._put(g.STRUCK, i, some, self._rows(len(some), None, None, velocity, spin))
@@ -339,7 +339,7 @@ class Worlds(Together):
         if states is not None:
             self._set(states, some, True)
         else:
-            self._at[some], self._told = 2 * self._n, []
+            self._at[some], self._described = 2 * self._n, []
             self.time = np.where(np.isin(np.arange(self._n), some), 0.0, self.time)
 
     def _set(self, states: npt.ArrayLike, some: Whole, anew: bool) -> None:

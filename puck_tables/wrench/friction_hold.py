@@ -21,8 +21,8 @@ from puck_tables.kernels.base_twist import base_twist
 from puck_tables.kernels.compile import allocating, kernel, patience
 from puck_tables.motion.body import is_plain
 from puck_tables.scene.by_speed import NO_LAW
-from puck_tables.scene.ingredients import Dry
-from puck_tables.scene.regions import plain_cut, section_of
+from puck_tables.scene.ingredients import DryFriction
+from puck_tables.scene.regions import load_limit, section_of
 from puck_tables.scene.rest import SLACK, demand
 
 if TYPE_CHECKING:
@@ -128,8 +128,8 @@ def _slips(
     load = puck.friction * puck.mass * puck.gravity
     if puck.shape is None:
         plain = is_plain(puck.pressure, puck.gyration, puck.delta)
-        section = plain_cut(tol, puck.delta) if plain else section_of(puck, puck.delta, tol)
-        coefficients = Dry(load, puck.delta, section, NO_LAW)
+        section = load_limit(tol, puck.delta) if plain else section_of(puck, puck.delta, tol)
+        coefficients = DryFriction(load, puck.delta, section, NO_LAW)
         _fill(coefficients, puck.radius, load * rows / unit, share, heat, slip)
         heat /= load
     else:
@@ -154,7 +154,7 @@ def _forces(force: npt.ArrayLike) -> FloatArray:
 
 @allocating
 def _fill(
-    coefficients: Dry, radius: float, rows: FloatArray, share: FloatArray, heat: FloatArray,
+    coefficients: DryFriction, radius: float, rows: FloatArray, share: FloatArray, heat: FloatArray,
     slip: FloatArray,
 ) -> None:  # fmt: skip
     """The shares of wrenches (3, n), the power of friction in their slips, and these (3, n)."""

@@ -14,7 +14,7 @@ from pucks_judge import play
 import puck_tables as pt
 from benchmarks.step_engines import Played, play_box2d, play_pymunk
 from puck_tables.kernels.compile import kernel
-from puck_tables.world.meeting import next_meeting
+from puck_tables.world.contact_search import next_contact
 
 BREAK = pytest.mark.benchmark(group="carrom break, 20 discs until rest, one thread")
 MEETING = pytest.mark.benchmark(group="next contact of one pair, one thread")
@@ -99,26 +99,26 @@ def test_rival_break(measure: Any, engine: str) -> None:
 def test_next_contact(measure: Any, which: str) -> None:
     """Pairs of a board on which all move."""
     world = draw(77, 40, side=0.6).world()
-    game, room, pairs = world._game, world._room, []
+    engine, room, pairs = world._engine, world._room, []
     for i in range(40):
         for j in range(40):
-            if i != j and max(game.flights[i, 0], game.flights[j, 0]) != 0.0:
-                found = next_meeting(game, i, j, 0.0, math.inf, room.work, room.one, room.two)
+            if i != j and max(engine.segments[i, 0], engine.segments[j, 0]) != 0.0:
+                found = next_contact(engine, i, j, 0.0, math.inf, room.work, room.one, room.two)
                 if math.isfinite(found) is (which == "meets"):
                     pairs.append((i, j))
     several = np.array(pairs)
 
     @kernel
-    def look(game: Any, pairs: Any, room: Any) -> Any:
+    def look(engine: Any, pairs: Any, room: Any) -> Any:
         total = 0.0
         for row in range(pairs.shape[0]):
-            total += next_meeting(
-                game, pairs[row, 0], pairs[row, 1], 0.0, np.inf, room.work, room.one, room.two
+            total += next_contact(
+                engine, pairs[row, 0], pairs[row, 1], 0.0, np.inf, room.work, room.one, room.two
             )
         return total
 
     measure(
-        f"{len(several)} pairs, one {which}", lambda: look(game, several, room),
+        f"{len(several)} pairs, one {which}", lambda: look(engine, several, room),
         items=len(several), unit="pair",
     )  # fmt: skip
 
@@ -168,7 +168,7 @@ def hockey() -> pt.Scene:
 def test_air_hockey(measure: Any) -> None:
     start = hockey().world()
 
-    def game(call: Any) -> np.ndarray:
+    def engine(call: Any) -> np.ndarray:
         world, spent = start.copy(), np.empty(3600)
         for frame in range(spent.size):
             before = time.perf_counter()
@@ -181,12 +181,12 @@ def test_air_hockey(measure: Any) -> None:
         "advance and state": lambda world: (world.advance(1.0 / 60.0), world.state()),
     }
     for name, call in calls.items():
-        spent = np.sort([game(call) for _ in range(3)], axis=None)
+        spent = np.sort([engine(call) for _ in range(3)], axis=None)
         measure.benchmark.extra_info[name] = {
             "median_s": float(np.median(spent)), "of_1000_s": float(np.quantile(spent, 0.999)),
             "worst_s": float(spent[-1]),
         }  # fmt: skip
-    measure("a minute of play, advance and state", lambda: game(calls["advance and state"]),
+    measure("a minute of play, advance and state", lambda: engine(calls["advance and state"]),
             items=3600, unit="frame")  # fmt: skip
 
 
@@ -204,7 +204,7 @@ def test_air_hockey_led_by_hand(measure: Any) -> None:
     """Every frame: where to, and advance; now and then the puck is struck."""
     start = led()
 
-    def game() -> np.ndarray:
+    def engine() -> np.ndarray:
         world, spent = start.copy(), np.empty((2, 3600))
         for frame in range(spent.shape[1]):
             if frame % 300 == 0:
@@ -219,13 +219,13 @@ def test_air_hockey_led_by_hand(measure: Any) -> None:
             spent[:, frame] = np.diff(times)
         return spent
 
-    spent = np.concatenate([game() for _ in range(3)], axis=1)
+    spent = np.concatenate([engine() for _ in range(3)], axis=1)
     for name, row in zip(("drive", "advance"), np.sort(spent, axis=1), strict=True):
         measure.benchmark.extra_info[name] = {
             "median_s": float(np.median(row)), "of_1000_s": float(np.quantile(row, 0.999)),
             "worst_s": float(row[-1]),
         }  # fmt: skip
-    measure("a minute of play, drive and advance", game, items=3600, unit="frame")
+    measure("a minute of play, drive and advance", engine, items=3600, unit="frame")
 
 
 @HANDS

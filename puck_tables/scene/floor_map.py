@@ -29,7 +29,7 @@ PATCH_COLUMNS = 6
 AXES = 4
 
 
-class Ground(NamedTuple):
+class FloorMap(NamedTuple):
     """All frictions of a floor, and the base that may lie on several of them.
 
     ``across_x``, ``across_y``: the direction across the borders of strips; ``borders`` (n,): their
@@ -75,44 +75,44 @@ NO_GROUND = np.empty(0)
 
 
 @inlined
-def border_of(ground: FloatArray, number: int) -> float:
+def border_of(floor_map: FloatArray, number: int) -> float:
     """The place of a border."""
-    return ground[_HEAD + number]
+    return floor_map[_HEAD + number]
 
 
 @inlined
-def load_of(ground: FloatArray, strip: int) -> float:
+def load_of(floor_map: FloatArray, strip: int) -> float:
     """F N on a strip."""
-    return ground[_HEAD + int(ground[BORDERS]) + strip]
+    return floor_map[_HEAD + int(floor_map[BORDERS]) + strip]
 
 
 @inlined
-def _patches_in(ground: FloatArray) -> int:
+def _patches_in(floor_map: FloatArray) -> int:
     """Where the patches begin."""
-    return _HEAD + 2 * int(ground[BORDERS]) + 1 + 4 * stretches_in(ground)
+    return _HEAD + 2 * int(floor_map[BORDERS]) + 1 + 4 * parts_in(floor_map)
 
 
 @inlined
-def patch_of(ground: FloatArray, number: int, column: int) -> float:
+def patch_of(floor_map: FloatArray, number: int, column: int) -> float:
     """What is known of a patch."""
-    return ground[_patches_in(ground) + PATCH_COLUMNS * number + column]
+    return floor_map[_patches_in(floor_map) + PATCH_COLUMNS * number + column]
 
 
 @inlined
-def corner_of(ground: FloatArray, number: int) -> tuple[float, float]:
+def corner_of(floor_map: FloatArray, number: int) -> tuple[float, float]:
     """A corner of a patch."""
-    first = _patches_in(ground) + PATCH_COLUMNS * int(ground[PATCHES])
-    return ground[first + 2 * number], ground[first + 2 * number + 1]
+    first = _patches_in(floor_map) + PATCH_COLUMNS * int(floor_map[PATCHES])
+    return floor_map[first + 2 * number], floor_map[first + 2 * number + 1]
 
 
 @inlined
-def strip_at(ground: FloatArray, x: float, y: float) -> int:
+def strip_at(floor_map: FloatArray, x: float, y: float) -> int:
     """The number of the strip at a place; one on a border is beyond it."""
-    place = ground[ACROSS_X] * x + ground[ACROSS_Y] * y
-    low, high = 0, int(ground[BORDERS])
+    place = floor_map[ACROSS_X] * x + floor_map[ACROSS_Y] * y
+    low, high = 0, int(floor_map[BORDERS])
     while low < high:
         middle = (low + high) // 2
-        if border_of(ground, middle) <= place:
+        if border_of(floor_map, middle) <= place:
             low = middle + 1
         else:
             high = middle
@@ -120,47 +120,47 @@ def strip_at(ground: FloatArray, x: float, y: float) -> int:
 
 
 @inlined
-def stretches_in(ground: FloatArray) -> int:
+def parts_in(floor_map: FloatArray) -> int:
     """How many strips and patches there are."""
-    return int(ground[BORDERS]) + 1 + int(ground[PATCHES])
+    return int(floor_map[BORDERS]) + 1 + int(floor_map[PATCHES])
 
 
 @inlined
-def _loads_in(ground: FloatArray) -> int:
+def _loads_in(floor_map: FloatArray) -> int:
     """Where f N of all stretches stands."""
-    return _HEAD + 2 * int(ground[BORDERS]) + 1
+    return _HEAD + 2 * int(floor_map[BORDERS]) + 1
 
 
 @inlined
-def _sum_with(ground: FloatArray, stretch: int, load: float) -> None:
+def _sum_with(floor_map: FloatArray, part: int, load: float) -> None:
     """Let a stretch be summed with so much f N."""
-    strips = int(ground[BORDERS]) + 1
-    if stretch < strips:
-        ground[_HEAD + strips - 1 + stretch] = load
+    strips = int(floor_map[BORDERS]) + 1
+    if part < strips:
+        floor_map[_HEAD + strips - 1 + part] = load
     else:
-        ground[_patches_in(ground) + PATCH_COLUMNS * (stretch - strips) + LOAD] = load
+        floor_map[_patches_in(floor_map) + PATCH_COLUMNS * (part - strips) + LOAD] = load
 
 
 @inlined
-def set_factor(ground: FloatArray, stretch: int, factor: float) -> None:
+def set_factor(floor_map: FloatArray, part: int, factor: float) -> None:
     """Let friction on a strip, or after all of them a patch, be so many times what it is."""
-    at = _loads_in(ground) + stretch
-    ground[at + stretches_in(ground)] = factor * ground[at]
-    _sum_with(ground, stretch, factor * ground[at])
+    at = _loads_in(floor_map) + part
+    floor_map[at + parts_in(floor_map)] = factor * floor_map[at]
+    _sum_with(floor_map, part, factor * floor_map[at])
 
 
 @inlined
-def belt_of(ground: FloatArray, stretch: int) -> tuple[float, float]:
+def belt_of(floor_map: FloatArray, part: int) -> tuple[float, float]:
     """The velocity of a stretch, m/s."""
-    at = _loads_in(ground) + 2 * stretches_in(ground) + 2 * stretch
-    return ground[at], ground[at + 1]
+    at = _loads_in(floor_map) + 2 * parts_in(floor_map) + 2 * part
+    return floor_map[at], floor_map[at + 1]
 
 
 @inlined
-def sum_over(ground: FloatArray, vx: float, vy: float, every: bool) -> None:
+def sum_over(floor_map: FloatArray, vx: float, vy: float, every: bool) -> None:
     """Let stretches of a velocity be summed alone, or every one."""
-    at = _loads_in(ground) + stretches_in(ground)
-    for stretch in range(stretches_in(ground)):
-        bx, by = belt_of(ground, stretch)
-        load = ground[at + stretch] if every or (bx == vx and by == vy) else 0.0
-        _sum_with(ground, stretch, load)
+    at = _loads_in(floor_map) + parts_in(floor_map)
+    for part in range(parts_in(floor_map)):
+        bx, by = belt_of(floor_map, part)
+        load = floor_map[at + part] if every or (bx == vx and by == vy) else 0.0
+        _sum_with(floor_map, part, load)

@@ -16,7 +16,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inner
 from puck_tables.scene.base_on_floor import friction_held
 from puck_tables.scene.belts import rub_at_rest
-from puck_tables.scene.ground import (
+from puck_tables.scene.floor_map import (
     ACROSS_X,
     ACROSS_Y,
     BELTS,
@@ -46,72 +46,78 @@ _TILTED = 1e-14  # of friction: what the load's tilt is known to
 
 
 @inner
-def least_under(ground: FloatArray, radius: float) -> float:
+def least_under(floor_map: FloatArray, radius: float) -> float:
     """The least f N that a base may have under a part of it."""
-    x, y = ground[PLACE_X], ground[PLACE_Y]
-    place = ground[ACROSS_X] * x + ground[ACROSS_Y] * y
+    x, y = floor_map[PLACE_X], floor_map[PLACE_Y]
+    place = floor_map[ACROSS_X] * x + floor_map[ACROSS_Y] * y
     least = math.inf
-    for i in range(int(ground[BORDERS]) + 1):
-        below = i == 0 or border_of(ground, i - 1) < place + radius
-        if below and (i == int(ground[BORDERS]) or border_of(ground, i) > place - radius):
-            least = min(least, load_of(ground, i))
-    for k in range(int(ground[PATCHES])):
-        dx, dy = patch_of(ground, k, MIDDLE_X) - x, patch_of(ground, k, MIDDLE_Y) - y
-        if math.sqrt(dx * dx + dy * dy) < radius + patch_of(ground, k, REACH):
-            least = min(least, patch_of(ground, k, LOAD))
-    return ground[SHARE] * least
+    for i in range(int(floor_map[BORDERS]) + 1):
+        below = i == 0 or border_of(floor_map, i - 1) < place + radius
+        if below and (i == int(floor_map[BORDERS]) or border_of(floor_map, i) > place - radius):
+            least = min(least, load_of(floor_map, i))
+    for k in range(int(floor_map[PATCHES])):
+        dx, dy = patch_of(floor_map, k, MIDDLE_X) - x, patch_of(floor_map, k, MIDDLE_Y) - y
+        if math.sqrt(dx * dx + dy * dy) < radius + patch_of(floor_map, k, REACH):
+            least = min(least, patch_of(floor_map, k, LOAD))
+    return floor_map[SHARE] * least
 
 
 @inner
 def _held(
-    ground: FloatArray, radius: float, nx: float, ny: float, rim: float, mx: float, my: float
+    floor_map: FloatArray, radius: float, nx: float, ny: float, rim: float, mx: float, my: float
 ) -> tuple[float, float, float]:
     """∫ f σ e dA and its moment over r at a slip of Q = 1, of a load at (mx, my), m.
 
     Of belts the one is summed that states are relative to.
     """
-    if ground[BELTS] != 0.0:
-        sum_over(ground, ground[OVER_X], ground[OVER_Y], False)
-    fx, fy, turning = friction_held(ground, nx, ny, rim / radius, mx, my)
-    if ground[BELTS] != 0.0:
-        sum_over(ground, 0.0, 0.0, True)
+    if floor_map[BELTS] != 0.0:
+        sum_over(floor_map, floor_map[OVER_X], floor_map[OVER_Y], False)
+    fx, fy, turning = friction_held(floor_map, nx, ny, rim / radius, mx, my)
+    if floor_map[BELTS] != 0.0:
+        sum_over(floor_map, 0.0, 0.0, True)
     return fx, fy, turning / radius
 
 
 @inner
 def _resists(
-    ground: FloatArray, radius: float, nx: float, ny: float, nw: float, bx: float, by: float
+    floor_map: FloatArray, radius: float, nx: float, ny: float, nw: float, bx: float, by: float
 ) -> tuple[float, float, float]:
     """The gradient of D at a slip of any size."""
     whole = math.sqrt(nx * nx + ny * ny + nw * nw)
-    return _held(ground, radius, nx / whole, ny / whole, nw / whole, bx, by)
+    return _held(floor_map, radius, nx / whole, ny / whole, nw / whole, bx, by)
 
 
 @inner
 def _slope_along(
-    ground: FloatArray, radius: float, bx: float, by: float, n: tuple[float, float, float],
-    way: tuple[float, float, float], a: float,
+    floor_map: FloatArray, radius: float, bx: float, by: float, n: tuple[float, float, float],
+    direction: tuple[float, float, float], a: float,
 ) -> float:  # fmt: skip
     gx, gy, gw = _resists(
-        ground, radius, n[0] + a * way[0], n[1] + a * way[1], n[2] + a * way[2], bx, by
+        floor_map,
+        radius,
+        n[0] + a * direction[0],
+        n[1] + a * direction[1],
+        n[2] + a * direction[2],
+        bx,
+        by,
     )
-    return gx * way[0] + gy * way[1] + gw * way[2]
+    return gx * direction[0] + gy * direction[1] + gw * direction[2]
 
 
 @inner
 def _least_along(
-    ground: FloatArray, radius: float, bx: float, by: float, n: tuple[float, float, float],
-    way: tuple[float, float, float], size: float,
+    floor_map: FloatArray, radius: float, bx: float, by: float, n: tuple[float, float, float],
+    direction: tuple[float, float, float], size: float,
 ) -> float:  # fmt: skip
     """Where on the line n + a way D is least: its slope grows; false position (Illinois)."""
-    first = _slope_along(ground, radius, bx, by, n, way, 0.0)
+    first = _slope_along(floor_map, radius, bx, by, n, direction, 0.0)
     if first == 0.0:
         return 0.0
     side = -1.0 if first > 0.0 else 1.0
     low, high, last, reach = 0.0, 0.0, first, 0.25 * size
     for _ in range(_WIDEST):
         high = side * reach
-        last = _slope_along(ground, radius, bx, by, n, way, high)
+        last = _slope_along(floor_map, radius, bx, by, n, direction, high)
         if last * first <= 0.0:
             break
         low, first = high, last
@@ -120,15 +126,15 @@ def _least_along(
         if abs(high - low) <= _NARROW * (size + abs(high)) or last == 0.0:
             break
         middle = (low * last - high * first) / (last - first)
-        value = _slope_along(ground, radius, bx, by, n, way, middle)
+        value = _slope_along(floor_map, radius, bx, by, n, direction, middle)
         low, first = (high, last) if value * last <= 0.0 else (low, 0.5 * first)
         high, last = middle, value
     return high
 
 
 @inner
-def astride_yield(
-    ground: FloatArray,
+def mixed_yield(
+    floor_map: FloatArray,
     most: float,
     radius: float,
     fx: float,
@@ -142,32 +148,32 @@ def astride_yield(
     can slip along the force only, and turn.
     """
     force = math.sqrt(fx * fx + fy * fy)
-    lever = ground[LEVER]
+    lever = floor_map[LEVER]
     bx, by = lever * fx, lever * fy
     if force > most:  # it slips: what tilts is friction
         bx, by = bx * most / force, by * most / force
-    if ground[BELTS] != 0.0:
-        rx, ry, turning, _ = rub_at_rest(ground, bx, by)
+    if floor_map[BELTS] != 0.0:
+        rx, ry, turning, _ = rub_at_rest(floor_map, bx, by)
         fx, fy, torque = fx + rx, fy + ry, torque + turning
         force = math.sqrt(fx * fx + fy * fy)
     rim = torque / radius
     size = math.sqrt(force * force + rim * rim)
     if size == 0.0:
-        gx, _, _ = _held(ground, radius, 1.0, 0.0, 0.0, 0.0, 0.0)
+        gx, _, _ = _held(floor_map, radius, 1.0, 0.0, 0.0, 0.0, 0.0)
         return -gx, 1.0, 0.0, 0.0
     ex, ey = (fx / force, fy / force) if force > 0.0 else (1.0, 0.0)
     px, pw = force / size, rim / size
     n = (px * ex, px * ey, pw)
     level, turns = (-ey, ex, 0.0), (-pw * ex, -pw * ey, px)
     for _ in range(_TRIALS):
-        a = _least_along(ground, radius, bx, by, n, turns, 1.0)
+        a = _least_along(floor_map, radius, bx, by, n, turns, 1.0)
         m = (n[0] + a * turns[0], n[1] + a * turns[1], n[2] + a * turns[2])
         if not guided:
             # of the least along every parallel of ``turns``: its slope across them grows, too
-            m = _least_in_plane(ground, radius, bx, by, n, level, turns)
+            m = _least_in_plane(floor_map, radius, bx, by, n, level, turns)
         whole = math.sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2])
         m = (m[0] / whole, m[1] / whole, m[2] / whole)
-        gx, gy, gw = _held(ground, radius, m[0], m[1], m[2], bx, by)
+        gx, gy, gw = _held(floor_map, radius, m[0], m[1], m[2], bx, by)
         if not guided:
             break
         # what tilts is friction, also that across, which the guide bears
@@ -181,30 +187,30 @@ def astride_yield(
 
 @inner
 def _slope_across(
-    ground: FloatArray, radius: float, bx: float, by: float, n: tuple[float, float, float],
+    floor_map: FloatArray, radius: float, bx: float, by: float, n: tuple[float, float, float],
     level: tuple[float, float, float], turns: tuple[float, float, float], b: float,
 ) -> tuple[float, float]:  # fmt: skip
     """The slope of D along ``level`` where it is least along ``turns``, and how far that is."""
     p = (n[0] + b * level[0], n[1] + b * level[1], n[2] + b * level[2])
     size = math.sqrt(1.0 + b * b)
-    a = _least_along(ground, radius, bx, by, p, turns, size)
+    a = _least_along(floor_map, radius, bx, by, p, turns, size)
     p = (p[0] + a * turns[0], p[1] + a * turns[1], p[2] + a * turns[2])
-    return _slope_along(ground, radius, bx, by, p, level, 0.0), a
+    return _slope_along(floor_map, radius, bx, by, p, level, 0.0), a
 
 
 @inner
 def _least_in_plane(
-    ground: FloatArray, radius: float, bx: float, by: float, n: tuple[float, float, float],
+    floor_map: FloatArray, radius: float, bx: float, by: float, n: tuple[float, float, float],
     level: tuple[float, float, float], turns: tuple[float, float, float],
 ) -> tuple[float, float, float]:  # fmt: skip
     """Where on the plane n + b level + a turns D is least."""
-    first, a = _slope_across(ground, radius, bx, by, n, level, turns, 0.0)
+    first, a = _slope_across(floor_map, radius, bx, by, n, level, turns, 0.0)
     low, high, last = 0.0, 0.0, first
     side, reach = (-1.0 if first > 0.0 else 1.0), 0.25
     if first != 0.0:
         for _ in range(_WIDEST):
             high = side * reach
-            last, a = _slope_across(ground, radius, bx, by, n, level, turns, high)
+            last, a = _slope_across(floor_map, radius, bx, by, n, level, turns, high)
             if last * first <= 0.0:
                 break
             low, first = high, last
@@ -213,7 +219,7 @@ def _least_in_plane(
         if abs(high - low) <= _NARROW * (1.0 + abs(high)) or last == 0.0:
             break
         middle = (low * last - high * first) / (last - first)
-        value, a = _slope_across(ground, radius, bx, by, n, level, turns, middle)
+        value, a = _slope_across(floor_map, radius, bx, by, n, level, turns, middle)
         low, first = (high, last) if value * last <= 0.0 else (low, 0.5 * first)
         high, last = middle, value
     return (

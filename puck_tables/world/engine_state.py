@@ -1,4 +1,4 @@
-"""All that the compiled engine of many pucks knows: discs, flights, what comes next, what was."""
+"""All that the compiled engine of many pucks knows: discs, segments, what comes next, what was."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.scene.ingredients import Regions, Surface
-from puck_tables.world.flight import FLIGHT_COLUMNS, Curves
+from puck_tables.world.segment import SEGMENT_COLUMNS, Lookups
 
 Whole = npt.NDArray[np.int64]
 
@@ -44,7 +44,7 @@ TOGETHER = (
 LAUNCH_TIME, LAUNCHED, LAUNCH_VX, LAUNCH_VY, LAUNCH_SPIN = range(5)
 LAUNCH_COLUMNS = 5  # the five above
 
-HISTORY_COLUMNS = 2 + FLIGHT_COLUMNS  # disc, kind, flight
+HISTORY_COLUMNS = 2 + SEGMENT_COLUMNS  # disc, kind, segment
 
 # counts
 (
@@ -52,25 +52,25 @@ HISTORY_COLUMNS = 2 + FLIGHT_COLUMNS  # disc, kind, flight
     N_AT_ONCE, N_WORKS,
 ) = range(11)  # fmt: skip
 COUNTS = 11
-FINE = 5  # where in ``pace`` the error of a step that look-ups are worth stands
+FINE = 5  # where in ``scale`` the error of a step that look-ups are worth stands
 
 
-class Game(NamedTuple):
+class Engine(NamedTuple):
     """Everything, as arrays: a copy of them is a copy of the world.
 
     ``regions``: the dry friction of every disc everywhere on the floor, see
-    :mod:`puck_tables.world.footing`; ``floors`` what of it stands in its row there (places · n, 5):
-    deceleration, δ, whether it is integrated, and the velocity of the floor, which a disc takes
-    over when it comes there; ``surface``: how the floor moves, of belts the fastest; ``tides``,
+    :mod:`puck_tables.world.floor_under`; ``floors`` what of it stands in its row there (places · n,
+    5): deceleration, δ, whether it is integrated, and the velocity of the floor, which a disc takes
+    over when it comes there; ``surface``: how the floor moves, of belts the fastest; ``forcing``,
     ``spans``: see :class:`puck_tables.world.group.Group`; ``rims``: the laws
     by which they meet (:mod:`puck_tables.world.rims`).  ``clock`` (1,): now.  ``group``
     (n,): discs of one number push each other, 0: none; ``held`` (…, 2): their contacts.
     ``next_time``, ``next_partner`` (n,).  ``launches`` (…, 5), ascending in time.  ``drives``
     (n, 2): the rows of ``pieces`` along which a disc is driven.  ``hangs`` (n, edges): whether its
-    rim is over an edge.  ``works``: where the energy of those went who were integrated, see
-    :mod:`puck_tables.world.works`.  ``counts``: how many rows of
+    rim is over an edge.  ``work_rows``: where the energy of those went who were integrated, see
+    :mod:`puck_tables.world.step_ledger`.  ``counts``: how many rows of
     events, history, pieces, works and held contacts are used, how many launches and what else was
-    done, and the contacts of the event at work.  ``pace`` (6,): the scales of speed, m/s, and
+    done, and the contacts of the event at work.  ``scale`` (6,): the scales of speed, m/s, and
     acceleration, m/s², the error of a step where motions are integrated, in units of them, the
     energy of the launches at the start, J, how long the rebounds were to last that died out, s, and
     the error of a step for what look-ups are good to: so fine are rebounds.
@@ -80,14 +80,14 @@ class Game(NamedTuple):
     regions: Regions
     floors: FloatArray
     surface: Surface
-    tides: FloatArray
+    forcing: FloatArray
     spans: Whole
     rims: FloatArray
     obstacles: FloatArray
-    curves: Curves
+    lookups: Lookups
     clock: FloatArray
     kinds: Whole
-    flights: FloatArray
+    segments: FloatArray
     group: Whole
     held: Whole
     next_time: FloatArray
@@ -98,36 +98,36 @@ class Game(NamedTuple):
     hangs: Whole
     events: FloatArray
     history: FloatArray
-    works: FloatArray
+    work_rows: FloatArray
     counts: Whole
-    pace: FloatArray
+    scale: FloatArray
 
 
 # what never changes: tables, floors and obstacles; in the ground it is written who lies where
-_SHARED = ("floors", "surface", "tides", "spans", "rims", "obstacles", "curves", "launches")
-_GROWS = ("pieces", "events", "history", "works")  # rows are added after those that are counted
-_CHANGES = [name not in (*_SHARED, *_GROWS, "regions") for name in Game._fields]
+_SHARED = ("floors", "surface", "forcing", "spans", "rims", "obstacles", "lookups", "launches")
+_GROWS = ("pieces", "events", "history", "work_rows")  # rows are added after those that are counted
+_CHANGES = [name not in (*_SHARED, *_GROWS, "regions") for name in Engine._fields]
 
 
-def copy_of(game: Game) -> Game:
-    """A game that goes on by itself from here; what never changes both have."""
-    parts: dict[str, Any] = game._asdict()
+def copy_of(engine: Engine) -> Engine:
+    """A state of the engine that goes on by itself from here; what never changes both have."""
+    parts: dict[str, Any] = engine._asdict()
     regions = parts.pop("regions")
     own = {name: one if name in _SHARED else one.copy() for name, one in parts.items()}
-    return Game(regions=regions._replace(ground=regions.ground.copy()), **own)
+    return Engine(regions=regions._replace(floor_map=regions.floor_map.copy()), **own)
 
 
-def kept(game: Game) -> Game:
-    """The game as it is, to go back to: what is added to it later is not counted there."""
-    parts: Any = game
+def kept(engine: Engine) -> Engine:
+    """The state as it is, to go back to: what is added to it later is not counted there."""
+    parts: Any = engine
     pairs = zip(_CHANGES, parts, strict=True)
-    same = Game._make([part.copy() if changes else part for changes, part in pairs])
-    if not game.regions.ground.size:
+    same = Engine._make([part.copy() if changes else part for changes, part in pairs])
+    if not engine.regions.floor_map.size:
         return same
-    return same._replace(regions=game.regions._replace(ground=game.regions.ground.copy()))
+    return same._replace(regions=engine.regions._replace(floor_map=engine.regions.floor_map.copy()))
 
 
-def led_rows(game: Game) -> FloatArray:
+def led_rows(engine: Engine) -> FloatArray:
     """The pieces (n, 21) of the ways along which discs are driven."""
-    ways = [game.pieces[first:last] for first, last in game.drives.tolist() if first < last]
-    return np.concatenate([game.pieces[:0], *ways])
+    ways = [engine.pieces[first:last] for first, last in engine.drives.tolist() if first < last]
+    return np.concatenate([engine.pieces[:0], *ways])

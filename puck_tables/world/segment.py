@@ -1,6 +1,6 @@
-"""Where a disc is between two events: its flight, known as a whole from its start.
+"""Where a disc is between two events: its segment, known as a whole from its start.
 
-A flight is a row: what :mod:`puck_tables.stopping.similarity_lookup` knows of a launch, when and
+A segment is a row: what :mod:`puck_tables.stopping.similarity_lookup` knows of a launch, when and
 where it starts, until when it holds, and two bounds, of its speed and of its acceleration.  Of its
 kinds
 
@@ -52,16 +52,16 @@ STILL, LOOKED_UP, DAMPED, PATH, GONE, CARRIED = range(6)
 KNOWN = LAUNCH_COLUMNS  # before it the launch: vx, vy, ω, δ, J, r
 START = LAUNCH_COLUMNS + LAUNCH_ROWS  # s, when; behind what is known of the launch
 PLACE_X, PLACE_Y, ANGLE, UNTIL, FASTEST, STRONGEST = range(START + 1, START + 7)
-FIRST_PIECE, LAST_PIECE = START + 7, START + 8  # of its path, of all pieces of the game
+FIRST_PIECE, LAST_PIECE = START + 7, START + 8  # of its path, of all pieces of the engine
 OFF_X, OFF_Y, OFF_ANGLE = range(START + 9, START + 12)  # what the look-up says just after the start
 DRIFT_X, DRIFT_Y = START + 12, START + 13  # velocity of the belt on which it moves or rests
-FLIGHT_COLUMNS = START + 14  # all
+SEGMENT_COLUMNS = START + 14  # all
 
 ROOM = 9  # numbers to work in: a piece of a path
 _SOON = 1e-16  # of the time until rest
 
 
-class Curves(NamedTuple):
+class Lookups(NamedTuple):
     """The tables of stops of plain pucks, as the kernels read them."""
 
     stops: FloatArray
@@ -71,83 +71,89 @@ class Curves(NamedTuple):
 
 
 @inlined
-def _damped_state(flight: FloatArray, disc: FloatArray, time: float, out: FloatArray) -> None:
-    vx, vy, spin = flight[0], flight[1], flight[2]
+def _damped_state(segment: FloatArray, disc: FloatArray, time: float, out: FloatArray) -> None:
+    vx, vy, spin = segment[0], segment[1], segment[2]
     left, way, turns, angle = damped(disc[DRAG:], math.hypot(vx, vy), spin, time)
-    out[X], out[Y] = flight[PLACE_X] + vx * way, flight[PLACE_Y] + vy * way
-    out[THETA] = flight[ANGLE] + spin * angle
+    out[X], out[Y] = segment[PLACE_X] + vx * way, segment[PLACE_Y] + vy * way
+    out[THETA] = segment[ANGLE] + spin * angle
     out[VX], out[VY] = vx * left, vy * left
     out[SPIN] = spin * turns
 
 
 @inlined
-def drifts(flight: FloatArray) -> bool:
+def drifts(segment: FloatArray) -> bool:
     """Whether a disc is on a belt."""
-    return flight[DRIFT_X] != 0.0 or flight[DRIFT_Y] != 0.0
+    return segment[DRIFT_X] != 0.0 or segment[DRIFT_Y] != 0.0
 
 
 @inlined
-def moves_until(kind: int, flight: FloatArray) -> float:
+def moves_until(kind: int, segment: FloatArray) -> float:
     """When a disc comes to rest, or what is known of it ends."""
-    if drifts(flight):
+    if drifts(segment):
         return math.inf
     if kind in (LOOKED_UP, PATH):
-        return flight[UNTIL]
+        return segment[UNTIL]
     return math.inf if kind in (DAMPED, CARRIED) else -math.inf
 
 
 @inner
 def state_at(
-    kind: int, flight: FloatArray, disc: FloatArray, curves: Curves, pieces: FloatArray, t: float,
-    room: FloatArray, out: FloatArray,
-) -> None:  # fmt: skip
+    kind: int,
+    segment: FloatArray,
+    disc: FloatArray,
+    lookups: Lookups,
+    pieces: FloatArray,
+    t: float,
+    room: FloatArray,
+    out: FloatArray,
+) -> None:
     """X, y, angle, vx, vy, spin at the time t into ``out`` (6,)."""
     if kind == LOOKED_UP:
         found = room
-        look_up_state(flight, t - flight[START], curves.states, found)
-        later = 1.0 if t > flight[START] else 0.0
-        out[X] = flight[PLACE_X] + (found[PUCK_X] - later * flight[OFF_X])
-        out[Y] = flight[PLACE_Y] + (found[PUCK_Y] - later * flight[OFF_Y])
-        out[THETA] = flight[ANGLE] + (found[ORIENTATION] - later * flight[OFF_ANGLE])
+        look_up_state(segment, t - segment[START], lookups.states, found)
+        later = 1.0 if t > segment[START] else 0.0
+        out[X] = segment[PLACE_X] + (found[PUCK_X] - later * segment[OFF_X])
+        out[Y] = segment[PLACE_Y] + (found[PUCK_Y] - later * segment[OFF_Y])
+        out[THETA] = segment[ANGLE] + (found[ORIENTATION] - later * segment[OFF_ANGLE])
         speed = found[SPEED]
         out[VX], out[VY], out[SPIN] = 0.0, 0.0, found[PUCK_SPIN]
         if speed > 0.0:
-            start = math.hypot(flight[0], flight[1])
+            start = math.hypot(segment[0], segment[1])
             cosine, sine = math.cos(found[HEADING]), math.sin(found[HEADING])
-            east, north = flight[0] / start, flight[1] / start
+            east, north = segment[0] / start, segment[1] / start
             out[VX] = speed * (cosine * east - sine * north)
             out[VY] = speed * (sine * east + cosine * north)
     elif kind == DAMPED:
-        _damped_state(flight, disc, t - flight[START], out)
+        _damped_state(segment, disc, t - segment[START], out)
     elif kind == PATH:
-        piece = piece_at(pieces, int(flight[FIRST_PIECE]), int(flight[LAST_PIECE]), t)
+        piece = piece_at(pieces, int(segment[FIRST_PIECE]), int(segment[LAST_PIECE]), t)
         on_piece(pieces[piece], t, room)
         for i in range(6):
             out[i] = room[i]
     elif kind == CARRIED:
-        turning = flight[2]
-        angle = turning * (t - flight[START])
+        turning = segment[2]
+        angle = turning * (t - segment[START])
         cosine, sine = math.cos(angle), math.sin(angle)
-        dx, dy = flight[PLACE_X] - flight[0], flight[PLACE_Y] - flight[1]
+        dx, dy = segment[PLACE_X] - segment[0], segment[PLACE_Y] - segment[1]
         arm_x, arm_y = cosine * dx - sine * dy, sine * dx + cosine * dy
-        out[X], out[Y], out[THETA] = flight[0] + arm_x, flight[1] + arm_y, flight[ANGLE] + angle
+        out[X], out[Y], out[THETA] = segment[0] + arm_x, segment[1] + arm_y, segment[ANGLE] + angle
         out[VX], out[VY], out[SPIN] = -turning * arm_y, turning * arm_x, turning
     else:
-        out[X], out[Y], out[THETA] = flight[PLACE_X], flight[PLACE_Y], flight[ANGLE]
+        out[X], out[Y], out[THETA] = segment[PLACE_X], segment[PLACE_Y], segment[ANGLE]
         out[VX], out[VY], out[SPIN] = 0.0, 0.0, 0.0
-    if drifts(flight):
-        out[X] += flight[DRIFT_X] * (t - flight[START])
-        out[Y] += flight[DRIFT_Y] * (t - flight[START])
-        out[VX] += flight[DRIFT_X]
-        out[VY] += flight[DRIFT_Y]
+    if drifts(segment):
+        out[X] += segment[DRIFT_X] * (t - segment[START])
+        out[Y] += segment[DRIFT_Y] * (t - segment[START])
+        out[VX] += segment[DRIFT_X]
+        out[VY] += segment[DRIFT_Y]
 
 
 @inner
-def start_flight(
-    state: FloatArray, disc: FloatArray, surface: Surface, curves: Curves, t: float,
-    room: FloatArray, flight: FloatArray,
+def start_segment(
+    state: FloatArray, disc: FloatArray, surface: Surface, lookups: Lookups, t: float,
+    room: FloatArray, segment: FloatArray,
 ) -> int:  # fmt: skip
-    """The flight of a disc alone, from its state at t; its kind.  Of pieces it knows nothing.
+    """The segment of a disc alone, from its state at t; its kind.  Of pieces it knows nothing.
 
     On a turntable it rests there, or has neither friction nor drag.
     """
@@ -156,40 +162,46 @@ def start_flight(
         sx, sy, turning = floor_velocity(surface, state[X], state[Y])
     vx, vy, spin = state[VX] - sx, state[VY] - sy, state[SPIN] - turning
     speed = math.hypot(vx, vy)
-    flight[0], flight[1], flight[2] = vx, vy, spin
-    flight[3], flight[4], flight[5] = disc[DELTA], disc[DECEL], disc[RADIUS]
-    flight[START], flight[PLACE_X], flight[PLACE_Y] = t, state[X], state[Y]
-    flight[ANGLE], flight[UNTIL] = state[THETA], math.inf
-    flight[FASTEST], flight[STRONGEST] = 0.0, 0.0
-    flight[FIRST_PIECE], flight[LAST_PIECE] = 0.0, 0.0
-    flight[OFF_X], flight[OFF_Y], flight[OFF_ANGLE] = 0.0, 0.0, 0.0
-    flight[DRIFT_X], flight[DRIFT_Y] = 0.0, 0.0
+    segment[0], segment[1], segment[2] = vx, vy, spin
+    segment[3], segment[4], segment[5] = disc[DELTA], disc[DECEL], disc[RADIUS]
+    segment[START], segment[PLACE_X], segment[PLACE_Y] = t, state[X], state[Y]
+    segment[ANGLE], segment[UNTIL] = state[THETA], math.inf
+    segment[FASTEST], segment[STRONGEST] = 0.0, 0.0
+    segment[FIRST_PIECE], segment[LAST_PIECE] = 0.0, 0.0
+    segment[OFF_X], segment[OFF_Y], segment[OFF_ANGLE] = 0.0, 0.0, 0.0
+    segment[DRIFT_X], segment[DRIFT_Y] = 0.0, 0.0
     if turning != 0.0:
-        flight[0], flight[1], flight[2] = state[X] - sy / turning, state[Y] + sx / turning, turning
-        flight[FASTEST] = math.hypot(sx, sy)
-        flight[STRONGEST] = abs(turning) * flight[FASTEST]
+        segment[0], segment[1], segment[2] = (
+            state[X] - sy / turning,
+            state[Y] + sx / turning,
+            turning,
+        )
+        segment[FASTEST] = math.hypot(sx, sy)
+        segment[STRONGEST] = abs(turning) * segment[FASTEST]
         return CARRIED
-    flight[DRIFT_X], flight[DRIFT_Y] = sx, sy
-    flight[FASTEST] = speed + math.hypot(sx, sy)
+    segment[DRIFT_X], segment[DRIFT_Y] = sx, sy
+    segment[FASTEST] = speed + math.hypot(sx, sy)
     if speed == 0.0 and spin == 0.0:
         return STILL
     if disc[DECEL] > 0.0:
-        look_up_launch(flight, curves.stops, curves.functions, curves.constants, flight[KNOWN:])
-        flight[UNTIL] = t + flight[KNOWN + TIME]
+        look_up_launch(
+            segment, lookups.stops, lookups.functions, lookups.constants, segment[KNOWN:]
+        )
+        segment[UNTIL] = t + segment[KNOWN + TIME]
         # places that are looked up are off by some 1e-12 of Q²/J: discs that touch must not jump
         found = room
-        look_up_state(flight, _SOON * flight[KNOWN + TIME], curves.states, found)
-        flight[OFF_X], flight[OFF_Y] = found[PUCK_X], found[PUCK_Y]
-        flight[OFF_ANGLE] = found[ORIENTATION]
-        flight[STRONGEST] = disc[DECEL]
+        look_up_state(segment, _SOON * segment[KNOWN + TIME], lookups.states, found)
+        segment[OFF_X], segment[OFF_Y] = found[PUCK_X], found[PUCK_Y]
+        segment[OFF_ANGLE] = found[ORIENTATION]
+        segment[STRONGEST] = disc[DECEL]
         return LOOKED_UP
-    flight[STRONGEST] = speed * per_speed(disc[DRAG:], speed)
+    segment[STRONGEST] = speed * per_speed(disc[DRAG:], speed)
     return DAMPED
 
 
 @inlined
 def corridor(
-    kind: int, flight: FloatArray, disc: FloatArray, state: FloatArray, horizon: float, now: float
+    kind: int, segment: FloatArray, disc: FloatArray, state: FloatArray, horizon: float, now: float
 ) -> tuple[float, float, float, float, float]:
     """Where the centre will be at most, from now until the horizon: a chord, and a margin about it.
 
@@ -197,14 +209,14 @@ def corridor(
     (L − C)/2 beyond them and ½√(L² − C²) beside.  Of a motion that is looked up, and of a disc at
     rest, the state is not asked.
     """
-    x, y = flight[PLACE_X], flight[PLACE_Y]
-    if drifts(flight):
-        return x, y, x, y, flight[FASTEST] * (horizon - flight[START])
+    x, y = segment[PLACE_X], segment[PLACE_Y]
+    if drifts(segment):
+        return x, y, x, y, segment[FASTEST] * (horizon - segment[START])
     if kind == CARRIED:
-        return flight[0], flight[1], flight[0], flight[1], flight[FASTEST] / abs(flight[2])
+        return segment[0], segment[1], segment[0], segment[1], segment[FASTEST] / abs(segment[2])
     if kind == LOOKED_UP:
-        across, up = flight[KNOWN + STOP_X], flight[KNOWN + STOP_Y]
-        length, over = flight[KNOWN + LENGTH], math.hypot(across, up)
+        across, up = segment[KNOWN + STOP_X], segment[KNOWN + STOP_Y]
+        length, over = segment[KNOWN + LENGTH], math.hypot(across, up)
         slack = max(length - over, 0.0) + 1e-9 * length  # what the table may be wrong by
         return x, y, x + across, y + up, 0.5 * slack + 0.5 * math.sqrt(slack * (length + over))
     if kind in (DAMPED, PATH):
@@ -215,5 +227,5 @@ def corridor(
             return x, y, x, y, math.inf
         return x, y, x + way * state[VX], y + way * state[VY], 0.0
     if kind == PATH:
-        return x, y, x, y, flight[FASTEST] * (min(horizon, flight[UNTIL]) - now)
+        return x, y, x, y, segment[FASTEST] * (min(horizon, segment[UNTIL]) - now)
     return x, y, x, y, 0.0

@@ -18,6 +18,7 @@ from puck_tables.kernels.compile import inlined, kernel, patience
 from puck_tables.motion.impact_law import along_normal
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ingredients import FREE
+from puck_tables.world.contact_search import beyond_ends, slack_of
 from puck_tables.world.group import (
     ALONG,
     APPROACH,
@@ -30,8 +31,8 @@ from puck_tables.world.group import (
     NY,
     SLIP,
     TO_END,
-    Desk,
     Group,
+    GroupBuffer,
     IntArray,
 )
 from puck_tables.world.holds import forbid
@@ -49,7 +50,6 @@ from puck_tables.world.layout import (
     B,
     C,
 )
-from puck_tables.world.meeting import beyond_ends, slack_of
 from puck_tables.world.rims import along_of_pair
 
 
@@ -97,17 +97,21 @@ def _obstacle_sight(
 
 
 @inlined
-def look_at_ties(group: Group, members: IntArray, t: float, y: FloatArray, desk: Desk) -> None:
+def look_at_ties(
+    group: Group, members: IntArray, t: float, y: FloatArray, buffer: GroupBuffer
+) -> None:
     """What rails, pivots and blades forbid the members at the states y (m, 6)."""
     count = 0
     for place in range(members.shape[0]):
         disc = group.discs[members[place]]
         if disc[HOLD] != FREE:
-            more = forbid(disc, group.surface, t, y[place], desk.ties[count:], desk.strays[count:])
+            more = forbid(
+                disc, group.surface, t, y[place], buffer.ties[count:], buffer.strays[count:]
+            )
             for _ in range(more):
-                desk.tied[count] = place
+                buffer.tied[count] = place
                 count += 1
-    desk.number[0] = count
+    buffer.number[0] = count
 
 
 @kernel

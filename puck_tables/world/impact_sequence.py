@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from puck_tables.kernels.compile import kernel, patience
-from puck_tables.world.game import (
+from puck_tables.world.engine_state import (
     CONTACT,
     IMPACT,
     N_EVENTS,
@@ -12,7 +12,7 @@ from puck_tables.world.game import (
     POCKETED,
     WHAT,
     WHO,
-    Game,
+    Engine,
     Whole,
 )
 
@@ -23,36 +23,38 @@ _PRIME = 2147483647  # products of two numbers below it fit 64 bits
 
 
 @kernel
-def trace(game: Game, disc: int, through: int, prints: Whole, marks: Whole, course: Whole) -> None:
+def trace(
+    engine: Engine, disc: int, through: int, prints: Whole, marks: Whole, sequence: Whole
+) -> None:
     """The course of a disc, from the events of a run.
 
-    ``course`` (4,): a print, the same for runs in which the same impacts led there (in whatever
+    ``sequence`` (4,): a print, the same for runs in which the same impacts led there (in whatever
     order those happened that do not bear on each other); how many; the obstacle −1 − k by which it
     left play, or 0; whether the disc ``through`` was in one of them, 1 or 0.
 
     ``prints``, ``marks`` (n,): room.
     """
-    for i in range(game.discs.shape[0]):
+    for i in range(engine.discs.shape[0]):
         prints[i], marks[i] = i + 1, 0
-    events = game.counts[N_EVENTS]
-    course[FATE] = 0
+    events = engine.counts[N_EVENTS]
+    sequence[FATE] = 0
     for n in range(events):
         patience(1)
-        what, i = int(game.events[n, WHAT]), int(game.events[n, WHO])
+        what, i = int(engine.events[n, WHAT]), int(engine.events[n, WHO])
         if what not in (IMPACT, CONTACT, POCKETED, OVER_EDGE):
             continue
-        j = int(game.events[n, PARTNER])
+        j = int(engine.events[n, PARTNER])
         other = prints[j] if j >= 0 else (-j * 742938285) % _PRIME
         both = (prints[i] + other) % _PRIME * 48271 + prints[i] * other % _PRIME * 16807 + what
         prints[i] = (both % _PRIME * 40692 + i + 1) % _PRIME
         if j >= 0:
             prints[j] = (both % _PRIME * 40692 + j + 1) % _PRIME
         elif i == disc and what in (POCKETED, OVER_EDGE):
-            course[FATE] = j
-    course[PRINT], course[LENGTH], course[PASSES] = prints[disc], 0, 0
+            sequence[FATE] = j
+    sequence[PRINT], sequence[LENGTH], sequence[PASSES] = prints[disc], 0, 0
     marks[disc] = 1
     for back in range(events):
-        row = game.events[events - 1 - back]
+        row = engine.events[events - 1 - back]
         what, i, j = int(row[WHAT]), int(row[WHO]), int(row[PARTNER])
         if what not in (IMPACT, CONTACT):
             continue
@@ -61,5 +63,5 @@ def trace(game: Game, disc: int, through: int, prints: Whole, marks: Whole, cour
             if j >= 0:
                 marks[j] = 1
                 if through in (i, j):
-                    course[PASSES] = 1
-            course[LENGTH] += 1
+                    sequence[PASSES] = 1
+            sequence[LENGTH] += 1

@@ -1,6 +1,6 @@
 """Where the energy of those went who were integrated, step by step.
 
-A group of discs, or one alone, is sent on at once; all go on from the same event, so the flight of
+A group of discs, or one alone, is sent on at once; all go on from the same event, so the segment of
 any of them tells when that ended.  A row is a step of it: powers at both ends and the work between,
 of which a part is that of a polynomial of degree four.  A row without duration is a jump, at the
 start.
@@ -17,11 +17,11 @@ from puck_tables.kernels.compile import inlined
 FLOOR_HEAT, RIM_HEAT, DRAG_HEAT, PULL_WORK, DRIVE_WORK, SUPPORT_WORK, BACK_X, BACK_Y = range(8)
 LEDGER = 8
 
-# columns: the flight of one of them, a row of the history, or NO_FLIGHT; start and duration of the
+# columns: the segment of one of them, a row of the history, or NO_FLIGHT; start and duration of the
 # step; which disc is driven among them, or NONE, or SEVERAL; at its start and end the powers, W,
 # and the works in between and up to its middle, J
-FLIGHT, START, DURATION, LED_BY, FIRST = range(5)
-NO_FLIGHT = -1
+SEGMENT, START, DURATION, LED_BY, FIRST = range(5)
+NO_SEGMENT = -1
 NONE, SEVERAL = -1, -2
 WORK_COLUMNS = FIRST + 4 * LEDGER
 BEGUN, DONE, ENDED, HALFWAY = range(FIRST, WORK_COLUMNS, LEDGER)
@@ -48,8 +48,8 @@ def add_worked(row: FloatArray, t: float, ledger: FloatArray) -> None:
         done = row[DONE + i]
         if 0.0 < s < 1.0:
             begun, ended = row[BEGUN + i], row[ENDED + i]
-            bend = row[HALFWAY + i] - 0.5 * done - 0.125 * h * (begun - ended)
+            accel = row[HALFWAY + i] - 0.5 * done - 0.125 * h * (begun - ended)
             done *= s * s * (3.0 - 2.0 * s)
             done += h * s * (1.0 - s) * (begun * (1.0 - s) - ended * s)
-            done += 16.0 * bend * (s * (1.0 - s)) ** 2
+            done += 16.0 * accel * (s * (1.0 - s)) ** 2
         ledger[i] += done if s > 0.0 else 0.0

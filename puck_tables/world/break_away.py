@@ -24,8 +24,8 @@ from puck_tables.world.group import (
     NX,
     NY,
     YIELDS,
-    Desk,
     Group,
+    GroupBuffer,
     IntArray,
     Scales,
 )
@@ -37,23 +37,25 @@ _SETTLED, _ROUNDING = 1e-10, 1e-14  # of the gain, of the scale of accelerations
 
 
 @inlined
-def _turn(group: Group, number: int, place: int, radius: float, desk: Desk) -> tuple[float, float]:
+def _turn(
+    group: Group, number: int, place: int, radius: float, buffer: GroupBuffer
+) -> tuple[float, float]:
     """Turn one towards its acceleration; how much of that is across, and along.
 
     At a pace of J over Q where only friction turns with it; where others lead it, faster.
     """
-    way, pace = desk.ways[place], desk.paces[place]
-    gain = gain_of(group, number, place, desk)
-    ox = desk.rates[place, 0] - desk.carried[place, 0] - gain * way[0]
-    oy = desk.rates[place, 1] - desk.carried[place, 1] - gain * way[1]
-    ow = radius * (desk.rates[place, 2] - desk.carried[place, 2] - gain * way[2])
+    way, scale = buffer.ways[place], buffer.turn_rates[place]
+    gain = gain_of(group, number, place, buffer)
+    ox = buffer.rates[place, 0] - buffer.carried[place, 0] - gain * way[0]
+    oy = buffer.rates[place, 1] - buffer.carried[place, 1] - gain * way[1]
+    ow = radius * (buffer.rates[place, 2] - buffer.carried[place, 2] - gain * way[2])
     off = size(ox, oy, ow)
-    if off > 0.97 * pace[1]:
-        pace[0] = max(_PACE, 0.5 * pace[0]) if off > 1.001 * pace[1] else 1.3 * pace[0]
-    pace[1] = off
+    if off > 0.97 * scale[1]:
+        scale[0] = max(_PACE, 0.5 * scale[0]) if off > 1.001 * scale[1] else 1.3 * scale[0]
+    scale[1] = off
     disc = group.discs[number]
     turns = max(disc[LIGHTNESS], 0.5 * radius * radius * disc[TURNABILITY])
-    share = pace[0] / (load_on(group, number) * turns)
+    share = scale[0] / (load_on(group, number) * turns)
     if share * size(off, gain, 0.0) > 1.0:
         share = 1.0 / size(off, gain, 0.0)
     wx, wy, ww = way[0] + share * ox, way[1] + share * oy, radius * way[2] + share * ow
@@ -63,88 +65,88 @@ def _turn(group: Group, number: int, place: int, radius: float, desk: Desk) -> t
 
 
 @inner
-def turn_ways(
-    group: Group, members: IntArray, modes: IntArray, doings: IntArray, y: FloatArray,
-    scales: Scales, find: bool, power: FloatArray, desk: Desk,
+def turn_directions(
+    group: Group, members: IntArray, modes: IntArray, motions: IntArray, y: FloatArray,
+    scales: Scales, find: bool, power: FloatArray, buffer: GroupBuffer,
 ) -> None:  # fmt: skip
     """Turn slips that begin to where they are driven, all at once; pushes and accelerations.
 
     ``find``: also the modes.
     """
     for place in range(members.shape[0]):
-        desk.paces[place, 0], desk.paces[place, 1] = _PACE, math.inf
+        buffer.turn_rates[place, 0], buffer.turn_rates[place, 1] = _PACE, math.inf
     for _ in range(_TURNS):
         settled = True
         for place in range(members.shape[0]):
-            if doings[place] == YIELDS:
+            if motions[place] == YIELDS:
                 radius = group.discs[members[place], RADIUS]
-                off, gain = _turn(group, members[place], place, radius, desk)
+                off, gain = _turn(group, members[place], place, radius, buffer)
                 level = max(_SETTLED * abs(gain), _ROUNDING * scales.rate)
                 settled = settled and off <= level
         if settled:
             return
-        act(group, members, doings, y, power, desk)
+        act(group, members, motions, y, power, buffer)
         if not find:
-            push_and_move(desk, modes, members.shape[0])
-        elif not find_modes(desk, modes, members.shape[0], scales):
+            push_and_move(buffer, modes, members.shape[0])
+        elif not find_modes(buffer, modes, members.shape[0], scales):
             return
 
 
 @inlined
-def _driven_into(desk: Desk, doings: IntArray, c: int, scales: Scales) -> int:
+def _driven_into(buffer: GroupBuffer, motions: IntArray, c: int, scales: Scales) -> int:
     """Which side of a contact, at rest, something driven moves into; −1: none."""
-    one, other = desk.pairs[c, 0], desk.pairs[c, 1]
-    if leads(desk, c)[0] > -LEVEL * scales.rate:
+    one, other = buffer.pairs[c, 0], buffer.pairs[c, 1]
+    if leads(buffer, c)[0] > -LEVEL * scales.rate:
         return -1
     if other < 0:  # it is carried into what stands
-        return 0 if doings[one] == HELD else -1
-    if doings[one] == DRIVEN and doings[other] == HELD:
+        return 0 if motions[one] == HELD else -1
+    if motions[one] == DRIVEN and motions[other] == HELD:
         return 1
-    return 0 if doings[one] == HELD and doings[other] == DRIVEN else -1
+    return 0 if motions[one] == HELD and motions[other] == DRIVEN else -1
 
 
 @inlined
 def overborne(
-    group: Group, members: IntArray, doings: IntArray, contacts: int, y: FloatArray,
-    scales: Scales, mark: bool, desk: Desk,
+    group: Group, members: IntArray, motions: IntArray, contacts: int, y: FloatArray,
+    scales: Scales, mark: bool, buffer: GroupBuffer,
 ) -> bool:  # fmt: skip
     """Whether there are any at rest that cannot stay for themselves; ``mark``: they yield."""
     more = False
     for c in range(contacts):
-        side = _driven_into(desk, doings, c, scales)
+        side = _driven_into(buffer, motions, c, scales)
         if side >= 0:
             more = True
             if mark:
-                place, sign = desk.pairs[c, side], 2.0 * side - 1.0
-                doings[place], way = YIELDS, desk.ways[place]
-                way[0], way[1] = sign * desk.sights[c, NX], sign * desk.sights[c, NY]
+                place, sign = buffer.pairs[c, side], 2.0 * side - 1.0
+                motions[place], way = YIELDS, buffer.ways[place]
+                way[0], way[1] = sign * buffer.sights[c, NX], sign * buffer.sights[c, NY]
                 way[2] = 0.0
     for place in range(members.shape[0]):
-        if doings[place] == HELD and (mark or not more):
-            excess, ux, uy, w = excess_on(group, members, place, contacts, y, desk)
+        if motions[place] == HELD and (mark or not more):
+            excess, ux, uy, w = excess_on(group, members, place, contacts, y, buffer)
             if excess > SLACK:
                 more = True
                 if mark:
-                    doings[place], way = YIELDS, desk.ways[place]
+                    motions[place], way = YIELDS, buffer.ways[place]
                     way[0], way[1], way[2] = ux, uy, w
     return more
 
 
 @inner
-def settle(
-    group: Group, members: IntArray, modes: IntArray, doings: IntArray, y: FloatArray,
-    scales: Scales, desk: Desk,
+def find_break_away(
+    group: Group, members: IntArray, modes: IntArray, motions: IntArray, y: FloatArray,
+    scales: Scales, buffer: GroupBuffer,
 ) -> bool:  # fmt: skip
     """Modes, pushes and accelerations where members are at rest; whether found.
 
-    ``doings``: those at rest are HELD or YIELDS, which also is the answer; ``desk.ways``: where
+    ``motions``: those at rest are HELD or YIELDS, which also is the answer; ``buffer.ways``: where
     those slip that yield.  The sights are of y (m, 6).
     """
-    power = desk.powers[desk.powers.shape[0] - 1]
+    power = buffer.powers[buffer.powers.shape[0] - 1]
     while True:
-        act(group, members, doings, y, power, desk)
-        solved = find_modes(desk, modes, members.shape[0], scales)
+        act(group, members, motions, y, power, buffer)
+        solved = find_modes(buffer, modes, members.shape[0], scales)
         if solved:
-            turn_ways(group, members, modes, doings, y, scales, True, power, desk)
-        if not overborne(group, members, doings, modes.shape[0], y, scales, True, desk):
+            turn_directions(group, members, modes, motions, y, scales, True, power, buffer)
+        if not overborne(group, members, motions, modes.shape[0], y, scales, True, buffer):
             return solved

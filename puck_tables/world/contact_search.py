@@ -11,7 +11,7 @@ The gap between two discs is g = |d| − R with the distance d of their centres,
 and steps by s reach the contact from before, with quadratic convergence: Newton's method that
 cannot pass a root.  A straight wall is the same without w_⊥; inside an arc |d| is bounded along the
 tangent instead.  Those that go beside each other for long are bounded closer
-(:mod:`puck_tables.world.beside`).  Pairs whose corridors do not touch need no look.
+(:mod:`puck_tables.world.separation`).  Pairs whose corridors do not touch need no look.
 """
 
 from __future__ import annotations
@@ -24,24 +24,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.forces import farthest, per_speed
 from puck_tables.scene.friction import VX, VY, X, Y
-from puck_tables.world.beside import stays_apart
-from puck_tables.world.flight import (
-    CARRIED,
-    DAMPED,
-    DRIFT_X,
-    DRIFT_Y,
-    GONE,
-    LOOKED_UP,
-    PATH,
-    STILL,
-    STRONGEST,
-    UNTIL,
-    corridor,
-    drifts,
-    moves_until,
-    state_at,
-)
-from puck_tables.world.game import N_HELD, N_LOOKS, Game
+from puck_tables.world.engine_state import N_HELD, N_LOOKS, Engine
 from puck_tables.world.layout import (
     ARC,
     CORNER,
@@ -64,6 +47,23 @@ from puck_tables.world.layout import (
     B,
     C,
 )
+from puck_tables.world.segment import (
+    CARRIED,
+    DAMPED,
+    DRIFT_X,
+    DRIFT_Y,
+    GONE,
+    LOOKED_UP,
+    PATH,
+    STILL,
+    STRONGEST,
+    UNTIL,
+    corridor,
+    drifts,
+    moves_until,
+    state_at,
+)
+from puck_tables.world.separation import stays_apart
 
 OUTSIDE = 1e-9  # of the radius
 TOUCH = 1e-12  # of the radius: a gap as small is none
@@ -75,22 +75,22 @@ PATIENCE = 8  # looks, before those who go beside each other are bounded closer
 
 
 @inlined
-def safe_step(gap: float, rate: float, bend: float) -> float:
+def safe_step(gap: float, rate: float, accel: float) -> float:
     """How long a gap cannot close whose second derivative is −bend at least."""
-    root = math.sqrt(rate * rate + 2.0 * bend * gap)
+    root = math.sqrt(rate * rate + 2.0 * accel * gap)
     if rate < 0.0:
         return 2.0 * gap / (root - rate)
-    return (rate + root) / bend if bend > 0.0 else math.inf
+    return (rate + root) / accel if accel > 0.0 else math.inf
 
 
 @inlined
-def moment_there(rounded: float, rate: float, bend: float, t: float) -> float:
+def moment_there(rounded: float, rate: float, accel: float, t: float) -> float:
     """How long a gap of about 0 that does not close is nothing but rounded, from t on.
 
     What only bends moves by so little meanwhile; what opens has opened by then, and may meet what
     it goes to from there: another side of a border, or an arc.
     """
-    bends = math.sqrt(2.0 * rounded / bend) if bend > 0.0 else math.inf
+    bends = math.sqrt(2.0 * rounded / accel) if accel > 0.0 else math.inf
     opens = max(2.0 * rounded / rate, 4.0 * ROUNDED * abs(t)) if rate > 0.0 else math.inf
     short = min(bends, opens)
     return short if short < math.inf else 0.0
@@ -168,7 +168,7 @@ def _to_circle(along: float, speed2: float, rest: float) -> float:
 
 
 @inlined
-def arc_step(gap: float, dx: float, dy: float, vx: float, vy: float, bend: float) -> float:
+def arc_step(gap: float, dx: float, dy: float, vx: float, vy: float, accel: float) -> float:
     """How long a centre inside an arc cannot meet it, (dx, dy) from its middle, gap to go.
 
     One that comes nearer to the middle is, until it is nearest, within the chord of its distance:
@@ -181,16 +181,16 @@ def arc_step(gap: float, dx: float, dy: float, vx: float, vy: float, bend: float
     if along < 0.0:
         inwards = -along / speed2
         closes = -along / (size + math.sqrt(max(size * size + along * inwards, 0.0)))
-        if 2.0 * closes < bend * inwards:
-            inwards = 2.0 * closes / bend
+        if 2.0 * closes < accel * inwards:
+            inwards = 2.0 * closes / accel
     speed = math.sqrt(speed2)
-    root = math.sqrt(speed2 + 2.0 * bend * gap)
+    root = math.sqrt(speed2 + 2.0 * accel * gap)
     if not speed + root > 0.0:
         return math.inf
     least = max(inwards, 2.0 * gap / (speed + root))  # whatever the direction
     if speed2 > 0.0 and gap > 0.0:
         out = _to_circle(along, speed2, reach * reach - size * size)
-        nearer = reach - 0.5 * bend * out * out
+        nearer = reach - 0.5 * accel * out * out
         if nearer > size:
             return max(least, _to_circle(along, speed2, nearer * nearer - size * size))
     return least
@@ -238,139 +238,145 @@ def are_apart(
 
 
 @inlined
-def are_held(game: Game, i: int, j: int) -> bool:
+def are_held(engine: Engine, i: int, j: int) -> bool:
     """Whether the contact of disc i with partner j is one of a group that pushes."""
-    if game.group[i] == 0 or (j >= 0 and game.group[j] != game.group[i]):
+    if engine.group[i] == 0 or (j >= 0 and engine.group[j] != engine.group[i]):
         return False
-    for n in range(game.counts[N_HELD]):
-        a, b = game.held[n, 0], game.held[n, 1]
+    for n in range(engine.counts[N_HELD]):
+        a, b = engine.held[n, 0], engine.held[n, 1]
         if (a == i and b == j) or (a == j and b == i):
             return True
     return False
 
 
 @inlined
-def rest_together(kind: int, flight: FloatArray, other: int, second: FloatArray) -> bool:
+def rest_together(kind: int, segment: FloatArray, other: int, second: FloatArray) -> bool:
     """Whether two discs rest on the same floor, or one has left play."""
     if kind == GONE or other == GONE or (kind == CARRIED and other == CARRIED):
         return True
-    same = flight[DRIFT_X] == second[DRIFT_X] and flight[DRIFT_Y] == second[DRIFT_Y]
+    same = segment[DRIFT_X] == second[DRIFT_X] and segment[DRIFT_Y] == second[DRIFT_Y]
     return kind == STILL and other == STILL and same
 
 
 @inlined
-def bend_of(kind: int, flight: FloatArray, disc: FloatArray, state: FloatArray, t: float) -> float:
+def largest_accel(
+    kind: int, segment: FloatArray, disc: FloatArray, state: FloatArray, t: float
+) -> float:
     """The largest acceleration from now on; of drag alone it falls with the speed."""
     if kind == DAMPED:
-        speed = math.hypot(state[VX] - flight[DRIFT_X], state[VY] - flight[DRIFT_Y])
+        speed = math.hypot(state[VX] - segment[DRIFT_X], state[VY] - segment[DRIFT_Y])
         return speed * per_speed(disc[DRAG:], speed)
-    return flight[STRONGEST] if kind != LOOKED_UP or t < flight[UNTIL] else 0.0
+    return segment[STRONGEST] if kind != LOOKED_UP or t < segment[UNTIL] else 0.0
 
 
 @inlined
-def once_round(kind: int, flight: FloatArray, now: float) -> float:
+def once_round(kind: int, segment: FloatArray, now: float) -> float:
     """When a disc on a turntable is back where it is now."""
-    return now + 2.0 * math.pi / abs(flight[2]) if kind == CARRIED else math.inf
+    return now + 2.0 * math.pi / abs(segment[2]) if kind == CARRIED else math.inf
 
 
 @inlined
-def way_left(kind: int, flight: FloatArray, disc: FloatArray, state: FloatArray, t: float) -> float:
+def distance_left(
+    kind: int, segment: FloatArray, disc: FloatArray, state: FloatArray, t: float
+) -> float:
     """How far a disc goes at most."""
     speed = math.hypot(state[VX], state[VY])
-    if drifts(flight) or kind in (PATH, CARRIED):
+    if drifts(segment) or kind in (PATH, CARRIED):
         return math.inf
     if kind == DAMPED:
         return farthest(disc[DRAG:], speed)
-    return speed * max(flight[UNTIL] - t, 0.0) if kind == LOOKED_UP else 0.0
+    return speed * max(segment[UNTIL] - t, 0.0) if kind == LOOKED_UP else 0.0
 
 
 @inner
-def next_meeting(
-    game: Game, i: int, j: int, now: float, horizon: float, room: FloatArray, one: FloatArray,
+def next_contact(
+    engine: Engine, i: int, j: int, now: float, horizon: float, room: FloatArray, one: FloatArray,
     two: FloatArray,
 ) -> float:  # fmt: skip
     """When two discs touch next, up to the horizon; else inf; −1 − t: look again at t.
 
     States at the end in one and two.
     """
-    kind, other = game.kinds[i], game.kinds[j]
-    flight, second = game.flights[i], game.flights[j]
-    if rest_together(kind, flight, other, second):
+    kind, other = engine.kinds[i], engine.kinds[j]
+    segment, second = engine.segments[i], engine.segments[j]
+    if rest_together(kind, segment, other, second):
         return math.inf
-    last = min(horizon, max(moves_until(kind, flight), moves_until(other, second)))
+    last = min(horizon, max(moves_until(kind, segment), moves_until(other, second)))
     if other == STILL and not drifts(second):
-        last = min(last, once_round(kind, flight, now))
-    if kind == STILL and not drifts(flight):
+        last = min(last, once_round(kind, segment, now))
+    if kind == STILL and not drifts(segment):
         last = min(last, once_round(other, second, now))
     if kind == PATH:
-        last = min(last, flight[UNTIL])
+        last = min(last, segment[UNTIL])
     if other == PATH:
         last = min(last, second[UNTIL])
-    if not last > now or are_held(game, i, j):
+    if not last > now or are_held(engine, i, j):
         return math.inf
-    discs, curves, pieces = game.discs, game.curves, game.pieces
+    discs, lookups, pieces = engine.discs, engine.lookups, engine.pieces
     reach = discs[i, RADIUS] + discs[j, RADIUS]
     if kind in (DAMPED, PATH):
-        state_at(kind, flight, discs[i], curves, pieces, now, room, one)
+        state_at(kind, segment, discs[i], lookups, pieces, now, room, one)
     if other in (DAMPED, PATH):
-        state_at(other, second, discs[j], curves, pieces, now, room, two)
+        state_at(other, second, discs[j], lookups, pieces, now, room, two)
     if are_apart(
-        corridor(kind, flight, discs[i], one, last, now),
+        corridor(kind, segment, discs[i], one, last, now),
         corridor(other, second, discs[j], two, last, now),
         reach,
     ):
         return math.inf
     if kind not in (DAMPED, PATH):
-        state_at(kind, flight, discs[i], curves, pieces, now, room, one)
+        state_at(kind, segment, discs[i], lookups, pieces, now, room, one)
     if other not in (DAMPED, PATH):
-        state_at(other, second, discs[j], curves, pieces, now, room, two)
+        state_at(other, second, discs[j], lookups, pieces, now, room, two)
     t = now
     for look in range(MOST_LOOKS):
-        game.counts[N_LOOKS] += 1
+        engine.counts[N_LOOKS] += 1
         dx, dy = two[X] - one[X], two[Y] - one[Y]
         size = math.hypot(dx, dy)
         gap = size - reach
         rate = (dx * (two[VX] - one[VX]) + dy * (two[VY] - one[VY])) / size
         rounded = ROUNDED * (abs(one[X]) + abs(one[Y]) + reach)
-        bend = bend_of(kind, flight, discs[i], one, t) + bend_of(other, second, discs[j], two, t)
-        step = safe_step(max(gap, 0.0), rate, bend)
-        left = way_left(kind, flight, discs[i], one, t)
-        if gap > (left + way_left(other, second, discs[j], two, t)) * (1.0 + 1e-9):
+        accel = largest_accel(kind, segment, discs[i], one, t) + largest_accel(
+            other, second, discs[j], two, t
+        )
+        step = safe_step(max(gap, 0.0), rate, accel)
+        left = distance_left(kind, segment, discs[i], one, t)
+        if gap > (left + distance_left(other, second, discs[j], two, t)) * (1.0 + 1e-9):
             return math.inf
         if gap <= rounded:
-            if rate < -QUIET * game.pace[0]:
+            if rate < -QUIET * engine.scale[0]:
                 return t
-            step = max(step, moment_there(rounded, rate, bend, t))
+            step = max(step, moment_there(rounded, rate, accel, t))
         if look >= PATIENCE:
             nx, ny, more = dx / size, dy / size, max(gap, rounded)
-            longer = stays_apart(game, i, j, t, more, nx, ny, 0.0, False, room, one, two)
+            longer = stays_apart(engine, i, j, t, more, nx, ny, 0.0, False, room, one, two)
             step = max(step, longer)
         if t + step > last or step == math.inf:
             return math.inf
         if t + step == t:
-            return t if rate < -QUIET * game.pace[0] else math.inf
+            return t if rate < -QUIET * engine.scale[0] else math.inf
         t += step
-        state_at(kind, flight, discs[i], curves, pieces, t, room, one)
-        state_at(other, second, discs[j], curves, pieces, t, room, two)
+        state_at(kind, segment, discs[i], lookups, pieces, t, room, one)
+        state_at(other, second, discs[j], lookups, pieces, t, room, two)
     return -1.0 - t
 
 
 @inner
 def next_crossing(
-    game: Game, i: int, k: int, now: float, horizon: float, room: FloatArray, one: FloatArray
+    engine: Engine, i: int, k: int, now: float, horizon: float, room: FloatArray, one: FloatArray
 ) -> float:
     """When a disc touches obstacle k next, or its centre or rim passes it; else inf; −1 − t."""
-    kind, flight = game.kinds[i], game.flights[i]
-    last = min(horizon, moves_until(kind, flight), once_round(kind, flight, now))
-    if kind == GONE or not last > now or are_held(game, i, -1 - k):
+    kind, segment = engine.kinds[i], engine.segments[i]
+    last = min(horizon, moves_until(kind, segment), once_round(kind, segment, now))
+    if kind == GONE or not last > now or are_held(engine, i, -1 - k):
         return math.inf
-    disc, obstacle = game.discs[i], game.obstacles[k]
+    disc, obstacle = engine.discs[i], engine.obstacles[k]
     radius, shape = disc[RADIUS], int(obstacle[KIND])
-    hangs = shape == OVERHANG and game.hangs[i, int(obstacle[EDGE_NUMBER])] != 0
+    hangs = shape == OVERHANG and engine.hangs[i, int(obstacle[EDGE_NUMBER])] != 0
     side = -1.0 if hangs else 1.0  # over an edge it comes back
     if kind in (DAMPED, PATH):
-        state_at(kind, flight, disc, game.curves, game.pieces, now, room, one)
-    ax, ay, bx, by, margin = corridor(kind, flight, disc, one, last, now)
+        state_at(kind, segment, disc, engine.lookups, engine.pieces, now, room, one)
+    ax, ay, bx, by, margin = corridor(kind, segment, disc, one, last, now)
     if shape in (WALL, EDGE, OVERHANG):
         nearest = min(
             side * normal_to(obstacle, radius, ax, ay, 0.0)[0],
@@ -395,44 +401,46 @@ def next_crossing(
         if near > reach * reach * (1.0 + 1e-9):
             return math.inf
     if kind not in (DAMPED, PATH):
-        state_at(kind, flight, disc, game.curves, game.pieces, now, room, one)
+        state_at(kind, segment, disc, engine.lookups, engine.pieces, now, room, one)
     t, partly = now, shape in (ARC, SIDE, CORNER)
     for look in range(MOST_LOOKS):
-        game.counts[N_LOOKS] += 1
+        engine.counts[N_LOOKS] += 1
         slack = slack_of(radius, one[X], one[Y]) if shape == SIDE else 0.0
         gap, nx, ny, there = normal_to(obstacle, radius, one[X], one[Y], slack)
         gap, nx, ny = side * gap, side * nx, side * ny
         rate = -(nx * one[VX] + ny * one[VY])
-        bend = bend_of(kind, flight, disc, one, t)
-        if gap > way_left(kind, flight, disc, one, t) * (1.0 + 1e-9):
+        accel = largest_accel(kind, segment, disc, one, t)
+        if gap > distance_left(kind, segment, disc, one, t) * (1.0 + 1e-9):
             return math.inf
         rounded = ROUNDED * (abs(one[X]) + abs(one[Y]) + radius + obstacle[C] * (shape == ARC))
         if shape == ARC and gap >= 0.0:
-            step = arc_step(gap, one[X] - obstacle[A], one[Y] - obstacle[B], one[VX], one[VY], bend)
+            step = arc_step(
+                gap, one[X] - obstacle[A], one[Y] - obstacle[B], one[VX], one[VY], accel
+            )
         elif shape == ARC or (there and partly and gap < -OUTSIDE * radius):
-            step = safe_step(-gap, -rate, bend)  # outside it: until it comes back
+            step = safe_step(-gap, -rate, accel)  # outside it: until it comes back
         else:
-            step = safe_step(max(gap, 0.0), rate, bend)
+            step = safe_step(max(gap, 0.0), rate, accel)
         if not there and shape != ARC:
             away, gx, gy = beyond_ends(obstacle, one[X], one[Y])
             closes = gx * one[VX] + gy * one[VY]
-            step = max(step, safe_step(max(away - slack, 0.0), closes, bend))
+            step = max(step, safe_step(max(away - slack, 0.0), closes, accel))
         # farther outside an arc it has passed where the arc is not
         if gap <= rounded and (not partly or gap > -OUTSIDE * radius):
-            if rate < -QUIET * game.pace[0] and there:
+            if rate < -QUIET * engine.scale[0] and there:
                 return t
-            step = max(step, moment_there(rounded, rate, bend, t))
+            step = max(step, moment_there(rounded, rate, accel, t))
             if not there and rate != 0.0:
                 step = max(step, 4.0 * rounded / abs(rate))
         if look >= PATIENCE and (not partly or gap >= 0.0):
             far = math.hypot(one[X] - obstacle[A], one[Y] - obstacle[B])
             step = max(step, stays_apart(
-                game, i, -1 - k, t, max(gap, rounded), nx, ny, far, shape == ARC, room, one, one,
+                engine, i, -1 - k, t, max(gap, rounded), nx, ny, far, shape == ARC, room, one, one,
             ))  # fmt: skip
         if t + step > last or step == math.inf:
             return math.inf
         if t + step == t:
-            return t if rate < -QUIET * game.pace[0] and (there or shape == ARC) else math.inf
+            return t if rate < -QUIET * engine.scale[0] and (there or shape == ARC) else math.inf
         t += step
-        state_at(kind, flight, disc, game.curves, game.pieces, t, room, one)
+        state_at(kind, segment, disc, engine.lookups, engine.pieces, t, room, one)
     return -1.0 - t

@@ -10,21 +10,21 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.base import Base
 from puck_tables.contact.law_moments import DEGREE, packed_law
 from puck_tables.kernels.base_friction import packed, packed_round
-from puck_tables.scene.floor_patches import corners_of
-from puck_tables.scene.ground import (
+from puck_tables.scene.floor_map import (
     NO_GROUND,
     PATCH_COLUMNS,
-    Ground,
+    FloorMap,
 )
+from puck_tables.scene.floor_parts import belts_of
+from puck_tables.scene.floor_patches import corners_of
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.scene.stretches import belts_of
 
 Moments = tuple[FloatArray, FloatArray, FloatArray]
 
 _AT_REST = (-1.0) ** np.arange(DEGREE + 1)  # powers of t at the beginning of a piece
 
 
-def ground_of(scene: SceneSpec, normal: float, law: Moments | None = None) -> FloatArray:
+def floor_map_of(scene: SceneSpec, normal: float, law: Moments | None = None) -> FloatArray:
     """All frictions of the floor of a scene, for its puck, packed; ``normal``: N.
 
     ``law``: moments of the friction over the slip speed, under a base that is not round.
@@ -33,7 +33,7 @@ def ground_of(scene: SceneSpec, normal: float, law: Moments | None = None) -> Fl
     --------
     >>> from puck_tables import Floor, Puck, Scene, Strips
     >>> floor = Floor(strips=Strips((0.1,), (0.3, 0.1)))
-    >>> ground_of(Scene(Puck(0.04), floor), 2.0)[15:18].tolist()
+    >>> floor_map_of(Scene(Puck(0.04), floor), 2.0)[15:18].tolist()
     [0.1, 0.6, 0.2]
     """
     floor, puck = scene.floor, scene.puck
@@ -62,13 +62,13 @@ def ground_of(scene: SceneSpec, normal: float, law: Moments | None = None) -> Fl
     lever, over_slip = 0.5 * puck.height / normal, np.empty(0)
     if shape is None:
         base = packed_round(puck.radius, puck.body.law, lever)
-        return Ground(*there, base, over_slip, belts_of(floor)).packed()
+        return FloorMap(*there, base, over_slip, belts_of(floor)).packed()
     if law is not None:
         over_slip = packed_law(law[0], normal * law[1], law[2])
     if axes is not None:
         turns = float(axes.fixed_to == "floor")
         over_slip = np.array([*np.multiply(normal, axes.friction), axes.direction, turns])
-    return Ground(*there, packed(shape, lever), over_slip, belts_of(floor)).packed()
+    return FloorMap(*there, packed(shape, lever), over_slip, belts_of(floor)).packed()
 
 
 def shape_under(scene: SceneSpec) -> Base | None:

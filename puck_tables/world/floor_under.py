@@ -13,8 +13,7 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 from puck_tables.scene.belts import nearest_belt
-from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
-from puck_tables.scene.ground import (
+from puck_tables.scene.floor_map import (
     ACROSS_X,
     ACROSS_Y,
     BELTS,
@@ -24,23 +23,24 @@ from puck_tables.scene.ground import (
     PATCHES,
     border_of,
 )
+from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.ingredients import (
     ASTRIDE as SEVERAL,
 )
 from puck_tables.scene.ingredients import (
     BySpeed,
-    Dry,
+    DryFriction,
     Regions,
     Surface,
-    dry_at,
     floor_velocity,
+    friction_at,
     put_at,
     surface_at,
 )
 from puck_tables.scene.orthotropic import is_elliptic
 from puck_tables.scene.over_time import rows_passed
 from puck_tables.scene.patches import ASTRIDE, INSIDE, OUTSIDE, distance_to
-from puck_tables.world.game import Game, Whole
+from puck_tables.world.engine_state import Engine, Whole
 from puck_tables.world.layout import (
     BELT_AX,
     BELT_AY,
@@ -73,13 +73,13 @@ def floor_of(surface: Surface, disc: FloatArray) -> Surface:
 
 @inlined
 def move_floor(
-    surface: Surface, discs: FloatArray, tides: FloatArray, spans: Whole, i: int, t: float
+    surface: Surface, discs: FloatArray, forcing: FloatArray, spans: Whole, i: int, t: float
 ) -> None:  # fmt: skip
     """Let the floor under a disc move as it does at a time."""
     first, last = spans[i, 0], spans[i, 1]
     if surface.changes != 0.0 and first < last:
-        passed, disc = rows_passed(tides, first, last, t), discs[i]
-        now = surface_at(surface, tides[first:last], passed, t)
+        passed, disc = rows_passed(forcing, first, last, t), discs[i]
+        now = surface_at(surface, forcing[first:last], passed, t)
         disc[BELT_X], disc[BELT_Y], disc[BELT_SPIN] = now.vx, now.vy, now.spin
         disc[BELT_AX], disc[BELT_AY], disc[BELT_TURN] = now.ax, now.ay, now.turn
 
@@ -107,9 +107,9 @@ def moves_along(surface: Surface) -> bool:
 
 
 @inlined
-def ground_span(regions: Regions, discs: FloatArray, i: int) -> tuple[int, int]:
+def floor_map_span(regions: Regions, discs: FloatArray, i: int) -> tuple[int, int]:
     """Where in ``regions.ground`` that of a disc begins and ends; empty where friction is one."""
-    size = regions.ground.size // discs.shape[0]
+    size = regions.floor_map.size // discs.shape[0]
     return i * size, (i + 1) * size
 
 
@@ -124,24 +124,26 @@ def law_under(regions: Regions, discs: FloatArray, i: int) -> BySpeed:
 
 
 @inlined
-def dry_under(regions: Regions, discs: FloatArray, i: int) -> Dry:
+def friction_under_disc(regions: Regions, discs: FloatArray, i: int) -> DryFriction:
     """The dry friction on a disc where it is."""
     region, law = int(discs[i, REGION]), law_under(regions, discs, i)
     if regions.astride[region]:
-        first, last = ground_span(regions, discs, i)
-        law = BySpeed(regions.ground[first:last], 0.0, SEVERAL, 1.0)
-    return Dry(regions.load[region], regions.delta[region], regions.cuts[region], law)
+        first, last = floor_map_span(regions, discs, i)
+        law = BySpeed(regions.floor_map[first:last], 0.0, SEVERAL, 1.0)
+    return DryFriction(regions.load[region], regions.delta[region], regions.cuts[region], law)
 
 
 @inlined
-def dry_now(
-    regions: Regions, discs: FloatArray, tides: FloatArray, spans: Whole, i: int, passed: int,
+def friction_now(
+    regions: Regions, discs: FloatArray, forcing: FloatArray, spans: Whole, i: int, passed: int,
     t: float, state: FloatArray,
-) -> Dry:  # fmt: skip
+) -> DryFriction:  # fmt: skip
     """The dry friction on a disc in a state (6,) at t, when so many of its rows have passed."""
-    dry = dry_at(dry_under(regions, discs, i), tides[spans[i, 0] : spans[i, 1]], passed, t)
-    put_at(dry, state[X], state[Y], state[THETA])
-    return dry
+    friction = friction_at(
+        friction_under_disc(regions, discs, i), forcing[spans[i, 0] : spans[i, 1]], passed, t
+    )
+    put_at(friction, state[X], state[Y], state[THETA])
+    return friction
 
 
 @inlined
@@ -160,11 +162,11 @@ def outruns_law(regions: Regions, radius: float, ux: float, uy: float, w: float)
 
 
 @inlined
-def off_border(ground: FloatArray, number: int, x: float, y: float) -> float:
+def off_border(floor_map: FloatArray, number: int, x: float, y: float) -> float:
     """How far a point is from a border, or after all of them a patch; beyond or in it < 0."""
-    if number < int(ground[BORDERS]):
-        return border_of(ground, number) - (ground[ACROSS_X] * x + ground[ACROSS_Y] * y)
-    return distance_to(ground, number - int(ground[BORDERS]), x, y)
+    if number < int(floor_map[BORDERS]):
+        return border_of(floor_map, number) - (floor_map[ACROSS_X] * x + floor_map[ACROSS_Y] * y)
+    return distance_to(floor_map, number - int(floor_map[BORDERS]), x, y)
 
 
 @inlined
@@ -184,20 +186,20 @@ def is_over(regions: Regions, discs: FloatArray, i: int) -> bool:
 @inlined
 def is_over_belts(regions: Regions, discs: FloatArray, i: int) -> bool:
     """Whether a disc may have parts on stretches of the floor with different velocities."""
-    first, last = ground_span(regions, discs, i)
-    return is_over(regions, discs, i) and last > first and regions.ground[first + BELTS] != 0.0
+    first, last = floor_map_span(regions, discs, i)
+    return is_over(regions, discs, i) and last > first and regions.floor_map[first + BELTS] != 0.0
 
 
 @inlined
 def choose_belt(regions: Regions, discs: FloatArray, i: int, state: FloatArray) -> None:
     """Of the velocities under a disc let states be relative to the one nearest to its own."""
     if is_over_belts(regions, discs, i):
-        first, last = ground_span(regions, discs, i)
-        ground, disc = regions.ground[first:last], discs[i]
+        first, last = floor_map_span(regions, discs, i)
+        floor_map, disc = regions.floor_map[first:last], discs[i]
         bx, by, _ = nearest_belt(
-            ground, state[X], state[Y], disc[RADIUS], state[VX], state[VY]
+            floor_map, state[X], state[Y], disc[RADIUS], state[VX], state[VY]
         )  # fmt: skip
-        ground[OVER_X], ground[OVER_Y] = bx, by
+        floor_map[OVER_X], floor_map[OVER_Y] = bx, by
         disc[BELT_X], disc[BELT_Y] = bx, by
 
 
@@ -208,26 +210,26 @@ def nears_another(
     """Whether a disc that moves at (vx, vy) is nearer to another velocity of the floor."""
     if not is_over_belts(regions, discs, i):
         return False
-    first, last = ground_span(regions, discs, i)
+    first, last = floor_map_span(regions, discs, i)
     disc = discs[i]
-    _, _, least = nearest_belt(regions.ground[first:last], x, y, disc[RADIUS], vx, vy)
+    _, _, least = nearest_belt(regions.floor_map[first:last], x, y, disc[RADIUS], vx, vy)
     ox, oy = vx - disc[BELT_X], vy - disc[BELT_Y]
     return least < _NEARER * math.sqrt(ox * ox + oy * oy)
 
 
 @inlined
-def least_slip(game: Game, i: int, state: FloatArray, t: float) -> float:
+def least_slip(engine: Engine, i: int, state: FloatArray, t: float) -> float:
     """The slip of the rim of a disc over the nearest of the floors under it, anywhere, m/s."""
-    rows = game.tides[game.spans[i, 0] : game.spans[i, 1]]
-    surface = surface_at(game.surface, rows, rows_passed(rows, 0, len(rows), t), t)
+    rows = engine.forcing[engine.spans[i, 0] : engine.spans[i, 1]]
+    surface = surface_at(engine.surface, rows, rows_passed(rows, 0, len(rows), t), t)
     sx, sy, turning = floor_velocity(surface, state[X], state[Y])
-    regions, discs = game.regions, game.discs
+    regions, discs = engine.regions, engine.discs
     radius = discs[i, RADIUS]
     speed, rim = math.hypot(state[VX] - sx, state[VY] - sy), radius * (state[SPIN] - turning)
-    first, last = ground_span(regions, discs, i)
-    if last > first and regions.ground[first + BELTS] != 0.0:
+    first, last = floor_map_span(regions, discs, i)
+    if last > first and regions.floor_map[first + BELTS] != 0.0:
         _, _, speed = nearest_belt(
-            regions.ground[first:last], state[X], state[Y], radius, state[VX], state[VY]
+            regions.floor_map[first:last], state[X], state[Y], radius, state[VX], state[VY]
         )  # fmt: skip
     return math.sqrt(speed * speed + rim * rim)
 
@@ -235,10 +237,10 @@ def least_slip(game: Game, i: int, state: FloatArray, t: float) -> float:
 @inlined
 def room_on_floor(regions: Regions, discs: FloatArray, i: int, state: FloatArray) -> float:
     """How far a disc in a state (6,) is from lying otherwise than it is taken to; < 0: it does."""
-    first, last = ground_span(regions, discs, i)
-    ground, radius, room = regions.ground[first:last], discs[i, RADIUS], math.inf
+    first, last = floor_map_span(regions, discs, i)
+    floor_map, radius, room = regions.floor_map[first:last], discs[i, RADIUS], math.inf
     for number in range(discs.shape[1] - LIES):
-        away, how = off_border(ground, number, state[X], state[Y]), int(discs[i, LIES + number])
+        away, how = off_border(floor_map, number, state[X], state[Y]), int(discs[i, LIES + number])
         if how == ASTRIDE:
             room = min(room, radius - abs(away))
         else:
@@ -247,14 +249,14 @@ def room_on_floor(regions: Regions, discs: FloatArray, i: int, state: FloatArray
 
 
 @inlined
-def step_onto(game: Game, i: int) -> None:
+def step_onto(engine: Engine, i: int) -> None:
     """A disc has the friction that belongs to how it lies to borders and patches."""
-    disc = game.discs[i]
-    first, last = ground_span(game.regions, game.discs, i)
-    ground = game.regions.ground[first:last]
+    disc = engine.discs[i]
+    first, last = floor_map_span(engine.regions, engine.discs, i)
+    floor_map = engine.regions.floor_map[first:last]
     strip, patch, astride = 0, -1, False
-    if ground.size > 0:
-        borders, patches = int(ground[BORDERS]), int(ground[PATCHES])
+    if floor_map.size > 0:
+        borders, patches = int(floor_map[BORDERS]), int(floor_map[PATCHES])
         for number in range(borders + patches):
             how = int(disc[LIES + number])
             astride = astride or how == ASTRIDE
@@ -266,23 +268,23 @@ def step_onto(game: Game, i: int) -> None:
             strip = borders + 1 + patch
         if astride:
             strip = borders + 1 + patches
-    region = strip * game.discs.shape[0] + i
+    region = strip * engine.discs.shape[0] + i
     disc[REGION] = region
-    disc[DECEL], disc[DELTA] = game.floors[region, 0], game.floors[region, 1]
-    disc[INTEGRATED] = game.floors[region, 2]
-    if game.surface.changes == 0.0 and not is_over_belts(game.regions, game.discs, i):
-        disc[BELT_X], disc[BELT_Y] = game.floors[region, 3], game.floors[region, 4]
+    disc[DECEL], disc[DELTA] = engine.floors[region, 0], engine.floors[region, 1]
+    disc[INTEGRATED] = engine.floors[region, 2]
+    if engine.surface.changes == 0.0 and not is_over_belts(engine.regions, engine.discs, i):
+        disc[BELT_X], disc[BELT_Y] = engine.floors[region, 3], engine.floors[region, 4]
 
 
 @inlined
-def lay_down(game: Game, i: int, state: FloatArray) -> None:
+def lay_down(engine: Engine, i: int, state: FloatArray) -> None:
     """See how the base of a disc lies that is put down, and which friction it has there."""
-    first, last = ground_span(game.regions, game.discs, i)
-    ground = game.regions.ground[first:last]
-    for number in range(game.discs.shape[1] - LIES):
-        away = off_border(ground, number, state[X], state[Y])
-        game.discs[i, LIES + number] = lies_to(away, game.discs[i, RADIUS])
-    step_onto(game, i)
-    game.discs[i, BELT_SPIN] = game.surface.spin
-    move_floor(game.surface, game.discs, game.tides, game.spans, i, game.clock[0])
-    choose_belt(game.regions, game.discs, i, state)
+    first, last = floor_map_span(engine.regions, engine.discs, i)
+    floor_map = engine.regions.floor_map[first:last]
+    for number in range(engine.discs.shape[1] - LIES):
+        away = off_border(floor_map, number, state[X], state[Y])
+        engine.discs[i, LIES + number] = lies_to(away, engine.discs[i, RADIUS])
+    step_onto(engine, i)
+    engine.discs[i, BELT_SPIN] = engine.surface.spin
+    move_floor(engine.surface, engine.discs, engine.forcing, engine.spans, i, engine.clock[0])
+    choose_belt(engine.regions, engine.discs, i, state)

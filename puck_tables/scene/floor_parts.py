@@ -16,18 +16,18 @@ from puck_tables.scene.parts import Floor, Patch, Strips
 _WHERE = re.compile(r"(strip|patch) (\d+)")
 
 
-def stretches_of(floor: Floor) -> int:
+def count_parts(floor: Floor) -> int:
     """How many there are; all of a floor without strips is one.
 
     Examples
     --------
-    >>> stretches_of(Floor())
+    >>> count_parts(Floor())
     1
     """
     return (1 if floor.strips is None else len(floor.strips.friction)) + len(floor.patches)
 
 
-def stretch_of(floor: Floor, where: str) -> int:
+def floor_part(floor: Floor, where: str) -> int:
     """The number of the stretch of a floor that is called so; −1: all of it.
 
     Raises
@@ -37,7 +37,7 @@ def stretch_of(floor: Floor, where: str) -> int:
 
     Examples
     --------
-    >>> stretch_of(Floor(), "floor")
+    >>> floor_part(Floor(), "floor")
     -1
     """
     if where == "floor":
@@ -52,7 +52,7 @@ def stretch_of(floor: Floor, where: str) -> int:
             last = f" to '{name} {count - 1}'" if count > 1 else ""
             known += [f"'{name} 0'{last}"] * (count > 0)
         raise InputError(f"where = {where!r}: must be {' or '.join(known)}")
-    before = stretches_of(floor) - len(floor.patches) if match[1] == "patch" else 0
+    before = count_parts(floor) - len(floor.patches) if match[1] == "patch" else 0
     return before + int(match[2])
 
 
@@ -65,7 +65,7 @@ def belts_of(floor: Floor) -> FloatArray:
     [[0.5, 0.0], [0.2, 0.0]]
     """
     strips = floor.strips
-    found = np.tile(np.array(floor.velocity), (stretches_of(floor), 1))
+    found = np.tile(np.array(floor.velocity), (count_parts(floor), 1))
     if strips is not None and (strips.across or strips.along):
         c, s = math.cos(strips.direction), math.sin(strips.direction)
         for k in range(len(strips.friction)):
