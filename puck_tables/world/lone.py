@@ -439,11 +439,8 @@ def follow_alone(
     ``work`` (25, 12): to work on.
     """
     choose_belt(engine.regions, engine.discs, i, state)
-    model, friction, buffer = (
-        model_of(engine, i),
-        friction_under_disc(engine.regions, engine.discs, i),
-        _buffer_on(work),
-    )
+    model, buffer = model_of(engine, i), _buffer_on(work)
+    friction = friction_under_disc(engine.regions, engine.discs, i)
     y, new, stages = buffer.y, buffer.new, buffer.stages
     speed, unit, radius = engine.scale[0], engine.scale[0] / engine.scale[1], model.body.radius
     tol, drive = max(engine.scale[2], FINEST), model.forces.drive
@@ -451,13 +448,13 @@ def follow_alone(
     slow = max(1.0, 2.0 * model.body.inertia / (model.body.mass * radius * radius))
     straight, horizon = _LAST * math.sqrt(tol) * speed, _horizon(engine, model, t)
     now, passed, h, count, mode, way = t, 0.0, _BEGIN * unit, 0, SLIDES, NO_WAY
-    find_break_away, known, stiff, over, rests = True, False, False, False, False
+    undecided, known, stiff, over, rests = True, False, False, False, False
     while now < horizon and count < LONGEST and not over:
         patience(1)
         rows = rows_passed(drive, 0, len(drive), now)
         target = min(drive[rows, 0], horizon) if rows < len(drive) else horizon
         q = slip_speed(radius, y)
-        if find_break_away:
+        if undecided:
             before, mode, way = mode, SLIDES, NO_WAY
             if friction.load > 0.0 and q <= REST * speed:
                 mode, stiff, q, rests = _from_rest(
@@ -469,9 +466,9 @@ def follow_alone(
                 h = target - now if mode == CARRIED else h
         newton = max(_NEWTON * tol, _FINEST_NEWTON) if stiff and mode == SLIDES else 0.0
         phase = Phase(model, friction, rows, mode, way, newton)
-        if find_break_away or not known:
+        if undecided or not known:
             rates(phase, now, y, stages, FIRST)
-        find_break_away, known = False, True
+        undecided, known = False, True
         if mode == SLIDES and friction.load > 0.0 and 0.0 < q <= straight:
             pull = slip_rate(radius, stages)
             way, _ = goes_straight(phase, speed, tol, unit, now, q, pull, slow, y, stages)
@@ -515,8 +512,8 @@ def follow_alone(
             stiff = _is_stiff(
                 model, friction.load, newton > 0.0, length, q, slip_rate(radius, stages)
             )
-        find_break_away = landed or slips or mode == STOPS or (q <= REST * speed and q < larger)
-        known = not find_break_away and model.hold.kind == FREE
+        undecided = landed or slips or mode == STOPS or (q <= REST * speed and q < larger)
+        known = not undecided and model.hold.kind == FREE
     if count > 0 and now > t:
         return True, now, count
     _put_down(model, now, state, buffer)
