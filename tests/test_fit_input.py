@@ -95,6 +95,11 @@ def test_heights_that_tip_are_refused_before_anything_is_fitted(monkeypatch):
         pt.fit(TRACK, pt.Puck(radius=0.04, height=1e9))
 
 
+def test_what_moves_a_puck_besides_friction_is_of_scenes():
+    with pytest.raises(pt.InputError, match="this puck has a force, which acts in a scene alone"):
+        pt.fit(TRACK, pt.Puck(radius=0.04, force=pt.Force((0.0, 0.1))))
+
+
 @pytest.mark.parametrize("radius", [1e-300, 1e300])
 def test_radii_of_no_puck_on_a_film_are_refused(radius):
     with pytest.raises(pt.InputError, match="radius of a puck on a film"):

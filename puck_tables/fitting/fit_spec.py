@@ -109,6 +109,7 @@ class FitSpec:
     ) -> FitSpec:  # fmt: skip
         """Checked, with what is free where nothing is said: f, and δ of a puck without height."""
         instance("puck", puck, Puck)
+        puck.refuse_moved()
         if not SMALLEST <= puck.radius <= LARGEST:
             raise InputError(
                 f"the radius of a puck on a film is from {SMALLEST:g} to {LARGEST:g} m, got "

@@ -70,6 +70,15 @@ class ScenePuck(PuckSpec):
         InputError
         """
         super().refuse_unless_free()
+        self.refuse_moved()
+
+    def refuse_moved(self) -> None:
+        """Refuse a puck that more than friction moves, where that would be left out.
+
+        Raises
+        ------
+        InputError
+        """
         for name in _NOT_FREE & self.only_on_boards.keys():
             raise InputError(
                 f"this puck has a {name}, which acts in a scene alone: "
