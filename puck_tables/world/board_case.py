@@ -40,7 +40,7 @@ from puck_tables.world.plan import plan_of
 from puck_tables.world.prepare import prepared
 from puck_tables.world.reactions import reactions
 from puck_tables.world.setting_off import CROWDED, OFF_TABLE, PUSHING, TANGLED, TOO_SHORT
-from puck_tables.world.simulate import columns_of, most_missed, run_on
+from puck_tables.world.simulate import MISSED, columns_of, run_on
 from puck_tables.world.world import World
 
 _LAUNCH = re.compile(r"(?:puck\[(\d+)\]\.)?launch\.(velocity\[[01]\]|spin)")
@@ -191,7 +191,7 @@ class BoardCase:
             end, ends.time[run] = run_on(world, None)
             if world.groups > 0:  # what simulate refuses by its ledger
                 now = energies_of(world, np.array([world.time]), world.state()[None])
-                if not residual(now, energy_scale(world._engine)) <= most_missed(self.scene):
+                if not residual(now, energy_scale(world._engine)) <= MISSED:
                     raise PuckError
         except InputError:
             return NO_END

@@ -90,7 +90,7 @@ def _otherwise(start: Start, coarser: float, share: float, friction: float) -> S
     free = (engine.discs[:, LIGHTNESS] > 0.0) & (engine.discs[:, HOLD] == FREE)
     floor = velocities_under(engine, states)[free]
     states[free, VX:] = floor + (states[free, VX:] - floor) @ turned.T
-    engine.scale[[2, g.FINE]] *= coarser
+    engine.scale[2] *= coarser
     engine.discs[:, NORMAL] *= 1.0 + friction
     regions = engine.regions._replace(load=engine.regions.load * (1.0 + friction))
     return start._replace(engine=engine._replace(launches=launches, regions=regions), states=states)

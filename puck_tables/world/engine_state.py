@@ -52,7 +52,6 @@ HISTORY_COLUMNS = 2 + SEGMENT_COLUMNS  # disc, kind, segment
     N_AT_ONCE, N_WORKS,
 ) = range(11)  # fmt: skip
 COUNTS = 11
-FINE = 5  # where in ``scale`` the error of a step that look-ups are worth stands
 
 
 class Engine(NamedTuple):
@@ -70,10 +69,9 @@ class Engine(NamedTuple):
     rim is over an edge.  ``work_rows``: where the energy of those went who were integrated, see
     :mod:`puck_tables.world.step_ledger`.  ``counts``: how many rows of
     events, history, pieces, works and held contacts are used, how many launches and what else was
-    done, and the contacts of the event at work.  ``scale`` (6,): the scales of speed, m/s, and
+    done, and the contacts of the event at work.  ``scale`` (5,): the scales of speed, m/s, and
     acceleration, m/s², the error of a step where motions are integrated, in units of them, the
-    energy of the launches at the start, J, how long the rebounds were to last that died out, s, and
-    the error of a step for what look-ups are good to: so fine are rebounds.
+    energy of the launches at the start, J, and how long the rebounds were to last that died out, s.
     """
 
     discs: FloatArray

@@ -28,7 +28,7 @@ from puck_tables.motion.impact_law import along_normal, impulses
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.world.alone import acceleration
 from puck_tables.world.contact_search import HARDLY, normal_to
-from puck_tables.world.engine_state import FINE, Engine, Whole
+from puck_tables.world.engine_state import Engine, Whole
 from puck_tables.world.floor_under import over_floor
 from puck_tables.world.holds import response
 from puck_tables.world.layout import (
@@ -179,7 +179,7 @@ def _dies_out(
     if j >= 0:
         way = max(way, _slip2(engine, j, states))
     rounded = LOW * (abs(states[i, X]) + abs(states[i, Y]))
-    least = LEAST * engine.scale[FINE] * way / engine.scale[1]
+    least = LEAST * engine.scale[2] * way / engine.scale[1]
     height = max(rounded, FLAT * engine.discs[i, RADIUS], least)
     if not (closing > 0.0 and un <= 0.0 and un * un <= 2.0 * closing * height):
         return False

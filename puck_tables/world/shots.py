@@ -13,12 +13,12 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import keep_on
 from puck_tables.errors import PuckError
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.agreement import frictions_under, is_integrated, pucks_of
+from puck_tables.world.agreement import frictions_under, is_integrated, pucks_of, segment_error
 from puck_tables.world.bulk import follow_all
-from puck_tables.world.engine_state import FINE, Whole
+from puck_tables.world.engine_state import Whole
 from puck_tables.world.floors import has_several
 from puck_tables.world.impact_sequence import FATE, LENGTH, PASSES, PRINT, trace
-from puck_tables.world.prepare import Start, order_of, prepared
+from puck_tables.world.prepare import STEP_SHARE, Start, order_of, prepared
 from puck_tables.world.setting_off import PUSHING, REACHED
 from puck_tables.world.world import World
 
@@ -175,5 +175,5 @@ class Shots:
 def _finely(scene: SceneSpec) -> Start:
     """The start of runs whose differences are slopes: they step as finely as look-ups are good."""
     start = prepared(scene.single())
-    start.engine.scale[2] = start.engine.scale[FINE]
+    start.engine.scale[2] = STEP_SHARE * segment_error(scene)
     return start

@@ -41,8 +41,7 @@ from puck_tables.world.world import World
 
 FINER, FINEST = 1 / 30, 1e-12  # of the tolerance before, tried one after the other
 MOST_IN_VAIN = 2  # finer tolerances in a row that do not halve the estimate
-# of the ledger, and times what steps are for: more is missed where impacts of who pushes failed
-MISSED, MISSED_BY_STEPS = 1e-7, 10.0
+MISSED = 1e-7  # of the ledger, where pucks pushed each other: their impacts were not solved
 
 
 def simulate(scene: SceneSpec, times: npt.ArrayLike | None = None) -> Run:
@@ -57,7 +56,7 @@ def simulate(scene: SceneSpec, times: npt.ArrayLike | None = None) -> Run:
     if not scene.pucks:
         columns = {n: one if one.ndim == 1 else one[:, 0] for n, one in columns.items()}
     missed = residual(columns, energy_scale(world._engine))
-    if world.groups > 0 and not missed <= most_missed(scene):
+    if world.groups > 0 and not missed <= MISSED:
         raise PuckError(g.TOGETHER.format(time=world.time))
     speed, rate = world._engine.scale[:2].tolist()
     model, why = plan_of(world.scene)  # with the finer steps that it took
@@ -80,11 +79,6 @@ def simulate(scene: SceneSpec, times: npt.ArrayLike | None = None) -> Run:
         columns={name: row[:-1] for name, row in columns.items()},
         files=files,
     )
-
-
-def most_missed(scene: SceneSpec) -> float:
-    """What the ledger misses at most, as a share, where the impacts of who pushes were solved."""
-    return max(MISSED, MISSED_BY_STEPS * steps_for(scene))
 
 
 def _checked(times: npt.ArrayLike) -> FloatArray:
@@ -209,5 +203,5 @@ def _close_enough(scene: SceneSpec, moments: FloatArray | None) -> _Done:
 
 def _late(world: World) -> float:
     """How long, in units of Q/J, the rebounds of one puck would have lasted that died out."""
-    speed, rate, *_, late, _ = world._engine.scale.tolist()
+    speed, rate, *_, late = world._engine.scale.tolist()
     return late * rate / speed if len(world.names) == 1 else 0.0
