@@ -69,10 +69,10 @@ STRIPS = pt.Floor(strips=pt.Strips((0.1, 0.18, 0.21), (0.2, 0.05, 0.4, 0.1), dir
 def _ends(scene: pt.Scene, share: float) -> np.ndarray:
     """Place and turned rim at rest of a puck of 5 cm, in Q²/J, with steps of a share of ``tol``."""
     start = prepared(scene)
-    start.game.pace[2] *= share / STEP_SHARE
+    start.engine.scale[2] *= share / STEP_SHARE
     world = pt.World.since(start)
     world.come_to_rest()
-    speed, rate = start.game.pace[:2]
+    speed, rate = start.engine.scale[:2]
     return world.state()[0, :3] * [1.0, 1.0, 0.05] * rate / speed**2
 
 

@@ -173,6 +173,22 @@ def _dies_out(
     """Whether both press on each other so that this rebound and those after it are too low."""
     if row[E] >= 1.0:
         return False
+    un, closing = _hop(engine, i, j, t, row, states)
+    if closing <= 0.0:
+        return False
+    if j < 0:
+        engine.scale[4] += _lasting(engine, i, j, t, row, states, -un, closing)
+    return True
+
+
+@inlined
+def _hop(
+    engine: Engine, i: int, j: int, t: float, row: FloatArray, states: FloatArray
+) -> tuple[float, float]:
+    """The approach of a contact, and what presses it, m/s²; 0 where it parts by more than a little.
+
+    A hop as low as that has died out: by rounding, or by what a step may be wrong by.
+    """
     un, _ = approach(engine, i, j, row[NX], row[NY], states)
     closing = -opening(engine, i, j, t, row, states)
     way = _slip2(engine, i, states)
@@ -181,11 +197,22 @@ def _dies_out(
     rounded = LOW * (abs(states[i, X]) + abs(states[i, Y]))
     least = LEAST * engine.scale[2] * way / engine.scale[1]
     height = max(rounded, FLAT * engine.discs[i, RADIUS], least)
-    if not (closing > 0.0 and un <= 0.0 and un * un <= 2.0 * closing * height):
-        return False
-    if j < 0:
-        engine.scale[4] += _lasting(engine, i, j, t, row, states, -un, closing)
-    return True
+    low = closing > 0.0 and un <= 0.0 and un * un <= 2.0 * closing * height
+    return un, closing if low else 0.0
+
+
+@inlined
+def _keep_down(
+    engine: Engine, t: float, contacts: Whole, count: int, rows: FloatArray, states: FloatArray
+) -> None:  # fmt: skip
+    """Take away by what a squeezed disc hops off a cushion: rims in a corner kick it for ever."""
+    for n in range(count):
+        row, i = rows[n], contacts[n, 0]
+        if contacts[n, 1] < 0:
+            un, closing = _hop(engine, i, contacts[n, 1], t, row, states)
+            if closing > 0.0:
+                states[i, VX] -= un * row[NX]
+                states[i, VY] -= un * row[NY]
 
 
 @inlined
@@ -418,6 +445,8 @@ def collide(
                     if j >= 0:
                         before[j, column] = states[j, column]
         if acting == 0:
+            if squeezed:
+                _keep_down(engine, t, contacts, count, rows, states)
             return turn
         last = turn >= TURNS or squeezed
         if last:  # such as of a light disc between a heavy one and a wall

@@ -14,7 +14,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from astride_judge import Ground
+from astride_judge import FloorMap
 from astride_judge import friction as astride
 from reference import friction
 from scipy.integrate import solve_ivp
@@ -57,7 +57,7 @@ class Floor:
             found += [away - reach + s * radius for s in (-1.0, 1.0)]
         return found
 
-    def under(self, q: np.ndarray, radius: float, f: float) -> float | Ground:
+    def under(self, q: np.ndarray, radius: float, f: float) -> float | FloorMap:
         """The one friction under a base, or all that there are around it."""
         if self.strips is None and not self.spots:
             return f
@@ -76,13 +76,13 @@ class Floor:
         last = int(np.searchsorted(borders, place[0] + radius, "left"))
         if first == last and not spots:
             return values[first]
-        return Ground([(b - place[0]) / radius for b in borders], list(values), spots)
+        return FloorMap([(b - place[0]) / radius for b in borders], list(values), spots)
 
     def rub(self, d: Disc, q: np.ndarray, u: np.ndarray) -> np.ndarray:
         """Force and torque of the floor at a slip u of a disc."""
         found, rub = self.under(q, d.radius, d.f), np.zeros(3)
         speed, rim = math.hypot(u[0], u[1]), d.radius * u[2]
-        if isinstance(found, Ground):
+        if isinstance(found, FloorMap):
             turn = 0.0 if self.strips is None else self.strips[0]
             c, s = math.cos(turn), math.sin(turn)
             along, across, torque = astride(

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from itertools import pairwise
 
 import numpy as np
-from astride_judge import Ground
+from astride_judge import FloorMap
 
 _T = np.linspace(-3.4, 3.4, 103)
 _SPREAD = np.exp(0.5 * math.pi * np.sinh(-np.abs(_T)))
@@ -20,7 +20,7 @@ _FROM_END = _SPREAD / (_SPREAD + 1.0 / _SPREAD)
 _RULE = (0.5 * math.pi * np.cosh(_T) * (_T[1] - _T[0])) * 2.0 * _FROM_END * (1.0 - _FROM_END)
 
 
-def value(ground: Ground, x: float, y: float) -> float:
+def value(ground: FloorMap, x: float, y: float) -> float:
     """f at a place."""
     for cx, cy, r, f in ground.discs:
         if math.hypot(x - cx, y - cy) < r:
@@ -35,7 +35,7 @@ def value(ground: Ground, x: float, y: float) -> float:
     return ground.around(x)
 
 
-def _edges(ground: Ground) -> list[tuple[np.ndarray, np.ndarray]]:
+def _edges(ground: FloorMap) -> list[tuple[np.ndarray, np.ndarray]]:
     return [
         (a, b)
         for corners, _ in ground.polygons
@@ -43,7 +43,7 @@ def _edges(ground: Ground) -> list[tuple[np.ndarray, np.ndarray]]:
     ]
 
 
-def _angles(ground: Ground, rho: float) -> list[float]:
+def _angles(ground: FloorMap, rho: float) -> list[float]:
     """Where a circle about the centre passes from one friction to another."""
     found = []
     for border in ground.borders:
@@ -66,7 +66,7 @@ def _angles(ground: Ground, rho: float) -> list[float]:
     return found
 
 
-def _radii(ground: Ground) -> list[float]:
+def _radii(ground: FloorMap) -> list[float]:
     """Where such angles appear."""
     found = [abs(border) for border in ground.borders]
     for cx, cy, r, _ in ground.discs:
@@ -79,7 +79,7 @@ def _radii(ground: Ground) -> list[float]:
     return found
 
 
-def on_circle(ground: Ground, ux: float, uy: float, w: float, rho: float) -> np.ndarray:
+def on_circle(ground: FloorMap, ux: float, uy: float, w: float, rho: float) -> np.ndarray:
     """∮ f (e, x_k e_j, x_k (x e_y − y e_x)) by the angle."""
     away = math.atan2(ux, -uy) if w > 0.0 else math.atan2(-ux, uy)  # of the centre of rotation
     stops = sorted({a % (2.0 * math.pi) for a in [*_angles(ground, rho), away, away + math.pi]})
@@ -105,7 +105,7 @@ def on_circle(ground: Ground, ux: float, uy: float, w: float, rho: float) -> np.
 
 
 def friction(
-    ground: Ground, slip: tuple[float, float, float], law: Callable[[float, float], float] | None,
+    ground: FloorMap, slip: tuple[float, float, float], law: Callable[[float, float], float] | None,
     height: float, mean_square: float, bends: tuple[float, ...] = (),
 ) -> np.ndarray:  # fmt: skip
     """∫ f σ e dA / N and its moment over r; ``law`` W at ρ and 1 − ρ (None: the ring)."""
