@@ -15,7 +15,7 @@ from puck_tables.gym.table_game import (
     between,
     observed_pucks,
     sent,
-)
+)  # fmt: skip
 from puck_tables.scene.parts import Launch
 from puck_tables.world.scene import Scene
 

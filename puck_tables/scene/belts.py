@@ -119,16 +119,9 @@ def _all_sums(
 
 @inlined
 def _done(
-    floor_map: FloatArray,
-    ux: float,
-    uy: float,
-    w: float,
-    sums: Sums,
-    far: Far,
-    a: float,
-    bx: float,
-    by: float,
-) -> tuple[float, float, float, float]:
+    floor_map: FloatArray, ux: float, uy: float, w: float, sums: Sums, far: Far, a: float,
+    bx: float, by: float,
+) -> tuple[float, float, float, float]:  # fmt: skip
     """Force, torque and heat of sums under the pressure a + b·x."""
     c, s = math.cos(floor_map[ANGLE]), math.sin(floor_map[ANGLE])
     x, y, torque = under_load(sums, a, bx, by)

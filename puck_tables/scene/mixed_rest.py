@@ -93,14 +93,9 @@ def _slope_along(
     direction: tuple[float, float, float], a: float,
 ) -> float:  # fmt: skip
     gx, gy, gw = _resists(
-        floor_map,
-        radius,
-        n[0] + a * direction[0],
-        n[1] + a * direction[1],
-        n[2] + a * direction[2],
-        bx,
-        by,
-    )
+        floor_map, radius, n[0] + a * direction[0], n[1] + a * direction[1],
+        n[2] + a * direction[2], bx, by,
+    )  # fmt: skip
     return gx * direction[0] + gy * direction[1] + gw * direction[2]
 
 
@@ -134,14 +129,9 @@ def _least_along(
 
 @inner
 def mixed_yield(
-    floor_map: FloatArray,
-    most: float,
-    radius: float,
-    fx: float,
-    fy: float,
-    torque: float,
+    floor_map: FloatArray, most: float, radius: float, fx: float, fy: float, torque: float,
     guided: bool,
-) -> Yield:
+) -> Yield:  # fmt: skip
     """By how much the power of the best slip at Q = 1 exceeds friction, and that slip.
 
     What other belts do to it is force, too.  ``most``: f N of the largest f; ``guided``: the puck

@@ -47,14 +47,9 @@ Yield = tuple[float, float, float, float]
 
 @inlined
 def _pivot_yield(
-    friction: DryFriction,
-    hold: Hold,
-    radius: float,
-    theta: float,
-    fx: float,
-    fy: float,
+    friction: DryFriction, hold: Hold, radius: float, theta: float, fx: float, fy: float,
     torque: float,
-) -> Yield:
+) -> Yield:  # fmt: skip
     """The yield where the only slip is a turn about the pivot: one direction, φ = atan(r/reach)."""
     cosine, sine = math.cos(theta + hold.angle), math.sin(theta + hold.angle)
     reach = hold.reach
@@ -141,18 +136,9 @@ def slip_led(hold: Hold, surface: Surface, y: FloatArray) -> float:
 
 @inlined
 def constrained_yield(
-    friction: DryFriction,
-    hold: Hold,
-    body: Body,
-    theta: float,
-    ax: float,
-    ay: float,
-    turning: float,
-    fx: float,
-    fy: float,
-    torque: float,
-    guided: bool,
-) -> Yield:
+    friction: DryFriction, hold: Hold, body: Body, theta: float, ax: float, ay: float,
+    turning: float, fx: float, fy: float, torque: float, guided: bool,
+) -> Yield:  # fmt: skip
     """By kind of constraint; a floor whose motion a constraint forbids never holds the puck."""
     cosine, sine = math.cos(theta + hold.angle), math.sin(theta + hold.angle)
     if hold.kind == PIVOT:

@@ -72,13 +72,9 @@ def lead(engine: Engine, i: int, state: FloatArray, duration: float) -> None:
     """A disc is to go straight on from a state for so long, or until it is at a cushion."""
     count = engine.counts[N_PIECES]
     go_straight(
-        engine.obstacles,
-        engine.discs[i, RADIUS],
-        engine.clock[0],
-        duration,
-        state,
+        engine.obstacles, engine.discs[i, RADIUS], engine.clock[0], duration, state,
         engine.pieces[count],
-    )
+    )  # fmt: skip
     engine.drives[i, 0], engine.drives[i, 1] = count, count + 1
     engine.counts[N_PIECES] = count + 1
 

@@ -62,7 +62,7 @@ from puck_tables.world.segment import (
     drifts,
     moves_until,
     state_at,
-)
+)  # fmt: skip
 from puck_tables.world.separation import stays_apart
 
 OUTSIDE = 1e-9  # of the radius

@@ -65,7 +65,7 @@ from puck_tables.world.segment import (
     STILL,
     UNTIL,
     corridor,
-)
+)  # fmt: skip
 from puck_tables.world.segment_starts import (
     CONCERNED,
     DISAPPOINTED,
@@ -78,7 +78,7 @@ from puck_tables.world.segment_starts import (
     locate,
     note_impacts,
     overhang,
-)
+)  # fmt: skip
 from puck_tables.world.setting_off import (
     CROWDED,
     FULL,

@@ -34,7 +34,7 @@ from puck_tables.world.floor_under import (
     is_over_belts,
     move_floor,
     over_floor,
-)
+)  # fmt: skip
 from puck_tables.world.group import (
     ARM,
     DRIVEN,
@@ -142,13 +142,9 @@ def _pull_on(
 ) -> tuple[float, float, float]:
     """Accelerations of a member by slope and given forces, now."""
     return pull_on(
-        group.discs,
-        group.forcing,
-        group.spans,
-        members[place],
-        buffer.passed[place],
+        group.discs, group.forcing, group.spans, members[place], buffer.passed[place],
         buffer.clock[0],
-    )
+    )  # fmt: skip
 
 
 @inlined
@@ -157,26 +153,16 @@ def _friction_under(
 ) -> DryFriction:
     """The dry friction on a member, now."""
     return friction_now(
-        group.regions,
-        group.discs,
-        group.forcing,
-        group.spans,
-        members[place],
-        buffer.passed[place],
-        buffer.clock[0],
-        y[place],
-    )
+        group.regions, group.discs, group.forcing, group.spans, members[place],
+        buffer.passed[place], buffer.clock[0], y[place],
+    )  # fmt: skip
 
 
 @inner
 def act(
-    group: Group,
-    members: IntArray,
-    motions: IntArray,
-    y: FloatArray,
-    power: FloatArray,
+    group: Group, members: IntArray, motions: IntArray, y: FloatArray, power: FloatArray,
     buffer: GroupBuffer,
-) -> None:
+) -> None:  # fmt: skip
     """Accelerations of the members as if there were no contacts, and the power of what acts.
 
     Those of who rests are the floor's.

@@ -64,7 +64,7 @@ from puck_tables.world.segment import (
     PATH,
     PLACE_X,
     PLACE_Y,
-)
+)  # fmt: skip
 from puck_tables.world.segment_starts import (
     CONCERNED,
     NOT_CONCERNED,
@@ -74,7 +74,7 @@ from puck_tables.world.segment_starts import (
     keep_segment,
     note,
     stay,
-)
+)  # fmt: skip
 from puck_tables.world.step_ledger import (
     BACK_X,
     BACK_Y,

@@ -43,7 +43,7 @@ from puck_tables.world.segment import (
     START,
     UNTIL,
     state_at,
-)
+)  # fmt: skip
 from puck_tables.world.segment_starts import Room
 from puck_tables.world.setting_off import MISPLACED, REACHED
 
@@ -69,15 +69,9 @@ def _slip_at(engine: Engine, n: int, t: float, room: Room) -> float:
     segment = engine.history[n]
     i, state = int(segment[0]), room.one
     state_at(
-        int(segment[1]),
-        segment[2:],
-        engine.discs[i],
-        engine.lookups,
-        engine.pieces,
-        t,
-        room.work,
+        int(segment[1]), segment[2:], engine.discs[i], engine.lookups, engine.pieces, t, room.work,
         state,
-    )
+    )  # fmt: skip
     return least_slip(engine, i, state, t)
 
 

@@ -97,15 +97,9 @@ def _begin_flown(engine: Engine, n: int, room: Room) -> bool:
     if engine.discs[i, LIGHTNESS] == 0.0 or kind in (PATH, GONE):
         return False
     state_at(
-        kind,
-        segment,
-        engine.discs[i],
-        engine.lookups,
-        engine.pieces,
-        segment[START],
-        room.work,
+        kind, segment, engine.discs[i], engine.lookups, engine.pieces, segment[START], room.work,
         room.one,
-    )
+    )  # fmt: skip
     return True
 
 

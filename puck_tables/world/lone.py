@@ -206,14 +206,9 @@ def _horizon(engine: Engine, model: Model, t: float) -> float:
 
 @inlined
 def _lay_out(
-    engine: Engine,
-    i: int,
-    model: Model,
-    t: float,
-    state: FloatArray,
-    tol: float,
+    engine: Engine, i: int, model: Model, t: float, state: FloatArray, tol: float,
     buffer: LoneBuffer,
-) -> None:
+) -> None:  # fmt: skip
     """The state at the start, relative to the floor, and the scales of errors."""
     body, speed = model.body, engine.scale[0]
     length, energy = speed * speed / engine.scale[1], body.mass * speed * speed
@@ -248,11 +243,8 @@ def _write_work(engine: Engine, begin: float, h: float, count: int, buffer: Lone
     """What a step, after so many others, did to the energies."""
     row = engine.work_rows[engine.counts[N_WORKS] + count]
     before, done, after, half = (
-        buffer.ledgers[0],
-        buffer.ledgers[1],
-        buffer.ledgers[2],
-        buffer.ledgers[3],
-    )
+        buffer.ledgers[0], buffer.ledgers[1], buffer.ledgers[2], buffer.ledgers[3],
+    )  # fmt: skip
     for n in range(GIVEN, SIZE):
         entry = step_ledger.PULL_WORK
         if n == DRY:
@@ -385,15 +377,9 @@ def _is_held(phase: Phase, t: float, h: float, buffer: LoneBuffer) -> tuple[floa
 
 @inlined
 def _from_rest(
-    model: Model,
-    friction: DryFriction,
-    rows: int,
-    speed: float,
-    t: float,
-    slow: float,
-    begins: bool,
-    buffer: LoneBuffer,
-) -> tuple[int, bool, float, bool]:
+    model: Model, friction: DryFriction, rows: int, speed: float, t: float, slow: float,
+    begins: bool, buffer: LoneBuffer,
+) -> tuple[int, bool, float, bool]:  # fmt: skip
     """How it goes on with no slip but what rounding leaves: mode, whether stiff, slip, and rests.
 
     ``slow``: the slip it has; where it ``begins`` so, it may be what the path before began.

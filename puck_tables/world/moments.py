@@ -72,13 +72,9 @@ def first_negative(buffer: GroupBuffer, end: int, count: int) -> tuple[int, int]
 
 @inner
 def sets_off(
-    group: Group,
-    members: IntArray,
-    modes: IntArray,
-    motions: IntArray,
-    scales: Scales,
+    group: Group, members: IntArray, modes: IntArray, motions: IntArray, scales: Scales,
     buffer: GroupBuffer,
-) -> int:
+) -> int:  # fmt: skip
     """Whether what presses on the discs at rest moves one: 1, or 0; −1: not solved.
 
     From the pushes of the state at the end of a step, which is that of ``buffer.states[1]``; only

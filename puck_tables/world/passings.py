@@ -200,16 +200,9 @@ def _side_at_start(
 
 @inner
 def _next_passing(
-    engine: Engine,
-    n: int,
-    last: float,
-    until: float,
-    line: FloatArray,
-    part: int,
-    seen: FloatArray,
-    room: FloatArray,
-    state: FloatArray,
-) -> float:
+    engine: Engine, n: int, last: float, until: float, line: FloatArray, part: int,
+    seen: FloatArray, room: FloatArray, state: FloatArray,
+) -> float:  # fmt: skip
     """When a side is left on a segment, up to a time, else inf; the state then in ``state``.
 
     < 0: not until then, nor before ``seen[FROM]``.
@@ -249,15 +242,9 @@ def _along(
     radius = engine.discs[i, RADIUS] if part == RIM else 0.0
     if seen[SIDE] == UNKNOWN or seen[FROM] == segment[START]:
         state_at(
-            kind,
-            segment,
-            engine.discs[i],
-            engine.lookups,
-            engine.pieces,
-            segment[START],
-            room,
+            kind, segment, engine.discs[i], engine.lookups, engine.pieces, segment[START], room,
             state,
-        )
+        )  # fmt: skip
         rounded = ROUNDED * (abs(state[X]) + abs(state[Y]) + radius + line[R])
         seen[SIDE] = _side_at_start(line, part, int(seen[SIDE]), radius, rounded, state)
     while seen[NEXT] <= until and seen[SIDE] != UNKNOWN:

@@ -48,7 +48,7 @@ from puck_tables.world.floors import (
     normal_on,
     regions_of,
     velocities_under,
-)
+)  # fmt: skip
 from puck_tables.world.lone import LONGEST
 from puck_tables.world.obstacles import borders_of, obstacles_of
 from puck_tables.world.paths import FIRST, PIECE_COLUMNS
@@ -60,7 +60,7 @@ from puck_tables.world.segment import (
     PLACE_Y,
     SEGMENT_COLUMNS,
     Lookups,
-)
+)  # fmt: skip
 from puck_tables.world.segment_starts import drive_on, hang_over, room_for
 from puck_tables.world.step_ledger import WORK_COLUMNS
 

@@ -39,7 +39,7 @@ from puck_tables.world.group import (
     Scales,
     find_places,
     small_slip,
-)
+)  # fmt: skip
 from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY
 from puck_tables.world.putting_right import stop_slips
 from puck_tables.world.step_ledger import DRIVE_WORK, RIM_HEAT

@@ -367,17 +367,9 @@ def follow(
             continue
         h = length * min(shorter, grows)
         how, which, length, cut = _first_change(
-            group,
-            members,
-            modes,
-            motions,
-            contacts.shape[0],
-            t,
-            length,
-            still_there,
-            scales,
+            group, members, modes, motions, contacts.shape[0], t, length, still_there, scales,
             buffer,
-        )
+        )  # fmt: skip
         if how == UNSOLVED:
             break
         add_work(length, start + passed, work_rows[count], buffer)

@@ -29,7 +29,7 @@ from puck_tables.world.floor_under import (
     lies_to,
     off_border,
     step_onto,
-)
+)  # fmt: skip
 from puck_tables.world.lasting import at_rest_below
 from puck_tables.world.layout import HOLD, KIND, LIES, NO_CUSHION, RADIUS
 from puck_tables.world.lone import model_of

@@ -99,12 +99,6 @@ def _fill(
         patience(1)
         segment = engine.history[rows[n]]
         state_at(
-            int(segment[1]),
-            segment[2:],
-            engine.discs[int(segment[0])],
-            engine.lookups,
-            engine.pieces,
-            times[n],
-            work,
-            out[n],
-        )
+            int(segment[1]), segment[2:], engine.discs[int(segment[0])], engine.lookups,
+            engine.pieces, times[n], work, out[n],
+        )  # fmt: skip

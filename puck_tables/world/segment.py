@@ -98,15 +98,9 @@ def moves_until(kind: int, segment: FloatArray) -> float:
 
 @inner
 def state_at(
-    kind: int,
-    segment: FloatArray,
-    disc: FloatArray,
-    lookups: Lookups,
-    pieces: FloatArray,
-    t: float,
-    room: FloatArray,
-    out: FloatArray,
-) -> None:
+    kind: int, segment: FloatArray, disc: FloatArray, lookups: Lookups, pieces: FloatArray,
+    t: float, room: FloatArray, out: FloatArray,
+) -> None:  # fmt: skip
     """X, y, angle, vx, vy, spin at the time t into ``out`` (6,)."""
     if kind == LOOKED_UP:
         found = room
@@ -172,10 +166,8 @@ def start_segment(
     segment[DRIFT_X], segment[DRIFT_Y] = 0.0, 0.0
     if turning != 0.0:
         segment[0], segment[1], segment[2] = (
-            state[X] - sy / turning,
-            state[Y] + sx / turning,
-            turning,
-        )
+            state[X] - sy / turning, state[Y] + sx / turning, turning,
+        )  # fmt: skip
         segment[FASTEST] = math.hypot(sx, sy)
         segment[STRONGEST] = abs(turning) * segment[FASTEST]
         return CARRIED

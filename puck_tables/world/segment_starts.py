@@ -40,7 +40,7 @@ from puck_tables.world.engine_state import (
     WHO,
     Engine,
     Whole,
-)
+)  # fmt: skip
 from puck_tables.world.floor_under import (
     choose_belt,
     floor_map_span,
@@ -48,7 +48,7 @@ from puck_tables.world.floor_under import (
     move_floor,
     off_border,
     step_onto,
-)
+)  # fmt: skip
 from puck_tables.world.holds import work_of_hold
 from puck_tables.world.impact import (
     CONTACT_COLUMNS,
@@ -60,7 +60,7 @@ from puck_tables.world.impact import (
     SUM_N,
     SUM_T,
     got_impulse,
-)
+)  # fmt: skip
 from puck_tables.world.layout import (
     EDGE_NUMBER,
     KIND,
@@ -72,7 +72,7 @@ from puck_tables.world.layout import (
     B,
     C,
     kinetic,
-)
+)  # fmt: skip
 from puck_tables.world.lone import BUFFER_ROWS, LONGEST, follow_alone
 from puck_tables.world.paths import DURATION, FIRST, FOR_EVER, bounds_of
 from puck_tables.world.paths import START as BEGINS
@@ -95,7 +95,7 @@ from puck_tables.world.segment import (
     UNTIL,
     start_segment,
     state_at,
-)
+)  # fmt: skip
 
 # of a disc while an event is worked on: not concerned, concerned, its contacts are known, was to
 # meet one that is concerned, has set off
@@ -133,15 +133,9 @@ def locate(engine: Engine, i: int, t: float, room: Room) -> None:
     """The state of a disc now, and how its floor moves."""
     move_floor(engine.surface, engine.discs, engine.forcing, engine.spans, i, t)
     state_at(
-        engine.kinds[i],
-        engine.segments[i],
-        engine.discs[i],
-        engine.lookups,
-        engine.pieces,
-        t,
-        room.work,
-        room.states[i],
-    )
+        engine.kinds[i], engine.segments[i], engine.discs[i], engine.lookups, engine.pieces, t,
+        room.work, room.states[i],
+    )  # fmt: skip
 
 
 @inlined

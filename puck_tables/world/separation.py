@@ -102,19 +102,9 @@ def _first_root(gap: float, rate: float, accel: float, jerk: float, longest: flo
 
 @inner
 def stays_apart(
-    engine: Engine,
-    i: int,
-    j: int,
-    t: float,
-    gap: float,
-    nx: float,
-    ny: float,
-    far: float,
-    arc: bool,
-    room: FloatArray,
-    one: FloatArray,
-    two: FloatArray,
-) -> float:
+    engine: Engine, i: int, j: int, t: float, gap: float, nx: float, ny: float, far: float,
+    arc: bool, room: FloatArray, one: FloatArray, two: FloatArray,
+) -> float:  # fmt: skip
     """How long a gap > 0 surely stays one.
 
     (nx, ny): from disc i to disc j, whose states are in one and two, or to an obstacle (j < 0);

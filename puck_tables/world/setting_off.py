@@ -38,7 +38,7 @@ from puck_tables.world.segment_starts import (
     locate,
     note,
     take_off,
-)
+)  # fmt: skip
 from puck_tables.world.touching import (
     find_touching,
     is_integrated,

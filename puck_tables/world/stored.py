@@ -58,7 +58,7 @@ from puck_tables.world.segment import (
     UNTIL,
     moves_until,
     state_at,
-)
+)  # fmt: skip
 from puck_tables.world.segment_starts import CONCERNED, NOT_CONCERNED, Room, locate, room_for
 from puck_tables.world.setting_off import FULL, REACHED
 
@@ -169,11 +169,9 @@ def lay_out(bench: Bench, engine: Engine, seen: FloatArray) -> Engine:
         bench.engine.regions.floor_map[...] = engine.regions.floor_map
     bench.seen[...] = seen
     return bench.engine._replace(
-        events=engine.events,
-        history=engine.history,
-        pieces=engine.pieces,
+        events=engine.events, history=engine.history, pieces=engine.pieces,
         work_rows=engine.work_rows,
-    )
+    )  # fmt: skip
 
 
 @inlined
@@ -430,13 +428,7 @@ def fill_states(
         for i in range(engine.discs.shape[0]):
             kind, segment, n = engine.kinds[i], engine.segments[i], bench.order[i]
             state_at(
-                kind,
-                segment,
-                engine.discs[i],
-                engine.lookups,
-                engine.pieces,
-                times[k],
-                bench.room.work,
-                states[k, n],
-            )
+                kind, segment, engine.discs[i], engine.lookups, engine.pieces, times[k],
+                bench.room.work, states[k, n],
+            )  # fmt: skip
             moving[k, n] = 1 if moves_until(kind, segment) > times[k] else 0
