@@ -20,7 +20,7 @@ from puck_tables.tradeoff.truth import Contender, Question, Run, kept
 from puck_tables.world.scene import Scene
 
 # of Q/(fg), Q²/(fg), asked for; sums under a law by speed take longer
-_TOLS, _TOLS_OF_A_LAW = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10), (1e-3, 1e-6, 1e-8)
+_TOLS, _TOLS_OF_A_LAW = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10), (1e-6, 1e-8)
 _GRIDS = (5, 10, 20)  # patches across the shorter way, twice as many along the other
 _LAUNCHES = 24  # judged, and timed
 _BY_SCIPY = 6  # of them asked of what takes a second

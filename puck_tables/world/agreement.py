@@ -24,6 +24,9 @@ from puck_tables.world.drive import rows_of
 
 TOUCH = 1e-12  # of the radius: pucks that overlap less touch
 CUSHIONS = ("wall", "post", "arc")  # what rims may meet besides pucks
+# of integrated states: coarser steps than for that are as long as the scene lets them, and check
+# runs of the same steps tell nothing (test_no_estimate_is_too_small)
+COARSEST = 1e-6
 TABLE_ERROR = 1e-9  # of looked-up states: of places in Q²/J, of velocities in Q
 _SMALLEST, _LARGEST = 1e-100, 1e100  # m, kg: squares of both are numbers
 
@@ -155,7 +158,7 @@ def segment_error(scene: SceneSpec) -> float:
 
 
 def steps_for(scene: SceneSpec) -> float:
-    """What integrated segments may be wrong by, in the same units: alone what is asked.
+    """What integrated segments may be wrong by, in the same units: alone what is asked, or less.
 
     Impacts multiply errors, and what presses cushions or pucks has to stay in touch.
 
@@ -167,7 +170,7 @@ def steps_for(scene: SceneSpec) -> float:
     (1e-07, 1e-09)
     """
     meets = len(pucks_of(scene)) > 1 or any(getattr(scene, f"{name}s") for name in CUSHIONS)
-    return segment_error(scene) if meets else scene.tol
+    return segment_error(scene) if meets else min(scene.tol, COARSEST)
 
 
 def is_integrated(scene: SceneSpec, puck: ScenePuck, friction: float) -> bool:
