@@ -414,9 +414,8 @@ def next_crossing(
             return math.inf
         rounded = ROUNDED * (abs(one[X]) + abs(one[Y]) + radius + obstacle[C] * (shape == ARC))
         if shape == ARC and gap >= 0.0:
-            step = arc_step(
-                gap, one[X] - obstacle[A], one[Y] - obstacle[B], one[VX], one[VY], accel
-            )
+            dx, dy = one[X] - obstacle[A], one[Y] - obstacle[B]
+            step = arc_step(gap, dx, dy, one[VX], one[VY], accel)
         elif shape == ARC or (there and partly and gap < -OUTSIDE * radius):
             step = safe_step(-gap, -rate, accel)  # outside it: until it comes back
         else:

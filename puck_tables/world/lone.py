@@ -429,7 +429,7 @@ def follow_alone(
     friction = friction_under_disc(engine.regions, engine.discs, i)
     y, new, stages = buffer.y, buffer.new, buffer.stages
     speed, unit, radius = engine.scale[0], engine.scale[0] / engine.scale[1], model.body.radius
-    tol, drive = max(engine.scale[2], FINEST), model.forces.drive
+    tol, drive, load = max(engine.scale[2], FINEST), model.forces.drive, friction.load
     _lay_out(engine, i, model, t, state, tol, buffer)
     slow = max(1.0, 2.0 * model.body.inertia / (model.body.mass * radius * radius))
     straight, horizon = _LAST * math.sqrt(tol) * speed, _horizon(engine, model, t)
@@ -442,12 +442,11 @@ def follow_alone(
         q = slip_speed(radius, y)
         if undecided:
             before, mode, way = mode, SLIDES, NO_WAY
-            if friction.load > 0.0 and q <= REST * speed:
+            if load > 0.0 and q <= REST * speed:
                 mode, stiff, q, rests = _from_rest(
                     model, friction, rows, speed, now, q, count == 0, buffer
                 )
-                turns = (mode == CARRIED) != (before == CARRIED)
-                if rests or (turns and count > 0 and now > t):
+                if rests or ((mode == CARRIED) != (before == CARRIED) and count > 0 and now > t):
                     break
                 h = target - now if mode == CARRIED else h
         newton = max(_NEWTON * tol, _FINEST_NEWTON) if stiff and mode == SLIDES else 0.0
@@ -455,7 +454,7 @@ def follow_alone(
         if undecided or not known:
             rates(phase, now, y, stages, FIRST)
         undecided, known = False, True
-        if mode == SLIDES and friction.load > 0.0 and 0.0 < q <= straight:
+        if mode == SLIDES and load > 0.0 and 0.0 < q <= straight:
             pull = slip_rate(radius, stages)
             way, _ = goes_straight(phase, speed, tol, unit, now, q, pull, slow, y, stages)
             if way[3] < 0.0:
@@ -495,9 +494,7 @@ def follow_alone(
         _go_on_from(model, tol, buffer)
         larger, q = q, slip_speed(radius, y)
         if mode == SLIDES:
-            stiff = _is_stiff(
-                model, friction.load, newton > 0.0, length, q, slip_rate(radius, stages)
-            )
+            stiff = _is_stiff(model, load, newton > 0.0, length, q, slip_rate(radius, stages))
         undecided = landed or slips or mode == STOPS or (q <= REST * speed and q < larger)
         known = not undecided and model.hold.kind == FREE
     if count > 0 and now > t:
