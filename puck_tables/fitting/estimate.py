@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.forward_model import RATE
-from puck_tables.fitting.least_squares import ROBUST, SQUARES, compact, minimise
+from puck_tables.fitting.least_squares import compact, minimise, minimise_robustly
 from puck_tables.fitting.observations import MEDIAN
 from puck_tables.fitting.problem import ANGLE, PLACE, PRIOR, UNSEEN, Known, Problem, likeliest
 
@@ -140,13 +140,13 @@ def estimate(
     problem = problem.with_noise(problem.noise, x)
     rows = problem.residuals(x)
     if problem.usual(rows) > _AWAY * MEDIAN:
-        x, _ = minimise(problem, x, ROBUST)
+        x, _ = minimise_robustly(problem, x)
         rows = problem.residuals(x)
     count = np.bincount(problem.kinds, minlength=UNSEEN + 1)[: PRIOR + 1]
     free = count[:PRIOR] * max(1.0 - x.size / count.sum(), 0.0)
     kept = _kept(problem, rows, _noise_degrees(free.tolist(), noise_known), strict)
     for _ in range(_ROUNDS):
-        x, _ = minimise(problem, x, SQUARES, kept)
+        x, _ = minimise(problem, x, kept)
         rows, slopes = problem.residuals_and_jacobian(x)
         degrees = _noise_degrees(_freedoms(problem, rows, slopes, kept), noise_known)
         noise, jitter = _noise(problem, x, rows, degrees, kept, noise_known)

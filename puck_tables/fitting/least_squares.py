@@ -4,11 +4,11 @@ Residuals of one kind in one track hang on few unknowns: those of its own launch
 Turned in their space (QR) they become as many rows as these and one more; sums of squares, products
 of residuals and slopes, and singular values stay what they are, to rounding.
 
-The optimiser is scipy's trust region reflective method: it takes bounds (δ ≥ 0), knows robust
-losses, and stands still where the Jacobian has no full rank, which is not rare here.  From many
-starts abreast, of which fewer and fewer go on, steps are of Levenberg and Marquardt, our own:
-scipy's cannot stop and compare, and of so few unknowns its step costs twice what the motion of a
-track costs.
+The optimiser is scipy's trust region reflective method: it takes bounds (δ ≥ 0), and stands still
+where the Jacobian has no full rank, which is not rare here.  Robustly, and from many starts
+abreast, of which fewer and fewer go on, steps are of Levenberg and Marquardt, our own: scipy's
+cannot stop and compare, and of so few unknowns its step costs twice what the motion of a track
+costs.
 """
 
 from __future__ import annotations
@@ -44,9 +44,7 @@ def compact(
         unknowns = enumerate(problem.names)
         moved = [k for k, (of, _) in unknowns if of in (-1, n) or problem.impact_specs]
         for part, kind in ((slice(x.start, y.stop), PLACE), (turn, ANGLE)):
-            turned: FloatArray = np.column_stack([slopes[part][:, moved], rows[part]])
-            if len(turned) > len(moved) + 1:
-                turned = np.asarray(np.linalg.qr(turned, mode="r"))
+            turned = _triangle(np.column_stack([slopes[part][:, moved], rows[part]]))
             wide = np.zeros((len(turned), slopes.shape[1]))
             wide[:, moved] = turned[:, :-1]
             few.append(turned[:, -1])
@@ -57,55 +55,52 @@ def compact(
     return Compact(*(np.concatenate(one) for one in every))
 
 
-class How(NamedTuple):
-    """``loss`` of scipy, the residual where it begins to count less, and the most evaluations."""
+def _triangle(rows: FloatArray) -> FloatArray:
+    """As many rows as columns, or fewer, of the same products: R of QR, part by part.
 
-    loss: str
-    scale: float
-    evaluations: int
-    tolerance: float
+    As one, tall rows make BLAS take threads, which wait for each other longer than they work.
+    """
+    size = max(_PART, 2 * rows.shape[1])
+    while len(rows) > size:
+        even = len(rows) // size * size
+        parts = np.linalg.qr(rows[:even].reshape(-1, size, rows.shape[1]), mode="r")
+        rows = np.concatenate([parts.reshape(-1, rows.shape[1]), rows[even:]])
+    return np.linalg.qr(rows, mode="r") if len(rows) > rows.shape[1] else rows
 
 
+_PART = 128  # rows, at the least
 _FAR = 1e3  # ends that are farther, and those of launches, would only bend steps to a minimum
-
-ROBUST = How("cauchy", 3.0, 40, 1e-4)
-SQUARES = How("linear", 1.0, 60, 1e-9)
+_EVALUATIONS, _TOLERANCE = 60, 1e-9
 
 
 def minimise(
-    problem: Problem, x: FloatArray, how: How, kept: npt.NDArray[np.bool_] | None = None,
-    held: int | None = None,
-) -> tuple[FloatArray, float]:  # fmt: skip
-    """The unknowns at the minimum from a start, and the cost ½ Σ loss there.
+    problem: Problem, x: FloatArray, kept: npt.NDArray[np.bool_] | None = None
+) -> tuple[FloatArray, float]:
+    """The unknowns at the minimum from a start, and the cost, half the sum of squares, there.
 
-    ``kept``: residuals that count, all where it is left out; ``held``: an unknown that stays.
+    ``kept``: residuals that count, all where it is left out.
     """
     from scipy.optimize import least_squares
 
-    moved = np.array([k for k in range(x.size) if k != held], np.int64)
-    whole = x.copy()
-    limits = [ends[moved] for ends in problem.limits]
+    limits = problem.limits
     # ends that count from the first: of the puck, and bounds that are given
     counts = np.array([of == -1 or name in problem.spec.bounds for of, name in problem.names], bool)
     low, high = (
-        np.where(counts[moved] & (np.abs(ends) < _FAR), ends, far)
+        np.where(counts & (np.abs(ends) < _FAR), ends, far)
         for ends, far in zip(limits, (-np.inf, np.inf), strict=True)
     )
-    begun = _inside(x[moved], low, high)
+    begun = _inside(x, low, high)
 
     def rows_and_slopes(values: FloatArray) -> tuple[FloatArray, FloatArray]:
-        whole[moved] = values
-        rows, slopes = problem.residuals_and_jacobian(whole)
+        rows, slopes = problem.residuals_and_jacobian(values)
         if not (np.isfinite(slopes).all() and np.isfinite(rows).all()):
-            told = ", ".join(f"{n} {value:.3g}" for n, value in problem.numbers_at(whole).items())
+            told = ", ".join(f"{n} {value:.3g}" for n, value in problem.numbers_at(values).items())
             raise InputError(
                 "the fit is led astray, to a motion that cannot be computed"
                 f"{f' ({told})' if told else ''}: give bounds or a prior of what it finds, or find "
                 "less"
             )
-        if how.loss == "linear":  # only their squares and products count
-            rows, slopes, _ = compact(problem, rows, slopes, kept)
-        return rows, slopes[:, moved]
+        return compact(problem, rows, slopes, kept)[:2]
 
     latest: dict[bytes, tuple[FloatArray, FloatArray]] = {}
 
@@ -116,26 +111,18 @@ def minimise(
         return latest[key][which].copy()  # scipy scales them where they are
 
     residuals, jacobian = partial(at, which=0), partial(at, which=1)
-    scale = how.scale
-    if how.loss != "linear":  # far from the minimum all residuals are large, none an outlier
-        scale = max(scale, 2.0 * problem.usual(residuals(begun)))
     while True:
         result: Any = least_squares(
-            residuals, begun, jacobian, bounds=(low, high), x_scale="jac", loss=how.loss,
-            f_scale=scale, max_nfev=how.evaluations, ftol=how.tolerance, xtol=how.tolerance,
-            gtol=1e-12,
+            residuals, begun, jacobian, bounds=(low, high), x_scale="jac", max_nfev=_EVALUATIONS,
+            ftol=_TOLERANCE, xtol=_TOLERANCE, gtol=1e-12,
         )  # fmt: skip
         beyond = (result.x < limits[0]) | (result.x > limits[1])
-        if beyond.any():  # it ran away: the rest is sought with these on their ends
-            low, high = (np.where(beyond, ends, near)
-                         for ends, near in zip(limits, (low, high), strict=True))  # fmt: skip
-            begun = _inside(np.clip(result.x, *limits), low, high)
-            continue
-        if scale <= how.scale:
-            whole[moved] = np.clip(result.x, *limits)
-            return whole, float(result.cost)
-        begun = _inside(result.x, low, high)
-        scale = max(how.scale, min(0.25 * scale, 2.0 * problem.usual(result.fun)))
+        if not beyond.any():
+            return np.clip(result.x, *limits), float(result.cost)
+        # it ran away: the rest is sought with these on their ends
+        low, high = (np.where(beyond, ends, near)
+                     for ends, near in zip(limits, (low, high), strict=True))  # fmt: skip
+        begun = _inside(np.clip(result.x, *limits), low, high)
 
 
 def _inside(x: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
@@ -144,6 +131,7 @@ def _inside(x: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
     return np.asarray(np.minimum(np.maximum(x, low + room), high - room))
 
 
+ROBUST = 3.0  # residuals that are larger count less
 # steps, and how many starts then go on
 FROM_AFAR = ((1, 10), (4, 5), (12, 4))
 FROM_BESIDE = ((4, 2), (30, 1))
@@ -157,17 +145,17 @@ _APART = 1e-2  # starts that are nearer have met
 
 def multi_start(
     starts: list[tuple[Problem, FloatArray]], rounds: tuple[tuple[int, int], ...],
-    how: How = SQUARES, allowance: float = 0.0, kept: npt.NDArray[np.bool_] | None = None,
+    scale: float = math.inf, allowance: float = 0.0, kept: npt.NDArray[np.bool_] | None = None,
     held: int | None = None,
 ) -> list[tuple[FloatArray, float]]:  # fmt: skip
     """Unknowns at the deepest minima that starts lead to, and the cost there, the deepest first.
 
     Starts, of the same residuals, that have met go on as one.  ``rounds``: steps, and how many
-    starts go on after them; residuals r count squared, or as ½ s² ln(1 + (r/s)²) with s at least
-    twice their median; ``allowance``: what a start may cost more than the best and goes on, however
-    many do; ``kept``: residuals that count, all where it is left out; ``held``: what stays.
+    starts go on after them; residuals r count squared, or of a ``scale`` s as ½ s² ln(1 + (r/s)²)
+    with s at least twice their median; ``allowance``: what a start may cost more than the best and
+    goes on, however many do; ``kept``: residuals that count, all where it is left out; ``held``:
+    what stays.
     """
-    scale = math.inf if how.loss == "linear" else how.scale
     walkers = [_Walker(problem, x, scale, kept, held) for problem, x in starts]
     for steps, most in rounds:
         for walker in walkers:
@@ -182,6 +170,11 @@ def multi_start(
         near = sum(one.cost < walkers[0].cost + allowance for one in walkers)
         walkers = walkers[: max(most, near)]
     return [(walker.x, walker.cost) for walker in walkers]
+
+
+def minimise_robustly(problem: Problem, x: FloatArray, steps: int = 40) -> tuple[FloatArray, float]:
+    """The unknowns at the minimum from a start, to a ten-thousandth of the robust cost there."""
+    return multi_start([(problem, x)], ((steps, 1),), ROBUST)[0]
 
 
 class _Walker:

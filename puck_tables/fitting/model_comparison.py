@@ -22,7 +22,7 @@ from puck_tables.fitting.certainty import Z95, Certainty
 from puck_tables.fitting.estimate import Estimate, capped_squares, estimate
 from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.initial_estimate import initial_estimate
-from puck_tables.fitting.least_squares import ROBUST, minimise
+from puck_tables.fitting.least_squares import minimise_robustly
 from puck_tables.fitting.observations import FEWEST, MEDIAN, Observations, rests_from
 from puck_tables.fitting.parameters import LAW_NUMBERS, NODES
 from puck_tables.fitting.problem import ANGLE, PLACE, UNSEEN, Known, Problem
@@ -30,7 +30,7 @@ from puck_tables.fitting.slowing import nearest_start, starts_from_slowing
 from puck_tables.fitting.speed_motion import LAWS
 from puck_tables.fitting.whole_turns import on_another_floor
 
-_ROUGHLY = ROBUST._replace(evaluations=15)
+_ROUGHLY = 15  # steps
 _FALLS = 0.99  # of the cost before: a floor that still comes nearer is followed
 _NEAR = 3.0  # times the noise: floors that are fitted to the end
 _FRAMES = 80  # that tell whether such a law may be the reason of a misfit
@@ -48,7 +48,7 @@ def over_speeds(
             f"{speeds[-1]:g} m/s: give speeds up to {math.ceil(10.0 * fastest) / 10.0:g}"
         )
     moved, start = _begun(result.problem, result.x, speeds)
-    lines, _ = minimise(moved, start, ROBUST)
+    lines, _ = minimise_robustly(moved, start)
     spec = replace(moved.spec, between=between)
     return estimate(replace(moved, spec=spec), lines, known)
 
@@ -58,7 +58,7 @@ def on_a_floor(problem: Problem, known: Known) -> Estimate:
     begun, x = nearest_start(problem, starts_from_slowing(problem))
     cost, falls = math.inf, True
     while falls:
-        x, less = minimise(begun, x, _ROUGHLY)
+        x, less = minimise_robustly(begun, x, _ROUGHLY)
         rows = problem.residuals(x)
         if problem.usual(rows) < _NEAR:
             return estimate(problem, x, known)
@@ -94,7 +94,7 @@ def _begun(
     line = None if problem.impact_specs else on_another_floor(problem, x)
     if line is None:
         return moved, start
-    there, _ = minimise(*line, ROBUST)
+    there, _ = minimise_robustly(*line)
     result, gravity = line[0].numbers_at(there), problem.spec.known()["gravity"]
     values = result["friction"] + result["drag"] / gravity * np.array(speeds)
     values = np.maximum(values, _LEAST * values.max())

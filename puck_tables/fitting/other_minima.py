@@ -39,7 +39,7 @@ from puck_tables.fitting.estimate import FARTHEST, Estimate, estimate, freedom
 from puck_tables.fitting.identifiability import ran_away
 from puck_tables.fitting.initial_estimate import initial_estimate
 from puck_tables.fitting.inputs import refuse_wobbling
-from puck_tables.fitting.least_squares import SQUARES, compact, minimise, multi_start
+from puck_tables.fitting.least_squares import compact, minimise, multi_start
 from puck_tables.fitting.model_comparison import chi2_under
 from puck_tables.fitting.numbers import Number, numbers_of
 from puck_tables.fitting.problem import Known
@@ -100,7 +100,7 @@ def other_minima(
     other_fits: list[OtherMinimum] = []
     summits = [(result.x, *_known(result, certainty))]
     for start in starts:
-        x, cost = minimise(problem, start, SQUARES, result.kept)
+        x, cost = minimise(problem, start, result.kept)
         rise = 2.0 * cost - result.chi2
         deviations = [
             (np.abs(x - one if signed else np.abs(x) - np.abs(one)) > far)[seen]
@@ -148,7 +148,7 @@ def taken(
             x = other_fits[k - 1].estimate.x if k else result.x
             other = on_another_floor(problem, x) if motion.slow else None
             if other is not None:
-                there, cost = minimise(*other, SQUARES, result.kept)
+                there, cost = minimise(*other, result.kept)
                 size = excess * math.sqrt(2.0 * cost / result.chi2)
                 one = Judged(is_slow(other[0], there), excess**2 * 2.0 * cost, size)
                 if preferred([one, motions[first]]) == 0:
@@ -236,7 +236,7 @@ def mirrored(result: Estimate, certainty: Certainty) -> tuple[int, ...]:
                 x[tilts] = low[tilts]
             if not _near(result, x, tilts if least else []):
                 continue
-            there, cost = minimise(problem, x, SQUARES, result.kept)
+            there, cost = minimise(problem, x, result.kept)
             opposite = there[k] * result.x[k] < 0.0
             apart = opposite and abs(there[k] - result.x[k]) > Z95 * errors[k]
             if apart and 2.0 * cost < result.chi2 + RISE:

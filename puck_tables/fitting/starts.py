@@ -22,7 +22,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.forward_model import DELTA
-from puck_tables.fitting.least_squares import FROM_AFAR, ROBUST, minimise, multi_start
+from puck_tables.fitting.least_squares import FROM_AFAR, ROBUST, minimise_robustly, multi_start
 from puck_tables.fitting.observations import Observations, Turning, rests_from, turning_of
 from puck_tables.fitting.parameters import LAUNCH
 from puck_tables.fitting.problem import Problem
@@ -119,7 +119,7 @@ def _deepest(
             rivals[-1][spin] = math.remainder(x[spin], 2.0 * half)
     if len(rivals) == 1:
         return rivals
-    polished = sorted((minimise(problem, one, ROBUST) for one in rivals), key=lambda one: one[1])
+    polished = sorted((minimise_robustly(problem, one) for one in rivals), key=lambda one: one[1])
     result = [one for one, _ in polished]
     return in_order(problem, result) if marked else result
 

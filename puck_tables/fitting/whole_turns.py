@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.fitting.least_squares import ROBUST, minimise
+from puck_tables.fitting.least_squares import minimise_robustly
 from puck_tables.fitting.observations import MEDIAN, Observations
 from puck_tables.fitting.problem import ANGLE, PLACE, TURN, Problem
 
@@ -99,7 +99,7 @@ def in_order(problem: Problem, minima: list[FloatArray]) -> list[FloatArray]:
         x = min((k for k in range(len(minima)) if slow[k]), key=lambda k: chi2[k])
         other = on_another_floor(problem, minima[x])
         if other is not None:
-            there, _ = minimise(*other, ROBUST)
+            there, _ = minimise_robustly(*other)
             dragged = rows.copy()
             dragged[x] = other[0].residuals(there)
             if slow[_judged(problem, dragged, slow)[0]] and is_slow(other[0], there):
