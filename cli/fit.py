@@ -118,7 +118,8 @@ def _held_out(text: str, option: str) -> float | list[str]:
     click.option("--fix", "fixed", multiple=True, metavar="NAME=VALUE", callback=read_as(_held),
                  help="Hold a number; also launch_spin and the like."),
     click.option("--prior", multiple=True, metavar="NAME=VALUE:SIGMA",
-                 callback=_pairs("VALUE:SIGMA"), help="What is known of a number besides."),
+                 callback=_pairs("VALUE:SIGMA, a value and its standard deviation (to hold a "
+                 "number, --fix)"), help="What is known of a number besides."),
     click.option("--bound", "bounds", multiple=True, metavar="NAME=LOW:HIGH",
                  callback=_pairs("LOW:HIGH"), help="Look for a number within; also for launch_x, "
                  "_y, _vx, _vy, _spin, _angle."),

@@ -6,7 +6,7 @@ import math
 from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 from click.core import ParameterSource
@@ -106,16 +106,16 @@ def simulate(
             raise InputError("--exact and --table clash: closed forms need no table")
         out.prepare(table_path, choice.pressure, choice.base, fit_path)
         if fit_path is not None:
-            puck, velocity, w0, unknown = _from_fit(ctx, fit_path, track)
+            puck, launch, unknown = _from_fit(ctx, fit_path, track)
         elif v0 is not None:
-            puck, velocity = choice.puck(), v0
+            puck, launch = choice.puck(), {"velocity": v0, "spin": w0}
         else:
             raise click.MissingParameter(param_hint="'--v0'", param_type="option")
         from puck_tables.table.resultant_table import ResultantTable
 
         with one_question():
             run = puck.simulate(
-                velocity, w0, frames=1 if report_only and frames is None else frames, times=times,
+                **launch, frames=1 if report_only and frames is None else frames, times=times,
                 tol=tol, method=method, exact=exact,
                 table=None if table_path is None else ResultantTable.load(table_path),
             )  # fmt: skip
@@ -128,7 +128,7 @@ def simulate(
 
 def _from_fit(
     ctx: click.Context, path: Path, track: str | None
-) -> tuple[Puck, tuple[float, float], float, tuple[str, ...]]:
+) -> tuple[Puck, dict[str, Any], tuple[str, ...]]:
     """The puck and the launch of a fit, which no option contradicts, and what it left open."""
     for name in _LAUNCHED:
         if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE:
@@ -176,11 +176,13 @@ def _on_base(run: Trajectory, note: str) -> dict[str, str]:
     k = puck.inertia_radius
     q0 = math.hypot(vx, vy, k * w0)
     high = f"h = {puck.height:g} m, " if puck.height > 0.0 else ""
+    angle = math.degrees(run.summary()["launch_orientation"])
+    turned = f", turned by {angle:.4g} degrees" if round(angle, 6) else ""
     return {
         "puck": f"base {puck.shape.name}, k = {k:.6g} m, {high}f = {puck.friction:g}, "
         f"f g = {puck.decel:.6g} m/s^2{note}",
         "launch": f"v0 = ({vx:g}, {vy:g}) m/s, w0 = {w0:g} rad/s, "
-        f"Q0 = hypot(v0, k w0) = {q0:.6g} m/s",
+        f"Q0 = hypot(v0, k w0) = {q0:.6g} m/s{turned}",
         "end": "it slides without a spin" if _is_straight(run) else ENDS[run.regime],
         **_stop(run, q0, {}, {}),
     }

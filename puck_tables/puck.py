@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy.typing as npt
 
+from puck_tables.errors import InputError
 from puck_tables.verbs_of_many import VerbsOfMany
 
 if TYPE_CHECKING:
@@ -116,6 +117,7 @@ class Puck(VerbsOfMany):
         velocity: npt.ArrayLike,
         spin: float = 0.0,
         *,
+        orientation: float = 0.0,
         frames: int | None = None,
         times: npt.ArrayLike | None = None,
         tol: float = 1e-9,
@@ -129,6 +131,8 @@ class Puck(VerbsOfMany):
         ----------
         velocity : (vx, vy), m/s
         spin : rad/s, counter-clockwise positive
+        orientation : rad
+            Angle of the body at the launch, on a base that is not round.
         frames : int, optional
             How many states, equally spaced from the launch to the stop (1: the launch); default
             101.
@@ -181,8 +185,12 @@ class Puck(VerbsOfMany):
         if self.shape is not None:
             self.refuse_for_round(method=method, exact=exact, table=table)
             return simulate_on_base(
-                self, velocity, spin, frames=frames, times=times, tol=tol
+                self, velocity, spin, frames=frames, times=times, tol=tol, orientation=orientation
             )  # fmt: skip
+        if orientation != 0.0:
+            raise InputError(
+                "orientation is of a puck on a base: a round one slides alike, however it is turned"
+            )
         return simulate(
             self, velocity, spin, frames=frames, times=times, tol=tol, method=method, exact=exact,
             table=cast(Any, table),

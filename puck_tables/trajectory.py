@@ -176,7 +176,11 @@ class Trajectory(TimedResult):
         [0.5, 0.0]
         """
         values = {name: getattr(self, name) for name in SCALARS}
-        units = {name: unit for name, unit in {**SCALARS, **self.puck.units}.items() if unit}
+        known = {**SCALARS, **self.puck.units}
+        if isinstance(self.motion, BaseSlide):
+            values["launch_orientation"] = self.motion.orientation
+            known["launch_orientation"] = "rad"
+        units = {name: unit for name, unit in known.items() if unit}
         listed = {n: list(v) if isinstance(v, tuple) else v for n, v in values.items()}
         return {**listed, **self.puck.described(), "units": units}
 
@@ -260,13 +264,13 @@ def simulate(
 
 def simulate_on_base(
     puck: PuckSpec, velocity: npt.ArrayLike, spin: float, *, frames: int | None,
-    times: npt.ArrayLike | None, tol: float,
+    times: npt.ArrayLike | None, tol: float, orientation: float,
 ) -> Trajectory:  # fmt: skip
     """The motion of a puck on a base that is not round, as :meth:`puck_tables.Puck.simulate`."""
     launch, w = one_velocity(velocity), real("spin", spin, "rad/s")
     wanted = real("tol", tol, "dimensionless")
     _check_frames(frames, times)
-    run = slide_of(puck, launch, w, wanted)
+    run = slide_of(puck, launch, w, wanted, real("orientation", orientation, "rad"))
     energy = 0.5 * puck.mass * run.slip * run.slip
     if not math.isfinite(energy):
         raise InputError(f"mass = {puck.mass:g} kg gives an energy too large for floating point")

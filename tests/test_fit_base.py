@@ -5,6 +5,7 @@ Truth is scipy's DOP853 over friction by ``judges/base_judge.py``.
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -31,7 +32,9 @@ def turn(angle: float) -> np.ndarray:
     return np.array([[cosine, -sine], [sine, cosine]])
 
 
-def film(rng: np.random.Generator, name: str) -> tuple[pt.Track, pt.Puck, np.ndarray]:
+def film(
+    rng: np.random.Generator, name: str, noise: tuple[float, float] = NOISE
+) -> tuple[pt.Track, pt.Puck, np.ndarray]:
     """A noisy film of a launch, the puck, and the launch: place, velocity, spin, angle."""
     friction, flat = rng.uniform(0.1, 0.4), pt.Puck(base=name)
     height = min(rng.uniform(0.02, 0.05), 1.8 * flat.shape.highest_lever / friction)
@@ -52,8 +55,8 @@ def film(rng: np.random.Generator, name: str) -> tuple[pt.Track, pt.Puck, np.nda
     slip = np.hypot(speed, puck.gyration * start[4])
     t = np.arange(0.0, rng.uniform(0.5, 0.8) * slip / (puck.friction * G), 1.0 / 120.0)
     true = solve_ivp(rates, (0.0, t[-1]), start, "DOP853", t, rtol=1e-9, atol=1e-11).y
-    place = true[:2].T + NOISE[0] * rng.normal(size=(t.size, 2))
-    return pt.Track(t, place, true[5] + NOISE[1] * rng.normal(size=t.size), "slide"), puck, start
+    place = true[:2].T + noise[0] * rng.normal(size=(t.size, 2))
+    return pt.Track(t, place, true[5] + noise[1] * rng.normal(size=t.size), "slide"), puck, start
 
 
 def off(found: pt.results.Fit, puck: pt.Puck, start: np.ndarray) -> np.ndarray:
@@ -172,8 +175,58 @@ def test_what_is_of_round_pucks_is_refused():
             pt.fit(track, flat, **how)
     with pytest.raises(pt.InputError, match="has no angles"):
         pt.fit(replace(track, angle=None), flat)
-    with pytest.raises(pt.InputError, match="put it into a Scene"):
-        pt.fit(track, pt.Puck(base=puck.base, height=puck.height)).simulate()
+    with pytest.raises(pt.InputError, match="a round one slides alike"):
+        pt.Puck(0.04, height=0.0, friction=0.2).simulate((1.0, 0.0), orientation=1.0)
+
+
+@pytest.mark.parametrize("name", OUTLINES)
+def test_a_block_slides_as_it_stood_at_its_launch(name: str):
+    track, puck, start = film(np.random.default_rng([38, 5]), name, (0.0, 0.0))
+    how = {"spin": start[4], "orientation": start[5], "times": track.time}
+    run = puck.simulate(start[2:4], **how)
+    np.testing.assert_allclose(run.x + start[0], track.place[:, 0], atol=1e-8)
+    np.testing.assert_allclose(run.y + start[1], track.place[:, 1], atol=1e-8)
+    np.testing.assert_allclose(run.orientation, track.angle, atol=1e-7)
+    speeds = np.gradient(track.place, track.time, axis=0, edge_order=2)
+    np.testing.assert_allclose(np.stack([run.vx, run.vy], axis=1), speeds, atol=5e-3)
+    rest = run(np.array([run.stop_time]))
+    np.testing.assert_allclose((rest.x[0], rest.y[0]), run.stop_position, atol=1e-9)
+    assert run.summary()["launch_orientation"] == start[5]
+    found = pt.fit(track, pt.Puck(base=name)).simulate(times=track.time)
+    np.testing.assert_allclose(found.x, run.x, atol=1e-6)
+    np.testing.assert_allclose(found.orientation, run.orientation, atol=1e-5)
+
+
+def test_gyration_of_a_base_is_in_metres():
+    """As the puck has it: what is found, held, bounded or known of it."""
+    track, puck, _ = film(np.random.default_rng([38, 1]), "box:0.2x0.1")
+    names = ("friction", "gyration")
+    known = pt.Puck(base=puck.base, height=puck.height)
+    found = pt.fit(track, known, free=names, prior={"gyration": (0.06, 0.02)})
+    assert found["gyration"].unit == "m"
+    assert abs(found["gyration"].value - puck.gyration) < 4.0 * found["gyration"].error < 0.004
+    assert found.puck.gyration == found["gyration"].value
+    held = pt.fit(track, known, fixed={"gyration": puck.gyration})
+    usual = pt.fit(track, known)
+    assert held["friction"] == usual["friction"] and usual["gyration"].unit == "m"
+    assert usual["gyration"].value == pytest.approx(puck.gyration, rel=1e-12)
+    with pytest.raises(pt.InputError, match=r"gyration must be from 0.0111803 to 1.11803 \(m\)"):
+        pt.fit(track, known, fixed={"gyration": 2.0})
+
+
+def test_a_prior_of_the_height_finds_the_height():
+    track, puck, _ = film(np.random.default_rng([38, 1]), "box:0.2x0.1")
+    alone = pt.fit(track, pt.Puck(base=puck.base))["height"]
+    told = pt.fit(track, pt.Puck(base=puck.base), prior={"height": (puck.height, 1e-4)})["height"]
+    assert told.how == "found" and told.error < 1.1e-4 < alone.error
+    assert abs(told.value - puck.height) < 4e-4
+
+
+def test_a_base_far_larger_than_its_slide_is_refused():
+    track, _, _ = film(np.random.default_rng([38, 1]), "box:0.2x0.1")
+    for known in (pt.Puck(base="box:20x10"), pt.Puck(38.0)):
+        with pytest.raises(pt.InputError, match=r"lengths are in metres.*box:20cmx10cm"):
+            pt.fit(track, known)
 
 
 def test_the_command(tmp_path: Path):
@@ -188,7 +241,14 @@ def test_the_command(tmp_path: Path):
     assert "not determined" not in result.stdout
     value = float(result.stdout.split("The friction coefficient is ")[1].split()[0])
     assert value == pytest.approx(puck.friction, rel=0.02)
-    again = CliRunner().invoke(main, ["simulate", "--fit", str(saved)])
-    assert again.exit_code and "make a scene of it" in again.stderr
+    again = CliRunner().invoke(main, ["simulate", "--fit", str(saved), "--json"])
+    run = pt.fit(pt.read_tracks(file), pt.Puck(base=puck.base, height=puck.height)).simulate()
+    assert json.loads(again.stdout)["stop_position"] == pytest.approx(run.stop_position, rel=1e-12)
+    prior = CliRunner().invoke(main, [*words[:4], "--prior", "height=0.04"])
+    assert prior.exit_code and "height=VALUE:SIGMA, a value and its" in prior.stderr
+    few = tmp_path / "few.csv"
+    few.write_text("".join(file.read_text().splitlines(keepends=True)[:6]))
+    short = CliRunner().invoke(main, ["fit", str(few), "--radius", "0.1"])
+    assert short.exit_code and "--noise 0.0003,0.005" in short.stderr
     both = CliRunner().invoke(main, [*words, "--pressure", "hertz"])
     assert both.exit_code and "round pucks" in both.stderr

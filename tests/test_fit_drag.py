@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 import pytest
+from rarely import few
 from scipy.integrate import solve_ivp
 from scipy.special import ellipe, ellipk
 
@@ -170,3 +171,19 @@ def test_what_does_not_go_with_air_is_refused_and_nothing_is_played():
 def test_air_is_named_as_the_reason_of_a_misfit():
     track, _ = film(np.random.default_rng(6), friction=0.0096, air=0.047, v=4.0, spin=10.0)
     assert "--free friction,air" in pt.fit(track, PUCK, free="friction").misfit
+
+
+@pytest.mark.parametrize("seed", few(2, range(20)))
+@pytest.mark.parametrize("free", ["drag", "air", "spin_drag"])
+def test_errors_of_films_without_noise_are_those_of_the_motions(free: str, seed: int):
+    """What is computed errs, too: were it told by residuals alone, by up to 25 standard errors."""
+    rng = np.random.default_rng([40, seed])
+    v, spin, drag = rng.uniform(1.0, 3.0), rng.uniform(5.0, 30.0), rng.uniform(0.1, 0.6)
+    f, t = 10.0 ** rng.uniform(-1.7, -0.6), np.arange(int(rng.integers(40, 120))) / 120.0
+    drags = {"drag": (drag, 0.0, 0.0), "air": (0.0, drag, 0.0), "spin_drag": (0.0, 0.0, drag)}
+    way, turn = motion(f, *drags[free], v, spin, t)
+    track = pt.Track(t, way[:, None] * [0.6, 0.8], turn, "clean")
+    result = pt.fit(track, PUCK, free=["friction", free])
+    for name, true in (("friction", f), (free, drag)):
+        assert abs(result[name].value - true) < result[name].error < 1e-2 * true, name
+    assert result.complaints == ()

@@ -41,6 +41,7 @@ class BaseMotions(UnitMotions):
     """
 
     angle: float = 0.0
+    accuracy = _LOCAL
 
     def __init__(self, base: Base, gyration: float) -> None:
         self._gyration = gyration

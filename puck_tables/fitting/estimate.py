@@ -79,7 +79,6 @@ _FEW = 2.5  # residuals for each unknown
 _LEAST_DEGREES = 0.5  # residuals: of less nothing is an outlier
 _ROUNDS = 6  # of a fit, its noise and what is left out, at most
 _SETTLED = 1e-3  # of a standard deviation of the noise
-_COMPUTED = 1e-10  # of a path, as well as motions are known: no residuals tell a smaller noise
 _AWAY = 1.5  # times the noise: a start so far off is fitted robustly first
 
 
@@ -253,8 +252,8 @@ def _noise(
 ) -> tuple[tuple[float, float], float]:  # fmt: skip
     """The noise that the residuals show, each kind less what the unknowns take, and the jitter.
 
-    It is no smaller than what is computed is known: places or angles that are all the same, as of a
-    column of zeros, have no residuals at all.
+    It is no smaller than motions are known, whose errors are no noise: of a film that was computed
+    they would take numbers farther than a smaller noise says.
     """
     result, jitter = list(problem.noise), problem.jitter
     if not all(known) and (jitter > 0.0 or not known.jitter):
@@ -276,11 +275,9 @@ def _noise(
             if not known[kind] and free > 1.0:
                 mine = problem.kinds[kept] == kind
                 result[kind] *= math.sqrt(float(np.sum(rows[kept][mine] ** 2)) / free)
-    radius = problem.spec.scales(problem.numbers_at(x))[2]
-    length = max(float((np.ptp(path, axis=1) * [1, 1, radius]).max()) for path in problem.paths(x))
     place, angle = (
-        one if given else max(one, _COMPUTED * length / unit)
-        for one, given, unit in zip(result, known[:2], (1.0, radius), strict=True)
+        one if given else max(one, least)
+        for one, given, least in zip(result, known[:2], problem.least_noise(x), strict=True)
     )
     return (place, angle), jitter
 

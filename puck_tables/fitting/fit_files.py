@@ -84,15 +84,17 @@ def as_json(value: Any) -> Any:
 
 
 _LARGEST = 1 << 26  # bytes
-_PUCK = ("radius", "height", "friction", "mass", "gravity", "pressure", "gyration")
+_PUCK = ("height", "friction", "mass", "gravity", "gyration")
 
 
 def puck_and_launch(
     path: str | Path, track: str | None = None
-) -> tuple[Puck, tuple[float, float], float, tuple[str, ...]]:
-    """The puck, velocity (m/s) and spin (rad/s) of a track in a file of ``puck fit -o fit.json``.
+) -> tuple[Puck, dict[str, Any], tuple[str, ...]]:
+    """The puck, and how it was launched, of a track in a file of ``puck fit -o fit.json``.
 
-    And sentences on what its tracks did not determine, and on what is hard to believe.
+    That is the velocity (m/s), the spin (rad/s) and, on a base that is not round, the orientation
+    (rad) of :meth:`Puck.simulate`.  And sentences on what its tracks did not determine, and on what
+    is hard to believe.
 
     Parameters
     ----------
@@ -117,19 +119,19 @@ def puck_and_launch(
         raise InputError(told)
     try:
         launches = {str(one["track"]): one for one in data["launches"]}
-        if "base" in data["puck"]:
-            raise InputError(
-                f"{path}: this puck stands on a base, and at an angle: make a scene of it, with "
-                "puck.base and launch.orientation"
-            )
-        puck = Puck(**{name: data["puck"][name] for name in _PUCK})
+        contact = ("base",) if "base" in data["puck"] else ("radius", "pressure")
+        puck = Puck(**{name: data["puck"][name] for name in (*contact, *_PUCK)})
         drags = {
             name: real(name, data["numbers"][name]["value"], "")
             for name in ("drag", *INTEGRATED) if name in data["numbers"]
         }  # fmt: skip
         chosen = launches[_chosen(list(launches), track, path)]
-        velocity = one_velocity(chosen["velocity"])
-        spin = real("spin", chosen["spin"], "rad/s")
+        launch: dict[str, Any] = {
+            "velocity": one_velocity(chosen["velocity"]),
+            "spin": real("spin", chosen["spin"], "rad/s"),
+        }
+        if puck.shape is not None:
+            launch["orientation"] = real("angle", chosen["angle"], "rad")
         unknown = tuple(str(one) for one in (*data["not_determined"], *data["doubts"]))
         astray, speeds = str(data["astray"]), [*data["slip_speeds"]]
     except (KeyError, TypeError, AttributeError):
@@ -147,7 +149,7 @@ def puck_and_launch(
                 f"{path}: this puck was found with {name} of {drag:.3g}, which a free puck has "
                 f"not: make a scene of it, with {_ENTRIES[name]}"
             )
-    return puck, velocity, spin, unknown
+    return puck, launch, unknown
 
 
 def _chosen(names: list[str], track: str | None, path: str | Path) -> str:

@@ -124,7 +124,7 @@ class Fit(Result):
             if base is not None:
                 return Puck(
                     base=base, height=values["height"], friction=values["friction"],
-                    gravity=values["gravity"], gyration=values["gyration"] * base.reach,
+                    gravity=values["gravity"], gyration=values["gyration"],
                     mass=self.given.mass,
                 )  # fmt: skip
             return Puck(
@@ -171,7 +171,7 @@ class Fit(Result):
         ------
         InputError
             If there is no such track, or nobody would believe what was found, or the puck was found
-            with drag: then only a scene has it.
+            with drag: then only a scene has it.  A puck on a base begins at the angle of its track.
         """
         launch = self.launch(track)
         if self.astray:
@@ -188,10 +188,7 @@ class Fit(Result):
                     "free puck has not: put it into a Scene"
                 )
         if self.estimate.problem.spec.base is not None:
-            raise InputError(
-                "a puck on a base starts at an angle: put it into a Scene, with the launch's angle "
-                "as its orientation"
-            )
+            how = {"orientation": launch.angle, **how}
         return self.puck.simulate(launch.velocity, launch.spin, **how)
 
     def report(self, path: str | Path, overwrite: bool = False) -> None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 from puck_tables._core.real import instance
@@ -37,8 +38,10 @@ from puck_tables.fitting.parameters import (
     SMALLEST,
     TALLEST,
     WALL,
+    Parameter,
     bounds_of,
     in_range,
+    parameters_of,
     prior_of,
     refuse_unknown,
 )
@@ -71,7 +74,7 @@ class FitSpec:
     speeds : slip speeds (m/s) at which friction coefficients are found, friction_0 and so on
     between : cubic or linear, f between these speeds
     law : a law over slip speed by its name, '' for none
-    base : of a puck that is not round; its reach is then the radius of ``puck``
+    base : of a puck that is not round; its reach is then the radius of ``puck``, gyration is in m
 
     Raises
     ------
@@ -116,13 +119,16 @@ class FitSpec:
                 f"{puck.radius:g}: say it in m"
             )
         base, puck = puck.shape, _round(puck)
-        known = {name: in_range(name, value) for name, value in fixed.items()}
+        every = parameters_of(None if base is None else base.reach)
+        known = {name: in_range(name, value, every) for name, value in fixed.items()}
         freed: tuple[str, ...] = ()
         if free is None:
             scale = () if {"friction", "decel"} & {*known} else ("friction",)
             if "decel" in priors or "decel" in bounds:
                 scale = ("decel",)
             tilt = () if {"delta", "height"} & {*known} or puck.height else ("delta",)
+            if tilt and ("height" in priors or "height" in bounds):
+                tilt = ("height",)
             wanted = (*scale, *tilt)
             named = dict.fromkeys((*priors, *bounds))
             freed = tuple(name for name in named if name in PUCK and name not in wanted)
@@ -172,9 +178,9 @@ class FitSpec:
                 "inner is the inner radius of an annulus: give the puck the pressure 'annulus:0.8'"
             )
         return cls(
-            puck, wanted, known, {n: prior_of(n, v) for n, v in priors.items()},
-            {n: bounds_of(n, v) for n, v in bounds.items()},
-            {n: in_range(n, v) for n, v in start.items()}, freed, base=base,
+            puck, wanted, known, {n: prior_of(n, v, every) for n, v in priors.items()},
+            {n: bounds_of(n, v, every) for n, v in bounds.items()},
+            {n: in_range(n, v, every) for n, v in start.items()}, freed, base=base,
         )  # fmt: skip
 
     def __post_init__(self) -> None:
@@ -184,6 +190,16 @@ class FitSpec:
                 "the friction is neither free nor known: name friction in free, or give the puck "
                 "its friction"
             )
+
+    @cached_property
+    def parameters(self) -> Mapping[str, Parameter]:
+        """The parameters of such a puck and its launch."""
+        return parameters_of(None if self.base is None else self.base.reach)
+
+    @property
+    def _unit(self) -> float:
+        """The unit of a radius of gyration: the radius, but m on a base."""
+        return 1.0 if self.base is None else self.base.reach
 
     @property
     def uses_decel(self) -> bool:
@@ -200,6 +216,7 @@ class FitSpec:
         puck = self.puck
         names = ("radius", "height", "friction", "gravity", "gyration")
         numbers = {name: float(getattr(puck, name)) for name in names}
+        numbers["gyration"] *= self._unit
         numbers.update(dict.fromkeys(NOTHING, 0.0))
         if _is_annulus(puck):
             numbers["inner"] = float(puck.body.law.name.partition(":")[2])
@@ -377,7 +394,7 @@ class FitSpec:
 
     def _motions(self, pressure: Any, gyration: float, tall: bool) -> UnitMotions:
         if self.base is not None:
-            return base_motions_of(self.base, gyration)
+            return base_motions_of(self.base, gyration / self.base.reach)
         return unit_motions_of(pressure, gyration, tall and not self.integrated)
 
     def steepest(self, name: str) -> float:
@@ -390,7 +407,7 @@ class FitSpec:
 
     def limits(self, name: str) -> tuple[float, float]:
         """The range in which a parameter is looked for."""
-        low, high = (ALL.get(name) or WALL[name])[1:3]
+        low, high = (self.parameters.get(name) or WALL[name])[1:3]
         if name == "inner":
             low, high = 1e-3, 0.999
         elif name == "radius":
@@ -407,7 +424,7 @@ class FitSpec:
         """Within about how much one would think the value to lie without the tracks."""
         if name in ("height", "radius"):
             return self.puck.radius
-        return PUCK[name].plausible
+        return self.parameters[name].plausible
 
 
 def _round(puck: Puck) -> Puck:

@@ -29,6 +29,7 @@ from puck_tables.fitting.inputs import (
     observations_of,
     refuse_for_base,
     refuse_opening,
+    refuse_size,
     refuse_tipping,
 )
 from puck_tables.fitting.misfit import misfit
@@ -85,11 +86,11 @@ def fit(
     puck : Puck
         What is known of it: its radius, and whatever ``free`` does not name.  On a base that is
         not round the angles of the tracks are those of its x axis; f and the height are then found
-        (δ = 2fh/r and the gyration with its reach for r), without drags, laws and impacts, and the
-        spin is taken as less than half a turn a frame.
+        (δ = 2fh/r with its reach for r, the gyration in m), without drags, laws and impacts, and
+        the spin is taken as less than half a turn a frame.
     free : names, optional
         What is found besides the launches: friction or decel (f g), delta or height
-        (δ = 2fh/r), radius, gravity, gyration, inner (radius of an annulus), drag (1/s, of speed
+        (δ = 2fh/r), radius, gravity, gyration (over r), inner (of an annulus), drag (1/s, of speed
         and spin alike: for a flat uniform puck f(u) = f + (drag/g) u of the slip speed u), air
         (1/m, of the speed squared: drag.quadratic of a scene over the mass), spin_drag (1/s),
         slope_x and slope_y (pull over g), belt_x and belt_y (m/s, of the floor).
@@ -171,6 +172,7 @@ def fit(
         spec = spec.with_law(law)
     inputs = Inputs.of(spec, noise, jitter, slip_speeds, between, impacts, lines, hold_out)
     films = observations_of(tracks, since, until, keep_all, checked_rows(rows), puck.radius)
+    refuse_size(spec, films)
     if spec.base is not None:
         refuse_for_base(films, laws)
     observed = _observe(films, inputs)

@@ -27,14 +27,14 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.fitting.speed_motion import SpeedFriction, SpeedLaunch, speed_paths
+from puck_tables.fitting.speed_motion import SPEED_ACCURACY, SpeedFriction, SpeedLaunch, speed_paths
 from puck_tables.fitting.unit_motions import UnitMotions
 from puck_tables.motion.impact_law import along_normal, impulses
 
 _SPEED_STEP = 1e-6  # of a slip at the rim, of a radius, of δ
 # from the launch on, besides those asked for: places to 1e-8 of the path, as
 # test_a_slide_with_drag_is_elementary tells
-_MOMENTS = 129
+_MOMENTS, _DRAGGED = 129, 1e-8
 
 VX, VY, SPIN, DELTA, DECEL, RADIUS, TIME = range(7)  # what states are differentiated to
 PLACE, RATE = slice(0, 3), slice(3, 6)  # of a state: x, y, angle and vx, vy, spin
@@ -53,6 +53,13 @@ class Moving(NamedTuple):
     drag: float
     motions: UnitMotions
     by_speed: SpeedFriction | None = None
+
+    @property
+    def accuracy(self) -> float:
+        """Of a path, to which places are known."""
+        if self.by_speed is not None:
+            return SPEED_ACCURACY
+        return max(self.motions.accuracy, _DRAGGED if self.drag != 0.0 else 0.0)
 
     def speed_launch(self, at: FloatArray) -> SpeedLaunch:
         """What is integrated of arguments (6,); J does nothing, f of the law is in its place."""

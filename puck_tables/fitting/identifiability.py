@@ -62,10 +62,11 @@ def doubts(
             "the unit of the angles, may be wrong"
         )
     gyration = result.get("gyration")
-    if gyration is not None and gyration.low > 1.0:
+    rim = radius if gyration is not None and gyration.unit == "m" else 1.0
+    if gyration is not None and gyration.low > rim:
         said.append(
-            f"A radius of gyration of {gyration.value:.3g} r is that of no body within its rim: "
-            "the radius, or the unit of the angles, may be wrong"
+            f"A radius of gyration of {gyration.value / rim:.3g} r is that of no body within its "
+            "rim: the radius, or the unit of the angles, may be wrong"
         )
     ratio = result.get("mass_ratio")
     if ratio is not None and not 1.0 / _HEAVIER < ratio.value < _HEAVIER:

@@ -15,7 +15,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.fitting.certainty import certainty_at, certainty_of
 from puck_tables.fitting.estimate import FARTHEST, Estimate, estimate, only_outliers
-from puck_tables.fitting.observations import FEWEST, Observations, noise_of, rests_from
+from puck_tables.fitting.observations import FEWEST, GIVE_NOISE, Observations, noise_of, rests_from
 from puck_tables.fitting.parameters import DRAGS, NOTHING
 from puck_tables.fitting.problem import ANGLE, UNSEEN, Known, Problem
 from puck_tables.fitting.residuals import NO_PATTERN, NOISY, drift, excess_of, runs
@@ -110,13 +110,13 @@ def initial_estimate(problem: Problem, known: Known, refit: bool) -> Estimate:
     left = count - len(problem.names) + len(problem.priors)
     if left <= 0:
         raise InputError(
-            f"{count} observations cannot tell {len(problem.names)} unknowns: "
-            "give more frames, or fix something"
+            f"{count} observations cannot tell {len(problem.names)} unknowns: give more frames, or "
+            "hold a number (--fix, fixed=)"
         )
     if left < _JUDGED and not (known.place and (known.angle or not problem.angled)):
         raise InputError(
-            f"{count} observations of {len(problem.names)} unknowns are too few "
-            "to judge their noise by: give the noise, or more frames"
+            f"{count} observations of {len(problem.names)} unknowns are too few to judge their "
+            f"noise by: {GIVE_NOISE}"
         )
     result = _looked_up(problem, known) if not problem.spec.integrated \
         else _integrated(problem, known)  # fmt: skip

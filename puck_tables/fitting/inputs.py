@@ -30,6 +30,7 @@ _NEAREST, _FARTHEST = 1e-30, 1e6  # m or s, of a track
 _TWICE = 0.5  # of the frames: the same film again
 _SLOWER = 0.3  # times the deceleration seen: friction is no less
 _TIPS = 4.0  # δ
+_LARGE, _LARGER = 2.0, 8.0  # m, and times its slide: a puck that hardly anybody films
 
 
 @dataclass(frozen=True)
@@ -127,6 +128,19 @@ def observations_of(
             "or a part (since, until)"
         )
     return tuple(films)
+
+
+def refuse_size(spec: FitSpec, films: Sequence[Observations]) -> None:
+    """Refuse a puck far larger than its slides: its size was said in another unit."""
+    farthest, radius = max(film.size for film in films), spec.known()["radius"]
+    if radius > max(_LARGE, _LARGER * farthest):
+        size = f"a radius of {radius:.4g} m"
+        if spec.base is not None:
+            size = f"base {spec.base.name} goes out to {radius:.4g} m from its centre, which"
+        raise InputError(
+            f"{size} is beyond a track that goes {farthest:.3g} m: lengths are in metres; write "
+            "the unit (--radius 38mm, --base box:20cmx10cm), or say that of the track"
+        )
 
 
 def refuse_wobbling(result: Estimate, certainty: Certainty) -> None:

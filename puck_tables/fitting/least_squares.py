@@ -63,14 +63,14 @@ def _triangle(rows: FloatArray) -> FloatArray:
     size = max(_PART, 2 * rows.shape[1])
     while len(rows) > size:
         even = len(rows) // size * size
-        parts = np.linalg.qr(rows[:even].reshape(-1, size, rows.shape[1]), mode="r")
+        parts = np.asarray(np.linalg.qr(rows[:even].reshape(-1, size, rows.shape[1]), mode="r"))
         rows = np.concatenate([parts.reshape(-1, rows.shape[1]), rows[even:]])
-    return np.linalg.qr(rows, mode="r") if len(rows) > rows.shape[1] else rows
+    return np.asarray(np.linalg.qr(rows, mode="r")) if len(rows) > rows.shape[1] else rows
 
 
 _PART = 128  # rows, at the least
 _FAR = 1e3  # ends that are farther, and those of launches, would only bend steps to a minimum
-_EVALUATIONS, _TOLERANCE = 60, 1e-9
+_EVALUATIONS, _TOLERANCE = 300, 1e-9
 
 
 def minimise(

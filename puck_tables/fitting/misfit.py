@@ -28,6 +28,7 @@ _FAR = 1.5  # times smaller are residuals of a reading that is told
 _NEAR = 0.01  # of the radius: it is not another one
 _BY_CHANCE = 0.5  # rad, as angles are off that nothing explains
 _AS_NOISE = 3.0  # times the noise of a place: a reading that fits
+_ROUNDING = 1e-12  # m or rad: of a film that was computed less tells nothing
 _DEGREE = math.pi / 180.0  # rad
 _ANGLES = (  # times a factor, and more by so much
     (-1.0, 0.0, "if angles, or y, grew the other way: negate one of them in the file"),
@@ -220,7 +221,7 @@ def _size(seen: _Sizes, scale: float) -> float:
     if angles.size and float(np.median(angles)) < _BY_CHANCE:
         angles = angles / scale
     sizes = [size for size in (places, angles) if size.size]
-    usual = [math.log(max(float(np.median(size)), 1e-300)) for size in sizes]
+    usual = [math.log(max(float(np.median(size)), _ROUNDING)) for size in sizes]
     return float(np.average(usual, weights=[size.size for size in sizes]))
 
 

@@ -133,7 +133,7 @@ def numbers_of(
         least, largest = (float(limit[k]) for limit in problem.limits)
         if high - low >= _ALL * (largest - least) or error > _MUCH.get(name, math.inf):
             error = math.inf
-        kind = PUCK[name].unit, FREE, interval.profiled
+        kind = spec.parameters[name].unit, FREE, interval.profiled
         puck[name] = Number(values[name], error, low, high, *kind)
     speed = puck.get("law_speed")
     if speed is not None and not math.isfinite(speed.error):
@@ -152,7 +152,7 @@ def numbers_of(
             continue
         slope = _slope(problem, x, name)
         if not slope.any():
-            puck[name] = Number(value, 0.0, value, value, PUCK[name].unit, KNOWN)
+            puck[name] = Number(value, 0.0, value, value, spec.parameters[name].unit, KNOWN)
             continue
         size = max(abs(value), 1e-12)
         error = certainty.error_of(slope * widened, size)
@@ -161,7 +161,7 @@ def numbers_of(
         seen = (k for k in np.flatnonzero(slope) if not certainty.undetermined[k])
         if any(not puck[spec.free[k]].determined for k in seen):
             error = math.inf
-        number = quadratic(value, error, PUCK[name].unit, FOLLOWS, certainty.reach)
+        number = quadratic(value, error, spec.parameters[name].unit, FOLLOWS, certainty.reach)
         of, ends = np.flatnonzero(slope), None
         if of.size == 1:  # from the ends of that one's
             one = spec.free[of[0]]

@@ -73,6 +73,10 @@ def counting(values: FloatArray) -> npt.NDArray[np.bool_]:
 
 
 FEWEST = 4  # frames of a track
+GIVE_NOISE = (
+    "give the noise of places in m and of angles in rad (--noise 0.0003,0.005, noise=(0.0003, "
+    "0.005)), or more frames"
+)
 _ALIKE = 0.1  # of the usual time between frames
 MEDIAN = 0.6744897501960817  # of |a normal deviate|
 _THIRD = math.sqrt(20.0)  # the spread of a third difference of deviates

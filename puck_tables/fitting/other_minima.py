@@ -42,6 +42,7 @@ from puck_tables.fitting.inputs import refuse_wobbling
 from puck_tables.fitting.least_squares import compact, minimise, multi_start
 from puck_tables.fitting.model_comparison import chi2_under
 from puck_tables.fitting.numbers import Number, numbers_of
+from puck_tables.fitting.observations import GIVE_NOISE
 from puck_tables.fitting.problem import Known
 from puck_tables.fitting.residuals import (
     SideForces,
@@ -362,7 +363,7 @@ def judged_certainty(best: Estimate, known: Known) -> Certainty:
     if degrees < _JUDGED:
         raise InputError(
             f"{best.residuals.size} observations of {best.x.size} unknowns are too few to judge "
-            "the noise of each kind by: give the noise, or more frames"
+            f"the noise of each kind by: {GIVE_NOISE}"
         )
     certainty = certainty_at(best, degrees)
     return replace(certainty, pinned=pinned_of(best, certainty))

@@ -103,18 +103,34 @@ def refuse_unknown(name: str, known: Mapping[str, Parameter], what: str) -> None
         raise InputError(f"{what} names '{name}', which is none of {', '.join(usable)}{meant}")
 
 
-def in_range(name: str, value: Any) -> float:
+def parameters_of(reach: float | None) -> Mapping[str, Parameter]:
+    """All parameters of a puck and its launch, of one on a base that reaches so far (m) its own.
+
+    Examples
+    --------
+    >>> parameters_of(None)["gyration"][:3], parameters_of(0.2)["gyration"][:3]
+    (('1', 0.1, 10.0), ('m', 0.02, 2.0))
+    """
+    if reach is None:
+        return ALL
+    _, low, high, plausible, _ = ALL["gyration"]
+    own = Parameter("m", low * reach, high * reach, plausible * reach, "radius of gyration")
+    return {**ALL, "gyration": own}
+
+
+def in_range(name: str, value: Any, known: Mapping[str, Parameter]) -> float:
     """A value of a parameter."""
-    refuse_unknown(name, ALL, "the fit")
-    number, kind = real(name, value, ALL[name].unit), ALL[name]
+    refuse_unknown(name, known, "the fit")
+    number, kind = real(name, value, known[name].unit), known[name]
     if not kind.low <= number <= kind.high or (name in POSITIVE and number == 0.0):
-        raise InputError(f"{name} must be {_range(name)}{bracketed(kind.unit)}, got {number:g}")
+        raise InputError(
+            f"{name} must be {_range(name, kind)}{bracketed(kind.unit)}, got {number:g}"
+        )
     return number
 
 
-def _range(name: str) -> str:
+def _range(name: str, kind: Parameter) -> str:
     """What values a parameter may have, in words."""
-    kind = ALL[name]
     if name in POSITIVE:
         return f"greater than {kind.low:g}"
     if kind.high == math.inf:
@@ -122,31 +138,34 @@ def _range(name: str) -> str:
     return f"from {kind.low:g} to {kind.high:g}"
 
 
-def prior_of(name: str, pair: Any) -> tuple[float, float]:
+def prior_of(name: str, pair: Any, known: Mapping[str, Parameter]) -> tuple[float, float]:
     """A value and its standard deviation."""
-    value, spread = _pair(name, pair, "prior", "value and a standard deviation")
+    value, spread = _pair(name, pair, "prior", "value and a standard deviation", known)
     if not spread > 0.0:
         raise InputError(
             f"the prior of {name} needs a standard deviation > 0, got {spread:g}: to hold {name} "
             "at a value, fix it"
         )
-    return in_range(name, value), spread
+    return in_range(name, value, known), spread
 
 
-def bounds_of(name: str, pair: Any) -> tuple[float, float]:
+def bounds_of(name: str, pair: Any, known: Mapping[str, Parameter]) -> tuple[float, float]:
     """The least and the largest value."""
-    low, high = _pair(name, pair, "bounds", "least and a largest value")
+    low, high = _pair(name, pair, "bounds", "least and a largest value", known)
+    kind = known[name]
     if not low < high:
         raise InputError(f"the bounds of {name} must ascend, got {low:g} and {high:g}")
-    if high <= ALL[name].low or low >= ALL[name].high:
+    if high <= kind.low or low >= kind.high:
         raise InputError(
             f"the bounds of {name}, {low:g} to {high:g}, hold none of its values: {name} is "
-            f"{_range(name)}{bracketed(ALL[name].unit)}"
+            f"{_range(name, kind)}{bracketed(kind.unit)}"
         )
     return low, high
 
 
-def _pair(name: str, pair: Any, what: str, words: str) -> tuple[float, float]:
+def _pair(
+    name: str, pair: Any, what: str, words: str, known: Mapping[str, Parameter]
+) -> tuple[float, float]:
     first, second = pair_of(f"the {what} of {name} must be a {words}", pair)
-    unit = ALL[name].unit
+    unit = known[name].unit
     return real(f"the {what} of {name}", first, unit), real(f"the {what} of {name}", second, unit)

@@ -215,6 +215,13 @@ class Problem(Slides):
             rows *= counts.reshape(3, -1, *[1] * (deviations.ndim - 2))
         return np.concatenate([rows[X], rows[Y], rows[TURN, angled]])
 
+    def least_noise(self, x: FloatArray) -> tuple[float, float]:
+        """Of places (m) and of angles (rad): as well as motions are known."""
+        moving = self.moving(self.numbers_at(x))
+        radius, paths = moving.radius, self.paths(x)
+        length = max(float((np.ptp(path, axis=1) * [1, 1, radius]).max()) for path in paths)
+        return moving.accuracy * length, moving.accuracy * length / radius
+
     def usual(self, rows: FloatArray) -> float:
         """The median size of residuals of what is seen."""
         return float(np.median(np.abs(rows[self.kinds != UNSEEN])))

@@ -113,7 +113,9 @@ def misfits(
 
 def computed(result: Estimate) -> bool:
     """Whether residuals are so small that they are the errors of what is computed."""
-    return not result.problem.noise[0] > _COMPUTED * result.problem.size
+    problem = result.problem
+    least = max(_COMPUTED * problem.size, 1.01 * problem.least_noise(result.x)[0])
+    return not problem.noise[0] > least
 
 
 def hidden(result: Estimate) -> bool:

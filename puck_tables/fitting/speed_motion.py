@@ -40,9 +40,9 @@ from puck_tables.kernels.closed_form_kernel import full_integrals
 from puck_tables.kernels.compile import allocating, inlined, kernel, patience
 from puck_tables.kernels.speed_quadrature_kernel import COARSE, integrals_at
 
-# of s, of which friction alone takes about 50; 3e-6 of the way:
-# test_motions_are_those_of_an_independent_integrator
+# of s, of which friction alone takes about 50
 _STEP, _LARGEST, _STEPS = 0.08, 0.32, 440
+SPEED_ACCURACY = 3e-6  # of the way: test_motions_are_those_of_an_independent_integrator
 _REST = 1e-4  # of the slip at the launch: what is left of the path is the square of it
 _ROOM = 48  # edges of panels, besides those at corners of the law
 _NEARBY = 1e-5  # of ratios and of slip speeds: so close integrals are differenced

@@ -45,10 +45,12 @@ _BY_DELTA = 4  # of the derivatives of unit states
 class UnitMotions:
     """Motions of pucks of one kind; ``highest``: the largest δ for which they are known.
 
-    ``angle``: at which a body stands at the launch, rad; None of round ones, which look alike.
+    ``accuracy``: of the path, to which places are; ``angle``: at which a body stands at the launch,
+    rad; None of round ones, which look alike.
     """
 
     highest: float
+    accuracy: float = 1e-7  # that of friction ratios, below
     angle: float | None = None
 
     def facing(self, angle: float) -> Self:
@@ -99,7 +101,7 @@ class PlainMotions(UnitMotions):
     [0.64818746, -0.08594902]
     """
 
-    highest = 1.0
+    highest, accuracy = 1.0, 1e-9
 
     def states(self, launches: FloatArray, times: FloatArray) -> FloatArray:
         """By the stop table."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -146,8 +147,9 @@ def launch_rows(puck: PuckSpec, velocity: FloatArray, spin: FloatArray) -> Float
 class BaseSlide:
     """One slide of a puck on a base, SI units.
 
-    ``out`` (OUT_ROWS,): see above; ``error``: of the stop, in units of Q₀/J and Q₀²/J; ``local``:
-    the error of a step.
+    ``launch`` (6, 1) and ``out`` (OUT_ROWS,): see above, as the body has them at the launch;
+    ``error``: of the stop, in units of Q₀/J and Q₀²/J; ``local``: the error of a step;
+    ``orientation`` rad: of the body at the launch.
     """
 
     puck: PuckSpec
@@ -155,6 +157,7 @@ class BaseSlide:
     local: float
     out: FloatArray = field(repr=False)
     error: float
+    orientation: float = 0.0
 
     @property
     def slip(self) -> float:
@@ -170,7 +173,8 @@ class BaseSlide:
     @property
     def stop_position(self) -> tuple[float, float]:
         """Metres from the launch."""
-        return float(self.out[STOP_X]), float(self.out[STOP_Y])
+        x, y = _turned(self.out[STOP_X], self.out[STOP_Y], self.orientation)
+        return float(x), float(y)
 
     @property
     def path_length(self) -> float:
@@ -224,15 +228,28 @@ class BaseSlide:
         _followed(self.puck, self.launch, self.local, moments, rows)
         states = np.empty_like(rows)
         states[order] = rows
-        return states.T
+        x, y, heading, angle, speed, spin = states.T
+        heading = np.where(speed > 0.0, heading + self.orientation, heading)
+        x, y = _turned(x, y, self.orientation)
+        return np.stack([x, y, heading, angle + self.orientation, speed, spin])
 
 
 _TURNS = 1e-3  # rad: a direction that turns by less is that of the end
 _ALONE = 0.01  # rad: nearer to pure sliding or spinning at the stop, the other has died out first
 
 
-def slide_of(puck: PuckSpec, velocity: tuple[float, float], spin: float, tol: float) -> BaseSlide:
+def _turned(x: Any, y: Any, angle: float) -> tuple[Any, Any]:
+    cosine, sine = math.cos(angle), math.sin(angle)
+    return x * cosine - y * sine, x * sine + y * cosine
+
+
+def slide_of(
+    puck: PuckSpec, velocity: tuple[float, float], spin: float, tol: float,
+    orientation: float = 0.0,
+) -> BaseSlide:  # fmt: skip
     """The slide after a launch, its error measured against a finer one.
+
+    ``orientation`` rad: of the body at the launch.
 
     Raises
     ------
@@ -249,7 +266,7 @@ def slide_of(puck: PuckSpec, velocity: tuple[float, float], spin: float, tol: fl
     >>> slide_of(puck, (1.0, 0.0), 10.0, 1e-9).out[STOP_TIME].round(9).item()
     0.448246266
     """
-    launch = launch_rows(puck, np.array([velocity]), np.array([spin]))
+    launch = launch_rows(puck, np.array([_turned(*velocity, -orientation)]), np.array([spin]))
     none, nothing = np.empty(0), np.empty((0, STATE_SIZE))
     slip = math.hypot(*velocity, puck.inertia_radius * spin)
     time = slip / puck.decel or 1.0
@@ -263,7 +280,7 @@ def slide_of(puck: PuckSpec, velocity: tuple[float, float], spin: float, tol: fl
         finer = _followed(puck, launch, max(_FINER * local, 1e-15), none, nothing)
         off = float(np.abs((out - finer)[: scale.size] / scale).max())
         error = ErrorEstimate(off, 0.0, noise * max(1.0, float(out[STOP_TIME]) / time))
-        return BaseSlide(puck, launch, local, out, error.total), error
+        return BaseSlide(puck, launch, local, out, error.total, orientation), error
 
     def finer(local: float, error: ErrorEstimate) -> float | None:
         return 0.1 * local if local > 1e-14 else None
