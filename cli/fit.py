@@ -112,8 +112,9 @@ def _held_out(text: str, option: str) -> float | list[str]:
     "wanted", dict,
     click.option("--free", metavar="NAMES", callback=read_as(names),
                  help="What is found, with commas: friction, delta, height, decel, gyration, inner "
-                 "(of an annulus), drag, air, spin_drag, slope_x, slope_y, belt_x, belt_y, radius, "
-                 "gravity; of impacts tangential, mass_ratio.  "
+                 "(of an annulus), drag, air, spin_drag, slope_x, slope_y, belt_x, belt_y, mark_x, "
+                 "mark_y (of what is tracked, off the centre), radius, gravity; of impacts "
+                 "tangential, mass_ratio.  "
                  "[default: friction and delta, friction alone if --height is given]"),
     click.option("--fix", "fixed", multiple=True, metavar="NAME=VALUE", callback=read_as(_held),
                  help="Hold a number; also launch_spin and the like."),

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy.typing as npt
 
-from puck_tables.errors import InputError
 from puck_tables.verbs_of_many import VerbsOfMany
 
 if TYPE_CHECKING:
@@ -187,13 +186,9 @@ class Puck(VerbsOfMany):
             return simulate_on_base(
                 self, velocity, spin, frames=frames, times=times, tol=tol, orientation=orientation
             )  # fmt: skip
-        if orientation != 0.0:
-            raise InputError(
-                "orientation is of a puck on a base: a round one slides alike, however it is turned"
-            )
         return simulate(
             self, velocity, spin, frames=frames, times=times, tol=tol, method=method, exact=exact,
-            table=cast(Any, table),
+            table=cast(Any, table), orientation=orientation,
         )  # fmt: skip
 
     def stop(

@@ -199,9 +199,13 @@ class Trajectory(TimedResult):
 def simulate(
     puck: PuckSpec, velocity: npt.ArrayLike, spin: float, *, frames: int | None,
     times: npt.ArrayLike | None, tol: float, method: str | None, exact: bool,
-    table: ResultantTable | None,
+    table: ResultantTable | None, orientation: float,
 ) -> Trajectory:  # fmt: skip
     """The motion of a puck until it stops, as :meth:`puck_tables.Puck.simulate` has it."""
+    if orientation != 0.0:
+        raise InputError(
+            "orientation is of a puck on a base: a round one slides alike, however it is turned"
+        )
     launch, w = one_velocity(velocity), real("spin", spin, "rad/s")
     wanted = real("tol", tol, "dimensionless")
     refuse_other_kind(table, ResultantTable)

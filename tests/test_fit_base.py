@@ -222,6 +222,40 @@ def test_a_prior_of_the_height_finds_the_height():
     assert abs(told.value - puck.height) < 4e-4
 
 
+@pytest.mark.parametrize("round_", [False, True])
+def test_a_mark_off_the_centre_is_named_and_found(round_: bool):
+    """Of a block as of a disc; its slopes are those of motions nearby."""
+    rng, mark = np.random.default_rng([38, 3]), np.array([0.03, -0.02])
+    track, puck, start = film(rng, "box:0.2x0.1", (0.0, 0.0))
+    known = pt.Puck(base=puck.base)
+    if round_:
+        known, start = pt.Puck(0.1), np.array([0.0, 0.0, 1.2, 0.3, 8.0, 0.0])
+        puck, t = replace(known, friction=0.2, height=0.03), np.arange(80) / 120.0
+        true = puck.states(start[2:4], start[4], t)
+        track = pt.Track(t, np.stack([true.x, true.y], axis=1), true.orientation, "disc")
+    place = track.place + np.array([turn(a) @ mark for a in track.angle])
+    place += NOISE[0] * rng.normal(size=place.shape)
+    angle = track.angle + NOISE[1] * rng.normal(size=place.shape[0])
+    off_centre = replace(track, place=place, angle=angle)
+    assert "--free friction,delta,mark_x,mark_y" in pt.fit(off_centre, known).misfit
+    found = pt.fit(off_centre, known, free=("friction", "delta", "mark_x", "mark_y"))
+    assert found.complaints == ()
+    assert np.abs(off(found, puck, start)).max() < 4.0
+    for name, true in zip(("mark_x", "mark_y"), mark, strict=True):
+        assert abs(found[name].value - true) < 4.0 * found[name].error < 0.01
+    problem, x = found.estimate.problem, found.estimate.x
+    slopes = problem.jacobian(x)
+    for k in range(x.size):
+        step = 1e-4 * max(abs(x[k]), 0.1)
+        moved = [problem.residuals(x + sign * step * np.eye(x.size)[k]) for sign in (1.0, -1.0)]
+        by = (moved[0] - moved[1]) / (2.0 * step)
+        assert np.abs(slopes[:, k] - by).max() < 2e-3 * np.abs(by).max(), problem.names[k]
+    held = pt.fit(off_centre, known, fixed={"mark_x": mark[0], "mark_y": mark[1]})
+    assert held["friction"].error < found["friction"].error
+    with pytest.raises(pt.InputError, match="mark_x, mark_y" if round_ else "has no angles"):
+        pt.fit(replace(off_centre, angle=None), known, fixed={"mark_x": 0.03, "mark_y": 0.0})
+
+
 def test_a_base_far_larger_than_its_slide_is_refused():
     track, _, _ = film(np.random.default_rng([38, 1]), "box:0.2x0.1")
     for known in (pt.Puck(base="box:20x10"), pt.Puck(38.0)):

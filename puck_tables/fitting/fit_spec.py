@@ -26,6 +26,7 @@ from puck_tables.fitting.parameters import (
     INTEGRATED,
     LARGEST,
     LAW_NUMBERS,
+    MARK,
     MOST,
     NODES,
     NOTHING,
@@ -52,6 +53,7 @@ from puck_tables.puck import Puck
 _KIND = (*OWN_CURVE, "drag", *INTEGRATED)  # change the curve itself
 _CLASHES = (("friction", "decel", ", decel is f g"), ("delta", "height", ""))
 TINY = 1e-30  # step of derivatives along the imaginary axis
+_FARTHEST = 10.0  # radii, of what is tracked from the centre: a stick on the body may be longer
 _LEAST = 1e-9  # in its unit, of what must be more than 0
 
 
@@ -289,6 +291,11 @@ class FitSpec:
         numbers = {**defaults, **self.fixed, **result}
         return Rims(*(numbers[name] for name in defaults), *([] if pair else [math.inf]))
 
+    def mark(self, result: Mapping[str, float]) -> tuple[float, float]:
+        """Where what is tracked lies off the centre of mass, along the axes of the body, m."""
+        values = {**dict.fromkeys(MARK, 0.0), **self.fixed, **result}
+        return values["mark_x"], values["mark_y"]
+
     def readout(self, result: Mapping[str, float]) -> float:
         """The time in which a picture is read, s."""
         return {**self.fixed, **result}.get("readout", 0.0)
@@ -412,6 +419,9 @@ class FitSpec:
             low, high = 1e-3, 0.999
         elif name == "radius":
             low, high = SMALLEST, LARGEST
+        elif name in MARK:
+            high = _FARTHEST * self.known()["radius"]
+            low = -high
         elif name == "height":
             high = TALLEST * self.known()["radius"]
         elif name in POSITIVE or name in NODES:
@@ -422,7 +432,7 @@ class FitSpec:
 
     def plausible(self, name: str) -> float:
         """Within about how much one would think the value to lie without the tracks."""
-        if name in ("height", "radius"):
+        if name in ("height", "radius", *MARK):
             return self.puck.radius
         return self.parameters[name].plausible
 

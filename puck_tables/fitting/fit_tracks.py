@@ -31,6 +31,7 @@ from puck_tables.fitting.inputs import (
     refuse_opening,
     refuse_size,
     refuse_tipping,
+    refuse_turns_unseen,
 )
 from puck_tables.fitting.misfit import misfit
 from puck_tables.fitting.model_comparison import (
@@ -93,7 +94,8 @@ def fit(
         (δ = 2fh/r), radius, gravity, gyration (over r), inner (of an annulus), drag (1/s, of speed
         and spin alike: for a flat uniform puck f(u) = f + (drag/g) u of the slip speed u), air
         (1/m, of the speed squared: drag.quadratic of a scene over the mass), spin_drag (1/s),
-        slope_x and slope_y (pull over g), belt_x and belt_y (m/s, of the floor).
+        slope_x and slope_y (pull over g), belt_x and belt_y (m/s, of the floor), mark_x and mark_y
+        (m: where what is tracked lies off the centre of mass, in the axes of the body).
         Without it friction, and delta where the puck has no height.
     fixed : values by name, held; also launch_spin and the like
     prior : (value, standard deviation) by name
@@ -173,6 +175,7 @@ def fit(
     inputs = Inputs.of(spec, noise, jitter, slip_speeds, between, impacts, lines, hold_out)
     films = observations_of(tracks, since, until, keep_all, checked_rows(rows), puck.radius)
     refuse_size(spec, films)
+    refuse_turns_unseen(spec, films)
     if spec.base is not None:
         refuse_for_base(films, laws)
     observed = _observe(films, inputs)

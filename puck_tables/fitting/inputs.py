@@ -18,7 +18,7 @@ from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.impact_matching import Line
 from puck_tables.fitting.observations import Observations, noise_of, observations_in, rests_from
-from puck_tables.fitting.parameters import MOST_NODES
+from puck_tables.fitting.parameters import MARK, MOST_NODES
 from puck_tables.fitting.problem import Known
 from puck_tables.fitting.starts import slowing_of
 from puck_tables.fitting.touches import turns
@@ -235,6 +235,16 @@ def checked_speeds(raw: Any, between: Any) -> tuple[float, ...]:
             f"{', '.join(f'{speed:g}' for speed in speeds)}"
         )
     return speeds
+
+
+def refuse_turns_unseen(spec: FitSpec, films: Sequence[Observations]) -> None:
+    """Refuse a place on the body that is asked of a film without its angles."""
+    for film in films:
+        if film.angle is None and {*MARK} & {*spec.free, *spec.fixed}:
+            raise InputError(
+                f"{film.name} has no angles, which a mark off the centre (mark_x, mark_y) needs: "
+                "give them (two marks will do)"
+            )
 
 
 def refuse_for_base(films: Sequence[Observations], laws: Any) -> None:

@@ -56,7 +56,7 @@ def compact(
 
 
 def _triangle(rows: FloatArray) -> FloatArray:
-    """As many rows as columns, or fewer, of the same products: R of QR, part by part.
+    """Rows of the same products, no more than columns: R of QR, part by part.
 
     As one, tall rows make BLAS take threads, which wait for each other longer than they work.
     """
@@ -70,6 +70,7 @@ def _triangle(rows: FloatArray) -> FloatArray:
 
 _PART = 128  # rows, at the least
 _FAR = 1e3  # ends that are farther, and those of launches, would only bend steps to a minimum
+# at most (a curved valley takes a hundred); of the cost, of the unknowns: where it has arrived
 _EVALUATIONS, _TOLERANCE = 300, 1e-9
 
 

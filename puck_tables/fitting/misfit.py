@@ -19,7 +19,7 @@ from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.initial_estimate import initial_estimate
 from puck_tables.fitting.model_comparison import FLOORS, tried
-from puck_tables.fitting.parameters import INTEGRATED, NODES, NOTHING
+from puck_tables.fitting.parameters import INTEGRATED, MARK, NODES, NOTHING
 from puck_tables.fitting.problem import TURN, Known, Problem
 from puck_tables.fitting.residuals import NO_PATTERN, SideForces
 from puck_tables.fitting.slowing import nearest_start, starts_from_slowing
@@ -125,6 +125,10 @@ def _otherwise(result: Estimate, problem: Problem, known: Known) -> list[_Readin
         words = "with a radius of {:.3g} m: is " + f"{spec.puck.radius:g} m right?"
         other = replace(problem, spec=replace(spec, free=(*spec.free, "radius")))
         others.append((words, other, 1.0))
+    if problem.angled and not {*MARK} & {*spec.free, *spec.fixed}:
+        free = (*spec.free, *MARK)
+        words = f"if what is tracked lies off the centre: find where (--free {','.join(free)})"
+        others.append((words, replace(problem, spec=replace(spec, free=free)), 1.0))
     for words, other, scale in others:  # and the factor of its angles
         try:
             one = initial_estimate(other, known, refit=False)

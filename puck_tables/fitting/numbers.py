@@ -19,7 +19,7 @@ from puck_tables.fitting.certainty import (
 )
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.fit_spec import TINY
-from puck_tables.fitting.parameters import ALL, INTEGRATED, LAUNCH, PUCK
+from puck_tables.fitting.parameters import ALL, LAUNCH, NOTHING, PUCK
 from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.touches import slide_name
 
@@ -148,7 +148,7 @@ def numbers_of(
             widened[k] = max(puck[name].error / errors[k], 1.0)
             profiled = True
     for name, value in spec.all_at(values).items():
-        if name in puck or (name in ("drag", *INTEGRATED) and value == 0.0):
+        if name in puck or (name in NOTHING and value == 0.0):
             continue
         slope = _slope(problem, x, name)
         if not slope.any():

@@ -42,6 +42,8 @@ PUCK = {
     "slope_y": Parameter("1", -1.0, 1.0, 0.1, "pull of a slope along y, over g"),
     "belt_x": Parameter("m/s", -100.0, 100.0, 1.0, "velocity of the floor along x"),
     "belt_y": Parameter("m/s", -100.0, 100.0, 1.0, "velocity of the floor along y"),
+    "mark_x": Parameter("m", -math.inf, math.inf, 0.0, "mark off the centre, along x of the body"),
+    "mark_y": Parameter("m", -math.inf, math.inf, 0.0, "mark off the centre, along y of the body"),
     "readout": Parameter("s", -1.0, 1.0, 0.02, "time in which the lines of a picture are read"),
     "restitution": Parameter("1", 0.0, 1.0, 1.0, "restitution e of a wall"),
     "rim_friction": Parameter("1", 0.0, math.inf, 1.0, "friction of the rim on a wall"),
@@ -87,11 +89,12 @@ TALLEST, LARGEST, SMALLEST = 100.0, 1e6, 1e-6  # times the radius; m
 # 0 is none of their values
 POSITIVE = ("radius", "gravity", "friction", "decel", "mass_ratio", "friction_rest", "law_speed")
 OWN_CURVE = ("gyration", "inner")  # at each value of these unit motions are another curve
+MARK = ("mark_x", "mark_y")
 DRAGS, LAW_NUMBERS = ("air", "spin_drag"), ("friction_rest", "law_speed")
 # of which no look-up has the motions
 INTEGRATED = (*DRAGS, "slope_x", "slope_y", "belt_x", "belt_y", *LAW_NUMBERS)
 # values that do nothing, or next to it: of no drag at all slopes to it are not computed
-NOTHING = {"drag": 0.01, **dict.fromkeys(INTEGRATED[: -len(LAW_NUMBERS)], 0.0)}
+NOTHING = {"drag": 0.01, **dict.fromkeys((*INTEGRATED[: -len(LAW_NUMBERS)], *MARK), 0.0)}
 
 
 def refuse_unknown(name: str, known: Mapping[str, Parameter], what: str) -> None:

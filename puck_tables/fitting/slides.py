@@ -7,7 +7,7 @@ numbers of the rims.  The law of impact is differenced, and the chain is their p
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -34,7 +34,7 @@ from puck_tables.fitting.forward_model import (
     states_and_slopes,
     states_of,
 )
-from puck_tables.fitting.parameters import LAUNCH, OWN_CURVE
+from puck_tables.fitting.parameters import LAUNCH, MARK, OWN_CURVE
 from puck_tables.fitting.unknowns import NumbersOf, Unknowns
 
 _STEP = 1e-6  # of a number: of differences, forward and central
@@ -119,7 +119,8 @@ class Slides(Unknowns):
 
     def paths(self, x: FloatArray) -> list[FloatArray]:
         """Places and angles (3, n) of the model at the frames of each track."""
-        return [states[PLACE] for states in self.states(x)]
+        mark = self.spec.mark(self.numbers_at(x))
+        return [_marked(states[PLACE], mark) for states in self.states(x)]
 
     def paths_and_slopes(
         self, x: FloatArray
@@ -137,7 +138,14 @@ class Slides(Unknowns):
                 row = None if film.row is None else film.row[frames]
                 of = at.states_and_slopes(slide, change[:, columns], times, PLACE, row)
                 path[:, frames], slopes[:, frames] = of[0][PLACE], of[1]
-            yield path, slopes, columns
+            mark = self.spec.mark(result)
+            arm = _marked(path, mark) - path  # which turns with the body
+            slopes[0] -= arm[1][:, None] * slopes[2]
+            slopes[1] += arm[0][:, None] * slopes[2]
+            for k, name in enumerate(self.spec.free):
+                if name in MARK:
+                    slopes[..., k] += _marked(path, np.eye(2)[MARK.index(name)]) - path
+            yield path + arm, slopes, columns
 
     def slopes_of_slides(self, x: FloatArray) -> list[list[FloatArray]]:
         """The derivatives of each slide of each track (7, m): since when, then its launch."""
@@ -222,6 +230,14 @@ class _Along:
         if row is not None and (-1, "readout") in self._problem.spots:
             out[:, :, self._problem.spots[-1, "readout"]] += slopes[:, :, TIME] * row
         return states, out, slopes[:, :, TIME]
+
+
+def _marked(path: FloatArray, mark: Sequence[float]) -> FloatArray:
+    """Places and angles (3, n) of what is tracked on a body with such ones."""
+    if not any(mark):
+        return path
+    (x, y), cosine, sine = mark, np.cos(path[2]), np.sin(path[2])
+    return np.stack([path[0] + cosine * x - sine * y, path[1] + sine * x + cosine * y, path[2]])
 
 
 def _turned(launch: FloatArray, states: FloatArray, slopes: FloatArray) -> FloatArray:
