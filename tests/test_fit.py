@@ -258,7 +258,7 @@ def test_a_fit_is_a_result(true, tmp_path):
     found.save(tmp_path / "fit.csv")
     assert found == pt.fit(film(true, 12, wrong=0.05), KNOWN)
     assert len(found.plot(tmp_path / "fit.png").axes) == 5
-    assert "trust region" in found.explain()
+    assert "Levenberg and Marquardt" in found.explain()
     run = found.simulate(0, frames=3)
     assert run.stop_time == pytest.approx(1.92, abs=0.02)
     assert math.isclose(run.puck.friction, found["friction"].value)

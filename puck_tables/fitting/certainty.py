@@ -16,7 +16,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.estimate import Estimate
-from puck_tables.fitting.least_squares import FROM_BESIDE, multi_start
+from puck_tables.fitting.least_squares import FROM_BESIDE, multi_start, triangle
 from puck_tables.fitting.unknowns import NumbersOf
 
 Z95 = 1.959963984540054  # standard deviations to the ends of a 95 % interval of a normal
@@ -165,8 +165,8 @@ def certainty_of(
     2.228
     """
     square = np.zeros((plausible.size, plausible.size))
-    triangle = np.linalg.qr(jacobian * plausible, mode="r")
-    square[: len(triangle)] = triangle
+    few = triangle(jacobian * plausible)
+    square[: len(few)] = few
     _, full, rows = np.linalg.svd(square)
     seen = full > BLIND
     blind = rows[~seen]

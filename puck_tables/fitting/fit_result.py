@@ -300,7 +300,7 @@ class Fit(Result):
         )
         problem = self.estimate.problem
         lines = [
-            f"Least squares by scipy's trust region reflective method: {self.estimate.x.size} "
+            f"Least squares by steps of Levenberg and Marquardt: {self.estimate.x.size} "
             f"unknowns from {self.estimate.residuals.size} residuals.",
             f"Noise of places {self.noise[0]:.3g} m, {place}.",
             *([f"Noise of angles {self.noise[1]:.3g} rad, {angle}."] if problem.angled else []),

@@ -149,8 +149,8 @@ def fit(
 
     References
     ----------
-    Salnikova, Treschev, Gallyamov 2012, sections 2 and 6: the motion; scipy's ``least_squares``:
-    the optimiser.
+    Salnikova, Treschev, Gallyamov 2012, sections 2 and 6: the motion; Levenberg 1944, Marquardt
+    1963: the steps.
 
     Examples
     --------

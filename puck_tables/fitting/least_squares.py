@@ -1,21 +1,19 @@
-"""Least squares: scipy's, and steps from many starts; residuals in as few rows as may be.
+"""Least squares from one start, or from many abreast; residuals in as few rows as may be.
 
 Residuals of one kind in one track hang on few unknowns: those of its own launch, and those shared.
 Turned in their space (QR) they become as many rows as these and one more; sums of squares, products
 of residuals and slopes, and singular values stay what they are, to rounding.
 
-The optimiser is scipy's trust region reflective method: it takes bounds (δ ≥ 0), and stands still
-where the Jacobian has no full rank, which is not rare here.  Robustly, and from many starts
-abreast, of which fewer and fewer go on, steps are of Levenberg and Marquardt, our own: scipy's
-cannot stop and compare, and of so few unknowns its step costs twice what the motion of a track
-costs.
+Steps are those of Levenberg and Marquardt within bounds (δ ≥ 0); where the Jacobian has no full
+rank, which is not rare here, they stand still.  Many starts go abreast, of which fewer and fewer go
+on.  scipy's ``least_squares`` cannot stop and compare, and of so few unknowns its step costs twice
+what the motion of a track costs.
 """
 
 from __future__ import annotations
 
 import math
-from functools import partial
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -44,7 +42,7 @@ def compact(
         unknowns = enumerate(problem.names)
         moved = [k for k, (of, _) in unknowns if of in (-1, n) or problem.impact_specs]
         for part, kind in ((slice(x.start, y.stop), PLACE), (turn, ANGLE)):
-            turned = _triangle(np.column_stack([slopes[part][:, moved], rows[part]]))
+            turned = triangle(np.column_stack([slopes[part][:, moved], rows[part]]))
             wide = np.zeros((len(turned), slopes.shape[1]))
             wide[:, moved] = turned[:, :-1]
             few.append(turned[:, -1])
@@ -55,10 +53,11 @@ def compact(
     return Compact(*(np.concatenate(one) for one in every))
 
 
-def _triangle(rows: FloatArray) -> FloatArray:
+def triangle(rows: FloatArray) -> FloatArray:
     """Rows of the same products, no more than columns: R of QR, part by part.
 
-    As one, tall rows make BLAS take threads, which wait for each other longer than they work.
+    As one, tall rows (n, m) make BLAS take threads, which wait for each other longer than they
+    work.
     """
     size = max(_PART, 2 * rows.shape[1])
     while len(rows) > size:
@@ -69,69 +68,6 @@ def _triangle(rows: FloatArray) -> FloatArray:
 
 
 _PART = 128  # rows, at the least
-_FAR = 1e3  # ends that are farther, and those of launches, would only bend steps to a minimum
-# at most (a curved valley takes a hundred); of the cost, of the unknowns: where it has arrived
-_EVALUATIONS, _TOLERANCE = 300, 1e-9
-
-
-def minimise(
-    problem: Problem, x: FloatArray, kept: npt.NDArray[np.bool_] | None = None
-) -> tuple[FloatArray, float]:
-    """The unknowns at the minimum from a start, and the cost, half the sum of squares, there.
-
-    ``kept``: residuals that count, all where it is left out.
-    """
-    from scipy.optimize import least_squares
-
-    limits = problem.limits
-    # ends that count from the first: of the puck, and bounds that are given
-    counts = np.array([of == -1 or name in problem.spec.bounds for of, name in problem.names], bool)
-    low, high = (
-        np.where(counts & (np.abs(ends) < _FAR), ends, far)
-        for ends, far in zip(limits, (-np.inf, np.inf), strict=True)
-    )
-    begun = _inside(x, low, high)
-
-    def rows_and_slopes(values: FloatArray) -> tuple[FloatArray, FloatArray]:
-        rows, slopes = problem.residuals_and_jacobian(values)
-        if not (np.isfinite(slopes).all() and np.isfinite(rows).all()):
-            told = ", ".join(f"{n} {value:.3g}" for n, value in problem.numbers_at(values).items())
-            raise InputError(
-                "the fit is led astray, to a motion that cannot be computed"
-                f"{f' ({told})' if told else ''}: give bounds or a prior of what it finds, or find "
-                "less"
-            )
-        return compact(problem, rows, slopes, kept)[:2]
-
-    latest: dict[bytes, tuple[FloatArray, FloatArray]] = {}
-
-    def at(values: FloatArray, which: int) -> FloatArray:  # both are of the same motions
-        if (key := values.tobytes()) not in latest:
-            latest.clear()
-            latest[key] = rows_and_slopes(values)
-        return latest[key][which].copy()  # scipy scales them where they are
-
-    residuals, jacobian = partial(at, which=0), partial(at, which=1)
-    while True:
-        result: Any = least_squares(
-            residuals, begun, jacobian, bounds=(low, high), x_scale="jac", max_nfev=_EVALUATIONS,
-            ftol=_TOLERANCE, xtol=_TOLERANCE, gtol=1e-12,
-        )  # fmt: skip
-        beyond = (result.x < limits[0]) | (result.x > limits[1])
-        if not beyond.any():
-            return np.clip(result.x, *limits), float(result.cost)
-        # it ran away: the rest is sought with these on their ends
-        low, high = (np.where(beyond, ends, near)
-                     for ends, near in zip(limits, (low, high), strict=True))  # fmt: skip
-        begun = _inside(np.clip(result.x, *limits), low, high)
-
-
-def _inside(x: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
-    """Strictly within bounds, as the method wants its start."""
-    room = 1e-9 * np.where(np.isfinite(high - low), high - low, np.maximum(1.0, np.abs(x)))
-    return np.asarray(np.minimum(np.maximum(x, low + room), high - room))
-
-
 ROBUST = 3.0  # residuals that are larger count less
 # steps, and how many starts then go on
 FROM_AFAR = ((1, 10), (4, 5), (12, 4))
@@ -140,6 +76,8 @@ FROM_SLOWING = ((3, 3), (8, 2), (30, 1))
 _DAMPED, _EASED, _HARDER = 1e-3, 0.1, 10.0
 _LEAST = 1e-9  # damping: what is not seen stays where it is
 _LEVEL, _HARDEST = 1e-4, 1e6  # what costs fall by, or the damping, where a start has arrived
+_EXACT, _STEPS = 1e-12, 300  # the same of a minimum; a curved valley takes a hundred
+_NOTHING = 1e-12  # of a cost, or of 1: what a last step would gain
 _ROUNDING = 1e-24  # of the largest square of slopes
 _APART = 1e-2  # starts that are nearer have met
 
@@ -178,14 +116,34 @@ def minimise_robustly(problem: Problem, x: FloatArray, steps: int = 40) -> tuple
     return multi_start([(problem, x)], ((steps, 1),), ROBUST)[0]
 
 
+def minimise(
+    problem: Problem, x: FloatArray, kept: npt.NDArray[np.bool_] | None = None
+) -> tuple[FloatArray, float]:
+    """The unknowns at the minimum from a start, and the cost, half the sum of squares, there.
+
+    ``kept``: residuals that count, all where it is left out.
+    """
+    walker = _Walker(problem, x, math.inf, kept, None, _EXACT)
+    for _ in range(_STEPS):
+        if not walker.arrived:
+            walker.step()
+    if not (math.isfinite(walker.cost) and np.isfinite(walker.slopes).all()):
+        told = ", ".join(f"{n} {value:.3g}" for n, value in problem.numbers_at(walker.x).items())
+        raise InputError(
+            "the fit is led astray, to a motion that cannot be computed"
+            f"{f' ({told})' if told else ''}: give bounds or a prior of what it finds, or find less"
+        )
+    return walker.x, walker.cost
+
+
 class _Walker:
     """A start on its way."""
 
     def __init__(
         self, problem: Problem, x: FloatArray, scale: float,
-        kept: npt.NDArray[np.bool_] | None, held: int | None,
+        kept: npt.NDArray[np.bool_] | None, held: int | None, level: float = _LEVEL,
     ) -> None:  # fmt: skip
-        self.problem, self.scale, self.held = problem, scale, held
+        self.problem, self.scale, self.held, self.level = problem, scale, held, level
         self.weights = 1.0 if kept is None else kept.astype(np.float64)
         self.x, self.damping, self.arrived = np.clip(x, *problem.limits), _DAMPED, False
         self.rows, self.slopes = self._at(self.x)
@@ -222,10 +180,14 @@ class _Walker:
             short = down - damped @ np.where(free, 0.0, self.x - new)
             change[free] = np.linalg.solve(damped[free][:, free], short[free])
             new[free] = np.clip(self.x - change, *self.problem.limits)[free]
+        change = self.x - new
+        if change @ (down - 0.5 * (square @ change)) < _NOTHING * max(self.cost, 1.0):
+            self.arrived = True
+            return
         rows, slopes = self._at(new)
         before, after = _cost(self.rows, scale), _cost(rows, scale)
         if after < before:
-            self.arrived = before - after < _LEVEL * before
+            self.arrived = before - after < self.level * before
             self.x, self.rows, self.slopes = new, rows, slopes
             self.damping = max(_EASED * self.damping, _LEAST)
         else:
