@@ -20,7 +20,7 @@ from puck_tables.contact.resultants import Resultants, checked_delta
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.section_spline import LINE
 from puck_tables.table.accuracy import Accuracy
-from puck_tables.table.build import COARSEST
+from puck_tables.table.build import COARSEST, checked_accuracy
 from puck_tables.table.check import CheckReport
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.section_table import SectionTable
@@ -142,12 +142,8 @@ class FrictionSection(SectionTable):
     def built(cls, of: Any, accuracy: float | None = None, **how: Any) -> FrictionSection:
         """The friction of one puck, see :meth:`puck_tables.Table.build`."""
         law = of[0] if isinstance(of[0], Law) else law_of(of[0])
-        wanted = DEFAULT_ACCURACY if accuracy is None else accuracy
-        if not FINEST_ACCURACY <= wanted <= COARSEST:
-            raise AccuracyError(
-                f"accuracy must be from {FINEST_ACCURACY:g} to {COARSEST:g} (an absolute error of "
-                f"the friction ratios), got {wanted:g}"
-            )
+        units = "an absolute error of the friction ratios"
+        wanted = checked_accuracy(accuracy, DEFAULT_ACCURACY, FINEST_ACCURACY, units)
         return friction_section(law, float(checked_delta(of[1])), wanted, **how)
 
 

@@ -17,8 +17,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.laws import law_of
 from puck_tables.kernels.compile import kernel, patience
-from puck_tables.table.resultant_table import ResultantTable
-from puck_tables.table.resultant_values import HEIGHTS
+from puck_tables.table.resultant_table import HEIGHTS, ResultantTable
 from puck_tables.table.slip_axis import LawAxis
 from puck_tables.tradeoff.truth import Question
 
