@@ -17,7 +17,7 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import chebyshev
-from scipy.interpolate import make_interp_spline
+from scipy.interpolate import BSpline, make_interp_spline
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import AccuracyError
@@ -74,20 +74,8 @@ def weights(xi: FloatArray, cells: int, degree: int) -> FloatArray:
     >>> weights(np.array([0.0, 0.5, 1.0]), 2, 3).sum(axis=1).round(12).tolist()
     [1.0, 1.0, 1.0]
     """
-    place = xi * cells
-    cell = np.minimum(place.astype(np.int64), cells - 1)
-    t = place - cell
-    here = [np.ones_like(t)]
-    for d in range(1, degree + 1):
-        parts = [part / d for part in here]
-        right = [(r + 1 - t) * part for r, part in enumerate(parts)]
-        left = [(t + d - 1 - r) * part for r, part in enumerate(parts)]
-        zero = np.zeros_like(t)
-        here = [a + b for a, b in zip([*right, zero], [zero, *left], strict=True)]
-    matrix = np.zeros((xi.size, cells + degree))
-    for r, weight in enumerate(here):
-        matrix[np.arange(xi.size), cell + r] = weight
-    return matrix
+    knots = np.arange(-degree, cells + degree + 1.0)
+    return np.asarray(BSpline.design_matrix(xi * cells, knots, degree).toarray())
 
 
 def functions_of(table: StopTable) -> tuple[FloatArray, FloatArray, FloatArray]:

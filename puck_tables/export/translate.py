@@ -44,9 +44,9 @@ class Language(ABC):
     def function(self, node: ast.FunctionDef) -> str:
         """A function of the programs."""
 
-    @abstractmethod
     def foot(self, public: Sequence[str]) -> str:
-        """What a file ends with."""
+        """What a file ends with: nothing, if the language needs nothing."""
+        return ""
 
 
 _OPERATORS: Mapping[type[ast.AST], tuple[str, int]] = {
