@@ -23,7 +23,7 @@ from puck_tables.export.licence import LICENCE
 from puck_tables.export.program import (
     intrinsics,
     law_motion,
-    motion,
+    plain_motion,
     resultant_formulas,
     self_check,
 )
@@ -205,7 +205,7 @@ def _text(
 ) -> str:  # fmt: skip
     """The whole file."""
     language, by_law = LANGUAGES[key], not kind.body.has_closed_forms
-    modules = [motion, resultant_formulas, *([law_motion] if by_law else []), self_check]
+    modules = [plain_motion, resultant_formulas, *([law_motion] if by_law else []), self_check]
     public = list(dict.fromkeys(name for part in parts for name in PARTS[part]))
     functions = {node.name: node for module in modules for node in _functions(module)}
     functions["self_test"] = _self_test(public)

@@ -17,7 +17,7 @@ from puck_tables.export.program.intrinsics import (
     Numbers,
     room,
 )
-from puck_tables.export.program.motion import state, stop, turn
+from puck_tables.export.program.plain_motion import state, stop, turn
 from puck_tables.export.program.resultant_formulas import resultants
 
 
