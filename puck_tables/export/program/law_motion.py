@@ -1,6 +1,7 @@
 """Under another pressure law: places beside all lines of it, and on the two orbits of all motions.
 
-These functions stand in for those of the same names in :mod:`puck_tables.export.program.plain_motion` and
+These functions stand in for those of the same names in
+:mod:`puck_tables.export.program.plain_motion` and
 :mod:`puck_tables.export.program.resultant_formulas`.  The places, and the orbits over the logarithm
 of the time that is left, are those of :mod:`puck_tables.export.law_values`; a launch is found on
 its orbit by bracketing.
