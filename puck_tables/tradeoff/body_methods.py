@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
-from importlib.resources import files
 from typing import Any
 
 import numpy as np
@@ -16,7 +14,7 @@ from puck_tables.contact.friction_laws import CurlingLaw, FrictionLaw, StribeckL
 from puck_tables.puck import Puck
 from puck_tables.scene.parts import Floor, Launch
 from puck_tables.tradeoff.scipy_methods import patch_script
-from puck_tables.tradeoff.truth import Contender, Question, Run, kept
+from puck_tables.tradeoff.truth import Contender, Question, Run, kept, kept_arrays
 from puck_tables.world.scene import Scene
 
 # of Q/(fg), Q²/(fg), asked for; sums under a law by speed take longer
@@ -112,9 +110,7 @@ def contenders() -> Iterator[Contender]:
 
 def _question(name: str, body: ThrownBody) -> Question:
     """The launches that come with the package, vx, vy, ω; stops in the units of each."""
-    content = (files("puck_tables.tables") / "body_starts.npz").read_bytes()
-    with np.load(io.BytesIO(content)) as file:
-        rows = file[name]
+    rows = kept_arrays("body_starts.npz")[name]
     launches = np.ascontiguousarray(rows[:3])
     return Question(name, launches, rows[3:] / body.units(launches), launches)
 
