@@ -182,10 +182,7 @@ class _Fits:
         powers = int(np.argmax(np.append(dropped, 0.0) <= _POWERS * error))
         if dropped[-1] ** 2 > _POWERS * error * dropped[-2]:  # the next power would be missed
             raise AccuracyError(_OUT_OF_REACH.format(error))
-        to_powers = np.zeros((powers, powers))
-        for m in range(powers):
-            to_powers[: m + 1, m] = chebyshev.cheb2poly(np.eye(powers)[m, : m + 1])
-        by_power = (to_powers @ series[:powers]).reshape(powers, sides, nodes, -1)
+        by_power = (_to_powers(powers) @ series[:powers]).reshape(powers, sides, nodes, -1)
         self._wanted = by_power.transpose(2, 1, 0, 3)  # nodes, sides, powers, functions
         self._at_heights = s ** np.arange(powers)[:, None]
         self._sizes = [one for one in CELLS if one < nodes // 4]
@@ -248,19 +245,21 @@ def fit_constants(constants: FloatArray, error: float) -> SplineFit:
     As a table without cells: numbers (rows, powers, 1).
     """
     rows, count = constants.shape
-    series = np.zeros((rows, count))
-    for row in range(rows):
-        polynomial = chebyshev.poly2cheb(constants[row])
-        series[row, : polynomial.size] = polynomial
+    series = np.linalg.solve(_to_powers(count), constants.T).T
     dropped = np.abs(series)[:, ::-1].cumsum(axis=1)[:, ::-1].max(axis=0)
     powers = max(int(np.argmax(np.append(dropped, 0.0) <= 0.5 * error)), 1)
-    kept = np.zeros((rows, powers))
-    for row in range(rows):
-        polynomial = chebyshev.cheb2poly(series[row, :powers])
-        kept[row, : polynomial.size] = polynomial
+    kept = series[:, :powers] @ _to_powers(powers).T
     quantum = _quantum(error / count)
     whole = np.rint(kept / quantum).astype(np.int64)
     return SplineFit((), 0, quantum, whole.reshape(rows, powers, 1))
+
+
+def _to_powers(count: int) -> FloatArray:
+    """What makes the coefficients of a polynomial from those of its Chebyshev series."""
+    matrix = np.zeros((count, count))
+    for m, one in enumerate(np.eye(count)):
+        matrix[: m + 1, m] = chebyshev.cheb2poly(one[: m + 1])
+    return matrix
 
 
 def _quantum(largest: float) -> float:

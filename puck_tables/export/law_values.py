@@ -181,10 +181,7 @@ class LawValues:
         return _limit_motions(self)
 
 
-@lru_cache(maxsize=8)
-def law_values(law: Law, gyration: float, tol: float) -> LawValues:
-    """One for all files of the same pucks and error."""
-    return LawValues(law, gyration, tol)
+law_values = lru_cache(maxsize=8)(LawValues)  # one for all files of the same pucks and error
 
 
 def _c(ratio: float) -> float:
