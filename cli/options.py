@@ -235,9 +235,13 @@ class Outputs:
 
 def outputs(
     save: str | None = f"Save: {RESULTS}.", *, plot: bool = True, movie: bool = False,
-    explain: bool = False, as_json: bool = False,
+    explain: bool = False, as_json: bool = False, required: bool = False, file: str = "FILE",
 ) -> Option[Any]:  # fmt: skip
-    """Where results go, as ``out``; ``save``: the help of -o, if there is one."""
+    """Where results go, as ``out``.
+
+    ``save``: the help of -o, if there is one; ``required``: whether it must be given; ``file``: how
+    its help calls it.
+    """
     options: list[Option[Any]] = []
     if explain:
         options.append(click.option(
@@ -246,7 +250,8 @@ def outputs(
     if as_json:
         options.append(json_option)
     if save is not None:
-        options.append(click.option("-o", "--output", type=FILE, metavar="FILE", help=save))
+        options.append(click.option("-o", "--output", type=FILE, metavar=file, help=save,
+                                    required=required))  # fmt: skip
     if movie:
         options.append(click.option(
             "--movie", type=FILE, metavar="FILE", help="Show the motion: .html (one file for any "

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from contextlib import nullcontext
+from dataclasses import fields
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -42,10 +43,6 @@ ENDS = {  # of slides on bases that are not round
     "slide last": "the spin dies out first, it slides last",
     "spin last": "the sliding dies out first, it spins last",
 }
-_LAUNCHED = (
-    "v0", "w0", "radius", "height", "friction", "gravity", "mass", "decel", "delta", "pressure",
-    "gyration", "base",
-)  # fmt: skip
 
 
 @click.command()
@@ -130,7 +127,7 @@ def _from_fit(
     ctx: click.Context, path: Path, track: str | None
 ) -> tuple[Puck, tuple[float, float], float, tuple[str, ...]]:
     """The puck and the launch of a fit, which no option contradicts, and what it left open."""
-    for name in _LAUNCHED:
+    for name in ("v0", "w0", *(one.name for one in fields(PuckChoice))):
         if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE:
             raise InputError(
                 f"--fit and --{name} clash: the file of the fit has the puck and its launch"
