@@ -9,7 +9,7 @@ from typing import Any
 import click
 from puck_tables.cli.completion import laws
 from puck_tables.cli.info import describe
-from puck_tables.cli.options import FILE, NUMBER, Outputs, outputs
+from puck_tables.cli.options import FILE, Outputs, number, outputs
 from puck_tables.cli.printing import note, progress, say
 
 from puck_tables.errors import InputError
@@ -24,11 +24,10 @@ from puck_tables.errors import InputError
               "FILE.csv (columns rho in units of r, and W).  [default: uniform]")  # fmt: skip
 @click.option("--speed-law", type=FILE, metavar="FILE", help="Resultants with a coefficient that "
               "depends on the slip speed (CSV of it in m/s, and f).")  # fmt: skip
-@click.option("--accuracy", type=NUMBER, help="Largest error: of resultants 1e-13 to 0.01 "
-              "[default: 2e-11], of those under other laws than uniform pressure 1e-11 to 0.01 "
-              "[default: 1e-9], of stops 1e-11 to 0.01 in units of Q/(f g) and Q^2/(f g) [default: "
-              "1e-10], with --speed-law 1e-13, under other pressures 1e-9, to 0.01 of the "
-              "largest f [default: 1e-6].")  # fmt: skip
+@number("--accuracy", help="Largest error: of resultants 1e-13 to 0.01 [default: 2e-11], of those "
+        "under other laws than uniform pressure 1e-11 to 0.01 [default: 1e-9], of stops 1e-11 to "
+        "0.01 in units of Q/(f g) and Q^2/(f g) [default: 1e-10], with --speed-law 1e-13, under "
+        "other pressures 1e-9, to 0.01 of the largest f [default: 1e-6].")  # fmt: skip
 @click.option("--cells", type=int, help="Grid size by hand instead: cells on each side of each "
               "singular line, at least 4, for stops 8.")  # fmt: skip
 @outputs("The table file.  [default: KIND.h5 or LAW.h5, here]", plot=False)

@@ -3,14 +3,7 @@
 from __future__ import annotations
 
 import click
-from puck_tables.cli.options import (
-    NUMBER,
-    Outputs,
-    PuckChoice,
-    body_options,
-    outputs,
-    packed,
-)
+from puck_tables.cli.options import Outputs, PuckChoice, body_options, number, outputs, packed
 
 
 @click.command()
@@ -18,8 +11,8 @@ from puck_tables.cli.options import (
 @click.option("--what", default="stop,state,resultants", show_default=True, metavar="PARTS",
               help="Where and when launches stop, states at any time, friction resultants."
               )  # fmt: skip
-@click.option("--tol", type=NUMBER, default=1e-6, show_default=True,
-              help="Largest error, in units of Q/(f g), Q^2/(f g), Q: 1e-9 to 0.01.")  # fmt: skip
+@number("--tol", default=1e-6, show_default=True,
+        help="Largest error, in units of Q/(f g), Q^2/(f g), Q: 1e-9 to 0.01.")  # fmt: skip
 @packed("choice", PuckChoice, *body_options())
 @outputs("The file.", plot=False, required=True)
 def export(language: str, what: str, tol: float, choice: PuckChoice, out: Outputs) -> None:

@@ -13,11 +13,9 @@ import click
 from click.core import ParameterSource
 from puck_tables.cli.options import (
     FILE,
-    NUMBER,
-    SPIN,
     Outputs,
     PuckChoice,
-    base_option,
+    number,
     outputs,
     packed,
     puck_options,
@@ -49,15 +47,14 @@ ENDS = {  # of slides on bases that are not round
 @click.option("--fit", "fit_path", type=FILE, metavar="FILE",
               help="The puck and the launch that 'puck fit -o FILE.json' found.")  # fmt: skip
 @click.option("--track", help="Which track of --fit, by its name or number from 1.")
-@click.option("--v0", type=Vector("m/s"), help="Launch velocity in m/s, like 1,0.")
-@click.option("--w0", type=SPIN, default=0.0, show_default=True, help="Launch spin in rad/s.")
-@packed("choice", PuckChoice, base_option, *puck_options(mass=True))
+@number("--v0", "m/s", Vector, help="Launch velocity in m/s, like 1,0.")
+@number("--w0", "rad/s", default=0.0, show_default=True, help="Launch spin in rad/s.")
+@packed("choice", PuckChoice, *puck_options(base=True, mass=True))
 @click.option("--frames", type=int, help="Number of states to save.  [default: 101]")
-@click.option("--times", type=Times("s"), help="Times of the states to save, in s.")
-@click.option("--tol", type=NUMBER, default=1e-9, show_default=True,
-              help="Largest error, in units of Q/(f g) (times) and Q^2/(f g) (places), Q = "
-              "hypot(v0, r w0): the cheapest method whose measured error is below it is "
-              "taken.")  # fmt: skip
+@number("--times", "s", Times, help="Times of the states to save, in s.")
+@number("--tol", default=1e-9, show_default=True, help="Largest error, in units of Q/(f g) (times) "
+        "and Q^2/(f g) (places), Q = hypot(v0, r w0): the cheapest method whose measured error is "
+        "below it is taken.")  # fmt: skip
 @click.option("--method", type=click.Choice([method.value for method in INTEGRATORS]),
               help="Dormand-Prince 5(4), or Runge-Kutta 4.  [default: the cheaper]")  # fmt: skip
 @click.option("--exact", is_flag=True, help="Closed forms instead of the table.")
