@@ -88,20 +88,14 @@ def in_words(result: Comparison) -> str:
         f"{answer.time_bound:.1e} s and {answer.place_bound:.1e} m",
         f"rest counts from {', '.join(map(str, result.thresholds))} on; errors: theirs less exact",
     ]
-    heads, forms = ["file"], [""]
-    for name, word in _SHORT.items():
-        unit = COLUMNS[name].unit
-        heads.append(word if unit == "1" else f"{word} {unit}")
-        forms.append(".6g")
+    units = {name: COLUMNS[name].unit for name in _SHORT}
+    heads = {"file": ""} | {
+        word if units[name] == "1" else f"{word} {units[name]}": ".6g"
+        for name, word in _SHORT.items()
+    }
     rows = [
         (run.log.name, *(row[name] for name in _SHORT))
         for run, row in zip(result.runs, result.rows(), strict=True)
     ]
-    fallen = [f"{name}: {what}" for name, what in result.convergence().items()]
-    further = {
-        "not told:": result.untold(), "as the step falls:": fallen,
-        "truth and not error:": result.truths(),
-    }  # fmt: skip
-    parts = ["\n  ".join([head, *texts]) for head, texts in further.items() if texts]
-    table = columns(dict(zip(heads, forms, strict=True)), rows)
-    return "\n\n".join(["\n".join(first), table, *parts])
+    parts = ["\n  ".join([f"{head}:", *texts]) for head, texts in result.remarks().items()]
+    return "\n\n".join(["\n".join(first), columns(heads, rows), *parts])
