@@ -20,13 +20,7 @@ from puck_tables.export.check_vectors import cases_of
 from puck_tables.export.exported_tables import law_tables, plain_tables
 from puck_tables.export.languages import LANGUAGES
 from puck_tables.export.licence import LICENCE
-from puck_tables.export.program import (
-    intrinsics,
-    law_motion,
-    plain_motion,
-    resultant_formulas,
-    self_check,
-)
+from puck_tables.export.program import law_motion, plain_motion, resultant_formulas, self_check
 from puck_tables.puck import Puck
 
 FINEST, COARSEST = 1e-9, 1e-2  # of Q/(fg), Q²/(fg): as fine as the stop table; looser is no answer
@@ -213,17 +207,17 @@ def _text(
     if by_law:  # room for the lines of the law
         for name in functions.keys() - {*public, "self_test"}:
             del functions[name].body[0]
-    numbers: dict[str, Any] = {"TOLERANCE": tol}
+    numbers: dict[str, Any] = {  # what stands for a number of the file is replaced
+        name: value for module in modules for name, value in vars(module).items()
+        if name.isupper() and isinstance(value, int | float)
+    }  # fmt: skip
+    numbers["TOLERANCE"] = tol
     arrays: dict[str, Sequence[float]] = {}
     for name, (width, values) in cases_of(public, tol, kind if by_law else None).items():
         arrays[f"{name.upper()}_CASES"] = values
         numbers[f"{name.upper()}_COUNT"] = len(values) // width
     arrays |= tables
     numbers |= constants
-    for module in modules:
-        numbers |= {
-            n: v for n, v in vars(module).items() if n.isupper() and n not in vars(intrinsics)
-        }
     whole = _Whole({n: v for n, v in numbers.items() if isinstance(v, int)})
     functions = {name: whole.visit(node) for name, node in functions.items()}
     used = {

@@ -11,37 +11,7 @@ from __future__ import annotations
 
 from math import exp, log, sqrt
 
-from puck_tables.export.program.intrinsics import (
-    BORDERS,
-    END,
-    ORBIT,
-    ORBIT_CELLS,
-    ORBIT_DEGREE,
-    ORBIT_POWERS,
-    ORBIT_QUANTA,
-    ORBIT_ROWS,
-    ORIGINS,
-    PATCH,
-    PATCH_DEGREE,
-    PATCH_QUANTUM,
-    PATCH_ROWS,
-    RATE_UNITS,
-    REACH,
-    SCALES,
-    SIDES,
-    STEEP,
-    STOP,
-    STOP_DEGREE,
-    STOP_POWERS,
-    STOP_QUANTUM,
-    STOP_ROWS,
-    TALLEST,
-    TOLERANCE,
-    Numbers,
-    Out,
-    Rows,
-    room,
-)
+from puck_tables.export.program.intrinsics import Numbers, Out, Rows, room
 from puck_tables.export.program.plain_motion import (
     HEADING,
     LOG_N,
@@ -50,15 +20,40 @@ from puck_tables.export.program.plain_motion import (
     SIDE,
     SIGN,
     SMALLEST,
+    STEEP,
+    STOP,
+    STOP_DEGREE,
     STOP_FUNCTIONS,
+    STOP_POWERS,
+    STOP_QUANTUM,
+    STOP_ROWS,
     T_LAUNCH,
+    TALLEST,
     THERE_SHARE,
     THERE_SIDE,
+    TOLERANCE,
     TURNING,
     constant,
     look_up,
     stop_functions,
 )
+
+# tables under another pressure law; all that stands here stands for what a file is written with
+BORDERS: Numbers = ()
+ORIGINS: Numbers = ()
+SCALES: Numbers = ()
+SIDES = 4  # pieces of φ between singular lines
+PATCH: Numbers = ()
+PATCH_ROWS: Rows = ()
+PATCH_DEGREE, PATCH_QUANTUM = 1, 1.0
+ORBIT: Numbers = ()
+ORBIT_ROWS: Rows = ()
+ORBIT_CELLS: Rows = ()
+ORBIT_POWERS: Rows = ()
+ORBIT_DEGREE = 1
+ORBIT_QUANTA: Numbers = ()
+REACH, END = 16.0, 0.5
+RATE_UNITS: Numbers = ()  # in pure sliding, in pure spin, at the limit
 
 PATCH_FUNCTIONS = 3  # ρ_∥, ρ_⊥, ρ_ω
 

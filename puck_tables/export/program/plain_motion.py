@@ -9,33 +9,24 @@ from __future__ import annotations
 
 from math import cos, exp, expm1, log, log1p, nan, sin, sqrt
 
-from puck_tables.export.program.intrinsics import (
-    CONSTANTS,
-    CONSTANTS_POWERS,
-    CONSTANTS_QUANTUM,
-    CURVE,
-    CURVE_DEGREE,
-    CURVE_POWERS,
-    CURVE_QUANTUM,
-    CURVE_ROWS,
-    INVERSE,
-    INVERSE_DEGREE,
-    INVERSE_POWERS,
-    INVERSE_QUANTUM,
-    INVERSE_ROWS,
-    LONGEST,
-    SPIN_TIME,
-    STEEP,
-    STOP,
-    STOP_DEGREE,
-    STOP_POWERS,
-    STOP_QUANTUM,
-    STOP_ROWS,
-    TALLEST,
-    Numbers,
-    Out,
-    room,
-)
+from puck_tables.export.program.intrinsics import Numbers, Out, Rows, room
+
+# tables of one error: cells, degree, powers, quantum and numbers; all that stands here stands for
+# what a file is written with
+STOP: Numbers = ()
+STOP_ROWS: Rows = ()
+STOP_DEGREE, STOP_POWERS, STOP_QUANTUM = 1, 1, 1.0
+CURVE: Numbers = ()
+CURVE_ROWS: Rows = ()
+CURVE_DEGREE, CURVE_POWERS, CURVE_QUANTUM = 1, 1, 1.0
+INVERSE: Numbers = ()
+INVERSE_ROWS: Rows = ()
+INVERSE_DEGREE, INVERSE_POWERS, INVERSE_QUANTUM = 1, 1, 1.0
+CONSTANTS: Numbers = ()
+CONSTANTS_POWERS, CONSTANTS_QUANTUM = 1, 1.0
+# the kind of puck: its largest delta, s = STEEP delta^2 - 1 from -1 to 1, how long pure spin lasts
+# and more than any motion does, in Q/J; and the error of a file
+TALLEST, STEEP, SPIN_TIME, LONGEST, TOLERANCE = 1.0, 2.0, 0.75, 2.0, 1.0
 
 MOST_WEIGHTS, WIDEST = 8, 70  # room for any degree, and for any row, that a file is written with
 LARGEST = 8e307  # of places, and of places over radii
