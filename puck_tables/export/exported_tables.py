@@ -1,4 +1,10 @@
-"""The tables of a file: of plain pucks from what comes along, of all others made for them."""
+"""The tables of a file: of plain pucks from what comes along, of all others made for them.
+
+What the stop table holds is fitted again, on either side of φ = π/4, with the degree, the cells,
+the powers and the digits that cost least.  Of a place on the curve, 2k/(1 + k) = q² with
+q = ξ (2 − ξ): a root less than on the axis of the stop table (:mod:`puck_tables.stopping.axes`),
+and fewer cells for all errors that are exported but the smallest.
+"""
 
 from __future__ import annotations
 
@@ -7,29 +13,24 @@ from functools import lru_cache
 from math import factorial
 
 import numpy as np
+from scipy.interpolate import make_interp_spline
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import AccuracyError
-from puck_tables.export.compact_tables import (
-    CONSTANT_SHARE,
-    CURVE_SHARE,
-    LAW_CONSTANT_SHARE,
-    LAW_STOP_SHARE,
-    ORBIT_SHARE,
-    PATCH_SHARE,
-    STOP_SHARE,
-    SplineFit,
-    fit_constants,
-    functions_of,
-    spline_fit,
-    spline_fits,
-)
+from puck_tables.export.compact_tables import SplineFit, fit_constants, spline_fit, spline_fits
 from puck_tables.export.law_values import REACH, LawValues, law_values
 from puck_tables.puck import Puck
 from puck_tables.stopping.axes import height_polynomials
 from puck_tables.stopping.stop_table import StopTable
 
 Tables = tuple[dict[str, Sequence[float]], dict[str, float]]  # arrays, constants
+
+# Of the error asked for: of the functions of a stop, and of the curve and its inverse, so that what
+# is made of all of them keeps it (measured, tests/test_export.py).
+_STOP, _CURVE, _CONSTANT = 0.5, 0.3, 0.02
+# the same under another pressure law
+_LAW_STOP, _LAW_ORBIT, _LAW_PATCH, _LAW_CONSTANT = 0.42, 0.48, 0.22, 0.05
+_NODES = 769  # at which plain pucks are fitted
 
 
 def plain_tables(parts: tuple[str, ...], tol: float) -> Tables:
@@ -43,13 +44,29 @@ def plain_tables(parts: tuple[str, ...], tol: float) -> Tables:
 @lru_cache(maxsize=8)
 def _shipped(tol: float) -> dict[str, SplineFit]:
     table = StopTable.shipped()
-    stops, curve, inverse = functions_of(table)
+    stops, curve, inverse = _functions_of(table)
     return {
-        "STOP": spline_fit(stops, STOP_SHARE * tol, haste=2),
-        "CURVE": spline_fit(curve, CURVE_SHARE * tol),
-        "INVERSE": spline_fit(inverse, CURVE_SHARE * tol),
-        "CONSTANTS": fit_constants(table.constants, CONSTANT_SHARE * tol),
+        "STOP": spline_fit(stops, _STOP * tol, haste=2),
+        "CURVE": spline_fit(curve, _CURVE * tol),
+        "INVERSE": spline_fit(inverse, _CURVE * tol),
+        "CONSTANTS": fit_constants(table.constants, _CONSTANT * tol),
     }
+
+
+def _functions_of(table: StopTable) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """What is fitted, at the nodes: stop, curve and inverse, each (2, nodes, heights, functions).
+
+    Both sides from k = 0 to k = 1; the inverse on its own axis, that of the table.
+    """
+    n = table.axis.cells
+    sides = np.stack([table.values[: n + 1], table.values[: n - 1 : -1]])
+    xi = np.linspace(0.0, 1.0, _NODES)
+    there = 1.0 - np.sqrt(1.0 - np.sqrt(xi * (2.0 - xi)))
+    along = make_interp_spline(np.linspace(0.0, 1.0, n + 1), np.moveaxis(sides, 1, 0), 5)
+    moved = np.moveaxis(along(there), 0, 1)
+    inverse = table.inverse.ratios(with_time=True)
+    # time, along, across, length, body; κR and S/δ
+    return moved[..., :5], moved[..., 5:7], inverse[..., None]
 
 
 def law_tables(kind: Puck, parts: tuple[str, ...], tol: float) -> Tables:
@@ -77,12 +94,12 @@ def _fit_within(
 ) -> dict[str, SplineFit | list[SplineFit]]:
     result: dict[str, SplineFit | list[SplineFit]] = {}
     if "resultants" in parts:
-        result["PATCH"] = spline_fit(values.patch, PATCH_SHARE * tol)
+        result["PATCH"] = spline_fit(values.patch, _LAW_PATCH * tol)
     if parts != ("resultants",):
-        result["STOP"] = spline_fit(values.stops, LAW_STOP_SHARE * tol, haste=2)
+        result["STOP"] = spline_fit(values.stops, _LAW_STOP * tol, haste=2)
     if "state" in parts:
         try:
-            result["ORBIT"] = spline_fits(values.limit_motions.parts, ORBIT_SHARE * tol)
+            result["ORBIT"] = spline_fits(values.limit_motions.parts, _LAW_ORBIT * tol)
         except AccuracyError:
             raise AccuracyError(
                 f"states of such pucks cannot be exported at tol {tol:g}, for their limit ratio "
@@ -92,7 +109,7 @@ def _fit_within(
             ) from None
         of_heights = values.limit_motions.of_heights
         polynomials = height_polynomials(of_heights, len(of_heights)).T
-        result["CONSTANTS"] = fit_constants(polynomials, LAW_CONSTANT_SHARE * tol)
+        result["CONSTANTS"] = fit_constants(polynomials, _LAW_CONSTANT * tol)
     return result
 
 
