@@ -1,10 +1,4 @@
-"""The tables of a file: of plain pucks from what comes along, of all others made for them.
-
-What the stop table holds is fitted again, on either side of φ = π/4, with the degree, the cells,
-the powers and the digits that cost least.  Of a place on the curve, 2k/(1 + k) = q² with
-q = ξ (2 − ξ): a root less than on the axis of the stop table (:mod:`puck_tables.stopping.axes`),
-and fewer cells for all errors that are exported but the smallest.
-"""
+"""The tables of a file: of plain pucks from what comes along, of all others made for them."""
 
 from __future__ import annotations
 
@@ -13,11 +7,16 @@ from functools import lru_cache
 from math import factorial
 
 import numpy as np
-from scipy.interpolate import make_interp_spline
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import AccuracyError
-from puck_tables.export.compact_tables import SplineFit, fit_constants, spline_fit, spline_fits
+from puck_tables.export.compact_tables import (
+    SplineFit,
+    fit_constants,
+    functions_of,
+    spline_fit,
+    spline_fits,
+)
 from puck_tables.export.law_values import REACH, LawValues, law_values
 from puck_tables.puck import Puck
 from puck_tables.stopping.axes import height_polynomials
@@ -30,7 +29,6 @@ Tables = tuple[dict[str, Sequence[float]], dict[str, float]]  # arrays, constant
 _STOP, _CURVE, _CONSTANT = 0.5, 0.3, 0.02
 # the same under another pressure law
 _LAW_STOP, _LAW_ORBIT, _LAW_PATCH, _LAW_CONSTANT = 0.42, 0.48, 0.22, 0.05
-_NODES = 769  # at which plain pucks are fitted
 
 
 def plain_tables(parts: tuple[str, ...], tol: float) -> Tables:
@@ -44,29 +42,13 @@ def plain_tables(parts: tuple[str, ...], tol: float) -> Tables:
 @lru_cache(maxsize=8)
 def _shipped(tol: float) -> dict[str, SplineFit]:
     table = StopTable.shipped()
-    stops, curve, inverse = _functions_of(table)
+    stops, curve, inverse = functions_of(table)
     return {
         "STOP": spline_fit(stops, _STOP * tol, haste=2),
         "CURVE": spline_fit(curve, _CURVE * tol),
         "INVERSE": spline_fit(inverse, _CURVE * tol),
         "CONSTANTS": fit_constants(table.constants, _CONSTANT * tol),
     }
-
-
-def _functions_of(table: StopTable) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """What is fitted, at the nodes: stop, curve and inverse, each (2, nodes, heights, functions).
-
-    Both sides from k = 0 to k = 1; the inverse on its own axis, that of the table.
-    """
-    n = table.axis.cells
-    sides = np.stack([table.values[: n + 1], table.values[: n - 1 : -1]])
-    xi = np.linspace(0.0, 1.0, _NODES)
-    there = 1.0 - np.sqrt(1.0 - np.sqrt(xi * (2.0 - xi)))
-    along = make_interp_spline(np.linspace(0.0, 1.0, n + 1), np.moveaxis(sides, 1, 0), 5)
-    moved = np.moveaxis(along(there), 0, 1)
-    inverse = table.inverse.ratios(with_time=True)
-    # time, along, across, length, body; κR and S/δ
-    return moved[..., :5], moved[..., 5:7], inverse[..., None]
 
 
 def law_tables(kind: Puck, parts: tuple[str, ...], tol: float) -> Tables:
