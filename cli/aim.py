@@ -9,18 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
-from puck_tables.cli.options import (
-    ANGLE,
-    FILE,
-    SPEED,
-    SPIN,
-    TIME,
-    Outputs,
-    PuckChoice,
-    outputs,
-    packed,
-    puck_options,
-)
+from puck_tables.cli.options import FILE, Outputs, PuckChoice, number, outputs, packed, puck_options
 from puck_tables.cli.printing import columns, listed, progress
 from puck_tables.cli.scene_run import SceneChoice, scene_options, scene_tables
 from puck_tables.cli.values import Vector, not_none
@@ -53,13 +42,13 @@ _ON_BOARDS = ("pocket", "puck", "striker", "hits", "max_impacts")
     click.option("--striker", metavar="NAME", help="In a scene: which is sent off."),
     click.option("--hits", metavar="NAME", help="In a scene: a puck to be hit on the way."),
     click.option("--max-impacts", type=int, help="In a scene: at most so many.  [default: 3]"),
-    click.option("--w0", type=SPIN, help="The launch with this spin, in rad/s, with its sign."),
-    click.option("--speed", type=SPEED, help="The launches with this speed, in m/s."),
-    click.option("--time", type=TIME, help="The launches that stop after this time, in s."),
-    click.option("--angle", type=ANGLE, help="The launches after which the body rests at this "
-                 "angle up to whole turns, in rad or like 90deg; it begins at 0."),
-    click.option("--max-speed", type=SPEED, help="No launch faster than this, in m/s."),
-    click.option("--max-spin", type=SPIN, help="No launch with more spin than this, in rad/s."),
+    number("--w0", "rad/s", help="The launch with this spin, in rad/s, with its sign."),
+    number("--speed", "m/s", help="The launches with this speed, in m/s."),
+    number("--time", "s", help="The launches that stop after this time, in s."),
+    number("--angle", "rad", help="The launches after which the body rests at this angle up to "
+           "whole turns, in rad or like 90deg; it begins at 0."),
+    number("--max-speed", "m/s", help="No launch faster than this, in m/s."),
+    number("--max-spin", "rad/s", help="No launch with more spin than this, in rad/s."),
     click.option("--count", type=int, help="Slip angles of a sample, or numbers of turns, for each "
                  "sense of spin [default: 8]; in a scene launches that are given [default: 16]."),
 )  # fmt: skip

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
-from puck_tables.cli.options import FILE, LENGTH, Outputs, outputs
+from puck_tables.cli.options import FILE, Outputs, number, outputs
 from puck_tables.cli.printing import note, progress
-from puck_tables.cli.values import NumberParam, RangeParam
+from puck_tables.cli.values import RangeParam
 
 from puck_tables.errors import InputError
 
@@ -23,13 +23,11 @@ MOST_LEAPS = 5  # more are no single steps of the force
 
 
 @click.command()
-@click.option("--amplitude", type=LENGTH, default=1e-6, show_default=True, help="a in m.")
-@click.option("--wavelength", type=LENGTH, default=2e-5, show_default=True, help="2 pi b in m.")
-@click.option("--load", type=NumberParam("N"), default=1.0, show_default=True, help="-Y in N.")
-@click.option("--mass", type=NumberParam("kg"), help="m in kg.  [default: the load is its weight]")
-@click.option(
-    "--speeds", type=RangeParam("m/s"), help="In m/s.  [default: 0 to 2.5 V0 in 501 steps]"
-)
+@number("--amplitude", "m", default=1e-6, show_default=True, help="a in m.")
+@number("--wavelength", "m", default=2e-5, show_default=True, help="2 pi b in m.")
+@number("--load", "N", default=1.0, show_default=True, help="-Y in N.")
+@number("--mass", "kg", help="m in kg.  [default: the load is its weight]")
+@number("--speeds", "m/s", RangeParam, help="In m/s.  [default: 0 to 2.5 V0 in 501 steps]")
 @click.option("--law", type=FILE, metavar="FILE", help="Save greatest force over load against "
               "speed: a CSV that floor.law of a scene takes.")  # fmt: skip
 @outputs("Save the curve: .h5 or .csv.  Without -o and --plot, CSV goes to stdout.")

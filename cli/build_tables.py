@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import click
 from puck_tables.cli.completion import laws
 from puck_tables.cli.info import describe
-from puck_tables.cli.options import FILE, NUMBER, Outputs
+from puck_tables.cli.options import FILE, Outputs, number, outputs
 from puck_tables.cli.printing import note, progress, say
 
 from puck_tables.errors import InputError
@@ -23,19 +24,16 @@ from puck_tables.errors import InputError
               "FILE.csv (columns rho in units of r, and W).  [default: uniform]")  # fmt: skip
 @click.option("--speed-law", type=FILE, metavar="FILE", help="Resultants with a coefficient that "
               "depends on the slip speed (CSV of it in m/s, and f).")  # fmt: skip
-@click.option("--accuracy", type=NUMBER, help="Largest error: of resultants 1e-13 to 0.01 "
-              "[default: 2e-11], of those under other laws than uniform pressure 1e-11 to 0.01 "
-              "[default: 1e-9], of stops 1e-11 to 0.01 in units of Q/(f g) and Q^2/(f g) [default: "
-              "1e-10], with --speed-law 1e-13, under other pressures 1e-9, to 0.01 of the "
-              "largest f [default: 1e-6].")  # fmt: skip
+@number("--accuracy", help="Largest error: of resultants 1e-13 to 0.01 [default: 2e-11], of those "
+        "under other laws than uniform pressure 1e-11 to 0.01 [default: 1e-9], of stops 1e-11 to "
+        "0.01 in units of Q/(f g) and Q^2/(f g) [default: 1e-10], with --speed-law 1e-13, under "
+        "other pressures 1e-9, to 0.01 of the largest f [default: 1e-6].")  # fmt: skip
 @click.option("--cells", type=int, help="Grid size by hand instead: cells on each side of each "
               "singular line, at least 4, for stops 8.")  # fmt: skip
-@click.option("-o", "--output", type=FILE, metavar="FILE",
-              help="The table file.  [default: KIND.h5 or LAW.h5, here]")  # fmt: skip
-@click.option("--overwrite", is_flag=True, help="Replace the file if it exists.")
+@outputs("The table file.  [default: KIND.h5 or LAW.h5, here]", plot=False)
 def build_tables(
     kind: str, pressure: str | None, speed_law: Path | None, accuracy: float | None,
-    cells: int | None, output: Path | None, overwrite: bool,
+    cells: int | None, out: Outputs,
 ) -> None:  # fmt: skip
     """Tabulate friction resultants or stops, and measure how exact the table is.
 
@@ -56,10 +54,10 @@ def build_tables(
     if speed_law is not None and cells is not None:
         raise InputError("--cells does not go with --speed-law: give --accuracy")
     of, stem, words = _wanted(kind, pressure, speed_law)
-    path = Path(f"{stem}.h5") if output is None else output
+    path = out.output or Path(f"{stem}.h5")
     if path.suffix.lower() != ".h5":
         raise InputError(f"{path}: a table is an HDF5 file: give a name that ends in .h5")
-    Outputs(path, overwrite=overwrite).prepare(speed_law, pressure, saved=False)
+    replace(out, output=path).prepare(speed_law, pressure, saved=False)
     options = {"--accuracy": accuracy, "--cells": cells}
     given = [f"{name} {value}" for name, value in options.items() if value is not None]
     grid: dict[str, Any] = {} if cells is None else {"cells": cells}
@@ -69,7 +67,7 @@ def build_tables(
         from puck_tables.table.table import Table
 
         table = Table.build(of, accuracy, progress=show, **grid)
-        saved = table.save(path, overwrite, " ".join(["puck build-tables", *words, *given]))
+        saved = table.save(path, out.overwrite, " ".join(["puck build-tables", *words, *given]))
     note(path)
     say(describe(saved))
 

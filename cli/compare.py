@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 from puck_tables.cli.completion import cases
-from puck_tables.cli.options import FILE, RESULTS, TIME, Outputs, outputs, packed
+from puck_tables.cli.options import FILE, RESULTS, Outputs, number, outputs, packed
 from puck_tables.cli.printing import columns, note
 from puck_tables.cli.values import Times
 
@@ -31,8 +31,8 @@ _SHORT = {
     click.option("--threshold", "thresholds", multiple=True, metavar="SPEED|SPIN",
                  help="Slower counts as at rest: 0.1rad/s or 1mm/s; as often as needed.  "
                  "[default: hypot(v, r w) below 1 % of that of the launch]"),
-    click.option("--steps", type=Times("s"), metavar="DT1,DT2,...",
-                 help="Step of the engine in each file, s.  [default: the distance of its rows]"),
+    number("--steps", "s", Times, metavar="DT1,DT2,...",
+           help="Step of the engine in each file, s.  [default: the distance of its rows]"),
     click.option("--columns", metavar="NAMES",
                  help="Headings in place of the file's, - to leave out."),
     click.option("--unit", help="Of lengths (and velocities, a second) where a file says none: m."),
@@ -40,8 +40,8 @@ _SHORT = {
                  help="Of angles (and spins, a second) where a file says none: rad."),
     click.option("--up", help="The axis that points up, y or z, where there are three."),
     click.option("--puck", help="Which puck, of a case of several: its name."),
-    click.option("--launch-time", type=TIME, default=0.0, show_default=True,
-                 help="When the launch is in the files, s."),
+    number("--launch-time", "s", default=0.0, show_default=True,
+           help="When the launch is in the files, s."),
 )  # fmt: skip
 @click.option("--report", type=FILE, metavar="FILE.html", help="One page with all of it.")
 @outputs(f"Save, a row a file: {RESULTS}.", explain=True, as_json=True)
@@ -88,20 +88,14 @@ def in_words(result: Comparison) -> str:
         f"{answer.time_bound:.1e} s and {answer.place_bound:.1e} m",
         f"rest counts from {', '.join(map(str, result.thresholds))} on; errors: theirs less exact",
     ]
-    heads, forms = ["file"], [""]
-    for name, word in _SHORT.items():
-        unit = COLUMNS[name].unit
-        heads.append(word if unit == "1" else f"{word} {unit}")
-        forms.append(".6g")
+    units = {name: COLUMNS[name].unit for name in _SHORT}
+    heads = {"file": ""} | {
+        word if units[name] == "1" else f"{word} {units[name]}": ".6g"
+        for name, word in _SHORT.items()
+    }
     rows = [
         (run.log.name, *(row[name] for name in _SHORT))
         for run, row in zip(result.runs, result.rows(), strict=True)
     ]
-    fallen = [f"{name}: {what}" for name, what in result.convergence().items()]
-    further = {
-        "not told:": result.untold(), "as the step falls:": fallen,
-        "truth and not error:": result.truths(),
-    }  # fmt: skip
-    parts = ["\n  ".join([head, *texts]) for head, texts in further.items() if texts]
-    table = columns(dict(zip(heads, forms, strict=True)), rows)
-    return "\n\n".join(["\n".join(first), table, *parts])
+    parts = ["\n  ".join([f"{head}:", *texts]) for head, texts in result.remarks().items()]
+    return "\n\n".join(["\n".join(first), columns(heads, rows), *parts])

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import webbrowser
-from pathlib import Path
 
 import click
-from puck_tables.cli.options import FILE, Outputs
+from puck_tables.cli.options import Outputs, outputs
 from puck_tables.cli.printing import note
 
 from puck_tables.errors import InputError, OutputError
 
 
 @click.command()
-@click.option("-o", "--output", type=FILE, metavar="FILE.html", help="Only write the page there.")
-@click.option("--overwrite", is_flag=True, help="Replace an output file that exists.")
-def explore(output: Path | None, overwrite: bool) -> None:
+@outputs("Only write the page there.", plot=False, file="FILE.html")
+def explore(out: Outputs) -> None:
     """Open a page in which a launch is dragged, and its motion seen at once.
 
     One file, without a server or a network: path, stop, speeds and their ratio over time, pressure
@@ -31,12 +29,12 @@ def explore(output: Path | None, overwrite: bool) -> None:
     from puck_tables._core.safe_write import write_bytes
     from puck_tables.explore.page import explorer_page
 
-    if output is not None:
-        if output.suffix.lower() not in (".html", ".htm"):
-            raise InputError(f"{output}: the explorer is a page: call it FILE.html")
-        Outputs(output, overwrite=overwrite).prepare(saved=False)
-        write_bytes(output, explorer_page().encode(), overwrite)
-        note(output)
+    if out.output is not None:
+        if out.output.suffix.lower() not in (".html", ".htm"):
+            raise InputError(f"{out.output}: the explorer is a page: call it FILE.html")
+        out.prepare(saved=False)
+        write_bytes(out.output, explorer_page().encode(), out.overwrite)
+        note(out.output)
         return
     folder = user_cache()
     if folder is None:

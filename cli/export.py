@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import click
-from puck_tables.cli.options import FILE, NUMBER, Outputs, PuckChoice, body_options, packed
-from puck_tables.cli.printing import note
+from puck_tables.cli.options import Outputs, PuckChoice, body_options, number, outputs, packed
 
 
 @click.command()
@@ -14,14 +11,11 @@ from puck_tables.cli.printing import note
 @click.option("--what", default="stop,state,resultants", show_default=True, metavar="PARTS",
               help="Where and when launches stop, states at any time, friction resultants."
               )  # fmt: skip
-@click.option("--tol", type=NUMBER, default=1e-6, show_default=True,
-              help="Largest error, in units of Q/(f g), Q^2/(f g), Q: 1e-9 to 0.01.")  # fmt: skip
+@number("--tol", default=1e-6, show_default=True,
+        help="Largest error, in units of Q/(f g), Q^2/(f g), Q: 1e-9 to 0.01.")  # fmt: skip
 @packed("choice", PuckChoice, *body_options())
-@click.option("-o", "--output", type=FILE, required=True, metavar="FILE", help="The file.")
-@click.option("--overwrite", is_flag=True, help="Replace an output file that exists.")
-def export(
-    language: str, what: str, tol: float, choice: PuckChoice, output: Path, overwrite: bool
-) -> None:
+@outputs("The file.", plot=False, required=True)
+def export(language: str, what: str, tol: float, choice: PuckChoice, out: Outputs) -> None:
     """Write one self-contained source file that computes motions without this program.
 
     The tables are in it, as small as the error allows, the licence, and self_test, which returns
@@ -37,9 +31,9 @@ def export(
     from puck_tables.export.source import checked_ending, checked_request, export_source
 
     parts = checked_request(language, what, tol)
-    checked_ending(output, language)
-    Outputs(output, overwrite=overwrite).prepare(choice.pressure, saved=False)
+    assert out.output is not None
+    checked_ending(out.output, language)
+    out.prepare(choice.pressure, saved=False)
     source = export_source(language, parts, tol, choice.puck())
-    source.save(output, overwrite)
     click.echo(repr(source), err=True)
-    note(output)
+    out.deliver(source)

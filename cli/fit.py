@@ -9,19 +9,17 @@ import click
 from puck_tables.cli.fit_report import report
 from puck_tables.cli.options import (
     FILE,
-    LENGTH,
-    NUMBER,
     RESULTS,
-    TIME,
     Outputs,
     base_option,
     body_options,
+    number,
     outputs,
     packed,
 )
 from puck_tables.cli.printing import note, progress
 from puck_tables.cli.track import read_all, track_options
-from puck_tables.cli.values import NumberParam, named, names, not_none, numbers_in, read_as
+from puck_tables.cli.values import named, names, not_none, numbers_in, read_as
 
 from puck_tables.errors import InputError
 
@@ -96,15 +94,12 @@ def _held_out(text: str, option: str) -> float | list[str]:
 @track_options
 @packed(
     "known", dict,
-    click.option("--radius", type=LENGTH, help="Radius r of the puck in m; of slides along a line "
-                 "without angles it does not matter."),
-    click.option("--height", type=LENGTH,
-                 help="Height h in m, if known: the tilt then follows from f."),
-    click.option("--friction", type=NUMBER, help="Coulomb coefficient f, if known."),
-    click.option("--mass", type=NumberParam("kg"),
-                 help="Mass in kg (for energies of what is simulated later)."),
-    click.option("--gravity", type=NumberParam("m/s^2"),
-                 help="Gravity in m/s^2.  [default: 9.80665]"),
+    number("--radius", "m", help="Radius r of the puck in m; of slides along a line without angles "
+           "it does not matter."),
+    number("--height", "m", help="Height h in m, if known: the tilt then follows from f."),
+    number("--friction", help="Coulomb coefficient f, if known."),
+    number("--mass", "kg", help="Mass in kg (for energies of what is simulated later)."),
+    number("--gravity", "m/s^2", help="Gravity in m/s^2.  [default: 9.80665]"),
     *body_options(),
     base_option,
 )  # fmt: skip
@@ -129,10 +124,10 @@ def _held_out(text: str, option: str) -> float | list[str]:
     click.option("--noise", metavar="PLACE[,ANGLE]", callback=read_as(_noise),
                  help="Standard deviation of places in m and angles in rad.  [default: that of "
                  "the residuals]"),
-    click.option("--since", type=TIME, help="Start of the free motion, in s of the track: no "
-                 "frame after it is left out at the start."),
-    click.option("--until", type=TIME, help="End of the free motion, in s of the track: no frame "
-                 "before it is left out at the end."),
+    number("--since", "s", help="Start of the free motion, in s of the track: no frame after it is "
+           "left out at the start."),
+    number("--until", "s", help="End of the free motion, in s of the track: no frame before it is "
+           "left out at the end."),
     click.option("--keep-all", is_flag=True, help="All frames are of free motion: none is left "
                  "out where something seems to touch the puck."),
     click.option("--impacts", is_flag=True, help="The tracks may hold impacts, with walls or of "
@@ -165,7 +160,7 @@ def _held_out(text: str, option: str) -> float | list[str]:
                  help="Predict this last share of each track, or the later half of the tracks "
                  "named, from the rest."),
 )  # fmt: skip
-@click.option("--report", "worksheet", type=click.Path(path_type=Path), metavar="PAGE",
+@click.option("--report", "worksheet", type=FILE, metavar="PAGE",
               help="Write one page for a class (.html): pictures, numbers, residuals, what was "
               "assumed, and blanks.")  # fmt: skip
 @outputs(f"Save: {RESULTS}; .json is what simulate --fit takes, the others have frames and "

@@ -29,8 +29,14 @@ Option = Callable[[Command], Command]
 DEFAULT_DELTA, DEFAULT_DECEL = 0.5, 1.0
 RESULTS = ".h5, .csv, .json, .jsonl or .parquet"
 
-NUMBER, LENGTH, SPEED, SPIN, TIME, ANGLE = map(NumberParam, ("", "m", "m/s", "rad/s", "s", "rad"))
 FILE = click.Path(readable=False, path_type=Path)
+
+
+def number(
+    flag: str, unit: str = "", kind: type[NumberParam] = NumberParam, **more: Any
+) -> Option[Any]:  # fmt: skip
+    """An option that takes numbers of one kind, in a unit."""
+    return click.option(flag, type=kind(unit), **more)
 
 
 def packed(name: str, make: Callable[..., Any], *options: Option[Any]) -> Option[Any]:
@@ -52,25 +58,25 @@ def packed(name: str, make: Callable[..., Any], *options: Option[Any]) -> Option
 
 
 def puck_options(
-    mass: bool = False, kind: type[NumberParam] = NumberParam, many: bool = False
-) -> list[Option[Any]]:
+    base: bool = False, mass: bool = False, kind: type[NumberParam] = NumberParam,
+    many: bool = False,
+) -> list[Option[Any]]:  # fmt: skip
     """The puck and the floor: by δ and J, or by dimensions and friction; numbers of one kind.
 
-    ``many``: whether several pressure laws may be given.
+    ``base``, ``mass``: whether these may be given; ``many``: several pressure laws.
     """
-    heavy = click.option("--mass", type=NumberParam("kg"), help="Mass in kg (energies, forces).")
+    heavy = number("--mass", "kg", help="Mass in kg (energies, forces).")
     return [
-        click.option("--delta", type=kind(), help="delta = 2 f h / r.  [default: 0.5]"),
-        click.option("--radius", type=kind("m"),
-                     help="Radius r in m, or with its unit: 38.1mm.  [default: 1]"),
-        click.option("--height", type=kind("m"), help="Height h of the puck in m, twice that of "
-                     "its centre of mass; with --friction."),
-        click.option("--friction", type=kind(), help="Coulomb coefficient f; with --height."),
-        click.option("--gravity", type=kind("m/s^2"),
-                     help="Gravity in m/s^2.  [default: 9.80665]"),
+        *([base_option] if base else []),
+        number("--delta", "", kind, help="delta = 2 f h / r.  [default: 0.5]"),
+        number("--radius", "m", kind,
+               help="Radius r in m, or with its unit: 38.1mm.  [default: 1]"),
+        number("--height", "m", kind, help="Height h of the puck in m, twice that of its centre of "
+               "mass; with --friction."),
+        number("--friction", "", kind, help="Coulomb coefficient f; with --height."),
+        number("--gravity", "m/s^2", kind, help="Gravity in m/s^2.  [default: 9.80665]"),
         *([heavy] if mass else []),
-        click.option("--decel", type=kind("m/s^2"), help="f g in m/s^2 instead of "
-                     "--friction.  [default: 1]"),
+        number("--decel", "m/s^2", kind, help="f g in m/s^2 instead of --friction.  [default: 1]"),
         *body_options(kind, many),
     ]  # fmt: skip
 
@@ -93,9 +99,8 @@ def body_options(
     return (
         click.option("--pressure", metavar="LAW", shell_complete=laws, multiple=many, help=words,
                      default=("uniform",) if many else "uniform", show_default=True),
-        click.option("--gyration", type=kind(),
-                     help="Radius of gyration about the vertical axis over r (a ratio, also with "
-                     "--radius), 0.1 to 10.  [default: 0.7071, homogeneous]"),
+        number("--gyration", "", kind, help="Radius of gyration about the vertical axis over r (a "
+               "ratio, also with --radius), 0.1 to 10.  [default: 0.7071, homogeneous]"),
     )  # fmt: skip
 
 
@@ -235,9 +240,13 @@ class Outputs:
 
 def outputs(
     save: str | None = f"Save: {RESULTS}.", *, plot: bool = True, movie: bool = False,
-    explain: bool = False, as_json: bool = False,
+    explain: bool = False, as_json: bool = False, required: bool = False, file: str = "FILE",
 ) -> Option[Any]:  # fmt: skip
-    """Where results go, as ``out``; ``save``: the help of -o, if there is one."""
+    """Where results go, as ``out``.
+
+    ``save``: the help of -o, if there is one; ``required``: whether it must be given; ``file``: how
+    its help calls it.
+    """
     options: list[Option[Any]] = []
     if explain:
         options.append(click.option(
@@ -246,7 +255,8 @@ def outputs(
     if as_json:
         options.append(json_option)
     if save is not None:
-        options.append(click.option("-o", "--output", type=FILE, metavar="FILE", help=save))
+        options.append(click.option("-o", "--output", type=FILE, metavar=file, help=save,
+                                    required=required))  # fmt: skip
     if movie:
         options.append(click.option(
             "--movie", type=FILE, metavar="FILE", help="Show the motion: .html (one file for any "

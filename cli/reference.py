@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 from puck_tables.cli.completion import cases
-from puck_tables.cli.options import FILE, NUMBER, RESULTS, TIME, Outputs, outputs
+from puck_tables.cli.options import FILE, RESULTS, Outputs, number, outputs
 from puck_tables.cli.printing import columns, listed
 from puck_tables.cli.values import Times, not_none
 
@@ -25,13 +25,13 @@ _ROWS = 20  # of friction that are shown
 
 @click.command()
 @click.argument("case", required=False, shell_complete=cases)
-@click.option("--dt", type=TIME, help="Time between two frames, s.")
-@click.option("--fps", type=NUMBER, help="Frames a second.")
+@number("--dt", "s", help="Time between two frames, s.")
+@number("--fps", help="Frames a second.")
 @click.option("--times", type=FILE, metavar="FILE",
               help="The times of the frames, s: one a line, or the column t of a table."
               )  # fmt: skip
-@click.option("--epsilon", type=Times(), metavar="E1,E2,...|START:STOP:COUNT", help="Force and "
-              "torque on the floor at these v/(r w), in place of the motion.")  # fmt: skip
+@number("--epsilon", "", Times, metavar="E1,E2,...|START:STOP:COUNT",
+        help="Force and torque on the floor at these v/(r w), in place of the motion.")  # fmt: skip
 @click.option("--friction", is_flag=True, help="The same at 81 of them from 0.01 to 100.")
 @outputs(f"Save: {RESULTS}, each with bounds of the errors.", explain=True, as_json=True)
 def reference(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 from puck_tables.cli.completion import scenes
-from puck_tables.cli.printing import say
+from puck_tables.cli.printing import listed, say
 
 
 @click.group()
@@ -21,8 +21,7 @@ def list_scenes() -> None:
     """List the scenes that come along."""
     from puck_tables.scene.library import shipped_scenes
 
-    for name, title in shipped_scenes().items():
-        click.echo(f"{name:<24} {title}")
+    click.echo(listed(shipped_scenes(), 24))
 
 
 @scene.command()

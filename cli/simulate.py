@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from contextlib import nullcontext
+from dataclasses import fields
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,11 +13,9 @@ import click
 from click.core import ParameterSource
 from puck_tables.cli.options import (
     FILE,
-    NUMBER,
-    SPIN,
     Outputs,
     PuckChoice,
-    base_option,
+    number,
     outputs,
     packed,
     puck_options,
@@ -42,25 +41,20 @@ ENDS = {  # of slides on bases that are not round
     "slide last": "the spin dies out first, it slides last",
     "spin last": "the sliding dies out first, it spins last",
 }
-_LAUNCHED = (
-    "v0", "w0", "radius", "height", "friction", "gravity", "mass", "decel", "delta", "pressure",
-    "gyration", "base",
-)  # fmt: skip
 
 
 @click.command()
 @click.option("--fit", "fit_path", type=FILE, metavar="FILE",
               help="The puck and the launch that 'puck fit -o FILE.json' found.")  # fmt: skip
 @click.option("--track", help="Which track of --fit, by its name or number from 1.")
-@click.option("--v0", type=Vector("m/s"), help="Launch velocity in m/s, like 1,0.")
-@click.option("--w0", type=SPIN, default=0.0, show_default=True, help="Launch spin in rad/s.")
-@packed("choice", PuckChoice, base_option, *puck_options(mass=True))
+@number("--v0", "m/s", Vector, help="Launch velocity in m/s, like 1,0.")
+@number("--w0", "rad/s", default=0.0, show_default=True, help="Launch spin in rad/s.")
+@packed("choice", PuckChoice, *puck_options(base=True, mass=True))
 @click.option("--frames", type=int, help="Number of states to save.  [default: 101]")
-@click.option("--times", type=Times("s"), help="Times of the states to save, in s.")
-@click.option("--tol", type=NUMBER, default=1e-9, show_default=True,
-              help="Largest error, in units of Q/(f g) (times) and Q^2/(f g) (places), Q = "
-              "hypot(v0, r w0): the cheapest method whose measured error is below it is "
-              "taken.")  # fmt: skip
+@number("--times", "s", Times, help="Times of the states to save, in s.")
+@number("--tol", default=1e-9, show_default=True, help="Largest error, in units of Q/(f g) (times) "
+        "and Q^2/(f g) (places), Q = hypot(v0, r w0): the cheapest method whose measured error is "
+        "below it is taken.")  # fmt: skip
 @click.option("--method", type=click.Choice([method.value for method in INTEGRATORS]),
               help="Dormand-Prince 5(4), or Runge-Kutta 4.  [default: the cheaper]")  # fmt: skip
 @click.option("--exact", is_flag=True, help="Closed forms instead of the table.")
@@ -130,7 +124,7 @@ def _from_fit(
     ctx: click.Context, path: Path, track: str | None
 ) -> tuple[Puck, dict[str, Any], tuple[str, ...]]:
     """The puck and the launch of a fit, which no option contradicts, and what it left open."""
-    for name in _LAUNCHED:
+    for name in ("v0", "w0", *(one.name for one in fields(PuckChoice))):
         if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE:
             raise InputError(
                 f"--fit and --{name} clash: the file of the fit has the puck and its launch"

@@ -7,10 +7,9 @@ from typing import Any
 
 import click
 from puck_tables.cli.options import (
-    NUMBER,
     Outputs,
     PuckChoice,
-    base_option,
+    number,
     outputs,
     packed,
     puck_options,
@@ -31,12 +30,11 @@ ARGUMENTS = {"w0": "spin", **{name: name for name in ("speed", "heading", "vx", 
 
 
 @click.command()
-@click.option("--w0", type=RangeParam("rad/s"), help="Launch spin in rad/s.")
-@click.option("--speed", type=RangeParam("m/s"),
-              help="Launch speed in m/s, along x without --heading.")  # fmt: skip
-@click.option("--heading", type=RangeParam("rad"), help="Direction of the launch from x, in rad.")
-@click.option("--v0", type=Vector("m/s"), help="One launch velocity in m/s instead of --speed.")
-@packed("numbers", dict, base_option, *puck_options(kind=RangeParam, many=True))
+@number("--w0", "rad/s", RangeParam, help="Launch spin in rad/s.")
+@number("--speed", "m/s", RangeParam, help="Launch speed in m/s, along x without --heading.")
+@number("--heading", "rad", RangeParam, help="Direction of the launch from x, in rad.")
+@number("--v0", "m/s", Vector, help="One launch velocity in m/s instead of --speed.")
+@packed("numbers", dict, *puck_options(base=True, kind=RangeParam, many=True))
 @packed(
     "sample", dict,
     click.option("--random", type=click.IntRange(2, MAX_COUNT), metavar="COUNT",
@@ -49,9 +47,9 @@ ARGUMENTS = {"w0": "spin", **{name: name for name in ("speed", "heading", "vx", 
     click.option("--inside", "regions", multiple=True, metavar="X,Y,R|X1,Y1,X2,Y2",
                  help="Say with which chance samples end inside a disc or a rectangle, in m."),
 )  # fmt: skip
-@click.option("--tol", type=NUMBER, default=1e-8, show_default=True,
-              help="Largest error, in units of Q/(f g) (times) and Q^2/(f g) (places): the "
-              "cheapest method whose measured error is below it is taken.")  # fmt: skip
+@number("--tol", default=1e-8, show_default=True, help="Largest error, in units of Q/(f g) (times) "
+        "and Q^2/(f g) (places): the cheapest method whose measured error is below it is "
+        "taken.")  # fmt: skip
 @click.option("--method", type=click.Choice([method.value for method in METHODS]),
               help="Only this one.  [default: the cheapest]")  # fmt: skip
 @click.option("--threads", type=click.IntRange(1, 1024), help="[default: all cores]")

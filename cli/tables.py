@@ -28,7 +28,7 @@ def tables(as_json: bool, names: tuple[str, ...], clean: bool) -> None:
     """  # noqa: D301 - click reads the backspace
     if clean + bool(names) + as_json > 1:
         raise InputError("--json, --remove and --clean clash: give one of them")
-    from puck_tables.table import table_list, table_store
+    from puck_tables.table import table_store
 
     if names or clean:
         removed = table_store.remove(None if clean else names)
@@ -37,7 +37,7 @@ def tables(as_json: bool, names: tuple[str, ...], clean: bool) -> None:
         if not removed:
             click.echo("nothing is kept: nothing to remove")
         return
-    entries = table_list.shipped_and_kept()
+    entries = table_store.shipped_and_kept()
     if as_json:
         click.echo(json.dumps(entries))
     else:

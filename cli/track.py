@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
-from puck_tables.cli.options import FILE, NUMBER, Outputs, outputs, packed
+from puck_tables.cli.options import FILE, Outputs, number, outputs, packed
 from puck_tables.cli.printing import note, say
 
 if TYPE_CHECKING:
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 track_options = packed(
     "how", dict,
-    click.option("--fps", type=NUMBER, help="Frames a second, for frame numbers."),
+    number("--fps", help="Frames a second, for frame numbers."),
     click.option("--unit", metavar="UNIT",
                  help="Unit of the places, where the file does not say: m, cm, px."),
     click.option("--scale", metavar="SIZE", help="Size of a pixel, a number and a unit: 0.5mm; "
@@ -31,8 +31,8 @@ track_options = packed(
                  help="The marks on a puck, with commas, in whose middle its centre lies; of "
                  "several pucks what their names have in common."),
     click.option("--toward", metavar="MARK", help="The mark on a puck that its angle points to."),
-    click.option("--likelihood", type=NUMBER,
-                 help="Places less likely are not seen.  [default: 0.6; not used of SLEAP]"),
+    number("--likelihood",
+           help="Places less likely are not seen.  [default: 0.6; not used of SLEAP]"),
     click.option("--up", type=click.Choice(["x", "y", "z"]), help="The axis that points up, of "
                  "places in space.  [default: as the file says, else z]"),
     click.option("--pucks", metavar="NAMES", help="Read these only, with commas."),

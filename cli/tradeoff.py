@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -31,16 +30,14 @@ def tradeoff(quick: bool, files: tuple[Path, ...], out: Outputs) -> None:
     puck tradeoff --quick
     puck tradeoff -o tradeoff.h5 -o tradeoff.csv --plot tradeoff.png
     """  # noqa: D301 - click reads the backspace
-    first, *others = files or (None,)
-    out = replace(out, output=first)
-    out.prepare(others=others)
-    for path in others:
-        Outputs(path, overwrite=True).prepare()
+    for path in files:
+        Outputs(path, overwrite=out.overwrite).prepare()
+    out.prepare(others=files)
     from puck_tables.tradeoff.measurement import measure
 
     with progress("measuring") as show:
         measured = measure(quick, show)
-    for path in others:
+    for path in files:
         Outputs(path, overwrite=out.overwrite).deliver(measured)
     out.deliver(measured)
     click.echo(report(measured))

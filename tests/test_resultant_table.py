@@ -22,7 +22,6 @@ from puck_tables.motion.friction_source import table_friction
 from puck_tables.table.resultant_table import ResultantTable, adversarial_points
 from puck_tables.table.slip_axis import LawAxis
 from puck_tables.table.spline_fit import clamped_coefficients, height_terms
-from puck_tables.tradeoff.bicubic import not_a_knot_coefficients
 
 QUARTER, HALF = 0.25 * math.pi, 0.5 * math.pi
 NAMES = ("uniform", "galin", "hertz", "ring", "annulus:0.3", "annulus:0.8", "annulus:0.999")
@@ -93,20 +92,6 @@ def test_uniform_phi_grid_loses_its_order():
         errors.append(np.abs(error).max())
     assert slope(sizes, errors) <= 2.3
     assert errors[2] > 1000 * Table.build(cells=128).accuracy.worst
-
-
-def test_not_a_knot_spline_has_order_4():
-    """The rival of the polynomials of the height."""
-    phi = np.linspace(0.0, HALF, 50)[:, None]
-    delta = np.linspace(0.0, 1.0, 1001)
-    truth = np.stack(by_closed_form(phi, delta))  # (3, phi, delta): rational functions of δ
-    sizes, errors = [4, 8, 16, 32, 64], []
-    for cells in sizes:
-        values = np.stack(by_closed_form(phi, np.arange(cells + 1) / cells))
-        coefficients = not_a_knot_coefficients(values.transpose(2, 0, 1))
-        error = spline(coefficients, delta * cells).transpose(1, 2, 0) - truth
-        errors.append(np.abs(error).max())
-    assert slope(sizes, errors) >= 3.8
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -51,6 +51,12 @@ class SlideOrFlight(NamedTuple):
     vx: float
     vy: float
     loss: float
+
+    def flown(self, asperity: Asperity, t: Any) -> tuple[Any, ...]:
+        """X, y, vx, vy so long after its beginning, s, on the parabola of a flight."""
+        ax, ay = asperity.pull / asperity.mass, -asperity.load / asperity.mass
+        x, y = self.x + (self.vx + 0.5 * ax * t) * t, self.y + (self.vy + 0.5 * ay * t) * t
+        return x, y, self.vx + ax * t, self.vy + ay * t
 
 
 @dataclass(frozen=True)
@@ -158,18 +164,13 @@ def _fly(
     asperity: Asperity, arc: SlideOrFlight, wanted: FloatArray, end: float
 ) -> tuple[SlideOrFlight | None, FloatArray]:
     """Until the landing, and the states at the times wanted before it."""
-    ax, ay = asperity.pull / asperity.mass, -asperity.load / asperity.mass
-    flown = landing(asperity, arc, end - arc.time)
-    down = arc.time + flown
+    lasts = landing(asperity, arc, end - arc.time)
+    down = arc.time + lasts
     t = wanted[wanted < down] - arc.time
-    states = np.stack([
-        t + arc.time, arc.x + (arc.vx + 0.5 * ax * t) * t, arc.y + (arc.vy + 0.5 * ay * t) * t,
-        arc.vx + ax * t, arc.vy + ay * t, 0.0 * t,
-    ])  # fmt: skip
+    states = np.stack([t + arc.time, *arc.flown(asperity, t), 0.0 * t])
     if down > end:
         return None, states
-    x = arc.x + (arc.vx + 0.5 * ax * flown) * flown
-    vx, vy = arc.vx + ax * flown, arc.vy + ay * flown
+    x, _, vx, vy = arc.flown(asperity, lasts)
     incline = float(asperity._incline(x))
     # along the support, in the direction (1, incline): kept
     lost = 0.5 * asperity.mass * (vy - incline * vx) ** 2 / (1.0 + incline**2)
@@ -190,7 +191,7 @@ def landing(asperity: Asperity, arc: SlideOrFlight, longest: float) -> float:
     for _ in range(_GAP_STEPS):
         if t > longest:
             return math.inf
-        x, vx = arc.x + (arc.vx + 0.5 * ax * t) * t, arc.vx + ax * t
+        x, _, vx, vy = arc.flown(asperity, t)
         # how far the bound on the speed is to hold
         ahead = max(abs(vx / ax), math.sqrt(asperity.length / abs(ax))) if ax != 0.0 else math.inf
         # y − y₀ and the support's own rise: exact for short flights
@@ -199,7 +200,7 @@ def landing(asperity: Asperity, arc: SlideOrFlight, longest: float) -> float:
         gap = (arc.vy + 0.5 * ay * t) * t - rise
         if gap <= _NOISE * (abs(arc.vy * t) + abs(ay * t * t) + abs(rise)):
             return t  # landed, to rounding: also flights too low to be seen
-        closing = arc.vy + ay * t - float(asperity._incline(x)) * vx
+        closing = vy - float(asperity._incline(x)) * vx
         fastest = abs(vx) + (abs(ax) * ahead if ax != 0.0 else 0.0)
         bend = -ay + asperity.amplitude / asperity.length**2 * fastest**2 + abs(ax) * asperity.slope
         root = math.sqrt(max(closing * closing + 2.0 * bend * gap, 0.0))
@@ -219,9 +220,8 @@ def _rising(asperity: Asperity, arc: SlideOrFlight, ax: float) -> float:
     t = min(t, math.sqrt(asperity.mass * asperity.length / asperity.load))
     looks = np.arange(1, _LOOKS + 1) / _LOOKS
     while t > 0.0:
-        later = t * looks
-        x = arc.x + (arc.vx + 0.5 * ax * later) * later
-        if (asperity._press(x, arc.vx + ax * later) < 0.0).all():
+        x, _, vx, _ = arc.flown(asperity, t * looks)
+        if (asperity._press(x, vx) < 0.0).all():
             return t
         t *= 0.5
     return t

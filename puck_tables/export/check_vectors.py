@@ -54,13 +54,12 @@ def cases_of(functions: Sequence[str], tol: float, kind: Puck | None = None) -> 
     digits = round(-math.log10(tol)) + 2
     cases = {}
     for name in functions:
-        width, rows = made[name](Puck(radius=1.0) if kind is None else kind)
+        rows = made[name](Puck(radius=1.0) if kind is None else kind)
         given = {"stop": 6, "state": 7, "turn": 6, "resultants": 2}[name]
-        numbers = [
-            value if n % width < given else float(f"{value:.{digits}g}")
-            for n, value in enumerate(rows)
-        ]
-        cases[name] = width, tuple(numbers)
+        cases[name] = rows.shape[1], tuple(
+            value if n < given else float(f"{value:.{digits}g}")
+            for row in rows.tolist() for n, value in enumerate(row)
+        )  # fmt: skip
     return cases
 
 
@@ -90,26 +89,24 @@ def _looked_up(puck: Puck, launches: FloatArray) -> Stops:
     )  # fmt: skip
 
 
-def _stops(puck: Puck) -> Cases:
+def _stops(puck: Puck) -> FloatArray:
     launches = _integrated(puck)
     result = _looked_up(puck, launches)
     answers = (
         result.stop_time, result.stop_x, result.stop_y, result.path_length, result.body_angle,
     )  # fmt: skip
-    rows = np.column_stack([launches, *answers])
-    return rows.shape[1], tuple(rows.ravel().tolist())
+    return np.column_stack([launches, *answers])
 
 
-def _turns(puck: Puck) -> Cases:
+def _turns(puck: Puck) -> FloatArray:
     launches = _integrated(puck)
     generic = (launches[:, 2] != 0.0) & (launches[:, :2] != 0.0).any(axis=1)
     launches = launches[generic][: 3 if _kind(puck)[0] else 7]
-    rows = np.column_stack([launches, _looked_up(puck, launches).turn_angle])
-    return rows.shape[1], tuple(rows.ravel().tolist())
+    return np.column_stack([launches, _looked_up(puck, launches).turn_angle])
 
 
-def _states(puck: Puck) -> Cases:
-    rows: list[float] = []
+def _states(puck: Puck) -> FloatArray:
+    rows = []
     kind, _, tol = _kind(puck)
     launches = _integrated(puck)
     whole = _looked_up(puck, launches).stop_time
@@ -119,8 +116,8 @@ def _states(puck: Puck) -> Cases:
         time = float(f"{share * whole[n]:.4g}")
         run = thrown.simulate((vx, vy), spin, times=[time], tol=tol, exact=not kind)
         there = (run.x, run.y, run.orientation, run.vx, run.vy, run.spin)
-        rows += [vx, vy, spin, delta, decel, radius, time, *(float(one[0]) for one in there)]
-    return 13, tuple(rows)
+        rows.append([vx, vy, spin, delta, decel, radius, time, *(float(one[0]) for one in there)])
+    return np.array(rows)
 
 
 def _moments() -> list[tuple[int, float]]:
@@ -129,7 +126,7 @@ def _moments() -> list[tuple[int, float]]:
     return [*picked, *((1, share) for share in (1.5, *_SHARES[3:]))]
 
 
-def _resultants(puck: Puck) -> Cases:
+def _resultants(puck: Puck) -> FloatArray:
     kind, tallest, _ = _kind(puck)
     phi, share = (
         one.ravel() for one in np.meshgrid(_ANGLES[1 if kind else 0 :], _HEIGHTS, indexing="ij")
@@ -139,5 +136,4 @@ def _resultants(puck: Puck) -> Cases:
         rho = puck.body.law.resultants(phi, share)
     else:
         rho = moment_balance(integrals(phi), slip_direction(phi), share)
-    rows = np.column_stack([phi, share, *rho])
-    return rows.shape[1], tuple(rows.ravel().tolist())
+    return np.column_stack([phi, share, *rho])

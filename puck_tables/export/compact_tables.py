@@ -17,7 +17,7 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import chebyshev
-from scipy.interpolate import make_interp_spline
+from scipy.interpolate import BSpline, make_interp_spline
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import AccuracyError
@@ -26,19 +26,11 @@ from puck_tables.stopping.stop_table import StopTable
 
 DEGREES = range(3, 8)
 CELLS = (*range(4, 28), *range(28, 48, 2), *range(48, 97, 4))
-# Of the error asked for: of the functions of a stop, and of the curve and its inverse, so that what
-# is made of all of them keeps it (measured, tests/test_export_error.py).
-STOP_SHARE, CURVE_SHARE, CONSTANT_SHARE = 0.5, 0.3, 0.02
-# the same under another pressure law
-LAW_STOP_SHARE, ORBIT_SHARE, PATCH_SHARE, LAW_CONSTANT_SHARE = 0.42, 0.48, 0.22, 0.05
 _POWERS = 0.65  # of a share: what dropped powers may take
 # quanta that are tried, of the largest that rounding alone would allow; cells beyond the fewest
 _QUANTA, _MORE_CELLS = (0.15, 0.25, 0.4, 0.5, 0.65, 0.8, 1.0), 3
 _NODES = 769  # at which plain pucks are fitted
 _OUT_OF_REACH = "no table to export keeps an error of {:.1e}: ask for a larger one"
-# in the order of the programs
-STOP_COLUMNS = [0, 1, 2, 3, 4]  # time, along, across, length, body
-CURVE_COLUMNS = [5, 6]  # κR and S/δ
 
 
 @dataclass(frozen=True)
@@ -74,20 +66,8 @@ def weights(xi: FloatArray, cells: int, degree: int) -> FloatArray:
     >>> weights(np.array([0.0, 0.5, 1.0]), 2, 3).sum(axis=1).round(12).tolist()
     [1.0, 1.0, 1.0]
     """
-    place = xi * cells
-    cell = np.minimum(place.astype(np.int64), cells - 1)
-    t = place - cell
-    here = [np.ones_like(t)]
-    for d in range(1, degree + 1):
-        parts = [part / d for part in here]
-        right = [(r + 1 - t) * part for r, part in enumerate(parts)]
-        left = [(t + d - 1 - r) * part for r, part in enumerate(parts)]
-        zero = np.zeros_like(t)
-        here = [a + b for a, b in zip([*right, zero], [zero, *left], strict=True)]
-    matrix = np.zeros((xi.size, cells + degree))
-    for r, weight in enumerate(here):
-        matrix[np.arange(xi.size), cell + r] = weight
-    return matrix
+    knots = np.arange(-degree, cells + degree + 1.0)
+    return np.asarray(BSpline.design_matrix(xi * cells, knots, degree).toarray())
 
 
 def functions_of(table: StopTable) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -102,7 +82,8 @@ def functions_of(table: StopTable) -> tuple[FloatArray, FloatArray, FloatArray]:
     along = make_interp_spline(np.linspace(0.0, 1.0, n + 1), np.moveaxis(sides, 1, 0), 5)
     moved = np.moveaxis(along(there), 0, 1)
     inverse = table.inverse.ratios(with_time=True)
-    return moved[..., STOP_COLUMNS], moved[..., CURVE_COLUMNS], inverse[..., None]
+    # time, along, across, length, body; κR and S/δ
+    return moved[..., :5], moved[..., 5:7], inverse[..., None]
 
 
 def spline_fit(
@@ -194,10 +175,7 @@ class _Fits:
         powers = int(np.argmax(np.append(dropped, 0.0) <= _POWERS * error))
         if dropped[-1] ** 2 > _POWERS * error * dropped[-2]:  # the next power would be missed
             raise AccuracyError(_OUT_OF_REACH.format(error))
-        to_powers = np.zeros((powers, powers))
-        for m in range(powers):
-            to_powers[: m + 1, m] = chebyshev.cheb2poly(np.eye(powers)[m, : m + 1])
-        by_power = (to_powers @ series[:powers]).reshape(powers, sides, nodes, -1)
+        by_power = (_to_powers(powers) @ series[:powers]).reshape(powers, sides, nodes, -1)
         self._wanted = by_power.transpose(2, 1, 0, 3)  # nodes, sides, powers, functions
         self._at_heights = s ** np.arange(powers)[:, None]
         self._sizes = [one for one in CELLS if one < nodes // 4]
@@ -260,19 +238,21 @@ def fit_constants(constants: FloatArray, error: float) -> SplineFit:
     As a table without cells: numbers (rows, powers, 1).
     """
     rows, count = constants.shape
-    series = np.zeros((rows, count))
-    for row in range(rows):
-        polynomial = chebyshev.poly2cheb(constants[row])
-        series[row, : polynomial.size] = polynomial
+    series = np.linalg.solve(_to_powers(count), constants.T).T
     dropped = np.abs(series)[:, ::-1].cumsum(axis=1)[:, ::-1].max(axis=0)
     powers = max(int(np.argmax(np.append(dropped, 0.0) <= 0.5 * error)), 1)
-    kept = np.zeros((rows, powers))
-    for row in range(rows):
-        polynomial = chebyshev.cheb2poly(series[row, :powers])
-        kept[row, : polynomial.size] = polynomial
+    kept = series[:, :powers] @ _to_powers(powers).T
     quantum = _quantum(error / count)
     whole = np.rint(kept / quantum).astype(np.int64)
     return SplineFit((), 0, quantum, whole.reshape(rows, powers, 1))
+
+
+def _to_powers(count: int) -> FloatArray:
+    """What makes the coefficients of a polynomial from those of its Chebyshev series."""
+    matrix = np.zeros((count, count))
+    for m, one in enumerate(np.eye(count)):
+        matrix[: m + 1, m] = chebyshev.cheb2poly(one[: m + 1])
+    return matrix
 
 
 def _quantum(largest: float) -> float:

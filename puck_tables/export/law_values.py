@@ -178,15 +178,10 @@ class LawValues:
     @cached_property
     def limit_motions(self) -> LimitMotions:
         """The two orbits, from pure sliding and from pure spin."""
-        limits = np.array([_c(puck.limit_ratio) for puck in self.pucks])
-        inertia, times = self.pucks[0].body.inertia, self.stops[..., 0]
-        return _limit_motions(self.law, inertia, self.marks, self.extents, times, limits, self.tol)
+        return _limit_motions(self)
 
 
-@lru_cache(maxsize=8)
-def law_values(law: Law, gyration: float, tol: float) -> LawValues:
-    """One for all files of the same pucks and error."""
-    return LawValues(law, gyration, tol)
+law_values = lru_cache(maxsize=8)(LawValues)  # one for all files of the same pucks and error
 
 
 def _c(ratio: float) -> float:
@@ -194,25 +189,23 @@ def _c(ratio: float) -> float:
     return 1.0 if math.isinf(ratio) else (ratio - 1.0) / (ratio + 1.0)
 
 
-def _limit_motions(
-    law: Law, inertia: float, marks: FloatArray, extents: FloatArray, times: FloatArray,
-    limits: FloatArray, tol: float,
-) -> LimitMotions:  # fmt: skip
+def _limit_motions(values: LawValues) -> LimitMotions:
     """The orbits of a law, from its marks and times to the stop."""
+    law, inertia = values.law, values.pucks[0].body.inertia
+    marks, extents = values.marks, values.extents
+    limits = np.array([_c(puck.limit_ratio) for puck in values.pucks])
     shares = heights(HEIGHTS)
     xi = np.linspace(0.0, 1.0, NODES)
     splines = [
-        [make_interp_spline(xi, times[side, :, j], 5) for j in range(HEIGHTS)]
-        for side in range(len(times))
+        [make_interp_spline(xi, side[:, j], 5) for j in range(HEIGHTS)]
+        for side in values.stops[..., 0]
     ]
-    borders = np.append(0.5 * (marks[1:] + marks[:-1]), marks[1:-1])
-    borders.sort()
 
     def time_at(u: FloatArray) -> FloatArray:
         small = np.exp(-np.abs(u))
         share = 2.0 * small / (1.0 + small)  # 1 − |c|
         c = np.where(u < 0.0, share - 1.0, 1.0 - share)
-        sides = np.searchsorted(borders, c)
+        sides = np.searchsorted(values.borders, c)
         owner = (sides + 1) // 2
         gap = np.where(sides == 0, share, np.abs(c - marks[owner]))
         gap = np.where(sides == len(extents) - 1, share, gap)
@@ -265,9 +258,9 @@ def _limit_motions(
 
     parts = [part_at(part) for part in range(4)]
     z = np.linspace(0.0, _LAST, _TRIED)
-    values = np.stack([part(z) for part in parts])
-    left = np.abs(values - values[:, -1:]).max(axis=(0, 2, 3))
-    reach = z[np.argmax(left[:-1] <= _TAIL * tol)] / REACH
+    far = np.stack([part(z) for part in parts])
+    left = np.abs(far - far[:, -1:]).max(axis=(0, 2, 3))
+    reach = z[np.argmax(left[:-1] <= _TAIL * values.tol)] / REACH
     end = float(f"{0.5 * (math.sqrt(reach * (reach + 4.0)) - reach):.4g}")
     x = end * xi
     limit_motions = np.stack([part(REACH * x**2 / (1.0 - x)) for part in parts])

@@ -20,31 +20,12 @@ from puck_tables.export.check_vectors import cases_of
 from puck_tables.export.exported_tables import law_tables, plain_tables
 from puck_tables.export.languages import LANGUAGES
 from puck_tables.export.licence import LICENCE
-from puck_tables.export.program import (
-    intrinsics,
-    law_places,
-    law_state,
-    places,
-    resultant_formulas,
-    self_check,
-    state_along,
-    stop,
-)
+from puck_tables.export.program import law_motion, plain_motion, resultant_formulas, self_check
 from puck_tables.puck import Puck
 
 FINEST, COARSEST = 1e-9, 1e-2  # of Q/(fg), Q²/(fg): as fine as the stop table; looser is no answer
-# What can be asked for: the modules of it, and the functions that its user calls.
-PARTS: dict[str, tuple[tuple[ModuleType, ...], tuple[str, ...]]] = {
-    "stop": ((places, stop), ("stop",)),
-    "state": ((places, stop, state_along), ("stop", "state", "turn")),
-    "resultants": ((places, resultant_formulas), ("resultants",)),
-}
-_MISSES = {
-    "stop": "stop_misses", "state": "state_misses", "turn": "turn_misses",
-    "resultants": "resultant_misses",
-}  # fmt: skip
-_CASES = {
-    "stop": "STOP", "state": "STATE", "turn": "TURN", "resultants": "RESULTANT",
+PARTS = {  # what can be asked for, and the functions of it that its user calls
+    "stop": ("stop",), "state": ("stop", "state", "turn"), "resultants": ("resultants",),
 }  # fmt: skip
 
 
@@ -218,31 +199,25 @@ def _text(
 ) -> str:  # fmt: skip
     """The whole file."""
     language, by_law = LANGUAGES[key], not kind.body.has_closed_forms
-    wanted = _modules(parts)
-    modules = [one for one in (places, stop, state_along, resultant_formulas) if one in wanted]
-    if by_law:
-        modules += [law_places] + [law_state] * (state_along in modules)
-    public = list(dict.fromkeys(name for part in parts for name in PARTS[part][1]))
-    misses = [_MISSES[name] for name in public]
-    functions = {
-        node.name: node for module in [*modules, self_check] for node in _functions(module)
-    }
-    functions["self_test"] = _self_test(misses)
+    modules = [plain_motion, resultant_formulas, *([law_motion] if by_law else []), self_check]
+    public = list(dict.fromkeys(name for part in parts for name in PARTS[part]))
+    functions = {node.name: node for module in modules for node in _functions(module)}
+    functions["self_test"] = _self_test(public)
     functions = _needed(functions, [*public, "self_test"])
     if by_law:  # room for the lines of the law
         for name in functions.keys() - {*public, "self_test"}:
             del functions[name].body[0]
-    numbers: dict[str, Any] = {"TOLERANCE": tol}
+    numbers: dict[str, Any] = {  # what stands for a number of the file is replaced
+        name: value for module in modules for name, value in vars(module).items()
+        if name.isupper() and isinstance(value, int | float)
+    }  # fmt: skip
+    numbers["TOLERANCE"] = tol
     arrays: dict[str, Sequence[float]] = {}
     for name, (width, values) in cases_of(public, tol, kind if by_law else None).items():
-        arrays[f"{_CASES[name]}_CASES"] = values
-        numbers[f"{_CASES[name]}_COUNT"] = len(values) // width
+        arrays[f"{name.upper()}_CASES"] = values
+        numbers[f"{name.upper()}_COUNT"] = len(values) // width
     arrays |= tables
     numbers |= constants
-    for module in modules:
-        numbers |= {
-            n: v for n, v in vars(module).items() if n.isupper() and n not in vars(intrinsics)
-        }
     whole = _Whole({n: v for n, v in numbers.items() if isinstance(v, int)})
     functions = {name: whole.visit(node) for name, node in functions.items()}
     used = {
@@ -269,10 +244,6 @@ class _Whole(ast.NodeTransformer):
     def visit_Name(self, node: ast.Name) -> ast.expr:
         """A number for a name, if it is one of them."""
         return ast.Constant(self._numbers[node.id]) if node.id in self._numbers else node
-
-
-def _modules(parts: tuple[str, ...]) -> set[ModuleType]:
-    return {module for part in parts for module in PARTS[part][0]}
 
 
 def _needed(
@@ -319,9 +290,9 @@ def _functions(module: ModuleType) -> list[ast.FunctionDef]:
     return [node for node in tree.body if isinstance(node, ast.FunctionDef)]
 
 
-def _self_test(misses: Sequence[str]) -> ast.FunctionDef:
+def _self_test(public: Sequence[str]) -> ast.FunctionDef:
     """The test of the whole file."""
-    total = " + ".join(f"{name}()" for name in misses)
+    total = " + ".join(f"{name}_misses()" for name in public)
     (function,) = ast.parse(
         "def self_test() -> int:\n"
         f'    """How many numbers of the test vectors are missed: 0."""\n    return {total}'

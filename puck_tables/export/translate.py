@@ -44,9 +44,9 @@ class Language(ABC):
     def function(self, node: ast.FunctionDef) -> str:
         """A function of the programs."""
 
-    @abstractmethod
     def foot(self, public: Sequence[str]) -> str:
-        """What a file ends with."""
+        """What a file ends with: nothing, if the language needs nothing."""
+        return ""
 
 
 _OPERATORS: Mapping[type[ast.AST], tuple[str, int]] = {
@@ -141,15 +141,10 @@ class Braces(ABC):
             ):  # fmt: skip
                 return _closed(pad, self._range(name, args), self._block(body, depth + 1))
             case ast.If(test=test, body=body, orelse=other):
-                lines = _closed(pad, f"if ({self.of(test)})", self._block(body, depth + 1))
+                head, inner = f"if ({self.of(test)})", self._block(body, depth + 1)
                 if not other:
-                    return lines
-                if len(lines) == 1:
-                    lines = [
-                        f"{pad}if ({self.of(test)}) {{",
-                        *self._block(body, depth + 1),
-                        pad + "}",
-                    ]
+                    return _closed(pad, head, inner)
+                lines = [f"{pad}{head} {{", *inner, pad + "}"]
                 if len(other) == 1 and isinstance(other[0], ast.If):
                     nested = self._statement(other[0], depth)
                     return [*lines[:-1], f"{pad}}} else {nested[0].strip()}", *nested[1:]]
@@ -159,12 +154,8 @@ class Braces(ABC):
 
     def _range(self, name: str, args: list[ast.expr]) -> str:
         counted = "unused" if name == "_" else name
-        start, stop, step = "0", "", "1"
-        if len(args) == 1:
-            stop = self.of(args[0])
-        else:
-            start, stop = self.of(args[0]), self.of(args[1])
-            step = self.of(args[2]) if len(args) == 3 else "1"
+        values = list(map(self.of, args))
+        start, stop, step = [*([] if len(args) > 1 else ["0"]), *values, "1"][:3]
         first = self.declaration(counted, "counter", start)
         if step == "-1":
             return f"for ({first} {counted} > {stop}; {counted}--)"

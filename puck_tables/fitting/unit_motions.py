@@ -30,8 +30,7 @@ from puck_tables.stopping.state_values import directions, looked_up, looked_up_l
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.stopping.variational import Variations, unit_states, variations_by
 from puck_tables.table.friction_slopes import slopes_at_one_height, slopes_of_table
-from puck_tables.table.resultant_table import ResultantTable
-from puck_tables.table.resultant_values import full_contact
+from puck_tables.table.resultant_table import ResultantTable, full_contact
 
 # of δ, between heights: a cubic through four of them errs by 3e-5 of the path at 3.83, less below:
 # test_motions_between_the_heights_of_tall_pucks_are_those_of_the_puck

@@ -31,11 +31,6 @@ def page(result: Comparison) -> str:
     exact += f" at ({last['x'][0]:.12g}, {last['y'][0]:.12g}) m"
     exact += f", known to {answer.time_bound:.1e} s and {answer.place_bound:.1e} m."
     met = escape(", ".join(map(str, result.thresholds)))
-    said = {
-        "Not told": result.untold(),
-        "As the step falls": [f"{words}: {what}" for words, what in result.convergence().items()],
-        "Truth and not error": result.truths(),
-    }
     return document(case.label, _STYLE, [
         f"<h1>{escape(case.title)}</h1><div class='case'>{table((), lines_of(answer).items())}",
         f"</div><p>{exact} Rest counts from {met} on.</p><h2>Errors</h2>",
@@ -43,7 +38,8 @@ def page(result: Comparison) -> str:
             (run.log.name, *(_written(row[name]) for name in names))
             for run, row in zip(result.runs, rows, strict=True)
         ]),
-        *(f"<h2>{head}</h2>{bullets(texts)}" for head, texts in said.items() if texts),
+        *(f"<h2>{head.capitalize()}</h2>{bullets(texts)}"
+          for head, texts in result.remarks().items()),
         f"<h2>Picture</h2>{svg_of(draw(result))}",
     ])  # fmt: skip
 

@@ -143,6 +143,15 @@ class Comparison(Result):
             told.append("the motion of this case does not stop while it is followed")
         return told
 
+    def remarks(self) -> dict[str, list[str]]:
+        """What is said of the runs besides their numbers, by headings."""
+        fallen = [f"{words}: {what}" for words, what in self.convergence().items()]
+        found = {
+            "not told": self.untold(), "as the step falls": fallen,
+            "truth and not error": self.truths(),
+        }  # fmt: skip
+        return {head: texts for head, texts in found.items() if texts}
+
     def __repr__(self) -> str:
         count = len(self.runs)
         return f"Comparison({self.answer.case.label}: {count} run{'s' if count != 1 else ''})"

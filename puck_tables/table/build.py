@@ -17,6 +17,29 @@ COARSEST = 0.01  # what a table may promise at most
 _LEAST_CELLS = 8  # a side
 
 
+def checked_accuracy(
+    accuracy: float | None, default: float, finest: float, units: str
+) -> float:  # fmt: skip
+    """The accuracy that is asked of a table, in these units, or the default.
+
+    Raises
+    ------
+    AccuracyError
+        If it is out of range.
+
+    Examples
+    --------
+    >>> checked_accuracy(None, 1e-9, 1e-12, "an absolute error")
+    1e-09
+    """
+    wanted = default if accuracy is None else accuracy
+    if not finest <= wanted <= COARSEST:
+        raise AccuracyError(
+            f"accuracy must be from {finest:g} to {COARSEST:g} ({units}), got {wanted:g}"
+        )
+    return wanted
+
+
 @dataclass(frozen=True)
 class Goal:
     """What a kind of table on a grid can reach: errors fall like cells⁻⁴.
@@ -66,11 +89,7 @@ def built(
         found = measured(table)
         promised = _rounded_up(max(1.25 * found.worst, goal.finest))
         return replace(table, accuracy=found, tolerance=promised)
-    wanted = goal.default if accuracy is None else accuracy
-    if not goal.finest <= wanted <= COARSEST:
-        raise AccuracyError(
-            f"accuracy must be from {goal.finest:g} to {COARSEST:g} ({goal.units}), got {wanted:g}"
-        )
+    wanted = checked_accuracy(accuracy, goal.default, goal.finest, goal.units)
     # even, so that every other node is a grid as well: it tells the order
     cells = max(_LEAST_CELLS, 2 * math.ceil(0.5 * (goal.constant / wanted) ** 0.25))
     while cells <= goal.most_cells:

@@ -70,16 +70,7 @@ def encode(
 
 
 def read_content(path: str | Path) -> bytes:
-    """The bytes of a table file.
-
-    Examples
-    --------
-    >>> read_content("/nowhere/table.h5")
-    Traceback (most recent call last):
-    ...
-    puck_tables.errors.TableError: there is no table file /nowhere/table.h5: build one with \
-'puck build-tables -o FILE', or leave --table out to use the tables that come along
-    """
+    """The bytes of a table file, as :meth:`puck_tables.Table.load` takes it."""
     try:
         return read_whole(path, MAX_FILE_BYTES)
     except FileNotFoundError:

@@ -18,16 +18,16 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
 from puck_tables.contact.resultants import Resultants, checked_delta
 from puck_tables.errors import AccuracyError, InputError
-from puck_tables.kernels.section_spline import LINE
+from puck_tables.kernels.section_spline import LINE, RATIOS
 from puck_tables.table.accuracy import Accuracy
-from puck_tables.table.build import COARSEST
+from puck_tables.table.build import COARSEST, checked_accuracy
 from puck_tables.table.check import CheckReport
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.section_table import SectionTable
 from puck_tables.table.singular_lines import lines_of, opening_angle
 from puck_tables.table.slip_axis import GRADING_POWER, LawAxis, sides_of
 from puck_tables.table.slip_spline import SlipSpline, slip_spline
-from puck_tables.table.spline_fit import height_terms
+from puck_tables.table.spline_fit import height_terms, ratios_at
 from puck_tables.table.table import Progress
 from puck_tables.table.tall_friction import tall_resultants
 
@@ -142,12 +142,8 @@ class FrictionSection(SectionTable):
     def built(cls, of: Any, accuracy: float | None = None, **how: Any) -> FrictionSection:
         """The friction of one puck, see :meth:`puck_tables.Table.build`."""
         law = of[0] if isinstance(of[0], Law) else law_of(of[0])
-        wanted = DEFAULT_ACCURACY if accuracy is None else accuracy
-        if not FINEST_ACCURACY <= wanted <= COARSEST:
-            raise AccuracyError(
-                f"accuracy must be from {FINEST_ACCURACY:g} to {COARSEST:g} (an absolute error of "
-                f"the friction ratios), got {wanted:g}"
-            )
+        units = "an absolute error of the friction ratios"
+        wanted = checked_accuracy(accuracy, DEFAULT_ACCURACY, FINEST_ACCURACY, units)
         return friction_section(law, float(checked_delta(of[1])), wanted, **how)
 
 
@@ -184,16 +180,12 @@ def section_of_table(table: ResultantTable, delta: float, accuracy: float) -> Fr
     >>> round(float(across / inverse), 6)  # ρ_⊥
     0.25
     """
-    table.checked_range(delta, table.law.name)
+    values, error = ratios_of_table(table, delta)
     if table.axis.cells % 2:
         raise InputError(
             f"{table.source} has an odd number of cells ({table.axis.cells}), which motions cannot "
             "halve to see what it contributes to an error: build one with --accuracy"
         )
-    a0, a2, b1, c0, c2 = height_terms(table.values, table.heights).T
-    values = np.stack([a0 + a2 * delta**2, b1 * delta, c0 + c2 * delta**2], axis=-1)
-    # an error of ρ_∥ stands in every ratio
-    error = table.tolerance * float(values[:, 0].max() * (1.0 + values.max()))
     if error > accuracy:
         raise AccuracyError(
             f"{table.source} gives the friction ratios to {error:.1g}, not to {accuracy:.1g}: "
@@ -201,9 +193,17 @@ def section_of_table(table: ResultantTable, delta: float, accuracy: float) -> Fr
         )  # fmt: skip
     everywhere = (error,) * 3, (error,) * 3, (error,) * 3, (0.0,) * 3, (delta,) * 3
     return FrictionSection(
-        values, law=table.law, delta=delta, cotangents=table.law.edges, tolerance=error,
+        values[:, :RATIOS], law=table.law, delta=delta, cotangents=table.law.edges, tolerance=error,
         accuracy=Accuracy(*everywhere, promised=3, order=0.0, points=0), source=table.source,
     )  # fmt: skip
+
+
+def ratios_of_table(table: ResultantTable, delta: float) -> tuple[FloatArray, float]:
+    """The friction ratios and their derivatives by the height at its nodes (n, 6), their error."""
+    table.checked_range(delta, table.law.name)
+    values = ratios_at(height_terms(table.values, table.heights), delta)
+    # an error of ρ_∥ stands in every ratio
+    return values, table.tolerance * float(values[:, 0].max() * (1.0 + values[:, :RATIOS].max()))
 
 
 def friction_ratios(law: Law, phi: FloatArray, delta: float) -> FloatArray:

@@ -21,12 +21,13 @@ from puck_tables.table.friction_section import (
     FrictionSection,
     inertia_of,
     motion_coefficients,
+    ratios_of_table,
 )
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.singular_lines import lines_of
 from puck_tables.table.slip_axis import sides_of
 from puck_tables.table.slip_spline import SlipSpline, slip_spline
-from puck_tables.table.spline_fit import height_terms
+from puck_tables.table.spline_fit import height_terms, ratios_at
 
 FLOW_ACCURACY = 1e-9  # motions differentiated with it err by at most 1e-8
 
@@ -84,9 +85,7 @@ def slopes_of_table(table: ResultantTable, delta: float) -> FrictionSlopes:
     >>> (found.spline.at(np.array([0.0]))[0].round(5) + 0.0).tolist()
     [1.0, 0.25, 0.875, 0.0, 0.25, -0.25]
     """
-    table.checked_range(delta, table.law.name)
-    values = _with_slopes(height_terms(table.values, table.heights), delta)
-    error = table.tolerance * float(values[:, 0].max() * (1.0 + values[:, :RATIOS].max()))
+    values, error = ratios_of_table(table, delta)
     sides, by_side = table.axis.sides, table.axis.by_side(values)
     return FrictionSlopes(SlipSpline(sides, by_side, True), delta, error)
 
@@ -98,19 +97,11 @@ def slopes_at_one_height(section: FrictionSection) -> FrictionSlopes:
     return FrictionSlopes(SlipSpline(spline.sides, values, True), section.delta, section.error)
 
 
-def _with_slopes(terms: FloatArray, delta: float) -> FloatArray:
-    """Ratios and their derivatives by δ from their polynomials (n, 5), (n, 6)."""
-    a0, a2, b1, c0, c2 = terms.T
-    return np.stack([
-        a0 + a2 * delta**2, b1 * delta, c0 + c2 * delta**2, 2.0 * a2 * delta, b1, 2.0 * c2 * delta
-    ], axis=-1)  # fmt: skip
-
-
 def slopes_at(law: Law, phi: FloatArray, delta: float) -> FloatArray:
     """The friction ratios at slip angles (n,) by the law, then their derivatives by δ, (n, 6)."""
     ends = np.array([0.0, law.delta_max])
     rho = np.stack(law.resultants(phi[:, None], ends), axis=-1)
-    out = _with_slopes(height_terms(rho, ends), delta)
+    out = ratios_at(height_terms(rho, ends), delta)
     if law.can_lift:
         opened = critical_delta(phi) < delta
         if opened.any():

@@ -1,27 +1,50 @@
-"""The table of friction resultants: built from its pressure law, and judged by it."""
+"""The table of friction resultants in full contact: built from its pressure law, judged by it.
+
+Held are ρ_∥, ρ_⊥, ρ_ω at the nodes of φ and at four heights; splined are the friction ratios 1/ρ_∥,
+ρ_⊥/ρ_∥, ρ_ω/ρ_∥, because in full contact they are polynomials of degree 2 in δ under every law:
+five columns over φ are the whole table (:mod:`puck_tables.kernels.quadratic`), and its section at
+one height is three.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Self, cast
+from functools import cached_property
+from typing import Any, ClassVar, Self, cast
 
 import numpy as np
+import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables._core.real import broadcast
 from puck_tables.contact import quadrature
-from puck_tables.contact.integrals import slip_direction
+from puck_tables.contact.integrals import checked_phi, slip_direction
 from puck_tables.contact.laws import Law, law_of
-from puck_tables.contact.resultants import moment_balance
+from puck_tables.contact.resultants import Resultants, checked_delta, moment_balance
+from puck_tables.errors import InputError
+from puck_tables.io.dataset import Variable
 from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import COARSEST, Goal, built
 from puck_tables.table.check import CheckReport, Route, judged
-from puck_tables.table.resultant_values import HEIGHTS, ResultantValues, full_contact
-from puck_tables.table.slip_axis import LawAxis
+from puck_tables.table.section_table import LawTable
+from puck_tables.table.slip_axis import GRADING_POWER, LawAxis
+from puck_tables.table.spline_fit import height_terms, sided_coefficients
 from puck_tables.table.table import Progress, kinds
 
 Tell = Callable[[int], None]
 
+HEIGHTS = 4  # nodes of δ in a file
+_UNIFORM = "uniform"
+_INTERPRETATION = (
+    "Friction on a puck of radius r, height h, mass m sliding with speed v and spin omega "
+    "on a rough plane, Coulomb coefficient f, weight N = m g, whole base loaded by the "
+    "named pressure law, tilted linearly by the moment balance. "
+    "phi = atan2(r omega, v), delta = 2 f h / r. "
+    "Force on the puck: -f N cos(phi) parallel along its velocity, -f N sin(phi) cos(phi) "
+    "perpendicular across it (to the left), torque -(f N r / 2) sin(phi) spin about the "
+    "vertical. Even in phi. Salnikova, Treschev, Gallyamov 2012, sections 3 and 6."
+)
 # where truth is closed forms, and where it is quadrature
 _EXACT = Goal(2e-11, 1e-13, "an absolute error of the dimensionless resultants", 1.2, 1 << 16)
 _BY_QUADRATURE = Goal(1e-9, 1e-11, _EXACT.units, 2.0, 2048, safety=1.25)
@@ -32,7 +55,7 @@ _NODE = 1e-10  # how well nodes under a law of quadrature are known
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ResultantTable(ResultantValues):
+class ResultantTable(LawTable):
     """Friction resultants under a pressure law, 0 ≤ δ ≤ 4⟨x²⟩, with the spline through them.
 
     Parameters
@@ -41,6 +64,165 @@ class ResultantTable(ResultantValues):
         ρ_∥, ρ_⊥, ρ_ω at the nodes of ``axis`` and at δ = 0, ⅓, ⅔ and 1 of ``delta_max``.
     law : Law
     """
+
+    kind = "resultants"
+    algorithm = "integrals of the law; friction ratios splined on its sides; 2"
+    functions: ClassVar[Mapping[str, str]] = {
+        "parallel": "friction resultant along the velocity, rho_parallel",
+        "perpendicular": "friction resultant across the velocity, rho_perpendicular",
+        "spin": "friction torque about the vertical, rho_omega",
+    }
+    second = "delta"
+    quantities = tuple(functions)
+    words: ClassVar[Mapping[str, str]] = {
+        "title": "Friction resultants of a sliding, spinning puck",
+        "interpretation": _INTERPRETATION,
+        "method": "integrals of the pressure law over the base: uniform 2e-15, others 1e-13",
+        "phi_map": (
+            "sides in the order of phi, two for each edge of the load: phi_e = atan(1/edge), "
+            f"tan(phi - phi_e) = extent xi^{GRADING_POWER}, xi = i/n from phi_e, xi = 1 at phi = 0,"
+            " pi/2 or half way to the next line; cubic splines in xi with zero slope at xi = 0 and "
+            "at phi = 0 and pi/2, else not-a-knot"
+        ),
+        "delta_map": "delta = delta_max j/3; polynomials of degree 2",
+        "splined": "1/parallel, perpendicular/parallel, spin/parallel",
+    }
+
+    @property
+    def lines_at(self) -> tuple[float, ...]:
+        """Where the centre of rotation crosses an edge of the load."""
+        return self.law.edges
+
+    @cached_property
+    def delta_max(self) -> float:
+        """The largest δ: contact is full at every φ up to it."""
+        return full_contact(self.law)
+
+    @property
+    def heights(self) -> FloatArray:
+        """δ at the nodes."""
+        return np.linspace(0.0, self.delta_max, HEIGHTS)
+
+    @cached_property
+    def columns(self) -> FloatArray:
+        """What :mod:`puck_tables.kernels.quadratic` reads, fitted at first use; read-only."""
+        terms = height_terms(self.values, self.heights)
+        fitted = np.ascontiguousarray(sided_coefficients(self.axis.by_side(terms), True) / 6.0)
+        fitted.flags.writeable = False
+        return fitted
+
+    def section(self, delta: float) -> FloatArray:
+        """The friction ratios at one height, as :mod:`puck_tables.kernels.section_spline` reads.
+
+        Raises
+        ------
+        InputError
+            If δ is outside the range of the table, or it is not of uniform pressure.
+        """
+        from puck_tables.kernels.quadratic import room_for_section, section_at
+
+        height = float(self.checked_range(delta))
+        out = room_for_section(self.columns)
+        section_at(self.columns, height, out)
+        return out
+
+    def checked_range(self, delta: npt.ArrayLike, law: str = _UNIFORM) -> FloatArray:
+        """``delta`` as an array, refused outside the range of the table.
+
+        Parameters
+        ----------
+        delta : dimensionless heights
+        law : the pressure law that friction is wanted under
+
+        Raises
+        ------
+        InputError
+            If a height is not finite, negative or above the largest of the table, or the table is
+            of another law.
+        """
+        if self.law.name != law:
+            self.refuse_other(law_of(law))
+        height = checked_delta(delta)
+        if not np.all(height <= self.delta_max):
+            raise InputError(
+                f"delta = {height[height > self.delta_max].flat[0]!s} is outside this table "
+                f"(pressure law {law}: 0 <= delta <= {self.delta_max:g}): beyond, the whole base "
+                "does not stay loaded at every phi; where it does, use the closed forms (--exact)"
+            )
+        return height
+
+    def refuse_other(self, law: Law) -> None:
+        """Refuse to be the table of another pressure law.
+
+        Raises
+        ------
+        InputError
+        """
+        if self.law != law:
+            raise InputError(
+                f"{self.source} is a table under the pressure law {self.law.name}, not "
+                f"{law.name}{'' if self.law.name != law.name else ' as it is now'}: give a table "
+                "of that law"
+            )
+
+    def resultants(self, phi: npt.ArrayLike, delta: npt.ArrayLike) -> Resultants:
+        """Interpolated resultants ρ_∥, ρ_⊥, ρ_ω.
+
+        Parameters
+        ----------
+        phi : array_like, radians, in [−π/2, π/2]
+        delta : array_like, dimensionless, in [0, delta_max]
+            Broadcast against ``phi``.
+
+        Returns
+        -------
+        Resultants
+            Dimensionless arrays of the broadcast shape; ``accuracy`` says how exact.
+
+        Raises
+        ------
+        InputError
+            If an argument is not finite or outside its range; nothing is extrapolated.
+
+        Notes
+        -----
+        Cubic splines in φ times polynomials of degree 2 in δ.  The resultants: Salnikova, Treschev,
+        Gallyamov 2012, section 6.
+
+        Examples
+        --------
+        >>> from puck_tables import Table
+        >>> float(Table.shipped().resultants(0.0, 0.5).perpendicular.round(12))
+        0.125
+        """
+        from puck_tables.kernels.quadratic import fill_resultants
+
+        height = self.checked_range(delta, self.law.name)
+        angle, height = broadcast(phi=checked_phi(phi), delta=height)
+        out = np.empty((3, angle.size))
+        phi_, delta_ = (np.ascontiguousarray(axis).reshape(-1) for axis in (angle, height))
+        fill_resultants(self.columns, np.array(self.axis.sides), phi_, delta_, out)
+        return Resultants(*(row.reshape(angle.shape) for row in out))
+
+    # the record of the kind
+
+    @property
+    def grid(self) -> str:
+        """How many nodes it has, in words."""
+        return f"{len(self.values)} phi x {HEIGHTS} delta nodes"
+
+    @property
+    def valid_range(self) -> str:
+        """Where it holds, in words."""
+        return f"|phi| <= pi/2, 0 <= delta <= {self.delta_max:g}; refused outside"
+
+    @property
+    def axes(self) -> dict[str, Variable]:
+        """Slip angle and height."""
+        return {
+            "phi": Variable(self.axis.nodes(), ("phi",), "rad", "slip angle atan2(r omega, v)"),
+            "delta": Variable(self.heights, ("delta",), "1", "dimensionless height 2 f h / r"),
+        }
 
     @classmethod
     def is_of(cls, of: object) -> bool:
@@ -144,6 +326,11 @@ class ResultantTable(ResultantValues):
         return judged(self.source, self.tolerance, routes, progress)
 
 
+def full_contact(law: Law) -> float:
+    """The height up to which contact is full under a law, as tables have it: twelve digits."""
+    return float(f"{law.delta_max:.12g}")
+
+
 def _truth(law: Law, phi: FloatArray, delta: FloatArray, tell: Tell | None = None) -> FloatArray:
     """The resultants by the law, (…, 3); ``phi`` (n, …), ``delta`` alike or of one φ."""
     parts = []
@@ -156,7 +343,7 @@ def _truth(law: Law, phi: FloatArray, delta: FloatArray, tell: Tell | None = Non
     return np.concatenate(parts)
 
 
-def _measured(table: ResultantValues, probes: int, tell: Tell | None) -> Accuracy:
+def _measured(table: ResultantTable, probes: int, tell: Tell | None) -> Accuracy:
     """The errors of a table against its law."""
     phi, delta = adversarial_points(table, probes, seed=2012)
     truth = _truth(table.law, phi, delta, tell).T
@@ -169,7 +356,7 @@ def _measured(table: ResultantValues, probes: int, tell: Tell | None) -> Accurac
 
 
 def adversarial_points(
-    table: ResultantValues, count: int, seed: int | None
+    table: ResultantTable, count: int, seed: int | None
 ) -> tuple[FloatArray, FloatArray]:
     """Points where a table is worst, and random ones.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from typing import TypeVar
+from typing import Any
 
 import numpy as np
 
@@ -19,14 +19,11 @@ from puck_tables.contact.speed_quadrature import speed_integrals
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.speed_quadrature_kernel import COARSE, FINE
 from puck_tables.table.accuracy import Accuracy
-from puck_tables.table.build import COARSEST
+from puck_tables.table.build import checked_accuracy
 from puck_tables.table.speed_grid import breaks_of, is_pile, patches_of, rays_under
 from puck_tables.table.speed_patch import FilledPatch
 from puck_tables.table.speed_truth import Law
-from puck_tables.table.speed_values import SpeedValues
 from puck_tables.table.table import Progress
-
-K = TypeVar("K", bound=SpeedValues)  # the kind that is made
 
 DEFAULT_ACCURACY = 1e-6  # of f
 FINEST_ACCURACY = 1e-13  # of f: finer is rounding
@@ -42,7 +39,6 @@ _BETWEEN_WORDS = 0.1  # s
 
 
 def tabulated(
-    kind: type[K],
     law: Law,
     accuracy: float | None = None,
     top_speed: float | None = None,
@@ -50,8 +46,8 @@ def tabulated(
     progress: Progress | None = None,
     pressure: str | PressureLaw = "uniform",
     reach: float = 1.0,
-) -> K:
-    """Friction with a coefficient that depends on the slip speed, in full contact, tabulated.
+) -> dict[str, Any]:
+    """The fields of a table of friction that depends on the slip speed, in full contact.
 
     The grid is cut at the corners of the law, and every patch is as fine as it needs.
 
@@ -72,19 +68,14 @@ def tabulated(
 
     Examples
     --------
-    >>> from puck_tables.table.speed_table import SpeedTable
-    >>> table = tabulated(SpeedTable, SpeedLaw([0.0, 0.5, 1.0, 3.0], [0.3, 0.22, 0.2, 0.25]), 1e-8)
-    >>> table.accuracy.worst < 1e-8, table.top
+    >>> made = tabulated(SpeedLaw([0.0, 0.5, 1.0, 3.0], [0.3, 0.22, 0.2, 0.25]), 1e-8)
+    >>> made["accuracy"].worst < 1e-8, float(made["breaks"][-1])
     (True, 3.0)
     """
-    accuracy = DEFAULT_ACCURACY if accuracy is None else accuracy
     load = load_under(law, pressure, reach)
-    finest = finest_accuracy(load)
-    if not finest <= accuracy <= COARSEST:
-        raise AccuracyError(
-            f"the accuracy of a table of speeds must be from {finest:g} to "
-            f"{COARSEST:g} (of the largest f), got {accuracy:g}"
-        )
+    accuracy = checked_accuracy(
+        accuracy, DEFAULT_ACCURACY, finest_accuracy(load), "of the largest f"
+    )
     law = law.checked() if isinstance(law, FrictionLaw) else law
     breaks = breaks_of(law, top_speed, scale)
     largest = largest_f(law, float(breaks[-1]))
@@ -125,12 +116,13 @@ def tabulated(
     if not all(part.good(goal) for part in parts):
         raise _out_of_reach(parts, accuracy, growth)
     cells = np.array([part.cells for part in parts], np.int64)
-    values = np.concatenate([part.values.reshape(-1, 4) for part in parts])
-    return kind(
-        values, breaks=breaks, cells=cells, tolerance=accuracy, accuracy=_measured(parts, growth),
-        law=law if isinstance(law, SpeedLaw | FrictionLaw) else None,
-        pressure=load.law, reach=load.reach,
-    )  # fmt: skip
+    return {
+        "values": np.concatenate([part.values.reshape(-1, 4) for part in parts]),
+        "breaks": breaks, "cells": cells, "tolerance": accuracy,
+        "accuracy": _measured(parts, growth),
+        "law": law if isinstance(law, SpeedLaw | FrictionLaw) else None,
+        "pressure": load.law, "reach": load.reach,
+    }  # fmt: skip
 
 
 def load_under(law: Law, pressure: str | PressureLaw, reach: float) -> RoundLoad:

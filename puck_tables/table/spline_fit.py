@@ -121,3 +121,19 @@ def height_terms(resultants: FloatArray, delta: FloatArray) -> FloatArray:
     odd = np.linalg.pinv(delta[None, :])
     terms = (1.0 / parallel) @ even, (across / parallel) @ odd, (spin / parallel) @ even
     return np.concatenate(terms, axis=-1)
+
+
+def ratios_at(terms: FloatArray, delta: float) -> FloatArray:
+    """The friction ratios at one height and their derivatives by it, from :func:`height_terms`.
+
+    ``terms`` (n, 5); returns (n, 6).
+
+    Examples
+    --------
+    >>> ratios_at(np.array([[1.0, 0.0, 0.25, 0.5, -0.125]]), 1.0).tolist()
+    [[1.0, 0.25, 0.375, 0.0, 0.25, -0.25]]
+    """
+    a0, a2, b1, c0, c2 = terms.T
+    return np.stack([
+        a0 + a2 * delta**2, b1 * delta, c0 + c2 * delta**2, 2.0 * a2 * delta, b1, 2.0 * c2 * delta
+    ], axis=-1)  # fmt: skip

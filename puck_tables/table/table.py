@@ -269,28 +269,26 @@ class Table(ABC):
                 f"a table that promises an error of {self.tolerance:g} is not saved: it must be "
                 "between 0 and 1"
             )
-        content = self._encoded(self.accuracy, command)
-        written = type(self).read(content, str(path))
-        if not np.array_equal(written.values, self.values):
-            raise TableError(f"{path}: the table does not read back as it was written")
-        write_bytes(path, content, overwrite)
-        return written
-
-    def _encoded(self, accuracy: Accuracy, command: str) -> bytes:
         from puck_tables.table.law_record import plain
 
         own = [one.name for one in fields(self)[len(fields(Table)) :]]
         said = {
             "kind": self.kind, "pressure_law": self.pressure_law, "algorithm": self.algorithm,
             **self.words, "valid_range": self.valid_range, "tolerance": self.tolerance,
-            "achieved_accuracy": accuracy.text(), "command": command,
+            "achieved_accuracy": self.accuracy.text(), "command": command,
         }  # fmt: skip
         functions = {
             name: Variable(self.values[..., number], tuple(self.axes), "1", long_name)
             for number, (name, long_name) in enumerate(self.functions.items())
         }
-        made_of = {name: plain(getattr(self, name)) for name in own}
-        return encode(self.axes, functions, said, made_of)
+        content = encode(
+            self.axes, functions, said, {name: plain(getattr(self, name)) for name in own}
+        )
+        written = type(self).read(content, str(path))
+        if not np.array_equal(written.values, self.values):
+            raise TableError(f"{path}: the table does not read back as it was written")
+        write_bytes(path, content, overwrite)
+        return written
 
     @abstractmethod
     def validate(self, progress: Progress | None = None) -> CheckReport:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import nullcontext
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any, overload
@@ -90,48 +91,43 @@ def table_for(
     """
     checked_progress(progress)
     wanted = None if accuracy is None else real("accuracy", accuracy, "an absolute error")
-    asked = "default" if wanted is None else f"{wanted:g}"
+    kind: type[ResultantTable | SpeedTable] = ResultantTable
+    how: dict[str, Any] = {}
     if isinstance(law, SpeedLaw | FrictionLaw):
-        more = {} if top_speed is None else {"top_speed": positive("top_speed", top_speed, "m/s")}
-        friction, under = law, _known(pressure)
+        kind, name = SpeedTable, f"slip-speed-{law.kind}"
+        how = {"pressure": _known(pressure), "reach": reach}
+        if top_speed is not None:
+            how["top_speed"] = positive("top_speed", top_speed, "m/s")
+    else:
+        law = _known(law)
+        name = law.name
 
-        def by_speed() -> SpeedTable:
-            with watched("tabulating the friction law, once") as show:
-                return SpeedTable.build(
-                    friction, wanted, progress=progress or show, pressure=under, reach=reach, **more
-                )
+    def build() -> ResultantTable | SpeedTable:
+        with watched("tabulating the friction law, once") if how else nullcontext() as show:
+            return kind.build(law, wanted, progress=progress or show, **how)
 
-        recipe = {
-            "law": plain(law), "accuracy": wanted, "pressure": plain(under), "reach": reach, **more
-        }  # fmt: skip
-        return fetch(f"slip-speed-{law.kind}-{asked}", recipe, SpeedTable, by_speed)
-    known = _known(law)
-    recipe = {"law": plain(known), "accuracy": wanted}
-    return fetch(
-        f"{known.name}-{asked}", recipe, ResultantTable,
-        lambda: ResultantTable.build(known, wanted, progress=progress),
-    )  # fmt: skip
+    known = {name: plain(value) for name, value in {"law": law, **how}.items()}
+    stem = f"{name}-{'default' if wanted is None else f'{wanted:g}'}"
+    return fetch(stem, {"accuracy": wanted, **known}, kind, build)
 
 
 def _known(law: str | Law) -> Law:
-    """A pressure law that can be told from others.
+    """A pressure law that can be told from others: a profile by its values, whatever its name.
 
     Raises
     ------
     InputError
         If it is given by a function, or not known.
     """
-    if isinstance(law, Law) and law.profile is None and not is_named(law):
+    one = law if isinstance(law, Law) else law_of(law)
+    if one.profile is not None:
+        return replace(one, name="profile")
+    if not is_named(one):
         raise InputError(
-            f"the law {law.name} is given by a function, which cannot be told from another: "
+            f"the law {one.name} is given by a function, which cannot be told from another: "
             "give its name, or Table.build(law)"
         )
-    return _by_its_values(law if isinstance(law, Law) else law_of(law))
-
-
-def _by_its_values(law: Law) -> Law:
-    """A profile is known by its values, whatever its name."""
-    return law if law.profile is None else replace(law, name="profile")
+    return one
 
 
 @lru_cache(maxsize=64)
@@ -150,7 +146,6 @@ def friction_for(law: Law, delta: float, accuracy: float) -> FrictionSection:
     if not (law.can_lift and delta > 1.0):
         return friction_section(law, delta, accuracy)
     refuse_height(law, delta)
-
     return kept_section(
         FrictionSection, law, f"tall-{delta:g}-{accuracy:g}",
         {"delta": delta, "accuracy": accuracy}, lambda law: friction_section(law, delta, accuracy),
@@ -174,7 +169,7 @@ def kept_section(
     """
     if law.profile is None and not is_named(law):
         return build(law)
-    known = _by_its_values(law)
+    known = _known(law)
     return fetch(
         stem, {**recipe, "law": plain(known)}, kind, lambda: build(known), rooms, MOST_SECTIONS
     )

@@ -1,4 +1,4 @@
-"""The store of tables that the program builds for itself, in the user's cache folder.
+"""The store of tables that the program builds for itself, in the user's cache folder; its list.
 
 The name of a kept file ends in the digest of its recipe: all that determines the values, and the
 sources that compute them, so that no table of another version of the program is taken for today's.
@@ -12,6 +12,8 @@ import hashlib
 import json
 import re
 from collections.abc import Callable, Iterable
+from datetime import UTC, datetime
+from importlib.resources import files
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -24,6 +26,7 @@ from puck_tables.table.table import Table
 AnyTable = TypeVar("AnyTable", bound=Table)
 
 _NAME = re.compile(r"[\w.+-]+-[0-9a-f]{16}\.h5")
+_OF_A_WHOLE_ONE = ("kind", "pressure_law", "valid_range", "accuracy")
 
 
 def fetch(
@@ -120,6 +123,40 @@ def kept_files() -> list[Path]:
         return []
     named = (one for one in folder.iterdir() if _NAME.fullmatch(one.name))
     return sorted(one for one in named if one.is_file() and not one.is_symlink())
+
+
+def shipped_and_kept() -> list[dict[str, Any]]:
+    """The table files that come along, and those kept in the user's cache.
+
+    Of each its name, place, what it holds in short (None of a damaged one), bytes, date, and
+    whether it is whole.
+
+    Examples
+    --------
+    >>> [entry["name"] for entry in shipped_and_kept() if entry["place"] == "comes along"]
+    ['resultants.h5', 'stops.h5']
+    """
+    along = [Path(str(one)) for one in files("puck_tables.tables").iterdir()]
+    places = {path: "comes along" for path in sorted(along) if path.suffix == ".h5"}
+    entries = []
+    for path, place in (places | {path: str(path.parent) for path in kept_files()}).items():
+        try:
+            about = path.stat()
+        except FileNotFoundError:  # another process has just removed it
+            continue
+        date = datetime.fromtimestamp(about.st_mtime, UTC).isoformat(timespec="seconds")
+        holds: tuple[Any, ...] = (None,) * len(_OF_A_WHOLE_ONE)
+        try:
+            table = Table.load(path)
+            holds = table.kind, table.pressure_law, table.valid_range, table.tolerance
+            date, whole = table.metadata["created"], True
+        except TableError:
+            whole = False
+        entries.append({
+            "name": path.name, "place": place, **dict(zip(_OF_A_WHOLE_ONE, holds, strict=True)),
+            "bytes": about.st_size, "date": date, "whole": whole,
+        })  # fmt: skip
+    return entries
 
 
 def remove(names: Iterable[str] | None = None) -> list[Path]:

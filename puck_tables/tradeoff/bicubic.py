@@ -7,7 +7,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating, patience
 from puck_tables.kernels.spline import basis, cell_at, row_sums, side_and_eta
-from puck_tables.table.resultant_table import ResultantTable
+from puck_tables.table.resultant_table import HEIGHTS, ResultantTable
 from puck_tables.table.spline_fit import clamped_coefficients
 
 _BLOCK = 128  # points at once
@@ -17,31 +17,12 @@ def graded_coefficients(table: ResultantTable) -> FloatArray:
     """B-spline weights over 36 of the friction ratios at the nodes of a table with one edge."""
     parallel = table.values[..., :1]
     ratios = np.concatenate([1.0 / parallel, table.values[..., 1:] / parallel], axis=-1)
-    sides = np.moveaxis(table.axis.by_side(ratios), 0, 1)
-    along_delta = not_a_knot_coefficients(np.moveaxis(clamped_coefficients(sides), 2, 0))
-    return np.ascontiguousarray(along_delta.transpose(2, 0, 1, 3)) / 36.0
-
-
-def not_a_knot_coefficients(values: FloatArray) -> FloatArray:
-    """Coefficients (n + 3, …) of the uniform cubic spline with not-a-knot ends, along axis 0.
-
-    ``values`` (n + 1, …), n ≥ 3; cubics are reproduced exactly.
-
-    Examples
-    --------
-    >>> c = not_a_knot_coefficients(np.arange(4.0) ** 3)
-    >>> float(((c[1] + 23 * c[2] + 23 * c[3] + c[4]) / 48).round(12))  # at 1.5
-    3.375
-    """
-    size = len(values)
-    system, right = np.zeros((size + 2, size + 2)), np.zeros((size + 2, *values.shape[1:]))
-    rows = np.arange(size)
-    for offset, weight in enumerate((1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0)):
-        system[rows + 1, rows + offset] = weight
-    system[0, :5] = system[-1, -5:] = (1.0, -4.0, 6.0, -4.0, 1.0)
-    right[1:-1] = values
-    flat = np.linalg.solve(system, right.reshape(size + 2, -1))
-    return np.asarray(flat, dtype=np.float64).reshape(right.shape)
+    along_phi = clamped_coefficients(np.moveaxis(table.axis.by_side(ratios), 0, 1))
+    # over four heights one cubic: of p the coefficients are p − p″/6
+    powers, places = np.arange(HEIGHTS), np.arange(-1.0, HEIGHTS + 1.0)[:, None]
+    bent = powers * (powers - 1) / 6.0 * places ** np.maximum(powers - 2, 0)
+    of_values = (places**powers - bent) @ np.linalg.inv(places[1:-1] ** powers)
+    return np.ascontiguousarray(np.einsum("mj,nsjf->smnf", of_values, along_phi)) / 36.0
 
 
 @allocating

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
-from importlib.resources import files
 from typing import Any
 
 import numpy as np
@@ -15,8 +13,8 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.friction_laws import CurlingLaw, FrictionLaw, StribeckLaw
 from puck_tables.puck import Puck
 from puck_tables.scene.parts import Floor, Launch
-from puck_tables.tradeoff.scipy_methods import patch_script
-from puck_tables.tradeoff.truth import Contender, Question, Run, kept
+from puck_tables.tradeoff.scipy_methods import patch_script, ring_patches
+from puck_tables.tradeoff.truth import Contender, Question, Run, kept, kept_arrays
 from puck_tables.world.scene import Scene
 
 # of Q/(fg), Q²/(fg), asked for; sums under a law by speed take longer
@@ -64,17 +62,7 @@ def _of_a_box(count: int) -> tuple[FloatArray, FloatArray]:
     return points, np.full(points.shape[1], 1.0 / points.shape[1])
 
 
-def _of_a_band(count: int) -> tuple[FloatArray, FloatArray]:
-    """Centres of patches of the annulus, and their weights."""
-    outer, inner = _BAND
-    radii = inner + (outer - inner) * (np.arange(count) + 0.5) / count
-    angle = np.pi * (np.arange(12 * count) + 0.5) / (6 * count)
-    points = np.multiply.outer(np.stack([np.cos(angle), np.sin(angle)]), radii).reshape(2, -1)
-    weights = np.tile(radii, angle.size)
-    return points, weights / weights.sum()
-
-
-_SIDES, _BAND = (0.2, 0.1), (0.0635, 0.0555)  # m
+_SIDES, _BAND = (0.2, 0.1), (0.0555, 0.0635)  # m
 # m: of the box, (2, 4)
 _CORNERS = 0.5 * np.array([[1.0, 1.0, -1.0, -1.0], [1.0, -1.0, 1.0, -1.0]]) * np.c_[_SIDES,]
 _BOX = Puck(base="box:0.2x0.1", friction=0.25, height=0.04)
@@ -86,7 +74,8 @@ BODIES = {
     ),
     "curling stone": ThrownBody(
         Puck(base="annulus:0.0635x0.0555", height=0.114, mass=19.96, gyration=0.1025),
-        CurlingLaw(0.00200985, 0.06385782, 0.00626286), _of_a_band, _of_a_band(1),
+        CurlingLaw(0.00200985, 0.06385782, 0.00626286),
+        lambda count: ring_patches(*_BAND, count, 12 * count), ring_patches(*_BAND, 1, 12),
     ),
 }  # fmt: skip
 
@@ -112,9 +101,7 @@ def contenders() -> Iterator[Contender]:
 
 def _question(name: str, body: ThrownBody) -> Question:
     """The launches that come with the package, vx, vy, ω; stops in the units of each."""
-    content = (files("puck_tables.tables") / "body_starts.npz").read_bytes()
-    with np.load(io.BytesIO(content)) as file:
-        rows = file[name]
+    rows = kept_arrays("body_starts.npz")[name]
     launches = np.ascontiguousarray(rows[:3])
     return Question(name, launches, rows[3:] / body.units(launches), launches)
 

@@ -12,21 +12,22 @@ With c = cos φ, s = sin φ ≥ 0:
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.laws import law_of
 from puck_tables.kernels.compile import kernel, patience
-from puck_tables.table.resultant_table import ResultantTable
-from puck_tables.table.resultant_values import HEIGHTS
+from puck_tables.table.resultant_table import HEIGHTS, ResultantTable
 from puck_tables.table.slip_axis import LawAxis
-from puck_tables.tradeoff.truth import Question
 
-PADE_MATCHED = (1.0, 8.0 / 3.0)  # a, b: so that slopes at pure spin and pure sliding are right
+Fill = Callable[[FloatArray, FloatArray], object]  # of φ (n,), ρ_∥, ρ_⊥, ρ_ω (3, n) to be filled
 
 
 @kernel
-def fill_pade(phi: FloatArray, a: float, b: float, out: FloatArray) -> None:
+def fill_pade(a: float, b: float, phi: FloatArray, out: FloatArray) -> None:
     """ρ_∥, ρ_⊥ = 0, ρ_ω at angles 0 ≤ φ ≤ π/2 into ``out`` (3, n)."""
     patience(phi.size)
     for n in range(phi.size):
@@ -48,31 +49,15 @@ def fill_limit_surface(phi: FloatArray, out: FloatArray) -> None:
         out[2, n] = (8.0 / 9.0) * w
 
 
-def pade_at_best(flat: Question) -> tuple[float, float]:
-    """The a and b with the least worst error at resultants of δ = 0.
-
-    Examples
-    --------
-    >>> from puck_tables.tradeoff.truth import random_points
-    >>> points = random_points(2000)
-    >>> [round(x, 2) for x in pade_at_best(points.some(points.inputs[1] == 0.0))]
-    [0.72, 1.52]
-    """
-    from scipy.optimize import minimize_scalar
-
-    phi, out = np.ascontiguousarray(flat.inputs[0]), np.empty(flat.truth.shape)
-
-    def error(row: int, a: float, b: float) -> float:
-        fill_pade(phi, a, b, out)
-        return float(np.abs(out[row] - flat.truth[row]).max())
-
-    a = minimize_scalar(lambda a: error(0, a, 1.0), bounds=(0.3, 1.5), method="bounded").x
-    b = minimize_scalar(lambda b: error(2, 1.0, b), bounds=(1.5, 4.0), method="bounded").x
-    return float(a), float(b)
+MODELS: dict[str, Fill] = {
+    "Pade, slopes matched": partial(fill_pade, 1.0, 8.0 / 3.0),
+    "Pade, fitted": partial(fill_pade, 0.724222, 1.515858),  # test_no_other_pade_is_better
+    "limit surface": fill_limit_surface,
+}
 
 
-def as_table(model: str, a: float = 1.0, b: float = 8.0 / 3.0, cells: int = 512) -> ResultantTable:
-    """A model ('pade' or 'limit surface') as a table of resultants, the same at every δ.
+def as_table(model: str, cells: int = 512) -> ResultantTable:
+    """One of :data:`MODELS` as a table of resultants, the same at every δ.
 
     Examples
     --------
@@ -82,8 +67,5 @@ def as_table(model: str, a: float = 1.0, b: float = 8.0 / 3.0, cells: int = 512)
     law = law_of("uniform")
     phi = LawAxis(law.edges, cells).nodes()
     rho = np.empty((3, phi.size))
-    if model == "pade":
-        fill_pade(phi, a, b, rho)
-    else:
-        fill_limit_surface(phi, rho)
+    MODELS[model](phi, rho)
     return ResultantTable(np.repeat(rho.T[:, None, :], HEIGHTS, axis=1), law=law)

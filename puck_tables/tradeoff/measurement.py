@@ -92,7 +92,7 @@ def measure(quick: bool = False, progress: Progress | None = None) -> TradeOff:
     points = random_points(_QUICK_POINTS if quick else _POINTS)
     contenders = [
         *resultant_methods.contenders(points),
-        *stop_methods.contenders(points.some(points.inputs[1] == 0.0)),
+        *stop_methods.contenders(),
         *state_methods.contenders(),
         *body_methods.contenders(),
     ]

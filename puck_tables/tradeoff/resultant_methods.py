@@ -18,12 +18,7 @@ from puck_tables.kernels.closed_form_kernel import _fill as fill_closed_form
 from puck_tables.kernels.quadratic import fill_resultants
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.tradeoff.bicubic import fill_bicubic, graded_coefficients
-from puck_tables.tradeoff.literature_models import (
-    PADE_MATCHED,
-    fill_limit_surface,
-    fill_pade,
-    pade_at_best,
-)
+from puck_tables.tradeoff.literature_models import MODELS
 from puck_tables.tradeoff.truth import Contender, Question, Run, filled, kept
 
 # along φ, doubled, and those of the table that comes along
@@ -92,17 +87,11 @@ def _outsiders(points: Question) -> Iterator[Contender]:
             lambda built: lambda inputs: built[1](inputs.T).T, 10_000, outsider=True,
         )  # fmt: skip
     flat = points.some(points.inputs[1] == 0.0)
-    for setting, best in (("slopes matched", False), ("fitted", True)):
+    for method, fill in MODELS.items():
         yield Contender(
-            flat, f"Pade, {setting}", "",
-            partial(pade_at_best, flat) if best else kept(PADE_MATCHED),
-            lambda ab: filled(lambda inputs, out: fill_pade(inputs[0], ab[0], ab[1], out)),
-            outsider=True,
+            flat, method, "", kept(fill),
+            lambda fill: filled(lambda inputs, out: fill(inputs[0], out)), outsider=True,
         )  # fmt: skip
-    yield Contender(
-        flat, "limit surface", "", kept(None),
-        lambda _: filled(lambda inputs, out: fill_limit_surface(inputs[0], out)), outsider=True,
-    )  # fmt: skip
 
 
 def _scipy_spline(n_phi: int, n_delta: int) -> tuple[FloatArray, Any]:

@@ -139,6 +139,17 @@ def patch_script(
     return stop
 
 
+def ring_patches(
+    inner: float, outer: float, radial: int, angular: int
+) -> tuple[FloatArray, FloatArray]:
+    """Centres of patches between two radii, (2, n), and their weights, in proportion to areas."""
+    radii = inner + (outer - inner) * (np.arange(radial) + 0.5) / radial
+    angle = 2.0 * np.pi * (np.arange(angular) + 0.5) / angular
+    points = np.multiply.outer(np.stack([np.cos(angle), np.sin(angle)]), radii).reshape(2, -1)
+    weights = np.tile(radii, angular)
+    return points, weights / weights.sum()
+
+
 def disc_by_patches(vx: float, vy: float, spin: float, delta: float) -> FloatArray:
     """Stop time, x, y of a homogeneous round puck (J = r = 1) by such a script.
 
@@ -147,9 +158,5 @@ def disc_by_patches(vx: float, vy: float, spin: float, delta: float) -> FloatArr
     >>> disc_by_patches(1.0, 0.0, 5.0, 1.0).round(2).tolist()
     [4.0, 2.26, -0.31]
     """
-    radial, angular = PATCH_GRID
-    rho = (np.arange(radial) + 0.5) / radial
-    angle = 2.0 * np.pi * (np.arange(angular) + 0.5) / angular
-    points = np.stack([np.outer(rho, np.cos(angle)), np.outer(rho, np.sin(angle))]).reshape(2, -1)
-    weights = np.repeat(rho / (rho.sum() * angular), angular)
+    points, weights = ring_patches(0.0, 1.0, *PATCH_GRID)
     return patch_script(points, weights, 0.5**0.5, 0.25 * delta, 1.0, np.ones_like)(vx, vy, spin)

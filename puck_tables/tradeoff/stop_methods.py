@@ -22,7 +22,7 @@ from puck_tables.stopping.launch_arrays import launches_in
 from puck_tables.stopping.lookup import stops_kernel
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
-from puck_tables.tradeoff.literature_models import PADE_MATCHED, as_table, pade_at_best
+from puck_tables.tradeoff.literature_models import MODELS, as_table
 from puck_tables.tradeoff.scipy_methods import (
     PATCH_GRID,
     SCIPY_SETTINGS,
@@ -41,13 +41,8 @@ _LOCAL_EXACT = (1e-13, 2e-14)  # of a step, with closed forms only
 _STEP_LIMIT = 100_000  # more is a motion that does not end
 
 
-def contenders(flat: Question) -> Iterator[Contender]:
-    """All methods to a stop, and to a trajectory with its steps recorded.
-
-    Parameters
-    ----------
-    flat : resultants at δ = 0, that models are fitted to
-    """
+def contenders() -> Iterator[Contender]:
+    """All methods to a stop, and to a trajectory with its steps recorded."""
     stops, easy, u = golden_starts()
     for kind, dtype, sections in (
         ("", np.float64, _SECTIONS), (", float32", np.float32, ((5, 3), (7, 1)))
@@ -82,7 +77,7 @@ def contenders(flat: Question) -> Iterator[Contender]:
                     question, scheme.name, words, kept(columns),
                     partial(integrated, stepping), most,
                 )  # fmt: skip
-    yield from _outsiders(easy, stops.some(stops.inputs[3] == 0.0), flat)
+    yield from _outsiders(easy, stops.some(stops.inputs[3] == 0.0))
 
 
 def _fresh_section(powers: int, thinning: int, dtype: type) -> FloatArray:
@@ -124,7 +119,7 @@ def _recorded(stepping: Stepping, columns: FloatArray) -> Run:
     return filled(fill)
 
 
-def _outsiders(easy: Question, low: Question, flat: Question) -> Iterator[Contender]:
+def _outsiders(easy: Question, low: Question) -> Iterator[Contender]:
     scripts: list[tuple[str, str, Callable[..., FloatArray]]] = [
         (f"scipy {method}, closed forms", f"rtol={rtol:g} atol={atol:g}",
          partial(scipy_stop, method, rtol, atol))
@@ -137,13 +132,8 @@ def _outsiders(easy: Question, low: Question, flat: Question) -> Iterator[Conten
             lambda stop_of: lambda launches: np.stack([stop_of(*one[:4]) for one in launches.T], 1),
             1, outsider=True,
         )  # fmt: skip
-    models: dict[str, Callable[[], ResultantTable]] = {
-        "Pade, slopes matched": lambda: as_table("pade", *PADE_MATCHED),
-        "Pade, fitted": lambda: as_table("pade", *pade_at_best(flat)),
-        "limit surface": lambda: as_table("limit surface"),
-    }
-    for method, build in models.items():
+    for method in MODELS:
         yield Contender(
-            low, method, "", build,
+            low, method, "", partial(as_table, method),
             lambda table: _integrated(Stepping(RK4, 64.0, 1.0), table.columns), 500, outsider=True,
         )  # fmt: skip

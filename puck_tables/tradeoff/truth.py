@@ -108,14 +108,20 @@ def random_points(count: int, seed: int = 1832) -> Question:
     return Question(RESULTANTS, np.stack([phi, delta]), truth, timed)
 
 
+def kept_arrays(name: str) -> dict[str, FloatArray]:
+    """The arrays in a file that comes with the package."""
+    content = (files("puck_tables.tables") / name).read_bytes()
+    with np.load(io.BytesIO(content)) as file:
+        return dict(file)
+
+
 def golden_starts() -> tuple[Question, Question, FloatArray]:
     """Stops: of launches that come with the package; of a few that are not adversarial; ln(rω/v).
 
     The judged launches go along x with Q = J = r = 1.
     """
-    content = (files("puck_tables.tables") / "starts.npz").read_bytes()
-    with np.load(io.BytesIO(content)) as file:
-        u, delta, truth = file["u"], file["delta"], np.stack([file[name] for name in "TXY"])
+    file = kept_arrays("starts.npz")
+    u, delta, truth = file["u"], file["delta"], np.stack([file[name] for name in "TXY"])
     k, one = np.exp(-np.abs(u)), np.ones_like(u)
     v, rim = np.where(u > 0.0, (k, one), (one, k)) / np.hypot(1.0, k)
     rng, one_timed = np.random.default_rng(11), np.ones(_TIMED)

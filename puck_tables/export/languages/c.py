@@ -48,10 +48,6 @@ class C(Braces, Language):
         kind = "int" if name.endswith(_COUNTS) else "double"
         return f"static const {kind} {self.name(name)}[] = {{\n{rows_of(numbers)}}};"
 
-    def foot(self, public: Sequence[str]) -> str:
-        """Nothing."""
-        return ""
-
     def name(self, name: str) -> str:
         """With a prefix, but for variables of a function."""
         if name in self._locals:

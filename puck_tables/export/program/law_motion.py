@@ -1,44 +1,100 @@
-"""Under another pressure law: places on the two orbits that all motions follow.
+"""Under another pressure law: places beside all lines of it, and on the two orbits of all motions.
 
 These functions stand in for those of the same names in
-:mod:`puck_tables.export.program.state_along`. The orbits, over the logarithm of the time that is
-left, are those of :mod:`puck_tables.export.law_values`; a launch is found on them by bracketing.
+:mod:`puck_tables.export.program.plain_motion` and
+:mod:`puck_tables.export.program.resultant_formulas`.  The places, and the orbits over the logarithm
+of the time that is left, are those of :mod:`puck_tables.export.law_values`; a launch is found on
+its orbit by bracketing.
 """
 
 from __future__ import annotations
 
 from math import exp, log, sqrt
 
-from puck_tables.export.program.intrinsics import (
-    END,
-    ORBIT,
-    ORBIT_CELLS,
-    ORBIT_DEGREE,
-    ORBIT_POWERS,
-    ORBIT_QUANTA,
-    ORBIT_ROWS,
-    RATE_UNITS,
-    REACH,
-    STEEP,
-    TALLEST,
-    TOLERANCE,
-    Out,
-    room,
-)
-from puck_tables.export.program.places import SHARE, SIDE, look_up
-from puck_tables.export.program.state_along import (
+from puck_tables.export.program.intrinsics import Numbers, Out, Rows, room
+from puck_tables.export.program.plain_motion import (
     HEADING,
     LOG_N,
     REGULAR,
+    SHARE,
+    SIDE,
     SIGN,
     SMALLEST,
+    STEEP,
+    STOP,
+    STOP_DEGREE,
+    STOP_FUNCTIONS,
+    STOP_POWERS,
+    STOP_QUANTUM,
+    STOP_ROWS,
     T_LAUNCH,
+    TALLEST,
     THERE_SHARE,
     THERE_SIDE,
+    TOLERANCE,
     TURNING,
     constant,
+    look_up,
+    stop_functions,
 )
-from puck_tables.export.program.stop import stop_functions
+
+# tables under another pressure law; all that stands here stands for what a file is written with
+BORDERS: Numbers = ()
+ORIGINS: Numbers = ()
+SCALES: Numbers = ()
+SIDES = 4  # pieces of φ between singular lines
+PATCH: Numbers = ()
+PATCH_ROWS: Rows = ()
+PATCH_DEGREE, PATCH_QUANTUM = 1, 1.0
+ORBIT: Numbers = ()
+ORBIT_ROWS: Rows = ()
+ORBIT_CELLS: Rows = ()
+ORBIT_POWERS: Rows = ()
+ORBIT_DEGREE = 1
+ORBIT_QUANTA: Numbers = ()
+REACH, END = 16.0, 0.5
+RATE_UNITS: Numbers = ()  # in pure sliding, in pure spin, at the limit
+
+PATCH_FUNCTIONS = 3  # ρ_∥, ρ_⊥, ρ_ω
+
+
+def look_up_near(
+    table: Numbers, rows: Rows, degree: int, powers: int, functions: int, quantum: float, c: float,
+    s: float, out_row: Out,
+) -> None:  # fmt: skip
+    """The functions of a table beside the mark of a side, xi = 0, up to the next side, xi = 1."""
+    side: int = 0
+    for n in range(SIDES - 1):
+        side += 1 if c >= BORDERS[n] else 0
+    look_up(
+        table, rows[side] * powers * functions, rows[side + 1] - rows[side] - degree, degree,
+        powers, functions, quantum, sqrt(sqrt((c - ORIGINS[side]) * SCALES[side])), s, out_row,
+    )  # fmt: skip
+
+
+def table_at(side: int, share: float, delta: float, f: Out) -> None:
+    """T, along, across, path length and body angle by look-up; side 1 where r|w| > v."""
+    look_up_near(
+        STOP, STOP_ROWS, STOP_DEGREE, STOP_POWERS, STOP_FUNCTIONS, STOP_QUANTUM,
+        1.0 - share if side == 1 else share - 1.0, STEEP * delta * delta - 1.0, f,
+    )  # fmt: skip
+
+
+def shape_integrals(ratio: float, fast: bool, p: Out) -> None:
+    """p_a, p_b and p_d, by look-up."""
+    c: float = (1.0 - ratio) / (1.0 + ratio)
+    look_up_near(
+        PATCH,
+        PATCH_ROWS,
+        PATCH_DEGREE,
+        1,
+        PATCH_FUNCTIONS,
+        PATCH_QUANTUM,
+        c if fast else -c,
+        0.0,
+        p,
+    )
+
 
 # of the height alone: limit of c; c at theta = 0 of both orbits; rates and turnings over
 # delta/TALLEST in pure sliding, in pure spin and at the limit
