@@ -262,6 +262,6 @@ def _slope(problem: Problem, x: FloatArray, name: str) -> FloatArray:
     for k, free in enumerate(spec.free):
         moved = spec.all_at({**values, free: values[free] + 1j * TINY})
         slope[k] = moved[name].imag / TINY
-        if abs(slope[k] * values[free]) < 1e-13 * abs(moved[name]):  # rounding
+        if abs(slope[k] * values[free]) < 1e-13 * abs(moved[name].real):  # rounding
             slope[k] = 0.0
     return slope

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from puck_tables.fitting.fit_result import Fit
-from puck_tables.fitting.forward_model import RATE
 from puck_tables.fitting.numbers import Number
 from puck_tables.fitting.parameters import ALL
 from puck_tables.plot.fit_figure import draw
@@ -84,13 +83,14 @@ def _speeds(result: Fit) -> Figure:
     problem, x = result.estimate.problem, result.estimate.x
     figure = canvas(8.0, 3.2)
     axes = figure.add_subplot()
-    for n, (film, states) in enumerate(zip(problem.films, problem.states(x), strict=True)):
+    for n, (film, path) in enumerate(zip(problem.films, problem.paths(x), strict=True)):
         colour = COLORS[n % len(COLORS)]
-        since = film.start + film.time
-        seen = np.hypot(*np.diff(film.place, axis=0).T) / np.diff(film.time)
-        axes.plot(0.5 * (since[1:] + since[:-1]), seen, "o", color=colour, markersize=3,
-                  fillstyle="none", markeredgewidth=0.6)  # fmt: skip
-        axes.plot(since, np.hypot(*states[RATE][:2]), color=colour if n else BLUE, linewidth=1.5)
+        since, step = film.start + film.time, np.diff(film.time)
+        middle = 0.5 * (since[1:] + since[:-1])
+        seen, found = (np.hypot(*np.diff(places)) / step for places in (film.place.T, path[:2]))
+        axes.plot(middle, seen, "o", color=colour, markersize=3, fillstyle="none",
+                  markeredgewidth=0.6)  # fmt: skip
+        axes.plot(middle, found, color=colour if n else BLUE, linewidth=1.5)
     axes.set(xlabel="time / s", ylabel="speed / (m/s)", ylim=(0.0, None))
     return figure
 
