@@ -7,16 +7,7 @@ from typing import Any
 
 import click
 from puck_tables.cli.fit_report import report
-from puck_tables.cli.options import (
-    FILE,
-    RESULTS,
-    Outputs,
-    base_option,
-    body_options,
-    number,
-    outputs,
-    packed,
-)
+from puck_tables.cli.options import FILE, RESULTS, Outputs, body_options, number, outputs, packed
 from puck_tables.cli.printing import note, progress
 from puck_tables.cli.track import read_all, track_options
 from puck_tables.cli.values import named, names, not_none, numbers_in, read_as
@@ -100,8 +91,7 @@ def _held_out(text: str, option: str) -> float | list[str]:
     number("--friction", help="Coulomb coefficient f, if known."),
     number("--mass", "kg", help="Mass in kg (for energies of what is simulated later)."),
     number("--gravity", "m/s^2", help="Gravity in m/s^2.  [default: 9.80665]"),
-    *body_options(),
-    base_option,
+    *body_options(base=True),
 )  # fmt: skip
 @packed(
     "wanted", dict,

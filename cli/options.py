@@ -67,7 +67,6 @@ def puck_options(
     """
     heavy = number("--mass", "kg", help="Mass in kg (energies, forces).")
     return [
-        *([base_option] if base else []),
         number("--delta", "", kind, help="delta = 2 f h / r.  [default: 0.5]"),
         number("--radius", "m", kind,
                help="Radius r in m, or with its unit: 38.1mm.  [default: 1]"),
@@ -77,31 +76,31 @@ def puck_options(
         number("--gravity", "m/s^2", kind, help="Gravity in m/s^2.  [default: 9.80665]"),
         *([heavy] if mass else []),
         number("--decel", "m/s^2", kind, help="f g in m/s^2 instead of --friction.  [default: 1]"),
-        *body_options(kind, many),
+        *body_options(base, kind, many),
     ]  # fmt: skip
 
 
-base_option = click.option(
-    "--base", metavar="BASE", help="In place of --radius: box:LENGTHxWIDTH, disc:RADIUS, "
-    "annulus:RADIUSxINNER, polygon:X,Y;X,Y;X,Y, feet:RADIUS;X,Y;X,Y, in m or with units "
-    "(box:20cmx10cm), or a CSV file of corners x, y; @X,Y "
-    "after it is the centre of mass.  --gyration is then in m.",
-)  # fmt: skip
-
-
 def body_options(
-    kind: type[NumberParam] = NumberParam, many: bool = False
-) -> tuple[Option[Any], Option[Any]]:
-    """The kind of puck: how it presses on the floor and how its mass is spread."""
+    base: bool = False, kind: type[NumberParam] = NumberParam, many: bool = False
+) -> list[Option[Any]]:
+    """The kind of puck: how it presses on the floor, how its mass is spread, perhaps its base."""
     words = "Contact pressure: uniform, galin, hertz, ring, annulus:INNER, or a CSV file of rho, W."
     if many:
         words += "  As often as wanted; annulus:START:STOP:COUNT is a range of them."
-    return (
+    options = [
         click.option("--pressure", metavar="LAW", shell_complete=laws, multiple=many, help=words,
                      default=("uniform",) if many else "uniform", show_default=True),
         number("--gyration", "", kind, help="Radius of gyration about the vertical axis over r (a "
                "ratio, also with --radius), 0.1 to 10.  [default: 0.7071, homogeneous]"),
-    )  # fmt: skip
+    ]  # fmt: skip
+    if base:
+        options.append(click.option(
+            "--base", metavar="BASE", help="In place of --radius: box:LENGTHxWIDTH, disc:RADIUS, "
+            "annulus:RADIUSxINNER, polygon:X,Y;X,Y;X,Y, feet:RADIUS;X,Y;X,Y, in m or with units "
+            "(box:20cmx10cm), or a CSV file of corners x, y; @X,Y after it is the centre of mass.  "
+            "--gyration is then in m.",
+        ))  # fmt: skip
+    return options
 
 
 @dataclass(frozen=True)

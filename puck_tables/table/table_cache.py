@@ -106,9 +106,9 @@ def table_for(
         with watched("tabulating the friction law, once") if how else nullcontext() as show:
             return kind.build(law, wanted, progress=progress or show, **how)
 
-    known = {name: plain(value) for name, value in {"law": law, **how}.items()}
+    recipe = {one: plain(value) for one, value in {"law": law, **how}.items()}
     stem = f"{name}-{'default' if wanted is None else f'{wanted:g}'}"
-    return fetch(stem, {"accuracy": wanted, **known}, kind, build)
+    return fetch(stem, {"accuracy": wanted, **recipe}, kind, build)
 
 
 def _known(law: str | Law) -> Law:
