@@ -111,8 +111,8 @@ def parameters_of(reach: float | None) -> Mapping[str, Parameter]:
 
     Examples
     --------
-    >>> parameters_of(None)["gyration"][:3], parameters_of(0.2)["gyration"][:3]
-    (('1', 0.1, 10.0), ('m', 0.02, 2.0))
+    >>> parameters_of(None)["gyration"][:3], parameters_of(0.25)["gyration"][:3]
+    (('1', 0.1, 10.0), ('m', 0.025, 2.5))
     """
     if reach is None:
         return ALL
