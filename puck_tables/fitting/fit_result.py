@@ -165,13 +165,14 @@ class Fit(Result):
     def simulate(self, track: int | str = 0, **how: Any) -> Trajectory:
         """The motion of a track as it was found, until the puck stops.
 
-        ``how``: as :meth:`Puck.simulate` takes it.
+        ``how``: as :meth:`Puck.simulate` takes it.  A puck on a base begins at the angle of its
+        track.
 
         Raises
         ------
         InputError
             If there is no such track, or nobody would believe what was found, or the puck was found
-            with drag: then only a scene has it.  A puck on a base begins at the angle of its track.
+            with drag: then only a scene has it.
         """
         launch = self.launch(track)
         if self.astray:
