@@ -13,7 +13,6 @@ import numpy as np
 
 from puck_tables.fitting.fit_result import Fit
 from puck_tables.fitting.numbers import Number
-from puck_tables.fitting.parameters import ALL
 from puck_tables.plot.fit_figure import draw
 from puck_tables.plot.html_page import bullets, document, svg_of, table
 from puck_tables.plot.style import BLUE, COLORS, canvas
@@ -97,7 +96,7 @@ def _speeds(result: Fit) -> Figure:
 
 def _numbers(result: Fit) -> str:
     rows = [
-        (_words(name), _written(number), _interval(number),
+        (_words(name, result), _written(number), _interval(number),
          {"found": "from the film", "follows": "follows", "known": "known"}[number.how])
         for name, number in result.numbers.items()
     ]  # fmt: skip
@@ -127,7 +126,7 @@ def _left(result: Fit) -> str:
 
 def _assumed(result: Fit) -> str:
     known = [
-        f"{_words(name)}: {_written(number)}" for name, number in result.numbers.items()
+        f"{_words(name, result)}: {_written(number)}" for name, number in result.numbers.items()
         if number.how == "known"
     ]  # fmt: skip
     said = [
@@ -190,8 +189,9 @@ def _class(result: Fit) -> str:
     )
 
 
-def _words(name: str) -> str:
-    return f"{name.replace('_', ' ')} ({ALL[name].words})" if name in ALL else name
+def _words(name: str, result: Fit) -> str:
+    known = result.estimate.problem.spec.parameters
+    return f"{name.replace('_', ' ')} ({known[name].words})" if name in known else name
 
 
 def _written(number: Number) -> str:
