@@ -1,8 +1,9 @@
 """Which contacts press, and which rims stick: λ ≥ 0, gap″ ≥ 0, λ gap″ = 0, |τ| ≤ μλ.
 
-Modes are guessed, the forces solved for, and all modes that these contradict are changed at once,
-so that the order of contacts has no say.  Where that goes round in circles, forces that are moved
-by small steps towards what they should be, all at once, show other modes to start from.
+One problem for accelerations and for impacts, which have impulses for forces and velocities for
+accelerations.  Modes are guessed, the forces solved for, and all modes that these contradict are
+changed at once, so that the order of contacts has no say.  Where that goes round in circles, modes
+come from :mod:`puck_tables.world.lemke`, which finds forces wherever there are some.
 """
 
 from __future__ import annotations
@@ -22,19 +23,10 @@ from puck_tables.world.group import (
     IntArray,
     Scales,
 )
-from puck_tables.world.multipliers import (
-    LEFT,
-    RIGHT,
-    SOLUTION,
-    constrain,
-    fill_matrix,
-    leads,
-    push_and_move,
-    right_hand_side,
-)
+from puck_tables.world.lemke import modes_of_lemke
+from puck_tables.world.multipliers import leads, push_and_move
 
-_GUESSES, _TRIES = 25, 5  # of modes from those before; of modes from forces
-_STEPS = 400  # of forces, before modes are guessed from them; four times as many each time
+_GUESSES = 25  # of modes from those before: beyond, they go round in circles
 _LEFT_OVER = 1e-9  # of what is given: the equations have no solution
 
 
@@ -54,8 +46,17 @@ def most(sight: FloatArray, push: float) -> float:
 
 
 @inlined
-def better_mode(buffer: GroupBuffer, c: int, mode: int, scales: Scales) -> int:
-    """The mode that forces and accelerations ask for, when it was supposed to be ``mode``."""
+def load_of(sight: FloatArray, mode: int, push: float, rim: float) -> float:
+    """What presses a contact: λ, or on rims without bound that slide, τ against the slip."""
+    return mode * rim if mode != STICKS and sight[GRIP] == math.inf else push
+
+
+@inlined
+def better_mode(buffer: GroupBuffer, c: int, mode: int, scales: Scales, may_slide: bool) -> int:
+    """The mode that forces and accelerations ask for, when it was supposed to be ``mode``.
+
+    ``may_slide``: also on rims without bound, which then nothing presses.
+    """
     gap, slip, soft, rolls = leads(buffer, c)
     slack = 0.5 * LEVEL * scales.rate
     if soft == 0.0:  # between two that cannot move nothing is known, if they do not part
@@ -63,9 +64,11 @@ def better_mode(buffer: GroupBuffer, c: int, mode: int, scales: Scales) -> int:
     sight, push, rim = buffer.sights[c], buffer.pushes[c, 0], buffer.pushes[c, 1]
     if mode == APART:
         return rim_mode(sight, scales.speed) if gap < -slack else APART
-    if push * soft < -slack:
+    if load_of(sight, mode, push, rim) * soft < -slack:
+        if may_slide and mode == STICKS and sight[GRIP] == math.inf and rim != 0.0:
+            return 1 if rim > 0.0 else -1
         return APART
-    if sight[GRIP] == 0.0 or sight[GRIP] == math.inf:
+    if sight[GRIP] == 0.0:
         return mode
     if mode == STICKS:
         if (abs(rim) - most(sight, push)) * rolls > slack:
@@ -79,67 +82,20 @@ def better_mode(buffer: GroupBuffer, c: int, mode: int, scales: Scales) -> int:
 def find_modes(buffer: GroupBuffer, modes: IntArray, members: int, scales: Scales) -> bool:
     """Modes that contradict nothing, from those given; pushes and accelerations.  Whether found."""
     count = modes.shape[0]
-    for attempt in range(_TRIES):
+    for attempt in range(2):
+        if attempt == 1 and not modes_of_lemke(buffer, modes, scales):
+            return False
         for _ in range(_GUESSES):
             left = push_and_move(buffer, modes, members)
             changed = False
             for c in range(count):
-                mode = better_mode(buffer, c, modes[c], scales)
+                mode = better_mode(buffer, c, modes[c], scales, attempt == 1)
                 buffer.order[c] = mode
                 changed = changed or mode != modes[c]
+            if not changed and left <= _LEFT_OVER:
+                return True
             if not changed:
-                return left <= _LEFT_OVER
+                break
             for c in range(count):
                 modes[c] = buffer.order[c]
-        _by_small_steps(buffer, modes, members, scales, _STEPS * 4**attempt // 4)
     return False
-
-
-@inlined
-def _by_small_steps(
-    buffer: GroupBuffer, modes: IntArray, members: int, scales: Scales, steps: int
-) -> None:
-    """Modes from forces that go, all at once, by small steps to where they should be."""
-    for c in range(modes.shape[0]):
-        modes[c] = STICKS
-    count = constrain(buffer, modes, True, False)
-    fill_matrix(buffer, count)
-    right_hand_side(buffer, modes)
-    v = buffer.vectors
-    for r in range(count):
-        v[SOLUTION, r] = 0.0
-    for _ in range(steps):
-        for r in range(count):
-            total, weight = v[RIGHT, r], 0.0
-            for c in range(count):
-                total -= buffer.matrix[r, c] * v[SOLUTION, c]
-                weight += abs(buffer.matrix[r, c])
-            v[LEFT, r] = total / weight if weight > 0.0 else 0.0
-        number = 0
-        for c in range(modes.shape[0]):
-            sight = buffer.sights[c]
-            push = max(v[SOLUTION, number] + v[LEFT, number], 0.0)
-            v[SOLUTION, number] = push
-            number += 1
-            if sight[GRIP] > 0.0:
-                slides, bound = rim_mode(sight, scales.speed), most(sight, push)
-                rim = v[SOLUTION, number] + v[LEFT, number]
-                if slides != STICKS:
-                    rim = slides * bound
-                v[SOLUTION, number] = min(max(rim, -bound), bound)
-                number += 1
-        for tie in range(number, count):
-            v[SOLUTION, tie] += v[LEFT, tie]
-    number = 0
-    for c in range(modes.shape[0]):
-        sight = buffer.sights[c]
-        push, bound = v[SOLUTION, number], most(sight, v[SOLUTION, number])
-        number += 1
-        modes[c] = rim_mode(sight, scales.speed)
-        if sight[GRIP] > 0.0:
-            rim = v[SOLUTION, number]
-            if modes[c] == STICKS and abs(rim) >= bound:
-                modes[c] = 1 if rim > 0.0 else -1
-            number += 1
-        if push == 0.0:
-            modes[c] = APART

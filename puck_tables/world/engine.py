@@ -208,8 +208,9 @@ def _happen(engine: Engine, i: int, partner: int, t: float, room: Room) -> int:
         return CROWDED
     squeezed = _is_squeezed(engine, t, count, room)
     rounds = collide(
-        engine, t, room.contacts, count, room.rows, room.before, room.states, room.shares, squeezed
-    )
+        engine, t, room.contacts, count, room.rows, room.before, room.states, room.shares,
+        room.buffer, squeezed,
+    )  # fmt: skip
     if rounds < 0:
         engine.counts[N_CONTACTS] = count
         return OFF_TABLE if rounds == TOO_FAST else TANGLED

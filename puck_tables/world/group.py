@@ -93,8 +93,10 @@ class GroupBuffer(NamedTuple):
     ``strays`` (2h, 3): see :func:`puck_tables.world.holds.forbid`, ``number`` (1,): how many there
     are; ``rows``, ``columns`` (k, 6), ``owners`` (k, 2), ``order`` (k,), k = 2c + 2h: the
     constraints, and the members concerned; ``matrix``, ``factors`` (k, k), ``vectors`` (4, k);
-    ``modes`` (2, c), ``motions`` (m,): trials; ``film`` (9,); ``carried`` (m, 3): what the floor
-    asks of each acceleration; ``passed`` (m,): rows of forces over time; ``clock`` (1,): now.
+    ``variables`` (4c, 5), ``first``, ``basis`` (4c,), ``tableau`` (4c, 8c + 2): of
+    :mod:`puck_tables.world.lemke`; ``modes`` (2, c), ``motions`` (m,): trials; ``film`` (9,);
+    ``carried`` (m, 3): what the floor asks of each acceleration; ``passed`` (m,): rows of forces
+    over time; ``clock`` (1,): now.
     """
 
     pairs: IntArray
@@ -122,6 +124,10 @@ class GroupBuffer(NamedTuple):
     matrix: FloatArray
     factors: FloatArray
     vectors: FloatArray
+    variables: FloatArray
+    first: IntArray
+    basis: IntArray
+    tableau: FloatArray
     modes: IntArray
     motions: IntArray
     film: FloatArray
@@ -151,9 +157,10 @@ def buffer_for(members: int, contacts: int, led: int = 0) -> GroupBuffer:
         number=np.zeros(1, np.int64),
         rows=np.zeros((k, 6)), columns=np.zeros((k, 6)), owners=np.zeros((k, 2), np.int64),
         order=np.zeros(k, np.int64), matrix=np.zeros((k, k)), factors=np.zeros((k, k)),
-        vectors=np.zeros((4, k)), modes=np.zeros((2, c), np.int64),
-        motions=np.zeros(m, np.int64), film=np.zeros(9), carried=np.zeros((m, 3)),
-        passed=np.zeros(m, np.int64), clock=np.zeros(1),
+        vectors=np.zeros((4, k)), variables=np.zeros((4 * c, 5)), first=np.zeros(4 * c, np.int64),
+        basis=np.zeros(4 * c, np.int64), tableau=np.zeros((4 * c, 8 * c + 2)),
+        modes=np.zeros((2, c), np.int64), motions=np.zeros(m, np.int64), film=np.zeros(9),
+        carried=np.zeros((m, 3)), passed=np.zeros(m, np.int64), clock=np.zeros(1),
     )  # fmt: skip
 
 

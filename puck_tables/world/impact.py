@@ -27,10 +27,14 @@ from puck_tables.kernels.compile import inlined, inner
 from puck_tables.motion.impact_law import along_normal, impulses
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.world.alone import acceleration
+from puck_tables.world.complementarity import find_modes, most
 from puck_tables.world.contact_search import HARDLY, normal_to
 from puck_tables.world.engine_state import Engine, Whole
 from puck_tables.world.floor_under import over_floor
-from puck_tables.world.holds import response
+from puck_tables.world.group import ARM, GRIP, LEVEL, STICKS, GroupBuffer, Scales
+from puck_tables.world.group import NX as SIGHT_NX
+from puck_tables.world.group import NY as SIGHT_NY
+from puck_tables.world.holds import forbid, response
 from puck_tables.world.layout import (
     ARC,
     HOLD,
@@ -42,6 +46,7 @@ from puck_tables.world.layout import (
     WALL,
     C,
 )
+from puck_tables.world.putting_right import stop_slips
 from puck_tables.world.rims import along_of_pair, restitutions_of_pair, smaller_at
 
 # columns of a contact in work: normal, slownesses 1/m_n and 1/m_t, law, whether it acts in this
@@ -52,8 +57,6 @@ ONE, OTHER = 15, 16
 CROSS = 17  # how much a unit of one impulse changes what the other one is against: of what is led
 CONTACT_COLUMNS = 18
 
-# of ACTS besides 0 and 1: rims that nothing presses grip nothing in this round; or do, after all
-ASIDE, BACK, FOR_GOOD = -1.0, -2.0, 2.0
 NO_END, TOO_FAST = -1, -2  # how impacts fail: rounds without end; faster than a table goes
 
 NEGLIGIBLE = 1e-13  # of the scale of speeds: an approach as slow is none
@@ -64,8 +67,6 @@ LASTING = 0.99  # of the rebound before, at most: so long is the next one taken 
 PRESSED = 1e-3  # of the scale of accelerations: what presses less brings no rebounds to an end
 MOST_ROUNDS = 2_000  # at one moment: ten times those after which turns are resolved together
 TURNS = 200  # rounds after which contacts that take turns are resolved together, with e = 0
-_MOST_ITERATIONS = 50_000  # sweeps over all contacts: beyond, the impulses are not found
-_SOLVED = 1e-15  # of the largest impulse: what changes by less is rounding
 
 
 @inlined
@@ -202,20 +203,6 @@ def _hop(
 
 
 @inlined
-def _keep_down(
-    engine: Engine, t: float, contacts: Whole, count: int, rows: FloatArray, states: FloatArray
-) -> None:  # fmt: skip
-    """Take away by what a squeezed disc hops off a cushion: rims in a corner kick it for ever."""
-    for n in range(count):
-        row, i = rows[n], contacts[n, 0]
-        if contacts[n, 1] < 0:
-            un, closing = _hop(engine, i, contacts[n, 1], t, row, states)
-            if closing > 0.0:
-                states[i, VX] -= un * row[NX]
-                states[i, VY] -= un * row[NY]
-
-
-@inlined
 def _lasting(
     engine: Engine, i: int, j: int, t: float, row: FloatArray, states: FloatArray, un: float,
     rising: float,
@@ -280,94 +267,93 @@ def _alone(engine: Engine, i: int, j: int, row: FloatArray, states: FloatArray) 
 
 
 @inlined
-def _speeds(engine: Engine, i: int, states: FloatArray) -> float:
-    """|v| + R |ω| of a disc; 0 of an obstacle."""
-    if i < 0:
-        return 0.0
-    rim = engine.discs[i, RADIUS] * abs(states[i, SPIN])
-    return math.hypot(states[i, VX], states[i, VY]) + rim
+def _as_forces(
+    engine: Engine, t: float, contacts: Whole, count: int, rows: FloatArray, states: FloatArray,
+    buffer: GroupBuffer,
+) -> int:  # fmt: skip
+    """The contacts that act as a problem of forces, with velocities for accelerations.
 
-
-@inlined
-def _shared_out(
-    engine: Engine, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
-    states: FloatArray, weight: float,
-) -> bool:  # fmt: skip
-    """The impulses for e = β = 0 of contacts that share discs; whether they were found.
-
-    Rims without bound all stop.
+    How many they are; −1: too many.  Discs are the members, by their numbers.
     """
-    rounding = 0.0  # of impulses: where discs that go fast touch slowly, more than a share of them
+    acting, ties = 0, 0
+    for i in range(states.shape[0]):
+        buffer.inverse[i, 0] = buffer.inverse[i, 1] = 0.0
     for n in range(count):
-        rows[n, PN] = rows[n, PT] = 0.0
-        if rows[n, ACTS] > 0.0:
-            fast = _speeds(engine, contacts[n, 0], states) + _speeds(engine, contacts[n, 1], states)
-            rounding = max(rounding, _SOLVED * fast / rows[n, SOFT])
-    for _ in range(_MOST_ITERATIONS):
-        change, largest = 0.0, 0.0
-        for n in range(count):
-            row = rows[n]
-            if row[ACTS] == 0.0:
+        row = rows[n]
+        if row[ACTS] == 0.0:
+            continue
+        if acting == buffer.pairs.shape[0]:
+            return -1
+        sight = buffer.sights[acting]
+        for column in range(sight.shape[0]):
+            sight[column] = 0.0
+        sight[SIGHT_NX], sight[SIGHT_NY] = row[NX], row[NY]
+        sight[GRIP] = 0.0  # β = −1: smooth
+        if row[BETA] > -1.0:
+            sight[GRIP] = row[MU] * (1.0 + row[E]) / (1.0 + row[BETA])
+        for m in range(2):
+            i = contacts[n, m]
+            buffer.pairs[acting, m] = i
+            if i < 0:
                 continue
-            un, ut = approach(engine, contacts[n, 0], contacts[n, 1], row[NX], row[NY], states)
-            old_n, old_t = row[PN], row[PT]
-            row[PN] = max(old_n + weight * un / row[SOFT], 0.0)
-            if row[BETA] > -1.0:
-                row[PT] = old_t + weight * ut / row[SLICK]
-                if row[MU] < math.inf:
-                    most = row[MU] * row[PN] * (1.0 + row[E]) / (1.0 + row[BETA])
-                    row[PT] = min(max(row[PT], -most), most)
-            change = max(change, abs(row[PN] - old_n), abs(row[PT] - old_t))
-            largest = max(largest, row[PN], abs(row[PT]))
-        _push_all(engine, contacts, count, rows, before, states)
-        if change <= max(_SOLVED * largest, rounding):
-            return True
-    return False
-
-
-@inlined
-def _is_idle(row: FloatArray) -> bool:
-    """Whether rims grip that nothing presses, though not for good."""
-    return row[ACTS] == 1.0 and row[PN] == 0.0 and row[PT] != 0.0
+            disc = engine.discs[i]
+            sight[ARM + m] = disc[RADIUS]
+            if buffer.inverse[i, 0] > 0.0 or disc[LIGHTNESS] == 0.0:
+                continue
+            buffer.inverse[i, 0], buffer.inverse[i, 1] = disc[LIGHTNESS], disc[TURNABILITY]
+            own = buffer.own[i]
+            own[0], own[1], own[2] = states[i, VX], states[i, VY], states[i, SPIN]
+            if disc[HOLD] != 0.0:
+                if ties + 2 > buffer.ties.shape[0]:
+                    return -1
+                more = forbid(
+                    disc, engine.surface, t, states[i], buffer.ties[ties:], buffer.strays[ties:]
+                )
+                for _ in range(more):  # impulses leave what is led as it goes
+                    tie = buffer.ties[ties]
+                    buffer.strays[ties, 2] = tie[0] * own[0] + tie[1] * own[1] + tie[2] * own[2]
+                    buffer.tied[ties] = i
+                    ties += 1
+        acting += 1
+    buffer.number[0] = ties
+    return acting
 
 
 @inner
 def _together(
-    engine: Engine, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
-    states: FloatArray, weight: float, last: bool,
+    engine: Engine, t: float, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
+    states: FloatArray, buffer: GroupBuffer,
 ) -> bool:  # fmt: skip
-    """The law for contacts that share discs, at most 1/weight each, or bear on what is led.
+    """The law for contacts that share discs, or bear on what is led; whether there are impulses.
 
-    A rim without bound on its friction does not grip where nothing presses it in the end: such a
-    contact takes no part in this round; ``last``: unless then it would approach.  Whether impulses
-    were found.
+    Those for e = β = 0, enlarged by 1 + e and 1 + β.
     """
-    again, solved = True, True
-    while again:
-        solved = _shared_out(engine, contacts, count, rows, before, states, weight)
-        pressed, idle, again = False, False, False
-        for n in range(count):
-            row = rows[n]
-            pressed = pressed or (row[ACTS] > 0.0 and row[PN] > 0.0)
-            idle = idle or _is_idle(row)
-            if last and row[ACTS] == ASIDE:
-                un, _ = approach(engine, contacts[n, 0], contacts[n, 1], row[NX], row[NY], states)
-                if un > NEGLIGIBLE * engine.scale[0]:
-                    row[ACTS], again = BACK, True
-        again = again or (pressed and idle)
-        if again:
-            _recall(engine, contacts, count, rows, before, states)
-            for n in range(count):
-                row = rows[n]
-                if row[ACTS] == BACK:
-                    row[ACTS] = FOR_GOOD
-                elif _is_idle(row):
-                    row[ACTS], row[PT] = ASIDE, 0.0
-    gain, cost = 0.0, 0.0
+    acting = _as_forces(engine, t, contacts, count, rows, states, buffer)
+    if acting < 0:
+        return False
+    modes = buffer.modes[0, :acting]
+    c = 0
+    for n in range(count):  # as each would be alone
+        row = rows[n]
+        if row[ACTS] > 0.0:
+            un, ut = approach(engine, contacts[n, 0], contacts[n, 1], row[NX], row[NY], states)
+            slides = abs(ut) * row[SOFT] > most(buffer.sights[c], un) * row[SLICK]
+            modes[c] = int(math.copysign(1.0, ut)) if slides else STICKS
+            c += 1
+    speed = engine.scale[0]
+    scales = Scales(speed, NEGLIGIBLE / LEVEL * speed, 0.0)
+    if not find_modes(buffer, modes, states.shape[0], scales):
+        return False
+    c = 0
     for n in range(count):
-        rows[n, PN] *= 1.0 + rows[n, E]
-        rows[n, PT] *= 1.0 + rows[n, BETA]
+        row = rows[n]
+        row[PN] = row[PT] = 0.0
+        if row[ACTS] > 0.0:
+            row[PN] = max(buffer.pushes[c, 0], 0.0) * (1.0 + row[E])
+            row[PT] = buffer.pushes[c, 1] * (1.0 + row[BETA])
+            c += 1
     _push_all(engine, contacts, count, rows, before, states)
+    gain, cost = 0.0, 0.0
     for n in range(count):
         row = rows[n]
         if row[ACTS] > 0.0:
@@ -376,53 +362,71 @@ def _together(
             vn, vt = approach(engine, i, j, row[NX], row[NY], states)
             gain += row[PN] * un + row[PT] * ut
             cost += 0.5 * (row[PN] * (un - vn) + row[PT] * (ut - vt))
-    if cost > gain:  # impulses of this share of them keep the energy
+    if cost > gain > 0.0:  # impulses of this share of them keep the energy
         for n in range(count):
             rows[n, PN] *= gain / cost
             rows[n, PT] *= gain / cost
         _push_all(engine, contacts, count, rows, before, states)
-    return solved
+    return True
 
 
-@inlined
-def _is_driven(engine: Engine, contacts: Whole, count: int) -> bool:
-    """Whether one of the discs of contacts is driven."""
+@inner
+def _hold_together(
+    engine: Engine, t: float, contacts: Whole, count: int, rows: FloatArray, states: FloatArray,
+    buffer: GroupBuffer,
+) -> bool:  # fmt: skip
+    """Take away how slowly those part that are squeezed; whether that is possible.
+
+    Else a disc between three others, or in a corner, chatters for ever at a height that is rounding:
+    each impact brings the last one apart by as much.
+    """
+    fastest = 0.0
     for n in range(count):
-        for m in range(2):
-            i = contacts[n, m]
-            if i >= 0 and engine.discs[i, LIGHTNESS] == 0.0:
-                return True
-    return False
+        fastest = max(fastest, rows[n, FIRST_N])
+    for n in range(count):
+        un, _ = approach(
+            engine, contacts[n, 0], contacts[n, 1], rows[n, NX], rows[n, NY], states
+        )
+        rows[n, ACTS] = 1.0 if un >= -fastest else 0.0
+    acting = _as_forces(engine, t, contacts, count, rows, states, buffer)
+    if acting > 0:
+        modes = buffer.modes[0, :acting]
+        modes[:] = 1
+        stop_slips(buffer, modes, states)
+    return acting >= 0
 
 
 @inlined
-def _most_shared(contacts: Whole, count: int, rows: FloatArray, shares: Whole) -> int:
-    """How many acting contacts a disc has at most."""
-    most = 0
+def _share_discs(contacts: Whole, count: int, rows: FloatArray, shares: Whole) -> bool:
+    """Whether acting contacts bear on each other, or approach and slip of one do."""
     for n in range(count):
         for m in range(2):
             if contacts[n, m] >= 0:
                 shares[contacts[n, m]] = 0
     for n in range(count):
         if rows[n, ACTS] > 0.0:
+            if rows[n, CROSS] != 0.0:
+                return True
             for m in range(2):
-                if contacts[n, m] >= 0:
-                    shares[contacts[n, m]] += 1
-                    most = max(most, shares[contacts[n, m]])
-    return most
+                i = contacts[n, m]
+                if i >= 0:
+                    shares[i] += 1
+                    if shares[i] > 1:
+                        return True
+    return False
 
 
 @inner
 def collide(
     engine: Engine, t: float, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
-    states: FloatArray, shares: Whole, squeezed: bool,
+    states: FloatArray, shares: Whole, buffer: GroupBuffer, squeezed: bool,
 ) -> int:  # fmt: skip
     """All impacts of discs that touch, at one instant; how many rounds there were.
 
     Or NO_END, or TOO_FAST, where the approach that no table knows is FIRST_N of a row with E < 0.
 
     ``contacts`` (count, 2): discs and their partners, prepared in ``rows``; ``states`` (n, 6) get
-    the velocities after them; ``before`` (n, 6) and ``shares`` (n,) are room to work.
+    the velocities after them; ``before`` (n, 6), ``shares`` (n,) and ``buffer`` are room to work.
     ``squeezed``: all that do not part are resolved together, with e = 0.
     """
     for turn in range(MOST_ROUNDS):
@@ -445,8 +449,10 @@ def collide(
                     if j >= 0:
                         before[j, column] = states[j, column]
         if acting == 0:
-            if squeezed:
-                _keep_down(engine, t, contacts, count, rows, states)
+            if squeezed and not _hold_together(
+                engine, t, contacts, count, rows, states, buffer
+            ):
+                return NO_END
             return turn
         last = turn >= TURNS or squeezed
         if last:  # such as of a light disc between a heavy one and a wall
@@ -461,21 +467,15 @@ def collide(
                         before[i, column] = states[i, column]
                         if j >= 0:
                             before[j, column] = states[j, column]
-        most = _most_shared(contacts, count, rows, shares)
-        for n in range(count):
-            if rows[n, ACTS] * rows[n, CROSS] != 0.0:  # approach and slip bear on each other
-                most = 2 * most
-                break
+        shared = _share_discs(contacts, count, rows, shares)
         again = True
         while again:
-            if most == 1:
+            if not shared:
                 for n in range(count):
                     if rows[n, ACTS] > 0.0:
                         _alone(engine, contacts[n, 0], contacts[n, 1], rows[n], states)
-            else:
-                solved = _together(engine, contacts, count, rows, before, states, 1.0 / most, last)
-                if not solved and _is_driven(engine, contacts, count):
-                    return NO_END  # it squeezes somebody: no impulses would do
+            elif not _together(engine, t, contacts, count, rows, before, states, buffer):
+                return NO_END
             again = False
             for n in range(count):
                 row = rows[n]

@@ -10,7 +10,7 @@ import math
 
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.world.break_away import find_break_away, overborne
-from puck_tables.world.complementarity import most
+from puck_tables.world.complementarity import load_of, most
 from puck_tables.world.forces import gain_of
 from puck_tables.world.group import (
     APART,
@@ -50,14 +50,14 @@ def watch(buffer: GroupBuffer, modes: IntArray, scales: Scales, end: bool) -> No
         if soft == 0.0:
             continue
         push, rim = buffer.pushes[c, 0], buffer.pushes[c, 1]
-        seen[0] = push * soft + LEVEL * scales.rate
-        if sight[GRIP] == 0.0 or sight[GRIP] == math.inf:
+        seen[0] = load_of(sight, modes[c], push, rim) * soft + LEVEL * scales.rate
+        if sight[GRIP] == 0.0:
             continue
-        if modes[c] == STICKS:
+        if modes[c] != STICKS:
+            seen[RIM_STOPS - PARTS] = modes[c] * sight[SLIP] + SMOOTH_SLIP * scales.speed
+        elif sight[GRIP] < math.inf:
             left = (most(sight, push) - abs(rim)) * rolls
             seen[RIM_GIVES - PARTS] = left + LEVEL * scales.rate
-        else:
-            seen[RIM_STOPS - PARTS] = modes[c] * sight[SLIP] + SMOOTH_SLIP * scales.speed
 
 
 @inlined

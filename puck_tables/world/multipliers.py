@@ -1,7 +1,7 @@
 """The forces of contacts whose modes are known: as many linear equations as there are forces.
 
-A contact that presses has gap″ = 0, a rim that sticks u′ = 0; on a rim that slides τ = ±μλ follows
-λ, or is 0 where μ is without bound.  So a row of the constraints and a column of the forces differ
+A contact that presses has gap″ = 0, a rim that sticks u′ = 0; on a rim that slides τ = ±μλ, which
+for μ → ∞ leaves τ alone: λ → 0.  So a row of the constraints and a column of the forces differ
 where rims slide.  In a rack there are more contacts than directions to move: then many forces do
 the same, the matrix is singular, and of all solutions the smallest is taken, that of equally stiff
 contacts.  For this the diagonal is raised by a little, and what this leaves is solved for again
@@ -43,6 +43,12 @@ def _row_of(row: FloatArray, sight: FloatArray, along: bool) -> None:
 
 
 @inlined
+def slide_shares(grip: float, mode: int) -> tuple[float, float]:
+    """λ and τ of a unit of force on a rim that slides to a side, ±1."""
+    return (0.0, float(mode)) if grip == math.inf else (1.0, mode * grip)
+
+
+@inlined
 def times_row(buffer: GroupBuffer, number: int, rates: FloatArray, first: int) -> float:
     """A row of the constraints times velocities or accelerations (m, …), from a column on."""
     total, row = 0.0, buffer.rows[number]
@@ -72,13 +78,11 @@ def constrain(buffer: GroupBuffer, modes: IntArray, sticks: bool, slides: bool) 
                 buffer.owners[count, side] = buffer.pairs[c, side]
             _row_of(buffer.rows[count], sight, along == 1)
             _row_of(buffer.columns[count], sight, along == 1)
-            if slides and along == 0 and modes[c] != STICKS and 0.0 < sight[GRIP] < math.inf:
-                rim = modes[c] * sight[GRIP]
+            if slides and along == 0 and modes[c] != STICKS:
+                across, rim = slide_shares(sight[GRIP], modes[c])
                 column = buffer.columns[count]
-                column[0] -= rim * sight[NY]
-                column[1] += rim * sight[NX]
-                column[3] += rim * sight[NY]
-                column[4] -= rim * sight[NX]
+                ex, ey = across * sight[NX] - rim * sight[NY], across * sight[NY] + rim * sight[NX]
+                column[0], column[1], column[3], column[4] = ex, ey, -ex, -ey
                 column[2], column[5] = rim * sight[ARM], rim * sight[FAR_ARM]
             count += 1
     for tie in range(buffer.number[0]):
@@ -119,6 +123,16 @@ def fill_matrix(buffer: GroupBuffer, count: int) -> None:
 
 
 @inlined
+def _is_fixed(buffer: GroupBuffer, r: int) -> bool:
+    """Whether a row is of two that cannot move."""
+    for side in range(2):
+        place = buffer.owners[r, side]
+        if place >= 0 and buffer.inverse[place, 0] > 0.0:
+            return False
+    return True
+
+
+@inlined
 def _factor(buffer: GroupBuffer, count: int) -> None:
     """LU with row exchanges, of the matrix with its diagonal raised."""
     lu, order = buffer.factors, buffer.order
@@ -127,8 +141,8 @@ def _factor(buffer: GroupBuffer, count: int) -> None:
         for c in range(count):
             lu[r, c] = buffer.matrix[r, c]
         lu[r, r] += _RAISED * abs(lu[r, r])
-        if lu[r, r] == 0.0:
-            lu[r, r] = 1.0  # between two that cannot move: no force
+        if _is_fixed(buffer, r):
+            lu[r, r] = 1.0  # no force
     for k in range(count):
         best = k
         for r in range(k + 1, count):
@@ -138,6 +152,8 @@ def _factor(buffer: GroupBuffer, count: int) -> None:
             order[k], order[best] = order[best], order[k]
             for c in range(count):
                 lu[k, c], lu[best, c] = lu[best, c], lu[k, c]
+        if lu[k, k] == 0.0:
+            lu[k, k] = 1.0  # what is left tells that there is no solution
         for r in range(k + 1, count):
             share = lu[r, k] / lu[k, k]
             lu[r, k] = share
@@ -155,7 +171,7 @@ def solve(buffer: GroupBuffer, count: int) -> float:
     given, left = 0.0, 0.0
     for r in range(count):
         v[SOLUTION, r], v[LEFT, r] = 0.0, v[RIGHT, r]
-        if buffer.matrix[r, r] == 0.0:
+        if _is_fixed(buffer, r):
             v[LEFT, r] = 0.0
         given = max(given, abs(v[LEFT, r]))
     for _ in range(_ROUNDS):
@@ -177,7 +193,7 @@ def solve(buffer: GroupBuffer, count: int) -> float:
             total = v[RIGHT, r]
             for c in range(count):
                 total -= buffer.matrix[r, c] * v[SOLUTION, c]
-            if buffer.matrix[r, r] == 0.0:
+            if _is_fixed(buffer, r):
                 total = 0.0
             v[LEFT, r] = total
             left = max(left, abs(total))
@@ -236,14 +252,15 @@ def push_and_move(buffer: GroupBuffer, modes: IntArray, members: int) -> float:
         buffer.pushes[c, 0] = buffer.pushes[c, 1] = 0.0
         if modes[c] == APART:
             continue
-        buffer.pushes[c, 0] = buffer.vectors[SOLUTION, number]
+        force, grip = buffer.vectors[SOLUTION, number], buffer.sights[c, GRIP]
         number += 1
-        grip = buffer.sights[c, GRIP]
-        if modes[c] == STICKS and grip > 0.0:
+        buffer.pushes[c, 0] = force
+        if modes[c] != STICKS:
+            across, rim = slide_shares(grip, modes[c])
+            buffer.pushes[c, 0], buffer.pushes[c, 1] = across * force, rim * force
+        elif grip > 0.0:
             buffer.pushes[c, 1] = buffer.vectors[SOLUTION, number]
             number += 1
-        elif grip < math.inf:
-            buffer.pushes[c, 1] = modes[c] * grip * buffer.pushes[c, 0]
     for tie in range(buffer.number[0]):
         buffer.tautness[tie] = buffer.vectors[SOLUTION, number + tie]
     for place in range(members):

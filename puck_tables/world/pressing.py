@@ -94,35 +94,6 @@ def _stop_creeping(
     return heat
 
 
-@inlined
-def _let_go(
-    group: Group, members: IntArray, modes: IntArray, motions: IntArray, y: FloatArray,
-    scales: Scales, buffer: GroupBuffer,
-) -> bool:  # fmt: skip
-    """Forces where rims without bound on their friction leave none; whether found.
-
-    Such rims then grip where they press without a grip, or else nowhere: the others are smooth.
-    """
-    count = modes.shape[0]
-    sights, seen = buffer.sights, buffer.midway
-    look(group, members, buffer.pairs[:count], y, seen)
-    for attempt in range(2):
-        for c in range(count):
-            if seen[c, GRIP] == math.inf:
-                sights[c, GRIP] = 0.0
-                modes[c] = rim_mode(sights[c], scales.speed)
-        if not find_break_away(group, members, modes, motions, y, scales, buffer):
-            return False
-        if attempt == 0:
-            for c in range(count):
-                still = seen[c, GRIP] == math.inf and rim_mode(seen[c], scales.speed) == STICKS
-                if still and modes[c] != APART:
-                    sights[c, GRIP], modes[c] = math.inf, STICKS
-            if find_break_away(group, members, modes, motions, y, scales, buffer):
-                return True
-    return True
-
-
 @kernel
 def press(
     group: Group, members: IntArray, contacts: IntArray, states: FloatArray, t: float,
@@ -181,8 +152,7 @@ def press(
                     0.0,
                     APART,
                 )  # first it is seen whether it presses
-        found = find_break_away(group, members, modes, motions, y, scales, buffer)
-        if not found and not _let_go(group, members, modes, motions, y, scales, buffer):
+        if not find_break_away(group, members, modes, motions, y, scales, buffer):
             return UNSOLVED
         again = False
         for place in range(count):

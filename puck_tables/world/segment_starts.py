@@ -49,6 +49,7 @@ from puck_tables.world.floor_under import (
     off_border,
     step_onto,
 )  # fmt: skip
+from puck_tables.world.group import GroupBuffer, buffer_for
 from puck_tables.world.holds import work_of_hold
 from puck_tables.world.impact import (
     CONTACT_COLUMNS,
@@ -101,6 +102,8 @@ from puck_tables.world.segment import (
 # meet one that is concerned, has set off
 NOT_CONCERNED, CONCERNED, LOOKED_AT, DISAPPOINTED, SENT = range(5)
 
+_AT_ONCE = 256  # contacts whose impacts are found together, and discs led among them, at most
+
 
 class Room(NamedTuple):
     """Where the engine works: rows for every disc, contacts, and a few numbers."""
@@ -115,6 +118,7 @@ class Room(NamedTuple):
     one: FloatArray
     two: FloatArray
     workspace: FloatArray
+    buffer: GroupBuffer
 
 
 def room_for(discs: int) -> Room:
@@ -125,6 +129,7 @@ def room_for(discs: int) -> Room:
         np.zeros(discs, np.int64), np.zeros((contacts, 2), np.int64),
         np.zeros((contacts, CONTACT_COLUMNS)), np.zeros(ROOM), np.zeros(6), np.zeros(6),
         np.zeros((BUFFER_ROWS, ROW)),
+        buffer_for(discs, min(contacts, _AT_ONCE), min(discs, _AT_ONCE)),
     )  # fmt: skip
 
 
