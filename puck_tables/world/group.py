@@ -94,7 +94,8 @@ class GroupBuffer(NamedTuple):
     are; ``rows``, ``columns`` (k, 6), ``owners`` (k, 2), ``order`` (k,), k = 2c + 2h: the
     constraints, and the members concerned; ``matrix``, ``factors`` (k, k), ``vectors`` (4, k);
     ``variables`` (4c, 5), ``first``, ``basis`` (4c,), ``tableau`` (4c, 8c + 2): of
-    :mod:`puck_tables.world.lemke`; ``modes`` (2, c), ``motions`` (m,): trials; ``film`` (9,);
+    :mod:`puck_tables.world.lemke`; ``modes`` (2, c), ``motions`` (m,): trials; ``gives`` (c,): to which
+    side rims begin to slip; ``film`` (9,);
     ``carried`` (m, 3): what the floor asks of each acceleration; ``passed`` (m,): rows of forces
     over time; ``clock`` (1,): now.
     """
@@ -130,6 +131,7 @@ class GroupBuffer(NamedTuple):
     tableau: FloatArray
     modes: IntArray
     motions: IntArray
+    gives: IntArray
     film: FloatArray
     carried: FloatArray
     passed: IntArray
@@ -159,7 +161,8 @@ def buffer_for(members: int, contacts: int, led: int = 0) -> GroupBuffer:
         order=np.zeros(k, np.int64), matrix=np.zeros((k, k)), factors=np.zeros((k, k)),
         vectors=np.zeros((4, k)), variables=np.zeros((4 * c, 5)), first=np.zeros(4 * c, np.int64),
         basis=np.zeros(4 * c, np.int64), tableau=np.zeros((4 * c, 8 * c + 2)),
-        modes=np.zeros((2, c), np.int64), motions=np.zeros(m, np.int64), film=np.zeros(9),
+        modes=np.zeros((2, c), np.int64), motions=np.zeros(m, np.int64),
+        gives=np.zeros(c, np.int64), film=np.zeros(9),
         carried=np.zeros((m, 3)), passed=np.zeros(m, np.int64), clock=np.zeros(1),
     )  # fmt: skip
 

@@ -35,7 +35,9 @@ from puck_tables.world.group import (
     APART,
     HELD,
     PARTS,
+    RIM_GIVES,
     RUNS_OFF,
+    STICKS,
     UNSOLVED,
     Group,
     Scales,
@@ -242,9 +244,10 @@ def _follow(
             horizon = min(horizon, float(shared.films[first, [BEGINS, DURATION]].sum()))
     nothing = np.zeros((len(members), 0, PIECE_COLUMNS))
     jump, idle = np.zeros(LEDGER), np.zeros((0, WORK_COLUMNS))
+    modes = np.full(len(contacts), STICKS)
     for _ in range(_TRIES):
         buffer = buffer_for(len(members), len(contacts), int((discs[:, HOLD] != FREE).sum()))
-        modes, motions = np.zeros(len(contacts), np.int64), np.zeros(len(members), np.int64)
+        motions = np.zeros(len(members), np.int64)
         how = press(shared, members, contacts, states, t, scales, modes, motions, jump, buffer)
         if how == UNSOLVED:
             break
@@ -261,9 +264,13 @@ def _follow(
         )  # fmt: skip
         if t_end > t and count > 0:
             return contacts, t_end, pieces[:, :count], jump, work_rows[:count]
+        modes = np.full(len(contacts), STICKS)
+        if how == RIM_GIVES:  # at once, beyond what holds it now
+            modes[which] = -1 if buffer.pushes[which, 1] < 0.0 else 1
+            continue
         if how not in (PARTS, RUNS_OFF):
             break
-        contacts = np.delete(contacts, which, axis=0)
+        contacts, modes = np.delete(contacts, which, axis=0), np.delete(modes, which)
         if not len(contacts):
             return contacts, t, nothing, jump, idle
     raise PuckError(TOGETHER.format(time=t))

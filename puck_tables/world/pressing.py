@@ -110,6 +110,7 @@ def press(
         more.  Rims that press and have friction without bound are stopped at once: then contacts
         that are APART may approach.
     modes : (c,) and motions : (m,), the answer, see :mod:`puck_tables.world.group`
+        On entry modes say to which side rims begin to slip that stick, ±1; else STICKS.
     ledger : (8,) J, to which the heat of what is stopped is added
 
     Returns
@@ -119,6 +120,9 @@ def press(
     count = members.shape[0]
     find_places(members, contacts, buffer)
     pairs, y = buffer.pairs[: contacts.shape[0]], buffer.states[0]
+    gives = buffer.gives[: contacts.shape[0]]
+    for c in range(contacts.shape[0]):
+        gives[c] = modes[c]
     for place in range(count):
         number = members[place]
         for i in range(6):
@@ -145,7 +149,8 @@ def press(
         look(group, members, pairs, y, buffer.sights)
         look_at_ties(group, members, t, y, buffer)
         for c in range(contacts.shape[0]):
-            modes[c] = rim_mode(buffer.sights[c], scales.speed)
+            slides = rim_mode(buffer.sights[c], scales.speed)
+            modes[c] = slides if slides != STICKS or buffer.sights[c, GRIP] == 0.0 else gives[c]
             stopped[c] = STICKS
             if modes[c] != STICKS and buffer.sights[c, GRIP] == math.inf:
                 buffer.sights[c, GRIP], stopped[c] = (
@@ -171,7 +176,13 @@ def press(
         heat = stop_slips(buffer, stopped, y)
         ledger[RIM_HEAT] += heat
         ledger[DRIVE_WORK] += heat + _energy(group, members, y) - before
-    ledger[RIM_HEAT] += _stop_creeping(group, members, contacts.shape[0], modes, y, scales, buffer)
+        heat = _stop_creeping(group, members, contacts.shape[0], modes, y, scales, buffer)
+        ledger[RIM_HEAT] += heat
+        for place in range(count):  # that may have stopped one
+            if motions[place] == MOVES and can_rest(group, members[place]):
+                if slip_of(group, members[place], y[place]) <= STILL * scales.speed:
+                    motions[place], again = HELD, True
+                    rest_on_floor(group, members[place], y[place])
     goes = False
     for place in range(count):
         if motions[place] == YIELDS:
