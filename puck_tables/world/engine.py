@@ -35,6 +35,7 @@ from puck_tables.world.engine_state import (
 )
 from puck_tables.world.impact import (
     FLAT,
+    HOPS,
     LASTING,
     NX,
     NY,
@@ -148,30 +149,48 @@ def _is_squeezed(engine: Engine, t: float, count: int, room: Room) -> bool:
     """Whether slow impacts follow so soon on the last of the same two that these never parted.
 
     So go on those that are squeezed by what pushes and rubs them, such as a disc between another
-    one and a cushion: no single rebound of them dies out, and they would never end.
+    one and a cushion: no single rebound of them dies out, and they would never end.  HOPS of a row
+    tells who meets whom so.
     """
-    found, slow = False, SLOW * engine.scale[0]
+    slow, since = SLOW * engine.scale[0], math.inf
     for n in range(count):
         i, j, row = room.contacts[n, 0], room.contacts[n, 1], room.rows[n]
         un, _ = approach(engine, i, j, row[NX], row[NY], room.states)
         if un > slow:
             return False
-        if un <= 0.0 or found:
+        row[HOPS] = 1.0 if un > 0.0 else 0.0
+        if un <= 0.0 or since < t:
             continue
-        since, last = t - FLAT * engine.discs[i, RADIUS] / un, math.inf
+        early, last = t - FLAT * engine.discs[i, RADIUS] / un, math.inf
         for back in range(1, min(engine.counts[N_EVENTS], MOST_BACK) + 1):
             event = engine.events[engine.counts[N_EVENTS] - back]
-            if event[TIME] < since and not found:
+            if event[TIME] < early and since == math.inf:
                 break
             if event[WHAT] == IMPACT and event[WHO] == i and event[PARTNER] == j:
-                if found:  # each rebound lasts a share of the one before: what is left of them
+                if since < t:  # each rebound lasts a share of the one before: what is left of them
                     hop, share = t - last, (t - last) / (last - event[TIME])
                     low = 8.0 * FLAT * engine.discs[i, RADIUS] / (PRESSED * engine.scale[1])
                     if row[E] > 0.0 and share < LASTING and hop * hop < low:
                         engine.scale[4] += hop * share / (1.0 - share)
                     break
-                found, last = True, event[TIME]
-    return found
+                since, last = early, event[TIME]
+    if since == math.inf:
+        return False
+    for back in range(1, min(engine.counts[N_EVENTS], MOST_BACK) + 1):
+        event = engine.events[engine.counts[N_EVENTS] - back]
+        if event[TIME] < since:
+            break
+        for n in range(count):
+            if (
+                event[WHAT] == IMPACT and event[WHO] == room.contacts[n, 0]
+                and event[PARTNER] == room.contacts[n, 1]
+            ):  # fmt: skip
+                row = room.rows[n]
+                un, _ = approach(
+                    engine, room.contacts[n, 0], room.contacts[n, 1], row[NX], row[NY], room.states
+                )
+                row[HOPS] = 1.0 if un >= -slow else 0.0
+    return True
 
 
 @inner

@@ -55,7 +55,8 @@ from puck_tables.world.rims import along_of_pair, restitutions_of_pair, smaller_
 NX, NY, SOFT, SLICK, E, BETA, MU, ACTS, PN, PT, SUM_N, SUM_T, FIRST_N, FIRST_T, LOSS = range(15)
 ONE, OTHER = 15, 16
 CROSS = 17  # how much a unit of one impulse changes what the other one is against: of what is led
-CONTACT_COLUMNS = 18
+HOPS = 18  # whether impacts that brought nothing apart follow each other on it
+CONTACT_COLUMNS = 19
 
 NO_END, TOO_FAST = -1, -2  # how impacts fail: rounds without end; faster than a table goes
 
@@ -375,24 +376,22 @@ def _hold_together(
     engine: Engine, t: float, contacts: Whole, count: int, rows: FloatArray, states: FloatArray,
     buffer: GroupBuffer,
 ) -> bool:  # fmt: skip
-    """Take away how slowly those part that are squeezed; whether that is possible.
+    """Take away how slowly those part that hop; whether that is possible.
 
-    Else a disc between three others, or in a corner, chatters for ever at a height that is rounding:
-    each impact brings the last one apart by as much.
+    Else a disc between three others, or in a corner, chatters for ever at a height that is
+    rounding: each impact brings apart those that met in the last one.
     """
-    fastest = 0.0
     for n in range(count):
-        fastest = max(fastest, rows[n, FIRST_N])
-    for n in range(count):
-        un, _ = approach(
-            engine, contacts[n, 0], contacts[n, 1], rows[n, NX], rows[n, NY], states
-        )
-        rows[n, ACTS] = 1.0 if un >= -fastest else 0.0
+        rows[n, ACTS] = rows[n, HOPS]
     acting = _as_forces(engine, t, contacts, count, rows, states, buffer)
     if acting > 0:
         modes = buffer.modes[0, :acting]
         modes[:] = 1
-        stop_slips(buffer, modes, states)
+        heat = stop_slips(buffer, modes, states)
+        for n in range(count):
+            if got_impulse(rows[n]):  # so it is told
+                rows[n, LOSS] += heat
+                break
     return acting >= 0
 
 

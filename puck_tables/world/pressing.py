@@ -143,9 +143,10 @@ def press(
                 way[0], way[1], way[2] = vx / q, vy / q, spin / q
     count_rows(group, members, t, buffer)
     place_driven(group, members, motions, t, y, buffer)
-    stopped, again = buffer.modes[1, : contacts.shape[0]], True
+    stopped, again, rounds = buffer.modes[1, : contacts.shape[0]], True, 0
     while again:
         patience(1)
+        rounds += 1
         look(group, members, pairs, y, buffer.sights)
         look_at_ties(group, members, t, y, buffer)
         for c in range(contacts.shape[0]):
@@ -179,7 +180,7 @@ def press(
         heat = _stop_creeping(group, members, contacts.shape[0], modes, y, scales, buffer)
         ledger[RIM_HEAT] += heat
         for place in range(count):  # that may have stopped one
-            if motions[place] == MOVES and can_rest(group, members[place]):
+            if rounds < _CREEPS and motions[place] == MOVES and can_rest(group, members[place]):
                 if slip_of(group, members[place], y[place]) <= STILL * scales.speed:
                     motions[place], again = HELD, True
                     rest_on_floor(group, members[place], y[place])
