@@ -35,7 +35,9 @@ from puck_tables.world.group import (
     APART,
     HELD,
     PARTS,
+    RESTS,
     RIM_GIVES,
+    RIM_STOPS,
     RUNS_OFF,
     STICKS,
     UNSOLVED,
@@ -258,19 +260,21 @@ def _follow(
             return contacts, math.inf, nothing, jump, idle
         pieces = np.zeros((len(members), ROWS, PIECE_COLUMNS))
         work_rows = np.zeros((ROWS, WORK_COLUMNS))
+        moved = states.copy()
         how, which, t_end, count = follow(
-            shared, members, contacts, states.copy(), t, horizon, scales, modes, motions, pieces,
-            work_rows, buffer,
+            shared, members, contacts, moved, t, horizon, scales, modes, motions, pieces, work_rows,
+            buffer,
         )  # fmt: skip
         if t_end > t and count > 0:
             return contacts, t_end, pieces[:, :count], jump, work_rows[:count]
-        modes = np.full(len(contacts), STICKS)
-        if how == RIM_GIVES:  # at once, beyond what holds it now
-            modes[which] = -1 if buffer.pushes[which, 1] < 0.0 else 1
-            continue
-        if how not in (PARTS, RUNS_OFF):
+        if how not in (PARTS, RIM_STOPS, RIM_GIVES, RUNS_OFF, RESTS):
             break
-        contacts, modes = np.delete(contacts, which, axis=0), np.delete(modes, which)
+        states[members] = moved[members]  # sooner than a time is rounded to
+        modes = np.full(len(contacts), STICKS)
+        if how == RIM_GIVES:
+            modes[which] = -1 if buffer.pushes[which, 1] < 0.0 else 1
+        elif how in (PARTS, RUNS_OFF):
+            contacts, modes = np.delete(contacts, which, axis=0), np.delete(modes, which)
         if not len(contacts):
             return contacts, t, nothing, jump, idle
     raise PuckError(TOGETHER.format(time=t))
