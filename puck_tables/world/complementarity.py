@@ -63,7 +63,12 @@ def better_mode(buffer: GroupBuffer, c: int, mode: int, scales: Scales, may_slid
         return APART if gap > slack else mode
     sight, push, rim = buffer.sights[c], buffer.pushes[c, 0], buffer.pushes[c, 1]
     if mode == APART:
-        return rim_mode(sight, scales.speed) if gap < -slack else APART
+        if gap >= -slack:
+            return APART
+        mode = rim_mode(sight, scales.speed)
+        if mode == STICKS and abs(slip) * soft > most(sight, -gap) * rolls:  # as it would alone
+            mode = 1 if slip > 0.0 else -1
+        return mode
     if load_of(sight, mode, push, rim) * soft < -slack:
         if may_slide and mode == STICKS and sight[GRIP] == math.inf and rim != 0.0:
             return 1 if rim > 0.0 else -1
