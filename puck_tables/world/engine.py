@@ -8,9 +8,9 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel, patience
 from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.world.borders import next_border
+from puck_tables.world.contact_row import SUM_N, SUM_T, got_impulse
 from puck_tables.world.contact_search import are_apart, next_contact, next_crossing, rest_together
 from puck_tables.world.engine_state import (
-    IMPACT,
     LAUNCH_SPIN,
     LAUNCH_TIME,
     LAUNCH_VX,
@@ -24,30 +24,12 @@ from puck_tables.world.engine_state import (
     N_LAUNCHES,
     NOTHING,
     OVER_EDGE,
-    PARTNER,
     PATH_ENDS,
     POCKETED,
     STRUCK,
-    TIME,
-    WHAT,
-    WHO,
     Engine,
 )
-from puck_tables.world.impact import (
-    FLAT,
-    HOPS,
-    LASTING,
-    NX,
-    NY,
-    PRESSED,
-    SUM_N,
-    SUM_T,
-    TOO_FAST,
-    E,
-    approach,
-    collide,
-    got_impulse,
-)
+from puck_tables.world.impact import TOO_FAST, collide
 from puck_tables.world.layout import (
     EDGE,
     KIND,
@@ -59,6 +41,7 @@ from puck_tables.world.layout import (
     RADIUS,
     kinetic,
 )
+from puck_tables.world.rebounds import is_squeezed
 from puck_tables.world.segment import (
     GONE,
     LOOKED_UP,
@@ -94,8 +77,6 @@ from puck_tables.world.setting_off import (
 from puck_tables.world.touching import find_touching
 
 NOBODY, EVERYBODY, THOSE_LEFT = -1, -2, -3  # who is concerned at once; else an event by hand
-SLOW = 1e-6  # of the scale of speeds: an impact that only what pushes brings about
-MOST_BACK = 64  # events
 MOST_AT_ONCE = 1_000  # events at one moment
 MOST_IN_A_CALL = 2_000  # then the caller may hear Ctrl-C
 
@@ -144,55 +125,6 @@ def look_ahead(engine: Engine, i: int, t: float, room: Room) -> None:
             _earlier(engine, j, found, i)
 
 
-@inlined
-def _is_squeezed(engine: Engine, t: float, count: int, room: Room) -> bool:
-    """Whether slow impacts follow so soon on the last of the same two that these never parted.
-
-    So go on those that are squeezed by what pushes and rubs them, such as a disc between another
-    one and a cushion: no single rebound of them dies out, and they would never end.  HOPS of a row
-    tells who meets whom so.
-    """
-    slow, since = SLOW * engine.scale[0], math.inf
-    for n in range(count):
-        i, j, row = room.contacts[n, 0], room.contacts[n, 1], room.rows[n]
-        un, _ = approach(engine, i, j, row[NX], row[NY], room.states)
-        if un > slow:
-            return False
-        row[HOPS] = 1.0 if un > 0.0 else 0.0
-        if un <= 0.0 or since < t:
-            continue
-        early, last = t - FLAT * engine.discs[i, RADIUS] / un, math.inf
-        for back in range(1, min(engine.counts[N_EVENTS], MOST_BACK) + 1):
-            event = engine.events[engine.counts[N_EVENTS] - back]
-            if event[TIME] < early and since == math.inf:
-                break
-            if event[WHAT] == IMPACT and event[WHO] == i and event[PARTNER] == j:
-                if since < t:  # each rebound lasts a share of the one before: what is left of them
-                    hop, share = t - last, (t - last) / (last - event[TIME])
-                    low = 8.0 * FLAT * engine.discs[i, RADIUS] / (PRESSED * engine.scale[1])
-                    if row[E] > 0.0 and share < LASTING and hop * hop < low:
-                        engine.scale[4] += hop * share / (1.0 - share)
-                    break
-                since, last = early, event[TIME]
-    if since == math.inf:
-        return False
-    for back in range(1, min(engine.counts[N_EVENTS], MOST_BACK) + 1):
-        event = engine.events[engine.counts[N_EVENTS] - back]
-        if event[TIME] < since:
-            break
-        for n in range(count):
-            if (
-                event[WHAT] == IMPACT and event[WHO] == room.contacts[n, 0]
-                and event[PARTNER] == room.contacts[n, 1]
-            ):  # fmt: skip
-                row = room.rows[n]
-                un, _ = approach(
-                    engine, room.contacts[n, 0], room.contacts[n, 1], row[NX], row[NY], room.states
-                )
-                row[HOPS] = 1.0 if un >= -slow else 0.0
-    return True
-
-
 @inner
 def _happen(engine: Engine, i: int, partner: int, t: float, room: Room) -> int:
     """What comes next for a disc happens; those concerned are marked."""
@@ -225,7 +157,7 @@ def _happen(engine: Engine, i: int, partner: int, t: float, room: Room) -> int:
     count = find_touching(engine, t, room)
     if count < 0:
         return CROWDED
-    squeezed = _is_squeezed(engine, t, count, room)
+    squeezed = is_squeezed(engine, t, room.contacts, count, room.rows, room.states)
     rounds = collide(
         engine, t, room.contacts, count, room.rows, room.before, room.states, room.shares,
         room.buffer, squeezed,

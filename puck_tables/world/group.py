@@ -94,10 +94,9 @@ class GroupBuffer(NamedTuple):
     are; ``rows``, ``columns`` (k, 6), ``owners`` (k, 2), ``order`` (k,), k = 2c + 2h: the
     constraints, and the members concerned; ``matrix``, ``factors`` (k, k), ``vectors`` (4, k);
     ``variables`` (4c, 5), ``first``, ``basis`` (4c,), ``tableau`` (4c, 8c + 2): of
-    :mod:`puck_tables.world.lemke`; ``modes`` (2, c), ``motions`` (m,): trials; ``gives`` (c,): to which
-    side rims begin to slip; ``film`` (9,);
-    ``carried`` (m, 3): what the floor asks of each acceleration; ``passed`` (m,): rows of forces
-    over time; ``clock`` (1,): now.
+    :mod:`puck_tables.world.lemke`; ``modes`` (2, c), ``motions`` (m,): trials; ``gives`` (c,): to
+    which side rims begin to slip; ``film`` (9,); ``carried`` (m, 3): what the floor asks of each
+    acceleration; ``passed`` (m,): rows of forces over time; ``clock`` (1,): now.
     """
 
     pairs: IntArray

@@ -16,6 +16,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import PuckError
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ingredients import FREE
+from puck_tables.world.contact_row import ACTS, NX, NY
 from puck_tables.world.engine_state import (
     CONTACT,
     LOST,
@@ -45,7 +46,6 @@ from puck_tables.world.group import (
     Scales,
     buffer_for,
 )
-from puck_tables.world.impact import ACTS, NX, NY
 from puck_tables.world.layout import (
     HOLD,
     HOLD_VX,

@@ -7,15 +7,11 @@ it is that at u_n, in every round anew.
 Of discs that touch, those contacts that approach are resolved, then those that approach then, and
 so on: a row of pucks passes an impact on, as if there were gaps between them (after 200 rounds
 those that take turns are resolved together with e = β = 0; those that are squeezed at once).
-Contacts of one round that share a disc are resolved together: the impulses for e = β = 0
-(P_n ≥ 0) are found by an iteration that treats all alike, then enlarged by 1 + e and 1 + β, as
-Poisson has it, and lessened together should energy grow.  So no numbering matters, and what is
-symmetric stays so.
-
-Rebounds of discs that press on each other die out.  Where those left are lower than 1e-13 of the
-radius, than 1e-14 of the places, or than a hundredth of the error of a step (in units of Q²/J),
-e = 0: they stay in contact.
-How long these would have lasted is kept: of one puck it is part of the error estimate.
+Contacts of one round that share a disc are resolved together: the impulses for e = β = 0 are those
+of one complementarity problem (:mod:`puck_tables.world.complementarity`), then enlarged by 1 + e
+and 1 + β, as Poisson has it, and lessened together should energy grow.  So no numbering matters,
+and what is symmetric stays so.  Rebounds that die out (:mod:`puck_tables.world.rebounds`) have
+e = 0.
 """
 
 from __future__ import annotations
@@ -24,70 +20,48 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
-from puck_tables.motion.impact_law import along_normal, impulses
-from puck_tables.scene.friction import SPIN, VX, VY, X, Y
-from puck_tables.world.alone import acceleration
+from puck_tables.motion.impact_law import impulses
+from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.world.complementarity import find_modes, most
-from puck_tables.world.contact_search import HARDLY, normal_to
+from puck_tables.world.contact_row import (
+    ACTS,
+    BETA,
+    CROSS,
+    FIRST_N,
+    FIRST_T,
+    HOPS,
+    LOSS,
+    MU,
+    NX,
+    NY,
+    ONE,
+    OTHER,
+    PN,
+    PT,
+    SLICK,
+    SOFT,
+    SUM_N,
+    SUM_T,
+    E,
+    approach,
+    got_impulse,
+)
+from puck_tables.world.contact_search import HARDLY
 from puck_tables.world.engine_state import Engine, Whole
-from puck_tables.world.floor_under import over_floor
 from puck_tables.world.group import ARM, GRIP, LEVEL, STICKS, GroupBuffer, Scales
 from puck_tables.world.group import NX as SIGHT_NX
 from puck_tables.world.group import NY as SIGHT_NY
 from puck_tables.world.holds import forbid, response
-from puck_tables.world.layout import (
-    ARC,
-    HOLD,
-    KIND,
-    LIGHTNESS,
-    RADIUS,
-    SIDE,
-    TURNABILITY,
-    WALL,
-    C,
-)
+from puck_tables.world.layout import HOLD, LIGHTNESS, RADIUS, TURNABILITY
 from puck_tables.world.putting_right import stop_slips
-from puck_tables.world.rims import along_of_pair, restitutions_of_pair, smaller_at
-
-# columns of a contact in work: normal, slownesses 1/m_n and 1/m_t, law, whether it acts in this
-# round, impulses of the round and of all, approach and slip at the first, energy lost, and the two
-# restitutions, numbers or laws, of which E is the smaller
-NX, NY, SOFT, SLICK, E, BETA, MU, ACTS, PN, PT, SUM_N, SUM_T, FIRST_N, FIRST_T, LOSS = range(15)
-ONE, OTHER = 15, 16
-CROSS = 17  # how much a unit of one impulse changes what the other one is against: of what is led
-HOPS = 18  # whether impacts that brought nothing apart follow each other on it
-CONTACT_COLUMNS = 19
+from puck_tables.world.rebounds import dies_out
+from puck_tables.world.rims import smaller_at
 
 NO_END, TOO_FAST = -1, -2  # how impacts fail: rounds without end; faster than a table goes
 
 NEGLIGIBLE = 1e-13  # of the scale of speeds: an approach as slow is none
-FLAT = 1e-13  # of the radius: rebounds as low have died out,
-LOW = 1e-14  # of the places: as these, whose height is rounding,
-LEAST = 1e-2  # and of the error of a step, in units of Q²/J
-LASTING = 0.99  # of the rebound before, at most: so long is the next one taken to be
-PRESSED = 1e-3  # of the scale of accelerations: what presses less brings no rebounds to an end
 MOST_ROUNDS = 2_000  # at one moment: ten times those after which turns are resolved together
 TURNS = 200  # rounds after which contacts that take turns are resolved together, with e = 0
-
-
-@inlined
-def approach(
-    engine: Engine, i: int, j: int, nx: float, ny: float, states: FloatArray
-) -> tuple[float, float]:
-    """u_n and u_t."""
-    vx, vy = states[i, VX], states[i, VY]
-    rim = engine.discs[i, RADIUS] * states[i, SPIN]
-    if j >= 0:
-        vx -= states[j, VX]
-        vy -= states[j, VY]
-        rim += engine.discs[j, RADIUS] * states[j, SPIN]
-    return along_normal(vx, vy, rim, nx, ny)
-
-
-@inlined
-def got_impulse(row: FloatArray) -> bool:
-    """Whether a contact has had an impulse; rims without bound may have one along them alone."""
-    return row[SUM_N] > 0.0 or row[SUM_T] != 0.0
 
 
 @inlined
@@ -105,131 +79,6 @@ def _push(engine: Engine, i: int, j: int, row: FloatArray, states: FloatArray) -
         states[j, VX] -= dx
         states[j, VY] -= dy
         states[j, SPIN] -= turn
-
-
-@inlined
-def _slownesses(
-    disc: FloatArray, state: FloatArray, nx: float, ny: float
-) -> tuple[float, float, float]:
-    """How much a unit impulse changes approach and slip: 1/m_n, 1/m_t, and one the other."""
-    light, radius = disc[LIGHTNESS], disc[RADIUS]
-    if disc[HOLD] == 0.0:
-        return light, light + disc[TURNABILITY] * radius * radius, 0.0
-    dx, dy, turn = response(disc, state, nx, ny, 0.0)
-    cross = dy * nx - dx * ny + radius * turn
-    ex, ey, spin = response(disc, state, -ny, nx, radius)
-    return dx * nx + dy * ny, ey * nx - ex * ny + radius * spin, cross
-
-
-@inlined
-def prepare_contact(engine: Engine, i: int, j: int, states: FloatArray, row: FloatArray) -> None:
-    """Normal, slownesses and law of a contact that has had no impulse yet."""
-    discs = engine.discs
-    if j >= 0:
-        dx, dy = states[j, X] - states[i, X], states[j, Y] - states[i, Y]
-        size = math.hypot(dx, dy)
-        row[NX], row[NY] = dx / size, dy / size
-    else:
-        _, row[NX], row[NY], _ = normal_to(
-            engine.obstacles[-1 - j], discs[i, RADIUS], states[i, X], states[i, Y], 0.0
-        )
-    soft, slick, cross = _slownesses(discs[i], states[i], row[NX], row[NY])
-    if j >= 0:
-        more, slicker, twist = _slownesses(discs[j], states[j], -row[NX], -row[NY])
-        soft, slick, cross = soft + more, slick + slicker, cross + twist
-    row[SOFT], row[SLICK], row[CROSS] = soft, slick, cross
-    row[BETA], row[MU] = along_of_pair(engine.rims, discs, engine.obstacles, i, j)
-    row[ONE], row[OTHER] = restitutions_of_pair(engine.rims, discs, engine.obstacles, i, j)
-    row[E] = min(row[ONE], row[OTHER])
-    row[ACTS] = row[PN] = row[PT] = row[SUM_N] = row[SUM_T] = 0.0
-    row[FIRST_N] = row[FIRST_T] = row[LOSS] = 0.0
-
-
-@inlined
-def opening(engine: Engine, i: int, j: int, t: float, row: FloatArray, states: FloatArray) -> float:
-    """The second derivative of the gap of a contact if its discs flew on alone."""
-    nx, ny = row[NX], row[NY]
-    wx, wy = states[i, VX], states[i, VY]
-    size = engine.discs[i, RADIUS]
-    ax, ay = acceleration(engine, i, t, states[i])
-    pull = ax * nx + ay * ny
-    if j >= 0:
-        wx -= states[j, VX]
-        wy -= states[j, VY]
-        size += engine.discs[j, RADIUS]
-        ax, ay = acceleration(engine, j, t, states[j])
-        pull -= ax * nx + ay * ny
-    else:
-        obstacle = engine.obstacles[-1 - j]
-        size = math.inf if obstacle[KIND] in (WALL, SIDE) else size + obstacle[C]
-        if obstacle[KIND] == ARC:
-            size = engine.discs[i, RADIUS] - obstacle[C]  # it bends the other way
-    across = wy * nx - wx * ny
-    return across * across / size - pull
-
-
-@inlined
-def _dies_out(
-    engine: Engine, i: int, j: int, t: float, row: FloatArray, states: FloatArray
-) -> bool:
-    """Whether both press on each other so that this rebound and those after it are too low."""
-    if row[E] >= 1.0:
-        return False
-    un, closing = _hop(engine, i, j, t, row, states)
-    if closing <= 0.0:
-        return False
-    if j < 0:
-        engine.scale[4] += _lasting(engine, i, j, t, row, states, -un, closing)
-    return True
-
-
-@inlined
-def _hop(
-    engine: Engine, i: int, j: int, t: float, row: FloatArray, states: FloatArray
-) -> tuple[float, float]:
-    """The approach of a contact, and what presses it, m/s²; 0 where it parts by more than a little.
-
-    A hop as low as that has died out: by rounding, or by what a step may be wrong by.
-    """
-    un, _ = approach(engine, i, j, row[NX], row[NY], states)
-    closing = -opening(engine, i, j, t, row, states)
-    way = _slip2(engine, i, states)
-    if j >= 0:
-        way = max(way, _slip2(engine, j, states))
-    rounded = LOW * (abs(states[i, X]) + abs(states[i, Y]))
-    least = LEAST * engine.scale[2] * way / engine.scale[1]
-    height = max(rounded, FLAT * engine.discs[i, RADIUS], least)
-    low = closing > 0.0 and un <= 0.0 and un * un <= 2.0 * closing * height
-    return un, closing if low else 0.0
-
-
-@inlined
-def _lasting(
-    engine: Engine, i: int, j: int, t: float, row: FloatArray, states: FloatArray, un: float,
-    rising: float,
-) -> float:  # fmt: skip
-    """How long rebounds from an obstacle would last, of which the first begins at un.
-
-    They are braked by ``rising`` on the way up; on the way down the rims and the floor rub back.
-    """
-    for side in range(2):  # there and back
-        turn = (2.0 - 4.0 * side) * un
-        states[i, VX] += turn * row[NX]
-        states[i, VY] += turn * row[NY]
-        if side == 0:
-            falling = -opening(engine, i, j, t, row, states)
-    if falling <= 0.0 or rising <= PRESSED * engine.scale[1]:
-        return 0.0
-    share = math.sqrt(falling / rising)
-    return un / rising * (1.0 + 1.0 / share) / (1.0 - min(row[E] * share, LASTING))
-
-
-@inlined
-def _slip2(engine: Engine, i: int, states: FloatArray) -> float:
-    """Q² of a disc over the floor."""
-    vx, vy, spin = over_floor(engine.surface, engine.discs[i], states[i])
-    rim = engine.discs[i, RADIUS] * spin
-    return vx**2 + vy**2 + rim * rim
 
 
 @inlined
@@ -448,9 +297,7 @@ def collide(
                     if j >= 0:
                         before[j, column] = states[j, column]
         if acting == 0:
-            if squeezed and not _hold_together(
-                engine, t, contacts, count, rows, states, buffer
-            ):
+            if squeezed and not _hold_together(engine, t, contacts, count, rows, states, buffer):
                 return NO_END
             return turn
         last = turn >= TURNS or squeezed
@@ -479,7 +326,7 @@ def collide(
             for n in range(count):
                 row = rows[n]
                 i, j = contacts[n, 0], contacts[n, 1]
-                if row[ACTS] * row[E] > 0.0 and _dies_out(engine, i, j, t, row, states):
+                if row[ACTS] * row[E] > 0.0 and dies_out(engine, i, j, t, row, states):
                     row[E] = row[ONE] = row[OTHER] = 0.0
                     again = True
             if again:

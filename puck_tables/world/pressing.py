@@ -179,11 +179,12 @@ def press(
         ledger[DRIVE_WORK] += heat + _energy(group, members, y) - before
         heat = _stop_creeping(group, members, contacts.shape[0], modes, y, scales, buffer)
         ledger[RIM_HEAT] += heat
-        for place in range(count):  # that may have stopped one
-            if rounds < _CREEPS and motions[place] == MOVES and can_rest(group, members[place]):
-                if slip_of(group, members[place], y[place]) <= STILL * scales.speed:
-                    motions[place], again = HELD, True
-                    rest_on_floor(group, members[place], y[place])
+        for place in range(count if rounds < _CREEPS else 0):  # that may have stopped one
+            number = members[place]
+            small = slip_of(group, number, y[place]) <= STILL * scales.speed
+            if small and motions[place] == MOVES and can_rest(group, number):
+                motions[place], again = HELD, True
+                rest_on_floor(group, number, y[place])
     goes = False
     for place in range(count):
         if motions[place] == YIELDS:

@@ -10,10 +10,10 @@ import math
 
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.friction import VX, VY
+from puck_tables.world.contact_row import ACTS, NX, NY, PN, approach
 from puck_tables.world.contact_search import QUIET
 from puck_tables.world.engine_state import Engine
 from puck_tables.world.floor_under import slips
-from puck_tables.world.impact import ACTS, NX, NY, PN, approach
 from puck_tables.world.layout import DECEL, LIGHTNESS, PULL_X, PULL_Y
 from puck_tables.world.segment_starts import CONCERNED, Room
 

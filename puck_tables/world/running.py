@@ -18,8 +18,8 @@ from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import engine_state as g
 from puck_tables.world import passings
 from puck_tables.world.agreement import called, pucks_of, refuse_endless
+from puck_tables.world.contact_row import FIRST_N, E
 from puck_tables.world.engine import EVERYBODY, NOBODY, THOSE_LEFT, advance, lacks_rows
-from puck_tables.world.impact import FIRST_N, E
 from puck_tables.world.lasting import (
     GOES_ON,
     LEADS_ON,
@@ -319,14 +319,15 @@ class Running:
         return other
 
     def __getstate__(self) -> dict[str, Any]:
-        """All but the table that comes along: read back, it would be of another type to numba."""
+        """All but the table that comes along (read back, of another type to numba) and the room."""
         parts: Any = self._engine
-        return {**self.__dict__, "_engine": parts._replace(lookups=None)}
+        return {**self.__dict__, "_engine": parts._replace(lookups=None), "_room": None}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """Take up what was written, with the table that comes along."""
         self.__dict__.update(state)
         self._engine = self._engine._replace(lookups=shipped_lookups())
+        self._room = room_for(len(self.names))
 
     def _failure(self, how: int) -> str:
         """Why it does not go on, in words."""

@@ -13,6 +13,17 @@ from puck_tables.scene.equations import ROW
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ingredients import floor_velocity
 from puck_tables.scene.patches import ASTRIDE, INSIDE, OUTSIDE
+from puck_tables.world.contact_row import (
+    CONTACT_COLUMNS,
+    FIRST_N,
+    FIRST_T,
+    LOSS,
+    NX,
+    NY,
+    SUM_N,
+    SUM_T,
+    got_impulse,
+)  # fmt: skip
 from puck_tables.world.engine_state import (
     APPROACH,
     AT_X,
@@ -51,17 +62,6 @@ from puck_tables.world.floor_under import (
 )  # fmt: skip
 from puck_tables.world.group import GroupBuffer, buffer_for
 from puck_tables.world.holds import work_of_hold
-from puck_tables.world.impact import (
-    CONTACT_COLUMNS,
-    FIRST_N,
-    FIRST_T,
-    LOSS,
-    NX,
-    NY,
-    SUM_N,
-    SUM_T,
-    got_impulse,
-)  # fmt: skip
 from puck_tables.world.layout import (
     EDGE_NUMBER,
     KIND,
