@@ -35,6 +35,7 @@ from puck_tables.world.floor_under import moves_along
 from puck_tables.world.group import (
     APART,
     HELD,
+    LEVEL,
     PARTS,
     RESTS,
     RIM_GIVES,
@@ -274,7 +275,9 @@ def _follow(
         if how == RIM_GIVES:
             modes[which] = -1 if buffer.pushes[which, 1] < 0.0 else 1
         elif how in (PARTS, RUNS_OFF):
-            contacts, modes = np.delete(contacts, which, axis=0), np.delete(modes, which)
+            parts = buffer.watched[0, : len(contacts), 0] < LEVEL * scales.rate  # all that do
+            parts[which] = True
+            contacts, modes = contacts[~parts], modes[~parts]
         if not len(contacts):
             return contacts, t, nothing, jump, idle
     raise PuckError(TOGETHER.format(time=t))

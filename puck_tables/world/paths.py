@@ -15,6 +15,7 @@ from puck_tables.kernels.compile import inlined
 START, DURATION, FIRST = range(3)  # FIRST: nine numbers at its start, nine at its end
 PIECE_COLUMNS = FIRST + 18  # all
 FOR_EVER = 1e9  # s: what lasts as long has no end; its places are still good to 1e-16 of the way
+_ROUNDED = 1e-15  # of a place
 _CLOSED = 1e-12  # m or rad: by so much at most a place is put right at the end of a step
 _SMOOTH = 0.1  # of how far velocities bend: the most that places tell beyond these
 
@@ -46,7 +47,9 @@ def _coefficients(piece: FloatArray, i: int) -> tuple[float, float, float, float
     gap, rate, accel = x1 - x0 - v0 - 0.5 * a0, v1 - v0 - a0, a1 - a0
     moved = 0.5 * rate - accel / 12.0
     left = gap - moved
-    if abs(left) > _CLOSED or abs(left) <= _SMOOTH * (abs(rate) + abs(accel)):
+    if abs(left) > _CLOSED or _ROUNDED * (abs(x0) + abs(x1)) < abs(left) <= _SMOOTH * (
+        abs(rate) + abs(accel)
+    ):
         moved, left = gap, 0.0
     return (
         10.0 * moved - 4.0 * rate + 0.5 * accel, -15.0 * moved + 7.0 * rate - accel,
