@@ -54,8 +54,7 @@ def test_a_box_goes_from_belt_to_belt_as_a_spring_would_lead_it() -> None:
     length, fast, slow, friction = 0.1, 0.5, 0.2, 0.2
     box = pt.Puck(base=f"box:{length}x0.06", friction=friction)
     floor = belts(fast, slow, ways="across")
-    launch = pt.Launch((fast, 0.0), position=(-0.2, 0.0))
-    run = pt.Scene(box, floor, launch, time=1.0, tol=1e-9).simulate()
+    run = pt.Scene(box, floor, pt.Launch((fast, 0.0), position=(-0.2, 0.0)), time=1.0).simulate()
     # it holds on to the first belt to its middle; then a = -2 f g x/L, until all of it is over
     rate = math.sqrt(2.0 * friction * G / length)
     over = math.asin(rate * 0.5 * length / fast) / rate

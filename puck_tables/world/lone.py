@@ -110,6 +110,7 @@ _SWING = 0.05  # rad that a puck at rest on a turntable turns, at most, in a ste
 _OVER = 1e-12  # of a radius: beyond a border
 # of a polynomial of degree five that is wrong by d in its second derivative in the middle, over h:
 _PLACE, _RATE = 1.0 / 24.0, 0.144  # its places are off by so much d h² at most, its rates d h
+_WORK = 0.144  # and of one of degree four that is wrong by d in its first derivative there, over h
 
 
 class LoneBuffer(NamedTuple):
@@ -295,6 +296,9 @@ def _misfit(
         for stage in range(STAGES):
             total += HALFWAY_STAGES[stage] * buffer.stages[stage, n]
         trial[n] = h * total
+        both = buffer.ends[0, n] + buffer.ends[1, n]
+        gap = h * (buffer.middle[0, n] + 0.25 * both) - 1.5 * (buffer.new[n] - buffer.y[n])
+        largest = max(largest, _WORK * abs(gap) / scale[n])
     return largest / (COARSER * tol)
 
 
