@@ -2,31 +2,20 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator
 from contextlib import nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 from puck_tables.cli.options import FILE, Outputs, PuckChoice, number, outputs, packed, puck_options
-from puck_tables.cli.printing import columns, listed, progress
+from puck_tables.cli.printing import progress
 from puck_tables.cli.scene_run import SceneChoice, scene_options, scene_tables
 from puck_tables.cli.values import Vector, not_none
 
 from puck_tables.errors import InputError
 from puck_tables.kernels.patience import one_question
 
-if TYPE_CHECKING:
-    from puck_tables.stopping.aim_at_targets import Aim
-    from puck_tables.world.aimed import BoardAim
-
 _LARGEST_FILE = 1 << 30  # bytes: more is no file of targets, and would fill the memory
-_MARGINS = {  # headings, and what a number is multiplied by
-    "per_degree": ("m per deg", 1.0), "per_percent": ("m per %", 1.0),
-    "heading_width": ("width deg", math.degrees(1.0)), "speed_width": ("width m/s", 1.0),
-    "spin_width": ("width 1/s", 1.0),
-}  # fmt: skip
 _ON_BOARDS = ("pocket", "puck", "striker", "hits", "max_impacts")
 
 
@@ -111,7 +100,7 @@ def aim(
         with progress("searches") as show:
             found = Scene.from_tables(tables, chosen.name).aim(**wishes, progress=show)
         out.deliver(found, empty=not len(found))
-        out.report(found, _board_report)
+        out.report(found)
         return
     for name in _ON_BOARDS:
         if name in wishes:
@@ -127,7 +116,7 @@ def aim(
             where, **{names.get(name, name): value for name, value in wishes.items()}
         )
     out.deliver(result, empty=not result.launch_spin.size)
-    out.report(result, lambda result: "\n".join(_report(result, choice.note)))
+    out.report(result, choice.note)
 
 
 def _read_targets(path: Path | None) -> Any:
@@ -139,31 +128,6 @@ def _read_targets(path: Path | None) -> Any:
     return numbers_of(path, (X, Y), 2, _LARGEST_FILE).rows
 
 
-def _report(result: Aim, note: str) -> Iterator[str]:
-    """The answer; of one target the launches, line by line, of many how well they do."""
-    puck = result.puck
-    kind = f", {puck.body.kind}" if puck.body.kind else ""
-    words = f"r = {puck.radius:g} m, delta = {puck.delta:.6g}, f g = {puck.decel:.6g} m/s^2{kind}"
-    if not result.is_one:
-        first, *others = result.explain().splitlines()
-        yield listed({"puck": words + note, "answer": first.rstrip(".")}, 7)
-        yield from others
-        return
-    x, y = result.target
-    yield listed({"puck": words + note, "target": f"({x:g}, {y:g}) m", "answer": result.answer}, 7)
-    if result.launch_spin.size:
-        heads = {
-            "w0 rad/s": ".6g", "v0 x m/s": ".6g", "v0 y m/s": ".6g", "speed m/s": ".6g",
-            "heading deg": ".5f", "phi deg": ".3f", "time s": ".6g", "body deg": ".5g",
-        }  # fmt: skip
-        degrees = math.degrees(1.0)
-        yield "\n" + columns(heads, zip(
-            result.launch_spin, result.launch_vx, result.launch_vy, result.launch_speed,
-            degrees * result.launch_heading, degrees * result.launch_slip_angle, result.stop_time,
-            degrees * result.body_angle, strict=True,
-        ))  # fmt: skip
-
-
 def number_or_name(text: str | None) -> int | str | None:
     """A puck as it is given on the command line: a number, or a name.
 
@@ -173,25 +137,3 @@ def number_or_name(text: str | None) -> int | str | None:
     (2, 'queen')
     """
     return int(text) if text is not None and text.isascii() and text.isdecimal() else text
-
-
-def _board_report(result: BoardAim) -> str:
-    """The answer, and the launches line by line."""
-    wanted = f"{result.puck} {result.where}, {result.striker} sent off {result.limit}".rstrip()
-    first = listed({
-        "scene": result.scene.title or "without a title", "wanted": wanted, "answer": result.answer,
-    }, 8)  # fmt: skip
-    if not len(result):
-        return first
-    margins = [(*_MARGINS[name], result.columns[name]) for name in _MARGINS
-               if name in result.columns]  # fmt: skip
-    heads = {
-        "speed m/s": ".6f", "heading deg": ".5f", "w0 rad/s": ".5g",
-        **{head: ".4g" for head, _, _ in margins}, "time s": ".6g", "miss m": ".0e", "impacts": "",
-    }  # fmt: skip
-    rows = zip(
-        result.launch_speed, math.degrees(1.0) * result.launch_heading, result.launch_spin,
-        *(factor * values for _, factor, values in margins), result.stop_time, result.miss,
-        (course or "none" for course in result.courses), strict=True,
-    )  # fmt: skip
-    return f"{first}\n\n{columns(heads, rows)}"

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 import click
-from puck_tables.cli.fit_report import report
 from puck_tables.cli.options import FILE, RESULTS, Outputs, body_options, number, outputs, packed
 from puck_tables.cli.printing import note, progress
 from puck_tables.cli.track import read_all, track_options
@@ -209,4 +208,4 @@ def fit(
     if worksheet is not None:
         result.report(worksheet, out.overwrite)
         note(worksheet)
-    out.report(result, report)
+    out.report(result)

@@ -19,7 +19,6 @@ from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
     from puck_tables.puck import Puck
-    from puck_tables.result import Result
     from puck_tables.table.table import Table
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -123,8 +122,10 @@ class PuckChoice:
         """What is said where nothing of it was chosen, or no friction."""
         chosen = not_none(asdict(self))
         if self.base is not None and not {"friction", "decel"} & {*chosen}:
-            return "   (a default: give --friction)"
-        return "" if len(chosen) > 1 else "   (defaults: see --help for a real puck)"
+            return "f g is a default: give --friction."
+        if len(chosen) > 1:
+            return ""
+        return "The puck is a default one: --help says how to give a real one."
 
     def puck(self) -> Puck:
         """The puck; on a base it is flat without a height, and has f = 1 without a friction."""
@@ -226,15 +227,23 @@ class Outputs:
 
             click.echo(encode(result.dataset()).decode(), nl=False)
 
-    def report(self, result: Result, in_words: Callable[[Any], str]) -> None:
-        """A report on stdout, in words or as JSON; if asked for, on stderr how it was got."""
+    def report(
+        self, result: Any, remark: str = "", summary: Callable[[Any], dict[str, Any]] | None = None
+    ) -> None:  # fmt: skip
+        """A report on stdout, in words or as JSON; if asked for, on stderr how it was got.
+
+        ``remark``: a sentence on what was not chosen; ``summary``: the object of JSON, if the
+        result has more to say than its own.
+        """
         if self.explain:
             say(result.explain(), err=True)
         if self.as_json:
-            summary: Any = result.summary()  # type: ignore[attr-defined]
-            click.echo(json.dumps(summary, allow_nan=False))
+            told = result.summary() if summary is None else summary(result)
+            click.echo(json.dumps(told, allow_nan=False))
         else:
-            say(in_words(result))
+            say(str(result))
+            if remark:
+                say(remark, err=True)
 
 
 def outputs(

@@ -1,4 +1,4 @@
-"""What ``puck fit`` prints: what was found, in words and numbers."""
+"""What is told of a fit: what was found, in words and numbers."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from itertools import combinations
 from typing import TYPE_CHECKING
 
-from puck_tables.cli.printing import columns, listed
+from puck_tables.report.lines_and_tables import columns, listed
 
 if TYPE_CHECKING:
     from puck_tables.fitting.fit_result import Fit
