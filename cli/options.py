@@ -15,6 +15,7 @@ from puck_tables.cli.completion import laws
 from puck_tables.cli.printing import note, say
 from puck_tables.cli.values import NumberParam, not_none
 
+from puck_tables._core.doubts import MOST_FRICTION, OF_A_PUCK
 from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
@@ -32,10 +33,27 @@ FILE = click.Path(readable=False, path_type=Path)
 
 
 def number(
-    flag: str, unit: str = "", kind: type[NumberParam] = NumberParam, **more: Any
+    flag: str, unit: str = "", kind: type[NumberParam] = NumberParam, usual: float = 0.0,
+    **more: Any,
 ) -> Option[Any]:  # fmt: skip
-    """An option that takes numbers of one kind, in a unit."""
-    return click.option(flag, type=kind(unit), **more)
+    """An option that takes numbers of one kind, in a unit; what is larger than usual is asked."""
+    return click.option(flag, type=kind(unit, usual), **more)
+
+
+# what a puck of given size is told by: flag, unit, up to which it is usual, what it is
+_SIZES = {
+    "radius": ("m", OF_A_PUCK, "Radius r in m, or with its unit: 38.1mm."),
+    "height": ("m", OF_A_PUCK, "Height h of the puck in m, twice that of its centre of mass"),
+    "friction": ("", MOST_FRICTION, "Coulomb coefficient f"),
+    "gravity": ("m/s^2", 0.0, "Gravity in m/s^2.  [default: 9.80665]"),
+    "mass": ("kg", 0.0, "Mass in kg (energies, forces)."),
+}
+
+
+def size(name: str, more: str = "", kind: type[NumberParam] = NumberParam) -> Option[Any]:
+    """The option of a number of a puck, with more words on when it is given."""
+    unit, usual, words = _SIZES[name]
+    return number(f"--{name}", unit, kind, usual, help=words + more)
 
 
 def packed(name: str, make: Callable[..., Any], *options: Option[Any]) -> Option[Any]:
@@ -64,16 +82,13 @@ def puck_options(
 
     ``base``, ``mass``: whether these may be given; ``many``: several pressure laws.
     """
-    heavy = number("--mass", "kg", help="Mass in kg (energies, forces).")
     return [
         number("--delta", "", kind, help="delta = 2 f h / r.  [default: 0.5]"),
-        number("--radius", "m", kind,
-               help="Radius r in m, or with its unit: 38.1mm.  [default: 1]"),
-        number("--height", "m", kind, help="Height h of the puck in m, twice that of its centre of "
-               "mass; with --friction."),
-        number("--friction", "", kind, help="Coulomb coefficient f; with --height."),
-        number("--gravity", "m/s^2", kind, help="Gravity in m/s^2.  [default: 9.80665]"),
-        *([heavy] if mass else []),
+        size("radius", "  [default: 1]", kind),
+        size("height", "; with --friction.", kind),
+        size("friction", "; with --height.", kind),
+        size("gravity", "", kind),
+        *([size("mass")] if mass else []),
         number("--decel", "m/s^2", kind, help="f g in m/s^2 instead of --friction.  [default: 1]"),
         *body_options(base, kind, many),
     ]  # fmt: skip

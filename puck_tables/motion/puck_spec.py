@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Self
 
-from puck_tables._core.doubts import MOST_FRICTION, OF_A_PUCK, unquestioned
+from puck_tables._core.doubts import MOST_FRICTION, OF_A_PUCK, question, unquestioned
 from puck_tables._core.fields import Unsaid, of
 from puck_tables._core.own_folder import say
 from puck_tables._core.reading import Reading, entries_in, mark_checked, read_values
@@ -114,6 +114,8 @@ class PuckSpec:
                 "pressure: under a base it is linear, and fixed by the weight; pressure laws are "
                 "of round pucks with a radius"
             )
+        if not isinstance(self.base, str):  # of a text its lengths are
+            question("base", shape.reach, "m", OF_A_PUCK)
         if not self.has_rim:
             object.__setattr__(self, "radius", Unsaid(shape.reach))
         if self.gyration is None or isinstance(self.gyration, Unsaid):
