@@ -146,9 +146,7 @@ def _shown(number: Number) -> str:
         return "not determined by these tracks"
     how = ", by profile likelihood" if number.profiled else ""
     follows = ", follows" if number.how == "follows" else ""
-    interval = ""
-    if math.isfinite(number.low) and math.isfinite(number.high):
-        interval = f"   95 %: {number.low:.6g} to {number.high:.6g}"
+    interval = f"   95 %: {number.interval}" if number.interval else ""
     return f"{number.written}{interval}{how}{follows}"
 
 
