@@ -47,7 +47,8 @@ scene_options = packed(
 
 PATHS = {
     "v0": "launch.velocity", "w0": "launch.spin", "speed": "launch.velocity[0]",
-    **{name: f"puck.{name}" for name in ("base", "radius", "height", "mass", "friction", "gyration")},
+    "base": "puck.base", "radius": "puck.radius", "height": "puck.height",
+    "mass": "puck.mass", "friction": "puck.friction", "gyration": "puck.gyration",
     "gravity": "gravity", "frames": "frames", "tol": "tol",
 }  # fmt: skip
 KEPT = (
