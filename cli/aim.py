@@ -41,7 +41,7 @@ _ON_BOARDS = ("pocket", "puck", "striker", "hits", "max_impacts")
     click.option("--count", type=int, help="Slip angles of a sample, or numbers of turns, for each "
                  "sense of spin [default: 8]; in a scene launches that are given [default: 16]."),
 )  # fmt: skip
-@packed("choice", PuckChoice, *puck_options())
+@packed("choice", PuckChoice, *puck_options(base=True))
 @outputs("Save the launches: .csv, .h5, .jsonl or .parquet.", as_json=True)
 @scene_options
 @click.pass_context
@@ -61,6 +61,10 @@ def aim(
     puck aim --target 2,0.1 --angle 90deg --count 2
     puck aim --target 2,0.1 --max-speed 1.5 --max-spin 10 --plot aim.png
     puck aim --targets holes.csv --time 3 -o shots.csv
+    puck aim --target 0.5,0.1 --base box:20cmx10cm --friction 0.3 --w0 10
+
+    With --base the puck, whose body begins along x, is run to its stop for each launch tried, as in
+    a scene: one --target, without --time and --angle, which are of round pucks.
 
     With --scene others lie on the board: launches of the striker after which a puck, or it itself,
     ends at a target or in a pocket, also off cushions and other pucks.  Each is run on the whole
@@ -79,14 +83,15 @@ def aim(
     if targets_file is not None and targets:
         raise InputError("--target and --targets both say where: give one of them")
     wishes = not_none({**wishes, "pocket": next(iter(wishes["pocket"]), None)})
-    if chosen:
+    if chosen or choice.base is not None:
         for name, value, instead in (
             ("--targets", targets_file, "give one --target"),
             ("--time", wishes.get("time"), "leave it out"),
             ("--angle", wishes.get("angle"), "leave it out"),
         ):  # fmt: skip
             if value is not None:
-                raise InputError(f"{name} has no place in a scene: {instead}")
+                where = "in a scene" if chosen else "with --base"
+                raise InputError(f"{name} has no place {where}: {instead}")
         tables = scene_tables(ctx, chosen, ("targets", *wishes))
         out.prepare(*chosen.reads(tables))
         wishes |= {name: number_or_name(wishes[name]) for name in ("puck", "striker", "hits")
@@ -100,7 +105,7 @@ def aim(
         with progress("searches") as show:
             found = Scene.from_tables(tables, chosen.name).aim(**wishes, progress=show)
         out.deliver(found, empty=not len(found))
-        out.report(found)
+        out.report(found, "" if chosen else choice.note)
         return
     for name in _ON_BOARDS:
         if name in wishes:

@@ -48,8 +48,8 @@ scene_options = packed(
 PATHS = {
     "v0": "launch.velocity", "w0": "launch.spin", "speed": "launch.velocity[0]",
     "base": "puck.base", "radius": "puck.radius", "height": "puck.height",
-    "mass": "puck.mass", "friction": "puck.friction", "gravity": "gravity", "frames": "frames",
-    "tol": "tol",
+    "mass": "puck.mass", "friction": "puck.friction", "gyration": "puck.gyration",
+    "gravity": "gravity", "frames": "frames", "tol": "tol",
 }  # fmt: skip
 KEPT = (
     "times", "explain", "as_json", "output", "plot", "movie", "overwrite", "threads", "cluster",
@@ -59,7 +59,6 @@ SCALED = ("delta", "decel")
 INSTEAD = {  # of options that no scene has
     **dict.fromkeys(SCALED, "puck.height and puck.friction set it"),
     "heading": "launch.velocity has it", "pressure": "--set puck.pressure=NAME has it",
-    "gyration": "--set puck.gyration=NUMBER has it",
 }  # fmt: skip
 
 

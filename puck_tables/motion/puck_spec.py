@@ -228,15 +228,15 @@ class PuckSpec:
         """
         return self.gyration if self.shape is not None else self.gyration * self.radius
 
-    def refuse_base(self, what: str) -> None:
-        """Refuse what is of round pucks alone.
+    def refuse_base(self, what: str, instead: str = ROUND_ONLY) -> None:
+        """Refuse what is of round pucks alone, with what to do.
 
         Raises
         ------
         InputError
         """
         if self.shape is not None:
-            raise InputError(f"{what} is {ROUND_ONLY}")
+            raise InputError(f"{what} is {instead}")
 
     def refuse_for_round(self, **values: Any) -> None:
         """Refuse arguments that a puck on a base has no use for, where one is given.
