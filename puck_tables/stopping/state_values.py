@@ -17,7 +17,7 @@ from puck_tables.motion.friction_source import source_of
 from puck_tables.motion.limits import regime_of
 from puck_tables.motion.state import STATE_ROWS, T
 from puck_tables.motion.unit_motion import solve
-from puck_tables.stopping.launch_arrays import CHUNK, in_chunks
+from puck_tables.stopping.launch_arrays import in_chunks
 from puck_tables.stopping.stop_table import StopTable
 
 TOL = 1e-9  # of Q/J, Q²/J, as a look-up of plain pucks is good to
@@ -47,14 +47,11 @@ def looked_up(
     from puck_tables.stopping.state_lookup import fill_states_at
 
     out, splines, bad = np.empty((STATE_ROWS, moments.size)), table.state_coefficients, [0]
-    if moments.size <= CHUNK:
-        bad.append(fill_states_at(pucks, which, moments, 0, moments.size, splines, out))
-    else:
 
-        def work(start: int, stop: int) -> None:
-            bad.append(fill_states_at(pucks, which, moments, start, stop, splines, out))
+    def work(start: int, stop: int) -> None:
+        bad.append(fill_states_at(pucks, which, moments, start, stop, splines, out))
 
-        in_chunks(work, moments.size, threads)
+    in_chunks(work, moments.size, threads)
     if any(bad):
         refuse_times(moments)
     return out
