@@ -34,7 +34,7 @@ _CHUNK = 1 << 13  # launches that a thread takes at once
 class SlopeSection(NamedTuple):
     """Twenty functions of φ, and in which cells (sides, cells) they are good.
 
-    Time, along, to the left, path, body angle, by four columns of
+    Time, along, to the left, path, body angle, by the four columns of
     :func:`puck_tables.stopping.variational.unit_stops` each.
     """
 
@@ -57,7 +57,7 @@ def slope_section(body: UnitPuck) -> SlopeSection:
     def at(xi: FloatArray) -> FloatArray:
         phi = graded(sides, xi).ravel()
         cosine = np.where(phi >= 0.5 * np.pi, 0.0, np.cos(phi))
-        return unit_stops(friction, cosine, np.sin(phi))[:, :, :4].reshape(len(sides), xi.size, -1)
+        return unit_stops(friction, cosine, np.sin(phi)).reshape(len(sides), xi.size, -1)
 
     cells = _COARSEST_CELLS
     values = at(np.arange(cells + 1) / cells)
@@ -105,6 +105,6 @@ def stop_slopes_of(body: UnitPuck, launches: FloatArray, threads: int | None = N
         slip = np.hypot(speed, rim)[left]
         own = unit_stops(friction, speed[left] / slip, rim[left] / slip)
         part = np.empty((some.shape[1], 5, 6))
-        fill_placed_stops(some, np.ascontiguousarray(own[:, :, :4]), part)
+        fill_placed_stops(some, own, part)
         out[left] = part
     return out

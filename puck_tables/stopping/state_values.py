@@ -17,7 +17,7 @@ from puck_tables.motion.friction_source import source_of
 from puck_tables.motion.limits import regime_of
 from puck_tables.motion.state import STATE_ROWS, T
 from puck_tables.motion.unit_motion import solve
-from puck_tables.stopping.launch_arrays import CHUNK, in_chunks, launches_in
+from puck_tables.stopping.launch_arrays import CHUNK, in_chunks
 from puck_tables.stopping.stop_table import StopTable
 
 TOL = 1e-9  # of Q/J, Q²/J, as a look-up of plain pucks is good to
@@ -37,13 +37,6 @@ def directions(vx: FloatArray, vy: FloatArray) -> FloatArray:
     if (vx.item() == 0.0) if vx.size == 1 else not vx.all():
         result[(vx == 0.0) & (vy == 0.0)] = 0.0
     return result
-
-
-def looked_up_launches(
-    table: StopTable, launches: FloatArray, threads: int | None = None
-) -> FloatArray:
-    """Launches (6, m) of plain pucks beside what the table knows of them, (20, m)."""
-    return table.pucks(launches_in(launches), threads)
 
 
 def looked_up(
