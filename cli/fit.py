@@ -14,7 +14,7 @@ from puck_tables.cli.options import (
     number,
     outputs,
     packed,
-    size,
+    puck_number,
 )
 from puck_tables.cli.printing import note, progress
 from puck_tables.cli.track import read_all, track_options
@@ -93,11 +93,11 @@ def _held_out(text: str, option: str) -> float | list[str]:
 @track_options
 @packed(
     "known", dict,
-    size("radius", "  Of slides along a line without angles it does not matter."),
-    size("height", ", if known: the tilt then follows from f."),
-    size("friction", ", if known."),
-    size("mass"),
-    size("gravity"),
+    puck_number("radius", "  Of slides along a line without angles it does not matter."),
+    puck_number("height", ", if known: the tilt then follows from f."),
+    puck_number("friction", ", if known."),
+    puck_number("mass"),
+    puck_number("gravity"),
     *body_options(base=True),
 )  # fmt: skip
 @packed(

@@ -36,12 +36,12 @@ def number(
     flag: str, unit: str = "", kind: type[NumberParam] = NumberParam, usual: float = 0.0,
     **more: Any,
 ) -> Option[Any]:  # fmt: skip
-    """An option that takes numbers of one kind, in a unit; what is larger than usual is asked."""
+    """An option that takes numbers of one kind, in a unit; one beyond the usual is questioned."""
     return click.option(flag, type=kind(unit, usual), **more)
 
 
-# what a puck of given size is told by: flag, unit, up to which it is usual, what it is
-_SIZES = {
+# of a puck: the unit of each, up to which it is usual, and what it is
+PUCK_NUMBERS = {
     "radius": ("m", OF_A_PUCK, "Radius r in m, or with its unit: 38.1mm."),
     "height": ("m", OF_A_PUCK, "Height h of the puck in m, twice that of its centre of mass"),
     "friction": ("", MOST_FRICTION, "Coulomb coefficient f"),
@@ -50,9 +50,9 @@ _SIZES = {
 }
 
 
-def size(name: str, more: str = "", kind: type[NumberParam] = NumberParam) -> Option[Any]:
-    """The option of a number of a puck, with more words on when it is given."""
-    unit, usual, words = _SIZES[name]
+def puck_number(name: str, more: str = "", kind: type[NumberParam] = NumberParam) -> Option[Any]:
+    """The option of a number of a puck, with more words on it."""
+    unit, usual, words = PUCK_NUMBERS[name]
     return number(f"--{name}", unit, kind, usual, help=words + more)
 
 
@@ -84,11 +84,11 @@ def puck_options(
     """
     return [
         number("--delta", "", kind, help="delta = 2 f h / r.  [default: 0.5]"),
-        size("radius", "  [default: 1]", kind),
-        size("height", "; with --friction.", kind),
-        size("friction", "; with --height.", kind),
-        size("gravity", "", kind),
-        *([size("mass")] if mass else []),
+        puck_number("radius", "  [default: 1]", kind),
+        puck_number("height", "; with --friction.", kind),
+        puck_number("friction", "; with --height.", kind),
+        puck_number("gravity", "", kind),
+        *([puck_number("mass")] if mass else []),
         number("--decel", "m/s^2", kind, help="f g in m/s^2 instead of --friction.  [default: 1]"),
         *body_options(base, kind, many),
     ]  # fmt: skip

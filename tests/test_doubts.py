@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from puck_tables.cli.main import main
-from puck_tables.cli.options import _SIZES
+from puck_tables.cli.options import PUCK_NUMBERS
 from puck_tables.cli.simulate import simulate
 
 import puck_tables as pt
@@ -103,7 +103,7 @@ def test_commands_ask_once_for_another_unit(command: str, words: str):
     assert result.exit_code == 0 and result.stderr.count(words) == 1, result.stderr
 
 
-@pytest.mark.parametrize("name", _SIZES)
+@pytest.mark.parametrize("name", PUCK_NUMBERS)
 def test_options_of_a_puck_have_the_units_of_its_fields(name: str):
     option = next(one for one in simulate.params if one.name == name)
     kind = specs(pt.Puck)[name].metadata["kind"]
