@@ -286,19 +286,11 @@ def _first_nodes(body: UnitPuck) -> FloatArray:
 
 def _turns(u: FloatArray, values: FloatArray, slopes: FloatArray) -> FloatArray:
     """Where the cubics between nodes turn."""
-    width = np.diff(u)[:, None]
-    secant = np.diff(values, axis=0) / width
-    # slope over x from 0 to 1: a x² + b x + c
-    c, end = slopes[:-1], slopes[1:]
-    a = 3.0 * (c + end - 2.0 * secant)
-    b = end - c - a
-    with np.errstate(divide="ignore", invalid="ignore"):
-        root = -0.5 * (b + np.copysign(np.sqrt(b * b - 4.0 * a * c), b))
-        places = np.stack([root / a, c / root])
-        inside = (places > 0.0) & (places < 1.0)
-    at = u[:-1, None] + width * np.where(inside, places, 0.0)
-    turns: FloatArray = at[inside]
-    return turns
+    from scipy.interpolate import CubicHermiteSpline
+
+    rates = CubicHermiteSpline(u, values, slopes).derivative()
+    turns: FloatArray = np.concatenate(rates.roots(discontinuity=False, extrapolate=False))
+    return turns[np.isfinite(turns)]  # NaN: the same from there to the next node
 
 
 def _stops(body: UnitPuck, u: FloatArray) -> FloatArray:
