@@ -2,31 +2,20 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator
 from contextlib import nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 from puck_tables.cli.options import FILE, Outputs, PuckChoice, number, outputs, packed, puck_options
-from puck_tables.cli.printing import columns, listed, progress
+from puck_tables.cli.printing import progress
 from puck_tables.cli.scene_run import SceneChoice, scene_options, scene_tables
 from puck_tables.cli.values import Vector, not_none
 
 from puck_tables.errors import InputError
 from puck_tables.kernels.patience import one_question
 
-if TYPE_CHECKING:
-    from puck_tables.stopping.aim_at_targets import Aim
-    from puck_tables.world.aimed import BoardAim
-
 _LARGEST_FILE = 1 << 30  # bytes: more is no file of targets, and would fill the memory
-_MARGINS = {  # headings, and what a number is multiplied by
-    "per_degree": ("m per deg", 1.0), "per_percent": ("m per %", 1.0),
-    "heading_width": ("width deg", math.degrees(1.0)), "speed_width": ("width m/s", 1.0),
-    "spin_width": ("width 1/s", 1.0),
-}  # fmt: skip
 _ON_BOARDS = ("pocket", "puck", "striker", "hits", "max_impacts")
 
 
@@ -52,7 +41,7 @@ _ON_BOARDS = ("pocket", "puck", "striker", "hits", "max_impacts")
     click.option("--count", type=int, help="Slip angles of a sample, or numbers of turns, for each "
                  "sense of spin [default: 8]; in a scene launches that are given [default: 16]."),
 )  # fmt: skip
-@packed("choice", PuckChoice, *puck_options())
+@packed("choice", PuckChoice, *puck_options(base=True))
 @outputs("Save the launches: .csv, .h5, .jsonl or .parquet.", as_json=True)
 @scene_options
 @click.pass_context
@@ -72,6 +61,10 @@ def aim(
     puck aim --target 2,0.1 --angle 90deg --count 2
     puck aim --target 2,0.1 --max-speed 1.5 --max-spin 10 --plot aim.png
     puck aim --targets holes.csv --time 3 -o shots.csv
+    puck aim --target 0.5,0.1 --base box:20cmx10cm --friction 0.3 --w0 10
+
+    With --base the puck, whose body begins along x, is run to its stop for each launch tried, as in
+    a scene: one --target, without --time and --angle, which are of round pucks.
 
     With --scene others lie on the board: launches of the striker after which a puck, or it itself,
     ends at a target or in a pocket, also off cushions and other pucks.  Each is run on the whole
@@ -90,14 +83,15 @@ def aim(
     if targets_file is not None and targets:
         raise InputError("--target and --targets both say where: give one of them")
     wishes = not_none({**wishes, "pocket": next(iter(wishes["pocket"]), None)})
-    if chosen:
+    if chosen or choice.base is not None:
         for name, value, instead in (
             ("--targets", targets_file, "give one --target"),
             ("--time", wishes.get("time"), "leave it out"),
             ("--angle", wishes.get("angle"), "leave it out"),
         ):  # fmt: skip
             if value is not None:
-                raise InputError(f"{name} has no place in a scene: {instead}")
+                where = "in a scene" if chosen else "with --base"
+                raise InputError(f"{name} has no place {where}: {instead}")
         tables = scene_tables(ctx, chosen, ("targets", *wishes))
         out.prepare(*chosen.reads(tables))
         wishes |= {name: number_or_name(wishes[name]) for name in ("puck", "striker", "hits")
@@ -111,7 +105,7 @@ def aim(
         with progress("searches") as show:
             found = Scene.from_tables(tables, chosen.name).aim(**wishes, progress=show)
         out.deliver(found, empty=not len(found))
-        out.report(found, _board_report)
+        out.report(found, "" if chosen else choice.note)
         return
     for name in _ON_BOARDS:
         if name in wishes:
@@ -127,7 +121,7 @@ def aim(
             where, **{names.get(name, name): value for name, value in wishes.items()}
         )
     out.deliver(result, empty=not result.launch_spin.size)
-    out.report(result, lambda result: "\n".join(_report(result, choice.note)))
+    out.report(result, choice.note)
 
 
 def _read_targets(path: Path | None) -> Any:
@@ -139,31 +133,6 @@ def _read_targets(path: Path | None) -> Any:
     return numbers_of(path, (X, Y), 2, _LARGEST_FILE).rows
 
 
-def _report(result: Aim, note: str) -> Iterator[str]:
-    """The answer; of one target the launches, line by line, of many how well they do."""
-    puck = result.puck
-    kind = f", {puck.body.kind}" if puck.body.kind else ""
-    words = f"r = {puck.radius:g} m, delta = {puck.delta:.6g}, f g = {puck.decel:.6g} m/s^2{kind}"
-    if not result.is_one:
-        first, *others = result.explain().splitlines()
-        yield listed({"puck": words + note, "answer": first.rstrip(".")}, 7)
-        yield from others
-        return
-    x, y = result.target
-    yield listed({"puck": words + note, "target": f"({x:g}, {y:g}) m", "answer": result.answer}, 7)
-    if result.launch_spin.size:
-        heads = {
-            "w0 rad/s": ".6g", "v0 x m/s": ".6g", "v0 y m/s": ".6g", "speed m/s": ".6g",
-            "heading deg": ".5f", "phi deg": ".3f", "time s": ".6g", "body deg": ".5g",
-        }  # fmt: skip
-        degrees = math.degrees(1.0)
-        yield "\n" + columns(heads, zip(
-            result.launch_spin, result.launch_vx, result.launch_vy, result.launch_speed,
-            degrees * result.launch_heading, degrees * result.launch_slip_angle, result.stop_time,
-            degrees * result.body_angle, strict=True,
-        ))  # fmt: skip
-
-
 def number_or_name(text: str | None) -> int | str | None:
     """A puck as it is given on the command line: a number, or a name.
 
@@ -173,25 +142,3 @@ def number_or_name(text: str | None) -> int | str | None:
     (2, 'queen')
     """
     return int(text) if text is not None and text.isascii() and text.isdecimal() else text
-
-
-def _board_report(result: BoardAim) -> str:
-    """The answer, and the launches line by line."""
-    wanted = f"{result.puck} {result.where}, {result.striker} sent off {result.limit}".rstrip()
-    first = listed({
-        "scene": result.scene.title or "without a title", "wanted": wanted, "answer": result.answer,
-    }, 8)  # fmt: skip
-    if not len(result):
-        return first
-    margins = [(*_MARGINS[name], result.columns[name]) for name in _MARGINS
-               if name in result.columns]  # fmt: skip
-    heads = {
-        "speed m/s": ".6f", "heading deg": ".5f", "w0 rad/s": ".5g",
-        **{head: ".4g" for head, _, _ in margins}, "time s": ".6g", "miss m": ".0e", "impacts": "",
-    }  # fmt: skip
-    rows = zip(
-        result.launch_speed, math.degrees(1.0) * result.launch_heading, result.launch_spin,
-        *(factor * values for _, factor, values in margins), result.stop_time, result.miss,
-        (course or "none" for course in result.courses), strict=True,
-    )  # fmt: skip
-    return f"{first}\n\n{columns(heads, rows)}"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 from puck_tables.cli.options import FILE, Outputs, number, outputs
@@ -13,13 +12,9 @@ from puck_tables.cli.values import RangeParam
 
 from puck_tables.errors import InputError
 
-if TYPE_CHECKING:
-    from puck_tables.chetaev.asperity_forces import AsperityCurve
-
 # speeds, and times the lift speed up to which: enough for a smooth curve beyond it
 DEFAULT_COUNT, DEFAULT_TOP = 501, 2.5
 MAX_SPEEDS = 1_000_000  # each a row of the answer
-MOST_LEAPS = 5  # more are no single steps of the force
 
 
 @click.command()
@@ -70,18 +65,4 @@ def asperity(
     if law is not None:
         result.law().to_csv(law, out.overwrite)
         note(law)
-    click.echo(_summary(result), err=True)
-
-
-def _summary(result: AsperityCurve) -> str:
-    support = result.asperity
-    text = (
-        f"a/b = {support.slope:.4g}, Coulomb's force {result.crude[0]:.4g} N; leaves the crest "
-        f"above V0 = {support.lift_speed:.4g} m/s"
-    )
-    if result.leaps > MOST_LEAPS:
-        text += (
-            f"\nbetween {result.leaps} of {result.held_speed.size - 1} neighbouring speeds the "
-            "force leaps: it varies faster than they show; give more speeds, or lower ones"
-        )
-    return text
+    click.echo(result, err=True)

@@ -8,7 +8,6 @@ from typing import Any
 
 import click
 from puck_tables.cli.completion import laws
-from puck_tables.cli.info import describe
 from puck_tables.cli.options import FILE, Outputs, number, outputs
 from puck_tables.cli.printing import note, progress, say
 
@@ -69,7 +68,7 @@ def build_tables(
         table = Table.build(of, accuracy, progress=show, **grid)
         saved = table.save(path, out.overwrite, " ".join(["puck build-tables", *words, *given]))
     note(path)
-    say(describe(saved))
+    say(str(saved))
 
 
 def _wanted(kind: str, pressure: str | None, speed_law: Path | None) -> tuple[Any, str, list[str]]:

@@ -3,23 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 from puck_tables.cli.completion import cases
 from puck_tables.cli.options import FILE, RESULTS, Outputs, number, outputs, packed
-from puck_tables.cli.printing import columns, note
+from puck_tables.cli.printing import note
 from puck_tables.cli.values import Times
-
-if TYPE_CHECKING:
-    from puck_tables.reference.comparison import Comparison
-
-_SHORT = {
-    "step": "step", "rest_time": "rests after", "rest_time_error": "its error",
-    "stop_place_error": "stop off by", "place_error_max": "place off by",
-    "speed_error_max": "v off by", "spin_error_max": "w off by", "epsilon_seen": "v/(r w)",
-    "epsilon_error": "its error",
-}  # fmt: skip
 
 
 @click.command()
@@ -74,28 +64,4 @@ def compare(
 
         save_page(page, result, report, out.overwrite)
         note(report)
-    out.report(result, in_words)
-
-
-def in_words(result: Comparison) -> str:
-    """The numbers of every run in a table, and what they say."""
-    from puck_tables.io.columns import COLUMNS
-
-    answer = result.answer
-    first = [
-        f"case {answer.case.label}: {answer.case.title}",
-        f"exact: {result.whose}{answer.end} after {result.end_time:.9g} s, known to "
-        f"{answer.time_bound:.1e} s and {answer.place_bound:.1e} m",
-        f"rest counts from {', '.join(map(str, result.thresholds))} on; errors: theirs less exact",
-    ]
-    units = {name: COLUMNS[name].unit for name in _SHORT}
-    heads = {"file": ""} | {
-        word if units[name] == "1" else f"{word} {units[name]}": ".6g"
-        for name, word in _SHORT.items()
-    }
-    rows = [
-        (run.log.name, *(row[name] for name in _SHORT))
-        for run, row in zip(result.runs, result.rows(), strict=True)
-    ]
-    parts = ["\n  ".join([f"{head}:", *texts]) for head, texts in result.remarks().items()]
-    return "\n\n".join(["\n".join(first), columns(heads, rows), *parts])
+    out.report(result)

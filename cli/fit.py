@@ -6,8 +6,16 @@ from pathlib import Path
 from typing import Any
 
 import click
-from puck_tables.cli.fit_report import report
-from puck_tables.cli.options import FILE, RESULTS, Outputs, body_options, number, outputs, packed
+from puck_tables.cli.options import (
+    FILE,
+    RESULTS,
+    Outputs,
+    body_options,
+    number,
+    outputs,
+    packed,
+    puck_number,
+)
 from puck_tables.cli.printing import note, progress
 from puck_tables.cli.track import read_all, track_options
 from puck_tables.cli.values import named, names, not_none, numbers_in, read_as
@@ -85,12 +93,11 @@ def _held_out(text: str, option: str) -> float | list[str]:
 @track_options
 @packed(
     "known", dict,
-    number("--radius", "m", help="Radius r of the puck in m; of slides along a line without angles "
-           "it does not matter."),
-    number("--height", "m", help="Height h in m, if known: the tilt then follows from f."),
-    number("--friction", help="Coulomb coefficient f, if known."),
-    number("--mass", "kg", help="Mass in kg (for energies of what is simulated later)."),
-    number("--gravity", "m/s^2", help="Gravity in m/s^2.  [default: 9.80665]"),
+    puck_number("radius", "  Of slides along a line without angles it does not matter."),
+    puck_number("height", ", if known: the tilt then follows from f."),
+    puck_number("friction", ", if known."),
+    puck_number("mass"),
+    puck_number("gravity"),
     *body_options(base=True),
 )  # fmt: skip
 @packed(
@@ -209,4 +216,4 @@ def fit(
     if worksheet is not None:
         result.report(worksheet, out.overwrite)
         note(worksheet)
-    out.report(result, report)
+    out.report(result)

@@ -15,11 +15,11 @@ from puck_tables.cli.completion import laws
 from puck_tables.cli.printing import note, say
 from puck_tables.cli.values import NumberParam, not_none
 
+from puck_tables._core.doubts import MOST_FRICTION, OF_A_PUCK
 from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
     from puck_tables.puck import Puck
-    from puck_tables.result import Result
     from puck_tables.table.table import Table
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -33,10 +33,27 @@ FILE = click.Path(readable=False, path_type=Path)
 
 
 def number(
-    flag: str, unit: str = "", kind: type[NumberParam] = NumberParam, **more: Any
+    flag: str, unit: str = "", kind: type[NumberParam] = NumberParam, usual: float = 0.0,
+    **more: Any,
 ) -> Option[Any]:  # fmt: skip
-    """An option that takes numbers of one kind, in a unit."""
-    return click.option(flag, type=kind(unit), **more)
+    """An option that takes numbers of one kind, in a unit; one beyond the usual is questioned."""
+    return click.option(flag, type=kind(unit, usual), **more)
+
+
+# of a puck: the unit of each, up to which it is usual, and what it is
+PUCK_NUMBERS = {
+    "radius": ("m", OF_A_PUCK, "Radius r in m, or with its unit: 38.1mm."),
+    "height": ("m", OF_A_PUCK, "Height h of the puck in m, twice that of its centre of mass"),
+    "friction": ("", MOST_FRICTION, "Coulomb coefficient f"),
+    "gravity": ("m/s^2", 0.0, "Gravity in m/s^2.  [default: 9.80665]"),
+    "mass": ("kg", 0.0, "Mass in kg (energies, forces)."),
+}
+
+
+def puck_number(name: str, more: str = "", kind: type[NumberParam] = NumberParam) -> Option[Any]:
+    """The option of a number of a puck, with more words on it."""
+    unit, usual, words = PUCK_NUMBERS[name]
+    return number(f"--{name}", unit, kind, usual, help=words + more)
 
 
 def packed(name: str, make: Callable[..., Any], *options: Option[Any]) -> Option[Any]:
@@ -65,16 +82,13 @@ def puck_options(
 
     ``base``, ``mass``: whether these may be given; ``many``: several pressure laws.
     """
-    heavy = number("--mass", "kg", help="Mass in kg (energies, forces).")
     return [
         number("--delta", "", kind, help="delta = 2 f h / r.  [default: 0.5]"),
-        number("--radius", "m", kind,
-               help="Radius r in m, or with its unit: 38.1mm.  [default: 1]"),
-        number("--height", "m", kind, help="Height h of the puck in m, twice that of its centre of "
-               "mass; with --friction."),
-        number("--friction", "", kind, help="Coulomb coefficient f; with --height."),
-        number("--gravity", "m/s^2", kind, help="Gravity in m/s^2.  [default: 9.80665]"),
-        *([heavy] if mass else []),
+        puck_number("radius", "  [default: 1]", kind),
+        puck_number("height", "; with --friction.", kind),
+        puck_number("friction", "; with --height.", kind),
+        puck_number("gravity", "", kind),
+        *([puck_number("mass")] if mass else []),
         number("--decel", "m/s^2", kind, help="f g in m/s^2 instead of --friction.  [default: 1]"),
         *body_options(base, kind, many),
     ]  # fmt: skip
@@ -123,8 +137,10 @@ class PuckChoice:
         """What is said where nothing of it was chosen, or no friction."""
         chosen = not_none(asdict(self))
         if self.base is not None and not {"friction", "decel"} & {*chosen}:
-            return "   (a default: give --friction)"
-        return "" if len(chosen) > 1 else "   (defaults: see --help for a real puck)"
+            return "f g is a default: give --friction."
+        if len(chosen) > 1:
+            return ""
+        return "The puck is a default one: --help says how to give a real one."
 
     def puck(self) -> Puck:
         """The puck; on a base it is flat without a height, and has f = 1 without a friction."""
@@ -226,15 +242,23 @@ class Outputs:
 
             click.echo(encode(result.dataset()).decode(), nl=False)
 
-    def report(self, result: Result, in_words: Callable[[Any], str]) -> None:
-        """A report on stdout, in words or as JSON; if asked for, on stderr how it was got."""
+    def report(
+        self, result: Any, remark: str = "", summary: Callable[[Any], dict[str, Any]] | None = None
+    ) -> None:  # fmt: skip
+        """A report on stdout, in words or as JSON; if asked for, on stderr how it was got.
+
+        ``remark``: a sentence on what was not chosen; ``summary``: the object of JSON, if the
+        result has more to say than its own.
+        """
         if self.explain:
             say(result.explain(), err=True)
         if self.as_json:
-            summary: Any = result.summary()  # type: ignore[attr-defined]
-            click.echo(json.dumps(summary, allow_nan=False))
+            told = result.summary() if summary is None else summary(result)
+            click.echo(json.dumps(told, allow_nan=False))
         else:
-            say(in_words(result))
+            say(str(result))
+            if remark:
+                say(remark, err=True)
 
 
 def outputs(

@@ -3,24 +3,21 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 from puck_tables.cli.completion import cases
 from puck_tables.cli.options import FILE, RESULTS, Outputs, number, outputs
-from puck_tables.cli.printing import columns, listed
 from puck_tables.cli.values import Times, not_none
 
 from puck_tables.errors import InputError
 from puck_tables.kernels.patience import one_question
+from puck_tables.report.lines_and_tables import listed
 
 if TYPE_CHECKING:
     from puck_tables.reference.answer import Answer
     from puck_tables.reference.floor_friction import FloorFriction
-
-_ROWS = 20  # of friction that are shown
 
 
 @click.command()
@@ -74,8 +71,7 @@ def reference(
 
             result = reference_case(case, **frames)
     out.deliver(result)
-    words = _friction if over else report
-    replace(out, as_json=False).report(result, _with_columns if out.as_json else words)
+    out.report(result, summary=_with_columns)
 
 
 def _listed(as_json: bool) -> str:
@@ -87,43 +83,8 @@ def _listed(as_json: bool) -> str:
     return listed({case.name: f" {case.version}  {case.title}" for case in CASES})
 
 
-def _with_columns(result: Answer | FloorFriction) -> str:
-    """The summary and the columns of a file as one JSON object."""
+def _with_columns(result: Answer | FloorFriction) -> dict[str, Any]:
+    """The summary, and the columns of a file."""
     from puck_tables.io.json import encode
 
-    columns = json.loads(encode(result.dataset()))["columns"]
-    return json.dumps({**result.summary(), "columns": columns}, allow_nan=False)
-
-
-def report(answer: Answer) -> str:
-    """A case and its answer."""
-    from puck_tables.reference.case_text import lines_of
-
-    lines = lines_of(answer)
-    lines["frames"] = (
-        f"{answer.time.size} from {answer.time.min():g} to {answer.time.max():.6g} s: -o FILE "
-        "saves them, --json prints them"
-    )
-    return listed(lines, 12)
-
-
-def _friction(result: FloorFriction) -> str:
-    """A few rows of force and torque over ε."""
-    heads = {
-        "v/(r w)": ".6g", "F along/fN": ".10f", "F across/fN": ".10f",
-        "M/(fNr)": ".10f",
-    }  # fmt: skip
-    step = max(1, result.epsilon.size // _ROWS)
-    rows = zip(
-        *(values[::step] for values in (
-            result.epsilon, result.share_along, result.share_across,
-            result.share_torque,
-        )), strict=True,
-    )  # fmt: skip
-    what = f"on the floor, fN = {result.load:.6g} N, r = {result.puck.radius:g} m"
-    lines = [f"{result.case.label}: {what}", columns(heads, rows)]
-    if step > 1:
-        lines.append(
-            f"one row in {step} of {result.epsilon.size}: -o FILE saves all, --json prints them"
-        )
-    return "\n".join(lines)
+    return {**result.summary(), "columns": json.loads(encode(result.dataset()))["columns"]}

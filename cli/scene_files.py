@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import click
 from puck_tables.cli.completion import scenes
-from puck_tables.cli.printing import listed, say
+from puck_tables.cli.printing import say
+
+from puck_tables.report.lines_and_tables import listed
 
 
 @click.group()

@@ -1,22 +1,17 @@
-"""Scenes behind ``puck simulate`` and ``puck sweep``: options as numbers of one, and reports."""
+"""Scenes behind ``puck simulate`` and ``puck sweep``: options as numbers of one."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 from puck_tables.cli.completion import scenes
 from puck_tables.cli.options import DEFAULT_DECEL, DEFAULT_DELTA, packed
 
 from puck_tables.errors import InputError
-
-if TYPE_CHECKING:
-    from puck_tables.bulk.finish import Stored
-    from puck_tables.world.map import Map
-    from puck_tables.world.sample import Sample
 
 
 @dataclass(frozen=True)
@@ -53,8 +48,8 @@ scene_options = packed(
 PATHS = {
     "v0": "launch.velocity", "w0": "launch.spin", "speed": "launch.velocity[0]",
     "base": "puck.base", "radius": "puck.radius", "height": "puck.height",
-    "mass": "puck.mass", "friction": "puck.friction", "gravity": "gravity", "frames": "frames",
-    "tol": "tol",
+    "mass": "puck.mass", "friction": "puck.friction", "gyration": "puck.gyration",
+    "gravity": "gravity", "frames": "frames", "tol": "tol",
 }  # fmt: skip
 KEPT = (
     "times", "explain", "as_json", "output", "plot", "movie", "overwrite", "threads", "cluster",
@@ -64,7 +59,6 @@ SCALED = ("delta", "decel")
 INSTEAD = {  # of options that no scene has
     **dict.fromkeys(SCALED, "puck.height and puck.friction set it"),
     "heading": "launch.velocity has it", "pressure": "--set puck.pressure=NAME has it",
-    "gyration": "--set puck.gyration=NUMBER has it",
 }  # fmt: skip
 
 
@@ -203,25 +197,3 @@ def _value(text: str) -> Any:
     if len(listed) > 1 and all(re.match(r"\s*[-+]?\.?[0-9]", one) for one in listed):
         return [_value(one.strip()) for one in listed]
     return text
-
-
-def summary_of_map(ends: Map | Sample | Stored) -> str:
-    """A map or samples of a scene in one line, and one for each way in which runs have no end."""
-    from puck_tables.bulk.finish import Stored
-    from puck_tables.bulk.work import Tally
-    from puck_tables.world.map import Map
-
-    work: Any = ends.work if isinstance(ends, Stored) else ends
-    tally = ends.tally if isinstance(ends, Stored) else Tally.of(ends.end)
-    spreads = getattr(work, "spreads", None)  # of samples: no axes, no one model
-    if spreads:
-        ranged = ", ".join(f"{path} {one}" for path, one in spreads.items())
-    else:
-        ranged = " x ".join(f"{name} ({values.size})" for name, values in work.axes.items())
-    counts = ", ".join(f"{count} {work.meanings[code]}" for code, count in tally.counts.items())
-    lines = work.without_end(tally) if isinstance(ends, Stored) else ends.without_end()
-    model = ""
-    if isinstance(ends, Map):
-        error = f"{ends.error_estimate:.1e} of Q/a, Q²/a"
-        model = f"; {ends.model}; error <= {error} in the runs that were checked"
-    return "\n".join([f"{work.scene.title or 'scene'} over {ranged}: {counts}{model}", *lines])

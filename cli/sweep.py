@@ -17,7 +17,7 @@ from puck_tables.cli.options import (
     tables_named,
 )
 from puck_tables.cli.printing import progress
-from puck_tables.cli.scene_run import SceneChoice, scene_options, scene_tables, summary_of_map
+from puck_tables.cli.scene_run import SceneChoice, scene_options, scene_tables
 from puck_tables.cli.sweep_options import Whole, chosen_laws, chosen_spreads, samples_checked
 from puck_tables.cli.values import MAX_COUNT, RangeParam, Vector, not_none
 
@@ -106,7 +106,7 @@ def sweep(
             else:
                 drawn = chosen_spreads(spreads, None, one.unit_of)
                 ends = one.sample(random, seed, drawn, progress=show, **whole.how)
-        whole.deliver(ends, summary_of_map(ends))
+        whole.deliver(ends)
         return
     pressure, base = numbers.pop("pressure"), numbers.pop("base")
     drawn = chosen_spreads(spreads, ARGUMENTS, lambda name: COLUMNS[COLUMN[name]].unit)
@@ -149,7 +149,7 @@ def sweep(
             stops: Any = puck.sweep(**launch, progress=show, **how)
         else:
             stops = puck.sample(random, seed, **launch, progress=show, **how)
-    whole.deliver(stops, _summary(stops))
+    whole.deliver(stops)
 
 
 def _first(value: Any) -> float:
@@ -179,24 +179,3 @@ def _table(path: Path | None) -> Any:
     if not isinstance(table, ResultantTable | StopTable):
         raise InputError(f"{path} holds '{table.kind}': stops come from 'stops' or 'resultants'")
     return table
-
-
-def _summary(stops: Any) -> str:
-    from puck_tables.bulk.finish import Stored
-    from puck_tables.bulk.work import Tally
-    from puck_tables.stopping.solvers import STATUS_MEANINGS
-
-    stored = isinstance(stops, Stored)
-    tally = stops.tally if stored else Tally.of(stops.status)
-    one = stops.work.launches if stored else stops
-    work = stops.work if stored else stops
-    shape = stops.work.shape if stored else stops.status.shape
-    ranged = " x ".join(f"{name} ({n})" for name, n in zip(one.dims, shape, strict=True))
-    fixed = ", ".join(f"{name} = {value:g}" for name, value in one.fixed.items())
-    counts = ", ".join(
-        f"{tally.counts.get(code, 0)} {meaning.replace('_', ' ')}"
-        for code, meaning in enumerate(STATUS_MEANINGS)
-        if code == 0 or code in tally.counts
-    )
-    source = work.source if stored else work.table
-    return f"{ranged or 'one launch'} at {fixed}: {counts}; {work.method}, {source}"

@@ -174,7 +174,7 @@ class Whole:
         as_text = plot is None if path is None else path.suffix.lower() != ".h5"
         check_memory(shape, BYTES_PER_ROW if as_text else BYTES_PER_LAUNCH)
 
-    def deliver(self, result: Any, summary: str) -> None:
+    def deliver(self, result: Any) -> None:
         """Save, draw and sum up."""
         from puck_tables.bulk.finish import Stored
         from puck_tables.bulk.summary import Summary
@@ -187,7 +187,7 @@ class Whole:
         summed = kept and result.is_sample and (bool(self.regions) or not many)
         drawn = result.load() if summed or (kept and self.out.plot is not None) else result
         self.files.deliver(drawn, printed=not kept and not isinstance(result, Summary))
-        say(summary, err=True)
+        say(str(result), err=True)
         if isinstance(drawn, Summary):
             click.echo(drawn.summary(self.regions))
         elif kept and result.is_sample:

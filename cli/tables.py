@@ -6,9 +6,10 @@ import json
 from typing import Any
 
 import click
-from puck_tables.cli.printing import columns, say
+from puck_tables.cli.printing import say
 
 from puck_tables.errors import InputError
+from puck_tables.report.lines_and_tables import columns
 
 
 @click.command()

@@ -3,16 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 import click
 from puck_tables.cli.options import FILE, Outputs, outputs
-from puck_tables.cli.printing import columns, progress
-
-if TYPE_CHECKING:
-    from puck_tables.tradeoff.measurement import TradeOff
-
-_FORMS = {"worst": ".1e", "median": ".1e", "cost ns": ".3g", "+-": ".0%", "bytes": "d"}
+from puck_tables.cli.printing import progress
 
 
 @click.command()
@@ -40,25 +34,4 @@ def tradeoff(quick: bool, files: tuple[Path, ...], out: Outputs) -> None:
     for path in files:
         Outputs(path, overwrite=out.overwrite).deliver(measured)
     out.deliver(measured)
-    click.echo(report(measured))
-
-
-def report(measured: TradeOff) -> str:
-    """The front of every question, the outsiders, and the machine."""
-    from puck_tables.accuracy.method_errors import pareto
-
-    parts = []
-    for question in dict.fromkeys(method.question for method in measured.methods):
-        methods = [method for method in measured.methods if method.question == question]
-        own = [method for method in methods if not method.outsider]
-        rows: list[tuple[Any, ...]] = [
-            (f"  {one.name}", one.error, one.median_error, one.ns,
-             min(9.99, one.ns_spread / one.ns), one.bytes or None)
-            for one in [*pareto(own), *(method for method in methods if method.outsider)]
-        ]  # fmt: skip
-        if len(own) < len(methods):
-            rows.insert(len(pareto(own)), ("  outsiders", *[None] * len(_FORMS)))
-        heads = {f"{question}: the front of {len(own)} methods": "", **_FORMS}
-        parts.append(columns(heads, rows))
-    machine = ", ".join(f"{name} {text}" for name, text in measured.machine.items())
-    return "\n\n".join([*parts, f"{machine}; {measured.repeats} rounds, {measured.seconds:.0f} s"])
+    click.echo(measured)

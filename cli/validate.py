@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 from puck_tables.cli.options import FILE, tables_named
-from puck_tables.cli.printing import columns, progress, say
-
-if TYPE_CHECKING:
-    from puck_tables.table.check import CheckReport
+from puck_tables.cli.printing import progress, say
 
 FAILED = 3  # exit status: 1 and 2 are those of errors and of wrong usage
 
@@ -31,21 +27,8 @@ def validate(file: Path | None) -> None:
     for table in tables_named(file):
         with progress("validating") as show:
             report = table.validate(show)
-        say(_lines(report, table.second))
+        say(str(report))
         passed = passed and report.passed
     if not passed:
         click.echo("Error: the table is out of its own tolerance", err=True)
         raise SystemExit(FAILED)
-
-
-def _lines(report: CheckReport, second: str) -> str:
-    heads = {
-        "check": "", "function": "", "points": "d", "largest": ".1e", "allowed": ".1e",
-        "result": "", "at phi": ".6g", second: ".6g",
-    }  # fmt: skip
-    rows = [
-        (one.name, one.function, one.points, one.deviation, one.allowed,
-         "pass" if one.passed else "FAIL", one.at_phi, one.at_second)
-        for one in report.checks
-    ]  # fmt: skip
-    return f"{report.source}: tolerance {report.tolerance:g}\n{columns(heads, rows)}"

@@ -20,16 +20,27 @@ class NumberParam(click.ParamType):
 
     name = "number"
 
-    def __init__(self, unit: str = "") -> None:
-        self.unit = unit
+    def __init__(self, unit: str = "", usual: float = 0.0) -> None:
+        self.unit, self.usual = unit, usual  # up to which it is, see puck_tables._core.doubts
 
     def convert(self, value: Any, param: Any, ctx: Any) -> float:
         """Parse a finite number."""
         return self.numbers([str(value)], param, ctx)[0]
 
     def numbers(self, parts: list[str], param: Any, ctx: Any) -> list[float]:
-        """Finite numbers that stand beside each other, each with its unit or none of them."""
-        from puck_tables._core.units import SHOWN, UNIT_EACH, measured, unit_meant, without_unit
+        """Finite numbers that stand beside each other, each with its unit or none of them.
+
+        One without a unit that is of a doubtful size is questioned.
+        """
+        from puck_tables._core.doubts import question
+        from puck_tables._core.units import (
+            SHOWN,
+            UNIT_EACH,
+            measured,
+            quantity,
+            unit_meant,
+            without_unit,
+        )
 
         if bare := without_unit(parts, self.unit):
             self.fail(UNIT_EACH.format(bare), param, ctx)
@@ -43,6 +54,8 @@ class NumberParam(click.ParamType):
                 self.fail(f"'{text}' is not a number{like}{f' ({why})' if why else ''}", param, ctx)
             if not math.isfinite(numbers[-1]):
                 self.fail(f"'{text}' is not a finite number", param, ctx)
+            if param is not None and quantity(text, self.unit) is None:
+                question(param.opts[0].strip("-"), numbers[-1], self.unit, self.usual)
         return numbers
 
 

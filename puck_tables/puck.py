@@ -327,8 +327,9 @@ class Puck(VerbsOfMany):
         Raises
         ------
         InputError
-            If an argument is not finite or outside its range, or two of ``spin``, ``speed``,
-            ``stop_time`` and ``angle`` are given.
+            If an argument is not finite or outside its range, two of ``spin``, ``speed``,
+            ``stop_time`` and ``angle`` are given, or the puck is on a base: that is aimed by
+            :meth:`Scene.aim`.
 
         Notes
         -----
@@ -357,7 +358,9 @@ class Puck(VerbsOfMany):
         """
         from puck_tables.stopping.aim_at_targets import aim
 
-        self.refuse_base("aim")
+        self.refuse_base(
+            "aim", "of round pucks: one on a base is aimed as a scene, Scene(puck).aim((x, y))"
+        )
         self.refuse_unless_free()
         return aim(
             self, target, spin=spin, speed=speed, stop_time=stop_time, angle=angle,

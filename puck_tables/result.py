@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from puck_tables._core.lazy import above
+from puck_tables._core.lazy import above, report_of
 from puck_tables.io.dataset import Dataset
 from puck_tables.io.formats import save
 
@@ -126,6 +126,17 @@ class Result:
         from puck_tables.io.frames import to_pandas
 
         return to_pandas(self.dataset())
+
+    def __str__(self) -> str:
+        """What the command ``puck`` prints of it: what a reader wants to know first, in words.
+
+        Examples
+        --------
+        >>> from puck_tables import Puck
+        >>> print(str(Puck.similar().simulate((1.0, 0.0))).splitlines()[0])
+        The puck stops after 1 s, 0.5 m from its launch.
+        """
+        return report_of(self)
 
     def _repr_html_(self) -> str:
         """A small table for notebooks: what the repr says, and the scalars."""

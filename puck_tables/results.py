@@ -1,6 +1,7 @@
 """The classes of what calls give, for annotations: nobody makes them by hand.
 
-Each knows what :class:`Result` has: ``summary``, ``dataset``, ``save``, ``plot``.
+Each knows what :class:`Result` has: ``summary``, ``dataset``, ``save``, ``plot``;
+``print`` says of it what the command says.
 
 >>> from puck_tables import Puck, results
 >>> isinstance(Puck(0.04, friction=0.1).stop((1.0, 0.0)), results.Stops)

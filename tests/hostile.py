@@ -121,8 +121,6 @@ def _of_arrays() -> dict[str, Door]:
             "phi": 0.3, "speed": 0.2, "law": RESULT_OF["table"](), "height_ratio": 0.1}),
         "approach_exponent": (motion.approach_exponent, {"delta": 0.5}),
         "curvature_slope": (motion.curvature_slope, {"delta": 0.5}),
-        "elementary_stop_time": (motion.elementary_stop_time, {
-            "velocity": TWO, "spin": 0.0, **HEIGHT, **KIND}),
         "limit_angle": (motion.limit_angle, {"delta": 0.5, **KIND}),
         "limit_ratio": (motion.limit_ratio, {"delta": 0.5, **KIND}),
         "regime": (motion.regime, {

@@ -339,7 +339,7 @@ def test_every_slide_keeps_its_tolerance(block: int):
         (lambda p: p.stop((1, 0), 1.0).turn_angle, "turn_angle is of round pucks"),
         (lambda p: p.states((1, 0), 1.0, 0.1, jacobian=True), "jacobian is of round pucks"),
         (lambda p: p.states((1, 0), 1.0, -0.1), "time must not be negative"),
-        (lambda p: p.aim((1, 0)), "aim is of round pucks"),
+        (lambda p: p.aim((1, 0)), "aim is of round pucks: .* Scene"),
         (lambda p: p.regime((1, 0), 1.0), "regime is of round pucks"),
         (lambda p: p.limit_ratio, "limit_ratio is of round pucks"),
         (lambda p: p.simulate((1, 0, 0)), "two components"),

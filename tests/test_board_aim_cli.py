@@ -11,9 +11,10 @@ import pytest
 from click.testing import CliRunner, Result
 from puck_tables.cli.main import main
 
-from puck_tables import Scene
+from puck_tables import Puck, Scene
 
 CURLING = ("--scene", "curling-take-out", "--puck", "yellow", "--target", "0.5,-0.5")
+BOX = ("--base", "box:20cmx10cm", "--friction", "0.3")
 
 
 def aim(*arguments: str) -> Result:
@@ -66,9 +67,29 @@ def test_none_found_is_an_answer_without_a_picture(tmp_path: Path) -> None:
         (("--target", "2,0.1", "--puck", "red"), "--puck is for a board"),
         (("--target", "2,0.1", "--target", "2,0.2"), "--target is given 2 times"),
         ((), "Missing option '--target'"),
+        ((*BOX, "--target", "1,0", "--time", "2"), "--time has no place with --base"),
+        ((*BOX[:2], "--target", "1,0", "--delta", "1"), "--delta is of round pucks"),
+        (BOX, "target"),
     ],
 )
 def test_refusals_are_one_sentence(arguments: tuple[str, ...], words: str) -> None:
     ended = aim(*arguments)
     assert ended.exit_code == 2 and words in ended.stderr
     assert "Traceback" not in ended.stderr and ended.stdout == ""
+
+
+def test_a_box_that_cannot_get_there_is_told_so() -> None:
+    told = aim(*BOX, "--target", "5,0", "--max-speed", "1")
+    assert told.exit_code == 0 and "exists: friction takes at least" in told.stdout
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("more", [{}, {"height": 0.05}, {"gyration": 0.08}])
+def test_a_box_stops_where_it_was_aimed(more: dict[str, float]) -> None:
+    flags = [text for name, value in more.items() for text in (f"--{name}", str(value))]
+    told = json.loads(aim(*BOX, *flags, "--target", "0.5,0.1", "--w0", "10", "--json").stdout)
+    ((speed,), (heading,)) = told["launch_speed"], told["launch_heading"]
+    puck = Puck(base="box:0.2x0.1", friction=0.3, **more)
+    velocity = speed * math.cos(heading), speed * math.sin(heading)
+    assert math.dist(puck.stop(velocity, 10.0).stop_position, (0.5, 0.1)) < 1e-8
+    assert abs(heading - math.atan2(0.1, 0.5)) > 1e-5  # it bends

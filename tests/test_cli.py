@@ -17,7 +17,7 @@ from click.testing import CliRunner, Result
 from puck_tables.cli.main import main
 from pucks import simulate
 
-from puck_tables import Table
+from puck_tables import Puck, Table
 
 PUCK = [sys.executable, "-c", "from puck_tables.cli.main import main; main(prog_name='puck')"]
 
@@ -51,10 +51,12 @@ def test_the_first_command_says_what_was_assumed():
     result = puck("simulate", "--v0", "1,0", "--w0", "5")
     assert result.exit_code == 0
     for words in (
-        "r = 1 m, delta = 0.5, f g = 1 m/s^2   (defaults", "B: spin-rich", "3.96299205 s",
+        "r = 1 m, delta = 0.5, f g = 1 m/s^2\n", "B: spin-rich", "3.96299205 s",
         "(2.21395163, -0.15716", "v/(r w) tends to 0.6604943", "residual", "error estimate",
     ):  # fmt: skip
         assert words in result.stdout
+    assert "a default one: --help" in result.stderr
+    assert str(Puck.similar().simulate((1.0, 0.0), 5.0, frames=1)) + "\n" == result.stdout
     assert "defaults" not in puck("simulate", "--v0", "1,0", "--delta", "0.5").stdout
 
 

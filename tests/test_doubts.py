@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
+from puck_tables.cli.main import main
+from puck_tables.cli.options import PUCK_NUMBERS
+from puck_tables.cli.simulate import simulate
 
 import puck_tables as pt
 from puck_tables import Scene
 from puck_tables._core import own_folder
+from puck_tables._core.fields import specs
 from puck_tables.errors import InputError
 from puck_tables.scene.library import shipped_scenes
 
@@ -57,6 +63,51 @@ def test_what_is_written_with_its_unit_is_not(capsys: pytest.CaptureFixture[str]
     assert capsys.readouterr().err == ""
     Scene(puck, pt.Floor(slope=0.1, downhill=-90))
     assert "degrees" in capsys.readouterr().err
+
+
+BASES = ("box:20x10", "disc:40", "polygon:0,0;20,0;0,10", "feet:1;50,0;-50,50;-50,-50")
+
+
+@pytest.mark.parametrize("base", [*BASES, pt.Base.box(40.0, 10.0)])
+def test_a_base_in_centimetres_is(base: str | pt.Base, capsys: pytest.CaptureFixture[str]):
+    pt.Puck(base="box:20cmx10cm", friction=0.1)
+    pt.Puck(base=pt.Base.box(0.4, 0.1), friction=0.1)
+    pt.Puck(base="polygon:0,0;2000cm,0;0,1000cm", friction=0.1)  # said to be so large
+    assert capsys.readouterr().err == ""
+    pt.Puck(base=base, friction=0.1)
+    said = capsys.readouterr().err
+    assert said.startswith("a base beyond 10 m: lengths are in metres") and said.count("\n") == 1
+
+
+def test_a_base_in_a_file_is(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    for n, (head, factor) in enumerate((("x [mm],y [mm]", 1.0), ("x,y", 1.0), ("x,y", 1e-3))):
+        rows = [f"{factor * x},{factor * y}" for x, y in ((0, 0), (90, 0), (0, 60))]
+        (tmp_path / f"{n}.csv").write_text("\n".join([head, *rows]))
+        pt.Puck(base=str(tmp_path / f"{n}.csv"), friction=0.1)
+        assert ("metres" in capsys.readouterr().err) == (n == 1)
+
+
+@pytest.mark.parametrize(("command", "words"), [
+    ("simulate --v0 1,0 --base box:20x10", "a base beyond 10 m"),
+    ("simulate --v0 1,0 --radius 32", "a radius beyond 10 m"),
+    ("simulate --v0 1,0 --radius 32 --height 10 --friction 0.3", "a radius beyond 10 m"),
+    ("simulate --v0 1000,0", "a v0 beyond 300 m/s"),
+    ("simulate --scene incline --radius 40", "a radius beyond 10 m"),
+    ("sweep --radius 30:40:3 --speed 1", "a radius beyond 10 m"),
+    ("sweep --speed 1 --heading 90", "a heading beyond 6.283 rad"),
+    ("aim --target 2,0 --w0 0 --radius 32", "a radius beyond 10 m"),
+    ("limit-surface --base box:20x10", "a base beyond 10 m"),
+])  # fmt: skip
+def test_commands_ask_once_for_another_unit(command: str, words: str):
+    result = CliRunner().invoke(main, command.split())
+    assert result.exit_code == 0 and result.stderr.count(words) == 1, result.stderr
+
+
+@pytest.mark.parametrize("name", PUCK_NUMBERS)
+def test_options_of_a_puck_have_the_units_of_its_fields(name: str):
+    option = next(one for one in simulate.params if one.name == name)
+    kind = specs(pt.Puck)[name].metadata["kind"]
+    assert (option.type.unit, option.type.usual) == (kind.unit, kind.usual)
 
 
 def test_shipped_scenes_are_of_usual_sizes(capsys: pytest.CaptureFixture[str]):

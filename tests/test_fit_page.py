@@ -71,6 +71,24 @@ def test_the_page_says_what_was_found_assumed_and_left(found):
     assert rows[0] == "0.0000" and len(rows) == 16
 
 
+def test_a_film_without_noise_has_intervals_that_are_seen():
+    t = np.arange(60) / 60.0
+    path = pt.Puck(radius=0.0381, height=0.0254, friction=0.3).states((2.0, 0.5), 40.0, t)
+    places = np.stack([path.x, path.y], axis=1)
+    clean = pt.fit(pt.Track(t, places, path.orientation), pt.Puck(radius=0.0381))
+    ends = {name: one.interval for name, one in clean.numbers.items() if one.how != "known"}
+    for name, interval in ends.items():
+        low, high = map(float, interval.split(" to "))
+        assert low < clean[name].value < high, (name, interval)
+        assert high - low == pytest.approx(clean[name].high - clean[name].low, rel=0.1)
+        assert interval in page(clean) and f"95 %: {interval}" in str(clean)
+    panels = [one for one in clean.plot().axes if one.get_title() == "rise of chi²"]
+    assert [one.get_xlabel().split(" - ")[0] for one in panels] == ["friction", "delta"]
+    for panel, name in zip(panels, ("friction", "delta"), strict=True):
+        low, high = panel.get_xlim()
+        assert 1.0 < (high - low) / (clean[name].high - clean[name].low) < 3.0
+
+
 def test_python_and_the_command_write_the_same(found, tmp_path: Path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     found.report("one.html")

@@ -166,7 +166,7 @@ def test_command_lines(line: list[str]):
 NO_ANSWER = 300  # s, of one call
 QUICK = [name for name in doors() if name.startswith("pt.") or name in {
     "stop", "states", "stop_arrays", "state_arrays", "resultants", "critical_delta", "Puck",
-    "limit_ratio", "regime", "elementary_stop_time", "Normal", "Uniform", "law_of", "profile_law",
+    "limit_ratio", "regime", "Normal", "Uniform", "law_of", "profile_law",
     "StribeckLaw", "PowerLaw", "CurlingLaw", "SpeedLaw", "RestitutionTable", "Table.shipped",
     "Scene.load", "Scene.unit_of", "patch_stop", "patch_system", "Asperity", "Asperity.press",
     "constrained_motion", "asperity_motion", "stops.spread", "states.derivative", "export_source",

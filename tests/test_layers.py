@@ -44,12 +44,14 @@ ROOMS = {
     "reference": "_core errors film io motion result scene trajectory world",
     "tradeoff": "_core _version accuracy contact io kernels motion puck result scene stopping "
     "table world",
+    "report": "_core accuracy bulk fitting io motion reference scene stopping table tradeoff "
+    "trajectory world",
     "plot": "_core _version accuracy bulk chetaev errors film fitting io motion reference "
     "result scene stopping tradeoff trajectory world wrench",
     "gym": "_core contact errors plot puck scene world",
     "cli": "_core _version accuracy bulk chetaev contact errors explore export film fitting io "
-    "kernels motion plot puck reference result scene stopping table tradeoff trajectory warming "
-    "world",
+    "kernels motion plot puck reference report result scene stopping table tradeoff trajectory "
+    "warming world",
     "results": "_core export fitting puck reference result scene stopping table trajectory world "
     "wrench",
     "__init__": "_core _version",

@@ -18,6 +18,7 @@ from matplotlib.figure import Figure
 from scenes import simulate_scene, sweep_scene
 
 from puck_tables import Puck, floor_friction, reference_case, states, stop
+from puck_tables._core.lazy import above, names_above
 from puck_tables.accuracy.method_errors import shipped_errors
 from puck_tables.chetaev import Asperity, asperity_curve
 from puck_tables.errors import ContactError, InputError, OutputError
@@ -133,6 +134,11 @@ def test_it_tells_of_itself_in_a_line_and_in_a_notebook(name: str):
     assert result.explain()
     data = result.to_xarray()
     assert set(result.dataset().columns) == set(data.data_vars)
+
+
+@pytest.mark.parametrize("name", names_above("report of "))
+def test_what_is_told_of_a_result_is_there(name: str):
+    assert callable(above(name))
 
 
 def test_columns_of_one_name_are_one_quantity():

@@ -10,7 +10,6 @@ import pytest
 import xarray
 from click.testing import CliRunner
 from puck_tables.cli.main import main
-from puck_tables.cli.tradeoff import report
 
 from puck_tables import Table, resultants
 from puck_tables.accuracy.method_errors import shipped_errors
@@ -241,7 +240,7 @@ def test_files(measured: measurement.TradeOff, tmp_path: Path):
 def test_picture_and_report(measured: measurement.TradeOff, tmp_path: Path):
     measured.plot(tmp_path / "t.png")
     assert (tmp_path / "t.png").stat().st_size > 50_000
-    text = report(measured)
+    text = str(measured)
     assert text.isascii()
     for words in ("the front of", "outsiders", "closed forms", "processor any, cores 1; 25 rounds"):
         assert words in text

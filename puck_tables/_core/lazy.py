@@ -81,6 +81,12 @@ def above(name: str) -> Any:
     return getattr(import_module(module), original or name)
 
 
+def report_of(result: Any) -> str:
+    """What a reader wants to know of a result, in words; its repr where nobody has told more."""
+    name = f"report of {type(result).__name__}"
+    return str(above(name)(result)) if name in _ABOVE else repr(result)
+
+
 def with_neighbours(package: str, file: str) -> None:
     """Load cli/ and tables/ where they lie beside a package, not in it: in a clone.
 

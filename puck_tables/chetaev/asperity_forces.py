@@ -42,6 +42,7 @@ from puck_tables.result import Result
 CURVES = ("crude", "greatest", "undriven", "mean", "landing_phase", "flights_per_period")
 _FLIGHTS = 4000  # landings without a period: then the mean is that of the later half
 _LONGEST_CYCLE, _SAME_PHASE = 40, 1e-11  # landings, rad: so far back the same phase is looked for
+MOST_LEAPS = 5  # that are told as they are: more are no single steps of the force
 LEAP = 0.2  # of Coulomb's force: by so much the mean force at neighbouring speeds may differ
 MAX_SPEED = 1e3  # of V₀: beyond it a flight passes a million periods and its landing is chance
 
@@ -100,6 +101,20 @@ class AsperityCurve(Result):
         return (
             f"AsperityCurve({self.held_speed.size} speeds, V0 = {self.asperity.lift_speed:.4g} m/s)"
         )
+
+    def __str__(self) -> str:
+        """Slope, Coulomb's force and lift speed, and whether the speeds are too far apart."""
+        support = self.asperity
+        text = (
+            f"a/b = {support.slope:.4g}, Coulomb's force {self.crude[0]:.4g} N; leaves the crest "
+            f"above V0 = {support.lift_speed:.4g} m/s"
+        )
+        if self.leaps > MOST_LEAPS:
+            text += (
+                f"\nbetween {self.leaps} of {self.held_speed.size - 1} neighbouring speeds the "
+                "force leaps: it varies faster than they show; give more speeds, or lower ones"
+            )
+        return text
 
     def explain(self) -> str:
         """How it was got."""

@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables._core.doubts import OF_A_PUCK, question
 from puck_tables._core.own_folder import say
 from puck_tables._core.quantities import X, Y
 from puck_tables._core.read_columns import numbers_of
@@ -380,7 +381,9 @@ def base_of(text: str) -> Base:
         centre = _place(f"base {shown(text)}: the centre of mass is @X,Y, got @{place}", place)
     if shape.lower().endswith(".csv"):
         corners = numbers_of(shape, (X, Y), 2, MAX_BYTES).rows
-        return Base.polygon(corners, centre=centre, name=as_utf8(text))
+        found = Base.polygon(corners, centre=centre, name=as_utf8(text))
+        question("base", found.reach, "m", OF_A_PUCK)
+        return found
     kind, _, sizes = shape.partition(":")
     if kind in ("polygon", "feet"):
         return _by_places(kind, sizes, text, centre)
@@ -425,5 +428,8 @@ def _place(wrong: str, text: str) -> tuple[float, float]:
 
 
 def _length(name: str, text: str) -> float:
-    """A length, m, with or without a unit."""
-    return float(text) if is_number(text) else number_in(name, text, "m")
+    """A length, m, with or without a unit; one without that is no size of a puck is questioned."""
+    if not is_number(text):
+        return number_in(name, text, "m")
+    question("base", float(text), "m", OF_A_PUCK)
+    return float(text)

@@ -87,6 +87,26 @@ class Number(NamedTuple):
             return f"{self.value:.{power}e} +- {self.error:.1e}{self.unit_behind}"
         return f"{self.value:.{digits}f} +- {self.error:.{digits}f}{self.unit_behind}"
 
+    @property
+    def interval(self) -> str:
+        """Both ends of its 95 % interval, to two digits of what lies between; '' where unknown.
+
+        Examples
+        --------
+        >>> Number(0.3, 2.8e-10, 0.2999999994419, 0.3000000005580, "1", FREE).interval
+        '0.29999999944 to 0.30000000056'
+        """
+        wide = 0.5 * (self.high - self.low)
+        if self.how == KNOWN or not self.determined or not (0.0 < wide < math.inf):
+            return ""
+        digits = 1 - math.floor(math.log10(wide))
+        if digits > _MOST:
+            most = max(abs(self.low), abs(self.high))
+            power = digits + math.floor(math.log10(most))
+            return f"{self.low:.{power}e} to {self.high:.{power}e}"
+        return " to ".join(f"{round(end, digits) + 0.0:.{max(0, digits)}f}"
+                           for end in (self.low, self.high))  # fmt: skip
+
 
 class EstimatedLaunch(NamedTuple):
     """How a track begins.

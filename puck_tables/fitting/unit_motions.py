@@ -24,9 +24,10 @@ from puck_tables.contact.laws import Law, law_of
 from puck_tables.motion.body import body_of, plain_up_to
 from puck_tables.motion.frame import frame_of
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED, SPIN, STATE_ROWS
+from puck_tables.stopping.launch_arrays import launches_in
 from puck_tables.stopping.launch_frame import fill_placed_states
 from puck_tables.stopping.plain_states import fill_state_slopes
-from puck_tables.stopping.state_values import directions, looked_up, looked_up_launches
+from puck_tables.stopping.state_values import directions, looked_up
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.stopping.variational import Variations, unit_states, variations_by
 from puck_tables.table.friction_slopes import slopes_at_one_height, slopes_of_table
@@ -106,7 +107,7 @@ class PlainMotions(UnitMotions):
         """By the stop table."""
         table = StopTable.shipped()
         which = np.repeat(np.arange(len(times)), times.shape[1])
-        rows = looked_up(table, looked_up_launches(table, launches), which, times.ravel())
+        rows = looked_up(table, table.pucks(launches_in(launches)), which, times.ravel())
         headings = directions(launches[0], launches[1])[:, None]
         return cartesian(rows.reshape(STATE_ROWS, *times.shape), headings)
 
@@ -115,7 +116,7 @@ class PlainMotions(UnitMotions):
     ) -> tuple[FloatArray, FloatArray]:
         """By the slopes of the stop table."""
         table, one = StopTable.shipped(), np.zeros(1, np.int64)
-        pucks = looked_up_launches(table, launch[:, None])
+        pucks = table.pucks(launches_in(launch[:, None]))
         rows, slopes = looked_up(table, pucks, one, times), np.empty((times.size, 6, 7))
         fill_state_slopes(table, pucks, one, times, rows, slopes)
         return cartesian(rows, directions(launch[:1], launch[1:2])), slopes
@@ -140,7 +141,7 @@ class LawMotions(UnitMotions):
     def own(self, delta: float, cosine: float, sine: float, tau: FloatArray) -> FloatArray:
         """By the table of the law."""
         friction = variations_by(slopes_of_table(self._table, delta), self._gyration)
-        return unit_states(friction, cosine, sine, tau, _LOCAL)[0]
+        return unit_states(friction, cosine, sine, tau, _LOCAL)
 
 
 class TallMotions(UnitMotions):
@@ -172,7 +173,7 @@ class TallMotions(UnitMotions):
         out = np.zeros((tau.size, 6, 6))
         for height, weight, slope in _heights(delta):
             friction = _tall_variations(height, self._gyration)
-            result = unit_states(friction, cosine, sine, tau, _LOCAL)[0]
+            result = unit_states(friction, cosine, sine, tau, _LOCAL)
             result[:, :, _BY_DELTA] = 0.0
             out += weight * result
             out[:, :, _BY_DELTA] += slope * result[:, :, 0]

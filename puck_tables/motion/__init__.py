@@ -8,20 +8,17 @@ if TYPE_CHECKING:
     from puck_tables.motion.limits import (
         approach_exponent,
         curvature_slope,
-        elementary_stop_time,
         limit_angle,
         limit_ratio,
         regime,
     )
 
 _HOMES = {
-    "limits": "approach_exponent curvature_slope elementary_stop_time limit_angle limit_ratio "
-    "regime",
+    "limits": "approach_exponent curvature_slope limit_angle limit_ratio regime",
 }
 
 __all__ = [
-    "approach_exponent", "curvature_slope", "elementary_stop_time", "limit_angle", "limit_ratio",
-    "regime",
+    "approach_exponent", "curvature_slope", "limit_angle", "limit_ratio", "regime",
 ]  # fmt: skip
 
 __getattr__, __dir__ = lazily(__name__, _HOMES)

@@ -248,58 +248,6 @@ def regime(
     return regime_of(math.hypot(*components), r * abs(turning), limit)
 
 
-def elementary_stop_time(
-    velocity: npt.ArrayLike,
-    spin: float,
-    delta: float = 0.5,
-    decel: float = 1.0,
-    radius: float = 1.0,
-    pressure: str | Law = "uniform",
-    gyration: float = HOMOGENEOUS,
-) -> float | None:
-    """The stop time of a launch whose motion is elementary; None for a generic one (B or C).
-
-    Parameters
-    ----------
-    velocity, spin, delta, radius, pressure, gyration
-        As :func:`regime`.
-    decel : fg, m/s², > 0
-
-    Returns
-    -------
-    float or None, s
-        A: 0.  C0: v/J.  B0: (2k²/r²) r|ω|/(J ρ_ω(π/2)), which is ¾ r|ω|/J for a homogeneous puck
-        under uniform pressure.  D: Q/(J ρ_∥(φ₀)), Q = hypot(v, rω).
-
-    Raises
-    ------
-    InputError, ContactError
-        If an argument is not finite or lies outside its range.
-
-    References
-    ----------
-    Salnikova, Treschev, Gallyamov 2012, section 2.
-
-    Examples
-    --------
-    >>> elementary_stop_time((3.0, 4.0), 0.0), elementary_stop_time((0.0, 0.0), -2.0, radius=0.5)
-    (5.0, 0.75)
-    """
-    kind = regime(velocity, spin, delta, radius, pressure, gyration)
-    deceleration = positive("decel", decel, "m/s^2")
-    speed = math.hypot(*one_velocity(velocity))
-    rim = positive("radius", radius, "m") * abs(real("spin", spin, "rad/s"))
-    law = pressure if isinstance(pressure, Law) else law_of(pressure)
-    if kind == "D":
-        parallel = float(law.friction(limit_angle(delta, law, gyration), delta).parallel)
-        return math.hypot(speed, rim) / (deceleration * parallel)
-    if kind == "B0":
-        square = 0.5 if gyration == HOMOGENEOUS else checked_gyration(gyration) ** 2
-        return 2.0 * square / float(law.friction(0.5 * math.pi, 0.0).spin) * rim / deceleration
-    times = {"A": 0.0, "C0": speed / deceleration}
-    return times.get(kind)
-
-
 def regime_of(speed: float, rim_speed: float, limit: float, width: float = LIMIT_WIDTH) -> str:
     """The regime of a launch from v and r|ω|, checked before.
 

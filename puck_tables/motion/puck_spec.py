@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Self
 
-from puck_tables._core.doubts import MOST_FRICTION, OF_A_PUCK, unquestioned
+from puck_tables._core.doubts import MOST_FRICTION, OF_A_PUCK, question, unquestioned
 from puck_tables._core.fields import Unsaid, of
 from puck_tables._core.own_folder import say
 from puck_tables._core.reading import Reading, entries_in, mark_checked, read_values
@@ -114,6 +114,8 @@ class PuckSpec:
                 "pressure: under a base it is linear, and fixed by the weight; pressure laws are "
                 "of round pucks with a radius"
             )
+        if not isinstance(self.base, str):  # of a text its lengths are
+            question("base", shape.reach, "m", OF_A_PUCK)
         if not self.has_rim:
             object.__setattr__(self, "radius", Unsaid(shape.reach))
         if self.gyration is None or isinstance(self.gyration, Unsaid):
@@ -226,15 +228,15 @@ class PuckSpec:
         """
         return self.gyration if self.shape is not None else self.gyration * self.radius
 
-    def refuse_base(self, what: str) -> None:
-        """Refuse what is of round pucks alone.
+    def refuse_base(self, what: str, instead: str = ROUND_ONLY) -> None:
+        """Refuse what is of round pucks alone, with what to do.
 
         Raises
         ------
         InputError
         """
         if self.shape is not None:
-            raise InputError(f"{what} is {ROUND_ONLY}")
+            raise InputError(f"{what} is {instead}")
 
     def refuse_for_round(self, **values: Any) -> None:
         """Refuse arguments that a puck on a base has no use for, where one is given.

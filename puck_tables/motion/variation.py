@@ -1,14 +1,13 @@
-"""How one motion changes with its launch, its height and its spread of mass: variational equations.
+"""How one motion changes with its launch and its height: variational equations.
 
-Along a motion dy/dz = F(u, ψ; δ, k) (:mod:`puck_tables.motion.equations_of_motion`) a small change
+Along a motion dy/dz = F(u, ψ; δ) (:mod:`puck_tables.motion.equations_of_motion`) a small change
 of a parameter p changes the state at the same z by y_p,
 
     dy_p/dz = (∂F/∂y) y_p + ∂F/∂p,
 
 which is integrated beside the motion itself.  For p = u₀, the slip at the launch, it begins with
-u_p = 1; for δ and the radius of gyration k with 0.  Nothing is differenced: ∂F needs the
-derivatives of the friction ratios by u and δ (:mod:`puck_tables.table.friction_slopes`), k only
-stands in r ω' = −(r²/2k²) J sin φ ρ_ω.
+u_p = 1; for δ with 0.  Nothing is differenced: ∂F needs the derivatives of the friction ratios by
+u and δ (:mod:`puck_tables.table.friction_slopes`).
 
 All is linear in y_p, so what is small next to pure sliding and pure spin keeps its digits.  Next to
 a line of the friction, where the derivative by u is known badly, steps are as short as the distance
@@ -24,15 +23,15 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating, inlined, kernel, patience
-from puck_tables.kernels.section_spline import INERTIA, section_slopes
+from puck_tables.kernels.section_spline import section_slopes
 from puck_tables.motion.equations_of_motion import distance_to_line
 from puck_tables.motion.path import STOPPED, integrate
 from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, T, U, X, Y
 from puck_tables.motion.tableaus import Tableau
 
 KEPT = 7  # of the state: all but the work of friction
-BY_U, BY_HEIGHT, BY_GYRATION = 1, 2, 3  # blocks; the first is the motion itself
-BLOCKS = 4  # with the motion itself
+BY_U, BY_HEIGHT = 1, 2  # blocks; the first is the motion itself
+BLOCKS = 3  # with the motion itself
 VARIED = BLOCKS * KEPT  # numbers of all blocks
 _STAGES = 6  # Dormand and Prince's seventh only tells the error
 _STEP_LIMIT = 20_000  # more is a motion that does not end
@@ -44,7 +43,7 @@ _LAST, _TAIL_STEP = 1e-4, 0.25
 
 @kernel
 def variation_rates(z: float, y: FloatArray, section: FloatArray, out: FloatArray) -> None:
-    """d/dz of a state and its three variations (28,), into ``out``, by all six functions."""
+    """d/dz of a state and its two variations (21,), into ``out``, by all six functions."""
     u, turned = y[U], y[PSI]
     k = math.exp(-abs(u))
     large = 1.0 / math.sqrt(1.0 + k * k)
@@ -65,7 +64,6 @@ def variation_rates(z: float, y: FloatArray, section: FloatArray, out: FloatArra
     out[T] = q * inverse * norm
     out[X], out[Y] = rate * c * cosine, rate * c * sine
     out[THETA], out[LENGTH] = rate * s, rate * c
-    by_gyration = -2.0 * spin / math.sqrt(section[0, INERTIA])
     for block in range(1, BLOCKS):
         at = block * KEPT
         du, dturn = y[at + U], y[at + PSI]
@@ -76,8 +74,6 @@ def variation_rates(z: float, y: FloatArray, section: FloatArray, out: FloatArra
                 d_across + across_h,
                 d_spin + spin_h,
             )
-        elif block == BY_GYRATION:
-            d_spin += by_gyration
         lost = -brake * (2.0 * s2 * c2 * (spin - 1.0) * du + s2 * d_spin)  # d ln N
         share = d_inverse + inverse * lost
         dc, ds = -c * s2 * du, s * c2 * du
@@ -97,7 +93,7 @@ def variation_rates(z: float, y: FloatArray, section: FloatArray, out: FloatArra
 def advance(
     z: float, end: float, y: FloatArray, tableau: Tableau, section: FloatArray, work: FloatArray
 ) -> None:
-    """A varied state (28,) from z to ``end``, in place; ``work`` (8, 28)."""
+    """A varied state (21,) from z to ``end``, in place; ``work`` (8, 21)."""
     state = work[_STAGES]
     while z < end:
         patience(1)
@@ -137,16 +133,16 @@ def vary(
     z_path: FloatArray, u: float, tableau: Tableau, section: FloatArray, path: FloatArray,
     stop: FloatArray, work: FloatArray,
 ) -> None:  # fmt: skip
-    """A motion from u₀ and its variations: at its step ends into ``path`` (n, 28), at the stop.
+    """A motion from u₀ and its variations: at its step ends into ``path`` (n, 21), at the stop.
 
     Parameters
     ----------
     z_path : array (n,), where the steps of the motion end
     u : ln(rω/v) at the launch
     section : six functions, see :meth:`puck_tables.table.friction_slopes.FrictionSlopes.for_slopes`
-    path : array (n, 28), or empty where nobody wants it
-    stop : array (28,)
-    work : room (8, 28)
+    path : array (n, 21), or empty where nobody wants it
+    stop : array (21,)
+    work : room (8, 21)
     """
     for i in range(VARIED):
         stop[i] = 0.0
@@ -170,7 +166,7 @@ def fill_stop_variations(
     u: FloatArray, place_unit: FloatArray, delta: float, tableau: Tableau, tolerance: float,
     ratios: FloatArray, section: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
-    """Stops of launches at u (n,) and their variations into ``out`` (n, 28); NaN: no stop.
+    """Stops of launches at u (n,) and their variations into ``out`` (n, 21); NaN: no stop.
 
     ``ratios``, ``section``: friction for motions and for slopes, of one puck.  ``place_unit`` (n,)
     as :func:`puck_tables.motion.path.integrate` has it.
@@ -195,7 +191,7 @@ def fill_state_variations(
     z: FloatArray, which: npt.NDArray[np.int64], z_path: FloatArray, path: FloatArray,
     stop: FloatArray, tableau: Tableau, section: FloatArray, out: FloatArray, rates: FloatArray,
 ) -> None:  # fmt: skip
-    """Varied states at z (n,) of one motion into ``out`` (n, 28), and their d/dz into ``rates``.
+    """Varied states at z (n,) of one motion into ``out`` (n, 21), and their d/dz into ``rates``.
 
     ``which`` (n,): the last step end before; ``path``, ``stop`` of :func:`vary`.
     """

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 _POINTS = 9  # of a profile curve
 _REACH = 3.0  # standard errors to either side of it
 _FINE = 400  # points of a curve: smooth at any size of print
+_UNSEEN = 1e-4  # of a number: what parts less is drawn from the number on
 _NARROW = 5.0  # times as long as wide: a path that is shown in scales of its own
 
 
@@ -160,7 +161,11 @@ def _draw_profile(panel: Axes, result: Fit, name: str) -> None:
     """By how much χ² rises when one number is held elsewhere."""
     k = result.estimate.problem.spec.free.index(name)
     values, rises = result.profile(name, _POINTS, _REACH)
-    number = result.numbers[name]
+    number, known_to = result.numbers[name], ""
+    if values[-1] - values[0] < _UNSEEN * abs(number.value):  # axes would not part them
+        known_to = number.written.partition(" ")[0]
+    shift = float(known_to or 0.0)
+    values = values - shift
     fine = np.linspace(values[0], values[-1], 100)
     panel.plot(values, rises, "o", color=BLUE, markersize=3)
     powers = monotone_cubic(values, rises) if values[-1] > values[0] else rises[:1, None]
@@ -168,10 +173,12 @@ def _draw_profile(panel: Axes, result: Fit, name: str) -> None:
     panel.plot(fine, polyval(fine - values[part], powers[part].T, tensor=False), color=BLUE)
     error = float(result.certainty.errors[k])
     if math.isfinite(error):
-        panel.plot(fine, ((fine - number.value) / error) ** 2, ":", color=GREY)
+        panel.plot(fine, ((fine + shift - number.value) / error) ** 2, ":", color=GREY)
     panel.axhline(result.certainty.quantile**2, color=ORANGE, linewidth=0.8)
     for end in (number.low, number.high):
-        panel.axvline(end, color=ORANGE, linewidth=0.8)
+        panel.axvline(end - shift, color=ORANGE, linewidth=0.8)
     unit = "" if number.unit == "1" else f" / {number.unit}"
-    panel.set(xlabel=f"{name}{unit}", title="rise of chi²")
+    from_there = f"{name} - {known_to}" if known_to else name
+    words = f"({from_there}){unit}" if known_to and unit else f"{from_there}{unit}"
+    panel.set(xlabel=words, title="rise of chi²")
     panel.tick_params(axis="x", labelrotation=30)

@@ -96,7 +96,7 @@ def _speeds(result: Fit) -> Figure:
 
 def _numbers(result: Fit) -> str:
     rows = [
-        (_words(name, result), _written(number), _interval(number),
+        (_words(name, result), _written(number), number.interval or "–",
          {"found": "from the film", "follows": "follows", "known": "known"}[number.how])
         for name, number in result.numbers.items()
     ]  # fmt: skip
@@ -197,12 +197,6 @@ def _words(name: str, result: Fit) -> str:
 def _written(number: Number) -> str:
     """Value ± error and unit."""
     return number.written.replace("+-", "±") if number.determined else "not told"
-
-
-def _interval(number: Number) -> str:
-    ends = (number.low, number.high)
-    told = number.how != "known" and number.determined and all(map(math.isfinite, ends))
-    return f"{number.low:.5g} to {number.high:.5g}" if told else "–"
 
 
 def _blank() -> str:

@@ -74,12 +74,7 @@ def _above(
     """How much a quantity is above a value."""
     if limits.shape[0] > 0:
         return _in_part(quantity, u, limits) - wanted
-    speed, rim, time, turn, _, _ = _plain_logs(u, section)
-    if quantity == SPEED:
-        return speed - wanted
-    if quantity == TURN:
-        return turn - wanted
-    return (rim if quantity == RIM else time) - wanted
+    return _plain_logs(u, section)[quantity] - wanted
 
 
 @inner

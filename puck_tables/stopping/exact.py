@@ -105,27 +105,3 @@ def exact_stops(u: FloatArray, delta: FloatArray) -> FloatArray:
     [0.98647593897, 0.32409372866, -0.04297450852]
     """
     return integrated_stops(u, delta, NO_SECTION, _LOCAL_TOLERANCE)[:, :5]
-
-
-def end_values(delta: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """``time``, ``along``, ``across``, ``length``, ``body`` at φ → 0 and φ → π/2, elementary.
-
-    Next to pure sliding v falls like t₀ − t and rω like its power p = ½ − δ²/8; next to pure spin
-    rω falls linearly and the velocity like its complex power ¾(a + ib), a = ρ_∥, b = ρ_⊥ at π/2.
-
-    Returns
-    -------
-    two arrays (n, 5)
-
-    Examples
-    --------
-    >>> end_values(np.array([0.0]))[1].round(6).tolist()
-    [[0.75, 0.428571, -0.061224, 0.428571, 0.375]]
-    """
-    d2 = delta**2
-    half = np.full_like(delta, 0.5)
-    slow = [2.0 * half, half, -1.0 / (12.0 - d2), half, 8.0 / (12.0 - d2)]
-    real, across = 4.0 / 3.0 + 9.0 / (9.0 + d2), 3.0 / (9.0 + d2)  # 4/3 + a, b/δ
-    modulus = real**2 + d2 * across**2
-    fast = [0.75 * (2.0 * half), real / modulus, -across / modulus, 1.0 / real, 0.75 * half]
-    return np.stack(slow, axis=-1), np.stack(fast, axis=-1)

@@ -206,7 +206,7 @@ def integrated_jacobians(
         if slip > 0.0:
             friction = frictions[float(launch[3])]
             friction.refuse_limit(speed, rim)
-            own, _ = unit_states(friction, speed / slip, rim / slip, times / slip * launch[4])
+            own = unit_states(friction, speed / slip, rim / slip, times / slip * launch[4])
             fill_placed_states(launch, times, own, part)
         out[mine] = part
 

@@ -203,7 +203,7 @@ def _components(
 
 def in_chunks(work: Callable[[int, int], None], size: int, threads: int | None) -> None:
     """Call ``work(start, stop)`` for chunks of launches; on this thread where one does it all."""
-    if (usable_cores() if threads is None else threads) > 1 or size <= CHUNK:
+    if size <= CHUNK or (usable_cores() if threads is None else threads) > 1:
         run_chunks(work, size, CHUNK, threads)
         return
     for start in range(0, size, CHUNK):

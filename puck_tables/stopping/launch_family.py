@@ -32,6 +32,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.motion.body import UnitPuck
+from puck_tables.motion.frame import direction
 from puck_tables.stopping.aim_lookup import (
     BEND,
     LOGS,
@@ -285,28 +286,20 @@ def _first_nodes(body: UnitPuck) -> FloatArray:
 
 def _turns(u: FloatArray, values: FloatArray, slopes: FloatArray) -> FloatArray:
     """Where the cubics between nodes turn."""
-    width = np.diff(u)[:, None]
-    secant = np.diff(values, axis=0) / width
-    # slope over x from 0 to 1: a x² + b x + c
-    c, end = slopes[:-1], slopes[1:]
-    a = 3.0 * (c + end - 2.0 * secant)
-    b = end - c - a
-    with np.errstate(divide="ignore", invalid="ignore"):
-        root = -0.5 * (b + np.copysign(np.sqrt(b * b - 4.0 * a * c), b))
-        places = np.stack([root / a, c / root])
-        inside = (places > 0.0) & (places < 1.0)
-    at = u[:-1, None] + width * np.where(inside, places, 0.0)
-    turns: FloatArray = at[inside]
-    return turns
+    from scipy.interpolate import CubicHermiteSpline
+
+    rates = CubicHermiteSpline(u, values, slopes).derivative()
+    turns: FloatArray = np.concatenate(rates.roots(discontinuity=False, extrapolate=False))
+    return turns[np.isfinite(turns)]  # NaN: the same from there to the next node
 
 
 def _stops(body: UnitPuck, u: FloatArray) -> FloatArray:
     """T, X, Y, Θ at u (n,), (n, 4)."""
-    heights = np.full(u.size, body.delta)
+    heights, unit = np.full(u.size, body.delta), direction(u)[0]
     if body.is_plain:
-        return integrated_stops(u, heights, NO_SECTION, _PLAIN_LOCAL, cosine_of(u))[:, _OF_STOPS]
+        return integrated_stops(u, heights, NO_SECTION, _PLAIN_LOCAL, unit)[:, _OF_STOPS]
     section = body.friction(SECTION_ACCURACY).for_motion(body.gyration)
-    return integrated_stops(u, heights, section, _LOCAL, cosine_of(u))[:, _OF_STOPS]
+    return integrated_stops(u, heights, section, _LOCAL, unit)[:, _OF_STOPS]
 
 
 def _logs(u: FloatArray, stops: FloatArray) -> tuple[FloatArray, ...]:
@@ -322,12 +315,6 @@ def _logs(u: FloatArray, stops: FloatArray) -> tuple[FloatArray, ...]:
     )  # fmt: skip
 
 
-def cosine_of(u: FloatArray) -> FloatArray:
-    """Cos φ from u = ln tan φ."""
-    cosine: FloatArray = np.exp(-np.maximum(u, 0.0)) / np.sqrt(1.0 + np.exp(-2.0 * np.abs(u)))
-    return cosine
-
-
 def _values(body: UnitPuck, u: FloatArray) -> FloatArray:
     return np.column_stack(_logs(u, _stops(body, u))[:BEND])
 
@@ -340,12 +327,12 @@ def _with_slopes(body: UnitPuck, u: FloatArray) -> tuple[FloatArray, FloatArray]
     inverse, across, spin = body.friction(SECTION_ACCURACY).ratios(np.arctan(np.exp(u))).T
     along = 1.0 / inverse
     turning = 0.5 / body.inertia * spin * along
-    cosine, size2 = cosine_of(u), x * x + y * y
+    (cosine, sine), size2 = direction(u), x * x + y * y
     common = 0.5 * cosine * x / size2
     gap = along - turning
     gap[np.abs(gap) < _NEAR_LIMIT] = np.nan
-    swung = cosine_of(-u) * across * along + cosine * y / size2
-    fading = 2.0 * common - cosine_of(-u) / turn
+    swung = sine * across * along + cosine * y / size2
+    fading = 2.0 * common - sine / turn
     raw = np.column_stack([common - along, common - turning, common - 1.0 / time, fading, swung])
     return values, raw / gap[:, None]
 

@@ -8,11 +8,9 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel, patience, weighted_rows
 from puck_tables.stopping.stop_jacobian import Numbers, direction
 
-# what is differentiated
-STATE_X, STATE_Y, STATE_TURNED, STATE_VX, STATE_VY, STATE_SPIN = range(6)
 STATES, STATE_COLUMNS = 6, 7  # what is differentiated, and by how many: the launch and time
 OWN_STATES = STATES * 6  # of each: itself; by v, v across, rω, δ, time
-PLACED_STATES = STATES * STATE_COLUMNS
+PLACED_STATES = STATES * STATE_COLUMNS  # of each: by vx, vy, ω, δ, J, r, time
 
 
 @inlined

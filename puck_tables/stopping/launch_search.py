@@ -18,6 +18,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
+from puck_tables.motion.frame import direction
 from puck_tables.motion.friction_source import source_of
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.stopping.aim_lookup import BEND, RIM, SPEED, TIME, TURN  # two are bounded
@@ -27,7 +28,6 @@ from puck_tables.stopping.launch_family import (
     SECTION_ACCURACY,
     SLIDE_ROW,
     LaunchFamily,
-    cosine_of,
     launch_family_of,
 )
 
@@ -361,7 +361,7 @@ def misses(
         rim = np.log(np.abs(turning)) + math.log(puck.radius)
     u = rim - speed
     heights = np.full(u.size, puck.delta)
-    stops = integrated_stops(u, heights, cut, _CHECK_LOCAL, cosine_of(u), threads)
+    stops = integrated_stops(u, heights, cut, _CHECK_LOCAL, direction(u)[0], threads)
     log_q = np.maximum(speed, rim) + 0.5 * np.log1p(np.exp(-2.0 * np.abs(u)))
     way = stops[:, 1] + 1j * np.copysign(1.0, turning) * stops[:, 2]
     # logarithms: Q²/J may be far larger than the distance

@@ -47,7 +47,7 @@ def all_looked_up(
             pucks, _ = table.fill_pucks(PUCK_ROWS, launches, first, last)
             bad.append(fill_states_at(pucks, which, moments, first, last, splines, out))
             if slopes is not None:
-                _fill_slopes(table, pucks, which, moments, out, slopes, first, last, threads=1)
+                fill_state_slopes(table, pucks, which, moments, out, slopes, 1, first, last)
             out[HEADING, first:last] += directions(pucks[0], pucks[1])
 
     in_chunks(work, moments.size, threads)
@@ -58,26 +58,19 @@ def all_looked_up(
 
 def fill_state_slopes(
     table: StopTable, pucks: FloatArray, which: npt.NDArray[np.int64], moments: FloatArray,
-    result: FloatArray, out: FloatArray, threads: int | None = None,
+    result: FloatArray, out: FloatArray, threads: int | None = None, begin: int = 0, end: int = -1,
 ) -> None:  # fmt: skip
     """Derivatives of states ``result`` (6, n) of plain ``pucks`` (20, m) into ``out`` (n, 6, 7).
 
     Those that :func:`puck_tables.stopping.state_values.looked_up` found at ``moments`` (n,);
-    ``which``: (n,), (1,), or (0,), where each puck has one moment.
+    ``which``: (n,), (1,), or (0,), where each puck has one moment.  From ``begin`` to ``end``,
+    −1 the last, alone; where ``which`` is (0,) pucks begin there, too.
     """
-    seen = np.ascontiguousarray(result)
-    _fill_slopes(table, pucks, which, moments, seen, out, 0, moments.size, threads)
-
-
-def _fill_slopes(
-    table: StopTable, pucks: FloatArray, which: npt.NDArray[np.int64], moments: FloatArray,
-    result: FloatArray, out: FloatArray, begin: int, end: int, threads: int | None,
-) -> None:  # fmt: skip
-    """Derivatives from ``begin`` to ``end``; where ``which`` is (0,) pucks begin there, too."""
     from puck_tables.stopping.state_jacobian import fill_state_jacobians
     from puck_tables.stopping.stop_jacobian import is_streamed
 
     generic, pure, slopes = pucks, _pure(pucks), table.slopes
+    end = moments.size if end < 0 else end
     if pure is not None:
         moments, out = moments[begin:end], out[begin:end]
         generic, result = _away_from_pure(table, pucks, pure, which, moments, result[:, begin:end])

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.doubts import question
+from puck_tables._core.doubts import OF_A_PUCK, question
 from puck_tables._core.real import finite_array
 from puck_tables.bulk.spreads import Spread
 from puck_tables.contact.laws import Law
@@ -237,7 +237,8 @@ def _values(
         values[name] = finite_array(name, value, unit)
         refuse_outside(name, values[name], name)
         if (given := values[name]).size:
-            question(name, max(given.min().item(), given.max().item(), key=abs), unit)
+            usual = OF_A_PUCK if name in ("radius", "height") else 0.0
+            question(name, max(given.min().item(), given.max().item(), key=abs), unit, usual)
     return values, {"pressure": ()}, result
 
 

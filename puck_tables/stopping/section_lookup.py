@@ -12,10 +12,9 @@ from puck_tables.kernels.compile import inlined, look_up, patience, weighted_row
 from puck_tables.kernels.section_spline import HEADER, section_place
 from puck_tables.kernels.spline import basis
 from puck_tables.stopping.lookup import LARGEST, SMALLEST
-from puck_tables.stopping.stop_jacobian import LAUNCH_COLUMNS, OWN, STOP_ROWS, placed_stop
+from puck_tables.stopping.stop_jacobian import OWN
 
 _FUNCTIONS = 6  # outputs of a stop
-_OUT = STOP_ROWS * LAUNCH_COLUMNS  # derivatives of a stop
 _LOWEST = 1e-290  # below, a ratio of speeds loses digits: both are raised by a power of two
 
 
@@ -71,28 +70,23 @@ def fill_section_stops(
 
 
 @look_up
-def fill_section_jacobians(
-    launches: FloatArray, section: FloatArray, good: npt.NDArray[np.bool_], out: FloatArray,
-    left: npt.NDArray[np.bool_],
+def fill_section_slopes(
+    speed: FloatArray, rim: FloatArray, section: FloatArray, good: npt.NDArray[np.bool_],
+    out: FloatArray, left: npt.NDArray[np.bool_],
 ) -> None:  # fmt: skip
-    """Derivatives (n, 5, 6) of the stops of launches (6, n), none at rest, by splines.
+    """Natural derivatives (n, 5, 4) of stops at v and r|ω| (n,), not both 0, by splines.
 
     ``section`` holds the functions of :mod:`puck_tables.stopping.slope_section`, ``good`` says in
     which cells they are good; ``left`` (n,): which launches are in others, and left out.
     """
-    patience(launches.shape[1])
+    patience(speed.size)
     flat, numbers = section.reshape(-1), out.reshape(-1)
-    for n in range(launches.shape[1]):
+    for n in range(speed.size):
         patience(1)
-        vx, vy, spin, radius = launches[0, n], launches[1, n], launches[2, n], launches[5, n]
-        speed, rim = math.hypot(vx, vy), abs(radius * spin)
-        slip = math.hypot(speed, rim)
-        side, i, place = _place(speed, rim, section, OWN)
+        side, i, place = _place(speed[n], rim[n], section, OWN)
         # a node is good whatever lies between
         left[n] = place > 0.0 and not good[side, (i - HEADER) // OWN]
-        if left[n]:
-            continue
-        own = weighted_rows(flat, side * section.shape[1] + i, basis(place), OWN)
-        placed = placed_stop(vx, vy, spin, launches[4, n], radius, speed, slip, own)
-        for k in range(_OUT):
-            numbers[_OUT * n + k] = placed[k]
+        if not left[n]:
+            own = weighted_rows(flat, side * section.shape[1] + i, basis(place), OWN)
+            for k in range(OWN):
+                numbers[OWN * n + k] = own[k]

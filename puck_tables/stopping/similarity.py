@@ -28,6 +28,7 @@ from numpy.polynomial import chebyshev
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.closed_form import shape_integrals
+from puck_tables.contact.laws import law_of, limit_ratio
 from puck_tables.stopping.axes import SlipAxis, ratio_at
 
 # half width in u of the neighbourhood of u₀ that is treated by polynomials, and their degree: both
@@ -99,24 +100,12 @@ def limits(delta: float) -> Limits:
     return _near_limit(delta)[0]
 
 
-def _limit(delta: float) -> float:
-    """U₀ = ln tan φ₀, the only zero of ρ, by bisection.
-
-    As :func:`puck_tables.motion.limits.limit_log_ratio`, which would have to be compiled first.
-    """
-    low, high = -40.0, 40.0
-    while low < (middle := 0.5 * (low + high)) < high:
-        below = rates(np.array(middle), delta)[0] > 0.0
-        low, high = (middle, high) if below else (low, middle)
-    return middle
-
-
 def _near_limit(delta: float) -> tuple[Limits, Any, Any]:
     """The constants, and next to u₀ the regular parts of dlnQ/du and dψ/du as Chebyshev series.
 
     ρ and h − h₀ vanish at u₀; dividing their series by u − u₀ loses no digits.
     """
-    u0 = _limit(delta)
+    u0 = math.log(limit_ratio(law_of("uniform"), delta))
 
     def at(x: FloatArray) -> FloatArray:
         return u0 + _NEAR_LIMIT * x

@@ -20,8 +20,8 @@ from puck_tables._core.executor import run_chunks
 from puck_tables.motion.body import UnitPuck
 from puck_tables.stopping.variational import unit_stops, variations_of
 from puck_tables.table.singular_lines import lines_of
-from puck_tables.table.slip_axis import graded, sides_of
-from puck_tables.table.slip_spline import SlipSpline
+from puck_tables.table.slip_axis import sides_of
+from puck_tables.table.slip_spline import refinements
 
 MANY = 3000  # launches of one height from which on splines cost less than integrating each
 SPLINE_ERROR = 3e-8  # of Q, J, r: a third of what derivatives are promised to
@@ -34,7 +34,7 @@ _CHUNK = 1 << 13  # launches that a thread takes at once
 class SlopeSection(NamedTuple):
     """Twenty functions of φ, and in which cells (sides, cells) they are good.
 
-    Time, along, to the left, path, body angle, by four columns of
+    Time, along, to the left, path, body angle, by the four columns of
     :func:`puck_tables.stopping.variational.unit_stops` each.
     """
 
@@ -48,30 +48,20 @@ def slope_section(body: UnitPuck) -> SlopeSection:
 
     Notes
     -----
-    The error is measured in the middles of all cells, as in
-    :func:`puck_tables.table.slip_spline.slip_spline`.
+    The error is measured in the middles of all cells.
     """
     friction = variations_of(body)
     sides = sides_of(lines_of(body.law, body.delta)[::-1], ends_too=True)
 
-    def at(xi: FloatArray) -> FloatArray:
-        phi = graded(sides, xi).ravel()
+    def at(phi: FloatArray) -> FloatArray:
         cosine = np.where(phi >= 0.5 * np.pi, 0.0, np.cos(phi))
-        return unit_stops(friction, cosine, np.sin(phi))[:, :, :4].reshape(len(sides), xi.size, -1)
+        return unit_stops(friction, cosine, np.sin(phi)).reshape(phi.size, -1)
 
-    cells = _COARSEST_CELLS
-    values = at(np.arange(cells + 1) / cells)
-    while True:
-        spline = SlipSpline(sides, values, False)
-        xi = (np.arange(cells) + 0.5) / cells
-        between = at(xi)
-        guess = spline.at(graded(sides, xi).ravel()).reshape(between.shape)
-        good = np.abs(guess - between).max(axis=2) <= SPLINE_ERROR
-        if good[:, xi > _NEAR].all() or 2 * cells > _FINEST_CELLS:
-            return SlopeSection(spline.coefficients, good)
-        finer = np.empty((len(sides), 2 * cells + 1, values.shape[2]))
-        finer[:, ::2], finer[:, 1::2] = values, between
-        values, cells = finer, 2 * cells
+    for spline, xi, off in refinements(at, sides, False, _COARSEST_CELLS, _FINEST_CELLS):
+        found = SlopeSection(spline.coefficients, off.max(axis=2) <= SPLINE_ERROR)
+        if found.good[:, xi > _NEAR].all():
+            break
+    return found
 
 
 def stop_slopes_of(body: UnitPuck, launches: FloatArray, threads: int | None = None) -> FloatArray:
@@ -85,26 +75,29 @@ def stop_slopes_of(body: UnitPuck, launches: FloatArray, threads: int | None = N
     >>> result[0, 1].round(6).tolist()  # x of a slide: v²/2J
     [1.0, 0.0, 0.0, 0.0, -0.5, 0.0]
     """
-    from puck_tables.stopping.section_lookup import fill_section_jacobians
+    from puck_tables.stopping.section_lookup import fill_section_slopes
     from puck_tables.stopping.stop_jacobian import fill_placed_stops
 
     count, friction = launches.shape[1], variations_of(body)
-    out, left = np.empty((count, 5, 6)), np.ones(count, np.bool_)
+    own, left = np.empty((count, 5, 4)), np.ones(count, np.bool_)
     speed, rim = np.hypot(launches[0], launches[1]), np.abs(launches[5] * launches[2])
     friction.refuse_limit(speed, rim)
     if count >= MANY and not friction.limits:
         section = slope_section(body)
 
         def work(start: int, stop: int) -> None:
-            some = np.ascontiguousarray(launches[:, start:stop])
-            fill_section_jacobians(some, *section, out[start:stop], left[start:stop])
+            part = slice(start, stop)
+            fill_section_slopes(speed[part], rim[part], *section, own[part], left[part])
 
         run_chunks(work, count, _CHUNK, threads)
     if left.any():
-        some = np.ascontiguousarray(launches[:, left])
         slip = np.hypot(speed, rim)[left]
-        own = unit_stops(friction, speed[left] / slip, rim[left] / slip)
-        part = np.empty((some.shape[1], 5, 6))
-        fill_placed_stops(some, np.ascontiguousarray(own[:, :, :4]), part)
-        out[left] = part
+        own[left] = unit_stops(friction, speed[left] / slip, rim[left] / slip)
+    out = np.empty((count, 5, 6))
+
+    def place(start: int, stop: int) -> None:
+        some = np.ascontiguousarray(launches[:, start:stop])
+        fill_placed_stops(some, own[start:stop], out[start:stop])
+
+    run_chunks(place, count, _CHUNK, threads)
     return out

@@ -17,7 +17,7 @@ from puck_tables.motion.friction_source import source_of
 from puck_tables.motion.limits import regime_of
 from puck_tables.motion.state import STATE_ROWS, T
 from puck_tables.motion.unit_motion import solve
-from puck_tables.stopping.launch_arrays import CHUNK, in_chunks, launches_in
+from puck_tables.stopping.launch_arrays import in_chunks
 from puck_tables.stopping.stop_table import StopTable
 
 TOL = 1e-9  # of Q/J, Q²/J, as a look-up of plain pucks is good to
@@ -39,13 +39,6 @@ def directions(vx: FloatArray, vy: FloatArray) -> FloatArray:
     return result
 
 
-def looked_up_launches(
-    table: StopTable, launches: FloatArray, threads: int | None = None
-) -> FloatArray:
-    """Launches (6, m) of plain pucks beside what the table knows of them, (20, m)."""
-    return table.pucks(launches_in(launches), threads)
-
-
 def looked_up(
     table: StopTable, pucks: FloatArray, which: npt.NDArray[np.int64], moments: FloatArray,
     threads: int | None = None,
@@ -54,14 +47,11 @@ def looked_up(
     from puck_tables.stopping.state_lookup import fill_states_at
 
     out, splines, bad = np.empty((STATE_ROWS, moments.size)), table.state_coefficients, [0]
-    if moments.size <= CHUNK:
-        bad.append(fill_states_at(pucks, which, moments, 0, moments.size, splines, out))
-    else:
 
-        def work(start: int, stop: int) -> None:
-            bad.append(fill_states_at(pucks, which, moments, start, stop, splines, out))
+    def work(start: int, stop: int) -> None:
+        bad.append(fill_states_at(pucks, which, moments, start, stop, splines, out))
 
-        in_chunks(work, moments.size, threads)
+    in_chunks(work, moments.size, threads)
     if any(bad):
         refuse_times(moments)
     return out

@@ -25,14 +25,13 @@ from puck_tables.stopping.jacobian import (
     Differentiated,
     integrated_jacobians,
 )
-from puck_tables.stopping.launch_arrays import TOO_LARGE, Launches, fits, launches_of
+from puck_tables.stopping.launch_arrays import TOO_LARGE, Launches, fits, launches_in, launches_of
 from puck_tables.stopping.per_height import refuse_many
 from puck_tables.stopping.plain_states import all_looked_up, fill_state_slopes
 from puck_tables.stopping.state_values import (
     directions,
     integrate,
     looked_up,
-    looked_up_launches,
     refuse_times,
 )
 from puck_tables.stopping.stop_table import StopTable
@@ -256,7 +255,7 @@ def states(
         longest = max((body.longest for body in bodies.values()), default=2.0)
         if not fits(rows, longest).all():
             raise InputError(TOO_LARGE)
-        pucks = looked_up_launches(chosen, rows[:, plain], threads)
+        pucks = chosen.pucks(launches_in(rows[:, plain]), threads)
         found = np.empty((STATE_ROWS, moments.size))
         looked, others = plain[each], np.flatnonzero(~plain)
         number = np.cumsum(plain) - 1  # of a plain puck among such

@@ -29,11 +29,13 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import run_chunks
 from puck_tables.contact import quadrature
 from puck_tables.contact.integrals import slip_direction
+from puck_tables.contact.laws import law_of
 from puck_tables.contact.resultants import moment_balance
 from puck_tables.kernels.spline import basis
+from puck_tables.motion.frame import direction
 from puck_tables.motion.limits import limit_ratio
 from puck_tables.stopping.axes import HEIGHTS, SlipAxis, heights, ratio_at
-from puck_tables.stopping.exact import end_values, exact_stops
+from puck_tables.stopping.exact import exact_stops
 from puck_tables.stopping.launch_arrays import launches_in
 from puck_tables.stopping.similarity import limits, regular_parts
 from puck_tables.stopping.similarity_lookup import (
@@ -48,10 +50,12 @@ from puck_tables.stopping.similarity_lookup import (
     TURN_FUNCTION,
     TURNING,
 )
+from puck_tables.stopping.stop_section import end_values
 from puck_tables.stopping.stop_values import STOPS, StopValues
 from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import Goal, built
 from puck_tables.table.check import Check, CheckReport, compared
+from puck_tables.table.friction_section import friction_ratios
 from puck_tables.table.table import Progress
 
 _GOAL = Goal(1e-10, 1e-11, "in units of Q/(f g) and Q^2/(f g)", 0.62, 1 << 12)
@@ -95,12 +99,8 @@ def launch_points(
 
 def launches_at(u: FloatArray, delta: FloatArray) -> FloatArray:
     """Launches (6, n) along x with Q = J = r = 1."""
-    k = np.exp(-np.abs(u))
-    large = 1.0 / np.hypot(1.0, k)
-    one = np.ones_like(k)
-    cosine = np.where(u > 0.0, k, 1.0) * large
-    sine = np.where(u > 0.0, 1.0, k) * large
-    return np.stack([cosine, 0.0 * k, sine, delta, one, one])
+    (cosine, sine), one = direction(u), np.ones_like(u)
+    return np.stack([cosine, 0.0 * one, sine, delta, one, one])
 
 
 def looked_up(table: StopValues, u: FloatArray, delta: FloatArray) -> FloatArray:
@@ -149,17 +149,16 @@ def tabulate(kind: type[K], axis: SlipAxis, progress: Progress | None = None) ->
     run_chunks(work, u.size, _CHUNK, None, progress)
     shaped = stops.reshape(inner.size, HEIGHTS, 5)
     values = np.empty((axis.size, HEIGHTS, len(StopValues.functions)))
-    large = 1.0 / np.hypot(1.0, np.exp(-np.abs(inner)))
-    small = large * np.exp(-np.abs(inner))
-    cosine = np.where(inner > 0.0, small, large)[:, None]
-    sine = np.where(inner > 0.0, large, small)[:, None]
+    cosine, sine = direction(inner[:, None])
     values[1:-1, :, 0] = shaped[:, :, 0]
     values[1:-1, :, 1] = shaped[:, :, 1] / cosine
     values[1:-1, :, 2] = shaped[:, :, 2] / (delta * sine * cosine)
     values[1:-1, :, 3] = shaped[:, :, 3] / cosine
     values[1:-1, :, 4] = shaped[:, :, 4] / sine
-    values[[0, -1], :, :5] = np.stack(end_values(delta))
+    law, ends = law_of("uniform"), np.array([0.0, 0.5 * np.pi])
     for j, one in enumerate(delta):
+        at_ends = end_values(friction_ratios(law, ends, float(one)), 0.5)[:, :STOPS]
+        values[[0, -1], j, :STOPS] = at_ends / [1.0, 1.0, one, 1.0, 1.0]
         parts = regular_parts(axis, float(one))
         values[:, j, 5] = limits(float(one)).kappa * parts[:, 0]
         values[:, j, 6] = parts[:, 1] / one

@@ -47,10 +47,7 @@ from puck_tables.stopping.launch_arrays import (
 from puck_tables.stopping.lookup import EDGE, FIRST, INSIDE, PLACED, SLIP, SPEED, place_block
 from puck_tables.stopping.slopes import STOP_FUNCTIONS, STOP_POWERS, STOP_WIDTH
 
-# what is differentiated, and by what; rows of arrays
-TIME, STOP_X, STOP_Y, LENGTH, BODY = range(5)
-STOP_ROWS = 5  # time, x, y, path, body angle
-BY_VX, BY_VY, BY_SPIN, BY_DELTA, BY_DECEL, BY_RADIUS, BY_TIME = range(7)
+STOP_ROWS = 5  # what is differentiated: time, x, y, path, body angle
 LAUNCH_COLUMNS = 6  # vx, vy, ω, δ, J, r
 
 # what a place on the curve says of a stop: five functions, D of each, and derivatives by δ
@@ -58,8 +55,7 @@ T, ALONG, ACROSS, TURNED, WAY = range(STOP_FUNCTIONS)
 D, BY_HEIGHT = STOP_FUNCTIONS, 2 * STOP_FUNCTIONS
 STOP_FOUND = 3 * STOP_FUNCTIONS
 # of a stop in the frame of its launch: value, by v, by a, by δ; J = 1
-BY_SPEED, BY_RIM, BY_TILT = 1, 2, 3
-OWN_COLUMNS = 4  # itself, and the three above
+OWN_COLUMNS = 4  # of such a row: the four above
 OWN = STOP_ROWS * OWN_COLUMNS
 STOP_ROW = STOP_POWERS * STOP_WIDTH
 _OUT = STOP_ROWS * LAUNCH_COLUMNS

@@ -253,18 +253,23 @@ def stops_at(
         u, np.full(u.size, body.delta), section, min(0.03 * accuracy, LOOSEST_LOCAL)
     )
     out[inner] = stops / _factors(phi[inner])
-    out[at_zero], out[at_half] = _ends(body, friction.at_ends())
+    out[at_zero], out[at_half] = end_values(friction.at_ends(), body.inertia)
     return out
 
 
-def _ends(body: UnitPuck, ratios: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """The functions at φ → 0 and φ → π/2, elementary, from the friction ratios there (2, 3).
+def end_values(ratios: FloatArray, inertia: float) -> FloatArray:
+    """The functions at φ → 0 and φ → π/2 (2, 6), elementary, from the friction ratios there (2, 3).
 
     Next to pure sliding v falls like t₀ − t and rω like its power σ(0); next to pure spin rω falls
     linearly and the complex velocity like its power (ρ_∥ + iρ_⊥)/s, s = (r²/2k²) ρ_ω.
+
+    Examples
+    --------
+    >>> end_values(np.array([[1.0, 0.0, 0.5], [1.0, 0.0, 4.0 / 3.0]]), 0.5)[1, :3].round(6).tolist()
+    [0.75, 0.428571, -0.0]
     """
     (inverse, across, spin), (inverse_h, across_h, spin_h) = ratios
-    factor = 0.5 / body.inertia
+    factor = 0.5 / inertia
     left, power = across / inverse, factor * spin
     log_share = math.log(TURN_SHARE)
     gap = power - 1.0
@@ -278,4 +283,4 @@ def _ends(body: UnitPuck, ratios: FloatArray) -> tuple[FloatArray, FloatArray]:
         1.0 / rate, (rate + along) / modulus, -left / modulus, 1.0 / (rate + along), 0.5 / rate,
         left / rate * log_share,
     ]  # fmt: skip
-    return np.array(slow), np.array(fast)
+    return np.array([slow, fast])

@@ -23,6 +23,7 @@ from puck_tables._core.executor import run_chunks
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.section_spline import LINE
 from puck_tables.motion.body import UnitPuck
+from puck_tables.motion.frame import direction
 from puck_tables.motion.path import STOPPED, integrate
 from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, T, U, X, Y
 from puck_tables.motion.tableaus import DORMAND_PRINCE
@@ -93,16 +94,16 @@ def unit_stops(friction: Variations, cosine: FloatArray, sine: FloatArray) -> Fl
 
     Returns
     -------
-    array (n, 5, 5)
+    array (n, 5, 4)
         Rows: time, along, to the left, path, body angle.  Columns: itself, for along and left over
-        v; by v, rω, δ, k/r.
+        v; by v, rω, δ.
 
     Examples
     --------
     >>> from puck_tables.motion.body import body_of
     >>> friction = variations_of(body_of("ring", 0.5, 1.0))
     >>> (unit_stops(friction, np.array([1.0]), np.array([0.0]))[0, 0].round(6) + 0.0).tolist()
-    [1.0, 1.0, 0.0, 0.0, 0.0]
+    [1.0, 1.0, 0.0, 0.0]
     """
     from puck_tables.motion.variation import KEPT, VARIED, fill_stop_variations
 
@@ -120,18 +121,18 @@ def unit_stops(friction: Variations, cosine: FloatArray, sine: FloatArray) -> Fl
     run_chunks(work, u.size, _CHUNK)
     found = rows.reshape(u.size, -1, KEPT)[:, :, _STOP]
     value, by_u = found[:, 0], found[:, 1]
-    out = np.empty((u.size, 5, 5))
+    out = np.empty((u.size, 5, 4))
     out[:, :, 0] = value
     out[:, 1:3, 0] /= c[:, None]
     out[:, :, 1] = _POWERS * c[:, None] * value - by_u / c[:, None]
     out[:, :, 2] = _POWERS * s[:, None] * value + by_u / s[:, None]
-    out[:, :, 3], out[:, :, 4] = found[:, 2], found[:, 3]
+    out[:, :, 3] = found[:, 2]
     return out
 
 
 def unit_states(
     friction: Variations, cosine: float, sine: float, times: FloatArray, local: float = LOCAL
-) -> tuple[FloatArray, FloatArray]:
+) -> FloatArray:
     """States of one launch with Q = J = r = 1 at times, and their derivatives.
 
     Parameters
@@ -143,8 +144,8 @@ def unit_states(
 
     Returns
     -------
-    array (n, 6, 6), array (n, 6)
-        Of x, y, body angle, vx, vy, rω: themselves; by v, v across, rω, δ, time; and by k/r.
+    array (n, 6, 6)
+        Of x, y, body angle, vx, vy, rω: themselves; by v, v across, rω, δ, time.
     """
     from puck_tables.motion.variation import BLOCKS, KEPT, VARIED, fill_state_variations, vary
 
@@ -166,10 +167,10 @@ def unit_states(
     fill_state_variations(
         moments, which, ends, path, stop, DORMAND_PRINCE, friction.slopes, rows, rates
     )
-    out, by_gyration = np.zeros((times.size, 6, 6)), np.zeros((times.size, 6))
+    out = np.zeros((times.size, 6, 6))
     at_rest = stop.reshape(BLOCKS, KEPT)
     values, slopes = _physical(at_rest[None], np.zeros(1))
-    out[~moving], by_gyration[~moving] = _by_launch(values, slopes, None, times[~moving], c, s)
+    out[~moving] = _by_launch(values, slopes, None, times[~moving], c, s)
     if moving.any():
         q = (1.0 - moments) ** 4
         blocks = rows.reshape(-1, BLOCKS, KEPT)
@@ -180,8 +181,8 @@ def unit_states(
         by_z = np.stack([onward[:, X], onward[:, Y], onward[:, THETA], *motion], axis=-1)
         by_time = by_z / onward[:, T, None]
         slopes = slopes - by_time[:, None, :] * blocks[:, 1:, T, None]  # at the same time
-        out[moving], by_gyration[moving] = _by_launch(values, slopes, by_time, times[moving], c, s)
-    return out, by_gyration
+        out[moving] = _by_launch(values, slopes, by_time, times[moving], c, s)
+    return out
 
 
 def _moments(
@@ -189,23 +190,24 @@ def _moments(
 ) -> tuple[npt.NDArray[np.int64], FloatArray]:
     """The last step end before each time, and z there."""
     from puck_tables.motion.path import states_at
+    from puck_tables.motion.variation import KEPT
 
     which = np.searchsorted(path[:, T], times, side="right") - 1
     which = np.clip(which, 0, ends.size - 1)
     states = np.empty((ends.size, SIZE))
-    states[:, : path.shape[1] // 4] = path[:, : path.shape[1] // 4]
+    states[:, :KEPT] = path[:, :KEPT]
     states[:, SIZE - 1] = 0.0
     rest = np.zeros(SIZE + 1)
-    rest[:7] = stop[:7]
+    rest[:KEPT] = stop[:KEPT]
     q, y = np.empty(times.size), np.empty((times.size, SIZE))
     states_at(times, ends, states, rest, DORMAND_PRINCE, friction.ratios, friction.delta, q, y)
     return which, 1.0 - np.maximum(q, _LEAST_SHARE) ** 0.25
 
 
 def _physical(blocks: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """x, y, body angle, vx, vy, rω (n, 6), and their variations (n, 3, 6), at the same z."""
+    """x, y, body angle, vx, vy, rω (n, 6), and their variations (n, 2, 6), at the same z."""
     own = blocks[:, 0]
-    cosine, sine, heading = _directions(own)
+    (cosine, sine), heading = direction(own[:, U]), own[:, PSI]
     value = np.stack([
         own[:, X], own[:, Y], own[:, THETA], q * cosine * np.cos(heading),
         q * cosine * np.sin(heading), q * sine,
@@ -218,18 +220,11 @@ def _physical(blocks: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray
     return value, np.stack(slopes, axis=1)
 
 
-def _directions(own: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    u = own[:, U]
-    k = np.exp(-np.abs(u))
-    large = 1.0 / np.sqrt(1.0 + k * k)
-    return np.where(u > 0.0, k * large, large), np.where(u > 0.0, large, k * large), own[:, PSI]
-
-
 def _velocity_slopes(
     own: FloatArray, du: FloatArray, turn: FloatArray, q: FloatArray, log_q: FloatArray | float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Changes of vx, vy, rω from those of u, of the heading and of ln Q."""
-    cosine, sine, heading = _directions(own)
+    (cosine, sine), heading = direction(own[:, U]), own[:, PSI]
     ahead = q * cosine * (log_q - sine**2 * du)
     aside = q * cosine * turn
     return (
@@ -242,7 +237,7 @@ def _velocity_slopes(
 def _by_launch(
     value: FloatArray, slopes: FloatArray, by_time: FloatArray | None, times: FloatArray,
     c: float, s: float,
-) -> tuple[FloatArray, FloatArray]:  # fmt: skip
+) -> FloatArray:  # fmt: skip
     """Values (n, 6) and their derivatives as :func:`unit_states` has them."""
     out = np.zeros((times.size, 6, 6))
     rate = np.zeros((times.size, 6)) if by_time is None else by_time
@@ -254,4 +249,4 @@ def _by_launch(
     out[:, :, 4] = slopes[:, 1]
     for row in (0, 3):  # across the launch velocity everything turns
         out[:, row, 2], out[:, row + 1, 2] = -value[:, row + 1] / c, value[:, row] / c
-    return out, np.broadcast_to(slopes[:, 2], (times.size, 6))
+    return out

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables._core.lazy import report_of
 
 
 @dataclass(frozen=True)
@@ -34,11 +35,19 @@ class Check:
 
 @dataclass(frozen=True)
 class CheckReport:
-    """All checks of one table."""
+    """All checks of one table.
+
+    ``second``: what its second axis is, in words.
+    """
 
     source: str
     tolerance: float
     checks: tuple[Check, ...]
+    second: str = "delta"
+
+    def __str__(self) -> str:
+        """Every check, as ``puck validate`` prints them."""
+        return report_of(self)
 
     @property
     def passed(self) -> bool:
@@ -89,7 +98,7 @@ class Route(NamedTuple):
 
 def judged(
     source: str, tolerance: float, routes: Sequence[Route],
-    progress: Callable[[int, int], None] | None = None,
+    progress: Callable[[int, int], None] | None = None, second: str = "delta",
 ) -> CheckReport:  # fmt: skip
     """The report of a table by all these routes, one after the other.
 
@@ -106,4 +115,4 @@ def judged(
         checks += compared(one.name, one.functions, errors, one.phi, one.second, one.allowed)
         if progress is not None:
             progress(done, len(routes))
-    return CheckReport(source, tolerance, tuple(checks))
+    return CheckReport(source, tolerance, tuple(checks), second)

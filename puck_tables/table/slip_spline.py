@@ -8,8 +8,8 @@ measure the error of one level, the functions in the middles of the cells, are n
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -147,26 +147,38 @@ def slip_spline(
     >>> found.cells, float(found.at(np.array([0.5]))[0, 0].round(6))
     (64, 0.770151)
     """
-    cells = COARSEST_CELLS
+    for spline, xi, off in refinements(functions, sides, even, COARSEST_CELLS, finest):
+        if weights is not None:
+            off *= _at(weights, sides, xi)
+        worst = float(off[..., counted].max())
+        if worst <= accuracy:
+            errors, phi = off.reshape(-1, off.shape[2]).T, graded(sides, xi).ravel()
+            return replace(spline, accuracy=Accuracy.of(errors, phi, 0.0 * phi, None))
+    raise AccuracyError(
+        f"an accuracy of {accuracy:.1g} is out of reach for this puck: {spline.cells} cells give "
+        f"{worst:.1e}; ask for less",
+        reachable=worst,
+    )
+
+
+def refinements(
+    functions: Functions, sides: tuple[Side, ...], even: bool, coarsest: int, finest: int
+) -> Iterator[tuple[SlipSpline, FloatArray, FloatArray]]:
+    """Splines of from ``coarsest`` to ``finest`` cells a side, doubled between.
+
+    With the ξ of the middles of their cells, and how far off the functions are there, (sides,
+    cells, functions).
+    """
+    cells = coarsest
     values = _at(functions, sides, np.arange(cells + 1) / cells)
     while True:
         spline = SlipSpline(sides, values, even)
         xi = (np.arange(cells) + 0.5) / cells
         between = _at(functions, sides, xi)
         guess = spline.at(graded(sides, xi).ravel()).reshape(between.shape)
-        off = np.abs(guess - between)
-        if weights is not None:
-            off *= _at(weights, sides, xi)
-        error = off.max(axis=(0, 1))
-        if error[counted].max() <= accuracy:
-            errors, phi = off.reshape(-1, off.shape[2]).T, graded(sides, xi).ravel()
-            return SlipSpline(sides, values, even, Accuracy.of(errors, phi, 0.0 * phi, None))
+        yield spline, xi, np.abs(guess - between)
         if 2 * cells > finest:
-            raise AccuracyError(
-                f"an accuracy of {accuracy:.1g} is out of reach for this puck: {cells} cells give "
-                f"{error[counted].max():.1e}; ask for less",
-                reachable=float(error[counted].max()),
-            )
+            return
         finer = np.empty((len(sides), 2 * cells + 1, values.shape[2]))
         finer[:, ::2], finer[:, 1::2] = values, between
         values, cells = finer, 2 * cells

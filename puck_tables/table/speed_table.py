@@ -333,7 +333,7 @@ class SpeedTable(Table):
                  np.minimum(fastest, self.top)),
                 ("in every patch", *self._in_every_patch(-(-points // len(self.patches)), rng)),
             )
-        ], progress)  # fmt: skip
+        ], progress, self.second)  # fmt: skip
 
     def _in_every_patch(
         self, count: int, rng: np.random.Generator

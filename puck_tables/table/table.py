@@ -86,6 +86,10 @@ class Table(ABC):
             f"to {self.tolerance:g}, {self.source}>"
         )
 
+    def __str__(self) -> str:
+        """What it holds and how good it is, as ``puck info`` prints it."""
+        return str(above("report of Table")(self))
+
     @classmethod
     def build(cls, of: Any = "uniform", accuracy: float | None = None, **how: Any) -> Self:
         """Tabulate, and measure how exact the result is.

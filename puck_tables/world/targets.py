@@ -195,8 +195,8 @@ def out_of_reach(scene: SceneSpec, target: Target, speed: float, spin: float) ->
     """Why no launch up to a speed and spin can exist, in words; '' where that is not known.
 
     Friction takes at least f m g times the way that the mean slip of the base goes, and that is no
-    shorter than (1 − δ²/4) of the way of the centre: 3/4 of it for a plain puck with δ ≤ 1.  No
-    impact gives energy.
+    shorter than (1 − δ²/4) of the way of the centre: 3/4 of it for a plain puck with δ ≤ 1, all of
+    it for a flat one on any base.  No impact gives energy.
     """
     pucks = pucks_of(scene)
     striker, puck = pucks[target.striker], pucks[target.puck]
@@ -205,7 +205,11 @@ def out_of_reach(scene: SceneSpec, target: Target, speed: float, spin: float) ->
         one.path or one.launch.velocity not in (None, (0.0, 0.0)) or one.launch.spin
         for one in others
     )
-    plain = all(has_closed_forms(one, one.friction) and one.delta <= 1.0 for one in (striker, puck))
+    plain = all(
+        one.height == 0.0 if one.shape is not None
+        else has_closed_forms(one, one.friction) and one.delta <= 1.0
+        for one in (striker, puck)
+    )  # fmt: skip
     pushed = scene.floor != Floor() or any(one.force != Force() for one in pucks)
     if not (at_rest and plain) or pushed:
         return ""

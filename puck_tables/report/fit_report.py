@@ -1,4 +1,4 @@
-"""What ``puck fit`` prints: what was found, in words and numbers."""
+"""What is told of a fit: what was found, in words and numbers."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from itertools import combinations
 from typing import TYPE_CHECKING
 
-from puck_tables.cli.printing import columns, listed
+from puck_tables.report.lines_and_tables import columns, listed
 
 if TYPE_CHECKING:
     from puck_tables.fitting.fit_result import Fit
@@ -146,9 +146,7 @@ def _shown(number: Number) -> str:
         return "not determined by these tracks"
     how = ", by profile likelihood" if number.profiled else ""
     follows = ", follows" if number.how == "follows" else ""
-    interval = ""
-    if math.isfinite(number.low) and math.isfinite(number.high):
-        interval = f"   95 %: {number.low:.6g} to {number.high:.6g}"
+    interval = f"   95 %: {number.interval}" if number.interval else ""
     return f"{number.written}{interval}{how}{follows}"
 
 

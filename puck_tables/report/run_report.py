@@ -1,4 +1,4 @@
-"""What ``puck simulate`` says of a run of a scene."""
+"""What is told of a run of a scene."""
 
 from __future__ import annotations
 
@@ -6,9 +6,8 @@ import math
 from dataclasses import is_dataclass
 from typing import TYPE_CHECKING, Any
 
-from puck_tables.cli.printing import columns, listed
-
 from puck_tables._core.fields import Unsaid
+from puck_tables.report.lines_and_tables import columns, listed
 
 if TYPE_CHECKING:
     from puck_tables.scene.run import Event, Run
