@@ -94,6 +94,21 @@ def _stop_creeping(
     return heat
 
 
+@inlined
+def _come_to_rest(
+    group: Group, members: IntArray, motions: IntArray, y: FloatArray, scales: Scales
+) -> bool:
+    """Put to rest whom the others have stopped; whether there are any."""
+    found = False
+    for place in range(members.shape[0]):
+        number = members[place]
+        small = slip_of(group, number, y[place]) <= STILL * scales.speed
+        if small and motions[place] == MOVES and can_rest(group, number):
+            motions[place], found = HELD, True
+            rest_on_floor(group, number, y[place])
+    return found
+
+
 @kernel
 def press(
     group: Group, members: IntArray, contacts: IntArray, states: FloatArray, t: float,
@@ -150,8 +165,9 @@ def press(
         look(group, members, pairs, y, buffer.sights)
         look_at_ties(group, members, t, y, buffer)
         for c in range(contacts.shape[0]):
-            slides = rim_mode(buffer.sights[c], scales.speed)
-            modes[c] = slides if slides != STICKS or buffer.sights[c, GRIP] == 0.0 else gives[c]
+            modes[c] = rim_mode(buffer.sights[c], scales.speed)
+            if modes[c] == STICKS:
+                modes[c] = gives[c]
             stopped[c] = STICKS
             if modes[c] != STICKS and buffer.sights[c, GRIP] == math.inf:
                 buffer.sights[c, GRIP], stopped[c] = (
@@ -179,12 +195,8 @@ def press(
         ledger[DRIVE_WORK] += heat + _energy(group, members, y) - before
         heat = _stop_creeping(group, members, contacts.shape[0], modes, y, scales, buffer)
         ledger[RIM_HEAT] += heat
-        for place in range(count if rounds < _CREEPS else 0):  # that may have stopped one
-            number = members[place]
-            small = slip_of(group, number, y[place]) <= STILL * scales.speed
-            if small and motions[place] == MOVES and can_rest(group, number):
-                motions[place], again = HELD, True
-                rest_on_floor(group, number, y[place])
+        if rounds < _CREEPS and _come_to_rest(group, members, motions, y, scales):
+            again = True
     goes = False
     for place in range(count):
         if motions[place] == YIELDS:

@@ -24,7 +24,7 @@ _LEAST = 1e-2  # and of the error of a step, in units of Q²/J
 _LASTING = 0.99  # of the rebound before, at most: so long is the next one taken to be
 _PRESSED = 1e-3  # of the scale of accelerations: what presses less brings no rebounds to an end
 _SLOW = 1e-6  # of the scale of speeds: an impact that only what pushes brings about
-_MOST_BACK = 64  # events
+MOST_BACK = 64  # events
 
 
 @inlined
@@ -96,7 +96,7 @@ def is_squeezed(
         if un <= 0.0 or since < t:
             continue
         early, last = t - _FLAT * engine.discs[i, RADIUS] / un, math.inf
-        for back in range(1, min(engine.counts[N_EVENTS], _MOST_BACK) + 1):
+        for back in range(1, min(engine.counts[N_EVENTS], MOST_BACK) + 1):
             event = engine.events[engine.counts[N_EVENTS] - back]
             if event[TIME] < early and since == math.inf:
                 break
@@ -110,7 +110,7 @@ def is_squeezed(
                 since, last = early, event[TIME]
     if since == math.inf:
         return False
-    for back in range(1, min(engine.counts[N_EVENTS], _MOST_BACK) + 1):
+    for back in range(1, min(engine.counts[N_EVENTS], MOST_BACK) + 1):
         event = engine.events[engine.counts[N_EVENTS] - back]
         if event[TIME] < since:
             break

@@ -18,7 +18,7 @@ from puck_tables.kernels.compile import inlined, inner, kernel, patience
 from puck_tables.scene.friction import SPIN, VX
 from puck_tables.world.bulk import own_engine
 from puck_tables.world.by_hand import lead
-from puck_tables.world.engine import MOST_BACK, NOBODY, advance
+from puck_tables.world.engine import NOBODY, advance
 from puck_tables.world.engine_state import (
     APPROACH,
     AT_X,
@@ -47,6 +47,7 @@ from puck_tables.world.lasting import GOES_ON, ROUND, moves_on, next_target, pre
 from puck_tables.world.layout import LIGHTNESS
 from puck_tables.world.passings import COLUMNS, FROM, LINE, NEXT, SIDE, UNKNOWN, find_passings
 from puck_tables.world.paths import FOR_EVER
+from puck_tables.world.rebounds import MOST_BACK
 from puck_tables.world.segment import (
     FIRST_PIECE,
     GONE,
