@@ -33,7 +33,6 @@ from puck_tables.world.multipliers import (
 )
 
 FORCE_N, FORCE_T, RATE_N, RATE_T, CAP = range(5)  # columns of a variable: see _write_variables
-VARIABLE = 5
 _LOST = 10.0  # of a slip, in units of the approach: the most that friction takes off it is as large
 _STEEPEST = 1e4  # friction that shows the modes of friction without bound
 _RAISED = 1e-8  # of the diagonal: of forces that do the same, those of equally stiff contacts
