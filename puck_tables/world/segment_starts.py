@@ -122,14 +122,17 @@ class Room(NamedTuple):
 
 
 def room_for(discs: int) -> Room:
-    """Room to work for so many discs: a disc touches six others at most of its size."""
-    contacts = 6 * discs + 16
+    """Room to work for so many discs: a disc touches six others at most of its size.
+
+    All together have 3 n − 6 contacts with each other at most, for these make a plane graph.
+    """
+    contacts, at_once = 6 * discs + 16, min(3 * discs + 16, _AT_ONCE)
     return Room(
         np.zeros((discs, 6)), np.zeros((discs, 6)), np.zeros(discs, np.int64),
         np.zeros(discs, np.int64), np.zeros((contacts, 2), np.int64),
         np.zeros((contacts, CONTACT_COLUMNS)), np.zeros(ROOM), np.zeros(6), np.zeros(6),
         np.zeros((BUFFER_ROWS, ROW)),
-        buffer_for(discs, min(contacts, _AT_ONCE), min(discs, _AT_ONCE)),
+        buffer_for(discs, at_once, min(discs, _AT_ONCE)),
     )  # fmt: skip
 
 
