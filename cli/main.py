@@ -36,6 +36,7 @@ from puck_tables.cli.tables import tables
 from puck_tables.cli.track import track
 from puck_tables.cli.tradeoff import tradeoff
 from puck_tables.cli.validate import validate
+from puck_tables.cli.values import questioned
 from puck_tables.cli.warm_up import warm_up
 
 from puck_tables._core.waiting import watchers
@@ -157,4 +158,6 @@ def main() -> None:
 
 for _commands in SECTIONS.values():
     for _command in _commands:
+        if _command.callback is not None:
+            _command.callback = questioned(_command.callback)
         main.add_command(_command)

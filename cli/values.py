@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import re
 from collections.abc import Callable, Iterable
@@ -13,6 +14,7 @@ from puck_tables.errors import InputError
 
 MAX_COUNT = 1_000_000_000  # values of a range
 MAX_TIMES = 10_000_000  # states of a run
+DOUBTS = "puck_tables.doubts"  # the numbers of a command to question, in the meta of its context
 
 
 class NumberParam(click.ParamType):
@@ -30,9 +32,8 @@ class NumberParam(click.ParamType):
     def numbers(self, parts: list[str], param: Any, ctx: Any) -> list[float]:
         """Finite numbers that stand beside each other, each with its unit or none of them.
 
-        One without a unit that is of a doubtful size is questioned.
+        One without a unit that is of a doubtful size is questioned at the end of the command.
         """
-        from puck_tables._core.doubts import question
         from puck_tables._core.units import (
             SHOWN,
             UNIT_EACH,
@@ -55,7 +56,8 @@ class NumberParam(click.ParamType):
             if not math.isfinite(numbers[-1]):
                 self.fail(f"'{text}' is not a finite number", param, ctx)
             if param is not None and quantity(text, self.unit) is None:
-                question(param.opts[0].strip("-"), numbers[-1], self.unit, self.usual)
+                what = param.opts[0].strip("-"), numbers[-1], self.unit, self.usual
+                ctx.meta.setdefault(DOUBTS, []).append(what)
         return numbers
 
 
@@ -114,6 +116,27 @@ class Times(NumberParam):
         if count > MAX_TIMES:
             self.fail(f"'{value}' asks for too many states: at most 1e7", param, ctx)
         return tuple(start + (stop - start) * i / (count - 1) for i in range(count))
+
+
+def questioned(run: Callable[..., Any]) -> Callable[..., Any]:
+    """A command that questions its numbers at its end; wrong usage is said alone."""
+
+    @functools.wraps(run)
+    def command(*args: Any, **named: Any) -> Any:
+        doubts = click.get_current_context().meta.pop(DOUBTS, [])
+        try:
+            return run(*args, **named)
+        except click.UsageError:
+            doubts = []
+            raise
+        finally:
+            if doubts:
+                from puck_tables._core.doubts import question
+
+                for one in doubts:
+                    question(*one)
+
+    return command
 
 
 def not_none(values: dict[str, Any]) -> dict[str, Any]:

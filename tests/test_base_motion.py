@@ -311,23 +311,32 @@ def test_friction_is_that_of_the_judge(seed: int):
         assert abs(found[2] - torque) < 1e-11 * judge.reach
 
 
+def keeps_its_tolerance(seed: int) -> None:
+    puck, velocity, spin = random_slide(seed)
+    truth = judge_of(puck).slide(velocity, spin, puck.decel)
+    q0 = math.hypot(*velocity, puck.gyration * spin)
+    time, length = q0 / puck.decel, q0 * q0 / puck.decel
+    assert puck.shape is not None
+    scale = np.array([time, length, length, length, length / puck.shape.reach])
+    for tol in (1e-3, 1e-6, 1e-9):
+        one = puck.stop(velocity, spin, tol=tol)
+        assert one.status == 0
+        found = [one.stop_time, *one.stop_position, one.path_length, one.body_angle]
+        off = np.abs(np.array(found) - truth) / scale
+        assert off.max() <= tol + JUDGED, (seed, puck, tol, off)
+
+
 @pytest.mark.thorough
 @pytest.mark.parametrize("block", few(1, range(50)))
 def test_every_slide_keeps_its_tolerance(block: int):
     """Blocks of twenty random slides: a thousand in all."""
     for seed in range(20 * block, 20 * (block + 1)):
-        puck, velocity, spin = random_slide(seed)
-        truth = judge_of(puck).slide(velocity, spin, puck.decel)
-        q0 = math.hypot(*velocity, puck.gyration * spin)
-        time, length = q0 / puck.decel, q0 * q0 / puck.decel
-        assert puck.shape is not None
-        scale = np.array([time, length, length, length, length / puck.shape.reach])
-        for tol in (1e-3, 1e-6, 1e-9):
-            one = puck.stop(velocity, spin, tol=tol)
-            assert one.status == 0
-            found = [one.stop_time, *one.stop_position, one.path_length, one.body_angle]
-            off = np.abs(np.array(found) - truth) / scale
-            assert off.max() <= tol + JUDGED, (seed, puck, tol, off)
+        keeps_its_tolerance(seed)
+
+
+def test_a_slide_of_a_flywheel_keeps_its_tolerance():
+    """It takes 22 Q/J: what steps err by has the time to grow."""
+    keeps_its_tolerance(545)
 
 
 @pytest.mark.parametrize(

@@ -158,3 +158,9 @@ def test_capitals_that_say_another_unit_are_refused(text: str):
 def test_grads_are_no_degrees():
     with pytest.raises(InputError, match="gradian"):
         Scene(pt.Puck(0.03), pt.Floor(slope="5Grad"))
+
+
+def test_wrong_usage_is_said_alone():
+    ended = CliRunner().invoke(main, ["simulate", "--mass", "2e48"])
+    assert ended.exit_code == 2 and "Missing option '--v0'" in ended.stderr
+    assert "beyond" not in ended.stderr
