@@ -90,8 +90,8 @@ def aim(
             ("--angle", wishes.get("angle"), "leave it out"),
         ):  # fmt: skip
             if value is not None:
-                where = "in a scene" if chosen else "with --base"
-                raise InputError(f"{name} has no place {where}: {instead}")
+                at = "in a scene" if chosen else "with --base"
+                raise InputError(f"{name} has no place {at}: {instead}")
         tables = scene_tables(ctx, chosen, ("targets", *wishes))
         out.prepare(*chosen.reads(tables))
         wishes |= {name: number_or_name(wishes[name]) for name in ("puck", "striker", "hits")
