@@ -170,10 +170,7 @@ def press(
                 modes[c] = gives[c]
             stopped[c] = STICKS
             if modes[c] != STICKS and buffer.sights[c, GRIP] == math.inf:
-                buffer.sights[c, GRIP], stopped[c] = (
-                    0.0,
-                    APART,
-                )  # first it is seen whether it presses
+                buffer.sights[c, GRIP], stopped[c] = 0.0, APART  # first, whether it presses
         if not find_break_away(group, members, modes, motions, y, scales, buffer):
             return UNSOLVED
         again = False
