@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel, patience
+from puck_tables.kernels.compile import inlined, inner, patience
 from puck_tables.scene.friction import SPIN, VX
 from puck_tables.world.break_away import find_break_away
 from puck_tables.world.complementarity import rim_mode
@@ -109,7 +109,7 @@ def _come_to_rest(
     return found
 
 
-@kernel
+@inner
 def press(
     group: Group, members: IntArray, contacts: IntArray, states: FloatArray, t: float,
     scales: Scales, modes: IntArray, motions: IntArray, ledger: FloatArray, buffer: GroupBuffer,
