@@ -22,7 +22,7 @@ ROOMS = {
     "io": "_core _version errors",
     "result": "_core io",
     "bulk": "_core _version errors io result",
-    "accuracy": "errors",
+    "accuracy": "_core errors",
     "chetaev": "_core contact errors io result",
     "kernels": "_core contact errors",
     "table": "_core _version contact errors io kernels",
