@@ -24,7 +24,7 @@ PUCK = pt.Puck(radius=0.04)
 @pytest.mark.parametrize(
     ("how", "words"),
     [
-        ({"free": ["frictoin"]}, "did you mean friction"),
+        ({"free": ["frictoin"]}, "did you mean 'friction'"),
         ({"free": ["friction", "friction"]}, "once"),
         ({"free": ["friction", "decel"]}, "say the same"),
         ({"free": ["delta", "height", "friction"]}, "say the same"),
