@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import checked_flag, finite_array, one_velocity, real, shown
+from puck_tables._core.real import checked_flag, finite_array, one_velocity, real, whole
 from puck_tables.accuracy.method_errors import Selection
 from puck_tables.accuracy.methods import INTEGRATORS, method_named
 from puck_tables.errors import InputError
@@ -356,11 +356,8 @@ def _looked_up(
 def _check_frames(frames: int | None, times: npt.ArrayLike | None) -> None:
     if times is not None and frames is not None:
         raise InputError("frames and times both choose the states: give one of them")
-    whole = isinstance(frames, int) and not isinstance(frames, bool)
-    if frames is not None and not (whole and 1 <= frames <= MAX_FRAMES):
-        raise InputError(
-            f"frames must be a whole number from 1 to {MAX_FRAMES}, got {shown(frames)}"
-        )
+    if frames is not None:
+        whole("frames", frames, 1, MAX_FRAMES)
 
 
 def _moments(frames: int | None, times: npt.ArrayLike | None, stop_time: float) -> FloatArray:

@@ -6,11 +6,13 @@ from itertools import pairwise
 
 import numpy as np
 
+from puck_tables.kernels.compile import kernel
 from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.scene.by_speed import NO_LAW
 from puck_tables.scene.floor_map import NO_GROUND
 from puck_tables.scene.forces import QUADRATIC, SLIDING, SPINNING
 from puck_tables.scene.ingredients import Regions, Surface
+from puck_tables.world import pressing, pushing
 from puck_tables.world.group import (
     APART,
     HELD,
@@ -32,10 +34,10 @@ from puck_tables.world.layout import (
     WALL,
 )
 from puck_tables.world.paths import PIECE_COLUMNS
-from puck_tables.world.pressing import press
-from puck_tables.world.pushing import follow
 from puck_tables.world.rims import PLAIN_RIMS
 from puck_tables.world.step_ledger import DONE, LEDGER, WORK_COLUMNS
+
+press, follow = kernel(pressing.press), kernel(pushing.follow)
 
 
 def disc(radius=0.05, mass=0.2, decel=1.0, delta=0.0, grip=0.0, gyration=0.5**0.5, damping=0.0,

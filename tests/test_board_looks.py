@@ -345,9 +345,9 @@ def test_a_colour_that_nobody_knows_is_refused_where_it_is_given(colour: Any) ->
 def test_every_colour_that_is_taken_can_be_drawn() -> None:
     from matplotlib.colors import CSS4_COLORS, to_hex
 
-    from puck_tables._core.colours import _NAMED
+    from puck_tables._core.colours import COLOURS
 
-    assert {name: f"#{digits}" for name, digits in _NAMED.items()} == {
+    assert {name: f"#{digits}" for name, digits in COLOURS.items()} == {
         name: to_hex(colour) for name, colour in CSS4_COLORS.items()
     }
     Scene(pucks=[Puck(0.1, friction=0.1, colour="CornflowerBlue")]).simulate().plot()

@@ -51,7 +51,7 @@ def test_degrees_are_understood_and_asked_for():
 
 
 def test_what_was_meant_is_guessed():
-    assert "did you mean air-hockey?" in puck("simulate", "--scene", "airhockey").stderr
+    assert "did you mean 'air-hockey'?" in puck("simulate", "--scene", "airhockey").stderr
     assert "Did you mean '--w0'?" in puck("simulate", "--v0", "1,0", "--omega", "5").stderr
     assert "did you mean" not in puck("simulate", "--scene", "zzz").stderr
 

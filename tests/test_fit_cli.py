@@ -72,7 +72,7 @@ def test_what_is_not_determined_is_said(film):
     ("arguments", "words"),
     [
         ((), "--radius"),
-        (("--radius", 0.0381, "--free", "frictoin"), "did you mean friction"),
+        (("--radius", 0.0381, "--free", "frictoin"), "did you mean 'friction'"),
         (("--radius", 0.0381, "--height", 0.02, "--free", "height"), "leave out one"),
         (("--radius", 0.0381, "--friction", 0.2, "--fix", "friction=0.2"), "say the same"),
         (("--radius", 0.0381, "--prior", "friction=0.2"), "VALUE:SIGMA"),

@@ -10,6 +10,9 @@ import pytest
 from drawn_films import KINDS, cut, drawn, summed, wrong
 
 import puck_tables as pt
+from puck_tables.fitting.identifiability import taken_for_granted
+from puck_tables.fitting.numbers import Number
+from puck_tables.fitting.residuals import SideForces
 
 # a drag, or a soft push, in few frames may look like friction
 UNSEEN = ("drag", "hand", "push")
@@ -28,7 +31,7 @@ def cases() -> list[pytest.param]:
     return [
         pytest.param(kind, seed, marks=[] if seed == 1 and kind in quick else pytest.mark.thorough)
         for kind in KINDS for seed in (1, 3)
-    ]  # fmt: skip
+    ] + [pytest.param("sloped unmarked", 225, marks=pytest.mark.thorough)]  # fmt: skip
 
 
 @pytest.mark.parametrize(("kind", "seed"), cases())
@@ -39,6 +42,15 @@ def test_nothing_wrong_is_called_determined(kind, seed):
     assert cut(film, found) <= 0.1 or found.cut_off
     if film.foreign == 0 and not kind.startswith("push"):
         assert cut(film, found) <= 0.02
+
+
+@pytest.mark.parametrize(("level", "said"), [(0.02, "0.02"), (0.4, "0.1"), (0.005, None)])
+def test_a_slope_that_is_told_counts_by_what_is_left_of_it(level, said):
+    friction = Number(0.15, 1e-4, 0.1498, 0.1502, "1", "found")
+    forces = SideForces(level=level, by_slope={"friction": 0.0017})
+    sentences = taken_for_granted(forces, {"friction": friction})
+    assert len(sentences) == (said is not None)
+    assert all(f"out of level by {said} degrees" in one for one in sentences)
 
 
 @pytest.mark.nightly

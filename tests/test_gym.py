@@ -239,7 +239,7 @@ BAD: list[tuple[Any, str]] = [
     (lambda: OneTable("Chess"), "no game 'Chess': there are AirHockey"),
     (lambda: OneTable("Carrom", spread=1.0), "spread must be from 0 to below 1"),
     (lambda: OneTable("Carrom", noise=-1.0), "noise not negative"),
-    (lambda: OneTable("Carrom", delay=0.5), "delay must be a whole number of moves"),
+    (lambda: OneTable("Carrom", delay=0.5), "delay must be a whole number from 0 on"),
     (lambda: OneTable("Carrom", render_mode="ascii"), "render_mode must be one of"),
     (lambda: ManyTables("Carrom", 0), "n must be a whole number from 1 on"),
     (lambda: OneTable("Carrom").step([0.0, 0.0, 0.0]), "reset the environment before"),

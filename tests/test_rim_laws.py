@@ -139,7 +139,7 @@ def test_faster_than_the_table_is_refused_in_a_sentence(tmp_path: Path):
 
 
 @pytest.mark.parametrize(("given", "says"), [
-    ("viscoelastik:0.1", r"restitution: .*did you mean viscoelastic\?"),
+    ("viscoelastik:0.1", r"restitution: .*did you mean 'viscoelastic'\?"),
     ("plastic", "needs a number"), ("plastic:-1", "greater than 0 m/s"),
     ("plastic:nan", "finite"), ("0.5:x:3", "<= 1"), (1.5, "<= 1"), ("", "no law"),
     ("nowhere.csv", r"cannot read .*nowhere\.csv"), ([0.5, "plastic:1"], "must be a number"),

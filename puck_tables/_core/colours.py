@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import re
-from difflib import get_close_matches
 
 LEAST_CONTRAST = 3.0  # of lines, marks and words on white
 
-_NAMED: dict[str, str] = dict(
+COLOURS: dict[str, str] = dict(
     re.findall(
         r"(\w+)=(\w+)",
         """
@@ -54,7 +53,7 @@ def is_colour(text: str) -> bool:
     >>> is_colour("#33415C"), is_colour("Crimson"), is_colour("blau")
     (True, True, False)
     """
-    return bool(re.fullmatch("#[0-9a-fA-F]{6}", text)) or text.lower() in _NAMED
+    return bool(re.fullmatch("#[0-9a-fA-F]{6}", text)) or text.lower() in COLOURS
 
 
 def brightness(colour: str) -> float:
@@ -104,17 +103,5 @@ def on_white(colour: str) -> str:
 
 def _parts(colour: str) -> list[float]:
     """Red, green and blue of '#rrggbb' or a name, from 0 to 1."""
-    digits = colour[1:] if colour.startswith("#") else _NAMED[colour.lower()]
+    digits = colour[1:] if colour.startswith("#") else COLOURS[colour.lower()]
     return [int(digits[n : n + 2], 16) / 255.0 for n in (0, 2, 4)]
-
-
-def meant(text: str) -> str:
-    """What a misspelt name may have been meant to be, in words.
-
-    Examples
-    --------
-    >>> meant("firebrik")
-    " (did you mean 'firebrick'?)"
-    """
-    near = get_close_matches(text.lower(), list(_NAMED), 1, 0.7)
-    return f" (did you mean {near[0]!r}?)" if near else ""

@@ -7,18 +7,18 @@ import math
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, dataclass, field
-from difflib import get_close_matches
 from numbers import Real
 from typing import Any, TypeVar
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.colours import is_colour, meant
+from puck_tables._core.colours import COLOURS, is_colour
 from puck_tables._core.doubts import question
 from puck_tables._core.fields import LISTED, Kind, in_tables, specs
 from puck_tables._core.real import shown
 from puck_tables._core.units import SHOWN, UNIT_EACH, measured, quantity, unit_meant, without_unit
+from puck_tables._core.wording import meant
 from puck_tables.errors import PuckError
 
 T = TypeVar("T")
@@ -169,7 +169,7 @@ def _read(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -> 
         return value
     if kind.shape == "colour":
         if not isinstance(value, str) or (value and not is_colour(value)):
-            hint = meant(value) if isinstance(value, str) else ""
+            hint = meant(value.lower(), COLOURS, 0.7) if isinstance(value, str) else ""
             reading.fault(path, value, kind.allowed() + hint)
         return value
     if kind.kinds and isinstance(value, (Mapping, *kind.kinds.values())):
@@ -226,8 +226,7 @@ def _named(kind: Kind, value: Any, path: str, reading: Reading) -> Any:
     name = value.get("kind")
     if isinstance(name, str) and name in kind.kinds:
         return read_part(kind.kinds[name], value, path, reading)
-    near = get_close_matches(str(name).lower(), kind.kinds, 1, 0.6)
-    hint = f" (did you mean {near[0]}?)" if near else ""
+    hint = meant(str(name).lower(), kind.kinds)
     reading.fault(f"{path}.kind", name, f"one of {', '.join(kind.kinds)}{hint}")
     return None
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from decimal import ROUND_CEILING, Context
 from typing import Any
 
 import numpy as np
@@ -198,16 +199,34 @@ def broadcast(**arrays: FloatArray) -> list[FloatArray]:
         raise InputError(f"shapes do not broadcast: {shapes}") from None
 
 
-def rounded_up(value: float) -> float:
-    """A number > 0 to one digit, not less.
+def rounded_up(value: float, digits: int = 1) -> float:
+    """A number > 0 to so many digits, not less.
 
     Examples
     --------
-    >>> rounded_up(2.1e-7)
-    3e-07
+    >>> rounded_up(2.1e-7), rounded_up(2.11e-7, 2)
+    (3e-07, 2.2e-07)
     """
-    power = int(np.floor(np.log10(value)))
-    return float(f"{int(np.ceil(value / 10.0**power - 1e-9))}e{power}")
+    return float(Context(digits, ROUND_CEILING).create_decimal(repr(float(value))))
+
+
+def whole(name: str, value: Any, low: int, high: int | None = None) -> int:
+    """A whole number from ``low`` on, or to ``high``.
+
+    Examples
+    --------
+    >>> whole("frames", 5, 1, 10)
+    5
+    >>> whole("frames", 2.5, 1)
+    Traceback (most recent call last):
+    ...
+    puck_tables.errors.InputError: frames must be a whole number from 1 on, got 2.5
+    """
+    known = isinstance(value, int | np.integer) and not isinstance(value, bool | np.timedelta64)
+    if not known or value < low or (high is not None and value > high):
+        until = "on" if high is None else f"to {high}"
+        raise InputError(f"{name} must be a whole number from {low} {until}, got {shown(value)}")
+    return int(value)
 
 
 def positive(name: str, value: float, unit: str) -> float:
@@ -269,10 +288,8 @@ def one_velocity(velocity: npt.ArrayLike) -> tuple[float, float]:
 
 def checked_threads(threads: int | None) -> None:
     """Refuse a number of threads that is none."""
-    if threads is not None and (
-        not isinstance(threads, int) or isinstance(threads, bool) or threads < 1
-    ):
-        raise InputError(f"threads must be a whole number from 1 on, got {shown(threads)}")
+    if threads is not None:
+        whole("threads", threads, 1)
 
 
 def checked_flag(name: str, value: object) -> None:

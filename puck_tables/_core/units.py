@@ -6,9 +6,9 @@ import math
 import re
 from collections.abc import Iterable
 from decimal import Decimal
-from difflib import get_close_matches
 from typing import Any
 
+from puck_tables._core.wording import meant
 from puck_tables.errors import InputError
 
 PIXEL = "px"
@@ -140,18 +140,16 @@ def unit_named(name: str, text: str, kind: str) -> str:
     >>> unit_named("unit", "cms", "length")
     Traceback (most recent call last):
     ...
-    puck_tables.errors.InputError: unit = 'cms' is not known, did you mean 'cm'? Known: m, dm, cm, \
-mm, um, km, in, ft, yd, px
+    puck_tables.errors.InputError: unit = 'cms' is not known (did you mean 'cm'?). Known: m, dm, \
+cm, mm, um, km, in, ft, yd, px
     """
     found = unit_word(text, kind) if isinstance(text, str) else ""
     if not found:
         names = [one for line in _KINDS[kind][0].values() for one in line.split()]
-        near = get_close_matches(str(text).lower(), names, 1, 0.7)
-        hint = f", did you mean '{near[0]}'?" if near else "."
-        if why := unit_meant(str(text)[:40]):
-            hint = f": {why}."
+        why = unit_meant(str(text)[:40])
+        hint = f": {why}" if why else meant(str(text).lower(), names, 0.7)
         raise InputError(
-            f"{name} = {text!r:.40} is not known{hint} Known: {', '.join(_KINDS[kind][0])}"
+            f"{name} = {text!r:.40} is not known{hint}. Known: {', '.join(_KINDS[kind][0])}"
         )
     return found
 

@@ -15,6 +15,7 @@ from dataclasses import dataclass, fields
 from functools import cache, lru_cache
 from importlib.resources import files
 
+from puck_tables._core.real import rounded_up
 from puck_tables.accuracy.methods import INTEGRATED, LOOK_UP, MEASURED, FrictionForm, Method, Scheme
 from puck_tables.errors import AccuracyError, TableError
 
@@ -190,8 +191,8 @@ def select(
         exact = Scheme(Method.ADAPTIVE, FrictionForm.CLOSED_FORMS)
         hint = "" if exact in schemes else "; integration with closed forms reaches 1e-13"
         raise AccuracyError(
-            f"tol must be from {_up(best)} (the best of {names}) to {COARSEST:g}, in units of "
-            f"Q/(f g) and Q^2/(f g), got {tol:g}: give a tol in that range{hint}"
+            f"tol must be from {rounded_up(best, 2):g} (the best of {names}) to {COARSEST:g}, in "
+            f"units of Q/(f g) and Q^2/(f g), got {tol:g}: give a tol in that range{hint}"
         )
     ranked = sorted(rows, key=lambda row: row.ns)
     taken = next(row for row in ranked if off[row] <= tol)
@@ -232,12 +233,3 @@ def _said(row: MeasuredMethod, own_table: tuple[str, float] | None) -> str:
 
 def _duration(ns: float) -> str:
     return f"{ns:.3g} ns" if ns < 1e3 else f"{ns / 1e3:.3g} us"
-
-
-def _up(value: float) -> str:
-    """To two digits, upwards."""
-    text = f"{value:.1e}"
-    mantissa, exponent = text.split("e")
-    if float(text) < value:
-        text = f"{float(mantissa) + 0.1:.1f}e{exponent}"
-    return f"{float(text):g}"

@@ -9,11 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from puck_tables._core.executor import Progress
 from puck_tables._core.memory import check_memory
-from puck_tables._core.real import checked_progress, instance, shown
+from puck_tables._core.real import checked_progress, instance, whole
 from puck_tables.bulk.work import Tally, Work, in_memory
 from puck_tables.errors import InputError, OutputError
 from puck_tables.io.dataset import Dataset
@@ -106,7 +104,7 @@ class Doing:
     overwrite: bool
 
     def __post_init__(self) -> None:
-        check_part(self.chunk)
+        whole("chunk", self.chunk, 1)
 
 
 def finish(work: Work, how: Doing) -> Any:
@@ -160,19 +158,3 @@ def _accepted(kept: Store, work: Work, done: Callable[[], Tally]) -> Tally:
         raise
     kept.place.complete()
     return tally
-
-
-def check_part(part: object) -> None:
-    """Refuse a number of items at a time that is none.
-
-    Raises
-    ------
-    InputError
-
-    Examples
-    --------
-    >>> check_part(1024)
-    """
-    whole = isinstance(part, int | np.integer) and not isinstance(part, bool | np.timedelta64)
-    if not whole or part < 1:  # type: ignore[operator]
-        raise InputError(f"chunk must be a whole number from 1 on, got {shown(part)}")

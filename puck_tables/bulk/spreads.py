@@ -15,7 +15,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.doubts import question_spread
-from puck_tables._core.real import real, shown
+from puck_tables._core.real import real, shown, whole
 from puck_tables._core.units import (
     KIND_OF,
     SHOWN,
@@ -251,7 +251,7 @@ def checked_samples(count: int, seed: int) -> None:
     --------
     >>> checked_samples(1000, 7)
     """
-    _checked_whole("samples", count, 2, 10**9)
+    whole("samples", count, 2, 10**9)
     checked_seed(seed)
 
 
@@ -266,9 +266,4 @@ def checked_seed(seed: int) -> None:
     --------
     >>> checked_seed(7)
     """
-    _checked_whole("seed", seed, 0, _LARGEST_SEED - 1)
-
-
-def _checked_whole(name: str, value: int, low: int, high: int) -> None:
-    if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
-        raise InputError(f"{name} must be a whole number from {low} to {high}, got {shown(value)}")
+    whole("seed", seed, 0, _LARGEST_SEED - 1)

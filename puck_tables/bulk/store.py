@@ -20,10 +20,11 @@ import numpy as np
 
 from puck_tables._core.executor import Progress, keep_on, run_chunks
 from puck_tables._core.own_folder import say
+from puck_tables._core.real import checked_threads
 from puck_tables._version import __version__
 from puck_tables.bulk.blocks import Blocks
 from puck_tables.bulk.store_folder import DIGEST, shared, taken
-from puck_tables.bulk.work import Columns, Tally, Work, refuse_no_threads
+from puck_tables.bulk.work import Columns, Tally, Work
 from puck_tables.errors import InputError, MissingExtraError
 from puck_tables.io.dataset import Variable
 
@@ -216,7 +217,7 @@ def by_threads(store: Store, threads: int | None, progress: Progress | None) -> 
     OutputError
         If the disk does not take them.
     """
-    refuse_no_threads(threads)
+    checked_threads(threads)
     blocks, done = store.blocks, 0
     tallies: dict[int, Tally] = {}
 

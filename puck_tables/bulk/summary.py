@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array, listed, shown
+from puck_tables._core.real import finite_array, listed, shown, whole
 from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS
 
@@ -103,10 +103,7 @@ class Summary:
         ------
         InputError
         """
-        if isinstance(bins, bool) or not isinstance(bins, int) or not 1 <= bins <= _MOST_BINS:
-            raise InputError(
-                f"bins must be a whole number from 1 to {_MOST_BINS}, got {shown(bins)}"
-            )
+        whole("bins", bins, 1, _MOST_BINS)
         x, y = self._rows(self.place)
         if extent is None:
             sides = [_sides(x), _sides(y)]

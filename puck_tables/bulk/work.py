@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from puck_tables._core.digest import program, work_digest
 from puck_tables._core.executor import Progress, run_chunks
-from puck_tables._core.real import shown
+from puck_tables._core.real import checked_threads
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset
 from puck_tables.result import Result
@@ -151,7 +151,7 @@ def in_memory(work: Work, threads: int | None, progress: Progress | None) -> Res
     InputError
         If nothing came of it.
     """
-    refuse_no_threads(threads)
+    checked_threads(threads)
     tell = work.prepared(threads, progress)
     arrays = work.columns_of(work.size)
     run_chunks(
@@ -160,22 +160,6 @@ def in_memory(work: Work, threads: int | None, progress: Progress | None) -> Res
     work.checked(Tally.of(arrays[work.code]))
     shaped = {name: one.reshape((*work.shape, *one.shape[1:])) for name, one in arrays.items()}
     return work.result(shaped)
-
-
-def refuse_no_threads(threads: int | None) -> None:
-    """Refuse a number of threads that is none.
-
-    Raises
-    ------
-    InputError
-
-    Examples
-    --------
-    >>> refuse_no_threads(2)
-    """
-    if threads is not None and (isinstance(threads, bool) or not isinstance(threads, int)
-                                or threads < 1):  # fmt: skip
-        raise InputError(f"threads must be a whole number from 1 on, got {shown(threads)}")
 
 
 def same_program(version: tuple[str, ...], where: str) -> None:

@@ -24,7 +24,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import one_velocity, positive, real, shown
+from puck_tables._core.real import one_velocity, positive, real, whole
 from puck_tables.chetaev.motion import checked_tol
 from puck_tables.chetaev.system import ConstrainedSystem
 from puck_tables.errors import InputError
@@ -44,11 +44,8 @@ def disc_points(rings: int) -> FloatArray:
     >>> len(points), float((points**2).sum(axis=1).mean().round(12))  # ⟨ρ²⟩ = 1/2 on a disc
     (36, 0.5)
     """
-    whole = isinstance(rings, int) and not isinstance(rings, bool)
-    if not whole or not 1 <= rings <= MAX_RINGS:
-        raise InputError(f"rings must be a whole number from 1 to {MAX_RINGS}, got {shown(rings)}")
     parts = []
-    for k in range(1, rings + 1):
+    for k in range(1, whole("rings", rings, 1, MAX_RINGS) + 1):
         count = 4 * (2 * k - 1)
         radius = math.sqrt(0.5 * ((k - 1) ** 2 + k**2)) / rings
         angle = 2.0 * np.pi * (np.arange(count) + 0.5) / count

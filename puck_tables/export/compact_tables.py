@@ -21,7 +21,7 @@ from scipy.interpolate import BSpline, make_interp_spline
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import AccuracyError
-from puck_tables.stopping.axes import heights
+from puck_tables.stopping.axes import heights, series_to_powers
 from puck_tables.stopping.stop_table import StopTable
 
 DEGREES = range(3, 8)
@@ -175,7 +175,7 @@ class _Fits:
         powers = int(np.argmax(np.append(dropped, 0.0) <= _POWERS * error))
         if dropped[-1] ** 2 > _POWERS * error * dropped[-2]:  # the next power would be missed
             raise AccuracyError(_OUT_OF_REACH.format(error))
-        by_power = (_to_powers(powers) @ series[:powers]).reshape(powers, sides, nodes, -1)
+        by_power = (series_to_powers(powers) @ series[:powers]).reshape(powers, sides, nodes, -1)
         self._wanted = by_power.transpose(2, 1, 0, 3)  # nodes, sides, powers, functions
         self._at_heights = s ** np.arange(powers)[:, None]
         self._sizes = [one for one in CELLS if one < nodes // 4]
@@ -238,21 +238,13 @@ def fit_constants(constants: FloatArray, error: float) -> SplineFit:
     As a table without cells: numbers (rows, powers, 1).
     """
     rows, count = constants.shape
-    series = np.linalg.solve(_to_powers(count), constants.T).T
+    series = np.linalg.solve(series_to_powers(count), constants.T).T
     dropped = np.abs(series)[:, ::-1].cumsum(axis=1)[:, ::-1].max(axis=0)
     powers = max(int(np.argmax(np.append(dropped, 0.0) <= 0.5 * error)), 1)
-    kept = series[:, :powers] @ _to_powers(powers).T
+    kept = series[:, :powers] @ series_to_powers(powers).T
     quantum = _quantum(error / count)
     whole = np.rint(kept / quantum).astype(np.int64)
     return SplineFit((), 0, quantum, whole.reshape(rows, powers, 1))
-
-
-def _to_powers(count: int) -> FloatArray:
-    """What makes the coefficients of a polynomial from those of its Chebyshev series."""
-    matrix = np.zeros((count, count))
-    for m, one in enumerate(np.eye(count)):
-        matrix[: m + 1, m] = chebyshev.cheb2poly(one[: m + 1])
-    return matrix
 
 
 def _quantum(largest: float) -> float:

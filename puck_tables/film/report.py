@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables._core.wording import counted
 from puck_tables.film.puck_track import Track
 from puck_tables.io.dataset import Dataset, variable
 
@@ -33,23 +34,12 @@ def described(track: Track) -> list[str]:
     (x0, y0), (x1, y1) = known.min(axis=0), known.max(axis=0)
     lines.append(f"  place   x from {x0:.6g} m to {x1:.6g} m, y from {y0:.6g} m to {y1:.6g} m")
     turned = 0 if track.angle is None else int(np.isfinite(track.angle).sum())
-    lines.append("  angle   " + (f"seen in {_count(turned, 'frame')}" if turned else "none"))
+    lines.append("  angle   " + (f"seen in {counted(turned, 'frame')}" if turned else "none"))
     lines += [f"  hidden  {words}" for words in _hidden(track)]
     lines += [f"  odd     {words}" for words in [*_steps(track), *_leaps(track)]]
     if track.notes:
         lines.append(f"  read    {'; '.join(track.notes)}")
     return lines
-
-
-def _count(count: int, what: str, many: str = "s") -> str:
-    """So many, in words.
-
-    Examples
-    --------
-    >>> _count(1, "gap"), _count(2, "stretch", "es")
-    ('1 gap', '2 stretches')
-    """
-    return f"{count} {what}{'' if count == 1 else many}"
 
 
 def _frames(track: Track) -> str:
@@ -72,8 +62,8 @@ def _hidden(track: Track) -> list[str]:
     runs = np.split(lost, np.flatnonzero(np.diff(lost) > 1) + 1)
     longest = max(runs, key=len)
     return [
-        f"{_count(lost.size, 'frame')} in {_count(len(runs), 'stretch', 'es')}, the longest from "
-        f"{track.time[longest[0]]:.6g} s to {track.time[longest[-1]]:.6g} s"
+        f"{counted(lost.size, 'frame')} in {counted(len(runs), 'stretch', 'stretches')}, the "
+        f"longest from {track.time[longest[0]]:.6g} s to {track.time[longest[-1]]:.6g} s"
     ]
 
 
@@ -86,7 +76,7 @@ def _steps(track: Track) -> list[str]:
     if wide.size:
         at = wide[np.argmax(steps[wide])]
         result.append(
-            f"{_count(wide.size, 'gap')} in its times, the longest of {steps[at]:.4g} s after "
+            f"{counted(wide.size, 'gap')} in its times, the longest of {steps[at]:.4g} s after "
             f"{track.time[at]:.6g} s"
         )
     even = steps[steps <= _GAP * usual]
@@ -112,7 +102,7 @@ def _leaps(track: Track) -> list[str]:
     at = leaps[np.argmax(speed[leaps])]
     apart = float(np.hypot(*(place[at + 1] - place[at])))
     return [
-        f"{_count(leaps.size, 'leap')}, the farthest of {apart:.4g} m before "
+        f"{counted(leaps.size, 'leap')}, the farthest of {apart:.4g} m before "
         f"{time[at + 1]:.6g} s: was something else taken for the puck?"
     ]
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +11,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import instance, positive, real
 from puck_tables._core.units import PIXEL, factor, pixel_size, unit_named
+from puck_tables._core.wording import counted, meant
 from puck_tables.errors import InputError
 from puck_tables.film.film import Film, TrackedBody
 from puck_tables.film.plane import Marks, Plane, plane_from
@@ -143,17 +143,12 @@ def to_si(path: str | Path, film: Film, how: ReaderOptions) -> tuple[Track, ...]
         if name not in words:
             listed = ", ".join(there[:8]) + (", ..." if len(there) > 8 else "")
             raise InputError(
-                f"{path} has no puck '{name}'{_meant(name, there)} Its pucks: "
+                f"{path} has no puck '{name}'{meant(name, there)}. Its pucks: "
                 f"{listed or 'none with a name'}"
             )
     if not tracks:
         raise InputError(f"{path} holds no puck")
     return tuple(tracks)
-
-
-def _meant(name: str, there: Sequence[str]) -> str:
-    near = get_close_matches(name, there, 1)
-    return f", did you mean '{near[0]}'?" if near else "."
 
 
 class _Scale:
@@ -320,7 +315,7 @@ def _pucks(
         for name in wanted:
             if name not in names:
                 raise InputError(
-                    f"{path} has no mark '{name}'{_meant(name, names)} Its marks: "
+                    f"{path} has no mark '{name}'{meant(name, names)}. Its marks: "
                     f"{', '.join(names[:8])}"
                 )
         return {"": (how.centre, how.toward)}
@@ -363,10 +358,8 @@ def _visible(
             )
         faint = shown & ~np.all([one >= bound for one in likely], axis=0)
         shown &= ~faint
-        count = np.count_nonzero(faint)
-        notes.append(
-            f"{count} frame{'' if count == 1 else 's'} less likely than {bound:g} left out"
-        )
+        count = int(np.count_nonzero(faint))
+        notes.append(f"{counted(count, 'frame')} less likely than {bound:g} left out")
     points = {mark: np.where(shown[:, None], body.marks[mark], np.nan) for mark in used}
     places = {mark: scale.place(point) for mark, point in points.items()}
     place: FloatArray = np.mean([places[mark] for mark in centre], axis=0)

@@ -15,14 +15,14 @@ from puck_tables.fitting.numbers import KNOWN, EstimatedLaunch, Number
 from puck_tables.fitting.observations import Observations
 from puck_tables.fitting.parameters import ALL, LAUNCH, OF_IMPACTS, WALL
 from puck_tables.fitting.problem import PRIOR, Problem
-from puck_tables.fitting.residuals import SideForces
+from puck_tables.fitting.residuals import OUT_OF_LEVEL, SideForces
 
 _GRIP, _SLICK = 5.0, 1e-4  # friction coefficients of dry surfaces are smaller, and larger
 _TALL = 8.0  # radii: pucks are lower
 _OTHER = 3.0  # times the radius that was given
 _FAST, _FAST_RIM = 100.0, 300.0  # m/s: no puck on a film slides, or turns, faster
 _HEAVIER = 100.0  # times the other puck
-_LEVEL, _UNTOLD = 0.05, 5.0  # degrees of a slope that is told, and that is not
+_UNTOLD = 5.0  # degrees of a slope that is not told
 _AT_END = 1e-3  # of the width of a range
 _UNITS = "the unit of the places, or of the times, the scale or the frames a second may be wrong"
 
@@ -96,7 +96,7 @@ def rounded(film: Observations) -> list[str]:
 
 
 def taken_for_granted(forces: SideForces, numbers: Mapping[str, Number]) -> list[str]:
-    """A sentence where a table that is hardly out of level would change much, and is not seen to.
+    """A sentence where a table out of level, by less than is seen, changes more than errors say.
 
     Examples
     --------
@@ -106,19 +106,19 @@ def taken_for_granted(forces: SideForces, numbers: Mapping[str, Number]) -> list
     >>> said[0][:74]
     'A level table is taken for granted: one out of level by 0.1 degrees would '
     """
-    if not forces.level > _LEVEL:
-        return []
+    unseen = min(1.0, forces.level / OUT_OF_LEVEL)
     changes = [
-        f"{name} by up to {change:.2g}" for name, change in forces.by_slope.items()
-        if math.isfinite(numbers[name].error) and change > numbers[name].error
+        f"{name} by up to {change * unseen:.2g}" for name, change in forces.by_slope.items()
+        if math.isfinite(numbers[name].error) and change * unseen > numbers[name].error
     ]  # fmt: skip
     if not changes:
         return []
-    how = f"tell its slope to {forces.level:.2g} degrees alone" if forces.level < _UNTOLD \
-        else "do not tell its slope"  # fmt: skip
+    how = "do not tell its slope" if forces.level >= _UNTOLD else \
+        f"tell its slope to {forces.level:.2g} degrees alone"  # fmt: skip
     return [
-        f"A level table is taken for granted: one out of level by 0.1 degrees would change "
-        f"{' and '.join(changes)}, and the tracks {how}"
+        "A level table is taken for granted: one out of level by "
+        f"{min(OUT_OF_LEVEL, forces.level):.2g} degrees would change {' and '.join(changes)}, and "
+        f"the tracks {how}"
     ]
 
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from puck_tables._core.real import bracketed, pair_of, real
+from puck_tables._core.wording import meant
 from puck_tables.errors import InputError
 from puck_tables.motion.body import LARGEST_GYRATION, SMALLEST_GYRATION
 
@@ -101,9 +101,8 @@ def refuse_unknown(name: str, known: Mapping[str, Parameter], what: str) -> None
     """Refuse a name that is no parameter, with the nearest that is."""
     if name not in known:
         usable = [one for one in known if one not in NODES]
-        near = difflib.get_close_matches(str(name), usable, 1, 0.3)
-        meant = f": did you mean {near[0]}?" if near else ""
-        raise InputError(f"{what} names '{name}', which is none of {', '.join(usable)}{meant}")
+        hint = meant(name, usable, 0.3)
+        raise InputError(f"{what} names '{name}', which is none of {', '.join(usable)}{hint}")
 
 
 def parameters_of(reach: float | None) -> Mapping[str, Parameter]:

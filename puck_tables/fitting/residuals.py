@@ -189,7 +189,7 @@ _FORCES = 4  # columns of the four above
 _MOMENTS = 32  # of a motion, between which the change by a force is a cubic
 _ENDS = 0.9995  # of the motion: at its end nothing is carried on
 _REST = 1e-3  # of the greatest slip
-_TRIED = 0.1  # degrees of a table that nobody levelled with care
+OUT_OF_LEVEL = 0.1  # degrees of a table that nobody levelled with care
 _STEEP = 3.0  # degrees: nobody takes that for a level table
 _ALIKE = 6.0  # of χ²: forces that explain about as much
 _LAW = 0.2  # of a friction, by which it may change up to the fastest slip
@@ -244,7 +244,7 @@ def side_forces(result: Estimate, certainty: Certainty) -> SideForces:
     near = [kind for kind, one in told.items() if one.gain > best - _ALIKE]
     if tilt > _STEEP and len(near) > 1:
         near = [kind for kind in near if kind != SLOPE]
-    slope = np.hypot(*changes[:, SLOPE].T) * gravity * math.radians(_TRIED)
+    slope = np.hypot(*changes[:, SLOPE].T) * gravity * math.radians(OUT_OF_LEVEL)
     fastest = problem.fastest(result.x)
     return SideForces(
         min(len(_KINDS) * min(one.chance for one in told.values()), 1.0),

@@ -12,7 +12,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array, real, shown
+from puck_tables._core.real import finite_array, real, shown, whole
 from puck_tables.errors import InputError
 from puck_tables.gym.air_hockey import AirHockey, AirHockeyAlone
 from puck_tables.gym.disc_games import Carrom, Crokinole
@@ -80,11 +80,9 @@ class ManyTables(VectorEnv[Seen, Any, Any]):
         if not (0.0 <= self._spread < 1.0 and self._noise >= 0.0):
             raise InputError(f"spread must be from 0 to below 1, and noise not negative, got "
                              f"{spread:g} and {noise:g} m")  # fmt: skip
-        if isinstance(delay, bool) or not isinstance(delay, int) or delay < 0:
-            raise InputError(f"delay must be a whole number of moves from 0 on, got {shown(delay)}")
         if render_mode not in (None, *_MODES):
             raise InputError(f"render_mode must be one of {_MODES}, got {shown(render_mode)}")
-        self._delay, one = delay, self.game
+        self._delay, one = whole("delay", delay, 0), self.game
         low, high = one.low.astype(np.float32), one.high.astype(np.float32)
         self.single_observation_space = Box(low, high, dtype=np.float32)
         self.single_action_space = Box(-1.0, 1.0, (one.actions,), np.float32)

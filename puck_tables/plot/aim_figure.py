@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables._core.wording import counted
 from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS
 from puck_tables.plot.style import BLUE, GREY, LAUNCH, ORANGE, canvas, colour_bar, ramp
-from puck_tables.plot.titles import counted, legend_below, titled
+from puck_tables.plot.titles import legend_below, titled
 from puck_tables.stopping.aim_at_targets import Aim
 from puck_tables.stopping.states import states as states_at
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from puck_tables._core.wording import counted
 from puck_tables.errors import InputError
 from puck_tables.plot import pucks_figure
 from puck_tables.plot.style import GREY
-from puck_tables.plot.titles import counted
 from puck_tables.world.aimed import BoardAim
 
 if TYPE_CHECKING:

@@ -8,13 +8,14 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.colours import on_white
+from puck_tables._core.wording import counted
 from puck_tables.errors import InputError
 from puck_tables.plot.animation import Animation, film_of
 from puck_tables.plot.board import close_up, draw_board, finished, panels_for, show
 from puck_tables.plot.floor_axes import Box
 from puck_tables.plot.sample_figure import HELD, cloud_of
 from puck_tables.plot.style import GREY
-from puck_tables.plot.titles import counted, legend_below, noted
+from puck_tables.plot.titles import legend_below, noted
 from puck_tables.scene.outcome import LAST_END
 from puck_tables.world.sample import Sample
 from puck_tables.world.scene_ends import SceneEnds

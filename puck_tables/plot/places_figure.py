@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from puck_tables._core.wording import counted
 from puck_tables.io.columns import COLUMNS
 from puck_tables.plot.style import LAUNCH, canvas, colour_bar, ramp
-from puck_tables.plot.titles import counted, legend_below, noted
+from puck_tables.plot.titles import legend_below, noted
 from puck_tables.stopping.states import States
 from puck_tables.stopping.stops import Stops
 

@@ -9,6 +9,8 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
+from puck_tables._core.wording import counted
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -38,17 +40,6 @@ def noted(axes: Axes, text: str) -> None:
     """Write above a panel what is not seen in it."""
     words = axes.set_title(text, fontsize=9, loc="left", parse_math=False)
     _shrunk(words, width_of(axes))
-
-
-def counted(count: int, one: str, many: str = "") -> str:
-    """A number of things in words.
-
-    Examples
-    --------
-    >>> counted(1, "edge"), counted(12000, "edge")
-    ('1 edge', '12000 edges')
-    """
-    return f"{count} {one if count == 1 else many or one + 's'}"
 
 
 def out_of_sight(there: Sequence[Sequence[Any]], in_view: Sequence[Sequence[Any]]) -> str:

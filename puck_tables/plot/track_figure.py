@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from puck_tables._core.wording import counted
 from puck_tables.film.puck_track import Track
 from puck_tables.plot.style import COLORS, canvas, labelled
-from puck_tables.plot.titles import counted, legend_below, titled
+from puck_tables.plot.titles import legend_below, titled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

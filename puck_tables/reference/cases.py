@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from copy import deepcopy
-from difflib import get_close_matches
 from typing import Any, NamedTuple
 
+from puck_tables._core.wording import meant
 from puck_tables.errors import InputError
 from puck_tables.world.scene import Scene
 
@@ -235,7 +235,6 @@ def case_named(name: str) -> ReferenceCase:
     """
     named = {case.name: case for case in CASES}
     if not isinstance(name, str) or name not in named:
-        near = get_close_matches(str(name).lower(), named, 1, 0.6)
-        hint = f", did you mean '{near[0]}'?" if near else "."
-        raise InputError(f"there is no case {name!r:.40}{hint} Cases: {', '.join(named)}")
+        hint = meant(str(name).lower(), named)
+        raise InputError(f"there is no case {name!r:.40}{hint}. Cases: {', '.join(named)}")
     return named[name]

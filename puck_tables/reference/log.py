@@ -17,6 +17,7 @@ from puck_tables._core.real import instance, real
 from puck_tables._core.text import TextForm, text_form_of
 from puck_tables._core.text_rows import LARGEST, read_columns
 from puck_tables._core.units import EXAMPLES, parted, unit_size
+from puck_tables._core.wording import counted
 from puck_tables.errors import InputError
 from puck_tables.film.column_roles import headed, name_of
 from puck_tables.film.headings import heading
@@ -137,8 +138,9 @@ def read_log(path: str | Path, how: LogHow) -> Log:
             f"{time[back[0] + 1]:.9g} s after {time[back[0]]:.9g} s"
         )
     if time.size < _FEWEST:
-        rows = f"{time.size} row{'s' if time.size != 1 else ''}"
-        raise InputError(f"{where} has {rows} of numbers: at least three are compared")
+        raise InputError(
+            f"{where} has {counted(time.size, 'row')} of numbers: at least three are compared"
+        )
     signs = {"y": -1.0, "vy": -1.0} if how.up == "y" else {}
     found = {
         name: signs.get(name, 1.0) * values[said[role]]

@@ -7,7 +7,6 @@ import re
 import tomllib
 from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from collections.abc import Iterator
-from difflib import get_close_matches
 from functools import lru_cache
 from importlib.resources import files
 from pathlib import Path
@@ -15,6 +14,7 @@ from typing import Any
 
 from puck_tables._core.fields import Kind, in_tables, specs
 from puck_tables._core.safe_read import read_whole
+from puck_tables._core.wording import meant
 from puck_tables.errors import InputError
 from puck_tables.scene.scene_spec import SceneSpec
 
@@ -57,7 +57,7 @@ def shipped_text(name: str) -> str:
     'title = "Puck on an incline"'
     """
     if name not in _names():
-        raise InputError(f"no scene {name!r} comes along{_meant(name)}: there are {_listed()}")
+        raise InputError(f"no scene {name!r} comes along{_others(name)}")
     return (_folder() / f"{name}.toml").read_text(encoding="utf-8")
 
 
@@ -75,15 +75,16 @@ def find_scene(name: str) -> dict[str, Any]:
     0.15
     """
     if not name.strip():
-        raise InputError(f"the name of the scene is empty: give a file, or one of {_listed()}")
+        raise InputError(
+            f"the name of the scene is empty: give a file, or one of {', '.join(_names())}"
+        )
     try:
         os.lstat(name)
     except FileNotFoundError:
         if name in _names():
             return tomllib.loads(shipped_text(name))
         raise InputError(
-            f"no file {name}, and no scene of that name comes along{_meant(name)}: there are "
-            f"{_listed()}"
+            f"no file {name}, and no scene of that name comes along{_others(name)}"
         ) from None
     except (OSError, ValueError) as error:
         raise InputError(f"cannot read {name}: {getattr(error, 'strerror', error)}") from None
@@ -94,20 +95,8 @@ def _folder() -> Any:
     return files("puck_tables.scene") / "examples"
 
 
-def _meant(name: str) -> str:
-    """What a misspelt name may have been meant to be, in words.
-
-    Examples
-    --------
-    >>> _meant("airhockey")
-    ' (did you mean air-hockey?)'
-    """
-    near = get_close_matches(name, _names(), 1, 0.7)
-    return f" (did you mean {near[0]}?)" if near else ""
-
-
-def _listed() -> str:
-    return ", ".join(_names())
+def _others(name: str) -> str:
+    return f"{meant(name, _names(), 0.7)}: there are {', '.join(_names())}"
 
 
 def _names() -> list[str]:

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from difflib import get_close_matches
 from typing import Any, ClassVar
 
 import numpy as np
@@ -23,6 +22,7 @@ from puck_tables._core.quantities import RESTITUTION, SPEED
 from puck_tables._core.read_columns import numbers_of
 from puck_tables._core.real import finite_array, real
 from puck_tables._core.safe_read import is_number
+from puck_tables._core.wording import meant
 from puck_tables.errors import InputError
 from puck_tables.scene.restitution_at import PLASTIC, TABLE, VISCOELASTIC, restitution_at
 
@@ -262,11 +262,9 @@ file of speed in m/s and restitution
     if name == "table":
         return _table_of(number)
     if name not in NAMED:
-        near = get_close_matches(name.lower(), NAMED, 1, 0.6)
-        meant = f" (did you mean {near[0]}?)" if near else ""
         raise InputError(
-            f"there is no law of restitution {law[:60]!r}{meant}: give a number from 0 to 1, "
-            + LISTED
+            f"there is no law of restitution {law[:60]!r}{meant(name.lower(), NAMED)}: give a "
+            f"number from 0 to 1, {LISTED}"
         )
     if not is_number(number):
         raise InputError(f"{law[:60]!r}: the law needs a number, such as '{name}:0.1'")

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables._core.wording import meant
 from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS, derived
 from puck_tables.io.dataset import Dataset, Variable, variable
@@ -322,6 +322,4 @@ def number_of(puck: int | str, names: Sequence[str]) -> int:
     if isinstance(puck, int | np.integer) and 0 <= puck < len(names) and puck is not True:
         return int(puck)
     shown = ", ".join(names[:8]) + (", ..." if len(names) > 8 else "")
-    near = get_close_matches(str(puck), names, 1, 0.6)
-    meant = f" (did you mean {near[0]!r}?)" if near else ""
-    raise InputError(f"no puck {puck!r}{meant}: there are {len(names)}, {shown}")
+    raise InputError(f"no puck {puck!r}{meant(puck, names)}: there are {len(names)}, {shown}")

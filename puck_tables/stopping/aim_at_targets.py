@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import run_chunks
-from puck_tables._core.real import broadcast, checked_threads, finite_array, positive, shown
+from puck_tables._core.real import broadcast, checked_threads, finite_array, positive, whole
 from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS as VARIABLES
 from puck_tables.io.dataset import Dataset, variable
@@ -270,8 +270,7 @@ def _checked_bounds(
     max_speed: float | None, max_spin: float | None, count: int
 ) -> tuple[float, float]:
     """Bounds on speed and spin, infinite where there is none."""
-    if not isinstance(count, int) or not 1 <= count <= MAX_COUNT:
-        raise InputError(f"count must be a whole number from 1 to {MAX_COUNT}, got {shown(count)}")
+    whole("count", count, 1, MAX_COUNT)
     return (
         math.inf if max_speed is None else positive("max_speed", max_speed, "m/s"),
         math.inf if max_spin is None else positive("max_spin", max_spin, "rad/s"),

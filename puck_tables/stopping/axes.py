@@ -105,7 +105,18 @@ def height_polynomials(values: FloatArray, count: int = HEIGHTS) -> FloatArray:
     n = len(values)
     nodes = 2.0 * heights(n) ** 2 - 1.0
     series = chebyshev.chebfit(nodes, values.reshape(n, -1), n - 1)[:count]
-    powers = np.zeros((count, count))
-    for degree in range(count):
-        powers[: degree + 1, degree] = chebyshev.cheb2poly(np.eye(count)[degree, : degree + 1])
-    return (powers @ series).reshape(count, *values.shape[1:])
+    return (series_to_powers(count) @ series).reshape(count, *values.shape[1:])
+
+
+def series_to_powers(count: int) -> FloatArray:
+    """What makes the coefficients of a polynomial from those of its Chebyshev series.
+
+    Examples
+    --------
+    >>> series_to_powers(3).tolist()  # 1, x, 2x² − 1
+    [[1.0, 0.0, -1.0], [0.0, 1.0, 0.0], [0.0, 0.0, 2.0]]
+    """
+    matrix = np.zeros((count, count))
+    for m, one in enumerate(np.eye(count)):
+        matrix[: m + 1, m] = chebyshev.cheb2poly(one[: m + 1])
+    return matrix

@@ -15,7 +15,7 @@ from puck_tables.motion.body import UnitPuck
 from puck_tables.motion.frame import frame_of
 from puck_tables.motion.friction_source import source_of
 from puck_tables.motion.limits import regime_of
-from puck_tables.motion.state import STATE_ROWS, T
+from puck_tables.motion.state import HEADING, STATE_ROWS, T
 from puck_tables.motion.unit_motion import solve
 from puck_tables.stopping.launch_arrays import in_chunks
 from puck_tables.stopping.stop_table import StopTable
@@ -61,11 +61,15 @@ def integrate(
     bodies: dict[float, UnitPuck], launches: FloatArray, pucks: npt.NDArray[np.int64],
     which: npt.NDArray[np.int64], moments: FloatArray, out: FloatArray, threads: int | None,
 ) -> None:  # fmt: skip
-    """States of other ``pucks``, each integrated, into their places in ``out`` (6, n)."""
+    """States of other ``pucks``, each integrated, into their places in ``out`` (6, n).
+
+    Headings from x.
+    """
 
     def work(puck: int, mine: npt.NDArray[np.int64]) -> None:
         launch = launches[:, puck]
         out[:, mine] = states_of(bodies[float(launch[3])], launch, moments[mine])
+        out[HEADING, mine] += directions(launch[:1], launch[1:2])
 
     for_each(pucks, which, work, threads)
 

@@ -27,13 +27,8 @@ from puck_tables.stopping.jacobian import (
 )
 from puck_tables.stopping.launch_arrays import TOO_LARGE, Launches, fits, launches_in, launches_of
 from puck_tables.stopping.per_height import refuse_many
-from puck_tables.stopping.plain_states import all_looked_up, fill_state_slopes
-from puck_tables.stopping.state_values import (
-    directions,
-    integrate,
-    looked_up,
-    refuse_times,
-)
+from puck_tables.stopping.plain_states import all_looked_up
+from puck_tables.stopping.state_values import integrate, refuse_times
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.stopping.stop_values import UPPER_DELTA
 from puck_tables.table.table import refuse_other_kind
@@ -255,20 +250,17 @@ def states(
         longest = max((body.longest for body in bodies.values()), default=2.0)
         if not fits(rows, longest).all():
             raise InputError(TOO_LARGE)
-        pucks = chosen.pucks(launches_in(rows[:, plain]), threads)
-        found = np.empty((STATE_ROWS, moments.size))
-        looked, others = plain[each], np.flatnonzero(~plain)
-        number = np.cumsum(plain) - 1  # of a plain puck among such
-        some = number[each[looked]], moments[looked]
-        states_found = looked_up(chosen, pucks, *some, threads)
-        found[:, looked] = states_found
+        found, looked = np.empty((STATE_ROWS, moments.size)), plain[each]
+        which_plain = (np.cumsum(plain) - 1)[each[looked]]
+        part = None if slopes is None else np.empty((which_plain.size, *slopes.shape[1:]))
+        found[:, looked] = all_looked_up(
+            chosen, launches_in(rows[:, plain]), which_plain, moments[looked], threads, part
+        )
+        others = np.flatnonzero(~plain)
         if slopes is not None:
-            part = np.empty((len(some[1]), *slopes.shape[1:]))
-            fill_state_slopes(chosen, pucks, *some, states_found, part, threads)
             slopes[looked] = part
             integrated_jacobians(bodies, rows, others, each, moments, slopes, threads)
         integrate(bodies, rows, others, each, moments, found, threads)
-        found[HEADING] += directions(rows[0], rows[1])[each]
         told = _explained(int(plain.sum()), int((~plain).sum()))
     if slopes is None:
         return states_in(found, moments, launches, which, shape, told)

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
+from puck_tables._core.real import rounded_up
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.table import Table
@@ -87,7 +88,7 @@ def built(
             )
         table = at(cells)
         found = measured(table)
-        promised = _rounded_up(max(1.25 * found.worst, goal.finest))
+        promised = rounded_up(max(1.25 * found.worst, goal.finest), 2)
         return replace(table, accuracy=found, tolerance=promised)
     wanted = checked_accuracy(accuracy, goal.default, goal.finest, goal.units)
     # even, so that every other node is a grid as well: it tells the order
@@ -103,9 +104,3 @@ def built(
         f"{found.worst:.1e} is what so many about give",
         reachable=found.worst,
     )
-
-
-def _rounded_up(value: float) -> float:
-    """To two digits, upwards."""
-    scale = 10.0 ** (math.floor(math.log10(value)) - 1)
-    return float(f"{math.ceil(value / scale) * scale:.1e}")

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from difflib import get_close_matches
 
 import numpy as np
 
+from puck_tables._core.wording import meant
 from puck_tables.errors import InputError
 from puck_tables.motion.body import is_plain
 from puck_tables.scene.agreement import floor_faults
@@ -343,12 +343,10 @@ def _strange_rims(scene: SceneSpec) -> Iterator[str]:
         for side in ("puck", "partner"):
             given, may = getattr(rim, side), (called_so if side == "puck" else known - {""})
             if given not in may:
-                near = get_close_matches(given, sorted(may), 1, 0.6)
-                meant = f" (did you mean {near[0]!r}?)" if near else ""
                 more = "" if side == "puck" else ", or a cushion, 'wall 0' or all, 'wall'"
                 yield (
                     f"rim[{number}].{side} = {given!r}: must be the name of a puck or the colour "
-                    f"of pucks{more}{meant}"
+                    f"of pucks{more}{meant(given, sorted(may))}"
                 )
 
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import Progress
-from puck_tables._core.real import checked_progress, finite_array, positive, real, shown
+from puck_tables._core.real import checked_progress, finite_array, positive, real, whole
 from puck_tables.errors import InputError
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import pucks_of, start_of
@@ -81,8 +81,8 @@ def aim(
 ) -> BoardAim:  # fmt: skip
     """Launches on a board, as :meth:`puck_tables.Scene.aim` has them."""
     checked_progress(progress)
-    _whole("max_impacts", max_impacts, 0, MOST_IMPACTS)
-    _whole("count", count, 1, MOST_COUNT)
+    whole("max_impacts", max_impacts, 0, MOST_IMPACTS)
+    whole("count", count, 1, MOST_COUNT)
     wanted = target_of(scene, target, pocket, puck, striker, hits)
     searches = _searches(scene, wanted, spin, speed, max_speed, max_spin)
     if wanted.pocket < 0 and wanted.puck != wanted.striker:
@@ -198,8 +198,3 @@ def _plenty(scene: SceneSpec, wanted: Target) -> float:
     if striker.friction == 0.0:
         raise InputError("nothing brakes the striker (its friction is 0): give max_speed")
     return PLENTY * math.sqrt(2.0 * decel * max(way, striker.radius)) / share
-
-
-def _whole(name: str, value: int, low: int, high: int) -> None:
-    if not isinstance(value, int) or isinstance(value, bool) or not low <= value <= high:
-        raise InputError(f"{name} must be a whole number from {low} to {high}, got {shown(value)}")

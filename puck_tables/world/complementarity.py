@@ -55,7 +55,8 @@ def load_of(sight: FloatArray, mode: int, push: float, rim: float) -> float:
 def better_mode(buffer: GroupBuffer, c: int, mode: int, scales: Scales, may_slide: bool) -> int:
     """The mode that forces and accelerations ask for, when it was supposed to be ``mode``.
 
-    ``may_slide``: also on rims without bound, which then nothing presses.
+    ``may_slide``: also on rims without bound, which then nothing presses; guesses from the start go
+    round in circles with it (13 of 300 racks were refused, 2 are).
     """
     gap, slip, soft, rolls = leads(buffer, c)
     slack = 0.5 * LEVEL * scales.rate

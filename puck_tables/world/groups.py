@@ -1,21 +1,15 @@
-"""Discs that push each other: who they are, and the ways on which they go until that changes.
+"""Discs that push each other: who they are, and the paths on which they go until that changes.
 
 The engine says when contacts press; here those that do become groups, each is followed
-(:mod:`puck_tables.world.pushing`), and its ways become the segments of its discs.
+(:mod:`puck_tables.world.group_paths`), and its paths become the segments of its discs.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any
 
-import numpy as np
-import numpy.typing as npt
-
-from puck_tables._core.arrays import FloatArray
-from puck_tables.errors import PuckError
+from puck_tables.kernels.compile import inlined, inner, kernel
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
-from puck_tables.scene.ingredients import FREE
 from puck_tables.world.contact_row import ACTS, NX, NY
 from puck_tables.world.engine_state import (
     CONTACT,
@@ -27,49 +21,14 @@ from puck_tables.world.engine_state import (
     N_HISTORY,
     N_PIECES,
     N_WORKS,
-    TOGETHER,
     Engine,
-    Whole,
 )
-from puck_tables.world.floor_under import moves_along
-from puck_tables.world.group import (
-    APART,
-    HELD,
-    LEVEL,
-    PARTS,
-    RESTS,
-    RIM_GIVES,
-    RIM_STOPS,
-    RUNS_OFF,
-    STICKS,
-    UNSOLVED,
-    Group,
-    Scales,
-    buffer_for,
-)
-from puck_tables.world.layout import (
-    HOLD,
-    HOLD_VX,
-    HOLD_VY,
-    LIGHTNESS,
-    PULL_X,
-    PULL_Y,
-    RADIUS,
-    REGION,
-    TURNABILITY,
-    TWIST,
-)
-from puck_tables.world.paths import DURATION, FIRST, FOR_EVER, PIECE_COLUMNS
+from puck_tables.world.group_paths import Workplace, paths_of
+from puck_tables.world.layout import LIGHTNESS, RADIUS, kinetic, write_over
+from puck_tables.world.lone import LONGEST
+from puck_tables.world.paths import DURATION, FIRST, FOR_EVER
 from puck_tables.world.paths import START as BEGINS
-from puck_tables.world.pressing import press
-from puck_tables.world.pushing import follow
-from puck_tables.world.segment import (
-    ANGLE,
-    FIRST_PIECE,
-    PATH,
-    PLACE_X,
-    PLACE_Y,
-)  # fmt: skip
+from puck_tables.world.segment import ANGLE, FIRST_PIECE, PATH, PLACE_X, PLACE_Y
 from puck_tables.world.segment_starts import (
     CONCERNED,
     NOT_CONCERNED,
@@ -80,6 +39,7 @@ from puck_tables.world.segment_starts import (
     note,
     stay,
 )  # fmt: skip
+from puck_tables.world.setting_off import FULL, REACHED, TANGLED
 from puck_tables.world.step_ledger import (
     BACK_X,
     BACK_Y,
@@ -91,249 +51,217 @@ from puck_tables.world.step_ledger import (
     RIM_HEAT,
     SEGMENT,
     SEVERAL,
-    WORK_COLUMNS,
 )
 from puck_tables.world.step_ledger import START as WORK_START
 
-ROWS = 400  # steps of a group before its segments end for a new look
-FINEST = 1e-13  # error of a step in units of the scales: finer is rounding
-_TRIES = 100  # contacts given up at one moment, at most: more is no motion
 LOST_SHARE = 1e-15  # of the energy of free pucks: less lost as rims grip is rounding
+_PRESSES, _PRESSED = 1.0, 2.0  # ACTS of a contact: now, and before already
 
 
-def push_on(engine: Engine, room: Room) -> Engine:
-    """Send the groups that push now on their way; marks say who is left to fly alone."""
-    contacts = room.contacts[: engine.counts[N_CONTACTS]]
-    contacts = contacts[room.rows[: len(contacts), ACTS] > 0.0]
-    held = engine.held[: engine.counts[N_HELD]]
-    held = held[engine.group[held[:, 0]] > 0]  # others have flown alone since
-    held_before = {frozenset(pair) for pair in held.tolist()}
-    for i in np.flatnonzero(room.marks == CONCERNED):
-        engine.group[i] = 0
-    held = held[engine.group[held[:, 0]] > 0]
-    t, scales = float(engine.clock[0]), _scales_of(engine)
-    films, reels = _driven_now(engine, t)
-    shared = Group(
-        engine.discs, engine.obstacles, engine.regions, engine.surface, engine.rims, films, reels,
-        engine.forcing, engine.spans,
-    )  # fmt: skip
-    for part in _components(contacts, len(engine.discs)):
-        members = np.unique(part[part >= 0])
-        before = room.states.copy()
-        kept, t_end, ways, jump, work_rows = _follow(shared, members, part, room.states, t, scales)
-        _note_contacts(engine, t, part, kept, held_before, float(jump[RIM_HEAT]), before, room)
-        led = _led_by(engine, members)
-        if jump[RIM_HEAT] != 0.0 and led >= 0 and (part >= 0).all():  # no cushion shares it
-            jump[[BACK_X, BACK_Y]] = _momentum(engine, members, before - room.states)
-        jump[RIM_HEAT] = 0.0  # the event has it
-        for i in members:  # a rim that gripped at once has changed what touches it, too
-            if room.marks[i] == NOT_CONCERNED and (room.states[i] != before[i]).any():
-                room.marks[i] = CONCERNED
-        if not len(kept):
-            engine = _book(engine, NO_SEGMENT, t, jump, work_rows, led)
-            continue
-        engine.counts[N_GROUPS] += 1
-        held = np.vstack([held, kept])
-        segment = NO_SEGMENT
-        for place, i in enumerate(members):
-            engine.group[i] = engine.counts[N_GROUPS]
-            if engine.drives[i, 0] < engine.drives[i, 1]:
-                continue  # it stays on its own way
-            room.marks[i] = SENT
-            if t_end == math.inf:
-                stay(engine, int(i), t, room)
-            else:
-                engine = _set_out(engine, int(i), t, t_end, ways[place])
-            segment = int(engine.counts[N_HISTORY]) - 1
-        engine = _book(engine, segment, t, jump, work_rows, led)
-    engine.held[: len(held)], engine.counts[N_HELD] = held, len(held)
-    return engine
+@kernel
+def push_on(engine: Engine, room: Room, place: Workplace) -> int:
+    """Send the groups that push now on their way; marks say who is left to fly alone.
 
-
-def _scales_of(engine: Engine) -> Scales:
-    speed, rate, tol = engine.scale[:3].tolist()
-    return Scales(speed, rate, max(tol, FINEST))
-
-
-def _driven_now(engine: Engine, t: float) -> tuple[FloatArray, Whole]:
-    """The piece on which each driven disc is now, or at whose end it stays; their rows."""
-    films, reels = np.zeros((0, PIECE_COLUMNS)), np.zeros_like(engine.drives)
-    for i in np.flatnonzero(engine.drives[:, 0] < engine.drives[:, 1]):
-        if engine.kinds[i] == PATH:
-            row = engine.pieces[int(engine.segments[i, FIRST_PIECE])]
-        else:
-            row = np.zeros(PIECE_COLUMNS)
-            row[BEGINS], row[DURATION] = t, FOR_EVER
-            row[FIRST : FIRST + 3] = engine.segments[i, [PLACE_X, PLACE_Y, ANGLE]]
-            row[FIRST + 9 : FIRST + 12] = row[FIRST : FIRST + 3]
-        reels[i] = len(films), len(films) + 1
-        films = np.vstack([films, row])
-    return films, reels
-
-
-def _note_contacts(
-    engine: Engine, t: float, part: Whole, kept: Whole, held_before: set[frozenset[int]],
-    lost: float, before: FloatArray, room: Room,
-) -> None:  # fmt: skip
-    """Write down the contacts that are new, and what was lost where rims gripped at once."""
-    free = engine.discs[:, LIGHTNESS] > 0.0
-    fresh = [pair for pair in kept.tolist() if frozenset(pair) not in held_before]
-    if not fresh and abs(lost) > LOST_SHARE * float(_energies(engine, before[free], free).sum()):
-        fresh = part[:1].tolist()
-    for i, j in fresh:
-        row = room.rows[room.contacts[: engine.counts[N_CONTACTS]].tolist().index([i, j])]
-        x, y = room.states[i, X : Y + 1] + engine.discs[i, RADIUS] * row[[NX, NY]]
-        note(engine, t, CONTACT, i, j, float(x), float(y))
-        engine.events[engine.counts[N_EVENTS] - 1, LOST] = lost
-        lost = 0.0
-
-
-def _energies(engine: Engine, states: FloatArray, free: npt.NDArray[np.bool_]) -> FloatArray:
-    """Kinetic energies of discs that can move, J."""
-    squares = states[:, VX] ** 2 + states[:, VY] ** 2
-    discs = engine.discs[free]
-    energies: FloatArray = 0.5 * (
-        squares / discs[:, LIGHTNESS] + states[:, SPIN] ** 2 / discs[:, TURNABILITY]
-    )
-    return energies
-
-
-def _components(contacts: Whole, discs: int) -> list[Whole]:
-    """Contacts that hang together."""
-    root = np.arange(discs)
-
-    def find(i: int) -> int:
-        while root[i] != i:
-            i = int(root[i])
-        return i
-
-    for i, j in contacts:
-        if j >= 0:
-            a, b = find(int(i)), find(int(j))
-            root[max(a, b)] = min(a, b)
-    roots = np.array([find(int(i)) for i in contacts[:, 0]], np.int64)
-    return [contacts[roots == one] for one in np.unique(roots)]
-
-
-def _follow(
-    shared: Group, members: Whole, contacts: Whole, states: FloatArray, t: float, scales: Scales
-) -> tuple[Whole, float, FloatArray, FloatArray, FloatArray]:
-    """The contacts of a group that press, until when it is known, and pieces (m, rows, 21).
-
-    And the ledger (8,) of what jumped at once, and the works (rows, 37) of the way.
-
-    No contacts where none presses; where all rest until they are hit, for ever and no pieces.
+    FULL: nothing was done, for there may be too few rows; TANGLED: it is no motion.
     """
-    discs, surface = shared.discs[members], shared.surface
-    pulled = discs[:, [PULL_X, PULL_Y, TWIST]].any(axis=1)
-    spans = [span for span in shared.spans[members] if span[0] < span[1]]
-    rows = [shared.forcing[slice(*span), 0] for span in spans]
-    kinks = rows if surface.changes != 0.0 else map(_jumps_in, rows)
-    jumps = [row for times in kinks for row in times if row > t]
-    # what is pulled or carried may go on for ever, and gets faster than bounds should be
-    driven = pulled.any() or any(surface[:2]) or surface.spin != 0.0
-    driven = driven or bool(jumps) or discs[:, [HOLD_VX, HOLD_VY]].any()
-    ends = [shared.films[first, DURATION] for first, last in shared.reels[members] if first < last]
-    driven = driven or any(duration >= FOR_EVER for duration in ends)  # by hand, until it turns
-    horizon = t + 2.0 * scales.speed / scales.rate if driven else math.inf
-    horizon = min([horizon, *jumps])
-    swings = surface.spin != 0.0 and (pulled.any() or bool(jumps))
-    swings = swings or (surface.changes != 0.0 and bool(jumps))
-    # what holds those who lie astride changes as they are carried on
-    over = shared.regions.astride[discs[:, REGION].astype(np.int64)].any()
-    swings = swings or bool(over and moves_along(surface))
-    for first, last in shared.reels[members]:
-        if first < last:  # what drives may turn where its piece ends
-            horizon = min(horizon, float(shared.films[first, [BEGINS, DURATION]].sum()))
-    nothing = np.zeros((len(members), 0, PIECE_COLUMNS))
-    jump, idle = np.zeros(LEDGER), np.zeros((0, WORK_COLUMNS))
-    modes = np.full(len(contacts), STICKS)
-    for _ in range(_TRIES):
-        buffer = buffer_for(len(members), len(contacts), int((discs[:, HOLD] != FREE).sum()))
-        motions = np.zeros(len(members), np.int64)
-        how = press(shared, members, contacts, states, t, scales, modes, motions, jump, buffer)
-        if how == UNSOLVED:
-            break
-        contacts, modes = contacts[modes != APART], modes[modes != APART]
-        if not len(contacts):
-            return contacts, t, nothing, jump, idle
-        if (motions == HELD).all() and not (jumps or swings):
-            return contacts, math.inf, nothing, jump, idle
-        pieces = np.zeros((len(members), ROWS, PIECE_COLUMNS))
-        work_rows = np.zeros((ROWS, WORK_COLUMNS))
-        moved = states.copy()
-        how, which, t_end, count = follow(
-            shared, members, contacts, moved, t, horizon, scales, modes, motions, pieces, work_rows,
-            buffer,
-        )  # fmt: skip
-        if t_end > t and count > 0:
-            return contacts, t_end, pieces[:, :count], jump, work_rows[:count]
-        if how not in (PARTS, RIM_STOPS, RIM_GIVES, RUNS_OFF, RESTS):
-            break
-        states[members] = moved[members]  # sooner than a time is rounded to
-        modes = np.full(len(contacts), STICKS)
-        if how == RIM_GIVES:
-            modes[which] = -1 if buffer.pushes[which, 1] < 0.0 else 1
-        elif how in (PARTS, RUNS_OFF):
-            parts = buffer.watched[0, : len(contacts), 0] < LEVEL * scales.rate  # all that do
-            parts[which] = True
-            contacts, modes = contacts[~parts], modes[~parts]
-        if not len(contacts):
-            return contacts, t, nothing, jump, idle
-    raise PuckError(TOGETHER.format(time=t))
+    t, rows = engine.clock[0], _find_groups(engine, room) * (LONGEST + 1)
+    lacks_works = engine.counts[N_WORKS] + rows > engine.work_rows.shape[0]
+    if lacks_works or engine.counts[N_PIECES] + rows > engine.pieces.shape[0]:
+        return FULL
+    _let_go(engine, room)
+    _look_at_driven(engine, t, place)
+    for first in range(engine.discs.shape[0]):
+        size, contacts = _gather(engine, first, room, place)
+        if contacts > 0 and not _send(engine, t, size, contacts, room, place):
+            return TANGLED
+    return REACHED
 
 
-def _jumps_in(times: FloatArray) -> list[float]:
-    """When rows over time may jump: at the first, the last and where a time stands twice."""
-    return [times[0], times[-1], *times[1:][np.diff(times) == 0.0]]
+@inlined
+def _find_groups(engine: Engine, room: Room) -> int:
+    """Give all discs that contacts join the number of the first; how many press on something."""
+    joined, count = room.shares, 0
+    for i in range(joined.shape[0]):
+        joined[i] = -1
+    for n in range(engine.counts[N_CONTACTS]):
+        for m in range(2):
+            i = room.contacts[n, m]
+            if room.rows[n, ACTS] > 0.0 and i >= 0 and joined[i] < 0:
+                joined[i] = i
+                count += 1
+    grown = True
+    while grown:
+        grown = False
+        for n in range(engine.counts[N_CONTACTS]):
+            i, j = room.contacts[n, 0], room.contacts[n, 1]
+            if room.rows[n, ACTS] > 0.0 and j >= 0 and joined[i] != joined[j]:
+                joined[i] = joined[j] = min(joined[i], joined[j])
+                grown = True
+    return count
 
 
-def _with_rows(engine: Engine, name: str, count: int, rows: FloatArray) -> Engine:
-    """With rows at the end of its pieces or works, of which so many are counted there."""
-    first, there = int(engine.counts[count]), getattr(engine, name)
-    if first + len(rows) > len(there):
-        more: dict[str, Any] = {name: np.zeros((2 * (first + len(rows)), rows.shape[1]))}
-        more[name][:first], there = there[:first], more[name]
-        engine = engine._replace(**more)
-    there[first : first + len(rows)] = rows
-    engine.counts[count] = first + len(rows)
-    return engine
+@inlined
+def _let_go(engine: Engine, room: Room) -> None:
+    """Contacts held no more are forgotten; those that press remember whether they did before."""
+    for n in range(engine.counts[N_CONTACTS]):
+        row = room.rows[n]
+        for k in range(engine.counts[N_HELD]):
+            i, j = engine.held[k, 0], engine.held[k, 1]
+            same = i == room.contacts[n, 0] and j == room.contacts[n, 1]
+            if same and engine.group[i] > 0 and row[ACTS] > 0.0:
+                row[ACTS] = _PRESSED
+    for i in range(engine.discs.shape[0]):
+        if room.marks[i] == CONCERNED:
+            engine.group[i] = 0
+    left = 0
+    for k in range(engine.counts[N_HELD]):
+        if engine.group[engine.held[k, 0]] > 0:  # others fly alone
+            write_over(engine.held[left], engine.held[k])
+            left += 1
+    engine.counts[N_HELD] = left
 
 
-def _led_by(engine: Engine, members: Whole) -> int:
-    """Which of them is driven."""
-    driven = members[engine.discs[members, LIGHTNESS] == 0.0]
-    if len(driven) > 1:
-        return SEVERAL
-    return int(driven[0]) if len(driven) else NONE
+@inlined
+def _look_at_driven(engine: Engine, t: float, place: Workplace) -> None:
+    """The piece on which each driven disc is now, or at whose end it stays."""
+    for i in range(engine.discs.shape[0]):
+        if engine.drives[i, 0] >= engine.drives[i, 1]:
+            continue
+        place.group.reels[i, 0], place.group.reels[i, 1] = i, i + 1
+        row, segment = place.group.films[i], engine.segments[i]
+        if engine.kinds[i] == PATH:
+            write_over(row, engine.pieces[int(segment[FIRST_PIECE])])
+        else:
+            row[BEGINS], row[DURATION] = t, FOR_EVER
+            for end in (FIRST, FIRST + 9):
+                row[end], row[end + 1], row[end + 2] = (
+                    segment[PLACE_X], segment[PLACE_Y], segment[ANGLE],
+                )  # fmt: skip
 
 
-def _momentum(engine: Engine, members: Whole, states: FloatArray) -> FloatArray:
-    """The momentum of those of them that can move, N s."""
-    free = members[engine.discs[members, LIGHTNESS] > 0.0]
-    total: FloatArray = (states[free, VX : VY + 1] / engine.discs[free, LIGHTNESS, None]).sum(
-        axis=0
-    )
-    return total
+@inlined
+def _gather(engine: Engine, first: int, room: Room, place: Workplace) -> tuple[int, int]:
+    """The members and contacts of the group of which a disc is the first; how many."""
+    size = contacts = 0
+    for i in range(engine.discs.shape[0]):
+        if room.shares[i] == first:
+            place.members[size] = i
+            size += 1
+    for n in range(engine.counts[N_CONTACTS]):
+        if room.rows[n, ACTS] > 0.0 and room.shares[room.contacts[n, 0]] == first:
+            write_over(place.contacts[contacts], room.contacts[n])
+            place.contacts[contacts, 2] = n
+            contacts += 1
+    return size, contacts
 
 
-def _book(
-    engine: Engine, segment: int, t: float, jump: FloatArray, work_rows: FloatArray, led: int
-) -> Engine:
+@inner
+def _send(engine: Engine, t: float, size: int, contacts: int, room: Room, place: Workplace) -> bool:
+    """Follow a group, and note its contacts, paths and works; whether there is a motion."""
+    members, states, jump, alone = place.members[:size], room.states, place.jump, True
+    for c in range(contacts):
+        alone = alone and place.contacts[c, 1] >= 0
+    first_row = place.contacts[0, 2]
+    for i in range(states.shape[0]):
+        write_over(room.before[i], states[i])
+    jump[:] = 0.0
+    kept, t_end, count = paths_of(engine, t, size, contacts, states, place)
+    if kept < 0:
+        return False
+    _note_contacts(engine, t, kept, first_row, room, place)
+    led = NONE
+    for i in members:
+        if engine.discs[i, LIGHTNESS] == 0.0:
+            led = i if led == NONE else SEVERAL
+    if jump[RIM_HEAT] != 0.0 and led >= 0 and alone:  # no cushion shares it
+        jump[BACK_X] = jump[BACK_Y] = 0.0
+        for i in members:
+            if engine.discs[i, LIGHTNESS] > 0.0:
+                for m in range(2):
+                    change = room.before[i, VX + m] - states[i, VX + m]
+                    jump[BACK_X + m] += change / engine.discs[i, LIGHTNESS]
+    jump[RIM_HEAT] = 0.0  # the event has it
+    for i in members:  # a rim that gripped at once has changed what touches it, too
+        for column in range(6):
+            if room.marks[i] == NOT_CONCERNED and states[i, column] != room.before[i, column]:
+                room.marks[i] = CONCERNED
+    segment = NO_SEGMENT
+    if kept > 0:
+        segment = _set_out(engine, t, t_end, size, count, room, place)
+        for c in range(kept):
+            write_over(engine.held[engine.counts[N_HELD]], room.contacts[place.contacts[c, 2]])
+            engine.counts[N_HELD] += 1
+    _book(engine, segment, t, count, led, place)
+    return True
+
+
+@inlined
+def _set_out(
+    engine: Engine, t: float, t_end: float, size: int, count: int, room: Room, place: Workplace
+) -> int:
+    """The segments of a group along its paths, which are kept; that of one of them."""
+    engine.counts[N_GROUPS] += 1
+    segment = NO_SEGMENT
+    for k in range(size):
+        i = place.members[k]
+        engine.group[i] = engine.counts[N_GROUPS]
+        if engine.drives[i, 0] < engine.drives[i, 1]:
+            continue  # it stays on its own way
+        room.marks[i] = SENT
+        if t_end == math.inf:
+            stay(engine, i, t, room)
+        else:
+            first = engine.counts[N_PIECES]
+            for row in range(count):
+                write_over(engine.pieces[first + row], place.pieces[k, row])
+            engine.counts[N_PIECES] += count
+            fly_along(engine.segments[i], engine.pieces, first, first + count, t, t_end)
+            engine.kinds[i] = PATH
+            keep_segment(engine, i)
+        segment = engine.counts[N_HISTORY] - 1
+    return segment
+
+
+@inlined
+def _book(engine: Engine, segment: int, t: float, count: int, led: int, place: Workplace) -> None:
     """Keep what was worked on a segment from t on, and at its start, perhaps led by a disc."""
-    if jump.any():
-        row = np.zeros((1, WORK_COLUMNS))
-        row[0, WORK_START], row[0, DONE : DONE + LEDGER] = t, jump
-        work_rows = np.vstack([row, work_rows])
-    work_rows[:, SEGMENT], work_rows[:, LED_BY] = segment, led
-    return _with_rows(engine, "work_rows", N_WORKS, work_rows)
+    jumps = False
+    for column in range(LEDGER):
+        jumps = jumps or place.jump[column] != 0.0
+    first = engine.counts[N_WORKS]
+    if jumps:
+        row = engine.work_rows[first]
+        row[:] = 0.0
+        row[WORK_START], row[SEGMENT], row[LED_BY] = t, segment, led
+        write_over(row[DONE:], place.jump)
+        first += 1
+    for k in range(count):
+        row = engine.work_rows[first + k]
+        write_over(row, place.work_rows[k])
+        row[SEGMENT], row[LED_BY] = segment, led
+    engine.counts[N_WORKS] = first + count
 
 
-def _set_out(engine: Engine, i: int, t: float, t_end: float, rows: FloatArray) -> Engine:
-    """The segment of a disc along rows of a way, which are kept."""
-    engine = _with_rows(engine, "pieces", N_PIECES, rows)
-    last = int(engine.counts[N_PIECES])
-    fly_along(engine.segments[i], engine.pieces, last - len(rows), last, t, t_end)
-    engine.kinds[i] = PATH
-    keep_segment(engine, i)
-    return engine
+@inlined
+def _note_contacts(
+    engine: Engine, t: float, kept: int, first_row: int, room: Room, place: Workplace
+) -> None:
+    """Write down the contacts that are new, and what was lost where rims gripped at once."""
+    lost, energy, fresh = place.jump[RIM_HEAT], 0.0, 0
+    for c in range(kept):
+        fresh += room.rows[place.contacts[c, 2], ACTS] == _PRESSES
+    for i in range(engine.discs.shape[0]):
+        at = room.before[i]
+        energy += kinetic(engine.discs[i], at[VX], at[VY], at[SPIN])
+    once = fresh == 0 and abs(lost) > LOST_SHARE * energy
+    for c in range(1 if once else kept):
+        n = first_row if once else place.contacts[c, 2]
+        if once or room.rows[n, ACTS] == _PRESSES:
+            i, radius = room.contacts[n, 0], engine.discs[room.contacts[n, 0], RADIUS]
+            note(
+                engine, t, CONTACT, i, room.contacts[n, 1],
+                room.states[i, X] + radius * room.rows[n, NX],
+                room.states[i, Y] + radius * room.rows[n, NY],
+            )  # fmt: skip
+            engine.events[engine.counts[N_EVENTS] - 1, LOST] = lost
+            lost = 0.0

@@ -63,6 +63,13 @@ def kinetic(disc: FloatArray, vx: float, vy: float, spin: float) -> float:
 
 
 @inlined
+def write_over(row: FloatArray, values: FloatArray) -> None:
+    """Make the first numbers of a row those of another, or of some whole numbers."""
+    for column in range(values.shape[0]):
+        row[column] = values[column]
+
+
+@inlined
 def feels_floor(disc: FloatArray) -> bool:
     """Whether dry friction, or anything else over the floor, acts on a disc."""
     return disc[DECEL] > 0.0 or acts(disc[DRAG:])

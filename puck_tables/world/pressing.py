@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel, patience
+from puck_tables.kernels.compile import inlined, inner, patience
 from puck_tables.scene.friction import SPIN, VX
 from puck_tables.world.break_away import find_break_away
 from puck_tables.world.complementarity import rim_mode
@@ -109,7 +109,7 @@ def _come_to_rest(
     return found
 
 
-@kernel
+@inner
 def press(
     group: Group, members: IntArray, contacts: IntArray, states: FloatArray, t: float,
     scales: Scales, modes: IntArray, motions: IntArray, ledger: FloatArray, buffer: GroupBuffer,
@@ -170,10 +170,7 @@ def press(
                 modes[c] = gives[c]
             stopped[c] = STICKS
             if modes[c] != STICKS and buffer.sights[c, GRIP] == math.inf:
-                buffer.sights[c, GRIP], stopped[c] = (
-                    0.0,
-                    APART,
-                )  # first it is seen whether it presses
+                buffer.sights[c, GRIP], stopped[c] = 0.0, APART  # first, whether it presses
         if not find_break_away(group, members, modes, motions, y, scales, buffer):
             return UNSOLVED
         again = False

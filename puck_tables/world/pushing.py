@@ -14,7 +14,7 @@ from typing import cast
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, inner, kernel, patience
+from puck_tables.kernels.compile import inlined, inner, patience
 from puck_tables.motion.steppers import times_as_long
 from puck_tables.scene.friction import VX, VY, X, Y
 from puck_tables.world.contact_kinematics import look
@@ -296,7 +296,7 @@ def _is_touched_at_rest(group: Group, members: IntArray, contacts: int, motions:
     return False
 
 
-@kernel
+@inner
 def follow(
     group: Group, members: IntArray, contacts: IntArray, states: FloatArray, t: float,
     t_end: float, scales: Scales, modes: IntArray, motions: IntArray, pieces: FloatArray,

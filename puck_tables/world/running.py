@@ -284,8 +284,6 @@ class Running:
                 self._grow()
                 first = THOSE_LEFT
             elif how == PUSHING:
-                from puck_tables.world.groups import push_on  # compiled where it is needed
-
                 if self._engine.counts[g.N_PIECES] > MOST_STEPS:
                     raise self._no_end()
                 self._engine = with_law_for(
@@ -295,13 +293,25 @@ class Running:
                 if full and self.time - pushes[0] <= PUSHED_IN * unit:
                     raise PuckError(self._failure(CROWDED))
                 pushes.append(self.time)
-                self._engine, first = push_on(self._engine, self._room), THOSE_LEFT
+                self._push_on()
+                first = THOSE_LEFT
             elif how == MISPLACED:
                 raise InputError(self._overlap())
             elif how == PAUSED and self.time - mark > CROWD * unit:
                 mark = self.time
             else:
                 raise PuckError(self._failure(CROWDED if how == PAUSED else how))
+
+    def _push_on(self) -> None:
+        """Send the groups that push now on their way."""
+        from puck_tables.world import groups  # compiled where it is needed
+        from puck_tables.world.group_paths import workplace_for
+
+        place = workplace_for(self._engine)
+        while (how := groups.push_on(self._engine, self._room, place)) == FULL:
+            self._grow()
+        if how != REACHED:
+            raise PuckError(self._failure(how))
 
     @property
     def place_error(self) -> float:

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import run_chunks
 from puck_tables._core.memory import check_memory
-from puck_tables._core.real import shown
+from puck_tables._core.real import whole
 from puck_tables.errors import InputError, PuckError
 from puck_tables.kernels.patience import FEW, compiled_at_once
 from puck_tables.scene.friction import VX, VY
@@ -43,10 +43,9 @@ class Together:
     """
 
     def __init__(self, scene: SceneSpec, n: int) -> None:
-        if isinstance(n, bool) or not isinstance(n, int | np.integer) or n < 1:
-            raise InputError(f"n must be a whole number from 1 on, got {shown(n)}")
+        self._n = whole("n", n, 1)
         self._first = first = World(scene)
-        self.scene, self.names, self._n = first.scene, first.names, int(n)
+        self.scene, self.names = first.scene, first.names
         self._order, self._place, engine = first._order, first._place, first._engine
         held = (engine.discs[:, HOLD] != FREE).any() or engine.surface.changes != 0.0
         self._plain = not (held or moves_along(engine.surface))

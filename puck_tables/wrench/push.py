@@ -16,7 +16,7 @@ import numpy.typing as npt
 from scipy.integrate import solve_ivp
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array, instance, one_velocity, real
+from puck_tables._core.real import finite_array, instance, one_velocity, real, whole
 from puck_tables.contact.base import Base
 from puck_tables.errors import ContactError, InputError
 from puck_tables.io.columns import following
@@ -256,9 +256,7 @@ def push(
         raise InputError(
             f"a push of {span:g} m is longer than {_LONGEST:g} times the reach of the base"
         )
-    count = real("frames", frames, "states")
-    if not (count == int(count) and 1 <= count <= _MOST):
-        raise InputError(f"frames must be a whole number from 1 to {_MOST}, got {frames}")
+    whole("frames", frames, 1, _MOST)
     turned = real("angle", angle, "rad")
     own, side = _touched(base, at)
     begun = own * complex(math.cos(turned), math.sin(turned))
@@ -268,7 +266,7 @@ def push(
         raise ContactError("no slip was found in which finger and floor agree")
     if span == 0.0:
         return _result(puck, finger, speed, np.zeros(1), y[:, None], "how it begins")
-    return _followed(puck, finger, speed, y, span, int(count), base.reach)
+    return _followed(puck, finger, speed, y, span, frames, base.reach)
 
 
 def _followed(

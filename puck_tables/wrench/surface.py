@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import real
+from puck_tables._core.real import whole
 from puck_tables.errors import InputError
 from puck_tables.io.columns import following
 from puck_tables.io.dataset import Dataset, variable
@@ -174,13 +174,11 @@ def limit_surface(puck: PuckSpec, count: int | None) -> LimitSurface:
     is_round = puck.shape is None
     if count is None:
         count = OF_A_ROUND if is_round else OF_A_BASE
-    number, most = real("n", count, "points"), MOST if is_round else MOST_OF_A_BASE
-    if not (number == int(number) and LEAST <= number <= most):
-        raise InputError(f"n must be a whole number from {LEAST} to {most}, got {count}")
+    whole("n", count, LEAST, MOST if is_round else MOST_OF_A_BASE)
     if puck.friction == 0.0:
         raise InputError("a puck with friction = 0 has no limit surface: give friction > 0")
-    phi = np.linspace(-0.5 * np.pi, 0.5 * np.pi, int(number))
-    psi = np.zeros(1) if is_round else np.linspace(-np.pi, np.pi, 2 * int(number) - 1)
+    phi = np.linspace(-0.5 * np.pi, 0.5 * np.pi, count)
+    psi = np.zeros(1) if is_round else np.linspace(-np.pi, np.pi, 2 * count - 1)
     unit = puck.mass * puck.decel
     parts = _of_twists(puck, psi, phi) * [unit, unit, unit * slip_length(puck), 1.0, 1.0, 1.0]
     columns = np.moveaxis(parts[0] if is_round else parts, -1, 0)
