@@ -78,6 +78,7 @@ DOORS = {
     },
     "h5py": {"film.readers.poses", "io.hdf5", "table.file"},
     "xarray": {"io.frames"},
+    "svgelements": {"_core.drawn_outlines"},
     "pandas": {"io.frames"},
     "pyarrow": {"io.parquet"},
     "matplotlib": {"plot"},

@@ -45,7 +45,7 @@ class Kind:
     choices: tuple[str, ...] = ()
     part: Any = None
     made: Any = None  # what is made of the entries of a part, if it is another class
-    file: str | None = None  # a text that names a file where it ends so
+    file: str | tuple[str, ...] | None = None  # a text that names a file where it ends so
     objects: tuple[type, ...] = ()  # taken as they are, in place of a text
     batch: bool = False  # a pair of which there may be many, one for each launch
     kinds: Any = None  # name -> dataclass: a table whose 'kind' says which, in place of rows

@@ -17,9 +17,8 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.doubts import OF_A_PUCK, question
+from puck_tables._core.drawn_outlines import SUFFIXES, outlines_of
 from puck_tables._core.own_folder import say
-from puck_tables._core.quantities import X, Y
-from puck_tables._core.read_columns import numbers_of
 from puck_tables._core.real import finite_array, instance, listed, number_in, positive, shown
 from puck_tables._core.safe_read import is_number
 from puck_tables._core.safe_write import as_utf8
@@ -28,10 +27,9 @@ from puck_tables.errors import ContactError, InputError
 
 NAMES = (
     "box:LENGTHxWIDTH, disc:RADIUS, annulus:RADIUSxINNER, polygon:X,Y;X,Y;X,Y, feet:RADIUS;X,Y;X,Y "
-    "(m, or with units), or a CSV of x, y"
+    "(m, or with units), a CSV of x, y or a drawing (SVG)"
 )
 MOST_CORNERS = 10_000  # of an outline: all pairs of its sides are looked at for crossings
-MAX_BYTES = 1 << 24  # of a file of corners: more is no base
 _RIM_POINTS = 4096  # of a disc, at which its pressure is looked at: it errs by 3e-7 of it
 _CENTRED = 1e-9  # of the reach: the centre of mass is the middle of the base
 
@@ -347,14 +345,15 @@ def _corners_of(corners: npt.ArrayLike, name: str, sense: float) -> Corners:
 
 
 def base_of(text: str) -> Base:
-    """The base of a text: of a name with lengths, or of a CSV file of corners.
+    """The base of a text: of a name with lengths, or of a file of corners, or a drawing.
 
     Parameters
     ----------
     text : str
         box:LENGTHxWIDTH, disc:RADIUS, annulus:RADIUSxINNER, polygon:X,Y;X,Y;X,Y by its corners,
         feet:RADIUS;X,Y;X,Y by their places, in m or with units (box:20cmx10cm), or the path of a
-        CSV file with columns x and y; ``@X,Y`` after it is the centre of mass.
+        CSV file with columns x and y or of a drawing (SVG, of an outline and its holes); ``@X,Y``
+        after it is the centre of mass.
 
     Returns
     -------
@@ -379,9 +378,9 @@ def base_of(text: str) -> Base:
     centre = None
     if at:
         centre = _place(f"base {shown(text)}: the centre of mass is @X,Y, got @{place}", place)
-    if shape.lower().endswith(".csv"):
-        corners = numbers_of(shape, (X, Y), 2, MAX_BYTES).rows
-        found = Base.polygon(corners, centre=centre, name=as_utf8(text))
+    if shape.lower().endswith(SUFFIXES):
+        corners, *holes = outlines_of(shape)
+        found = Base.polygon(corners, holes=holes, centre=centre, name=as_utf8(text))
         question("base", found.reach, "m", OF_A_PUCK)
         return found
     kind, _, sizes = shape.partition(":")

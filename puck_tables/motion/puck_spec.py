@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Any, Self
 
 from puck_tables._core.doubts import MOST_FRICTION, OF_A_PUCK, question, unquestioned
+from puck_tables._core.drawn_outlines import SUFFIXES
 from puck_tables._core.fields import Unsaid, of
 from puck_tables._core.own_folder import say
 from puck_tables._core.reading import Reading, entries_in, mark_checked, read_values
@@ -65,7 +66,7 @@ class PuckSpec:
         "if left out",
     )  # fmt: skip
     base: str | Base = of(
-        "text", "", file=".csv", objects=(Base,), doc=f"that is not round: {BASES}"
+        "text", "", file=SUFFIXES, objects=(Base,), doc=f"that is not round: {BASES}"
     )  # fmt: skip
 
     def __post_init__(self) -> None:

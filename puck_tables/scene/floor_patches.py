@@ -10,15 +10,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.quantities import X, Y
-from puck_tables._core.read_columns import numbers_of
+from puck_tables._core.drawn_outlines import outlines_of
 from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
     from puck_tables.scene.parts import Floor, Patch, Wall
 
 MOST_CORNERS = 200  # of a patch: each side adds to the cost of a look
-_MOST_BYTES = 1 << 16  # of a file of corners
 _FLAT = 1e-12  # of the square of its size: the area of a polygon that has none
 
 
@@ -38,7 +36,9 @@ def corners_of(part: Patch | Wall) -> FloatArray:
     """
     if not part.corners:
         return np.empty((0, 2))
-    rows = numbers_of(part.corners, (X, Y), 2, _MOST_BYTES, "corners").rows
+    rows, *more = outlines_of(part.corners)
+    if more:
+        raise InputError(f"{part.corners}: it holds {len(more) + 1} outlines: leave one in it")
     if not 3 <= len(rows) <= MOST_CORNERS:
         source = f" in {part.corners}" if isinstance(part.corners, str) else ""
         raise InputError(

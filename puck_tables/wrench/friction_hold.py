@@ -46,12 +46,18 @@ class Hold:
     def __bool__(self) -> bool:
         return bool(self.held)
 
+    def __str__(self) -> str:
+        return f"held: {self.held}; it slips at {self.margin} times that"
+
 
 class Twist(NamedTuple):
     """Velocity (…, 2), m/s, and spin (…), rad/s, of slips."""
 
     velocity: FloatArray
     spin: FloatArray
+
+    def __str__(self) -> str:
+        return f"velocity {self.velocity} m/s, spin {self.spin} rad/s"
 
 
 def holds(
