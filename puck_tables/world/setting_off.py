@@ -54,18 +54,12 @@ _KEPT, _PUT, _MOVED, _MATE = range(4)  # what is done to a disc: nothing, a stat
 
 
 @inlined
-def _whole_groups(engine: Engine, count: int, room: Room) -> None:
+def _whole_groups(engine: Engine, room: Room) -> None:
     """Mark the groups of those concerned."""
-    grown = True
-    while grown:
-        grown = False
-        for n in range(count):
-            i, j = room.contacts[n, 0], room.contacts[n, 1]
-            if j < 0 or engine.group[i] == 0 or engine.group[i] != engine.group[j]:
-                continue
-            if (room.marks[i] == CONCERNED) != (room.marks[j] == CONCERNED):
-                room.marks[i] = room.marks[j] = CONCERNED
-                grown = True
+    for i in range(engine.discs.shape[0]):
+        for j in range(engine.discs.shape[0]):
+            if room.marks[i] == CONCERNED and engine.group[i] == engine.group[j] > 0:
+                room.marks[j] = CONCERNED
 
 
 @inlined
@@ -98,7 +92,7 @@ def go_on(engine: Engine, t: float, count: int, room: Room) -> int:
     """
     engine.counts[N_CONTACTS] = count
     if quieten(engine, count, room):
-        _whole_groups(engine, count, room)
+        _whole_groups(engine, room)
     pushes = press_somewhere(engine, count, t, room)
     for j in range(engine.discs.shape[0]):
         pushes = pushes or (
