@@ -91,7 +91,7 @@ def go_on(engine: Engine, t: float, count: int, room: Room) -> int:
     does what is to be done.
     """
     engine.counts[N_CONTACTS] = count
-    if quieten(engine, count, room):
+    if quieten(engine, count, t, room):
         _whole_groups(engine, room)
     pushes = press_somewhere(engine, count, t, room)
     for j in range(engine.discs.shape[0]):
