@@ -41,7 +41,7 @@ _ON_BOARDS = ("pocket", "puck", "striker", "hits", "max_impacts")
     click.option("--count", type=int, help="Slip angles of a sample, or numbers of turns, for each "
                  "sense of spin [default: 8]; in a scene launches that are given [default: 16]."),
 )  # fmt: skip
-@packed("choice", PuckChoice, *puck_options(base=True))
+@packed("choice", PuckChoice, *puck_options())
 @outputs("Save the launches: .csv, .h5, .jsonl or .parquet.", as_json=True)
 @scene_options
 @click.pass_context

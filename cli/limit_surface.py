@@ -9,7 +9,7 @@ from puck_tables.cli.options import RESULTS, Outputs, PuckChoice, outputs, packe
 @click.command("limit-surface")
 @click.option("--points", type=click.IntRange(5, 1_000_001),
               help="How many slip angles.  [default: 181; with --base 31]")  # fmt: skip
-@packed("choice", PuckChoice, *puck_options(base=True, mass=True))
+@packed("choice", PuckChoice, *puck_options(mass=True))
 @outputs(f"Save it: {RESULTS}.  Without -o and --plot, CSV goes to stdout.")
 def limit_surface(points: int | None, choice: PuckChoice, out: Outputs) -> None:
     """Tabulate the limit surface of a puck, and what planar pushing takes for it.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Container, Iterable
 from dataclasses import asdict, dataclass
 from functools import wraps
 from pathlib import Path
@@ -27,6 +27,7 @@ Option = Callable[[Command], Command]
 
 # dimensionless, m/s²: of a puck that nothing is said of, as the library has it
 DEFAULT_DELTA, DEFAULT_DECEL = 0.5, 1.0
+SCALED = "delta", "decel"  # in place of height, friction and gravity
 RESULTS = ".h5, .csv, .json, .jsonl or .parquet"
 
 FILE = click.Path(readable=False, path_type=Path)
@@ -75,12 +76,11 @@ def packed(name: str, make: Callable[..., Any], *options: Option[Any]) -> Option
 
 
 def puck_options(
-    base: bool = False, mass: bool = False, kind: type[NumberParam] = NumberParam,
-    many: bool = False,
-) -> list[Option[Any]]:  # fmt: skip
+    mass: bool = False, kind: type[NumberParam] = NumberParam, many: bool = False
+) -> list[Option[Any]]:
     """The puck and the floor: by δ and J, or by dimensions and friction; numbers of one kind.
 
-    ``base``, ``mass``: whether these may be given; ``many``: several pressure laws.
+    ``mass``: whether it may be given; ``many``: several pressure laws.
     """
     return [
         number("--delta", "", kind, help="delta = 2 f h / r.  [default: 0.5]"),
@@ -90,7 +90,7 @@ def puck_options(
         puck_number("gravity", "", kind),
         *([puck_number("mass")] if mass else []),
         number("--decel", "m/s^2", kind, help="f g in m/s^2 instead of --friction.  [default: 1]"),
-        *body_options(base, kind, many),
+        *body_options(True, kind, many),
     ]  # fmt: skip
 
 
@@ -147,17 +147,8 @@ class PuckChoice:
         from puck_tables.puck import Puck
 
         chosen = not_none(asdict(self))
-        real = [name for name in ("height", "friction", "gravity") if name in chosen]
-        scaled = [name for name in ("delta", "decel") if name in chosen]
-        if real and scaled:
-            raise InputError(
-                f"--{real[0]} and --{scaled[0]} clash: give the real puck (--radius --height "
-                "--friction --gravity) or the scaled one (--radius --delta --decel)"
-            )
+        real = real_numbers(chosen)
         if self.base is not None:
-            for other in ("radius", "delta"):
-                if other in chosen:
-                    raise InputError(f"--base and --{other} clash: --{other} is of round pucks")
             if real and "friction" not in chosen:
                 raise InputError(f"--{real[0]} needs --friction too")
             if not real:
@@ -172,6 +163,24 @@ class PuckChoice:
                 "--radius --height --friction (and --gravity)"
             )
         return Puck(**chosen)
+
+
+def real_numbers(chosen: Container[str]) -> list[str]:
+    """Which of the numbers chosen are of a real puck; with those of a scaled one they are refused.
+
+    As those of a round one are with a base.
+    """
+    real = [name for name in ("height", "friction", "gravity") if name in chosen]
+    scaled = [name for name in SCALED if name in chosen]
+    if real and scaled:
+        raise InputError(
+            f"--{real[0]} and --{scaled[0]} clash: give the real puck (--radius --height "
+            "--friction --gravity) or the scaled one (--radius --delta --decel)"
+        )
+    for other in ("radius", "delta"):
+        if "base" in chosen and other in chosen:
+            raise InputError(f"--base and --{other} clash: --{other} is of round pucks")
+    return real
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 from puck_tables.cli.completion import scenes
-from puck_tables.cli.options import DEFAULT_DECEL, DEFAULT_DELTA, packed
+from puck_tables.cli.options import DEFAULT_DECEL, DEFAULT_DELTA, SCALED, packed, real_numbers
 
 from puck_tables.errors import InputError
 
@@ -55,7 +55,6 @@ KEPT = (
     "times", "explain", "as_json", "output", "plot", "movie", "overwrite", "threads", "cluster",
     "random", "seed", "spreads", "regions",
 )  # fmt: skip
-SCALED = ("delta", "decel")
 INSTEAD = {  # of options that no scene has
     **dict.fromkeys(SCALED, "puck.height and puck.friction set it"),
     "heading": "launch.velocity has it", "pressure": "--set puck.pressure=NAME has it",
@@ -150,22 +149,17 @@ def _default_tables(fields: dict[str, Any]) -> dict[str, Any]:
     """The puck in natural units of the other commands, as dimensions: f = J/g, h = δ r/2f."""
     from puck_tables.motion.body import STANDARD_GRAVITY
 
-    real = [name for name in ("height", "friction", "gravity") if name in fields]
-    scaled = [name for name in SCALED if name in fields]
-    if real and scaled:
-        raise InputError(f"--{real[0]} and --{scaled[0]} clash: give the real or the scaled puck")
+    real = real_numbers(fields)
     launch = {"velocity": [0.0, 0.0]}
     if "base" in fields:
-        if "delta" in fields:
-            raise InputError("--base and --delta clash: --delta is of round pucks")
         own = {} if "friction" in fields else {"friction": 1.0}
         more = {} if real else {"gravity": fields.get("decel", DEFAULT_DECEL)}
         return {"puck": own, "launch": launch, **more}
     tables: dict[str, Any] = {"puck": {"radius": 1.0}, "launch": launch}
     if real:
         return tables
-    for name in scaled:
-        if isinstance(fields[name], tuple | list):
+    for name in SCALED:
+        if isinstance(fields.get(name), tuple | list):
             raise InputError(f"--{name} cannot range in a scene: let puck.height range (--set)")
     radius = fields.get("radius", 1.0)
     if isinstance(radius, tuple | list) or not radius > 0.0:

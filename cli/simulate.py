@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 @click.option("--track", help="Which track of --fit, by its name or number from 1.")
 @number("--v0", "m/s", Vector, help="Launch velocity in m/s, like 1,0.")
 @number("--w0", "rad/s", default=0.0, show_default=True, help="Launch spin in rad/s.")
-@packed("choice", PuckChoice, *puck_options(base=True, mass=True))
+@packed("choice", PuckChoice, *puck_options(mass=True))
 @click.option("--frames", type=int, help="Number of states to save.  [default: 101]")
 @number("--times", "s", Times, help="Times of the states to save, in s.")
 @number("--tol", default=1e-9, show_default=True, help="Largest error, in units of Q/(f g) (times) "

@@ -34,7 +34,7 @@ ARGUMENTS = {"w0": "spin", **{name: name for name in ("speed", "heading", "vx", 
 @number("--speed", "m/s", RangeParam, help="Launch speed in m/s, along x without --heading.")
 @number("--heading", "rad", RangeParam, help="Direction of the launch from x, in rad.")
 @number("--v0", "m/s", Vector, help="One launch velocity in m/s instead of --speed.")
-@packed("numbers", dict, *puck_options(base=True, kind=RangeParam, many=True))
+@packed("numbers", dict, *puck_options(kind=RangeParam, many=True))
 @packed(
     "sample", dict,
     click.option("--random", type=click.IntRange(2, MAX_COUNT), metavar="COUNT",

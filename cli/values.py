@@ -14,7 +14,8 @@ from puck_tables.errors import InputError
 
 MAX_COUNT = 1_000_000_000  # values of a range
 MAX_TIMES = 10_000_000  # states of a run
-DOUBTS = "puck_tables.doubts"  # the numbers of a command to question, in the meta of its context
+# the numbers of a command without a unit, to question, and those with one: in its context's meta
+DOUBTS, SAID = "puck_tables.doubts", "puck_tables.said"
 
 
 class NumberParam(click.ParamType):
@@ -55,9 +56,10 @@ class NumberParam(click.ParamType):
                 self.fail(f"'{text}' is not a number{like}{f' ({why})' if why else ''}", param, ctx)
             if not math.isfinite(numbers[-1]):
                 self.fail(f"'{text}' is not a finite number", param, ctx)
-            if param is not None and quantity(text, self.unit) is None:
+            if param is not None:
+                bare = quantity(text, self.unit) is None
                 what = param.opts[0].strip("-"), numbers[-1], self.unit, self.usual
-                ctx.meta.setdefault(DOUBTS, []).append(what)
+                ctx.meta.setdefault(DOUBTS if bare else SAID, []).append(what)
         return numbers
 
 
@@ -123,18 +125,19 @@ def questioned(run: Callable[..., Any]) -> Callable[..., Any]:
 
     @functools.wraps(run)
     def command(*args: Any, **named: Any) -> Any:
-        doubts = click.get_current_context().meta.pop(DOUBTS, [])
+        from puck_tables._core.doubts import question, unquestioned
+
+        meta = click.get_current_context().meta
+        doubts = meta.pop(DOUBTS, [])
         try:
-            return run(*args, **named)
+            with unquestioned({number for _, number, *_ in meta.pop(SAID, [])}):
+                return run(*args, **named)
         except click.UsageError:
             doubts = []
             raise
         finally:
-            if doubts:
-                from puck_tables._core.doubts import question
-
-                for one in doubts:
-                    question(*one)
+            for one in doubts:
+                question(*one)
 
     return command
 

@@ -20,7 +20,6 @@ from puck_tables.motion.body import UnitPuck, body_of
 from puck_tables.motion.contact import contact_of
 from puck_tables.motion.frame import Frame, frame_of
 from puck_tables.motion.friction_source import source_of
-from puck_tables.motion.limits import regime_of
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.motion.state import LENGTH, PSI, THETA, T, U, X, Y
 from puck_tables.motion.unit_motion import GENERIC, MotionRun, solve
@@ -222,10 +221,9 @@ def simulate(
     _refuse_too_large(frame, body, energy, puck.decel)
 
     source = source_of(body, table, exact)
-    regime = regime_of(frame.speed, frame.rim, source.limit, source.limit_width)
-    generic = regime in GENERIC
-    run, selection = solve(source, regime, frame.speed, frame.rim, wanted, stepper)
-    contact = contact_of(body, regime, run)
+    run, selection = solve(source, frame.speed, frame.rim, wanted, stepper)
+    generic = run.regime in GENERIC
+    contact = contact_of(body, run)
     stop_time = float(run.stop[T] * frame.time)
     moments = _moments(frames, times, stop_time)
     default = not exact and table is None and method is None and wanted >= DEFAULT_TOL
@@ -242,7 +240,7 @@ def simulate(
         puck=puck,
         launch_velocity=launch,
         launch_spin=w,
-        regime=regime,
+        regime=run.regime,
         stop_time=stop_time,
         stop_position=(float(x), float(y)),
         path_length=float(run.stop[LENGTH] * frame.length),

@@ -70,6 +70,7 @@ def test_a_sample_of_a_board_is_what_runs_alone_give():
     with pytest.raises(pt.InputError, match="of several pucks, and a summary is of one"):
         found.mean()
     told = found.summary([(0.8, 0.0, 0.3)])
+    assert "red orientation rad  " in told
     assert f"red leaves play with a chance of {left.mean():.6g} (95 %" in told
     assert "cue ends inside (0.8, 0, 0.3) m with a chance of 0 (95 %" in told
 

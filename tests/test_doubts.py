@@ -103,6 +103,17 @@ def test_commands_ask_once_for_another_unit(command: str, words: str):
     assert result.exit_code == 0 and result.stderr.count(words) == 1, result.stderr
 
 
+@pytest.mark.parametrize("command", [
+    "simulate --v0 500m/s,0 --radius 32m --height 12m --friction 0.1 --mass 200kg",
+    "simulate --scene incline --radius 40m", "sweep --radius 30m:40m:3 --speed 1",
+    "sweep --scene incline --set launch.orientation=0deg:720deg:2",
+    "aim --target 300m,0 --w0 0 --radius 32m",
+])  # fmt: skip
+def test_commands_ask_of_nothing_that_has_its_unit(command: str):
+    result = CliRunner().invoke(main, command.split())
+    assert result.exit_code == 0 and "beyond" not in result.stderr, result.stderr
+
+
 @pytest.mark.parametrize("name", PUCK_NUMBERS)
 def test_options_of_a_puck_have_the_units_of_its_fields(name: str):
     option = next(one for one in simulate.params if one.name == name)

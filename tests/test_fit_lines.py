@@ -77,6 +77,15 @@ def test_angles_on_a_line_tell_the_spin(seed):
     assert launch.determined and abs(launch.value - spin) < 4.0 * launch.error
 
 
+def test_of_a_tall_puck_that_spins_a_y_is_missed():
+    times = np.arange(80) / 60.0
+    true = film_judge.path((1.4, 0.5), 40.0, 0.18 * G, 0.24, RADIUS, times)
+    place, angle = film_judge.noisy(np.random.default_rng(35), true, (3e-4, 1e-2))
+    place[:, 1] = 0.0
+    found = pt.fit(pt.Track(times, place, angle, name="film"), pt.Puck(radius=RADIUS))
+    assert found.misfit.endswith("are both x and y in the file?")
+
+
 def test_a_spin_that_is_told_is_looked_for():
     track, friction, _ = drawn(4)
     bounds = {"launch_spin": (-100.0, 100.0)}

@@ -204,12 +204,25 @@ def test_bad_input_is_one_sentence(ask, words: str):
         ask(pt.Puck.similar())
 
 
+def test_what_is_printed_has_its_units():
+    puck = pt.Puck(radius=0.1, friction=0.2, mass=1.0)
+    load = 0.2 * 9.80665
+    assert str(puck.wrench((1.0, 0.0), 0.0)) == f"force [{-load:.6g}  0.     ] N, torque 0.0 N m"
+    assert str(puck.twist((-load, 0.0), 0.0)) == "velocity [1. 0.] m/s, spin 0.0 rad/s"
+    written = puck.holds((f"{500.0 * load} mN", "0 mN"), "0 mN m")
+    assert str(written).startswith("held: True; it slips at 2.0")
+    with pytest.raises(pt.InputError, match=r"force must be a number \(N\), .* as '5mN'"):
+        puck.holds(("2km/h", 0.0), 0.0)
+
+
 def test_the_command(tmp_path: Path):
     out, picture = tmp_path / "surface.csv", tmp_path / "surface.png"
     command = ["limit-surface", "--delta", "0", "--points", "9", "-o", str(out)]
     done = CliRunner().invoke(main, [*command, "--plot", str(picture)])
     assert done.exit_code == 0, done.stderr
-    assert "ellipsoid" in done.stderr and picture.stat().st_size > 10_000
+    assert picture.stat().st_size > 10_000
+    said = str(pt.Puck.similar(delta=0.0).limit_surface(9))
+    assert said in done.stderr and "convex; up to 1 N and 0.666667 N m\nellipsoid" in said
     rows = out.read_text().splitlines()
     assert rows[0].startswith("slip_angle[rad],force_x[N],force_y[N],torque[N m]")
     assert len(rows) == 10

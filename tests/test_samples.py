@@ -196,7 +196,8 @@ def test_many_samples_of_a_store_are_not_read_unasked(
     assert "summed up only with --plot or --inside" in quiet.stderr
     asked = CliRunner().invoke(main, [*words, "--inside", "2.2,-0.16,0.1"])
     assert asked.exit_code == 0, asked.stderr
-    assert "ends inside" in asked.stdout
+    assert "ends inside" in asked.stdout and "stop_x m  " in asked.stdout
+    assert "at decel = 1 m/s^2, radius = 1 m, delta = 0.5, launch" in asked.stderr
     for more in (["--inside", "2.2,-0.16,0.1"], ["--plot", "s.png"]):
         vast = [*words[:1], "--random", "1000000000", *words[3:5], "-o", "vast.zarr", *more]
         refused = CliRunner().invoke(main, vast)

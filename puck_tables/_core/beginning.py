@@ -21,7 +21,8 @@ _OTHERS = (  # how files begin that are none of ours
     (b"RIFF", "a film, not a table: first follow the puck in it, with Tracker for one"),
     (b"%PDF", "a PDF: save the table as CSV"), (b"{\\rtf", "formatted text: save it as plain text"),
     (b"\xff\xd8\xff", "a picture, not a table"), (b"\x89PNG", "a picture, not a table"),
-    (b"GIF8", "a picture, not a table"),
+    (b"GIF8", "a picture, not a table"), (b"<!doctype html", "a web page, not a table"),
+    (b"<!DOCTYPE html", "a web page, not a table"), (b"<html", "a web page, not a table"),
 )  # fmt: skip
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import math
 import threading
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 
 from puck_tables._core.own_folder import say
 from puck_tables._core.units import SHOWN
@@ -22,13 +22,14 @@ _here = threading.local()
 
 
 @contextlib.contextmanager
-def unquestioned() -> Iterator[None]:
-    """Take numbers as they are in this thread: they follow from others, or have no unit."""
-    before, _here.quiet = getattr(_here, "quiet", False), True
+def unquestioned(numbers: Container[float] | None = None) -> Iterator[None]:
+    """Take numbers as they are in this thread, all or these: they follow, or had a unit."""
+    before = getattr(_here, "taken", ())
+    _here.taken = numbers
     try:
         yield
     finally:
-        _here.quiet = before
+        _here.taken = before
 
 
 def question(name: str, number: float, unit: str, usual: float = 0.0) -> None:
@@ -41,7 +42,8 @@ def question(name: str, number: float, unit: str, usual: float = 0.0) -> None:
     usual : up to which it is usual, where that differs from others of the unit
     """
     limit = usual or _USUAL.get(unit, math.inf)
-    if not limit < abs(number) < math.inf or getattr(_here, "quiet", False):
+    taken = getattr(_here, "taken", ())
+    if not limit < abs(number) < math.inf or taken is None or number in taken:
         return
     what = name.rpartition(".")[2].partition("[")[0]
     if what == "orientation" and 2.0 * number % 1.0:  # of a puck that has turned often

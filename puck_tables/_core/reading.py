@@ -298,7 +298,8 @@ def _number(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -
             reading.fault(path, value, f"a range within: {_one(kind)}")
         else:
             reading.ranges[path] = Range(start, stop, count)
-            question(path, max(start, stop, key=abs), kind.unit, kind.usual)
+            if quantity(match[2], kind.unit) is None:  # type: ignore[index]
+                question(path, max(start, stop, key=abs), kind.unit, kind.usual)
         return start
     if type(value) not in (float, int) and (
         isinstance(value, bool | np.timedelta64) or not isinstance(value, Real)

@@ -12,11 +12,12 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import finite_array, listed, shown, whole
 from puck_tables.errors import InputError
+from puck_tables.io.columns import COLUMNS
 
 _SIGMAS = 1.959963984540054  # of a 95 % interval
 _MOST_BINS = 4096  # along one axis of a picture: finer than any screen
 _SHARES = (0.025, 0.5, 0.975)  # of the quantiles of a table: the median, and 95 % of all
-_WIDE = 14  # signs of its first column
+_WIDE = 18  # signs of its first column
 Bins = npt.NDArray[np.bool_]
 
 
@@ -145,7 +146,7 @@ class Summary:
             if own.size > 1:
                 numbers = (own.mean(), own.std(ddof=1), *np.quantile(own, _SHARES))
                 words = "".join(f"{number:>13.6g}" for number in numbers)
-                result.append(f"{label + name:<{wide}}{words}")
+                result.append(f"{f'{label}{name} {COLUMNS[name].unit}':<{wide}}{words}")
         return result
 
     def chances(self, regions: Sequence[npt.ArrayLike]) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -105,7 +106,7 @@ def film_of_columns(
         film.notes.append("times summed from steps, each since the row before")
     if layout.along:
         film.notes.append("places along one line, the other coordinate is 0")
-    film.unit, film.angle_unit, film.timed = _units(path, layout)
+    film.unit, film.angle_unit, film.timed = _units(path, layout, values)
     if layout.rates == ANGLES:
         film.unit = "m"  # of places that are all 0
     if layout.pixels:
@@ -176,18 +177,28 @@ def film_below(
     return film
 
 
-def _units(path: str | Path, layout: Layout) -> tuple[str, str, bool]:
-    """Units of places and angles, and whether that of times is named."""
-    headed = [one for _, one in layout.columns]
-    said = []
-    for roles in (("x", "y", "z"), ("angle",)):
-        units = {one.unit for one in headed if one.role in roles}
+def _units(
+    path: str | Path, layout: Layout, values: dict[int, FloatArray]
+) -> tuple[str, str, bool]:  # fmt: skip
+    """Units of places and angles, and whether that of times is named.
+
+    ``values``: of columns in different units they are brought to m or rad.
+    """
+    said, headed = [], [one for _, one in layout.columns]
+    for kind, si, roles in (("length", "m", ("x", "y", "z")), ("angle", "rad", ("angle",))):
+        own = {n: one for n, one in enumerate(headed) if one.role in roles}
+        units = {one.unit for one in own.values()}
         if len(units) > 1:
-            raise InputError(
-                f"{path}: its columns {' and '.join(roles)} are not all in one unit "
-                f"({', '.join(unit or 'none said' for unit in sorted(units))}): name all with "
-                "columns (--columns)"
-            )
+            sizes = {unit: unit_size(unit, kind) or math.nan for unit in units}
+            if any(map(math.isnan, sizes.values())):
+                names = " and ".join(sorted({one.role for one in own.values()}))
+                written = ", ".join(unit or "none said" for unit in sorted(units))
+                raise InputError(
+                    f"{path}: its columns {names} are not all in one unit ({written}): name all "
+                    "with columns (--columns)"
+                )
+            values.update({n: sizes[one.unit] * values[n] for n, one in own.items()})
+            units = {si}
         said.append(units.pop() if units else "")
     timed = all(one.unit for one in headed if one.role in ("time", "step"))
     return said[0], said[1], timed

@@ -45,6 +45,7 @@ _ALIKE = math.log(1.5)  # readings that fit about as well
 _MUCH = math.log(3.0)  # so much smaller residuals tell, though they are no noise yet
 _LITTLE, _CLEAN = math.log(1.1), 1.4  # less than that is no reason; times the noise of a place
 _MOST, _LEAST = 10.0, 1e-3  # times one friction for all speeds: laws that some floor has
+_SPINS = 0.1  # rim speed over speed: such a puck's path is seen to bend
 _FAINT = 1e-3  # of what friction does: no force explains anything by so little
 _STEEP, _STEEPEST = 3.0, 10.0  # degrees: hardly anybody, or nobody, takes that for a level table
 _HELD = ("launch_spin", "launch_angle")  # what is said of these is said of the angles as they are
@@ -73,6 +74,14 @@ def misfit(
     A floor is named before angles or a radius that fit about as well.  ``problem``: what was asked,
     with all frames; ``speeds``: whether a friction over slip speed does not fit, either.
     """
+    for film, launch in zip(problem.films, result.problem.launches(result.x), strict=False):
+        _, _, vx, vy, spin, _ = launch.tolist()
+        spins = problem.spec.known()["radius"] * abs(spin) > _SPINS * math.hypot(vx, vy)
+        if film.straight is not None and film.angle is not None and spins:
+            return (
+                f"Places of {film.name} lie on one line, from which spin and height turn a puck: "
+                "are both x and y in the file?"
+            )
     told: list[_Reading] = []
     if problem.spec.base is None and _may_change(problem.spec) and not speeds:
         drag, air, slope = (

@@ -138,7 +138,7 @@ def by_place(problem: Problem, blind: Problem, minima: list[FloatArray]) -> list
     starts = []
     for x in minima:
         whole = problem.unknowns(blind.numbers_at(x), blind.launches(x))
-        moved = np.array([k for k, (_, name) in enumerate(problem.names) if name != "launch_angle"])
+        moved = np.array([k for k, one in enumerate(problem.names) if one in blind.names])
         # of unknowns that places alone tell, no wider than what may be
         rows, told = blind.residuals_and_jacobian(x)
         _, _, vx, vy, spin, _ = blind.launches(x)[0].tolist()

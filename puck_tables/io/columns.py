@@ -52,7 +52,7 @@ COLUMNS = {
     "slip_angle": Column("rad", "φ", "phi = atan2(r omega, v), 0 at rest"),
     # pucks and launches
     "radius": Column("m", "radius r", "radius of the base"),
-    "height": Column("m", "height h", "height of the centre over the floor"),
+    "height": Column("m", "height h", "height of the puck, twice that of its centre"),
     "friction": Column("1", "friction f", "Coulomb's coefficient"),
     "gravity": Column("m/s^2", "gravity g", "gravity"),
     "decel": Column("m/s^2", "deceleration fg", "f g"),

@@ -30,7 +30,7 @@ class Contact:
     closes: float | None = None
 
 
-def contact_of(body: UnitPuck, regime: str, run: MotionRun) -> Contact:
+def contact_of(body: UnitPuck, run: MotionRun) -> Contact:
     """What carries load along a motion: the share grows with φ, and φ is monotonic in time.
 
     Examples
@@ -39,17 +39,17 @@ def contact_of(body: UnitPuck, regime: str, run: MotionRun) -> Contact:
     >>> from puck_tables.motion.friction_source import source_of
     >>> from puck_tables.motion.unit_motion import solve
     >>> body = body_of("uniform", 2.0, 0.5**0.5)
-    >>> run, _ = solve(source_of(body), "C0", 1.0, 0.0, 1e-6)
-    >>> round(contact_of(body, "C0", run).least, 6)
+    >>> run, _ = solve(source_of(body), 1.0, 0.0, 1e-6)
+    >>> round(contact_of(body, run).least, 6)
     0.647743
     """
-    if run.friction.source is not FrictionForm.SECTION or regime == "A":
+    if run.friction.source is not FrictionForm.SECTION or run.regime == "A":
         return Contact()
     opening = opening_angle(body.delta) if body.law.can_lift else 0.0
     if opening == 0.0:
         return Contact()
     start = math.atan(math.exp(min(run.y[0, U], 700.0)))
-    end = math.atan(body.limit_ratio) if regime in GENERIC else start
+    end = math.atan(body.limit_ratio) if run.regime in GENERIC else start
     launch, last = loaded_share([start, end], body.delta).tolist()
     lifted, lifts = start < opening, end < opening
     if lifted == lifts:

@@ -26,7 +26,7 @@ from puck_tables.motion.equations_of_motion import (
 )
 from puck_tables.motion.frame import direction
 from puck_tables.motion.friction_source import Friction, FrictionSource
-from puck_tables.motion.limits import log_ratio
+from puck_tables.motion.limits import log_ratio, regime_of
 from puck_tables.motion.path import STOPPED, TURN_SHARE, integrate, states_at
 from puck_tables.motion.solve import FINEST_LOCAL, ErrorEstimate, Setting, close_enough, refined
 from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, WORK, T, U, X, Y
@@ -46,7 +46,10 @@ _COARSER_BY = 4.0  # half as many cells are 16 times as bad; a quarter of that i
 
 @dataclass
 class MotionRun:
-    """Step ends (z, state) from launch to stop; ``stop`` is the state there, its ψ the turn."""
+    """Step ends (z, state) from launch to stop; ``stop`` is the state there, its ψ the turn.
+
+    ``regime``: as :func:`puck_tables.motion.limits.regime_of` has it.
+    """
 
     friction: Friction
     tableau: Tableau
@@ -57,6 +60,7 @@ class MotionRun:
     energy_residual: float
     steps: int
     error: float
+    regime: str = ""
 
     def states(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Q/Q₀ (n,) and states (n, 8) at times; at and after the stop Q = 0."""
@@ -71,9 +75,8 @@ class MotionRun:
 
 
 def solve(
-    source: FrictionSource, regime: str, speed: float, rim: float, tol: float,
-    method: Method | None = None,
-) -> tuple[MotionRun, Selection]:  # fmt: skip
+    source: FrictionSource, speed: float, rim: float, tol: float, method: Method | None = None
+) -> tuple[MotionRun, Selection]:
     """The motion of a launch with speed v and rim speed r|ω| in natural units, and how it was got.
 
     Raises
@@ -87,11 +90,12 @@ def solve(
     --------
     >>> from puck_tables.motion.body import body_of
     >>> from puck_tables.motion.friction_source import source_of
-    >>> run, selection = solve(source_of(body_of("uniform", 0.0, 0.5**0.5)), "B", 1.0, 5.0, 1e-9)
-    >>> round(float(run.stop[T]), 6), selection.scheme.name  # T(φ) of Q/J
-    (0.774875, 'adaptive, table')
+    >>> run, selection = solve(source_of(body_of("uniform", 0.0, 0.5**0.5)), 1.0, 5.0, 1e-9)
+    >>> round(float(run.stop[T]), 6), run.regime, selection.scheme.name  # T(φ) of Q/J
+    (0.774875, 'B', 'adaptive, table')
     """
     selection = source.selected("trajectory", tol, method)
+    regime = regime_of(speed, rim, source.limit, source.limit_width)
     u = {"A": -math.inf, "B0": math.inf, "C0": -math.inf}.get(regime) or log_ratio(speed, rim)
     if regime not in GENERIC:
         source.refuse(u)
@@ -108,7 +112,7 @@ def solve(
     run, estimate, setting = close_enough(first, attempt, finer, tol, "this puck")
     if setting is not first or not source.is_measured:
         selection = source.explained(selection, setting, estimate)
-    run.error = estimate.total
+    run.error, run.regime = estimate.total, regime
     return run, selection
 
 
@@ -132,7 +136,7 @@ def at_constant_slip(regime: str, u: float, friction: Friction) -> MotionRun:
         residual = abs(stop[WORK] - energy) / energy
     rate = -turned[PSI] / math.log(TURN_SHARE)
     return MotionRun(
-        friction, DORMAND_PRINCE, np.zeros(1), start, stop, rate, residual, 0, math.inf
+        friction, DORMAND_PRINCE, np.zeros(1), start, stop, rate, residual, 0, math.inf, regime
     )
 
 

@@ -43,12 +43,14 @@ def report(result: Aim) -> str:
 
 def board_report(result: BoardAim) -> str:
     """The answer, and the launches line by line."""
+    scene = result.scene
     wanted = f"{result.puck} {result.where}, {result.striker} sent off {result.limit}".rstrip()
-    first = listed({
-        "scene": result.scene.title or "without a title", "wanted": wanted, "answer": result.answer,
-    }, 8)  # fmt: skip
+    first = {"scene": scene.title or "without a title", "wanted": wanted}
+    if not (scene.title or scene.pucks):
+        first = {"puck": puck_words(scene.puck), "target": result.where.removeprefix("at ")}
+    told = listed({**first, "answer": result.answer}, 8 if "scene" in first else 7)
     if not len(result):
-        return first
+        return told
     margins = [(*_MARGINS[name], result.columns[name]) for name in _MARGINS
                if name in result.columns]  # fmt: skip
     heads = {
@@ -60,4 +62,4 @@ def board_report(result: BoardAim) -> str:
         *(factor * values for _, factor, values in margins), result.stop_time, result.miss,
         (course or "none" for course in result.courses), strict=True,
     )  # fmt: skip
-    return f"{first}\n\n{columns(heads, rows)}"
+    return f"{told}\n\n{columns(heads, rows)}"

@@ -51,7 +51,7 @@ def columns(heads: Mapping[str, str], rows: Iterable[Iterable[Any]], most: int =
 
 
 def puck_words(puck: PuckSpec) -> str:
-    """What the motion of a round puck depends on.
+    """What the motion of a puck depends on.
 
     Examples
     --------
@@ -59,5 +59,11 @@ def puck_words(puck: PuckSpec) -> str:
     >>> puck_words(Puck.similar())
     'r = 1 m, delta = 0.5, f g = 1 m/s^2'
     """
+    if puck.shape is not None:
+        high = f"h = {puck.height:g} m, " if puck.height > 0.0 else ""
+        return (
+            f"base {puck.shape.name}, k = {puck.inertia_radius:.6g} m, {high}f = {puck.friction:g},"
+            f" f g = {puck.decel:.6g} m/s^2"
+        )
     kind = f", {puck.body.kind}" if puck.body.kind else ""
     return f"r = {puck.radius:g} m, delta = {puck.delta:.6g}, f g = {puck.decel:.6g} m/s^2{kind}"

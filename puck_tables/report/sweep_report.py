@@ -6,7 +6,9 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from puck_tables.bulk.work import Tally
+from puck_tables.io.columns import COLUMNS
 from puck_tables.stopping.solvers import STATUS_MEANINGS
+from puck_tables.world.scene_ends import spread_words
 
 if TYPE_CHECKING:
     from puck_tables.bulk.finish import Stored
@@ -45,7 +47,11 @@ def _stops(
     launches: Any, shape: tuple[int, ...], tally: Tally, method: str, source: str
 ) -> str:  # fmt: skip
     ranged = " x ".join(f"{name} ({n})" for name, n in zip(launches.dims, shape, strict=True))
-    fixed = ", ".join(f"{name} = {value:g}" for name, value in launches.fixed.items())
+    units = {name: COLUMNS[name].unit for name in launches.fixed}
+    fixed = ", ".join(
+        f"{name} = {value:g}" + (f" {units[name]}" if units[name] != "1" else "")
+        for name, value in launches.fixed.items()
+    )
     counts = ", ".join(
         f"{tally.counts.get(code, 0)} {meaning.replace('_', ' ')}"
         for code, meaning in enumerate(STATUS_MEANINGS)
@@ -57,7 +63,7 @@ def _stops(
 def _ends(ends: Any, tally: Tally, model: str, lines: Iterable[str]) -> str:
     """In one line, and one for each way in which runs have no end."""
     if spreads := getattr(ends, "spreads", None):  # of samples
-        ranged = ", ".join(f"{path} {one}" for path, one in spreads.items())
+        ranged = spread_words(ends.scene, spreads)
     else:
         ranged = " x ".join(f"{name} ({values.size})" for name, values in ends.axes.items())
     counts = ", ".join(f"{count} {ends.meanings[code]}" for code, count in tally.counts.items())

@@ -47,15 +47,11 @@ def _of_round(run: Trajectory) -> dict[str, str]:
 def _on_base(run: Trajectory) -> dict[str, str]:
     """What is told of a puck on another base."""
     puck, (vx, vy), w0 = run.puck, run.launch_velocity, run.launch_spin
-    assert puck.shape is not None
-    k = puck.inertia_radius
-    q0 = math.hypot(vx, vy, k * w0)
-    high = f"h = {puck.height:g} m, " if puck.height > 0.0 else ""
+    q0 = math.hypot(vx, vy, puck.inertia_radius * w0)
     angle = math.degrees(run.summary()["launch_orientation"])
     turned = f", turned by {angle:.4g} degrees" if round(angle, 6) else ""
     return {
-        "puck": f"base {puck.shape.name}, k = {k:.6g} m, {high}f = {puck.friction:g}, "
-        f"f g = {puck.decel:.6g} m/s^2",
+        "puck": puck_words(puck),
         "launch": f"v0 = ({vx:g}, {vy:g}) m/s, w0 = {w0:g} rad/s, "
         f"Q0 = hypot(v0, k w0) = {q0:.6g} m/s{turned}",
         "end": "it slides without a spin" if _is_straight(run) else ENDS[run.regime],

@@ -24,7 +24,6 @@ from puck_tables.kernels.quadratic import NO_COLUMNS
 from puck_tables.motion.body import UnitPuck
 from puck_tables.motion.frame import frame_of
 from puck_tables.motion.friction_source import Sections, source_of
-from puck_tables.motion.limits import regime_of
 from puck_tables.motion.solve import FINEST_LOCAL, ErrorEstimate, Setting, close_enough, refined
 from puck_tables.motion.state import LENGTH, PSI, THETA, T, X, Y
 from puck_tables.motion.steppers import Stepping
@@ -247,8 +246,7 @@ class EachAlone:
             frame = frame_of((vx, vy), spin, decel, radius)
             if frame.slip == 0.0:
                 continue
-            regime = regime_of(frame.speed, frame.rim, source.limit, source.limit_width)
-            run, _ = solve(source, regime, frame.speed, frame.rim, self.tol, self.method)
+            run, _ = solve(source, frame.speed, frame.rim, self.tol, self.method)
             stop = run.stop
             out[0, n] = stop[T] * frame.time
             out[1:3, n] = frame.place(stop[X], stop[Y])

@@ -14,7 +14,6 @@ from puck_tables.errors import InputError
 from puck_tables.motion.body import UnitPuck
 from puck_tables.motion.frame import frame_of
 from puck_tables.motion.friction_source import source_of
-from puck_tables.motion.limits import regime_of
 from puck_tables.motion.state import HEADING, STATE_ROWS, T
 from puck_tables.motion.unit_motion import solve
 from puck_tables.stopping.launch_arrays import in_chunks
@@ -118,7 +117,6 @@ def states_of(body: UnitPuck, launch: FloatArray, times: FloatArray) -> FloatArr
     if frame.slip == 0.0:
         return np.zeros((STATE_ROWS, times.size))
     source = source_of(body)
-    regime = regime_of(frame.speed, frame.rim, source.limit, source.limit_width)
-    run, _ = solve(source, regime, frame.speed, frame.rim, TOL)
+    run, _ = solve(source, frame.speed, frame.rim, TOL)
     natural = run.states(frame.unit_times(times, float(run.stop[T]) * frame.time))
     return np.stack(frame.states(*natural))

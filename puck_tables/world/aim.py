@@ -42,13 +42,6 @@ class Search(NamedTuple):
         spin = second if self.spin is None else np.full(len(launches), self.spin)
         return np.stack([speed * np.cos(heading), speed * np.sin(heading), spin], axis=1)
 
-    @property
-    def limit(self) -> str:
-        """In words."""
-        if self.speed is None:
-            return f"up to {self.high:.6g} m/s"
-        return f"at {self.speed:.6g} m/s and up to {self.high:.6g} rad/s either way"
-
     def run(self, shots: Shots, wanted: Target, most: int, spare: Shots | None) -> Solutions:
         """What it finds; ``spare``: shots on the board without the pocket."""
         aimed_at = spare or shots
@@ -100,9 +93,9 @@ def aim(
             )
     fastest = max(abs(one.speed or one.high) for one in searches)
     widest = max(abs(one.high if one.spin is None else one.spin) for one in searches)
-    never = out_of_reach(scene, wanted, fastest, widest)
+    limit, never = _limit(searches), out_of_reach(scene, wanted, fastest, widest)
     if never:
-        return aimed(scene, wanted, f"no launch {searches[-1].limit} {never}")
+        return aimed(scene, wanted, f"no launch {limit} {never}", limit=limit)
     spare = without_pocket(scene, wanted)
     runs = left_out = 0
     found: list[Solutions] = []
@@ -122,11 +115,20 @@ def aim(
         left_out = 0
     starts = np.vstack([one.starts for one in found])
     margins = np.vstack([one.margins for one in found])
-    limit = searches[-1].limit
     return aimed(
         scene, wanted, _answer(scene, wanted, limit, max_impacts, runs, left_out), starts, margins,
         of_spin=searches[0].speed is not None, count=count, limit=limit,
     )  # fmt: skip
+
+
+def _limit(searches: list[Search]) -> str:
+    """Which launches are looked for, in words."""
+    speed, high = searches[-1].speed, searches[-1].high
+    if speed is not None:
+        return f"at {speed:.6g} m/s and up to {high:.6g} rad/s either way"
+    spins = [f"{spin:.6g}" for spin in sorted({one.spin or 0.0 for one in searches})]
+    ends = " to ".join(dict.fromkeys([spins[0], spins[-1]]))
+    return f"up to {high:.6g} m/s {'without spin' if ends == '0' else f'at {ends} rad/s'}"
 
 
 def _answer(

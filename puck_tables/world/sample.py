@@ -14,7 +14,7 @@ from puck_tables.bulk.summary import Chance, Summary, chance_of, head
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset, Variable
 from puck_tables.scene.outcome import plain_name
-from puck_tables.world.scene_ends import SceneEnds, number_along
+from puck_tables.world.scene_ends import SceneEnds, number_along, spread_words
 
 SAMPLE = "sample"
 _PLACES = ("x", "y", "orientation")
@@ -56,7 +56,7 @@ class Sample(SceneEnds, Summary):
     @property
     def drawn_words(self) -> str:
         """What scatters, in words."""
-        return ", ".join(f"{path} {one}" for path, one in self.spreads.items())
+        return spread_words(self.scene, self.spreads)
 
     def numbers(self, run: int) -> dict[str, float]:
         """What was drawn for a sample, counted from 0, by path."""
@@ -94,7 +94,7 @@ class Sample(SceneEnds, Summary):
             return "\n".join([super().summary(regions), *self._left()])
         shown = self.names[:_MOST_PUCKS]
         labels = [name if len(name) <= _WIDEST else f"{name[: _WIDEST - 3]}..." for name in shown]
-        wide = max(map(len, labels)) + len(" orientation ")
+        wide = max(map(len, labels)) + len(" orientation rad ")
         rows, chances = [head(wide), *self.of(0).rows(("end_time",), wide=wide)], []
         for name, label in zip(shown, labels, strict=True):
             one = self.of(name)

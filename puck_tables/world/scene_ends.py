@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.bulk.spreads import Spread
 from puck_tables.io.columns import derived
 from puck_tables.io.dataset import Dataset, Variable, variable
 from puck_tables.result import Result
@@ -138,6 +139,13 @@ def axes_of(scene: SceneSpec) -> dict[str, FloatArray]:
         path: np.arange(float(len(values))) if is_batch(path) else values
         for path, values in scene.ranges.items()
     }
+
+
+def spread_words(scene: SceneSpec, spreads: Mapping[str, Spread]) -> str:
+    """What scatters, and how, in the units of the scene."""
+    return ", ".join(
+        f"{path} {one} {scene.unit_of(path)}".rstrip() for path, one in spreads.items()
+    )
 
 
 def number_along(scene: SceneSpec, path: str, values: FloatArray, axis: str) -> Variable:

@@ -42,6 +42,9 @@ class Wrench(NamedTuple):
     torque: FloatArray
     jacobian: FloatArray | None = None
 
+    def __str__(self) -> str:
+        return f"force {self.force} N, torque {self.torque} N m"
+
 
 def wrench(
     puck: PuckSpec, velocity: npt.ArrayLike, spin: npt.ArrayLike, angle: npt.ArrayLike,

@@ -103,6 +103,16 @@ class Push(Result):
             f"Push({self.time.size} states, {self.contact[0]}, {self.time[-1]:.6g} s: {self.end})"
         )
 
+    def __str__(self) -> str:
+        force = np.hypot(self.push_x, self.push_y)
+        return (
+            f"The puck moves by ({self.x[-1]:.6g}, {self.y[-1]:.6g}) m and turns by "
+            f"{math.degrees(self.orientation[-1] - self.orientation[0]):.6g} degrees in "
+            f"{self.time[-1]:.6g} s: {self.end}.\n"
+            f"The finger: {', then '.join(dict.fromkeys(self.contact))}; its force is "
+            f"{force.min():.4g} to {force.max():.4g} N."
+        )
+
     def __getattr__(self, name: str) -> FloatArray:
         """A column that follows from others: ``speed`` (n,) m/s."""
         column: FloatArray = following(self, name)

@@ -79,10 +79,15 @@ class LimitSurface(Result):
         return column
 
     def __repr__(self) -> str:
-        return (
-            f"LimitSurface({self.torque.size} twists, {_named(self.puck)}, up to "
-            f"{float(np.max(self.force)):.6g} N and {float(np.max(self.torque)):.6g} N m)"
-        )
+        return f"LimitSurface({self.torque.size} twists, {_named(self.puck)}, {self._largest})"
+
+    def __str__(self) -> str:
+        return self.explain()
+
+    @property
+    def _largest(self) -> str:
+        """How large forces and torques are, in words."""
+        return f"up to {np.max(self.force):.6g} N and {np.max(self.torque):.6g} N m"
 
     @property
     def unit_force(self) -> float:
@@ -140,7 +145,8 @@ class LimitSurface(Result):
     def explain(self) -> str:
         """How it was got, and how well the models fit."""
         lines = [
-            f"friction under {_named(self.puck)}; {'convex' if self.is_convex else 'not convex'}"
+            f"friction under {_named(self.puck)}; {'convex' if self.is_convex else 'not convex'}; "
+            f"{self._largest}"
         ]
         for name, form in (("ellipsoid", self.ellipsoid), ("quartic", self.quartic)):
             lines.append(
