@@ -214,5 +214,7 @@ def put(engine: Engine, what: int, t: float, room: Room) -> int:
     if contacts < 0:
         return CROWDED
     for i in range(count):
-        room.marks[i] = CONCERNED if room.shares[i] != _KEPT else NOT_CONCERNED
+        with_them = engine.group[i] > 0 and room.marks[i] != NOT_CONCERNED
+        concerned = room.shares[i] != _KEPT or with_them
+        room.marks[i] = CONCERNED if concerned else NOT_CONCERNED
     return go_on(engine, t, contacts, room)
