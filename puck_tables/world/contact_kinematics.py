@@ -39,7 +39,7 @@ from puck_tables.world.layout import (
     HOLD,
     RADIUS,
 )
-from puck_tables.world.obstacle_shapes import bend_of, normal_to, to_end
+from puck_tables.world.obstacle_shapes import curvature, normal_to, to_end
 from puck_tables.world.rims import along_of_pair
 
 
@@ -81,7 +81,7 @@ def look(group: Group, members: IntArray, pairs: IntArray, y: FloatArray, out: F
         else:
             j, obstacle, at_x, at_y = other, group.obstacles[-1 - other], y[one, X], y[one, Y]
             sight[GAP], sight[NX], sight[NY], _ = normal_to(obstacle, radius, at_x, at_y, 0.0)
-            sight[BEND] = bend_of(obstacle, radius, sight[GAP])
+            sight[BEND] = curvature(obstacle, radius, sight[GAP])
             sight[FAR_ARM], sight[TO_END] = 0.0, to_end(obstacle, radius, at_x, at_y)
             vx, vy, turning = y[one, VX], y[one, VY], radius * y[one, SPIN]
         sight[ARM] = radius

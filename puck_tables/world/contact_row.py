@@ -12,7 +12,7 @@ from puck_tables.world.alone import acceleration
 from puck_tables.world.engine_state import Engine
 from puck_tables.world.holds import response
 from puck_tables.world.layout import HOLD, LIGHTNESS, RADIUS, TURNABILITY
-from puck_tables.world.obstacle_shapes import bend_of, normal_to
+from puck_tables.world.obstacle_shapes import curvature, normal_to
 from puck_tables.world.rims import along_of_pair, restitutions_of_pair
 
 # columns of a contact in work: normal, slownesses 1/m_n and 1/m_t, law, whether it acts in this
@@ -93,10 +93,10 @@ def opening(engine: Engine, i: int, j: int, t: float, row: FloatArray, states: F
     if j >= 0:
         wx -= states[j, VX]
         wy -= states[j, VY]
-        bend = 1.0 / (engine.discs[i, RADIUS] + engine.discs[j, RADIUS])
+        kappa = 1.0 / (engine.discs[i, RADIUS] + engine.discs[j, RADIUS])
         ax, ay = acceleration(engine, j, t, states[j])
         pull -= ax * nx + ay * ny
     else:
-        bend = bend_of(engine.obstacles[-1 - j], engine.discs[i, RADIUS], 0.0)
+        kappa = curvature(engine.obstacles[-1 - j], engine.discs[i, RADIUS], 0.0)
     across = wy * nx - wx * ny
-    return bend * across * across - pull
+    return kappa * across * across - pull

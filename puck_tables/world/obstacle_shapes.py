@@ -1,4 +1,4 @@
-"""Where a disc is at what stands: the gap, the normal, how it bends, and where it ends.
+"""Where a disc is at what stands: the gap, the normal, its curvature, and where it ends.
 
 Walls and edges go on for ever, sides between two ends at which corners stand; posts and pockets are
 circles from outside, arcs parts of circles from within.
@@ -101,7 +101,7 @@ def normal_to(
 
 
 @inlined
-def bend_of(obstacle: FloatArray, radius: float, gap: float) -> float:
+def curvature(obstacle: FloatArray, radius: float, gap: float) -> float:
     """κ, 1/m: a slip v along an obstacle opens the gap of a disc with κ v²."""
     shape = int(obstacle[KIND])
     if shape in (WALL, SIDE):
