@@ -59,6 +59,10 @@ def find_touching(engine: Engine, t: float, room: Room) -> int:
                 continue
             patience(1)
             room.marks[i] = LOOKED_AT
+            for j in range(discs.shape[0]):  # a group ends its segments together
+                if engine.group[j] == engine.group[i] > 0 and room.marks[j] == NOT_CONCERNED:
+                    locate(engine, j, t, room)
+                    room.marks[j], grown = CONCERNED, True
             # moments are rounded, and so are the gaps at them
             far = abs(room.states[i, X]) + abs(room.states[i, Y])
             near = TOUCH * discs[i, RADIUS] + BLUR * t * engine.scale[0] + 2.0 * ROUNDED * far
