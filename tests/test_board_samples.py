@@ -144,9 +144,9 @@ def test_a_picture_of_samples_counts_every_puck():
     words = [text.get_text() for text in figure.legends[0].get_texts()]
     left = int((found["red"]["in_play"] == 0.0).sum())
     assert {"cue: 60 in play", f"red: {60 - left} in play", f"red: {left} left play"} <= set(words)
-    assert "puck[0].launch.spin normal:0.0:8.0" in figure.get_suptitle().replace("\n", " ")
+    assert "puck[0].launch.spin normal:0.0:8.0 rad/s" in figure.get_suptitle().replace("\n", " ")
     own = found.of("red").plot()
-    assert own.axes[0].get_title("left").startswith(f"{left} of 60 samples left play")
+    assert own.axes[0].get_title("left").endswith(f"; {left} of 60 samples left play")
 
 
 @pytest.mark.thorough

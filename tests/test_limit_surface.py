@@ -209,7 +209,10 @@ def test_what_is_printed_has_its_units():
     load = 0.2 * 9.80665
     assert str(puck.wrench((1.0, 0.0), 0.0)) == f"force [{-load:.6g}  0.     ] N, torque 0.0 N m"
     assert str(puck.twist((-load, 0.0), 0.0)) == "velocity [1. 0.] m/s, spin 0.0 rad/s"
-    assert str(puck.holds((0.5 * load, 0.0), 0.0)).startswith("held: True; it slips at 2.0")
+    written = puck.holds((f"{500.0 * load} mN", "0 mN"), "0 mN m")
+    assert str(written).startswith("held: True; it slips at 2.0")
+    with pytest.raises(pt.InputError, match=r"force must be a number \(N\), .* as '5mN'"):
+        puck.holds(("2km/h", 0.0), 0.0)
 
 
 def test_the_command(tmp_path: Path):

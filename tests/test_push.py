@@ -158,7 +158,7 @@ def test_how_pushes_end(tmp_path):
     assert "Push(3 states, sticks" in repr(straight) and "quasi-static" in straight.explain()
     assert str(straight) == (
         "The puck moves by (0.05, 0) m and turns by 0 degrees in 1 s: time is up.\n"
-        "The finger sticks; its force is 2.942 to 2.942 N."
+        "The finger: sticks; its force is 2.942 to 2.942 N."
     )
 
 

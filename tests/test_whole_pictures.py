@@ -162,7 +162,9 @@ def test_every_sample_is_in_sight_or_counted() -> None:
 def test_few_samples_are_all_drawn(count: int) -> None:
     figure = Puck.similar().sample(count, count, speed=1.0, spin=Normal(0.0, 3.0)).plot()
     single = next(one for one in figure.axes[0].lines if one.get_label() == "single samples")
-    assert len(single.get_xdata()) == count and not figure.axes[0].get_title("left")
+    assert len(single.get_xdata()) == count
+    assert figure.axes[0].get_title("left") == "x and y of different scale"  # none lies outside
+    assert figure.get_suptitle().endswith("launch_spin normal:0.0:3.0 rad/s")
 
 
 def words(figure: Figure) -> Iterator[Text]:

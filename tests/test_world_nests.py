@@ -133,17 +133,8 @@ def test_a_man_between_three_others_does_not_chatter_for_ever(seed: int):
 
 @pytest.mark.thorough
 def test_drawn_racks_are_solved():
-    """One may be refused, where rims without bound on their friction leave no forces."""
-    refused = []
     for seed in range(150):
-        scene = drawn_rack(seed)
-        try:
-            assert scene.simulate().energy_residual <= 1e-9
-        except pt.PuckError as refusal:
-            assert "that is not solved here" in str(refusal)
-            assert scene.pucks[0].rim == math.inf
-            refused.append(seed)
-    assert len(refused) <= 1
+        assert drawn_rack(seed).simulate().energy_residual <= 1e-9
 
 
 PLASTIC = {"restitution": 0.0, "tangential": 0.0, "rim": math.inf}
@@ -191,3 +182,8 @@ def test_a_rim_without_bound_grips_nothing_that_is_not_pressed():
     assert ("puck 2", "puck 3") not in hits
     assert scene.world().state()[3, 5] == 20.0
     assert scene.world().state()[2, 5] == 0.0
+
+
+def test_a_group_ends_its_paths_together_whoever_of_it_is_hit():
+    """Else who was not flew on along a path whose heat was counted no more: 1e-9 of the energy."""
+    assert drawn_rack(47).simulate().energy_residual <= 1e-11

@@ -267,12 +267,14 @@ def bracketed(unit: str) -> str:
     return "" if unit == "1" else f" ({unit})"
 
 
-def velocity_array(velocity: npt.ArrayLike) -> npt.NDArray[np.float64]:
-    """Velocities of shape (…, 2), m/s."""
-    array = finite_array("velocity", velocity, "m/s")
+def velocity_array(
+    velocity: npt.ArrayLike, name: str = "velocity", parts: str = "vx, vy", unit: str = "m/s"
+) -> FloatArray:
+    """Velocities of shape (…, 2), m/s; or other vectors, by their name, components and unit."""
+    array = finite_array(name, velocity, unit)
     if array.ndim == 0 or array.shape[-1] != 2:
         raise InputError(
-            f"velocity must have two components (vx, vy) in m/s, got an array of {array.shape}"
+            f"{name} must have two components ({parts}) in {unit}, got an array of {array.shape}"
         )
     return array
 

@@ -21,7 +21,7 @@ _WORDS = {
     "y": "y cy yc ypos posy ycoord coordy ycenter centery ycentre centrey у",
     "z": "z zpos posz zcoord coordz",
     "angle": "angle theta θ phi φ orientation rotation winkel yaw ang rot drehwinkel ángulo angulo "
-    "ângulo угол orientación orientação heading_angle",
+    "ângulo угол orientación orientação rotación rotação heading_angle",
     "seen": "visible seen detected found valid sichtbar",
     "hidden": "hidden occluded occlusion lost missing verdeckt",
     "likelihood": "likelihood confidence probability prob conf score",

@@ -93,12 +93,11 @@ def draw_on(panel: Axes, samples: Summary) -> None:
     panel.set(xlim=sides[0], ylim=sides[1])
     no_rounding(panel)
     panel.set(xlabel=COLUMNS[samples.place[0]].axis, ylabel=COLUMNS[samples.place[1]].axis)
-    notes = ["x and y of different scale"] if painted else []
+    notes = ["x and y of different scale"]
     notes += [f"{left} of {samples.ended} samples left play"] if left else []
     if not in_view.all():
         notes.append(f"{np.count_nonzero(~in_view)} of {in_view.size} samples lie outside")
-    if notes:
-        noted(panel, "; ".join(notes))
+    noted(panel, "; ".join(notes))
     legend_below(panel, 4)
 
 

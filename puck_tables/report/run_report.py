@@ -97,7 +97,9 @@ def _inputs(scene: SceneSpec) -> dict[str, str]:
         if entry.default is None and isinstance(entry.value, Unsaid):
             continue  # what follows from the base
         if entry.value != entry.default and entry.value is not None:
-            words = f"{name} {_written(entry.value)} {entry.kind.unit}".strip()
+            based = name == "gyration" and scene.puck.shape is not None
+            unit = "m" if based else entry.kind.unit
+            words = f"{name} {_written(entry.value)} {unit}".strip()
             parts.setdefault(part, []).append(words)
     lines = {part: ", ".join(words) for part, words in list(parts.items())[:MOST_PARTS]}
     more = len(parts) - MOST_PARTS

@@ -33,7 +33,7 @@ def stops_report(result: StopMap) -> str:
 
 def map_report(result: Map) -> str:
     """What ranges, how runs end, and how exact they are."""
-    error = f"{result.error_estimate:.1e} of Q/a, Q²/a"
+    error = f"{result.error_estimate:.1e} of Q/a (times), Q²/a (places)"
     model = f"; {result.model}; error <= {error} in the runs that were checked"
     return _ends(result, Tally.of(result.end), model, result.without_end())
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from puck_tables.bulk.summary import Summary
-from puck_tables.io.columns import derived, following
+from puck_tables.io.columns import COLUMNS, derived, following
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.result import Result
 from puck_tables.stopping.population import Population, law_name
@@ -86,8 +86,9 @@ class StopSample(StopMap, Summary):
     @property
     def drawn_words(self) -> str:
         """What scatters, in words."""
-        found = self._own.attributes.items()
-        return ", ".join(
-            f"{name.removeprefix('drawn_')} {text}"
-            for name, text in found if name.startswith("drawn_")
-        )  # fmt: skip
+        found = {
+            name.removeprefix("drawn_"): text
+            for name, text in self._own.attributes.items() if name.startswith("drawn_")
+        }  # fmt: skip
+        said = (f"{name} {text} {COLUMNS[name].unit}" for name, text in found.items())
+        return ", ".join(one.removesuffix(" 1") for one in said)

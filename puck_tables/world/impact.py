@@ -116,8 +116,8 @@ def _alone(engine: Engine, i: int, j: int, row: FloatArray, states: FloatArray) 
     _push(engine, i, j, row, states)
 
 
-@inlined
-def _as_forces(
+@inner
+def as_forces(
     engine: Engine, t: float, contacts: Whole, count: int, rows: FloatArray, states: FloatArray,
     buffer: GroupBuffer,
 ) -> int:  # fmt: skip
@@ -178,7 +178,7 @@ def _together(
 
     Those for e = β = 0, enlarged by 1 + e and 1 + β.
     """
-    acting = _as_forces(engine, t, contacts, count, rows, states, buffer)
+    acting = as_forces(engine, t, contacts, count, rows, states, buffer)
     if acting < 0:
         return False
     modes = buffer.modes[0, :acting]
@@ -232,7 +232,7 @@ def _hold_together(
     """
     for n in range(count):
         rows[n, ACTS] = rows[n, HOPS]
-    acting = _as_forces(engine, t, contacts, count, rows, states, buffer)
+    acting = as_forces(engine, t, contacts, count, rows, states, buffer)
     if acting > 0:
         modes = buffer.modes[0, :acting]
         modes[:] = 1

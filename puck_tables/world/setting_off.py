@@ -7,7 +7,6 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
-from puck_tables.world.contact_search import ROUNDED, normal_to
 from puck_tables.world.engine_state import GOT, N_CONTACTS, N_EVENTS, PLACED, REMOVED, Engine
 from puck_tables.world.floor_under import lay_down
 from puck_tables.world.layout import (
@@ -23,6 +22,7 @@ from puck_tables.world.layout import (
     SPAN,
     kinetic,
 )
+from puck_tables.world.obstacle_shapes import ROUNDED, normal_to
 from puck_tables.world.rounded_approaches import quieten
 from puck_tables.world.segment import GONE, STILL
 from puck_tables.world.segment_starts import (
@@ -54,18 +54,12 @@ _KEPT, _PUT, _MOVED, _MATE = range(4)  # what is done to a disc: nothing, a stat
 
 
 @inlined
-def _whole_groups(engine: Engine, count: int, room: Room) -> None:
+def _whole_groups(engine: Engine, room: Room) -> None:
     """Mark the groups of those concerned."""
-    grown = True
-    while grown:
-        grown = False
-        for n in range(count):
-            i, j = room.contacts[n, 0], room.contacts[n, 1]
-            if j < 0 or engine.group[i] == 0 or engine.group[i] != engine.group[j]:
-                continue
-            if (room.marks[i] == CONCERNED) != (room.marks[j] == CONCERNED):
-                room.marks[i] = room.marks[j] = CONCERNED
-                grown = True
+    for i in range(engine.discs.shape[0]):
+        for j in range(engine.discs.shape[0]):
+            if room.marks[i] == CONCERNED and engine.group[i] == engine.group[j] > 0:
+                room.marks[j] = CONCERNED
 
 
 @inlined
@@ -97,8 +91,8 @@ def go_on(engine: Engine, t: float, count: int, room: Room) -> int:
     does what is to be done.
     """
     engine.counts[N_CONTACTS] = count
-    if quieten(engine, count, room):
-        _whole_groups(engine, count, room)
+    if quieten(engine, count, t, room):
+        _whole_groups(engine, room)
     pushes = press_somewhere(engine, count, t, room)
     for j in range(engine.discs.shape[0]):
         pushes = pushes or (
@@ -220,5 +214,7 @@ def put(engine: Engine, what: int, t: float, room: Room) -> int:
     if contacts < 0:
         return CROWDED
     for i in range(count):
-        room.marks[i] = CONCERNED if room.shares[i] != _KEPT else NOT_CONCERNED
+        with_them = engine.group[i] > 0 and room.marks[i] != NOT_CONCERNED
+        concerned = room.shares[i] != _KEPT or with_them
+        room.marks[i] = CONCERNED if concerned else NOT_CONCERNED
     return go_on(engine, t, contacts, room)

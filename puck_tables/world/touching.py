@@ -15,7 +15,7 @@ from puck_tables.world.contact_row import (
     opening,
     prepare_contact,
 )
-from puck_tables.world.contact_search import HARDLY, ROUNDED, TOUCH, normal_to, slack_of
+from puck_tables.world.contact_search import HARDLY
 from puck_tables.world.engine_state import (
     Engine,
 )
@@ -31,6 +31,7 @@ from puck_tables.world.layout import (
     RADIUS,
     TWIST,
 )
+from puck_tables.world.obstacle_shapes import ROUNDED, TOUCH, normal_to, slack_of
 from puck_tables.world.segment import GONE, PLACE_X, PLACE_Y, STILL, drifts
 from puck_tables.world.segment_starts import CONCERNED, LOOKED_AT, NOT_CONCERNED, Room, locate
 
@@ -59,6 +60,10 @@ def find_touching(engine: Engine, t: float, room: Room) -> int:
                 continue
             patience(1)
             room.marks[i] = LOOKED_AT
+            for j in range(discs.shape[0]):  # a group ends its segments together
+                if engine.group[j] == engine.group[i] > 0 and room.marks[j] == NOT_CONCERNED:
+                    locate(engine, j, t, room)
+                    room.marks[j], grown = CONCERNED, True
             # moments are rounded, and so are the gaps at them
             far = abs(room.states[i, X]) + abs(room.states[i, Y])
             near = TOUCH * discs[i, RADIUS] + BLUR * t * engine.scale[0] + 2.0 * ROUNDED * far

@@ -108,7 +108,7 @@ def _in_its_axes(
     force: npt.ArrayLike, torque: npt.ArrayLike, angle: npt.ArrayLike
 ) -> tuple[FloatArray, npt.NDArray[np.complex128], tuple[int, ...]]:
     """Wrenches (3, n) in the axes of the base, by what those are turned (n,), and their shape."""
-    forces = _forces(force)
+    forces = velocity_array(force, "force", "fx, fy", "N")
     fx, fy, moment, turned = broadcast(
         force_x=forces[..., 0], force_y=forces[..., 1],
         torque=finite_array("torque", torque, "N m"), angle=finite_array("angle", angle, "rad"),
@@ -148,14 +148,6 @@ def _slips(
             )
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         return np.where(acts, load / unit / share / largest, np.inf), heat, slip
-
-
-def _forces(force: npt.ArrayLike) -> FloatArray:
-    try:
-        return velocity_array(force)
-    except InputError as error:
-        text = str(error).replace("velocity", "force").replace("m/s", "N")
-        raise InputError(text.replace("(vx, vy)", "(fx, fy)")) from None
 
 
 @allocating

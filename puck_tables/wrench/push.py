@@ -109,7 +109,7 @@ class Push(Result):
             f"The puck moves by ({self.x[-1]:.6g}, {self.y[-1]:.6g}) m and turns by "
             f"{math.degrees(self.orientation[-1] - self.orientation[0]):.6g} degrees in "
             f"{self.time[-1]:.6g} s: {self.end}.\n"
-            f"The finger {', then '.join(dict.fromkeys(self.contact))}; its force is "
+            f"The finger: {', then '.join(dict.fromkeys(self.contact))}; its force is "
             f"{force.min():.4g} to {force.max():.4g} N."
         )
 
