@@ -184,6 +184,12 @@ def test_wrenches_of_any_size():
     assert bool(nothing) and nothing.margin == math.inf
 
 
+def test_a_count_may_be_a_small_whole_number_of_numpy() -> None:
+    box = pt.Puck(base="box:0.2x0.1", friction=0.3)
+    few, same = box.limit_surface(np.int8(70)), box.limit_surface(70)  # type: ignore[arg-type]
+    np.testing.assert_array_equal(few.torque, same.torque)
+
+
 @pytest.mark.parametrize(
     ("ask", "words"),
     [

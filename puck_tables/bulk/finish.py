@@ -104,7 +104,7 @@ class Doing:
     overwrite: bool
 
     def __post_init__(self) -> None:
-        whole("chunk", self.chunk, 1)
+        object.__setattr__(self, "chunk", whole("chunk", self.chunk, 1))
 
 
 def finish(work: Work, how: Doing) -> Any:

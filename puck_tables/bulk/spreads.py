@@ -240,8 +240,8 @@ def spread_named(text: str, unit: str = "") -> Spread:
     return result
 
 
-def checked_samples(count: int, seed: int) -> None:
-    """Refuse a number of samples, or a seed, that is none.
+def checked_samples(count: int, seed: int) -> tuple[int, int]:
+    """A number of samples, and a seed.
 
     Raises
     ------
@@ -250,13 +250,13 @@ def checked_samples(count: int, seed: int) -> None:
     Examples
     --------
     >>> checked_samples(1000, 7)
+    (1000, 7)
     """
-    whole("samples", count, 2, 10**9)
-    checked_seed(seed)
+    return whole("samples", count, 2, 10**9), checked_seed(seed)
 
 
-def checked_seed(seed: int) -> None:
-    """Refuse a seed that is none.
+def checked_seed(seed: int) -> int:
+    """A seed.
 
     Raises
     ------
@@ -265,5 +265,6 @@ def checked_seed(seed: int) -> None:
     Examples
     --------
     >>> checked_seed(7)
+    7
     """
-    whole("seed", seed, 0, _LARGEST_SEED - 1)
+    return whole("seed", seed, 0, _LARGEST_SEED - 1)

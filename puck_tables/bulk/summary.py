@@ -103,7 +103,7 @@ class Summary:
         ------
         InputError
         """
-        whole("bins", bins, 1, _MOST_BINS)
+        bins = whole("bins", bins, 1, _MOST_BINS)
         x, y = self._rows(self.place)
         if extent is None:
             sides = [_sides(x), _sides(y)]

@@ -44,8 +44,8 @@ def disc_points(rings: int) -> FloatArray:
     >>> len(points), float((points**2).sum(axis=1).mean().round(12))  # ⟨ρ²⟩ = 1/2 on a disc
     (36, 0.5)
     """
-    parts = []
-    for k in range(1, whole("rings", rings, 1, MAX_RINGS) + 1):
+    rings, parts = whole("rings", rings, 1, MAX_RINGS), []
+    for k in range(1, rings + 1):
         count = 4 * (2 * k - 1)
         radius = math.sqrt(0.5 * ((k - 1) ** 2 + k**2)) / rings
         angle = 2.0 * np.pi * (np.arange(count) + 0.5) / count

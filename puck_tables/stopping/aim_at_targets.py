@@ -228,7 +228,7 @@ def aim(
         raise InputError(
             f"target ({far[0]:g}, {far[1]:g}) m is too far for floating point: use larger units"
         )
-    search = LaunchSearch(puck, wished, bounds, count)
+    search = LaunchSearch(puck, wished, bounds, int(count))
     flat = places.reshape(-1, 2), wanted.reshape(-1), distance.reshape(-1)
     result: dict[int, FloatArray] = {}
 

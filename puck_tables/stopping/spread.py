@@ -130,7 +130,7 @@ def spread_of(
     root = _root(covariance, len(which), shape)
     if not isinstance(samples, int) or isinstance(samples, bool) or samples == 1 or samples < 0:
         raise InputError(f"samples must be 0 or a whole number from 2 on, got {shown(samples)}")
-    checked_seed(seed)
+    seed = checked_seed(seed)
     if not np.isfinite(jacobian).all():
         raise InputError(
             "a launch has no derivative (pure spin, the path by vx and vy; or too large for "

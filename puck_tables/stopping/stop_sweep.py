@@ -44,7 +44,7 @@ def sample(
     puck: Any, count: int, seed: int, chosen: Mapping[str, Any], by: By, how: Doing
 ) -> Result:
     """Stops of launches that scatter: :meth:`puck_tables.Puck.sample`."""
-    checked_samples(count, seed)
+    count, seed = checked_samples(count, seed)
     numbers = numbers_of(puck, chosen)
     laws = numbers.pop("pressure", puck.pressure)
     return _done(puck, drawn(_whole(puck, numbers, numbers), laws, count, seed), by, how)

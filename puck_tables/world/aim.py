@@ -81,8 +81,8 @@ def aim(
 ) -> BoardAim:  # fmt: skip
     """Launches on a board, as :meth:`puck_tables.Scene.aim` has them."""
     checked_progress(progress)
-    whole("max_impacts", max_impacts, 0, MOST_IMPACTS)
-    whole("count", count, 1, MOST_COUNT)
+    max_impacts = whole("max_impacts", max_impacts, 0, MOST_IMPACTS)
+    count = whole("count", count, 1, MOST_COUNT)
     wanted = target_of(scene, target, pocket, puck, striker, hits)
     searches = _searches(scene, wanted, spin, speed, max_speed, max_spin)
     if wanted.pocket < 0 and wanted.puck != wanted.striker:

@@ -46,7 +46,7 @@ def sample(
     scene: SceneSpec, count: int, seed: int, spreads: Mapping[str, Spread], how: Doing
 ) -> Any:
     """Samples of a scene, as :meth:`puck_tables.Scene.sample` has it."""
-    checked_samples(count, seed)
+    count, seed = checked_samples(count, seed)
     instance("spreads", spreads, Mapping)
     return finish(DrawnRuns(scene, how.chunk, None, count, seed, dict(spreads)), how)
 

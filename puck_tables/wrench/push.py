@@ -256,7 +256,7 @@ def push(
         raise InputError(
             f"a push of {span:g} m is longer than {_LONGEST:g} times the reach of the base"
         )
-    whole("frames", frames, 1, _MOST)
+    frames = whole("frames", frames, 1, _MOST)
     turned = real("angle", angle, "rad")
     own, side = _touched(base, at)
     begun = own * complex(math.cos(turned), math.sin(turned))

@@ -174,7 +174,7 @@ def limit_surface(puck: PuckSpec, count: int | None) -> LimitSurface:
     is_round = puck.shape is None
     if count is None:
         count = OF_A_ROUND if is_round else OF_A_BASE
-    whole("n", count, LEAST, MOST if is_round else MOST_OF_A_BASE)
+    count = whole("n", count, LEAST, MOST if is_round else MOST_OF_A_BASE)
     if puck.friction == 0.0:
         raise InputError("a puck with friction = 0 has no limit surface: give friction > 0")
     phi = np.linspace(-0.5 * np.pi, 0.5 * np.pi, count)
