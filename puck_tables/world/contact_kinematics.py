@@ -18,7 +18,6 @@ from puck_tables.kernels.compile import inlined, kernel, patience
 from puck_tables.motion.impact_law import along_normal
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ingredients import FREE
-from puck_tables.world.contact_search import beyond_ends, slack_of
 from puck_tables.world.group import (
     ALONG,
     APPROACH,
@@ -37,63 +36,11 @@ from puck_tables.world.group import (
 )
 from puck_tables.world.holds import forbid
 from puck_tables.world.layout import (
-    ARC,
-    CORNER,
-    FROM,
     HOLD,
-    KIND,
     RADIUS,
-    SIDE,
-    SPAN,
-    WALL,
-    A,
-    B,
-    C,
 )
+from puck_tables.world.obstacle_shapes import curvature, normal_to, to_end
 from puck_tables.world.rims import along_of_pair
-
-
-@inlined
-def _to_end(obstacle: FloatArray, ex: float, ey: float) -> float:
-    """How far a direction from the centre of an arc is within the arc, rad; outside negative."""
-    if obstacle[KIND] != ARC or obstacle[SPAN] >= 2.0 * math.pi:
-        return math.inf
-    half = 0.5 * obstacle[SPAN]
-    off = math.atan2(ey, ex) - obstacle[FROM] - half
-    off -= 2.0 * math.pi * round(off / (2.0 * math.pi))
-    return half - abs(off)
-
-
-@inlined
-def _obstacle_sight(
-    obstacle: FloatArray, radius: float, x: float, y: float, out: FloatArray
-) -> None:
-    """Normal, bend, gap and the way to its end where a disc is at an obstacle."""
-    out[TO_END] = math.inf
-    if obstacle[KIND] == SIDE:
-        away = obstacle[A] * x + obstacle[B] * y - obstacle[C]
-        face = -1.0 if away < 0.0 else 1.0
-        out[NX], out[NY], out[BEND] = -face * obstacle[A], -face * obstacle[B], 0.0
-        out[GAP] = face * away - radius
-        out[TO_END] = 2.0 * slack_of(radius, x, y) - beyond_ends(obstacle, x, y)[0]
-        return
-    if obstacle[KIND] == WALL:
-        out[NX], out[NY], out[BEND] = -obstacle[A], -obstacle[B], 0.0
-        out[GAP] = obstacle[A] * x + obstacle[B] * y - obstacle[C] - radius
-        return
-    dx, dy = x - obstacle[A], y - obstacle[B]
-    distance = math.hypot(dx, dy)
-    ex, ey = dx / distance, dy / distance
-    if obstacle[KIND] == CORNER:
-        out[TO_END] = -beyond_ends(obstacle, x, y)[0]
-    else:
-        out[TO_END] = _to_end(obstacle, ex, ey)
-    if obstacle[KIND] == ARC and distance < obstacle[C]:
-        out[NX], out[NY], out[BEND] = ex, ey, -1.0 / distance
-        out[GAP] = obstacle[C] - distance - radius
-        return
-    out[NX], out[NY], out[BEND] = -ex, -ey, 1.0 / distance
-    out[GAP] = distance - obstacle[C] - radius
 
 
 @inlined
@@ -132,9 +79,10 @@ def look(group: Group, members: IntArray, pairs: IntArray, y: FloatArray, out: F
             vx, vy = y[one, VX] - y[other, VX], y[one, VY] - y[other, VY]
             turning = radius * y[one, SPIN] + far * y[other, SPIN]
         else:
-            j = other
-            _obstacle_sight(group.obstacles[-1 - other], radius, y[one, X], y[one, Y], sight)
-            sight[FAR_ARM] = 0.0
+            j, obstacle, at_x, at_y = other, group.obstacles[-1 - other], y[one, X], y[one, Y]
+            sight[GAP], sight[NX], sight[NY], _ = normal_to(obstacle, radius, at_x, at_y, 0.0)
+            sight[BEND] = curvature(obstacle, radius, sight[GAP])
+            sight[FAR_ARM], sight[TO_END] = 0.0, to_end(obstacle, radius, at_x, at_y)
             vx, vy, turning = y[one, VX], y[one, VY], radius * y[one, SPIN]
         sight[ARM] = radius
         sight[APPROACH], sight[ALONG] = along_normal(vx, vy, 0.0, sight[NX], sight[NY])

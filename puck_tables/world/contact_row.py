@@ -9,10 +9,10 @@ from puck_tables.kernels.compile import inlined
 from puck_tables.motion.impact_law import along_normal
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.world.alone import acceleration
-from puck_tables.world.contact_search import normal_to
 from puck_tables.world.engine_state import Engine
 from puck_tables.world.holds import response
-from puck_tables.world.layout import ARC, HOLD, KIND, LIGHTNESS, RADIUS, SIDE, TURNABILITY, WALL, C
+from puck_tables.world.layout import HOLD, LIGHTNESS, RADIUS, TURNABILITY
+from puck_tables.world.obstacle_shapes import curvature, normal_to
 from puck_tables.world.rims import along_of_pair, restitutions_of_pair
 
 # columns of a contact in work: normal, slownesses 1/m_n and 1/m_t, law, whether it acts in this
@@ -88,19 +88,15 @@ def opening(engine: Engine, i: int, j: int, t: float, row: FloatArray, states: F
     """The second derivative of the gap of a contact if its discs flew on alone."""
     nx, ny = row[NX], row[NY]
     wx, wy = states[i, VX], states[i, VY]
-    size = engine.discs[i, RADIUS]
     ax, ay = acceleration(engine, i, t, states[i])
     pull = ax * nx + ay * ny
     if j >= 0:
         wx -= states[j, VX]
         wy -= states[j, VY]
-        size += engine.discs[j, RADIUS]
+        kappa = 1.0 / (engine.discs[i, RADIUS] + engine.discs[j, RADIUS])
         ax, ay = acceleration(engine, j, t, states[j])
         pull -= ax * nx + ay * ny
     else:
-        obstacle = engine.obstacles[-1 - j]
-        size = math.inf if obstacle[KIND] in (WALL, SIDE) else size + obstacle[C]
-        if obstacle[KIND] == ARC:
-            size = engine.discs[i, RADIUS] - obstacle[C]  # it bends the other way
+        kappa = curvature(engine.obstacles[-1 - j], engine.discs[i, RADIUS], 0.0)
     across = wy * nx - wx * ny
-    return across * across / size - pull
+    return kappa * across * across - pull

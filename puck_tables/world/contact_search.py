@@ -18,8 +18,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.forces import farthest, per_speed
@@ -33,13 +31,11 @@ from puck_tables.world.layout import (
     EDGE_NUMBER,
     END_X,
     END_Y,
-    FROM,
     KIND,
     OVERHANG,
     POCKET,
     RADIUS,
     SIDE,
-    SPAN,
     START_X,
     START_Y,
     WALL,
@@ -47,6 +43,7 @@ from puck_tables.world.layout import (
     B,
     C,
 )
+from puck_tables.world.obstacle_shapes import ROUNDED, beyond_ends, normal_to, slack_of
 from puck_tables.world.segment import (
     CARRIED,
     DAMPED,
@@ -66,8 +63,6 @@ from puck_tables.world.segment import (
 from puck_tables.world.separation import stays_apart
 
 OUTSIDE = 1e-9  # of the radius
-TOUCH = 1e-12  # of the radius: a gap as small is none
-ROUNDED = 1e-15  # of the places: a gap as small is none
 QUIET = 1e-12  # of the scale of speeds: an approach as slow is none
 HARDLY = 1e-11  # of the scales of speeds and accelerations: as good as none, of what touches
 MOST_LOOKS = 20_000  # at one pair in a row: then others have their turn
@@ -94,70 +89,6 @@ def moment_there(rounded: float, rate: float, accel: float, t: float) -> float:
     opens = max(2.0 * rounded / rate, 4.0 * ROUNDED * abs(t)) if rate > 0.0 else math.inf
     short = min(bends, opens)
     return short if short < math.inf else 0.0
-
-
-@inlined
-def in_span(angle: float, start: float, span: float) -> bool:
-    """Whether an angle lies in [start, start + span]."""
-    turns = (angle - start) / (2.0 * math.pi)
-    return 2.0 * math.pi * (turns - float(np.floor(turns))) <= span
-
-
-@inlined
-def beyond_ends(obstacle: FloatArray, x: float, y: float) -> tuple[float, float, float]:
-    """How far a centre is beyond where a side or a corner is met, less than 0 within; its gradient.
-
-    The same sums decide about a side and about the corners at its ends.
-    """
-    if obstacle[KIND] == SIDE:
-        ux, uy = obstacle[B], -obstacle[A]
-        before = (obstacle[START_X] - x) * ux + (obstacle[START_Y] - y) * uy
-        after = (x - obstacle[END_X]) * ux + (y - obstacle[END_Y]) * uy
-        return (before, -ux, -uy) if before > after else (after, ux, uy)
-    dx, dy = x - obstacle[A], y - obstacle[B]
-    one = dx * obstacle[START_X] + dy * obstacle[START_Y]
-    other = dx * obstacle[END_X] + dy * obstacle[END_Y]
-    if one > other:
-        return one, obstacle[START_X], obstacle[START_Y]
-    return other, obstacle[END_X], obstacle[END_Y]
-
-
-@inlined
-def slack_of(radius: float, x: float, y: float) -> float:
-    """How far sides reach beyond their ends: no rounding leaves a gap between them and corners.
-
-    Of what touches it is then a side, no corner.  What runs off a side does so twice as far away.
-    """
-    return TOUCH * radius + 4.0 * ROUNDED * (abs(x) + abs(y))
-
-
-@inlined
-def normal_to(
-    obstacle: FloatArray, radius: float, x: float, y: float, slack: float
-) -> tuple[float, float, float, bool]:
-    """The gap of a disc to an obstacle, the unit normal towards it, and whether it is there.
-
-    ``slack``: see :func:`slack_of`, or 0.
-    """
-    kind = int(obstacle[KIND])
-    if kind in (WALL, EDGE, OVERHANG):
-        margin = 0.0 if kind == EDGE else radius
-        gap = obstacle[A] * x + obstacle[B] * y - obstacle[C] - margin
-        return gap, -obstacle[A], -obstacle[B], True
-    if kind == SIDE:
-        away = obstacle[A] * x + obstacle[B] * y - obstacle[C]
-        face = -1.0 if away < 0.0 else 1.0
-        there = beyond_ends(obstacle, x, y)[0] <= slack
-        return face * away - radius, -face * obstacle[A], -face * obstacle[B], there
-    dx, dy = obstacle[A] - x, obstacle[B] - y
-    size = math.hypot(dx, dy)
-    nx, ny = (dx / size, dy / size) if size > 0.0 else (1.0, 0.0)
-    if kind == CORNER:
-        return size - radius, nx, ny, beyond_ends(obstacle, x, y)[0] < -slack
-    if kind == ARC:
-        there = in_span(math.atan2(-ny, -nx), obstacle[FROM], obstacle[SPAN])
-        return obstacle[C] - radius - size, -nx, -ny, there
-    return size - obstacle[C] - (0.0 if kind == POCKET else radius), nx, ny, True
 
 
 @inlined

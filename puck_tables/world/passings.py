@@ -20,7 +20,6 @@ from puck_tables.scene.pucks_and_posts import Line
 from puck_tables.world.borders import to_round
 from puck_tables.world.contact_search import (
     QUIET,
-    ROUNDED,
     arc_step,
     distance_left,
     largest_accel,
@@ -31,6 +30,7 @@ from puck_tables.world.contact_search import (
 from puck_tables.world.engine_state import ENTERS, LEAVES, N_HISTORY, PASSES, Engine, Whole
 from puck_tables.world.floor_under import lies_to
 from puck_tables.world.layout import RADIUS
+from puck_tables.world.obstacle_shapes import ROUNDED
 from puck_tables.world.segment import GONE, ROOM, START, moves_until, state_at
 
 # columns of a line: a straight one goes from (A, B) to (C, D); a round one has the radius R > 0

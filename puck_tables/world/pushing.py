@@ -18,7 +18,6 @@ from puck_tables.kernels.compile import inlined, inner, patience
 from puck_tables.motion.steppers import times_as_long
 from puck_tables.scene.friction import VX, VY, X, Y
 from puck_tables.world.contact_kinematics import look
-from puck_tables.world.contact_search import ROUNDED
 from puck_tables.world.floor_under import is_over, moves_along, nears_another, room_on_floor
 from puck_tables.world.forces import can_rest, count_rows, slip_at
 from puck_tables.world.group import (
@@ -45,6 +44,7 @@ from puck_tables.world.group import (
 )
 from puck_tables.world.layout import LIES, LIGHTNESS, RADIUS
 from puck_tables.world.moments import first_negative, sets_off, watch
+from puck_tables.world.obstacle_shapes import ROUNDED
 from puck_tables.world.paths import DURATION, START, on_piece, piece_at
 from puck_tables.world.step_ledger import LEDGER
 from puck_tables.world.stepping import (

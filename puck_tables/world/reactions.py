@@ -21,7 +21,6 @@ from puck_tables.scene.equations import (
 from puck_tables.scene.friction import X, Y
 from puck_tables.scene.ingredients import FREE, NO_WAY, SLIDES, Phase
 from puck_tables.scene.over_time import rows_passed
-from puck_tables.world.contact_search import normal_to
 from puck_tables.world.engine_state import Engine
 from puck_tables.world.floor_under import (
     floor_map_span,
@@ -33,6 +32,7 @@ from puck_tables.world.floor_under import (
 from puck_tables.world.lasting import at_rest_below
 from puck_tables.world.layout import HOLD, KIND, LIES, NO_CUSHION, RADIUS
 from puck_tables.world.lone import model_of
+from puck_tables.world.obstacle_shapes import normal_to
 
 _NEAR = 1e-9  # of the radius: what is as near may press
 

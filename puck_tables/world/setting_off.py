@@ -7,7 +7,6 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
-from puck_tables.world.contact_search import ROUNDED, normal_to
 from puck_tables.world.engine_state import GOT, N_CONTACTS, N_EVENTS, PLACED, REMOVED, Engine
 from puck_tables.world.floor_under import lay_down
 from puck_tables.world.layout import (
@@ -23,6 +22,7 @@ from puck_tables.world.layout import (
     SPAN,
     kinetic,
 )
+from puck_tables.world.obstacle_shapes import ROUNDED, normal_to
 from puck_tables.world.rounded_approaches import quieten
 from puck_tables.world.segment import GONE, STILL
 from puck_tables.world.segment_starts import (

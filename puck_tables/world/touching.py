@@ -15,7 +15,7 @@ from puck_tables.world.contact_row import (
     opening,
     prepare_contact,
 )
-from puck_tables.world.contact_search import HARDLY, ROUNDED, TOUCH, normal_to, slack_of
+from puck_tables.world.contact_search import HARDLY
 from puck_tables.world.engine_state import (
     Engine,
 )
@@ -31,6 +31,7 @@ from puck_tables.world.layout import (
     RADIUS,
     TWIST,
 )
+from puck_tables.world.obstacle_shapes import ROUNDED, TOUCH, normal_to, slack_of
 from puck_tables.world.segment import GONE, PLACE_X, PLACE_Y, STILL, drifts
 from puck_tables.world.segment_starts import CONCERNED, LOOKED_AT, NOT_CONCERNED, Room, locate
 
