@@ -64,7 +64,8 @@ def aim(
     puck aim --target 0.5,0.1 --base box:20cmx10cm --friction 0.3 --w0 10
 
     With --base the puck, whose body begins along x, is run to its stop for each launch tried, as in
-    a scene: one --target, without --time and --angle, which are of round pucks.
+    a scene: one --target, without --time and --angle, which are of round pucks; without --w0 and
+    --speed it does not spin.
 
     With --scene others lie on the board: launches of the striker after which a puck, or it itself,
     ends at a target or in a pocket, also off cushions and other pucks.  Each is run on the whole

@@ -116,6 +116,18 @@ def test_angles_that_are_told_otherwise_are_named(factor: float, more: float, wo
     assert found.complaints and words in found.misfit
 
 
+def test_a_spin_that_is_not_followed_is_a_sentence():
+    """Of a body that comes to rest, whose angles are in degrees and said to be in rad."""
+    time, rng = np.arange(60) / 60.0, np.random.default_rng(3)
+    run = pt.Puck(base="box:0.2x0.1", friction=0.3).simulate((1.2, 0.3), spin=8.0)
+    x, y, angle = (np.interp(time, run.time, one) for one in (run.x, run.y, run.orientation))
+    place = np.stack([x, y], axis=1) + NOISE[0] * rng.normal(size=(60, 2))
+    angle += NOISE[1] * rng.normal(size=60)
+    for factor, more in ((180.0 / np.pi, {}), (1.0, {"fixed": {"launch_spin": 500.0}})):
+        with pytest.raises(pt.InputError, match="half a turn a frame"):
+            pt.fit(pt.Track(time, place, factor * angle), pt.Puck(base="box:0.2x0.1"), **more)
+
+
 def test_what_follows_from_a_tilt_that_is_not_told_is_not_told():
     """A block that hardly turns tells f, and no height: neither has an error."""
     t, rng = np.arange(60) / 120.0, np.random.default_rng(38)

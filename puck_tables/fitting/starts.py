@@ -20,6 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.errors import InputError
 from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.forward_model import DELTA
 from puck_tables.fitting.least_squares import FROM_AFAR, ROBUST, minimise_robustly, multi_start
@@ -72,6 +73,11 @@ def minima_of(problem: Problem) -> list[FloatArray]:
     guesses = _guesses(like, velocity, slowing, turning, rests=moving < film.time.size)
     if spec.base is not None:
         guesses = [guess for guess in guesses if guess.turns == 0]
+        if not guesses:
+            raise InputError(
+                f"{film.name} would turn by half a turn a frame and more, which is not followed on "
+                "a base: is the unit of its angles right, and launch_spin, if it is held?"
+            )
     part = film.thinned(_FITTED)
     few = np.isin(film.frame, part.frame)
     starts = []
