@@ -11,7 +11,7 @@ import pytest
 from click.testing import CliRunner, Result
 from puck_tables.cli.main import main
 
-from puck_tables import Puck, Scene
+from puck_tables import Launch, Post, Puck, Scene
 
 CURLING = ("--scene", "curling-take-out", "--puck", "yellow", "--target", "0.5,-0.5")
 BOX = ("--base", "box:20cmx10cm", "--friction", "0.3")
@@ -84,13 +84,28 @@ def test_a_box_that_cannot_get_there_is_told_so() -> None:
     assert "(5, 0) m\nanswer  no launch up to 1 m/s without spin exists: friction" in told.stdout
 
 
-@pytest.mark.thorough
 @pytest.mark.parametrize("more", [{}, {"height": 0.05}, {"gyration": 0.08}])
 def test_a_box_stops_where_it_was_aimed(more: dict[str, float]) -> None:
+    """By the engine of boards, which the search does not use."""
     flags = [text for name, value in more.items() for text in (f"--{name}", str(value))]
     told = json.loads(aim(*BOX, *flags, "--target", "0.5,0.1", "--w0", "10", "--json").stdout)
     ((speed,), (heading,)) = told["launch_speed"], told["launch_heading"]
     puck = Puck(base="box:0.2x0.1", friction=0.3, **more)
-    velocity = speed * math.cos(heading), speed * math.sin(heading)
-    assert math.dist(puck.stop(velocity, 10.0).stop_position, (0.5, 0.1)) < 1e-8
+    launch = Launch((speed * math.cos(heading), speed * math.sin(heading)), 10.0)
+    last = Scene(puck, launch=launch, tol=1e-9).simulate().last_of(0)
+    assert math.dist((last["x"], last["y"]), (0.5, 0.1)) < 1e-8
     assert abs(heading - math.atan2(0.1, 0.5)) > 1e-5  # it bends
+
+
+@pytest.mark.thorough
+def test_a_box_is_aimed_as_on_a_board_with_a_post_far_away() -> None:
+    """From another place, turned: there every launch runs on the board."""
+    puck = Puck(base="box:0.2x0.1", friction=0.3, rim_radius=0.12)
+    start = Launch(spin=8.0, position=(0.1, -0.2), orientation=0.7)
+    free, board = (
+        Scene(puck, launch=start, posts=posts).aim((0.6, 0.1))
+        for posts in ((), (Post((50.0, 0.0), 0.01),))
+    )
+    assert len(free) == len(board) == 1
+    assert free.launch_vx[0] == pytest.approx(board.launch_vx[0], abs=1e-7)
+    assert free.launch_vy[0] == pytest.approx(board.launch_vy[0], abs=1e-7)
