@@ -46,7 +46,7 @@ class Patch:
     centre: tuple[float, float] = of("pair", (0.0, 0.0), "m", doc="of a round one", acts="")
     radius: float = of("number", 0.0, "m", low=0.0, doc="of a round one", acts="")
     corners: str | Rows = of(
-        "rows", (), file="", doc="CSV, SVG or rows of x and y in m, around a polygon", acts=""
+        "rows", (), file="", doc="CSV, SVG or rows of x, y in m, around a polygon", acts=""
     )
     velocity: tuple[float, float] | None = of(
         "pair", None, "m/s", doc="of a belt below its outline; left out: as around it",
@@ -262,11 +262,7 @@ class Wall:
         "pair", None, doc="of one without ends, into the field, any length", acts=""
     )
     corners: str | Rows = of(
-        "rows",
-        (),
-        file="",
-        doc="CSV, SVG or rows of x and y in m, around a closed one",
-        acts="walls",
+        "rows", (), file="", doc="CSV, SVG or rows of x, y in m, around a closed one", acts="walls"
     )
     restitution: float | str | Restitution = restitution_of(1.0, acts="")
     tangential: float = of(
