@@ -57,9 +57,9 @@ class NumberParam(click.ParamType):
             if not math.isfinite(numbers[-1]):
                 self.fail(f"'{text}' is not a finite number", param, ctx)
             if param is not None:
-                bare = quantity(text, self.unit) is None
+                where = DOUBTS if quantity(text, self.unit) is None else SAID
                 what = param.opts[0].strip("-"), numbers[-1], self.unit, self.usual
-                ctx.meta.setdefault(DOUBTS if bare else SAID, []).append(what)
+                ctx.meta.setdefault(where, []).append(what)
         return numbers
 
 
