@@ -83,6 +83,8 @@ def test_an_island_on_a_board_and_a_patch_are_drawn(drawn):
     [
         ("", PAGE, "nothing is drawn"),
         ('<path d="M 0,0 L 1,1 L 0,1"/>', PAGE, "is not closed"),
+        ('<path d="M 1,1 z"/>', PAGE, "goes round nothing"),
+        ('<path d="M 0,0 L nan,10 L 10,0 z"/>', PAGE, "goes round nothing"),
         (BOX, PAGE.replace("20cm", "400"), "the page has no size"),
         (BOX, PAGE.replace(' height="100mm"', ""), "the page has no size"),
         (BOX, PAGE.replace("20cm", "20parsec"), "width must be a number"),
@@ -100,3 +102,14 @@ def test_several_islands_in_one_file_are_refused(drawn):
         pt.Scene(pt.Puck(0.02, friction=0.1), walls=[pt.Wall(corners=two)]).simulate()
     with pytest.raises(pt.InputError, match="a hole must lie in the outline"):
         base_of(two)
+
+
+def square(x: float, y: float, side: float) -> list[tuple[float, float]]:
+    return [(x, y), (x + side, y), (x + side, y + side), (x, y + side)]
+
+
+@pytest.mark.parametrize("other", [square(0.3, 0.3, 0.1), square(0.4, 0.4, 0.3)])
+def test_holes_that_overlap_or_lie_in_each_other_are_refused(other):
+    """What both leave out would be left out twice."""
+    with pytest.raises(pt.InputError, match="two holes overlap, touch, or one lies in the other"):
+        pt.Base.polygon(square(0.0, 0.0, 1.0), holes=[square(0.2, 0.2, 0.3), other])

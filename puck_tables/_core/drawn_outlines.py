@@ -97,6 +97,8 @@ def _drawn(path: str, content: bytes) -> list[FloatArray]:
         rows = np.stack([page.real, float(drawing.height) - page.imag], axis=1) * scale
         ahead = np.roll(rows, -1, axis=0)
         apart = np.hypot(*(ahead - rows).T) > _SAME * size * scale
+        if np.count_nonzero(apart) < 3:
+            raise InputError(f"{path}: a line in it goes round nothing: remove it")
         left = float((rows[:, 0] * ahead[:, 1] - rows[:, 1] * ahead[:, 0]).sum()) >= 0.0
         found.append(rows[apart][:: 1 if left else -1])
     if not found:

@@ -125,9 +125,11 @@ class Base:
         cut = tuple(
             _corners_of(hole, f"{name}: hole", -1.0) for hole in listed("holes", holes, "outlines")
         )
-        for hole in cut:
+        for n, hole in enumerate(cut):
             if crossing(outside, hole) or not inside(outside, hole[0]):
                 raise InputError(f"{name}: a hole must lie in the outline")
+            if any(overlap(((hole[::-1],), ()), ((other[::-1],), ())) for other in cut[:n]):
+                raise InputError(f"{name}: two holes overlap, touch, or one lies in the other")
         return cls((outside, *cut), (), centre, name)
 
     @classmethod
