@@ -142,7 +142,7 @@ def test_that_none_was_found_is_said_as_such() -> None:
         ({"target": (0.9, 0.2)}, "or ask for pocket 0"),
         ({"target": (0.7,)}, "one place (x, y)"),
         ({"target": (math.nan, 0.0)}, "target must be finite"),
-        ({"pocket": 1}, "no pocket 1: the board has 1, from 0 to 0"),
+        ({"pocket": 1}, "no pocket 1: the board has one, 0"),
         ({"pocket": -1}, "no pocket -1"),
         ({"target": (0.7, 0.0), "spin": 1.0, "speed": 1.0}, "give one of them"),
         ({"target": (0.7, 0.0), "max_speed": 0.0}, "max_speed must be greater"),

@@ -152,7 +152,8 @@ def _pocket(scene: SceneSpec, wanted: int | str) -> int:
         raise InputError("pocket: the board has none; give a target (x, y), or add [[pocket]]")
     text = str(wanted).removeprefix("pocket ").strip()
     if isinstance(wanted, bool) or not text.isascii() or not text.isdecimal() or int(text) >= count:
-        raise InputError(f"no pocket {wanted!r}: the board has {count}, from 0 to {count - 1}")
+        numbers = "one, 0" if count == 1 else f"{count}, from 0 to {count - 1}"
+        raise InputError(f"no pocket {wanted!r}: the board has {numbers}")
     return int(text)
 
 
