@@ -100,7 +100,7 @@ def test_a_box_stops_where_it_was_aimed(more: dict[str, float]) -> None:
 @pytest.mark.thorough
 def test_a_box_is_aimed_as_on_a_board_with_a_post_far_away() -> None:
     """From another place, turned: there every launch runs on the board."""
-    puck = Puck(base="box:0.2x0.1", friction=0.3, rim_radius=0.12)
+    puck = Puck(base="box:0.2x0.1", friction=0.3, radius=0.12)
     start = Launch(spin=8.0, position=(0.1, -0.2), orientation=0.7)
     free, board = (
         Scene(puck, launch=start, posts=posts).aim((0.6, 0.1))

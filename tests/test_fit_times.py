@@ -62,7 +62,7 @@ def test_jitter_is_found_and_errors_are_the_bound():
     assert np.all(np.abs(pulls(range(4))) < 4.0)
     blind = pt.fit(jittery(1), KNOWN)
     assert any("jitter" in text for text in blind.remarks)
-    assert found.remarks == ()
+    assert not any("jitter" in text for text in found.remarks)
 
 
 @pytest.mark.nightly

@@ -174,7 +174,7 @@ def test_the_command_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
 def test_samples_of_a_scene_on_the_command_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.chdir(tmp_path)
     words = ["--scene", "incline", "--random", "50", "--spread", "launch.spin=normal:5:0.2"]
-    told = "Puck on an incline over launch.spin normal:5.0:0.2: 50 at rest"
+    told = "Puck on an incline over launch.spin normal:5.0:0.2 rad/s: 50 at rest"
     said = set()
     for more in ([], ["-o", "s.h5"], ["--plot", "s.png"], ["-o", "s.zarr"]):
         result = CliRunner().invoke(main, ["sweep", *words, *more])
