@@ -53,7 +53,7 @@ def test_tol_is_honoured_by_truth_friction_for_all_pucks(puck: tuple[str, float,
 
 def judged(puck: tuple[str, float, float], tolerances: tuple[float, ...]) -> None:
     u = starts(*puck, np.random.default_rng(8))
-    truth = stops_by_truth(*puck, u)
+    truth = stops_by_truth(*puck, u, 3e-14)  # at 3e-13 it is off by 7e-11 where the base lifts
     for tol in tolerances:
         for method in ("look-up", "adaptive", "rk4"):
             if method == "rk4" and tol < 1e-7:
