@@ -28,7 +28,7 @@ RESTS_ON = [
      "test_speed_friction.py::test_a_constant_coefficient_gives_the_closed_forms"),
     ("contact/superposition", "_COUNT = 41", "21",
      "test_laws.py::test_a_profile_is_its_rings_by_elliptic_integrals"),
-    ("fitting/forward_model", "_MOMENTS = 129", "65",
+    ("fitting/forward_model", "_MOMENTS, _DRAGGED = 129, 1e-8", "65, 1e-8",
      "test_fit_drag.py::test_a_slide_with_drag_is_elementary"),
     ("fitting/speed_motion", "_STEP, _LARGEST, _STEPS = 0.08, 0.32, 440", "0.16, 0.64, 440",
      "test_fit_drag.py::test_motions_are_those_of_an_independent_integrator"),
