@@ -39,15 +39,15 @@ def _speed(room: Room, i: int) -> float:
 
 
 @inner
-def quieten(engine: Engine, count: int, t: float, room: Room) -> bool:
-    """Take out of the contacts found what approaches too slowly for an impact; whether any did.
+def quieten(engine: Engine, count: int, t: float, room: Room) -> None:
+    """Take out of the contacts found what approaches too slowly for an impact.
 
-    Who changes is marked.
+    Who changes is marked; whole groups are already, whoever of them is touched.
     """
     contacts, rows, buffer = room.contacts, room.rows, room.buffer
     for n in range(count):
         rows[n, ACTS] = 0.0
-    for turn in range(_ROUNDS):
+    for _ in range(_ROUNDS):
         more = False
         for n in range(count):
             i, j, row = contacts[n, 0], contacts[n, 1], rows[n]
@@ -59,7 +59,7 @@ def quieten(engine: Engine, count: int, t: float, room: Room) -> bool:
                 row[ACTS], more = 1.0, True
         acting = as_forces(engine, t, contacts, count, rows, room.states, buffer) if more else 0
         if acting <= 0:
-            return turn > 0
+            return
         for n in range(count):
             for m in range(2):
                 i = contacts[n, m]
@@ -72,4 +72,3 @@ def quieten(engine: Engine, count: int, t: float, room: Room) -> bool:
         modes = buffer.modes[0, :acting]
         modes[:] = 1
         stop_slips(buffer, modes, room.states)
-    return True

@@ -54,15 +54,6 @@ _KEPT, _PUT, _MOVED, _MATE = range(4)  # what is done to a disc: nothing, a stat
 
 
 @inlined
-def _whole_groups(engine: Engine, room: Room) -> None:
-    """Mark the groups of those concerned."""
-    for i in range(engine.discs.shape[0]):
-        for j in range(engine.discs.shape[0]):
-            if room.marks[i] == CONCERNED and engine.group[i] == engine.group[j] > 0:
-                room.marks[j] = CONCERNED
-
-
-@inlined
 def take_off_all(engine: Engine, t: float, room: Room) -> int:
     """New segments of all that are concerned and not driven; how it ended.
 
@@ -91,8 +82,7 @@ def go_on(engine: Engine, t: float, count: int, room: Room) -> int:
     does what is to be done.
     """
     engine.counts[N_CONTACTS] = count
-    if quieten(engine, count, t, room):
-        _whole_groups(engine, room)
+    quieten(engine, count, t, room)
     pushes = press_somewhere(engine, count, t, room)
     for j in range(engine.discs.shape[0]):
         pushes = pushes or (

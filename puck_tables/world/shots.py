@@ -13,11 +13,9 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import keep_on
 from puck_tables.errors import PuckError
-from puck_tables.motion.base_motion import STOPPED
-from puck_tables.motion.base_slides import launch_rows
 from puck_tables.scene.acting import acting
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.stopping.base_solver import BaseSolver
+from puck_tables.stopping.base_stops import stop_on_base
 from puck_tables.world.agreement import (
     frictions_under,
     is_integrated,
@@ -101,8 +99,7 @@ class Shots:
         )
         self.runs = self.left_out = 0
         free = self.until == math.inf and not (scene.pucks or acting(scene))
-        shape = scene.puck.shape if free and scene.puck.pressure == "uniform" else None
-        self._slides = None if shape is None else BaseSolver(shape, segment_error(scene))
+        self._slides = free and scene.puck.shape is not None and scene.puck.pressure == "uniform"
 
     def land(self, launches: FloatArray) -> Landings:
         """Where the puck ends after launches (n, 2)."""
@@ -111,8 +108,8 @@ class Shots:
     def follow(self, starts: FloatArray) -> Landings:
         """Where it ends after launches vx, vy, spin (n, 3)."""
         self.runs += len(starts)
-        if self._slides is not None:
-            return self._slid(self._slides, starts)
+        if self._slides:
+            return self._slid(starts)
         ends = follow_all(
             self._engine, self._first, np.array([self._disc]), starts[:, None], self.until,
             self._watch,
@@ -131,16 +128,17 @@ class Shots:
             x, y, *(courses[:, column] for column in (PRINT, LENGTH, FATE, PASSES))
         )  # fmt: skip
 
-    def _slid(self, slides: BaseSolver, starts: FloatArray) -> Landings:
+    def _slid(self, starts: FloatArray) -> Landings:
         """Where a free puck on a base ends, which takes no board."""
         puck = pucks_of(self.scene)[self.striker]
         turn = cmath.rect(1.0, puck.launch.orientation)
         along = (starts[:, 0] + 1j * starts[:, 1]) / turn
-        launches = launch_rows(puck, np.stack([along.real, along.imag], axis=1), starts[:, 2])
-        found, status = slides.all(launches)
-        place = complex(*start_of(puck)) + (found[1] + 1j * found[2]) * turn
+        velocities = np.stack([along.real, along.imag], axis=1)
+        found = stop_on_base(puck, velocities, starts[:, 2], segment_error(self.scene), 1)
+        x, y = found.stop_position.T
+        place = complex(*start_of(puck)) + (x + 1j * y) * turn
         none = np.zeros(len(starts), np.int64)
-        prints = np.where(status == STOPPED, none, NO_COURSE)
+        prints = np.where(found.status == 0, none, NO_COURSE)
         return Landings(place.real, place.imag, prints, none, none, none)
 
     def board(self, start: FloatArray) -> SceneSpec:
