@@ -139,15 +139,10 @@ def regions_of(
     return Regions(loads, delta, cuts, NO_LAW, astride, floor_map, laws)
 
 
-def _is_shaped(puck: ScenePuck) -> bool:
-    """Whether it slides on a base that is not round."""
-    return puck.shape is not None and not puck.path
-
-
 def _is_summed(scene: SceneSpec, puck: ScenePuck) -> bool:
     """Whether its friction is summed over its base everywhere, not looked up."""
     changes = bool(scene.floor.grips) and scene.floor.orthotropic is None and not scene.floor.law
-    return _is_shaped(puck) or (changes and not puck.path)
+    return (changes or puck.shape is not None) and not puck.path
 
 
 def _grounds(
