@@ -20,15 +20,7 @@ from puck_tables.scene.ingredients import NO_WAY, DryFriction, Phase
 from puck_tables.scene.rest import excess_at_rest
 from puck_tables.world.engine_state import LAUNCH_TIME, N_EVENTS, N_HISTORY, TIME, Engine
 from puck_tables.world.floor_under import law_under, least_slip
-from puck_tables.world.layout import (
-    DRAG,
-    LIGHTNESS,
-    PULL_X,
-    PULL_Y,
-    RADIUS,
-    TURNABILITY,
-    TWIST,
-)
+from puck_tables.world.layout import DRAG, LIGHTNESS, PULL_X, PULL_Y, RADIUS, TURNABILITY, TWIST
 from puck_tables.world.lone import model_of
 from puck_tables.world.paths import DURATION, FOR_EVER
 from puck_tables.world.paths import START as PIECE_START
