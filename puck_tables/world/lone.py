@@ -182,9 +182,10 @@ def _is_pulled(model: Model) -> bool:
 @inlined
 def _swings(model: Model, friction: DryFriction, rows: int) -> bool:
     """Whether what the floor has to do for a puck at rest on it changes as it is carried."""
-    surface = model.surface
-    if surface.changes != 0.0 and rows < len(model.forces.drive):
+    surface, drive = model.surface, model.forces.drive
+    if surface.changes != 0.0 and rows < len(drive):
         return True
+    surface = surface_at(surface, drive, rows, 0.0)  # as it goes on
     turns = surface.spin != 0.0 and _is_pulled(model)
     if is_over_belts(friction) and is_rubbed(friction.by_speed.table, model.body.radius):
         return True  # it gets warm
