@@ -60,6 +60,7 @@ from puck_tables.world.layout import (
     RADIUS,
     REGION,
     TURNABILITY,
+    write_over,
 )
 from puck_tables.world.paths import on_piece, piece_at
 from puck_tables.world.step_ledger import (
@@ -130,10 +131,8 @@ def place_driven(
         if motions[place] == DRIVEN:
             first, last = group.reels[members[place], 0], group.reels[members[place], 1]
             on_piece(group.films[piece_at(group.films, first, last, t)], t, buffer.film)
-            for i in range(6):
-                y[place, i] = buffer.film[i]
-            for i in range(3):
-                buffer.own[place, i] = buffer.film[6 + i]
+            write_over(y[place], buffer.film[:6])
+            write_over(buffer.own[place], buffer.film[6:])
 
 
 @inlined

@@ -44,6 +44,7 @@ from puck_tables.world.layout import (
     DRAG,
     RADIUS,
     feels_floor,
+    write_over,
 )
 from puck_tables.world.paths import on_piece, piece_at
 
@@ -122,8 +123,7 @@ def state_at(
     elif kind == PATH:
         piece = piece_at(pieces, int(segment[FIRST_PIECE]), int(segment[LAST_PIECE]), t)
         on_piece(pieces[piece], t, room)
-        for i in range(6):
-            out[i] = room[i]
+        write_over(out, room[:6])
     elif kind == CARRIED:
         turning = segment[2]
         angle = turning * (t - segment[START])
