@@ -65,7 +65,7 @@ def floor_of(surface: Surface, disc: FloatArray) -> Surface:
     """How the floor moves that a disc is on."""
     return Surface(
         disc[BELT_X], disc[BELT_Y], surface.cx, surface.cy, disc[BELT_SPIN], disc[BELT_AX],
-        disc[BELT_AY], disc[BELT_TURN], surface.changes,
+        disc[BELT_AY], disc[BELT_TURN], surface.changes, surface.static,
     )  # fmt: skip
 
 

@@ -189,7 +189,9 @@ def act(
         if doing == YIELDS:
             way, small = buffer.ways[place], _BEGUN if rubbed else 1.0  # other belts slip by more
             nx, ny, nw = small * way[0], small * way[1], small * way[2]
-            fx, fy, torque, heat = friction_force(at_slip_zero(friction), radius, nx, ny, nw)
+            fx, fy, torque, heat = friction_force(
+                at_slip_zero(friction, buffer.firm[place]), radius, nx, ny, nw
+            )  # fmt: skip
             others = heat + fx * nx + fy * ny + torque * nw if rubbed else 0.0
             heat = others - (fx * ux + fy * uy + torque * w)
         else:
@@ -264,7 +266,8 @@ def excess_on(
 ) -> tuple[float, float, float, float]:
     """By how much what acts on a disc at rest exceeds its friction, over f N, and the slip then."""
     disc = group.discs[members[place]]
-    friction = at_slip_zero(_friction_under(group, members, place, y, buffer))
+    friction = _friction_under(group, members, place, y, buffer)
+    friction = at_slip_zero(friction, group.surface.static)
     load = load_on(group, members[place])
     fx, fy, torque = _wanted_of_floor(group, members, place, count, buffer)
     kind = int(disc[HOLD])

@@ -175,11 +175,12 @@ def _surface_at(model: Model, t: float) -> Surface:
 @inlined
 def _swings(model: Model, friction: DryFriction, rows: int) -> bool:
     """Whether what the floor has to do for a puck at rest on it changes as it is carried."""
-    surface = model.surface
-    if surface.changes != 0.0 and rows < len(model.forces.drive):
+    surface, drive = model.surface, model.forces.drive
+    if surface.changes != 0.0 and rows < len(drive):
         return True
+    surface = surface_at(surface, drive, rows, 0.0)  # as it goes on
     forces = model.forces
-    pulled = forces.x != 0.0 or forces.y != 0.0 or forces.torque != 0.0 or len(forces.drive) > 0
+    pulled = forces.x != 0.0 or forces.y != 0.0 or forces.torque != 0.0 or len(drive) > 0
     turns = surface.spin != 0.0 and pulled
     if is_over_belts(friction) and is_rubbed(friction.by_speed.table, model.body.radius):
         return True  # it gets warm

@@ -153,7 +153,7 @@ def press(
             elif q <= small_slip(scales):
                 motions[place] = YIELDS
                 vx, vy, spin = over_floor(group.surface, group.discs[number], y[place])
-                way = buffer.ways[place]
+                way, buffer.firm[place] = buffer.ways[place], 1.0
                 way[0], way[1], way[2] = vx / q, vy / q, spin / q
     count_rows(group, members, t, buffer)
     place_driven(group, members, motions, t, y, buffer)
@@ -178,6 +178,11 @@ def press(
                 group, members[place], place, scales, buffer
             ):
                 motions[place], again = MOVES, True
+            elif (
+                motions[place] == YIELDS and buffer.firm[place] > 1.0
+                and gain_of(group, members[place], place, buffer) > GAINS * scales.rate
+            ):  # fmt: skip
+                buffer.firm[place], again = 1.0, True  # it slips: static friction is over
         if again:
             continue
         for c in range(contacts.shape[0]):
