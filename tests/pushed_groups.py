@@ -90,7 +90,7 @@ def group_of(discs, obstacles=(), pull=(0.0, 0.0), films=None, cuts=None):
             mass * discs[:, 3], discs[:, 4].copy(), cuts, NO_LAW, np.zeros(len(discs), np.bool_),
             NO_GROUND, np.zeros((len(discs), 2), np.int64),
         ),
-        Surface(*[0.0] * 9), PLAIN_RIMS, np.vstack(rows), reels,
+        Surface(*[0.0] * 9, 1.0), PLAIN_RIMS, np.vstack(rows), reels,
         np.zeros((0, 4)), np.zeros((len(discs), 2), np.int64),
     )  # fmt: skip
 

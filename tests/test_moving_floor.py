@@ -29,7 +29,7 @@ def shakes(rate: float, turns: int = 3) -> pt.Floor:
 
 
 def run_of(puck: pt.Puck, floor: pt.Floor, **parts: Any) -> pt.results.Run:
-    run = pt.Scene(puck, floor, **parts).simulate([0.0])
+    run = pt.Scene(puck, floor, **parts).simulate([0.0, 0.1])
     assert abs(run.energy_residual) < 1e-9
     return run
 
@@ -194,3 +194,14 @@ def test_a_rail_beside_it_is_refused() -> None:
         pt.Scene(
             pt.Puck(0.05, friction=0.2), shakes(1.0), constraint=pt.Constraint("rail"), time=1.0
         )
+
+
+@pytest.mark.parametrize("name", PUCKS)
+def test_a_run_ends_when_the_tray_that_carries_stops(name: str) -> None:
+    puck, rows = pt.Puck(**PUCKS[name], friction=0.2), ((0, 0, 0), (0.2, 0.3, 0), (0.4, 0, 0))
+    for time in (None, 0.6):
+        run = run_of(puck, pt.Floor(over_time=rows), time=time)
+        assert (run.end, run.end_time) == ("at rest", 0.4) and not run.events
+        assert abs(run.last["x"] - 0.06) < 1e-12
+    goes_on = run_of(puck, pt.Floor(over_time=rows[:2]), time=0.6)
+    assert goes_on.end == "carried by the floor" and abs(goes_on.last["x"] - 0.15) < 1e-12

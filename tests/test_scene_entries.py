@@ -66,6 +66,7 @@ CASES: dict[str, tuple[dict[str, Any], Any]] = {
     "puck.gravity": ({}, 3.7),
     "gravity": ({}, 3.7),
     "floor.slope": ({}, 0.1),
+    "floor.static_ratio": ({**HELD, "floor": {"slope": 0.25}}, 1.5),
     "floor.downhill": ({"floor": {"slope": 0.1}}, 1.0),
     "floor.velocity": ({}, [0.1, 0.2]),
     "floor.turning": (MOVING, 1.0),

@@ -8,7 +8,7 @@ from puck_tables.contact.friction_laws import NAMED, FrictionLaw
 from puck_tables.contact.round_load import RoundLoad
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import ContactError, InputError
-from puck_tables.scene.floor_parts import belt_faults, has_belts
+from puck_tables.scene.floor_parts import belt_faults, has_belts, needs_sums
 from puck_tables.scene.floor_patches import patch_faults
 from puck_tables.scene.holds import allowed_velocity
 from puck_tables.scene.orthotropic import LEAST_RATIO
@@ -72,8 +72,9 @@ def _bad_under_base(scene: SceneSpec) -> list[str]:
     floor, puck = scene.floor, scene.puck
     name = "floor.patch" if floor.patches else "floor.strips"
     name = "floor.orthotropic" if floor.orthotropic is not None else name
+    name = "floor.static_ratio" if floor.static_ratio > 1.0 else name
     name = "floor.grip" if floor.grips else name
-    several = floor.strips is not None or floor.patches or floor.grips
+    several = floor.strips is not None or floor.patches or needs_sums(floor, puck.height)
     if (several or floor.orthotropic is not None) and puck.shape is not None and not floor.law:
         try:
             puck.shape.refuse_lift(_strongest(scene), puck.height)
@@ -83,10 +84,10 @@ def _bad_under_base(scene: SceneSpec) -> list[str]:
 
 
 def _strongest(scene: SceneSpec) -> float:
-    """The largest coefficient that friction ever has under the puck."""
+    """The largest coefficient that friction ever has under the puck, at rest too."""
     axes = scene.floor.orthotropic
     frictions = scene.frictions if axes is None else (max(axes.friction),)
-    return float((largest_factors(scene.floor) * frictions).max())
+    return scene.floor.static_ratio * float((largest_factors(scene.floor) * frictions).max())
 
 
 def _bad_mixed(scene: SceneSpec) -> list[str]:
@@ -94,9 +95,11 @@ def _bad_mixed(scene: SceneSpec) -> list[str]:
     floor, law = scene.floor, scene.puck.body.law
     if floor.law or floor.orthotropic is not None:
         return []
-    if floor.strips is None and not floor.patches and not floor.grips:
+    sums = needs_sums(floor, scene.puck.height)
+    if floor.strips is None and not floor.patches and not sums:
         return []
     name = "floor.strips" if floor.strips is not None else "floor.patch"
+    name = "floor.static_ratio" if floor.static_ratio > 1.0 else name
     name = "floor.grip" if floor.grips else name
     if law.profile is not None and len(law.profile[0]) > _MOST_ROWS:
         return [

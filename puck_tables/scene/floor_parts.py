@@ -16,6 +16,17 @@ from puck_tables.scene.parts import Floor, Patch, Strips
 _WHERE = re.compile(r"(strip|patch) (\d+)")
 
 
+def needs_sums(floor: Floor, height: float) -> bool:
+    """Whether friction under a round puck changes with more than its slip: it is summed.
+
+    Examples
+    --------
+    >>> needs_sums(Floor(static_ratio=1.5), 0.0), needs_sums(Floor(static_ratio=1.5), 0.02)
+    (False, True)
+    """
+    return bool(floor.grips) or (floor.static_ratio > 1.0 and height > 0.0)
+
+
 def count_parts(floor: Floor) -> int:
     """How many there are; all of a floor without strips is one.
 

@@ -103,8 +103,11 @@ def _against(
 
 
 @inlined
-def at_slip_zero(friction: DryFriction) -> DryFriction:
-    """The friction that a puck at rest would start against, whatever its coefficient does later."""
+def at_slip_zero(friction: DryFriction, static: float) -> DryFriction:
+    """The friction that a puck at rest would start against, whatever its coefficient does later.
+
+    ``static``: times what it is in a slip; its ratios are then those of no height, or summed.
+    """
     law = friction.by_speed
-    still = BySpeed(law.table, law.height_ratio, law.normal, 0.0)
-    return DryFriction(friction.load, friction.delta, friction.cut, still)
+    still = BySpeed(law.table, static * law.height_ratio, static * law.normal, 0.0)
+    return DryFriction(static * friction.load, static * friction.delta, friction.cut, still)

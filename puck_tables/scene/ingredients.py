@@ -32,7 +32,8 @@ if TYPE_CHECKING:
 
 FREE, RAIL, PIVOT, BLADE = range(4)
 SLIDES, CARRIED, STOPS = range(3)
-ASTRIDE = -1.0  # in place of a normal force: where a base lies on several frictions
+# in place of a normal force: where a base lies on several frictions; times as much where they hold
+ASTRIDE = -1.0
 NO_WAY = (0.0, 0.0, 0.0, 0.0)  # of a stretch that is no stop
 
 
@@ -136,7 +137,7 @@ class Surface(NamedTuple):
     """A floor that moves like a rigid body: velocity at a centre, m/s, and spin, rad/s.
 
     And how fast they change, m/s², rad/s².  ``changes``: 1 if they do, as rows over time say, else
-    0.
+    0; ``static``: by what friction holds more at rest than it brakes.
     """
 
     vx: float
@@ -148,6 +149,7 @@ class Surface(NamedTuple):
     ay: float
     turn: float
     changes: float
+    static: float
 
 
 @inlined
@@ -158,7 +160,7 @@ def surface_at(surface: Surface, drive: FloatArray, piece: int, t: float) -> Sur
     return Surface(
         held_at(drive, piece, FLOOR_X, t), held_at(drive, piece, FLOOR_Y, t), surface.cx,
         surface.cy, held_at(drive, piece, FLOOR_SPIN, t), rate_at(drive, piece, FLOOR_X),
-        rate_at(drive, piece, FLOOR_Y), rate_at(drive, piece, FLOOR_SPIN), 1.0,
+        rate_at(drive, piece, FLOOR_Y), rate_at(drive, piece, FLOOR_SPIN), 1.0, surface.static,
     )  # fmt: skip
 
 

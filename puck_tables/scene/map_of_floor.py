@@ -10,12 +10,8 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.base import Base
 from puck_tables.contact.law_moments import DEGREE, packed_law
 from puck_tables.kernels.base_friction import packed, packed_round
-from puck_tables.scene.floor_map import (
-    NO_GROUND,
-    PATCH_COLUMNS,
-    FloorMap,
-)
-from puck_tables.scene.floor_parts import belts_of
+from puck_tables.scene.floor_map import NO_GROUND, PATCH_COLUMNS, FloorMap
+from puck_tables.scene.floor_parts import belts_of, needs_sums
 from puck_tables.scene.floor_patches import corners_of
 from puck_tables.scene.scene_spec import SceneSpec
 
@@ -37,7 +33,7 @@ def floor_map_of(scene: SceneSpec, normal: float, law: Moments | None = None) ->
     [0.1, 0.6, 0.2]
     """
     floor, puck = scene.floor, scene.puck
-    one = floor.strips is None and not floor.patches and not floor.grips
+    one = floor.strips is None and not floor.patches and not needs_sums(floor, puck.height)
     shape, strips, axes = shape_under(scene), floor.strips, floor.orthotropic
     if one and shape is None:
         return NO_GROUND

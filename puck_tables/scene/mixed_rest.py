@@ -79,23 +79,13 @@ def _held(
 
 
 @inner
-def _resists(
-    floor_map: FloatArray, radius: float, nx: float, ny: float, nw: float, bx: float, by: float
-) -> tuple[float, float, float]:
-    """The gradient of D at a slip of any size."""
-    whole = math.sqrt(nx * nx + ny * ny + nw * nw)
-    return _held(floor_map, radius, nx / whole, ny / whole, nw / whole, bx, by)
-
-
-@inner
 def _slope_along(
     floor_map: FloatArray, radius: float, bx: float, by: float, n: tuple[float, float, float],
     direction: tuple[float, float, float], a: float,
 ) -> float:  # fmt: skip
-    gx, gy, gw = _resists(
-        floor_map, radius, n[0] + a * direction[0], n[1] + a * direction[1],
-        n[2] + a * direction[2], bx, by,
-    )  # fmt: skip
+    nx, ny, nw = n[0] + a * direction[0], n[1] + a * direction[1], n[2] + a * direction[2]
+    whole = math.sqrt(nx * nx + ny * ny + nw * nw)  # at a slip of any size D is as steep
+    gx, gy, gw = _held(floor_map, radius, nx / whole, ny / whole, nw / whole, bx, by)
     return gx * direction[0] + gy * direction[1] + gw * direction[2]
 
 
@@ -129,13 +119,13 @@ def _least_along(
 
 @inner
 def mixed_yield(
-    floor_map: FloatArray, most: float, radius: float, fx: float, fy: float, torque: float,
-    guided: bool,
+    floor_map: FloatArray, most: float, static: float, radius: float, fx: float, fy: float,
+    torque: float, guided: bool,
 ) -> Yield:  # fmt: skip
     """By how much the power of the best slip at Q = 1 exceeds friction, and that slip.
 
-    What other belts do to it is force, too.  ``most``: f N of the largest f; ``guided``: the puck
-    can slip along the force only, and turn.
+    What other belts do to it is force, too.  ``most``: f N of the largest f; ``static``: times what
+    friction is in a slip; ``guided``: the puck can slip along the force only, and turn.
     """
     force = math.sqrt(fx * fx + fy * fy)
     lever = floor_map[LEVER]
@@ -150,7 +140,7 @@ def mixed_yield(
     size = math.sqrt(force * force + rim * rim)
     if size == 0.0:
         gx, _, _ = _held(floor_map, radius, 1.0, 0.0, 0.0, 0.0, 0.0)
-        return -gx, 1.0, 0.0, 0.0
+        return -static * gx, 1.0, 0.0, 0.0
     ex, ey = (fx / force, fy / force) if force > 0.0 else (1.0, 0.0)
     px, pw = force / size, rim / size
     n = (px * ex, px * ey, pw)
@@ -167,11 +157,12 @@ def mixed_yield(
         if not guided:
             break
         # what tilts is friction, also that across, which the guide bears
-        off = abs(lever * gx - bx) + abs(lever * gy - by)
-        bx, by = lever * gx, lever * gy
+        tilts = lever * static
+        off = abs(tilts * gx - bx) + abs(tilts * gy - by)
+        bx, by = tilts * gx, tilts * gy
         if off <= _TILTED * most * lever:
             break
-    power = gx * m[0] + gy * m[1] + gw * m[2]
+    power = static * (gx * m[0] + gy * m[1] + gw * m[2])
     return fx * m[0] + fy * m[1] + rim * m[2] - power, m[0], m[1], m[2] / radius
 
 

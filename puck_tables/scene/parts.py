@@ -96,10 +96,14 @@ class Orthotropic:
 class Floor:
     """The plane: level or sloping, at rest or moving, of one friction or of several.
 
+    What rests is held by ``static_ratio`` times the friction that brakes it in a slip, μ_s/μ_k.
+
     Examples
     --------
     >>> Floor(slope=0.1, velocity=(0.5, 0.0)).downhill
     0.0
+    >>> Floor(static_ratio=1.5).static_ratio * 0.2  # μ_s of a puck with friction=0.2
+    0.30000000000000004
     """
 
     slope: float = of("number", 0.0, "rad", low=0.0, high=math.pi / 2, below=True, acts="slope")
@@ -115,6 +119,10 @@ class Floor:
         "turning: a tray that shakes",
         acts="moving floor",
     )
+    static_ratio: float = of(
+        "number", 1.0, low=1.0, doc="friction that holds at rest over that in a slip",
+        acts="static friction",
+    )  # fmt: skip
     strips: Strips | None = of("part", None, part=Strips)
     patches: tuple[Patch, ...] = of("parts", (), part=Patch, table="patch")
     grips: tuple[Grip, ...] = of("parts", (), part=Grip, table="grip")

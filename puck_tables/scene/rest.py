@@ -16,10 +16,12 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel, patience
+from puck_tables.scene.floor_map import SHARE
 from puck_tables.scene.forces import prescribed_force
 from puck_tables.scene.friction import THETA, X, Y, at_slip_zero, friction_force
 from puck_tables.scene.ingredients import (
     BLADE,
+    CARRIED,
     FREE,
     PIVOT,
     RAIL,
@@ -56,7 +58,13 @@ def _pivot_yield(
     demand = torque - reach * (cosine * fy - sine * fx)
     length = math.hypot(reach, radius)
     way = (1.0 if demand >= 0.0 else -1.0) / length
+    if is_mixed(friction):  # it is summed with what friction holds, and as it was again
+        floor_map = friction.by_speed.table
+        share = floor_map[SHARE]
+        floor_map[SHARE] = -friction.by_speed.normal * share
     _, _, _, heat = friction_force(friction, radius, way * reach * sine, -way * reach * cosine, way)
+    if is_mixed(friction):
+        floor_map[SHARE] = share
     return abs(demand) / length - heat, way * reach * sine, -way * reach * cosine, way
 
 
@@ -94,13 +102,7 @@ def demand(
     share = math.hypot(radius * force, torque) / math.hypot(radius * resist, turning)
     # friction is against the force: the slip is turned from it by as much as friction from the slip
     ex, ey = (-along / resist, across / resist) if resist > 0.0 else (1.0, 0.0)
-    return (
-        share,
-        heat,
-        cosine * (ex * east - ey * north),
-        cosine * (ex * north + ey * east),
-        sine,
-    )
+    return share, heat, cosine * (ex * east - ey * north), cosine * (ex * north + ey * east), sine
 
 
 @inner
@@ -114,7 +116,10 @@ def free_yield(
             return 0.0, 1.0, 0.0, 0.0
         return size, fx / size, fy / size, torque / radius / size / radius
     if is_mixed(friction):
-        return mixed_yield(friction.by_speed.table, friction.load, radius, fx, fy, torque, guided)
+        law = friction.by_speed
+        return mixed_yield(
+            law.table, friction.load, -law.normal, radius, fx, fy, torque, guided
+        )  # fmt: skip
     share, heat, ux, uy, w = demand(friction, radius, fx, fy, torque, guided)
     return (share - 1.0) * heat, ux, uy, w
 
@@ -160,7 +165,8 @@ def constrained_yield(
 def excess_at_rest(phase: Phase, t: float, y: FloatArray) -> Yield:
     """By how much the power of the best slip at Q = 1 exceeds friction, W, and that slip.
 
-    The slip is a direction (ux, uy, w), scaled to Q = 1; friction holds while nothing exceeds it.
+    The slip is a direction (ux, uy, w), scaled to Q = 1; friction holds while nothing exceeds it:
+    static friction, where the puck is carried.
     """
     model = phase.model
     body = model.body
@@ -170,7 +176,9 @@ def excess_at_rest(phase: Phase, t: float, y: FloatArray) -> Yield:
     gx, gy, torque = prescribed_force(model.forces, phase.piece, t)
     torque -= body.inertia * surface.turn
     fx, fy = gx - body.mass * ax, gy - body.mass * ay
-    friction = at_slip_zero(friction_at(phase.friction, model.forces.drive, phase.piece, t))
+    static = surface.static if phase.mode == CARRIED else 1.0
+    friction = friction_at(phase.friction, model.forces.drive, phase.piece, t)
+    friction = at_slip_zero(friction, static)
     put_at(friction, y[X], y[Y], y[THETA])
     guided = model.hold.kind != FREE
     if guided:
@@ -182,7 +190,7 @@ def excess_at_rest(phase: Phase, t: float, y: FloatArray) -> Yield:
         # Without a torque b = κ F, and as |u| is convex no slip gains where F is below the least f
         # alone: ∫ σ |u| dA ≥ N |u at the centre of pressure|.  A puck that is carried asks often.
         force = math.sqrt(fx * fx + fy * fy)
-        least = least_under(friction.by_speed.table, body.radius)
+        least = static * least_under(friction.by_speed.table, body.radius)
         if force < least:
             return force - least, fx / force if force > 0.0 else 1.0, fy / max(force, 1e-300), 0.0
     return free_yield(friction, body.radius, fx, fy, torque, False)

@@ -7,12 +7,7 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inner
 from puck_tables.scene.friction import SPIN, VX, VY
-from puck_tables.scene.ingredients import (
-    CARRIED,
-    NO_WAY,
-    SLIDES,
-    Phase,
-)
+from puck_tables.scene.ingredients import CARRIED, NO_WAY, SLIDES, Phase
 from puck_tables.scene.moments import REST, direction_of_end
 from puck_tables.scene.rest import SLACK, excess_at_rest
 
@@ -33,6 +28,9 @@ def from_standstill(
     if excess <= SLACK * load:
         return CARRIED, False, 0.0
     q = 2.0 * REST * speed
+    slips = Phase(model, phase.friction, phase.piece, SLIDES, NO_WAY, 0.0)
+    if model.surface.static > 1.0:  # once it slips that holds no more
+        excess, nx, ny, nw = excess_at_rest(slips, t, y)
     if excess == math.inf:  # it is led where the floor does not go
         return SLIDES, False, 0.0
     if excess <= _QUICK * load:
@@ -40,6 +38,5 @@ def from_standstill(
         y[VX], y[VY], y[SPIN] = q * nx, q * ny, q * nw
         return SLIDES, True, q
     y[VX], y[VY], y[SPIN] = q * nx, q * ny, q * nw
-    slips = Phase(model, phase.friction, phase.piece, SLIDES, NO_WAY, 0.0)
     direction_of_end(slips, t, q, y, work)
     return SLIDES, True, q

@@ -12,7 +12,7 @@ from puck_tables.errors import InputError
 from puck_tables.motion.body import is_plain
 from puck_tables.scene.agreement import floor_faults
 from puck_tables.scene.by_speed import law_name, speed_law
-from puck_tables.scene.floor_parts import belts_of, has_belts
+from puck_tables.scene.floor_parts import belts_of, has_belts, needs_sums
 from puck_tables.scene.forces import is_stepped
 from puck_tables.scene.holds import misfits
 from puck_tables.scene.over_time import drive_of, last_factors
@@ -184,7 +184,8 @@ def is_integrated(scene: SceneSpec, puck: ScenePuck, friction: float) -> bool:
     """
     drags, floor = scene.drag != Drag(), scene.floor
     unlike = bool(floor.law) or floor.orthotropic is not None or segment_error(scene) < TABLE_ERROR
-    unlike = unlike or puck.shape is not None or bool(floor.grips) or bool(floor.over_time)
+    unlike = unlike or puck.shape is not None or needs_sums(floor, puck.height)
+    unlike = unlike or bool(floor.over_time)
     rough = friction > 0.0 and (drags or unlike or not has_closed_forms(puck, friction))
     turns = floor.turning != 0.0 and (friction > 0.0 or drags)
     more = floor.slope > 0.0 or puck.force != Force() or puck.constraint is not None

@@ -58,10 +58,10 @@ def acceleration(engine: Engine, i: int, t: float, state: FloatArray) -> tuple[f
                 engine.regions, engine.discs, engine.forcing, engine.spans, i, passed, t, state
             )  # fmt: skip
             fx, fy, _, _ = friction_force(
-                at_slip_zero(friction), disc[RADIUS], (ax - cx) / push, (ay - cy) / push, 0.0
+                at_slip_zero(friction, 1.0), disc[RADIUS], (ax - cx) / push, (ay - cy) / push, 0.0
             )  # fmt: skip
             holds = disc[LIGHTNESS] * math.hypot(fx, fy)
-        left = 1.0 - holds / push if push > holds else 0.0
+        left = 1.0 - holds / push if push > engine.surface.static * holds else 0.0
         ax, ay = cx + left * (ax - cx), cy + left * (ay - cy)
     else:
         friction = friction_now(

@@ -119,6 +119,7 @@ def overborne(
             if mark:
                 place, sign = buffer.pairs[c, side], 2.0 * side - 1.0
                 motions[place], way = YIELDS, buffer.ways[place]
+                buffer.firm[place] = group.surface.static
                 way[0], way[1] = sign * buffer.sights[c, NX], sign * buffer.sights[c, NY]
                 way[2] = 0.0
     for place in range(members.shape[0]):
@@ -128,6 +129,7 @@ def overborne(
                 more = True
                 if mark:
                     motions[place], way = YIELDS, buffer.ways[place]
+                    buffer.firm[place] = group.surface.static
                     way[0], way[1], way[2] = ux, uy, w
     return more
 

@@ -16,7 +16,7 @@ from puck_tables.world.engine_state import COUNTS, N_HISTORY, N_IMPACTS, N_PIECE
 from puck_tables.world.floor_under import least_slip, moves_along
 from puck_tables.world.impact_sequence import COURSE_COLUMNS, LENGTH, trace
 from puck_tables.world.lasting import GOES_ON, at_rest_below, limits_of, next_target
-from puck_tables.world.layout import RADIUS
+from puck_tables.world.layout import RADIUS, write_over
 from puck_tables.world.ledger import LEDGER_COLUMNS, tally
 from puck_tables.world.lone import LONGEST
 from puck_tables.world.paths import PIECE_COLUMNS
@@ -98,18 +98,12 @@ def _follow_all(
             engine.counts[column] = driven if column == N_PIECES else 0
         for i in range(count):
             engine.kinds[i], engine.group[i] = kinds[i], 0
-            for column in range(fresh.shape[1]):
-                engine.discs[i, column] = fresh[i, column]
-            for column in range(segments.shape[1]):
-                engine.segments[i, column] = segments[i, column]
-            for column in range(hangs.shape[1]):
-                engine.hangs[i, column] = hangs[i, column]
-        for i in range(count):
-            for column in range(6):
-                room.states[i, column] = first[i, column]
+            write_over(engine.discs[i], fresh[i])
+            write_over(engine.segments[i], segments[i])
+            write_over(engine.hangs[i], hangs[i])
+            write_over(room.states[i], first[i])
         for m in range(discs.size):
-            for column in range(3):
-                room.states[discs[m], VX + column] = launches[run, m, column]
+            write_over(room.states[discs[m], VX:], launches[run, m])
         looks = _LOOKS if watch[0] >= 0 else 0
         struck = EVERYBODY
         for look in range(looks, -1, -1):

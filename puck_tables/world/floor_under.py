@@ -24,9 +24,7 @@ from puck_tables.scene.floor_map import (
     border_of,
 )
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
-from puck_tables.scene.ingredients import (
-    ASTRIDE as SEVERAL,
-)
+from puck_tables.scene.ingredients import ASTRIDE as SEVERAL
 from puck_tables.scene.ingredients import (
     BySpeed,
     DryFriction,
@@ -67,7 +65,7 @@ def floor_of(surface: Surface, disc: FloatArray) -> Surface:
     """How the floor moves that a disc is on."""
     return Surface(
         disc[BELT_X], disc[BELT_Y], surface.cx, surface.cy, disc[BELT_SPIN], disc[BELT_AX],
-        disc[BELT_AY], disc[BELT_TURN], surface.changes,
+        disc[BELT_AY], disc[BELT_TURN], surface.changes, surface.static,
     )  # fmt: skip
 
 

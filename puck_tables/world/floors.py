@@ -18,7 +18,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.scene.by_speed import NO_LAW, law_range, law_table, load_under, moments_of
 from puck_tables.scene.floor_map import NO_GROUND
-from puck_tables.scene.floor_parts import belts_of
+from puck_tables.scene.floor_parts import belts_of, needs_sums
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ingredients import BySpeed, Regions, Surface, floor_velocity
 from puck_tables.scene.map_of_floor import Moments, floor_map_of, shape_under
@@ -139,15 +139,11 @@ def regions_of(
     return Regions(loads, delta, cuts, NO_LAW, astride, floor_map, laws)
 
 
-def _is_shaped(puck: ScenePuck) -> bool:
-    """Whether it slides on a base that is not round."""
-    return puck.shape is not None and not puck.path
-
-
 def _is_summed(scene: SceneSpec, puck: ScenePuck) -> bool:
     """Whether its friction is summed over its base everywhere, not looked up."""
-    changes = bool(scene.floor.grips) and scene.floor.orthotropic is None and not scene.floor.law
-    return _is_shaped(puck) or (changes and not puck.path)
+    sums = needs_sums(scene.floor, puck.height)
+    sums = sums and scene.floor.orthotropic is None and not scene.floor.law
+    return (sums or puck.shape is not None) and not puck.path
 
 
 def _grounds(
@@ -178,7 +174,7 @@ def _by_slip(
     """
     law, top, largest = law_range(scene, fastest)
     factor = float(largest_factors(scene.floor)[0])
-    largest *= factor
+    largest, static = largest * factor, scene.floor.static_ratio
     under = [None if puck.path else load_under(puck) for puck in pucks]
     summed = np.array([
         own is None and not puck.path for own, puck in zip(under, pucks, strict=True)
@@ -186,9 +182,9 @@ def _by_slip(
     tables = {own: law_table(scene, law, top, own) for own in under if own is not None}
     for puck, own in zip(pucks, under, strict=True):
         if puck.shape is not None:
-            puck.shape.refuse_lift(largest, puck.height)
+            puck.shape.refuse_lift(static * largest, puck.height)
         elif own is not None:
-            tables[own].refuse_height(max(factor, 1.0) * 2.0 * puck.height / puck.radius)
+            tables[own].refuse_height(static * max(factor, 1.0) * 2.0 * puck.height / puck.radius)
     floor_map = NO_GROUND
     if summed.any():
         floor_map = _grounds(scene, pucks, summed, moments_of(law, top))

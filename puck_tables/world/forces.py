@@ -6,17 +6,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.belts import heat_at_rest
 from puck_tables.scene.forces import dragged
-from puck_tables.scene.friction import (
-    SPIN,
-    THETA,
-    VX,
-    VY,
-    X,
-    Y,
-    at_slip_zero,
-    friction_force,
-    size,
-)
+from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y, at_slip_zero, friction_force, size
 from puck_tables.scene.ingredients import (
     FREE,
     Body,
@@ -60,6 +50,7 @@ from puck_tables.world.layout import (
     RADIUS,
     REGION,
     TURNABILITY,
+    write_over,
 )
 from puck_tables.world.paths import on_piece, piece_at
 from puck_tables.world.step_ledger import (
@@ -130,10 +121,8 @@ def place_driven(
         if motions[place] == DRIVEN:
             first, last = group.reels[members[place], 0], group.reels[members[place], 1]
             on_piece(group.films[piece_at(group.films, first, last, t)], t, buffer.film)
-            for i in range(6):
-                y[place, i] = buffer.film[i]
-            for i in range(3):
-                buffer.own[place, i] = buffer.film[6 + i]
+            write_over(y[place], buffer.film[:6])
+            write_over(buffer.own[place], buffer.film[6:])
 
 
 @inlined
@@ -200,7 +189,9 @@ def act(
         if doing == YIELDS:
             way, small = buffer.ways[place], _BEGUN if rubbed else 1.0  # other belts slip by more
             nx, ny, nw = small * way[0], small * way[1], small * way[2]
-            fx, fy, torque, heat = friction_force(at_slip_zero(friction), radius, nx, ny, nw)
+            fx, fy, torque, heat = friction_force(
+                at_slip_zero(friction, buffer.firm[place]), radius, nx, ny, nw
+            )  # fmt: skip
             others = heat + fx * nx + fy * ny + torque * nw if rubbed else 0.0
             heat = others - (fx * ux + fy * uy + torque * w)
         else:
@@ -275,7 +266,8 @@ def excess_on(
 ) -> tuple[float, float, float, float]:
     """By how much what acts on a disc at rest exceeds its friction, over f N, and the slip then."""
     disc = group.discs[members[place]]
-    friction = at_slip_zero(_friction_under(group, members, place, y, buffer))
+    friction = _friction_under(group, members, place, y, buffer)
+    friction = at_slip_zero(friction, group.surface.static)
     load = load_on(group, members[place])
     fx, fy, torque = _wanted_of_floor(group, members, place, count, buffer)
     kind = int(disc[HOLD])

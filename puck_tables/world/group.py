@@ -96,7 +96,8 @@ class GroupBuffer(NamedTuple):
     ``variables`` (4c, 5), ``first``, ``basis`` (4c,), ``tableau`` (4c, 8c + 2): of
     :mod:`puck_tables.world.lemke`; ``modes`` (2, c), ``motions`` (m,): trials; ``gives`` (c,): to
     which side rims begin to slip; ``film`` (9,); ``carried`` (m, 3): what the floor asks of each
-    acceleration; ``passed`` (m,): rows of forces over time; ``clock`` (1,): now.
+    acceleration; ``passed`` (m,): rows of forces over time; ``clock`` (1,): now; ``firm`` (m,): by
+    what friction is more of what yields and has not begun to slip.
     """
 
     pairs: IntArray
@@ -135,6 +136,7 @@ class GroupBuffer(NamedTuple):
     carried: FloatArray
     passed: IntArray
     clock: FloatArray
+    firm: FloatArray
 
 
 def buffer_for(members: int, contacts: int, led: int = 0) -> GroupBuffer:
@@ -163,6 +165,7 @@ def buffer_for(members: int, contacts: int, led: int = 0) -> GroupBuffer:
         modes=np.zeros((2, c), np.int64), motions=np.zeros(m, np.int64),
         gives=np.zeros(c, np.int64), film=np.zeros(9),
         carried=np.zeros((m, 3)), passed=np.zeros(m, np.int64), clock=np.zeros(1),
+        firm=np.ones(m),
     )  # fmt: skip
 
 

@@ -30,15 +30,7 @@ from puck_tables.world.group import (
     Scales,
     buffer_for,
 )
-from puck_tables.world.layout import (
-    HOLD_VX,
-    HOLD_VY,
-    PULL_X,
-    PULL_Y,
-    REGION,
-    TWIST,
-    write_over,
-)
+from puck_tables.world.layout import HOLD_VX, HOLD_VY, PULL_X, PULL_Y, REGION, TWIST, write_over
 from puck_tables.world.lone import LONGEST
 from puck_tables.world.paths import DURATION, FOR_EVER, PIECE_COLUMNS, START
 from puck_tables.world.pressing import press

@@ -52,7 +52,7 @@ from puck_tables.world.group import ARM, GRIP, LEVEL, STICKS, GroupBuffer, Scale
 from puck_tables.world.group import NX as SIGHT_NX
 from puck_tables.world.group import NY as SIGHT_NY
 from puck_tables.world.holds import forbid, response
-from puck_tables.world.layout import HOLD, LIGHTNESS, RADIUS, TURNABILITY
+from puck_tables.world.layout import HOLD, LIGHTNESS, RADIUS, TURNABILITY, write_over
 from puck_tables.world.putting_right import stop_slips
 from puck_tables.world.rebounds import dies_out
 from puck_tables.world.rims import smaller_at
@@ -82,6 +82,14 @@ def _push(engine: Engine, i: int, j: int, row: FloatArray, states: FloatArray) -
 
 
 @inlined
+def _keep_velocities(i: int, j: int, states: FloatArray, before: FloatArray) -> None:
+    """Of a disc and its partner, before this round."""
+    write_over(before[i, VX:], states[i, VX:])
+    if j >= 0:
+        write_over(before[j, VX:], states[j, VX:])
+
+
+@inlined
 def _recall(
     engine: Engine, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
     states: FloatArray,
@@ -92,8 +100,7 @@ def _recall(
             for m in range(2):
                 disc = contacts[n, m]
                 if disc >= 0:
-                    for column in range(VX, SPIN + 1):
-                        states[disc, column] = before[disc, column]
+                    write_over(states[disc, VX:], before[disc, VX:])
 
 
 @inlined
@@ -292,10 +299,7 @@ def collide(
                         return TOO_FAST
                 if row[SUM_N] == 0.0:
                     row[FIRST_N], row[FIRST_T] = un, ut
-                for column in range(VX, SPIN + 1):
-                    before[i, column] = states[i, column]
-                    if j >= 0:
-                        before[j, column] = states[j, column]
+                _keep_velocities(i, j, states, before)
         if acting == 0:
             if squeezed and not _hold_together(engine, t, contacts, count, rows, states, buffer):
                 return NO_END
@@ -309,10 +313,7 @@ def collide(
                     row[ACTS], row[E], row[ONE], row[OTHER] = 1.0, 0.0, 0.0, 0.0
                     if row[BETA] > -1.0:
                         row[BETA] = 0.0  # rims that are pressed, as in a contact that lasts
-                    for column in range(VX, SPIN + 1):
-                        before[i, column] = states[i, column]
-                        if j >= 0:
-                            before[j, column] = states[j, column]
+                    _keep_velocities(i, j, states, before)
         shared = _share_discs(contacts, count, rows, shares)
         again = True
         while again:

@@ -15,20 +15,12 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel
 from puck_tables.scene.equations import SIZE
 from puck_tables.scene.forces import SLIDING
-from puck_tables.scene.ingredients import CARRIED as CARRIED_ALONG
-from puck_tables.scene.ingredients import NO_WAY, DryFriction, Phase
+from puck_tables.scene.ingredients import NO_WAY, SLIDES, DryFriction, Phase
+from puck_tables.scene.over_time import FLOOR_SPIN, FLOOR_X, FLOOR_Y
 from puck_tables.scene.rest import excess_at_rest
 from puck_tables.world.engine_state import LAUNCH_TIME, N_EVENTS, N_HISTORY, TIME, Engine
 from puck_tables.world.floor_under import law_under, least_slip
-from puck_tables.world.layout import (
-    DRAG,
-    LIGHTNESS,
-    PULL_X,
-    PULL_Y,
-    RADIUS,
-    TURNABILITY,
-    TWIST,
-)
+from puck_tables.world.layout import DRAG, LIGHTNESS, PULL_X, PULL_Y, RADIUS, TURNABILITY, TWIST
 from puck_tables.world.lone import model_of
 from puck_tables.world.paths import DURATION, FOR_EVER
 from puck_tables.world.paths import START as PIECE_START
@@ -93,9 +85,28 @@ def middle_of(engine: Engine, n: int, end: float) -> float:
     return engine.pieces[piece, PIECE_START]
 
 
+@inlined
+def _floor_stops(engine: Engine, i: int) -> float:
+    """When the floor over time under a disc comes to rest; inf: it never moves, or goes on."""
+    first, row = engine.spans[i, 0], engine.spans[i, 1] - 1
+    if engine.surface.changes == 0.0:
+        return math.inf
+    stops = math.inf
+    while row >= first:
+        over = engine.forcing[row]
+        if over[FLOOR_X] != 0.0 or over[FLOOR_Y] != 0.0 or over[FLOOR_SPIN] != 0.0:
+            return stops
+        stops = over[0]
+        row -= 1
+    return math.inf
+
+
 @inner
 def moves_on(engine: Engine, n: int, end: float, room: Room) -> float:
-    """Until when somebody moves over the floor on a segment that ended so; −inf: not at all."""
+    """Until when somebody moves over the floor on a segment that ended so; −inf: not at all.
+
+    Or until a floor stops that carried it, and moves no more.
+    """
     kind, segment = int(engine.history[n, 1]), engine.history[n, 2:]
     start = segment[START]
     if kind == GONE:
@@ -111,6 +122,8 @@ def moves_on(engine: Engine, n: int, end: float, room: Room) -> float:
             return end
         if _slip_at(engine, n, middle_of(engine, n, end), room) > STUCK * engine.scale[0]:
             return end
+        stops = _floor_stops(engine, int(engine.history[n, 0]))
+        return min(end, stops) if stops < math.inf else -math.inf
     return -math.inf
 
 
@@ -233,7 +246,7 @@ def _fill_brakes(engine: Engine, y: FloatArray, out: FloatArray) -> None:
             continue
         law = law_under(regions, engine.discs, i)
         friction = DryFriction(regions.load[row], regions.delta[row], regions.cuts[row], law)
-        phase = Phase(model_of(engine, i), friction, 0, CARRIED_ALONG, NO_WAY, 0.0)
+        phase = Phase(model_of(engine, i), friction, 0, SLIDES, NO_WAY, 0.0)
         excess = abs(excess_at_rest(phase, 0.0, y)[0])
         out[row] = min(excess, regions.load[row]) * engine.discs[i, LIGHTNESS]
 

@@ -174,19 +174,15 @@ def _surface_at(model: Model, t: float) -> Surface:
 
 
 @inlined
-def _is_pulled(model: Model) -> bool:
-    """Whether a force acts that is given."""
-    forces = model.forces
-    return forces.x != 0.0 or forces.y != 0.0 or forces.torque != 0.0 or len(forces.drive) > 0
-
-
-@inlined
 def _swings(model: Model, friction: DryFriction, rows: int) -> bool:
     """Whether what the floor has to do for a puck at rest on it changes as it is carried."""
-    surface = model.surface
-    if surface.changes != 0.0 and rows < len(model.forces.drive):
+    surface, drive = model.surface, model.forces.drive
+    if surface.changes != 0.0 and rows < len(drive):
         return True
-    turns = surface.spin != 0.0 and _is_pulled(model)
+    surface = surface_at(surface, drive, rows, 0.0)  # as it goes on
+    forces = model.forces
+    pulled = forces.x != 0.0 or forces.y != 0.0 or forces.torque != 0.0 or len(drive) > 0
+    turns = surface.spin != 0.0 and pulled
     if is_over_belts(friction) and is_rubbed(friction.by_speed.table, model.body.radius):
         return True  # it gets warm
     return turns or (is_mixed(friction) and moves_along(surface))
@@ -349,12 +345,6 @@ def _is_stiff(model: Model, load: float, stiff: bool, h: float, q: float, pull: 
 
 
 @inlined
-def _piece_for(coarse: float, h: float) -> float:
-    """How long a piece may be, where one over h was wrong by so many times what it may be."""
-    return h * max(0.2, _SAFE * coarse**-0.2) if coarse > 0.0 else math.inf
-
-
-@inlined
 def _goes_on(
     phase: Phase, t: float, vx: float, vy: float, spin: float, q: float, y: FloatArray,
     work: FloatArray,
@@ -485,7 +475,9 @@ def follow_alone(
         piece = engine.pieces[engine.counts[N_PIECES] + count]
         _write_piece(phase, now, length, piece, buffer)
         coarse = _misfit(phase, now, length, piece, tol, buffer)
-        longest = _piece_for(coarse, length) if length > _BRIEF * unit else math.inf
+        longest = math.inf
+        if coarse > 0.0 and length > _BRIEF * unit:
+            longest = length * max(0.2, _SAFE * coarse**-0.2)
         if coarse > 1.0 and longest < length:
             h = longest
             continue

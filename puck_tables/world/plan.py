@@ -27,7 +27,7 @@ _OF_OTHERS = (
     "title", "puck", "pucks", "launch", "time", "frames", "tol", "gravity", "walls", "edges",
     "posts", "arcs", "pockets", "lines", "rims",
 )  # fmt: skip
-_ON_FLOOR = ("strips", "patches", "belts")
+_ON_FLOOR = ("strips", "patches", "belts", "static friction")
 
 
 def plan_of(scene: SceneSpec) -> tuple[str, str]:
@@ -75,6 +75,10 @@ def plan_of(scene: SceneSpec) -> tuple[str, str]:
         lines.append(
             "while a base is astride several frictions they are integrated over its parts, about "
             f"{'forty' if piled else 'ten'} times the cost of a step elsewhere"
+        )
+    if scene.floor.static_ratio > 1.0:
+        lines.append(
+            f"at rest friction holds {scene.floor.static_ratio:g} times what it brakes in a slip"
         )
     if scene.lateral.strength != 0.0:
         lines.append(EMPIRICAL)

@@ -104,12 +104,12 @@ def shipped_lookups() -> Lookups:
 
 
 def _surface_of(floor: Floor) -> Surface:
-    """How a floor moves in the end: as its fastest belt."""
+    """How a floor moves in the end, as its fastest belt, and holds."""
     belts = belts_of(floor)
     (vx, vy), spin, changes = belts[np.hypot(*belts.T).argmax()].tolist(), floor.turning, 0.0
     if floor.over_time:
         (vx, vy, spin), changes = motion_of(floor)[-1, 1:].tolist(), 1.0  # it goes on so
-    return Surface(vx, vy, *floor.centre, spin, 0.0, 0.0, 0.0, changes)
+    return Surface(vx, vy, *floor.centre, spin, 0.0, 0.0, 0.0, changes, floor.static_ratio)
 
 
 def prepared(scene: SceneSpec, order: Whole | None = None) -> Start:

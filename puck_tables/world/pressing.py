@@ -40,7 +40,7 @@ from puck_tables.world.group import (
     find_places,
     small_slip,
 )  # fmt: skip
-from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY
+from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY, write_over
 from puck_tables.world.putting_right import stop_slips
 from puck_tables.world.step_ledger import DRIVE_WORK, RIM_HEAT
 
@@ -140,8 +140,7 @@ def press(
         gives[c] = modes[c]
     for place in range(count):
         number = members[place]
-        for i in range(6):
-            y[place, i] = states[number, i]
+        write_over(y[place], states[number])
         motions[place] = MOVES
         choose_belt(group.regions, group.discs, number, y[place])
         if group.discs[number, LIGHTNESS] == 0.0:
@@ -154,7 +153,7 @@ def press(
             elif q <= small_slip(scales):
                 motions[place] = YIELDS
                 vx, vy, spin = over_floor(group.surface, group.discs[number], y[place])
-                way = buffer.ways[place]
+                way, buffer.firm[place] = buffer.ways[place], 1.0
                 way[0], way[1], way[2] = vx / q, vy / q, spin / q
     count_rows(group, members, t, buffer)
     place_driven(group, members, motions, t, y, buffer)
@@ -179,6 +178,11 @@ def press(
                 group, members[place], place, scales, buffer
             ):
                 motions[place], again = MOVES, True
+            elif (
+                motions[place] == YIELDS and buffer.firm[place] > 1.0
+                and gain_of(group, members[place], place, buffer) > GAINS * scales.rate
+            ):  # fmt: skip
+                buffer.firm[place], again = 1.0, True  # it slips: static friction is over
         if again:
             continue
         for c in range(contacts.shape[0]):
@@ -203,6 +207,5 @@ def press(
         if motions[place] == YIELDS and slip_of(group, number, y[place]) == 0.0:
             gains = gain_of(group, number, place, buffer) > 0.01 * GAINS * scales.rate
             motions[place] = YIELDS if goes and gains else HELD  # with one go all that it pushes
-        for i in range(6):
-            states[number, i] = y[place, i]
+        write_over(states[number], y[place])
     return TIME_UP

@@ -42,11 +42,10 @@ from puck_tables.world.group import (
     find_places,
     small_slip,
 )
-from puck_tables.world.layout import LIES, LIGHTNESS, RADIUS
+from puck_tables.world.layout import LIES, LIGHTNESS, RADIUS, write_over
 from puck_tables.world.moments import first_negative, sets_off, watch
 from puck_tables.world.obstacle_shapes import ROUNDED
 from puck_tables.world.paths import DURATION, START, on_piece, piece_at
-from puck_tables.world.step_ledger import LEDGER
 from puck_tables.world.stepping import (
     BEGIN,
     END,
@@ -195,8 +194,7 @@ def _opens_midway(
         piece = pieces[place, count]
         write_piece(piece, start, h, place, buffer)
         on_piece(piece, start + 0.5 * h, buffer.film)
-        for i in range(6):
-            trial[place, i] = buffer.film[i]
+        write_over(trial[place], buffer.film[:6])
     look(group, members, buffer.pairs[:contacts], trial, buffer.midway)
     for c in range(contacts):
         place = buffer.pairs[c, 0]
@@ -273,14 +271,11 @@ def _slips(
 def _go_on_from(size: int, contacts: int, buffer: GroupBuffer) -> None:
     """The end of a step is the start of the next."""
     for place in range(size):
-        for i in range(6):
-            buffer.states[0, place, i] = buffer.states[1, place, i]
-            buffer.stages[0, place, i] = buffer.stages[END, place, i]
-    for i in range(LEDGER):
-        buffer.powers[0, i] = buffer.powers[END, i]
+        write_over(buffer.states[0, place], buffer.states[1, place])
+        write_over(buffer.stages[0, place], buffer.stages[END, place])
+    write_over(buffer.powers[0], buffer.powers[END])
     for c in range(contacts):
-        for i in range(buffer.watched.shape[2]):
-            buffer.watched[0, c, i] = buffer.watched[1, c, i]
+        write_over(buffer.watched[0, c], buffer.watched[1, c])
 
 
 @inlined
@@ -327,8 +322,7 @@ def follow(
     find_places(members, contacts, buffer)
     y = buffer.states[0]
     for place in range(size):
-        for i in range(6):
-            y[place, i] = states[members[place], i]
+        write_over(y[place], states[members[place]])
     unit = scales.speed / scales.rate
     count_rows(group, members, t, buffer)
     rates_at(group, members, modes, motions, t, y, BEGIN, scales, buffer)
@@ -385,6 +379,5 @@ def follow(
         if how != TIME_UP:
             break
     for place in range(size):
-        for i in range(6):
-            states[members[place], i] = y[place, i]
+        write_over(states[members[place]], y[place])
     return how, which, t, count

@@ -29,7 +29,7 @@ def _moves(engine: Engine, room: Room, i: int) -> bool:
     if i < 0 or engine.discs[i, LIGHTNESS] == 0.0:
         return False
     disc = engine.discs[i]
-    steep = disc[DECEL] <= math.hypot(disc[PULL_X], disc[PULL_Y])
+    steep = engine.surface.static * disc[DECEL] <= math.hypot(disc[PULL_X], disc[PULL_Y])
     return steep or slips(engine.surface, disc, room.states[i])
 
 

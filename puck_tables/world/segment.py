@@ -38,13 +38,7 @@ from puck_tables.stopping.similarity_lookup import (
     look_up_launch,
     look_up_state,
 )
-from puck_tables.world.layout import (
-    DECEL,
-    DELTA,
-    DRAG,
-    RADIUS,
-    feels_floor,
-)
+from puck_tables.world.layout import DECEL, DELTA, DRAG, RADIUS, feels_floor, write_over
 from puck_tables.world.paths import on_piece, piece_at
 
 STILL, LOOKED_UP, DAMPED, PATH, GONE, CARRIED = range(6)
@@ -122,8 +116,7 @@ def state_at(
     elif kind == PATH:
         piece = piece_at(pieces, int(segment[FIRST_PIECE]), int(segment[LAST_PIECE]), t)
         on_piece(pieces[piece], t, room)
-        for i in range(6):
-            out[i] = room[i]
+        write_over(out, room[:6])
     elif kind == CARRIED:
         turning = segment[2]
         angle = turning * (t - segment[START])

@@ -34,7 +34,7 @@ from puck_tables.world.group import (
     IntArray,
     Scales,
 )
-from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY
+from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY, write_over
 from puck_tables.world.multipliers import push_and_move
 from puck_tables.world.paths import DURATION, FIRST, START
 from puck_tables.world.putting_right import close_gaps, stop_slips
@@ -71,9 +71,8 @@ def rates_at(
             break
     power_of_contacts(group, members, motions, contacts, y, power, buffer)
     for place in range(members.shape[0]):
-        for i in range(3):
-            buffer.stages[stage, place, i] = y[place, 3 + i]
-            buffer.stages[stage, place, 3 + i] = buffer.rates[place, i]
+        write_over(buffer.stages[stage, place], y[place, 3:])
+        write_over(buffer.stages[stage, place, 3:], buffer.rates[place])
 
 
 @inner
@@ -112,10 +111,8 @@ def step(
                 largest = share
     if modes.shape[0] + buffer.number[0] == 0 and not turning:
         for place in range(members.shape[0]):
-            for i in range(6):
-                stages[END, place, i] = stages[STAGES - 1, place, i]
-        for i in range(LEDGER):
-            buffer.powers[END, i] = buffer.powers[STAGES - 1, i]
+            write_over(stages[END, place], stages[STAGES - 1, place])
+        write_over(buffer.powers[END], buffer.powers[STAGES - 1])
     elif largest < math.inf:
         close_gaps(buffer, modes, new)
         look(group, members, buffer.pairs[: modes.shape[0]], new, buffer.sights)
@@ -162,9 +159,7 @@ def add_work(h: float, start: float, row: FloatArray, buffer: GroupBuffer) -> No
 def write_piece(piece: FloatArray, start: float, h: float, place: int, buffer: GroupBuffer) -> None:
     """The way of a member on a step as a piece of its path."""
     piece[START], piece[DURATION] = start, h
-    for i in range(6):
-        piece[FIRST + i] = buffer.states[0, place, i]
-        piece[FIRST + 9 + i] = buffer.states[1, place, i]
-    for i in range(3):
-        piece[FIRST + 6 + i] = buffer.stages[0, place, 3 + i]
-        piece[FIRST + 15 + i] = buffer.stages[END, place, 3 + i]
+    write_over(piece[FIRST:], buffer.states[0, place])
+    write_over(piece[FIRST + 6 :], buffer.stages[0, place, 3:])
+    write_over(piece[FIRST + 9 :], buffer.states[1, place])
+    write_over(piece[FIRST + 15 :], buffer.stages[END, place, 3:])

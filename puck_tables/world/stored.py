@@ -15,7 +15,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel, patience
-from puck_tables.scene.friction import SPIN, VX
+from puck_tables.scene.friction import VX
 from puck_tables.world.bulk import own_engine
 from puck_tables.world.by_hand import lead
 from puck_tables.world.engine import NOBODY, THOSE_LEFT, advance
@@ -48,7 +48,7 @@ from puck_tables.world.floor_under import law_goes_to
 from puck_tables.world.group_paths import Workplace, workplace_for
 from puck_tables.world.groups import push_on
 from puck_tables.world.lasting import GOES_ON, ROUND, moves_on, next_target, prescribed_until
-from puck_tables.world.layout import LIGHTNESS
+from puck_tables.world.layout import LIGHTNESS, write_over
 from puck_tables.world.lone import LONGEST
 from puck_tables.world.passings import COLUMNS, FROM, LINE, NEXT, SIDE, UNKNOWN, find_passings
 from puck_tables.world.paths import FOR_EVER
@@ -325,8 +325,7 @@ def _lay_hands_on(what: int, k: int, orders: Orders, bench: Bench) -> None:
         for column in range(6):
             changed = changed or (row[column] == row[column] and row[column] != state[column])
         if what == LED:
-            for column in range(VX, SPIN + 1):
-                state[column] = row[column]
+            write_over(state[VX:], row[VX:])
             lead(engine, i, state, FOR_EVER)
             engine.next_time[i], engine.next_partner[i] = t, PATH_ENDS
         elif changed or what != PLACED or engine.kinds[i] != GONE:
@@ -336,8 +335,7 @@ def _lay_hands_on(what: int, k: int, orders: Orders, bench: Bench) -> None:
                         state[column] = row[column]
                 lead(engine, i, state, FOR_EVER)
             room.marks[i] = CONCERNED
-            for column in range(6):
-                room.before[i, column] = row[column]
+            write_over(room.before[i], row)
 
 
 @inner
@@ -394,8 +392,7 @@ def tell(board: int, engine: Engine, first: int, bench: Bench, passed: int, out:
     for n in range(passed):
         found, row = bench.found[n], out[used]
         row[0] = board
-        for column in range(COLUMNS):
-            row[1 + column] = found[column]
+        write_over(row[1:], found)
         row[4] = -1.0 - engine.obstacles.shape[0] - found[LINE]
         for column in range(1 + COLUMNS, FOUND_COLUMNS):
             row[column] = 0.0
