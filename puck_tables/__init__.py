@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from puck_tables.contact.laws import Law, law_of, profile_law
     from puck_tables.contact.speed_law import SpeedLaw
     from puck_tables.errors import InputError, PuckError
+    from puck_tables.export.board_source import export_board
     from puck_tables.export.source import export_source
     from puck_tables.film.puck_track import Track
     from puck_tables.film.track_files import read_tracks
@@ -76,6 +77,7 @@ _HOMES = {  # names of this package by the modules that hold them
     "contact.laws": "Law law_of profile_law",
     "contact.speed_law": "SpeedLaw",
     "errors": "InputError PuckError",
+    "export.board_source": "export_board",
     "export.source": "export_source",
     "film.puck_track": "Track",
     "film.track_files": "read_tracks",
@@ -110,7 +112,8 @@ __all__ = [
     "Plastic", "Pocket", "Post", "PowerLaw", "Puck", "PuckError", "RestitutionTable", "Rim",
     "Scene", "SpeedLaw", "StribeckLaw", "Strips", "Table", "Track", "Uniform", "Viscoelastic",
     "Wall", "World", "Worlds", "__version__", "chetaev", "compare", "contact", "errors",
-    "export_source", "fisher", "fit", "floor_friction", "law_of", "motion", "path_along",
+    "export_board", "export_source", "fisher", "fit", "floor_friction", "law_of", "motion",
+    "path_along",
     "profile_law", "push", "read_tracks", "reference_case", "resultants", "results",
     "state_arrays", "states", "stop", "stop_arrays", "table_for", "warm_up",
 ]  # fmt: skip

@@ -131,14 +131,14 @@ class Trajectory(TimedResult):
         [1.590682, 0.0]
         """
         moments = checked_times(times)
-        found: dict[str, Any] = self._states_at(moments)
-        return replace(self, time=moments, **found)
-
-    def _states_at(self, moments: FloatArray) -> dict[str, FloatArray]:
+        found: dict[str, Any] = {}
         if isinstance(self.motion, BaseSlide):
-            return _slid(self.motion, moments)
-        frame = frame_of(self.launch_velocity, self.launch_spin, self.puck.decel, self.puck.radius)
-        return _integrated(self.motion, frame, moments, self.stop_time)
+            found |= _slid(self.motion, moments)
+        else:
+            decel, radius = self.puck.decel, self.puck.radius
+            frame = frame_of(self.launch_velocity, self.launch_spin, decel, radius)
+            found |= _integrated(self.motion, frame, moments, self.stop_time)
+        return replace(self, time=moments, **found)
 
     @property
     def vx(self) -> FloatArray:
@@ -237,31 +237,20 @@ def simulate(
         title = f"{selection.method.words}, {run.friction.source}"
     x, y = frame.place(run.stop[X], run.stop[Y])
     return Trajectory(
-        puck=puck,
-        launch_velocity=launch,
-        launch_spin=w,
-        regime=run.regime,
-        stop_time=stop_time,
-        stop_position=(float(x), float(y)),
-        path_length=float(run.stop[LENGTH] * frame.length),
+        puck=puck, launch_velocity=launch, launch_spin=w, regime=run.regime, stop_time=stop_time,
+        stop_position=(float(x), float(y)), path_length=float(run.stop[LENGTH] * frame.length),
         turn_angle=float(frame.side * run.stop[PSI]) + 0.0,
         turn_rate=float(frame.side * run.turn_rate) + 0.0,
         body_angle=float(frame.side * run.stop[THETA] * (frame.length / puck.radius)) + 0.0,
         limit_angle=math.atan(math.exp(source.limit)),
-        loaded_share=contact.launch,
-        least_loaded_share=contact.least,
+        loaded_share=contact.launch, least_loaded_share=contact.least,
         contact_opens=None if contact.opens is None else contact.opens * frame.time,
         contact_closes=None if contact.closes is None else contact.closes * frame.time,
-        kinetic_energy=energy,
-        energy_residual=run.energy_residual,
-        method=title + ("; states by look-up" if look_up else ""),
-        steps=run.steps,
-        error_estimate=run.error,
-        selection=selection if generic else None,
-        time=moments,
-        motion=run,
-        **columns,
-    )
+        kinetic_energy=energy, energy_residual=run.energy_residual,
+        method=title + ("; states by look-up" if look_up else ""), steps=run.steps,
+        error_estimate=run.error, selection=selection if generic else None, time=moments,
+        motion=run, **columns,
+    )  # fmt: skip
 
 
 def simulate_on_base(
@@ -278,31 +267,14 @@ def simulate_on_base(
         raise InputError(f"mass = {puck.mass:g} kg gives an energy too large for floating point")
     moments = _moments(frames, times, run.stop_time)
     return Trajectory(
-        puck=puck,
-        launch_velocity=launch,
-        launch_spin=w,
-        regime=run.end,
-        stop_time=run.stop_time,
-        stop_position=run.stop_position,
-        path_length=run.path_length,
-        turn_angle=None,
-        turn_rate=None,
-        body_angle=run.body_angle,
-        limit_angle=None,
-        loaded_share=1.0,
-        least_loaded_share=1.0,
-        contact_opens=None,
-        contact_closes=None,
-        kinetic_energy=energy,
-        energy_residual=run.energy_residual,
-        method="Dormand-Prince 8(5,3), adaptive, friction summed along the base",
-        steps=run.steps,
-        error_estimate=run.error,
-        selection=None,
-        time=moments,
-        motion=run,
-        **_slid(run, moments),
-    )
+        puck=puck, launch_velocity=launch, launch_spin=w, regime=run.end, stop_time=run.stop_time,
+        stop_position=run.stop_position, path_length=run.path_length, turn_angle=None,
+        turn_rate=None, body_angle=run.body_angle, limit_angle=None, loaded_share=1.0,
+        least_loaded_share=1.0, contact_opens=None, contact_closes=None, kinetic_energy=energy,
+        energy_residual=run.energy_residual, steps=run.steps, error_estimate=run.error,
+        method="Dormand-Prince 8(5,3), adaptive, friction summed along the base", selection=None,
+        time=moments, motion=run, **_slid(run, moments),
+    )  # fmt: skip
 
 
 def _slid(run: BaseSlide, moments: FloatArray) -> dict[str, FloatArray]:

@@ -154,7 +154,7 @@ def test_functions_of_numba_that_are_found_once_are_those_found_anew(monkeypatch
     optimize = Behind._optimize_final_module
 
     def written(self):
-        texts.append(re.sub(r"B\d*v\d+B", "", str(self._final_module)))
+        texts.append(re.sub(r"B\d*v\d+B| at 0x[0-9a-f]+", "", str(self._final_module)))
         optimize(self)
 
     monkeypatch.setattr(Behind, "_optimize_final_module", written)

@@ -20,12 +20,9 @@ _this_thread = threading.local()  # holds the event that says that its run was g
 
 
 def run_chunks(
-    work: Callable[[int, int], None],
-    items: int,
-    chunk: int,
-    threads: int | None = None,
+    work: Callable[[int, int], None], items: int, chunk: int, threads: int | None = None,
     progress: Progress | None = None,
-) -> None:
+) -> None:  # fmt: skip
     """Call ``work(start, stop)`` for all chunks of ``range(items)``, on several threads.
 
     Parameters
@@ -103,13 +100,9 @@ def keep_on() -> None:
 
 
 def _run(
-    work: Callable[[int, int], None],
-    items: int,
-    chunk: int,
-    count: int,
-    progress: Progress | None,
+    work: Callable[[int, int], None], items: int, chunk: int, count: int, progress: Progress | None,
     check: Callable[[], None],
-) -> None:
+) -> None:  # fmt: skip
     given_up, starts, lock = threading.Event(), iter(range(0, items, chunk)), threading.Lock()
     news: SimpleQueue[int | BaseException | None] = SimpleQueue()
 

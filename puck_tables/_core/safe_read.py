@@ -36,25 +36,7 @@ def read_whole(path: str | Path, largest: int) -> bytes:
 
 
 def opened(path: str | Path, largest: int) -> BinaryIO:
-    """A regular file, open for reading.
-
-    Parameters
-    ----------
-    path : path of a regular file
-    largest : how many bytes it may have
-
-    Raises
-    ------
-    OSError
-        As :func:`read_whole`.
-
-    Examples
-    --------
-    >>> opened("/dev/zero", 100)
-    Traceback (most recent call last):
-    ...
-    OSError: [Errno 22] it is not a regular file, save what it gives as one: '/dev/zero'
-    """
+    """A regular file, open for reading; refused as by :func:`read_whole`."""
     # not blocking: to open a pipe would wait for who writes to it
     if not isinstance(path, str | os.PathLike) or "\0" in os.fspath(path):
         raise OSError(errno.EINVAL, "it is no path of a file", shown(path))

@@ -80,12 +80,7 @@ def pressures(points: FloatArray, slip: FloatArray, delta: float) -> FloatArray:
 
 
 def patch_system(
-    rings: int,
-    *,
-    delta: float = 0.0,
-    decel: float = 1.0,
-    radius: float = 1.0,
-    mass: float = 1.0,
+    rings: int, *, delta: float = 0.0, decel: float = 1.0, radius: float = 1.0, mass: float = 1.0
 ) -> tuple[ConstrainedSystem, FloatArray]:
     """A sliding puck as 4 rings² mass points, all constraints of the rigid body kept.
 

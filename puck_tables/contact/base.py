@@ -87,7 +87,7 @@ class Base:
             if math.dist(centre, middle) <= _CENTRED * self._reach_from(middle):
                 centre = middle
         object.__setattr__(self, "centre", centre)
-        if not self.least_pressure > 0.0:
+        if not self._pressures[0].min() > 0.0:
             raise ContactError(
                 f"base {self.name}: with its centre of mass at ({centre[0]:g}, {centre[1]:g}) m "
                 "part of it would lift, or the body tip; pressure that is linear over the base "
@@ -239,12 +239,6 @@ class Base:
         c = np.array(self.middle)
         own = np.zeros(2) if self.is_centred else first - area * c
         return area, own, second - np.outer(c, first) - np.outer(first, c) + area * np.outer(c, c)
-
-    @property
-    def least_pressure(self) -> float:
-        """The least pressure under it where it lies flat, over the mean."""
-        flat, _ = self._pressures
-        return float(flat.min()) * self.area
 
     @property
     def highest_lever(self) -> float:

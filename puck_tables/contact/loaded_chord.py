@@ -105,12 +105,9 @@ def _newton(
 
 
 def chord_residual(
-    ratio: FloatArray,
-    fast: npt.NDArray[np.bool_],
-    delta: FloatArray,
-    offset: FloatArray,
+    ratio: FloatArray, fast: npt.NDArray[np.bool_], delta: FloatArray, offset: FloatArray,
     bearing: FloatArray,
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+) -> tuple[FloatArray, FloatArray, FloatArray]:  # fmt: skip
     """M(d) n − (δ/4) ⟨u/|u|⟩ and its derivatives by d and γ, each (2, n)."""
     rule = patch_rule(ratio, fast, offset, bearing)
     loaded = segment(offset)

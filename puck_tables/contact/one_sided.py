@@ -281,13 +281,9 @@ def _summed(
     # The torque is Σ σ (x sin a − y cos a).  For a centre outside, Σ σ y is taken from the balance,
     # and with sin a = foot/s all of it is divided by tan φ before it is summed.
     about_centre = (pressure * rule.along).sum(axis=-1)
-    outside = (pressure * _curving(rule, direction.ratio)).sum(axis=-1) - sideways
+    curving = rule.x + direction.ratio[:, None] * rule.y * rule.foot / (1.0 + rule.cos_a)
+    outside = (pressure * (rule.foot * curving)).sum(axis=-1) - sideways
     spin = np.where(fast, about_centre / np.where(fast, sine, 1.0), outside / cosine)
     return np.stack([
         (pressure * rule.cos_a).sum(axis=-1) / cosine, across / cosine**2, 2.0 * spin,
     ])  # fmt: skip
-
-
-def _curving(rule: PatchRule, ratio: FloatArray) -> FloatArray:
-    """(x sin a + y (1 − cos a))/tan φ for a centre of rotation outside."""
-    return rule.foot * (rule.x + ratio[:, None] * rule.y * rule.foot / (1.0 + rule.cos_a))

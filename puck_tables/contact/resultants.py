@@ -20,10 +20,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import real_array
-from puck_tables.contact.integrals import (
-    PatchIntegrals,
-    SlipDirection,
-)
+from puck_tables.contact.integrals import PatchIntegrals, SlipDirection
 from puck_tables.errors import InputError
 
 # How far rounding may push the pressure below zero where it just touches it (δ = 1, φ = 0).

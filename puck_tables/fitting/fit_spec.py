@@ -204,11 +204,6 @@ class FitSpec:
         return 1.0 if self.base is None else self.base.reach
 
     @property
-    def uses_decel(self) -> bool:
-        """Whether J is given itself, not by friction."""
-        return "decel" in self.free or "decel" in self.fixed
-
-    @property
     def uses_delta(self) -> bool:
         """Whether δ is given itself, not by height."""
         return "delta" in self.free or "delta" in self.fixed
@@ -229,7 +224,11 @@ class FitSpec:
         all_of = {**self.known(), **result}
         if self.speeds or self.law:  # that of a puck about to stop
             all_of["friction"] = all_of[NODES[0] if self.speeds else LAW_NUMBERS[0]]
-        decel = all_of["decel"] if self.uses_decel else all_of["friction"] * all_of["gravity"]
+        decel = (
+            all_of["decel"]
+            if "decel" in {*self.free, *self.fixed}
+            else all_of["friction"] * all_of["gravity"]
+        )
         if self.uses_delta:
             return decel, all_of["delta"], all_of["radius"]
         friction = decel / all_of["gravity"]

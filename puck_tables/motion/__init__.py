@@ -13,9 +13,7 @@ if TYPE_CHECKING:
         regime,
     )
 
-_HOMES = {
-    "limits": "approach_exponent curvature_slope limit_angle limit_ratio regime",
-}
+_HOMES = {"limits": "approach_exponent curvature_slope limit_angle limit_ratio regime"}
 
 __all__ = [
     "approach_exponent", "curvature_slope", "limit_angle", "limit_ratio", "regime",

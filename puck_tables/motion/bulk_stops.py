@@ -25,15 +25,9 @@ _STEP_LIMIT = 100_000  # more is a motion that does not end
 
 @allocating
 def fill_stops(
-    launches: FloatArray,
-    tableau: Tableau,
-    steps: float,
-    tolerance: float,
-    columns: FloatArray,
-    section: FloatArray,
-    out: FloatArray,
-    status: npt.NDArray[np.int8],
-) -> None:
+    launches: FloatArray, tableau: Tableau, steps: float, tolerance: float, columns: FloatArray,
+    section: FloatArray, out: FloatArray, status: npt.NDArray[np.int8],
+) -> None:  # fmt: skip
     """Stops of launches (6, n): vx, vy, ω, δ, J, r, into ``out`` (6, n), see solvers.OUTPUTS.
 
     By ``tableau`` with about ``steps`` steps, or, if that is 0, with the local error ``tolerance``.

@@ -70,18 +70,10 @@ def step_length(u: float, steps: float, section: FloatArray) -> float:
 
 @allocating
 def integrate(
-    u: float,
-    tableau: Tableau,
-    steps: float,
-    tolerance: float,
-    place_unit: float,
-    section: FloatArray,
-    delta: float,
-    step_limit: int,
-    z_path: FloatArray,
-    y_path: FloatArray,
+    u: float, tableau: Tableau, steps: float, tolerance: float, place_unit: float,
+    section: FloatArray, delta: float, step_limit: int, z_path: FloatArray, y_path: FloatArray,
     result: FloatArray,
-) -> tuple[int, int]:
+) -> tuple[int, int]:  # fmt: skip
     """Run from (u, everything else 0) to the stop.
 
     Parameters
@@ -179,16 +171,9 @@ def _record(n: int, z: float, y: FloatArray, z_path: FloatArray, y_path: FloatAr
 
 @inner
 def _land_on_line(
-    tableau: Tableau,
-    line: float,
-    z: float,
-    y: FloatArray,
-    h: float,
-    section: FloatArray,
-    delta: float,
-    work: FloatArray,
-    new: FloatArray,
-) -> float:
+    tableau: Tableau, line: float, z: float, y: FloatArray, h: float, section: FloatArray,
+    delta: float, work: FloatArray, new: FloatArray,
+) -> float:  # fmt: skip
     """Shorten a step that crosses a singular line so that it ends there; ``new`` is its end.
 
     Regula falsi starts, Newton on repeated steps finishes: u(h) is monotonic and nearly straight.
@@ -207,16 +192,9 @@ def _land_on_line(
 
 @allocating
 def states_at(
-    times: FloatArray,
-    z_path: FloatArray,
-    y_path: FloatArray,
-    result: FloatArray,
-    tableau: Tableau,
-    section: FloatArray,
-    delta: float,
-    q_out: FloatArray,
-    y_out: FloatArray,
-) -> None:
+    times: FloatArray, z_path: FloatArray, y_path: FloatArray, result: FloatArray, tableau: Tableau,
+    section: FloatArray, delta: float, q_out: FloatArray, y_out: FloatArray,
+) -> None:  # fmt: skip
     """States at dimensionless times from a recorded path: ``q_out`` (n,), ``y_out`` (n, 8).
 
     Dense output without an interpolation error: the moment is found by Newton's method on a step

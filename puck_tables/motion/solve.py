@@ -43,12 +43,9 @@ class Setting(NamedTuple):
 
 
 def close_enough(
-    setting: AnySetting,
-    attempt: Callable[[AnySetting], tuple[Result, ErrorEstimate]],
-    finer: Callable[[AnySetting, ErrorEstimate], AnySetting | None],
-    tol: float,
-    of: str,
-) -> tuple[Result, ErrorEstimate, AnySetting]:
+    setting: AnySetting, attempt: Callable[[AnySetting], tuple[Result, ErrorEstimate]],
+    finer: Callable[[AnySetting, ErrorEstimate], AnySetting | None], tol: float, of: str,
+) -> tuple[Result, ErrorEstimate, AnySetting]:  # fmt: skip
     """Compute with finer and finer settings until the estimated error is within the tolerance.
 
     Parameters

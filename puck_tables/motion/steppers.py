@@ -80,15 +80,9 @@ def estimated(tableau: Tableau, work: FloatArray, i: int) -> float:
 
 @inner
 def step(
-    tableau: Tableau,
-    z: float,
-    y: FloatArray,
-    h: float,
-    section: FloatArray,
-    delta: float,
-    work: FloatArray,
-    out: FloatArray,
-) -> float:
+    tableau: Tableau, z: float, y: FloatArray, h: float, section: FloatArray, delta: float,
+    work: FloatArray, out: FloatArray,
+) -> float:  # fmt: skip
     """A step from (z, y) over h into ``out``; returns the largest local error estimate.
 
     On entry work[0] is dy/dz at z; on return the other rows are the stages.

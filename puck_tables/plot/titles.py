@@ -14,7 +14,6 @@ from puck_tables._core.wording import counted
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from matplotlib.legend import Legend
     from matplotlib.text import Text
 
 _LINES, _MOST = 6, 2000  # lines and characters of a title; what is longer ends in dots
@@ -84,7 +83,8 @@ def legend_below(
         room = width_of(where) / _ROOM  # panels grow when all is laid out
     for count in range(min(columns, len(labels)), 0, -1):
         legend = where.legend(ncols=count, frameon=False, fontsize=9, **place, **entries)
-        as_they_stand(legend)
+        for text in legend.get_texts():
+            text.set_parse_math(False)  # what users write is no mathematics
         if count == 1 or legend.get_window_extent().width <= room:
             return
         legend.remove()
@@ -111,12 +111,6 @@ def shortened(name: str) -> str:
     if len(name) <= _NAME:
         return name
     return name[: _NAME // 2 - 1] + "…" + name[-_NAME // 2 :]
-
-
-def as_they_stand(legend: Legend) -> None:
-    """What users write is no mathematics."""
-    for text in legend.get_texts():
-        text.set_parse_math(False)
 
 
 def _shrunk(text: Text, room: float) -> None:

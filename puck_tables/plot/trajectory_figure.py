@@ -28,8 +28,10 @@ def draw(run: Trajectory) -> Figure:
     _draw_path(figure.add_subplot(grid[0, :]), run)
     speeds = figure.add_subplot(grid[1, 0])
     speeds.plot(run.time, run.speed, color=BLUE, label="speed v")
-    arm, rim = ("r", "rim speed rω") if run.puck.shape is None else ("k", "kω, k of gyration")
-    speeds.plot(run.time, _arm(run) * run.spin, color=ORANGE, label=rim)
+    arm, rim, k = "r", "rim speed rω", run.puck.radius
+    if run.puck.shape is not None:
+        arm, rim, k = "k", "kω, k of gyration", run.puck.inertia_radius
+    speeds.plot(run.time, k * run.spin, color=ORANGE, label=rim)
     speeds.axhline(0.0, color=GREY, linewidth=0.6)
     for moment, text in ((run.contact_opens, "base lifts"), (run.contact_closes, "base down")):
         if moment is not None:
@@ -56,12 +58,6 @@ def draw(run: Trajectory) -> Figure:
         f"v₀ = ({vx:g}, {vy:g}) m/s, ω₀ = {run.launch_spin:g} rad/s, {_puck(run)}{_kind(run)}",
     )
     return figure
-
-
-def _arm(run: Trajectory) -> float:
-    """What makes a speed of the spin: the radius, or of another base k, m."""
-    puck = run.puck
-    return puck.radius if puck.shape is None else puck.inertia_radius
 
 
 def _puck(run: Trajectory) -> str:

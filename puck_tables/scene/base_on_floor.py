@@ -9,11 +9,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.base_clipping import (
-    beyond_line,
-    in_circle,
-    whole_contour,
-)
+from puck_tables.kernels.base_clipping import beyond_line, in_circle, whole_contour
 from puck_tables.kernels.base_friction import (
     AREA,
     is_uniform,

@@ -87,10 +87,7 @@ def settling_rates(model: Model, load: float) -> tuple[float, float]:
     """How fast, at most, what is damped settles, 1/s, and times the slip its direction, m/s²."""
     body = model.body
     lever = body.mass * body.radius * body.radius / body.inertia
-    return (
-        damping(model.forces.drags),
-        load / body.mass * max(1.0, 0.5 * lever),
-    )
+    return damping(model.forces.drags), load / body.mass * max(1.0, 0.5 * lever)
 
 
 @inlined

@@ -87,12 +87,6 @@ def per_change(row: FloatArray, speed: float) -> float:
 
 
 @inlined
-def per_spin(row: FloatArray, w: float) -> float:
-    """Torque of drag over inertia and spin, 1/s."""
-    return row[SPINNING] + row[SPIN_QUADRATIC] * abs(w)
-
-
-@inlined
 def damping(row: FloatArray) -> float:
     """How fast, at most, drag that is no longer strong settles a slip, 1/s."""
     return row[SLIDING] + row[SPINNING]
@@ -132,7 +126,7 @@ def dragged(
     Of drag (Chetaev's 2f₂); a lateral force takes none.
     """
     speed = math.sqrt(ux * ux + uy * uy)
-    drag, turn_drag = per_speed(row, speed), per_spin(row, w)
+    drag, turn_drag = per_speed(row, speed), row[SPINNING] + row[SPIN_QUADRATIC] * abs(w)
     side = sideways(row[ACROSS], row[BY_SPEED], row[BY_SPIN], speed, w)
     return (
         -drag * ux - side * uy,

@@ -10,11 +10,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.base import Base
 from puck_tables.contact.law_moments import DEGREE, packed_law
 from puck_tables.kernels.base_friction import packed, packed_round
-from puck_tables.scene.floor_map import (
-    NO_GROUND,
-    PATCH_COLUMNS,
-    FloorMap,
-)
+from puck_tables.scene.floor_map import NO_GROUND, PATCH_COLUMNS, FloorMap
 from puck_tables.scene.floor_parts import belts_of, needs_sums
 from puck_tables.scene.floor_patches import corners_of
 from puck_tables.scene.scene_spec import SceneSpec

@@ -79,23 +79,13 @@ def _held(
 
 
 @inner
-def _resists(
-    floor_map: FloatArray, radius: float, nx: float, ny: float, nw: float, bx: float, by: float
-) -> tuple[float, float, float]:
-    """The gradient of D at a slip of any size."""
-    whole = math.sqrt(nx * nx + ny * ny + nw * nw)
-    return _held(floor_map, radius, nx / whole, ny / whole, nw / whole, bx, by)
-
-
-@inner
 def _slope_along(
     floor_map: FloatArray, radius: float, bx: float, by: float, n: tuple[float, float, float],
     direction: tuple[float, float, float], a: float,
 ) -> float:  # fmt: skip
-    gx, gy, gw = _resists(
-        floor_map, radius, n[0] + a * direction[0], n[1] + a * direction[1],
-        n[2] + a * direction[2], bx, by,
-    )  # fmt: skip
+    nx, ny, nw = n[0] + a * direction[0], n[1] + a * direction[1], n[2] + a * direction[2]
+    whole = math.sqrt(nx * nx + ny * ny + nw * nw)  # at a slip of any size D is as steep
+    gx, gy, gw = _held(floor_map, radius, nx / whole, ny / whole, nw / whole, bx, by)
     return gx * direction[0] + gy * direction[1] + gw * direction[2]
 
 

@@ -102,13 +102,7 @@ def demand(
     share = math.hypot(radius * force, torque) / math.hypot(radius * resist, turning)
     # friction is against the force: the slip is turned from it by as much as friction from the slip
     ex, ey = (-along / resist, across / resist) if resist > 0.0 else (1.0, 0.0)
-    return (
-        share,
-        heat,
-        cosine * (ex * east - ey * north),
-        cosine * (ex * north + ey * east),
-        sine,
-    )
+    return share, heat, cosine * (ex * east - ey * north), cosine * (ex * north + ey * east), sine
 
 
 @inner

@@ -8,7 +8,6 @@ Walton's (tangential restitution and Coulomb's friction, see :mod:`puck_tables.m
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -201,17 +200,13 @@ class RestitutionTable(Restitution):
     def name(self) -> str:
         """Its text in a scene file."""
         points = zip(np.asarray(self.speeds), np.asarray(self.values), strict=True)
-        return self.file or "table:" + ",".join(f"{v!r}={e!r}" for v, e in _floats(points))
+        return self.file or "table:" + ",".join(f"{float(v)!r}={float(e)!r}" for v, e in points)
 
     @property
     def numbers(self) -> FloatArray:
         """What the engine needs: how many points, their speeds, the cubics."""
         x, y = np.asarray(self.speeds), np.asarray(self.values)
         return np.concatenate([[TABLE, x.size], x, monotone_cubic(x, y).ravel()])
-
-
-def _floats(points: Iterable[tuple[float, float]]) -> Iterator[tuple[float, float]]:
-    return ((float(speed), float(value)) for speed, value in points)
 
 
 def _table_of(text: str) -> RestitutionTable:

@@ -18,16 +18,7 @@ from puck_tables.errors import InputError
 from puck_tables.motion.body import STANDARD_GRAVITY
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.scene.entries import columns_of, entry_at, is_batch, set_path, tables_of
-from puck_tables.scene.parts import (
-    Constraint,
-    Drag,
-    Edge,
-    Floor,
-    Force,
-    Lateral,
-    Launch,
-    Wall,
-)
+from puck_tables.scene.parts import Constraint, Drag, Edge, Floor, Force, Lateral, Launch, Wall
 from puck_tables.scene.pucks_and_posts import Arc, Line, Pocket, Post, Rim, ScenePuck
 from puck_tables.scene.ranges import Ranges, batch_of, launch_rows, owner_of, refuse_twice
 

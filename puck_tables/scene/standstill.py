@@ -7,12 +7,7 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inner
 from puck_tables.scene.friction import SPIN, VX, VY
-from puck_tables.scene.ingredients import (
-    CARRIED,
-    NO_WAY,
-    SLIDES,
-    Phase,
-)
+from puck_tables.scene.ingredients import CARRIED, NO_WAY, SLIDES, Phase
 from puck_tables.scene.moments import REST, direction_of_end
 from puck_tables.scene.rest import SLACK, excess_at_rest
 

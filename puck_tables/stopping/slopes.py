@@ -79,12 +79,8 @@ def slopes_of(axis: SlipAxis, values: FloatArray) -> Slopes:
     rates = of_stops[..., STOP_FUNCTIONS : STOP_FUNCTIONS + RATE_WIDTH]
     padded = np.zeros((*of_stops.shape[:3], STOP_WIDTH))
     padded[..., : of_stops.shape[3]] = of_stops
-    return Slopes(*(_in_rows(splines) for splines in (padded, states, rates)))
-
-
-def _in_rows(splines: FloatArray) -> FloatArray:
-    """All numbers of a node side by side."""
-    return aligned(splines.reshape(*splines.shape[:2], -1))
+    # all numbers of a node side by side
+    return Slopes(*(aligned(one.reshape(*one.shape[:2], -1)) for one in (padded, states, rates)))
 
 
 def _slopes_at_nodes(axis: SlipAxis, values: FloatArray, fast: bool) -> FloatArray:

@@ -341,13 +341,9 @@ def _elementary(table: StopValues, allowed: float) -> list[Check]:
 
 
 def _checks(
-    route: str,
-    names: tuple[str, ...],
-    errors: FloatArray,
-    u: FloatArray,
-    delta: FloatArray,
+    route: str, names: tuple[str, ...], errors: FloatArray, u: FloatArray, delta: FloatArray,
     allowed: float,
-) -> list[Check]:
+) -> list[Check]:  # fmt: skip
     """Lines of the report for errors (functions, points) at launches u."""
     phi = np.arctan(np.exp(np.minimum(u, 700.0)))
     return compared(route, names, errors, phi, delta, allowed)

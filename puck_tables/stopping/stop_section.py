@@ -196,7 +196,9 @@ def stop_section(body: UnitPuck, accuracy: float, progress: Progress | None = No
 
     first = max(0.1 * accuracy, FINEST_ACCURACY)
     friction, error, _ = close_enough(first, attempt, finer, accuracy, "look-up of such pucks")
-    lines = tuple(_cotangent(line) for line in friction.lines)  # in the order of φ
+    lines = tuple(  # in the order of φ
+        1.0 if line == 0.25 * math.pi else 1.0 / math.tan(line) for line in friction.lines
+    )
     done = 0
 
     def functions(phi: FloatArray) -> FloatArray:
@@ -218,10 +220,6 @@ def stop_section(body: UnitPuck, accuracy: float, progress: Progress | None = No
         gyration=body.gyration, friction_error=_SHARE_OF_FRICTION * error.total,
         tolerance=accuracy, accuracy=measured,
     )  # fmt: skip
-
-
-def _cotangent(phi: float) -> float:
-    return 1.0 if phi == 0.25 * math.pi else 1.0 / math.tan(phi)
 
 
 def _error_of_friction(body: UnitPuck, friction: FrictionSection, accuracy: float) -> float:

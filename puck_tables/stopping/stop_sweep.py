@@ -85,7 +85,8 @@ def _whole(puck: Any, numbers: Mapping[str, Any], names: Container[str]) -> dict
     if "decel" not in names:
         name = "gravity" if "friction" in names or "gravity" in names else "decel"
         whole |= {} if name in names else {name: getattr(puck, name)}
-    if "friction" not in names and {"height", "gravity"} & {*whole, *numbers, *_of(names)}:
+    real = any(one in names or one in {*whole, *numbers} for one in ("height", "gravity"))
+    if real and "friction" not in names:
         whole["friction"] = puck.friction
     return {**whole, **numbers}
 
@@ -105,10 +106,6 @@ def _refuse_of_round(puck: Any, names: Container[str]) -> None:
     for name in ("radius", "delta", "pressure", "gyration"):
         if name in names:
             puck.refuse_base(f"{name} of a sweep or a sample")
-
-
-def _of(names: Container[str]) -> list[str]:
-    return [name for name in COLUMN if name in names]
 
 
 def _done(puck: Any, launches: Population, by: By, how: Doing) -> Result:

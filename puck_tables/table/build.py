@@ -59,12 +59,9 @@ class Goal:
 
 
 def built(
-    at: Callable[[int], AnyTable],
-    measured: Callable[[AnyTable], Accuracy],
-    goal: Goal,
-    accuracy: float | None,
-    cells: int | None,
-) -> AnyTable:
+    at: Callable[[int], AnyTable], measured: Callable[[AnyTable], Accuracy], goal: Goal,
+    accuracy: float | None, cells: int | None,
+) -> AnyTable:  # fmt: skip
     """A table as exact as asked, or on a grid as fine as asked, with what was measured.
 
     Parameters

@@ -56,13 +56,9 @@ class CheckReport:
 
 
 def compared(
-    name: str,
-    functions: Iterable[str],
-    errors: Iterable[FloatArray],
-    phi: FloatArray,
-    second: FloatArray,
-    allowed: float,
-) -> list[Check]:
+    name: str, functions: Iterable[str], errors: Iterable[FloatArray], phi: FloatArray,
+    second: FloatArray, allowed: float,
+) -> list[Check]:  # fmt: skip
     """The lines of a report for errors of functions (functions, points); NaN is the largest.
 
     Examples

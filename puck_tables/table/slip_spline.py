@@ -116,14 +116,9 @@ def _log_tangent(phi: float) -> float:
 
 
 def slip_spline(
-    functions: Functions,
-    sides: tuple[Side, ...],
-    accuracy: float,
-    even: bool,
-    counted: slice = slice(None),
-    weights: Functions | None = None,
-    finest: int = FINEST_CELLS,
-) -> SlipSpline:
+    functions: Functions, sides: tuple[Side, ...], accuracy: float, even: bool,
+    counted: slice = slice(None), weights: Functions | None = None, finest: int = FINEST_CELLS,
+) -> SlipSpline:  # fmt: skip
     """Splines of these functions, refined until they are as good as asked.
 
     Parameters

@@ -39,14 +39,10 @@ _BETWEEN_WORDS = 0.1  # s
 
 
 def tabulated(
-    law: Law,
-    accuracy: float | None = None,
-    top_speed: float | None = None,
-    scale: float | None = None,
-    progress: Progress | None = None,
-    pressure: str | PressureLaw = "uniform",
-    reach: float = 1.0,
-) -> dict[str, Any]:
+    law: Law, accuracy: float | None = None, top_speed: float | None = None,
+    scale: float | None = None, progress: Progress | None = None,
+    pressure: str | PressureLaw = "uniform", reach: float = 1.0,
+) -> dict[str, Any]:  # fmt: skip
     """The fields of a table of friction that depends on the slip speed, in full contact.
 
     The grid is cut at the corners of the law, and every patch is as fine as it needs.

@@ -89,7 +89,8 @@ class SlipPatch(_InSlab):
         else:
             width = b[k + 1] - b[k]
             mirrored = self.is_mirrored
-            power = edge_power(k, self.part, self.fast)
+            at_corner = self.part == k and not self.fast
+            power = CORNER_POWER if at_corner else EDGE_POWER  # how its nodes crowd at edges
             U = b[k] + width * (xi if mirrored else xi**power)
             if mirrored:
                 W = b[k] + width * zeta
@@ -157,11 +158,6 @@ def rays_under(law: object, load: RoundLoad) -> FloatArray:
         return NO_RAYS
     radii = np.array(load.edges)
     return np.asarray((radii - 1.0) / (radii + 1.0))
-
-
-def edge_power(slab: int, part: int, fast: bool) -> int:
-    """How strongly the nodes of a patch crowd at its singular edges."""
-    return CORNER_POWER if part == slab and not fast else EDGE_POWER
 
 
 def patches_of(

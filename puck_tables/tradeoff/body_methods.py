@@ -83,7 +83,9 @@ BODIES = {
 def contenders() -> Iterator[Contender]:
     """All methods to the stop of a body, and what one would write."""
     for name, body in BODIES.items():
-        question = _question(name, body)
+        rows = kept_arrays("body_starts.npz")[name]  # vx, vy, ω of launches, and their stops
+        launches = np.ascontiguousarray(rows[:3])
+        question = Question(name, launches, rows[3:] / body.units(launches), launches)
         for tol in _TOLS if body.law is None else _TOLS_OF_A_LAW:
             yield Contender(
                 question, "sums over the base", f"tol={tol:g}", kept(tol),
@@ -97,13 +99,6 @@ def contenders() -> Iterator[Contender]:
                 some, method, setting, partial(body.script, *patches), partial(_scripted, body),
                 2, outsider=True,
             )  # fmt: skip
-
-
-def _question(name: str, body: ThrownBody) -> Question:
-    """The launches that come with the package, vx, vy, ω; stops in the units of each."""
-    rows = kept_arrays("body_starts.npz")[name]
-    launches = np.ascontiguousarray(rows[:3])
-    return Question(name, launches, rows[3:] / body.units(launches), launches)
 
 
 def _integrated(body: ThrownBody, tol: float) -> Run:

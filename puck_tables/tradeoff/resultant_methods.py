@@ -36,14 +36,6 @@ def _columns(size: int, dtype: type) -> FloatArray:
     return _tabulated(size).columns.astype(dtype)
 
 
-def _quadratic(c: FloatArray) -> Run:
-    return filled(lambda inputs, out: fill_resultants(c, _SIDES, inputs[0], inputs[1], out))
-
-
-def _bicubic(c: FloatArray) -> Run:
-    return filled(lambda inputs, out: fill_bicubic(c, 1.0, inputs[0], inputs[1], out))
-
-
 def _by(integrals: Callable[[FloatArray], Any]) -> Run:
     """The balance of moments over the integrals."""
 
@@ -70,12 +62,17 @@ def contenders(points: Question) -> Iterator[Contender]:
         for size in sizes:
             yield Contender(
                 points, "quadratic in delta" + kind, f"nodes={size}",
-                partial(_columns, size, dtype), _quadratic,
+                partial(_columns, size, dtype), lambda c: filled(
+                    lambda inputs, out: fill_resultants(c, _SIDES, inputs[0], inputs[1], out)
+                ),
             )  # fmt: skip
     for size in (33, 129, 513, 991):
         yield Contender(
             points, "bicubic, graded", f"nodes={size}x4",
-            partial(lambda size: graded_coefficients(_tabulated(size)), size), _bicubic,
+            partial(lambda size: graded_coefficients(_tabulated(size)), size),
+            lambda c: filled(
+                lambda inputs, out: fill_bicubic(c, 1.0, inputs[0], inputs[1], out)
+            ),
         )  # fmt: skip
     yield from _outsiders(points)
 

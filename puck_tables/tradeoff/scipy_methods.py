@@ -92,13 +92,9 @@ def scipy_stop(
 
 
 def patch_script(
-    points: FloatArray,
-    weights: FloatArray,
-    gyration: float,
-    height: float,
-    gravity: float,
+    points: FloatArray, weights: FloatArray, gyration: float, height: float, gravity: float,
     friction: Callable[[FloatArray], FloatArray],
-) -> Callable[[float, float, float], FloatArray]:
+) -> Callable[[float, float, float], FloatArray]:  # fmt: skip
     """A function of vx, vy, ω to stop time, x, y: friction summed over patches, scipy's defaults.
 
     Parameters

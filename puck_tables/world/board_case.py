@@ -28,7 +28,6 @@ from puck_tables.scene.outcome import (
     TOO_FAST,
     UNSOLVED,
 )
-from puck_tables.scene.parts import Edge
 from puck_tables.scene.run import STATE, ledger, residual
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import called, pucks_of, refuse_endless
@@ -158,7 +157,8 @@ class BoardCase:
             gone, places = ends.in_play[:, 0] == 0.0, ends.states[:, 0, :2]
             status[gone] = IN_POCKET
             for edge in self.scene.edges:
-                near = _off(edge, places) <= _ON_EDGE * self.pucks[0].radius
+                off = (places - edge.point) @ edge.normal / math.hypot(*edge.normal)
+                near = off <= _ON_EDGE * self.pucks[0].radius
                 status[gone & near] = OVER_EDGE
         for how, code in _ENDS.items():
             status[ends.how == how] = code
@@ -209,13 +209,6 @@ class BoardCase:
         ends.ledgers[run] = ledgers_of(world, np.array([min(when, world.time)]))[0]
         ends.impacts[run] = sum(event.what == "impact" for event in world.events_since(0.0))
         return ENDS.index(end)
-
-
-def _off(edge: Edge, places: FloatArray) -> FloatArray:
-    """How far places (n, 2) are from an edge, m."""
-    normal = np.array(edge.normal) / math.hypot(*edge.normal)
-    off: FloatArray = (places - edge.point) @ normal
-    return off
 
 
 def _part(path: str) -> tuple[int, int]:

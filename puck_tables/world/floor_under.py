@@ -24,9 +24,7 @@ from puck_tables.scene.floor_map import (
     border_of,
 )
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
-from puck_tables.scene.ingredients import (
-    ASTRIDE as SEVERAL,
-)
+from puck_tables.scene.ingredients import ASTRIDE as SEVERAL
 from puck_tables.scene.ingredients import (
     BySpeed,
     DryFriction,

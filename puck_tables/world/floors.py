@@ -139,16 +139,11 @@ def regions_of(
     return Regions(loads, delta, cuts, NO_LAW, astride, floor_map, laws)
 
 
-def _is_shaped(puck: ScenePuck) -> bool:
-    """Whether it slides on a base that is not round."""
-    return puck.shape is not None and not puck.path
-
-
 def _is_summed(scene: SceneSpec, puck: ScenePuck) -> bool:
     """Whether its friction is summed over its base everywhere, not looked up."""
     sums = needs_sums(scene.floor, puck.height)
     sums = sums and scene.floor.orthotropic is None and not scene.floor.law
-    return _is_shaped(puck) or (sums and not puck.path)
+    return (sums or puck.shape is not None) and not puck.path
 
 
 def _grounds(

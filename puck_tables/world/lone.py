@@ -55,6 +55,7 @@ from puck_tables.scene.ingredients import (
 )
 from puck_tables.scene.moments import NOTHING, REST, first_event_on, goes_straight, lost, rests_on
 from puck_tables.scene.over_time import rows_passed
+from puck_tables.scene.radau import RADAU_ROWS
 from puck_tables.scene.standstill import from_standstill
 from puck_tables.scene.step_size import follow_scales, up_to_the_stop
 from puck_tables.scene.steps import accelerations, step
@@ -116,7 +117,7 @@ _WORK = 0.144  # and of one of degree four that is wrong by d in its first deriv
 class LoneBuffer(NamedTuple):
     """Where to work: rows of one array, for each array that comes from Python costs its call.
 
-    Rates of the stages of a step (13, 12), and at its start and end (2, 12) and middle (1, 12);
+    Rates of the stages of a step (22, 12), and at its start and end (2, 12) and middle (1, 12);
     states at its start, its end and in between (12,); scales of a state; a place on a piece; powers
     at the start, the energies of a step, powers at its end, and the energies half way (4, …).
     """
@@ -133,16 +134,16 @@ class LoneBuffer(NamedTuple):
 
 
 # rows of a buffer, in the order of its arrays
-_ENDS, _MIDDLE, _STATES = STAGES, STAGES + 2, STAGES + 3
+_ENDS, _MIDDLE, _STATES = RADAU_ROWS, RADAU_ROWS + 2, RADAU_ROWS + 3
 _BOOKS = _STATES + 5
 BUFFER_ROWS = _BOOKS + 4
 
 
 @inlined
 def _buffer_on(rows: FloatArray) -> LoneBuffer:
-    """A buffer on rows (25, 12)."""
+    """A buffer on rows (34, 12)."""
     return LoneBuffer(
-        rows[:STAGES], rows[_ENDS:_MIDDLE], rows[_MIDDLE:_STATES], rows[_STATES],
+        rows[:_ENDS], rows[_ENDS:_MIDDLE], rows[_MIDDLE:_STATES], rows[_STATES],
         rows[_STATES + 1], rows[_STATES + 2], rows[_STATES + 3], rows[_STATES + 4],
         rows[_BOOKS:BUFFER_ROWS],
     )  # fmt: skip
@@ -173,20 +174,15 @@ def _surface_at(model: Model, t: float) -> Surface:
 
 
 @inlined
-def _is_pulled(model: Model) -> bool:
-    """Whether a force acts that is given."""
-    forces = model.forces
-    return forces.x != 0.0 or forces.y != 0.0 or forces.torque != 0.0 or len(forces.drive) > 0
-
-
-@inlined
 def _swings(model: Model, friction: DryFriction, rows: int) -> bool:
     """Whether what the floor has to do for a puck at rest on it changes as it is carried."""
     surface, drive = model.surface, model.forces.drive
     if surface.changes != 0.0 and rows < len(drive):
         return True
     surface = surface_at(surface, drive, rows, 0.0)  # as it goes on
-    turns = surface.spin != 0.0 and _is_pulled(model)
+    forces = model.forces
+    pulled = forces.x != 0.0 or forces.y != 0.0 or forces.torque != 0.0 or len(drive) > 0
+    turns = surface.spin != 0.0 and pulled
     if is_over_belts(friction) and is_rubbed(friction.by_speed.table, model.body.radius):
         return True  # it gets warm
     return turns or (is_mixed(friction) and moves_along(surface))
@@ -349,12 +345,6 @@ def _is_stiff(model: Model, load: float, stiff: bool, h: float, q: float, pull: 
 
 
 @inlined
-def _piece_for(coarse: float, h: float) -> float:
-    """How long a piece may be, where one over h was wrong by so many times what it may be."""
-    return h * max(0.2, _SAFE * coarse**-0.2) if coarse > 0.0 else math.inf
-
-
-@inlined
 def _goes_on(
     phase: Phase, t: float, vx: float, vy: float, spin: float, q: float, y: FloatArray,
     work: FloatArray,
@@ -485,7 +475,9 @@ def follow_alone(
         piece = engine.pieces[engine.counts[N_PIECES] + count]
         _write_piece(phase, now, length, piece, buffer)
         coarse = _misfit(phase, now, length, piece, tol, buffer)
-        longest = _piece_for(coarse, length) if length > _BRIEF * unit else math.inf
+        longest = math.inf
+        if coarse > 0.0 and length > _BRIEF * unit:
+            longest = length * max(0.2, _SAFE * coarse**-0.2)
         if coarse > 1.0 and longest < length:
             h = longest
             continue

@@ -240,10 +240,13 @@ class Runs(Work):
     ) -> SceneEnds:
         kept = dict(columns)
         end = kept.pop(self.code)
-        return Map(
+        return self._ends(
             scene=self.scene, names=self.names, columns=kept, end=end, model=model,
             explanation=explanation, told=parts, files=self.files,
         )  # fmt: skip
+
+    def _ends(self, **ends: Any) -> SceneEnds:
+        return Map(**ends)
 
 
 class DrawnRuns(Runs):
@@ -305,16 +308,8 @@ class DrawnRuns(Runs):
         drawn = {plain_name(path): one for path, one in self.numbers(start, stop).items()}
         return {**super().of(start, stop), **drawn}
 
-    def _result(
-        self, columns: Columns, model: str, explanation: str, parts: tuple[str, ...]
-    ) -> SceneEnds:
-        kept = dict(columns)
-        end = kept.pop(self.code)
-        return Sample(
-            scene=self.scene, names=self.names, columns=kept, end=end, model=model,
-            explanation=explanation, told=parts, files=self.files, spreads=self.spreads,
-            seed=self.seed,
-        )  # fmt: skip
+    def _ends(self, **ends: Any) -> SceneEnds:
+        return Sample(**ends, spreads=self.spreads, seed=self.seed)
 
 
 def _differences(puck: PuckSpec) -> dict[str, Any]:

@@ -38,14 +38,7 @@ from puck_tables.stopping.similarity_lookup import (
     look_up_launch,
     look_up_state,
 )
-from puck_tables.world.layout import (
-    DECEL,
-    DELTA,
-    DRAG,
-    RADIUS,
-    feels_floor,
-    write_over,
-)
+from puck_tables.world.layout import DECEL, DELTA, DRAG, RADIUS, feels_floor, write_over
 from puck_tables.world.paths import on_piece, piece_at
 
 STILL, LOOKED_UP, DAMPED, PATH, GONE, CARRIED = range(6)

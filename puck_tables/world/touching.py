@@ -7,18 +7,9 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, patience
 from puck_tables.scene.friction import X, Y
-from puck_tables.world.contact_row import (
-    ACTS,
-    NX,
-    NY,
-    approach,
-    opening,
-    prepare_contact,
-)
+from puck_tables.world.contact_row import ACTS, NX, NY, approach, opening, prepare_contact
 from puck_tables.world.contact_search import HARDLY
-from puck_tables.world.engine_state import (
-    Engine,
-)
+from puck_tables.world.engine_state import Engine
 from puck_tables.world.floor_under import is_over_belts, outruns_law, over_floor, slips
 from puck_tables.world.layout import (
     DECEL,

@@ -87,8 +87,7 @@ def twist(
     scale = np.hypot(np.abs(velocity), slip_length(puck) * slip[2])
     velocity = (velocity / scale).reshape(shape)
     return Twist(
-        np.stack([velocity.real, velocity.imag], axis=-1) + 0.0,
-        (slip[2] / scale).reshape(shape),
+        np.stack([velocity.real, velocity.imag], axis=-1) + 0.0, (slip[2] / scale).reshape(shape)
     )
 
 
