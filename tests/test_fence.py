@@ -181,3 +181,47 @@ def test_what_is_told(tmp_path) -> None:
         pt.push(puck, pt.Fence(), (-0.1, 0.2), 0.3)
     with pytest.raises(pt.InputError, match="facing"):
         pt.Fence(math.nan)
+
+
+def test_a_fence_of_a_width_is_an_endless_one_while_nothing_is_at_its_ends() -> None:
+    puck = pt.Puck(base=SHAPES["box"], friction=0.3)
+    run = pt.push(puck, pt.Fence(), (0.1, 0.02), 0.4, angle=0.3, duration=3.0)
+    wide = pt.push(puck, pt.Fence(width=0.4), (0.1, 0.02), 0.4, angle=0.3, duration=3.0)
+    np.testing.assert_allclose(wide.orientation, run.orientation, atol=1e-12)
+    assert wide.contact == run.contact and wide.contact[-1] == "flush, sticks"
+
+
+def test_flush_on_a_narrow_fence_while_the_line_meets_it() -> None:
+    """A side of 0.1 m on a fence of 0.04 m, 0.01 m to the left: from -0.01 to 0.03 m."""
+    puck, fence = pt.Puck(base=SHAPES["box"], friction=0.3), pt.Fence(width=0.04, offset=0.01)
+    for slope in (0.09, -0.29):  # through the centre, 0.1 m ahead
+        run = pt.push(puck, fence, (0.1, 0.1 * slope), 0.5, duration=2.0)
+        assert run.contact[-1] == "flush, sticks" and run.end == "time is up"
+    for slope in (0.11, -0.31):
+        with pytest.raises(pt.InputError, match="turns about that at once"):
+            pt.push(puck, fence, (0.1, 0.1 * slope), 0.5, duration=2.0)
+    # with little friction the box slides along it until the force, 0.1 of 1 aside, is at its end
+    run = pt.push(puck, fence, (0.1, -0.03), 0.1, duration=9.0)
+    assert run.end == "the puck turns about an end of the fence"
+    assert run.contact[-1] == "flush, slides right"
+    # the force acts at 0.1 * 0.1 beside the centre; the end, from 0.03, comes 0.02 m/s nearer
+    assert run.time[-1] == pytest.approx((0.03 - 0.01) / 0.02, rel=1e-9)
+    assert run.finger_y[-1] == pytest.approx(run.fence_y[-1] + 0.02, abs=1e-9)
+
+
+def test_a_corner_that_comes_to_the_end_of_a_fence_ends_the_push() -> None:
+    puck = pt.Puck(base=SHAPES["box"], friction=0.3)
+    angle = math.atan(0.5) + 0.02  # nearly behind the centre
+    run = pt.push(puck, pt.Fence(width=0.06), (0.1, 0.15), 0.05, angle=angle, duration=5.0)
+    assert run.end == "the puck comes to an end of the fence"
+    aside = math.hypot(run.finger_x[-1] - run.fence_x[-1], run.finger_y[-1] - run.fence_y[-1])
+    assert aside == pytest.approx(0.03, abs=1e-8)
+
+
+@pytest.mark.parametrize("name", ["hook", "feet and box"])
+def test_a_fence_of_a_width_is_refused_at_what_is_not_convex(name: str) -> None:
+    puck = pt.Puck(base=SHAPES[name], friction=0.3, gyration=0.05)
+    with pytest.raises(pt.InputError, match="convex polygons and discs"):
+        pt.push(puck, pt.Fence(width=0.1), (0.1, 0.0), 0.3)
+    with pytest.raises(pt.InputError, match="touches with an end"):
+        pt.push(pt.Puck(0.05, friction=0.3), pt.Fence(width=0.02, offset=0.02), (0.1, 0.0), 0.3)

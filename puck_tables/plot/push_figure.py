@@ -46,9 +46,9 @@ def draw_on(axes: Axes, run: Push) -> None:
             axes.plot(*closed.T, color=BLUE if n == chosen[-1] else GREY)
         if run.fence is not None:
             face = np.array([-np.sin(run.fence.facing), np.cos(run.fence.facing)])
-            place = np.array([run.finger_x[n], run.finger_y[n]])
-            ends = np.outer([-run.puck.radius, run.puck.radius], face) + place
-            axes.plot(*ends.T, color=ORANGE, linewidth=1.4)
+            half = min(0.5 * run.fence.width, 1.5 * run.puck.radius)
+            place = np.array([run.fence_x[n], run.fence_y[n]])
+            axes.plot(*(np.outer([-half, half], face) + place).T, color=ORANGE, linewidth=1.4)
     axes.plot(run.x, run.y, color=BLUE, linewidth=0.9, label="centre of mass")
     axes.plot(run.finger_x, run.finger_y, color=ORANGE, marker="o", markevery=chosen.tolist(),
               label="where it is pushed")  # fmt: skip

@@ -16,20 +16,23 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import real
+from puck_tables._core.real import positive, real
 from puck_tables.errors import InputError
 from puck_tables.kernels.base_friction import REACH
 from puck_tables.kernels.base_push import APART, LEFT, RIGHT, STICKS, UNKNOWN, push_twist
 
 _TOUCHES = 1e-8  # of the reach: how well the moment is known at which a corner meets a fence
+_TURNS = "the puck turns about an end of the fence"
 FLUSH = 4  # after how a finger touches: the same of a fence that lies flush
 
 
 @dataclass(frozen=True)
 class Fence:
-    """A straight pusher without ends, which is moved up to a puck until it touches.
+    """A straight pusher, endless or of a width, which is moved up to a puck until it touches.
 
-    ``facing``: rad, where its face looks, to the puck, in the axes of the floor.
+    ``facing``: rad, where its face looks, to the puck, in the axes of the floor; ``width``: m;
+    ``offset``: m, how far to the left of the centre of mass its middle is at first.  What turns
+    about an end of it is pushed there by a finger: the states end.
 
     Examples
     --------
@@ -41,9 +44,14 @@ class Fence:
     """
 
     facing: float = 0.0
+    width: float = math.inf
+    offset: float = 0.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "facing", real("facing", self.facing, "rad"))
+        for name, unit in (("facing", "rad"), ("offset", "m")):
+            object.__setattr__(self, name, real(name, getattr(self, name), unit))
+        if self.width != math.inf:
+            object.__setattr__(self, "width", positive("width", self.width, "m"))
 
 
 class OutlinePiece(NamedTuple):
@@ -149,11 +157,12 @@ class Finger(Pushing):
 class Along(Pushing):
     """A fence on one of the points (n, 3) of a base: places from the centre of mass, and radii.
 
-    ``normal``: of the fence, in the axes of the floor; ``which``: the point.
+    ``normal``: of the fence, in the axes of the floor; ``half``: its width; ``which``: the point.
     """
 
     points: FloatArray
     normal: complex
+    half: float
     which: int
 
     def _gaps(self, own: complex, turn: complex) -> tuple[FloatArray, FloatArray]:
@@ -162,13 +171,14 @@ class Along(Pushing):
         return away.real - self.points[:, 2], away.imag
 
     def touch(self, own: complex, turn: complex) -> tuple[complex, complex, float]:
-        """The room is that of all other points to the fence."""
-        gaps, normal = self._gaps(own, turn)[0], self.normal / turn
+        """The room is that of all other points to the fence, and of this one to its ends."""
+        (gaps, along), normal = self._gaps(own, turn), self.normal / turn
         x, y, radius = self.points[self.which].tolist()
-        others = np.delete(gaps, self.which)
-        return complex(x, y) - radius * normal, normal, float(others.min(initial=math.inf))
+        room = self.half - abs(along[self.which])
+        room = min(room, np.delete(gaps, self.which).min(initial=math.inf))
+        return complex(x, y) - radius * normal, normal, float(room)
 
-    def after(self, t: float, y: FloatArray) -> Pushing:
+    def after(self, t: float, y: FloatArray) -> Pushing | str:
         """The fence flush on a side, or on the corner about which the base turns away from it."""
         own, turn = self.own(t, y)
         gaps, along = self._gaps(own, turn)
@@ -178,9 +188,14 @@ class Along(Pushing):
         slope = min(max(way.imag / way.real, -self.friction), self.friction)
         acts = _acts(own * turn / self.normal, slope)
         parts = self.base, self.heading, self.friction, self.start, self.points, self.normal
-        if along[first] <= acts <= along[last] and first != last:
-            return Flush(*parts, -1, slope)
-        return Along(*parts, int(first if acts < along[first] else last))
+        inside = self.half - _TOUCHES * self.base[REACH]
+        low, high = max(along[first], -inside), min(along[last], inside)
+        if low > high:
+            return "the puck comes to an end of the fence"
+        if low <= acts <= high and first != last:
+            return Flush(*parts, self.half, -1, slope)
+        which = int(first if acts < low else last)
+        return Along(*parts, self.half, which) if abs(along[which]) <= inside else _TURNS
 
 
 def _acts(fence: complex, slope: float) -> float:
@@ -208,8 +223,13 @@ class Flush(Along):
         ]), FLUSH + code  # fmt: skip
 
     def room(self, t: float, y: FloatArray) -> float:
-        """It goes on so."""
-        return 1.0
+        """From the force to the nearer end of the fence."""
+        own, turn = self.own(t, y)
+        return min(1.0, self.half - abs(_acts(own * turn / self.normal, self.slope)))
+
+    def after(self, t: float, y: FloatArray) -> str:
+        """The force keeps to the base: it does not come past a corner of that."""
+        return _TURNS
 
 
 def laid_on(
@@ -221,7 +241,7 @@ def laid_on(
     Raises
     ------
     InputError
-        If it moves away.
+        If it moves away, or does not touch with its face.
     """
     normal = cmath.rect(1.0, fence.facing)
     if not (heading / normal).real > 0.0:
@@ -229,6 +249,20 @@ def laid_on(
             f"the fence faces along {fence.facing:g} rad and does not move that way: give a "
             "velocity that leads it to the puck"
         )
-    away = (points[:, 0] + 1j * points[:, 1]) * (cmath.rect(1.0, y[2]) / normal)
-    start = normal * float((away.real - points[:, 2]).min())
-    return Along(base, heading, friction, start, points, normal, 0).after(0.0, y)
+    places = points[:, 0] + 1j * points[:, 1]
+    ways = np.roll(places, -1) - places
+    turns = (ways.conjugate() * np.roll(ways, -1)).imag
+    if fence.width < math.inf and len(points) > 1 and (points[:, 2].any() or turns.min() < 0.0):
+        raise InputError(
+            "a fence of a width pushes convex polygons and discs: leave the width of this one out"
+        )
+    away = places * (cmath.rect(1.0, y[2]) / normal)
+    start = normal * complex((away.real - points[:, 2]).min(), fence.offset)
+    half = 0.5 * fence.width
+    found = Along(base, heading, friction, start, points, normal, half, 0).after(0.0, y)
+    if isinstance(found, str):
+        raise InputError(
+            "the fence touches with an end, or the puck turns about that at once: push there with "
+            "a finger, or give it another offset or width"
+        )
+    return found

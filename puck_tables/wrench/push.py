@@ -59,6 +59,8 @@ class Push(Result):
         What the finger does: sticks, slides left, slides right (as it sees the puck), or apart:
         it does not press on; of a fence that lies on a side flush, and the same.
     fence : Fence, or None: a finger
+    fence_x, fence_y : arrays (n,), m
+        Where the middle of that is, or the finger.
     end : str
         Why the states end.
     """
@@ -77,6 +79,8 @@ class Push(Result):
     finger_y: FloatArray
     codes: npt.NDArray[np.int8] = field(repr=False)
     fence: Fence | None
+    fence_x: FloatArray = field(repr=False)
+    fence_y: FloatArray = field(repr=False)
     end: str
 
     picture: ClassVar[str] = "push"
@@ -222,11 +226,12 @@ def push(
     found = [_leg_at(legs, s) for s in path.tolist()]
     x, y, orientation = np.array([state for state, *_ in found]).T
     vx, vy, spin, push_x, push_y, place_x, place_y = np.array([rates for _, rates, _ in found]).T
-    load = puck.friction * puck.mass * puck.gravity
+    load, middle = puck.friction * puck.mass * puck.gravity, pushing.start + path * pushing.heading
     return Push(
         puck, path / speed, x, y, orientation, speed * vx, speed * vy, speed * spin,
         load * push_x, load * push_y, place_x, place_y,
-        np.array([code for *_, code in found], np.int8), fence, end,
+        np.array([code for *_, code in found], np.int8), fence, middle.real,
+        middle.imag, end,
     )  # fmt: skip
 
 
