@@ -226,12 +226,12 @@ def push(
     found = [_leg_at(legs, s) for s in path.tolist()]
     x, y, orientation = np.array([state for state, *_ in found]).T
     vx, vy, spin, push_x, push_y, place_x, place_y = np.array([rates for _, rates, _ in found]).T
-    load, middle = puck.friction * puck.mass * puck.gravity, pushing.start + path * pushing.heading
+    load, start, heading = puck.friction * puck.mass * puck.gravity, pushing.start, pushing.heading
     return Push(
         puck, path / speed, x, y, orientation, speed * vx, speed * vy, speed * spin,
         load * push_x, load * push_y, place_x, place_y,
-        np.array([code for *_, code in found], np.int8), fence, middle.real,
-        middle.imag, end,
+        np.array([code for *_, code in found], np.int8), fence,
+        start.real + path * heading.real, start.imag + path * heading.imag, end,
     )  # fmt: skip
 
 
