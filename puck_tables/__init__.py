@@ -64,6 +64,7 @@ if TYPE_CHECKING:
     from puck_tables.world.scene import Scene
     from puck_tables.world.world import World
     from puck_tables.world.worlds import Worlds
+    from puck_tables.wrench.fence import Fence
     from puck_tables.wrench.push import push
 
 with_neighbours(__name__, __file__)
@@ -101,11 +102,12 @@ _HOMES = {  # names of this package by the modules that hold them
     "world.scene": "Scene",
     "world.world": "World",
     "world.worlds": "Worlds",
+    "wrench.fence": "Fence",
     "wrench.push": "push",
 }
 
 __all__ = [
-    "Arc", "Base", "Camera", "Constraint", "CurlingLaw", "Drag", "Edge", "Floor", "Force",
+    "Arc", "Base", "Camera", "Constraint", "CurlingLaw", "Drag", "Edge", "Fence", "Floor", "Force",
     "Grip", "InputError", "Lateral", "Launch", "Law", "Line", "Normal", "Orthotropic", "Patch",
     "Plastic", "Pocket", "Post", "PowerLaw", "Puck", "PuckError", "RestitutionTable", "Rim",
     "Scene", "SpeedLaw", "StribeckLaw", "Strips", "Table", "Track", "Uniform", "Viscoelastic",
