@@ -6,6 +6,7 @@ from importlib.resources import files
 
 from puck_tables.export.board_source import export_board
 from puck_tables.plot.animation import film_of
+from puck_tables.plot.floor_axes import Box
 from puck_tables.plot.movie import with_film
 from puck_tables.world.scene import Scene
 
@@ -29,6 +30,13 @@ def board_page(scene: Scene) -> str:
     page = (files("puck_tables.plot") / "played_board.html").read_text(encoding="utf-8")
     film = film_of(scene.simulate())
     bodies = [body._replace(knots=body.knots[:1]) for body in film.bodies]
-    return with_film(page, film._replace(bodies=bodies)).replace(
-        "/*board*/", export_board(scene).text
-    )
+    box = film.box if film.lines or film.rounds else _wider(film.box)
+    page = with_film(page, film._replace(bodies=bodies, box=box))
+    return page.replace("/*board*/", export_board(scene).text)
+
+
+def _wider(box: Box) -> Box:
+    """Twice as wide and as high: nothing keeps pucks on an open floor where one run was."""
+    left, right, low, high = box
+    x, y = 0.5 * (right - left), 0.5 * (high - low)
+    return Box(left - x, right + x, low - y, high + y)
