@@ -46,7 +46,7 @@ ROOMS = {
     "table world",
     "report": "_core accuracy bulk fitting io motion reference scene stopping table tradeoff "
     "trajectory world",
-    "plot": "_core _version accuracy bulk chetaev errors film fitting io motion reference "
+    "plot": "_core _version accuracy bulk chetaev errors export film fitting io motion reference "
     "result scene stopping tradeoff trajectory world wrench",
     "gym": "_core contact errors plot puck scene world",
     "cli": "_core _version accuracy bulk chetaev contact errors explore export film fitting io "

@@ -134,13 +134,18 @@ def export_board(scene: SceneSpec) -> BoardSource:
     code = base64.b64encode(gzip.compress(_webassembly(ship), mtime=0)).decode()
     text = (files("puck_tables.export") / "board.js").read_text(encoding="utf-8")
     parts = {
-        "title": scene.title or "A board", "version": __version__,
+        "title": _as_json(scene.title or "A board")[1:-1], "version": __version__,
         "licence": "".join(f"// {line}".rstrip() + "\n" for line in LICENCE.splitlines()),
-        "scene": json.dumps(_described(ship, board), ensure_ascii=False), "code": code,
+        "scene": _as_json(_described(ship, board)), "code": code,
     }  # fmt: skip
     for name, value in parts.items():
         text = text.replace(f"/*{name}*/", value)
     return BoardSource(text, scene.title, board.names)
+
+
+def _as_json(value: Any) -> str:
+    """A value for a script, which no text of it ends."""
+    return json.dumps(value).replace("<", "\\u003c")
 
 
 def _named(ship: Shipped) -> dict[str, Any]:
