@@ -12,11 +12,12 @@ from puck_tables.errors import InputError
 @click.command()
 @click.option("--language", required=True, metavar="NAME", help="c, js or python; of a scene js.")
 @click.option("--what", default="stop,state,resultants", show_default=True, metavar="PARTS",
-              help="Where and when launches stop, states at any time, friction resultants."
+              help="Where and when launches stop, states at any time, friction resultants;"
+                   " of a flat polygon (--base) wrench, of friction, and a step of it."
               )  # fmt: skip
 @number("--tol", default=1e-6, show_default=True,
         help="Largest error, in units of Q/(f g), Q^2/(f g), Q: 1e-9 to 0.01.")  # fmt: skip
-@packed("choice", PuckChoice, *body_options())
+@packed("choice", PuckChoice, *body_options(True))
 @scene_options
 @outputs("The file.", plot=False, required=True)
 @click.pass_context
@@ -35,6 +36,7 @@ def export(
     puck export --language c -o puck.c
     puck export --language c --pressure annulus:0.8 --gyration 0.905539 -o washer.c
     puck export --language js --what stop,state --tol 1e-4 -o puck.js
+    puck export --language c --base box:0.2x0.1 --what wrench -o box.c
 
     With --scene the file plays a board, in browsers and Node, as World does in Python: engine and
     scene in WebAssembly, and a small host (strike, place, drive, advance, state, copy).
