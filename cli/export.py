@@ -4,18 +4,27 @@ from __future__ import annotations
 
 import click
 from puck_tables.cli.options import Outputs, PuckChoice, body_options, number, outputs, packed
+from puck_tables.cli.scene_run import SceneChoice, scene_options, scene_tables
+
+from puck_tables.errors import InputError
 
 
 @click.command()
-@click.option("--language", required=True, metavar="NAME", help="c, js or python.")
+@click.option("--language", required=True, metavar="NAME", help="c, js or python; of a scene js.")
 @click.option("--what", default="stop,state,resultants", show_default=True, metavar="PARTS",
-              help="Where and when launches stop, states at any time, friction resultants."
+              help="Where and when launches stop, states at any time, friction resultants;"
+                   " of a flat polygon (--base) wrench, of friction, and a step of it."
               )  # fmt: skip
 @number("--tol", default=1e-6, show_default=True,
         help="Largest error, in units of Q/(f g), Q^2/(f g), Q: 1e-9 to 0.01.")  # fmt: skip
-@packed("choice", PuckChoice, *body_options())
+@packed("choice", PuckChoice, *body_options(True))
+@scene_options
 @outputs("The file.", plot=False, required=True)
-def export(language: str, what: str, tol: float, choice: PuckChoice, out: Outputs) -> None:
+@click.pass_context
+def export(
+    ctx: click.Context, language: str, what: str, tol: float, choice: PuckChoice,
+    chosen: SceneChoice, out: Outputs,
+) -> None:  # fmt: skip
     """Write one self-contained source file that computes motions without this program.
 
     The tables are in it, as small as the error allows, the licence, and self_test, which returns
@@ -27,7 +36,16 @@ def export(language: str, what: str, tol: float, choice: PuckChoice, out: Output
     puck export --language c -o puck.c
     puck export --language c --pressure annulus:0.8 --gyration 0.905539 -o washer.c
     puck export --language js --what stop,state --tol 1e-4 -o puck.js
+    puck export --language c --base box:0.2x0.1 --what wrench -o box.c
+
+    With --scene the file plays a board, in browsers and Node, as World does in Python: engine and
+    scene in WebAssembly, and a small host (strike, place, drive, advance, state, copy).
+
+    \b
+    puck export --language js --scene carrom-break -o carrom.js
     """  # noqa: D301 - click reads the backspace
+    if chosen:
+        return _export_board(ctx, language, chosen, out)
     from puck_tables.export.source import checked_ending, checked_request, export_source
 
     parts = checked_request(language, what, tol)
@@ -35,5 +53,22 @@ def export(language: str, what: str, tol: float, choice: PuckChoice, out: Output
     checked_ending(out.output, language)
     out.prepare(choice.pressure, saved=False)
     source = export_source(language, parts, tol, choice.puck())
+    click.echo(repr(source), err=True)
+    out.deliver(source)
+
+
+def _export_board(ctx: click.Context, language: str, chosen: SceneChoice, out: Outputs) -> None:
+    """Write a file that plays the board of a scene."""
+    from puck_tables.export.board_source import export_board
+    from puck_tables.export.source import checked_ending
+    from puck_tables.world.scene import Scene
+
+    if language != "js":
+        raise InputError(f"--language {language}: boards are exported to js")
+    tables = scene_tables(ctx, chosen, ("language",))
+    assert out.output is not None
+    checked_ending(out.output, language)
+    out.prepare(*chosen.reads(tables), saved=False)
+    source = export_board(Scene.from_tables(tables, chosen.name))
     click.echo(repr(source), err=True)
     out.deliver(source)

@@ -15,6 +15,8 @@ from sphinx_gallery.scrapers import figure_rst
 
 import puck_tables
 from puck_tables.explore.page import explorer_page
+from puck_tables.plot.played_board import board_page
+from puck_tables.world.scene import Scene
 
 HERE = Path(__file__).parent
 
@@ -102,6 +104,9 @@ def said_by_the_program(app: Sphinx) -> None:
     explorer = HERE / "_extra" / "explore.html"  # explorer.html is the page that tells of it
     explorer.parent.mkdir(exist_ok=True)
     explorer.write_text(explorer_page(), encoding="utf-8")
+    for name, scene in (("carrom", "carrom-break"), ("air-hockey", "air-hockey-mallet")):
+        played = explorer.with_name(f"{name}.html")
+        played.write_text(board_page(Scene.load(scene)), encoding="utf-8")
     page = "# Fields of scenes\n\nWhat `puck scene fields` prints.\n\n```text\n" + told + "```\n"
     path = HERE / "reference" / "scene-fields.md"
     path.parent.mkdir(exist_ok=True)

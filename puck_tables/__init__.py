@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from puck_tables.contact.laws import Law, law_of, profile_law
     from puck_tables.contact.speed_law import SpeedLaw
     from puck_tables.errors import InputError, PuckError
+    from puck_tables.export.board_source import export_board
     from puck_tables.export.source import export_source
     from puck_tables.film.puck_track import Track
     from puck_tables.film.track_files import read_tracks
@@ -63,6 +64,7 @@ if TYPE_CHECKING:
     from puck_tables.world.scene import Scene
     from puck_tables.world.world import World
     from puck_tables.world.worlds import Worlds
+    from puck_tables.wrench.fence import Fence
     from puck_tables.wrench.push import push
 
 with_neighbours(__name__, __file__)
@@ -75,6 +77,7 @@ _HOMES = {  # names of this package by the modules that hold them
     "contact.laws": "Law law_of profile_law",
     "contact.speed_law": "SpeedLaw",
     "errors": "InputError PuckError",
+    "export.board_source": "export_board",
     "export.source": "export_source",
     "film.puck_track": "Track",
     "film.track_files": "read_tracks",
@@ -99,16 +102,18 @@ _HOMES = {  # names of this package by the modules that hold them
     "world.scene": "Scene",
     "world.world": "World",
     "world.worlds": "Worlds",
+    "wrench.fence": "Fence",
     "wrench.push": "push",
 }
 
 __all__ = [
-    "Arc", "Base", "Camera", "Constraint", "CurlingLaw", "Drag", "Edge", "Floor", "Force",
+    "Arc", "Base", "Camera", "Constraint", "CurlingLaw", "Drag", "Edge", "Fence", "Floor", "Force",
     "Grip", "InputError", "Lateral", "Launch", "Law", "Line", "Normal", "Orthotropic", "Patch",
     "Plastic", "Pocket", "Post", "PowerLaw", "Puck", "PuckError", "RestitutionTable", "Rim",
     "Scene", "SpeedLaw", "StribeckLaw", "Strips", "Table", "Track", "Uniform", "Viscoelastic",
     "Wall", "World", "Worlds", "__version__", "chetaev", "compare", "contact", "errors",
-    "export_source", "fisher", "fit", "floor_friction", "law_of", "motion", "path_along",
+    "export_board", "export_source", "fisher", "fit", "floor_friction", "law_of", "motion",
+    "path_along",
     "profile_law", "push", "read_tracks", "reference_case", "resultants", "results",
     "state_arrays", "states", "stop", "stop_arrays", "table_for", "warm_up",
 ]  # fmt: skip

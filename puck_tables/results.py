@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from puck_tables._core.lazy import lazily
 
 if TYPE_CHECKING:
+    from puck_tables.export.board_source import BoardSource
     from puck_tables.export.source import Source
     from puck_tables.fitting.fit_result import Fit
     from puck_tables.fitting.forecast import Forecast
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
     from puck_tables.wrench.surface import LimitSurface
 
 _HOMES = {  # by the modules that hold them
+    "export.board_source": "BoardSource",
     "export.source": "Source",
     "fitting.fit_result": "Fit",
     "fitting.forecast": "Forecast",
@@ -60,7 +62,7 @@ _HOMES = {  # by the modules that hold them
 }
 
 __all__ = [
-    "Aim", "Answer", "BoardAim", "CheckReport", "Comparison", "Fit", "FloorFriction",
+    "Aim", "Answer", "BoardAim", "BoardSource", "CheckReport", "Comparison", "Fit", "FloorFriction",
     "Forecast", "Hold", "LimitSurface", "Map", "Push", "Result", "Run", "Sample", "Source",
     "States", "StopMap", "StopSample", "Stops", "Trajectory",
 ]  # fmt: skip

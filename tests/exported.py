@@ -16,7 +16,10 @@ import pytest
 import puck_tables as pt
 from puck_tables.export.source import export_source
 
-WIDTHS = {"stop": (6, 5), "state": (7, 6), "turn": (6, 1), "resultants": (2, 3)}
+WIDTHS = {
+    "stop": (6, 5), "state": (7, 6), "turn": (6, 1), "resultants": (2, 3), "wrench": (4, 3),
+    "step": (8, 6),
+}  # fmt: skip
 Run = Callable[[str, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 

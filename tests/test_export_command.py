@@ -29,6 +29,17 @@ def test_a_file_is_written_whole(tmp_path: Path, language: str, name: str):
     assert CliRunner().invoke(main, [*options, "--overwrite"]).exit_code == 0
 
 
+def test_a_base_has_its_wrench_in_a_file(tmp_path: Path):
+    path = tmp_path / "box.js"
+    options = ["export", "--language", "js", "--base", "box:20cmx10cm", "-o", str(path)]
+    done = CliRunner().invoke(main, [*options, "--what", "wrench"])
+    assert done.exit_code == 0
+    source = pt.export_source("js", "wrench", puck=pt.Puck(base="box:0.2x0.1"))
+    assert path.read_text() == source.text
+    refused = CliRunner().invoke(main, [*options, "--overwrite"])
+    assert refused.exit_code != 0 and "what is exported is 'wrench'" in refused.stderr
+
+
 @pytest.mark.parametrize(
     ("options", "words"),
     [

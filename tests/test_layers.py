@@ -38,7 +38,7 @@ ROOMS = {
     "fitting": "_core _version accuracy contact errors film io kernels motion puck result "
     "stopping table trajectory",
     "autodiff": "contact errors stopping",
-    "export": "_core _version contact errors puck stopping",
+    "export": "_core _version contact errors kernels puck scene stopping world",
     "explore": "export",
     "warming": "bulk kernels puck scene world",
     "reference": "_core errors film io motion result scene trajectory world",
@@ -46,7 +46,7 @@ ROOMS = {
     "table world",
     "report": "_core accuracy bulk fitting io motion reference scene stopping table tradeoff "
     "trajectory world",
-    "plot": "_core _version accuracy bulk chetaev errors film fitting io motion reference "
+    "plot": "_core _version accuracy bulk chetaev errors export film fitting io motion reference "
     "result scene stopping tradeoff trajectory world wrench",
     "gym": "_core contact errors plot puck scene world",
     "cli": "_core _version accuracy bulk chetaev contact errors explore export film fitting io "
@@ -58,10 +58,12 @@ ROOMS = {
 }
 DOORS = {
     "numba": {
+        "kernels.ahead",
         "kernels.register_blocks",
         "kernels.compiled",
         "kernels.kept_code",
         "kernels.linking",
+        "kernels.memory_image",
         "kernels.on_demand",
         "kernels.numba_settings",
         "kernels.quick_compiler",
@@ -69,6 +71,8 @@ DOORS = {
         "kernels.vectors",
     },
     "llvmlite": {
+        "kernels.ahead",
+        "kernels.memory_image",
         "kernels.kept_code",
         "kernels.linking",
         "kernels.on_demand",

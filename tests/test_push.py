@@ -167,7 +167,7 @@ def test_how_pushes_end(tmp_path):
     [
         (lambda p: pt.push(p, (0.0, 0.0), (1.0, 0.0), 0.3), "from the outline of the base"),
         (lambda p: pt.push(p, (-0.1, 0.05), (1.0, 0.0), 0.3), "at a corner"),
-        (lambda p: pt.push(p, (-0.1, 0.0), (0.0, 0.0), 0.3), "velocity of the finger is 0"),
+        (lambda p: pt.push(p, (-0.1, 0.0), (0.0, 0.0), 0.3), "velocity of what pushes is 0"),
         (lambda p: pt.push(p, (-0.1, 0.0), (1.0, 0.0), -0.3), "must not be negative"),
         (lambda p: pt.push(p, (-0.1, 0.0), (1.0, math.nan), 0.3), "velocity"),
         (lambda p: pt.push(p, (-0.1, 0.0), (1.0, 0.0), 0.3, duration=-1.0), "duration"),

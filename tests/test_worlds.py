@@ -437,3 +437,13 @@ def test_what_cannot_end_is_refused_by_its_board():
     with pytest.raises(pt.InputError, match=r"board 1: a puck still moves after .* give a time"):
         worlds.advance(math.inf)
     assert worlds.time.tolist() == [0.0] * 3
+
+
+def test_boards_that_push_are_played_together(monkeypatch: pytest.MonkeyPatch):
+    """A row without rebounds, struck: groups push in the same call, with the bits of World."""
+    monkeypatch.setattr(pt.Worlds, "_play_alone", None)
+    row = [puck_at(0.0605 * k, 0.0, restitution=0.0) for k in range(3)]
+    pair = Pair(pt.Scene(pucks=row, walls=cushions()), 3)
+    assert pair.strike(0, np.arange(3), np.tile([1.2, 0.0], (3, 1)), None)
+    assert pair.advance(math.inf)
+    assert all(world.groups > 0 for world in pair.single)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -38,6 +39,7 @@ _LAUNCHES: Sequence[tuple[float, ...]] = (
 )
 _SHARES = (0.0, 0.1, 0.5, 0.9, 0.99)  # of the stop time
 _ANGLES = (-0.5 * math.pi, -0.25 * math.pi, -0.3, 0.0, 0.8, 1.4)
+_GIVEN = {"stop": 6, "state": 7, "turn": 6, "resultants": 2, "wrench": 4, "step": 3}  # numbers
 _HEIGHTS = (0.0, 1.0)  # dimensionless: both ends of the tables
 
 
@@ -50,12 +52,15 @@ def cases_of(functions: Sequence[str], tol: float, kind: Puck | None = None) -> 
     tol : of it; numbers have as many digits as tell it
     kind : whose pressure law and gyration; default: homogeneous, under uniform pressure
     """
-    made = {"stop": _stops, "state": _states, "turn": _turns, "resultants": _resultants}
+    made = {
+        "stop": _stops, "state": _states, "turn": _turns, "resultants": _resultants,
+        "wrench": _wrenches, "step": _steps,
+    }  # fmt: skip
     digits = round(-math.log10(tol)) + 2
     cases = {}
     for name in functions:
         rows = made[name](Puck(radius=1.0) if kind is None else kind)
-        given = {"stop": 6, "state": 7, "turn": 6, "resultants": 2}[name]
+        given = _GIVEN[name]
         cases[name] = rows.shape[1], tuple(
             value if n < given else float(f"{value:.{digits}g}")
             for row in rows.tolist() for n, value in enumerate(row)
@@ -137,3 +142,27 @@ def _resultants(puck: Puck) -> FloatArray:
     else:
         rho = moment_balance(integrals(phi), slip_direction(phi), share)
     return np.column_stack([phi, share, *rho])
+
+
+def _slips(puck: Puck) -> FloatArray:
+    """Vx, vy and spin of launches of a base: about places in it, on its rim, far away."""
+    spins = np.array([0.0, 1e-3, 0.3, -1.0, 2.0, -9.0, 1e3])
+    ways = np.exp(1j * np.arange(spins.size))
+    return np.column_stack([ways.real, ways.imag, np.round(spins / puck.gyration, 6)]).round(6)
+
+
+def _wrenches(puck: Puck) -> FloatArray:
+    slips = _slips(puck)
+    angles = np.round(0.7 * np.arange(len(slips)), 6)
+    unit = replace(puck, friction=1.0, mass=1.0, gravity=1.0)
+    found = unit.wrench(slips[:, :2], slips[:, 2], angles)
+    return np.column_stack([slips, angles, found.force, found.torque])
+
+
+def _steps(puck: Puck) -> FloatArray:
+    rows, unit = [], replace(puck, friction=0.1, gravity=10.0)
+    for vx, vy, spin in _slips(puck)[1:5].tolist():
+        run = unit.simulate((vx, vy), spin, times=[0.5], tol=1e-10)
+        there = (run.x, run.y, run.orientation, run.vx, run.vy, run.spin)
+        rows.append([vx, vy, spin, *(float(one[0]) for one in there)])
+    return np.array(rows)

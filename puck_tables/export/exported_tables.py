@@ -9,7 +9,7 @@ from math import factorial
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.errors import AccuracyError
+from puck_tables.errors import AccuracyError, InputError
 from puck_tables.export.compact_tables import (
     SplineFit,
     fit_constants,
@@ -18,6 +18,7 @@ from puck_tables.export.compact_tables import (
     spline_fits,
 )
 from puck_tables.export.law_values import REACH, LawValues, law_values
+from puck_tables.export.program.polygon_motion import BASE_RULE
 from puck_tables.puck import Puck
 from puck_tables.stopping.axes import height_polynomials
 from puck_tables.stopping.stop_table import StopTable
@@ -93,6 +94,36 @@ def _fit_within(
         polynomials = height_polynomials(of_heights, len(of_heights)).T
         result["CONSTANTS"] = fit_constants(polynomials, _LAW_CONSTANT * tol)
     return result
+
+
+def base_tables(kind: Puck) -> Tables:
+    """The sides of a base, which is a flat polygon under uniform pressure.
+
+    Raises
+    ------
+    InputError
+        If it is no such base.
+    """
+    shape = kind.shape
+    if shape is None or shape.discs or not shape.is_centred or kind.height > 0.0:
+        raise InputError(
+            "wrench and step are exported of polygons with the centre of mass in the middle and "
+            "height = 0, as base='box:0.2x0.1'"
+        )
+    sides: list[float] = []
+    for outline in shape.outlines:
+        for one, two in zip(outline, outline[1:] + outline[:1], strict=True):
+            way = np.subtract(two, one)
+            length = float(np.hypot(*way))
+            sides += [*np.subtract(one, shape.middle).tolist(), *(way / length).tolist(), length]
+    nodes, weights = np.polynomial.legendre.leggauss(BASE_RULE)
+    tables: dict[str, Sequence[float]] = {
+        "BASE_SIDES": sides, "BASE_NODES": nodes.tolist(), "BASE_WEIGHTS": weights.tolist(),
+    }  # fmt: skip
+    return tables, {
+        "BASE_COUNT": len(sides) // 5, "BASE_AREA": shape.area, "BASE_FARTHEST": shape.reach,
+        "BASE_SQUARE": kind.gyration**2,
+    }  # fmt: skip
 
 
 def _written(

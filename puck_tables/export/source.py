@@ -17,15 +17,22 @@ from puck_tables._core.safe_write import write_bytes
 from puck_tables._version import __version__
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.export.check_vectors import cases_of
-from puck_tables.export.exported_tables import law_tables, plain_tables
+from puck_tables.export.exported_tables import base_tables, law_tables, plain_tables
 from puck_tables.export.languages import LANGUAGES
 from puck_tables.export.licence import LICENCE
-from puck_tables.export.program import law_motion, plain_motion, resultant_formulas, self_check
+from puck_tables.export.program import (
+    law_motion,
+    plain_motion,
+    polygon_motion,
+    resultant_formulas,
+    self_check,
+)
 from puck_tables.puck import Puck
 
 FINEST, COARSEST = 1e-9, 1e-2  # of Q/(fg), Q²/(fg): as fine as the stop table; looser is no answer
 PARTS = {  # what can be asked for, and the functions of it that its user calls
     "stop": ("stop",), "state": ("stop", "state", "turn"), "resultants": ("resultants",),
+    "wrench": ("wrench", "step"),
 }  # fmt: skip
 
 
@@ -52,7 +59,7 @@ class Source:
 
     def __repr__(self) -> str:
         size = len(self.text.encode())
-        of = f", {self.kind}, delta <= {self.tallest:g}" if self.kind else ""
+        of = f", {self.kind}, {_heights(self.tallest)}" if self.kind else ""
         return f"Source({self.language}, {', '.join(self.what)} to {self.tol:g}{of}, {size} bytes)"
 
     def save(self, path: str | Path, overwrite: bool = False) -> None:
@@ -95,7 +102,8 @@ def export_source(
     ----------
     language : 'c', 'js' or 'python'
     what : 'stop' (where and when a launch stops), 'state' (states at any time, the turn of the
-        heading, and stop), 'resultants' (of friction), or some of them
+        heading, and stop), 'resultants' (of friction), or some of them; of a puck on a base, which
+        is a flat polygon about its middle, 'wrench' (of friction; and a step of its motion)
     tol : float
         Largest error, in units of Q/(fg) (times), Q²/(fg) (places), Q²/(fg r) (body angle), Q
         (velocity), Q/r (spin) and 1 (turn of the heading), Q = hypot(v, rω) of the launch; 1e-9 to
@@ -142,6 +150,12 @@ def export_source(
     parts = checked_request(language, what, tol)
     instance("puck", puck, Puck, type(None))
     kind = Puck(radius=1.0) if puck is None else puck
+    if kind.shape is not None or "wrench" in parts:
+        if parts != ("wrench",):
+            raise InputError("of a puck on a base what is exported is 'wrench', and only of one")
+        tables, constants = base_tables(kind)
+        text = _text(language, parts, float(tol), kind, tables, constants)
+        return Source(text, language, parts, float(tol), _words(kind), 0.0)
     of = plain_tables if kind.body.has_closed_forms else partial(law_tables, kind)
     tables, constants = of(parts, float(tol))
     tallest, words = float(constants["TALLEST"]), _words(kind)
@@ -198,8 +212,10 @@ def _text(
     constants: Mapping[str, float],
 ) -> str:  # fmt: skip
     """The whole file."""
-    language, by_law = LANGUAGES[key], not kind.body.has_closed_forms
-    modules = [plain_motion, resultant_formulas, *([law_motion] if by_law else []), self_check]
+    language, based = LANGUAGES[key], kind.shape is not None
+    by_law = not based and not kind.body.has_closed_forms
+    more = [polygon_motion] if based else [law_motion] if by_law else []
+    modules = [plain_motion, resultant_formulas, *more, self_check]
     public = list(dict.fromkeys(name for part in parts for name in PARTS[part]))
     functions = {node.name: node for module in modules for node in _functions(module)}
     functions["self_test"] = _self_test(public)
@@ -213,7 +229,7 @@ def _text(
     }  # fmt: skip
     numbers["TOLERANCE"] = tol
     arrays: dict[str, Sequence[float]] = {}
-    for name, (width, values) in cases_of(public, tol, kind if by_law else None).items():
+    for name, (width, values) in cases_of(public, tol, kind if by_law or based else None).items():
         arrays[f"{name.upper()}_CASES"] = values
         numbers[f"{name.upper()}_COUNT"] = len(values) // width
     arrays |= tables
@@ -223,7 +239,7 @@ def _text(
     used = {
         one.id for node in functions.values() for one in ast.walk(node) if isinstance(one, ast.Name)
     }  # fmt: skip
-    title = _title(language.title, parts, tol, public, kind, constants["TALLEST"])
+    title = _title(language.title, parts, tol, public, kind, constants.get("TALLEST", 0.0))
     pieces = [
         language.comment([*title, "", *LICENCE.splitlines()]),
         language.head([*public, "self_test"]),
@@ -273,15 +289,22 @@ def _title(
         f"puck-tables {__version__}: {', '.join(parts)} of flat pucks that slide and spin under "
         "dry friction.",
         f"{language}; error {tol:g} (see each function); {of},",
-        f"0 <= delta <= {tallest:.12g}.",
+        f"{'0 <= ' if tallest > 0.0 else ''}{_heights(tallest)}.",
         f"Functions: {', '.join(public)}; self_test returns how many numbers of its vectors are",
         "missed: 0.  Needs IEEE arithmetic (no -ffast-math).  Made by a program: do not edit.",
     ]
 
 
+def _heights(tallest: float) -> str:
+    """Up to which δ a file holds, in words."""
+    return f"delta <= {tallest:.12g}" if tallest > 0.0 else "flat"
+
+
 def _words(kind: Puck) -> str:
-    """Pressure and gyration, in letters that no language takes for the end of a comment."""
-    return re.sub(r"[^\w .,:=/+-]|\*/", "_", kind.body.kind, flags=re.ASCII)
+    """What it is, in letters that no language takes for the end of a comment."""
+    base = kind.shape
+    words = kind.body.kind if base is None else f"base {base.name}, k = {kind.gyration:.9g} m"
+    return re.sub(r"[^\w .,:=/+-]|\*/", "_", words, flags=re.ASCII)
 
 
 def _functions(module: ModuleType) -> list[ast.FunctionDef]:

@@ -165,12 +165,12 @@ COLUMNS = {
     "normal_x": Column("1", "normal, force x", "outward normal in (F_x, F_y, M/l), part along F_x"),
     "normal_y": Column("1", "normal, force y", "outward normal in (F_x, F_y, M/l), part along F_y"),
     "normal_torque": Column("1", "normal, torque", "part of it along M/l, l = r, of a base k"),
-    # a push by a finger
-    "push_x": Column("N", "push x", "force of the finger along x"),
-    "push_y": Column("N", "push y", "force of the finger along y"),
-    "finger_x": Column("m", "finger x", "place of the finger along x"),
-    "finger_y": Column("m", "finger y", "place of the finger along y"),
-    "touch": Column("", "contact", "what the finger does"),
+    # a push by a finger or a fence
+    "push_x": Column("N", "push x", "force of what pushes along x"),
+    "push_y": Column("N", "push y", "force of what pushes along y"),
+    "finger_x": Column("m", "finger x", "place of that force along x"),
+    "finger_y": Column("m", "finger y", "place of that force along y"),
+    "touch": Column("", "contact", "what the finger or the fence does"),
     # a point on a wavy support
     "held_speed": Column("m/s", "speed V", "speed held along the support"),
     "crude": Column("N", "Coulomb's force", "Coulomb's force, load times a/b"),

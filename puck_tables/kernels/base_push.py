@@ -18,7 +18,8 @@ from puck_tables.kernels.base_hessian import grip_slopes
 from puck_tables.kernels.base_twist import base_twist
 from puck_tables.kernels.compile import inner, kernel, patience
 
-STICKS, LEFT, RIGHT, APART, UNKNOWN = range(5)
+STICKS, LEFT, RIGHT, APART = range(4)
+UNKNOWN = -1  # no slip was found
 _STEPS = 200  # of a search; Newton's steps are 3 to 8, what brackets and halves is the rest
 _GOOD = 1e-15  # of f N times the reach
 _WRONG = 1e-9  # of the speed: a finger that slides against its friction by more is no push

@@ -123,6 +123,8 @@ def _compiling(door: KernelDoor) -> Iterator[None]:
 
 def type_at(door: KernelDoor) -> Any:
     """What a kernel that Python calls is to those that call it."""
+    if linked_at_doors is not None and not linked_at_doors.has_doors:
+        return types.Dispatcher(dispatcher_of(door.py_func, door.fuses))
     if not (door.returns and linked_at_doors and kept_code):  # numba's cache keeps no cells
         return types.Dispatcher(door.compiled)
     if door not in _late:
@@ -169,7 +171,7 @@ def _type_of_function(function: Any, purpose: Any) -> Any:
 def dispatcher_of(function: Any, fuses: bool) -> Any:
     """Numba's object for a kernel that only kernels call."""
     if (function, fuses) not in _dispatchers:
-        made = _dispatcher(function, fuses, door=False, pasted=behind[function])
+        made = _dispatcher(function, fuses, door=False, pasted=behind.get(function, False))
         made.get_call_template = partial(_whatever_its_value, made.get_call_template)
         if linked_at_doors:
             made._insert = _not_entered

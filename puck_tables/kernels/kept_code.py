@@ -58,9 +58,8 @@ class KeptCode:
         for path, key in self._places(sig, target_context.codegen()):
             # not there, or whatever numba's objects raise
             with contextlib.suppress(Exception):
-                kept = path.read_bytes()
-                content = kept[_DIGEST:]
-                if hashlib.sha256(content).digest() != kept[:_DIGEST]:
+                content = read_sealed(path)
+                if content is None:
                     continue
                 kept_key, calls, payload = serialize.loads(content)
                 if kept_key != key:
@@ -83,8 +82,7 @@ class KeptCode:
         key = self._key(sig, data.codegen.magic_tuple())
         path = self._path(folder, key)
         content = _dumps((key, getattr(data.library, "calls", ()), data._reduce()))
-        with contextlib.suppress(OSError):
-            _write(path, hashlib.sha256(content).digest() + content)
+        write_sealed(path, content)
 
     def _places(self, sig: Any, codegen: Any) -> Iterator[tuple[Path, tuple[str, ...]]]:
         """Where it may be, and what is written there: this user's folder, then what came along."""
@@ -158,8 +156,22 @@ def _leave_out_blas() -> None:
         linalg.ensure_blas = found
 
 
+def read_sealed(path: Path) -> bytes | None:
+    """What a file holds, None where it is not there or not as it was written."""
+    try:
+        kept = path.read_bytes()
+    except OSError:
+        return None
+    return kept[_DIGEST:] if hashlib.sha256(kept[_DIGEST:]).digest() == kept[:_DIGEST] else None
+
+
+def write_sealed(path: Path, content: bytes) -> None:
+    """A whole file, or none where the disk is full; two processes may write the same at once."""
+    with contextlib.suppress(OSError):
+        _write(path, hashlib.sha256(content).digest() + content)
+
+
 def _write(path: Path, content: bytes) -> None:
-    """A whole file or none; two processes may write the same at once."""
     descriptor, name = tempfile.mkstemp(dir=path.parent, prefix=".", suffix=".part")
     try:
         with open(descriptor, "wb") as file:

@@ -125,10 +125,12 @@ class QuickOptions(Options):  # type: ignore[misc]
 class LinkedAtDoors(AnyCompiler):  # type: ignore[misc]
     """numba's compiler, with these libraries."""
 
+    library, has_doors = Pasted, True
+
     def compile_extra(self, function: Any) -> Any:
         """Compile a function for one signature."""
         self.state.flags = QuickOptions(self.state.flags)
-        kind = Pasted if self.state.flags.no_cpython_wrapper else Behind
+        kind = self.library if self.state.flags.no_cpython_wrapper else Behind
         codegen = self.state.targetctx.codegen()
         self.state.library = kind(codegen, function.__qualname__)
         self.state.library.enable_object_caching()

@@ -84,7 +84,13 @@ def save_movie(result: TimedResult, path: str | Path, overwrite: bool = False) -
 
 def page(film: Animation) -> str:
     """One HTML page with the film in it: it loads nothing and needs no server."""
-    template = (files("puck_tables.plot") / "movie.html").read_text(encoding="utf-8")
+    folder = files("puck_tables.plot")
+    return with_film((folder / "movie.html").read_text(encoding="utf-8"), film)
+
+
+def with_film(template: str, film: Animation) -> str:
+    """A page that draws boards, with all that is shown of one written into it."""
+    drawing = (files("puck_tables.plot") / "board_drawing.js").read_text(encoding="utf-8")
     shades = [
         {"corners": shade.corners, "centre": shade.centre, "radius": shade.radius,
          "colour": "#" + "".join(f"{round(255 * part):02x}" for part in shade.colour)}
@@ -101,7 +107,7 @@ def page(film: Animation) -> str:
     text = json.dumps(shown, allow_nan=False, separators=(",", ":"))
     # what a name or a title says never ends the script
     text = text.replace("<", "\\u003c").replace(">", "\\u003e")
-    return template.replace("/*film*/null", text)
+    return template.replace("/*drawing*/", drawing).replace("/*film*/null", text)
 
 
 def _title(film: Animation) -> str:

@@ -1,4 +1,4 @@
-"""The picture of a push: outlines of the puck on its way, the finger, its force."""
+"""The picture of a push: outlines of the puck on its way, the finger or fence, its force."""
 
 from __future__ import annotations
 
@@ -44,9 +44,14 @@ def draw_on(axes: Axes, run: Push) -> None:
         for part in placed(outline_of(run.puck), *there):
             closed = np.append(part, part[:1], axis=0)
             axes.plot(*closed.T, color=BLUE if n == chosen[-1] else GREY)
+        if run.fence is not None:
+            face = np.array([-np.sin(run.fence.facing), np.cos(run.fence.facing)])
+            half = min(0.5 * run.fence.width, 1.5 * run.puck.radius)
+            place = np.array([run.fence_x[n], run.fence_y[n]])
+            axes.plot(*(np.outer([-half, half], face) + place).T, color=ORANGE, linewidth=1.4)
     axes.plot(run.x, run.y, color=BLUE, linewidth=0.9, label="centre of mass")
     axes.plot(run.finger_x, run.finger_y, color=ORANGE, marker="o", markevery=chosen.tolist(),
-              label="finger")  # fmt: skip
+              label="where it is pushed")  # fmt: skip
     axes.quiver(
         run.finger_x[chosen], run.finger_y[chosen], run.push_x[chosen], run.push_y[chosen],
         color=ORANGE, angles="xy", scale_units="xy", scale=unit / (_LENGTH * run.puck.radius),

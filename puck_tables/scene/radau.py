@@ -12,10 +12,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import allocating, inlined
+from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.scene.blade_axes import rates_in_step
 from puck_tables.scene.equations import FIRST, SECOND, SIZE, settling_rates, slip_speed, stopping
 from puck_tables.scene.friction import SPIN, VX, X
@@ -32,6 +31,7 @@ _C = _A.sum(axis=1)
 _ERROR = np.array([-13 - 7 * _ROOT, -13 + 7 * _ROOT, -1.0]) / 3.0
 _MU = 3.0 + 3.0 ** (2 / 3) - 3.0 ** (1 / 3)
 _STIFF = 3  # vx, vy, spin
+RADAU_ROWS = 13 + 3 * _STIFF  # of what a step works in, the last for the matrix of Newton's method
 _LEAST = 0.1  # of the slip: that a step leaves, as Newton's iteration foresees it
 _NUDGE = 1e-7  # of the slip: of the differences
 _ITERATIONS = 12  # of Newton's method: beyond, the step is shortened
@@ -43,7 +43,7 @@ _SURE = 1e-6  # of it: how well the stages are known
 
 
 @inlined
-def _factored(matrix: FloatArray, order: npt.NDArray[np.int64]) -> bool:
+def _factored(matrix: FloatArray, order: FloatArray) -> bool:
     """LU with row pivoting in place; whether it can be solved."""
     size = matrix.shape[0]
     for k in range(size):
@@ -63,10 +63,11 @@ def _factored(matrix: FloatArray, order: npt.NDArray[np.int64]) -> bool:
 
 
 @inlined
-def _solve(matrix: FloatArray, order: npt.NDArray[np.int64], b: FloatArray) -> None:
+def _solve(matrix: FloatArray, order: FloatArray, b: FloatArray) -> None:
     size = matrix.shape[0]
     for k in range(size):
-        b[k], b[order[k]] = b[order[k]], b[k]
+        best = int(order[k])
+        b[k], b[best] = b[best], b[k]
     for i in range(size):
         for j in range(i):
             b[i] -= matrix[i, j] * b[j]
@@ -104,18 +105,19 @@ def _stiffer(phase: Phase, h: float, y: FloatArray, work: FloatArray) -> float:
     return (damps + turns / later) / (damps + turns / q)
 
 
-@allocating
+@kernel
 def radau_step(
     phase: Phase, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
     new: FloatArray,
 ) -> float:  # fmt: skip
     """A step from (t, y) over h into ``new``; its error in ``scale``.
 
-    inf: Newton's iteration did not converge.  On entry work[0] is dy/dt at t.
+    inf: Newton's iteration did not converge.  On entry work[0] is dy/dt at t; its other rows,
+    RADAU_ROWS in all, are to work in.
     """
-    rows, z, at = np.empty((3, work.shape[1])), np.empty((3, SIZE)), np.empty(SIZE)
-    jacobian, step = np.empty((_STIFF, _STIFF)), np.empty(3 * _STIFF)
-    matrix, order = np.empty((3 * _STIFF, 3 * _STIFF)), np.empty(3 * _STIFF, np.int64)
+    rows, z, at = work[1:4], work[4:7], work[7]
+    jacobian, step, order = work[8:11], work[11, : 3 * _STIFF], work[12]
+    matrix = work[13:RADAU_ROWS, : 3 * _STIFF]
     _jacobian(phase, t, y, at, rows, jacobian)
     for stage in range(3):
         stiffer = h * _stiffer(phase, _C[stage] * h, y, work)
@@ -134,7 +136,8 @@ def radau_step(
     friction, body = phase.friction, phase.model.body
     brakes = abs(h) * friction.load / (body.mass * slip_scale)
     rounding = _ROUNDING + _NOISE * brakes
-    new[:] = math.nan
+    for i in range(SIZE):
+        new[i] = math.nan
     for iteration in range(_ITERATIONS):
         for stage in range(3):
             for i in range(SIZE):
@@ -177,19 +180,18 @@ def radau_step(
         return math.inf
     for i in range(SIZE):
         new[i] = y[i] + z[2, i]
-    matrix, order = matrix[:_STIFF, :_STIFF], order[:_STIFF]
+    matrix = matrix[:_STIFF, :_STIFF]
     return _error(phase, h, y, scale, work, z, new, jacobian, matrix, order, step[:_STIFF])
 
 
 @inlined
 def _error(
     phase: Phase, h: float, y: FloatArray, scale: FloatArray, work: FloatArray, z: FloatArray,
-    new: FloatArray, jacobian: FloatArray, matrix: FloatArray, order: npt.NDArray[np.int64],
-    b: FloatArray,
+    new: FloatArray, jacobian: FloatArray, matrix: FloatArray, order: FloatArray, b: FloatArray,
 ) -> float:  # fmt: skip
     """In ``scale``, and of velocities also against the slip that is left.
 
-    Worked out in ``matrix`` (3, 3), ``order`` (3,) and ``b`` (3,).
+    Worked out in ``matrix`` (3, 3), ``order`` and ``b`` (3,).
     """
     for i in range(_STIFF):
         for j in range(_STIFF):

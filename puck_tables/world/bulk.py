@@ -205,20 +205,20 @@ def _scales(engine: Engine, first: FloatArray, discs: Whole, launches: FloatArra
     return scales_of(engine, np.maximum(slowest, slips.max(axis=1, initial=0.0)))
 
 
-def own_engine(engine: Engine, rows: int, more: int = 0) -> Engine:
+def own_engine(engine: Engine, rows: int, more: int = 0, pushed: int = 0) -> Engine:
     """A copy to run on, with so many rows for events and segments; for paths if there are any.
 
-    ``more``: rows for paths beside these.
+    ``more``: rows for paths beside these; ``pushed``: of groups that push.
     """
-    paths = more + (rows + LONGEST if engine.floors[:, 2].any() else 0)
-    pieces = np.zeros((paths, PIECE_COLUMNS))
+    works = pushed + (rows + LONGEST if engine.floors[:, 2].any() else 0)
+    pieces = np.zeros((more + works, PIECE_COLUMNS))
     return engine._replace(
         regions=engine.regions._replace(floor_map=engine.regions.floor_map.copy()),
         discs=engine.discs.copy(), hangs=engine.hangs.copy(), clock=np.zeros(1),
         kinds=engine.kinds.copy(),
         segments=engine.segments.copy(), group=engine.group.copy(), held=engine.held.copy(),
         next_time=engine.next_time.copy(), next_partner=engine.next_partner.copy(),
-        pieces=np.vstack([engine.pieces, pieces]), work_rows=np.zeros((paths - more, WORK_COLUMNS)),
+        pieces=np.vstack([engine.pieces, pieces]), work_rows=np.zeros((works, WORK_COLUMNS)),
         events=np.zeros((rows, engine.events.shape[1])),
         history=np.zeros((rows, engine.history.shape[1])), counts=engine.counts.copy(),
         scale=engine.scale.copy(),

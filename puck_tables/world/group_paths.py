@@ -12,7 +12,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
-from puck_tables.world.engine_state import N_CONTACTS, Engine, Whole
+from puck_tables.world.engine_state import Engine, Whole
 from puck_tables.world.floor_under import moves_along
 from puck_tables.world.group import (
     APART,
@@ -62,9 +62,9 @@ class Workplace(NamedTuple):
     buffer: GroupBuffer
 
 
-def workplace_for(engine: Engine) -> Workplace:
-    """The place to set up the groups that push now."""
-    n, contacts = len(engine.discs), int(engine.counts[N_CONTACTS])
+def workplace_for(engine: Engine, contacts: int) -> Workplace:
+    """The place to set up groups that push, with so many contacts."""
+    n = len(engine.discs)
     group = Group(
         engine.discs, engine.obstacles, engine.regions, engine.surface, engine.rims,
         np.zeros((n, PIECE_COLUMNS)), np.zeros((n, 2), np.int64), engine.forcing, engine.spans,

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from puck_tables.kernels.compile import inlined, inner, kernel
+from puck_tables.kernels.compile import inlined, inner, on_demand
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.world.contact_row import ACTS, NX, NY
 from puck_tables.world.engine_state import (
@@ -58,7 +58,7 @@ LOST_SHARE = 1e-15  # of the energy of free pucks: less lost as rims grip is rou
 _PRESSES, _PRESSED = 1.0, 2.0  # ACTS of a contact: now, and before already
 
 
-@kernel
+@on_demand("int64")
 def push_on(engine: Engine, room: Room, place: Workplace) -> int:
     """Send the groups that push now on their way; marks say who is left to fly alone.
 

@@ -209,17 +209,21 @@ def prescribed_until(engine: Engine) -> float:
 
 def longest_of(engine: Engine, scales: FloatArray) -> FloatArray:
     """LONG times what the least friction takes at such scales of speed and acceleration, s."""
+    slowness, pushed, drags = braking_of(engine)
+    times = np.maximum(slowness * (scales[:, 0] + pushed), scales[:, 0] / scales[:, 1])
+    return LONG * np.maximum(times, drags)
+
+
+def braking_of(engine: Engine) -> tuple[float, float, float]:
+    """How long the least friction takes over a speed, s²/m, what forces add to it, m/s; drag, s."""
     free = engine.discs[engine.discs[:, LIGHTNESS] > 0.0]
     decels = engine.floors[:, 0]
     brakes = _brakes(engine)
     brakes = brakes[(decels > 0.0) & (brakes > _SLOWEST * decels.max())]
     arms = free[:, LIGHTNESS] / (free[:, TURNABILITY] * free[:, RADIUS] ** 2)  # k²
-    fast = scales[:, 0] + float(_pushed(engine).max())
-    times = float((2.0 * arms).max(initial=1.0)) * fast / float(brakes.min(initial=math.inf))
+    slowness = float((2.0 * arms).max(initial=1.0)) / float(brakes.min(initial=math.inf))
     drags = free[free[:, DRAG + SLIDING] > 0.0, DRAG + SLIDING]
-    times = np.maximum(times, scales[:, 0] / scales[:, 1])
-    times = np.maximum(times, float((1.0 / drags).max(initial=0.0)))
-    return LONG * times
+    return slowness, float(_pushed(engine).max()), float((1.0 / drags).max(initial=0.0))
 
 
 def _brakes(engine: Engine) -> FloatArray:

@@ -55,6 +55,7 @@ from puck_tables.scene.ingredients import (
 )
 from puck_tables.scene.moments import NOTHING, REST, first_event_on, goes_straight, lost, rests_on
 from puck_tables.scene.over_time import rows_passed
+from puck_tables.scene.radau import RADAU_ROWS
 from puck_tables.scene.standstill import from_standstill
 from puck_tables.scene.step_size import follow_scales, up_to_the_stop
 from puck_tables.scene.steps import accelerations, step
@@ -116,7 +117,7 @@ _WORK = 0.144  # and of one of degree four that is wrong by d in its first deriv
 class LoneBuffer(NamedTuple):
     """Where to work: rows of one array, for each array that comes from Python costs its call.
 
-    Rates of the stages of a step (13, 12), and at its start and end (2, 12) and middle (1, 12);
+    Rates of the stages of a step (22, 12), and at its start and end (2, 12) and middle (1, 12);
     states at its start, its end and in between (12,); scales of a state; a place on a piece; powers
     at the start, the energies of a step, powers at its end, and the energies half way (4, …).
     """
@@ -133,16 +134,16 @@ class LoneBuffer(NamedTuple):
 
 
 # rows of a buffer, in the order of its arrays
-_ENDS, _MIDDLE, _STATES = STAGES, STAGES + 2, STAGES + 3
+_ENDS, _MIDDLE, _STATES = RADAU_ROWS, RADAU_ROWS + 2, RADAU_ROWS + 3
 _BOOKS = _STATES + 5
 BUFFER_ROWS = _BOOKS + 4
 
 
 @inlined
 def _buffer_on(rows: FloatArray) -> LoneBuffer:
-    """A buffer on rows (25, 12)."""
+    """A buffer on rows (34, 12)."""
     return LoneBuffer(
-        rows[:STAGES], rows[_ENDS:_MIDDLE], rows[_MIDDLE:_STATES], rows[_STATES],
+        rows[:_ENDS], rows[_ENDS:_MIDDLE], rows[_MIDDLE:_STATES], rows[_STATES],
         rows[_STATES + 1], rows[_STATES + 2], rows[_STATES + 3], rows[_STATES + 4],
         rows[_BOOKS:BUFFER_ROWS],
     )  # fmt: skip

@@ -41,7 +41,7 @@ from puck_tables.world.engine_state import (
     Whole,
     led_rows,
 )
-from puck_tables.world.floor_under import lay_down, step_onto
+from puck_tables.world.floor_under import law_goes_to, lay_down, step_onto
 from puck_tables.world.floors import (
     fastest_rim,
     floors_of,
@@ -258,13 +258,18 @@ def scales_of(engine: Engine, speeds: FloatArray) -> FloatArray:
     InputError
         If a puck would slide so far that its places, good to a share of that, mean nothing here.
     """
-    radius = float(engine.discs[:, layout.RADIUS].min())
+    radius, steady = least_scales(engine)
     _refuse_far(engine, float(speeds.max(initial=0.0)), radius)
-    steady = max(float(engine.floors[:, 0].max()), _strongest(engine))
     turning = abs(engine.surface.spin)
     steady = max(steady, turning * float(speeds.max(initial=0.0)), _shaken(engine))
     speeds = np.where(speeds > 0.0, speeds, np.sqrt(steady * radius))
     return np.stack([speeds, np.where(steady > 0.0, steady, speeds**2 / radius)], axis=1)
+
+
+def least_scales(engine: Engine) -> tuple[float, float]:
+    """The least radius, m, and the largest acceleration by friction, slope and forces, m/s²."""
+    radius = float(engine.discs[:, layout.RADIUS].min())
+    return radius, max(float(engine.floors[:, 0].max()), _strongest(engine))
 
 
 def _swiftest(engine: Engine, states: FloatArray) -> float:
@@ -294,14 +299,25 @@ def _refuse_far(engine: Engine, speed: float, radius: float) -> None:
         raise InputError(
             f"a slip of {speed:.3g} m/s is too fast for floating point: use other units"
         )
-    decels = engine.floors[(engine.floors[:, 2] == 0.0) & (engine.floors[:, 0] > 0.0), 0]
-    least = float(decels.min(initial=math.inf))
+    least = _weakest(engine)
     if speed > 0.0 and speed / least > FAR * radius / speed:
         raise InputError(
             f"at a slip of {speed:.3g} m/s and the least friction, {least:.3g} m/s^2, a puck would "
             f"slide some {speed / least * speed:.3g} m, and places are good to 1e-15 of that: use "
             f"speeds up to {math.sqrt(FAR * radius * least):.3g} m/s, more friction, or none at all"
         )
+
+
+def _weakest(engine: Engine) -> float:
+    """The least friction, m/s², of what is looked up; inf: none is."""
+    decels = engine.floors[(engine.floors[:, 2] == 0.0) & (engine.floors[:, 0] > 0.0), 0]
+    return float(decels.min(initial=math.inf))
+
+
+def fastest_allowed(engine: Engine) -> float:
+    """The largest slip, m/s, of which places still mean something, and friction is known."""
+    far = math.sqrt(FAR * least_scales(engine)[0] * _weakest(engine))
+    return min(SWIFTEST, far, law_goes_to(engine.regions))
 
 
 def _strongest(engine: Engine) -> float:

@@ -307,7 +307,7 @@ class Running:
         from puck_tables.world import groups  # compiled where it is needed
         from puck_tables.world.group_paths import workplace_for
 
-        place = workplace_for(self._engine)
+        place = workplace_for(self._engine, int(self._engine.counts[g.N_CONTACTS]))
         while (how := groups.push_on(self._engine, self._room, place)) == FULL:
             self._grow()
         if how != REACHED:

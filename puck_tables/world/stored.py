@@ -18,7 +18,7 @@ from puck_tables.kernels.compile import inlined, inner, kernel, patience
 from puck_tables.scene.friction import VX
 from puck_tables.world.bulk import own_engine
 from puck_tables.world.by_hand import lead
-from puck_tables.world.engine import NOBODY, advance
+from puck_tables.world.engine import NOBODY, THOSE_LEFT, advance
 from puck_tables.world.engine_state import (
     APPROACH,
     AT_X,
@@ -26,6 +26,7 @@ from puck_tables.world.engine_state import (
     LAUNCH_TIME,
     LOST,
     N_AT_ONCE,
+    N_CONTACTS,
     N_EVENTS,
     N_HISTORY,
     N_LAUNCHES,
@@ -43,8 +44,12 @@ from puck_tables.world.engine_state import (
     Engine,
     Whole,
 )
+from puck_tables.world.floor_under import law_goes_to
+from puck_tables.world.group_paths import Workplace, workplace_for
+from puck_tables.world.groups import push_on
 from puck_tables.world.lasting import GOES_ON, ROUND, moves_on, next_target, prescribed_until
 from puck_tables.world.layout import LIGHTNESS, write_over
+from puck_tables.world.lone import LONGEST
 from puck_tables.world.passings import COLUMNS, FROM, LINE, NEXT, SIDE, UNKNOWN, find_passings
 from puck_tables.world.paths import FOR_EVER
 from puck_tables.world.rebounds import MOST_BACK
@@ -61,12 +66,13 @@ from puck_tables.world.segment import (
     state_at,
 )  # fmt: skip
 from puck_tables.world.segment_starts import CONCERNED, NOT_CONCERNED, Room, locate, room_for
-from puck_tables.world.setting_off import FULL, REACHED
+from puck_tables.world.setting_off import FULL, PAUSED, PUSHING, REACHED
 
 LET_GO, LED = -1, -2  # what is done to boards beside an event by hand: time passes; a disc is led
 # how, beside what the engine says
 WAITS, TO_DO, ALONE, LACKS_PIECES = -1, -2, -3, -4
 ROWS = 2048  # of events and segments of a board in one call; beyond them it is played alone
+_PUSHES = 2  # of all its discs at once, in one call; so are more
 FOUND_COLUMNS = 12  # of an event that is told: its board, then as an Event has them
 _FOUND = 64  # passings of lines in one call
 _NUMBERS = ("scale", "discs", "segments", "next_time")
@@ -91,7 +97,8 @@ class Bench(NamedTuple):
 
     So do ``ended`` (discs,), until when each moved before its segment, ``tail``, the last events,
     and ``seen``, see :class:`puck_tables.world.passings.Passings`.  ``shared``: the pieces of ways
-    that all boards have; ``order``: of discs, the number of each puck.
+    that all boards have; ``order``: of discs, the number of each puck; ``place``: for
+    groups that push.
     """
 
     engine: Engine
@@ -106,6 +113,7 @@ class Bench(NamedTuple):
     shared: int
     order: Whole
     room: Room
+    place: Workplace
 
 
 class Orders(NamedTuple):
@@ -135,7 +143,7 @@ def bench_for(
 ) -> Bench:
     """Room to play boards that began as an engine did; ``more``: rows for pieces that are kept."""
     count = len(engine.discs)
-    own = own_engine(engine, ROWS + 16 * count, more + count)
+    own = own_engine(engine, ROWS + 16 * count, more + count, _PUSHES * count * (LONGEST + 1))
     parts: dict[str, Any] = own._asdict()
     numbers, floats = _in_a_row(
         [parts[name] for name in _NUMBERS]
@@ -150,6 +158,7 @@ def bench_for(
     return Bench(
         own, numbers, whole, ended, tail, seen, np.zeros(count + 1, np.int64), lines,
         np.zeros((_FOUND, COLUMNS)), int(engine.drives.max()), order, room_for(count),
+        workplace_for(own, 3 * count + 16),
     )  # fmt: skip
 
 
@@ -330,20 +339,37 @@ def _lay_hands_on(what: int, k: int, orders: Orders, bench: Bench) -> None:
 
 
 @inner
+def _run(engine: Engine, until: float, first: int, bench: Bench) -> int:
+    """All that happens up to a time, groups that push included; how it ended."""
+    how = advance(engine, until, first, bench.room)
+    while how in (PUSHING, PAUSED):
+        first = NOBODY
+        if how == PUSHING:
+            crowded = engine.counts[N_CONTACTS] > bench.place.modes.size
+            if crowded or law_goes_to(engine.regions) < math.inf:
+                return how
+            first, how = THOSE_LEFT, push_on(engine, bench.room, bench.place)
+            if how != REACHED:
+                return how
+        how = advance(engine, until, first, bench.room)
+    return how
+
+
+@inner
 def _played(what: int, k: int, orders: Orders, bench: Bench) -> int:
     """Do what is to be done on the board on the bench; how it ended, as the engine says."""
     engine, room, until = bench.engine, bench.room, orders.until[k]
     if what != LET_GO:
         _lay_hands_on(what, k, orders, bench)
-        return advance(engine, engine.clock[0], NOBODY if what == LED else what, room)
+        return _run(engine, engine.clock[0], NOBODY if what == LED else what, bench)
     how, target = GOES_ON, until
     if until < math.inf:
-        how = advance(engine, until, NOBODY, room)
+        how = _run(engine, until, NOBODY, bench)
     else:
         target, given = engine.clock[0], prescribed_until(engine)
         limit = max(target, given) + orders.longest[k]
         while how == GOES_ON:
-            how = advance(engine, target, NOBODY, room)
+            how = _run(engine, target, NOBODY, bench)
             if how == REACHED:
                 how, target = next_target(engine, limit, given, room, bench.ended)
         if how == ROUND:

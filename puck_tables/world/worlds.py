@@ -30,10 +30,10 @@ class Worlds(Together):
     """Copies of a board, each a :class:`puck_tables.World` of its own to the bit.
 
     All that is done to them is done at once, in compiled code on all cores; results depend neither
-    on how many boards there are nor on the cores.  Only a board on which pucks begin to push each
-    other is taken on alone for that call.  By-hand calls on a floor that moves, and of pucks that a
-    constraint leads, go board by board, too.  A call that is refused, or fails,
-    changes no board.
+    on how many boards there are nor on the cores.  A board on which more than 2,000 things happen
+    in a call is taken on alone for it, and so is one whose pucks push under a friction law over
+    the slip speed.  By-hand calls on a floor that moves, and of pucks that a constraint leads, go
+    board by board, too.  A call that is refused, or fails, changes no board.
 
     Parameters
     ----------

@@ -1,12 +1,14 @@
-"""Quasi-static pushing: a finger at the outline of a puck, that sticks there or slides along.
+"""Quasi-static pushing: a finger or a fence at a puck, that sticks there or slides along.
 
-The finger moves straight, so slowly that forces of inertia count nothing; the puck moves with the
-twist of :func:`puck_tables.kernels.base_push.push_twist`, and its place and angle are integrated.
+It moves straight, so slowly that forces of inertia count nothing; the puck moves with the twist of
+:func:`puck_tables.kernels.base_push.push_twist`, and its place and angle are integrated.
 """
 
 from __future__ import annotations
 
+import cmath
 import math
+from bisect import bisect_right
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import ClassVar, NamedTuple
@@ -22,46 +24,25 @@ from puck_tables.errors import ContactError, InputError
 from puck_tables.io.columns import following
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.kernels.base_friction import packed
-from puck_tables.kernels.base_push import APART, UNKNOWN, push_twist
+from puck_tables.kernels.base_push import UNKNOWN
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.result import Result
+from puck_tables.wrench.fence import Fence, Finger, OutlinePiece, Pushing, laid_on
 
 _ON_IT = 1e-6  # of the reach: as far from the outline a finger may be
 _TOL = 1e-10  # of the reach, and rad, of a step
-_LONGEST, _MOST = 1000.0, 1_000_000  # path of a finger over the reach; states
-CONTACTS = ("sticks", "slides left", "slides right", "apart")
+_LONGEST, _MOST = 1000.0, 1_000_000  # path of what pushes over the reach; states
+_MOST_LEGS = 1000  # in which the puck lies otherwise
+CONTACTS = (
+    "sticks", "slides left", "slides right", "apart", "flush, sticks", "flush, slides left",
+    "flush, slides right",
+)  # fmt: skip
 _COLUMNS = ("x", "y", "orientation", "vx", "vy", "spin", "push_x", "push_y", "finger_x", "finger_y")
-
-
-class _Side(NamedTuple):
-    """A piece of an outline, from the centre of mass: a straight side or a circle (length inf).
-
-    ``begin``: its beginning or middle; ``along``: its unit tangent, the base to the left, or 0 and
-    the radius.
-    """
-
-    begin: complex
-    along: complex
-    length: float
-
-    def place(self, finger: complex) -> tuple[complex, complex, float]:
-        """Contact, normal into the base, and how far along the side a finger is."""
-        if math.isinf(self.length):
-            normal = (self.begin - finger) / abs(self.begin - finger)
-            return self.begin - self.along.real * normal, normal, 0.0
-        way = (finger - self.begin) / self.along
-        return self.begin + way.real * self.along, 1j * self.along, way.real
-
-    def distance(self, finger: complex) -> float:
-        """How far it is from a finger."""
-        contact, _, way = self.place(finger)
-        end = self.begin + min(max(way, 0.0), self.length) * self.along
-        return abs(finger - (contact if math.isinf(self.length) else end))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Push(Result):
-    """A puck that a finger pushes, from :func:`puck_tables.push`.
+    """A puck that a finger or a fence pushes, from :func:`puck_tables.push`.
 
     Attributes
     ----------
@@ -73,10 +54,13 @@ class Push(Result):
     push_x, push_y : arrays (n,), N
         Force of the finger on the puck.
     finger_x, finger_y : arrays (n,), m
-        Place of the finger, from where the centre of mass was at first.
+        Where it acts, from where the centre of mass was at first: the place of the finger.
     contact : list of str
         What the finger does: sticks, slides left, slides right (as it sees the puck), or apart:
-        it does not press on.
+        it does not press on; of a fence that lies on a side flush, and the same.
+    fence : Fence, or None: a finger
+    fence_x, fence_y : arrays (n,), m
+        Where the middle of that is, or the finger.
     end : str
         Why the states end.
     """
@@ -94,6 +78,9 @@ class Push(Result):
     finger_x: FloatArray
     finger_y: FloatArray
     codes: npt.NDArray[np.int8] = field(repr=False)
+    fence: Fence | None
+    fence_x: FloatArray = field(repr=False)
+    fence_y: FloatArray = field(repr=False)
     end: str
 
     picture: ClassVar[str] = "push"
@@ -109,7 +96,7 @@ class Push(Result):
             f"The puck moves by ({self.x[-1]:.6g}, {self.y[-1]:.6g}) m and turns by "
             f"{math.degrees(self.orientation[-1] - self.orientation[0]):.6g} degrees in "
             f"{self.time[-1]:.6g} s: {self.end}.\n"
-            f"The finger: {', then '.join(dict.fromkeys(self.contact))}; its force is "
+            f"The {_name(self.fence)}: {', then '.join(dict.fromkeys(self.contact))}; its force is "
             f"{force.min():.4g} to {force.max():.4g} N."
         )
 
@@ -136,7 +123,8 @@ class Push(Result):
         columns["touch"] = variable("touch", self.codes, ("time",), CONTACTS)
         axes = {"time": variable("time", self.time, ("time",))}
         return Dataset(axes, columns, {
-            "title": "A puck that a finger pushes", **self.puck.described(), "end": self.end,
+            "title": f"A puck that a {_name(self.fence)} pushes", **self.puck.described(),
+            "end": self.end,
         })  # fmt: skip
 
 
@@ -151,60 +139,20 @@ class _Ending(NamedTuple):
         return self.of(t, y)
 
 
-@dataclass(frozen=True)
-class _Pushing:
-    """A base, the piece of its outline that a finger touches, and the finger.
-
-    Slow pushes do not depend on the speed: the finger moves by ``heading``, and its path is time.
-    """
-
-    base: FloatArray
-    side: _Side
-    finger: complex
-    heading: complex
-    friction: float
-
-    def at(self, t: float, y: FloatArray) -> tuple[FloatArray, int, float]:
-        """Twist and force over f N in the axes of the floor, how it touches, place on the side."""
-        turn = complex(math.cos(y[2]), math.sin(y[2]))
-        own = (self.finger + t * self.heading - complex(y[0], y[1])) / turn
-        contact, normal, place = self.side.place(own)
-        velocity, out = self.heading / turn, np.empty(5)
-        code = push_twist(
-            self.base, velocity.real, velocity.imag, contact.real, contact.imag, normal.real,
-            normal.imag, self.friction, out, np.empty(3), np.empty((3, 3)),
-        )  # fmt: skip
-        moved, force = turn * complex(out[0], out[1]), turn * complex(out[3], out[4])
-        return np.array([moved.real, moved.imag, out[2], force.real, force.imag]), code, place
-
-    def rate(self, t: float, y: FloatArray) -> FloatArray:
-        """The twist."""
-        return self.at(t, y)[0][:3]
-
-    def room(self, t: float, y: FloatArray) -> float:
-        """How far the finger is from the ends of its side; never, of a circle."""
-        place = self.at(t, y)[2]
-        return 1.0 if math.isinf(self.side.length) else min(place, self.side.length - place)
-
-    def presses(self, t: float, y: FloatArray) -> float:
-        """1 where it presses on, −1 where it does not, or no slip was found."""
-        return -1.0 if self.at(t, y)[1] in (APART, UNKNOWN) else 1.0
-
-
 def push(
-    puck: PuckSpec, at: npt.ArrayLike, velocity: npt.ArrayLike, friction: float, *,
+    puck: PuckSpec, at: npt.ArrayLike | Fence, velocity: npt.ArrayLike, friction: float, *,
     angle: float = 0.0, duration: float = 0.0, frames: int = 101,
 ) -> Push:  # fmt: skip
-    """Push a puck slowly with a finger.
+    """Push a puck slowly with a finger, or with a fence.
 
     Parameters
     ----------
     puck : Puck
         On a base, or round under uniform pressure in full contact.
-    at : (x, y), m
+    at : (x, y), m, or a Fence
         Where the finger touches, on the outline of the base and in its axes.
-    velocity : (vx, vy), m/s, of the finger over the floor
-    friction : coefficient of friction between finger and puck, ≥ 0
+    velocity : (vx, vy), m/s, of the finger or the fence over the floor
+    friction : coefficient of friction between that and the puck, ≥ 0
     angle : rad, by which the base is turned at first
     duration : s; 0: how it begins, one state
     frames : how many states, equally spaced over the duration
@@ -216,8 +164,8 @@ def push(
     Raises
     ------
     InputError
-        If the finger is not on the outline, an argument is out of range, or the puck of a kind
-        that this does not know.
+        If the finger is not on the outline, the fence moves away, an argument is out of range, or
+        the puck of a kind that this does not know.
     ContactError
         If no slip was found in which friction, finger and floor agree.
 
@@ -225,7 +173,9 @@ def push(
     -----
     The force at the contact lies in its cone of friction, inside it where the finger sticks, and
     friction of the floor balances it: an interior of the cone leaves one unknown, an edge none.
-    States end where the finger comes to a corner, or presses on no more.
+    States end where the finger comes to a corner, or presses on no more.  A fence turns the puck
+    about a corner until a side is flush; it stays so if the line along which the fence would move
+    it, through the centre of mass, passes between the corners of that side.
 
     References
     ----------
@@ -245,11 +195,11 @@ def push(
         raise InputError("a puck with friction = 0 is not pushed slowly: give friction > 0")
     base = _base_of(puck)
     if not (grip := real("friction", friction, "a coefficient")) >= 0.0:
-        raise InputError(f"friction of the finger must not be negative, got {grip:g}")
+        raise InputError(f"friction of what pushes must not be negative, got {grip:g}")
     moving = complex(*one_velocity(velocity))
     speed = abs(moving)
     if not 0.0 < speed < math.inf:
-        raise InputError(f"velocity of the finger is {speed:g}: it pushes nothing")
+        raise InputError(f"velocity of what pushes is {speed:g}: it pushes nothing")
     if not (span := speed * real("duration", duration, "s")) >= 0.0:
         raise InputError(f"duration must not be negative, got {duration:g} s")
     if not span <= _LONGEST * base.reach:
@@ -258,61 +208,79 @@ def push(
         )
     frames = whole("frames", frames, 1, _MOST)
     turned = real("angle", angle, "rad")
-    own, side = _touched(base, at)
-    begun = own * complex(math.cos(turned), math.sin(turned))
-    finger = _Pushing(packed(base, puck.lever), side, begun, moving / speed, grip)
-    y = np.array([0.0, 0.0, turned])
-    if finger.at(0.0, y)[1] == UNKNOWN:
-        raise ContactError("no slip was found in which finger and floor agree")
-    if span == 0.0:
-        return _result(puck, finger, speed, np.zeros(1), y[:, None], "how it begins")
-    return _followed(puck, finger, speed, y, span, frames, base.reach)
+    turn = cmath.rect(1.0, turned)
+    parts = packed(base, puck.lever), moving / speed, grip
+    begun, fence = np.array([0.0, 0.0, turned]), None
+    if isinstance(at, Fence):
+        fence = at
+        pushing: Pushing = laid_on(*parts, _points_of(base), at, begun)
+    else:
+        own, side = _touched(base, at)
+        pushing = Finger(*parts, own * turn, side)
+    if pushing.at(0.0, begun)[1] == UNKNOWN:
+        raise ContactError(f"no slip was found in which {_name(fence)} and floor agree")
+    legs, last, end = [_Leg(pushing, 0.0, lambda _: begun)], 0.0, "how it begins"
+    if span > 0.0:
+        legs, last, end = _followed(pushing, begun, span, base.reach, _name(fence))
+    path = np.linspace(0.0, last, frames if last > 0.0 else 1)
+    found = [_leg_at(legs, s) for s in path.tolist()]
+    x, y, orientation = np.array([state for state, *_ in found]).T
+    vx, vy, spin, push_x, push_y, place_x, place_y = np.array([rates for _, rates, _ in found]).T
+    load, start, heading = puck.friction * puck.mass * puck.gravity, pushing.start, pushing.heading
+    return Push(
+        puck, path / speed, x, y, orientation, speed * vx, speed * vy, speed * spin,
+        load * push_x, load * push_y, place_x, place_y,
+        np.array([code for *_, code in found], np.int8), fence,
+        start.real + path * heading.real, start.imag + path * heading.imag, end,
+    )  # fmt: skip
+
+
+class _Leg(NamedTuple):
+    """A way of pushing, from where along the path, and the states along it."""
+
+    pushing: Pushing
+    begin: float
+    states: Callable[[float], FloatArray]
+
+
+def _leg_at(legs: list[_Leg], s: float) -> tuple[FloatArray, FloatArray, int]:
+    """State, twist and force, and how it touches, so far along the path."""
+    leg = legs[bisect_right(legs, s, key=lambda one: one.begin) - 1]
+    state = leg.states(s)
+    return state, *leg.pushing.at(s, state)
 
 
 def _followed(
-    puck: PuckSpec, finger: _Pushing, speed: float, y: FloatArray, span: float, count: int,
-    reach: float,
-) -> Push:  # fmt: skip
-    """The push along a path of the finger, until it ends."""
-    if finger.presses(0.0, y) < 0.0:
-        return _result(puck, finger, speed, np.zeros(1), y[:, None], "it does not press on")
-    run = solve_ivp(
-        finger.rate, (0.0, span), y, method="DOP853", rtol=1e-10,
-        atol=np.array([_TOL * reach, _TOL * reach, _TOL]), dense_output=True,
-        events=[_Ending(finger.room), _Ending(finger.presses)],
-        max_step=min(0.05 * span, 0.25 * reach),
-    )  # fmt: skip
-    if not run.success:
-        raise ContactError(f"the push could not be followed: {run.message}")
-    last = float(run.t[-1])
-    end = "time is up"
-    if run.t_events[0].size:
-        end = "the finger comes to a corner"
-    elif run.t_events[1].size:
-        if finger.at(last, run.y[:, -1])[1] == UNKNOWN:
+    pushing: Pushing, y: FloatArray, span: float, reach: float, name: str
+) -> tuple[list[_Leg], float, str]:
+    """The push along a path, leg by leg, until it ends; where that is, and why."""
+    legs: list[_Leg] = []
+    last = 0.0
+    if pushing.presses(0.0, y) < 0.0:
+        return [_Leg(pushing, 0.0, lambda _: y)], 0.0, "it does not press on"
+    while len(legs) < _MOST_LEGS:
+        run = solve_ivp(
+            pushing.rate, (last, span), y, method="DOP853", rtol=1e-10,
+            atol=np.array([_TOL * reach, _TOL * reach, _TOL]), dense_output=True,
+            events=[_Ending(pushing.room), _Ending(pushing.presses)],
+            max_step=min(0.05 * span, 0.25 * reach),
+        )  # fmt: skip
+        if not run.success:
+            raise ContactError(f"the push could not be followed: {run.message}")
+        legs.append(_Leg(pushing, last, run.sol))
+        last, y = float(run.t[-1]), run.y[:, -1]
+        if run.t_events[1].size:
+            if pushing.at(last, y)[1] != UNKNOWN:
+                return legs, last, f"the {name} presses on no more"
             raise ContactError(
-                f"after {last / speed:.6g} s no slip was found in which finger and floor agree"
+                f"after {last / abs(span):.6g} of its path no slip was found in which {name} and "
+                "floor agree"
             )
-        end = "the finger presses on no more"
-    path = np.linspace(0.0, last, count)
-    return _result(puck, finger, speed, path, run.sol(path), end)
-
-
-def _result(
-    puck: PuckSpec, finger: _Pushing, speed: float, path: FloatArray, states: FloatArray, end: str
-) -> Push:
-    found = [finger.at(s, states[:, n])[:2] for n, s in enumerate(path.tolist())]
-    rows = np.array([one for one, _ in found]).T
-    load = puck.friction * puck.mass * puck.gravity
-    begin, heading = finger.finger, finger.heading
-    place_x, place_y = begin.real + path * heading.real, begin.imag + path * heading.imag
-    codes = np.array([code for _, code in found], np.int8)
-    x, y, orientation = states
-    vx, vy, spin, push_x, push_y = rows
-    return Push(
-        puck, path / speed, x, y, orientation, speed * vx, speed * vy, speed * spin,
-        load * push_x, load * push_y, place_x, place_y, codes, end,
-    )  # fmt: skip
+        after = pushing.after(last, y) if run.t_events[0].size else "time is up"
+        if isinstance(after, str):
+            return legs, last, after
+        pushing = after
+    raise ContactError(f"a puck that comes to lie on a fence {_MOST_LEGS} times is not followed")
 
 
 def _base_of(puck: PuckSpec) -> Base:
@@ -327,7 +295,19 @@ def _base_of(puck: PuckSpec) -> Base:
     return Base.disc(puck.radius)
 
 
-def _touched(base: Base, at: npt.ArrayLike) -> tuple[complex, _Side]:
+def _points_of(base: Base) -> FloatArray:
+    """Corners and rims that a fence may touch, (n, 3): from the centre of mass, and radii, m."""
+    corners = [(x, y, 0.0) for outline in base.outlines for x, y in outline]
+    rims = [(x, y, radius) for x, y, radius, sign in base.discs if sign > 0.0]
+    points: FloatArray = np.array(corners + rims) - np.append(base.middle, 0.0)
+    return points
+
+
+def _name(fence: Fence | None) -> str:
+    return "finger" if fence is None else "fence"
+
+
+def _touched(base: Base, at: npt.ArrayLike) -> tuple[complex, OutlinePiece]:
     """A place on the outline of a base, from its centre of mass, and the piece on which it lies."""
     place = finite_array("at", at, "m")
     if place.shape != (2,):
@@ -335,14 +315,14 @@ def _touched(base: Base, at: npt.ArrayLike) -> tuple[complex, _Side]:
     middle = complex(*base.middle)
     point = complex(*place.tolist()) - middle
     sides = [
-        _Side(complex(x, y) - middle, complex(radius, 0.0), math.inf)
+        OutlinePiece(complex(x, y) - middle, complex(radius, 0.0), math.inf)
         for x, y, radius, sign in base.discs if sign > 0.0
     ]  # fmt: skip
     for outline in base.outlines:
         corners = [complex(*corner) - middle for corner in outline]
         for one, other in zip(corners, corners[1:] + corners[:1], strict=True):
             length = abs(other - one)
-            sides.append(_Side(one, (other - one) / length, length))
+            sides.append(OutlinePiece(one, (other - one) / length, length))
     nearest = min(sides, key=lambda side: side.distance(point))
     if nearest.distance(point) > _ON_IT * base.reach:
         raise InputError(

@@ -6,6 +6,7 @@ from math import sqrt
 
 from puck_tables.export.program.intrinsics import Numbers, room
 from puck_tables.export.program.plain_motion import TOLERANCE, state, stop, turn
+from puck_tables.export.program.polygon_motion import BASE_SQUARE, STEP_ERROR, step, wrench
 from puck_tables.export.program.resultant_formulas import resultants
 
 # what the test of a file compares with
@@ -13,6 +14,9 @@ STOP_CASES: Numbers = ()
 STATE_CASES: Numbers = ()
 TURN_CASES: Numbers = ()
 RESULTANTS_CASES: Numbers = ()
+WRENCH_CASES: Numbers = ()
+STEP_CASES: Numbers = ()
+WRENCH_COUNT = STEP_COUNT = 0
 STOP_COUNT = STATE_COUNT = TURN_COUNT = RESULTANTS_COUNT = 0
 
 
@@ -79,4 +83,33 @@ def resultants_misses() -> int:
         missed += resultants(c[n * 5], c[n * 5 + 1], out)
         for j in range(3):
             missed += misses(out[j], c[n * 5 + 2 + j], 1.0)
+    return missed
+
+
+def wrench_misses() -> int:
+    """How many numbers of the test vectors wrench() misses."""
+    c: Numbers = WRENCH_CASES
+    out = room(3)
+    missed: int = 0
+    for n in range(WRENCH_COUNT):
+        k: int = n * 7
+        missed += wrench(c[k], c[k + 1], c[k + 2], c[k + 3], out)
+        for j in range(3):
+            missed += misses(out[j], c[k + 4 + j], 1.0)
+    return missed
+
+
+def step_misses() -> int:
+    """How many numbers of the test vectors step() misses."""
+    c: Numbers = STEP_CASES
+    out = room(6)
+    missed: int = 0
+    least: float = STEP_ERROR / TOLERANCE
+    least = least if least > 1.0 else 1.0
+    for n in range(STEP_COUNT):
+        k: int = n * 9
+        missed += step(0.0, 0.0, 0.0, c[k], c[k + 1], c[k + 2], 1.0, 0.5, out)
+        for j in range(6):
+            unit: float = least / sqrt(BASE_SQUARE) if j == 2 or j == 5 else least
+            missed += misses(out[j], c[k + 3 + j], unit)
     return missed

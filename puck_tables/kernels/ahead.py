@@ -1,0 +1,184 @@
+"""Kernels compiled ahead of time, for another machine.
+
+What is taken is the text that numba writes down before it optimises: afterwards sizes and addresses
+of this machine are in it.  It is done in a process of its own, where nothing was compiled before
+that could be taken over.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import subprocess
+import sys
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numba
+from llvmlite import binding, ir
+from numba.core import cgutils, serialize
+from numba.core.registry import cpu_target
+
+from puck_tables._core.own_folder import say
+from puck_tables.errors import PuckError
+from puck_tables.kernels import compiled
+from puck_tables.kernels.cache import cache_folder
+from puck_tables.kernels.kept_code import read_sealed, write_sealed
+from puck_tables.kernels.linking import LinkedAtDoors, Pasted
+from puck_tables.kernels.memory_image import RECORD, as_module, machine_for
+
+_code: Any = cgutils
+_dumps: Any = serialize.dumps
+_typeof: Any = numba.typeof
+_Library: Any = Pasted
+_Compiler: Any = LinkedAtDoors
+_WORD, _STATUS, _BYTE = ir.IntType(64), ir.IntType(32), ir.IntType(8)
+_CHILD = "from puck_tables.kernels import ahead; ahead.answer()"
+
+
+class _WrittenCode(_Library):  # type: ignore[misc]
+    """The code of a function as it is written down."""
+
+    def __init__(self, codegen: Any, name: str) -> None:
+        super().__init__(codegen, name)
+        self.texts: list[str] = []
+
+    def add_ir_module(self, module: Any) -> None:
+        """Keep its text; numba would optimise it for this machine."""
+        self.texts.append(_code.normalize_ir_text(str(module)))
+        self._final_module.link_in(binding.parse_assembly(self.texts[-1]))
+
+
+class _Writer(_Compiler):  # type: ignore[misc]
+    """numba's compiler, with these libraries."""
+
+    library, has_doors = _WrittenCode, False
+
+
+# a reshape of what lies in one piece, which kernels only read: its strides
+_RESHAPE = """
+define i32 @numba_attempt_nocopy_reshape(i64 %0, ptr %1, ptr %2, i64 %count, ptr %shape,
+                                         ptr %strides, i64 %size, i32 %3) {
+first:
+  br label %head
+head:
+  %left = phi i64 [ %count, %first ], [ %k, %body ]
+  %stride = phi i64 [ %size, %first ], [ %wider, %body ]
+  %more = icmp sgt i64 %left, 0
+  br i1 %more, label %body, label %done
+body:
+  %k = sub i64 %left, 1
+  %at = getelementptr i64, ptr %strides, i64 %k
+  store i64 %stride, ptr %at
+  %from = getelementptr i64, ptr %shape, i64 %k
+  %length = load i64, ptr %from
+  %wider = mul i64 %stride, %length
+  br label %head
+done:
+  ret i32 1
+}
+"""
+
+
+class Outside(NamedTuple):
+    """A function there: its name, the kernel, and numbers like those that follow the record."""
+
+    name: str
+    kernel: Any
+    arguments: tuple[int | float, ...]
+
+
+def code_for(triple: str, record: Any, doors: Sequence[Outside]) -> bytes:
+    """An object file for a machine: doors to kernels that work in a record, which stands elsewhere.
+
+    It is kept, for it takes a minute and is the same for all records of a type.
+
+    Parameters
+    ----------
+    triple : of the machine, as LLVM has it
+    record : a named tuple of arrays and numbers, the first argument of all kernels
+    doors : functions of whole numbers (32 bits) and doubles, that give a whole number
+
+    Raises
+    ------
+    PuckError
+        If it cannot be compiled.
+    """
+    kind = _typeof(record)
+    names = [(one.name, one.kernel.__qualname__, one.arguments) for one in doors]
+    asked = repr((kind, names, numba.__version__, binding.llvm_version_info))
+    folder = cache_folder()
+    kept = folder and folder / f"{triple}-{hashlib.sha256(asked.encode()).hexdigest()[:16]}.object"
+    if kept is not None and (content := read_sealed(kept)) is not None:
+        return content
+    say("compiling the kernels for another machine, once: about a minute")
+    done = subprocess.run(
+        [sys.executable, "-c", _CHILD], input=_dumps((triple, kind, doors)), capture_output=True,
+        env=os.environ | {"NUMBA_DISABLE_JIT": "0"}, check=False,
+    )  # fmt: skip
+    if done.returncode != 0:
+        raise PuckError(f"kernels cannot be compiled for {triple}: {done.stderr.decode()[-500:]}")
+    if kept is not None:
+        write_sealed(kept, done.stdout)
+    return done.stdout
+
+
+def answer() -> None:
+    """Compile what a parent process asks for."""
+    compiled.linked_at_doors = _Writer
+    type(cpu_target.target_context.codegen())._library_class = _WrittenCode
+    sys.stdout.buffer.write(_compiled(*serialize.loads(sys.stdin.buffer.read())))
+
+
+def _compiled(triple: str, kind: Any, doors: Sequence[Outside]) -> bytes:
+    """The object file."""
+    outer = ir.Module("doors")
+    texts: dict[str, None] = {}
+    for door in doors:
+        code = _written(door, kind)
+        _add_door(outer, door, code)
+        seen: dict[Any, None] = {}
+        waiting = [code.library]
+        while waiting:
+            if (library := waiting.pop()) not in seen:
+                seen[library] = None
+                waiting += library._linking_libraries
+        texts |= {text: None for one in seen for text in one.texts}
+    machine = machine_for(triple)
+    whole = as_module([str(outer), *texts, _RESHAPE], machine)
+    public = {door.name for door in doors}
+    for part in (*whole.functions, *whole.global_variables):
+        if not part.is_declaration:
+            part.linkage = "external" if part.name in public else "internal"
+    options = binding.create_pipeline_tuning_options(speed_level=3)
+    options.loop_vectorization = options.slp_vectorization = False  # not every machine has vectors
+    passes = binding.create_pass_builder(machine, options)
+    passes.getModulePassManager().run(whole, passes)
+    return bytes(machine.emit_object(whole))
+
+
+def _written(door: Outside, kind: Any) -> Any:
+    """What numba makes of a kernel, with the texts of it and of all that it calls."""
+    made = compiled.dispatcher_of(door.kernel.py_func, door.kernel.fuses)
+    kinds = (kind, *map(_typeof, door.arguments))
+    made.compile(kinds)
+    return made.overloads[kinds]
+
+
+def _add_door(module: Any, door: Outside, code: Any) -> None:
+    """Write down a function that calls a kernel with the record."""
+    given = [_STATUS if isinstance(one, int) else ir.DoubleType() for one in door.arguments]
+    outside = ir.Function(module, ir.FunctionType(_STATUS, given), door.name)
+    convention: Any = cpu_target.target_context.call_conv
+    called = convention.get_function_type(code.signature.return_type, code.signature.args)
+    inside = ir.Function(module, called, code.fndesc.llvm_func_name)
+    place = module.globals.get(RECORD) or ir.GlobalVariable(module, _BYTE, RECORD)
+    builder = ir.IRBuilder(outside.append_basic_block())
+    found, excuse = builder.alloca(_WORD), builder.alloca(ir.PointerType(_BYTE))
+    pointers = [
+        builder.bitcast(one, argument.type)
+        for one, argument in zip((found, excuse, place), inside.args[:3], strict=True)
+    ]
+    wide = [builder.sext(one, _WORD) if one.type == _STATUS else one for one in outside.args]
+    builder.call(inside, [*pointers, *wide])
+    builder.ret(builder.trunc(builder.load(found), _STATUS))

@@ -1,0 +1,137 @@
+"""Boards as files of JavaScript, played in Node, beside the World that they stand for."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import puck_tables as pt
+
+WITH_TOOLS = pytest.mark.skipif(shutil.which("node") is None, reason="no Node here")
+# what is done to both, one after the other: a name, and what it is given
+STEPS = [
+    ("advance", 0.05), ("strike", "black", {"velocity": [1.9, -0.7], "spin": 40.0}),
+    ("advance", 0.4), ("drive", "mallet", [0.6, -0.2]), ("advance", 1 / 60), ("advance", 0.3),
+    ("drive", "mallet", [0.0, 0.0]),
+    ("place", "white", {"position": [0.2, 0.0], "velocity": [-1.5, 1.4]}), ("advance", 0.7),
+    ("remove", "queen"), ("strike", "black", {"spin": 30.0}), ("advance", 1e9),
+    ("place", "queen", {"position": [0.05, -0.2], "angle": 1.0}),
+    ("strike", "first", {"velocity": [1.5, 0.0]}), ("advance", 2.0),
+]  # fmt: skip
+
+
+def a_board() -> pt.Scene:
+    """A row that touches and pushes, a mallet, a pocket, a line, a post, walls with ends."""
+
+    def man(name: str, x: float, y: float, **more: object) -> pt.Puck:
+        return pt.Puck(
+            0.03, friction=0.04, name=name, height=0.01, launch=pt.Launch(position=(x, y)), **more
+        )
+
+    row = [man(name, 0.061 * k - 0.2, -0.05, restitution=0.0)
+           for k, name in enumerate(("first", "second", "third"))]  # fmt: skip
+    men = [man("black", -0.3, 0.2), man("white", 0.1, 0.25, restitution=0.8), man("queen", 0, 0.1)]
+    mallet = pt.Puck(0.05, path=[[0, 0.35, 0.35]], name="mallet")
+    corners = ((-0.5, -0.4), (0.5, -0.4), (0.5, 0.5), (-0.5, 0.5))
+    return pt.Scene(
+        pucks=[*row, *men, mallet], walls=[pt.Wall(corners=corners, restitution=0.7)],
+        posts=[pt.Post((0.3, -0.1), 0.02)], pockets=[pt.Pocket((0.46, 0.46), 0.05)],
+        lines=[pt.Line((-0.5, 0.0), (0.5, 0.0))], title="All that boards have",
+    )  # fmt: skip
+
+
+def played(world: pt.World) -> list[dict[str, object]]:
+    """What World says to the steps."""
+    found = []
+    for name, *given in STEPS:
+        if isinstance(given[-1], dict):
+            events = getattr(world, name)(*given[:-1], **given[-1])
+        else:
+            events = getattr(world, name)(*given)
+        found.append({
+            "events": [[e.what, e.puck, e.partner, e.time, e.impulse] for e in events or []],
+            "time": world.time, "state": world.state().tolist(),
+        })  # fmt: skip
+    return found
+
+
+HOST = """
+const { load } = require("./board.js");
+const steps = JSON.parse(process.argv[2]);
+const rows = (board) => board.state().map((s) => [s.x, s.y, s.angle, s.vx, s.vy, s.spin]);
+const refused = (call) => { try { call(); } catch (error) { return String(error); } };
+(async () => {
+  const board = await load(), start = board.copy();
+  const found = steps.map(([name, ...given]) => {
+    const events = board[name](...given) ?? [];
+    return { events: events.map((e) => [e.what, e.puck, e.partner, e.time, e.impulse]),
+             time: board.time, state: rows(board) };
+  });
+  const again = start.copy();
+  for (const [name, ...given] of steps) again[name](...given);
+  const same = JSON.stringify(rows(again)) === JSON.stringify(rows(board));
+  const fresh = start.copy(), before = JSON.stringify(rows(fresh));
+  const refusals = [
+    () => fresh.strike("nobody", {}), () => fresh.strike("mallet", { spin: 1 }),
+    () => fresh.strike(0, { velocity: [NaN, 0] }), () => fresh.strike(0, { velocity: [1e9, 0] }),
+    () => fresh.place("first", { position: [-0.139, 0.0] }), () => fresh.advance(-1),
+    () => fresh.drive("first", [1, 0]), () => { fresh.copy().remove(7); },
+  ].map(refused);
+  const unchanged = before === JSON.stringify(rows(fresh));
+  console.log(JSON.stringify({ found, same, unchanged, refusals, names: board.names }));
+})();
+"""
+
+
+@pytest.fixture(scope="module")
+def in_node(tmp_path_factory: pytest.TempPathFactory) -> dict[str, object]:
+    """What Node says of the board."""
+    folder = tmp_path_factory.mktemp("board")
+    pt.export_board(a_board()).save(folder / "board.js")
+    Path(folder, "host.cjs").write_text(HOST)
+    command = ["node", "host.cjs", json.dumps(STEPS)]
+    ended = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=True)
+    return json.loads(ended.stdout)
+
+
+@pytest.mark.thorough
+@WITH_TOOLS
+def test_it_plays_as_the_world_does(in_node: dict):
+    """The same events, and states to what rounding leaves after dozens of impacts."""
+    truth = played(a_board().world())
+    assert [len(one["events"]) for one in in_node["found"]] == [len(o["events"]) for o in truth]
+    assert sum(len(one["events"]) for one in truth) > 30
+    for mine, theirs in zip(truth, in_node["found"], strict=True):
+        assert [one[:3] for one in mine["events"]] == [one[:3] for one in theirs["events"]]
+        for one, other in zip(mine["events"], theirs["events"], strict=True):
+            assert other[3:] == pytest.approx(one[3:], rel=1e-9, abs=1e-9)
+        assert theirs["time"] == pytest.approx(mine["time"], rel=1e-12)
+        np.testing.assert_allclose(theirs["state"], mine["state"], rtol=1e-9, atol=1e-9)
+    first = np.array(in_node["found"][1]["state"]), np.array(truth[1]["state"])
+    np.testing.assert_allclose(*first, rtol=1e-12, atol=1e-13)  # before any impact
+
+
+@pytest.mark.thorough
+@WITH_TOOLS
+def test_copies_go_on_by_themselves_and_refusals_change_nothing(in_node: dict):
+    assert in_node["same"]
+    assert in_node["unchanged"]
+    assert in_node["names"] == ["first", "second", "third", "black", "white", "queen", "mallet"]
+    words = ["no puck nobody", "use drive", "velocity must be a finite number", "faster than",
+             "first would overlap second by", "must not be negative", "not led by hand",
+             "no puck 7"]  # fmt: skip
+    for word, sentence in zip(words, in_node["refusals"], strict=True):
+        assert word in sentence
+
+
+def test_what_moves_with_its_floor_is_refused():
+    belt = pt.Scene(pt.Puck(0.03, friction=0.1), pt.Floor(velocity=(0.1, 0.0)))
+    with pytest.raises(pt.InputError, match="has a floor at rest"):
+        pt.export_board(belt)
+    with pytest.raises(pt.InputError, match="scene must be a Scene, got a str"):
+        pt.export_board("carrom-break")

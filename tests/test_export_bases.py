@@ -1,0 +1,121 @@
+"""Exported friction of polygons, and steps of their motion, by judges of the tests."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from base_judge import Judge
+from exported import RUNNERS, Run
+
+import puck_tables as pt
+
+BASES = {
+    "box": pt.Base.box(0.2, 0.1),
+    "triangle": pt.Base.polygon([(0.0, 0.0), (0.12, 0.0), (0.0, 0.09)]),
+    "frame": pt.Base.polygon(
+        [(-1.0, -0.6), (1.0, -0.6), (1.0, 0.6), (-1.0, 0.6)],
+        holes=[[(-0.7, -0.3), (0.7, -0.3), (0.7, 0.3), (-0.7, 0.3)]],
+    ),
+}
+
+
+def judge_of(puck: pt.Puck) -> Judge:
+    outlines = [np.array(one) - puck.shape.middle for one in puck.shape.outlines]
+    return Judge(outlines, [], 0.0, puck.gyration)
+
+
+def runner(language: str, puck: pt.Puck, folder: Path) -> Run:
+    make, program = RUNNERS[language]
+    if shutil.which(program) is None:
+        pytest.skip(f"there is no {program} here")
+    return make(pt.export_source(language, "wrench", puck=puck).text, folder)
+
+
+@pytest.mark.parametrize("language", RUNNERS)
+@pytest.mark.parametrize("name", BASES)
+def test_friction_is_that_of_the_judge(name: str, language: str, tmp_path: Path) -> None:
+    puck, rng = pt.Puck(base=BASES[name], friction=0.3), np.random.default_rng(8)
+    run, judge = runner(language, puck, tmp_path), judge_of(puck)
+    count = 150
+    slips = rng.normal(size=(count, 3)) * [1.0, 1.0, 1.0 / judge.reach]
+    slips[:, 2] *= 10.0 ** rng.uniform(-4.0, 3.0, count)
+    slips[:20, 2] = 0.0
+    slips[20:30, :2] = 0.0
+    for n in range(30, 60):  # about corners and places on sides
+        one, two = (judge.polygons[0][(n + m) % len(judge.polygons[0])] for m in range(2))
+        at = one + (n % 4) / 4.0 * (two - one)
+        slips[n, :2] = slips[n, 2] * np.array([at[1], -at[0]])
+    angles = rng.uniform(-4.0, 4.0, count)
+    found, codes = run("wrench", np.column_stack([slips, angles]))
+    assert not codes.any()
+    for got, (ux, uy, w), angle in zip(found, slips.tolist(), angles, strict=True):
+        c, s = np.cos(angle), np.sin(angle)
+        force, torque = judge.friction(c * ux + s * uy, c * uy - s * ux, w)
+        turned = [c * force[0] - s * force[1], s * force[0] + c * force[1]]
+        np.testing.assert_allclose(got[:2], turned, atol=2e-13)
+        assert got[2] == pytest.approx(torque, abs=4e-13 * judge.reach)
+
+
+@pytest.mark.parametrize("language", RUNNERS)
+def test_steps_lead_to_the_stop_of_the_judge(language: str, tmp_path: Path) -> None:
+    for name, base in BASES.items():
+        folder = tmp_path / name
+        folder.mkdir()
+        puck = pt.Puck(base=base, friction=0.3)
+        run, judge, k = runner(language, puck, folder), judge_of(puck), puck.gyration
+        for vx, vy, spin in ((1.0, 0.3, 2.0), (0.2, -0.4, -25.0), (0.0, 0.0, 3.0), (0.5, 0.0, 0.0)):
+            q = np.hypot(np.hypot(vx, vy), k * spin)
+            stop, x, y, _, turned = judge.slide((vx, vy), spin, 2.0, 1e-10)
+            steps = 7
+            state = np.array([[0.0, 0.0, 0.0, vx, vy, spin, 2.0, 1.1 * stop / steps]])
+            for _ in range(steps):
+                state[:, :6], codes = run("step", state.copy())
+                assert not codes.any()
+            assert not state[0, 3:6].any()
+            np.testing.assert_allclose(state[0, :2], [x, y], atol=1e-6 * q * q / 2.0)
+            assert state[0, 2] == pytest.approx(turned, abs=1e-6 * q * q / 2.0 / k)
+
+
+@pytest.mark.parametrize("language", RUNNERS)
+def test_what_is_out_of_range_is_refused(language: str, tmp_path: Path) -> None:
+    run = runner(language, pt.Puck(base=BASES["box"], friction=0.3), tmp_path)
+    bad = np.array([
+        [0.0, 0.0, 0.0, 1.0], [np.nan, 0, 0, 0], [1, np.inf, 0, 0], [1, 0, 0, np.nan],
+    ])  # fmt: skip
+    found, codes = run("wrench", bad)
+    assert (codes == 1).all() and np.isnan(found).all()
+    start = [0.0, 0.0, 0.0, 1.0, 0.0, 2.0]
+    bad = np.array([[*start, 0.0, 1.0], [*start, 1.0, -1.0], [*start, np.nan, 1.0]])
+    found, codes = run("step", bad)
+    assert (codes == 1).all() and np.isnan(found).all()
+    found, codes = run("step", np.array([[*start[:5], 1e9, 1.0, 1.0]]))
+    assert codes[0] == 2 and np.isnan(found).all()
+
+
+@pytest.mark.parametrize(
+    ("puck", "what", "words"),
+    [
+        (pt.Puck(base="box:0.2x0.1", friction=0.3), "stop", "what is exported is 'wrench'"),
+        (pt.Puck(0.1, friction=0.3), "wrench", "exported of polygons"),
+        (pt.Puck(base="box:0.2x0.1", friction=0.3, height=0.02), "wrench", "height = 0"),
+        (pt.Puck(base="disc:0.1", friction=0.3), "wrench", "exported of polygons"),
+    ],
+)  # fmt: skip
+def test_what_is_not_exported_is_said(puck: pt.Puck, what: str, words: str) -> None:
+    with pytest.raises(pt.InputError, match=words):
+        pt.export_source("c", what, puck=puck)
+
+
+def test_a_file_tests_itself_at_every_error() -> None:
+    puck = pt.Puck(base=BASES["frame"], friction=0.3)
+    for tol in (1e-2, 1e-6, 1e-9):
+        source = pt.export_source("python", "wrench", tol, puck)
+        names: dict = {}
+        exec(source.text, names)
+        assert names["self_test"]() == 0
+    assert repr(source).startswith("Source(python, wrench to 1e-09, base polygon")
+    exec(source.text.replace("BASE_AREA = 1", "BASE_AREA = 2"), names)
+    assert names["self_test"]() > 0
