@@ -55,9 +55,9 @@ def test_a_slope_that_is_told_counts_by_what_is_left_of_it(level, said):
 
 @pytest.mark.nightly
 @pytest.mark.parametrize("kind", KINDS)
-def test_nothing_wrong_is_called_determined_in_550_films(kind):
+def test_nothing_wrong_is_called_determined_in_250_films(kind):
     bad, shares, complaints = {}, [], 0
-    for seed in range(200, 222):
+    for seed in range(200, 210):
         film = drawn(kind, seed)
         try:
             found = pt.fit(film.track, film.puck)

@@ -41,10 +41,10 @@ def test_the_law_of_a_film_is_chosen(law):
 @pytest.mark.parametrize("law", LAWS)
 def test_the_law_of_many_films_is_chosen(law):
     right = 0
-    for seed in range(25):
+    for seed in range(10):
         found = pt.fit(film(puck_of(law), seed), pt.Puck(radius=0.04), laws=LAWS)
         right += found.laws[0].name == law
-    assert right >= 24.75
+    assert right == 10
 
 
 @pytest.mark.thorough

@@ -52,7 +52,7 @@ def varied(seed: int, folder: Path) -> dict[str, Any]:
     "first",
     [
         pytest.param(n, marks=[pytest.mark.thorough] * (n > 0) + [pytest.mark.nightly] * (n >= 20))
-        for n in range(0, 400, BLOCK)
+        for n in range(0, 160, BLOCK)
     ],
 )
 def test_a_far_post_changes_nothing(first: int, tmp_path: Path):

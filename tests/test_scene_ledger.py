@@ -39,4 +39,4 @@ def test_the_ledger_closes(tmp_path: Path) -> None:
 
 @pytest.mark.nightly
 def test_the_ledger_closes_for_many(tmp_path: Path) -> None:
-    _closes(range(200, 3000), tmp_path)
+    _closes(range(200, 1200), tmp_path)

@@ -73,9 +73,9 @@ def test_rebounds_that_settle(tmp_path):
 
 @pytest.mark.nightly
 def test_pairs_and_triples_by_the_hundred(tmp_path):
-    assert faults([draw(2, i) for i in range(400)], [1e-4, 1e-6, 1e-9], tmp_path) == []
+    assert faults([draw(2, i) for i in range(200)], [1e-4, 1e-6, 1e-9], tmp_path) == []
 
 
 @pytest.mark.nightly
 def test_many_rebounds_that_settle(tmp_path):
-    assert faults([draw_rebounds(2, i) for i in range(200)], [1e-6, 1e-9], tmp_path) == []
+    assert faults([draw_rebounds(2, i) for i in range(100)], [1e-6, 1e-9], tmp_path) == []

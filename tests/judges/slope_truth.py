@@ -15,6 +15,9 @@ from contact_truth import NODES, tabled
 from scipy.integrate import solve_ivp
 
 STEP, APART, SHARE = 1e-30, 0.02, 0.025
+BESIDE = 2e-3  # of a speed: a step that does not reach a line 0.01 rad away
+# complex steps err by up to 5e-7 in narrow panels of the series, differences across a line
+WAYS = ({"near": True}, {"share": BESIDE})
 WEIGHTS = {1: 3 / 4, 2: -3 / 20, 3: 1 / 60}
 TIME, X, Y, LENGTH, BODY, VX, VY, RIM = range(8)
 
@@ -67,7 +70,10 @@ def moved(law: str, delta: float, square: complex, v, w, moments) -> np.ndarray:
     )
 
 
-def slopes(law: str, delta: float, gyration: float, phi: np.ndarray, moments, near: bool) -> tuple:
+def slopes(
+    law: str, delta: float, gyration: float, phi: np.ndarray, moments, near: bool,
+    share: float = SHARE,
+) -> tuple:  # fmt: skip
     """Values (8, m, n), derivatives by v, rω, k/r, δ at equal τ (4, 8, m, n), rates (8, m, n).
 
     ``near``: what is next to a line, by the speeds in complex steps; else by differences, which
@@ -81,7 +87,7 @@ def slopes(law: str, delta: float, gyration: float, phi: np.ndarray, moments, ne
         return moved(law, delta + dh, (gyration + dk) ** 2, v + dv, w + dw, moments)[0]
 
     by = []
-    for row, h in enumerate([SHARE * v.real, SHARE * w.real, APART, APART]):
+    for row, h in enumerate([share * v.real, share * w.real, APART, APART]):
         if near and row < 3:
             by.append(at(row, 1j * STEP).imag / STEP)
         else:
@@ -93,11 +99,12 @@ def slopes(law: str, delta: float, gyration: float, phi: np.ndarray, moments, ne
 
 
 def stop_slopes(
-    law: str, delta: float, gyration: float, phi: np.ndarray, near: bool = False
-) -> np.ndarray:
+    law: str, delta: float, gyration: float, phi: np.ndarray, near: bool = False,
+    share: float = SHARE,
+) -> np.ndarray:  # fmt: skip
     """By v, rω, k/r, δ of time, x, y, path, body angle of stops from the launch at φ; (4, 5, n)."""
     slowest = max(1.0, 3.0 * gyration**2)
-    return slopes(law, delta, gyration, phi, np.array([32.0 * slowest]), near)[1][:, :5, 0]
+    return slopes(law, delta, gyration, phi, np.array([32.0 * slowest]), near, share)[1][:, :5, 0]
 
 
 def state_slopes(
