@@ -131,7 +131,7 @@ def test_one_friction_is_that_of_the_closed_forms():
 
 @kernel
 def _yield(floor_map, most, fx, fy, torque, guided):
-    return mixed_yield(floor_map, most, 1.0, fx, fy, torque, guided)
+    return mixed_yield(floor_map, most, 1.0, 1.0, fx, fy, torque, guided)
 
 
 @pytest.mark.parametrize("guided", [False, True])

@@ -81,9 +81,20 @@ const refused = (call) => { try { call(); } catch (error) { return String(error)
     () => fresh.strike(0, { velocity: [NaN, 0] }), () => fresh.strike(0, { velocity: [1e9, 0] }),
     () => fresh.place("first", { position: [-0.139, 0.0] }), () => fresh.advance(-1),
     () => fresh.drive("first", [1, 0]), () => { fresh.copy().remove(7); },
+    () => fresh.drive("mallet"), () => fresh.strike("first", [1, 0]),
+    () => fresh.place("first", { positon: [0, 0] }),
   ].map(refused);
+  const gone = fresh.copy(), { x, y } = gone.state()[5];
+  gone.remove("queen");
+  gone.place("queen", { position: [x, y] });
+  const squeezing = start.copy();
+  squeezing.place("queen", { position: [0.46, 0.1] });
+  squeezing.place("mallet", { position: [0.35, 0.1] });
+  squeezing.drive("mallet", [1, 0]);
+  refusals.push(refused(() => squeezing.advance(0.2)));
   const unchanged = before === JSON.stringify(rows(fresh));
-  console.log(JSON.stringify({ found, same, unchanged, refusals, names: board.names }));
+  const back = gone.state()[5].inPlay, names = board.names;
+  console.log(JSON.stringify({ found, same, unchanged, back, refusals, names }));
 })();
 """
 
@@ -121,17 +132,20 @@ def test_it_plays_as_the_world_does(in_node: dict):
 def test_copies_go_on_by_themselves_and_refusals_change_nothing(in_node: dict):
     assert in_node["same"]
     assert in_node["unchanged"]
+    assert in_node["back"]
     assert in_node["names"] == ["first", "second", "third", "black", "white", "queen", "mallet"]
     words = ["no puck nobody", "use drive", "velocity must be a finite number", "faster than",
              "first would overlap second by", "must not be negative", "not led by hand",
-             "no puck 7"]  # fmt: skip
+             "no puck 7", "velocity must be [x, y]", "give an object of velocity, spin",
+             "there is no positon, there are position",
+             "mallet, which is driven, squeezes queen"]  # fmt: skip
     for word, sentence in zip(words, in_node["refusals"], strict=True):
         assert word in sentence
 
 
 def test_what_moves_with_its_floor_is_refused():
     belt = pt.Scene(pt.Puck(0.03, friction=0.1), pt.Floor(velocity=(0.1, 0.0)))
-    with pytest.raises(pt.InputError, match="has a floor at rest"):
+    with pytest.raises(pt.InputError, match="a floor that moves, or"):
         pt.export_board(belt)
     with pytest.raises(pt.InputError, match="scene must be a Scene, got a str"):
         pt.export_board("carrom-break")

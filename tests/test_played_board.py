@@ -121,4 +121,13 @@ def test_strikes_by_numbers_and_refusals_are_said(page: Any):
     page.locator("#strike button").click()
     until(page, "!playing && played.board().time > 0.1")
     assert page.evaluate("played.board().state()[0].x") < -0.1
+    page.locator("#move").check()
+    page.mouse.move(*place_of(page, *page.evaluate("[played.board().state()[0].x, 0]")))
+    page.mouse.down()
+    page.mouse.move(*place_of(page, 0.1, 0.3), steps=3)
+    page.mouse.up()
+    x, y = page.evaluate("[played.board().state()[0].x, played.board().state()[0].y]")
+    assert (x, y) == pytest.approx((0.1, 0.3), abs=5e-3)
+    page.locator("#start").click()
+    assert page.evaluate("played.board().state()[0].x") == 0.0
     assert page.title() == "Two men </script>"

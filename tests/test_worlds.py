@@ -447,3 +447,14 @@ def test_boards_that_push_are_played_together(monkeypatch: pytest.MonkeyPatch):
     assert pair.strike(0, np.arange(3), np.tile([1.2, 0.0], (3, 1)), None)
     assert pair.advance(math.inf)
     assert all(world.groups > 0 for world in pair.single)
+
+
+def test_one_that_is_put_where_it_was_taken_out_is_back():
+    """Its row is not new, but place says that it comes back; set_state leaves it out."""
+    worlds = pt.Worlds(pt.Scene(pucks=[puck_at(0.0, 0.0), puck_at(0.2, 0.0)]), 2)
+    start = worlds.state()
+    worlds.remove(0)
+    worlds.set_state(start)
+    assert not worlds.in_play[:, 0].any()
+    worlds.place(0, (0.0, 0.0), 0.0, (0.0, 0.0), 0.0, boards=[1])
+    assert worlds.in_play[:, 0].tolist() == [False, True]

@@ -1,7 +1,7 @@
 // /*title*/: a board that is played exactly, in WebAssembly; made by puck-tables /*version*/.
 //
 //   const board = await puckBoard.load();
-//   board.strike("puck 0", { velocity: [1.0, 0.0], spin: 5.0 });
+//   board.strike(/*puck*/, { velocity: [1.0, 0.0], spin: 5.0 });
 //   for (const event of board.advance(1 / 60)) console.log(event.time, event.what, event.puck);
 //   const { x, y, angle } = board.state()[0];
 //
@@ -56,6 +56,19 @@ function number(name, value) {
 function pair(name, value) {
   if (!value || value.length !== 2) throw new TypeError(`${name} must be [x, y], got ${value}`);
   return [number(name, value[0]), number(name, value[1])];
+}
+
+/** What a call is given by name: nothing else, and no array. */
+function checked(given, ...names) {
+  if (typeof given !== "object" || given === null || Array.isArray(given)) {
+    throw new TypeError(`give an object of ${names.join(", ")}, got ${given}`);
+  }
+  for (const name of Object.keys(given)) {
+    if (!names.includes(name)) {
+      throw new TypeError(`there is no ${name}, there are ${names.join(", ")}`);
+    }
+  }
+  return given;
 }
 
 /** A disc or an obstacle of the engine, or a line, in words. */
@@ -114,10 +127,10 @@ class Board {
    * @param {number | string} puck
    * @param {{velocity?: [number, number], spin?: number}} given m/s, rad/s
    */
-  strike(puck, { velocity, spin } = {}) {
+  strike(puck, given) {
     const k = this.#inPlay(puck);
     if (SCENE.driven[k]) throw new RangeError(`${SCENE.pucks[k]} is driven: use drive`);
-    this.#hand(orders.struck, k, { velocity, spin });
+    this.#hand(orders.struck, k, checked(given, "velocity", "spin"));
   }
 
   /**
@@ -126,8 +139,9 @@ class Board {
    * @param {{position?: [number, number], angle?: number, velocity?: [number, number],
    *          spin?: number}} given m, rad, m/s, rad/s
    */
-  place(puck, given = {}) {
+  place(puck, given) {
     const k = this.#number(puck);
+    checked(given, "position", "angle", "velocity", "spin");
     if (!given.position && this.#kind(k) === codes.gone) {
       throw new RangeError(`${SCENE.pucks[k]} is not in play: give the position to put it at`);
     }
@@ -149,7 +163,7 @@ class Board {
   drive(puck, velocity, spin = 0) {
     const k = this.#inPlay(puck);
     if (!SCENE.driven[k]) throw new RangeError(`${SCENE.pucks[k]} is not led by hand: strike it`);
-    this.#hand(orders.led, k, { velocity, spin });
+    this.#hand(orders.led, k, { velocity: pair("velocity", velocity), spin });
   }
 
   /** A board of its own that goes on from here, to look ahead. */
@@ -176,7 +190,7 @@ class Board {
     if (codes.full.includes(count) && middle > now && depth < 40) {
       return [...this.#until(middle, depth + 1), ...this.#until(time, depth + 1)];
     }
-    throw this.#failure(count);
+    throw this.#failure(count, time - now);
   }
 
   #hand(what, k, { position, angle, velocity, spin }) {
@@ -206,16 +220,31 @@ class Board {
     return SCENE.lines.length ? events.sort((one, other) => one.time - other.time) : events;
   }
 
-  #failure(code) {
+  #failure(code, duration = 0) {
     if (code === codes.fast) {
       return new RangeError(`a slip is faster than ${SCENE.fastest} m/s: beyond, nothing is known`);
     }
     if (code === codes.misplaced) {
       const [one, other] = [...engine.contact].map((partner) => called(Number(partner)));
-      return new RangeError(`${one} would overlap ${other} by ${engine.depth[0]} m: put it elsewhere`);
+      const depth = engine.depth[0].toPrecision(3);
+      return new RangeError(`${one} would overlap ${other} by ${depth} m: put it elsewhere`);
     }
     return new Error(`the board cannot go on at ${this.#now.time} s: ${SCENE.failures[code] ??
-      "what touches meets again and again, or is squeezed against what does not give way"}`);
+      this.#squeezed(duration) ?? "what touches meets again and again"}`);
+  }
+
+  /** Who squeezes whom, if a puck that is driven comes to another within a duration. */
+  #squeezed(duration) {
+    const now = this.state(), fast = ({ vx, vy }) => Math.hypot(vx, vy);
+    for (const [k, one] of now.entries()) {
+      const near = now.findIndex((other, j) => SCENE.driven[k] && j !== k && other.inPlay
+        && Math.hypot(one.x - other.x, one.y - other.y) - SCENE.radii[j] - SCENE.radii[k]
+          <= (fast(one) + fast(other)) * Math.min(duration, 1) + 1e-6 * SCENE.radii[k]);
+      if (near >= 0) {
+        return `${SCENE.pucks[k]}, which is driven, squeezes ${SCENE.pucks[near]} against what ` +
+          "does not give way: lead it elsewhere";
+      }
+    }
   }
 
   #number(puck) {
@@ -246,5 +275,6 @@ async function load() {
 }
 
 globalThis.puckBoard = { load, scene: SCENE };
-if (typeof module === "object") module.exports = { load, scene: SCENE };
+(globalThis.puckBoards ??= {})[SCENE.title] = globalThis.puckBoard; // of several files
+if (typeof module === "object") module.exports = globalThis.puckBoard;
 })();

@@ -17,14 +17,17 @@ from typing import Any
 
 from puck_tables._core.real import instance
 from puck_tables._core.safe_write import write_bytes
+from puck_tables._core.wording import counted
 from puck_tables._version import __version__
 from puck_tables.errors import InputError, MissingExtraError, PuckError
 from puck_tables.export.licence import LICENCE
 from puck_tables.export.source import checked_ending
+from puck_tables.scene.entries import tables_of
 from puck_tables.scene.pucks_and_posts import called_line
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import engine_state as g
 from puck_tables.world import setting_off
+from puck_tables.world.lasting import LEADS_ON, NEVER_ENDS
 from puck_tables.world.layout import LIGHTNESS, RADIUS
 from puck_tables.world.paths import PIECE_COLUMNS
 from puck_tables.world.segment import GONE
@@ -47,6 +50,8 @@ _FAILURES = {
     setting_off.OFF_TABLE: "an impact is faster than its table of restitution goes",
     setting_off.TOO_SHORT: "no step is short enough to follow a puck",
     setting_off.PUSHING: "a slip is faster than its friction law is known",
+    NEVER_ENDS: "a puck still moves, and may never stop: give a time",
+    LEADS_ON: "the floor still carries a puck to where it may slip again: give a time",
 }
 
 
@@ -67,7 +72,8 @@ class BoardSource:
 
     def __repr__(self) -> str:
         title = f"{self.title}, " if self.title else ""
-        return f"BoardSource({title}{len(self.pucks)} pucks, {len(self.text)} bytes)"
+        pucks = counted(len(self.pucks), "puck")
+        return f"BoardSource({title}{pucks}, {len(self.text)} bytes)"
 
     def save(self, path: str | Path, overwrite: bool = False) -> None:
         """Write the file.
@@ -124,7 +130,7 @@ def export_board(scene: SceneSpec) -> BoardSource:
     >>> export_board(Scene(Puck(0.03, friction=0.1), Floor(turning=1.0)))
     Traceback (most recent call last):
         ...
-    puck_tables.errors.InputError: a board that is shipped has a floor at rest and no constraint...
+    puck_tables.errors.InputError: a floor that moves, or a puck that a constraint leads, goes...
     """
     if not isinstance(scene, SceneSpec):
         raise InputError(f"scene must be a Scene, got a {type(scene).__name__}")
@@ -136,11 +142,18 @@ def export_board(scene: SceneSpec) -> BoardSource:
     parts = {
         "title": _as_json(scene.title or "A board")[1:-1], "version": __version__,
         "licence": "".join(f"// {line}".rstrip() + "\n" for line in LICENCE.splitlines()),
+        "puck": _as_json(next(iter(_free(board)), board.names[0])),
         "scene": _as_json(_described(ship, board)), "code": code,
     }  # fmt: skip
     for name, value in parts.items():
         text = text.replace(f"/*{name}*/", value)
     return BoardSource(text, scene.title, board.names)
+
+
+def _free(board: Worlds) -> list[str]:
+    """The names of pucks that nobody drives."""
+    driven = board._first._engine.discs[board._place, LIGHTNESS] == 0.0
+    return [name for name, led in zip(board.names, driven, strict=True) if not led]
 
 
 def _as_json(value: Any) -> str:
@@ -177,7 +190,8 @@ def _described(ship: Shipped, board: Worlds) -> dict[str, Any]:
     }  # fmt: skip
     lines = len(board.scene.lines)
     return {
-        "title": board.scene.title, "pucks": board.names, "order": order.tolist(),
+        "title": board.scene.title, "parts": tables_of(board.scene), "pucks": board.names,
+        "order": order.tolist(),
         "radii": engine.discs[board._place, RADIUS].tolist(),
         "driven": (engine.discs[board._place, LIGHTNESS] == 0.0).tolist(),
         "obstacles": board._first._obstacles,

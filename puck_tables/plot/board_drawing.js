@@ -1,5 +1,5 @@
 // A board and the pucks on it, drawn on the canvas of a page; "film" says what there is.
-const [left, right, low, high] = film.box;
+let [left, right, low, high] = film.box;
 const FLASH = 0.25;  // s of the viewer's time that an impact is seen
 const canvas = document.getElementById("board"), pen = canvas.getContext("2d");
 let scale = 1;  // pixels a metre

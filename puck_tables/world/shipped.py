@@ -64,7 +64,8 @@ def shipped(scene: SceneSpec) -> tuple[Shipped, Worlds]:
     board = Worlds(scene, 1)
     if not board._plain:
         raise InputError(
-            "a board that is shipped has a floor at rest and no constraint: play this one in Python"
+            "a floor that moves, or a puck that a constraint leads, goes into no file: play this "
+            "board in Python"
         )
     engine, count = board._first._engine, len(board.names)
     radius, steady = least_scales(engine)

@@ -68,7 +68,9 @@ from puck_tables.world.segment import (
 from puck_tables.world.segment_starts import CONCERNED, NOT_CONCERNED, Room, locate, room_for
 from puck_tables.world.setting_off import FULL, PAUSED, PUSHING, REACHED
 
-LET_GO, LED = -1, -2  # what is done to boards beside an event by hand: time passes; a disc is led
+# what is done to boards beside an event by hand: time passes; a disc is led; all are put, but those
+# out of play whose rows are what they were
+LET_GO, LED, ALL_PUT = -1, -2, -3
 # how, beside what the engine says
 WAITS, TO_DO, ALONE, LACKS_PIECES = -1, -2, -3, -4
 ROWS = 2048  # of events and segments of a board in one call; beyond them it is played alone
@@ -328,8 +330,8 @@ def _lay_hands_on(what: int, k: int, orders: Orders, bench: Bench) -> None:
             write_over(state[VX:], row[VX:])
             lead(engine, i, state, FOR_EVER)
             engine.next_time[i], engine.next_partner[i] = t, PATH_ENDS
-        elif changed or what != PLACED or engine.kinds[i] != GONE:
-            if changed and what == PLACED and engine.discs[i, LIGHTNESS] == 0.0:
+        elif changed or what != ALL_PUT or engine.kinds[i] != GONE:
+            if changed and what in (PLACED, ALL_PUT) and engine.discs[i, LIGHTNESS] == 0.0:
                 for column in range(6):
                     if row[column] == row[column]:  # not NaN
                         state[column] = row[column]
@@ -361,7 +363,8 @@ def _played(what: int, k: int, orders: Orders, bench: Bench) -> int:
     engine, room, until = bench.engine, bench.room, orders.until[k]
     if what != LET_GO:
         _lay_hands_on(what, k, orders, bench)
-        return _run(engine, engine.clock[0], NOBODY if what == LED else what, bench)
+        first = NOBODY if what == LED else PLACED if what == ALL_PUT else what
+        return _run(engine, engine.clock[0], first, bench)
     how, target = GOES_ON, until
     if until < math.inf:
         how = _run(engine, until, NOBODY, bench)

@@ -20,7 +20,7 @@ from puck_tables.world.agreement import refuse_endless
 from puck_tables.world.engine_state import Whole
 from puck_tables.world.layout import LIGHTNESS
 from puck_tables.world.segment import GONE
-from puck_tables.world.stored import LED, LET_GO
+from puck_tables.world.stored import ALL_PUT, LED, LET_GO
 from puck_tables.world.together import Together, of_boards
 
 Boards = npt.ArrayLike | None
@@ -350,7 +350,7 @@ class Worlds(Together):
             raise InputError(f"states must have the shape {each}, or {one} for all, got "
                              f"{rows.shape}")  # fmt: skip
         rows = np.broadcast_to(rows, each)
-        self._do(g.PLACED, some, lambda world, k: world.set_state(rows[k]), 0.0,
+        self._do(ALL_PUT, some, lambda world, k: world.set_state(rows[k]), 0.0,
                  rows[:, self._order].copy(), np.arange(len(self.names)), anew)  # fmt: skip
 
     def _some(self, boards: Boards, again: bool = False) -> Whole:
