@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from puck_tables.trajectory import Trajectory
     from puck_tables.world.aimed import BoardAim
     from puck_tables.world.map import Map
+    from puck_tables.world.odds import Odds
     from puck_tables.world.sample import Sample
     from puck_tables.wrench.friction_hold import Hold
     from puck_tables.wrench.push import Push
@@ -55,6 +56,7 @@ _HOMES = {  # by the modules that hold them
     "trajectory": "Trajectory",
     "world.aimed": "BoardAim",
     "world.map": "Map",
+    "world.odds": "Odds",
     "world.sample": "Sample",
     "wrench.friction_hold": "Hold",
     "wrench.push": "Push",
@@ -63,7 +65,7 @@ _HOMES = {  # by the modules that hold them
 
 __all__ = [
     "Aim", "Answer", "BoardAim", "BoardSource", "CheckReport", "Comparison", "Fit", "FloorFriction",
-    "Forecast", "Hold", "LimitSurface", "Map", "Push", "Result", "Run", "Sample", "Source",
+    "Forecast", "Hold", "LimitSurface", "Map", "Odds", "Push", "Result", "Run", "Sample", "Source",
     "States", "StopMap", "StopSample", "Stops", "Trajectory",
 ]  # fmt: skip
 

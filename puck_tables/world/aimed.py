@@ -20,6 +20,7 @@ from puck_tables.scene.outcome import column_of, scene_texts
 from puck_tables.scene.run import Run
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import called, pucks_of, start_of
+from puck_tables.world.odds import Odds, Wish, odds_of
 from puck_tables.world.simulate import simulate
 from puck_tables.world.targets import Target
 
@@ -102,6 +103,45 @@ class BoardAim(Result):
             If there is no such launch.
         """
         return simulate(self.board(number))
+
+    def odds(
+        self, number: int = 0, *, heading: float = 0.0, speed: float = 0.0, spin: float = 0.0,
+        within: float | None = None, count: int = 2000, seed: int = 0,
+    ) -> Odds:  # fmt: skip
+        """How likely a launch does it where nobody hits it exactly, and the best aim beside it.
+
+        Parameters
+        ----------
+        number : of the launch
+        heading, speed, spin : standard deviations, rad, share of the speed, and rad/s
+        within : m, of a target: how near the puck is to end
+        count : scattered runs of the whole board; seed : of what they draw
+
+        Returns
+        -------
+        Odds
+            The best aim is climbed to from the launch by steps of the deviations, with 400 runs
+            of the same draws for each; then both are run anew with the same ``count`` of others.
+
+        Raises
+        ------
+        InputError
+            If there is no such launch, nothing scatters, or ``within`` is not given for a target.
+
+        Examples
+        --------
+        >>> from puck_tables import Edge, Puck, Scene
+        >>> edge = Edge((0.82, 0.0), normal=(-1, 0))
+        >>> table = Scene(pucks=[Puck(0.03, friction=0.1)], edges=[edge])
+        >>> odds = table.aim((0.8, 0.0), spin=0.0).odds(speed=0.05, within=0.1)
+        >>> round(odds.found.value, 2), round(odds.best.value, 2)         # short of the edge
+        (0.5, 0.58)
+        """
+        self.board(number)  # which refuses a number of none
+        wish = Wish(self.scene, self.striker, self.puck, self.target, self.pocket)
+        names = ("launch_heading", "launch_speed", "launch_spin")
+        start = np.array([float(self.columns[name][number]) for name in names])
+        return odds_of(wish, start, heading, speed, spin, within, count, seed)
 
     def explain(self) -> str:
         """What was found, and how it was looked for."""

@@ -409,6 +409,12 @@ def _put_down(model: Model, t: float, state: FloatArray, buffer: LoneBuffer) -> 
         state[n] = buffer.y[n]
 
 
+@inlined
+def _piece_for(coarse: float, h: float) -> float:
+    """How long a piece may be, where one over h was wrong by so many times what it may be."""
+    return h * max(0.2, _SAFE * coarse**-0.2) if coarse > 0.0 else math.inf
+
+
 @on_demand("boolean", "float64", "int64")
 def follow_alone(
     engine: Engine, i: int, t: float, state: FloatArray, work: FloatArray
@@ -417,7 +423,7 @@ def follow_alone(
 
     They stand after all pieces that there are, and what they did to the energies after all works,
     uncounted.  Where it rests for good there are none, until inf; ``state`` (6,) is moved to rest.
-    ``work`` (25, 12): to work on.
+    ``work`` (34, 12): to work on.
     """
     choose_belt(engine.regions, engine.discs, i, state)
     model, buffer = model_of(engine, i), _buffer_on(work)
@@ -475,9 +481,7 @@ def follow_alone(
         piece = engine.pieces[engine.counts[N_PIECES] + count]
         _write_piece(phase, now, length, piece, buffer)
         coarse = _misfit(phase, now, length, piece, tol, buffer)
-        longest = math.inf
-        if coarse > 0.0 and length > _BRIEF * unit:
-            longest = length * max(0.2, _SAFE * coarse**-0.2)
+        longest = _piece_for(coarse, length) if length > _BRIEF * unit else math.inf
         if coarse > 1.0 and longest < length:
             h = longest
             continue

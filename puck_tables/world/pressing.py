@@ -134,8 +134,7 @@ def press(
     """
     count = members.shape[0]
     find_places(members, contacts, buffer)
-    pairs, y = buffer.pairs[: contacts.shape[0]], buffer.states[0]
-    gives = buffer.gives[: contacts.shape[0]]
+    pairs, gives, y = buffer.pairs[: contacts.shape[0]], buffer.gives, buffer.states[0]
     for c in range(contacts.shape[0]):
         gives[c] = modes[c]
     for place in range(count):
