@@ -28,20 +28,20 @@ SOFTWARE. */
 (function () {
 "use strict";
 
-const TOLERANCE = 1e-06;
+const STOP_QUANTUM = 1.8e-08;
+const CONSTANTS_QUANTUM = 2e-09;
 const TALLEST = 1.6400000000000001;
 const STEEP = 0.7436049970255799;
 const SPIN_TIME = 0.9073780235273359;
 const LONGEST = 4.0;
-const PATCH_QUANTUM = 1.8e-09;
-const STOP_QUANTUM = 1.8e-08;
-const CONSTANTS_QUANTUM = 2e-09;
-const REACH = 16.0;
-const END = 0.6284;
+const TOLERANCE = 1e-06;
 const LARGEST = 8e+307;
 const SMALLEST = 1e-300;
 const TURN_SHARE = 0.001;
 const HALF_PI = 1.5707963267948966;
+const PATCH_QUANTUM = 1.8e-09;
+const REACH = 16.0;
+const END = 0.6284;
 const STOP_CASES = new Float64Array([
 2,0,30,0,.98,.04,2.5271238,2.3574644,0,2.3574644,43.757079,1,0,5,1.64,1,1,4.9126122,3.1898498,
 -.44903763,3.2566479,11.681946,1,0,1,.82,1,1,1.5241969,.73553297,-.071307237,.74240064,.7851529,
@@ -65,7 +65,7 @@ const STATE_CASES = new Float64Array([
 -90846.722,803.3435,1,0,5,1.64,1,1,7.369,3.1898498,-.44903763,11.681946,-0,-0,0]);
 const TURN_CASES = new Float64Array([
 2,0,30,0,.98,.04,0,1,0,5,1.64,1,1,-2.2453668,1,0,1,.82,1,1,-1.3262362]);
-const RESULTANT_CASES = new Float64Array([
+const RESULTANTS_CASES = new Float64Array([
 -.7853981633974483,0,1.0421913,0,1.3646787,-.7853981633974483,1.64,.99831104,.50909142,
 1.1928267,-.3,0,1.0259005,0,.86716155,-.3,1.64,1.0255682,.43570934,.53622047,0,0,1,0,.82,0,1.64,
 1,.41,.4838,.8,0,1.0196684,0,1.4180539,.8,1.64,.96936922,.49645517,1.2661125,1.4,0,.56641674,0,
@@ -411,7 +411,7 @@ function measured(vx, vy, spin, delta, decel, radius, m) {
 }
 const look_up_w = new Float64Array(8);
 const look_up_row = new Float64Array(70);
-function look_up(table, first, cells, degree, powers, functions, quantum, xi, s, found) {
+function look_up(table, first, cells, degree, powers, functions, quantum, xi, s, out_row) {
 	const w = look_up_w;
 	let p = xi * cells;
 	let cell = Math.floor(p);
@@ -437,18 +437,18 @@ function look_up(table, first, cells, degree, powers, functions, quantum, xi, s,
 	for (let f = 0; f < functions; f++) {
 		let value = row[width - functions + f];
 		for (let k = powers - 2; k > -1; k--) value = value * s + row[k * functions + f];
-		found[f] = value;
+		out_row[f] = value;
 	}
 }
-function look_beside(table, rows, degree, powers, functions, quantum, c, s, found) {
+function look_up_near(table, rows, degree, powers, functions, quantum, c, s, out_row) {
 	let side = 0;
 	for (let n = 0; n < 6 - 1; n++) side += c >= BORDERS[n] ? 1 : 0;
 	look_up(table, rows[side] * powers * functions, rows[side + 1] - rows[side] - degree, degree,
 			powers, functions, quantum, Math.sqrt(Math.sqrt((c - ORIGINS[side]) * SCALES[side])), s,
-			found);
+			out_row);
 }
 function table_at(side, share, delta, f) {
-	look_beside(STOP, STOP_ROWS, 3, 5, 5, STOP_QUANTUM, side == 1 ? 1.0 - share : share - 1.0,
+	look_up_near(STOP, STOP_ROWS, 3, 5, 5, STOP_QUANTUM, side == 1 ? 1.0 - share : share - 1.0,
 			STEEP * delta * delta - 1.0, f);
 }
 function stop_functions(side, share, delta, f) {
@@ -498,86 +498,86 @@ function constant(row, s) {
 	for (let m = 6 - 1; m > -1; m--) total = total * s + CONSTANTS[row * 6 + m];
 	return CONSTANTS_QUANTUM * total;
 }
-function orbit_at(piece, xi, s, found) {
-	let powers = ORBIT_POWERS[piece];
-	look_up(ORBIT, ORBIT_ROWS[piece], ORBIT_CELLS[piece], 4, powers > 1 ? powers : 1, 2,
-			ORBIT_QUANTA[piece], xi, s, found);
+function limit_motion_at(branch, xi, s, out_row) {
+	let powers = ORBIT_POWERS[branch];
+	look_up(ORBIT, ORBIT_ROWS[branch], ORBIT_CELLS[branch], 4, powers > 1 ? powers : 1, 2,
+			ORBIT_QUANTA[branch], xi, s, out_row);
 }
-function way_to(xi) {
+function heading_of(xi) {
 	let x = END * xi;
 	return REACH * x * x / (1.0 - x);
 }
-function off_by(piece, xi, s, wanted, f) {
-	orbit_at(piece, xi, s, f);
-	return piece == 1 || piece == 3 ? f[0] - wanted : Math.log(f[0] / wanted) - way_to(xi);
+function error_of(branch, xi, s, wanted, f) {
+	limit_motion_at(branch, xi, s, f);
+	return branch == 1 || branch == 3 ? f[0] - wanted : Math.log(f[0] / wanted) - heading_of(xi);
 }
 function heading_at(end, theta, rate, delta, s, part) {
 	let regular = part * RATE_UNITS[end] / rate;
 	return delta / TALLEST * (constant(6 + end, s) * theta + regular);
 }
 const know_f = new Float64Array(2);
-function know(delta, time, known) {
+function know(delta, time, launch) {
 	const f = know_f;
 	let s = STEEP * delta * delta - 1.0;
-	let c = known[5] == 1.0 ? 1.0 - known[6] : known[6] - 1.0;
+	let c = launch[5] == 1.0 ? 1.0 - launch[6] : launch[6] - 1.0;
 	let limit = constant(0, s);
 	let fast = c > limit ? 1 : 0;
 	let start = constant(1 + fast, s);
 	let ahead = (fast == 1 ? c < start : c > start) ? 1 : 0;
-	let piece = 2 * fast + ahead;
+	let branch = 2 * fast + ahead;
 	let wanted = c - limit;
 	if (ahead == 0) {
-		wanted = known[5] == fast ? known[6] : 2.0 - known[6];
+		wanted = launch[5] == fast ? launch[6] : 2.0 - launch[6];
 		wanted = wanted > SMALLEST ? wanted : SMALLEST;
 	}
 	let last = 0.0;
 	let xi = 1.0;
-	let was = off_by(piece, last, s, wanted, f);
-	let off = off_by(piece, xi, s, wanted, f);
+	let was = error_of(branch, last, s, wanted, f);
+	let error = error_of(branch, xi, s, wanted, f);
 	let beyond = 0.0;
-	if (was * off > 0.0) {
-		xi = Math.abs(was) < Math.abs(off) ? last : xi;
-		beyond = ahead == 0 && xi == 1.0 ? off : 0.0;
-		off = 0.0;
+	if (was * error > 0.0) {
+		xi = Math.abs(was) < Math.abs(error) ? last : xi;
+		beyond = ahead == 0 && xi == 1.0 ? error : 0.0;
+		error = 0.0;
 	}
 	let n = 0;
-	while (n < 60 && Math.abs(off) > 0.001 * TOLERANCE) {
-		let now = xi - (xi - last) * (off / (off - was));
-		let here = off_by(piece, now, s, wanted, f);
-		if (here * off < 0.0) {
+	while (n < 60 && Math.abs(error) > 0.001 * TOLERANCE) {
+		let now = xi - (xi - last) * (error / (error - was));
+		let here = error_of(branch, now, s, wanted, f);
+		if (here * error < 0.0) {
 			last = xi;
-			was = off;
+			was = error;
 		} else {
 			was = 0.5 * was;
 		}
 		xi = now;
-		off = here;
+		error = here;
 		n = n + 1;
 	}
-	orbit_at(piece, xi, s, f);
+	limit_motion_at(branch, xi, s, f);
 	let end = ahead == 1 ? 2 : fast;
 	let rate = constant(3 + end, s);
-	let theta = (way_to(xi) + beyond) / rate;
+	let theta = (heading_of(xi) + beyond) / rate;
 	theta = ahead == 1 ? -theta : theta;
-	known[11] = fast;
-	known[10] = theta;
-	known[9] = 0.0;
-	known[12] = heading_at(end, theta, rate, delta, s, f[1]);
-	known[13] = time;
+	launch[11] = fast;
+	launch[10] = theta;
+	launch[9] = 0.0;
+	launch[12] = heading_at(end, theta, rate, delta, s, f[1]);
+	launch[13] = time;
 }
 const arrive_o = new Float64Array(2);
-function arrive(known, delta, log_left, place, f) {
+function arrive(launch, delta, log_left, place, f) {
 	const o = arrive_o;
 	let s = STEEP * delta * delta - 1.0;
-	let theta = known[10] + log_left;
-	let fast = Math.floor(known[11]);
+	let theta = launch[10] + log_left;
+	let fast = Math.floor(launch[11]);
 	let ahead = theta < 0.0 ? 1 : 0;
 	let end = ahead == 1 ? 2 : fast;
 	let rate = constant(3 + end, s);
 	let z = Math.abs(theta) * rate;
-	let way = z / REACH;
-	let xi = 0.5 * (Math.sqrt(way * (way + 4.0)) - way) / END;
-	orbit_at(2 * fast + ahead, xi < 1.0 ? xi : 1.0, s, o);
+	let heading = z / REACH;
+	let xi = 0.5 * (Math.sqrt(heading * (heading + 4.0)) - heading) / END;
+	limit_motion_at(2 * fast + ahead, xi < 1.0 ? xi : 1.0, s, o);
 	let c = constant(0, s) + o[0];
 	let share = 1.0 - Math.abs(c);
 	let side = c > 0.0 ? 1 : 0;
@@ -596,26 +596,26 @@ function arrive(known, delta, log_left, place, f) {
 
 For delta > 0 it turns on without end.  The launch is that of stop(), the error the tolerance in
 rad, the code as there. */
-const turn_known = new Float64Array(14);
+const turn_launch = new Float64Array(14);
 const turn_g = new Float64Array(5);
 const turn_place = new Float64Array(3);
 function turn(vx, vy, spin, delta, decel, radius, out) {
-	const known = turn_known;
+	const launch = turn_launch;
 	const g = turn_g;
 	const place = turn_place;
-	let code = measured(vx, vy, spin, delta, decel, radius, known);
+	let code = measured(vx, vy, spin, delta, decel, radius, launch);
 	if (code != 0) return refused(out, 1, code);
 	out[0] = 0.0;
-	if (known[1] == 0.0 || known[2] == 0.0 || delta == 0.0) return 0;
-	stop_functions(Math.floor(known[5]), known[6], delta, g);
-	know(delta, g[0], known);
+	if (launch[1] == 0.0 || launch[2] == 0.0 || delta == 0.0) return 0;
+	stop_functions(Math.floor(launch[5]), launch[6], delta, g);
+	know(delta, g[0], launch);
 	let left = TURN_SHARE;
 	for (let unused = 0; unused < 12; unused++) {
-		arrive(known, delta, Math.log(left), place, g);
-		left = TURN_SHARE * g[0] / known[13];
+		arrive(launch, delta, Math.log(left), place, g);
+		left = TURN_SHARE * g[0] / launch[13];
 	}
-	let heading = known[9] * Math.log(TURN_SHARE) + place[2] - known[12];
-	out[0] = known[7] * heading;
+	let heading = launch[9] * Math.log(TURN_SHARE) + place[2] - launch[12];
+	out[0] = launch[7] * heading;
 	return 0;
 }
 /* Place x m, y m, body angle rad, velocity vx, vy m/s and spin rad/s at a time, into out[6].
@@ -623,24 +623,24 @@ function turn(vx, vy, spin, delta, decel, radius, out) {
 The launch is that of stop(); time s >= 0 after it, at rest from the stop on.  Errors: the
 tolerance times Q^2/J (place), Q^2/(J r) (angle), Q (velocity) and Q/r (spin) of the launch.
 Returns 0, 1 or 2 as stop() does. */
-const state_known = new Float64Array(14);
+const state_launch = new Float64Array(14);
 const state_f = new Float64Array(5);
 const state_g = new Float64Array(5);
 const state_end = new Float64Array(5);
 const state_place = new Float64Array(3);
 function state(vx, vy, spin, delta, decel, radius, time, out) {
-	const known = state_known;
+	const launch = state_launch;
 	const f = state_f;
 	const g = state_g;
 	const end = state_end;
 	const place = state_place;
-	let code = measured(vx, vy, spin, delta, decel, radius, known);
+	let code = measured(vx, vy, spin, delta, decel, radius, launch);
 	if (!(time - time == 0.0 && time >= 0.0)) code = 1;
 	if (code != 0) return refused(out, 6, code);
-	stop_functions(Math.floor(known[5]), known[6], delta, f);
-	stopped(known, f, delta, decel, radius, end);
+	stop_functions(Math.floor(launch[5]), launch[6], delta, f);
+	stopped(launch, f, delta, decel, radius, end);
 	let left = time < end[0] ? 1.0 - time / end[0] : 0.0;
-	if (left == 0.0 || known[1] == 0.0 || known[2] == 0.0 || time == 0.0) {
+	if (left == 0.0 || launch[1] == 0.0 || launch[2] == 0.0 || time == 0.0) {
 		let done = (1.0 - left) * (1.0 + left);
 		out[0] = end[1] * done;
 		out[1] = end[2] * done;
@@ -650,23 +650,23 @@ function state(vx, vy, spin, delta, decel, radius, time, out) {
 		out[5] = left * spin;
 		return 0;
 	}
-	let slip = known[0];
-	let around = known[7];
+	let slip = launch[0];
+	let around = launch[7];
 	let size = slip / decel * slip;
-	know(delta, f[0], known);
-	arrive(known, delta, Math.log1p(-(time / end[0])), place, g);
-	let fall = left * known[13] / g[0];
+	know(delta, f[0], launch);
+	arrive(launch, delta, Math.log1p(-(time / end[0])), place, g);
+	let fall = left * launch[13] / g[0];
 	let small = 0.5 * place[1];
 	let large = 1.0 - small;
 	let unit = fall / Math.sqrt(small * small + large * large);
 	let now = unit * (place[0] == 1.0 ? small : large);
 	let turn = unit * (place[0] == 1.0 ? large : small);
 	let heading = 0.0;
-	if (delta > 0.0) heading = around * (known[9] * Math.log(fall) + place[2] - known[12]);
+	if (delta > 0.0) heading = around * (launch[9] * Math.log(fall) + place[2] - launch[12]);
 	let cosine = Math.cos(heading);
 	let sine = Math.sin(heading);
-	let east = (cosine * known[3] - sine * known[4]) / known[1];
-	let north = (cosine * known[4] + sine * known[3]) / known[1];
+	let east = (cosine * launch[3] - sine * launch[4]) / launch[1];
+	let north = (cosine * launch[4] + sine * launch[3]) / launch[1];
 	let ahead = size * fall * now * g[1];
 	let aside = size * around * delta * turn * now * g[2];
 	out[0] = end[1] - (ahead * east - aside * north);
@@ -679,7 +679,7 @@ function state(vx, vy, spin, delta, decel, radius, time, out) {
 }
 function shape_integrals(ratio, fast, p) {
 	let c = (1.0 - ratio) / (1.0 + ratio);
-	look_beside(PATCH, PATCH_ROWS, 5, 1, 3, PATCH_QUANTUM, fast ? c : -c, 0.0, p);
+	look_up_near(PATCH, PATCH_ROWS, 5, 1, 3, PATCH_QUANTUM, fast ? c : -c, 0.0, p);
 }
 /* rho_parallel, rho_perpendicular and rho_omega, into out[3].
 
@@ -708,10 +708,10 @@ function resultants(phi, delta, out) {
 function misses(got, wanted, unit) {
 	return Math.abs(got - wanted) <= TOLERANCE * unit + 1e-300 ? 0 : 1;
 }
-const resultant_misses_out = new Float64Array(3);
-function resultant_misses() {
-	let c = RESULTANT_CASES;
-	const out = resultant_misses_out;
+const resultants_misses_out = new Float64Array(3);
+function resultants_misses() {
+	let c = RESULTANTS_CASES;
+	const out = resultants_misses_out;
 	let missed = 0;
 	for (let n = 0; n < 10; n++) {
 		missed += resultants(c[n * 5], c[n * 5 + 1], out);
@@ -770,7 +770,7 @@ function state_misses() {
 }
 /* How many numbers of the test vectors are missed: 0. */
 function self_test() {
-	return stop_misses() + state_misses() + turn_misses() + resultant_misses();
+	return stop_misses() + state_misses() + turn_misses() + resultants_misses();
 }
 globalThis.puckTables = { stop, state, turn, resultants, self_test };
 if (typeof module === "object") module.exports = { stop, state, turn, resultants, self_test };
