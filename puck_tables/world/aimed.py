@@ -20,7 +20,7 @@ from puck_tables.scene.outcome import column_of, scene_texts
 from puck_tables.scene.run import Run
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import called, pucks_of, start_of
-from puck_tables.world.odds import Odds, Wish, odds_of
+from puck_tables.world.odds import Odds, odds_of
 from puck_tables.world.simulate import simulate
 from puck_tables.world.targets import Target
 
@@ -138,10 +138,12 @@ class BoardAim(Result):
         (0.5, 0.58)
         """
         self.board(number)  # which refuses a number of none
-        wish = Wish(self.scene, self.striker, self.puck, self.target, self.pocket)
-        names = ("launch_heading", "launch_speed", "launch_spin")
-        start = np.array([float(self.columns[name][number]) for name in names])
-        return odds_of(wish, start, heading, speed, spin, within, count, seed)
+        names = [called(puck, n) for n, puck in enumerate(pucks_of(self.scene))]
+        who = names.index(self.striker), names.index(self.puck)
+        wanted = Target(*who, -1, self.target, -1 if self.pocket is None else self.pocket)
+        columns = ("launch_heading", "launch_speed", "launch_spin")
+        start = np.array([float(self.columns[name][number]) for name in columns])
+        return odds_of(self.scene, wanted, start, heading, speed, spin, within, count, seed)
 
     def explain(self) -> str:
         """What was found, and how it was looked for."""

@@ -13,12 +13,12 @@ from puck_tables._core.real import positive, real, whole
 from puck_tables.bulk.summary import Chance, chance_of
 from puck_tables.errors import InputError, PuckError
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.agreement import called, pucks_of
+from puck_tables.world.agreement import pucks_of
+from puck_tables.world.targets import Target
 from puck_tables.world.worlds import Worlds
 
 _TRIED = 400  # runs of each aim that is tried
 _ROUNDS = 12  # of steps of the search, which are halved where none helps
-_DEVIATIONS = 1.0  # of the scatter: its first steps
 
 
 class Odds(NamedTuple):
@@ -36,57 +36,47 @@ class Odds(NamedTuple):
     failed: int
 
 
-class Wish(NamedTuple):
-    """Which puck is to end where on a board when which is sent off; ``pocket`` None: at a place."""
+class _Trials:
+    """A board on which a launch is tried, scattered."""
 
-    scene: SceneSpec
-    striker: str
-    puck: str
-    target: tuple[float, float]
-    pocket: int | None
-
-
-class _Range:
-    """Copies of a board on which a launch is tried, scattered."""
-
-    def __init__(self, wish: Wish, scatter: FloatArray, within: float, count: int) -> None:
-        self._boards, self._within, self._wish = Worlds(wish.scene, count), within, wish
-        self._scatter, self._count = scatter, count
-        self._number = self._boards.names.index(wish.puck)
-        self._until = math.inf if wish.scene.time is None else wish.scene.time
+    def __init__(
+        self, scene: SceneSpec, wanted: Target, scatter: FloatArray, within: float
+    ) -> None:
+        self._start, self._wanted, self._scatter = Worlds(scene, 1), wanted, scatter
+        self._within, self._until = within, math.inf if scene.time is None else scene.time
         self.failed = 0
 
     def hits(self, centre: FloatArray, draws: FloatArray) -> npt.NDArray[np.bool_]:
         """Which runs with heading, speed, spin about a centre (3,) do it; draws (runs, 3)."""
-        some, boards = np.arange(len(draws)), self._boards
         heading, share, spin = (self._scatter * draws).T
         speed = centre[1] * (1.0 + share)
-        boards.reset()
+        boards, runs = self._start.copy(np.zeros(len(draws), int)), np.arange(len(draws))
         velocities = speed[:, None] * _along(centre[0] + heading)
-        boards.strike(self._wish.striker, velocities, centre[2] + spin, boards=some)
-        lost = np.zeros(self._count, bool)
-        lost[len(draws) :] = True
-        while True:
+        boards.strike(self._wanted.striker, velocities, centre[2] + spin)
+        hit = np.zeros(len(draws), bool)
+        while runs.size:
             try:
                 boards.advance(self._until)
+                hit[runs] = self._ends(boards)
                 break
             except PuckError as error:
                 if not error.boards:
                     raise
-                lost[list(error.boards)] = True
-                boards.remove(self._wish.striker, boards=list(error.boards))
-        self.failed = int(lost[: len(draws)].sum())
-        return (self._ends() & ~lost)[: len(draws)]
+                left = np.setdiff1d(np.arange(len(runs)), error.boards)
+                runs, boards = runs[left], boards.copy(left) if left.size else boards
+        self.failed = len(draws) - len(runs)
+        return hit
 
-    def _ends(self) -> npt.NDArray[np.bool_]:
+    def _ends(self, boards: Worlds) -> npt.NDArray[np.bool_]:
         """On which boards the puck is where it is to be."""
-        if self._wish.pocket is None:
-            places = self._boards.state()[:, self._number, :2]
-            near = np.hypot(*(places - self._wish.target).T) <= self._within
-            return np.asarray(near & self._boards.in_play[:, self._number])
-        events, fallen = self._boards.events, np.zeros(self._count, bool)
-        mine = (events["what"] == "pocket") & (events["puck"] == self._wish.puck)
-        mine &= events["partner"] == f"pocket {self._wish.pocket}"
+        wanted = self._wanted
+        if wanted.pocket < 0:
+            places = boards.state()[:, wanted.puck, :2]
+            near = np.hypot(*(places - wanted.place).T) <= self._within
+            return np.asarray(near & boards.in_play[:, wanted.puck])
+        events, fallen = boards.events, np.zeros(len(boards), bool)
+        mine = (events["what"] == "pocket") & (events["puck"] == boards.names[wanted.puck])
+        mine &= events["partner"] == f"pocket {wanted.pocket}"
         fallen[events["board"][mine]] = True
         return fallen
 
@@ -96,7 +86,7 @@ def _along(heading: FloatArray) -> FloatArray:
 
 
 def odds_of(
-    wish: Wish, start: FloatArray, heading: float, speed: float, spin: float,
+    scene: SceneSpec, wanted: Target, start: FloatArray, heading: float, speed: float, spin: float,
     within: float | None, count: int, seed: int,
 ) -> Odds:  # fmt: skip
     """The odds of a launch (heading, speed, spin): see ``BoardAim.odds``."""
@@ -104,16 +94,15 @@ def odds_of(
     scatter = np.array([real(name, value, unit) for name, value, unit in pairs])
     if (scatter < 0.0).any() or not scatter.any():
         raise InputError("heading, speed and spin scatter by 0 or more, and one of them by more")
-    if (within is None) == (wish.pocket is None):
+    if (within is None) == (wanted.pocket < 0):
         words = "give within, m: how near" if within is None else "leave within out: a pocket is"
         raise InputError(f"{words} the puck is to end")
     near = 0.0 if within is None else positive("within", within, "m")
     count, seed = whole("count", count, _TRIED), whole("seed", seed, 0)
-    pucks = enumerate(pucks_of(wish.scene))
-    if any(called(puck, n) == wish.striker and puck.launch.time > 0.0 for n, puck in pucks):
+    if pucks_of(scene)[wanted.striker].launch.time > 0.0:
         raise InputError("odds are of a striker that is sent off at once: launch.time is 0")
     drawn = np.random.default_rng(seed).normal(size=(2, count, 3))
-    boards = _Range(wish, scatter, near, count)
+    boards = _Trials(scene, wanted, scatter, near)
     best = _climb(boards, start, scatter * [1.0, start[1], 1.0], drawn[0, :_TRIED])
     found = boards.hits(start, drawn[1]).sum()
     failed, better = boards.failed, boards.hits(best, drawn[1]).sum()
@@ -127,11 +116,10 @@ def odds_of(
 
 
 def _climb(
-    boards: _Range, start: FloatArray, step: FloatArray, draws: FloatArray
+    boards: _Trials, start: FloatArray, step: FloatArray, draws: FloatArray
 ) -> FloatArray:  # fmt: skip
     """The aim with the most hits of the same draws, from step to step."""
     centre, most = start, boards.hits(start, draws).sum()
-    step = _DEVIATIONS * step
     for _ in range(_ROUNDS):
         moves = [sign * row for row in np.diag(step) if row.any() for sign in (1.0, -1.0)]
         hits = [boards.hits(centre + move, draws).sum() for move in moves]
