@@ -6,11 +6,11 @@ import json
 from importlib.resources import files
 from typing import NamedTuple
 
-from puck_tables.export.exported_tables import base_tables
+import numpy as np
+
 from puck_tables.export.languages import LANGUAGES
 from puck_tables.export.program import plain_motion, polygon_motion
 from puck_tables.export.source import export_source, functions_of, with_callees
-from puck_tables.puck import Puck
 
 TOL = 1e-6  # of Q/J, Q²/J: finer than a screen shows
 _SCRIPTS = ("base.js", "model.js", "draw.js", "hands.js")
@@ -84,13 +84,14 @@ def _friction_of_bases() -> str:
     modules = (plain_motion, polygon_motion)
     functions = {node.name: node for module in modules for node in functions_of(module)}
     of_base = ("BASE_SIDES", "BASE_COUNT", "BASE_AREA", "BASE_FARTHEST")
-    tables, _ = base_tables(Puck(base="box:1x1"))
+    nodes, weights = np.polynomial.legendre.leggauss(polygon_motion.BASE_RULE)
     numbers = {
         name: getattr(polygon_motion, name) for name in ("BASE_RULE", "FAR_AWAY", "ON_A_SIDE")
     }
     lines = [
         *(language.constant(name, value) for name, value in numbers.items()),
-        *(language.table(name, tables[name]) for name in ("BASE_NODES", "BASE_WEIGHTS")),
+        language.table("BASE_NODES", nodes.tolist()),
+        language.table("BASE_WEIGHTS", weights.tolist()),
         *(language.function(node) for node in with_callees(functions, ["wrench"]).values()),
     ]
     return "\n".join(
