@@ -69,6 +69,22 @@ def test_a_floor_whose_friction_falls_with_speed_is_named(seed):
     assert asked.chi2 / asked.degrees < 1.5 and asked.noise[0] < 0.5 * found.noise[0]
 
 
+@pytest.mark.parametrize("seed", few(2, range(20)))
+def test_a_mark_a_little_off_the_centre_is_named_first(seed):
+    """Five times the noise: a level table was blamed for it."""
+    rng = np.random.default_rng([35, 120, seed])
+    friction, times = rng.uniform(0.1, 0.3), np.arange(180) / 120.0
+    spin = rng.uniform(10.0, 40.0)
+    true = film_judge.path(
+        way_of(rng, rng.uniform(0.8, 2.0)), spin, friction * G, friction, 0.04, times
+    )
+    true[:2] += 1.5e-3 * np.stack([np.cos(true[2]), np.sin(true[2])])
+    track = pt.Track(times, *film_judge.noisy(rng, true, NOISE))
+    found = pt.fit(track, pt.Puck(radius=0.04, height=0.02))
+    assert abs(found["friction"].value - friction) < 4.0 * found["friction"].error
+    assert "off the centre" in found.misfit.split("; or ")[0]
+
+
 def test_a_height_that_no_puck_has_is_said():
     """A path on a floor that slopes sideways bends as that of a tall puck does."""
     rng = np.random.default_rng(3512)
