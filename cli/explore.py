@@ -21,8 +21,8 @@ def explore(ctx: click.Context, chosen: SceneChoice, out: Outputs) -> None:
 
     One file, without a server or a network: path, stop, speeds and their ratio over time, pressure
     under the base, stop times around; click where the puck shall stop.  Of pucks under uniform
-    pressure, Hertz's, that of a washer and of a hoop, whole base loaded; its numbers are within
-    1e-6 of Q/(f g) and Q^2/(f g).
+    pressure, Hertz's, that of a washer and of a hoop, whole base loaded, within 1e-6 of Q/(f g) and
+    Q^2/(f g); or of a flat base that you draw, within 5e-6.
 
     \b
     puck explore

@@ -219,4 +219,4 @@ def test_ends_of_launches_lead_back_to_them() -> None:
 def test_of_many_launches_almost_all_are_found_again() -> None:
     answers = [_asked_again(seed) for seed in range(100, 320)]
     asked = sum(one for one, _ in answers)
-    assert asked >= 150 and sum(found for _, found in answers) >= 0.99 * asked
+    assert asked >= 120 and sum(found for _, found in answers) >= 0.99 * asked

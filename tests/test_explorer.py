@@ -6,6 +6,7 @@ import dataclasses
 import math
 import os
 import re
+import shlex
 import shutil
 from collections.abc import Iterator
 from importlib.resources import files
@@ -263,6 +264,76 @@ def test_they_are_made_again_the_same(law: Any):
     np.testing.assert_allclose(ours, theirs, rtol=1e-6, atol=20.0)
 
 
+CORNERS = {
+    "box": [(-100, -50), (100, -50), (100, 50), (-100, 50)],
+    "clockwise": [(0, 0), (0, 90), (40, 30)],
+    "arrow": [(0, 0), (80, -40), (20, 0), (80, 40)],
+}
+
+
+@pytest.mark.parametrize("name", CORNERS)
+def test_a_drawn_base_moves_as_the_library_s(page: Any, name: str):
+    assert page.evaluate(f"explorer.setCorners({[list(one) for one in CORNERS[name]]})")
+    base = pt.Base.polygon(np.array(CORNERS[name]) / 1000.0)
+    rng = np.random.default_rng(3)
+    for speed, spin in ((2.0, 40.0), (0.0, 90.0), (3.0, 0.0), (0.5, -100.0)):
+        page.evaluate(f"explorer.set('speed', {speed}); explorer.set('spin', {spin})")
+        page.evaluate(f"explorer.set('heading', {rng.uniform(-180, 180)})")
+        now, run = shown(page)
+        heading = now["heading"] * DEGREE
+        puck = pt.Puck(base=base, friction=now["friction"])
+        told = puck.simulate((speed * math.cos(heading), speed * math.sin(heading)), spin)
+        slip = math.hypot(speed, puck.gyration * spin)
+        time, size = slip / puck.decel, slip**2 / puck.decel
+        assert abs(run["time"] - told.stop_time) < 5e-6 * time
+        assert np.hypot(*(np.array([run["x"], run["y"]]) - told.stop_position)) < 5e-6 * size
+        assert abs(run["turn"] - told.body_angle) < 5e-6 * size / puck.gyration
+        states = np.array(run["states"])[::20]
+        truth = puck.states(
+            (speed * math.cos(heading), speed * math.sin(heading)), spin, states[:, 0]
+        )
+        assert np.hypot(states[:, 1] - truth.x, states[:, 2] - truth.y).max() < 5e-6 * size
+        assert np.abs(states[:, 6] - truth.spin).max() < 2e-5 * slip / puck.gyration
+
+
+def test_a_base_is_drawn_by_hand_by_text_and_kept(page: Any, address: str):
+    page.evaluate("explorer.setLaw('drawn'); explorer.refresh(true)")
+    box = page.locator("#base").bounding_box()
+    size = min(box["width"], box["height"]) / 2 - 18
+    middle = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    page.mouse.move(middle[0], middle[1] - size / 5**0.5)  # between two corners of the box
+    page.mouse.down()
+    page.mouse.move(middle[0], middle[1] - 0.9 * size, steps=4)
+    page.mouse.up()
+    assert page.evaluate("explorer.drawn.corners.length") == 5
+    tip = max(page.evaluate("explorer.drawn.corners"), key=lambda one: one[1])
+    assert page.evaluate("explorer.now.radius") * (tip[1] + 0.2) > 30
+    box_text = page.locator("#corners")
+    before = page.evaluate("explorer.drawn.corners")
+    for wrong in ("0,0; 1,1", "0,0; 60,60; 60,0; 0,60", "0,0; 900,0; 0,900", "a,b; 1,2; 3,4"):
+        box_text.fill(wrong)
+        assert not box_text.evaluate("one => one.checkValidity()")
+        assert page.evaluate("explorer.drawn.corners") == before
+    box_text.fill("-60,-20; 60,-20; 60,20; -60,20")
+    page.evaluate("explorer.set('heading', 90); explorer.set('speed', 1); explorer.refresh(true)")
+    page.wait_for_timeout(600)
+    _, run = shown(page)
+    room: dict[str, Any] = {}
+    page.locator("#python").click()
+    exec(page.locator("#copied").text_content(), room)
+    assert run["time"] == pytest.approx(room["run"].stop_time, rel=1e-5)
+    page.locator("#command").click()
+    words = shlex.split(page.locator("#copied").text_content())
+    assert CliRunner().invoke(main, words[1:]).exit_code == 0
+    kept = page.url
+    page.goto(address)
+    page.goto(kept)
+    assert shown(page)[1]["time"] == pytest.approx(run["time"], rel=1e-6)
+    assert page.evaluate("explorer.aimAt(0.4, 0.3)")
+    _, run = shown(page)
+    assert (run["x"], run["y"]) == pytest.approx((0.4, 0.3), abs=1e-6)
+
+
 def test_a_narrow_window_hides_nothing(page: Any):
     page.set_viewport_size({"width": 390, "height": 800})
     page.wait_for_timeout(200)
@@ -273,6 +344,8 @@ def test_a_narrow_window_hides_nothing(page: Any):
 
 def test_axe_finds_nothing(page: Any):
     axe = pytest.importorskip("axe_playwright_python.sync_playwright")
+    assert axe.Axe().run(page).response["violations"] == []
+    page.evaluate("explorer.setLaw('drawn'); explorer.refresh(true)")
     assert axe.Axe().run(page).response["violations"] == []
 
 

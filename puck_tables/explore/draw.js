@@ -124,8 +124,18 @@ function drawPlane(found) {
 
 function drawPuck(pen, [, x, y, angle], size, colour) {
   const [px, py] = seen(x, y);
-  disc(pen, px, py, size, null, colour);
+  if (now.law === "drawn") outline(pen, drawn.corners.map((one) => placed(one, px, py, size, angle)), null, colour);
+  else disc(pen, px, py, size, null, colour);
   line(pen, [[px, py], [px + size * Math.cos(angle), py - size * Math.sin(angle)]], colour, 1.5);
+}
+
+// A corner of a drawn base in pixels, about its middle.
+const placed = ([x, y], px, py, size, angle) =>
+  [px + size * (x * Math.cos(angle) - y * Math.sin(angle)), py - size * (x * Math.sin(angle) + y * Math.cos(angle))];
+
+function outline(pen, points, fill, colour) {
+  line(pen, [...points, points[0], points[1]], colour, 1.5);
+  if (fill) { pen.fillStyle = fill; pen.fill(); }
 }
 
 // Curves over time: [colour, points (t, value), name, dashed].
@@ -166,7 +176,25 @@ function drawRatio(found) {
   drawCurves("ratio", found.time, top, [[BLUE, points, points.length ? "" : "no spin"]]);
 }
 
+// The base that is drawn, as it is launched, and what takes hold of it: corners, and points between them.
+function drawDrawn(found) {
+  const { pen, width, height } = paper("base"), size = Math.min(width, height) / 2 - 18;
+  const [mx, my, unit] = grip ? grip.frame : [0, 0, 1], at = ([x, y]) => [width / 2 + size * (mx + unit * x), height / 2 - size * (my + unit * y)];
+  const corners = drawn.corners.map(at), [cx, cy] = at([0, 0]), [, , , , vx, vy] = found.states[0];
+  outline(pen, corners, "#fde725", "#1d2430");
+  corners.forEach(([x, y], n) => {
+    const [bx, by] = corners[(n + 1) % corners.length];
+    disc(pen, (x + bx) / 2, (y + by) / 2, 3.5, "#fff", BLUE);
+    disc(pen, x, y, 6, BLUE, "#fff");
+  });
+  line(pen, [[cx - 5, cy], [cx + 5, cy]], "#1d2430", 1);
+  line(pen, [[cx, cy - 5], [cx, cy + 5]], "#1d2430", 1);
+  const v = Math.hypot(vx, vy);
+  if (v > 0) line(pen, [[cx, cy], [cx + 0.6 * size * vx / v, cy - 0.6 * size * vy / v]], GREEN, 3);
+}
+
 function drawBase(found) {
+  if (now.law === "drawn") return drawDrawn(found);
   const { pen, width, height } = paper("base"), size = Math.min(width, height) / 2 - 18, cells = 56, load = LOADS[now.law] || evenly;
   const picture = new ImageData(cells, cells), pixels = new Uint32Array(picture.data.buffer), [bx, by] = found.tilt;
   for (let row = 0; row < cells; row++) {
@@ -196,11 +224,12 @@ function drawBase(found) {
 
 function drawMap() {
   const { pen, width, height } = paper("map"), left = 34, low = height - 20, wide = width - left - 8, tall = low - 8;
-  const key = [now.law, now.radius, now.height, now.friction, view.fastest, view.most].join();
-  if (pictures.key !== key) {
+  const base = now.law === "drawn" ? [now.heading, drawn.corners] : [], count = law().map;
+  const key = [now.law, now.radius, now.height, now.friction, view.fastest, view.most, ...base].join();
+  if (pictures.key !== key && !(base.length && (held || grip))) {  // of a drawn base it takes a moment
     pictures.key = key;
-    pictures.times = stopTimes(view.fastest, view.most);
-    const longest = Math.max(...pictures.times), picture = new ImageData(MAP, MAP);
+    pictures.times = stopTimes(view.fastest, view.most, count);
+    const longest = Math.max(...pictures.times), picture = new ImageData(count, count);
     new Uint32Array(picture.data.buffer).set(pictures.times.map((time) => colourOf(time / longest)));
     pictures.longest = longest;
     pictures.map = picture;
@@ -219,7 +248,8 @@ function drawMap() {
 }
 
 function stamp(pen, name, picture, x, y, width, height) {
-  const sheet = pictures[`${name} sheet`] ||= Object.assign(document.createElement("canvas"), { width: picture.width, height: picture.height });
+  const sheet = pictures[`${name} sheet`] ||= document.createElement("canvas");
+  Object.assign(sheet, { width: picture.width, height: picture.height });
   sheet.getContext("2d").putImageData(picture, 0, 0);
   pen.imageSmoothingEnabled = true;
   pen.drawImage(sheet, x, y, width, height);
@@ -239,6 +269,7 @@ function draw(refit) {
   document.getElementById("told").textContent =
     `The puck stops after ${found.time.toFixed(4)} s at (${found.x.toFixed(4)}, ${found.y.toFixed(4)}) m, ${bend}. ` +
     `Its path is ${found.path.toFixed(4)} m long, and it turns ${(found.turn / 2 / Math.PI).toFixed(2)} times. ` +
-    `δ = 2fh/r = ${scale().delta.toFixed(3)}, of ${law().tallest.toFixed(2)} at most.`;
+    (now.law === "drawn" ? `It is flat, and even: k = ${(now.radius * drawn.square ** 0.5).toFixed(1)} mm.`
+      : `δ = 2fh/r = ${scale().delta.toFixed(3)}, of ${law().tallest.toFixed(2)} at most.`);
   return found;
 }

@@ -2,6 +2,7 @@
 // What a hand does: sliders, the arrow, the ring, a target, keys, the address.
 const inputs = {}, choice = document.createElement("select");
 let held = null, since = 0, later = 0;
+let grip = null;  // a corner of a drawn base that is held: its number, the corners at first, the frame they are seen in
 
 function refresh(refit) {
   for (const [name, [slider, box]] of Object.entries(inputs)) {
@@ -11,6 +12,9 @@ function refresh(refit) {
     slider.value = now[name];
   }
   choice.value = now.law;
+  document.body.classList.toggle("drawn", now.law === "drawn");
+  inputs.radius[0].previousSibling.textContent = now.law === "drawn" ? "reach / mm" : "radius / mm";
+  if (now.law === "drawn" && document.activeElement !== cornersBox) cornersBox.value = cornersText(0.01);
   const shown = draw(refit);
   clearTimeout(later);  // browsers allow an address to change some times a second only
   later = setTimeout(remember, 300);
@@ -19,19 +23,21 @@ function refresh(refit) {
 
 function remember() {
   const kept = Object.keys(FIELDS).map((name) => `${name}=${Number(now[name].toPrecision(10))}`);
-  history.replaceState(null, "", `#law=${now.law}&${kept.join("&")}`);
+  const base = now.law === "drawn" ? `&corners=${encodeURIComponent(cornersText(1e-6))}` : "";
+  history.replaceState(null, "", `#law=${now.law}&${kept.join("&")}${base}`);
 }
 
 function recall() {
   for (const [name, value] of new URLSearchParams(location.hash.slice(1))) {
     if (name === "law") setLaw(value);
+    else if (name === "corners") setCorners(cornersIn(value));
     else if (name in FIELDS) set(name, Number(value));
   }
 }
 
 function makeChoice() {
   const row = document.createElement("label"), word = document.createElement("span");
-  word.textContent = "pressure";
+  word.textContent = "base";
   choice.name = "law";
   for (const [name, { title }] of Object.entries(puckLaws)) choice.append(new Option(title, name));
   choice.addEventListener("input", () => {
@@ -65,6 +71,57 @@ function makeInputs() {
     inputs[name] = pair;
   }
 }
+
+// A base that is drawn: its corners in mm as text, and under the hand.
+const cornersBox = document.getElementById("corners"), base = document.getElementById("base");
+const cornersText = (step) => drawn.corners.map((one) => one.map((x) => Number((Math.round(x * now.radius / step) * step).toPrecision(9))).join(",")).join("; ");
+const cornersIn = (text) => text.split(/[;\n]/).filter((one) => one.trim()).map((one) => one.split(",").map(Number));
+
+cornersBox.addEventListener("input", () => {
+  const corners = cornersIn(cornersBox.value), right = corners.every((one) => one.length === 2 && one.every(Number.isFinite));
+  const taken = right && corners.length > 2 && setCorners(corners);
+  cornersBox.setCustomValidity(taken ? "" : "x,y; x,y; x,y in mm: three corners or more, sides that do not cross, 5 to 200 mm from the middle");
+  cornersBox.reportValidity();
+  if (taken) refresh(true);
+});
+for (const [name, corners] of Object.entries(SHAPES)) {
+  const button = Object.assign(document.createElement("button"), { type: "button", textContent: name });
+  button.addEventListener("click", () => { takeCorners(corners); now.target = null; refresh(true); });
+  document.getElementById("shapes").append(button);
+}
+
+// Where a pointer is on the drawing, in radii; the number of the corner there, or of the side and a half.
+function cornerAt(event) {
+  const [px, py] = pointAt(event), size = Math.min(base.clientWidth, base.clientHeight) / 2 - 18;
+  const x = (px - base.clientWidth / 2) / size, y = (base.clientHeight / 2 - py) / size;
+  const near = ([cx, cy]) => Math.hypot(x - cx, y - cy) * size < 12;
+  const middles = sidesOf(drawn.corners).map(([[ax, ay], [bx, by]]) => [(ax + bx) / 2, (ay + by) / 2]);
+  return { x, y, corner: drawn.corners.findIndex(near), side: middles.findIndex(near) };
+}
+
+base.addEventListener("pointerdown", (event) => {
+  if (now.law !== "drawn") return;
+  const { corner, side } = cornerAt(event), corners = drawn.corners.map((one) => [...one]);
+  if (corner < 0 && side < 0) return;
+  if (corner < 0) corners.splice(side + 1, 0, [0, 0]);
+  base.setPointerCapture(event.pointerId);
+  grip = { n: corner < 0 ? side + 1 : corner, corners, radius: now.radius, frame: [0, 0, 1] };
+});
+base.addEventListener("pointermove", (event) => {
+  if (!grip) return;
+  const { x, y } = cornerAt(event);
+  grip.corners[grip.n] = [x, y];
+  if (setCorners(grip.corners.map((one) => one.map((value) => value * grip.radius)))) grip.frame = drawn.frame.map((value) => value / grip.radius);
+  refresh(false);
+});
+for (const end of ["pointerup", "pointercancel"]) {
+  base.addEventListener(end, () => { if (grip) { grip = null; refresh(true); } });
+}
+base.addEventListener("dblclick", (event) => {
+  if (now.law !== "drawn") return;
+  const { corner } = cornerAt(event);
+  if (corner >= 0 && setCorners(drawn.corners.filter((_, n) => n !== corner).map((one) => one.map((x) => x * now.radius)))) refresh(true);
+});
 
 const plane = document.getElementById("plane"), near = ([x, y], px, py) => Math.hypot(x - px, y - py) < 22;
 
@@ -116,19 +173,20 @@ plane.addEventListener("keydown", (event) => {
   refresh(true);
 });
 
-// The law and the radius of gyration, where they are not what a puck has that nothing is said of.
-const kind = (before, between) => (now.law === "uniform" ? "" : `${before}${now.law}${between}${law().gyration}`);
+const short = (x) => Number(x.toPrecision(9)), velocity = () => [Math.cos, Math.sin].map((f) => short(now.speed * f(now.heading * Math.PI / 180)));
+// The puck in the words of Python and of commands; its law and radius of gyration where they are not those of a default one.
+const inMetres = (between) => drawn.corners.map((one) => one.map((x) => short(x * now.radius / 1000)).join(",")).join(between);
+const round = (size, height, before, between) => `${size}${short(now.radius / 1000)}${height}${short(now.height / 1000)}` +
+  (now.law === "uniform" ? "" : `${before}${now.law}${between}${law().gyration}`);
 
 function asPython() {
-  const a = now.heading * Math.PI / 180, short = (x) => Number(x.toPrecision(9));
-  return `import puck_tables as pt\npuck = pt.Puck(radius=${short(now.radius / 1000)}, height=${short(now.height / 1000)}, friction=${short(now.friction)}${kind(", pressure=\"", "\", gyration=")})\n` +
-    `run = puck.simulate((${short(now.speed * Math.cos(a))}, ${short(now.speed * Math.sin(a))}), spin=${short(now.spin)})`;
+  const puck = now.law === "drawn" ? `base=pt.Base.polygon([(${inMetres("), (")})])` : round("radius=", ", height=", ", pressure=\"", "\", gyration=");
+  return `import puck_tables as pt\npuck = pt.Puck(${puck}, friction=${short(now.friction)})\nrun = puck.simulate((${velocity().join(", ")}), spin=${short(now.spin)})`;
 }
 
 function asCommand() {
-  const a = now.heading * Math.PI / 180, short = (x) => Number(x.toPrecision(9));
-  return `puck simulate --v0 ${short(now.speed * Math.cos(a))},${short(now.speed * Math.sin(a))} --w0 ${short(now.spin)} ` +
-    `--radius ${short(now.radius / 1000)} --height ${short(now.height / 1000)} --friction ${short(now.friction)}${kind(" --pressure ", " --gyration ")}`;
+  const puck = now.law === "drawn" ? `--base "polygon:${inMetres(";")}"` : round("--radius ", " --height ", " --pressure ", " --gyration ");
+  return `puck simulate --v0 ${velocity().join(",")} --w0 ${short(now.spin)} ${puck} --friction ${short(now.friction)}`;
 }
 
 function copy(text) {
@@ -148,4 +206,4 @@ makeChoice();
 makeInputs();
 recall();
 refresh(true);
-globalThis.explorer = { now, run, set, setLaw, draw, refresh, aimAt, asPython, asCommand, tipOfArrow, knobOfRing, seen };
+globalThis.explorer = { now, run, set, setLaw, draw, refresh, aimAt, asPython, asCommand, setCorners, drawn, tipOfArrow, knobOfRing, seen };

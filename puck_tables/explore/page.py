@@ -6,10 +6,14 @@ import json
 from importlib.resources import files
 from typing import NamedTuple
 
-from puck_tables.export.source import export_source
+import numpy as np
+
+from puck_tables.export.languages import LANGUAGES
+from puck_tables.export.program import plain_motion, polygon_motion
+from puck_tables.export.source import export_source, functions_of, with_callees
 
 TOL = 1e-6  # of Q/J, Q²/J: finer than a screen shows
-_SCRIPTS = ("model.js", "draw.js", "hands.js")
+_SCRIPTS = ("base.js", "model.js", "draw.js", "hands.js")
 
 
 class ShownLaw(NamedTuple):
@@ -40,7 +44,8 @@ def explorer_page() -> str:
     Returns
     -------
     str
-        Its numbers come from :func:`puck_tables.export_source`, to 1e-6 of Q/J and Q²/J.
+        Its numbers come from :func:`puck_tables.export_source`, to 1e-6 of Q/J and Q²/J; bases that
+        are drawn on it are integrated, to 5e-6.
 
     Examples
     --------
@@ -51,7 +56,7 @@ def explorer_page() -> str:
     folder = files("puck_tables.explore")
     page = (folder / "page.html").read_text(encoding="utf-8")
     scripts = "".join((folder / name).read_text(encoding="utf-8") for name in _SCRIPTS)
-    return page.replace("/*laws*/", _laws()).replace("/*page*/", scripts)
+    return page.replace("/*laws*/", _laws() + _friction_of_bases()).replace("/*page*/", scripts)
 
 
 def _laws() -> str:
@@ -71,3 +76,24 @@ def _look_ups(law: ShownLaw) -> str:
     if not law.file:
         return export_source("js", ("stop", "state", "resultants"), TOL).text
     return (files("puck_tables.tables") / law.file).read_text(encoding="utf-8")
+
+
+def _friction_of_bases() -> str:
+    """``puckBase(sides, count, area, farthest)``: ``wrench`` of exported files, of any polygon."""
+    language = LANGUAGES["js"]
+    modules = (plain_motion, polygon_motion)
+    functions = {node.name: node for module in modules for node in functions_of(module)}
+    of_base = ("BASE_SIDES", "BASE_COUNT", "BASE_AREA", "BASE_FARTHEST")
+    nodes, weights = np.polynomial.legendre.leggauss(polygon_motion.BASE_RULE)
+    numbers = {
+        name: getattr(polygon_motion, name) for name in ("BASE_RULE", "FAR_AWAY", "ON_A_SIDE")
+    }
+    lines = [
+        *(language.constant(name, value) for name, value in numbers.items()),
+        language.table("BASE_NODES", nodes.tolist()),
+        language.table("BASE_WEIGHTS", weights.tolist()),
+        *(language.function(node) for node in with_callees(functions, ["wrench"]).values()),
+    ]
+    return "\n".join(
+        [f"\nfunction puckBase({', '.join(of_base)}) {{", *lines, "return wrench;", "}"]
+    )

@@ -217,9 +217,9 @@ def _text(
     more = [polygon_motion] if based else [law_motion] if by_law else []
     modules = [plain_motion, resultant_formulas, *more, self_check]
     public = list(dict.fromkeys(name for part in parts for name in PARTS[part]))
-    functions = {node.name: node for module in modules for node in _functions(module)}
+    functions = {node.name: node for module in modules for node in functions_of(module)}
     functions["self_test"] = _self_test(public)
-    functions = _needed(functions, [*public, "self_test"])
+    functions = with_callees(functions, [*public, "self_test"])
     if by_law:  # room for the lines of the law
         for name in functions.keys() - {*public, "self_test"}:
             del functions[name].body[0]
@@ -262,10 +262,10 @@ class _Whole(ast.NodeTransformer):
         return ast.Constant(self._numbers[node.id]) if node.id in self._numbers else node
 
 
-def _needed(
+def with_callees(
     functions: Mapping[str, ast.FunctionDef], public: Sequence[str]
 ) -> dict[str, ast.FunctionDef]:
-    """The functions that public ones call, each after what it calls."""
+    """Public functions and those that they call, each after what it calls."""
     result: dict[str, ast.FunctionDef] = {}
 
     def add(name: str) -> None:
@@ -307,7 +307,7 @@ def _words(kind: Puck) -> str:
     return re.sub(r"[^\w .,:=/+-]|\*/", "_", words, flags=re.ASCII)
 
 
-def _functions(module: ModuleType) -> list[ast.FunctionDef]:
+def functions_of(module: ModuleType) -> list[ast.FunctionDef]:
     """The functions of a program, as they are written."""
     tree = ast.parse(inspect.getsource(module))
     return [node for node in tree.body if isinstance(node, ast.FunctionDef)]
