@@ -143,6 +143,8 @@ def library(
     (radii, driven), sizes, lines = discs_of(board), sizes_of(ship), lines_of(board)
     things = [*board._first._obstacles, *lines]
     at_first = [array[:1].copy() for array in ship.store]
+    used = int(ship.store.whole[0, sizes["used"]]) - ship.bench.shared
+    at_first[2] = ship.store.pieces[0, : used + 1].copy()
     for array in ship.store:
         array[...] = 0  # it is put there
     known = [
