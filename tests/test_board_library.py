@@ -226,7 +226,9 @@ def test_the_program_of_the_page(tmp_path: Path) -> None:
     world = pt.Scene.load("carrom-break").world()
     world.strike("striker", (0.5, 2.0), 30.0)
     world.advance(1.0 / 60.0)
-    assert list(map(float, place.split())) == pytest.approx(world.state()[0, :2], rel=1e-5)
+    assert list(map(float, place.split())) == pytest.approx(
+        world.state()[world.names.index("striker"), :2], rel=1e-5
+    )
     assert told == [f"{event.time:g} s: {event.puck}" for event in world.advance(float("inf"))]
 
 
