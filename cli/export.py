@@ -73,7 +73,7 @@ def _export_board(
     ctx: click.Context, language: str, target: str | None, chosen: SceneChoice, out: Outputs
 ) -> None:
     """Write what plays the board of a scene."""
-    from puck_tables.export.board_source import export_board, library_beside
+    from puck_tables.export.board_source import export_board, library_file
     from puck_tables.world.scene import Scene
 
     if language not in ("c", "js"):
@@ -81,7 +81,7 @@ def _export_board(
     tables = scene_tables(ctx, chosen, ("language", "target"))
     assert out.output is not None
     name = re.sub(r"\W", "_", out.output.stem, flags=re.ASCII)
-    beside = library_beside(out.output, language, name)
+    beside = library_file(out.output, language, name)
     out.prepare(*chosen.reads(tables), others=(beside,), saved=False)
     scene = Scene.from_tables(tables, chosen.name)
     source = export_board(scene, language, target=target, name=name)

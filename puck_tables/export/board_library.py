@@ -39,20 +39,20 @@ from puck_tables.world.stored import FOUND_COLUMNS, LACKS_PIECES, LED, LET_GO
 from puck_tables.world.worlds import Worlds
 
 
-class Target(NamedTuple):
-    """A machine: what LLVM calls it, and what zig does."""
+class Machine(NamedTuple):
+    """What LLVM calls a machine, and what zig does."""
 
     triple: str
     system: str
 
 
 TARGETS = {
-    "x86_64-linux": Target("x86_64-unknown-linux-gnu", "x86_64-linux-gnu"),
-    "aarch64-linux": Target("aarch64-unknown-linux-gnu", "aarch64-linux-gnu"),
-    "x86_64-macos": Target("x86_64-apple-macosx11.0.0", "x86_64-macos"),
-    "aarch64-macos": Target("arm64-apple-macosx11.0.0", "aarch64-macos"),
-    "x86_64-windows": Target("x86_64-w64-windows-gnu", "x86_64-windows-gnu"),
-    "aarch64-windows": Target("aarch64-w64-windows-gnu", "aarch64-windows-gnu"),
+    "x86_64-linux": Machine("x86_64-unknown-linux-gnu", "x86_64-linux-gnu"),
+    "aarch64-linux": Machine("aarch64-unknown-linux-gnu", "aarch64-linux-gnu"),
+    "x86_64-macos": Machine("x86_64-apple-macosx11.0.0", "x86_64-macos"),
+    "aarch64-macos": Machine("arm64-apple-macosx11.0.0", "aarch64-macos"),
+    "x86_64-windows": Machine("x86_64-w64-windows-gnu", "x86_64-windows-gnu"),
+    "aarch64-windows": Machine("aarch64-w64-windows-gnu", "aarch64-windows-gnu"),
 }
 _FULL = {"FULL": setting_off.FULL, "PAUSED": setting_off.PAUSED, "LACKS_PIECES": LACKS_PIECES}
 # what a host says to the engine, and what it hears; of the last three shorter calls may do
@@ -115,7 +115,7 @@ def objects(folder: str, triple: str, ship: Shipped, known: list[Any], symbol: s
     return ["engine.o", f"{symbol}.o"]
 
 
-def checked_target(target: str | None) -> Target:
+def checked_target(target: str | None) -> Machine:
     """A machine by its name; None: this one.
 
     Examples
@@ -134,7 +134,7 @@ def checked_target(target: str | None) -> Target:
 
 
 def library(
-    ship: Shipped, board: Worlds, described: str, name: str, target: Target
+    ship: Shipped, board: Worlds, described: str, name: str, target: Machine
 ) -> tuple[str, bytes]:
     """A header, and a static library of the engine, the board and its host in C.
 

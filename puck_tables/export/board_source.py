@@ -84,14 +84,14 @@ class BoardSource:
             If a file exists or cannot be written.
         """
         instance("path", path, str, Path)
-        beside = library_beside(path, self.language, self.name)
+        beside = library_file(path, self.language, self.name)
         check_target(path, overwrite)
         if beside is not None:
             write_bytes(beside, self.library, overwrite)
         write_bytes(path, self.text.encode(), overwrite)
 
 
-def library_beside(path: str | Path, language: str, name: str) -> Path | None:
+def library_file(path: str | Path, language: str, name: str) -> Path | None:
     """Where the library of a header goes; a file is refused whose ending is not its language's."""
     checked_ending(path, language)
     if language != "c":

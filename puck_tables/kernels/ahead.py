@@ -148,8 +148,8 @@ def _compiled(triple: str, kind: Any, doors: Sequence[Outside]) -> bytes:
     codes = []
     for name, kernel, arguments in doors:
         codes.append(_written(kernel.py_func, kernel.fuses, (kind, *map(_typeof, arguments))))
-        given = [_STATUS if isinstance(one, int) else _DOUBLE for one in arguments]
-        _add_function(outer, name, codes[-1], [_ADDRESS, *given], _STATUS)
+        inputs = [_STATUS if isinstance(one, int) else _DOUBLE for one in arguments]
+        _add_function(outer, name, codes[-1], [_ADDRESS, *inputs], _STATUS)
     for name, function in FUNCTIONS.items():
         count = function.__code__.co_argcount
         codes.append(_written(function, False, (_typeof(1.0),) * count))
@@ -182,20 +182,20 @@ def _written(function: Any, fuses: bool, kinds: tuple[Any, ...]) -> Any:
     return made.overloads[kinds]
 
 
-def _add_function(module: Any, name: str, code: Any, given: list[Any], result: Any) -> None:
+def _add_function(module: Any, name: str, code: Any, inputs: list[Any], result: Any) -> None:
     """Write down a function that calls what numba made, and gives what that gives."""
-    outside = ir.Function(module, ir.FunctionType(result, given), _PREFIX + name)
+    outside = ir.Function(module, ir.FunctionType(result, inputs), _PREFIX + name)
     convention: Any = cpu_target.target_context.call_conv
     called = convention.get_function_type(code.signature.return_type, code.signature.args)
     inside = ir.Function(module, called, code.fndesc.llvm_func_name)
     builder = ir.IRBuilder(outside.append_basic_block())
     found = builder.alloca(_WORD if result == _STATUS else result)
-    given = [found, builder.alloca(_ADDRESS), *outside.args]
-    for n, (one, argument) in enumerate(zip(given, inside.args, strict=True)):
+    handed = [found, builder.alloca(_ADDRESS), *outside.args]
+    for n, (one, argument) in enumerate(zip(handed, inside.args, strict=True)):
         if one.type == _STATUS:
-            given[n] = builder.sext(one, _WORD)
+            handed[n] = builder.sext(one, _WORD)
         elif one.type != argument.type:
-            given[n] = builder.bitcast(one, argument.type)
-    builder.call(inside, given)
+            handed[n] = builder.bitcast(one, argument.type)
+    builder.call(inside, handed)
     value = builder.load(found)
     builder.ret(builder.trunc(value, _STATUS) if result == _STATUS else value)

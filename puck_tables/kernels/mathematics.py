@@ -14,11 +14,12 @@ from collections.abc import Callable
 from puck_tables.kernels.compile import inner
 from puck_tables.kernels.elementary import angle_of, cosine_sine_of, exp_of, log_of
 
-_LEAST_NORMAL, _TWO_54, _LN_TWO_54 = 2.3e-308, 2.0**54, 37.42994775023704670
+_LEAST_NORMAL = 2.3e-308  # less is multiplied by what follows
+_TWO_54, _LN_TWO_54 = 2.0**54, 37.42994775023704670  # and its logarithm
 _LARGEST_ANGLE = 1e15  # rad: beyond it neighbouring numbers are a quarter of a radian apart
 _LOST = 4e16  # beside it 1 is nothing
 _HALVED = 700.0  # exponentials of more are squares
-_LN2 = 0.69314718055994530942
+_LN2 = 0.69314718055994530942  # ln 2
 
 
 @inner

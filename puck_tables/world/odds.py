@@ -46,7 +46,7 @@ class Odds(NamedTuple):
         )
 
     def summary(self) -> dict[str, Any]:
-        """The same, ready for JSON."""
+        """Chances and aim, ready for JSON."""
         chances = {"found": self.found._asdict(), "best": self.best._asdict()}
         return self._asdict() | chances
 
