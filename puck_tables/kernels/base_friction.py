@@ -37,7 +37,6 @@ from puck_tables.kernels.polygon_sums import (
     PIECE_COLUMNS,
     RADIUS,
     TURN,
-    flat_sums,
     polygon_sums,
 )
 
@@ -139,10 +138,9 @@ def pressure_on(base: FloatArray, sums: Sums) -> tuple[float, float, float]:
     sx, sy = base[FIRST_X] - lever * sums[0], base[FIRST_Y] - lever * sums[1]
     xx, xy = base[SECOND_XX] - lever * sums[2], base[SECOND_XY] - lever * sums[3]
     yx, yy = base[SECOND_XY] - lever * sums[4], base[SECOND_YY] - lever * sums[5]
-    turn = 1.0 / (xx * yy - xy * yx)
-    bx, by = turn * (xy * sy - yy * sx), turn * (yx * sx - xx * sy)
-    a = 1.0 / (base[AREA] + base[FIRST_X] * bx + base[FIRST_Y] * by)
-    return a, a * bx, a * by
+    bx, by, turn = xy * sy - yy * sx, yx * sx - xx * sy, xx * yy - xy * yx
+    one = 1.0 / (base[AREA] * turn + base[FIRST_X] * bx + base[FIRST_Y] * by)
+    return one * turn, one * bx, one * by
 
 
 @inlined
@@ -165,21 +163,11 @@ def is_uniform(base: FloatArray) -> bool:
 
 
 @inlined
-def uniform_sums(
-    base: FloatArray, ux: float, uy: float, w: float
-) -> tuple[float, float, float]:  # fmt: skip
-    """∫ e dA and its moment over such a base, in its axes."""
-    return flat_sums(base, HEAD, int(base[SIDES]), base[REACH], ux, uy, w)
-
-
-@inner
 def grip(base: FloatArray, ux: float, uy: float, w: float) -> tuple[float, float, float]:
     """Force and torque over f N that keep a base slipping, in its own axes: against friction."""
-    if is_uniform(base):
-        fx, fy, torque = uniform_sums(base, ux, uy, w)
-        a = 1.0 / base[AREA]
-        return a * fx, a * fy, a * torque
     sums = base_sums(base, ux, uy, w)
+    if is_uniform(base):
+        return under_load(sums, 1.0 / base[AREA], 0.0, 0.0)
     return under_load(sums, *pressure_on(base, sums))
 
 

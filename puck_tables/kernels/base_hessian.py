@@ -43,6 +43,7 @@ from puck_tables.kernels.base_sums import NOTHING
 from puck_tables.kernels.closed_form_kernel import few_elliptic, full_elliptic
 from puck_tables.kernels.compile import inlined, inner, summed
 from puck_tables.kernels.polygon_sums import (
+    ANEW,
     BEGIN_X,
     BEGIN_Y,
     FAR,
@@ -55,7 +56,6 @@ from puck_tables.kernels.polygon_sums import (
     TANGENT_Y,
     WEIGHT,
     ray_to,
-    side_from,
 )
 
 Hessian = tuple[float, float, float, float, float, float]  # xx, xy, yy, xw, yw, ww
@@ -83,7 +83,12 @@ def _sides_near(
     xx, xy, yy, far = 0.0, 0.0, 0.0, 0.0
     at_c = a + bx * cx + by * cy
     for i in range(HEAD, HEAD + PIECE_COLUMNS * int(base[SIDES]), PIECE_COLUMNS):
-        tx, ty, length, d, begin, end, near, far = side_from(base, i, cx, cy, far)
+        px, py = base[i + BEGIN_X] - cx, base[i + BEGIN_Y] - cy
+        tx, ty, length = base[i + TANGENT_X], base[i + TANGENT_Y], base[i + LENGTH]
+        near = math.sqrt(px * px + py * py) if base[i + ANEW] != 0.0 else far
+        d, begin = px * ty - py * tx, px * tx + py * ty
+        end = begin + length
+        far = math.sqrt(d * d + end * end)
         both = near + far
         first, last = 1.0 / max(near, _TINY), 1.0 / max(far, _TINY)
         k0 = end * last - begin * first

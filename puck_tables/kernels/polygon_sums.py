@@ -12,9 +12,10 @@ along t from C, R₀ and R₁ how far these are, L its length,
     ∫ e dA = ½ Σ d (d A₀ t − A₁ n),  ∫ R dA = ⅓ Σ d B₀,  ∫ R r dA = ¼ Σ d (d B₀ n + B₁ t),
     ∫ e ⊗ r dA = ⅓ Σ d [(d A₀ t − A₁ n) ⊗ d n + (d A₁ t − A₂ n) ⊗ t]     (r from C, sgn w = 1):
 
-one logarithm and one root a side.  Where C lies far away these cancel; there the inner integral
-runs from the distance of C instead of 0, which is a short polynomial, and Gauss's rule along a side
-is exact to rounding.
+the last without a trace, as e is across r, and yx − xy = ∫ R dA.  So seven sums are all, with one
+logarithm and two roots a side, of four sides at once.  Where C lies far away these cancel; there
+the inner integral runs from the distance of C instead of 0, which is a short polynomial, and
+Gauss's rule along a side is exact to rounding.
 """
 
 from __future__ import annotations
@@ -25,7 +26,8 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.base_sums import NOTHING, Sums
-from puck_tables.kernels.compile import inlined, inner, summed
+from puck_tables.kernels.compile import inlined, summed
+from puck_tables.kernels.elementary import log_of
 
 # of a piece of contour: where it begins; of a straight one its unit tangent with the base to the
 # left, its length, and whether it begins where the one before ends (0) or not (1), of an arc in
@@ -39,24 +41,9 @@ PIECE_COLUMNS = 9
 FAR = 6.0
 NODES = 8  # of Gauss's rule on a side that far away: 6e-16, told by the same test
 NODE, WEIGHT = np.polynomial.legendre.leggauss(NODES)
+_LANES = 4  # sides at once: as many as a box has, and as registers of most machines hold
 _SHORT = 0.05  # of the sum of the distances of its ends: a series of six terms is exact
 LEAST = 1e-17  # of a length: C on a side; what the logarithm loses is multiplied by d² = 0
-
-
-@inlined
-def side_from(
-    base: FloatArray, i: int, cx: float, cy: float, far: float
-) -> tuple[float, float, float, float, float, float, float, float]:
-    """A side as C sees it: its tangent, its length, d, s₀, s₁, R₀ and R₁.
-
-    ``far``: R₁ of the side before.
-    """
-    px, py = base[i + BEGIN_X] - cx, base[i + BEGIN_Y] - cy
-    tx, ty, length = base[i + TANGENT_X], base[i + TANGENT_Y], base[i + LENGTH]
-    near = math.sqrt(px * px + py * py) if base[i + ANEW] != 0.0 else far
-    d, begin = px * ty - py * tx, px * tx + py * ty
-    end = begin + length
-    return tx, ty, length, d, begin, end, near, math.sqrt(d * d + end * end)
 
 
 @inlined
@@ -74,7 +61,7 @@ def ray_to(
     return vx, vy, slip, deep
 
 
-@inner
+@inlined
 def polygon_sums(
     base: FloatArray, first: int, count: int, reach: float, ux: float, uy: float, w: float
 ) -> Sums:  # fmt: skip
@@ -86,28 +73,6 @@ def polygon_sums(
     if math.sqrt(ux * ux + uy * uy) > FAR * reach * abs(w):
         return _far(base, first, count, ux, uy, w)
     return _near(base, first, count, ux, uy, w)
-
-
-@inner
-def flat_sums(
-    base: FloatArray, first: int, count: int, reach: float, ux: float, uy: float, w: float
-) -> tuple[float, float, float]:  # fmt: skip
-    """∫ e dA and its moment alone: all that uniform pressure asks for, in half the time."""
-    if math.sqrt(ux * ux + uy * uy) > FAR * reach * abs(w):
-        sums = _far(base, first, count, ux, uy, w)
-        return sums[0], sums[1], sums[4] - sums[3]
-    cx, cy = -uy / w, ux / w
-    ex, ey, size, far = 0.0, 0.0, 0.0, 0.0
-    for i in range(first, first + PIECE_COLUMNS * count, PIECE_COLUMNS):
-        tx, ty, length, d, begin, end, near, far = side_from(base, i, cx, cy, far)
-        both = near + far
-        along = d * math.log((both + length) / max(both - length, LEAST * length))
-        a1 = length * (begin + end) / both
-        ex, ey = ex + d * (along * tx - a1 * ty), ey + d * (along * ty + a1 * tx)
-        size += d * (end * far - begin * near + d * along)
-    sign = 1.0 if w > 0.0 else -1.0
-    ex, ey = 0.5 * sign * ex, 0.5 * sign * ey
-    return ex, ey, sign * size / 6.0 + cx * ey - cy * ex
 
 
 @inlined
@@ -125,34 +90,43 @@ def _second(q: float, across: float, both: float) -> float:
 @inlined
 def _near(base: FloatArray, first: int, count: int, ux: float, uy: float, w: float) -> Sums:
     cx, cy = -uy / w, ux / w
-    ex, ey, size, rx, ry, far = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    xx, xy, yx, yy = 0.0, 0.0, 0.0, 0.0
-    for i in range(first, first + PIECE_COLUMNS * count, PIECE_COLUMNS):
-        tx, ty, length, d, begin, end, near, far = side_from(base, i, cx, cy, far)
-        both = near + far
-        a0 = math.log((both + length) / max(both - length, LEAST * length))
-        a1 = length * (begin + end) / both
-        product, square = end * far - begin * near, d * d * a0
-        a2, b0 = 0.5 * (product - square), 0.5 * (product + square)
-        share = length / both
-        if share < _SHORT:
-            a2 = _second(share, begin + end, both)
-        b1 = a1 * (far * far + far * near + near * near) / 3.0
-        nx, ny = ty, -tx
-        ax, ay = d * (d * a0 * tx - a1 * nx), d * (d * a0 * ty - a1 * ny)
-        bx, by = d * (d * a1 * tx - a2 * nx), d * (d * a1 * ty - a2 * ny)
-        ex, ey, size = ex + ax, ey + ay, size + d * b0
-        rx, ry = rx + d * (d * b0 * nx + b1 * tx), ry + d * (d * b0 * ny + b1 * ty)
-        xx, xy = xx + ax * d * nx + bx * tx, xy + ax * d * ny + bx * ty
-        yx, yy = yx + ay * d * nx + by * tx, yy + ay * d * ny + by * ty
+    ex, ey, size, rx, ry, xx, mean = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for block in range(0, count, _LANES):
+        for lane in range(_LANES):  # beyond the last side: one on which C lies adds nothing
+            there = block + lane < count
+            i = first + PIECE_COLUMNS * (block + lane if there else block)
+            px, py = base[i + BEGIN_X] - cx, base[i + BEGIN_Y] - cy
+            tx, ty, length = base[i + TANGENT_X], base[i + TANGENT_Y], base[i + LENGTH]
+            d, begin = (px * ty - py * tx if there else 0.0), px * tx + py * ty
+            end = begin + length
+            near, far = math.sqrt(d * d + begin * begin), math.sqrt(d * d + end * end)
+            both = near + far
+            a0 = log_of((both + length) / max(both - length, LEAST * length))
+            share = length / both
+            a1 = share * (begin + end)
+            product, square = end * far - begin * near, d * d * a0
+            short = _second(share, begin + end, both)
+            a2 = short if share < _SHORT else 0.5 * (product - square)
+            b0 = 0.5 * (product + square)
+            b1 = (1.0 / 3.0) * a1 * (far * far + far * near + near * near)
+            across, turns = d * a1, d * d * b0
+            ex, ey = summed(ex, square * tx - across * ty), summed(ey, square * ty + across * tx)
+            size = summed(size, d * b0)
+            rx, ry = summed(rx, turns * ty + d * b1 * tx), summed(ry, d * b1 * ty - turns * tx)
+            # e ⊗ r by twice the angle of t
+            one, other = d * across, d * (square - a2)
+            cosine, sine = tx * tx - ty * ty, tx * ty
+            xx = summed(xx, one * cosine + other * sine)
+            mean = summed(mean, 2.0 * one * sine - 0.5 * other * cosine)
     sign = 1.0 if w > 0.0 else -1.0
     ex, ey, size = 0.5 * sign * ex, 0.5 * sign * ey, sign * size / 3.0
-    xx, xy, yx, yy = sign * xx / 3.0, sign * xy / 3.0, sign * yx / 3.0, sign * yy / 3.0
+    xx, mean = sign * xx / 3.0, sign * mean / 3.0
+    xy, yx = mean - 0.5 * size, mean + 0.5 * size
     swing = size + cx * ey - cy * ex
     return (
-        ex, ey, xx + ex * cx, xy + ex * cy, yx + ey * cx, yy + ey * cy,
+        ex, ey, xx + ex * cx, xy + ex * cy, yx + ey * cx, ey * cy - xx,
         0.25 * sign * rx + cx * yx - cy * xx + swing * cx,
-        0.25 * sign * ry + cx * yy - cy * xy + swing * cy,
+        0.25 * sign * ry - cx * xx - cy * xy + swing * cy,
     )  # fmt: skip
 
 

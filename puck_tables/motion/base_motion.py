@@ -39,9 +39,8 @@ _SECOND = np.array([[*np.flatnonzero(row), n, n][1] for n, row in enumerate(_A)]
 _LATE = int(_SECOND[-1])
 _PART, _END = STAGES, STAGES + 1
 
-_FIRST_STEP, _SHORTEST_STEP, _LONGEST_STEP = 0.05, 1e-12, 1.5  # of τ, in which q falls like e^(−τ)
+_FIRST_STEP, _SHORTEST_STEP, _LONGEST_STEP = 0.05, 1e-12, 2.5  # of τ, in which q falls like e^(−τ)
 _ROUNDING = 1e-14  # of friction over f N, and so much more of a long, thin base
-_TAIL = 0.1  # of the local error that is allowed: what the slide at one direction may miss
 MOST_STEPS = 1_000_000  # more is a body that turns for hours
 _NEWTON = 12  # steps to the state at a moment: two or three do
 
@@ -92,10 +91,10 @@ def _step(
 
 
 @inlined
-def _missed(work: FloatArray, h: float, turning: float, arm: float) -> float:
+def _missed(work: FloatArray, h: float, arm: float) -> float:
     """The error of a step just done; ``arm``: the reach of the base over k.
 
-    An angle errs by how far it moves the farthest point, and by how far it turns the forces.
+    An angle errs by how far it moves the farthest point.
     """
     largest = 0.0
     for i in range(WORK):
@@ -103,7 +102,7 @@ def _missed(work: FloatArray, h: float, turning: float, arm: float) -> float:
         for k in range(_LATE, STAGES):
             fifth += _ERROR_5[k] * work[k, i]
             third += _ERROR_3[k] * work[k, i]
-        weight = h if i != TURN else h * max(arm, turning * work[0, T])
+        weight = h if i != TURN else h * arm
         fifth, third = weight * fifth, weight * third
         square = fifth * fifth
         below = square + 0.01 * third * third
@@ -192,10 +191,10 @@ def slide(
         patience(1)
         falls, across = _tail(y, work, turning)
         left, change = work[0, T] / falls, min(1.0, across / falls)
-        if left * change <= _TAIL * local:
+        if left * change <= local:
             break
         _step(base, gyration, turning, y, h, work, _END)
-        error = _missed(work, h, turning, arm)
+        error = _missed(work, h, arm)
         rounding = noise * h * max(1.0, arm, turning * work[0, T])
         error = 0.0 if error <= rounding else error / min(1.0, h * falls)
         if error <= local:

@@ -12,11 +12,11 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.base_clipping import beyond_line, in_circle, whole_contour
 from puck_tables.kernels.base_friction import (
     AREA,
+    base_sums,
     is_uniform,
     pressure_at,
     pressure_on,
     under_load,
-    uniform_sums,
 )
 from puck_tables.kernels.base_friction import REACH as BASE_REACH
 from puck_tables.kernels.base_sums import NOTHING, Sums, plus
@@ -213,12 +213,11 @@ def friction_of_base(
     base = floor_map[int(floor_map[BASE]) :]
     one = floor_map[BORDERS] == 0.0 and floor_map[PATCHES] == 0.0 and floor_map[LAW] == 0.0
     if one and is_uniform(base):
-        x, y, turning = uniform_sums(base, c * ux + s * uy, c * uy - s * ux, w)
-        mean = floor_map[SHARE] * load_of(floor_map, 0) / base[AREA]
-        fx, fy, torque = mean * (c * x - s * y), mean * (s * x + c * y), mean * turning
-        return -fx, -fy, -torque, fx * ux + fy * uy + torque * w
-    sums = friction_sums(floor_map, c * ux + s * uy, c * uy - s * ux, w, moving)
-    a, bx, by = pressure_on(base, sums)
+        sums = base_sums(base, c * ux + s * uy, c * uy - s * ux, w)
+        a, bx, by = floor_map[SHARE] * load_of(floor_map, 0) / base[AREA], 0.0, 0.0
+    else:
+        sums = friction_sums(floor_map, c * ux + s * uy, c * uy - s * ux, w, moving)
+        a, bx, by = pressure_on(base, sums)
     x, y, torque = under_load(sums, a, bx, by)
     fx, fy = c * x - s * y, s * x + c * y
     return -fx, -fy, -torque, fx * ux + fy * uy + torque * w
