@@ -163,7 +163,7 @@ class BoardCase:
             return
         slips = starts - velocities_under(engine, self.first)[discs]
         rims = engine.discs[discs, RADIUS] * np.abs(slips[..., 2])
-        fastest = (np.hypot(slips[..., 0], slips[..., 1]) + rims).max(axis=1) / SURE
+        fastest = (np.hypot(slips[..., 0], slips[..., 1]) + rims).max(axis=1, initial=0.0) / SURE
         tops = np.exp2(np.ceil(np.log2(np.maximum(fastest, top))))
         for farther in np.unique(tops[fastest >= top]).tolist():
             if farther not in self._farther:
