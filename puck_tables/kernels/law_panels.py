@@ -20,7 +20,7 @@ NODES = 8
 PANEL = 2.0  # of y
 ARC = 0.9  # of an angle, over how far it is from the singularity next to C
 LEAST_GAP = 1e-9  # of an angle: closer, C lies on the circle
-_AHEAD = 4  # pieces of a smooth law: a panel across them is good to 1e-13
+_AHEAD = 4  # pieces of a smooth law: a panel across them is good to 1e-11
 _BEYOND = 1.0 + 1e-9  # times a slip speed: a corner there is passed
 _STEP = 1e-12  # the shortest panel of a circle
 

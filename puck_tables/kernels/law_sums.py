@@ -8,8 +8,9 @@ moments of the law (:mod:`puck_tables.contact.law_moments`) at W R, along a piec
 
 On a straight side at the distance d from C, r × dr = d ds, and with y = asinh(s/|d|) the integrands
 are entire but for the law: Gauss's rule on panels of y.  On a circle panels shrink towards C.
-Panels end where the law bends (:mod:`puck_tables.kernels.law_panels`).  Where C lies far away these
-cancel: there the inner integral runs from the distance of C to the contour, by a rule of its own.
+Panels end where the law bends, those of a side with each of its pieces
+(:mod:`puck_tables.kernels.law_panels`), so that all nodes of one are had at once.  Where C lies far
+away these cancel: there the inner integral runs from the distance of C to the contour.
 """
 
 from __future__ import annotations
