@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import film_judge
 import impacts_judge
@@ -67,6 +68,22 @@ def test_a_floor_whose_friction_falls_with_speed_is_named(seed):
         if "--slip-speeds" in found.misfit else [0.0, 0.3, 1.0, 4.0]  # fmt: skip
     asked = pt.fit(film(path, seed), FLAT, fixed={"delta": 0.0}, slip_speeds=speeds)
     assert asked.chi2 / asked.degrees < 1.5 and asked.noise[0] < 0.5 * found.noise[0]
+
+
+@pytest.mark.parametrize("seed", few(2, range(20)))
+def test_a_mark_a_little_off_the_centre_is_named_first(seed):
+    """Five times the noise: a level table was blamed for it."""
+    rng = np.random.default_rng([35, 120, seed])
+    friction, velocity = rng.uniform(0.1, 0.3), way_of(rng, rng.uniform(0.8, 2.0))
+    spin = rng.uniform(10.0, 40.0)
+    puck = pt.Puck(radius=0.04, height=0.02)
+    end = replace(puck, friction=friction).stop(velocity, spin).stop_time
+    times = np.linspace(0.0, 1.05 * float(end), 180)
+    true = film_judge.path(velocity, spin, friction * G, friction, 0.04, times)
+    true[:2] += 1.5e-3 * np.stack([np.cos(true[2]), np.sin(true[2])])
+    found = pt.fit(pt.Track(times, *film_judge.noisy(rng, true, NOISE)), puck)
+    assert abs(found["friction"].value - friction) < 4.0 * found["friction"].error
+    assert "off the centre" in found.misfit.split("; or ")[0]
 
 
 def test_a_height_that_no_puck_has_is_said():

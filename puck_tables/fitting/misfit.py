@@ -91,6 +91,7 @@ def misfit(
         if drag and law and law.gain < drag.gain + _BETTER:  # more numbers fit a little better
             law = None
         told = sorted(filter(None, (drag, law, air, slope)), key=lambda one: -one.gain)[:2]
+    told += filter(None, [_reading(partial(_by_mark, result, problem, known))])
     told += _otherwise(result, problem, known)
     best = max((one.gain for one in told), default=0.0)
     # sizes and angles are known better than floors: a floor that tells much is named first
@@ -134,10 +135,6 @@ def _otherwise(result: Estimate, problem: Problem, known: Known) -> list[_Readin
         words = "with a radius of {:.3g} m: is " + f"{spec.puck.radius:g} m right?"
         other = replace(problem, spec=replace(spec, free=(*spec.free, "radius")))
         others.append((words, other, 1.0))
-    if problem.angled and not {*MARK} & {*spec.free, *spec.fixed}:
-        free = (*spec.free, *MARK)
-        words = f"if what is tracked lies off the centre: find where (--free {','.join(free)})"
-        others.append((words, replace(problem, spec=replace(spec, free=free)), 1.0))
     for words, other, scale in others:  # and the factor of its angles
         try:
             one = initial_estimate(other, known, refit=False)
@@ -149,6 +146,17 @@ def _otherwise(result: Estimate, problem: Problem, known: Known) -> list[_Readin
         if gain > best.gain and not same and _near_noise(_deviations(one), problem.noise[0]):
             best = _Reading(words.format(radius), gain)
     return [best] if best.words else []
+
+
+def _by_mark(result: Estimate, problem: Problem, known: Known) -> _Reading:
+    """What is tracked lies off the centre of mass, if that fits far better."""
+    spec = problem.spec
+    if not problem.angled or {*MARK} & {*spec.free, *spec.fixed}:
+        return _Reading("", 0.0)
+    free = (*spec.free, *MARK)
+    one = initial_estimate(replace(problem, spec=replace(spec, free=free)), known, refit=False)
+    words = f"if what is tracked lies off the centre: find where (--free {','.join(free)})"
+    return _Reading(words, _gain(result, _deviations(one), problem.noise[0]), True)
 
 
 def _gain(result: Estimate, other: _Sizes, noise: float) -> float:
