@@ -338,7 +338,7 @@ def _longest(
 
 
 @inlined
-def _has_one_way(model: Model) -> bool:
+def _keeps_direction(model: Model) -> bool:
     """Whether a pivot at rest leaves a slip on a floor at rest no direction to settle to."""
     hold = model.hold
     still = hold.vx == 0.0 and hold.vy == 0.0 and not moves_along(model.surface)
@@ -348,7 +348,7 @@ def _has_one_way(model: Model) -> bool:
 @inlined
 def _is_stiff(model: Model, load: float, stiff: bool, h: float, q: float, pull: float) -> bool:
     """Whether the direction of the slip settles much faster than it changes."""
-    if _has_one_way(model):
+    if _keeps_direction(model):
         return False
     damps, turns = settling_rates(model, load)
     settles = h * (damps + turns / q if q > 0.0 else damps)
@@ -400,7 +400,7 @@ def _from_rest(
                      buffer.stages)  # fmt: skip
     rests = mode == CARRIED and not _swings(model, friction, rows)
     rests = rests and rests_on(model, friction, rows, y)
-    return mode, stiff and not _has_one_way(model), q, rests
+    return mode, stiff and not _keeps_direction(model), q, rests
 
 
 @inlined
