@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
@@ -10,13 +11,14 @@ import click
 from puck_tables.cli.options import FILE, Outputs, PuckChoice, number, outputs, packed, puck_options
 from puck_tables.cli.printing import progress
 from puck_tables.cli.scene_run import SceneChoice, scene_options, scene_tables
-from puck_tables.cli.values import Vector, not_none
+from puck_tables.cli.values import Vector, named, not_none, numbers_in
 
 from puck_tables.errors import InputError
 from puck_tables.kernels.patience import one_question
 
 _LARGEST_FILE = 1 << 30  # bytes: more is no file of targets, and would fill the memory
-_ON_BOARDS = ("pocket", "puck", "striker", "hits", "max_impacts")
+_ON_BOARDS = ("pocket", "puck", "striker", "hits", "max_impacts", "odds", "within")
+_SCATTERS = {"heading": "rad", "speed": "", "w0": "rad/s"}  # for --odds
 
 
 @click.command()
@@ -31,6 +33,10 @@ _ON_BOARDS = ("pocket", "puck", "striker", "hits", "max_impacts")
     click.option("--striker", metavar="NAME", help="In a scene: which is sent off."),
     click.option("--hits", metavar="NAME", help="In a scene: a puck to be hit on the way."),
     click.option("--max-impacts", type=int, help="In a scene: at most so many.  [default: 3]"),
+    click.option("--odds", multiple=True, metavar="NAME=DEVIATION", help="In a scene: how likely "
+                 "the first launch does it where heading, speed (a share of it) or w0 scatter by "
+                 "so much, like heading=0.5deg, and which aim does it most often."),
+    number("--within", "m", help="For --odds of a target: how near the puck is to end, in m."),
     number("--w0", "rad/s", help="The launch with this spin, in rad/s, with its sign."),
     number("--speed", "m/s", help="The launches with this speed, in m/s."),
     number("--time", "s", help="The launches that stop after this time, in s."),
@@ -74,6 +80,7 @@ def aim(
     \b
     puck aim --scene curling-take-out --puck yellow --target 0.5,-0.5
     puck aim --scene crokinole --puck shot --pocket 0 --plot shot.png
+    puck aim --scene crokinole --puck shot --pocket 0 --odds heading=0.5deg --odds speed=0.05
     """  # noqa: D301 - click reads the backspace
     picked = [f"--{name}" for name in ("w0", "speed", "time", "angle") if wishes[name] is not None]
     if len(picked) > 1:
@@ -83,31 +90,14 @@ def aim(
             raise InputError(f"{name} is given {len(places)} times: one place at a time")
     if targets_file is not None and targets:
         raise InputError("--target and --targets both say where: give one of them")
-    wishes = not_none({**wishes, "pocket": next(iter(wishes["pocket"]), None)})
+    wishes["pocket"], wishes["odds"] = next(iter(wishes["pocket"]), None), wishes["odds"] or None
+    wishes = not_none(wishes)
     if chosen or choice.base is not None:
-        for name, value, instead in (
-            ("--targets", targets_file, "give one --target"),
-            ("--time", wishes.get("time"), "leave it out"),
-            ("--angle", wishes.get("angle"), "leave it out"),
-        ):  # fmt: skip
-            if value is not None:
-                at = "in a scene" if chosen else "with --base"
-                raise InputError(f"{name} has no place {at}: {instead}")
-        tables = scene_tables(ctx, chosen, ("targets", *wishes))
-        out.prepare(*chosen.reads(tables))
-        wishes |= {name: number_or_name(wishes[name]) for name in ("puck", "striker", "hits")
-                   if name in wishes}  # fmt: skip
-        if "w0" in wishes:
-            wishes["spin"] = wishes.pop("w0")
+        if targets_file is not None:
+            wishes["targets"] = targets_file
         if targets:
             wishes["target"] = targets[0]
-        from puck_tables.world.scene import Scene
-
-        with progress("searches") as show:
-            found = Scene.from_tables(tables, chosen.name).aim(**wishes, progress=show)
-        out.deliver(found, empty=not len(found))
-        out.report(found, "" if chosen else choice.note)
-        return
+        return _aim_in_scene(ctx, wishes, choice, out, chosen)
     for name in _ON_BOARDS:
         if name in wishes:
             flag = f"--{name.replace('_', '-')}"
@@ -123,6 +113,51 @@ def aim(
         )
     out.deliver(result, empty=not result.launch_spin.size)
     out.report(result, choice.note)
+
+
+def _aim_in_scene(
+    ctx: click.Context, wishes: dict[str, Any], choice: PuckChoice, out: Outputs,
+    chosen: SceneChoice,
+) -> None:  # fmt: skip
+    """Aim of a striker on a board, or of a puck on a base."""
+    for name, instead in (
+        ("targets", "give one --target"), ("time", "leave it out"), ("angle", "leave it out"),
+    ):  # fmt: skip
+        if name in wishes:
+            at = "in a scene" if chosen else "with --base"
+            raise InputError(f"--{name} has no place {at}: {instead}")
+    scatter, near = _scatter_of(wishes.pop("odds", ())), wishes.pop("within", None)
+    if (near is not None) != (bool(scatter) and "target" in wishes):
+        raise InputError("--within, how near the puck is to end, is for --odds of a --target")
+    tables = scene_tables(ctx, chosen, ("targets", "odds", "within", *wishes))
+    out.prepare(*chosen.reads(tables))
+    wishes |= {name: number_or_name(wishes[name]) for name in ("puck", "striker", "hits")
+               if name in wishes}  # fmt: skip
+    if "w0" in wishes:
+        wishes["spin"] = wishes.pop("w0")
+    from puck_tables.world.scene import Scene
+
+    with progress("searches") as show:
+        found = Scene.from_tables(tables, chosen.name).aim(**wishes, progress=show)
+    out.deliver(found, empty=not len(found))
+    odds = found.odds(within=near, **scatter) if scatter and len(found) else None
+    told = None if odds is None else lambda one: {**one.summary(), "odds": odds.summary()}
+    out.report(found, "" if chosen else choice.note, told)
+    if odds is not None and not out.as_json:
+        click.echo(f"\n{odds}")
+
+
+def _scatter_of(odds: Iterable[str]) -> dict[str, float]:
+    """Deviations by the names that the library has."""
+    scatter: dict[str, float] = {}
+    for name, text in named(odds, "--odds", "NAME=DEVIATION, like heading=0.5deg").items():
+        if name not in _SCATTERS:
+            raise InputError(f"--odds {name} does not scatter: give {', '.join(_SCATTERS)}")
+        unit = _SCATTERS[name]
+        (scatter["spin" if name == "w0" else name],) = numbers_in(
+            text, f"--odds {name}", "", "DEVIATION", unit
+        )
+    return scatter
 
 
 def _read_targets(path: Path | None) -> Any:

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import re
+
 import click
 from puck_tables.cli.options import Outputs, PuckChoice, body_options, number, outputs, packed
+from puck_tables.cli.printing import note
 from puck_tables.cli.scene_run import SceneChoice, scene_options, scene_tables
 
 from puck_tables.errors import InputError
 
 
 @click.command()
-@click.option("--language", required=True, metavar="NAME", help="c, js or python; of a scene js.")
+@click.option("--language", required=True, metavar="NAME",
+              help="c, js or python; of a scene c or js.")  # fmt: skip
+@click.option("--target", metavar="MACHINE", help="Of a scene in C: x86_64- or aarch64- before "
+              "linux, macos or windows.  [default: this machine]")  # fmt: skip
 @click.option("--what", default="stop,state,resultants", show_default=True, metavar="PARTS",
               help="Where and when launches stop, states at any time, friction resultants;"
                    " of a flat polygon (--base) wrench, of friction, and a step of it."
@@ -22,8 +28,8 @@ from puck_tables.errors import InputError
 @outputs("The file.", plot=False, required=True)
 @click.pass_context
 def export(
-    ctx: click.Context, language: str, what: str, tol: float, choice: PuckChoice,
-    chosen: SceneChoice, out: Outputs,
+    ctx: click.Context, language: str, target: str | None, what: str, tol: float,
+    choice: PuckChoice, chosen: SceneChoice, out: Outputs,
 ) -> None:  # fmt: skip
     """Write one self-contained source file that computes motions without this program.
 
@@ -38,14 +44,20 @@ def export(
     puck export --language js --what stop,state --tol 1e-4 -o puck.js
     puck export --language c --base box:0.2x0.1 --what wrench -o box.c
 
-    With --scene the file plays a board, in browsers and Node, as World does in Python: engine and
-    scene in WebAssembly, and a small host (strike, place, drive, advance, state, copy).
+    With --scene it plays a board, as World does in Python (strike, place, drive, advance, state,
+    copy): engine and scene in WebAssembly, for browsers and Node, or a header in C, and beside it a
+    static library of machine code, for C++, Rust and C# as well.  The same calls give the same bits
+    in all of them.
 
     \b
     puck export --language js --scene carrom-break -o carrom.js
+    puck export --language c --scene carrom-break -o carrom.h
+    puck export --language c --target aarch64-linux --scene carrom-break -o carrom.h
     """  # noqa: D301 - click reads the backspace
     if chosen:
-        return _export_board(ctx, language, chosen, out)
+        return _export_board(ctx, language, target, chosen, out)
+    if target is not None:
+        raise InputError("--target is for a board: give --scene FILE|NAME, too")
     from puck_tables.export.source import checked_ending, checked_request, export_source
 
     parts = checked_request(language, what, tol)
@@ -57,18 +69,23 @@ def export(
     out.deliver(source)
 
 
-def _export_board(ctx: click.Context, language: str, chosen: SceneChoice, out: Outputs) -> None:
-    """Write a file that plays the board of a scene."""
-    from puck_tables.export.board_source import export_board
-    from puck_tables.export.source import checked_ending
+def _export_board(
+    ctx: click.Context, language: str, target: str | None, chosen: SceneChoice, out: Outputs
+) -> None:
+    """Write what plays the board of a scene."""
+    from puck_tables.export.board_source import export_board, library_file
     from puck_tables.world.scene import Scene
 
-    if language != "js":
-        raise InputError(f"--language {language}: boards are exported to js")
-    tables = scene_tables(ctx, chosen, ("language",))
+    if language not in ("c", "js"):
+        raise InputError(f"--language {language}: boards are exported to c and js")
+    tables = scene_tables(ctx, chosen, ("language", "target"))
     assert out.output is not None
-    checked_ending(out.output, language)
-    out.prepare(*chosen.reads(tables), saved=False)
-    source = export_board(Scene.from_tables(tables, chosen.name))
+    name = re.sub(r"\W", "_", out.output.stem, flags=re.ASCII)
+    beside = library_file(out.output, language, name)
+    out.prepare(*chosen.reads(tables), others=(beside,), saved=False)
+    scene = Scene.from_tables(tables, chosen.name)
+    source = export_board(scene, language, target=target, name=name)
     click.echo(repr(source), err=True)
     out.deliver(source)
+    if beside is not None:
+        note(beside)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,8 +13,9 @@ import pytest
 from click.testing import CliRunner
 from puck_tables.cli.main import main
 
-from puck_tables import Normal, Puck, Uniform
+from puck_tables import Floor, Launch, Normal, Puck, Scene, StribeckLaw, Uniform
 from puck_tables.errors import ContactError, InputError
+from puck_tables.world.board_case import BoardCase
 
 PUCK = Puck(base="box:0.2x0.1", friction=0.3, height=0.02)
 
@@ -141,3 +143,23 @@ def test_the_command_line_refuses(command: str, more: str, words: str):
     assert code != 0
     assert words in said
     assert "Traceback" not in said
+
+
+@pytest.mark.parametrize("body", [{"base": "box:0.2x0.1"}, {"radius": 0.05}])
+def test_under_a_law_fast_launches_end_with_the_others_as_they_do_alone(
+    body: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """They need it farther than the first does: no run is made alone for that."""
+    puck, floor = Puck(**body), Floor(law=StribeckLaw(0.35, 0.2, 0.1))
+    velocity = np.array([[0.3, 0.1], [0.0, 0.02], [5.0, 0.0], [1.0, 1.0]])
+    spin = np.array([0.5, 60.0, -9.0, 200.0])
+    with monkeypatch.context() as patch:
+        patch.setattr(BoardCase, "_run", None)
+        ends = Scene(puck, floor, Launch(velocity, spin=spin)).sweep(threads=1)
+    for n in range(len(spin)):
+        one = Scene(puck, floor, Launch(velocity[n], spin=spin[n])).simulate([0.0])
+        slip = math.hypot(*velocity[n], puck.inertia_radius * spin[n])
+        unit = slip / (0.2 * puck.gravity)
+        assert abs(ends.end_time[n] - one.end_time) <= 2e-6 * unit
+        found = [ends.x[n] - one.last["x"], ends.y[n] - one.last["y"]]
+        assert math.hypot(*found) <= 2e-6 * unit * slip

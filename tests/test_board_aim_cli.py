@@ -11,7 +11,7 @@ import pytest
 from click.testing import CliRunner, Result
 from puck_tables.cli.main import main
 
-from puck_tables import Launch, Post, Puck, Scene
+from puck_tables import Edge, Launch, Post, Puck, Scene
 
 CURLING = ("--scene", "curling-take-out", "--puck", "yellow", "--target", "0.5,-0.5")
 BOX = ("--base", "box:20cmx10cm", "--friction", "0.3")
@@ -52,9 +52,33 @@ def test_none_found_is_an_answer_without_a_picture(tmp_path: Path) -> None:
     assert told.exit_code == 0 and "at -1.6 rad/s exists: friction takes" in told.stdout
 
 
+def test_odds_are_those_of_the_library(tmp_path: Path) -> None:
+    board = Scene(pucks=[Puck(0.03, friction=0.1)], edges=[Edge((0.82, 0.0), normal=(-1, 0))])
+    (tmp_path / "table.toml").write_text(
+        "[[puck]]\nradius = 0.03\nfriction = 0.1\n"
+        "[[edge]]\npoint = [0.82, 0.0]\nnormal = [-1.0, 0.0]\n"
+    )
+    asked = ("--scene", str(tmp_path / "table.toml"), "--target", "0.8,0", "--w0", "0")
+    asked = (*asked, "--odds", "speed=0.05", "--odds", "heading=1deg", "--within", "10cm")
+    told = json.loads(aim(*asked, "--json").stdout)["odds"]
+    found = board.aim((0.8, 0.0), spin=0.0)
+    odds = found.odds(speed=0.05, heading=math.radians(1.0), within=0.1)
+    assert told["found"] == odds.found._asdict() and told["best"] == odds.best._asdict()
+    assert told["velocity"] == list(odds.velocity)
+    words = aim(*asked).stdout.rstrip().splitlines()[-2:]
+    assert words == str(odds).splitlines()
+    assert words[0].startswith("scattered so, the launch does it with a chance of 0.5 (")
+    assert words[1].startswith(f"the best aim found, {math.hypot(*odds.velocity):.6g} m/s, heading")
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
+        ((*CURLING, "--odds", "heading=1deg"), "--within, how near the puck is to end, is for"),
+        ((*CURLING, "--within", "1cm"), "--within, how near the puck is to end, is for"),
+        ((*CURLING, "--odds", "mass=1", "--within", "1cm"), "give heading, speed, w0"),
+        ((*CURLING, "--odds", "speed=fast", "--within", "1cm"), "--odds speed=fast"),
+        (("--target", "2,0.1", "--odds", "speed=0.1"), "--odds is for a board"),
         ((*CURLING, "--target", "1,0"), "--target is given 2 times"),
         ((*CURLING, "--pocket", "0"), "both are given"),
         (("--scene", "curling-take-out", "--pocket", "0"), "puck: which is to end there?"),

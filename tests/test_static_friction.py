@@ -134,7 +134,8 @@ def test_a_force_beside_a_torque_as_the_power_of_all_slips_has_it() -> None:
     assert run.events[0].what == "slip" and abs(0.2 * run.events[0].time - limit) < 2e-6
 
 
-def test_a_tall_box_on_a_pivot_holds_by_the_static_load() -> None:
+@pytest.mark.parametrize("ratio", [1.0, S])
+def test_a_tall_box_on_a_pivot_holds_by_the_static_load(ratio: float) -> None:
     """Its load leans with the friction that holds; summed over a grid of its own."""
     nodes, weights = np.polynomial.legendre.leggauss(100)
     x, y = np.meshgrid(0.05 * nodes, 0.03 * nodes)
@@ -142,11 +143,12 @@ def test_a_tall_box_on_a_pivot_holds_by_the_static_load() -> None:
     lean = np.zeros(2)
     for _ in range(100):
         load = share * (1.0 + lean[0] * x + lean[1] * y)
-        force = S * F * np.array([(load * y / arm).sum(), (load * (0.08 - x) / arm).sum()])
+        force = ratio * F * np.array([(load * y / arm).sum(), (load * (0.08 - x) / arm).sum()])
         lean = 0.015 * force * 12.0 / np.array([0.01, 0.0036])
-    begins = S * F * G * (load * arm).sum() / 0.6
+    begins = ratio * F * G * (load * arm).sum() / 0.6
     run = run_of(
         pt.Puck(base="box:0.1x0.06", height=0.03, friction=F, mass=1.0),
+        pt.Floor(static_ratio=ratio),
         constraint=pt.Constraint("pivot", reach=0.08), time=0.6,
         force=pt.Force(over_time=((0.0, 0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.6))),
     )  # fmt: skip

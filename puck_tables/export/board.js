@@ -12,7 +12,7 @@
 "use strict";
 const SCENE = /*scene*/;
 const CODE = "/*code*/";
-const COUNT = SCENE.pucks.length, { orders, codes, layout } = SCENE;
+const COUNT = SCENE.pucks.length, { codes, layout } = SCENE;
 const X = 0, ANGLE = 2, VX = 3, SPIN = 5; // of a state
 let engine;
 
@@ -23,10 +23,13 @@ async function start() {
   const bytes = await new Response(stream).arrayBuffer();
   const { exports } = (await WebAssembly.instantiate(bytes, {})).instance;
   exports._initialize();
-  const floats = (name, size) => new Float64Array(exports.memory.buffer, exports[name].value, size);
-  const wholes = (name, size) => new BigInt64Array(exports.memory.buffer, exports[name].value, size);
+  const table = [...new Uint32Array(exports.memory.buffer, exports.board.value, SCENE.arrays.length + 1)];
+  const record = table[0], at = (name) => table[1 + SCENE.arrays.indexOf(name)];
+  const floats = (name, size) => new Float64Array(exports.memory.buffer, at(name), size);
+  const wholes = (name, size) => new BigInt64Array(exports.memory.buffer, at(name), size);
   return {
-    play: exports.play, see: exports.see,
+    play: (what, time) => exports.puck_play(record, what, time),
+    see: (time) => exports.puck_see(record, time),
     numbers: floats("numbers", layout.numbers), whole: wholes("whole", layout.whole),
     pieces: floats("pieces", layout.pieces), due: floats("due", 1),
     newNumbers: floats("numbers", 2 * layout.numbers).subarray(layout.numbers),
@@ -34,7 +37,7 @@ async function start() {
     newPieces: floats("pieces", 2 * layout.pieces).subarray(layout.pieces),
     newDue: floats("due", 2).subarray(1),
     row: floats("row", 6), disc: wholes("disc", 1), time: floats("time", 1), after: floats("after", 1),
-    found: floats("found", layout.found), states: floats("states", 6 * COUNT),
+    found: floats("found", layout.event * layout.events), states: floats("states", 6 * COUNT),
     moving: wholes("moving", COUNT), contact: wholes("contacts", 2), depth: floats("depth", 1),
   };
 }
@@ -99,7 +102,7 @@ class Board {
     engine.see(this.#now.time);
     return SCENE.pucks.map((_, k) => {
       const [x, y, angle, vx, vy, spin] = engine.states.subarray(6 * k, 6 * k + 6);
-      const inPlay = this.#kind(k) !== codes.gone;
+      const inPlay = this.#kind(k) !== codes.GONE;
       return { x, y, angle, vx, vy, spin, moving: engine.moving[k] > 0n, inPlay };
     });
   }
@@ -130,7 +133,7 @@ class Board {
   strike(puck, given) {
     const k = this.#inPlay(puck);
     if (SCENE.driven[k]) throw new RangeError(`${SCENE.pucks[k]} is driven: use drive`);
-    this.#hand(orders.struck, k, checked(given, "velocity", "spin"));
+    this.#hand(codes.STRUCK, k, checked(given, "velocity", "spin"));
   }
 
   /**
@@ -142,17 +145,17 @@ class Board {
   place(puck, given) {
     const k = this.#number(puck);
     checked(given, "position", "angle", "velocity", "spin");
-    if (!given.position && this.#kind(k) === codes.gone) {
+    if (!given.position && this.#kind(k) === codes.GONE) {
       throw new RangeError(`${SCENE.pucks[k]} is not in play: give the position to put it at`);
     }
-    this.#hand(orders.placed, k, given);
+    this.#hand(codes.PLACED, k, given);
   }
 
   /**
    * Take a puck out of play, now.
    * @param {number | string} puck
    */
-  remove(puck) { this.#hand(orders.removed, this.#inPlay(puck), {}); }
+  remove(puck) { this.#hand(codes.REMOVED, this.#inPlay(puck), {}); }
 
   /**
    * Move a puck that is led by hand, from now on until the next call: a mallet.
@@ -163,7 +166,7 @@ class Board {
   drive(puck, velocity, spin = 0) {
     const k = this.#inPlay(puck);
     if (!SCENE.driven[k]) throw new RangeError(`${SCENE.pucks[k]} is not led by hand: strike it`);
-    this.#hand(orders.led, k, { velocity: pair("velocity", velocity), spin });
+    this.#hand(codes.LED, k, { velocity: pair("velocity", velocity), spin });
   }
 
   /** A board of its own that goes on from here, to look ahead. */
@@ -180,14 +183,14 @@ class Board {
   /** What happens up to a time; what the engine has no room for at once goes in two halves. */
   #until(time, depth = 0) {
     this.#put();
-    const count = engine.play(orders.letGo, time);
+    const count = engine.play(codes.LET_GO, time);
     if (count >= 0) return this.#taken(count);
-    if (count === codes.nothing) {
+    if (count === codes.NOTHING_HAPPENS) {
       this.#now = { ...this.#now, time };
       return [];
     }
     const now = this.#now.time, middle = time === Infinity ? now + 1 : now + (time - now) / 2;
-    if (codes.full.includes(count) && middle > now && depth < 40) {
+    if ([codes.FULL, codes.PAUSED, codes.LACKS_PIECES].includes(count) && middle > now && depth < 40) {
       return [...this.#until(middle, depth + 1), ...this.#until(time, depth + 1)];
     }
     throw this.#failure(count, time - now);
@@ -221,10 +224,10 @@ class Board {
   }
 
   #failure(code, duration = 0) {
-    if (code === codes.fast) {
+    if (code === codes.TOO_FAST) {
       return new RangeError(`a slip is faster than ${SCENE.fastest} m/s: beyond, nothing is known`);
     }
-    if (code === codes.misplaced) {
+    if (code === codes.MISPLACED) {
       const [one, other] = [...engine.contact].map((partner) => called(Number(partner)));
       const depth = engine.depth[0].toPrecision(3);
       return new RangeError(`${one} would overlap ${other} by ${depth} m: put it elsewhere`);
@@ -257,7 +260,7 @@ class Board {
 
   #inPlay(puck) {
     const k = this.#number(puck);
-    if (this.#kind(k) !== codes.gone) return k;
+    if (this.#kind(k) !== codes.GONE) return k;
     throw new RangeError(`${SCENE.pucks[k]} is no longer in play: place puts it back`);
   }
 }

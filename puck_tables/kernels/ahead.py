@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -25,7 +26,8 @@ from puck_tables.kernels import compiled
 from puck_tables.kernels.cache import cache_folder
 from puck_tables.kernels.kept_code import read_sealed, write_sealed
 from puck_tables.kernels.linking import LinkedAtDoors, Pasted
-from puck_tables.kernels.memory_image import RECORD, as_module, machine_for
+from puck_tables.kernels.mathematics import FUNCTIONS
+from puck_tables.kernels.memory_image import as_module, machine_for
 
 _code: Any = cgutils
 _dumps: Any = serialize.dumps
@@ -33,6 +35,11 @@ _typeof: Any = numba.typeof
 _Library: Any = Pasted
 _Compiler: Any = LinkedAtDoors
 _WORD, _STATUS, _BYTE = ir.IntType(64), ir.IntType(32), ir.IntType(8)
+_DOUBLE, _ADDRESS = ir.DoubleType(), ir.PointerType(_BYTE)
+_PREFIX = "puck_"  # of what a machine's own library may have under the same name
+# how a text calls a function of a mathematics library, and where it allows to round a·b + c once
+_CALLS = re.compile(rf'@"?(?:llvm\.)?({"|".join(FUNCTIONS)})(?:\.f64)?"?(?=\()')
+_CONTRACTS = re.compile(r"(?<= )contract (?=double|<)")
 _CHILD = "from puck_tables.kernels import ahead; ahead.answer()"
 
 
@@ -45,7 +52,8 @@ class _WrittenCode(_Library):  # type: ignore[misc]
 
     def add_ir_module(self, module: Any) -> None:
         """Keep its text; numba would optimise it for this machine."""
-        self.texts.append(_code.normalize_ir_text(str(module)))
+        text = _CONTRACTS.sub("", _code.normalize_ir_text(str(module)))
+        self.texts.append(_CALLS.sub(rf"@{_PREFIX}\1", text))
         self._final_module.link_in(binding.parse_assembly(self.texts[-1]))
 
 
@@ -81,7 +89,7 @@ done:
 
 
 class Outside(NamedTuple):
-    """A function there: its name, the kernel, and numbers like those that follow the record."""
+    """A function there, ``puck_`` and its name: the kernel, and numbers like what it takes."""
 
     name: str
     kernel: Any
@@ -89,15 +97,18 @@ class Outside(NamedTuple):
 
 
 def code_for(triple: str, record: Any, doors: Sequence[Outside]) -> bytes:
-    """An object file for a machine: doors to kernels that work in a record, which stands elsewhere.
+    """An object file for a machine: doors to kernels that work in a record.
 
-    It is kept, for it takes a minute and is the same for all records of a type.
+    It is kept, for it takes a minute and is the same for all records of a type.  Its arithmetic is
+    that of IEEE, nothing is rounded but what is written, and its mathematics is its own: the same
+    calls give the same bits on every machine.
 
     Parameters
     ----------
     triple : of the machine, as LLVM has it
     record : a named tuple of arrays and numbers, the first argument of all kernels
-    doors : functions of whole numbers (32 bits) and doubles, that give a whole number
+    doors : functions of the address of a record, whole numbers (32 bits) and doubles, that give a
+        whole number
 
     Raises
     ------
@@ -134,9 +145,16 @@ def _compiled(triple: str, kind: Any, doors: Sequence[Outside]) -> bytes:
     """The object file."""
     outer = ir.Module("doors")
     texts: dict[str, None] = {}
-    for door in doors:
-        code = _written(door, kind)
-        _add_door(outer, door, code)
+    codes = []
+    for name, kernel, arguments in doors:
+        codes.append(_written(kernel.py_func, kernel.fuses, (kind, *map(_typeof, arguments))))
+        inputs = [_STATUS if isinstance(one, int) else _DOUBLE for one in arguments]
+        _add_function(outer, name, codes[-1], [_ADDRESS, *inputs], _STATUS)
+    for name, function in FUNCTIONS.items():
+        count = function.__code__.co_argcount
+        codes.append(_written(function, False, (_typeof(1.0),) * count))
+        _add_function(outer, name, codes[-1], [_DOUBLE] * count, _DOUBLE)
+    for code in codes:
         seen: dict[Any, None] = {}
         waiting = [code.library]
         while waiting:
@@ -146,7 +164,7 @@ def _compiled(triple: str, kind: Any, doors: Sequence[Outside]) -> bytes:
         texts |= {text: None for one in seen for text in one.texts}
     machine = machine_for(triple)
     whole = as_module([str(outer), *texts, _RESHAPE], machine)
-    public = {door.name for door in doors}
+    public = {_PREFIX + door.name for door in doors}
     for part in (*whole.functions, *whole.global_variables):
         if not part.is_declaration:
             part.linkage = "external" if part.name in public else "internal"
@@ -157,28 +175,27 @@ def _compiled(triple: str, kind: Any, doors: Sequence[Outside]) -> bytes:
     return bytes(machine.emit_object(whole))
 
 
-def _written(door: Outside, kind: Any) -> Any:
+def _written(function: Any, fuses: bool, kinds: tuple[Any, ...]) -> Any:
     """What numba makes of a kernel, with the texts of it and of all that it calls."""
-    made = compiled.dispatcher_of(door.kernel.py_func, door.kernel.fuses)
-    kinds = (kind, *map(_typeof, door.arguments))
+    made = compiled.dispatcher_of(function, fuses)
     made.compile(kinds)
     return made.overloads[kinds]
 
 
-def _add_door(module: Any, door: Outside, code: Any) -> None:
-    """Write down a function that calls a kernel with the record."""
-    given = [_STATUS if isinstance(one, int) else ir.DoubleType() for one in door.arguments]
-    outside = ir.Function(module, ir.FunctionType(_STATUS, given), door.name)
+def _add_function(module: Any, name: str, code: Any, inputs: list[Any], result: Any) -> None:
+    """Write down a function that calls what numba made, and gives what that gives."""
+    outside = ir.Function(module, ir.FunctionType(result, inputs), _PREFIX + name)
     convention: Any = cpu_target.target_context.call_conv
     called = convention.get_function_type(code.signature.return_type, code.signature.args)
     inside = ir.Function(module, called, code.fndesc.llvm_func_name)
-    place = module.globals.get(RECORD) or ir.GlobalVariable(module, _BYTE, RECORD)
     builder = ir.IRBuilder(outside.append_basic_block())
-    found, excuse = builder.alloca(_WORD), builder.alloca(ir.PointerType(_BYTE))
-    pointers = [
-        builder.bitcast(one, argument.type)
-        for one, argument in zip((found, excuse, place), inside.args[:3], strict=True)
-    ]
-    wide = [builder.sext(one, _WORD) if one.type == _STATUS else one for one in outside.args]
-    builder.call(inside, [*pointers, *wide])
-    builder.ret(builder.trunc(builder.load(found), _STATUS))
+    found = builder.alloca(_WORD if result == _STATUS else result)
+    handed = [found, builder.alloca(_ADDRESS), *outside.args]
+    for n, (one, argument) in enumerate(zip(handed, inside.args, strict=True)):
+        if one.type == _STATUS:
+            handed[n] = builder.sext(one, _WORD)
+        elif one.type != argument.type:
+            handed[n] = builder.bitcast(one, argument.type)
+    builder.call(inside, handed)
+    value = builder.load(found)
+    builder.ret(builder.trunc(value, _STATUS) if result == _STATUS else value)

@@ -23,6 +23,7 @@ from puck_tables.kernels.as_written import (
 from puck_tables.kernels.doors import (
     allocating,
     arrays_at_first,
+    entry_of,
     inlined,
     inner,
     kernel,
@@ -32,8 +33,8 @@ from puck_tables.kernels.doors import (
 from puck_tables.kernels.patience import patience
 
 __all__ = [
-    "BLOCK", "LINE", "allocating", "arrays_at_first", "bits_of", "inlined", "inner", "into_line",
-    "into_row", "into_rows", "kernel", "look_up", "number_of", "on_demand", "patience", "row_of",
-    "rows_of", "spline_polynomials", "spline_slopes", "spline_values", "stream_line", "summed",
-    "turn_square", "weighted_rows",
+    "BLOCK", "LINE", "allocating", "arrays_at_first", "bits_of", "entry_of", "inlined", "inner",
+    "into_line", "into_row", "into_rows", "kernel", "look_up", "number_of", "on_demand", "patience",
+    "row_of", "rows_of", "spline_polynomials", "spline_slopes", "spline_values", "stream_line",
+    "summed", "turn_square", "weighted_rows",
 ]  # fmt: skip

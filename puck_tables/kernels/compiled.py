@@ -212,6 +212,12 @@ def keeps(dispatcher: Any, args: tuple[Any, ...]) -> bool:
     return bool(kept_code and dispatcher._cache.keeps(kinds, dispatcher.targetctx))
 
 
+def entry_for(dispatcher: Any, args: tuple[Any, ...]) -> Any:
+    """The compiled code for such arguments, which looks at no types; None where there is none."""
+    code = dispatcher.overloads.get(tuple(dispatcher.typeof_pyval(one) for one in args))
+    return code and code.entry_point
+
+
 @_deep
 def code_for(door: KernelDoor, args: tuple[Any, ...]) -> Callable[..., Any]:
     """Compiled code for such arguments, from disk if it is kept."""

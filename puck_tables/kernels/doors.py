@@ -79,6 +79,10 @@ class Door:
             return self._compile(*args)
         return self._try
 
+    def entry(self, *args: Any) -> Callable[..., Any] | None:
+        """What runs it for arguments of just these types, None where nothing is compiled yet."""
+        return None if self._ready is None else _from_numba().entry_for(self._ready, args)
+
     @property
     def _allowed(self) -> float:
         """How long it may run as it is written, s: the longer, the longer compiling takes."""
@@ -208,6 +212,15 @@ def _from_numba() -> Any:
 def _door(function: Function, counts: bool, fuses: bool = False) -> Function:
     made: Any = function if as_written() else Door(function, counts, fuses)
     return made
+
+
+def entry_of(made: Callable[..., Any], *args: Any) -> Callable[..., Any] | None:
+    """What runs a kernel for arguments of just these types, None where it is not compiled.
+
+    For who calls it often with the same record: to find the types of a hundred arrays takes 9 µs,
+    the call itself 2.
+    """
+    return made.entry(*args) if isinstance(made, Door) and not here.as_written else None
 
 
 def kernel(function: Function) -> Function:

@@ -12,16 +12,17 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.law_moments import DEGREE, MOMENTS
 from puck_tables.kernels.compile import inlined
+from puck_tables.kernels.elementary import log_of
 
 # of Gauss's rule a panel, and across the base where C is far away; on it and on ARC rests that sums
 # are good to 1e-10: test_a_law_is_integrated_as_exactly_as_a_constant
 NODES = 8
-PANEL = 1.2  # of y
+PANEL = 2.0  # of y
 ARC = 0.9  # of an angle, over how far it is from the singularity next to C
 LEAST_GAP = 1e-9  # of an angle: closer, C lies on the circle
-_AHEAD = 4  # pieces of a smooth law: a panel across them is good to 1e-13
+_AHEAD = 4  # pieces of a smooth law: a panel across them is good to 1e-11
 _BEYOND = 1.0 + 1e-9  # times a slip speed: a corner there is passed
-_STEP = 1e-12  # the shortest panel
+_STEP = 1e-12  # the shortest panel of a circle
 
 
 @inlined
@@ -51,15 +52,22 @@ def next_end(law: FloatArray, u: float) -> float:
 
 
 @inlined
-def side_end(law: FloatArray, spin: float, away: float, y: float, last: float) -> float:
-    """Where the panel ends that begins at y ≥ 0, s = away sinh y, on the way to ``last``."""
-    up = math.exp(y)
-    reach, end = next_end(law, 0.5 * spin * away * (up + 1.0 / up)) / spin, last
-    if reach < math.inf:
-        there = math.sqrt(max((reach - away) * (reach + away), 0.0)) / away
-        end = min(last, max(math.asinh(there), y + _STEP))
+def side_panel(
+    law: FloatArray, spin: float, away: float, piece: int, y: float, last: float
+) -> tuple[float, int]:
+    """Where the panel ends that begins at y ≥ 0, s = away sinh y, in a piece of the law.
+
+    Also, in which piece the next one begins: no panel of a side goes across two.
+    """
+    end, after = last, piece
+    if piece < int(law[0]):
+        reach = law[piece + 1] / spin
+        root = math.sqrt(max((reach - away) * (reach + away), 0.0))
+        there = log_of((reach + root) / away)
+        if there < last:
+            end, after = max(there, y), piece + 1
     panels = 1 + int((end - y) / PANEL)
-    return end if panels == 1 else y + (end - y) / panels
+    return (end, after) if panels == 1 else (y + (end - y) / panels, piece)
 
 
 @inlined

@@ -8,8 +8,9 @@ moments of the law (:mod:`puck_tables.contact.law_moments`) at W R, along a piec
 
 On a straight side at the distance d from C, r × dr = d ds, and with y = asinh(s/|d|) the integrands
 are entire but for the law: Gauss's rule on panels of y.  On a circle panels shrink towards C.
-Panels end where the law bends (:mod:`puck_tables.kernels.law_panels`).  Where C lies far away these
-cancel: there the inner integral runs from the distance of C to the contour, by a rule of its own.
+Panels end where the law bends, those of a side with each of its pieces
+(:mod:`puck_tables.kernels.law_panels`), so that all nodes of one are had at once.  Where C lies far
+away these cancel: there the inner integral runs from the distance of C to the contour.
 """
 
 from __future__ import annotations
@@ -20,8 +21,9 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.law_moments import DEGREE, MOMENTS
 from puck_tables.kernels.base_friction import DISCS, HEAD, REACH, SIDES, disc_in
 from puck_tables.kernels.base_sums import NOTHING, Sums, moved, plus
-from puck_tables.kernels.compile import arrays_at_first, inlined, inner, kernel
-from puck_tables.kernels.law_panels import NODES, begin_of, circle_end, next_end, side_end
+from puck_tables.kernels.compile import arrays_at_first, inlined, inner, kernel, summed
+from puck_tables.kernels.elementary import exp_of, log_of
+from puck_tables.kernels.law_panels import NODES, begin_of, circle_end, next_end, side_panel
 from puck_tables.kernels.law_sums_at_first import FAR, NODE, ON_SIDE, WEIGHT, law_sums_at_first
 from puck_tables.kernels.polygon_sums import (
     BEGIN_X,
@@ -78,41 +80,98 @@ def _at(law: FloatArray, spin: float, rx: float, ry: float, distance: float, are
     )  # fmt: skip
 
 
+@inlined
+def _on_panel(
+    law: FloatArray, spin: float, away: float, piece: int, y: float, half: float
+) -> tuple[float, float, float, float, float, float, float]:
+    """∫ of H₁, H₁ s, H₂, H₂ s, H₂ s², H₃ R² and H₃ R² s over y, from y over 2 ``half``."""
+    first = 2 + int(law[0]) + (piece - 1) * MOMENTS * _POWERS + _POWERS
+    begin, end = law[piece], law[piece + 1]
+    scale, shift = 2.0 * spin / (end - begin), (begin + end) / (end - begin)
+    a, b, c, d, e, f, g = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for n in range(NODES):
+        up = exp_of(y + half * (1.0 + NODE[n]))
+        down = 1.0 / up
+        s, distance = 0.5 * away * (up - down), 0.5 * away * (up + down)
+        t = scale * distance - shift
+        h1, h2, h3 = 0.0, 0.0, 0.0
+        for power in range(_POWERS - 1, -1, -1):
+            h1 = h1 * t + law[first + power]
+            h2 = h2 * t + law[first + _POWERS + power]
+            h3 = h3 * t + law[first + 2 * _POWERS + power]
+        weight = half * WEIGHT[n]
+        h1, h2, h3 = weight * h1, weight * h2, weight * distance * distance * h3
+        a, b, c, d = summed(a, h1), summed(b, h1 * s), summed(c, h2), summed(d, h2 * s)
+        e, f, g = summed(e, h2 * s * s), summed(f, h3), summed(g, h3 * s)
+    return a, b, c, d, e, f, g
+
+
 @inner
 def _along_side(
-    law: FloatArray, ux: float, uy: float, w: float, far: bool, px: float, py: float, tx: float,
-    ty: float, length: float, least: float,
+    law: FloatArray, spin: float, px: float, py: float, tx: float, ty: float, length: float,
+    least: float,
 ) -> Sums:  # fmt: skip
-    """A straight side that begins at p: both ways from where it is nearest to C.
+    """A straight side that begins at p from C, about C: both ways from where it is nearest."""
+    d, begin = px * ty - py * tx, px * tx + py * ty
+    away = abs(d)
+    if away <= least:
+        return NOTHING
+    end = begin + length
+    near, far = math.sqrt(d * d + begin * begin), math.sqrt(d * d + end * end)
+    low = math.copysign(log_of((abs(begin) + near) / away), begin)
+    high = math.copysign(log_of((abs(end) + far) / away), end)
+    one, one_s, two, two_s, two_ss, three, three_s = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for way in range(2):
+        y, last, side, distance = low, high, 1.0, near
+        if way == 1:
+            y, last, side, distance = -high, -low, -1.0, far
+        if y < 0.0:
+            y, distance = 0.0, away
+        piece = begin_of(law, spin * distance) if y < last else 1
+        while y < last:
+            to, after = side_panel(law, spin, away, piece, y, last)
+            a, b, c, e, f, g, h = _on_panel(law, spin, away, piece, y, 0.5 * (to - y))
+            one, one_s, two, two_s = one + a, one_s + side * b, two + c, two_s + side * e
+            two_ss, three, three_s = two_ss + f, three + g, three_s + side * h
+            y, piece = to, after
+    square, product = d * d, tx * ty
+    both = product * (two_ss - square * two) + d * (ty * ty - tx * tx) * two_s
+    across, twice = 2.0 * d * product * two_s, square * two
+    return (
+        d * (d * tx * one - ty * one_s), d * (d * ty * one + tx * one_s), -d * both,
+        -d * (tx * tx * twice - across + ty * ty * two_ss),
+        d * (ty * ty * twice + across + tx * tx * two_ss), d * both,
+        d * (d * ty * three + tx * three_s), d * (ty * three_s - d * tx * three),
+    )  # fmt: skip
 
-    ``far``: about the centre of mass, as :func:`_from_far`; else about C.
-    """
+
+@inner
+def _along_far_side(
+    law: FloatArray, ux: float, uy: float, w: float, px: float, py: float, tx: float, ty: float,
+    length: float,
+) -> Sums:  # fmt: skip
+    """A straight side that begins at p, far from C, about the centre of mass, as where it bends."""
     spin, cx, cy, sums = abs(w), -uy / w, ux / w, NOTHING
     d, begin = (px - cx) * ty - (py - cy) * tx, (px - cx) * tx + (py - cy) * ty
     away = abs(d)
-    if away <= least:
+    if away == 0.0:
         return sums
     low, high = math.asinh(begin / away), math.asinh((begin + length) / away)
     for way in range(2):
-        y, last = max(low, 0.0), high
+        y, last, side = max(low, 0.0), high, 1.0
         if way == 1:
-            y, last = max(-high, 0.0), -low
+            y, last, side = max(-high, 0.0), -low, -1.0
+        piece = begin_of(law, spin * away * math.cosh(y)) if y < last else 1
         while y < last:
-            end = side_end(law, spin, away, y, last)
+            end, piece = side_panel(law, spin, away, piece, y, last)
             half = 0.5 * (end - y)
             for n in range(NODES):
-                up = math.exp(y + half * (1.0 + NODE[n]))
-                s, distance = 0.5 * away * (up - 1.0 / up), 0.5 * away * (up + 1.0 / up)
-                s = s if way == 0 else -s
-                rx, ry = d * ty + s * tx, s * ty - d * tx
-                weight = half * WEIGHT[n] * distance
-                if far:
-                    part = _from_far(
-                        law, ux, uy, w, px + (s - begin) * tx, py + (s - begin) * ty, weight * tx,
-                        weight * ty,
-                    )  # fmt: skip
-                else:
-                    part = _at(law, spin, rx, ry, distance, weight * d)
+                at = y + half * (1.0 + NODE[n])
+                s, weight = side * away * math.sinh(at) - begin, half * WEIGHT[n]
+                weight *= away * math.cosh(at)
+                part = _from_far(
+                    law, ux, uy, w, px + s * tx, py + s * ty, weight * tx, weight * ty
+                )  # fmt: skip
                 sums = plus(sums, 1.0, part)
             y = end
     return sums
@@ -225,18 +284,25 @@ def _as_written(
     if not far and math.sqrt(ux * ux + uy * uy) > FAR * base[REACH] * abs(w):
         return _far_sums(base, law, ux, uy, w)
     sums, discs = NOTHING, HEAD + PIECE_COLUMNS * int(base[SIDES])
+    cx, cy, least = -uy / w, ux / w, ON_SIDE * base[REACH]
     for i in range(HEAD, discs, PIECE_COLUMNS):
-        part = _along_side(
-            law, ux, uy, w, far, base[i + BEGIN_X], base[i + BEGIN_Y], base[i + TANGENT_X],
-            base[i + TANGENT_Y], base[i + LENGTH], ON_SIDE * base[REACH],
-        )  # fmt: skip
+        px, py, tx, ty = (
+            base[i + BEGIN_X],
+            base[i + BEGIN_Y],
+            base[i + TANGENT_X],
+            base[i + TANGENT_Y],
+        )
+        if far:
+            part = _along_far_side(law, ux, uy, w, px, py, tx, ty, base[i + LENGTH])
+        else:
+            part = _along_side(law, abs(w), px - cx, py - cy, tx, ty, base[i + LENGTH], least)
         sums = plus(sums, 1.0, part)
     for k in range(int(base[DISCS])):
         x, y, size, sign = disc_in(base, k)
         sums = plus(sums, sign, _along_circle(law, ux, uy, w, far, x, y, size))
     if far:
         return sums
-    return plus(NOTHING, 1.0 if w > 0.0 else -1.0, moved(sums, -uy / w, ux / w))
+    return plus(NOTHING, 1.0 if w > 0.0 else -1.0, moved(sums, cx, cy))
 
 
 @arrays_at_first(_at_first)

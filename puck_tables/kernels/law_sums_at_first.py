@@ -13,7 +13,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.law_moments import DEGREE, MOMENTS
 from puck_tables.kernels.base_friction import DISCS, HEAD, REACH, SIDES
 from puck_tables.kernels.base_sums import Sums, moved
-from puck_tables.kernels.law_panels import NODES, circle_end, side_end
+from puck_tables.kernels.law_panels import NODES, begin_of, circle_end, side_panel
 from puck_tables.kernels.polygon_sums import (
     ABOUT_X,
     ABOUT_Y,
@@ -95,8 +95,9 @@ def _on_side(
     low, high = math.asinh(begin / abs(d)), math.asinh((begin + row[LENGTH]) / abs(d))
     found = []
     for way, y, last in ((1.0, max(low, 0.0), high), (-1.0, max(-high, 0.0), -low)):
+        piece = begin_of(law, spin * abs(d) * math.cosh(y)) if y < last else 1
         while y < last:
-            end = side_end(law, spin, abs(d), y, last)
+            end, piece = side_panel(law, spin, abs(d), piece, y, last)
             half = 0.5 * (end - y)
             found.append(np.stack([way * (y + half * (1.0 + NODE)), half * WEIGHT]))
             y = end

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from typing import Any
 
 import numba
@@ -15,19 +15,23 @@ _types: Any = types
 _typeof: Any = numba.typeof
 _WORD, _BYTE = ir.IntType(64), ir.IntType(8)
 _ALIGNED = 16  # bytes: arrays, for vectors
-RECORD = "record"  # its symbol
 
 
-def arrays_for(triple: str, record: Any, named: Mapping[str, Any]) -> bytes:
+def arrays_for(triple: str, record: Any, known: Sequence[Any], symbol: str) -> bytes:
     """An object file with a record as it is now, and the arrays that it is made of.
 
-    ``named``: arrays of it that are to be found from outside, by name; ``triple``, ``record``: see
+    Under its only symbol a table of addresses: of the record, then of arrays of it, and others,
+    that are to be ``known`` outside.  ``triple``, ``record``: see
     :func:`puck_tables.kernels.ahead.code_for`.
     """
-    machine, module = machine_for(triple), ir.Module("arrays")
-    content = _constant(module, _Data(named), _typeof(record), record)
-    place = ir.GlobalVariable(module, content.type, RECORD)
-    place.initializer, place.align = content, _ALIGNED
+    machine, module, data = machine_for(triple), ir.Module("arrays"), _Data()
+    content = _constant(module, data, _typeof(record), record)
+    place = ir.GlobalVariable(module, content.type, "record")
+    place.initializer, place.align, place.linkage = content, _ALIGNED, "internal"
+    rows = [place.bitcast(ir.PointerType(_BYTE)), *(data.address(module, one) for one in known)]
+    addresses = ir.Constant.literal_array(rows)
+    table = ir.GlobalVariable(module, addresses.type, symbol)
+    table.initializer, table.global_constant = addresses, True
     return bytes(machine.emit_object(as_module([str(module)], machine)))
 
 
@@ -58,8 +62,7 @@ def as_module(texts: list[str], machine: Any) -> Any:
 class _Data:
     """The arrays of a record as globals of a module; what shares memory there shares it here."""
 
-    def __init__(self, named: Mapping[str, Any]) -> None:
-        self._names = {_whole_of(one)[0].ctypes.data: name for name, one in named.items()}
+    def __init__(self) -> None:
         self._made: dict[int, Any] = {}
 
     def address(self, module: Any, array: Any) -> Any:
@@ -69,9 +72,9 @@ class _Data:
         if place not in self._made:
             content = owner.tobytes()
             kind = ir.ArrayType(_BYTE, max(len(content), 1))
-            made = ir.GlobalVariable(module, kind, self._names.get(place, f"array{place}"))
+            made = ir.GlobalVariable(module, kind, f"array{len(self._made)}")
             made.initializer = ir.Constant(kind, bytearray(content) if any(content) else None)
-            made.align = _ALIGNED
+            made.align, made.linkage = _ALIGNED, "internal"
             self._made[place] = made
         return self._made[place].gep([ir.Constant(_WORD, 0), ir.Constant(_WORD, offset)])
 

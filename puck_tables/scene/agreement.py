@@ -29,7 +29,8 @@ def floor_faults(scene: SceneSpec) -> list[str]:
     for name, there in (("strips", scene.floor.strips), ("patch", scene.floor.patches)):
         if scene.floor.law and there:
             faults.append(
-                f"floor.law and floor.{name}: each takes the place of puck.friction, give one"
+                f"floor.law and floor.{name}: friction by the slip speed is known where it is the "
+                "same everywhere; give one of them"
             )
     faults += grip_faults(scene.floor) + belt_faults(scene.floor)
     faults += _bad_motion(scene.floor)

@@ -10,7 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.errors import InputError, PuckError
+from puck_tables.contact.speed_law import SpeedLaw
+from puck_tables.errors import ContactError, InputError, PuckError
+from puck_tables.scene.by_speed import speed_law
 from puck_tables.scene.entries import is_batch, launch_paths
 from puck_tables.scene.outcome import (
     AT_REST,
@@ -32,11 +34,14 @@ from puck_tables.scene.run import STATE, ledger, residual
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import called, pucks_of, refuse_endless
 from puck_tables.world.bulk import Ends, follow_all
-from puck_tables.world.floor_under import moves_along
+from puck_tables.world.engine_state import Engine, Whole, copy_of
+from puck_tables.world.floor_under import SURE, law_goes_to, moves_along
+from puck_tables.world.floors import velocities_under
 from puck_tables.world.lasting import LEADS_ON, NEVER_ENDS, ROUND
+from puck_tables.world.layout import RADIUS
 from puck_tables.world.ledger import NAMES, energies_of, energy_scale, kinetic_of, ledgers_of
 from puck_tables.world.plan import plan_of
-from puck_tables.world.prepare import prepared
+from puck_tables.world.prepare import prepared, with_law_up_to
 from puck_tables.world.reactions import reactions
 from puck_tables.world.setting_off import CROWDED, OFF_TABLE, PUSHING, TANGLED, TOO_SHORT
 from puck_tables.world.simulate import MISSED, columns_of, run_on
@@ -73,7 +78,9 @@ class BoardCase:
         self.model, self.explanation = plan_of(scene)
         self.until = math.inf if scene.time is None else scene.time
         start = prepared(scene)
-        self.engine, self.first, self.place = start.engine, start.states, np.argsort(start.order)
+        self.engine, self.first, self.order = start.engine, start.states, start.order
+        self.place = np.argsort(start.order)
+        self._farther: dict[float, Engine] = {}  # by how far its friction law goes, m/s
 
     @staticmethod
     def names(scene: SceneSpec) -> tuple[str, ...]:
@@ -139,11 +146,36 @@ class BoardCase:
             starts[:, numbers.index(number), part] = values
         discs = self.place[np.array(numbers, np.int64)]
         ends = follow_all(self.engine, self.first, discs, starts, self.until)
+        self._follow_faster(discs, starts, ends)
         status = self._status(ends)
         for run in np.flatnonzero(ends.how == PUSHING).tolist():  # or much happens
             numbers_of = {path: float(values[run]) for path, values in launches.items()}
             status[run] = self._run(numbers_of, run, ends)
         return self._columns(ends, status), status
+
+    def _follow_faster(self, discs: Whole, starts: FloatArray, ends: Ends) -> None:
+        """Follow those that set off faster than a friction law by name is tabulated.
+
+        Its tables go to powers of two, so that no run depends on which others there are.
+        """
+        engine, top = self.engine, law_goes_to(self.engine.regions)
+        if top == math.inf or isinstance(speed_law(self.scene), SpeedLaw):
+            return
+        slips = starts - velocities_under(engine, self.first)[discs]
+        rims = engine.discs[discs, RADIUS] * np.abs(slips[..., 2])
+        fastest = (np.hypot(slips[..., 0], slips[..., 1]) + rims).max(axis=1, initial=0.0) / SURE
+        tops = np.exp2(np.ceil(np.log2(np.maximum(fastest, top))))
+        for farther in np.unique(tops[fastest >= top]).tolist():
+            if farther not in self._farther:
+                try:
+                    own = with_law_up_to(copy_of(engine), self.scene, self.order, farther)
+                except ContactError:  # it lifts part of a base: a run alone says so
+                    continue
+                self._farther[farther] = own
+            runs = np.flatnonzero((fastest >= top) & (tops == farther))
+            found = follow_all(self._farther[farther], self.first, discs, starts[runs], self.until)
+            for into, part in zip(ends, found, strict=True):
+                into[runs] = part
 
     def _status(self, ends: Ends) -> npt.NDArray[np.int8]:
         """How each run ends, a place in :data:`puck_tables.scene.outcome.ENDS`."""

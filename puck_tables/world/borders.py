@@ -204,7 +204,7 @@ def next_border(
                 engine, i, -1 - k, t, max(gap, rounded), nx, ny, 0.0, False, room, one, one
             )
             step = max(step, min(others, longer))
-        if t + step > last:
+        if t + step > last or step == math.inf:
             return math.inf
         if t + step == t:
             return t if rate < -QUIET * engine.scale[0] else math.inf

@@ -39,6 +39,7 @@ from puck_tables.scene.ingredients import (
     CARRIED,
     FREE,
     NO_WAY,
+    PIVOT,
     SLIDES,
     STOPS,
     Body,
@@ -337,8 +338,18 @@ def _longest(
 
 
 @inlined
+def _keeps_direction(model: Model) -> bool:
+    """Whether a pivot at rest leaves a slip on a floor at rest no direction to settle to."""
+    hold = model.hold
+    still = hold.vx == 0.0 and hold.vy == 0.0 and not moves_along(model.surface)
+    return hold.kind == PIVOT and still
+
+
+@inlined
 def _is_stiff(model: Model, load: float, stiff: bool, h: float, q: float, pull: float) -> bool:
     """Whether the direction of the slip settles much faster than it changes."""
+    if _keeps_direction(model):
+        return False
     damps, turns = settling_rates(model, load)
     settles = h * (damps + turns / q if q > 0.0 else damps)
     return pull < _SLOWLY * (damps * q + turns) and settles > (_MILD if stiff else _STIFF)
@@ -388,7 +399,8 @@ def _from_rest(
         q = _goes_on(Phase(model, friction, rows, SLIDES, NO_WAY, 0.0), t, vx, vy, spin, q, y,
                      buffer.stages)  # fmt: skip
     rests = mode == CARRIED and not _swings(model, friction, rows)
-    return mode, stiff, q, rests and rests_on(model, friction, rows, y)
+    rests = rests and rests_on(model, friction, rows, y)
+    return mode, stiff and not _keeps_direction(model), q, rests
 
 
 @inlined

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -34,6 +34,25 @@ class Odds(NamedTuple):
     velocity: tuple[float, float]
     spin: float
     failed: int
+
+    def __str__(self) -> str:
+        (vx, vy), degrees = self.velocity, math.degrees(1.0)
+        aim = f"{math.hypot(vx, vy):.6g} m/s, heading {degrees * math.atan2(vy, vx):.5g} deg"
+        lost = f"\n{self.failed} runs could not be followed to their end: misses"
+        return (
+            f"scattered so, the launch does it with a chance of {_words(self.found)}\n"
+            f"the best aim found, {aim}, spin {self.spin:.5g} rad/s, with {_words(self.best)}"
+            f"{lost if self.failed else ''}"
+        )
+
+    def summary(self) -> dict[str, Any]:
+        """Chances and aim, ready for JSON."""
+        chances = {"found": self.found._asdict(), "best": self.best._asdict()}
+        return self._asdict() | chances
+
+
+def _words(chance: Chance) -> str:
+    return f"{chance.value:.3g} (95 %: {chance.low:.3g} to {chance.high:.3g})"
 
 
 class _Trials:

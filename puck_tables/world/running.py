@@ -12,6 +12,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import finite_array, real
 from puck_tables.errors import InputError, PuckError
+from puck_tables.kernels.compile import entry_of
 from puck_tables.scene.pucks_and_posts import called_line
 from puck_tables.scene.run import Event
 from puck_tables.scene.scene_spec import SceneSpec
@@ -57,6 +58,8 @@ CROWDED_PUSHES, PUSHED_IN = 3000, 1e-3  # and so many new groups that push, in t
 
 class Running:
     """Pucks on a board from now on, with nobody's hand in it: see :class:`puck_tables.World`."""
+
+    _entry: tuple[Any, Any] = None, None  # an engine, and what advances just that
 
     def __init__(self, scene: SceneSpec) -> None:
         if not isinstance(scene, SceneSpec):
@@ -275,7 +278,7 @@ class Running:
         if lacks_rows(self._engine, self._room):
             self._grow()
         while True:
-            how = advance(self._engine, until, first, self._room)
+            how = self._play(until, first)
             if how == REACHED:
                 return
             unit = float(self._engine.scale[0] / max(self._engine.scale[1], 1e-300))
@@ -301,6 +304,14 @@ class Running:
                 mark = self.time
             else:
                 raise PuckError(self._failure(CROWDED if how == PAUSED else how))
+
+    def _play(self, until: float, first: int) -> int:
+        """Advance the engine, whose types are looked at once."""
+        asked = self._engine, until, first, self._room
+        if self._entry[0] is not self._engine or self._entry[1] is None:
+            self._entry = self._engine, entry_of(advance, *asked)
+        how: int = (self._entry[1] or advance)(*asked)
+        return how
 
     def _push_on(self) -> None:
         """Send the groups that push now on their way."""
@@ -331,7 +342,8 @@ class Running:
     def __getstate__(self) -> dict[str, Any]:
         """All but the table that comes along (read back, of another type to numba) and the room."""
         parts: Any = self._engine
-        return {**self.__dict__, "_engine": parts._replace(lookups=None), "_room": None}
+        own = {"_engine": parts._replace(lookups=None), "_room": None, "_entry": (None, None)}
+        return self.__dict__ | own
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """Take up what was written, with the table that comes along."""
