@@ -99,6 +99,7 @@ FINEST = 3e-14  # error of a step in units of the scales: finer is rounding
 COARSER = 10.0  # times that: of a piece, whose errors do not add up
 _BEGIN = 0.1  # of Q/J: the first step
 _SHORTEST = 1e-16  # of Q/J: shorter steps lead nowhere
+_ROUNDED = 1e-14  # of the floor's velocity: a slip over it is not known better when a path begins
 _SAFE = 0.8  # of how long a piece could be, by what the last one missed
 _BRIEF = 1e-6  # of Q/J: on as short a step what a piece misses is rounding
 _NEAR = 0.75  # of the time in which the slip would end, at most, is a step
@@ -388,14 +389,17 @@ def _from_rest(
 ) -> tuple[int, bool, float, bool]:  # fmt: skip
     """How it goes on with no slip but what rounding leaves: mode, whether stiff, slip, and rests.
 
-    ``slow``: the slip it has; where it ``begins`` so, it may be what the path before began.
+    ``slow``: the slip it has; where it ``begins`` so, it may be what the path before began, unless
+    it is less than velocities in the laboratory are rounded to.
     """
     y = buffer.y
     vx, vy, spin = y[VX], y[VY], y[SPIN]
     y[VX] = y[VY] = y[SPIN] = 0.0
     at_rest = Phase(model, friction, rows, CARRIED, NO_WAY, 0.0)
     mode, stiff, q = from_standstill(at_rest, speed, t, y, buffer.stages)
-    if mode == SLIDES and begins and slow > q:
+    sx, sy, turning = floor_velocity(_surface_at(model, t), y[X], y[X + 1])
+    rounded = _ROUNDED * (math.hypot(sx, sy) + model.body.radius * abs(turning))
+    if mode == SLIDES and begins and slow > max(q, rounded):
         q = _goes_on(Phase(model, friction, rows, SLIDES, NO_WAY, 0.0), t, vx, vy, spin, q, y,
                      buffer.stages)  # fmt: skip
     rests = mode == CARRIED and not _swings(model, friction, rows)
