@@ -182,3 +182,4 @@ def _draw_profile(panel: Axes, result: Fit, name: str) -> None:
     words = f"({from_there}){unit}" if known_to and unit else f"{from_there}{unit}"
     panel.set(xlabel=words, title="rise of chi²")
     panel.tick_params(axis="x", labelrotation=30)
+    panel.ticklabel_format(axis="x", useOffset=False)
