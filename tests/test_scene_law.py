@@ -106,7 +106,7 @@ def test_slices_of_strips_are_brought_to_one_shape_and_stay_the_same_splines():
     ("floor", "words"),
     [
         ({"law": "none.csv"}, "none.csv"),
-        ({"law": "none.csv", "strips": {"borders": [1.0], "friction": [0.1, 0.2]}}, "place"),
+        ({"law": "none.csv", "strips": {"borders": [1.0], "friction": [0.1, 0.2]}}, "give one"),
     ],
 )
 def test_laws_that_cannot_be_are_refused(floor, words):
