@@ -26,6 +26,7 @@ def _stops() -> None:
     for puck in _PUCKS:
         for jacobian in (False, True):
             puck.stop([_LAUNCH[0]] * 2, _LAUNCH[1], jacobian=jacobian)
+        puck.stop([_LAUNCH[0]] * 100, _LAUNCH[1])  # another way than that for two
         puck.stop([_LAUNCH[0]] * 2, _LAUNCH[1], tol=1e-4)
 
 
@@ -47,6 +48,7 @@ def _scenes() -> None:
     wet = Patch(0.05, centre=(0.2, 0.0), radius=0.1)  # a base over two frictions is summed
     Scene(_PUCKS[0], floor=Floor(patches=(wet,)), launch=Launch(*_LAUNCH)).simulate()
     scene.sample(2, 1, {"launch.spin": Normal(5.0, 0.1)})
+    Scene.load("skate-blade").simulate()  # what a constraint gives is a column of its own
 
 
 def _boards() -> None:

@@ -33,7 +33,8 @@ LEAST_REACH = 1e-3  # of the radius
 MAX_NODES = 2_000_000  # more is an accuracy out of reach
 MAX_OF_CIRCLES = 300_000  # the same under those
 _NEXT = 0.03  # of the largest error: refined in the same round
-_SAFETY = 2.0  # for points that were not measured
+_SAFETY = 2.0  # for points that were not measured; where points of a law lie so close that an
+_CLOSE = 2.0  # accuracy is out of reach, so many times more
 _COARSE_FROM = 5e-10  # from here on nodes of laws without corners are coarser; probes are not
 _BETWEEN_WORDS = 0.1  # s
 
@@ -172,7 +173,7 @@ def _each(
 
 
 def _out_of_reach(parts: list[FilledPatch], accuracy: float, growth: float) -> AccuracyError:
-    reached = _SAFETY * growth * max(part.badness for part in parts)
+    reached = _CLOSE * _SAFETY * growth * max(part.badness for part in parts)
     return AccuracyError(
         f"an accuracy of {accuracy:g} is out of reach for this friction law with its "
         f"corners: {rounded_up(reached):g} can be reached",
