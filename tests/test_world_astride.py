@@ -182,7 +182,8 @@ def test_a_sweep_over_strips_is_the_runs_one_by_one():
     )
     ends = board.sweep()
     one = board.at({"puck[0].launch.spin": -40.0}).simulate()
-    assert (ends.columns["x"][1] == one.last["x"]).all()
+    # a run is looked at when the last one comes to rest, which is a moment rounded: one last digit
+    np.testing.assert_allclose(ends.columns["x"][1], one.last["x"], rtol=4e-16)
 
 
 def test_a_law_by_name_goes_on_as_they_slip_and_rows_end_with_a_sentence():

@@ -123,7 +123,10 @@ def _follow_all(
         for i in range(count):
             kind, segment = engine.kinds[i], engine.segments[i]
             last = max(last, segment[START], moves_until(kind, segment))
-        at = last = ended if until == math.inf and moves_along(engine.surface) else min(last, until)
+        if until == math.inf and moves_along(engine.surface):
+            last = at = ended
+        else:
+            last, at = min(last, until), until
         ends.time[run], ends.impacts[run] = last, engine.counts[N_IMPACTS]
         for i in range(count):
             kind, segment = engine.kinds[i], engine.segments[i]
