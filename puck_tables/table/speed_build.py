@@ -33,8 +33,8 @@ LEAST_REACH = 1e-3  # of the radius
 MAX_NODES = 2_000_000  # more is an accuracy out of reach
 MAX_OF_CIRCLES = 300_000  # the same under those
 _NEXT = 0.03  # of the largest error: refined in the same round
-_SAFETY = 2.0  # for points that were not measured; where points of a law lie so close that an
-_CLOSE = 2.0  # accuracy is out of reach, so many times more
+_SAFETY = 2.0  # for points that were not measured
+_CLOSE = 2.0  # as much again where corners put an accuracy out of reach
 _COARSE_FROM = 5e-10  # from here on nodes of laws without corners are coarser; probes are not
 _BETWEEN_WORDS = 0.1  # s
 
