@@ -12,6 +12,7 @@ from scipy.integrate import solve_ivp
 import puck_tables as pt
 from puck_tables.scene.scene_text import as_toml
 from puck_tables.world.floor_forces import friction_at
+from puck_tables.world.plan import plan_of
 
 G = 9.80665
 ICE = pt.StribeckLaw(0.3, 0.1, speed=0.3)
@@ -223,7 +224,7 @@ spin = 10.0
     run = scene.at({"floor.strips.friction[0].static": 0.5}).simulate([0.0])
     assert run.scene.floor.strips.friction[0].static == 0.5
     assert "by slip speed, floor.strips.friction[0], floor.patch[0].friction" in str(run)
-    assert "summed over every base wherever it lies" in run.explanation
+    assert "summed over every base wherever it lies" in plan_of(scene)[1]
 
 
 def test_what_is_not_known_is_refused() -> None:

@@ -37,12 +37,12 @@ def floor_faults(scene: SceneSpec) -> list[str]:
             "law of its own; give one of them"
         )
     faults += grip_faults(scene.floor) + belt_faults(scene.floor)
-    faults += _bad_motion(scene.floor)
+    faults += _bad_motion(scene.floor) + _bad_rows(scene)
     if faults:
         return faults
     if scene.puck.shape is not None:
         wrong = bad_strips(scene.floor) or patch_faults(scene.floor) or _bad_under_base(scene)
-        return faults + wrong + _bad_rows(scene) + _bad_axes(scene)
+        return wrong + _bad_axes(scene)
     if has_laws_by_place(scene.floor):
         faults += _bad_load(scene)
     elif scene.floor.law:
@@ -51,7 +51,7 @@ def floor_faults(scene: SceneSpec) -> list[str]:
         except InputError as error:
             faults.append(f"floor.law: {error}")
     faults += bad_strips(scene.floor) or patch_faults(scene.floor) or _bad_mixed(scene)
-    return faults + _bad_rows(scene) + _bad_axes(scene)
+    return faults + _bad_axes(scene)
 
 
 def _bad_load(scene: SceneSpec) -> list[str]:
