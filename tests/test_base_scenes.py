@@ -346,7 +346,7 @@ def test_a_law_that_bends_is_integrated_as_exactly_as_one_that_does_not() -> Non
         truth = np.array([(along * vx).sum(), (along * vy).sum()])
         found = law_sums(*whole(shape), contour, ux, uy, w)[:2]
         assert np.abs(found - truth).max() < 1e-9 * 0.4 * 0.02
-        other = getattr(law_sums, "at_first", law_sums)(shape, contour, ux, uy, w)[:2]
+        other = getattr(law_sums, "at_first", law_sums)(*whole(shape), contour, ux, uy, w)[:2]
         assert np.abs(np.subtract(found, other)).max() < 1e-12 * 0.4 * 0.02
 
 
@@ -363,8 +363,8 @@ def test_arrays_give_what_the_kernel_gives_before_it_is_compiled() -> None:
             rim = outermost[rng.integers(len(outermost))]
             slips = [(*(far * rng.normal(size=2) * 0.1), w), (w * rim[1], -w * rim[0], w)]
             for ux, uy, spin in [*slips, (1.0, 0.5, 0.0)]:
-                one = law_sums.py_func(shape, law, ux, uy, spin)
-                two = law_sums.at_first(shape, law, ux, uy, spin)
+                one = law_sums.py_func(*whole(shape), law, ux, uy, spin)
+                two = law_sums.at_first(*whole(shape), law, ux, uy, spin)
                 unit = base.area * np.array([1.0] * 2 + [base.reach] * 4 + [base.reach**2] * 2)
                 assert (np.abs(np.subtract(one, two)) < 1e-13 * unit).all()
 
