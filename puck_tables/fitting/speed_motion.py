@@ -53,9 +53,9 @@ _ANY = np.zeros(2), np.zeros((1, 6))  # of no law
 
 
 _SLOPE = 0.05  # of w: so wide is the slope of the two values, that it can be fitted
-_SHAPES = {
-    "stribeck": np.array([0.0, 0.25, 0.5, 0.8, 1.2, 1.7, 2.4, 3.4, 5.0, 8.0]),
-    "hyperbola": np.array([0.0, 0.2, 0.5, 1.0, 2.0, 4.0, 8.0, 20.0, 60.0]),
+_SHAPES = {  # u/w: the last is faster than anything slips, for a cubic does not go on as they do
+    "stribeck": np.array([0.0, 0.25, 0.5, 0.8, 1.2, 1.7, 2.4, 3.4, 5.0, 8.0, 13.0, 1e6]),
+    "hyperbola": np.array([0.0, 0.2, 0.5, 1.0, 2.0, 4.0, 8.0, 20.0, 60.0, 200.0, 1e3, 1e4, 1e6]),
     "two-valued": np.array([0.0, 1.0 - _SLOPE, 1.0 + _SLOPE, 4.0]),
 }
 LAWS = tuple(_SHAPES)

@@ -92,7 +92,7 @@ def _otherwise(start: Start, coarser: float, share: float, friction: float) -> S
     states[free, VX:] = floor + (states[free, VX:] - floor) @ turned.T
     engine.scale[2] *= coarser
     engine.discs[:, NORMAL] *= 1.0 + friction
-    # torques err to the other side, and by twice as much: all alike hardly change where rebounds lead
+    # torques to the other side, by twice as much: all alike hardly change where rebounds lead
     engine.discs[:, TURNABILITY] *= 1.0 - 3.0 * friction
     regions = engine.regions._replace(load=engine.regions.load * (1.0 + friction))
     return start._replace(engine=engine._replace(launches=launches, regions=regions), states=states)
