@@ -20,6 +20,7 @@ from puck_tables.stopping.stop_table import StopTable
 LAUNCH_NAMES = ("vx", "vy", "spin", "delta", "decel", "radius")
 STOP_NAMES = ("stop_time", "stop_x", "stop_y", "path_length", "body_angle")
 STATE_NAMES = ("x", "y", "orientation", "vx", "vy", "spin")
+FRICTION_NAMES = ("vx", "vy", "spin", "friction", "height", "radius")
 MOMENT_NAMES = (*LAUNCH_NAMES, "time")
 
 Bodies = dict[float, UnitPuck]  # by height
@@ -33,7 +34,7 @@ class Differentiated:
     """
 
     JACOBIAN_ROWS: ClassVar[tuple[str, ...]]
-    JACOBIAN_COLUMNS: ClassVar[tuple[str, ...]]
+    JACOBIAN_COLUMNS: tuple[str, ...]
     _jacobian: FloatArray | None = None
     _arguments: FloatArray
     _anew: Callable[..., Any] | None = None  # the same of other launches
@@ -135,8 +136,8 @@ class Differentiated:
         """The rows of the Jacobian's results (rows, m) of arguments (columns, m)."""
         assert self._anew is not None
         found = self._anew(
-            arguments[:2].T, arguments[2], *arguments[len(LAUNCH_NAMES) :], delta=arguments[3],
-            decel=arguments[4], radius=arguments[5],
+            arguments[:2].T, arguments[2], *arguments[len(LAUNCH_NAMES) :],
+            **dict(zip(self.JACOBIAN_COLUMNS[3:6], arguments[3:6], strict=True)),
         )  # fmt: skip
         return np.stack([getattr(found, name) for name in self.JACOBIAN_ROWS])
 
