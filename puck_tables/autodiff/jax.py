@@ -49,8 +49,8 @@ def _stops_jvp(kind: host.PuckKind, primals: Any, tangents: Any) -> Any:
     return _stops(arguments, kind), jnp.einsum("...rc,...c->...r", jacobian, moved)
 
 
-def _array(given: Any) -> Any:
-    array = jnp.asarray(given)
+def _array(number: Any) -> Any:
+    array = jnp.asarray(number)
     if not jax.config.read("jax_enable_x64") or array.dtype == jnp.float32:
         raise InputError(
             "single precision is too coarse for the motion of a puck: call "

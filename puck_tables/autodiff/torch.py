@@ -55,13 +55,13 @@ def _slopes(arguments: Any, kind: host.PuckKind) -> Any:
     return torch.from_numpy(found).to(arguments.device)
 
 
-def _array(given: Any) -> Any:
-    number = isinstance(given, torch.Tensor) and given.is_floating_point()
-    if number and given.dtype != torch.float64:
+def _array(number: Any) -> Any:
+    is_real = isinstance(number, torch.Tensor) and number.is_floating_point()
+    if is_real and number.dtype != torch.float64:
         raise InputError(
-            f"{given.dtype} is too coarse for the motion of a puck: give torch.float64"
+            f"{number.dtype} is too coarse for the motion of a puck: give torch.float64"
         )
-    return torch.as_tensor(given, dtype=torch.float64)
+    return torch.as_tensor(number, dtype=torch.float64)
 
 
 def _merged(velocity: Any, *others: Any) -> Any:

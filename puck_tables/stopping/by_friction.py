@@ -72,7 +72,7 @@ def refuse_both(delta: Any, decel: Any, friction: Any, height: Any, gravity: Any
     )
 
 
-def given_by(
+def delta_and_decel(
     delta: Any, decel: Any, radius: npt.ArrayLike, friction: Any, height: Any, gravity: Any
 ) -> tuple[Any, Any, ByFriction | None]:
     """δ and J of pucks, and what they follow from.
@@ -85,7 +85,7 @@ def given_by(
     Examples
     --------
     >>> numbers = DEFAULT_DELTA, DEFAULT_DECEL, 0.04, 0.2, 0.05, 10.0
-    >>> [part.tolist() for part in given_by(*numbers)[:2]]
+    >>> [part.tolist() for part in delta_and_decel(*numbers)[:2]]
     [0.5, 2.0]
     """
     if not refuse_both(delta, decel, friction, height, gravity):

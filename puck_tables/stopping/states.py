@@ -24,7 +24,7 @@ from puck_tables.stopping.by_friction import (
     DEFAULT_DELTA,
     DEFAULT_GRAVITY,
     DEFAULT_HEIGHT,
-    given_by,
+    delta_and_decel,
 )
 from puck_tables.stopping.jacobian import (
     FRICTION_NAMES,
@@ -243,7 +243,7 @@ def states(
             raise InputError("stop tables are of a homogeneous puck under uniform pressure")
         highest = UPPER_DELTA
     chosen = StopTable.shipped() if table is None else table
-    delta, decel, by = given_by(delta, decel, radius, friction, height, gravity)
+    delta, decel, by = delta_and_decel(delta, decel, radius, friction, height, gravity)
     launches = launches_of(velocity, spin, delta, decel, radius)
     times = real_view("time", time, "s")
     all_plain = launches.tallest <= highest
@@ -279,14 +279,14 @@ def states(
         told = _explained(int(plain.sum()), int((~plain).sum()))
     if slopes is None:
         return states_in(found, moments, launches, which, shape, told)
-    rows, names, how = launches.matrix, MOMENT_NAMES, {}
+    rows, names = launches.matrix, MOMENT_NAMES
+    how: dict[str, Any] = {"table": table, "pressure": pressure, "gyration": gyration}
     if by is not None:
         rows = by.chained(launches, slopes, each_of(which, moments.size))
-        names, how = (*FRICTION_NAMES, "time"), {"gravity": by.gravity}
-    how |= {"table": table, "pressure": pressure, "gyration": gyration, "threads": threads}
+        names, how["gravity"] = (*FRICTION_NAMES, "time"), by.gravity
     return states_in(
         found, moments, launches, which, shape, told, slopes.reshape(*shape, *slopes.shape[1:]),
-        (rows, which), partial(states, **how), math.inf if bodies else 1.0, names,
+        (rows, which), partial(states, threads=threads, **how), math.inf if bodies else 1.0, names,
     )  # fmt: skip
 
 

@@ -26,7 +26,7 @@ from puck_tables.stopping.by_friction import (
     DEFAULT_GRAVITY,
     DEFAULT_HEIGHT,
     ByFriction,
-    given_by,
+    delta_and_decel,
 )
 from puck_tables.stopping.jacobian import (
     FRICTION_NAMES,
@@ -264,12 +264,12 @@ def stop(
     >>> slider = {"radius": 0.04, "friction": 0.2, "height": 0.05, "gravity": 10.0}
     >>> found = stop((1.0, 0.0), 5.0, **slider, jacobian=True)
     >>> round(float(found.stop_time), 6), float(found.derivative("stop_x", "friction").round(6))
-    (0.50299, -1.26131)
+    (0.515885, -1.26231)
     """
     checked_threads(threads)
     checked_flag("jacobian", jacobian)
     solver = SolverPerHeight(pressure, gyration, tol, method, table)
-    delta, decel, by = given_by(delta, decel, radius, friction, height, gravity)
+    delta, decel, by = delta_and_decel(delta, decel, radius, friction, height, gravity)
     launches = launches_of(velocity, spin, delta, decel, radius)
     if jacobian:
         launches.refuse_bad()
