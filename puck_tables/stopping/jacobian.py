@@ -86,7 +86,7 @@ class Differentiated:
     def spread(
         self,
         covariance: npt.ArrayLike,
-        of: Sequence[str] = ("vx", "vy", "spin"),
+        of: Sequence[str] | None = None,
         *,
         samples: int = 0,
         seed: int = 0,
@@ -97,7 +97,7 @@ class Differentiated:
         ----------
         covariance : array_like (k, k) or (…, k, k), SI units, symmetric, no negative variances
             Of the arguments named in ``of``, for all launches or for each.
-        of : k names of ``JACOBIAN_COLUMNS``
+        of : k names of ``JACOBIAN_COLUMNS``; the first three, the launch, if left out
         samples : int
             How many launches to draw of each, normally distributed, and to look up, beside the
             linear answer: 0, or from 2 on.
@@ -129,7 +129,8 @@ class Differentiated:
         """
         return spread_of(
             self.JACOBIAN_ROWS, self.JACOBIAN_COLUMNS, self.jacobian, self._arguments, self._again,
-            covariance, of, samples, seed, self._highest,
+            covariance, self.JACOBIAN_COLUMNS[:3] if of is None else of, samples, seed,
+            self._highest,
         )  # fmt: skip
 
     def _again(self, arguments: FloatArray) -> FloatArray:
