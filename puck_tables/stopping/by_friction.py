@@ -84,9 +84,9 @@ def delta_and_decel(
 
     Examples
     --------
-    >>> numbers = DEFAULT_DELTA, DEFAULT_DECEL, 0.04, 0.2, 0.05, 10.0
+    >>> numbers = DEFAULT_DELTA, DEFAULT_DECEL, 0.04, 0.25, 0.04, 10.0
     >>> [part.tolist() for part in delta_and_decel(*numbers)[:2]]
-    [0.5, 2.0]
+    [0.5, 2.5]
     """
     if not refuse_both(delta, decel, friction, height, gravity):
         return delta, decel, None
