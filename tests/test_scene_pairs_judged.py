@@ -66,6 +66,12 @@ def test_pairs_and_triples(tmp_path):
 
 
 @pytest.mark.thorough
+def test_friction_of_a_table_that_hundreds_of_rebounds_add_up(tmp_path):
+    """Forces and torques that are off by the same share hardly change where they lead."""
+    assert faults([draw_rebounds(2, 94)], [1e-6], tmp_path) == []
+
+
+@pytest.mark.thorough
 def test_rebounds_that_settle(tmp_path):
     scenes = [(1, i) for i in (0, 1, 4, 5, 6, 9)] + [(3, 27), (3, 37), (3, 44), (3, 112), (11, 23)]
     assert faults([draw_rebounds(*scene) for scene in scenes], [1e-9], tmp_path) == []

@@ -14,7 +14,8 @@ from puck_tables import CurlingLaw, SpeedLaw, StribeckLaw, Table, law_of, profil
 from puck_tables.contact.base import Base
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.law_moments import law_moments, packed_law
-from puck_tables.kernels.base_friction import packed, under_load
+from puck_tables.kernels.base_clipping import whole_contour
+from puck_tables.kernels.base_friction import REACH, packed, under_load
 from puck_tables.kernels.law_sums import law_sums
 from puck_tables.kernels.speed_quadrature_kernel import FINE
 from puck_tables.table.speed_build import load_under
@@ -142,7 +143,8 @@ def test_under_an_annulus_it_is_the_sum_along_the_contour(law, off, inner, outer
     for angle in phi.tolist():
         speed = 3.0 * float(rng.random()) / (np.cos(angle) + np.sin(angle))
         v, w = speed * np.cos(angle), speed * np.sin(angle)
-        x, _, turning = under_load(law_sums(shape, contour, v, 0.0, w), 1.0 / base.area, 0.0, 0.0)
+        sums = law_sums(shape, *whole_contour(shape, 0), shape[REACH], contour, v, 0.0, w)
+        x, _, turning = under_load(sums, 1.0 / base.area, 0.0, 0.0)
         rho = table.resultants(angle, speed)
         found = np.cos(angle) * float(rho.parallel), 0.5 * np.sin(angle) * float(rho.spin)
         assert np.abs(np.subtract(found, (x, turning))).max() < off * law.largest(3.0)

@@ -48,7 +48,8 @@ class Kind:
     file: str | tuple[str, ...] | None = None  # a text that names a file where it ends so
     objects: tuple[type, ...] = ()  # taken as they are, in place of a text
     batch: bool = False  # a pair of which there may be many, one for each launch
-    kinds: Any = None  # name -> dataclass: a table whose 'kind' says which, in place of rows
+    # name -> dataclass: a table whose 'kind' says which, in place of rows; of a number rows, too
+    kinds: Any = None
     law: Any = None  # judges a text in place of a number; ``laws``: such texts, in words
     laws: str = ""
 
@@ -73,6 +74,10 @@ class Kind:
         if self.law is not None:
             plain = dataclasses.replace(self, law=None)
             return f"{plain.allowed()}, or {self.laws}"
+        if self.kinds:
+            plain = dataclasses.replace(self, kinds=None)
+            named = f"rows of numbers, or a table whose kind is {', '.join(self.kinds)}"
+            return f"{plain.allowed()}; in place of a number {named}"
         unit = f" {self.unit}" if self.unit else ""
         low = f"{'>' if self.above else '>='} {self.low:g}"
         high = f"{'<' if self.below else '<='} {self.high:g}"
@@ -181,7 +186,7 @@ def described(kind: type, prefix: str = "") -> list[tuple[str, str, str]]:
             shown = ", ".join(f"{n:g}" if isinstance(n, float) else str(n) for n in numbers)
             default = f"  [{shown}]"
         rows.append((path, what.allowed() + default, spec.metadata["doc"]))
-        for law, part in (what.kinds or {}).items():
+        for law, part in (what.kinds or {}).items() if what.shape == "rows" else ():
             inner = described(part, f"{path}.")
             rows += [(entry, said, f"{law}: {doc}".rstrip(": ")) for entry, said, doc in inner]
     return rows

@@ -174,7 +174,7 @@ def _read(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -> 
         return value
     if kind.kinds and isinstance(value, (Mapping, *kind.kinds.values())):
         return _named(kind, value, path, reading)
-    if kind.shape == "rows":
+    if kind.shape == "rows" or (kind.kinds and kind.shape == "number" and _is_table(value)):
         return _rows(kind, value, path, reading)
     if kind.shape == "number":
         return _number(kind, value, path, reading, default)
@@ -203,7 +203,16 @@ def _read(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -> 
         reading.fault(path, value, kind.allowed() + several)
         return (0.0, 0.0)
     _refuse_bare(kind, items, path, reading)
-    return tuple(_number(kind, item, f"{path}[{i}]", reading, None) for i, item in enumerate(items))
+    one = dataclasses.replace(kind, shape="number")
+    return tuple(_read(one, item, f"{path}[{i}]", reading, MISSING) for i, item in enumerate(items))
+
+
+def _is_table(value: Any) -> bool:
+    """Whether it is rows of numbers, or makes them."""
+    if hasattr(value, "as_rows") or (isinstance(value, np.ndarray) and value.ndim == 2):
+        return True
+    items = _items(value)
+    return bool(items) and all(_items(one) is not None for one in items or ())
 
 
 def _refuse_bare(kind: Kind, items: Iterable[Any], path: str, reading: Reading) -> None:

@@ -71,14 +71,19 @@ def side_panel(
 
 
 @inlined
-def circle_end(law: FloatArray, spin: float, off: float, size: float, turn: float) -> float:
-    """Where the panel ends that begins at a turn from 0 to π; ``off``: how far its middle is."""
-    gap, left = abs(off - size), math.pi - turn
+def circle_end(
+    law: FloatArray, spin: float, off: float, size: float, turn: float, last: float
+) -> float:
+    """Where the panel ends that begins at a turn from 0 to π; ``off``: how far its middle is.
+
+    ``last``: where the arc ends, or turns back.
+    """
+    gap, left = abs(off - size), last - turn
     near = min(max(gap / size, LEAST_GAP), 1.0)
     length = ARC * math.sqrt(near * near + turn * turn)
     if length >= 0.7 * left:
         length = left if length >= left else 0.5 * left
-    end = turn + length if length < left else math.pi
+    end = turn + length if length < left else last
     product, h = 4.0 * off * size, math.sin(0.5 * turn)
     reach = next_end(law, spin * math.sqrt(gap * gap + product * h * h)) / spin
     if reach < math.inf:
@@ -87,3 +92,20 @@ def circle_end(law: FloatArray, spin: float, off: float, size: float, turn: floa
             there = 2.0 * math.asin(math.sqrt(max(square, 0.0) / product))
             end = min(end, max(there, turn + _STEP))
     return end
+
+
+@inlined
+def arc_from_nearest(start: float, turn: float, nearest: float) -> tuple[float, float]:
+    """From where to where an arc goes, counter-clockwise, counted from an angle of its circle."""
+    whole = 2.0 * math.pi
+    if abs(turn) == whole:  # it begins nowhere
+        return 0.0, whole
+    low = (start if turn > 0.0 else start + turn) - nearest
+    low -= whole * math.floor(low / whole)
+    return low, low + abs(turn)
+
+
+@inlined
+def panels_far_off(turn: float) -> int:
+    """How many panels an arc takes where C is far away."""
+    return 1 + int(abs(turn) / ARC)

@@ -1,4 +1,7 @@
-"""Sums of friction over a base whose coefficient depends on the slip speed, along its contour.
+"""Sums of friction whose coefficient depends on the slip speed, along the contour of a base.
+
+Or of a part of it: a contour is rows of straight pieces and arcs
+(:mod:`puck_tables.kernels.base_clipping`), those of a base itself its sides and circles.
 
 With C the instantaneous centre, R and (R, t) polar coordinates about it, W = |ω| and H_k the
 moments of the law (:mod:`puck_tables.contact.law_moments`) at W R, along a piece dr of the contour
@@ -7,7 +10,7 @@ moments of the law (:mod:`puck_tables.contact.law_moments`) at W R, along a piec
     ∫ f e ⊗ r dA = ∮ e ⊗ r H₂ (r × dr)      (r from C).
 
 On a straight side at the distance d from C, r × dr = d ds, and with y = asinh(s/|d|) the integrands
-are entire but for the law: Gauss's rule on panels of y.  On a circle panels shrink towards C.
+are entire but for the law: Gauss's rule on panels of y.  On an arc panels shrink towards C.
 Panels end where the law bends, those of a side with each of its pieces
 (:mod:`puck_tables.kernels.law_panels`), so that all nodes of one are had at once.  Where C lies far
 away these cancel: there the inner integral runs from the distance of C to the contour.
@@ -19,19 +22,31 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.law_moments import DEGREE, MOMENTS
-from puck_tables.kernels.base_friction import DISCS, HEAD, REACH, SIDES, disc_in
 from puck_tables.kernels.base_sums import NOTHING, Sums, moved, plus
 from puck_tables.kernels.compile import arrays_at_first, inlined, inner, kernel, summed
 from puck_tables.kernels.elementary import exp_of, log_of
-from puck_tables.kernels.law_panels import NODES, begin_of, circle_end, next_end, side_panel
+from puck_tables.kernels.law_panels import (
+    NODES,
+    arc_from_nearest,
+    begin_of,
+    circle_end,
+    next_end,
+    panels_far_off,
+    side_panel,
+)
 from puck_tables.kernels.law_sums_at_first import FAR, NODE, ON_SIDE, WEIGHT, law_sums_at_first
 from puck_tables.kernels.polygon_sums import (
+    ABOUT_X,
+    ABOUT_Y,
     BEGIN_X,
     BEGIN_Y,
     LENGTH,
     PIECE_COLUMNS,
+    RADIUS,
+    START,
     TANGENT_X,
     TANGENT_Y,
+    TURN,
     ray_to,
 )
 
@@ -60,7 +75,8 @@ def _moments(law: FloatArray, u: float) -> tuple[float, float, float]:
 
 
 @inlined
-def _coefficient(law: FloatArray, u: float) -> float:
+def coefficient_at(law: FloatArray, u: float) -> float:
+    """F at a slip speed."""
     first, t = _polynomials_at(law, u)
     f = 0.0
     for power in range(_POWERS - 1, -1, -1):
@@ -178,19 +194,29 @@ def _along_far_side(
 
 
 @inner
-def _along_circle(
-    law: FloatArray, ux: float, uy: float, w: float, far: bool, x: float, y: float, size: float
+def _along_arc(
+    law: FloatArray, ux: float, uy: float, w: float, far: bool, x: float, y: float, size: float,
+    start: float, turn: float,
 ) -> Sums:  # fmt: skip
-    """A circle about a place, counter-clockwise: both ways from where it is nearest to C."""
+    """An arc about a place, from half-turn to half-turn away from where it is nearest to C."""
     spin, gx, gy, sums = abs(w), x + uy / w, y - ux / w, NOTHING
-    off, nearest, turn = math.sqrt(gx * gx + gy * gy), math.atan2(-gy, -gx), 0.0
-    while turn < math.pi:
-        end = circle_end(law, spin, off, size, turn)
-        half = 0.5 * (end - turn)
-        for way in range(2):
+    off, nearest = math.sqrt(gx * gx + gy * gy), math.atan2(-gy, -gx)
+    low, high = arc_from_nearest(start, turn, nearest)
+    number = float(math.floor(low / math.pi))
+    while low < high:
+        edge = min(math.pi * (number + 1.0), high)
+        side, begin, last = 1.0, low - math.pi * number, edge - math.pi * number
+        if number % 2.0 == 1.0:  # it leads back
+            side, begin, last = (
+                -1.0,
+                math.pi * (number + 1.0) - edge,
+                math.pi * (number + 1.0) - low,
+            )
+        while begin < last:
+            end = circle_end(law, spin, off, size, begin, last)
+            half = 0.5 * (end - begin)
             for n in range(NODES):
-                by = turn + half * (1.0 + NODE[n])
-                angle = nearest + by if way == 0 else nearest - by
+                angle = nearest + side * (begin + half * (1.0 + NODE[n]))
                 c, s, weight = math.cos(angle), math.sin(angle), half * WEIGHT[n] * size
                 if far:
                     part = _from_far(
@@ -202,8 +228,10 @@ def _along_circle(
                     area = weight * (size + gx * c + gy * s)
                     part = _at(law, spin, rx, ry, distance, area)
                 sums = plus(sums, 1.0, part)
-        turn = end
-    return sums
+            begin = end
+        low = edge
+        number += 1.0
+    return plus(NOTHING, 1.0 if turn > 0.0 else -1.0, sums)
 
 
 @inner
@@ -224,7 +252,7 @@ def _from_far(
         for n in range(NODES):
             s = begin + half * (1.0 + NODE[n])
             u = speed + spin * s
-            part = out * half * WEIGHT[n] * _coefficient(law, u) * u
+            part = out * half * WEIGHT[n] * coefficient_at(law, u) * u
             k0, k1, k2 = k0 + part, k1 + part * s, k2 + part * s * s
         begin = end
     weight = (vx * dx + vy * dy) / (slip * slip)
@@ -240,66 +268,81 @@ def _from_far(
 
 
 @inner
-def _far_sums(base: FloatArray, law: FloatArray, ux: float, uy: float, w: float) -> Sums:
-    sums, discs = NOTHING, HEAD + PIECE_COLUMNS * int(base[SIDES])
-    for i in range(HEAD, discs, PIECE_COLUMNS):
-        half = 0.5 * base[i + LENGTH]
-        hx, hy = half * base[i + TANGENT_X], half * base[i + TANGENT_Y]
-        mx, my = base[i + BEGIN_X] + hx, base[i + BEGIN_Y] + hy
-        for n in range(NODES):
-            part = _from_far(law, ux, uy, w, mx + NODE[n] * hx, my + NODE[n] * hy, hx, hy)
-            sums = plus(sums, WEIGHT[n], part)
-    for k in range(int(base[DISCS])):
-        (cx, cy, size, sign), step = disc_in(base, k), math.pi / NODES
-        for n in range(2 * NODES):  # equal steps around a circle are as good as Gauss's
-            c, s = math.cos(n * step), math.sin(n * step)
+def _far_sums(
+    room: FloatArray, first: int, last: int, law: FloatArray, ux: float, uy: float, w: float
+) -> Sums:
+    sums = NOTHING
+    for i in range(first, last, PIECE_COLUMNS):
+        turn = room[i + TURN]
+        if turn == 0.0:
+            half = 0.5 * room[i + LENGTH]
+            hx, hy = half * room[i + TANGENT_X], half * room[i + TANGENT_Y]
+            mx, my = room[i + BEGIN_X] + hx, room[i + BEGIN_Y] + hy
+            for n in range(NODES):
+                part = _from_far(law, ux, uy, w, mx + NODE[n] * hx, my + NODE[n] * hy, hx, hy)
+                sums = plus(sums, WEIGHT[n], part)
+            continue
+        cx, cy, size, panels = (
+            room[i + ABOUT_X],
+            room[i + ABOUT_Y],
+            room[i + RADIUS],
+            panels_far_off(turn),
+        )
+        half = 0.5 * turn / panels
+        for k in range(panels * NODES):
+            n = k % NODES
+            angle = room[i + START] + half * (2.0 * (k // NODES) + 1.0 + NODE[n])
+            c, s = math.cos(angle), math.sin(angle)
             part = _from_far(
                 law, ux, uy, w, cx + size * c, cy + size * s, -size * s, size * c
             )  # fmt: skip
-            sums = plus(sums, sign * step, part)
+            sums = plus(sums, half * WEIGHT[n], part)
     return sums
 
 
-def _at_first(base: FloatArray, law: FloatArray, ux: float, uy: float, w: float) -> Sums:
+def _at_first(
+    room: FloatArray, first: int, last: int, reach: float, law: FloatArray, ux: float, uy: float,
+    w: float,
+) -> Sums:  # fmt: skip
     """By arrays, but where the law bends and C is far away."""
-    if _has_corners_far_away(base, law, ux, uy, w):
-        return _as_written(base, law, ux, uy, w, True)
-    return law_sums_at_first(base, law, ux, uy, w)
+    if _has_corners_far_away(reach, law, ux, uy, w):
+        return _as_written(room, first, last, reach, law, ux, uy, w, True)
+    return law_sums_at_first(room, first, last, reach, law, ux, uy, w)
 
 
 @inlined
-def _has_corners_far_away(
-    base: FloatArray, law: FloatArray, ux: float, uy: float, w: float
-) -> bool:
+def _has_corners_far_away(reach: float, law: FloatArray, ux: float, uy: float, w: float) -> bool:
     """Whether C is far away, and the law bends between the slips under the base."""
-    speed, rim = math.sqrt(ux * ux + uy * uy), base[REACH] * abs(w)
+    speed, rim = math.sqrt(ux * ux + uy * uy), reach * abs(w)
     return speed > FAR * rim and next_end(law, speed - rim) < speed + rim
 
 
 @inlined
 def _as_written(
-    base: FloatArray, law: FloatArray, ux: float, uy: float, w: float, far: bool
-) -> Sums:
+    room: FloatArray, first: int, last: int, reach: float, law: FloatArray, ux: float, uy: float,
+    w: float, far: bool,
+) -> Sums:  # fmt: skip
     """The sums; ``far``: C is far away, and the law bends between the slips under the base."""
-    if not far and math.sqrt(ux * ux + uy * uy) > FAR * base[REACH] * abs(w):
-        return _far_sums(base, law, ux, uy, w)
-    sums, discs = NOTHING, HEAD + PIECE_COLUMNS * int(base[SIDES])
-    cx, cy, least = -uy / w, ux / w, ON_SIDE * base[REACH]
-    for i in range(HEAD, discs, PIECE_COLUMNS):
+    if not far and math.sqrt(ux * ux + uy * uy) > FAR * reach * abs(w):
+        return _far_sums(room, first, last, law, ux, uy, w)
+    sums, cx, cy, least = NOTHING, -uy / w, ux / w, ON_SIDE * reach
+    for i in range(first, last, PIECE_COLUMNS):
+        if room[i + TURN] != 0.0:
+            x, y, size = room[i + ABOUT_X], room[i + ABOUT_Y], room[i + RADIUS]
+            part = _along_arc(law, ux, uy, w, far, x, y, size, room[i + START], room[i + TURN])
+            sums = plus(sums, 1.0, part)
+            continue
         px, py, tx, ty = (
-            base[i + BEGIN_X],
-            base[i + BEGIN_Y],
-            base[i + TANGENT_X],
-            base[i + TANGENT_Y],
+            room[i + BEGIN_X],
+            room[i + BEGIN_Y],
+            room[i + TANGENT_X],
+            room[i + TANGENT_Y],
         )
         if far:
-            part = _along_far_side(law, ux, uy, w, px, py, tx, ty, base[i + LENGTH])
+            part = _along_far_side(law, ux, uy, w, px, py, tx, ty, room[i + LENGTH])
         else:
-            part = _along_side(law, abs(w), px - cx, py - cy, tx, ty, base[i + LENGTH], least)
+            part = _along_side(law, abs(w), px - cx, py - cy, tx, ty, room[i + LENGTH], least)
         sums = plus(sums, 1.0, part)
-    for k in range(int(base[DISCS])):
-        x, y, size, sign = disc_in(base, k)
-        sums = plus(sums, sign, _along_circle(law, ux, uy, w, far, x, y, size))
     if far:
         return sums
     return plus(NOTHING, 1.0 if w > 0.0 else -1.0, moved(sums, cx, cy))
@@ -307,6 +350,13 @@ def _as_written(
 
 @arrays_at_first(_at_first)
 @kernel
-def law_sums(base: FloatArray, law: FloatArray, ux: float, uy: float, w: float) -> Sums:
-    """Sums of the slip direction times f(slip speed) over a base, in its axes; not at rest."""
-    return _as_written(base, law, ux, uy, w, _has_corners_far_away(base, law, ux, uy, w))
+def law_sums(
+    room: FloatArray, first: int, last: int, reach: float, law: FloatArray, ux: float, uy: float,
+    w: float,
+) -> Sums:  # fmt: skip
+    """Sums of the slip direction times f(slip speed) over what a contour bounds; not at rest.
+
+    ``first``, ``last``: where its rows begin and end in ``room``; ``reach``: of the base, m.
+    """
+    far = _has_corners_far_away(reach, law, ux, uy, w)
+    return _as_written(room, first, last, reach, law, ux, uy, w, far)

@@ -11,9 +11,15 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.law_moments import DEGREE, MOMENTS
-from puck_tables.kernels.base_friction import DISCS, HEAD, REACH, SIDES
 from puck_tables.kernels.base_sums import Sums, moved
-from puck_tables.kernels.law_panels import NODES, begin_of, circle_end, side_panel
+from puck_tables.kernels.law_panels import (
+    NODES,
+    arc_from_nearest,
+    begin_of,
+    circle_end,
+    panels_far_off,
+    side_panel,
+)
 from puck_tables.kernels.polygon_sums import (
     ABOUT_X,
     ABOUT_Y,
@@ -22,6 +28,7 @@ from puck_tables.kernels.polygon_sums import (
     LENGTH,
     PIECE_COLUMNS,
     RADIUS,
+    START,
     TANGENT_X,
     TANGENT_Y,
     TURN,
@@ -35,13 +42,20 @@ ON_SIDE = 1e-14  # of the reach: closer, C lies on a side, and nothing is left o
 Points = tuple[FloatArray, FloatArray, FloatArray]  # of a contour, and r × dr, or dx and dy
 
 
-def law_sums_at_first(base: FloatArray, law: FloatArray, ux: float, uy: float, w: float) -> Sums:
-    """Sums over a base under a law of the slip speed, before their kernel is compiled."""
-    if math.sqrt(ux * ux + uy * uy) > FAR * base[REACH] * abs(w):
-        return _far(base, law, ux, uy, w)
+def law_sums_at_first(
+    room: FloatArray, first: int, last: int, reach: float, law: FloatArray, ux: float, uy: float,
+    w: float,
+) -> Sums:  # fmt: skip
+    """Sums over what a contour bounds under a law of the slip speed, before it is compiled."""
+    rows = room[first:last].reshape(-1, PIECE_COLUMNS)
+    if math.sqrt(ux * ux + uy * uy) > FAR * reach * abs(w):
+        return _far(rows, law, ux, uy, w)
     cx, cy = -uy / w, ux / w
-    parts = [_on_side(row, law, abs(w), cx, cy, base[REACH]) for row in _sides(base)]
-    parts += [_on_circle(row, law, abs(w), cx, cy) for row in _discs(base)]
+    parts = [
+        _on_side(row, law, abs(w), cx, cy, reach) if row[TURN] == 0.0
+        else _on_arc(row, law, abs(w), cx, cy)
+        for row in rows
+    ]  # fmt: skip
     rx, ry, area = (np.concatenate(rows) for rows in zip(*parts, strict=True))
     distance = np.hypot(rx, ry)
     h = _polynomials(law, abs(w) * distance)
@@ -50,18 +64,6 @@ def law_sums_at_first(base: FloatArray, law: FloatArray, ux: float, uy: float, w
     terms = [one * ex, one * ey, two * ex * rx, two * ex * ry, two * ey * rx, two * ey * ry,
              three * rx, three * ry]  # fmt: skip
     return _signed(moved(_summed(terms), cx, cy), w)
-
-
-def _sides(base: FloatArray) -> FloatArray:
-    end = HEAD + PIECE_COLUMNS * int(base[SIDES])
-    return base[HEAD:end].reshape(-1, PIECE_COLUMNS)
-
-
-def _discs(base: FloatArray) -> FloatArray:
-    """The middle of each, its radius, and 1, or −1 of a hole."""
-    begin, count = HEAD + PIECE_COLUMNS * int(base[SIDES]), int(base[DISCS])
-    rows = base[begin : begin + PIECE_COLUMNS * count].reshape(-1, PIECE_COLUMNS)
-    return np.column_stack([rows[:, [ABOUT_X, ABOUT_Y, RADIUS]], np.sign(rows[:, TURN])])
 
 
 def _summed(terms: list[FloatArray]) -> Sums:
@@ -106,32 +108,44 @@ def _on_side(
     return d * ty + s * tx, s * ty - d * tx, weight * d * distance
 
 
-def _on_circle(row: FloatArray, law: FloatArray, spin: float, cx: float, cy: float) -> Points:
-    gx, gy, size = row[0] - cx, row[1] - cy, row[2]
-    ends = [0.0]
-    while ends[-1] < math.pi:
-        ends.append(circle_end(law, spin, math.hypot(gx, gy), size, ends[-1]))
-    panels = np.array(ends)[:, None]
-    halves = 0.5 * (panels[1:] - panels[:-1])
-    turn, weight = (panels[:-1] + halves * (1.0 + NODE)).ravel(), (halves * WEIGHT).ravel()
-    weight = np.concatenate([weight, weight])
-    angle = math.atan2(-gy, -gx) + np.concatenate([turn, -turn])
-    c, s = np.cos(angle), np.sin(angle)
-    area = row[3] * weight * size * (size + gx * c + gy * s)
+def _on_arc(row: FloatArray, law: FloatArray, spin: float, cx: float, cy: float) -> Points:
+    gx, gy, size = row[ABOUT_X] - cx, row[ABOUT_Y] - cy, row[RADIUS]
+    off, nearest = math.hypot(gx, gy), math.atan2(-gy, -gx)
+    low, high = arc_from_nearest(row[START], row[TURN], nearest)
+    number, found = math.floor(low / math.pi), [np.zeros((2, 0))]
+    while low < high:
+        edge = min(math.pi * (number + 1), high)
+        side, ends, last = 1.0, [low - math.pi * number], edge - math.pi * number
+        if number % 2 == 1:
+            side, ends = -1.0, [math.pi * (number + 1) - edge]
+            last = math.pi * (number + 1) - low
+        while ends[-1] < last:
+            ends.append(circle_end(law, spin, off, size, ends[-1], last))
+        half = 0.5 * np.diff(ends)[:, None]
+        turns = np.array(ends)[:-1, None] + half * (1.0 + NODE)
+        found.append(np.stack([side * turns.ravel(), (half * WEIGHT).ravel()]))
+        low, number = edge, number + 1
+    turn, weight = np.concatenate(found, axis=1)
+    c, s = np.cos(nearest + turn), np.sin(nearest + turn)
+    area = np.sign(row[TURN]) * weight * size * (size + gx * c + gy * s)
     return gx + size * c, gy + size * s, area
 
 
-def _far(base: FloatArray, law: FloatArray, ux: float, uy: float, w: float) -> Sums:
+def _far(rows: FloatArray, law: FloatArray, ux: float, uy: float, w: float) -> Sums:
     """With C far away: the inner integral from the distance of C to the contour."""
-    parts, turn = [], np.arange(2 * NODES) * (math.pi / NODES)
-    for row in _sides(base):
-        half = 0.5 * row[LENGTH] * np.array([row[TANGENT_X], row[TANGENT_Y]])
-        at = row[[BEGIN_X, BEGIN_Y]] + half + NODE[:, None] * half
-        parts.append(np.hstack([at, WEIGHT[:, None] * half]))
-    for row in _discs(base):
-        out = row[2] * np.stack([np.cos(turn), np.sin(turn)], 1)
-        around = row[3] * (math.pi / NODES) * np.stack([-out[:, 1], out[:, 0]], 1)
-        parts.append(np.hstack([row[:2] + out, around]))
+    parts = []
+    for row in rows:
+        if row[TURN] == 0.0:
+            half = 0.5 * row[LENGTH] * np.array([row[TANGENT_X], row[TANGENT_Y]])
+            at = row[[BEGIN_X, BEGIN_Y]] + half + NODE[:, None] * half
+            parts.append(np.hstack([at, WEIGHT[:, None] * half]))
+            continue
+        panels = panels_far_off(row[TURN])
+        half = 0.5 * row[TURN] / panels
+        turn = row[START] + half * (2.0 * np.arange(panels)[:, None] + 1.0 + NODE).ravel()
+        out = row[RADIUS] * np.stack([np.cos(turn), np.sin(turn)], 1)
+        around = half * np.tile(WEIGHT, panels)[:, None] * np.stack([-out[:, 1], out[:, 0]], 1)
+        parts.append(np.hstack([row[[ABOUT_X, ABOUT_Y]] + out, around]))
     qx, qy, dx, dy = np.vstack(parts).T
     speed, spin = math.hypot(ux, uy), abs(w)
     vx, vy = ux - w * qy, uy + w * qx

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from puck_tables.plot.style import GREY
+from puck_tables.scene.floor_parts import frictions_on, largest_of
 from puck_tables.scene.floor_patches import corners_of
 from puck_tables.scene.parts import Floor
 
@@ -30,7 +31,7 @@ class Box(NamedTuple):
 class Shade(NamedTuple):
     """A part of the floor of one friction: a polygon, or without corners a circle, m; its colour.
 
-    ``patch``: whether it lies on others.
+    ``patch``: whether it lies on others; ``by_speed``: whether its friction is that at rest.
     """
 
     friction: float
@@ -39,16 +40,18 @@ class Shade(NamedTuple):
     radius: float
     colour: tuple[float, float, float]
     patch: bool
+    by_speed: bool
 
 
 def draw_floor(axes: Axes, floor: Floor, box: Box, highest: float) -> None:
     """All of it that is seen in a box; ``highest``: the largest friction, the darkest patch."""
     from matplotlib.patches import Circle, Polygon
 
-    told: set[tuple[bool, float]] = set()
+    told: set[tuple[bool, float, bool]] = set()
     for shade in shades_of(floor, box, highest):
-        key = (shade.patch, shade.friction)
-        label: dict[str, Any] = {} if key in told else {"label": f"f = {shade.friction:g}"}
+        key = (shade.patch, shade.friction, shade.by_speed)
+        said = f"f = {shade.friction:g}{' at rest' if shade.by_speed else ''}"
+        label: dict[str, Any] = {} if key in told else {"label": said}
         told.add(key)
         style: dict[str, Any] = {
             "facecolor": shade.colour, "edgecolor": GREY, "linewidth": 0.8,
@@ -73,11 +76,14 @@ def shades_of(floor: Floor, box: Box, highest: float) -> list[Shade]:
     [1.0]
     """
     shades = _strips(floor, box)
-    for patch in floor.patches:
-        share = patch.friction / (highest or 1.0)
+    frictions = frictions_on(floor, 0.0)[-len(floor.patches) :] if floor.patches else []
+    for patch, given in zip(floor.patches, frictions, strict=True):
+        friction = largest_of(given, 0.0)
+        share = friction / (highest or 1.0)
         colour = (0.86 - 0.5 * share, 0.93 - 0.4 * share, 0.98 - 0.25 * share)
         corners: Any = list(map(tuple, corners_of(patch).tolist()))
-        shades.append(Shade(patch.friction, corners, patch.centre, patch.radius, colour, True))
+        law = not isinstance(given, float)
+        shades.append(Shade(friction, corners, patch.centre, patch.radius, colour, True, law))
     return shades
 
 
@@ -92,8 +98,10 @@ def _strips(floor: Floor, box: Box) -> list[Shade]:
     centre = across[0] * middle[0] + across[1] * middle[1]
     along = across[0] * middle[1] - across[1] * middle[0]
     ends = [centre - half, *strips.borders, centre + half]
-    highest, result = max(strips.friction) or 1.0, []
-    for low, high, friction in zip(ends, ends[1:], strips.friction, strict=False):
+    given = frictions_on(floor, 0.0)[: len(strips.friction)]
+    at_rest = [largest_of(one, 0.0) for one in given]
+    highest, result = max(at_rest) or 1.0, []
+    for low, high, friction, one in zip(ends, ends[1:], at_rest, given, strict=False):
         low, high = max(low, centre - half), min(high, centre + half)
         if low >= high:
             continue
@@ -103,7 +111,8 @@ def _strips(floor: Floor, box: Box) -> list[Shade]:
                          (low, along + half))
         ]  # fmt: skip
         shade = 0.97 - 0.22 * friction / highest
-        result.append(Shade(friction, corners, (0.0, 0.0), 0.0, (shade, shade, shade), False))
+        law = not isinstance(one, float)
+        result.append(Shade(friction, corners, (0.0, 0.0), 0.0, (shade, shade, shade), False, law))
     return result
 
 

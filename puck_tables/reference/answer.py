@@ -189,7 +189,8 @@ class Answer(Result):
         off = place - np.array(strips.borders)
         if (np.abs(off) < puck.radius).any():
             return None
-        return replace(puck, friction=strips.friction[int((off > 0.0).sum())])
+        friction = strips.friction[int((off > 0.0).sum())]
+        return replace(puck, friction=friction) if isinstance(friction, float) else None
 
     def puck_number(self, name: str | None) -> int | None:
         """Which of several pucks a name means; None of a single one.

@@ -109,16 +109,16 @@ def _inputs(scene: SceneSpec) -> dict[str, str]:
 def _written(value: Any) -> str:
     if isinstance(value, tuple):
         return f"({', '.join(map(_written, value))})"
-    return f"{value:.9g}" if isinstance(value, float) else str(value)
+    return f"{value:.9g}" if isinstance(value, float) else str(getattr(value, "kind", value))
 
 
 def _friction(scene: SceneSpec) -> str:
     """Heights and decelerations, one for each strip of floor."""
     normal = scene.puck.gravity * math.cos(scene.floor.slope)
-    if scene.floor.law:
-        from puck_tables.scene.by_speed import law_name
+    from puck_tables.scene.by_speed import laws_in
 
-        return f"by slip speed, {law_name(scene)}"
+    if laws := laws_in(scene):
+        return f"by slip speed, {', '.join(laws)}"
     if scene.floor.orthotropic is not None:
         decels = ", ".join(f"{f * normal:.6g}" for f in scene.floor.orthotropic.friction)
         return f"by direction, {_pull(scene)} = {decels} m/s^2 along its axes"

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from puck_tables.contact.friction_laws import NAMED, FrictionLaw
 from puck_tables.contact.round_load import RoundLoad
-from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import ContactError, InputError
-from puck_tables.scene.floor_parts import belt_faults, has_belts, needs_sums
+from puck_tables.scene.floor_parts import (
+    belt_faults,
+    has_belts,
+    has_laws_by_place,
+    law_of,
+    needs_sums,
+)
 from puck_tables.scene.floor_patches import patch_faults
 from puck_tables.scene.holds import allowed_velocity
 from puck_tables.scene.orthotropic import LEAST_RATIO
 from puck_tables.scene.over_time import drive_of, grip_faults, largest_factors, motion_of
-from puck_tables.scene.parts import Floor, Rows
+from puck_tables.scene.parts import Floor
 
 if TYPE_CHECKING:
     from puck_tables.scene.scene_spec import SceneSpec
@@ -26,26 +31,38 @@ _GRIPS = 1000.0  # the largest coefficient that a rim may come over
 def floor_faults(scene: SceneSpec) -> list[str]:
     """What is wrong with the friction of the floor, under the puck."""
     faults = []
-    for name, there in (("strips", scene.floor.strips), ("patch", scene.floor.patches)):
-        if scene.floor.law and there:
-            faults.append(
-                f"floor.law and floor.{name}: friction by the slip speed is known where it is the "
-                "same everywhere; give one of them"
-            )
+    if scene.floor.law and scene.floor.strips:
+        faults.append(
+            "floor.law and floor.strips: strips say all friction of the floor, each a number or a "
+            "law of its own; give one of them"
+        )
     faults += grip_faults(scene.floor) + belt_faults(scene.floor)
-    faults += _bad_motion(scene.floor)
+    faults += _bad_motion(scene.floor) + _bad_rows(scene)
     if faults:
         return faults
     if scene.puck.shape is not None:
         wrong = bad_strips(scene.floor) or patch_faults(scene.floor) or _bad_under_base(scene)
-        return faults + wrong + _bad_rows(scene) + _bad_axes(scene)
-    if scene.floor.law:
+        return wrong + _bad_axes(scene)
+    if has_laws_by_place(scene.floor):
+        faults += _bad_load(scene)
+    elif scene.floor.law:
         try:
             RoundLoad(scene.puck.body.law)
         except InputError as error:
             faults.append(f"floor.law: {error}")
     faults += bad_strips(scene.floor) or patch_faults(scene.floor) or _bad_mixed(scene)
-    return faults + _bad_rows(scene) + _bad_axes(scene)
+    return faults + _bad_axes(scene)
+
+
+def _bad_load(scene: SceneSpec) -> list[str]:
+    """Why laws over the slip speed that differ by place are not known under a round load."""
+    law = scene.puck.body.law
+    if law.name == "uniform" or law.name.startswith("annulus:"):
+        return []
+    return [
+        "floor.strips or floor.patch with a friction law: known under uniform pressure only, over "
+        f"any base, not with puck.pressure = {law.name!r}; leave it out, or give numbers"
+    ]
 
 
 def _bad_motion(floor: Floor) -> list[str]:
@@ -178,8 +195,19 @@ def _bad_axes(scene: SceneSpec) -> list[str]:
 def _bad_rows(scene: SceneSpec) -> list[str]:
     """What is wrong with tables that stand in the scene; those in files are read when it runs."""
     faults = []
-    law, force = scene.floor.law, scene.force.over_time
-    for name, rows, made in (("floor.law", law, law_of_rows), ("force.over_time", force, drive_of)):
+    law, force, strips = scene.floor.law, scene.force.over_time, scene.floor.strips
+    given: list[tuple[str, Any, Any]] = [("floor.law", law, law_of)]
+    given += [
+        (f"floor.strips.friction[{k}]", one, law_of)
+        for k, one in enumerate(strips.friction if strips else ())
+    ]
+    given += [
+        (f"floor.patch[{k}].friction", one.friction, law_of)
+        for k, one in enumerate(scene.floor.patches)
+    ]
+    for name, rows, made in (*given, ("force.over_time", force, drive_of)):
+        if isinstance(rows, float):
+            continue
         if isinstance(rows, FrictionLaw):
             faults += [f"{name}: {fault}" for fault in rows.faults()]
         elif name == "floor.law" and isinstance(rows, str) and rows in NAMED:
@@ -193,20 +221,6 @@ def _bad_rows(scene: SceneSpec) -> list[str]:
             except InputError as error:
                 faults.append(str(error) if name in str(error) else f"{name}: {error}")
     return faults
-
-
-def law_of_rows(rows: Rows) -> SpeedLaw:
-    """The friction law of rows of slip speed and coefficient.
-
-    Raises
-    ------
-    InputError
-        If they are none.
-    """
-    if any(len(row) != 2 for row in rows):
-        raise InputError("each row must be two numbers, slip speed in m/s and f")
-    speeds, values = zip(*rows, strict=True)
-    return SpeedLaw(speeds, values)
 
 
 def launch_velocity(scene: SceneSpec) -> tuple[float, float]:

@@ -1,17 +1,19 @@
 """Dry friction of a base on a floor of one friction, or of strips and patches.
 
-They are those of the whole base with the coefficient under its centre of mass, and of every part
-with what its own differs by.
+It is that of the whole base with the friction under its centre of mass, and of every part with what
+its own differs by: a number, or a law over the slip speed, of which none or both are summed.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.base_clipping import beyond_line, in_circle, whole_contour
 from puck_tables.kernels.base_friction import (
     AREA,
+    HEAD,
     base_sums,
     is_uniform,
     pressure_at,
@@ -23,7 +25,7 @@ from puck_tables.kernels.base_sums import NOTHING, Sums, plus
 from puck_tables.kernels.compile import inlined, inner, on_demand
 from puck_tables.kernels.contour_sums import contour_sums, look_at, whole_sums
 from puck_tables.kernels.elliptic_sums import Ellipse, elliptic_sums
-from puck_tables.kernels.law_sums import law_sums
+from puck_tables.kernels.law_sums import coefficient_at, law_sums
 from puck_tables.scene.floor_map import (
     ACROSS_X,
     ACROSS_Y,
@@ -34,7 +36,6 @@ from puck_tables.scene.floor_map import (
     CORNER,
     CORNERS,
     LAW,
-    LOAD,
     MIDDLE_X,
     MIDDLE_Y,
     PATCHES,
@@ -44,28 +45,76 @@ from puck_tables.scene.floor_map import (
     SHARE,
     border_of,
     corner_of,
+    law_on,
     load_of,
     patch_of,
     strip_at,
+    summed_load,
 )
 from puck_tables.scene.floor_map import REACH as PATCH_REACH
 from puck_tables.scene.patches import distance_to
 
 _TWO_CUTS = 12  # times as many pieces as there were are after two cuts at most
+_NONE = -1  # no stretch
+
+
+class _Slip(NamedTuple):
+    """A velocity over the floor in the axes of the base; ``moving`` 0: friction at slip zero."""
+
+    x: float
+    y: float
+    spin: float
+    moving: float
+
+
+@inner
+def _with(
+    floor_map: FloatArray, sums: Sums, load: float, law: int, first: int, last: int, slip: _Slip
+) -> Sums:  # fmt: skip
+    """Sums, and those over a contour with a load by a law that begins at a place, or by none."""
+    if load == 0.0 or first == last:
+        return sums
+    base = floor_map[int(floor_map[BASE]) :]
+    if law > 0 and slip.moving != 0.0:
+        more = law_sums(
+            floor_map, first, last, base[BASE_REACH], floor_map[law:], slip.x, slip.y, slip.spin
+        )  # fmt: skip
+        return plus(sums, load, more)
+    if law > 0:
+        load *= coefficient_at(floor_map[law:], 0.0)
+    if first == int(floor_map[BASE]) + HEAD:  # all of it
+        return plus(sums, load, whole_sums(base, slip.x, slip.y, slip.spin))
+    return plus(sums, load, contour_sums(base, floor_map, first, last, slip.x, slip.y, slip.spin))
+
+
+@inner
+def _exchanged(
+    floor_map: FloatArray, sums: Sums, weight: float, part: int, other: int, first: int, last: int,
+    slip: _Slip,
+) -> Sums:  # fmt: skip
+    """Sums, and so many times those over a contour with a stretch in place of another, or none."""
+    law, gain = law_on(floor_map, part), weight * summed_load(floor_map, part)
+    if other != _NONE:
+        before, loss = law_on(floor_map, other), weight * summed_load(floor_map, other)
+        if before == law:
+            gain -= loss
+        else:
+            sums = _with(floor_map, sums, -loss, before, first, last, slip)
+    return _with(floor_map, sums, gain, law, first, last, slip)
 
 
 @inner
 def _in_polygon(
-    floor_map: FloatArray, base: FloatArray, first: int, count: int, contour: int, last: int,
-    ux: float, uy: float, w: float,
+    floor_map: FloatArray, sums: Sums, part: int, other: int, first: int, count: int, contour: int,
+    last: int, slip: _Slip,
 ) -> Sums:  # fmt: skip
-    """Sums over what of a base, whose contour stands in the ground, lies in a patch with corners.
+    """Sums, and those over what of a base, whose contour stands there, lies in corners.
 
     By convex parts that begin at the first corner, and are added, or taken off where they turn
     back; each is cut out by its edges, as many as there is room for.
     """
-    sums, one = NOTHING, int(floor_map[ROOM])
-    half, reach = (len(floor_map) - one) // 2, base[BASE_REACH]
+    one = int(floor_map[ROOM])
+    half, reach = (len(floor_map) - one) // 2, floor_map[int(floor_map[BASE]) + BASE_REACH]
     ox, oy = _from_base(floor_map, *corner_of(floor_map, first))
     ax, ay = _from_base(floor_map, *corner_of(floor_map, first + 1))
     k = 1
@@ -91,8 +140,7 @@ def _in_polygon(
                 ahead = way * ((ax - ox) * (by - oy) - (ay - oy) * (bx - ox)) > 0.0
                 goes_on = bends and ahead and way * (sx * (by - oy) - sy * (bx - ox)) > 0.0
         begin, end, to = _left_of(floor_map, begin, end, to, one, half, ax, ay, ox, oy, way, reach)
-        if end > begin:
-            sums = plus(sums, way, contour_sums(base, floor_map, begin, end, ux, uy, w))
+        sums = _exchanged(floor_map, sums, way, part, other, begin, end, slip)
     return sums
 
 
@@ -125,28 +173,30 @@ def _from_base(floor_map: FloatArray, x: float, y: float) -> tuple[float, float]
 
 @inner
 def _in_patch(
-    floor_map: FloatArray, patch: int, contour: int, last: int, ux: float, uy: float, w: float
+    floor_map: FloatArray, sums: Sums, patch: int, contour: int, last: int, slip: _Slip
 ) -> Sums:  # fmt: skip
-    """Sums over what of a base lies in a patch."""
-    base = floor_map[int(floor_map[BASE]) :]
-    reach, away = (
-        base[BASE_REACH],
-        distance_to(floor_map, patch, floor_map[PLACE_X], floor_map[PLACE_Y]),
-    )
+    """Sums, and those over what of a base lies in a patch, in place of what is around that."""
+    x, y = floor_map[PLACE_X], floor_map[PLACE_Y]
+    reach, away = floor_map[int(floor_map[BASE]) + BASE_REACH], distance_to(floor_map, patch, x, y)
     if away >= reach:
-        return NOTHING
+        return sums
+    middle_x, middle_y = (
+        patch_of(floor_map, patch, MIDDLE_X),
+        patch_of(floor_map, patch, MIDDLE_Y),
+    )
+    part, other = int(floor_map[BORDERS]) + 1 + patch, strip_at(floor_map, middle_x, middle_y)
     if away <= -reach:
-        return whole_sums(base, ux, uy, w)
+        return _exchanged(floor_map, sums, 1.0, part, other, contour, last, slip)
     corners = int(patch_of(floor_map, patch, CORNERS))
     if corners > 0:
         first = int(patch_of(floor_map, patch, CORNER))
-        return _in_polygon(floor_map, base, first, corners, contour, last, ux, uy, w)
+        return _in_polygon(
+            floor_map, sums, part, other, first, corners, contour, last, slip
+        )  # fmt: skip
     one = int(floor_map[ROOM])
-    mx, my = _from_base(
-        floor_map, patch_of(floor_map, patch, MIDDLE_X), patch_of(floor_map, patch, MIDDLE_Y)
-    )  # fmt: skip
+    mx, my = _from_base(floor_map, middle_x, middle_y)
     end = in_circle(floor_map, contour, last, one, mx, my, patch_of(floor_map, patch, PATCH_REACH))
-    return contour_sums(base, floor_map, one, end, ux, uy, w)
+    return _exchanged(floor_map, sums, 1.0, part, other, one, end, slip)
 
 
 @on_demand(*["float64"] * 8)
@@ -160,11 +210,6 @@ def friction_sums(floor_map: FloatArray, ux: float, uy: float, w: float, moving:
         angle = floor_map[first + 2] - floor_map[first + 3] * floor_map[ANGLE]
         law = Ellipse(floor_map[first], floor_map[first + 1], math.cos(angle), math.sin(angle))
         sums = elliptic_sums(floor_map[int(floor_map[BASE]) : first], law, ux, uy, w)
-        return plus(NOTHING, floor_map[SHARE], sums)
-    if moving != 0.0 and first > 0:
-        sums = law_sums(
-            floor_map[int(floor_map[BASE]) : first], floor_map[first:last], ux, uy, w
-        )  # fmt: skip
         return plus(NOTHING, floor_map[SHARE], sums)
     begin, to = int(floor_map[BASE]), int(floor_map[ROOM])
     base = floor_map[begin:]
@@ -180,24 +225,22 @@ def friction_sums(floor_map: FloatArray, ux: float, uy: float, w: float, moving:
     while last > first and border_of(floor_map, last - 1) - place >= reach:
         last -= 1
     look_at(base, ux, uy, w)
-    sums, whole = (
-        NOTHING,
-        load_of(floor_map, strip_at(floor_map, floor_map[PLACE_X], floor_map[PLACE_Y])),
+    slip, under = (
+        _Slip(ux, uy, w, moving),
+        strip_at(floor_map, floor_map[PLACE_X], floor_map[PLACE_Y]),
     )
-    if whole != 0.0:
-        sums = plus(sums, whole, whole_sums(base, ux, uy, w))
+    sums = _exchanged(floor_map, NOTHING, 1.0, under, _NONE, contour, end, slip)
     for i in range(first, last):  # the smaller part of a round base, and from its middle: no noise
         away = border_of(floor_map, i) - place
-        side = 1.0 if away > 0.0 else -1.0
-        more = side * (load_of(floor_map, i + 1) - load_of(floor_map, i))
+        beyond = away > 0.0
+        side = 1.0 if beyond else -1.0
         until = beyond_line(
             floor_map, contour, end, to, side * nx, side * ny, side * away, away * nx, away * ny
         )  # fmt: skip
-        sums = plus(sums, more, contour_sums(base, floor_map, to, until, ux, uy, w))
+        part, other = (i + 1, i) if beyond else (i, i + 1)
+        sums = _exchanged(floor_map, sums, 1.0, part, other, to, until, slip)
     for k in range(int(floor_map[PATCHES])):
-        mx, my = patch_of(floor_map, k, MIDDLE_X), patch_of(floor_map, k, MIDDLE_Y)
-        more = patch_of(floor_map, k, LOAD) - load_of(floor_map, strip_at(floor_map, mx, my))
-        sums = plus(sums, more, _in_patch(floor_map, k, contour, end, ux, uy, w))
+        sums = _in_patch(floor_map, sums, k, contour, end, slip)
     return plus(NOTHING, floor_map[SHARE], sums)
 
 

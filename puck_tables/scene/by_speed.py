@@ -16,7 +16,7 @@ from puck_tables.contact.round_load import RoundLoad, load_of
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.motion.puck_spec import PuckSpec
-from puck_tables.scene.agreement import law_of_rows
+from puck_tables.scene.floor_parts import frictions_on, has_laws_by_place, law_of
 from puck_tables.scene.ingredients import BySpeed
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.table.speed_build import finest_accuracy
@@ -44,14 +44,68 @@ def law_range(scene: SceneSpec, fastest: float) -> tuple[SpeedLaw | FrictionLaw,
     InputError
         If the law cannot be read, or ends below that.
     """
-    law = speed_law(scene)
-    top = _first_top(law, fastest)
+    law, top = law_of(scene.floor.law), law_top(scene, fastest)
+    return law, top, law.largest(top)
+
+
+def law_top(scene: SceneSpec, fastest: float) -> float:
+    """Up to which slip all friction laws of a scene are tabulated, m/s.
+
+    Raises
+    ------
+    InputError
+        As :func:`law_range`.
+    """
+    tops = {name: _first_top(law, fastest) for name, law in laws_in(scene).items()}
+    name, top = min(tops.items(), key=lambda one: one[1])
     if fastest > top:
         raise InputError(
             f"the rim slips at {fastest:.6g} m/s at the launch, faster than the friction law "
-            f"{law_name(scene)} goes ({top:g} m/s): nothing is known beyond; give it more"
+            f"{name} goes ({top:g} m/s): nothing is known beyond; give it more"
         )
-    return law, top, law.largest(top)
+    return top
+
+
+def laws_in(scene: SceneSpec) -> dict[str, SpeedLaw | FrictionLaw]:
+    """All friction laws over the slip speed of a scene, by what they are called in a message.
+
+    Raises
+    ------
+    InputError
+        If one is no such law.
+
+    Examples
+    --------
+    >>> from puck_tables import Floor, Patch, Puck, Scene
+    >>> list(laws_in(Scene(Puck(1.0), Floor(patches=[Patch([[0, 0.1], [9, 0.2]], radius=1)]))))
+    ['floor.patch[0].friction']
+    """
+    floor = scene.floor
+    found = {} if not floor.law else {law_name(scene): law_of(floor.law)}
+    if not has_laws_by_place(floor):
+        return found
+    strips = 1 if floor.strips is None else len(floor.strips.friction)
+    for part, one in enumerate(frictions_on(floor, 0.0)):
+        if not isinstance(one, float) and (part > 0 or floor.strips is not None):
+            name = (
+                f"strips.friction[{part}]" if part < strips else f"patch[{part - strips}].friction"
+            )
+            found[f"floor.{name}"] = one
+    return found
+
+
+def end_of_laws(scene: SceneSpec) -> tuple[float, str]:
+    """The slip at which the first of the laws that are points ends, m/s, and its name.
+
+    Raises
+    ------
+    InputError
+        As :func:`laws_in`.
+    """
+    ends = [
+        (law.top_speed, name) for name, law in laws_in(scene).items() if isinstance(law, SpeedLaw)
+    ]
+    return min(ends, default=(math.inf, ""))
 
 
 def law_table(
@@ -67,7 +121,7 @@ def law_table(
     try:
         with _one_at_a_time:
             accuracy = max(LAW_SHARE * scene.tol, finest_accuracy(load))
-            return _kept_table(_key(law), accuracy, top, load)
+            return _kept_table(key_of(law), accuracy, top, load)
     except AccuracyError as error:
         if error.reachable is None:
             raise
@@ -87,7 +141,7 @@ def moments_of(
     law: SpeedLaw | FrictionLaw, top: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Its moments up to a slip, m/s, see :func:`puck_tables.contact.law_moments.law_moments`."""
-    return _kept_moments(_key(law), top)
+    return _kept_moments(key_of(law), top)
 
 
 def _first_top(law: SpeedLaw | FrictionLaw, fastest: float) -> float:
@@ -100,7 +154,7 @@ def _first_top(law: SpeedLaw | FrictionLaw, fastest: float) -> float:
 
 def law_error(scene: SceneSpec) -> float:
     """How wrong friction by slip speed may be under a puck, in units of the largest."""
-    load = load_under(scene.puck)
+    load = None if has_laws_by_place(scene.floor) else load_under(scene.puck)
     if load is None:
         return UNDER_LAW_ERROR
     return max(LAW_SHARE * scene.tol, finest_accuracy(load))
@@ -125,22 +179,6 @@ def load_under(puck: PuckSpec) -> RoundLoad | None:
     return RoundLoad(puck.body.law)
 
 
-def speed_law(scene: SceneSpec) -> SpeedLaw | FrictionLaw:
-    """The friction law of a scene that has one, by name, or from its file or rows.
-
-    Raises
-    ------
-    InputError
-        If it is no such law.
-    """
-    law = scene.floor.law
-    if isinstance(law, FrictionLaw):
-        return law
-    if isinstance(law, str):
-        return SpeedLaw.from_csv(law)
-    return law_of_rows(law)
-
-
 def law_name(scene: SceneSpec) -> str:
     """The friction law of a scene in a message.
 
@@ -156,7 +194,7 @@ def law_name(scene: SceneSpec) -> str:
     return law if isinstance(law, str) else "floor.law"
 
 
-def _key(law: SpeedLaw | FrictionLaw) -> FrictionLaw | Points:
+def key_of(law: SpeedLaw | FrictionLaw) -> FrictionLaw | Points:
     """What a table is kept by."""
     if isinstance(law, FrictionLaw):
         return law
@@ -173,7 +211,7 @@ def _kept_table(
     return table_for(law, accuracy, top_speed=last, pressure=load.law, reach=load.reach)
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=32)
 def _kept_moments(
     of: FrictionLaw | Points, top: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:

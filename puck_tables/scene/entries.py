@@ -74,8 +74,13 @@ def entries(part: Any, prefix: str = "", kind: Any = None) -> Iterator[Entry]:
                 yield from entries(item, f"{path}[{i}].")
         else:
             yield Entry(path, value, kind, doc, default, acts)
-            if kind.kinds and isinstance(value, tuple(kind.kinds.values())):
-                yield from entries(value, f"{path}.")
+            if kind.kinds:
+                each = [(f"{path}[{i}]", one) for i, one in enumerate(value)] if (
+                    kind.shape == "numbers"
+                ) else [(path, value)]  # fmt: skip
+                for at, one in each:
+                    if isinstance(one, tuple(kind.kinds.values())):
+                        yield from entries(one, f"{at}.")
 
 
 @lru_cache(maxsize=64)

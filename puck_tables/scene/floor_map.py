@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -18,14 +19,15 @@ PLACE_X, PLACE_Y, SHARE, LEVER, ACROSS_X, ACROSS_Y, BORDERS, PATCHES = range(8)
 BASE, LAW, ROOM, ANGLE, BELTS, OVER_X, OVER_Y = range(8, 15)
 _HEAD = 15
 # the places of its borders, f N between them as it is summed now, f N of all strips and then of all
-# patches where no factor changes it, the same with their factors, their velocities, a row for each
-# patch (its middle, the radius of a
-# circle about it, the first of its corners, how many (none: it is that circle), and f N there now),
+# patches where no factor changes it, the same with their factors, their velocities, where the law
+# over the slip speed begins by which their f goes (0: none; of such f N stands N), a row for each
+# patch (its middle, the radius of a circle about it, the first of its corners, how many (none: it
+# is that circle), and f N there now),
 MIDDLE_X, MIDDLE_Y, REACH, CORNER, CORNERS, LOAD = range(6)
 PATCH_COLUMNS = 6
-# the corners of all patches, from BASE on the base, from LAW on its law of friction over the slip
-# speed or its direction (0: it has none), and from ROOM on room to work.  That by direction is f N
-# along and across, the angle of the first, and 1: in the floor, or 0: in the body.
+# the corners of all patches, from BASE on the base, from LAW on its laws of friction over the slip
+# speed, or the one by direction (0: it has none), and from ROOM on room to work.  That by direction
+# is f N along and across, the angle of the first, and 1: in the floor, or 0: in the body.
 AXES = 4
 
 
@@ -36,10 +38,10 @@ class FloorMap(NamedTuple):
     places along it, ascending, m; ``loads`` (n + 1,): f N between them; ``patches`` (k, 6), and
     ``corners`` (m, 2) of those that are polygons, counter-clockwise, m; ``base``: in one array
     (:func:`puck_tables.kernels.base_friction.packed`), its lever the height of the centre of mass
-    over N, m/N; ``law``: its friction f N over the slip speed, in one array
+    over N, m/N; ``laws``: its frictions f over the slip speed, each in one array
     (:func:`puck_tables.contact.law_moments.packed_law`), or the direction, where it depends on
-    that;
-    ``belts`` (n + 1 + k, 2): velocities of strips and patches, m/s, none: all alike.
+    that; ``which`` (n + 1 + k,): of strips and patches the number of their law, −1: none, whose
+    load is N then; ``belts`` (n + 1 + k, 2): their velocities, m/s, none: all alike.
     """
 
     across_x: float
@@ -49,26 +51,31 @@ class FloorMap(NamedTuple):
     patches: FloatArray
     corners: FloatArray
     base: FloatArray
-    law: FloatArray = np.empty(0)
+    laws: Sequence[FloatArray] = ()
+    which: Sequence[int] = ()
     belts: FloatArray = np.empty((0, 2))
 
     def packed(self) -> FloatArray:
         """In one array."""
         whole = np.concatenate([self.loads, self.patches[:, LOAD]])
         belts = self.belts if len(self.belts) else np.zeros((len(whole), 2))
+        begins = np.zeros(len(whole))
         tables = [
-            self.borders, self.loads, whole, whole, belts.ravel(), self.patches.ravel(),
+            self.borders, self.loads, whole, whole, belts.ravel(), begins, self.patches.ravel(),
             self.corners.ravel(),
         ]  # fmt: skip
         at = _HEAD + sum(table.size for table in tables)
         law = at + self.base.size
+        ends = law + np.cumsum([0, *map(len, self.laws)])
+        for part, number in enumerate(self.which):
+            begins[part] = ends[number] if number >= 0 else 0.0
         head = [
             0.0, 0.0, 1.0, self.base[BASE_LEVER], self.across_x, self.across_y,
-            len(self.borders), len(self.patches), at, law if self.law.size else 0,
-            law + self.law.size, 0.0, float((belts != belts[0]).any()), *belts[0],
+            len(self.borders), len(self.patches), at, law if self.laws else 0,
+            ends[-1], 0.0, float((belts != belts[0]).any()), *belts[0],
         ]  # fmt: skip
         room = np.zeros(room_to_clip(self.base))
-        return np.concatenate([head, *tables, self.base, self.law, room]).astype(np.float64)
+        return np.concatenate([head, *tables, self.base, *self.laws, room]).astype(np.float64)
 
 
 NO_GROUND = np.empty(0)
@@ -89,7 +96,7 @@ def load_of(floor_map: FloatArray, strip: int) -> float:
 @inlined
 def _patches_in(floor_map: FloatArray) -> int:
     """Where the patches begin."""
-    return _HEAD + 2 * int(floor_map[BORDERS]) + 1 + 4 * parts_in(floor_map)
+    return _HEAD + 2 * int(floor_map[BORDERS]) + 1 + 5 * parts_in(floor_map)
 
 
 @inlined
@@ -139,6 +146,21 @@ def _sum_with(floor_map: FloatArray, part: int, load: float) -> None:
         floor_map[_HEAD + strips - 1 + part] = load
     else:
         floor_map[_patches_in(floor_map) + PATCH_COLUMNS * (part - strips) + LOAD] = load
+
+
+@inlined
+def summed_load(floor_map: FloatArray, part: int) -> float:
+    """F N on a strip, or after all of them a patch, as it is summed now; N under a law."""
+    strips = int(floor_map[BORDERS]) + 1
+    if part < strips:
+        return load_of(floor_map, part)
+    return patch_of(floor_map, part - strips, LOAD)
+
+
+@inlined
+def law_on(floor_map: FloatArray, part: int) -> int:
+    """Where the law of a stretch over the slip speed begins; 0: its f is a number."""
+    return int(floor_map[_loads_in(floor_map) + 4 * parts_in(floor_map) + part])
 
 
 @inlined

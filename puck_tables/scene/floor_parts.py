@@ -5,13 +5,18 @@ from __future__ import annotations
 import math
 import re
 from bisect import bisect_right
+from typing import Any
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.contact.friction_laws import FrictionLaw
+from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
 from puck_tables.scene.floor_patches import corners_of
-from puck_tables.scene.parts import Floor, Patch, Strips
+from puck_tables.scene.parts import Floor, Patch, Rows, Strips
+
+Friction = float | SpeedLaw | FrictionLaw
 
 _WHERE = re.compile(r"(strip|patch) (\d+)")
 
@@ -24,7 +29,71 @@ def needs_sums(floor: Floor, height: float) -> bool:
     >>> needs_sums(Floor(static_ratio=1.5), 0.0), needs_sums(Floor(static_ratio=1.5), 0.02)
     (False, True)
     """
-    return bool(floor.grips) or (floor.static_ratio > 1.0 and height > 0.0)
+    tilts = floor.static_ratio > 1.0 and height > 0.0
+    return bool(floor.grips) or tilts or has_laws_by_place(floor)
+
+
+def law_of(entry: str | Rows | FrictionLaw) -> SpeedLaw | FrictionLaw:
+    """A friction law by name, or of rows of slip speed and coefficient, or of a file of them.
+
+    Raises
+    ------
+    InputError
+        If it is none.
+    """
+    if isinstance(entry, FrictionLaw):
+        return entry
+    if isinstance(entry, str):
+        return SpeedLaw.from_csv(entry)
+    if any(len(row) != 2 for row in entry):
+        raise InputError("each row must be two numbers, slip speed in m/s and f")
+    speeds, values = zip(*entry, strict=True)
+    return SpeedLaw(speeds, values)
+
+
+def frictions_on(floor: Floor, own: float) -> list[Friction]:
+    """The friction of all stretches, numbers or laws; ``own``: of a puck, where the floor has none.
+
+    Raises
+    ------
+    InputError
+        If one is no law.
+
+    Examples
+    --------
+    >>> frictions_on(Floor(patches=(Patch(0.1, radius=1.0),)), 0.2)
+    [0.2, 0.1]
+    """
+    strips, first = floor.strips, law_of(floor.law) if floor.law else own
+    stretches: list[Any] = [first] if strips is None else list(strips.friction)
+    stretches += [patch.friction for patch in floor.patches]
+    return [law_of(one) if isinstance(one, tuple) else one for one in stretches]
+
+
+def largest_of(friction: Friction, top: float) -> float:
+    """The largest coefficient of a friction up to a slip speed, m/s.
+
+    Examples
+    --------
+    >>> largest_of(0.2, 1.0)
+    0.2
+    """
+    return friction if isinstance(friction, float) else friction.largest(top)
+
+
+def has_laws_by_place(floor: Floor) -> bool:
+    """Whether strips or patches stand beside a law over the slip speed, or have their own.
+
+    Examples
+    --------
+    >>> has_laws_by_place(Floor(patches=(Patch(((0.0, 0.1), (1.0, 0.2)), radius=1.0),)))
+    True
+    """
+    stretches = () if floor.strips is None else floor.strips.friction
+    own = any(
+        not isinstance(one, float) for one in (*stretches, *(p.friction for p in floor.patches))
+    )
+    return own or (bool(floor.law) and bool(floor.patches))
 
 
 def count_parts(floor: Floor) -> int:

@@ -8,22 +8,24 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.base import Base
-from puck_tables.contact.law_moments import DEGREE, packed_law
+from puck_tables.contact.law_moments import packed_law
 from puck_tables.kernels.base_friction import packed, packed_round
-from puck_tables.scene.floor_map import NO_GROUND, PATCH_COLUMNS, FloorMap
-from puck_tables.scene.floor_parts import belts_of, needs_sums
+from puck_tables.scene.by_speed import key_of, moments_of
+from puck_tables.scene.floor_map import LOAD, NO_GROUND, PATCH_COLUMNS, FloorMap
+from puck_tables.scene.floor_parts import (
+    belts_of,
+    frictions_on,
+    has_laws_by_place,
+    needs_sums,
+)
 from puck_tables.scene.floor_patches import corners_of
 from puck_tables.scene.scene_spec import SceneSpec
 
-Moments = tuple[FloatArray, FloatArray, FloatArray]
 
-_AT_REST = (-1.0) ** np.arange(DEGREE + 1)  # powers of t at the beginning of a piece
-
-
-def floor_map_of(scene: SceneSpec, normal: float, law: Moments | None = None) -> FloatArray:
+def floor_map_of(scene: SceneSpec, normal: float, top: float = 0.0) -> FloatArray:
     """All frictions of the floor of a scene, for its puck, packed; ``normal``: N.
 
-    ``law``: moments of the friction over the slip speed, under a base that is not round.
+    ``top``: up to which slip speed its laws are looked at, m/s.
 
     Examples
     --------
@@ -46,25 +48,26 @@ def floor_map_of(scene: SceneSpec, normal: float, law: Moments | None = None) ->
             middle = 0.5 * (places.min(axis=0) + places.max(axis=0))
             reach = float(np.hypot(*(places - middle).T).max())
             corners.append(places)
-        rows.append([*middle, reach, begin, len(places), normal * patch.friction])
-    friction = puck.friction if law is None else float(law[1][0, 0] @ _AT_REST)
-    friction = friction if axes is None else min(axes.friction)
+        rows.append([*middle, reach, begin, len(places), 0.0])
+    frictions = frictions_on(floor, puck.friction if axes is None else min(axes.friction))
+    loads = normal * np.array([one if isinstance(one, float) else 1.0 for one in frictions])
+    parts = np.array(rows).reshape(-1, PATCH_COLUMNS)
+    strip_count = len(loads) - len(parts)
+    parts[:, LOAD] = loads[strip_count:]
     there = (
         math.cos(angle), math.sin(angle),
         np.array(() if strips is None else strips.borders, np.float64),
-        normal * np.array((friction,) if strips is None else strips.friction),
-        np.array(rows).reshape(-1, PATCH_COLUMNS), np.concatenate(corners),
+        loads[:strip_count], parts, np.concatenate(corners),
     )  # fmt: skip
-    lever, over_slip = 0.5 * puck.height / normal, np.empty(0)
-    if shape is None:
-        base = packed_round(puck.radius, puck.body.law, lever)
-        return FloorMap(*there, base, over_slip, belts_of(floor)).packed()
-    if law is not None:
-        over_slip = packed_law(law[0], normal * law[1], law[2])
+    lever = 0.5 * puck.height / normal
+    base = packed(shape, lever) if shape else packed_round(puck.radius, puck.body.law, lever)
+    kept = {key_of(one): one for one in frictions if not isinstance(one, float)}
+    which = [-1 if isinstance(one, float) else list(kept).index(key_of(one)) for one in frictions]
+    laws = [packed_law(*moments_of(one, top)) for one in kept.values()]
     if axes is not None:
         turns = float(axes.fixed_to == "floor")
-        over_slip = np.array([*np.multiply(normal, axes.friction), axes.direction, turns])
-    return FloorMap(*there, packed(shape, lever), over_slip, belts_of(floor)).packed()
+        laws = [np.array([*np.multiply(normal, axes.friction), axes.direction, turns])]
+    return FloorMap(*there, base, laws, which, belts_of(floor)).packed()
 
 
 def shape_under(scene: SceneSpec) -> Base | None:
@@ -80,4 +83,8 @@ def shape_under(scene: SceneSpec) -> Base | None:
     puck, axes = scene.puck, scene.floor.orthotropic
     if puck.shape is None and axes is not None and axes.fixed_to == "body":
         return Base.disc(puck.radius)
+    if puck.shape is None and has_laws_by_place(scene.floor):
+        edges = puck.body.law.edges  # of an annulus
+        inner = edges[0] if puck.body.law.name.startswith("annulus:") else 0.0
+        return Base.annulus(puck.radius, inner * puck.radius) if inner else Base.disc(puck.radius)
     return puck.shape

@@ -13,7 +13,8 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inner
+from puck_tables.kernels.compile import inlined, inner
+from puck_tables.kernels.law_sums import coefficient_at
 from puck_tables.scene.base_on_floor import friction_held
 from puck_tables.scene.belts import rub_at_rest
 from puck_tables.scene.floor_map import (
@@ -22,7 +23,6 @@ from puck_tables.scene.floor_map import (
     BELTS,
     BORDERS,
     LEVER,
-    LOAD,
     MIDDLE_X,
     MIDDLE_Y,
     OVER_X,
@@ -33,9 +33,10 @@ from puck_tables.scene.floor_map import (
     REACH,
     SHARE,
     border_of,
-    load_of,
+    law_on,
     patch_of,
     sum_over,
+    summed_load,
 )
 
 Yield = tuple[float, float, float, float]
@@ -43,6 +44,13 @@ Yield = tuple[float, float, float, float]
 _NARROW = 1e-9  # of the slip: what is left of a bracket; the excess errs by the square
 _WIDEST, _TRIALS = 60, 60  # at most: to bracket, and in the bracket
 _TILTED = 1e-14  # of friction: what the load's tilt is known to
+
+
+@inlined
+def _at_rest(floor_map: FloatArray, part: int) -> float:
+    """F N on a stretch at slip zero."""
+    law, load = law_on(floor_map, part), summed_load(floor_map, part)
+    return load * coefficient_at(floor_map[law:], 0.0) if law > 0 else load
 
 
 @inner
@@ -54,11 +62,11 @@ def least_under(floor_map: FloatArray, radius: float) -> float:
     for i in range(int(floor_map[BORDERS]) + 1):
         below = i == 0 or border_of(floor_map, i - 1) < place + radius
         if below and (i == int(floor_map[BORDERS]) or border_of(floor_map, i) > place - radius):
-            least = min(least, load_of(floor_map, i))
+            least = min(least, _at_rest(floor_map, i))
     for k in range(int(floor_map[PATCHES])):
         dx, dy = patch_of(floor_map, k, MIDDLE_X) - x, patch_of(floor_map, k, MIDDLE_Y) - y
         if math.sqrt(dx * dx + dy * dy) < radius + patch_of(floor_map, k, REACH):
-            least = min(least, patch_of(floor_map, k, LOAD))
+            least = min(least, _at_rest(floor_map, int(floor_map[BORDERS]) + 1 + k))
     return floor_map[SHARE] * least
 
 

@@ -28,7 +28,9 @@ class Strips:
     borders: tuple[float, ...] = of(
         "numbers", unit="m", doc="ascending places along 'direction'", acts="strips"
     )
-    friction: tuple[float, ...] = of("numbers", low=0.0, doc="one more than borders", acts="")
+    friction: tuple[float | Rows | FrictionLaw, ...] = of(
+        "numbers", low=0.0, kinds=NAMED, doc="one more than borders", acts=""
+    )
     direction: float = of("number", 0.0, "rad", doc="across the borders, from x", acts="")
     across: tuple[float, ...] = of(
         "numbers", (), "m/s", doc="speeds of belts along 'direction', one a strip", acts="belts"
@@ -42,7 +44,9 @@ class Strips:
 class Patch:
     """A spot of the floor with a friction of its own, round or a polygon; wet, or rough."""
 
-    friction: float = of("number", low=0.0, doc="in place of that around it", acts="patches")
+    friction: float | Rows | FrictionLaw = of(
+        "number", low=0.0, kinds=NAMED, doc="in place of that around it", acts="patches"
+    )
     centre: tuple[float, float] = of("pair", (0.0, 0.0), "m", doc="of a round one", acts="")
     radius: float = of("number", 0.0, "m", low=0.0, doc="of a round one", acts="")
     corners: str | Rows = of(

@@ -14,6 +14,7 @@ from puck_tables.motion.body import body_of, is_plain
 from puck_tables.motion.friction_source import closed_form_friction, table_friction
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.scene.by_speed import UNDER_LAW_ERROR, law_error
+from puck_tables.scene.floor_parts import has_laws_by_place
 from puck_tables.scene.parts import Orthotropic
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.table.friction_section import FINEST_ACCURACY
@@ -52,7 +53,7 @@ def axes_of(two: Orthotropic) -> FloatArray:
 def friction_error(scene: SceneSpec) -> float:
     """How wrong the friction ratios under the puck of a scene may be."""
     puck = scene.puck
-    if scene.floor.law:
+    if scene.floor.law or has_laws_by_place(scene.floor):
         return law_error(scene)
     if puck.shape is not None:
         return CLOSED_FORM_ERROR if scene.floor.orthotropic is None else UNDER_LAW_ERROR

@@ -18,6 +18,7 @@ from puck_tables.errors import InputError
 from puck_tables.motion.body import STANDARD_GRAVITY
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.scene.entries import columns_of, entry_at, is_batch, set_path, tables_of
+from puck_tables.scene.floor_parts import frictions_on, largest_of
 from puck_tables.scene.parts import Constraint, Drag, Edge, Floor, Force, Lateral, Launch, Wall
 from puck_tables.scene.pucks_and_posts import Arc, Line, Pocket, Post, Rim, ScenePuck
 from puck_tables.scene.ranges import Ranges, batch_of, launch_rows, owner_of, refuse_twice
@@ -121,16 +122,17 @@ class SceneSpec:
 
     @property
     def frictions(self) -> tuple[float, ...]:
-        """Coulomb's coefficients of the floor: of strips, else that of the puck; then of patches.
+        """Coulomb's coefficients of strips, else that of the puck; then of patches.
+
+        Of a stretch with a law over the slip speed that at rest.
 
         Examples
         --------
         >>> SceneSpec(PuckSpec(1.0, friction=0.1)).frictions
         (0.1,)
         """
-        strips = self.floor.strips
-        base = (self.puck.friction,) if strips is None else strips.friction
-        return (*base, *(patch.friction for patch in self.floor.patches))
+        plain = self.floor if self.floor.patches else replace(self.floor, law="")
+        return tuple(largest_of(one, 0.0) for one in frictions_on(plain, self.puck.friction))
 
     @property
     def heights(self) -> list[float]:

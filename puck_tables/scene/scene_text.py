@@ -56,12 +56,14 @@ def _lines(table: Mapping[str, Any], path: str) -> Iterator[str]:
 
 def _holds_tables(value: Any) -> bool:
     return isinstance(value, dict) or (
-        isinstance(value, list) and bool(value) and isinstance(value[0], dict)
+        isinstance(value, list) and bool(value) and all(isinstance(one, dict) for one in value)
     )
 
 
 def _value(value: Any) -> str:
-    """A number, a text or a list of them; a TOML text escapes like one of JSON."""
+    """A number, a text, a table or a list of them; a TOML text escapes like one of JSON."""
+    if isinstance(value, dict):
+        return f"{{{', '.join(f'{name} = {_value(one)}' for name, one in value.items())}}}"
     if isinstance(value, list):
         return f"[{', '.join(map(_value, value))}]"
     if isinstance(value, int | float | np.number):

@@ -11,8 +11,14 @@ from puck_tables._core.wording import meant
 from puck_tables.errors import InputError
 from puck_tables.motion.body import is_plain
 from puck_tables.scene.agreement import floor_faults
-from puck_tables.scene.by_speed import law_name, speed_law
-from puck_tables.scene.floor_parts import belts_of, has_belts, needs_sums
+from puck_tables.scene.by_speed import laws_in
+from puck_tables.scene.floor_parts import (
+    belts_of,
+    frictions_on,
+    has_belts,
+    largest_of,
+    needs_sums,
+)
 from puck_tables.scene.forces import is_stepped
 from puck_tables.scene.holds import misfits
 from puck_tables.scene.over_time import drive_of, last_factors
@@ -93,9 +99,10 @@ def refuse_endless(scene: SceneSpec) -> None:
     for number, puck in enumerate(pucks_of(scene)):
         under = frictions_under(scene, puck)
         grips = any(under) or bool(puck.path)
-        if not grips and floor.law:
+        viscous = [name for name, law in laws_in(scene).items() if law.largest(0.0) == 0.0]
+        if viscous and not puck.path:
             raise InputError(
-                f"{law_name(scene)}: its friction is 0 at slip zero, so that nothing comes to "
+                f"{viscous[0]}: its friction is 0 at slip zero, so that nothing comes to "
                 "rest: give a time"
             )
         if grips and not puck.path and not np.multiply(under, last_factors(floor)).any():
@@ -128,12 +135,9 @@ def frictions_under(scene: SceneSpec, puck: ScenePuck, fastest: float = 0.0) -> 
     (0.2,)
     """
     floor = scene.floor
-    if floor.law:
-        return (speed_law(scene).largest(fastest),)
     if floor.orthotropic is not None:
         return (max(floor.orthotropic.friction),)
-    base = (puck.friction,) if floor.strips is None else floor.strips.friction
-    return (*base, *(patch.friction for patch in floor.patches))
+    return tuple(largest_of(one, fastest) for one in frictions_on(floor, puck.friction))
 
 
 def has_closed_forms(puck: ScenePuck, friction: float) -> bool:

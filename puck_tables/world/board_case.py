@@ -10,9 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import ContactError, InputError, PuckError
-from puck_tables.scene.by_speed import speed_law
+from puck_tables.scene.by_speed import end_of_laws
 from puck_tables.scene.entries import is_batch, launch_paths
 from puck_tables.scene.outcome import (
     AT_REST,
@@ -159,12 +158,13 @@ class BoardCase:
         Its tables go to powers of two, so that no run depends on which others there are.
         """
         engine, top = self.engine, law_goes_to(self.engine.regions)
-        if top == math.inf or isinstance(speed_law(self.scene), SpeedLaw):
+        end = math.inf if top == math.inf else end_of_laws(self.scene)[0]
+        if top >= end:
             return
         slips = starts - velocities_under(engine, self.first)[discs]
         rims = engine.discs[discs, RADIUS] * np.abs(slips[..., 2])
         fastest = (np.hypot(slips[..., 0], slips[..., 1]) + rims).max(axis=1, initial=0.0) / SURE
-        tops = np.exp2(np.ceil(np.log2(np.maximum(fastest, top))))
+        tops = np.minimum(np.exp2(np.ceil(np.log2(np.maximum(fastest, top)))), end)
         for farther in np.unique(tops[fastest >= top]).tolist():
             if farther not in self._farther:
                 try:

@@ -13,7 +13,7 @@ from puck_tables.scene.regions import friction_error
 from puck_tables.world import engine_state as g
 from puck_tables.world.agreement import pucks_of, segment_error
 from puck_tables.world.floors import velocities_under
-from puck_tables.world.layout import HOLD, LIGHTNESS, NORMAL
+from puck_tables.world.layout import HOLD, LIGHTNESS, NORMAL, TURNABILITY
 from puck_tables.world.prepare import Start
 from puck_tables.world.world import World
 
@@ -92,5 +92,7 @@ def _otherwise(start: Start, coarser: float, share: float, friction: float) -> S
     states[free, VX:] = floor + (states[free, VX:] - floor) @ turned.T
     engine.scale[2] *= coarser
     engine.discs[:, NORMAL] *= 1.0 + friction
+    # torques err to the other side, and by twice as much: all alike hardly change where rebounds lead
+    engine.discs[:, TURNABILITY] *= 1.0 - 3.0 * friction
     regions = engine.regions._replace(load=engine.regions.load * (1.0 + friction))
     return start._replace(engine=engine._replace(launches=launches, regions=regions), states=states)

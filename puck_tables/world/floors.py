@@ -16,12 +16,17 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.section_spline import NO_SECTION
-from puck_tables.scene.by_speed import NO_LAW, law_range, law_table, load_under, moments_of
+from puck_tables.scene.by_speed import NO_LAW, law_range, law_table, law_top, load_under
 from puck_tables.scene.floor_map import NO_GROUND
-from puck_tables.scene.floor_parts import belts_of, needs_sums
+from puck_tables.scene.floor_parts import (
+    belts_of,
+    count_parts,
+    has_laws_by_place,
+    needs_sums,
+)
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ingredients import BySpeed, Regions, Surface, floor_velocity
-from puck_tables.scene.map_of_floor import Moments, floor_map_of, shape_under
+from puck_tables.scene.map_of_floor import floor_map_of, shape_under
 from puck_tables.scene.over_time import largest_factors
 from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.regions import axes_of, load_limit, of_one_shape, section_of
@@ -99,6 +104,8 @@ def regions_of(
     normals = np.array([0.0 if puck.path else normal_on(scene, puck) for puck in pucks])
     count, delta = len(floors), floors[:, 1].copy()
     none = np.empty((count, *NO_SECTION.shape))
+    if has_laws_by_place(scene.floor):
+        return _by_place(scene, pucks, normals, floors, fastest)
     if scene.floor.law:
         return _by_slip(scene, pucks, normals, delta, none, fastest)
     if scene.floor.orthotropic is not None:
@@ -143,20 +150,54 @@ def _is_summed(scene: SceneSpec, puck: ScenePuck) -> bool:
     """Whether its friction is summed over its base everywhere, not looked up."""
     sums = needs_sums(scene.floor, puck.height)
     sums = sums and scene.floor.orthotropic is None and not scene.floor.law
+    sums = sums or has_laws_by_place(scene.floor)
     return (sums or puck.shape is not None) and not puck.path
 
 
 def _grounds(
-    scene: SceneSpec, pucks: list[ScenePuck], summed: npt.NDArray[np.bool_],
-    moments: Moments | None = None,
+    scene: SceneSpec, pucks: list[ScenePuck], summed: npt.NDArray[np.bool_], top: float = 0.0
 ) -> FloatArray:  # fmt: skip
-    """The frictions under those pucks over whose bases they are summed, all of one length."""
+    """The frictions under those pucks over whose bases they are summed, all of one length.
+
+    ``top``: up to which slip their laws are looked at, m/s.
+    """
     grounds = [
-        floor_map_of(scene.alone(puck), normal_on(scene, puck), moments) if sums else NO_GROUND
+        floor_map_of(scene.alone(puck), normal_on(scene, puck), top) if sums else NO_GROUND
         for puck, sums in zip(pucks, summed, strict=True)
     ]
     size = max(map(len, grounds))  # what they end with is room to work
     return np.concatenate([np.pad(own, (0, size - len(own))) for own in grounds])
+
+
+def _by_place(
+    scene: SceneSpec, pucks: list[ScenePuck], normals: FloatArray, floors: FloatArray,
+    fastest: float,
+) -> Regions:  # fmt: skip
+    """By laws over the slip speed that differ by place: summed over every base, wherever it lies.
+
+    Raises
+    ------
+    InputError, ContactError
+        As :func:`regions_of`.
+    """
+    top = law_top(scene, fastest)
+    most = np.array([
+        [0.0] * count_parts(scene.floor) if puck.path else _strongest_under(scene, puck, top)
+        for puck in pucks
+    ])  # fmt: skip
+    for puck, largest in zip(pucks, most.max(axis=1).tolist(), strict=True):
+        if puck.path:
+            continue
+        shape = shape_under(scene.alone(puck))
+        if shape is not None:
+            shape.refuse_lift(scene.floor.static_ratio * largest, puck.height)
+    slide = np.array([not puck.path for puck in pucks])
+    loads = normals * np.vstack([most.T, most.max(axis=1)])
+    return Regions(
+        loads.ravel(), floors[:, 1].copy(), np.empty((len(floors), *NO_SECTION.shape)),
+        BySpeed(np.array([1.0, top]), 0.0, 1.0, 1.0), np.tile(slide, len(loads)),
+        _grounds(scene, pucks, slide, top), np.zeros((len(pucks), 2), np.int64),
+    )  # fmt: skip
 
 
 def _by_slip(
@@ -187,7 +228,7 @@ def _by_slip(
             tables[own].refuse_height(static * max(factor, 1.0) * 2.0 * puck.height / puck.radius)
     floor_map = NO_GROUND
     if summed.any():
-        floor_map = _grounds(scene, pucks, summed, moments_of(law, top))
+        floor_map = _grounds(scene, pucks, summed, top)
     ends = np.cumsum([0, *(len(table.compiled) for table in tables.values())])
     spans = dict(zip(tables, pairwise(ends.tolist()), strict=True))
     laws = np.array([(0, 0) if own is None else spans[own] for own in under])

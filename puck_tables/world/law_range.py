@@ -8,9 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import ContactError, InputError
-from puck_tables.scene.by_speed import FARTHER, law_name, speed_law
+from puck_tables.scene.by_speed import FARTHER, end_of_laws, laws_in
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.engine_state import Engine, Whole
 from puck_tables.world.floor_under import SURE, floor_of, law_goes_to
@@ -31,10 +30,11 @@ def refuse_too_fast(engine: Engine, scene: SceneSpec, name: str, i: int, state: 
     fastest = slip_of_rim(
         engine.discs[i, RADIUS], floor_of(engine.surface, engine.discs[i]), state.tolist()
     )
-    if fastest > top and isinstance(speed_law(scene), SpeedLaw):
+    if fastest > top and top == end_of_laws(scene)[0]:
         raise InputError(
             f"{name}: its rim would slip at {fastest:.6g} m/s, and the friction law "
-            f"{law_name(scene)} ends at {top:g} m/s: strike more softly, or give it more speeds"
+            f"{end_of_laws(scene)[1]} ends at {top:g} m/s: strike more softly, or give it more "
+            "speeds"
         )
 
 
@@ -59,19 +59,20 @@ def with_law_for(
         )
         if engine.discs[i, LIGHTNESS] == 0.0 or fastest < SURE * top:
             continue
-        if isinstance(speed_law(scene), SpeedLaw):
+        if top == end_of_laws(scene)[0]:
             raise InputError(
                 f"at {time:.6g} s the rim of {names[order[i]]} slips at {fastest:.6g} m/s, and the "
-                f"friction law {law_name(scene)} ends at {top:g} m/s: nothing is known beyond; "
-                "give it more speeds"
+                f"friction law {end_of_laws(scene)[1]} ends at {top:g} m/s: nothing is known "
+                "beyond; give it more speeds"
             )
-        top = FARTHER * fastest
+        top = min(FARTHER * fastest, end_of_laws(scene)[0])
         try:
             engine = with_law_up_to(engine, scene, order, top)
         except ContactError as error:  # at the launch the heights were in order
             raise InputError(
-                f"at {time:.6g} s the rim slips at {fastest:.6g} m/s, where friction by the law "
-                f"{law_name(scene)} tilts the pressure so much that part of a base would lift: a "
-                "slip that grows may never stop; give a shorter time, or less that drives it"
+                f"at {time:.6g} s the rim slips at {fastest:.6g} m/s, where friction by "
+                f"{', '.join(laws_in(scene))} tilts the pressure so much that part of a base would "
+                "lift: a slip that grows may never stop; give a shorter time, or less that drives "
+                "it"
             ) from error
     return engine

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from puck_tables._core.fields import specs
 from puck_tables.scene.acting import EMPIRICAL, acting
-from puck_tables.scene.floor_parts import belts_of
+from puck_tables.scene.floor_parts import belts_of, has_laws_by_place
 from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import (
@@ -70,7 +70,12 @@ def plan_of(scene: SceneSpec) -> tuple[str, str]:
         lines.append(
             "a look-up would be cheaper: of round pucks on which only dry friction and a belt act"
         )
-    if has_several(scene):
+    if has_laws_by_place(scene.floor):
+        lines.append(
+            "friction by the slip speed differs by place: it is summed over every base wherever it "
+            "lies, in every step along the contour of its parts, each by its own law or number"
+        )
+    elif has_several(scene):
         piled = any(one.shape is None and one.body.law.profile is not None for one in pucks)
         lines.append(
             "while a base is astride several frictions they are integrated over its parts, about "
@@ -116,6 +121,8 @@ def _method_of(scene: SceneSpec, puck: ScenePuck) -> str:
             acts.append("no closed forms")
         if puck.shape is not None:
             acts.append("a base that is not round")
+        if has_laws_by_place(scene.floor) and not scene.floor.law:
+            acts.append("friction law")
         if segment_error(scene) < TABLE_ERROR:
             acts.append(_CLOSER)
         where = "" if all(integrated) else " on some of the floor"
