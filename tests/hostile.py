@@ -83,6 +83,7 @@ def arrays_of(found: Any) -> Any:
 
 
 KIND: dict[str, Any] = {"pressure": "uniform", "gyration": math.sqrt(0.5)}
+FRICTION: dict[str, Any] = {"friction": 0.2, "height": 0.04, "gravity": 9.8, "radius": 0.05}
 HEIGHT: dict[str, Any] = {"delta": 0.5, "decel": 1.0, "radius": 1.0}
 TWO = (1.0, 0.5)
 RESULT_OF: dict[str, Callable[[], Any]] = {
@@ -105,6 +106,10 @@ def _of_arrays() -> dict[str, Door]:
         "stop": (lambda **k: arrays_of(pt.stop(**k)), {
             "velocity": TWO, "spin": 2.0, **HEIGHT, "tol": 1e-8, "method": None, "table": None,
             **KIND, "jacobian": False, "threads": 1}),
+        "stop of friction": (lambda **k: pt.stop(**k), {
+            "velocity": TWO, "spin": 2.0, **FRICTION, "jacobian": True}),
+        "states of friction": (lambda **k: pt.states(**k), {
+            "velocity": TWO, "spin": 2.0, "time": 0.1, **FRICTION, "jacobian": True}),
         "states": (lambda **k: pt.states(**k), {
             "velocity": TWO, "spin": 2.0, "time": 0.1, **HEIGHT, "table": None, **KIND,
             "jacobian": False, "threads": 1}),

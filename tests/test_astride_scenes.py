@@ -130,7 +130,7 @@ def test_what_holds_at_rest(height, at, downhill):
     ({}, {"patches": [pt.Patch(0.1, corners=[[0, 0], [1, 1], [1, 0], [0, 1]])]}, "meet"),
     ({}, {"patches": [pt.Patch(0.1, corners=[[0, 0], [1, 1], [2, 2]])]}, "on a line"),
     ({}, {"patches": [pt.Patch(0.1, corners=[[0, 0], [1, 0], [1, 0], [1, 1]])]}, "2 repeats"),
-    ({}, {"patches": [ROUND], "law": [[0.0, 0.1], [9.0, 0.1]]}, "floor.law and floor.patch"),
+    ({}, {"strips": NARROW, "law": [[0.0, 0.1], [9.0, 0.1]]}, "floor.law and floor.strips"),
 ])  # fmt: skip
 def test_what_is_refused(puck, floor, words):
     with pytest.raises(pt.InputError, match="error") as caught:

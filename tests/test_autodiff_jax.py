@@ -82,3 +82,15 @@ def test_refusals():
         stop(1.0, 1.0)
     with pytest.raises(Exception, match="delta"):
         stop((1.0, 0.0), 1.0, delta=-1.0).block_until_ready()
+
+
+def test_friction_and_height_pass_check_grads():
+    def f(velocity, friction, height, radius):
+        return stop(velocity, 2.0, friction=friction, height=height, radius=radius)
+
+    arguments = tuple(map(jnp.asarray, ([1.0, 0.3], 0.2, 0.3, 0.8)))
+    check_grads(jax.jit(f), arguments, order=1, atol=1e-5, rtol=1e-5, eps=1e-4)
+    truth = plain_stop((1.0, 0.3), 2.0, friction=0.2, height=0.3, radius=0.8)
+    assert float(f(*arguments)[0]) == pytest.approx(float(truth.stop_time), abs=1e-9)
+    with pytest.raises(InputError, match="in place of delta and decel"):
+        states((1.0, 0.0), 1.0, 0.1, friction=0.2, decel=1.0)

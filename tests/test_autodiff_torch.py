@@ -92,3 +92,15 @@ def test_the_program_of_the_page_prints_what_it_says(capsys: pytest.CaptureFixtu
     program = re.search(r"```python\n(import torch.*?)```", text, re.DOTALL)[1]
     exec(program, {})
     assert capsys.readouterr().out.strip() == program.rpartition("# ")[2].strip()
+
+
+def test_friction_and_height_pass_gradcheck():
+    def f(velocity, friction, height, radius):
+        return stop(velocity, 2.0, friction=friction, height=height, radius=radius)
+
+    arguments = tuple(map(leaf, ([1.0, 0.3], 0.2, 0.3, 0.8)))
+    assert torch.autograd.gradcheck(f, arguments, eps=1e-4, atol=1e-5, check_forward_ad=True)
+    truth = plain_stop((1.0, 0.3), 2.0, friction=0.2, height=0.3, radius=0.8)
+    assert f(*arguments)[0].item() == pytest.approx(float(truth.stop_time), abs=1e-9)
+    with pytest.raises(InputError, match="in place of delta and decel"):
+        states((1.0, 0.0), 1.0, 0.1, friction=0.2, decel=1.0)

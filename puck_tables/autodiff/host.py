@@ -10,6 +10,13 @@ import numpy.typing as npt
 
 from puck_tables.contact.laws import HOMOGENEOUS, Law
 from puck_tables.errors import InputError
+from puck_tables.stopping.by_friction import (
+    DEFAULT_DECEL,
+    DEFAULT_DELTA,
+    DEFAULT_GRAVITY,
+    DEFAULT_HEIGHT,
+    refuse_both,
+)
 from puck_tables.stopping.jacobian import LAUNCH_NAMES, MOMENT_NAMES, STATE_NAMES, STOP_NAMES
 from puck_tables.stopping.states import states
 from puck_tables.stopping.stops import stop
@@ -88,6 +95,7 @@ _ARGUMENTS = """
     ----------
     velocity : (…, 2), m/s
     spin, {time}delta, decel, radius : (…), rad/s, {second}1, m/s², m
+    friction, height, gravity : (…), 1, m, m/s², in place of delta and decel
     pressure, gyration : as :class:`puck_tables.Puck`; not differentiated
 
     Returns
@@ -104,7 +112,7 @@ _ARGUMENTS = """
 
 
 def functions(
-    of: Callable[[Any, PuckKind], Any], merged: Callable[..., Any]
+    of: Callable[[Any, PuckKind], Any], merged: Callable[..., Any], array: Callable[[Any], Any]
 ) -> tuple[Callable[..., Any], Callable[..., Any]]:
     """The functions ``stop`` and ``states`` of a library.
 
@@ -112,20 +120,34 @@ def functions(
     ----------
     of : results of arguments (…, columns), differentiated
     merged : arguments (…, columns) from a velocity (…, 2) and numbers (…)
+    array : a number (…) in double precision
     """
 
+    def puck(
+        delta: Any, decel: Any, radius: Any, friction: Any, height: Any, gravity: Any
+    ) -> tuple[Any, Any, Any]:
+        if not refuse_both(delta, decel, friction, height, gravity):
+            return delta, decel, radius
+        f, size = array(friction), array(radius)
+        return 2.0 * f * array(height) / size, f * array(gravity), size
+
     def stop(
-        velocity: Any, spin: Any = 0.0, *, delta: Any = 0.5, decel: Any = 1.0, radius: Any = 1.0,
-        pressure: str | Law = "uniform", gyration: float = HOMOGENEOUS,
+        velocity: Any, spin: Any = 0.0, *, delta: Any = DEFAULT_DELTA, decel: Any = DEFAULT_DECEL,
+        radius: Any = 1.0, friction: Any = None, height: Any = DEFAULT_HEIGHT,
+        gravity: Any = DEFAULT_GRAVITY, pressure: str | Law = "uniform",
+        gyration: float = HOMOGENEOUS,
     ) -> Any:  # fmt: skip
-        return of(merged(velocity, spin, delta, decel, radius), PuckKind(pressure, gyration))
+        numbers = puck(delta, decel, radius, friction, height, gravity)
+        return of(merged(velocity, spin, *numbers), PuckKind(pressure, gyration))
 
     def states(
-        velocity: Any, spin: Any, time: Any, *, delta: Any = 0.5, decel: Any = 1.0,
-        radius: Any = 1.0, pressure: str | Law = "uniform", gyration: float = HOMOGENEOUS,
+        velocity: Any, spin: Any, time: Any, *, delta: Any = DEFAULT_DELTA,
+        decel: Any = DEFAULT_DECEL, radius: Any = 1.0, friction: Any = None,
+        height: Any = DEFAULT_HEIGHT, gravity: Any = DEFAULT_GRAVITY,
+        pressure: str | Law = "uniform", gyration: float = HOMOGENEOUS,
     ) -> Any:  # fmt: skip
-        arguments = merged(velocity, spin, delta, decel, radius, time)
-        return of(arguments, PuckKind(pressure, gyration))
+        numbers = puck(delta, decel, radius, friction, height, gravity)
+        return of(merged(velocity, spin, *numbers, time), PuckKind(pressure, gyration))
 
     stop.__doc__ = "Stops of pucks, as :func:`puck_tables.stop`.\n" + _ARGUMENTS.format(
         time="", second="", count=5, name="stop",

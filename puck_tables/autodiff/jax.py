@@ -49,17 +49,21 @@ def _stops_jvp(kind: host.PuckKind, primals: Any, tangents: Any) -> Any:
     return _stops(arguments, kind), jnp.einsum("...rc,...c->...r", jacobian, moved)
 
 
-def _merged(velocity: Any, *others: Any) -> Any:
-    """Arguments (…, columns) in double precision."""
-    arrays = [jnp.asarray(one) for one in (velocity, *others)]
-    if not jax.config.read("jax_enable_x64") or any(array.dtype == jnp.float32 for array in arrays):
+def _array(number: Any) -> Any:
+    array = jnp.asarray(number)
+    if not jax.config.read("jax_enable_x64") or array.dtype == jnp.float32:
         raise InputError(
             "single precision is too coarse for the motion of a puck: call "
             "jax.config.update('jax_enable_x64', True) and give float64"
         )
-    way, *rest = (array.astype(jnp.float64) for array in arrays)
+    return array.astype(jnp.float64)
+
+
+def _merged(velocity: Any, *others: Any) -> Any:
+    """Arguments (…, columns) in double precision."""
+    way, *rest = map(_array, (velocity, *others))
     host.refuse_shape(way.shape)
     return jnp.stack(jnp.broadcast_arrays(way[..., 0], way[..., 1], *rest), axis=-1)
 
 
-stop, states = host.functions(_stops, _merged)
+stop, states = host.functions(_stops, _merged, _array)

@@ -55,16 +55,20 @@ def _slopes(arguments: Any, kind: host.PuckKind) -> Any:
     return torch.from_numpy(found).to(arguments.device)
 
 
+def _array(number: Any) -> Any:
+    is_real = isinstance(number, torch.Tensor) and number.is_floating_point()
+    if is_real and number.dtype != torch.float64:
+        raise InputError(
+            f"{number.dtype} is too coarse for the motion of a puck: give torch.float64"
+        )
+    return torch.as_tensor(number, dtype=torch.float64)
+
+
 def _merged(velocity: Any, *others: Any) -> Any:
     """Arguments (…, columns) in double precision."""
-    for one in (velocity, *others):
-        if isinstance(one, torch.Tensor) and one.is_floating_point() and one.dtype != torch.float64:
-            raise InputError(
-                f"{one.dtype} is too coarse for the motion of a puck: give torch.float64"
-            )
-    way, *rest = (torch.as_tensor(one, dtype=torch.float64) for one in (velocity, *others))
+    way, *rest = map(_array, (velocity, *others))
     host.refuse_shape(tuple(way.shape))
     return torch.stack(torch.broadcast_tensors(way[..., 0], way[..., 1], *rest), dim=-1)
 
 
-stop, states = host.functions(_Stops.apply, _merged)
+stop, states = host.functions(_Stops.apply, _merged, _array)

@@ -202,7 +202,7 @@ def _along_arc(
     spin, gx, gy, sums = abs(w), x + uy / w, y - ux / w, NOTHING
     off, nearest = math.sqrt(gx * gx + gy * gy), math.atan2(-gy, -gx)
     low, high = arc_from_nearest(start, turn, nearest)
-    number = math.floor(low / math.pi)
+    number = float(math.floor(low / math.pi))
     while low < high:
         edge = min(math.pi * (number + 1.0), high)
         side, begin, last = 1.0, low - math.pi * number, edge - math.pi * number

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from bisect import bisect_right
+from typing import Any
 
 import numpy as np
 
@@ -64,7 +65,7 @@ def frictions_on(floor: Floor, own: float) -> list[Friction]:
     [0.2, 0.1]
     """
     strips, first = floor.strips, law_of(floor.law) if floor.law else own
-    stretches = [first] if strips is None else list(strips.friction)
+    stretches: list[Any] = [first] if strips is None else list(strips.friction)
     stretches += [patch.friction for patch in floor.patches]
     return [law_of(one) if isinstance(one, tuple) else one for one in stretches]
 

@@ -18,6 +18,7 @@ from puck_tables.io.columns import COLUMNS as VARIABLES
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.motion.puck_spec import PUCK_UNITS, PuckSpec
 from puck_tables.result import Result
+from puck_tables.stopping.jacobian import STOP_NAMES, Differentiated
 from puck_tables.stopping.launch_arrays import positive_array
 from puck_tables.stopping.launch_search import (
     ANGLE,
@@ -29,6 +30,7 @@ from puck_tables.stopping.launch_search import (
     LaunchSearch,
     misses,
 )
+from puck_tables.stopping.stops import Stops, stop
 
 MAX_COUNT = 10_000  # launches of an answer: each a row
 _CHUNK = 4096  # targets that a thread takes at a time
@@ -42,7 +44,7 @@ _UNITS = {"spin": "rad/s", "speed": "m/s", "stop_time": "s", "angle": "rad"}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Aim(Result):
+class Aim(Differentiated, Result):
     """Launches that come to rest at ``target`` (2,) or at one of many (…, 2), m from their start.
 
     ``launches`` (…): how many lead to each target.  Arrays (n,) of all, target after target and
@@ -50,6 +52,8 @@ class Aim(Result):
     ``launch_velocity`` (n, 2) m/s, ``launch_spin`` rad/s, ``launch_speed`` m/s, ``launch_heading``
     rad, ``launch_slip_angle`` φ rad, ``stop_time`` s, ``body_angle`` rad by which the puck turns.
     ``miss`` m, integrated when first asked for: how far from its target each launch ends.
+    ``jacobian`` (n, 3, 3), and ``derivative`` by names: of place and body angle at the stop by
+    speed, heading and spin of the launch; ``spread`` says how far they scatter where those do.
     ``answer`` is one sentence: what was found, or why nothing leads to the one target.  ``aim[2]``
     or ``aim[2, 3]`` has the launches to some of the targets.
     """
@@ -65,6 +69,10 @@ class Aim(Result):
     threads: int | None = None
 
     picture: ClassVar[str] = "aim"
+    JACOBIAN_ROWS: ClassVar[tuple[str, ...]] = ("stop_x", "stop_y", "body_angle")
+    JACOBIAN_COLUMNS: ClassVar[tuple[str, ...]] = (  # type: ignore[misc]
+        "launch_speed", "launch_heading", "launch_spin",
+    )  # fmt: skip
 
     def __repr__(self) -> str:
         at = f"at ({self.target[0]:g}, {self.target[1]:g}) m: " if self.is_one else ""
@@ -143,6 +151,46 @@ class Aim(Result):
     def target_y(self) -> FloatArray:
         """Of the target of each launch, m."""
         return self._places[:, 1]
+
+    @cached_property
+    def jacobian(self) -> FloatArray:
+        """Derivatives (n, 3, 3) of place and body angle by speed, heading, spin; when asked for.
+
+        Raises
+        ------
+        AccuracyError
+            If an error of 1e-7 is out of reach for such a puck.
+
+        Examples
+        --------
+        >>> from puck_tables import Puck
+        >>> found = Puck.similar().aim((2.0, 0.1), spin=5.0)
+        >>> found.derivative("stop_x", "launch_speed").round(4).tolist()  # m by m/s
+        [2.2984]
+        >>> found.spread(np.diag([0.02, 0.01, 0.1]) ** 2).deviation.round(4).tolist()  # m, m, rad
+        [[0.0599, 0.0202, 0.3753]]
+        """
+        every = self._stops(self._arguments, jacobian=True).jacobian
+        rows = every[:, [STOP_NAMES.index(name) for name in self.JACOBIAN_ROWS]]
+        by_vx, by_vy, by_spin, *_ = np.moveaxis(rows, -1, 0)
+        vx, vy = self.launch_velocity.T[:, :, None]
+        cosine, sine = np.cos(self.launch_heading)[:, None], np.sin(self.launch_heading)[:, None]
+        columns = by_vx * cosine + by_vy * sine, by_vy * vx - by_vx * vy, by_spin
+        return np.stack(columns, axis=-1)
+
+    @property
+    def _arguments(self) -> FloatArray:  # type: ignore[override]
+        return np.stack([self.launch_speed, self.launch_heading, self.launch_spin])
+
+    def _again(self, arguments: FloatArray) -> FloatArray:
+        found = self._stops(arguments)
+        return np.stack([getattr(found, name) for name in self.JACOBIAN_ROWS])
+
+    def _stops(self, arguments: FloatArray, *, jacobian: bool = False) -> Stops:
+        speed, heading, spin = arguments
+        velocity = speed[:, None] * np.stack([np.cos(heading), np.sin(heading)], axis=-1)
+        how = {**self.puck.arguments(), "threads": self.threads}
+        return stop(velocity, spin, jacobian=jacobian, **how)
 
     @cached_property
     def miss(self) -> FloatArray:

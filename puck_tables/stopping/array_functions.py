@@ -14,6 +14,12 @@ from puck_tables._core.real import broadcast, finite_array, real
 from puck_tables.accuracy.methods import Method
 from puck_tables.contact.laws import HOMOGENEOUS, Law
 from puck_tables.errors import InputError
+from puck_tables.stopping.by_friction import (
+    DEFAULT_DECEL,
+    DEFAULT_DELTA,
+    DEFAULT_GRAVITY,
+    DEFAULT_HEIGHT,
+)
 from puck_tables.stopping.launch_arrays import TOO_LARGE
 from puck_tables.stopping.states import states
 from puck_tables.stopping.stop_section import FINEST_SECTION
@@ -24,7 +30,9 @@ StopArrays = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, F
 
 def stop_arrays(
     vx: npt.ArrayLike, vy: npt.ArrayLike = 0.0, spin: npt.ArrayLike = 0.0,
-    delta: npt.ArrayLike = 0.5, decel: npt.ArrayLike = 1.0, radius: npt.ArrayLike = 1.0, *,
+    delta: npt.ArrayLike = DEFAULT_DELTA, decel: npt.ArrayLike = DEFAULT_DECEL,
+    radius: npt.ArrayLike = 1.0, *, friction: npt.ArrayLike | None = None,
+    height: npt.ArrayLike = DEFAULT_HEIGHT, gravity: float = DEFAULT_GRAVITY,
     tol: float = 1e-8, pressure: str | Law = "uniform", gyration: float = HOMOGENEOUS,
 ) -> StopArrays:  # fmt: skip
     """Stops of launches; everything broadcasts.
@@ -33,7 +41,7 @@ def stop_arrays(
     ----------
     vx, vy, spin : array_like (…), m/s, rad/s
     delta, decel, radius : array_like (…), 1, m/s², m
-    tol, pressure, gyration
+    friction, height, gravity, tol, pressure, gyration
         As for :func:`puck_tables.stop`.  Pucks with δ > 1 or of another kind are looked up for any
         number of launches, integrated where tol < 1e-10.
 
@@ -59,7 +67,8 @@ def stop_arrays(
         Method.LOOK_UP if real("tol", tol, "dimensionless") >= FINEST_SECTION else Method.ADAPTIVE
     )
     found = stop(
-        _pairs(vx, vy), spin, delta=delta, decel=decel, radius=radius, tol=tol,
+        _pairs(vx, vy), spin, delta=delta, decel=decel, radius=radius, friction=friction,
+        height=height, gravity=gravity, tol=tol,
         method=method.value, pressure=pressure, gyration=gyration, threads=1,
     )  # fmt: skip
     if found.status.any():
@@ -72,7 +81,9 @@ def stop_arrays(
 
 def state_arrays(
     vx: npt.ArrayLike, vy: npt.ArrayLike, spin: npt.ArrayLike, time: npt.ArrayLike,
-    delta: npt.ArrayLike = 0.5, decel: npt.ArrayLike = 1.0, radius: npt.ArrayLike = 1.0, *,
+    delta: npt.ArrayLike = DEFAULT_DELTA, decel: npt.ArrayLike = DEFAULT_DECEL,
+    radius: npt.ArrayLike = 1.0, *, friction: npt.ArrayLike | None = None,
+    height: npt.ArrayLike = DEFAULT_HEIGHT, gravity: float = DEFAULT_GRAVITY,
     pressure: str | Law = "uniform", gyration: float = HOMOGENEOUS,
 ) -> StopArrays:  # fmt: skip
     """States at times after launches; everything broadcasts.
@@ -82,7 +93,7 @@ def state_arrays(
     vx, vy, spin : array_like (…), m/s, rad/s, at the launch
     time : array_like (…), s, ≥ 0
     delta, decel, radius : array_like (…), 1, m/s², m
-    pressure, gyration
+    friction, height, gravity, pressure, gyration
         As for :func:`puck_tables.states`.
 
     Returns
@@ -102,7 +113,8 @@ def state_arrays(
     [1.590682, 0.0]
     """
     result = states(
-        _pairs(vx, vy), spin, time, delta=delta, decel=decel, radius=radius,
+        _pairs(vx, vy), spin, time, delta=delta, decel=decel, radius=radius, friction=friction,
+        height=height, gravity=gravity,
         pressure=pressure, gyration=gyration,
     )  # fmt: skip
     return result.x, result.y, result.orientation, result.vx, result.vy, result.spin

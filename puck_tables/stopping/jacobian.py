@@ -20,6 +20,7 @@ from puck_tables.stopping.stop_table import StopTable
 LAUNCH_NAMES = ("vx", "vy", "spin", "delta", "decel", "radius")
 STOP_NAMES = ("stop_time", "stop_x", "stop_y", "path_length", "body_angle")
 STATE_NAMES = ("x", "y", "orientation", "vx", "vy", "spin")
+FRICTION_NAMES = ("vx", "vy", "spin", "friction", "height", "radius")
 MOMENT_NAMES = (*LAUNCH_NAMES, "time")
 
 Bodies = dict[float, UnitPuck]  # by height
@@ -33,7 +34,7 @@ class Differentiated:
     """
 
     JACOBIAN_ROWS: ClassVar[tuple[str, ...]]
-    JACOBIAN_COLUMNS: ClassVar[tuple[str, ...]]
+    JACOBIAN_COLUMNS: tuple[str, ...]
     _jacobian: FloatArray | None = None
     _arguments: FloatArray
     _anew: Callable[..., Any] | None = None  # the same of other launches
@@ -85,7 +86,7 @@ class Differentiated:
     def spread(
         self,
         covariance: npt.ArrayLike,
-        of: Sequence[str] = ("vx", "vy", "spin"),
+        of: Sequence[str] | None = None,
         *,
         samples: int = 0,
         seed: int = 0,
@@ -96,7 +97,7 @@ class Differentiated:
         ----------
         covariance : array_like (k, k) or (…, k, k), SI units, symmetric, no negative variances
             Of the arguments named in ``of``, for all launches or for each.
-        of : k names of ``JACOBIAN_COLUMNS``
+        of : k names of ``JACOBIAN_COLUMNS``; the first three, the launch, if left out
         samples : int
             How many launches to draw of each, normally distributed, and to look up, beside the
             linear answer: 0, or from 2 on.
@@ -128,15 +129,16 @@ class Differentiated:
         """
         return spread_of(
             self.JACOBIAN_ROWS, self.JACOBIAN_COLUMNS, self.jacobian, self._arguments, self._again,
-            covariance, of, samples, seed, self._highest,
+            covariance, self.JACOBIAN_COLUMNS[:3] if of is None else of, samples, seed,
+            self._highest,
         )  # fmt: skip
 
     def _again(self, arguments: FloatArray) -> FloatArray:
         """The rows of the Jacobian's results (rows, m) of arguments (columns, m)."""
         assert self._anew is not None
         found = self._anew(
-            arguments[:2].T, arguments[2], *arguments[len(LAUNCH_NAMES) :], delta=arguments[3],
-            decel=arguments[4], radius=arguments[5],
+            arguments[:2].T, arguments[2], *arguments[len(LAUNCH_NAMES) :],
+            **dict(zip(self.JACOBIAN_COLUMNS[3:6], arguments[3:6], strict=True)),
         )  # fmt: skip
         return np.stack([getattr(found, name) for name in self.JACOBIAN_ROWS])
 

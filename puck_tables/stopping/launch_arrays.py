@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import run_chunks, usable_cores
+from puck_tables._core.fields import Unsaid
 from puck_tables._core.real import broadcast, finite_array, real_view, velocity_array
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
@@ -26,7 +27,7 @@ _UNITS = {"spin": "rad/s", "delta": "units of 2 f h / r", "decel": "m/s^2", "rad
 TOO_LARGE = (
     "velocity, spin, radius and decel give a motion too large for floating point: use larger units"
 )
-_NUMBERS = frozenset((float, int))
+_NUMBERS = frozenset((float, int, Unsaid))
 
 Columns = tuple[FloatArray, FloatArray, int, FloatArray, FloatArray, FloatArray, FloatArray]
 

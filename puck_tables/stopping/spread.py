@@ -24,7 +24,8 @@ _MOST_SAMPLES = 10**9  # launches: more is refused by name
 _AT_ONCE = 1 << 20  # samples in memory
 _TRUSTED = 0.05  # of a deviation
 _NOISE = 4.0  # deviations of what samples themselves scatter by
-_LOWEST = {"delta": 0.0, "decel": 0.0, "radius": 0.0, "time": 0.0}
+_LOWEST = dict.fromkeys(("delta", "decel", "radius", "friction", "height", "time"), 0.0)
+_ABOVE = ("decel", "radius", "friction")  # their lowest
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -200,7 +201,7 @@ def _root(covariance: npt.ArrayLike, count: int, shape: tuple[int, ...]) -> Floa
 def _refuse_outside(tried: FloatArray, columns: tuple[str, ...], highest: float) -> None:
     for name, row in zip(columns, tried, strict=True):
         low = row.min()
-        if (name in ("decel", "radius") and low <= 0.0) or low < _LOWEST.get(name, -np.inf):
+        if (name in _ABOVE and low <= 0.0) or low < _LOWEST.get(name, -np.inf):
             outside = low
         elif name == "delta" and row.max() > highest:
             outside = row.max()

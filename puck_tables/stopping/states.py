@@ -19,7 +19,15 @@ from puck_tables.io.dataset import Dataset, variable
 from puck_tables.motion.body import UnitPuck, body_of, plain_up_to
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED, SPIN, STATE_ROWS
 from puck_tables.result import Result
+from puck_tables.stopping.by_friction import (
+    DEFAULT_DECEL,
+    DEFAULT_DELTA,
+    DEFAULT_GRAVITY,
+    DEFAULT_HEIGHT,
+    delta_and_decel,
+)
 from puck_tables.stopping.jacobian import (
+    FRICTION_NAMES,
     MOMENT_NAMES,
     STATE_NAMES,
     Differentiated,
@@ -57,10 +65,10 @@ class States(Differentiated, Result):
     _wanted: tuple[FloatArray, npt.NDArray[np.int64]] | None = None  # launches (6, m), and which
     _anew: Callable[..., Any] | None = None
     _highest: float = 1.0
+    JACOBIAN_COLUMNS: tuple[str, ...] = MOMENT_NAMES
 
     picture: ClassVar[str] = "places"
     JACOBIAN_ROWS: ClassVar[tuple[str, ...]] = STATE_NAMES
-    JACOBIAN_COLUMNS: ClassVar[tuple[str, ...]] = MOMENT_NAMES
 
     def __repr__(self) -> str:
         return f"States({self.time.size} states of shape {self.time.shape})"
@@ -143,9 +151,12 @@ def states(
     spin: npt.ArrayLike,
     time: npt.ArrayLike,
     *,
-    delta: npt.ArrayLike = 0.5,
-    decel: npt.ArrayLike = 1.0,
+    delta: npt.ArrayLike = DEFAULT_DELTA,
+    decel: npt.ArrayLike = DEFAULT_DECEL,
     radius: npt.ArrayLike = 1.0,
+    friction: npt.ArrayLike | None = None,
+    height: npt.ArrayLike = DEFAULT_HEIGHT,
+    gravity: float = DEFAULT_GRAVITY,
     table: StopTable | None = None,
     pressure: str | Law = "uniform",
     gyration: float = HOMOGENEOUS,
@@ -164,6 +175,9 @@ def states(
         to 1.
     decel : array_like (…), fg, m/s², > 0
     radius : array_like (…), m, > 0
+    friction, height : array_like (…), Coulomb's coefficient f > 0 and the height h ≥ 0, m
+        In place of ``delta`` and ``decel``: δ = 2fh/r and fg follow with ``gravity``, m/s², a
+        number.  Derivatives are then by friction and height.
     table : Table of stops, optional
         The default one if left out.
     pressure, gyration
@@ -229,6 +243,7 @@ def states(
             raise InputError("stop tables are of a homogeneous puck under uniform pressure")
         highest = UPPER_DELTA
     chosen = StopTable.shipped() if table is None else table
+    delta, decel, by = delta_and_decel(delta, decel, radius, friction, height, gravity)
     launches = launches_of(velocity, spin, delta, decel, radius)
     times = real_view("time", time, "s")
     all_plain = launches.tallest <= highest
@@ -264,11 +279,14 @@ def states(
         told = _explained(int(plain.sum()), int((~plain).sum()))
     if slopes is None:
         return states_in(found, moments, launches, which, shape, told)
+    rows, names = launches.matrix, MOMENT_NAMES
+    how: dict[str, Any] = {"table": table, "pressure": pressure, "gyration": gyration}
+    if by is not None:
+        rows = by.chained(launches, slopes, each_of(which, moments.size))
+        names, how["gravity"] = (*FRICTION_NAMES, "time"), by.gravity
     return states_in(
         found, moments, launches, which, shape, told, slopes.reshape(*shape, *slopes.shape[1:]),
-        (launches.matrix, which),
-        partial(states, table=table, pressure=pressure, gyration=gyration, threads=threads),
-        math.inf if bodies else 1.0,
+        (rows, which), partial(states, threads=threads, **how), math.inf if bodies else 1.0, names,
     )  # fmt: skip
 
 

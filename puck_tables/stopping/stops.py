@@ -20,7 +20,16 @@ from puck_tables.io.dataset import Dataset, variable
 from puck_tables.motion.puck_spec import ROUND_ONLY
 from puck_tables.result import Result
 from puck_tables.stopping.base_solver import BaseSolver
+from puck_tables.stopping.by_friction import (
+    DEFAULT_DECEL,
+    DEFAULT_DELTA,
+    DEFAULT_GRAVITY,
+    DEFAULT_HEIGHT,
+    ByFriction,
+    delta_and_decel,
+)
 from puck_tables.stopping.jacobian import (
+    FRICTION_NAMES,
     LAUNCH_NAMES,
     STOP_NAMES,
     Differentiated,
@@ -53,12 +62,13 @@ class Stops(Differentiated, Result):
 
     picture: ClassVar[str] = "places"
     JACOBIAN_ROWS: ClassVar[tuple[str, ...]] = STOP_NAMES
-    JACOBIAN_COLUMNS: ClassVar[tuple[str, ...]] = LAUNCH_NAMES
+    JACOBIAN_COLUMNS: tuple[str, ...] = LAUNCH_NAMES
     _told: dict[str, Any]  # of results that were pickled
 
     def __init__(
         self, solver: SolverPerHeight | BaseSolver, launches: Launches, threads: int | None,
         jacobian: FloatArray | None, anew: Callable[..., Stops] | None, highest: float,
+        by: ByFriction | None = None,
     ) -> None:  # fmt: skip
         time, place, status, self._mark, self._rest = solver.first(launches, threads)
         self._solver: SolverPerHeight | BaseSolver | None = solver
@@ -71,6 +81,9 @@ class Stops(Differentiated, Result):
             jacobian[status != 0] = np.nan
             self._jacobian = jacobian.reshape(*launches.shape, *jacobian.shape[1:])
             self._arguments, self._anew, self._highest = launches.matrix, anew, highest
+            if by is not None:
+                self._arguments = by.chained(launches, jacobian)
+                self.JACOBIAN_COLUMNS = FRICTION_NAMES
 
     def __repr__(self) -> str:
         return f"Stops({self.status.size} launches of shape {self.status.shape}, by {self.method})"
@@ -166,9 +179,12 @@ def stop(
     velocity: npt.ArrayLike,
     spin: npt.ArrayLike = 0.0,
     *,
-    delta: npt.ArrayLike = 0.5,
-    decel: npt.ArrayLike = 1.0,
+    delta: npt.ArrayLike = DEFAULT_DELTA,
+    decel: npt.ArrayLike = DEFAULT_DECEL,
     radius: npt.ArrayLike = 1.0,
+    friction: npt.ArrayLike | None = None,
+    height: npt.ArrayLike = DEFAULT_HEIGHT,
+    gravity: float = DEFAULT_GRAVITY,
     tol: float = DEFAULT_TOL,
     method: str | None = None,
     table: ResultantTable | StopTable | None = None,
@@ -189,6 +205,9 @@ def stop(
         a second to prepare, at most 500 of them; the others are looked up as if they were alone.
     decel : array_like (…), fg, m/s², > 0
     radius : array_like (…), m, > 0
+    friction, height : array_like (…), Coulomb's coefficient f > 0 and the height h ≥ 0, m
+        In place of ``delta`` and ``decel``: δ = 2fh/r and fg follow with ``gravity``, m/s², a
+        number.  Derivatives are then by friction and height.
     tol : float
         Largest error in units of Q/(fg) (time) and Q²/(fg) (place), Q = hypot(v, rω); 1e-13 to
         0.01. The cheapest method whose measured error is below it is taken; ``explain()`` of the
@@ -201,7 +220,7 @@ def stop(
         As :class:`puck_tables.Puck`.
     jacobian : bool
         Whether derivatives are wanted too: of stop_time, stop_x, stop_y, path_length and body_angle
-        by vx, vy, spin, delta, decel and radius, in this order.
+        by vx, vy, spin, delta, decel and radius, in this order, as ``JACOBIAN_COLUMNS`` has it.
     threads : int, optional
         How many share the work: as many as the process may use cores, if left out.  The numbers do
         not depend on it, to the last bit.
@@ -242,10 +261,15 @@ def stop(
     ([1.395088, 4.000189], 'look-up')
     >>> float(stop((1.0, 0.0), 5.0, jacobian=True).derivative("stop_y", "delta").round(6))
     -0.310273
+    >>> slider = {"radius": 0.04, "friction": 0.2, "height": 0.05, "gravity": 10.0}
+    >>> found = stop((1.0, 0.0), 5.0, **slider, jacobian=True)
+    >>> round(float(found.stop_time), 6), float(found.derivative("stop_x", "friction").round(6))
+    (0.515885, -1.26231)
     """
     checked_threads(threads)
     checked_flag("jacobian", jacobian)
     solver = SolverPerHeight(pressure, gyration, tol, method, table)
+    delta, decel, by = delta_and_decel(delta, decel, radius, friction, height, gravity)
     launches = launches_of(velocity, spin, delta, decel, radius)
     if jacobian:
         launches.refuse_bad()
@@ -259,5 +283,7 @@ def stop(
         slopes = stop_jacobians(launches, plain, bodies, known, threads)
         highest = math.inf if bodies else 1.0
         how: dict[str, Any] = {"method": method, "table": table, "pressure": pressure}
+        if by is not None:
+            how["gravity"] = by.gravity
         anew = partial(stop, tol=tol, gyration=gyration, threads=threads, **how)
-    return Stops(solver, launches, threads, slopes, anew, highest)
+    return Stops(solver, launches, threads, slopes, anew, highest, by)
