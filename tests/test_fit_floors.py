@@ -80,14 +80,6 @@ def test_a_law_by_its_name_holds_however_fast_the_puck_slips(law):
     assert np.abs(law_named(law, 0.1, 0.2, 0.03)(u) - 0.1 - 0.1 * fast).max() < 3e-4
 
 
-def test_a_law_that_changes_only_at_slow_slips():
-    track = film(5, lambda u: 0.1 + 0.08 * np.exp(-u / 0.1), v=2.0, spin=50.0, frames=200)
-    result = pt.fit(track, PUCK, free=["friction", *LAW_NUMBERS], law="stribeck", keep_all=True)
-    for name, value in (("friction", 0.1), ("friction_rest", 0.18), ("law_speed", 0.1)):
-        assert near(result[name], value), (name, result[name])
-    assert result["law_speed"].error < 0.02
-
-
 @pytest.mark.parametrize("how", [{}, {"push": (0.2, 0.1)}, {"belt": (0.4, -0.3)}, {"drag": 0.5}])
 @pytest.mark.parametrize(("v", "spin"), [(1.6, 35.0), (0.3, 60.0), (1.2, 8.0)])
 def test_motions_and_their_slopes_are_those_of_the_judge(how, v, spin):
