@@ -45,9 +45,9 @@ def export(
     puck export --language c --base box:0.2x0.1 --what wrench -o box.c
 
     With --scene it plays a board, as World does in Python (strike, place, drive, advance, state,
-    copy): engine and scene in WebAssembly, for browsers and Node, or a header in C, and beside it a
-    static library of machine code, for C++, Rust and C# as well.  The same calls give the same bits
-    in all of them.
+    copy): engine and scene in WebAssembly for browsers and Node, beside it types for TypeScript, or
+    a header in C, beside it a static library of machine code, for C++, Rust and C# as well.  The
+    same calls give the same bits in all of them.
 
     \b
     puck export --language js --scene carrom-break -o carrom.js
@@ -73,7 +73,7 @@ def _export_board(
     ctx: click.Context, language: str, target: str | None, chosen: SceneChoice, out: Outputs
 ) -> None:
     """Write what plays the board of a scene."""
-    from puck_tables.export.board_source import export_board, library_file
+    from puck_tables.export.board_source import companion_path, export_board
     from puck_tables.world.scene import Scene
 
     if language not in ("c", "js"):
@@ -81,11 +81,10 @@ def _export_board(
     tables = scene_tables(ctx, chosen, ("language", "target"))
     assert out.output is not None
     name = re.sub(r"\W", "_", out.output.stem, flags=re.ASCII)
-    beside = library_file(out.output, language, name)
+    beside = companion_path(out.output, language, name)
     out.prepare(*chosen.reads(tables), others=(beside,), saved=False)
     scene = Scene.from_tables(tables, chosen.name)
     source = export_board(scene, language, target=target, name=name)
     click.echo(repr(source), err=True)
     out.deliver(source)
-    if beside is not None:
-        note(beside)
+    note(beside)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -11,6 +12,7 @@ import numpy as np
 import pytest
 
 import puck_tables as pt
+from puck_tables.results import BoardSource
 
 WITH_TOOLS = pytest.mark.skipif(shutil.which("node") is None, reason="no Node here")
 # what is done to both, one after the other: a name, and what it is given
@@ -73,7 +75,7 @@ const refused = (call) => { try { call(); } catch (error) { return String(error)
              time: board.time, state: rows(board) };
   });
   const again = start.copy();
-  for (const [name, ...given] of steps) again[name](...given);
+  const events = steps.flatMap(([name, ...given]) => again[name](...given) ?? []);
   const same = JSON.stringify(rows(again)) === JSON.stringify(rows(board));
   const fresh = start.copy(), before = JSON.stringify(rows(fresh));
   const refusals = [
@@ -94,7 +96,15 @@ const refused = (call) => { try { call(); } catch (error) { return String(error)
   refusals.push(refused(() => squeezing.advance(0.2)));
   const unchanged = before === JSON.stringify(rows(fresh));
   const back = gone.state()[5].inPlay, names = board.names;
-  console.log(JSON.stringify({ found, same, unchanged, back, refusals, names }));
+  const kind = (one) => Array.isArray(one) ? kind(one[0]) + "[]" : typeof one;
+  const kinds = (one) => JSON.parse(JSON.stringify(one, (key, its) => key ? kind(its) : its));
+  const methods = Object.entries(Object.getOwnPropertyDescriptors(Object.getPrototypeOf(board)));
+  const typed = {
+    puckBoard: kinds(puckBoard), State: board.state().map(kinds), Event: events.map(kinds),
+    Scene: kinds(puckBoard.scene), Board: Object.fromEntries(methods.slice(1).map(
+      ([name, { value }]) => [name, value ? value.length : kind(board[name])])),
+  };
+  console.log(JSON.stringify({ found, same, unchanged, back, refusals, names, typed }));
 })();
 """
 
@@ -107,7 +117,7 @@ def in_node(tmp_path_factory: pytest.TempPathFactory) -> dict[str, object]:
     Path(folder, "host.cjs").write_text(HOST)
     command = ["node", "host.cjs", json.dumps(STEPS)]
     ended = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=True)
-    return json.loads(ended.stdout)
+    return {"types": (folder / "board.d.ts").read_text(), **json.loads(ended.stdout)}
 
 
 @pytest.mark.thorough
@@ -141,6 +151,41 @@ def test_copies_go_on_by_themselves_and_refusals_change_nothing(in_node: dict):
              "mallet, which is driven, squeezes queen"]  # fmt: skip
     for word, sentence in zip(words, in_node["refusals"], strict=True):
         assert word in sentence
+
+
+def declared(types: str, name: str) -> dict[str, str | int]:
+    """What a .d.ts says of a name: of a method how many arguments it must have, else the type."""
+    within = re.search(rf" {name} {{(.*?)(?:}}\n|interface)", types, re.DOTALL)
+    text = re.sub(r"//.*|/\*\*.*?\*/", "", within[1]).replace("function ", "")
+    methods = {called: len(re.findall(r"\w: ", given))
+               for called, given in re.findall(r"(\w+)\((.*?)\):", text)}  # fmt: skip
+    return methods | dict(re.findall(r"(\w+)\??: ([^;]+);", re.sub(r"\w+\(.*", "", text)))
+
+
+@pytest.mark.thorough
+@WITH_TOOLS
+def test_its_types_are_what_there_is(in_node: dict):
+    """Names, types and arguments of the .d.ts beside it, as Node finds them."""
+    types, typed = in_node["types"], in_node["typed"]
+    assert declared(types, "puckBoard") == {"load": 0, "scene": "Scene"}
+    assert typed["puckBoard"] == {"load": "function", "scene": "object"}
+    assert declared(types, "Board") == typed["Board"]
+    for name in ("State", "Event"):
+        assert typed[name] and all(one == declared(types, name) for one in typed[name])
+    assert {**declared(types, "Scene"), "parts": "object"}.items() <= typed["Scene"].items()
+    strike, place = (", ".join(declared(types, name)) for name in ("Strike", "Place"))
+    assert f"an object of {strike}, got" in in_node["refusals"][9]
+    assert in_node["refusals"][10].endswith(f"there are {place}")
+
+
+def test_types_go_beside_it_or_nothing_is_written(tmp_path: Path):
+    board = BoardSource("text", "", (), companion=b"types")
+    (tmp_path / "a.d.ts").touch()
+    with pytest.raises(pt.PuckError, match=r"a\.d\.ts exists already"):
+        board.save(tmp_path / "a.js")
+    board.save(tmp_path / "b.mjs")
+    written = {path.name: path.read_text() for path in tmp_path.iterdir()}
+    assert written == {"a.d.ts": "", "b.mjs": "text", "b.d.mts": "types"}
 
 
 def test_what_moves_with_its_floor_is_refused():

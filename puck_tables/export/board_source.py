@@ -53,7 +53,7 @@ class BoardSource:
     pucks : their names
     language : "js" or "c"
     name : of the scene in C, before ``_scene``, and of its library
-    library : its content; of JavaScript nothing
+    companion : what the file beside it holds: the library, or of JavaScript the types
     """
 
     text: str
@@ -61,19 +61,20 @@ class BoardSource:
     pucks: tuple[str, ...]
     language: str = "js"
     name: str = ""
-    library: bytes = field(default=b"", repr=False)
+    companion: bytes = field(default=b"", repr=False)
 
     def __repr__(self) -> str:
         title = f"{self.title}, " if self.title else ""
         pucks = counted(len(self.pucks), "puck")
-        return f"BoardSource({title}{pucks}, {len(self.text) + len(self.library)} bytes)"
+        return f"BoardSource({title}{pucks}, {len(self.text) + len(self.companion)} bytes)"
 
     def save(self, path: str | Path, overwrite: bool = False) -> None:
-        """Write the file, and beside a header the library.
+        """Write the file, and beside it the library of a header, or types for TypeScript.
 
         Parameters
         ----------
-        path : ending in .js, .mjs or .cjs, or of a header in .h: beside it goes libNAME.a
+        path : ending in .js, beside it goes .d.ts (.mjs, .cjs: .d.mts, .d.cts), or of a header in
+            .h, beside it libNAME.a
         overwrite : whether existing files may be replaced
 
         Raises
@@ -84,19 +85,19 @@ class BoardSource:
             If a file exists or cannot be written.
         """
         instance("path", path, str, Path)
-        beside = library_file(path, self.language, self.name)
+        beside = companion_path(path, self.language, self.name)
         check_target(path, overwrite)
-        if beside is not None:
-            write_bytes(beside, self.library, overwrite)
+        write_bytes(beside, self.companion, overwrite)
         write_bytes(path, self.text.encode(), overwrite)
 
 
-def library_file(path: str | Path, language: str, name: str) -> Path | None:
-    """Where the library of a header goes; a file is refused whose ending is not its language's."""
+def companion_path(path: str | Path, language: str, name: str) -> Path:
+    """Where library or types go; a file is refused whose ending is not its language's."""
     checked_ending(path, language)
-    if language != "c":
-        return None
-    if Path(path).suffix != ".h":
+    ending = Path(path).suffix
+    if language == "js":
+        return Path(path).with_suffix(".d" + ending.replace("js", "ts"))
+    if ending != ".h":
         raise InputError(f"{path}: a board in C is a header, which ends in .h, and a library")
     return Path(path).with_name(f"lib{name}.a")
 
@@ -169,7 +170,8 @@ def export_board(
         "puck": _as_json(next(iter(free), board.names[0])), "scene": _as_json(described),
         "code": code,
     }  # fmt: skip
-    return BoardSource(filled("board.js", parts), scene.title, board.names)
+    types = filled("board.d.ts", {}).encode()
+    return BoardSource(filled("board.js", parts), scene.title, board.names, companion=types)
 
 
 def _as_json(value: Any) -> str:
