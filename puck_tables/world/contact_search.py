@@ -64,7 +64,9 @@ from puck_tables.world.separation import stays_apart
 
 OUTSIDE = 1e-9  # of the radius
 QUIET = 1e-12  # of the scale of speeds: an approach as slow is none
-HARDLY = 1e-11  # of the scales of speeds and accelerations: as good as none, of what touches
+# of the scales of speeds and accelerations: as good as none, of what touches; discs that part
+# begin to with an error of it, and meet only where it has brought them nearer than rounding
+HARDLY = 1e-11
 MOST_LOOKS = 20_000  # at one pair in a row: then others have their turn
 PATIENCE = 8  # looks, before those who go beside each other are bounded closer
 
@@ -274,11 +276,12 @@ def next_contact(
         left = distance_left(kind, segment, discs[i], one, t)
         if gap > (left + distance_left(other, second, discs[j], two, t)) * (1.0 + 1e-9):
             return math.inf
+        hardly = rate >= -HARDLY * engine.scale[0] and gap >= -rounded
         if gap <= rounded:
-            if rate < -QUIET * engine.scale[0]:
+            if rate < -QUIET * engine.scale[0] and not hardly:
                 return t
             step = max(step, moment_there(rounded, rate, accel, t))
-        if look >= PATIENCE:
+        if look >= PATIENCE or (gap <= rounded and rate < 0.0):
             nx, ny, more = dx / size, dy / size, max(gap, rounded)
             longer = stays_apart(engine, i, j, t, more, nx, ny, 0.0, False, room, one, two)
             step = max(step, longer)
