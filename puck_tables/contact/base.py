@@ -274,6 +274,23 @@ class Base:
             )
 
     @property
+    def is_under_centre(self) -> bool:
+        """Whether some of it lies right under the centre of mass: not in a hole, not between feet.
+
+        Examples
+        --------
+        >>> Base.box(0.2, 0.1).is_under_centre, Base.annulus(0.1, 0.05).is_under_centre
+        (True, False)
+        """
+        (x, y), around = self.middle, 0
+        for outline in self.outlines:
+            for (px, py), (qx, qy) in zip(outline, (*outline[1:], outline[0]), strict=True):
+                if (py > y) != (qy > y):
+                    around += px + (y - py) / (qy - py) * (qx - px) > x
+        around += sum(math.dist((x, y), disc[:2]) < disc[2] for disc in self.discs)
+        return around % 2 == 1
+
+    @property
     def _pressures(self) -> tuple[FloatArray, FloatArray]:
         """At its outermost points the pressure, and what a moment N x of the load adds to it."""
         area, first, second = self.about_centre

@@ -146,9 +146,18 @@ def pressure_on(base: FloatArray, sums: Sums) -> tuple[float, float, float]:
 @inlined
 def pressure_at(base: FloatArray, mx: float, my: float) -> tuple[float, float, float]:
     """A, b_x and b_y of a + b·x at rest; the load stands (mx, my), m, from the centre of mass."""
-    sx, sy, area = base[FIRST_X], base[FIRST_Y], base[AREA]
-    xx, xy = base[SECOND_XX] - sx * sx / area, base[SECOND_XY] - sx * sy / area
-    yy = base[SECOND_YY] - sy * sy / area
+    return pressure_over(
+        base[AREA], base[FIRST_X], base[FIRST_Y], base[SECOND_XX], base[SECOND_XY],
+        base[SECOND_YY], mx, my,
+    )  # fmt: skip
+
+
+@inlined
+def pressure_over(
+    area: float, sx: float, sy: float, xx: float, xy: float, yy: float, mx: float, my: float
+) -> tuple[float, float, float]:
+    """A, b_x and b_y of a + b·x over any part of which ∫ dA, ∫ x dA and ∫ x x dA are known."""
+    xx, xy, yy = xx - sx * sx / area, xy - sx * sy / area, yy - sy * sy / area
     px, py = mx - sx / area, my - sy / area
     turn = 1.0 / (xx * yy - xy * xy)
     bx, by = turn * (yy * px - xy * py), turn * (xx * py - xy * px)

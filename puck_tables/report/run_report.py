@@ -37,9 +37,7 @@ def report(run: Run) -> str:
     steps = f", {run.steps} steps" if run.steps else ""
     lines |= {"error": _error(run), "model": run.model + steps}
     if any(event.what == "overhang" for event in run.events):
-        from puck_tables.scene.acting import OVERHANG
-
-        lines["overhang"] = OVERHANG
+        lines["overhang"] = _overhang(run)
     if run.scene.lateral.strength != 0.0:
         there = [lines["lateral"]] if "lateral" in lines else []
         lines["lateral"] = "; ".join([*there, _EMPIRICAL])
@@ -70,6 +68,18 @@ def _of_one(run: Run) -> dict[str, str]:
         "events": _some([f"{_event(event)} at {event.time:.6g} s" for event in run.main_events])
         or "none",
     }
+
+
+def _overhang(run: Run) -> str:
+    """How those are carried that come over an edge."""
+    from puck_tables.scene.acting import CARRIED_BY_REST, OVERHANG
+    from puck_tables.scene.map_of_floor import edges_under
+    from puck_tables.world.agreement import pucks_of
+
+    over = {event.puck for event in run.events if event.what == "overhang"}
+    pucks = zip(run.names, pucks_of(run.scene), strict=True)
+    cut = [len(edges_under(run.scene, puck)) > 0 for name, puck in pucks if name in over]
+    return "; ".join([CARRIED_BY_REST] * any(cut) + [OVERHANG] * (not all(cut)))
 
 
 def _of_all(run: Run) -> dict[str, str]:

@@ -14,6 +14,10 @@ OVERHANG = (
     "a rim comes over an edge; until its centre does, a puck is carried as if none of it hung in "
     "the air, which it is not: its motion from there on is a guess"
 )
+CARRIED_BY_REST = (
+    "what comes over an edge carries nothing: a base is pressed on what is left of it, linearly, "
+    "and stays level until its centre is over the edge, where it tips"
+)
 EMPIRICAL = (
     "The lateral force is empirical, as somebody fitted it: no dry friction over the contact "
     "explains it."

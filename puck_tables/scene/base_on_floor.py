@@ -35,6 +35,7 @@ from puck_tables.scene.floor_map import (
     BORDERS,
     CORNER,
     CORNERS,
+    EDGES,
     LAW,
     MIDDLE_X,
     MIDDLE_Y,
@@ -52,6 +53,7 @@ from puck_tables.scene.floor_map import (
     summed_load,
 )
 from puck_tables.scene.floor_map import REACH as PATCH_REACH
+from puck_tables.scene.over_edges import left_on_floor
 from puck_tables.scene.patches import distance_to
 
 _TWO_CUTS = 12  # times as many pieces as there were are after two cuts at most
@@ -255,7 +257,14 @@ def friction_of_base(
     c, s = math.cos(floor_map[ANGLE]), math.sin(floor_map[ANGLE])
     base = floor_map[int(floor_map[BASE]) :]
     one = floor_map[BORDERS] == 0.0 and floor_map[PATCHES] == 0.0 and floor_map[LAW] == 0.0
-    if one and is_uniform(base):
+    first, last, a, bx, by = 0, 0, 0.0, 0.0, 0.0
+    if floor_map[EDGES] > 0.0:
+        first, last, a, bx, by = left_on_floor(floor_map, 0.0, 0.0)
+    if last > first:
+        sums = contour_sums(base, floor_map, first, last, c * ux + s * uy, c * uy - s * ux, w)
+        load = floor_map[SHARE] * load_of(floor_map, 0)
+        a, bx, by = load * a, load * bx, load * by
+    elif one and is_uniform(base):
         sums = base_sums(base, c * ux + s * uy, c * uy - s * ux, w)
         a, bx, by = floor_map[SHARE] * load_of(floor_map, 0) / base[AREA], 0.0, 0.0
     else:
@@ -273,7 +282,15 @@ def friction_held(
     """∫ f p e dA and its moment, of the pressure that carries a moment (mx, my) of the load, m."""
     base = floor_map[int(floor_map[BASE]) :]
     c, s = math.cos(floor_map[ANGLE]), math.sin(floor_map[ANGLE])
-    sums = friction_sums(floor_map, c * ux + s * uy, c * uy - s * ux, w, 0.0)
-    a, bx, by = pressure_at(base, c * mx + s * my, c * my - s * mx)
+    sx, sy, tx, ty = c * ux + s * uy, c * uy - s * ux, c * mx + s * my, c * my - s * mx
+    first, last, a, bx, by = 0, 0, 0.0, 0.0, 0.0
+    if floor_map[EDGES] > 0.0:
+        first, last, a, bx, by = left_on_floor(floor_map, tx, ty)
+    if last > first:
+        load = floor_map[SHARE] * load_of(floor_map, 0)
+        sums = plus(NOTHING, load, contour_sums(base, floor_map, first, last, sx, sy, w))
+    else:
+        sums = friction_sums(floor_map, sx, sy, w, 0.0)
+        a, bx, by = pressure_at(base, tx, ty)
     x, y, torque = under_load(sums, a, bx, by)
     return c * x - s * y, s * x + c * y, torque

@@ -14,10 +14,10 @@ from puck_tables.kernels.compile import inlined
 
 # A ground, all in one array, which is quick to hand on: where the centre of the base is, the factor
 # on all friction now, what holds for all of it, how the base is turned, whether velocities of the
-# floor differ, and the one that states are relative to,
+# floor differ, the one that states are relative to, and how many edges cut the base,
 PLACE_X, PLACE_Y, SHARE, LEVER, ACROSS_X, ACROSS_Y, BORDERS, PATCHES = range(8)
-BASE, LAW, ROOM, ANGLE, BELTS, OVER_X, OVER_Y = range(8, 15)
-_HEAD = 15
+BASE, LAW, ROOM, ANGLE, BELTS, OVER_X, OVER_Y, EDGES = range(8, 16)
+_HEAD = 16
 # the places of its borders, f N between them as it is summed now, f N of all strips and then of all
 # patches where no factor changes it, the same with their factors, their velocities, where the law
 # over the slip speed begins by which their f goes (0: none; of such f N stands N), a row for each
@@ -25,7 +25,8 @@ _HEAD = 15
 # is that circle), and f N there now),
 MIDDLE_X, MIDDLE_Y, REACH, CORNER, CORNERS, LOAD = range(6)
 PATCH_COLUMNS = 6
-# the corners of all patches, from BASE on the base, from LAW on its laws of friction over the slip
+# the corners of all patches, and a row for each edge (its normal into the floor, its place along
+# it); from BASE on the base, from LAW on its laws of friction over the slip
 # speed, or the one by direction (0: it has none), and from ROOM on room to work.  That by direction
 # is f N along and across, the angle of the first, and 1: in the floor, or 0: in the body.
 AXES = 4
@@ -41,7 +42,9 @@ class FloorMap(NamedTuple):
     over N, m/N; ``laws``: its frictions f over the slip speed, each in one array
     (:func:`puck_tables.contact.law_moments.packed_law`), or the direction, where it depends on
     that; ``which`` (n + 1 + k,): of strips and patches the number of their law, −1: none, whose
-    load is N then; ``belts`` (n + 1 + k, 2): their velocities, m/s, none: all alike.
+    load is N then; ``belts`` (n + 1 + k, 2): their velocities, m/s, none: all alike; ``edges``
+    (e, 3): those beyond which the base is not carried, a unit normal into the floor and the place
+    along it, m.
     """
 
     across_x: float
@@ -54,6 +57,7 @@ class FloorMap(NamedTuple):
     laws: Sequence[FloatArray] = ()
     which: Sequence[int] = ()
     belts: FloatArray = np.empty((0, 2))
+    edges: FloatArray = np.empty((0, 3))
 
     def packed(self) -> FloatArray:
         """In one array."""
@@ -62,7 +66,7 @@ class FloorMap(NamedTuple):
         begins = np.zeros(len(whole))
         tables = [
             self.borders, self.loads, whole, whole, belts.ravel(), begins, self.patches.ravel(),
-            self.corners.ravel(),
+            self.corners.ravel(), self.edges.ravel(),
         ]  # fmt: skip
         at = _HEAD + sum(table.size for table in tables)
         law = at + self.base.size
@@ -72,9 +76,10 @@ class FloorMap(NamedTuple):
         head = [
             0.0, 0.0, 1.0, self.base[BASE_LEVER], self.across_x, self.across_y,
             len(self.borders), len(self.patches), at, law if self.laws else 0,
-            ends[-1], 0.0, float((belts != belts[0]).any()), *belts[0],
+            ends[-1], 0.0, float((belts != belts[0]).any()), *belts[0], len(self.edges),
         ]  # fmt: skip
-        room = np.zeros(room_to_clip(self.base))
+        cuts = len(self.edges) + 1  # each may double the pieces; there is room for three
+        room = np.zeros(room_to_clip(self.base) * 2 ** max(cuts - 3, 0))
         return np.concatenate([head, *tables, self.base, *self.laws, room]).astype(np.float64)
 
 
@@ -110,6 +115,13 @@ def corner_of(floor_map: FloatArray, number: int) -> tuple[float, float]:
     """A corner of a patch."""
     first = _patches_in(floor_map) + PATCH_COLUMNS * int(floor_map[PATCHES])
     return floor_map[first + 2 * number], floor_map[first + 2 * number + 1]
+
+
+@inlined
+def edge_of(floor_map: FloatArray, number: int) -> tuple[float, float, float]:
+    """The normal of an edge into the floor, and its place along it."""
+    at = int(floor_map[BASE]) - 3 * (int(floor_map[EDGES]) - number)
+    return floor_map[at], floor_map[at + 1], floor_map[at + 2]
 
 
 @inlined

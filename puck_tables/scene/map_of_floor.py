@@ -10,6 +10,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.base import Base
 from puck_tables.contact.law_moments import packed_law
 from puck_tables.kernels.base_friction import packed, packed_round
+from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.scene.by_speed import key_of, moments_of
 from puck_tables.scene.floor_map import LOAD, NO_GROUND, PATCH_COLUMNS, FloorMap
 from puck_tables.scene.floor_parts import (
@@ -19,19 +20,26 @@ from puck_tables.scene.floor_parts import (
     needs_sums,
 )
 from puck_tables.scene.floor_patches import corners_of
+from puck_tables.scene.over_edges import MOST_EDGES
 from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.scene.sides import line_of
+
+_NO_EDGES = np.empty((0, 3))
 
 
-def floor_map_of(scene: SceneSpec, normal: float, top: float = 0.0) -> FloatArray:
+def floor_map_of(
+    scene: SceneSpec, normal: float, top: float = 0.0, edges: FloatArray = _NO_EDGES
+) -> FloatArray:  # fmt: skip
     """All frictions of the floor of a scene, for its puck, packed; ``normal``: N.
 
-    ``top``: up to which slip speed its laws are looked at, m/s.
+    ``top``: up to which slip speed its laws are looked at, m/s; ``edges`` (e, 3): that cut the
+    base (:func:`edges_under`).
 
     Examples
     --------
     >>> from puck_tables import Floor, Puck, Scene, Strips
     >>> floor = Floor(strips=Strips((0.1,), (0.3, 0.1)))
-    >>> floor_map_of(Scene(Puck(0.04), floor), 2.0)[15:18].tolist()
+    >>> floor_map_of(Scene(Puck(0.04), floor), 2.0)[16:19].tolist()
     [0.1, 0.6, 0.2]
     """
     floor, puck = scene.floor, scene.puck
@@ -67,7 +75,31 @@ def floor_map_of(scene: SceneSpec, normal: float, top: float = 0.0) -> FloatArra
     if axes is not None:
         turns = float(axes.fixed_to == "floor")
         laws = [np.array([*np.multiply(normal, axes.friction), axes.direction, turns])]
-    return FloorMap(*there, base, laws, which, belts_of(floor)).packed()
+    return FloorMap(*there, base, laws, which, belts_of(floor), edges).packed()
+
+
+def edges_under(scene: SceneSpec, puck: PuckSpec) -> FloatArray:
+    """The edges (e, 3) beyond which a base is carried by what is left of it; none: it is not.
+
+    A unit normal into the floor and the place along it, m.  It is where what is left is pressed
+    linearly: a flat base that is given, with some of it right under the centre of mass, on a floor
+    of one coefficient.
+
+    Examples
+    --------
+    >>> from puck_tables import Edge, Puck, Scene
+    >>> puck = Puck(base="box:0.2x0.1", friction=0.3)
+    >>> scene = Scene(puck, edges=[Edge((0.5, 0.0), normal=(-1.0, 0.0))])
+    >>> edges_under(scene, puck).tolist()
+    [[-1.0, 0.0, -0.5]]
+    """
+    floor, shape = scene.floor, puck.shape
+    several = floor.strips is not None or bool(floor.patches) or bool(floor.law)
+    if several or floor.orthotropic is not None or shape is None or puck.height != 0.0:
+        return _NO_EDGES
+    if not shape.is_under_centre or len(scene.edges) > MOST_EDGES:
+        return _NO_EDGES
+    return np.array([line_of(edge) for edge in scene.edges]).reshape(-1, 3)
 
 
 def shape_under(scene: SceneSpec) -> Base | None:

@@ -35,8 +35,8 @@ class Event(NamedTuple):
     stick (it comes to rest on the floor), slip (it leaves that rest); impact; contact, which lasts;
     entry (its rim comes over a border, a patch or a painted line), exit (it has left it); line (its
     centre passes one); pocket or edge, where it leaves play; overhang, where its rim comes over an
-    edge (from there to the edge it is carried as if nothing of it hung in the air); launch; of a
-    world into which a hand reaches placed, removed, added, force.
+    edge (a flat base is then carried by what is left of it, any other as if nothing of it hung in
+    the air); launch; of a world into which a hand reaches placed, removed, added, force.
 
     ``partner``: the puck, wall, post, arc, pocket, edge, border, patch or line that it meets, such
     as 'wall 0'; of stick and slip the floor, or the strip under its centre.  ``x``, ``y`` m: where;

@@ -26,7 +26,7 @@ from puck_tables.scene.floor_parts import (
 )
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ingredients import BySpeed, Regions, Surface, floor_velocity
-from puck_tables.scene.map_of_floor import floor_map_of, shape_under
+from puck_tables.scene.map_of_floor import edges_under, floor_map_of, shape_under
 from puck_tables.scene.over_time import largest_factors
 from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.regions import axes_of, load_limit, of_one_shape, section_of
@@ -162,7 +162,9 @@ def _grounds(
     ``top``: up to which slip their laws are looked at, m/s.
     """
     grounds = [
-        floor_map_of(scene.alone(puck), normal_on(scene, puck), top) if sums else NO_GROUND
+        floor_map_of(scene.alone(puck), normal_on(scene, puck), top, edges_under(scene, puck))
+        if sums
+        else NO_GROUND
         for puck, sums in zip(pucks, summed, strict=True)
     ]
     size = max(map(len, grounds))  # what they end with is room to work

@@ -1,0 +1,137 @@
+"""A flat polygon over edges, judged: halves of planes cut it, scipy finds its pressure and motion.
+
+Friction is had in polar coordinates about the instantaneous centre, by Gauss's rule along
+every side in asinh of the way from where it is nearest, over its distance there.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy.integrate import solve_ivp
+from scipy.optimize import root
+
+from puck_tables._core.arrays import FloatArray
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(120)
+
+
+def beyond(corners: FloatArray, normal: FloatArray, place: float) -> FloatArray:
+    """The corners of what of a polygon has normal·x ≥ place."""
+    kept = []
+    gaps = corners @ normal - place
+    for k in range(len(corners)):
+        p, q, one, two = corners[k - 1], corners[k], gaps[k - 1], gaps[k]
+        if one * two < 0.0:
+            kept.append(p + one / (one - two) * (q - p))
+        if two >= 0.0:
+            kept.append(q)
+    return np.array(kept).reshape(-1, 2)
+
+
+def balance(corners: FloatArray, law: FloatArray) -> FloatArray:
+    """∫ p dA and ∫ p x dA of p = law·(1, x), by triangles and the middles of their sides."""
+    out = np.zeros(3)
+    for k in range(1, len(corners) - 1):
+        a, b, c = corners[0], corners[k], corners[k + 1]
+        area = 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+        for middle in ((a + b) / 2.0, (b + c) / 2.0, (c + a) / 2.0):
+            row = np.array([1.0, *middle])
+            out += area / 3.0 * (law @ row) * row
+    return out
+
+
+def pressed(corners: FloatArray, law: FloatArray) -> FloatArray:
+    """What of a polygon has p > 0."""
+    return corners if not law[1:].any() else beyond(corners, law[1:], -law[0])
+
+
+def pressure(corners: FloatArray) -> FloatArray:
+    """(a, b, c) of p = max(0, a + b x + c y) that bears a weight of 1 at the origin."""
+    size = math.sqrt(abs(balance(corners, np.array([1.0, 0.0, 0.0]))[0]))
+    corners = corners / size
+
+    def missed(law: FloatArray) -> FloatArray:
+        return balance(pressed(corners, law), law) - np.array([1.0, 0.0, 0.0])
+
+    def slopes(law: FloatArray) -> FloatArray:
+        part = pressed(corners, law)
+        return np.column_stack([balance(part, row) for row in np.eye(3)])
+
+    law = np.linalg.solve(slopes(np.array([1.0, 0.0, 0.0])), [1.0, 0.0, 0.0])
+    for method in ("hybr", "lm"):
+        law = root(missed, law, jac=slopes, method=method, tol=1e-13).x
+    assert np.abs(missed(law)).max() < 1e-10
+    return law / np.array([size**2, size**3, size**3])
+
+
+def friction(corners: FloatArray, law: FloatArray, v: FloatArray, w: float) -> FloatArray:
+    """Force and torque over f N of a polygon that slips at v + w × x."""
+    part = pressed(corners, law)
+    if abs(w) * np.abs(corners).max() < 1e-9 * np.hypot(*v):
+        load = balance(part, law)
+        way = v / np.hypot(*v)
+        return -np.array([*(load[0] * way), load[1] * way[1] - load[2] * way[0]])
+    centre = np.array([-v[1], v[0]]) / w
+    sign, force, torque = math.copysign(1.0, w), np.zeros(2), 0.0
+    there = law[0] + law[1:] @ centre
+    p = part - centre
+    for k in range(len(p)):
+        a, b = p[k - 1], p[k]
+        length = math.dist(a, b)
+        way = (b - a) / length
+        away, begin = (a[0] * way[1] - a[1] * way[0]), a @ way
+        if abs(away) < 1e-12 * length:
+            continue
+        low, high = np.arcsinh(np.array([begin, begin + length]) / abs(away))
+        y = low + 0.5 * (1.0 + _NODES) * (high - low)
+        s = abs(away) * np.sinh(y)
+        r = a + (s - begin)[:, None] * way
+        swept = away * abs(away) * np.cosh(y) * 0.5 * (high - low) * _WEIGHTS
+        far = np.hypot(*r.T)
+        e = np.column_stack([-r[:, 1], r[:, 0]]) / far[:, None]
+        slope = r @ law[1:] / far
+        force += (swept * (there / 2.0 + slope * far / 3.0)) @ e
+        torque += float(swept @ (there * far / 3.0 + slope * far * far / 4.0))
+    force = sign * force
+    torque = sign * torque + centre[0] * force[1] - centre[1] * force[0]
+    return -np.array([*force, torque])
+
+
+def under(corners: FloatArray, edges: list[FloatArray], state: FloatArray) -> FloatArray:
+    """Force and torque over f N on a polygon in a state x, y, angle, vx, vy, spin."""
+    c, s = math.cos(state[2]), math.sin(state[2])
+    left = corners @ np.array([[c, s], [-s, c]])
+    for nx, ny, place in edges:
+        left = beyond(left, np.array([nx, ny]), place - nx * state[0] - ny * state[1])
+    return friction(left, pressure(left), state[3:5], state[5])
+
+
+def slide(
+    corners: FloatArray, edges: list[FloatArray], grip: float, gyration: float, state: FloatArray
+) -> tuple[float, FloatArray]:
+    """When, and in which state, its centre is 4 mm from an edge, or it is at rest."""
+
+    def rates(_: float, y: FloatArray) -> FloatArray:
+        push = grip * under(corners, edges, y)
+        return np.array([*y[3:], push[0], push[1], push[2] / gyration**2])
+
+    def tips(_: float, y: FloatArray) -> float:
+        return min(nx * y[0] + ny * y[1] - place for nx, ny, place in edges) - 4e-3
+
+    def rests(_: float, y: FloatArray) -> float:
+        return math.hypot(y[3], y[4], gyration * y[5]) - 1e-4
+
+    tips.terminal = rests.terminal = True  # type: ignore[attr-defined]
+    run = solve_ivp(
+        rates,
+        (0.0, 5.0),
+        state,
+        method="DOP853",
+        rtol=1e-9,
+        atol=1e-11,
+        max_step=4e-3,
+        events=[tips, rests],
+    )
+    return float(run.t[-1]), run.y[:, -1]
