@@ -32,18 +32,13 @@ class ConstrainedMotion:
     Attributes
     ----------
     time : array (k,), s
-    position, velocity, acceleration : arrays (k, n, d)
-    multipliers : array (k, s)
-        λ; N where the coefficients a are unit vectors.
-    reaction : array (k, n, d), N
-        Σ λ a + μ x′, what the constraints do to each point.
-    matrix : array (k, s, n, d)
-        The coefficients a.
-    residual : float
-        Largest |Σ a·x′ + e| at the output times.
-    drift : float, m/s
-        Largest distance (rms of all points, weighted by mass) from the integrated velocity to the
-        admissible one.
+    position, velocity, acceleration, reaction : arrays (k, n, d), SI units
+        And Σ λ a + μ x′, what the constraints do to each point, N.
+    multipliers, matrix : arrays (k, s) and (k, s, n, d)
+        λ, N where the coefficients a are unit vectors; these a.
+    residual, drift : float
+        Largest |Σ a·x′ + e| at the output times; largest distance (rms of all points, weighted by
+        mass) from the integrated velocity to the admissible one, m/s.
     kinetic_energy, force_work, friction_work, support_work : arrays (k,), J
         Energy, and work since the first time: of the given forces, of friction Σ μ|x′|² (≤ 0
         where it brakes), and of moving supports, −∫ Σ λ e dt.
@@ -100,10 +95,10 @@ class ConstrainedMotion:
 
         NaN where the system has no C-displacements at any time, and nothing is said.
         """
-        found = []
-        for k in range(len(self.time)):
-            size = float(np.linalg.norm(self.reaction[k]))
-            works = np.tensordot(self.c_displacements(k), self.reaction[k], axes=2)
+        found = list[float]()
+        for k, reaction in enumerate(self.reaction):
+            size = float(np.linalg.norm(reaction))
+            works = np.tensordot(self.c_displacements(k), reaction, axes=2)
             found += [abs(float(work)) / size for work in works if size > 0.0]
         return max(found, default=float("nan"))
 
@@ -130,10 +125,6 @@ def constrained_motion(
         Local error of the integration, relative; 1e-13 to 0.01.
     until : callable (x, v, t) → float, optional
         The motion ends where it falls to zero; that state is then the last one reported.
-
-    Returns
-    -------
-    ConstrainedMotion
 
     Raises
     ------
