@@ -42,13 +42,13 @@ def disc_points(rings: int) -> FloatArray:
     >>> len(points), float((points**2).sum(axis=1).mean().round(12))  # ⟨ρ²⟩ = 1/2 on a disc
     (36, 0.5)
     """
-    rings, parts = whole("rings", rings, 1, MAX_RINGS), []
-    for k in range(1, rings + 1):
-        count = 4 * (2 * k - 1)
-        radius = math.sqrt(0.5 * ((k - 1) ** 2 + k**2)) / rings
-        angle = 2.0 * np.pi * (np.arange(count) + 0.5) / count
-        parts.append(radius * np.stack([np.cos(angle), np.sin(angle)], axis=-1))
-    return np.concatenate(parts)
+    rings = whole("rings", rings, 1, MAX_RINGS)
+    k = np.arange(1, rings + 1)
+    count = 4 * (2 * k - 1)
+    radius = np.repeat(np.sqrt(0.5 * ((k - 1) ** 2 + k**2)) / rings, count)
+    angle = np.concatenate([2.0 * np.pi * (np.arange(one) + 0.5) / one for one in count])
+    places = radius * np.stack([np.cos(angle), np.sin(angle)])
+    return np.ascontiguousarray(places.T)
 
 
 def pressures(points: FloatArray, slip: FloatArray, delta: float) -> FloatArray:
@@ -148,21 +148,16 @@ def patch_stop(
     Parameters
     ----------
     velocity, spin : array_like (2,), m/s; float, rad/s
+        InputError if the puck turns by more than some 1000 rad, or 1e6 over the number of patches.
     rings, delta, decel, radius
         As :func:`patch_system`.
     tol : float
-        Local relative error of the integration; 1e-13 to 0.01.
+        Local relative error of the integration; 1e-13 to 0.01, else AccuracyError.
 
     Returns
     -------
     float, array (2,)
         Stop time in s and place in m.
-
-    Raises
-    ------
-    InputError
-        If an argument is out of range, or the puck turns by more than some 1000 rad, or 1e6 over
-        the number of patches.
 
     References
     ----------

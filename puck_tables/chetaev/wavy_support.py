@@ -176,16 +176,10 @@ def asperity_motion(
     ----------
     asperity : Asperity
     x, speed : float, m and m/s
-        The place and x′, along the support, at the first of ``times``.
+        The place and x′, along the support, at the first of ``times``; finite, else InputError.
     times : array_like (k,), s
-        At least two, ascending.
-
-    Raises
-    ------
-    InputError
-        If a number is not finite or the times do not ascend.
-    AccuracyError
-        If 100 000 arcs do not reach the last time.
+        At least two, ascending, else InputError; AccuracyError if 100 000 arcs do not reach the
+        last.
 
     References
     ----------

@@ -119,7 +119,7 @@ def _integrated(stepping: Stepping, columns: FloatArray) -> Made:
 
 
 def _by_model(model: str) -> Made:
-    return _integrated(Stepping(RK4, 64.0, 1.0), as_table(model).columns)
+    return None, _integrated(Stepping(RK4, 64.0, 1.0), as_table(model).columns)[1]
 
 
 def _recorded(stepping: Stepping, columns: FloatArray) -> Made:
