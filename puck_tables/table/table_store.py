@@ -54,7 +54,7 @@ def fetch(stem: str, recipe: dict[str, Any], build: Callable[[], AnyTable]) -> A
                 if kept.metadata["command"] == command:
                     return cast(AnyTable, kept)
             say(f"{path} is damaged, or another table than its name says: it is built again")
-            path.rmdir() if path.is_dir() and not path.is_symlink() else path.unlink()
+            path.rmdir() if path.is_dir() and not path.is_symlink() else path.unlink(True)
         alike = folder.glob(f"{stem.split('-')[0]}-*{ENDING}")
         for one in sorted(alike, key=lambda one: one.stat().st_mtime)[: 1 - MOST_ALIKE or None]:
             one.unlink(missing_ok=True)
