@@ -48,7 +48,7 @@ def asperity(
     import numpy as np
 
     from puck_tables.chetaev.asperity_forces import asperity_curve
-    from puck_tables.chetaev.asperity_shape import Asperity
+    from puck_tables.chetaev.wavy_support import Asperity
     from puck_tables.motion.body import STANDARD_GRAVITY
 
     heavy = load / STANDARD_GRAVITY if mass is None else mass

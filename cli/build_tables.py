@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -84,7 +85,17 @@ def _wanted(kind: str, pressure: str | None, speed_law: Path | None) -> tuple[An
     if pressure in (None, "uniform"):
         return "uniform", kind, []
     from puck_tables.contact.laws import law_of
-    from puck_tables.table.table_store import file_stem
 
     law = law_of(str(pressure))
-    return law, file_stem(law.name), [f"--pressure {pressure}"]
+    return law, _file_stem(law.name), [f"--pressure {pressure}"]
+
+
+def _file_stem(name: str) -> str:
+    """A file name for what has this name.
+
+    Examples
+    --------
+    >>> _file_stem("annulus:0.8"), _file_stem("my stone.csv")
+    ('annulus-0.8', 'my-stone')
+    """
+    return re.sub(r"[^\w.+-]", "-", name.removesuffix(".csv"))

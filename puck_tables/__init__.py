@@ -59,7 +59,7 @@ if TYPE_CHECKING:
     from puck_tables.stopping.states import states
     from puck_tables.stopping.stops import stop
     from puck_tables.table.table import Table
-    from puck_tables.table.table_cache import table_for
+    from puck_tables.table.table_store import table_for
     from puck_tables.warming import warm_up
     from puck_tables.world.scene import Scene
     from puck_tables.world.world import World
@@ -97,7 +97,7 @@ _HOMES = {  # names of this package by the modules that hold them
     "stopping.states": "states",
     "stopping.stops": "stop",
     "table.table": "Table",
-    "table.table_cache": "table_for",
+    "table.table_store": "table_for",
     "warming": "warm_up",
     "world.scene": "Scene",
     "world.world": "World",

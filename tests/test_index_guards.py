@@ -25,7 +25,7 @@ from puck_tables.stopping.similarity_lookup import LAUNCH_COLUMNS, LAUNCH_ROWS
 from puck_tables.stopping.state_lookup import PUCK_ROWS, fill_states_at
 from puck_tables.table.friction_section import friction_section
 from puck_tables.table.resultant_table import ResultantTable
-from puck_tables.tradeoff.bicubic import fill_bicubic, graded_coefficients
+from puck_tables.tradeoff.resultant_methods import fill_bicubic, graded_coefficients
 
 WILD = np.array([
     np.nan, -np.nan, np.inf, -np.inf, 1e308, -1e308, 1e19, -1e19, 5e9, -5e9, -1.0, -5e-324, 0.0,

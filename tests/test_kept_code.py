@@ -15,7 +15,6 @@ from rarely import few
 
 from puck_tables._core.own_folder import _said, make_private, refuse_shared
 from puck_tables._core.sources import source_digest
-from puck_tables.errors import InputError
 from puck_tables.kernels import cache, kept_code
 from puck_tables.kernels.compile import kernel
 
@@ -160,7 +159,11 @@ def test_a_folder_below_one_like_tmp_is_used(tmp_path: Path):
 def test_the_users_cache_is_judged_alike(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
 ):
-    from puck_tables.table import table_cache, table_store
+    from click.testing import CliRunner
+    from puck_tables.cli.main import main
+    from puck_tables.cli.tables import kept_files
+
+    from puck_tables.table import table_store
 
     request.addfinalizer(cache.cache_folder.cache_clear)  # it may be asked here first
 
@@ -169,12 +172,13 @@ def test_the_users_cache_is_judged_alike(
     _said.clear()
     said: list[str] = []
     monkeypatch.setattr(table_store, "say", said.append)
-    assert table_cache.table_for("ring", 1e-4).tolerance == 1e-4
+    assert table_store.table_for("ring", 1e-4).tolerance == 1e-4
     assert "others may write" in said[0]
     assert list(tmp_path.iterdir()) == []
-    assert table_store.kept_files() == []
-    with pytest.raises(InputError, match="no table x is kept"):
-        table_store.remove(["x"])
+    assert kept_files() == []
+    refused = CliRunner().invoke(main, ["tables", "--remove", "x"])
+    assert refused.exit_code == 2
+    assert "no table x is kept" in refused.stderr
 
 
 def test_nothing_appears_beside_the_package_where_no_folder_will_do(tmp_path: Path):

@@ -108,7 +108,7 @@ def test_a_new_kind_is_built_saved_loaded_told_judged_and_kept(
         return WaveTable.build(complex(pitch, top), 1e-4)
 
     for asked in (pitch, pitch, 2.0 * pitch):
-        kept = fetch("wave", {"pitch": asked}, WaveTable, partial(build, asked))
+        kept = fetch("wave", {"pitch": asked}, partial(build, asked))
         assert kept.pitch == asked
     assert builds == [pitch, 2.0 * pitch]
     assert CliRunner().invoke(main, ["tables"]).stdout.count("waves") == 2

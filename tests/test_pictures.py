@@ -19,7 +19,7 @@ from rarely import few
 from scenes import simulate_scene, sweep_scene
 
 from puck_tables.chetaev.asperity_forces import asperity_curve
-from puck_tables.chetaev.asperity_shape import Asperity
+from puck_tables.chetaev.wavy_support import Asperity
 from puck_tables.errors import InputError, OutputError
 from puck_tables.motion import limit_ratio
 from puck_tables.plot import style

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 from puck_tables.cli.main import main
+from puck_tables.cli.tables import kept_files
 from pucks import simulate
 
 import puck_tables as pt
@@ -21,7 +22,7 @@ from puck_tables._core.own_folder import _said
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.cache import cache_folder
 from puck_tables.stopping import stop_section
-from puck_tables.table import table_cache, table_store
+from puck_tables.table import friction_section, table_store
 from puck_tables.table.resultant_table import ResultantTable
 
 RADII = np.linspace(0.0, 1.0, 5)
@@ -190,7 +191,7 @@ def test_no_home_at_all(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
     monkeypatch.setattr("os.path.expanduser", lambda path: path)
     assert table_store.tables_folder() is None
     assert pt.table_for("ring", accuracy=1e-4).tolerance == 1e-4
-    assert table_store.kept_files() == []
+    assert kept_files() == []
     assert list(tmp_path.iterdir()) == []
 
 
@@ -245,18 +246,18 @@ def test_progress_is_told():
 
 def test_the_friction_of_a_tall_puck_is_kept(kept: Path, monkeypatch: pytest.MonkeyPatch):
     built: list[float] = []
-    true = table_cache.friction_section
+    true = friction_section.friction_section
 
     def counted(law: pt.Law, delta: float, accuracy: float) -> pt.Table:
         built.append(delta)
         return true(law, delta, accuracy)
 
-    monkeypatch.setattr(table_cache, "friction_section", counted)
-    table_cache.friction_for.cache_clear()  # other tests have asked for the same
+    monkeypatch.setattr(friction_section, "friction_section", counted)
+    friction_section.friction_for.cache_clear()  # other tests have asked for the same
     first = simulate((1.0, 0.0), 5.0, delta=1.5, tol=1e-5)
     times = len(built)
     assert times == len(list(kept.iterdir())) > 0
-    table_cache.friction_for.cache_clear()  # as in another process
+    friction_section.friction_for.cache_clear()  # as in another process
     again = simulate((1.0, 0.0), 5.0, delta=1.5, tol=1e-5)
     assert len(built) == times
     assert again.stop_time == first.stop_time
@@ -265,9 +266,9 @@ def test_the_friction_of_a_tall_puck_is_kept(kept: Path, monkeypatch: pytest.Mon
     assert other.stop_time != first.stop_time
     listed = puck("tables").stdout
     assert listed.count("friction section") == len(list(kept.iterdir()))
-    monkeypatch.setattr(table_cache, "MOST_SECTIONS", 3)
+    monkeypatch.setattr(table_store, "MOST_ALIKE", 3)
     for delta in (1.1, 1.2, 1.3):
-        table_cache.friction_for(pt.law_of("uniform"), delta, 1e-4)
+        friction_section.friction_for(pt.law_of("uniform"), delta, 1e-4)
     assert sorted(path.name[:8] for path in kept.iterdir()) == ["tall-1.1", "tall-1.2", "tall-1.3"]
     simulate((1.0, 0.0), 5.0, delta=0.5, pressure="ring", tol=1e-5)
     assert "ring" not in puck("tables").stdout  # made in no time

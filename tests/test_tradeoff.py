@@ -19,15 +19,15 @@ from puck_tables.motion.bulk_stops import fill_stops
 from puck_tables.motion.tableaus import DORMAND_PRINCE, RK4
 from puck_tables.stopping.exact import exact_stops
 from puck_tables.stopping.stop_table import StopTable
-from puck_tables.tradeoff import (
-    body_methods,
-    measurement,
-    resultant_methods,
-    state_methods,
-    stop_methods,
+from puck_tables.tradeoff import body_methods, measurement, motion_methods, resultant_methods
+from puck_tables.tradeoff.resultant_methods import (
+    MODELS,
+    as_table,
+    fill_bicubic,
+    fill_model,
+    graded_coefficients,
 )
-from puck_tables.tradeoff.bicubic import fill_bicubic, graded_coefficients
-from puck_tables.tradeoff.literature_models import MODELS, as_table, fill_pade
+from puck_tables.tradeoff.scipy_methods import disc_by_patches, patch_script, scipy_stop
 from puck_tables.tradeoff.truth import Contender, Question, random_points
 
 
@@ -43,7 +43,7 @@ def test_errors_are_properties_of_the_ways_and_ship_as_measured():
     """Every look-up and every fifth contender measured again: the same to the digits shipped."""
     known = {(method.question, method.name): method for method in shipped_errors()}
     count = 0
-    for number, contender in enumerate(stop_methods.contenders()):
+    for number, contender in enumerate(motion_methods.contenders()):
         if contender.outsider or (contender.method != "look-up" and number % 5):
             continue
         if contender.question.name != "stop" or "float32" in contender.method:
@@ -56,7 +56,7 @@ def test_errors_are_properties_of_the_ways_and_ship_as_measured():
 
 def worst(contender: Contender) -> float:
     """The largest error at the judged inputs."""
-    run = contender.prepare(contender.build())
+    _, run = contender.make()
     return float(np.max(contender.question.errors(run(contender.question.inputs))))
 
 
@@ -75,8 +75,7 @@ def test_every_row_that_ships_can_be_measured_again():
     points = random_points(1000)
     contenders = [
         *resultant_methods.contenders(points),
-        *stop_methods.contenders(),
-        *state_methods.contenders(),
+        *motion_methods.contenders(),
         *body_methods.contenders(),
     ]
     rows = [(one.question.name, one.method, one.setting, one.outsider) for one in contenders]
@@ -197,8 +196,19 @@ def test_scripts_over_patches_err_by_thousandths_and_a_few_points_by_tenths():
     assert few > 0.1
 
 
+def test_what_one_would_write_stops_where_the_puck_does():
+    launch = 1.0, 0.0, 5.0, 1.0
+    stop = scipy_stop("DOP853", 1e-9, 1e-12, *launch)
+    assert stop == pytest.approx([4.000189, 2.257241, -0.308477], abs=5e-7)
+    assert disc_by_patches(*launch) == pytest.approx([4.0, 2.26, -0.31], abs=5e-3)
+    corners = 0.1 * np.array([[1.0, 1.0, -1.0, -1.0], [1.0, -1.0, 1.0, -1.0]])
+    script = patch_script(corners, np.full(4, 0.25), 0.1, 0.0, 10.0, np.ones_like)
+    assert script(1.0, 0.0, 0.0) == pytest.approx([0.1, 0.05, 0.0], abs=5e-4)  # v/J, v²/2J
+
+
 def test_models_of_the_literature():
     table = as_table("limit surface")
+    assert table.resultants(0.5 * np.pi, 0.0).spin == pytest.approx(4.0 / 3.0, abs=5e-10)
     launch = np.array([[1.0], [0.0], [0.0], [0.0], [1.0], [1.0]])
     out, status = np.empty((6, 1)), np.empty(1, np.int8)
     fill_stops(launch, DORMAND_PRINCE, 64.0, 1.0, table.columns, NO_SECTION, out, status)
@@ -208,11 +218,11 @@ def test_models_of_the_literature():
 def test_no_other_pade_is_better():
     """Of both numbers that are fitted, for the least worst error of ρ_∥ and of ρ_ω."""
     points = random_points(4000)
-    flat, (a, b) = points.some(points.inputs[1] == 0.0), MODELS["Pade, fitted"].args
+    flat, (a, b, _) = points.some(points.inputs[1] == 0.0), MODELS["Pade, fitted"].args
     phi, out = np.ascontiguousarray(flat.inputs[0]), np.empty(flat.truth.shape)
 
     def off(row: int, a: float, b: float) -> float:
-        fill_pade(a, b, phi, out)
+        fill_model(a, b, False, phi, out)
         return float(np.abs(out[row] - flat.truth[row]).max())
 
     for change in (0.999, 1.001):
@@ -271,8 +281,7 @@ def test_every_round_runs_every_way(monkeypatch: pytest.MonkeyPatch):
 
     all_contenders = resultant_methods.contenders
     monkeypatch.setattr(measurement.resultant_methods, "contenders", few)
-    monkeypatch.setattr(measurement.stop_methods, "contenders", lambda: iter(()))
-    monkeypatch.setattr(measurement.state_methods, "contenders", lambda: iter(()))
+    monkeypatch.setattr(measurement.motion_methods, "contenders", lambda: iter(()))
     monkeypatch.setattr(measurement.body_methods, "contenders", lambda: iter(()))
     seen: list[tuple[int, int]] = []
     result = measurement.measure(

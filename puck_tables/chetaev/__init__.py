@@ -6,19 +6,17 @@ from puck_tables._core.lazy import lazily
 
 if TYPE_CHECKING:
     from puck_tables.chetaev.asperity_forces import AsperityCurve, asperity_curve
-    from puck_tables.chetaev.asperity_shape import Asperity
     from puck_tables.chetaev.motion import ConstrainedMotion, constrained_motion
     from puck_tables.chetaev.patch_puck import patch_stop, patch_system
     from puck_tables.chetaev.system import ConstrainedSystem
-    from puck_tables.chetaev.wavy_support import AsperityMotion, asperity_motion
+    from puck_tables.chetaev.wavy_support import Asperity, AsperityMotion, asperity_motion
 
 _HOMES = {
     "asperity_forces": "AsperityCurve asperity_curve",
-    "asperity_shape": "Asperity",
     "motion": "ConstrainedMotion constrained_motion",
     "patch_puck": "patch_stop patch_system",
     "system": "ConstrainedSystem",
-    "wavy_support": "AsperityMotion asperity_motion",
+    "wavy_support": "Asperity AsperityMotion asperity_motion",
 }
 
 __all__ = [

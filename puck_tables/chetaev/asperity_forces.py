@@ -32,8 +32,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import checked_progress, finite_array, instance, shown
-from puck_tables.chetaev.asperity_shape import Asperity
-from puck_tables.chetaev.wavy_support import SlideOrFlight, landing
+from puck_tables.chetaev.wavy_support import Asperity, SlideOrFlight, landing
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset, variable
@@ -69,21 +68,13 @@ class AsperityCurve(Result):
     Attributes
     ----------
     asperity : Asperity
-    held_speed : array (k,), m/s
-    crude : array (k,)
-        Coulomb's force −Y a/b, at every speed.
-    greatest : array (k,)
-        Greatest force in contact at this speed, by the leading terms of λ, which are exact where
-        the speed is held; 0 where it only hops.  Forces of the landing itself, a blow, are left
-        out.
-    undriven : array (k,)
-        The same places with the exact λ of a point that has the speed there and is not driven:
-        less by 1 + κ² sin² θ.
-    mean : array (k,)
-        Mean over all time of the drive's force, landings included.
-    landing_phase : array (k,), rad
-        Phase x/b ∈ (−π, π] of the landing after which it slides; NaN where there is none.
-    flights_per_period : array (k,)
+    held_speed, landing_phase, flights_per_period : arrays (k,)
+        In m/s; phase x/b ∈ (−π, π] of the landing after which it slides, NaN where there is none.
+    crude, greatest, undriven, mean : arrays (k,), N
+        Coulomb's force −Y a/b.  The greatest in contact by the leading terms of λ, which are exact
+        where the speed is held, blows of landings left out; 0 where it only hops.  The greatest by
+        the exact λ of a point that has the speed and is not driven: less by 1 + κ² sin² θ.  The
+        mean over all time of the drive's force, landings included.
     """
 
     asperity: Asperity
@@ -134,8 +125,6 @@ class AsperityCurve(Result):
     def leaps(self) -> int:
         """Between how many neighbouring speeds the mean force leaps: what it does there is lost.
 
-        Examples
-        --------
         >>> bumps = Asperity(amplitude=1.0, length=4.0, load=1.0, mass=1.0)
         >>> asperity_curve(bumps, [0.0, 5.0, 10.0]).leaps
         2
@@ -145,14 +134,8 @@ class AsperityCurve(Result):
     def law(self, which: str = "greatest") -> SpeedLaw:
         """The force over the load as a friction coefficient that depends on the speed.
 
-        Parameters
-        ----------
-        which : 'crude', 'greatest', 'undriven' or 'mean'
-
-        Raises
-        ------
-        InputError
-            If there is no such force, or the speeds do not begin at 0.
+        ``which``: 'crude', 'greatest', 'undriven' or 'mean', else InputError; as where the speeds
+        do not begin at 0.
 
         Examples
         --------
@@ -174,18 +157,10 @@ def asperity_curve(
     Parameters
     ----------
     asperity : Asperity
-        Not pulled: the drive does that.
-    speed : array_like (k,), m/s, ascending, from 0 to 1000 V₀
+        Not pulled, else InputError: the drive does that.
+    speed : array_like (k,), m/s, ascending
+        From 0 to 1000 V₀, else InputError.
     progress : callable (done, total), optional
-
-    Returns
-    -------
-    AsperityCurve
-
-    Raises
-    ------
-    InputError
-        If a speed is out of range or the point is pulled.
 
     References
     ----------
@@ -207,10 +182,9 @@ def asperity_curve(
         raise InputError("speed must be one or more numbers in m/s, ascending")
     highest = MAX_SPEED * asperity.lift_speed
     if V[0] < 0.0 or V[-1] > highest:
-        wrong = V[0] if V[0] < 0.0 else V[-1]
         raise InputError(
             f"speed must be from 0 to {highest:g} m/s ({MAX_SPEED:g} times the speed at which the "
-            f"crest is left), got {wrong:g}"
+            f"crest is left), got {V[0] if V[0] < 0.0 else V[-1]:g}"
         )
     forces, phases = np.zeros((4, V.size)), np.zeros((2, V.size))
     for n, w in enumerate(((V / asperity.lift_speed) ** 2).tolist()):
@@ -230,8 +204,6 @@ def greatest_force(w: float, first: float, slope: float = 0.0) -> float:
 
     With ``slope`` κ = 0 that of the held speed; its places solve an equation of degree 4 in cos θ.
 
-    Examples
-    --------
     >>> greatest_force(0.0, -np.pi), round(greatest_force(1.0, -np.pi), 12)  # 3√3/4
     (1.0, 1.299038105677)
     """
@@ -253,8 +225,6 @@ def greatest_force(w: float, first: float, slope: float = 0.0) -> float:
 def held_round(w: float) -> HopCycle:
     """Flights and landings at a held speed, w = (V/V₀)², from a departure at θ₀ on.
 
-    Examples
-    --------
     >>> run = held_round(2.25)
     >>> round(run.landing, 6), run.periods, round(run.mean, 6)
     (0.797713, 1, 0.762913)
@@ -265,11 +235,9 @@ def held_round(w: float) -> HopCycle:
     if w <= 1.0:
         return HopCycle(math.nan, True, 0, 1, 0.0)
     # a, b, V = 1, so that time is phase: the load is then 1/w
-    unit = Asperity(1.0, 1.0, 1.0 / w, 1.0)
-    start = math.pi - math.acos(1.0 / w)
-    phases = [start]
-    lengths = list[float]()
-    jumps = list[float]()
+    unit, start = Asperity(1.0, 1.0, 1.0 / w, 1.0), math.pi - math.acos(1.0 / w)
+    phases, lengths, jumps = [start], list[float](), list[float]()
+    landed, counted = math.nan, _FLIGHTS // 2
     while len(jumps) < _FLIGHTS:
         incline = math.sin(phases[-1])
         arc = SlideOrFlight("fly", 0.0, phases[-1], -math.cos(phases[-1]), 1.0, incline, 0.0)
@@ -278,16 +246,15 @@ def held_round(w: float) -> HopCycle:
         jumps.append((math.sin(late) - (incline - lengths[-1] / w)) ** 2)
         phases.append(math.remainder(late, 2.0 * math.pi))
         if 1.0 + w * math.cos(phases[-1]) >= 0.0 and abs(phases[-1]) <= start:
-            lengths.append(start - phases[-1])
-            return _round(w, phases[-1], lengths, jumps)
-        for back in range(1, min(len(jumps) - 1, _LONGEST_CYCLE)):
-            if abs(phases[-1] - phases[-1 - back]) < _SAME_PHASE:
-                return _round(w, math.nan, lengths[-back:], jumps[-back:])
-    half = _FLIGHTS // 2
-    return _round(w, math.nan, lengths[half:], jumps[half:])
-
-
-def _round(w: float, landed: float, lengths: list[float], jumps: list[float]) -> HopCycle:
-    periods = max(round(math.fsum(lengths) / (2.0 * math.pi)), 1)
-    mean = w * math.fsum(jumps) / (4.0 * math.pi * periods)
-    return HopCycle(landed, not math.isnan(landed), len(jumps), periods, mean)
+            landed, counted = phases[-1], len(jumps)
+            lengths.append(start - landed)
+            break
+        before = phases[-2 : -min(len(jumps) - 1, _LONGEST_CYCLE) - 1 : -1]
+        alike = np.abs(np.array(before) - phases[-1]) < _SAME_PHASE
+        if alike.any():
+            counted = int(alike.argmax()) + 1
+            break
+    slides = not math.isnan(landed)
+    periods = max(round(math.fsum(lengths[0 if slides else -counted :]) / (2.0 * math.pi)), 1)
+    mean = w * math.fsum(jumps[-counted:]) / (4.0 * math.pi * periods)
+    return HopCycle(landed, slides, counted, periods, mean)

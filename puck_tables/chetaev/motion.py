@@ -32,18 +32,13 @@ class ConstrainedMotion:
     Attributes
     ----------
     time : array (k,), s
-    position, velocity, acceleration : arrays (k, n, d)
-    multipliers : array (k, s)
-        λ; N where the coefficients a are unit vectors.
-    reaction : array (k, n, d), N
-        Σ λ a + μ x′, what the constraints do to each point.
-    matrix : array (k, s, n, d)
-        The coefficients a.
-    residual : float
-        Largest |Σ a·x′ + e| at the output times.
-    drift : float, m/s
-        Largest distance (rms of all points, weighted by mass) from the integrated velocity to the
-        admissible one.
+    position, velocity, acceleration, reaction : arrays (k, n, d), SI units
+        And Σ λ a + μ x′, what the constraints do to each point, N.
+    multipliers, matrix : arrays (k, s) and (k, s, n, d)
+        λ, N where the coefficients a are unit vectors; these a.
+    residual, drift : float
+        Largest |Σ a·x′ + e| at the output times; largest distance (rms of all points, weighted by
+        mass) from the integrated velocity to the admissible one, m/s.
     kinetic_energy, force_work, friction_work, support_work : arrays (k,), J
         Energy, and work since the first time: of the given forces, of friction Σ μ|x′|² (≤ 0
         where it brakes), and of moving supports, −∫ Σ λ e dt.
@@ -70,10 +65,9 @@ class ConstrainedMotion:
         return float(np.abs(self.kinetic_energy - self.kinetic_energy[0] - work).max())
 
     def c_displacements(self, number: int) -> FloatArray:
-        """A basis of the C-displacements at one output time, array (how many, n, d).
+        """A basis of the C-displacements at one output time, array (how many or 0, n, d).
 
-        They are admissible, Σ a·δx = 0, and orthogonal to each point's velocity, (1.1); there may
-        be none.
+        They are admissible, Σ a·δx = 0, and orthogonal to each point's velocity, (1.1).
 
         Examples
         --------
@@ -84,15 +78,12 @@ class ConstrainedMotion:
         (1, 2, 2)
         """
         velocity = self.velocity[number]
-        points, dimensions = velocity.shape
-        across = np.zeros((points, points, dimensions))
-        across[np.arange(points), np.arange(points)] = velocity
-        rows = np.concatenate([self.matrix[number], across]).reshape(-1, points * dimensions)
+        across = np.eye(len(velocity))[:, :, None] * velocity
+        rows = np.concatenate([self.matrix[number], across]).reshape(-1, velocity.size)
         length = np.linalg.norm(rows, axis=1)
-        rows = rows[length > 0.0] / length[length > 0.0, None]
-        _, singular, right = np.linalg.svd(rows)
+        _, singular, right = np.linalg.svd(rows[length > 0.0] / length[length > 0.0, None])
         rank = int((singular > _RANK).sum())
-        return np.asarray(right[rank:].reshape(-1, points, dimensions))
+        return np.asarray(right[rank:].reshape(-1, *velocity.shape))
 
     @property
     def axiom_residual(self) -> float:
@@ -100,10 +91,10 @@ class ConstrainedMotion:
 
         NaN where the system has no C-displacements at any time, and nothing is said.
         """
-        found = []
-        for k in range(len(self.time)):
-            size = float(np.linalg.norm(self.reaction[k]))
-            works = np.tensordot(self.c_displacements(k), self.reaction[k], axes=2)
+        found = list[float]()
+        for k, reaction in enumerate(self.reaction):
+            size = float(np.linalg.norm(reaction))
+            works = np.tensordot(self.c_displacements(k), reaction, axes=2)
             found += [abs(float(work)) / size for work in works if size > 0.0]
         return max(found, default=float("nan"))
 
@@ -123,25 +114,15 @@ def constrained_motion(
     ----------
     system : ConstrainedSystem
     position, velocity : array_like (n, 2) or (n, 3), m and m/s
-        At the first of ``times``; the velocity must satisfy the constraints.
+        At the first of ``times``; the velocity must satisfy the constraints, else InputError; so
+        where these come to depend on each other on the way.
     times : array_like (k,), s
         At least two, ascending: the start, then when to report.
     tol : float
-        Local error of the integration, relative; 1e-13 to 0.01.
+        Local error of the integration, relative; 1e-13 to 0.01, else AccuracyError; so where the
+        integration gets stuck.
     until : callable (x, v, t) → float, optional
         The motion ends where it falls to zero; that state is then the last one reported.
-
-    Returns
-    -------
-    ConstrainedMotion
-
-    Raises
-    ------
-    InputError
-        If an argument has the wrong shape, the start breaks a constraint, or the constraints come
-        to depend on each other on the way.
-    AccuracyError
-        If ``tol`` is out of range, or the integration gets stuck.
 
     References
     ----------

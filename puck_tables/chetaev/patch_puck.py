@@ -38,19 +38,17 @@ _LAST = 1e-7
 def disc_points(rings: int) -> FloatArray:
     """Places of the 4 rings² patches (n, 2), in units of the radius.
 
-    Examples
-    --------
     >>> points = disc_points(3)
     >>> len(points), float((points**2).sum(axis=1).mean().round(12))  # ⟨ρ²⟩ = 1/2 on a disc
     (36, 0.5)
     """
-    rings, parts = whole("rings", rings, 1, MAX_RINGS), []
-    for k in range(1, rings + 1):
-        count = 4 * (2 * k - 1)
-        radius = math.sqrt(0.5 * ((k - 1) ** 2 + k**2)) / rings
-        angle = 2.0 * np.pi * (np.arange(count) + 0.5) / count
-        parts.append(radius * np.stack([np.cos(angle), np.sin(angle)], axis=-1))
-    return np.concatenate(parts)
+    rings = whole("rings", rings, 1, MAX_RINGS)
+    k = np.arange(1, rings + 1)
+    count = 4 * (2 * k - 1)
+    radius = np.repeat(np.sqrt(0.5 * ((k - 1) ** 2 + k**2)) / rings, count)
+    angle = np.concatenate([2.0 * np.pi * (np.arange(one) + 0.5) / one for one in count])
+    places = radius * np.stack([np.cos(angle), np.sin(angle)])
+    return np.ascontiguousarray(places.T)
 
 
 def pressures(points: FloatArray, slip: FloatArray, delta: float) -> FloatArray:
@@ -60,8 +58,6 @@ def pressures(points: FloatArray, slip: FloatArray, delta: float) -> FloatArray:
     friction of each patch over f σ, turned round.  Σ σ x = (h/2) f Σ σ u/|u| are two linear
     equations for (b, c).
 
-    Examples
-    --------
     >>> points = disc_points(8)
     >>> ahead = np.tile([1.0, 0.0], (len(points), 1))
     >>> bool(np.allclose(pressures(points, ahead, 0.5), 1.0 + 0.5 * points[:, 0]))  # b = δ at φ = 0
@@ -84,26 +80,19 @@ def patch_system(
 ) -> tuple[ConstrainedSystem, FloatArray]:
     """A sliding puck as 4 rings² mass points, all constraints of the rigid body kept.
 
+    With ω taken from the first two points, u_i − u_1 = ω × (x_i − x_1) for the others, and the
+    distance of the two: 2N − 3 constraints, linear in the velocities and independent.
+
     Parameters
     ----------
-    rings : int
+    rings : int, from 1 to 256
     delta, decel, radius, mass : float
-        2fh/r in [0, 1], J = fg in m/s², r in m, m in kg.
+        2fh/r in [0, 1], J = fg in m/s², r in m, m in kg; else InputError.
 
     Returns
     -------
     ConstrainedSystem, array (n, 2)
         The system, and the places of its points when the centre lies at the origin, m.
-
-    Raises
-    ------
-    InputError
-        If a number is out of range.
-
-    Notes
-    -----
-    With ω taken from the first two points, u_i − u_1 = ω × (x_i − x_1) for the others, and the
-    distance of the two: 2N − 3 constraints, linear in the velocities and independent.
 
     Examples
     --------
@@ -152,32 +141,23 @@ def patch_stop(
 ) -> tuple[float, FloatArray]:
     """When and where a puck of 4 rings² patches stops.
 
+    Lagrange's equations (3.5) for (x, y, θ).  As the friction multipliers depend on the velocities
+    they enter as generalised forces.  Time runs as dt = (Q/J) dτ, in which the stop is infinitely
+    far and every rate stays finite; from 1e-7 of Q on the deceleration is taken as constant.
+
     Parameters
     ----------
-    velocity : array_like (2,), m/s
-    spin : float, rad/s
-    rings : int, from 1 to 256
-    delta, decel, radius : float
-        2fh/r in [0, 1], J = fg in m/s², r in m.
+    velocity, spin : array_like (2,), m/s; float, rad/s
+        InputError if the puck turns by more than some 1000 rad, or 1e6 over the number of patches.
+    rings, delta, decel, radius
+        As :func:`patch_system`.
     tol : float
-        Local relative error of the integration; 1e-13 to 0.01.
+        Local relative error of the integration; 1e-13 to 0.01, else AccuracyError.
 
     Returns
     -------
     float, array (2,)
         Stop time in s and place in m.
-
-    Raises
-    ------
-    InputError
-        If an argument is out of range, or the puck turns by more than some 1000 rad, or 1e6 over
-        the number of patches.
-
-    Notes
-    -----
-    Lagrange's equations (3.5) for (x, y, θ).  As the friction multipliers depend on the velocities
-    they enter as generalised forces.  Time runs as dt = (Q/J) dτ, in which the stop is infinitely
-    far and every rate stays finite; from 1e-7 of Q on the deceleration is taken as constant.
 
     References
     ----------
@@ -211,24 +191,16 @@ def patch_stop(
             f"{most:.3g} at most: give less spin, more decel or fewer rings"
         )
 
-    def rates(state: FloatArray) -> tuple[FloatArray, float, float]:
-        """Acceleration, r times angular acceleration, −dQ/dt."""
+    def slope(tau: float, state: FloatArray) -> FloatArray:
         vx, vy, rim, angle = state[:4]
         cosine, sine = math.cos(angle), math.sin(angle)
         places = points @ np.array([[cosine, sine], [-sine, cosine]])
         slip = np.stack([vx - rim * places[:, 1], vy + rim * places[:, 0]], axis=-1)
         slip *= _inverse_speed(slip, rim)[:, None]
         force = pressures(places, slip, delta)[:, None] * slip
-        linear = -force.mean(axis=0)
-        angular = -2.0 * float((places[:, 0] * force[:, 1] - places[:, 1] * force[:, 0]).mean())
-        Q = math.sqrt(vx * vx + vy * vy + rim * rim)
-        return linear, angular, -(vx * linear[0] + vy * linear[1] + rim * angular) / Q
-
-    def slope(tau: float, state: FloatArray) -> FloatArray:
-        linear, angular, _ = rates(state)
-        vx, vy, rim = state[:3]
-        scale = math.sqrt(vx * vx + vy * vy + rim * rim)
-        return scale * np.array([*linear, angular, turn * rim, vx, vy, 1.0])
+        torque = float((places[:, 0] * force[:, 1] - places[:, 1] * force[:, 0]).mean())
+        Q = math.hypot(vx, vy, rim)
+        return Q * np.array([*-force.mean(axis=0), -2.0 * torque, turn * rim, vx, vy, 1.0])
 
     def slow(tau: float, state: FloatArray) -> float:
         return math.hypot(*state[:3]) - _LAST
@@ -236,20 +208,20 @@ def patch_stop(
     slow.terminal = True  # type: ignore[attr-defined]
     # the speeds keep their digits down to their last values; angle, place and time are sums
     absolute = tol * np.array([_LAST, _LAST, _LAST, 1.0, 1.0, 1.0, 1.0])
-    solved = solve_ivp(
-        slope, (0.0, 1e3), np.array([vx / start, vy / start, rim / start, 0.0, 0.0, 0.0, 0.0]),
-        method="DOP853", rtol=tol, atol=absolute, events=slow,
-    )  # fmt: skip
+    first = np.array([vx, vy, rim, 0.0, 0.0, 0.0, 0.0]) / start
+    solved = solve_ivp(slope, (0.0, 1e3), first, "DOP853", rtol=tol, atol=absolute, events=slow)
     end = solved.y[:, -1]
-    left = math.hypot(*end[:3]) / rates(end)[2]
+    going = slope(0.0, end)  # Q times what changes in units of time
+    left = going[-1] ** 3 / -float(end[:3] @ going[:3])
     return last * float(end[6] + left), length * (end[4:6] + 0.5 * left * end[:2])
 
 
 def _inverse_speed(velocity: FloatArray, rim: float) -> FloatArray:
     """1/rms slip of the patches of a disc whose rim turns with the speed ``rim``; 0 at rest."""
-    spread = np.pi * rim * rim / (6.0 * len(velocity))
-    speed = np.sqrt((velocity**2).sum(axis=1) + spread)
-    return np.where(speed == 0.0, 0.0, 1.0 / np.where(speed == 0.0, 1.0, speed))
+    squared = (velocity**2).sum(axis=1) + np.pi * rim * rim / (6.0 * len(velocity))
+    inverse = np.zeros(len(velocity))
+    np.divide(1.0, np.sqrt(squared), inverse, where=squared > 0.0)
+    return inverse
 
 
 def _checked(

@@ -42,7 +42,8 @@ class ConstrainedSystem:
 
     Parameters
     ----------
-    masses : array_like (n,), kg, > 0
+    masses : array_like (n,), kg
+        Finite and positive, else InputError.
     constraints : callable (x, t) → (a, e)
         ``x`` is (n, d) in m, d = 2 or 3, ``t`` in s; ``a`` is (s, n, d), ``e`` is (s,): the
         constraints Σ a·x′ + e = 0.  Unless ``rate`` is given it is differentiated by a complex
@@ -53,11 +54,6 @@ class ConstrainedSystem:
         The multipliers μ of the velocities, negative where they brake; zero by default.
     rate : callable (x, v, t) → (s,), optional
         d(Σ a·v + e)/dt along the motion at fixed v, for constraints that take no complex numbers.
-
-    Raises
-    ------
-    InputError
-        If a mass is not finite and positive.
 
     References
     ----------
@@ -95,11 +91,8 @@ class ConstrainedSystem:
     def instant(self, position: FloatArray, velocity: FloatArray, time: float) -> Instant:
         """Accelerations and multipliers at a state, after its velocity is made admissible.
 
-        Raises
-        ------
-        InputError
-            If a function returns something of another shape or not finite, or the constraints
-            depend on each other.
+        InputError if a function returns something of another shape or not finite, or the
+        constraints depend on each other.
         """
         shape = position.shape
         a, e = self.constrained(position, time)

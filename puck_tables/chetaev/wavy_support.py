@@ -25,8 +25,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import instance, real
-from puck_tables.chetaev.asperity_shape import Asperity
+from puck_tables._core.real import broadcast, finite_array, instance, positive, real
 from puck_tables.chetaev.motion import checked_times
 from puck_tables.errors import AccuracyError, InputError
 
@@ -36,6 +35,89 @@ _LOOKS = 6  # places where it is seen whether a gap only grows
 _GAP_STEPS = 1_000_000  # flights that hardly leave the crest take that many
 _NOISE = 2.0**-53  # relative rounding of a double: a gap below it is none
 MAX_ARCS = 100_000  # slides and flights: then it is refused by name
+
+
+@dataclass(frozen=True)
+class Asperity:
+    """The support and the point on it.
+
+    Parameters
+    ----------
+    amplitude, length : float, a > 0 and b > 0, m: the wavelength is 2πb
+    load, mass, pull : float, −Y > 0, N; m > 0, kg; X, N
+        All finite, else InputError.
+
+    Examples
+    --------
+    >>> bumps = Asperity(amplitude=1e-6, length=4e-6, load=1.0, mass=0.1)
+    >>> bumps.slope, round(bumps.lift_speed, 6)  # leaves the crest: x′² = −Y b²/(m a)
+    (0.25, 0.012649)
+    """
+
+    amplitude: float
+    length: float
+    load: float
+    mass: float
+    pull: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name, unit in (("amplitude", "m"), ("length", "m"), ("load", "N"), ("mass", "kg")):
+            object.__setattr__(self, name, positive(name, getattr(self, name), unit))
+        object.__setattr__(self, "pull", real("pull", self.pull, "N"))
+
+    @property
+    def slope(self) -> float:
+        """κ = a/b: the steepest slope, and Coulomb's coefficient of the crude law."""
+        return self.amplitude / self.length
+
+    @property
+    def lift_speed(self) -> float:
+        """V₀ = b √(−Y/(m a)), m/s: a point that is not pulled leaves the crest above it."""
+        return self.length * math.sqrt(self.load / (self.mass * self.amplitude))
+
+    def height(self, x: npt.ArrayLike) -> FloatArray:
+        """−a cos(x/b), m, at places x in m."""
+        return np.asarray(self._height(finite_array("x", x, "m")))
+
+    def incline(self, x: npt.ArrayLike) -> FloatArray:
+        """dy/dx of the support, κ sin(x/b), at places x in m."""
+        return np.asarray(self._incline(finite_array("x", x, "m")))
+
+    def press(self, x: npt.ArrayLike, speed: npt.ArrayLike) -> FloatArray:
+        """The numerator of λ, N: negative where the support falls away under a flying point."""
+        place, rate = broadcast(
+            x=finite_array("x", x, "m"), speed=finite_array("speed", speed, "m/s")
+        )
+        with np.errstate(over="ignore", invalid="ignore"):
+            press = np.asarray(self._press(place, rate))
+        if not np.isfinite(press).all():
+            raise InputError("x and speed give a press too large for floating point")
+        return press
+
+    def multipliers(self, x: npt.ArrayLike, speed: npt.ArrayLike) -> tuple[FloatArray, ...]:
+        """λ exact, by its leading terms, and crude, in N, not cut at 0: below there is no contact.
+
+        ``x`` in m, ``speed`` x′ in m/s: array_like, broadcast.
+
+        Examples
+        --------
+        >>> bumps = Asperity(amplitude=1.0, length=1.0, load=2.0, mass=1.0)
+        >>> [float(lam.round(6)) for lam in bumps.multipliers(np.pi / 4, 1.0)]
+        [1.804738, 2.707107, 2.0]
+        """
+        press, incline = self.press(x, speed), self._incline(np.asarray(x))
+        exact = press / (1.0 + incline**2)
+        return exact, press - self.pull * incline, np.full(press.shape, self.load)
+
+    def _height(self, x: Any) -> Any:
+        return -self.amplitude * np.cos(x / self.length)
+
+    def _incline(self, x: Any) -> Any:
+        return self.slope * np.sin(x / self.length)
+
+    def _press(self, x: Any, speed: Any) -> Any:
+        bend = self.mass * self.amplitude / self.length**2 * speed**2 * np.cos(x / self.length)
+        return self.load + bend + self.pull * self._incline(x)
 
 
 class SlideOrFlight(NamedTuple):
@@ -65,14 +147,11 @@ class AsperityMotion:
 
     Attributes
     ----------
-    time, x, y, vx, vy : arrays (k,), SI units
-    multiplier : array (k,), N
-        λ; 0 in flight.
-    arcs : tuple of Arc
-    lost : float, J
-        Energy lost by all landings.
-    energy_residual : float, J
-        Largest change of ½m(x′² + y′²) − Xx − Yy that no landing accounts for.
+    time, x, y, vx, vy, multiplier : arrays (k,), SI units
+        The last is λ, N; 0 in flight.
+    arcs : tuple of SlideOrFlight
+    lost, energy_residual : float, J
+        Energy lost by all landings; largest change of ½m(x′² + y′²) − Xx − Yy that none explains.
     """
 
     time: FloatArray
@@ -91,26 +170,16 @@ def asperity_motion(
 ) -> AsperityMotion:
     """Let a point go on the support: it slides, flies and lands.
 
+    Times of lift-off and landing are exact to about 1e-12 of the time b/x′.
+
     Parameters
     ----------
     asperity : Asperity
-    x : float, m
-    speed : float
-        x′ at the first of ``times``, along the support, m/s.
+    x, speed : float, m and m/s
+        The place and x′, along the support, at the first of ``times``; finite, else InputError.
     times : array_like (k,), s
-        At least two, ascending.
-
-    Returns
-    -------
-    AsperityMotion
-        Times of lift-off and landing are exact to about 1e-12 of the time b/x′.
-
-    Raises
-    ------
-    InputError
-        If a number is not finite or the times do not ascend.
-    AccuracyError
-        If 100 000 arcs do not reach the last time.
+        At least two, ascending, else InputError; AccuracyError if 100 000 arcs do not reach the
+        last.
 
     References
     ----------
@@ -129,14 +198,9 @@ def asperity_motion(
     if not math.isfinite(asperity.mass * rate * rate):
         raise InputError(f"speed = {rate:g} m/s gives an energy too large for floating point")
     end = float(when[-1])
-    arc = _contact(asperity, float(when[0]), place, rate, 0.0)
-    arcs, pieces = [arc], []
-    while True:
-        wanted = when[(when >= arc.time) & (when <= end)]
-        following, states = (_slide if arc.kind == "slide" else _fly)(asperity, arc, wanted, end)
-        pieces.append(states)
-        if following is None:
-            break
+    following: SlideOrFlight | None = _contact(asperity, float(when[0]), place, rate, 0.0)
+    arcs, pieces = list[SlideOrFlight](), []
+    while following is not None:
         if len(arcs) == MAX_ARCS:
             raise AccuracyError(
                 f"after {MAX_ARCS} slides and flights only t = {following.time:g} s was reached: "
@@ -144,9 +208,11 @@ def asperity_motion(
             )
         arc = following
         arcs.append(arc)
+        wanted = when[when >= arc.time]
+        following, states = (_slide if arc.kind == "slide" else _fly)(asperity, arc, wanted, end)
+        pieces.append(states)
     t, px, py, vx, vy, lam = np.concatenate(pieces, axis=1)
-    lost = np.array([one.loss for one in arcs]).cumsum()
-    begun = np.array([one.time for one in arcs])
+    begun, lost = np.array([one.time for one in arcs]), np.cumsum([one.loss for one in arcs])
     energy = 0.5 * asperity.mass * (vx**2 + vy**2) - asperity.pull * px + asperity.load * py
     energy += lost[np.searchsorted(begun, t, side="right") - 1]
     off = float(np.abs(energy - energy[0]).max())
@@ -222,7 +288,7 @@ def _rising(asperity: Asperity, arc: SlideOrFlight, ax: float) -> float:
     while t > 0.0:
         x, _, vx, _ = arc.flown(asperity, t * looks)
         if (asperity._press(x, vx) < 0.0).all():
-            return t
+            break
         t *= 0.5
     return t
 
@@ -233,21 +299,20 @@ def _slide(
     """Until λ falls to 0, and the states at the times wanted before that."""
     from scipy.integrate import solve_ivp
 
-    mass, load, pull = asperity.mass, asperity.load, asperity.pull
+    mass, pull = asperity.mass, asperity.pull
 
     def slope(t: float, state: FloatArray) -> list[float]:
-        x, vx = state
-        incline = asperity._incline(x)
-        lam = asperity._press(x, vx) / (1.0 + incline**2)
-        return [vx, (pull - lam * incline) / mass]
+        incline = asperity._incline(state[0])
+        lam = asperity._press(*state) / (1.0 + incline**2)
+        return [state[1], (pull - lam * incline) / mass]
 
     def press(t: float, state: FloatArray) -> float:
         return float(asperity._press(*state))
 
     press.terminal, press.direction = True, -1  # type: ignore[attr-defined]
     # over a wave the load and the pull give no more energy
-    gained = 4.0 * (load * asperity.amplitude + math.pi * abs(pull) * asperity.length) / mass
-    fastest = math.sqrt(arc.vx**2 + arc.vy**2 + gained)
+    given = asperity.load * asperity.amplitude + math.pi * abs(pull) * asperity.length
+    fastest = math.sqrt(arc.vx**2 + arc.vy**2 + 4.0 * given / mass)
     solved = solve_ivp(
         slope, (arc.time, end), [arc.x, arc.vx], "DOP853", wanted, events=press, rtol=_TOL,
         atol=_TOL * np.array([asperity.length, fastest]),

@@ -10,10 +10,9 @@ from puck_tables._core.real import instance, real
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of, limit_ratio
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
-from puck_tables.table.friction_section import FrictionSection, section_of_table
+from puck_tables.table.friction_section import FrictionSection, friction_for, section_of_table
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.singular_lines import refuse_height
-from puck_tables.table.table_cache import friction_for
 
 STANDARD_GRAVITY = 9.80665  # m/s², by the third General Conference on Weights and Measures, 1901
 # k/r: beyond, motions have stops too steep for splines and steps

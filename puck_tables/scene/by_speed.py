@@ -21,7 +21,7 @@ from puck_tables.scene.ingredients import BySpeed
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.table.speed_build import finest_accuracy
 from puck_tables.table.speed_table import SpeedTable
-from puck_tables.table.table_cache import table_for
+from puck_tables.table.table_store import table_for
 
 Points = tuple[tuple[float, float], ...]
 

@@ -29,11 +29,12 @@ from puck_tables.motion.solve import ErrorEstimate, close_enough
 from puck_tables.stopping.exact import integrated_stops
 from puck_tables.table.check import CheckReport
 from puck_tables.table.friction_section import FINEST_ACCURACY, FrictionSection
+from puck_tables.table.law_record import can_be_known, known
 from puck_tables.table.section_table import SectionTable
 from puck_tables.table.slip_axis import GRADING_POWER, LawAxis, sides_of
 from puck_tables.table.slip_spline import slip_spline
 from puck_tables.table.table import Progress
-from puck_tables.table.table_cache import kept_section
+from puck_tables.table.table_store import fetch
 
 FINEST_SECTION = 1e-10  # as fine as stops are looked up; beyond, they are integrated
 DEFAULT_ACCURACY = 1e-8  # of Q²/J: the default tol of stops
@@ -160,13 +161,14 @@ def stop_section_for(body: UnitPuck, accuracy: float) -> StopSection:
     >>> float(result.spline.at(np.array([0.5]))[0, 0].round(4)), result.error <= 1e-5
     (1.1458, True)
     """
-    if body.table is not None:  # one's own
+    if body.table is not None or not can_be_known(body.law):  # one's own
         return stop_section(body, accuracy)
-    return kept_section(
-        StopSection, body.law, f"stops-{body.delta:g}-{body.gyration:g}-{accuracy:g}",
-        {"delta": body.delta, "gyration": body.gyration, "accuracy": accuracy},
-        lambda law: stop_section(replace(body, law=law), accuracy), ("motion", "stopping"),
-    )  # fmt: skip
+    body = replace(body, law=known(body.law))
+    return fetch(
+        f"stops-{body.delta:g}-{body.gyration:g}-{accuracy:g}",
+        {"law": body.law, "delta": body.delta, "gyration": body.gyration, "accuracy": accuracy},
+        lambda: stop_section(body, accuracy),
+    )
 
 
 def stop_section(body: UnitPuck, accuracy: float, progress: Progress | None = None) -> StopSection:

@@ -22,13 +22,15 @@ from puck_tables.kernels.section_spline import LINE, RATIOS
 from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import COARSEST, checked_accuracy
 from puck_tables.table.check import CheckReport
+from puck_tables.table.law_record import is_named
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.section_table import SectionTable
-from puck_tables.table.singular_lines import lines_of, opening_angle
+from puck_tables.table.singular_lines import lines_of, opening_angle, refuse_height
 from puck_tables.table.slip_axis import GRADING_POWER, LawAxis, sides_of
 from puck_tables.table.slip_spline import SlipSpline, slip_spline
 from puck_tables.table.spline_fit import height_terms, ratios_at
 from puck_tables.table.table import Progress
+from puck_tables.table.table_store import fetch
 from puck_tables.table.tall_friction import tall_resultants
 
 DEFAULT_ACCURACY, FINEST_ACCURACY = 1e-9, 5e-13  # truth itself is good to 1e-13
@@ -260,4 +262,25 @@ def friction_section(law: Law, delta: float, accuracy: float = DEFAULT_ACCURACY)
         LawAxis(cotangents, spline.cells).concatenated(spline.values), law=law, delta=delta,
         cotangents=cotangents, tolerance=accuracy,
         accuracy=replace(spline.accuracy, at_second=3 * (delta,)),
+    )  # fmt: skip
+
+
+@lru_cache(maxsize=64)
+def friction_for(law: Law, delta: float, accuracy: float) -> FrictionSection:
+    """The friction of one puck: where that takes long, read if it is kept, else tabulated.
+
+    ``law``, ``delta``, ``accuracy``: as in :func:`friction_section`.
+
+    Examples
+    --------
+    >>> from puck_tables.contact.laws import law_of
+    >>> friction_for(law_of("ring"), 0.5, 1e-6).grid  # under other laws it takes no time
+    '129 phi nodes'
+    """
+    if not (law.can_lift and delta > _FULL_CONTACT and is_named(law)):
+        return friction_section(law, delta, accuracy)
+    refuse_height(law, delta)
+    return fetch(
+        f"tall-{delta:g}-{accuracy:g}", {"law": law, "delta": delta, "accuracy": accuracy},
+        lambda: friction_section(law, delta, accuracy),
     )  # fmt: skip

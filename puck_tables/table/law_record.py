@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,28 @@ def is_named(law: Law) -> bool:
         return not law.name.lower().endswith(".csv") and law_of(law.name) == law
     except InputError:
         return False
+
+
+def can_be_known(law: Law) -> bool:
+    """Whether a law can be told from others: by its values or its name, not by a function."""
+    return law.profile is not None or is_named(law)
+
+
+def known(law: str | Law) -> Law:
+    """A pressure law that can be told from others: a profile by its values, whatever its name.
+
+    Raises
+    ------
+    InputError
+        If it is given by a function, or not known.
+    """
+    one = law if isinstance(law, Law) else law_of(law)
+    if not can_be_known(one):
+        raise InputError(
+            f"the law {one.name} is given by a function, which cannot be told from another: "
+            "give its name, or Table.build(law)"
+        )
+    return one if one.profile is None else replace(one, name="profile")
 
 
 def plain(value: Any) -> Any:

@@ -13,8 +13,8 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.friction_laws import CurlingLaw, FrictionLaw, StribeckLaw
 from puck_tables.puck import Puck
 from puck_tables.scene.parts import Floor, Launch
-from puck_tables.tradeoff.scipy_methods import patch_script, ring_patches
-from puck_tables.tradeoff.truth import Contender, Question, Run, kept, kept_arrays
+from puck_tables.tradeoff.scipy_methods import patch_script, ring_patches, scripted
+from puck_tables.tradeoff.truth import Contender, Made, Question, kept_arrays
 from puck_tables.world.scene import Scene
 
 # of Q/(fg), Q²/(fg), asked for; sums under a law by speed take longer
@@ -46,13 +46,6 @@ class ThrownBody:
         q = np.hypot(np.hypot(*launches[:2]), self.puck.inertia_radius * launches[2])
         return np.stack([q, q * q, q * q]) / (self.puck.gravity * self.friction(q))
 
-    def script(self, points: FloatArray, weights: FloatArray) -> Callable[..., FloatArray]:
-        """What one would write: friction summed over points, scipy's solver over time."""
-        puck = self.puck
-        return patch_script(
-            points, weights, puck.inertia_radius, 0.5 * puck.height, puck.gravity, self.friction
-        )
-
 
 def _of_a_box(count: int) -> tuple[FloatArray, FloatArray]:
     """Centres of equal patches of the box, and their weights."""
@@ -65,12 +58,12 @@ def _of_a_box(count: int) -> tuple[FloatArray, FloatArray]:
 _SIDES, _BAND = (0.2, 0.1), (0.0555, 0.0635)  # m
 # m: of the box, (2, 4)
 _CORNERS = 0.5 * np.array([[1.0, 1.0, -1.0, -1.0], [1.0, -1.0, 1.0, -1.0]]) * np.c_[_SIDES,]
+_FEW = _CORNERS, np.full(4, 0.25)
 _BOX = Puck(base="box:0.2x0.1", friction=0.25, height=0.04)
 BODIES = {
-    "box": ThrownBody(_BOX, None, _of_a_box, (_CORNERS, np.full(4, 0.25))),
+    "box": ThrownBody(_BOX, None, _of_a_box, _FEW),
     "box, friction falls with speed": ThrownBody(
-        replace(_BOX, friction=0.0, height=0.0), StribeckLaw(0.35, 0.2, 0.1), _of_a_box,
-        (_CORNERS, np.full(4, 0.25)),
+        replace(_BOX, friction=0.0, height=0.0), StribeckLaw(0.35, 0.2, 0.1), _of_a_box, _FEW
     ),
     "curling stone": ThrownBody(
         Puck(base="annulus:0.0635x0.0555", height=0.114, mass=19.96, gyration=0.1025),
@@ -87,21 +80,16 @@ def contenders() -> Iterator[Contender]:
         launches = np.ascontiguousarray(rows[:3])
         question = Question(name, launches, rows[3:] / body.units(launches), launches)
         for tol in _TOLS if body.law is None else _TOLS_OF_A_LAW:
-            yield Contender(
-                question, "sums over the base", f"tol={tol:g}", kept(tol),
-                partial(_integrated, body), _LAUNCHES,
-            )  # fmt: skip
-        some = question.some(slice(_BY_SCIPY))
-        scripts = [("patches and scipy RK45", f"patches={body.patches(n)[1].size}", body.patches(n))
-                   for n in _GRIDS]  # fmt: skip
-        for method, setting, patches in [*scripts, ("a few points, RK45", "", body.few)]:
-            yield Contender(
-                some, method, setting, partial(body.script, *patches), partial(_scripted, body),
-                2, outsider=True,
-            )  # fmt: skip
+            make = partial(_integrated, body, tol)
+            yield Contender(question, "sums over the base", f"tol={tol:g}", make, _LAUNCHES)
+        some, make = question.some(slice(_BY_SCIPY)), partial(_scripted, body, *body.few)
+        for patches in map(body.patches, _GRIDS):
+            words, many = f"patches={patches[1].size}", partial(_scripted, body, *patches)
+            yield Contender(some, "patches and scipy RK45", words, many, 2, outsider=True)
+        yield Contender(some, "a few points, RK45", "", make, 2, outsider=True)
 
 
-def _integrated(body: ThrownBody, tol: float) -> Run:
+def _integrated(body: ThrownBody, tol: float) -> Made:
     """Many launches on one thread."""
 
     def run(launches: FloatArray) -> FloatArray:
@@ -116,11 +104,11 @@ def _integrated(body: ThrownBody, tol: float) -> Run:
             found = ends.end_time, ends.x, ends.y
         return np.stack(found) / body.units(launches)
 
-    return run
+    return None, run
 
 
-def _scripted(body: ThrownBody, script: Callable[..., FloatArray]) -> Run:
-    """One launch after another."""
-    return lambda launches: (
-        np.stack([script(*one) for one in launches.T], axis=1) / body.units(launches)
-    )
+def _scripted(body: ThrownBody, points: FloatArray, weights: FloatArray) -> Made:
+    """What one would write: friction summed over points, scipy's solver over time."""
+    k, height, gravity = body.puck.inertia_radius, 0.5 * body.puck.height, body.puck.gravity
+    _, run = scripted(patch_script(points, weights, k, height, gravity, body.friction))
+    return None, lambda launches: run(launches) / body.units(launches)

@@ -4,25 +4,27 @@ from __future__ import annotations
 
 import os
 import platform
+import re
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, fields, replace
 from functools import partial
 from importlib.metadata import version
+from pathlib import Path
 from timeit import timeit
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
+from puck_tables._core.executor import usable_cores
 from puck_tables._version import __version__
 from puck_tables.accuracy.method_errors import MeasuredMethod
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.kernels.patience import compiled_at_once
 from puck_tables.result import Result
-from puck_tables.tradeoff import body_methods, resultant_methods, state_methods, stop_methods
+from puck_tables.tradeoff import body_methods, motion_methods, resultant_methods
 from puck_tables.tradeoff.truth import Contender, random_points
-
-Progress = Callable[[int, int], None]
 
 REPEATS, QUICK_REPEATS = 25, 5  # of a measurement, of which the least time counts
 _POINTS, _QUICK_POINTS = 4000, 1000  # at which errors are looked for
@@ -31,10 +33,7 @@ _SHORTEST = 1e-3  # s; below it a round repeats the run
 
 @dataclass(frozen=True, eq=False, repr=False)
 class TradeOff(Result):
-    """What was measured.
-
-    ``methods``; the ``machine`` in words; ``repeats``; ``seconds`` it all took.
-    """
+    """Methods with their errors and costs, the machine in words, rounds, what it all took in s."""
 
     methods: tuple[MeasuredMethod, ...]
     machine: dict[str, str]
@@ -52,64 +51,45 @@ class TradeOff(Result):
 
     def dataset(self) -> Dataset:
         """Methods with their errors and costs; the machine as attributes."""
-        names = [field.name for field in fields(MeasuredMethod)]
-        columns = {name: variable(name, self._column(name), ("contender",)) for name in names}
+        columns, dims = {}, ("contender",)
+        for name in (field.name for field in fields(MeasuredMethod)):
+            row = [getattr(method, name) for method in self.methods]
+            values = row if isinstance(row[0], str) else np.asarray(row)
+            columns[name] = variable(name, values, dims)
         told = [f"{method.question}: {method.name}" for method in self.methods]
-        return Dataset({"contender": variable("contender", told, ("contender",))}, columns, {
+        return Dataset({"contender": variable("contender", told, dims)}, columns, {
             "title": "Accuracy against cost of methods to friction resultants, stops and states",
             "repeats": self.repeats, "seconds": self.seconds,
             **{f"machine_{k}": v for k, v in self.machine.items()},
         })  # fmt: skip
 
-    def _column(self, name: str) -> Any:
-        values = [getattr(method, name) for method in self.methods]
-        return values if isinstance(values[0], str) else np.asarray(values)
-
 
 @compiled_at_once()
-def measure(quick: bool = False, progress: Progress | None = None) -> TradeOff:
+def measure(quick: bool = False, progress: Callable[[int, int], None] | None = None) -> TradeOff:
     """Measure accuracy against cost of every method of answering, on one thread of this machine.
 
-    Parameters
-    ----------
-    quick : bool
-        Fewer repeats and points: under a minute instead of some.
-    progress : callable (done, total), optional
-
-    Returns
-    -------
-    TradeOff
-
-    Notes
-    -----
-    Errors: against :mod:`puck_tables.tradeoff.truth`.  Costs: every round runs every method once
-    (or for a millisecond, if that is longer), in turn; the median over the rounds is reported, with
-    the distance between the quartiles.
+    ``quick``: fewer repeats and points.  Errors are against :mod:`puck_tables.tradeoff.truth`.
+    Every round runs every method once (or for a millisecond, if that is longer), in turn; the
+    median over the rounds is the cost, with the distance between the quartiles.
     """
-    begin = time.perf_counter()
-    machine = describe()
-    repeats = QUICK_REPEATS if quick else REPEATS
-    points = random_points(_QUICK_POINTS if quick else _POINTS)
+    begin, machine = time.perf_counter(), describe()
+    repeats, count = (QUICK_REPEATS, _QUICK_POINTS) if quick else (REPEATS, _POINTS)
     contenders = [
-        *resultant_methods.contenders(points),
-        *stop_methods.contenders(),
-        *state_methods.contenders(),
+        *resultant_methods.contenders(random_points(count)), *motion_methods.contenders(),
         *body_methods.contenders(),
-    ]
+    ]  # fmt: skip
+    progress = progress or (lambda done, total: None)
     total = 2 * len(contenders) + repeats
     runs, methods = [], []
     for number, contender in enumerate(contenders):
-        run, count, answers, method = _prepared(contender)
-        runs.append((run, count, answers))
+        run, method = _prepared(contender)
+        runs.append(run)
         methods.append(method)
-        if progress is not None:
-            progress(2 * number + 2, total)
+        progress(2 * number + 2, total)
     costs = np.empty((len(runs), repeats))  # ns
     for repeat in range(repeats):
-        for n, (run, count, answers) in enumerate(runs):
-            costs[n, repeat] = 1e9 * timeit(run, number=count) / (count * answers)
-        if progress is not None:
-            progress(2 * len(runs) + repeat + 1, total)
+        costs[:, repeat] = [run() for run in runs]
+        progress(2 * len(runs) + repeat + 1, total)
     low, middle, high = np.quantile(costs, [0.25, 0.5, 0.75], axis=1)
     timed = (
         replace(method, ns=float(ns), ns_spread=float(spread))
@@ -118,44 +98,37 @@ def measure(quick: bool = False, progress: Progress | None = None) -> TradeOff:
     return TradeOff(tuple(timed), machine, repeats, time.perf_counter() - begin)
 
 
-def _prepared(contender: Contender) -> tuple[Callable[[], object], int, int, MeasuredMethod]:
-    """A run for the clock, how often a round repeats it, how much it answers, and its errors."""
+def _prepared(contender: Contender) -> tuple[Callable[[], float], MeasuredMethod]:
+    """What runs it and says the ns an answer took, for a millisecond or once, and its errors."""
     question = contender.question
     start = time.perf_counter()
-    built = contender.build()
+    kept, run = contender.make()
     build = time.perf_counter() - start
-    run = contender.prepare(built)
     time_error, place_error = question.errors(run(question.inputs))
     error = np.maximum(time_error, place_error)
     clocked = partial(run, np.ascontiguousarray(question.timed[:, : contender.items]))
     answers = np.size(clocked()) // 3
     count = max(1, int(_SHORTEST / timeit(clocked, number=1)))
-    return clocked, count, answers, MeasuredMethod(
+    arrays = kept if isinstance(kept, tuple) else (kept,)
+    method = MeasuredMethod(
         question.name, contender.method, contender.setting, int(contender.outsider),
         error=float(error.max()), median_error=float(np.median(error)),
         time_error=float(time_error.max()), place_error=float(place_error.max()),
-        ns=0.0, ns_spread=0.0, bytes=_bytes(built), build_s=build,
+        ns=0.0, ns_spread=0.0, build_s=build,
+        bytes=sum(one.nbytes for one in arrays if isinstance(one, np.ndarray)),
     )  # fmt: skip
-
-
-def _bytes(built: object) -> int:
-    """Of the tables that a method keeps."""
-    each = built if isinstance(built, tuple) else (built,)
-    return sum(one.nbytes for one in each if isinstance(one, np.ndarray))
+    return lambda: 1e9 * timeit(clocked, number=count) / (count * answers), method
 
 
 def describe() -> dict[str, str]:
     """The machine a measurement was made on, in words: processor, system and versions."""
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     load = f"{os.getloadavg()[0]:.1f}" if hasattr(os, "getloadavg") else "unknown"
-    try:
-        with open("/proc/cpuinfo", encoding="utf-8") as file:
-            named = [line.partition(":")[2].strip() for line in file if "model name" in line]
-    except OSError:
-        named = []
+    about, named = Path("/proc/cpuinfo"), list[str]()
+    with suppress(OSError):
+        named = re.findall(r"model name\s*: (.*)", about.read_text("utf-8"))
     return {
         "processor": (named or [platform.processor() or platform.machine()])[0],
-        "cores": str(cores), "load": f"{load} at the start",
+        "cores": str(usable_cores()), "load": f"{load} at the start",
         "system": f"{platform.system()} {platform.machine()}",
         "python": platform.python_version(),
         **{name: version(name) for name in ("numpy", "numba", "scipy")},

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,17 +13,15 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.closed_form_kernel import friction_ratios
 from puck_tables.kernels.compile import allocating
+from puck_tables.tradeoff.truth import Contender, Made, Question
 
 # tolerances that reach about 1e-4, 1e-6, 1e-8, 1e-11 for usual starts; the absolute one has to be
 # small, or the steps jump over the stop and the solver trembles there for ever
-SCIPY_SETTINGS = (
-    ("RK45", 1e-5, 1e-9),
-    ("LSODA", 1e-5, 1e-7),
-    ("LSODA", 1e-8, 1e-9),
-    ("DOP853", 1e-6, 1e-10),
+_SETTINGS = (
+    ("RK45", 1e-5, 1e-9), ("LSODA", 1e-5, 1e-7), ("LSODA", 1e-8, 1e-9), ("DOP853", 1e-6, 1e-10),
     ("DOP853", 1e-11, 1e-13),
-)
-PATCH_GRID = (20, 40)  # radial and angular patches
+)  # fmt: skip
+_GRID = (20, 40)  # radial and angular patches
 _END = 1e-8  # of Q, where the integration is called finished
 _PATCH_END = 1e-3  # of Q₀, at which it counts as at rest
 _MOST_CALLS = 20_000  # of the right-hand side: then it is given up
@@ -37,27 +37,21 @@ def rates(t: float, state: FloatArray, delta: float) -> FloatArray:
     inverse, across, turning = friction_ratios(min(speed, rim) / max(speed, rim), fast, delta)
     along, left = -1.0 / (inverse * q), -across * spin / (inverse * q * q)
     out = np.empty(5)
-    out[0] = along * vx - left * vy
-    out[1] = along * vy + left * vx
-    out[2] = -turning / inverse * spin / q
-    out[3] = vx
-    out[4] = vy
+    out[0], out[1] = along * vx - left * vy, along * vy + left * vx
+    out[2], out[3], out[4] = -turning / inverse * spin / q, vx, vy
     return out
 
 
 def _until_stopped(
     function: Any, start: tuple[float, ...], end: float, longest: float = 2.0, **options: Any
 ) -> FloatArray:
-    """Time and place when the slip speed Q has fallen to ``end`` of its start; NaN if never.
-
-    ``start``: three velocities, x, y and what else there is; ``longest``: time over Q.
-    """
+    """Time, x, y when Q of ``start`` has fallen to its ``end``; NaN if not within ``longest`` Q."""
     from scipy.integrate import solve_ivp
 
     q0, calls = math.hypot(*start[:3]), 0
 
     def left(t: float, state: FloatArray, *_: float) -> float:
-        return math.hypot(state[0], state[1], state[2]) - end * q0
+        return math.hypot(*state[:3]) - end * q0
 
     def counted(t: float, state: FloatArray, *args: float) -> Any:
         nonlocal calls
@@ -67,28 +61,35 @@ def _until_stopped(
         return function(t, state, *args)
 
     left.terminal = True  # type: ignore[attr-defined]
-    try:
+    with suppress(TimeoutError):
         solution = solve_ivp(counted, (0.0, longest * q0), start, events=left, **options)
-    except TimeoutError:
-        return np.full(3, math.nan)
-    if solution.status != 1:
-        return np.full(3, math.nan)
-    return np.array([solution.t[-1], *solution.y[3:5, -1]])
+        if solution.status == 1:
+            return np.array([solution.t[-1], *solution.y[3:5, -1]])
+    return np.full(3, math.nan)
+
+
+def scripted(stop: Callable[..., FloatArray], *fixed: Any) -> Made:
+    """Nothing kept; ``stop`` asked of one launch after another: its velocities and what follows."""
+    return None, lambda launches: np.stack([stop(*fixed, *one[:4]) for one in launches.T], axis=1)
 
 
 def scipy_stop(
     method: str, rtol: float, atol: float, vx: float, vy: float, spin: float, delta: float
 ) -> FloatArray:
-    """Stop time, x, y by ``solve_ivp`` on the closed forms.
-
-    Examples
-    --------
-    >>> scipy_stop("DOP853", 1e-9, 1e-12, 1.0, 0.0, 5.0, 1.0).round(6).tolist()
-    [4.000189, 2.257241, -0.308477]
-    """
+    """Stop time, x, y by ``solve_ivp`` on the closed forms."""
     return _until_stopped(
         rates, (vx, vy, spin, 0.0, 0.0), _END, method=method, rtol=rtol, atol=atol, args=(delta,)
     )
+
+
+def scripts(easy: Question) -> Iterator[Contender]:
+    """What one would write for stops of a homogeneous round puck."""
+    for method, rtol, atol in _SETTINGS:
+        make = partial(scripted, scipy_stop, method, rtol, atol)
+        name, words = f"scipy {method}, closed forms", f"rtol={rtol:g} atol={atol:g}"
+        yield Contender(easy, name, words, make, 1, outsider=True)
+    words, make = f"patches={_GRID[0]}x{_GRID[1]}", partial(scripted, disc_by_patches)
+    yield Contender(easy, "patches and scipy RK45", words, make, 1, outsider=True)
 
 
 def patch_script(
@@ -97,19 +98,8 @@ def patch_script(
 ) -> Callable[[float, float, float], FloatArray]:  # fmt: skip
     """A function of vx, vy, ω to stop time, x, y: friction summed over patches, scipy's defaults.
 
-    Parameters
-    ----------
-    points, weights : arrays (2, n), m, and (n,)
-        Patches of the base, from the centre of mass.
-    gyration, height, gravity : k, height of the centre of mass (m), g (m/s²)
-    friction : the coefficient at slip speeds (n,)
-
-    Examples
-    --------
-    >>> corners = 0.1 * np.array([[1.0, 1.0, -1.0, -1.0], [1.0, -1.0, 1.0, -1.0]])
-    >>> stop = patch_script(corners, np.full(4, 0.25), 0.1, 0.0, 10.0, np.ones_like)
-    >>> stop(1.0, 0.0, 0.0).round(3).tolist()  # v/J, v²/2J
-    [0.1, 0.05, 0.0]
+    ``points`` (2, n), m, from the centre of mass, with ``weights`` (n,); ``gyration`` k and
+    ``height`` of the centre of mass, m; ``gravity``, m/s²; ``friction``: at slip speeds (n,).
     """
     inertia = np.linalg.inv(weights * points @ points.T)
 
@@ -147,12 +137,6 @@ def ring_patches(
 
 
 def disc_by_patches(vx: float, vy: float, spin: float, delta: float) -> FloatArray:
-    """Stop time, x, y of a homogeneous round puck (J = r = 1) by such a script.
-
-    Examples
-    --------
-    >>> disc_by_patches(1.0, 0.0, 5.0, 1.0).round(2).tolist()
-    [4.0, 2.26, -0.31]
-    """
-    points, weights = ring_patches(0.0, 1.0, *PATCH_GRID)
+    """Stop time, x, y of a homogeneous round puck (J = r = 1) by such a script."""
+    points, weights = ring_patches(0.0, 1.0, *_GRID)
     return patch_script(points, weights, 0.5**0.5, 0.25 * delta, 1.0, np.ones_like)(vx, vy, spin)

@@ -6,7 +6,6 @@ by a script of its own (``tests/golden/make_starts.py``: mpmath, nothing of the 
 
 from __future__ import annotations
 
-import io
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from importlib.resources import files
@@ -21,6 +20,7 @@ from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.resultants import moment_balance
 
 Run = Callable[[FloatArray], FloatArray]  # from inputs (rows, n) to answers (3, n, …)
+Made = tuple[Any, Run]  # what a method keeps, and how it answers
 RESULTANTS = "resultants"
 DELTA = 0.5  # dimensionless: that of a puck that nothing is said of
 _TIMED = 40_000  # inputs timed
@@ -45,10 +45,7 @@ class Question:
         return replace(self, inputs=inputs, truth=self.truth[:, chosen])
 
     def errors(self, answers: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Errors of time and place (n, …), no number being infinitely wrong.
-
-        Of resultants the first is zero and the second the largest of the three.
-        """
+        """Errors of time and place (n, …), of resultants 0 and the largest; NaN errs by ∞."""
         off = np.nan_to_num(np.abs(answers - self.truth), nan=np.inf)
         if self.name == RESULTANTS:
             return 0.0 * off[0], off.max(axis=0)
@@ -57,23 +54,14 @@ class Question:
 
 @dataclass(frozen=True, eq=False)
 class Contender:
-    """A method before it is measured: ``build`` makes what it keeps, ``prepare`` a run from that.
-
-    ``items``: inputs answered at once on the clock, all of them by default.
-    """
+    """A method before it is measured; ``items``: inputs answered at once on the clock, or all."""
 
     question: Question
     method: str
     setting: str
-    build: Callable[[], Any]
-    prepare: Callable[[Any], Run]
+    make: Callable[[], Made]
     items: int | None = None
     outsider: bool = False
-
-
-def kept(value: Any) -> Callable[[], Any]:
-    """A build of what is there already."""
-    return lambda: value
 
 
 def filled(fill: Callable[[FloatArray, FloatArray], object], rows: int = 3) -> Run:
@@ -94,11 +82,9 @@ def random_points(count: int, seed: int = 1832) -> Question:
     """Half of them anywhere, half next to φ = 0, π/4, π/2, with δ = 0 and 1 among the heights."""
     rng = np.random.default_rng(seed)
     phi = rng.uniform(0.0, 0.5 * np.pi, count)
-    near = 10.0 ** -rng.uniform(0.2, 12.0, count)
-    quarter, half = 0.25 * np.pi, 0.5 * np.pi
-    beside = np.choose(
-        rng.integers(0, 4, count), [near, quarter - near, quarter + near, half - near]
-    )
+    near, quarter, half = 10.0 ** -rng.uniform(0.2, 12.0, count), 0.25 * np.pi, 0.5 * np.pi
+    sides = [near, quarter - near, quarter + near, half - near]
+    beside = np.choose(rng.integers(0, 4, count), sides)
     phi = np.where(np.arange(count) % 2 == 0, phi, beside.clip(0.0, half))
     delta = rng.choice([0.0, 1.0, -1.0], count, p=[0.1, 0.1, 0.8])
     delta = np.where(delta < 0.0, rng.random(count), delta)
@@ -110,9 +96,8 @@ def random_points(count: int, seed: int = 1832) -> Question:
 
 def kept_arrays(name: str) -> dict[str, FloatArray]:
     """The arrays in a file that comes with the package."""
-    content = (files("puck_tables.tables") / name).read_bytes()
-    with np.load(io.BytesIO(content)) as file:
-        return dict(file)
+    with (files("puck_tables.tables") / name).open("rb") as file, np.load(file) as arrays:
+        return dict(arrays)
 
 
 def golden_starts() -> tuple[Question, Question, FloatArray]:

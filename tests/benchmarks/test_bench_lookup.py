@@ -21,7 +21,7 @@ from puck_tables.contact.resultants import moment_balance
 from puck_tables.kernels.closed_form_kernel import _fill
 from puck_tables.kernels.quadratic import fill_resultants
 from puck_tables.table.resultant_table import ResultantTable
-from puck_tables.tradeoff.bicubic import fill_bicubic, graded_coefficients
+from puck_tables.tradeoff.resultant_methods import fill_bicubic, graded_coefficients
 
 FloatArray = npt.NDArray[np.float64]
 
