@@ -35,8 +35,9 @@ MOST_EDGES = 6  # under one base: every cut may double the pieces of its contour
 # of the reach: the centre of mass is taken to be this far on the floor at least, for what is
 # pressed shrinks to a line as it comes to an edge
 _LEAST = 1e-4
-_SETTLED = 1e-13  # of the pressure: it does not move any more
-_ROUNDS, _WHOLE_STEPS = 200, 60  # at most; near an edge each takes off a third of what is pressed
+# of the pressure: it does not move any more; below the other, less only if it is not rounding
+_SETTLED, _NEAR = 1e-13, 1e-3
+_ROUNDS = 200  # at most; near an edge each takes off a third of what is pressed
 
 Moments = tuple[float, float, float, float, float, float]
 Left = tuple[int, int, float, float, float]
@@ -112,8 +113,8 @@ def left_on_floor(floor_map: FloatArray, mx: float, my: float) -> Left:
     if not cut:
         return 0, 0, 0.0, 0.0, 0.0
     a, bx, by = _pressure(floor_map, first, last, mx, my)
-    pressed, until = first, last
-    for k in range(_ROUNDS):
+    pressed, until, last_move = first, last, math.inf
+    for _ in range(_ROUNDS):
         slope = math.sqrt(bx * bx + by * by)
         if a >= slope * reach:
             break
@@ -123,9 +124,9 @@ def left_on_floor(floor_map: FloatArray, mx: float, my: float) -> Left:
         pressed = to
         na, nx, ny = _pressure(floor_map, to, until, mx, my)
         moved = abs(na - a) + reach * (abs(nx - bx) + abs(ny - by))
-        settled = moved <= _SETTLED * (abs(na) + reach * (abs(nx) + abs(ny)))
-        share = 1.0 if k < _WHOLE_STEPS else 0.5
-        a, bx, by = a + share * (na - a), bx + share * (nx - bx), by + share * (ny - by)
-        if settled:
+        moved /= abs(na) + reach * (abs(nx) + abs(ny))
+        a, bx, by = na, nx, ny
+        if moved <= _SETTLED or (moved < _NEAR and moved >= last_move):
             break
+        last_move = moved
     return pressed, until, a, bx, by

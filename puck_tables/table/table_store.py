@@ -10,7 +10,7 @@ import hashlib
 import json
 import os
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from pathlib import Path
 from typing import Any, TypeVar, cast, overload
 
@@ -144,7 +144,8 @@ def table_for(
         name = law.name.replace(":", "-")
 
     def build() -> ResultantTable | SpeedTable:
-        with watched("tabulating the law, once") as show:
+        with watched("tabulating the friction law, once") if how else nullcontext() as show:
             return kind.build(law, wanted, progress=progress or show, **how)
 
-    return fetch(f"{name}-{wanted or 'default'}", {"law": law, "accuracy": wanted, **how}, build)
+    stem = f"{name}-{'default' if wanted is None else f'{wanted:g}'}"
+    return fetch(stem, {"law": law, "accuracy": wanted, **how}, build)

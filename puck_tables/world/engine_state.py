@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from operator import itemgetter
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -104,7 +105,8 @@ class Engine(NamedTuple):
 # what never changes: tables, floors and obstacles; in the ground it is written who lies where
 _SHARED = ("floors", "surface", "forcing", "spans", "rims", "obstacles", "lookups", "launches")
 _GROWS = ("pieces", "events", "history", "work_rows")  # rows are added after those that are counted
-_CHANGES = [name not in (*_SHARED, *_GROWS, "regions") for name in Engine._fields]
+_STAYS = {*_SHARED, *_GROWS, "regions"}
+_changing = itemgetter(*(k for k, name in enumerate(Engine._fields) if name not in _STAYS))
 
 
 def copy_of(engine: Engine) -> Engine:
@@ -115,14 +117,15 @@ def copy_of(engine: Engine) -> Engine:
     return Engine(regions=regions._replace(floor_map=regions.floor_map.copy()), **own)
 
 
-def kept(engine: Engine) -> Engine:
-    """The state as it is, to go back to: what is added to it later is not counted there."""
-    parts: Any = engine
-    pairs = zip(_CHANGES, parts, strict=True)
-    same = Engine._make([part.copy() if changes else part for changes, part in pairs])
-    if not engine.regions.floor_map.size:
-        return same
-    return same._replace(regions=engine.regions._replace(floor_map=engine.regions.floor_map.copy()))
+def kept(engine: Engine) -> list[Any]:
+    """What changes of a state, to go back to: what is added to it later is not counted there."""
+    return [part.copy() for part in (*_changing(engine), engine.regions.floor_map)]
+
+
+def go_back(engine: Engine, parts: list[Any]) -> None:
+    """Make a state again what it was when its parts were kept."""
+    for part, before in zip((*_changing(engine), engine.regions.floor_map), parts, strict=True):
+        part[...] = before
 
 
 def led_rows(engine: Engine) -> FloatArray:

@@ -13,6 +13,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import finite_array, real
 from puck_tables.errors import InputError, PuckError
 from puck_tables.kernels.compile import entry_of
+from puck_tables.scene.ingredients import FREE
 from puck_tables.scene.pucks_and_posts import called_line
 from puck_tables.scene.run import Event
 from puck_tables.scene.scene_spec import SceneSpec
@@ -31,7 +32,7 @@ from puck_tables.world.lasting import (
     next_target,
 )
 from puck_tables.world.law_range import with_law_for
-from puck_tables.world.layout import EDGE, KIND, POCKET
+from puck_tables.world.layout import EDGE, HOLD, KIND, LIGHTNESS, POCKET, RADIUS
 from puck_tables.world.lone import LONGEST
 from puck_tables.world.obstacles import obstacle_names
 from puck_tables.world.passings import Passings
@@ -90,6 +91,9 @@ class Running:
         pucks = pucks_of(self.scene)
         self.names = tuple(called(puck, number) for number, puck in enumerate(pucks))
         self._obstacles = obstacle_names(self.scene)
+        discs = self._engine.discs
+        self._free = bool(((discs[:, HOLD] == FREE) & (discs[:, LIGHTNESS] > 0.0)).all())
+        self._widest = float(discs[:, RADIUS].max())
 
     def __repr__(self) -> str:
         title = f"{self.scene.title}, " if self.scene.title else ""
@@ -451,9 +455,10 @@ class _OrAsBefore:
         self._world = world
 
     def __enter__(self) -> None:
-        self._kept = {**self._world.__dict__, "_engine": g.kept(self._world._engine)}
+        self._before, self._parts = self._world.__dict__.copy(), g.kept(self._world._engine)
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         if kind is not None:
+            g.go_back(self._before["_engine"], self._parts)
             self._world.__dict__.clear()
-            self._world.__dict__.update(self._kept)
+            self._world.__dict__.update(self._before)

@@ -39,6 +39,7 @@ from puck_tables.world.running import Running
 from puck_tables.world.segment import GONE
 from puck_tables.world.segment_starts import CONCERNED, NOT_CONCERNED, room_for
 
+_ALL = slice(None)
 _SURELY = 1.0 - 1e-12  # of the fastest slip yet: below it rounding makes none faster
 
 
@@ -177,11 +178,13 @@ class World(Running):
                 f"states must be rows of 6 numbers for {len(self.names)} pucks, got the shape "
                 f"{rows.shape}"
             )
-        rows, discs = rows[self._order], np.arange(len(rows))
-        gone = self._engine.kinds == GONE
-        if gone.any():
-            discs = discs[~gone | (rows != self._all_now()).any(axis=1)]
-        self._put(g.PLACED, rows[discs], discs)
+        rows, kinds = rows.take(self._order, 0), self._engine.kinds
+        if GONE in kinds.tolist():
+            back = (kinds != GONE) | (rows != self._all_now()).any(axis=1)
+            if back.any():
+                self._put(g.PLACED, rows[back], np.flatnonzero(back))
+        else:
+            self._put(g.PLACED, rows, _ALL)
 
     def remove(self, puck: int | str) -> None:
         """Take a puck out of play, now; an event says "removed".  :meth:`place` brings it back.
@@ -374,29 +377,36 @@ class World(Running):
         if not np.hypot(state[VX], state[VY]) <= self._engine.scale[0]:
             set_scales(self._engine, np.zeros((len(self.names), 6)))
 
-    def _put(self, what: int, rows: FloatArray, discs: int | Whole) -> None:
+    def _put(self, what: int, rows: FloatArray, discs: int | slice | Whole) -> None:
         """Give discs their states, NaN: as it is, by an event; all or nothing."""
         engine, room = self._engine, self._room
         with self._or_as_before():
             engine.counts[g.N_AT_ONCE] = 0
             if what in (g.STRUCK, g.PLACED, g.ADDED) and not self._is_slow(rows, discs):
-                self._see_to(what, np.atleast_2d(rows), np.atleast_1d(discs))
+                numbers = np.atleast_1d(np.arange(len(self.names))[discs])
+                self._see_to(what, np.atleast_2d(rows), numbers)
             room.marks[:] = NOT_CONCERNED
             room.marks[discs] = CONCERNED
             room.before[discs] = rows
             self._advance(self.time, what)
 
-    def _is_slow(self, rows: FloatArray, discs: int | Whole) -> bool:
-        """Whether one free disc does not slip faster than anything has yet, on a floor at rest."""
-        if not isinstance(discs, int):
+    def _is_slow(self, rows: FloatArray, discs: int | slice | Whole) -> bool:
+        """Whether free discs do not slip faster than anything has yet, on a floor at rest."""
+        engine, radius, stays = self._engine, self._widest, False
+        if moves_along(engine.surface) or law_goes_to(engine.regions) < math.inf:
             return False
-        disc, (*_, vx, vy, spin) = self._engine.discs[discs], rows.tolist()
-        if disc[HOLD] != FREE or disc[LIGHTNESS] == 0.0 or moves_along(self._engine.surface):
+        if isinstance(discs, int):
+            disc, (*_, vx, vy, spin) = engine.discs[discs], rows.tolist()
+            if disc[HOLD] != FREE or disc[LIGHTNESS] == 0.0:
+                return False
+            radius, stays = disc[RADIUS], vx != vx and spin != spin
+        elif self._free:  # as if one had all that is largest
+            vx, vy, spin = np.abs(rows[:, VX:]).max(axis=0).tolist()
+        else:
             return False
-        fast = math.hypot(vx, vy, disc[RADIUS] * spin)
+        fast = math.hypot(vx, vy, radius * spin)
         slow = fast <= _SURELY * self._engine.scale[0]  # not of NaN; what is near is seen to
-        stays = vx != vx and spin != spin
-        return bool(slow or stays) and law_goes_to(self._engine.regions) == math.inf
+        return bool(slow or stays)
 
     def _see_to(self, what: int, rows: FloatArray, discs: Whole) -> None:
         """Refuse what does not fit, see to the scales, and lead what is led from there."""
