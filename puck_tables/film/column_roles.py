@@ -7,8 +7,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from puck_tables._core.header import header_of
 from puck_tables._core.text import TextForm
+from puck_tables._core.text_rows import header_of
 from puck_tables.errors import InputError
 from puck_tables.film.headings import Heading, heading, headings, on_a_line
 from puck_tables.film.rates import ANGLES, NO_ACCELERATIONS, PLACES

@@ -10,23 +10,65 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.blade_axes import by_blade, by_floor, has_axes, rates_by_blade
-from puck_tables.scene.equations import FIRST, rates
+from puck_tables.scene.equations import FIRST, GIVEN, SIZE, kinetic_energy, rates, slip_change
 from puck_tables.scene.explicit import STAGES, explicit_step
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.ingredients import (
     BLADE,
     CARRIED,
     FREE,
+    NO_WAY,
     PIVOT,
     RAIL,
     SLIDES,
+    Body,
     Hold,
     Phase,
     Surface,
     floor_acceleration,
     floor_velocity,
 )
+from puck_tables.scene.moments import REST, direction_of_end
 from puck_tables.scene.radau import radau_step
+from puck_tables.scene.rest import SLACK, excess_at_rest
+
+_ULP = 4e-16  # of a number: rounding of steps to it
+_FIRST = 1e-16  # of the scale of speeds: what a slip begins with, for its direction
+_QUICK = 0.01  # of friction: a slip that grows faster has its direction from the first
+
+
+@inlined
+def follow_scales(scale: FloatArray, tolerance: float, body: Body, y: FloatArray) -> None:
+    """Let the scales follow a motion that leaves them: no step is better than rounding.
+
+    Energies are known to a share of the largest.
+    """
+    for i in range(GIVEN):
+        scale[i] = max(scale[i], _ULP / tolerance * abs(y[i]))
+    largest = kinetic_energy(body, y)
+    for i in range(GIVEN, SIZE):
+        largest = max(largest, abs(y[i]))
+    for i in range(GIVEN, SIZE):
+        scale[i] = max(scale[i], largest)
+
+
+@inlined
+def up_to_the_stop(
+    phase: Phase, h: float, q: float, least: float, pull: float, reach: float, y: FloatArray,
+    work: FloatArray,
+) -> float:  # fmt: skip
+    """The length of a step, no longer than where a slip q ≥ 0 leads.
+
+    ``pull``: how fast the slip changes.  An implicit step takes at most the share ``reach`` of the
+    time in which that is as much as the slip, or ``least``; explicit ones that share of what brakes
+    it, or turns it.
+    """
+    near, radius = max(q, least), phase.model.body.radius
+    brakes = -slip_change(radius, y, work) if q > 0.0 else 0.0
+    most = pull / reach
+    if phase.newton == 0.0 and brakes > 0.0:
+        most = max(math.sqrt(max(pull * pull - brakes * brakes, 0.0)), brakes) / reach
+    return near / most if h * most > near else h
 
 
 @inlined
@@ -92,3 +134,30 @@ def step(
     elif phase.mode == SLIDES and model.hold.kind != FREE:
         _put_right(model.hold, model.surface, t + h, new)
     return error
+
+
+@inner
+def from_standstill(
+    phase: Phase, speed: float, t: float, y: FloatArray, work: FloatArray
+) -> tuple[int, bool, float]:
+    """Its mode from now on, whether the slip that begins settles fast, and its size in ``y``.
+
+    ``phase``: as it would be carried; ``speed``: the scale of speeds; ``work``: to work in.
+    """
+    model, load = phase.model, phase.friction.load
+    excess, nx, ny, nw = excess_at_rest(phase, t, y)
+    if excess <= SLACK * load:
+        return CARRIED, False, 0.0
+    q = 2.0 * REST * speed
+    slips = Phase(model, phase.friction, phase.piece, SLIDES, NO_WAY, 0.0)
+    if model.surface.static > 1.0:  # once it slips that holds no more
+        excess, nx, ny, nw = excess_at_rest(slips, t, y)
+    if excess == math.inf:  # it is led where the floor does not go
+        return SLIDES, False, 0.0
+    if excess <= _QUICK * load:
+        q = _FIRST * speed
+        y[VX], y[VY], y[SPIN] = q * nx, q * ny, q * nw
+        return SLIDES, True, q
+    y[VX], y[VY], y[SPIN] = q * nx, q * ny, q * nw
+    direction_of_end(slips, t, q, y, work)
+    return SLIDES, True, q
