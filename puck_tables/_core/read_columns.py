@@ -174,8 +174,6 @@ def list_of(path: str | Path, column: InputColumn, most: int) -> FloatArray | No
 
     None for a file of several columns.
 
-    Examples
-    --------
     >>> from puck_tables._core.quantities import TIME
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:

@@ -291,8 +291,6 @@ class Blocks:
     Each is a box, as a store of arrays wants it, and a run of items in C order, as the work is
     done: the last axes are whole, one is cut evenly, those before it one by one.
 
-    Examples
-    --------
     >>> blocks = Blocks((3, 10), 6)
     >>> blocks.box, blocks.count, blocks.run(1), blocks.place(1)
     ((1, 5), 6, (5, 10), (0, 1))

@@ -42,8 +42,6 @@ def film_in_text(
 ) -> Film:
     r"""The film in a table of text whose columns are known; ``content``: its bytes, if read.
 
-    Examples
-    --------
     >>> form = text_form_of("a.tsv", b"7\t9\n8\t9\n")
     >>> layout = Layout([("", Heading("x", "", "mm")), ("", Heading("y", "", "mm"))], "file")
     >>> film_in_text("a.tsv", form, layout, b"7\t9\n8\t9\n").bodies[0].marks[""].tolist()
@@ -93,8 +91,6 @@ def film_of_columns(
     ``values``: numbers (n,) by the number of a column; ``words``: of columns of texts, for each row
     the number of its text, and the texts; ``notes``: what was found, in sentences.
 
-    Examples
-    --------
     >>> layout = Layout([("", Heading("time")), ("", Heading("x")), ("", Heading("y"))])
     >>> film_of_columns("a", layout, dict(enumerate(np.eye(3))), {}).bodies[0].marks[""].tolist()
     [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]
@@ -133,8 +129,6 @@ def film_of_columns(
 def csv_of(rows: Iterable[Iterable[Any]]) -> bytes:
     r"""Rows of cells as a CSV file (UTF-8), which is then read as any other; None is left empty.
 
-    Examples
-    --------
     >>> csv_of([["t", "x"], [0.5, None]])
     b't,x\n0.5,\n'
     """
@@ -154,8 +148,6 @@ def film_below(
     up; ``rate``: frames a second, where the lines say it and no column holds times; ``content``:
     all of the table, where other things stand below it.
 
-    Examples
-    --------
     >>> import tempfile
     >>> columns = [("", Heading("x", "", "mm")), ("", Heading("y", "", "mm"))]
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -338,8 +330,6 @@ def _flags(
 def is_clock(text: str) -> bool:
     """Whether a text is a time with or without a date: 2025-12-11T10:30:45.12, 30:45.12.
 
-    Examples
-    --------
     >>> is_clock("2025-12-11 10:30:45,5"), is_clock("1:02.5"), is_clock("12.5")
     (True, True, False)
     """
@@ -349,8 +339,6 @@ def is_clock(text: str) -> bool:
 def seconds(where: str, texts: Sequence[str]) -> FloatArray:
     """Times (n,) in s, from the first one on; NaN for empty texts; ``where``: for messages.
 
-    Examples
-    --------
     >>> seconds("a.csv", ["23:59:59.75", "", "24:00:00.5"]).tolist()
     [0.0, nan, 0.75]
     """

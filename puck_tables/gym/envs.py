@@ -231,8 +231,6 @@ class ManyTables(VectorEnv[Seen, Any, Any]):
 class OneTable(gymnasium.Env[Seen, Any]):
     """A game on one board; parameters as of :class:`ManyTables`, and factors drawn at each game.
 
-    Examples
-    --------
     >>> table = OneTable("Crokinole")
     >>> seen, _ = table.reset(seed=1)
     >>> table.step([0.0, 0.1, 0.2])[1] in (0.0, 5.0, 10.0, 15.0, 20.0)
@@ -282,8 +280,6 @@ def varied(scene: SceneSpec, spread: float, rng: np.random.Generator) -> SceneSp
 
     Factors are from 1 − spread to 1 + spread; no restitution goes beyond 1.
 
-    Examples
-    --------
     >>> from puck_tables import Scene
     >>> other = varied(Scene.load("carrom-break"), 0.1, np.random.default_rng(1))
     >>> round(other.pucks[0].friction, 6), round(other.walls[0].restitution, 6)

@@ -308,8 +308,6 @@ def orders(steps: Sequence[float], errors: Sequence[float]) -> list[float]:
 def verdict(steps: Sequence[float], errors: Sequence[float]) -> str:
     """In words, what the last of these orders says.
 
-    Examples
-    --------
     >>> verdict([0.1, 0.05], [4.0, 1.0]), verdict([0.1, 0.05], [1.0, 1.0])
     ('order 2.00', 'does not fall with the step (order 0.00): it is of the model, not of the step')
     """

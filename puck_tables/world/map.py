@@ -54,8 +54,6 @@ class Map(SceneEnds):
     def numbers(self, run: int) -> dict[str, float]:
         """The numbers of the scene in a run, counted from 0 with the last range fastest, by path.
 
-        Examples
-        --------
         >>> from puck_tables import Launch, Puck, Scene
         >>> ranges = {"puck.friction": [0.1, 0.2], "launch.spin": [0.0, 3.0]}
         >>> scene = Scene(Puck(0.04), launch=Launch((1.0, 0.0)), ranges=ranges)
@@ -112,8 +110,6 @@ def largest_error(ends: SceneEnds) -> float:
     Of :data:`CHECKED` runs that have an end, spread evenly: how far a run alone is from it, and the
     error estimate of that.  NaN where none has an end.
 
-    Examples
-    --------
     >>> from puck_tables import Launch, Puck, Scene
     >>> scene = Scene(Puck(0.04, friction=0.2), launch=Launch((1.0, 0.0), spin=[0.0, 5.0]))
     >>> largest_error(scene.sweep()) <= scene.tol
