@@ -54,13 +54,20 @@ from puck_tables.scene.ingredients import (
     surface_at,
     surface_now,
 )
-from puck_tables.scene.moments import NOTHING, REST, first_event_on, goes_straight, lost, rests_on
+from puck_tables.scene.moments import (
+    NOTHING,
+    REST,
+    first_event_on,
+    from_standstill,
+    goes_straight,
+    lost,
+    rests_on,
+)
 from puck_tables.scene.over_time import rows_passed
 from puck_tables.scene.radau import RADAU_ROWS
 from puck_tables.scene.steps import (
     accelerations,
     follow_scales,
-    from_standstill,
     step,
     up_to_the_stop,
 )
