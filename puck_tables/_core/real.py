@@ -114,7 +114,8 @@ def _in(unit: str) -> str:
 def finite_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
     """Values as an array of finite numbers."""
     array = real_array(name, values, unit)
-    if not np.isfinite(array).all():
+    squares = np.vdot(array, array)  # one pass; it may overflow
+    if not (math.isfinite(squares) or np.isfinite(array).all()):
         raise InputError(
             f"{name} must be finite numbers{_in(unit)}, got {array[~np.isfinite(array)].flat[0]}"
         )

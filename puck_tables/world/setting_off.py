@@ -7,16 +7,18 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.scene.ingredients import FREE
 from puck_tables.world.contact_row import ACTS, NX, NY, approach
 from puck_tables.world.contact_search import QUIET
 from puck_tables.world.engine_state import GOT, N_CONTACTS, N_EVENTS, PLACED, REMOVED, Engine
-from puck_tables.world.floor_under import lay_down, slips
+from puck_tables.world.floor_under import law_goes_to, lay_down, moves_along, slips
 from puck_tables.world.impact import as_forces
 from puck_tables.world.layout import (
     ARC,
     CORNER,
     DECEL,
     EDGE,
+    HOLD,
     KIND,
     LIGHTNESS,
     OVERHANG,
@@ -33,6 +35,7 @@ from puck_tables.world.putting_right import stop_slips
 from puck_tables.world.segment import GONE, STILL
 from puck_tables.world.segment_starts import (
     CONCERNED,
+    GIVEN,
     NOT_CONCERNED,
     SENT,
     Room,
@@ -53,9 +56,12 @@ from puck_tables.world.touching import (
 )
 
 # how a call of the engine ends
-REACHED, FULL, CROWDED, TANGLED, PAUSED, PUSHING, OFF_TABLE, TOO_SHORT, MISPLACED = range(9)
+(
+    REACHED, FULL, CROWDED, TANGLED, PAUSED, PUSHING, OFF_TABLE, TOO_SHORT, MISPLACED, UNSEEN,
+) = range(10)  # fmt: skip
 
 OVERLAP = 1e-11  # of the radius: what pushes overlaps by less, and may be put where it was
+_SURELY = 1.0 - 1e-12  # of the fastest slip yet: below it rounding makes none faster
 _KEPT, _PUT, _MOVED, _MATE = range(4)  # what is done to a disc: nothing, a state, also a place
 _ROUNDED = 4e-16  # of the speeds of both: less cannot be taken out
 _ROUNDS = 8  # of contacts that approach as others are stopped, at most
@@ -218,26 +224,43 @@ def _put_down(engine: Engine, i: int, what: int, t: float, moved: bool, room: Ro
         locate(engine, i, t, room)
 
 
+@inlined
+def _is_unseen(engine: Engine, i: int, swift: bool, state: FloatArray) -> bool:
+    """Whether a state of a disc, if ``swift`` with another velocity, asks for more than a look."""
+    disc = engine.discs[i]
+    if disc[HOLD] != FREE or disc[LIGHTNESS] == 0.0:
+        return True
+    if moves_along(engine.surface) or law_goes_to(engine.regions) < math.inf:
+        return True
+    slip = math.hypot(math.hypot(state[VX], state[VY]), disc[RADIUS] * state[SPIN])
+    return swift and not slip <= _SURELY * engine.scale[0]
+
+
 @inner
 def put(engine: Engine, what: int, t: float, room: Room) -> int:
     """Give marked pucks the states ``room.before``, as by an impact from outside; how it ended.
 
     NaN in them stays as it is; nothing is PLACED where it is.  REMOVED: they leave play.
-    MISPLACED: nothing was changed, for one would overlap, see :func:`_overlaps`.
+    MISPLACED: nothing was changed, for one would overlap, see :func:`_overlaps`.  UNSEEN: neither,
+    for of those that are marked as GIVEN one is more than a free disc that surely slips no faster
+    than anything has yet.
     """
     count, moves = engine.discs.shape[0], False
     for i in range(count):
         room.shares[i] = _KEPT
-        if room.marks[i] != CONCERNED:
+        if room.marks[i] == NOT_CONCERNED:
             continue
         locate(engine, i, t, room)
         changed, moved = what != PLACED, engine.kinds[i] == GONE and what != REMOVED
+        swift = False
         for column in range(6):
             given = room.before[i, column]
             if math.isnan(given) or given == room.states[i, column]:
                 room.before[i, column] = room.states[i, column]
             else:
-                changed, moved = True, moved or column <= Y
+                changed, moved, swift = True, moved or column <= Y, swift or column >= VX
+        if room.marks[i] == GIVEN and changed and _is_unseen(engine, i, swift, room.before[i]):
+            return UNSEEN
         if moved:
             room.shares[i], moves = _MOVED, True
         elif changed:
