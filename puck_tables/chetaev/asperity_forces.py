@@ -123,8 +123,6 @@ class AsperityCurve(Result):
         ``which``: 'crude', 'greatest', 'undriven' or 'mean', else InputError; as where the speeds
         do not begin at 0.
 
-        Examples
-        --------
         >>> bumps = Asperity(amplitude=1e-6, length=4e-6, load=1.0, mass=0.1)
         >>> law = asperity_curve(bumps, np.linspace(0.0, 0.02, 9)).law()
         >>> float(law(0.0))  # a/b

@@ -69,8 +69,6 @@ class ConstrainedMotion:
 
         They are admissible, Σ a·δx = 0, and orthogonal to each point's velocity, (1.1).
 
-        Examples
-        --------
         >>> rod = lambda x, t: ([[x[0] - x[1], x[1] - x[0]]], [0.0])
         >>> ends, going = [[1.0, 0.0], [-1.0, 0.0]], [[0.0, 1.0], [0.0, -1.0]]
         >>> run = constrained_motion(ConstrainedSystem([1.0, 1.0], rod), ends, going, [0.0, 1.0])

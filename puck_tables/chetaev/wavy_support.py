@@ -101,8 +101,6 @@ class Asperity:
 
         ``x`` in m, ``speed`` x′ in m/s: array_like, broadcast.
 
-        Examples
-        --------
         >>> bumps = Asperity(amplitude=1.0, length=1.0, load=2.0, mass=1.0)
         >>> [float(lam.round(6)) for lam in bumps.multipliers(np.pi / 4, 1.0)]
         [1.804738, 2.707107, 2.0]
