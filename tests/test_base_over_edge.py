@@ -29,7 +29,7 @@ from puck_tables import (
     StribeckLaw,
     Strips,
 )
-from puck_tables.scene.base_balance import carried
+from puck_tables.scene.base_balance import sums_and_pressure
 from puck_tables.scene.map_of_floor import edges_under, floor_map_of
 from puck_tables.scene.outcome import ENDS
 from puck_tables.world.floor_forces import friction_at
@@ -254,7 +254,7 @@ def test_a_box_lifts_from_a_quarter_of_its_length_on():
     for away in (0.08, 0.06, 0.05, 0.04, 0.01, 0.001):
         scene = Scene(BOX, launch=Launch((1.0, 0.0)), edges=[Edge((away, 0.0), normal=(-1, 0))])
         floor_map = floor_map_of(scene, 1.0, 0.0, edges_under(scene, BOX))
-        _, a, b, c = carried(floor_map, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+        _, a, b, c = sums_and_pressure(floor_map, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
         assert abs(c) * WIDE < 1e-9 * a
         if away >= LONG / 4.0:  # linear over the length s: its mean is d from the edge
             s = LONG / 2.0 + away

@@ -33,7 +33,7 @@ from puck_tables.scene.over_edges import left_on_floor
 
 
 @inner
-def carried(
+def sums_and_pressure(
     floor_map: FloatArray, ux: float, uy: float, w: float, moving: float, lever: float,
     mx: float, my: float,
 ) -> tuple[Sums, float, float, float]:  # fmt: skip
@@ -77,7 +77,7 @@ def friction_of_base(
     """
     c, s = math.cos(floor_map[ANGLE]), math.sin(floor_map[ANGLE])
     lever = floor_map[LEVER]
-    sums, a, bx, by = carried(
+    sums, a, bx, by = sums_and_pressure(
         floor_map, c * ux + s * uy, c * uy - s * ux, w, moving, lever, 0.0, 0.0
     )  # fmt: skip
     x, y, torque = under_load(sums, a, bx, by)
@@ -91,7 +91,7 @@ def friction_held(
 ) -> tuple[float, float, float]:
     """∫ f p e dA and its moment, of the pressure that carries a moment (mx, my) of the load, m."""
     c, s = math.cos(floor_map[ANGLE]), math.sin(floor_map[ANGLE])
-    sums, a, bx, by = carried(
+    sums, a, bx, by = sums_and_pressure(
         floor_map, c * ux + s * uy, c * uy - s * ux, w, 0.0, 0.0, c * mx + s * my, c * my - s * mx
     )
     x, y, torque = under_load(sums, a, bx, by)

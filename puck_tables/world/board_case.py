@@ -190,7 +190,7 @@ class BoardCase:
             gone, places = ends.in_play[:, 0] == 0.0, ends.states[:, 0, :2]
             status[gone] = TIPPED
             for pocket in self.scene.pockets:
-                away = np.hypot(*(places - pocket.centre).T) - pocket.radius
+                away = np.hypot(*(places - pocket.point).T) - pocket.radius
                 status[gone & (away <= _ON_EDGE * self.pucks[0].radius)] = IN_POCKET
             for edge in self.scene.edges:
                 off = (places - edge.point) @ edge.normal / math.hypot(*edge.normal)
