@@ -67,7 +67,8 @@ class Run(TimedResult):
     ``end``: 'at rest', 'carried by the floor' (at rest on a moving one), 'carried round' (at rest
     on one that turns, over the same borders again and again: a whole turn is followed), 'time is
     up', 'over the edge', 'in a pocket' or 'tipped over'; ``end_time`` s; ``names``: of the pucks;
-    ``events``: see :class:`puck_tables.scene.run.Event`; ``model``, ``why``: how it was run, and why so.
+    ``events``: see :class:`puck_tables.scene.run.Event`; ``model``, ``why``: how it was run, and
+    why so.
 
     ``columns``: over time by name, each also an attribute (``run.x``); of a scene of one puck
     arrays (n,), of one with a list of pucks (n, pucks), where energies but kinetic ones are of all
