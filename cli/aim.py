@@ -172,8 +172,6 @@ def _read_targets(path: Path | None) -> Any:
 def number_or_name(text: str | None) -> int | str | None:
     """A puck as it is given on the command line: a number, or a name.
 
-    Examples
-    --------
     >>> number_or_name("2"), number_or_name("queen")
     (2, 'queen')
     """

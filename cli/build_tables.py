@@ -93,8 +93,6 @@ def _wanted(kind: str, pressure: str | None, speed_law: Path | None) -> tuple[An
 def _file_stem(name: str) -> str:
     """A file name for what has this name.
 
-    Examples
-    --------
     >>> _file_stem("annulus:0.8"), _file_stem("my stone.csv")
     ('annulus-0.8', 'my-stone')
     """

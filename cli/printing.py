@@ -17,8 +17,6 @@ QUIET_TIME, BETWEEN_LINES = 2.0, 10.0  # s, where stderr is no terminal
 def printable(text: str) -> str:
     r"""A text, perhaps from a file, without what a terminal would obey.
 
-    Examples
-    --------
     >>> printable("red: " + chr(27) + "[31m")
     'red: \\x1b[31m'
     """

@@ -182,8 +182,6 @@ def named(
 def numbers_in(text: str, option: str, sign: str, form: str, unit: str = "") -> tuple[float, ...]:
     """Numbers parted by a sign, as many as ``form`` shows, each with its unit or none of them.
 
-    Examples
-    --------
     >>> numbers_in("0.2:0.05", "--prior friction", ":", "VALUE:SIGMA")
     (0.2, 0.05)
     """

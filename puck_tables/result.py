@@ -104,8 +104,6 @@ class Result:
     def to_xarray(self) -> xarray.Dataset:
         """The result as an xarray.Dataset with units; needs xarray.
 
-        Examples
-        --------
         >>> from puck_tables import Puck
         >>> dict(Puck.similar().sweep([0.0, 1.0], 1.0).to_xarray().sizes)
         {'launch_spin': 2}
@@ -117,8 +115,6 @@ class Result:
     def to_pandas(self) -> pandas.DataFrame:
         """The result as a pandas.DataFrame, one row a state, a launch or a run; needs pandas.
 
-        Examples
-        --------
         >>> from puck_tables import Puck
         >>> Puck.similar().simulate((1.0, 0.0), frames=2).to_pandas().x.tolist()
         [0.0, 0.5]
@@ -130,8 +126,6 @@ class Result:
     def __str__(self) -> str:
         """What the command ``puck`` prints of it: what a reader wants to know first, in words.
 
-        Examples
-        --------
         >>> from puck_tables import Puck
         >>> print(str(Puck.similar().simulate((1.0, 0.0))).splitlines()[0])
         The puck stops after 1 s, 0.5 m from its launch.

@@ -168,8 +168,6 @@ class Trajectory(TimedResult):
     def summary(self) -> dict[str, Any]:
         """The scalars with what went in, and the units of all, ready for JSON.
 
-        Examples
-        --------
         >>> from puck_tables import Puck
         >>> Puck.similar().simulate((1.0, 0.0)).summary()["stop_position"]
         [0.5, 0.0]

@@ -14,8 +14,8 @@ from puck_tables.cli.main import main
 
 from puck_tables import InputError, compare, reference_case
 from puck_tables.plot.comparison_page import page
-from puck_tables.reference.attitude import turned
 from puck_tables.reference.case_text import lines_of
+from puck_tables.reference.log import turned
 
 HEADER = "t [s],x [m],y [m],angle [rad],vx [m/s],vy [m/s],w [rad/s]"
 

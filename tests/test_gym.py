@@ -16,9 +16,8 @@ from gymnasium.utils.env_checker import check_env  # noqa: E402
 from pettingzoo.test import parallel_api_test, parallel_seed_test  # noqa: E402
 
 from puck_tables.gym.air_hockey import guard  # noqa: E402
-from puck_tables.gym.envs import GAMES, ManyTables, OneTable  # noqa: E402
+from puck_tables.gym.envs import GAMES, ManyTables, OneTable, varied  # noqa: E402
 from puck_tables.gym.two_players import parallel_env  # noqa: E402
-from puck_tables.gym.varied import varied  # noqa: E402
 
 SLOW = ("Curling", "PushToPose")  # a stone by the law of ice, a finger that pushes
 QUICK = [name for name in GAMES if name not in SLOW]

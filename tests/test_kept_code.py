@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import platform
 import subprocess
 import sys
 from pathlib import Path
@@ -205,7 +206,8 @@ def brought(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def say_target(folder: Path, *needs: str) -> None:
     codegen = compiled().compiled.targetctx.codegen().magic_tuple()
-    target = {"codegen": codegen, "needs": needs}
+    place = sys.platform, platform.machine().lower()
+    target = {"place": place, "codegen": codegen, "needs": needs}
     (folder / "target.json").write_text(json.dumps(target), encoding="utf-8")
 
 
@@ -217,15 +219,15 @@ def test_code_that_came_along_is_run(folder: Path, brought: Path):
     assert list(folder.iterdir()) == []
 
 
-@pytest.mark.parametrize("harm", ["a processor", "no target", "another triple", "a flipped bit"])
+@pytest.mark.parametrize("harm", ["a processor", "no target", "another system", "a flipped bit"])
 def test_code_that_came_along_for_others_is_not_run(harm: str, folder: Path, brought: Path):
     say_target(brought, *(["avx1024"] if harm == "a processor" else []))
     target = brought / "target.json"
     (code,) = brought.glob("*.code")
     if harm == "no target":
         target.write_text("{}", encoding="utf-8")
-    if harm == "another triple":
-        target.write_text(target.read_text().replace("-linux", "-beos"), encoding="utf-8")
+    if harm == "another system":
+        target.write_text(target.read_text().replace(sys.platform, "beos"), encoding="utf-8")
     if harm == "a flipped bit":
         whole = code.read_bytes()
         code.write_bytes(whole[:-1] + bytes([whole[-1] ^ 1]))
@@ -241,3 +243,61 @@ def test_whoever_names_a_processor_gets_code_for_it(brought: Path, monkeypatch: 
     again = compiled()
     assert again(6.0) == 2.0
     assert not again.compiled.stats.cache_hits
+
+
+ELSEWHERE = """
+import sys
+from pathlib import Path
+sys.path.insert(0, sys.argv[1])
+import code_elsewhere, puck_tables
+puck_tables.warm_up = lambda: puck_tables.motion.limit_ratio(0.0)
+code_elsewhere.main(Path(sys.argv[2]))
+"""
+BROUGHT = f"""
+import sys
+from pathlib import Path
+from puck_tables.kernels import kept_code
+kept_code.brought_folder = lambda: Path(sys.argv[1])
+{COMMAND[-1]}
+"""
+# how object files begin: ELF, Mach-O, and the numbers of processors in COFF
+BEGIN = {
+    "manylinux": b"\x7fELF", "macosx": b"\xcf\xfa\xed\xfe", "win_amd64": b"\x64\x86",
+    "win_arm64": b"\x64\xaa",
+}  # fmt: skip
+
+
+def test_code_for_all_machines_is_made_on_one(tmp_path: Path):
+    """What it makes for this one is run in place of what numba would compile."""
+    from conftest import ROOT
+    from numba.core import serialize
+
+    def python(program: str, *arguments: object) -> str:
+        environment = {
+            **os.environ,
+            "NUMBA_DISABLE_JIT": "0",
+            "NUMBA_CACHE_DIR": str(tmp_path / "own"),
+        }
+        return subprocess.run(
+            [sys.executable, "-c", program, *map(str, arguments)],
+            env=environment, capture_output=True, text=True, check=True,
+        ).stdout  # fmt: skip
+
+    python(ELSEWHERE, ROOT / ".ci", tmp_path / "made")
+    here = None
+    for platform_of in (tmp_path / "made").iterdir():
+        (folder,) = platform_of.iterdir()
+        for path in folder.glob("*.code"):
+            content = kept_code.read_sealed(path)
+            assert content is not None
+            _, _, ((_, _, (made, _)), *_) = serialize.loads(content)
+            (begin,) = (one for tag, one in BEGIN.items() if platform_of.name.startswith(tag))
+            assert made.startswith(begin)
+        target = json.loads((folder / "target.json").read_text(encoding="utf-8"))
+        if target["place"] == [sys.platform, platform.machine().lower()]:
+            here = folder
+    (own,) = (tmp_path / "own").iterdir()
+    for path in own.iterdir():
+        path.unlink()
+    assert float(python(BROUGHT, here)) == pytest.approx(LIMIT, abs=1e-14)
+    assert list(own.iterdir()) == []

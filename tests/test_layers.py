@@ -65,7 +65,7 @@ DOORS = {
         "kernels.linking",
         "kernels.memory_image",
         "kernels.on_demand",
-        "kernels.numba_settings",
+        "kernels.doors",
         "kernels.quick_compiler",
         "kernels.records",
         "kernels.vectors",

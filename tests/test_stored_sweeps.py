@@ -15,7 +15,7 @@ from puck_tables.cli.main import main
 
 from puck_tables import Puck, Scene
 from puck_tables._core import safe_write
-from puck_tables.bulk.blocks import Blocks
+from puck_tables.bulk.store import Blocks
 from puck_tables.errors import InputError, OutputError
 from puck_tables.scene.entries import set_path
 from puck_tables.scene.library import find_scene

@@ -58,8 +58,6 @@ def beginning(path: str | Path, largest: int) -> bytes:
 def refuse_others(path: str | Path, head: bytes) -> None:
     """Refuse a file that is empty, or of a kind in which no table stands.
 
-    Examples
-    --------
     >>> refuse_others("a.csv", b"")
     Traceback (most recent call last):
     ...
@@ -79,8 +77,6 @@ def refuse_others(path: str | Path, head: bytes) -> None:
 def refuse_no_text(path: str | Path, head: bytes) -> None:
     """Refuse a file that is no table in a text file.
 
-    Examples
-    --------
     >>> refuse_no_text("a.json", b"{}")
     Traceback (most recent call last):
     ...

@@ -48,8 +48,6 @@ COLOURS: dict[str, str] = dict(
 def is_colour(text: str) -> bool:
     """Whether a text is '#rrggbb' or the name of a colour.
 
-    Examples
-    --------
     >>> is_colour("#33415C"), is_colour("Crimson"), is_colour("blau")
     (True, True, False)
     """
@@ -59,8 +57,6 @@ def is_colour(text: str) -> bool:
 def brightness(colour: str) -> float:
     """How bright a colour looks, from 0 to 1 (luma of ITU-R BT.601).
 
-    Examples
-    --------
     >>> round(brightness("white"), 3), round(brightness("#0000ff"), 3)
     (1.0, 0.114)
     """
@@ -71,8 +67,6 @@ def brightness(colour: str) -> float:
 def contrast(colour: str) -> float:
     """Contrast against white, from 1 to 21 (WCAG 2: a line is to have 3 at least).
 
-    Examples
-    --------
     >>> contrast("white"), round(contrast("yellow"), 3), contrast("black")
     (1.0, 1.074, 21.0)
     """
@@ -87,8 +81,6 @@ def contrast(colour: str) -> float:
 def on_white(colour: str) -> str:
     """The colour, darkened as far as it must be to be seen as a line on white.
 
-    Examples
-    --------
     >>> on_white("#0072b2"), on_white("yellow")
     ('#0072b2', '#999900')
     """

@@ -61,8 +61,6 @@ def _apart(value: Any) -> Any:
 def files_named(value: Any) -> dict[str, str]:
     """Digests of the content of all files whose names stand anywhere in a nested structure.
 
-    Examples
-    --------
     >>> files_named({"force": {"file": "/nowhere/force.csv"}, "wall": [{"x": 1.0}]})
     {'/nowhere/force.csv': 'cannot be read'}
     """

@@ -19,8 +19,6 @@ class Unsaid(float):
 
     It stays so in copies and pickles; any sum of it is a plain number.
 
-    Examples
-    --------
     >>> Unsaid(9.8) == 9.8, type(Unsaid(9.8) + 1.0)
     (True, <class 'float'>)
     """
@@ -56,8 +54,6 @@ class Kind:
     def allowed(self) -> str:
         """What is allowed, in words.
 
-        Examples
-        --------
         >>> Kind("number", "m", 0.0, above=True).allowed()
         'a number > 0 m'
         """
@@ -106,8 +102,6 @@ class Kind:
     def names_file(self, text: Any) -> bool:
         """Whether a value is the name of a file.
 
-        Examples
-        --------
         >>> Kind("text", file=".csv").names_file("rough.CSV"), Kind("text", file="").names_file("")
         (True, False)
         """
@@ -140,8 +134,6 @@ LISTED = "[]"  # at the end of a name in tables: of a list, beside a single part
 def in_tables(name: str) -> str:
     """A name of :func:`specs` as it stands in tables.
 
-    Examples
-    --------
     >>> in_tables("puck[]"), in_tables("floor")
     ('puck', 'floor')
     """
@@ -162,8 +154,6 @@ def _specs(kind: Any) -> dict[str, dataclasses.Field[Any]]:
 def described(kind: type, prefix: str = "") -> list[tuple[str, str, str]]:
     """Every entry of a dataclass and its parts: path, what is allowed and its default, what it is.
 
-    Examples
-    --------
     >>> @dataclass(frozen=True)
     ... class Body:
     ...     mass: float = of("number", 1.0, "kg", low=0.0, above=True, doc="all of it")

@@ -18,8 +18,6 @@ def monotone_cubic(x: FloatArray, y: FloatArray) -> FloatArray:
     sign (Fritsch, Butland 1984); at the ends the three-point formula, limited so that no extremum
     appears (Fritsch, Carlson 1980).
 
-    Examples
-    --------
     >>> monotone_cubic(np.array([0.0, 1.0, 2.0]), np.array([0.0, 1.0, 1.0]))[:, 1].tolist()
     [1.5, 0.0]
     """

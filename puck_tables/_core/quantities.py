@@ -32,8 +32,6 @@ _QUOTIENT = re.compile(r"\w+\s*/\s*\w+")
 def function_in(name: str) -> str:
     """What in a heading without its unit makes of its quantity another one; '' if nothing.
 
-    Examples
-    --------
     >>> function_in("log v"), function_in("1-e"), function_in("slip speed")
     ('log', '1-', '')
     """
@@ -107,8 +105,6 @@ def measures(text: str) -> bool:
 def is_frame(text: str) -> bool:
     """Whether a heading is of numbers of frames.
 
-    Examples
-    --------
     >>> is_frame("Frame no"), is_frame("t [s]")
     (True, False)
     """

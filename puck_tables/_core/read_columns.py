@@ -19,7 +19,6 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.beginning import refuse_no_text, refuse_others
 from puck_tables._core.doubts import MOST_FRICTION
-from puck_tables._core.header import header_of
 from puck_tables._core.own_folder import say
 from puck_tables._core.quantities import (
     ALL,
@@ -33,7 +32,7 @@ from puck_tables._core.quantities import (
 )
 from puck_tables._core.safe_read import read_whole
 from puck_tables._core.text import HEAD, MINUS, TextForm, encoding_of, is_row, number, text_form_of
-from puck_tables._core.text_rows import read_columns
+from puck_tables._core.text_rows import header_of, read_columns
 from puck_tables._core.units import EXAMPLES, unit_size
 from puck_tables.errors import InputError
 
@@ -175,8 +174,6 @@ def list_of(path: str | Path, column: InputColumn, most: int) -> FloatArray | No
 
     None for a file of several columns.
 
-    Examples
-    --------
     >>> from puck_tables._core.quantities import TIME
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:

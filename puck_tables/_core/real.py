@@ -19,8 +19,6 @@ _SHOWN = 60  # characters of a value in a message
 def refuse_mask(name: str, values: object) -> None:
     """Refuse masked values: no function here can carry a mask through to its results.
 
-    Examples
-    --------
     >>> refuse_mask("spin", np.ma.masked_array([1.0, 2.0], [False, True]))
     Traceback (most recent call last):
     ...
@@ -85,8 +83,6 @@ def _is_0(text: str) -> bool:
 def number_in(name: str, text: str, unit: str) -> float:
     """A number with its unit behind it, in an SI unit.
 
-    Examples
-    --------
     >>> number_in("spin", "30rpm", "rad/s")
     3.141592653589793
     """
@@ -100,8 +96,6 @@ def number_in(name: str, text: str, unit: str) -> float:
 def real_view(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
     """Real numbers as an array; one of float64 is given back as it is, not copied.
 
-    Examples
-    --------
     >>> entries = np.ones(3)
     >>> real_view("w0", entries, "rad/s") is entries
     True
@@ -120,7 +114,8 @@ def _in(unit: str) -> str:
 def finite_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
     """Values as an array of finite numbers."""
     array = real_array(name, values, unit)
-    if not np.isfinite(array).all():
+    squares = np.vdot(array, array)  # one pass; it may overflow
+    if not (math.isfinite(squares) or np.isfinite(array).all()):
         raise InputError(
             f"{name} must be finite numbers{_in(unit)}, got {array[~np.isfinite(array)].flat[0]}"
         )
@@ -130,8 +125,6 @@ def finite_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
 def shown(value: object) -> str:
     """A value in a message: on one line and short, however large, deep or odd it is.
 
-    Examples
-    --------
     >>> shown(np.zeros((2, 2))), len(shown("a" * 1000))
     ('array([[0., 0.], [0., 0.]])', 60)
     """
@@ -146,8 +139,6 @@ def shown(value: object) -> str:
 def pair_of(what: str, raw: Any) -> tuple[Any, Any]:
     """Two values; ``what``: what must be such two, for the message.
 
-    Examples
-    --------
     >>> pair_of("noise must be two numbers", [1, 2])
     (1, 2)
     """
@@ -161,8 +152,6 @@ def pair_of(what: str, raw: Any) -> tuple[Any, Any]:
 def instance(name: str, value: object, *kinds: type) -> None:
     """Refuse a value that is not of one of these kinds.
 
-    Examples
-    --------
     >>> instance("table", "coarse.h5", dict)
     Traceback (most recent call last):
     ...
@@ -187,8 +176,6 @@ def listed(name: str, values: object, what: str) -> list[Any]:
 def broadcast(**arrays: FloatArray) -> list[FloatArray]:
     """Arrays broadcast against each other, in the order given.
 
-    Examples
-    --------
     >>> [a.shape for a in broadcast(phi=np.zeros((3, 1)), delta=np.zeros(4))]
     [(3, 4), (3, 4)]
     """
@@ -202,8 +189,6 @@ def broadcast(**arrays: FloatArray) -> list[FloatArray]:
 def rounded_up(value: float, digits: int = 1) -> float:
     """A number > 0 to so many digits, not less.
 
-    Examples
-    --------
     >>> rounded_up(2.1e-7), rounded_up(2.11e-7, 2)
     (3e-07, 2.2e-07)
     """
@@ -213,8 +198,6 @@ def rounded_up(value: float, digits: int = 1) -> float:
 def whole(name: str, value: Any, low: int, high: int | None = None) -> int:
     """A whole number from ``low`` on, or to ``high``.
 
-    Examples
-    --------
     >>> whole("frames", 5, 1, 10)
     5
     >>> whole("frames", 2.5, 1)
@@ -259,8 +242,6 @@ def real(name: str, value: float, unit: str) -> float:
 def bracketed(unit: str) -> str:
     """A unit for a message; nothing of a pure number.
 
-    Examples
-    --------
     >>> bracketed("m"), bracketed("1")
     (' (m)', '')
     """

@@ -65,8 +65,6 @@ def _irregular(path: str | Path) -> OSError:
 def is_number(text: str) -> bool:
     """Whether a cell is a number.
 
-    Examples
-    --------
     >>> is_number("1e-3"), is_number("speed")
     (True, False)
     """

@@ -17,8 +17,6 @@ from puck_tables.errors import OutputError
 def as_utf8(text: str) -> str:
     r"""A text that a file can hold: what names of files have that are no text is escaped.
 
-    Examples
-    --------
     >>> as_utf8("law" + chr(0xDCFF) + ".csv"), as_utf8("Stück")
     ('law\\udcff.csv', 'Stück')
     """

@@ -140,8 +140,6 @@ def encoding_of(path: str | Path, head: bytes) -> str:
 def split(line: str, separator: str | None) -> list[str]:
     """The cells of a line.
 
-    Examples
-    --------
     >>> split('0.1, "a, b"', ","), split(" 1  2", None)
     (['0.1', 'a, b'], ['1', '2'])
     """
@@ -157,8 +155,6 @@ def split(line: str, separator: str | None) -> list[str]:
 def number(cell: str, comma: bool) -> float | None:
     """The number in a cell; NaN where it says that there is none; None for a text.
 
-    Examples
-    --------
     >>> number("0,5", True), number("0.25", True), number("1.234", True), number("red", False)
     (0.5, 0.25, None, None)
     """
@@ -172,8 +168,6 @@ def number(cell: str, comma: bool) -> float | None:
 def is_row(line: str) -> bool:
     """Whether a line is neither empty nor a comment.
 
-    Examples
-    --------
     >>> is_row("0,1"), is_row("# by hand"), is_row(";;")
     (True, False, False)
     """
@@ -188,8 +182,6 @@ def _filled(row: Sequence[str]) -> int:
 def whole_names(row: list[str]) -> list[str]:
     """Cells with units that a blank cut off put back to their names.
 
-    Examples
-    --------
     >>> whole_names(["v", "[mm/s]", "mu"])
     ['v [mm/s]', 'mu']
     """

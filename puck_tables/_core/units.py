@@ -92,8 +92,6 @@ def _mixed_up(symbol: str) -> bool:
 
     Headings may be in capitals throughout, and words and symbols may begin with one.
 
-    Examples
-    --------
     >>> [_mixed_up(text) for text in ("MM", "Km", "Milliseconds", "Mm", "mM", "uS")]
     [False, False, False, True, True, True]
     """
@@ -105,8 +103,6 @@ def _mixed_up(symbol: str) -> bool:
 def unit_meant(text: str) -> str:
     """Why a unit, perhaps behind a number or over a time, is not read as what it looks like.
 
-    Examples
-    --------
     >>> unit_meant("40Mm/s"), unit_meant("Grad"), unit_meant("40 mm")
     ("'Mm' is a megametre: write mm", "'Grad' may be degrees or gradians: write deg (a gradian is \
 0.9 deg)", '')
@@ -124,8 +120,6 @@ def unit_meant(text: str) -> str:
 def factor(unit: str, kind: str) -> float:
     """A unit in SI: metres, seconds or radians; a pixel has no size.
 
-    Examples
-    --------
     >>> factor("cm", "length"), factor("ms", "time")
     (0.01, 0.001)
     """
@@ -135,8 +129,6 @@ def factor(unit: str, kind: str) -> float:
 def unit_named(name: str, text: str, kind: str) -> str:
     """The usual name of a unit that is asked for.
 
-    Examples
-    --------
     >>> unit_named("unit", "cms", "length")
     Traceback (most recent call last):
     ...
@@ -183,8 +175,6 @@ def quantity(text: str, unit: str) -> float | None:
 def measured_kinds(text: str) -> dict[str, float]:
     """A number with a unit in each SI unit that it can be of: '5g' may be a mass or not.
 
-    Examples
-    --------
     >>> measured_kinds("40mm"), measured_kinds("40"), list(measured_kinds("5g"))
     ({'m': 0.04}, {}, ['m/s^2', 'kg'])
     """
@@ -216,8 +206,6 @@ def without_unit(numbers: Iterable[Any], unit: str) -> str:
 
     '80,50cm/s' may be two numbers in cm/s or the first in m/s: nobody can tell.  0 is 0 in any.
 
-    Examples
-    --------
     >>> without_unit(["80", "50cm/s"], "m/s"), without_unit(["0", "50cm/s"], "m/s")
     ('80', '')
     """
@@ -271,8 +259,6 @@ def pixel_size(scale: str | float) -> float:
 def unit_in(heading: str) -> str:
     """The unit of length that a heading names at its end, '' if none.
 
-    Examples
-    --------
     >>> unit_in("x [cm]"), unit_in("X_mm"), unit_in("x")
     ('cm', 'mm', '')
     """
@@ -283,8 +269,6 @@ def unit_in(heading: str) -> str:
 def parted(text: str) -> tuple[str, str]:
     """A name and what stands as its unit, in brackets or after a stroke or comma.
 
-    Examples
-    --------
     >>> parted("x [mm]"), parted("t / s"), parted("x")
     (('x', 'mm'), ('t', 's'), ('x', ''))
     """
@@ -301,8 +285,6 @@ def parted(text: str) -> tuple[str, str]:
 def bracketed(text: str) -> tuple[str, str]:
     """A heading and what stands in brackets at its end.
 
-    Examples
-    --------
     >>> bracketed("Sliding speed (mm/s)"), bracketed("v / [m s^-1]"), bracketed("mu")
     (('Sliding speed', 'mm/s'), ('v', 'm s^-1'), ('mu', ''))
     """
@@ -314,8 +296,6 @@ def bracketed(text: str) -> tuple[str, str]:
 def unit_behind(text: str, kind: str) -> str:
     """The unit of a kind that stands at the end of a heading without brackets, '' if none.
 
-    Examples
-    --------
     >>> unit_behind("speed_mm_s", "velocity"), unit_behind("r/R", "radius")
     ('mm/s', '')
     """
@@ -330,8 +310,6 @@ def unit_behind(text: str, kind: str) -> str:
 def is_unit(text: str) -> bool:
     """Whether a cell is a unit, in brackets or not: of a row of units under the names.
 
-    Examples
-    --------
     >>> is_unit("(cm)"), is_unit("mm/s"), is_unit("x")
     (True, True, False)
     """
@@ -393,8 +371,6 @@ def unit_size(unit: str, kind: str) -> float | None:
 def _acceleration(text: str) -> float | None:
     """A unit of acceleration in m/s², None if it is none.
 
-    Examples
-    --------
     >>> _acceleration("cm/s^2"), _acceleration("ft s⁻²"), _acceleration("m/s")
     (0.01, 0.3048, None)
     """

@@ -9,8 +9,6 @@ from difflib import get_close_matches
 def counted(count: int, one: str, many: str = "") -> str:
     """A number of things in words.
 
-    Examples
-    --------
     >>> counted(1, "edge"), counted(12000, "edge"), counted(2, "launch", "launches")
     ('1 edge', '12000 edges', '2 launches')
     """
@@ -20,8 +18,6 @@ def counted(count: int, one: str, many: str = "") -> str:
 def meant(name: object, known: Iterable[str], alike: float = 0.6) -> str:
     """What a misspelt name may have meant, in words; ``alike``: the share of signs that must be.
 
-    Examples
-    --------
     >>> meant("airhockey", ["air-hockey", "carrom"]), meant("chess", ["carrom"])
     (" (did you mean 'air-hockey'?)", '')
     """

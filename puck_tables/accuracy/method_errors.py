@@ -77,8 +77,6 @@ class Selection:
     def number(self, name: str) -> float:
         """A number of the setting, which reads like ``powers=6 thinning=2``.
 
-        Examples
-        --------
         >>> select("stop", 1e-8).number("powers") >= 5
         True
         """
@@ -88,8 +86,6 @@ class Selection:
 def named(method: str, setting: str) -> str:
     """Method and setting in words.
 
-    Examples
-    --------
     >>> named("rk4, table", "steps=8")
     'rk4, table (steps=8)'
     """
@@ -127,8 +123,6 @@ def errors_from_csv(text: str) -> tuple[MeasuredMethod, ...]:
 def shipped_errors() -> tuple[MeasuredMethod, ...]:
     """What came with the package.
 
-    Examples
-    --------
     >>> {row.question for row in shipped_errors()} >= {"resultants", "stop", "trajectory", "state"}
     True
     """
@@ -142,8 +136,6 @@ def shipped_errors() -> tuple[MeasuredMethod, ...]:
 def pareto(rows: Iterable[MeasuredMethod]) -> list[MeasuredMethod]:
     """The methods that no other beats in both error and cost, the cheapest first.
 
-    Examples
-    --------
     >>> front = pareto(row for row in shipped_errors() if row.question == "stop")
     >>> all(a.error > b.error for a, b in zip(front[:-1], front[1:]))
     True

@@ -52,8 +52,6 @@ class FrictionForm(StrEnum):
 class Scheme(NamedTuple):
     """A method, and for an integrator where its friction comes from.
 
-    Examples
-    --------
     >>> Scheme(Method.RK4, FrictionForm.TABLE).name, Scheme(Method.LOOK_UP).name
     ('rk4, table', 'look-up')
     """
@@ -103,8 +101,6 @@ def schemes_of(
 ) -> tuple[Scheme, ...]:
     """The measured schemes of these methods, the integrators with friction from these sources.
 
-    Examples
-    --------
     >>> [scheme.name for scheme in schemes_of([Method.RK4], [FrictionForm.TABLE])]
     ['rk4, table']
     """

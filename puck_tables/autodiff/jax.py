@@ -3,8 +3,6 @@
 The numbers come from the host by ``pure_callback``, derivatives from the exact Jacobians; their own
 derivatives are not known.  In double precision only: ``jax.config.update("jax_enable_x64", True)``.
 
-Examples
---------
 >>> with jax.enable_x64(True):
 ...     slope = jax.grad(lambda w: stop((1.0, 0.0), w)[1])(5.0)
 ...     x = jax.vmap(lambda t: states((1.0, 0.0), 5.0, t)[0])(jnp.array([2.0, 9.0]))

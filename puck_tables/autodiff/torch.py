@@ -2,8 +2,6 @@
 
 The numbers come from the host, in double precision; derivatives from the exact Jacobians.
 
-Examples
---------
 >>> spin = torch.tensor(5.0, dtype=torch.float64, requires_grad=True)
 >>> stop((1.0, 0.0), spin)[1].backward()
 >>> round(spin.grad.item(), 6), round(states((1.0, 0.0), 5.0, 2.0)[0].item(), 6)

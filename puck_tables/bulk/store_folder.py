@@ -159,8 +159,6 @@ class Place:
 def sibling_of(path: Path) -> Path:
     """Where a store that is to replace another is made.
 
-    Examples
-    --------
     >>> sibling_of(Path("maps/m.zarr")).name
     '.m.zarr.new'
     """

@@ -169,8 +169,6 @@ class Summary:
 def head(wide: int = _WIDE) -> str:
     """The head of the table of a summary.
 
-    Examples
-    --------
     >>> head(2).split()
     ['mean', 'deviation', '2.5', '%', '50', '%', '97.5', '%']
     """
@@ -180,8 +178,6 @@ def head(wide: int = _WIDE) -> str:
 def chance_of(in_region: int, samples: int) -> Chance:
     """The chance that so many hits speak for.
 
-    Examples
-    --------
     >>> [round(one, 4) for one in chance_of(50, 100)]
     [0.5, 0.4038, 0.5962]
     """

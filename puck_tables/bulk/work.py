@@ -122,8 +122,6 @@ class Tally:
     def of(cls, codes: npt.NDArray[np.int8], start: int = 0) -> Tally:
         """That of the codes of items from ``start`` on.
 
-        Examples
-        --------
         >>> Tally.of(np.array([0, 2, 2], np.int8), 10)
         Tally(counts={0: 1, 2: 2}, first={0: 10, 2: 11})
         """

@@ -1,18 +1,10 @@
 """Dry friction from asperities: horizontal force against speed, the speed held by a drive.
 
 A drive keeps x′ = V on the support y ≥ −a cos(x/b).  Then λ of contact is −Y(1 + w cos θ) exactly,
-θ = x/b, with w = (V/V₀)², V₀² = −Y b²/(m a): Chetaev's leading terms.  Everything in units of
-Coulomb's force −Y a/b depends on w alone:
-
-*Greatest force.*  In contact the support resists with (1 + w cos θ) sin θ.  For w ≤ 1 it is in
-contact throughout; for w > 1 the point leaves at θ₀ = π − arccos(1/w), before each crest, flies the
-parabola and lands at θ₁.  If θ₁ lies before the place where the force is greatest,
-cos θ* = (√(1 + 8w²) − 1)/(4w), the greatest force grows with the speed; if beyond, it is that at
-θ₁, and soon falls.
-
-*Mean force.*  The drive's work over whole periods is what the landings lose, ½m(jump of y′)² each.
-Without flight it is 0: smooth asperities dissipate nothing then, and Coulomb's law is a statement
-about the greatest force.  The mean of λ is −Y, so the mean force is never above Coulomb's.
+θ = x/b, with w = (V/V₀)², V₀² = −Y b²/(m a): Chetaev's leading terms.  In units of Coulomb's force
+−Y a/b everything depends on w alone.  In contact the support resists with (1 + w cos θ) sin θ.  For
+w > 1 the point leaves at θ₀ = π − arccos(1/w), before each crest, flies the parabola and lands at
+θ₁.  The drive's work over whole periods is what the landings lose, ½m(jump of y′)² each.
 
 Where λ would be negative at θ₁ the point flies on at once.  As soon as it has slid it leaves at θ₀
 again, so that one such round is the mean for all time.  In some windows of speed it never slides
@@ -32,7 +24,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import checked_progress, finite_array, instance, shown
-from puck_tables.chetaev.wavy_support import Asperity, SlideOrFlight, landing
+from puck_tables.chetaev.wavy_support import Asperity, landing, on_support
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset, variable
@@ -47,18 +39,12 @@ MAX_SPEED = 1e3  # of V₀: beyond it a flight passes a million periods and its 
 
 
 class HopCycle(NamedTuple):
-    """What happens between two departures at θ₀ when the speed is held, in dimensionless terms.
+    """What happens between two departures at θ₀ when the speed is held, in dimensionless terms."""
 
-    ``landing`` is the phase θ₁ ∈ (−π, π] after which the point slides (NaN if it does not fly or
-    never slides again), ``flights`` and ``periods`` count until it leaves there again, ``mean`` is
-    the mean force over −Y a/b.
-    """
-
-    landing: float
-    slides: bool
+    landing: float  # phase from which it slides; −π if it never flies, NaN if it never slides again
     flights: int
     periods: int
-    mean: float
+    mean: float  # force over −Y a/b
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -137,14 +123,12 @@ class AsperityCurve(Result):
         ``which``: 'crude', 'greatest', 'undriven' or 'mean', else InputError; as where the speeds
         do not begin at 0.
 
-        Examples
-        --------
         >>> bumps = Asperity(amplitude=1e-6, length=4e-6, load=1.0, mass=0.1)
         >>> law = asperity_curve(bumps, np.linspace(0.0, 0.02, 9)).law()
         >>> float(law(0.0))  # a/b
         0.25
         """
-        if which not in ("crude", "greatest", "undriven", "mean"):
+        if which not in CURVES[:4]:
             raise InputError(f"which must be crude, greatest, undriven or mean, got {shown(which)}")
         return SpeedLaw(self.held_speed, getattr(self, which) / self.asperity.load)
 
@@ -152,7 +136,7 @@ class AsperityCurve(Result):
 def asperity_curve(
     asperity: Asperity, speed: npt.ArrayLike, progress: Callable[[int, int], None] | None = None
 ) -> AsperityCurve:
-    """Horizontal force of a wavy one-sided support on a point, against its speed.
+    """Horizontal force of a wavy one-sided support on a point: Chetaev 1960, section 5.
 
     Parameters
     ----------
@@ -161,10 +145,6 @@ def asperity_curve(
     speed : array_like (k,), m/s, ascending
         From 0 to 1000 V₀, else InputError.
     progress : callable (done, total), optional
-
-    References
-    ----------
-    Chetaev 1960, section 5.
 
     Examples
     --------
@@ -186,27 +166,29 @@ def asperity_curve(
             f"speed must be from 0 to {highest:g} m/s ({MAX_SPEED:g} times the speed at which the "
             f"crest is left), got {V[0] if V[0] < 0.0 else V[-1]:g}"
         )
-    forces, phases = np.zeros((4, V.size)), np.zeros((2, V.size))
-    for n, w in enumerate(((V / asperity.lift_speed) ** 2).tolist()):
+    rows = []
+    for w in ((V / asperity.lift_speed) ** 2).tolist():
         run = held_round(w)
-        first = -math.pi if math.isnan(run.landing) else run.landing
-        if run.slides:
-            forces[1:3, n] = [greatest_force(w, first, kappa) for kappa in (0.0, asperity.slope)]
-        forces[0, n], forces[3, n] = 1.0, run.mean
-        phases[:, n] = run.landing, run.flights / run.periods
+        greatest = [greatest_force(w, run.landing, kappa) for kappa in (0.0, asperity.slope)]
+        landed = run.landing if run.flights else math.nan
+        rows.append([1.0, *greatest, run.mean, landed, run.flights / run.periods])
         if progress is not None:
-            progress(n + 1, V.size)
-    return AsperityCurve(asperity, V, *(asperity.load * asperity.slope * forces), *phases)
+            progress(len(rows), V.size)
+    columns = np.array(rows).T
+    return AsperityCurve(asperity, V, *(asperity.load * asperity.slope * columns[:4]), *columns[4:])
 
 
 def greatest_force(w: float, first: float, slope: float = 0.0) -> float:
     """Largest (1 + w cos θ) sin θ/(1 + κ² sin² θ) in contact, from ``first`` to the departure.
 
-    With ``slope`` κ = 0 that of the held speed; its places solve an equation of degree 4 in cos θ.
+    With ``slope`` κ = 0 that of the held speed; 0 without contact, where ``first`` is NaN.  Its
+    places solve an equation of degree 4 in cos θ.
 
     >>> greatest_force(0.0, -np.pi), round(greatest_force(1.0, -np.pi), 12)  # 3√3/4
     (1.0, 1.299038105677)
     """
+    if math.isnan(first):
+        return 0.0
     squared = slope * slope
     # (c + w(2c² − 1))(1 + κ²(1 − c²)) − 2κ² c (1 − c²)(1 + wc)
     turning = np.polysub(
@@ -229,32 +211,31 @@ def held_round(w: float) -> HopCycle:
     >>> round(run.landing, 6), run.periods, round(run.mean, 6)
     (0.797713, 1, 0.762913)
     >>> hopping = held_round(3.61)  # hops once a period at sin θ = π/w: the mean is π/w
-    >>> hopping.slides, round(hopping.mean * 3.61, 9)
-    (False, 3.141592654)
+    >>> hopping.landing, round(hopping.mean * 3.61, 9)
+    (nan, 3.141592654)
     """
     if w <= 1.0:
-        return HopCycle(math.nan, True, 0, 1, 0.0)
+        return HopCycle(-math.pi, 0, 1, 0.0)
     # a, b, V = 1, so that time is phase: the load is then 1/w
     unit, start = Asperity(1.0, 1.0, 1.0 / w, 1.0), math.pi - math.acos(1.0 / w)
     phases, lengths, jumps = [start], list[float](), list[float]()
     landed, counted = math.nan, _FLIGHTS // 2
     while len(jumps) < _FLIGHTS:
-        incline = math.sin(phases[-1])
-        arc = SlideOrFlight("fly", 0.0, phases[-1], -math.cos(phases[-1]), 1.0, incline, 0.0)
+        arc = on_support(unit, 0.0, phases[-1], 1.0, leaves=True)
         lengths.append(landing(unit, arc, math.inf))
         late = phases[-1] + lengths[-1]
-        jumps.append((math.sin(late) - (incline - lengths[-1] / w)) ** 2)
+        jumps.append((math.sin(late) - (arc.vy - lengths[-1] / w)) ** 2)
         phases.append(math.remainder(late, 2.0 * math.pi))
         if 1.0 + w * math.cos(phases[-1]) >= 0.0 and abs(phases[-1]) <= start:
             landed, counted = phases[-1], len(jumps)
             lengths.append(start - landed)
             break
-        before = phases[-2 : -min(len(jumps) - 1, _LONGEST_CYCLE) - 1 : -1]
-        alike = np.abs(np.array(before) - phases[-1]) < _SAME_PHASE
+        before = np.array(phases[-2 : -_LONGEST_CYCLE - 2 : -1])
+        alike = np.abs(before - phases[-1]) < _SAME_PHASE
         if alike.any():
             counted = int(alike.argmax()) + 1
             break
-    slides = not math.isnan(landed)
-    periods = max(round(math.fsum(lengths[0 if slides else -counted :]) / (2.0 * math.pi)), 1)
+    turned = math.fsum(lengths[-counted if math.isnan(landed) else 0 :])
+    periods = max(round(turned / (2.0 * math.pi)), 1)
     mean = w * math.fsum(jumps[-counted:]) / (4.0 * math.pi * periods)
-    return HopCycle(landed, slides, counted, periods, mean)
+    return HopCycle(landed, counted, periods, mean)

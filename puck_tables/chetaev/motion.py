@@ -69,21 +69,20 @@ class ConstrainedMotion:
 
         They are admissible, Σ a·δx = 0, and orthogonal to each point's velocity, (1.1).
 
-        Examples
-        --------
         >>> rod = lambda x, t: ([[x[0] - x[1], x[1] - x[0]]], [0.0])
         >>> ends, going = [[1.0, 0.0], [-1.0, 0.0]], [[0.0, 1.0], [0.0, -1.0]]
         >>> run = constrained_motion(ConstrainedSystem([1.0, 1.0], rod), ends, going, [0.0, 1.0])
         >>> run.c_displacements(0).shape  # both ends along the rod
         (1, 2, 2)
         """
+        from scipy.linalg import null_space
+
         velocity = self.velocity[number]
         across = np.eye(len(velocity))[:, :, None] * velocity
         rows = np.concatenate([self.matrix[number], across]).reshape(-1, velocity.size)
-        length = np.linalg.norm(rows, axis=1)
-        _, singular, right = np.linalg.svd(rows[length > 0.0] / length[length > 0.0, None])
-        rank = int((singular > _RANK).sum())
-        return np.asarray(right[rank:].reshape(-1, *velocity.shape))
+        length = np.linalg.norm(rows, axis=1, keepdims=True)
+        free = null_space(rows / np.where(length > 0.0, length, 1.0), _RANK)
+        return np.asarray(free.T.reshape(-1, *velocity.shape))
 
     @property
     def axiom_residual(self) -> float:
@@ -108,7 +107,7 @@ def constrained_motion(
     tol: float = 1e-9,
     until: Callable[[FloatArray, FloatArray, float], float] | None = None,
 ) -> ConstrainedMotion:
-    """Move point masses under linear velocity constraints with friction.
+    """Move point masses under linear velocity constraints with friction, (2.3) and (2.4).
 
     Parameters
     ----------
@@ -123,10 +122,6 @@ def constrained_motion(
         integration gets stuck.
     until : callable (x, v, t) → float, optional
         The motion ends where it falls to zero; that state is then the last one reported.
-
-    References
-    ----------
-    Chetaev 1960, eq. (2.3) and (2.4).
 
     Examples
     --------
@@ -160,26 +155,23 @@ def constrained_motion(
     def slope(time: float, state: FloatArray) -> FloatArray:
         x, v = state[: 2 * size].reshape(2, *shape)
         now = system.instant(x, v, time)
-        going = now.velocity
-        works = ((now.force * going).sum(), (now.friction * going).sum(),
-                 -now.multipliers @ now.drive)  # fmt: skip
-        return np.concatenate([going.ravel(), now.acceleration.ravel(), works])
+        works = np.einsum("wnd,nd->w", [now.force, now.friction], now.velocity)
+        given = -now.multipliers @ now.drive
+        return np.concatenate([now.velocity.ravel(), now.acceleration.ravel(), works, [given]])
 
     def ends(time: float, state: FloatArray) -> float:
-        assert until is not None
         x, v = state[: 2 * size].reshape(2, *shape)
-        return float(until(x, v, time))
+        return 1.0 if until is None else float(until(x, v, time))
 
     ends.terminal, ends.direction = True, -1  # type: ignore[attr-defined]
     # what errors are measured against where a coordinate passes zero: a length, speed, energy
     span = t[-1] - t[0]
     speed = float(np.abs(start.velocity).max() + np.abs(start.acceleration).max() * span) or 1.0
-    energy = float(np.asarray(system.masses).sum()) * speed**2
-    scales = [float(np.abs(x).max()) + speed * span, speed, energy]
+    scales = [float(np.abs(x).max()) + speed * span, speed, np.sum(system.masses) * speed**2]
     solved = solve_ivp(
         slope, (t[0], t[-1]), np.concatenate([x.ravel(), v.ravel(), np.zeros(_WORKS)]),
         method="DOP853", t_eval=t, rtol=tol, atol=tol * np.repeat(scales, [size, size, _WORKS]),
-        events=None if until is None else ends,
+        events=ends,
     )  # fmt: skip
     if solved.status < 0:
         reached = solved.t[-1] if solved.t.size else t[0]
@@ -198,9 +190,7 @@ def checked_times(times: npt.ArrayLike) -> FloatArray:
     """Times of a motion, the first of which is its start."""
     t = finite_array("times", times, "s")
     if t.ndim != 1 or t.size < 2 or not (np.diff(t) > 0.0).all():
-        raise InputError(
-            "times must be at least two numbers in s, ascending: the first is the start"
-        )
+        raise InputError("times must be two or more numbers in s, ascending, from the start on")
     return t
 
 
@@ -217,8 +207,7 @@ def _reported(
 ) -> ConstrainedMotion:
     size = shape[0] * shape[1]
     position, integrated = np.moveaxis(states[:, : 2 * size].reshape(-1, 2, *shape), 1, 0)
-    rows = zip(position, integrated, when.tolist(), strict=True)
-    instants = [system.instant(*row) for row in rows]
+    instants = [system.instant(*row) for row in zip(position, integrated, when, strict=True)]
     columns = Instant(*(np.array(column) for column in zip(*instants, strict=True)))
     velocity, masses = columns.velocity, np.asarray(system.masses)[:, None]
     moved = (masses * (velocity - integrated) ** 2).sum(axis=(1, 2)) / masses.sum()
@@ -245,13 +234,12 @@ def _checked_admissible(
             f"the velocity at the start breaks constraint {which + 1}: the sum of a·x' and e is "
             f"{start.residual[which]:g}, not 0; give a velocity that the constraints admit"
         )
-    beside = []
-    for step in (_PROBE * span, -_PROBE * span):
-        a, e = system.constrained(x + step * v, time + step)
-        beside.append(a.reshape(len(e), -1) @ v.ravel() + e)
+    steps = (_PROBE * span, -_PROBE * span)
+    beside = [system.constrained(x + step * v, time + step) for step in steps]
+    ahead, behind = (np.tensordot(a, v, axes=2) + e for a, e in beside)
     found = system.change(x, v, time)
     allowed = _PROBE_SLACK * (np.abs(found) + terms / span)
-    wrong = ~(np.abs((beside[0] - beside[1]) / (2.0 * _PROBE * span) - found) <= allowed)
+    wrong = ~(np.abs((ahead - behind) / (2.0 * steps[0]) - found) <= allowed)
     if wrong.any():
         raise InputError(
             f"constraint {int(np.argmax(wrong)) + 1} changes otherwise along the motion than its "

@@ -31,6 +31,7 @@ from puck_tables.errors import InputError
 
 MAX_RINGS = 256  # 4 n² points: 262,144
 MOST_PASSED, MOST_TURN = 1e6, 1e3  # patches times rad; rad
+_TURNED = np.array([[0.0, 1.0], [-1.0, 0.0]])  # rows (x, y) by a right angle, to (−y, x)
 # Q of the start at which the rest of the motion is taken as one at constant deceleration
 _LAST = 1e-7
 
@@ -43,36 +44,33 @@ def disc_points(rings: int) -> FloatArray:
     (36, 0.5)
     """
     rings = whole("rings", rings, 1, MAX_RINGS)
-    k = np.arange(1, rings + 1)
-    count = 4 * (2 * k - 1)
-    radius = np.repeat(np.sqrt(0.5 * ((k - 1) ** 2 + k**2)) / rings, count)
-    angle = np.concatenate([2.0 * np.pi * (np.arange(one) + 0.5) / one for one in count])
-    places = radius * np.stack([np.cos(angle), np.sin(angle)])
-    return np.ascontiguousarray(places.T)
+    k = np.repeat(np.arange(1, rings + 1), 4 * (2 * np.arange(1, rings + 1) - 1))
+    radius = np.sqrt(0.5 * ((k - 1) ** 2 + k**2)) / rings
+    angle = 2.0 * np.pi * (np.arange(len(k)) - 4 * (k - 1) ** 2 + 0.5) / (4 * (2 * k - 1))
+    return np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1)
 
 
-def pressures(points: FloatArray, slip: FloatArray, delta: float) -> FloatArray:
-    """Loads of the patches in units of their mean: 1 + b x + c y with the moments balanced.
+def braking(points: FloatArray, velocity: FloatArray, rim: float, delta: float) -> FloatArray:
+    """Each patch's load over its rms slip: −μ in units of f times the mean load; 0 at rest.
 
-    ``points`` (n, 2) from the centre in units of the radius, axes fixed in space; ``slip`` (n, 2):
-    friction of each patch over f σ, turned round.  Σ σ x = (h/2) f Σ σ u/|u| are two linear
-    equations for (b, c).
+    ``points`` (n, 2) from the centre in units of the radius, axes fixed in space; ``velocity``
+    (n, 2); ``rim``: rω.  The loads are 1 + b x + c y with the moments balanced: Σ σ x =
+    (h/2) f Σ σ u/|u| are two linear equations for (b, c).
 
     >>> points = disc_points(8)
     >>> ahead = np.tile([1.0, 0.0], (len(points), 1))
-    >>> bool(np.allclose(pressures(points, ahead, 0.5), 1.0 + 0.5 * points[:, 0]))  # b = δ at φ = 0
+    >>> bool(np.allclose(braking(points, ahead, 0.0, 0.5), 1.0 + 0.5 * points[:, 0]))  # b = δ
     True
     """
-    if delta == 0.0:
-        return np.ones(len(points))
-    lever = points - 0.25 * delta * slip
-    tilt = np.linalg.solve((lever.T @ points), -lever.sum(axis=0))
-    load = np.asarray(1.0 + points @ tilt)
+    slip = np.sqrt((velocity**2).sum(axis=1) + np.pi * rim * rim / (6.0 * len(velocity)))
+    inverse = np.divide(1.0, slip, np.zeros(len(slip)), where=slip > 0.0)
+    lever = points - 0.25 * delta * inverse[:, None] * velocity
+    load = 1.0 + points @ np.linalg.solve(lever.T @ points, -lever.sum(axis=0))
     if load.min() < 0.0:
         raise InputError(
             f"delta = {delta:g}: a patch would be lifted; patches are for full contact, delta <= 1"
         )
-    return load
+    return np.asarray(load * inverse)
 
 
 def patch_system(
@@ -100,31 +98,27 @@ def patch_system(
     >>> len(points), len(system.constraints(points, 0.0)[1])
     (16, 29)
     """
-    delta, decel, radius, mass = _checked(delta, decel, radius, mass)
+    delta, decel, radius = _checked(delta, decel, radius)
+    mass = positive("mass", mass, "kg")
     points = disc_points(rings) * radius
     count = len(points)
-    others = np.arange(2, count)
+    others = np.arange(count - 2)
 
     def rigid(x: FloatArray, t: float) -> tuple[FloatArray, FloatArray]:
         base = x[1] - x[0]
-        turned = np.stack([-base[1], base[0]])  # ω |base|² = turned·(u_2 − u_1)
-        a = np.zeros((1 + 2 * (count - 2), count, 2), dtype=x.dtype)
+        a = np.zeros((2 * count - 3, count, 2), dtype=x.dtype)
         a[0, 0], a[0, 1] = -base, base
-        arm = (x[2:] - x[0]) / (base @ base)
-        for axis, across in ((0, -arm[:, 1]), (1, arm[:, 0])):
-            rows = 2 * others - 3 + axis
-            a[rows, others, axis] = 1.0
-            a[rows, 0, axis] = -1.0
-            a[rows, 1] -= across[:, None] * turned
-            a[rows, 0] += across[:, None] * turned
+        # ω |base|² = (n × base)·(u_2 − u_1), n × (x, y) = (−y, x)
+        across = ((x[2:] - x[0]) @ _TURNED / (base @ base))[..., None] * (base @ _TURNED)
+        of_others = a[1:].reshape(count - 2, 2, count, 2)
+        of_others[others, :, others + 2] = np.eye(2)
+        of_others[:, :, 0], of_others[:, :, 1] = across - np.eye(2), -across
         return a, np.zeros(len(a), dtype=x.dtype)
 
     def friction(x: FloatArray, v: FloatArray, t: float) -> FloatArray:
         arm, relative = (x - x.mean(axis=0)) / radius, v - v.mean(axis=0)
-        rim = 2.0 * float((arm[:, 0] * relative[:, 1] - arm[:, 1] * relative[:, 0]).mean())
-        inverse = _inverse_speed(v, rim)
-        load = pressures(arm, v * inverse[:, None], delta)
-        return -load * inverse * (mass * decel / count)
+        rim = 2.0 * (arm @ _TURNED * relative).sum() / count
+        return -(mass * decel / count) * braking(arm, v, rim, delta)
 
     return ConstrainedSystem(np.full(count, mass / count), rigid, friction=friction), points
 
@@ -139,7 +133,7 @@ def patch_stop(
     radius: float = 1.0,
     tol: float = 1e-8,
 ) -> tuple[float, FloatArray]:
-    """When and where a puck of 4 rings² patches stops.
+    """When and where a puck of 4 rings² patches stops (Chetaev 1960, section 3).
 
     Lagrange's equations (3.5) for (x, y, θ).  As the friction multipliers depend on the velocities
     they enter as generalised forces.  Time runs as dt = (Q/J) dτ, in which the stop is infinitely
@@ -159,10 +153,6 @@ def patch_stop(
     float, array (2,)
         Stop time in s and place in m.
 
-    References
-    ----------
-    Chetaev 1960, section 3.
-
     Examples
     --------
     >>> time, place = patch_stop((1.0, 0.0), 0.0, 4)  # no spin: exact with any patches
@@ -171,7 +161,7 @@ def patch_stop(
     """
     from scipy.integrate import solve_ivp
 
-    delta, decel, radius, _ = _checked(delta, decel, radius, 1.0)
+    delta, decel, radius = _checked(delta, decel, radius)
     tol, points = checked_tol(tol), disc_points(rings)
     (vx, vy), rim = one_velocity(velocity), radius * real("spin", spin, "rad/s")
     start = math.hypot(vx, vy, rim)
@@ -195,10 +185,9 @@ def patch_stop(
         vx, vy, rim, angle = state[:4]
         cosine, sine = math.cos(angle), math.sin(angle)
         places = points @ np.array([[cosine, sine], [-sine, cosine]])
-        slip = np.stack([vx - rim * places[:, 1], vy + rim * places[:, 0]], axis=-1)
-        slip *= _inverse_speed(slip, rim)[:, None]
-        force = pressures(places, slip, delta)[:, None] * slip
-        torque = float((places[:, 0] * force[:, 1] - places[:, 1] * force[:, 0]).mean())
+        slip = rim * places @ _TURNED + [vx, vy]
+        force = braking(places, slip, rim, delta)[:, None] * slip
+        torque = (places @ _TURNED * force).sum() / len(points)
         Q = math.hypot(vx, vy, rim)
         return Q * np.array([*-force.mean(axis=0), -2.0 * torque, turn * rim, vx, vy, 1.0])
 
@@ -206,31 +195,17 @@ def patch_stop(
         return math.hypot(*state[:3]) - _LAST
 
     slow.terminal = True  # type: ignore[attr-defined]
-    # the speeds keep their digits down to their last values; angle, place and time are sums
-    absolute = tol * np.array([_LAST, _LAST, _LAST, 1.0, 1.0, 1.0, 1.0])
     first = np.array([vx, vy, rim, 0.0, 0.0, 0.0, 0.0]) / start
-    solved = solve_ivp(slope, (0.0, 1e3), first, "DOP853", rtol=tol, atol=absolute, events=slow)
+    # the speeds keep their digits down to their last values
+    solved = solve_ivp(slope, (0.0, 1e3), first, "DOP853", rtol=tol, atol=tol * _LAST, events=slow)
     end = solved.y[:, -1]
     going = slope(0.0, end)  # Q times what changes in units of time
     left = going[-1] ** 3 / -float(end[:3] @ going[:3])
     return last * float(end[6] + left), length * (end[4:6] + 0.5 * left * end[:2])
 
 
-def _inverse_speed(velocity: FloatArray, rim: float) -> FloatArray:
-    """1/rms slip of the patches of a disc whose rim turns with the speed ``rim``; 0 at rest."""
-    squared = (velocity**2).sum(axis=1) + np.pi * rim * rim / (6.0 * len(velocity))
-    inverse = np.zeros(len(velocity))
-    np.divide(1.0, np.sqrt(squared), inverse, where=squared > 0.0)
-    return inverse
-
-
-def _checked(
-    delta: float, decel: float, radius: float, mass: float
-) -> tuple[float, float, float, float]:
+def _checked(delta: float, decel: float, radius: float) -> tuple[float, float, float]:
     height = real("delta", delta, "2 f h / r")
     if not 0.0 <= height <= 1.0:
         raise InputError(f"delta must be from 0 to 1 (full contact) for patches, got {height:g}")
-    return (
-        height, positive("decel", decel, "m/s^2"), positive("radius", radius, "m"),
-        positive("mass", mass, "kg"),
-    )  # fmt: skip
+    return height, positive("decel", decel, "m/s^2"), positive("radius", radius, "m")

@@ -1,5 +1,6 @@
 """Point masses under linear velocity constraints with friction: one instant of the motion.
 
+N. G. Chetaev, On certain constraints with friction, 1960, numbers its equations so.
 Chetaev's axiom says that the reactions of constraints with friction do no work on the displacements
 that the constraints admit and that are orthogonal to the velocity of every point (1.3).  Each
 reaction is then a smooth part plus a part along the velocity, and the motion obeys
@@ -25,7 +26,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array, real_array, shown
+from puck_tables._core.real import finite_array, shown
 from puck_tables.errors import InputError
 
 Constraints = Callable[[Any, Any], tuple[npt.ArrayLike, npt.ArrayLike]]
@@ -38,7 +39,7 @@ _COMPLEX_STEP = 1e-30  # its square vanishes beside 1: the derivative has no rou
 
 @dataclass(frozen=True)
 class ConstrainedSystem:
-    """Point masses in the plane or in space, their constraints, forces and friction.
+    """Point masses, their constraints, forces and friction: Chetaev 1960, sections 1 and 2.
 
     Parameters
     ----------
@@ -54,10 +55,6 @@ class ConstrainedSystem:
         The multipliers μ of the velocities, negative where they brake; zero by default.
     rate : callable (x, v, t) → (s,), optional
         d(Σ a·v + e)/dt along the motion at fixed v, for constraints that take no complex numbers.
-
-    References
-    ----------
-    Chetaev, On certain constraints with friction, 1960, sections 1 and 2.
 
     Examples
     --------
@@ -91,8 +88,8 @@ class ConstrainedSystem:
     def instant(self, position: FloatArray, velocity: FloatArray, time: float) -> Instant:
         """Accelerations and multipliers at a state, after its velocity is made admissible.
 
-        InputError if a function returns something of another shape or not finite, or the
-        constraints depend on each other.
+        InputError if a function gives another shape or what is not finite, or the constraints
+        depend on each other.
         """
         shape = position.shape
         a, e = self.constrained(position, time)
@@ -104,11 +101,9 @@ class ConstrainedSystem:
 
         def at(name: str, function: OfState | npt.ArrayLike, wanted: tuple[int, ...]) -> FloatArray:
             given = function(position, moving, time) if callable(function) else function
-            values = real_array(name, given, "SI units")
+            values = finite_array(f"{name} at t = {time:g} s", given, "SI units")
             if values.shape not in ((), wanted):
                 raise InputError(f"{name} must have the shape {wanted}, got {values.shape}")
-            if not np.isfinite(values).all():
-                raise InputError(f"{name} is not finite at t = {time:g} s")
             return np.broadcast_to(values, wanted)
 
         force = at("force", self.force, shape)
@@ -123,17 +118,16 @@ class ConstrainedSystem:
 
     def constrained(self, position: FloatArray, time: float) -> tuple[FloatArray, FloatArray]:
         """A (s, n, d) and e (s,), checked."""
+        name = f"constraints at t = {time:g} s"
         a, e = self.constraints(position, time)
-        drive = np.atleast_1d(np.asarray(e, dtype=np.float64))
-        matrix = np.asarray(a, dtype=np.float64)
-        if drive.ndim != 1 or matrix.shape != (drive.size, *position.shape):
+        matrix = finite_array(name, a, "SI units")
+        drive = np.atleast_1d(finite_array(name, e, "SI units"))
+        wanted = drive.size, *position.shape
+        if drive.ndim != 1 or matrix.shape != wanted:
             raise InputError(
-                f"constraints must return a of shape (s, n, d) = ({drive.size}, "
-                f"{position.shape[0]}, {position.shape[1]}) and e of shape (s,), got "
+                f"constraints must return a of shape (s, n, d) = {wanted} and e of shape (s,), got "
                 f"{matrix.shape} and {drive.shape}"
             )
-        if not (np.isfinite(matrix).all() and np.isfinite(drive).all()):
-            raise InputError(f"the constraints are not finite at t = {time:g} s")
         return matrix, drive
 
     def change(self, position: FloatArray, velocity: FloatArray, time: float) -> FloatArray:
@@ -153,22 +147,17 @@ class ConstrainedSystem:
 
 
 class Instant(NamedTuple):
-    """What holds at one state: everything in SI units.
+    """What holds at one state: everything in SI units, (n, d) where nothing else is said."""
 
-    ``velocity`` (n, d) is the admissible velocity nearest to the one given, ``residual`` (s,) what
-    the latter gave in (2.4); ``multipliers`` (s,) are the λ; ``smooth`` and ``friction`` (n, d) the
-    two parts Σ λ a and μ x′ of the reactions; ``matrix`` (s, n, d) and ``drive`` (s,) are a and e.
-    """
-
-    velocity: FloatArray
+    velocity: FloatArray  # the admissible one nearest to the one given
     acceleration: FloatArray
-    multipliers: FloatArray
-    smooth: FloatArray
-    friction: FloatArray
+    multipliers: FloatArray  # λ (s,)
+    smooth: FloatArray  # Σ λ a, and
+    friction: FloatArray  # μ x′: the two parts of the reactions
     force: FloatArray
-    matrix: FloatArray
-    drive: FloatArray
-    residual: FloatArray
+    matrix: FloatArray  # a (s, n, d)
+    drive: FloatArray  # e (s,)
+    residual: FloatArray  # (s,): what the velocity given gives in (2.4)
 
 
 def _solver(
@@ -176,29 +165,22 @@ def _solver(
 ) -> Callable[[FloatArray], FloatArray]:
     """What solves for the λ, by Cholesky's factor of the Gram matrix of unit constraints."""
     from scipy.linalg import cho_solve
+    from scipy.linalg.lapack import dpotrf
 
     gram = (flat * per_mass) @ flat.T
     length = np.sqrt(np.diag(gram))
-    if not (length > 0.0).all():
+    length[length == 0.0] = 1.0
+    lower, which = dpotrf(gram / np.outer(length, length), lower=1)
+    combined = np.diag(lower) < _INDEPENDENT
+    if which or combined.any():
         raise InputError(
-            f"constraint {int(np.argmin(length)) + 1} has no coefficients at t = {time:g} s: "
-            "it constrains nothing; leave it out"
-        )
-    try:
-        lower = np.linalg.cholesky(gram / np.outer(length, length))
-        share = np.diag(lower)
-    except np.linalg.LinAlgError:
-        share = np.zeros(1)
-    if len(flat) and share.min() < _INDEPENDENT:
-        which = f" {int(np.argmin(share)) + 1}" if share.size == len(flat) else "s"
-        raise InputError(
-            f"the constraint{which} at t = {time:g} s can be combined from the others: the forces "
-            "of the constraints are not determined; leave the superfluous one out"
+            f"constraint {which or int(combined.argmax()) + 1} at t = {time:g} s has no "
+            "coefficients or can be combined from those before it: its force is not determined; "
+            "leave it out"
         )
 
     def solve(right: FloatArray) -> FloatArray:
-        if not right.size:
-            return right
-        return np.asarray(cho_solve((lower, True), right / length, check_finite=False) / length)
+        solved = cho_solve((lower, True), right / length, check_finite=False) if right.size else 0.0
+        return np.asarray(solved / length)
 
     return solve

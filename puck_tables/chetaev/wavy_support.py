@@ -31,7 +31,8 @@ from puck_tables.errors import AccuracyError, InputError
 
 _TOL = 1e-13  # of a step, relative: near to what doubles hold
 _LARGEST_TURN = 0.05  # of θ in one step of sliding, so that no dip of λ is stepped over
-_LOOKS = 6  # places where it is seen whether a gap only grows
+# shares of a time at which it is seen whether a gap only grows; and of the first such time
+_LOOKS, _HALVES = np.arange(1, 7) / 6, 0.5 ** np.arange(64.0)[:, None]
 _GAP_STEPS = 1_000_000  # flights that hardly leave the crest take that many
 _NOISE = 2.0**-53  # relative rounding of a double: a gap below it is none
 MAX_ARCS = 100_000  # slides and flights: then it is refused by name
@@ -77,11 +78,11 @@ class Asperity:
 
     def height(self, x: npt.ArrayLike) -> FloatArray:
         """−a cos(x/b), m, at places x in m."""
-        return np.asarray(self._height(finite_array("x", x, "m")))
+        return np.asarray(-self.amplitude * np.cos(finite_array("x", x, "m") / self.length))
 
     def incline(self, x: npt.ArrayLike) -> FloatArray:
         """dy/dx of the support, κ sin(x/b), at places x in m."""
-        return np.asarray(self._incline(finite_array("x", x, "m")))
+        return np.asarray(self.slope * np.sin(finite_array("x", x, "m") / self.length))
 
     def press(self, x: npt.ArrayLike, speed: npt.ArrayLike) -> FloatArray:
         """The numerator of λ, N: negative where the support falls away under a flying point."""
@@ -89,50 +90,36 @@ class Asperity:
             x=finite_array("x", x, "m"), speed=finite_array("speed", speed, "m/s")
         )
         with np.errstate(over="ignore", invalid="ignore"):
-            press = np.asarray(self._press(place, rate))
+            lifting = self.mass * self.amplitude / self.length**2 * rate**2
+            press = self.load + lifting * np.cos(place / self.length) + self.pull * self.incline(x)
         if not np.isfinite(press).all():
             raise InputError("x and speed give a press too large for floating point")
-        return press
+        return np.asarray(press)
 
     def multipliers(self, x: npt.ArrayLike, speed: npt.ArrayLike) -> tuple[FloatArray, ...]:
         """λ exact, by its leading terms, and crude, in N, not cut at 0: below there is no contact.
 
         ``x`` in m, ``speed`` x′ in m/s: array_like, broadcast.
 
-        Examples
-        --------
         >>> bumps = Asperity(amplitude=1.0, length=1.0, load=2.0, mass=1.0)
         >>> [float(lam.round(6)) for lam in bumps.multipliers(np.pi / 4, 1.0)]
         [1.804738, 2.707107, 2.0]
         """
-        press, incline = self.press(x, speed), self._incline(np.asarray(x))
+        press, incline = self.press(x, speed), self.incline(x)
         exact = press / (1.0 + incline**2)
         return exact, press - self.pull * incline, np.full(press.shape, self.load)
 
-    def _height(self, x: Any) -> Any:
-        return -self.amplitude * np.cos(x / self.length)
-
-    def _incline(self, x: Any) -> Any:
-        return self.slope * np.sin(x / self.length)
-
-    def _press(self, x: Any, speed: Any) -> Any:
-        bend = self.mass * self.amplitude / self.length**2 * speed**2 * np.cos(x / self.length)
-        return self.load + bend + self.pull * self._incline(x)
-
 
 class SlideOrFlight(NamedTuple):
-    """One stretch of a motion: its kind, ``slide`` or ``fly``, when and how it begins, in SI units.
+    """One stretch of a motion: its kind, when and how it begins, in SI units."""
 
-    ``loss`` is the energy lost by the landing at its start, J.
-    """
-
-    kind: str
+    kind: str  # "slide" or "fly"
     time: float
     x: float
     y: float
     vx: float
     vy: float
-    loss: float
+    loss: float  # energy lost by the landing at its start
 
     def flown(self, asperity: Asperity, t: Any) -> tuple[Any, ...]:
         """X, y, vx, vy so long after its beginning, s, on the parabola of a flight."""
@@ -168,7 +155,7 @@ class AsperityMotion:
 def asperity_motion(
     asperity: Asperity, x: float, speed: float, times: npt.ArrayLike
 ) -> AsperityMotion:
-    """Let a point go on the support: it slides, flies and lands.
+    """Let a point go on the support: it slides, flies and lands (Chetaev 1960, section 5).
 
     Times of lift-off and landing are exact to about 1e-12 of the time b/x′.
 
@@ -180,10 +167,6 @@ def asperity_motion(
     times : array_like (k,), s
         At least two, ascending, else InputError; AccuracyError if 100 000 arcs do not reach the
         last.
-
-    References
-    ----------
-    Chetaev 1960, section 5.
 
     Examples
     --------
@@ -197,32 +180,32 @@ def asperity_motion(
     place, rate = real("x", x, "m"), real("speed", speed, "m/s")
     if not math.isfinite(asperity.mass * rate * rate):
         raise InputError(f"speed = {rate:g} m/s gives an energy too large for floating point")
-    end = float(when[-1])
-    following: SlideOrFlight | None = _contact(asperity, float(when[0]), place, rate, 0.0)
+    arc: SlideOrFlight | None = on_support(asperity, float(when[0]), place, rate)
     arcs, pieces = list[SlideOrFlight](), []
-    while following is not None:
+    while arc is not None:
         if len(arcs) == MAX_ARCS:
             raise AccuracyError(
-                f"after {MAX_ARCS} slides and flights only t = {following.time:g} s was reached: "
+                f"after {MAX_ARCS} slides and flights only t = {arc.time:g} s was reached: "
                 "ask for an earlier time"
             )
-        arc = following
         arcs.append(arc)
-        wanted = when[when >= arc.time]
-        following, states = (_slide if arc.kind == "slide" else _fly)(asperity, arc, wanted, end)
+        follow = _slide if arc.kind == "slide" else _fly
+        arc, states = follow(asperity, arc, when[when >= arc.time], float(when[-1]))
         pieces.append(states)
     t, px, py, vx, vy, lam = np.concatenate(pieces, axis=1)
     begun, lost = np.array([one.time for one in arcs]), np.cumsum([one.loss for one in arcs])
     energy = 0.5 * asperity.mass * (vx**2 + vy**2) - asperity.pull * px + asperity.load * py
     energy += lost[np.searchsorted(begun, t, side="right") - 1]
-    off = float(np.abs(energy - energy[0]).max())
-    return AsperityMotion(t, px, py, vx, vy, lam, tuple(arcs), float(lost[-1]), off)
+    changed = float(np.abs(energy - energy[0]).max())
+    return AsperityMotion(t, px, py, vx, vy, lam, tuple(arcs), float(lost[-1]), changed)
 
 
-def _contact(asperity: Asperity, time: float, x: float, vx: float, loss: float) -> SlideOrFlight:
+def on_support(
+    asperity: Asperity, time: float, x: float, vx: float, loss: float = 0.0, leaves: bool = False
+) -> SlideOrFlight:
     """The arc that begins at a place of the support with a velocity along it."""
-    kind = "slide" if asperity._press(x, vx) > 0.0 else "fly"
-    y, vy = float(asperity._height(x)), float(asperity._incline(x)) * vx
+    kind = "fly" if leaves or asperity.press(x, vx) <= 0.0 else "slide"
+    y, vy = float(asperity.height(x)), float(asperity.incline(x)) * vx
     return SlideOrFlight(kind, time, x, y, vx, vy, loss)
 
 
@@ -237,11 +220,11 @@ def _fly(
     if down > end:
         return None, states
     x, _, vx, vy = arc.flown(asperity, lasts)
-    incline = float(asperity._incline(x))
+    incline = float(asperity.incline(x))
     # along the support, in the direction (1, incline): kept
     lost = 0.5 * asperity.mass * (vy - incline * vx) ** 2 / (1.0 + incline**2)
     along = (vx + incline * vy) / (1.0 + incline**2)
-    return _contact(asperity, down, x, along, lost), states
+    return on_support(asperity, down, x, along, lost), states
 
 
 def landing(asperity: Asperity, arc: SlideOrFlight, longest: float) -> float:
@@ -253,7 +236,12 @@ def landing(asperity: Asperity, arc: SlideOrFlight, longest: float) -> float:
     like Newton's.
     """
     ax, ay = asperity.pull / asperity.mass, -asperity.load / asperity.mass
-    t = _rising(asperity, arc, ax)
+    # steps begin where the gap has only grown
+    first = asperity.length / max(abs(arc.vx), math.sqrt(abs(ax) * asperity.length), 1e-300)
+    tries = min(first, math.sqrt(asperity.mass * asperity.length / asperity.load)) * _HALVES
+    x, _, vx, _ = arc.flown(asperity, tries * _LOOKS)
+    grows = (asperity.press(x, vx) < 0.0).all(axis=1)
+    t = float(tries[grows.argmax(), 0]) if grows.any() else 0.0
     for _ in range(_GAP_STEPS):
         if t > longest:
             return math.inf
@@ -266,7 +254,7 @@ def landing(asperity: Asperity, arc: SlideOrFlight, longest: float) -> float:
         gap = (arc.vy + 0.5 * ay * t) * t - rise
         if gap <= _NOISE * (abs(arc.vy * t) + abs(ay * t * t) + abs(rise)):
             return t  # landed, to rounding: also flights too low to be seen
-        closing = vy - float(asperity._incline(x)) * vx
+        closing = vy - asperity.slope * math.sin(x / asperity.length) * vx
         fastest = abs(vx) + (abs(ax) * ahead if ax != 0.0 else 0.0)
         bend = -ay + asperity.amplitude / asperity.length**2 * fastest**2 + abs(ax) * asperity.slope
         root = math.sqrt(max(closing * closing + 2.0 * bend * gap, 0.0))
@@ -280,39 +268,24 @@ def landing(asperity: Asperity, arc: SlideOrFlight, longest: float) -> float:
     )
 
 
-def _rising(asperity: Asperity, arc: SlideOrFlight, ax: float) -> float:
-    """A time until which the gap of a flight only grows."""
-    t = asperity.length / max(abs(arc.vx), math.sqrt(abs(ax) * asperity.length), 1e-300)
-    t = min(t, math.sqrt(asperity.mass * asperity.length / asperity.load))
-    looks = np.arange(1, _LOOKS + 1) / _LOOKS
-    while t > 0.0:
-        x, _, vx, _ = arc.flown(asperity, t * looks)
-        if (asperity._press(x, vx) < 0.0).all():
-            break
-        t *= 0.5
-    return t
-
-
 def _slide(
     asperity: Asperity, arc: SlideOrFlight, wanted: FloatArray, end: float
 ) -> tuple[SlideOrFlight | None, FloatArray]:
     """Until λ falls to 0, and the states at the times wanted before that."""
     from scipy.integrate import solve_ivp
 
-    mass, pull = asperity.mass, asperity.pull
-
     def slope(t: float, state: FloatArray) -> list[float]:
-        incline = asperity._incline(state[0])
-        lam = asperity._press(*state) / (1.0 + incline**2)
-        return [state[1], (pull - lam * incline) / mass]
+        incline = float(asperity.incline(state[0]))
+        lam = float(asperity.press(*state)) / (1.0 + incline**2)
+        return [state[1], (asperity.pull - lam * incline) / asperity.mass]
 
     def press(t: float, state: FloatArray) -> float:
-        return float(asperity._press(*state))
+        return float(asperity.press(*state))
 
     press.terminal, press.direction = True, -1  # type: ignore[attr-defined]
     # over a wave the load and the pull give no more energy
-    given = asperity.load * asperity.amplitude + math.pi * abs(pull) * asperity.length
-    fastest = math.sqrt(arc.vx**2 + arc.vy**2 + 4.0 * given / mass)
+    given = asperity.load * asperity.amplitude + math.pi * abs(asperity.pull) * asperity.length
+    fastest = math.sqrt(arc.vx**2 + arc.vy**2 + 4.0 * given / asperity.mass)
     solved = solve_ivp(
         slope, (arc.time, end), [arc.x, arc.vx], "DOP853", wanted, events=press, rtol=_TOL,
         atol=_TOL * np.array([asperity.length, fastest]),
@@ -324,11 +297,9 @@ def _slide(
             "steps got too short; ask for an earlier time"
         )
     t, (x, vx) = np.array(solved.t, np.float64), np.reshape(solved.y, (2, -1))  # lists of none
-    exact = asperity._press(x, vx) / (1.0 + asperity._incline(x) ** 2)
-    states = np.stack([t, x, asperity._height(x), vx, asperity._incline(x) * vx, exact])
+    vy = asperity.incline(x) * vx
+    states = np.stack([t, x, asperity.height(x), vx, vy, asperity.multipliers(x, vx)[0]])
     if solved.status != 1:
         return None, states
-    leave, (off_x, off_vx) = float(solved.t_events[0][0]), solved.y_events[0][0].tolist()
-    y, vy = float(asperity._height(off_x)), float(asperity._incline(off_x)) * off_vx
-    before = states[:, t < leave]
-    return SlideOrFlight("fly", leave, off_x, y, off_vx, vy, 0.0), before
+    leave, off = float(solved.t_events[0][0]), solved.y_events[0][0].tolist()
+    return on_support(asperity, leave, off[0], off[1], leaves=True), states[:, t < leave]

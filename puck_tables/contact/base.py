@@ -100,8 +100,6 @@ class Base:
     ) -> Self:  # fmt: skip
         """A rectangle about the origin, ``length`` along x, m; ``centre`` of mass (x, y), m.
 
-        Examples
-        --------
         >>> round(Base.box(0.2, 0.1).area, 6)
         0.02
         """
@@ -116,8 +114,6 @@ class Base:
     ) -> Self:  # fmt: skip
         """A polygon of corners (n, 2), m, in order; ``holes``: polygons that are left out of it.
 
-        Examples
-        --------
         >>> round(Base.polygon([(0, 0), (0.1, 0), (0, 0.1)]).area, 6)
         0.005
         """
@@ -136,8 +132,6 @@ class Base:
     def disc(cls, radius: float, *, centre: tuple[float, float] | None = None) -> Self:
         """A disc about the origin, m.
 
-        Examples
-        --------
         >>> round(Base.disc(1.0).area, 6)
         3.141593
         """
@@ -150,8 +144,6 @@ class Base:
     ) -> Self:
         """A disc about the origin with a round hole of the radius ``inner``, m.
 
-        Examples
-        --------
         >>> round(Base.annulus(1.0, 0.5).gyration, 6)
         0.790569
         """
@@ -167,8 +159,6 @@ class Base:
     ) -> Self:
         """Round feet of one radius, m, about ``centres`` (n, 2), m; they must not overlap.
 
-        Examples
-        --------
         >>> len(Base.feet([(0.1, 0.0), (-0.1, 0.1), (-0.1, -0.1)], 0.005).discs)
         3
         """
@@ -185,8 +175,6 @@ class Base:
     ) -> Self:  # fmt: skip
         """Several bases together, which must not overlap.
 
-        Examples
-        --------
         >>> stem = Base.polygon([(-0.01, -0.2), (0.01, -0.2), (0.01, 0.0), (-0.01, 0.0)])
         >>> round(Base.union([stem, Base.feet([(0.0, 0.05)], 0.03)]).area, 6)
         0.006827
@@ -247,8 +235,6 @@ class Base:
         Up to it no state of motion lifts a part of the base.  The pressure at a place is linear in
         the force of friction, which is largest, f N, as the base slides without spin.
 
-        Examples
-        --------
         >>> round(Base.box(0.2, 0.1).highest_lever, 9), round(Base.disc(0.04).highest_lever, 9)
         (0.01490712, 0.01)
         """
@@ -277,8 +263,6 @@ class Base:
     def is_under_centre(self) -> bool:
         """Whether some of it lies right under the centre of mass: not in a hole, not between feet.
 
-        Examples
-        --------
         >>> Base.box(0.2, 0.1).is_under_centre, Base.annulus(0.1, 0.05).is_under_centre
         (True, False)
         """

@@ -43,8 +43,6 @@ def elliptic_with(steps: int) -> Elliptic:
 
     A constant number, so that the loop over it can be unrolled and the one around it vectorised.
 
-    Examples
-    --------
     >>> few, all_ = elliptic_with(4)(0.5)[0], elliptic(0.5)[0]
     >>> bool(abs(few - all_) < 1e-15)
     True
@@ -150,8 +148,6 @@ def integrals(phi: npt.ArrayLike) -> PatchIntegrals:
 def by_closed_form(phi: npt.ArrayLike, delta: npt.ArrayLike) -> Resultants:
     """Resultants by elliptic integrals, uncompiled.
 
-    Examples
-    --------
     >>> float(by_closed_form(0.0, 1.0).spin)
     0.375
     """

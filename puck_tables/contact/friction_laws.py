@@ -7,8 +7,10 @@ A law is one class here, with its formula, its numbers and what they may be; it 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 from typing import Any, ClassVar
 
 import numpy as np
@@ -18,7 +20,6 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.fields import of, specs
 from puck_tables._core.reading import Reading, mark_checked, read_values
 from puck_tables._core.real import finite_array, positive, real
-from puck_tables.contact.law_pieces import pieces_of_function
 from puck_tables.errors import InputError
 
 # below, f is too steep at rest for a table; above, it is a step
@@ -26,6 +27,14 @@ _LEAST_EXPONENT, _LARGEST_EXPONENT = 0.5, 8.0
 _SMOOTH = 6.0  # a table of degree 5 sees no singularity of this power and above
 _LARGEST_TOP = 1e100  # m/s
 _LOOKS = 513  # speeds at which the largest f is looked for
+# of Chebyshev's series of a piece: its degree, its nodes, and places that judge it between them
+_DEGREE = 15
+_ANGLES = np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1)
+_NODES = np.cos(_ANGLES)
+_PROBES = np.linspace(-1.0, 1.0, 37)
+_ROUNDING = 4e-15  # of the largest f: what a piece may miss
+# half a piece at least, of the top and of its place: what is left of a root at slip zero
+_SHORTEST, _NARROWEST = 1e-26, 1e-6
 
 
 class FrictionLaw:
@@ -109,7 +118,7 @@ class FrictionLaw:
         return float(self.formula(speeds[speeds <= last]).max())
 
     def pieces(self, top: float) -> tuple[FloatArray, FloatArray]:
-        """The law in pieces up to a speed, see :mod:`puck_tables.contact.law_pieces`."""
+        """The law in pieces up to a speed, see :func:`pieces_of_function`."""
         return _pieces(self, _checked_top(top))
 
 
@@ -288,3 +297,42 @@ def law_of_numbers(kind: str, numbers: list[float]) -> FrictionLaw:
         raise InputError(f"{kind!r} with {len(numbers)} numbers is no friction law")
     found: FrictionLaw = law(*numbers)
     return found.checked()
+
+
+def pieces_of_function(
+    law: Callable[[FloatArray], FloatArray], speeds: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Ends (k + 1,) and polynomials (k, 18) of a smooth law between speeds, good to rounding.
+
+    A row is the origin o and the scale s of a piece and then the powers of t = (u − o) s.
+
+    Parameters
+    ----------
+    law : callable, f at speeds in m/s
+    speeds : array, m/s
+        Ascending from 0 to the top; where the law has a scale of its own pieces end.
+
+    Examples
+    --------
+    >>> ends, pieces = pieces_of_function(np.exp, np.array([0.0, 1.0]))
+    >>> t = (0.3 - pieces[0, 0]) * pieces[0, 1]
+    >>> float(np.polynomial.polynomial.polyval(t, pieces[0, 2:]) - np.exp(0.3)) < 1e-15
+    True
+    """
+    waiting = [(float(a), float(b)) for a, b in pairwise(speeds)][::-1]
+    largest = float(np.abs(law(np.concatenate([speeds, np.linspace(0.0, speeds[-1], 99)]))).max())
+    ends, rows = [0.0], []
+    while waiting:
+        low, high = waiting.pop()
+        middle, half = 0.5 * (low + high), 0.5 * (high - low)
+        series = np.polynomial.chebyshev.chebfit(_NODES, law(middle + half * _NODES), _DEGREE)
+        powers = np.polynomial.chebyshev.cheb2poly(series)
+        powers = np.pad(powers, (0, _DEGREE + 1 - len(powers)))
+        missed = np.polynomial.polynomial.polyval(_PROBES, powers) - law(middle + half * _PROBES)
+        shortest = max(_SHORTEST * speeds[-1], _NARROWEST * middle)
+        if np.abs(missed).max() > _ROUNDING * largest and half > shortest:
+            waiting += [(middle, high), (low, middle)]
+            continue
+        ends.append(high)
+        rows.append([middle, 1.0 / half, *powers])
+    return np.array(ends), np.array(rows)

@@ -95,8 +95,6 @@ def _polynomials(parts: FloatArray) -> FloatArray:
 def packed_law(ends: FloatArray, rows: FloatArray, corners: FloatArray) -> FloatArray:
     """Pieces in one array: how many, their ends and polynomials, how many corners, and these.
 
-    Examples
-    --------
     >>> len(packed_law(*law_moments(lambda u: 0.3 + 0.0 * u, np.array([0.0, 1.0]))))
     44
     """

@@ -19,8 +19,6 @@ Shape = tuple[Sequence[Outline], Sequence[tuple[float, float, float, float]]]
 def crossing(outline: Outline, other: Outline | None = None) -> bool:
     """Whether sides of an outline cross or touch those of another, or, left out, its own.
 
-    Examples
-    --------
     >>> crossing([(0, 0), (1, 1), (1, 0), (0, 1)]), crossing([(0, 0), (1, 0), (1, 1), (0, 1)])
     (True, False)
     """
@@ -60,8 +58,6 @@ def _folds(p: FloatArray) -> bool:
 def inside(outline: Outline, place: tuple[float, float]) -> bool:
     """Whether a place lies in an outline.
 
-    Examples
-    --------
     >>> inside([(0, 0), (1, 0), (0, 1)], (0.2, 0.2)), inside([(0, 0), (1, 0), (0, 1)], (1.0, 1.0))
     (True, False)
     """
@@ -100,8 +96,6 @@ def _turn(outline: Outline) -> float:
 def overlap(one: Shape, other: Shape) -> bool:
     """Whether two shapes, of outlines and discs with holes, overlap.
 
-    Examples
-    --------
     >>> foot, near = ((), [(0.0, 0.0, 0.1, 1.0)]), ((), [(0.15, 0.0, 0.1, 1.0)])
     >>> overlap(foot, near), overlap(foot, ((), [(0.3, 0.0, 0.1, 1.0)]))
     (True, False)

@@ -101,8 +101,6 @@ def pressure_tilt(rho: Resultants, direction: SlipDirection, delta: npt.ArrayLik
 def checked_delta(delta: npt.ArrayLike) -> FloatArray:
     """``delta`` as an array, refused unless finite and not negative.
 
-    Examples
-    --------
     >>> float(checked_delta(0.5))
     0.5
     """

@@ -118,8 +118,6 @@ def load_of(base: Base, radius: float) -> RoundLoad | None:
 
     ``radius``: that of the rim, m.
 
-    Examples
-    --------
     >>> load = load_of(Base.annulus(0.08, 0.04), 0.1)
     >>> load.law.name, round(load.reach, 12)
     ('annulus:0.5', 0.8)

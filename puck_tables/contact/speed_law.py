@@ -165,7 +165,7 @@ class SpeedLaw:
         return float(self.extended(np.append(speeds[speeds < last], last)).max())
 
     def pieces(self, top: float) -> tuple[FloatArray, FloatArray]:
-        """The law in pieces up to a speed, see :mod:`puck_tables.contact.law_pieces`."""
+        """The law in pieces up to a speed, see :mod:`puck_tables.contact.friction_laws`."""
         speeds, last = np.asarray(self.speeds), positive("top", top, "m/s")
         count = int(np.count_nonzero(speeds[:-1] < last))  # a corner at the top is not yet passed
         origins = np.stack([speeds[:count], np.ones(count)], axis=1)

@@ -159,8 +159,6 @@ def _load(radii: FloatArray, pressure: FloatArray) -> FloatArray:
 def spread(radii: FloatArray, pressure: FloatArray) -> float:
     """Root mean square deviation of the radius at which the load of a profile stands.
 
-    Examples
-    --------
     >>> round(spread(np.array([0.0, 1.0]), np.array([1.0, 1.0])) ** 2, 12)  # 1/2 − (2/3)²
     0.055555555556
     """

@@ -118,8 +118,6 @@ def objects(folder: str, triple: str, ship: Shipped, known: list[Any], symbol: s
 def checked_target(target: str | None) -> Machine:
     """A machine by its name; None: this one.
 
-    Examples
-    --------
     >>> checked_target("riscv64-linux")
     Traceback (most recent call last):
     ...

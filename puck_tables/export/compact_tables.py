@@ -61,8 +61,6 @@ class SplineFit:
 def weights(xi: FloatArray, cells: int, degree: int) -> FloatArray:
     """The B-splines at places ξ, array (places, cells + degree).
 
-    Examples
-    --------
     >>> weights(np.array([0.0, 0.5, 1.0]), 2, 3).sum(axis=1).round(12).tolist()
     [1.0, 1.0, 1.0]
     """
@@ -130,8 +128,6 @@ def spline_fit(
 def spline_fits(values: FloatArray, error: float) -> list[SplineFit]:
     """A table for each side, of powers and digits of its own; all of one degree, the cheapest.
 
-    Examples
-    --------
     >>> xi = np.linspace(0.0, 1.0, 101)[:, None, None]
     >>> flat, high = np.cos(xi) + 0.0 * heights()[:, None], np.cos(xi) * heights()[:, None] ** 4
     >>> [(one.cells, one.powers) for one in spline_fits(np.stack([flat, high]), 1e-6)]

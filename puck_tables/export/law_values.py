@@ -67,8 +67,6 @@ class LimitMotions(NamedTuple):
 def marks_of(law: Law) -> FloatArray:
     """C at both ends and at the lines of a law, ascending.
 
-    Examples
-    --------
     >>> from puck_tables.contact.laws import law_of
     >>> marks_of(law_of("annulus:0.8")).round(4).tolist()
     [-1.0, 0.0, 0.1111, 1.0]

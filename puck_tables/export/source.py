@@ -166,8 +166,6 @@ def export_source(
 def checked_request(language: str, what: str | Iterable[str], tol: float) -> tuple[str, ...]:
     """What is asked for, in the order of :data:`PARTS`.
 
-    Examples
-    --------
     >>> checked_request("c", "state,stop", 1e-6)
     ('stop', 'state')
     """
@@ -195,8 +193,6 @@ def checked_request(language: str, what: str | Iterable[str], tol: float) -> tup
 def checked_ending(path: str | Path, language: str) -> None:
     """Refuse a file name whose ending is not that of the language.
 
-    Examples
-    --------
     >>> checked_ending("puck.js", "c")
     Traceback (most recent call last):
     ...

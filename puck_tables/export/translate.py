@@ -93,8 +93,6 @@ class Braces(ABC):
     def function(self, node: ast.FunctionDef) -> str:
         """One function, its docstring as a comment before it.
 
-        Examples
-        --------
         >>> from puck_tables.export.languages import LANGUAGES
         >>> tree = ast.parse("def f(x: float) -> float: return -x if x < 0.0 else x")
         >>> print(LANGUAGES["js"].function(tree.body[0]).expandtabs(2))
@@ -230,8 +228,6 @@ def _folded(pad: str, line: str) -> list[str]:
 def rows_of(numbers: Sequence[float], width: int = 96) -> str:
     """Numbers with commas, over lines.
 
-    Examples
-    --------
     >>> rows_of([1, -2.5, 3.0])
     '1,-2.5,3'
     """
@@ -248,8 +244,6 @@ def rows_of(numbers: Sequence[float], width: int = 96) -> str:
 def short(number: float) -> str:
     """A number with no more signs than it needs.
 
-    Examples
-    --------
     >>> short(2e-06), short(0.5), short(-3.0)
     ('2e-6', '.5', '-3')
     """

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from puck_tables._core.header import header_of
 from puck_tables._core.text import TextForm
+from puck_tables._core.text_rows import header_of
 from puck_tables.errors import InputError
 from puck_tables.film.headings import Heading, heading, headings, on_a_line
 from puck_tables.film.rates import ANGLES, NO_ACCELERATIONS, PLACES
@@ -48,8 +48,6 @@ class Layout:
 def layout_of(path: str | Path, form: TextForm, columns: str | None) -> Layout:
     """What the columns of a table are, by its header or by headings given in its place.
 
-    Examples
-    --------
     >>> form = TextForm("utf-8", ",", False, [["t", "x1", "y1"]], [], [["0", "1", "2"]], 1, 3)
     >>> [one.role for _, one in layout_of("a.csv", form, None).columns]
     ['time', 'x', 'y']
@@ -162,8 +160,6 @@ def _named(path: str | Path, names: Sequence[str], owners: Sequence[str] = ()) -
 def _one_clock(names: Sequence[str], read: Sequence[Heading]) -> list[Heading]:
     """The headings with one of several times: of the measurement, or that counts from the start.
 
-    Examples
-    --------
     >>> names = ["Time", "header.stamp", "x", "y"]
     >>> [one.role for one in _one_clock(names, headings(names))]
     ['', 'time', 'x', 'y']
@@ -180,8 +176,6 @@ def _one_clock(names: Sequence[str], read: Sequence[Heading]) -> list[Heading]:
 def _own_times(read: Sequence[Heading]) -> list[Heading]:
     """The headings without times of something else, such as a stop, where the pucks have theirs.
 
-    Examples
-    --------
     >>> [one.role for one in _own_times(headings(["t", "stop_time", "x", "y"]))]
     ['time', '', 'x', 'y']
     """
@@ -193,8 +187,6 @@ def _own_times(read: Sequence[Heading]) -> list[Heading]:
 def _blocks(read: Sequence[Heading]) -> list[str]:
     """Bodies of columns where each puck has times of its own: blocks that begin, or end, with one.
 
-    Examples
-    --------
     >>> _blocks(headings(["t", "x", "y", "t", "x", "y"]))
     ['1', '1', '1', '2', '2', '2']
     """
@@ -228,8 +220,6 @@ def _deeplabcut(path: str | Path, header: list[list[str]]) -> Layout:
 def deeplabcut(labels: Iterable[tuple[str, str, str]]) -> Layout:
     """The frames, and columns of an individual, a body part and what is told of it.
 
-    Examples
-    --------
     >>> deeplabcut([("", "hub", "x"), ("", "hub", "y")]).columns[1]
     ('', Heading(role='x', puck='hub', unit=''))
     """
@@ -243,8 +233,6 @@ def deeplabcut(labels: Iterable[tuple[str, str, str]]) -> Layout:
 def name_of(form: TextForm, column: int) -> str:
     """A column in words: its name in the last row of them, or its number from 1.
 
-    Examples
-    --------
     >>> name_of(TextForm("utf-8", ",", False, [["t", ""]], []), 1)
     '2'
     """
@@ -255,8 +243,6 @@ def name_of(form: TextForm, column: int) -> str:
 def example(width: int) -> str:
     """Headings as somebody may give them for a number of columns.
 
-    Examples
-    --------
     >>> example(5)
     't,x,y,angle,-'
     """

@@ -82,8 +82,6 @@ class Reader(NamedTuple):
 def first_text(path: str | Path, head: bytes) -> str:
     """What a file begins with, where it is a text that begins with a sign of XML or JSON.
 
-    Examples
-    --------
     >>> first_text("a.trk", b" <object/>"), first_text("a.csv", b"t,x,y")
     ('<object/>', '')
     """

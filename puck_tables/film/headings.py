@@ -203,8 +203,6 @@ def _merged(text: str, words: Sequence[tuple[str, int, int]]) -> str:
 def headings(names: Sequence[str]) -> list[Heading]:
     """The headings of a table; equal ones side by side are numbered, one puck each.
 
-    Examples
-    --------
     >>> [one.puck for one in headings(["t", "x", "y", "x", "y"])]
     ['', '1', '1', '2', '2']
     """
@@ -252,8 +250,6 @@ def on_a_line(names: Sequence[str], read: Sequence[Heading]) -> list[Heading] | 
 
     What else there is has to be known, or to be of another quantity than places.
 
-    Examples
-    --------
     >>> names = ["time", "position [cm]", "v"]
     >>> [one.role for one in on_a_line(names, headings(names))]
     ['time', 'x', 'v']

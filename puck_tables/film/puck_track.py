@@ -106,8 +106,6 @@ def marks_of_one(tracks: Sequence[Track], nearest: float = np.inf) -> str:
 
     ``nearest`` m: as far apart as two pucks are at least.
 
-    Examples
-    --------
     >>> t = np.arange(20.0)
     >>> one, two = (Track(t, np.stack([t, 0.0 * t + y], axis=1), name=f"a: {y}") for y in (0, 1))
     >>> marks_of_one([one, two])[:66]

@@ -29,8 +29,6 @@ def summed(path: str | Path, film: Film, body: TrackedBody, time: FloatArray) ->
 
     By the trapezoidal rule, over frames where none is told as between those beside them.
 
-    Examples
-    --------
     >>> body = TrackedBody("", {"": np.array([[2.0, 0.0], [2.0, 0.0], [1.0, 0.0]])})
     >>> film = Film("table", [body], rates=PLACES)
     >>> summed("a.csv", film, body, np.array([0.0, 0.5, 1.0])).marks[""][:, 0].tolist()

@@ -20,8 +20,6 @@ _NEAR = 7  # frames: three strays do not move their median
 def described(track: Track) -> list[str]:
     """What a track holds, and what in it looks odd.
 
-    Examples
-    --------
     >>> track = Track([0.0, 0.1, 0.2], [[0.0, 0.0], [0.2, 0.1], [0.4, 0.1]], name="a.csv")
     >>> print(*described(track), sep=chr(10))
     a.csv
@@ -110,8 +108,6 @@ def _leaps(track: Track) -> list[str]:
 def dataset(tracks: Sequence[Track]) -> Dataset:
     """Tracks as one table, a row a frame: name (of several), time, x, y and orientation in SI.
 
-    Examples
-    --------
     >>> track = Track([0.0, 0.1], [[0.0, 0.0], [0.2, 0.1]])
     >>> list(dataset([track]).columns)
     ['time', 'x', 'y']

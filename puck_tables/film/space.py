@@ -25,8 +25,6 @@ def on_the_floor(path: str | Path, film: Film, body: TrackedBody, up: str | None
     ``film``: of which it is one, to which notes are put; ``up``: the axis that points up; None as
     the file, or most files, have it.
 
-    Examples
-    --------
     >>> body = TrackedBody("", {"": np.array([[0.0, 1.0, 9.0], [2.0, 1.0, 8.0], [4.0, 1.0, 7.0]])})
     >>> on_the_floor("a.csv", Film("table", [body], up="y"), body, None).marks[""].tolist()
     [[0.0, -9.0], [2.0, -8.0], [4.0, -7.0]]
@@ -69,8 +67,6 @@ def about_vertical(turns: FloatArray, up: int = 2) -> tuple[FloatArray, float]:
     A turn is one about the axis (twist), then one about a level axis, by the tilt (swing).  Where
     the order w, x, y, z has by far less tilt it is that.
 
-    Examples
-    --------
     >>> angle, tilt = about_vertical(np.array([[0.0, 0.0, 0.6, 0.8], [0.0, 0.0, -0.6, -0.8]]))
     >>> np.unwrap(angle).round(4).tolist(), tilt
     ([1.287, 1.287], 0.0)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -17,7 +18,6 @@ from puck_tables._core.text import TextForm, number, text_form_of
 from puck_tables._core.text_rows import read_columns
 from puck_tables._core.units import factor, unit_size
 from puck_tables.errors import InputError
-from puck_tables.film.clock import is_clock, seconds
 from puck_tables.film.column_roles import Layout, example, name_of
 from puck_tables.film.film import Film, Flags, TrackedBody
 from puck_tables.film.headings import Heading
@@ -29,6 +29,12 @@ _YES = {"true", "yes", "y", "t", "ja", "j", "oui", "si", "sí", "wahr", "ok", "1
 _NO = {"false", "no", "n", "f", "nein", "non", "falsch", "", "0"}
 _SHOWN = {"visible", "seen", "shown", "detected"}
 _HIDDEN = {"hidden", "occluded", "lost", "missing"}
+_DATE = re.compile(
+    r"([0-9]{4}-[0-9]{2}-[0-9]{2})[T ]([0-9]{2}:[0-9]{2}:[0-9]{2})(?:[.,]([0-9]{1,9}))?"
+    r"(Z|[+-][0-9]{2}:?[0-9]{2})?"
+)
+_CLOCK = re.compile(r"(?:([0-9]{1,3}):)?([0-9]{1,2}):([0-9]{1,2})(?:[.,]([0-9]{1,9}))?")
+_NANO = 1e-9  # s
 
 
 def film_in_text(
@@ -36,8 +42,6 @@ def film_in_text(
 ) -> Film:
     r"""The film in a table of text whose columns are known; ``content``: its bytes, if read.
 
-    Examples
-    --------
     >>> form = text_form_of("a.tsv", b"7\t9\n8\t9\n")
     >>> layout = Layout([("", Heading("x", "", "mm")), ("", Heading("y", "", "mm"))], "file")
     >>> film_in_text("a.tsv", form, layout, b"7\t9\n8\t9\n").bodies[0].marks[""].tolist()
@@ -87,8 +91,6 @@ def film_of_columns(
     ``values``: numbers (n,) by the number of a column; ``words``: of columns of texts, for each row
     the number of its text, and the texts; ``notes``: what was found, in sentences.
 
-    Examples
-    --------
     >>> layout = Layout([("", Heading("time")), ("", Heading("x")), ("", Heading("y"))])
     >>> film_of_columns("a", layout, dict(enumerate(np.eye(3))), {}).bodies[0].marks[""].tolist()
     [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]
@@ -127,8 +129,6 @@ def film_of_columns(
 def csv_of(rows: Iterable[Iterable[Any]]) -> bytes:
     r"""Rows of cells as a CSV file (UTF-8), which is then read as any other; None is left empty.
 
-    Examples
-    --------
     >>> csv_of([["t", "x"], [0.5, None]])
     b't,x\n0.5,\n'
     """
@@ -148,8 +148,6 @@ def film_below(
     up; ``rate``: frames a second, where the lines say it and no column holds times; ``content``:
     all of the table, where other things stand below it.
 
-    Examples
-    --------
     >>> import tempfile
     >>> columns = [("", Heading("x", "", "mm")), ("", Heading("y", "", "mm"))]
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -327,3 +325,42 @@ def _flags(
             "out with - in columns (--columns)"
         )
     return np.asarray((flags == 1.0) == (role == "seen"))
+
+
+def is_clock(text: str) -> bool:
+    """Whether a text is a time with or without a date: 2025-12-11T10:30:45.12, 30:45.12.
+
+    >>> is_clock("2025-12-11 10:30:45,5"), is_clock("1:02.5"), is_clock("12.5")
+    (True, True, False)
+    """
+    return bool(_DATE.fullmatch(text) or _CLOCK.fullmatch(text))
+
+
+def seconds(where: str, texts: Sequence[str]) -> FloatArray:
+    """Times (n,) in s, from the first one on; NaN for empty texts; ``where``: for messages.
+
+    >>> seconds("a.csv", ["23:59:59.75", "", "24:00:00.5"]).tolist()
+    [0.0, nan, 0.75]
+    """
+    nanos = [_nanos(where, text) if text else None for text in texts]
+    first = next((one for one in nanos if one is not None), 0)
+    return np.array([np.nan if one is None else (one - first) * _NANO for one in nanos])
+
+
+def _nanos(where: str, text: str) -> int:
+    """A time in whole nanoseconds: doubles hold no fraction of a second since 1970 to 1e-8."""
+    if (result := _DATE.fullmatch(text)) is not None:
+        date, clock, part, zone = result.groups()
+        try:
+            whole = int(np.datetime64(f"{date}T{clock}", "s").astype(np.int64))
+        except ValueError:
+            raise InputError(f"{where}: '{text:.40}' is no date") from None
+        if zone not in (None, "Z"):
+            sign, digits = (-1 if zone[0] == "-" else 1), zone[1:].replace(":", "")
+            whole -= sign * (3600 * int(digits[:2]) + 60 * int(digits[2:]))
+    elif (result := _CLOCK.fullmatch(text)) is not None:
+        hours, minutes, secs, part = result.groups()
+        whole = 3600 * int(hours or 0) + 60 * int(minutes) + int(secs)
+    else:
+        raise InputError(f"{where}: '{text:.40}' is no time as in the rows before")
+    return whole * 10**9 + int((part or "0").ljust(9, "0"))

@@ -276,8 +276,6 @@ def _all_times(film: Film) -> FloatArray:
 def _alike(names: Sequence[str], wanted: Sequence[str]) -> dict[str, dict[str, str]]:
     """Pucks that have each of these marks under a name that is longer by the puck's, by puck.
 
-    Examples
-    --------
     >>> _alike(["cm1", "ed1", "cm2", "ed2"], ["cm", "ed"])
     {'1': {'cm': 'cm1', 'ed': 'ed1'}, '2': {'cm': 'cm2', 'ed': 'ed2'}}
     """
@@ -400,8 +398,6 @@ def _angle_column(path: str | Path, body: TrackedBody, centre: Sequence[str]) ->
 def direction(start: FloatArray, end: FloatArray) -> FloatArray:
     """The angle of the line from one mark to another, counter-clockwise from x, (n,) in rad.
 
-    Examples
-    --------
     >>> direction(np.array([[0.0, 0.0]]), np.array([[0.0, 2.0]])).round(6).tolist()
     [1.570796]
     """

@@ -32,8 +32,6 @@ class BaseMotions(UnitMotions):
 
     ``radius`` of a launch is the reach of the base; ``gyration``: over that.
 
-    Examples
-    --------
     >>> box = BaseMotions(Base.box(0.2, 0.1), 0.5)
     >>> launch = np.array([[1.0, 0.0, 0.0, 0.0, 2.0, box.reach]]).T
     >>> box.states(launch, np.array([[0.25, 9.0]]))[0].round(9).tolist()  # v t - J t²/2
@@ -95,8 +93,6 @@ class BaseMotions(UnitMotions):
 def base_motions_of(base: Base, gyration: float) -> BaseMotions:
     """The motions of a body; ``gyration`` over the reach.
 
-    Examples
-    --------
     >>> round(base_motions_of(Base.disc(0.05), 0.5**0.5).highest, 9)
     1.0
     """

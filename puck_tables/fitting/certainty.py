@@ -156,8 +156,6 @@ def certainty_of(
 ) -> Certainty:
     """How well unknowns are known, from a Jacobian (n, m) in units of the noise.
 
-    Examples
-    --------
     >>> known = certainty_of(np.array([[10.0, 10.0], [0.0, 0.0]]), np.array([1.0, 1.0]))
     >>> known.undetermined, known.blind.round(3).tolist()  # their sum alone is seen
     ((True, True), [[-0.707, 0.707]])

@@ -33,8 +33,6 @@ def outliers_of(deviations: FloatArray, limit: float, strict: bool) -> npt.NDArr
     ``deviations`` (n, k): residuals of each frame in units of the noise; ``limit``: of the sum of
     their squares, from which on a frame seems to be none of the motion.
 
-    Examples
-    --------
     >>> deviations = np.zeros((40, 1))
     >>> deviations[20:, 0] = np.linspace(0.0, 20.0, 20)  # a motion that is another
     >>> deviations[7] = 30.0
@@ -228,8 +226,6 @@ def _kept(
 def _farthest(count: int, degrees: float) -> float:
     """The square of so many deviates over a noise that residuals told, that hardly any exceeds.
 
-    Examples
-    --------
     >>> [round(_farthest(1, degrees) ** 0.5, 1) for degrees in (3.0, 30.0, 1e3, math.inf)]
     [32.6, 4.6, 4.0, 4.0]
     """

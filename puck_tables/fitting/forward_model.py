@@ -77,8 +77,6 @@ def states_of(moving: Moving, launch: FloatArray, times: FloatArray) -> FloatArr
 
     ``launch`` (6,): x, y, vx, vy, spin, angle.
 
-    Examples
-    --------
     >>> from puck_tables.fitting.unit_motions import unit_motions_of
     >>> plain = Moving(1.0, 0.5, 1.0, 0.0, unit_motions_of("uniform", 0.5**0.5))
     >>> launch = np.array([0.0, 0.0, 1.0, 0.0, 5.0, 0.0])
@@ -245,8 +243,6 @@ def impact_at(
 ) -> ImpactState:  # fmt: skip
     """An impact, from the slides before it; ``gyration`` over r; ``wall``: None of two pucks.
 
-    Examples
-    --------
     >>> from puck_tables.fitting.unit_motions import unit_motions_of
     >>> puck = Moving(1.0, 0.0, 0.1, 0.0, unit_motions_of("uniform", 0.5**0.5))
     >>> slide = Slide(0.0, np.array([0.0, 0.0, 2.0, 0.0, 0.0, 0.0]))

@@ -32,8 +32,6 @@ def doubts(
 ) -> tuple[str, ...]:
     """A sentence for each number that was found and that no puck has; ``radius`` m: as given.
 
-    Examples
-    --------
     >>> tall = Number(10.0, 0.1, 9.8, 10.2, "m", "follows")
     >>> doubts({"height": tall}, (), 0.026)[0][:55]
     'A height of 10 m is 385 times the radius, as no puck is'
@@ -98,8 +96,6 @@ def rounded(film: Observations) -> list[str]:
 def taken_for_granted(forces: SideForces, numbers: Mapping[str, Number]) -> list[str]:
     """A sentence where a table out of level, by less than is seen, changes more than errors say.
 
-    Examples
-    --------
     >>> friction = Number(0.15, 1e-4, 0.1498, 0.1502, "1", "found")
     >>> said = taken_for_granted(SideForces(level=0.7, by_slope={"friction": 0.0017}),
     ...                          {"friction": friction})

@@ -226,8 +226,6 @@ def verdict(laws: tuple[LawScore, ...]) -> str:
 
     A law counts by χ² + 7 for each number.
 
-    Examples
-    --------
     >>> one = LawScore("uniform", 930.0, 8, 0.0, {})
     >>> verdict((one._replace(name="uniform+air", chi2=700.0, unknowns=9), one))
     'uniform+air is what the film supports: with 1 more number than uniform it leaves 230 less of \

@@ -72,8 +72,6 @@ class Number(NamedTuple):
     def written(self) -> str:
         """Value +- error, to two digits of the error, and the unit.
 
-        Examples
-        --------
         >>> Number(0.15234, 0.00123, 0.1499, 0.1548, "m/s", FREE).written
         '0.1523 +- 0.0012 m/s'
         """
@@ -91,8 +89,6 @@ class Number(NamedTuple):
     def interval(self) -> str:
         """Both ends of its 95 % interval, to two digits of what lies between; '' where unknown.
 
-        Examples
-        --------
         >>> Number(0.3, 2.8e-10, 0.2999999994419, 0.3000000005580, "1", FREE).interval
         '0.29999999944 to 0.30000000056'
         """

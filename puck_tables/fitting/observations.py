@@ -28,8 +28,6 @@ _FEWEST = 6  # values that differ
 def step_of(*columns: FloatArray) -> float:
     """The step of which all values of some columns (n,) are multiples, from any one on; else 0.
 
-    Examples
-    --------
     >>> x = 0.3 * np.arange(40) ** 1.5
     >>> step_of(x), round(step_of(0.5 * np.round(2.0 * x), 0.0 * x), 9)
     (0.0, 0.5)
@@ -56,8 +54,6 @@ def step_of(*columns: FloatArray) -> float:
 def counting(values: FloatArray) -> npt.NDArray[np.bool_]:
     """Which of some values in the order of time (n,) count, where they are rounded.
 
-    Examples
-    --------
     >>> counting(np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 2.0, 1.0])).astype(int)
     array([1, 0, 1, 1, 1, 1, 1, 0, 0, 1, 1])
     """
@@ -161,8 +157,6 @@ def observations_in(
 ) -> Observations:
     """The frames of a track, those of free motion if its start and end are told, or all are.
 
-    Examples
-    --------
     >>> track = Track(0.1 * np.arange(9), np.zeros((9, 2)), name="a")
     >>> observations_in(track, since=0.25).time.size
     6
@@ -213,8 +207,6 @@ def _straight(place: FloatArray) -> Straight | None:
 
     Noise of two coordinates would spread far more across.
 
-    Examples
-    --------
     >>> x = np.arange(20.0) + 0.1 * np.random.default_rng(1).normal(size=20)
     >>> _straight(np.stack([0.3 * x, 0.4 * x], axis=1)).way
     (0.6, 0.8)
@@ -242,8 +234,6 @@ def noise_of(films: list[Observations]) -> tuple[float, float]:
     No model of the puck is in it, so it can judge one.  Of what is rounded it is no less than that
     leaves, however slow the puck is.  NaN where too few frames follow each other.
 
-    Examples
-    --------
     >>> noise = np.random.default_rng(1).normal(0.0, 1e-3, (900, 2))
     >>> track = Track(0.01 * np.arange(900), noise + np.arange(900)[:, None])
     >>> round(noise_of([observations_in(track)])[0], 4)
@@ -282,8 +272,6 @@ def _spread(thirds: list[FloatArray]) -> float:
 def wrapped(angle: FloatArray) -> FloatArray:
     """Angles to within half a turn of 0.
 
-    Examples
-    --------
     >>> wrapped(np.array([7.0])).round(3).tolist()
     [0.717]
     """
@@ -293,8 +281,6 @@ def wrapped(angle: FloatArray) -> FloatArray:
 def rests_from(film: Observations, spread: float) -> int:
     """The first frame from which on the puck does not move any more; n where it does to the end.
 
-    Examples
-    --------
     >>> x = np.minimum(np.arange(20.0), 9.0)
     >>> rests_from(observations_in(Track(np.arange(20.0), np.stack([x, 0 * x], axis=1))), 1e-3)
     9
@@ -333,8 +319,6 @@ def turning_of(film: Observations) -> Turning | None:
 
     Means over windows are taken on the circle, so that outliers hardly count.
 
-    Examples
-    --------
     >>> t = 0.01 * np.arange(50)
     >>> film = observations_in(Track(t, np.zeros((50, 2)), (30.0 * t) % 6.28318530718))
     >>> turning = turning_of(film)

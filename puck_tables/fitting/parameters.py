@@ -108,8 +108,6 @@ def refuse_unknown(name: str, known: Mapping[str, Parameter], what: str) -> None
 def parameters_of(reach: float | None) -> Mapping[str, Parameter]:
     """All parameters of a puck and its launch, of one on a base that reaches so far (m) its own.
 
-    Examples
-    --------
     >>> parameters_of(None)["gyration"][:3], parameters_of(0.25)["gyration"][:3]
     (('1', 0.1, 10.0), ('m', 0.025, 2.5))
     """

@@ -50,8 +50,6 @@ def weights_of(
     ``noise``: m, rad; ``jitter`` s; ``rates`` (3, n): velocity m/s and spin rad/s; ``placed`` (n,):
     whether the place counts.
 
-    Examples
-    --------
     >>> one = weights_of((1e-3, 1e-2), 1e-3, np.array([[0.0], [1.0], [0.0]]), np.array([True]))
     >>> abs(one[0]).sum(axis=1).round(3).tolist()  # along the motion, across it, angle
     [707.107, 1000.0, 100.0]

@@ -36,8 +36,6 @@ _MOVING, _ENOUGH = 0.1, 20  # of the greatest speed; frames
 def chi_square_tail(value: float, degrees: int) -> float:
     """The probability that χ² exceeds a value.
 
-    Examples
-    --------
     >>> round(chi_square_tail(3.841459, 1), 6)
     0.05
     """

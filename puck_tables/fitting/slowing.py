@@ -67,8 +67,6 @@ def starts_from_slowing(problem: Problem) -> list[tuple[Problem, FloatArray]]:
     unknowns comes the same problem with the angles of each track in one piece.  The last start is
     that of one friction and nothing else, which leaves no more in the end than that alone would.
 
-    Examples
-    --------
     >>> from puck_tables.film.puck_track import Track
     >>> from puck_tables.fitting.fit_spec import FitSpec
     >>> from puck_tables.fitting.observations import observations_in

@@ -64,8 +64,6 @@ LAWS = tuple(_SHAPES)
 def shape(name: str, x: FloatArray) -> FloatArray:
     """φ of a law at u/w (n,).
 
-    Examples
-    --------
     >>> shape("stribeck", np.array([0.0, 1.0])).round(4).tolist()
     [1.0, 0.3679]
     """
@@ -79,8 +77,6 @@ def shape(name: str, x: FloatArray) -> FloatArray:
 def law_named(name: str, fast: float, rest: float, speed: float) -> SpeedLaw:
     """The law with these numbers, between rows that are close where it bends.
 
-    Examples
-    --------
     >>> law = law_named("stribeck", 0.1, 0.2, 0.05)
     >>> round(float(law(0.0)), 4), round(float(law(0.05)), 3)
     (0.2, 0.137)
@@ -267,8 +263,6 @@ def speed_paths(
     States (m, 6, n): displacement and turn, velocity and spin; acceleration (3, n) of the first.
     Beyond the top speed of a law its last piece goes on.
 
-    Examples
-    --------
     >>> even = SpeedFriction(0.1, 10.0, 0.5**0.5)
     >>> slide = SpeedLaunch(even, 0.5, 1.0, np.array([1.0, 0.0]), 0.0)
     >>> states, gains = speed_paths([slide], np.array([0.5, 2.0]))

@@ -133,8 +133,6 @@ def _deepest(
 def slowing_of(film: Observations, spread: float) -> float:
     """About how fast a puck slows down while it moves, m/s²; ``spread`` m: of its places.
 
-    Examples
-    --------
     >>> t = np.arange(40.0) / 100.0
     >>> place = np.stack([t - 0.5 * t * t, 0.0 * t], axis=1)
     >>> round(slowing_of(Observations("a", 0.0, t, place, None, np.arange(40)), 1e-6), 6)

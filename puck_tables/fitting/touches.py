@@ -34,8 +34,6 @@ _JUMPS, _PARTS, _FASTER = 5.0, 4, 1.1  # standard errors; parts of a track; time
 def first_touch(film: Observations, first: int, last: int) -> int | None:
     """The frame from ``first`` to ``last`` before which the motion jumps most; None if none does.
 
-    Examples
-    --------
     >>> t = np.arange(60) / 60.0
     >>> noise = np.random.default_rng(1).normal(0.0, 1e-4, (60, 2))
     >>> impact = np.stack([np.where(t < 0.5, t, 0.75 - 0.5 * t), 0.0 * t], axis=1) + noise
@@ -63,8 +61,6 @@ def first_touch(film: Observations, first: int, last: int) -> int | None:
 def pushed(film: Observations, start: int, stop: int) -> bool:
     """Whether the puck gets faster between two frames.
 
-    Examples
-    --------
     >>> t = np.arange(40) / 40.0
     >>> noise = np.random.default_rng(1).normal(0.0, 1e-4, (40, 2))
     >>> place = np.stack([t * t, 0.0 * t], axis=1) + noise
@@ -159,8 +155,6 @@ class SlideIndex(NamedTuple):
 def kinks(film: Observations, noise: float) -> list[int]:
     """Frames after which the velocity of a track jumps.
 
-    Examples
-    --------
     >>> t = np.arange(80.0) / 100.0
     >>> x = np.where(t < 0.395, t, 0.79 - t)
     >>> place = np.stack([x, 0.0 * x], axis=1)
@@ -246,8 +240,6 @@ def slide_name(track: str, k: int) -> str:
 def turns(film: Observations) -> bool:
     """Whether the body of a track turns.
 
-    Examples
-    --------
     >>> t = 0.01 * np.arange(50)
     >>> turns(Observations("a", 0.0, t, np.zeros((50, 2)), 3.0 * t, np.arange(50)))
     True

@@ -94,8 +94,6 @@ class UnitMotions:
 class PlainMotions(UnitMotions):
     """Homogeneous pucks under uniform pressure, δ ≤ 1, looked up.
 
-    Examples
-    --------
     >>> launch = np.array([[1.0, 0.0, 1.0, 1.0, 1.0, 1.0]]).T
     >>> PlainMotions().states(launch, np.array([[9.0]]))[:2, 0, 0].round(8).tolist()  # the stop
     [0.64818746, -0.08594902]
@@ -125,8 +123,6 @@ class PlainMotions(UnitMotions):
 class LawMotions(UnitMotions):
     """Pucks of any pressure law and spread of mass, in full contact.
 
-    Examples
-    --------
     >>> ring = LawMotions(law_of("ring"), 1.0)
     >>> launch = np.array([[1.0, 0.0, 1.0, 0.0, 1.0, 1.0]]).T
     >>> speed, _, spin = ring.states(launch, np.array([[0.5]]))[3:, 0, 0]  # its limit motion
@@ -147,8 +143,6 @@ class LawMotions(UnitMotions):
 class TallMotions(UnitMotions):
     """Uniform pucks of any height: motions interpolated between those of a few heights.
 
-    Examples
-    --------
     >>> launch = np.array([[1.0, 0.0, 5.0, 2.0, 1.0, 1.0]]).T
     >>> TallMotions(0.5**0.5).states(launch, np.array([[99.0]]))[:2, 0, 0].round(5).tolist()
     [2.40884, -0.57795]
@@ -208,8 +202,6 @@ def _law_table(law: Law) -> ResultantTable:
 def unit_motions_of(pressure: str | Law, gyration: float, tall: bool = False) -> UnitMotions:
     """The motions of a kind of puck; ``tall``: whether part of the base may lift.
 
-    Examples
-    --------
     >>> type(unit_motions_of("uniform", 0.5**0.5)).__name__, unit_motions_of("ring", 1.0).highest
     ('PlainMotions', 2.0)
     """

@@ -55,8 +55,6 @@ def preferred(motions: list[Judged]) -> int:
 
     Where none fits, χ² of a wrong model says little: a faster spin has to fit by far better.
 
-    Examples
-    --------
     >>> slow, fast = Judged(True, 130.0, 1.0), Judged(False, 110.0, 1.0)
     >>> preferred([fast, slow]), preferred([fast, slow._replace(chi2=150.0)])
     (1, 0)

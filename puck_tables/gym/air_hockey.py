@@ -120,8 +120,6 @@ def guard(seen: FloatArray, speed: float = 1.5) -> FloatArray:
 
     It stays before its goal, level with the puck, and goes for a slow puck in its half.
 
-    Examples
-    --------
     >>> seen = np.zeros((1, 13))
     >>> seen[0, :6] = 0.25, 0.55, 1.95, 0.55, 0.6, 0.55            # the puck lies before it
     >>> guard(seen).round(6).tolist()

@@ -68,8 +68,6 @@ def free_places(
     ``others`` (n, pucks, 2), ``there``: which are on the board; ``gaps`` (pucks,): how far away
     their centres must be.  And where there is any.
 
-    Examples
-    --------
     >>> line, wanted = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]), np.array([[0.2, 0.0]])
     >>> there, gaps = np.array([[True]]), np.array([0.5])
     >>> free_places(wanted, line, np.array([[[0.1, 0.0]]]), there, gaps)[0].tolist()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import gymnasium
@@ -13,13 +14,14 @@ from gymnasium.vector.utils import batch_space
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import finite_array, real, shown, whole
+from puck_tables.contact.friction_laws import CurlingLaw
 from puck_tables.errors import InputError
 from puck_tables.gym.air_hockey import AirHockey, AirHockeyAlone
 from puck_tables.gym.disc_games import Carrom, Crokinole
 from puck_tables.gym.push_to_pose import PushToPose
 from puck_tables.gym.stone_games import Curling, Shuffleboard
 from puck_tables.gym.table_game import TableGame, Tables, Truth, Whole
-from puck_tables.gym.varied import varied
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.worlds import Worlds
 
 Seen = npt.NDArray[np.float32]
@@ -229,8 +231,6 @@ class ManyTables(VectorEnv[Seen, Any, Any]):
 class OneTable(gymnasium.Env[Seen, Any]):
     """A game on one board; parameters as of :class:`ManyTables`, and factors drawn at each game.
 
-    Examples
-    --------
     >>> table = OneTable("Crokinole")
     >>> seen, _ = table.reset(seed=1)
     >>> table.step([0.0, 0.1, 0.2])[1] in (0.0, 5.0, 10.0, 15.0, 20.0)
@@ -273,3 +273,32 @@ class OneTable(gymnasium.Env[Seen, Any]):
     def _rendered(self) -> None:
         if self.render_mode == "human":
             self.render()
+
+
+def varied(scene: SceneSpec, spread: float, rng: np.random.Generator) -> SceneSpec:
+    """The friction of all pucks, or of the law, times one factor; each restitution times its own.
+
+    Factors are from 1 − spread to 1 + spread; no restitution goes beyond 1.
+
+    >>> from puck_tables import Scene
+    >>> other = varied(Scene.load("carrom-break"), 0.1, np.random.default_rng(1))
+    >>> round(other.pucks[0].friction, 6), round(other.walls[0].restitution, 6)
+    (0.150355, 0.650182)
+    """
+    factor = rng.uniform(1.0 - spread, 1.0 + spread)
+    bounce = {}
+
+    def of(part: Any) -> Any:
+        e = part.restitution
+        if not isinstance(e, float):
+            return part
+        if e not in bounce:
+            bounce[e] = rng.uniform(1.0 - spread, min(1.0 + spread, 1.0 / e) if e else 1.0)
+        return replace(part, restitution=e * bounce[e])
+
+    pucks = [of(replace(puck, friction=factor * puck.friction)) for puck in scene.pucks]
+    floor, law = scene.floor, scene.floor.law
+    if isinstance(law, CurlingLaw):
+        floor = replace(floor, law=replace(law, a=factor * law.a, c=factor * law.c))
+    walls, posts, arcs = (tuple(map(of, ones)) for ones in (scene.walls, scene.posts, scene.arcs))
+    return replace(scene, pucks=tuple(pucks), floor=floor, walls=walls, posts=posts, arcs=arcs)

@@ -87,8 +87,6 @@ class TableGame:
 def between(action: FloatArray, low: float, high: float) -> FloatArray:
     """Numbers from −1 to 1 as numbers between two others.
 
-    Examples
-    --------
     >>> between(np.array([-1.0, 0.0, 1.0]), 2.0, 6.0).tolist()
     [2.0, 4.0, 6.0]
     """
@@ -98,8 +96,6 @@ def between(action: FloatArray, low: float, high: float) -> FloatArray:
 def observed_pucks(states: FloatArray, there: Truth) -> FloatArray:
     """X, y, m, of pucks (n, pucks, 6), and 1; zeros of those that are not there, (n, 3 pucks).
 
-    Examples
-    --------
     >>> observed_pucks(np.ones((1, 2, 6)), np.array([[True, False]])).tolist()
     [[1.0, 1.0, 0.0, 0.0, 1.0, 0.0]]
     """
@@ -110,8 +106,6 @@ def observed_pucks(states: FloatArray, there: Truth) -> FloatArray:
 def sent(speed: FloatArray, direction: FloatArray) -> FloatArray:
     """Velocities (n, 2), m/s, of speeds along ways, rad from x.
 
-    Examples
-    --------
     >>> sent(np.array([2.0]), np.array([0.0])).tolist()
     [[2.0, 0.0]]
     """

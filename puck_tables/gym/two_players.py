@@ -20,8 +20,6 @@ class TwoPlayers(ParallelEnv[str, Seen, Any]):
     earns one 1, the other −1, and ends the game.  Parameters as of
     :class:`puck_tables.gym.envs.ManyTables`.
 
-    Examples
-    --------
     >>> table = TwoPlayers()
     >>> seen, _ = table.reset(seed=1)
     >>> _, earned, ended, *_ = table.step({"left": [0.5, 0.0], "right": [0.0, 0.0]})

@@ -237,8 +237,6 @@ COLUMNS = {
 def derived(columns: Mapping[str, Any]) -> dict[str, Any]:
     """Columns that follow from those given and are not among them.
 
-    Examples
-    --------
     >>> {name: float(value) for name, value in derived({"vx": 3.0, "vy": 4.0}).items()}["speed"]
     5.0
     """

@@ -11,8 +11,6 @@ from puck_tables.io.dataset import Dataset
 def encode(dataset: Dataset) -> bytes:
     """The table of a result as CSV.
 
-    Examples
-    --------
     >>> from puck_tables.io.dataset import variable
     >>> speed = variable("speed", [1.5], ("time",))
     >>> encode(Dataset({}, {"speed": speed})).split()

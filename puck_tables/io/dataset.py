@@ -54,8 +54,6 @@ def variable(
 ) -> Variable:
     """A variable with the unit and the words that its name has in the registry of columns.
 
-    Examples
-    --------
     >>> variable("stop_time", [1.0], ("launch",)).unit
     's'
     """
@@ -87,8 +85,6 @@ class Dataset:
     def table(self) -> dict[str, Variable]:
         """The columns of a flat table: the axes, repeated as needed, then the rest; one row each.
 
-        Examples
-        --------
         >>> launches = variable("launch_spin", np.array([1.0, 2.0]), ("launch_spin",))
         >>> times = variable("stop_time", np.array([3.0, 4.0]), ("launch_spin",))
         >>> Dataset({"launch_spin": launches}, {"stop_time": times}).table()["stop_time"].values

@@ -14,8 +14,6 @@ _BARE = "This is a netCDF dimension but not a netCDF variable."
 def encode(dataset: Dataset) -> bytes:
     """A result as a labelled HDF5 file.
 
-    Examples
-    --------
     >>> from puck_tables.io.dataset import variable
     >>> time, x = (variable(name, [0.0, 1.0], ("time",)) for name in ("time", "x"))
     >>> encode(Dataset({"time": time}, {"x": x}, {"title": "a line"}))[1:4]

@@ -12,8 +12,6 @@ from puck_tables.io.dataset import Dataset
 def encode(dataset: Dataset) -> bytes:
     """A result as one JSON object.
 
-    Examples
-    --------
     >>> from puck_tables.io.dataset import variable
     >>> speed = variable("speed", [1.5, math.nan], ("time",))
     >>> json.loads(encode(Dataset({}, {"speed": speed}, {"case": "coin"})))["columns"]["speed"]

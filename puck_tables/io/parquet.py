@@ -17,8 +17,6 @@ except ImportError:
 def encode(dataset: Dataset) -> bytes:
     """The table of a result as Parquet.
 
-    Examples
-    --------
     >>> from puck_tables.io.dataset import variable
     >>> encode(Dataset({}, {"x": variable("x", [0.0, 1.0], ("time",))}))[:4]
     b'PAR1'

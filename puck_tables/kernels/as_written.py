@@ -30,8 +30,6 @@ def as_written() -> bool:
 def weighted_rows(c: FloatArray, k: int, weights: Sequence[float], width: int) -> Any:
     """The sums a·c[k + m] + b·c[k + width + m] + …, m < width, with weights a, b, ….
 
-    Examples
-    --------
     >>> weighted_rows(np.arange(6.0), 0, (1.0, 10.0), 3)
     (30.0, 41.0, 52.0)
     """
@@ -65,8 +63,6 @@ def spline_polynomials(
 
     Each row holds ``powers`` times ``width`` coefficients, powers ascending.
 
-    Examples
-    --------
     >>> spline_polynomials(np.array([1.0, 2.0, 3.0, 4.0]), 0, (1.0,), 10.0, 2, 2)
     (31.0, 42.0, 3.0, 4.0)
     """
@@ -81,8 +77,6 @@ def spline_slopes(
 ) -> Any:
     """Splined polynomials in s and their derivatives by s: rows are evaluated, then weighted.
 
-    Examples
-    --------
     >>> spline_slopes(np.array([1.0, 2.0, 3.0, 4.0]), 0, (1.0,), 10.0, 2, 2)
     (31.0, 42.0, 3.0, 4.0)
     """
@@ -97,8 +91,6 @@ def spline_values(
 ) -> Any:
     """The values alone of :func:`spline_slopes`, from double or single precision.
 
-    Examples
-    --------
     >>> spline_values(np.array([1.0, 2.0, 3.0, 4.0]), 0, (1.0,), 10.0, 2, 2)
     (31.0, 42.0)
     """
@@ -108,8 +100,6 @@ def spline_values(
 def summed(total: float, more: float) -> float:
     """A sum whose order does not matter.
 
-    Examples
-    --------
     >>> summed(1.0, 2.0)
     3.0
     """
@@ -119,8 +109,6 @@ def summed(total: float, more: float) -> float:
 def bits_of(number: float) -> Any:
     """The integer of the same bits.
 
-    Examples
-    --------
     >>> hex(bits_of(1.0))
     '0x3ff0000000000000'
     """
@@ -130,8 +118,6 @@ def bits_of(number: float) -> Any:
 def number_of(bits: int) -> Any:
     """The number of the same bits.
 
-    Examples
-    --------
     >>> number_of(0x3FF0000000000000)
     1.0
     """
@@ -168,8 +154,6 @@ def turn_square(
 ) -> Any:
     """Four by four numbers turned: rows ``step`` apart to columns, ``further`` apart.
 
-    Examples
-    --------
     >>> out = np.zeros(16)
     >>> turn_square(np.arange(24.0), 1, 6, out, 0, 4)
     >>> out.astype(int).tolist()

@@ -59,8 +59,6 @@ def _place() -> Path | None:
 def file_stem(function: Callable[..., Any]) -> str:
     """How the names of files begin that keep compiled code of a function.
 
-    Examples
-    --------
     >>> file_stem(Path.exists)
     'pathlib-Path-exists'
     """

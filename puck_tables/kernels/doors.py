@@ -6,9 +6,12 @@ read by :mod:`puck_tables.kernels.compiled` when that is needed.  Only what Pyth
 
 from __future__ import annotations
 
+import os
+import re
 import sys
 import threading
 import time
+import warnings
 from collections.abc import Callable, Iterator
 from functools import cached_property, update_wrapper
 from typing import Any, TypeVar
@@ -16,10 +19,9 @@ from typing import Any, TypeVar
 import numpy as np
 
 from puck_tables._core.own_folder import say
-from puck_tables.errors import PuckError
+from puck_tables.errors import InputError, PuckError
 from puck_tables.kernels.as_written import as_written, behind
 from puck_tables.kernels.cache import is_any_kept
-from puck_tables.kernels.numba_settings import read_settings
 from puck_tables.kernels.patience import AT_FIRST, OutOfPatience, here
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -31,6 +33,14 @@ _SILENT = 1.0  # s of computing as it is written; then it is said, as other kern
 _WORTH = 0.4  # of the time of compiling that is tried without: so little is lost where it ends so
 _WORTH_OF_ARRAYS = 3.3  # of it where arrays answer, which mostly are done by then
 _importing = threading.RLock()
+# of the environment, what ends numba in the middle of its import: how it must look, and in words
+_FATAL = {
+    "NUMBA_NUM_THREADS": (r"\s*\+?0*[1-9]\d*\s*", "a whole number from 1 on"),
+    "NUMBA_CPU_FEATURES": (r"([+-][\w.-]+(,[+-][\w.-]+)*)?", "features like +avx2,-fma"),
+}
+# and what numba does not understand and leaves out
+_NOT_UNDERSTOOD = re.compile(r"Environment variable '(\w+)'")
+_unusable: set[str] = set()
 
 
 class Door:
@@ -300,3 +310,23 @@ def inner(function: Function) -> Function:
     """
     behind[function] = False
     return function
+
+
+def read_settings() -> None:
+    """Import numba, if it can use the environment variables that are set for it.
+
+    Raises
+    ------
+    InputError
+    """
+    for name, (form, words) in _FATAL.items():
+        value = os.environ.get(name)
+        if value is not None and not re.fullmatch(form, value):
+            raise InputError(f"{name}={value}: set it to {words}, or not at all")
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        import numba  # noqa: F401 - it reads them as it is imported
+    result = (_NOT_UNDERSTOOD.match(str(one.message)) for one in said)
+    _unusable.update(match[1] for match in result if match)
+    for name in sorted(_unusable):
+        raise InputError(f"{name}={os.environ.get(name)}: numba cannot use it; leave it out")

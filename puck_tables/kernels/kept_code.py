@@ -16,6 +16,7 @@ import contextlib
 import hashlib
 import json
 import os
+import platform
 import sys
 import tempfile
 from collections.abc import Callable, Iterator
@@ -79,14 +80,18 @@ class KeptCode:
         folder = cache_folder()
         if folder is None or data.lifted or data.library.has_dynamic_globals:
             return  # addresses in it hold for this process only
-        key = self._key(sig, data.codegen.magic_tuple())
-        path = self._path(folder, key)
-        content = _dumps((key, getattr(data.library, "calls", ()), data._reduce()))
-        write_sealed(path, content)
+        self.keep(folder, sig, data.codegen.magic_tuple(), data.library, data._reduce())
+
+    def keep(
+        self, folder: Path, sig: Any, target: tuple[str, ...], library: Any, parts: tuple[Any, ...]
+    ) -> None:
+        """Write what was compiled for a signature and a machine, as numba takes it apart."""
+        key = self._key(sig, target)
+        write_sealed(self._path(folder, key), _dumps((key, getattr(library, "calls", ()), parts)))
 
     def _places(self, sig: Any, codegen: Any) -> Iterator[tuple[Path, tuple[str, ...]]]:
         """Where it may be, and what is written there: this user's folder, then what came along."""
-        machine, brought = codegen.magic_tuple(), brought_for(codegen)
+        machine, brought = codegen.magic_tuple(), brought_for()
         for folder, target in ((cache_folder(), machine), (brought_folder(), brought)):
             if folder is not None and target is not None:
                 key = self._key(sig, target)
@@ -105,11 +110,13 @@ class KeptCode:
 
 
 class MadeFor(NamedTuple):
-    """For which processors a wheel's compiled code was made; the file ``target.json`` says it.
+    """For which machines a wheel's compiled code was made; the file ``target.json`` says it.
 
-    ``codegen``: numba's triple, name and features; ``needs``: features that it uses.
+    ``place``: Python's names of system and processor; ``codegen``: numba's triple, name and
+    features; ``needs``: features that it uses.
     """
 
+    place: tuple[str, ...]
     codegen: tuple[str, ...]
     needs: tuple[str, ...]
 
@@ -118,13 +125,13 @@ class MadeFor(NamedTuple):
         """Of the code in a folder, None where there is none."""
         try:
             kept = json.loads((folder / "target.json").read_text(encoding="utf-8"))
-            return cls(tuple(kept["codegen"]), tuple(kept["needs"]))
+            return cls(*(tuple(kept[name]) for name in cls._fields))
         except (OSError, ValueError, KeyError, TypeError):
             return None
 
 
 @cache
-def brought_for(codegen: Any) -> tuple[str, ...] | None:
+def brought_for() -> tuple[str, ...] | None:
     """For what the code was made that came along; None where this processor cannot run it.
 
     Whoever names a processor to numba gets code for that one.
@@ -133,8 +140,8 @@ def brought_for(codegen: Any) -> tuple[str, ...] | None:
     if target is None or _settings.CPU_NAME or _settings.CPU_FEATURES:
         return None
     features = binding.get_host_cpu_features()
-    fits = codegen.magic_tuple()[0] == target.codegen[0] and all(map(features.get, target.needs))
-    return target.codegen if fits else None
+    here = sys.platform, platform.machine().lower()
+    return target.codegen if here == target.place and all(map(features.get, target.needs)) else None
 
 
 @cache

@@ -64,8 +64,6 @@ def patience(items: int) -> None:
 def compiled_at_once() -> Iterator[None]:
     """Compile what this thread calls within, for what is measured or called often.
 
-    Examples
-    --------
     >>> with compiled_at_once():
     ...     here.at_once
     True
@@ -81,8 +79,6 @@ def compiled_at_once() -> Iterator[None]:
 def one_question() -> Iterator[None]:
     """Answer one question and end: what was compiled before is not loaded before it is needed.
 
-    Examples
-    --------
     >>> with one_question():
     ...     here.kept_first
     False

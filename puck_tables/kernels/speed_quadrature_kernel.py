@@ -112,7 +112,7 @@ def integrals_at(
     """p_a, p_b, p_d, p_e into ``out`` (4,).
 
     ``breaks`` (k + 1,): speeds, m/s; ``pieces`` (k, 2 + n): see
-    :mod:`puck_tables.contact.law_pieces`;
+    :mod:`puck_tables.contact.friction_laws`;
     ``ratio`` = min(v, r|ω|)/max(v, r|ω|), ``fast`` whether r|ω| > v, ``speed`` = hypot(v, rω);
     ``rules``: FINE or COARSE; ``edges``: room for k + 45 numbers.
     """

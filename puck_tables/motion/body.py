@@ -64,8 +64,6 @@ def checked_gyration(gyration: float) -> float:
 def is_plain(pressure: str | Law, gyration: float, delta: float) -> bool:
     """Whether closed forms and the shipped tables hold for a puck of this height.
 
-    Examples
-    --------
     >>> is_plain("uniform", HOMOGENEOUS, 0.5), is_plain("ring", HOMOGENEOUS, 0.5)
     (True, False)
     """
@@ -108,8 +106,6 @@ class UnitPuck:
     def kind(self) -> str:
         """Pressure and gyration in words; empty for a homogeneous puck under uniform pressure.
 
-        Examples
-        --------
         >>> body_of("ring", 0.0, 1.0).kind
         'pressure ring, k/r = 1'
         """

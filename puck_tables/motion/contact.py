@@ -33,8 +33,6 @@ class Contact:
 def contact_of(body: UnitPuck, run: MotionRun) -> Contact:
     """What carries load along a motion: the share grows with φ, and φ is monotonic in time.
 
-    Examples
-    --------
     >>> from puck_tables.motion.body import body_of
     >>> from puck_tables.motion.friction_source import source_of
     >>> from puck_tables.motion.unit_motion import solve

@@ -90,8 +90,6 @@ def frame_of(velocity: tuple[float, float], spin: float, decel: float, radius: f
 def direction(u: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Cos φ and sin φ from u = ln tan φ, to the last digits at both ends.
 
-    Examples
-    --------
     >>> [float(x.round(6)) for x in direction(np.array(-np.inf))]
     [1.0, 0.0]
     """

@@ -53,8 +53,6 @@ class Friction:
 def closed_form_friction(delta: float) -> Friction:
     """Friction by the closed forms.
 
-    Examples
-    --------
     >>> closed_form_friction(0.5).error
     0.0
     """
@@ -308,8 +306,6 @@ def integration_selected(
     With a table of one's own the error is that of the integrator with closed forms, and what the
     table adds: at most five times its own error.
 
-    Examples
-    --------
     >>> integration_selected("trajectory", 1e-9, Method.RK4, None).scheme.name
     'rk4, table'
     """

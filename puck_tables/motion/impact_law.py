@@ -30,8 +30,6 @@ def impulses(
 ) -> tuple[float, float]:
     """P_n and P_t, N s, of approach and slip, m/s; ``soft``: 1/m_n, ``slick``: 1/m_t, 1/kg.
 
-    Examples
-    --------
     >>> impulses(1.0, -1.0, 1.0, 3.0, 0.5, 0.0, 0.2), impulses(1.0, -1.0, 1.0, 3.0, 0.5, 0.5, 0.4)
     ((1.5, -0.30000000000000004), (1.5, -0.5))
     """
@@ -46,8 +44,6 @@ def law_of_impulses(
 ) -> tuple[float, float, float]:
     """What impulses that are seen say: e, β if the rims did not slide all the time, μ if they did.
 
-    Examples
-    --------
     >>> law_of_impulses(1.0, -1.0, 1.0, 3.0, 1.5, -0.375)
     (0.5, 0.125, -0.25)
     """

@@ -35,8 +35,6 @@ class PuckSpec:
 
     What computes takes this class: it stands below all that can be asked of a puck.
 
-    Examples
-    --------
     >>> puck = PuckSpec(radius=0.0381, height=0.0254, friction=0.1, mass=0.17)  # ice hockey
     >>> round(puck.delta, 6), round(puck.decel, 6)
     (0.133333, 0.980665)
@@ -194,8 +192,6 @@ class PuckSpec:
     def shape(self) -> Base | None:
         """The base, of a puck that has one in place of a radius.
 
-        Examples
-        --------
         >>> puck = PuckSpec(base="box:0.2x0.1", friction=0.3)
         >>> round(puck.shape.area, 6), round(puck.radius, 6), round(puck.gyration, 6)
         (0.02, 0.111803, 0.06455)
@@ -206,8 +202,6 @@ class PuckSpec:
     def has_rim(self) -> bool:
         """Whether it has a round rim, which may meet walls and other pucks.
 
-        Examples
-        --------
         >>> PuckSpec(base="box:0.2x0.1").has_rim, PuckSpec(0.15, base="box:0.2x0.1").has_rim
         (False, True)
         """
@@ -222,8 +216,6 @@ class PuckSpec:
     def inertia_radius(self) -> float:
         """Radius of gyration about the vertical, m.
 
-        Examples
-        --------
         >>> PuckSpec(0.04, gyration=0.5).inertia_radius
         0.02
         """
@@ -265,8 +257,6 @@ class PuckSpec:
     def limit_ratio(self) -> float:
         """The ratio rω/v that every motion with speed and spin tends to; 0 and inf included.
 
-        Examples
-        --------
         >>> round(PuckSpec.similar(delta=0.0).limit_ratio, 6)
         1.531389
         """
@@ -277,8 +267,6 @@ class PuckSpec:
     def limit_epsilon(self) -> float:
         """The limit ratio as ε = v/(rω), as several papers write it.
 
-        Examples
-        --------
         >>> round(PuckSpec.similar(delta=0.0).limit_epsilon, 6)
         0.653002
         """
@@ -324,8 +312,6 @@ class PuckSpec:
     def units(self) -> dict[str, str]:
         """Of what describes it.
 
-        Examples
-        --------
         >>> PuckSpec(base="disc:0.1").units["gyration"], PuckSpec(0.1).units["gyration"]
         ('m', '1')
         """

@@ -37,8 +37,6 @@ class Stepping(NamedTuple):
 def stepping_of(selection: Selection, loosest: float = 1.0) -> Stepping:
     """The integrator that was selected; its local error at most ``loosest``.
 
-    Examples
-    --------
     >>> from puck_tables.accuracy.method_errors import select
     >>> from puck_tables.accuracy.methods import INTEGRATED
     >>> stepping_of(select("stop", 1e-4, INTEGRATED)).steps

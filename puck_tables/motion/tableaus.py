@@ -35,8 +35,6 @@ def tableau_of(
 ) -> Tableau:  # fmt: skip
     """A tableau from its rows, each as long as its last number that is not zero.
 
-    Examples
-    --------
     >>> tableau_of([[], [1 / 2]], [0.0, 1.0], [], 2).c.tolist()
     [0.0, 0.5]
     """

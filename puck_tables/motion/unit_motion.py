@@ -119,8 +119,6 @@ def solve(
 def at_constant_slip(regime: str, u: float, friction: Friction) -> MotionRun:
     """A motion in elementary functions, u = ln(r|ω|/v) throughout.
 
-    Examples
-    --------
     >>> from puck_tables.motion.friction_source import closed_form_friction
     >>> float(at_constant_slip("C0", -math.inf, closed_form_friction(0.5)).stop[T])
     1.0
@@ -206,8 +204,6 @@ def _attempt(
 def unseen_tail(stepping: Stepping) -> float:
     """What two settings of the integrator may miss alike: the last of Q, at constant angle.
 
-    Examples
-    --------
     >>> unseen_tail(Stepping(DORMAND_PRINCE, 0.0, 1e-8))
     1e-10
     """

@@ -23,8 +23,6 @@ _POINTS = 96  # of a circle: it misses a thousandth of its radius, which is not 
 def outline_of(puck: PuckSpec) -> list[FloatArray]:
     """Outlines of its base and rim, points (n, 2), m from the centre of mass; holes run clockwise.
 
-    Examples
-    --------
     >>> [len(part) for part in outline_of(PuckSpec(base="box:0.2x0.1"))]
     [4]
     """
@@ -42,8 +40,6 @@ def placed(
 ) -> list[FloatArray]:
     """Outlines turned by an angle about the centre of mass, at its place.
 
-    Examples
-    --------
     >>> placed([np.array([[1.0, 0.0]])], 1.0, 2.0, 0.0)[0].tolist()
     [[2.0, 2.0]]
     """
@@ -55,8 +51,6 @@ def placed(
 def path_of(outline: Sequence[FloatArray]) -> Path:
     """Outlines as one path of matplotlib, in which holes stay open.
 
-    Examples
-    --------
     >>> len(path_of([np.zeros((4, 2))]).vertices)
     5
     """

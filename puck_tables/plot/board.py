@@ -32,8 +32,6 @@ _SMALL = 0.012  # of the panel's width: smaller pucks are shown in a close-up as
 def size_of(box: Box) -> tuple[float, float]:
     """Width and height of a panel that shows a box to scale, in.
 
-    Examples
-    --------
     >>> size_of(Box(0.0, 2.0, 0.0, 1.0))
     (9.0, 4.5)
     """
@@ -95,8 +93,6 @@ def show(axes: Axes, box: Box) -> None:
 def close_up(box: Box, places: FloatArray, radius: float) -> list[Box]:
     """A box around places (n, 2) where pucks are too small to be seen in the whole; or none.
 
-    Examples
-    --------
     >>> (box,) = close_up(Box(0.0, 40.0, -2.0, 2.0), np.array([[30.0, 0.0], [32.0, 1.0]]), 0.15)
     >>> [round(side, 9) for side in box]
     [29.7, 32.3, -0.3, 1.3]

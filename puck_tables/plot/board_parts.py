@@ -28,8 +28,6 @@ class StraightPart(NamedTuple):
 def straight_parts(scene: SceneSpec) -> list[StraightPart]:
     """The sides of walls with ends.
 
-    Examples
-    --------
     >>> from puck_tables import Puck, Scene, Wall
     >>> straight_parts(Scene(Puck(0.1, friction=0.1), walls=[Wall((0.0, 1.0), (2.0, 1.5))]))
     [StraightPart(kind='wall', x=(0.0, 2.0), y=(1.0, 1.5))]
@@ -95,8 +93,6 @@ class Painted(NamedTuple):
 def painted_on(scene: SceneSpec) -> list[Painted]:
     """All of them.
 
-    Examples
-    --------
     >>> from puck_tables import Line, Puck, Scene
     >>> painted_on(Scene(Puck(0.1), lines=[Line((0.0, 0.0), (0.0, 2.0))]))[0].y
     (0.0, 2.0)

@@ -68,8 +68,6 @@ def draw_floor(axes: Axes, floor: Floor, box: Box, highest: float) -> None:
 def shades_of(floor: Floor, box: Box, highest: float) -> list[Shade]:
     """Strips as far as a box shows them, and patches; the darker the more friction.
 
-    Examples
-    --------
     >>> from puck_tables import Patch
     >>> wet = Floor(patches=[Patch(0.1, radius=1.0)])
     >>> [shade.radius for shade in shades_of(wet, Box(-1.0, 1.0, -1.0, 1.0), 0.2)]
@@ -119,8 +117,6 @@ def _strips(floor: Floor, box: Box) -> list[Shade]:
 def motion_said(floor: Floor) -> str:
     """How a floor moves, in words; nothing of one that rests.
 
-    Examples
-    --------
     >>> motion_said(Floor(velocity=(0.3, 0.0)))
     'floor: belt (0.3, 0) m/s'
     """

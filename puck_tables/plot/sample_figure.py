@@ -127,8 +127,6 @@ def cloud_of(x: FloatArray, y: FloatArray) -> Cloud | None:
     Cells lie along the axes of the cloud, in units of its deviations: a thin one has as many as a
     round one.  Samples are smoothed as far as it takes to have enough of them together.
 
-    Examples
-    --------
     >>> x, y = np.random.default_rng(1).normal(size=(2, 10000))
     >>> thin = cloud_of(x + 1e-2 * y, x - 1e-2 * y)
     >>> inside = thin.at_samples > np.quantile(thin.at_samples, 0.5)

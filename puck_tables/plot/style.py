@@ -46,8 +46,6 @@ _STRAIGHT = 1e-6  # of its length: a path that bends by less is drawn as a line
 def ramp() -> Colormap:
     """Colours of marks from low to high, each of which is seen on white.
 
-    Examples
-    --------
     >>> from matplotlib.colors import to_hex
     >>> to_hex(ramp()(0.0)), to_hex(ramp()(1.0))
     ('#0d0887', '#e16462')
@@ -144,8 +142,6 @@ def may_replace(path: str | Path, overwrite: bool = False) -> bool:
     It can be drawn again.  A PDF or a page must have been drawn by puck-tables or matplotlib; an
     empty file holds nothing.
 
-    Examples
-    --------
     >>> may_replace("/nowhere/run.png"), may_replace(__file__, overwrite=True)
     (False, True)
     """
@@ -224,8 +220,6 @@ def draw_over(
 def edges_of(values: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     """Where the bands of a map end whose middles are these ascending values; one has a band, too.
 
-    Examples
-    --------
     >>> edges_of(np.array([1.0, 2.0, 4.0])).tolist(), edges_of(np.array([3.0])).tolist()
     ([0.5, 1.5, 3.0, 5.0], [2.5, 3.5])
     """
@@ -237,8 +231,6 @@ def edges_of(values: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
 def in_order(axes: Mapping[str, Any], *values: Any) -> tuple[dict[str, Any], list[Any]]:
     """Axes with their values ascending, and arrays over them: curves go on, bands lie side by side.
 
-    Examples
-    --------
     >>> in_order({"x": np.array([3.0, 1.0])}, np.array([9.0, 1.0]))
     ({'x': array([1., 3.])}, [array([1., 9.])])
     """
@@ -263,8 +255,6 @@ def _at(label: str, value: float) -> str:
 def shaded(share: float) -> tuple[float, float, float]:
     """The colour of a curve in its family, light at 0 to dark at 1.
 
-    Examples
-    --------
     >>> shaded(0.0)
     (0.39, 0.59, 0.81)
     """

@@ -24,8 +24,6 @@ _ROOM = 0.96  # of a width
 def titled(figure: Figure, text: str) -> None:
     """Write the title of a figure as it stands: what users write is no mathematics.
 
-    Examples
-    --------
     >>> from puck_tables.plot.style import canvas
     >>> figure = canvas(4.0, 3.0)
     >>> titled(figure, "more words than there is room for in one line of such a small picture")
@@ -44,8 +42,6 @@ def noted(axes: Axes, text: str) -> None:
 def out_of_sight(there: Sequence[Sequence[Any]], in_view: Sequence[Sequence[Any]]) -> str:
     """How many of each kind, the first entry, are there and not seen, in words.
 
-    Examples
-    --------
     >>> out_of_sight([("wall",), ("edge",), ("edge",)], [("edge",)])
     'out of sight: 1 wall, 1 edge'
     """
@@ -103,8 +99,6 @@ def _entries(where: Axes | Figure) -> tuple[list[Any], list[str]]:
 def shortened(name: str) -> str:
     """A name that is not too long for a legend.
 
-    Examples
-    --------
     >>> shortened("a" * 50)
     'aaaaaaaaaaaaaaaaaaa…aaaaaaaaaaaaaaaaaaaa'
     """

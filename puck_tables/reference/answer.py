@@ -259,8 +259,6 @@ class Answer(Result):
     def summary(self) -> dict[str, Any]:
         """The scalars, and the scene with its numbers, ready for JSON.
 
-        Examples
-        --------
         >>> told = reference_case("slide").summary()
         >>> told["case"], told["version"], round(told["end_time"], 9)
         ('slide', 1, 0.509683996)

@@ -16,8 +16,6 @@ _RIM = ("restitution", "tangential", "rim")  # what counts where pucks meet
 def lines_of(answer: Answer) -> dict[str, str]:
     """What goes in, with all its digits, and what comes out, by what it is.
 
-    Examples
-    --------
     >>> from puck_tables.reference.answer import reference_case
     >>> lines_of(reference_case("incline-below"))["floor"]
     'slope = 0.09966865249116204 rad, downhill = -1.5707963267948966 rad'

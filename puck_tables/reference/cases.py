@@ -40,8 +40,6 @@ class ReferenceCase(NamedTuple):
     def scene(self) -> Scene:
         """The case as a scene, computed to ``TOL``.
 
-        Examples
-        --------
         >>> case_named("coin").scene().launch.spin
         12.0
         """

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -14,7 +15,6 @@ from puck_tables._core.real import instance, positive
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset, Variable, variable
 from puck_tables.reference.answer import Answer, reference_case
-from puck_tables.reference.convergence import verdict
 from puck_tables.reference.log import LogHow, read_log
 from puck_tables.reference.measure import MeasuredRun, measured
 from puck_tables.reference.threshold import Rest, Threshold, exact_rest, threshold_of, usual
@@ -26,6 +26,8 @@ _CONVERGING = {
     "place_error_max": "place on the way", "speed_error_max": "velocity on the way",
     "spin_error_max": "spin on the way",
 }  # fmt: skip
+FALLS = 0.25  # the order below which errors do not fall
+_EVEN = 1.0  # orders further apart are none
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -280,3 +282,44 @@ def compare(
             "compare them one by one"
         )
     return Comparison(answer, number, tuple(runs), given, exact_rest(answer, number, given))
+
+
+def orders(steps: Sequence[float], errors: Sequence[float]) -> list[float]:
+    """The order p of error ~ step^p between neighbours, from the largest step on.
+
+    Returns
+    -------
+    list of float
+        One less than steps; NaN where an error is 0 or not known.
+
+    Examples
+    --------
+    >>> orders([0.1, 0.05, 0.025], [4.0, 1.0, 0.25])
+    [2.0, 2.0]
+    """
+    ordered = sorted(zip(steps, errors, strict=True), reverse=True)
+    found = []
+    for (h1, e1), (h2, e2) in pairwise(ordered):
+        known = all(math.isfinite(e) and e != 0.0 for e in (e1, e2))
+        found.append(math.log(abs(e1 / e2)) / math.log(h1 / h2) if known else math.nan)
+    return found
+
+
+def verdict(steps: Sequence[float], errors: Sequence[float]) -> str:
+    """In words, what the last of these orders says.
+
+    >>> verdict([0.1, 0.05], [4.0, 1.0]), verdict([0.1, 0.05], [1.0, 1.0])
+    ('order 2.00', 'does not fall with the step (order 0.00): it is of the model, not of the step')
+    """
+    found = orders(steps, errors)
+    if not found or not math.isfinite(found[-1]):
+        return "not known"
+    if found[-1] < FALLS:
+        return (
+            f"does not fall with the step (order {found[-1]:.2f}): it is of the model, not of the "
+            "step"
+        )
+    told = ", ".join(f"{one:.2f}" for one in found)
+    if max(found) - min(found) > _EVEN:
+        return f"falls unevenly (orders {told}): no order can be told"
+    return f"order {told}"

@@ -34,8 +34,6 @@ class SlipVelocity(NamedTuple):
     def sizes(self, radius: float) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Speed v, speed of the rim r|ω|, and Q = hypot(v, rω), m/s.
 
-        Examples
-        --------
         >>> one = np.ones(1)
         >>> slip = SlipVelocity(3.0 * one, 0.0 * one, -2.0 * one)
         >>> [size.round(4).item() for size in slip.sizes(2.0)]
@@ -50,8 +48,6 @@ def slip_over(floor: Floor, states: Mapping[str, FloatArray]) -> SlipVelocity:
 
     Where strips move on their own it is the slip over the one under the centre.
 
-    Examples
-    --------
     >>> state = {name: np.ones(1) for name in ("x", "y", "vx", "vy", "spin")}
     >>> slip_over(Floor(velocity=(1.0, 0.0), turning=2.0), state)
     SlipVelocity(vx=array([2.]), vy=array([-1.]), spin=array([-1.]))
@@ -77,8 +73,6 @@ def _velocity_under(floor: Floor, states: Mapping[str, FloatArray]) -> tuple[Any
 def ratios(slip: SlipVelocity, radius: float) -> tuple[FloatArray, FloatArray]:
     """ε = v/(r|ω|) of the papers, and r|ω|/v; both NaN at rest, where there is no ratio.
 
-    Examples
-    --------
     >>> one = np.ones(1)
     >>> ratios(SlipVelocity(one, 0.0 * one, 2.0 * one), 1.0)
     (array([0.5]), array([2.]))
@@ -119,8 +113,6 @@ def wrench(
 def is_one_friction(floor: Floor) -> bool:
     """Whether one coefficient holds everywhere, so that φ alone decides.
 
-    Examples
-    --------
     >>> from puck_tables import Strips
     >>> is_one_friction(Floor()), is_one_friction(Floor(strips=Strips((0.1,), (0.3, 0.1))))
     (True, False)
@@ -133,8 +125,6 @@ def on_the_floor(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Force along x and y, N, and torque, N m, of a puck of a scene on the floor, state by state.
 
-    Examples
-    --------
     >>> from puck_tables import Puck, Scene
     >>> puck = Puck(0.05, friction=0.5, mass=0.1, gravity=10.0)
     >>> moves = {name: np.zeros(2) for name in ("x", "y", "vx", "vy", "spin")}

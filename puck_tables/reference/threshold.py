@@ -69,8 +69,6 @@ def threshold_of(text: str) -> Threshold:
 def usual(answer: Answer) -> Threshold:
     """One hundredth of the slip at the launch.
 
-    Examples
-    --------
     >>> from puck_tables.reference.answer import reference_case
     >>> str(usual(reference_case("slide")))
     'Q < 0.01 m/s'
@@ -136,8 +134,6 @@ def why_no_rest(
 def exact_rest(answer: Answer, puck: int | None, thresholds: tuple[Threshold, ...]) -> Rest | None:
     """From when on the exact motion is below the thresholds; None: not before it is left.
 
-    Examples
-    --------
     >>> from puck_tables.reference.answer import reference_case
     >>> at = exact_rest(reference_case("coin"), None, (Threshold("spin", 0.1),))
     >>> round(at.epsilon, 5)

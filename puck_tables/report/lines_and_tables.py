@@ -12,8 +12,6 @@ if TYPE_CHECKING:
 def listed(entries: Mapping[str, str], width: int = 0) -> str:
     """Names and what is said of them, a line each.
 
-    Examples
-    --------
     >>> print(listed({"puck": "r = 1 m", "contact": "full"}))
     puck    r = 1 m
     contact full
@@ -27,8 +25,6 @@ def columns(heads: Mapping[str, str], rows: Iterable[Iterable[Any]], most: int =
 
     ``most``: signs of a text.  None and nan are shown as a dash.
 
-    Examples
-    --------
     >>> print(columns({"file": "", "time s": ".3f"}, [("one.csv", 0.5), ("b", None)]))
     file     time s
     one.csv   0.500
@@ -53,8 +49,6 @@ def columns(heads: Mapping[str, str], rows: Iterable[Iterable[Any]], most: int =
 def puck_words(puck: PuckSpec) -> str:
     """What the motion of a puck depends on.
 
-    Examples
-    --------
     >>> from puck_tables import Puck
     >>> puck_words(Puck.similar())
     'r = 1 m, delta = 0.5, f g = 1 m/s^2'

@@ -142,8 +142,6 @@ def _bad_mixed(scene: SceneSpec) -> list[str]:
 def bad_strips(floor: Floor) -> list[str]:
     """What is wrong with the strips of a floor.
 
-    Examples
-    --------
     >>> bad_strips(Floor())
     []
     """

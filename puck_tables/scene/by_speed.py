@@ -182,8 +182,6 @@ def load_under(puck: PuckSpec) -> RoundLoad | None:
 def law_name(scene: SceneSpec) -> str:
     """The friction law of a scene in a message.
 
-    Examples
-    --------
     >>> from puck_tables import Floor, Puck, Scene
     >>> law_name(Scene(Puck(1.0), Floor(law=[[0.0, 0.1], [1.0, 0.2]])))
     'floor.law'

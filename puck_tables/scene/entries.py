@@ -25,8 +25,6 @@ LAUNCH = (
 def is_batch(path: str) -> bool:
     """Whether an axis is one of many launches, of the puck or of one of several.
 
-    Examples
-    --------
     >>> is_batch("launch"), is_batch("puck[2].launch"), is_batch("launch.spin")
     (True, True, False)
     """
@@ -36,8 +34,6 @@ def is_batch(path: str) -> bool:
 def launch_paths(batch: str) -> tuple[str, ...]:
     """What a launch of such an axis is, in the order of its columns.
 
-    Examples
-    --------
     >>> launch_paths("puck[0].launch")[2]
     'puck[0].launch.spin'
     """
@@ -58,8 +54,6 @@ class Entry(NamedTuple):
 def entries(part: Any, prefix: str = "", kind: Any = None) -> Iterator[Entry]:
     """Every entry of a scene or of a part of it, also those left out; of a ``kind`` its fields.
 
-    Examples
-    --------
     >>> from puck_tables.scene.parts import Edge
     >>> [entry.path for entry in entries(Edge((0.0, 1.0), normal=(0.0, -1.0)), "edge[0].")]
     ['edge[0].point', 'edge[0].normal']
@@ -96,8 +90,6 @@ def _described(part: Any) -> list[tuple[str, str, Kind, str, Any, str | None]]:
 def units_of(scene: Any) -> dict[str, str]:
     """Units of the entries of a scene by path, all walls or edges under one.
 
-    Examples
-    --------
     >>> from puck_tables import Puck, Scene
     >>> units_of(Scene(Puck(0.04)))["launch.spin"]
     'rad/s'
@@ -113,8 +105,6 @@ def units_of(scene: Any) -> dict[str, str]:
 def entry_at(scene: Any, path: str) -> Entry:
     """The entry of a path, or of the list of numbers that the path leads into.
 
-    Examples
-    --------
     >>> from puck_tables import Puck, Scene
     >>> entry_at(Scene(Puck(0.04)), "launch.position[1]").kind.unit
     'm'
@@ -132,8 +122,6 @@ def tables_of(part: Any, kind: Any = None) -> dict[str, Any]:
     What is left out stays out, and so does a number without bound, and a gravity that a puck was
     not given; of a ``kind`` its fields.
 
-    Examples
-    --------
     >>> from puck_tables import Puck, Scene
     >>> tables_of(Scene(Puck(0.04)))["floor"]["velocity"]
     [0.0, 0.0]

@@ -24,8 +24,6 @@ _WHERE = re.compile(r"(strip|patch) (\d+)")
 def needs_sums(floor: Floor, height: float) -> bool:
     """Whether friction under a round puck changes with more than its slip: it is summed.
 
-    Examples
-    --------
     >>> needs_sums(Floor(static_ratio=1.5), 0.0), needs_sums(Floor(static_ratio=1.5), 0.02)
     (False, True)
     """
@@ -73,8 +71,6 @@ def frictions_on(floor: Floor, own: float) -> list[Friction]:
 def largest_of(friction: Friction, top: float) -> float:
     """The largest coefficient of a friction up to a slip speed, m/s.
 
-    Examples
-    --------
     >>> largest_of(0.2, 1.0)
     0.2
     """
@@ -84,8 +80,6 @@ def largest_of(friction: Friction, top: float) -> float:
 def has_laws_by_place(floor: Floor) -> bool:
     """Whether strips or patches stand beside a law over the slip speed, or have their own.
 
-    Examples
-    --------
     >>> has_laws_by_place(Floor(patches=(Patch(((0.0, 0.1), (1.0, 0.2)), radius=1.0),)))
     True
     """
@@ -99,8 +93,6 @@ def has_laws_by_place(floor: Floor) -> bool:
 def count_parts(floor: Floor) -> int:
     """How many there are; all of a floor without strips is one.
 
-    Examples
-    --------
     >>> count_parts(Floor())
     1
     """
@@ -139,8 +131,6 @@ def floor_part(floor: Floor, where: str) -> int:
 def belts_of(floor: Floor) -> FloatArray:
     """The velocities (n, 2) of all stretches, m/s; on a turntable that of its centre.
 
-    Examples
-    --------
     >>> belts_of(Floor(strips=Strips((0.0,), (0.1, 0.1), across=(0.5, 0.2)))).tolist()
     [[0.5, 0.0], [0.2, 0.0]]
     """
@@ -172,8 +162,6 @@ def _strip_under(patch: Patch, strips: Strips | None) -> int:
 def has_belts(floor: Floor) -> bool:
     """Whether its stretches move with velocities that differ.
 
-    Examples
-    --------
     >>> has_belts(Floor(velocity=(0.5, 0.0)))
     False
     """
@@ -184,8 +172,6 @@ def has_belts(floor: Floor) -> bool:
 def belt_faults(floor: Floor) -> list[str]:
     """What is wrong with the velocities of strips and patches.
 
-    Examples
-    --------
     >>> belt_faults(Floor(strips=Strips((0.0,), (0.1, 0.1), across=(0.5,))))
     ['floor.strips.across = [0.5]: must be one number for each of 2 strips']
     """

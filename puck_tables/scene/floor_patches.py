@@ -85,8 +85,6 @@ def _crossing(rows: FloatArray, ahead: FloatArray) -> tuple[int, int] | None:
 def edges_apart(a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray) -> float:
     """How far two straight pieces ab and cd are from each other.
 
-    Examples
-    --------
     >>> a, b, c, d = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 1.0], [2.0, -1.0]])
     >>> edges_apart(a, b, c, d), edges_apart(a, 3.0 * b, c, d)
     (1.0, 0.0)
@@ -114,8 +112,6 @@ def point_to_edge(p: FloatArray, a: FloatArray, b: FloatArray) -> float:
 def patch_faults(floor: Floor) -> list[str]:
     """What is wrong with the patches of a floor; they may touch, but not overlap.
 
-    Examples
-    --------
     >>> from puck_tables import Floor, Patch
     >>> patch_faults(Floor(patches=[Patch(0.1)]))
     ['floor.patch[0]: give a radius > 0 m, or corners']
@@ -208,8 +204,6 @@ def _within(places: FloatArray) -> FloatArray:
 def inside(places: FloatArray, point: FloatArray) -> bool:
     """Whether a point lies in a polygon.
 
-    Examples
-    --------
     >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     >>> inside(square, np.array([0.5, 0.5])), inside(square, np.array([1.5, 0.5]))
     (True, False)

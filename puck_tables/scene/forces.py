@@ -43,8 +43,6 @@ def drags_of(
 ) -> tuple[float, float, float, float, float, float, float]:
     """The numbers (7,) of what acts over the floor on a puck.
 
-    Examples
-    --------
     >>> drags_of(Drag(sliding=0.1), Lateral(), 0.5, 1e-3)
     (0.2, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     """
@@ -58,8 +56,6 @@ def drags_of(
 def is_stepped(drag: Drag, lateral: Lateral) -> bool:
     """Whether a motion under what acts over the floor has no closed form, as under drag it has.
 
-    Examples
-    --------
     >>> is_stepped(Drag(), Lateral(0.1)), is_stepped(Drag(sliding=0.1), Lateral())
     (True, False)
     """

@@ -13,8 +13,6 @@ _NOT_OF = {"rail": ("reach", "side_slip"), "pivot": ("side_slip",), "blade": ("r
 def allowed_velocity(launch: Launch, hold: Constraint | None, floor: Floor) -> tuple[float, float]:
     """The velocity of the centre at a launch, as a constraint allows it, m/s.
 
-    Examples
-    --------
     >>> allowed_velocity(Launch((1.0, 2.0)), Constraint("rail"), Floor())
     (1.0, 0.0)
     """
@@ -40,8 +38,6 @@ def allowed_velocity(launch: Launch, hold: Constraint | None, floor: Floor) -> t
 def floor_at(floor: Floor, place: tuple[float, float]) -> tuple[float, float]:
     """Velocity of the floor at a place, m/s.
 
-    Examples
-    --------
     >>> floor_at(Floor(velocity=(1.0, 0.0), turning=2.0), (0.0, 0.5))
     (0.0, 0.0)
     """
@@ -54,8 +50,6 @@ def floor_at(floor: Floor, place: tuple[float, float]) -> tuple[float, float]:
 def misfits(launch: Launch, hold: Constraint | None, floor: Floor, path: str) -> list[str]:
     """What is wrong with a constraint and its launch, which stand under ``path``.
 
-    Examples
-    --------
     >>> misfits(Launch(), Constraint("pivot"), Floor(), "")
     ['constraint.reach = 0: a pivot needs a number > 0 m']
     """

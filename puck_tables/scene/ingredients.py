@@ -211,8 +211,6 @@ class Phase(NamedTuple):
 def hold_of(hold: Constraint | None, launch: Launch) -> Hold:
     """The constraint, fixed to where the puck is launched.
 
-    Examples
-    --------
     >>> from puck_tables import Constraint, Launch
     >>> hold_of(Constraint("pivot", reach=0.5), Launch()).ax
     0.5

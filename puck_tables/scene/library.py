@@ -34,8 +34,6 @@ FILES = tuple(
 def shipped_scenes() -> dict[str, str]:
     """Names and titles of the scenes that come along.
 
-    Examples
-    --------
     >>> shipped_scenes()["incline"]
     'Puck on an incline'
     """

@@ -1,4 +1,4 @@
-"""When in a step something happens that is no line: the floor lets go, a slip stops, φ = π/4."""
+"""When something happens that is no line: the floor lets go, a slip stops, begins, φ = π/4."""
 
 from __future__ import annotations
 
@@ -31,6 +31,8 @@ REST = 1e-13  # of the scale of speeds: as good as at rest
 _MARGIN = 0.2  # of friction
 _BLURRED = 10.0  # times the local error: a slip that steps blur
 _CLOSE = 1e-12  # of a step: how well a moment in it is known
+_FIRST = 1e-16  # of the scale of speeds: what a slip begins with, for its direction
+_QUICK = 0.01  # of friction: a slip that grows faster has its direction from the first
 
 
 @inner
@@ -211,3 +213,30 @@ def goes_straight(
     if excess > SLACK * phase.friction.load or not (quick or still):
         return NO_WAY, 0.0
     return way, late
+
+
+@inner
+def from_standstill(
+    phase: Phase, speed: float, t: float, y: FloatArray, work: FloatArray
+) -> tuple[int, bool, float]:
+    """Its mode from now on, whether the slip that begins settles fast, and its size in ``y``.
+
+    ``phase``: as it would be carried; ``speed``: the scale of speeds; ``work``: to work in.
+    """
+    model, load = phase.model, phase.friction.load
+    excess, nx, ny, nw = excess_at_rest(phase, t, y)
+    if excess <= SLACK * load:
+        return CARRIED, False, 0.0
+    q = 2.0 * REST * speed
+    slips = Phase(model, phase.friction, phase.piece, SLIDES, NO_WAY, 0.0)
+    if model.surface.static > 1.0:  # once it slips that holds no more
+        excess, nx, ny, nw = excess_at_rest(slips, t, y)
+    if excess == math.inf:  # it is led where the floor does not go
+        return SLIDES, False, 0.0
+    if excess <= _QUICK * load:
+        q = _FIRST * speed
+        y[VX], y[VY], y[SPIN] = q * nx, q * ny, q * nw
+        return SLIDES, True, q
+    y[VX], y[VY], y[SPIN] = q * nx, q * ny, q * nw
+    direction_of_end(slips, t, q, y, work)
+    return SLIDES, True, q

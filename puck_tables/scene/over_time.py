@@ -87,8 +87,6 @@ def factors_of(grip: Grip) -> FloatArray:
 def grip_faults(floor: Floor) -> list[str]:
     """What is wrong with the factors on friction over time.
 
-    Examples
-    --------
     >>> grip_faults(Floor(grips=[Grip([[0.0, 1.0], [1.0, -1.0]])]))
     ['floor.grip[0]: row 2: a factor of -1: must be >= 0']
     """
@@ -107,8 +105,6 @@ def grip_faults(floor: Floor) -> list[str]:
 def largest_factors(floor: Floor) -> FloatArray:
     """By what friction is more, at most, on each stretch of a floor.
 
-    Examples
-    --------
     >>> largest_factors(Floor(grips=[Grip([[0.0, 1.0], [1.0, 2.5]])])).tolist()
     [2.5]
     """
@@ -118,8 +114,6 @@ def largest_factors(floor: Floor) -> FloatArray:
 def last_factors(floor: Floor) -> FloatArray:
     """By what friction is more in the end, on each stretch of a floor.
 
-    Examples
-    --------
     >>> last_factors(Floor(grips=[Grip([[0.0, 1.0], [1.0, 2.5]])])).tolist()
     [2.5]
     """
@@ -141,8 +135,6 @@ def over_time(floor: Floor, force: Force) -> FloatArray:
     Where something jumps a time stands twice.  Before and after its rows there is no force, and the
     floor goes on as it did.
 
-    Examples
-    --------
     >>> over_time(Floor(grips=[Grip([[0.0, 1.0], [1.0, 0.5]])]), Force())[:, [0, 7, 8]].tolist()
     [[0.0, 1.0, 1.0], [1.0, 0.5, 1.0]]
     """

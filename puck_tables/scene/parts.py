@@ -65,8 +65,6 @@ class Grip:
     Straight between its rows; before and after them it stays what it was, and where a time stands
     twice it jumps.
 
-    Examples
-    --------
     >>> swept = Grip([[0.0, 1.0], [2.0, 0.8]])
     """
 
@@ -102,8 +100,6 @@ class Floor:
 
     What rests is held by ``static_ratio`` times the friction that brakes it in a slip, μ_s/μ_k.
 
-    Examples
-    --------
     >>> Floor(slope=0.1, velocity=(0.5, 0.0)).downhill
     0.0
     >>> Floor(static_ratio=1.5).static_ratio * 0.2  # μ_s of a puck with friction=0.2
@@ -188,8 +184,6 @@ class Lateral:
     contact explains it.  With b < 1 a puck that slides ever slower while it still spins turns its
     way without end; a run that would follow that for over a million steps is refused.
 
-    Examples
-    --------
     >>> stone = Lateral(0.163, speed_exponent=0.2)  # 20 kg, as the simulator FCV1 has it
     """
 
@@ -257,8 +251,6 @@ class Wall:
     faces, and ends that are round points, as a post of radius 0.  ``Wall(corners=...)`` is closed,
     with one such wall from each corner to the next; pucks may be inside as well as outside.
 
-    Examples
-    --------
     >>> board_end = Wall((1.0, 0.0), normal=(-1.0, 0.0), restitution=0.7)
     >>> beside_the_goal = Wall((1.0, 0.15), (1.0, 0.5), restitution=0.7)
     >>> island = Wall(corners=[[0.4, 0.2], [0.6, 0.2], [0.5, 0.3]])

@@ -54,8 +54,6 @@ class ScenePuck(PuckSpec):
     def only_on_boards(self) -> dict[str, Any]:
         """What it was given besides the numbers of a free puck, by name.
 
-        Examples
-        --------
         >>> ScenePuck(0.02, friction=0.1, name="red").only_on_boards
         {'name': 'red'}
         """
@@ -156,8 +154,6 @@ class Line:
     ``approach`` is the speed across it in m/s, positive to the left of the way from start to end,
     or inwards: a goal is an "exit" with one of the right sign.
 
-    Examples
-    --------
     >>> hog = Line((-6.401, -2.375), (-6.401, 2.375), name="hog line")
     >>> house = Line(centre=(0.0, 0.0), radius=1.829, name="house")
     """
@@ -173,8 +169,6 @@ class Line:
 def called_line(lines: Sequence[Line], number: int) -> str:
     """A line in an event.
 
-    Examples
-    --------
     >>> called_line([Line((0.0, 0.0), (1.0, 0.0)), Line((0.0, 1.0), (1.0, 1.0), name="goal")], 1)
     'goal'
     """

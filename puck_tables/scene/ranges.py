@@ -83,8 +83,6 @@ def batch_of(
 def owner_of(path: str) -> str:
     """The axis of many launches that an entry of a launch belongs to.
 
-    Examples
-    --------
     >>> owner_of("puck[1].launch.velocity")
     'puck[1].launch'
     """

@@ -269,8 +269,6 @@ file of speed in m/s and restitution
 def restitution_of(default: float | None, **how: Any) -> Any:
     """A field of a dataclass that takes a restitution, a number or a law.
 
-    Examples
-    --------
     >>> restitution_of(1.0).default
     1.0
     """

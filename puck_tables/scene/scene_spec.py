@@ -33,8 +33,6 @@ class SceneSpec:
     What computes takes this class: it stands below all that can be asked of a scene.  Whether the
     parts go together is checked by :class:`puck_tables.Scene`.
 
-    Examples
-    --------
     >>> SceneSpec(PuckSpec(0.04), launch=Launch(spin=[0.0, 5.0])).ranges["launch.spin"].tolist()
     [0.0, 5.0]
     """
@@ -126,8 +124,6 @@ class SceneSpec:
 
         Of a stretch with a law over the slip speed that at rest.
 
-        Examples
-        --------
         >>> SceneSpec(PuckSpec(1.0, friction=0.1)).frictions
         (0.1,)
         """
@@ -138,8 +134,6 @@ class SceneSpec:
     def heights(self) -> list[float]:
         """δ = 2fh/r for each of them.
 
-        Examples
-        --------
         >>> SceneSpec(PuckSpec(0.5, 1.0, 0.1)).heights
         [0.4]
         """
@@ -163,8 +157,6 @@ class SceneSpec:
     def alone(self, puck: PuckSpec) -> Self:
         """A puck alone on its floor, as long and as close; what does not fit is not looked for.
 
-        Examples
-        --------
         >>> board = SceneSpec(pucks=[ScenePuck(0.5, friction=0.1)])
         >>> board.alone(board.pucks[0]).frictions
         (0.1,)
@@ -201,8 +193,6 @@ class SceneSpec:
     def unit_of(self, path: str) -> str:
         """The unit of what ranges along an axis, '' of a number without one.
 
-        Examples
-        --------
         >>> SceneSpec(PuckSpec(0.04)).unit_of("launch.position[1]")
         'm'
         """

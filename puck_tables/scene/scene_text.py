@@ -19,8 +19,6 @@ def as_toml(scene: SceneSpec) -> str:
 
     A pressure law or friction law that is a function stands there by its name.
 
-    Examples
-    --------
     >>> from puck_tables import Puck, Scene
     >>> scene = Scene(Puck(0.04), ranges={"puck.height": np.array([0.0, 0.5, 1.0])})
     >>> as_toml(scene).splitlines()[4:7]

@@ -63,8 +63,6 @@ class Corner(NamedTuple):
 def shape_faults(wall: Wall) -> Iterator[str]:
     """What is wrong with where a wall is.
 
-    Examples
-    --------
     >>> list(shape_faults(Wall((0.0, 0.0))))
     ['give a point with the normal into the field, a start and an end, or corners']
     """
@@ -85,8 +83,6 @@ def shape_faults(wall: Wall) -> Iterator[str]:
 def line_of(line: Wall | Edge) -> tuple[float, float, float]:
     """The unit normal of a line without ends, and its place along it.
 
-    Examples
-    --------
     >>> line_of(Edge((0.0, 1.0), normal=(0.0, -2.0)))
     (0.0, -1.0, -1.0)
     """
@@ -100,8 +96,6 @@ def line_of(line: Wall | Edge) -> tuple[float, float, float]:
 def sides_of(wall: Wall, number: int = 0) -> list[WallSide]:
     """The sides of a wall with ends, one after the other; none of one without.
 
-    Examples
-    --------
     >>> [side.end for side in sides_of(Wall(corners=[[0, 0], [1, 0], [0, 1]]))]
     [(1.0, 0.0), (0.0, 1.0), (0.0, 0.0)]
     """
@@ -127,8 +121,6 @@ def sides_in(scene: SceneSpec) -> list[WallSide]:
 def corners_in(scene: SceneSpec) -> list[Corner]:
     """All points where walls end that a rim may meet.
 
-    Examples
-    --------
     >>> from puck_tables import Puck, Scene
     >>> angle = [Wall((1.0, 0.0), (2.0, 0.0)), Wall((2.0, 0.0), (2.0, 1.0))]
     >>> [corner.point for corner in corners_in(Scene(Puck(0.1, friction=0.1), walls=angle))]
@@ -184,8 +176,6 @@ def cushions_in(scene: SceneSpec) -> list[tuple[str, int]]:
 
     A wall with ends is there once for each of its sides, and after the arcs for its corners.
 
-    Examples
-    --------
     >>> from puck_tables import Puck, Scene
     >>> cushions_in(Scene(Puck(0.1, friction=0.1), walls=[Wall((0.0, 1.0), (1.0, 1.0))]))
     [('wall', 0), ('wall', 0), ('wall', 0)]
@@ -201,8 +191,6 @@ def cushions_in(scene: SceneSpec) -> list[tuple[str, int]]:
 def gap_to(wall: Wall, place: Point) -> float:
     """How far a place is from a wall, m; behind one without ends less than 0.
 
-    Examples
-    --------
     >>> gap_to(Wall((0.0, 0.0), (1.0, 0.0)), (4.0, 4.0))
     5.0
     """
@@ -216,8 +204,6 @@ def gap_to(wall: Wall, place: Point) -> float:
 def gap_along(wall: Wall, before: FloatArray, after: FloatArray) -> float:
     """How far a straight way (2,) to (2,) stays from a wall with ends, m; 0 across it.
 
-    Examples
-    --------
     >>> gap_along(Wall((0.0, 0.0), (1.0, 0.0)), np.array([0.5, 1.0]), np.array([0.5, -1.0]))
     0.0
     """

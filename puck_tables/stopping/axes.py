@@ -71,8 +71,6 @@ class SlipAxis:
 def ratio_at(xi: FloatArray) -> FloatArray:
     """The slip ratio k at ξ.
 
-    Examples
-    --------
     >>> ratio_at(np.array([0.0, 0.5, 1.0])).round(6).tolist()
     [0.0, 0.187935, 1.0]
     """
@@ -83,8 +81,6 @@ def ratio_at(xi: FloatArray) -> FloatArray:
 def heights(count: int = HEIGHTS) -> FloatArray:
     """The heights δ at which the stop table holds values: Chebyshev points of δ² on [0, 1].
 
-    Examples
-    --------
     >>> heights().round(4).tolist()
     [0.0872, 0.2588, 0.4226, 0.5736, 0.7071, 0.8192, 0.9063, 0.9659, 0.9962]
     """
@@ -97,8 +93,6 @@ def height_polynomials(values: FloatArray, count: int = HEIGHTS) -> FloatArray:
     Of the interpolating Chebyshev series the first ``count`` terms are kept, nearly the best
     polynomial of that degree.
 
-    Examples
-    --------
     >>> height_polynomials(heights() ** 2, 2).round(12).tolist()
     [0.5, 0.5]
     """
@@ -111,8 +105,6 @@ def height_polynomials(values: FloatArray, count: int = HEIGHTS) -> FloatArray:
 def series_to_powers(count: int) -> FloatArray:
     """What makes the coefficients of a polynomial from those of its Chebyshev series.
 
-    Examples
-    --------
     >>> series_to_powers(3).tolist()  # 1, x, 2x² − 1
     [[1.0, 0.0, -1.0], [0.0, 1.0, 0.0], [0.0, 0.0, 2.0]]
     """

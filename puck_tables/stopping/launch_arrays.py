@@ -125,8 +125,6 @@ def launches_of(
 ) -> Launches:  # fmt: skip
     """Launches from what a caller passes, broadcast; whether the numbers are good is not asked.
 
-    Examples
-    --------
     >>> launches_of([[1.0, 0.0], [2.0, 0.0]], 5.0, 0.5, 1.0, 1.0).matrix[:3].tolist()
     [[1.0, 2.0], [0.0, 0.0], [5.0, 5.0]]
     """
@@ -214,8 +212,6 @@ def in_chunks(work: Callable[[int, int], None], size: int, threads: int | None) 
 def smallest_mark(parts: Iterable[tuple[int, int]]) -> int:
     """One mark from the starts of chunks and theirs.
 
-    Examples
-    --------
     >>> smallest_mark([(0, 5), (CHUNK, 7)])
     26
     """
@@ -323,8 +319,6 @@ def fits(launches: FloatArray, longest: float = 2.0) -> npt.NDArray[np.bool_]:
 
     ``longest``: how many times as large times, places and angles may get.
 
-    Examples
-    --------
     >>> fits(np.array([[1.0, 1e200], [0, 0], [0, 0], [0, 0], [1, 1], [1, 1]])).tolist()
     [True, False]
     """

@@ -227,8 +227,6 @@ class LaunchFamily:
 def launch_family_of(body: UnitPuck) -> LaunchFamily:
     """Of a puck: kept, the same call again costs nothing.
 
-    Examples
-    --------
     >>> from puck_tables.motion.body import body_of
     >>> family = launch_family_of(body_of("uniform", 0.5, 0.5**0.5))
     >>> family.roots(RIM, np.array([1.0]))[1].round(6).tolist()

@@ -285,8 +285,6 @@ def _numbers(logs: npt.ArrayLike) -> FloatArray:
 def between(low: float, high: float) -> float:
     """A u inside an interval, one end of which may be infinite, or both.
 
-    Examples
-    --------
     >>> between(-math.inf, 1.0), between(0.0, 1.0)
     (-0.5, 0.5)
     """
@@ -298,8 +296,6 @@ def concatenated(
 ) -> list[tuple[float, float]]:
     """The intervals that are inside, neighbours as one.
 
-    Examples
-    --------
     >>> concatenated([(0.0, 1.0), (1.0, 2.0), (2.0, 3.0)], [True, True, False])
     [(0.0, 2.0)]
     """
@@ -314,8 +310,6 @@ def concatenated(
 def sample(ranges: list[tuple[float, float]], count: int) -> list[float]:
     """Equally spaced slip angles, as u: each range of u has its share of them, at least one.
 
-    Examples
-    --------
     >>> [round(u, 3) for u in sample([(-math.inf, 0.0), (1.0, math.inf)], 5)]
     [-inf, -1.317, -0.549, 0.0, 1.0]
     """
@@ -343,8 +337,6 @@ def misses(
     From the launches as they are given.  Friction of a plain puck is that of the table, where
     launches are found with closed forms or with the table of stops.
 
-    Examples
-    --------
     >>> from puck_tables import Puck
     >>> puck = Puck.similar(delta=0.0)
     >>> slide = np.array([[1.0, 0.0]]), np.zeros(1)  # stops after half a metre

@@ -53,8 +53,6 @@ class Limits(NamedTuple):
 def rates(u: FloatArray, delta: float) -> tuple[FloatArray, FloatArray]:
     """ρ(u) and h(u), from the closed forms.
 
-    Examples
-    --------
     >>> rho, _ = rates(np.array([-np.inf, np.inf]), 1.0)
     >>> rho.round(12).tolist()
     [0.625, -0.325]
@@ -72,8 +70,6 @@ def rates_of_ratio(
 
     ``fast``: where r|ω| is the faster.
 
-    Examples
-    --------
     >>> [float(one.round(6)) for one in rates_of_ratio(np.array(0.0), False, 1.0)]
     [0.625, 1.0, 0.25]
     """
@@ -92,8 +88,6 @@ def rates_of_ratio(
 def limits(delta: float) -> Limits:
     """The constants of the curve.
 
-    Examples
-    --------
     >>> [round(x, 6) for x in limits(0.5)]
     [0.414767, 0.677204, 0.53125, 0.27027, 0.140965, 0.121622]
     """
@@ -140,8 +134,6 @@ def _limit_pole(u: FloatArray, u0: float) -> FloatArray:
 def regular_slopes(u: FloatArray, delta: float) -> tuple[FloatArray, FloatArray]:
     """dR/du and dS/du at finite u.
 
-    Examples
-    --------
     >>> [float(x.round(6)) for x in regular_slopes(np.array(-1.0), 0.5)]
     [-0.570145, -0.006117]
     """
@@ -167,8 +159,6 @@ def regular_parts(axis: SlipAxis, delta: float) -> FloatArray:
 
     Gauss quadrature of the slopes over the cells, outwards from φ = π/4.
 
-    Examples
-    --------
     >>> regular_parts(SlipAxis(8), 0.5)[0].round(6).tolist()
     [1.200562, 0.026914]
     """

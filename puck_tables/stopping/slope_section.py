@@ -67,8 +67,6 @@ def slope_section(body: UnitPuck) -> SlopeSection:
 def stop_slopes_of(body: UnitPuck, launches: FloatArray, threads: int | None = None) -> FloatArray:
     """Derivatives (n, 5, 6) of the stops of launches (6, n) of one kind of puck, none at rest.
 
-    Examples
-    --------
     >>> from puck_tables.motion.body import body_of
     >>> launches = np.array([[1.0], [0.0], [0.0], [2.0], [1.0], [1.0]])
     >>> result = stop_slopes_of(body_of("uniform", 2.0, 0.5**0.5), launches)

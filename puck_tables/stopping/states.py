@@ -302,8 +302,6 @@ def moments_of(
 ) -> tuple[npt.NDArray[np.int64], FloatArray, tuple[int, ...]]:
     """Which launch each moment is of, as compiled code reads it, the moments, and their shape.
 
-    Examples
-    --------
     >>> one = launches_of((1.0, 0.0), 0.0, 0.5, 1.0, 1.0)
     >>> [part.tolist() for part in moments_of(one, np.array([0.0, 2.0]))[:2]]
     [[0], [0.0, 2.0]]
@@ -323,8 +321,6 @@ def moments_of(
 def each_of(which: npt.NDArray[np.int64], count: int) -> npt.NDArray[np.int64]:
     """Which launch each of so many moments is of.
 
-    Examples
-    --------
     >>> each_of(np.array([3]), 2).tolist(), each_of(np.empty(0, int), 2).tolist()
     ([3, 3], [0, 1])
     """

@@ -106,8 +106,6 @@ def launches_at(u: FloatArray, delta: FloatArray) -> FloatArray:
 def looked_up(table: StopValues, u: FloatArray, delta: FloatArray) -> FloatArray:
     """T, X, Y, path length and body angle as the table gives them, (n, 5).
 
-    Examples
-    --------
     >>> from puck_tables import Table
     >>> looked_up(Table.shipped("stops"), np.array([0.0]), np.array([1.0])).round(8).tolist()[0][:3]
     [0.98647594, 0.32409373, -0.04297451]
@@ -131,8 +129,6 @@ def tabulated(
 def tabulate(kind: type[K], axis: SlipAxis, progress: Progress | None = None) -> K:
     """The node values of a stop table, without a measured accuracy.
 
-    Examples
-    --------
     >>> from puck_tables.stopping.stop_table import StopTable
     >>> tabulate(StopTable, SlipAxis(8)).values[8, :, 0].round(6).tolist()[::4]  # T at π/4
     [0.948026, 0.967044, 0.98618]
@@ -168,8 +164,6 @@ def tabulate(kind: type[K], axis: SlipAxis, progress: Progress | None = None) ->
 def measured(table: StopValues) -> Accuracy:
     """Errors of a table against the integrator and, for the curve, against quadrature.
 
-    Examples
-    --------
     >>> from puck_tables.stopping.stop_table import StopTable
     >>> measured(tabulate(StopTable, SlipAxis(16))).worst < 2e-5
     True

@@ -263,8 +263,6 @@ def end_values(ratios: FloatArray, inertia: float) -> FloatArray:
     Next to pure sliding v falls like t₀ − t and rω like its power σ(0); next to pure spin rω falls
     linearly and the complex velocity like its power (ρ_∥ + iρ_⊥)/s, s = (r²/2k²) ρ_ω.
 
-    Examples
-    --------
     >>> end_values(np.array([[1.0, 0.0, 0.5], [1.0, 0.0, 4.0 / 3.0]]), 0.5)[1, :3].round(6).tolist()
     [0.75, 0.428571, -0.0]
     """

@@ -34,8 +34,6 @@ By = tuple[float, str | None, Any]  # tolerance, method, table
 def velocities(one: Mapping[str, Any], count: int) -> FloatArray:
     """Components (2, count) of the velocities of launches by their numbers, m/s.
 
-    Examples
-    --------
     >>> velocities({"speed": 2.0}, 1).tolist()
     [[2.0], [0.0]]
     """

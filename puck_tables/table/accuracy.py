@@ -41,8 +41,6 @@ class Accuracy:
     ) -> Accuracy:
         """From errors (functions, points) at points; ``coarse``: those with half as many cells.
 
-        Examples
-        --------
         >>> places = np.array([0.1, 0.2])
         >>> Accuracy.of(np.array([[1e-9, 1e-8]]), places, places, np.array([[1.0, 1.6e-7]])).at_phi
         (0.2,)

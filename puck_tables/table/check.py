@@ -61,8 +61,6 @@ def compared(
 ) -> list[Check]:  # fmt: skip
     """The lines of a report for errors of functions (functions, points); NaN is the largest.
 
-    Examples
-    --------
     >>> places = np.array([0.1, 0.2])
     >>> compared("rule", ["spin"], np.array([[1e-9, 1e-7]]), places, places, 1e-8)[0].passed
     False
@@ -98,8 +96,6 @@ def judged(
 ) -> CheckReport:  # fmt: skip
     """The report of a table by all these routes, one after the other.
 
-    Examples
-    --------
     >>> places = np.array([0.1, 0.2])
     >>> rule = Route("rule", ["spin"], places, places, lambda phi, at: np.array([phi - at]), 1e-8)
     >>> judged("a table", 1e-8, [rule]).passed

@@ -37,8 +37,6 @@ _MADE_OF = "made_of"
 def sealed(content: bytes) -> bytes:
     r"""HDF5 content with the line that proves it whole.
 
-    Examples
-    --------
     >>> sealed(b"")[:20]
     b'\npuck-tables sha256 '
     """
@@ -85,8 +83,6 @@ def read_content(path: str | Path) -> bytes:
 def decode(content: bytes, source: str) -> tuple[dict[str, Any], dict[str, FloatArray], Any]:
     """What a file says, its arrays by name, and what they follow from.
 
-    Examples
-    --------
     >>> decode(b"puck", "my.h5")
     Traceback (most recent call last):
     ...

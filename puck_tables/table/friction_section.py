@@ -271,8 +271,6 @@ def friction_for(law: Law, delta: float, accuracy: float) -> FrictionSection:
 
     ``law``, ``delta``, ``accuracy``: as in :func:`friction_section`.
 
-    Examples
-    --------
     >>> from puck_tables.contact.laws import law_of
     >>> friction_for(law_of("ring"), 0.5, 1e-6).grid  # under other laws it takes no time
     '129 phi nodes'

@@ -79,8 +79,6 @@ def friction_slopes_of(law: Law, delta: float, accuracy: float = FLOW_ACCURACY) 
 def slopes_of_table(table: ResultantTable, delta: float) -> FrictionSlopes:
     """Friction with its derivatives by the height, from a table of resultants.
 
-    Examples
-    --------
     >>> found = slopes_of_table(ResultantTable.build("ring", 1e-6), 1.0)
     >>> (found.spline.at(np.array([0.0]))[0].round(5) + 0.0).tolist()
     [1.0, 0.25, 0.875, 0.0, 0.25, -0.25]

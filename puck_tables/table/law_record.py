@@ -16,8 +16,6 @@ from puck_tables.errors import InputError, OutputError
 def is_named(law: Law) -> bool:
     """Whether a law is the one that its name says, and no other that was given this name.
 
-    Examples
-    --------
     >>> from dataclasses import replace
     >>> is_named(law_of("ring")), is_named(replace(law_of("hertz"), name="ring"))
     (True, False)
@@ -90,8 +88,6 @@ def plain(value: Any) -> Any:
 def from_plain(entry: Any) -> Any:
     """The way back; lists are tuples.
 
-    Examples
-    --------
     >>> from_plain(plain(SpeedLaw([0.0, 1.0], [0.2, 0.3])))(0.5).round(3)
     np.float64(0.25)
     """

@@ -261,8 +261,6 @@ class ResultantTable(LawTable):
     def tabulated(cls, law: Law, cells: int, tell: Tell | None = None) -> Self:
         """The node values of a table, without a measured accuracy.
 
-        Examples
-        --------
         >>> ResultantTable.tabulated(law_of("annulus:0.5"), 8).values.shape
         (33, 4, 3)
         """

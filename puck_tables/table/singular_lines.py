@@ -28,8 +28,6 @@ def lines_of(law: Law, delta: float) -> tuple[float, ...]:
 
     Besides the singular ones that where a puck next to tipping bends most.
 
-    Examples
-    --------
     >>> from puck_tables.contact.laws import law_of
     >>> lines_of(law_of("annulus:0.8"), 0.5)
     (0.8, 1.0)
@@ -62,8 +60,6 @@ def refuse_height(law: Law, delta: float) -> None:
 def opening_angle(delta: float) -> float:
     """The slip angle φ_c with δ_c(φ_c) = δ, up to which part of the base is lifted; 0 if δ ≤ 1.
 
-    Examples
-    --------
     >>> round(opening_angle(1.15913851), 6)  # π/4
     0.785398
     """

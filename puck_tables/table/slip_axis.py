@@ -137,8 +137,6 @@ def sides_of(cotangents: Sequence[float], ends_too: bool = False) -> tuple[Side,
 def graded(sides: Sequence[Side], xi: FloatArray) -> FloatArray:
     """φ at ξ ∈ [0, 1] (n,) on every side, (sides, n); ξ = 1 is the end of a side exactly.
 
-    Examples
-    --------
     >>> graded(sides_of([1.0]), np.array([0.0, 1.0])).round(4).tolist()
     [[0.7854, 0.0], [0.7854, 1.5708]]
     """

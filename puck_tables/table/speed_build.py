@@ -152,8 +152,6 @@ def load_under(law: Law, pressure: str | PressureLaw, reach: float) -> RoundLoad
 def finest_accuracy(load: RoundLoad) -> float:
     """How good a table under a load can be, of the largest f.
 
-    Examples
-    --------
     >>> from puck_tables.contact.laws import law_of
     >>> finest_accuracy(RoundLoad(law_of("uniform"))), finest_accuracy(RoundLoad(law_of("hertz")))
     (1e-13, 1e-08)
@@ -184,8 +182,6 @@ def _out_of_reach(parts: list[FilledPatch], accuracy: float, growth: float) -> A
 def largest_f(law: Law, top: float) -> float:
     """The largest f up to a speed: at a point of a law that does not overshoot, or sampled.
 
-    Examples
-    --------
     >>> largest_f(SpeedLaw([0.0, 1.0], [0.2, 0.3]), 0.5)
     0.25
     """

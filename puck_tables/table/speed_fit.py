@@ -40,8 +40,6 @@ def quintic_coefficients(values: FloatArray) -> FloatArray:
 def missed_by_half(values: FloatArray) -> FloatArray:
     """At the odd nodes of axis 0 (2n + 1, …): the spline through the even ones less the values.
 
-    Examples
-    --------
     >>> float(np.abs(missed_by_half(np.arange(21.0)[:, None] ** 5)).max() / 21**5) < 1e-13
     True
     """

@@ -135,8 +135,6 @@ def is_pile(law: object, load: RoundLoad) -> bool:
     Where a law has corners each edge within the rim has lines of its own for every one, and they
     cross.
 
-    Examples
-    --------
     >>> from puck_tables.contact.laws import law_of
     >>> corners = SpeedLaw([0.0, 1.0], [0.2, 0.3])
     >>> [is_pile(corners, RoundLoad(law_of(name))) for name in ("uniform", "annulus:0.5", "ring")]
@@ -148,8 +146,6 @@ def is_pile(law: object, load: RoundLoad) -> bool:
 def rays_under(law: object, load: RoundLoad) -> FloatArray:
     """(v − r|ω|)/(v + r|ω|) where the centre of rotation crosses an edge; none of the rim alone.
 
-    Examples
-    --------
     >>> from puck_tables.contact.laws import law_of
     >>> rays_under(None, RoundLoad(law_of("annulus:0.5"))).round(6).tolist()
     [-0.333333, 0.0]
@@ -165,8 +161,6 @@ def patches_of(
 ) -> tuple[SlipPatch | RayPatch, ...]:  # fmt: skip
     """The patches between breaks, in the order in which compiled code numbers them.
 
-    Examples
-    --------
     >>> len(patches_of(np.array([0.0, 1.0, 2.0])))
     8
     >>> len(patches_of(np.array([0.0, 1.0, 2.0]), 1, np.array([-0.5, 0.0])))

@@ -232,8 +232,6 @@ class SpeedTable(Table):
     def lever(self, height_ratio: float) -> float:
         """What 2h/r is in the moment balance: times 1/(4⟨x²⟩), as under uniform pressure.
 
-        Examples
-        --------
         >>> from puck_tables import SpeedLaw, Table
         >>> law = SpeedLaw([0.0, 1.0], [0.2, 0.3])
         >>> round(Table.build(law, 1e-3, pressure="ring").lever(1.0), 12)  # ⟨x²⟩ = 1/2

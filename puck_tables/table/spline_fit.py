@@ -128,8 +128,6 @@ def ratios_at(terms: FloatArray, delta: float) -> FloatArray:
 
     ``terms`` (n, 5); returns (n, 6).
 
-    Examples
-    --------
     >>> ratios_at(np.array([[1.0, 0.0, 0.25, 0.5, -0.125]]), 1.0).tolist()
     [[1.0, 0.25, 0.375, 0.0, 0.25, -0.25]]
     """

@@ -338,8 +338,6 @@ class Table(ABC):
 def kinds() -> list[str]:
     """The names of the kinds of tables; the package says where their classes stand.
 
-    Examples
-    --------
     >>> kinds()[:2]
     ['resultants', 'stops']
     """
@@ -355,8 +353,6 @@ def _kind_named(name: str) -> type[Table]:
 def refuse_other_kind(table: Table | None, *kinds: type[Table]) -> None:
     """Refuse a table, if one is given, that is not of these kinds.
 
-    Examples
-    --------
     >>> refuse_other_kind(Table.shipped("stops"), type(Table.shipped()))
     Traceback (most recent call last):
     ...

@@ -40,8 +40,6 @@ _SMALLEST, _LARGEST = 1e-100, 1e100  # m, kg: squares of both are numbers
 def pucks_of(scene: SceneSpec) -> tuple[ScenePuck, ...]:
     """The pucks of a scene; a single one with its launch.
 
-    Examples
-    --------
     >>> from puck_tables import Pocket, Puck, Scene
     >>> pucks_of(Scene(Puck(0.04), pockets=[Pocket((1.0, 0.0), 0.1)]))[0].radius
     0.04
@@ -64,8 +62,6 @@ def pucks_of(scene: SceneSpec) -> tuple[ScenePuck, ...]:
 def called(puck: ScenePuck, number: int) -> str:
     """A puck in a message, a table and a legend.
 
-    Examples
-    --------
     >>> from puck_tables import Puck
     >>> called(Puck(0.1, name="striker"), 3), called(Puck(0.1), 3)
     ('striker', 'puck 3')
@@ -76,8 +72,6 @@ def called(puck: ScenePuck, number: int) -> str:
 def who(scene: SceneSpec, number: int) -> str:
     """A puck of a scene in a sentence: the only one has no number.
 
-    Examples
-    --------
     >>> from puck_tables import Puck, Scene
     >>> who(Scene(Puck(0.1)), 0)
     'the puck'
@@ -128,8 +122,6 @@ def frictions_under(scene: SceneSpec, puck: ScenePuck, fastest: float = 0.0) -> 
 
     Where they depend on the slip the largest, up to slips of ``fastest`` m/s: at 0 that at rest.
 
-    Examples
-    --------
     >>> from puck_tables import Puck, Scene
     >>> frictions_under(Scene(pucks=[Puck(0.1, friction=0.2)]), Puck(0.1, friction=0.2))
     (0.2,)
@@ -151,8 +143,6 @@ def has_closed_forms(puck: ScenePuck, friction: float) -> bool:
 def segment_error(scene: SceneSpec) -> float:
     """What segments may be wrong by, of Q²/J and Q; below that of tables none is looked up.
 
-    Examples
-    --------
     >>> from puck_tables import Puck, Scene
     >>> men = [Puck(0.1, friction=0.2)]
     >>> [segment_error(Scene(pucks=men, tol=tol)) for tol in (1e-6, 1e-11)]
@@ -166,8 +156,6 @@ def steps_for(scene: SceneSpec) -> float:
 
     Impacts multiply errors, and what presses cushions or pucks has to stay in touch.
 
-    Examples
-    --------
     >>> from puck_tables import Launch, Puck, Scene
     >>> two = [Puck(0.1), Puck(0.1, launch=Launch(position=(1.0, 0.0)))]
     >>> steps_for(Scene(Puck(0.1), tol=1e-7)), steps_for(Scene(pucks=two, tol=1e-7))
@@ -180,8 +168,6 @@ def steps_for(scene: SceneSpec) -> float:
 def is_integrated(scene: SceneSpec, puck: ScenePuck, friction: float) -> bool:
     """Whether the motion of a puck is integrated, on this friction, also while nothing touches it.
 
-    Examples
-    --------
     >>> from puck_tables import Floor, Puck, Scene
     >>> is_integrated(Scene(pucks=[Puck(0.1)], floor=Floor(slope=0.1)), Puck(0.1), 0.1)
     True
@@ -424,8 +410,6 @@ def obstructing(
 
     ``holes``: whether pockets and edges do.
 
-    Examples
-    --------
     >>> from puck_tables import Puck, Scene, Wall
     >>> board = Scene(pucks=[Puck(0.1)], walls=[Wall((0.0, 0.5), normal=(0.0, -1.0))])
     >>> list(obstructing(board, (0.0, 0.45), 0.1, holes=True))[0][:2]

@@ -42,8 +42,6 @@ def rows_of(path: str | Rows) -> FloatArray:
 def pieces_along(rows: FloatArray) -> FloatArray:
     """Straight pieces (n − 1, 21) between rows of t, x, y, angle; of one a piece of no duration.
 
-    Examples
-    --------
     >>> pieces_along(np.array([[0.0, 0.0, 0.0, 0.0], [2.0, 1.0, 0.0, 0.0]]))[0, 5].item()
     0.5
     """
@@ -61,8 +59,6 @@ def pieces_along(rows: FloatArray) -> FloatArray:
 def straight_piece(start: float, duration: float, state: FloatArray) -> FloatArray:
     """One straight piece (21,) from a state (6,) on.
 
-    Examples
-    --------
     >>> straight_piece(1.0, 2.0, np.array([0.0, 0.0, 0.0, 0.5, 0.0, 0.0]))[[0, 1, 11]].tolist()
     [1.0, 2.0, 1.0]
     """

@@ -142,8 +142,6 @@ class GroupBuffer(NamedTuple):
 def buffer_for(members: int, contacts: int, led: int = 0) -> GroupBuffer:
     """A buffer for groups of up to so many members and contacts, of whom so many are led.
 
-    Examples
-    --------
     >>> buffer_for(3, 2).matrix.shape, buffer_for(3, 2, 1).matrix.shape
     ((4, 4), (6, 6))
     """

@@ -37,7 +37,7 @@ from puck_tables.world.segment import (
     state_at,
 )  # fmt: skip
 from puck_tables.world.segment_starts import Room
-from puck_tables.world.setting_off import MISPLACED, REACHED
+from puck_tables.world.setting_off import REACHED, UNSEEN
 
 STUCK, _WITHIN = 1e-11, 10.0  # of the scale of speeds, and times the error of a step in it
 LONG = 100.0  # times what friction takes, at most: whatever moves then may never stop
@@ -46,7 +46,7 @@ _SLOWEST = 1e-9  # of the largest friction: what brakes less than that does not 
 _UNKNOWN, _NOT_YET = -2.0, -1.0  # in place of a time
 # of a run without a time, beside how :func:`puck_tables.world.engine.advance` ends
 GOES_ON, ENDED = -1, REACHED
-ROUND, NEVER_ENDS, LEADS_ON = range(MISPLACED + 1, MISPLACED + 4)
+ROUND, NEVER_ENDS, LEADS_ON = range(UNSEEN + 1, UNSEEN + 4)
 
 
 @inlined

@@ -54,12 +54,23 @@ from puck_tables.scene.ingredients import (
     surface_at,
     surface_now,
 )
-from puck_tables.scene.moments import NOTHING, REST, first_event_on, goes_straight, lost, rests_on
+from puck_tables.scene.moments import (
+    NOTHING,
+    REST,
+    first_event_on,
+    from_standstill,
+    goes_straight,
+    lost,
+    rests_on,
+)
 from puck_tables.scene.over_time import rows_passed
 from puck_tables.scene.radau import RADAU_ROWS
-from puck_tables.scene.standstill import from_standstill
-from puck_tables.scene.step_size import follow_scales, up_to_the_stop
-from puck_tables.scene.steps import accelerations, step
+from puck_tables.scene.steps import (
+    accelerations,
+    follow_scales,
+    step,
+    up_to_the_stop,
+)
 from puck_tables.world import step_ledger
 from puck_tables.world.engine_state import N_HISTORY, N_PIECES, N_WORKS, Engine
 from puck_tables.world.floor_under import (

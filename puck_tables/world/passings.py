@@ -48,8 +48,6 @@ COLUMNS = 7
 def rows_of(lines: Sequence[Line]) -> FloatArray:
     """Lines as the kernels read them, array (lines, 5).
 
-    Examples
-    --------
     >>> rows_of([Line((0.0, -1.0), (0.0, 1.0)), Line(centre=(2.0, 0.0), radius=0.5)]).tolist()
     [[0.0, -1.0, 0.0, 1.0, 0.0], [2.0, 0.0, 0.0, 0.0, 0.5]]
     """
@@ -68,8 +66,6 @@ class Passings:
     ``seen`` (discs, lines, 2, 3): where each lies to each line, with its centre and its rim;
     ``segments`` (discs + 1,): on which rows of the history they are, and how many were looked at.
 
-    Examples
-    --------
     >>> Passings([], 3).rows.shape
     (0, 7)
     """

@@ -98,8 +98,6 @@ def _fill_slips(
 def floor_under(floor: Floor, x: float, y: float) -> str:
     """What a puck with its centre at (x, y) rests on, in words.
 
-    Examples
-    --------
     >>> floor_under(Floor(), 0.0, 0.0)
     'floor'
     """

@@ -94,8 +94,6 @@ def _is(puck: ScenePuck, side: str, named: set[str]) -> bool:
 def rule_of(scene: SceneSpec) -> str:
     """By which law pucks meet, in words.
 
-    Examples
-    --------
     >>> from puck_tables import Puck, Scene
     >>> print(rule_of(Scene(pucks=[Puck(0.1, restitution="plastic:0.1")])))
     impacts by Walton's law: of two pucks the smaller of each number counts, a cushion has its own

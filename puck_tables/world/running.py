@@ -13,7 +13,6 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import finite_array, real
 from puck_tables.errors import InputError, PuckError
 from puck_tables.kernels.compile import entry_of
-from puck_tables.scene.ingredients import FREE
 from puck_tables.scene.pucks_and_posts import called_line
 from puck_tables.scene.run import Event
 from puck_tables.scene.scene_spec import SceneSpec
@@ -32,7 +31,7 @@ from puck_tables.world.lasting import (
     next_target,
 )
 from puck_tables.world.law_range import with_law_for
-from puck_tables.world.layout import EDGE, HOLD, KIND, LIGHTNESS, POCKET, RADIUS
+from puck_tables.world.layout import EDGE, KIND, POCKET
 from puck_tables.world.lone import LONGEST
 from puck_tables.world.obstacles import obstacle_names
 from puck_tables.world.passings import Passings
@@ -50,6 +49,7 @@ from puck_tables.world.setting_off import (
     PUSHING,
     REACHED,
     TOO_SHORT,
+    UNSEEN,
 )
 
 MOST_EVENTS, MOST_STEPS = 1_000_000, 1_000_000  # of a run: some 120 and 170 MB
@@ -91,9 +91,6 @@ class Running:
         pucks = pucks_of(self.scene)
         self.names = tuple(called(puck, number) for number, puck in enumerate(pucks))
         self._obstacles = obstacle_names(self.scene)
-        discs = self._engine.discs
-        self._free = bool(((discs[:, HOLD] == FREE) & (discs[:, LIGHTNESS] > 0.0)).all())
-        self._widest = float(discs[:, RADIUS].max())
 
     def __repr__(self) -> str:
         title = f"{self.scene.title}, " if self.scene.title else ""
@@ -276,15 +273,15 @@ class Running:
         """What is done in it is done as a whole, or not at all."""
         return _OrAsBefore(self)
 
-    def _advance(self, until: float, first: int = NOBODY) -> None:
-        """Let time pass, after an event by hand."""
+    def _advance(self, until: float, first: int = NOBODY) -> bool:
+        """Let time pass, after an event by hand; False: what was given there is to be looked at."""
         mark, pushes = -math.inf, deque[float](maxlen=CROWDED_PUSHES)
         if lacks_rows(self._engine, self._room):
             self._grow()
         while True:
             how = self._play(until, first)
-            if how == REACHED:
-                return
+            if how in (REACHED, UNSEEN):
+                return how == REACHED
             unit = float(self._engine.scale[0] / max(self._engine.scale[1], 1e-300))
             first = NOBODY
             if how == FULL:

@@ -129,8 +129,6 @@ class SceneEnds(Result):
 def axes_of(scene: SceneSpec) -> dict[str, FloatArray]:
     """What ranges in a scene, by path; many launches by their numbers from 0 on.
 
-    Examples
-    --------
     >>> from puck_tables import Launch, Puck, Scene
     >>> axes_of(Scene(Puck(1.0), launch=Launch([[1.0, 0.0], [2.0, 0.0]])))
     {'launch': array([0., 1.])}

@@ -105,8 +105,8 @@ from puck_tables.world.segment import (
 )  # fmt: skip
 
 # of a disc while an event is worked on: not concerned, concerned, its contacts are known, was to
-# meet one that is concerned, has set off
-NOT_CONCERNED, CONCERNED, LOOKED_AT, DISAPPOINTED, SENT = range(5)
+# meet one that is concerned, has set off; is to get a state that nobody has looked at
+NOT_CONCERNED, CONCERNED, LOOKED_AT, DISAPPOINTED, SENT, GIVEN = range(6)
 
 _MOMENT = 1e-3  # of Q/J: what no step follows loses its balance as soon, where it tips
 _AT_ONCE = 256  # contacts whose impacts are found together, and discs led among them, at most

@@ -7,26 +7,35 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.scene.ingredients import FREE
+from puck_tables.world.contact_row import ACTS, NX, NY, approach
+from puck_tables.world.contact_search import QUIET
 from puck_tables.world.engine_state import GOT, N_CONTACTS, N_EVENTS, PLACED, REMOVED, Engine
-from puck_tables.world.floor_under import lay_down
+from puck_tables.world.floor_under import law_goes_to, lay_down, moves_along, slips
+from puck_tables.world.impact import as_forces
 from puck_tables.world.layout import (
     ARC,
     CORNER,
+    DECEL,
     EDGE,
+    HOLD,
     KIND,
     LIGHTNESS,
     OVERHANG,
     POCKET,
+    PULL_X,
+    PULL_Y,
     RADIUS,
     SIDE,
     SPAN,
     kinetic,
 )
 from puck_tables.world.obstacle_shapes import ROUNDED, normal_to
-from puck_tables.world.rounded_approaches import quieten
+from puck_tables.world.putting_right import stop_slips
 from puck_tables.world.segment import GONE, STILL
 from puck_tables.world.segment_starts import (
     CONCERNED,
+    GIVEN,
     NOT_CONCERNED,
     SENT,
     Room,
@@ -47,10 +56,67 @@ from puck_tables.world.touching import (
 )
 
 # how a call of the engine ends
-REACHED, FULL, CROWDED, TANGLED, PAUSED, PUSHING, OFF_TABLE, TOO_SHORT, MISPLACED = range(9)
+(
+    REACHED, FULL, CROWDED, TANGLED, PAUSED, PUSHING, OFF_TABLE, TOO_SHORT, MISPLACED, UNSEEN,
+) = range(10)  # fmt: skip
 
 OVERLAP = 1e-11  # of the radius: what pushes overlaps by less, and may be put where it was
+_SURELY = 1.0 - 1e-12  # of the fastest slip yet: below it rounding makes none faster
 _KEPT, _PUT, _MOVED, _MATE = range(4)  # what is done to a disc: nothing, a state, also a place
+_ROUNDED = 4e-16  # of the speeds of both: less cannot be taken out
+_ROUNDS = 8  # of contacts that approach as others are stopped, at most
+
+
+@inlined
+def _moves(engine: Engine, room: Room, i: int) -> bool:
+    """Whether it is a disc that gives way: the floor holds none that is at rest."""
+    if i < 0 or engine.discs[i, LIGHTNESS] == 0.0:
+        return False
+    disc = engine.discs[i]
+    steep = engine.surface.static * disc[DECEL] <= math.hypot(disc[PULL_X], disc[PULL_Y])
+    return steep or slips(engine.surface, disc, room.states[i])
+
+
+@inlined
+def _speed(room: Room, i: int) -> float:
+    return math.hypot(room.states[i, VX], room.states[i, VY]) if i >= 0 else 0.0
+
+
+@inner
+def quieten(engine: Engine, count: int, t: float, room: Room) -> None:
+    """Take out of the contacts found what approaches too slowly for an impact: mere rounding.
+
+    Over seconds discs would creep into each other by it.  What the floor holds at rest stays.  Who
+    changes is marked; whole groups are already, whoever of them is touched.
+    """
+    contacts, rows, buffer = room.contacts, room.rows, room.buffer
+    for n in range(count):
+        rows[n, ACTS] = 0.0
+    for _ in range(_ROUNDS):
+        more = False
+        for n in range(count):
+            i, j, row = contacts[n, 0], contacts[n, 1], rows[n]
+            un, _ = approach(engine, i, j, row[NX], row[NY], room.states)
+            least = _ROUNDED * (_speed(room, i) + _speed(room, j))
+            if row[ACTS] > 0.0 or not least < un <= QUIET * engine.scale[0]:
+                continue
+            if _moves(engine, room, i) or _moves(engine, room, j):
+                row[ACTS], more = 1.0, True
+        acting = as_forces(engine, t, contacts, count, rows, room.states, buffer) if more else 0
+        if acting <= 0:
+            return
+        for n in range(count):
+            for m in range(2):
+                i = contacts[n, m]
+                if rows[n, ACTS] == 0.0 or i < 0:
+                    continue
+                if _moves(engine, room, i):
+                    room.marks[i] = CONCERNED
+                else:
+                    buffer.inverse[i, 0] = buffer.inverse[i, 1] = 0.0
+        modes = buffer.modes[0, :acting]
+        modes[:] = 1
+        stop_slips(buffer, modes, room.states)
 
 
 @inlined
@@ -158,26 +224,43 @@ def _put_down(engine: Engine, i: int, what: int, t: float, moved: bool, room: Ro
         locate(engine, i, t, room)
 
 
+@inlined
+def _is_unseen(engine: Engine, i: int, swift: bool, state: FloatArray) -> bool:
+    """Whether a state of a disc, if ``swift`` with another velocity, asks for more than a look."""
+    disc = engine.discs[i]
+    if disc[HOLD] != FREE or disc[LIGHTNESS] == 0.0:
+        return True
+    if moves_along(engine.surface) or law_goes_to(engine.regions) < math.inf:
+        return True
+    slip = math.hypot(math.hypot(state[VX], state[VY]), disc[RADIUS] * state[SPIN])
+    return swift and not slip <= _SURELY * engine.scale[0]
+
+
 @inner
 def put(engine: Engine, what: int, t: float, room: Room) -> int:
     """Give marked pucks the states ``room.before``, as by an impact from outside; how it ended.
 
     NaN in them stays as it is; nothing is PLACED where it is.  REMOVED: they leave play.
-    MISPLACED: nothing was changed, for one would overlap, see :func:`_overlaps`.
+    MISPLACED: nothing was changed, for one would overlap, see :func:`_overlaps`.  UNSEEN: neither,
+    for of those that are marked as GIVEN one is more than a free disc that surely slips no faster
+    than anything has yet.
     """
     count, moves = engine.discs.shape[0], False
     for i in range(count):
         room.shares[i] = _KEPT
-        if room.marks[i] != CONCERNED:
+        if room.marks[i] == NOT_CONCERNED:
             continue
         locate(engine, i, t, room)
         changed, moved = what != PLACED, engine.kinds[i] == GONE and what != REMOVED
+        swift = False
         for column in range(6):
             given = room.before[i, column]
             if math.isnan(given) or given == room.states[i, column]:
                 room.before[i, column] = room.states[i, column]
             else:
-                changed, moved = True, moved or column <= Y
+                changed, moved, swift = True, moved or column <= Y, swift or column >= VX
+        if room.marks[i] == GIVEN and changed and _is_unseen(engine, i, swift, room.before[i]):
+            return UNSEEN
         if moved:
             room.shares[i], moves = _MOVED, True
         elif changed:

@@ -37,10 +37,9 @@ from puck_tables.world.prepare import set_scales
 from puck_tables.world.pushed_back import Reported, pushed_back
 from puck_tables.world.running import Running
 from puck_tables.world.segment import GONE
-from puck_tables.world.segment_starts import CONCERNED, NOT_CONCERNED, room_for
+from puck_tables.world.segment_starts import CONCERNED, GIVEN, NOT_CONCERNED, room_for
 
 _ALL = slice(None)
-_SURELY = 1.0 - 1e-12  # of the fastest slip yet: below it rounding makes none faster
 
 
 class World(Running):
@@ -379,34 +378,17 @@ class World(Running):
 
     def _put(self, what: int, rows: FloatArray, discs: int | slice | Whole) -> None:
         """Give discs their states, NaN: as it is, by an event; all or nothing."""
-        engine, room = self._engine, self._room
+        room, by_hand = self._room, what in (g.STRUCK, g.PLACED, g.ADDED)
         with self._or_as_before():
-            engine.counts[g.N_AT_ONCE] = 0
-            if what in (g.STRUCK, g.PLACED, g.ADDED) and not self._is_slow(rows, discs):
+            self._engine.counts[g.N_AT_ONCE] = 0
+            for mark in (GIVEN if by_hand else CONCERNED, CONCERNED):
+                room.marks[:] = NOT_CONCERNED
+                room.marks[discs] = mark
+                room.before[discs] = rows
+                if self._advance(self.time, what):
+                    return
                 numbers = np.atleast_1d(np.arange(len(self.names))[discs])
                 self._see_to(what, np.atleast_2d(rows), numbers)
-            room.marks[:] = NOT_CONCERNED
-            room.marks[discs] = CONCERNED
-            room.before[discs] = rows
-            self._advance(self.time, what)
-
-    def _is_slow(self, rows: FloatArray, discs: int | slice | Whole) -> bool:
-        """Whether free discs do not slip faster than anything has yet, on a floor at rest."""
-        engine, radius, stays = self._engine, self._widest, False
-        if moves_along(engine.surface) or law_goes_to(engine.regions) < math.inf:
-            return False
-        if isinstance(discs, int):
-            disc, (*_, vx, vy, spin) = engine.discs[discs], rows.tolist()
-            if disc[HOLD] != FREE or disc[LIGHTNESS] == 0.0:
-                return False
-            radius, stays = disc[RADIUS], vx != vx and spin != spin
-        elif self._free:  # as if one had all that is largest
-            vx, vy, spin = np.abs(rows[:, VX:]).max(axis=0).tolist()
-        else:
-            return False
-        fast = math.hypot(vx, vy, radius * spin)
-        slow = fast <= _SURELY * self._engine.scale[0]  # not of NaN; what is near is seen to
-        return bool(slow or stays)
 
     def _see_to(self, what: int, rows: FloatArray, discs: Whole) -> None:
         """Refuse what does not fit, see to the scales, and lead what is led from there."""

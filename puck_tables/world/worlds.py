@@ -93,8 +93,6 @@ class Worlds(Together):
         ``what``, ``puck``, ``partner``, ``x``, ``y``, ``approach``, ``slip``, ``impulse``, ``rub``,
         ``lost``, in SI units.
 
-        Examples
-        --------
         >>> from puck_tables import Launch, Puck, Scene, Worlds
         >>> one = Puck(0.03, friction=0.1, launch=Launch((1.0, 0.0)))
         >>> two = Puck(0.03, friction=0.1, launch=Launch(position=(0.2, 0.0)))

@@ -34,8 +34,6 @@ class Fence:
     ``offset``: m, how far to the left of the centre of mass its middle is at first.  What turns
     about an end of it is pushed there by a finger: the states end.
 
-    Examples
-    --------
     >>> import puck_tables as pt
     >>> box = pt.Puck(base="box:0.2x0.1", friction=0.3)
     >>> run = pt.push(box, pt.Fence(), (0.05, 0.0), 0.3, angle=0.3, duration=8.0)

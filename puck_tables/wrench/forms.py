@@ -108,8 +108,6 @@ def ellipsoid(
 
     ``roots`` (n,): of what each counts.
 
-    Examples
-    --------
     >>> rows = np.random.default_rng(1).normal(size=(200, 3))
     >>> rows /= np.linalg.norm(rows, axis=1)[:, None]
     >>> found = ellipsoid(rows, rows, np.ones(200), 3.0, 0.1)
@@ -125,8 +123,6 @@ def quartic(
 ) -> WrenchForm:
     """The best form of order 4 likewise, convex.
 
-    Examples
-    --------
     >>> rows = np.random.default_rng(1).normal(size=(200, 3))
     >>> rows /= np.linalg.norm(rows, axis=1)[:, None]
     >>> quartic(rows, rows, np.ones(200), 3.0, 0.1).error < 1e-12  # an ellipsoid is one
@@ -152,8 +148,6 @@ def quartic(
 def monomials(rows: FloatArray, powers: npt.NDArray[np.int64]) -> FloatArray:
     """Products of powers (…, m) of rows (…, 3).
 
-    Examples
-    --------
     >>> monomials(np.array([2.0, 3.0, 1.0]), np.array([[2, 0, 0], [1, 1, 0]])).tolist()
     [4.0, 6.0]
     """
@@ -169,8 +163,6 @@ def gradient(
 ) -> FloatArray:
     """The gradient (…, 3) of a form at rows (…, 3).
 
-    Examples
-    --------
     >>> gradient(np.array([2.0, 3.0, 1.0]), np.array([[2, 0, 0], [1, 1, 0]]), np.ones(2)).tolist()
     [7.0, 2.0, 0.0]
     """

@@ -82,8 +82,6 @@ def wrench(
 def wrenches(law: Law, delta: float, phi: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """F_x, F_y and M/r over f N, each of the shape of ``phi``.
 
-    Examples
-    --------
     >>> from puck_tables.contact.laws import law_of
     >>> [float(x.round(12)) for x in wrenches(law_of("uniform"), 0.0, np.array(np.pi / 2))]
     [0.0, 0.0, 0.666666666667]

@@ -94,8 +94,6 @@ def twist(
 def slip_length(puck: PuckSpec) -> float:
     """What makes spins speeds, m: the radius, or with a base the radius of gyration.
 
-    Examples
-    --------
     >>> from puck_tables import Puck
     >>> slip_length(Puck(radius=0.04))
     0.04

@@ -132,8 +132,6 @@ class LimitSurface(Result):
     def is_convex(self) -> bool:
         """Whether the surface is convex: all of it lies behind each of its tangent planes.
 
-        Examples
-        --------
         >>> from puck_tables import Puck
         >>> Puck(base="box:0.2x0.1", friction=0.3).limit_surface(7).is_convex
         True

@@ -12,9 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
-from puck_tables._core.header import header_of
 from puck_tables._core.text import text_form_of
-from puck_tables._core.text_rows import read_columns
+from puck_tables._core.text_rows import header_of, read_columns
 from puck_tables._core.units import factor, parted, unit_word
 from puck_tables.errors import InputError
 from puck_tables.film.film import Film, Reader, TrackedBody, first_text

@@ -93,8 +93,6 @@ def _xlsx_rows(sheet: Element, texts: list[str]) -> Iterator[list[str]]:
 def _column(place: str) -> int:
     """The column, from 0, of a place such as 'AB12'.
 
-    Examples
-    --------
     >>> _column("A1"), _column("AB12")
     (0, 27)
     """
