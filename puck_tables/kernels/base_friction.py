@@ -40,6 +40,8 @@ from puck_tables.kernels.polygon_sums import (
     polygon_sums,
 )
 
+Moments = tuple[float, float, float, float, float, float]
+
 # A base in one array: how many sides and discs, how far its farthest point is, ∫ dA, ∫ x dA and
 # ∫ x x dA over it, z f, its law of pressure, and how many rows that has; then its contour, a row
 # for each side and then for each disc, which turns backwards around a hole; from the centre of mass
@@ -128,36 +130,43 @@ def base_sums(base: FloatArray, ux: float, uy: float, w: float) -> Sums:
 
 
 @inlined
-def pressure_on(base: FloatArray, sums: Sums) -> tuple[float, float, float]:
-    """A, b_x and b_y of the pressure a + b·x for a weight of 1, as it slips."""
-    lever = base[LEVER]
-    sx, sy = base[FIRST_X] - lever * sums[0], base[FIRST_Y] - lever * sums[1]
-    xx, xy = base[SECOND_XX] - lever * sums[2], base[SECOND_XY] - lever * sums[3]
-    yx, yy = base[SECOND_XY] - lever * sums[4], base[SECOND_YY] - lever * sums[5]
-    bx, by, turn = xy * sy - yy * sx, yx * sx - xx * sy, xx * yy - xy * yx
-    one = 1.0 / (base[AREA] * turn + base[FIRST_X] * bx + base[FIRST_Y] * by)
-    return one * turn, one * bx, one * by
-
-
-@inlined
-def pressure_at(base: FloatArray, mx: float, my: float) -> tuple[float, float, float]:
-    """A, b_x and b_y of a + b·x at rest; the load stands (mx, my), m, from the centre of mass."""
-    return pressure_over(
+def moments_in(base: FloatArray) -> Moments:
+    """∫ dA, ∫ x dA and ∫ x x dA of a whole base; of a law of pressure ∫ x x times that."""
+    return (
         base[AREA], base[FIRST_X], base[FIRST_Y], base[SECOND_XX], base[SECOND_XY],
-        base[SECOND_YY], mx, my,
+        base[SECOND_YY],
     )  # fmt: skip
 
 
 @inlined
 def pressure_over(
-    area: float, sx: float, sy: float, xx: float, xy: float, yy: float, mx: float, my: float
+    moments: Moments, sums: Sums, lever: float, mx: float, my: float
 ) -> tuple[float, float, float]:
-    """A, b_x and b_y of a + b·x over any part of which ∫ dA, ∫ x dA and ∫ x x dA are known."""
-    xx, xy, yy = xx - sx * sx / area, xy - sx * sy / area, yy - sy * sy / area
-    px, py = mx - sx / area, my - sy / area
-    turn = 1.0 / (xx * yy - xy * xy)
-    bx, by = turn * (yy * px - xy * py), turn * (xx * py - xy * px)
+    """A, b_x and b_y of the pressure a + b·x for a weight of 1, over any part of a base.
+
+    ``lever``: z f, of what slips with these sums over that part; (mx, my): where the load of what
+    is at rest stands from the centre of mass, m.
+    """
+    area, sx, sy = moments[0], moments[1], moments[2]
+    tx, ty, ox, oy = sx - lever * sums[0], sy - lever * sums[1], sx / area, sy / area
+    xx, xy = moments[3] - lever * sums[2] - tx * ox, moments[4] - lever * sums[3] - tx * oy
+    yx, yy = moments[4] - lever * sums[4] - ty * ox, moments[5] - lever * sums[5] - ty * oy
+    px, py = mx - tx / area, my - ty / area
+    turn = 1.0 / (xx * yy - xy * yx)
+    bx, by = turn * (yy * px - xy * py), turn * (xx * py - yx * px)
     return (1.0 - sx * bx - sy * by) / area, bx, by
+
+
+@inlined
+def pressure_on(base: FloatArray, sums: Sums) -> tuple[float, float, float]:
+    """A, b_x and b_y of the pressure a + b·x for a weight of 1, as it slips."""
+    return pressure_over(moments_in(base), sums, base[LEVER], 0.0, 0.0)
+
+
+@inlined
+def pressure_at(base: FloatArray, mx: float, my: float) -> tuple[float, float, float]:
+    """A, b_x and b_y of a + b·x at rest; the load stands (mx, my), m, from the centre of mass."""
+    return pressure_over(moments_in(base), NOTHING, 0.0, mx, my)
 
 
 @inlined

@@ -167,7 +167,9 @@ def _film_of_several(run: Run) -> Animation:
     times = [np.linspace(0.0, run.end_time, _STATES), sudden, np.nextafter(sudden, -np.inf)]
     in_view = run(np.unique(np.concatenate(times)))
     gone = dict.fromkeys(run.names, math.inf)
-    gone |= {event.puck: event.time for event in run.events if event.what in ("pocket", "edge")}
+    gone |= {
+        event.puck: event.time for event in run.events if event.what in ("pocket", "edge", "tip")
+    }
     bodies = [
         (
             name, puck.radius, puck.colour, bool(puck.path),
@@ -177,7 +179,7 @@ def _film_of_several(run: Run) -> Animation:
     ]  # fmt: skip
     happenings = [
         Happening(event.time, event.what, event.x, event.y)
-        for event in run.events if event.what in ("impact", "pocket", "edge")
+        for event in run.events if event.what in ("impact", "pocket", "edge", "tip")
     ]  # fmt: skip
     film = _film(scene.title, run.end, run.end_time, bodies, happenings, scene)
     film = film._replace(bodies=[body._replace(gone=gone[body.name]) for body in film.bodies])

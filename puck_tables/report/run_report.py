@@ -18,6 +18,7 @@ MOST_PUCKS, MOST = 40, 6  # of a report; impacts, events, names
 _LEAVES = {
     "pocket": ("falls into a pocket", "fall into pockets"),
     "edge": ("goes over an edge", "go over an edge"),
+    "tip": ("tips over", "tip over"),
 }
 _EMPIRICAL = "empirical: no dry friction over the contact explains it"
 _WIDEST = 48  # signs of a text in the table
@@ -167,7 +168,7 @@ def plainly(run: Run) -> str:
     after = f"{run.end_time:.4g} s and {_counted(run.impacts, 'impact')}"
     left = {what: [event.puck for event in run.events if event.what == what] for what in _LEAVES}
     rest = sum(free) - sum(map(len, left.values()))
-    if run.end in ("at rest", "over the edge", "in a pocket"):
+    if run.end in ("at rest", "over the edge", "in a pocket", "tipped over"):
         who = counted if rest == sum(free) else f"{rest} of {counted}"
         first = f"{who} {'comes' if rest == 1 else 'come'} to rest after {after}."
         first = first if rest else f"No puck is left after {after}."
@@ -214,6 +215,8 @@ def _ending(run: Run, number: int) -> str:
     """What became of a puck."""
     name, stop = run.names[number], float(run.stop_times[number])
     for event in run.events:
+        if event.puck == name and event.what == "tip":
+            return f"tips over at {event.time:.6g} s"
         if event.puck == name and event.what in ("pocket", "edge"):
             where = "in" if event.what == "pocket" else "over"
             return f"{where} {event.partner} at {event.time:.6g} s"

@@ -16,7 +16,7 @@ OVERHANG = (
 )
 CARRIED_BY_REST = (
     "what comes over an edge carries nothing: a base is pressed on what is left of it, linearly, "
-    "and stays level until its centre is over the edge, where it tips"
+    "and stays level until its load is over the edge, where it tips"
 )
 EMPIRICAL = (
     "The lateral force is empirical, as somebody fitted it: no dry friction over the contact "

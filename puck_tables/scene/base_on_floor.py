@@ -10,16 +10,8 @@ import math
 from typing import NamedTuple
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.base_clipping import beyond_line, in_circle, whole_contour
-from puck_tables.kernels.base_friction import (
-    AREA,
-    HEAD,
-    base_sums,
-    is_uniform,
-    pressure_at,
-    pressure_on,
-    under_load,
-)
+from puck_tables.kernels.base_clipping import beyond_line, in_circle
+from puck_tables.kernels.base_friction import HEAD
 from puck_tables.kernels.base_friction import REACH as BASE_REACH
 from puck_tables.kernels.base_sums import NOTHING, Sums, plus
 from puck_tables.kernels.compile import inlined, inner, on_demand
@@ -35,8 +27,8 @@ from puck_tables.scene.floor_map import (
     BORDERS,
     CORNER,
     CORNERS,
-    EDGES,
     LAW,
+    LEFT,
     MIDDLE_X,
     MIDDLE_Y,
     PATCHES,
@@ -47,13 +39,11 @@ from puck_tables.scene.floor_map import (
     border_of,
     corner_of,
     law_on,
-    load_of,
     patch_of,
     strip_at,
     summed_load,
 )
 from puck_tables.scene.floor_map import REACH as PATCH_REACH
-from puck_tables.scene.over_edges import left_on_floor
 from puck_tables.scene.patches import distance_to
 
 _TWO_CUTS = 12  # times as many pieces as there were are after two cuts at most
@@ -200,20 +190,20 @@ def _in_patch(
 
 
 @on_demand(*["float64"] * 8)
-def friction_sums(floor_map: FloatArray, ux: float, uy: float, w: float, moving: float) -> Sums:
-    """Sums over the base times f N of what is under each part, in the axes of the base.
+def friction_sums(
+    floor_map: FloatArray, contour: int, end: int, ux: float, uy: float, w: float, moving: float
+) -> Sums:  # fmt: skip
+    """Sums over a contour of the base times f N of what is under each part, in its axes.
 
     ``moving`` 0: with the friction at slip zero, whatever the slip.
     """
-    first, last = int(floor_map[LAW]), int(floor_map[ROOM])
+    first, last = int(floor_map[LAW]), int(floor_map[LEFT])
     if first > 0 and last - first == AXES:
         angle = floor_map[first + 2] - floor_map[first + 3] * floor_map[ANGLE]
         law = Ellipse(floor_map[first], floor_map[first + 1], math.cos(angle), math.sin(angle))
         sums = elliptic_sums(floor_map[int(floor_map[BASE]) : first], law, ux, uy, w)
         return plus(NOTHING, floor_map[SHARE], sums)
-    begin, to = int(floor_map[BASE]), int(floor_map[ROOM])
-    base = floor_map[begin:]
-    contour, end = whole_contour(base, begin)
+    base, to = floor_map[int(floor_map[BASE]) :], int(floor_map[ROOM])
     reach, borders = base[BASE_REACH], int(floor_map[BORDERS])
     c, s = math.cos(floor_map[ANGLE]), math.sin(floor_map[ANGLE])
     east, north = floor_map[ACROSS_X], floor_map[ACROSS_Y]
@@ -240,53 +230,3 @@ def friction_sums(floor_map: FloatArray, ux: float, uy: float, w: float, moving:
     for k in range(int(floor_map[PATCHES])):
         sums = _in_patch(floor_map, sums, k, contour, end, slip)
     return plus(NOTHING, floor_map[SHARE], sums)
-
-
-@inner
-def friction_of_base(
-    floor_map: FloatArray, ux: float, uy: float, w: float, moving: float
-) -> tuple[float, float, float, float]:
-    """Force, torque and the power they take, at velocities relative to the floor, not all 0.
-
-    ``moving`` 0: with the friction at slip zero, whatever the slip.
-    """
-    c, s = math.cos(floor_map[ANGLE]), math.sin(floor_map[ANGLE])
-    base = floor_map[int(floor_map[BASE]) :]
-    one = floor_map[BORDERS] == 0.0 and floor_map[PATCHES] == 0.0 and floor_map[LAW] == 0.0
-    first, last, a, bx, by = 0, 0, 0.0, 0.0, 0.0
-    if floor_map[EDGES] > 0.0:
-        first, last, a, bx, by = left_on_floor(floor_map, 0.0, 0.0)
-    if last > first:
-        sums = contour_sums(base, floor_map, first, last, c * ux + s * uy, c * uy - s * ux, w)
-        load = floor_map[SHARE] * load_of(floor_map, 0)
-        a, bx, by = load * a, load * bx, load * by
-    elif one and is_uniform(base):
-        sums = base_sums(base, c * ux + s * uy, c * uy - s * ux, w)
-        a, bx, by = floor_map[SHARE] * load_of(floor_map, 0) / base[AREA], 0.0, 0.0
-    else:
-        sums = friction_sums(floor_map, c * ux + s * uy, c * uy - s * ux, w, moving)
-        a, bx, by = pressure_on(base, sums)
-    x, y, torque = under_load(sums, a, bx, by)
-    fx, fy = c * x - s * y, s * x + c * y
-    return -fx, -fy, -torque, fx * ux + fy * uy + torque * w
-
-
-@inner
-def friction_held(
-    floor_map: FloatArray, ux: float, uy: float, w: float, mx: float, my: float
-) -> tuple[float, float, float]:
-    """∫ f p e dA and its moment, of the pressure that carries a moment (mx, my) of the load, m."""
-    base = floor_map[int(floor_map[BASE]) :]
-    c, s = math.cos(floor_map[ANGLE]), math.sin(floor_map[ANGLE])
-    sx, sy, tx, ty = c * ux + s * uy, c * uy - s * ux, c * mx + s * my, c * my - s * mx
-    first, last, a, bx, by = 0, 0, 0.0, 0.0, 0.0
-    if floor_map[EDGES] > 0.0:
-        first, last, a, bx, by = left_on_floor(floor_map, tx, ty)
-    if last > first:
-        load = floor_map[SHARE] * load_of(floor_map, 0)
-        sums = plus(NOTHING, load, contour_sums(base, floor_map, first, last, sx, sy, w))
-    else:
-        sums = friction_sums(floor_map, sx, sy, w, 0.0)
-        a, bx, by = pressure_at(base, tx, ty)
-    x, y, torque = under_load(sums, a, bx, by)
-    return c * x - s * y, s * x + c * y, torque

@@ -11,10 +11,12 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.base_clipping import whole_contour
 from puck_tables.kernels.base_friction import pressure_at, pressure_on, under_load
 from puck_tables.kernels.base_sums import NOTHING, Sums, plus
 from puck_tables.kernels.compile import inlined, inner
-from puck_tables.scene.base_on_floor import friction_of_base, friction_sums
+from puck_tables.scene.base_balance import friction_of_base
+from puck_tables.scene.base_on_floor import friction_sums
 from puck_tables.scene.floor_map import (
     ACROSS_X,
     ACROSS_Y,
@@ -100,6 +102,7 @@ def _all_sums(
     """Sums over all parts that slip, each at its own velocity, and what they take to far off."""
     c, s = math.cos(floor_map[ANGLE]), math.sin(floor_map[ANGLE])
     sums, one, two, three = NOTHING, 0.0, 0.0, 0.0
+    first, last = whole_contour(floor_map[int(floor_map[BASE]) :], int(floor_map[BASE]))
     for area in range(parts_in(floor_map)):
         bx, by = belt_of(floor_map, area)
         ox, oy = bx - floor_map[OVER_X], by - floor_map[OVER_Y]
@@ -107,7 +110,9 @@ def _all_sums(
         if (vx == 0.0 and vy == 0.0 and w == 0.0) or not _is_first(floor_map, area):
             continue
         sum_over(floor_map, bx, by, False)
-        part = friction_sums(floor_map, c * vx + s * vy, c * vy - s * vx, w, moving)
+        part = friction_sums(
+            floor_map, first, last, c * vx + s * vy, c * vy - s * vx, w, moving
+        )  # fmt: skip
         sums = plus(sums, 1.0, part)
         px, py = c * ox + s * oy, c * oy - s * ox
         one += px * part[0] + py * part[1]

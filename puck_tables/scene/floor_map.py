@@ -16,8 +16,8 @@ from puck_tables.kernels.compile import inlined
 # on all friction now, what holds for all of it, how the base is turned, whether velocities of the
 # floor differ, the one that states are relative to, and how many edges cut the base,
 PLACE_X, PLACE_Y, SHARE, LEVER, ACROSS_X, ACROSS_Y, BORDERS, PATCHES = range(8)
-BASE, LAW, ROOM, ANGLE, BELTS, OVER_X, OVER_Y, EDGES = range(8, 16)
-_HEAD = 16
+BASE, LAW, ROOM, ANGLE, BELTS, OVER_X, OVER_Y, EDGES, LEFT = range(8, 17)
+_HEAD = 17
 # the places of its borders, f N between them as it is summed now, f N of all strips and then of all
 # patches where no factor changes it, the same with their factors, their velocities, where the law
 # over the slip speed begins by which their f goes (0: none; of such f N stands N), a row for each
@@ -26,9 +26,10 @@ _HEAD = 16
 MIDDLE_X, MIDDLE_Y, REACH, CORNER, CORNERS, LOAD = range(6)
 PATCH_COLUMNS = 6
 # the corners of all patches, and a row for each edge (its normal into the floor, its place along
-# it); from BASE on the base, from LAW on its laws of friction over the slip
-# speed, or the one by direction (0: it has none), and from ROOM on room to work.  That by direction
-# is f N along and across, the angle of the first, and 1: in the floor, or 0: in the body.
+# it); from BASE on the base, from LAW on its laws of friction over the slip speed, or the one by
+# direction (0: it has none), from LEFT on room for two contours of what edges leave of the base,
+# and from ROOM on room to work.  That by direction is f N along and across, the angle of the first,
+# and 1: in the floor, or 0: in the body.
 AXES = 4
 
 
@@ -73,14 +74,18 @@ class FloorMap(NamedTuple):
         ends = law + np.cumsum([0, *map(len, self.laws)])
         for part, number in enumerate(self.which):
             begins[part] = ends[number] if number >= 0 else 0.0
+        cuts = 0 if not len(self.edges) else len(self.edges) + 1
+        more = 2 ** max(cuts - 3, 0)  # each may double the pieces; there is room for three
+        room = np.zeros(more * room_to_clip(self.base))
+        left = room if cuts else room[:0]
         head = [
             0.0, 0.0, 1.0, self.base[BASE_LEVER], self.across_x, self.across_y,
             len(self.borders), len(self.patches), at, law if self.laws else 0,
-            ends[-1], 0.0, float((belts != belts[0]).any()), *belts[0], len(self.edges),
+            ends[-1] + len(left), 0.0, float((belts != belts[0]).any()), *belts[0],
+            len(self.edges), ends[-1],
         ]  # fmt: skip
-        cuts = len(self.edges) + 1  # each may double the pieces; there is room for three
-        room = np.zeros(room_to_clip(self.base) * 2 ** max(cuts - 3, 0))
-        return np.concatenate([head, *tables, self.base, *self.laws, room]).astype(np.float64)
+        parts = [head, *tables, self.base, *self.laws, left, room]
+        return np.concatenate(parts).astype(np.float64)
 
 
 NO_GROUND = np.empty(0)

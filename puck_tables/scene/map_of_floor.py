@@ -16,6 +16,7 @@ from puck_tables.scene.floor_map import LOAD, NO_GROUND, PATCH_COLUMNS, FloorMap
 from puck_tables.scene.floor_parts import (
     belts_of,
     frictions_on,
+    has_belts,
     has_laws_by_place,
     needs_sums,
 )
@@ -37,7 +38,7 @@ def floor_map_of(
 
     >>> from puck_tables import Floor, Puck, Scene, Strips
     >>> floor = Floor(strips=Strips((0.1,), (0.3, 0.1)))
-    >>> floor_map_of(Scene(Puck(0.04), floor), 2.0)[16:19].tolist()
+    >>> floor_map_of(Scene(Puck(0.04), floor), 2.0)[17:20].tolist()
     [0.1, 0.6, 0.2]
     """
     floor, puck = scene.floor, scene.puck
@@ -80,8 +81,8 @@ def edges_under(scene: SceneSpec, puck: PuckSpec) -> FloatArray:
     """The edges (e, 3) beyond which a base is carried by what is left of it; none: it is not.
 
     A unit normal into the floor and the place along it, m.  It is where what is left is pressed
-    linearly: a flat base that is given, with some of it right under the centre of mass, on a floor
-    of one coefficient.
+    linearly: a base that is given, with some of it right under the centre of mass, on a floor of
+    one velocity whose friction does not depend on the direction.
 
     >>> from puck_tables import Edge, Puck, Scene
     >>> puck = Puck(base="box:0.2x0.1", friction=0.3)
@@ -90,8 +91,7 @@ def edges_under(scene: SceneSpec, puck: PuckSpec) -> FloatArray:
     [[-1.0, 0.0, -0.5]]
     """
     floor, shape = scene.floor, puck.shape
-    several = floor.strips is not None or bool(floor.patches) or bool(floor.law)
-    if several or floor.orthotropic is not None or shape is None or puck.height != 0.0:
+    if floor.orthotropic is not None or shape is None or has_belts(floor):
         return _NO_EDGES
     if not shape.is_under_centre or len(scene.edges) > MOST_EDGES:
         return _NO_EDGES

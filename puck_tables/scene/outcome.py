@@ -14,17 +14,28 @@ from puck_tables.scene.scene_text import as_toml
 
 ENDS = (
     "at rest", "carried by the floor", "carried round", "time is up", "over the edge",
-    "in a pocket", "step limit", "events crowd together",
+    "in a pocket", "tipped over", "step limit", "events crowd together",
     "impacts without end", "unsolved", "faster than a table of restitution goes",
     "no end found", "refused",
 )  # fmt: skip
 # their places: those of a run that has ended, up to LAST_END; of one that failed; and of one of
 # many, which go on
-AT_REST, CARRIED_AWAY, CARRIED_ROUND, TIME_UP, OVER_EDGE, IN_POCKET = range(6)
-LAST_END = IN_POCKET
-STEP_LIMIT, EVENT_LIMIT = range(6, 8)
-IMPACTS_WITHOUT_END, UNSOLVED, TOO_FAST, NO_END, REFUSED = range(8, 13)
-EVENTS = ("stick", "slip", "impact", "contact", "entry", "edge", "exit", "overhang", "line")
+AT_REST, CARRIED_AWAY, CARRIED_ROUND, TIME_UP, OVER_EDGE, IN_POCKET, TIPPED = range(7)
+LAST_END = TIPPED
+STEP_LIMIT, EVENT_LIMIT = range(7, 9)
+IMPACTS_WITHOUT_END, UNSOLVED, TOO_FAST, NO_END, REFUSED = range(9, 14)
+EVENTS = (
+    "stick",
+    "slip",
+    "impact",
+    "contact",
+    "entry",
+    "edge",
+    "exit",
+    "overhang",
+    "line",
+    "tip",
+)
 
 
 def refuse_changed(scene: SceneSpec, files: Mapping[str, str]) -> None:

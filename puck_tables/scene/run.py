@@ -34,16 +34,17 @@ class Event(NamedTuple):
 
     stick (it comes to rest on the floor), slip (it leaves that rest); impact; contact, which lasts;
     entry (its rim comes over a border, a patch or a painted line), exit (it has left it); line (its
-    centre passes one); pocket or edge, where it leaves play; overhang, where its rim comes over an
-    edge (a flat base is then carried by what is left of it, any other as if nothing of it hung in
-    the air); launch; of a world into which a hand reaches placed, removed, added, force.
+    centre passes one); pocket or edge, where it leaves play; tip, where it tips over; overhang,
+    where its rim comes over an edge (a base is then carried by what is left of it, or as if nothing
+    of it hung in the air, as the report says); launch; of a world into which a hand reaches placed,
+    removed, added, force.
 
     ``partner``: the puck, wall, post, arc, pocket, edge, border, patch or line that it meets, such
-    as 'wall 0'; of stick and slip the floor, or the strip under its centre.  ``x``, ``y`` m: where;
-    ``approach``, ``slip`` m/s: how fast the rims came together and slid on each other before the
-    first impact of this moment, or a line was passed; ``impulse``, ``rub`` N s: along the line from
-    the puck to its partner and 90° to the left of it; ``lost`` J: kinetic energy lost.  Of several
-    impacts at one moment impulses and losses are right in sum only.
+    as 'wall 0'; of tip, stick and slip the floor, or the strip under its centre.  ``x``, ``y`` m:
+    where; ``approach``, ``slip`` m/s: how fast the rims came together and slid on each other before
+    the first impact of this moment, or a line was passed; ``impulse``, ``rub`` N s: along the line
+    from the puck to its partner and 90° to the left of it; ``lost`` J: kinetic energy lost.  Of
+    several impacts at one moment impulses and losses are right in sum only.
     """
 
     time: float
@@ -65,8 +66,9 @@ class Run(TimedResult):
 
     ``end``: 'at rest', 'carried by the floor' (at rest on a moving one), 'carried round' (at rest
     on one that turns, over the same borders again and again: a whole turn is followed), 'time is
-    up' or 'over the edge'; ``end_time`` s; ``names``: of the pucks; ``events``: see
-    :class:`puck_tables.scene.run.Event`; ``model``, ``why``: how it was run, and why so.
+    up', 'over the edge', 'in a pocket' or 'tipped over'; ``end_time`` s; ``names``: of the pucks;
+    ``events``: see :class:`puck_tables.scene.run.Event`; ``model``, ``why``: how it was run, and
+    why so.
 
     ``columns``: over time by name, each also an attribute (``run.x``); of a scene of one puck
     arrays (n,), of one with a list of pucks (n, pucks), where energies but kinetic ones are of all

@@ -26,6 +26,7 @@ from puck_tables.scene.outcome import (
     OVER_EDGE,
     STEP_LIMIT,
     TIME_UP,
+    TIPPED,
     TOO_FAST,
     UNSOLVED,
 )
@@ -57,7 +58,7 @@ _ENDS = {
     NEVER_ENDS: NO_END,
     LEADS_ON: NO_END,
 }
-_ON_EDGE = 1e-6  # of the radius: who left play there left it over an edge
+_ON_EDGE = 1e-6  # of the radius: who left play there left it over an edge, or into a pocket
 
 
 class BoardCase:
@@ -187,7 +188,10 @@ class BoardCase:
         status[~moves.any(axis=1)] = AT_REST
         if len(self.pucks) == 1:
             gone, places = ends.in_play[:, 0] == 0.0, ends.states[:, 0, :2]
-            status[gone] = IN_POCKET
+            status[gone] = TIPPED
+            for pocket in self.scene.pockets:
+                away = np.hypot(*(places - pocket.point).T) - pocket.radius
+                status[gone & (away <= _ON_EDGE * self.pucks[0].radius)] = IN_POCKET
             for edge in self.scene.edges:
                 off = (places - edge.point) @ edge.normal / math.hypot(*edge.normal)
                 near = off <= _ON_EDGE * self.pucks[0].radius

@@ -91,8 +91,8 @@ def _earlier(engine: Engine, i: int, time: float, partner: int) -> None:
 
 
 @inner
-def look_ahead(engine: Engine, i: int, t: float, room: Room) -> None:
-    """What comes next for a disc, and whether that is the next for others too."""
+def _look_at_board(engine: Engine, i: int, t: float, room: Room) -> None:
+    """What comes next for a disc by itself: on its way, its floor and with what stands."""
     engine.next_time[i], engine.next_partner[i] = math.inf, NOTHING
     if engine.kinds[i] == PATH:
         _earlier(engine, i, engine.segments[i, UNTIL], PATH_ENDS)
@@ -105,10 +105,17 @@ def look_ahead(engine: Engine, i: int, t: float, room: Room) -> None:
         else:
             found = next_crossing(engine, i, k, t, engine.next_time[i], room.work, room.one)
         _earlier(engine, i, found, -1 - k)
+
+
+@inner
+def _look_at_others(engine: Engine, i: int, t: float, room: Room) -> None:
+    """Whom a disc meets next, if nothing comes before, also for them."""
     kind = engine.kinds[i]
     known = kind in (STILL, LOOKED_UP)
     mine = corridor(kind, engine.segments[i], engine.discs[i], room.one, math.inf, t)
     for j in range(engine.discs.shape[0]):
+        if j == i or (j < i and room.marks[j] > 0):
+            continue  # that one has looked
         other = engine.kinds[j]
         if known and other in (STILL, LOOKED_UP):  # most lie far from where this one goes
             if rest_together(kind, engine.segments[i], other, engine.segments[j]):
@@ -117,12 +124,9 @@ def look_ahead(engine: Engine, i: int, t: float, room: Room) -> None:
             far = corridor(other, engine.segments[j], engine.discs[j], room.one, math.inf, t)
             if are_apart(mine, far, reach):
                 continue
-        if j != i:
-            found = next_contact(
-                engine, i, j, t, engine.next_time[i], room.work, room.one, room.two
-            )
-            _earlier(engine, i, found, j)
-            _earlier(engine, j, found, i)
+        found = next_contact(engine, i, j, t, engine.next_time[i], room.work, room.one, room.two)
+        _earlier(engine, i, found, j)
+        _earlier(engine, j, found, i)
 
 
 @inner
@@ -209,11 +213,11 @@ def _look_again(engine: Engine, t: float, room: Room) -> None:
             room.marks[i] = DISAPPOINTED
     for i in range(count):
         if room.marks[i] > 0:
-            engine.next_time[i], engine.next_partner[i] = math.inf, NOTHING
+            _look_at_board(engine, i, t, room)
     for i in range(count):
         if room.marks[i] > 0:
             patience(1)
-            look_ahead(engine, i, t, room)
+            _look_at_others(engine, i, t, room)
 
 
 @inlined

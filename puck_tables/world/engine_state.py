@@ -20,11 +20,11 @@ NOTHING, PATH_ENDS, LOOK_AGAIN = 1 << 40, (1 << 40) + 1, (1 << 40) + 2
 # events; from PLACED on, as STRUCK, by hand
 (
     IMPACT, CONTACT, PART, POCKETED, OVER_EDGE, REST, STRUCK, ENTERS, LEAVES, OVERHANGS, PASSES,
-    PLACED, REMOVED, ADDED, FORCED,
-) = range(15)  # fmt: skip
+    TIPS, PLACED, REMOVED, ADDED, FORCED,
+) = range(16)  # fmt: skip
 EVENTS = (
     "impact", "contact", "part", "pocket", "edge", "rest", "launch", "entry", "exit", "overhang",
-    "line", "placed", "removed", "added", "force",
+    "line", "tip", "placed", "removed", "added", "force",
 )  # fmt: skip
 # columns of an event: what, disc, partner, place of the contact, normal from the disc to its
 # partner, approach and slip before, normal and tangential impulse, energy lost, what launches and

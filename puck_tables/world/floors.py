@@ -218,7 +218,10 @@ def _by_slip(
     law, top, largest = law_range(scene, fastest)
     factor = float(largest_factors(scene.floor)[0])
     largest, static = largest * factor, scene.floor.static_ratio
-    under = [None if puck.path else load_under(puck) for puck in pucks]
+    under = [
+        None if puck.path or len(edges_under(scene, puck)) > 0 else load_under(puck)
+        for puck in pucks
+    ]
     summed = np.array([
         own is None and not puck.path for own, puck in zip(under, pucks, strict=True)
     ])  # fmt: skip

@@ -10,6 +10,7 @@ from puck_tables.world.engine_state import (
     OVER_EDGE,
     PARTNER,
     POCKETED,
+    TIPS,
     WHAT,
     WHO,
     Engine,
@@ -41,7 +42,7 @@ def trace(
     for n in range(events):
         patience(1)
         what, i = int(engine.events[n, WHAT]), int(engine.events[n, WHO])
-        if what not in (IMPACT, CONTACT, POCKETED, OVER_EDGE):
+        if what not in (IMPACT, CONTACT, POCKETED, OVER_EDGE, TIPS):
             continue
         j = int(engine.events[n, PARTNER])
         other = prints[j] if j >= 0 else (-j * 742938285) % _PRIME

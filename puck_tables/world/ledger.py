@@ -31,6 +31,7 @@ from puck_tables.world.engine_state import (
     REMOVED,
     STRUCK,
     TIME,
+    TIPS,
     WHAT,
     Engine,
 )
@@ -130,7 +131,7 @@ def _add_event(event: FloatArray, ledger: FloatArray) -> None:
     ledger[SUPPORT_WORK] += event[LED]
     if what in (STRUCK, PLACED, ADDED):
         ledger[LAUNCHED] += event[GOT]
-    elif what in (POCKETED, OVER_EDGE, REMOVED):
+    elif what in (POCKETED, OVER_EDGE, TIPS, REMOVED):
         ledger[LEFT] += event[GOT]
     elif what == IMPACT:
         ledger[DRIVE_WORK] += event[GOT]

@@ -298,6 +298,8 @@ def _misfit(
     to_laboratory(floor, trial, -1.0)
     rates(phase, t + 0.5 * h, trial, buffer.middle, FIRST)
     acts = accelerations(floor, trial, buffer.middle, 0)
+    if not math.isfinite(acts[0]):
+        return math.inf
     for n in range(3):
         gap = h * abs(place[6 + n] - acts[n])
         largest = max(largest, _PLACE * h * gap / scale[n], _RATE * gap / scale[VX + n])
@@ -494,7 +496,7 @@ def follow_alone(
         whole = target - now if landed else h
         error = step(phase, now, whole, y, buffer.scale, stages, new)
         grows = times_as_long(error, tol, 0.25 if newton > 0.0 else 0.125, 0.1)
-        if not error <= tol:
+        if not (error <= tol and math.isfinite(stages[STAGES - 1, VX])):  # or it tips there
             h = whole * grows
             if h < _SHORTEST * unit:
                 break

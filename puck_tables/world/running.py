@@ -430,7 +430,13 @@ class Running:
         columns = [g.TIME, g.WHAT, g.WHO, g.PARTNER, g.AT_X, g.AT_Y, g.APPROACH, g.SLIDE, g.PUSH,
                    g.RUB, g.LOST]  # fmt: skip
         found = [
-            Event(time, g.EVENTS[int(what)], self._name(who), self._name(partner), *numbers)
+            Event(
+                time,
+                g.EVENTS[int(what)],
+                self._name(who),
+                "floor" if what == g.TIPS else self._name(partner),
+                *numbers,
+            )
             for time, what, who, partner, *numbers in rows[:, columns].tolist()
         ]
         found += [

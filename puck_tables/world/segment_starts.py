@@ -10,8 +10,9 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel
 from puck_tables.scene.equations import ROW
-from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y, friction_force
 from puck_tables.scene.ingredients import floor_velocity
+from puck_tables.scene.over_time import rows_passed
 from puck_tables.scene.patches import ASTRIDE, INSIDE, OUTSIDE
 from puck_tables.world.contact_row import (
     CONTACT_COLUMNS,
@@ -47,6 +48,7 @@ from puck_tables.world.engine_state import (
     RUB,
     SLIDE,
     TIME,
+    TIPS,
     WHAT,
     WHO,
     Engine,
@@ -56,8 +58,10 @@ from puck_tables.world.floor_under import (
     choose_belt,
     floor_map_span,
     floor_of,
+    friction_now,
     move_floor,
     off_border,
+    over_floor,
     step_onto,
 )  # fmt: skip
 from puck_tables.world.group import GroupBuffer, buffer_for
@@ -69,10 +73,12 @@ from puck_tables.world.layout import (
     LIGHTNESS,
     OVERHANG,
     RADIUS,
+    TURNABILITY,
     A,
     B,
     C,
     kinetic,
+    write_over,
 )  # fmt: skip
 from puck_tables.world.lone import BUFFER_ROWS, LONGEST, follow_alone
 from puck_tables.world.paths import DURATION, FIRST, FOR_EVER, bounds_of
@@ -102,6 +108,7 @@ from puck_tables.world.segment import (
 # meet one that is concerned, has set off; is to get a state that nobody has looked at
 NOT_CONCERNED, CONCERNED, LOOKED_AT, DISAPPOINTED, SENT, GIVEN = range(6)
 
+_MOMENT = 1e-3  # of Q/J: what no step follows loses its balance as soon, where it tips
 _AT_ONCE = 256  # contacts whose impacts are found together, and discs led among them, at most
 
 
@@ -209,10 +216,38 @@ def lacks_pieces(engine: Engine) -> bool:
 
 
 @inner
+def _loses_balance(engine: Engine, i: int, t: float, room: Room) -> bool:
+    """Whether in a moment no pressure of the floor under a disc carries it, so that it tips."""
+    rows = engine.forcing[engine.spans[i, 0] : engine.spans[i, 1]]
+    passed, disc, state = rows_passed(rows, 0, len(rows), t), engine.discs[i], room.one
+    write_over(state, room.states[i])
+    h, fx, fy, torque = 0.0, 0.0, 0.0, 0.0
+    for _ in range(2):
+        state[X], state[Y], state[THETA] = (
+            state[X] + h * state[VX], state[Y] + h * state[VY], state[THETA] + h * state[SPIN]
+        )  # fmt: skip
+        state[VX], state[VY] = (
+            state[VX] + h * disc[LIGHTNESS] * fx,
+            state[VY] + h * disc[LIGHTNESS] * fy,
+        )
+        state[SPIN] += h * disc[TURNABILITY] * torque
+        friction = friction_now(
+            engine.regions, engine.discs, engine.forcing, engine.spans, i, passed, t, state
+        )  # fmt: skip
+        vx, vy, spin = over_floor(engine.surface, disc, state)
+        fx, fy, torque, _ = friction_force(friction, disc[RADIUS], vx, vy, spin)
+        h = _MOMENT * engine.scale[0] / engine.scale[1]
+    return math.isnan(fx)
+
+
+@inner
 def integrate(engine: Engine, i: int, t: float, room: Room) -> bool:
-    """The path of a disc alone, from its state; whether it can be followed."""
+    """The path of a disc alone, from its state, or how it tips; whether it can be followed."""
     done, until, count = follow_alone(engine, i, t, room.states[i], room.workspace)
     engine.group[i] = 0
+    if not done and _loses_balance(engine, i, t, room):
+        leave(engine, i, t, TIPS, i, room)
+        return True
     if until == math.inf:
         stay(engine, i, t, room)
     elif done:

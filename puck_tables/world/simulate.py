@@ -23,6 +23,7 @@ from puck_tables.scene.outcome import (
     IN_POCKET,
     OVER_EDGE,
     TIME_UP,
+    TIPPED,
 )
 from puck_tables.scene.run import STATE, Event, Run, residual
 from puck_tables.scene.scene_spec import SceneSpec
@@ -41,6 +42,7 @@ from puck_tables.world.world import World
 
 FINER, FINEST = 1 / 30, 1e-12  # of the tolerance before, tried one after the other
 MOST_IN_VAIN = 2  # finer tolerances in a row that do not halve the estimate
+_LEFT = {"pocket": ENDS[IN_POCKET], "edge": ENDS[OVER_EDGE], "tip": ENDS[TIPPED]}
 MISSED = 1e-7  # of the ledger, where pucks pushed each other: their impacts were not solved
 
 
@@ -50,7 +52,7 @@ def simulate(scene: SceneSpec, times: npt.ArrayLike | None = None) -> Run:
     world, end, end_time, error = _close_enough(scene, moments)
     if moments is None:
         moments = np.linspace(0.0, end_time, int(scene.frames))
-    elif end not in (ENDS[AT_REST], ENDS[OVER_EDGE], ENDS[IN_POCKET]):
+    elif end not in (ENDS[AT_REST], *_LEFT.values()):
         moments = moments[moments <= end_time]
     columns = columns_of(world, moments, end_time)
     if not scene.pucks:
@@ -113,8 +115,7 @@ def run_on(world: World, moments: FloatArray | None) -> tuple[str, float]:
         carried = bool(world.moving[world.in_play].any())
         end = ENDS[CARRIED_ROUND if goes_round else CARRIED_AWAY if carried else AT_REST]
     if len(world.names) == 1 and not world.in_play[0]:
-        fell = world.events_since(0.0)[-1].what == "pocket"
-        return ENDS[IN_POCKET if fell else OVER_EDGE], float(world.motion_ends[0])
+        return _LEFT[world.events_since(0.0)[-1].what], float(world.motion_ends[0])
     return end, end_time
 
 
@@ -133,7 +134,7 @@ def columns_of(world: World, moments: FloatArray, end_time: float) -> dict[str, 
     near = at_rest_below(world._engine)
     in_play = np.ones(states.shape[:2])
     events = world._engine.events[: world._engine.counts[g.N_EVENTS]]
-    for event in events[np.isin(events[:, g.WHAT], (g.POCKETED, g.OVER_EDGE))]:
+    for event in events[np.isin(events[:, g.WHAT], (g.POCKETED, g.OVER_EDGE, g.TIPS))]:
         in_play[times >= event[g.TIME], world._order[int(event[g.WHO])]] = 0.0
     in_play[back[-1]] *= 0.0 if alone_gone else 1.0
     discs = world._place

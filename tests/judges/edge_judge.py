@@ -1,12 +1,14 @@
-"""A flat polygon over edges, judged: halves of planes cut it, scipy finds its pressure and motion.
+"""A polygon over edges, judged: halves of planes cut it, scipy finds its pressure and motion.
 
 Friction is had in polar coordinates about the instantaneous centre, by Gauss's rule along
-every side in asinh of the way from where it is nearest, over its distance there.
+every side in asinh of the way from where it is nearest, over its distance there; a law over the
+slip speed by Gauss's rule along every ray, too.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -14,7 +16,11 @@ from scipy.optimize import root
 
 from puck_tables._core.arrays import FloatArray
 
+Law = Callable[[FloatArray], FloatArray]
+
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(120)
+_REST = np.zeros(2)
+_RAY, _SHARES = np.polynomial.legendre.leggauss(30)
 
 
 def beyond(corners: FloatArray, normal: FloatArray, place: float) -> FloatArray:
@@ -47,31 +53,62 @@ def pressed(corners: FloatArray, law: FloatArray) -> FloatArray:
     return corners if not law[1:].any() else beyond(corners, law[1:], -law[0])
 
 
-def pressure(corners: FloatArray) -> FloatArray:
-    """(a, b, c) of p = max(0, a + b x + c y) that bears a weight of 1 at the origin."""
+def pressure(
+    corners: FloatArray, lever: float = 0.0, v: FloatArray = _REST, w: float = 0.0,
+    grip: Law | None = None,
+) -> FloatArray:  # fmt: skip
+    """(a, b, c) of p = max(0, a + b x + c y) that bears a weight of 1 at the origin.
+
+    ``lever``: the height of the centre of mass, over f where f is a number.
+    """
     size = math.sqrt(abs(balance(corners, np.array([1.0, 0.0, 0.0]))[0]))
-    corners = corners / size
+    corners, lever, w = corners / size, lever / size, w * size
 
-    def missed(law: FloatArray) -> FloatArray:
-        return balance(pressed(corners, law), law) - np.array([1.0, 0.0, 0.0])
+    def carried(part: FloatArray, law: FloatArray, share: float) -> FloatArray:
+        there = balance(part, law)
+        if share > 0.0:
+            there[1:] += share * friction(part, law, v, w, grip)[:2]
+        return there
 
-    def slopes(law: FloatArray) -> FloatArray:
-        part = pressed(corners, law)
-        return np.column_stack([balance(part, row) for row in np.eye(3)])
+    law = np.zeros(3)
+    for share in (0.0,) if lever == 0.0 else (0.0, 0.5 * lever, lever):
 
-    law = np.linalg.solve(slopes(np.array([1.0, 0.0, 0.0])), [1.0, 0.0, 0.0])
-    for method in ("hybr", "lm"):
-        law = root(missed, law, jac=slopes, method=method, tol=1e-13).x
+        def missed(law: FloatArray, share: float = share) -> FloatArray:
+            return carried(pressed(corners, law), law, share) - np.array([1.0, 0.0, 0.0])
+
+        def slopes(law: FloatArray, share: float = share) -> FloatArray:
+            part = pressed(corners, law)
+            return np.column_stack([carried(part, row, share) for row in np.eye(3)])
+
+        if share == 0.0:
+            law = np.linalg.solve(slopes(np.array([1.0, 0.0, 0.0])), [1.0, 0.0, 0.0])
+        for method in ("hybr", "lm"):
+            law = root(missed, law, jac=slopes, method=method, tol=1e-13).x
     assert np.abs(missed(law)).max() < 1e-10
     return law / np.array([size**2, size**3, size**3])
 
 
-def friction(corners: FloatArray, law: FloatArray, v: FloatArray, w: float) -> FloatArray:
-    """Force and torque over f N of a polygon that slips at v + w × x."""
-    part = pressed(corners, law)
-    if abs(w) * np.abs(corners).max() < 1e-9 * np.hypot(*v):
+def _along_rays(
+    far: FloatArray, there: float, slope: FloatArray, w: float, grip: Law | None
+) -> tuple[FloatArray, FloatArray]:  # fmt: skip
+    """∫ f p R dR and ∫ f p R² dR from the centre to the sides, over R²."""
+    if grip is None:
+        return there / 2.0 + slope * far / 3.0, there * far / 3.0 + slope * far * far / 4.0
+    r = 0.5 * far[:, None] * (1.0 + _RAY)
+    part = grip(abs(w) * r) * (there + slope[:, None] * r) * r * 0.5 * _SHARES
+    return part.sum(axis=1) / far, (part * r).sum(axis=1) / far
+
+
+def friction(
+    part: FloatArray, law: FloatArray, v: FloatArray, w: float, grip: Law | None = None
+) -> FloatArray:  # fmt: skip
+    """Force and torque over N of a polygon, all pressed, that slips at v + w × x; over f N.
+
+    ``grip``: its coefficient by the slip speed.
+    """
+    if abs(w) * np.abs(part).max() < 1e-9 * np.hypot(*v):
         load = balance(part, law)
-        way = v / np.hypot(*v)
+        way = v / np.hypot(*v) * (1.0 if grip is None else grip(np.hypot(*v)))
         return -np.array([*(load[0] * way), load[1] * way[1] - load[2] * way[0]])
     centre = np.array([-v[1], v[0]]) / w
     sign, force, torque = math.copysign(1.0, w), np.zeros(2), 0.0
@@ -91,34 +128,49 @@ def friction(corners: FloatArray, law: FloatArray, v: FloatArray, w: float) -> F
         swept = away * abs(away) * np.cosh(y) * 0.5 * (high - low) * _WEIGHTS
         far = np.hypot(*r.T)
         e = np.column_stack([-r[:, 1], r[:, 0]]) / far[:, None]
-        slope = r @ law[1:] / far
-        force += (swept * (there / 2.0 + slope * far / 3.0)) @ e
-        torque += float(swept @ (there * far / 3.0 + slope * far * far / 4.0))
+        push, turn = _along_rays(far, there, r @ law[1:] / far, w, grip)
+        force += (swept * push) @ e
+        torque += float(swept @ turn)
     force = sign * force
     torque = sign * torque + centre[0] * force[1] - centre[1] * force[0]
     return -np.array([*force, torque])
 
 
-def under(corners: FloatArray, edges: list[FloatArray], state: FloatArray) -> FloatArray:
-    """Force and torque over f N on a polygon in a state x, y, angle, vx, vy, spin."""
+def left_of(corners: FloatArray, edges: list[FloatArray], state: FloatArray) -> FloatArray:
+    """What edges leave of a polygon in a state x, y, angle, vx, vy, spin, about its centre."""
     c, s = math.cos(state[2]), math.sin(state[2])
     left = corners @ np.array([[c, s], [-s, c]])
     for nx, ny, place in edges:
         left = beyond(left, np.array([nx, ny]), place - nx * state[0] - ny * state[1])
-    return friction(left, pressure(left), state[3:5], state[5])
+    return left
+
+
+def under(
+    corners: FloatArray, edges: list[FloatArray], state: FloatArray, lever: float = 0.0,
+    grip: Law | None = None,
+) -> FloatArray:  # fmt: skip
+    """Force and torque over f N on a polygon in a state; ``lever``: as of :func:`pressure`."""
+    left = left_of(corners, edges, state)
+    law = pressure(left, lever, state[3:5], state[5], grip)
+    return friction(pressed(left, law), law, state[3:5], state[5], grip)
 
 
 def slide(
-    corners: FloatArray, edges: list[FloatArray], grip: float, gyration: float, state: FloatArray
-) -> tuple[float, FloatArray]:
-    """When, and in which state, its centre is 4 mm from an edge, or it is at rest."""
+    corners: FloatArray, edges: list[FloatArray], decel: float, gyration: float, state: FloatArray,
+    lever: float = 0.0, grip: Law | None = None,
+) -> tuple[float, FloatArray]:  # fmt: skip
+    """When, and in which state, its load is 4 mm from an edge, or it is at rest.
+
+    ``decel``: f g, or g with a ``grip``.
+    """
 
     def rates(_: float, y: FloatArray) -> FloatArray:
-        push = grip * under(corners, edges, y)
+        push = decel * under(corners, edges, y, lever, grip)
         return np.array([*y[3:], push[0], push[1], push[2] / gyration**2])
 
     def tips(_: float, y: FloatArray) -> float:
-        return min(nx * y[0] + ny * y[1] - place for nx, ny, place in edges) - 4e-3
+        load = y[:2] - (lever * under(corners, edges, y, lever, grip)[:2] if lever else 0.0)
+        return min(nx * load[0] + ny * load[1] - place for nx, ny, place in edges) - 4e-3
 
     def rests(_: float, y: FloatArray) -> float:
         return math.hypot(y[3], y[4], gyration * y[5]) - 1e-4
