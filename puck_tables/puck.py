@@ -154,10 +154,6 @@ class Puck(VerbsOfMany):
         table : Table of resultants, optional
             Under the pressure law of the puck.  Left out: the default table, or the law itself.
 
-        Returns
-        -------
-        Trajectory
-
         Raises
         ------
         InputError
@@ -211,10 +207,6 @@ class Puck(VerbsOfMany):
         tol, method, table, jacobian, threads
             As for :func:`puck_tables.stop`.
 
-        Returns
-        -------
-        Stops
-
         Examples
         --------
         >>> from puck_tables import Puck
@@ -254,10 +246,6 @@ class Puck(VerbsOfMany):
         table : Table of stops, optional
         jacobian : whether derivatives are wanted, as for :func:`puck_tables.states`
         threads : how many share the work, as for :func:`puck_tables.states`
-
-        Returns
-        -------
-        States
 
         Examples
         --------

@@ -337,12 +337,6 @@ def _moments(frames: int | None, times: npt.ArrayLike | None, stop_time: float) 
 def checked_times(times: npt.ArrayLike) -> FloatArray:
     """Times of states, s, as an array (n,).
 
-    Raises
-    ------
-    InputError
-
-    Examples
-    --------
     >>> checked_times(2)
     array([2.])
     """

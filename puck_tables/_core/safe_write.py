@@ -31,10 +31,6 @@ def check_target(path: str | Path, overwrite: bool = False) -> Path:
     path : path of the output file
     overwrite : whether an existing file may be replaced
 
-    Returns
-    -------
-    Path
-
     Raises
     ------
     InputError

@@ -80,12 +80,7 @@ def slopes(inputs: Any, kind: PuckKind) -> Array:
 
 
 def refuse_shape(shape: tuple[int, ...]) -> None:
-    """Refuse velocities that are no pairs.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse velocities that are no pairs."""
     if not shape or shape[-1] != 2:
         raise InputError(f"velocity must have the shape (..., 2), got {shape}")
 

@@ -60,12 +60,6 @@ _ADDRESS = re.compile(r"(tcp|tls)://[^\s/:]+:[0-9]{1,5}|(tcp|tls)://\[[0-9a-fA-F
 def checked_address(where: object) -> int | str:
     """How many workers of one's own are to be started, or the address of a scheduler.
 
-    Raises
-    ------
-    InputError
-
-    Examples
-    --------
     >>> checked_address("local:4"), checked_address("tcp://10.0.0.1:8786")
     (4, 'tcp://10.0.0.1:8786')
     """

@@ -44,10 +44,6 @@ class Spread(ABC):
         ----------
         name, unit : of what scatters
 
-        Raises
-        ------
-        InputError
-
         Examples
         --------
         >>> Normal("40mm", "1mm").checked_for("spin", "rad/s")
@@ -243,12 +239,6 @@ def spread_named(text: str, unit: str = "") -> Spread:
 def checked_samples(count: int, seed: int) -> tuple[int, int]:
     """A number of samples, and a seed.
 
-    Raises
-    ------
-    InputError
-
-    Examples
-    --------
     >>> checked_samples(1000, 7)
     (1000, 7)
     """
@@ -258,12 +248,6 @@ def checked_samples(count: int, seed: int) -> tuple[int, int]:
 def checked_seed(seed: int) -> int:
     """A seed.
 
-    Raises
-    ------
-    InputError
-
-    Examples
-    --------
     >>> checked_seed(7)
     7
     """

@@ -232,12 +232,6 @@ def _sides(values: FloatArray) -> tuple[float, float]:
 def checked_regions(entries: Any) -> None:
     """Refuse regions that are none, before any work.
 
-    Raises
-    ------
-    InputError
-
-    Examples
-    --------
     >>> checked_regions([(0.0, 0.0, 1.0)])
     """
     for region in entries:

@@ -68,21 +68,11 @@ class Work(ABC):
 
     @abstractmethod
     def checked(self, tally: Tally) -> None:
-        """Refuse work of which nothing came, told by its codes.
-
-        Raises
-        ------
-        InputError
-        """
+        """Refuse work of which nothing came, told by its codes."""
 
     @abstractmethod
     def refuse_memory(self) -> None:
-        """Refuse what would not fit in memory.
-
-        Raises
-        ------
-        InputError
-        """
+        """Refuse what would not fit in memory."""
 
     def prepared(self, threads: int | None, progress: Progress | None) -> Progress | None:
         """Make what all items need; returns how to tell the progress of the items themselves."""

@@ -352,10 +352,6 @@ def base_of(text: str) -> Base:
         CSV file with columns x and y or of a drawing (SVG, of an outline and its holes); ``@X,Y``
         after it is the centre of mass.
 
-    Returns
-    -------
-    Base
-
     Raises
     ------
     InputError

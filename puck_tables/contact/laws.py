@@ -123,10 +123,6 @@ class Law:
         delta : array_like
             Dimensionless height 2fh/r, at most ``delta_max``; broadcast against ``phi``.
 
-        Returns
-        -------
-        Resultants
-
         Raises
         ------
         InputError
@@ -164,10 +160,6 @@ class Law:
         delta : array_like
             Dimensionless height 2fh/r: below 4 under uniform pressure, else at most ``delta_max``.
 
-        Returns
-        -------
-        Resultants
-
         Raises
         ------
         InputError, ContactError
@@ -191,10 +183,6 @@ def law_of(text: str) -> Law:
     ----------
     text : str
         uniform, galin, hertz, ring, annulus:INNER, or the path of a CSV file.
-
-    Returns
-    -------
-    Law
 
     Raises
     ------
@@ -241,10 +229,6 @@ def profile_law(radii: npt.ArrayLike, pressure: npt.ArrayLike, name: str = "prof
     radii : array_like (n,), strictly ascending, from 0 or more to 1
         No pressure inside the first.
     pressure : array_like (n,), not negative, in any unit
-
-    Returns
-    -------
-    Law
 
     Raises
     ------

@@ -114,10 +114,6 @@ def patch_rule(
     offset, bearing : arrays (n,)
         d < 1 and γ of the chord.
 
-    Returns
-    -------
-    PatchRule
-
     Examples
     --------
     >>> one = np.ones(1)

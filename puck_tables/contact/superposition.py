@@ -129,10 +129,6 @@ def profile_integrals(
         No pressure inside the first.
     pressure : array (n,), not negative, in any unit
 
-    Returns
-    -------
-    PatchIntegrals
-
     Examples
     --------
     >>> p = profile_integrals(0.3, np.array([0.0, 1.0]), np.array([1.0, 1.0]))

@@ -123,10 +123,6 @@ def export_board(
     name : for C
         What the scene is called there, before ``_scene``: letters, digits and _.
 
-    Returns
-    -------
-    BoardSource
-
     Raises
     ------
     InputError

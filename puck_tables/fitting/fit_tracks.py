@@ -130,10 +130,6 @@ def fit(
         Fitted without them (of a track named: without its later half), and predicted.
     progress : callable (done, total), optional
 
-    Returns
-    -------
-    Fit
-
     Raises
     ------
     InputError

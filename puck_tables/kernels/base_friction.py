@@ -57,8 +57,6 @@ _PRESSURES = {"ring": RING, "hertz": HERTZ, "galin": GALIN}
 def packed(base: Base, lever: float) -> FloatArray:
     """A base in one array; ``lever``: friction times the height of the centre of mass, m.
 
-    Examples
-    --------
     >>> packed(Base.box(0.2, 0.1), 0.0)[:4].round(6).tolist()
     [4.0, 0.0, 0.111803, 0.02]
     """
@@ -88,8 +86,6 @@ def packed(base: Base, lever: float) -> FloatArray:
 def packed_round(radius: float, law: Law, lever: float) -> FloatArray:
     """A round base under a pressure law in one array, as :func:`packed`.
 
-    Examples
-    --------
     >>> from puck_tables.contact.laws import law_of
     >>> packed_round(1.0, law_of("hertz"), 0.0)[[SECOND_XX, PRESSURE]].round(6).tolist()
     [0.628319, 2.0]

@@ -33,6 +33,7 @@ from puck_tables.kernels.patience import patience
 linked_at_doors: Any = None
 kept_code: Any = None
 quick: Any = contextlib.nullcontext
+fingerprint: Any = None
 with contextlib.suppress(ImportError, AttributeError):
     from puck_tables.kernels.linking import CALLED_LATE, Called, put_at
     from puck_tables.kernels.linking import LinkedAtDoors as linked_at_doors
@@ -40,6 +41,8 @@ with contextlib.suppress(ImportError, AttributeError):
     from puck_tables.kernels.kept_code import KeptCode as kept_code
 with contextlib.suppress(ImportError, AttributeError):
     from puck_tables.kernels.quick_compiler import quick
+with contextlib.suppress(ImportError):
+    from numba._dispatcher import compute_fingerprint as fingerprint
 _settings: Any = numba.config
 _DEEP = 100_000  # words of a frame, for which Python takes 1 MB of stack at once
 
@@ -73,6 +76,7 @@ _intrinsics: dict[Any, Any] = {patience: vectors.patience} | {
     if hasattr(one, "_defn") and hasattr(as_written, name)
 }
 _dispatchers: dict[tuple[Any, bool], Any] = {}
+_entries: dict[tuple[Any, bytes], Any] = {}
 _late: dict[Any, Any] = {}  # types of kernels that are compiled on demand
 
 
@@ -214,8 +218,15 @@ def keeps(dispatcher: Any, args: tuple[Any, ...]) -> bool:
 
 def entry_for(dispatcher: Any, args: tuple[Any, ...]) -> Any:
     """The compiled code for such arguments, which looks at no types; None where there is none."""
-    code = dispatcher.overloads.get(tuple(dispatcher.typeof_pyval(one) for one in args))
-    return code and code.entry_point
+    if fingerprint is None:
+        return None
+    asked = dispatcher, fingerprint(args)  # 9 µs; their types of a board 0.8 ms
+    if asked not in _entries:
+        code = dispatcher.overloads.get(tuple(dispatcher.typeof_pyval(one) for one in args))
+        if code is None:
+            return None
+        _entries[asked] = code.entry_point
+    return _entries[asked]
 
 
 @_deep

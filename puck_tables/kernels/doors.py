@@ -227,8 +227,8 @@ def _door(function: Function, counts: bool, fuses: bool = False) -> Function:
 def entry_of(made: Callable[..., Any], *args: Any) -> Callable[..., Any] | None:
     """What runs a kernel for arguments of just these types, None where it is not compiled.
 
-    For who calls it often with the same record: to find the types of a hundred arrays takes 9 µs,
-    the call itself 2.
+    For who calls it often with the same record: to look at a hundred arrays takes 9 µs, the call
+    itself 2.
     """
     return made.entry(*args) if isinstance(made, Door) and not here.as_written else None
 

@@ -207,11 +207,9 @@ def _along_arc(
         edge = min(math.pi * (number + 1.0), high)
         side, begin, last = 1.0, low - math.pi * number, edge - math.pi * number
         if number % 2.0 == 1.0:  # it leads back
-            side, begin, last = (
-                -1.0,
-                math.pi * (number + 1.0) - edge,
-                math.pi * (number + 1.0) - low,
-            )
+            side = -1.0
+            begin = math.pi * (number + 1.0) - edge
+            last = math.pi * (number + 1.0) - low
         while begin < last:
             end = circle_end(law, spin, off, size, begin, last)
             half = 0.5 * (end - begin)
@@ -282,12 +280,10 @@ def _far_sums(
                 part = _from_far(law, ux, uy, w, mx + NODE[n] * hx, my + NODE[n] * hy, hx, hy)
                 sums = plus(sums, WEIGHT[n], part)
             continue
-        cx, cy, size, panels = (
-            room[i + ABOUT_X],
-            room[i + ABOUT_Y],
-            room[i + RADIUS],
-            panels_far_off(turn),
-        )
+        cx = room[i + ABOUT_X]
+        cy = room[i + ABOUT_Y]
+        size = room[i + RADIUS]
+        panels = panels_far_off(turn)
         half = 0.5 * turn / panels
         for k in range(panels * NODES):
             n = k % NODES
@@ -332,12 +328,10 @@ def _as_written(
             part = _along_arc(law, ux, uy, w, far, x, y, size, room[i + START], room[i + TURN])
             sums = plus(sums, 1.0, part)
             continue
-        px, py, tx, ty = (
-            room[i + BEGIN_X],
-            room[i + BEGIN_Y],
-            room[i + TANGENT_X],
-            room[i + TANGENT_Y],
-        )
+        px = room[i + BEGIN_X]
+        py = room[i + BEGIN_Y]
+        tx = room[i + TANGENT_X]
+        ty = room[i + TANGENT_Y]
         if far:
             part = _along_far_side(law, ux, uy, w, px, py, tx, ty, room[i + LENGTH])
         else:

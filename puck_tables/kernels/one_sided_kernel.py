@@ -191,10 +191,8 @@ def _steady(
         g_x = -lever * n_y - scale * sums[_TURNED_X]
         g_y = lever * n_x - scale * sums[_TURNED_Y]
         determinant = d_x * g_y - d_y * g_x
-        step, turn = (
-            (g_x * off_y - g_y * off_x) / determinant,
-            (d_y * off_x - d_x * off_y) / determinant,
-        )
+        step = (g_x * off_y - g_y * off_x) / determinant
+        turn = (d_y * off_x - d_x * off_y) / determinant
         space = 1.0 - offset
         chord[0] = 1.0 - min(max(space - step, 0.5 * space), 2.2 * space)
         chord[1] = bearing + min(max(turn, -_MAX_TURN), _MAX_TURN)

@@ -154,10 +154,8 @@ def _centre_inside(
     count = sorted_edges(edges, count, math.pi, branch)
     parallel, across, spin, tilted = 0.0, 0.0, 0.0, 0.0
     for panel in range(count - 1):
-        half, middle = (
-            0.5 * (edges[panel + 1] - edges[panel]),
-            0.5 * (edges[panel + 1] + edges[panel]),
-        )
+        half = 0.5 * (edges[panel + 1] - edges[panel])
+        middle = 0.5 * (edges[panel + 1] + edges[panel])
         if half <= 0.0:
             continue
         k = part_at(breaks, rim * ((1.0 - s) + 2.0 * s * math.sin(0.5 * middle) ** 2))
@@ -229,10 +227,8 @@ def _centre_outside(
     count = sorted_edges(edges, count, 0.5 * math.pi, branch)
     parallel, across, spin, tilted = 0.0, 0.0, 0.0, 0.0
     for panel in range(count - 1):
-        half, middle = (
-            0.5 * (edges[panel + 1] - edges[panel]),
-            0.5 * (edges[panel + 1] + edges[panel]),
-        )
+        half = 0.5 * (edges[panel + 1] - edges[panel])
+        middle = 0.5 * (edges[panel + 1] + edges[panel])
         if half <= 0.0:
             continue
         step = reach * math.cos(middle)

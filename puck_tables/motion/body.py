@@ -43,12 +43,6 @@ def plain_up_to(pressure: str | Law, gyration: float) -> float:
 def checked_gyration(gyration: float) -> float:
     """A radius of gyration in units of r.
 
-    Raises
-    ------
-    InputError
-
-    Examples
-    --------
     >>> checked_gyration(1)
     1.0
     """

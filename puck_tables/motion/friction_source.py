@@ -213,10 +213,8 @@ class Sections:
 
     def explained(self, selection: Selection, setting: Setting, error: ErrorEstimate) -> Selection:
         """The setting in the end, and what was measured."""
-        scheme, spline = (
-            Scheme(selection.method, FrictionForm.SECTION),
-            self._spline(setting.accuracy),
-        )
+        scheme = Scheme(selection.method, FrictionForm.SECTION)
+        spline = self._spline(setting.accuracy)
         explanation = (
             f"Asked: an error of at most {selection.tol:.3g} {UNITS}.\n"
             f"Taken: {named(scheme.name, setting.words)}.\n"

@@ -69,11 +69,9 @@ def variation_rates(z: float, y: FloatArray, section: FloatArray, out: FloatArra
         du, dturn = y[at + U], y[at + PSI]
         d_inverse, d_across, d_spin = inverse_u * du, across_u * du, spin_u * du
         if block == BY_HEIGHT:
-            d_inverse, d_across, d_spin = (
-                d_inverse + inverse_h,
-                d_across + across_h,
-                d_spin + spin_h,
-            )
+            d_inverse = d_inverse + inverse_h
+            d_across = d_across + across_h
+            d_spin = d_spin + spin_h
         lost = -brake * (2.0 * s2 * c2 * (spin - 1.0) * du + s2 * d_spin)  # d ln N
         share = d_inverse + inverse * lost
         dc, ds = -c * s2 * du, s * c2 * du

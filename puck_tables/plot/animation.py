@@ -111,8 +111,6 @@ class Animation(NamedTuple):
 def film_of(result: TimedResult) -> Animation:
     """The film of a run of a scene of one or several pucks, or of a trajectory.
 
-    Examples
-    --------
     >>> from puck_tables import Puck
     >>> film = film_of(Puck.similar().simulate((1.0, 0.0), 5.0))
     >>> len(film.bodies), film.bodies[0].knots[-1, 1].round(6).item()
@@ -191,8 +189,6 @@ def _film_of_several(run: Run) -> Animation:
 def at_start(scene: SceneSpec) -> Animation:
     """A board with its pucks where they are at the start, without their motion.
 
-    Examples
-    --------
     >>> from puck_tables import Scene
     >>> len(at_start(Scene.load("crokinole")).bodies)
     4
@@ -260,8 +256,6 @@ def _frictions(scene: SceneSpec) -> tuple[float, ...]:
 def colour_of(number: int) -> str:
     """A colour for the ``number``-th puck that has none: of the palette, then lighter, darker.
 
-    Examples
-    --------
     >>> colour_of(0), colour_of(8)
     ('#0072b2', '#73b1d5')
     """
@@ -276,8 +270,6 @@ def colour_of(number: int) -> str:
 def between(knots: FloatArray, times: FloatArray) -> FloatArray:
     """X, y and angle on the way through knots, array (times, 3).
 
-    Examples
-    --------
     >>> knots = np.array([[0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0], [2.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0]])
     >>> between(knots, np.array([1.0]))[0, 0].item()
     0.75

@@ -238,10 +238,6 @@ def compare(
         Left out: hypot(v, rω) below a hundredth of that of the launch.
     steps : s, of the engine in each file; left out, the distance of its rows
 
-    Returns
-    -------
-    Comparison
-
     Raises
     ------
     InputError

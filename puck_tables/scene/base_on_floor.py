@@ -172,10 +172,8 @@ def _in_patch(
     reach, away = floor_map[int(floor_map[BASE]) + BASE_REACH], distance_to(floor_map, patch, x, y)
     if away >= reach:
         return sums
-    middle_x, middle_y = (
-        patch_of(floor_map, patch, MIDDLE_X),
-        patch_of(floor_map, patch, MIDDLE_Y),
-    )
+    middle_x = patch_of(floor_map, patch, MIDDLE_X)
+    middle_y = patch_of(floor_map, patch, MIDDLE_Y)
     part, other = int(floor_map[BORDERS]) + 1 + patch, strip_at(floor_map, middle_x, middle_y)
     if away <= -reach:
         return _exchanged(floor_map, sums, 1.0, part, other, contour, last, slip)
@@ -217,10 +215,8 @@ def friction_sums(
     while last > first and border_of(floor_map, last - 1) - place >= reach:
         last -= 1
     look_at(base, ux, uy, w)
-    slip, under = (
-        _Slip(ux, uy, w, moving),
-        strip_at(floor_map, floor_map[PLACE_X], floor_map[PLACE_Y]),
-    )
+    slip = _Slip(ux, uy, w, moving)
+    under = strip_at(floor_map, floor_map[PLACE_X], floor_map[PLACE_Y])
     sums = _exchanged(floor_map, NOTHING, 1.0, under, _NONE, contour, end, slip)
     for i in range(first, last):  # the smaller part of a round base, and from its middle: no noise
         away = border_of(floor_map, i) - place

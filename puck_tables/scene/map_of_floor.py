@@ -38,8 +38,6 @@ def floor_map_of(
     ``top``: up to which slip speed its laws are looked at, m/s; ``edges`` (e, 3): that cut the
     base (:func:`edges_under`).
 
-    Examples
-    --------
     >>> from puck_tables import Floor, Puck, Scene, Strips
     >>> floor = Floor(strips=Strips((0.1,), (0.3, 0.1)))
     >>> floor_map_of(Scene(Puck(0.04), floor), 2.0)[18:21].tolist()
@@ -108,8 +106,6 @@ def edges_under(scene: SceneSpec, puck: PuckSpec) -> FloatArray:
     linearly: a base that is given, with some of it right under the centre of mass, on a floor of
     one velocity whose friction does not depend on the direction.
 
-    Examples
-    --------
     >>> from puck_tables import Edge, Puck, Scene
     >>> puck = Puck(base="box:0.2x0.1", friction=0.3)
     >>> scene = Scene(puck, edges=[Edge((0.5, 0.0), normal=(-1.0, 0.0))])
@@ -127,8 +123,6 @@ def edges_under(scene: SceneSpec, puck: PuckSpec) -> FloatArray:
 def shape_under(scene: SceneSpec) -> Base | None:
     """The base over which friction is summed in axes of its own; None: it is round in all ways.
 
-    Examples
-    --------
     >>> from puck_tables import Floor, Orthotropic, Puck, Scene
     >>> brushed = Orthotropic((0.1, 0.2), fixed_to="body")
     >>> shape_under(Scene(Puck(0.04), Floor(orthotropic=brushed))).reach

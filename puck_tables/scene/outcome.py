@@ -39,12 +39,7 @@ EVENTS = (
 
 
 def refuse_changed(scene: SceneSpec, files: Mapping[str, str]) -> None:
-    """Refuse to go on with a run of a scene whose files are no longer what they were.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse to go on with a run of a scene whose files are no longer what they were."""
     if files_of(scene) != files:
         raise InputError("a file that the scene names has changed since the run: run it again")
 
@@ -64,8 +59,6 @@ def column_of(result: Any, name: str) -> FloatArray:
 def plain_name(path: str) -> str:
     """A path of a scene as a name: no brackets or dots, which other programs stumble over.
 
-    Examples
-    --------
     >>> plain_name("launch.velocity[0]")
     'launch_velocity_0'
     """

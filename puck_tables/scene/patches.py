@@ -23,10 +23,8 @@ OUTSIDE, ASTRIDE, INSIDE = range(3)  # how a base lies to a patch
 def distance_to(floor_map: FloatArray, number: int, x: float, y: float) -> float:
     """How far a point is from the border of a patch; inside it that is negative."""
     dx, dy = x - patch_of(floor_map, number, MIDDLE_X), y - patch_of(floor_map, number, MIDDLE_Y)
-    count, first = (
-        int(patch_of(floor_map, number, CORNERS)),
-        int(patch_of(floor_map, number, CORNER)),
-    )
+    count = int(patch_of(floor_map, number, CORNERS))
+    first = int(patch_of(floor_map, number, CORNER))
     if count == 0:
         return math.sqrt(dx * dx + dy * dy) - patch_of(floor_map, number, REACH)
     nearest, within = math.inf, False

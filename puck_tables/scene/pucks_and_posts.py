@@ -61,22 +61,12 @@ class ScenePuck(PuckSpec):
         return {name: value for name, value in entries_in(self).items() if name not in own}
 
     def refuse_unless_free(self) -> None:
-        """Refuse what asks how it slides by friction alone, where it would not.
-
-        Raises
-        ------
-        InputError
-        """
+        """Refuse what asks how it slides by friction alone, where it would not."""
         super().refuse_unless_free()
         self.refuse_moved()
 
     def refuse_moved(self) -> None:
-        """Refuse a puck that more than friction moves, where that would be left out.
-
-        Raises
-        ------
-        InputError
-        """
+        """Refuse a puck that more than friction moves, where that would be left out."""
         for name in _NOT_FREE & self.only_on_boards.keys():
             raise InputError(
                 f"this puck has a {name}, which acts in a scene alone: "

@@ -32,12 +32,7 @@ class Ranges(dict[str, Any]):
 
 
 def refuse_twice(kind: type, tables: Mapping[str, Any], ranges: Any) -> None:
-    """Refuse ranges that are none, or of numbers that are lists already.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse ranges that are none, or of numbers that are lists already."""
     if not isinstance(ranges, Mapping) or not all(isinstance(path, str) for path in ranges):
         raise InputError("ranges must be a mapping from paths such as 'launch.spin' to values")
     if ranges:

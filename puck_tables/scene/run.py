@@ -204,8 +204,6 @@ class Run(TimedResult):
     def summary(self) -> dict[str, Any]:
         """The scalars with what went in, and the units of all, ready for JSON.
 
-        Examples
-        --------
         >>> from puck_tables import Launch, Puck, Scene
         >>> scene = Scene(Puck(0.04, friction=0.1), launch=Launch((1.0, 0.0)))
         >>> told = scene.simulate().summary()
@@ -278,8 +276,6 @@ def ledger(columns: Mapping[str, Any]) -> tuple[FloatArray, FloatArray]:
 
     What is not there is 0.
 
-    Examples
-    --------
     >>> found = {"energy_given": np.full(1, 4.0), "heat_dry": np.full(1, 2.0)}
     >>> ledger(found | {"kinetic_energy": np.ones(1)})
     (array([1.]), array([4.]))
@@ -296,8 +292,6 @@ def ledger(columns: Mapping[str, Any]) -> tuple[FloatArray, FloatArray]:
 def residual(columns: Mapping[str, Any], least: float = 0.0) -> float:
     """What the energy ledger misses at most, as a share of its largest entry, or of ``least`` J.
 
-    Examples
-    --------
     >>> moment = dict.fromkeys((*SHARED, "kinetic_energy"), np.zeros(1))
     >>> residual(moment | {"energy_given": np.ones(1), "heat_dry": np.array([0.5])})
     0.5

@@ -86,10 +86,8 @@ def _root(
     Where the table does not tell it from that of both ends, the nearer of them.
     """
     a, b = low, high
-    at_a, at_b = (
-        _above(a, quantity, wanted, section, limits),
-        _above(b, quantity, wanted, section, limits),
-    )
+    at_a = _above(a, quantity, wanted, section, limits)
+    at_b = _above(b, quantity, wanted, section, limits)
     if (at_a > 0.0) == (at_b > 0.0):
         return a if abs(at_a) < abs(at_b) else b
     share = 0.5

@@ -83,10 +83,8 @@ def followed(
     states = np.empty((moments.size, STATE_SIZE))
 
     def work(start: int, stop: int) -> None:
-        some, part = (
-            np.ascontiguousarray(launches[:, start:stop]),
-            np.empty((OUT_ROWS, stop - start)),
-        )
+        some = np.ascontiguousarray(launches[:, start:stop])
+        part = np.empty((OUT_ROWS, stop - start))
         first, last = ends[start], ends[stop]
         own = ends[start : stop + 1] - first
         fill_slides(

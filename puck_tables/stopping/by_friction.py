@@ -52,12 +52,6 @@ class ByFriction(NamedTuple):
 def refuse_both(delta: Any, decel: Any, friction: Any, height: Any, gravity: Any) -> bool:
     """Whether pucks are given by their friction; what clashes is refused.
 
-    Raises
-    ------
-    InputError
-
-    Examples
-    --------
     >>> refuse_both(0.5, 1.0, None, DEFAULT_HEIGHT, DEFAULT_GRAVITY)
     False
     """

@@ -363,10 +363,8 @@ def _pieces(
     fit = np.ones(width.size, bool)
     for share in (0.25, 0.75):
         there = u[:-1][blind] + share * width[blind]
-        truth, guess = (
-            np.column_stack(_logs(there, _stops(body, there))),
-            np.empty((there.size, LOGS)),
-        )
+        truth = np.column_stack(_logs(there, _stops(body, there)))
+        guess = np.empty((there.size, LOGS))
         fill_logs(there, np.empty((2, WIDTH)), limits, guess)
         fit[blind] &= (np.abs(guess - truth) <= _FITTED).all(axis=1)
     return limits, fit

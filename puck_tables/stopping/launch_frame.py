@@ -1,4 +1,9 @@
-"""States and their derivatives from natural units, in the frame of the launch, to SI units."""
+"""Derivatives of stops and states from natural units, in the frame of the launch, to SI units.
+
+The chain rule of the similarity: places and body angles grow like Q²/J, the latter like 1/r too,
+times like Q/J, velocities like Q; everything turns with the launch velocity, and the mirror image
+belongs to the opposite spin.
+"""
 
 from __future__ import annotations
 
@@ -6,11 +11,18 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel, patience, weighted_rows
-from puck_tables.stopping.stop_jacobian import Numbers, direction
 
+Numbers = tuple[float, ...]
 STATES, STATE_COLUMNS = 6, 7  # what is differentiated, and by how many: the launch and time
 OWN_STATES = STATES * 6  # of each: itself; by v, v across, rω, δ, time
 PLACED_STATES = STATES * STATE_COLUMNS  # of each: by vx, vy, ω, δ, J, r, time
+
+
+@inlined
+def direction(vx: float, vy: float, speed: float) -> tuple[float, float]:
+    """Cosine and sine of the direction of a velocity; along x where there is none."""
+    moving = speed if speed > 0.0 else 1.0
+    return (vx if speed > 0.0 else 1.0) / moving, vy / moving
 
 
 @inlined
@@ -93,6 +105,41 @@ def placed_state(
         *_turn(own[30:], deflection * slip, deflection, deflection * decel, 0.0, *frame,
         deflection),
     )  # fmt: skip
+
+
+@inlined
+def placed_stop(
+    vx: float, vy: float, spin: float, decel: float, radius: float, speed: float, slip: float,
+    own: Numbers,
+) -> Numbers:  # fmt: skip
+    """From the frame of the launch and Q = J = r = 1, five rows of four, to five rows of six.
+
+    NaN for the path of pure spin by vx and vy.
+    """
+    unit, deflection = 1.0 / decel, 1.0 / radius
+    duration = slip * unit
+    place, lost = slip * duration, unit * duration
+    east, north = direction(vx, vy, speed)
+    around = 1.0 if spin >= 0.0 else -1.0
+    frame = 0.0, around, east, north, spin, radius
+    # z = e (ahead + i aside) v: across the velocity it changes by i z/v
+    x0, y0 = rotated(own[4], around * own[8], east, north)
+    x1, y1 = rotated(own[5], around * own[9], east, north)
+    x2, y2 = rotated(-around * own[8], own[4], east, north)
+    x3, y3 = rotated(own[6], around * own[10], east, north)
+    x4, y4 = rotated(own[7], around * own[11], east, north)
+    by_speed = own[13] if speed > 0.0 else math.nan
+    time = _line((own[0], own[1], 0.0, own[2], own[3], 0.0), duration, unit, 0.0, lost, *frame)
+    x = _line((x0, x1, x2, x3, x4, 0.0), place, duration, 0.0, lost * speed, *frame)
+    y = _line((y0, y1, y2, y3, y4, 0.0), place, duration, 0.0, lost * speed, *frame)
+    length = _line(
+        (own[12], by_speed, 0.0, own[14], own[15], 0.0), place, duration, 0.0, unit * place, *frame
+    )
+    body = _turn(
+        (own[16], own[17], 0.0, own[18], own[19], 0.0), deflection * place, deflection * duration,
+        0.0, unit, *frame, deflection,
+    )  # fmt: skip
+    return (*time[:6], *x[:6], *y[:6], *length[:6], *body[:6])
 
 
 @kernel

@@ -213,11 +213,9 @@ def _find_stops(room: FloatArray, count: int) -> int:
 def _find_places(room: FloatArray, count: int, cells: float, log_share: float) -> None:
     """Where on the curve the launches are, and where they will be when Q has fallen so far."""
     for n in range(count):
-        speed, rim, tilt = (
-            row_of(room, SPEED, n),
-            abs(row_of(room, EDGE, n)),
-            row_of(room, DELTA, n),
-        )
+        speed = row_of(room, SPEED, n)
+        rim = abs(row_of(room, EDGE, n))
+        tilt = row_of(room, DELTA, n)
         c0, kappa = row_of(room, _C0, n), row_of(room, _KAPPA, n)
         turning = row_of(room, _TURNING, n)
         is_fast, share = rim > speed, share_of(speed, rim)

@@ -125,11 +125,9 @@ def _place_with_care(
     bad = 0
     for n in range(count):
         vx, vy, edge = row_of(room, VX, n), row_of(room, VY, n), row_of(room, EDGE, n)
-        delta, decel, radius = (
-            row_of(room, DELTA, n),
-            row_of(room, DECEL, n),
-            row_of(room, RADIUS, n),
-        )
+        delta = row_of(room, DELTA, n)
+        decel = row_of(room, DECEL, n)
+        radius = row_of(room, RADIUS, n)
         good = (delta >= 0.0) & (delta < math.inf) & (decel > 0.0) & (decel < math.inf)
         good &= (radius > 0.0) & (radius < math.inf)
         good &= (

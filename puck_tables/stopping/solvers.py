@@ -187,10 +187,8 @@ def integration_of(body: UnitPuck, tol: float, method: Method | None = None) -> 
 
     def attempt(setting: Setting) -> tuple[Integration, ErrorEstimate]:
         stepping = setting.stepping
-        cut, coarse = (
-            source.friction(setting.accuracy).coefficients,
-            source.coarser(setting.accuracy).coefficients,
-        )
+        cut = source.friction(setting.accuracy).coefficients
+        coarse = source.coarser(setting.accuracy).coefficients
         finer = stepping.finer(2.0, 0.01, FINEST_LOCAL)
         result, by_finer, by_coarse = (
             Integration(NO_COLUMNS, *how, selection.method, longest=body.longest)

@@ -44,6 +44,7 @@ from puck_tables.stopping.launch_arrays import (
     fetch_block,
     fill_constants,
 )
+from puck_tables.stopping.launch_frame import Numbers, placed_stop
 from puck_tables.stopping.lookup import EDGE, FIRST, INSIDE, PLACED, SLIP, SPEED, place_block
 from puck_tables.stopping.slopes import STOP_FUNCTIONS, STOP_POWERS, STOP_WIDTH
 
@@ -67,7 +68,6 @@ _ROWS = _PUT + 2 * _OUT
 # More than caches hold, but less than what C libraries ask of the system anew each time (32 MiB):
 # that has just been cleared, through the caches.
 _MANY, _NEW = 1 << 19, 1 << 22
-Numbers = tuple[float, ...]
 
 
 @inlined
@@ -105,55 +105,6 @@ def stop_by_speeds(
         slip * speed * w_tilt,
         slip * rim * b, rim * c * (b - s * db), slip * b + rim * (s * b + c2 * db),
         slip * rim * b_tilt,
-    )  # fmt: skip
-
-
-@inlined
-def direction(vx: float, vy: float, speed: float) -> tuple[float, float]:
-    """Cosine and sine of the direction of a velocity; along x where there is none."""
-    moving = speed if speed > 0.0 else 1.0
-    return (vx if speed > 0.0 else 1.0) / moving, vy / moving
-
-
-@inlined
-def placed_stop(
-    vx: float, vy: float, spin: float, decel: float, radius: float, speed: float, slip: float,
-    own: Numbers,
-) -> Numbers:  # fmt: skip
-    """From the frame of the launch and Q = J = r = 1, five rows of four, to five rows of six.
-
-    NaN for the path of pure spin by vx and vy.
-    """
-    unit, deflection = 1.0 / decel, 1.0 / radius
-    duration = slip * unit
-    place = slip * duration
-    east, north = direction(vx, vy, speed)
-    around = 1.0 if spin >= 0.0 else -1.0
-    turn = around * deflection  # the body angle changes its sign with the spin
-    time, length, body = duration * own[0], place * own[12], turn * place * own[16]
-    t_speed, w_speed, b_speed = unit * own[1], duration * own[13], turn * duration * own[17]
-    w_speed = w_speed if speed > 0.0 else math.nan
-    t_rim, w_rim = around * unit * own[2], around * duration * own[14]
-    b_rim = deflection * duration * own[18]
-    # z = e (ahead + i aside) v: the derivatives along the velocity and across it
-    ahead, aside = duration * own[4], around * duration * own[8]  # z/v
-    along, left = duration * own[5], around * duration * own[9]
-    xe, ye = east * along - north * left, east * left + north * along
-    xn, yn = -east * aside - north * ahead, east * ahead - north * aside
-    along, left = around * duration * own[6], duration * own[10]
-    x_rim, y_rim = east * along - north * left, east * left + north * along
-    along, left = place * own[7], around * place * own[11]
-    return (
-        east * t_speed, north * t_speed, radius * t_rim, duration * own[3], -time * unit,
-        spin * t_rim,
-        east * xe - north * xn, north * xe + east * xn, radius * x_rim,
-        east * along - north * left, -unit * (ahead * vx - aside * vy), spin * x_rim,
-        east * ye - north * yn, north * ye + east * yn, radius * y_rim,
-        east * left + north * along, -unit * (ahead * vy + aside * vx), spin * y_rim,
-        east * w_speed, north * w_speed, radius * w_rim, place * own[15], -length * unit,
-        spin * w_rim,
-        east * b_speed, north * b_speed, radius * b_rim, turn * place * own[19], -body * unit,
-        spin * b_rim - body * deflection,
     )  # fmt: skip
 
 

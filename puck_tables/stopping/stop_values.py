@@ -232,12 +232,7 @@ class StopValues(Table):
         )  # fmt: skip
 
     def checked_range(self, delta: npt.ArrayLike) -> FloatArray:
-        """``delta`` as an array, refused outside the range of the table.
-
-        Raises
-        ------
-        InputError
-        """
+        """``delta`` as an array, refused outside the range of the table."""
         height = checked_delta(delta)
         if not np.all(height <= UPPER_DELTA):
             raise InputError(

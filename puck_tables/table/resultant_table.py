@@ -152,12 +152,7 @@ class ResultantTable(LawTable):
         return height
 
     def refuse_other(self, law: Law) -> None:
-        """Refuse to be the table of another pressure law.
-
-        Raises
-        ------
-        InputError
-        """
+        """Refuse to be the table of another pressure law."""
         if self.law != law:
             raise InputError(
                 f"{self.source} is a table under the pressure law {self.law.name}, not "

@@ -80,12 +80,7 @@ def who(scene: SceneSpec, number: int) -> str:
 
 
 def refuse_endless(scene: SceneSpec) -> None:
-    """Refuse a run that has no end of its own and is given none.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a run that has no end of its own and is given none."""
     if scene.time is not None:
         return
     floor = scene.floor

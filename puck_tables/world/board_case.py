@@ -236,10 +236,8 @@ class BoardCase:
         order, last = np.argsort(self.place), columns_of(world, np.zeros(0), ends.time[run])
         for n, name in enumerate(STATE):
             ends.states[run, :, n] = last[name][-1, order]
-        ends.in_play[run], ends.carried[run] = (
-            last["in_play"][-1, order],
-            last["carried"][-1, order],
-        )
+        ends.in_play[run] = last["in_play"][-1, order]
+        ends.carried[run] = last["carried"][-1, order]
         gone = len(self.pucks) == 1 and not world.in_play[0]
         when = np.nextafter(ends.time[run], 0.0) if gone else ends.time[run]
         ends.ledgers[run] = ledgers_of(world, np.array([min(when, world.time)]))[0]

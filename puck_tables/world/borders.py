@@ -95,10 +95,8 @@ def _to_polygon(
     floor_map: FloatArray, number: int, state: FloatArray, how: int, radius: float, accel: float
 ) -> Sight:
     """Of a polygon: by the nearest point of each of its edges."""
-    count, first = (
-        int(patch_of(floor_map, number, CORNERS)),
-        int(patch_of(floor_map, number, CORNER)),
-    )
+    count = int(patch_of(floor_map, number, CORNERS))
+    first = int(patch_of(floor_map, number, CORNER))
     x, y, vx, vy = state[X], state[Y], state[VX], state[VY]
     nearest, rate, step, others, stays = math.inf, 0.0, math.inf, math.inf, 0.0
     nx, ny = 1.0, 0.0

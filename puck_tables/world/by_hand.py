@@ -130,12 +130,7 @@ def _free_for(obstacles: FloatArray, radius: float, state: FloatArray) -> float:
 
 
 def refuse_off_hold(engine: Engine, i: int, state: FloatArray, name: str) -> None:
-    """Refuse a place where the constraint of a puck does not let it be.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a place where the constraint of a puck does not let it be."""
     rows, off = np.zeros((2, 3)), np.zeros((2, 3))
     forbid(engine.discs[i], engine.surface, float(engine.clock[0]), state, rows, off)
     away = float(np.abs(off[:, 0]).max())

@@ -20,12 +20,7 @@ from puck_tables.world.segment_starts import CONCERNED, Room
 
 
 def refuse_too_fast(engine: Engine, scene: SceneSpec, name: str, i: int, state: FloatArray) -> None:
-    """Refuse a strike beyond what rows of the friction law of the floor say.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a strike beyond what rows of the friction law of the floor say."""
     top = law_goes_to(engine.regions)
     fastest = slip_of_rim(
         engine.discs[i, RADIUS], floor_of(engine.surface, engine.discs[i]), state.tolist()

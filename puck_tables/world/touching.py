@@ -76,10 +76,8 @@ def find_touching(engine: Engine, t: float, room: Room) -> int:
                 reach = discs[i, RADIUS] + discs[j, RADIUS]
                 if engine.kinds[j] == STILL and not drifts(engine.segments[j]):
                     segment = engine.segments[j]
-                    dx, dy = (
-                        segment[PLACE_X] - room.states[i, X],
-                        segment[PLACE_Y] - room.states[i, Y],
-                    )
+                    dx = segment[PLACE_X] - room.states[i, X]
+                    dy = segment[PLACE_Y] - room.states[i, Y]
                     if abs(dx) > 1.01 * reach or abs(dy) > 1.01 * reach:
                         continue
                 if room.marks[j] == NOT_CONCERNED:

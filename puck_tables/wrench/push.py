@@ -156,10 +156,6 @@ def push(
     duration : s; 0: how it begins, one state
     frames : how many states, equally spaced over the duration
 
-    Returns
-    -------
-    Push
-
     Raises
     ------
     InputError
