@@ -64,17 +64,17 @@ class Elsewhere(JITCPUCodegen):  # type: ignore[misc]
         )  # fmt: skip
 
 
-def made_for(machine: Machine, library: Any, linked: bytes) -> tuple[bytes, bytes]:
-    """Object file and bitcode, as numba keeps them, of what a library is before it is optimised."""
+def made_for(machine: Machine, library: Any, linked: bytes) -> bytes:
+    """The object file of what a library is before it is optimised."""
     there, elsewhere = copy(library), Elsewhere(machine)
     module = binding.parse_bitcode(linked, binding.create_context())
     module.triple, module.data_layout = machine.triple, str(elsewhere._tm.target_data)
     for function in module.functions:
         if function.name == "hypot" and machine.place[0] == "win32":
             function.name = "_hypot"  # as libraries of Windows have it
-    there._codegen, there._final_module, there._finalized = elsewhere, module, True
+    there._codegen, there._final_module = elsewhere, module
     _optimize(there)
-    return elsewhere._tm.emit_object(module), there._get_module_for_linking().as_bitcode()
+    return bytes(elsewhere._tm.emit_object(module))
 
 
 def copy_first(library: Any) -> None:
@@ -114,8 +114,8 @@ def main(into: Path) -> None:
         codegen = machine.triple, machine.processor, ""
         folder = into / tag / brought_folder().name
         folder.mkdir(parents=True)
-        for place, sig, library, ((name, kind, _), *others) in kept:
-            parts = (name, kind, library.elsewhere[tag].result()), *others
+        for place, sig, library, ((name, kind, (_, names)), *others) in kept:
+            parts = (name, kind, (library.elsewhere[tag].result(), names)), *others
             _keep(place, folder, sig, codegen, library, parts)
         target = {"place": machine.place, "codegen": codegen, "needs": machine.needs}
         (folder / "target.json").write_text(json.dumps(target), encoding="utf-8")

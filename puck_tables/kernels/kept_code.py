@@ -25,7 +25,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numba
-from llvmlite import binding
+from llvmlite import binding, ir
 from numba.core import serialize
 from numba.core.compiler import CompileResult
 
@@ -80,12 +80,13 @@ class KeptCode:
         folder = cache_folder()
         if folder is None or data.lifted or data.library.has_dynamic_globals:
             return  # addresses in it hold for this process only
-        self.keep(folder, sig, data.codegen.magic_tuple(), data.library, data._reduce())
+        parts = _taken_apart(data, "<locals>" not in self._function.__qualname__)
+        self.keep(folder, sig, data.codegen.magic_tuple(), data.library, parts)
 
     def keep(
         self, folder: Path, sig: Any, target: tuple[str, ...], library: Any, parts: tuple[Any, ...]
     ) -> None:
-        """Write what was compiled for a signature and a machine, as numba takes it apart."""
+        """Write what was compiled for a signature and a machine, taken apart."""
         key = self._key(sig, target)
         write_sealed(self._path(folder, key), _dumps((key, getattr(library, "calls", ()), parts)))
 
@@ -107,6 +108,23 @@ class KeptCode:
 
     def _path(self, folder: Path, key: tuple[str, ...]) -> Path:
         return folder / f"{self._name}-{hashlib.sha256(repr(key).encode()).hexdigest()[:16]}.code"
+
+
+def _taken_apart(data: Any, by_symbol: bool) -> tuple[Any, ...]:
+    """What was compiled, as numba takes it apart, but for what nobody reads.
+
+    That is a text on types, and the code that callers link: a function with a door ``by_symbol`` is
+    called there (:mod:`puck_tables.kernels.linking`), and only names are asked for.
+    """
+    (name, kind, (made, linked)), *others = data._reduce()
+    others[5] = ""
+    if by_symbol and hasattr(data.library, "calls"):
+        names = ir.Module()
+        for one in data.library.get_defined_functions():
+            function = ir.Function(names, ir.FunctionType(ir.VoidType(), []), one.name)
+            ir.IRBuilder(function.append_basic_block()).unreachable()
+        linked = binding.parse_assembly(str(names)).as_bitcode()
+    return (name, kind, (made, linked)), *others
 
 
 class MadeFor(NamedTuple):
