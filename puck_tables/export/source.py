@@ -336,7 +336,7 @@ def _self_test(widths: Mapping[str, int]) -> dict[str, ast.FunctionDef]:
     text = ""
     for name, width in widths.items():
         given = GIVEN[name]
-        arguments = ", ".join(f"c[k + {n}]" for n in range(given))
+        arguments = ", ".join(["c[k]", *(f"c[k + {n}]" for n in range(1, given))])
         text += _MISSES.format(
             name=name, upper=name.upper(), width=width, given=given, answers=width - given,
             arguments=f"0.0, 0.0, 0.0, {arguments}, 1.0, 0.5" if name == "step" else arguments,

@@ -14,23 +14,20 @@ def misses(got: float, wanted: float, unit: float) -> int:
     return 0 if abs(got - wanted) <= TOLERANCE * unit + 1e-300 else 1
 
 
-def slip_of(launch: Numbers, k: int) -> float:
-    """Q of the launch of a case: vx, vy, w, delta, J, r."""
-    edge: float = launch[k + 5] * launch[k + 2]
-    return sqrt(launch[k] * launch[k] + launch[k + 1] * launch[k + 1] + edge * edge)
-
-
 def stop_unit(c: Numbers, k: int, j: int) -> float:
-    """The scale of a stop time, a place, a path length or a body angle."""
-    slip: float = slip_of(c, k)
+    """The scale of a stop time, a place, a path length or a body angle.
+
+    From c[k] on the case has vx, vy, w, delta, J, r.
+    """
+    edge: float = c[k + 5] * c[k + 2]
+    slip: float = sqrt(c[k] * c[k] + c[k + 1] * c[k + 1] + edge * edge)
     unit: float = slip / c[k + 4] * (1.0 if j == 0 else slip)
     return unit / c[k + 5] if j == 4 else unit
 
 
 def state_unit(c: Numbers, k: int, j: int) -> float:
     """The scale of a place, an angle, a velocity or a spin."""
-    slip: float = slip_of(c, k)
-    unit: float = slip / c[k + 4] * slip if j < 3 else slip
+    unit: float = stop_unit(c, k, 1) if j < 3 else stop_unit(c, k, 0) * c[k + 4]
     return unit / c[k + 5] if j == 2 or j == 5 else unit
 
 
