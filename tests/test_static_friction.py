@@ -235,7 +235,16 @@ def test_from_a_file_a_sweep_and_what_is_told() -> None:
 def test_what_is_wrong_is_said() -> None:
     with pytest.raises(pt.InputError, match=r"floor\.static_ratio"):
         pt.Scene(pt.Puck(0.05), pt.Floor(static_ratio=0.9))
-    for body in ({"radius": 0.05, "height": 0.2}, {"base": "box:0.1x0.06", "height": 0.08}):
-        pt.Scene(pt.Puck(**body, friction=0.2))
-        with pytest.raises(pt.InputError, match=r"floor\.static_ratio: .*height"):
-            pt.Scene(pt.Puck(**body, friction=0.2), pt.Floor(static_ratio=1.5))
+    body = pt.Puck(0.05, height=0.2, friction=0.2)
+    pt.Scene(body)
+    with pytest.raises(pt.InputError, match=r"floor\.static_ratio: .*height"):
+        pt.Scene(body, pt.Floor(static_ratio=1.5))
+
+
+def test_static_friction_may_lift_a_base() -> None:
+    """A push tips it where that times the height of the centre is what m g bears to a side."""
+    body = pt.Puck(base="box:0.1x0.06", height=0.3, friction=0.2)
+    firm = pt.Floor(static_ratio=2.5)
+    for push, end in ((0.199, "at rest"), (0.21, "tipped over")):
+        force = pt.Force((0.0, push * body.gravity))
+        assert pt.Scene(body, firm, force=force, time=1.0).simulate().end == end

@@ -120,6 +120,7 @@ class FitSpec:
                 f"the radius of a puck on a film is from {SMALLEST:g} to {LARGEST:g} m, got "
                 f"{puck.radius:g}: say it in m"
             )
+        puck.refuse_lift()
         base, puck = puck.shape, _round(puck)
         every = parameters_of(None if base is None else base.reach)
         known = {name: in_range(name, value, every) for name, value in fixed.items()}

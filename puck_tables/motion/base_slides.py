@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import AccuracyError, InputError, PuckError
-from puck_tables.kernels.base_friction import LEVER, REACH, packed
+from puck_tables.kernels.base_friction import LEVER, REACH
 from puck_tables.kernels.compile import allocating, patience
 from puck_tables.kernels.patience import A_MOTION
 from puck_tables.motion.base_motion import (
@@ -274,7 +274,7 @@ def slide_of(
     time = slip / puck.decel or 1.0
     length = time * (slip or 1.0)
     assert puck.shape is not None
-    noise = _ROUNDING * noise_of(packed(puck.shape, puck.lever))
+    noise = _ROUNDING * noise_of(puck.packed_base)
     scale = np.array([time, length, length, length, 1.0, length / puck.shape.reach])
 
     def attempt(local: float) -> tuple[BaseSlide, ErrorEstimate]:
@@ -297,7 +297,7 @@ def _followed(
     assert puck.shape is not None
     out, status = np.empty((OUT_ROWS, 1)), np.empty(1, np.int8)
     ends = np.array([0, moments.size])
-    fill_slides(packed(puck.shape, puck.lever), launch, local, ends, moments, out, states, status)
+    fill_slides(puck.packed_base, launch, local, ends, moments, out, states, status)
     if status[0] == OVERFLOW:
         raise InputError(
             "velocity, spin, base and friction give a motion too large for floating point: use "

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Self
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.doubts import MOST_FRICTION, OF_A_PUCK, question, unquestioned
 from puck_tables._core.drawn_outlines import SUFFIXES
 from puck_tables._core.fields import Unsaid, of
@@ -16,7 +17,8 @@ from puck_tables._core.real import positive, real
 from puck_tables.contact.base import NAMES as BASES
 from puck_tables.contact.base import Base, base_of
 from puck_tables.contact.laws import HOMOGENEOUS, Law
-from puck_tables.errors import InputError
+from puck_tables.errors import ContactError, InputError
+from puck_tables.kernels.base_friction import packed
 from puck_tables.motion.body import (
     LARGEST_GYRATION,
     SMALLEST_GYRATION,
@@ -100,8 +102,6 @@ class PuckSpec:
         Raises
         ------
         InputError
-        ContactError
-            If part of the base would lift.
         """
         if self.has_rim and not self.radius >= shape.reach:
             raise InputError(
@@ -132,7 +132,6 @@ class PuckSpec:
                 f"{LARGEST_GYRATION * shape.reach:g} m, got {self.gyration:g}"
             )
         self._refuse_out_of_range(self.lever / shape.reach)
-        shape.refuse_lift(self.friction, self.height)
 
     def _refuse_out_of_range(self, height: float) -> None:
         if not (math.isfinite(height) and self.decel < math.inf) or (
@@ -211,6 +210,31 @@ class PuckSpec:
     def lever(self) -> float:
         """Friction times the height of the centre of mass, m."""
         return 0.5 * self.friction * self.height
+
+    def refuse_lift(self) -> None:
+        """Refuse a puck on a base of which friction would lift a part.
+
+        Raises
+        ------
+        ContactError
+        """
+        if self.shape is not None:
+            try:
+                self.shape.refuse_lift(self.friction, self.height)
+            except ContactError as error:
+                raise ContactError(f"{error}; a Scene moves it, one-sided") from None
+
+    @property
+    def packed_base(self) -> FloatArray:
+        """What of it touches, in one array, where all of it stays down.
+
+        Raises
+        ------
+        ContactError
+            If a part would lift.
+        """
+        self.refuse_lift()
+        return packed(self.shape or Base.disc(self.radius), self.lever)
 
     @property
     def inertia_radius(self) -> float:

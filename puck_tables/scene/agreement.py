@@ -90,10 +90,7 @@ def _bad_under_base(scene: SceneSpec) -> list[str]:
     floor, puck = scene.floor, scene.puck
     name = "floor.patch" if floor.patches else "floor.strips"
     name = "floor.orthotropic" if floor.orthotropic is not None else name
-    name = "floor.static_ratio" if floor.static_ratio > 1.0 else name
-    name = "floor.grip" if floor.grips else name
-    several = floor.strips is not None or floor.patches or needs_sums(floor, puck.height)
-    if (several or floor.orthotropic is not None) and puck.shape is not None and not floor.law:
+    if (has_belts(floor) or floor.orthotropic is not None) and puck.shape is not None:
         try:
             puck.shape.refuse_lift(_strongest(scene), puck.height)
         except ContactError as error:

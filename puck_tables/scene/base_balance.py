@@ -25,6 +25,7 @@ from puck_tables.scene.floor_map import (
     LAW,
     LEFT,
     LEVER,
+    LIFTS,
     PATCHES,
     SHARE,
     load_of,
@@ -44,7 +45,7 @@ def sums_and_pressure(
     """
     base = floor_map[int(floor_map[BASE]) :]
     first, last, to = left_on_floor(floor_map)
-    if first < int(floor_map[LEFT]):  # all of it
+    if first < int(floor_map[LEFT]) and floor_map[LIFTS] == 0.0:  # all of it
         one = floor_map[BORDERS] == 0.0 and floor_map[PATCHES] == 0.0 and floor_map[LAW] == 0.0
         if one and is_uniform(base):
             a = floor_map[SHARE] * load_of(floor_map, 0) / base[AREA]

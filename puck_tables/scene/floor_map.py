@@ -14,10 +14,11 @@ from puck_tables.kernels.compile import inlined
 
 # A ground, all in one array, which is quick to hand on: where the centre of the base is, the factor
 # on all friction now, what holds for all of it, how the base is turned, whether velocities of the
-# floor differ, the one that states are relative to, and how many edges cut the base,
+# floor differ, the one that states are relative to, how many edges cut the base, and whether a part
+# of it may lift,
 PLACE_X, PLACE_Y, SHARE, LEVER, ACROSS_X, ACROSS_Y, BORDERS, PATCHES = range(8)
-BASE, LAW, ROOM, ANGLE, BELTS, OVER_X, OVER_Y, EDGES, LEFT = range(8, 17)
-_HEAD = 17
+BASE, LAW, ROOM, ANGLE, BELTS, OVER_X, OVER_Y, EDGES, LEFT, LIFTS = range(8, 18)
+_HEAD = 18
 # the places of its borders, f N between them as it is summed now, f N of all strips and then of all
 # patches where no factor changes it, the same with their factors, their velocities, where the law
 # over the slip speed begins by which their f goes (0: none; of such f N stands N), a row for each
@@ -27,7 +28,7 @@ MIDDLE_X, MIDDLE_Y, REACH, CORNER, CORNERS, LOAD = range(6)
 PATCH_COLUMNS = 6
 # the corners of all patches, and a row for each edge (its normal into the floor, its place along
 # it); from BASE on the base, from LAW on its laws of friction over the slip speed, or the one by
-# direction (0: it has none), from LEFT on room for two contours of what edges leave of the base,
+# direction (0: it has none), from LEFT on room for two contours of what is left of the base,
 # and from ROOM on room to work.  That by direction is f N along and across, the angle of the first,
 # and 1: in the floor, or 0: in the body.
 AXES = 4
@@ -45,7 +46,7 @@ class FloorMap(NamedTuple):
     that; ``which`` (n + 1 + k,): of strips and patches the number of their law, −1: none, whose
     load is N then; ``belts`` (n + 1 + k, 2): their velocities, m/s, none: all alike; ``edges``
     (e, 3): those beyond which the base is not carried, a unit normal into the floor and the place
-    along it, m.
+    along it, m; ``lifts``: whether some state of motion lifts a part of the base.
     """
 
     across_x: float
@@ -59,6 +60,7 @@ class FloorMap(NamedTuple):
     which: Sequence[int] = ()
     belts: FloatArray = np.empty((0, 2))
     edges: FloatArray = np.empty((0, 3))
+    lifts: bool = False
 
     def packed(self) -> FloatArray:
         """In one array."""
@@ -77,12 +79,12 @@ class FloorMap(NamedTuple):
         cuts = 0 if not len(self.edges) else len(self.edges) + 1
         more = 2 ** max(cuts - 3, 0)  # each may double the pieces; there is room for three
         room = np.zeros(more * room_to_clip(self.base))
-        left = room if cuts else room[:0]
+        left = room if cuts or self.lifts else room[:0]
         head = [
             0.0, 0.0, 1.0, self.base[BASE_LEVER], self.across_x, self.across_y,
             len(self.borders), len(self.patches), at, law if self.laws else 0,
             ends[-1] + len(left), 0.0, float((belts != belts[0]).any()), *belts[0],
-            len(self.edges), ends[-1],
+            len(self.edges), ends[-1], float(self.lifts),
         ]  # fmt: skip
         parts = [head, *tables, self.base, *self.laws, left, room]
         return np.concatenate(parts).astype(np.float64)

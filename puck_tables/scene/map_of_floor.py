@@ -18,10 +18,12 @@ from puck_tables.scene.floor_parts import (
     frictions_on,
     has_belts,
     has_laws_by_place,
+    largest_of,
     needs_sums,
 )
 from puck_tables.scene.floor_patches import corners_of
 from puck_tables.scene.over_edges import MOST_EDGES
+from puck_tables.scene.over_time import largest_factors
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.sides import line_of
 
@@ -38,7 +40,7 @@ def floor_map_of(
 
     >>> from puck_tables import Floor, Puck, Scene, Strips
     >>> floor = Floor(strips=Strips((0.1,), (0.3, 0.1)))
-    >>> floor_map_of(Scene(Puck(0.04), floor), 2.0)[17:20].tolist()
+    >>> floor_map_of(Scene(Puck(0.04), floor), 2.0)[18:21].tolist()
     [0.1, 0.6, 0.2]
     """
     floor, puck = scene.floor, scene.puck
@@ -74,7 +76,27 @@ def floor_map_of(
     if axes is not None:
         turns = float(axes.fixed_to == "floor")
         laws = [np.array([*np.multiply(normal, axes.friction), axes.direction, turns])]
-    return FloorMap(*there, base, laws, which, belts_of(floor), edges).packed()
+    lifts = may_lift(scene, top)
+    return FloorMap(*there, base, laws, which, belts_of(floor), edges, lifts).packed()
+
+
+def may_lift(scene: SceneSpec, top: float = 0.0) -> bool:
+    """Whether friction may lift a part of the base of the puck, which is then pressed one-sided.
+
+    ``top``: up to which slip speed laws are looked at, m/s.
+
+    Examples
+    --------
+    >>> from puck_tables import Puck, Scene
+    >>> [may_lift(Scene(Puck(base="box:0.2x0.1", friction=0.3, height=h))) for h in (0.05, 0.2)]
+    [False, True]
+    """
+    floor, puck, shape = scene.floor, scene.puck, shape_under(scene)
+    if shape is None or puck.height == 0.0 or floor.orthotropic is not None or has_belts(floor):
+        return False
+    most = np.array([largest_of(one, top) for one in frictions_on(floor, puck.friction)])
+    strongest = floor.static_ratio * float((largest_factors(floor) * most).max())
+    return not 0.5 * strongest * puck.height <= shape.highest_lever
 
 
 def edges_under(scene: SceneSpec, puck: PuckSpec) -> FloatArray:

@@ -7,7 +7,6 @@ import numpy.typing as npt
 
 from puck_tables._core.real import checked_threads, real_view
 from puck_tables.errors import InputError
-from puck_tables.kernels.base_friction import packed
 from puck_tables.motion.base_slides import LONGEST, WHY_INTEGRATED, local_error
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.motion.state import STATE_ROWS
@@ -26,6 +25,7 @@ def stop_on_base(
     """Where launches of a puck on a base stop, as :meth:`puck_tables.Puck.stop` has it."""
     checked_threads(threads)
     assert puck.shape is not None
+    puck.refuse_lift()
     solver = BaseSolver(puck.shape, tol)
     return Stops(solver, _launches(puck, velocity, spin), threads, None, None, 0.0)
 
@@ -48,7 +48,7 @@ def states_on_base(
     ends = np.searchsorted(each[order], np.arange(launches.size + 1))
     slip = np.hypot(np.hypot(rows[0], rows[1]), rows[5] * rows[2])
     unit = np.where(slip > 0.0, slip / rows[4], 1.0)
-    base, local = packed(puck.shape, puck.lever), local_error(STATES_TOL)
+    base, local = puck.packed_base, local_error(STATES_TOL)
     in_order = (moments / unit[each])[order]
     _, found, status = followed(base, rows, local, in_order, ends, threads)
     if status.any():

@@ -21,12 +21,13 @@ from puck_tables.scene.floor_map import NO_GROUND
 from puck_tables.scene.floor_parts import (
     belts_of,
     count_parts,
+    has_belts,
     has_laws_by_place,
     needs_sums,
 )
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ingredients import BySpeed, Regions, Surface, floor_velocity
-from puck_tables.scene.map_of_floor import edges_under, floor_map_of, shape_under
+from puck_tables.scene.map_of_floor import edges_under, floor_map_of, may_lift, shape_under
 from puck_tables.scene.over_time import largest_factors
 from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.regions import axes_of, load_limit, of_one_shape, section_of
@@ -191,7 +192,7 @@ def _by_place(
         if puck.path:
             continue
         shape = shape_under(scene.alone(puck))
-        if shape is not None:
+        if shape is not None and has_belts(scene.floor):
             shape.refuse_lift(scene.floor.static_ratio * largest, puck.height)
     slide = np.array([not puck.path for puck in pucks])
     loads = normals * np.vstack([most.T, most.max(axis=1)])
@@ -218,18 +219,19 @@ def _by_slip(
     law, top, largest = law_range(scene, fastest)
     factor = float(largest_factors(scene.floor)[0])
     largest, static = largest * factor, scene.floor.static_ratio
+    pressed = [  # one-sided, it may be: no table knows that
+        len(edges_under(scene, puck)) > 0 or may_lift(scene.alone(puck), top) for puck in pucks
+    ]
     under = [
-        None if puck.path or len(edges_under(scene, puck)) > 0 else load_under(puck)
-        for puck in pucks
+        None if puck.path or part else load_under(puck)
+        for puck, part in zip(pucks, pressed, strict=True)
     ]
     summed = np.array([
         own is None and not puck.path for own, puck in zip(under, pucks, strict=True)
     ])  # fmt: skip
     tables = {own: law_table(scene, law, top, own) for own in under if own is not None}
     for puck, own in zip(pucks, under, strict=True):
-        if puck.shape is not None:
-            puck.shape.refuse_lift(static * largest, puck.height)
-        elif own is not None:
+        if puck.shape is None and own is not None:
             tables[own].refuse_height(static * max(factor, 1.0) * 2.0 * puck.height / puck.radius)
     floor_map = NO_GROUND
     if summed.any():

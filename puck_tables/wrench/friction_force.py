@@ -17,10 +17,9 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import broadcast, checked_flag, finite_array, velocity_array
-from puck_tables.contact.base import Base
 from puck_tables.contact.laws import Law
 from puck_tables.errors import InputError
-from puck_tables.kernels.base_friction import grip, packed
+from puck_tables.kernels.base_friction import grip
 from puck_tables.kernels.base_hessian import grip_slopes
 from puck_tables.kernels.compile import kernel, patience
 
@@ -68,9 +67,8 @@ def wrench(
     if puck.shape is None and not (puck.body.law.can_lift and puck.delta <= 1.0):
         found = of_round(puck.body.law, puck.delta, puck.radius, rows, slopes)
     else:
-        base = puck.shape or Base.disc(puck.radius)
         found = np.empty((3, size.size))
-        _fill(packed(base, puck.lever), turned.ravel(), rows, found, slopes)
+        _fill(puck.packed_base, turned.ravel(), rows, found, slopes)
     slopes *= load / size[: len(slopes), None, None]
     found = load * found + 0.0  # no negative zeros
     return Wrench(

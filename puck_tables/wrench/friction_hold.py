@@ -16,7 +16,6 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import broadcast, finite_array, velocity_array
 from puck_tables.errors import ContactError, InputError
-from puck_tables.kernels.base_friction import packed
 from puck_tables.kernels.base_twist import base_twist
 from puck_tables.kernels.compile import allocating, kernel, patience
 from puck_tables.motion.body import is_plain
@@ -136,7 +135,7 @@ def _slips(
         _fill(coefficients, puck.radius, load * rows / unit, share, heat, slip)
         heat /= load
     else:
-        base = packed(puck.shape, puck.lever)
+        base = puck.packed_base
         _fill_base(base, rows / unit, share, slip, np.empty(3), np.empty((3, 3)))
         if np.isnan(share).any():
             raise ContactError(

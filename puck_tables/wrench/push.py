@@ -23,7 +23,6 @@ from puck_tables.contact.base import Base
 from puck_tables.errors import ContactError, InputError
 from puck_tables.io.columns import following
 from puck_tables.io.dataset import Dataset, variable
-from puck_tables.kernels.base_friction import packed
 from puck_tables.kernels.base_push import UNKNOWN
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.result import Result
@@ -205,7 +204,7 @@ def push(
     frames = whole("frames", frames, 1, _MOST)
     turned = real("angle", angle, "rad")
     turn = cmath.rect(1.0, turned)
-    parts = packed(base, puck.lever), moving / speed, grip
+    parts = puck.packed_base, moving / speed, grip
     begun, fence = np.array([0.0, 0.0, turned]), None
     if isinstance(at, Fence):
         fence = at
