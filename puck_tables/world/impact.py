@@ -91,9 +91,8 @@ def _keep_velocities(i: int, j: int, states: FloatArray, before: FloatArray) -> 
 
 @inlined
 def _recall(
-    engine: Engine, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
-    states: FloatArray,
-) -> None:  # fmt: skip
+    contacts: Whole, count: int, rows: FloatArray, before: FloatArray, states: FloatArray
+) -> None:
     """The velocities before this round."""
     for n in range(count):
         if rows[n, ACTS] > 0.0:
@@ -109,7 +108,7 @@ def _push_all(
     states: FloatArray,
 ) -> None:  # fmt: skip
     """The velocities after the impulses of this round."""
-    _recall(engine, contacts, count, rows, before, states)
+    _recall(contacts, count, rows, before, states)
     for n in range(count):
         if rows[n, ACTS] > 0.0:
             _push(engine, contacts[n, 0], contacts[n, 1], rows[n], states)
@@ -331,7 +330,7 @@ def collide(
                     row[E] = row[ONE] = row[OTHER] = 0.0
                     again = True
             if again:
-                _recall(engine, contacts, count, rows, before, states)
+                _recall(contacts, count, rows, before, states)
         for n in range(count):
             row, i, j = rows[n], contacts[n, 0], contacts[n, 1]
             if row[ACTS] > 0.0:

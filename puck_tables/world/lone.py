@@ -217,9 +217,8 @@ def _horizon(engine: Engine, model: Model, t: float) -> float:
 
 @inlined
 def _lay_out(
-    engine: Engine, i: int, model: Model, t: float, state: FloatArray, tol: float,
-    buffer: LoneBuffer,
-) -> None:  # fmt: skip
+    engine: Engine, model: Model, t: float, state: FloatArray, tol: float, buffer: LoneBuffer
+) -> None:
     """The state at the start, relative to the floor, and the scales of errors."""
     body, speed = model.body, engine.scale[0]
     length, energy = speed * speed / engine.scale[1], body.mass * speed * speed
@@ -460,7 +459,7 @@ def follow_alone(
     y, new, stages = buffer.y, buffer.new, buffer.stages
     speed, unit, radius = engine.scale[0], engine.scale[0] / engine.scale[1], model.body.radius
     tol, drive, load = max(engine.scale[2], FINEST), model.forces.drive, friction.load
-    _lay_out(engine, i, model, t, state, tol, buffer)
+    _lay_out(engine, model, t, state, tol, buffer)
     slow = max(1.0, 2.0 * model.body.inertia / (model.body.mass * radius * radius))
     straight, horizon = _LAST * math.sqrt(tol) * speed, _horizon(engine, model, t)
     now, passed, h, count, mode, way = t, 0.0, _BEGIN * unit, 0, SLIDES, NO_WAY
