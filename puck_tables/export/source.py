@@ -16,7 +16,7 @@ from puck_tables._core.real import instance, listed, real, shown
 from puck_tables._core.safe_write import write_bytes
 from puck_tables._version import __version__
 from puck_tables.errors import AccuracyError, InputError
-from puck_tables.export.check_vectors import cases_of
+from puck_tables.export.check_vectors import GIVEN, cases_of
 from puck_tables.export.exported_tables import base_tables, law_tables, plain_tables
 from puck_tables.export.languages import LANGUAGES
 from puck_tables.export.licence import LICENCE
@@ -34,6 +34,27 @@ PARTS = {  # what can be asked for, and the functions of it that its user calls
     "stop": ("stop",), "state": ("stop", "state", "turn"), "resultants": ("resultants",),
     "wrench": ("wrench", "step"),
 }  # fmt: skip
+_MISSES = '''
+def {name}_misses() -> int:
+    """How many numbers of the test vectors {name}() misses."""
+    c: Numbers = {upper}_CASES
+    out = room({answers})
+    missed: int = 0
+    for n in range({upper}_COUNT):
+        k: int = n * {width}
+        missed += {name}({arguments}, out)
+        for j in range({answers}):
+            missed += misses(out[j], c[k + {given} + j], {unit})
+    return missed
+'''
+_UNITS = {
+    "stop": "stop_unit(c, k, j)", "state": "state_unit(c, k, j)", "step": "step_unit(j)",
+}  # fmt: skip
+_SELF_TEST = '''
+def self_test() -> int:
+    """How many numbers of the test vectors are missed: 0."""
+    return {total}
+'''
 
 
 @dataclass(frozen=True)
@@ -214,7 +235,8 @@ def _text(
     modules = [plain_motion, resultant_formulas, *more, self_check]
     public = list(dict.fromkeys(name for part in parts for name in PARTS[part]))
     functions = {node.name: node for module in modules for node in functions_of(module)}
-    functions["self_test"] = _self_test(public)
+    cases = cases_of(public, tol, kind if by_law or based else None)
+    functions |= _self_test({name: width for name, (width, _) in cases.items()})
     functions = with_callees(functions, [*public, "self_test"])
     if by_law:  # room for the lines of the law
         for name in functions.keys() - {*public, "self_test"}:
@@ -225,7 +247,7 @@ def _text(
     }  # fmt: skip
     numbers["TOLERANCE"] = tol
     arrays: dict[str, Sequence[float]] = {}
-    for name, (width, values) in cases_of(public, tol, kind if by_law or based else None).items():
+    for name, (width, values) in cases.items():
         arrays[f"{name.upper()}_CASES"] = values
         numbers[f"{name.upper()}_COUNT"] = len(values) // width
     arrays |= tables
@@ -309,12 +331,17 @@ def functions_of(module: ModuleType) -> list[ast.FunctionDef]:
     return [node for node in tree.body if isinstance(node, ast.FunctionDef)]
 
 
-def _self_test(public: Sequence[str]) -> ast.FunctionDef:
-    """The test of the whole file."""
-    total = " + ".join(f"{name}_misses()" for name in public)
-    (function,) = ast.parse(
-        "def self_test() -> int:\n"
-        f'    """How many numbers of the test vectors are missed: 0."""\n    return {total}'
-    ).body
-    assert isinstance(function, ast.FunctionDef)
-    return function
+def _self_test(widths: Mapping[str, int]) -> dict[str, ast.FunctionDef]:
+    """The tests of each function by vectors of so many numbers, and that of the whole file."""
+    text = ""
+    for name, width in widths.items():
+        given = GIVEN[name]
+        arguments = ", ".join(["c[k]", *(f"c[k + {n}]" for n in range(1, given))])
+        text += _MISSES.format(
+            name=name, upper=name.upper(), width=width, given=given, answers=width - given,
+            arguments=f"0.0, 0.0, 0.0, {arguments}, 1.0, 0.5" if name == "step" else arguments,
+            unit=_UNITS.get(name, "1.0"),
+        )  # fmt: skip
+    text += _SELF_TEST.format(total=" + ".join(f"{name}_misses()" for name in widths))
+    tests = [node for node in ast.parse(text).body if isinstance(node, ast.FunctionDef)]
+    return {node.name: node for node in tests}
