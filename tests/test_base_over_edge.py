@@ -28,6 +28,7 @@ from puck_tables import (
     Scene,
     StribeckLaw,
     Strips,
+    Wall,
 )
 from puck_tables.scene.base_balance import sums_and_pressure
 from puck_tables.scene.map_of_floor import edges_under, floor_map_of
@@ -372,6 +373,19 @@ def test_on_boards_too():
     run: Any = Scene(pucks=[one, two], edges=edges).simulate()
     assert {event.what for event in run.events} >= {"impact", "overhang", "edge"}
     assert run.energy_residual < 1e-8
+
+
+def test_one_that_slides_along_a_cushion_tips_as_one_that_is_free():
+    """Square to the edge, against a smooth cushion that a force holds it to, with no friction."""
+    box = Puck(0.12, base=Base.box(LONG, WIDE), friction=0.3, height=0.08)
+    cushion = Wall((0.0, -0.12), normal=(0.0, 1.0), restitution=0.0, tangential=-1.0)
+    ends = []
+    for walls, force in (([], Force()), ([cushion], Force((0.0, -1.0)))):
+        scene = Scene(box, launch=Launch((1.2, 0.0)), edges=[AHEAD], walls=walls, force=force)
+        run: Any = scene.simulate()
+        assert run.end == "tipped over"
+        ends.append(run.last["x"])
+    assert ("contact" in {event.what for event in run.events}) and abs(ends[0] - ends[1]) < 1e-4
 
 
 def test_one_that_lies_beyond_an_edge_is_refused():
