@@ -28,6 +28,7 @@ from puck_tables import (
     Scene,
     StribeckLaw,
     Strips,
+    Wall,
 )
 from puck_tables.scene.base_balance import sums_and_pressure
 from puck_tables.scene.map_of_floor import edges_under, floor_map_of
@@ -37,6 +38,8 @@ from puck_tables.world.floor_forces import friction_at
 LONG, WIDE, DECEL = 0.2, 0.1, 0.3 * 9.80665
 BOX = Puck(base=Base.box(LONG, WIDE), friction=0.3)
 CORNERS = 0.5 * np.array([[-LONG, -WIDE], [LONG, -WIDE], [LONG, WIDE], [-LONG, WIDE]])
+FEET = 0.06 * np.array([[math.cos(k * math.pi / 3), math.sin(k * math.pi / 3)] for k in range(6)])
+ROUND = Puck(0.07, friction=0.3)
 AHEAD = Edge((0.15, 0.0), normal=(-1.0, 0.0))
 
 
@@ -232,6 +235,47 @@ def test_strips_and_patches_are_felt_under_what_is_left():
             np.testing.assert_allclose(told, true, atol=1e-8, err_msg=str(seed))
 
 
+def on_feet(state: np.ndarray, edge: float) -> np.ndarray:
+    """Force and torque over f N on six feet of 2 mm; those beyond x = edge carry nothing."""
+    nodes, weights = np.polynomial.legendre.leggauss(12)
+    turn = 2.0 * math.pi * np.arange(24) / 24.0
+    r = 0.001 * (1.0 + nodes)
+    there = np.stack([np.outer(r, np.cos(turn)), np.outer(r, np.sin(turn))], axis=-1)
+    parts = np.outer(0.001 * weights * r, np.full(24, 2.0 * math.pi / 24.0)).ravel()
+    x = np.concatenate([foot + there.reshape(-1, 2) for foot in FEET if foot[0] < edge])
+    area = np.tile(parts, len(x) // len(parts))
+    rows = np.column_stack([np.ones(len(x)), x])
+    law = np.linalg.solve(rows.T @ (area[:, None] * rows), [1.0, 0.0, 0.0])
+    slip = state[3:5] + state[5] * np.column_stack([-x[:, 1], x[:, 0]])
+    push = (-area * (rows @ law) / np.hypot(*slip.T))[:, None] * slip
+    return np.array([*push.sum(axis=0), (x[:, 0] * push[:, 1] - x[:, 1] * push[:, 0]).sum()])
+
+
+def test_feet_that_hang_carry_nothing():
+    """Friction is that of a quadrature over those on the floor; it tips as two more leave it."""
+    body = Puck(base=Base.feet(FEET, 0.002), friction=0.3, mass=1.0)
+    edges = [Edge((0.05, 0.0), normal=(-1.0, 0.0))]
+    for velocity, spin in (((0.1, 0.2), 9.0), ((0.3, 0.0), 1.0), ((0.0, 0.01), -20.0)):
+        scene = Scene(body, launch=Launch((1.0, 0.0)), edges=edges)
+        state = np.array([0.0, 0.0, 0.0, *velocity, spin])
+        told = friction_at(scene, state[None])[0] / DECEL
+        np.testing.assert_allclose(told, on_feet(state, 0.05), atol=1e-10)
+    run: Any = Scene(body, launch=Launch((1.0, 0.0)), edges=[AHEAD]).simulate()
+    assert run.end == "tipped over"
+    assert abs(run.last["x"] - (0.15 - 0.03 + 0.002)) < 1e-5
+    assert abs(run.last["spin"]) < 1e-7
+
+
+def test_a_ring_is_carried_up_to_its_centre():
+    ring = Puck(base=Base.annulus(0.06, 0.05), friction=0.3)
+    run: Any = Scene(ring, launch=Launch((1.0, 0.0)), edges=[AHEAD]).simulate()
+    assert run.end == "tipped over"
+    assert 0.149 < run.last["x"] < 0.15
+    turned: Any = Scene(ring, launch=Launch((1.0, 0.0), spin=20.0), edges=[AHEAD]).simulate()
+    assert abs(turned.last["y"]) > 1e-4
+    assert turned.energy_residual < 1e-8
+
+
 def test_a_map_of_throws_has_the_ends_of_its_runs():
     for height in (0.0, 0.08):
         box = replace(BOX, height=height)
@@ -295,11 +339,10 @@ def test_an_edge_that_no_corner_reaches_changes_nothing(height: float):
 
 def test_what_is_carried_as_if_none_hung_in_the_air_says_so():
     edges = [Edge((0.12, 0.0), normal=(-1.0, 0.0))]
-    feet = Puck(base=Base.feet([(0.05, 0.0), (-0.05, 0.05), (-0.05, -0.05)], 0.01), friction=0.3)
     tall, brushed = replace(BOX, height=0.08), Floor(orthotropic=Orthotropic((0.2, 0.3)))
     strips = Floor(strips=Strips((9.0,), (0.3, 0.2)))
     boards: list[tuple[Puck, Floor, str]] = [
-        (BOX, Floor(), "tips"), (feet, Floor(), "is a guess"), (tall, Floor(), "tips"),
+        (BOX, Floor(), "tips"), (ROUND, Floor(), "is a guess"), (tall, Floor(), "tips"),
         (BOX, strips, "tips"), (BOX, brushed, "is a guess"),
     ]  # fmt: skip
     for puck, floor, words in boards:
@@ -330,6 +373,19 @@ def test_on_boards_too():
     run: Any = Scene(pucks=[one, two], edges=edges).simulate()
     assert {event.what for event in run.events} >= {"impact", "overhang", "edge"}
     assert run.energy_residual < 1e-8
+
+
+def test_one_that_slides_along_a_cushion_tips_as_one_that_is_free():
+    """Square to the edge, against a smooth cushion that a force holds it to, with no friction."""
+    box = Puck(0.12, base=Base.box(LONG, WIDE), friction=0.3, height=0.08)
+    cushion = Wall((0.0, -0.12), normal=(0.0, 1.0), restitution=0.0, tangential=-1.0)
+    ends = []
+    for walls, force in (([], Force()), ([cushion], Force((0.0, -1.0)))):
+        scene = Scene(box, launch=Launch((1.2, 0.0)), edges=[AHEAD], walls=walls, force=force)
+        run: Any = scene.simulate()
+        assert run.end == "tipped over"
+        ends.append(run.last["x"])
+    assert ("contact" in {event.what for event in run.events}) and abs(ends[0] - ends[1]) < 1e-4
 
 
 def test_one_that_lies_beyond_an_edge_is_refused():

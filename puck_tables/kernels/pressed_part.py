@@ -37,8 +37,8 @@ from puck_tables.kernels.polygon_sums import (
 MOST_ROUNDS = 200  # near an edge each takes off a third of what is pressed
 # of the pressure: it does not move any more; below the other, less only if it is not rounding
 _SETTLED, _NEAR = 1e-13, 1e-3
-# of how wide is what there is: pressed on less, a tall body tips; narrower, rounding moves friction
-# by more than 1e-10
+# of how wide is what there is: pressed on less, a tall body tips, or one on feet; narrower,
+# rounding moves friction by more than 1e-10
 NARROWEST = 1e-3
 
 

@@ -16,13 +16,14 @@ from puck_tables.kernels.base_friction import (
 )
 from puck_tables.kernels.base_sums import NOTHING, Sums
 from puck_tables.kernels.compile import inner
-from puck_tables.kernels.pressed_part import MOST_ROUNDS, NARROWEST, Pressed, next_pressed
+from puck_tables.kernels.pressed_part import MOST_ROUNDS, Pressed, next_pressed
 from puck_tables.scene.base_on_floor import friction_sums
 from puck_tables.scene.floor_map import (
     ANGLE,
     BASE,
     BORDERS,
     LAW,
+    LEAST_WIDTH,
     LEFT,
     LEVER,
     LIFTS,
@@ -53,7 +54,7 @@ def sums_and_pressure(
         sums = friction_sums(floor_map, first, last, ux, uy, w, moving)
         a, bx, by = pressure_over(moments_in(base), sums, lever, mx, my)
         return sums, a, bx, by
-    narrowest = NARROWEST if floor_map[LEVER] > 0.0 else 0.0
+    narrowest = floor_map[LEAST_WIDTH]
     sums, part, rounds = NOTHING, Pressed(first, last, 0.0, 0.0, 0.0, math.inf), 0
     while part.moved > 0.0 and rounds < MOST_ROUNDS:
         if lever != 0.0:

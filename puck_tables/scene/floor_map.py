@@ -14,11 +14,11 @@ from puck_tables.kernels.compile import inlined
 
 # A ground, all in one array, which is quick to hand on: where the centre of the base is, the factor
 # on all friction now, what holds for all of it, how the base is turned, whether velocities of the
-# floor differ, the one that states are relative to, how many edges cut the base, and whether a part
-# of it may lift,
+# floor differ, the one that states are relative to, how many edges cut the base, whether a part
+# of it may lift, and of its width how much it has to be pressed on, or tips,
 PLACE_X, PLACE_Y, SHARE, LEVER, ACROSS_X, ACROSS_Y, BORDERS, PATCHES = range(8)
-BASE, LAW, ROOM, ANGLE, BELTS, OVER_X, OVER_Y, EDGES, LEFT, LIFTS = range(8, 18)
-_HEAD = 18
+BASE, LAW, ROOM, ANGLE, BELTS, OVER_X, OVER_Y, EDGES, LEFT, LIFTS, LEAST_WIDTH = range(8, 19)
+_HEAD = 19
 # the places of its borders, f N between them as it is summed now, f N of all strips and then of all
 # patches where no factor changes it, the same with their factors, their velocities, where the law
 # over the slip speed begins by which their f goes (0: none; of such f N stands N), a row for each
@@ -46,7 +46,8 @@ class FloorMap(NamedTuple):
     that; ``which`` (n + 1 + k,): of strips and patches the number of their law, −1: none, whose
     load is N then; ``belts`` (n + 1 + k, 2): their velocities, m/s, none: all alike; ``edges``
     (e, 3): those beyond which the base is not carried, a unit normal into the floor and the place
-    along it, m; ``lifts``: whether some state of motion lifts a part of the base.
+    along it, m; ``lifts``: whether some state of motion lifts a part of the base; ``narrowest``:
+    of the width of what lies on the floor what has to be pressed, or it tips.
     """
 
     across_x: float
@@ -61,6 +62,7 @@ class FloorMap(NamedTuple):
     belts: FloatArray = np.empty((0, 2))
     edges: FloatArray = np.empty((0, 3))
     lifts: bool = False
+    narrowest: float = 0.0
 
     def packed(self) -> FloatArray:
         """In one array."""
@@ -85,6 +87,7 @@ class FloorMap(NamedTuple):
             len(self.borders), len(self.patches), at, law if self.laws else 0,
             ends[-1] + len(left), 0.0, float((belts != belts[0]).any()), *belts[0],
             len(self.edges), ends[-1], float(self.lifts),
+            self.narrowest,
         ]  # fmt: skip
         parts = [head, *tables, self.base, *self.laws, left, room]
         return np.concatenate(parts).astype(np.float64)

@@ -10,6 +10,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.base import Base
 from puck_tables.contact.law_moments import packed_law
 from puck_tables.kernels.base_friction import packed, packed_round
+from puck_tables.kernels.pressed_part import NARROWEST
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.scene.by_speed import key_of, moments_of
 from puck_tables.scene.floor_map import LOAD, NO_GROUND, PATCH_COLUMNS, FloorMap
@@ -40,7 +41,7 @@ def floor_map_of(
 
     >>> from puck_tables import Floor, Puck, Scene, Strips
     >>> floor = Floor(strips=Strips((0.1,), (0.3, 0.1)))
-    >>> floor_map_of(Scene(Puck(0.04), floor), 2.0)[18:21].tolist()
+    >>> floor_map_of(Scene(Puck(0.04), floor), 2.0)[19:22].tolist()
     [0.1, 0.6, 0.2]
     """
     floor, puck = scene.floor, scene.puck
@@ -76,8 +77,9 @@ def floor_map_of(
     if axes is not None:
         turns = float(axes.fixed_to == "floor")
         laws = [np.array([*np.multiply(normal, axes.friction), axes.direction, turns])]
-    lifts = may_lift(scene, top)
-    return FloorMap(*there, base, laws, which, belts_of(floor), edges, lifts).packed()
+    sure = shape is None or (puck.height == 0.0 and shape.is_under_centre)  # up to its centre
+    how = edges, may_lift(scene, top), 0.0 if sure else NARROWEST
+    return FloorMap(*there, base, laws, which, belts_of(floor), *how).packed()
 
 
 def may_lift(scene: SceneSpec, top: float = 0.0) -> bool:
@@ -103,8 +105,8 @@ def edges_under(scene: SceneSpec, puck: PuckSpec) -> FloatArray:
     """The edges (e, 3) beyond which a base is carried by what is left of it; none: it is not.
 
     A unit normal into the floor and the place along it, m.  It is where what is left is pressed
-    linearly: a base that is given, with some of it right under the centre of mass, on a floor of
-    one velocity whose friction does not depend on the direction.
+    linearly: a base that is given, on a floor of one velocity whose friction does not depend on the
+    direction.
 
     >>> from puck_tables import Edge, Puck, Scene
     >>> puck = Puck(base="box:0.2x0.1", friction=0.3)
@@ -115,7 +117,7 @@ def edges_under(scene: SceneSpec, puck: PuckSpec) -> FloatArray:
     floor, shape = scene.floor, puck.shape
     if floor.orthotropic is not None or shape is None or has_belts(floor):
         return _NO_EDGES
-    if not shape.is_under_centre or len(scene.edges) > MOST_EDGES:
+    if len(scene.edges) > MOST_EDGES:
         return _NO_EDGES
     return np.array([line_of(edge) for edge in scene.edges]).reshape(-1, 3)
 

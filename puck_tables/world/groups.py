@@ -21,6 +21,7 @@ from puck_tables.world.engine_state import (
     N_HISTORY,
     N_PIECES,
     N_WORKS,
+    TIPS,
     Engine,
 )
 from puck_tables.world.group_paths import Workplace, paths_of
@@ -36,6 +37,8 @@ from puck_tables.world.segment_starts import (
     Room,
     fly_along,
     keep_segment,
+    leave,
+    loses_balance,
     note,
     stay,
 )  # fmt: skip
@@ -167,7 +170,13 @@ def _send(engine: Engine, t: float, size: int, contacts: int, room: Room, place:
     jump[:] = 0.0
     kept, t_end, count = paths_of(engine, t, size, contacts, states, place)
     if kept < 0:
-        return False
+        i = members[0]
+        write_over(states[i], room.before[i])
+        if size > 1 or not loses_balance(engine, i, t, room):
+            return False
+        leave(engine, i, t, TIPS, i, room)  # against a cushion
+        room.marks[i] = SENT
+        return True
     _note_contacts(engine, t, kept, first_row, room, place)
     led = NONE
     for i in members:

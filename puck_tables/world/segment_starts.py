@@ -216,7 +216,7 @@ def lacks_pieces(engine: Engine) -> bool:
 
 
 @inner
-def _loses_balance(engine: Engine, i: int, t: float, room: Room) -> bool:
+def loses_balance(engine: Engine, i: int, t: float, room: Room) -> bool:
     """Whether in a moment no pressure of the floor under a disc carries it, so that it tips."""
     rows = engine.forcing[engine.spans[i, 0] : engine.spans[i, 1]]
     passed, disc, state = rows_passed(rows, 0, len(rows), t), engine.discs[i], room.one
@@ -245,7 +245,7 @@ def integrate(engine: Engine, i: int, t: float, room: Room) -> bool:
     """The path of a disc alone, from its state, or how it tips; whether it can be followed."""
     done, until, count = follow_alone(engine, i, t, room.states[i], room.workspace)
     engine.group[i] = 0
-    if not done and _loses_balance(engine, i, t, room):
+    if not done and loses_balance(engine, i, t, room):
         leave(engine, i, t, TIPS, i, room)
         return True
     if until == math.inf:
