@@ -53,6 +53,15 @@ def drags_of(
     )  # fmt: skip
 
 
+def is_stepped(drag: Drag, lateral: Lateral) -> bool:
+    """Whether a motion under what acts over the floor has no closed form, as under drag it has.
+
+    >>> is_stepped(Drag(), Lateral(0.1)), is_stepped(Drag(sliding=0.1), Lateral())
+    (True, False)
+    """
+    return lateral.strength != 0.0
+
+
 @inlined
 def acts(row: FloatArray) -> bool:
     """Whether anything acts over the floor."""

@@ -19,6 +19,7 @@ from puck_tables.scene.floor_parts import (
     largest_of,
     needs_sums,
 )
+from puck_tables.scene.forces import is_stepped
 from puck_tables.scene.holds import misfits
 from puck_tables.scene.over_time import drive_of, last_factors
 from puck_tables.scene.parts import Drag, Force, Lateral, Launch
@@ -173,7 +174,7 @@ def is_integrated(scene: SceneSpec, puck: ScenePuck, friction: float) -> bool:
     rough = friction > 0.0 and (drags or unlike or not has_closed_forms(puck, friction))
     turns = floor.turning != 0.0 and (friction > 0.0 or drags)
     more = floor.slope > 0.0 or puck.force != Force() or puck.constraint is not None
-    more = more or scene.lateral.strength != 0.0
+    more = more or is_stepped(scene.drag, scene.lateral)
     return not puck.path and (rough or turns or more)
 
 
