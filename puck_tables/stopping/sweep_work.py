@@ -208,7 +208,8 @@ class StopWork(Work):
         if base is not None and count and rows[3].max() > base.highest_lever:
             raise ContactError(
                 f"friction times height = {2.0 * rows[3].max():.6g} m: part of the base would "
-                f"lift; it stays down up to {2.0 * base.highest_lever:.6g} m"
+                f"lift; it stays down up to {2.0 * base.highest_lever:.6g} m; a Scene moves it, "
+                "one-sided"
             )
         rows[6], rows[7] = one.get("pressure", 0.0), one.get("gyration", self._gyration)
         return rows
