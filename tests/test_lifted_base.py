@@ -136,7 +136,7 @@ def test_what_knows_no_lifted_base_says_so():
         lambda: push(LIFTED, (-0.1, 0.0), (0.1, 0.0), 1.0),
     ]  # fmt: skip
     for call in asked:
-        with pytest.raises(ContactError, match="would lift.*a Scene moves it"):
+        with pytest.raises(ContactError, match=r"would lift.*a Scene moves it"):
             call()
     for floor in (
         Floor(orthotropic=Orthotropic((0.3, 0.2))),
