@@ -11,6 +11,7 @@ import contextlib
 import os
 import re
 import shutil
+import sys
 import tempfile
 import time
 from collections.abc import Callable
@@ -63,6 +64,15 @@ def file_stem(function: Callable[..., Any]) -> str:
     'pathlib-Path-exists'
     """
     return re.sub(r"\W+", "-", f"{function.__module__}.{function.__qualname__}")
+
+
+def is_importable(function: Callable[..., Any]) -> bool:
+    """Whether a function is found again by its names: then compiled code calls it at its door.
+
+    >>> is_importable(file_stem), is_importable(Path.exists)
+    (True, False)
+    """
+    return hasattr(sys.modules.get(function.__module__), function.__qualname__)
 
 
 def is_any_kept(function: Callable[..., Any]) -> bool:

@@ -24,7 +24,7 @@ from puck_tables.kernels import (
     vectors,
 )
 from puck_tables.kernels.as_written import behind
-from puck_tables.kernels.cache import cache_folder
+from puck_tables.kernels.cache import cache_folder, is_importable
 from puck_tables.kernels.on_demand import put_cell, type_of_call
 from puck_tables.kernels.patience import patience
 
@@ -249,7 +249,7 @@ def _at_door(door: KernelDoor, template_for: Callable[..., Any], args: Any, name
 def _name_door(function: Any, kinds: tuple[Any, ...], code: Any) -> None:
     """Say at which door a library is, so that it is called and not linked, if it can be found."""
     module, name = function.__module__, function.__qualname__
-    if hasattr(sys.modules.get(module), name):
+    if is_importable(function):
         code.library.door = Called(module, name, kinds, code.fndesc.llvm_func_name)
 
 

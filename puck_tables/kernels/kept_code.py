@@ -29,7 +29,7 @@ from llvmlite import binding, ir
 from numba.core import serialize
 from numba.core.compiler import CompileResult
 
-from puck_tables.kernels.cache import brought_folder, cache_folder, file_stem
+from puck_tables.kernels.cache import brought_folder, cache_folder, file_stem, is_importable
 
 _DIGEST = hashlib.sha256().digest_size
 _dumps: Any = serialize.dumps
@@ -80,7 +80,7 @@ class KeptCode:
         folder = cache_folder()
         if folder is None or data.lifted or data.library.has_dynamic_globals:
             return  # addresses in it hold for this process only
-        parts = _taken_apart(data, "<locals>" not in self._function.__qualname__)
+        parts = _taken_apart(data, is_importable(self._function))
         self.keep(folder, sig, data.codegen.magic_tuple(), data.library, parts)
 
     def keep(

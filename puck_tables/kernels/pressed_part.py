@@ -105,10 +105,8 @@ def _moments_of(room: FloatArray, first: int, last: int) -> Moments:
 def _narrowness(moments: Moments) -> float:
     """The least mean square of the distances from a line through the middle, m²."""
     area, sx, sy = moments[0], moments[1], moments[2]
-    xx, xy = (
-        moments[3] / area - sx * sx / (area * area),
-        moments[4] / area - sx * sy / (area * area),
-    )
+    xx = moments[3] / area - sx * sx / (area * area)
+    xy = moments[4] / area - sx * sy / (area * area)
     yy = moments[5] / area - sy * sy / (area * area)
     return (xx * yy - xy * xy) / (xx + yy)
 
