@@ -172,7 +172,7 @@ def off_border(floor_map: FloatArray, number: int, x: float, y: float) -> float:
 
 
 @inner
-def changes_as_carried(floor_map: FloatArray, disc: FloatArray, surface: Surface) -> bool:
+def changes_below(floor_map: FloatArray, disc: FloatArray, surface: Surface) -> bool:
     """Whether a base that the floor carries is over a border, or has an edge under it or ahead.
 
     Elsewhere nothing changes under it before it comes to a border.

@@ -74,7 +74,7 @@ from puck_tables.scene.steps import (
 from puck_tables.world import step_ledger
 from puck_tables.world.engine_state import N_HISTORY, N_PIECES, N_WORKS, Engine
 from puck_tables.world.floor_under import (
-    changes_as_carried,
+    changes_below,
     choose_belt,
     floor_of,
     friction_under_disc,
@@ -201,7 +201,7 @@ def _swings(engine: Engine, i: int, model: Model, friction: DryFriction, rows: i
     floor_map, radius = friction.by_speed.table, model.body.radius
     if is_over_belts(friction) and is_rubbed(floor_map, radius):
         return True  # it gets warm
-    return moves_along(surface) and changes_as_carried(floor_map, engine.discs[i], surface)
+    return moves_along(surface) and changes_below(floor_map, engine.discs[i], surface)
 
 
 @inlined
