@@ -11,7 +11,7 @@ import pytest
 import puck_tables as pt
 from puck_tables.kernels.base_friction import packed
 from puck_tables.kernels.compile import kernel
-from puck_tables.scene.belts import friction_on_floor
+from puck_tables.scene.base_balance import friction_on_floor
 from puck_tables.scene.floor_map import PLACE_X, PLACE_Y, FloorMap
 from puck_tables.scene.mixed_rest import mixed_yield
 

@@ -235,6 +235,51 @@ def test_strips_and_patches_are_felt_under_what_is_left():
             np.testing.assert_allclose(told, true, atol=1e-8, err_msg=str(seed))
 
 
+@pytest.mark.parametrize("tall", [0.0, 0.5, 1.1])
+def test_belts_are_felt_under_what_is_left(tall: float):
+    """Friction is that under each part at its own slip, of the pressure that bears its moment.
+
+    ``tall``: of the lever from which on it would lift without an edge.
+    """
+    known = 0
+    for seed in range(24):
+        rng, base, about, rows = thrown(seed, seed % 3)
+        if not base.is_under_centre:
+            continue
+        z = tall * base.highest_lever / 0.4
+        strips = Strips((0.01,), (0.2, 0.4), across=(0.5, -0.2), along=(0.0, 0.3))
+        puck = Puck(base=base, height=2.0 * z)
+        scene = Scene(puck, Floor(strips=strips), Launch((9.0, 0.0)), edges=as_edges(rows))
+        state = np.array([0.0, 0.0, *rng.normal(0.0, 0.5, 4)])
+        state[5] = rng.choice([-1.0, 1.0]) * rng.uniform(0.3, 2.0)  # slower, the judge cancels
+        told = friction_at(scene, state[None])[0] / 9.80665
+        if tall > 0.0 and np.isnan(told).any():  # it tips
+            continue
+        left, stands = edge_judge.left_of(about, rows, state), -z * told[:2]
+        a, b, c = edge_judge.pressure(left - stands)
+        law, true = np.array([a - stands @ (b, c), b, c]), np.zeros(3)
+        for side, grip, belt in ((-1.0, 0.2, (0.5, 0.0)), (1.0, 0.4, (-0.2, 0.3))):
+            part = edge_judge.pressed(left, law)
+            cut = edge_judge.beyond(part, np.array([side, 0.0]), side * 0.01)
+            if len(cut) > 2:
+                true += grip * edge_judge.friction(cut, law, state[3:5] - belt, state[5])
+        np.testing.assert_allclose(told, true, atol=1e-8, err_msg=str(seed))
+        known += 1
+    assert known > 8
+
+
+def test_what_a_belt_carries_over_an_edge_tips_where_its_load_is():
+    floor = Floor(strips=Strips((-0.5,), (0.3, 0.3), across=(0.4, 0.2)))
+    for height in (0.0, 0.1):  # carried at rest: its load is under its centre
+        box = replace(BOX, height=height)
+        launch = Launch((0.2, 0.0), position=(-0.2, 0.0))
+        run: Any = Scene(
+            box, floor, launch, edges=[Edge((0.0, 0.0), normal=(-1.0, 0.0))]
+        ).simulate()
+        assert run.end in ("over the edge", "tipped over") and abs(run.last["x"]) < 1e-3
+        assert abs(run.energy_residual) < 1e-9 and "tips" in str(run)
+
+
 def on_feet(state: np.ndarray, edge: float) -> np.ndarray:
     """Force and torque over f N on six feet of 2 mm; those beyond x = edge carry nothing."""
     nodes, weights = np.polynomial.legendre.leggauss(12)
@@ -298,7 +343,7 @@ def test_a_box_lifts_from_a_quarter_of_its_length_on():
     for away in (0.08, 0.06, 0.05, 0.04, 0.01, 0.001):
         scene = Scene(BOX, launch=Launch((1.0, 0.0)), edges=[Edge((away, 0.0), normal=(-1, 0))])
         floor_map = floor_map_of(scene, 1.0, 0.0, edges_under(scene, BOX))
-        _, a, b, c = sums_and_pressure(floor_map, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+        _, _, a, b, c = sums_and_pressure(floor_map, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, True)
         assert abs(c) * WIDE < 1e-9 * a
         if away >= LONG / 4.0:  # linear over the length s: its mean is d from the edge
             s = LONG / 2.0 + away
@@ -386,6 +431,23 @@ def test_one_that_slides_along_a_cushion_tips_as_one_that_is_free():
         assert run.end == "tipped over"
         ends.append(run.last["x"])
     assert ("contact" in {event.what for event in run.events}) and abs(ends[0] - ends[1]) < 1e-4
+
+
+def test_one_that_is_pushed_tips_too():
+    """And the one behind it goes on, and tips where its own load is over the edge."""
+    one = Puck(base=Base.box(LONG, WIDE), radius=0.12, friction=0.3, height=0.08, mass=1.0,
+               restitution=0.0, name="one", launch=Launch((1.5, 0.0)),
+               force=Force((4.0, 0.0)))  # fmt: skip
+    other = Puck(base="box:0.1x0.1", radius=0.08, friction=0.3, height=0.1, mass=0.5,
+                 restitution=0.0, name="other",
+                 launch=Launch((0.0, 0.0), position=(0.21, 0.0)))  # fmt: skip
+    edges = [Edge((0.3, 0.0), normal=(-1.0, 0.0))]
+    run: Any = Scene(pucks=[one, other], edges=edges, time=1.0).simulate()
+    tips = [event for event in run.events if event.what == "tip"]
+    assert [event.puck for event in tips] == ["other", "one"]
+    assert abs(tips[0].x - (0.3 - 0.3 * 0.05)) < 1e-3
+    assert abs(tips[1].x - (0.3 - 0.3 * 0.04)) < 1e-3
+    assert abs(run.energy_residual) < 1e-8
 
 
 def test_one_that_lies_beyond_an_edge_is_refused():

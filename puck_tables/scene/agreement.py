@@ -87,14 +87,12 @@ def _bad_motion(floor: Floor) -> list[str]:
 
 def _bad_under_base(scene: SceneSpec) -> list[str]:
     """Why friction is not known under a base that is not round."""
-    floor, puck = scene.floor, scene.puck
-    name = "floor.patch" if floor.patches else "floor.strips"
-    name = "floor.orthotropic" if floor.orthotropic is not None else name
-    if (has_belts(floor) or floor.orthotropic is not None) and puck.shape is not None:
+    puck = scene.puck
+    if scene.floor.orthotropic is not None and puck.shape is not None:
         try:
             puck.shape.refuse_lift(_strongest(scene), puck.height)
         except ContactError as error:
-            return [f"{name}: {error}"]
+            return [f"floor.orthotropic: {error}"]
     return []
 
 

@@ -15,12 +15,14 @@ from puck_tables.kernels.base_friction import (
     under_load,
 )
 from puck_tables.kernels.base_sums import NOTHING, Sums
-from puck_tables.kernels.compile import inner
+from puck_tables.kernels.compile import inlined, inner
 from puck_tables.kernels.pressed_part import MOST_ROUNDS, Pressed, next_pressed
 from puck_tables.scene.base_on_floor import friction_sums
+from puck_tables.scene.belts import Far, sums_over_belts
 from puck_tables.scene.floor_map import (
     ANGLE,
     BASE,
+    BELTS,
     BORDERS,
     LAW,
     LEAST_WIDTH,
@@ -33,12 +35,25 @@ from puck_tables.scene.floor_map import (
 )
 from puck_tables.scene.over_edges import left_on_floor
 
+_NO_POWER: Far = (0.0, 0.0, 0.0)  # W, of what moves at the velocity that states are relative to
+
+
+@inlined
+def _sums(
+    floor_map: FloatArray, first: int, last: int, ux: float, uy: float, w: float, moving: float,
+    by_belts: bool,
+) -> tuple[Sums, Far]:  # fmt: skip
+    """Sums over a contour, of belts each at its own slip or those that are summed now at one."""
+    if by_belts and floor_map[BELTS] != 0.0:
+        return sums_over_belts(floor_map, first, last, ux, uy, w, moving)
+    return friction_sums(floor_map, first, last, ux, uy, w, moving), _NO_POWER
+
 
 @inner
 def sums_and_pressure(
     floor_map: FloatArray, ux: float, uy: float, w: float, moving: float, lever: float,
-    mx: float, my: float,
-) -> tuple[Sums, float, float, float]:  # fmt: skip
+    mx: float, my: float, by_belts: bool,
+) -> tuple[Sums, Far, float, float, float]:  # fmt: skip
     """Sums over what is pressed, and a, b_x and b_y of its pressure; no numbers where it tips.
 
     ``lever``: of what slips its height over N, m/N; (mx, my): where the load of what is at rest
@@ -50,41 +65,64 @@ def sums_and_pressure(
         one = floor_map[BORDERS] == 0.0 and floor_map[PATCHES] == 0.0 and floor_map[LAW] == 0.0
         if one and is_uniform(base):
             a = floor_map[SHARE] * load_of(floor_map, 0) / base[AREA]
-            return base_sums(base, ux, uy, w), a, 0.0, 0.0
-        sums = friction_sums(floor_map, first, last, ux, uy, w, moving)
+            return base_sums(base, ux, uy, w), _NO_POWER, a, 0.0, 0.0
+        sums, far = _sums(floor_map, first, last, ux, uy, w, moving, by_belts)
         a, bx, by = pressure_over(moments_in(base), sums, lever, mx, my)
-        return sums, a, bx, by
+        return sums, far, a, bx, by
     narrowest = floor_map[LEAST_WIDTH]
-    sums, part, rounds = NOTHING, Pressed(first, last, 0.0, 0.0, 0.0, math.inf), 0
+    sums, far, rounds = NOTHING, _NO_POWER, 0
+    part = Pressed(first, last, 0.0, 0.0, 0.0, math.inf)
     while part.moved > 0.0 and rounds < MOST_ROUNDS:
         if lever != 0.0:
-            sums = friction_sums(floor_map, part.first, part.last, ux, uy, w, moving)
+            sums, far = _sums(floor_map, part.first, part.last, ux, uy, w, moving, by_belts)
         part = next_pressed(
             floor_map, first, last, to, base[REACH], narrowest, part, sums, lever, mx, my
         )  # fmt: skip
         rounds += 1
     if lever == 0.0:
-        sums = friction_sums(floor_map, part.first, part.last, ux, uy, w, moving)
+        sums, far = _sums(floor_map, part.first, part.last, ux, uy, w, moving, by_belts)
     a = part.a if part.moved == 0.0 else math.nan
-    return sums, a, part.bx, part.by
+    return sums, far, a, part.bx, part.by
 
 
 @inner
-def friction_of_base(
-    floor_map: FloatArray, ux: float, uy: float, w: float, moving: float
-) -> tuple[float, float, float, float]:
-    """Force, torque and the power they take, at velocities relative to the floor, not all 0.
-
-    ``moving`` 0: with the friction at slip zero, whatever the slip.
-    """
+def _friction(
+    floor_map: FloatArray, ux: float, uy: float, w: float, moving: float, lever: float,
+    mx: float, my: float,
+) -> tuple[float, float, float, float]:  # fmt: skip
+    """Force, torque and heat; of what is at rest (lever 0) what other belts do."""
     c, s = math.cos(floor_map[ANGLE]), math.sin(floor_map[ANGLE])
-    lever = floor_map[LEVER]
-    sums, a, bx, by = sums_and_pressure(
-        floor_map, c * ux + s * uy, c * uy - s * ux, w, moving, lever, 0.0, 0.0
+    sums, far, a, bx, by = sums_and_pressure(
+        floor_map, c * ux + s * uy, c * uy - s * ux, w, moving, lever, c * mx + s * my,
+        c * my - s * mx, True,
     )  # fmt: skip
     x, y, torque = under_load(sums, a, bx, by)
     fx, fy = c * x - s * y, s * x + c * y
-    return -fx, -fy, -torque, fx * ux + fy * uy + torque * w
+    heat = fx * ux + fy * uy + torque * w - (a * far[0] + bx * far[1] + by * far[2])
+    return -fx, -fy, -torque, heat
+
+
+@inner
+def friction_on_floor(
+    floor_map: FloatArray, ux: float, uy: float, w: float, moving: float
+) -> tuple[float, float, float, float]:
+    """Force, torque, and the heat of all parts, at velocities relative to the floor, not all 0.
+
+    ``moving`` 0: with the friction at slip zero, whatever the slip.
+    """
+    return _friction(floor_map, ux, uy, w, moving, floor_map[LEVER], 0.0, 0.0)
+
+
+@inner
+def rub_at_rest(floor_map: FloatArray, mx: float, my: float) -> tuple[float, float, float, float]:
+    """Force, torque and heat of other belts on who rests, whose load stands at (mx, my), m."""
+    return _friction(floor_map, 0.0, 0.0, 0.0, 0.0, 0.0, mx, my)
+
+
+@inlined
+def heat_at_rest(floor_map: FloatArray, fx: float, fy: float) -> float:
+    """The heat of other belts under who rests, where the floor does the force (fx, fy) to it."""
+    return rub_at_rest(floor_map, -floor_map[LEVER] * fx, -floor_map[LEVER] * fy)[3]
 
 
 @inner
@@ -93,8 +131,9 @@ def friction_held(
 ) -> tuple[float, float, float]:
     """∫ f p e dA and its moment, of the pressure that carries a moment (mx, my) of the load, m."""
     c, s = math.cos(floor_map[ANGLE]), math.sin(floor_map[ANGLE])
-    sums, a, bx, by = sums_and_pressure(
-        floor_map, c * ux + s * uy, c * uy - s * ux, w, 0.0, 0.0, c * mx + s * my, c * my - s * mx
+    mx, my = c * mx + s * my, c * my - s * mx
+    sums, _, a, bx, by = sums_and_pressure(
+        floor_map, c * ux + s * uy, c * uy - s * ux, w, 0.0, 0.0, mx, my, False
     )
     x, y, torque = under_load(sums, a, bx, by)
     return c * x - s * y, s * x + c * y, torque

@@ -11,20 +11,15 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.base_clipping import whole_contour
-from puck_tables.kernels.base_friction import pressure_at, pressure_on, under_load
 from puck_tables.kernels.base_sums import NOTHING, Sums, plus
 from puck_tables.kernels.compile import inlined, inner
-from puck_tables.scene.base_balance import friction_of_base
 from puck_tables.scene.base_on_floor import friction_sums
 from puck_tables.scene.floor_map import (
     ACROSS_X,
     ACROSS_Y,
     ANGLE,
-    BASE,
     BELTS,
     BORDERS,
-    LEVER,
     OVER_X,
     OVER_Y,
     PATCHES,
@@ -96,70 +91,27 @@ def is_rubbed(floor_map: FloatArray, radius: float) -> bool:
 
 
 @inner
-def _all_sums(
-    floor_map: FloatArray, ux: float, uy: float, w: float, moving: float
+def sums_over_belts(
+    floor_map: FloatArray, first: int, last: int, ux: float, uy: float, w: float, moving: float
 ) -> tuple[Sums, Far]:
-    """Sums over all parts that slip, each at its own velocity, and what they take to far off."""
+    """Sums over all parts of a contour that slip, each at its own velocity, in axes of the base.
+
+    And what they take to far off.
+    """
     c, s = math.cos(floor_map[ANGLE]), math.sin(floor_map[ANGLE])
     sums, one, two, three = NOTHING, 0.0, 0.0, 0.0
-    first, last = whole_contour(floor_map[int(floor_map[BASE]) :], int(floor_map[BASE]))
     for area in range(parts_in(floor_map)):
         bx, by = belt_of(floor_map, area)
         ox, oy = bx - floor_map[OVER_X], by - floor_map[OVER_Y]
-        vx, vy = ux - ox, uy - oy
+        px, py = c * ox + s * oy, c * oy - s * ox
+        vx, vy = ux - px, uy - py
         if (vx == 0.0 and vy == 0.0 and w == 0.0) or not _is_first(floor_map, area):
             continue
         sum_over(floor_map, bx, by, False)
-        part = friction_sums(
-            floor_map, first, last, c * vx + s * vy, c * vy - s * vx, w, moving
-        )  # fmt: skip
+        part = friction_sums(floor_map, first, last, vx, vy, w, moving)
         sums = plus(sums, 1.0, part)
-        px, py = c * ox + s * oy, c * oy - s * ox
         one += px * part[0] + py * part[1]
         two += px * part[2] + py * part[4]
         three += px * part[3] + py * part[5]
     sum_over(floor_map, 0.0, 0.0, True)
     return sums, (one, two, three)
-
-
-@inlined
-def _done(
-    floor_map: FloatArray, ux: float, uy: float, w: float, sums: Sums, far: Far, a: float,
-    bx: float, by: float,
-) -> tuple[float, float, float, float]:  # fmt: skip
-    """Force, torque and heat of sums under the pressure a + b·x."""
-    c, s = math.cos(floor_map[ANGLE]), math.sin(floor_map[ANGLE])
-    x, y, torque = under_load(sums, a, bx, by)
-    fx, fy = c * x - s * y, s * x + c * y
-    heat = fx * ux + fy * uy + torque * w - (a * far[0] + bx * far[1] + by * far[2])
-    return -fx, -fy, -torque, heat
-
-
-@inner
-def friction_on_floor(
-    floor_map: FloatArray, ux: float, uy: float, w: float, moving: float
-) -> tuple[float, float, float, float]:
-    """Force, torque, and the heat of all parts; of who rests what other belts do.
-
-    At velocities relative to the floor; ``moving`` 0: with the friction at slip zero.
-    """
-    if floor_map[BELTS] == 0.0:
-        return friction_of_base(floor_map, ux, uy, w, moving)
-    sums, far = _all_sums(floor_map, ux, uy, w, moving)
-    a, bx, by = pressure_on(floor_map[int(floor_map[BASE]) :], sums)
-    return _done(floor_map, ux, uy, w, sums, far, a, bx, by)
-
-
-@inner
-def rub_at_rest(floor_map: FloatArray, mx: float, my: float) -> tuple[float, float, float, float]:
-    """Force, torque and heat of other belts on who rests, whose load stands at (mx, my), m."""
-    sums, far = _all_sums(floor_map, 0.0, 0.0, 0.0, 0.0)
-    c, s = math.cos(floor_map[ANGLE]), math.sin(floor_map[ANGLE])
-    a, bx, by = pressure_at(floor_map[int(floor_map[BASE]) :], c * mx + s * my, c * my - s * mx)
-    return _done(floor_map, 0.0, 0.0, 0.0, sums, far, a, bx, by)
-
-
-@inlined
-def heat_at_rest(floor_map: FloatArray, fx: float, fy: float) -> float:
-    """The heat of other belts under who rests, where the floor does the force (fx, fy) to it."""
-    return rub_at_rest(floor_map, -floor_map[LEVER] * fx, -floor_map[LEVER] * fy)[3]

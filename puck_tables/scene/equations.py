@@ -17,7 +17,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
-from puck_tables.scene.belts import heat_at_rest
+from puck_tables.scene.base_balance import heat_at_rest
 from puck_tables.scene.forces import damping, dragged, prescribed_force
 from puck_tables.scene.friction import (
     SPIN,

@@ -18,7 +18,7 @@ import math
 from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.kernels.speed_spline import speed_ratios
 from puck_tables.motion.equations_of_motion import ratios_at
-from puck_tables.scene.belts import friction_on_floor
+from puck_tables.scene.base_balance import friction_on_floor
 from puck_tables.scene.ingredients import BySpeed, DryFriction, is_mixed, is_over_belts
 from puck_tables.scene.orthotropic import ellipse_in, elliptic_friction, is_elliptic
 

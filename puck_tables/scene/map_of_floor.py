@@ -17,7 +17,6 @@ from puck_tables.scene.floor_map import LOAD, NO_GROUND, PATCH_COLUMNS, FloorMap
 from puck_tables.scene.floor_parts import (
     belts_of,
     frictions_on,
-    has_belts,
     has_laws_by_place,
     largest_of,
     needs_sums,
@@ -94,7 +93,7 @@ def may_lift(scene: SceneSpec, top: float = 0.0) -> bool:
     [False, True]
     """
     floor, puck, shape = scene.floor, scene.puck, shape_under(scene)
-    if shape is None or puck.height == 0.0 or floor.orthotropic is not None or has_belts(floor):
+    if shape is None or puck.height == 0.0 or floor.orthotropic is not None:
         return False
     most = np.array([largest_of(one, top) for one in frictions_on(floor, puck.friction)])
     strongest = floor.static_ratio * float((largest_factors(floor) * most).max())
@@ -105,8 +104,7 @@ def edges_under(scene: SceneSpec, puck: PuckSpec) -> FloatArray:
     """The edges (e, 3) beyond which a base is carried by what is left of it; none: it is not.
 
     A unit normal into the floor and the place along it, m.  It is where what is left is pressed
-    linearly: a base that is given, on a floor of one velocity whose friction does not depend on the
-    direction.
+    linearly: a base that is given, on a floor whose friction does not depend on the direction.
 
     >>> from puck_tables import Edge, Puck, Scene
     >>> puck = Puck(base="box:0.2x0.1", friction=0.3)
@@ -115,7 +113,7 @@ def edges_under(scene: SceneSpec, puck: PuckSpec) -> FloatArray:
     [[-1.0, 0.0, -0.5]]
     """
     floor, shape = scene.floor, puck.shape
-    if floor.orthotropic is not None or shape is None or has_belts(floor):
+    if floor.orthotropic is not None or shape is None:
         return _NO_EDGES
     if len(scene.edges) > MOST_EDGES:
         return _NO_EDGES

@@ -15,8 +15,7 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.kernels.law_sums import coefficient_at
-from puck_tables.scene.base_balance import friction_held
-from puck_tables.scene.belts import rub_at_rest
+from puck_tables.scene.base_balance import friction_held, rub_at_rest
 from puck_tables.scene.floor_map import (
     ACROSS_X,
     ACROSS_Y,

@@ -21,7 +21,6 @@ from puck_tables.scene.floor_map import NO_GROUND
 from puck_tables.scene.floor_parts import (
     belts_of,
     count_parts,
-    has_belts,
     has_laws_by_place,
     needs_sums,
 )
@@ -188,12 +187,6 @@ def _by_place(
         [0.0] * count_parts(scene.floor) if puck.path else _strongest_under(scene, puck, top)
         for puck in pucks
     ])  # fmt: skip
-    for puck, largest in zip(pucks, most.max(axis=1).tolist(), strict=True):
-        if puck.path:
-            continue
-        shape = shape_under(scene.alone(puck))
-        if shape is not None and has_belts(scene.floor):
-            shape.refuse_lift(scene.floor.static_ratio * largest, puck.height)
     slide = np.array([not puck.path for puck in pucks])
     loads = normals * np.vstack([most.T, most.max(axis=1)])
     return Regions(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
-from puck_tables.scene.belts import heat_at_rest
+from puck_tables.scene.base_balance import heat_at_rest
 from puck_tables.scene.forces import dragged
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y, at_slip_zero, friction_force, size
 from puck_tables.scene.ingredients import (

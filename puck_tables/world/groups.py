@@ -23,6 +23,7 @@ from puck_tables.world.engine_state import (
     N_WORKS,
     TIPS,
     Engine,
+    Whole,
 )
 from puck_tables.world.group_paths import Workplace, paths_of
 from puck_tables.world.layout import LIGHTNESS, RADIUS, kinetic, write_over
@@ -170,13 +171,7 @@ def _send(engine: Engine, t: float, size: int, contacts: int, room: Room, place:
     jump[:] = 0.0
     kept, t_end, count = paths_of(engine, t, size, contacts, states, place)
     if kept < 0:
-        i = members[0]
-        write_over(states[i], room.before[i])
-        if size > 1 or not loses_balance(engine, i, t, room):
-            return False
-        leave(engine, i, t, TIPS, i, room)  # against a cushion
-        room.marks[i] = SENT
-        return True
+        return _tips(engine, t, members, room)
     _note_contacts(engine, t, kept, first_row, room, place)
     led = NONE
     for i in members:
@@ -202,6 +197,19 @@ def _send(engine: Engine, t: float, size: int, contacts: int, room: Room, place:
             engine.counts[N_HELD] += 1
     _book(engine, segment, t, count, led, place)
     return True
+
+
+@inner
+def _tips(engine: Engine, t: float, members: Whole, room: Room) -> bool:
+    """Whether it is one of those who press that has no motion, for it tips; others are let go."""
+    tipped = False
+    for i in members:
+        write_over(room.states[i], room.before[i])
+    for i in members:
+        if engine.discs[i, LIGHTNESS] > 0.0 and loses_balance(engine, i, t, room):
+            leave(engine, i, t, TIPS, i, room)
+            room.marks[i], tipped = SENT, True
+    return tipped
 
 
 @inlined
