@@ -137,7 +137,7 @@ def first_event_on(
     radius, first = phase.model.body.radius, NOTHING
     for passed in range(2):
         what = NOTHING
-        if passed == 0 and phase.mode == SLIDES:
+        if passed == 0 and phase.mode == SLIDES and not is_mixed(phase.friction):
             what = EQUAL if slip_side(radius, y) * slip_side(radius, new) < 0.0 else what
         turns_over = y[SPIN] * new[SPIN] < 0.0 and jumps(phase.model.forces.drags)
         turns_over = turns_over and (

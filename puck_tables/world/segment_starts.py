@@ -80,7 +80,7 @@ from puck_tables.world.layout import (
     kinetic,
     write_over,
 )  # fmt: skip
-from puck_tables.world.lone import BUFFER_ROWS, LONGEST, follow_alone
+from puck_tables.world.lone import LONGEST, follow_alone
 from puck_tables.world.paths import DURATION, FIRST, FOR_EVER, bounds_of
 from puck_tables.world.paths import START as BEGINS
 from puck_tables.world.segment import (
@@ -103,6 +103,7 @@ from puck_tables.world.segment import (
     start_segment,
     state_at,
 )  # fmt: skip
+from puck_tables.world.step_pieces import BUFFER_ROWS
 
 # of a disc while an event is worked on: not concerned, concerned, its contacts are known, was to
 # meet one that is concerned, has set off; is to get a state that nobody has looked at
