@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.base_friction import SIDES
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.equations import SECOND, rates, slip_side, stopping
+from puck_tables.scene.floor_map import BASE
 from puck_tables.scene.forces import has_sign, jumps
 from puck_tables.scene.friction import SPIN, VX, VY, size
 from puck_tables.scene.ingredients import (
@@ -129,6 +131,15 @@ def zero(
 
 
 @inlined
+def _is_round(friction: DryFriction) -> bool:
+    """Whether friction is singular where the rim has a point without slip: it has no sides."""
+    if not is_mixed(friction):
+        return True
+    table = friction.by_speed.table
+    return table[int(table[BASE]) + SIDES] == 0.0
+
+
+@inlined
 def first_event_on(
     phase: Phase, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
     new: FloatArray,
@@ -137,7 +148,7 @@ def first_event_on(
     radius, first = phase.model.body.radius, NOTHING
     for passed in range(2):
         what = NOTHING
-        if passed == 0 and phase.mode == SLIDES and not is_mixed(phase.friction):
+        if passed == 0 and phase.mode == SLIDES and _is_round(phase.friction):
             what = EQUAL if slip_side(radius, y) * slip_side(radius, new) < 0.0 else what
         turns_over = y[SPIN] * new[SPIN] < 0.0 and jumps(phase.model.forces.drags)
         turns_over = turns_over and (

@@ -98,7 +98,7 @@ from puck_tables.world.step_pieces import ENDED, LoneBuffer, buffer_on, write_st
 
 LONGEST = 128  # pieces of a path, before it ends for a new look
 _MOST = 8  # of them a step: shorter ones are needed where its stages do not tell more
-FINEST = 3e-14  # error of a step in units of the scales: finer is rounding
+FINEST = 1e-14  # error of a step in units of the scales: finer is rounding
 _BEGIN = 0.1  # of Q/J: the first step
 _SHORTEST = 1e-16  # of Q/J: shorter steps lead nowhere
 _ROUNDED = 1e-14  # of the floor's velocity: a slip over it is not known better when a path begins

@@ -138,6 +138,20 @@ def _put(share: int, phase: Phase, t: float, h: float, to: int, buffer: LoneBuff
         row[X], row[Y], row[THETA] = state[VX] + sx, state[VY] + sy, state[SPIN] + turning
 
 
+@inlined
+def _end_as_led(row: FloatArray, buffer: LoneBuffer) -> None:
+    """Let a piece end where its velocities lead, by a polynomial through that in its middle, too.
+
+    A place that does not fit them by as much as it may be wrong spoils them on a short piece.
+    """
+    h = row[DURATION]
+    for n in range(3):
+        first, last = PLACES + n, PLACES + 9 + n
+        moved = (7.0 * (row[first + 3] + row[last + 3]) + 16.0 * buffer.ends[HALF, n]) / 30.0
+        row[last] = row[first] + h * (moved + h * (row[first + 6] - row[last + 6]) / 60.0)
+        buffer.states[ENDED, n] = row[last]
+
+
 @inner
 def _write_parts(
     engine: Engine, phase: Phase, t: float, h: float, number: int, parts: int, tol: float,
@@ -156,11 +170,14 @@ def _write_parts(
         _put((part + 1) * stride, phase, t, h, ENDED, buffer)
         _put(part * stride + stride // 2, phase, t, h, HALF, buffer)
         _write_piece(phase, begin, each, row, buffer)
+        if part + 1 < parts:
+            _end_as_led(row, buffer)
         on_piece(row, begin + 0.5 * each, place)
         acts = accelerations(surface_now(phase, begin + 0.5 * each), states[HALF], ends, HALF)
         for n in range(3):
-            gap = each * abs(place[6 + n] - acts[n])
+            gap, off = each * abs(place[6 + n] - acts[n]), abs(place[3 + n] - ends[HALF, n])
             largest = max(largest, _PLACE * each * gap / scale[n], _RATE * gap / scale[VX + n])
+            largest = max(largest, off / scale[VX + n])
         for n in range(GIVEN, SIZE):
             both, done = ends[BEGUN, n] + ends[ENDED, n], states[ENDED, n] - states[BEGUN, n]
             gap = each * (ends[HALF, n] + 0.25 * both) - 1.5 * done
@@ -189,9 +206,8 @@ def _look_between(phase: Phase, t: float, h: float, piece: FloatArray, buffer: L
     rates(phase, t + 0.5 * h, trial, buffer.middle, FIRST)
     for n in range(GIVEN):
         missed = abs(buffer.middle[0, n] - rate_at(SHARES // 2, stages, n))
-        gap = _BETWEEN * h * missed / buffer.scale[n]
-        if not gap <= off:
-            off = gap
+        past = abs(buffer.y[n] + come_by(SHARES, h, stages, n) - buffer.new[n])
+        off = max(off, _BETWEEN * h * missed / buffer.scale[n], past / buffer.scale[n])
     return off
 
 
