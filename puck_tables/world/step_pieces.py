@@ -36,7 +36,7 @@ from puck_tables.world.paths import DURATION, on_piece
 from puck_tables.world.paths import FIRST as PLACES
 from puck_tables.world.paths import START as BEGINS
 
-COARSER = 10.0  # times that: of a piece, whose errors do not add up
+COARSER = 10.0  # times the error of a step: of a piece, whose errors do not add up
 _BETWEEN = 3.0  # times what its stages miss in the middle of a step are errors elsewhere
 _SAFE = 0.8  # of how long a step could be, by what the last one missed
 # of a polynomial of degree five that is wrong by d in its second derivative in the middle, over h:
