@@ -479,3 +479,16 @@ def test_a_base_goes_into_a_file_and_comes_back() -> None:
     assert again == scene
     run = again.simulate([0.0])
     assert abs(run.end_time - KNOWN["box"][3][0]) < 2e-10
+
+
+def test_a_slip_that_turns_at_last_stops_in_time() -> None:
+    """With hardly a spin the slip turns into one only where it is nearly over."""
+    width, depth, friction, k, launch = 0.0915, 0.056, 0.8, 0.0406, (-1.926, -1.337)
+    puck = Puck(base=Base.box(width, depth), friction=friction, gyration=k)
+    run = Scene(puck, launch=Launch(launch, spin=-9.34e-4), tol=1e-9).simulate([0.0])
+    x, y = 0.5 * width, 0.5 * depth
+    judge = Judge([[(-x, -y), (x, -y), (x, y), (-x, y)]], [], 0.0, k)
+    time, *place = judge.slide(launch, -9.34e-4, friction * 9.80665)[:3]
+    unit = run.speed_scale / run.rate_scale
+    assert abs(run.end_time - time) <= 1e-9 * unit
+    assert np.abs(np.subtract([run.last["x"], run.last["y"]], place)).max() <= 1e-9 * unit**2 * 7.8

@@ -31,6 +31,7 @@ _TURNS, _SETTLED = 3000, 1e-12  # at most; of friction: a direction stays
 _SLOW = 1e-3  # of friction: what brakes less comes closer to rest before it goes straight
 REST = 1e-13  # of the scale of speeds: as good as at rest
 _MARGIN = 0.2  # of friction
+_UNLIKE = 0.1  # of what brakes: so much less, at least, that may be in another direction
 _BLURRED = 10.0  # times the local error: a slip that steps blur
 _CLOSE = 1e-12  # of a step: how well a moment in it is known
 _FIRST = 1e-16  # of the scale of speeds: what a slip begins with, for its direction
@@ -214,7 +215,7 @@ def goes_straight(
     small = _SLOW * phase.friction.load
     excess = excess_at_rest(phase, t, y)[0]
     least = max(-excess, small) / (mass * slow)
-    late = max(q / least - q / brakes, 0.0) * min(across / brakes, 1.0)
+    late = q / brakes * max(brakes / least - 1.0, _UNLIKE) * min(across / brakes, 1.0)
     blurred = q <= _BLURRED * tolerance * speed
     quick = brakes > small / mass / slow and across <= brakes
     quick = quick and (blurred or late <= tolerance * unit)
