@@ -86,6 +86,7 @@ from puck_tables.world.layout import (
     BELT_X,
     BELT_Y,
     DRAG,
+    EDGE,
     HOLD,
     HOLD_ANGLE,
     HOLD_REACH,
@@ -93,6 +94,7 @@ from puck_tables.world.layout import (
     HOLD_VY,
     HOLD_X,
     HOLD_Y,
+    KIND,
     LIES,
     LIGHTNESS,
     PULL_X,
@@ -100,6 +102,9 @@ from puck_tables.world.layout import (
     RADIUS,
     TURNABILITY,
     TWIST,
+    A,
+    B,
+    C,
 )
 from puck_tables.world.paths import DURATION, on_piece
 from puck_tables.world.paths import FIRST as PLACES
@@ -317,8 +322,8 @@ def _misfit(
 def _leads_off(engine: Engine, i: int, buffer: LoneBuffer) -> bool:
     """Whether a step has led to where there is another friction, or none is known.
 
-    The rim has come over a border, or left it, or it slips faster than a law goes, or least over
-    another belt.
+    The rim has come over a border, or left it, or the centre over an edge, or it slips faster than
+    a law goes, or least over another belt.
     """
     y, disc, radius = buffer.new, engine.discs[i], engine.discs[i, RADIUS]
     vx, vy = y[VX] + disc[BELT_X], y[VY] + disc[BELT_Y]
@@ -326,6 +331,10 @@ def _leads_off(engine: Engine, i: int, buffer: LoneBuffer) -> bool:
         return True
     if outruns_law(engine.regions, radius, y[VX], y[VY], y[SPIN]):
         return True
+    for k in range(engine.obstacles.shape[0]):
+        row = engine.obstacles[k]
+        if int(row[KIND]) == EDGE and row[A] * y[X] + row[B] * y[X + 1] < row[C]:
+            return True
     if engine.discs.shape[1] == LIES:
         return False
     before = room_on_floor(engine.regions, engine.discs, i, buffer.y) + _OVER * radius
@@ -463,7 +472,7 @@ def follow_alone(
     slow = max(1.0, 2.0 * model.body.inertia / (model.body.mass * radius * radius))
     straight, horizon = _LAST * math.sqrt(tol) * speed, _horizon(engine, model, t)
     now, passed, h, count, mode, way = t, 0.0, _BEGIN * unit, 0, SLIDES, NO_WAY
-    undecided, known, stiff, over, rests = True, False, False, False, False
+    undecided, known, stiff, over, rests, tips = True, False, False, False, False, math.inf
     while now < horizon and count < LONGEST and not over:
         patience(1)
         rows = rows_passed(drive, 0, len(drive), now)
@@ -495,7 +504,12 @@ def follow_alone(
         whole = target - now if landed else h
         error = step(phase, now, whole, y, buffer.scale, stages, new)
         grows = times_as_long(error, tol, 0.25 if newton > 0.0 else 0.125, 0.1)
-        if not (error <= tol and math.isfinite(stages[STAGES - 1, VX])):  # or it tips there
+        if not math.isfinite(stages[STAGES - 1, VX]):  # it tips there: half as far, time and again
+            tips, h = now + whole, 0.25 * whole
+            if h < tol * unit:
+                break
+            continue
+        if not error <= tol:
             h = whole * grows
             if h < _SHORTEST * unit:
                 break
@@ -520,6 +534,8 @@ def follow_alone(
             count += 1
         passed += length
         now = target if landed else t + passed
+        h = min(h, 0.5 * (tips - now)) if now < tips else h
+        over = over or (h < tol * unit and now < tips)
         _go_on_from(model, tol, buffer)
         larger, q = q, slip_speed(radius, y)
         if mode == SLIDES:
