@@ -220,17 +220,3 @@ def test_of_many_launches_almost_all_are_found_again() -> None:
     answers = [_asked_again(seed) for seed in range(100, 320)]
     asked = sum(one for one, _ in answers)
     assert asked >= 120 and sum(found for _, found in answers) >= 0.99 * asked
-
-
-def test_one_that_tips_at_a_place_does_not_end_there() -> None:
-    """Whoever is fast enough tips at one place; only who comes to rest has reached it."""
-    table = {"edges": [pt.Edge((0.5, 0.0), normal=(-1.0, 0.0))], "time": 5.0}
-    cue = puck_at(0.0, 0.0, (2.0, 0.0), name="cue")
-    run = pt.Scene(pucks=[cue], **table).simulate()
-    assert run.events[-1].what == "tip"
-    place = float(run.last["x"][0])
-    assert place == pytest.approx(0.5 - 0.2 * 0.01 / 2.0, abs=1e-4)
-    found = pt.Scene(pucks=[cue], **table).aim((place, 0.0), striker="cue")
-    assert all(speed < math.sqrt(2.0 * J * 0.5) + 1e-9 for speed in found.launch_speed)
-    for number in range(len(found.launch_speed)):
-        assert "tip" not in {event.what for event in found.run(number).events}

@@ -31,7 +31,7 @@ def trace(
 
     ``sequence`` (4,): a print, the same for runs in which the same impacts led there (in whatever
     order those happened that do not bear on each other); how many; the obstacle −1 − k by which it
-    left play, 1 where it tips, or 0; whether the disc ``through`` was in one of them, 1 or 0.
+    left play, or 0; whether the disc ``through`` was in one of them, 1 or 0.
 
     ``prints``, ``marks`` (n,): room.
     """
@@ -50,8 +50,8 @@ def trace(
         prints[i] = (both % _PRIME * 40692 + i + 1) % _PRIME
         if j >= 0:
             prints[j] = (both % _PRIME * 40692 + j + 1) % _PRIME
-        if i == disc and what in (POCKETED, OVER_EDGE, TIPS):
-            sequence[FATE] = j if what != TIPS else 1
+        elif i == disc and what in (POCKETED, OVER_EDGE):
+            sequence[FATE] = j
     sequence[PRINT], sequence[LENGTH], sequence[PASSES] = prints[disc], 0, 0
     marks[disc] = 1
     for back in range(events):
