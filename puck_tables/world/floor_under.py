@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined
+from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.belts import nearest_belt
 from puck_tables.scene.floor_map import (
     ACROSS_X,
@@ -23,7 +23,10 @@ from puck_tables.scene.floor_map import (
     OVER_X,
     OVER_Y,
     PATCHES,
+    PLACE_X,
+    PLACE_Y,
     border_of,
+    edge_of,
 )
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.ingredients import ASTRIDE as SEVERAL
@@ -174,6 +177,25 @@ def off_border(floor_map: FloatArray, number: int, x: float, y: float) -> float:
     if number < int(floor_map[BORDERS]):
         return border_of(floor_map, number) - (floor_map[ACROSS_X] * x + floor_map[ACROSS_Y] * y)
     return distance_to(floor_map, number - int(floor_map[BORDERS]), x, y)
+
+
+@inner
+def changes_below(floor_map: FloatArray, disc: FloatArray, surface: Surface) -> bool:
+    """Whether a base that the floor carries is over a border, or has an edge under it or ahead.
+
+    Elsewhere nothing changes under it before it comes to a border.
+    """
+    for number in range(LIES, disc.size):
+        if disc[number] == ASTRIDE:
+            return True
+    x, y = floor_map[PLACE_X], floor_map[PLACE_Y]
+    vx, vy, spin = floor_velocity(surface, x, y)
+    for k in range(int(floor_map[EDGES])):
+        east, north, place = edge_of(floor_map, k)
+        inside = east * x + north * y - place
+        if spin != 0.0 or inside < disc[RADIUS] or east * vx + north * vy < 0.0:
+            return True
+    return False
 
 
 @inlined

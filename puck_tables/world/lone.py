@@ -74,6 +74,7 @@ from puck_tables.scene.steps import (
 from puck_tables.world import step_ledger
 from puck_tables.world.engine_state import N_HISTORY, N_PIECES, N_WORKS, Engine
 from puck_tables.world.floor_under import (
+    changes_below,
     choose_belt,
     floor_of,
     friction_under_disc,
@@ -192,7 +193,7 @@ def _surface_at(model: Model, t: float) -> Surface:
 
 
 @inlined
-def _swings(model: Model, friction: DryFriction, rows: int) -> bool:
+def _swings(engine: Engine, i: int, model: Model, friction: DryFriction, rows: int) -> bool:
     """Whether what the floor has to do for a puck at rest on it changes as it is carried."""
     surface, drive = model.surface, model.forces.drive
     if surface.changes != 0.0 and rows < len(drive):
@@ -200,10 +201,12 @@ def _swings(model: Model, friction: DryFriction, rows: int) -> bool:
     surface = surface_at(surface, drive, rows, 0.0)  # as it goes on
     forces = model.forces
     pulled = forces.x != 0.0 or forces.y != 0.0 or forces.torque != 0.0 or len(drive) > 0
-    turns = surface.spin != 0.0 and pulled
-    if is_over_belts(friction) and is_rubbed(friction.by_speed.table, model.body.radius):
+    if (surface.spin != 0.0 and pulled) or not is_mixed(friction):
+        return surface.spin != 0.0 and pulled
+    floor_map, radius = friction.by_speed.table, model.body.radius
+    if is_over_belts(friction) and is_rubbed(floor_map, radius):
         return True  # it gets warm
-    return turns or (is_mixed(friction) and moves_along(surface))
+    return moves_along(surface) and changes_below(floor_map, engine.discs[i], surface)
 
 
 @inlined
@@ -405,7 +408,7 @@ def _is_held(phase: Phase, t: float, h: float, buffer: LoneBuffer) -> tuple[floa
 
 @inlined
 def _from_rest(
-    model: Model, friction: DryFriction, rows: int, speed: float, t: float, slow: float,
+    engine: Engine, i: int, model: Model, friction: DryFriction, rows: int, t: float, slow: float,
     begins: bool, buffer: LoneBuffer,
 ) -> tuple[int, bool, float, bool]:  # fmt: skip
     """How it goes on with no slip but what rounding leaves: mode, whether stiff, slip, and rests.
@@ -413,7 +416,7 @@ def _from_rest(
     ``slow``: the slip it has; where it ``begins`` so, it may be what the path before began, unless
     it is less than velocities in the laboratory are rounded to.
     """
-    y = buffer.y
+    y, speed = buffer.y, engine.scale[0]
     vx, vy, spin = y[VX], y[VY], y[SPIN]
     y[VX] = y[VY] = y[SPIN] = 0.0
     at_rest = Phase(model, friction, rows, CARRIED, NO_WAY, 0.0)
@@ -423,7 +426,7 @@ def _from_rest(
     if mode == SLIDES and begins and slow > max(q, rounded):
         q = _goes_on(Phase(model, friction, rows, SLIDES, NO_WAY, 0.0), t, vx, vy, spin, q, y,
                      buffer.stages)  # fmt: skip
-    rests = mode == CARRIED and not _swings(model, friction, rows)
+    rests = mode == CARRIED and not _swings(engine, i, model, friction, rows)
     rests = rests and rests_on(model, friction, rows, y)
     return mode, stiff and not _keeps_direction(model), q, rests
 
@@ -482,7 +485,7 @@ def follow_alone(
             before, mode, way = mode, SLIDES, NO_WAY
             if load > 0.0 and q <= REST * speed:
                 mode, stiff, q, rests = _from_rest(
-                    model, friction, rows, speed, now, q, count == 0, buffer
+                    engine, i, model, friction, rows, now, q, count == 0, buffer
                 )
                 if rests or ((mode == CARRIED) != (before == CARRIED) and count > 0 and now > t):
                     break
