@@ -199,6 +199,22 @@ def test_a_puck_that_rests_beside_a_belt_that_rubs_it() -> None:
     assert abs(run.heat_dry[1] - 0.5 * heat) < 1e-9 and abs(run.last["heat_dry"] - heat) < 1e-9
 
 
+@pytest.mark.parametrize("name", SEVERAL)
+def test_what_a_belt_carries_away_from_all_borders_has_its_end(name: str) -> None:
+    puck, floor = pt.Puck(**PUCKS[name]), belts(0.3, 0.1, ways="across")
+    run = pt.Scene(puck, floor, pt.Launch((1.0, 0.3), 10.0, (-0.3, 0.0))).simulate()
+    assert run.end == "carried by the floor"
+    assert run.last["x"] > 0.05 - 1e-9 and run.last["vx"] == 0.1
+
+
+def test_what_a_belt_carries_on_to_a_third_goes_over() -> None:
+    floor = belts(0.3, 0.1, 0.05, ways="across", borders=(0.0, 0.5), friction=(0.2, 0.3, 0.1))
+    launch = pt.Launch((1.0, 0.3), 10.0, (-0.3, 0.0))
+    run = pt.Scene(pt.Puck(**PUCKS["box"]), floor, launch).simulate()
+    what = [event.what for event in run.events]
+    assert what.count("entry") == what.count("exit") == 2 and run.last["vx"] == 0.05
+
+
 def test_pucks_that_meet_on_belts() -> None:
     pucks = [
         pt.Puck(0.05, 0.02, launch=pt.Launch((0.5, 0.1), 3.0, (-0.3, 0.0)), name="a",

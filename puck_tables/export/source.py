@@ -173,7 +173,10 @@ def export_source(
     kind = Puck(radius=1.0) if puck is None else puck
     if kind.shape is not None or "wrench" in parts:
         if parts != ("wrench",):
-            raise InputError("of a puck on a base what is exported is 'wrench', and only of one")
+            raise InputError(
+                "of a puck on a base 'wrench' is exported, with a step of its motion, and nothing "
+                "else; of one without a base all but that: choose what fits, or give no base"
+            )
         tables, constants = base_tables(kind)
         text = _text(language, parts, float(tol), kind, tables, constants)
         return Source(text, language, parts, float(tol), _words(kind), 0.0)

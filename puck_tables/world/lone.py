@@ -67,6 +67,7 @@ from puck_tables.scene.steps import (
 )
 from puck_tables.world.engine_state import Engine
 from puck_tables.world.floor_under import (
+    changes_below,
     choose_belt,
     floor_of,
     friction_under_disc,
@@ -79,6 +80,7 @@ from puck_tables.world.layout import (
     BELT_X,
     BELT_Y,
     DRAG,
+    EDGE,
     HOLD,
     HOLD_ANGLE,
     HOLD_REACH,
@@ -86,6 +88,7 @@ from puck_tables.world.layout import (
     HOLD_VY,
     HOLD_X,
     HOLD_Y,
+    KIND,
     LIES,
     LIGHTNESS,
     PULL_X,
@@ -93,6 +96,9 @@ from puck_tables.world.layout import (
     RADIUS,
     TURNABILITY,
     TWIST,
+    A,
+    B,
+    C,
 )
 from puck_tables.world.step_pieces import ENDED, LoneBuffer, buffer_on, write_step
 
@@ -142,7 +148,7 @@ def _surface_at(model: Model, t: float) -> Surface:
 
 
 @inlined
-def _swings(model: Model, friction: DryFriction, rows: int) -> bool:
+def _swings(engine: Engine, i: int, model: Model, friction: DryFriction, rows: int) -> bool:
     """Whether what the floor has to do for a puck at rest on it changes as it is carried."""
     surface, drive = model.surface, model.forces.drive
     if surface.changes != 0.0 and rows < len(drive):
@@ -150,10 +156,12 @@ def _swings(model: Model, friction: DryFriction, rows: int) -> bool:
     surface = surface_at(surface, drive, rows, 0.0)  # as it goes on
     forces = model.forces
     pulled = forces.x != 0.0 or forces.y != 0.0 or forces.torque != 0.0 or len(drive) > 0
-    turns = surface.spin != 0.0 and pulled
-    if is_over_belts(friction) and is_rubbed(friction.by_speed.table, model.body.radius):
+    if (surface.spin != 0.0 and pulled) or not is_mixed(friction):
+        return surface.spin != 0.0 and pulled
+    floor_map, radius = friction.by_speed.table, model.body.radius
+    if is_over_belts(friction) and is_rubbed(floor_map, radius):
         return True  # it gets warm
-    return turns or (is_mixed(friction) and moves_along(surface))
+    return moves_along(surface) and changes_below(floor_map, engine.discs[i], surface)
 
 
 @inlined
@@ -191,8 +199,8 @@ def _lay_out(
 def _leads_off(engine: Engine, i: int, buffer: LoneBuffer) -> bool:
     """Whether a step has led to where there is another friction, or none is known.
 
-    The rim has come over a border, or left it, or it slips faster than a law goes, or least over
-    another belt.
+    The rim has come over a border, or left it, or the centre over an edge, or it slips faster than
+    a law goes, or least over another belt.
     """
     y, disc, radius = buffer.new, engine.discs[i], engine.discs[i, RADIUS]
     vx, vy = y[VX] + disc[BELT_X], y[VY] + disc[BELT_Y]
@@ -200,6 +208,10 @@ def _leads_off(engine: Engine, i: int, buffer: LoneBuffer) -> bool:
         return True
     if outruns_law(engine.regions, radius, y[VX], y[VY], y[SPIN]):
         return True
+    for k in range(engine.obstacles.shape[0]):
+        row = engine.obstacles[k]
+        if int(row[KIND]) == EDGE and row[A] * y[X] + row[B] * y[X + 1] < row[C]:
+            return True
     if engine.discs.shape[1] == LIES:
         return False
     before = room_on_floor(engine.regions, engine.discs, i, buffer.y) + _OVER * radius
@@ -270,7 +282,7 @@ def _is_held(phase: Phase, t: float, h: float, buffer: LoneBuffer) -> tuple[floa
 
 @inlined
 def _from_rest(
-    model: Model, friction: DryFriction, rows: int, speed: float, t: float, slow: float,
+    engine: Engine, i: int, model: Model, friction: DryFriction, rows: int, t: float, slow: float,
     begins: bool, buffer: LoneBuffer,
 ) -> tuple[int, bool, float, bool]:  # fmt: skip
     """How it goes on with no slip but what rounding leaves: mode, whether stiff, slip, and rests.
@@ -278,7 +290,7 @@ def _from_rest(
     ``slow``: the slip it has; where it ``begins`` so, it may be what the path before began, unless
     it is less than velocities in the laboratory are rounded to.
     """
-    y = buffer.y
+    y, speed = buffer.y, engine.scale[0]
     vx, vy, spin = y[VX], y[VY], y[SPIN]
     y[VX] = y[VY] = y[SPIN] = 0.0
     at_rest = Phase(model, friction, rows, CARRIED, NO_WAY, 0.0)
@@ -288,7 +300,7 @@ def _from_rest(
     if mode == SLIDES and begins and slow > max(q, rounded):
         q = _goes_on(Phase(model, friction, rows, SLIDES, NO_WAY, 0.0), t, vx, vy, spin, q, y,
                      buffer.stages)  # fmt: skip
-    rests = mode == CARRIED and not _swings(model, friction, rows)
+    rests = mode == CARRIED and not _swings(engine, i, model, friction, rows)
     rests = rests and rests_on(model, friction, rows, y)
     return mode, stiff and not _keeps_direction(model), q, rests
 
@@ -344,7 +356,7 @@ def follow_alone(
     slow = max(1.0, 2.0 * model.body.inertia / (model.body.mass * radius * radius))
     straight, horizon = _LAST * math.sqrt(tol) * speed, _horizon(engine, model, t)
     now, passed, h, count, mode, way = t, 0.0, _BEGIN * unit, 0, SLIDES, NO_WAY
-    undecided, known, stiff, over, rests = True, False, False, False, False
+    undecided, known, stiff, over, rests, tips = True, False, False, False, False, math.inf
     before, failed = math.inf, False
     while now < horizon and count <= LONGEST - _MOST and not over:
         patience(1)
@@ -355,7 +367,7 @@ def follow_alone(
             was, mode, way = mode, SLIDES, NO_WAY
             if load > 0.0 and q <= REST * speed:
                 mode, stiff, q, rests = _from_rest(
-                    model, friction, rows, speed, now, q, count == 0, buffer
+                    engine, i, model, friction, rows, now, q, count == 0, buffer
                 )
                 if rests or ((mode == CARRIED) != (was == CARRIED) and count > 0 and now > t):
                     break
@@ -377,7 +389,12 @@ def follow_alone(
         whole = target - now if landed else h
         error = step(phase, now, whole, y, buffer.scale, stages, new)
         grows = times_as_long(error, tol, 0.25 if newton > 0.0 else 0.125, 0.1)
-        if not (error <= tol and math.isfinite(stages[STAGES - 1, VX])):  # or it tips there
+        if not math.isfinite(stages[STAGES - 1, VX]):  # it tips there: half as far, time and again
+            tips, h = now + whole, 0.25 * whole
+            if h < tol * unit:
+                break
+            continue
+        if not error <= tol:
             h, failed = whole * grows, True
             if h < _SHORTEST * unit:
                 break
@@ -402,6 +419,8 @@ def follow_alone(
             count += parts
         passed += length
         now = target if landed else t + passed
+        h = min(h, 0.5 * (tips - now)) if now < tips else h
+        over = over or (h < tol * unit and now < tips)
         _go_on_from(model, tol, buffer)
         larger, q = q, slip_speed(radius, y)
         if mode == SLIDES:
