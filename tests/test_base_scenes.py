@@ -2,11 +2,13 @@
 
 import math
 import tomllib
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import pytest
+from base_judge import Judge
 
 from puck_tables import (
     Base,
@@ -82,6 +84,44 @@ def test_known_runs(name: str) -> None:
     assert gap.max() < 2e-10
     assert run.end == "at rest" and run.error_estimate < 1e-9
     assert abs(run.energy_residual) < 1e-12
+
+
+class UnderStribeck(Judge):
+    """A box of 0.2 × 0.1 m under f = 0.2 + 0.15 exp(−u/0.1); ``unit``: m/s, of its velocities."""
+
+    def __init__(self, unit: float) -> None:
+        corners = [(-0.1, -0.05), (0.1, -0.05), (0.1, 0.05), (-0.1, 0.05)]
+        super().__init__([corners], [], 0.0, math.sqrt(0.0125 / 3.0))
+        self.unit = unit
+
+    def friction_at(self, speed: np.ndarray) -> np.ndarray:
+        return 0.2 + 0.15 * np.exp(-self.unit * speed / 0.1)
+
+    def along_rays(self, far: np.ndarray, w: float) -> list[np.ndarray]:
+        nodes, weights = np.polynomial.legendre.leggauss(40)
+        share = 0.5 + 0.5 * nodes
+        along = far[:, None] * share**2  # the law bends next to the centre
+        pull = self.friction_at(w * along) * share * weights * far[:, None]
+        return [(pull * along**n).sum(axis=1) for n in (1, 2, 3)]
+
+
+@pytest.mark.parametrize("velocity", [(1.0, 0.0), (0.2, 0.1)])
+def test_rows_within_steps_keep_tol(velocity: tuple[float, float]) -> None:
+    """A step is several pieces of the path: also where these are joined."""
+    spin, g = 12.0, 9.80665
+    scene = Scene(Puck(base="box:0.2x0.1"), Floor(law=StribeckLaw(0.35, 0.2, 0.1)),
+                  launch=Launch(velocity, spin=spin))  # fmt: skip
+    run = scene.simulate([0.0])
+    times = run.end_time * (1.0 - np.append(np.linspace(0.98, 0.02, 97), 10.0 ** -np.arange(2, 5)))
+    unit = math.hypot(*velocity, math.sqrt(0.0125 / 3.0) * spin)
+    truth = UnderStribeck(unit).states(velocity, spin, g, times)
+    speed, rate = run.speed_scale, run.rate_scale
+    length, reach = speed**2 / rate, math.hypot(0.1, 0.05)
+    scales = np.array([length, length, length / reach, speed, speed, speed / reach])[:, None]
+    for tol in (1e-6, 1e-9):
+        found = replace(scene, tol=tol).simulate(times)
+        rows = [found.columns[name] for name in ("x", "y", "orientation", "vx", "vy", "spin")]
+        assert np.abs((np.stack(rows)[:, : times.size] - truth) / scales).max() <= tol
 
 
 def on_floor(seed: int) -> dict[str, Any]:
@@ -439,3 +479,16 @@ def test_a_base_goes_into_a_file_and_comes_back() -> None:
     assert again == scene
     run = again.simulate([0.0])
     assert abs(run.end_time - KNOWN["box"][3][0]) < 2e-10
+
+
+def test_a_slip_that_turns_at_last_stops_in_time() -> None:
+    """With hardly a spin the slip turns into one only where it is nearly over."""
+    width, depth, friction, k, launch = 0.0915, 0.056, 0.8, 0.0406, (-1.926, -1.337)
+    puck = Puck(base=Base.box(width, depth), friction=friction, gyration=k)
+    run = Scene(puck, launch=Launch(launch, spin=-9.34e-4), tol=1e-9).simulate([0.0])
+    x, y = 0.5 * width, 0.5 * depth
+    judge = Judge([[(-x, -y), (x, -y), (x, y), (-x, y)]], [], 0.0, k)
+    time, *place = judge.slide(launch, -9.34e-4, friction * 9.80665)[:3]
+    unit = run.speed_scale / run.rate_scale
+    assert abs(run.end_time - time) <= 1e-9 * unit
+    assert np.abs(np.subtract([run.last["x"], run.last["y"]], place)).max() <= 1e-9 * unit**2 * 7.8

@@ -78,7 +78,7 @@ KINDS: dict[str, Any] = {  # a puck and a floor by the factor on their friction
 def test_a_constant_factor_is_other_friction(kind: str) -> None:
     puck, floor = KINDS[kind](1.0)
     other, scaled = KINDS[kind](0.75)
-    tol = {"law": 1e-8}.get(kind, 1e-12)
+    tol = {"law": 1e-9}.get(kind, 1e-12)
     found = end_of(puck, pt.Floor(**floor, grips=[fades(0.75)]), tol=tol)
     wanted = end_of(other, pt.Floor(**scaled), tol=tol)
     near = {"law": 1e-10, "patch": 1e-11}.get(kind, 1e-12)  # a law stands in a table

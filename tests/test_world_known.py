@@ -203,7 +203,8 @@ def test_a_pocket_takes_the_puck_whose_centre_passes_its_rim():
 
 def test_over_the_edge():
     scene = pt.Scene(
-        pucks=[puck_at(0, 0, (1.0, 0.0))], edges=[pt.Edge((0.1, 0.0), normal=(-1.0, 0.0))]
+        pucks=[puck_at(0, 0, (1.0, 0.0), height=0.0)],
+        edges=[pt.Edge((0.1, 0.0), normal=(-1.0, 0.0))],
     )
     run = scene.simulate()
     assert [event.what for event in run.events] == ["overhang", "edge"]

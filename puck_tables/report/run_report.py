@@ -79,7 +79,7 @@ def _overhang(run: Run) -> str:
 
     over = {event.puck for event in run.events if event.what == "overhang"}
     pucks = zip(run.names, pucks_of(run.scene), strict=True)
-    cut = [len(edges_under(run.scene, puck)) > 0 for name, puck in pucks if name in over]
+    cut = [len(edges_under(run.scene.alone(puck))) > 0 for name, puck in pucks if name in over]
     return "; ".join([CARRIED_BY_REST] * any(cut) + [OVERHANG] * (not all(cut)))
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.polynomial.legendre import legint, legval, legvander
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
@@ -28,15 +29,35 @@ _SECOND = np.array([
 ])  # fmt: skip
 _LATE = int(_SECOND[-1])
 
-# weights of the stages for what an integral has come half way through a step over 1, with the error
-# h⁷: of a polynomial through all that are exact to h⁵, with different nodes
+# a step is known at so many shares of it, by weights of the stages for what an integral has come
+# there, over 1, with the error h⁷, and for its rate: of a polynomial through all that are exact to
+# h⁵, with different nodes
+SHARES = 16
 _EXACT = [n for n, row in enumerate(_A) if abs(row @ _C**4 - _C[n] ** 5 / 5) < 1e-14]
 _NODES = [n for n in _EXACT if n == STAGES - 1 or _C[n] < 1.0]
-HALFWAY_STAGES = np.zeros(STAGES)
-_POWERS = np.arange(len(_NODES))
-HALFWAY_STAGES[_NODES] = np.linalg.solve(
-    _C[_NODES] ** _POWERS[:, None], 0.5 ** (_POWERS + 1) / (_POWERS + 1)
-)
+_FIRST_NODE, _AT = _NODES[1], np.linspace(-1.0, 1.0, SHARES + 1)  # besides that at the start
+_BASIS = np.linalg.inv(legvander(2.0 * _C[_NODES] - 1.0, len(_NODES) - 1))
+_CHANGES, _RATES = np.zeros((2, SHARES + 1, STAGES))
+_CHANGES[:, _NODES] = legval(_AT, 0.5 * legint(_BASIS, lbnd=-1)).T
+_RATES[:, _NODES] = legval(_AT, _BASIS).T
+
+
+@inlined
+def come_by(share: int, h: float, work: FloatArray, i: int) -> float:
+    """By how much a number of the state has changed at so many shares of a step done over h."""
+    total = _CHANGES[share, 0] * work[0, i]
+    for stage in range(_FIRST_NODE, STAGES):
+        total += _CHANGES[share, stage] * work[stage, i]
+    return h * total
+
+
+@inlined
+def rate_at(share: int, work: FloatArray, i: int) -> float:
+    """The rate of a number of the state at so many shares of a step done."""
+    total = _RATES[share, 0] * work[0, i]
+    for stage in range(_FIRST_NODE, STAGES):
+        total += _RATES[share, stage] * work[stage, i]
+    return total
 
 
 @inlined

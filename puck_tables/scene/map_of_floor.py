@@ -30,13 +30,10 @@ from puck_tables.scene.sides import line_of
 _NO_EDGES = np.empty((0, 3))
 
 
-def floor_map_of(
-    scene: SceneSpec, normal: float, top: float = 0.0, edges: FloatArray = _NO_EDGES
-) -> FloatArray:  # fmt: skip
+def floor_map_of(scene: SceneSpec, normal: float, top: float = 0.0) -> FloatArray:
     """All frictions of the floor of a scene, for its puck, packed; ``normal``: N.
 
-    ``top``: up to which slip speed its laws are looked at, m/s; ``edges`` (e, 3): that cut the
-    base (:func:`edges_under`).
+    ``top``: up to which slip speed its laws are looked at, m/s.
 
     >>> from puck_tables import Floor, Puck, Scene, Strips
     >>> floor = Floor(strips=Strips((0.1,), (0.3, 0.1)))
@@ -77,7 +74,7 @@ def floor_map_of(
         turns = float(axes.fixed_to == "floor")
         laws = [np.array([*np.multiply(normal, axes.friction), axes.direction, turns])]
     sure = shape is None or (puck.height == 0.0 and shape.is_under_centre)  # up to its centre
-    how = edges, may_lift(scene, top), 0.0 if sure else NARROWEST
+    how = edges_under(scene), may_lift(scene, top), 0.0 if sure else NARROWEST
     return FloorMap(*there, base, laws, which, belts_of(floor), *how).packed()
 
 
@@ -100,24 +97,37 @@ def may_lift(scene: SceneSpec, top: float = 0.0) -> bool:
     return not 0.5 * strongest * puck.height <= shape.highest_lever
 
 
-def edges_under(scene: SceneSpec, puck: PuckSpec) -> FloatArray:
-    """The edges (e, 3) beyond which a base is carried by what is left of it; none: it is not.
+def edges_under(scene: SceneSpec) -> FloatArray:
+    """The edges (e, 3) that leave its puck carried by the rest of its base; none: it is not.
 
-    A unit normal into the floor and the place along it, m.  It is where what is left is pressed
-    linearly: a base that is given, on a floor whose friction does not depend on the direction.
+    A unit normal into the floor and the place along it, m.  It is where the rest is pressed
+    linearly: under uniform pressure or any base, on a floor whose friction does not depend on the
+    direction.
 
     >>> from puck_tables import Edge, Puck, Scene
     >>> puck = Puck(base="box:0.2x0.1", friction=0.3)
     >>> scene = Scene(puck, edges=[Edge((0.5, 0.0), normal=(-1.0, 0.0))])
-    >>> edges_under(scene, puck).tolist()
+    >>> edges_under(scene).tolist()
     [[-1.0, 0.0, -0.5]]
     """
-    floor, shape = scene.floor, puck.shape
-    if floor.orthotropic is not None or shape is None:
+    floor = scene.floor
+    if floor.orthotropic is not None or _pressed_base(scene.puck) is None:
         return _NO_EDGES
     if len(scene.edges) > MOST_EDGES:
         return _NO_EDGES
     return np.array([line_of(edge) for edge in scene.edges]).reshape(-1, 3)
+
+
+def _pressed_base(puck: PuckSpec) -> Base | None:
+    """The base of a puck that is pressed linearly; None: its pressure is another."""
+    if puck.shape is not None:
+        return puck.shape
+    law = puck.body.law
+    if law.name == "uniform":
+        return Base.disc(puck.radius)
+    if law.name.startswith("annulus:"):
+        return Base.annulus(puck.radius, law.edges[0] * puck.radius)
+    return None
 
 
 def shape_under(scene: SceneSpec) -> Base | None:
@@ -131,8 +141,6 @@ def shape_under(scene: SceneSpec) -> Base | None:
     puck, axes = scene.puck, scene.floor.orthotropic
     if puck.shape is None and axes is not None and axes.fixed_to == "body":
         return Base.disc(puck.radius)
-    if puck.shape is None and has_laws_by_place(scene.floor):
-        edges = puck.body.law.edges  # of an annulus
-        inner = edges[0] if puck.body.law.name.startswith("annulus:") else 0.0
-        return Base.annulus(puck.radius, inner * puck.radius) if inner else Base.disc(puck.radius)
+    if has_laws_by_place(scene.floor) or len(edges_under(scene)):
+        return _pressed_base(puck)
     return puck.shape

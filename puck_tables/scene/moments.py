@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.base_friction import SIDES
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.equations import SECOND, rates, slip_side, stopping
+from puck_tables.scene.floor_map import BASE
 from puck_tables.scene.forces import has_sign, jumps
 from puck_tables.scene.friction import SPIN, VX, VY, size
 from puck_tables.scene.ingredients import (
@@ -29,6 +31,7 @@ _TURNS, _SETTLED = 3000, 1e-12  # at most; of friction: a direction stays
 _SLOW = 1e-3  # of friction: what brakes less comes closer to rest before it goes straight
 REST = 1e-13  # of the scale of speeds: as good as at rest
 _MARGIN = 0.2  # of friction
+_UNLIKE = 0.1  # of what brakes: so much less, at least, that may be in another direction
 _BLURRED = 10.0  # times the local error: a slip that steps blur
 _CLOSE = 1e-12  # of a step: how well a moment in it is known
 _FIRST = 1e-16  # of the scale of speeds: what a slip begins with, for its direction
@@ -129,6 +132,15 @@ def zero(
 
 
 @inlined
+def _is_round(friction: DryFriction) -> bool:
+    """Whether friction is singular where the rim has a point without slip: it has no sides."""
+    if not is_mixed(friction):
+        return True
+    table = friction.by_speed.table
+    return table[int(table[BASE]) + SIDES] == 0.0
+
+
+@inlined
 def first_event_on(
     phase: Phase, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
     new: FloatArray,
@@ -137,7 +149,7 @@ def first_event_on(
     radius, first = phase.model.body.radius, NOTHING
     for passed in range(2):
         what = NOTHING
-        if passed == 0 and phase.mode == SLIDES:
+        if passed == 0 and phase.mode == SLIDES and _is_round(phase.friction):
             what = EQUAL if slip_side(radius, y) * slip_side(radius, new) < 0.0 else what
         turns_over = y[SPIN] * new[SPIN] < 0.0 and jumps(phase.model.forces.drags)
         turns_over = turns_over and (
@@ -203,7 +215,7 @@ def goes_straight(
     small = _SLOW * phase.friction.load
     excess = excess_at_rest(phase, t, y)[0]
     least = max(-excess, small) / (mass * slow)
-    late = max(q / least - q / brakes, 0.0) * min(across / brakes, 1.0)
+    late = q / brakes * max(brakes / least - 1.0, _UNLIKE) * min(across / brakes, 1.0)
     blurred = q <= _BLURRED * tolerance * speed
     quick = brakes > small / mass / slow and across <= brakes
     quick = quick and (blurred or late <= tolerance * unit)

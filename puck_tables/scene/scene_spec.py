@@ -155,7 +155,7 @@ class SceneSpec:
         return self
 
     def alone(self, puck: PuckSpec) -> Self:
-        """A puck alone on its floor, as long and as close; what does not fit is not looked for.
+        """A puck alone on its floor up to its edges, as long and as close, whether or not it fits.
 
         >>> board = SceneSpec(pucks=[ScenePuck(0.5, friction=0.1)])
         >>> board.alone(board.pucks[0]).frictions
@@ -165,7 +165,7 @@ class SceneSpec:
         for spec in specs(type(self)).values():
             object.__setattr__(scene, spec.name, spec.default)
         object.__setattr__(scene, "puck", puck)
-        for name in ("floor", "gravity", "time", "tol"):
+        for name in ("floor", "edges", "gravity", "time", "tol"):
             object.__setattr__(scene, name, getattr(self, name))
         object.__setattr__(scene, "ranges", {})
         return scene

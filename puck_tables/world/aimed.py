@@ -241,7 +241,9 @@ def _sent(scene: SceneSpec, striker: str, vx: float, vy: float, spin: float) -> 
 def _miss(run: Run, wanted: Target) -> float | None:
     """How far from the target a run ends, m; None where the puck falls, or not where it is to."""
     name = run.names[wanted.puck]
-    fallen = [e.partner for e in run.events if e.puck == name and e.what in ("pocket", "edge")]
+    fallen = [
+        e.partner for e in run.events if e.puck == name and e.what in ("pocket", "edge", "tip")
+    ]
     if wanted.pocket >= 0:
         return 0.0 if fallen == [f"pocket {wanted.pocket}"] else None
     last = run.last_of(wanted.puck)

@@ -139,8 +139,8 @@ def _happen(engine: Engine, i: int, partner: int, t: float, room: Room) -> int:
     room.marks[i] = CONCERNED
     if partner == LOOK_AGAIN:
         return REACHED
-    if partner < 0 and int(engine.obstacles[-1 - partner, KIND]) == OVERHANG:
-        overhang(engine, i, t, -1 - partner, room)
+    hangs = partner < 0 and int(engine.obstacles[-1 - partner, KIND]) == OVERHANG
+    if hangs and overhang(engine, i, t, -1 - partner, room):
         return REACHED
     if partner == PATH_ENDS and engine.drives[i, 0] < engine.drives[i, 1]:
         drive_on(engine, i, t, room)

@@ -2,7 +2,8 @@
 
 Where friction differs, the rows of ``regions`` are all discs on the first strip, on the second, …,
 on every patch, and then all discs astride: on several frictions at once, each of which is felt
-under its own part of the base (:mod:`puck_tables.scene.base_on_floor`).  ``regions.ground`` has
+under its own part of the base (:mod:`puck_tables.scene.base_on_floor`), or over an edge, carried by
+what is left of it (:mod:`puck_tables.scene.over_edges`).  ``regions.ground`` has
 one such ground for every disc, all of one length, for each has its own load.
 """
 
@@ -52,12 +53,19 @@ from puck_tables.world.layout import (
     BELT_Y,
     DECEL,
     DELTA,
+    EDGE_NUMBER,
     HEIGHT_RATIO,
     INTEGRATED,
+    KIND,
     LIES,
+    LIGHTNESS,
     NORMAL,
+    OVERHANG,
     RADIUS,
     REGION,
+    A,
+    B,
+    C,
 )
 
 _NEARER = 0.9  # of the slip over one belt is that over another: states are relative to that
@@ -271,7 +279,7 @@ def room_on_floor(regions: Regions, discs: FloatArray, i: int, state: FloatArray
 
 @inlined
 def step_onto(engine: Engine, i: int) -> None:
-    """A disc has the friction that belongs to how it lies to borders and patches."""
+    """A disc has the friction that belongs to how it lies to borders, patches and edges."""
     disc = engine.discs[i]
     first, last = floor_map_span(engine.regions, engine.discs, i)
     floor_map = engine.regions.floor_map[first:last]
@@ -287,6 +295,9 @@ def step_onto(engine: Engine, i: int) -> None:
                 patch = number - borders
         if patch >= 0:
             strip = borders + 1 + patch
+        if floor_map[EDGES] > 0.0:
+            for number in range(engine.hangs.shape[1]):
+                astride = astride or engine.hangs[i, number] != 0
         if astride:
             strip = borders + 1 + patches
     region = strip * engine.discs.shape[0] + i
@@ -298,14 +309,31 @@ def step_onto(engine: Engine, i: int) -> None:
 
 
 @inlined
-def lay_down(engine: Engine, i: int, state: FloatArray) -> None:
-    """See how the base of a disc lies that is put down, and which friction it has there."""
+def is_beyond(disc: FloatArray, edge: FloatArray, x: float, y: float) -> bool:
+    """Whether the rim of a disc at a place, which is not driven, is over an edge."""
+    return disc[LIGHTNESS] > 0.0 and edge[A] * x + edge[B] * y - edge[C] < disc[RADIUS]
+
+
+@inlined
+def lie_at(engine: Engine, i: int, x: float, y: float) -> None:
+    """See how a disc at a place lies to borders, patches and edges: it has the friction there."""
+    disc = engine.discs[i]
     first, last = floor_map_span(engine.regions, engine.discs, i)
     floor_map = engine.regions.floor_map[first:last]
     for number in range(engine.discs.shape[1] - LIES):
-        away = off_border(floor_map, number, state[X], state[Y])
-        engine.discs[i, LIES + number] = lies_to(away, engine.discs[i, RADIUS])
+        away = off_border(floor_map, number, x, y)
+        disc[LIES + number] = lies_to(away, disc[RADIUS])
+    for k in range(engine.obstacles.shape[0]):
+        row = engine.obstacles[k]
+        if int(row[KIND]) == OVERHANG:
+            engine.hangs[i, int(row[EDGE_NUMBER])] = int(is_beyond(disc, row, x, y))
     step_onto(engine, i)
+
+
+@inlined
+def lay_down(engine: Engine, i: int, state: FloatArray) -> None:
+    """A disc is put down."""
+    lie_at(engine, i, state[X], state[Y])
     engine.discs[i, BELT_SPIN] = engine.surface.spin
     move_floor(engine.surface, engine.discs, engine.forcing, engine.spans, i, engine.clock[0])
     choose_belt(engine.regions, engine.discs, i, state)

@@ -31,7 +31,7 @@ from puck_tables.scene.over_time import largest_factors
 from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.regions import axes_of, load_limit, of_one_shape, section_of
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.agreement import frictions_under, has_closed_forms, is_integrated
+from puck_tables.world.agreement import frictions_under, has_closed_forms, is_integrated, pucks_of
 from puck_tables.world.engine_state import Engine
 from puck_tables.world.floor_under import floor_of
 
@@ -43,9 +43,15 @@ def normal_on(scene: SceneSpec, puck: ScenePuck) -> float:
     return puck.mass * puck.gravity * math.cos(scene.floor.slope)
 
 
-def has_several(scene: SceneSpec) -> bool:
-    """Whether a base may lie on several frictions of a floor."""
-    return scene.floor.strips is not None or bool(scene.floor.patches)
+def has_sums(scene: SceneSpec) -> bool:
+    """Whether a base may lie on several frictions, or hang over an edge: it is summed there."""
+    if scene.floor.strips is not None or scene.floor.patches:
+        return True
+    return any(_may_hang(scene, puck) for puck in pucks_of(scene))
+
+
+def _may_hang(scene: SceneSpec, puck: ScenePuck) -> bool:
+    return not puck.path and len(edges_under(scene.alone(puck))) > 0
 
 
 def floors_of(scene: SceneSpec, pucks: list[ScenePuck], fastest: float) -> FloatArray:
@@ -63,7 +69,7 @@ def floors_of(scene: SceneSpec, pucks: list[ScenePuck], fastest: float) -> Float
             unheld = by_slip or bool(scene.floor.over_time) or _is_summed(scene, puck)
             how = NOT_HELD if unheld else float(is_integrated(scene, puck, given[place]))
             rows.append(_row(scene, puck, given[place], how))
-    if has_several(scene):
+    if has_sums(scene):
         for puck, given in zip(pucks, frictions, strict=True):
             rows.append(_row(scene, puck, max(given), NOT_HELD))
     belts = np.repeat(belts_of(scene.floor), len(pucks), axis=0)
@@ -135,7 +141,7 @@ def regions_of(
             section_of(puck, 2.0 * friction * puck.height / puck.radius, scene.tol)
             for puck, friction in places
         ])  # fmt: skip
-    floor_map, several = NO_GROUND, has_several(scene)
+    floor_map, several = NO_GROUND, has_sums(scene)
     if several:
         most = loads.reshape(-1, len(pucks)).max(axis=0)
         loads, cuts = np.concatenate([loads, most]), np.concatenate([cuts, cuts[: len(pucks)]])
@@ -162,9 +168,7 @@ def _grounds(
     ``top``: up to which slip their laws are looked at, m/s.
     """
     grounds = [
-        floor_map_of(scene.alone(puck), normal_on(scene, puck), top, edges_under(scene, puck))
-        if sums
-        else NO_GROUND
+        floor_map_of(scene.alone(puck), normal_on(scene, puck), top) if sums else NO_GROUND
         for puck, sums in zip(pucks, summed, strict=True)
     ]
     size = max(map(len, grounds))  # what they end with is room to work
@@ -212,12 +216,9 @@ def _by_slip(
     law, top, largest = law_range(scene, fastest)
     factor = float(largest_factors(scene.floor)[0])
     largest, static = largest * factor, scene.floor.static_ratio
-    pressed = [  # one-sided, it may be: no table knows that
-        len(edges_under(scene, puck)) > 0 or may_lift(scene.alone(puck), top) for puck in pucks
-    ]
-    under = [
-        None if puck.path or part else load_under(puck)
-        for puck, part in zip(pucks, pressed, strict=True)
+    under = [  # no table knows what is pressed one-sided
+        None if puck.path or may_lift(scene.alone(puck), top) else load_under(puck)
+        for puck in pucks
     ]
     summed = np.array([
         own is None and not puck.path for own, puck in zip(under, pucks, strict=True)
@@ -226,15 +227,18 @@ def _by_slip(
     for puck, own in zip(pucks, under, strict=True):
         if puck.shape is None and own is not None:
             tables[own].refuse_height(static * max(factor, 1.0) * 2.0 * puck.height / puck.radius)
+    hangs = np.array([_may_hang(scene, puck) for puck in pucks])
     floor_map = NO_GROUND
-    if summed.any():
-        floor_map = _grounds(scene, pucks, summed, top)
+    if (summed | hangs).any():
+        floor_map = _grounds(scene, pucks, summed | hangs, top)
     ends = np.cumsum([0, *(len(table.compiled) for table in tables.values())])
     spans = dict(zip(tables, pairwise(ends.tolist()), strict=True))
     laws = np.array([(0, 0) if own is None else spans[own] for own in under])
     compiled = [table.compiled for table in tables.values()] or [np.array([1.0, top])]
     by_slip = BySpeed(np.concatenate(compiled), 0.0, 1.0, 1.0)
-    return Regions(normals * largest, delta, limits, by_slip, summed, floor_map, laws)
+    several = np.ones(len(delta) - len(pucks), np.bool_)
+    loads, astride = np.resize(normals * largest, len(delta)), np.concatenate([summed, several])
+    return Regions(loads, delta, limits, by_slip, astride, floor_map, laws)
 
 
 def slip_of_rim(radius: float, surface: Surface, state: list[float]) -> float:

@@ -1,30 +1,26 @@
 """A lone puck whose motion is integrated, from where it sets off until something changes.
 
 The equations are those of one puck (:mod:`puck_tables.scene.equations`), by steps of order 8, or of
-Radau IIA where the direction of the slip settles much faster than the slip changes.  Each step is a
-piece of its path, and as long as a polynomial of degree five is as good as the promise.  A
-path ends where the puck comes to rest on the floor or leaves that rest, where its rim has come over
-a border of the floor or slips faster than a friction law goes, at a horizon, and after so many
-steps; whatever else meets it is found on the path.
+Radau IIA where the direction of the slip settles much faster than the slip changes.  A step is as
+many pieces of its path as it takes for polynomials of degree five to be as good as the promise,
+between states that its stages give.  A path ends where the puck comes to rest on the floor or
+leaves that rest, where its rim has come over a border of the floor or slips faster than a friction
+law goes, at a horizon, and after so many steps; whatever else meets it is found on the path.
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, inner, on_demand, patience
+from puck_tables.kernels.compile import inlined, on_demand, patience
 from puck_tables.motion.steppers import times_as_long
 from puck_tables.scene.belts import is_rubbed
 from puck_tables.scene.equations import (
-    DRY,
     FIRST,
     GIVEN,
     ROW,
     SIZE,
-    SUPPORT,
-    VISCOUS,
     rates,
     settling_rates,
     slip_change,
@@ -32,7 +28,7 @@ from puck_tables.scene.equations import (
     slip_speed,
     to_laboratory,
 )
-from puck_tables.scene.explicit import HALFWAY_STAGES, STAGES
+from puck_tables.scene.explicit import STAGES
 from puck_tables.scene.forces import Forces
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X
 from puck_tables.scene.ingredients import (
@@ -64,15 +60,12 @@ from puck_tables.scene.moments import (
     rests_on,
 )
 from puck_tables.scene.over_time import rows_passed
-from puck_tables.scene.radau import RADAU_ROWS
 from puck_tables.scene.steps import (
-    accelerations,
     follow_scales,
     step,
     up_to_the_stop,
 )
-from puck_tables.world import step_ledger
-from puck_tables.world.engine_state import N_HISTORY, N_PIECES, N_WORKS, Engine
+from puck_tables.world.engine_state import Engine
 from puck_tables.world.floor_under import (
     changes_below,
     choose_belt,
@@ -87,6 +80,7 @@ from puck_tables.world.layout import (
     BELT_X,
     BELT_Y,
     DRAG,
+    EDGE,
     HOLD,
     HOLD_ANGLE,
     HOLD_REACH,
@@ -94,6 +88,7 @@ from puck_tables.world.layout import (
     HOLD_VY,
     HOLD_X,
     HOLD_Y,
+    KIND,
     LIES,
     LIGHTNESS,
     PULL_X,
@@ -101,18 +96,21 @@ from puck_tables.world.layout import (
     RADIUS,
     TURNABILITY,
     TWIST,
+    A,
+    B,
+    C,
 )
-from puck_tables.world.paths import DURATION, on_piece
-from puck_tables.world.paths import FIRST as PLACES
-from puck_tables.world.paths import START as BEGINS
+from puck_tables.world.step_pieces import ENDED, LoneBuffer, buffer_on, write_step
 
-LONGEST = 128  # steps of a path, before it ends for a new look
-FINEST = 3e-14  # error of a step in units of the scales: finer is rounding
-COARSER = 10.0  # times that: of a piece, whose errors do not add up
+LONGEST = 128  # pieces of a path, before it ends for a new look
+_MOST = 8  # of them a step: shorter ones are needed where its stages do not tell more
+FINEST = 1e-14  # error of a step in units of the scales: finer is rounding
 _BEGIN = 0.1  # of Q/J: the first step
 _SHORTEST = 1e-16  # of Q/J: shorter steps lead nowhere
 _ROUNDED = 1e-14  # of the floor's velocity: a slip over it is not known better when a path begins
-_SAFE = 0.8  # of how long a piece could be, by what the last one missed
+# the power of how far steps reach over what the one before did by which the next is shorter: of it
+# and half as much again; but less is a kink that is passed
+_GOES_ON, _SUDDEN = 1.5, 0.3
 _BRIEF = 1e-6  # of Q/J: on as short a step what a piece misses is rounding
 _NEAR = 0.75  # of the time in which the slip would end, at most, is a step
 _LAST = 0.03  # of the root of the error of a step: slips as small may go straight to their stop
@@ -123,44 +121,6 @@ _NEWTON, _FINEST_NEWTON = 1e-3, 1e-15  # of the error of a step: how well implic
 _FARTHER = 0.1  # of the time since the start: so far ahead a path may go
 _SWING = 0.05  # rad that a puck at rest on a turntable turns, at most, in a step
 _OVER = 1e-12  # of a radius: beyond a border
-# of a polynomial of degree five that is wrong by d in its second derivative in the middle, over h:
-_PLACE, _RATE = 1.0 / 24.0, 0.144  # its places are off by so much d h² at most, its rates d h
-_WORK = 0.144  # and of one of degree four that is wrong by d in its first derivative there, over h
-
-
-class LoneBuffer(NamedTuple):
-    """Where to work: rows of one array, for each array that comes from Python costs its call.
-
-    Rates of the stages of a step (22, 12), and at its start and end (2, 12) and middle (1, 12);
-    states at its start, its end and in between (12,); scales of a state; a place on a piece; powers
-    at the start, the energies of a step, powers at its end, and the energies half way (4, …).
-    """
-
-    stages: FloatArray
-    ends: FloatArray
-    middle: FloatArray
-    y: FloatArray
-    new: FloatArray
-    trial: FloatArray
-    scale: FloatArray
-    place: FloatArray
-    ledgers: FloatArray
-
-
-# rows of a buffer, in the order of its arrays
-_ENDS, _MIDDLE, _STATES = RADAU_ROWS, RADAU_ROWS + 2, RADAU_ROWS + 3
-_BOOKS = _STATES + 5
-BUFFER_ROWS = _BOOKS + 4
-
-
-@inlined
-def _buffer_on(rows: FloatArray) -> LoneBuffer:
-    """A buffer on rows (34, 12)."""
-    return LoneBuffer(
-        rows[:_ENDS], rows[_ENDS:_MIDDLE], rows[_MIDDLE:_STATES], rows[_STATES],
-        rows[_STATES + 1], rows[_STATES + 2], rows[_STATES + 3], rows[_STATES + 4],
-        rows[_BOOKS:BUFFER_ROWS],
-    )  # fmt: skip
 
 
 @inlined
@@ -236,92 +196,11 @@ def _lay_out(
 
 
 @inlined
-def _write_piece(phase: Phase, begin: float, h: float, row: FloatArray, buffer: LoneBuffer) -> None:
-    """A step as a piece of the path; the rates at its ends are kept."""
-    for n in range(ROW):
-        buffer.ends[0, n], buffer.ends[1, n] = buffer.stages[0, n], buffer.stages[STAGES - 1, n]
-    row[BEGINS], row[DURATION] = begin, h
-    for end in range(2):
-        state = buffer.y if end == 0 else buffer.new
-        floor = surface_now(phase, begin + end * h)
-        ax, ay, turn = accelerations(floor, state, buffer.ends, end)
-        first = PLACES + 9 * end
-        for n in range(3):
-            row[first + n], row[first + 3 + n] = state[n], buffer.ends[end, n]
-        row[first + 6], row[first + 7], row[first + 8] = ax, ay, turn
-
-
-@inlined
-def _write_work(engine: Engine, begin: float, h: float, count: int, buffer: LoneBuffer) -> None:
-    """What a step, after so many others, did to the energies."""
-    row = engine.work_rows[engine.counts[N_WORKS] + count]
-    before, done, after, half = (
-        buffer.ledgers[0], buffer.ledgers[1], buffer.ledgers[2], buffer.ledgers[3],
-    )  # fmt: skip
-    for n in range(GIVEN, SIZE):
-        entry = step_ledger.PULL_WORK
-        if n == DRY:
-            entry = step_ledger.FLOOR_HEAT
-        elif n == VISCOUS:
-            entry = step_ledger.DRAG_HEAT
-        elif n == SUPPORT:
-            entry = step_ledger.SUPPORT_WORK
-        before[entry], after[entry] = buffer.ends[0, n], buffer.ends[1, n]
-        done[entry], half[entry] = buffer.new[n] - buffer.y[n], buffer.trial[n]
-    row[step_ledger.SEGMENT] = engine.counts[N_HISTORY]
-    step_ledger.write_work(row, begin, h, before, done, after, half)
-
-
-@inner
-def _misfit(
-    phase: Phase, t: float, h: float, piece: FloatArray, tol: float, buffer: LoneBuffer
-) -> float:
-    """How wrong a piece is in its middle, over what it may be, and what came half way.
-
-    Of an explicit step by what its acceleration there lacks of what acts; of an implicit one, where
-    friction magnifies that, by half a step.
-    """
-    on_piece(piece, t + 0.5 * h, buffer.place)
-    trial, place, scale = buffer.trial, buffer.place, buffer.scale
-    floor = surface_now(phase, t + 0.5 * h)
-    largest = 0.0
-    if phase.newton > 0.0:
-        error = step(phase, t, 0.5 * h, buffer.y, scale, buffer.stages, trial)
-        if not error < math.inf:
-            return math.inf
-        to_laboratory(floor, trial, 1.0)
-        for n in range(GIVEN):
-            largest = max(largest, abs(place[n] - trial[n]) / scale[n])
-        for n in range(GIVEN, SIZE):
-            trial[n] -= buffer.y[n]
-        return largest / (COARSER * tol)
-    for n in range(GIVEN):
-        trial[n] = place[n]
-    to_laboratory(floor, trial, -1.0)
-    rates(phase, t + 0.5 * h, trial, buffer.middle, FIRST)
-    acts = accelerations(floor, trial, buffer.middle, 0)
-    if not math.isfinite(acts[0]):
-        return math.inf
-    for n in range(3):
-        gap = h * abs(place[6 + n] - acts[n])
-        largest = max(largest, _PLACE * h * gap / scale[n], _RATE * gap / scale[VX + n])
-    for n in range(GIVEN, SIZE):
-        total = 0.0
-        for stage in range(STAGES):
-            total += HALFWAY_STAGES[stage] * buffer.stages[stage, n]
-        trial[n] = h * total
-        both = buffer.ends[0, n] + buffer.ends[1, n]
-        gap = h * (buffer.middle[0, n] + 0.25 * both) - 1.5 * (buffer.new[n] - buffer.y[n])
-        largest = max(largest, _WORK * abs(gap) / scale[n])
-    return largest / (COARSER * tol)
-
-
-@inlined
 def _leads_off(engine: Engine, i: int, buffer: LoneBuffer) -> bool:
     """Whether a step has led to where there is another friction, or none is known.
 
-    The rim has come over a border, or left it, or it slips faster than a law goes, or least over
-    another belt.
+    The rim has come over a border, or left it, or the centre over an edge, or it slips faster than
+    a law goes, or least over another belt.
     """
     y, disc, radius = buffer.new, engine.discs[i], engine.discs[i, RADIUS]
     vx, vy = y[VX] + disc[BELT_X], y[VY] + disc[BELT_Y]
@@ -329,6 +208,10 @@ def _leads_off(engine: Engine, i: int, buffer: LoneBuffer) -> bool:
         return True
     if outruns_law(engine.regions, radius, y[VX], y[VY], y[SPIN]):
         return True
+    for k in range(engine.obstacles.shape[0]):
+        row = engine.obstacles[k]
+        if int(row[KIND]) == EDGE and row[A] * y[X] + row[B] * y[X + 1] < row[C]:
+            return True
     if engine.discs.shape[1] == LIES:
         return False
     before = room_on_floor(engine.regions, engine.discs, i, buffer.y) + _OVER * radius
@@ -428,7 +311,7 @@ def _go_on_from(model: Model, tol: float, buffer: LoneBuffer) -> None:
     for n in range(SIZE):
         buffer.y[n] = buffer.new[n]
     for n in range(ROW):
-        buffer.stages[0, n] = buffer.ends[1, n]
+        buffer.stages[0, n] = buffer.ends[ENDED, n]
     follow_scales(buffer.scale, tol, model.body, buffer.y)
 
 
@@ -441,9 +324,16 @@ def _put_down(model: Model, t: float, state: FloatArray, buffer: LoneBuffer) -> 
 
 
 @inlined
-def _piece_for(coarse: float, h: float) -> float:
-    """How long a piece may be, where one over h was wrong by so many times what it may be."""
-    return h * max(0.2, _SAFE * coarse**-0.2) if coarse > 0.0 else math.inf
+def _held_back(grows: float, failed: bool, reach: float, before: float) -> float:
+    """How many times as long the next step is, where errors of steps would let it be ``grows``.
+
+    Not longer than one that took a second trial; and where steps get shorter, for friction is
+    singular ahead, as if that went on.  ``reach``: how long the step might have been, and the one
+    ``before``.
+    """
+    grows = min(grows, 1.0) if failed else grows
+    shrinks = reach / before if reach < before < math.inf else 1.0
+    return grows * max(shrinks, _SUDDEN) ** _GOES_ON
 
 
 @on_demand("boolean", "float64", "int64")
@@ -454,10 +344,10 @@ def follow_alone(
 
     They stand after all pieces that there are, and what they did to the energies after all works,
     uncounted.  Where it rests for good there are none, until inf; ``state`` (6,) is moved to rest.
-    ``work`` (34, 12): to work on.
+    ``work`` (38, 12): to work on.
     """
     choose_belt(engine.regions, engine.discs, i, state)
-    model, buffer = model_of(engine, i), _buffer_on(work)
+    model, buffer = model_of(engine, i), buffer_on(work)
     friction = friction_under_disc(engine.regions, engine.discs, i)
     y, new, stages = buffer.y, buffer.new, buffer.stages
     speed, unit, radius = engine.scale[0], engine.scale[0] / engine.scale[1], model.body.radius
@@ -466,19 +356,20 @@ def follow_alone(
     slow = max(1.0, 2.0 * model.body.inertia / (model.body.mass * radius * radius))
     straight, horizon = _LAST * math.sqrt(tol) * speed, _horizon(engine, model, t)
     now, passed, h, count, mode, way = t, 0.0, _BEGIN * unit, 0, SLIDES, NO_WAY
-    undecided, known, stiff, over, rests = True, False, False, False, False
-    while now < horizon and count < LONGEST and not over:
+    undecided, known, stiff, over, rests, tips = True, False, False, False, False, math.inf
+    before, failed = math.inf, False
+    while now < horizon and count <= LONGEST - _MOST and not over:
         patience(1)
         rows = rows_passed(drive, 0, len(drive), now)
         target = min(drive[rows, 0], horizon) if rows < len(drive) else horizon
         q = slip_speed(radius, y)
         if undecided:
-            before, mode, way = mode, SLIDES, NO_WAY
+            was, mode, way = mode, SLIDES, NO_WAY
             if load > 0.0 and q <= REST * speed:
                 mode, stiff, q, rests = _from_rest(
                     engine, i, model, friction, rows, now, q, count == 0, buffer
                 )
-                if rests or ((mode == CARRIED) != (before == CARRIED) and count > 0 and now > t):
+                if rests or ((mode == CARRIED) != (was == CARRIED) and count > 0 and now > t):
                     break
                 h = target - now if mode == CARRIED else h
         newton = max(_NEWTON * tol, _FINEST_NEWTON) if stiff and mode == SLIDES else 0.0
@@ -498,8 +389,13 @@ def follow_alone(
         whole = target - now if landed else h
         error = step(phase, now, whole, y, buffer.scale, stages, new)
         grows = times_as_long(error, tol, 0.25 if newton > 0.0 else 0.125, 0.1)
-        if not (error <= tol and math.isfinite(stages[STAGES - 1, VX])):  # or it tips there
-            h = whole * grows
+        if not math.isfinite(stages[STAGES - 1, VX]):  # it tips there: half as far, time and again
+            tips, h = now + whole, 0.25 * whole
+            if h < tol * unit:
+                break
+            continue
+        if not error <= tol:
+            h, failed = whole * grows, True
             if h < _SHORTEST * unit:
                 break
             continue
@@ -509,20 +405,22 @@ def follow_alone(
             continue
         length, slips = _is_held(phase, now, length, buffer)
         landed = landed and stuck == NOTHING and not slips
-        piece = engine.pieces[engine.counts[N_PIECES] + count]
-        _write_piece(phase, now, length, piece, buffer)
-        coarse = _misfit(phase, now, length, piece, tol, buffer)
-        longest = _piece_for(coarse, length) if length > _BRIEF * unit else math.inf
+        most = _MOST if length > _BRIEF * unit else 1
+        parts, coarse, longest = write_step(engine, phase, now, length, count, tol, most, buffer)
+        longest = longest if most > 1 else math.inf
         if coarse > 1.0 and longest < length:
             h = longest
             continue
-        h = min(whole * grows, longest)
+        reach = whole * (tol / error) ** 0.125 if newton == 0.0 and error > 0.0 else math.inf
+        h = min(whole * _held_back(grows, failed, reach, before), longest)
+        before, failed = reach, False
         over = _leads_off(engine, i, buffer)
         if length > _SHORTEST * unit:
-            _write_work(engine, now, length, count, buffer)
-            count += 1
+            count += parts
         passed += length
         now = target if landed else t + passed
+        h = min(h, 0.5 * (tips - now)) if now < tips else h
+        over = over or (h < tol * unit and now < tips)
         _go_on_from(model, tol, buffer)
         larger, q = q, slip_speed(radius, y)
         if mode == SLIDES:

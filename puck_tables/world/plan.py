@@ -16,7 +16,7 @@ from puck_tables.world.agreement import (
     pucks_of,
     segment_error,
 )
-from puck_tables.world.floors import has_several
+from puck_tables.world.floors import has_sums
 from puck_tables.world.rim_laws import rule_of
 
 _NAMED = 6  # pucks of one way
@@ -75,11 +75,11 @@ def plan_of(scene: SceneSpec) -> tuple[str, str]:
             "friction by the slip speed differs by place: it is summed over every base wherever it "
             "lies, in every step along the contour of its parts, each by its own law or number"
         )
-    elif has_several(scene):
+    elif has_sums(scene):
         piled = any(one.shape is None and one.body.law.profile is not None for one in pucks)
         lines.append(
-            "while a base is astride several frictions they are integrated over its parts, about "
-            f"{'forty' if piled else 'ten'} times the cost of a step elsewhere"
+            "while a base is astride several frictions, or over an edge, they are integrated over "
+            f"its parts, about {'forty' if piled else 'ten'} times the cost of a step elsewhere"
         )
     if scene.floor.static_ratio > 1.0:
         lines.append(
@@ -130,6 +130,6 @@ def _method_of(scene: SceneSpec, puck: ScenePuck) -> str:
     if not any(frictions):
         return "in closed form, without dry friction"
     way = "looked up from impact to impact"
-    if has_several(scene):
-        way = "looked up from impact or border to the next, integrated where astride"
+    if has_sums(scene):
+        way = "looked up from impact or border to the next, integrated astride or over an edge"
     return f"{way}, over the belt" if belts_of(scene.floor).any() else way

@@ -182,9 +182,9 @@ def prepared(scene: SceneSpec, order: Whole | None = None) -> Start:
         scale=np.array([0.0, 0.0, STEP_SHARE * steps_for(scene), 0.0, 0.0]),
     )
     for i in range(count):
-        lay_down(engine, i, states[i])
         if scene.edges:
             hang_over(engine, i, 0.0, states[i])
+        lay_down(engine, i, states[i])
     engine.counts[N_PIECES] = drives.max()
     engine.segments[:, [PLACE_X, PLACE_Y, ANGLE]] = states[:, :3]
     for i in np.flatnonzero(drives[:, 0] < drives[:, 1]).tolist():

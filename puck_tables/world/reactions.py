@@ -22,15 +22,9 @@ from puck_tables.scene.friction import X, Y
 from puck_tables.scene.ingredients import FREE, NO_WAY, SLIDES, Phase
 from puck_tables.scene.over_time import rows_passed
 from puck_tables.world.engine_state import Engine
-from puck_tables.world.floor_under import (
-    floor_map_span,
-    friction_under_disc,
-    lies_to,
-    off_border,
-    step_onto,
-)  # fmt: skip
+from puck_tables.world.floor_under import friction_under_disc, lie_at
 from puck_tables.world.lasting import at_rest_below
-from puck_tables.world.layout import HOLD, KIND, LIES, NO_CUSHION, RADIUS
+from puck_tables.world.layout import HOLD, KIND, NO_CUSHION, RADIUS
 from puck_tables.world.lone import model_of
 from puck_tables.world.obstacle_shapes import normal_to
 
@@ -63,15 +57,11 @@ def _fill(
         if int(engine.discs[i, HOLD]) == FREE:
             continue
         model, drive = model_of(engine, i), engine.forcing[engine.spans[i, 0] : engine.spans[i, 1]]
-        first, last = floor_map_span(engine.regions, engine.discs, i)
         for n in range(times.size):
             patience(1)
             for k in range(SIZE):
                 y[k] = states[n, i, k] if k < GIVEN else 0.0
-            for number in range(engine.discs.shape[1] - LIES):
-                away = off_border(engine.regions.floor_map[first:last], number, y[X], y[Y])
-                engine.discs[i, LIES + number] = lies_to(away, engine.discs[i, RADIUS])
-            step_onto(engine, i)
+            lie_at(engine, i, y[X], y[Y])
             to_laboratory(model.surface, y, -1.0)
             slips = slip_speed(engine.discs[i, RADIUS], y) > at_rest_below(engine)
             if in_play[n, i] == 0.0 or not slips:

@@ -59,6 +59,8 @@ from puck_tables.world.floor_under import (
     floor_map_span,
     floor_of,
     friction_now,
+    is_beyond,
+    is_over,
     move_floor,
     off_border,
     over_floor,
@@ -75,12 +77,10 @@ from puck_tables.world.layout import (
     RADIUS,
     TURNABILITY,
     A,
-    B,
-    C,
     kinetic,
     write_over,
 )  # fmt: skip
-from puck_tables.world.lone import BUFFER_ROWS, LONGEST, follow_alone
+from puck_tables.world.lone import LONGEST, follow_alone
 from puck_tables.world.paths import DURATION, FIRST, FOR_EVER, bounds_of
 from puck_tables.world.paths import START as BEGINS
 from puck_tables.world.segment import (
@@ -103,6 +103,7 @@ from puck_tables.world.segment import (
     start_segment,
     state_at,
 )  # fmt: skip
+from puck_tables.world.step_pieces import BUFFER_ROWS
 
 # of a disc while an event is worked on: not concerned, concerned, its contacts are known, was to
 # meet one that is concerned, has set off; is to get a state that nobody has looked at
@@ -348,25 +349,28 @@ def cross(engine: Engine, i: int, t: float, k: int, room: Room) -> None:
 
 
 @inlined
-def overhang(engine: Engine, i: int, t: float, k: int, room: Room) -> None:
-    """The rim of a disc comes over an edge, which is told, or is back; it flies on."""
+def overhang(engine: Engine, i: int, t: float, k: int, room: Room) -> bool:
+    """The rim of a disc comes over an edge, which is told, or is back; whether it flies on.
+
+    It does unless its friction is summed only while it hangs.
+    """
     number = int(engine.obstacles[k, EDGE_NUMBER])
     if engine.hangs[i, number] == 0:
         note(engine, t, OVERHANGS, i, -1 - k, room.states[i, X], room.states[i, Y])
     engine.hangs[i, number] = 1 - engine.hangs[i, number]
+    summed = is_over(engine.regions, engine.discs, i)
+    step_onto(engine, i)
+    return summed == is_over(engine.regions, engine.discs, i)
 
 
 @inlined
 def hang_over(engine: Engine, i: int, t: float, state: FloatArray) -> None:
-    """See over which edges the rim of a disc is that is put down; what is new is told."""
+    """Tell over which edges the rim of a disc is that is about to be put down, and was not."""
     for k in range(engine.obstacles.shape[0]):
         row, number = engine.obstacles[k], int(engine.obstacles[k, EDGE_NUMBER])
-        if int(row[KIND]) == OVERHANG:
-            gap = row[A] * state[X] + row[B] * state[Y] - row[C]
-            over = engine.discs[i, LIGHTNESS] > 0.0 and gap < engine.discs[i, RADIUS]
-            if over and engine.hangs[i, number] == 0:
-                note(engine, t, OVERHANGS, i, -1 - k, state[X], state[Y])
-            engine.hangs[i, number] = 1 if over else 0
+        is_new = int(row[KIND]) == OVERHANG and engine.hangs[i, number] == 0
+        if is_new and is_beyond(engine.discs[i], row, state[X], state[Y]):
+            note(engine, t, OVERHANGS, i, -1 - k, state[X], state[Y])
 
 
 @inlined

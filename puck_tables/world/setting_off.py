@@ -217,8 +217,8 @@ def _put_down(engine: Engine, i: int, what: int, t: float, moved: bool, room: Ro
     after = kinetic(disc, state[VX], state[VY], state[SPIN])
     engine.events[engine.counts[N_EVENTS] - 1, GOT] = after - before
     if moved:
-        lay_down(engine, i, state)
         hang_over(engine, i, t, state)
+        lay_down(engine, i, state)
     if engine.drives[i, 0] < engine.drives[i, 1]:
         drive_on(engine, i, t, room)
         locate(engine, i, t, room)

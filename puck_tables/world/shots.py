@@ -25,7 +25,7 @@ from puck_tables.world.agreement import (
 )
 from puck_tables.world.bulk import follow_all
 from puck_tables.world.engine_state import Whole
-from puck_tables.world.floors import has_several
+from puck_tables.world.floors import has_sums
 from puck_tables.world.impact_sequence import FATE, LENGTH, PASSES, PRINT, trace
 from puck_tables.world.prepare import STEP_SHARE, Start, order_of, prepared
 from puck_tables.world.setting_off import PUSHING, REACHED
@@ -90,7 +90,7 @@ class Shots:
         pucks = pucks_of(scene)
         self.patient = (
             patient
-            or has_several(scene)
+            or has_sums(scene)
             or any(
                 is_integrated(scene, puck, friction)
                 for puck in pucks

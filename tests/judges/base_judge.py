@@ -9,9 +9,11 @@ The state moves in the axes of the body, in dτ = dt/Q, to Q = 1e-13 Q₀.
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 _NODE, _WEIGHT = np.polynomial.legendre.leggauss(16)
 _FAR = 3.0  # reaches: from there on e is smooth all over the base
@@ -133,6 +135,34 @@ class Judge:
         self, velocity: tuple[float, float], spin: float, decel: float, rtol: float = 1e-12
     ) -> np.ndarray:
         """Stop time, x, y, path length, and the angle of the body: (5,)."""
+        found, q0 = self._followed(velocity, spin, decel, rtol)
+        angle, time, x, y, length = found.y[3:, -1]
+        return np.array([
+            time * q0 / decel, *(np.array([x, y, length]) * q0 * q0 / decel),
+            angle * q0 * q0 / (decel * self.k),
+        ])  # fmt: skip
+
+    def states(
+        self, velocity: tuple[float, float], spin: float, decel: float, times: np.ndarray
+    ) -> np.ndarray:
+        """X, y, angle of the body, vx, vy, spin at moments before the stop: (6, n)."""
+        found, q0 = self._followed(velocity, spin, decel, 1e-12)
+        rows = []
+        for time in times * decel / q0:
+            i = int(np.searchsorted(found.t, found.t[found.y[4] <= time][-1], "right"))
+            span = found.t[i - 1], found.t[i]
+            at = brentq(lambda tau: found.sol(tau)[4] - time, *span, xtol=1e-15)  # noqa: B023
+            ux, uy, s, angle, _, x, y, _ = found.sol(at)
+            angle *= q0 * q0 / (decel * self.k)
+            c, sn = np.cos(angle), np.sin(angle)
+            v, place = q0 * np.array([c * ux - sn * uy, sn * ux + c * uy]), np.array([x, y])
+            rows.append([*(place * q0 * q0 / decel), angle, *v, q0 * s / self.k])
+        return np.array(rows).T
+
+    def _followed(
+        self, velocity: tuple[float, float], spin: float, decel: float, rtol: float
+    ) -> tuple[Any, float]:
+        """What scipy makes of a slide, and Q at its start."""
         k = self.k
         q0 = float(np.hypot(np.hypot(*velocity), k * spin))
         turning = q0 * q0 / (decel * k)
@@ -154,10 +184,8 @@ class Judge:
         over.terminal = True  # type: ignore[attr-defined]
         start = np.array([*np.array(velocity) / q0, k * spin / q0, *np.zeros(5)])
         found = solve_ivp(
-            rates, (0.0, 2000.0), start, "DOP853", rtol=rtol, atol=1e-14, events=over, max_step=1.0
-        )
+            rates, (0.0, 2000.0), start, "DOP853", rtol=rtol, atol=1e-14, events=over, max_step=1.0,
+            dense_output=True,
+        )  # fmt: skip
         assert found.status == 1, found.message
-        angle, time, x, y, length = found.y[3:, -1]
-        return np.array([
-            time * q0 / decel, *(np.array([x, y, length]) * q0 * q0 / decel), angle * turning
-        ])  # fmt: skip
+        return found, q0
