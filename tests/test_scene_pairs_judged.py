@@ -84,13 +84,11 @@ def test_pairs_and_triples_by_the_hundred(tmp_path):
 
 @pytest.mark.nightly
 def test_many_rebounds_that_settle(tmp_path):
-    scenes = [draw_rebounds(2, i) for i in range(100) if i != 78]
+    scenes = [draw_rebounds(2, i) for i in range(100)]
     assert faults(scenes, [1e-6, 1e-9], tmp_path) == []
-    assert faults([draw_rebounds(2, 78)], [1e-9], tmp_path) == []
 
 
 @pytest.mark.nightly
-@pytest.mark.xfail(strict=True, reason="errors of 2285 rebounds add up to 2 tol at 1e-6")
 def test_thousands_of_rebounds(tmp_path):
-    """Its error estimate, 9e-5 at every tol, says that it may be so."""
+    """2285 of them add up what friction errs by, that of a puck with its mass at the rim, too."""
     assert faults([draw_rebounds(2, 78)], [1e-6], tmp_path) == []

@@ -8,6 +8,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import rounded_up
+from puck_tables.contact.laws import HOMOGENEOUS
 from puck_tables.errors import AccuracyError
 from puck_tables.kernels.section_spline import HEADER, RATIOS
 from puck_tables.motion.body import body_of, is_plain
@@ -59,9 +60,19 @@ def friction_error(scene: SceneSpec) -> float:
         return CLOSED_FORM_ERROR if scene.floor.orthotropic is None else UNDER_LAW_ERROR
     if scene.floor.orthotropic is not None:
         return CLOSED_FORM_ERROR
-    if all(is_plain(puck.pressure, puck.gyration, delta) for delta in scene.heights):
+    if all(rubs_plainly(puck, delta) for delta in scene.heights):
         return CLOSED_FORM_ERROR if scene.tol < EXACT_BELOW else TABLE_ERROR
     return max(SLICE_SHARE * scene.tol, FINEST_ACCURACY)
+
+
+def rubs_plainly(puck: PuckSpec, delta: float) -> bool:
+    """Whether the friction of a puck is that of a plain one, however its mass is spread.
+
+    >>> from puck_tables import Puck
+    >>> rubs_plainly(Puck(0.1, gyration=1.0), 0.0), rubs_plainly(Puck(0.1, pressure="ring"), 0.0)
+    (True, False)
+    """
+    return is_plain(puck.pressure, HOMOGENEOUS, delta)
 
 
 def load_limit(tol: float, delta: float) -> FloatArray:

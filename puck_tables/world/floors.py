@@ -29,9 +29,9 @@ from puck_tables.scene.ingredients import BySpeed, Regions, Surface, floor_veloc
 from puck_tables.scene.map_of_floor import edges_under, floor_map_of, may_lift, shape_under
 from puck_tables.scene.over_time import largest_factors
 from puck_tables.scene.pucks_and_posts import ScenePuck
-from puck_tables.scene.regions import axes_of, load_limit, of_one_shape, section_of
+from puck_tables.scene.regions import axes_of, load_limit, of_one_shape, rubs_plainly, section_of
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.agreement import frictions_under, has_closed_forms, is_integrated, pucks_of
+from puck_tables.world.agreement import frictions_under, is_integrated, pucks_of
 from puck_tables.world.engine_state import Engine
 from puck_tables.world.floor_under import floor_of
 
@@ -131,7 +131,10 @@ def regions_of(
         0.0 if puck.path else normal_on(scene, puck) * friction for puck, friction in places
     ])  # fmt: skip
     cuts = none[: len(places)]
-    if all(sums or has_closed_forms(*one) for one, sums in zip(places, summed, strict=True)):
+    if all(
+        sums or friction == 0.0 or puck.shape is not None or rubs_plainly(puck, height)
+        for (puck, friction), height, sums in zip(places, delta[: len(places)], summed, strict=True)
+    ):
         if floors[:, 2].any():  # those that are integrated ask for friction often
             cut = cache(partial(load_limit, scene.tol))
             cuts = np.stack([cut(height) for height in delta[: len(places)].tolist()])

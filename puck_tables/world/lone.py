@@ -389,12 +389,13 @@ def follow_alone(
         whole = target - now if landed else h
         error = step(phase, now, whole, y, buffer.scale, stages, new)
         grows = times_as_long(error, tol, 0.25 if newton > 0.0 else 0.125, 0.1)
-        if not math.isfinite(stages[STAGES - 1, VX]):  # it tips there: half as far, time and again
+        nowhere = not math.isfinite(stages[STAGES - 1, VX])
+        if nowhere and newton == 0.0:  # it tips there: half as far, time and again
             tips, h = now + whole, 0.25 * whole
             if h < tol * unit:
                 break
             continue
-        if not error <= tol:
+        if nowhere or not error <= tol:  # of an implicit one, which is not solved, both
             h, failed = whole * grows, True
             if h < _SHORTEST * unit:
                 break
