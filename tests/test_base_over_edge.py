@@ -442,6 +442,17 @@ def test_what_is_carried_as_if_none_hung_in_the_air_says_so():
     assert "tips" in str(run)
 
 
+def test_beyond_a_line_of_the_rules_the_floor_goes_on():
+    """It leaves play there, and until then nothing is otherwise than far from it."""
+    puck, launch = replace(BOX, height=0.08), Launch((0.7, 0.2), spin=6.0)
+    line = Edge((0.06, 0.0), normal=(-1.0, 0.0), beyond="floor")
+    run: Any = Scene(puck, launch=launch, edges=[line]).simulate()
+    alone: Any = Scene(puck, launch=launch).simulate()
+    assert [event.what for event in run.events] == ["edge"]
+    assert abs(float(np.ravel(alone(np.array([run.end_time])).x)[0]) - 0.06) < 1e-9
+    assert abs(float(np.ravel(alone(np.array([run.end_time])).spin)[0]) - run.last["spin"]) < 1e-8
+
+
 def test_the_command_line_says_so(tmp_path: Any):
     file = tmp_path / "table.toml"
     file.write_text(

@@ -116,8 +116,9 @@ class Curling(StoneGame):
         far = 1.829 + stone.radius  # past the back line; 2.375 m is half of a sheet
         side = 2.375 - stone.radius
         edges = (
-            Edge((far, 0.0), normal=(-1.0, 0.0)), Edge((0.0, -side), normal=(0.0, 1.0)),
-            Edge((0.0, side), normal=(0.0, -1.0)),
+            Edge((far, 0.0), normal=(-1.0, 0.0), beyond="floor"),
+            Edge((0.0, -side), normal=(0.0, 1.0), beyond="floor"),
+            Edge((0.0, side), normal=(0.0, -1.0), beyond="floor"),
         )  # fmt: skip
         own = replace(stone, name="red", colour="firebrick")
         sheet = Scene(

@@ -25,7 +25,7 @@ from puck_tables.scene.floor_patches import corners_of
 from puck_tables.scene.over_edges import MOST_EDGES
 from puck_tables.scene.over_time import largest_factors
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.scene.sides import line_of
+from puck_tables.scene.sides import ends_of_floor, line_of
 
 _NO_EDGES = np.empty((0, 3))
 
@@ -113,9 +113,10 @@ def edges_under(scene: SceneSpec) -> FloatArray:
     floor = scene.floor
     if floor.orthotropic is not None or _pressed_base(scene.puck) is None:
         return _NO_EDGES
-    if len(scene.edges) > MOST_EDGES:
+    ends = ends_of_floor(scene)
+    if len(ends) > MOST_EDGES:
         return _NO_EDGES
-    return np.array([line_of(edge) for edge in scene.edges]).reshape(-1, 3)
+    return np.array([line_of(scene.edges[number]) for number in ends]).reshape(-1, 3)
 
 
 def _pressed_base(puck: PuckSpec) -> Base | None:

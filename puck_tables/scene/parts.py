@@ -293,6 +293,10 @@ class Edge:
     point: tuple[float, float] = of("pair", unit="m", doc="any point of it", acts="edges")
     _: KW_ONLY
     normal: tuple[float, float] = of("pair", doc="into the field, any length", acts="")
+    beyond: str = of(
+        "choice", "nothing", choices=("nothing", "floor"), acts="",
+        doc="what a puck hangs over there: nothing, as beside a table, or floor, as beyond a line",
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)

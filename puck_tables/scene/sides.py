@@ -93,6 +93,17 @@ def line_of(line: Wall | Edge) -> tuple[float, float, float]:
     return nx, ny, nx * line.point[0] + ny * line.point[1]
 
 
+def ends_of_floor(scene: SceneSpec) -> list[int]:
+    """The numbers of the edges beyond which there is no floor.
+
+    >>> from puck_tables import Edge, Puck, Scene
+    >>> there = [Edge((-1.0, 0.0), normal=(1.0, 0.0), beyond=one) for one in ("floor", "nothing")]
+    >>> ends_of_floor(Scene(Puck(0.04), edges=there))
+    [1]
+    """
+    return [number for number, edge in enumerate(scene.edges) if edge.beyond == "nothing"]
+
+
 def sides_of(wall: Wall, number: int = 0) -> list[WallSide]:
     """The sides of a wall with ends, one after the other; none of one without.
 

@@ -390,14 +390,11 @@ def follow_alone(
         error = step(phase, now, whole, y, buffer.scale, stages, new)
         grows = times_as_long(error, tol, 0.25 if newton > 0.0 else 0.125, 0.1)
         nowhere = not math.isfinite(stages[STAGES - 1, VX])
-        if nowhere and newton == 0.0:  # it tips there: half as far, time and again
-            tips, h = now + whole, 0.25 * whole
-            if h < tol * unit:
-                break
-            continue
-        if nowhere or not error <= tol:  # of an implicit one, which is not solved, both
-            h, failed = whole * grows, True
-            if h < _SHORTEST * unit:
+        if nowhere or not error <= tol:
+            falls = nowhere and newton == 0.0  # it tips there: half as far, time and again
+            tips, failed = now + whole if falls else tips, failed or not falls
+            h = whole * (0.25 if falls else grows)
+            if h < (tol if falls else _SHORTEST) * unit:
                 break
             continue
         stuck, length = first_event_on(phase, now, whole, y, buffer.scale, stages, new)

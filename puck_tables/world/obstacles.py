@@ -8,7 +8,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.scene.parts import Wall
 from puck_tables.scene.pucks_and_posts import Arc, Post
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.scene.sides import corners_in, cushions_in, line_of, sides_in
+from puck_tables.scene.sides import corners_in, cushions_in, ends_of_floor, line_of, sides_in
 from puck_tables.world import layout
 from puck_tables.world.rim_laws import number_for
 
@@ -40,8 +40,8 @@ def obstacles_of(scene: SceneSpec, called: dict[object, float], makes: FloatArra
         rows.append([layout.POCKET, *pocket.point, pocket.radius])
     for edge in scene.edges:
         rows.append([layout.EDGE, *line_of(edge)])
-    for number, edge in enumerate(scene.edges):
-        rows.append([layout.OVERHANG, *line_of(edge), 0.0, 0.0, 0.0, float(number)])
+    for number in ends_of_floor(scene):
+        rows.append([layout.OVERHANG, *line_of(scene.edges[number]), 0.0, 0.0, 0.0, float(number)])
     borders = len(borders_of(scene))
     for number in range(borders + len(scene.floor.patches)):
         rows.append([layout.BORDER if number < borders else layout.PATCH, float(number)])
@@ -54,9 +54,10 @@ def obstacles_of(scene: SceneSpec, called: dict[object, float], makes: FloatArra
 
 def obstacle_names(scene: SceneSpec) -> list[str]:
     """What the rows of the obstacles are called, in their order."""
-    lists = (("pocket", scene.pockets), ("edge", scene.edges), ("edge", scene.edges),
-             ("border", borders_of(scene)), ("patch", scene.floor.patches))  # fmt: skip
-    more = [(name, number) for name, ones in lists for number in range(len(ones))]
+    lists = (("pocket", range(len(scene.pockets))), ("edge", range(len(scene.edges))),
+             ("edge", ends_of_floor(scene)), ("border", range(len(borders_of(scene)))),
+             ("patch", range(len(scene.floor.patches))))  # fmt: skip
+    more = [(name, number) for name, numbers in lists for number in numbers]
     return [f"{name} {number}" for name, number in cushions_in(scene) + more]
 
 

@@ -12,7 +12,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.restitution import Restitution, restitution_law
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.scene.sides import cushions_in
+from puck_tables.scene.sides import cushions_in, ends_of_floor
 from puck_tables.world.agreement import pucks_of
 
 
@@ -58,7 +58,7 @@ def rims_of(
     """
     names = [(kind, f"{kind} {k}") for kind, k in cushions_in(scene)]
     borders = scene.floor.strips.borders if scene.floor.strips is not None else ()
-    without = (scene.pockets, scene.edges, scene.edges, borders, scene.floor.patches)
+    without = (scene.pockets, scene.edges, ends_of_floor(scene), borders, scene.floor.patches)
     names += [("", "")] * sum(map(len, without))
     if not scene.rims:
         laws, called = _laws_of(scene, 1)
