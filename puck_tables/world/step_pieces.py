@@ -38,7 +38,7 @@ from puck_tables.world.paths import START as BEGINS
 
 COARSER = 10.0  # times the error of a step: of a piece, whose errors do not add up
 _BETWEEN = 3.0  # times what its stages miss in the middle of a step are errors elsewhere
-_ROUNDED = 4e-15  # of a place: so well its change over a piece is known, and velocities by that
+_ROUNDED = 1e-15  # of a place: so well its change over a piece is known, and velocities by that
 _SAFE = 0.8  # of how long a step could be, by what the last one missed
 # of a polynomial of degree five that is wrong by d in its second derivative in the middle, over h:
 _PLACE, _RATE = 1.0 / 24.0, 0.144  # its places are off by so much d h² at most, its rates d h
