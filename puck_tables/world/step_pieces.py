@@ -38,6 +38,7 @@ from puck_tables.world.paths import START as BEGINS
 
 COARSER = 10.0  # times the error of a step: of a piece, whose errors do not add up
 _BETWEEN = 3.0  # times what its stages miss in the middle of a step are errors elsewhere
+_ROUNDED = 1e-15  # of a place: so well its change over a piece is known, and velocities by that
 _SAFE = 0.8  # of how long a step could be, by what the last one missed
 # of a polynomial of degree five that is wrong by d in its second derivative in the middle, over h:
 _PLACE, _RATE = 1.0 / 24.0, 0.144  # its places are off by so much d h² at most, its rates d h
@@ -177,6 +178,7 @@ def _write_parts(
         for n in range(3):
             gap, off = each * abs(place[6 + n] - acts[n]), abs(place[3 + n] - ends[HALF, n])
             largest = max(largest, _PLACE * each * gap / scale[n], _RATE * gap / scale[VX + n])
+            off -= _ROUNDED * (abs(states[BEGUN, n]) + abs(states[ENDED, n])) / each
             largest = max(largest, off / scale[VX + n])
         for n in range(GIVEN, SIZE):
             both, done = ends[BEGUN, n] + ends[ENDED, n], states[ENDED, n] - states[BEGUN, n]
@@ -260,8 +262,11 @@ def write_step(
         parts *= 2
         if whole <= float(parts) ** 5 or parts == most:
             coarse = _write_parts(engine, phase, t, h, number, parts, tol, buffer)
-    longest = min(_as_long(off, 1.0 / 7.0, h), _as_long(whole / share, 0.2, h))
-    return parts, max(coarse, off), longest
+    coarse, longest = max(coarse, off), _as_long(off, 1.0 / 7.0, h)
+    longest = min(
+        longest, _as_long(whole / share, 0.2, h), h * (_SAFE if coarse > 1.0 else math.inf)
+    )
+    return parts, coarse, longest
 
 
 @inlined
