@@ -418,7 +418,7 @@ def follow_alone(
         passed += length
         now = target if landed else t + passed
         h = min(h, 0.5 * (tips - now)) if now < tips else h
-        over = over or (h < tol * unit and now < tips)
+        over = over or 0.0 < tips - now < tol * unit
         _go_on_from(model, tol, buffer)
         larger, q = q, slip_speed(radius, y)
         if mode == SLIDES:
