@@ -117,6 +117,7 @@ CASES: dict[str, tuple[dict[str, Any], Any]] = {
     "wall[0].friction": (WALL, 0.05),
     "edge[0].point": (EDGE, [0.04, 0.0]),
     "edge[0].normal": (EDGE, [-1.0, -1.0]),
+    "edge[0].beyond": (EDGE, "floor"),
     "constraint.kind": (BLADE, "rail"),
     "constraint.angle": ({**BLADE, **HELD, "floor": {"slope": 0.1}}, 1.0),
     "constraint.reach": (PIVOT, 0.03),
