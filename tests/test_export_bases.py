@@ -98,7 +98,7 @@ def test_what_is_out_of_range_is_refused(language: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("puck", "what", "words"),
     [
-        (pt.Puck(base="box:0.2x0.1", friction=0.3), "stop", "of a puck on a base 'wrench' is exported"),
+        (pt.Puck(base="box:0.2x0.1", friction=0.3), "stop", "a base 'wrench' is exported"),
         (pt.Puck(0.1, friction=0.3), "wrench", "exported of polygons"),
         (pt.Puck(base="box:0.2x0.1", friction=0.3, height=0.02), "wrench", "height = 0"),
         (pt.Puck(base="disc:0.1", friction=0.3), "wrench", "exported of polygons"),

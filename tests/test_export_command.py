@@ -37,7 +37,7 @@ def test_a_base_has_its_wrench_in_a_file(tmp_path: Path):
     source = pt.export_source("js", "wrench", puck=pt.Puck(base="box:0.2x0.1"))
     assert path.read_text() == source.text
     refused = CliRunner().invoke(main, [*options, "--overwrite"])
-    assert refused.exit_code != 0 and "what is exported is 'wrench'" in refused.stderr
+    assert refused.exit_code != 0 and "a base 'wrench' is exported" in refused.stderr
 
 
 @pytest.mark.parametrize(
