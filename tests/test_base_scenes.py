@@ -437,10 +437,6 @@ def test_a_stone_on_a_running_band_meets_a_wall_by_its_rim() -> None:
 
 
 REFUSED: dict[str, tuple[dict[str, Any], str]] = {
-    "lifted by a belt": (
-        {"floor": Floor(patches=[Patch(5.0, (0.0, 0.0), 0.2, velocity=(0.1, 0.0))]), "time": 1.0},
-        "floor.patch: .* would lift",
-    ),
     "wall": ({"walls": [Wall((1.0, 0.0), normal=(-1.0, 0.0))]}, "puck.radius is missing"),
 }
 

@@ -105,7 +105,7 @@ def test_pictures_and_movies_are_written_and_told(tmp_path: Path) -> None:
                  "--movie", str(movie), "--explain")  # fmt: skip
     ended = puck(*arguments)
     assert ended.exit_code == 0 and f"wrote {movie}" in ended.stderr
-    assert "2 pucks looked up from impact to impact" in ended.stderr
+    assert "2 pucks looked up from impact or border to the next" in ended.stderr
     assert picture.stat().st_size > 10_000 and movie.stat().st_size < 1_000_000
     assert puck(*arguments).exit_code == 0  # they can be made again
     one = puck("simulate", "--v0", "1,0", "--w0", "5", "--movie", str(tmp_path / "one.html"))
