@@ -56,7 +56,7 @@ def entries(part: Any, prefix: str = "", kind: Any = None) -> Iterator[Entry]:
 
     >>> from puck_tables.scene.parts import Edge
     >>> [entry.path for entry in entries(Edge((0.0, 1.0), normal=(0.0, -1.0)), "edge[0].")]
-    ['edge[0].point', 'edge[0].normal']
+    ['edge[0].point', 'edge[0].normal', 'edge[0].beyond']
     """
     whole: Any = kind or type(part)
     for name, table, kind, doc, default, acts in _described(whole):
