@@ -64,7 +64,10 @@ CLOSED = {
     ),
     "on an edge, leaving": scene(edge=[wall(0, 0, -1, 0)]),
     "on an edge, entering": scene(edge=[wall(0, 0, 1, 0)]),
-    "along an edge": scene(edge=[wall(0, 0, 0, 1)], launch={"velocity": [2.0, 0.0], "spin": -3.0}),
+    "along a line of the rules": scene(
+        edge=[{**wall(0, 0, 0, 1), "beyond": "floor"}],
+        launch={"velocity": [2.0, 0.0], "spin": -3.0},
+    ),
     "at rest": scene(launch={"velocity": [0.0, 0.0], "spin": 0.0}, floor={"slope": 0.1}),
     "at rest beyond the threshold, above a wall": scene(
         launch={"velocity": [0.0, 0.0], "spin": 0.0}, floor={"slope": 0.4},
