@@ -96,7 +96,7 @@ DOORS = {
         "export.law_values",
         "fitting",
         "stopping",
-        "table.speed_fit",
+        "table.speed_patch",
         "tradeoff",
         "wrench.push",
     },

@@ -9,7 +9,19 @@ with functions of φ alone.  They are also what the equations of motion need.  F
 memory.
 
 Coefficients: array (sides, η cells + 3, 5) of B-spline weights over 6, in the order a₀, a₂, b₁, c₀,
-c₂; sides: rows of line, end and extent as in :mod:`puck_tables.table.slip_axis`.
+c₂; sides: rows of line, end and extent as in :mod:`puck_tables.table.slip_spline`.
+
+A section is a table cut down to one puck, over the slip angle alone.  Its axis of slip is that of
+:mod:`puck_tables.table.slip_spline`: sides that run from a singular line outwards,
+tan(φ − line) = ± extent η⁴.  No angle is needed to find a place on it: with (c, s) in the direction
+of (v, r|ω|),
+
+    tan(φ − line) = (s cos line − c sin line)/(c cos line + s sin line) .
+
+A section is a matrix with one row a side, in the order of φ: :data:`HEADER` numbers, then the
+B-spline weights over 6 of its functions, node by node.  A plain puck has one line, φ = π/4, and
+extents of 1 (:func:`section_at`): marked in the header, because then η⁴ = |r|ω| − v|/(r|ω| + v)
+keeps more digits.
 """
 
 from __future__ import annotations
@@ -17,27 +29,113 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating, inlined, kernel, patience
-from puck_tables.kernels.section_spline import (
-    HEADER,
-    INERTIA,
-    INVERSE_EXTENT,
-    LINE_COS,
-    LINE_SIN,
-    PLAIN,
-    RATIOS,
-    UPPER_COS,
-    UPPER_SIN,
-)
-from puck_tables.kernels.spline import basis, cell_at, side_and_eta
+from puck_tables.kernels.spline import basis, cell_at, row_sums, side_and_eta
 
+# Columns of the header: the singular line of a side (cos, sin, ln tan), where the side ends towards
+# larger φ (cos, sin), 1/extent, and the same in all rows: the square of the gyration radius over r,
+# and 1 for a plain puck.
+LINE_COS, LINE_SIN, LINE, UPPER_COS, UPPER_SIN, INVERSE_EXTENT, INERTIA, PLAIN = range(8)
+HEADER = 8  # the eight above
+RATIOS = 3  # 1/ρ_∥, ρ_⊥/ρ_∥ and ρ_ω/ρ_∥
+SLOPES = 6  # functions of a section that also holds the derivatives of the ratios by the height
+_LEAST = 0.5  # cells from a line: nearer the quotient of slopes is 0/0
+
+NO_SECTION = np.empty((0, HEADER))  # closed forms
 TERMS = 5  # of the ratios over δ (table.fit.height_terms)
 NO_COLUMNS = np.empty((2, 0, TERMS))  # closed forms; read-only like those of a table
 NO_COLUMNS.flags.writeable = False
 _BLOCK = 128  # points at once: their numbers fit the first cache
 _HALF_ROOT = math.sqrt(0.5)
+
+
+@inlined
+def section_place(
+    k: float, fast: bool, section: FloatArray, functions: int
+) -> tuple[int, int, float]:
+    """Side, first column and place in the cell of a slip ratio k = min/max of v and r|ω|."""
+    if section[0, PLAIN] > 0.0:
+        side, extent = (1 if fast else 0), (1.0 - k) / (1.0 + k)
+    else:
+        c, s = (k, 1.0) if fast else (1.0, k)
+        side, last = 0, section.shape[0] - 1
+        while side < last and s * section[side, UPPER_COS] > c * section[side, UPPER_SIN]:
+            side += 1
+        across = s * section[side, LINE_COS] - c * section[side, LINE_SIN]
+        along = c * section[side, LINE_COS] + s * section[side, LINE_SIN]
+        extent = abs(across / along) * section[side, INVERSE_EXTENT]
+    eta = math.sqrt(math.sqrt(extent))
+    cells = (section.shape[1] - HEADER) // functions - 3
+    p = min(eta, 1.0) * cells
+    cell = cell_at(p, cells)
+    return side, HEADER + functions * cell, p - cell
+
+
+@inlined
+def section_ratios(k: float, fast: bool, section: FloatArray) -> tuple[float, float, float]:
+    """The three friction ratios at a slip ratio."""
+    side, i, place = section_place(k, fast, section, RATIOS)
+    w0, w1, w2, w3 = basis(place)
+    return row_sums(section[side], np.uint64(i), w0, w1, w2, w3)
+
+
+@inlined
+def section_slopes(
+    k: float, fast: bool, section: FloatArray
+) -> tuple[float, float, float, float, float, float, float, float, float]:
+    """The friction ratios at a slip ratio, their derivatives by u = ln tan φ and by the height.
+
+    Those by u are of the spline itself.  Within a cell of a line they are wrong by its own size:
+    steps there must be short.
+    """
+    side, i, place = section_place(k, fast, section, SLOPES)
+    row = section[side]
+    cells = (section.shape[1] - HEADER) // SLOPES - 3
+    eta = max((i - HEADER) // SLOPES + place, _LEAST) / cells
+    c, s = (k, 1.0) if fast else (1.0, k)
+    across = s * row[LINE_COS] - c * row[LINE_SIN]
+    eta3, extent = eta * eta * eta, 1.0 / row[INVERSE_EXTENT]
+    stretch = 4.0 * extent * eta3 / (1.0 + extent * extent * eta3 * eta3 * eta * eta)  # dφ/dη
+    by_u = 3.0 * cells * c * s / ((c * c + s * s) * stretch)  # three: of the weights below
+    by_u = by_u if across > 0.0 or (across == 0.0 and 2 * (side // 2) != side) else -by_u
+    w0, w1, w2, w3 = basis(place)
+    t, r = place, 1.0 - place
+    d0, d1 = -r * r, t * (3.0 * t - 4.0)
+    d2, d3 = -r * (3.0 * r - 4.0), t * t
+    return (
+        w0 * row[i] + w1 * row[i + 6] + w2 * row[i + 12] + w3 * row[i + 18],
+        w0 * row[i + 1] + w1 * row[i + 7] + w2 * row[i + 13] + w3 * row[i + 19],
+        w0 * row[i + 2] + w1 * row[i + 8] + w2 * row[i + 14] + w3 * row[i + 20],
+        by_u * (d0 * row[i] + d1 * row[i + 6] + d2 * row[i + 12] + d3 * row[i + 18]),
+        by_u * (d0 * row[i + 1] + d1 * row[i + 7] + d2 * row[i + 13] + d3 * row[i + 19]),
+        by_u * (d0 * row[i + 2] + d1 * row[i + 8] + d2 * row[i + 14] + d3 * row[i + 20]),
+        w0 * row[i + 3] + w1 * row[i + 9] + w2 * row[i + 15] + w3 * row[i + 21],
+        w0 * row[i + 4] + w1 * row[i + 10] + w2 * row[i + 16] + w3 * row[i + 22],
+        w0 * row[i + 5] + w1 * row[i + 11] + w2 * row[i + 17] + w3 * row[i + 23],
+    )
+
+
+@kernel
+def fill_section(
+    section: FloatArray,
+    functions: int,
+    ratio: FloatArray,
+    fast: npt.NDArray[np.bool_],
+    out: FloatArray,
+) -> None:
+    """All functions of a section at slip ratios (n,) into ``out`` (functions, n)."""
+    for n in range(ratio.size):
+        patience(1)
+        side, i, place = section_place(ratio[n], fast[n], section, functions)
+        weights = basis(place)
+        for f in range(functions):
+            total = 0.0
+            for m, w in enumerate(weights):
+                total += w * section[side, i + functions * m + f]
+            out[f, n] = total
 
 
 @inlined

@@ -21,7 +21,7 @@ from puck_tables.contact.integrals import SlipDirection
 from puck_tables.contact.resultants import CONTACT_SLACK, pressure_tilt
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.closed_form_kernel import outside_full_contact
-from puck_tables.kernels.section_spline import NO_SECTION
+from puck_tables.kernels.quadratic import NO_SECTION
 from puck_tables.motion.body import UnitPuck
 from puck_tables.motion.limits import LIMIT_WIDTH, limit_log_ratio
 from puck_tables.motion.solve import ErrorEstimate, Setting

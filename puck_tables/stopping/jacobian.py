@@ -162,7 +162,7 @@ def stop_jacobians(
     """Derivatives (n, 5, 6) of the stops of launches: of ``plain`` ones by the stop table."""
     if plain.all():
         return _of_plain(table, launches, threads)
-    from puck_tables.stopping.slope_section import stop_slopes_of
+    from puck_tables.stopping.variational import stop_slopes_of
 
     rows = launches.matrix
     out = np.empty((launches.size, len(STOP_NAMES), len(LAUNCH_NAMES)))

@@ -31,8 +31,7 @@ from puck_tables.accuracy.methods import (
 from puck_tables.contact.laws import Law, law_of
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import AccuracyError, InputError
-from puck_tables.kernels.quadratic import NO_COLUMNS
-from puck_tables.kernels.section_spline import NO_SECTION
+from puck_tables.kernels.quadratic import NO_COLUMNS, NO_SECTION
 from puck_tables.motion.body import UnitPuck, body_of, plain_up_to
 from puck_tables.motion.friction_source import Sections, integration_selected
 from puck_tables.motion.steppers import stepping_of

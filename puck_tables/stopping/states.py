@@ -35,8 +35,7 @@ from puck_tables.stopping.jacobian import (
 )
 from puck_tables.stopping.launch_arrays import TOO_LARGE, Launches, fits, launches_in, launches_of
 from puck_tables.stopping.per_height import refuse_many
-from puck_tables.stopping.plain_states import all_looked_up
-from puck_tables.stopping.state_values import integrate, refuse_times
+from puck_tables.stopping.state_values import all_looked_up, integrate, refuse_times
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.stopping.stop_values import UPPER_DELTA
 from puck_tables.table.table import refuse_other_kind

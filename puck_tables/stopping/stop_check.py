@@ -52,9 +52,8 @@ from puck_tables.stopping.similarity_lookup import (
 )
 from puck_tables.stopping.stop_section import end_values
 from puck_tables.stopping.stop_values import STOPS, StopValues
-from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import Goal, built
-from puck_tables.table.check import Check, CheckReport, compared
+from puck_tables.table.check import Accuracy, Check, CheckReport, compared
 from puck_tables.table.friction_section import friction_ratios
 from puck_tables.table.table import Progress
 

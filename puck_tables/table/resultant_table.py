@@ -24,11 +24,10 @@ from puck_tables.contact.laws import Law, law_of
 from puck_tables.contact.resultants import Resultants, checked_delta, moment_balance
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Variable
-from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import COARSEST, Goal, built
-from puck_tables.table.check import CheckReport, Route, judged
+from puck_tables.table.check import Accuracy, CheckReport, Route, judged
 from puck_tables.table.section_table import LawTable
-from puck_tables.table.slip_axis import GRADING_POWER, LawAxis
+from puck_tables.table.slip_spline import GRADING_POWER, LawAxis
 from puck_tables.table.spline_fit import height_terms, sided_coefficients
 from puck_tables.table.table import Progress, kinds
 
@@ -112,7 +111,7 @@ class ResultantTable(LawTable):
         return fitted
 
     def section(self, delta: float) -> FloatArray:
-        """The friction ratios at one height, as :mod:`puck_tables.kernels.section_spline` reads.
+        """The friction ratios at one height, as :mod:`puck_tables.kernels.quadratic` reads.
 
         Raises
         ------

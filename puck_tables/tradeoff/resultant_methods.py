@@ -30,7 +30,7 @@ from puck_tables.kernels.compile import allocating, kernel, patience
 from puck_tables.kernels.quadratic import fill_resultants
 from puck_tables.kernels.spline import basis, cell_at, row_sums, side_and_eta
 from puck_tables.table.resultant_table import HEIGHTS, ResultantTable
-from puck_tables.table.slip_axis import LawAxis
+from puck_tables.table.slip_spline import LawAxis
 from puck_tables.table.spline_fit import clamped_coefficients
 from puck_tables.tradeoff.truth import Contender, Made, Question, Run, filled
 

@@ -41,7 +41,7 @@ from puck_tables.world.group import (
     small_slip,
 )  # fmt: skip
 from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY, write_over
-from puck_tables.world.putting_right import stop_slips
+from puck_tables.world.multipliers import stop_slips
 from puck_tables.world.step_ledger import DRIVE_WORK, RIM_HEAT
 
 _CREEPS = 8  # rounds

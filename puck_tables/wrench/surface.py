@@ -24,8 +24,7 @@ from puck_tables.io.columns import following
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.result import Result
 from puck_tables.wrench.forms import WrenchForm, ellipsoid, quartic
-from puck_tables.wrench.friction_force import of_round, wrench
-from puck_tables.wrench.friction_hold import holds, slip_length, twist
+from puck_tables.wrench.friction_hold import holds, of_round, slip_length, twist, wrench
 
 if TYPE_CHECKING:
     from puck_tables.motion.puck_spec import PuckSpec
