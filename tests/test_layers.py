@@ -63,7 +63,6 @@ DOORS = {
         "kernels.compiled",
         "kernels.kept_code",
         "kernels.linking",
-        "kernels.memory_image",
         "kernels.on_demand",
         "kernels.doors",
         "kernels.quick_compiler",
@@ -72,7 +71,6 @@ DOORS = {
     },
     "llvmlite": {
         "kernels.ahead",
-        "kernels.memory_image",
         "kernels.kept_code",
         "kernels.linking",
         "kernels.on_demand",

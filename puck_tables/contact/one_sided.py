@@ -29,8 +29,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import broadcast
+from puck_tables._core.arrays import FloatArray, broadcast
 from puck_tables.contact import closed_form
 from puck_tables.contact.closed_form import integrals
 from puck_tables.contact.integrals import SlipDirection, checked_phi, slip_direction

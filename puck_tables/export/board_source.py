@@ -19,8 +19,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import instance, shown
+from puck_tables._core.arrays import FloatArray, instance, shown
 from puck_tables._core.safe_write import check_target, write_bytes
 from puck_tables._core.wording import counted
 from puck_tables._version import __version__
@@ -121,8 +120,7 @@ def discs_of(board: Worlds) -> tuple[FloatArray, Any]:
 
 def objects(folder: str, triple: str, ship: Shipped, known: list[Any], symbol: str) -> list[str]:
     """Object files in a folder: the engine, and a board with a table of what is known outside."""
-    from puck_tables.kernels.ahead import Outside, code_for
-    from puck_tables.kernels.memory_image import arrays_for
+    from puck_tables.kernels.ahead import Outside, arrays_for, code_for
 
     doors = (Outside("play", play_shipped, (0, 0.0)), Outside("see", see_shipped, (0.0,)))
     Path(folder, "engine.o").write_bytes(code_for(triple, ship, doors))

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
-from puck_tables._core.real import instance
+from puck_tables._core.arrays import instance
 from puck_tables.contact.base import Base
 from puck_tables.contact.laws import law_of
 from puck_tables.contact.speed_law import SpeedLaw

@@ -35,9 +35,9 @@ from puck_tables.kernels.base_friction import packed
 from puck_tables.motion.body import body_of, plain_up_to
 from puck_tables.motion.frame import frame_of
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED, SPIN, STATE_ROWS
-from puck_tables.stopping.base_solver import followed
 from puck_tables.stopping.launch_arrays import launches_in
 from puck_tables.stopping.launch_frame import fill_placed_states
+from puck_tables.stopping.solvers import followed
 from puck_tables.stopping.state_values import directions, fill_state_slopes, looked_up
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.stopping.variational import Variations, unit_states, variations_by

@@ -12,8 +12,7 @@ from gymnasium.spaces import Box
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array, real, shown, whole
+from puck_tables._core.arrays import FloatArray, finite_array, real, shown, whole
 from puck_tables.contact.friction_laws import CurlingLaw
 from puck_tables.errors import InputError
 from puck_tables.gym.air_hockey import AirHockey, AirHockeyAlone

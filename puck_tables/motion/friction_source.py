@@ -12,8 +12,7 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import rounded_up
+from puck_tables._core.arrays import FloatArray, rounded_up
 from puck_tables.accuracy.method_errors import COARSEST, UNITS, Selection, named, select
 from puck_tables.accuracy.methods import INTEGRATORS, FrictionForm, Method, Scheme, schemes_of
 from puck_tables.contact.closed_form import by_closed_form

@@ -6,8 +6,7 @@ import math
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import rounded_up
+from puck_tables._core.arrays import FloatArray, rounded_up
 from puck_tables.contact.laws import HOMOGENEOUS
 from puck_tables.errors import AccuracyError
 from puck_tables.kernels.quadratic import HEADER, RATIOS

@@ -10,10 +10,9 @@ from typing import Any, Self
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
+from puck_tables._core.arrays import FloatArray, instance
 from puck_tables._core.fields import Unsaid, of, specs
 from puck_tables._core.reading import MAX_COUNT, Range, Reading, entries_in, read_values
-from puck_tables._core.real import instance
 from puck_tables.errors import InputError
 from puck_tables.motion.body import STANDARD_GRAVITY
 from puck_tables.motion.puck_spec import PuckSpec

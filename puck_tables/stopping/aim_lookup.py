@@ -17,7 +17,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel, patience, spline_values
-from puck_tables.kernels.spline import basis
+from puck_tables.kernels.quadratic import basis
 from puck_tables.stopping.lookup import WIDTH, slip_place
 
 SPEED, RIM, TIME, TURN, BEND = range(5)

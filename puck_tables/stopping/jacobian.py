@@ -8,8 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import shown
+from puck_tables._core.arrays import FloatArray, shown
 from puck_tables.errors import InputError
 from puck_tables.motion.body import UnitPuck
 from puck_tables.stopping.launch_arrays import Launches, in_chunks, launches_in

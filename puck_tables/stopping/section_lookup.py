@@ -9,8 +9,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, look_up, patience, weighted_rows
-from puck_tables.kernels.quadratic import HEADER, section_place
-from puck_tables.kernels.spline import basis
+from puck_tables.kernels.quadratic import HEADER, basis, section_place
 from puck_tables.stopping.lookup import LARGEST, SMALLEST
 from puck_tables.stopping.stop_jacobian import OWN
 

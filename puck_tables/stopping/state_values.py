@@ -10,9 +10,8 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
+from puck_tables._core.arrays import FloatArray, finite_array
 from puck_tables._core.executor import run_chunks
-from puck_tables._core.real import finite_array
 from puck_tables.errors import InputError
 from puck_tables.motion.body import UnitPuck
 from puck_tables.motion.frame import frame_of

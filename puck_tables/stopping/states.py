@@ -11,11 +11,10 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import broadcast, checked_flag, checked_threads, real_view
+from puck_tables._core.arrays import FloatArray, broadcast, checked_flag, checked_threads, real_view
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
 from puck_tables.errors import InputError
-from puck_tables.io.dataset import Dataset, variable
+from puck_tables.io.columns import Dataset, variable
 from puck_tables.motion.body import UnitPuck, body_of, plain_up_to
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED, SPIN, STATE_ROWS
 from puck_tables.result import Result

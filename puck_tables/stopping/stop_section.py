@@ -17,8 +17,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import real
+from puck_tables._core.arrays import FloatArray, real
 from puck_tables.accuracy.method_errors import COARSEST
 from puck_tables.contact.laws import Law
 from puck_tables.errors import AccuracyError

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
-from puck_tables.io.dataset import Variable
+from puck_tables.io.columns import Variable
 from puck_tables.motion.state import STATE_ROWS
 from puck_tables.stopping.axes import (
     CONSTANT_HEIGHTS,

@@ -12,7 +12,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.laws import Law
-from puck_tables.io.dataset import Variable
+from puck_tables.io.columns import Variable
 from puck_tables.table.check import CheckReport, Route, judged
 from puck_tables.table.slip_spline import LawAxis, SlipSpline
 from puck_tables.table.table import Progress, Table

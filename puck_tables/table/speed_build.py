@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from puck_tables._core.arrays import real, rounded_up
 from puck_tables._core.executor import run_chunks
-from puck_tables._core.real import real, rounded_up
 from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.contact.laws import Law as PressureLaw
 from puck_tables.contact.laws import law_of

@@ -11,9 +11,15 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
+from puck_tables._core.arrays import (
+    FloatArray,
+    checked_progress,
+    finite_array,
+    positive,
+    real,
+    whole,
+)
 from puck_tables._core.executor import Progress
-from puck_tables._core.real import checked_progress, finite_array, positive, real, whole
 from puck_tables.errors import InputError
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import pucks_of, start_of

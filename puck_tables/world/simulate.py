@@ -12,8 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array
+from puck_tables._core.arrays import FloatArray, finite_array
 from puck_tables.errors import InputError, PuckError
 from puck_tables.scene.friction import THETA, VX, X, Y
 from puck_tables.scene.ingredients import FREE
@@ -40,8 +39,7 @@ from puck_tables.world.layout import HOLD, LIGHTNESS, NORMAL, TURNABILITY
 from puck_tables.world.ledger import energies_of, energy_scale
 from puck_tables.world.plan import plan_of
 from puck_tables.world.prepare import Start, prepared
-from puck_tables.world.reactions import reactions
-from puck_tables.world.record import floor_under, rests_of, slips_over
+from puck_tables.world.record import floor_under, reactions, rests_of, slips_over
 from puck_tables.world.world import World
 
 # of check runs: so many times the error of a step, and to which side launches are off

@@ -17,7 +17,6 @@ from puck_tables.kernels.compile import inlined, inner
 from puck_tables.motion.steppers import DORMAND_PRINCE
 from puck_tables.scene.friction import X, Y, size
 from puck_tables.scene.ingredients import floor_acceleration
-from puck_tables.world.break_away import find_break_away, overborne, turn_directions
 from puck_tables.world.complementarity import load_of, most
 from puck_tables.world.contact_kinematics import look, look_at_ties
 from puck_tables.world.floor_under import floor_of
@@ -57,6 +56,7 @@ from puck_tables.world.group import (
 from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY, write_over
 from puck_tables.world.multipliers import close_gaps, leads, push_and_move, stop_slips
 from puck_tables.world.paths import DURATION, FIRST, START
+from puck_tables.world.pressing import find_break_away, overborne, turn_directions
 from puck_tables.world.step_ledger import LEDGER, write_work
 
 _A, _C, _E = DORMAND_PRINCE.a, DORMAND_PRINCE.c, DORMAND_PRINCE.e[0]

@@ -21,8 +21,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import broadcast, checked_flag, finite_array, velocity_array
+from puck_tables._core.arrays import (
+    FloatArray,
+    broadcast,
+    checked_flag,
+    finite_array,
+    velocity_array,
+)
 from puck_tables.contact.laws import Law
 from puck_tables.errors import ContactError, InputError
 from puck_tables.kernels.base_friction import grip
