@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import tomllib
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from rays_judge import border, by_ellipse, friction_of, sides
 from scipy.integrate import solve_ivp
 
 import puck_tables as pt
-from puck_tables.scene.scene_text import as_toml
+from puck_tables.scene.outcome import as_toml
 from puck_tables.world.floor_forces import friction_at
 
 BOX, ROUND = [(-0.1, -0.05), (0.1, -0.05), (0.1, 0.05), (-0.1, 0.05)], 0.06
@@ -176,6 +177,43 @@ def test_a_patch_holds_by_the_friction_along_the_slope(shape: str) -> None:
             floor = pt.Floor(slope=math.atan(friction) + off, patches=[patch])
             run = pt.Scene(body(shape, 0.0), floor, time=0.3).simulate([0.0])
             assert (run.end == "at rest") == rests, (direction, off)
+
+
+@pytest.mark.parametrize(("shape", "height"), [("box", 0.0), ("round", 0.03)])
+def test_axes_of_a_turntable_turn_with_it(shape: str, height: float) -> None:
+    thrown, turning, cx = body(shape, height), 2.5, 0.1
+    inertia = thrown.inertia_radius**2 * thrown.mass
+
+    def rates(t: float, y: np.ndarray) -> list[float]:
+        now = replace(WOOD, direction=WOOD.direction + turning * t)
+        ux, uy = y[3] + turning * y[1], y[4] - turning * (y[0] - cx)
+        state = [0.0, 0.0, y[2], ux, uy, y[5] - turning]
+        fx, fy, torque = Judge(shape, [now], None, height).forces(state, 2)
+        return [*y[3:], fx, fy, torque / inertia]
+
+    start, times = [-0.1, 0.02, 0.3, 0.45, -0.1, 7.0], [0.2, 0.4, 0.8]
+    truth = solve_ivp(rates, (0.0, 0.8), start, "DOP853", times, rtol=1e-11, atol=1e-12).y
+    launch = pt.Launch((0.45, -0.1), spin=7.0, position=(-0.1, 0.02), orientation=0.3)
+    floor = pt.Floor(orthotropic=WOOD, turning=turning, centre=(cx, 0.0))
+    run = pt.Scene(thrown, floor, launch, time=1.0, tol=1e-10).simulate(times)
+    for key, row in zip(("x", "y", "orientation", "vx", "vy", "spin"), truth, strict=True):
+        unit = 1.0 / ROUND if key in ("orientation", "spin") else 1.0
+        assert run.columns[key] == pytest.approx(row, abs=2e-9 * unit), key
+    assert run.energy_residual < 1e-9
+
+
+@pytest.mark.parametrize("shape", ["box", "round"])
+def test_a_turntable_carries_what_its_ellipse_holds(shape: str) -> None:
+    """Radially by f along the axis that lies so under it, wherever that has turned to."""
+    turning = 2.0
+    for bearing, friction in ((0.0, 0.1), (0.5 * math.pi, 0.35)):
+        for share, end in ((0.999, "carried by the floor"), (1.001, "time is up")):
+            away = share * friction / turning**2
+            place = away * math.cos(bearing), away * math.sin(bearing)
+            launch = pt.Launch((-turning * place[1], turning * place[0]), turning, place)
+            floor = pt.Floor(orthotropic=pt.Orthotropic((0.1, 0.35)), turning=turning)
+            run = pt.Scene(body(shape, 0.0), floor, launch, time=4.0).simulate([0.0])
+            assert run.end == end, (bearing, share)
 
 
 FILE = """

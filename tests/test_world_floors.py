@@ -158,7 +158,8 @@ def test_a_turntable_holds_who_lies_near_its_middle():
     ({"floor": pt.Floor(law=[[0.0, 0.0], [9.0, 0.2]])}, "floor.law: its friction is 0 at slip"),
     ({"floor": pt.Floor(law=[[0.0, 0.1], [0.9, 0.2]])}, "faster than the friction law floor.law"),
     ({"floor": pt.Floor(patches=[pt.Patch(0.1)])}, "give a radius > 0 m, or corners"),
-    ({"floor": pt.Floor(turning=1.0, orthotropic=pt.Orthotropic((0.1, 0.2)))}, "that turns"),
+    ({"floor": pt.Floor(turning=1.0, patches=[pt.Patch(pt.Orthotropic((0.1, 0.2)), radius=1.0)])},
+     "that turns"),
     ({"force": pt.Force((0.1, 0.0))}, r"force: each of several pucks has its own, puck\[0\].force"),
     ({"floor": pt.Floor(strips=pt.Strips((0.1,), (0.1,)))}, "must be one number more"),
 ])  # fmt: skip

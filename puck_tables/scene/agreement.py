@@ -154,10 +154,15 @@ def _bad_axes(floor: Floor) -> list[str]:
             "floor.orthotropic and floor.strips: strips say all friction of the floor, each may "
             "have a direction of its own; give one of them"
         )
-    turns = floor.turning != 0.0 or (bool(floor.over_time) and motion_of(floor)[:, 3].any())
+    unsteady = bool(floor.over_time) and motion_of(floor)[:, 3].any()
     for name, two in directions_in(floor).items():
-        if turns and two.fixed_to == "floor":
-            faults.append(f"{name}: not on a floor that turns, its axes stand still; leave one out")
+        if unsteady and two.fixed_to == "floor":
+            faults.append(f"{name}: not on a floor that turns by floor.over_time; leave one out")
+        if floor.turning != 0.0 and two.fixed_to == "floor" and name != "floor.orthotropic":
+            faults.append(
+                f"{name}: not on a floor that turns, where borders stand still and its axes would "
+                "not; leave one out"
+            )
         if min(two.friction) < LEAST_RATIO * max(two.friction):
             faults.append(
                 f"{name}.friction = {list(two.friction)}: one must be at least {LEAST_RATIO:g} of "

@@ -37,6 +37,7 @@ from puck_tables.scene.ingredients import (
     Model,
     Phase,
     Surface,
+    changes_over_time,
     floor_acceleration,
     floor_velocity,
     friction_at,
@@ -45,7 +46,6 @@ from puck_tables.scene.ingredients import (
     put_at,
     surface_now,
 )
-from puck_tables.scene.over_time import has_factors
 
 SIZE = 10  # numbers that are integrated: six of the state, the four works
 GIVEN, DRY, VISCOUS, SUPPORT = range(6, SIZE)
@@ -139,7 +139,7 @@ def rates_here(phase: Phase, t: float, y: FloatArray, out: FloatArray, row: int)
         return
     put_at(phase.friction, y[X], y[Y], y[THETA])
     drive = model.forces.drive
-    if has_factors(drive):
+    if changes_over_time(phase.friction, drive):
         friction = friction_at(phase.friction, drive, phase.piece, t)
         hx, hy, hm, heat = friction_force(friction, body.radius, y[VX], y[VY], y[SPIN])
     else:

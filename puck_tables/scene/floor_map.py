@@ -17,10 +17,12 @@ from puck_tables.kernels.elliptic_sums import Ellipse
 # A ground, all in one array, which is quick to hand on: where the centre of the base is, the factor
 # on all friction now, what holds for all of it, how the base is turned, whether velocities of the
 # floor differ, the one that states are relative to, how many edges cut the base, whether a part
-# of it may lift, and of its width how much it has to be pressed on, or tips,
+# of it may lift, of its width how much it has to be pressed on, or tips, and how fast axes of the
+# floor turn, and how far they are now,
 PLACE_X, PLACE_Y, SHARE, LEVER, ACROSS_X, ACROSS_Y, BORDERS, PATCHES = range(8)
 BASE, LAW, ROOM, ANGLE, BELTS, OVER_X, OVER_Y, EDGES, LEFT, LIFTS, LEAST_WIDTH = range(8, 19)
-_HEAD = 19
+TURNING, TURNED = 19, 20
+_HEAD = 21
 # the places of its borders, f N between them as it is summed now, f N of all strips and then of all
 # patches where no factor changes it, the same with their factors, their velocities, where the law
 # begins by which their f goes (0: none; < 0: minus where, by direction; N then stands for f N), a
@@ -48,7 +50,8 @@ class FloorMap(NamedTuple):
     load is N then; ``belts`` (n + 1 + k, 2): their velocities, m/s, none: all alike; ``edges``
     (e, 3): those beyond which the base is not carried, a unit normal into the floor and the place
     along it, m; ``lifts``: whether some state of motion lifts a part of the base; ``narrowest``:
-    of the width of what lies on the floor what has to be pressed, or it tips.
+    of the width of what lies on the floor what has to be pressed, or it tips; ``turning``: of the
+    axes of the floor, rad/s.
     """
 
     across_x: float
@@ -64,6 +67,7 @@ class FloorMap(NamedTuple):
     edges: FloatArray = np.empty((0, 3))
     lifts: bool = False
     narrowest: float = 0.0
+    turning: float = 0.0
 
     def packed(self) -> FloatArray:
         """In one array."""
@@ -90,7 +94,7 @@ class FloorMap(NamedTuple):
             len(self.borders), len(self.patches), at, law if self.laws else 0,
             ends[-1] + len(left), 0.0, float((belts != belts[0]).any()), *belts[0],
             len(self.edges), ends[-1], float(self.lifts),
-            self.narrowest,
+            self.narrowest, self.turning, 0.0,
         ]  # fmt: skip
         parts = [head, *tables, self.base, *self.laws, left, room]
         return np.concatenate(parts).astype(np.float64)
@@ -191,7 +195,7 @@ def law_on(floor_map: FloatArray, part: int) -> int:
 @inlined
 def ellipse_on(floor_map: FloatArray, at: int) -> Ellipse:
     """Of a law by direction that begins at a place, in the axes of the base as it is turned."""
-    angle = floor_map[at + 2] - floor_map[at + 3] * floor_map[ANGLE]
+    angle = floor_map[at + 2] + floor_map[at + 3] * (floor_map[TURNED] - floor_map[ANGLE])
     return Ellipse(floor_map[at], floor_map[at + 1], math.cos(angle), math.sin(angle))
 
 

@@ -14,7 +14,17 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
-from puck_tables.scene.floor_map import ANGLE, BELTS, PLACE_X, PLACE_Y, SHARE, parts_in, set_factor
+from puck_tables.scene.floor_map import (
+    ANGLE,
+    BELTS,
+    PLACE_X,
+    PLACE_Y,
+    SHARE,
+    TURNED,
+    TURNING,
+    parts_in,
+    set_factor,
+)
 from puck_tables.scene.forces import Forces
 from puck_tables.scene.over_time import (
     FLOOR_SPIN,
@@ -115,6 +125,14 @@ def put_at(friction: DryFriction, x: float, y: float, angle: float) -> None:
 
 
 @inlined
+def changes_over_time(friction: DryFriction, drive: FloatArray) -> bool:
+    """Whether dry friction is another at another time, where all else is the same."""
+    if is_mixed(friction) and friction.by_speed.table[TURNING] != 0.0:
+        return True
+    return has_factors(drive)
+
+
+@inlined
 def friction_at(friction: DryFriction, drive: FloatArray, piece: int, t: float) -> DryFriction:
     """The dry friction at a time, on the piece of what is given over time that rows precede."""
     law, factor = friction.by_speed, 1.0
@@ -123,6 +141,7 @@ def friction_at(friction: DryFriction, drive: FloatArray, piece: int, t: float) 
     height_ratio, normal = factor * law.height_ratio, factor * law.normal
     if is_mixed(friction):
         height_ratio, normal = law.height_ratio, law.normal
+        law.table[TURNED] = law.table[TURNING] * t
         if has_factors(drive):
             law.table[SHARE] = factor
             for phase in range(parts_in(law.table)):

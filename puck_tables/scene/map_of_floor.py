@@ -19,6 +19,7 @@ from puck_tables.scene.by_speed import key_of, moments_of
 from puck_tables.scene.floor_map import LOAD, NO_GROUND, PATCH_COLUMNS, FloorMap
 from puck_tables.scene.floor_parts import (
     belts_of,
+    directions_in,
     frictions_on,
     has_laws_by_place,
     largest_of,
@@ -41,7 +42,7 @@ def floor_map_of(scene: SceneSpec, normal: float, top: float = 0.0) -> FloatArra
 
     >>> from puck_tables import Floor, Puck, Scene, Strips
     >>> floor = Floor(strips=Strips((0.1,), (0.3, 0.1)))
-    >>> floor_map_of(Scene(Puck(0.04), floor), 2.0)[19:22].tolist()
+    >>> floor_map_of(Scene(Puck(0.04), floor), 2.0)[21:24].tolist()
     [0.1, 0.6, 0.2]
     """
     floor, puck = scene.floor, scene.puck
@@ -76,7 +77,8 @@ def floor_map_of(scene: SceneSpec, normal: float, top: float = 0.0) -> FloatArra
     sure = shape is None or (puck.height == 0.0 and shape.is_under_centre)  # up to its centre
     laws = [_packed(one, top) for one in kept.values()]
     how = edges_under(scene), may_lift(scene, top), 0.0 if sure else NARROWEST
-    return FloorMap(*there, base, laws, which, belts_of(floor), *how).packed()
+    turning = floor.turning if directions_in(floor) else 0.0
+    return FloorMap(*there, base, laws, which, belts_of(floor), *how, turning).packed()
 
 
 def _key_of(one: SpeedLaw | FrictionLaw | Orthotropic) -> Hashable:
@@ -176,4 +178,5 @@ def follows_contour(scene: SceneSpec) -> bool:
         return False
     base = _pressed_base(puck)
     plain = floor.orthotropic.fixed_to == "floor" and puck.body.law.name == "uniform"
+    plain = plain and floor.turning == 0.0
     return not plain or base is None or _lifts(scene, base, 0.0)
