@@ -375,7 +375,7 @@ def _balancing(scene: SceneSpec, pucks: tuple[ScenePuck, ...]) -> Iterator[str]:
         reach = (puck.shape.reach if puck.shape else puck.radius) * _NARROW
         (vx, vy), spin = puck.launch.velocity or (0.0, 0.0), puck.launch.spin
         speed = math.hypot(vx, vy, puck.radius * spin)
-        edges = [] if puck.path else edges_under(scene.alone(puck))
+        edges = [] if puck.path else edges_under(scene.alone(puck)).tolist()
         for k, (nx, ny, at) in zip(ends_of_floor(scene), edges, strict=False):
             inside = nx * puck.launch.position[0] + ny * puck.launch.position[1] - at
             if inside < reach and speed > 0.0 and abs(nx * vx + ny * vy) <= _ALONG * speed:
