@@ -59,7 +59,7 @@ def compare(
     result = compared(files, **how)
     out.deliver(result)
     if report is not None:
-        from puck_tables.plot.comparison_page import page
+        from puck_tables.plot.comparison_figure import page
         from puck_tables.plot.html_page import save_page
 
         save_page(page, result, report, out.overwrite)

@@ -1,20 +1,142 @@
-"""``puck tables``: the tables there are, and clearing away those that the program has kept."""
+"""``puck tables``, ``info``, ``validate``, ``build-tables``: tables, and how good they are."""
 
 from __future__ import annotations
 
 import json
 import re
 from contextlib import suppress
+from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 import click
-from puck_tables.cli.printing import say
+from puck_tables.cli.completion import laws
+from puck_tables.cli.options import FILE, Outputs, number, outputs, tables_named
+from puck_tables.cli.printing import note, progress, say
 
 from puck_tables._core import own_folder
 from puck_tables.errors import InputError, TableError
 from puck_tables.report.lines_and_tables import columns
+
+FAILED = 3  # exit status: 1 and 2 are those of errors and of wrong usage
+
+
+@click.command()
+@click.argument("file", type=FILE, required=False)
+def validate(file: Path | None) -> None:
+    """Judge a table by independent routes.
+
+    Resultants: direct quadrature and closed forms; those under other pressure laws and friction
+    laws: quadrature.  Stops: the integrator, the equations they satisfy
+    with friction by quadrature, elementary solutions.
+
+    Without FILE: the tables that come along.  Ends with code 3 if anything is out of a table's own
+    tolerance.
+    """
+    passed = True
+    for table in tables_named(file):
+        with progress("validating") as show:
+            report = table.validate(show)
+        say(str(report))
+        passed = passed and report.passed
+    if not passed:
+        click.echo("Error: the table is out of its own tolerance", err=True)
+        raise SystemExit(FAILED)
+
+
+@click.command()
+@click.argument("file", type=FILE, required=False)
+def info(file: Path | None) -> None:
+    """Say what a table holds, how good it is, and whether its digest is right.
+
+    Without FILE: the tables that come along.
+    """
+    say("\n\n".join(map(str, tables_named(file))))
+
+
+@click.command("build-tables")
+@click.option("--kind", type=click.Choice(["resultants", "stops"]), default="resultants",
+              show_default=True, help="Friction resultants in full contact, or stops and the way "
+              "to them.")  # fmt: skip
+@click.option("--pressure", metavar="LAW", shell_complete=laws,
+              help="Resultants under uniform, galin, hertz, ring, annulus:INNER or a profile "
+              "FILE.csv (columns rho in units of r, and W).  [default: uniform]")  # fmt: skip
+@click.option("--speed-law", type=FILE, metavar="FILE", help="Resultants with a coefficient that "
+              "depends on the slip speed (CSV of it in m/s, and f).")  # fmt: skip
+@number("--accuracy", help="Largest error: of resultants 1e-13 to 0.01 [default: 2e-11], of those "
+        "under other laws than uniform pressure 1e-11 to 0.01 [default: 1e-9], of stops 1e-11 to "
+        "0.01 in units of Q/(f g) and Q^2/(f g) [default: 1e-10], with --speed-law 1e-13, under "
+        "other pressures 1e-9, to 0.01 of the largest f [default: 1e-6].")  # fmt: skip
+@click.option("--cells", type=int, help="Grid size by hand instead: cells on each side of each "
+              "singular line, at least 4, for stops 8.")  # fmt: skip
+@outputs("The table file.  [default: KIND.h5 or LAW.h5, here]", plot=False)
+def build_tables(
+    kind: str, pressure: str | None, speed_law: Path | None, accuracy: float | None,
+    cells: int | None, out: Outputs,
+) -> None:  # fmt: skip
+    """Tabulate friction resultants or stops, and measure how exact the table is.
+
+    The file is written where you stand, or to FILE, for --table, info and validate.  (What the
+    program builds for its own use it keeps elsewhere: see 'puck tables'.)
+
+    \b
+    puck build-tables --accuracy 1e-8 -o coarse.h5
+    puck build-tables --cells 512 -o fine.h5
+    puck build-tables --kind stops --accuracy 1e-11 -o fine-stops.h5
+    puck build-tables --pressure annulus:0.8 -o stone.h5
+    puck build-tables --speed-law law.csv -o felt.h5
+    puck build-tables --speed-law law.csv --pressure ring -o cup.h5
+    """  # noqa: D301 - click reads the backspace
+    if kind != "resultants" and (pressure is not None or speed_law is not None):
+        word = "--pressure" if speed_law is None else "--speed-law"
+        raise InputError(f"{word} goes with --kind resultants, not with --kind {kind}")
+    if speed_law is not None and cells is not None:
+        raise InputError("--cells does not go with --speed-law: give --accuracy")
+    of, stem, words = _wanted(kind, pressure, speed_law)
+    path = out.output or Path(f"{stem}.h5")
+    if path.suffix.lower() != ".h5":
+        raise InputError(f"{path}: a table is an HDF5 file: give a name that ends in .h5")
+    replace(out, output=path).prepare(speed_law, pressure, saved=False)
+    options = {"--accuracy": accuracy, "--cells": cells}
+    given = [f"{name} {value}" for name, value in options.items() if value is not None]
+    grid: dict[str, Any] = {} if cells is None else {"cells": cells}
+    if speed_law is not None and pressure is not None:
+        grid["pressure"] = pressure
+    with progress("tabulating") as show:
+        from puck_tables.table.table import Table
+
+        table = Table.build(of, accuracy, progress=show, **grid)
+        saved = table.save(path, out.overwrite, " ".join(["puck build-tables", *words, *given]))
+    note(path)
+    say(str(saved))
+
+
+def _wanted(kind: str, pressure: str | None, speed_law: Path | None) -> tuple[Any, str, list[str]]:
+    """What a table is wanted of, a name for its file, and the options that said so."""
+    if speed_law is not None:
+        from puck_tables.contact.speed_law import SpeedLaw
+
+        words = [f"--speed-law {speed_law}"]
+        words += [] if pressure is None else [f"--pressure {pressure}"]
+        return SpeedLaw.from_csv(speed_law), "speed", words
+    if kind != "resultants":
+        return kind, kind, [f"--kind {kind}"]
+    if pressure in (None, "uniform"):
+        return "uniform", kind, []
+    from puck_tables.contact.laws import law_of
+
+    law = law_of(str(pressure))
+    return law, _file_stem(law.name), [f"--pressure {pressure}"]
+
+
+def _file_stem(name: str) -> str:
+    """A file name for what has this name.
+
+    >>> _file_stem("annulus:0.8"), _file_stem("my stone.csv")
+    ('annulus-0.8', 'my-stone')
+    """
+    return re.sub(r"[^\w.+-]", "-", name.removesuffix(".csv"))
 
 
 @click.command()

@@ -18,8 +18,7 @@ if TYPE_CHECKING:
     from puck_tables.stopping.stops import Stops
     from puck_tables.table.table import Table
     from puck_tables.trajectory import Trajectory
-    from puck_tables.wrench.friction_force import Wrench
-    from puck_tables.wrench.friction_hold import Hold, Twist
+    from puck_tables.wrench.friction_hold import Hold, Twist, Wrench
     from puck_tables.wrench.surface import LimitSurface
 
 
@@ -428,7 +427,7 @@ class Puck(VerbsOfMany):
         >>> found.force.round(6).tolist(), float(found.torque.round(6))
         ([-5.090855, 0.0], -0.170834)
         """
-        from puck_tables.wrench.friction_force import wrench
+        from puck_tables.wrench.friction_hold import wrench
 
         return wrench(self, velocity, spin, angle, jacobian)
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from puck_tables._core.lazy import above, report_of
-from puck_tables.io.dataset import Dataset
+from puck_tables.io.columns import Dataset
 from puck_tables.io.formats import save
 
 if TYPE_CHECKING:

@@ -9,12 +9,18 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import checked_flag, finite_array, one_velocity, real, whole
+from puck_tables._core.arrays import (
+    FloatArray,
+    checked_flag,
+    finite_array,
+    one_velocity,
+    real,
+    whole,
+)
 from puck_tables.accuracy.method_errors import Selection
 from puck_tables.accuracy.methods import INTEGRATORS, method_named
 from puck_tables.errors import InputError
-from puck_tables.io.dataset import Dataset, variable
+from puck_tables.io.columns import Dataset, variable
 from puck_tables.motion.base_slides import BaseSlide, slide_of
 from puck_tables.motion.body import UnitPuck, body_of
 from puck_tables.motion.contact import contact_of

@@ -303,10 +303,10 @@ def launches_on_the_edges_of_cells() -> Iterator[float]:
 
 @row("Runge–Kutta 4 with 1e6 steps", "Q/(fg), Q²/(fg)", 1e-11)
 def a_million_steps() -> Iterator[float]:
-    from puck_tables.kernels.section_spline import NO_SECTION
+    from puck_tables.kernels.quadratic import NO_SECTION
     from puck_tables.motion.path import STOPPED, integrate
     from puck_tables.motion.state import SIZE
-    from puck_tables.motion.tableaus import RK4
+    from puck_tables.motion.steppers import RK4
 
     result, none = np.empty(SIZE + 1), np.empty(0)
     status, steps = integrate(

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from puck_tables.kernels.compile import kernel
-from puck_tables.kernels.section_spline import NO_SECTION
+from puck_tables.kernels.quadratic import NO_SECTION
 from puck_tables.scene.by_speed import NO_LAW
 from puck_tables.scene.floor_map import NO_GROUND
 from puck_tables.scene.forces import QUADRATIC, SLIDING, SPINNING

@@ -16,12 +16,11 @@ from puck_tables.errors import AccuracyError, ContactError, InputError
 from puck_tables.motion import limit_angle, limit_ratio, regime
 from puck_tables.motion.body import body_of
 from puck_tables.motion.friction_source import section_friction
-from puck_tables.motion.steppers import Stepping
-from puck_tables.motion.tableaus import DORMAND_PRINCE, RK4
+from puck_tables.motion.steppers import DORMAND_PRINCE, RK4, Stepping
 from puck_tables.motion.unit_motion import integrated
 from puck_tables.table.friction_section import friction_section
 from puck_tables.table.singular_lines import opening_angle
-from puck_tables.table.slip_axis import graded
+from puck_tables.table.slip_spline import graded
 from puck_tables.trajectory import Trajectory
 
 PUCKS = [

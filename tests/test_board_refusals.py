@@ -7,8 +7,8 @@ import tomllib
 import pytest
 
 import puck_tables as pt
+from puck_tables.scene.outcome import as_toml
 from puck_tables.scene.restitution import restitution_law
-from puck_tables.scene.scene_text import as_toml
 
 PUCK = pt.Puck(0.03, friction=0.1, name="puck", launch=pt.Launch((1.0, 0.0)))
 OTHER = pt.Puck(0.03, friction=0.1, name="other", launch=pt.Launch(position=(0.3, 0.0)))

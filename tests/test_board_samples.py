@@ -13,8 +13,7 @@ from puck_tables.cli.main import main
 
 import puck_tables as pt
 from puck_tables import Normal, Scene, Uniform
-from puck_tables.scene.outcome import ENDS, REFUSED
-from puck_tables.scene.scene_text import as_toml
+from puck_tables.scene.outcome import ENDS, REFUSED, as_toml
 
 PLACES = ("x", "y", "orientation", "in_play")
 SHOT: dict[str, Any] = {

@@ -174,7 +174,7 @@ def test_build_info_validate(folder: Path):
 
 def test_validate_ends_with_3_when_a_table_is_out_of_its_tolerance(monkeypatch: pytest.MonkeyPatch):
     table = replace(Table.shipped(), tolerance=1e-13)
-    monkeypatch.setattr("puck_tables.cli.validate.tables_named", lambda file: [table])
+    monkeypatch.setattr("puck_tables.cli.tables.tables_named", lambda file: [table])
     result = puck("validate")
     assert result.exit_code == 3
     assert "FAIL" in result.stdout

@@ -13,7 +13,7 @@ from click.testing import CliRunner
 from puck_tables.cli.main import main
 
 from puck_tables import InputError, compare, reference_case
-from puck_tables.plot.comparison_page import page
+from puck_tables.plot.comparison_figure import page
 from puck_tables.reference.case_text import lines_of
 from puck_tables.reference.log import turned
 

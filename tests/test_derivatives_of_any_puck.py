@@ -11,7 +11,7 @@ from slope_truth import WAYS, next_to, state_slopes, stop_slopes
 from puck_tables import states, stop
 from puck_tables.errors import InputError
 from puck_tables.motion.body import body_of
-from puck_tables.stopping import slope_section
+from puck_tables.stopping import variational
 
 BOUND = 1e-7  # in units of Q, J and r of the launch, as promised
 # what the judge itself errs by where slides cross φ = π/4: friction of a ring has a logarithm there
@@ -81,7 +81,7 @@ def test_many_launches_are_looked_up_and_the_few_too_steep_are_not():
     velocity = np.stack([speed * np.cos(way), speed * np.sin(way)], axis=-1)
     how = {"pressure": "hertz", "delta": 0.5, "gyration": 0.6, "decel": 1.4, "jacobian": True}
     few = stop(velocity, slip * np.sin(phi), **how).jacobian
-    times = slope_section.MANY // phi.size + 1
+    times = variational.MANY // phi.size + 1
     many = stop(np.tile(velocity, (times, 1)), np.tile(slip * np.sin(phi), times), **how).jacobian
     off = np.abs(many[: phi.size] - few) / np.maximum(slip, slip**2)[:, None, None]
     assert np.nanmax(off) <= 0.5 * BOUND

@@ -12,10 +12,14 @@ import pytest
 from puck_tables import SpeedLaw, Table
 from puck_tables.contact.laws import law_of
 from puck_tables.kernels.compile import kernel
-from puck_tables.kernels.quadratic import fill_resultants, room_for_section, section_at
-from puck_tables.kernels.section_spline import fill_section
+from puck_tables.kernels.quadratic import (
+    cell_at,
+    fill_resultants,
+    fill_section,
+    room_for_section,
+    section_at,
+)
 from puck_tables.kernels.speed_spline import fill_speed
-from puck_tables.kernels.spline import cell_at
 from puck_tables.motion.body import body_of
 from puck_tables.stopping.launch_arrays import launches_in
 from puck_tables.stopping.launch_lookup import fill_launch_lookup

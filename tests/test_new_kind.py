@@ -15,10 +15,9 @@ from puck_tables.cli.main import main
 
 from puck_tables import SpeedLaw, Table
 from puck_tables._core import lazy
-from puck_tables.io.dataset import Variable
-from puck_tables.table.accuracy import Accuracy
+from puck_tables.io.columns import Variable
 from puck_tables.table.build import Goal, built
-from puck_tables.table.check import CheckReport, Route, judged
+from puck_tables.table.check import Accuracy, CheckReport, Route, judged
 from puck_tables.table.table_store import fetch
 
 

@@ -8,12 +8,17 @@ import numpy as np
 import pytest
 import strips
 
-from puck_tables.contact import closed_form, loaded_patch
+from puck_tables.contact import closed_form, loaded_chord
 from puck_tables.contact.closed_form import is_full_contact
 from puck_tables.contact.integrals import slip_direction
-from puck_tables.contact.loaded_patch import patch_rule, segment
-from puck_tables.contact.one_sided import FOLD_DELTA, balance, loaded_share, resultants
-from puck_tables.contact.opening import critical_delta
+from puck_tables.contact.loaded_chord import patch_rule, segment
+from puck_tables.contact.one_sided import (
+    FOLD_DELTA,
+    balance,
+    critical_delta,
+    loaded_share,
+    resultants,
+)
 from puck_tables.contact.resultants import moment_balance
 from puck_tables.errors import ContactError, InputError
 
@@ -144,8 +149,8 @@ def test_quadrature_has_converged_and_does_so_exponentially(monkeypatch):
     default = np.stack(balance(phi, delta)[0])
 
     def with_nodes(count: int, reach: float) -> np.ndarray:
-        nodes, weights = loaded_patch._tanh_sinh(count, reach)
-        monkeypatch.setattr(loaded_patch, "LINE_RULE", np.stack([nodes, weights]))
+        nodes, weights = loaded_chord._tanh_sinh(count, reach)
+        monkeypatch.setattr(loaded_chord, "LINE_RULE", np.stack([nodes, weights]))
         return np.stack(balance(phi, delta)[0])
 
     truth = with_nodes(181, 3.6)

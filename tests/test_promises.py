@@ -19,8 +19,8 @@ from conftest import ROOT
 # file, constant, as it is made coarser, the test that fails then
 RESTS_ON = [
     ("contact/closed_form", "AGM_STEPS = 8", "4", "test_contact.py::test_uncompiled_closed_form"),
-    ("contact/loaded_patch", "_LINE_NODES = 81", "41", "test_partial.py::test_against_strips"),
-    ("contact/loaded_patch", "_SEGMENT_NODES = 20", "10",
+    ("contact/loaded_chord", "_LINE_NODES = 81", "41", "test_partial.py::test_against_strips"),
+    ("contact/loaded_chord", "_SEGMENT_NODES = 20", "10",
      "test_partial.py::test_segment_and_patch_rule"),
     ("contact/quadrature", "_GAUSS_NODES = 14", "7", "test_contact.py::test_quadrature"),
     ("contact/quadrature", "_PANELS = 32", "4", "test_contact.py::test_quadrature"),
@@ -62,7 +62,7 @@ RESTS_ON = [
      "test_similarity.py::test_regular_slopes_pass_the_limit_smoothly"),
     ("stopping/similarity", "_COUNT = 10", "5",
      "test_similarity.py::test_parts_are_the_integrals_of_their_slopes"),
-    ("table/slip_axis", "GRADING_POWER = 4", "2",
+    ("table/slip_spline", "GRADING_POWER = 4", "2",
      "test_resultant_table.py::test_order_4_through_every_singular_line"),
 ]  # fmt: skip
 

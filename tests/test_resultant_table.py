@@ -14,13 +14,13 @@ from puck_tables.contact import quadrature
 from puck_tables.contact.closed_form import by_closed_form
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.laws import HOMOGENEOUS, law_of, profile_law
-from puck_tables.contact.opening import critical_delta
+from puck_tables.contact.one_sided import critical_delta
 from puck_tables.contact.pressure import GALIN, HERTZ
 from puck_tables.contact.resultants import moment_balance
 from puck_tables.errors import InputError
 from puck_tables.motion.friction_source import table_friction
 from puck_tables.table.resultant_table import ResultantTable, adversarial_points
-from puck_tables.table.slip_axis import LawAxis
+from puck_tables.table.slip_spline import LawAxis
 from puck_tables.table.spline_fit import clamped_coefficients, height_terms
 
 QUARTER, HALF = 0.25 * math.pi, 0.5 * math.pi

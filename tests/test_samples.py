@@ -189,7 +189,7 @@ def test_many_samples_of_a_store_are_not_read_unasked(
 ):
     pytest.importorskip("zarr")
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("puck_tables.cli.sweep_options.SUMMED", 10)
+    monkeypatch.setattr("puck_tables.cli.sweep.SUMMED", 10)
     words = ["sweep", "--random", "11", "--spread", "w0=normal:5:0.2", "-o", "s.zarr"]
     quiet = CliRunner().invoke(main, words)
     assert (quiet.exit_code, quiet.stdout) == (0, "")

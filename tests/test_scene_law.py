@@ -86,7 +86,7 @@ def test_slices_of_strips_are_brought_to_one_shape_and_stay_the_same_splines():
     puck = {"radius": 0.04, "height": 0.09, "pressure": "annulus:0.5"}
     scene = Scene.from_tables({"puck": puck, "floor": {"strips": strips}, "launch": LAUNCH})
     regions = scene.world()._engine.regions
-    from puck_tables.kernels.section_spline import section_ratios
+    from puck_tables.kernels.quadratic import section_ratios
 
     alone = regions.cuts[~regions.astride]
     for n, delta in enumerate(2 * np.array(strips["friction"]) * 0.09 / 0.04):

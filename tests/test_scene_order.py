@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate._ivp import dop853_coefficients as published
 
 from puck_tables import Drag, Floor, Launch, Puck, Scene
-from puck_tables.motion.tableaus import DORMAND_PRINCE_8
+from puck_tables.motion.steppers import DORMAND_PRINCE_8
 from puck_tables.scene import explicit
 
 COARSE, FINE = 1e-5, 1e-11

@@ -23,8 +23,7 @@ from puck_tables.motion.friction_source import (
     source_of,
 )
 from puck_tables.motion.solve import ErrorEstimate, Setting, close_enough, refined
-from puck_tables.motion.steppers import TABLEAUS, Stepping
-from puck_tables.motion.tableaus import DORMAND_PRINCE, RK4, tableau_of
+from puck_tables.motion.steppers import DORMAND_PRINCE, RK4, TABLEAUS, Stepping, tableau_of
 from puck_tables.motion.unit_motion import integrated
 
 

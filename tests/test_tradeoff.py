@@ -14,9 +14,9 @@ from puck_tables.cli.main import main
 from puck_tables import Table, resultants
 from puck_tables.accuracy.method_errors import shipped_errors
 from puck_tables.errors import OutputError
-from puck_tables.kernels.section_spline import NO_SECTION
+from puck_tables.kernels.quadratic import NO_SECTION
 from puck_tables.motion.bulk_stops import fill_stops
-from puck_tables.motion.tableaus import DORMAND_PRINCE, RK4
+from puck_tables.motion.steppers import DORMAND_PRINCE, RK4
 from puck_tables.stopping.exact import exact_stops
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.tradeoff import body_methods, measurement, motion_methods, resultant_methods
@@ -160,8 +160,8 @@ def test_the_look_up_is_found_in_the_cache_of_compiled_code():
 
 
 def test_unrolled_and_general_runge_kutta_take_the_same_steps():
+    from puck_tables.motion.bulk_stops import to_stop
     from puck_tables.motion.path import integrate
-    from puck_tables.motion.rk4 import to_stop
     from puck_tables.motion.state import SIZE, T, Y
 
     none, nothing = NO_SECTION, np.empty((0, SIZE))

@@ -9,11 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
+from puck_tables._core.arrays import FloatArray, number_in
 from puck_tables._core.own_folder import say
 from puck_tables._core.quantities import X, Y
 from puck_tables._core.read_columns import numbers_of
-from puck_tables._core.real import number_in
 from puck_tables._core.safe_read import is_number, read_whole
 from puck_tables.errors import InputError
 

@@ -12,11 +12,10 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
+from puck_tables._core.arrays import FloatArray, shown
 from puck_tables._core.colours import COLOURS, is_colour
 from puck_tables._core.doubts import question
 from puck_tables._core.fields import LISTED, Kind, in_tables, specs
-from puck_tables._core.real import shown
 from puck_tables._core.units import SHOWN, UNIT_EACH, measured, quantity, unit_meant, without_unit
 from puck_tables._core.wording import meant
 from puck_tables.errors import PuckError

@@ -8,7 +8,7 @@ import stat
 from pathlib import Path
 from typing import BinaryIO
 
-from puck_tables._core.real import shown
+from puck_tables._core.arrays import shown
 
 
 def read_whole(path: str | Path, largest: int) -> bytes:

@@ -9,8 +9,8 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
+from puck_tables._core.arrays import instance
 from puck_tables._core.partial_files import forget, hold, new_part, remove_dead_once
-from puck_tables._core.real import instance
 from puck_tables.errors import OutputError
 
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass, fields
 from functools import cache, lru_cache
 from importlib.resources import files
 
-from puck_tables._core.real import rounded_up
+from puck_tables._core.arrays import rounded_up
 from puck_tables.accuracy.methods import INTEGRATED, LOOK_UP, MEASURED, FrictionForm, Method, Scheme
 from puck_tables.errors import AccuracyError, TableError
 

@@ -13,9 +13,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
+from puck_tables._core.arrays import FloatArray, real, shown, whole
 from puck_tables._core.doubts import question_spread
-from puck_tables._core.real import real, shown, whole
 from puck_tables._core.units import (
     KIND_OF,
     SHOWN,

@@ -9,8 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array, listed, shown, whole
+from puck_tables._core.arrays import FloatArray, finite_array, listed, shown, whole
 from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS
 

@@ -15,11 +15,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import checked_threads
 from puck_tables._core.digest import program, work_digest
 from puck_tables._core.executor import Progress, run_chunks
-from puck_tables._core.real import checked_threads
 from puck_tables.errors import InputError
-from puck_tables.io.dataset import Dataset
+from puck_tables.io.columns import Dataset
 from puck_tables.result import Result
 
 Columns = dict[str, npt.NDArray[Any]]

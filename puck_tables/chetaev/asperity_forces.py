@@ -22,12 +22,11 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import checked_progress, finite_array, instance, shown
+from puck_tables._core.arrays import FloatArray, checked_progress, finite_array, instance, shown
 from puck_tables.chetaev.wavy_support import Asperity, landing, on_support
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
-from puck_tables.io.dataset import Dataset, variable
+from puck_tables.io.columns import Dataset, variable
 from puck_tables.result import Result
 
 CURVES = ("crude", "greatest", "undriven", "mean", "landing_phase", "flights_per_period")

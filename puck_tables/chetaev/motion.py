@@ -13,8 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array, instance, real, shown
+from puck_tables._core.arrays import FloatArray, finite_array, instance, real, shown
 from puck_tables.chetaev.system import ConstrainedSystem, Instant
 from puck_tables.errors import AccuracyError, InputError
 

@@ -23,8 +23,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import one_velocity, positive, real, whole
+from puck_tables._core.arrays import FloatArray, one_velocity, positive, real, whole
 from puck_tables.chetaev.motion import checked_tol
 from puck_tables.chetaev.system import ConstrainedSystem
 from puck_tables.errors import InputError

@@ -25,8 +25,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array, shown
+from puck_tables._core.arrays import FloatArray, finite_array, shown
 from puck_tables.errors import InputError
 
 Constraints = Callable[[Any, Any], tuple[npt.ArrayLike, npt.ArrayLike]]

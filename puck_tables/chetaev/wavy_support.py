@@ -24,8 +24,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import broadcast, finite_array, instance, positive, real
+from puck_tables._core.arrays import FloatArray, broadcast, finite_array, instance, positive, real
 from puck_tables.chetaev.motion import checked_times
 from puck_tables.errors import AccuracyError, InputError
 

@@ -6,16 +6,14 @@ from puck_tables._core.lazy import lazily
 
 if TYPE_CHECKING:
     from puck_tables.contact.closed_form import is_full_contact
-    from puck_tables.contact.one_sided import loaded_share
+    from puck_tables.contact.one_sided import critical_delta, loaded_share
     from puck_tables.contact.one_sided import resultants as one_sided_resultants
-    from puck_tables.contact.opening import critical_delta
     from puck_tables.contact.resultants import Resultants
     from puck_tables.contact.speed_quadrature import speed_resultants
 
 _HOMES = {
     "closed_form": "is_full_contact",
-    "one_sided": "loaded_share resultants:one_sided_resultants",
-    "opening": "critical_delta",
+    "one_sided": "critical_delta loaded_share resultants:one_sided_resultants",
     "resultants": "Resultants",
     "speed_quadrature": "speed_resultants",
 }

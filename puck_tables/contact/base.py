@@ -15,11 +15,18 @@ from typing import Self
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
+from puck_tables._core.arrays import (
+    FloatArray,
+    finite_array,
+    instance,
+    listed,
+    number_in,
+    positive,
+    shown,
+)
 from puck_tables._core.doubts import OF_A_PUCK, question
 from puck_tables._core.drawn_outlines import SUFFIXES, outlines_of
 from puck_tables._core.own_folder import say
-from puck_tables._core.real import finite_array, instance, listed, number_in, positive, shown
 from puck_tables._core.safe_read import is_number
 from puck_tables._core.safe_write import as_utf8
 from puck_tables.contact.outlines import crossing, inside, overlap

@@ -20,8 +20,7 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import broadcast
+from puck_tables._core.arrays import FloatArray, broadcast
 from puck_tables.contact.integrals import PatchIntegrals, checked_phi, slip_direction
 from puck_tables.contact.resultants import (
     CONTACT_SLACK,

@@ -16,10 +16,9 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
+from puck_tables._core.arrays import FloatArray, finite_array, positive, real
 from puck_tables._core.fields import of, specs
 from puck_tables._core.reading import Reading, mark_checked, read_values
-from puck_tables._core.real import finite_array, positive, real
 from puck_tables.errors import InputError
 
 # below, f is too steep at rest for a table; above, it is a step

@@ -20,11 +20,10 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
+from puck_tables._core.arrays import FloatArray, broadcast, instance, real_array, shown
 from puck_tables._core.own_folder import say
 from puck_tables._core.quantities import PRESSURE, RADIUS
 from puck_tables._core.read_columns import numbers_of
-from puck_tables._core.real import broadcast, instance, real_array, shown
 from puck_tables._core.safe_write import as_utf8
 from puck_tables._core.units import unit_size
 from puck_tables.contact import closed_form, one_sided, quadrature

@@ -18,8 +18,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import real_array
+from puck_tables._core.arrays import FloatArray, real_array
 from puck_tables.contact.integrals import PatchIntegrals, SlipDirection
 from puck_tables.errors import InputError
 

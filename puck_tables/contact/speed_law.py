@@ -12,11 +12,10 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
+from puck_tables._core.arrays import FloatArray, finite_array, instance, positive, real, shown
 from puck_tables._core.monotone import from_rest, monotone_cubic
 from puck_tables._core.quantities import FRICTION, SPEED
 from puck_tables._core.read_columns import numbers_of
-from puck_tables._core.real import finite_array, instance, positive, real, shown
 from puck_tables._core.safe_write import write_bytes
 from puck_tables.errors import InputError
 

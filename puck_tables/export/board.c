@@ -12,7 +12,7 @@ static const struct { int32_t code; const char *text; } FAILURES[] = { /*failure
 int32_t puck_play(void *record, int32_t what, double until);
 int32_t puck_see(void *record, double time);
 
-/* addresses, as export/board_library.py lays them out */
+/* addresses, as export/board_source.py lays them out */
 struct puck_scene {
   void *record;
   double *row;

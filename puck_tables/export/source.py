@@ -12,7 +12,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from puck_tables._core.real import instance, listed, real, shown
+from puck_tables._core.arrays import instance, listed, real, shown
 from puck_tables._core.safe_write import write_bytes
 from puck_tables._version import __version__
 from puck_tables.errors import AccuracyError, InputError

@@ -18,8 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array
+from puck_tables._core.arrays import FloatArray, finite_array
 from puck_tables._core.safe_read import read_whole
 from puck_tables._core.text import text_form_of
 from puck_tables._core.text_rows import read_columns

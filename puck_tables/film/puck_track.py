@@ -9,8 +9,7 @@ from itertools import combinations
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import real_array
+from puck_tables._core.arrays import FloatArray, real_array
 from puck_tables.errors import InputError
 
 _KEPT = 0.05  # of their distance, by which that of two marks varies

@@ -21,7 +21,7 @@ from puck_tables.errors import InputError
 from puck_tables.film.column_roles import Layout, example, name_of
 from puck_tables.film.film import Film, Flags, TrackedBody
 from puck_tables.film.headings import Heading
-from puck_tables.film.rates import ANGLES
+from puck_tables.film.space import ANGLES
 
 MOST_PUCKS = 10_000  # in one file: more is a column of another meaning
 _TURN = ("qx", "qy", "qz", "qw")

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from puck_tables._core.real import one_velocity, real
+from puck_tables._core.arrays import one_velocity, real
 from puck_tables._core.safe_read import read_whole
 from puck_tables.errors import InputError
 from puck_tables.fitting.coupled_fit import Impact
@@ -18,7 +18,7 @@ from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.model_comparison import LawScore
 from puck_tables.fitting.numbers import EstimatedLaunch, Number
 from puck_tables.fitting.parameters import INTEGRATED
-from puck_tables.io.dataset import Variable, variable
+from puck_tables.io.columns import Variable, variable
 from puck_tables.puck import Puck
 
 KIND = "puck-tables fit 1"

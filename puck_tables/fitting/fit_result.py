@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
+from puck_tables._core.arrays import FloatArray, instance
 from puck_tables._core.doubts import unquestioned
 from puck_tables._core.lazy import above
-from puck_tables._core.real import instance
 from puck_tables._core.safe_write import write_bytes
 from puck_tables._version import __version__
 from puck_tables.errors import InputError
@@ -35,7 +34,7 @@ from puck_tables.fitting.residuals import (
     lengthways,
     misfits,
 )
-from puck_tables.io.dataset import Dataset
+from puck_tables.io.columns import Dataset
 from puck_tables.io.formats import FORMATS, ending_of
 from puck_tables.puck import Puck
 from puck_tables.result import Result

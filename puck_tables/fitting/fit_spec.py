@@ -13,12 +13,11 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
-from puck_tables._core.real import instance
+from puck_tables._core.arrays import instance
 from puck_tables.contact.base import Base
 from puck_tables.contact.laws import law_of
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
-from puck_tables.fitting.base_motions import base_motions_of
 from puck_tables.fitting.forward_model import Moving, Rims
 from puck_tables.fitting.parameters import (
     ALL,
@@ -47,7 +46,7 @@ from puck_tables.fitting.parameters import (
     refuse_unknown,
 )
 from puck_tables.fitting.speed_motion import LAWS, Drags, SpeedFriction, law_named
-from puck_tables.fitting.unit_motions import UnitMotions, unit_motions_of
+from puck_tables.fitting.unit_motions import UnitMotions, base_motions_of, unit_motions_of
 from puck_tables.puck import Puck
 
 _KIND = (*OWN_CURVE, "drag", *INTEGRATED)  # change the curve itself

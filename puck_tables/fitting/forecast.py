@@ -9,8 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import instance, one_velocity, positive, real
+from puck_tables._core.arrays import FloatArray, instance, one_velocity, positive, real
 from puck_tables.errors import InputError
 from puck_tables.fitting.certainty import Certainty, certainty_of
 from puck_tables.fitting.estimate import Estimate
@@ -19,7 +18,7 @@ from puck_tables.fitting.identifiability import minimum_sentence, mirror_sentenc
 from puck_tables.fitting.observations import FEWEST, Observations
 from puck_tables.fitting.other_minima import mirrored, other_minima
 from puck_tables.fitting.problem import Problem
-from puck_tables.io.dataset import Dataset, variable
+from puck_tables.io.columns import Dataset, variable
 from puck_tables.puck import Puck
 from puck_tables.result import Result
 

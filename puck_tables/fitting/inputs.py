@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from puck_tables._core.real import instance, pair_of, positive, real
+from puck_tables._core.arrays import instance, pair_of, positive, real
 from puck_tables.contact.speed_law import KINDS
 from puck_tables.errors import InputError
 from puck_tables.film.puck_track import Track, marks_of_one

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from puck_tables._core.real import bracketed, pair_of, real
+from puck_tables._core.arrays import bracketed, pair_of, real
 from puck_tables._core.wording import meant
 from puck_tables.errors import InputError
 from puck_tables.motion.body import LARGEST_GYRATION, SMALLEST_GYRATION

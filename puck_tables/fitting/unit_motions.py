@@ -9,30 +9,43 @@ question to the next:
   table of resultants gives the section of every height;
 * a uniform puck with δ > 1 has a section of its own for each height, at a fifth of a second each;
   there motions are interpolated between heights :data:`HEIGHT_STEP` apart, which are kept.
+
+Motions on a base that is not round depend on how the body stands to its velocity, so they are no
+one curve: each is integrated.  With θ the angle of the body at the launch and R(θ) the rotation by
+it,
+
+    s(v, θ) = R(θ) s(R(−θ) v, 0) ,   ds/dθ = J s − (ds/dv) J v ,   J = R(π/2) ,
+
+so what is known of θ = 0 tells all.  Derivatives are differences of motions nearby.
 """
 
 from __future__ import annotations
 
 import math
+from copy import copy
 from functools import lru_cache
 from typing import Self
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.contact.base import Base
 from puck_tables.contact.laws import Law, law_of
+from puck_tables.kernels.base_friction import packed
 from puck_tables.motion.body import body_of, plain_up_to
 from puck_tables.motion.frame import frame_of
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED, SPIN, STATE_ROWS
 from puck_tables.stopping.launch_arrays import launches_in
 from puck_tables.stopping.launch_frame import fill_placed_states
-from puck_tables.stopping.plain_states import fill_state_slopes
-from puck_tables.stopping.state_values import directions, looked_up
+from puck_tables.stopping.solvers import followed
+from puck_tables.stopping.state_values import directions, fill_state_slopes, looked_up
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.stopping.variational import Variations, unit_states, variations_by
-from puck_tables.table.friction_slopes import slopes_at_one_height, slopes_of_table
+from puck_tables.table.friction_section import slopes_at_one_height, slopes_of_table
 from puck_tables.table.resultant_table import ResultantTable, full_contact
 
+_LOCAL_ON_BASE = 1e-8  # of a step; a film knows places to 1e-4 of the path
+_STEP = 1e-3  # of each argument, to both sides: slopes to some 1e-5
 # of δ, between heights: a cubic through four of them errs by 3e-5 of the path at 3.83, less below:
 # test_motions_between_the_heights_of_tall_pucks_are_those_of_the_puck
 HEIGHT_STEP = 0.05
@@ -220,3 +233,75 @@ def cartesian(rows: FloatArray, headings: FloatArray | float) -> FloatArray:
         rows[PUCK_X], rows[PUCK_Y], rows[ORIENTATION], speed * np.cos(heading),
         speed * np.sin(heading), rows[SPIN],
     ])  # fmt: skip
+
+
+class BaseMotions(UnitMotions):
+    """Pucks on one base, up to the height at which part of it would lift.
+
+    ``radius`` of a launch is the reach of the base; ``gyration``: over that.
+
+    >>> box = BaseMotions(Base.box(0.2, 0.1), 0.5)
+    >>> launch = np.array([[1.0, 0.0, 0.0, 0.0, 2.0, box.reach]]).T
+    >>> box.states(launch, np.array([[0.25, 9.0]]))[0].round(9).tolist()  # v t - J t²/2
+    [[0.1875, 0.25]]
+    """
+
+    angle: float = 0.0
+    accuracy = _LOCAL_ON_BASE
+
+    def __init__(self, base: Base, gyration: float) -> None:
+        self._gyration = gyration
+        self.reach, self._packed = base.reach, packed(base, 0.0)
+        self.highest = (4.0 - 1e-12) * base.highest_lever / base.reach  # a puck of it is one, too
+
+    def facing(self, angle: float) -> Self:
+        """Motions of a base that stands at an angle (rad) at the launch."""
+        found = copy(self)
+        found.angle = angle
+        return found
+
+    def states(self, launches: FloatArray, times: FloatArray) -> FloatArray:
+        """Integrated, at times that ascend."""
+        rows = launches.copy()
+        cosine, sine = math.cos(self.angle), math.sin(self.angle)
+        turn = np.array([[cosine, -sine], [sine, cosine]])
+        rows[:2] = turn.T @ launches[:2]
+        rows[3], rows[5] = 0.25 * launches[3] * launches[5], self._gyration * launches[5]
+        slip = np.hypot(np.hypot(rows[0], rows[1]), rows[5] * rows[2])
+        moments = times * (rows[4] / np.maximum(slip, 1e-300))[:, None]
+        ends = times.shape[1] * np.arange(len(times) + 1)
+        _, found, status = followed(self._packed, rows, _LOCAL_ON_BASE, moments.ravel(), ends, 1)
+        found[np.repeat(status != 0, times.shape[1])] = math.nan
+        out = cartesian(found.T.reshape(-1, *times.shape), 0.0)
+        out[:2] = np.tensordot(turn, out[:2], 1)
+        out[3:5] = np.tensordot(turn, out[3:5], 1)
+        return out
+
+    def states_and_slopes(
+        self, launch: FloatArray, times: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """By motions to both sides in every argument, and in time."""
+        slip = math.hypot(launch[0], launch[1], launch[5] * launch[2])
+        sizes = np.array([slip, slip, slip / launch[5], self.highest, *launch[4:]])
+        steps = _STEP * sizes
+        nearby = launch[:, None] + np.diag(steps) * np.array([1.0, -1.0])[:, None, None]
+        every = np.concatenate([launch[:, None], *nearby], axis=1)
+        base, later = self.states(every, np.tile(times, (13, 1))), _STEP * slip / launch[4]
+        slopes = np.empty((times.size, 6, 7))
+        ahead, behind = base[:, 1:7], base[:, 7:]
+        slopes[:, :, :6] = ((ahead - behind) / (2.0 * steps[:, None])).transpose(2, 0, 1)
+        one = launch[:, None]
+        soon = [self.states(one, np.maximum(times + by, 0.0)[None])[:, 0] for by in (later, -later)]
+        slopes[:, :, 6] = (soon[0] - soon[1]).T / (2.0 * later)
+        slopes[:, :3, 6] = base[3:, 0].T[:, :3]
+        return base[:, 0], slopes
+
+
+@lru_cache(maxsize=64)
+def base_motions_of(base: Base, gyration: float) -> BaseMotions:
+    """The motions of a body; ``gyration`` over the reach.
+
+    >>> round(base_motions_of(Base.disc(0.05), 0.5**0.5).highest, 9)
+    1.0
+    """
+    return BaseMotions(base, gyration)

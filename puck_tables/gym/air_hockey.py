@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.gym.table_game import TableGame, Tables, Truth, Whole, sent
+from puck_tables.gym.disc_games import TableGame, Tables, Truth, Whole, sent
 from puck_tables.puck import Puck
 from puck_tables.scene.parts import Launch
 from puck_tables.scene.scene_spec import SceneSpec

@@ -12,15 +12,13 @@ from gymnasium.spaces import Box
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array, real, shown, whole
+from puck_tables._core.arrays import FloatArray, finite_array, real, shown, whole
 from puck_tables.contact.friction_laws import CurlingLaw
 from puck_tables.errors import InputError
 from puck_tables.gym.air_hockey import AirHockey, AirHockeyAlone
-from puck_tables.gym.disc_games import Carrom, Crokinole
+from puck_tables.gym.disc_games import Carrom, Crokinole, TableGame, Tables, Truth, Whole
 from puck_tables.gym.push_to_pose import PushToPose
 from puck_tables.gym.stone_games import Curling, Shuffleboard
-from puck_tables.gym.table_game import TableGame, Tables, Truth, Whole
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.worlds import Worlds
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.gym.table_game import TableGame, Tables, Truth, Whole, sent
+from puck_tables.gym.disc_games import TableGame, Tables, Truth, Whole, sent
 from puck_tables.puck import Puck
 from puck_tables.scene.pucks_and_posts import Line
 from puck_tables.world.scene import Scene

@@ -7,8 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.gym.disc_games import ShotGame
-from puck_tables.gym.table_game import Tables, Truth, Whole, between, observed_pucks, sent
+from puck_tables.gym.disc_games import ShotGame, Tables, Truth, Whole, between, observed_pucks, sent
 from puck_tables.puck import Puck
 from puck_tables.scene.parts import Edge, Launch
 from puck_tables.scene.pucks_and_posts import Line

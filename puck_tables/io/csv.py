@@ -5,13 +5,13 @@ from __future__ import annotations
 import csv
 import io
 
-from puck_tables.io.dataset import Dataset
+from puck_tables.io.columns import Dataset
 
 
 def encode(dataset: Dataset) -> bytes:
     """The table of a result as CSV.
 
-    >>> from puck_tables.io.dataset import variable
+    >>> from puck_tables.io.columns import variable
     >>> speed = variable("speed", [1.5], ("time",))
     >>> encode(Dataset({}, {"speed": speed})).split()
     [b'speed[m/s]', b'1.5']

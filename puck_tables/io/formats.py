@@ -10,10 +10,10 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from puck_tables._core.real import instance
+from puck_tables._core.arrays import instance
 from puck_tables._core.safe_write import write_bytes
 from puck_tables.errors import InputError
-from puck_tables.io.dataset import Dataset
+from puck_tables.io.columns import Dataset
 
 STORE = ".zarr"  # written block by block, by sweeps alone: puck_tables.bulk.store
 FORMATS = {".h5": "hdf5", ".csv": "csv", ".json": "json", ".jsonl": "jsonl", ".parquet": "parquet"}

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from puck_tables.errors import MissingExtraError
-from puck_tables.io.dataset import Dataset
+from puck_tables.io.columns import Dataset
 
 if TYPE_CHECKING:
     import pandas
@@ -26,7 +26,7 @@ def to_xarray(dataset: Dataset) -> xarray.Dataset:
 
     Examples
     --------
-    >>> from puck_tables.io.dataset import variable
+    >>> from puck_tables.io.columns import variable
     >>> time, x = (variable(name, [0.0, 1.0], ("time",)) for name in ("time", "x"))
     >>> to_xarray(Dataset({"time": time}, {"x": x})).x.units
     'm'
@@ -75,7 +75,7 @@ def to_pandas(dataset: Dataset) -> pandas.DataFrame:
 
     Examples
     --------
-    >>> from puck_tables.io.dataset import variable
+    >>> from puck_tables.io.columns import variable
     >>> frame = to_pandas(Dataset({}, {"x": variable("x", [0.0, 1.0], ("time",))}))
     >>> frame.x.tolist(), frame.attrs["units"]
     ([0.0, 1.0], {'x': 'm'})

@@ -6,7 +6,7 @@ import io
 from datetime import UTC, datetime
 
 from puck_tables._version import __version__
-from puck_tables.io.dataset import Dataset
+from puck_tables.io.columns import Dataset
 
 _BARE = "This is a netCDF dimension but not a netCDF variable."
 
@@ -14,7 +14,7 @@ _BARE = "This is a netCDF dimension but not a netCDF variable."
 def encode(dataset: Dataset) -> bytes:
     """A result as a labelled HDF5 file.
 
-    >>> from puck_tables.io.dataset import variable
+    >>> from puck_tables.io.columns import variable
     >>> time, x = (variable(name, [0.0, 1.0], ("time",)) for name in ("time", "x"))
     >>> encode(Dataset({"time": time}, {"x": x}, {"title": "a line"}))[1:4]
     b'HDF'

@@ -6,13 +6,13 @@ import json
 import math
 from typing import Any
 
-from puck_tables.io.dataset import Dataset
+from puck_tables.io.columns import Dataset
 
 
 def encode(dataset: Dataset) -> bytes:
     """A result as one JSON object.
 
-    >>> from puck_tables.io.dataset import variable
+    >>> from puck_tables.io.columns import variable
     >>> speed = variable("speed", [1.5, math.nan], ("time",))
     >>> json.loads(encode(Dataset({}, {"speed": speed}, {"case": "coin"})))["columns"]["speed"]
     {'unit': 'm/s', 'long_name': 'speed of the centre, v', 'dims': ['time'], 'values': [1.5, None]}

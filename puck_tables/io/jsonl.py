@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 import math
 
-from puck_tables.io.dataset import Dataset
+from puck_tables.io.columns import Dataset
 
 
 def encode(dataset: Dataset) -> bytes:
     """The table of a result as JSON lines.
 
-    >>> from puck_tables.io.dataset import variable
+    >>> from puck_tables.io.columns import variable
     >>> speed = variable("speed", [1.5, math.nan], ("time",))
     >>> encode(Dataset({}, {"speed": speed})).splitlines()
     [b'{"speed": 1.5}', b'{"speed": null}']

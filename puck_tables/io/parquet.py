@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 
 from puck_tables.errors import MissingExtraError
-from puck_tables.io.dataset import Dataset
+from puck_tables.io.columns import Dataset
 
 try:
     import pyarrow
@@ -17,7 +17,7 @@ except ImportError:
 def encode(dataset: Dataset) -> bytes:
     """The table of a result as Parquet.
 
-    >>> from puck_tables.io.dataset import variable
+    >>> from puck_tables.io.columns import variable
     >>> encode(Dataset({}, {"x": variable("x", [0.0, 1.0], ("time",))}))[:4]
     b'PAR1'
     """

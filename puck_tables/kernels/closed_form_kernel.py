@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import broadcast
+from puck_tables._core.arrays import FloatArray, broadcast
 from puck_tables.contact import closed_form
 from puck_tables.contact.integrals import checked_phi
 from puck_tables.contact.resultants import CONTACT_SLACK, Resultants, checked_delta
@@ -30,7 +29,7 @@ def _friction_ratios_with(shape_integrals: Any) -> Any:
     """:func:`friction_ratios` from p_a, p_b and p_d."""
 
     def friction_ratios(ratio: float, fast: float, delta: float) -> tuple[float, float, float]:
-        """1/ρ_∥, ρ_⊥/ρ_∥ and ρ_ω/ρ_∥ at a slip direction (:mod:`puck_tables.kernels.spline`)."""
+        """1/ρ_∥, ρ_⊥/ρ_∥ and ρ_ω/ρ_∥ at a slip direction (:mod:`puck_tables.kernels.quadratic`)."""
         p_a, p_b, p_d = shape_integrals(ratio, fast)
         m = ratio * ratio
         share = 1.0 / (1.0 + m)

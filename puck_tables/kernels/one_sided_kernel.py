@@ -1,7 +1,7 @@
 """The balance of one-sided contact, compiled: one slip direction after the other.
 
 The same mathematics as :mod:`puck_tables.contact.one_sided` and
-:mod:`puck_tables.contact.loaded_patch`, where it is explained; those stay the judge.  Directions
+:mod:`puck_tables.contact.loaded_chord`, where it is explained; those stay the judge.  Directions
 come in order, so that each balance starts from its neighbours' and one or two steps of Newton's
 method settle it.
 """

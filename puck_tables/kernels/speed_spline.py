@@ -34,7 +34,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel, patience, weighted_rows
-from puck_tables.kernels.spline import cell_at
+from puck_tables.kernels.quadratic import cell_at
 
 DONE, TOO_FAST = 0, 1  # what a look-up ends as
 DEGREE = 5  # of the patches

@@ -20,8 +20,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.base_friction import AREA, REACH, SIDES, base_friction
 from puck_tables.kernels.compile import inlined, inner, patience
-from puck_tables.motion.steppers import times_as_long
-from puck_tables.motion.tableaus import DORMAND_PRINCE_8
+from puck_tables.motion.steppers import DORMAND_PRINCE_8, times_as_long
 
 # of a motion: velocity, kΩ, angle of the body over Q₀²/(J k), time, place, length of the path, and
 # work of friction; the first four have a say in friction

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
-from puck_tables._core.real import instance, real
+from puck_tables._core.arrays import instance, real
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of, limit_ratio
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError

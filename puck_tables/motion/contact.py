@@ -9,7 +9,7 @@ import numpy as np
 
 from puck_tables.accuracy.methods import FrictionForm
 from puck_tables.contact.one_sided import loaded_share
-from puck_tables.kernels.section_spline import LINE
+from puck_tables.kernels.quadratic import LINE
 from puck_tables.motion.body import UnitPuck
 from puck_tables.motion.state import T, U
 from puck_tables.motion.unit_motion import GENERIC, MotionRun

@@ -27,7 +27,7 @@ spin differs, r ω' = −(r²/2k²) J sin φ ρ_ω: then (r²/2k²) ρ_ω stands
 the kinetic energy k²/r² for ½.
 
 Friction comes as a ``section``: the section of a table at one height, which carries its singular
-lines and its inertia (:mod:`puck_tables.kernels.section_spline`); or, without rows, closed forms.
+lines and its inertia (:mod:`puck_tables.kernels.quadratic`); or, without rows, closed forms.
 
 State vector: u, ψ, t, x, y, θ, l, W (:mod:`puck_tables.motion.state`).
 """
@@ -39,7 +39,7 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.closed_form_kernel import friction_ratios
 from puck_tables.kernels.compile import inlined, kernel
-from puck_tables.kernels.section_spline import INERTIA, LINE, section_ratios
+from puck_tables.kernels.quadratic import INERTIA, LINE, section_ratios
 from puck_tables.motion.state import LENGTH, PSI, THETA, WORK, T, U, X, Y
 
 

@@ -12,8 +12,7 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import rounded_up
+from puck_tables._core.arrays import FloatArray, rounded_up
 from puck_tables.accuracy.method_errors import COARSEST, UNITS, Selection, named, select
 from puck_tables.accuracy.methods import INTEGRATORS, FrictionForm, Method, Scheme, schemes_of
 from puck_tables.contact.closed_form import by_closed_form
@@ -21,7 +20,7 @@ from puck_tables.contact.integrals import SlipDirection
 from puck_tables.contact.resultants import CONTACT_SLACK, pressure_tilt
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.closed_form_kernel import outside_full_contact
-from puck_tables.kernels.section_spline import NO_SECTION
+from puck_tables.kernels.quadratic import NO_SECTION
 from puck_tables.motion.body import UnitPuck
 from puck_tables.motion.limits import LIMIT_WIDTH, limit_log_ratio
 from puck_tables.motion.solve import ErrorEstimate, Setting

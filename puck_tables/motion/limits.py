@@ -7,8 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import instance, one_velocity, positive, real
+from puck_tables._core.arrays import FloatArray, instance, one_velocity, positive, real
 from puck_tables.contact.closed_form import integrals
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
 from puck_tables.contact.laws import limit_ratio as law_limit_ratio

@@ -29,8 +29,7 @@ from puck_tables.motion.equations_of_motion import (
     slowest_stop,
 )
 from puck_tables.motion.state import PSI, SIZE, WORK, T, U, X, Y
-from puck_tables.motion.steppers import AT_EVENT, ROWS, estimated, step, times_as_long
-from puck_tables.motion.tableaus import Tableau
+from puck_tables.motion.steppers import AT_EVENT, ROWS, Tableau, estimated, step, times_as_long
 
 TURN_SHARE = 1e-3  # of Q₀: beyond, the heading turns on without end
 TURN_Z = 1.0 - TURN_SHARE**0.25  # z there: Q/Q₀ = (1 − z)⁴

@@ -7,13 +7,12 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Self
 
-from puck_tables._core.arrays import FloatArray
+from puck_tables._core.arrays import FloatArray, positive, real
 from puck_tables._core.doubts import MOST_FRICTION, OF_A_PUCK, question, unquestioned
 from puck_tables._core.drawn_outlines import SUFFIXES
 from puck_tables._core.fields import Unsaid, of
 from puck_tables._core.own_folder import say
 from puck_tables._core.reading import Reading, entries_in, mark_checked, read_values
-from puck_tables._core.real import positive, real
 from puck_tables.contact.base import NAMES as BASES
 from puck_tables.contact.base import Base, base_of
 from puck_tables.contact.laws import HOMOGENEOUS, Law

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple, TypeVar
 
-from puck_tables._core.real import rounded_up
+from puck_tables._core.arrays import rounded_up
 from puck_tables.errors import AccuracyError
 from puck_tables.motion.steppers import Stepping
 

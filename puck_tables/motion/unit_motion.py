@@ -30,8 +30,7 @@ from puck_tables.motion.limits import log_ratio, regime_of
 from puck_tables.motion.path import STOPPED, TURN_SHARE, integrate, states_at
 from puck_tables.motion.solve import FINEST_LOCAL, ErrorEstimate, Setting, close_enough, refined
 from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, WORK, T, U, X, Y
-from puck_tables.motion.steppers import Stepping
-from puck_tables.motion.tableaus import DORMAND_PRINCE, Tableau
+from puck_tables.motion.steppers import DORMAND_PRINCE, Stepping, Tableau
 
 GENERIC = ("B", "C")  # regimes that are integrated; the others are elementary
 
@@ -149,7 +148,7 @@ def integrated(u: float, friction: Friction, stepping: Stepping) -> MotionRun:
     Examples
     --------
     >>> from puck_tables.motion.friction_source import closed_form_friction
-    >>> from puck_tables.motion.tableaus import RK4
+    >>> from puck_tables.motion.steppers import RK4
     >>> run = integrated(0.0, closed_form_friction(1.0), Stepping(RK4, 64.0, 1.0))
     >>> float(run.stop[T].round(6))
     0.986476

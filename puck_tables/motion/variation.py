@@ -7,7 +7,7 @@ of a parameter p changes the state at the same z by y_p,
 
 which is integrated beside the motion itself.  For p = u₀, the slip at the launch, it begins with
 u_p = 1; for δ with 0.  Nothing is differenced: ∂F needs the derivatives of the friction ratios by
-u and δ (:mod:`puck_tables.table.friction_slopes`).
+u and δ (:mod:`puck_tables.table.friction_section`).
 
 All is linear in y_p, so what is small next to pure sliding and pure spin keeps its digits.  Next to
 a line of the friction, where the derivative by u is known badly, steps are as short as the distance
@@ -23,11 +23,11 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating, inlined, kernel, patience
-from puck_tables.kernels.section_spline import section_slopes
+from puck_tables.kernels.quadratic import section_slopes
 from puck_tables.motion.equations_of_motion import distance_to_line
 from puck_tables.motion.path import STOPPED, integrate
 from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, T, U, X, Y
-from puck_tables.motion.tableaus import Tableau
+from puck_tables.motion.steppers import Tableau
 
 KEPT = 7  # of the state: all but the work of friction
 BY_U, BY_HEIGHT = 1, 2  # blocks; the first is the motion itself
@@ -137,7 +137,8 @@ def vary(
     ----------
     z_path : array (n,), where the steps of the motion end
     u : ln(rω/v) at the launch
-    section : six functions, see :meth:`puck_tables.table.friction_slopes.FrictionSlopes.for_slopes`
+    section : six functions, see
+        :meth:`puck_tables.table.friction_section.FrictionSlopes.for_slopes`
     path : array (n, 21), or empty where nobody wants it
     stop : array (21,)
     work : room (8, 21)

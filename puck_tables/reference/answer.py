@@ -13,8 +13,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
-from puck_tables.io.columns import derived, following
-from puck_tables.io.dataset import Dataset, Variable, variable
+from puck_tables.io.columns import Dataset, Variable, derived, following, variable
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.reference.cases import TOL, ReferenceCase, case_named
 from puck_tables.reference.floor_reaction import on_the_floor, ratios, slip_over

@@ -11,9 +11,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from puck_tables._core.real import instance, positive
+from puck_tables._core.arrays import instance, positive
 from puck_tables.errors import InputError
-from puck_tables.io.dataset import Dataset, Variable, variable
+from puck_tables.io.columns import Dataset, Variable, variable
 from puck_tables.reference.answer import Answer, reference_case
 from puck_tables.reference.log import LogHow, read_log
 from puck_tables.reference.measure import MeasuredRun, measured

@@ -9,10 +9,9 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import real_array
+from puck_tables._core.arrays import FloatArray, real_array
 from puck_tables.errors import InputError
-from puck_tables.io.dataset import Dataset, variable
+from puck_tables.io.columns import Dataset, variable
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.reference.cases import ReferenceCase, case_named
 from puck_tables.reference.floor_reaction import is_one_friction, wrench

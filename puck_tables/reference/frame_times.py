@@ -8,8 +8,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import positive
+from puck_tables._core.arrays import FloatArray, positive
 from puck_tables.errors import InputError
 from puck_tables.reference.log import times_in
 from puck_tables.trajectory import MAX_FRAMES, checked_times

@@ -8,8 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import rounded_up
+from puck_tables._core.arrays import FloatArray, rounded_up
 from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.contact.law_moments import law_moments
 from puck_tables.contact.round_load import RoundLoad, load_of

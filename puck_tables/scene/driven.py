@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import positive
+from puck_tables._core.arrays import FloatArray, positive
 from puck_tables.errors import InputError
 from puck_tables.scene.parts import Rows
 

@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from puck_tables._core.arrays import finite_array, shown
 from puck_tables._core.fields import Kind, Unsaid, in_tables, specs
-from puck_tables._core.real import finite_array, shown
 from puck_tables.errors import InputError
 
 BATCH = "launch"  # the axis of many launches

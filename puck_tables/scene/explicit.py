@@ -1,6 +1,6 @@
 """An explicit step of order 8.
 
-The pair 8(5,3) of Dormand and Prince (:data:`puck_tables.motion.tableaus.DORMAND_PRINCE_8`).  Its
+The pair 8(5,3) of Dormand and Prince (:data:`puck_tables.motion.steppers.DORMAND_PRINCE_8`).  Its
 error is h e₅²/√(e₅² + e₃²/100), of order 8, with e₅ and e₃ those of embedded methods of order 5, 3.
 """
 
@@ -13,7 +13,7 @@ from numpy.polynomial.legendre import legint, legval, legvander
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
-from puck_tables.motion.tableaus import DORMAND_PRINCE_8
+from puck_tables.motion.steppers import DORMAND_PRINCE_8
 from puck_tables.scene.blade_axes import by_floor, has_axes, rates_by_blade
 from puck_tables.scene.equations import SIZE, rates_here
 from puck_tables.scene.friction import VX, VY

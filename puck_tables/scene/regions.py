@@ -6,11 +6,10 @@ import math
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import rounded_up
+from puck_tables._core.arrays import FloatArray, rounded_up
 from puck_tables.contact.laws import HOMOGENEOUS
 from puck_tables.errors import AccuracyError
-from puck_tables.kernels.section_spline import HEADER, RATIOS
+from puck_tables.kernels.quadratic import HEADER, RATIOS
 from puck_tables.motion.body import body_of, is_plain
 from puck_tables.motion.friction_source import closed_form_friction, table_friction
 from puck_tables.motion.puck_spec import PuckSpec

@@ -14,12 +14,11 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
+from puck_tables._core.arrays import FloatArray, finite_array, real
 from puck_tables._core.fields import of
 from puck_tables._core.monotone import from_rest, monotone_cubic
 from puck_tables._core.quantities import RESTITUTION, SPEED
 from puck_tables._core.read_columns import numbers_of
-from puck_tables._core.real import finite_array, real
 from puck_tables._core.safe_read import is_number
 from puck_tables._core.wording import meant
 from puck_tables.errors import InputError

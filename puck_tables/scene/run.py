@@ -13,8 +13,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.wording import meant
 from puck_tables.errors import InputError
-from puck_tables.io.columns import COLUMNS, derived
-from puck_tables.io.dataset import Dataset, Variable, variable
+from puck_tables.io.columns import COLUMNS, Dataset, Variable, derived, variable
 from puck_tables.result import TimedResult
 from puck_tables.scene.entries import tables_of, units_of
 from puck_tables.scene.outcome import column_of, refuse_changed, scene_texts

@@ -10,12 +10,18 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
+from puck_tables._core.arrays import (
+    FloatArray,
+    broadcast,
+    checked_threads,
+    finite_array,
+    positive,
+    whole,
+)
 from puck_tables._core.executor import run_chunks
-from puck_tables._core.real import broadcast, checked_threads, finite_array, positive, whole
 from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS as VARIABLES
-from puck_tables.io.dataset import Dataset, variable
+from puck_tables.io.columns import Dataset, variable
 from puck_tables.motion.puck_spec import PUCK_UNITS, PuckSpec
 from puck_tables.result import Result
 from puck_tables.stopping.jacobian import STOP_NAMES, Differentiated

@@ -17,7 +17,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel, patience, spline_values
-from puck_tables.kernels.spline import basis
+from puck_tables.kernels.quadratic import basis
 from puck_tables.stopping.lookup import WIDTH, slip_place
 
 SPEED, RIM, TIME, TURN, BEND = range(5)
@@ -117,7 +117,7 @@ def _root(
 def fill_logs(u: FloatArray, section: FloatArray, limits: FloatArray, out: FloatArray) -> None:
     """Ln v, ln r|ω|, ln t₀, ln θ, and arg Z for ω > 0 at ``u`` (n,) into ``out`` (n, 5); −∞ slides.
 
-    ``section``: of a plain puck, :func:`puck_tables.stopping.stop_splines.at_height`;
+    ``section``: of a plain puck, :func:`puck_tables.stopping.axes.at_height`;
     ``limits`` (m, 32): of any other; none of a plain one.
     """
     for n in range(u.size):

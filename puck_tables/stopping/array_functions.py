@@ -9,8 +9,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import broadcast, finite_array, real
+from puck_tables._core.arrays import FloatArray, broadcast, finite_array, real
 from puck_tables.accuracy.methods import Method
 from puck_tables.contact.laws import HOMOGENEOUS, Law
 from puck_tables.errors import InputError

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.real import checked_threads, real_view
+from puck_tables._core.arrays import checked_threads, real_view
 from puck_tables.errors import InputError
 from puck_tables.motion.base_slides import LONGEST, WHY_INTEGRATED, local_error
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.motion.state import STATE_ROWS
-from puck_tables.stopping.base_solver import BaseSolver, followed
 from puck_tables.stopping.launch_arrays import TOO_LARGE, Launches, fits, launches_of
+from puck_tables.stopping.solvers import BaseSolver, followed
 from puck_tables.stopping.state_values import refuse_times
 from puck_tables.stopping.states import States, each_of, moments_of, states_in
 from puck_tables.stopping.stops import Stops

@@ -7,9 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
+from puck_tables._core.arrays import FloatArray, broadcast, finite_array, positive
 from puck_tables._core.fields import Unsaid
-from puck_tables._core.real import broadcast, finite_array, positive
 from puck_tables.errors import InputError
 from puck_tables.motion.body import STANDARD_GRAVITY
 from puck_tables.stopping.launch_arrays import DECEL, DELTA, RADIUS, Launches, positive_array

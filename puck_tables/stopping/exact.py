@@ -10,11 +10,11 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import run_chunks
 from puck_tables.kernels.compile import allocating, patience
 from puck_tables.kernels.patience import A_MOTION
-from puck_tables.kernels.section_spline import NO_SECTION
+from puck_tables.kernels.quadratic import NO_SECTION
 from puck_tables.motion.equations_of_motion import at_constant_angle
 from puck_tables.motion.path import STOPPED, integrate
 from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, T, U, X, Y
-from puck_tables.motion.tableaus import DORMAND_PRINCE, DORMAND_PRINCE_8, Tableau
+from puck_tables.motion.steppers import DORMAND_PRINCE, DORMAND_PRINCE_8, Tableau
 
 _LOCAL_TOLERANCE = 2e-14  # of a step: 1e-15 of the stop
 _STEP_LIMIT = 100_000  # more is a motion that does not end

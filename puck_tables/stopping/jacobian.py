@@ -8,8 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import shown
+from puck_tables._core.arrays import FloatArray, shown
 from puck_tables.errors import InputError
 from puck_tables.motion.body import UnitPuck
 from puck_tables.stopping.launch_arrays import Launches, in_chunks, launches_in
@@ -162,7 +161,7 @@ def stop_jacobians(
     """Derivatives (n, 5, 6) of the stops of launches: of ``plain`` ones by the stop table."""
     if plain.all():
         return _of_plain(table, launches, threads)
-    from puck_tables.stopping.slope_section import stop_slopes_of
+    from puck_tables.stopping.variational import stop_slopes_of
 
     rows = launches.matrix
     out = np.empty((launches.size, len(STOP_NAMES), len(LAUNCH_NAMES)))

@@ -30,7 +30,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.section_spline import NO_SECTION
+from puck_tables.kernels.quadratic import NO_SECTION
 from puck_tables.motion.body import UnitPuck
 from puck_tables.motion.frame import direction
 from puck_tables.stopping.aim_lookup import (
@@ -46,9 +46,9 @@ from puck_tables.stopping.aim_lookup import (
     fill_logs,
     fill_roots,
 )
+from puck_tables.stopping.axes import at_height
 from puck_tables.stopping.exact import integrated_stops
 from puck_tables.stopping.lookup import WIDTH
-from puck_tables.stopping.stop_splines import at_height
 from puck_tables.stopping.stop_table import StopTable
 
 LARGEST_U = 600.0  # beyond, ratios of spin to speed leave floating point

@@ -22,7 +22,7 @@ from puck_tables.kernels.compile import (
     spline_values,
 )
 from puck_tables.kernels.elementary import log_of
-from puck_tables.kernels.spline import basis
+from puck_tables.kernels.quadratic import basis
 from puck_tables.motion.path import TURN_SHARE
 from puck_tables.stopping.axes import HEIGHTS
 from puck_tables.stopping.launch_arrays import (

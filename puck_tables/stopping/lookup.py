@@ -31,7 +31,7 @@ from puck_tables.kernels.compile import (
     row_of,
     spline_values,
 )
-from puck_tables.kernels.spline import basis
+from puck_tables.kernels.quadratic import basis
 from puck_tables.stopping.launch_arrays import (
     COLUMNS,
     DECEL,

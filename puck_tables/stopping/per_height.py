@@ -16,9 +16,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
+from puck_tables._core.arrays import FloatArray, real
 from puck_tables._core.executor import Progress, run_chunks
-from puck_tables._core.real import real
 from puck_tables.accuracy.method_errors import COARSEST, UNITS, Selection, select
 from puck_tables.accuracy.methods import (
     INTEGRATED,
@@ -31,8 +30,7 @@ from puck_tables.accuracy.methods import (
 from puck_tables.contact.laws import Law, law_of
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import AccuracyError, InputError
-from puck_tables.kernels.quadratic import NO_COLUMNS
-from puck_tables.kernels.section_spline import NO_SECTION
+from puck_tables.kernels.quadratic import NO_COLUMNS, NO_SECTION
 from puck_tables.motion.body import UnitPuck, body_of, plain_up_to
 from puck_tables.motion.friction_source import Sections, integration_selected
 from puck_tables.motion.steppers import stepping_of

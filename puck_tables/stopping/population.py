@@ -13,14 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
+from puck_tables._core.arrays import FloatArray, finite_array
 from puck_tables._core.doubts import OF_A_PUCK, question
-from puck_tables._core.real import finite_array
 from puck_tables.bulk.spreads import Spread
 from puck_tables.contact.laws import Law
 from puck_tables.errors import InputError
-from puck_tables.io.columns import COLUMNS
-from puck_tables.io.dataset import Variable, variable
+from puck_tables.io.columns import COLUMNS, Variable, variable
 
 COLUMN = {  # of the arguments, in the order of dimensions
     "pressure": "pressure", "gyration": "gyration", "gravity": "gravity", "decel": "decel",

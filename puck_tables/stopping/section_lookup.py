@@ -9,8 +9,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, look_up, patience, weighted_rows
-from puck_tables.kernels.section_spline import HEADER, section_place
-from puck_tables.kernels.spline import basis
+from puck_tables.kernels.quadratic import HEADER, basis, section_place
 from puck_tables.stopping.lookup import LARGEST, SMALLEST
 from puck_tables.stopping.stop_jacobian import OWN
 
@@ -76,7 +75,7 @@ def fill_section_slopes(
 ) -> None:  # fmt: skip
     """Natural derivatives (n, 5, 4) of stops at v and r|ω| (n,), not both 0, by splines.
 
-    ``section`` holds the functions of :mod:`puck_tables.stopping.slope_section`, ``good`` says in
+    ``section`` holds the functions of :mod:`puck_tables.stopping.variational`, ``good`` says in
     which cells they are good; ``left`` (n,): which launches are in others, and left out.
     """
     patience(speed.size)

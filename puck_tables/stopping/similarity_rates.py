@@ -32,7 +32,7 @@ from puck_tables.kernels.compile import (
     weighted_rows,
 )
 from puck_tables.kernels.elementary import logs_of
-from puck_tables.kernels.spline import basis
+from puck_tables.kernels.quadratic import basis
 from puck_tables.stopping import similarity_lookup as known
 from puck_tables.stopping.axes import CONSTANT_HEIGHTS, HEIGHTS
 from puck_tables.stopping.launch_frame import PLACED_STATES, Numbers, direction, rotated

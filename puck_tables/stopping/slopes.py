@@ -26,9 +26,8 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray, aligned
-from puck_tables.stopping.axes import HEIGHTS, SlipAxis, heights, ratio_at
+from puck_tables.stopping.axes import HEIGHTS, SlipAxis, by_power, heights, ratio_at
 from puck_tables.stopping.similarity import limits, rates_of_ratio, regular_slopes
-from puck_tables.stopping.stop_splines import by_power
 
 STOP_FUNCTIONS = 5  # T, along, across, body, length; then the slopes of each
 STOP_WIDTH = 12  # all, padded to whole registers

@@ -12,8 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array, listed, shown
+from puck_tables._core.arrays import FloatArray, finite_array, listed, shown
 from puck_tables.bulk.spreads import checked_seed
 from puck_tables.errors import InputError
 

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.spline import basis
+from puck_tables.kernels.quadratic import basis
 from puck_tables.stopping.axes import HEIGHTS, heights
 from puck_tables.stopping.similarity_lookup import TINY, end_rates
 from puck_tables.table.spline_fit import clamped_coefficients

@@ -11,11 +11,10 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import broadcast, checked_flag, checked_threads, real_view
+from puck_tables._core.arrays import FloatArray, broadcast, checked_flag, checked_threads, real_view
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
 from puck_tables.errors import InputError
-from puck_tables.io.dataset import Dataset, variable
+from puck_tables.io.columns import Dataset, variable
 from puck_tables.motion.body import UnitPuck, body_of, plain_up_to
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED, SPIN, STATE_ROWS
 from puck_tables.result import Result
@@ -35,8 +34,7 @@ from puck_tables.stopping.jacobian import (
 )
 from puck_tables.stopping.launch_arrays import TOO_LARGE, Launches, fits, launches_in, launches_of
 from puck_tables.stopping.per_height import refuse_many
-from puck_tables.stopping.plain_states import all_looked_up
-from puck_tables.stopping.state_values import integrate, refuse_times
+from puck_tables.stopping.state_values import all_looked_up, integrate, refuse_times
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.stopping.stop_values import UPPER_DELTA
 from puck_tables.table.table import refuse_other_kind

@@ -31,7 +31,7 @@ from puck_tables.contact import quadrature
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.laws import law_of
 from puck_tables.contact.resultants import moment_balance
-from puck_tables.kernels.spline import basis
+from puck_tables.kernels.quadratic import basis
 from puck_tables.motion.frame import direction
 from puck_tables.motion.limits import limit_ratio
 from puck_tables.stopping.axes import HEIGHTS, SlipAxis, heights, ratio_at
@@ -52,9 +52,8 @@ from puck_tables.stopping.similarity_lookup import (
 )
 from puck_tables.stopping.stop_section import end_values
 from puck_tables.stopping.stop_values import STOPS, StopValues
-from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import Goal, built
-from puck_tables.table.check import Check, CheckReport, compared
+from puck_tables.table.check import Accuracy, Check, CheckReport, compared
 from puck_tables.table.friction_section import friction_ratios
 from puck_tables.table.table import Progress
 

@@ -33,7 +33,7 @@ from puck_tables.kernels.compile import (
     turn_square,
     weighted_rows,
 )
-from puck_tables.kernels.spline import basis
+from puck_tables.kernels.quadratic import basis
 from puck_tables.stopping.launch_arrays import (
     DECEL,
     DELTA,

@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from puck_tables.bulk.summary import Summary
-from puck_tables.io.columns import COLUMNS, derived, following
-from puck_tables.io.dataset import Dataset, variable
+from puck_tables.io.columns import COLUMNS, Dataset, derived, following, variable
 from puck_tables.result import Result
 from puck_tables.stopping.population import Population, law_name
 from puck_tables.stopping.solvers import OUTPUTS

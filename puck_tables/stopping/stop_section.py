@@ -17,8 +17,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import real
+from puck_tables._core.arrays import FloatArray, real
 from puck_tables.accuracy.method_errors import COARSEST
 from puck_tables.contact.laws import Law
 from puck_tables.errors import AccuracyError
@@ -31,8 +30,7 @@ from puck_tables.table.check import CheckReport
 from puck_tables.table.friction_section import FINEST_ACCURACY, FrictionSection
 from puck_tables.table.law_record import can_be_known, known
 from puck_tables.table.section_table import SectionTable
-from puck_tables.table.slip_axis import GRADING_POWER, LawAxis, sides_of
-from puck_tables.table.slip_spline import slip_spline
+from puck_tables.table.slip_spline import GRADING_POWER, LawAxis, sides_of, slip_spline
 from puck_tables.table.table import Progress
 from puck_tables.table.table_store import fetch
 

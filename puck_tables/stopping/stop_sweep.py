@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from puck_tables._core.arrays import one_velocity
 from puck_tables._core.own_folder import say
-from puck_tables._core.real import one_velocity
 from puck_tables.bulk.finish import Doing, finish
 from puck_tables.bulk.spreads import checked_samples
 from puck_tables.errors import InputError

@@ -14,14 +14,17 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
-from puck_tables.io.dataset import Variable
+from puck_tables.io.columns import Variable
 from puck_tables.motion.state import STATE_ROWS
 from puck_tables.stopping.axes import (
     CONSTANT_HEIGHTS,
     HEIGHTS,
     SlipAxis,
+    by_power,
     height_polynomials,
     heights,
+    section_rows,
+    side_by_side,
 )
 from puck_tables.stopping.launch_arrays import (
     CHUNK,
@@ -44,7 +47,6 @@ from puck_tables.stopping.similarity_lookup import (
 from puck_tables.stopping.slopes import Slopes, slopes_of
 from puck_tables.stopping.state_lookup import PUCK_ROWS
 from puck_tables.stopping.state_nodes import InverseSolution
-from puck_tables.stopping.stop_splines import by_power, section_rows, side_by_side
 from puck_tables.table.table import Table
 
 UPPER_DELTA = 1.0  # above, part of the base may lift

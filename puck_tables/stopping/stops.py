@@ -10,16 +10,13 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import checked_flag, checked_threads
+from puck_tables._core.arrays import FloatArray, checked_flag, checked_threads
 from puck_tables.accuracy.method_errors import Selection
 from puck_tables.contact.laws import HOMOGENEOUS, Law
 from puck_tables.errors import InputError
-from puck_tables.io.columns import derived, following
-from puck_tables.io.dataset import Dataset, variable
+from puck_tables.io.columns import Dataset, derived, following, variable
 from puck_tables.motion.puck_spec import ROUND_ONLY
 from puck_tables.result import Result
-from puck_tables.stopping.base_solver import BaseSolver
 from puck_tables.stopping.by_friction import (
     DEFAULT_DECEL,
     DEFAULT_DELTA,
@@ -38,7 +35,7 @@ from puck_tables.stopping.jacobian import (
 )
 from puck_tables.stopping.launch_arrays import Launches, launches_in, launches_of
 from puck_tables.stopping.per_height import SolverPerHeight
-from puck_tables.stopping.solvers import OUTPUTS, STATUS_MEANINGS
+from puck_tables.stopping.solvers import OUTPUTS, STATUS_MEANINGS, BaseSolver
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
 

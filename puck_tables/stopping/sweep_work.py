@@ -13,7 +13,7 @@ from puck_tables._core.executor import Progress
 from puck_tables._core.memory import check_memory
 from puck_tables.bulk.work import Columns, Tally, Work
 from puck_tables.errors import ContactError, InputError
-from puck_tables.io.dataset import Dataset, variable
+from puck_tables.io.columns import Dataset, variable
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.stopping.per_height import HEIGHT_COST, MOST_HEIGHTS, SolverPerHeight, refuse_many
 from puck_tables.stopping.population import COLUMN, Population, law_name
@@ -70,7 +70,7 @@ class StopWork(Work):
         self._gyration = puck.gyration if puck.shape is None else puck.inertia_radius
         self._solvers: dict[Kind, Any] = {}  # a SolverPerHeight each, or one BaseSolver
         if puck.shape is not None:
-            from puck_tables.stopping.base_solver import BaseSolver
+            from puck_tables.stopping.solvers import BaseSolver
 
             puck.refuse_for_round(method=by[1], table=by[2])
             self._solvers[0, self._gyration] = BaseSolver(puck.shape, self.tol)

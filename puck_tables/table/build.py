@@ -7,9 +7,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
-from puck_tables._core.real import rounded_up
+from puck_tables._core.arrays import rounded_up
 from puck_tables.errors import AccuracyError, InputError
-from puck_tables.table.accuracy import Accuracy
+from puck_tables.table.check import Accuracy
 from puck_tables.table.table import Table
 
 AnyTable = TypeVar("AnyTable", bound=Table)

@@ -25,7 +25,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.safe_read import read_whole
 from puck_tables._version import __version__
 from puck_tables.errors import TableError
-from puck_tables.io.dataset import Dataset, Variable
+from puck_tables.io.columns import Dataset, Variable
 
 FORMAT, FORMAT_VERSION = "puck-tables", "4.0"
 MAX_FILE_BYTES = 1 << 31  # bytes: more is no table

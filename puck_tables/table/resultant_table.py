@@ -16,19 +16,17 @@ from typing import Any, ClassVar, Self, cast
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import broadcast
+from puck_tables._core.arrays import FloatArray, broadcast
 from puck_tables.contact import quadrature
 from puck_tables.contact.integrals import checked_phi, slip_direction
 from puck_tables.contact.laws import Law, law_of
 from puck_tables.contact.resultants import Resultants, checked_delta, moment_balance
 from puck_tables.errors import InputError
-from puck_tables.io.dataset import Variable
-from puck_tables.table.accuracy import Accuracy
+from puck_tables.io.columns import Variable
 from puck_tables.table.build import COARSEST, Goal, built
-from puck_tables.table.check import CheckReport, Route, judged
+from puck_tables.table.check import Accuracy, CheckReport, Route, judged
 from puck_tables.table.section_table import LawTable
-from puck_tables.table.slip_axis import GRADING_POWER, LawAxis
+from puck_tables.table.slip_spline import GRADING_POWER, LawAxis
 from puck_tables.table.spline_fit import height_terms, sided_coefficients
 from puck_tables.table.table import Progress, kinds
 
@@ -112,7 +110,7 @@ class ResultantTable(LawTable):
         return fitted
 
     def section(self, delta: float) -> FloatArray:
-        """The friction ratios at one height, as :mod:`puck_tables.kernels.section_spline` reads.
+        """The friction ratios at one height, as :mod:`puck_tables.kernels.quadratic` reads.
 
         Raises
         ------

@@ -12,10 +12,9 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.laws import Law
-from puck_tables.io.dataset import Variable
+from puck_tables.io.columns import Variable
 from puck_tables.table.check import CheckReport, Route, judged
-from puck_tables.table.slip_axis import LawAxis
-from puck_tables.table.slip_spline import SlipSpline
+from puck_tables.table.slip_spline import LawAxis, SlipSpline
 from puck_tables.table.table import Progress, Table
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from puck_tables.contact import one_sided
 from puck_tables.contact.laws import Law
-from puck_tables.contact.opening import critical_delta
+from puck_tables.contact.one_sided import critical_delta
 from puck_tables.errors import ContactError
 from puck_tables.table.tall_friction import tall_resultants
 

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from puck_tables._core.arrays import real, rounded_up
 from puck_tables._core.executor import run_chunks
-from puck_tables._core.real import real, rounded_up
 from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.contact.laws import Law as PressureLaw
 from puck_tables.contact.laws import law_of
@@ -18,8 +18,8 @@ from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.contact.speed_quadrature import speed_integrals
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.speed_quadrature_kernel import COARSE, FINE
-from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import checked_accuracy
+from puck_tables.table.check import Accuracy
 from puck_tables.table.speed_grid import breaks_of, is_pile, patches_of, rays_under
 from puck_tables.table.speed_patch import FilledPatch
 from puck_tables.table.speed_truth import Law

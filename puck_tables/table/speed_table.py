@@ -10,8 +10,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import broadcast
+from puck_tables._core.arrays import FloatArray, broadcast
 from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.contact.integrals import PatchIntegrals, checked_phi, slip_direction
 from puck_tables.contact.laws import Law, law_of
@@ -25,13 +24,13 @@ from puck_tables.contact.speed_quadrature import (
     refuse_lifting,
 )
 from puck_tables.errors import InputError
-from puck_tables.io.dataset import Variable
+from puck_tables.io.columns import Variable
 from puck_tables.kernels.speed_spline import DONE, fill_speed, packed
 from puck_tables.table.build import COARSEST
 from puck_tables.table.check import CheckReport, Route, judged
 from puck_tables.table.speed_build import largest_f, tabulated
-from puck_tables.table.speed_fit import quintic_coefficients
 from puck_tables.table.speed_grid import RayPatch, SlipPatch, is_pile, patches_of, rays_under
+from puck_tables.table.speed_patch import quintic_coefficients
 from puck_tables.table.speed_truth import truth_at
 from puck_tables.table.table import Progress, Table
 

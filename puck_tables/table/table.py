@@ -17,14 +17,12 @@ from typing import Any, ClassVar, Self, cast
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
+from puck_tables._core.arrays import FloatArray, instance, shown
 from puck_tables._core.lazy import above, names_above
-from puck_tables._core.real import instance, shown
 from puck_tables._core.safe_write import write_bytes
 from puck_tables.errors import InputError, OutputError, TableError
-from puck_tables.io.dataset import Variable
-from puck_tables.table.accuracy import Accuracy
-from puck_tables.table.check import CheckReport
+from puck_tables.io.columns import Variable
+from puck_tables.table.check import Accuracy, CheckReport
 from puck_tables.table.file import AGAIN, decode, encode, read_content
 
 Progress = Callable[[int, int], None]

@@ -14,8 +14,8 @@ from contextlib import nullcontext, suppress
 from pathlib import Path
 from typing import Any, TypeVar, cast, overload
 
+from puck_tables._core.arrays import checked_progress, positive, real
 from puck_tables._core.own_folder import make_private, say, user_cache
-from puck_tables._core.real import checked_progress, positive, real
 from puck_tables._core.sources import source_digest
 from puck_tables._core.waiting import watched
 from puck_tables.contact.friction_laws import FrictionLaw

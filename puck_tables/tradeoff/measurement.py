@@ -20,7 +20,7 @@ import numpy as np
 from puck_tables._core.executor import usable_cores
 from puck_tables._version import __version__
 from puck_tables.accuracy.method_errors import MeasuredMethod
-from puck_tables.io.dataset import Dataset, variable
+from puck_tables.io.columns import Dataset, variable
 from puck_tables.kernels.patience import compiled_at_once
 from puck_tables.result import Result
 from puck_tables.tradeoff import body_methods, motion_methods, resultant_methods

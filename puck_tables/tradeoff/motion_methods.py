@@ -15,14 +15,12 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray, aligned
 from puck_tables.accuracy.methods import INTEGRATED, LOOK_UP, FrictionForm, Method, Scheme
-from puck_tables.kernels.quadratic import NO_COLUMNS, room_for_section, section_at
-from puck_tables.kernels.section_spline import NO_SECTION
+from puck_tables.kernels.quadratic import NO_COLUMNS, NO_SECTION, room_for_section, section_at
 from puck_tables.motion.bulk_stops import fill_stops
 from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import integrate, states_at
 from puck_tables.motion.state import SIZE, STATE_ROWS
-from puck_tables.motion.steppers import TABLEAUS, Stepping
-from puck_tables.motion.tableaus import DORMAND_PRINCE, RK4
+from puck_tables.motion.steppers import DORMAND_PRINCE, RK4, TABLEAUS, Stepping
 from puck_tables.stopping.launch_arrays import launches_in
 from puck_tables.stopping.lookup import stops_kernel
 from puck_tables.stopping.stop_table import StopTable

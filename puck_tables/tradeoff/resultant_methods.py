@@ -27,10 +27,9 @@ from puck_tables.contact.laws import law_of
 from puck_tables.contact.resultants import moment_balance
 from puck_tables.kernels.closed_form_kernel import _fill as fill_closed_form
 from puck_tables.kernels.compile import allocating, kernel, patience
-from puck_tables.kernels.quadratic import fill_resultants
-from puck_tables.kernels.spline import basis, cell_at, row_sums, side_and_eta
+from puck_tables.kernels.quadratic import basis, cell_at, fill_resultants, row_sums, side_and_eta
 from puck_tables.table.resultant_table import HEIGHTS, ResultantTable
-from puck_tables.table.slip_axis import LawAxis
+from puck_tables.table.slip_spline import LawAxis
 from puck_tables.table.spline_fit import clamped_coefficients
 from puck_tables.tradeoff.truth import Contender, Made, Question, Run, filled
 

@@ -11,8 +11,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
-from puck_tables.io.columns import COLUMNS
-from puck_tables.io.dataset import Dataset, variable
+from puck_tables.io.columns import COLUMNS, Dataset, variable
 from puck_tables.result import Result
 from puck_tables.scene.entries import tables_of
 from puck_tables.scene.library import files_of

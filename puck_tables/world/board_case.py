@@ -42,7 +42,7 @@ from puck_tables.world.layout import RADIUS
 from puck_tables.world.ledger import NAMES, energies_of, energy_scale, kinetic_of, ledgers_of
 from puck_tables.world.plan import plan_of
 from puck_tables.world.prepare import prepared, with_law_up_to
-from puck_tables.world.reactions import reactions
+from puck_tables.world.record import reactions
 from puck_tables.world.setting_off import CROWDED, OFF_TABLE, PUSHING, TANGLED, TOO_SHORT
 from puck_tables.world.simulate import MISSED, columns_of, run_on
 from puck_tables.world.world import World

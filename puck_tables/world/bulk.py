@@ -1,4 +1,7 @@
-"""Many runs of one board that differ in nothing but launches, compiled, without events kept."""
+"""Many runs of one board that differ in nothing but launches, compiled, without events kept.
+
+What is kept of a disc is what it went through: which impacts led to where it ends.
+"""
 
 from __future__ import annotations
 
@@ -12,9 +15,24 @@ from puck_tables._core.executor import in_slices
 from puck_tables.kernels.compile import inner, kernel, patience
 from puck_tables.scene.friction import VX
 from puck_tables.world.engine import EVERYBODY, NOBODY, advance
-from puck_tables.world.engine_state import COUNTS, N_HISTORY, N_IMPACTS, N_PIECES, Engine, Whole
+from puck_tables.world.engine_state import (
+    CONTACT,
+    COUNTS,
+    IMPACT,
+    N_EVENTS,
+    N_HISTORY,
+    N_IMPACTS,
+    N_PIECES,
+    OVER_EDGE,
+    PARTNER,
+    POCKETED,
+    TIPS,
+    WHAT,
+    WHO,
+    Engine,
+    Whole,
+)
 from puck_tables.world.floor_under import least_slip, moves_along
-from puck_tables.world.impact_sequence import COURSE_COLUMNS, LENGTH, trace
 from puck_tables.world.lasting import GOES_ON, at_rest_below, limits_of, next_target
 from puck_tables.world.layout import RADIUS, write_over
 from puck_tables.world.ledger import LEDGER_COLUMNS, tally
@@ -26,10 +44,59 @@ from puck_tables.world.segment_starts import Room, room_for
 from puck_tables.world.setting_off import FULL, PAUSED, PUSHING, REACHED
 from puck_tables.world.step_ledger import WORK_COLUMNS
 
+PRINT, LENGTH, FATE, PASSES = range(4)  # columns of a course
+COURSE_COLUMNS = 4  # the four above
+
+_PRIME = 2147483647  # products of two numbers below it fit 64 bits
 _LOOKS = 6  # at a course before its end: at Q/2J, Q/4J, ...
 MOST_ROWS = 1 << 16  # of events and segments, and of steps: 60 MB
 END_COLUMNS = 6  # of a puck: its state at the end
 _JUST = 1e-15  # of a time: before it
+
+
+@kernel
+def trace(
+    engine: Engine, disc: int, through: int, prints: Whole, marks: Whole, sequence: Whole
+) -> None:
+    """The course of a disc, from the events of a run.
+
+    ``sequence`` (4,): a print, the same for runs in which the same impacts led there (in whatever
+    order those happened that do not bear on each other); how many; the obstacle −1 − k by which it
+    left play, or 0; whether the disc ``through`` was in one of them, 1 or 0.
+
+    ``prints``, ``marks`` (n,): room.
+    """
+    for i in range(engine.discs.shape[0]):
+        prints[i], marks[i] = i + 1, 0
+    events = engine.counts[N_EVENTS]
+    sequence[FATE] = 0
+    for n in range(events):
+        patience(1)
+        what, i = int(engine.events[n, WHAT]), int(engine.events[n, WHO])
+        if what not in (IMPACT, CONTACT, POCKETED, OVER_EDGE, TIPS):
+            continue
+        j = int(engine.events[n, PARTNER])
+        other = prints[j] if j >= 0 else (-j * 742938285) % _PRIME
+        both = (prints[i] + other) % _PRIME * 48271 + prints[i] * other % _PRIME * 16807 + what
+        prints[i] = (both % _PRIME * 40692 + i + 1) % _PRIME
+        if j >= 0:
+            prints[j] = (both % _PRIME * 40692 + j + 1) % _PRIME
+        elif i == disc and what in (POCKETED, OVER_EDGE):
+            sequence[FATE] = j
+    sequence[PRINT], sequence[LENGTH], sequence[PASSES] = prints[disc], 0, 0
+    marks[disc] = 1
+    for back in range(events):
+        row = engine.events[events - 1 - back]
+        what, i, j = int(row[WHAT]), int(row[WHO]), int(row[PARTNER])
+        if what not in (IMPACT, CONTACT):
+            continue
+        if marks[i] == 1 or (j >= 0 and marks[j] == 1):
+            marks[i] = 1
+            if j >= 0:
+                marks[j] = 1
+                if through in (i, j):
+                    sequence[PASSES] = 1
+            sequence[LENGTH] += 1
 
 
 class Ends(NamedTuple):
@@ -39,7 +106,7 @@ class Ends(NamedTuple):
 
     ``how`` (runs,): as :func:`puck_tables.world.engine.advance` says, or without a time
     :func:`puck_tables.world.lasting.next_target`.  ``courses`` (runs, 4): of
-    the disc that is watched, see :func:`puck_tables.world.impact_sequence.trace`.
+    the disc that is watched, see :func:`puck_tables.world.bulk.trace`.
     ``ledgers`` (runs, 9):
     where energy went, see :mod:`puck_tables.world.ledger`; of runs that are watched none.
     """

@@ -8,8 +8,8 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 from puck_tables.motion.impact_law import along_normal
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
-from puck_tables.world.alone import acceleration
 from puck_tables.world.engine_state import Engine
+from puck_tables.world.forces import acceleration
 from puck_tables.world.holds import response
 from puck_tables.world.layout import HOLD, LIGHTNESS, RADIUS, TURNABILITY
 from puck_tables.world.obstacle_shapes import curvature, normal_to

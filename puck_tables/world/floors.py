@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.section_spline import NO_SECTION
+from puck_tables.kernels.quadratic import NO_SECTION
 from puck_tables.scene.by_speed import NO_LAW, law_range, law_table, law_top, load_under
 from puck_tables.scene.floor_map import NO_GROUND
 from puck_tables.scene.floor_parts import (

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
-from puck_tables.motion.tableaus import DORMAND_PRINCE
+from puck_tables.motion.steppers import DORMAND_PRINCE
 from puck_tables.scene.ingredients import Regions, Surface
 from puck_tables.world.step_ledger import LEDGER
 
@@ -87,17 +87,17 @@ class GroupBuffer(NamedTuple):
     at a trial (3, m, 6); ``stages`` (8, m, 6) and ``powers`` (10, 8): rates of states and ledger;
     ``own``, ``rates`` (m, 3): accelerations without and with contacts; ``inverse`` (m, 2): 1/m, 1/I
     of those that can move; ``sights``, ``midway`` (c, 11): at the end and in the middle of a step;
-    ``watched`` (2, c, 4): see :func:`puck_tables.world.moments.watch`; ``pushes`` (c, 2): λ, τ;
+    ``watched`` (2, c, 4): see :func:`puck_tables.world.stepping.watch`; ``pushes`` (c, 2): λ, τ;
     ``ways`` (m, 3), ``turn_rates`` (m, 2): where what yields slips to, and how fast that turns;
     ``ties`` (2h, 3), ``tied``, ``tautness`` (2h,): what leads members, whom, and how it pulls,
     ``strays`` (2h, 3): see :func:`puck_tables.world.holds.forbid`, ``number`` (1,): how many there
     are; ``rows``, ``columns`` (k, 6), ``owners`` (k, 2), ``order`` (k,), k = 2c + 2h: the
     constraints, and the members concerned; ``matrix``, ``factors`` (k, k), ``vectors`` (4, k);
     ``variables`` (4c, 5), ``first``, ``basis`` (4c,), ``tableau`` (4c, 8c + 2): of
-    :mod:`puck_tables.world.lemke`; ``modes`` (2, c), ``motions`` (m,): trials; ``gives`` (c,): to
-    which side rims begin to slip; ``film`` (9,); ``carried`` (m, 3): what the floor asks of each
-    acceleration; ``passed`` (m,): rows of forces over time; ``clock`` (1,): now; ``firm`` (m,): by
-    what friction is more of what yields and has not begun to slip.
+    :mod:`puck_tables.world.complementarity`; ``modes`` (2, c), ``motions`` (m,): trials; ``gives``
+    (c,): to which side rims begin to slip; ``film`` (9,); ``carried`` (m, 3): what the floor asks
+    of each acceleration; ``passed`` (m,): rows of forces over time; ``clock`` (1,): now; ``firm``
+    (m,): by what friction is more of what yields and has not begun to slip.
     """
 
     pairs: IntArray

@@ -53,7 +53,7 @@ from puck_tables.world.group import NX as SIGHT_NX
 from puck_tables.world.group import NY as SIGHT_NY
 from puck_tables.world.holds import forbid, response
 from puck_tables.world.layout import HOLD, LIGHTNESS, RADIUS, TURNABILITY, write_over
-from puck_tables.world.putting_right import stop_slips
+from puck_tables.world.multipliers import stop_slips
 from puck_tables.world.rebounds import dies_out
 from puck_tables.world.rims import smaller_at
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError, PuckError
-from puck_tables.io.dataset import Dataset, Variable
+from puck_tables.io.columns import Dataset, Variable
 from puck_tables.scene.entries import is_batch, launch_paths
 from puck_tables.scene.library import files_of
 from puck_tables.scene.outcome import LAST_END, plain_name

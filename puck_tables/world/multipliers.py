@@ -6,6 +6,10 @@ where rims slide.  In a rack there are more contacts than directions to move: th
 the same, the matrix is singular, and of all solutions the smallest is taken, that of equally stiff
 contacts.  For this the diagonal is raised by a little, and what this leaves is solved for again
 until nothing is left.
+
+By such equations errors of steps are taken out of places and velocities, too: gaps, approaches,
+slips, by the least change in the measure of the masses.  So energy does not grow, no order has a
+say, and a change as small as the error of a step spoils no order of a method.
 """
 
 from __future__ import annotations
@@ -21,6 +25,7 @@ from puck_tables.world.group import (
     ARM,
     BEND,
     FAR_ARM,
+    GAP,
     GRIP,
     NX,
     NY,
@@ -32,6 +37,45 @@ from puck_tables.world.group import (
 _RAISED = 1e-9  # of the diagonal
 _ROUNDS = 4  # of solving for what is left, at most
 RIGHT, SOLUTION, LEFT, STEP = range(4)  # vectors of the buffer
+
+
+@inner
+def close_gaps(buffer: GroupBuffer, modes: IntArray, y: FloatArray) -> None:
+    """Places where all that presses touches and all that is led is; the sights are of y (m, 6)."""
+    count = constrain(buffer, modes, False, False)
+    number = 0
+    for c in range(modes.shape[0]):
+        if modes[c] != APART:
+            buffer.vectors[RIGHT, number] = -buffer.sights[c, GAP]
+            number += 1
+    stray(buffer, number, 0)
+    solve(buffer, count)
+    add_forces(buffer, count, y, 0)
+
+
+@inner
+def stop_slips(buffer: GroupBuffer, modes: IntArray, y: FloatArray) -> float:
+    """Velocities with which nothing that presses approaches, and no rim slips that sticks.
+
+    The heat of it: a force that stops a slip works at half of it.
+    """
+    count = constrain(buffer, modes, True, False)
+    number = 0
+    for c in range(modes.shape[0]):
+        if modes[c] == APART:
+            continue
+        buffer.vectors[RIGHT, number] = times_row(buffer, number, y, 3)
+        number += 1
+        if modes[c] == STICKS and buffer.sights[c, GRIP] > 0.0:
+            buffer.vectors[RIGHT, number] = times_row(buffer, number, y, 3)
+            number += 1
+    stray(buffer, number, 1)
+    solve(buffer, count)
+    add_forces(buffer, count, y, 3)
+    heat = 0.0
+    for r in range(count):
+        heat += 0.5 * buffer.vectors[RIGHT, r] * buffer.vectors[SOLUTION, r]
+    return heat
 
 
 @inlined

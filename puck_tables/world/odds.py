@@ -8,8 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import positive, real, whole
+from puck_tables._core.arrays import FloatArray, positive, real, whole
 from puck_tables.bulk.summary import Chance, chance_of
 from puck_tables.errors import InputError, PuckError
 from puck_tables.scene.scene_spec import SceneSpec

@@ -18,7 +18,7 @@ from puck_tables.world.agreement import (
     segment_error,
 )
 from puck_tables.world.floors import has_sums
-from puck_tables.world.rim_laws import rule_of
+from puck_tables.world.obstacles import rule_of
 
 _NAMED = 6  # pucks of one way
 _CLOSER = f"closer than look-ups, which err by {TABLE_ERROR:g}"

@@ -50,9 +50,8 @@ from puck_tables.world.floors import (
     velocities_under,
 )  # fmt: skip
 from puck_tables.world.lone import LONGEST
-from puck_tables.world.obstacles import borders_of, obstacles_of
+from puck_tables.world.obstacles import borders_of, number_for, obstacles_of, rims_of
 from puck_tables.world.paths import FIRST, PIECE_COLUMNS
-from puck_tables.world.rim_laws import number_for, rims_of
 from puck_tables.world.segment import (
     ANGLE,
     FIRST_PIECE,

@@ -43,16 +43,18 @@ from puck_tables.world.group import (
     small_slip,
 )
 from puck_tables.world.layout import LIES, LIGHTNESS, RADIUS, write_over
-from puck_tables.world.moments import first_negative, sets_off, watch
 from puck_tables.world.obstacle_shapes import ROUNDED
 from puck_tables.world.paths import DURATION, START, on_piece, piece_at
 from puck_tables.world.stepping import (
     BEGIN,
     END,
     add_work,
+    first_negative,
     longest_step,
     rates_at,
+    sets_off,
     step,
+    watch,
     write_piece,
 )
 

@@ -1,13 +1,276 @@
-"""The states of all discs at any moments of the past, from the segments they had."""
+"""What was, told from the segments that discs had: their states at any moment, and their rests.
+
+And what pushed them: the force with which constraints lead their discs, and what pucks gave a disc
+that is driven, by impacts and by pushing it for a while.
+"""
 
 from __future__ import annotations
 
+import math
+from typing import NamedTuple
+
 import numpy as np
+import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel, patience
-from puck_tables.world.engine_state import N_HISTORY, Engine, Whole
-from puck_tables.world.segment import ROOM, START, state_at
+from puck_tables.scene.equations import (
+    FIRST,
+    GIVEN,
+    LAMBDA,
+    ROW,
+    SIZE,
+    rates,
+    slip_speed,
+    to_laboratory,
+)
+from puck_tables.scene.friction import SPIN, X, Y
+from puck_tables.scene.ingredients import FREE, NO_WAY, SLIDES, Phase
+from puck_tables.scene.over_time import rows_passed
+from puck_tables.scene.parts import Floor
+from puck_tables.world import engine_state as g
+from puck_tables.world.engine_state import (
+    IMPACT,
+    N_EVENTS,
+    N_HISTORY,
+    N_WORKS,
+    NORMAL_X,
+    NORMAL_Y,
+    PARTNER,
+    PUSH,
+    RUB,
+    WHAT,
+    WHO,
+    Engine,
+    Whole,
+)
+from puck_tables.world.floor_under import friction_under_disc, least_slip, lie_at
+from puck_tables.world.lasting import STUCK, at_rest_below, middle_of
+from puck_tables.world.layout import DECEL, HOLD, INTEGRATED, KIND, LIGHTNESS, NO_CUSHION, RADIUS
+from puck_tables.world.lone import model_of
+from puck_tables.world.obstacle_shapes import normal_to
+from puck_tables.world.segment import GONE, LOOKED_UP, PATH, ROOM, START, UNTIL, state_at
+from puck_tables.world.step_ledger import (
+    BACK_X,
+    BACK_Y,
+    DURATION,
+    LED_BY,
+    LEDGER,
+    SEGMENT,
+    SEVERAL,
+    add_worked,
+)
+from puck_tables.world.step_ledger import START as BEGINS
+
+_NEAR = 1e-9  # of the radius: what is as near may press
+STATE = SPIN + 1  # numbers of a state
+Rest = tuple[float, str, int, float, float]  # when, stick or slip, which disc, where
+
+
+def reactions(
+    engine: Engine, times: FloatArray, states: FloatArray, in_play: FloatArray
+) -> FloatArray:
+    """The multipliers λ of every disc (times, discs, 2), N, at states (times, discs, 6).
+
+    ``in_play`` (times, discs): 0 of those that have left.
+
+    0 of what is free, and of what rests: there the floor shares the force, and nobody knows how.
+    NaN where a disc touches another or a cushion, which may press it too.
+    """
+    regions = engine.regions._replace(floor_map=engine.regions.floor_map.copy())
+    own = engine._replace(discs=engine.discs.copy(), regions=regions)
+    out = np.zeros((len(times), len(engine.discs), 2))
+    _fill_reactions(own, times, in_play, states, np.empty(SIZE), np.empty((1, ROW)), out)
+    return out
+
+
+@kernel
+def _fill_reactions(
+    engine: Engine, times: FloatArray, in_play: FloatArray, states: FloatArray,
+    y: FloatArray, work: FloatArray, out: FloatArray,
+) -> None:  # fmt: skip
+    for i in range(engine.discs.shape[0]):
+        if int(engine.discs[i, HOLD]) == FREE:
+            continue
+        model, drive = model_of(engine, i), engine.forcing[engine.spans[i, 0] : engine.spans[i, 1]]
+        for n in range(times.size):
+            patience(1)
+            for k in range(SIZE):
+                y[k] = states[n, i, k] if k < GIVEN else 0.0
+            lie_at(engine, i, y[X], y[Y])
+            to_laboratory(model.surface, y, -1.0)
+            slips = slip_speed(engine.discs[i, RADIUS], y) > at_rest_below(engine)
+            if in_play[n, i] == 0.0 or not slips:
+                continue
+            if _touches(engine, i, states[n]):
+                out[n, i, 0] = out[n, i, 1] = math.nan
+                continue
+            rows = rows_passed(drive, 0, len(drive), times[n])
+            friction = friction_under_disc(engine.regions, engine.discs, i)
+            phase = Phase(model, friction, rows, SLIDES, NO_WAY, 0.0)
+            rates(phase, times[n], y, work, FIRST)
+            out[n, i, 0], out[n, i, 1] = work[0, LAMBDA], work[0, LAMBDA + 1]
+
+
+@inlined
+def _touches(engine: Engine, i: int, states: FloatArray) -> bool:
+    """Whether a disc touches a cushion or another disc, at states (n, 6)."""
+    x, y, radius = states[i, X], states[i, Y], engine.discs[i, RADIUS]
+    for k in range(engine.obstacles.shape[0]):
+        gap, _, _, there = normal_to(engine.obstacles[k], radius, x, y, 0.0)
+        if there and gap < _NEAR * radius and int(engine.obstacles[k, KIND]) < NO_CUSHION:
+            return True
+    for j in range(engine.discs.shape[0]):
+        gap = math.hypot(states[j, X] - x, states[j, Y] - y) - radius - engine.discs[j, RADIUS]
+        if j != i and gap < _NEAR * radius:
+            return True
+    return False
+
+
+class Reported(NamedTuple):
+    """Until when it was told: time, s, how many events and works, and the first not at its end."""
+
+    time: float = 0.0
+    events: int = 0
+    work_rows: int = 0
+    open: int = 0
+
+
+def pushed_back(engine: Engine, i: int, since: Reported) -> tuple[FloatArray, Reported]:
+    """The impulse (2,) N s on a disc since then, and until when it is told now.
+
+    NaN where several that are driven pushed the same pucks: nobody knows how they share it.
+    """
+    now, counts = float(engine.clock[0]), engine.counts
+    impulse = _of_impacts(engine.events[since.events : counts[N_EVENTS]], i)
+    still_open = int(counts[N_WORKS])
+    ends: dict[int, float] = {}
+    for n in range(since.open, int(counts[N_WORKS])):
+        row = engine.work_rows[n]
+        segment = int(row[SEGMENT])
+        if segment not in ends:
+            ends[segment] = _end_of(engine, segment)
+        cut = ends[segment]
+        if min(float(row[BEGINS] + row[DURATION]), cut) > now:
+            still_open = min(still_open, n)
+        driver = int(row[LED_BY])
+        if driver not in (i, SEVERAL) or min(now, cut) < row[BEGINS]:
+            continue
+        given = _worked(row, min(now, cut))
+        if n < since.work_rows:
+            given -= _worked(row, min(since.time, cut))
+        impulse += given if driver == i else math.nan
+    return impulse, Reported(now, int(counts[N_EVENTS]), int(counts[N_WORKS]), still_open)
+
+
+def _of_impacts(events: FloatArray, i: int) -> FloatArray:
+    """The impulse (2,) of impacts on a disc."""
+    hits = events[events[:, WHAT] == IMPACT]
+    sign = (hits[:, PARTNER] == i) * 1.0 - (hits[:, WHO] == i)
+    nx, ny, push, rub = hits[:, [NORMAL_X, NORMAL_Y, PUSH, RUB]].T
+    return np.array([sign @ (push * nx - rub * ny), sign @ (push * ny + rub * nx)])
+
+
+def _worked(row: FloatArray, t: float) -> FloatArray:
+    """What of a row was given by t."""
+    ledger = np.zeros(LEDGER)
+    if t >= row[BEGINS]:
+        add_worked(row, t, ledger)
+    return ledger[[BACK_X, BACK_Y]]
+
+
+def _end_of(engine: Engine, segment: int) -> float:
+    """When a segment, a row of the history, ended; inf: not yet, or it is none."""
+    if segment < 0:
+        return math.inf
+    later = engine.history[segment + 1 : engine.counts[N_HISTORY]]
+    own = np.flatnonzero(later[:, 0] == engine.history[segment, 0])
+    return float(later[own[0], 2 + START]) if own.size else math.inf
+
+
+def rests_of(engine: g.Engine) -> list[Rest]:
+    """Every stick and slip until now; what an impact or a launch sets off is no slip."""
+    found: list[Rest] = []
+    for rest in _described(engine):
+        if rest[1] == "slip" and found and found[-1][:3] == (rest[0], "stick", rest[2]):
+            found.pop()  # it stopped, and was not held
+        else:
+            found.append(rest)
+    return found
+
+
+def _described(engine: g.Engine) -> list[Rest]:
+    """Every stick and slip until now, also a rest that ends at once, disc by disc."""
+    discs, ends, states = segments_of(engine)
+    segments, kinds = engine.history[: len(discs), 2:], engine.history[: len(discs), 1]
+    starts, stops = segments[:, START], np.where(kinds == LOOKED_UP, segments[:, UNTIL], ends)
+    near, rows = at_rest_below(engine), engine.discs
+    both = np.stack([starts, ends], 1)
+    resting: npt.NDArray[np.bool_] = np.less_equal(slips_over(engine, discs, states, both), near)
+    moves: npt.NDArray[np.bool_] = np.logical_not(resting.all(axis=1))
+    unsure = np.flatnonzero((kinds == PATH) & ~moves & (starts < ends))  # perhaps rest to rest
+    if unsure.size:
+        middles = np.array([middle_of(engine, n, ends[n]) for n in unsure.tolist()])
+        there = states_on(engine, unsure, middles)
+        moves[unsure] = slips_over(engine, discs[unsure], there, middles) > STUCK * engine.scale[0]
+    # none of what is driven, or what nothing can hold
+    held = (rows[:, LIGHTNESS] > 0.0) & ((rows[:, DECEL] > 0.0) | (rows[:, INTEGRATED] > 0.0))
+    own = np.argsort(discs, kind="stable")
+    found: list[tuple[int, float, str]] = []
+    disc, rested = -1, True
+    for n in own[held[discs[own]]].tolist():
+        if discs[n] != disc:
+            disc, rested = discs[n], True  # what lies at the start has not come to rest
+        if kinds[n] == GONE:
+            continue
+        first, last = resting[n]
+        if first and not rested:
+            found.append((n, starts[n], "stick"))
+        if first and moves[n] and kinds[n] == PATH and starts[n] > 0.0:
+            found.append((n, starts[n], "slip"))
+        rested = last
+        if last and moves[n]:
+            found.append((n, min(stops[n], ends[n]), "stick"))
+    at, times = np.array([n for n, *_ in found], np.int64), np.array([one[1] for one in found])
+    places = states_on(engine, at, times)[:, [X, Y]].tolist() if found else []
+    return [
+        (float(time), what, int(discs[n]), x, y)
+        for (n, time, what), (x, y) in zip(found, places, strict=True)
+    ]
+
+
+def slips_over(
+    engine: g.Engine, discs: g.Whole, states: FloatArray, times: FloatArray
+) -> FloatArray:
+    """How fast the rims of discs (n,) slip over the floor at states (n, …, 6) and times, m/s."""
+    slips, count = np.empty(states.shape[:-1]), len(discs)
+    _fill_slips(
+        engine, discs, states.reshape(count, -1, STATE), times.reshape(count, -1),
+        slips.reshape(count, -1),
+    )  # fmt: skip
+    return slips
+
+
+@kernel
+def _fill_slips(
+    engine: g.Engine, discs: g.Whole, states: FloatArray, times: FloatArray, out: FloatArray
+) -> None:
+    for n in range(states.shape[0]):
+        for k in range(states.shape[1]):
+            patience(1)
+            out[n, k] = least_slip(engine, discs[n], states[n, k], times[n, k])
+
+
+def floor_under(floor: Floor, x: float, y: float) -> str:
+    """What a puck with its centre at (x, y) rests on, in words.
+
+    >>> floor_under(Floor(), 0.0, 0.0)
+    'floor'
+    """
+    if floor.strips is None:
+        return "floor"
+    along = math.cos(floor.strips.direction) * x + math.sin(floor.strips.direction) * y
+    return f"strip {sum(along >= border for border in floor.strips.borders)}"
 
 
 def states_now(engine: Engine, work: FloatArray) -> FloatArray:

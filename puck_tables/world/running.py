@@ -9,8 +9,7 @@ from typing import Any, Self
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array, real
+from puck_tables._core.arrays import FloatArray, finite_array, real
 from puck_tables.errors import InputError, PuckError
 from puck_tables.kernels.compile import entry_of
 from puck_tables.scene.pucks_and_posts import called_line
@@ -36,8 +35,7 @@ from puck_tables.world.lone import LONGEST
 from puck_tables.world.obstacles import obstacle_names
 from puck_tables.world.passings import Passings
 from puck_tables.world.prepare import Start, prepared, shipped_lookups
-from puck_tables.world.pushed_back import Reported
-from puck_tables.world.record import states_at, states_now
+from puck_tables.world.record import Reported, states_at, states_now
 from puck_tables.world.segment import GONE, START, moves_until
 from puck_tables.world.segment_starts import room_for
 from puck_tables.world.setting_off import (

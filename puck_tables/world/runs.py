@@ -12,16 +12,15 @@ from typing import Any
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
+from puck_tables._core.arrays import FloatArray, instance
 from puck_tables._core.digest import files_named, refuse_changed
 from puck_tables._core.memory import check_memory
-from puck_tables._core.real import instance
 from puck_tables.bulk.finish import Doing, finish
 from puck_tables.bulk.spreads import Spread, checked_samples
 from puck_tables.bulk.work import Columns, Tally, Work
 from puck_tables.contact.laws import Law
 from puck_tables.errors import InputError
-from puck_tables.io.dataset import Dataset
+from puck_tables.io.columns import Dataset
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.scene.entries import is_batch, launch_paths, tables_of
 from puck_tables.scene.library import files_of

@@ -12,7 +12,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.bulk.spreads import Spread
 from puck_tables.bulk.summary import Chance, Summary, chance_of, head
 from puck_tables.errors import InputError
-from puck_tables.io.dataset import Dataset, Variable
+from puck_tables.io.columns import Dataset, Variable
 from puck_tables.scene.outcome import plain_name
 from puck_tables.world.scene_ends import SceneEnds, number_along, spread_words
 

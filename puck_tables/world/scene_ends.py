@@ -11,8 +11,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.bulk.spreads import Spread
-from puck_tables.io.columns import derived
-from puck_tables.io.dataset import Dataset, Variable, variable
+from puck_tables.io.columns import Dataset, Variable, derived, variable
 from puck_tables.result import Result
 from puck_tables.scene.entries import entry_at, is_batch
 from puck_tables.scene.outcome import ENDS, LAST_END, column_of, scene_texts

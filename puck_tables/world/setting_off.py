@@ -30,8 +30,8 @@ from puck_tables.world.layout import (
     SPAN,
     kinetic,
 )
+from puck_tables.world.multipliers import stop_slips
 from puck_tables.world.obstacle_shapes import ROUNDED, normal_to
-from puck_tables.world.putting_right import stop_slips
 from puck_tables.world.segment import GONE, STILL
 from puck_tables.world.segment_starts import (
     CONCERNED,

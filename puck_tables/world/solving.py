@@ -9,8 +9,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.world.engine_state import Whole
-from puck_tables.world.launches import TriedLaunches
-from puck_tables.world.shots import Landings, Shots
+from puck_tables.world.shots import Landings, Shots, TriedLaunches
 
 Which = np.ndarray
 

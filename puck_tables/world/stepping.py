@@ -1,4 +1,9 @@
-"""One step of a group in time, Dormand–Prince 5(4), that ends with every gap closed."""
+"""One step of a group in time, Dormand–Prince 5(4), that ends with every gap closed.
+
+It ends where something changes.  Of every contact four numbers are watched, which are positive
+while its mode holds: the push, the slip of rims that slide, what is left of the friction of rims
+that stick, the way to the end of an arc.
+"""
 
 from __future__ import annotations
 
@@ -9,15 +14,16 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
-from puck_tables.motion.tableaus import DORMAND_PRINCE
+from puck_tables.motion.steppers import DORMAND_PRINCE
 from puck_tables.scene.friction import X, Y, size
 from puck_tables.scene.ingredients import floor_acceleration
-from puck_tables.world.break_away import turn_directions
+from puck_tables.world.complementarity import load_of, most
 from puck_tables.world.contact_kinematics import look, look_at_ties
 from puck_tables.world.floor_under import floor_of
 from puck_tables.world.forces import (
     act,
     can_rest,
+    gain_of,
     load_on,
     place_driven,
     power_of_contacts,
@@ -25,9 +31,22 @@ from puck_tables.world.forces import (
     slip_of,
 )
 from puck_tables.world.group import (
+    APART,
     DRIVEN,
+    GAINS,
+    GRIP,
     HELD,
+    LEVEL,
     MOVES,
+    PARTS,
+    RIM_GIVES,
+    RIM_STOPS,
+    RUNS_OFF,
+    SLIP,
+    SMOOTH_SLIP,
+    STICKS,
+    TO_END,
+    WATCHES,
     YIELDS,
     Group,
     GroupBuffer,
@@ -35,9 +54,9 @@ from puck_tables.world.group import (
     Scales,
 )
 from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY, write_over
-from puck_tables.world.multipliers import push_and_move
+from puck_tables.world.multipliers import close_gaps, leads, push_and_move, stop_slips
 from puck_tables.world.paths import DURATION, FIRST, START
-from puck_tables.world.putting_right import close_gaps, stop_slips
+from puck_tables.world.pressing import find_break_away, overborne, turn_directions
 from puck_tables.world.step_ledger import LEDGER, write_work
 
 _A, _C, _E = DORMAND_PRINCE.a, DORMAND_PRINCE.c, DORMAND_PRINCE.e[0]
@@ -51,6 +70,68 @@ _HALF = 0.5 * np.array([
 BEGIN, END = cast(int, np.int64(0)), cast(int, np.int64(STAGES))
 _NEAR = 0.5  # of the time in which a slip would end, at most, is a step,
 _TURN = 1.5  # and of that in which friction turns it; three times as long steps turn it to and fro
+
+
+@inner
+def watch(buffer: GroupBuffer, modes: IntArray, scales: Scales, end: bool) -> None:
+    """What is watched at the start or end of a step, from sights and pushes."""
+    for c in range(modes.shape[0]):
+        seen, sight = buffer.watched[1 if end else 0, c], buffer.sights[c]
+        for i in range(WATCHES):
+            seen[i] = math.inf
+        if modes[c] == APART:
+            continue
+        seen[RUNS_OFF - PARTS] = sight[TO_END]
+        _, _, soft, rolls = leads(buffer, c)
+        if soft == 0.0:
+            continue
+        push, rim = buffer.pushes[c, 0], buffer.pushes[c, 1]
+        seen[0] = load_of(sight, modes[c], push, rim) * soft + LEVEL * scales.rate
+        if sight[GRIP] == 0.0:
+            continue
+        if modes[c] != STICKS:
+            seen[RIM_STOPS - PARTS] = modes[c] * sight[SLIP] + SMOOTH_SLIP * scales.speed
+        elif sight[GRIP] < math.inf:
+            left = (most(sight, push) - abs(rim)) * rolls
+            seen[RIM_GIVES - PARTS] = left + LEVEL * scales.rate
+
+
+@inlined
+def first_negative(buffer: GroupBuffer, end: int, count: int) -> tuple[int, int]:
+    """A contact and what of it is negative at the start or end of a step; −1: nothing."""
+    for c in range(count):
+        for i in range(WATCHES):
+            if buffer.watched[end, c, i] < 0.0:
+                return c, i
+    return -1, 0
+
+
+@inner
+def sets_off(
+    group: Group, members: IntArray, modes: IntArray, motions: IntArray, scales: Scales,
+    buffer: GroupBuffer,
+) -> int:  # fmt: skip
+    """Whether what presses on the discs at rest moves one: 1, or 0; −1: not solved.
+
+    From the pushes of the state at the end of a step, which is that of ``buffer.states[1]``; only
+    where a disc alone could not bear them all is it looked at who moves.
+    """
+    contacts = modes.shape[0]
+    y = buffer.states[1]
+    if not overborne(group, members, motions, contacts, y, scales, False, buffer):
+        return 0
+    trial, does = buffer.modes[0, :contacts], buffer.motions[: members.shape[0]]
+    for c in range(contacts):
+        trial[c] = modes[c]
+    for place in range(members.shape[0]):
+        does[place] = motions[place]
+    if not find_break_away(group, members, trial, does, y, scales, buffer):
+        return -1
+    for place in range(members.shape[0]):
+        begins = motions[place] == HELD and does[place] == YIELDS
+        if begins and gain_of(group, members[place], place, buffer) > GAINS * scales.rate:
+            return 1
+    return 0
 
 
 @inner

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy.typing as npt
 
-from puck_tables._core.real import finite_array
+from puck_tables._core.arrays import finite_array
 from puck_tables.errors import InputError
 from puck_tables.scene.parts import Floor, Force
 from puck_tables.scene.pucks_and_posts import ScenePuck

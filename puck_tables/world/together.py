@@ -9,10 +9,9 @@ from typing import Any, Self
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
+from puck_tables._core.arrays import FloatArray, whole
 from puck_tables._core.executor import run_chunks
 from puck_tables._core.memory import check_memory
-from puck_tables._core.real import whole
 from puck_tables.errors import InputError, PuckError
 from puck_tables.kernels.patience import FEW, compiled_at_once
 from puck_tables.scene.friction import VX, VY

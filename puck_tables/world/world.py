@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array, positive, real
+from puck_tables._core.arrays import FloatArray, finite_array, positive, real
 from puck_tables.errors import InputError
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.holds import misfits
@@ -34,7 +33,7 @@ from puck_tables.world.law_range import refuse_too_fast
 from puck_tables.world.layout import HOLD, LIGHTNESS, RADIUS
 from puck_tables.world.paths import FOR_EVER
 from puck_tables.world.prepare import set_scales
-from puck_tables.world.pushed_back import Reported, pushed_back
+from puck_tables.world.record import Reported, pushed_back
 from puck_tables.world.running import Running
 from puck_tables.world.segment import GONE
 from puck_tables.world.segment_starts import CONCERNED, GIVEN, NOT_CONCERNED, room_for

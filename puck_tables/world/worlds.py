@@ -8,8 +8,7 @@ from typing import Any, Self
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array, real, shown
+from puck_tables._core.arrays import FloatArray, finite_array, real, shown
 from puck_tables.errors import InputError
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.pucks_and_posts import called_line

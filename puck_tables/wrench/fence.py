@@ -15,8 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import positive, real
+from puck_tables._core.arrays import FloatArray, positive, real
 from puck_tables.errors import InputError
 from puck_tables.kernels.base_friction import REACH
 from puck_tables.kernels.base_push import APART, LEFT, RIGHT, STICKS, UNKNOWN, push_twist

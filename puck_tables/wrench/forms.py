@@ -13,8 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array
+from puck_tables._core.arrays import FloatArray, finite_array
 
 _ROUNDS = 6  # of Gauss–Newton steps: four do
 _HALVES = 20  # of the share of the ellipsoid

@@ -17,12 +17,10 @@ import numpy as np
 import numpy.typing as npt
 from scipy.integrate import solve_ivp
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array, instance, one_velocity, real, whole
+from puck_tables._core.arrays import FloatArray, finite_array, instance, one_velocity, real, whole
 from puck_tables.contact.base import Base
 from puck_tables.errors import ContactError, InputError
-from puck_tables.io.columns import following
-from puck_tables.io.dataset import Dataset, variable
+from puck_tables.io.columns import Dataset, following, variable
 from puck_tables.kernels.base_push import UNKNOWN
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.result import Result

@@ -17,15 +17,12 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import whole
+from puck_tables._core.arrays import FloatArray, whole
 from puck_tables.errors import InputError
-from puck_tables.io.columns import following
-from puck_tables.io.dataset import Dataset, variable
+from puck_tables.io.columns import Dataset, following, variable
 from puck_tables.result import Result
 from puck_tables.wrench.forms import WrenchForm, ellipsoid, quartic
-from puck_tables.wrench.friction_force import of_round, wrench
-from puck_tables.wrench.friction_hold import holds, slip_length, twist
+from puck_tables.wrench.friction_hold import holds, of_round, slip_length, twist, wrench
 
 if TYPE_CHECKING:
     from puck_tables.motion.puck_spec import PuckSpec

@@ -29,14 +29,12 @@ from puck_tables.accuracy.methods import Method
 from puck_tables.contact.laws import HOMOGENEOUS
 from puck_tables.kernels.closed_form_kernel import friction_ratios
 from puck_tables.kernels.compile import allocating, kernel
-from puck_tables.kernels.quadratic import NO_COLUMNS
-from puck_tables.kernels.section_spline import NO_SECTION
+from puck_tables.kernels.quadratic import NO_COLUMNS, NO_SECTION
 from puck_tables.motion.friction_source import integration_selected
 from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import integrate
 from puck_tables.motion.state import SIZE, T, X, Y
-from puck_tables.motion.steppers import stepping_of
-from puck_tables.motion.tableaus import DORMAND_PRINCE
+from puck_tables.motion.steppers import DORMAND_PRINCE, stepping_of
 from puck_tables.stopping.per_height import SolverPerHeight
 from puck_tables.stopping.solvers import Integration
 from puck_tables.table.resultant_table import ResultantTable
