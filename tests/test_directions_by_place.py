@@ -12,7 +12,7 @@ from rays_judge import border, by_ellipse, friction_of, sides
 from scipy.integrate import solve_ivp
 
 import puck_tables as pt
-from puck_tables.scene.scene_text import as_toml
+from puck_tables.scene.outcome import as_toml
 from puck_tables.world.floor_forces import friction_at
 
 BOX, ROUND = [(-0.1, -0.05), (0.1, -0.05), (0.1, 0.05), (-0.1, 0.05)], 0.06
