@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from puck_tables.errors import InputError, PuckError
     from puck_tables.export.board_source import export_board
     from puck_tables.export.source import export_source
-    from puck_tables.film.puck_track import Track
+    from puck_tables.film.film import Track
     from puck_tables.film.track_files import read_tracks
     from puck_tables.fitting.fit_tracks import fit
     from puck_tables.fitting.forecast import Camera, fisher
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from puck_tables.puck import Puck
     from puck_tables.reference.answer import reference_case
     from puck_tables.reference.comparison import compare
-    from puck_tables.reference.floor_friction import floor_friction
+    from puck_tables.reference.floor_reaction import floor_friction
     from puck_tables.scene.driven import path_along
     from puck_tables.scene.parts import (
         Constraint,
@@ -79,7 +79,7 @@ _HOMES = {  # names of this package by the modules that hold them
     "errors": "InputError PuckError",
     "export.board_source": "export_board",
     "export.source": "export_source",
-    "film.puck_track": "Track",
+    "film.film": "Track",
     "film.track_files": "read_tracks",
     "fitting.fit_tracks": "fit",
     "fitting.forecast": "Camera fisher",
@@ -87,7 +87,7 @@ _HOMES = {  # names of this package by the modules that hold them
     "puck": "Puck",
     "reference.answer": "reference_case",
     "reference.comparison": "compare",
-    "reference.floor_friction": "floor_friction",
+    "reference.floor_reaction": "floor_friction",
     "scene.driven": "path_along",
     "scene.parts": "Constraint Drag Edge Floor Force Grip Lateral Launch Orthotropic Patch Strips "
     "Wall",

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from puck_tables.fitting.forecast import Forecast
     from puck_tables.reference.answer import Answer
     from puck_tables.reference.comparison import Comparison
-    from puck_tables.reference.floor_friction import FloorFriction
+    from puck_tables.reference.floor_reaction import FloorFriction
     from puck_tables.result import Result
     from puck_tables.scene.run import Run
     from puck_tables.stopping.aim_at_targets import Aim
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from puck_tables.world.aimed import BoardAim
     from puck_tables.world.map import Map
     from puck_tables.world.odds import Odds
-    from puck_tables.world.sample import Sample
+    from puck_tables.world.scene_ends import Sample
     from puck_tables.wrench.friction_hold import Hold
     from puck_tables.wrench.push import Push
     from puck_tables.wrench.surface import LimitSurface
@@ -45,7 +45,7 @@ _HOMES = {  # by the modules that hold them
     "fitting.forecast": "Forecast",
     "reference.answer": "Answer",
     "reference.comparison": "Comparison",
-    "reference.floor_friction": "FloorFriction",
+    "reference.floor_reaction": "FloorFriction",
     "result": "Result",
     "scene.run": "Run",
     "stopping.aim_at_targets": "Aim",
@@ -57,7 +57,7 @@ _HOMES = {  # by the modules that hold them
     "world.aimed": "BoardAim",
     "world.map": "Map",
     "world.odds": "Odds",
-    "world.sample": "Sample",
+    "world.scene_ends": "Sample",
     "wrench.friction_hold": "Hold",
     "wrench.push": "Push",
     "wrench.surface": "LimitSurface",
