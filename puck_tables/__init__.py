@@ -69,43 +69,6 @@ if TYPE_CHECKING:
 
 with_neighbours(__name__, __file__)
 
-_HOMES = {  # names of this package by the modules that hold them
-    "": "chetaev contact errors motion results",
-    "bulk.spreads": "Normal Uniform",
-    "contact.base": "Base",
-    "contact.friction_laws": "CurlingLaw PowerLaw StribeckLaw",
-    "contact.laws": "Law law_of profile_law",
-    "contact.speed_law": "SpeedLaw",
-    "errors": "InputError PuckError",
-    "export.board_source": "export_board",
-    "export.source": "export_source",
-    "film.film": "Track",
-    "film.track_files": "read_tracks",
-    "fitting.fit_tracks": "fit",
-    "fitting.forecast": "Camera fisher",
-    "kernels.closed_form_kernel": "resultants",
-    "puck": "Puck",
-    "reference.answer": "reference_case",
-    "reference.comparison": "compare",
-    "reference.floor_reaction": "floor_friction",
-    "scene.driven": "path_along",
-    "scene.parts": "Constraint Drag Edge Floor Force Grip Lateral Launch Orthotropic Patch Strips "
-    "Wall",
-    "scene.pucks_and_posts": "Arc Line Pocket Post Rim",
-    "scene.restitution": "Plastic RestitutionTable Viscoelastic",
-    "stopping.array_functions": "state_arrays stop_arrays",
-    "stopping.states": "states",
-    "stopping.stops": "stop",
-    "table.table": "Table",
-    "table.table_store": "table_for",
-    "warming": "warm_up",
-    "world.scene": "Scene",
-    "world.world": "World",
-    "world.worlds": "Worlds",
-    "wrench.fence": "Fence",
-    "wrench.push": "push",
-}
-
 __all__ = [
     "Arc", "Base", "Camera", "Constraint", "CurlingLaw", "Drag", "Edge", "Fence", "Floor", "Force",
     "Grip", "InputError", "Lateral", "Launch", "Law", "Line", "Normal", "Orthotropic", "Patch",
@@ -118,7 +81,7 @@ __all__ = [
     "state_arrays", "states", "stop", "stop_arrays", "table_for", "warm_up",
 ]  # fmt: skip
 
-__getattr__, __dir__ = lazily(__name__, _HOMES)
+__getattr__, __dir__ = lazily(__name__)
 lead_up({
     "draw": "puck_tables.plot.drawn",
     "save_movie": "puck_tables.plot.movie",

@@ -38,35 +38,10 @@ if TYPE_CHECKING:
     from puck_tables.wrench.push import Push
     from puck_tables.wrench.surface import LimitSurface
 
-_HOMES = {  # by the modules that hold them
-    "export.board_source": "BoardSource",
-    "export.source": "Source",
-    "fitting.fit_result": "Fit",
-    "fitting.forecast": "Forecast",
-    "reference.answer": "Answer",
-    "reference.comparison": "Comparison",
-    "reference.floor_reaction": "FloorFriction",
-    "result": "Result",
-    "scene.run": "Run",
-    "stopping.aim_at_targets": "Aim",
-    "stopping.states": "States",
-    "stopping.stop_map": "StopMap StopSample",
-    "stopping.stops": "Stops",
-    "table.check": "CheckReport",
-    "trajectory": "Trajectory",
-    "world.aimed": "BoardAim",
-    "world.map": "Map",
-    "world.odds": "Odds",
-    "world.scene_ends": "Sample",
-    "wrench.friction_hold": "Hold",
-    "wrench.push": "Push",
-    "wrench.surface": "LimitSurface",
-}
-
 __all__ = [
     "Aim", "Answer", "BoardAim", "BoardSource", "CheckReport", "Comparison", "Fit", "FloorFriction",
     "Forecast", "Hold", "LimitSurface", "Map", "Odds", "Push", "Result", "Run", "Sample", "Source",
     "States", "StopMap", "StopSample", "Stops", "Trajectory",
 ]  # fmt: skip
 
-__getattr__, __dir__ = lazily(__name__, _HOMES, "puck_tables")
+__getattr__, __dir__ = lazily(__name__)
