@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     from puck_tables.trajectory import Trajectory
     from puck_tables.world.aimed import BoardAim
     from puck_tables.world.map import Map
-    from puck_tables.world.odds import Odds
     from puck_tables.world.scene_ends import Sample
+    from puck_tables.world.targets import Odds
     from puck_tables.wrench.friction_hold import Hold
     from puck_tables.wrench.push import Push
     from puck_tables.wrench.surface import LimitSurface

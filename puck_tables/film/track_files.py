@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from puck_tables._core.arrays import instance
-from puck_tables._core.beginning import beginning, refuse_no_text
+from puck_tables._core.safe_read import beginning, refuse_no_text
 from puck_tables._core.text import HEAD, text_form_of
 from puck_tables._core.text_rows import LARGEST
 from puck_tables.errors import InputError
