@@ -5,10 +5,9 @@ from typing import TYPE_CHECKING
 from puck_tables._core.lazy import lazily
 
 if TYPE_CHECKING:
-    from puck_tables.contact.closed_form import is_full_contact
+    from puck_tables.contact.closed_form import Resultants, is_full_contact
     from puck_tables.contact.one_sided import critical_delta, loaded_share
     from puck_tables.contact.one_sided import resultants as one_sided_resultants
-    from puck_tables.contact.resultants import Resultants
     from puck_tables.contact.speed_quadrature import speed_resultants
 
 __all__ = [

@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.contact.closed_form import moment_balance
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.quadrature import integrals
-from puck_tables.contact.resultants import moment_balance
 from puck_tables.puck import Puck
 from puck_tables.stopping.stops import Stops, stop
 

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.contact.resultants import checked_delta
+from puck_tables.contact.closed_form import checked_delta
 from puck_tables.errors import InputError
 from puck_tables.io.columns import Variable
 from puck_tables.motion.state import STATE_ROWS

@@ -20,9 +20,9 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact import one_sided
+from puck_tables.contact.closed_form import Resultants, checked_delta
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
 from puck_tables.contact.one_sided import critical_delta
-from puck_tables.contact.resultants import Resultants, checked_delta
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.quadratic import LINE, RATIOS, SLOPES
 from puck_tables.table.build import COARSEST, checked_accuracy

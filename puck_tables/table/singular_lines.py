@@ -20,11 +20,11 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import run_chunks
 from puck_tables.contact import closed_form, one_sided
+from puck_tables.contact.closed_form import Resultants, moment_balance
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.laws import Law
 from puck_tables.contact.loaded_chord import LINE_RULE, SEGMENT_RULE, guessed_chord
 from puck_tables.contact.one_sided import critical_delta
-from puck_tables.contact.resultants import Resultants, moment_balance
 from puck_tables.errors import ContactError
 
 _CHUNK = 64  # neighbours that follow each other

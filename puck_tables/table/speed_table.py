@@ -11,10 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray, broadcast
+from puck_tables.contact.closed_form import Resultants, moment_balance, pressure_tilt
 from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.contact.integrals import PatchIntegrals, checked_phi, slip_direction
 from puck_tables.contact.laws import Law, law_of
-from puck_tables.contact.resultants import Resultants, moment_balance, pressure_tilt
 from puck_tables.contact.round_load import RoundLoad
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.contact.speed_quadrature import (
