@@ -1,4 +1,7 @@
-"""``puck tables``, ``info``, ``validate``, ``build-tables``, ``tradeoff``: how good tables are."""
+"""``puck tables``, ``info``, ``validate``, ``build-tables``, ``tradeoff``, ``warm-up``.
+
+How good tables are, and what is computed or compiled ahead.
+"""
 
 from __future__ import annotations
 
@@ -11,9 +14,9 @@ from pathlib import Path
 from typing import Any
 
 import click
-from puck_tables.cli.completion import laws
 from puck_tables.cli.options import FILE, Outputs, number, outputs, tables_named
 from puck_tables.cli.printing import note, progress, say
+from puck_tables.cli.values import laws
 
 from puck_tables._core import own_folder
 from puck_tables.errors import InputError, TableError
@@ -261,3 +264,18 @@ def _lines(entries: list[dict[str, Any]]) -> str:
     places = dict.fromkeys(one["place"] for one in entries if one["place"] != "comes along")
     kept = [f"kept in {click.format_filename(place)}" for place in places]
     return "\n".join([columns(heads, rows), *kept])
+
+
+@click.command()
+def warm_up() -> None:
+    """Compile what games and services call, once for this machine.
+
+    It takes some minutes, or a second where it was done before; stderr says how far it is.  Without
+    it nothing is missing: what takes long is compiled when it is first asked.
+
+    \b
+    puck warm-up
+    """  # noqa: D301 - click reads the backspace
+    from puck_tables.warming import warm_up
+
+    warm_up()
