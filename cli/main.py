@@ -20,19 +20,16 @@ import click
 from puck_tables.cli import endings
 from puck_tables.cli.aim import aim
 from puck_tables.cli.asperity import asperity
-from puck_tables.cli.compare import compare
 from puck_tables.cli.explore import explore
 from puck_tables.cli.export import export
-from puck_tables.cli.fit import fit
+from puck_tables.cli.fit import fit, track
 from puck_tables.cli.limit_surface import limit_surface
 from puck_tables.cli.printing import printable, progress
-from puck_tables.cli.reference import reference
+from puck_tables.cli.reference import compare, reference
 from puck_tables.cli.scene_files import scene
 from puck_tables.cli.simulate import simulate
 from puck_tables.cli.sweep import sweep
-from puck_tables.cli.tables import build_tables, info, tables, validate
-from puck_tables.cli.track import track
-from puck_tables.cli.tradeoff import tradeoff
+from puck_tables.cli.tables import build_tables, info, tables, tradeoff, validate
 from puck_tables.cli.values import questioned
 from puck_tables.cli.warm_up import warm_up
 

@@ -1,4 +1,4 @@
-"""``puck tables``, ``info``, ``validate``, ``build-tables``: tables, and how good they are."""
+"""``puck tables``, ``info``, ``validate``, ``build-tables``, ``tradeoff``: how good tables are."""
 
 from __future__ import annotations
 
@@ -20,6 +20,34 @@ from puck_tables.errors import InputError, TableError
 from puck_tables.report.lines_and_tables import columns
 
 FAILED = 3  # exit status: 1 and 2 are those of errors and of wrong usage
+
+
+@click.command()
+@click.option("--quick", is_flag=True, help="Fewer repeats and points: under a minute.")
+@click.option("-o", "--output", "files", type=FILE, metavar="FILE", multiple=True,
+              help="Save everything: .h5, or .csv.  May be given twice.")  # fmt: skip
+@outputs(None)
+def tradeoff(quick: bool, files: tuple[Path, ...], out: Outputs) -> None:
+    """Measure accuracy against speed of every method to answer.
+
+    Resultants, stops, trajectories and states: by closed forms, tables, integrators, look-up, and
+    by what others do; worst and median error, cost on one thread, memory.  Some minutes.
+
+    \b
+    puck tradeoff --quick
+    puck tradeoff -o tradeoff.h5 -o tradeoff.csv --plot tradeoff.png
+    """  # noqa: D301 - click reads the backspace
+    for path in files:
+        Outputs(path, overwrite=out.overwrite).prepare()
+    out.prepare(others=files)
+    from puck_tables.tradeoff.measurement import measure
+
+    with progress("measuring") as show:
+        measured = measure(quick, show)
+    for path in files:
+        Outputs(path, overwrite=out.overwrite).deliver(measured)
+    out.deliver(measured)
+    click.echo(measured)
 
 
 @click.command()

@@ -64,7 +64,7 @@ DOORS = {
         "kernels.kept_code",
         "kernels.linking",
         "kernels.on_demand",
-        "kernels.doors",
+        "kernels.compile",
         "kernels.quick_compiler",
         "kernels.records",
         "kernels.vectors",

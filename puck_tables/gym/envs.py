@@ -15,9 +15,8 @@ from gymnasium.vector.utils import batch_space
 from puck_tables._core.arrays import FloatArray, finite_array, real, shown, whole
 from puck_tables.contact.friction_laws import CurlingLaw
 from puck_tables.errors import InputError
-from puck_tables.gym.air_hockey import AirHockey, AirHockeyAlone
+from puck_tables.gym.air_hockey import AirHockey, AirHockeyAlone, PushToPose
 from puck_tables.gym.disc_games import Carrom, Crokinole, TableGame, Tables, Truth, Whole
-from puck_tables.gym.push_to_pose import PushToPose
 from puck_tables.gym.stone_games import Curling, Shuffleboard
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.worlds import Worlds

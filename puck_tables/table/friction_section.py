@@ -30,12 +30,11 @@ from puck_tables.table.check import Accuracy, CheckReport
 from puck_tables.table.law_record import is_named
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.section_table import SectionTable
-from puck_tables.table.singular_lines import lines_of, opening_angle, refuse_height
+from puck_tables.table.singular_lines import lines_of, opening_angle, refuse_height, tall_resultants
 from puck_tables.table.slip_spline import GRADING_POWER, LawAxis, SlipSpline, sides_of, slip_spline
 from puck_tables.table.spline_fit import height_terms, ratios_at
 from puck_tables.table.table import Progress
 from puck_tables.table.table_store import fetch
-from puck_tables.table.tall_friction import tall_resultants
 
 FLOW_ACCURACY = 1e-9  # motions differentiated with it err by at most 1e-8
 DEFAULT_ACCURACY, FINEST_ACCURACY = 1e-9, 5e-13  # truth itself is good to 1e-13

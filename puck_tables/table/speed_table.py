@@ -30,8 +30,7 @@ from puck_tables.table.build import COARSEST
 from puck_tables.table.check import CheckReport, Route, judged
 from puck_tables.table.speed_build import largest_f, tabulated
 from puck_tables.table.speed_grid import RayPatch, SlipPatch, is_pile, patches_of, rays_under
-from puck_tables.table.speed_patch import quintic_coefficients
-from puck_tables.table.speed_truth import truth_at
+from puck_tables.table.speed_patch import quintic_coefficients, truth_at
 from puck_tables.table.table import Progress, Table
 
 IntArray = npt.NDArray[np.int64]

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from puck_tables.scene.run import Run
     from puck_tables.world.aimed import BoardAim
     from puck_tables.world.map import Map
-    from puck_tables.world.sample import Sample
+    from puck_tables.world.scene_ends import Sample
     from puck_tables.world.world import World
 
 
