@@ -192,7 +192,7 @@ def limit_surface(points: int | None, choice: PuckChoice, out: Outputs) -> None:
               "linux, macos or windows.  [default: this machine]")  # fmt: skip
 @click.option("--what", default="stop,state,resultants", show_default=True, metavar="PARTS",
               help="Where and when launches stop, states at any time, friction resultants;"
-                   " of a flat polygon (--base) wrench, of friction, and a step of it."
+                   " of a --base wrench, of friction, and a step of its motion."
               )  # fmt: skip
 @number("--tol", default=1e-6, show_default=True,
         help="Largest error, in units of Q/(f g), Q^2/(f g), Q: 1e-9 to 0.01.")  # fmt: skip
