@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from puck_tables.world.world import World
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Scene(SceneSpec):
     """A puck on a floor, its launch, and whatever acts on it: checked when it is made.
 
