@@ -1,8 +1,8 @@
 """The command ``puck``: its commands, and how it ends when something is wrong.
 
 Exit codes: 0 all well; 1 a file or an optional package is at fault; 2 bad input; 3 a table failed
-its validation or a claim of the paper differs; 130 interrupted; 143 ended by SIGTERM; 141 nobody
-reads the results any more, as after '| head'.
+its validation; 130 interrupted; 143 ended by SIGTERM; 141 nobody reads the results any more, as
+after '| head'.
 """
 
 from __future__ import annotations
@@ -20,21 +20,13 @@ import click
 from puck_tables.cli import endings
 from puck_tables.cli.aim import aim
 from puck_tables.cli.asperity import asperity
-from puck_tables.cli.compare import compare
-from puck_tables.cli.explore import explore
-from puck_tables.cli.export import export
-from puck_tables.cli.fit import fit
-from puck_tables.cli.limit_surface import limit_surface
+from puck_tables.cli.fit import fit, track
 from puck_tables.cli.printing import printable, progress
-from puck_tables.cli.reference import reference
-from puck_tables.cli.scene_files import scene
-from puck_tables.cli.simulate import simulate
+from puck_tables.cli.reference import compare, export, limit_surface, reference
+from puck_tables.cli.simulate import explore, scene, simulate
 from puck_tables.cli.sweep import sweep
-from puck_tables.cli.tables import build_tables, info, tables, validate
-from puck_tables.cli.track import track
-from puck_tables.cli.tradeoff import tradeoff
+from puck_tables.cli.tables import build_tables, info, tables, tradeoff, validate, warm_up
 from puck_tables.cli.values import questioned
-from puck_tables.cli.warm_up import warm_up
 
 from puck_tables._core.waiting import watchers
 from puck_tables._version import __version__

@@ -11,9 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
-from puck_tables.cli.completion import laws
 from puck_tables.cli.printing import note, say
-from puck_tables.cli.values import NumberParam, not_none
+from puck_tables.cli.values import NumberParam, laws, not_none
 
 from puck_tables._core.doubts import MOST_FRICTION, OF_A_PUCK
 from puck_tables.errors import InputError

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import click
-from puck_tables.cli.completion import scenes
 from puck_tables.cli.options import DEFAULT_DECEL, DEFAULT_DELTA, SCALED, packed, real_numbers
+from puck_tables.cli.values import scenes
 
 from puck_tables.errors import InputError
 

@@ -1,7 +1,8 @@
-"""``puck simulate``: one trajectory."""
+"""``puck simulate``, ``explore``, ``scene``: one trajectory, its page, and scene files."""
 
 from __future__ import annotations
 
+import webbrowser
 from contextlib import nullcontext
 from dataclasses import fields
 from pathlib import Path
@@ -19,13 +20,14 @@ from puck_tables.cli.options import (
     puck_options,
     table_option,
 )
-from puck_tables.cli.printing import say
+from puck_tables.cli.printing import note, say
 from puck_tables.cli.scene_run import SceneChoice, scene_options, scene_tables
-from puck_tables.cli.values import Times, Vector
+from puck_tables.cli.values import Times, Vector, scenes
 
 from puck_tables.accuracy.methods import INTEGRATORS
-from puck_tables.errors import InputError
+from puck_tables.errors import InputError, OutputError
 from puck_tables.kernels.patience import one_question
+from puck_tables.report.lines_and_tables import listed
 
 if TYPE_CHECKING:
     from puck_tables.puck import Puck
@@ -119,3 +121,120 @@ def _from_fit(
     from puck_tables.fitting.fit_files import puck_and_launch
 
     return puck_and_launch(path, track)
+
+
+@click.command()
+@scene_options
+@outputs("Only write the page there.", plot=False, file="FILE.html")
+@click.pass_context
+def explore(ctx: click.Context, chosen: SceneChoice, out: Outputs) -> None:
+    """Open a page in which a launch is dragged, and its motion seen at once.
+
+    One file, without a server or a network: path, stop, speeds and their ratio over time, pressure
+    under the base, stop times around; click where the puck shall stop.  Of pucks under uniform
+    pressure, Hertz's, that of a washer and of a hoop, whole base loaded, within 1e-6 of Q/(f g) and
+    Q^2/(f g); or of a flat base that you draw, within 5e-6.
+
+    \b
+    puck explore
+    puck explore -o explorer.html
+
+    With --scene it is a board to play on: drag a puck, and see its way and that of all others
+    before you let it go; lead a mallet.
+
+    \b
+    puck explore --scene carrom-break
+    """  # noqa: D301 - click reads the backspace
+    from puck_tables._core.own_folder import make_private, user_cache
+    from puck_tables._core.safe_write import write_bytes
+
+    if out.output is not None:
+        if out.output.suffix.lower() not in (".html", ".htm"):
+            raise InputError(f"{out.output}: the explorer is a page: call it FILE.html")
+        out.prepare(saved=False)
+        write_bytes(out.output, _page(ctx, chosen).encode(), out.overwrite)
+        note(out.output)
+        return
+    folder = user_cache()
+    if folder is None:
+        raise InputError(
+            "there is no cache folder to put the page in: say where, with -o FILE.html"
+        )
+    try:
+        make_private(folder)
+    except OSError as error:
+        raise OutputError(f"{folder}: {error.strerror or error}: give -o FILE.html") from None
+    page = folder / ("board.html" if chosen else "explorer.html")
+    write_bytes(page, _page(ctx, chosen).encode(), overwrite=True)
+    note(page)
+    if not webbrowser.open(page.as_uri()):
+        click.echo("No browser could be opened: open that file in one.", err=True)
+
+
+def _page(ctx: click.Context, chosen: SceneChoice) -> str:
+    """The explorer, or the board of a scene."""
+    from puck_tables.explore.page import explorer_page
+
+    if not chosen:
+        return explorer_page()
+    from puck_tables.plot.played_board import board_page
+    from puck_tables.world.scene import Scene
+
+    return board_page(Scene.from_tables(scene_tables(ctx, chosen), chosen.name))
+
+
+@click.group()
+def scene() -> None:
+    """Scene files: list, show and check them, and what may stand in them.
+
+    A scene is one puck or several, a floor, launches and what acts on them, in SI units; 'puck
+    simulate --scene' and 'puck sweep --scene' run it.
+    """
+
+
+@scene.command("list")
+def list_scenes() -> None:
+    """List the scenes that come along."""
+    from puck_tables.scene.library import shipped_scenes
+
+    click.echo(listed(shipped_scenes(), 24))
+
+
+@scene.command()
+@click.argument("name", shell_complete=scenes)
+def show(name: str) -> None:
+    """Print a scene that comes along, to start one of your own from.
+
+    \b
+    puck scene show incline > mine.toml
+    """  # noqa: D301 - click reads the backspace
+    from puck_tables.scene.library import shipped_text
+
+    click.echo(shipped_text(name), nl=False)
+
+
+@scene.command("fields")
+def list_fields() -> None:
+    """List every entry that a scene may have: what is allowed, its default, what it is."""
+    from puck_tables._core.fields import described
+    from puck_tables.world.scene import Scene
+
+    for path, allowed, text in described(Scene):
+        click.echo(f"{path:<24} {allowed:<44} {text}".rstrip())
+
+
+@scene.command()
+@click.argument("name", metavar="FILE|NAME", shell_complete=scenes)
+def check(name: str) -> None:
+    """Check a scene: every error at once, or what it holds and how it would be run."""
+    from puck_tables.world.plan import plan_of
+    from puck_tables.world.prepare import prepared
+    from puck_tables.world.scene import Scene
+    from puck_tables.world.scene_ends import axes_of
+
+    whole = Scene.load(name)
+    prepared(whole)  # files and heights
+    say(f"{name}: a scene" + (f", {whole.title}" if whole.title else ""))
+    for path, values in axes_of(whole).items():
+        click.echo(f"ranges        {path} from {values[0]:g} to {values[-1]:g}, {values.size}")
+    say(plan_of(whole)[1])

@@ -1,4 +1,7 @@
-"""``puck tables``, ``info``, ``validate``, ``build-tables``: tables, and how good they are."""
+"""``puck tables``, ``info``, ``validate``, ``build-tables``, ``tradeoff``, ``warm-up``.
+
+How good tables are, and what is computed or compiled ahead.
+"""
 
 from __future__ import annotations
 
@@ -11,15 +14,43 @@ from pathlib import Path
 from typing import Any
 
 import click
-from puck_tables.cli.completion import laws
 from puck_tables.cli.options import FILE, Outputs, number, outputs, tables_named
 from puck_tables.cli.printing import note, progress, say
+from puck_tables.cli.values import laws
 
 from puck_tables._core import own_folder
 from puck_tables.errors import InputError, TableError
 from puck_tables.report.lines_and_tables import columns
 
 FAILED = 3  # exit status: 1 and 2 are those of errors and of wrong usage
+
+
+@click.command()
+@click.option("--quick", is_flag=True, help="Fewer repeats and points: under a minute.")
+@click.option("-o", "--output", "files", type=FILE, metavar="FILE", multiple=True,
+              help="Save everything: .h5, or .csv.  May be given twice.")  # fmt: skip
+@outputs(None)
+def tradeoff(quick: bool, files: tuple[Path, ...], out: Outputs) -> None:
+    """Measure accuracy against speed of every method to answer.
+
+    Resultants, stops, trajectories and states: by closed forms, tables, integrators, look-up, and
+    by what others do; worst and median error, cost on one thread, memory.  Some minutes.
+
+    \b
+    puck tradeoff --quick
+    puck tradeoff -o tradeoff.h5 -o tradeoff.csv --plot tradeoff.png
+    """  # noqa: D301 - click reads the backspace
+    for path in files:
+        Outputs(path, overwrite=out.overwrite).prepare()
+    out.prepare(others=files)
+    from puck_tables.tradeoff.measurement import measure
+
+    with progress("measuring") as show:
+        measured = measure(quick, show)
+    for path in files:
+        Outputs(path, overwrite=out.overwrite).deliver(measured)
+    out.deliver(measured)
+    click.echo(measured)
 
 
 @click.command()
@@ -233,3 +264,18 @@ def _lines(entries: list[dict[str, Any]]) -> str:
     places = dict.fromkeys(one["place"] for one in entries if one["place"] != "comes along")
     kept = [f"kept in {click.format_filename(place)}" for place in places]
     return "\n".join([columns(heads, rows), *kept])
+
+
+@click.command()
+def warm_up() -> None:
+    """Compile what games and services call, once for this machine.
+
+    It takes some minutes, or a second where it was done before; stderr says how far it is.  Without
+    it nothing is missing: what takes long is compiled when it is first asked.
+
+    \b
+    puck warm-up
+    """  # noqa: D301 - click reads the backspace
+    from puck_tables.warming import warm_up
+
+    warm_up()

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from puck_tables.errors import InputError, PuckError
     from puck_tables.export.board_source import export_board
     from puck_tables.export.source import export_source
-    from puck_tables.film.puck_track import Track
+    from puck_tables.film.film import Track
     from puck_tables.film.track_files import read_tracks
     from puck_tables.fitting.fit_tracks import fit
     from puck_tables.fitting.forecast import Camera, fisher
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from puck_tables.puck import Puck
     from puck_tables.reference.answer import reference_case
     from puck_tables.reference.comparison import compare
-    from puck_tables.reference.floor_friction import floor_friction
+    from puck_tables.reference.floor_reaction import floor_friction
     from puck_tables.scene.driven import path_along
     from puck_tables.scene.parts import (
         Constraint,
@@ -69,43 +69,6 @@ if TYPE_CHECKING:
 
 with_neighbours(__name__, __file__)
 
-_HOMES = {  # names of this package by the modules that hold them
-    "": "chetaev contact errors motion results",
-    "bulk.spreads": "Normal Uniform",
-    "contact.base": "Base",
-    "contact.friction_laws": "CurlingLaw PowerLaw StribeckLaw",
-    "contact.laws": "Law law_of profile_law",
-    "contact.speed_law": "SpeedLaw",
-    "errors": "InputError PuckError",
-    "export.board_source": "export_board",
-    "export.source": "export_source",
-    "film.puck_track": "Track",
-    "film.track_files": "read_tracks",
-    "fitting.fit_tracks": "fit",
-    "fitting.forecast": "Camera fisher",
-    "kernels.closed_form_kernel": "resultants",
-    "puck": "Puck",
-    "reference.answer": "reference_case",
-    "reference.comparison": "compare",
-    "reference.floor_friction": "floor_friction",
-    "scene.driven": "path_along",
-    "scene.parts": "Constraint Drag Edge Floor Force Grip Lateral Launch Orthotropic Patch Strips "
-    "Wall",
-    "scene.pucks_and_posts": "Arc Line Pocket Post Rim",
-    "scene.restitution": "Plastic RestitutionTable Viscoelastic",
-    "stopping.array_functions": "state_arrays stop_arrays",
-    "stopping.states": "states",
-    "stopping.stops": "stop",
-    "table.table": "Table",
-    "table.table_store": "table_for",
-    "warming": "warm_up",
-    "world.scene": "Scene",
-    "world.world": "World",
-    "world.worlds": "Worlds",
-    "wrench.fence": "Fence",
-    "wrench.push": "push",
-}
-
 __all__ = [
     "Arc", "Base", "Camera", "Constraint", "CurlingLaw", "Drag", "Edge", "Fence", "Floor", "Force",
     "Grip", "InputError", "Lateral", "Launch", "Law", "Line", "Normal", "Orthotropic", "Patch",
@@ -118,7 +81,7 @@ __all__ = [
     "state_arrays", "states", "stop", "stop_arrays", "table_for", "warm_up",
 ]  # fmt: skip
 
-__getattr__, __dir__ = lazily(__name__, _HOMES)
+__getattr__, __dir__ = lazily(__name__)
 lead_up({
     "draw": "puck_tables.plot.drawn",
     "save_movie": "puck_tables.plot.movie",

@@ -213,7 +213,7 @@ class Puck(VerbsOfMany):
         [1.395088, 4.000189]
         """
         if self.shape is not None:
-            from puck_tables.stopping.base_stops import stop_on_base
+            from puck_tables.stopping.stops import stop_on_base
 
             self.refuse_unless_free()
             self.refuse_for_round(method=method, table=table, jacobian=jacobian)
@@ -253,7 +253,7 @@ class Puck(VerbsOfMany):
         [1.590682, 0.0]
         """
         if self.shape is not None:
-            from puck_tables.stopping.base_stops import states_on_base
+            from puck_tables.stopping.stops import states_on_base
 
             self.refuse_unless_free()
             self.refuse_for_round(table=table, jacobian=jacobian)

@@ -108,7 +108,7 @@ class Result:
         >>> dict(Puck.similar().sweep([0.0, 1.0], 1.0).to_xarray().sizes)
         {'launch_spin': 2}
         """
-        from puck_tables.io.frames import to_xarray
+        from puck_tables.io.formats import to_xarray
 
         return to_xarray(self.dataset())
 
@@ -119,7 +119,7 @@ class Result:
         >>> Puck.similar().simulate((1.0, 0.0), frames=2).to_pandas().x.tolist()
         [0.0, 0.5]
         """
-        from puck_tables.io.frames import to_pandas
+        from puck_tables.io.formats import to_pandas
 
         return to_pandas(self.dataset())
 

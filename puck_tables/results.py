@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from puck_tables.fitting.forecast import Forecast
     from puck_tables.reference.answer import Answer
     from puck_tables.reference.comparison import Comparison
-    from puck_tables.reference.floor_friction import FloorFriction
+    from puck_tables.reference.floor_reaction import FloorFriction
     from puck_tables.result import Result
     from puck_tables.scene.run import Run
     from puck_tables.stopping.aim_at_targets import Aim
@@ -32,36 +32,11 @@ if TYPE_CHECKING:
     from puck_tables.trajectory import Trajectory
     from puck_tables.world.aimed import BoardAim
     from puck_tables.world.map import Map
-    from puck_tables.world.odds import Odds
-    from puck_tables.world.sample import Sample
+    from puck_tables.world.scene_ends import Sample
+    from puck_tables.world.targets import Odds
     from puck_tables.wrench.friction_hold import Hold
     from puck_tables.wrench.push import Push
     from puck_tables.wrench.surface import LimitSurface
-
-_HOMES = {  # by the modules that hold them
-    "export.board_source": "BoardSource",
-    "export.source": "Source",
-    "fitting.fit_result": "Fit",
-    "fitting.forecast": "Forecast",
-    "reference.answer": "Answer",
-    "reference.comparison": "Comparison",
-    "reference.floor_friction": "FloorFriction",
-    "result": "Result",
-    "scene.run": "Run",
-    "stopping.aim_at_targets": "Aim",
-    "stopping.states": "States",
-    "stopping.stop_map": "StopMap StopSample",
-    "stopping.stops": "Stops",
-    "table.check": "CheckReport",
-    "trajectory": "Trajectory",
-    "world.aimed": "BoardAim",
-    "world.map": "Map",
-    "world.odds": "Odds",
-    "world.sample": "Sample",
-    "wrench.friction_hold": "Hold",
-    "wrench.push": "Push",
-    "wrench.surface": "LimitSurface",
-}
 
 __all__ = [
     "Aim", "Answer", "BoardAim", "BoardSource", "CheckReport", "Comparison", "Fit", "FloorFriction",
@@ -69,4 +44,4 @@ __all__ = [
     "States", "StopMap", "StopSample", "Stops", "Trajectory",
 ]  # fmt: skip
 
-__getattr__, __dir__ = lazily(__name__, _HOMES, "puck_tables")
+__getattr__, __dir__ = lazily(__name__)

@@ -23,12 +23,10 @@ from puck_tables.errors import InputError
 from puck_tables.io.columns import Dataset, variable
 from puck_tables.motion.base_slides import BaseSlide, slide_of
 from puck_tables.motion.body import UnitPuck, body_of
-from puck_tables.motion.contact import contact_of
-from puck_tables.motion.frame import Frame, frame_of
 from puck_tables.motion.friction_source import source_of
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.motion.state import LENGTH, PSI, THETA, T, U, X, Y
-from puck_tables.motion.unit_motion import GENERIC, MotionRun, solve
+from puck_tables.motion.unit_motion import GENERIC, Frame, MotionRun, contact_of, frame_of, solve
 from puck_tables.result import TimedResult
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.table import refuse_other_kind

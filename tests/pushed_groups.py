@@ -26,6 +26,7 @@ from puck_tables.world.layout import (
     DRAG,
     FRICTION,
     OBSTACLE_COLUMNS,
+    PLAIN_RIMS,
     POST,
     PULL_X,
     PULL_Y,
@@ -34,7 +35,6 @@ from puck_tables.world.layout import (
     WALL,
 )
 from puck_tables.world.paths import PIECE_COLUMNS
-from puck_tables.world.rims import PLAIN_RIMS
 from puck_tables.world.step_ledger import DONE, LEDGER, WORK_COLUMNS
 
 press, follow = kernel(pressing.press), kernel(pushing.follow)

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from puck_tables.contact.closed_form import moment_balance
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.quadrature import integrals
-from puck_tables.contact.resultants import moment_balance
 
 
 class Judge:

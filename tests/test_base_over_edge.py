@@ -146,7 +146,7 @@ def slid(seed: int) -> tuple[list[np.ndarray], np.ndarray, Launch]:
 @pytest.mark.parametrize("grip", [None, WOOD])
 def test_motion_is_that_of_the_judge(grip: Any):
     ends = set()
-    for seed in range(6) if grip is None else (0, 1):
+    for seed in range(6) if grip is None else (0, 3):
         rows, state, launch = slid(seed)
         run: Any = Scene(BOX, BY_GRIP[grip], edges=as_edges(rows), launch=launch).simulate()
         numbers = DECEL if grip is None else 9.80665, BOX.gyration, state, 0.0, grip

@@ -18,7 +18,7 @@ from conftest import ROOT
 import puck_tables
 from puck_tables._core import sources
 from puck_tables.kernels.cache import cache_folder
-from puck_tables.kernels.doors import Door
+from puck_tables.kernels.compile import Door
 
 LIMIT = 1.531389372173909906  # tan φ₀ at δ = 0
 COMPILED = {"NUMBA_DISABLE_JIT": "0"}

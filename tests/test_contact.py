@@ -15,8 +15,8 @@ import pytest
 
 from puck_tables import resultants
 from puck_tables.contact import closed_form, is_full_contact, quadrature
+from puck_tables.contact.closed_form import moment_balance
 from puck_tables.contact.integrals import slip_direction
-from puck_tables.contact.resultants import moment_balance
 from puck_tables.motion import limit_angle
 
 QUARTER, HALF = 0.25 * math.pi, 0.5 * math.pi

@@ -332,6 +332,11 @@ def test_a_base_is_drawn_by_hand_by_text_and_kept(page: Any, address: str):
     assert page.evaluate("explorer.aimAt(0.4, 0.3)")
     _, run = shown(page)
     assert (run["x"], run["y"]) == pytest.approx((0.4, 0.3), abs=1e-6)
+    page.goto(address)
+    page.goto(address + "#law=drawn&corners=0,0;60,60;60,0;0,60")  # its sides cross: it is said
+    page.wait_for_timeout(600)
+    assert not page.locator("#corners").evaluate("one => one.checkValidity()")
+    assert page.locator("#corners").input_value().startswith("0,0;60,60")
 
 
 def test_a_narrow_window_hides_nothing(page: Any):

@@ -1,4 +1,4 @@
-"""Exported friction of polygons, and steps of their motion, by judges of the tests."""
+"""Exported friction of bases, and steps of their motion, by judges of the tests."""
 
 from __future__ import annotations
 
@@ -12,19 +12,27 @@ from exported import RUNNERS, Run
 
 import puck_tables as pt
 
-BASES = {
-    "box": pt.Base.box(0.2, 0.1),
-    "triangle": pt.Base.polygon([(0.0, 0.0), (0.12, 0.0), (0.0, 0.09)]),
-    "frame": pt.Base.polygon(
-        [(-1.0, -0.6), (1.0, -0.6), (1.0, 0.6), (-1.0, 0.6)],
-        holes=[[(-0.7, -0.3), (0.7, -0.3), (0.7, 0.3), (-0.7, 0.3)]],
-    ),
+FRAME = pt.Base.polygon(
+    [(-1.0, -0.6), (1.0, -0.6), (1.0, 0.6), (-1.0, 0.6)],
+    holes=[[(-0.7, -0.3), (0.7, -0.3), (0.7, 0.3), (-0.7, 0.3)]],
+)
+FEET = pt.Base.feet([(0.1, 0.0), (-0.05, 0.08), (-0.05, -0.08)], 0.02)
+PUCKS = {
+    "box": pt.Puck(base="box:0.2x0.1", friction=0.3),
+    "triangle": pt.Puck(base=pt.Base.polygon([(0.0, 0.0), (0.12, 0.0), (0.0, 0.09)]), friction=0.3),
+    "frame": pt.Puck(base=FRAME, friction=0.3),
+    "tall box": pt.Puck(base="box:0.2x0.1@0.01,-0.005", friction=0.3, height=0.02, gyration=0.07),
+    "annulus": pt.Puck(base="annulus:0.1x0.06", friction=0.3),
+    "disc": pt.Puck(base="disc:0.1@0.02,0.01", friction=0.2, height=0.01, gyration=0.06),
+    "feet": pt.Puck(base=FEET, friction=0.2, height=0.02, gyration=0.08),
 }
 
 
 def judge_of(puck: pt.Puck) -> Judge:
     outlines = [np.array(one) - puck.shape.middle for one in puck.shape.outlines]
-    return Judge(outlines, [], 0.0, puck.gyration)
+    middle, lever = puck.shape.middle, 0.5 * puck.friction * puck.height
+    discs = [(x - middle[0], y - middle[1], r, sign) for x, y, r, sign in puck.shape.discs]
+    return Judge(outlines, discs, lever, puck.gyration)
 
 
 def runner(language: str, puck: pt.Puck, folder: Path) -> Run:
@@ -35,17 +43,18 @@ def runner(language: str, puck: pt.Puck, folder: Path) -> Run:
 
 
 @pytest.mark.parametrize("language", RUNNERS)
-@pytest.mark.parametrize("name", BASES)
+@pytest.mark.parametrize("name", PUCKS)
 def test_friction_is_that_of_the_judge(name: str, language: str, tmp_path: Path) -> None:
-    puck, rng = pt.Puck(base=BASES[name], friction=0.3), np.random.default_rng(8)
+    puck, rng = PUCKS[name], np.random.default_rng(8)
     run, judge = runner(language, puck, tmp_path), judge_of(puck)
+    edge = judge.polygons[0] if judge.polygons else np.eye(2) * judge.reach
     count = 150
     slips = rng.normal(size=(count, 3)) * [1.0, 1.0, 1.0 / judge.reach]
     slips[:, 2] *= 10.0 ** rng.uniform(-4.0, 3.0, count)
     slips[:20, 2] = 0.0
     slips[20:30, :2] = 0.0
     for n in range(30, 60):  # about corners and places on sides
-        one, two = (judge.polygons[0][(n + m) % len(judge.polygons[0])] for m in range(2))
+        one, two = (edge[(n + m) % len(edge)] for m in range(2))
         at = one + (n % 4) / 4.0 * (two - one)
         slips[n, :2] = slips[n, 2] * np.array([at[1], -at[0]])
     angles = rng.uniform(-4.0, 4.0, count)
@@ -61,10 +70,9 @@ def test_friction_is_that_of_the_judge(name: str, language: str, tmp_path: Path)
 
 @pytest.mark.parametrize("language", RUNNERS)
 def test_steps_lead_to_the_stop_of_the_judge(language: str, tmp_path: Path) -> None:
-    for name, base in BASES.items():
+    for name, puck in PUCKS.items():
         folder = tmp_path / name
         folder.mkdir()
-        puck = pt.Puck(base=base, friction=0.3)
         run, judge, k = runner(language, puck, folder), judge_of(puck), puck.gyration
         for vx, vy, spin in ((1.0, 0.3, 2.0), (0.2, -0.4, -25.0), (0.0, 0.0, 3.0), (0.5, 0.0, 0.0)):
             q = np.hypot(np.hypot(vx, vy), k * spin)
@@ -81,7 +89,7 @@ def test_steps_lead_to_the_stop_of_the_judge(language: str, tmp_path: Path) -> N
 
 @pytest.mark.parametrize("language", RUNNERS)
 def test_what_is_out_of_range_is_refused(language: str, tmp_path: Path) -> None:
-    run = runner(language, pt.Puck(base=BASES["box"], friction=0.3), tmp_path)
+    run = runner(language, PUCKS["box"], tmp_path)
     bad = np.array([
         [0.0, 0.0, 0.0, 1.0], [np.nan, 0, 0, 0], [1, np.inf, 0, 0], [1, 0, 0, np.nan],
     ])  # fmt: skip
@@ -99,18 +107,17 @@ def test_what_is_out_of_range_is_refused(language: str, tmp_path: Path) -> None:
     ("puck", "what", "words"),
     [
         (pt.Puck(base="box:0.2x0.1", friction=0.3), "stop", "a base 'wrench' is exported"),
-        (pt.Puck(0.1, friction=0.3), "wrench", "exported of polygons"),
-        (pt.Puck(base="box:0.2x0.1", friction=0.3, height=0.02), "wrench", "height = 0"),
-        (pt.Puck(base="disc:0.1", friction=0.3), "wrench", "exported of polygons"),
+        (pt.Puck(0.1, friction=0.3), "wrench", "exported of a base"),
+        (pt.Puck(base="box:0.2x0.1", friction=0.3, height=0.2), "wrench", "would lift"),
     ],
 )  # fmt: skip
 def test_what_is_not_exported_is_said(puck: pt.Puck, what: str, words: str) -> None:
-    with pytest.raises(pt.InputError, match=words):
+    with pytest.raises(pt.PuckError, match=words):
         pt.export_source("c", what, puck=puck)
 
 
 def test_a_file_tests_itself_at_every_error() -> None:
-    puck = pt.Puck(base=BASES["frame"], friction=0.3)
+    puck = PUCKS["frame"]
     for tol in (1e-2, 1e-6, 1e-9):
         source = pt.export_source("python", "wrench", tol, puck)
         names: dict = {}

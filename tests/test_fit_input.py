@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import puck_tables as pt
-from puck_tables.film.puck_track import marks_of_one
+from puck_tables.film.film import marks_of_one
 from puck_tables.fitting.estimate import estimate
 from puck_tables.fitting.numbers import Number
 

@@ -23,7 +23,7 @@ from puck_tables.accuracy.method_errors import (
 from puck_tables.accuracy.methods import INTEGRATED, LOOK_UP
 from puck_tables.errors import AccuracyError, InputError, TableError
 from puck_tables.stopping.stop_table import StopTable
-from puck_tables.tradeoff.body_methods import BODIES
+from puck_tables.tradeoff.scipy_methods import BODIES
 
 GOLDEN = Path(__file__).parent / "golden"
 TOLERANCES = 10.0 ** -np.arange(3, 12)

@@ -18,9 +18,8 @@ import numpy as np
 import pytest
 
 from puck_tables.kernels import compiled, quick_compiler
-from puck_tables.kernels.compile import inlined, inner, kernel, look_up, on_demand
+from puck_tables.kernels.compile import Door, inlined, inner, kernel, look_up, on_demand
 from puck_tables.kernels.compiled import dispatcher_of
-from puck_tables.kernels.doors import Door
 from puck_tables.kernels.linking import Behind, Pasted
 from puck_tables.kernels.records import Record
 from puck_tables.world.group import Scales, buffer_for

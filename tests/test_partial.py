@@ -9,7 +9,7 @@ import pytest
 import strips
 
 from puck_tables.contact import closed_form, loaded_chord
-from puck_tables.contact.closed_form import is_full_contact
+from puck_tables.contact.closed_form import is_full_contact, moment_balance
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.loaded_chord import patch_rule, segment
 from puck_tables.contact.one_sided import (
@@ -19,7 +19,6 @@ from puck_tables.contact.one_sided import (
     loaded_share,
     resultants,
 )
-from puck_tables.contact.resultants import moment_balance
 from puck_tables.errors import ContactError, InputError
 
 QUARTER, HALF = 0.25 * math.pi, 0.5 * math.pi

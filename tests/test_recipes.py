@@ -108,7 +108,8 @@ RECIPES: dict[str, dict[str, list[tuple[str, str]]]] = {
              'def greet() -> None:\n    """Greet."""\n    say("good morning")\n'),
         ],
         "cli/main.py": [
-            ("from puck_tables.cli.fit import fit\n", "from puck_tables.cli.greet import greet\n"),
+            ("from puck_tables.cli.fit import fit, track\n",
+             "from puck_tables.cli.greet import greet\n"),
             ("(warm_up, asperity", ", greet"),
         ],
     },

@@ -11,12 +11,11 @@ from pucks import simulate, sweep
 import puck_tables as pt
 from puck_tables import Table, resultants, stop
 from puck_tables.contact import quadrature
-from puck_tables.contact.closed_form import by_closed_form
+from puck_tables.contact.closed_form import by_closed_form, moment_balance
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.laws import HOMOGENEOUS, law_of, profile_law
 from puck_tables.contact.one_sided import critical_delta
 from puck_tables.contact.pressure import GALIN, HERTZ
-from puck_tables.contact.resultants import moment_balance
 from puck_tables.errors import InputError
 from puck_tables.motion.friction_source import table_friction
 from puck_tables.table.resultant_table import ResultantTable, adversarial_points

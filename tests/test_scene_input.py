@@ -64,6 +64,10 @@ def test_every_error_at_once() -> None:
             {"edge": [{"point": [-1, 0], "normal": [-1, 0]}]},
             "the puck at [0.0, 0.0] lies in it by 1 m",
         ),
+        (
+            {"edge": [{"point": [0, -1e-6], "normal": [0, 1]}]},
+            "sets off along it, its centre of mass 1e-06 m from it: whether it falls is not known",
+        ),
         ({"constraint": {"kind": "pivot"}}, "constraint.reach = 0: a pivot needs a number > 0 m"),
         ({"constraint": {"kind": "rail", "angle": 1.0}}, "launch.velocity = [1.0, 0.0]: the rail"),
         ({"launch": {"spin": "0:1:1"}}, "launch.spin = '0:1:1': must be a range of 2 to 1000000"),

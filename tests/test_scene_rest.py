@@ -10,9 +10,9 @@ import pytest
 from scenes import simulate_scene
 from scipy.optimize import minimize_scalar
 
+from puck_tables.contact.closed_form import moment_balance
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.quadrature import integrals
-from puck_tables.contact.resultants import moment_balance
 
 G = 9.80665
 

@@ -15,7 +15,6 @@ from puck_tables.accuracy.methods import INTEGRATORS, METHODS, FrictionForm, Met
 from puck_tables.contact.laws import HOMOGENEOUS
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.motion.body import body_of, plain_up_to
-from puck_tables.motion.frame import frame_of
 from puck_tables.motion.friction_source import (
     FullContact,
     Sections,
@@ -24,7 +23,7 @@ from puck_tables.motion.friction_source import (
 )
 from puck_tables.motion.solve import ErrorEstimate, Setting, close_enough, refined
 from puck_tables.motion.steppers import DORMAND_PRINCE, RK4, TABLEAUS, Stepping, tableau_of
-from puck_tables.motion.unit_motion import integrated
+from puck_tables.motion.unit_motion import frame_of, integrated
 
 
 def test_the_loop_ends_at_the_first_setting_that_is_good_enough():

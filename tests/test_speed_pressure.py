@@ -20,9 +20,8 @@ from puck_tables.kernels.law_sums import law_sums
 from puck_tables.kernels.speed_quadrature_kernel import FINE
 from puck_tables.table.speed_build import load_under
 from puck_tables.table.speed_grid import patches_of, rays_under
-from puck_tables.table.speed_patch import FilledPatch
+from puck_tables.table.speed_patch import FilledPatch, truth_at
 from puck_tables.table.speed_table import SpeedTable
-from puck_tables.table.speed_truth import truth_at
 
 ICE = CurlingLaw(0.02, 0.064, 0.06)
 ROWS = SpeedLaw([0.0, 0.3, 0.7, 1.0, 3.0], [0.3, 0.2, 0.25, 0.25, 0.1])

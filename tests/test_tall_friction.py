@@ -9,7 +9,7 @@ from puck_tables.contact import one_sided_resultants
 from puck_tables.contact.laws import law_of
 from puck_tables.errors import ContactError
 from puck_tables.table.friction_section import friction_ratios, many_ratios
-from puck_tables.table.tall_friction import tall_resultants
+from puck_tables.table.singular_lines import tall_resultants
 
 RNG = np.random.default_rng(11)
 

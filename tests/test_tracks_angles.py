@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from puck_tables import InputError
-from puck_tables.film.puck_track import Track
+from puck_tables.film.film import Track
 from puck_tables.film.to_tracks import direction
 
 

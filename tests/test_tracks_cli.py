@@ -11,7 +11,7 @@ from numpy.testing import assert_array_equal
 from puck_tables.cli.main import main
 
 from puck_tables import read_tracks
-from puck_tables.film.puck_track import Track
+from puck_tables.film.film import Track
 from puck_tables.film.report import described
 
 

@@ -19,7 +19,7 @@ from puck_tables.motion.bulk_stops import fill_stops
 from puck_tables.motion.steppers import DORMAND_PRINCE, RK4
 from puck_tables.stopping.exact import exact_stops
 from puck_tables.stopping.stop_table import StopTable
-from puck_tables.tradeoff import body_methods, measurement, motion_methods, resultant_methods
+from puck_tables.tradeoff import measurement, motion_methods, resultant_methods, scipy_methods
 from puck_tables.tradeoff.resultant_methods import (
     MODELS,
     as_table,
@@ -76,7 +76,7 @@ def test_every_row_that_ships_can_be_measured_again():
     contenders = [
         *resultant_methods.contenders(points),
         *motion_methods.contenders(),
-        *body_methods.contenders(),
+        *scipy_methods.contenders(),
     ]
     rows = [(one.question.name, one.method, one.setting, one.outsider) for one in contenders]
     shipped = {(m.question, m.method, m.setting, m.outsider): m for m in shipped_errors()}
@@ -177,11 +177,11 @@ def test_unrolled_and_general_runge_kutta_take_the_same_steps():
 
 @pytest.mark.parametrize(
     "name", ["box", *(pytest.param(one, marks=pytest.mark.thorough)
-                      for one in list(body_methods.BODIES)[1:])]
+                      for one in list(scipy_methods.BODIES)[1:])]
 )  # fmt: skip
 def test_bodies_stop_as_exactly_as_asked(name: str):
     """Against stops that a script of its own found, by other sums and scipy's DOP853."""
-    asked = [one for one in body_methods.contenders() if one.question.name == name]
+    asked = [one for one in scipy_methods.contenders() if one.question.name == name]
     ours = [one for one in asked if not one.outsider]
     errors = {one.setting: worst(one) for one in ours}
     assert all(error <= float(told.partition("=")[2]) for told, error in errors.items()), errors
@@ -190,7 +190,7 @@ def test_bodies_stop_as_exactly_as_asked(name: str):
 
 def test_scripts_over_patches_err_by_thousandths_and_a_few_points_by_tenths():
     """Beyond some hundred patches what is left is the tolerance that scipy has by itself."""
-    asked = [one for one in body_methods.contenders() if one.question.name == "box"]
+    asked = [one for one in scipy_methods.contenders() if one.question.name == "box"]
     *patches, few = [worst(one) for one in asked if one.outsider]
     assert all(1e-4 < error < 1e-2 for error in patches) and patches[1] < 0.5 * patches[0]
     assert few > 0.1
@@ -241,7 +241,13 @@ def test_files(measured: measurement.TradeOff, tmp_path: Path):
     measured.save(tmp_path / "t.csv")
     rows = pandas.read_csv(tmp_path / "t.csv")
     assert len(rows) == len(measured.methods)
-    assert set(rows.question) == {"resultants", "stop", "trajectory", "state", *body_methods.BODIES}
+    assert set(rows.question) == {
+        "resultants",
+        "stop",
+        "trajectory",
+        "state",
+        *scipy_methods.BODIES,
+    }
     with pytest.raises(OutputError, match="exists already"):
         measured.save(tmp_path / "t.csv")
 
@@ -282,7 +288,7 @@ def test_every_round_runs_every_way(monkeypatch: pytest.MonkeyPatch):
     all_contenders = resultant_methods.contenders
     monkeypatch.setattr(measurement.resultant_methods, "contenders", few)
     monkeypatch.setattr(measurement.motion_methods, "contenders", lambda: iter(()))
-    monkeypatch.setattr(measurement.body_methods, "contenders", lambda: iter(()))
+    monkeypatch.setattr(measurement.scipy_methods, "contenders", lambda: iter(()))
     seen: list[tuple[int, int]] = []
     result = measurement.measure(
         quick=True, progress=lambda done, total: seen.append((done, total))

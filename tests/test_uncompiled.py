@@ -19,9 +19,9 @@ from rarely import few
 
 import puck_tables as pt
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels import as_written, doors, register_blocks, vectors
-from puck_tables.kernels.compile import inner, kernel, patience
-from puck_tables.kernels.doors import Door
+from puck_tables.kernels import as_written, register_blocks, vectors
+from puck_tables.kernels import compile as doors
+from puck_tables.kernels.compile import Door, inner, kernel, patience
 from puck_tables.kernels.patience import here, one_question
 
 LAUNCH = ["simulate", "--v0", "1,0", "--w0", "5"]
@@ -82,7 +82,7 @@ def board(pt, puck, v, w, at):
 """
 ASKED = """
 import json, sys, numpy, puck_tables as pt
-from puck_tables.kernels import doors
+from puck_tables.kernels import compile as doors
 doors.AT_FIRST *= 4.0  # of a machine that others share: what is asked is how much is computed
 (radius, height, friction, vx, vy, spin, at), kind = json.loads(sys.argv[1])
 puck = pt.Puck(radius=radius, height=height, friction=friction, **kind)

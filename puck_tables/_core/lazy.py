@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable, Mapping
 from importlib import import_module
@@ -12,39 +13,39 @@ from typing import Any
 NEEDED = ("numpy", "numba", "scipy", "h5py", "click")
 _ABOVE: dict[str, str] = {}  # where names are, as the package tells
 _ROOT = Path(__file__).resolve().parent.parent.parent
+_FOR_TYPES = re.compile(r"^ {4}from (\S+) import (\([^)]*\)|.+)$", re.MULTILINE)
 _CLONE = _ROOT if (_ROOT / "pyproject.toml").is_file() else None
 
 
-def lazily(
-    package: str, homes: Mapping[str, str], root: str = ""
-) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
-    """``__getattr__`` and ``__dir__`` of a package or module.
+def lazily(package: str) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
+    """``__getattr__`` and ``__dir__`` of a package or module: what it imports for types alone.
+
+    Its source says so once, below ``if TYPE_CHECKING``.
 
     Parameters
     ----------
     package : its ``__name__``
-    homes : names that modules of it hold, by these; ``there:name`` where a name is another there;
-        modules themselves stand under no name
-    root : the package that these modules are in, if it is another
 
     Examples
     --------
-    >>> get, listed = lazily("puck_tables", {"puck": "Puck", "": "contact"})
+    >>> get, listed = lazily("puck_tables")
     >>> get("Puck").__name__, get("contact").__name__, "Puck" in listed()
     ('Puck', 'puck_tables.contact', True)
     """
-    places = {
-        name.rpartition(":")[2]: (module, name.partition(":")[0])
-        for module, names in homes.items()
-        for name in names.split()
-    }
+    spec: Any = sys.modules[package].__spec__
+    places = {}
+    source = spec.loader.get_data(spec.origin).decode()
+    for module, names in _FOR_TYPES.findall(source):
+        for one in names.strip("()").split(","):
+            there, _, here = one.strip().partition(" as ")
+            places[here or there] = module, there
 
     def get(name: str) -> Any:
         if name not in places:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
         module, there = places[name]
         try:
-            value: Any = import_module(f"{root or package}.{module or name}")
+            home: Any = import_module(f"{module}.{name}" if module == package else module)
         except ModuleNotFoundError as error:
             if error.name not in NEEDED:
                 raise
@@ -54,12 +55,11 @@ def lazily(
                 "(in a clone .venv/bin/python)",
                 name=error.name,
             ) from None
-        if module:
-            value = getattr(value, there)
+        value = home if module == package else getattr(home, there)
         setattr(sys.modules[package], name, value)
         return value
 
-    return get, lambda: sorted({*vars(sys.modules[package]), *places})
+    return get, lambda: sorted({*vars(sys.modules[package]), *filter(None, places)})
 
 
 def lead_up(homes: Mapping[str, str]) -> None:

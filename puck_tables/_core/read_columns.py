@@ -17,7 +17,6 @@ from typing import Any
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.beginning import refuse_no_text, refuse_others
 from puck_tables._core.doubts import MOST_FRICTION
 from puck_tables._core.own_folder import say
 from puck_tables._core.quantities import (
@@ -30,7 +29,7 @@ from puck_tables._core.quantities import (
     unit_of,
     with_names,
 )
-from puck_tables._core.safe_read import read_whole
+from puck_tables._core.safe_read import read_whole, refuse_no_text, refuse_others
 from puck_tables._core.text import HEAD, MINUS, TextForm, encoding_of, is_row, number, text_form_of
 from puck_tables._core.text_rows import header_of, read_columns
 from puck_tables._core.units import EXAMPLES, unit_size

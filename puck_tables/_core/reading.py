@@ -15,7 +15,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray, shown
 from puck_tables._core.colours import COLOURS, is_colour
 from puck_tables._core.doubts import question
-from puck_tables._core.fields import LISTED, Kind, in_tables, specs
+from puck_tables._core.fields import LISTED, Kind, Unsaid, in_tables, specs
 from puck_tables._core.units import SHOWN, UNIT_EACH, measured, quantity, unit_meant, without_unit
 from puck_tables._core.wording import meant
 from puck_tables.errors import PuckError
@@ -117,6 +117,25 @@ def entries_in(part: Any, names: Mapping[str, Any] | None = None) -> dict[str, A
         if (value := getattr(part, spec.name)) is not spec.default
         or (names is not None and name not in names)
     }
+
+
+def written(value: Any) -> str:
+    """A dataclass as a call that makes it again, its parts too; what is at its default is left out.
+
+    >>> from puck_tables import Floor, Strips
+    >>> written(Floor(slope=0.1, strips=Strips((0.5,), (0.3, 0.1))))
+    'Floor(slope=0.1, strips=Strips(borders=(0.5,), friction=(0.3, 0.1)))'
+    """
+    if isinstance(value, tuple):
+        parts = ", ".join(map(written, value))
+        return f"({parts},)" if len(value) == 1 else f"({parts})"
+    if not dataclasses.is_dataclass(value) or not (known := specs(type(value))):
+        return repr(value)
+    given = (
+        f"{known[name].name}={written(one)}" for name, one in entries_in(value).items()
+        if not isinstance(one, Unsaid)
+    )  # fmt: skip
+    return f"{type(value).__name__}({', '.join(given)})"
 
 
 def read_values(

@@ -1,4 +1,7 @@
-"""Reading files that others give: regular ones of a bounded size, never waiting for one."""
+"""Reading files that others give: regular ones of a bounded size, never waiting for one.
+
+What by its beginning is certainly no table is refused with what to do.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,8 @@ from pathlib import Path
 from typing import BinaryIO
 
 from puck_tables._core.arrays import shown
+from puck_tables._core.text import HEAD, encoding_of
+from puck_tables.errors import InputError
 
 
 def read_whole(path: str | Path, largest: int) -> bytes:
@@ -73,3 +78,87 @@ def is_number(text: str) -> bool:
     except ValueError:
         return False
     return True
+
+
+HDF5, ZIP = b"\x89HDF\r\n\x1a\n", b"PK\x03\x04"
+_PICKLED = "a pickle, which could run anything: save the table as CSV (df.to_csv)"
+_OTHERS = (  # how files begin that are none of ours
+    (b"\x80\x02", _PICKLED), (b"\x80\x03", _PICKLED), (b"\x80\x04", _PICKLED),
+    (b"\x80\x05", _PICKLED), (b"ccopy_reg", _PICKLED), (b"\x1f\x8b", "compressed: unpack it first"),
+    (b"BZh", "compressed: unpack it first"), (b"\xfd7zXZ", "compressed: unpack it first"),
+    (b"\x93NUMPY", "a NumPy array: save it as CSV (numpy.savetxt)"),
+    (b"PAR1", "a Parquet file: save the table as CSV"),
+    (b"MATLAB", "a MATLAB file: save the table as CSV"),
+    (b"\xd0\xcf\x11\xe0", "a spreadsheet: save its table as CSV"),
+    (b"RIFF", "a film, not a table: first follow the puck in it, with Tracker for one"),
+    (b"%PDF", "a PDF: save the table as CSV"), (b"{\\rtf", "formatted text: save it as plain text"),
+    (b"\xff\xd8\xff", "a picture, not a table"), (b"\x89PNG", "a picture, not a table"),
+    (b"GIF8", "a picture, not a table"), (b"<!doctype html", "a web page, not a table"),
+    (b"<!DOCTYPE html", "a web page, not a table"), (b"<html", "a web page, not a table"),
+)  # fmt: skip
+
+
+def beginning(path: str | Path, largest: int) -> bytes:
+    """How a file begins that may hold a table.
+
+    Parameters
+    ----------
+    path : the file
+    largest : bytes that it may have
+
+    Raises
+    ------
+    InputError
+        If it is empty, or of a kind in which no table stands.
+    OSError
+        If it cannot be read.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = Path(folder, "a.csv").write_text("t,x,y")
+    ...     beginning(Path(folder, "a.csv"), 100)
+    b't,x,y'
+    """
+    with opened(path, largest) as file:
+        head = file.read(HEAD)
+    refuse_others(path, head)
+    return head
+
+
+def refuse_others(path: str | Path, head: bytes) -> None:
+    """Refuse a file that is empty, or of a kind in which no table stands.
+
+    >>> refuse_others("a.csv", b"")
+    Traceback (most recent call last):
+    ...
+    puck_tables.errors.InputError: a.csv is empty
+    """
+    if not head:
+        raise InputError(f"{path} is empty")
+    for begin, what in _OTHERS:
+        if head.startswith(begin):
+            raise InputError(f"{path} is {what}")
+    if head[4:8] == b"ftyp":
+        raise InputError(
+            f"{path} is a film, not a table: first follow the puck in it, with Tracker for one"
+        )
+
+
+def refuse_no_text(path: str | Path, head: bytes) -> None:
+    """Refuse a file that is no table in a text file.
+
+    >>> refuse_no_text("a.json", b"{}")
+    Traceback (most recent call last):
+    ...
+    puck_tables.errors.InputError: a.json looks like JSON: save the table as CSV
+    """
+    for begin, what in ((HDF5, "an HDF5 file"), (ZIP, "a zip archive")):
+        if head.startswith(begin):
+            raise InputError(f"{path} is {what}: save the table as CSV")
+    text = head[:400].decode(encoding_of(path, head), errors="ignore").lstrip("\ufeff \t\r\n")
+    if text.startswith("<"):
+        raise InputError(f"{path} looks like XML: save the table as CSV")
+    if text.startswith(("{", "[")):
+        raise InputError(f"{path} looks like JSON: save the table as CSV")

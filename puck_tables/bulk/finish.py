@@ -77,7 +77,7 @@ class Stored(Result):
 
     def to_xarray(self) -> xarray.Dataset:
         """The store as an xarray.Dataset, which reads what is asked of it, when it is asked."""
-        from puck_tables.io.frames import open_store
+        from puck_tables.io.formats import open_store
 
         return open_store(self.path)
 

@@ -27,9 +27,9 @@ from puck_tables._core.read_columns import numbers_of
 from puck_tables._core.safe_write import as_utf8
 from puck_tables._core.units import unit_size
 from puck_tables.contact import closed_form, one_sided, quadrature
+from puck_tables.contact.closed_form import Resultants, checked_delta, moment_balance
 from puck_tables.contact.integrals import PatchIntegrals, checked_phi, slip_direction
 from puck_tables.contact.pressure import GALIN, HERTZ
-from puck_tables.contact.resultants import Resultants, checked_delta, moment_balance
 from puck_tables.contact.superposition import (
     annulus_integrals,
     profile_integrals,

@@ -27,8 +27,8 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact import closed_form
+from puck_tables.contact.closed_form import moment_balance
 from puck_tables.contact.integrals import PatchIntegrals, SlipDirection
-from puck_tables.contact.resultants import moment_balance
 from puck_tables.errors import AccuracyError
 
 BoolArray = npt.NDArray[np.bool_]

@@ -31,7 +31,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray, broadcast
 from puck_tables.contact import closed_form
-from puck_tables.contact.closed_form import integrals
+from puck_tables.contact.closed_form import Resultants, checked_delta, integrals, moment_balance
 from puck_tables.contact.integrals import SlipDirection, checked_phi, slip_direction
 from puck_tables.contact.loaded_chord import (
     Chord,
@@ -41,7 +41,6 @@ from puck_tables.contact.loaded_chord import (
     segment,
     solved_chord,
 )
-from puck_tables.contact.resultants import Resultants, checked_delta, moment_balance
 from puck_tables.errors import ContactError
 
 TIPPING_DELTA = 4.0  # δ/4 is the lever of the load as it slides: at 1 it has reached the rim

@@ -32,8 +32,8 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray, broadcast, real, real_array, shown
+from puck_tables.contact.closed_form import Resultants, moment_balance, pressure_tilt
 from puck_tables.contact.integrals import PatchIntegrals, SlipDirection, checked_phi, slip_direction
-from puck_tables.contact.resultants import Resultants, moment_balance, pressure_tilt
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import ContactError, InputError
 

@@ -30,7 +30,7 @@ function remember() {
 function recall() {
   for (const [name, value] of new URLSearchParams(location.hash.slice(1))) {
     if (name === "law") setLaw(value);
-    else if (name === "corners") setCorners(cornersIn(value));
+    else if (name === "corners" && !takeText(value)) setTimeout(() => { cornersBox.value = value; takeText(value); });  // once it is shown
     else if (name in FIELDS) set(name, Number(value));
   }
 }
@@ -77,13 +77,14 @@ const cornersBox = document.getElementById("corners"), base = document.getElemen
 const cornersText = (step) => drawn.corners.map((one) => one.map((x) => Number((Math.round(x * now.radius / step) * step).toPrecision(9))).join(",")).join("; ");
 const cornersIn = (text) => text.split(/[;\n]/).filter((one) => one.trim()).map((one) => one.split(",").map(Number));
 
-cornersBox.addEventListener("input", () => {
-  const corners = cornersIn(cornersBox.value), right = corners.every((one) => one.length === 2 && one.every(Number.isFinite));
+function takeText(text) {
+  const corners = cornersIn(text), right = corners.every((one) => one.length === 2 && one.every(Number.isFinite));
   const taken = right && corners.length > 2 && setCorners(corners);
   cornersBox.setCustomValidity(taken ? "" : "x,y; x,y; x,y in mm: three corners or more, sides that do not cross, 5 to 200 mm from the middle");
   cornersBox.reportValidity();
-  if (taken) refresh(true);
-});
+  return taken;
+}
+cornersBox.addEventListener("input", () => { if (takeText(cornersBox.value)) refresh(true); });
 for (const [name, corners] of Object.entries(SHAPES)) {
   const button = Object.assign(document.createElement("button"), { type: "button", textContent: name });
   button.addEventListener("click", () => { takeCorners(corners); now.target = null; refresh(true); });

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables.export.languages import LANGUAGES
-from puck_tables.export.program import plain_motion, polygon_motion
+from puck_tables.export.program import base_step, plain_motion, resultant_formulas
 from puck_tables.export.source import export_source, functions_of, with_callees
 
 TOL = 1e-6  # of Q/J, Q²/J: finer than a screen shows
@@ -81,15 +81,17 @@ def _look_ups(law: ShownLaw) -> str:
 def _friction_of_bases() -> str:
     """``puckBase(sides, count, area, farthest)``: ``wrench`` of exported files, of any polygon."""
     language = LANGUAGES["js"]
-    modules = (plain_motion, polygon_motion)
+    modules = (plain_motion, resultant_formulas, base_step)
     functions = {node.name: node for module in modules for node in functions_of(module)}
     of_base = ("BASE_SIDES", "BASE_COUNT", "BASE_AREA", "BASE_FARTHEST")
-    nodes, weights = np.polynomial.legendre.leggauss(polygon_motion.BASE_RULE)
+    nodes, weights = np.polynomial.legendre.leggauss(base_step.BASE_RULE)
     numbers = {
-        name: getattr(polygon_motion, name) for name in ("BASE_RULE", "FAR_AWAY", "ON_A_SIDE")
-    }
+        name: value for module in modules for name, value in vars(module).items()
+        if name.isupper() and isinstance(value, int | float) and name not in of_base
+    }  # fmt: skip
     lines = [
         *(language.constant(name, value) for name, value in numbers.items()),
+        language.table("BASE_DISCS", [0.0]),
         language.table("BASE_NODES", nodes.tolist()),
         language.table("BASE_WEIGHTS", weights.tolist()),
         *(language.function(node) for node in with_callees(functions, ["wrench"]).values()),

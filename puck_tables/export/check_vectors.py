@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.contact.closed_form import moment_balance
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.quadrature import integrals
-from puck_tables.contact.resultants import moment_balance
 from puck_tables.puck import Puck
 from puck_tables.stopping.stops import Stops, stop
 
@@ -151,16 +151,20 @@ def _slips(puck: Puck) -> FloatArray:
     return np.column_stack([ways.real, ways.imag, np.round(spins / puck.gyration, 6)]).round(6)
 
 
+def _of_unit(puck: Puck) -> Puck:
+    """A body whose friction is 1 N, 1 m/s², and pressed alike."""
+    return replace(puck, friction=1.0, height=puck.friction * puck.height, mass=1.0, gravity=1.0)
+
+
 def _wrenches(puck: Puck) -> FloatArray:
     slips = _slips(puck)
     angles = np.round(0.7 * np.arange(len(slips)), 6)
-    unit = replace(puck, friction=1.0, mass=1.0, gravity=1.0)
-    found = unit.wrench(slips[:, :2], slips[:, 2], angles)
+    found = _of_unit(puck).wrench(slips[:, :2], slips[:, 2], angles)
     return np.column_stack([slips, angles, found.force, found.torque])
 
 
 def _steps(puck: Puck) -> FloatArray:
-    rows, unit = [], replace(puck, friction=0.1, gravity=10.0)
+    rows, unit = [], _of_unit(puck)
     for vx, vy, spin in _slips(puck)[1:5].tolist():
         run = unit.simulate((vx, vy), spin, times=[0.5], tol=1e-10)
         there = (run.x, run.y, run.orientation, run.vx, run.vy, run.spin)

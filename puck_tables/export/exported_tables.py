@@ -18,7 +18,7 @@ from puck_tables.export.compact_tables import (
     spline_fits,
 )
 from puck_tables.export.law_values import REACH, LawValues, law_values
-from puck_tables.export.program.polygon_motion import BASE_RULE
+from puck_tables.export.program.base_step import BASE_RULE
 from puck_tables.puck import Puck
 from puck_tables.stopping.axes import height_polynomials
 from puck_tables.stopping.stop_table import StopTable
@@ -97,32 +97,44 @@ def _fit_within(
 
 
 def base_tables(kind: Puck) -> Tables:
-    """The sides of a base, which is a flat polygon under uniform pressure.
+    """The sides and discs of a base, and how it is pressed.
 
     Raises
     ------
     InputError
-        If it is no such base.
+        If it has none.
+    ContactError
+        If part of it would lift.
     """
     shape = kind.shape
-    if shape is None or shape.discs or not shape.is_centred or kind.height > 0.0:
+    if shape is None:
         raise InputError(
-            "wrench and step are exported of polygons with the centre of mass in the middle and "
-            "height = 0, as base='box:0.2x0.1'"
+            "wrench and step are exported of a base, as base='box:0.2x0.1' or 'disc:0.04'"
         )
+    shape.refuse_lift(kind.friction, kind.height)
     sides: list[float] = []
     for outline in shape.outlines:
         for one, two in zip(outline, outline[1:] + outline[:1], strict=True):
             way = np.subtract(two, one)
             length = float(np.hypot(*way))
             sides += [*np.subtract(one, shape.middle).tolist(), *(way / length).tolist(), length]
+    discs = [
+        number for x, y, radius, sign in shape.discs
+        for number in (*np.subtract((x, y), shape.middle).tolist(), radius, sign)
+    ]  # fmt: skip
     nodes, weights = np.polynomial.legendre.leggauss(BASE_RULE)
     tables: dict[str, Sequence[float]] = {
-        "BASE_SIDES": sides, "BASE_NODES": nodes.tolist(), "BASE_WEIGHTS": weights.tolist(),
+        "BASE_SIDES": sides or [0.0], "BASE_DISCS": discs or [0.0],
+        "BASE_NODES": nodes.tolist(), "BASE_WEIGHTS": weights.tolist(),
     }  # fmt: skip
+    area, first, second = shape.about_centre
     return tables, {
-        "BASE_COUNT": len(sides) // 5, "BASE_AREA": shape.area, "BASE_FARTHEST": shape.reach,
-        "BASE_SQUARE": kind.gyration**2,
+        "BASE_COUNT": len(sides) // 5, "BASE_DISC_COUNT": len(discs) // 4,
+        "BASE_TILTED": int(kind.height > 0.0 or not shape.is_centred),
+        "BASE_AREA": area, "BASE_FARTHEST": shape.reach, "BASE_SQUARE": kind.gyration**2,
+        "BASE_X": float(first[0]), "BASE_Y": float(first[1]), "BASE_XX": float(second[0, 0]),
+        "BASE_XY": float(second[0, 1]), "BASE_YY": float(second[1, 1]),
+        "BASE_LEVER": 0.5 * kind.friction * kind.height,
     }  # fmt: skip
 
 

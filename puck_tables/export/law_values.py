@@ -29,9 +29,9 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import make_interp_spline
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.contact.closed_form import Resultants, moment_balance
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.laws import Law
-from puck_tables.contact.resultants import Resultants, moment_balance
 from puck_tables.puck import Puck
 from puck_tables.stopping.axes import heights
 from puck_tables.stopping.stop_section import stops_at

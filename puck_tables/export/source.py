@@ -21,9 +21,9 @@ from puck_tables.export.exported_tables import base_tables, law_tables, plain_ta
 from puck_tables.export.languages import LANGUAGES
 from puck_tables.export.licence import LICENCE
 from puck_tables.export.program import (
+    base_step,
     law_motion,
     plain_motion,
-    polygon_motion,
     resultant_formulas,
     self_check,
 )
@@ -80,7 +80,7 @@ class Source:
 
     def __repr__(self) -> str:
         size = len(self.text.encode())
-        of = f", {self.kind}, {_heights(self.tallest)}" if self.kind else ""
+        of = f", {self.kind}" + _heights(self.tallest) if self.kind else ""
         return f"Source({self.language}, {', '.join(self.what)} to {self.tol:g}{of}, {size} bytes)"
 
     def save(self, path: str | Path, overwrite: bool = False) -> None:
@@ -123,8 +123,8 @@ def export_source(
     ----------
     language : 'c', 'js' or 'python'
     what : 'stop' (where and when a launch stops), 'state' (states at any time, the turn of the
-        heading, and stop), 'resultants' (of friction), or some of them; of a puck on a base, which
-        is a flat polygon about its middle, 'wrench' (of friction; and a step of its motion)
+        heading, and stop), 'resultants' (of friction), or some of them; of a puck on a base
+        'wrench' (of friction; and a step of its motion)
     tol : float
         Largest error, in units of Q/(fg) (times), Q²/(fg) (places), Q²/(fg r) (body angle), Q
         (velocity), Q/r (spin) and 1 (turn of the heading), Q = hypot(v, rω) of the launch; 1e-9 to
@@ -234,7 +234,7 @@ def _text(
     """The whole file."""
     language, based = LANGUAGES[key], kind.shape is not None
     by_law = not based and not kind.body.has_closed_forms
-    more = [polygon_motion] if based else [law_motion] if by_law else []
+    more = [base_step] if based else [law_motion] if by_law else []
     modules = [plain_motion, resultant_formulas, *more, self_check]
     public = list(dict.fromkeys(name for part in parts for name in PARTS[part]))
     functions = {node.name: node for module in modules for node in functions_of(module)}
@@ -309,22 +309,27 @@ def _title(
     return [
         f"puck-tables {__version__}: {', '.join(parts)} of flat pucks that slide and spin under "
         "dry friction.",
-        f"{language}; error {tol:g} (see each function); {of},",
-        f"{'0 <= ' if tallest > 0.0 else ''}{_heights(tallest)}.",
+        f"{language}; error {tol:g} (see each function);",
+        f"{of}{_heights(tallest, '0 <= ')}.",
         f"Functions: {', '.join(public)}; self_test returns how many numbers of its vectors are",
         "missed: 0.  Needs IEEE arithmetic (no -ffast-math).  Made by a program: do not edit.",
     ]
 
 
-def _heights(tallest: float) -> str:
-    """Up to which δ a file holds, in words."""
-    return f"delta <= {tallest:.12g}" if tallest > 0.0 else "flat"
+def _heights(tallest: float, least: str = "") -> str:
+    """Up to which δ a file holds, in words; of a base nothing: its height is its own."""
+    return f", {least}delta <= {tallest:.12g}" if tallest > 0.0 else ""
 
 
 def _words(kind: Puck) -> str:
     """What it is, in letters that no language takes for the end of a comment."""
     base = kind.shape
-    words = kind.body.kind if base is None else f"base {base.name}, k = {kind.gyration:.9g} m"
+    if base is None:
+        words = kind.body.kind
+    else:
+        lever = kind.friction * kind.height
+        height = f"f h = {lever:.9g} m" if lever > 0.0 else "flat"
+        words = f"base {base.name}, k = {kind.gyration:.9g} m, {height}"
     return re.sub(r"[^\w .,:=/+-]|\*/", "_", words, flags=re.ASCII)
 
 

@@ -10,8 +10,8 @@ from pathlib import Path
 from puck_tables._core.text import TextForm
 from puck_tables._core.text_rows import header_of
 from puck_tables.errors import InputError
+from puck_tables.film.film import ANGLES, NO_ACCELERATIONS, PLACES
 from puck_tables.film.headings import Heading, heading, headings, on_a_line
-from puck_tables.film.space import ANGLES, NO_ACCELERATIONS, PLACES
 
 _TRACKPY = {"frame", "particle", "x", "y"}
 _SCORER = "scorer"  # begins DeepLabCut's tables

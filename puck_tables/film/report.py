@@ -8,7 +8,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.wording import counted
-from puck_tables.film.puck_track import Track
+from puck_tables.film.film import Track
 from puck_tables.io.columns import Dataset, variable
 
 _GAP = 1.5  # of the usual time from frame to frame

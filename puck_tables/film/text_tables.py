@@ -19,9 +19,8 @@ from puck_tables._core.text_rows import read_columns
 from puck_tables._core.units import factor, unit_size
 from puck_tables.errors import InputError
 from puck_tables.film.column_roles import Layout, example, name_of
-from puck_tables.film.film import Film, Flags, TrackedBody
+from puck_tables.film.film import ANGLES, Film, Flags, TrackedBody
 from puck_tables.film.headings import Heading
-from puck_tables.film.space import ANGLES
 
 MOST_PUCKS = 10_000  # in one file: more is a column of another meaning
 _TURN = ("qx", "qy", "qz", "qw")

@@ -12,10 +12,8 @@ from puck_tables._core.arrays import FloatArray, instance, positive, real
 from puck_tables._core.units import PIXEL, factor, pixel_size, unit_named
 from puck_tables._core.wording import counted, meant
 from puck_tables.errors import InputError
-from puck_tables.film.film import Film, TrackedBody
+from puck_tables.film.film import UPS, Film, Track, TrackedBody, on_the_floor, summed
 from puck_tables.film.plane import Marks, Plane, plane_from
-from puck_tables.film.puck_track import Track
-from puck_tables.film.space import UPS, on_the_floor, summed
 
 _SURE = 1.5  # likelihoods above are no shares of 1, whatever rounding or scoring did
 _STAMPED = 1e3  # lengths of a film: a first time that is later is that of a clock

@@ -6,14 +6,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from puck_tables._core.arrays import instance
-from puck_tables._core.beginning import beginning, refuse_no_text
+from puck_tables._core.safe_read import beginning, refuse_no_text
 from puck_tables._core.text import HEAD, text_form_of
 from puck_tables._core.text_rows import LARGEST
 from puck_tables.errors import InputError
 from puck_tables.film.column_roles import layout_of
-from puck_tables.film.film import Film, first_text
+from puck_tables.film.film import Film, Track, first_text
 from puck_tables.film.plane import Marks
-from puck_tables.film.puck_track import Track
 from puck_tables.film.readers import readers
 from puck_tables.film.text_tables import film_in_text
 from puck_tables.film.to_tracks import ReaderOptions, to_si

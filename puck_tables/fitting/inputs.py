@@ -12,7 +12,7 @@ import numpy as np
 from puck_tables._core.arrays import instance, pair_of, positive, real
 from puck_tables.contact.speed_law import KINDS
 from puck_tables.errors import InputError
-from puck_tables.film.puck_track import Track, marks_of_one
+from puck_tables.film.film import Track, marks_of_one
 from puck_tables.fitting.certainty import Certainty
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.fit_spec import FitSpec

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
-from puck_tables.film.puck_track import Track
+from puck_tables.film.film import Track
 
 ROUNDED = 1.0 / math.sqrt(12.0)  # of a step: the spread of what is rounded to it
 _COARSE = 2.0  # times the noise that frames show: a step below is hidden by noise

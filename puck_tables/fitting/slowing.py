@@ -67,7 +67,7 @@ def starts_from_slowing(problem: Problem) -> list[tuple[Problem, FloatArray]]:
     unknowns comes the same problem with the angles of each track in one piece.  The last start is
     that of one friction and nothing else, which leaves no more in the end than that alone would.
 
-    >>> from puck_tables.film.puck_track import Track
+    >>> from puck_tables.film.film import Track
     >>> from puck_tables.fitting.fit_spec import FitSpec
     >>> from puck_tables.fitting.observations import observations_in
     >>> from puck_tables.puck import Puck

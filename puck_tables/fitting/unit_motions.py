@@ -33,8 +33,8 @@ from puck_tables.contact.base import Base
 from puck_tables.contact.laws import Law, law_of
 from puck_tables.kernels.base_friction import packed
 from puck_tables.motion.body import body_of, plain_up_to
-from puck_tables.motion.frame import frame_of
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED, SPIN, STATE_ROWS
+from puck_tables.motion.unit_motion import frame_of
 from puck_tables.stopping.launch_arrays import launches_in
 from puck_tables.stopping.launch_frame import fill_placed_states
 from puck_tables.stopping.solvers import followed

@@ -10,8 +10,8 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray, broadcast
 from puck_tables.contact import closed_form
+from puck_tables.contact.closed_form import CONTACT_SLACK, Resultants, checked_delta
 from puck_tables.contact.integrals import checked_phi
-from puck_tables.contact.resultants import CONTACT_SLACK, Resultants, checked_delta
 from puck_tables.errors import ContactError
 from puck_tables.kernels.compile import allocating, inlined, patience
 

@@ -95,7 +95,7 @@ def _deep(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 class KernelDoor(Protocol):
-    """What is read of a :class:`puck_tables.kernels.doors.Door`, which stands above."""
+    """What is read of a :class:`puck_tables.kernels.compile.Door`, which stands above."""
 
     py_func: Any
     counts: bool

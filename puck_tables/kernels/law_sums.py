@@ -26,15 +26,19 @@ from puck_tables.kernels.base_sums import NOTHING, Sums, moved, plus
 from puck_tables.kernels.compile import arrays_at_first, inlined, inner, kernel, summed
 from puck_tables.kernels.elementary import exp_of, log_of
 from puck_tables.kernels.law_panels import (
+    FAR,
+    NODE,
     NODES,
+    ON_SIDE,
+    WEIGHT,
     arc_from_nearest,
     begin_of,
     circle_end,
+    law_sums_at_first,
     next_end,
     panels_far_off,
     side_panel,
 )
-from puck_tables.kernels.law_sums_at_first import FAR, NODE, ON_SIDE, WEIGHT, law_sums_at_first
 from puck_tables.kernels.polygon_sums import (
     ABOUT_X,
     ABOUT_Y,

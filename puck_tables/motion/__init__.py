@@ -13,10 +13,8 @@ if TYPE_CHECKING:
         regime,
     )
 
-_HOMES = {"limits": "approach_exponent curvature_slope limit_angle limit_ratio regime"}
-
 __all__ = [
     "approach_exponent", "curvature_slope", "limit_angle", "limit_ratio", "regime",
 ]  # fmt: skip
 
-__getattr__, __dir__ = lazily(__name__, _HOMES)
+__getattr__, __dir__ = lazily(__name__)

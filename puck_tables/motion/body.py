@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from puck_tables._core.arrays import instance, real
+from puck_tables.contact.closed_form import checked_delta
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of, limit_ratio
-from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
 from puck_tables.table.friction_section import FrictionSection, friction_for, section_of_table
 from puck_tables.table.resultant_table import ResultantTable

@@ -15,9 +15,8 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray, rounded_up
 from puck_tables.accuracy.method_errors import COARSEST, UNITS, Selection, named, select
 from puck_tables.accuracy.methods import INTEGRATORS, FrictionForm, Method, Scheme, schemes_of
-from puck_tables.contact.closed_form import by_closed_form
+from puck_tables.contact.closed_form import CONTACT_SLACK, by_closed_form, pressure_tilt
 from puck_tables.contact.integrals import SlipDirection
-from puck_tables.contact.resultants import CONTACT_SLACK, pressure_tilt
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.closed_form_kernel import outside_full_contact
 from puck_tables.kernels.quadratic import NO_SECTION

@@ -8,10 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray, instance, one_velocity, positive, real
-from puck_tables.contact.closed_form import integrals
+from puck_tables.contact.closed_form import checked_delta, integrals
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
 from puck_tables.contact.laws import limit_ratio as law_limit_ratio
-from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import ContactError
 from puck_tables.kernels.closed_form_kernel import friction_ratios, resultants
 from puck_tables.kernels.compile import kernel

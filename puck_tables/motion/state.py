@@ -1,8 +1,8 @@
 """What is where: the state of a free motion in natural units, and the state of a puck.
 
 In natural units (:mod:`puck_tables.motion.equations_of_motion`) u = ln(r|ω|/v), heading ψ, time,
-place, body angle θ, path length, work of friction.  Of a puck (:mod:`puck_tables.motion.frame`)
-place, heading, body angle, speed and spin.
+place, body angle θ, path length, work of friction.  Of a puck
+(:mod:`puck_tables.motion.unit_motion`) place, heading, body angle, speed and spin.
 """
 
 from __future__ import annotations

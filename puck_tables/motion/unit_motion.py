@@ -4,6 +4,11 @@ The layer between the compiled loop and :mod:`puck_tables.trajectory`: elementar
 integrated ones as fine as the tolerance asks.  Nobody has measured beforehand how far off a motion
 is for every law and height.  Where friction is a section it is measured on the motion itself, by a
 run of higher accuracy and by one with a coarser section.
+
+In the world places are turned by the heading of the launch, mirrored for negative spin, and scaled:
+times by Q₀/J, places by Q₀²/J.
+
+And how much of the base carries load along a motion.
 """
 
 from __future__ import annotations
@@ -11,26 +16,30 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.accuracy.method_errors import Selection
-from puck_tables.accuracy.methods import Method
+from puck_tables.accuracy.methods import FrictionForm, Method
+from puck_tables.contact.one_sided import loaded_share
 from puck_tables.errors import PuckError
+from puck_tables.kernels.quadratic import LINE
+from puck_tables.motion.body import UnitPuck
 from puck_tables.motion.equations_of_motion import (
     at_constant_angle,
     derivatives,
     inertia,
     kinetic_energy,
 )
-from puck_tables.motion.frame import direction
 from puck_tables.motion.friction_source import Friction, FrictionSource
 from puck_tables.motion.limits import log_ratio, regime_of
 from puck_tables.motion.path import STOPPED, TURN_SHARE, integrate, states_at
 from puck_tables.motion.solve import FINEST_LOCAL, ErrorEstimate, Setting, close_enough, refined
 from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, WORK, T, U, X, Y
 from puck_tables.motion.steppers import DORMAND_PRINCE, Stepping, Tableau
+from puck_tables.table.singular_lines import opening_angle
 
 GENERIC = ("B", "C")  # regimes that are integrated; the others are elementary
 
@@ -41,6 +50,89 @@ _ROUNDING = 1e-14  # of a motion as long as Q/J
 _UNSEEN_SHARE = 0.1  # of the error of a section: two coarse ones may err alike
 _MOMENTS = 16  # at which two motions are compared
 _COARSER_BY = 4.0  # half as many cells are 16 times as bad; a quarter of that is believed
+
+
+class Frame(NamedTuple):
+    """A launch as a frame: ``speed`` v, ``rim`` r|ω|, ``slip`` Q₀ m/s, ``time`` s, ``length`` m.
+
+    ``side`` is −1 for clockwise spin, ``east``, ``north`` and ``heading`` the direction of the
+    velocity, x where there is none.
+    """
+
+    speed: float
+    rim: float
+    slip: float
+    time: float
+    length: float
+    radius: float
+    side: float
+    east: float
+    north: float
+    heading: float
+
+    def place(self, x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """World coordinates, m, from natural ones."""
+        along, left = self.length * x, self.side * self.length * y
+        return (
+            along * self.east - left * self.north + 0.0,
+            along * self.north + left * self.east + 0.0,
+        )
+
+    def unit_times(self, times: FloatArray, stop_time: float) -> FloatArray:
+        """Times (n,) s in natural units; infinite from the stop on."""
+        scaled: FloatArray = np.where(times < stop_time, times, np.inf) / (self.time or 1.0)
+        return scaled
+
+    def states(self, q: FloatArray, y: FloatArray) -> tuple[FloatArray, ...]:
+        """States of the puck from Q/Q₀ (n,) and natural states (n, 8).
+
+        Returns
+        -------
+        six arrays (n,)
+            x, y m; heading rad, from that at the launch; body angle rad; v m/s; ω rad/s.
+        """
+        cosine, sine = direction(y[:, U])
+        turned = self.side * y[:, THETA] * (self.length / self.radius) + 0.0
+        spin = self.side * (self.slip * q * sine / self.radius) + 0.0  # Q/r may overflow, ω not
+        speed = self.slip * q * cosine
+        return *self.place(y[:, X], y[:, Y]), self.side * y[:, PSI], turned, speed, spin
+
+
+def frame_of(velocity: tuple[float, float], spin: float, decel: float, radius: float) -> Frame:
+    """The frame of a launch.
+
+    Parameters
+    ----------
+    velocity, spin : m/s, rad/s
+    decel, radius : J m/s², r m
+
+    Examples
+    --------
+    >>> frame = frame_of((0.0, 3.0), -2.0, 5.0, 2.0)
+    >>> frame.slip, frame.time, frame.length
+    (5.0, 1.0, 5.0)
+    >>> [float(x) for x in frame.place(np.array(1.0), np.array(0.5))]
+    [2.5, 5.0]
+    """
+    vx, vy = velocity
+    speed, rim = math.hypot(vx, vy), radius * abs(spin)
+    slip = math.hypot(speed, rim)
+    east, north = (vx / speed, vy / speed) if speed > 0.0 else (1.0, 0.0)
+    return Frame(
+        speed, rim, slip, slip / decel, slip / decel * slip, radius, -1.0 if spin < 0.0 else 1.0,
+        east, north, math.atan2(vy, vx) if speed > 0.0 else 0.0,
+    )  # fmt: skip
+
+
+def direction(u: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Cos φ and sin φ from u = ln tan φ, to the last digits at both ends.
+
+    >>> [float(x.round(6)) for x in direction(np.array(-np.inf))]
+    [1.0, 0.0]
+    """
+    k = np.exp(-np.abs(u))
+    large = 1.0 / np.sqrt(1.0 + k * k)
+    return np.where(u > 0.0, k * large, large), np.where(u > 0.0, large, k * large)
 
 
 @dataclass
@@ -232,3 +324,46 @@ def _speeds(q: FloatArray, u: FloatArray) -> tuple[FloatArray, FloatArray]:
     """V and r|ω| from Q and u."""
     cosine, sine = direction(u)
     return q * cosine, q * sine
+
+
+@dataclass(frozen=True)
+class Contact:
+    """How much of the base carries load along a motion.
+
+    ``launch`` and ``least``: the share of the base, 1 in full contact.  ``opens``, ``closes``: when
+    part of the base lifts and when all of it is down again, in units of Q₀/J; None: never.
+    """
+
+    launch: float = 1.0
+    least: float = 1.0
+    opens: float | None = None
+    closes: float | None = None
+
+
+def contact_of(body: UnitPuck, run: MotionRun) -> Contact:
+    """What carries load along a motion: the share grows with φ, and φ is monotonic in time.
+
+    >>> from puck_tables.motion.body import body_of
+    >>> from puck_tables.motion.friction_source import source_of
+    >>> from puck_tables.motion.unit_motion import solve
+    >>> body = body_of("uniform", 2.0, 0.5**0.5)
+    >>> run, _ = solve(source_of(body), 1.0, 0.0, 1e-6)
+    >>> round(contact_of(body, run).least, 6)
+    0.647743
+    """
+    if run.friction.source is not FrictionForm.SECTION or run.regime == "A":
+        return Contact()
+    opening = opening_angle(body.delta) if body.law.can_lift else 0.0
+    if opening == 0.0:
+        return Contact()
+    start = math.atan(math.exp(min(run.y[0, U], 700.0)))
+    end = math.atan(body.limit_ratio) if run.regime in GENERIC else start
+    launch, last = loaded_share([start, end], body.delta).tolist()
+    lifted, lifts = start < opening, end < opening
+    if lifted == lifts:
+        return Contact(launch, min(launch, last))
+    lines = run.friction.coefficients[::2, LINE]  # a step ends exactly on the line
+    line = lines[np.abs(lines - math.log(math.tan(opening))).argmin()]
+    ends = np.flatnonzero(run.y[:, U] == line)
+    time = float(run.y[ends[0], T]) if ends.size else 0.0
+    return Contact(launch, min(launch, last), *((time, None) if lifts else (None, time)))

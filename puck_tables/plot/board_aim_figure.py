@@ -9,7 +9,7 @@ import numpy as np
 
 from puck_tables._core.wording import counted
 from puck_tables.errors import InputError
-from puck_tables.plot import pucks_figure
+from puck_tables.plot import board
 from puck_tables.plot.style import GREY
 from puck_tables.world.aimed import BoardAim
 
@@ -30,7 +30,7 @@ def draw(result: BoardAim) -> Figure:
         f"{math.degrees(result.launch_heading[0]):.2f}°, "
         f"{result.launch_spin[0]:.4g} rad/s{_others(result)}"
     )
-    figure = pucks_figure.draw(run, title)
+    figure = board.draw(run, title)
     for panel in figure.axes:
         _mark(panel, result)
     return figure
@@ -48,7 +48,7 @@ def _others(result: BoardAim) -> str:
 
 def draw_on(axes: Axes, result: BoardAim) -> None:
     """The board alone."""
-    pucks_figure.draw_on(axes, _first(result))
+    board.draw_on(axes, _first(result))
     _mark(axes, result)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from puck_tables.plot.style import BLUE, GREEN, ORANGE, canvas
 from puck_tables.plot.titles import noted, titled
-from puck_tables.reference.floor_friction import FloorFriction
+from puck_tables.reference.floor_reaction import FloorFriction
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.plot import pucks_figure
+from puck_tables.plot import board
 from puck_tables.plot.animation import film_of_one, states_drawn
 from puck_tables.plot.base_outlines import MARK, draw_along
 from puck_tables.plot.board import draw_board, show
@@ -152,7 +152,7 @@ def draw(run: Run) -> Figure:
     Of one puck the path among all that is in the plane; speeds; and the energy ledger.
     """
     if run.scene.pucks:
-        return pucks_figure.draw(run)
+        return board.draw(run)
     columns = states_drawn(run)
     figure = canvas(10.0, 9.0)
     grid = figure.add_gridspec(2, 2, height_ratios=(1.35, 1.0))
@@ -179,7 +179,7 @@ def draw(run: Run) -> Figure:
 def draw_on(axes: Axes, run: Run) -> None:
     """The plane or the board alone."""
     if run.scene.pucks:
-        pucks_figure.draw_on(axes, run)
+        board.draw_on(axes, run)
     else:
         draw_plane(axes, run, states_drawn(run))
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from puck_tables._core.wording import counted
-from puck_tables.film.puck_track import Track
+from puck_tables.film.film import Track
 from puck_tables.plot.style import COLORS, canvas, labelled
 from puck_tables.plot.titles import legend_below, titled
 

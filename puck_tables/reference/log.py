@@ -11,9 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray, instance, real
-from puck_tables._core.beginning import beginning, refuse_no_text
 from puck_tables._core.quantities import TIME
 from puck_tables._core.read_columns import list_of
+from puck_tables._core.safe_read import beginning, refuse_no_text
 from puck_tables._core.text import TextForm, text_form_of
 from puck_tables._core.text_rows import LARGEST, read_columns
 from puck_tables._core.units import EXAMPLES, parted, unit_size

@@ -11,7 +11,7 @@ from puck_tables.report.lines_and_tables import columns, listed
 if TYPE_CHECKING:
     from puck_tables.reference.answer import Answer
     from puck_tables.reference.comparison import Comparison
-    from puck_tables.reference.floor_friction import FloorFriction
+    from puck_tables.reference.floor_reaction import FloorFriction
 
 _ROWS = 20  # of friction that are shown
 _SHORT = {

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from puck_tables.bulk.finish import Stored
     from puck_tables.stopping.stop_map import StopMap
     from puck_tables.world.map import Map
-    from puck_tables.world.sample import Sample
+    from puck_tables.world.scene_ends import Sample
 
 
 def stored_report(result: Stored) -> str:

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from puck_tables._core.doubts import OF_A_PUCK
-from puck_tables._core.fields import Unsaid, of, specs
-from puck_tables._core.reading import entries_in
+from puck_tables._core.fields import of, specs
+from puck_tables._core.reading import entries_in, written
 from puck_tables.errors import InputError
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.scene.parts import Constraint, Force, Launch, Rows
@@ -44,11 +44,7 @@ class ScenePuck(PuckSpec):
 
     def __repr__(self) -> str:
         """What it was given."""
-        told = (
-            f"{name}={value!r}" for name, value in entries_in(self).items()
-            if not isinstance(value, Unsaid)
-        )  # fmt: skip
-        return f"{type(self).__name__}({', '.join(told)})"
+        return written(self)
 
     @property
     def only_on_boards(self) -> dict[str, Any]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray, instance
 from puck_tables._core.fields import Unsaid, of, specs
-from puck_tables._core.reading import MAX_COUNT, Range, Reading, entries_in, read_values
+from puck_tables._core.reading import MAX_COUNT, Range, Reading, entries_in, read_values, written
 from puck_tables.errors import InputError
 from puck_tables.motion.body import STANDARD_GRAVITY
 from puck_tables.motion.puck_spec import PuckSpec
@@ -103,7 +103,7 @@ def launch_rows(launch: Launch, batch: Mapping[str, FloatArray], owner: str) -> 
     return rows
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class SceneSpec:
     """What a scene says, part by part, each checked; :class:`puck_tables.Scene` adds its verbs.
 
@@ -181,6 +181,11 @@ class SceneSpec:
         scene = object.__new__(cls)
         scene._fill(tables, source)
         return scene
+
+    def __repr__(self) -> str:
+        """What it was given."""
+        ranges = f", ranges={dict(self.ranges)!r})" if self.ranges else ")"
+        return written(self).removesuffix(")") + ranges
 
     def __eq__(self, other: object) -> bool:
         """Whether both say the same, ranges included."""

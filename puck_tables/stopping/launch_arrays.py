@@ -13,7 +13,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray, broadcast, finite_array, real_view, velocity_array
 from puck_tables._core.executor import run_chunks, usable_cores
 from puck_tables._core.fields import Unsaid
-from puck_tables.contact.resultants import checked_delta
+from puck_tables.contact.closed_form import checked_delta
 from puck_tables.errors import InputError
 from puck_tables.kernels.compile import BLOCK, inlined, into_row, kernel, patience
 

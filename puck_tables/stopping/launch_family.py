@@ -32,7 +32,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.quadratic import NO_SECTION
 from puck_tables.motion.body import UnitPuck
-from puck_tables.motion.frame import direction
+from puck_tables.motion.unit_motion import direction
 from puck_tables.stopping.aim_lookup import (
     BEND,
     LOGS,

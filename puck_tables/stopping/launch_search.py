@@ -18,9 +18,9 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
-from puck_tables.motion.frame import direction
 from puck_tables.motion.friction_source import source_of
 from puck_tables.motion.puck_spec import PuckSpec
+from puck_tables.motion.unit_motion import direction
 from puck_tables.stopping.aim_lookup import BEND, RIM, SPEED, TIME, TURN  # two are bounded
 from puck_tables.stopping.exact import integrated_stops
 from puck_tables.stopping.launch_arrays import fits

@@ -27,8 +27,8 @@ from puck_tables.accuracy.methods import (
     Scheme,
     method_named,
 )
+from puck_tables.contact.closed_form import checked_delta
 from puck_tables.contact.laws import Law, law_of
-from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.quadratic import NO_COLUMNS, NO_SECTION
 from puck_tables.motion.body import UnitPuck, body_of, plain_up_to

@@ -28,12 +28,11 @@ from puck_tables.kernels.quadratic import NO_COLUMNS
 from puck_tables.motion.base_motion import STATE_SIZE
 from puck_tables.motion.base_slides import OUT_ROWS, WHY_INTEGRATED, fill_slides, local_error
 from puck_tables.motion.body import UnitPuck
-from puck_tables.motion.frame import frame_of
 from puck_tables.motion.friction_source import Sections, source_of
 from puck_tables.motion.solve import FINEST_LOCAL, ErrorEstimate, Setting, close_enough, refined
 from puck_tables.motion.state import LENGTH, PSI, THETA, T, X, Y
 from puck_tables.motion.steppers import Stepping
-from puck_tables.motion.unit_motion import solve, unseen_tail
+from puck_tables.motion.unit_motion import frame_of, solve, unseen_tail
 from puck_tables.stopping.launch_arrays import Launches, fits, in_chunks, launches_in
 from puck_tables.stopping.lookup import STOP_POWERS
 from puck_tables.stopping.stop_section import StopSection

@@ -14,10 +14,9 @@ from puck_tables._core.arrays import FloatArray, finite_array
 from puck_tables._core.executor import run_chunks
 from puck_tables.errors import InputError
 from puck_tables.motion.body import UnitPuck
-from puck_tables.motion.frame import frame_of
 from puck_tables.motion.friction_source import source_of
 from puck_tables.motion.state import HEADING, SPIN, STATE_ROWS, T
-from puck_tables.motion.unit_motion import solve
+from puck_tables.motion.unit_motion import frame_of, solve
 from puck_tables.stopping.launch_arrays import CHUNK, Launches, in_chunks, launches_in
 from puck_tables.stopping.similarity_lookup import LAUNCH_COLUMNS, SLIP, SPEED0
 from puck_tables.stopping.stop_table import StopTable

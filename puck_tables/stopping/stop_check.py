@@ -28,12 +28,12 @@ from numpy.polynomial import chebyshev
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import run_chunks
 from puck_tables.contact import quadrature
+from puck_tables.contact.closed_form import moment_balance
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.laws import law_of
-from puck_tables.contact.resultants import moment_balance
 from puck_tables.kernels.quadratic import basis
-from puck_tables.motion.frame import direction
 from puck_tables.motion.limits import limit_ratio
+from puck_tables.motion.unit_motion import direction
 from puck_tables.stopping.axes import HEIGHTS, SlipAxis, heights, ratio_at
 from puck_tables.stopping.exact import exact_stops
 from puck_tables.stopping.launch_arrays import launches_in

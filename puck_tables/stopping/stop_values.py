@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.contact.resultants import checked_delta
+from puck_tables.contact.closed_form import checked_delta
 from puck_tables.errors import InputError
 from puck_tables.io.columns import Variable
 from puck_tables.motion.state import STATE_ROWS
@@ -36,7 +36,7 @@ from puck_tables.stopping.launch_arrays import (
     smallest_mark,
 )
 from puck_tables.stopping.lookup import STOP_POWERS, stops_kernel
-from puck_tables.stopping.similarity import limits
+from puck_tables.stopping.similarity import InverseSolution, limits
 from puck_tables.stopping.similarity_lookup import (
     LAUNCH_COLUMNS,
     ORBIT_WIDTH,
@@ -46,7 +46,6 @@ from puck_tables.stopping.similarity_lookup import (
 )
 from puck_tables.stopping.slopes import Slopes, slopes_of
 from puck_tables.stopping.state_lookup import PUCK_ROWS
-from puck_tables.stopping.state_nodes import InverseSolution
 from puck_tables.table.table import Table
 
 UPPER_DELTA = 1.0  # above, part of the base may lift

@@ -29,10 +29,10 @@ from puck_tables._core.executor import run_chunks
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.quadratic import LINE
 from puck_tables.motion.body import UnitPuck
-from puck_tables.motion.frame import direction
 from puck_tables.motion.path import STOPPED, integrate
 from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, T, U, X, Y
 from puck_tables.motion.steppers import DORMAND_PRINCE
+from puck_tables.motion.unit_motion import direction
 from puck_tables.table.friction_section import FrictionSlopes, friction_slopes_of, slopes_of_table
 from puck_tables.table.singular_lines import lines_of
 from puck_tables.table.slip_spline import refinements, sides_of

@@ -20,9 +20,9 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact import one_sided
+from puck_tables.contact.closed_form import Resultants, checked_delta
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
 from puck_tables.contact.one_sided import critical_delta
-from puck_tables.contact.resultants import Resultants, checked_delta
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.quadratic import LINE, RATIOS, SLOPES
 from puck_tables.table.build import COARSEST, checked_accuracy
@@ -30,12 +30,11 @@ from puck_tables.table.check import Accuracy, CheckReport
 from puck_tables.table.law_record import is_named
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.section_table import SectionTable
-from puck_tables.table.singular_lines import lines_of, opening_angle, refuse_height
+from puck_tables.table.singular_lines import lines_of, opening_angle, refuse_height, tall_resultants
 from puck_tables.table.slip_spline import GRADING_POWER, LawAxis, SlipSpline, sides_of, slip_spline
 from puck_tables.table.spline_fit import height_terms, ratios_at
 from puck_tables.table.table import Progress
 from puck_tables.table.table_store import fetch
-from puck_tables.table.tall_friction import tall_resultants
 
 FLOW_ACCURACY = 1e-9  # motions differentiated with it err by at most 1e-8
 DEFAULT_ACCURACY, FINEST_ACCURACY = 1e-9, 5e-13  # truth itself is good to 1e-13

@@ -18,9 +18,9 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray, broadcast
 from puck_tables.contact import quadrature
+from puck_tables.contact.closed_form import Resultants, checked_delta, moment_balance
 from puck_tables.contact.integrals import checked_phi, slip_direction
 from puck_tables.contact.laws import Law, law_of
-from puck_tables.contact.resultants import Resultants, checked_delta, moment_balance
 from puck_tables.errors import InputError
 from puck_tables.io.columns import Variable
 from puck_tables.table.build import COARSEST, Goal, built

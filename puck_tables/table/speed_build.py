@@ -21,8 +21,7 @@ from puck_tables.kernels.speed_quadrature_kernel import COARSE, FINE
 from puck_tables.table.build import checked_accuracy
 from puck_tables.table.check import Accuracy
 from puck_tables.table.speed_grid import breaks_of, is_pile, patches_of, rays_under
-from puck_tables.table.speed_patch import FilledPatch
-from puck_tables.table.speed_truth import Law
+from puck_tables.table.speed_patch import FilledPatch, Law
 from puck_tables.table.table import Progress
 
 DEFAULT_ACCURACY = 1e-6  # of f

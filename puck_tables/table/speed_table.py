@@ -11,10 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray, broadcast
+from puck_tables.contact.closed_form import Resultants, moment_balance, pressure_tilt
 from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.contact.integrals import PatchIntegrals, checked_phi, slip_direction
 from puck_tables.contact.laws import Law, law_of
-from puck_tables.contact.resultants import Resultants, moment_balance, pressure_tilt
 from puck_tables.contact.round_load import RoundLoad
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.contact.speed_quadrature import (
@@ -30,8 +30,7 @@ from puck_tables.table.build import COARSEST
 from puck_tables.table.check import CheckReport, Route, judged
 from puck_tables.table.speed_build import largest_f, tabulated
 from puck_tables.table.speed_grid import RayPatch, SlipPatch, is_pile, patches_of, rays_under
-from puck_tables.table.speed_patch import quintic_coefficients
-from puck_tables.table.speed_truth import truth_at
+from puck_tables.table.speed_patch import quintic_coefficients, truth_at
 from puck_tables.table.table import Progress, Table
 
 IntArray = npt.NDArray[np.int64]

@@ -23,7 +23,7 @@ from puck_tables.accuracy.method_errors import MeasuredMethod
 from puck_tables.io.columns import Dataset, variable
 from puck_tables.kernels.patience import compiled_at_once
 from puck_tables.result import Result
-from puck_tables.tradeoff import body_methods, motion_methods, resultant_methods
+from puck_tables.tradeoff import motion_methods, resultant_methods, scipy_methods
 from puck_tables.tradeoff.truth import Contender, random_points
 
 REPEATS, QUICK_REPEATS = 25, 5  # of a measurement, of which the least time counts
@@ -76,7 +76,7 @@ def measure(quick: bool = False, progress: Callable[[int, int], None] | None = N
     repeats, count = (QUICK_REPEATS, _QUICK_POINTS) if quick else (REPEATS, _POINTS)
     contenders = [
         *resultant_methods.contenders(random_points(count)), *motion_methods.contenders(),
-        *body_methods.contenders(),
+        *scipy_methods.contenders(),
     ]  # fmt: skip
     progress = progress or (lambda done, total: None)
     total = 2 * len(contenders) + repeats

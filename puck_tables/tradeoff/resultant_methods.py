@@ -22,9 +22,9 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact import closed_form, quadrature
+from puck_tables.contact.closed_form import moment_balance
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.laws import law_of
-from puck_tables.contact.resultants import moment_balance
 from puck_tables.kernels.closed_form_kernel import _fill as fill_closed_form
 from puck_tables.kernels.compile import allocating, kernel, patience
 from puck_tables.kernels.quadratic import basis, cell_at, fill_resultants, row_sums, side_and_eta

@@ -16,8 +16,8 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact import quadrature
+from puck_tables.contact.closed_form import moment_balance
 from puck_tables.contact.integrals import slip_direction
-from puck_tables.contact.resultants import moment_balance
 
 Run = Callable[[FloatArray], FloatArray]  # from inputs (rows, n) to answers (3, n, …)
 Made = tuple[Any, Run]  # what a method keeps, and how it answers

@@ -21,11 +21,12 @@ from puck_tables.scene.floor_parts import (
 )
 from puck_tables.scene.forces import is_stepped
 from puck_tables.scene.holds import misfits
+from puck_tables.scene.map_of_floor import edges_under
 from puck_tables.scene.over_time import drive_of, last_factors
 from puck_tables.scene.parts import Drag, Force, Lateral, Launch
 from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.scene.sides import gap_along, gap_to, line_of, shape_faults
+from puck_tables.scene.sides import ends_of_floor, gap_along, gap_to, line_of, shape_faults
 from puck_tables.world.drive import rows_of
 
 TOUCH = 1e-12  # of the radius: pucks that overlap less touch
@@ -34,6 +35,9 @@ CUSHIONS = ("wall", "post", "arc")  # what rims may meet besides pucks
 # runs of the same steps tell nothing (test_no_estimate_is_too_small)
 COARSEST = 1e-6
 TABLE_ERROR = 1e-9  # of looked-up states: of places in Q²/J, of velocities in Q
+# of the reach: nearer to an edge what presses is a line, and friction by rounding known no better;
+# and so little off an edge, in rad, is along it
+_NARROW, _ALONG = 4e-4, 1e-3
 _SMALLEST, _LARGEST = 1e-100, 1e100  # m, kg: squares of both are numbers
 
 
@@ -207,7 +211,7 @@ def disagreements(scene: SceneSpec) -> list[str]:
         return faults
     return [
         *_overlaps(pucks), *_out_of_bounds(scene, pucks), *_driven_through(scene, pucks),
-        *_wide_pockets(scene),
+        *_wide_pockets(scene), *_balancing(scene, pucks),
     ]  # fmt: skip
 
 
@@ -361,6 +365,23 @@ def _out_of_bounds(scene: SceneSpec, pucks: tuple[ScenePuck, ...]) -> Iterator[s
         place, name = start_of(puck), who(scene, number)
         for path, what, depth in obstructing(scene, place, puck.radius, holes=not puck.path):
             yield f"{path}: {name} at {list(place)} {what} by {depth:.3g} m: move one of them"
+
+
+def _balancing(scene: SceneSpec, pucks: tuple[ScenePuck, ...]) -> Iterator[str]:
+    """Pucks that set off along an edge, so near to it that whether they fall is rounding."""
+    for number, puck in enumerate(pucks):
+        reach = (puck.shape.reach if puck.shape else puck.radius) * _NARROW
+        (vx, vy), spin = puck.launch.velocity or (0.0, 0.0), puck.launch.spin
+        speed = math.hypot(vx, vy, puck.radius * spin)
+        edges = [] if puck.path else edges_under(scene.alone(puck)).tolist()
+        for k, (nx, ny, at) in zip(ends_of_floor(scene), edges, strict=False):
+            inside = nx * puck.launch.position[0] + ny * puck.launch.position[1] - at
+            if inside < reach and speed > 0.0 and abs(nx * vx + ny * vy) <= _ALONG * speed:
+                yield (
+                    f"edge[{k}]: {who(scene, number)} sets off along it, its centre of mass "
+                    f"{max(inside, 0.0):.3g} m from it: whether it falls is not known there; move "
+                    f"it at least {reach:.3g} m onto the floor"
+                )
 
 
 def _driven_through(scene: SceneSpec, pucks: tuple[ScenePuck, ...]) -> Iterator[str]:

@@ -19,9 +19,8 @@ from puck_tables.scene.outcome import column_of, scene_texts
 from puck_tables.scene.run import Run
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import called, pucks_of, start_of
-from puck_tables.world.odds import Odds, odds_of
 from puck_tables.world.simulate import simulate
-from puck_tables.world.targets import Target
+from puck_tables.world.targets import Odds, Target, odds_of
 
 _LAUNCH = ("launch_spin", "launch_vx", "launch_vy", "launch_speed", "launch_heading")
 _END = ("stop_time", "miss", "end_error", "impacts")

@@ -35,9 +35,8 @@ from puck_tables.world.group import (
     IntArray,
 )
 from puck_tables.world.holds import forbid
-from puck_tables.world.layout import HOLD, RADIUS
+from puck_tables.world.layout import HOLD, RADIUS, along_of_pair
 from puck_tables.world.obstacle_shapes import curvature, normal_to, to_end
-from puck_tables.world.rims import along_of_pair
 
 
 @inlined

@@ -11,9 +11,15 @@ from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.world.engine_state import Engine
 from puck_tables.world.forces import acceleration
 from puck_tables.world.holds import response
-from puck_tables.world.layout import HOLD, LIGHTNESS, RADIUS, TURNABILITY
+from puck_tables.world.layout import (
+    HOLD,
+    LIGHTNESS,
+    RADIUS,
+    TURNABILITY,
+    along_of_pair,
+    restitutions_of_pair,
+)
 from puck_tables.world.obstacle_shapes import curvature, normal_to
-from puck_tables.world.rims import along_of_pair, restitutions_of_pair
 
 # columns of a contact in work: normal, slownesses 1/m_n and 1/m_t, law, whether it acts in this
 # round, impulses of the round and of all, approach and slip at the first, energy lost, and the two

@@ -41,7 +41,6 @@ from puck_tables.world.layout import (
     RADIUS,
     kinetic,
 )
-from puck_tables.world.rebounds import is_squeezed
 from puck_tables.world.segment import (
     GONE,
     LOOKED_UP,
@@ -74,7 +73,7 @@ from puck_tables.world.setting_off import (
     put,
     take_off_all,
 )
-from puck_tables.world.touching import find_touching
+from puck_tables.world.touching import find_touching, is_squeezed
 
 NOBODY, EVERYBODY, THOSE_LEFT = -1, -2, -3  # who is concerned at once; else an event by hand
 MOST_AT_ONCE = 1_000  # events at one moment

@@ -63,7 +63,7 @@ class Engine(NamedTuple):
     5): deceleration, δ, whether it is integrated, and the velocity of the floor, which a disc takes
     over when it comes there; ``surface``: how the floor moves, of belts the fastest; ``forcing``,
     ``spans``: see :class:`puck_tables.world.group.Group`; ``rims``: the laws
-    by which they meet (:mod:`puck_tables.world.rims`).  ``clock`` (1,): now.  ``group``
+    by which they meet (:mod:`puck_tables.world.layout`).  ``clock`` (1,): now.  ``group``
     (n,): discs of one number push each other, 0: none; ``held`` (…, 2): their contacts.
     ``next_time``, ``next_partner`` (n,).  ``launches`` (…, 5), ascending in time.  ``drives``
     (n, 2): the rows of ``pieces`` along which a disc is driven.  ``hangs`` (n, edges): whether its

@@ -1,7 +1,7 @@
 """Impacts: of two discs, of a disc and an obstacle, and of as many at once as touch.
 
 A contact follows the law of :mod:`puck_tables.motion.impact_law`, with restitution e, tangential
-restitution β and friction μ of its pair (:mod:`puck_tables.world.rims`); where e falls with speed
+restitution β and friction μ of its pair (:mod:`puck_tables.world.layout`); where e falls with speed
 it is that at u_n, in every round anew.
 
 Of discs that touch, those contacts that approach are resolved, then those that approach then, and
@@ -10,7 +10,7 @@ those that take turns are resolved together with e = β = 0; those that are sque
 Contacts of one round that share a disc are resolved together: the impulses for e = β = 0 are those
 of one complementarity problem (:mod:`puck_tables.world.complementarity`), then enlarged by 1 + e
 and 1 + β, as Poisson has it, and lessened together should energy grow.  So no numbering matters,
-and what is symmetric stays so.  Rebounds that die out (:mod:`puck_tables.world.rebounds`) have
+and what is symmetric stays so.  Rebounds that die out (:mod:`puck_tables.world.touching`) have
 e = 0.
 """
 
@@ -52,10 +52,9 @@ from puck_tables.world.group import ARM, GRIP, LEVEL, STICKS, GroupBuffer, Scale
 from puck_tables.world.group import NX as SIGHT_NX
 from puck_tables.world.group import NY as SIGHT_NY
 from puck_tables.world.holds import forbid, response
-from puck_tables.world.layout import HOLD, LIGHTNESS, RADIUS, TURNABILITY, write_over
+from puck_tables.world.layout import HOLD, LIGHTNESS, RADIUS, TURNABILITY, smaller_at, write_over
 from puck_tables.world.multipliers import stop_slips
-from puck_tables.world.rebounds import dies_out
-from puck_tables.world.rims import smaller_at
+from puck_tables.world.touching import dies_out
 
 NO_END, TOO_FAST = -1, -2  # how impacts fail: rounds without end; faster than a table goes
 

@@ -306,6 +306,22 @@ def _from_rest(
 
 
 @inlined
+def _last_of(
+    phase: Phase, scale: FloatArray, tol: float, t: float, q: float, slow: float, h: float,
+    buffer: LoneBuffer,
+) -> tuple[Phase, float]:  # fmt: skip
+    """The last of a slip q, straight to its stop if it may, and how long a step is then, else h."""
+    y, stages, speed, unit = buffer.y, buffer.stages, scale[0], scale[0] / scale[1]
+    pull = slip_rate(phase.model.body.radius, stages)
+    way, _ = goes_straight(phase, speed, tol, unit, t, q, pull, slow, y, stages)
+    if not way[3] < 0.0:
+        return phase, h
+    straight = Phase(phase.model, phase.friction, phase.piece, STOPS, way, 0.0)
+    rates(straight, t, y, stages, FIRST)
+    return straight, -q / way[3]
+
+
+@inlined
 def _go_on_from(model: Model, tol: float, buffer: LoneBuffer) -> None:
     """The end of a step is the start of the next."""
     for n in range(SIZE):
@@ -378,12 +394,8 @@ def follow_alone(
             rates(phase, now, y, stages, FIRST)
         undecided, known = False, True
         if mode == SLIDES and load > 0.0 and 0.0 < q <= straight:
-            pull = slip_rate(radius, stages)
-            way, _ = goes_straight(phase, speed, tol, unit, now, q, pull, slow, y, stages)
-            if way[3] < 0.0:
-                mode, h, newton = STOPS, -q / way[3], 0.0
-                phase = Phase(model, friction, rows, mode, way, newton)
-                rates(phase, now, y, stages, FIRST)
+            phase, h = _last_of(phase, engine.scale, tol, now, q, slow, h, buffer)
+            mode, way, newton = phase.mode, phase.way, phase.newton
         h = _longest(phase, now, h, q, speed, buffer)
         landed = now + (1.0 if mode == STOPS else 1.1) * h >= target
         whole = target - now if landed else h
@@ -391,7 +403,7 @@ def follow_alone(
         grows = times_as_long(error, tol, 0.25 if newton > 0.0 else 0.125, 0.1)
         nowhere = not math.isfinite(stages[STAGES - 1, VX])
         if nowhere or not error <= tol:
-            falls = nowhere and newton == 0.0  # it tips there: half as far, time and again
+            falls = nowhere and newton == 0.0  # it tips there: a quarter as far, time and again
             tips, failed = now + whole if falls else tips, failed or not falls
             h = whole * (0.25 if falls else grows)
             if h < (tol if falls else _SHORTEST) * unit:

@@ -57,7 +57,7 @@ def _restitutions(scene: SceneSpec) -> Iterator[float | str | Restitution]:
 def rims_of(
     scene: SceneSpec, pucks: list[ScenePuck]
 ) -> tuple[FloatArray, FloatArray, FloatArray, dict[object, float]]:
-    """The array of :mod:`puck_tables.world.rims`; which kinds of rims discs and obstacles have.
+    """The array of :mod:`puck_tables.world.layout`; which kinds of rims discs and obstacles have.
 
     Those that the same rims of the scene name have one kind.  And by what numbers laws are called.
     """

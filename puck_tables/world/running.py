@@ -28,8 +28,8 @@ from puck_tables.world.lasting import (
     fill_motion_ends,
     limits_of,
     next_target,
+    with_law_for,
 )
-from puck_tables.world.law_range import with_law_for
 from puck_tables.world.layout import EDGE, KIND, POCKET
 from puck_tables.world.lone import LONGEST
 from puck_tables.world.obstacles import obstacle_names

@@ -29,8 +29,7 @@ from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import pucks_of
 from puck_tables.world.board_case import BoardCase
 from puck_tables.world.map import Map
-from puck_tables.world.sample import Sample
-from puck_tables.world.scene_ends import SceneEnds, axes_of
+from puck_tables.world.scene_ends import Sample, SceneEnds, axes_of
 
 FEWEST, MOST = 1 << 6, 1 << 13  # runs kept together in a store
 _COPIES = 4  # of the columns: as made, in their shape, and what follows from them

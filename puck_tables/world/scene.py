@@ -25,11 +25,11 @@ if TYPE_CHECKING:
     from puck_tables.scene.run import Run
     from puck_tables.world.aimed import BoardAim
     from puck_tables.world.map import Map
-    from puck_tables.world.sample import Sample
+    from puck_tables.world.scene_ends import Sample
     from puck_tables.world.world import World
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Scene(SceneSpec):
     """A puck on a floor, its launch, and whatever acts on it: checked when it is made.
 

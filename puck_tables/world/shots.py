@@ -18,7 +18,7 @@ from puck_tables._core.executor import keep_on
 from puck_tables.errors import PuckError
 from puck_tables.scene.acting import acting
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.stopping.base_stops import stop_on_base
+from puck_tables.stopping.stops import stop_on_base
 from puck_tables.world.agreement import (
     frictions_under,
     is_integrated,

@@ -52,7 +52,6 @@ from puck_tables.world.layout import LIGHTNESS, write_over
 from puck_tables.world.lone import LONGEST
 from puck_tables.world.passings import COLUMNS, FROM, LINE, NEXT, SIDE, UNKNOWN, find_passings
 from puck_tables.world.paths import FOR_EVER
-from puck_tables.world.rebounds import MOST_BACK
 from puck_tables.world.segment import (
     FIRST_PIECE,
     GONE,
@@ -67,6 +66,7 @@ from puck_tables.world.segment import (
 )  # fmt: skip
 from puck_tables.world.segment_starts import CONCERNED, NOT_CONCERNED, Room, locate, room_for
 from puck_tables.world.setting_off import FULL, PAUSED, PUSHING, REACHED
+from puck_tables.world.touching import MOST_BACK
 
 # what is done to boards beside an event by hand: time passes; a disc is led; all are put, but those
 # out of play whose rows are what they were

@@ -29,7 +29,7 @@ from puck_tables.world.by_hand import (
 from puck_tables.world.engine_state import Whole
 from puck_tables.world.floor_under import law_goes_to, moves_along
 from puck_tables.world.holds import response
-from puck_tables.world.law_range import refuse_too_fast
+from puck_tables.world.lasting import refuse_too_fast
 from puck_tables.world.layout import HOLD, LIGHTNESS, RADIUS
 from puck_tables.world.paths import FOR_EVER
 from puck_tables.world.prepare import set_scales

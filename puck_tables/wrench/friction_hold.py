@@ -3,7 +3,7 @@
 Force and torque of a slip, and their derivatives: under a base, and under a round puck with uniform
 pressure in full contact, by closed forms (:mod:`puck_tables.kernels.base_friction`,
 :mod:`puck_tables.kernels.base_hessian`).  Under other laws by the resultants
-(:mod:`puck_tables.contact.resultants`), u^⊥ the velocity turned by +90°,
+(:mod:`puck_tables.contact.closed_form`), u^⊥ the velocity turned by +90°,
 
     F = −f N (ρ_∥ u + sin φ ρ_⊥ u^⊥)/Q,   T = −½ f N r sin φ ρ_ω,   Q = hypot(u, r w).
 

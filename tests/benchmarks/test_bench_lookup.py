@@ -16,8 +16,8 @@ from scipy.interpolate import NdBSpline, RectBivariateSpline, make_interp_spline
 
 import puck_tables
 from puck_tables.contact import closed_form, quadrature
+from puck_tables.contact.closed_form import moment_balance
 from puck_tables.contact.integrals import slip_direction
-from puck_tables.contact.resultants import moment_balance
 from puck_tables.kernels.closed_form_kernel import _fill
 from puck_tables.kernels.quadratic import fill_resultants
 from puck_tables.table.resultant_table import ResultantTable

@@ -20,8 +20,7 @@ from paper.runs import (
     slip_ratio,
     time_left,
 )
-from puck_tables.contact.closed_form import by_closed_form
-from puck_tables.contact.resultants import Resultants
+from puck_tables.contact.closed_form import Resultants, by_closed_form
 from puck_tables.motion.limits import approach_exponent, curvature_slope, limit_angle
 from puck_tables.trajectory import Trajectory
 

@@ -12,8 +12,7 @@ from paper.claim import Claim, at_least, equal, less, more
 from paper.patch import ANGLES, HEIGHTS, PHI
 from paper.root import root
 from puck_tables._core.arrays import FloatArray
-from puck_tables.contact.closed_form import by_closed_form
-from puck_tables.contact.resultants import Resultants
+from puck_tables.contact.closed_form import Resultants, by_closed_form
 from puck_tables.motion.limits import approach_exponent, curvature_slope, limit_angle
 
 Friction = Callable[[npt.ArrayLike, npt.ArrayLike], Resultants]

@@ -12,9 +12,9 @@ from paper.claim import Claim, at_least, equal, less, more
 from paper.root import root
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact import closed_form, quadrature
+from puck_tables.contact.closed_form import moment_balance, pressure_tilt
 from puck_tables.contact.integrals import PatchIntegrals, slip_direction
 from puck_tables.contact.pressure import PressureLaw
-from puck_tables.contact.resultants import moment_balance, pressure_tilt
 
 Integrals = Callable[[npt.ArrayLike], PatchIntegrals]
 

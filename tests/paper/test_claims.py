@@ -19,9 +19,8 @@ from paper.claim import Claim, as_page, equal, farthest, less, more
 from paper.root import root
 from paper.runs import ACCURACY
 from puck_tables.contact import closed_form, quadrature
-from puck_tables.contact.closed_form import by_closed_form
+from puck_tables.contact.closed_form import Resultants, by_closed_form
 from puck_tables.contact.integrals import PatchIntegrals
-from puck_tables.contact.resultants import Resultants
 from puck_tables.trajectory import Trajectory
 
 

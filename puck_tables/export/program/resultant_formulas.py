@@ -25,8 +25,8 @@ def shape_integrals(ratio: float, fast: bool, p: Out) -> None:
     c: float = m * c_over_m
     power: float = 2.0
     total: float = 2.0 * c_over_m * c_over_m
-    step: int = 0
-    while step < MOST_STEPS and mean - geometric > 1e-16 * mean:
+    rounds: int = 0
+    while rounds < MOST_STEPS and mean - geometric > 1e-16 * mean:
         x_before: float = x
         x = x + y * inverse
         y = y + x_before * geometric
@@ -38,7 +38,7 @@ def shape_integrals(ratio: float, fast: bool, p: Out) -> None:
         c = 0.25 * c * c * inverse
         power = 2.0 * power
         total = total + power * c_over_m * c_over_m
-        step = step + 1
+        rounds = rounds + 1
     k: float = HALF_PI * inverse
     b: float = 0.5 * HALF_PI * (x + y * inverse) * inverse / power
     g: float = k * total

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from math import sqrt
 
+from puck_tables.export.program.base_step import BASE_SQUARE, STEP_ERROR
 from puck_tables.export.program.intrinsics import Numbers
 from puck_tables.export.program.plain_motion import TOLERANCE
-from puck_tables.export.program.polygon_motion import BASE_SQUARE, STEP_ERROR
 
 
 def misses(got: float, wanted: float, unit: float) -> int:

@@ -6,8 +6,7 @@ from pathlib import Path
 
 from puck_tables._core.safe_read import read_whole
 from puck_tables.errors import InputError
-from puck_tables.film.film import Reader
-from puck_tables.film.space import NO_ACCELERATIONS
+from puck_tables.film.film import NO_ACCELERATIONS, Reader
 
 _BEGINS = b"time,seconds_elapsed,"  # as Sensor Logger writes
 _LARGEST = 1 << 28  # bytes

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.beginning import HDF5
+from puck_tables._core.safe_read import HDF5
 from puck_tables.errors import InputError
 from puck_tables.film.column_roles import Layout, deeplabcut
 from puck_tables.film.film import Film, Reader

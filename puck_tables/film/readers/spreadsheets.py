@@ -18,7 +18,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
-from puck_tables._core.beginning import ZIP
+from puck_tables._core.safe_read import ZIP
 from puck_tables._core.text import number
 from puck_tables.errors import InputError
 from puck_tables.film.film import Reader

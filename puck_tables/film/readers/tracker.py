@@ -30,8 +30,7 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.beginning import ZIP
-from puck_tables._core.safe_read import read_whole
+from puck_tables._core.safe_read import ZIP, read_whole
 from puck_tables._core.text import encoding_of
 from puck_tables._core.units import unit_word
 from puck_tables.errors import InputError
