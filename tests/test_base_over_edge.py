@@ -67,6 +67,13 @@ def stribeck(u: np.ndarray) -> np.ndarray:
     return 0.1 + 0.2 * np.exp(-u / 0.3)
 
 
+WOOD = edge_judge.Brushed(0.22, 0.3, 0.7)
+BY_GRIP = {
+    None: Floor(), stribeck: Floor(law=StribeckLaw(0.3, 0.1, speed=0.3)),
+    WOOD: Floor(orthotropic=Orthotropic((0.22, 0.3), 0.7)),
+}  # fmt: skip
+
+
 def thrown(seed: int, count: int) -> tuple[np.random.Generator, Base, np.ndarray, list[np.ndarray]]:
     """A polygon over its centre of mass, its corners about that, and edges."""
     rng = np.random.default_rng(seed)
@@ -74,7 +81,7 @@ def thrown(seed: int, count: int) -> tuple[np.random.Generator, Base, np.ndarray
     return rng, base, np.array(base.outlines[0]) - np.array(base.middle), over(rng, count)
 
 
-@pytest.mark.parametrize("grip", [None, stribeck])
+@pytest.mark.parametrize("grip", BY_GRIP)
 @pytest.mark.parametrize("tall", [0.0, 0.5, 0.95])
 @pytest.mark.parametrize("count", [1, 2])
 def test_friction_is_that_of_the_judge(count: int, tall: float, grip: Any):
@@ -85,9 +92,8 @@ def test_friction_is_that_of_the_judge(count: int, tall: float, grip: Any):
         lever = tall * base.highest_lever
         if not base.is_under_centre:
             continue
-        floor = Floor() if grip is None else Floor(law=StribeckLaw(0.3, 0.1, speed=0.3))
         puck = Puck(base=base, friction=0.3, mass=2.0, height=lever / 0.15)
-        scene = Scene(puck, floor, edges=as_edges(rows), launch=Launch((9.0, 0.0)))
+        scene = Scene(puck, BY_GRIP[grip], edges=as_edges(rows), launch=Launch((9.0, 0.0)))
         state = np.array([0.0, 0.0, rng.uniform(-3.0, 3.0), *rng.normal(0.0, 0.3, 2), 0.0])
         state[5] = rng.choice([-1.0, 1.0, 10.0]) * rng.uniform(0.3, 2.0)
         state[5] *= rng.choice([0.0, 1.0, 1.0, 1.0])
@@ -108,11 +114,13 @@ def test_a_disc_is_a_polygon_of_many_corners():
     corners = 0.05 * np.column_stack([np.cos(turn), np.sin(turn)])
     for gap in (0.002, 0.01, 0.03):
         rows = [np.array([0.6, 0.8, -gap])]
-        scene = Scene(Puck(base=Base.disc(0.05), friction=0.3, mass=1.0), edges=as_edges(rows),
-                      launch=Launch((0.1, 0.0)))  # fmt: skip
         state = np.array([0.0, 0.0, 0.4, 0.1, 0.2, 9.0])
-        told = friction_at(scene, state[None])[0] / DECEL
-        np.testing.assert_allclose(told, edge_judge.under(corners, rows, state), atol=1e-5)
+        disc, brushed = Puck(base=Base.disc(0.05), friction=0.3, mass=1.0), Puck(0.05, mass=1.0)
+        for grip, puck, unit in ((None, disc, 0.3), (WOOD, brushed, 1.0)):
+            scene = Scene(puck, BY_GRIP[grip], Launch((0.1, 0.0)), edges=as_edges(rows))
+            told = friction_at(scene, state[None])[0] / (unit * 9.80665)
+            true = edge_judge.under(corners, rows, state, 0.0, grip)
+            np.testing.assert_allclose(told, true, atol=1e-5)
 
 
 def follow(run: Any, when: float, true: np.ndarray, seed: int) -> None:
@@ -135,25 +143,26 @@ def slid(seed: int) -> tuple[list[np.ndarray], np.ndarray, Launch]:
     return rows, state, Launch((state[3], state[4]), spin=state[5], orientation=state[2])
 
 
-def test_motion_is_that_of_the_judge():
+@pytest.mark.parametrize("grip", [None, WOOD])
+def test_motion_is_that_of_the_judge(grip: Any):
     ends = set()
-    for seed in range(6):
+    for seed in range(6) if grip is None else (0, 3):
         rows, state, launch = slid(seed)
-        run: Any = Scene(BOX, edges=as_edges(rows), launch=launch).simulate()
-        follow(run, *edge_judge.slide(CORNERS, rows, DECEL, BOX.gyration, state), seed)
+        run: Any = Scene(BOX, BY_GRIP[grip], edges=as_edges(rows), launch=launch).simulate()
+        numbers = DECEL if grip is None else 9.80665, BOX.gyration, state, 0.0, grip
+        follow(run, *edge_judge.slide(CORNERS, rows, *numbers), seed)
         ends.add(run.end)
     assert ends == {"at rest", "over the edge"}
 
 
-@pytest.mark.parametrize("grip", [None, stribeck])
+@pytest.mark.parametrize("grip", [None, stribeck, pytest.param(WOOD, marks=pytest.mark.thorough)])
 def test_motion_of_tall_bodies_is_that_of_the_judge(grip: Any):
     tall = replace(BOX, height=0.08)
-    floor = Floor() if grip is None else Floor(law=StribeckLaw(0.3, 0.1, speed=0.3))
     ends = set()
     for seed in (6, 8) if grip is None else (6,):
         rows, state, launch = slid(seed)
         rows = [row - [0.0, 0.0, 0.01] for row in rows]
-        run: Any = Scene(tall, floor, edges=as_edges(rows), launch=launch).simulate()
+        run: Any = Scene(tall, BY_GRIP[grip], edges=as_edges(rows), launch=launch).simulate()
         numbers = (DECEL, BOX.gyration, state, 0.012) if grip is None else (
             9.80665, BOX.gyration, state, 0.04, grip
         )  # fmt: skip
@@ -432,7 +441,7 @@ def test_what_is_carried_as_if_none_hung_in_the_air_says_so():
     strips = Floor(strips=Strips((9.0,), (0.3, 0.2)))
     boards: list[tuple[Puck, Floor, str]] = [
         (BOX, Floor(), "tips"), (DOME, Floor(), "is a guess"), (tall, Floor(), "tips"),
-        (BOX, strips, "tips"), (BOX, brushed, "is a guess"),
+        (BOX, strips, "tips"), (BOX, brushed, "tips"), (Puck(0.07), brushed, "tips"),
     ]  # fmt: skip
     for puck, floor, words in boards:
         run: Any = Scene(puck, floor, Launch((0.6, 0.0)), edges=edges).simulate()

@@ -12,17 +12,15 @@ from typing import Any
 import numpy as np
 import pytest
 from judges import edge_judge
-from test_base_over_edge import BOX, CORNERS, DECEL, follow, stribeck, thrown
+from test_base_over_edge import BOX, BY_GRIP, CORNERS, DECEL, WOOD, follow, thrown
 
 from puck_tables import (
     Base,
     Floor,
-    InputError,
     Launch,
     Orthotropic,
     Puck,
     Scene,
-    StribeckLaw,
     Strips,
     Wall,
     contact,
@@ -35,9 +33,8 @@ NONE = [np.array([1.0, 0.0, -9.0])]  # an edge far away
 LIFTED = replace(BOX, height=0.25)  # from 0.0994 m on it lifts
 
 
-@pytest.mark.parametrize("grip", [None, stribeck])
+@pytest.mark.parametrize("grip", BY_GRIP)
 def test_friction_is_that_of_the_judge(grip: Any):
-    floor = Floor() if grip is None else Floor(law=StribeckLaw(0.3, 0.1, speed=0.3))
     for times in (1.1, 2.0, 3.0):
         for seed in range(20 if grip is None else 6):
             rng, base, about, _ = thrown(seed, 1)
@@ -45,7 +42,7 @@ def test_friction_is_that_of_the_judge(grip: Any):
             puck = Puck(base=base, friction=0.3, mass=2.0, height=lever / 0.15)
             state = np.array([0.0, 0.0, rng.uniform(-3.0, 3.0), *rng.normal(0.0, 0.3, 2), 0.0])
             state[5] = rng.choice([0.0, -1.0, 1.0, 10.0]) * rng.uniform(0.3, 2.0)
-            scene = Scene(puck, floor, launch=Launch((9.0, 0.0)))
+            scene = Scene(puck, BY_GRIP[grip], launch=Launch((9.0, 0.0)))
             told = friction_at(scene, state[None])[0] / (2.0 * 9.80665)
             told, arm = (told / 0.3, lever) if grip is None else (told, lever / 0.3)
             true = edge_judge.under(about, NONE, state, arm, grip)
@@ -55,25 +52,32 @@ def test_friction_is_that_of_the_judge(grip: Any):
 def test_a_disc_is_the_round_contact_that_opens():
     for delta in (1.5, 2.0, 3.5):
         for phi in (0.2, 0.5, 0.9, 1.3):
-            puck = Puck(base=Base.disc(0.05), friction=0.3, mass=1.0, height=delta * 0.05 / 0.6)
+            more: Any = {"friction": 0.3, "mass": 1.0, "height": delta * 0.05 / 0.6}
             state = [0.0, 0.0, 0.7, math.cos(phi), 0.0, math.sin(phi) / 0.05]
-            scene = Scene(puck, launch=Launch((9.0, 0.0)))
-            fx, fy, torque = friction_at(scene, np.array([state]))[0] / DECEL
             true = contact.one_sided_resultants(phi, delta)
-            assert abs(fx + math.cos(phi) * true.parallel) < 1e-11
-            assert abs(abs(fy) - math.sin(phi) * math.cos(phi) * true.perpendicular) < 1e-11
-            assert abs(torque + 0.025 * math.sin(phi) * true.spin) < 1e-12
+            equal = Floor(orthotropic=Orthotropic((0.3, 0.3)))
+            for puck, floor in (
+                (Puck(base=Base.disc(0.05), **more), Floor()),
+                (Puck(0.05, **more), equal),
+            ):
+                scene = Scene(puck, floor, launch=Launch((9.0, 0.0)))
+                fx, fy, torque = friction_at(scene, np.array([state]))[0] / DECEL
+                assert abs(fx + math.cos(phi) * true.parallel) < 1e-11
+                assert abs(abs(fy) - math.sin(phi) * math.cos(phi) * true.perpendicular) < 1e-11
+                assert abs(torque + 0.025 * math.sin(phi) * true.spin) < 1e-12
 
 
-def test_motion_is_that_of_the_judge():
+@pytest.mark.parametrize("grip", [None, pytest.param(WOOD, marks=pytest.mark.thorough)])
+def test_motion_is_that_of_the_judge(grip: Any):
     for seed, speed in ((0, 0.5), (1, 0.1)):
         state = np.array([0.0, 0.0, 0.3 + seed, speed, 0.1, 6.0])
         launch = Launch((speed, 0.1), spin=6.0, orientation=state[2])
-        run: Any = Scene(LIFTED, launch=launch).simulate()
+        run: Any = Scene(LIFTED, BY_GRIP[grip], launch=launch).simulate()
         assert run.end == "at rest"
         assert run.energy_residual < 1e-9
-        lever = 0.15 * LIFTED.height
-        follow(run, *edge_judge.slide(CORNERS, NONE, DECEL, BOX.gyration, state, lever), seed)
+        decel, lever = (DECEL, 0.15) if grip is None else (9.80665, 0.5)
+        numbers = decel, BOX.gyration, state, lever * LIFTED.height, grip
+        follow(run, *edge_judge.slide(CORNERS, NONE, *numbers), seed)
 
 
 def test_it_lifts_where_its_pressure_has_come_to_nothing():
@@ -137,5 +141,3 @@ def test_what_knows_no_lifted_base_says_so():
     for call in asked:
         with pytest.raises(ContactError, match=r"would lift.*a Scene moves it"):
             call()
-    with pytest.raises(InputError, match="would lift"):
-        Scene(LIFTED, Floor(orthotropic=Orthotropic((0.3, 0.2))), time=1.0)

@@ -174,7 +174,7 @@ BOARD: dict[str, Any] = {
 # how a puck of it is led, where that matters to an entry
 LED = {"kind": {"kind": "rail"}, "angle": {"kind": "rail"}, "velocity": {"kind": "rail"},
        "reach": {"kind": "pivot", "reach": 0.02}, "side_slip": {"kind": "blade"}}  # fmt: skip
-NO_PHYSICS = {"title", "frames", "tol", "floor.law.kind"}
+NO_PHYSICS = {"title", "frames", "tol", "floor.law.kind", "floor.orthotropic.kind"}
 # change nothing: see tests/test_lines.py
 LINES = {f"line[0].{name}" for name in ("start", "end", "centre", "radius", "name", "colour")}
 BASES = {"puck.base", "puck[0].base"}  # in place of a radius: see tests/test_base_scenes.py

@@ -104,7 +104,7 @@ def _potentials(alpha: float, beta: float, x: float, y: float) -> tuple[float, f
 
 
 @inlined
-def _at(alpha: float, beta: float, x: float, y: float, tx: float, ty: float) -> Sums:
+def sums_at(alpha: float, beta: float, x: float, y: float, tx: float, ty: float) -> Sums:
     """The integrands at a point of the boundary, with its direction (tx, ty)."""
     h, k, q = _potentials(alpha, beta, x, y)
     return _combined(tx, ty, x * ty - y * tx, h, x * h, y * h, k, x * k, y * k, q)
@@ -125,7 +125,7 @@ def line_sums(
         for i in range(_NODES):
             way = half * _NODE[i]
             weight = half * _WEIGHT[i]
-            here = _at(alpha, beta, mx + way * tx, my + way * ty, tx, ty)
+            here = sums_at(alpha, beta, mx + way * tx, my + way * ty, tx, ty)
             sums = added(sums, weight, here)
         return sums
     # s along it from the foot (x0, y0) of the disc's centre; w/β = hypot(s − place, off)
@@ -176,7 +176,7 @@ def _panel(
         for i in range(_NODES):
             c, s = cosine_sine_of(half * _NODE[i])
             x, y = cosine * c - sine * s, sine * c + cosine * s
-            here = _at(alpha, beta, cx + x, cy + y, -y, x)
+            here = sums_at(alpha, beta, cx + x, cy + y, -y, x)
             sums = added(sums, half * _WEIGHT[i], here)
     else:
         for i in range(_NODES):

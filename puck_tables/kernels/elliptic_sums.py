@@ -1,25 +1,26 @@
 """Sums of friction over a base that is rougher one way than the other, along its contour.
 
 The local friction T is that of the largest dissipation within an ellipse (Michałowski, Mróz 1978;
-Goyal, Ruina, Papadopoulos 1991): of an element that slips in the direction e, in the axes of the
-ellipse and over the load, σ T is against it,
+Goyal, Ruina, Papadopoulos 1991): of an element that slips at u, in the axes of the ellipse and over
+the load, σ T is against it,
 
-    T = (f_x² e_x, f_y² e_y)/√(f_x² e_x² + f_y² e_y²).
+    T = A² u/|A u|,   A = diag(f_x, f_y).
 
-All along a ray from the instantaneous centre C the slip is in one direction, so that T stands
-before the integral along the ray.  With (R, t) polar coordinates about C and r from there,
+With the spin ω and (x, y) from the instantaneous centre u = ω (−y, x), so that A u = ω (−y', x')
+with x' = f_y x, y' = f_x y: T is A times the slip direction e' of a base that is stretched so, and
 
-    ∫ T dA = ½ ∮ T R² dt,   ∫ T ⊗ r dA = ⅓ ∮ T ⊗ r R² dt,   ∫ r (r × T) dA = ¼ ∮ r (r × T) R² dt.
+    ∫ T dA = A ∫ e' dA' / (f_x f_y),
 
-On a side at the distance d from C, R² dt = d ds, and y = asinh(s/|d|); Gauss's rule on panels that
-shrink to where the slip is along the axis of less friction, next to which the root has a zero.
-Where C lies far away the inner integral runs from the distance of C.  Over a disc friction is
-summed along the chords through C.  With θ from the direction to the middle of the disc, p = s sin θ
+along its contour as everywhere (:mod:`puck_tables.kernels.base_boundary`).  Circles become
+ellipses; there Gauss's rule on panels that shrink to where A u vanishes, of complex angles, too.
+
+Over a whole disc friction is summed along the chords through the instantaneous centre, on which T
+is the same.  With θ from the direction to the middle of the disc, p = s sin θ
 the distance of a chord (s = v/(r|ω|)), L = √(1 − p²) its half and D = s cos θ, in units of r,
 
     ∫ dA → 2LD dθ,   ∫ ρ dA → ⅔L³ dθ,   ∫ ρ² dA → ⅔L³D dθ    (ρ along the chord from its middle)
 
-whether C lies in the disc or not.  For s > 1 sin q = s sin θ clears the ends.
+whether the centre lies in the disc or not.  For s > 1 sin q = s sin θ clears the ends.
 """
 
 from __future__ import annotations
@@ -30,18 +31,20 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.base_friction import DISCS, HEAD, REACH, SIDES, disc_in
+from puck_tables.kernels.base_boundary import line_sums, sums_at
 from puck_tables.kernels.base_sums import NOTHING, Sums, from_slip, moved, plus, scaled
-from puck_tables.kernels.compile import inlined, inner, kernel, patience
+from puck_tables.kernels.compile import inlined, inner, patience
 from puck_tables.kernels.polygon_sums import (
+    ABOUT_X,
+    ABOUT_Y,
     BEGIN_X,
     BEGIN_Y,
-    FAR,
-    LENGTH,
+    END_X,
+    END_Y,
     PIECE_COLUMNS,
-    TANGENT_X,
-    TANGENT_Y,
-    ray_to,
+    RADIUS,
+    START,
+    TURN,
 )
 
 # of Gauss's rule a panel, to 2e-12: test_resultants_are_those_of_a_grid_over_the_base
@@ -50,10 +53,9 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(_COUNT)
 # of a panel, over its distance from what is nearly singular; sums err by 7e-14, at 8 by 7e-11
 _GROWTH = 2.0
 _CLOSEST = 1e-9  # nearer than this nothing is singular that could be seen
-_PANEL = 1.8  # of y: at twice that sums err by 4e-13
-_ON_SIDE = 1e-14  # of the reach: closer, C lies on a side, and nothing is left of it
-_NOWHERE = 1e9  # of the length of a side: so far away nothing is singular
-_STEEP = 1.0 - 1e-15  # of tanh 2y
+_LONGEST = 1.0  # rad, of a panel
+_LEAST = 1e-300  # what is less is nothing: of it a logarithm is taken
+_WHOLE = 2.0 * math.pi  # rad: a whole turn
 
 
 class Ellipse(NamedTuple):
@@ -70,14 +72,6 @@ def local_friction(law: Ellipse, ex: float, ey: float) -> tuple[float, float]:
     """What keeps an element of the load 1 slipping along (ex, ey), in the axes of the ellipse."""
     size = math.hypot(law.along * ex, law.across * ey)
     return law.along * law.along * ex / size, law.across * law.across * ey / size
-
-
-@inlined
-def _friction_along(law: Ellipse, ex: float, ey: float) -> tuple[float, float]:
-    """What keeps an element of the load 1 slipping along (ex, ey), in axes of the base."""
-    c, s = law.cosine, law.sine
-    one, two = local_friction(law, c * ex + s * ey, c * ey - s * ex)
-    return c * one - s * two, s * one + c * two
 
 
 @inlined
@@ -174,106 +168,135 @@ def disc_sums(law: Ellipse, vx: float, vy: float, rim: float) -> Sums:
     return sums
 
 
-@inner
-def _along_side(
-    law: Ellipse, px: float, py: float, tx: float, ty: float, length: float, least: float
-) -> Sums:  # fmt: skip
-    """A straight side that begins at p from C, about C, of a spin > 0."""
-    d, begin, sums = px * ty - py * tx, px * tx + py * ty, NOTHING
-    away = abs(d)
-    if away <= least:
-        return sums
-    low, last = math.asinh(begin / away), math.asinh((begin + length) / away)
-    # where the root is 0, of complex y: tanh y is the sine of the angle of the ray from the normal
-    ax, ay, sharp = _sharpness(law)
-    over, along = ax * tx + ay * ty, ax * ty - ay * tx
-    sine = -along if (d > 0.0) == (over > 0.0) else along
-    one, two = sine * math.cosh(sharp), abs(over) * math.sinh(sharp)
-    square = one * one + two * two
-    place = 0.5 * math.atanh(min(max(2.0 * one / (1.0 + square), -_STEEP), _STEEP))
-    near = max(0.5 * math.atan2(2.0 * two, 1.0 - square), _CLOSEST)
-    while low < last:
-        patience(1)
-        high = _end_of_panel(low, min(low + _PANEL, last), place, near)
-        half, middle = 0.5 * (high - low), 0.5 * (high + low)
-        low = high
-        for n in range(len(_NODES)):
-            up = math.exp(middle + half * _NODES[n])
-            s, distance = 0.5 * away * (up - 1.0 / up), 0.5 * away * (up + 1.0 / up)
-            rx, ry = d * ty + s * tx, s * ty - d * tx
-            fx, fy = _friction_along(law, -ry / distance, rx / distance)
-            one = half * _WEIGHTS[n] * d * distance
-            two, four = one / 3.0, 0.25 * one * (rx * fy - ry * fx)
-            here = (
-                0.5 * one * fx, 0.5 * one * fy, two * fx * rx, two * fx * ry, two * fy * rx,
-                two * fy * ry, four * rx, four * ry,
-            )  # fmt: skip
-            sums = plus(sums, 1.0, here)
-    return sums
+class _Stretched(NamedTuple):
+    """A base in axes along A u of its origin, stretched as friction is, with lengths in its reach.
+
+    ``along``, ``turning``: |A u| there and the spin, over the root of the sum of their squares;
+    ``xx`` … ``yy``: what makes a place of the base one of it.
+    """
+
+    along: float
+    turning: float
+    xx: float
+    xy: float
+    yx: float
+    yy: float
+
+
+@inlined
+def _singular(one: _Stretched, x: float, y: float, row: FloatArray) -> tuple[
+    float, float, float, float
+]:  # fmt: skip
+    """Of a circle of which (x, y) is the stretched middle: at which angles A u vanishes.
+
+    Two complex ones, in z of the unit circle roots of p z² + g z + n = 0: each by its angle and how
+    far it is off the circle.
+    """
+    half = 0.5 * one.turning * row[RADIUS]
+    px, py = half * (one.xx + one.yy), half * (one.yx - one.xy)
+    nx, ny = half * (one.xx - one.yy), half * (one.yx + one.xy)
+    gx, gy = one.turning * x, one.turning * y - one.along
+    sx, sy = (
+        gx * gx - gy * gy - 4.0 * (px * nx - py * ny),
+        2.0 * (gx * gy - 2.0 * (px * ny + py * nx)),
+    )
+    size = math.sqrt(math.sqrt(sx * sx + sy * sy))
+    turn = 0.5 * math.atan2(sy, sx)
+    rx, ry = size * math.cos(turn), size * math.sin(turn)
+    side = 1.0 if rx * gx + ry * gy >= 0.0 else -1.0
+    hx, hy = -0.5 * (gx + side * rx), -0.5 * (gy + side * ry)
+    whole, p, n = math.hypot(hx, hy), math.hypot(px, py), math.hypot(nx, ny)
+    level = math.log(max(whole, math.sqrt(_LEAST)))
+    return (
+        math.atan2(hy, hx) - math.atan2(py, px), abs(level - math.log(max(p, _LEAST))),
+        math.atan2(ny, nx) - math.atan2(hy, hx), abs(level - math.log(max(n, _LEAST))),
+    )  # fmt: skip
+
+
+@inlined
+def _panel_to(start: float, last: float, place: float, near: float) -> float:
+    """How far a panel of a circle may go beside what is singular at an angle of it."""
+    turns = _WHOLE * math.floor((start - place) / _WHOLE)
+    end = _end_of_panel(start, last, place + turns, near)
+    return _end_of_panel(start, end, place + turns + _WHOLE, near)
 
 
 @inner
-def _from_far(
-    law: Ellipse, ux: float, uy: float, w: float, px: float, py: float, tx: float, ty: float,
-    length: float,
-) -> Sums:  # fmt: skip
-    """A straight side that begins at p, about the centre of mass, with C far away."""
-    speed, spin, sign = math.sqrt(ux * ux + uy * uy), abs(w), -1.0 if w < 0.0 else 1.0
-    # across the axis of less friction the slip changes along the side at one rate: where it is 0
-    ax, ay, sharp = _sharpness(law)
-    vx, vy = ux - w * py, uy + w * px
-    off, rate = ax * vy - ay * vx, w * (ax * tx + ay * ty)
-    place, near, low, sums = _NOWHERE * length, length, 0.0, NOTHING
-    if abs(rate) * length > 1e-12 * speed:
-        place = -off / rate
-        along = ax * vx + ay * vy + w * place * (ay * tx - ax * ty)
-        near = max(math.tanh(sharp) * abs(along / rate), _CLOSEST * length)
-    while low < length:
+def _along_arc(one: _Stretched, row: FloatArray) -> Sums:
+    """An arc of a contour, stretched: of an ellipse."""
+    mx = one.xx * row[ABOUT_X] + one.xy * row[ABOUT_Y]
+    my = one.yx * row[ABOUT_X] + one.yy * row[ABOUT_Y]
+    first, near, second, close = _singular(one, mx, my, row)
+    near, close = max(near, _CLOSEST), max(close, _CLOSEST)
+    size, turn, sums = row[RADIUS], row[TURN], NOTHING
+    start = row[START] if turn > 0.0 else row[START] + turn
+    last = start + abs(turn)
+    while start < last:
         patience(1)
-        high = _end_of_panel(low, length, place, near)
-        half, middle = 0.5 * (high - low), 0.5 * (high + low)
-        low = high
+        end = _panel_to(start, min(last, start + _LONGEST), first, near)
+        end = _panel_to(start, end, second, close)
+        half, middle = 0.5 * (end - start), 0.5 * (end + start)
+        start = end
         for n in range(len(_NODES)):
-            s = middle + half * _NODES[n]
-            qx, qy = px + s * tx, py + s * ty
-            vx, vy, slip, deep = ray_to(ux, uy, w, qx, qy)
-            k0 = deep * (speed + 0.5 * spin * deep)
-            k1 = deep * deep * (0.5 * speed + spin * deep / 3.0)
-            k2 = deep * deep * deep * (speed / 3.0 + 0.25 * spin * deep)
-            weight = sign * half * _WEIGHTS[n] * (vx * tx + vy * ty) / (slip * slip)
-            dx, dy = sign * vy / slip, -sign * vx / slip
-            bx, by = qx - deep * dx, qy - deep * dy
-            fx, fy = _friction_along(law, vx / slip, vy / slip)
-            lever, more = bx * fy - by * fx, dx * fy - dy * fx
-            x, y = bx * k0 + dx * k1, by * k0 + dy * k1
-            here = (
-                fx * k0, fy * k0, fx * x, fx * y, fy * x, fy * y,
-                lever * x + more * (bx * k1 + dx * k2), lever * y + more * (by * k1 + dy * k2),
+            angle = middle + half * _NODES[n]
+            c, s = size * math.cos(angle), size * math.sin(angle)
+            here = sums_at(
+                one.along, one.turning, mx + one.xx * c + one.xy * s, my + one.yx * c + one.yy * s,
+                one.xy * c - one.xx * s, one.yy * c - one.yx * s,
             )  # fmt: skip
-            sums = plus(sums, weight, here)
-    return sums
+            sums = plus(sums, half * _WEIGHTS[n], here)
+    return plus(NOTHING, 1.0 if turn > 0.0 else -1.0, sums)
 
 
-@kernel
-def elliptic_sums(base: FloatArray, law: Ellipse, ux: float, uy: float, w: float) -> Sums:
-    """Sums of T over a base, in its axes; not at rest."""
-    sums, spin = NOTHING, abs(w)
-    far = math.sqrt(ux * ux + uy * uy) > FAR * base[REACH] * spin
-    cx, cy = (0.0, 0.0) if far else (-uy / w, ux / w)
-    for at in range(HEAD, HEAD + PIECE_COLUMNS * int(base[SIDES]), PIECE_COLUMNS):
-        px, py, length = base[at + BEGIN_X] - cx, base[at + BEGIN_Y] - cy, base[at + LENGTH]
-        tx, ty = base[at + TANGENT_X], base[at + TANGENT_Y]
-        if far:
-            part = _from_far(law, ux, uy, w, px, py, tx, ty, length)
+@inlined
+def _disc(law: Ellipse, row: FloatArray, ux: float, uy: float, w: float) -> Sums:
+    """A whole disc, or a hole, by its chords."""
+    x, y, size, c, s = row[ABOUT_X], row[ABOUT_Y], row[RADIUS], law.cosine, law.sine
+    vx, vy = ux - w * y, uy + w * x
+    sums = disc_sums(law, c * vx + s * vy, c * vy - s * vx, size * w)
+    sums = moved(scaled(from_slip(sums, c, s, 1.0), size), x, y)
+    return plus(NOTHING, 1.0 if row[TURN] > 0.0 else -1.0, sums)
+
+
+@inner
+def elliptic_sums(
+    room: FloatArray, first: int, last: int, reach: float, law: Ellipse, ux: float, uy: float,
+    w: float,
+) -> Sums:  # fmt: skip
+    """Sums of T over what a contour bounds of a base, in its axes; not at rest.
+
+    ``first``, ``last``: where its rows begin and end in ``room``; ``reach``: of the base, m.
+    """
+    most = max(law.along, law.across)
+    p, q, c, s = law.along / most, law.across / most, law.cosine, law.sine
+    vx, vy, rim = p * (c * ux + s * uy), q * (c * uy - s * ux), reach * abs(w)
+    speed = math.sqrt(vx * vx + vy * vy)
+    unit, way = 1.0 / math.sqrt(speed * speed + rim * rim), -1.0 if w < 0.0 else 1.0
+    ex, ey = (vx / speed, vy / speed) if speed > 0.0 else (1.0, 0.0)
+    x, y = q / reach, p / reach
+    one = _Stretched(
+        unit * speed, unit * rim, ex * x * c - ey * y * s, ex * x * s + ey * y * c,
+        way * (-ey * x * c - ex * y * s), way * (ex * y * c - ey * x * s),
+    )  # fmt: skip
+    sums, discs = NOTHING, NOTHING
+    for at in range(first, last, PIECE_COLUMNS):
+        row = room[at : at + PIECE_COLUMNS]
+        if abs(row[TURN]) == _WHOLE:
+            discs = plus(discs, 1.0, _disc(law, row, ux, uy, w))
+        elif row[TURN] != 0.0:
+            sums = plus(sums, way, _along_arc(one, row))
         else:
-            part = _along_side(law, px, py, tx, ty, length, _ON_SIDE * base[REACH])
-        sums = plus(sums, 1.0, part)
-    if not far:
-        sums = plus(NOTHING, 1.0 if w > 0.0 else -1.0, moved(sums, cx, cy))
-    c, s = law.cosine, law.sine
-    for k in range(int(base[DISCS])):
-        x, y, size, sign = disc_in(base, k)
-        vx, vy = ux - w * y, uy + w * x
-        one = disc_sums(law, c * vx + s * vy, c * vy - s * vx, size * w)
-        sums = plus(sums, sign, moved(scaled(from_slip(one, c, s, 1.0), size), x, y))
-    return sums
+            px, py, qx, qy = row[BEGIN_X], row[BEGIN_Y], row[END_X], row[END_Y]
+            part = line_sums(
+                one.along, one.turning, one.xx * px + one.xy * py, one.yx * px + one.yy * py,
+                one.xx * qx + one.xy * qy, one.yx * qx + one.yy * qy,
+            )  # fmt: skip
+            sums = plus(sums, way, part)
+    fx, fy, xx, xy, yx, yy, gx, gy = from_slip(sums, ex, ey, way)
+    area = reach * reach / (p * q)
+    third, fourth = area * reach * most, area * reach * reach * most
+    sums = (
+        area * law.along * fx, area * law.across * fy, third * p / q * xx, third * xy, third * yx,
+        third * q / p * yy, fourth / q * gx, fourth / p * gy,
+    )  # fmt: skip
+    return plus(discs, 1.0, from_slip(sums, c, s, 1.0))

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from puck_tables.plot.style import GREY
-from puck_tables.scene.floor_parts import frictions_on, largest_of
+from puck_tables.scene.floor_parts import Friction, frictions_on, largest_of
 from puck_tables.scene.floor_patches import corners_of
-from puck_tables.scene.parts import Floor
+from puck_tables.scene.parts import Floor, Orthotropic
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,7 +31,7 @@ class Box(NamedTuple):
 class Shade(NamedTuple):
     """A part of the floor of one friction: a polygon, or without corners a circle, m; its colour.
 
-    ``patch``: whether it lies on others; ``by_speed``: whether its friction is that at rest.
+    ``patch``: whether it lies on others; ``said``: what its friction is, in words.
     """
 
     friction: float
@@ -40,18 +40,17 @@ class Shade(NamedTuple):
     radius: float
     colour: tuple[float, float, float]
     patch: bool
-    by_speed: bool
+    said: str
 
 
 def draw_floor(axes: Axes, floor: Floor, box: Box, highest: float) -> None:
     """All of it that is seen in a box; ``highest``: the largest friction, the darkest patch."""
     from matplotlib.patches import Circle, Polygon
 
-    told: set[tuple[bool, float, bool]] = set()
+    told: set[tuple[bool, str]] = set()
     for shade in shades_of(floor, box, highest):
-        key = (shade.patch, shade.friction, shade.by_speed)
-        said = f"f = {shade.friction:g}{' at rest' if shade.by_speed else ''}"
-        label: dict[str, Any] = {} if key in told else {"label": said}
+        key = (shade.patch, shade.said)
+        label: dict[str, Any] = {} if key in told else {"label": shade.said}
         told.add(key)
         style: dict[str, Any] = {
             "facecolor": shade.colour, "edgecolor": GREY, "linewidth": 0.8,
@@ -80,9 +79,16 @@ def shades_of(floor: Floor, box: Box, highest: float) -> list[Shade]:
         share = friction / (highest or 1.0)
         colour = (0.86 - 0.5 * share, 0.93 - 0.4 * share, 0.98 - 0.25 * share)
         corners: Any = list(map(tuple, corners_of(patch).tolist()))
-        law = not isinstance(given, float)
-        shades.append(Shade(friction, corners, patch.centre, patch.radius, colour, True, law))
+        said = _said(given)
+        shades.append(Shade(friction, corners, patch.centre, patch.radius, colour, True, said))
     return shades
+
+
+def _said(given: Friction) -> str:
+    """The friction of a stretch in words."""
+    if isinstance(given, Orthotropic):
+        return "f = {:g} along, {:g} across".format(*given.friction)
+    return f"f = {largest_of(given, 0.0):g}{'' if isinstance(given, float) else ' at rest'}"
 
 
 def _strips(floor: Floor, box: Box) -> list[Shade]:
@@ -109,8 +115,8 @@ def _strips(floor: Floor, box: Box) -> list[Shade]:
                          (low, along + half))
         ]  # fmt: skip
         shade = 0.97 - 0.22 * friction / highest
-        law = not isinstance(one, float)
-        result.append(Shade(friction, corners, (0.0, 0.0), 0.0, (shade, shade, shade), False, law))
+        grey = (shade, shade, shade)
+        result.append(Shade(friction, corners, (0.0, 0.0), 0.0, grey, False, _said(one)))
     return result
 
 

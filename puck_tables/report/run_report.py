@@ -127,14 +127,21 @@ def _friction(scene: SceneSpec) -> str:
     """Heights and decelerations, one for each strip of floor."""
     normal = scene.puck.gravity * math.cos(scene.floor.slope)
     from puck_tables.scene.by_speed import laws_in
+    from puck_tables.scene.floor_parts import directions_in, frictions_on, largest_of
+    from puck_tables.scene.parts import Orthotropic
 
+    directions = directions_in(scene.floor)
+    by_direction = f"by direction, {', '.join(directions)}" if directions else ""
     if laws := laws_in(scene):
-        return f"by slip speed, {', '.join(laws)}"
-    if scene.floor.orthotropic is not None:
-        decels = ", ".join(f"{f * normal:.6g}" for f in scene.floor.orthotropic.friction)
-        return f"by direction, {_pull(scene)} = {decels} m/s^2 along its axes"
-    decels = ", ".join(f"{f * normal:.6g}" for f in scene.frictions)
+        return "; ".join(filter(None, [f"by slip speed, {', '.join(laws)}", by_direction]))
+    decels = ", ".join(
+        " along and ".join(f"{f * normal:.6g}" for f in one.friction) + " across"
+        if isinstance(one, Orthotropic) else f"{largest_of(one, 0.0) * normal:.6g}"
+        for one in frictions_on(scene.floor, scene.puck.friction)
+    )  # fmt: skip
     decels = f"{_pull(scene)} = {decels} m/s^2"
+    if directions:
+        return f"{by_direction}, {decels}"
     if scene.puck.shape is not None:
         return decels
     words = f"delta = {', '.join(f'{delta:.4g}' for delta in scene.heights)}, {decels}"

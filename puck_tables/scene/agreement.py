@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 from puck_tables.contact.friction_laws import NAMED, FrictionLaw
 from puck_tables.contact.round_load import RoundLoad
-from puck_tables.errors import ContactError, InputError
+from puck_tables.errors import InputError
 from puck_tables.scene.floor_parts import (
     belt_faults,
+    directions_in,
     has_belts,
     has_laws_by_place,
     law_of,
@@ -18,7 +19,7 @@ from puck_tables.scene.floor_patches import patch_faults
 from puck_tables.scene.holds import allowed_velocity
 from puck_tables.scene.orthotropic import LEAST_RATIO
 from puck_tables.scene.over_time import drive_of, grip_faults, largest_factors, motion_of
-from puck_tables.scene.parts import Floor
+from puck_tables.scene.parts import Floor, Orthotropic
 
 if TYPE_CHECKING:
     from puck_tables.scene.scene_spec import SceneSpec
@@ -40,28 +41,29 @@ def floor_faults(scene: SceneSpec) -> list[str]:
     faults += _bad_motion(scene.floor) + _bad_rows(scene)
     if faults:
         return faults
+    faults += _bad_axes(scene.floor)
     if scene.puck.shape is not None:
-        wrong = bad_strips(scene.floor) or patch_faults(scene.floor) or _bad_under_base(scene)
-        return wrong + _bad_axes(scene)
-    if has_laws_by_place(scene.floor):
+        return faults + (bad_strips(scene.floor) or patch_faults(scene.floor))
+    if has_laws_by_place(scene.floor) or scene.floor.orthotropic is not None:
         faults += _bad_load(scene)
     elif scene.floor.law:
         try:
             RoundLoad(scene.puck.body.law)
         except InputError as error:
             faults.append(f"floor.law: {error}")
-    faults += bad_strips(scene.floor) or patch_faults(scene.floor) or _bad_mixed(scene)
-    return faults + _bad_axes(scene)
+    return faults + (bad_strips(scene.floor) or patch_faults(scene.floor) or _bad_mixed(scene))
 
 
 def _bad_load(scene: SceneSpec) -> list[str]:
-    """Why laws over the slip speed that differ by place are not known under a round load."""
+    """Why friction by place or direction that is no number is not known under a round load."""
     law = scene.puck.body.law
     if law.name == "uniform" or law.name.startswith("annulus:"):
         return []
+    by_place = has_laws_by_place(scene.floor)
+    what = "floor.strips or floor.patch with a friction law" if by_place else "floor.orthotropic"
     return [
-        "floor.strips or floor.patch with a friction law: known under uniform pressure only, over "
-        f"any base, not with puck.pressure = {law.name!r}; leave it out, or give numbers"
+        f"{what}: known under uniform pressure only, over any base, not with puck.pressure = "
+        f"{law.name!r}; leave it out{', or give numbers' if by_place else ''}"
     ]
 
 
@@ -77,30 +79,16 @@ def _bad_motion(floor: Floor) -> list[str]:
     others = [name for name in ("velocity", "turning") if getattr(floor, name) not in (0.0, (0, 0))]
     others += ["strips or patches with velocities of their own"] * has_belts(floor)
     try:
-        turns = bool(motion_of(floor)[:, 3].any())
+        motion_of(floor)
     except InputError as error:
         return [f"floor.over_time: {str(error).removeprefix('floor.over_time ')}"]
-    axes = floor.orthotropic
-    others += ["orthotropic"] * (turns and axes is not None and axes.fixed_to == "floor")
     return [f"floor.over_time and floor.{name}: give one of them" for name in others]
-
-
-def _bad_under_base(scene: SceneSpec) -> list[str]:
-    """Why friction is not known under a base that is not round."""
-    puck = scene.puck
-    if scene.floor.orthotropic is not None and puck.shape is not None:
-        try:
-            puck.shape.refuse_lift(_strongest(scene), puck.height)
-        except ContactError as error:
-            return [f"floor.orthotropic: {error}"]
-    return []
 
 
 def _strongest(scene: SceneSpec) -> float:
     """The largest coefficient that friction ever has under the puck, at rest too."""
-    axes = scene.floor.orthotropic
-    frictions = scene.frictions if axes is None else (max(axes.friction),)
-    return scene.floor.static_ratio * float((largest_factors(scene.floor) * frictions).max())
+    factors = largest_factors(scene.floor)
+    return scene.floor.static_ratio * float((factors * scene.frictions).max())
 
 
 def _bad_mixed(scene: SceneSpec) -> list[str]:
@@ -154,34 +142,27 @@ def bad_strips(floor: Floor) -> list[str]:
     return faults
 
 
-def _bad_axes(scene: SceneSpec) -> list[str]:
+def _bad_axes(floor: Floor) -> list[str]:
     """What is wrong with friction that depends on the direction."""
-    floor, puck, two = scene.floor, scene.puck, scene.floor.orthotropic
-    if two is None:
-        return []
-    name, faults = "floor.orthotropic", []
-    if floor.law or floor.strips is not None or floor.patches:
+    faults = []
+    if floor.orthotropic is not None and floor.law:
         faults.append(
-            f"{name}: with floor.law, floor.strips or floor.patch there is no such friction, give "
-            "one"
+            "floor.orthotropic and floor.law: friction goes by one of them, leave one out"
         )
-    if floor.turning != 0.0 and two.fixed_to == "floor":
-        faults.append(f"{name}: not on a floor that turns, its axes stand still; leave one out")
-    if puck.pressure != "uniform":
-        faults.append(f"{name}: known under uniform pressure only, not with puck.pressure")
-    if min(two.friction) < LEAST_RATIO * max(two.friction):
+    if floor.orthotropic is not None and floor.strips is not None:
         faults.append(
-            f"{name}.friction = {list(two.friction)}: one must be at least {LEAST_RATIO:g} of the "
-            "other"
+            "floor.orthotropic and floor.strips: strips say all friction of the floor, each may "
+            "have a direction of its own; give one of them"
         )
-    if puck.shape is not None:
-        return faults
-    tall = 2.0 * _strongest(scene) * puck.height / puck.radius
-    if tall > 1.0:
-        faults.append(
-            f"{name}: 2 f h/r = {tall:.4g} with the larger f must be at most 1, above part of the "
-            "base may lift, which is not known here; choose a lower puck or less friction"
-        )
+    turns = floor.turning != 0.0 or (bool(floor.over_time) and motion_of(floor)[:, 3].any())
+    for name, two in directions_in(floor).items():
+        if turns and two.fixed_to == "floor":
+            faults.append(f"{name}: not on a floor that turns, its axes stand still; leave one out")
+        if min(two.friction) < LEAST_RATIO * max(two.friction):
+            faults.append(
+                f"{name}.friction = {list(two.friction)}: one must be at least {LEAST_RATIO:g} of "
+                "the other"
+            )
     return faults
 
 
@@ -199,7 +180,7 @@ def _bad_rows(scene: SceneSpec) -> list[str]:
         for k, one in enumerate(scene.floor.patches)
     ]
     for name, rows, made in (*given, ("force.over_time", force, drive_of)):
-        if isinstance(rows, float):
+        if isinstance(rows, float | Orthotropic):
             continue
         if isinstance(rows, FrictionLaw):
             faults += [f"{name}: {fault}" for fault in rows.faults()]

@@ -1,7 +1,8 @@
 """Dry friction of a base on a floor of one friction, or of strips and patches.
 
 It is that of the whole base with the friction under its centre of mass, and of every part with what
-its own differs by: a number, or a law over the slip speed, of which none or both are summed.
+its own differs by: a number, or a law over the slip speed or the direction, of which none or both
+are summed.
 """
 
 from __future__ import annotations
@@ -16,19 +17,16 @@ from puck_tables.kernels.base_friction import REACH as BASE_REACH
 from puck_tables.kernels.base_sums import NOTHING, Sums, plus
 from puck_tables.kernels.compile import inlined, inner, on_demand
 from puck_tables.kernels.contour_sums import contour_sums, look_at, whole_sums
-from puck_tables.kernels.elliptic_sums import Ellipse, elliptic_sums
+from puck_tables.kernels.elliptic_sums import elliptic_sums
 from puck_tables.kernels.law_sums import coefficient_at, law_sums
 from puck_tables.scene.floor_map import (
     ACROSS_X,
     ACROSS_Y,
     ANGLE,
-    AXES,
     BASE,
     BORDERS,
     CORNER,
     CORNERS,
-    LAW,
-    LEFT,
     MIDDLE_X,
     MIDDLE_Y,
     PATCHES,
@@ -38,6 +36,7 @@ from puck_tables.scene.floor_map import (
     SHARE,
     border_of,
     corner_of,
+    ellipse_on,
     law_on,
     patch_of,
     strip_at,
@@ -63,10 +62,16 @@ class _Slip(NamedTuple):
 def _with(
     floor_map: FloatArray, sums: Sums, load: float, law: int, first: int, last: int, slip: _Slip
 ) -> Sums:  # fmt: skip
-    """Sums, and those over a contour with a load by a law that begins at a place, or by none."""
+    """Sums, and those over a contour with a load by a law, see :func:`law_on`."""
     if load == 0.0 or first == last:
         return sums
     base = floor_map[int(floor_map[BASE]) :]
+    if law < 0:
+        ellipse = ellipse_on(floor_map, -law)
+        more = elliptic_sums(
+            floor_map, first, last, base[BASE_REACH], ellipse, slip.x, slip.y, slip.spin
+        )  # fmt: skip
+        return plus(sums, load, more)
     if law > 0 and slip.moving != 0.0:
         more = law_sums(
             floor_map, first, last, base[BASE_REACH], floor_map[law:], slip.x, slip.y, slip.spin
@@ -197,12 +202,6 @@ def friction_sums(
 
     ``moving`` 0: with the friction at slip zero, whatever the slip.
     """
-    first, last = int(floor_map[LAW]), int(floor_map[LEFT])
-    if first > 0 and last - first == AXES:
-        angle = floor_map[first + 2] - floor_map[first + 3] * floor_map[ANGLE]
-        law = Ellipse(floor_map[first], floor_map[first + 1], math.cos(angle), math.sin(angle))
-        sums = elliptic_sums(floor_map[int(floor_map[BASE]) : first], law, ux, uy, w)
-        return plus(NOTHING, floor_map[SHARE], sums)
     base, to = floor_map[int(floor_map[BASE]) :], int(floor_map[ROOM])
     reach, borders = base[BASE_REACH], int(floor_map[BORDERS])
     c, s = math.cos(floor_map[ANGLE]), math.sin(floor_map[ANGLE])

@@ -17,6 +17,7 @@ from puck_tables.errors import AccuracyError, InputError
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.scene.floor_parts import frictions_on, has_laws_by_place, law_of
 from puck_tables.scene.ingredients import BySpeed
+from puck_tables.scene.parts import Orthotropic
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.table.speed_build import finest_accuracy
 from puck_tables.table.speed_table import SpeedTable
@@ -48,7 +49,7 @@ def law_range(scene: SceneSpec, fastest: float) -> tuple[SpeedLaw | FrictionLaw,
 
 
 def law_top(scene: SceneSpec, fastest: float) -> float:
-    """Up to which slip all friction laws of a scene are tabulated, m/s.
+    """Up to which slip all friction laws of a scene are tabulated, m/s; inf: it has none.
 
     Raises
     ------
@@ -56,7 +57,7 @@ def law_top(scene: SceneSpec, fastest: float) -> float:
         As :func:`law_range`.
     """
     tops = {name: _first_top(law, fastest) for name, law in laws_in(scene).items()}
-    name, top = min(tops.items(), key=lambda one: one[1])
+    name, top = min(tops.items(), key=lambda one: one[1], default=("", math.inf))
     if fastest > top:
         raise InputError(
             f"the rim slips at {fastest:.6g} m/s at the launch, faster than the friction law "
@@ -85,7 +86,8 @@ def laws_in(scene: SceneSpec) -> dict[str, SpeedLaw | FrictionLaw]:
         return found
     strips = 1 if floor.strips is None else len(floor.strips.friction)
     for part, one in enumerate(frictions_on(floor, 0.0)):
-        if not isinstance(one, float) and (part > 0 or floor.strips is not None):
+        own = part > 0 or floor.strips is not None
+        if own and not isinstance(one, float | Orthotropic):
             name = (
                 f"strips.friction[{part}]" if part < strips else f"patch[{part - strips}].friction"
             )

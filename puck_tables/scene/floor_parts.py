@@ -14,9 +14,9 @@ from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
 from puck_tables.scene.floor_patches import corners_of
-from puck_tables.scene.parts import Floor, Patch, Rows, Strips
+from puck_tables.scene.parts import Floor, Orthotropic, Patch, Rows, Strips
 
-Friction = float | SpeedLaw | FrictionLaw
+Friction = float | SpeedLaw | FrictionLaw | Orthotropic
 
 _WHERE = re.compile(r"(strip|patch) (\d+)")
 
@@ -50,7 +50,7 @@ def law_of(entry: str | Rows | FrictionLaw) -> SpeedLaw | FrictionLaw:
 
 
 def frictions_on(floor: Floor, own: float) -> list[Friction]:
-    """The friction of all stretches, numbers or laws; ``own``: of a puck, where the floor has none.
+    """The friction of all stretches; ``own``: of a puck, where the floor has none.
 
     Raises
     ------
@@ -62,7 +62,7 @@ def frictions_on(floor: Floor, own: float) -> list[Friction]:
     >>> frictions_on(Floor(patches=(Patch(0.1, radius=1.0),)), 0.2)
     [0.2, 0.1]
     """
-    strips, first = floor.strips, law_of(floor.law) if floor.law else own
+    strips, first = floor.strips, law_of(floor.law) if floor.law else floor.orthotropic or own
     stretches: list[Any] = [first] if strips is None else list(strips.friction)
     stretches += [patch.friction for patch in floor.patches]
     return [law_of(one) if isinstance(one, tuple) else one for one in stretches]
@@ -78,7 +78,7 @@ def largest_of(friction: Friction, top: float) -> float:
 
 
 def has_laws_by_place(floor: Floor) -> bool:
-    """Whether strips or patches stand beside a law over the slip speed, or have their own.
+    """Whether strips or patches stand beside a law, by slip speed or direction, or have their own.
 
     >>> has_laws_by_place(Floor(patches=(Patch(((0.0, 0.1), (1.0, 0.2)), radius=1.0),)))
     True
@@ -87,7 +87,22 @@ def has_laws_by_place(floor: Floor) -> bool:
     own = any(
         not isinstance(one, float) for one in (*stretches, *(p.friction for p in floor.patches))
     )
-    return own or (bool(floor.law) and bool(floor.patches))
+    return own or bool((floor.law or floor.orthotropic) and floor.patches)
+
+
+def directions_in(floor: Floor) -> dict[str, Orthotropic]:
+    """Where friction goes by the direction, by what these are called in a message.
+
+    >>> list(directions_in(Floor(patches=(Patch(Orthotropic((0.1, 0.2)), radius=1.0),))))
+    ['floor.patch[0].friction']
+    """
+    strips = () if floor.strips is None else floor.strips.friction
+    given = {
+        "floor.orthotropic": floor.orthotropic,
+        **{f"floor.strips.friction[{k}]": one for k, one in enumerate(strips)},
+        **{f"floor.patch[{k}].friction": one.friction for k, one in enumerate(floor.patches)},
+    }
+    return {name: one for name, one in given.items() if isinstance(one, Orthotropic)}
 
 
 def count_parts(floor: Floor) -> int:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Hashable
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.base import Base
+from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.contact.law_moments import packed_law
+from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.kernels.base_friction import packed, packed_round
 from puck_tables.kernels.pressed_part import NARROWEST
 from puck_tables.motion.puck_spec import PuckSpec
@@ -24,6 +27,7 @@ from puck_tables.scene.floor_parts import (
 from puck_tables.scene.floor_patches import corners_of
 from puck_tables.scene.over_edges import MOST_EDGES
 from puck_tables.scene.over_time import largest_factors
+from puck_tables.scene.parts import Orthotropic
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.sides import ends_of_floor, line_of
 
@@ -42,7 +46,7 @@ def floor_map_of(scene: SceneSpec, normal: float, top: float = 0.0) -> FloatArra
     """
     floor, puck = scene.floor, scene.puck
     one = floor.strips is None and not floor.patches and not needs_sums(floor, puck.height)
-    shape, strips, axes = shape_under(scene), floor.strips, floor.orthotropic
+    shape, strips = shape_under(scene), floor.strips
     if one and shape is None:
         return NO_GROUND
     angle = 0.0 if strips is None else strips.direction
@@ -55,7 +59,7 @@ def floor_map_of(scene: SceneSpec, normal: float, top: float = 0.0) -> FloatArra
             reach = float(np.hypot(*(places - middle).T).max())
             corners.append(places)
         rows.append([*middle, reach, begin, len(places), 0.0])
-    frictions = frictions_on(floor, puck.friction if axes is None else min(axes.friction))
+    frictions = frictions_on(floor, puck.friction)
     loads = normal * np.array([one if isinstance(one, float) else 1.0 for one in frictions])
     parts = np.array(rows).reshape(-1, PATCH_COLUMNS)
     strip_count = len(loads) - len(parts)
@@ -67,15 +71,23 @@ def floor_map_of(scene: SceneSpec, normal: float, top: float = 0.0) -> FloatArra
     )  # fmt: skip
     lever = 0.5 * puck.height / normal
     base = packed(shape, lever) if shape else packed_round(puck.radius, puck.body.law, lever)
-    kept = {key_of(one): one for one in frictions if not isinstance(one, float)}
-    which = [-1 if isinstance(one, float) else list(kept).index(key_of(one)) for one in frictions]
-    laws = [packed_law(*moments_of(one, top)) for one in kept.values()]
-    if axes is not None:
-        turns = float(axes.fixed_to == "floor")
-        laws = [np.array([*np.multiply(normal, axes.friction), axes.direction, turns])]
+    kept = {_key_of(one): one for one in frictions if not isinstance(one, float)}
+    which = [-1 if isinstance(one, float) else list(kept).index(_key_of(one)) for one in frictions]
     sure = shape is None or (puck.height == 0.0 and shape.is_under_centre)  # up to its centre
+    laws = [_packed(one, top) for one in kept.values()]
     how = edges_under(scene), may_lift(scene, top), 0.0 if sure else NARROWEST
     return FloorMap(*there, base, laws, which, belts_of(floor), *how).packed()
+
+
+def _key_of(one: SpeedLaw | FrictionLaw | Orthotropic) -> Hashable:
+    return one if isinstance(one, Orthotropic) else key_of(one)
+
+
+def _packed(one: SpeedLaw | FrictionLaw | Orthotropic, top: float) -> FloatArray:
+    """A law in one array, up to a slip speed, m/s."""
+    if isinstance(one, Orthotropic):
+        return np.array([*one.friction, one.direction, float(one.fixed_to == "floor")])
+    return packed_law(*moments_of(one, top))
 
 
 def may_lift(scene: SceneSpec, top: float = 0.0) -> bool:
@@ -89,8 +101,14 @@ def may_lift(scene: SceneSpec, top: float = 0.0) -> bool:
     >>> [may_lift(Scene(Puck(base="box:0.2x0.1", friction=0.3, height=h))) for h in (0.05, 0.2)]
     [False, True]
     """
-    floor, puck, shape = scene.floor, scene.puck, shape_under(scene)
-    if shape is None or puck.height == 0.0 or floor.orthotropic is not None:
+    shape = shape_under(scene)
+    return shape is not None and _lifts(scene, shape, top)
+
+
+def _lifts(scene: SceneSpec, shape: Base, top: float) -> bool:
+    """Whether friction may lift a part of a base under the puck of a scene."""
+    floor, puck = scene.floor, scene.puck
+    if puck.height == 0.0:
         return False
     most = np.array([largest_of(one, top) for one in frictions_on(floor, puck.friction)])
     strongest = floor.static_ratio * float((largest_factors(floor) * most).max())
@@ -101,8 +119,7 @@ def edges_under(scene: SceneSpec) -> FloatArray:
     """The edges (e, 3) that leave its puck carried by the rest of its base; none: it is not.
 
     A unit normal into the floor and the place along it, m.  It is where the rest is pressed
-    linearly: under uniform pressure or any base, on a floor whose friction does not depend on the
-    direction.
+    linearly: under uniform pressure or any base.
 
     >>> from puck_tables import Edge, Puck, Scene
     >>> puck = Puck(base="box:0.2x0.1", friction=0.3)
@@ -110,11 +127,8 @@ def edges_under(scene: SceneSpec) -> FloatArray:
     >>> edges_under(scene).tolist()
     [[-1.0, 0.0, -0.5]]
     """
-    floor = scene.floor
-    if floor.orthotropic is not None or _pressed_base(scene.puck) is None:
-        return _NO_EDGES
     ends = ends_of_floor(scene)
-    if len(ends) > MOST_EDGES:
+    if len(ends) > MOST_EDGES or _pressed_base(scene.puck) is None:
         return _NO_EDGES
     return np.array([line_of(scene.edges[number]) for number in ends]).reshape(-1, 3)
 
@@ -139,9 +153,27 @@ def shape_under(scene: SceneSpec) -> Base | None:
     >>> shape_under(Scene(Puck(0.04), Floor(orthotropic=brushed))).reach
     0.04
     """
-    puck, axes = scene.puck, scene.floor.orthotropic
-    if puck.shape is None and axes is not None and axes.fixed_to == "body":
-        return Base.disc(puck.radius)
-    if has_laws_by_place(scene.floor) or len(edges_under(scene)):
+    puck = scene.puck
+    if puck.shape is None and (follows_contour(scene) or len(edges_under(scene))):
         return _pressed_base(puck)
     return puck.shape
+
+
+def follows_contour(scene: SceneSpec) -> bool:
+    """Whether friction of the puck of a scene is summed along the contour of its base everywhere.
+
+    Beside laws by place, and where round pucks on a floor of one direction have no other sums.
+
+    >>> from puck_tables import Floor, Orthotropic, Puck, Scene
+    >>> brushed = Floor(orthotropic=Orthotropic((0.1, 0.2)))
+    >>> [follows_contour(Scene(Puck(0.04, height), brushed)) for height in (0.02, 0.2)]
+    [False, True]
+    """
+    floor, puck = scene.floor, scene.puck
+    if puck.shape is not None or has_laws_by_place(floor):
+        return True
+    if floor.orthotropic is None:
+        return False
+    base = _pressed_base(puck)
+    plain = floor.orthotropic.fixed_to == "floor" and puck.body.law.name == "uniform"
+    return not plain or base is None or _lifts(scene, base, 0.0)

@@ -47,8 +47,10 @@ _TILTED = 1e-14  # of friction: what the load's tilt is known to
 
 @inlined
 def _at_rest(floor_map: FloatArray, part: int) -> float:
-    """F N on a stretch at slip zero."""
+    """F N on a stretch at slip zero, in the direction of the least."""
     law, load = law_on(floor_map, part), summed_load(floor_map, part)
+    if law < 0:
+        return load * min(floor_map[-law], floor_map[1 - law])
     return load * coefficient_at(floor_map[law:], 0.0) if law > 0 else load
 
 

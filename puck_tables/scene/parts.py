@@ -22,14 +22,44 @@ Rows = tuple[tuple[float, ...], ...]
 
 
 @dataclass(frozen=True)
+class Orthotropic:
+    """A floor that is rougher one way than the other, as brushed metal, felt and wood are.
+
+    An element that slips along e feels −(f_x² e_x, f_y² e_y)/√(f_x² e_x² + f_y² e_y²) of its load,
+    in the axes of the floor, or of the body that is so.  It may be the friction of a strip or a
+    patch, too.
+    """
+
+    friction: tuple[float, float] = of(
+        "pair", low=0.0, above=True, doc="along 'direction' and across it",
+        acts="orthotropic friction",
+    )  # fmt: skip
+    direction: float = of("number", 0.0, "rad", doc="of the first of them, from x", acts="")
+    fixed_to: str = of(
+        "choice", "floor", choices=("floor", "body"), acts="",
+        doc="what 'direction' is in: the floor, or the body, as that of a brushed sole is",
+    )  # fmt: skip
+    kind: str = of(
+        "choice", "orthotropic", choices=("orthotropic",), doc="in place of a number", acts=""
+    )
+
+    def largest(self, _: float) -> float:
+        """The larger coefficient, at any slip speed."""
+        return max(self.friction)
+
+
+OWN_FRICTION = {**NAMED, "orthotropic": Orthotropic}  # of a stretch of the floor, besides numbers
+
+
+@dataclass(frozen=True)
 class Strips:
     """Regions of the floor between parallel borders; a base on several feels each of them."""
 
     borders: tuple[float, ...] = of(
         "numbers", unit="m", doc="ascending places along 'direction'", acts="strips"
     )
-    friction: tuple[float | Rows | FrictionLaw, ...] = of(
-        "numbers", low=0.0, kinds=NAMED, doc="one more than borders", acts=""
+    friction: tuple[float | Rows | FrictionLaw | Orthotropic, ...] = of(
+        "numbers", low=0.0, kinds=OWN_FRICTION, doc="one more than borders", acts=""
     )
     direction: float = of("number", 0.0, "rad", doc="across the borders, from x", acts="")
     across: tuple[float, ...] = of(
@@ -44,8 +74,8 @@ class Strips:
 class Patch:
     """A spot of the floor with a friction of its own, round or a polygon; wet, or rough."""
 
-    friction: float | Rows | FrictionLaw = of(
-        "number", low=0.0, kinds=NAMED, doc="in place of that around it", acts="patches"
+    friction: float | Rows | FrictionLaw | Orthotropic = of(
+        "number", low=0.0, kinds=OWN_FRICTION, doc="in place of that around it", acts="patches"
     )
     centre: tuple[float, float] = of("pair", (0.0, 0.0), "m", doc="of a round one", acts="")
     radius: float = of("number", 0.0, "m", low=0.0, doc="of a round one", acts="")
@@ -73,25 +103,6 @@ class Grip:
         acts="friction over time",
     )  # fmt: skip
     where: str = of("text", "floor", doc="'floor', or 'strip 0', 'patch 0', ...", acts="")
-
-
-@dataclass(frozen=True)
-class Orthotropic:
-    """A floor that is rougher one way than the other, as brushed metal, felt and wood are.
-
-    An element that slips along e feels −(f_x² e_x, f_y² e_y)/√(f_x² e_x² + f_y² e_y²) of its load,
-    in the axes of the floor, or of the body that is so.
-    """
-
-    friction: tuple[float, float] = of(
-        "pair", low=0.0, above=True, doc="along 'direction' and across it",
-        acts="orthotropic friction",
-    )  # fmt: skip
-    direction: float = of("number", 0.0, "rad", doc="of the first of them, from x", acts="")
-    fixed_to: str = of(
-        "choice", "floor", choices=("floor", "body"), acts="",
-        doc="what 'direction' is in: the floor, or the body, as that of a brushed sole is",
-    )  # fmt: skip
 
 
 @dataclass(frozen=True)

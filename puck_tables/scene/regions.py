@@ -13,15 +13,16 @@ from puck_tables.kernels.quadratic import HEADER, RATIOS
 from puck_tables.motion.body import body_of, is_plain
 from puck_tables.motion.friction_source import closed_form_friction, table_friction
 from puck_tables.motion.puck_spec import PuckSpec
-from puck_tables.scene.by_speed import UNDER_LAW_ERROR, law_error
-from puck_tables.scene.floor_parts import has_laws_by_place
+from puck_tables.scene.by_speed import law_error, laws_in
+from puck_tables.scene.floor_parts import directions_in
 from puck_tables.scene.parts import Orthotropic
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.table.friction_section import FINEST_ACCURACY
 from puck_tables.table.resultant_table import ResultantTable
 
 EXACT_BELOW = 1e-9  # friction by closed forms where a table's error would show
-CLOSED_FORM_ERROR, TABLE_ERROR = 1e-14, 2e-11  # of friction over f N
+# of friction over f N: by closed forms, by tables, and by direction
+CLOSED_FORM_ERROR, TABLE_ERROR, DIRECTION_ERROR = 1e-14, 2e-11, 1e-12
 SLICE_SHARE = 0.1  # of the error wanted
 
 
@@ -53,11 +54,11 @@ def axes_of(two: Orthotropic) -> FloatArray:
 def friction_error(scene: SceneSpec) -> float:
     """How wrong the friction ratios under the puck of a scene may be."""
     puck = scene.puck
-    if scene.floor.law or has_laws_by_place(scene.floor):
+    if laws_in(scene):
         return law_error(scene)
+    if directions_in(scene.floor):
+        return DIRECTION_ERROR
     if puck.shape is not None:
-        return CLOSED_FORM_ERROR if scene.floor.orthotropic is None else UNDER_LAW_ERROR
-    if scene.floor.orthotropic is not None:
         return CLOSED_FORM_ERROR
     if all(rubs_plainly(puck, delta) for delta in scene.heights):
         return CLOSED_FORM_ERROR if scene.tol < EXACT_BELOW else TABLE_ERROR

@@ -126,8 +126,6 @@ def frictions_under(scene: SceneSpec, puck: ScenePuck, fastest: float = 0.0) -> 
     (0.2,)
     """
     floor = scene.floor
-    if floor.orthotropic is not None:
-        return (max(floor.orthotropic.friction),)
     return tuple(largest_of(one, fastest) for one in frictions_on(floor, puck.friction))
 
 

@@ -26,7 +26,7 @@ from puck_tables.scene.floor_parts import (
 )
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ingredients import BySpeed, Regions, Surface, floor_velocity
-from puck_tables.scene.map_of_floor import edges_under, floor_map_of, may_lift, shape_under
+from puck_tables.scene.map_of_floor import edges_under, floor_map_of, follows_contour, may_lift
 from puck_tables.scene.over_time import largest_factors
 from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.regions import axes_of, load_limit, of_one_shape, rubs_plainly, section_of
@@ -113,17 +113,11 @@ def regions_of(
     if has_laws_by_place(scene.floor):
         return _by_place(scene, pucks, normals, floors, fastest)
     if scene.floor.law:
-        return _by_slip(scene, pucks, normals, delta, none, fastest)
+        return _by_slip(scene, pucks, normals, delta, fastest)
     if scene.floor.orthotropic is not None:
-        axes = axes_of(scene.floor.orthotropic)
-        strongest = axes[:2].max() * largest_factors(scene.floor)[0]
-        shaped = np.array([
-            shape_under(scene.alone(puck)) is not None and not puck.path for puck in pucks
-        ])  # fmt: skip
-        by_direction = BySpeed(axes, 0.0, 1.0, 1.0)
-        floor_map = _grounds(scene, pucks, shaped)
-        laws = np.tile([0, len(axes)], (len(pucks), 1))
-        return Regions(normals * strongest, delta, none, by_direction, shaped, floor_map, laws)
+        axes, factor = axes_of(scene.floor.orthotropic), float(largest_factors(scene.floor)[0])
+        own = [None if puck.path or _is_summed(scene, puck) else axes for puck in pucks]
+        return _of_one_law(scene, pucks, normals * factor * axes[:2].max(), delta, own, math.inf)
     there = [[(puck, f) for f in _strongest_under(scene, puck, 0.0)] for puck in pucks]
     places = [one for rows in zip(*there, strict=True) for one in rows]
     summed = np.array([_is_summed(scene, puck) for puck, _ in places])
@@ -159,8 +153,7 @@ def _is_summed(scene: SceneSpec, puck: ScenePuck) -> bool:
     """Whether its friction is summed over its base everywhere, not looked up."""
     sums = needs_sums(scene.floor, puck.height)
     sums = sums and scene.floor.orthotropic is None and not scene.floor.law
-    sums = sums or has_laws_by_place(scene.floor)
-    return (sums or puck.shape is not None) and not puck.path
+    return not puck.path and (sums or follows_contour(scene.alone(puck)))
 
 
 def _grounds(
@@ -205,7 +198,7 @@ def _by_place(
 
 def _by_slip(
     scene: SceneSpec, pucks: list[ScenePuck], normals: FloatArray, delta: FloatArray,
-    limits: FloatArray, fastest: float,
+    fastest: float,
 ) -> Regions:  # fmt: skip
     """By a friction law over the slip speed: tables under round loads, integrals under others.
 
@@ -223,25 +216,40 @@ def _by_slip(
         None if puck.path or may_lift(scene.alone(puck), top) else load_under(puck)
         for puck in pucks
     ]
+    tables = {load: law_table(scene, law, top, load) for load in under if load is not None}
+    for puck, load in zip(pucks, under, strict=True):
+        if puck.shape is None and load is not None:
+            tables[load].refuse_height(static * max(factor, 1.0) * 2.0 * puck.height / puck.radius)
+    compiled = {load: table.compiled for load, table in tables.items()}
+    own = [None if load is None else compiled[load] for load in under]
+    return _of_one_law(scene, pucks, normals * largest, delta, own, top)
+
+
+def _of_one_law(
+    scene: SceneSpec, pucks: list[ScenePuck], loads: FloatArray, delta: FloatArray,
+    tables: list[FloatArray | None], top: float,
+) -> Regions:  # fmt: skip
+    """By one law everywhere: by a table of each puck, or summed where it has none.
+
+    ``loads``: f N at most; ``top``: up to which slip the law is looked at, m/s.
+    """
     summed = np.array([
-        own is None and not puck.path for own, puck in zip(under, pucks, strict=True)
+        own is None and not puck.path for own, puck in zip(tables, pucks, strict=True)
     ])  # fmt: skip
-    tables = {own: law_table(scene, law, top, own) for own in under if own is not None}
-    for puck, own in zip(pucks, under, strict=True):
-        if puck.shape is None and own is not None:
-            tables[own].refuse_height(static * max(factor, 1.0) * 2.0 * puck.height / puck.radius)
     hangs = np.array([_may_hang(scene, puck) for puck in pucks])
     floor_map = NO_GROUND
     if (summed | hangs).any():
         floor_map = _grounds(scene, pucks, summed | hangs, top)
-    ends = np.cumsum([0, *(len(table.compiled) for table in tables.values())])
-    spans = dict(zip(tables, pairwise(ends.tolist()), strict=True))
-    laws = np.array([(0, 0) if own is None else spans[own] for own in under])
-    compiled = [table.compiled for table in tables.values()] or [np.array([1.0, top])]
-    by_slip = BySpeed(np.concatenate(compiled), 0.0, 1.0, 1.0)
+    each = {id(own): own for own in tables if own is not None}
+    ends = np.cumsum([0, *map(len, each.values())])
+    spans = dict(zip(each, pairwise(ends.tolist()), strict=True))
+    laws = np.array([(0, 0) if own is None else spans[id(own)] for own in tables])
+    by_slip = BySpeed(np.concatenate(list(each.values()) or [np.array([1.0, top])]), 0.0, 1.0, 1.0)
     several = np.ones(len(delta) - len(pucks), np.bool_)
-    loads, astride = np.resize(normals * largest, len(delta)), np.concatenate([summed, several])
-    return Regions(loads, delta, limits, by_slip, astride, floor_map, laws)
+    return Regions(
+        np.resize(loads, len(delta)), delta, np.empty((len(delta), *NO_SECTION.shape)), by_slip,
+        np.concatenate([summed, several]), floor_map, laws,
+    )  # fmt: skip
 
 
 def slip_of_rim(radius: float, surface: Surface, state: list[float]) -> float:

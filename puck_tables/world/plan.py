@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from puck_tables._core.fields import specs
 from puck_tables.scene.acting import EMPIRICAL, acting
+from puck_tables.scene.by_speed import laws_in
 from puck_tables.scene.floor_parts import belts_of, has_laws_by_place
 from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.scene_spec import SceneSpec
@@ -72,8 +73,9 @@ def plan_of(scene: SceneSpec) -> tuple[str, str]:
         )
     if has_laws_by_place(scene.floor):
         lines.append(
-            "friction by the slip speed differs by place: it is summed over every base wherever it "
-            "lies, in every step along the contour of its parts, each by its own law or number"
+            "friction by slip speed or direction differs by place: it is summed over every base "
+            "wherever it lies, in every step along the contour of its parts, each by its own law, "
+            "direction or number"
         )
     elif has_sums(scene):
         piled = any(one.shape is None and one.body.law.profile is not None for one in pucks)
@@ -121,7 +123,7 @@ def _method_of(scene: SceneSpec, puck: ScenePuck) -> str:
             acts.append("no closed forms")
         if puck.shape is not None:
             acts.append("a base that is not round")
-        if has_laws_by_place(scene.floor) and not scene.floor.law:
+        if laws_in(scene) and not scene.floor.law:
             acts.append("friction law")
         if segment_error(scene) < TABLE_ERROR:
             acts.append(_CLOSER)

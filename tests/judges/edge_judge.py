@@ -2,13 +2,14 @@
 
 Friction is had in polar coordinates about the instantaneous centre, by Gauss's rule along
 every side in asinh of the way from where it is nearest, over its distance there; a law over the
-slip speed by Gauss's rule along every ray, too.
+slip speed by Gauss's rule along every ray, too; one by direction is the same all along a ray.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -16,7 +17,25 @@ from scipy.optimize import root
 
 from puck_tables._core.arrays import FloatArray
 
-Law = Callable[[FloatArray], FloatArray]
+
+class Brushed(NamedTuple):
+    """Friction along axes that are turned by an angle, and across."""
+
+    along: float
+    across: float
+    angle: float
+
+    def keeps(self, e: FloatArray) -> FloatArray:
+        """What keeps elements of the load 1 slipping along e (n, 2)."""
+        turn = np.array([[math.cos(self.angle), -math.sin(self.angle)],
+                         [math.sin(self.angle), math.cos(self.angle)]])  # fmt: skip
+        stretched = e @ turn * [self.along, self.across]
+        size = np.hypot(*stretched.T)[:, None]
+        kept: FloatArray = (stretched / size * [self.along, self.across]) @ turn.T
+        return kept
+
+
+Law = Callable[[FloatArray], FloatArray] | Brushed
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(120)
 _REST = np.zeros(2)
@@ -92,7 +111,7 @@ def _along_rays(
     far: FloatArray, there: float, slope: FloatArray, w: float, grip: Law | None
 ) -> tuple[FloatArray, FloatArray]:  # fmt: skip
     """∫ f p R dR and ∫ f p R² dR from the centre to the sides, over R²."""
-    if grip is None:
+    if grip is None or isinstance(grip, Brushed):
         return there / 2.0 + slope * far / 3.0, there * far / 3.0 + slope * far * far / 4.0
     r = 0.5 * far[:, None] * (1.0 + _RAY)
     part = grip(abs(w) * r) * (there + slope[:, None] * r) * r * 0.5 * _SHARES
@@ -104,11 +123,15 @@ def friction(
 ) -> FloatArray:  # fmt: skip
     """Force and torque over N of a polygon, all pressed, that slips at v + w × x; over f N.
 
-    ``grip``: its coefficient by the slip speed.
+    ``grip``: its coefficient by the slip speed, or the direction.
     """
     if abs(w) * np.abs(part).max() < 1e-9 * np.hypot(*v):
         load = balance(part, law)
-        way = v / np.hypot(*v) * (1.0 if grip is None else grip(np.hypot(*v)))
+        way = v / np.hypot(*v)
+        if isinstance(grip, Brushed):
+            way = grip.keeps(way[None])[0]
+        elif grip is not None:
+            way = way * grip(np.hypot(*v))
         return -np.array([*(load[0] * way), load[1] * way[1] - load[2] * way[0]])
     centre = np.array([-v[1], v[0]]) / w
     sign, force, torque = math.copysign(1.0, w), np.zeros(2), 0.0
@@ -129,6 +152,9 @@ def friction(
         far = np.hypot(*r.T)
         e = np.column_stack([-r[:, 1], r[:, 0]]) / far[:, None]
         push, turn = _along_rays(far, there, r @ law[1:] / far, w, grip)
+        if isinstance(grip, Brushed):
+            e = grip.keeps(e)
+            turn = turn * (r[:, 0] * e[:, 1] - r[:, 1] * e[:, 0]) / far
         force += (swept * push) @ e
         torque += float(swept @ turn)
     force = sign * force

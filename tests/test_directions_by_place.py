@@ -1,0 +1,238 @@
+"""Strips and patches that are rougher one way than the other: a judge, known answers, refusals."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from typing import Any
+
+import numpy as np
+import pytest
+from rays_judge import border, by_ellipse, friction_of, sides
+from scipy.integrate import solve_ivp
+
+import puck_tables as pt
+from puck_tables.scene.outcome import as_toml
+from puck_tables.world.floor_forces import friction_at
+
+BOX, ROUND = [(-0.1, -0.05), (0.1, -0.05), (0.1, 0.05), (-0.1, 0.05)], 0.06
+WOOD = pt.Orthotropic((0.1, 0.35), 0.7)
+SOLE = pt.Orthotropic((0.3, 0.12), -0.4, fixed_to="body")
+FELT = pt.Orthotropic((0.25, 0.15), 2.0)
+
+
+def friction_on(one: Any, turn: float, ex: np.ndarray, ey: np.ndarray) -> Any:
+    if isinstance(one, float):
+        return one * ex, one * ey
+    axes = one.direction + (turn if one.fixed_to == "body" else 0.0)
+    return by_ellipse(one.friction, axes, ex, ey)
+
+
+class Judge:
+    """A floor of one border and one patch under a box or a disc, at the places of states."""
+
+    def __init__(self, shape: str, strips: Any, patch: Any, height: float) -> None:
+        self.shape, self.strips, self.patch, self.lever = shape, strips, patch, 0.5 * height
+        self.cut = (0.02, 0.3) if len(strips) > 1 else None
+
+    def forces(self, state: Any, panels: int = 4) -> np.ndarray:
+        px, py, turn, *velocity = state
+        c, s = math.cos(turn), math.sin(turn)
+        corners = [(c * x - s * y, s * x + c * y) for x, y in BOX]
+        curves: list[Any] = sides(corners) if self.shape == "box" else [(0.0, 0.0, ROUND)]
+        if self.cut is not None:
+            place, angle = self.cut
+            place -= px * math.cos(angle) + py * math.sin(angle)
+            curves.append(border(angle, place))
+        if self.patch is not None:
+            (mx, my), radius = self.patch.centre, self.patch.radius
+            curves.append((mx - px, my - py, radius))
+
+        def inside(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+            if self.shape != "box":
+                return np.hypot(x, y) < ROUND
+            return (abs(c * x + s * y) < 0.1) & (abs(c * y - s * x) < 0.05)
+
+        def local(x: np.ndarray, y: np.ndarray, ex: np.ndarray, ey: np.ndarray) -> Any:
+            tx, ty = friction_on(self.strips[0], turn, ex, ey)
+            choice = []
+            if self.cut is not None:
+                beyond = x * math.cos(angle) + y * math.sin(angle) > place
+                choice.append((beyond, self.strips[1]))
+            if self.patch is not None:
+                choice.append((np.hypot(x - mx + px, y - my + py) < radius, self.patch.friction))
+            for where, one in choice:
+                ox, oy = friction_on(one, turn, ex, ey)
+                tx, ty = np.where(where, ox, tx), np.where(where, oy, ty)
+            return tx, ty
+
+        return friction_of(curves, inside, local, velocity, self.lever, panels)
+
+
+FLOORS: dict[str, tuple[list[Any], Any]] = {
+    "wood beside a number": ([WOOD, 0.2], None),
+    "a sole on half of it, felt on the other": ([SOLE, FELT], None),
+    "a round patch of wood": ([0.2], pt.Patch(WOOD, (0.03, 0.01), 0.04)),
+    "a round patch of a number on felt": ([FELT], pt.Patch(0.3, (0.02, 0.01), 0.05)),
+    "felt in a sole beside wood": ([SOLE, WOOD], pt.Patch(FELT, (-0.05, 0.0), 0.04)),
+}
+
+
+def floor_of(strips: list[Any], patch: Any) -> pt.Floor:
+    patches = () if patch is None else (patch,)
+    if len(strips) == 1:
+        own = strips[0]
+        if isinstance(own, float):
+            return pt.Floor(patches=patches)
+        return pt.Floor(orthotropic=own, patches=patches)
+    return pt.Floor(strips=pt.Strips((0.02,), tuple(strips), direction=0.3), patches=patches)
+
+
+def body(shape: str, height: float) -> pt.Puck:
+    base: Any = {"base": "box:0.2x0.1"} if shape == "box" else {"radius": ROUND}
+    return pt.Puck(**base, friction=0.2, height=height, mass=1.0, gravity=1.0)
+
+
+@pytest.mark.parametrize("height", [0.0, 0.04])
+@pytest.mark.parametrize("shape", ["box", "round"])
+@pytest.mark.parametrize("name", FLOORS)
+def test_friction_is_that_of_points_on_rays(name: str, shape: str, height: float) -> None:
+    rng, (strips, patch) = np.random.default_rng(11), FLOORS[name]
+    judge = Judge(shape, strips, patch, height)
+    states = rng.normal(size=(12, 6)) * [0.04, 0.03, 3.0, 1.0, 1.0, 1.0]
+    states[:, 5] = np.tile([-1.0, 1.0], 6) * 10.0 ** rng.uniform(-0.5, 2.5, 12)
+    found = friction_at(pt.Scene(body(shape, height), floor_of(strips, patch)), states)
+    for state, forces in zip(states, found, strict=True):
+        gap = np.abs(forces - judge.forces(state, 24)) / [1.0, 1.0, 0.1]
+        assert gap.max() < 1e-10, state
+
+
+MOTIONS = [("a sole on half of it, felt on the other", "round", 0.03),
+           ("felt in a sole beside wood", "box", 0.02)]  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "shape", "height"), MOTIONS)
+def test_a_motion_is_that_of_scipy_with_points_on_rays(
+    name: str, shape: str, height: float
+) -> None:
+    strips, patch = FLOORS[name]
+    judge, thrown = Judge(shape, strips, patch, height), body(shape, height)
+    inertia = thrown.inertia_radius**2 * thrown.mass
+
+    def rates(_: float, y: np.ndarray) -> list[float]:
+        fx, fy, torque = judge.forces(y, 2)
+        return [*y[3:], fx, fy, torque / inertia]
+
+    start, times = [-0.1, 0.02, 0.3, 0.45, -0.1, 4.0], [0.1, 0.3, 0.5]
+    truth = solve_ivp(rates, (0.0, 0.5), start, "DOP853", times, rtol=1e-11, atol=1e-12).y
+    launch = pt.Launch((0.45, -0.1), spin=4.0, position=(-0.1, 0.02), orientation=0.3)
+    run = pt.Scene(thrown, floor_of(strips, patch), launch, tol=1e-10).simulate(times)
+    for key, row in zip(("x", "y", "orientation", "vx", "vy", "spin"), truth, strict=True):
+        unit = 1.0 / ROUND if key in ("orientation", "spin") else 1.0
+        assert run.columns[key] == pytest.approx(row, abs=1e-9 * unit), key
+
+
+def ends(floor: pt.Floor, shape: str) -> np.ndarray:
+    run = pt.Scene(body(shape, 0.03), floor, pt.Launch((0.6, 0.2), spin=8.0)).simulate([0.0])
+    assert run.end == "at rest" and abs(run.energy_residual) < 1e-9
+    return np.array([run.end_time, *(run.last[key] for key in ("x", "y", "orientation"))])
+
+
+@pytest.mark.parametrize("shape", ["box", "round"])
+def test_stretches_of_one_direction_are_one_floor(shape: str) -> None:
+    one = ends(pt.Floor(orthotropic=WOOD), shape)
+    strips = pt.Floor(strips=pt.Strips((0.1, 0.3), (WOOD, WOOD, WOOD), direction=0.3))
+    patch = pt.Floor(orthotropic=WOOD, patches=[pt.Patch(WOOD, (0.15, 0.03), 0.07)])
+    for floor in (strips, patch):
+        assert np.abs(ends(floor, shape) - one).max() < 3e-9
+
+
+def test_equal_frictions_of_a_stretch_are_its_number() -> None:
+    for shape in ("box", "round"):
+        found = [
+            ends(pt.Floor(strips=pt.Strips((0.1,), (0.2, one), direction=0.2)), shape)
+            for one in (0.1, pt.Orthotropic((0.1, 0.1), 0.8))
+        ]
+        assert np.abs(np.subtract(*found)).max() < 3e-9
+
+
+def test_a_law_may_stand_beside_a_direction() -> None:
+    """Where nothing reaches the law of the other strip it changes nothing."""
+    ice = pt.StribeckLaw(0.3, 0.1, speed=0.3)
+    found = [
+        ends(pt.Floor(strips=pt.Strips((5.0,), (WOOD, other))), "round") for other in (ice, 0.2)
+    ]
+    assert np.abs(np.subtract(*found)).max() < 3e-9
+    both = pt.Floor(strips=pt.Strips((0.1,), (ice, WOOD), direction=0.2))
+    assert ends(both, "box")[0] > 0.0
+
+
+@pytest.mark.parametrize("shape", ["box", "round"])
+def test_a_patch_holds_by_the_friction_along_the_slope(shape: str) -> None:
+    """All of it on the patch: the slope is held by the friction of the axis along it."""
+    for direction, friction in ((0.0, 0.1), (0.5 * math.pi, 0.35)):
+        patch = pt.Patch(pt.Orthotropic((0.1, 0.35), direction), radius=1.0)
+        for off, rests in ((-1e-9, True), (1e-6, False)):
+            floor = pt.Floor(slope=math.atan(friction) + off, patches=[patch])
+            run = pt.Scene(body(shape, 0.0), floor, time=0.3).simulate([0.0])
+            assert (run.end == "at rest") == rests, (direction, off)
+
+
+FILE = """
+[puck]
+radius = 0.05
+[launch]
+velocity = [1.0, 0.2]
+[floor]
+patch = [{friction = {kind = "orthotropic", friction = [0.1, 0.3]}, centre = [0.3, 0.0], radius = 0.1}]
+[floor.strips]
+borders = [0.1]
+friction = [0.2, {kind = "orthotropic", friction = [0.1, 0.3], fixed_to = "body"}]
+"""  # noqa: E501
+
+
+def test_it_stands_in_files_reports_pictures_and_sweeps() -> None:
+    scene = pt.Scene.from_tables(tomllib.loads(FILE))
+    assert scene.floor.patches[0].friction == pt.Orthotropic((0.1, 0.3))
+    assert pt.Scene.from_tables(tomllib.loads(as_toml(scene))) == scene
+    run = scene.simulate([0.0])
+    told = str(run)
+    assert "by direction, floor.strips.friction[1], floor.patch[0].friction, f g =" in told
+    assert "0.980665 along and 2.94199 across" in told and "orthotropic friction" in told
+    labels = {text.get_text() for ax in run.plot().axes for text in ax.get_legend().get_texts()}
+    assert "f = 0.1 along, 0.3 across" in labels
+    tables = tomllib.loads(FILE)
+    tables["floor"]["patch"][0]["friction"]["direction"] = [0.0, 1.0]
+    ranged = pt.Scene.from_tables(tables)
+    ends = ranged.sweep()
+    for number in range(2):
+        alone = ranged.at(ends.numbers(number)).simulate([0.0])
+        assert ends.x[number] == pytest.approx(alone.last["x"], abs=1e-6)
+    assert ends.x[0] != ends.x[1]
+
+
+@pytest.mark.parametrize(
+    ("puck", "floor", "said"),
+    [
+        ({}, {"patches": [pt.Patch(pt.Orthotropic((0.3, 0.001)), radius=1.0)]},
+         r"floor.patch\[0\].friction.friction = \[0.3, 0.001\]: one must be at least 0.03"),
+        ({}, {"patches": [pt.Patch(WOOD, radius=1.0)], "turning": 1.0},
+         r"floor.patch\[0\].friction: not on a floor that turns"),
+        ({}, {"orthotropic": WOOD, "strips": pt.Strips((0.0,), (0.1, 0.2))},
+         "floor.orthotropic and floor.strips: strips say all friction"),
+        ({}, {"orthotropic": WOOD, "law": pt.StribeckLaw(0.3, 0.1, speed=0.3)},
+         "floor.orthotropic and floor.law"),
+        ({"pressure": "hertz"}, {"strips": pt.Strips((0.0,), (0.1, WOOD))},
+         "known under uniform pressure only, over any base, not with puck.pressure = 'hertz'"),
+        ({"pressure": "hertz"}, {"orthotropic": WOOD}, "floor.orthotropic: known under uniform"),
+    ],
+)  # fmt: skip
+def test_what_is_not_known_is_refused(
+    puck: dict[str, Any], floor: dict[str, Any], said: str
+) -> None:
+    with pytest.raises(pt.InputError, match=said):
+        pt.Scene(pt.Puck(0.05, **puck), pt.Floor(**floor), time=1.0)
+    with pytest.raises(pt.InputError, match="one of curling, power, stribeck, orthotropic"):
+        pt.Scene.from_tables({
+            "puck": {"radius": 1.0}, "floor": {"patch": [{"friction": {"kind": "wood"}}]},
+        })  # fmt: skip
