@@ -84,11 +84,11 @@ def shades_of(floor: Floor, box: Box, highest: float) -> list[Shade]:
     return shades
 
 
-def _said(given: Friction) -> str:
+def _said(own: Friction) -> str:
     """The friction of a stretch in words."""
-    if isinstance(given, Orthotropic):
-        return "f = {:g} along, {:g} across".format(*given.friction)
-    return f"f = {largest_of(given, 0.0):g}{'' if isinstance(given, float) else ' at rest'}"
+    if isinstance(own, Orthotropic):
+        return "f = {:g} along, {:g} across".format(*own.friction)
+    return f"f = {largest_of(own, 0.0):g}{'' if isinstance(own, float) else ' at rest'}"
 
 
 def _strips(floor: Floor, box: Box) -> list[Shade]:
