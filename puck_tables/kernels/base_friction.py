@@ -164,12 +164,6 @@ def pressure_on(base: FloatArray, sums: Sums) -> tuple[float, float, float]:
 
 
 @inlined
-def pressure_at(base: FloatArray, mx: float, my: float) -> tuple[float, float, float]:
-    """A, b_x and b_y of a + b·x at rest; the load stands (mx, my), m, from the centre of mass."""
-    return pressure_over(moments_in(base), NOTHING, 0.0, mx, my)
-
-
-@inlined
 def is_uniform(base: FloatArray) -> bool:
     """Whether it is a polygon under uniform pressure."""
     flat = base[LEVER] == 0.0 and base[FIRST_X] == 0.0 and base[FIRST_Y] == 0.0
