@@ -417,20 +417,17 @@ def follow_alone(
         landed = landed and stuck == NOTHING and not slips
         most = _MOST if length > _BRIEF * unit else 1
         parts, coarse, longest = write_step(engine, phase, now, length, count, tol, most, buffer)
-        longest = longest if most > 1 else math.inf
-        if coarse > 1.0 and longest < length:
+        if most > 1 and coarse > 1.0 and longest < length:
             h = longest
             continue
         reach = whole * (tol / error) ** 0.125 if newton == 0.0 and error > 0.0 else math.inf
-        h = min(whole * _held_back(grows, failed, reach, before), longest)
+        h = min(whole * _held_back(grows, failed, reach, before), longest if most > 1 else math.inf)
         before, failed = reach, False
-        over = _leads_off(engine, i, buffer)
-        if length > _SHORTEST * unit:
-            count += parts
+        count += parts if length > _SHORTEST * unit else 0
         passed += length
         now = target if landed else t + passed
         h = min(h, 0.5 * (tips - now)) if now < tips else h
-        over = over or 0.0 < tips - now < tol * unit
+        over = _leads_off(engine, i, buffer) or 0.0 < tips - now < tol * unit
         _go_on_from(model, tol, buffer)
         larger, q = q, slip_speed(radius, y)
         if mode == SLIDES:
