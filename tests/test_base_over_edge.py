@@ -68,9 +68,11 @@ def stribeck(u: np.ndarray) -> np.ndarray:
 
 
 WOOD = edge_judge.Brushed(0.22, 0.3, 0.7)
+ICE = edge_judge.Brushed(0.6, 1.0, 0.7, stribeck)
 BY_GRIP = {
     None: Floor(), stribeck: Floor(law=StribeckLaw(0.3, 0.1, speed=0.3)),
     WOOD: Floor(orthotropic=Orthotropic((0.22, 0.3), 0.7)),
+    ICE: Floor(orthotropic=Orthotropic((0.6, 1.0), 0.7, law=StribeckLaw(0.3, 0.1, speed=0.3))),
 }  # fmt: skip
 
 
@@ -143,7 +145,7 @@ def slid(seed: int) -> tuple[list[np.ndarray], np.ndarray, Launch]:
     return rows, state, Launch((state[3], state[4]), spin=state[5], orientation=state[2])
 
 
-@pytest.mark.parametrize("grip", [None, WOOD])
+@pytest.mark.parametrize("grip", [None, WOOD, ICE])
 def test_motion_is_that_of_the_judge(grip: Any):
     ends = set()
     for seed in range(6) if grip is None else (0, 3):

@@ -35,6 +35,11 @@ BY_CURLING = {"floor": {"law": {"kind": "curling", "a": 0.01, "b": 0.1}}, "tol":
 BY_POWER = {
     "floor": {"law": {"kind": "power", "a": 0.1, "exponent": 1.0, "b": 0.1}}, "tol": 1e-5,
 }  # fmt: skip
+BY_BOTH = {
+    kind: {"floor": {"orthotropic": {"friction": [1.0, 0.5], "law": law["floor"]["law"]}},
+           "tol": 1e-5}
+    for kind, law in (("stribeck", BY_NAME), ("curling", BY_CURLING), ("power", BY_POWER))
+}  # fmt: skip
 STRIPS = {"floor": {"strips": {"borders": [0.03], "friction": [0.2, 0.1]}}}
 ROUND = {"floor": {"patch": [{"friction": 0.1, "centre": [0.15, 0.05], "radius": 0.05}]}}
 POLYGON = {"floor": {"patch": [
@@ -94,6 +99,14 @@ CASES: dict[str, tuple[dict[str, Any], Any]] = {
     "floor.law.b": (BY_CURLING, 0.2),
     "floor.law.c": (BY_CURLING, 0.1),
     "floor.law.exponent": (BY_POWER, 0.5),
+    "floor.orthotropic.law.static": (BY_BOTH["stribeck"], 0.4),
+    "floor.orthotropic.law.kinetic": (BY_BOTH["stribeck"], 0.2),
+    "floor.orthotropic.law.speed": (BY_BOTH["stribeck"], 0.4),
+    "floor.orthotropic.law.viscous": (BY_BOTH["stribeck"], 0.1),
+    "floor.orthotropic.law.a": (BY_BOTH["curling"], 0.02),
+    "floor.orthotropic.law.b": (BY_BOTH["curling"], 0.2),
+    "floor.orthotropic.law.c": (BY_BOTH["curling"], 0.1),
+    "floor.orthotropic.law.exponent": (BY_BOTH["power"], 0.5),
     "launch.velocity": ({}, [0.8, 0.4]),
     "launch.spin": ({}, 20.0),
     "launch.position": ({}, [1.0, 0.0]),
@@ -127,6 +140,7 @@ CASES: dict[str, tuple[dict[str, Any], Any]] = {
 }
 FILES = {
     "floor.law": ({"puck": {"friction": 0.0}}, "speed,f\n0,0.2\n5,0.1\n"),
+    "floor.orthotropic.law": (GRAINED, "speed,f\n0,0.2\n5,0.1\n"),
     "floor.over_time": ({}, "t,vx,vy,spin\n0,0,0,0\n1,0.1,0,1\n2,0,0,0\n"),
     "force.over_time": ({}, "t,Fx,Fy\n0,0.1,0\n1,0,0\n"),
 }
@@ -174,7 +188,8 @@ BOARD: dict[str, Any] = {
 # how a puck of it is led, where that matters to an entry
 LED = {"kind": {"kind": "rail"}, "angle": {"kind": "rail"}, "velocity": {"kind": "rail"},
        "reach": {"kind": "pivot", "reach": 0.02}, "side_slip": {"kind": "blade"}}  # fmt: skip
-NO_PHYSICS = {"title", "frames", "tol", "floor.law.kind", "floor.orthotropic.kind"}
+NO_PHYSICS = {"title", "frames", "tol", "floor.law.kind", "floor.orthotropic.kind",
+              "floor.orthotropic.law.kind"}  # fmt: skip
 # change nothing: see tests/test_lines.py
 LINES = {f"line[0].{name}" for name in ("start", "end", "centre", "radius", "name", "colour")}
 BASES = {"puck.base", "puck[0].base"}  # in place of a radius: see tests/test_base_scenes.py

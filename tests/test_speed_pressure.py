@@ -16,6 +16,7 @@ from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.law_moments import law_moments, packed_law
 from puck_tables.kernels.base_clipping import whole_contour
 from puck_tables.kernels.base_friction import REACH, packed, under_load
+from puck_tables.kernels.elliptic_sums import Ellipse
 from puck_tables.kernels.law_sums import law_sums
 from puck_tables.kernels.speed_quadrature_kernel import FINE
 from puck_tables.table.speed_build import load_under
@@ -26,6 +27,7 @@ from puck_tables.table.speed_table import SpeedTable
 ICE = CurlingLaw(0.02, 0.064, 0.06)
 ROWS = SpeedLaw([0.0, 0.3, 0.7, 1.0, 3.0], [0.3, 0.2, 0.25, 0.25, 0.1])
 PROFILE = profile_law([0.1, 0.4, 0.7, 1.0], [1.0, 2.0, 0.2, 0.8])
+ALIKE = Ellipse(1.0, 1.0, 1.0, 0.0)
 PRESSURES = ("ring", "galin", "hertz", "annulus:0.8", PROFILE)
 # over ρ = sin θ: W ρ dρ as a function of θ, over dθ, up to a factor
 WEIGHTS = {
@@ -142,7 +144,7 @@ def test_under_an_annulus_it_is_the_sum_along_the_contour(law, off, inner, outer
     for angle in phi.tolist():
         speed = 3.0 * float(rng.random()) / (np.cos(angle) + np.sin(angle))
         v, w = speed * np.cos(angle), speed * np.sin(angle)
-        sums = law_sums(shape, *whole_contour(shape, 0), shape[REACH], contour, v, 0.0, w)
+        sums = law_sums(shape, *whole_contour(shape, 0), shape[REACH], contour, ALIKE, v, 0.0, w)
         x, _, turning = under_load(sums, 1.0 / base.area, 0.0, 0.0)
         rho = table.resultants(angle, speed)
         found = np.cos(angle) * float(rho.parallel), 0.5 * np.sin(angle) * float(rho.spin)

@@ -85,14 +85,17 @@ def _sharpness(law: Ellipse) -> tuple[float, float, float]:
 
 
 @inlined
-def _end_of_panel(start: float, last: float, place: float, near: float) -> float:
-    """How far a panel may go that begins beside what is singular at the distance ``near``."""
+def end_of_panel(start: float, last: float, place: float, near: float, growth: float) -> float:
+    """How far a panel may go that begins beside what is singular at the distance ``near``.
+
+    ``growth``: how long it may be, over how far that is.
+    """
     away = start - place
     if away >= 0.0:
-        return min(last, start + max(near, _GROWTH * away))
+        return min(last, start + max(near, growth * away))
     if -away <= near:
         return min(last, place)
-    return min(last, start - _GROWTH / (1.0 + _GROWTH) * away)
+    return min(last, start - growth / (1.0 + growth) * away)
 
 
 @inner
@@ -129,11 +132,11 @@ def disc_sums(law: Ellipse, vx: float, vy: float, rim: float) -> Sums:
     start, last = -0.5 * math.pi, 0.5 * math.pi
     while start < last:
         patience(1)
-        end = _end_of_panel(start, last, -0.5 * math.pi, branch)
-        end = _end_of_panel(start, end, 0.5 * math.pi, branch)
-        end = _end_of_panel(start, end, place, sharp)
-        end = min(_end_of_panel(start, end, place + math.pi, sharp), start + 1.0)
-        end = _end_of_panel(start, end, place - math.pi, sharp)
+        end = end_of_panel(start, last, -0.5 * math.pi, branch, _GROWTH)
+        end = end_of_panel(start, end, 0.5 * math.pi, branch, _GROWTH)
+        end = end_of_panel(start, end, place, sharp, _GROWTH)
+        end = min(end_of_panel(start, end, place + math.pi, sharp, _GROWTH), start + 1.0)
+        end = end_of_panel(start, end, place - math.pi, sharp, _GROWTH)
         half, middle = 0.5 * (end - start), 0.5 * (end + start)
         start = end
         for i in range(len(_NODES)):
@@ -168,7 +171,7 @@ def disc_sums(law: Ellipse, vx: float, vy: float, rim: float) -> Sums:
     return sums
 
 
-class _Stretched(NamedTuple):
+class Stretched(NamedTuple):
     """A base in axes along A u of its origin, stretched as friction is, with lengths in its reach.
 
     ``along``, ``turning``: |A u| there and the spin, over the root of the sum of their squares;
@@ -184,7 +187,7 @@ class _Stretched(NamedTuple):
 
 
 @inlined
-def _singular(one: _Stretched, x: float, y: float, row: FloatArray) -> tuple[
+def singular_angles(one: Stretched, x: float, y: float, size: float) -> tuple[
     float, float, float, float
 ]:  # fmt: skip
     """Of a circle of which (x, y) is the stretched middle: at which angles A u vanishes.
@@ -192,7 +195,7 @@ def _singular(one: _Stretched, x: float, y: float, row: FloatArray) -> tuple[
     Two complex ones, in z of the unit circle roots of p z² + g z + n = 0: each by its angle and how
     far it is off the circle.
     """
-    half = 0.5 * one.turning * row[RADIUS]
+    half = 0.5 * one.turning * size
     px, py = half * (one.xx + one.yy), half * (one.yx - one.xy)
     nx, ny = half * (one.xx - one.yy), half * (one.yx + one.xy)
     gx, gy = one.turning * x, one.turning * y - one.along
@@ -200,9 +203,9 @@ def _singular(one: _Stretched, x: float, y: float, row: FloatArray) -> tuple[
         gx * gx - gy * gy - 4.0 * (px * nx - py * ny),
         2.0 * (gx * gy - 2.0 * (px * ny + py * nx)),
     )
-    size = math.sqrt(math.sqrt(sx * sx + sy * sy))
+    root = math.sqrt(math.sqrt(sx * sx + sy * sy))
     turn = 0.5 * math.atan2(sy, sx)
-    rx, ry = size * math.cos(turn), size * math.sin(turn)
+    rx, ry = root * math.cos(turn), root * math.sin(turn)
     side = 1.0 if rx * gx + ry * gy >= 0.0 else -1.0
     hx, hy = -0.5 * (gx + side * rx), -0.5 * (gy + side * ry)
     whole, p, n = math.hypot(hx, hy), math.hypot(px, py), math.hypot(nx, ny)
@@ -214,27 +217,27 @@ def _singular(one: _Stretched, x: float, y: float, row: FloatArray) -> tuple[
 
 
 @inlined
-def _panel_to(start: float, last: float, place: float, near: float) -> float:
+def panel_to(start: float, last: float, place: float, near: float, growth: float) -> float:
     """How far a panel of a circle may go beside what is singular at an angle of it."""
     turns = _WHOLE * math.floor((start - place) / _WHOLE)
-    end = _end_of_panel(start, last, place + turns, near)
-    return _end_of_panel(start, end, place + turns + _WHOLE, near)
+    end = end_of_panel(start, last, place + turns, near, growth)
+    return end_of_panel(start, end, place + turns + _WHOLE, near, growth)
 
 
 @inner
-def _along_arc(one: _Stretched, row: FloatArray) -> Sums:
+def _along_arc(one: Stretched, row: FloatArray) -> Sums:
     """An arc of a contour, stretched: of an ellipse."""
     mx = one.xx * row[ABOUT_X] + one.xy * row[ABOUT_Y]
     my = one.yx * row[ABOUT_X] + one.yy * row[ABOUT_Y]
-    first, near, second, close = _singular(one, mx, my, row)
+    first, near, second, close = singular_angles(one, mx, my, row[RADIUS])
     near, close = max(near, _CLOSEST), max(close, _CLOSEST)
     size, turn, sums = row[RADIUS], row[TURN], NOTHING
     start = row[START] if turn > 0.0 else row[START] + turn
     last = start + abs(turn)
     while start < last:
         patience(1)
-        end = _panel_to(start, min(last, start + _LONGEST), first, near)
-        end = _panel_to(start, end, second, close)
+        end = panel_to(start, min(last, start + _LONGEST), first, near, _GROWTH)
+        end = panel_to(start, end, second, close, _GROWTH)
         half, middle = 0.5 * (end - start), 0.5 * (end + start)
         start = end
         for n in range(len(_NODES)):
@@ -274,7 +277,7 @@ def elliptic_sums(
     unit, way = 1.0 / math.sqrt(speed * speed + rim * rim), -1.0 if w < 0.0 else 1.0
     ex, ey = (vx / speed, vy / speed) if speed > 0.0 else (1.0, 0.0)
     x, y = q / reach, p / reach
-    one = _Stretched(
+    one = Stretched(
         unit * speed, unit * rim, ex * x * c - ey * y * s, ex * x * s + ey * y * c,
         way * (-ey * x * c - ex * y * s), way * (ex * y * c - ey * x * s),
     )  # fmt: skip

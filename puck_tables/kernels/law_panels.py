@@ -4,6 +4,12 @@ A law bends at its corners, and a steep one is short pieces: a rule that goes ac
 parts in ten thousand.  From the point of a side, or of a circle, that is nearest to the
 instantaneous centre, the slip speed only grows, both ways.
 
+Where friction goes by the direction, too, 1/|A e| (:mod:`puck_tables.kernels.law_sums`) branches at
+complex places: where the slip is i atanh(least/most) off the smoother axis.  Of a side at the
+distance d from C, on which e lies at an angle θ from its tangent, sinh y = tan θ, that is
+y = ± asinh(sin θ/√(S² + cos² θ)) + i atan2(S, ± cos θ), S = least/√(most² − least²).  There panels
+shrink.
+
 Where nothing is compiled yet, the sums of :mod:`puck_tables.kernels.law_sums` are had by arrays,
 all points of the contour at once: as it is written a kernel takes thirty times as long.
 """
@@ -11,6 +17,7 @@ all points of the contour at once: as it is written a kernel takes thirty times 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,6 +26,13 @@ from puck_tables.contact.law_moments import DEGREE, MOMENTS
 from puck_tables.kernels.base_sums import Sums, moved
 from puck_tables.kernels.compile import inlined
 from puck_tables.kernels.elementary import log_of
+from puck_tables.kernels.elliptic_sums import (
+    Ellipse,
+    Stretched,
+    end_of_panel,
+    panel_to,
+    singular_angles,
+)
 from puck_tables.kernels.polygon_sums import (
     ABOUT_X,
     ABOUT_Y,
@@ -42,6 +56,54 @@ LEAST_GAP = 1e-9  # of an angle: closer, C lies on the circle
 _AHEAD = 4  # pieces of a smooth law: a panel across them is good to 1e-11
 _BEYOND = 1.0 + 1e-9  # times a slip speed: a corner there is passed
 _STEP = 1e-12  # the shortest panel of a circle
+_GROWTH = 1.0  # of a panel, over how far it is from where 1/|A e| branches
+
+
+class BranchPoints(NamedTuple):
+    """Where 1/|A e| branches beside a side, in y, or a circle, in its angle: two places.
+
+    ``near`` and ``close``: how far off the first and the second are; inf: nowhere.
+    """
+
+    first: float
+    near: float
+    second: float
+    close: float
+
+
+@inlined
+def branches_of_side(axes: Ellipse, d: float, tx: float, ty: float) -> BranchPoints:
+    """Of a side along (tx, ty) that C lies d to the left of; y grows along it."""
+    least, most = min(axes.along, axes.across), max(axes.along, axes.across)
+    if least == most:
+        return BranchPoints(0.0, math.inf, 0.0, math.inf)
+    ax, ay = axes.cosine, axes.sine
+    if axes.along > axes.across:
+        ax, ay = -ay, ax
+    sharp = least / math.sqrt((most - least) * (most + least))
+    c, s = ax * tx + ay * ty, ay * tx - ax * ty
+    near = math.atan2(sharp, abs(c))
+    place = math.asinh(s / math.sqrt(sharp * sharp + c * c))
+    place = place if c * d >= 0.0 else -place
+    return BranchPoints(place, near, -place, math.pi - near)
+
+
+@inlined
+def branches_of_circle(
+    axes: Ellipse, gx: float, gy: float, size: float, nearest: float, side: float
+) -> BranchPoints:
+    """Of a circle whose middle is at g from C, by its angle from ``nearest``; ``side`` −1: back."""
+    p, q, c, s = axes.along, axes.across, axes.cosine, axes.sine
+    if p == q:
+        return BranchPoints(0.0, math.inf, 0.0, math.inf)
+    one = Stretched(0.0, 1.0, q * c, q * s, -p * s, p * c)
+    first, near, second, close = singular_angles(
+        one, q * (c * gx + s * gy), p * (c * gy - s * gx), size
+    )
+    return BranchPoints(
+        side * (first - nearest), max(near, LEAST_GAP), side * (second - nearest),
+        max(close, LEAST_GAP),
+    )  # fmt: skip
 
 
 @inlined
@@ -72,8 +134,9 @@ def next_end(law: FloatArray, u: float) -> float:
 
 @inlined
 def side_panel(
-    law: FloatArray, spin: float, away: float, piece: int, y: float, last: float
-) -> tuple[float, int]:
+    law: FloatArray, spin: float, away: float, piece: int, y: float, last: float,
+    branches: BranchPoints,
+) -> tuple[float, int]:  # fmt: skip
     """Where the panel ends that begins at y ≥ 0, s = away sinh y, in a piece of the law.
 
     Also, in which piece the next one begins: no panel of a side goes across two.
@@ -85,14 +148,19 @@ def side_panel(
         there = log_of((reach + root) / away)
         if there < last:
             end, after = max(there, y), piece + 1
+    if branches.near < math.inf:
+        near = end_of_panel(y, end, branches.first, branches.near, _GROWTH)
+        near = end_of_panel(y, near, branches.second, branches.close, _GROWTH)
+        end, after = (near, piece) if near < end else (end, after)
     panels = 1 + int((end - y) / PANEL)
     return (end, after) if panels == 1 else (y + (end - y) / panels, piece)
 
 
 @inlined
 def circle_end(
-    law: FloatArray, spin: float, off: float, size: float, turn: float, last: float
-) -> float:
+    law: FloatArray, spin: float, off: float, size: float, turn: float, last: float,
+    branches: BranchPoints,
+) -> float:  # fmt: skip
     """Where the panel ends that begins at a turn from 0 to π; ``off``: how far its middle is.
 
     ``last``: where the arc ends, or turns back.
@@ -110,6 +178,10 @@ def circle_end(
         if square < product:
             there = 2.0 * math.asin(math.sqrt(max(square, 0.0) / product))
             end = min(end, max(there, turn + _STEP))
+    if branches.near < math.inf:
+        near = panel_to(turn, end, branches.first, branches.near, _GROWTH)
+        near = panel_to(turn, near, branches.second, branches.close, _GROWTH)
+        end = max(near, min(end, turn + LEAST_GAP))  # C may lie there
     return end
 
 
@@ -139,24 +211,24 @@ Points = tuple[FloatArray, FloatArray, FloatArray]  # of a contour, and r × dr,
 
 
 def law_sums_at_first(
-    room: FloatArray, first: int, last: int, reach: float, law: FloatArray, ux: float, uy: float,
-    w: float,
+    room: FloatArray, first: int, last: int, reach: float, law: FloatArray, axes: Ellipse,
+    ux: float, uy: float, w: float,
 ) -> Sums:  # fmt: skip
     """Sums over what a contour bounds under a law of the slip speed, before it is compiled."""
     rows = room[first:last].reshape(-1, PIECE_COLUMNS)
     if math.sqrt(ux * ux + uy * uy) > FAR * reach * abs(w):
-        return _far(rows, law, ux, uy, w)
+        return _far(rows, law, axes, ux, uy, w)
     cx, cy = -uy / w, ux / w
     parts = [
-        _on_side(row, law, abs(w), cx, cy, reach) if row[TURN] == 0.0
-        else _on_arc(row, law, abs(w), cx, cy)
+        _on_side(row, law, axes, abs(w), cx, cy, reach) if row[TURN] == 0.0
+        else _on_arc(row, law, axes, abs(w), cx, cy)
         for row in rows
     ]  # fmt: skip
     rx, ry, area = (np.concatenate(rows) for rows in zip(*parts, strict=True))
     distance = np.hypot(rx, ry)
     h = _polynomials(law, abs(w) * distance)
-    ex, ey = -ry / distance, rx / distance
-    one, two, three = area * h[:, 1], area * h[:, 2], area * distance * h[:, 3]
+    ex, ey = _against(axes, -ry / distance, rx / distance)
+    one, two, three = area * h[:, 1], area * h[:, 2], area * (rx * ey - ry * ex) * h[:, 3]
     terms = [one * ex, one * ey, two * ex * rx, two * ex * ry, two * ey * rx, two * ey * ry,
              three * rx, three * ry]  # fmt: skip
     return _signed(moved(_summed(terms), cx, cy), w)
@@ -164,6 +236,15 @@ def law_sums_at_first(
 
 def _summed(terms: list[FloatArray]) -> Sums:
     return tuple(np.array(terms).sum(axis=1).tolist())
+
+
+def _against(axes: Ellipse, ex: FloatArray, ey: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """What keeps elements of f N = 1 slipping along unit vectors."""
+    c, s = axes.cosine, axes.sine
+    x, y = axes.along * (c * ex + s * ey), axes.across * (c * ey - s * ex)
+    size = np.hypot(x, y)
+    x, y = axes.along * x / size, axes.across * y / size
+    return c * x - s * y, s * x + c * y
 
 
 def _signed(sums: Sums, w: float) -> Sums:
@@ -184,8 +265,9 @@ def _polynomials(law: FloatArray, u: FloatArray) -> FloatArray:
 
 
 def _on_side(
-    row: FloatArray, law: FloatArray, spin: float, cx: float, cy: float, reach: float
-) -> Points:
+    row: FloatArray, law: FloatArray, axes: Ellipse, spin: float, cx: float, cy: float,
+    reach: float,
+) -> Points:  # fmt: skip
     px, py, tx, ty = row[BEGIN_X] - cx, row[BEGIN_Y] - cy, row[TANGENT_X], row[TANGENT_Y]
     d, begin = px * ty - py * tx, px * tx + py * ty
     if abs(d) <= ON_SIDE * reach:
@@ -194,8 +276,9 @@ def _on_side(
     found = []
     for way, y, last in ((1.0, max(low, 0.0), high), (-1.0, max(-high, 0.0), -low)):
         piece = begin_of(law, spin * abs(d) * math.cosh(y)) if y < last else 1
+        branches = branches_of_side(axes, way * d, tx, ty)
         while y < last:
-            end, piece = side_panel(law, spin, abs(d), piece, y, last)
+            end, piece = side_panel(law, spin, abs(d), piece, y, last, branches)
             half = 0.5 * (end - y)
             found.append(np.stack([way * (y + half * (1.0 + NODE)), half * WEIGHT]))
             y = end
@@ -204,7 +287,9 @@ def _on_side(
     return d * ty + s * tx, s * ty - d * tx, weight * d * distance
 
 
-def _on_arc(row: FloatArray, law: FloatArray, spin: float, cx: float, cy: float) -> Points:
+def _on_arc(
+    row: FloatArray, law: FloatArray, axes: Ellipse, spin: float, cx: float, cy: float
+) -> Points:
     gx, gy, size = row[ABOUT_X] - cx, row[ABOUT_Y] - cy, row[RADIUS]
     off, nearest = math.hypot(gx, gy), math.atan2(-gy, -gx)
     low, high = arc_from_nearest(row[START], row[TURN], nearest)
@@ -215,8 +300,9 @@ def _on_arc(row: FloatArray, law: FloatArray, spin: float, cx: float, cy: float)
         if number % 2 == 1:
             side, ends = -1.0, [math.pi * (number + 1) - edge]
             last = math.pi * (number + 1) - low
+        branches = branches_of_circle(axes, gx, gy, size, nearest, side)
         while ends[-1] < last:
-            ends.append(circle_end(law, spin, off, size, ends[-1], last))
+            ends.append(circle_end(law, spin, off, size, ends[-1], last, branches))
         half = 0.5 * np.diff(ends)[:, None]
         turns = np.array(ends)[:-1, None] + half * (1.0 + NODE)
         found.append(np.stack([side * turns.ravel(), (half * WEIGHT).ravel()]))
@@ -227,7 +313,7 @@ def _on_arc(row: FloatArray, law: FloatArray, spin: float, cx: float, cy: float)
     return gx + size * c, gy + size * s, area
 
 
-def _far(rows: FloatArray, law: FloatArray, ux: float, uy: float, w: float) -> Sums:
+def _far(rows: FloatArray, law: FloatArray, axes: Ellipse, ux: float, uy: float, w: float) -> Sums:
     """With C far away: the inner integral from the distance of C to the contour."""
     parts = []
     for row in rows:
@@ -252,13 +338,14 @@ def _far(rows: FloatArray, law: FloatArray, ux: float, uy: float, w: float) -> S
     u = speed + spin * s
     part = 0.5 * deep[:, None] * WEIGHT * _polynomials(law, u.ravel())[:, 0].reshape(u.shape) * u
     k0, k1, k2 = ((part * s**power).sum(axis=1) for power in range(3))
-    weight = (vx * dx + vy * dy) / (slip * slip)
+    weight = sign * (vx * dx + vy * dy) / (slip * slip)
     outx, outy = sign * vy / slip, -sign * vx / slip
     bx, by = qx - deep * outx, qy - deep * outy
-    lever = qx * outx + qy * outy - deep
-    fx, fy = sign * weight * vx / slip, sign * weight * vy / slip
+    tx, ty = _against(axes, vx / slip, vy / slip)
+    lever, turning = bx * ty - by * tx, outx * ty - outy * tx
+    fx, fy = weight * tx, weight * ty
     ax, ay = bx * k0 + outx * k1, by * k0 + outy * k1
     terms = [fx * k0, fy * k0, fx * ax, fx * ay, fy * ax, fy * ay,
-             weight * (lever * ax + bx * k1 + outx * k2),
-             weight * (lever * ay + by * k1 + outy * k2)]  # fmt: skip
+             weight * (lever * ax + turning * (bx * k1 + outx * k2)),
+             weight * (lever * ay + turning * (by * k1 + outy * k2))]  # fmt: skip
     return _summed(terms)

@@ -9,9 +9,14 @@ moments of the law (:mod:`puck_tables.contact.law_moments`) at W R, along a piec
     ∫ f e dA = ∮ e H₁ (r × dr),  ∫ f R dA = ∮ R H₂ (r × dr),  ∫ f R r dA = ∮ R r H₃ (r × dr),
     ∫ f e ⊗ r dA = ∮ e ⊗ r H₂ (r × dr)      (r from C).
 
+Where it depends on the direction of the slip, too, T = f A² e/|A e| stands in place of f e, with
+A = diag(p, q) in axes (:mod:`puck_tables.kernels.elliptic_sums`).  All along a ray from C e is the
+same, so that the H_k are: in the first of these and the last e becomes A² e/|A e|, and the third,
+of r × T = R f |A e|, has R r |A e| in place of R r.
+
 On a straight side at the distance d from C, r × dr = d ds, and with y = asinh(s/|d|) the integrands
-are entire but for the law: Gauss's rule on panels of y.  On an arc panels shrink towards C.
-Panels end where the law bends, those of a side with each of its pieces
+are entire but for the law and 1/|A e|: Gauss's rule on panels of y.  On an arc panels shrink to
+C.  Panels end where the law bends, those of a side with each of its pieces
 (:mod:`puck_tables.kernels.law_panels`), so that all nodes of one are had at once.  Where C lies far
 away these cancel: there the inner integral runs from the distance of C to the contour.
 """
@@ -19,12 +24,14 @@ away these cancel: there the inner integral runs from the distance of C to the c
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.law_moments import DEGREE, MOMENTS
 from puck_tables.kernels.base_sums import NOTHING, Sums, moved, plus
 from puck_tables.kernels.compile import arrays_at_first, inlined, inner, kernel, summed
 from puck_tables.kernels.elementary import exp_of, log_of
+from puck_tables.kernels.elliptic_sums import Ellipse, local_friction
 from puck_tables.kernels.law_panels import (
     FAR,
     NODE,
@@ -33,6 +40,8 @@ from puck_tables.kernels.law_panels import (
     WEIGHT,
     arc_from_nearest,
     begin_of,
+    branches_of_circle,
+    branches_of_side,
     circle_end,
     law_sums_at_first,
     next_end,
@@ -55,6 +64,7 @@ from puck_tables.kernels.polygon_sums import (
 )
 
 _POWERS = DEGREE + 1  # coefficients of a moment on a piece
+_FAR_OF_AXES = 2.5  # times the reach, over the ratio of the axes: a rule goes across the base
 
 
 @inlined
@@ -88,23 +98,50 @@ def coefficient_at(law: FloatArray, u: float) -> float:
     return f
 
 
+@inlined
+def _against(axes: Ellipse, ex: float, ey: float) -> tuple[float, float]:
+    """What keeps an element of f N = 1 slipping along a unit vector."""
+    if axes.along == axes.across:
+        return axes.along * ex, axes.along * ey
+    c, s = axes.cosine, axes.sine
+    x, y = local_friction(axes, c * ex + s * ey, c * ey - s * ex)
+    return c * x - s * y, s * x + c * y
+
+
 @inner
-def _at(law: FloatArray, spin: float, rx: float, ry: float, distance: float, area: float) -> Sums:
+def _at(
+    law: FloatArray, axes: Ellipse, spin: float, rx: float, ry: float, distance: float, area: float
+) -> Sums:
     """What a point of the contour adds, about C, with r × dr = ``area``; e for ω > 0."""
     h1, h2, h3 = _moments(law, spin * distance)
-    ex, ey = -ry / distance, rx / distance
-    one, two, three = area * h1, area * h2, area * distance * h3
+    ex, ey = _against(axes, -ry / distance, rx / distance)
+    one, two, three = area * h1, area * h2, area * (rx * ey - ry * ex) * h3
     return (
         one * ex, one * ey, two * ex * rx, two * ex * ry, two * ey * rx, two * ey * ry,
         three * rx, three * ry,
     )  # fmt: skip
 
 
+class _Square(NamedTuple):
+    """|A e|² R² along a side: ``one`` + ``s`` s + ``ss`` s², s from where it is nearest to C."""
+
+    one: float
+    s: float
+    ss: float
+
+
+_PLAIN = _Square(0.0, 0.0, 0.0)  # of no direction
+
+
 @inlined
 def _on_panel(
-    law: FloatArray, spin: float, away: float, piece: int, y: float, half: float
-) -> tuple[float, float, float, float, float, float, float]:
-    """∫ of H₁, H₁ s, H₂, H₂ s, H₂ s², H₃ R² and H₃ R² s over y, from y over 2 ``half``."""
+    law: FloatArray, spin: float, away: float, piece: int, y: float, half: float, square: _Square,
+    directed: bool,
+) -> tuple[float, float, float, float, float, float, float]:  # fmt: skip
+    """∫ of H₁, H₁ s, H₂, H₂ s, H₂ s², H₃ R² and H₃ R² s over y, from y over 2 ``half``.
+
+    ``directed``, a constant: those of H₁ and H₂ by 1/|A e|, the others by |A e|.
+    """
     first = 2 + int(law[0]) + (piece - 1) * MOMENTS * _POWERS + _POWERS
     begin, end = law[piece], law[piece + 1]
     scale, shift = 2.0 * spin / (end - begin), (begin + end) / (end - begin)
@@ -121,15 +158,44 @@ def _on_panel(
             h3 = h3 * t + law[first + 2 * _POWERS + power]
         weight = half * WEIGHT[n]
         h1, h2, h3 = weight * h1, weight * h2, weight * distance * distance * h3
+        if directed:
+            whole = math.sqrt(square.one + s * (square.s + s * square.ss)) / distance
+            h1, h2, h3 = h1 / whole, h2 / whole, h3 * whole
         a, b, c, d = summed(a, h1), summed(b, h1 * s), summed(c, h2), summed(d, h2 * s)
         e, f, g = summed(e, h2 * s * s), summed(f, h3), summed(g, h3 * s)
     return a, b, c, d, e, f, g
 
 
+@inlined
+def _by_axes(axes: Ellipse, sums: Sums) -> Sums:
+    """Sums of e/|A e| as those of T, whose last two are."""
+    if axes.along == axes.across:
+        return plus(NOTHING, axes.along, sums)
+    p, q, c, s = axes.along, axes.across, axes.cosine, axes.sine
+    xx, yy = c * c * p * p + s * s * q * q, s * s * p * p + c * c * q * q
+    xy = c * s * (p * p - q * q)
+    return (
+        xx * sums[0] + xy * sums[1], xy * sums[0] + yy * sums[1], xx * sums[2] + xy * sums[4],
+        xx * sums[3] + xy * sums[5], xy * sums[2] + yy * sums[4], xy * sums[3] + yy * sums[5],
+        sums[6], sums[7],
+    )  # fmt: skip
+
+
+@inlined
+def _square_along(axes: Ellipse, d: float, tx: float, ty: float) -> _Square:
+    """Of a side along (tx, ty) at the distance d."""
+    p, q, c, s = axes.along, axes.across, axes.cosine, axes.sine
+    x, y = c * tx + s * ty, c * ty - s * tx
+    px, py, qx, qy = p * x, p * y, q * x, q * y
+    return _Square(
+        d * d * (px * px + qy * qy), 2.0 * d * (qx * qy - px * py), py * py + qx * qx
+    )  # fmt: skip
+
+
 @inner
 def _along_side(
-    law: FloatArray, spin: float, px: float, py: float, tx: float, ty: float, length: float,
-    least: float,
+    law: FloatArray, axes: Ellipse, spin: float, px: float, py: float, tx: float, ty: float,
+    length: float, least: float,
 ) -> Sums:  # fmt: skip
     """A straight side that begins at p from C, about C: both ways from where it is nearest."""
     d, begin = px * ty - py * tx, px * tx + py * ty
@@ -141,6 +207,7 @@ def _along_side(
     low = math.copysign(log_of((abs(begin) + near) / away), begin)
     high = math.copysign(log_of((abs(end) + far) / away), end)
     one, one_s, two, two_s, two_ss, three, three_s = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    directed = axes.along != axes.across
     for way in range(2):
         y, last, side, distance = low, high, 1.0, near
         if way == 1:
@@ -148,27 +215,34 @@ def _along_side(
         if y < 0.0:
             y, distance = 0.0, away
         piece = begin_of(law, spin * distance) if y < last else 1
+        branches = branches_of_side(axes, side * d, tx, ty)
         while y < last:
-            to, after = side_panel(law, spin, away, piece, y, last)
-            a, b, c, e, f, g, h = _on_panel(law, spin, away, piece, y, 0.5 * (to - y))
+            to, after = side_panel(law, spin, away, piece, y, last, branches)
+            half = 0.5 * (to - y)
+            if directed:
+                square = _square_along(axes, side * d, tx, ty)
+                a, b, c, e, f, g, h = _on_panel(law, spin, away, piece, y, half, square, True)
+            else:
+                a, b, c, e, f, g, h = _on_panel(law, spin, away, piece, y, half, _PLAIN, False)
             one, one_s, two, two_s = one + a, one_s + side * b, two + c, two_s + side * e
             two_ss, three, three_s = two_ss + f, three + g, three_s + side * h
             y, piece = to, after
-    square, product = d * d, tx * ty
-    both = product * (two_ss - square * two) + d * (ty * ty - tx * tx) * two_s
-    across, twice = 2.0 * d * product * two_s, square * two
-    return (
+    product = tx * ty
+    both = product * (two_ss - d * d * two) + d * (ty * ty - tx * tx) * two_s
+    across, twice = 2.0 * d * product * two_s, d * d * two
+    sums = (
         d * (d * tx * one - ty * one_s), d * (d * ty * one + tx * one_s), -d * both,
         -d * (tx * tx * twice - across + ty * ty * two_ss),
         d * (ty * ty * twice + across + tx * tx * two_ss), d * both,
         d * (d * ty * three + tx * three_s), d * (ty * three_s - d * tx * three),
     )  # fmt: skip
+    return _by_axes(axes, sums)
 
 
 @inner
 def _along_far_side(
-    law: FloatArray, ux: float, uy: float, w: float, px: float, py: float, tx: float, ty: float,
-    length: float,
+    law: FloatArray, axes: Ellipse, ux: float, uy: float, w: float, px: float, py: float,
+    tx: float, ty: float, length: float,
 ) -> Sums:  # fmt: skip
     """A straight side that begins at p, far from C, about the centre of mass, as where it bends."""
     spin, cx, cy, sums = abs(w), -uy / w, ux / w, NOTHING
@@ -182,15 +256,16 @@ def _along_far_side(
         if way == 1:
             y, last, side = max(-high, 0.0), -low, -1.0
         piece = begin_of(law, spin * away * math.cosh(y)) if y < last else 1
+        branches = branches_of_side(axes, side * d, tx, ty)
         while y < last:
-            end, piece = side_panel(law, spin, away, piece, y, last)
+            end, piece = side_panel(law, spin, away, piece, y, last, branches)
             half = 0.5 * (end - y)
             for n in range(NODES):
                 at = y + half * (1.0 + NODE[n])
                 s, weight = side * away * math.sinh(at) - begin, half * WEIGHT[n]
                 weight *= away * math.cosh(at)
                 part = _from_far(
-                    law, ux, uy, w, px + s * tx, py + s * ty, weight * tx, weight * ty
+                    law, axes, ux, uy, w, px + s * tx, py + s * ty, weight * tx, weight * ty
                 )  # fmt: skip
                 sums = plus(sums, 1.0, part)
             y = end
@@ -199,8 +274,8 @@ def _along_far_side(
 
 @inner
 def _along_arc(
-    law: FloatArray, ux: float, uy: float, w: float, far: bool, x: float, y: float, size: float,
-    start: float, turn: float,
+    law: FloatArray, axes: Ellipse, ux: float, uy: float, w: float, far: bool, x: float, y: float,
+    size: float, start: float, turn: float,
 ) -> Sums:  # fmt: skip
     """An arc about a place, from half-turn to half-turn away from where it is nearest to C."""
     spin, gx, gy, sums = abs(w), x + uy / w, y - ux / w, NOTHING
@@ -214,21 +289,22 @@ def _along_arc(
             side = -1.0
             begin = math.pi * (number + 1.0) - edge
             last = math.pi * (number + 1.0) - low
+        branches = branches_of_circle(axes, gx, gy, size, nearest, side)
         while begin < last:
-            end = circle_end(law, spin, off, size, begin, last)
+            end = circle_end(law, spin, off, size, begin, last, branches)
             half = 0.5 * (end - begin)
             for n in range(NODES):
                 angle = nearest + side * (begin + half * (1.0 + NODE[n]))
                 c, s, weight = math.cos(angle), math.sin(angle), half * WEIGHT[n] * size
                 if far:
                     part = _from_far(
-                        law, ux, uy, w, x + size * c, y + size * s, -weight * s, weight * c
+                        law, axes, ux, uy, w, x + size * c, y + size * s, -weight * s, weight * c
                     )  # fmt: skip
                 else:
                     rx, ry = gx + size * c, gy + size * s
                     distance = math.sqrt(rx * rx + ry * ry)
                     area = weight * (size + gx * c + gy * s)
-                    part = _at(law, spin, rx, ry, distance, area)
+                    part = _at(law, axes, spin, rx, ry, distance, area)
                 sums = plus(sums, 1.0, part)
             begin = end
         low = edge
@@ -238,7 +314,8 @@ def _along_arc(
 
 @inner
 def _from_far(
-    law: FloatArray, ux: float, uy: float, w: float, qx: float, qy: float, dx: float, dy: float
+    law: FloatArray, axes: Ellipse, ux: float, uy: float, w: float, qx: float, qy: float,
+    dx: float, dy: float,
 ) -> Sums:  # fmt: skip
     """What a point q of the contour adds, about the centre of mass; (dx, dy): dr there."""
     speed, spin, sign = math.sqrt(ux * ux + uy * uy), abs(w), -1.0 if w < 0.0 else 1.0
@@ -257,22 +334,25 @@ def _from_far(
             part = out * half * WEIGHT[n] * coefficient_at(law, u) * u
             k0, k1, k2 = k0 + part, k1 + part * s, k2 + part * s * s
         begin = end
-    weight = (vx * dx + vy * dy) / (slip * slip)
+    weight = sign * (vx * dx + vy * dy) / (slip * slip)
     outx, outy = sign * vy / slip, -sign * vx / slip
     bx, by = qx - deep * outx, qy - deep * outy
-    lever = qx * outx + qy * outy - deep
-    fx, fy = sign * weight * vx / slip, sign * weight * vy / slip
+    tx, ty = _against(axes, vx / slip, vy / slip)
+    lever, turning = bx * ty - by * tx, outx * ty - outy * tx
+    fx, fy = weight * tx, weight * ty
     ax, ay = bx * k0 + outx * k1, by * k0 + outy * k1
     return (
         fx * k0, fy * k0, fx * ax, fx * ay, fy * ax, fy * ay,
-        weight * (lever * ax + bx * k1 + outx * k2), weight * (lever * ay + by * k1 + outy * k2),
+        weight * (lever * ax + turning * (bx * k1 + outx * k2)),
+        weight * (lever * ay + turning * (by * k1 + outy * k2)),
     )  # fmt: skip
 
 
 @inner
 def _far_sums(
-    room: FloatArray, first: int, last: int, law: FloatArray, ux: float, uy: float, w: float
-) -> Sums:
+    room: FloatArray, first: int, last: int, law: FloatArray, axes: Ellipse, ux: float, uy: float,
+    w: float,
+) -> Sums:  # fmt: skip
     sums = NOTHING
     for i in range(first, last, PIECE_COLUMNS):
         turn = room[i + TURN]
@@ -281,7 +361,7 @@ def _far_sums(
             hx, hy = half * room[i + TANGENT_X], half * room[i + TANGENT_Y]
             mx, my = room[i + BEGIN_X] + hx, room[i + BEGIN_Y] + hy
             for n in range(NODES):
-                part = _from_far(law, ux, uy, w, mx + NODE[n] * hx, my + NODE[n] * hy, hx, hy)
+                part = _from_far(law, axes, ux, uy, w, mx + NODE[n] * hx, my + NODE[n] * hy, hx, hy)
                 sums = plus(sums, WEIGHT[n], part)
             continue
         cx = room[i + ABOUT_X]
@@ -294,42 +374,53 @@ def _far_sums(
             angle = room[i + START] + half * (2.0 * (k // NODES) + 1.0 + NODE[n])
             c, s = math.cos(angle), math.sin(angle)
             part = _from_far(
-                law, ux, uy, w, cx + size * c, cy + size * s, -size * s, size * c
+                law, axes, ux, uy, w, cx + size * c, cy + size * s, -size * s, size * c
             )  # fmt: skip
             sums = plus(sums, half * WEIGHT[n], part)
     return sums
 
 
 def _at_first(
-    room: FloatArray, first: int, last: int, reach: float, law: FloatArray, ux: float, uy: float,
-    w: float,
+    room: FloatArray, first: int, last: int, reach: float, law: FloatArray, axes: Ellipse,
+    ux: float, uy: float, w: float,
 ) -> Sums:  # fmt: skip
-    """By arrays, but where the law bends and C is far away."""
-    if _has_corners_far_away(reach, law, ux, uy, w):
-        return _as_written(room, first, last, reach, law, ux, uy, w, True)
-    return law_sums_at_first(room, first, last, reach, law, ux, uy, w)
+    """By arrays, but where friction bends and C is far away."""
+    if _has_bends_far_away(reach, law, axes, ux, uy, w):
+        return _as_written(room, first, last, reach, law, axes, ux, uy, w, True)
+    return law_sums_at_first(room, first, last, reach, law, axes, ux, uy, w)
 
 
 @inlined
-def _has_corners_far_away(reach: float, law: FloatArray, ux: float, uy: float, w: float) -> bool:
-    """Whether C is far away, and the law bends between the slips under the base."""
+def _has_bends_far_away(
+    reach: float, law: FloatArray, axes: Ellipse, ux: float, uy: float, w: float
+) -> bool:
+    """Whether C is far away, and friction bends between the slips under the base.
+
+    By the law, or by the direction.
+    """
     speed, rim = math.sqrt(ux * ux + uy * uy), reach * abs(w)
-    return speed > FAR * rim and next_end(law, speed - rim) < speed + rim
+    if not speed > FAR * rim:
+        return False
+    least, most = min(axes.along, axes.across), max(axes.along, axes.across)
+    turns = least < most and least * speed < _FAR_OF_AXES * most * rim
+    return turns or next_end(law, speed - rim) < speed + rim
 
 
 @inlined
 def _as_written(
-    room: FloatArray, first: int, last: int, reach: float, law: FloatArray, ux: float, uy: float,
-    w: float, far: bool,
+    room: FloatArray, first: int, last: int, reach: float, law: FloatArray, axes: Ellipse,
+    ux: float, uy: float, w: float, far: bool,
 ) -> Sums:  # fmt: skip
-    """The sums; ``far``: C is far away, and the law bends between the slips under the base."""
+    """The sums; ``far``: C is far away, and friction bends between the slips under the base."""
     if not far and math.sqrt(ux * ux + uy * uy) > FAR * reach * abs(w):
-        return _far_sums(room, first, last, law, ux, uy, w)
+        return _far_sums(room, first, last, law, axes, ux, uy, w)
     sums, cx, cy, least = NOTHING, -uy / w, ux / w, ON_SIDE * reach
     for i in range(first, last, PIECE_COLUMNS):
         if room[i + TURN] != 0.0:
             x, y, size = room[i + ABOUT_X], room[i + ABOUT_Y], room[i + RADIUS]
-            part = _along_arc(law, ux, uy, w, far, x, y, size, room[i + START], room[i + TURN])
+            part = _along_arc(
+                law, axes, ux, uy, w, far, x, y, size, room[i + START], room[i + TURN]
+            )  # fmt: skip
             sums = plus(sums, 1.0, part)
             continue
         px = room[i + BEGIN_X]
@@ -337,9 +428,11 @@ def _as_written(
         tx = room[i + TANGENT_X]
         ty = room[i + TANGENT_Y]
         if far:
-            part = _along_far_side(law, ux, uy, w, px, py, tx, ty, room[i + LENGTH])
+            part = _along_far_side(law, axes, ux, uy, w, px, py, tx, ty, room[i + LENGTH])
         else:
-            part = _along_side(law, abs(w), px - cx, py - cy, tx, ty, room[i + LENGTH], least)
+            part = _along_side(
+                law, axes, abs(w), px - cx, py - cy, tx, ty, room[i + LENGTH], least
+            )  # fmt: skip
         sums = plus(sums, 1.0, part)
     if far:
         return sums
@@ -349,12 +442,13 @@ def _as_written(
 @arrays_at_first(_at_first)
 @kernel
 def law_sums(
-    room: FloatArray, first: int, last: int, reach: float, law: FloatArray, ux: float, uy: float,
-    w: float,
+    room: FloatArray, first: int, last: int, reach: float, law: FloatArray, axes: Ellipse,
+    ux: float, uy: float, w: float,
 ) -> Sums:  # fmt: skip
-    """Sums of the slip direction times f(slip speed) over what a contour bounds; not at rest.
+    """Sums of T, by the slip speed and the direction, over what a contour bounds; not at rest.
 
-    ``first``, ``last``: where its rows begin and end in ``room``; ``reach``: of the base, m.
+    ``first``, ``last``: where its rows begin and end in ``room``; ``reach``: of the base, m;
+    ``axes``: the factors of the law along and across.
     """
-    far = _has_corners_far_away(reach, law, ux, uy, w)
-    return _as_written(room, first, last, reach, law, ux, uy, w, far)
+    far = _has_bends_far_away(reach, law, axes, ux, uy, w)
+    return _as_written(room, first, last, reach, law, axes, ux, uy, w, far)

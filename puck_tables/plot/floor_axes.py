@@ -87,7 +87,9 @@ def shades_of(floor: Floor, box: Box, highest: float) -> list[Shade]:
 def _said(own: Friction) -> str:
     """The friction of a stretch in words."""
     if isinstance(own, Orthotropic):
-        return "f = {:g} along, {:g} across".format(*own.friction)
+        law: Any = own.law
+        along, across = (one * (law.largest(0.0) if law else 1.0) for one in own.friction)
+        return f"f = {along:g} along, {across:g} across{' at rest' if law else ''}"
     return f"f = {largest_of(own, 0.0):g}{'' if isinstance(own, float) else ' at rest'}"
 
 

@@ -59,7 +59,7 @@ def _bad_load(scene: SceneSpec) -> list[str]:
     law = scene.puck.body.law
     if law.name == "uniform" or law.name.startswith("annulus:"):
         return []
-    by_place = has_laws_by_place(scene.floor)
+    by_place = scene.floor.strips is not None or bool(scene.floor.patches)
     what = "floor.strips or floor.patch with a friction law" if by_place else "floor.orthotropic"
     return [
         f"{what}: known under uniform pressure only, over any base, not with puck.pressure = "
@@ -147,7 +147,8 @@ def _bad_axes(floor: Floor) -> list[str]:
     faults = []
     if floor.orthotropic is not None and floor.law:
         faults.append(
-            "floor.orthotropic and floor.law: friction goes by one of them, leave one out"
+            "floor.orthotropic and floor.law: friction by speed and direction is "
+            "floor.orthotropic.law, its friction then factors of the law; leave floor.law out"
         )
     if floor.orthotropic is not None and floor.strips is not None:
         faults.append(
@@ -184,14 +185,15 @@ def _bad_rows(scene: SceneSpec) -> list[str]:
         (f"floor.patch[{k}].friction", one.friction, law_of)
         for k, one in enumerate(scene.floor.patches)
     ]
+    given += [(f"{name}.law", two.law, law_of) for name, two in directions_in(scene.floor).items()]
     for name, rows, made in (*given, ("force.over_time", force, drive_of)):
         if isinstance(rows, float | Orthotropic):
             continue
         if isinstance(rows, FrictionLaw):
             faults += [f"{name}: {fault}" for fault in rows.faults()]
-        elif name == "floor.law" and isinstance(rows, str) and rows in NAMED:
+        elif name.endswith(".law") and isinstance(rows, str) and rows in NAMED:
             faults.append(
-                f"floor.law = {rows!r}: a law by name is a table, floor.law.kind = {rows!r} with "
+                f"{name} = {rows!r}: a law by name is a table, {name}.kind = {rows!r} with "
                 "its numbers ('puck scene fields' lists them)"
             )
         elif rows and not isinstance(rows, str):

@@ -23,6 +23,7 @@ from puck_tables.scene.floor_map import (
     ACROSS_X,
     ACROSS_Y,
     ANGLE,
+    AXES,
     BASE,
     BORDERS,
     CORNER,
@@ -66,19 +67,21 @@ def _with(
     if load == 0.0 or first == last:
         return sums
     base = floor_map[int(floor_map[BASE]) :]
-    if law < 0:
-        ellipse = ellipse_on(floor_map, -law)
-        more = elliptic_sums(
-            floor_map, first, last, base[BASE_REACH], ellipse, slip.x, slip.y, slip.spin
-        )  # fmt: skip
-        return plus(sums, load, more)
-    if law > 0 and slip.moving != 0.0:
-        more = law_sums(
-            floor_map, first, last, base[BASE_REACH], floor_map[law:], slip.x, slip.y, slip.spin
-        )  # fmt: skip
-        return plus(sums, load, more)
     if law > 0:
-        load *= coefficient_at(floor_map[law:], 0.0)
+        axes, by_speed = ellipse_on(floor_map, law), floor_map[law + AXES :]
+        if by_speed[0] > 0.0 and slip.moving != 0.0:
+            more = law_sums(
+                floor_map, first, last, base[BASE_REACH], by_speed, axes, slip.x, slip.y, slip.spin
+            )  # fmt: skip
+            return plus(sums, load, more)
+        if by_speed[0] > 0.0:
+            load *= coefficient_at(by_speed, 0.0)
+        if axes.along != axes.across:
+            more = elliptic_sums(
+                floor_map, first, last, base[BASE_REACH], axes, slip.x, slip.y, slip.spin
+            )  # fmt: skip
+            return plus(sums, load, more)
+        load *= axes.along
     if first == int(floor_map[BASE]) + HEAD:  # all of it
         return plus(sums, load, whole_sums(base, slip.x, slip.y, slip.spin))
     return plus(sums, load, contour_sums(base, floor_map, first, last, slip.x, slip.y, slip.spin))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import threading
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -86,11 +87,12 @@ def laws_in(scene: SceneSpec) -> dict[str, SpeedLaw | FrictionLaw]:
         return found
     strips = 1 if floor.strips is None else len(floor.strips.friction)
     for part, one in enumerate(frictions_on(floor, 0.0)):
-        own = part > 0 or floor.strips is not None
-        if own and not isinstance(one, float | Orthotropic):
-            name = (
-                f"strips.friction[{part}]" if part < strips else f"patch[{part - strips}].friction"
-            )
+        name = f"strips.friction[{part}]" if part < strips else f"patch[{part - strips}].friction"
+        name = "orthotropic" if part == 0 and floor.strips is None else name
+        if isinstance(one, Orthotropic):
+            law: Any = one.law
+            found |= {f"floor.{name}.law": law} if law else {}
+        elif not isinstance(one, float) and name != "orthotropic":
             found[f"floor.{name}"] = one
     return found
 

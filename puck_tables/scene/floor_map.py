@@ -25,16 +25,17 @@ TURNING, TURNED = 19, 20
 _HEAD = 21
 # the places of its borders, f N between them as it is summed now, f N of all strips and then of all
 # patches where no factor changes it, the same with their factors, their velocities, where the law
-# begins by which their f goes (0: none; < 0: minus where, by direction; N then stands for f N), a
-# row for each patch (its middle, the radius of a circle about it, the first of its corners, how
-# many (none: it is that circle), and f N there now),
+# begins by which their f goes (0: none; N then stands for f N), a row for each patch (its middle,
+# the radius of a circle about it, the first of its corners, how many (none: it is that circle), and
+# f N there now),
 MIDDLE_X, MIDDLE_Y, REACH, CORNER, CORNERS, LOAD = range(6)
 PATCH_COLUMNS = 6
 # the corners of all patches, and a row for each edge (its normal into the floor, its place along
 # it); from BASE on the base, from LAW on its laws of friction (0: it has none), from LEFT on room
-# for two contours of what is left of the base, and from ROOM on room to work.  A law by direction
-# is f along and across, the angle of the first, and 1: in the floor, or 0: in the body.
-_AXES = 4
+# for two contours of what is left of the base, and from ROOM on room to work.  A law is factors
+# along and across, the angle of the first, 1: in the floor, or 0: in the body, and from AXES on f
+# over the slip speed (0: it is 1).
+AXES = 4
 
 
 class FloorMap(NamedTuple):
@@ -44,8 +45,8 @@ class FloorMap(NamedTuple):
     places along it, ascending, m; ``loads`` (n + 1,): f N between them; ``patches`` (k, 6), and
     ``corners`` (m, 2) of those that are polygons, counter-clockwise, m; ``base``: in one array
     (:func:`puck_tables.kernels.base_friction.packed`), its lever the height of the centre of mass
-    over N, m/N; ``laws``: its frictions f over the slip speed, each in one array
-    (:func:`puck_tables.contact.law_moments.packed_law`), or the direction, of four numbers;
+    over N, m/N; ``laws``: its frictions f by the direction and the slip speed, each in one array,
+    of four numbers and one of :func:`puck_tables.contact.law_moments.packed_law`, or 0;
     ``which`` (n + 1 + k,): of strips and patches the number of their law, −1: none, whose
     load is N then; ``belts`` (n + 1 + k, 2): their velocities, m/s, none: all alike; ``edges``
     (e, 3): those beyond which the base is not carried, a unit normal into the floor and the place
@@ -83,8 +84,6 @@ class FloorMap(NamedTuple):
         ends = law + np.cumsum([0, *map(len, self.laws)])
         for part, number in enumerate(self.which):
             begins[part] = ends[number] if number >= 0 else 0.0
-            if number >= 0 and len(self.laws[number]) == _AXES:
-                begins[part] *= -1.0
         cuts = 0 if not len(self.edges) else len(self.edges) + 1
         more = 2 ** max(cuts - 3, 0)  # each may double the pieces; there is room for three
         room = np.zeros(more * room_to_clip(self.base))
@@ -188,13 +187,15 @@ def summed_load(floor_map: FloatArray, part: int) -> float:
 
 @inlined
 def law_on(floor_map: FloatArray, part: int) -> int:
-    """Where the law of a stretch begins; 0: its f is a number; < 0: minus where, by direction."""
+    """Where the law of a stretch begins; 0: its f is a number."""
     return int(floor_map[_loads_in(floor_map) + 4 * parts_in(floor_map) + part])
 
 
 @inlined
 def ellipse_on(floor_map: FloatArray, at: int) -> Ellipse:
-    """Of a law by direction that begins at a place, in the axes of the base as it is turned."""
+    """The factors of a law that begins at a place, in the axes of the base as it is turned."""
+    if floor_map[at] == floor_map[at + 1]:
+        return Ellipse(floor_map[at], floor_map[at], 1.0, 0.0)
     angle = floor_map[at + 2] + floor_map[at + 3] * (floor_map[TURNED] - floor_map[ANGLE])
     return Ellipse(floor_map[at], floor_map[at + 1], math.cos(angle), math.sin(angle))
 

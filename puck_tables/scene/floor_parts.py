@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from bisect import bisect_right
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -65,7 +66,15 @@ def frictions_on(floor: Floor, own: float) -> list[Friction]:
     strips, first = floor.strips, law_of(floor.law) if floor.law else floor.orthotropic or own
     stretches: list[Any] = [first] if strips is None else list(strips.friction)
     stretches += [patch.friction for patch in floor.patches]
-    return [law_of(one) if isinstance(one, tuple) else one for one in stretches]
+    return [_read(one) for one in stretches]
+
+
+def _read(friction: Any) -> Friction:
+    """A friction whose law is read."""
+    if isinstance(friction, Orthotropic) and friction.law:
+        law: Any = law_of(friction.law)
+        return replace(friction, law=law)
+    return law_of(friction) if isinstance(friction, tuple) else friction
 
 
 def largest_of(friction: Friction, top: float) -> float:
@@ -78,7 +87,10 @@ def largest_of(friction: Friction, top: float) -> float:
 
 
 def has_laws_by_place(floor: Floor) -> bool:
-    """Whether strips or patches stand beside a law, by slip speed or direction, or have their own.
+    """Whether friction is summed over every base wherever it lies, by laws and directions.
+
+    Where strips or patches stand beside a law, by slip speed or direction, or have their own, and
+    where one goes by both.
 
     >>> has_laws_by_place(Floor(patches=(Patch(((0.0, 0.1), (1.0, 0.2)), radius=1.0),)))
     True
@@ -87,7 +99,8 @@ def has_laws_by_place(floor: Floor) -> bool:
     own = any(
         not isinstance(one, float) for one in (*stretches, *(p.friction for p in floor.patches))
     )
-    return own or bool((floor.law or floor.orthotropic) and floor.patches)
+    both = floor.orthotropic is not None and bool(floor.orthotropic.law)
+    return own or both or bool((floor.law or floor.orthotropic) and floor.patches)
 
 
 def directions_in(floor: Floor) -> dict[str, Orthotropic]:

@@ -7,6 +7,7 @@ import re
 import tomllib
 from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from collections.abc import Iterator
+from dataclasses import is_dataclass
 from functools import lru_cache
 from importlib.resources import files
 from pathlib import Path
@@ -22,13 +23,6 @@ MAX_FILE = 1 << 20  # bytes of a scene: more is no scene
 _PARTS = 50  # of a dotted key
 _POINT = re.compile(r"(?<!\.)\.(?!\.)")
 MAX_NAMED = 1 << 26  # bytes of a file that a scene names
-FILES = tuple(
-    (in_tables(part), name, spec.metadata["kind"])
-    for part, whole in specs(SceneSpec).items()
-    if whole.metadata["kind"].part is not None
-    for name, spec in specs(whole.metadata["kind"].part).items()
-    if spec.metadata["kind"].file is not None
-)
 
 
 def shipped_scenes() -> dict[str, str]:
@@ -142,12 +136,21 @@ def read_scene(path: str | Path) -> dict[str, Any]:
         raise InputError(
             f"{path}: a number in it has thousands of digits, or its lists are nested too deeply"
         ) from None
-    for part, name, kind in FILES:  # beside the scene that names them
-        given = tables.get(part)
-        for table in given if isinstance(given, list) else [given]:
-            if isinstance(table, dict) and kind.names_file(table.get(name)):
-                table[name] = str(Path(path).parent / table[name])
+    _find_beside(Path(path).parent, tables, SceneSpec)
     return tables
+
+
+def _find_beside(folder: Path, tables: Any, part: Any) -> None:
+    """Let all files that the tables of a part name be in a folder."""
+    for name, spec in specs(part).items() if isinstance(tables, dict) else ():
+        kind, value = spec.metadata["kind"], tables.get(in_tables(name))
+        if kind.names_file(value):
+            tables[name] = str(folder / value)
+        for one in value if isinstance(value, list) else [value]:
+            if kind.part is not None and isinstance(value, list) == (kind.shape == "parts"):
+                _find_beside(folder, one, kind.part)
+            elif kind.kinds and isinstance(one, dict):
+                _find_beside(folder, one, kind.kinds.get(str(one.get("kind")), Kind))
 
 
 def files_of(scene: SceneSpec) -> dict[str, str]:
@@ -179,21 +182,23 @@ def _named_in(part: Any, prefix: str) -> Iterator[tuple[str, str]]:
     whole: Any = type(part)
     for spec, table, kind in _may_name(whole):
         value, path = getattr(part, spec), prefix + table
-        if kind.shape == "part":
-            yield from () if value is None else _named_in(value, f"{path}.")
-        elif kind.shape == "parts":
+        if kind.names_file(value):
+            yield path, value
+        elif kind.shape in ("parts", "numbers"):
             for i, item in enumerate(value):
                 yield from _named_in(item, f"{path}[{i}].")
-        elif kind.names_file(value):
-            yield path, value
+        else:
+            yield from _named_in(value, f"{path}.")
 
 
 @lru_cache(maxsize=64)
 def _may_name(part: Any) -> list[tuple[str, str, Kind]]:
     """The fields of a part, if it is one, that may name a file, or parts that do."""
-    kinds = {name: spec.metadata["kind"] for name, spec in specs(part).items()} if part else {}
+    known = specs(part) if is_dataclass(part) else {}
+    kinds = {name: spec.metadata["kind"] for name, spec in known.items()}
     return [
-        (specs(part)[name].name, in_tables(name), kind)
+        (known[name].name, in_tables(name), kind)
         for name, kind in kinds.items()
-        if kind.file is not None or _may_name(kind.part)
+        if kind.file is not None
+        or any(map(_may_name, [kind.part, *(kind.kinds.values() if kind.kinds else ())]))
     ]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable
+from typing import Any
 
 import numpy as np
 
@@ -82,14 +83,19 @@ def floor_map_of(scene: SceneSpec, normal: float, top: float = 0.0) -> FloatArra
 
 
 def _key_of(one: SpeedLaw | FrictionLaw | Orthotropic) -> Hashable:
-    return one if isinstance(one, Orthotropic) else key_of(one)
+    if not isinstance(one, Orthotropic):
+        return key_of(one)
+    law: Any = one.law
+    return one.friction, one.direction, one.fixed_to, key_of(law) if law else None
 
 
 def _packed(one: SpeedLaw | FrictionLaw | Orthotropic, top: float) -> FloatArray:
     """A law in one array, up to a slip speed, m/s."""
-    if isinstance(one, Orthotropic):
-        return np.array([*one.friction, one.direction, float(one.fixed_to == "floor")])
-    return packed_law(*moments_of(one, top))
+    if not isinstance(one, Orthotropic):
+        return np.concatenate([[1.0, 1.0, 0.0, 0.0], packed_law(*moments_of(one, top))])
+    axes = [*one.friction, one.direction, float(one.fixed_to == "floor")]
+    law: Any = one.law
+    return np.concatenate([axes, packed_law(*moments_of(law, top)) if law else [0.0]])
 
 
 def may_lift(scene: SceneSpec, top: float = 0.0) -> bool:

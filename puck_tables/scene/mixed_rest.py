@@ -19,6 +19,7 @@ from puck_tables.scene.base_balance import friction_held, rub_at_rest
 from puck_tables.scene.floor_map import (
     ACROSS_X,
     ACROSS_Y,
+    AXES,
     BELTS,
     BORDERS,
     LEVER,
@@ -49,9 +50,10 @@ _TILTED = 1e-14  # of friction: what the load's tilt is known to
 def _at_rest(floor_map: FloatArray, part: int) -> float:
     """F N on a stretch at slip zero, in the direction of the least."""
     law, load = law_on(floor_map, part), summed_load(floor_map, part)
-    if law < 0:
-        return load * min(floor_map[-law], floor_map[1 - law])
-    return load * coefficient_at(floor_map[law:], 0.0) if law > 0 else load
+    if law == 0:
+        return load
+    by_speed, least = floor_map[law + AXES :], min(floor_map[law], floor_map[law + 1])
+    return load * least * (coefficient_at(by_speed, 0.0) if by_speed[0] > 0.0 else 1.0)
 
 
 @inner

@@ -27,25 +27,34 @@ class Orthotropic:
 
     An element that slips along e feels −(f_x² e_x, f_y² e_y)/√(f_x² e_x² + f_y² e_y²) of its load,
     in the axes of the floor, or of the body that is so.  It may be the friction of a strip or a
-    patch, too.
+    patch, too.  With a ``law`` over the slip speed it is so many times that.
+
+    >>> ice = Orthotropic((1.0, 0.5), law=StribeckLaw(0.3, 0.1, speed=0.2))
+    >>> ice.friction[1] * ice.law(0.0)  # f across at rest
+    0.15
     """
 
     friction: tuple[float, float] = of(
-        "pair", low=0.0, above=True, doc="along 'direction' and across it",
-        acts="orthotropic friction",
+        "pair", low=0.0, above=True, acts="orthotropic friction",
+        doc="along 'direction' and across it; beside 'law' factors of it",
     )  # fmt: skip
     direction: float = of("number", 0.0, "rad", doc="of the first of them, from x", acts="")
     fixed_to: str = of(
         "choice", "floor", choices=("floor", "body"), acts="",
         doc="what 'direction' is in: the floor, or the body, as that of a brushed sole is",
     )  # fmt: skip
+    law: str | Rows | FrictionLaw = of(
+        "rows", "", file="", kinds=NAMED, acts="",
+        doc="over the slip speed, as floor.law: 'friction' are then factors of it",
+    )  # fmt: skip
     kind: str = of(
         "choice", "orthotropic", choices=("orthotropic",), doc="in place of a number", acts=""
     )
 
-    def largest(self, _: float) -> float:
-        """The larger coefficient, at any slip speed."""
-        return max(self.friction)
+    def largest(self, top: float) -> float:
+        """The larger coefficient up to a slip speed, m/s, of a law that is read."""
+        law: Any = self.law
+        return max(self.friction) * (law.largest(top) if law else 1.0)
 
 
 OWN_FRICTION = {**NAMED, "orthotropic": Orthotropic}  # of a stretch of the floor, besides numbers

@@ -73,9 +73,9 @@ def plan_of(scene: SceneSpec) -> tuple[str, str]:
         )
     if has_laws_by_place(scene.floor):
         lines.append(
-            "friction by slip speed or direction differs by place: it is summed over every base "
-            "wherever it lies, in every step along the contour of its parts, each by its own law, "
-            "direction or number"
+            "friction by slip speed or direction differs by place, or goes by both: it is summed "
+            "over every base wherever it lies, in every step along the contour of its parts, each "
+            "by its own law, direction or number"
         )
     elif has_sums(scene):
         piled = any(one.shape is None and one.body.law.profile is not None for one in pucks)

@@ -19,11 +19,12 @@ from puck_tables._core.arrays import FloatArray
 
 
 class Brushed(NamedTuple):
-    """Friction along axes that are turned by an angle, and across."""
+    """Friction along axes that are turned by an angle, and across, times that by the slip speed."""
 
     along: float
     across: float
     angle: float
+    by_speed: Callable[[FloatArray], FloatArray] = np.ones_like
 
     def keeps(self, e: FloatArray) -> FloatArray:
         """What keeps elements of the load 1 slipping along e (n, 2)."""
@@ -111,7 +112,9 @@ def _along_rays(
     far: FloatArray, there: float, slope: FloatArray, w: float, grip: Law | None
 ) -> tuple[FloatArray, FloatArray]:  # fmt: skip
     """∫ f p R dR and ∫ f p R² dR from the centre to the sides, over R²."""
-    if grip is None or isinstance(grip, Brushed):
+    if isinstance(grip, Brushed):
+        grip = grip.by_speed
+    if grip is None:
         return there / 2.0 + slope * far / 3.0, there * far / 3.0 + slope * far * far / 4.0
     r = 0.5 * far[:, None] * (1.0 + _RAY)
     part = grip(abs(w) * r) * (there + slope[:, None] * r) * r * 0.5 * _SHARES
@@ -129,7 +132,7 @@ def friction(
         load = balance(part, law)
         way = v / np.hypot(*v)
         if isinstance(grip, Brushed):
-            way = grip.keeps(way[None])[0]
+            way = grip.keeps(way[None])[0] * grip.by_speed(np.hypot(*v))
         elif grip is not None:
             way = way * grip(np.hypot(*v))
         return -np.array([*(load[0] * way), load[1] * way[1] - load[2] * way[0]])

@@ -2,8 +2,9 @@
 
 All along a ray the slip is in one direction.  Rays are cut where they cross the outline of the base
 or a border of the floor; Gauss's rule of three nodes on each piece is exact for what is summed
-there, and angles are summed by panels between the directions of all corners, crossings and
-tangents.  A curve is a straight piece (ax, ay, bx, by) or a circle (cx, cy, r).
+there, of more under a law of the slip speed, where rays are cut at its corners, too.  Angles are
+summed by panels between the directions of all corners, crossings and tangents.  A curve is a
+straight piece (ax, ay, bx, by) or a circle (cx, cy, r).
 """
 
 from __future__ import annotations
@@ -19,7 +20,6 @@ Curve = tuple[float, ...]
 Local = Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 FAR = 50.0  # m: where straight borders end
 NODE, WEIGHT = np.polynomial.legendre.leggauss(24)
-INNER, PART = np.polynomial.legendre.leggauss(3)
 
 
 def sides(corners: Sequence[Sequence[float]]) -> list[Curve]:
@@ -77,10 +77,11 @@ def _angles(curves: Sequence[Curve], cx: float, cy: float) -> np.ndarray:
 
 
 def points_on_rays(
-    curves: Sequence[Curve], centre: tuple[float, float], panels: int = 4
+    curves: Sequence[Curve], centre: tuple[float, float], panels: int = 4, inner: int = 3
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:  # fmt: skip
     """Places and areas of the plane as far as the last curve: all that curves cut is told apart."""
     cx, cy = centre
+    nodes, part = np.polynomial.legendre.leggauss(inner)
     theta, weight = [], []
     for low, high in pairwise(_angles(curves, cx, cy)):
         ends = np.linspace(0.0, 1.0, panels + 1)
@@ -108,22 +109,22 @@ def points_on_rays(
                 cuts += [np.maximum(middle - half, 0.0), np.maximum(middle + half, 0.0)]
     cut = np.sort(np.array(cuts), axis=0)
     low, high = cut[:-1], cut[1:]
-    far = 0.5 * (low + high) + 0.5 * INNER[:, None, None] * (high - low)
-    area = 0.5 * PART[:, None, None] * (high - low) * far * w
+    far = 0.5 * (low + high) + 0.5 * nodes[:, None, None] * (high - low)
+    area = 0.5 * part[:, None, None] * (high - low) * far * w
     return (cx + far * nx).ravel(), (cy + far * ny).ravel(), area.ravel()
 
 
 def friction_of(
     curves: Sequence[Curve], inside: Callable[[np.ndarray, np.ndarray], np.ndarray], local: Local,
-    velocity: Sequence[float], lever: float = 0.0, panels: int = 4,
+    velocity: Sequence[float], lever: float = 0.0, panels: int = 4, inner: int = 3,
 ) -> np.ndarray:  # fmt: skip
     """Force and torque at the load 1 about the origin, of what lies inside and slips so.
 
     ``lever``: the height of the origin, m: by so much does friction tilt the linear pressure.
     """
     vx, vy, w = velocity
-    x, y, area = points_on_rays(curves, (-vy / w, vx / w), panels)
-    keep = inside(x, y) & (area > 0.0)
+    x, y, area = points_on_rays(curves, (-vy / w, vx / w), panels, inner)
+    keep = inside(x, y) & (area > 0.0) & (np.hypot(vx - w * y, vy + w * x) > 0.0)
     x, y, area = x[keep], y[keep], area[keep]
     ux, uy = vx - w * y, vy + w * x
     slip = np.hypot(ux, uy)
@@ -133,6 +134,17 @@ def friction_of(
     matrix = (rows * area) @ rows.T + np.stack(pull)
     load = area * (np.linalg.solve(matrix, [1.0, 0.0, 0.0]) @ rows)
     return -np.array([load @ tx, load @ ty, load @ (x * ty - y * tx)])
+
+
+def where_it_bends(
+    velocity: Sequence[float], speeds: Sequence[float], axes: Sequence[float]
+) -> list[Curve]:
+    """Where slips have a speed, and, through C, where they are along axes or across."""
+    vx, vy, w = velocity
+    cx, cy = -vy / w, vx / w
+    turned = [axis + k * math.pi / 2 for axis in axes for k in range(2)]
+    lines = [border(angle, cx * math.cos(angle) + cy * math.sin(angle)) for angle in turned]
+    return [*((cx, cy, speed / abs(w)) for speed in speeds), *lines]
 
 
 def by_ellipse(
