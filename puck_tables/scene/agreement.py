@@ -18,7 +18,13 @@ from puck_tables.scene.floor_parts import (
 from puck_tables.scene.floor_patches import patch_faults
 from puck_tables.scene.holds import allowed_velocity
 from puck_tables.scene.orthotropic import LEAST_RATIO
-from puck_tables.scene.over_time import drive_of, grip_faults, largest_factors, motion_of
+from puck_tables.scene.over_time import (
+    does_turn,
+    drive_of,
+    grip_faults,
+    largest_factors,
+    motion_of,
+)
 from puck_tables.scene.parts import Floor, Orthotropic
 
 if TYPE_CHECKING:
@@ -154,11 +160,8 @@ def _bad_axes(floor: Floor) -> list[str]:
             "floor.orthotropic and floor.strips: strips say all friction of the floor, each may "
             "have a direction of its own; give one of them"
         )
-    unsteady = bool(floor.over_time) and motion_of(floor)[:, 3].any()
     for name, two in directions_in(floor).items():
-        if unsteady and two.fixed_to == "floor":
-            faults.append(f"{name}: not on a floor that turns by floor.over_time; leave one out")
-        if floor.turning != 0.0 and two.fixed_to == "floor" and name != "floor.orthotropic":
+        if name != "floor.orthotropic" and two.fixed_to == "floor" and does_turn(floor):
             faults.append(
                 f"{name}: not on a floor that turns, where borders stand still and its axes would "
                 "not; leave one out"

@@ -27,7 +27,7 @@ from puck_tables.scene.floor_parts import (
 )
 from puck_tables.scene.floor_patches import corners_of
 from puck_tables.scene.over_edges import MOST_EDGES
-from puck_tables.scene.over_time import largest_factors
+from puck_tables.scene.over_time import does_turn, largest_factors
 from puck_tables.scene.parts import Orthotropic
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.sides import ends_of_floor, line_of
@@ -178,5 +178,4 @@ def follows_contour(scene: SceneSpec) -> bool:
         return False
     base = _pressed_base(puck)
     plain = floor.orthotropic.fixed_to == "floor" and puck.body.law.name == "uniform"
-    plain = plain and floor.turning == 0.0
-    return not plain or base is None or _lifts(scene, base, 0.0)
+    return not plain or does_turn(floor) or base is None or _lifts(scene, base, 0.0)
