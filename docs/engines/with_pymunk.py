@@ -11,8 +11,8 @@ import pymunk
 from task import (
     FLAT,
     Played,
-    is_steady,
     gravity,
+    is_steady,
     joint_limits,
     moments_of,
     motion_of,
