@@ -59,6 +59,23 @@ def motion_of(floor: Floor) -> FloatArray:
     return _rows_of(floor.over_time, (TIME, SPEED_X, SPEED_Y, SPIN), "floor.over_time")
 
 
+def moves_at(floor: Floor, time: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Velocity and spin (3, n) of a floor at times, s, and how fast they change.
+
+    >>> tray = Floor(over_time=[[0.0, 0.0, 0.0], [2.0, 1.0, 0.0]])
+    >>> [one.ravel().tolist() for one in moves_at(tray, np.array([1.0]))]
+    [[0.5, 0.0, 0.0], [0.5, 0.0, 0.0]]
+    """
+    if not floor.over_time:
+        steady = np.array([[*floor.velocity, floor.turning]]).T
+        return np.repeat(steady, len(time), 1), np.zeros((3, len(time)))
+    rows = motion_of(floor)
+    times, columns = rows[:, 0], rows[:, 1:].T
+    piece = np.searchsorted(times, time, "right")
+    rates = np.pad(np.diff(columns) / np.diff(times), ((0, 0), (1, 1)))
+    return np.stack([np.interp(time, times, one) for one in columns]), rates[:, piece]
+
+
 def does_turn(floor: Floor) -> bool:
     """Whether a floor ever turns.
 
