@@ -14,7 +14,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, minimize
 
 import puck_tables as pt
-from puck_tables.scene.outcome import as_toml
+from puck_tables.scene.library import as_toml
 from puck_tables.world.floor_forces import friction_at
 
 BOX, ROUND = [(-0.1, -0.05), (0.1, -0.05), (0.1, 0.05), (-0.1, 0.05)], 0.06

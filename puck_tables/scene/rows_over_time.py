@@ -56,7 +56,7 @@ def rows_over_time(
     >>> speed = 0.02 * 2 * math.pi
     >>> rows = pt.rows_over_time(lambda t: (speed * math.cos(2 * math.pi * t), 0.0), 2.0, 1e-4)
     >>> len(rows), rows[0]
-    (129, (0.0, 0.12566370614359174, 0.0))
+    (193, (0.0, 0.12566370614359174, 0.0))
     >>> pt.Scene(pt.Puck(0.05, friction=0.2), pt.Floor(over_time=rows), time=2.0).simulate().end
     'carried by the floor'
     """

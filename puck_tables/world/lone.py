@@ -15,7 +15,7 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, on_demand, patience
 from puck_tables.motion.steppers import times_as_long
-from puck_tables.scene.belts import is_rubbed
+from puck_tables.scene.base_balance import is_rubbed
 from puck_tables.scene.equations import (
     FIRST,
     GIVEN,
