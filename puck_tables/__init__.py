@@ -38,7 +38,6 @@ if TYPE_CHECKING:
     from puck_tables.reference.answer import reference_case
     from puck_tables.reference.comparison import compare
     from puck_tables.reference.floor_reaction import floor_friction
-    from puck_tables.scene.driven import path_along
     from puck_tables.scene.parts import (
         Constraint,
         Drag,
@@ -55,6 +54,7 @@ if TYPE_CHECKING:
     )
     from puck_tables.scene.pucks_and_posts import Arc, Line, Pocket, Post, Rim
     from puck_tables.scene.restitution import Plastic, RestitutionTable, Viscoelastic
+    from puck_tables.scene.rows_over_time import rows_over_time
     from puck_tables.stopping.array_functions import state_arrays, stop_arrays
     from puck_tables.stopping.states import states
     from puck_tables.stopping.stops import stop
@@ -76,9 +76,8 @@ __all__ = [
     "Scene", "SpeedLaw", "StribeckLaw", "Strips", "Table", "Track", "Uniform", "Viscoelastic",
     "Wall", "World", "Worlds", "__version__", "chetaev", "compare", "contact", "errors",
     "export_board", "export_source", "fisher", "fit", "floor_friction", "law_of", "motion",
-    "path_along",
     "profile_law", "push", "read_tracks", "reference_case", "resultants", "results",
-    "state_arrays", "states", "stop", "stop_arrays", "table_for", "warm_up",
+    "rows_over_time", "state_arrays", "states", "stop", "stop_arrays", "table_for", "warm_up",
 ]  # fmt: skip
 
 __getattr__, __dir__ = lazily(__name__)

@@ -60,7 +60,7 @@ class Puck(VerbsOfMany):
         that speed; cushions have their own; a :class:`Rim` of a pair comes before both.
     path : rows or CSV of t, x, y and perhaps the angle
         A body that is driven there, straight between the rows, such as a mallet: pucks bounce off
-        it, and nothing stops it.  :func:`puck_tables.path_along` makes rows of a function.
+        it, and nothing stops it.  :func:`puck_tables.rows_over_time` makes rows of a function.
     force, constraint : Force and Constraint, optional
         What acts on this puck alone, and what leads it.
 

@@ -78,7 +78,8 @@ class Trajectory(TimedResult):
 
     On a base that is not round Q = hypot(v, kω) and φ = atan2(kω, v) with the radius of gyration k
     for r; ``heading`` lies between −π and π, at rest it is that just before; ``regime`` tells how
-    it ends: rest, 'together', 'slide last' or 'spin last'; ``turn_angle``, ``turn_rate`` and
+    it ends: rest, 'together', 'slide last', 'spin last', 'pivot' (about one of its feet) or 'cycle'
+    (tall and nearly symmetric: in no direction at all); ``turn_angle``, ``turn_rate`` and
     ``limit_angle`` are None.
     """
 

@@ -266,8 +266,8 @@ def _of_scenes() -> dict[str, Door]:
             "target": (0.6, 0.0), "puck": "red", "striker": "cue", "pocket": None, "hits": None,
             "spin": None, "speed": None, "max_speed": None, "max_spin": None, "max_impacts": 1,
             "count": 2, "progress": None}),
-        "path_along": (pt.path_along, {
-            "place": lambda t: (t, 0.0, 0.0), "until": 1.0, "accuracy": 1e-3}),
+        "rows_over_time": (pt.rows_over_time, {
+            "function": lambda t: (t, 0.0, 0.0), "until": 1.0, "accuracy": 1e-3}),
         "World": (pt.World, {"scene": board()}),
         "World.at": (on_copy("at"), {"time": 0.1}),
         "World.over": (on_copy("over"), {"times": 0.0}),

@@ -121,7 +121,8 @@ def test_what_holds_at_rest(height, at, downhill):
 
 
 @pytest.mark.parametrize(("puck", "floor", "words"), [
-    ({"height": 0.2}, {"strips": NARROW}, "loaded everywhere, delta = 2 f h / r up to 1"),
+    ({"height": 0.06, "friction": 0.2, "pressure": "hertz"}, {"strips": NARROW},
+     "loaded everywhere, delta = 2 f h / r up to 0.8"),
     ({}, {"patches": [ROUND, POLYGON]}, "overlap"),
     ({"height": 0.0}, {"patches": [replace(ROUND, friction=1e6)]}, "give at most 1000"),
     ({}, {"patches": [ROUND], "strips": pt.Strips((0.3,), (0.1, 0.2))}, "lies over floor.strips"),

@@ -135,10 +135,5 @@ def test_a_block_holds_on_a_slope_by_the_friction_across_its_grooves() -> None:
 
 
 def test_what_is_not_known_is_refused() -> None:
-    floor = Floor(
-        orthotropic=Orthotropic((0.2, 0.1)), over_time=[[0.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 1.0]]
-    )
-    with pytest.raises(InputError, match=r"that turns by floor\.over_time"):
-        Scene(puck("box:0.2x0.1"), floor, time=1.0)
     with pytest.raises(InputError, match="fixed_to"):
         Scene(Puck(0.1), Floor(orthotropic=Orthotropic((0.2, 0.1), fixed_to="table")))

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from base_judge import Judge
 from rarely import few
+from scipy.integrate import solve_ivp
 
 from puck_tables import Base, Puck
 from puck_tables.errors import AccuracyError, ContactError, InputError
@@ -165,6 +166,53 @@ def test_the_end_of_a_box_is_told():
     assert small.regime == "slide last"
     large = Puck(base=BOX, friction=0.3, gyration=0.5).simulate((1.0, 0.2), 10.0)
     assert large.regime == "spin last"
+
+
+def test_feet_end_turning_about_one_of_them():
+    """The centre of rotation late in a slide, from its states, lies in a foot, or in none."""
+    feet, radius = np.array([(0.08, 0.0), (-0.05, 0.06), (-0.05, -0.06)]), 0.002
+    middle = feet.mean(axis=0)
+    found = set()
+    for gyration, spin in ((None, 12.0), (0.12, -20.0), (0.12, 30.0), (0.12, 40.0), (0.14, 12.0)):
+        puck = Puck(base=Base.feet(feet, radius), friction=0.3, gyration=gyration)
+        run = puck.simulate((0.5, 0.2), spin)
+        late = run([(1.0 - 1e-5) * run.stop_time])
+        vx, vy, w, angle = (getattr(late, n)[0] for n in ("vx", "vy", "spin", "orientation"))
+        x, y = -vy / w, vx / w
+        c, s = math.cos(angle), math.sin(angle)
+        centre = np.array([c * x + s * y, c * y - s * x])
+        away = np.hypot(*(feet - middle - centre).T).min()
+        assert run.regime == ("pivot" if away < radius else "together")
+        found.add(run.regime)
+    assert found == {"pivot", "together"}
+
+
+@pytest.mark.parametrize(
+    ("sides", "height", "regime"),
+    [((0.1, 0.1), 0.0, "together"), ((0.1, 0.1), 0.06, "cycle"), ((0.2, 0.1), 0.06, "together")],
+)
+def test_tall_and_nearly_symmetric_bodies_end_in_no_direction(
+    sides: tuple[float, float], height: float, regime: str
+):
+    """By the judge: the direction of (v, kω), settles while Q falls by e^60, or not."""
+    a, b = 0.5 * sides[0], 0.5 * sides[1]
+    k = math.sqrt((sides[0] ** 2 + sides[1] ** 2) / 12.0)
+    judge = Judge([[(-a, -b), (a, -b), (a, b), (-a, b)]], [], 0.3 * 0.5 * height, k)
+
+    def change(_: float, e: np.ndarray) -> np.ndarray:  # over −ln Q
+        force, torque = judge.friction(e[0], e[1], e[2] / k)
+        pull = np.array([*force, torque / k])
+        return (pull - (pull @ e) * e / (e @ e)) / -(pull @ e)
+
+    start = np.array([1.0, 0.2, 0.8]) / math.sqrt(1.68)
+    late = solve_ivp(change, (0.0, 60.0), start, rtol=1e-9, atol=1e-11).y[:, -1]
+    turns = float(np.hypot.reduce(change(0.0, late)))
+    if regime == "cycle":
+        assert turns > 0.05
+    else:  # it dies out, as fast as a square allows
+        assert turns < 0.01
+    run = Puck(base=Base.box(*sides), friction=0.3, height=height).simulate((1.0, 0.2), 10.0)
+    assert run.regime == regime
 
 
 def test_mirror_images():

@@ -33,7 +33,7 @@ from puck_tables import (
 )
 from puck_tables.scene.base_balance import sums_and_pressure
 from puck_tables.scene.map_of_floor import floor_map_of
-from puck_tables.scene.outcome import ENDS
+from puck_tables.scene.run import ENDS
 from puck_tables.world.floor_forces import friction_at
 
 LONG, WIDE, DECEL = 0.2, 0.1, 0.3 * 9.80665

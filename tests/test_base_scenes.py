@@ -32,7 +32,7 @@ from puck_tables.kernels.base_clipping import whole_contour
 from puck_tables.kernels.base_friction import REACH, base_sums, packed
 from puck_tables.kernels.elliptic_sums import Ellipse
 from puck_tables.kernels.law_sums import law_sums
-from puck_tables.scene.outcome import as_toml
+from puck_tables.scene.library import as_toml
 from puck_tables.world.floor_forces import friction_at
 
 TRIANGLE = [(-0.04, -0.03), (0.08, -0.03), (-0.04, 0.06)]

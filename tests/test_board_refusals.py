@@ -7,7 +7,7 @@ import tomllib
 import pytest
 
 import puck_tables as pt
-from puck_tables.scene.outcome import as_toml
+from puck_tables.scene.library import as_toml
 from puck_tables.scene.restitution import restitution_law
 
 PUCK = pt.Puck(0.03, friction=0.1, name="puck", launch=pt.Launch((1.0, 0.0)))

@@ -13,7 +13,8 @@ from puck_tables.cli.main import main
 
 import puck_tables as pt
 from puck_tables import Normal, Scene, Uniform
-from puck_tables.scene.outcome import ENDS, REFUSED, as_toml
+from puck_tables.scene.library import as_toml
+from puck_tables.scene.run import ENDS, REFUSED
 
 PLACES = ("x", "y", "orientation", "in_play")
 SHOT: dict[str, Any] = {

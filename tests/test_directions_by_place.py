@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 from rays_judge import border, by_ellipse, friction_of, sides, where_it_bends
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq, minimize
 
 import puck_tables as pt
-from puck_tables.scene.outcome import as_toml
+from puck_tables.scene.library import as_toml
 from puck_tables.world.floor_forces import friction_at
 
 BOX, ROUND = [(-0.1, -0.05), (0.1, -0.05), (0.1, 0.05), (-0.1, 0.05)], 0.06
@@ -242,6 +243,83 @@ def test_a_turntable_carries_what_its_ellipse_holds(shape: str) -> None:
             assert run.end == end, (bearing, share)
 
 
+# of a tray: t, velocity and spin; it is as at first until 0.1, and its spin jumps at no time
+TRAY = np.array([[0.1, 0.1, 0.0, 2.0], [0.4, -0.2, 0.3, 4.0], [0.9, 0.1, 0.3, -1.0]])
+
+
+@pytest.mark.parametrize(("shape", "height"), [("box", 0.02), ("round", 0.0)])
+def test_axes_of_a_tray_turn_as_it_does(shape: str, height: float) -> None:
+    """Its angle is an unknown of the judge, beside the six of the puck."""
+    thrown, cx = body(shape, height), 0.1
+    inertia = thrown.inertia_radius**2 * thrown.mass
+
+    def rates(t: float, y: np.ndarray) -> list[float]:
+        bx, by, turning = (np.interp(t, TRAY[:, 0], TRAY[:, k]) for k in (1, 2, 3))
+        now = replace(WOOD, direction=WOOD.direction + y[6])
+        ux, uy = y[3] - bx + turning * y[1], y[4] - by - turning * (y[0] - cx)
+        state = [0.0, 0.0, y[2], ux, uy, y[5] - turning]
+        fx, fy, torque = Judge(shape, [now], None, height).forces(state, 2)
+        return [*y[3:6], fx, fy, torque / inertia, turning]
+
+    state, times, truth = np.array([-0.1, 0.02, 0.3, 0.55, -0.1, 9.0, 0.0]), [0.1, 0.4, 0.8], []
+    for begin, end in zip([0.0, *times], times, strict=False):
+        state = solve_ivp(rates, (begin, end), state, "DOP853", rtol=1e-11, atol=1e-12).y[:, -1]
+        truth.append(state)
+    launch = pt.Launch((0.55, -0.1), spin=9.0, position=(-0.1, 0.02), orientation=0.3)
+    floor = pt.Floor(orthotropic=WOOD, over_time=TRAY, centre=(cx, 0.0))
+    run = pt.Scene(thrown, floor, launch, time=0.9, tol=1e-10).simulate(times)
+    keys = ("x", "y", "orientation", "vx", "vy", "spin")
+    for key, row in zip(keys, np.transpose(truth), strict=False):
+        unit = 1.0 / ROUND if key in ("orientation", "spin") else 1.0
+        assert run.columns[key] == pytest.approx(row, abs=2e-9 * unit), key
+    assert run.energy_residual < 1e-9
+
+
+@pytest.mark.parametrize("shape", ["box", "round"])
+def test_a_tray_holds_by_the_axis_that_has_turned_under_the_pull(shape: str) -> None:
+    """At its centre: from t = 1 on, when that has turned by 0.3 rad."""
+    rows = [[0.5, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 1.2]]
+    floor = pt.Floor(orthotropic=pt.Orthotropic((0.1, 0.35), 0.5 * math.pi), over_time=rows)
+    pull = pt.Force(over_time=[[1.0, 0.2, 0.0], [2.0, 0.2, 0.0]])
+    run = pt.Scene(body(shape, 0.0), floor, force=pull, time=2.0).simulate([0.0])
+    # the ellipse holds 1/hypot(cos/0.35, sin/0.1) there, as its axis has turned by that angle
+    angle = math.asin(math.sqrt((0.2**-2 - 0.35**-2) / (0.1**-2 - 0.35**-2)))
+    slips = [event.time for event in run.events if event.what == "slip"]
+    assert slips[0] == pytest.approx(1.0 + (angle - 0.3) / 1.2, abs=1e-8)
+    assert run.energy_residual < 1e-9
+
+
+def held(pull: float, torque: float, angle: float, friction: tuple[float, float]) -> float:
+    """What a disc takes up of a force and a torque at the load 1, less them, as a share."""
+    node, weight = np.polynomial.legendre.leggauss(16)
+    rho, turn = 0.5 * (1.0 + node)[:, None], 2.0 * math.pi * np.arange(64) / 64
+    x, y, area = rho * np.cos(turn), rho * np.sin(turn), weight[:, None] * rho / 64
+    c, s = math.cos(angle), math.sin(angle)
+
+    def most(slip: np.ndarray) -> float:
+        ux, uy = 1.0 - slip[1] * y, slip[0] + slip[1] * x
+        along, across = friction[0] * (c * ux + s * uy), friction[1] * (c * uy - s * ux)
+        return float((area * np.hypot(along, across)).sum()) / (pull + torque * slip[1] / ROUND)
+
+    return float(minimize(most, [0.0, 0.0], method="Nelder-Mead", tol=1e-10).fun) - 1.0
+
+
+def test_a_tray_that_spins_up_loses_a_puck_where_an_axis_comes_by() -> None:
+    """Pulled by a force all the time it lies, until the smooth axis comes along that: 9 rad/s²."""
+    puck = pt.Puck(ROUND, friction=0.2, mass=1.0, gravity=1.0, gyration=0.1)
+    rows = [[0.0, 0.0, 0.0, 0.0], [2.0, 0.0, 0.0, 18.0]]
+    axes = pt.Orthotropic((0.1, 0.35), 0.5 * math.pi)
+    floor = pt.Floor(orthotropic=axes, over_time=rows)
+    run = pt.Scene(puck, floor, force=pt.Force((0.13, 0.0)), time=2.0).simulate([0.0])
+    slips = next(event.time for event in run.events if event.what == "slip")
+    torque = 9.0 * (0.1 * ROUND) ** 2
+
+    def spare(t: float) -> float:
+        return held(0.13, -torque, axes.direction + 4.5 * t * t, axes.friction)
+
+    assert slips == pytest.approx(brentq(spare, 0.2, 0.6, xtol=1e-12), abs=1e-7)
+
+
 FILE = """
 [puck]
 radius = 0.05
@@ -282,6 +360,8 @@ def test_it_stands_in_files_reports_pictures_and_sweeps() -> None:
          r"floor.patch\[0\].friction.friction = \[0.3, 0.001\]: one must be at least 0.03"),
         ({}, {"patches": [pt.Patch(WOOD, radius=1.0)], "turning": 1.0},
          r"floor.patch\[0\].friction: not on a floor that turns"),
+        ({}, {"strips": pt.Strips((0.0,), (0.1, WOOD)), "over_time": TRAY},
+         r"floor.strips.friction\[1\]: not on a floor that turns"),
         ({}, {"orthotropic": WOOD, "strips": pt.Strips((0.0,), (0.1, 0.2))},
          "floor.orthotropic and floor.strips: strips say all friction"),
         ({"pressure": "hertz"}, {"strips": pt.Strips((0.0,), (0.1, WOOD))},

@@ -234,7 +234,7 @@ REFUSED = {
 def test_what_is_wrong_is_said(name: str) -> None:
     grips, words = REFUSED[name]
     with pytest.raises(pt.InputError, match=words):
-        pt.Scene(pt.Puck(0.05, 0.05, 0.3), pt.Floor(grips=grips))
+        pt.Scene(pt.Puck(0.05, 0.05, 0.3, pressure="hertz"), pt.Floor(grips=grips))
 
 
 def test_a_floor_without_friction_in_the_end_needs_a_time() -> None:

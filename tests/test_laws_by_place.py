@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import puck_tables as pt
-from puck_tables.scene.outcome import as_toml
+from puck_tables.scene.library import as_toml
 from puck_tables.world.floor_forces import friction_at
 from puck_tables.world.plan import plan_of
 

@@ -217,10 +217,6 @@ def test_both_frictions_are_ranges():
     [
         ({"friction": (0.0, 0.3)}, r"floor.orthotropic.friction\[0\] = 0.0: must be a number > 0"),
         ({"friction": (1e-4, 0.3)}, "one must be at least 0.03 of the other"),
-        (
-            {"floor": {"over_time": [[0, 0, 0, 0], [1, 0, 0, 1]]}},
-            "not on a floor that turns by floor.over_time",
-        ),
         ({"floor": {"law": [[0.0, 0.1], [1.0, 0.1]]}}, "leave one out"),
     ],
 )

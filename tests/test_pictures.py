@@ -24,7 +24,7 @@ from puck_tables.errors import InputError, OutputError
 from puck_tables.motion import limit_ratio
 from puck_tables.plot import style
 from puck_tables.scene.library import find_scene
-from puck_tables.scene.outcome import ENDS
+from puck_tables.scene.run import ENDS
 
 
 @pytest.fixture

@@ -184,7 +184,7 @@ import math
 import puck_tables as pt
 from click.testing import CliRunner
 from puck_tables.cli.main import main
-from puck_tables.scene.outcome import as_toml
+from puck_tables.scene.library import as_toml
 
 def exact(c, m, v, t):
     return v / math.sqrt(1.0 + 2.0 * c * v * v * t / m)

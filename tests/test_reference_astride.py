@@ -123,7 +123,7 @@ def test_the_limit_is_that_of_the_friction_it_stops_on():
 def test_the_force_on_a_floor_with_a_grain(friction: tuple[float, float], along: float):
     puck = Puck(0.05, mass=0.1, gravity=10.0)
     scene = Scene(puck, Floor(orthotropic=Orthotropic(friction)))
-    slides = {name: np.zeros(1) for name in ("x", "y", "vy", "spin")} | {"vx": np.ones(1)}
+    slides = {name: np.zeros(1) for name in ("time", "x", "y", "vy", "spin")} | {"vx": np.ones(1)}
     found = [float(part[0]) for part in on_the_floor(puck, scene, slides)]
     assert found == pytest.approx([along, 0.0, 0.0], abs=1e-14)
 

@@ -12,7 +12,7 @@ from boards import draw, puck_at
 from scipy.integrate import solve_ivp
 
 import puck_tables as pt
-from puck_tables.scene.outcome import as_toml
+from puck_tables.scene.library import as_toml
 
 ROWS = "speed,e\n0,0.9\n0.5,0.8\n1,0.6\n4,0.5\n"
 

@@ -18,8 +18,7 @@ from puck_tables._core.fields import described, of
 from puck_tables.errors import InputError, PuckError
 from puck_tables.scene import parts
 from puck_tables.scene.entries import set_path, tables_of
-from puck_tables.scene.library import shipped_scenes
-from puck_tables.scene.outcome import as_toml
+from puck_tables.scene.library import as_toml, shipped_scenes
 from puck_tables.world.plan import plan_of
 from puck_tables.world.scene import Scene
 

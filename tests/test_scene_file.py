@@ -16,7 +16,7 @@ from scenes import simulate_scene, sweep_scene
 
 from puck_tables import InputError, Scene
 from puck_tables.scene.library import read_scene
-from puck_tables.scene.outcome import ENDS
+from puck_tables.scene.run import ENDS
 
 FORCE = "t,Fx,Fy\n0,0.1,0\n# Gewicht\n1,0,0\n"
 

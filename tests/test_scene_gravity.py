@@ -14,7 +14,7 @@ from puck_tables.cli.values import NumberParam
 
 import puck_tables as pt
 from puck_tables.scene.entries import tables_of
-from puck_tables.scene.outcome import as_toml
+from puck_tables.scene.library import as_toml
 
 PUCK = pt.Puck(0.04, height=0.02, friction=0.15)
 ROW = pt.Scene.load("curling-take-out")

@@ -9,7 +9,7 @@ import pytest
 from random_scenes import draw
 from scenes import simulate_scene
 
-from puck_tables.scene.outcome import ENDS
+from puck_tables.scene.run import ENDS
 
 
 def _closes(seeds: range, folder: Path) -> set[str]:

@@ -14,7 +14,7 @@ import xarray
 import puck_tables as pt
 from puck_tables.errors import InputError
 from puck_tables.scene.entries import tables_of
-from puck_tables.scene.outcome import as_toml
+from puck_tables.scene.library import as_toml
 
 PUCK = pt.Puck(radius=0.04, height=0.02, friction=0.15, mass=0.2)
 LAUNCH = pt.Launch((0.8, 0.1), spin=20.0)

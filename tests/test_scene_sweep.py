@@ -12,7 +12,7 @@ from scenes import simulate_scene, sweep_scene
 from puck_tables.errors import InputError
 from puck_tables.results import Map
 from puck_tables.scene.entries import set_path
-from puck_tables.scene.outcome import ENDS
+from puck_tables.scene.run import ENDS
 
 
 def tables() -> dict[str, Any]:

@@ -19,7 +19,7 @@ from puck_tables.kernels.base_clipping import whole_contour
 from puck_tables.kernels.base_friction import REACH, packed
 from puck_tables.kernels.elliptic_sums import Ellipse, elliptic_sums
 from puck_tables.kernels.law_sums import law_sums
-from puck_tables.scene.outcome import as_toml
+from puck_tables.scene.library import as_toml
 
 TOP = 60.0  # m/s
 STRIBECK = pt.StribeckLaw(0.3, 0.1, speed=0.3, exponent=2.0)

@@ -235,7 +235,7 @@ def test_from_a_file_a_sweep_and_what_is_told() -> None:
 def test_what_is_wrong_is_said() -> None:
     with pytest.raises(pt.InputError, match=r"floor\.static_ratio"):
         pt.Scene(pt.Puck(0.05), pt.Floor(static_ratio=0.9))
-    body = pt.Puck(0.05, height=0.2, friction=0.2)
+    body = pt.Puck(0.05, height=0.09, friction=0.2, pressure="hertz")
     pt.Scene(body)
     with pytest.raises(pt.InputError, match=r"floor\.static_ratio: .*height"):
         pt.Scene(body, pt.Floor(static_ratio=1.5))

@@ -72,7 +72,7 @@ def test_a_file_says_the_same_as_python(board: Path) -> None:
 def _toml(scene: pt.Scene) -> dict[str, Any]:
     import tomllib
 
-    from puck_tables.scene.outcome import as_toml
+    from puck_tables.scene.library import as_toml
 
     return tomllib.loads(as_toml(scene))
 

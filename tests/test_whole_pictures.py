@@ -37,7 +37,7 @@ from puck_tables.plot import (
 )
 from puck_tables.plot.animation import PALETTE, colour_of
 from puck_tables.results import Map
-from puck_tables.scene.outcome import ENDS, LAST_END
+from puck_tables.scene.run import ENDS, LAST_END
 
 LONG = "Of a title that goes on and on, as of whoever names all that there is in a scene, " * 3
 WORD = "x" * 150 + " " + "W" * 300

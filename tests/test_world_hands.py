@@ -319,6 +319,24 @@ def test_a_push_over_a_time_is_that_of_a_scene():
     assert len([e for e in world.events_since(0.0) if e.what == "force"]) == 1
 
 
+def test_a_push_on_a_tray_that_turns_and_gets_wet_is_that_of_a_scene():
+    tray = pt.Floor(
+        over_time=[[0.0, 0.1, 0.0, 3.0], [0.3, 0.4, 0.2, 5.0]],
+        grips=[pt.Grip([[0.1, 1.0], [0.3, 0.6]])], orthotropic=pt.Orthotropic((0.1, 0.3), 0.4),
+    )  # fmt: skip
+    launch = {"velocity": (0.4, 0.3), "spin": 9.0}
+    rows = [[0.1, 0.05, -0.02, 1e-4], [0.35, 0.05, -0.02, 1e-4]]
+    pushed = puck_at(0.0, 0.0, **launch, force=pt.Force(over_time=rows))
+    truth = pt.Scene(pucks=[pushed], floor=tray, time=1.0, tol=1e-10).world()
+    world = pt.Scene(pucks=[puck_at(0.0, 0.0, **launch)], floor=tray, time=1.0, tol=1e-10).world()
+    world.advance(0.1)
+    world.apply_force(0, (0.05, -0.02), 1e-4, duration=0.25)
+    truth.advance(0.5)
+    world.advance(0.4)
+    assert world.state() == pytest.approx(truth.state(), abs=1e-9)
+    assert missed(world) < 1e-9
+
+
 def test_pushes_add_up_in_closed_form():
     """Two that overlap, of one that nothing brakes."""
     world = pt.Scene(pucks=[puck_at(0, 0, mass=1.0, friction=0.0)], time=1.0).world()

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import puck_tables as pt
-from puck_tables.scene.outcome import as_toml
+from puck_tables.scene.library import as_toml
 
 VELOCITIES = [[1.0, 0.0], [1.2, 0.1], [0.8, -0.05]]
 SPINS = [0.0, 5.0, -9.0]

@@ -141,11 +141,12 @@ def gravity(scene: dict[str, Any]) -> tuple[float, float, float]:
     return float(flat * np.cos(down)), float(flat * np.sin(down)), float(-g * np.cos(slope))
 
 
-def floor_is_one(scene: dict[str, Any]) -> bool:
-    """Whether no strip of the floor has a velocity of its own."""
-    return "across" not in (scene.get("floor", {}).get("strips") or {})
+def is_steady(scene: dict[str, Any]) -> bool:
+    """Whether no strip of the floor has a velocity of its own, and nothing changes over time."""
+    changes = any(scene.get(part, {}).get("over_time") for part in ("floor", "force"))
+    return not changes and "across" not in (scene.get("floor", {}).get("strips") or {})
 
 
 def has_one_puck_and_no_cushion(scene: dict[str, Any]) -> bool:
     """What the adapters in space can run."""
-    return not (isinstance(scene["puck"], list) or scene.get("wall")) and floor_is_one(scene)
+    return not (isinstance(scene["puck"], list) or scene.get("wall")) and is_steady(scene)

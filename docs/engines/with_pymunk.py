@@ -11,8 +11,8 @@ import pymunk
 from task import (
     FLAT,
     Played,
-    floor_is_one,
     gravity,
+    is_steady,
     joint_limits,
     moments_of,
     motion_of,
@@ -28,7 +28,7 @@ SETTINGS = (
 STEPS = (4e-3, 2e-3, 1e-3, 5e-4)
 
 
-can = floor_is_one
+can = is_steady
 
 
 def pucks_of(scene: dict[str, Any]) -> list[dict[str, Any]]:

@@ -235,7 +235,7 @@ class Base:
         own = np.zeros(2) if self.is_centred else first - area * c
         return area, own, second - np.outer(c, first) - np.outer(first, c) + area * np.outer(c, c)
 
-    @property
+    @cached_property
     def highest_lever(self) -> float:
         """How large friction times the height of the centre of mass may be, m.
 

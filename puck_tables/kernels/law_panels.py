@@ -4,12 +4,6 @@ A law bends at its corners, and a steep one is short pieces: a rule that goes ac
 parts in ten thousand.  From the point of a side, or of a circle, that is nearest to the
 instantaneous centre, the slip speed only grows, both ways.
 
-Where friction goes by the direction, too, 1/|A e| (:mod:`puck_tables.kernels.law_sums`) branches at
-complex places: where the slip is i atanh(least/most) off the smoother axis.  Of a side at the
-distance d from C, on which e lies at an angle θ from its tangent, sinh y = tan θ, that is
-y = ± asinh(sin θ/√(S² + cos² θ)) + i atan2(S, ± cos θ), S = least/√(most² − least²).  There panels
-shrink.
-
 Where nothing is compiled yet, the sums of :mod:`puck_tables.kernels.law_sums` are had by arrays,
 all points of the contour at once: as it is written a kernel takes thirty times as long.
 """
@@ -17,7 +11,6 @@ all points of the contour at once: as it is written a kernel takes thirty times 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
@@ -26,12 +19,12 @@ from puck_tables.contact.law_moments import DEGREE, MOMENTS
 from puck_tables.kernels.base_sums import Sums, moved
 from puck_tables.kernels.compile import inlined
 from puck_tables.kernels.elementary import log_of
-from puck_tables.kernels.elliptic_sums import (
-    Ellipse,
-    Stretched,
-    end_of_panel,
-    panel_to,
-    singular_angles,
+from puck_tables.kernels.elliptic_sums import Ellipse, end_of_panel, panel_to
+from puck_tables.kernels.law_axes import (
+    LEAST_GAP,
+    BranchPoints,
+    branches_of_circle,
+    branches_of_side,
 )
 from puck_tables.kernels.polygon_sums import (
     ABOUT_X,
@@ -52,58 +45,10 @@ from puck_tables.kernels.polygon_sums import (
 NODES = 8
 PANEL = 2.0  # of y
 ARC = 0.9  # of an angle, over how far it is from the singularity next to C
-LEAST_GAP = 1e-9  # of an angle: closer, C lies on the circle
 _AHEAD = 4  # pieces of a smooth law: a panel across them is good to 1e-11
 _BEYOND = 1.0 + 1e-9  # times a slip speed: a corner there is passed
 _STEP = 1e-12  # the shortest panel of a circle
 _GROWTH = 1.0  # of a panel, over how far it is from where 1/|A e| branches
-
-
-class BranchPoints(NamedTuple):
-    """Where 1/|A e| branches beside a side, in y, or a circle, in its angle: two places.
-
-    ``near`` and ``close``: how far off the first and the second are; inf: nowhere.
-    """
-
-    first: float
-    near: float
-    second: float
-    close: float
-
-
-@inlined
-def branches_of_side(axes: Ellipse, d: float, tx: float, ty: float) -> BranchPoints:
-    """Of a side along (tx, ty) that C lies d to the left of; y grows along it."""
-    least, most = min(axes.along, axes.across), max(axes.along, axes.across)
-    if least == most:
-        return BranchPoints(0.0, math.inf, 0.0, math.inf)
-    ax, ay = axes.cosine, axes.sine
-    if axes.along > axes.across:
-        ax, ay = -ay, ax
-    sharp = least / math.sqrt((most - least) * (most + least))
-    c, s = ax * tx + ay * ty, ay * tx - ax * ty
-    near = math.atan2(sharp, abs(c))
-    place = math.asinh(s / math.sqrt(sharp * sharp + c * c))
-    place = place if c * d >= 0.0 else -place
-    return BranchPoints(place, near, -place, math.pi - near)
-
-
-@inlined
-def branches_of_circle(
-    axes: Ellipse, gx: float, gy: float, size: float, nearest: float, side: float
-) -> BranchPoints:
-    """Of a circle whose middle is at g from C, by its angle from ``nearest``; ``side`` −1: back."""
-    p, q, c, s = axes.along, axes.across, axes.cosine, axes.sine
-    if p == q:
-        return BranchPoints(0.0, math.inf, 0.0, math.inf)
-    one = Stretched(0.0, 1.0, q * c, q * s, -p * s, p * c)
-    first, near, second, close = singular_angles(
-        one, q * (c * gx + s * gy), p * (c * gy - s * gx), size
-    )
-    return BranchPoints(
-        side * (first - nearest), max(near, LEAST_GAP), side * (second - nearest),
-        max(close, LEAST_GAP),
-    )  # fmt: skip
 
 
 @inlined

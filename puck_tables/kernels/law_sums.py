@@ -24,14 +24,22 @@ away these cancel: there the inner integral runs from the distance of C to the c
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.law_moments import DEGREE, MOMENTS
 from puck_tables.kernels.base_sums import NOTHING, Sums, moved, plus
 from puck_tables.kernels.compile import arrays_at_first, inlined, inner, kernel, summed
 from puck_tables.kernels.elementary import exp_of, log_of
-from puck_tables.kernels.elliptic_sums import Ellipse, local_friction
+from puck_tables.kernels.elliptic_sums import Ellipse
+from puck_tables.kernels.law_axes import (
+    PLAIN,
+    Square,
+    against,
+    branches_of_circle,
+    branches_of_side,
+    by_axes,
+    square_along,
+)
 from puck_tables.kernels.law_panels import (
     FAR,
     NODE,
@@ -40,8 +48,6 @@ from puck_tables.kernels.law_panels import (
     WEIGHT,
     arc_from_nearest,
     begin_of,
-    branches_of_circle,
-    branches_of_side,
     circle_end,
     law_sums_at_first,
     next_end,
@@ -98,23 +104,13 @@ def coefficient_at(law: FloatArray, u: float) -> float:
     return f
 
 
-@inlined
-def _against(axes: Ellipse, ex: float, ey: float) -> tuple[float, float]:
-    """What keeps an element of f N = 1 slipping along a unit vector."""
-    if axes.along == axes.across:
-        return axes.along * ex, axes.along * ey
-    c, s = axes.cosine, axes.sine
-    x, y = local_friction(axes, c * ex + s * ey, c * ey - s * ex)
-    return c * x - s * y, s * x + c * y
-
-
 @inner
 def _at(
     law: FloatArray, axes: Ellipse, spin: float, rx: float, ry: float, distance: float, area: float
 ) -> Sums:
     """What a point of the contour adds, about C, with r × dr = ``area``; e for ω > 0."""
     h1, h2, h3 = _moments(law, spin * distance)
-    ex, ey = _against(axes, -ry / distance, rx / distance)
+    ex, ey = against(axes, -ry / distance, rx / distance)
     one, two, three = area * h1, area * h2, area * (rx * ey - ry * ex) * h3
     return (
         one * ex, one * ey, two * ex * rx, two * ex * ry, two * ey * rx, two * ey * ry,
@@ -122,20 +118,9 @@ def _at(
     )  # fmt: skip
 
 
-class _Square(NamedTuple):
-    """|A e|² R² along a side: ``one`` + ``s`` s + ``ss`` s², s from where it is nearest to C."""
-
-    one: float
-    s: float
-    ss: float
-
-
-_PLAIN = _Square(0.0, 0.0, 0.0)  # of no direction
-
-
 @inlined
 def _on_panel(
-    law: FloatArray, spin: float, away: float, piece: int, y: float, half: float, square: _Square,
+    law: FloatArray, spin: float, away: float, piece: int, y: float, half: float, square: Square,
     directed: bool,
 ) -> tuple[float, float, float, float, float, float, float]:  # fmt: skip
     """∫ of H₁, H₁ s, H₂, H₂ s, H₂ s², H₃ R² and H₃ R² s over y, from y over 2 ``half``.
@@ -166,32 +151,6 @@ def _on_panel(
     return a, b, c, d, e, f, g
 
 
-@inlined
-def _by_axes(axes: Ellipse, sums: Sums) -> Sums:
-    """Sums of e/|A e| as those of T, whose last two are."""
-    if axes.along == axes.across:
-        return plus(NOTHING, axes.along, sums)
-    p, q, c, s = axes.along, axes.across, axes.cosine, axes.sine
-    xx, yy = c * c * p * p + s * s * q * q, s * s * p * p + c * c * q * q
-    xy = c * s * (p * p - q * q)
-    return (
-        xx * sums[0] + xy * sums[1], xy * sums[0] + yy * sums[1], xx * sums[2] + xy * sums[4],
-        xx * sums[3] + xy * sums[5], xy * sums[2] + yy * sums[4], xy * sums[3] + yy * sums[5],
-        sums[6], sums[7],
-    )  # fmt: skip
-
-
-@inlined
-def _square_along(axes: Ellipse, d: float, tx: float, ty: float) -> _Square:
-    """Of a side along (tx, ty) at the distance d."""
-    p, q, c, s = axes.along, axes.across, axes.cosine, axes.sine
-    x, y = c * tx + s * ty, c * ty - s * tx
-    px, py, qx, qy = p * x, p * y, q * x, q * y
-    return _Square(
-        d * d * (px * px + qy * qy), 2.0 * d * (qx * qy - px * py), py * py + qx * qx
-    )  # fmt: skip
-
-
 @inner
 def _along_side(
     law: FloatArray, axes: Ellipse, spin: float, px: float, py: float, tx: float, ty: float,
@@ -220,10 +179,10 @@ def _along_side(
             to, after = side_panel(law, spin, away, piece, y, last, branches)
             half = 0.5 * (to - y)
             if directed:
-                square = _square_along(axes, side * d, tx, ty)
+                square = square_along(axes, side * d, tx, ty)
                 a, b, c, e, f, g, h = _on_panel(law, spin, away, piece, y, half, square, True)
             else:
-                a, b, c, e, f, g, h = _on_panel(law, spin, away, piece, y, half, _PLAIN, False)
+                a, b, c, e, f, g, h = _on_panel(law, spin, away, piece, y, half, PLAIN, False)
             one, one_s, two, two_s = one + a, one_s + side * b, two + c, two_s + side * e
             two_ss, three, three_s = two_ss + f, three + g, three_s + side * h
             y, piece = to, after
@@ -236,7 +195,7 @@ def _along_side(
         d * (ty * ty * twice + across + tx * tx * two_ss), d * both,
         d * (d * ty * three + tx * three_s), d * (ty * three_s - d * tx * three),
     )  # fmt: skip
-    return _by_axes(axes, sums)
+    return by_axes(axes, sums)
 
 
 @inner
@@ -337,7 +296,7 @@ def _from_far(
     weight = sign * (vx * dx + vy * dy) / (slip * slip)
     outx, outy = sign * vy / slip, -sign * vx / slip
     bx, by = qx - deep * outx, qy - deep * outy
-    tx, ty = _against(axes, vx / slip, vy / slip)
+    tx, ty = against(axes, vx / slip, vy / slip)
     lever, turning = bx * ty - by * tx, outx * ty - outy * tx
     fx, fy = weight * tx, weight * ty
     ax, ay = bx * k0 + outx * k1, by * k0 + outy * k1

@@ -214,13 +214,48 @@ class BaseSlide:
 
     @property
     def end(self) -> str:
-        """How it ends, told by the direction of (v, kΩ) at the stop."""
+        """How it ends, told by the direction of (v, kΩ) at the stop, and where that leads."""
         if self.slip == 0.0:
             return "rest"
         angle = float(self.out[ENDING])
         if angle < _ALONE:
             return "slide last"
-        return "spin last" if angle > 0.5 * math.pi - _ALONE else "together"
+        if angle > 0.5 * math.pi - _ALONE:
+            return "spin last"
+        if self._turns_about_a_foot():
+            return "pivot"
+        return "cycle" if self.puck.lever > 0.0 and self._turns_on() else "together"
+
+    def _late(self) -> tuple[float, float, float]:
+        """Velocity, in the axes of the body, and kΩ as long before the stop as both are known."""
+        early = 1.0 - max(_KNOWN * self.local, 1e-7)
+        _, _, heading, angle, speed, spin = self.states(np.array([early * self.stop_time]))[:, 0]
+        vx, vy = _turned(speed, 0.0, heading - angle)
+        return float(vx), float(vy), float(spin) * self.puck.inertia_radius
+
+    def _turns_about_a_foot(self) -> bool:
+        """Whether the instantaneous centre lies in a foot at the stop."""
+        shape, (vx, vy, rim) = self.puck.shape, self._late()
+        assert shape is not None and shape.centre is not None
+        feet = [disc for disc in shape.discs if disc[3] > 0.0]
+        per = self.puck.inertia_radius / rim
+        centre = shape.centre[0] - per * vy, shape.centre[1] + per * vx
+        many = len(feet) + len(shape.outlines) > 1
+        return many and any(math.dist(centre, foot[:2]) < foot[2] for foot in feet)
+
+    def _turns_on(self) -> bool:
+        """Whether the direction of (v, kΩ) would never settle, however long Q fell on."""
+        puck, none, nothing = self.puck, np.empty(0), np.empty((0, STATE_SIZE))
+        slide, changes = self, []
+        for _ in range(_MORE_SLIDES):
+            vx, vy, rim = slide._late()
+            slower = _SLOW / math.hypot(vx, vy, rim)
+            spin = np.array([slower * rim / puck.inertia_radius])
+            launch = launch_rows(puck, slower * np.array([[vx, vy]]), spin)
+            out = _followed(puck, launch, FINEST, none, nothing)
+            slide = BaseSlide(puck, launch, FINEST, out, FINEST)
+            changes.append(out[CHANGE])
+        return bool(changes[-1] > _TURNS and changes[-1] > 0.1 * changes[0])
 
     def states(self, times: FloatArray) -> FloatArray:
         """States (6, n) at times (n,) s ≥ 0: as :mod:`puck_tables.motion.state` has them."""
@@ -236,6 +271,9 @@ class BaseSlide:
         return np.stack([x, y, heading, angle + self.orientation, speed, spin])
 
 
+_KNOWN = 1e4  # times the error of a step: with so much left of Q its direction is known
+# slides after the stop, each over a factor of 1e7 of Q or more, on which the body does not turn
+_MORE_SLIDES, _SLOW = 12, 1e-8
 _TURNS = 1e-3  # rad: a direction that turns by less is that of the end
 _ALONE = 0.01  # rad: nearer to pure sliding or spinning at the stop, the other has died out first
 

@@ -16,7 +16,7 @@ from puck_tables.plot.floor_axes import Box
 from puck_tables.plot.sample_figure import HELD, cloud_of
 from puck_tables.plot.style import GREY
 from puck_tables.plot.titles import legend_below, noted
-from puck_tables.scene.outcome import LAST_END
+from puck_tables.scene.run import LAST_END
 from puck_tables.world.scene_ends import Sample, SceneEnds
 from puck_tables.world.simulate import simulate
 

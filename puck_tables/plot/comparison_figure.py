@@ -18,7 +18,6 @@ from puck_tables.plot.titles import legend_below, noted, titled
 from puck_tables.reference.case_text import lines_of
 from puck_tables.reference.comparison import Comparison
 from puck_tables.reference.floor_reaction import ratios, slip_over
-from puck_tables.reference.threshold import states_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -40,7 +39,7 @@ def page(result: Comparison) -> str:
     case, answer = result.answer.case, result.answer
     rows = result.rows()
     names = list(rows[0])
-    last = states_of(answer([result.end_time]), result.puck)
+    last = answer([result.end_time]).states_of(result.puck)
     which = f"The puck {escape(result.whose)}" if result.whose else "It "
     exact = f"{which}ends after {result.end_time:.12g} s ({escape(answer.end)})"
     exact += f" at ({last['x'][0]:.12g}, {last['y'][0]:.12g}) m"
@@ -90,7 +89,7 @@ def _colours(result: Comparison) -> list[tuple[float, float, float] | str]:
 
 def _exact(result: Comparison) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     times = np.linspace(0.0, result.end_time, _CURVE)
-    return times, states_of(result.answer(times), result.puck)
+    return times, result.answer(times).states_of(result.puck)
 
 
 def draw_on(axes: Axes, result: Comparison) -> None:

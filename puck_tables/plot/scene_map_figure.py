@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from puck_tables.plot.style import BLUE, GREEN, ORANGE, RED, canvas, draw_over, edges_of, in_order
 from puck_tables.plot.titles import legend_below, noted, titled
-from puck_tables.scene.outcome import CARRIED_ROUND, ENDS
+from puck_tables.scene.run import CARRIED_ROUND, ENDS
 from puck_tables.world.map import Map
 
 if TYPE_CHECKING:

@@ -20,7 +20,7 @@ from puck_tables.reference.floor_reaction import on_the_floor, ratios, slip_over
 from puck_tables.reference.frame_times import frame_times
 from puck_tables.result import Result
 from puck_tables.scene.entries import tables_of
-from puck_tables.scene.parts import Floor
+from puck_tables.scene.parts import Floor, Force
 from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.run import Run
 from puck_tables.world.agreement import pucks_of
@@ -165,9 +165,11 @@ class Answer(Result):
     def limit_epsilon(self) -> float | None:
         """What v/(r|ω|) tends to at the stop; None where none or not friction alone decides."""
         floor = self.floor
-        free = not (self.names or floor.slope or floor.turning or self.run.scene.walls)
-        slips = self.speed_scale > 0.0 and self.run.scene.launch.spin != 0.0
-        moves = np.hypot(*slip_over(floor, _launch(self.run.scene.launch))[:2]) > 0.0
+        scene = self.run.scene
+        free = not (self.names or floor.slope or floor.turning or scene.walls)
+        free = free and not floor.over_time and scene.force == Force()
+        slips = self.speed_scale > 0.0 and scene.launch.spin != 0.0
+        moves = np.hypot(*slip_over(floor, _launch(scene.launch))[:2]) > 0.0
         puck = self.puck_at_end if free and slips and moves else None
         return None if puck is None else puck.limit_epsilon
 
@@ -219,6 +221,15 @@ class Answer(Result):
             return self.end_time
         return min(float(self.run.stop_times[puck]), self.end_time)
 
+    def states_of(self, puck: int | None) -> dict[str, FloatArray]:
+        """The time and the columns of one of several pucks; None: the single one.
+
+        >>> reference_case("slide", times=[0.0]).states_of(None)["vx"].tolist()
+        [1.0]
+        """
+        rows = {"time": self.time, **self.columns}
+        return {name: row if row.ndim == 1 else row[:, puck] for name, row in rows.items()}
+
     def __getattr__(self, name: str) -> FloatArray:
         """A column by its name."""
         columns: Mapping[str, FloatArray] = self.__dict__.get("columns", {})
@@ -233,10 +244,10 @@ class Answer(Result):
         """Slip and forces, of every puck."""
         rows = []
         for n, puck in enumerate(self.pucks):
-            mine = {k: v if v.ndim == 1 else v[:, n] for k, v in self.columns.items()}
+            mine = self.states_of(n if self.names else None)
             slip = slip_over(self.floor, mine)
             epsilon, ratio = ratios(slip, puck.radius)
-            fx, fy, torque = on_the_floor(puck, self.run.scene, mine)
+            fx, fy, torque = on_the_floor(puck, self.run.scene, mine, self.speed_bound)
             q = slip.sizes(puck.radius)[2]
             rows.append((q, epsilon, ratio, fx, fy, torque))
         whole = (np.stack(one, axis=-1) for one in zip(*rows, strict=True))
@@ -298,7 +309,7 @@ class Answer(Result):
 
 def _launch(launch: Any) -> dict[str, FloatArray]:
     (vx, vy), (x, y) = launch.velocity or (0.0, 0.0), launch.position
-    values = {"x": x, "y": y, "vx": vx, "vy": vy, "spin": launch.spin}
+    values = {"time": launch.time, "x": x, "y": y, "vx": vx, "vy": vy, "spin": launch.spin}
     return {name: np.array([value]) for name, value in values.items()}
 
 

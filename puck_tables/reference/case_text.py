@@ -30,7 +30,7 @@ def lines_of(answer: Answer) -> dict[str, str]:
             rim = {one: given[one] for one in _RIM if one in given}
             lines[name] += "".join(f", {told}" for told in _entries(rim, units, "puck."))
         lines["launch" if n == 0 else f"launch {n + 1}"] = _launch(puck.launch)
-    for what in ("floor", "wall"):
+    for what in ("floor", "force", "wall"):
         parts = case.tables.get(what, {})
         for n, part in enumerate(parts if isinstance(parts, list) else [parts] if parts else []):
             told = ", ".join(_entries(part, units, f"{what}."))
@@ -83,16 +83,16 @@ def _entries(part: Mapping[str, Any], units: Mapping[str, str], path: str) -> It
         if isinstance(value, dict):
             yield from (f"{name}.{told}" for told in _entries(value, units, f"{path}{name}."))
         else:
-            rows = isinstance(value, list)
-            told = f"[{', '.join(map(_digits, value))}]" if rows else _digits(value)
             unit = units.get(path + name, "1")
-            yield f"{name} = {told}" + (f" {unit}" if unit != "1" else "")
+            yield f"{name} = {_digits(value)}" + (f" {unit}" if unit != "1" else "")
 
 
 def _pair(x: float, y: float) -> str:
     return f"({_digits(x)}, {_digits(y)})"
 
 
-def _digits(value: float) -> str:
-    """A number with all its digits, whole ones without a point."""
+def _digits(value: float | list[Any]) -> str:
+    """A number with all its digits, whole ones without a point; or rows of them."""
+    if isinstance(value, list):
+        return f"[{', '.join(map(_digits, value))}]"
     return repr(float(value)).removesuffix(".0")

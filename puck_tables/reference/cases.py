@@ -78,12 +78,24 @@ def _tall(delta: float, more: str) -> ReferenceCase:
 def _incline(name: str, over: float, words: str, tests: str, time: float | None) -> ReferenceCase:
     """A spinning disc sent across and up a slope whose tangent is ``over`` times f."""
     tables: dict[str, Any] = {
-        "puck": _DISC, "floor": {"slope": math.atan(over * 0.2), "downhill": _DOWN},
+        "puck": _DISC, "floor": _slope(over * 0.2),
         "launch": {"velocity": [0.5, 0.3], "spin": 20.0},
     }  # fmt: skip
     if time is not None:
         tables |= {"time": time}
     return ReferenceCase(f"incline-{name}", 1, f"Spinning disc on a slope {words}", tests, tables)
+
+
+def _slope(tangent: float) -> dict[str, float]:
+    return {"slope": math.atan(tangent), "downhill": _DOWN}
+
+
+def _broken_away(what: str, ramp: list[list[float]], tests: str) -> ReferenceCase:
+    """A box at rest that is pushed harder and harder for a second, then left."""
+    return _body(
+        f"break-away-{what}", "box:0.2x0.1", f"Box at rest under a {what} that grows", tests,
+        launch={"orientation": 0.5}, force={"over_time": ramp},
+    )  # fmt: skip
 
 
 def _over_edge(
@@ -153,6 +165,12 @@ CASES = (
         {"puck": _DISC, "floor": {"turning": 4.0},
          "launch": {"velocity": [0.0, 0.0], "position": [0.2, 0.0]}, "time": 1.0},
     ),
+    ReferenceCase(
+        "turntable-speeds-up", 1, "Disc on a turntable that turns ever faster",
+        "it is carried until force and torque together ask for more than friction, then thrown off",
+        {"puck": _DISC, "floor": {"over_time": [[0.0, 0.0, 0.0, 0.0], [2.0, 0.0, 0.0, 8.0]]},
+         "launch": {"position": [0.2, 0.0]}, "time": 1.5},
+    ),
     _over_edge(
         "spin", "Flat disc that spins on the border of two frictions",
         "it is pushed along the border, at first by (f1 - f2) g/pi = 0.3501 m/s^2",
@@ -189,6 +207,17 @@ CASES = (
     _body("box-slope", "box:0.2x0.1", "Box across and up a slope that holds it",
           "a spin uses up friction: it slides farther down than without one",
           floor={"slope": 0.2, "downhill": _DOWN}),
+    _body("box-slope-below", "box:0.2x0.1", "Box on a slope of 0.95 of its friction",
+          "it stops late: what holds it is a twentieth of its friction", floor=_slope(0.285)),
+    _body("box-slope-at", "box:0.2x0.1", "Box on a slope of just its friction",
+          "what is left at the end is a slide of constant speed, straight down",
+          floor=_slope(0.3), time=2.0),
+    _body("box-slope-above", "box:0.2x0.1", "Box on a slope of 1.05 of its friction",
+          "it never stops, as slow as it gets", floor=_slope(0.315), time=2.0),
+    _broken_away("force", [[0.0, 0.0, 0.0], [1.0, 2.0, 0.0]],
+                 "it stays until f m g, at 0.73575 s, and comes to rest again"),
+    _broken_away("torque", [[0.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.1]],
+                 "it stays until f m g times the mean arm of the box, at 0.873 s"),
     _body("box-belts", "box:0.2x0.1", "Box from a fast belt to a slow one",
           "each belt acts under its own part of the base, at its own slip",
           launch={"velocity": [0.5, 0.0], "position": [-0.15, 0.0], "orientation": 0.3},

@@ -5,7 +5,8 @@
 along the slip, to its left, and about the vertical in the sense of the spin; φ = atan2(rω, v) of
 velocity and spin relative to the floor (Salnikova, Treschev, Gallyamov 2012, section 6).  Where
 friction differs from place to place, by direction or by speed, or a base is not round, no ratios
-say it, and it is that of the scene.  A puck at rest on the floor passes on what other forces ask.
+say it, and it is that of the scene.  A puck at rest on the floor passes on what other forces ask,
+and what it takes to be moved along.
 
 The papers have force and torque of a case over the ratio ε = v/(rω).
 """
@@ -27,6 +28,7 @@ from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.reference.cases import ReferenceCase, case_named
 from puck_tables.result import Result
 from puck_tables.scene.floor_parts import belts_of
+from puck_tables.scene.over_time import drive_of, moves_at
 from puck_tables.scene.parts import Floor
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import pucks_of
@@ -53,15 +55,16 @@ class SlipVelocity(NamedTuple):
 
 
 def slip_over(floor: Floor, states: Mapping[str, FloatArray]) -> SlipVelocity:
-    """Of states ``x``, ``y``, ``vx``, ``vy``, ``spin`` over a floor that may move.
+    """Of states ``time``, ``x``, ``y``, ``vx``, ``vy``, ``spin`` over a floor that may move.
 
     Where strips move on their own it is the slip over the one under the centre.
 
-    >>> state = {name: np.ones(1) for name in ("x", "y", "vx", "vy", "spin")}
+    >>> state = {name: np.ones(1) for name in ("time", "x", "y", "vx", "vy", "spin")}
     >>> slip_over(Floor(velocity=(1.0, 0.0), turning=2.0), state)
     SlipVelocity(vx=array([2.]), vy=array([-1.]), spin=array([-1.]))
     """
-    (bx, by), (cx, cy), turning = _velocity_under(floor, states), floor.centre, floor.turning
+    bx, by, turning = _velocity_under(floor, states)
+    cx, cy = floor.centre
     return SlipVelocity(
         states["vx"] - bx + turning * (states["y"] - cy),
         states["vy"] - by - turning * (states["x"] - cx),
@@ -69,14 +72,15 @@ def slip_over(floor: Floor, states: Mapping[str, FloatArray]) -> SlipVelocity:
     )
 
 
-def _velocity_under(floor: Floor, states: Mapping[str, FloatArray]) -> tuple[Any, Any]:
-    """Of the floor, along x and y, m/s; of strips the one under the centre."""
-    if floor.strips is None:
-        return floor.velocity
+def _velocity_under(floor: Floor, states: Mapping[str, FloatArray]) -> FloatArray:
+    """Of the centre of the floor, m/s, or the strip under a puck, and the spin (3, n)."""
+    moves, _ = moves_at(floor, states["time"])
+    if floor.strips is None or floor.over_time:
+        return moves
     east, north = math.cos(floor.strips.direction), math.sin(floor.strips.direction)
     place = east * states["x"] + north * states["y"]
     found = belts_of(floor)[np.searchsorted(floor.strips.borders, place, "right")]
-    return found[..., 0], found[..., 1]
+    return np.stack([found[:, 0], found[:, 1], moves[2]])
 
 
 def ratios(slip: SlipVelocity, radius: float) -> tuple[FloatArray, FloatArray]:
@@ -130,24 +134,23 @@ def is_one_friction(floor: Floor) -> bool:
 
 
 def on_the_floor(
-    puck: PuckSpec, scene: SceneSpec, states: Mapping[str, FloatArray]
+    puck: PuckSpec, scene: SceneSpec, states: Mapping[str, FloatArray], least: float = 0.0
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Force along x and y, N, and torque, N m, of a puck of a scene on the floor, state by state.
 
+    ``least``: a slip Q, m/s, up to which it is at rest.
+
     >>> from puck_tables import Puck, Scene
     >>> puck = Puck(0.05, friction=0.5, mass=0.1, gravity=10.0)
-    >>> moves = {name: np.zeros(2) for name in ("x", "y", "vx", "vy", "spin")}
+    >>> moves = {name: np.zeros(2) for name in ("time", "x", "y", "vx", "vy", "spin")}
     >>> moves["vx"][0] = 1.0
     >>> [part.round(12).tolist() for part in on_the_floor(puck, Scene(puck), moves)]
     [[0.5, 0.0], [0.0, 0.0], [0.0, 0.0]]
     """
     floor = scene.floor
     slip = slip_over(floor, states)
-    slides = slip.sizes(puck.radius)[2] > 0.0
-    (cx, cy), turning = floor.centre, floor.turning
-    down = puck.gravity * math.sin(floor.slope)
-    fx = puck.mass * (down * math.cos(floor.downhill) + turning**2 * (states["x"] - cx))
-    fy = puck.mass * (down * math.sin(floor.downhill) + turning**2 * (states["y"] - cy))
+    slides = slip.sizes(puck.radius)[2] > least
+    fx, fy, torque = _passed_on(puck, scene, states)
     if is_one_friction(floor) and puck.shape is None:
         found = _by_ratios(puck, slip, floor.slope)
     else:
@@ -158,7 +161,30 @@ def on_the_floor(
     return (
         np.where(slides, found[0], fx),
         np.where(slides, found[1], fy),
-        np.where(slides, found[2], 0.0),
+        np.where(slides, found[2], torque),
+    )
+
+
+def _passed_on(
+    puck: PuckSpec, scene: SceneSpec, states: Mapping[str, FloatArray]
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Force along x and y and torque of a puck at rest on the floor, which moves it along."""
+    floor, force = scene.floor, scene.force
+    moves, (ax, ay, turn) = moves_at(floor, states["time"])
+    dx, dy = states["x"] - floor.centre[0], states["y"] - floor.centre[1]
+    ax = ax - turn * dy - moves[2] ** 2 * dx - moves[2] * moves[1]
+    ay = ay + turn * dx - moves[2] ** 2 * dy + moves[2] * moves[0]
+    down = puck.gravity * math.sin(floor.slope)
+    given = np.array([*force.constant, force.torque])[:, None]
+    if force.over_time:
+        rows = drive_of(force.over_time)
+        given = given + np.stack(
+            [np.interp(states["time"], rows[:, 0], one, 0.0, 0.0) for one in rows[:, 1:].T]
+        )
+    return (
+        given[0] + puck.mass * (down * math.cos(floor.downhill) - ax),
+        given[1] + puck.mass * (down * math.sin(floor.downhill) - ay),
+        given[2] - puck.mass * puck.inertia_radius**2 * turn,
     )
 
 

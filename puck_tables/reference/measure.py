@@ -12,7 +12,7 @@ from puck_tables.errors import InputError
 from puck_tables.reference.answer import Answer
 from puck_tables.reference.floor_reaction import ratios, slip_over
 from puck_tables.reference.log import Log
-from puck_tables.reference.threshold import Rest, Threshold, rest_of_rows, states_of, why_no_rest
+from puck_tables.reference.threshold import Rest, Threshold, rest_of_rows, why_no_rest
 
 _LATE = 1.5  # steps: a log may begin after the first of them
 _OFF = 0.02  # of Q and Q²/J: a launch that is off by more is another
@@ -92,7 +92,7 @@ def measured(
     until = answer.end_time if answer.end == "time is up" else math.inf
     rows = log.time <= until * (1.0 + 1e-12)
     time = np.minimum(log.time[rows], until)
-    exact = states_of(answer(np.maximum(time, 0.0)), puck)
+    exact = answer(np.maximum(time, 0.0)).states_of(puck)
     radius = answer.pucks[puck or 0].radius
     dx, dy = log.x[rows] - exact["x"], log.y[rows] - exact["y"]
     angle = None
@@ -103,7 +103,7 @@ def measured(
     mine = slip_over(answer.floor, exact)
     exact_epsilon, _ = ratios(mine, radius)
     speed = spin = seen_speed = seen_rim = seen_epsilon = None
-    theirs = {"x": log.x, "y": log.y}
+    theirs = {"time": log.time, "x": log.x, "y": log.y}
     if log.spin is not None:
         spin = log.spin[rows] - exact["spin"]
         theirs["spin"] = log.spin
@@ -114,7 +114,7 @@ def measured(
     lacks = {"velocities": log.vx is None, "spin": log.spin is None}
     without = " and ".join(name for name, lacking in lacks.items() if lacking)
     why = f"no {without} in it, so nothing of rest" if without else ""
-    if len(theirs) == 5:
+    if len(theirs) == 6:
         slip = slip_over(answer.floor, {name: row[rows] for name, row in theirs.items()})
         seen_epsilon, _ = ratios(slip, radius)
         seen_speed, seen_rim, _ = slip.sizes(radius)
@@ -123,10 +123,10 @@ def measured(
             why = why_no_rest(time, theirs, answer, puck, thresholds) if rest is None else ""
             more = np.arange(time[-1] + log.step, end_time + 2.0 * log.step, log.step)
             longer = np.concatenate([time, more])  # a log may end with the rest in it
-            exactly = states_of(answer(np.maximum(longer, 0.0)), puck)
+            exactly = answer(np.maximum(longer, 0.0)).states_of(puck)
             exact_rest = rest_of_rows(longer, exactly, answer, puck, thresholds)
             if rest is not None and answer.end == "at rest":
-                end = states_of(answer([end_time]), puck)
+                end = answer([end_time]).states_of(puck)
                 stop_place = math.dist((log.x[-1], log.y[-1]), (end["x"][0], end["y"][0]))
     return MeasuredRun(
         log, log.step if step is None else step, time, dx, dy, np.hypot(dx, dy), angle, speed,
@@ -148,7 +148,7 @@ def _refuse_other_launch(log: Log, answer: Answer, puck: int | None) -> None:
         )
     if first > end_time:
         raise InputError(f"{log.name}: its first row is later than the end of case {case}")
-    exact = states_of(answer([max(first, 0.0)]), puck)
+    exact = answer([max(first, 0.0)]).states_of(puck)
     q, j = answer.speed_scale, answer.rate_scale
     late = _STEP_OFF * j * first
     for names, scale, unit in (

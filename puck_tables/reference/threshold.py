@@ -145,7 +145,7 @@ def exact_rest(answer: Answer, puck: int | None, thresholds: tuple[Threshold, ..
     rest = None
     for _ in range(_ROUNDS):
         times = np.linspace(low, high, _LOOKS)
-        states = states_of(answer(times), puck)
+        states = answer(times).states_of(puck)
         radius = answer.pucks[puck or 0].radius
         slip = slip_over(answer.floor, states)
         above = np.max([one.excess(slip, radius) for one in thresholds], axis=0) >= 0.0
@@ -157,10 +157,3 @@ def exact_rest(answer: Answer, puck: int | None, thresholds: tuple[Threshold, ..
         if not high - low > 1e-14 * answer.end_time_of(puck):
             break
     return rest
-
-
-def states_of(answer: Answer, puck: int | None) -> dict[str, FloatArray]:
-    """The columns of one puck."""
-    return {
-        name: row if puck is None else row[:, puck] for name, row in answer.columns.items()
-    }  # fmt: skip

@@ -16,6 +16,8 @@ ENDS = {  # of slides on bases that are not round
     "together": "sliding and spinning end together",
     "slide last": "the spin dies out first, it slides last",
     "spin last": "the sliding dies out first, it spins last",
+    "pivot": "it turns about one of its feet as it stops",
+    "cycle": "sliding and spinning end together, at a ratio that changes to the very end",
 }
 
 

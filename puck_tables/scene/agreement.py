@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from puck_tables.contact.friction_laws import NAMED, FrictionLaw
+from puck_tables.contact.laws import Law
 from puck_tables.contact.round_load import RoundLoad
 from puck_tables.errors import InputError
 from puck_tables.scene.floor_parts import (
@@ -12,13 +13,19 @@ from puck_tables.scene.floor_parts import (
     directions_in,
     has_belts,
     has_laws_by_place,
+    has_sums,
     law_of,
-    needs_sums,
 )
 from puck_tables.scene.floor_patches import patch_faults
 from puck_tables.scene.holds import allowed_velocity
 from puck_tables.scene.orthotropic import LEAST_RATIO
-from puck_tables.scene.over_time import drive_of, grip_faults, largest_factors, motion_of
+from puck_tables.scene.over_time import (
+    does_turn,
+    drive_of,
+    grip_faults,
+    largest_factors,
+    motion_of,
+)
 from puck_tables.scene.parts import Floor, Orthotropic
 
 if TYPE_CHECKING:
@@ -57,7 +64,7 @@ def floor_faults(scene: SceneSpec) -> list[str]:
 def _bad_load(scene: SceneSpec) -> list[str]:
     """Why friction by place or direction that is no number is not known under a round load."""
     law = scene.puck.body.law
-    if law.name == "uniform" or law.name.startswith("annulus:"):
+    if _is_linear(law):
         return []
     by_place = scene.floor.strips is not None or bool(scene.floor.patches)
     what = "floor.strips or floor.patch with a friction law" if by_place else "floor.orthotropic"
@@ -65,6 +72,11 @@ def _bad_load(scene: SceneSpec) -> list[str]:
         f"{what}: known under uniform pressure only, over any base, not with puck.pressure = "
         f"{law.name!r}; leave it out{', or give numbers' if by_place else ''}"
     ]
+
+
+def _is_linear(law: Law) -> bool:
+    """Whether pressure is linear over the base, with or without a hole."""
+    return law.name == "uniform" or law.name.startswith("annulus:")
 
 
 def _bad_motion(floor: Floor) -> list[str]:
@@ -96,8 +108,7 @@ def _bad_mixed(scene: SceneSpec) -> list[str]:
     floor, law = scene.floor, scene.puck.body.law
     if floor.law or floor.orthotropic is not None:
         return []
-    sums = needs_sums(floor, scene.puck.height)
-    if floor.strips is None and not floor.patches and not sums:
+    if not has_sums(floor, scene.puck.height):
         return []
     name = "floor.strips" if floor.strips is not None else "floor.patch"
     name = "floor.static_ratio" if floor.static_ratio > 1.0 else name
@@ -113,11 +124,12 @@ def _bad_mixed(scene: SceneSpec) -> list[str]:
             f"micrometres, which takes minutes to follow; give at most {_GRIPS:g}"
         ]
     highest = 2.0 * _strongest(scene) * scene.puck.height / scene.puck.radius
-    if highest > law.delta_max * (1.0 + 1e-12):
+    if highest > law.delta_max * (1.0 + 1e-12) and not _is_linear(law):
         return [
-            f"{name}: friction that is summed over the base is known for one that is loaded "
-            f"everywhere, delta = 2 f h / r up to {law.delta_max:g}; its largest f makes "
-            f"{highest:g}: give a lower puck.height or less friction"
+            f"{name}: friction that is summed over the base is known under puck.pressure = "
+            f"{law.name!r} while that is loaded everywhere, delta = 2 f h / r up to "
+            f"{law.delta_max:g}; its largest f makes {highest:g}: give uniform pressure, a lower "
+            "puck.height or less friction"
         ]
     return []
 
@@ -155,11 +167,8 @@ def _bad_axes(floor: Floor) -> list[str]:
             "floor.orthotropic and floor.strips: strips say all friction of the floor, each may "
             "have a direction of its own; give one of them"
         )
-    unsteady = bool(floor.over_time) and motion_of(floor)[:, 3].any()
     for name, two in directions_in(floor).items():
-        if unsteady and two.fixed_to == "floor":
-            faults.append(f"{name}: not on a floor that turns by floor.over_time; leave one out")
-        if floor.turning != 0.0 and two.fixed_to == "floor" and name != "floor.orthotropic":
+        if name != "floor.orthotropic" and two.fixed_to == "floor" and does_turn(floor):
             faults.append(
                 f"{name}: not on a floor that turns, where borders stand still and its axes would "
                 "not; leave one out"

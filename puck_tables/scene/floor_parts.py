@@ -32,6 +32,15 @@ def needs_sums(floor: Floor, height: float) -> bool:
     return bool(floor.grips) or tilts or has_laws_by_place(floor)
 
 
+def has_sums(floor: Floor, height: float) -> bool:
+    """Whether friction under a round puck is summed over its base anywhere, by coefficients.
+
+    >>> has_sums(Floor(), 0.02), has_sums(Floor(strips=Strips((0.0,), (0.1, 0.2))), 0.0)
+    (False, True)
+    """
+    return floor.strips is not None or bool(floor.patches) or needs_sums(floor, height)
+
+
 def law_of(entry: str | Rows | FrictionLaw) -> SpeedLaw | FrictionLaw:
     """A friction law by name, or of rows of slip speed and coefficient, or of a file of them.
 

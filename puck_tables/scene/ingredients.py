@@ -35,6 +35,7 @@ from puck_tables.scene.over_time import (
     has_factors,
     held_at,
     rate_at,
+    turned_at,
 )
 
 if TYPE_CHECKING:
@@ -143,6 +144,7 @@ def friction_at(friction: DryFriction, drive: FloatArray, piece: int, t: float) 
         height_ratio, normal = law.height_ratio, law.normal
         law.table[TURNED] = law.table[TURNING] * t
         if has_factors(drive):
+            law.table[TURNED] += turned_at(drive, piece, t)
             law.table[SHARE] = factor
             for phase in range(parts_in(law.table)):
                 set_factor(law.table, phase, held_at(drive, piece, ON_PART + phase, t))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -23,12 +24,12 @@ from puck_tables.scene.floor_parts import (
     directions_in,
     frictions_on,
     has_laws_by_place,
+    has_sums,
     largest_of,
-    needs_sums,
 )
 from puck_tables.scene.floor_patches import corners_of
 from puck_tables.scene.over_edges import MOST_EDGES
-from puck_tables.scene.over_time import largest_factors
+from puck_tables.scene.over_time import does_turn, largest_factors
 from puck_tables.scene.parts import Orthotropic
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.sides import ends_of_floor, line_of
@@ -47,9 +48,8 @@ def floor_map_of(scene: SceneSpec, normal: float, top: float = 0.0) -> FloatArra
     [0.1, 0.6, 0.2]
     """
     floor, puck = scene.floor, scene.puck
-    one = floor.strips is None and not floor.patches and not needs_sums(floor, puck.height)
-    shape, strips = shape_under(scene), floor.strips
-    if one and shape is None:
+    shape, strips = shape_under(scene, top), floor.strips
+    if shape is None and not has_sums(floor, puck.height):
         return NO_GROUND
     angle = 0.0 if strips is None else strips.direction
     rows, corners = [], [np.empty((0, 2))]
@@ -109,7 +109,7 @@ def may_lift(scene: SceneSpec, top: float = 0.0) -> bool:
     >>> [may_lift(Scene(Puck(base="box:0.2x0.1", friction=0.3, height=h))) for h in (0.05, 0.2)]
     [False, True]
     """
-    shape = shape_under(scene)
+    shape = shape_under(scene, top)
     return shape is not None and _lifts(scene, shape, top)
 
 
@@ -147,42 +147,59 @@ def _pressed_base(puck: PuckSpec) -> Base | None:
         return puck.shape
     law = puck.body.law
     if law.name == "uniform":
-        return Base.disc(puck.radius)
+        return _round_base(puck.radius, 0.0)
     if law.name.startswith("annulus:"):
-        return Base.annulus(puck.radius, law.edges[0] * puck.radius)
+        return _round_base(puck.radius, law.edges[0] * puck.radius)
     return None
 
 
-def shape_under(scene: SceneSpec) -> Base | None:
+@lru_cache(maxsize=256)
+def _round_base(radius: float, inner: float) -> Base:
+    """Kept: what is asked of it for each puck on each stretch takes some 0.5 ms to find."""
+    return Base.annulus(radius, inner) if inner > 0.0 else Base.disc(radius)
+
+
+def shape_under(scene: SceneSpec, top: float = 0.0) -> Base | None:
     """The base over which friction is summed in axes of its own; None: it is round in all ways.
 
+    ``top``: up to which slip speed laws are looked at, m/s.
+
+    Examples
+    --------
     >>> from puck_tables import Floor, Orthotropic, Puck, Scene
     >>> brushed = Orthotropic((0.1, 0.2), fixed_to="body")
     >>> shape_under(Scene(Puck(0.04), Floor(orthotropic=brushed))).reach
     0.04
     """
     puck = scene.puck
-    if puck.shape is None and (follows_contour(scene) or len(edges_under(scene))):
+    if puck.shape is None and (follows_contour(scene, top) or len(edges_under(scene))):
         return _pressed_base(puck)
     return puck.shape
 
 
-def follows_contour(scene: SceneSpec) -> bool:
+def follows_contour(scene: SceneSpec, top: float = 0.0) -> bool:
     """Whether friction of the puck of a scene is summed along the contour of its base everywhere.
 
-    Beside laws by place, and where round pucks on a floor of one direction have no other sums.
+    Beside laws by place, and where round pucks have no other sums: where friction may lift a part
+    of the base but on a floor of one coefficient, and by a direction that is not the floor's.
+    ``top``: up to which slip speed laws are looked at, m/s.
 
-    >>> from puck_tables import Floor, Orthotropic, Puck, Scene
-    >>> brushed = Floor(orthotropic=Orthotropic((0.1, 0.2)))
-    >>> [follows_contour(Scene(Puck(0.04, height), brushed)) for height in (0.02, 0.2)]
+    Examples
+    --------
+    >>> from puck_tables import Floor, Puck, Scene, Strips
+    >>> halves = Floor(strips=Strips((0.0,), (0.1, 0.2)))
+    >>> [follows_contour(Scene(Puck(0.04, height), halves)) for height in (0.02, 0.2)]
     [False, True]
     """
     floor, puck = scene.floor, scene.puck
     if puck.shape is not None or has_laws_by_place(floor):
         return True
-    if floor.orthotropic is None:
+    two = floor.orthotropic
+    if two is not None:
+        plain = two.fixed_to == "floor" and puck.body.law.name == "uniform"
+        if not plain or does_turn(floor):
+            return True
+    elif not floor.law and not has_sums(floor, puck.height):
         return False
-    base = _pressed_base(puck)
-    plain = floor.orthotropic.fixed_to == "floor" and puck.body.law.name == "uniform"
-    plain = plain and floor.turning == 0.0
-    return not plain or base is None or _lifts(scene, base, 0.0)
+    base = _pressed_base(puck) if puck.height > 0.0 else None
+    return base is not None and _lifts(scene, base, top)

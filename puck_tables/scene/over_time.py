@@ -1,8 +1,9 @@
 """What a scene gives over time: forces on a puck, how the floor moves, factors on its friction.
 
 All that changes under one puck stands in one table, so that steps end at its rows: the time, force
-and torque, the velocity and spin of the floor, the factor on all friction, and one more for every
-stretch of the floor, its strips and then its patches.  A scene of forces has the first four only.
+and torque, the velocity and spin of the floor and how far it has turned since t = 0, the factor on
+all friction, and one more for every stretch of the floor, its strips and then its patches.  A scene
+of forces has the first four only.
 """
 
 from __future__ import annotations
@@ -31,8 +32,9 @@ from puck_tables.scene.parts import Floor, Force, Grip, Rows
 
 MAX_DRIVE = 1 << 26  # bytes of a file of forces
 _MOST_BYTES = 1 << 20  # of one of factors
-FORCED, FLOOR_X, FLOOR_Y, FLOOR_SPIN = 4, 4, 5, 6  # columns of forces alone; of a floor that moves
-ON_ALL, ON_PART = 7, 8  # of factors
+FORCED = 4  # columns of forces alone
+FLOOR_X, FLOOR_Y, FLOOR_SPIN, FLOOR_ANGLE = 4, 5, 6, 7  # of a floor that moves
+ON_ALL, ON_PART = 8, 9  # of factors
 
 
 def drive_of(path: str | Rows) -> FloatArray:
@@ -55,6 +57,32 @@ def motion_of(floor: Floor) -> FloatArray:
         If they cannot be read.
     """
     return _rows_of(floor.over_time, (TIME, SPEED_X, SPEED_Y, SPIN), "floor.over_time")
+
+
+def moves_at(floor: Floor, time: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Velocity and spin (3, n) of a floor at times, s, and how fast they change.
+
+    >>> tray = Floor(over_time=[[0.0, 0.0, 0.0], [2.0, 1.0, 0.0]])
+    >>> [one.ravel().tolist() for one in moves_at(tray, np.array([1.0]))]
+    [[0.5, 0.0, 0.0], [0.5, 0.0, 0.0]]
+    """
+    if not floor.over_time:
+        steady = np.array([[*floor.velocity, floor.turning]]).T
+        return np.repeat(steady, len(time), 1), np.zeros((3, len(time)))
+    rows = motion_of(floor)
+    times, columns = rows[:, 0], rows[:, 1:].T
+    piece = np.searchsorted(times, time, "right")
+    rates = np.pad(np.diff(columns) / np.diff(times), ((0, 0), (1, 1)))
+    return np.stack([np.interp(time, times, one) for one in columns]), rates[:, piece]
+
+
+def does_turn(floor: Floor) -> bool:
+    """Whether a floor ever turns.
+
+    >>> does_turn(Floor(turning=1.0)), does_turn(Floor(over_time=[[0, 0, 0], [1, 0.5, 0]]))
+    (True, False)
+    """
+    return floor.turning != 0.0 or (bool(floor.over_time) and bool(motion_of(floor)[:, 3].any()))
 
 
 def _rows_of(path: str | Rows, columns: tuple[InputColumn, ...], name: str) -> FloatArray:
@@ -135,7 +163,7 @@ def over_time(floor: Floor, force: Force) -> FloatArray:
     Where something jumps a time stands twice.  Before and after its rows there is no force, and the
     floor goes on as it did.
 
-    >>> over_time(Floor(grips=[Grip([[0.0, 1.0], [1.0, 0.5]])]), Force())[:, [0, 7, 8]].tolist()
+    >>> over_time(Floor(grips=[Grip([[0.0, 1.0], [1.0, 0.5]])]), Force())[:, [0, 8, 9]].tolist()
     [[0.0, 1.0, 1.0], [1.0, 0.5, 1.0]]
     """
     drive = drive_of(force.over_time) if force.over_time else np.empty((0, FORCED))
@@ -160,7 +188,22 @@ def over_time(floor: Floor, force: Force) -> FloatArray:
                 row[column : column + table.shape[1] - 1] = _just(table, t, after)
             if not (after and np.array_equal(row, rows[-1])):
                 rows.append(row)
-    return np.array(rows)
+    return with_angles(np.array(rows))
+
+
+def with_angles(rows: FloatArray) -> FloatArray:
+    """Rows of all that changes over time, with how far the floor has turned at them, by its spin.
+
+    >>> rows = over_time(Floor(over_time=[[1, 0, 0, 0], [3, 0, 0, 4]]), Force())
+    >>> with_angles(rows)[:, FLOOR_ANGLE].tolist()
+    [0.0, 4.0]
+    """
+    if rows.shape[1] > FORCED:
+        spin = rows[:, FLOOR_SPIN]
+        turned = 0.5 * (spin[1:] + spin[:-1]) * np.diff(rows[:, 0])
+        rows[:, FLOOR_ANGLE] = [0.0, *np.cumsum(turned)]
+        rows[:, FLOOR_ANGLE] -= turned_at(rows, rows_passed(rows, 0, len(rows), 0.0), 0.0)
+    return rows
 
 
 def _just(table: FloatArray, t: float, after: bool) -> FloatArray:
@@ -235,3 +278,11 @@ def held_at(drive: FloatArray, piece: int, column: int, t: float) -> float:
     one, two = drive[piece - 1, column], drive[piece, column]
     # past the next row, if by a rounding, a factor that ends in 0 would be less than that
     return one + min(_share(drive, piece, t), 1.0) * (two - one)
+
+
+@inlined
+def turned_at(drive: FloatArray, piece: int, t: float) -> float:
+    """How far the floor has turned at a time, on the piece that so many rows precede, rad."""
+    row = max(piece - 1, 0)
+    spin = 0.5 * (drive[row, FLOOR_SPIN] + held_at(drive, piece, FLOOR_SPIN, t))
+    return drive[row, FLOOR_ANGLE] + spin * (t - drive[row, 0])

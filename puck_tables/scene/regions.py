@@ -15,6 +15,7 @@ from puck_tables.motion.friction_source import closed_form_friction, table_frict
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.scene.by_speed import law_error, laws_in
 from puck_tables.scene.floor_parts import directions_in
+from puck_tables.scene.map_of_floor import follows_contour
 from puck_tables.scene.parts import Orthotropic
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.table.friction_section import FINEST_ACCURACY
@@ -58,7 +59,7 @@ def friction_error(scene: SceneSpec) -> float:
         return law_error(scene)
     if directions_in(scene.floor):
         return DIRECTION_ERROR
-    if puck.shape is not None:
+    if follows_contour(scene):
         return CLOSED_FORM_ERROR
     if all(rubs_plainly(puck, delta) for delta in scene.heights):
         return CLOSED_FORM_ERROR if scene.tol < EXACT_BELOW else TABLE_ERROR

@@ -13,12 +13,37 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.wording import meant
 from puck_tables.errors import InputError
-from puck_tables.io.columns import COLUMNS, Dataset, Variable, derived, variable
+from puck_tables.io.columns import COLUMNS, Dataset, Variable, derived, following, variable
 from puck_tables.result import TimedResult
 from puck_tables.scene.entries import tables_of, units_of
-from puck_tables.scene.outcome import column_of, refuse_changed, scene_texts
+from puck_tables.scene.library import refuse_changed, scene_texts
 from puck_tables.scene.pucks_and_posts import called_line
 from puck_tables.scene.scene_spec import SceneSpec
+
+ENDS = (
+    "at rest", "carried by the floor", "carried round", "time is up", "over the edge",
+    "in a pocket", "tipped over", "step limit", "events crowd together",
+    "impacts without end", "unsolved", "faster than a table of restitution goes",
+    "no end found", "refused",
+)  # fmt: skip
+# their places: those of a run that has ended, up to LAST_END; of one that failed; and of one of
+# many, which go on
+AT_REST, CARRIED_AWAY, CARRIED_ROUND, TIME_UP, OVER_EDGE, IN_POCKET, TIPPED = range(7)
+LAST_END = TIPPED
+STEP_LIMIT, EVENT_LIMIT = range(7, 9)
+IMPACTS_WITHOUT_END, UNSOLVED, TOO_FAST, NO_END, REFUSED = range(9, 14)
+EVENTS = (
+    "stick",
+    "slip",
+    "impact",
+    "contact",
+    "entry",
+    "edge",
+    "exit",
+    "overhang",
+    "line",
+    "tip",
+)
 
 STATE = ("x", "y", "orientation", "vx", "vy", "spin")
 HEATS = ("heat_dry", "heat_viscous", "heat_rims", "heat_impact")
@@ -318,3 +343,15 @@ def number_of(puck: int | str, names: Sequence[str]) -> int:
         return int(puck)
     shown = ", ".join(names[:8]) + (", ..." if len(names) > 8 else "")
     raise InputError(f"no puck {puck!r}{meant(puck, names)}: there are {len(names)}, {shown}")
+
+
+def column_of(result: Any, name: str) -> FloatArray:
+    """A column as an attribute of a result of a scene.
+
+    Raises
+    ------
+    AttributeError
+    """
+    columns: Mapping[str, FloatArray] = result.__dict__.get("columns", {})
+    column: FloatArray = columns[name] if name in columns else following(result, name)
+    return column

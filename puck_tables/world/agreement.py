@@ -21,7 +21,7 @@ from puck_tables.scene.floor_parts import (
 )
 from puck_tables.scene.forces import is_stepped
 from puck_tables.scene.holds import misfits
-from puck_tables.scene.map_of_floor import edges_under
+from puck_tables.scene.map_of_floor import edges_under, follows_contour
 from puck_tables.scene.over_time import drive_of, last_factors
 from puck_tables.scene.parts import Drag, Force, Lateral, Launch
 from puck_tables.scene.pucks_and_posts import ScenePuck
@@ -171,8 +171,8 @@ def is_integrated(scene: SceneSpec, puck: ScenePuck, friction: float) -> bool:
     """
     drags, floor = scene.drag != Drag(), scene.floor
     unlike = bool(floor.law) or floor.orthotropic is not None or segment_error(scene) < TABLE_ERROR
-    unlike = unlike or puck.shape is not None or needs_sums(floor, puck.height)
-    unlike = unlike or bool(floor.over_time)
+    unlike = unlike or needs_sums(floor, puck.height) or bool(floor.over_time)
+    unlike = unlike or follows_contour(scene.alone(puck))
     rough = friction > 0.0 and (drags or unlike or not has_closed_forms(puck, friction))
     turns = floor.turning != 0.0 and (friction > 0.0 or drags)
     more = floor.slope > 0.0 or puck.force != Force() or puck.constraint is not None

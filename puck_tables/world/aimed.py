@@ -14,9 +14,8 @@ from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS, Dataset, variable
 from puck_tables.result import Result
 from puck_tables.scene.entries import tables_of
-from puck_tables.scene.library import files_of
-from puck_tables.scene.outcome import column_of, scene_texts
-from puck_tables.scene.run import Run
+from puck_tables.scene.library import files_of, scene_texts
+from puck_tables.scene.run import Run, column_of
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import called, pucks_of, start_of
 from puck_tables.world.simulate import simulate

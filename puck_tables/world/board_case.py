@@ -13,7 +13,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import ContactError, InputError, PuckError
 from puck_tables.scene.by_speed import end_of_laws
 from puck_tables.scene.entries import is_batch, launch_paths
-from puck_tables.scene.outcome import (
+from puck_tables.scene.run import (
     AT_REST,
     CARRIED_AWAY,
     CARRIED_ROUND,
@@ -24,13 +24,15 @@ from puck_tables.scene.outcome import (
     LAST_END,
     NO_END,
     OVER_EDGE,
+    STATE,
     STEP_LIMIT,
     TIME_UP,
     TIPPED,
     TOO_FAST,
     UNSOLVED,
+    ledger,
+    residual,
 )
-from puck_tables.scene.run import STATE, ledger, residual
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import called, pucks_of, refuse_endless
 from puck_tables.world.bulk import Ends, follow_all
@@ -179,7 +181,7 @@ class BoardCase:
                 into[runs] = part
 
     def _status(self, ends: Ends) -> npt.NDArray[np.int8]:
-        """How each run ends, a place in :data:`puck_tables.scene.outcome.ENDS`."""
+        """How each run ends, a place in :data:`puck_tables.scene.run.ENDS`."""
         moves = (ends.states[:, :, 3:6] != 0.0).any(axis=2) & (ends.in_play > 0.0)
         carried = (ends.carried > 0.0) | ~moves
         if not moves_along(self.engine.surface):

@@ -12,7 +12,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
-from puck_tables.scene.over_time import ON_ALL
+from puck_tables.scene.over_time import FORCED, with_angles
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import pucks_of
 from puck_tables.world.drive import fill_straight
@@ -151,11 +151,11 @@ def with_force(
     for start, end in pairwise(times):
         for row in (_just(mine, start, True), _just(mine, end, False)):
             if begin <= start and end <= until:
-                row[1:ON_ALL] += force
+                row[1:FORCED] += force
             if not rows or (row != rows[-1]).any():
                 rows.append(row)
     parts = [engine.forcing[slice(*span)] for span in engine.spans]
-    parts[i] = np.array(rows)
+    parts[i] = with_angles(np.array(rows))
     ends = np.cumsum([0, *map(len, parts)])
     spans = np.stack([ends[:-1], ends[1:]], axis=1)
     engine = engine._replace(forcing=np.vstack(parts), spans=spans)
@@ -163,14 +163,14 @@ def with_force(
 
 
 def _just(rows: FloatArray, t: float, after: bool) -> FloatArray:
-    """The row just after, or just before, a time: beyond all rows no force, factors as there."""
+    """The row just after, or just before, a time: beyond all rows no force, the rest as there."""
     j = int((rows[:, 0] <= t).sum() if after else (rows[:, 0] < t).sum())
     row = np.zeros(rows.shape[1])
     if 0 < j < len(rows):
         one, two = rows[j - 1], rows[j]
         row = one + (t - one[0]) / (two[0] - one[0]) * (two - one)
     elif len(rows):
-        row[ON_ALL:] = rows[max(j - 1, 0), ON_ALL:]
+        row[FORCED:] = rows[max(j - 1, 0), FORCED:]
     row[0] = t
     return row
 

@@ -13,7 +13,7 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
-from puck_tables.scene.belts import nearest_belt
+from puck_tables.scene.base_balance import nearest_belt
 from puck_tables.scene.floor_map import (
     ACROSS_X,
     ACROSS_Y,

@@ -124,19 +124,23 @@ def regions_of(
     loads = np.array([
         0.0 if puck.path else normal_on(scene, puck) * friction for puck, friction in places
     ])  # fmt: skip
-    cuts = none[: len(places)]
+    cuts, cut = none[: len(places)], cache(partial(load_limit, scene.tol))
+    looks = [  # no matter at which height where it is summed
+        (puck, 0.0 if sums else height, sums or friction == 0.0)
+        for (puck, friction), height, sums in zip(
+            places, delta[: len(places)].tolist(), summed.tolist(), strict=True
+        )
+    ]  # fmt: skip
     if all(
-        sums or friction == 0.0 or puck.shape is not None or rubs_plainly(puck, height)
-        for (puck, friction), height, sums in zip(places, delta[: len(places)], summed, strict=True)
+        at_hand or puck.shape is not None or rubs_plainly(puck, height)
+        for puck, height, at_hand in looks
     ):
         if floors[:, 2].any():  # those that are integrated ask for friction often
-            cut = cache(partial(load_limit, scene.tol))
-            cuts = np.stack([cut(height) for height in delta[: len(places)].tolist()])
+            cuts = np.stack([cut(height) for _, height, _ in looks])
     else:
         cuts = of_one_shape([
-            load_limit(scene.tol, 0.0) if _is_summed(scene, puck) else
-            section_of(puck, 2.0 * friction * puck.height / puck.radius, scene.tol)
-            for puck, friction in places
+            cut(height) if at_hand else section_of(puck, height, scene.tol)
+            for puck, height, at_hand in looks
         ])  # fmt: skip
     floor_map, several = NO_GROUND, has_sums(scene)
     if several:

@@ -15,7 +15,7 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, on_demand, patience
 from puck_tables.motion.steppers import times_as_long
-from puck_tables.scene.belts import is_rubbed
+from puck_tables.scene.base_balance import is_rubbed
 from puck_tables.scene.equations import (
     FIRST,
     GIVEN,
@@ -119,7 +119,7 @@ _LAST = 0.03  # of the root of the error of a step: slips as small may go straig
 _STIFF, _MILD, _SLOWLY = 0.8, 0.3, 0.1
 _NEWTON, _FINEST_NEWTON = 1e-3, 1e-15  # of the error of a step: how well implicit ones are solved
 _FARTHER = 0.1  # of the time since the start: so far ahead a path may go
-_SWING = 0.05  # rad that a puck at rest on a turntable turns, at most, in a step
+_SWING = 0.05  # rad: as far a floor turns under a puck at rest in a step; more as it spins up: half
 _OVER = 1e-12  # of a radius: beyond a border
 
 
@@ -230,6 +230,8 @@ def _longest(
     elif phase.mode == CARRIED:
         if surface.spin != 0.0:
             h = min(h, _SWING / abs(surface.spin))
+        if surface.turn != 0.0:
+            h = min(h, math.sqrt(_SWING / abs(surface.turn)))
         if is_mixed(phase.friction):
             sx, sy, _ = floor_velocity(surface, y[X], y[X + 1])
             h = min(h, _SWING * radius / max(math.hypot(sx, sy), 1e-300))

@@ -12,8 +12,8 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError, PuckError
 from puck_tables.io.columns import Dataset, Variable
 from puck_tables.scene.entries import is_batch, launch_paths
-from puck_tables.scene.library import files_of
-from puck_tables.scene.outcome import LAST_END, plain_name
+from puck_tables.scene.library import files_of, plain_name
+from puck_tables.scene.run import LAST_END
 from puck_tables.world.scene_ends import SceneEnds, axes_of, number_along
 from puck_tables.world.simulate import simulate
 

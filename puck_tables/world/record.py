@@ -45,7 +45,7 @@ from puck_tables.world.engine_state import (
     Whole,
 )
 from puck_tables.world.floor_under import friction_under_disc, least_slip, lie_at
-from puck_tables.world.lasting import STUCK, at_rest_below, middle_of
+from puck_tables.world.lasting import at_rest_below, middle_of, no_slip_between
 from puck_tables.world.layout import DECEL, HOLD, INTEGRATED, KIND, LIGHTNESS, NO_CUSHION, RADIUS
 from puck_tables.world.lone import model_of
 from puck_tables.world.obstacle_shapes import normal_to
@@ -212,7 +212,7 @@ def _described(engine: g.Engine) -> list[Rest]:
     if unsure.size:
         middles = np.array([middle_of(engine, n, ends[n]) for n in unsure.tolist()])
         there = states_on(engine, unsure, middles)
-        moves[unsure] = slips_over(engine, discs[unsure], there, middles) > STUCK * engine.scale[0]
+        moves[unsure] = slips_over(engine, discs[unsure], there, middles) > no_slip_between(engine)
     # none of what is driven, or what nothing can hold
     held = (rows[:, LIGHTNESS] > 0.0) & ((rows[:, DECEL] > 0.0) | (rows[:, INTEGRATED] > 0.0))
     own = np.argsort(discs, kind="stable")

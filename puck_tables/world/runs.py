@@ -23,8 +23,8 @@ from puck_tables.errors import InputError
 from puck_tables.io.columns import Dataset
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.scene.entries import is_batch, launch_paths, tables_of
-from puck_tables.scene.library import files_of
-from puck_tables.scene.outcome import ENDS, LAST_END, REFUSED, plain_name
+from puck_tables.scene.library import files_of, plain_name
+from puck_tables.scene.run import ENDS, LAST_END, REFUSED
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import pucks_of
 from puck_tables.world.board_case import BoardCase

@@ -16,8 +16,8 @@ from puck_tables.errors import InputError
 from puck_tables.io.columns import Dataset, Variable, derived, variable
 from puck_tables.result import Result
 from puck_tables.scene.entries import entry_at, is_batch
-from puck_tables.scene.outcome import ENDS, LAST_END, column_of, plain_name, scene_texts
-from puck_tables.scene.run import number_of
+from puck_tables.scene.library import plain_name, scene_texts
+from puck_tables.scene.run import ENDS, LAST_END, column_of, number_of
 from puck_tables.scene.scene_spec import SceneSpec
 
 

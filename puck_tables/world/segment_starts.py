@@ -220,7 +220,7 @@ def lacks_pieces(engine: Engine) -> bool:
 def loses_balance(engine: Engine, i: int, t: float, room: Room) -> bool:
     """Whether in a moment no pressure of the floor under a disc carries it, so that it tips."""
     rows = engine.forcing[engine.spans[i, 0] : engine.spans[i, 1]]
-    passed, disc, state = rows_passed(rows, 0, len(rows), t), engine.discs[i], room.one
+    disc, state = engine.discs[i], room.one
     write_over(state, room.states[i])
     h, fx, fy, torque = 0.0, 0.0, 0.0, 0.0
     for _ in range(2):
@@ -232,9 +232,10 @@ def loses_balance(engine: Engine, i: int, t: float, room: Room) -> bool:
             state[VY] + h * disc[LIGHTNESS] * fy,
         )
         state[SPIN] += h * disc[TURNABILITY] * torque
+        passed = rows_passed(rows, 0, len(rows), t + h)
         friction = friction_now(
-            engine.regions, engine.discs, engine.forcing, engine.spans, i, passed, t, state
-        )  # fmt: skip
+            engine.regions, engine.discs, engine.forcing, engine.spans, i, passed, t + h, state
+        )
         vx, vy, spin = over_floor(engine.surface, disc, state)
         fx, fy, torque, _ = friction_force(friction, disc[RADIUS], vx, vy, spin)
         h = _MOMENT * engine.scale[0] / engine.scale[1]

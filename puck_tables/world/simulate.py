@@ -17,18 +17,21 @@ from puck_tables.errors import InputError, PuckError
 from puck_tables.scene.friction import THETA, VX, X, Y
 from puck_tables.scene.ingredients import FREE
 from puck_tables.scene.library import files_of
-from puck_tables.scene.outcome import (
+from puck_tables.scene.regions import friction_error
+from puck_tables.scene.run import (
     AT_REST,
     CARRIED_AWAY,
     CARRIED_ROUND,
     ENDS,
     IN_POCKET,
     OVER_EDGE,
+    STATE,
     TIME_UP,
     TIPPED,
+    Event,
+    Run,
+    residual,
 )
-from puck_tables.scene.regions import friction_error
-from puck_tables.scene.run import STATE, Event, Run, residual
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import engine_state as g
 from puck_tables.world.agreement import pucks_of, segment_error, steps_for
