@@ -217,7 +217,7 @@ def test_both_frictions_are_ranges():
     [
         ({"friction": (0.0, 0.3)}, r"floor.orthotropic.friction\[0\] = 0.0: must be a number > 0"),
         ({"friction": (1e-4, 0.3)}, "one must be at least 0.03 of the other"),
-        ({"floor": {"law": [[0.0, 0.1], [1.0, 0.1]]}}, "leave one out"),
+        ({"floor": {"law": [[0.0, 0.1], [1.0, 0.1]]}}, "leave floor.law out"),
     ],
 )
 def test_what_is_not_known_is_refused_by_name(more, words):

@@ -192,8 +192,7 @@ launch.velocity = [1.0, 0.2]
 friction = [1.0, 0.5]
 law = "ice.csv"
 [[floor.patch]]
-radius = 0.1
-centre = [0.3, 0.0]
+corners = "spot.csv"
 [floor.patch.friction]
 kind = "orthotropic"
 friction = [1.0, 2.0]
@@ -203,6 +202,7 @@ law = {kind = "stribeck", static = 0.3, kinetic = 0.1, speed = 0.2}
 
 def test_it_stands_in_files_reports_and_pictures(tmp_path: Path) -> None:
     (tmp_path / "ice.csv").write_text("speed,f\n0,0.2\n5,0.1\n")
+    (tmp_path / "spot.csv").write_text("x,y\n0.2,-0.1\n0.4,-0.1\n0.4,0.1\n0.2,0.1\n")
     (tmp_path / "ice.toml").write_text(FILE)
     scene = pt.Scene.load(str(tmp_path / "ice.toml"))
     assert pt.Scene.from_tables(tomllib.loads(as_toml(scene))) == scene

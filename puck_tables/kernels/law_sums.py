@@ -344,13 +344,13 @@ def _at_first(
     ux: float, uy: float, w: float,
 ) -> Sums:  # fmt: skip
     """By arrays, but where friction bends and C is far away."""
-    if _has_bends_far_away(reach, law, axes, ux, uy, w):
+    if _has_kinks_far_away(reach, law, axes, ux, uy, w):
         return _as_written(room, first, last, reach, law, axes, ux, uy, w, True)
     return law_sums_at_first(room, first, last, reach, law, axes, ux, uy, w)
 
 
 @inlined
-def _has_bends_far_away(
+def _has_kinks_far_away(
     reach: float, law: FloatArray, axes: Ellipse, ux: float, uy: float, w: float
 ) -> bool:
     """Whether C is far away, and friction bends between the slips under the base.
@@ -409,5 +409,5 @@ def law_sums(
     ``first``, ``last``: where its rows begin and end in ``room``; ``reach``: of the base, m;
     ``axes``: the factors of the law along and across.
     """
-    far = _has_bends_far_away(reach, law, axes, ux, uy, w)
+    far = _has_kinks_far_away(reach, law, axes, ux, uy, w)
     return _as_written(room, first, last, reach, law, axes, ux, uy, w, far)
