@@ -142,11 +142,11 @@ def read_scene(path: str | Path) -> dict[str, Any]:
         raise InputError(
             f"{path}: a number in it has thousands of digits, or its lists are nested too deeply"
         ) from None
-    _find_beside(Path(path).parent, tables, SceneSpec)
+    _find_in(Path(path).parent, tables, SceneSpec)
     return tables
 
 
-def _find_beside(folder: Path, tables: Any, part: Any) -> None:
+def _find_in(folder: Path, tables: Any, part: Any) -> None:
     """Let all files that the tables of a part name be in a folder."""
     for name, spec in specs(part).items() if isinstance(tables, dict) else ():
         kind, value = spec.metadata["kind"], tables.get(in_tables(name))
@@ -154,9 +154,9 @@ def _find_beside(folder: Path, tables: Any, part: Any) -> None:
             tables[name] = str(folder / value)
         for one in value if isinstance(value, list) else [value]:
             if kind.part is not None and isinstance(value, list) == (kind.shape == "parts"):
-                _find_beside(folder, one, kind.part)
+                _find_in(folder, one, kind.part)
             elif kind.kinds and isinstance(one, dict):
-                _find_beside(folder, one, kind.kinds.get(str(one.get("kind")), Kind))
+                _find_in(folder, one, kind.kinds.get(str(one.get("kind")), Kind))
 
 
 def files_of(scene: SceneSpec) -> dict[str, str]:
