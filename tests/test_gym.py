@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -88,6 +89,24 @@ def test_a_frame_is_counted_as_its_rules_say():
     assert table.game.score(table.tables).tolist() == [3.0]
     worlds.place(4, (6.26, 0.2))
     assert table.game.score(table.tables).tolist() == [-3.0]
+
+
+def test_what_hangs_is_left_out_of_games():
+    """The same frames on the shipped scene, which follows it: who falls, and all but 1 mm."""
+    ends = []
+    for edges in ((), pt.Scene.load("shuffleboard-two-stones").edges):
+        tables, rng = ManyTables("Shuffleboard", 12), np.random.default_rng(5)
+        if edges:
+            tables.game.scene = replace(tables.game.scene, edges=edges)
+            tables.tables = tables._laid_out()
+        tables.reset(seed=3)
+        for _ in range(4):
+            tables.step(rng.uniform(-1.0, 1.0, (12, 4)))
+        there = tables.tables.worlds.in_play
+        ends.append((there, np.where(there[..., None], tables.tables.worlds.state()[..., :2], 0.0)))
+    (there, places), (truly, exact) = ends
+    assert (there == truly).all() and not there.all()
+    assert 0.0 < np.abs(places - exact).max() < 1e-3
 
 
 def test_men_in_pockets_and_discs_in_the_hole_are_counted():

@@ -36,6 +36,7 @@ def test_a_force_that_grows_breaks_the_box_away() -> None:
     before = answer([0.5])  # the floor has all of the force
     assert before.floor_fx.item() == pytest.approx(1.0, rel=1e-12)
     assert before.floor_torque.item() == 0.0
+    assert np.isnan(before.epsilon) and np.isinf(answer([0.9]).epsilon)  # no ratio of rounding
 
 
 def test_a_torque_that_grows_breaks_the_box_away() -> None:

@@ -7,11 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.gym.disc_games import TableGame, Tables, Truth, Whole, sent
+from puck_tables.gym.disc_games import TableGame, Tables, Truth, Whole, sent, table
 from puck_tables.puck import Puck
 from puck_tables.scene.parts import Launch
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.scene import Scene
 
 _LONG, _WIDE = 2.2, 1.1  # m, of the table
 _MALLET, _MASS = 0.0508, 0.17  # its radius, m, and mass, kg
@@ -24,7 +23,7 @@ _SIGHT = 100.0, 1e4  # m/s and rad/s: nothing is faster
 
 def _scene() -> SceneSpec:
     """The shipped table with a mallet on each side, which a hand strikes every frame."""
-    scene = Scene.load("air-hockey-goals")
+    scene = table("air-hockey-goals")
     puck = replace(scene.pucks[0], launch=Launch(position=(0.5 * _LONG, 0.5 * _WIDE)))
     mallets = [
         Puck(

@@ -7,7 +7,16 @@ from dataclasses import replace
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.gym.disc_games import ShotGame, Tables, Truth, Whole, between, observed_pucks, sent
+from puck_tables.gym.disc_games import (
+    ShotGame,
+    Tables,
+    Truth,
+    Whole,
+    between,
+    observed_pucks,
+    sent,
+    table,
+)
 from puck_tables.puck import Puck
 from puck_tables.scene.parts import Edge, Launch
 from puck_tables.scene.pucks_and_posts import Line
@@ -166,7 +175,7 @@ class Shuffleboard(StoneGame):
     _TO_THE_END = 1.85  # m/s
 
     def __init__(self) -> None:
-        scene = Scene.load("shuffleboard-two-stones")
+        scene = table("shuffleboard-two-stones")
         own, their = scene.pucks
         marks = [self._END - inches * _INCH for inches in (6.0, 12.0, 72.0)]
         lines = tuple(Line((x, -0.255), (x, 0.255), name=f"{x:.2f} m") for x in marks)

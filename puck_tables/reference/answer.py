@@ -246,7 +246,7 @@ class Answer(Result):
         for n, puck in enumerate(self.pucks):
             mine = self.states_of(n if self.names else None)
             slip = slip_over(self.floor, mine)
-            epsilon, ratio = ratios(slip, puck.radius)
+            epsilon, ratio = ratios(slip.beyond(self.speed_bound, puck.radius), puck.radius)
             fx, fy, torque = on_the_floor(puck, self.run.scene, mine, self.speed_bound)
             q = slip.sizes(puck.radius)[2]
             rows.append((q, epsilon, ratio, fx, fy, torque))

@@ -53,6 +53,17 @@ class SlipVelocity(NamedTuple):
         speed, rim = np.hypot(self.vx, self.vy), radius * np.abs(self.spin)
         return speed, rim, np.hypot(speed, rim)
 
+    def beyond(self, least: float, radius: float) -> SlipVelocity:
+        """Without a velocity, or a spin, of up to ``least``, m/s, which is none.
+
+        >>> one = np.ones(1)
+        >>> SlipVelocity(one, one, 1e-13 * one).beyond(1e-12, 1.0).spin.tolist()
+        [0.0]
+        """
+        speed, rim, _ = self.sizes(radius)
+        moves, spins = speed > least, rim > least
+        return SlipVelocity(self.vx * moves, self.vy * moves, self.spin * spins)
+
 
 def slip_over(floor: Floor, states: Mapping[str, FloatArray]) -> SlipVelocity:
     """Of states ``time``, ``x``, ``y``, ``vx``, ``vy``, ``spin`` over a floor that may move.
