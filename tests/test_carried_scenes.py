@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -92,9 +93,15 @@ def test_what_a_belt_leads_to_too_late_asks_for_a_time():
 
 
 def test_a_slip_that_grows_until_the_base_would_lift_is_not_blamed_on_the_height():
-    """Viscous friction holds nothing on a turntable; at the launch the height is in order."""
-    law = pt.PowerLaw(a=0.2, exponent=1.0)
-    scene = pt.Scene(PUCK, pt.Floor(turning=1.0, law=law), LAUNCH, tol=1e-4)
+    """Viscous friction holds nothing on a turntable; at the launch the height is in order.
+
+    Under uniform pressure it lifts, and tips where 0.2 s/m of 20 m/s times 0.01 m is the radius.
+    """
+    floor = pt.Floor(turning=1.0, law=pt.PowerLaw(a=0.2, exponent=1.0))
+    scene = pt.Scene(replace(PUCK, pressure="hertz"), floor, LAUNCH, tol=1e-4)
     with pytest.raises(pt.InputError, match=r"at .* s the rim slips .* give a shorter time"):
         scene.at({"time": 100.0}).simulate()
     assert scene.at({"time": 1.0}).simulate().end == "time is up"
+    run = scene.at({"puck.pressure": "uniform", "time": 100.0}).simulate()
+    assert run.end == "tipped over"
+    assert 19.9 < math.hypot(run.last["vx"] + run.last["y"], run.last["vy"] - run.last["x"]) < 20.0

@@ -17,6 +17,7 @@ from test_base_over_edge import BOX, BY_GRIP, CORNERS, DECEL, WOOD, follow, thro
 from puck_tables import (
     Base,
     Floor,
+    Force,
     Launch,
     Orthotropic,
     Puck,
@@ -104,6 +105,23 @@ def test_it_tips_where_its_load_leaves_the_base():
     assert turned.end_time > 0.1
     assert "tipped over after" in str(turned)
     assert turned.energy_residual < 1e-9
+
+
+@pytest.mark.parametrize("static", [1.0, 2.5])
+@pytest.mark.parametrize("base", ["box:0.1x0.06", "disc:0.03"])
+def test_what_stands_tips_where_a_push_or_its_tray_brings_its_load_to_its_border(base, static):
+    """At 0.2 of its weight, where friction holds 0.5; in a slip on 0.2 it would be carried."""
+    tall, g = Puck(base=base, height=0.3, friction=0.5 / static, mass=1.0), 9.80665
+    for most, end in ((0.199, "at rest"), (0.4, "tipped over")):
+        ramp = Force(over_time=[[0.0, 0.0, 0.0], [1.0, 0.0, most * g]])
+        run: Any = Scene(tall, Floor(static_ratio=static), force=ramp, time=1.0).simulate()
+        assert (run.end, run.last["y"]) == (end, 0.0)
+    assert 0.498 < run.end_time < 0.5
+    held, lost = 0.5 * 0.198 * g, 0.5 * 0.202 * g
+    rows = [[0.0, 0.0, 0.0], [0.5, 0.0, held], [1.0, 0.0, held + lost]]
+    run = Scene(tall, Floor(static_ratio=static, over_time=rows), time=1.0).simulate()
+    assert run.end == "tipped over"
+    assert abs(run.end_time - 0.5) < 1e-9 and abs(run.last["y"] - 0.25 * held) < 1e-9
 
 
 def test_mirror_images():

@@ -50,7 +50,7 @@ def lost(
     """
     slack = SLACK * phase.friction.load
     first, last = excess_at_rest(phase, t, y)[0], excess_at_rest(phase, t + h, new)[0]
-    low, high = 0.0, h if last > slack else math.inf
+    low, high = 0.0, math.inf if last <= slack else h  # no number: it tips
     swings = phase.model.surface.spin != 0.0 or phase.model.surface.changes != 0.0
     if (swings or is_mixed(phase.friction)) and last <= slack:
         step(phase, t, 0.5 * h, y, scale, work, new)
@@ -59,7 +59,7 @@ def lost(
         top = 0.25 - (last - first) / (2.0 * accel) + 0.25 if accel < 0.0 else 0.5
         top = min(max(top, 0.0), 1.0) * h
         step(phase, t, top, y, scale, work, new)
-        high = top if excess_at_rest(phase, t + top, new)[0] > slack else math.inf
+        high = math.inf if excess_at_rest(phase, t + top, new)[0] <= slack else top
     if high == math.inf:
         return high
     while True:
@@ -88,7 +88,7 @@ def rests_on(model: Model, friction: DryFriction, piece: int, y: FloatArray) -> 
     for row in range(piece, rows + 1):  # at last what is left when the rows have ended
         at = row if row == rows else max(row, 1)
         phase = Phase(model, friction, at, CARRIED, NO_WAY, 0.0)
-        if excess_at_rest(phase, model.forces.drive[min(row, rows - 1), 0], y)[0] > level:
+        if not excess_at_rest(phase, model.forces.drive[min(row, rows - 1), 0], y)[0] <= level:
             return False
     return True
 
@@ -240,6 +240,11 @@ def from_standstill(
     if excess <= SLACK * load:
         return CARRIED, False, 0.0
     q = 2.0 * REST * speed
+    if math.isnan(
+        excess
+    ):  # no pressure carries it at rest: it tips, whatever it would do in a slip
+        y[VX] = y[VY] = y[SPIN] = excess
+        return SLIDES, False, q
     slips = Phase(model, phase.friction, phase.piece, SLIDES, NO_WAY, 0.0)
     if model.surface.static > 1.0:  # once it slips that holds no more
         excess, nx, ny, nw = excess_at_rest(slips, t, y)

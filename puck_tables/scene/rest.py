@@ -16,7 +16,7 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel, patience
-from puck_tables.scene.floor_map import SHARE
+from puck_tables.scene.floor_map import EDGES, LEVER, LIFTS, SHARE
 from puck_tables.scene.forces import prescribed_force
 from puck_tables.scene.friction import THETA, X, Y, at_slip_zero, friction_force
 from puck_tables.scene.ingredients import (
@@ -161,6 +161,13 @@ def constrained_yield(
     return free_yield(friction, body.radius, along * ex, along * ey, torque, guided)
 
 
+@inlined
+def _may_tip(friction: DryFriction) -> bool:
+    """Whether a force may leave a base that is summed with no pressure that carries it."""
+    floor_map = friction.by_speed.table
+    return floor_map[LEVER] != 0.0 and (floor_map[LIFTS] != 0.0 or floor_map[EDGES] != 0.0)
+
+
 @kernel
 def excess_at_rest(phase: Phase, t: float, y: FloatArray) -> Yield:
     """By how much the power of the best slip at Q = 1 exceeds friction, W, and that slip.
@@ -186,7 +193,7 @@ def excess_at_rest(phase: Phase, t: float, y: FloatArray) -> Yield:
             friction, model.hold, body, y[THETA], ax, ay, turning, fx, fy, torque, guided
         )
     carried = torque == 0.0 and (sx != 0.0 or sy != 0.0)
-    if carried and is_mixed(friction) and not is_over_belts(friction):
+    if carried and is_mixed(friction) and not _may_tip(friction) and not is_over_belts(friction):
         # Without a torque b = κ F, and as |u| is convex no slip gains where F is below the least f
         # alone: ∫ σ |u| dA ≥ N |u at the centre of pressure|.  A puck that is carried asks often.
         force = math.sqrt(fx * fx + fy * fy)

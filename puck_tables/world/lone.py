@@ -405,7 +405,8 @@ def follow_alone(
         grows = times_as_long(error, tol, 0.25 if newton > 0.0 else 0.125, 0.1)
         nowhere = not math.isfinite(stages[STAGES - 1, VX])
         if nowhere or not error <= tol:
-            falls = nowhere and newton == 0.0  # it tips there: a quarter as far, time and again
+            # it tips there: a quarter as far, time and again; a table only ends with its law
+            falls = nowhere and newton == 0.0 and is_mixed(friction)
             tips, failed = now + whole if falls else tips, failed or not falls
             h = whole * (0.25 if falls else grows)
             if h < (tol if falls else _SHORTEST) * unit:

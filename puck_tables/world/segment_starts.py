@@ -11,7 +11,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel
 from puck_tables.scene.equations import ROW
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y, friction_force
-from puck_tables.scene.ingredients import floor_velocity
+from puck_tables.scene.ingredients import floor_velocity, is_mixed
 from puck_tables.scene.over_time import rows_passed
 from puck_tables.scene.patches import ASTRIDE, INSIDE, OUTSIDE
 from puck_tables.world.contact_row import (
@@ -239,7 +239,7 @@ def loses_balance(engine: Engine, i: int, t: float, room: Room) -> bool:
         vx, vy, spin = over_floor(engine.surface, disc, state)
         fx, fy, torque, _ = friction_force(friction, disc[RADIUS], vx, vy, spin)
         h = _MOMENT * engine.scale[0] / engine.scale[1]
-    return math.isnan(fx)
+    return is_mixed(friction) and math.isnan(fx)
 
 
 @inner
