@@ -29,8 +29,9 @@ class Orthotropic:
     in the axes of the floor, or of the body that is so.  It may be the friction of a strip or a
     patch, too.  With a ``law`` over the slip speed it is so many times that.
 
+    >>> from puck_tables import StribeckLaw
     >>> ice = Orthotropic((1.0, 0.5), law=StribeckLaw(0.3, 0.1, speed=0.2))
-    >>> ice.friction[1] * ice.law(0.0)  # f across at rest
+    >>> float(ice.friction[1] * ice.law(0.0))  # f across at rest
     0.15
     """
 
