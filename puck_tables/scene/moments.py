@@ -240,9 +240,7 @@ def from_standstill(
     if excess <= SLACK * load:
         return CARRIED, False, 0.0
     q = 2.0 * REST * speed
-    if math.isnan(
-        excess
-    ):  # no pressure carries it at rest: it tips, whatever it would do in a slip
+    if math.isnan(excess):  # no pressure carries it at rest: it tips, whatever a slip would do
         y[VX] = y[VY] = y[SPIN] = excess
         return SLIDES, False, q
     slips = Phase(model, phase.friction, phase.piece, SLIDES, NO_WAY, 0.0)

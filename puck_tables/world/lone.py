@@ -119,7 +119,7 @@ _LAST = 0.03  # of the root of the error of a step: slips as small may go straig
 _STIFF, _MILD, _SLOWLY = 0.8, 0.3, 0.1
 _NEWTON, _FINEST_NEWTON = 1e-3, 1e-15  # of the error of a step: how well implicit ones are solved
 _FARTHER = 0.1  # of the time since the start: so far ahead a path may go
-_SWING = 0.05  # rad: as far a floor turns under a puck at rest in a step; more as it spins up: half
+_SWING = 0.05  # rad that a floor turns under a puck at rest in a step, or half as it spins up
 _OVER = 1e-12  # of a radius: beyond a border
 
 
