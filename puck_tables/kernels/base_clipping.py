@@ -32,17 +32,23 @@ from puck_tables.kernels.polygon_sums import (
 )
 
 _A_SIDE, _AN_ARC = 8, 32  # pieces that three cuts make of one at most
-_MORE = 160  # pieces: room for more cuts of the parts of most bases
+_A_FEW, _MORE = 16, 160  # pieces: room for more cuts of the parts of most bases, by corners
 _WHOLE = 2.0 * math.pi  # rad: a whole turn
 _SLIVER = 1e-9  # of a circle: a base that has less of it, or all but that, is told by its middle
 
 Angles = tuple[int, float, float, float, float]
 
 
-def room_to_clip(base: FloatArray) -> int:
-    """How many numbers the contours of two parts of a base take."""
-    pieces = _A_SIDE * int(base[SIDES]) + _AN_ARC * int(base[DISCS]) + _MORE
-    return 2 * PIECE_COLUMNS * pieces
+def room_to_clip(base: FloatArray, cuts: int, by_corners: bool) -> int:
+    """How many numbers the contours of two parts of a base take after so many cuts by lines.
+
+    ``by_corners``: whether patches with corners cut them, too.
+    """
+    sides, discs = int(base[SIDES]), int(base[DISCS])
+    # each may double the pieces, and adds three at most to a disc; there is room for three cuts
+    more = 2 ** max(cuts - 3, 0) if sides + discs > 1 else 1
+    pieces = _A_SIDE * sides + _AN_ARC * discs + (_MORE if by_corners else _A_FEW)
+    return 2 * PIECE_COLUMNS * pieces * more
 
 
 @inlined

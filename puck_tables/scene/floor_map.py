@@ -85,8 +85,7 @@ class FloorMap(NamedTuple):
         for part, number in enumerate(self.which):
             begins[part] = ends[number] if number >= 0 else 0.0
         cuts = 0 if not len(self.edges) else len(self.edges) + 1
-        more = 2 ** max(cuts - 3, 0)  # each may double the pieces; there is room for three
-        room = np.zeros(more * room_to_clip(self.base))
+        room = np.zeros(room_to_clip(self.base, cuts, len(self.corners) > 0))
         left = room if cuts or self.lifts else room[:0]
         head = [
             0.0, 0.0, 1.0, self.base[BASE_LEVER], self.across_x, self.across_y,

@@ -39,6 +39,7 @@ from puck_tables.world.segment import (
     LAST_PIECE,
     LOOKED_UP,
     PATH,
+    RIDES,
     START,
     UNTIL,
     state_at,
@@ -46,7 +47,7 @@ from puck_tables.world.segment import (
 from puck_tables.world.segment_starts import CONCERNED, Room
 from puck_tables.world.setting_off import REACHED, UNSEEN
 
-_STUCK, _WITHIN = 1e-11, 10.0  # of the scale of speeds, and times the error of a step in it
+STUCK, _WITHIN = 1e-11, 10.0  # of the scale of speeds, and times the error of a step in it
 LONG = 100.0  # times what friction takes, at most: whatever moves then may never stop
 _FAR = 10.0  # times that limit: what a belt carries discs to by then is waited for
 _SLOWEST = 1e-9  # of the largest friction: what brakes less than that does not brake
@@ -59,13 +60,7 @@ ROUND, NEVER_ENDS, LEADS_ON = range(UNSEEN + 1, UNSEEN + 4)
 @inlined
 def at_rest_below(engine: Engine) -> float:
     """A slip, m/s, that is none: steps end at 1e-12 of the scale; within one less is known."""
-    return max(_STUCK, _WITHIN * engine.scale[2]) * engine.scale[0]
-
-
-@inlined
-def no_slip_between(engine: Engine) -> float:
-    """A slip between two pieces of a path, m/s, that is none: these are within a step, too."""
-    return max(_STUCK, engine.scale[2]) * engine.scale[0]
+    return max(STUCK, _WITHIN * engine.scale[2]) * engine.scale[0]
 
 
 @inlined
@@ -133,7 +128,8 @@ def moves_on(engine: Engine, n: int, end: float, room: Room) -> float:
         end = min(end, segment[UNTIL])
         if driven or _slip_at(engine, n, start, room) > at_rest_below(engine):
             return end
-        if _slip_at(engine, n, middle_of(engine, n, end), room) > no_slip_between(engine):
+        slips = _slip_at(engine, n, middle_of(engine, n, end), room) > STUCK * engine.scale[0]
+        if slips and segment[RIDES] == 0.0:
             return end
         stops = _floor_stops(engine, int(engine.history[n, 0]))
         return min(end, stops) if stops < math.inf else -math.inf

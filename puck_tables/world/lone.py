@@ -354,15 +354,15 @@ def _held_back(grows: float, failed: bool, reach: float, before: float) -> float
     return grows * max(shrinks, _SUDDEN) ** _GOES_ON
 
 
-@on_demand("boolean", "float64", "int64")
+@on_demand("boolean", "float64", "int64", "boolean")
 def follow_alone(
     engine: Engine, i: int, t: float, state: FloatArray, work: FloatArray
-) -> tuple[bool, float, int]:  # fmt: skip
+) -> tuple[bool, float, int, bool]:  # fmt: skip
     """Follow a disc from its state at t: whether it can be, until when, and by how many pieces.
 
-    They stand after all pieces that there are, and what they did to the energies after all works,
-    uncounted.  Where it rests for good there are none, until inf; ``state`` (6,) is moved to rest.
-    ``work`` (38, 12): to work on.
+    And whether the floor carries it all along.  The pieces stand after all that there are, and what
+    they did to the energies after all works, uncounted.  Where it rests for good there are none,
+    until inf; ``state`` (6,) is moved to rest.  ``work`` (38, 12): to work on.
     """
     choose_belt(engine.regions, engine.discs, i, state)
     model, buffer = model_of(engine, i), buffer_on(work)
@@ -375,7 +375,7 @@ def follow_alone(
     straight, horizon = _LAST * math.sqrt(tol) * speed, _horizon(engine, model, t)
     now, passed, h, count, mode, way = t, 0.0, _BEGIN * unit, 0, SLIDES, NO_WAY
     undecided, known, stiff, over, rests, tips = True, False, False, False, False, math.inf
-    before, failed = math.inf, False
+    before, failed, held = math.inf, False, True
     while now < horizon and count <= LONGEST - _MOST and not over:
         patience(1)
         rows = rows_passed(drive, 0, len(drive), now)
@@ -427,6 +427,7 @@ def follow_alone(
         h = min(whole * _held_back(grows, failed, reach, before), longest if most > 1 else math.inf)
         before, failed = reach, False
         count += parts if length > _SHORTEST * unit else 0
+        held = held and mode == CARRIED
         passed += length
         now = target if landed else t + passed
         h = min(h, 0.5 * (tips - now)) if now < tips else h
@@ -438,6 +439,6 @@ def follow_alone(
         undecided = landed or slips or mode == STOPS or (q <= REST * speed and q < larger)
         known = not undecided and model.hold.kind == FREE
     if count > 0 and now > t:
-        return True, now, count
+        return True, now, count, held
     _put_down(model, now, state, buffer)
-    return rests, math.inf, 0
+    return rests, math.inf, 0, True

@@ -45,11 +45,11 @@ from puck_tables.world.engine_state import (
     Whole,
 )
 from puck_tables.world.floor_under import friction_under_disc, least_slip, lie_at
-from puck_tables.world.lasting import at_rest_below, middle_of, no_slip_between
+from puck_tables.world.lasting import STUCK, at_rest_below, middle_of
 from puck_tables.world.layout import DECEL, HOLD, INTEGRATED, KIND, LIGHTNESS, NO_CUSHION, RADIUS
 from puck_tables.world.lone import model_of
 from puck_tables.world.obstacle_shapes import normal_to
-from puck_tables.world.segment import GONE, LOOKED_UP, PATH, ROOM, START, UNTIL, state_at
+from puck_tables.world.segment import GONE, LOOKED_UP, PATH, RIDES, ROOM, START, UNTIL, state_at
 from puck_tables.world.step_ledger import (
     BACK_X,
     BACK_Y,
@@ -208,11 +208,13 @@ def _described(engine: g.Engine) -> list[Rest]:
     both = np.stack([starts, ends], 1)
     resting: npt.NDArray[np.bool_] = np.less_equal(slips_over(engine, discs, states, both), near)
     moves: npt.NDArray[np.bool_] = np.logical_not(resting.all(axis=1))
-    unsure = np.flatnonzero((kinds == PATH) & ~moves & (starts < ends))  # perhaps rest to rest
+    unsure = np.flatnonzero(
+        (kinds == PATH) & ~moves & (segments[:, RIDES] == 0.0) & (starts < ends)
+    )  # perhaps rest to rest
     if unsure.size:
         middles = np.array([middle_of(engine, n, ends[n]) for n in unsure.tolist()])
         there = states_on(engine, unsure, middles)
-        moves[unsure] = slips_over(engine, discs[unsure], there, middles) > no_slip_between(engine)
+        moves[unsure] = slips_over(engine, discs[unsure], there, middles) > STUCK * engine.scale[0]
     # none of what is driven, or what nothing can hold
     held = (rows[:, LIGHTNESS] > 0.0) & ((rows[:, DECEL] > 0.0) | (rows[:, INTEGRATED] > 0.0))
     own = np.argsort(discs, kind="stable")

@@ -48,6 +48,7 @@ START = LAUNCH_COLUMNS + LAUNCH_ROWS  # s, when; behind what is known of the lau
 PLACE_X, PLACE_Y, ANGLE, UNTIL, FASTEST, STRONGEST = range(START + 1, START + 7)
 FIRST_PIECE, LAST_PIECE = START + 7, START + 8  # of its path, of all pieces of the engine
 OFF_X, OFF_Y, OFF_ANGLE = range(START + 9, START + 12)  # what the look-up says just after the start
+RIDES = OFF_X  # of a path: 1 where the floor carries a disc all along
 DRIFT_X, DRIFT_Y = START + 12, START + 13  # velocity of the belt on which it moves or rests
 SEGMENT_COLUMNS = START + 14  # all
 

@@ -94,6 +94,7 @@ from puck_tables.world.segment import (
     PATH,
     PLACE_X,
     PLACE_Y,
+    RIDES,
     ROOM,
     SEGMENT_COLUMNS,
     START,
@@ -198,6 +199,7 @@ def fly_along(
     """The segment along pieces from t on, which is known until a time."""
     segment[START], segment[UNTIL] = t, until
     segment[FIRST_PIECE], segment[LAST_PIECE] = first, last
+    segment[RIDES] = 0.0
     segment[DRIFT_X] = segment[DRIFT_Y] = segment[FASTEST] = segment[STRONGEST] = 0.0
     segment[PLACE_X], segment[PLACE_Y] = pieces[first, FIRST], pieces[first, FIRST + 1]
     segment[ANGLE] = pieces[first, FIRST + 2]
@@ -245,7 +247,7 @@ def loses_balance(engine: Engine, i: int, t: float, room: Room) -> bool:
 @inner
 def integrate(engine: Engine, i: int, t: float, room: Room) -> bool:
     """The path of a disc alone, from its state, or how it tips; whether it can be followed."""
-    done, until, count = follow_alone(engine, i, t, room.states[i], room.workspace)
+    done, until, count, held = follow_alone(engine, i, t, room.states[i], room.workspace)
     engine.group[i] = 0
     if not done and loses_balance(engine, i, t, room):
         leave(engine, i, t, TIPS, i, room)
@@ -257,6 +259,7 @@ def integrate(engine: Engine, i: int, t: float, room: Room) -> bool:
         engine.counts[N_PIECES] += count
         engine.counts[N_WORKS] += count
         fly_along(engine.segments[i], engine.pieces, first, first + count, t, until)
+        engine.segments[i, RIDES] = 1.0 if held else 0.0
         engine.kinds[i] = PATH
         keep_segment(engine, i)
     return done
