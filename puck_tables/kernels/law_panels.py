@@ -48,7 +48,8 @@ ARC = 0.9  # of an angle, over how far it is from the singularity next to C
 _AHEAD = 4  # pieces of a smooth law: a panel across them is good to 1e-11
 _BEYOND = 1.0 + 1e-9  # times a slip speed: a corner there is passed
 _STEP = 1e-12  # the shortest panel of a circle
-_GROWTH = 1.0  # of a panel, over how far it is from where 1/|A e| branches
+# of a panel, over how far it is from where 1/|A e| branches: test_sums_are_those_of_points_on_rays
+_GROWTH = 1.0
 
 
 @inlined
