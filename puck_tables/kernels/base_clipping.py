@@ -39,14 +39,14 @@ _SLIVER = 1e-9  # of a circle: a base that has less of it, or all but that, is t
 Angles = tuple[int, float, float, float, float]
 
 
-def room_to_clip(base: FloatArray, cuts: int, by_corners: bool) -> int:
-    """How many numbers the contours of two parts of a base take after so many cuts by lines.
+def room_to_clip(base: FloatArray, lines: int, by_corners: bool) -> int:
+    """How many numbers the contours of two parts of a base take where so many lines cut it.
 
     ``by_corners``: whether patches with corners cut them, too.
     """
     sides, discs = int(base[SIDES]), int(base[DISCS])
     # each may double the pieces, and adds three at most to a disc; there is room for three cuts
-    more = 2 ** max(cuts - 3, 0) if sides + discs > 1 else 1
+    more = 2 ** max(lines - 3, 0) if sides + discs > 1 else 1
     pieces = _A_SIDE * sides + _AN_ARC * discs + (_MORE if by_corners else _A_FEW)
     return 2 * PIECE_COLUMNS * pieces * more
 
