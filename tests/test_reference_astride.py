@@ -119,10 +119,16 @@ def test_the_limit_is_that_of_the_friction_it_stops_on():
     assert reference_case("astride-stop").limit_epsilon is None
 
 
-@pytest.mark.parametrize(("friction", "along"), [((0.1, 0.3), 0.1), ((0.3, 0.1), 0.3)])
-def test_the_force_on_a_floor_with_a_grain(friction: tuple[float, float], along: float):
+@pytest.mark.parametrize(
+    ("grain", "along"),
+    [
+        (Orthotropic((0.1, 0.3)), 0.1), (Orthotropic((0.3, 0.1)), 0.3),
+        (Orthotropic((0.5, 1.0), law=[[0.0, 0.6], [1.0, 0.4], [2.0, 0.4]]), 0.2),
+    ],
+)  # fmt: skip
+def test_the_force_on_a_floor_with_a_grain(grain: Orthotropic, along: float):
     puck = Puck(0.05, mass=0.1, gravity=10.0)
-    scene = Scene(puck, Floor(orthotropic=Orthotropic(friction)))
+    scene = Scene(puck, Floor(orthotropic=grain))
     slides = {name: np.zeros(1) for name in ("time", "x", "y", "vy", "spin")} | {"vx": np.ones(1)}
     found = [float(part[0]) for part in on_the_floor(puck, scene, slides)]
     assert found == pytest.approx([along, 0.0, 0.0], abs=1e-14)

@@ -192,7 +192,7 @@ def _by_place(
         for puck in pucks
     ])  # fmt: skip
     slide = np.array([not puck.path for puck in pucks])
-    loads = normals * np.vstack([most.T, most.max(axis=1)])
+    loads = normals * np.vstack([most.T, most.max(axis=1)])[: len(floors) // len(pucks)]
     return Regions(
         loads.ravel(), floors[:, 1].copy(), np.empty((len(floors), *NO_SECTION.shape)),
         BySpeed(np.array([1.0, top]), 0.0, 1.0, 1.0), np.tile(slide, len(loads)),
