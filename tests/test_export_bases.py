@@ -17,6 +17,7 @@ FRAME = pt.Base.polygon(
     holes=[[(-0.7, -0.3), (0.7, -0.3), (0.7, 0.3), (-0.7, 0.3)]],
 )
 FEET = pt.Base.feet([(0.1, 0.0), (-0.05, 0.08), (-0.05, -0.08)], 0.02)
+SMALL_FEET = pt.Base.feet([(0.08, 0.0), (-0.05, 0.06), (-0.05, -0.06)], 0.005, loads=[1, 2, 3])
 PUCKS = {
     "box": pt.Puck(base="box:0.2x0.1", friction=0.3),
     "triangle": pt.Puck(base=pt.Base.polygon([(0.0, 0.0), (0.12, 0.0), (0.0, 0.09)]), friction=0.3),
@@ -25,6 +26,7 @@ PUCKS = {
     "annulus": pt.Puck(base="annulus:0.1x0.06", friction=0.3),
     "disc": pt.Puck(base="disc:0.1@0.02,0.01", friction=0.2, height=0.01, gyration=0.06),
     "feet": pt.Puck(base=FEET, friction=0.2, height=0.02, gyration=0.08),
+    "loaded feet": pt.Puck(base=SMALL_FEET, friction=0.3),
 }
 
 

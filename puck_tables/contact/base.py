@@ -34,14 +34,15 @@ from puck_tables.errors import ContactError, InputError
 
 NAMES = (
     "box:LENGTHxWIDTH, disc:RADIUS, annulus:RADIUSxINNER, polygon:X,Y;X,Y;X,Y, feet:RADIUS;X,Y;X,Y "
-    "(m, or with units), a CSV of x, y or a drawing (SVG)"
+    "or ;X,Y,LOAD (m, or with units), a CSV of x, y or a drawing (SVG)"
 )
 MOST_CORNERS = 10_000  # of an outline: all pairs of its sides are looked at for crossings
 _RIM_POINTS = 4096  # of a disc, at which its pressure is looked at: it errs by 3e-7 of it
 _CENTRED = 1e-9  # of the reach: the centre of mass is the middle of the base
 
 Corners = tuple[tuple[float, float], ...]
-Disc = tuple[float, float, float, float]  # x, y, radius, 1 or −1 of a hole
+# x, y, radius, and 1, −1 of a hole, or over 0 how much harder than 1 m² elsewhere a foot presses
+Disc = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True)
@@ -55,7 +56,8 @@ class Base:
     ----------
     outlines : tuple of outlines, each a tuple of corners (x, y), m
         Counter-clockwise; those of holes clockwise.
-    discs : tuple of (x, y, radius, sign), m; sign −1: a hole
+    discs : tuple of (x, y, radius, weight), m; weight −1: a hole, 1: pressed as all else is; of a
+        foot with a load of its own how much harder
     centre : (x, y), m, of mass; left out: the middle of the area
     name : as :func:`base_of` takes it, or a short text
 
@@ -162,17 +164,36 @@ class Base:
 
     @classmethod
     def feet(
-        cls, centres: npt.ArrayLike, radius: float, *, centre: tuple[float, float] | None = None
-    ) -> Self:
+        cls, centres: npt.ArrayLike, radius: float, *, centre: tuple[float, float] | None = None,
+        loads: npt.ArrayLike | None = None,
+    ) -> Self:  # fmt: skip
         """Round feet of one radius, m, about ``centres`` (n, 2), m; they must not overlap.
+
+        ``loads`` (n,) > 0, in any unit: of each foot while it stands, so that the centre of mass
+        lies where they put it.  Left out: as pressure that is linear over all of them has it.
 
         >>> len(Base.feet([(0.1, 0.0), (-0.1, 0.1), (-0.1, -0.1)], 0.005).discs)
         3
+        >>> Base.feet([(0.1, 0.0), (-0.1, 0.0)], 0.005, loads=[3.0, 1.0]).middle
+        (0.05, 0.0)
         """
         r, places = positive("radius", radius, "m"), finite_array("centres", centres, "m")
         if places.ndim != 2 or places.shape[1] != 2 or len(places) == 0:
             raise InputError("centres must be a list of places (x, y), m")
-        discs = [cls((), ((x, y, r, 1.0),), name="foot") for x, y in places.tolist()]
+        shares = np.ones(len(places))
+        if loads is not None:
+            shares = finite_array("loads", loads, "")
+            if centre is not None:
+                raise InputError("loads of feet say where the centre of mass is: leave centre out")
+            if shares.shape != (len(places),) or not (shares > 0.0).all():
+                raise InputError(
+                    f"loads must be {len(places)} numbers above 0, one for each foot, got {loads!r}"
+                )
+            shares = shares / shares.mean()
+        discs = [
+            cls((), ((x, y, r, share),), name="foot")
+            for (x, y), share in zip(places.tolist(), shares.tolist(), strict=True)
+        ]
         return cls.union(discs, centre=centre, name=f"{len(discs)} feet")
 
     @classmethod
@@ -267,6 +288,15 @@ class Base:
             )
 
     @property
+    def has_own_loads(self) -> bool:
+        """Whether some of its feet have loads of their own.
+
+        >>> Base.feet([(0.1, 0.0), (-0.1, 0.0)], 0.005, loads=[3.0, 1.0]).has_own_loads
+        True
+        """
+        return any(abs(disc[3]) != 1.0 for disc in self.discs)
+
+    @property
     def is_under_centre(self) -> bool:
         """Whether some of it lies right under the centre of mass: not in a hole, not between feet.
 
@@ -355,9 +385,9 @@ def base_of(text: str) -> Base:
     ----------
     text : str
         box:LENGTHxWIDTH, disc:RADIUS, annulus:RADIUSxINNER, polygon:X,Y;X,Y;X,Y by its corners,
-        feet:RADIUS;X,Y;X,Y by their places, in m or with units (box:20cmx10cm), or the path of a
-        CSV file with columns x and y or of a drawing (SVG, of an outline and its holes); ``@X,Y``
-        after it is the centre of mass.
+        feet:RADIUS;X,Y;X,Y by their places (X,Y,LOAD with loads of their own), in m or with units
+        (box:20cmx10cm), or the path of a CSV file with columns x and y or of a drawing (SVG, of an
+        outline and its holes); ``@X,Y`` after it is the centre of mass.
 
     Raises
     ------
@@ -406,7 +436,9 @@ def _by_places(
 ) -> Base:  # fmt: skip
     """A polygon, or feet, of a text of places."""
     first, *rest = sizes.split(";")
-    each = "its corners are X,Y;X,Y;X,Y" if kind == "polygon" else "feet are RADIUS;X,Y;X,Y"
+    each = "its corners are X,Y;X,Y;X,Y"
+    if kind == "feet":
+        each = "feet are RADIUS;X,Y;X,Y, or each X,Y,LOAD"
     wrong = f"base {shown(text)}: {each}, in m or with units"
     if kind == "polygon":
         places = [_place(wrong, part) for part in (first, *rest)]
@@ -414,7 +446,16 @@ def _by_places(
     if not rest:
         raise InputError(wrong)
     radius = _length(f"base {kind}", first)
-    found = Base.feet([_place(wrong, part) for part in rest], radius, centre=centre)
+    parts = [part.split(",") for part in rest]
+    loads = None
+    if all(len(one) == 3 for one in parts):
+        given = [one.pop() for one in parts]
+        loads = [
+            float(one) if is_number(one) else number_in("a load of a foot", one, "N")
+            for one in given
+        ]
+    places = [_place(wrong, ",".join(one)) for one in parts]
+    found = Base.feet(places, radius, centre=centre, loads=loads)
     return replace(found, name=text)
 
 

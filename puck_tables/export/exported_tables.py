@@ -9,6 +9,7 @@ from math import factorial
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.contact.base import Base
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.export.compact_tables import (
     SplineFit,
@@ -30,6 +31,8 @@ Tables = tuple[dict[str, Sequence[float]], dict[str, float]]  # arrays, constant
 _STOP, _CURVE, _CONSTANT = 0.5, 0.3, 0.02
 # the same under another pressure law
 _LAW_STOP, _LAW_ORBIT, _LAW_PATCH, _LAW_CONSTANT = 0.42, 0.48, 0.22, 0.05
+# of a slip that friction takes in a step, and so many times the least part of a base over its reach
+_SHARE, _FEET = 0.05, 8.0
 
 
 def plain_tables(parts: tuple[str, ...], tol: float) -> Tables:
@@ -134,8 +137,16 @@ def base_tables(kind: Puck) -> Tables:
         "BASE_AREA": area, "BASE_FARTHEST": shape.reach, "BASE_SQUARE": kind.gyration**2,
         "BASE_X": float(first[0]), "BASE_Y": float(first[1]), "BASE_XX": float(second[0, 0]),
         "BASE_XY": float(second[0, 1]), "BASE_YY": float(second[1, 1]),
-        "BASE_LEVER": 0.5 * kind.friction * kind.height,
+        "BASE_LEVER": 0.5 * kind.friction * kind.height, "BASE_SHARE": _share_of(shape),
     }  # fmt: skip
+
+
+def _share_of(base: Base) -> float:
+    """How much of a slip friction takes in a step; less where it turns about small feet."""
+    feet = [radius for _, _, radius, weight in base.discs if weight > 0.0]
+    sizes = [np.ptp(np.array(outline), axis=0).min() for outline in base.outlines] + feet
+    least = 1.0 if len(sizes) == 1 else float(min(sizes)) / base.reach
+    return _SHARE * min(1.0, _FEET * least)
 
 
 def _written(

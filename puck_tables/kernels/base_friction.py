@@ -44,7 +44,8 @@ Moments = tuple[float, float, float, float, float, float]
 
 # A base in one array: how many sides and discs, how far its farthest point is, ∫ dA, ∫ x dA and
 # ∫ x x dA over it, z f, its law of pressure, and how many rows that has; then its contour, a row
-# for each side and then for each disc, which turns backwards around a hole; from the centre of mass
+# for each side and then for each disc, which turns backwards around a hole, and of a foot with a
+# load of its own as often as it presses harder; from the centre of mass
 SIDES, DISCS, REACH, AREA, FIRST_X, FIRST_Y, SECOND_XX, SECOND_XY, SECOND_YY, LEVER = range(10)
 PRESSURE, ROWS = 10, 11
 HEAD = 12
@@ -111,10 +112,10 @@ def packed_round(radius: float, law: Law, lever: float) -> FloatArray:
 
 @inlined
 def disc_in(base: FloatArray, number: int) -> tuple[float, float, float, float]:
-    """The middle of a disc of a base, its radius, and 1, or −1 of a hole."""
+    """The middle of a disc of a base, its radius, and how hard it is pressed; < 0: a hole."""
     at = HEAD + PIECE_COLUMNS * (int(base[SIDES]) + number)
-    sign = 1.0 if base[at + TURN] > 0.0 else -1.0
-    return base[at + ABOUT_X], base[at + ABOUT_Y], base[at + RADIUS], sign
+    weight = base[at + TURN] / (2.0 * math.pi)
+    return base[at + ABOUT_X], base[at + ABOUT_Y], base[at + RADIUS], weight
 
 
 @inner

@@ -58,7 +58,7 @@ def _start(base: FloatArray, size: float, x: float, y: float, z: float) -> Wrenc
         for k in range(discs):
             cx, cy, radius, sign = disc_in(base, k)
             lever = size * z - cx * y + cy * x  # torque about the foot
-            load = math.pi * radius * radius * (a + bx * cx + by * cy)
+            load = sign * math.pi * radius * radius * (a + bx * cx + by * cy)
             if sign < 0.0 or lever == 0.0:
                 continue
             w = 1.0 if lever > 0.0 else -1.0

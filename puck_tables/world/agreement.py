@@ -21,7 +21,7 @@ from puck_tables.scene.floor_parts import (
 )
 from puck_tables.scene.forces import is_stepped
 from puck_tables.scene.holds import misfits
-from puck_tables.scene.map_of_floor import edges_under, follows_contour
+from puck_tables.scene.map_of_floor import edges_under, follows_contour, may_lift
 from puck_tables.scene.over_time import drive_of, last_factors
 from puck_tables.scene.parts import Drag, Force, Lateral, Launch
 from puck_tables.scene.pucks_and_posts import ScenePuck
@@ -300,6 +300,8 @@ def _bad_base(scene: SceneSpec, puck: ScenePuck, path: str) -> Iterator[str]:
         return
     if puck.path:
         yield f"{path}.base: what is driven along a path needs no base, give its radius"
+    elif puck.shape.has_own_loads:
+        yield from _bad_feet(scene.alone(puck), path)
     if puck.has_rim:
         return
     met = [name for name in CUSHIONS if getattr(scene, f"{name}s")]
@@ -313,6 +315,19 @@ def _bad_base(scene: SceneSpec, puck: ScenePuck, path: str) -> Iterator[str]:
     for name in ("restitution", "tangential", "rim"):
         if getattr(puck, name) != getattr(usual, name):
             yield f"{path}.{name}: a base without a rim meets nothing, give {path}.radius, or none"
+
+
+def _bad_feet(scene: SceneSpec, path: str) -> Iterator[str]:
+    """Why friction is not known under feet with loads of their own."""
+    floor, own = scene.floor, f"{path}.base: feet with loads of their own"
+    alike = floor.strips is None and not floor.patches and not ends_of_floor(scene)
+    if not alike or floor.law or floor.orthotropic is not None:
+        yield (
+            f"{own} are known on a floor of one coefficient, without edges; leave their loads out, "
+            "or the strips, patches, laws, directions and edges"
+        )
+    elif may_lift(scene):
+        yield f"{own} are known while none lifts: give a lower {path}.height, or no loads"
 
 
 def _strange_rims(scene: SceneSpec) -> Iterator[str]:

@@ -14,13 +14,15 @@ from puck_tables.export.program.plain_motion import refused
 from puck_tables.export.program.resultant_formulas import HALF_PI, shape_integrals
 
 # what the program of a file is given: sides (where each begins, from the centre of mass, its unit
-# tangent with the base to the left, its length), discs (middle, radius, -1 of a hole), integrals
-# of 1, x and x x, the farthest point, whether the pressure is tilted, and by friction how much
-# (f times the height of the centre of mass), k², Gauss's rule
+# tangent with the base to the left, its length), discs (middle, radius, how hard it is pressed, -1:
+# a hole), integrals of 1, x and x x, the farthest point, whether the pressure is tilted, and by
+# friction how much (f times the height of the centre of mass), k², Gauss's rule, and of the slip
+# what friction takes in a step of its own, and rad, at most
 BASE_SIDES: Numbers = ()
 BASE_DISCS: Numbers = ()
 BASE_COUNT = BASE_DISC_COUNT = BASE_TILTED = 0
 BASE_AREA = BASE_FARTHEST = BASE_SQUARE = 1.0
+BASE_SHARE = 0.05
 BASE_X = BASE_Y = BASE_XX = BASE_XY = BASE_YY = BASE_LEVER = 0.0
 BASE_NODES: Numbers = ()
 BASE_WEIGHTS: Numbers = ()
@@ -28,7 +30,6 @@ BASE_RULE = 8  # nodes
 FAR_AWAY = 6.0  # times the farthest corner: from there on the centre of rotation is far away
 ON_A_SIDE = 1e-17  # of a length
 SHORT_SIDE = 0.05  # of the distances of its ends: a series is exact
-STEP_SHARE = 0.05  # of the slip that friction takes in a step of its own, and rad, at most
 LAST_SHARE = 1e-7  # of the slip at first: with less it goes straight to its rest
 STEP_ERROR = 1e-6  # of Q²/decel, Q, over k of angles and spins: of a step
 MOST_PARTS = 100000  # steps of its own: a share of 0.05 takes 320 to the last
@@ -249,8 +250,8 @@ def step(
     """The state after dt into out[6]: x, y, orientation, vx, vy, spin; at rest it stays there.
 
     decel is f g.  By steps of its own of order 4, at most a twentieth of the slip and of a rad
-    each: it errs by up to STEP_ERROR.  Returns 0, or 1 and NaN where an argument is not finite,
-    decel <= 0 or dt < 0, or 2 where they would be over 100000.
+    each, less on small feet: it errs by up to STEP_ERROR.  Returns 0, or 1 and NaN where an
+    argument is not finite, decel <= 0 or dt < 0, or 2 where they would be over 100000.
     """
     now = room(6)
     place = room(6)
@@ -280,9 +281,9 @@ def step(
                 now[3 + n] = 0.0
             left = 0.0
         else:
-            h: float = STEP_SHARE * q / decel
+            h: float = BASE_SHARE * q / decel
             angle: float = abs(now[5]) * h
-            h = STEP_SHARE / angle * h if angle > STEP_SHARE else h
+            h = BASE_SHARE / angle * h if angle > BASE_SHARE else h
             h = left if left < h else h
             add_rates(now, now, 0.0, decel, one, place)
             add_rates(now, one, 0.5 * h, decel, two, place)
