@@ -109,9 +109,9 @@ def body_options(
     if base:
         options.append(click.option(
             "--base", metavar="BASE", help="In place of --radius: box:LENGTHxWIDTH, disc:RADIUS, "
-            "annulus:RADIUSxINNER, polygon:X,Y;X,Y;X,Y, feet:RADIUS;X,Y;X,Y (or X,Y,LOAD), in m or with "
-            "units (box:20cmx10cm), or a CSV file of corners x, y; @X,Y after it is the centre of mass.  "
-            "--gyration is then in m.",
+            "annulus:RADIUSxINNER, polygon:X,Y;X,Y;X,Y, feet:RADIUS;X,Y;X,Y (or X,Y,LOAD), in m or "
+            "with units (box:20cmx10cm), or a CSV file of corners x, y; @X,Y after it is the "
+            "centre of mass.  --gyration is then in m.",
         ))  # fmt: skip
     return options
 

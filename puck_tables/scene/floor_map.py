@@ -94,8 +94,8 @@ class FloorMap(NamedTuple):
             len(self.edges), ends[-1], float(self.lifts),
             self.narrowest, self.turning, 0.0,
         ]  # fmt: skip
-        parts = [head, *tables, self.base, *self.laws, left, room]
-        return np.concatenate(parts).astype(np.float64)
+        first = np.array(head, np.float64)
+        return np.concatenate([first, *tables, self.base, *self.laws, left, room])
 
 
 NO_GROUND = np.empty(0)
