@@ -174,8 +174,8 @@ class Base:
 
         >>> len(Base.feet([(0.1, 0.0), (-0.1, 0.1), (-0.1, -0.1)], 0.005).discs)
         3
-        >>> Base.feet([(0.1, 0.0), (-0.1, 0.0)], 0.005, loads=[3.0, 1.0]).middle
-        (0.05, 0.0)
+        >>> round(Base.feet([(0.1, 0.0), (-0.1, 0.0)], 0.005, loads=[3.0, 1.0]).middle[0], 9)
+        0.05
         """
         r, places = positive("radius", radius, "m"), finite_array("centres", centres, "m")
         if places.ndim != 2 or places.shape[1] != 2 or len(places) == 0:
