@@ -257,7 +257,7 @@ class Running:
             )
         if self._engine.surface.spin == 0.0:  # it was waited for what may come
             self._engine.clock[0] = target
-        return target, how == ROUND
+        return float(target), how == ROUND
 
     def events_since(self, time: float) -> list[Event]:
         """What happened from a time on."""
