@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from puck_tables import Scene
 from puck_tables.results import Map, Run
 
@@ -23,3 +25,12 @@ def made(tables: Any) -> Scene:
     if isinstance(tables, Scene):
         return tables
     return Scene.load(tables) if isinstance(tables, str | Path) else Scene.from_tables(tables)
+
+
+def two_ends_as_alone(ranged: Scene) -> None:
+    """A sweep over two numbers ends as each of its scenes alone, and not twice alike."""
+    ends = ranged.sweep()
+    for number in range(2):
+        alone = ranged.at(ends.numbers(number)).simulate([0.0])
+        assert ends.x[number] == pytest.approx(alone.last["x"], abs=1e-6)
+    assert ends.x[0] != ends.x[1]

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from rays_judge import border, by_ellipse, friction_of, sides, where_it_bends
+from scenes import two_ends_as_alone
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, minimize
 
@@ -345,12 +346,7 @@ def test_it_stands_in_files_reports_pictures_and_sweeps() -> None:
     assert "f = 0.1 along, 0.3 across" in labels
     tables = tomllib.loads(FILE)
     tables["floor"]["patch"][0]["friction"]["direction"] = [0.0, 1.0]
-    ranged = pt.Scene.from_tables(tables)
-    ends = ranged.sweep()
-    for number in range(2):
-        alone = ranged.at(ends.numbers(number)).simulate([0.0])
-        assert ends.x[number] == pytest.approx(alone.last["x"], abs=1e-6)
-    assert ends.x[0] != ends.x[1]
+    two_ends_as_alone(pt.Scene.from_tables(tables))
 
 
 @pytest.mark.parametrize(

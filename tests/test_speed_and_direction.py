@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from rays_judge import by_ellipse, points_on_rays, sides, where_it_bends
+from scenes import two_ends_as_alone
 
 import puck_tables as pt
 from puck_tables.contact.base import Base
@@ -218,12 +219,7 @@ def test_it_stands_in_files_reports_and_pictures(tmp_path: Path) -> None:
     tables = {**tomllib.loads(FILE), "floor": {"orthotropic": {
         "friction": [1.0, [0.5, 1.0]], "law": {"kind": "power", "a": 0.1, "exponent": 1.0, "b": 1},
     }}}  # fmt: skip
-    ranged = pt.Scene.from_tables(tables)
-    ends = ranged.sweep()
-    for number in range(2):
-        alone = ranged.at(ends.numbers(number)).simulate([0.0])
-        assert ends.x[number] == pytest.approx(alone.last["x"], abs=1e-6)
-    assert ends.x[0] != ends.x[1]
+    two_ends_as_alone(pt.Scene.from_tables(tables))
 
 
 @pytest.mark.parametrize(

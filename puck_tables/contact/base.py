@@ -41,7 +41,7 @@ _RIM_POINTS = 4096  # of a disc, at which its pressure is looked at: it errs by 
 _CENTRED = 1e-9  # of the reach: the centre of mass is the middle of the base
 
 Corners = tuple[tuple[float, float], ...]
-# x, y, radius, and 1, −1 of a hole, or over 0 how much harder than 1 m² elsewhere a foot presses
+# x, y, radius, and 1, −1 of a hole, or how hard a foot with a load of its own is pressed, over 1
 Disc = tuple[float, float, float, float]
 
 

@@ -235,13 +235,15 @@ class BaseSlide:
 
     def _turns_about_a_foot(self) -> bool:
         """Whether the instantaneous centre lies in a foot at the stop."""
-        shape, (vx, vy, rim) = self.puck.shape, self._late()
-        assert shape is not None and shape.centre is not None
+        shape = self.puck.shape
+        assert shape is not None
         feet = [disc for disc in shape.discs if disc[3] > 0.0]
+        if not feet or len(feet) + len(shape.outlines) == 1:
+            return False
+        (x, y), (vx, vy, rim) = shape.middle, self._late()
         per = self.puck.inertia_radius / rim
-        centre = shape.centre[0] - per * vy, shape.centre[1] + per * vx
-        many = len(feet) + len(shape.outlines) > 1
-        return many and any(math.dist(centre, foot[:2]) < foot[2] for foot in feet)
+        centre = x - per * vy, y + per * vx
+        return any(math.dist(centre, foot[:2]) < foot[2] for foot in feet)
 
     def _turns_on(self) -> bool:
         """Whether the direction of (v, kΩ) would never settle, however long Q fell on."""

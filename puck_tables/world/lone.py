@@ -425,9 +425,8 @@ def follow_alone(
             continue
         reach = whole * (tol / error) ** 0.125 if newton == 0.0 and error > 0.0 else math.inf
         h = min(whole * _held_back(grows, failed, reach, before), longest if most > 1 else math.inf)
-        before, failed = reach, False
+        before, failed, held = reach, False, held and mode == CARRIED
         count += parts if length > _SHORTEST * unit else 0
-        held = held and mode == CARRIED
         passed += length
         now = target if landed else t + passed
         h = min(h, 0.5 * (tips - now)) if now < tips else h
