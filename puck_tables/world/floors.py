@@ -43,7 +43,7 @@ def normal_on(scene: SceneSpec, puck: ScenePuck) -> float:
     return puck.mass * puck.gravity * math.cos(scene.floor.slope)
 
 
-def may_lie_astride(scene: SceneSpec) -> bool:
+def may_be_mixed(scene: SceneSpec) -> bool:
     """Whether a base may lie on several frictions, or hang over an edge: it is summed there."""
     if scene.floor.strips is not None or scene.floor.patches:
         return True
@@ -69,7 +69,7 @@ def floors_of(scene: SceneSpec, pucks: list[ScenePuck], fastest: float) -> Float
             unheld = by_slip or bool(scene.floor.over_time) or _is_summed(scene, puck)
             how = NOT_HELD if unheld else float(is_integrated(scene, puck, given[place]))
             rows.append(_row(scene, puck, given[place], how))
-    if may_lie_astride(scene):
+    if may_be_mixed(scene):
         for puck, given in zip(pucks, frictions, strict=True):
             rows.append(_row(scene, puck, max(given), NOT_HELD))
     belts = np.repeat(belts_of(scene.floor), len(pucks), axis=0)
@@ -142,7 +142,7 @@ def regions_of(
             cut(height) if at_hand else section_of(puck, height, scene.tol)
             for puck, height, at_hand in looks
         ])  # fmt: skip
-    floor_map, several = NO_GROUND, may_lie_astride(scene)
+    floor_map, several = NO_GROUND, may_be_mixed(scene)
     if several:
         most = loads.reshape(-1, len(pucks)).max(axis=0)
         loads, cuts = np.concatenate([loads, most]), np.concatenate([cuts, cuts[: len(pucks)]])

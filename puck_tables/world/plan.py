@@ -17,7 +17,7 @@ from puck_tables.world.agreement import (
     pucks_of,
     segment_error,
 )
-from puck_tables.world.floors import may_lie_astride
+from puck_tables.world.floors import may_be_mixed
 from puck_tables.world.obstacles import rule_of
 
 _NAMED = 6  # pucks of one way
@@ -77,7 +77,7 @@ def plan_of(scene: SceneSpec) -> tuple[str, str]:
             "over every base wherever it lies, in every step along the contour of its parts, each "
             "by its own law, direction or number"
         )
-    elif may_lie_astride(scene):
+    elif may_be_mixed(scene):
         piled = any(one.shape is None and one.body.law.profile is not None for one in pucks)
         lines.append(
             "while a base is astride several frictions, or over an edge, they are integrated over "
@@ -132,6 +132,6 @@ def _method_of(scene: SceneSpec, puck: ScenePuck) -> str:
     if not any(frictions):
         return "in closed form, without dry friction"
     way = "looked up from impact to impact"
-    if may_lie_astride(scene):
+    if may_be_mixed(scene):
         way = "looked up from impact or border to the next, integrated astride or over an edge"
     return f"{way}, over the belt" if belts_of(scene.floor).any() else way

@@ -28,7 +28,7 @@ from puck_tables.world.agreement import (
 )
 from puck_tables.world.bulk import FATE, LENGTH, PASSES, PRINT, follow_all, trace
 from puck_tables.world.engine_state import Whole
-from puck_tables.world.floors import may_lie_astride
+from puck_tables.world.floors import may_be_mixed
 from puck_tables.world.prepare import STEP_SHARE, Start, order_of, prepared
 from puck_tables.world.setting_off import PUSHING, REACHED
 from puck_tables.world.world import World
@@ -209,7 +209,7 @@ class Shots:
         pucks = pucks_of(scene)
         self.patient = (
             patient
-            or may_lie_astride(scene)
+            or may_be_mixed(scene)
             or any(
                 is_integrated(scene, puck, friction)
                 for puck in pucks
