@@ -30,7 +30,7 @@ from puck_tables.fitting.least_squares import ROBUST, multi_start
 from puck_tables.fitting.numbers import FOLLOWS, Number, quadratic
 from puck_tables.fitting.observations import Observations
 from puck_tables.fitting.parameters import OF_PAIRS, OF_WALLS
-from puck_tables.fitting.problem import Known, Problem
+from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.residuals import chi_square_tail
 from puck_tables.fitting.touches import SlideIndex
 
@@ -66,7 +66,7 @@ class Impact(NamedTuple):
 
 def couple(
     slides: Estimate, pieces: tuple[SlideIndex, ...], films: tuple[Observations, ...], spec:
-    FitSpec, lines: Sequence[Line], known: Known,
+    FitSpec, lines: Sequence[Line],
 ) -> tuple[Estimate, str]:  # fmt: skip
     """The estimate of joined slides; that of slides apart and why, if these are not joined."""
     groups: dict[tuple[object, ...], list[CoupledFit]] = {}
@@ -82,10 +82,10 @@ def couple(
     for group in groups.values():
         if len(group[0].problem.impact_specs) < most:
             continue
-        best = estimate(group[0].problem, group[0].start, known) if len(group) == 1 else None
+        best = estimate(group[0].problem, group[0].start) if len(group) == 1 else None
         if best is None:  # from the best of several starts, with other minima near which it may lie
             walked = multi_start([(one.problem, one.start) for one in group], _WALK, ROBUST, _RIVAL)
-            best = estimate(group[0].problem, walked[0][0], known)
+            best = estimate(group[0].problem, walked[0][0])
             near = tuple(x for x, cost in walked if cost < walked[0][1] + _RIVAL)
             best = replace(best, minima=near)
         fits.append((_rise(slides, best, group[0]), best))

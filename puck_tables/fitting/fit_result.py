@@ -218,7 +218,7 @@ class Fit(Result):
     @property
     def complaints(self) -> tuple[str, ...]:
         """Signs that the tracks are not those of such a puck."""
-        found = [*misfits(self.estimate, self.noise_known, self.smooth_noise, self.forces.chance)]
+        found = [*misfits(self.estimate, self.forces.chance)]
         if found:
             found.append(
                 "Standard errors are widened by what parts of the frames do to the numbers: they "

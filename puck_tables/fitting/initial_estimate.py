@@ -17,7 +17,7 @@ from puck_tables.fitting.certainty import certainty_at, certainty_of
 from puck_tables.fitting.estimate import FARTHEST, Estimate, estimate, only_outliers
 from puck_tables.fitting.observations import FEWEST, GIVE_NOISE, Observations, noise_of, rests_from
 from puck_tables.fitting.parameters import DRAGS, NOTHING
-from puck_tables.fitting.problem import ANGLE, UNSEEN, Known, Problem
+from puck_tables.fitting.problem import ANGLE, UNSEEN, Problem
 from puck_tables.fitting.residuals import NO_PATTERN, NOISY, drift, excess_of, runs
 from puck_tables.fitting.slowing import nearest_start, starts_from_slowing
 from puck_tables.fitting.starts import minima_of, numbers_with
@@ -72,7 +72,7 @@ def _ends(whole: Observations, at: int, close: int, first: bool) -> bool:
 def is_clean(result: Estimate, excess: float = 1.2, chance: float = 0.01) -> bool:
     """Whether what is left of a track is noise, no more than that of a smooth motion."""
     smooth = noise_of(list(result.problem.films))[0], math.nan  # angles tell whole turns, too
-    noisy = excess_of(result, smooth) >= excess
+    noisy = excess_of(result, smooth=smooth) >= excess
     return not noisy and min(runs(result), drift(result)) > chance
 
 
@@ -100,7 +100,7 @@ _SHARES_OF_AIR = (0.0, 0.3, 0.6, 0.9)  # of the slowing, to begin from
 _JUDGED = 10  # degrees of freedom that tell the noise
 
 
-def initial_estimate(problem: Problem, known: Known, refit: bool) -> Estimate:
+def initial_estimate(problem: Problem, refit: bool) -> Estimate:
     """The estimate of a problem, from starts of its own.
 
     ``refit``: whether frames at the ends that are no free motion are left out.
@@ -113,31 +113,31 @@ def initial_estimate(problem: Problem, known: Known, refit: bool) -> Estimate:
             f"{count} observations cannot tell {len(problem.names)} unknowns: give more frames, or "
             "hold a number (--fix, fixed=)"
         )
+    known = problem.known
     if left < _JUDGED and not (known.place and (known.angle or not problem.angled)):
         raise InputError(
             f"{count} observations of {len(problem.names)} unknowns are too few to judge their "
             f"noise by: {GIVE_NOISE}"
         )
-    result = _looked_up(problem, known) if not problem.spec.integrated \
-        else _integrated(problem, known)  # fmt: skip
+    result = _integrated(problem) if problem.spec.integrated else _looked_up(problem)
     if not refit:
         return result
-    result = _trimmed(result, problem, known)
+    result = _trimmed(result, problem)
     if len(problem.films) == 1 and not is_clean(result, NOISY, NO_PATTERN):
         # a hand or a wall may lead the fit so far away that no frame is seen to be foreign
         for film in without_ends(problem.films[0]):
-            part = initial_estimate(problem.with_films((film,)), known, refit=False)
-            part = _trimmed(part, problem, known)
+            part = initial_estimate(problem.with_films((film,)), refit=False)
+            part = _trimmed(part, problem)
             if is_clean(part):
                 result = part
                 break
-    if only_outliers(result, known):
+    if only_outliers(result):
         return result
     # frames that are off together are good ones: what the model cannot follow is not hidden
-    return replace(estimate(result.problem, result.x, known, strict=True), minima=result.minima)
+    return replace(estimate(result.problem, result.x, strict=True), minima=result.minima)
 
 
-def _looked_up(problem: Problem, known: Known) -> Estimate:
+def _looked_up(problem: Problem) -> Estimate:
     """The estimate where motions are looked up, or integrated once and for all."""
     rests = problem.rests or (False,) * len(problem.films)
     parts = [
@@ -145,16 +145,16 @@ def _looked_up(problem: Problem, known: Known) -> Estimate:
         for film, rest in zip(problem.films, rests, strict=True)
     ]
     minima = [minima_of(part) for part in parts]
-    result = estimate(problem, _joint_start(problem, parts, minima), known)
+    result = estimate(problem, _joint_start(problem, parts, minima))
     if "drag" in problem.spec.free and not is_clean(result, NOISY, NO_PATTERN):
         begun = [(problem, result.x), *starts_from_slowing(problem)]
-        result = estimate(problem, nearest_start(problem, begun)[1], known)
+        result = estimate(problem, nearest_start(problem, begun)[1])
     if len(parts) == 1:
         result = replace(result, minima=tuple(minima[0]))
-    return _lifted(result, known)
+    return _lifted(result)
 
 
-def _integrated(problem: Problem, known: Known) -> Estimate:
+def _integrated(problem: Problem) -> Estimate:
     """The estimate with what no look-up has the motions of: drags, a slope, a belt, a law.
 
     Begun from what slows the puck; where that cannot be told, or does not lead to a motion that
@@ -163,11 +163,11 @@ def _integrated(problem: Problem, known: Known) -> Estimate:
     spec, starts = problem.spec, starts_from_slowing(problem)
     drags, begun = {*DRAGS} >= {*spec.integrated}, []
     if starts or not drags:
-        result = estimate(problem, nearest_start(problem, starts)[1], known)
+        result = estimate(problem, nearest_start(problem, starts)[1])
         if not drags or is_clean(result, NOISY, NO_PATTERN):
             return result
         begun = [(problem, result.x)]
-    plain = initial_estimate(replace(problem, spec=spec.plain()), known, refit=False)
+    plain = initial_estimate(replace(problem, spec=spec.plain()), refit=False)
     numbers, launches = plain.problem.numbers_at(plain.x), plain.problem.launches(plain.x)
     decel, delta, _ = plain.problem.spec.scales(numbers)
     speed = float(np.hypot(*launches[:, 2:4].T).max())
@@ -176,7 +176,7 @@ def _integrated(problem: Problem, known: Known) -> Estimate:
         air = 4.0 * share * decel / max(speed, 1e-9) ** 2
         x = problem.unknowns({**NOTHING, **numbers, **less, "air": air}, launches)
         begun.append((problem, np.clip(x, *problem.limits)))
-    return estimate(problem, nearest_start(problem, begun)[1], known)
+    return estimate(problem, nearest_start(problem, begun)[1])
 
 
 def _with_room(problem: Problem) -> Problem:
@@ -198,7 +198,7 @@ def _with_room(problem: Problem) -> Problem:
     )
 
 
-def _trimmed(result: Estimate, problem: Problem, known: Known) -> Estimate:
+def _trimmed(result: Estimate, problem: Problem) -> Estimate:
     """An estimate without frames at the ends that are no free motion, a lesser part of a track.
 
     What they did to the fit may have hidden more of them.
@@ -209,11 +209,11 @@ def _trimmed(result: Estimate, problem: Problem, known: Known) -> Estimate:
                 for part, film in zip(films, problem.films, strict=True))  # fmt: skip
         if films == result.problem.films or any(lost):
             break
-        result = initial_estimate(problem.with_films(films), known, refit=False)
+        result = initial_estimate(problem.with_films(films), refit=False)
     return result
 
 
-def _lifted(result: Estimate, known: Known) -> Estimate:
+def _lifted(result: Estimate) -> Estimate:
     """An estimate with part of the base lifted, where δ seems above that of full contact."""
     problem = result.problem
     law = problem.spec.puck.body.law
@@ -222,7 +222,7 @@ def _lifted(result: Estimate, known: Known) -> Estimate:
         return result
     if any(certainty_at(result).undetermined[: len(problem.spec.free)]):
         return result
-    return estimate(replace(problem, tall=True), result.x, known)
+    return estimate(replace(problem, tall=True), result.x)
 
 
 def _joint_start(

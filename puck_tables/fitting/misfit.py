@@ -20,7 +20,7 @@ from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.initial_estimate import initial_estimate
 from puck_tables.fitting.model_comparison import FLOORS, tried
 from puck_tables.fitting.parameters import INTEGRATED, MARK, NODES, NOTHING
-from puck_tables.fitting.problem import TURN, Known, Problem
+from puck_tables.fitting.problem import TURN, Problem
 from puck_tables.fitting.residuals import NO_PATTERN, SideForces
 from puck_tables.fitting.slowing import nearest_start, starts_from_slowing
 
@@ -66,9 +66,7 @@ class _Reading(NamedTuple):
     bends: bool = False
 
 
-def misfit(
-    result: Estimate, problem: Problem, known: Known, forces: SideForces, speeds: bool
-) -> str:
+def misfit(result: Estimate, problem: Problem, forces: SideForces, speeds: bool) -> str:
     """A sentence that says which other reading fits far better; empty if none does.
 
     A floor is named before angles or a radius that fit about as well.  ``problem``: what was asked,
@@ -91,8 +89,8 @@ def misfit(
         if drag and law and law.gain < drag.gain + _BETTER:  # more numbers fit a little better
             law = None
         told = sorted(filter(None, (drag, law, air, slope)), key=lambda one: -one.gain)[:2]
-    told += filter(None, [_reading(partial(_by_mark, result, problem, known))])
-    told += _otherwise(result, problem, known)
+    told += filter(None, [_reading(partial(_by_mark, result, problem))])
+    told += _otherwise(result, problem)
     best = max((one.gain for one in told), default=0.0)
     # sizes and angles are known better than floors: a floor that tells much is named first
     near = [one for one in told if one.gain > best - _ALIKE or (one.floor and one.gain > _MUCH)]
@@ -116,7 +114,7 @@ def _reading(of: Callable[[], _Reading]) -> _Reading | None:
     return one if one.gain else None
 
 
-def _otherwise(result: Estimate, problem: Problem, known: Known) -> list[_Reading]:
+def _otherwise(result: Estimate, problem: Problem) -> list[_Reading]:
     """The angles, or the radius, read otherwise, if one of these fits far better."""
     best, spec = _Reading("", math.log(_FAR)), problem.spec
     given, others = spec.known()["radius"], []
@@ -137,7 +135,7 @@ def _otherwise(result: Estimate, problem: Problem, known: Known) -> list[_Readin
         others.append((words, other, 1.0))
     for words, other, scale in others:  # and the factor of its angles
         try:
-            one = initial_estimate(other, known, refit=False)
+            one = initial_estimate(other, refit=False)
         except InputError:  # such a puck, or such a track, there is not
             continue
         gain = _size(_deviations(result), 1.0) - _size(_deviations(one), scale)
@@ -148,13 +146,13 @@ def _otherwise(result: Estimate, problem: Problem, known: Known) -> list[_Readin
     return [best] if best.words else []
 
 
-def _by_mark(result: Estimate, problem: Problem, known: Known) -> _Reading:
+def _by_mark(result: Estimate, problem: Problem) -> _Reading:
     """What is tracked lies off the centre of mass, if that fits far better."""
     spec = problem.spec
     if not problem.angled or {*MARK} & {*spec.free, *spec.fixed}:
         return _Reading("", 0.0)
     free = (*spec.free, *MARK)
-    one = initial_estimate(replace(problem, spec=replace(spec, free=free)), known, refit=False)
+    one = initial_estimate(replace(problem, spec=replace(spec, free=free)), refit=False)
     words = f"if what is tracked lies off the centre: find where (--free {','.join(free)})"
     return _Reading(words, _gain(result, _deviations(one), problem.noise[0]), True)
 
