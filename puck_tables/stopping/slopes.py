@@ -26,7 +26,7 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray, aligned
-from puck_tables.stopping.axes import HEIGHTS, SlipAxis, by_power, heights, ratio_at
+from puck_tables.stopping.lookup import HEIGHTS, SlipAxis, by_power, heights, ratio_at
 from puck_tables.stopping.similarity import limits, rates_of_ratio, regular_slopes
 
 STOP_FUNCTIONS = 5  # T, along, across, body, length; then the slopes of each

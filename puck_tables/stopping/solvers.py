@@ -207,7 +207,7 @@ class SectionLookUp:
     def _filled(
         self, size: int, rows: Callable[[int, int], FloatArray], threads: int | None
     ) -> tuple[FloatArray, Status]:
-        from puck_tables.stopping.section_lookup import fill_section_stops
+        from puck_tables.stopping.stop_section import fill_section_stops
 
         out, status = np.empty((len(OUTPUTS), size)), np.zeros(size, np.int8)
         longest = self.section.body.longest

@@ -18,18 +18,16 @@ from puck_tables.io.columns import Dataset, variable
 from puck_tables.motion.body import UnitPuck, body_of, plain_up_to
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED, SPIN, STATE_ROWS
 from puck_tables.result import Result
-from puck_tables.stopping.by_friction import (
+from puck_tables.stopping.jacobian import (
     DEFAULT_DECEL,
     DEFAULT_DELTA,
     DEFAULT_GRAVITY,
     DEFAULT_HEIGHT,
-    delta_and_decel,
-)
-from puck_tables.stopping.jacobian import (
     FRICTION_NAMES,
     MOMENT_NAMES,
     STATE_NAMES,
     Differentiated,
+    delta_and_decel,
     integrated_jacobians,
 )
 from puck_tables.stopping.launch_arrays import TOO_LARGE, Launches, fits, launches_in, launches_of

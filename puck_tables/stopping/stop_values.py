@@ -16,16 +16,6 @@ from puck_tables.contact.closed_form import checked_delta
 from puck_tables.errors import InputError
 from puck_tables.io.columns import Variable
 from puck_tables.motion.state import STATE_ROWS
-from puck_tables.stopping.axes import (
-    CONSTANT_HEIGHTS,
-    HEIGHTS,
-    SlipAxis,
-    by_power,
-    height_polynomials,
-    heights,
-    section_rows,
-    side_by_side,
-)
 from puck_tables.stopping.launch_arrays import (
     CHUNK,
     TOO_LARGE,
@@ -35,7 +25,18 @@ from puck_tables.stopping.launch_arrays import (
     launches_in,
     smallest_mark,
 )
-from puck_tables.stopping.lookup import STOP_POWERS, stops_kernel
+from puck_tables.stopping.lookup import (
+    CONSTANT_HEIGHTS,
+    HEIGHTS,
+    STOP_POWERS,
+    SlipAxis,
+    by_power,
+    height_polynomials,
+    heights,
+    section_rows,
+    side_by_side,
+    stops_kernel,
+)
 from puck_tables.stopping.similarity import InverseSolution, limits
 from puck_tables.stopping.similarity_lookup import (
     LAUNCH_COLUMNS,
