@@ -31,7 +31,6 @@ from puck_tables.fitting.numbers import FOLLOWS, Number, quadratic
 from puck_tables.fitting.observations import Observations
 from puck_tables.fitting.parameters import OF_PAIRS, OF_WALLS
 from puck_tables.fitting.problem import Problem
-from puck_tables.fitting.residuals import chi_square_tail
 from puck_tables.fitting.touches import SlideIndex
 
 _BY_CHANCE = 1e-5  # of the rise of χ²: less, and the law of impact is not that of these slides
@@ -69,6 +68,8 @@ def couple(
     FitSpec, lines: Sequence[Line],
 ) -> tuple[Estimate, str]:  # fmt: skip
     """The estimate of joined slides; that of slides apart and why, if these are not joined."""
+    from scipy.special import chdtrc
+
     groups: dict[tuple[object, ...], list[CoupledFit]] = {}
     ways = candidates_of(slides)
     for x in ways:
@@ -93,7 +94,7 @@ def couple(
     alike = [fit for fit in fits if fit[0] < least + _EQUAL]
     rise, result = min(alike, key=lambda fit: (_unlikely(fit[1]), fit[0]))
     conditions = slides.x.size - result.x.size
-    if chi_square_tail(max(rise, 0.0), max(conditions, 1)) < _BY_CHANCE:
+    if chdtrc(max(conditions, 1), max(rise, 0.0)) < _BY_CHANCE:
         return replace(slides, minima=tuple(ways[:_TRIED])), (
             "The slides are not joined at the impacts: one law of impact for all of them, with "
             f"states that match, would raise chi^2 by {rise:.4g} for {conditions} "

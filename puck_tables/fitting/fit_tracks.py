@@ -27,11 +27,9 @@ from puck_tables.fitting.inputs import (
     checked_rows,
     checked_walls,
     observations_of,
-    refuse_for_base,
     refuse_opening,
-    refuse_size,
     refuse_tipping,
-    refuse_turns_unseen,
+    refuse_unfit,
 )
 from puck_tables.fitting.misfit import misfit
 from puck_tables.fitting.model_comparison import (
@@ -170,10 +168,7 @@ def fit(
         spec = spec.with_law(law)
     inputs = Inputs.of(spec, noise, jitter, slip_speeds, between, impacts, lines, hold_out)
     films = observations_of(tracks, since, until, keep_all, checked_rows(rows), puck.radius)
-    refuse_size(spec, films)
-    refuse_turns_unseen(spec, films)
-    if spec.base is not None:
-        refuse_for_base(films, laws)
+    refuse_unfit(spec, films, laws)
     observed = _observe(films, inputs)
     variants = variants_of(spec.alone(), laws)
     steps = 1 + len(variants) + (inputs.hold_out is not None)

@@ -33,17 +33,6 @@ _ROUNDED = 0.45  # of a step: residuals of what is rounded, and of some noise
 _MOVING, _ENOUGH = 0.1, 20  # of the greatest speed; frames
 
 
-def chi_square_tail(value: float, degrees: int) -> float:
-    """The probability that χ² exceeds a value.
-
-    >>> round(chi_square_tail(3.841459, 1), 6)
-    0.05
-    """
-    from scipy.special import gammaincc
-
-    return float(gammaincc(0.5 * degrees, 0.5 * value))
-
-
 def runs(result: Estimate) -> float:
     """The probability of so few or so many changes of sign along the frames (Wald and Wolfowitz).
 
@@ -61,10 +50,12 @@ def runs(result: Estimate) -> float:
 
 def drift(result: Estimate) -> float:
     """The probability that means over eighths of the tracks are so far from 0 by chance."""
+    from scipy.special import chdtrc
+
     every = [part for rows in _series(result)
              for part in np.array_split(rows, min(_PARTS, rows.size))]  # fmt: skip
     total = sum(part.sum() ** 2 / part.size for part in every) / max(result.size**2, 1e-300)
-    return chi_square_tail(total, max(len(every) - result.x.size, 1)) if every else 1.0
+    return float(chdtrc(max(len(every) - result.x.size, 1), total)) if every else 1.0
 
 
 def excess_of(
