@@ -1,6 +1,6 @@
-"""Pucks by friction and height: δ = 2 f h / r and J = f g follow, derivatives by the chain rule.
+"""Results that carry derivatives, and what computes them: plain pucks by the stop table.
 
-Results that carry derivatives, and what computes them: plain pucks by the stop table.
+Of pucks by friction and height, from which δ = 2fh/r and J = fg follow, by the chain rule.
 """
 
 from __future__ import annotations

@@ -9,10 +9,7 @@ the stop of a launch (vx, vy), ω is
     t = (Q/J) T,    x = (Q · along · vx − δ rω · across · vy)/J,    y likewise,
 
 and no direction has to be computed: at rest, in pure sliding and in pure spin nothing is divided
-by zero.  Each function is a cubic spline in ξ (see :mod:`puck_tables.stopping.lookup`) whose
-coefficients are polynomials in s = 2δ² − 1.
-
-Axes of the stop table: graded in the slip ratio, polynomial in the height.
+by zero.  Each function is a cubic spline in ξ whose coefficients are polynomials in s = 2δ² − 1.
 
 Slip axis.  On either side of φ = π/4 let k = min(v, r|ω|)/max(v, r|ω|) and 2k/(1 + k) = q⁴.  The
 nodes are uniform in ξ ∈ [0, 1] with

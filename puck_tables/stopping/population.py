@@ -2,8 +2,7 @@
 
 A puck has a radius, a height, a friction and a gravity; δ = 2fh/r may stand in place of the height,
 J = fg in place of the gravity.  A velocity has a speed and a heading, or two components.
-
-Maps of stops over launches and pucks, and samples of stops.
+A map, or a sample, has the stops of all of them.
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import lru_cache, partial
-from typing import Any, ClassVar
+from typing import Any, ClassVar, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -41,6 +41,15 @@ from puck_tables.table.table import refuse_other_kind
 _NONE, _FIRST = np.empty(0, np.int64), np.zeros(1, np.int64)
 
 
+def _row(index: int, words: str) -> FloatArray:
+    """A row of states by its name."""
+
+    def row(states: States) -> FloatArray:
+        return states.rows[index, ...]
+
+    return cast(FloatArray, property(row, doc=words))
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class States(Differentiated, Result):
     """States of pucks at the times asked for, arrays of one shape.
@@ -69,35 +78,12 @@ class States(Differentiated, Result):
     def __repr__(self) -> str:
         return f"States({self.time.size} states of shape {self.time.shape})"
 
-    @property
-    def x(self) -> FloatArray:
-        """Place along x, m from the launch."""
-        return self.rows[PUCK_X, ...]
-
-    @property
-    def y(self) -> FloatArray:
-        """Place along y, m from the launch."""
-        return self.rows[PUCK_Y, ...]
-
-    @property
-    def heading(self) -> FloatArray:
-        """Direction of the velocity, rad."""
-        return self.rows[HEADING, ...]
-
-    @property
-    def orientation(self) -> FloatArray:
-        """How far the body has turned, rad."""
-        return self.rows[ORIENTATION, ...]
-
-    @property
-    def speed(self) -> FloatArray:
-        """V, m/s."""
-        return self.rows[SPEED, ...]
-
-    @property
-    def spin(self) -> FloatArray:
-        """Ω, rad/s."""
-        return self.rows[SPIN, ...]
+    x = _row(PUCK_X, "Place along x, m from the launch.")
+    y = _row(PUCK_Y, "Place along y, m from the launch.")
+    heading = _row(HEADING, "Direction of the velocity, rad.")
+    orientation = _row(ORIENTATION, "How far the body has turned, rad.")
+    speed = _row(SPEED, "V, m/s.")
+    spin = _row(SPIN, "Ω, rad/s.")
 
     @property
     def vx(self) -> FloatArray:

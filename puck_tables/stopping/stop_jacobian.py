@@ -1,13 +1,12 @@
-"""Derivatives of stops and states from natural units, in the frame of the launch, to SI units.
+"""Derivatives of stops by look-up, compiled, and those of states from natural units to SI units.
 
 The chain rule of the similarity: places and body angles grow like Q²/J, the latter like 1/r too,
 times like Q/J, velocities like Q; everything turns with the launch velocity, and the mirror image
 belongs to the opposite spin.
 
-Derivatives of stops by look-up, compiled.
-
-With a = rω, s = sin φ, c = cos φ and D_f = f_u/(s c²) of :mod:`puck_tables.stopping.slopes`, in the
-frame of the launch (along its velocity, and to the left of it; w = vx + i vy), for a ≥ 0,
+Of stops: with a = rω, s = sin φ, c = cos φ and D_f = f_u/(s c²) of
+:mod:`puck_tables.stopping.slopes`, in the frame of the launch (along its velocity, and to the left
+of it; w = vx + i vy), for a ≥ 0,
 
     ∂t/∂v = c (T − s D_T)/J,    ∂t/∂a = (s T + c² D_T)/J,
     ∂z/∂v = [Q (α + c² (α − s D_α)) + i δ a (β − s c² D_β)]/J,    ∂z/∂v_⊥ = i z/v,

@@ -5,8 +5,6 @@ of φ (:mod:`puck_tables.stopping.lookup`, where they depend on δ besides).  Th
 of the friction, and are singular at φ = 0 and π/2, where they carry broken powers, 1/(1 − σ(0)) and
 σ(π/2)/(σ(π/2) − 1) with σ = (r²/2k²) ρ_ω/ρ_∥; at φ₀ they are analytic.  Each node is a stop of its
 own, integrated.
-
-Stops of one kind of puck by look-up, compiled.
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""Many stops as work: which solver each launch has, and its numbers.
-
-Stops over ranges of whatever a launch or a puck has, and of launches that scatter.
-"""
+"""Stops over ranges of whatever a launch or a puck has, and of launches that scatter: as work."""
 
 from __future__ import annotations
 
@@ -33,7 +30,7 @@ from puck_tables.stopping.population import (
     law_name,
     ranged,
 )
-from puck_tables.stopping.solvers import OUTPUTS, STATUS_MEANINGS
+from puck_tables.stopping.solvers import OUTPUTS, STATUS_MEANINGS, BaseSolver
 
 if TYPE_CHECKING:
     from puck_tables.accuracy.method_errors import Selection
@@ -85,8 +82,6 @@ class StopWork(Work):
         self._gyration = puck.gyration if puck.shape is None else puck.inertia_radius
         self._solvers: dict[Kind, Any] = {}  # a SolverPerHeight each, or one BaseSolver
         if puck.shape is not None:
-            from puck_tables.stopping.solvers import BaseSolver
-
             puck.refuse_for_round(method=by[1], table=by[2])
             self._solvers[0, self._gyration] = BaseSolver(puck.shape, self.tol)
             self.columns |= dict.fromkeys(BaseSolver.outputs, ())

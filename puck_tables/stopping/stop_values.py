@@ -161,23 +161,16 @@ class StopValues(Table):
         InputError
             If one of them is no launch, or too large for floating point.
         """
-        return self._filled(PUCK_ROWS, launches, threads)[0]
+        return self.filled(PUCK_ROWS, launches, threads)[0]
 
-    def outputs(self, launches: Launches, threads: int | None) -> tuple[FloatArray, int]:
-        """Stop times, x, y and the rest (6, n), and how many may be too large.
+    def filled(self, rows: int, launches: Launches, threads: int | None) -> tuple[FloatArray, int]:
+        """Rows of so many launches as :meth:`fill_pucks` has them, and how many may be too large.
 
         Raises
         ------
         InputError
             If one of them is no launch.
         """
-        return self._filled(3 + len(OTHERS), launches, threads)
-
-    def rest(self, launches: Launches, threads: int | None) -> FloatArray:
-        """Path length, turn of heading and of the body (3, n) of checked launches."""
-        return self._filled(len(OTHERS), launches, threads)[0]
-
-    def _filled(self, rows: int, launches: Launches, threads: int | None) -> tuple[FloatArray, int]:
         if launches.size <= CHUNK:
             return self.fill_pucks(rows, launches, 0, launches.size)
         out, doubtful = np.empty((rows, launches.size)), [0]
@@ -193,6 +186,8 @@ class StopValues(Table):
         self, rows: int, launches: Launches, start: int, stop: int
     ) -> tuple[FloatArray, int]:
         """All that is known of some launches (20, n), or their stops (6, n), or the rest (3, n).
+
+        The rest: path length, turn of heading and of the body.
 
         And how many may be too large for floating point.
 
