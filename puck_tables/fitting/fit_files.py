@@ -13,9 +13,7 @@ import numpy as np
 from puck_tables._core.arrays import one_velocity, real
 from puck_tables._core.safe_read import read_whole
 from puck_tables.errors import InputError
-from puck_tables.fitting.coupled_fit import Impact
 from puck_tables.fitting.estimate import Estimate
-from puck_tables.fitting.model_comparison import LawScore
 from puck_tables.fitting.numbers import EstimatedLaunch, Number
 from puck_tables.fitting.parameters import INTEGRATED
 from puck_tables.io.columns import Variable, variable
@@ -72,7 +70,7 @@ def as_json(value: Any) -> Any:
     elif isinstance(value, EstimatedLaunch):
         value = {"track": value.name, **value._asdict()}
         del value["name"]
-    elif isinstance(value, Impact | LawScore):
+    elif hasattr(value, "_asdict"):
         value = value._asdict()
     if isinstance(value, dict):
         return {name: as_json(one) for name, one in value.items()}

@@ -126,9 +126,9 @@ class Fit(Result):
             contact = {"radius": values["radius"], "pressure": self.given.body.law}
         if self.numbers.get("inner") and self.numbers["inner"].how == "found":
             contact["pressure"] = f"annulus:{values['inner']!r}"
-        moving = {name: values[name] for name in ("height", "friction", "gravity", "gyration")}
+        contact |= {name: values[name] for name in ("height", "friction", "gravity", "gyration")}
         with unquestioned():  # what nobody would believe of it the remarks say
-            return Puck(**contact, **moving, mass=self.given.mass)
+            return Puck(**contact, mass=self.given.mass)
 
     @property
     def contact(self) -> tuple[str, str]:

@@ -17,12 +17,15 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.fit_spec import FitSpec
-from puck_tables.fitting.initial_estimate import initial_estimate
+from puck_tables.fitting.initial_estimate import (
+    initial_estimate,
+    nearest_start,
+    starts_from_slowing,
+)
 from puck_tables.fitting.model_comparison import FLOORS, tried
 from puck_tables.fitting.parameters import INTEGRATED, MARK, NODES, NOTHING
 from puck_tables.fitting.problem import TURN, Problem
 from puck_tables.fitting.residuals import NO_PATTERN, SideForces
-from puck_tables.fitting.slowing import nearest_start, starts_from_slowing
 
 _FAR = 1.5  # times smaller are residuals of a reading that is told
 _NEAR = 0.01  # of the radius: it is not another one
