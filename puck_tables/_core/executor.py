@@ -89,10 +89,7 @@ def in_slices(work: Callable[[int, int], None], items: int) -> None:
 def keep_on() -> None:
     """Do nothing, or end a chunk whose run was given up.
 
-    Raises
-    ------
-    KeyboardInterrupt
-        In a thread of :func:`run_chunks` that is not to finish its work.
+    Raises KeyboardInterrupt in a thread of :func:`run_chunks` that is not to finish its work.
     """
     given_up = getattr(_this_thread, "given_up", None)
     if given_up is not None and given_up.is_set():

@@ -73,13 +73,9 @@ def check_target(path: str | Path, overwrite: bool = False) -> Path:
 def write_bytes(path: str | Path, content: bytes, overwrite: bool = False) -> None:
     """Write a whole file under a temporary name, then rename it: never a half-written file.
 
-    Raises
-    ------
-    OutputError
-        As :func:`check_target`, and when the disk is full; the target is then as it was.
+    Raises OutputError as :func:`check_target`, and when the disk is full; the target is then as it
+    was.
 
-    Examples
-    --------
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     write_bytes(folder + "/a.txt", b"puck")

@@ -185,13 +185,8 @@ def measured_kinds(text: str) -> dict[str, float]:
 def measured(text: str, unit: str) -> float:
     """A number in an SI unit, or with another unit behind it.
 
-    Raises
-    ------
-    ValueError
-        If it is none.
+    Raises ValueError if it is none.
 
-    Examples
-    --------
     >>> measured("1e-3", "m"), measured("2mm", "m")
     (0.001, 0.002)
     """

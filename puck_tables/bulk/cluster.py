@@ -212,10 +212,7 @@ def client_of(name_or_place: str) -> Iterator[Any]:
 def _security(where: str) -> Any:
     """What Dask's configuration says of certificates, for an address.
 
-    Raises
-    ------
-    ClusterError
-        If they are needed and missing.
+    Raises ClusterError if they are needed and missing.
     """
     try:
         found = Security()

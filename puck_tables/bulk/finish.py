@@ -48,12 +48,8 @@ class Stored(Result):
     def load(self) -> Result:
         """The result in memory.
 
-        Raises
-        ------
-        InputError
-            If it does not fit, or blocks are damaged or missing.
-        OutputError
-            If the store holds other work by now.
+        Raises InputError if it does not fit, or blocks are damaged or missing; OutputError if the
+        store holds other work by now.
         """
         from puck_tables.bulk.store import Store
 
@@ -110,9 +106,7 @@ class Doing:
 def finish(work: Work, how: Doing) -> Any:
     """The result of a work; with a store a :class:`Stored` one.
 
-    Raises
-    ------
-    InputError, OutputError, MissingExtraError, ClusterError
+    Raises InputError, OutputError, MissingExtraError, ClusterError.
     """
     threads, store, cluster = how.threads, how.store, how.cluster
     checked_progress(how.progress)

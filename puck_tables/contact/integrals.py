@@ -54,13 +54,8 @@ class SlipDirection(NamedTuple):
 def checked_phi(phi: npt.ArrayLike) -> FloatArray:
     """``phi`` as an array of angles, refused unless all lie in [−π/2, π/2].
 
-    Raises
-    ------
-    InputError
-        If an angle is not a real number or lies outside [−π/2, π/2].
+    Raises InputError if an angle is not a real number or lies outside [−π/2, π/2].
 
-    Examples
-    --------
     >>> float(checked_phi(0.5))
     0.5
     """

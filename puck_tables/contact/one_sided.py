@@ -95,20 +95,13 @@ def critical_delta(phi: npt.ArrayLike) -> FloatArray:
 def checked_height(delta: npt.ArrayLike) -> FloatArray:
     """``delta`` as an array, refused where the puck tips over.
 
-    Raises
-    ------
-    InputError
-        If a height is not finite or negative.
-    ContactError
-        If a height is 4 or more.
+    Raises InputError if a height is not finite or negative; ContactError if a height is 4 or more.
 
-    Examples
-    --------
     >>> checked_height(4.0)
     Traceback (most recent call last):
     ...
     puck_tables.errors.ContactError: delta = 4: a puck with delta = 2 f h / r >= 4 tips over its \
-leading edge as soon as it slides without spin; choose a lower or broader puck or less friction
+    leading edge as soon as it slides without spin; choose a lower or broader puck or less friction
     """
     height = checked_delta(delta)
     if not (height < TIPPING_DELTA).all():

@@ -102,12 +102,7 @@ def _fit_within(
 def base_tables(kind: Puck) -> Tables:
     """The sides and discs of a base, and how it is pressed.
 
-    Raises
-    ------
-    InputError
-        If it has none.
-    ContactError
-        If part of it would lift.
+    Raises InputError if it has none; ContactError if part of it would lift.
     """
     shape = kind.shape
     if shape is None:

@@ -88,16 +88,11 @@ class Heading(NamedTuple):
 def heading(text: str) -> Heading:
     """Read the heading of a column.
 
-    Raises
-    ------
-    InputError
-        If it has a unit in square brackets that is none, or a factor or a function.
+    Raises InputError if it has a unit in square brackets that is none, or a factor or a function.
 
-    Examples
-    --------
     >>> heading("t [ms]"), heading("red_X_px"), heading("v_x")
     (Heading(role='time', puck='', unit='ms'), Heading(role='x', puck='red', unit='px'), \
-Heading(role='vx', puck='', unit=''))
+    Heading(role='vx', puck='', unit=''))
     """
     name, unit_text = parted(text.strip().strip("\"'").strip())
     if not unit_text and (within := _WITHIN.fullmatch(name)) and is_unit(within[2]):

@@ -58,13 +58,8 @@ class Plane:
     def place(self, pixels: FloatArray) -> FloatArray:
         """Places (n, 2) in m of points (n, 2) in pixels.
 
-        Raises
-        ------
-        InputError
-            If a point lies at or beyond the horizon of the floor.
+        Raises InputError if a point lies at or beyond the horizon of the floor.
 
-        Examples
-        --------
         >>> square = [(0, 0, 0, 0), (100, 0, 1, 0), (100, 100, 1, 1), (0, 100, 0, 1)]
         >>> plane_of(square).place(np.array([[50.0, 25.0]])).round(9).tolist()
         [[0.5, 0.25]]

@@ -89,13 +89,8 @@ class ReaderOptions:
 def to_si(path: str | Path, film: Film, how: ReaderOptions) -> tuple[Track, ...]:
     """The tracks of a film.
 
-    Raises
-    ------
-    InputError
-        If something is left open, contradicts, or is no track.
+    Raises InputError if something is left open, contradicts, or is no track.
 
-    Examples
-    --------
     >>> marks = {"": np.array([[0.0, 1.0], [2.0, 1.0]])}
     >>> film = Film("table", [TrackedBody("", marks, frame=np.array([0.0, 1.0]))], unit="cm")
     >>> to_si("a.csv", film, ReaderOptions(fps=50.0))[0].place.tolist()

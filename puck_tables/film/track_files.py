@@ -105,15 +105,8 @@ def read_tracks(
 def film_of(path: str | Path, columns: str | None = None) -> Film:
     """What a file holds, by how it begins.
 
-    Raises
-    ------
-    InputError
-        If it is none that is known, or damaged.
-    OSError
-        If it cannot be read.
+    Raises InputError if it is none that is known, or damaged; OSError if it cannot be read.
 
-    Examples
-    --------
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     file = Path(folder, "a.csv")

@@ -147,15 +147,9 @@ def body_of(
 ) -> UnitPuck:
     """A puck, checked; ``table``: where its friction comes from, if not from the law itself.
 
-    Raises
-    ------
-    InputError
-        If the pressure law is not known, a number is out of range, or the table of another law.
-    ContactError
-        If the puck tips, or its contact is not known or not determined.
+    Raises InputError if the pressure law is not known, a number is out of range, or the table of
+    another law; ContactError if the puck tips, or its contact is not known or not determined.
 
-    Examples
-    --------
     >>> body_of("hertz", 0.5, 0.6).law.name
     'hertz'
     """

@@ -85,13 +85,8 @@ def delta_and_decel(
 ) -> tuple[Any, Any, ByFriction | None]:
     """δ and J of pucks, and what they follow from.
 
-    Raises
-    ------
-    InputError
-        If both are given, or a number lies outside its range.
+    Raises InputError if both are given, or a number lies outside its range.
 
-    Examples
-    --------
     >>> numbers = DEFAULT_DELTA, DEFAULT_DECEL, 0.04, 0.25, 0.04, 10.0
     >>> [part.tolist() for part in delta_and_decel(*numbers)[:2]]
     [0.5, 2.5]

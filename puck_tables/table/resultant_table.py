@@ -112,10 +112,7 @@ class ResultantTable(LawTable):
     def section(self, delta: float) -> FloatArray:
         """The friction ratios at one height, as :mod:`puck_tables.kernels.quadratic` reads.
 
-        Raises
-        ------
-        InputError
-            If δ is outside the range of the table, or it is not of uniform pressure.
+        Raises InputError if δ is outside the range of the table, or it is not of uniform pressure.
         """
         from puck_tables.kernels.quadratic import room_for_section, section_at
 

@@ -29,10 +29,7 @@ from puck_tables.world.segment import ANGLE, GONE, PLACE_X, SEGMENT_COLUMNS, STA
 def board_with(scene: SceneSpec, puck: ScenePuck) -> SceneSpec:
     """A scene with a puck more, which fits its board; its pucks may have moved since.
 
-    Raises
-    ------
-    InputError
-        If the puck does not go with the board, or its name is taken.
+    Raises InputError if the puck does not go with the board, or its name is taken.
     """
     if not isinstance(puck, ScenePuck):
         raise InputError(f"puck must be a Puck, got a {type(puck).__name__}")

@@ -294,10 +294,7 @@ def _searches(
 def _plenty(scene: SceneSpec, wanted: Target) -> float:
     """A speed that is surely enough: three times that which slides the whole way.
 
-    Raises
-    ------
-    InputError
-        If nothing brakes the striker.
+    Raises InputError if nothing brakes the striker.
     """
     pucks = pucks_of(scene)
     striker, puck = pucks[wanted.striker], pucks[wanted.puck]

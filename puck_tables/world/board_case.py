@@ -68,10 +68,7 @@ class BoardCase:
 
     ``model``, ``explanation``: how its pucks are moved.
 
-    Raises
-    ------
-    InputError
-        If nothing on it ever comes to rest, and no time is given.
+    Raises InputError if nothing on it ever comes to rest, and no time is given.
     """
 
     def __init__(self, scene: SceneSpec) -> None:
@@ -132,10 +129,7 @@ class BoardCase:
     ) -> tuple[dict[str, FloatArray], npt.NDArray[np.int8]]:
         """Results (count, …) and how it ended.
 
-        Raises
-        ------
-        InputError
-            If one of these launches is too fast for what can be told.
+        Raises InputError if one of these launches is too fast for what can be told.
         """
         parts = {path: _part(path) for path in launches}
         numbers = sorted({number for number, _ in parts.values()})

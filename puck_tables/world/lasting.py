@@ -289,10 +289,7 @@ def with_law_for(
 ) -> Engine:
     """The state of the engine with friction that is known at all slips of those that set off now.
 
-    Raises
-    ------
-    InputError
-        If its law ends below one, or lifts part of a base there.
+    Raises InputError if its law ends below one, or lifts part of a base there.
     """
     top = law_goes_to(engine.regions)
     if top == math.inf:

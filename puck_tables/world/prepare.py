@@ -114,10 +114,8 @@ def _surface_of(floor: Floor) -> Surface:
 def prepared(scene: SceneSpec, order: Whole | None = None) -> Start:
     """A scene without ranges at its start; its pucks in an order, else that of their places.
 
-    Raises
-    ------
-    PuckError
-        If a file or a law that it names does not serve, or numbers in it are too large.
+    Raises PuckError if a file or a law that it names does not serve, or numbers in it are too
+    large.
     """
     order = order_of(scene) if order is None else order
     pucks = [pucks_of(scene)[number] for number in order]
@@ -252,10 +250,8 @@ def scales_of(engine: Engine, speeds: FloatArray) -> FloatArray:
 
     What is at rest on a steep slope has the speed that it gets within a radius.
 
-    Raises
-    ------
-    InputError
-        If a puck would slide so far that its places, good to a share of that, mean nothing here.
+    Raises InputError if a puck would slide so far that its places, good to a share of that, mean
+    nothing here.
     """
     radius, steady = least_scales(engine)
     _refuse_far(engine, float(speeds.max(initial=0.0)), radius)

@@ -56,10 +56,7 @@ class Shipped(NamedTuple):
 def shipped(scene: SceneSpec) -> tuple[Shipped, Worlds]:
     """A scene at its start, ready to be played, and the board as it is played in Python.
 
-    Raises
-    ------
-    InputError
-        If a number of it is a range, its floor moves, or a constraint leads a puck.
+    Raises InputError if a number of it is a range, its floor moves, or a constraint leads a puck.
     """
     board = Worlds(scene, 1)
     if not board._plain:

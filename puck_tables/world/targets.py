@@ -58,10 +58,8 @@ def target_of(
 ) -> Target:  # fmt: skip
     """The numbers of what a caller names.
 
-    Raises
-    ------
-    InputError
-        If there is no such thing, it is not clear which is meant, or nothing can lie there.
+    Raises InputError if there is no such thing, it is not clear which is meant, or nothing can lie
+    there.
     """
     faults = disagreements(scene.single())
     if faults:
