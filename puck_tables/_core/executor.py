@@ -62,14 +62,8 @@ def in_slices(work: Callable[[int, int], None], items: int) -> None:
 
     Compiled loops do not hear Ctrl-C; between the slices it is heard.
 
-    Parameters
-    ----------
-    work : callable (start, stop)
-        Must not depend on the cutting.
-    items : int
+    ``work``: callable (start, stop), must not depend on the cutting; ``items``: int.
 
-    Examples
-    --------
     >>> seen = []
     >>> in_slices(lambda a, b: seen.append((a, b)), 6)
     >>> seen[0], seen[-1][1]

@@ -26,21 +26,10 @@ def as_utf8(text: str) -> str:
 def check_target(path: str | Path, overwrite: bool = False) -> Path:
     """Refuse an output that could not be written later, before any work is done.
 
-    Parameters
-    ----------
-    path : path of the output file
-    overwrite : whether an existing file may be replaced
+    ``path``: path of the output file; ``overwrite``: whether an existing file may be replaced.
+    Raises InputError if it is no name; OutputError if the file exists (without ``overwrite``), is a
+    folder, or its folder is missing or cannot be written.
 
-    Raises
-    ------
-    InputError
-        If it is no name.
-    OutputError
-        If the file exists (without ``overwrite``), is a folder, or its folder is missing or
-        cannot be written.
-
-    Examples
-    --------
     >>> check_target("/nowhere/a.csv")
     Traceback (most recent call last):
     ...

@@ -92,7 +92,7 @@ def heading(text: str) -> Heading:
 
     >>> heading("t [ms]"), heading("red_X_px"), heading("v_x")
     (Heading(role='time', puck='', unit='ms'), Heading(role='x', puck='red', unit='px'), \
-    Heading(role='vx', puck='', unit=''))
+Heading(role='vx', puck='', unit=''))
     """
     name, unit_text = parted(text.strip().strip("\"'").strip())
     if not unit_text and (within := _WITHIN.fullmatch(name)) and is_unit(within[2]):

@@ -90,18 +90,9 @@ class Plane:
 def plane_of(rows: Sequence[Sequence[float]] | FloatArray) -> Plane:
     """The homography of four or more marks.
 
-    Parameters
-    ----------
-    rows : array_like (n, 4)
-        Pixels u, v and the place x, y in m of each mark.
+    ``rows``: array_like (n, 4), pixels u, v and the place x, y in m of each mark.  Raises
+    InputError if they are fewer, not finite, or lie on a line in the picture or on the floor.
 
-    Raises
-    ------
-    InputError
-        If they are fewer, not finite, or lie on a line in the picture or on the floor.
-
-    Examples
-    --------
     >>> tilted = [(0, 0, 0, 0), (100, 0, 1, 0), (80, 60, 1, 1), (20, 60, 0, 1)]
     >>> plane_of(tilted).place(np.array([[50.0, 37.5]])).round(9).tolist()   # the diagonals meet
     [[0.5, 0.5]]

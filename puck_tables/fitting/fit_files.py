@@ -94,16 +94,9 @@ def puck_and_launch(
     (rad) of :meth:`Puck.simulate`.  And sentences on what its tracks did not determine, and on what
     is hard to believe.
 
-    Parameters
-    ----------
-    path : .json
-    track : its name or number, where the file has several
-
-    Raises
-    ------
-    InputError
-        If the file is none of a fit, has no such track, its puck has drag or friction over slip
-        speed, or nobody would believe what was found.
+    ``path``: .json; ``track``: its name or number, where the file has several.  Raises InputError
+    if the file is none of a fit, has no such track, its puck has drag or friction over slip speed,
+    or nobody would believe what was found.
     """
     told = f"{path}: no file of puck fit (.json)"
     try:

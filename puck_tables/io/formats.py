@@ -69,7 +69,7 @@ def save(dataset: Dataset, path: str | Path, overwrite: bool = False) -> None:
     Traceback (most recent call last):
     ...
     puck_tables.errors.InputError: run.txt: the ending of an output file chooses its format: one \
-    of .h5, .csv, .json, .jsonl, .parquet
+of .h5, .csv, .json, .jsonl, .parquet
     """
     write_bytes(path, encoder_for(path)(dataset), overwrite)
 

@@ -23,13 +23,8 @@ _FULL_CONTACT = 1.0  # δ up to which a plain puck lies on its whole base in eve
 def plain_up_to(pressure: str | Law, gyration: float) -> float:
     """The height up to which closed forms and the shipped tables hold for a kind of puck.
 
-    Returns
-    -------
-    float
-        1 for a homogeneous puck under uniform pressure, −inf for any other.
+    Returns float: 1 for a homogeneous puck under uniform pressure, −inf for any other.
 
-    Examples
-    --------
     >>> plain_up_to("uniform", HOMOGENEOUS), plain_up_to("ring", HOMOGENEOUS)
     (1.0, -inf)
     """

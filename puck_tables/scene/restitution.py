@@ -234,8 +234,8 @@ def restitution_law(law: str | Restitution) -> Restitution:
     Traceback (most recent call last):
     ...
     puck_tables.errors.InputError: there is no law of restitution 'viscoelastik:0.1' (did you mean \
-    'viscoelastic'?): give a number from 0 to 1, 'viscoelastic:C', 'plastic:V', or the name of a CSV \
-    file of speed in m/s and restitution
+'viscoelastic'?): give a number from 0 to 1, 'viscoelastic:C', 'plastic:V', or the name of a CSV \
+file of speed in m/s and restitution
     """
     if isinstance(law, Restitution):
         return law

@@ -141,13 +141,9 @@ _ARGUMENT = {column: name for name, column in COLUMN.items()}
 def ranged(chosen: Mapping[str, Any], laws: Any) -> Population:
     """Launches for all combinations of numbers and lists of them.
 
-    Parameters
-    ----------
-    chosen : by the names of arguments: numbers, or lists (n,)
-    laws : a pressure law, or a list of them
+    ``chosen``: by the names of arguments: numbers, or lists (n,); ``laws``: a pressure law, or a
+    list of them.
 
-    Examples
-    --------
     >>> ranged({"spin": [0.0, 1.0], "speed": 1.0}, "uniform").axes
     {'launch_spin': array([0., 1.])}
     """
@@ -186,10 +182,8 @@ def drawn(chosen: Mapping[str, Any], laws: Any, count: int, seed: int) -> Popula
 def labelled(launches: Any, chosen: Mapping[str, Any], laws: Any) -> Population:
     """Launches of an xarray.Dataset: its coordinates and variables, over its dimensions.
 
-    Parameters
-    ----------
-    launches : xarray.Dataset with variables named as in results: launch_speed, launch_spin, …
-    chosen : further numbers
+    ``launches``: xarray.Dataset with variables named as in results: launch_speed, launch_spin, …;
+    ``chosen``: further numbers.
     """
     arrays = {str(name): one for name, one in launches.variables.items()}
     sizes = {str(dim): int(n) for dim, n in launches.sizes.items()}

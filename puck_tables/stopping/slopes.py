@@ -58,10 +58,8 @@ class Slopes(NamedTuple):
 def slopes_of(axis: SlipAxis, values: FloatArray) -> Slopes:
     """The slopes of a stop table.
 
-    Parameters
-    ----------
-    axis : SlipAxis
-    values : array (2 cells + 1, 9, 7), as in :class:`puck_tables.stopping.stop_table.StopTable`
+    ``axis``: SlipAxis; ``values``: array (2 cells + 1, 9, 7), as in
+    :class:`puck_tables.stopping.stop_table.StopTable`.
     """
     n = axis.cells
     sides = np.stack([values[: n + 1], values[: n - 1 : -1]])  # both from k = 0 to k = 1

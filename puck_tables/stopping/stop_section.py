@@ -153,13 +153,9 @@ class StopSection(SectionTable):
 def stop_section_for(body: UnitPuck, accuracy: float) -> StopSection:
     """The stops of one kind of puck: read if they are kept, else tabulated.
 
-    Parameters
-    ----------
-    body : Body
-    accuracy : the largest error, in units of Q/J (time), Q²/J (place, path), Q²/(J r) (body angle)
+    ``body``: Body; ``accuracy``: the largest error, in units of Q/J (time), Q²/J (place, path),
+    Q²/(J r) (body angle).
 
-    Examples
-    --------
     >>> result = stop_section_for(body_of("uniform", 2.0, 0.5**0.5), 1e-5)
     >>> float(result.spline.at(np.array([0.5]))[0, 0].round(4)), result.error <= 1e-5
     (1.1458, True)

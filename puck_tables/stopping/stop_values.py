@@ -156,14 +156,20 @@ class StopValues(Table):
     def pucks(self, launches: Launches, threads: int | None = None) -> FloatArray:
         """Launches, and what the table knows of them, (6 + 14, n).
 
-        Raises InputError if one of them is no launch, or too large for floating point.
+        Raises
+        ------
+        InputError
+            If one of them is no launch, or too large for floating point.
         """
         return self.filled(PUCK_ROWS, launches, threads)[0]
 
     def filled(self, rows: int, launches: Launches, threads: int | None) -> tuple[FloatArray, int]:
         """Rows of so many launches as :meth:`fill_pucks` has them, and how many may be too large.
 
-        Raises InputError if one of them is no launch.
+        Raises
+        ------
+        InputError
+            If one of them is no launch.
         """
         if launches.size <= CHUNK:
             return self.fill_pucks(rows, launches, 0, launches.size)
@@ -185,8 +191,10 @@ class StopValues(Table):
 
         And how many may be too large for floating point.
 
-        Raises InputError if one of them is no launch, or, where all is asked, too large for
-        floating point.
+        Raises
+        ------
+        InputError
+            If one of them is no launch, or, where all is asked, too large for floating point.
         """
         from puck_tables.motion.path import TURN_SHARE
         from puck_tables.stopping.launch_lookup import fill_launch_lookup

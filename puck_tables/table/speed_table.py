@@ -240,7 +240,9 @@ class SpeedTable(Table):
     def refuse_height(self, height_ratio: float) -> None:
         """Refuse a puck part of whose base would lift anywhere in the table.
 
-        Raises ContactError.
+        Raises
+        ------
+        ContactError
         """
         if height_ratio == 0.0:
             return
