@@ -44,10 +44,10 @@ from puck_tables.kernels.law_panels import (
     branches_of,
     distance_at,
     goes_on_beyond,
+    interval_of,
     law_sums_at_first,
     nearest_to,
     panel_end,
-    interval_of,
 )
 from puck_tables.kernels.polygon_sums import PIECE_COLUMNS, TURN
 
