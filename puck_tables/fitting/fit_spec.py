@@ -46,7 +46,7 @@ from puck_tables.fitting.parameters import (
     refuse_unknown,
 )
 from puck_tables.fitting.speed_motion import LAWS, Drags, SpeedFriction, law_named
-from puck_tables.fitting.unit_motions import UnitMotions, base_motions_of, unit_motions_of
+from puck_tables.fitting.unit_motions import UnitMotions, unit_motions_of
 from puck_tables.puck import Puck
 
 _KIND = (*OWN_CURVE, "drag", *INTEGRATED)  # change the curve itself
@@ -399,9 +399,8 @@ class FitSpec:
         return self._motions(pressure, self.known()["gyration"], tall).highest
 
     def _motions(self, pressure: Any, gyration: float, tall: bool) -> UnitMotions:
-        if self.base is not None:
-            return base_motions_of(self.base, gyration / self.base.reach)
-        return unit_motions_of(pressure, gyration, tall and not self.integrated)
+        lifts = tall and not self.integrated
+        return unit_motions_of(self.base or pressure, gyration / self._unit, lifts)
 
     def steepest(self, name: str) -> float:
         """The largest friction, or J, of a puck of known height and radius: 2fh/r is its δ."""

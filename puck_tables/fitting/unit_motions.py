@@ -211,21 +211,6 @@ def _law_table(law: Law) -> ResultantTable:
     return ResultantTable.build(law, _ACCURACY)
 
 
-@lru_cache(maxsize=64)
-def unit_motions_of(pressure: str | Law, gyration: float, tall: bool = False) -> UnitMotions:
-    """The motions of a kind of puck; ``tall``: whether part of the base may lift.
-
-    >>> type(unit_motions_of("uniform", 0.5**0.5)).__name__, unit_motions_of("ring", 1.0).highest
-    ('PlainMotions', 2.0)
-    """
-    law = pressure if isinstance(pressure, Law) else law_of(pressure)
-    if law.can_lift and tall:
-        return TallMotions(gyration)
-    if plain_up_to(law, gyration) > 0.0:
-        return PlainMotions()
-    return LawMotions(law, gyration)
-
-
 def cartesian(rows: FloatArray, headings: FloatArray | float) -> FloatArray:
     """States (6, …) with vx and vy from those with speed and heading."""
     heading, speed = rows[HEADING] + headings, rows[SPEED]
@@ -298,10 +283,21 @@ class BaseMotions(UnitMotions):
 
 
 @lru_cache(maxsize=64)
-def base_motions_of(base: Base, gyration: float) -> BaseMotions:
-    """The motions of a body; ``gyration`` over the reach.
+def unit_motions_of(contact: str | Law | Base, gyration: float, tall: bool = False) -> UnitMotions:
+    """The motions of a kind of puck, under a pressure law or on a base.
 
-    >>> round(base_motions_of(Base.disc(0.05), 0.5**0.5).highest, 9)
+    ``gyration``: over r, or the reach of the base; ``tall``: whether part of the base may lift.
+
+    >>> type(unit_motions_of("uniform", 0.5**0.5)).__name__, unit_motions_of("ring", 1.0).highest
+    ('PlainMotions', 2.0)
+    >>> round(unit_motions_of(Base.disc(0.05), 0.5**0.5).highest, 9)
     1.0
     """
-    return BaseMotions(base, gyration)
+    if isinstance(contact, Base):
+        return BaseMotions(contact, gyration)
+    law = contact if isinstance(contact, Law) else law_of(contact)
+    if law.can_lift and tall:
+        return TallMotions(gyration)
+    if plain_up_to(law, gyration) > 0.0:
+        return PlainMotions()
+    return LawMotions(law, gyration)
