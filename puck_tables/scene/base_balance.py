@@ -45,12 +45,12 @@ from puck_tables.scene.floor_map import (
     SHARE,
     belt_of,
     border_of,
+    distance_to,
     load_of,
     parts_in,
     sum_over,
 )
 from puck_tables.scene.over_edges import left_on_floor
-from puck_tables.scene.patches import distance_to
 
 Far = tuple[float, float, float]  # Σ over the parts of velocity times e, x e and y e
 

@@ -37,6 +37,7 @@ from puck_tables.scene.floor_map import (
     SHARE,
     border_of,
     corner_of,
+    distance_to,
     ellipse_on,
     law_on,
     patch_of,
@@ -44,7 +45,6 @@ from puck_tables.scene.floor_map import (
     summed_load,
 )
 from puck_tables.scene.floor_map import REACH as PATCH_REACH
-from puck_tables.scene.patches import distance_to
 
 _TWO_CUTS = 12  # times as many pieces as there were are after two cuts at most
 _NONE = -1  # no stretch

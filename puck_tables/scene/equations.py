@@ -7,10 +7,19 @@ centre, so the balance of moments that tilts the pressure stays that of the free
 carries the energies too: work of given forces, heat of dry friction, heat of viscous friction (2f₂
 of Chetaev), work of moving supports and constraints (−f₁, and what dry friction and reactions do at
 the velocity of their support).
+
+A blade has its velocity by its own axes, along it and to its left: a spin turns nothing there.
+With e along it, n to its left and u = p e + q n over the floor,
+
+    u′ = (p′ − θ′ q) e + (q′ + θ′ p) n .
+
+In the axes of the laboratory u turns with the body, and steps would follow every turn of it; p and
+q know nothing of that.  Within a step velocities of a blade are p, q; all else has u.
 """
 
 from __future__ import annotations
 
+import math
 from typing import cast
 
 import numpy as np
@@ -31,6 +40,7 @@ from puck_tables.scene.friction import (
     size,
 )
 from puck_tables.scene.ingredients import (
+    BLADE,
     CARRIED,
     SLIDES,
     Body,
@@ -174,3 +184,48 @@ def kinetic_energy(body: Body, y: FloatArray) -> float:
     return 0.5 * body.mass * (y[VX] * y[VX] + y[VY] * y[VY]) + (
         0.5 * body.inertia * y[SPIN] * y[SPIN]
     )
+
+
+@inlined
+def has_axes(phase: Phase) -> bool:
+    """Whether a step has velocities by the blade's axes."""
+    return phase.model.hold.kind == BLADE and phase.mode == SLIDES
+
+
+@inlined
+def _turned(x: float, y: float, angle: float) -> tuple[float, float]:
+    cosine, sine = math.cos(angle), math.sin(angle)
+    return cosine * x - sine * y, sine * x + cosine * y
+
+
+@inlined
+def by_blade(phase: Phase, y: FloatArray) -> None:
+    """A state with u into one with p, q."""
+    y[VX], y[VY] = _turned(y[VX], y[VY], -(y[THETA] + phase.model.hold.angle))
+
+
+@inlined
+def by_floor(phase: Phase, y: FloatArray) -> None:
+    """A state with p, q into one with u."""
+    y[VX], y[VY] = _turned(y[VX], y[VY], y[THETA] + phase.model.hold.angle)
+
+
+@inlined
+def rates_by_blade(phase: Phase, y: FloatArray, out: FloatArray, row: int) -> None:
+    """Rates of u in out[row] into those of p, q, at a state ``y`` with p, q."""
+    angle, turns = y[THETA] + phase.model.hold.angle, out[row, THETA]
+    along, across = _turned(out[row, VX], out[row, VY], -angle)
+    out[row, VX], out[row, VY] = along + turns * y[VY], across - turns * y[VX]
+
+
+@inlined
+def rates_in_step(phase: Phase, t: float, y: FloatArray, out: FloatArray, row: int) -> None:
+    """:func:`puck_tables.scene.equations.rates` of a state within a step."""
+    if not has_axes(phase):
+        rates(phase, t, y, out, row)
+        return
+    along, across = y[VX], y[VY]
+    by_floor(phase, y)
+    rates(phase, t, y, out, row)
+    y[VX], y[VY] = along, across
+    rates_by_blade(phase, y, out, row)

@@ -14,8 +14,7 @@ from numpy.polynomial.legendre import legint, legval, legvander
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 from puck_tables.motion.steppers import DORMAND_PRINCE_8
-from puck_tables.scene.blade_axes import by_floor, has_axes, rates_by_blade
-from puck_tables.scene.equations import SIZE, rates_here
+from puck_tables.scene.equations import SIZE, by_floor, has_axes, rates_by_blade, rates_here
 from puck_tables.scene.friction import VX, VY
 from puck_tables.scene.ingredients import Phase
 

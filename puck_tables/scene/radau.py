@@ -15,8 +15,15 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel
-from puck_tables.scene.blade_axes import rates_in_step
-from puck_tables.scene.equations import FIRST, SECOND, SIZE, settling_rates, slip_speed, stopping
+from puck_tables.scene.equations import (
+    FIRST,
+    SECOND,
+    SIZE,
+    rates_in_step,
+    settling_rates,
+    slip_speed,
+    stopping,
+)
 from puck_tables.scene.friction import SPIN, VX, X
 from puck_tables.scene.ingredients import Phase
 

@@ -9,8 +9,18 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
-from puck_tables.scene.blade_axes import by_blade, by_floor, has_axes, rates_by_blade
-from puck_tables.scene.equations import FIRST, GIVEN, SIZE, kinetic_energy, rates, slip_change
+from puck_tables.scene.equations import (
+    FIRST,
+    GIVEN,
+    SIZE,
+    by_blade,
+    by_floor,
+    has_axes,
+    kinetic_energy,
+    rates,
+    rates_by_blade,
+    slip_change,
+)
 from puck_tables.scene.explicit import STAGES, explicit_step
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.ingredients import (

@@ -18,17 +18,19 @@ from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.floor_map import (
     ACROSS_X,
     ACROSS_Y,
+    ASTRIDE,
     BORDERS,
     CORNER,
     CORNERS,
+    INSIDE,
     MIDDLE_X,
     MIDDLE_Y,
+    OUTSIDE,
     REACH,
     corner_of,
     patch_of,
 )
 from puck_tables.scene.friction import VX, VY, X, Y
-from puck_tables.scene.patches import ASTRIDE, INSIDE, OUTSIDE
 from puck_tables.world.contact_search import (
     MOST_LOOKS,
     PATIENCE,

@@ -17,15 +17,19 @@ from puck_tables.scene.base_balance import nearest_belt
 from puck_tables.scene.floor_map import (
     ACROSS_X,
     ACROSS_Y,
+    ASTRIDE,
     BELTS,
     BORDERS,
     EDGES,
+    INSIDE,
+    OUTSIDE,
     OVER_X,
     OVER_Y,
     PATCHES,
     PLACE_X,
     PLACE_Y,
     border_of,
+    distance_to,
     edge_of,
 )
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
@@ -42,7 +46,6 @@ from puck_tables.scene.ingredients import (
 )
 from puck_tables.scene.orthotropic import is_elliptic
 from puck_tables.scene.over_time import rows_passed
-from puck_tables.scene.patches import ASTRIDE, INSIDE, OUTSIDE, distance_to
 from puck_tables.world.engine_state import Engine, Whole
 from puck_tables.world.layout import (
     BELT_AX,

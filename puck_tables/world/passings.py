@@ -14,8 +14,8 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel, patience
+from puck_tables.scene.floor_map import ASTRIDE, INSIDE, OUTSIDE
 from puck_tables.scene.friction import VX, VY, X, Y
-from puck_tables.scene.patches import ASTRIDE, INSIDE, OUTSIDE
 from puck_tables.scene.pucks_and_posts import Line
 from puck_tables.world.borders import to_round
 from puck_tables.world.contact_search import (

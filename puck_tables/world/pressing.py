@@ -16,7 +16,6 @@ from puck_tables.kernels.compile import inlined, inner, patience
 from puck_tables.scene.friction import SPIN, VX, size
 from puck_tables.scene.rest import SLACK
 from puck_tables.world.complementarity import find_modes, rim_mode
-from puck_tables.world.contact_kinematics import look, look_at_ties
 from puck_tables.world.contact_search import HARDLY
 from puck_tables.world.floor_under import choose_belt, over_floor
 from puck_tables.world.forces import (
@@ -51,6 +50,8 @@ from puck_tables.world.group import (
     IntArray,
     Scales,
     find_places,
+    look,
+    look_at_ties,
     small_slip,
 )  # fmt: skip
 from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY, write_over

@@ -17,7 +17,6 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, patience
 from puck_tables.motion.steppers import times_as_long
 from puck_tables.scene.friction import VX, VY, X, Y
-from puck_tables.world.contact_kinematics import look
 from puck_tables.world.floor_under import is_over, moves_along, nears_another, room_on_floor
 from puck_tables.world.forces import can_rest, count_rows, slip_at
 from puck_tables.world.group import (
@@ -40,6 +39,7 @@ from puck_tables.world.group import (
     IntArray,
     Scales,
     find_places,
+    look,
     small_slip,
 )
 from puck_tables.world.layout import LIES, LIGHTNESS, RADIUS, write_over

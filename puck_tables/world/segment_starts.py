@@ -10,10 +10,10 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel
 from puck_tables.scene.equations import ROW
+from puck_tables.scene.floor_map import ASTRIDE, INSIDE, OUTSIDE
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y, friction_force
 from puck_tables.scene.ingredients import floor_velocity, is_mixed
 from puck_tables.scene.over_time import rows_passed
-from puck_tables.scene.patches import ASTRIDE, INSIDE, OUTSIDE
 from puck_tables.world.contact_row import (
     CONTACT_COLUMNS,
     FIRST_N,

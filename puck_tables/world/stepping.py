@@ -18,7 +18,6 @@ from puck_tables.motion.steppers import DORMAND_PRINCE
 from puck_tables.scene.friction import X, Y, size
 from puck_tables.scene.ingredients import floor_acceleration
 from puck_tables.world.complementarity import load_of, most
-from puck_tables.world.contact_kinematics import look, look_at_ties
 from puck_tables.world.floor_under import floor_of
 from puck_tables.world.forces import (
     act,
@@ -52,6 +51,8 @@ from puck_tables.world.group import (
     GroupBuffer,
     IntArray,
     Scales,
+    look,
+    look_at_ties,
 )
 from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY, write_over
 from puck_tables.world.multipliers import close_gaps, leads, push_and_move, stop_slips
