@@ -4,8 +4,9 @@ Everything is in the order of the group's *members*; a contact is a pair of plac
 or of one and an obstacle.  What a member does is one of HELD … MOVES, what a contact does is how
 its rims slip: −1 or 1 (they slide, the slip has that sign), STICKS, or APART.
 
-Where two rims touch they have a normal and a gap, and approach and slip.  With n from the first to the second, t = n turned by +90°, Δ = first − second, R the radii and ω the
-spins, the rims slip by u = Δv·t + R₁ω₁ + R₂ω₂, and
+Where two rims touch they have a normal and a gap, and approach and slip.  With n from the first to
+the second, t = n turned by +90°, Δ = first − second, R the radii and ω the spins, the rims slip by
+u = Δv·t + R₁ω₁ + R₂ω₂, and
 
     gap′ = −Δv·n,   gap″ = −Δa·n + κ (Δv·t)²,   u′ = Δa·t + R₁α₁ + R₂α₂ + κ (Δv·t)(Δv·n),
 
