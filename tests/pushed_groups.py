@@ -26,7 +26,6 @@ from puck_tables.world.layout import (
     DRAG,
     FRICTION,
     OBSTACLE_COLUMNS,
-    PLAIN_RIMS,
     POST,
     PULL_X,
     PULL_Y,
@@ -90,7 +89,7 @@ def group_of(discs, obstacles=(), pull=(0.0, 0.0), films=None, cuts=None):
             mass * discs[:, 3], discs[:, 4].copy(), cuts, NO_LAW, np.zeros(len(discs), np.bool_),
             NO_GROUND, np.zeros((len(discs), 2), np.int64),
         ),
-        Surface(*[0.0] * 9, 1.0), PLAIN_RIMS, np.vstack(rows), reels,
+        Surface(*[0.0] * 9, 1.0), np.zeros(1), np.vstack(rows), reels,
         np.zeros((0, 4)), np.zeros((len(discs), 2), np.int64),
     )  # fmt: skip
 

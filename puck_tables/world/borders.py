@@ -45,8 +45,7 @@ from puck_tables.world.contact_search import (
 )
 from puck_tables.world.engine_state import N_LOOKS, Engine
 from puck_tables.world.floor_under import floor_map_span, off_border
-from puck_tables.world.layout import LIES, LIGHTNESS, RADIUS, A
-from puck_tables.world.obstacle_shapes import ROUNDED
+from puck_tables.world.layout import LIES, LIGHTNESS, RADIUS, ROUNDED, A
 from puck_tables.world.segment import GONE, corridor, moves_until, state_at
 from puck_tables.world.separation import stays_apart
 

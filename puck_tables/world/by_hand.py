@@ -37,9 +37,9 @@ from puck_tables.world.layout import (
     A,
     B,
     C,
+    in_span,
 )
 from puck_tables.world.lone import LONGEST
-from puck_tables.world.obstacle_shapes import in_span
 from puck_tables.world.paths import on_piece
 from puck_tables.world.segment import ANGLE, FIRST_PIECE, PATH, PLACE_X
 

@@ -17,9 +17,10 @@ from puck_tables.world.layout import (
     RADIUS,
     TURNABILITY,
     along_of_pair,
+    curvature,
+    normal_to,
     restitutions_of_pair,
 )
-from puck_tables.world.obstacle_shapes import curvature, normal_to
 
 # columns of a contact in work: normal, slownesses 1/m_n and 1/m_t, law, whether it acts in this
 # round, impulses of the round and of all, approach and slip at the first, energy lost, and the two

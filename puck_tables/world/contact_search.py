@@ -35,6 +35,7 @@ from puck_tables.world.layout import (
     OVERHANG,
     POCKET,
     RADIUS,
+    ROUNDED,
     SIDE,
     START_X,
     START_Y,
@@ -42,8 +43,10 @@ from puck_tables.world.layout import (
     A,
     B,
     C,
+    beyond_ends,
+    normal_to,
+    slack_of,
 )
-from puck_tables.world.obstacle_shapes import ROUNDED, beyond_ends, normal_to, slack_of
 from puck_tables.world.segment import (
     CARRIED,
     DAMPED,

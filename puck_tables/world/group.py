@@ -29,8 +29,7 @@ from puck_tables.motion.steppers import DORMAND_PRINCE
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ingredients import FREE, Regions, Surface
 from puck_tables.world.holds import forbid
-from puck_tables.world.layout import HOLD, RADIUS, along_of_pair
-from puck_tables.world.obstacle_shapes import curvature, normal_to, to_end
+from puck_tables.world.layout import HOLD, RADIUS, along_of_pair, curvature, normal_to, to_end
 from puck_tables.world.step_ledger import LEDGER
 
 IntArray = npt.NDArray[np.int64]

@@ -28,7 +28,6 @@ from puck_tables.scene.equations import (
     slip_speed,
     to_laboratory,
 )
-from puck_tables.scene.explicit import STAGES
 from puck_tables.scene.forces import Forces
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X
 from puck_tables.scene.ingredients import (
@@ -61,6 +60,7 @@ from puck_tables.scene.moments import (
 )
 from puck_tables.scene.over_time import rows_passed
 from puck_tables.scene.steps import (
+    STAGES,
     follow_scales,
     step,
     up_to_the_stop,

@@ -29,8 +29,7 @@ from puck_tables.world.contact_search import (
 )
 from puck_tables.world.engine_state import ENTERS, LEAVES, N_HISTORY, PASSES, Engine, Whole
 from puck_tables.world.floor_under import lies_to
-from puck_tables.world.layout import RADIUS
-from puck_tables.world.obstacle_shapes import ROUNDED
+from puck_tables.world.layout import RADIUS, ROUNDED
 from puck_tables.world.segment import GONE, ROOM, START, moves_until, state_at
 
 # columns of a line: a straight one goes from (A, B) to (C, D); a round one has the radius R > 0

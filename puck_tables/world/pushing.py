@@ -42,8 +42,7 @@ from puck_tables.world.group import (
     look,
     small_slip,
 )
-from puck_tables.world.layout import LIES, LIGHTNESS, RADIUS, write_over
-from puck_tables.world.obstacle_shapes import ROUNDED
+from puck_tables.world.layout import LIES, LIGHTNESS, RADIUS, ROUNDED, write_over
 from puck_tables.world.paths import DURATION, START, on_piece, piece_at
 from puck_tables.world.stepping import (
     BEGIN,

@@ -26,12 +26,13 @@ from puck_tables.world.layout import (
     PULL_X,
     PULL_Y,
     RADIUS,
+    ROUNDED,
     SIDE,
     SPAN,
     kinetic,
+    normal_to,
 )
 from puck_tables.world.multipliers import stop_slips
-from puck_tables.world.obstacle_shapes import ROUNDED, normal_to
 from puck_tables.world.segment import GONE, STILL
 from puck_tables.world.segment_starts import (
     CONCERNED,

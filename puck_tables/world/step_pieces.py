@@ -25,11 +25,10 @@ from puck_tables.scene.equations import (
     rates,
     to_laboratory,
 )
-from puck_tables.scene.explicit import SHARES, STAGES, come_by, rate_at
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.ingredients import FREE, Phase, floor_velocity, surface_now
 from puck_tables.scene.radau import RADAU_ROWS
-from puck_tables.scene.steps import accelerations, step
+from puck_tables.scene.steps import SHARES, STAGES, accelerations, come_by, rate_at, step
 from puck_tables.world import step_ledger
 from puck_tables.world.engine_state import N_HISTORY, N_PIECES, N_WORKS, Engine
 from puck_tables.world.paths import DURATION, on_piece

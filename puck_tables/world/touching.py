@@ -27,9 +27,12 @@ from puck_tables.world.layout import (
     PULL_X,
     PULL_Y,
     RADIUS,
+    ROUNDED,
+    TOUCH,
     TWIST,
+    normal_to,
+    slack_of,
 )
-from puck_tables.world.obstacle_shapes import ROUNDED, TOUCH, normal_to, slack_of
 from puck_tables.world.segment import GONE, PLACE_X, PLACE_Y, STILL, drifts
 from puck_tables.world.segment_starts import CONCERNED, LOOKED_AT, NOT_CONCERNED, Room, locate
 
