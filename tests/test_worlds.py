@@ -12,8 +12,8 @@ from boards import draw, draw_pucks, puck_at
 import puck_tables as pt
 from puck_tables._core import executor
 from puck_tables.scene.run import Event
-from puck_tables.world import engine_state as g
 from puck_tables.world import bench
+from puck_tables.world import engine_state as g
 
 SIDES = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
 
