@@ -13,9 +13,10 @@ from puck_tables.errors import InputError
 from puck_tables.film.column_roles import layout_of
 from puck_tables.film.film import Film, Track, first_text
 from puck_tables.film.plane import Marks
+from puck_tables.film.reader_options import ReaderOptions
 from puck_tables.film.readers import readers
 from puck_tables.film.text_tables import film_in_text
-from puck_tables.film.to_tracks import ReaderOptions, to_si
+from puck_tables.film.to_tracks import to_si
 
 
 def read_tracks(

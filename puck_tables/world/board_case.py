@@ -34,7 +34,7 @@ from puck_tables.scene.run import (
     residual,
 )
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.agreement import called, pucks_of, refuse_endless
+from puck_tables.world.agreement import refuse_endless
 from puck_tables.world.bulk import Ends, follow_all
 from puck_tables.world.engine_state import Engine, Whole, copy_of
 from puck_tables.world.floor_under import SURE, law_goes_to, moves_along
@@ -42,6 +42,7 @@ from puck_tables.world.floors import velocities_under
 from puck_tables.world.lasting import LEADS_ON, NEVER_ENDS, ROUND
 from puck_tables.world.layout import RADIUS
 from puck_tables.world.ledger import NAMES, energies_of, energy_scale, kinetic_of, ledgers_of
+from puck_tables.world.named_pucks import called, pucks_of
 from puck_tables.world.plan import plan_of
 from puck_tables.world.prepare import prepared, with_law_up_to
 from puck_tables.world.record import reactions

@@ -31,9 +31,10 @@ from puck_tables.scene.over_time import largest_factors
 from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.regions import axes_of, load_limit, of_one_shape, rubs_plainly, section_of
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.agreement import frictions_under, is_integrated, pucks_of
+from puck_tables.world.agreement import frictions_under, is_integrated
 from puck_tables.world.engine_state import Engine
 from puck_tables.world.floor_under import floor_of
+from puck_tables.world.named_pucks import pucks_of
 
 INTEGRATED, NOT_HELD = 1.0, 2.0  # see :mod:`puck_tables.world.layout`
 

@@ -10,14 +10,13 @@ from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import (
     TABLE_ERROR,
-    called,
     frictions_under,
     has_closed_forms,
     is_integrated,
-    pucks_of,
     segment_error,
 )
 from puck_tables.world.floors import may_be_mixed
+from puck_tables.world.named_pucks import called, pucks_of
 from puck_tables.world.obstacles import rule_of
 
 _NAMED = 6  # pucks of one way

@@ -56,7 +56,7 @@ from puck_tables.world.layout import (
     RADIUS,
     normal_to,
 )
-from puck_tables.world.lone import model_of
+from puck_tables.world.lone_model import model_of
 from puck_tables.world.segment import GONE, LOOKED_UP, PATH, RIDES, ROOM, START, UNTIL, state_at
 from puck_tables.world.step_ledger import (
     BACK_X,
