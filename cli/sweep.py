@@ -176,7 +176,7 @@ class Whole:
     def refuse_memory(self, sizes: list[int], samples: int | None) -> None:
         """Refuse a map that would not fit in memory, as its format needs it."""
         from puck_tables._core.memory import check_memory
-        from puck_tables.stopping.sweep_work import BYTES_PER_LAUNCH, BYTES_PER_ROW
+        from puck_tables.stopping.stop_sweep import BYTES_PER_LAUNCH, BYTES_PER_ROW
 
         shape = tuple(n for n in sizes if n > 1) if samples is None else (samples,)
         if self.store is not None:

@@ -43,7 +43,7 @@ class Puck(VerbsOfMany):
         a Law
     gyration : radius of gyration about the vertical axis over r, 0.1 to 10; √½ for a homogeneous
         puck, 1 for a ring; with a base in m, left out that of a homogeneous body
-    base : Base, or a text as :func:`puck_tables.contact.base.base_of` takes it, in place of radius
+    base : Base, or its text (:func:`puck_tables.contact.named_base.base_of`), in place of radius
         ``simulate``, ``stop``, ``states`` then integrate (:mod:`puck_tables.motion.base_motion`),
         with Q = hypot(v, kω); what is looked up or differentiated is refused.
     name, colour : in reports and pictures of a scene of several pucks, for which all below is

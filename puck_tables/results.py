@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from puck_tables.result import Result
     from puck_tables.scene.run import Run
     from puck_tables.stopping.aim_at_targets import Aim
+    from puck_tables.stopping.population import StopMap, StopSample
     from puck_tables.stopping.states import States
-    from puck_tables.stopping.stop_map import StopMap, StopSample
     from puck_tables.stopping.stops import Stops
     from puck_tables.table.check import CheckReport
     from puck_tables.trajectory import Trajectory

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import xarray
 
     from puck_tables.contact.laws import Law
-    from puck_tables.stopping.stop_map import StopMap, StopSample
+    from puck_tables.stopping.population import StopMap, StopSample
     from puck_tables.table.table import Table
 
 

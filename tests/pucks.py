@@ -8,7 +8,7 @@ import numpy as np
 
 from puck_tables import Puck
 from puck_tables.stopping.aim_at_targets import Aim
-from puck_tables.stopping.stop_map import StopMap
+from puck_tables.stopping.population import StopMap
 from puck_tables.trajectory import Trajectory
 
 KIND = ("delta", "decel", "radius", "mass", "pressure", "gyration")

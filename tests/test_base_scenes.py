@@ -396,6 +396,36 @@ def test_a_law_that_bends_is_integrated_as_exactly_as_one_that_does_not() -> Non
         assert np.abs(np.subtract(found, other)).max() < 1e-12 * 0.4 * 0.02
 
 
+@pytest.mark.parametrize("turn", [2.0 * math.pi, math.pi])
+def test_where_it_turns_far_away_a_disc_or_half_of_it_is_what_points_sum(turn: float) -> None:
+    size, side = 0.1, 0.0 if turn > 4.0 else 1.0  # the left half of a disc: an arc and a side
+    arc = [0.0, size, 0.0, 0.0, size, 0.5 * math.pi, 0.0, -size, turn]
+    room = np.array([*arc, *(side * np.array([0.0, -size, 0.0, 1.0, 2.0 * size, 0, 0, size, 0]))])
+    law = StribeckLaw(0.3, 0.1, speed=0.3, exponent=2.0)
+    pack = packed_law(*law_moments(law, law.pieces(9.0)[0]))
+    nodes, weights = np.polynomial.legendre.leggauss(60)
+    r = 0.5 * size * (1.0 + nodes[:, None])
+    angle = 0.5 * math.pi + 0.5 * turn * (1.0 + nodes)
+    part = 0.25 * size * turn * r * np.outer(weights, weights)
+    x, y = r * np.cos(angle), r * np.sin(angle)
+    unit = 0.4 * part.sum() * np.array([1.0] * 2 + [size] * 4 + [size**2] * 2)
+    rng = np.random.default_rng(8)
+    for _ in range(40):
+        speed, toward = 10.0 ** rng.uniform(-1.3, 0.3), rng.uniform(0.0, 2.0 * math.pi)
+        w = speed / (size * 10.0 ** rng.uniform(math.log10(6.01), 1.5))
+        ux, uy = speed * math.cos(toward), speed * math.sin(toward)
+        vx, vy = ux - w * y, uy + w * x
+        slip = np.hypot(vx, vy)
+        f = part * law(slip.ravel()).reshape(slip.shape) / slip
+        tx, ty = f * vx, f * vy
+        turning = x * ty - y * tx
+        terms = [tx, ty, tx * x, tx * y, ty * x, ty * y, turning * x, turning * y]
+        truth = np.array([term.sum() for term in terms])
+        last = len(room) if side else len(arc)
+        found = np.array(law_sums(room, 0, last, size, pack, ALIKE, ux, uy, w))
+        assert (np.abs(found - truth) < 1e-10 * unit).all(), (speed, w)
+
+
 @pytest.mark.parametrize("axes", [ALIKE, Ellipse(0.6, 0.05, 0.8, 0.6)])
 def test_arrays_give_what_the_kernel_gives_before_it_is_compiled(axes: Ellipse) -> None:
     def smooth(u: np.ndarray) -> np.ndarray:

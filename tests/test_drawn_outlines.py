@@ -9,7 +9,7 @@ import pytest
 
 import puck_tables as pt
 from puck_tables._core.drawn_outlines import outlines_of
-from puck_tables.contact.base import base_of
+from puck_tables.contact.named_base import base_of
 
 pytest.importorskip("svgelements")
 PAGE = '<svg xmlns="http://www.w3.org/2000/svg" width="20cm" height="100mm" viewBox="0 0 400 200">'

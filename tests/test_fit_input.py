@@ -182,7 +182,7 @@ def test_a_start_beyond_the_range_is_put_inside():
     found = pt.fit(TRACK, PUCK)
     start = found.estimate.x.copy()
     start[found.estimate.problem.names.index((-1, "delta"))] = -0.4
-    again = estimate(found.estimate.problem, start, found.noise_known)
+    again = estimate(found.estimate.problem, start)
     np.testing.assert_allclose(again.x, found.estimate.x, rtol=1e-5, atol=1e-6)
 
 

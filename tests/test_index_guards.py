@@ -24,9 +24,9 @@ from puck_tables.motion.body import body_of
 from puck_tables.stopping.launch_arrays import launches_in
 from puck_tables.stopping.launch_lookup import fill_launch_lookup
 from puck_tables.stopping.lookup import stops_kernel
-from puck_tables.stopping.section_lookup import fill_section_stops
 from puck_tables.stopping.similarity_lookup import LAUNCH_COLUMNS, LAUNCH_ROWS
 from puck_tables.stopping.state_lookup import PUCK_ROWS, fill_states_at
+from puck_tables.stopping.stop_section import fill_section_stops
 from puck_tables.table.friction_section import friction_section
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.tradeoff.resultant_methods import fill_bicubic, graded_coefficients

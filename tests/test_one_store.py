@@ -21,7 +21,7 @@ from puck_tables._core import partial_files
 from puck_tables._core.safe_write import write_bytes
 from puck_tables.bulk import store_folder
 from puck_tables.errors import InputError, OutputError, PuckError
-from puck_tables.stopping.sweep_work import StopWork
+from puck_tables.stopping.stop_sweep import StopWork
 
 zarr = pytest.importorskip("zarr")
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="locks of another kind")
@@ -72,7 +72,7 @@ def slow(self, key, content):
     put(self, key, content)
     time.sleep(draw.choice([0.0, 0.0, 0.002, 0.02]))
 Place.put = slow
-from puck_tables.stopping.sweep_work import StopWork
+from puck_tables.stopping.stop_sweep import StopWork
 StopWork.block = 300
 try:
     PUCK.sweep(**grid({which}), threads={threads}, store="m.zarr", overwrite={overwrite})

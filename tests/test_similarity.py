@@ -17,8 +17,8 @@ from puck_tables import Table, states, stop
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.motion import limit_ratio
 from puck_tables.stopping import similarity
-from puck_tables.stopping.axes import SlipAxis, height_polynomials, heights, ratio_at
 from puck_tables.stopping.exact import exact_stops
+from puck_tables.stopping.lookup import SlipAxis, height_polynomials, heights, ratio_at
 from puck_tables.stopping.similarity import limits, regular_parts, regular_slopes
 from puck_tables.stopping.similarity_lookup import STOP_X, STOP_Y
 from puck_tables.stopping.stop_check import launch_points, launches_at, looked_up, tabulate

@@ -12,8 +12,8 @@ from boards import draw, draw_pucks, puck_at
 import puck_tables as pt
 from puck_tables._core import executor
 from puck_tables.scene.run import Event
+from puck_tables.world import bench
 from puck_tables.world import engine_state as g
-from puck_tables.world import stored
 
 SIDES = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
 
@@ -318,7 +318,7 @@ def test_neither_how_many_nor_how_many_cores_changes_a_bit(monkeypatch: pytest.M
 
 
 def test_more_than_a_bench_holds_is_played_alone(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(stored, "ROWS", 0)
+    monkeypatch.setattr(bench, "ROWS", 0)
     alone, calls = pt.Worlds._play_alone, []
     monkeypatch.setattr(
         pt.Worlds, "_play_alone", lambda *given: calls.append(given[2]) or alone(*given)
@@ -331,7 +331,7 @@ def test_more_than_a_bench_holds_is_played_alone(monkeypatch: pytest.MonkeyPatch
 
 
 def test_lines_passed_more_often_than_a_bench_notes(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(stored, "_FOUND", 1)
+    monkeypatch.setattr(bench, "_FOUND", 1)
     pair = Pair(table(), 3)
     assert pair.strike(1, np.arange(3), strikes(3), None)
     assert pair.advance(1.0)

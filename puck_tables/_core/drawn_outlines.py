@@ -31,14 +31,9 @@ def outlines_of(entries: Any) -> list[FloatArray]:
     In a drawing x goes to the right and y upwards from the lower left corner of the page; curves
     are taken as chords, and said to be.
 
-    Raises
-    ------
-    InputError
-        If a file cannot be read, or of a drawing nothing, or an open line, or no size in mm, cm or
-        in is given.
+    Raises InputError if a file cannot be read, or of a drawing nothing, or an open line, or no size
+    in mm, cm or in is given.
 
-    Examples
-    --------
     >>> import tempfile
     >>> from pathlib import Path
     >>> drawing = ('<svg xmlns="http://www.w3.org/2000/svg" width="8cm" height="4cm" '

@@ -62,14 +62,8 @@ def in_slices(work: Callable[[int, int], None], items: int) -> None:
 
     Compiled loops do not hear Ctrl-C; between the slices it is heard.
 
-    Parameters
-    ----------
-    work : callable (start, stop)
-        Must not depend on the cutting.
-    items : int
+    ``work``: callable (start, stop), must not depend on the cutting; ``items``: int.
 
-    Examples
-    --------
     >>> seen = []
     >>> in_slices(lambda a, b: seen.append((a, b)), 6)
     >>> seen[0], seen[-1][1]
@@ -89,10 +83,7 @@ def in_slices(work: Callable[[int, int], None], items: int) -> None:
 def keep_on() -> None:
     """Do nothing, or end a chunk whose run was given up.
 
-    Raises
-    ------
-    KeyboardInterrupt
-        In a thread of :func:`run_chunks` that is not to finish its work.
+    Raises KeyboardInterrupt in a thread of :func:`run_chunks` that is not to finish its work.
     """
     given_up = getattr(_this_thread, "given_up", None)
     if given_up is not None and given_up.is_set():

@@ -45,14 +45,9 @@ def user_cache() -> Path | None:
 def make_private(folder: Path) -> None:
     """Make a folder, and those above it, that only this user can open; refuse any other.
 
-    Raises
-    ------
-    OSError
-        If it cannot be made, or others could put files into it or another in its place; its
-        ``strerror`` says which folder, and what to do.
+    Raises OSError if it cannot be made, or others could put files into it or another in its place;
+    its ``strerror`` says which folder, and what to do.
 
-    Examples
-    --------
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as place:
     ...     make_private(Path(place, "kept"))
@@ -74,9 +69,7 @@ def refuse_shared(folder: Path) -> None:
     Those that are not there yet are left out.  Above the folder itself, folders of root and such as
     /tmp, where nobody can move what belongs to others, are safe.
 
-    Raises
-    ------
-    OSError
+    Raises OSError.
     """
     if not hasattr(os, "geteuid"):  # rights are kept in another way there
         return

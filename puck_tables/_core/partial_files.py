@@ -43,10 +43,7 @@ def forget(part: Path) -> None:
 def hold(descriptor: int) -> None:
     """Hold an open part, a file or a folder, as long as it is open.
 
-    Raises
-    ------
-    OSError
-        If another took it for one of the dead before it was held.
+    Raises OSError if another took it for one of the dead before it was held.
     """
     if fcntl is not None:
         with contextlib.suppress(OSError):  # a file system without locks
@@ -130,10 +127,7 @@ def remove_own() -> None:
 def alone_in(folder: Path, patience: float = 30.0) -> Iterator[None]:
     """Nobody else of this program renames stores in the folder meanwhile, on this machine.
 
-    Raises
-    ------
-    OSError
-        If the folder cannot be opened, or another holds it for so long, s.
+    Raises OSError if the folder cannot be opened, or another holds it for so long, s.
     """
     if fcntl is None:
         yield

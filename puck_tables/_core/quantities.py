@@ -136,11 +136,8 @@ def with_names(headings: Sequence[str], columns: Sequence[InputColumn]) -> list[
 def unit_of(path: str, text: str, column: InputColumn) -> tuple[str, float]:
     """The unit in a heading as it is written, and its size.
 
-    Raises
-    ------
-    InputError
-        If it is none of the column's kind: what stands in brackets, or behind the name and is one
-        of another kind; or if there is a factor beside it.
+    Raises InputError if it is none of the column's kind: what stands in brackets, or behind the
+    name and is one of another kind; or if there is a factor beside it.
     """
     if column.kind != "any" and (factor := _FACTOR.search(text)):
         raise InputError(

@@ -59,10 +59,8 @@ class Numbers:
     def refuse_unless_ascending(self, what: str, equal: bool = False) -> None:
         """Refuse a first column that does not ascend, or of one row alone.
 
-        Parameters
-        ----------
-        what : what stands in it, for the message: 'the speeds'
-        equal : whether neighbours may be equal
+        ``what``: what stands in it, for the message: 'the speeds'; ``equal``: whether neighbours
+        may be equal.
         """
         first = self.rows[:, 0]
         if first.size < 2:

@@ -19,18 +19,9 @@ from puck_tables.errors import InputError
 def read_whole(path: str | Path, largest: int) -> bytes:
     """The bytes of a file.
 
-    Parameters
-    ----------
-    path : path of a regular file
-    largest : how many bytes it may have
+    ``path``: path of a regular file; ``largest``: how many bytes it may have.  Raises OSError with
+    a ``strerror`` that says why: missing, a folder, pipe or device, too large.
 
-    Raises
-    ------
-    OSError
-        With a ``strerror`` that says why: missing, a folder, pipe or device, too large.
-
-    Examples
-    --------
     >>> read_whole("/dev/zero", 100)
     Traceback (most recent call last):
     ...
@@ -101,20 +92,9 @@ _OTHERS = (  # how files begin that are none of ours
 def beginning(path: str | Path, largest: int) -> bytes:
     """How a file begins that may hold a table.
 
-    Parameters
-    ----------
-    path : the file
-    largest : bytes that it may have
+    ``path``: the file; ``largest``: bytes that it may have.  Raises InputError if it is empty, or
+    of a kind in which no table stands; OSError if it cannot be read.
 
-    Raises
-    ------
-    InputError
-        If it is empty, or of a kind in which no table stands.
-    OSError
-        If it cannot be read.
-
-    Examples
-    --------
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     _ = Path(folder, "a.csv").write_text("t,x,y")

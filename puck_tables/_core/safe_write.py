@@ -26,21 +26,10 @@ def as_utf8(text: str) -> str:
 def check_target(path: str | Path, overwrite: bool = False) -> Path:
     """Refuse an output that could not be written later, before any work is done.
 
-    Parameters
-    ----------
-    path : path of the output file
-    overwrite : whether an existing file may be replaced
+    ``path``: path of the output file; ``overwrite``: whether an existing file may be replaced.
+    Raises InputError if it is no name; OutputError if the file exists (without ``overwrite``), is a
+    folder, or its folder is missing or cannot be written.
 
-    Raises
-    ------
-    InputError
-        If it is no name.
-    OutputError
-        If the file exists (without ``overwrite``), is a folder, or its folder is missing or
-        cannot be written.
-
-    Examples
-    --------
     >>> check_target("/nowhere/a.csv")
     Traceback (most recent call last):
     ...
@@ -73,13 +62,9 @@ def check_target(path: str | Path, overwrite: bool = False) -> Path:
 def write_bytes(path: str | Path, content: bytes, overwrite: bool = False) -> None:
     """Write a whole file under a temporary name, then rename it: never a half-written file.
 
-    Raises
-    ------
-    OutputError
-        As :func:`check_target`, and when the disk is full; the target is then as it was.
+    Raises OutputError as :func:`check_target`, and when the disk is full; the target is then as it
+    was.
 
-    Examples
-    --------
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     write_bytes(folder + "/a.txt", b"puck")

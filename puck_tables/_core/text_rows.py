@@ -201,19 +201,10 @@ def _slow(
 def header_of(form: TextForm, names: Callable[[list[str]], bool]) -> list[list[str]]:
     """The rows of names over the columns of a table; the last has their units in brackets.
 
-    Parameters
-    ----------
-    form : how it is written
-    names : whether cells are names of columns: those of the last comment may be, where there are no
-        others
+    ``form``: how it is written; ``names``: whether cells are names of columns: those of the last
+    comment may be, where there are no others.  Returns list of list of str: each as long as the
+    table is wide; empty if there are none.
 
-    Returns
-    -------
-    list of list of str
-        Each as long as the table is wide; empty if there are none.
-
-    Examples
-    --------
     >>> form = TextForm("utf-8", ",", False, [["t", "x"], ["s", "cm"]], [], [["0", "1"]], 2, 2)
     >>> header_of(form, bool)
     [['t [s]', 'x [cm]']]

@@ -68,13 +68,8 @@ _BAR = re.compile(rf"\s*({_NUMBER})\s*(?:px|pixels?)\s*=\s*(.+)")
 def unit_word(text: str, kind: str) -> str:
     """The usual name of a unit, '' if there is none.
 
-    Parameters
-    ----------
-    text : as somebody wrote it
-    kind : length, time or angle
+    ``text``: as somebody wrote it; ``kind``: length, time or angle.
 
-    Examples
-    --------
     >>> unit_word("Seconds", "time"), unit_word("pixels", "length"), unit_word("m", "time")
     ('s', 'px', '')
     >>> unit_word("MM", "length"), unit_word("Km", "length"), unit_word("Mm", "length")
@@ -149,13 +144,8 @@ cm, mm, um, km, in, ft, yd, px
 def quantity(text: str, unit: str) -> float | None:
     """A number with a unit behind it, such as '25.4mm', in an SI unit; None for anything else.
 
-    Parameters
-    ----------
-    text : as somebody wrote it
-    unit : the SI unit in which it is wanted, of :data:`KIND_OF`
+    ``text``: as somebody wrote it; ``unit``: the SI unit in which it is wanted, of :data:`KIND_OF`.
 
-    Examples
-    --------
     >>> quantity("25.4mm", "m"), quantity("2 km/h", "m/s"), quantity("180deg", "rad")
     (0.0254, 0.5555555555555556, 3.141592653589793)
     >>> quantity("25.4", "m"), quantity("25.4 kg", "m")
@@ -185,13 +175,8 @@ def measured_kinds(text: str) -> dict[str, float]:
 def measured(text: str, unit: str) -> float:
     """A number in an SI unit, or with another unit behind it.
 
-    Raises
-    ------
-    ValueError
-        If it is none.
+    Raises ValueError if it is none.
 
-    Examples
-    --------
     >>> measured("1e-3", "m"), measured("2mm", "m")
     (0.001, 0.002)
     """

@@ -95,13 +95,8 @@ def named(method: str, setting: str) -> str:
 def errors_from_csv(text: str) -> tuple[MeasuredMethod, ...]:
     """The front from what ``puck tradeoff -o front.csv`` saved.
 
-    Raises
-    ------
-    TableError
-        If the text is not such a file.
+    Raises TableError if the text is not such a file.
 
-    Examples
-    --------
     >>> errors_from_csv("question,method")
     ()
     """

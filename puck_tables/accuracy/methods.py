@@ -77,13 +77,8 @@ MEASURED = {scheme.name: scheme for scheme in (LOOK_UP, *INTEGRATED)}
 def method_named(name: str | None, among: Iterable[Method] = METHODS) -> Method | None:
     """The method that a user asks for; None where any will do.
 
-    Raises
-    ------
-    InputError
-        If there is none of that name.
+    Raises InputError if there is none of that name.
 
-    Examples
-    --------
     >>> method_named("rk4")
     <Method.RK4: 'rk4'>
     """

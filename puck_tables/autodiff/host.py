@@ -10,14 +10,17 @@ import numpy.typing as npt
 
 from puck_tables.contact.laws import HOMOGENEOUS, Law
 from puck_tables.errors import InputError
-from puck_tables.stopping.by_friction import (
+from puck_tables.stopping.jacobian import (
     DEFAULT_DECEL,
     DEFAULT_DELTA,
     DEFAULT_GRAVITY,
     DEFAULT_HEIGHT,
+    LAUNCH_NAMES,
+    MOMENT_NAMES,
+    STATE_NAMES,
+    STOP_NAMES,
     refuse_both,
 )
-from puck_tables.stopping.jacobian import LAUNCH_NAMES, MOMENT_NAMES, STATE_NAMES, STOP_NAMES
 from puck_tables.stopping.states import states
 from puck_tables.stopping.stops import stop
 

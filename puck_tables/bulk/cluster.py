@@ -177,14 +177,8 @@ def _wait_for_workers(client: Any, otherwise: str) -> None:
 def client_of(name_or_place: str) -> Iterator[Any]:
     """A client of a cluster, which is closed again, as is a cluster of one's own.
 
-    Parameters
-    ----------
-    name_or_place : see :func:`checked_address`
-
-    Raises
-    ------
-    ClusterError
-        If the scheduler cannot be reached, or has no workers.
+    ``name_or_place``: see :func:`checked_address`.  Raises ClusterError if the scheduler cannot be
+    reached, or has no workers.
     """
     where = checked_address(name_or_place)
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
@@ -212,10 +206,7 @@ def client_of(name_or_place: str) -> Iterator[Any]:
 def _security(where: str) -> Any:
     """What Dask's configuration says of certificates, for an address.
 
-    Raises
-    ------
-    ClusterError
-        If they are needed and missing.
+    Raises ClusterError if they are needed and missing.
     """
     try:
         found = Security()

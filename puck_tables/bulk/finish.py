@@ -110,9 +110,7 @@ class Doing:
 def finish(work: Work, how: Doing) -> Any:
     """The result of a work; with a store a :class:`Stored` one.
 
-    Raises
-    ------
-    InputError, OutputError, MissingExtraError, ClusterError
+    Raises InputError, OutputError, MissingExtraError, ClusterError.
     """
     threads, store, cluster = how.threads, how.store, how.cluster
     checked_progress(how.progress)

@@ -208,12 +208,8 @@ def spread_named(text: str, unit: str = "") -> Spread:
 
     ``unit``: the SI unit of what scatters; another may stand behind each number.
 
-    Raises
-    ------
-    InputError
+    Raises InputError.
 
-    Examples
-    --------
     >>> spread_named("uniform:0.9:1.1"), spread_named("normal:30rpm:1rpm", "rad/s").mean > 3.14
     (Uniform(low=0.9, high=1.1), True)
     """

@@ -120,11 +120,8 @@ class Store:
     def do(self, block: int) -> Tally:
         """Compute a block and keep it, unless it is there, whole; the tally of its codes.
 
-        Raises
-        ------
-        OutputError
-            If the disk does not take it, or the store belongs to another work by now; what was
-            kept before stays.
+        Raises OutputError if the disk does not take it, or the store belongs to another work by
+        now; what was kept before stays.
         """
         self.place.refuse_lost()
         start, stop = self.blocks.run(block)
@@ -189,10 +186,7 @@ class Store:
     def read(self) -> Columns:
         """The columns of the whole shape.
 
-        Raises
-        ------
-        InputError
-            If a block is missing or damaged.
+        Raises InputError if a block is missing or damaged.
         """
         result = self.work.columns_of(self.work.size)
         for block in range(self.blocks.count):
@@ -213,10 +207,7 @@ class Store:
 def by_threads(store: Store, threads: int | None, progress: Progress | None) -> Tally:
     """Do all blocks of a store, on the threads of this process.
 
-    Raises
-    ------
-    OutputError
-        If the disk does not take them.
+    Raises OutputError if the disk does not take them.
     """
     checked_threads(threads)
     blocks, done = store.blocks, 0

@@ -78,10 +78,8 @@ class Place:
     def put(self, key: str, content: bytes | memoryview) -> None:
         """Write a file, whole or not at all.
 
-        Raises
-        ------
-        OutputError
-            If the disk does not take it, or the store belongs to another work by now.
+        Raises OutputError if the disk does not take it, or the store belongs to another work by
+        now.
         """
         try:
             self._write(key, content)
@@ -110,9 +108,7 @@ class Place:
     def refuse_lost(self) -> None:
         """Refuse to go on for a work that the store does not belong to any more.
 
-        Raises
-        ------
-        OutputError
+        Raises OutputError.
         """
         if not self.is_mine:
             with _renaming(self.path):  # it may be renamed at this moment
@@ -134,10 +130,8 @@ class Place:
     def complete(self) -> None:
         """Let it take the place of the store that it replaces, if it does.
 
-        Raises
-        ------
-        OutputError
-            If it belongs to another work by now, or what is there is no store any more.
+        Raises OutputError if it belongs to another work by now, or what is there is no store any
+        more.
         """
         with _renaming(self.path) as aside:
             self._refuse_lost()
@@ -215,10 +209,7 @@ def taken(path: Path, digest: str, overwrite: bool, start: Content) -> Place:
 def shared(path: Path, digest: str) -> Place:
     """The place of a work that another process has taken.
 
-    Raises
-    ------
-    OutputError
-        If it is not there.
+    Raises OutputError if it is not there.
     """
     for folder in (sibling_of(path), path):
         place = Place(path, folder) if folder.is_dir() else None
@@ -230,10 +221,7 @@ def shared(path: Path, digest: str) -> Place:
 def _at(path: Path, folder: Path) -> Place | None:
     """The store there, if anything is.
 
-    Raises
-    ------
-    InputError
-        If it is no store of this program.
+    Raises InputError if it is no store of this program.
     """
     if not os.path.lexists(folder):
         return None

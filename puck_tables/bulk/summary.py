@@ -191,12 +191,8 @@ def chance_of(in_region: int, samples: int) -> Chance:
 def inside_of(region: npt.ArrayLike, x: FloatArray, y: FloatArray) -> Bins:
     """Whether places (n,) lie inside a region, see :meth:`Summary.chance`.
 
-    Raises
-    ------
-    InputError
+    Raises InputError.
 
-    Examples
-    --------
     >>> inside_of((0.0, 0.0, 1.0), np.array([0.5, 2.0]), np.zeros(2)).tolist()
     [True, False]
     """

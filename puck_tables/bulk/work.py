@@ -134,10 +134,7 @@ class Tally:
 def in_memory(work: Work, threads: int | None, progress: Progress | None) -> Result:
     """The result of a work, in memory.
 
-    Raises
-    ------
-    InputError
-        If nothing came of it.
+    Raises InputError if nothing came of it.
     """
     checked_threads(threads)
     tell = work.prepared(threads, progress)
@@ -153,12 +150,8 @@ def in_memory(work: Work, threads: int | None, progress: Progress | None) -> Res
 def same_program(version: tuple[str, ...], where: str) -> None:
     """Refuse another program than the one that a work was made by.
 
-    Raises
-    ------
-    InputError
+    Raises InputError.
 
-    Examples
-    --------
     >>> same_program(program(), "worker 1")
     """
     if tuple(version) != program():

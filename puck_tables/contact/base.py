@@ -7,8 +7,8 @@ linear over it, see :mod:`puck_tables.kernels.base_friction`.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Self
 
@@ -20,22 +20,12 @@ from puck_tables._core.arrays import (
     finite_array,
     instance,
     listed,
-    number_in,
     positive,
-    shown,
 )
-from puck_tables._core.doubts import OF_A_PUCK, question
-from puck_tables._core.drawn_outlines import SUFFIXES, outlines_of
 from puck_tables._core.own_folder import say
-from puck_tables._core.safe_read import is_number
-from puck_tables._core.safe_write import as_utf8
 from puck_tables.contact.outlines import crossing, inside, overlap
 from puck_tables.errors import ContactError, InputError
 
-NAMES = (
-    "box:LENGTHxWIDTH, disc:RADIUS, annulus:RADIUSxINNER, polygon:X,Y;X,Y;X,Y, feet:RADIUS;X,Y;X,Y "
-    "or ;X,Y,LOAD (m, or with units), a CSV of x, y or a drawing (SVG)"
-)
 MOST_CORNERS = 10_000  # of an outline: all pairs of its sides are looked at for crossings
 _RIM_POINTS = 4096  # of a disc, at which its pressure is looked at: it errs by 3e-7 of it
 _CENTRED = 1e-9  # of the reach: the centre of mass is the middle of the base
@@ -50,7 +40,7 @@ class Base:
     """The base of a puck: what of it touches the floor.
 
     Made by :meth:`box`, :meth:`polygon`, :meth:`disc`, :meth:`annulus`, :meth:`feet`,
-    :meth:`union`, or from a text by :func:`base_of`.
+    :meth:`union`, or from a text by :func:`puck_tables.contact.named_base.base_of`.
 
     Parameters
     ----------
@@ -59,7 +49,7 @@ class Base:
     discs : tuple of (x, y, radius, weight), m; weight −1: a hole, 1: pressed as all else is; of a
         foot with a load of its own how much harder
     centre : (x, y), m, of mass; left out: the middle of the area
-    name : as :func:`base_of` takes it, or a short text
+    name : as a text of it is, or a short one
 
     Raises
     ------
@@ -376,100 +366,3 @@ def _corners_of(corners: npt.ArrayLike, name: str, sense: float) -> Corners:
             say(f"{name}: its corners stand clockwise; they are taken the other way round")
         found = found[::-1]
     return found
-
-
-def base_of(text: str) -> Base:
-    """The base of a text: of a name with lengths, or of a file of corners, or a drawing.
-
-    Parameters
-    ----------
-    text : str
-        box:LENGTHxWIDTH, disc:RADIUS, annulus:RADIUSxINNER, polygon:X,Y;X,Y;X,Y by its corners,
-        feet:RADIUS;X,Y;X,Y by their places (X,Y,LOAD with loads of their own), in m or with units
-        (box:20cmx10cm), or the path of a CSV file with columns x and y or of a drawing (SVG, of an
-        outline and its holes); ``@X,Y`` after it is the centre of mass.
-
-    Raises
-    ------
-    InputError
-        If it is not known, or a number is out of range.
-    ContactError
-        If part of it would lift.
-
-    Examples
-    --------
-    >>> round(base_of("box:20cmx10cm@1cm,0").middle[0], 6)
-    0.01
-    >>> round(base_of("polygon:0,0;20cm,0;0,10cm").area, 6)
-    0.01
-    """
-    instance("base", text, str)
-    shape, at, place = text.rpartition("@") if "@" in text else (text, "", "")
-    centre = None
-    if at:
-        centre = _place(f"base {shown(text)}: the centre of mass is @X,Y, got @{place}", place)
-    if shape.lower().endswith(SUFFIXES):
-        corners, *holes = outlines_of(shape)
-        found = Base.polygon(corners, holes=holes, centre=centre, name=as_utf8(text))
-        question("base", found.reach, "m", OF_A_PUCK)
-        return found
-    kind, _, sizes = shape.partition(":")
-    if kind in ("polygon", "feet"):
-        return _by_places(kind, sizes, text, centre)
-    makers: dict[str, tuple[Callable[..., Base], int]]
-    makers = {"box": (Base.box, 2), "disc": (Base.disc, 1), "annulus": (Base.annulus, 2)}
-    if kind not in makers:
-        raise InputError(f"no base is called {shown(text)}: choose {NAMES}")
-    make, count = makers[kind]
-    parts = sizes.split("x")
-    lengths = [_length(f"base {shape}", part) for part in parts] if len(parts) == count else []
-    if not lengths:
-        raise InputError(
-            f"base {shown(text)}: {kind} takes {count} lengths, an x between; choose {NAMES}"
-        )
-    found = make(*lengths, centre=centre)
-    return replace(found, name=text) if at else found
-
-
-def _by_places(
-    kind: str, sizes: str, text: str, centre: tuple[float, float] | None
-) -> Base:  # fmt: skip
-    """A polygon, or feet, of a text of places."""
-    first, *rest = sizes.split(";")
-    each = "its corners are X,Y;X,Y;X,Y"
-    if kind == "feet":
-        each = "feet are RADIUS;X,Y;X,Y, or each X,Y,LOAD"
-    wrong = f"base {shown(text)}: {each}, in m or with units"
-    if kind == "polygon":
-        places = [_place(wrong, part) for part in (first, *rest)]
-        return Base.polygon(places, centre=centre, name=text)
-    if not rest:
-        raise InputError(wrong)
-    radius = _length(f"base {kind}", first)
-    parts = [part.split(",") for part in rest]
-    loads = None
-    if all(len(one) == 3 for one in parts):
-        given = [one.pop() for one in parts]
-        loads = [
-            float(one) if is_number(one) else number_in("a load of a foot", one, "N")
-            for one in given
-        ]
-    places = [_place(wrong, ",".join(one)) for one in parts]
-    found = Base.feet(places, radius, centre=centre, loads=loads)
-    return replace(found, name=text)
-
-
-def _place(wrong: str, text: str) -> tuple[float, float]:
-    """A place of a text X,Y, m, or what is wrong with it."""
-    numbers = [_length("a place of the base", part) for part in text.split(",")]
-    if len(numbers) != 2:
-        raise InputError(wrong)
-    return numbers[0], numbers[1]
-
-
-def _length(name: str, text: str) -> float:
-    """A length, m, with or without a unit; one without that is no size of a puck is questioned."""
-    if not is_number(text):
-        return number_in(name, text, "m")
-    question("base", float(text), "m", OF_A_PUCK)
-    return float(text)

@@ -281,13 +281,8 @@ NAMED: dict[str, type[FrictionLaw]] = {
 def law_of_numbers(kind: str, numbers: list[float]) -> FrictionLaw:
     """A law by its name and its numbers in their order, as a file has them.
 
-    Raises
-    ------
-    InputError
-        If it is none.
+    Raises InputError if it is none.
 
-    Examples
-    --------
     >>> law_of_numbers("power", [0.1, 1.0, 0.0])
     PowerLaw(a=0.1, exponent=1.0, b=0.0, kind='power')
     """

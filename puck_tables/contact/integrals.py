@@ -54,13 +54,8 @@ class SlipDirection(NamedTuple):
 def checked_phi(phi: npt.ArrayLike) -> FloatArray:
     """``phi`` as an array of angles, refused unless all lie in [−π/2, π/2].
 
-    Raises
-    ------
-    InputError
-        If an angle is not a real number or lies outside [−π/2, π/2].
+    Raises InputError if an angle is not a real number or lies outside [−π/2, π/2].
 
-    Examples
-    --------
     >>> float(checked_phi(0.5))
     0.5
     """
@@ -77,17 +72,9 @@ def checked_phi(phi: npt.ArrayLike) -> FloatArray:
 def slip_direction(phi: npt.ArrayLike) -> SlipDirection:
     """The slip direction of an angle φ = atan2(rω, v).
 
-    Parameters
-    ----------
-    phi : array_like, radians, any shape, in [−π/2, π/2]
+    ``phi``: array_like, radians, any shape, in [−π/2, π/2].  Raises InputError if an angle is not a
+    real number or lies outside [−π/2, π/2].
 
-    Raises
-    ------
-    InputError
-        If an angle is not a real number or lies outside [−π/2, π/2].
-
-    Examples
-    --------
     >>> float(slip_direction(0.5).ratio.round(12))
     0.546302489844
     """

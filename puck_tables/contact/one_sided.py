@@ -95,15 +95,8 @@ def critical_delta(phi: npt.ArrayLike) -> FloatArray:
 def checked_height(delta: npt.ArrayLike) -> FloatArray:
     """``delta`` as an array, refused where the puck tips over.
 
-    Raises
-    ------
-    InputError
-        If a height is not finite or negative.
-    ContactError
-        If a height is 4 or more.
+    Raises InputError if a height is not finite or negative; ContactError if a height is 4 or more.
 
-    Examples
-    --------
     >>> checked_height(4.0)
     Traceback (most recent call last):
     ...
@@ -196,25 +189,10 @@ def balance(phi: FloatArray, delta: FloatArray) -> tuple[Resultants, Chord]:
 
     In full contact it is the linear law, by another way than closed forms.
 
-    Parameters
-    ----------
-    phi : array (n,), radians, in (−π/2, π/2)
-    delta : array (n,), 0 < δ
+    ``phi``: array (n,), radians, in (−π/2, π/2); ``delta``: array (n,), 0 < δ.  Returns Resultants,
+    Chord: arrays (n,); the bearing γ is that for φ ≥ 0.  Raises ContactError where the balance is
+    not unique; AccuracyError if it is not solved; not known to happen for δ < 4.
 
-    Returns
-    -------
-    Resultants, Chord
-        Arrays (n,); the bearing γ is that for φ ≥ 0.
-
-    Raises
-    ------
-    ContactError
-        Where the balance is not unique.
-    AccuracyError
-        If it is not solved; not known to happen for δ < 4.
-
-    Examples
-    --------
     >>> rho, chord = balance(np.array([0.9]), np.array([2.0]))
     >>> float(rho.spin[0].round(7)), float(chord.offset[0].round(6))
     (0.8430539, -0.635143)
@@ -232,18 +210,9 @@ def balance(phi: FloatArray, delta: FloatArray) -> tuple[Resultants, Chord]:
 def balanced(direction: SlipDirection, delta: FloatArray) -> tuple[Resultants, Chord]:
     """Resultants and chord of one-sided contact where the balance of moments is unique.
 
-    Parameters
-    ----------
-    direction : SlipDirection
-    delta : array (n,), 0 < δ
+    ``direction``: SlipDirection; ``delta``: array (n,), 0 < δ.  Raises AccuracyError if it is not
+    solved.
 
-    Raises
-    ------
-    AccuracyError
-        If it is not solved.
-
-    Examples
-    --------
     >>> rho, _ = balanced(slip_direction(np.array([0.9])), np.array([2.0]))
     >>> float(rho.spin[0].round(7))
     0.8430539

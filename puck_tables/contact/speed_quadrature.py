@@ -145,9 +145,7 @@ def speed_resultants(
 def refuse_lifting(tilt: FloatArray, height_ratio: float) -> None:
     """Refuse a load that tilts by more than 1: part of the base would have to be pulled down.
 
-    Raises
-    ------
-    ContactError
+    Raises ContactError.
     """
     if not (tilt <= 1.0 + CONTACT_SLACK).all():
         raise ContactError(

@@ -36,13 +36,9 @@ _CHUNK = 64  # points at once: their rules fit the cache
 def disc_integrals(phi: npt.ArrayLike, radius: FloatArray) -> FloatArray:
     """Shares of p_a, p_b, p_d of uniform discs, π/a² of their load on each, (3, …).
 
-    Parameters
-    ----------
-    phi : array_like, radians, in [−π/2, π/2]
-    radius : array, in (0, 1], broadcast against ``phi``
+    ``phi``: array_like, radians, in [−π/2, π/2]; ``radius``: array, in (0, 1], broadcast against
+    ``phi``.
 
-    Examples
-    --------
     >>> disc_integrals(0.0, np.array([1.0, 0.5])).round(6).tolist()
     [[1.0, 0.25], [0.25, 0.015625], [0.25, 0.015625]]
     """
@@ -59,18 +55,9 @@ def disc_integrals(phi: npt.ArrayLike, radius: FloatArray) -> FloatArray:
 def annulus_integrals(phi: npt.ArrayLike, inner: float) -> PatchIntegrals:
     """The five integrals of a washer with uniform pressure between ``inner`` and 1.
 
-    Parameters
-    ----------
-    phi : array_like, radians, in [−π/2, π/2]
-    inner : float, in (0, 1)
+    ``phi``: array_like, radians, in [−π/2, π/2]; ``inner``: float, in (0, 1).  Returns
+    PatchIntegrals: error 1e-15/(1 − inner).
 
-    Returns
-    -------
-    PatchIntegrals
-        Error 1e-15/(1 − inner).
-
-    Examples
-    --------
     >>> float(annulus_integrals(0.0, 0.8).b.round(12))  # ⟨x²⟩ = (1 + 0.8²)/4
     0.41
     """

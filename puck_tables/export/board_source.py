@@ -31,6 +31,7 @@ from puck_tables.scene.pucks_and_posts import called_line
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import engine_state as g
 from puck_tables.world import setting_off
+from puck_tables.world.bench import FOUND_COLUMNS, LACKS_PIECES, LED, LET_GO
 from puck_tables.world.engine_state import EVENTS
 from puck_tables.world.lasting import LEADS_ON, NEVER_ENDS
 from puck_tables.world.layout import LIGHTNESS, RADIUS
@@ -46,7 +47,6 @@ from puck_tables.world.shipped import (
     see_shipped,
     shipped,
 )
-from puck_tables.world.stored import FOUND_COLUMNS, LACKS_PIECES, LED, LET_GO
 from puck_tables.world.worlds import Worlds
 
 _MACHINE, _SYSTEM = "wasm32-unknown-unknown", "wasm32-wasi"  # of LLVM, and of the libraries

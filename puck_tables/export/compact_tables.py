@@ -2,7 +2,7 @@
 
 What the stop table holds is fitted again, on either side of φ = π/4, with the degree, the cells,
 the powers and the digits that cost least.  Of a place on the curve, 2k/(1 + k) = q² with
-q = ξ (2 − ξ): a root less than on the axis of the stop table (:mod:`puck_tables.stopping.axes`),
+q = ξ (2 − ξ): a root less than on the axis of the stop table (:mod:`puck_tables.stopping.lookup`),
 and fewer cells for all errors that are exported but the smallest.  The B-splines are a partition of
 unity: coefficients rounded to whole quanta err by no more than half a quantum.
 """
@@ -21,7 +21,7 @@ from scipy.interpolate import BSpline, make_interp_spline
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import AccuracyError
-from puck_tables.stopping.axes import heights, series_to_powers
+from puck_tables.stopping.lookup import heights, series_to_powers
 from puck_tables.stopping.stop_table import StopTable
 
 DEGREES = range(3, 8)

@@ -21,7 +21,7 @@ from puck_tables.export.compact_tables import (
 from puck_tables.export.law_values import REACH, LawValues, law_values
 from puck_tables.export.program.base_step import BASE_RULE
 from puck_tables.puck import Puck
-from puck_tables.stopping.axes import height_polynomials
+from puck_tables.stopping.lookup import height_polynomials
 from puck_tables.stopping.stop_table import StopTable
 
 Tables = tuple[dict[str, Sequence[float]], dict[str, float]]  # arrays, constants
@@ -102,12 +102,7 @@ def _fit_within(
 def base_tables(kind: Puck) -> Tables:
     """The sides and discs of a base, and how it is pressed.
 
-    Raises
-    ------
-    InputError
-        If it has none.
-    ContactError
-        If part of it would lift.
+    Raises InputError if it has none; ContactError if part of it would lift.
     """
     shape = kind.shape
     if shape is None:

@@ -33,7 +33,7 @@ from puck_tables.contact.closed_form import Resultants, moment_balance
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.laws import Law
 from puck_tables.puck import Puck
-from puck_tables.stopping.axes import heights
+from puck_tables.stopping.lookup import heights
 from puck_tables.stopping.stop_section import stops_at
 
 NODES, HEIGHTS = 385, 14  # a side and over δ, to which the splines of a file are fitted

@@ -77,13 +77,8 @@ def headed(path: str | Path, form: TextForm, columns: str | None) -> list[list[s
 
     ``columns``: names with commas in place of those in the file; empty for '-'.
 
-    Raises
-    ------
-    InputError
-        If there are none, or not as many as columns.
+    Raises InputError if there are none, or not as many as columns.
 
-    Examples
-    --------
     >>> form = TextForm("utf-8", ",", False, [["t", "x"], ["s", "cm"]], [], [["0", "1"]], 2, 2)
     >>> headed("a.csv", form, None)
     [['t [s]', 'x [cm]']]

@@ -88,13 +88,8 @@ class Heading(NamedTuple):
 def heading(text: str) -> Heading:
     """Read the heading of a column.
 
-    Raises
-    ------
-    InputError
-        If it has a unit in square brackets that is none, or a factor or a function.
+    Raises InputError if it has a unit in square brackets that is none, or a factor or a function.
 
-    Examples
-    --------
     >>> heading("t [ms]"), heading("red_X_px"), heading("v_x")
     (Heading(role='time', puck='', unit='ms'), Heading(role='x', puck='red', unit='px'), \
 Heading(role='vx', puck='', unit=''))

@@ -58,13 +58,8 @@ class Plane:
     def place(self, pixels: FloatArray) -> FloatArray:
         """Places (n, 2) in m of points (n, 2) in pixels.
 
-        Raises
-        ------
-        InputError
-            If a point lies at or beyond the horizon of the floor.
+        Raises InputError if a point lies at or beyond the horizon of the floor.
 
-        Examples
-        --------
         >>> square = [(0, 0, 0, 0), (100, 0, 1, 0), (100, 100, 1, 1), (0, 100, 0, 1)]
         >>> plane_of(square).place(np.array([[50.0, 25.0]])).round(9).tolist()
         [[0.5, 0.25]]
@@ -95,18 +90,9 @@ class Plane:
 def plane_of(rows: Sequence[Sequence[float]] | FloatArray) -> Plane:
     """The homography of four or more marks.
 
-    Parameters
-    ----------
-    rows : array_like (n, 4)
-        Pixels u, v and the place x, y in m of each mark.
+    ``rows``: array_like (n, 4), pixels u, v and the place x, y in m of each mark.  Raises
+    InputError if they are fewer, not finite, or lie on a line in the picture or on the floor.
 
-    Raises
-    ------
-    InputError
-        If they are fewer, not finite, or lie on a line in the picture or on the floor.
-
-    Examples
-    --------
     >>> tilted = [(0, 0, 0, 0), (100, 0, 1, 0), (80, 60, 1, 1), (20, 60, 0, 1)]
     >>> plane_of(tilted).place(np.array([[50.0, 37.5]])).round(9).tolist()   # the diagonals meet
     [[0.5, 0.5]]

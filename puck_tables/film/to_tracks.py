@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray, instance, positive, real
-from puck_tables._core.units import PIXEL, factor, pixel_size, unit_named
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.units import PIXEL, factor
 from puck_tables._core.wording import counted, meant
 from puck_tables.errors import InputError
-from puck_tables.film.film import UPS, Film, Track, TrackedBody, on_the_floor, summed
-from puck_tables.film.plane import Marks, Plane, plane_from
+from puck_tables.film.film import Film, Track, TrackedBody, on_the_floor, summed
+from puck_tables.film.reader_options import ReaderOptions
 
 _SURE = 1.5  # likelihoods above are no shares of 1, whatever rounding or scoring did
 _STAMPED = 1e3  # lengths of a film: a first time that is later is that of a clock
@@ -21,81 +20,11 @@ _EPOCH = (5e8, 4e9)  # s since 1970: 1985 to 2096
 _SLOW = 1.0  # s between frames: more, and times are hardly in seconds
 
 
-@dataclass(frozen=True)
-class ReaderOptions:
-    """What a reader says of a file; see :func:`puck_tables.film.track_files.read_tracks`."""
-
-    fps: float | None = None
-    unit: str | None = None
-    scale: str | float | None = None
-    angle_unit: str | None = None
-    y_down: bool | None = None
-    marks: Marks | None = None
-    centre: str | Sequence[str] | None = None
-    toward: str | None = None
-    likelihood: float | None = None
-    pucks: str | Sequence[str] | None = None
-    up: str | None = None
-    size: float | None = field(init=False, default=None)  # of a pixel in m
-    plane: Plane | None = field(init=False, default=None)
-
-    def __post_init__(self) -> None:
-        def put(name: str, value: object) -> None:
-            object.__setattr__(self, name, value)
-
-        if self.fps is not None:
-            put("fps", positive("fps", self.fps, "frames a second"))
-        if self.unit is not None:
-            put("unit", unit_named("unit", self.unit, "length"))
-        if self.angle_unit is not None:
-            put("angle_unit", unit_named("angle_unit", self.angle_unit, "angle"))
-        if self.scale is not None:
-            put("size", pixel_size(self.scale))
-        if self.likelihood is not None:
-            likelihood = real("likelihood", self.likelihood, "0 to 1")
-            if not 0.0 <= likelihood <= 1.0:
-                raise InputError(f"likelihood must be 0 to 1, got {likelihood:g}")
-        if self.scale is not None and self.marks is not None:
-            raise InputError("scale and marks both give the size of a pixel: give one of them")
-        if (self.size is not None or self.marks is not None) and self.unit not in (None, PIXEL):
-            which = "scale" if self.marks is None else "marks"
-            raise InputError(f"{which} is for places in pixels: leave unit = '{self.unit}' out")
-        if self.marks is not None:
-            if self.y_down is not None:
-                raise InputError(
-                    "with marks the axes are those in which their places on the floor are given: "
-                    "leave y_down out"
-                )
-            put("plane", plane_from(self.marks))
-        if self.up is not None and self.up not in UPS:
-            raise InputError(f"up must be the axis that points up, x, y or z, got {self.up!r:.40}")
-        instance("y_down", self.y_down, bool, type(None))
-        instance("toward", self.toward, str, type(None))
-        for name in ("centre", "pucks"):
-            given = getattr(self, name)
-            names = given.split(",") if isinstance(given, str) else given
-            if names is not None:
-                instance(name, names, list, tuple)
-                put(name, [str(one).strip() for one in names])
-                if not names or not all(getattr(self, name)):
-                    raise InputError(f"{name} must be names with commas, got {given!r:.40}")
-        if self.toward is not None and self.centre is None:
-            raise InputError(
-                f"toward = '{self.toward}' needs centre, too: the mark, or the marks, in whose "
-                "middle the centre of the puck lies"
-            )
-
-
 def to_si(path: str | Path, film: Film, how: ReaderOptions) -> tuple[Track, ...]:
     """The tracks of a film.
 
-    Raises
-    ------
-    InputError
-        If something is left open, contradicts, or is no track.
+    Raises InputError if something is left open, contradicts, or is no track.
 
-    Examples
-    --------
     >>> marks = {"": np.array([[0.0, 1.0], [2.0, 1.0]])}
     >>> film = Film("table", [TrackedBody("", marks, frame=np.array([0.0, 1.0]))], unit="cm")
     >>> to_si("a.csv", film, ReaderOptions(fps=50.0))[0].place.tolist()

@@ -13,9 +13,10 @@ from puck_tables.errors import InputError
 from puck_tables.film.column_roles import layout_of
 from puck_tables.film.film import Film, Track, first_text
 from puck_tables.film.plane import Marks
+from puck_tables.film.reader_options import ReaderOptions
 from puck_tables.film.readers import readers
 from puck_tables.film.text_tables import film_in_text
-from puck_tables.film.to_tracks import ReaderOptions, to_si
+from puck_tables.film.to_tracks import to_si
 
 
 def read_tracks(
@@ -105,15 +106,8 @@ def read_tracks(
 def film_of(path: str | Path, columns: str | None = None) -> Film:
     """What a file holds, by how it begins.
 
-    Raises
-    ------
-    InputError
-        If it is none that is known, or damaged.
-    OSError
-        If it cannot be read.
+    Raises InputError if it is none that is known, or damaged; OSError if it cannot be read.
 
-    Examples
-    --------
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     file = Path(folder, "a.csv")

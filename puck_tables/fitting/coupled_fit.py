@@ -30,8 +30,7 @@ from puck_tables.fitting.least_squares import ROBUST, multi_start
 from puck_tables.fitting.numbers import FOLLOWS, Number, quadratic
 from puck_tables.fitting.observations import Observations
 from puck_tables.fitting.parameters import OF_PAIRS, OF_WALLS
-from puck_tables.fitting.problem import Known, Problem
-from puck_tables.fitting.residuals import chi_square_tail
+from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.touches import SlideIndex
 
 _BY_CHANCE = 1e-5  # of the rise of χ²: less, and the law of impact is not that of these slides
@@ -66,9 +65,11 @@ class Impact(NamedTuple):
 
 def couple(
     slides: Estimate, pieces: tuple[SlideIndex, ...], films: tuple[Observations, ...], spec:
-    FitSpec, lines: Sequence[Line], known: Known,
+    FitSpec, lines: Sequence[Line],
 ) -> tuple[Estimate, str]:  # fmt: skip
     """The estimate of joined slides; that of slides apart and why, if these are not joined."""
+    from scipy.special import chdtrc
+
     groups: dict[tuple[object, ...], list[CoupledFit]] = {}
     ways = candidates_of(slides)
     for x in ways:
@@ -82,10 +83,10 @@ def couple(
     for group in groups.values():
         if len(group[0].problem.impact_specs) < most:
             continue
-        best = estimate(group[0].problem, group[0].start, known) if len(group) == 1 else None
+        best = estimate(group[0].problem, group[0].start) if len(group) == 1 else None
         if best is None:  # from the best of several starts, with other minima near which it may lie
             walked = multi_start([(one.problem, one.start) for one in group], _WALK, ROBUST, _RIVAL)
-            best = estimate(group[0].problem, walked[0][0], known)
+            best = estimate(group[0].problem, walked[0][0])
             near = tuple(x for x, cost in walked if cost < walked[0][1] + _RIVAL)
             best = replace(best, minima=near)
         fits.append((_rise(slides, best, group[0]), best))
@@ -93,7 +94,7 @@ def couple(
     alike = [fit for fit in fits if fit[0] < least + _EQUAL]
     rise, result = min(alike, key=lambda fit: (_unlikely(fit[1]), fit[0]))
     conditions = slides.x.size - result.x.size
-    if chi_square_tail(max(rise, 0.0), max(conditions, 1)) < _BY_CHANCE:
+    if chdtrc(max(conditions, 1), max(rise, 0.0)) < _BY_CHANCE:
         return replace(slides, minima=tuple(ways[:_TRIED])), (
             "The slides are not joined at the impacts: one law of impact for all of them, with "
             f"states that match, would raise chi^2 by {rise:.4g} for {conditions} "

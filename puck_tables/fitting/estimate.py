@@ -20,7 +20,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.forward_model import RATE
 from puck_tables.fitting.least_squares import compact, minimise, minimise_robustly
 from puck_tables.fitting.observations import MEDIAN
-from puck_tables.fitting.problem import ANGLE, PLACE, PRIOR, UNSEEN, Known, Problem, likeliest
+from puck_tables.fitting.problem import ANGLE, PLACE, PRIOR, UNSEEN, Problem, likeliest
 
 _AROUND = 4  # frames to either side
 _IN_A_ROW = 5  # frames in a row that may be strays by chance
@@ -124,9 +124,7 @@ class Estimate:
         return float(1.0 - self.kept[seen].mean())
 
 
-def estimate(
-    problem: Problem, start: FloatArray, noise_known: Known, strict: bool = False
-) -> Estimate:
+def estimate(problem: Problem, start: FloatArray, strict: bool = False) -> Estimate:
     """Fit, sort out, and fit again until the same frames are left out.
 
     ``start`` is put within its limits: that of several tracks may have a mean beyond.  Noise that
@@ -141,12 +139,12 @@ def estimate(
         rows = problem.residuals(x)
     count = np.bincount(problem.kinds, minlength=UNSEEN + 1)[: PRIOR + 1]
     free = count[:PRIOR] * max(1.0 - x.size / count.sum(), 0.0)
-    kept = _kept(problem, rows, _noise_degrees(free.tolist(), noise_known), strict)
+    kept = _kept(problem, rows, np.where(problem.known[:2], math.inf, free).tolist(), strict)
     for _ in range(_ROUNDS):
         x, _ = minimise(problem, x, kept)
         rows, slopes = problem.residuals_and_jacobian(x)
-        degrees = _noise_degrees(_freedoms(problem, rows, slopes, kept), noise_known)
-        noise, jitter = _noise(problem, x, rows, degrees, kept, noise_known)
+        degrees = _freedoms(problem, rows, slopes, kept)
+        noise, jitter = _noise(problem, x, rows, degrees, kept)
         change = float(np.abs(np.log(np.divide(noise, problem.noise))).max())
         change = max(change, abs(jitter - problem.jitter) / (jitter or 1.0))
         problem = problem.with_noise(noise, x, kept, jitter)
@@ -170,17 +168,12 @@ def capped_squares(problem: Problem, x: FloatArray) -> list[FloatArray]:
     return result
 
 
-def only_outliers(result: Estimate, known: Known) -> bool:
+def only_outliers(result: Estimate) -> bool:
     """Whether all frames that an estimate leaves out are strays."""
     slopes, kept = result.jacobian, result.kept
     rows = result.residuals / _foreseen(slopes, kept)
-    degrees = _noise_degrees(_freedoms(result.problem, rows, slopes, kept), known)
+    degrees = _freedoms(result.problem, rows, slopes, kept)
     return np.array_equal(kept, _kept(result.problem, rows, degrees, True))
-
-
-def _noise_degrees(free: list[float], known: Known) -> list[float]:
-    """How many residuals told the noise of places, and of angles; infinite where it is given."""
-    return [math.inf if given else one for one, given in zip(free, known[:2], strict=True)]
 
 
 def _foreseen(slopes: FloatArray, kept: npt.NDArray[np.bool_]) -> FloatArray:
@@ -244,14 +237,14 @@ def _wide(deviations: list[FloatArray], usual: float) -> float:
 
 def _noise(
     problem: Problem, x: FloatArray, rows: FloatArray, degrees: list[float],
-    kept: npt.NDArray[np.bool_], known: Known,
+    kept: npt.NDArray[np.bool_],
 ) -> tuple[tuple[float, float], float]:  # fmt: skip
     """The noise that the residuals show, each kind less what the unknowns take, and the jitter.
 
     It is no smaller than motions are known, whose errors are no noise: of a film that was computed
     they would take numbers farther than a smaller noise says.
     """
-    result, jitter = list(problem.noise), problem.jitter
+    result, jitter, known = list(problem.noise), problem.jitter, problem.known
     if not all(known) and (jitter > 0.0 or not known.jitter):
         count = []
         for film, (along, across, turn) in zip(problem.films, problem.each(), strict=True):
@@ -281,20 +274,21 @@ def _noise(
 def _freedoms(
     problem: Problem, rows: FloatArray, slopes: FloatArray, kept: npt.NDArray[np.bool_]
 ) -> list[float]:
-    """Residuals of places, and of angles, less what the unknowns take of them."""
+    """How many residuals told the noise of places, and of angles; infinite where it is given.
+
+    Less what the unknowns take of them.
+    """
     few = compact(problem, rows, slopes, kept)
     q, _ = np.linalg.qr(few.slopes)
     return [
-        float((problem.kinds[kept] == kind).sum() - np.sum(q[few.kinds == kind] ** 2))
+        math.inf if problem.known[kind]
+        else float((problem.kinds[kept] == kind).sum() - np.sum(q[few.kinds == kind] ** 2))
         for kind in (PLACE, ANGLE)
-    ]
+    ]  # fmt: skip
 
 
-def freedom(result: Estimate, known: Known) -> float:
+def freedom(result: Estimate) -> float:
     """Of the kinds of residuals that told their noise, how many the fewest are; inf if none did."""
     every = _freedoms(result.problem, result.residuals, result.jacobian, result.kept)
-    told = [
-        free for kind, free in enumerate(every)
-        if not known[kind] and (result.problem.kinds[result.kept] == kind).any()
-    ]  # fmt: skip
-    return min(told, default=math.inf)
+    kinds = result.problem.kinds[result.kept]
+    return min((free for kind, free in enumerate(every) if (kinds == kind).any()), default=math.inf)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +13,7 @@ import numpy as np
 from puck_tables._core.arrays import one_velocity, real
 from puck_tables._core.safe_read import read_whole
 from puck_tables.errors import InputError
-from puck_tables.fitting.coupled_fit import Impact
 from puck_tables.fitting.estimate import Estimate
-from puck_tables.fitting.model_comparison import LawScore
 from puck_tables.fitting.numbers import EstimatedLaunch, Number
 from puck_tables.fitting.parameters import INTEGRATED
 from puck_tables.io.columns import Variable, variable
@@ -72,7 +70,7 @@ def as_json(value: Any) -> Any:
     elif isinstance(value, EstimatedLaunch):
         value = {"track": value.name, **value._asdict()}
         del value["name"]
-    elif isinstance(value, Impact | LawScore):
+    elif hasattr(value, "_asdict"):
         value = value._asdict()
     if isinstance(value, dict):
         return {name: as_json(one) for name, one in value.items()}
@@ -96,16 +94,9 @@ def puck_and_launch(
     (rad) of :meth:`Puck.simulate`.  And sentences on what its tracks did not determine, and on what
     is hard to believe.
 
-    Parameters
-    ----------
-    path : .json
-    track : its name or number, where the file has several
-
-    Raises
-    ------
-    InputError
-        If the file is none of a fit, has no such track, its puck has drag or friction over slip
-        speed, or nobody would believe what was found.
+    ``path``: .json; ``track``: its name or number, where the file has several.  Raises InputError
+    if the file is none of a fit, has no such track, its puck has drag or friction over slip speed,
+    or nobody would believe what was found.
     """
     told = f"{path}: no file of puck fit (.json)"
     try:
@@ -136,20 +127,27 @@ def puck_and_launch(
         astray, speeds = str(data["astray"]), [*data["slip_speeds"]]
     except (KeyError, TypeError, AttributeError):
         raise InputError(told) from None
-    if astray:
-        raise InputError(f"{path}: {astray}: there is nothing to play")
-    if speeds:
-        raise InputError(
-            f"{path}: this puck was found with friction over slip speed, which a free puck has "
-            "not: make a scene of it, with floor.law"
-        )
-    for name, drag in drags.items():
-        if drag != 0.0:
-            raise InputError(
-                f"{path}: this puck was found with {name} of {drag:.3g}, which a free puck has "
-                f"not: make a scene of it, with {_ENTRIES[name]}"
-            )
+    refuse_unplayable(drags, speeds, astray, f"{path}: ")
     return puck, launch, unknown
+
+
+def refuse_unplayable(
+    drags: Mapping[str, float], speeds: Sequence[float], astray: str, where: str = ""
+) -> None:
+    """Refuse a puck that nobody would believe, or whose motion no free puck has.
+
+    ``drags``: values of drag and :data:`INTEGRATED`; ``speeds``: slip speeds at which friction was
+    found; ``astray``: why nobody would believe it; ``where``: what begins the sentence.
+    """
+    if astray:
+        raise InputError(f"{where}{astray}: there is nothing to play")
+    entries = {"friction over slip speed": "floor.law"} if speeds else {}
+    entries |= {f"{n} of {one:.3g}": _ENTRIES[n] for n, one in drags.items() if one != 0.0}
+    for what, entry in entries.items():
+        raise InputError(
+            f"{where}the puck was found with {what}, which a free puck has not: make a scene of "
+            f"it, with {entry}"
+        )
 
 
 def _chosen(names: list[str], track: str | None, path: str | Path) -> str:

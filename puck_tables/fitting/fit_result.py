@@ -19,7 +19,13 @@ from puck_tables.errors import InputError
 from puck_tables.fitting.certainty import Certainty, profile_point
 from puck_tables.fitting.coupled_fit import Impact
 from puck_tables.fitting.estimate import Estimate
-from puck_tables.fitting.fit_files import KIND, as_json, frames_of, numbers_as_json
+from puck_tables.fitting.fit_files import (
+    KIND,
+    as_json,
+    frames_of,
+    numbers_as_json,
+    refuse_unplayable,
+)
 from puck_tables.fitting.identifiability import doubts, rounded, spin_would_tell, taken_for_granted
 from puck_tables.fitting.model_comparison import HeldOut, LawScore, law_over, verdict
 from puck_tables.fitting.numbers import EstimatedLaunch, Number
@@ -115,22 +121,14 @@ class Fit(Result):
     def puck(self) -> Puck:
         """The puck that was found; of what is not determined, the value that fits best."""
         values = {name: number.value for name, number in self.numbers.items()}
-        pressure: Any = self.given.body.law
+        contact: dict[str, Any] = {"base": self.estimate.problem.spec.base}
+        if contact["base"] is None:
+            contact = {"radius": values["radius"], "pressure": self.given.body.law}
         if self.numbers.get("inner") and self.numbers["inner"].how == "found":
-            pressure = f"annulus:{values['inner']!r}"
-        base = self.estimate.problem.spec.base
+            contact["pressure"] = f"annulus:{values['inner']!r}"
+        contact |= {name: values[name] for name in ("height", "friction", "gravity", "gyration")}
         with unquestioned():  # what nobody would believe of it the remarks say
-            if base is not None:
-                return Puck(
-                    base=base, height=values["height"], friction=values["friction"],
-                    gravity=values["gravity"], gyration=values["gyration"],
-                    mass=self.given.mass,
-                )  # fmt: skip
-            return Puck(
-                radius=values["radius"], height=values["height"], friction=values["friction"],
-                gravity=values["gravity"], gyration=values["gyration"], mass=self.given.mass,
-                pressure=pressure,
-            )  # fmt: skip
+            return Puck(**contact, mass=self.given.mass)
 
     @property
     def contact(self) -> tuple[str, str]:
@@ -174,20 +172,10 @@ class Fit(Result):
             with drag: then only a scene has it.
         """
         launch = self.launch(track)
-        if self.astray:
-            raise InputError(f"{self.astray}: there is nothing to simulate")
-        if self.estimate.problem.spec.speeds:
-            raise InputError(
-                "the puck was found with friction over slip speed, which a free puck has not: put "
-                "it into a Scene with the law that fit.friction_over() gives"
-            )
-        for name in ("drag", *INTEGRATED):
-            if (number := self.numbers.get(name)) is not None and number.value != 0.0:
-                raise InputError(
-                    f"the puck was found with {name} of {number.value:.3g} {number.unit}, which a "
-                    "free puck has not: put it into a Scene"
-                )
-        if self.estimate.problem.spec.base is not None:
+        numbers, spec = self.numbers, self.estimate.problem.spec
+        drags = {name: numbers[name].value for name in ("drag", *INTEGRATED) if name in numbers}
+        refuse_unplayable(drags, spec.speeds, self.astray)
+        if spec.base is not None:
             how = {"orientation": launch.angle, **how}
         return self.puck.simulate(launch.velocity, launch.spin, **how)
 
@@ -218,7 +206,7 @@ class Fit(Result):
     @property
     def complaints(self) -> tuple[str, ...]:
         """Signs that the tracks are not those of such a puck."""
-        found = [*misfits(self.estimate, self.noise_known, self.smooth_noise, self.forces.chance)]
+        found = [*misfits(self.estimate, self.forces.chance)]
         if found:
             found.append(
                 "Standard errors are widened by what parts of the frames do to the numbers: they "

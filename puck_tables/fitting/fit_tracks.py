@@ -27,11 +27,9 @@ from puck_tables.fitting.inputs import (
     checked_rows,
     checked_walls,
     observations_of,
-    refuse_for_base,
     refuse_opening,
-    refuse_size,
     refuse_tipping,
-    refuse_turns_unseen,
+    refuse_unfit,
 )
 from puck_tables.fitting.misfit import misfit
 from puck_tables.fitting.model_comparison import (
@@ -53,7 +51,7 @@ from puck_tables.fitting.other_minima import (
     without_spin,
 )
 from puck_tables.fitting.parameters import DRAGS
-from puck_tables.fitting.problem import Known, Problem
+from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.residuals import NO_PATTERN, NOISY, drift, runs
 from puck_tables.fitting.touches import SlideIndex, slides_apart
 from puck_tables.puck import Puck
@@ -170,44 +168,36 @@ def fit(
         spec = spec.with_law(law)
     inputs = Inputs.of(spec, noise, jitter, slip_speeds, between, impacts, lines, hold_out)
     films = observations_of(tracks, since, until, keep_all, checked_rows(rows), puck.radius)
-    refuse_size(spec, films)
-    refuse_turns_unseen(spec, films)
-    if spec.base is not None:
-        refuse_for_base(films, laws)
+    refuse_unfit(spec, films, laws)
     observed = _observe(films, inputs)
     variants = variants_of(spec.alone(), laws)
     steps = 1 + len(variants) + (inputs.hold_out is not None)
     say = progress or (lambda done, total: None)
     estimates = _estimate_all(inputs, observed)
     say(1, steps)
-    judged = judged_motion(estimates.best, inputs.known, observed.smooth, inputs.spec.bounds)
+    judged = judged_motion(estimates.best, inputs.spec.bounds)
     scores: tuple[LawScore, ...] = ()
     if variants:
         same = replace(observed.problem, jitter=estimates.slides.problem.jitter)
-        scores = compare(same, variants, inputs.known)
+        scores = compare(same, variants)
         say(1 + len(variants), steps)
     held_out = None
     if inputs.hold_out is not None:  # the later part of tracks, predicted from the rest
-        best, known = judged.best.problem, inputs.known
+        best = judged.best.problem
         earlier, later = split(best.films, inputs.hold_out, best.noise[0])
         fewer = best.with_films(earlier)
         followed = best.impact_specs or best.spec.speeds or best.spec.integrated
-        part = estimate(fewer, judged.best.x, known) if followed \
-            else initial_estimate(fewer, known, refit=False)  # fmt: skip
-        held_out = predicted(part, judged_certainty(part, known), best.films, later)
+        part = estimate(fewer, judged.best.x) if followed else initial_estimate(fewer, refit=False)
+        held_out = predicted(part, judged_certainty(part), best.films, later)
         say(steps, steps)
     return _reported(inputs, observed, estimates, judged, scores, held_out)
 
 
 class _Observed(NamedTuple):
-    """The observations: ``uncut`` tracks, the ``pieces`` of them between impacts in ``problem``.
-
-    ``smooth``: their noise (m, rad) as no model judged it.
-    """
+    """The observations: ``uncut`` tracks, the ``pieces`` of them between impacts in ``problem``."""
 
     uncut: tuple[Observations, ...]
     pieces: tuple[SlideIndex, ...]
-    smooth: tuple[float, float]
     problem: Problem
 
 
@@ -241,32 +231,31 @@ def _observe(films: tuple[Observations, ...], inputs: Inputs) -> _Observed:
     jitter = begin_jitter(parts, begin[0]) if inputs.jitter is None else inputs.jitter
     if inputs.hold_out is not None:
         split(parts, inputs.hold_out, begin[0])
-    problem = Problem(inputs.spec.alone(), parts, (begin[0], begin[1]), rests=rests, jitter=jitter)
-    return _Observed(films, pieces, smooth, problem)
+    problem = Problem(
+        inputs.spec.alone(), parts, (begin[0], begin[1]), rests=rests, jitter=jitter,
+        known=inputs.known, smooth=smooth,
+    )  # fmt: skip
+    return _Observed(films, pieces, problem)
 
 
 def _estimate_all(inputs: Inputs, observed: _Observed) -> _Estimates:
     """The estimate, from slides apart to joined ones, from one friction to one over slip speed."""
-    problem, known = observed.problem, inputs.known
+    problem = observed.problem
     # what one friction leaves off at the ends need not be foreign where another is looked for
     late = bool(inputs.speeds) and not inputs.impacts
     drags = {*DRAGS} >= {*inputs.spec.integrated}  # a law may look like a touch
-    best = slides = initial_estimate(problem, known, refit=drags and not late)
+    best = slides = initial_estimate(problem, refit=drags and not late)
     if inputs.spec.integrated:
         refuse_opening(best)
     untied = ""
     if inputs.impacts:
-        best, untied = couple(
-            slides, observed.pieces, observed.uncut, inputs.spec, inputs.lines, known
-        )
+        best, untied = couple(slides, observed.pieces, observed.uncut, inputs.spec, inputs.lines)
     constant = best
     if inputs.speeds:
-        over = partial(
-            over_speeds, speeds=inputs.speeds, between=inputs.between, known=inputs.known
-        )
+        over = partial(over_speeds, speeds=inputs.speeds, between=inputs.between)
         best = over(constant)
         if late and not is_clean(best, NOISY, NO_PATTERN):
-            slides = initial_estimate(problem, known, refit=True)
+            slides = initial_estimate(problem, refit=True)
             if slides.problem.films != constant.problem.films:
                 constant, best = slides, over(slides)
         refuse_opening(best)
@@ -278,9 +267,9 @@ def _reported(
     laws: tuple[LawScore, ...], held_out: HeldOut | None,
 ) -> Fit:  # fmt: skip
     """What was found, with what is to be said of it."""
-    best, certainty, known = judged.best, judged.certainty, inputs.known
+    best, certainty = judged.best, judged.certainty
     numbers, launches = numbers_of(best, certainty, judged.other_fits, judged.unsigned)
-    blind, open_then = ((), ()) if judged.nowhere else without_spin(best, numbers, known)
+    blind, open_then = ((), ()) if judged.nowhere else without_spin(best, numbers)
     numbers |= {name: numbers[name]._replace(error=math.inf) for name in open_then}
     lost = tuple(n for n in best.problem.spec.free if not numbers[n].determined)
     blind += (
@@ -306,22 +295,22 @@ def _reported(
     result = Fit(
         given=inputs.spec.puck, numbers=numbers, launches=launches, chi2=best.chi2,
         degrees=best.degrees, noise=best.problem.noise, jitter=best.problem.jitter,
-        noise_known=known, smooth_noise=observed.smooth, outliers=best.outliers, runs=runs(best),
-        drift=drift(best), left_out=left_out,
-        cut_off=_trimmed_ends(estimates.slides, observed.problem, known, left_out), blind=blind,
+        noise_known=inputs.known, smooth_noise=best.problem.smooth, outliers=best.outliers,
+        runs=runs(best), drift=drift(best), left_out=left_out,
+        cut_off=_trimmed_ends(estimates.slides, observed.problem, left_out), blind=blind,
         astray=judged.astray, laws=laws, held_out=held_out, impacts=impacts,
         untied=estimates.untied, constant_chi2=constant_chi2, estimate=best, certainty=certainty,
         not_met=not_met(impacts, best.problem, inputs.lines) if inputs.impacts else (),
         forces=judged.forces, uncut=observed.uncut,
     )  # fmt: skip
     if result.complaints:
-        said = misfit(estimates.slides, observed.problem, known, judged.forces, bool(inputs.speeds))
+        said = misfit(estimates.slides, observed.problem, judged.forces, bool(inputs.speeds))
         result = replace(result, misfit=said)
     return result
 
 
 def _trimmed_ends(
-    best: Estimate, problem: Problem, known: Known, left_out: tuple[tuple[str, int, int], ...]
+    best: Estimate, problem: Problem, left_out: tuple[tuple[str, int, int], ...]
 ) -> str:
     """A sentence where many frames are left out at the ends, and what they would change."""
     said = [
@@ -332,7 +321,7 @@ def _trimmed_ends(
     if not said:
         return ""
     films = tuple(replace(film, cuttable=(False, False)) for film in problem.films)
-    kept = initial_estimate(problem.with_films(films), known, refit=True)
+    kept = initial_estimate(problem.with_films(films), refit=True)
     found = kept.problem.numbers_at(kept.x)
     numbers = ", ".join(f"{name} {value:.4g}" for name, value in found.items())
     more = kept.problem.noise[0] * kept.size / (best.problem.noise[0] * best.size or 1.0)

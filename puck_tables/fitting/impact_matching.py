@@ -238,7 +238,8 @@ def coupled(
         tied = Problem(
             one, tuple(tracks), problem.noise, problem.tall,
             rests=tuple(problem.rests[n] for n in firsts) if problem.rests else (),
-            walls=tuple(walls), impact_specs=tuple(impact_specs),
+            walls=tuple(walls), impact_specs=tuple(impact_specs), known=problem.known,
+            smooth=problem.smooth,
         )  # fmt: skip
         values = {**problem.numbers_at(x), **_begin(one, matches)}
         for name in one.free:

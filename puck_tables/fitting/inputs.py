@@ -130,8 +130,8 @@ def observations_of(
     return tuple(films)
 
 
-def refuse_size(spec: FitSpec, films: Sequence[Observations]) -> None:
-    """Refuse a puck far larger than its slides: its size was said in another unit."""
+def refuse_unfit(spec: FitSpec, films: Sequence[Observations], laws: Any) -> None:
+    """Refuse tracks that tell nothing of such a puck: of one of another size, or without angles."""
     farthest, radius = max(film.size for film in films), spec.known()["radius"]
     if radius > max(_LARGE, _LARGER * farthest):
         size = f"a radius of {radius:.4g} m"
@@ -141,6 +141,19 @@ def refuse_size(spec: FitSpec, films: Sequence[Observations]) -> None:
             f"{size} is beyond a track that goes {farthest:.3g} m: lengths are in metres; write "
             "the unit (--radius 38mm, --base box:20cmx10cm), or say that of the track"
         )
+    for film in (film for film in films if film.angle is None):
+        if {*MARK} & {*spec.free, *spec.fixed}:
+            raise InputError(
+                f"{film.name} has no angles, which a mark off the centre (mark_x, mark_y) needs: "
+                "give them (two marks will do)"
+            )
+        if spec.base is not None:  # how it stands to its velocity tells most
+            raise InputError(
+                f"{film.name} has no angles: a body on a base slides as it stands to its velocity; "
+                "give the angle of its x axis (two marks will do), or the radius of a round puck"
+            )
+    if laws and spec.base is not None:
+        raise InputError("laws are compared of round pucks: leave them out with a base")
 
 
 def refuse_wobbling(result: Estimate, certainty: Certainty) -> None:
@@ -235,28 +248,6 @@ def checked_speeds(raw: Any, between: Any) -> tuple[float, ...]:
             f"{', '.join(f'{speed:g}' for speed in speeds)}"
         )
     return speeds
-
-
-def refuse_turns_unseen(spec: FitSpec, films: Sequence[Observations]) -> None:
-    """Refuse a place on the body that is asked of a film without its angles."""
-    for film in films:
-        if film.angle is None and {*MARK} & {*spec.free, *spec.fixed}:
-            raise InputError(
-                f"{film.name} has no angles, which a mark off the centre (mark_x, mark_y) needs: "
-                "give them (two marks will do)"
-            )
-
-
-def refuse_for_base(films: Sequence[Observations], laws: Any) -> None:
-    """Refuse what tells too little of a body on a base, how it stands to its velocity above all."""
-    for film in films:
-        if film.angle is None:
-            raise InputError(
-                f"{film.name} has no angles: a body on a base slides as it stands to its velocity; "
-                "give the angle of its x axis (two marks will do), or the radius of a round puck"
-            )
-    if laws:
-        raise InputError("laws are compared of round pucks: leave them out with a base")
 
 
 def refuse_opening(result: Estimate) -> None:

@@ -17,12 +17,15 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.fit_spec import FitSpec
-from puck_tables.fitting.initial_estimate import initial_estimate
+from puck_tables.fitting.initial_estimate import (
+    initial_estimate,
+    nearest_start,
+    starts_from_slowing,
+)
 from puck_tables.fitting.model_comparison import FLOORS, tried
 from puck_tables.fitting.parameters import INTEGRATED, MARK, NODES, NOTHING
-from puck_tables.fitting.problem import TURN, Known, Problem
+from puck_tables.fitting.problem import TURN, Problem
 from puck_tables.fitting.residuals import NO_PATTERN, SideForces
-from puck_tables.fitting.slowing import nearest_start, starts_from_slowing
 
 _FAR = 1.5  # times smaller are residuals of a reading that is told
 _NEAR = 0.01  # of the radius: it is not another one
@@ -51,7 +54,41 @@ _STEEP, _STEEPEST = 3.0, 10.0  # degrees: hardly anybody, or nobody, takes that 
 _HELD = ("launch_spin", "launch_angle")  # what is said of these is said of the angles as they are
 
 
-_Sizes = tuple[FloatArray, FloatArray]  # how far places (m), and angles (rad), are off
+class _Left(NamedTuple):
+    """How far places (m), and angles (rad), are off."""
+
+    places: FloatArray
+    angles: FloatArray
+
+    @property
+    def explained(self) -> bool:
+        """Whether angles are explained."""
+        return not self.angles.size or float(np.median(self.angles)) < _BY_CHANCE
+
+    def near(self, noise: float) -> bool:
+        """Whether places are about as far off as their noise, and angles are explained."""
+        return self.explained and float(np.median(self.places)) < _AS_NOISE * noise
+
+    def size(self, scale: float = 1.0) -> float:
+        """The logarithm of the usual size of residuals, that of angles in units of ``scale``.
+
+        Angles that nothing explains are as far off in any unit.
+        """
+        angles = self.angles / scale if self.angles.size and self.explained else self.angles
+        sizes = [size for size in (self.places, angles) if size.size]
+        usual = [math.log(max(float(np.median(size)), _ROUNDING)) for size in sizes]
+        return float(np.average(usual, weights=[size.size for size in sizes]))
+
+
+def _left(problem: Problem, x: FloatArray) -> _Left:
+    """What motions leave of the tracks."""
+    deviations = problem.deviations(x)
+    angles = [np.empty(0)] + [
+        np.abs(one[TURN, np.isfinite(film.angle)]) for film, one in zip(problem.films, deviations,
+        strict=True) if film.angle is not None
+    ]  # fmt: skip
+    places = [np.hypot(*one[:TURN]) for one in deviations]
+    return _Left(np.concatenate(places), np.concatenate(angles))
 
 
 class _Reading(NamedTuple):
@@ -66,9 +103,7 @@ class _Reading(NamedTuple):
     bends: bool = False
 
 
-def misfit(
-    result: Estimate, problem: Problem, known: Known, forces: SideForces, speeds: bool
-) -> str:
+def misfit(result: Estimate, problem: Problem, forces: SideForces, speeds: bool) -> str:
     """A sentence that says which other reading fits far better; empty if none does.
 
     A floor is named before angles or a radius that fit about as well.  ``problem``: what was asked,
@@ -91,8 +126,8 @@ def misfit(
         if drag and law and law.gain < drag.gain + _BETTER:  # more numbers fit a little better
             law = None
         told = sorted(filter(None, (drag, law, air, slope)), key=lambda one: -one.gain)[:2]
-    told += filter(None, [_reading(partial(_by_mark, result, problem, known))])
-    told += _otherwise(result, problem, known)
+    told += filter(None, [_reading(partial(_by_mark, result, problem))])
+    told += _otherwise(result, problem)
     best = max((one.gain for one in told), default=0.0)
     # sizes and angles are known better than floors: a floor that tells much is named first
     near = [one for one in told if one.gain > best - _ALIKE or (one.floor and one.gain > _MUCH)]
@@ -116,7 +151,7 @@ def _reading(of: Callable[[], _Reading]) -> _Reading | None:
     return one if one.gain else None
 
 
-def _otherwise(result: Estimate, problem: Problem, known: Known) -> list[_Reading]:
+def _otherwise(result: Estimate, problem: Problem) -> list[_Reading]:
     """The angles, or the radius, read otherwise, if one of these fits far better."""
     best, spec = _Reading("", math.log(_FAR)), problem.spec
     given, others = spec.known()["radius"], []
@@ -137,38 +172,39 @@ def _otherwise(result: Estimate, problem: Problem, known: Known) -> list[_Readin
         others.append((words, other, 1.0))
     for words, other, scale in others:  # and the factor of its angles
         try:
-            one = initial_estimate(other, known, refit=False)
+            one = initial_estimate(other, refit=False)
         except InputError:  # such a puck, or such a track, there is not
             continue
-        gain = _size(_deviations(result), 1.0) - _size(_deviations(one), scale)
+        left = _left(one.problem, one.x)
+        gain = _left(result.problem, result.x).size() - left.size(scale)
         radius = one.problem.spec.scales(one.problem.numbers_at(one.x))[2]
         same = wider and "radius" in other.spec.free and abs(radius / given - 1.0) < _NEAR
-        if gain > best.gain and not same and _near_noise(_deviations(one), problem.noise[0]):
+        if gain > best.gain and not same and left.near(problem.noise[0]):
             best = _Reading(words.format(radius), gain)
     return [best] if best.words else []
 
 
-def _by_mark(result: Estimate, problem: Problem, known: Known) -> _Reading:
+def _by_mark(result: Estimate, problem: Problem) -> _Reading:
     """What is tracked lies off the centre of mass, if that fits far better."""
     spec = problem.spec
     if not problem.angled or {*MARK} & {*spec.free, *spec.fixed}:
         return _Reading("", 0.0)
     free = (*spec.free, *MARK)
-    one = initial_estimate(replace(problem, spec=replace(spec, free=free)), known, refit=False)
+    one = initial_estimate(replace(problem, spec=replace(spec, free=free)), refit=False)
     words = f"if what is tracked lies off the centre: find where (--free {','.join(free)})"
-    return _Reading(words, _gain(result, _deviations(one), problem.noise[0]), True)
+    return _Reading(words, _gain(result, _left(one.problem, one.x), problem.noise[0]), True)
 
 
-def _gain(result: Estimate, other: _Sizes, noise: float) -> float:
+def _gain(result: Estimate, other: _Left, noise: float) -> float:
     """By how much smaller residuals are of another floor; 0 where that tells nothing.
 
     It leaves far less, or no more than noise where one friction leaves more than that.  Where air
     or a floor changes in a way that no few numbers tell it may still leave more than noise.
     """
-    gain = _size(_deviations(result), 1.0) - _size(other, 1.0)
-    clean = gain > _LITTLE and float(np.median(other[0])) / noise < _CLEAN
-    fits = (gain > math.log(_FAR) or clean) and _near_noise(other, noise)
-    return gain if fits or (gain > _MUCH and _explained(other)) else 0.0
+    gain = _left(result.problem, result.x).size() - other.size()
+    clean = gain > _LITTLE and float(np.median(other.places)) / noise < _CLEAN
+    fits = (gain > math.log(_FAR) or clean) and other.near(noise)
+    return gain if fits or (gain > _MUCH and other.explained) else 0.0
 
 
 def _by_floor(result: Estimate, problem: Problem, floor: str) -> _Reading:
@@ -183,7 +219,7 @@ def _by_floor(result: Estimate, problem: Problem, floor: str) -> _Reading:
     other = replace(problem.with_films(result.problem.films), spec=spec, tall=False)
     plain = np.clip(other.unknowns({**NOTHING, **at}, launches), *other.limits)
     x = nearest_start(other, starts_from_slowing(other) or [(other, plain)])[1]
-    gain = _gain(result, _sizes(other, other.deviations(x)), problem.noise[0])
+    gain = _gain(result, _left(other, x), problem.noise[0])
     found, speed = other.numbers_at(x), float(np.hypot(*launches[:, 2:4].T).max())
     tilt = 0.0
     slowing, free = result.problem.spec.scales(at)[0], f"(--free {','.join(spec.free)})"
@@ -219,7 +255,7 @@ def _may_change(spec: FitSpec) -> bool:
 def _by_speed(result: Estimate, problem: Problem) -> _Reading:
     """A friction over slip speed, if that fits far better."""
     other = tried(result)
-    gain = _gain(result, _deviations(other), problem.noise[0])
+    gain = _gain(result, _left(other.problem, other.x), problem.noise[0])
     speeds, numbers = other.problem.spec.speeds, other.problem.numbers_at(other.x)
     values = [numbers[name] for name in NODES[: len(speeds)]]
     usual = result.problem.numbers_at(result.x)["friction"]
@@ -231,40 +267,3 @@ def _by_speed(result: Estimate, problem: Problem) -> _Reading:
         f"{','.join(f'{u:g}' for u in speeds)})"
     )
     return _Reading(words, gain, True)
-
-
-def _size(seen: _Sizes, scale: float) -> float:
-    """The logarithm of the usual size of residuals, that of angles in units of ``scale``.
-
-    Angles that nothing explains are as far off in any unit.
-    """
-    places, angles = seen
-    if angles.size and float(np.median(angles)) < _BY_CHANCE:
-        angles = angles / scale
-    sizes = [size for size in (places, angles) if size.size]
-    usual = [math.log(max(float(np.median(size)), _ROUNDING)) for size in sizes]
-    return float(np.average(usual, weights=[size.size for size in sizes]))
-
-
-def _near_noise(seen: _Sizes, noise: float) -> bool:
-    """Whether places are about as far off as their noise, and angles are explained."""
-    return _explained(seen) and float(np.median(seen[0])) < _AS_NOISE * noise
-
-
-def _explained(seen: _Sizes) -> bool:
-    """Whether angles are explained."""
-    return not seen[1].size or float(np.median(seen[1])) < _BY_CHANCE
-
-
-def _deviations(result: Estimate) -> _Sizes:
-    """How far places (m) and angles (rad) of an estimate are off."""
-    return _sizes(result.problem, result.problem.deviations(result.x))
-
-
-def _sizes(problem: Problem, deviations: list[FloatArray]) -> _Sizes:
-    """How far places (m) and angles (rad) are off where tracks deviate by (3, n) each."""
-    angles = [np.empty(0)] + [
-        np.abs(one[TURN, np.isfinite(film.angle)]) for film, one in zip(problem.films, deviations,
-        strict=True) if film.angle is not None
-    ]  # fmt: skip
-    return np.concatenate([np.hypot(*one[:TURN]) for one in deviations]), np.concatenate(angles)

@@ -21,12 +21,15 @@ from puck_tables.errors import InputError
 from puck_tables.fitting.certainty import Z95, Certainty
 from puck_tables.fitting.estimate import Estimate, capped_squares, estimate
 from puck_tables.fitting.fit_spec import FitSpec
-from puck_tables.fitting.initial_estimate import initial_estimate
+from puck_tables.fitting.initial_estimate import (
+    initial_estimate,
+    nearest_start,
+    starts_from_slowing,
+)
 from puck_tables.fitting.least_squares import minimise_robustly
 from puck_tables.fitting.observations import FEWEST, MEDIAN, Observations, rests_from
 from puck_tables.fitting.parameters import LAW_NUMBERS, NODES
 from puck_tables.fitting.problem import ANGLE, PLACE, UNSEEN, Known, Problem
-from puck_tables.fitting.slowing import nearest_start, starts_from_slowing
 from puck_tables.fitting.speed_motion import LAWS
 from puck_tables.fitting.whole_turns import on_another_floor
 
@@ -36,11 +39,10 @@ _NEAR = 3.0  # times the noise: floors that are fitted to the end
 _FRAMES = 80  # that tell whether such a law may be the reason of a misfit
 _LEAST = 0.02  # of the largest friction of a line: the smallest
 _SHARES = (0.0, 0.08, 0.3, 1.0)  # of the fastest slip
+_ALL_GIVEN = Known(True, True, True)
 
 
-def over_speeds(
-    result: Estimate, speeds: tuple[float, ...], between: str, known: Known
-) -> Estimate:
+def over_speeds(result: Estimate, speeds: tuple[float, ...], between: str) -> Estimate:
     """The estimate with a friction coefficient for each slip speed, from that of one for all."""
     if (fastest := result.problem.fastest(result.x)) > speeds[-1]:
         raise InputError(
@@ -50,10 +52,10 @@ def over_speeds(
     moved, start = _begun(result.problem, result.x, speeds)
     lines, _ = minimise_robustly(moved, start)
     spec = replace(moved.spec, between=between)
-    return estimate(replace(moved, spec=spec), lines, known)
+    return estimate(replace(moved, spec=spec), lines)
 
 
-def on_a_floor(problem: Problem, known: Known) -> Estimate:
+def on_a_floor(problem: Problem) -> Estimate:
     """The estimate of a floor that is compared with others: about, where it does not come near."""
     begun, x = nearest_start(problem, starts_from_slowing(problem))
     cost, falls = math.inf, True
@@ -61,10 +63,10 @@ def on_a_floor(problem: Problem, known: Known) -> Estimate:
         x, less = minimise_robustly(begun, x, _ROUGHLY)
         rows = problem.residuals(x)
         if problem.usual(rows) < _NEAR:
-            return estimate(problem, x, known)
+            return estimate(problem, x)
         cost, falls = less, less < _FALLS * cost
     noise = (problem.usual(rows) / MEDIAN * problem.noise[0], problem.noise[1])
-    wider = problem if known.place else problem.with_noise(noise, x)
+    wider = problem if problem.known.place else problem.with_noise(noise, x)
     none = np.zeros((rows.size, x.size))
     return Estimate(wider, x, problem.kinds != UNSEEN, wider.residuals(x), none)
 
@@ -75,7 +77,8 @@ def tried(result: Estimate) -> Estimate:
     top = problem.fastest(result.x)
     speeds = tuple(float(f"{1.1 * top * share:.2g}") for share in _SHARES)
     fewer = problem.with_films(tuple(film.thinned(_FRAMES) for film in problem.films))
-    return over_speeds(replace(result, problem=fewer), speeds, "cubic", Known(True, True, True))
+    fewer = replace(fewer, known=_ALL_GIVEN)
+    return over_speeds(replace(result, problem=fewer), speeds, "cubic")
 
 
 def _begun(
@@ -145,19 +148,18 @@ class LawScore(NamedTuple):
     numbers: dict[str, float]
 
 
-def compare(
-    problem: Problem, variants: Mapping[str, FitSpec], known: Known
-) -> tuple[LawScore, ...]:
+def compare(problem: Problem, variants: Mapping[str, FitSpec]) -> tuple[LawScore, ...]:
     """The laws named, best first, of the frames of a problem; those that contend are fitted on.
 
     Frames that another law leaves out at the ends may be those that tell.
     """
-    fits, noise, held = dict[str, Estimate](), problem.noise, known._replace(jitter=True)
+    fits, noise, known = dict[str, Estimate](), problem.noise, problem.known
     for name, question in variants.items():
-        same = replace(problem, spec=question)
+        same = replace(problem, spec=question, known=known._replace(jitter=True))
         try:
-            fits[name] = on_a_floor(same, held) if question.integrated \
-                else initial_estimate(same, held, refit=False)  # fmt: skip
+            fits[name] = (
+                on_a_floor(same) if question.integrated else initial_estimate(same, refit=False)
+            )
         except InputError:
             if "+" not in name:  # no such floor leads to such a track
                 raise
@@ -172,7 +174,7 @@ def compare(
     for k, (name, before) in enumerate(fits.items()):
         if near[k] and not (known.place and known.angle):
             same = before.problem.with_noise((place, angle), before.x)
-            one = estimate(same, before.x, Known(True, True, True))
+            one = estimate(replace(same, known=_ALL_GIVEN), before.x)
             if (less := chi2_under(one, (place, angle))) < chi2[k]:
                 fits[name], chi2[k] = one, less
     score = chi2 + 2.0 * unknowns

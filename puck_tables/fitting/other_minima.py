@@ -43,7 +43,6 @@ from puck_tables.fitting.least_squares import compact, minimise, multi_start
 from puck_tables.fitting.model_comparison import chi2_under
 from puck_tables.fitting.numbers import Number, numbers_of
 from puck_tables.fitting.observations import GIVE_NOISE
-from puck_tables.fitting.problem import Known
 from puck_tables.fitting.residuals import (
     SideForces,
     excess_of,
@@ -264,7 +263,7 @@ def _known(result: Estimate, certainty: Certainty) -> tuple[npt.NDArray[np.bool_
 
 
 def without_spin(
-    result: Estimate, numbers: dict[str, Number], known: Known
+    result: Estimate, numbers: dict[str, Number]
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """A sentence on the friction if no puck spun, and what is open then.
 
@@ -283,15 +282,13 @@ def without_spin(
     if not low <= 0.0 <= high:
         return (), ()
     try:
-        still = initial_estimate(
-            replace(problem, spec=spec.spinning(0.0), weights=()), known, refit=False
-        )
+        still = initial_estimate(replace(problem, spec=spec.spinning(0.0), weights=()), refit=False)
     except InputError:  # too few frames
         return (), ()
     noise = result.problem.noise
     if chi2_under(still, noise) > chi2_under(result, noise) + RISE:
         return (), ()
-    told = numbers_of(still, certainty_at(still, freedom(still, known)))[0]
+    told = numbers_of(still, certainty_at(still, freedom(still)))[0]
     number = told[scale]
     if not number.determined:
         return (), ()
@@ -323,33 +320,31 @@ class JudgedMotion(NamedTuple):
     astray: str
 
 
-def judged_motion(
-    best: Estimate, known: Known, smooth: tuple[float, float], bounds: Collection[str]
-) -> JudgedMotion:
+def judged_motion(best: Estimate, bounds: Collection[str]) -> JudgedMotion:
     """Which motion is taken of those that fit as well, and how far it is to be believed.
 
-    ``smooth``: the noise (m, rad) that no model judged; ``bounds``: names that the caller bounds.
+    ``bounds``: names that the caller bounds.
     """
-    certainty = judged_certainty(best, known)
+    certainty = judged_certainty(best)
     refuse_wobbling(best, certainty)
-    excess = max(excess_of(best, smooth), 1.0)
+    excess = max(excess_of(best), 1.0)
     other_fits = other_minima(best, certainty, excess)
     other = taken(best, other_fits, excess)
     if other is not None:
-        best = replace(estimate(best.problem, other.estimate.x, known), minima=best.minima)
-        certainty = judged_certainty(best, known)
-        other_fits = other_minima(best, certainty, max(excess_of(best, smooth), 1.0))
+        best = replace(estimate(best.problem, other.estimate.x), minima=best.minima)
+        certainty = judged_certainty(best)
+        other_fits = other_minima(best, certainty, max(excess_of(best), 1.0))
     unsigned = mirrored(best, certainty)
     forces = side_forces(best, certainty)
     # bounds that the caller gives may keep every motion away: that is said of the bound
     held_off = any(best.problem.names[k][1] in bounds for k in np.flatnonzero(certainty.pinned))
     if held_off:  # no force
         forces = forces._replace(biases=np.empty((0, 0)))
-    complained = bool(misfits(best, known, smooth, forces.chance))
+    complained = bool(misfits(best, forces.chance))
     most = math.inf if complained else _HARDLY
-    may = complained or may_misfit(best, smooth, forces.chance)
+    may = complained or may_misfit(best, forces.chance)
     certainty = _wider(best, certainty, may, most, forces, bool(unsigned))
-    nowhere = "" if held_off else no_answer(best, known, smooth)
+    nowhere = "" if held_off else no_answer(best)
     astray = nowhere or ran_away(best.problem, best.x)
     return JudgedMotion(
         best, certainty.lost() if astray else certainty, certainty, other_fits, unsigned, forces,
@@ -357,9 +352,9 @@ def judged_motion(
     )  # fmt: skip
 
 
-def judged_certainty(best: Estimate, known: Known) -> Certainty:
+def judged_certainty(best: Estimate) -> Certainty:
     """How well the unknowns of an estimate are known."""
-    degrees = freedom(best, known)
+    degrees = freedom(best)
     if degrees < _JUDGED:
         raise InputError(
             f"{best.residuals.size} observations of {best.x.size} unknowns are too few to judge "

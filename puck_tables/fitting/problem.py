@@ -37,9 +37,12 @@ _LEAST, _MOST = 1e-4, 30.0  # times the noise of a place over the speed: σ_t is
 class Known(NamedTuple):
     """Whether the noise of places, of angles, and of time stamps is given."""
 
-    place: bool
-    angle: bool
-    jitter: bool
+    place: bool = False
+    angle: bool = False
+    jitter: bool = False
+
+
+_NONE_GIVEN = Known()
 
 
 def weights_of(
@@ -136,6 +139,8 @@ class Problem(Slides):
     impact_specs : impacts, in the order of time (s after the start of the first track)
     jitter : standard deviation of time stamps, s
     weights : what makes residuals of each track's frames independent (n, 3, 3); empty: the noise
+    known : which noise is given, and not that of the residuals
+    smooth : noise of places (m) and angles (rad) that no model judged
     """
 
     spec: FitSpec
@@ -148,6 +153,8 @@ class Problem(Slides):
     impact_specs: tuple[ImpactSpec, ...] = ()
     jitter: float = 0.0
     weights: tuple[FloatArray, ...] = ()
+    known: Known = _NONE_GIVEN
+    smooth: tuple[float, float] = (math.nan, math.nan)
 
     @cached_property
     def angled(self) -> bool:

@@ -19,7 +19,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.certainty import Certainty, shifted_by
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.forward_model import DELTA, RATE, Moving, states_and_slopes, states_of
-from puck_tables.fitting.problem import ANGLE, PLACE, Known
+from puck_tables.fitting.problem import ANGLE, PLACE
 
 NO_PATTERN = 1e-3  # probability of residuals so patterned by chance
 JITTERY = 1.3  # residuals along the motion over those across it: more, and stamps may jitter
@@ -31,17 +31,6 @@ _SELDOM, _RARE = 3.3, 2.4  # standard deviations: one film in 1,000, in 100; few
 _PARTS = 8  # of a track, whose means tell a drift
 _ROUNDED = 0.45  # of a step: residuals of what is rounded, and of some noise
 _MOVING, _ENOUGH = 0.1, 20  # of the greatest speed; frames
-
-
-def chi_square_tail(value: float, degrees: int) -> float:
-    """The probability that χ² exceeds a value.
-
-    >>> round(chi_square_tail(3.841459, 1), 6)
-    0.05
-    """
-    from scipy.special import gammaincc
-
-    return float(gammaincc(0.5 * degrees, 0.5 * value))
 
 
 def runs(result: Estimate) -> float:
@@ -61,18 +50,24 @@ def runs(result: Estimate) -> float:
 
 def drift(result: Estimate) -> float:
     """The probability that means over eighths of the tracks are so far from 0 by chance."""
+    from scipy.special import chdtrc
+
     every = [part for rows in _series(result)
              for part in np.array_split(rows, min(_PARTS, rows.size))]  # fmt: skip
     total = sum(part.sum() ** 2 / part.size for part in every) / max(result.size**2, 1e-300)
-    return chi_square_tail(total, max(len(every) - result.x.size, 1)) if every else 1.0
+    return float(chdtrc(max(len(every) - result.x.size, 1), total)) if every else 1.0
 
 
-def excess_of(result: Estimate, smooth: tuple[float, float], chance: float = 0.0) -> float:
-    """The residuals over the noise (m, rad) that no model judged; 1 where that is not known.
+def excess_of(
+    result: Estimate, chance: float = 0.0, smooth: tuple[float, float] | None = None
+) -> float:
+    """The residuals over the noise that no model judged; 1 where that is not known.
 
     ``chance``: standard deviations by which that noise may be too small by chance, as that of few
-    frames is: the logarithm of what n third differences tell scatters by 1.5/√n, as drawn ones do.
+    frames is: the logarithm of what n third differences tell scatters by 1.5/√n, as drawn ones do;
+    ``smooth``: another such noise (m, rad) than that of the problem.
     """
+    smooth = smooth or result.problem.smooth
     films, kinds = len(result.problem.films), result.problem.kinds
     thirds = [max((kinds == kind).sum() - 3 * films * (2 - kind), 1) for kind in (PLACE, ANGLE)]
     return max((
@@ -85,17 +80,15 @@ def excess_of(result: Estimate, smooth: tuple[float, float], chance: float = 0.0
     ), default=1.0)  # fmt: skip
 
 
-def misfits(
-    result: Estimate, known: Known, smooth: tuple[float, float], explained: float
-) -> tuple[str, ...]:
-    """Signs that a model does not fit; ``smooth``: the noise (m, rad) that no model judged.
+def misfits(result: Estimate, explained: float) -> tuple[str, ...]:
+    """Signs that a model does not fit.
 
     ``explained``: the probability by chance of what a slope, drag or air would explain.
     """
     told = []
     seen = not computed(result)
-    excess = excess_of(result, smooth, _SELDOM)
-    given = any(known[:2])
+    excess = excess_of(result, _SELDOM)
+    given = any(result.problem.known[:2])
     if seen and not given and excess > NOISY:
         told.append(f"The residuals are {excess:.3g} times what smooth tracks would leave")
     if given and result.size**2 > 1.0 + 5.0 * math.sqrt(2.0 / max(result.degrees, 1)):
@@ -123,16 +116,16 @@ def hidden(result: Estimate) -> bool:
     return bool(place or (result.problem.angled and angle))
 
 
-def may_misfit(result: Estimate, smooth: tuple[float, float], explained: float) -> bool:
+def may_misfit(result: Estimate, explained: float) -> bool:
     """Whether a model may not fit, though :func:`misfits` has no sign: that may bias numbers."""
     pattern = not hidden(result) and min(runs(result), drift(result), explained) < _MAY_PATTERN
-    return pattern or excess_of(result, smooth, _RARE) > _MAY_NOISY
+    return pattern or excess_of(result, _RARE) > _MAY_NOISY
 
 
-def no_answer(result: Estimate, known: Known, smooth: tuple[float, float]) -> str:
+def no_answer(result: Estimate) -> str:
     """A sentence where no motion comes near the tracks, and nothing is determined; else none."""
     usual = result.size
-    times = max(excess_of(result, smooth), usual if any(known[:2]) else 0.0)
+    times = max(excess_of(result), usual if any(result.problem.known[:2]) else 0.0)
     if times > _NOWHERE and usual * result.problem.noise[0] > _FAR * result.problem.size:
         far = f"the nearest is {times:.3g} times the noise off"
     elif result.problem.angled and usual * result.problem.noise[1] > _ANY:

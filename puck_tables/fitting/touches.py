@@ -21,7 +21,9 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.fitting.estimate import FARTHEST, Estimate
 from puck_tables.fitting.observations import FEWEST, Observations, noise_of, rests_from, turning_of
+from puck_tables.fitting.problem import UNSEEN
 from puck_tables.fitting.starts import robust_parabola
 
 FAR = 25.0  # of χ²: by so much nearer, and by as much for each 1 of it that is left
@@ -247,3 +249,67 @@ def turns(film: Observations) -> bool:
     turning, noise = turning_of(film), np.nan_to_num(noise_of([film])[1])
     least = _STILL * max(float(noise), _LEAST_TURN)
     return turning is not None and float(np.nanstd(turning.angle)) > least
+
+
+_FEWEST_OUT = 3  # frames at an end that are more than single outliers
+_BESIDE = 0.1  # of the frames that are left, at most
+_SMALLER = 0.45  # of the frames: a hand or what a wall did
+_SLACK = 3  # frames
+_MOSTLY = 0.7  # of them are outliers
+
+
+def trimmed(result: Estimate, uncut: tuple[Observations, ...]) -> tuple[Observations, ...]:
+    """The tracks without what lies at their ends and is not of the motion; ``uncut``: with all.
+
+    What is off there is left out where something touches the puck (:func:`first_touch`); else it is
+    the model that is wrong.  A hand that lets go slows otherwise by about J, and is off by as much
+    as an outlier only the time √(2 · 4σ/J) before: so long beside what is foreign is left out, too.
+    """
+    films, problem = [], result.problem
+    decel = problem.spec.scales(problem.numbers_at(result.x))[0]
+    hidden = math.sqrt(2.0 * FARTHEST * problem.noise[0] / decel)
+    for film, whole, (x, _, _) in zip(problem.films, uncut, problem.each(), strict=True):
+        out = ~result.kept[x] & (problem.kinds[x] != UNSEEN)
+        ends = [_foreign(out), _foreign(out[::-1])]
+        close = math.ceil(min(hidden / film.usual_step, _BESIDE * (out.size - sum(ends))))
+        for n, before in enumerate(ends):
+            edge = before if n == 0 else out.size - before
+            at = int(np.searchsorted(whole.frame, film.frame[min(edge, out.size - 1)]))
+            at += edge == out.size
+            ends[n] = before + close if before and _ends(whole, at, close, n == 0) else 0
+        inner = np.arange(film.time.size)
+        chosen = (inner >= ends[0]) & (inner < out.size - ends[1])
+        same = bool(chosen.all()) or chosen.sum() < FEWEST + 2
+        films.append(film if same else film.part(chosen))
+    same = all(a is b for a, b in zip(films, problem.films, strict=True))
+    return problem.films if same else tuple(films)
+
+
+def _ends(whole: Observations, at: int, close: int, first: bool) -> bool:
+    """Whether the free motion begins, or ends, about a frame since something touches the puck."""
+    rests = rests_from(whole, noise_of([whole])[0])
+    if not whole.cuttable[0 if first else 1] or (first and at >= rests - FEWEST):
+        return False
+    if first_touch(whole, at - close - _SLACK, at + close + _SLACK) is not None:
+        return True
+    count = whole.time.size
+    foreign, free = ((0, at), (at, count)) if first else ((at, count), (0, at))
+    return pushed(whole, *foreign) and not pushed(whole, *free)
+
+
+def without_ends(film: Observations) -> list[Observations]:
+    """A track without what lies before or after a touch, where that is the smaller part."""
+    order, parts = np.arange(film.time.size), []
+    count = round(_SMALLER * order.size)
+    for end, ends in enumerate(((0, count), (order.size - count, order.size))):
+        at = first_touch(film, *ends) if film.cuttable[end] else None
+        if at is not None:
+            parts.append(film.part((order >= at) != bool(end)))
+    return [part for part in parts if part.time.size >= FEWEST + 2]
+
+
+def _foreign(out: npt.NDArray[np.bool_]) -> int:
+    """How many frames at the beginning are mostly outliers."""
+    sizes = np.arange(1, out.size + 1)
+    mostly = out & (np.cumsum(out) >= _MOSTLY * sizes) & (sizes >= _FEWEST_OUT)
+    return int(sizes[mostly].max(initial=0))

@@ -356,10 +356,7 @@ def derived(columns: Mapping[str, Any]) -> dict[str, Any]:
 def following(result: Any, name: str) -> Any:
     """A column as an attribute of a result that has those from which it follows.
 
-    Raises
-    ------
-    AttributeError
-        If it follows from none.
+    Raises AttributeError if it follows from none.
     """
     column = COLUMNS.get(name)
     try:

@@ -30,13 +30,8 @@ FORMATS = {".h5": "hdf5", ".csv": "csv", ".json": "json", ".jsonl": "jsonl", ".p
 def ending_of(path: str | Path, allowed: Any) -> str:
     """The ending of a file name, which chooses its format.
 
-    Raises
-    ------
-    InputError
-        If it is none of those allowed, or no name.
+    Raises InputError if it is none of those allowed, or no name.
 
-    Examples
-    --------
     >>> ending_of("run.csv", FORMATS)
     '.csv'
     """
@@ -52,15 +47,9 @@ def ending_of(path: str | Path, allowed: Any) -> str:
 def encoder_for(path: str | Path) -> Callable[[Dataset], bytes]:
     """The function that encodes what is to be saved under a name.
 
-    Raises
-    ------
-    InputError
-        If its ending is not that of a format.
-    MissingExtraError
-        If the format needs a package that is not installed.
+    Raises InputError if its ending is not that of a format; MissingExtraError if the format needs a
+    package that is not installed.
 
-    Examples
-    --------
     >>> encoder_for("run.csv").__module__
     'puck_tables.io.csv'
     """
@@ -72,17 +61,10 @@ def encoder_for(path: str | Path) -> Callable[[Dataset], bytes]:
 def save(dataset: Dataset, path: str | Path, overwrite: bool = False) -> None:
     """Write a result in the format that the ending of the name asks for.
 
-    Raises
-    ------
-    InputError
-        If its ending is not that of a format.
-    MissingExtraError
-        If the format needs a package that is not installed.
-    OutputError
-        If the file exists (without ``overwrite``) or cannot be written.
+    Raises InputError if its ending is not that of a format; MissingExtraError if the format needs a
+    package that is not installed; OutputError if the file exists (without ``overwrite``) or cannot
+    be written.
 
-    Examples
-    --------
     >>> save(Dataset({}, {}), "run.txt")
     Traceback (most recent call last):
     ...
@@ -95,13 +77,8 @@ of .h5, .csv, .json, .jsonl, .parquet
 def to_xarray(dataset: Dataset) -> xarray.Dataset:
     """Every column over its axes; units and long names as attributes.
 
-    Raises
-    ------
-    MissingExtraError
-        If xarray is not installed.
+    Raises MissingExtraError if xarray is not installed.
 
-    Examples
-    --------
     >>> from puck_tables.io.columns import variable
     >>> time, x = (variable(name, [0.0, 1.0], ("time",)) for name in ("time", "x"))
     >>> to_xarray(Dataset({"time": time}, {"x": x})).x.units
@@ -123,10 +100,7 @@ def to_xarray(dataset: Dataset) -> xarray.Dataset:
 def open_store(path: str | Path) -> xarray.Dataset:
     """A Zarr store as an xarray.Dataset that reads when it is asked; with dask in its chunks.
 
-    Raises
-    ------
-    MissingExtraError
-        If xarray is not installed.
+    Raises MissingExtraError if xarray is not installed.
     """
     chunks: Any = {} if find_spec("dask") is not None else None
     found: xarray.Dataset = _xarray().open_zarr(path, chunks=chunks)
@@ -144,13 +118,8 @@ def _xarray() -> Any:
 def to_pandas(dataset: Dataset) -> pandas.DataFrame:
     """The flat table, one row a state, a launch or a run; units in ``attrs``.
 
-    Raises
-    ------
-    MissingExtraError
-        If pandas is not installed.
+    Raises MissingExtraError if pandas is not installed.
 
-    Examples
-    --------
     >>> from puck_tables.io.columns import variable
     >>> frame = to_pandas(Dataset({}, {"x": variable("x", [0.0, 1.0], ("time",))}))
     >>> frame.x.tolist(), frame.attrs["units"]

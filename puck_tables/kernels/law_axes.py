@@ -80,11 +80,11 @@ def branches_of_circle(
 
 
 class Square(NamedTuple):
-    """|A e|² R² along a side: ``one`` + ``s`` s + ``ss`` s², s from where it is nearest to C."""
+    """|A e|² R² at (x, y) from C: ``xx`` x² + ``xy`` x y + ``yy`` y²."""
 
-    one: float
-    s: float
-    ss: float
+    xx: float
+    xy: float
+    yy: float
 
 
 PLAIN = Square(0.0, 0.0, 0.0)  # of no direction
@@ -106,11 +106,10 @@ def by_axes(axes: Ellipse, sums: Sums) -> Sums:
 
 
 @inlined
-def square_along(axes: Ellipse, d: float, tx: float, ty: float) -> Square:
-    """Of a side along (tx, ty) at the distance d."""
-    p, q, c, s = axes.along, axes.across, axes.cosine, axes.sine
-    x, y = c * tx + s * ty, c * ty - s * tx
-    px, py, qx, qy = p * x, p * y, q * x, q * y
-    return Square(
-        d * d * (px * px + qy * qy), 2.0 * d * (qx * qy - px * py), py * py + qx * qx
-    )  # fmt: skip
+def square_about(axes: Ellipse, nx: float, ny: float, side: float) -> Square:
+    """In axes along the unit vector n and to its left, or to its right: ``side`` −1."""
+    near, beside = axes.cosine * nx + axes.sine * ny, axes.sine * nx - axes.cosine * ny
+    one, two = axes.along * beside, axes.across * near
+    three, four = axes.along * near, axes.across * beside
+    mixed = 2.0 * side * (two * four - one * three)
+    return Square(one * one + two * two, mixed, three * three + four * four)

@@ -11,6 +11,7 @@ all points of the contour at once: as it is written a kernel takes thirty times 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.law_moments import DEGREE, MOMENTS
 from puck_tables.kernels.base_sums import Sums, moved
 from puck_tables.kernels.compile import inlined
-from puck_tables.kernels.elementary import log_of
+from puck_tables.kernels.elementary import cosine_sine_of, exp_of, log_of
 from puck_tables.kernels.elliptic_sums import Ellipse, end_of_panel, panel_to
 from puck_tables.kernels.law_axes import (
     LEAST_GAP,
@@ -45,9 +46,13 @@ from puck_tables.kernels.polygon_sums import (
 NODES = 8
 PANEL = 2.0  # of y
 ARC = 0.9  # of an angle, over how far it is from the singularity next to C
-_AHEAD = 4  # pieces of a smooth law: a panel across them is good to 1e-11
+# where C is far away: of an angle, and points around a circle:
+# test_where_it_turns_far_away_a_disc_or_half_of_it_is_what_points_sum
+_FAR_ARC = 1.3
+_AROUND = 20
+_AHEAD = 4  # pieces of a smooth law: a rule across the base is good to 1e-11 there
 _BEYOND = 1.0 + 1e-9  # times a slip speed: a corner there is passed
-_STEP = 1e-12  # the shortest panel of a circle
+_WHOLE = 2.0 * math.pi
 # of a panel, over how far it is from where 1/|A e| branches: test_sums_are_those_of_points_on_rays
 _GROWTH = 1.0
 
@@ -66,92 +71,182 @@ def begin_of(law: FloatArray, u: float) -> int:
 
 
 @inlined
-def next_end(law: FloatArray, u: float) -> float:
-    """Up to which slip speed a rule may go from one: the next corner, or some pieces on; or inf."""
-    count, after = int(law[0]), begin_of(law, u) + _AHEAD
-    cut = law[after] if after <= count else math.inf
+def goes_on_beyond(law: FloatArray, low: float, high: float) -> bool:
+    """Whether a law is smooth from a slip speed to another, and not steep."""
+    count, after = int(law[0]), begin_of(law, low) + _AHEAD
     corners = 2 + count + count * MOMENTS * (DEGREE + 1)
+    smooth = after > count or high <= law[after]
     for k in range(int(law[corners])):
-        corner = law[corners + 1 + k]
-        if u * _BEYOND < corner < cut:
-            cut = corner
-    return cut
+        smooth = smooth and not low * _BEYOND < law[corners + 1 + k] < high
+    return smooth
+
+
+class Nearest(NamedTuple):
+    """Where a piece of a contour is nearest to C, from there on.
+
+    ``x``, ``y``: the outward normal of a side, or of an arc where its circle is nearest; ``off``:
+    how far C is along it to a side, or behind the middle of the circle; ``size``: its radius;
+    ``low``, ``high``: from where to where the piece goes, in y = asinh(s/|off|), or in the angle
+    from −π on; of a side where it begins, and ``begin``, s there, of a circle its middle.
+    """
+
+    x: float
+    y: float
+    off: float
+    size: float
+    low: float
+    high: float
+    from_x: float
+    from_y: float
+    begin: float
 
 
 @inlined
-def side_panel(
-    law: FloatArray, spin: float, away: float, piece: int, y: float, last: float,
-    branches: BranchPoints,
+def nearest_to(room: FloatArray, i: int, cx: float, cy: float, reach: float) -> Nearest:
+    """Of a row of a contour from C."""
+    turn = room[i + TURN]
+    if turn == 0.0:
+        tx, ty, x, y = (
+            room[i + TANGENT_X],
+            room[i + TANGENT_Y],
+            room[i + BEGIN_X],
+            room[i + BEGIN_Y],
+        )
+        px, py = x - cx, y - cy
+        d, begin = px * ty - py * tx, px * tx + py * ty
+        low, high = 0.0, 0.0
+        if abs(d) > _ON_SIDE * reach:
+            low, high = _asinh(begin / d, d), _asinh((begin + room[i + LENGTH]) / d, d)
+        return Nearest(ty, -tx, d, 0.0, low, high, x, y, begin)
+    x, y = room[i + ABOUT_X], room[i + ABOUT_Y]
+    gx, gy = cx - x, cy - y
+    off = math.sqrt(gx * gx + gy * gy)
+    nx, ny = (gx / off, gy / off) if off > 0.0 else (1.0, 0.0)
+    low, high = -math.pi, math.pi
+    if abs(turn) < _WHOLE:
+        start = room[i + START]
+        low = (start if turn > 0.0 else start + turn) - math.atan2(ny, nx)
+        low -= _WHOLE * math.floor((low + math.pi) / _WHOLE)
+        high = low + abs(turn)
+    return Nearest(nx, ny, off, room[i + RADIUS], low, high, x, y, 0.0)
+
+
+@inlined
+def _asinh(of_d: float, d: float) -> float:
+    """Asinh(s/|d|) of s/d, with the sign of s."""
+    size = abs(of_d)
+    y = log_of(size + math.sqrt(1.0 + size * size)) if size > 0.1 else math.asinh(size)
+    return y if (of_d >= 0.0) == (d >= 0.0) else -y
+
+
+@inlined
+def interval_of(k: int, place: Nearest, arc: bool) -> tuple[float, float, float, float]:
+    """From where to where the kth interval of a piece goes, and whether ahead and back: 1 or 0.
+
+    Of two of a side, and three of an arc, that may go around its circle.
+    """
+    low, high = place.low, place.high
+    wrapped = high - _WHOLE if arc else -math.inf
+    one, other = abs(low), abs(wrapped if arc and high > math.pi else high)
+    begin, last = 0.0, min(one, other)
+    if k == 1:
+        begin, last = last, max(one, other)
+    elif k == 2:
+        begin, last = max(one, other), math.pi
+    middle = 0.5 * (begin + last)
+    ahead = low <= middle <= high or middle <= wrapped
+    back = low <= -middle <= high or -middle <= wrapped
+    return begin, last, 1.0 if ahead else 0.0, 1.0 if back else 0.0
+
+
+@inlined
+def distance_at(place: Nearest, at: float, arc: bool) -> float:
+    """How far from C a point of a piece is."""
+    if not arc:
+        up = exp_of(at)
+        return 0.5 * abs(place.off) * (up + 1.0 / up)
+    gap, (_, h) = place.size - place.off, cosine_sine_of(0.5 * at)
+    return math.sqrt(gap * gap + 4.0 * place.off * place.size * h * h)
+
+
+@inlined
+def branches_of(place: Nearest, axes: Ellipse, side: float, arc: bool) -> BranchPoints:
+    """Where 1/|A e| branches beside a piece, ahead, or back (``side`` −1)."""
+    if arc:
+        gx, gy = -place.off * place.x, -place.off * place.y
+        return branches_of_circle(axes, gx, gy, place.size, math.atan2(place.y, place.x), side)
+    return branches_of_side(axes, side * place.off, -place.y, place.x)
+
+
+@inlined
+def panel_end(
+    law: FloatArray, spin: float, place: Nearest, piece: int, begin: float, last: float,
+    branches: BranchPoints, arc: bool,
 ) -> tuple[float, int]:  # fmt: skip
-    """Where the panel ends that begins at y ≥ 0, s = away sinh y, in a piece of the law.
-
-    Also, in which piece the next one begins: no panel of a side goes across two.
-    """
-    end, after = last, piece
+    """Where the panel ends that begins in a piece of the law, and in which the next one begins."""
+    end, after = _arc_end(place, begin, last) if arc else last, piece
     if piece < int(law[0]):
-        reach = law[piece + 1] / spin
-        root = math.sqrt(max((reach - away) * (reach + away), 0.0))
-        there = log_of((reach + root) / away)
-        if there < last:
-            end, after = max(there, y), piece + 1
+        there = _place_of(place, law[piece + 1] / spin, arc)
+        if there < end:
+            end, after = max(there, begin), piece + 1
     if branches.near < math.inf:
-        near = end_of_panel(y, end, branches.first, branches.near, _GROWTH)
-        near = end_of_panel(y, near, branches.second, branches.close, _GROWTH)
+        if arc:
+            near = panel_to(begin, end, branches.first, branches.near, _GROWTH)
+            near = panel_to(begin, near, branches.second, branches.close, _GROWTH)
+            near = max(near, min(end, begin + LEAST_GAP))  # C may lie there
+        else:
+            near = end_of_panel(begin, end, branches.first, branches.near, _GROWTH)
+            near = end_of_panel(begin, near, branches.second, branches.close, _GROWTH)
         end, after = (near, piece) if near < end else (end, after)
-    panels = 1 + int((end - y) / PANEL)
-    return (end, after) if panels == 1 else (y + (end - y) / panels, piece)
+    if not arc:
+        panels = 1 + int((end - begin) / PANEL)
+        end, after = (end, after) if panels == 1 else (begin + (end - begin) / panels, piece)
+    return end, after
 
 
 @inlined
-def circle_end(
-    law: FloatArray, spin: float, off: float, size: float, turn: float, last: float,
-    branches: BranchPoints,
-) -> float:  # fmt: skip
-    """Where the panel ends that begins at a turn from 0 to π; ``off``: how far its middle is.
-
-    ``last``: where the arc ends, or turns back.
-    """
-    gap, left = abs(off - size), last - turn
-    near = min(max(gap / size, LEAST_GAP), 1.0)
+def _arc_end(place: Nearest, turn: float, last: float) -> float:
+    """Where a panel of an arc ends at most that begins at a turn from 0 to π."""
+    left, near = last - turn, min(max(abs(place.off / place.size - 1.0), LEAST_GAP), 1.0)
     length = ARC * math.sqrt(near * near + turn * turn)
     if length >= 0.7 * left:
         length = left if length >= left else 0.5 * left
-    end = turn + length if length < left else last
-    product, h = 4.0 * off * size, math.sin(0.5 * turn)
-    reach = next_end(law, spin * math.sqrt(gap * gap + product * h * h)) / spin
-    if reach < math.inf:
-        square = (reach - gap) * (reach + gap)
-        if square < product:
-            there = 2.0 * math.asin(math.sqrt(max(square, 0.0) / product))
-            end = min(end, max(there, turn + _STEP))
-    if branches.near < math.inf:
-        near = panel_to(turn, end, branches.first, branches.near, _GROWTH)
-        near = panel_to(turn, near, branches.second, branches.close, _GROWTH)
-        end = max(near, min(end, turn + LEAST_GAP))  # C may lie there
-    return end
+    return turn + length if length < left else last
 
 
 @inlined
-def arc_from_nearest(start: float, turn: float, nearest: float) -> tuple[float, float]:
-    """From where to where an arc goes, counter-clockwise, counted from an angle of its circle."""
-    whole = 2.0 * math.pi
-    if abs(turn) == whole:  # it begins nowhere
-        return 0.0, whole
-    low = (start if turn > 0.0 else start + turn) - nearest
-    low -= whole * math.floor(low / whole)
-    return low, low + abs(turn)
+def _place_of(place: Nearest, distance: float, arc: bool) -> float:
+    """Where on a piece a distance from C is reached; inf: nowhere."""
+    if not arc:
+        away = abs(place.off)
+        root = math.sqrt(max((distance - away) * (distance + away), 0.0))
+        return log_of((distance + root) / away)
+    gap, product = place.size - place.off, 4.0 * place.off * place.size
+    square = (distance - gap) * (distance + gap)
+    if not square < product or product == 0.0:
+        return math.inf
+    return 2.0 * math.asin(math.sqrt(max(square, 0.0) / product))
 
 
 @inlined
-def panels_far_off(turn: float) -> int:
-    """How many panels an arc takes where C is far away."""
-    return 1 + int(abs(turn) / ARC)
+def points_far_off(turn: float) -> int:
+    """How many points a piece of a contour takes where C is far away."""
+    return _AROUND if abs(turn) == _WHOLE else NODES * (1 + int(abs(turn) / _FAR_ARC))
+
+
+@inlined
+def far_point(turn: float, k: int) -> tuple[float, float]:
+    """What share of the piece lies before its kth point, and the weight of that."""
+    if abs(turn) == _WHOLE:
+        return k / _AROUND, 1.0 / _AROUND
+    panels, n = points_far_off(turn) // NODES, k % NODES
+    return (k // NODES + 0.5 + 0.5 * NODE[n]) / panels, 0.5 * WEIGHT[n] / panels
 
 
 # the rule of both
 FAR = 6.0  # times the reach of the base: nearer, 1e-13 is lost to cancellation at most
 NODE, WEIGHT = np.polynomial.legendre.leggauss(NODES)
-ON_SIDE = 1e-14  # of the reach: closer, C lies on a side, and nothing is left of it
+_ON_SIDE = 1e-14  # of the reach: closer, C lies on a side, and nothing is left of it
 
 Points = tuple[FloatArray, FloatArray, FloatArray]  # of a contour, and r × dr, or dx and dy
 
@@ -166,9 +261,7 @@ def law_sums_at_first(
         return _far(rows, law, axes, ux, uy, w)
     cx, cy = -uy / w, ux / w
     parts = [
-        _on_side(row, law, axes, abs(w), cx, cy, reach) if row[TURN] == 0.0
-        else _on_arc(row, law, axes, abs(w), cx, cy)
-        for row in rows
+        _points(row, law, axes, abs(w), nearest_to(row, 0, cx, cy, reach)) for row in rows
     ]  # fmt: skip
     rx, ry, area = (np.concatenate(rows) for rows in zip(*parts, strict=True))
     distance = np.hypot(rx, ry)
@@ -210,69 +303,45 @@ def _polynomials(law: FloatArray, u: FloatArray) -> FloatArray:
     return found
 
 
-def _on_side(
-    row: FloatArray, law: FloatArray, axes: Ellipse, spin: float, cx: float, cy: float,
-    reach: float,
-) -> Points:  # fmt: skip
-    px, py, tx, ty = row[BEGIN_X] - cx, row[BEGIN_Y] - cy, row[TANGENT_X], row[TANGENT_Y]
-    d, begin = px * ty - py * tx, px * tx + py * ty
-    if abs(d) <= ON_SIDE * reach:
-        return np.zeros(0), np.zeros(0), np.zeros(0)
-    low, high = math.asinh(begin / abs(d)), math.asinh((begin + row[LENGTH]) / abs(d))
-    found = []
-    for way, y, last in ((1.0, max(low, 0.0), high), (-1.0, max(-high, 0.0), -low)):
-        piece = begin_of(law, spin * abs(d) * math.cosh(y)) if y < last else 1
-        branches = branches_of_side(axes, way * d, tx, ty)
-        while y < last:
-            end, piece = side_panel(law, spin, abs(d), piece, y, last, branches)
-            half = 0.5 * (end - y)
-            found.append(np.stack([way * (y + half * (1.0 + NODE)), half * WEIGHT]))
-            y = end
+def _points(row: FloatArray, law: FloatArray, axes: Ellipse, spin: float, place: Nearest) -> Points:
+    arc, found = bool(row[TURN] != 0.0), [np.zeros((2, 0))]
+    for side in (1.0, -1.0):
+        branches = branches_of(place, axes, side, arc)
+        for k in range(3 if arc else 2):
+            begin, last, *both = interval_of(k, place, arc)
+            if both[0 if side > 0.0 else 1] == 0.0 or not begin < last:
+                continue
+            ends, piece = [begin], begin_of(law, spin * distance_at(place, begin, arc))
+            while ends[-1] < last:
+                end, piece = panel_end(law, spin, place, piece, ends[-1], last, branches, arc)
+                ends.append(end)
+            half = 0.5 * np.diff(ends)[:, None]
+            turns = np.array(ends)[:-1, None] + half * (1.0 + NODE)
+            found.append(np.stack([side * turns.ravel(), (half * WEIGHT).ravel()]))
     at, weight = np.concatenate(found, axis=1)
-    s, distance = abs(d) * np.sinh(at), abs(d) * np.cosh(at)
-    return d * ty + s * tx, s * ty - d * tx, weight * d * distance
-
-
-def _on_arc(
-    row: FloatArray, law: FloatArray, axes: Ellipse, spin: float, cx: float, cy: float
-) -> Points:
-    gx, gy, size = row[ABOUT_X] - cx, row[ABOUT_Y] - cy, row[RADIUS]
-    off, nearest = math.hypot(gx, gy), math.atan2(-gy, -gx)
-    low, high = arc_from_nearest(row[START], row[TURN], nearest)
-    number, found = math.floor(low / math.pi), [np.zeros((2, 0))]
-    while low < high:
-        edge = min(math.pi * (number + 1), high)
-        side, ends, last = 1.0, [low - math.pi * number], edge - math.pi * number
-        if number % 2 == 1:
-            side, ends = -1.0, [math.pi * (number + 1) - edge]
-            last = math.pi * (number + 1) - low
-        branches = branches_of_circle(axes, gx, gy, size, nearest, side)
-        while ends[-1] < last:
-            ends.append(circle_end(law, spin, off, size, ends[-1], last, branches))
-        half = 0.5 * np.diff(ends)[:, None]
-        turns = np.array(ends)[:-1, None] + half * (1.0 + NODE)
-        found.append(np.stack([side * turns.ravel(), (half * WEIGHT).ravel()]))
-        low, number = edge, number + 1
-    turn, weight = np.concatenate(found, axis=1)
-    c, s = np.cos(nearest + turn), np.sin(nearest + turn)
-    area = np.sign(row[TURN]) * weight * size * (size + gx * c + gy * s)
-    return gx + size * c, gy + size * s, area
+    off, size = place.off, place.size
+    if arc:
+        x, y, area = size * np.cos(at) - off, size * np.sin(at), size * (size - off * np.cos(at))
+    else:
+        x, y, area = np.full(len(at), off), abs(off) * np.sinh(at), off * abs(off) * np.cosh(at)
+    whole = (-1.0 if row[TURN] < 0.0 else 1.0) * weight * area
+    return x * place.x - y * place.y, x * place.y + y * place.x, whole
 
 
 def _far(rows: FloatArray, law: FloatArray, axes: Ellipse, ux: float, uy: float, w: float) -> Sums:
     """With C far away: the inner integral from the distance of C to the contour."""
     parts = []
     for row in rows:
-        if row[TURN] == 0.0:
-            half = 0.5 * row[LENGTH] * np.array([row[TANGENT_X], row[TANGENT_Y]])
-            at = row[[BEGIN_X, BEGIN_Y]] + half + NODE[:, None] * half
-            parts.append(np.hstack([at, WEIGHT[:, None] * half]))
+        turn = float(row[TURN])
+        points = [far_point(turn, k) for k in range(points_far_off(turn))]
+        share, weight = np.array(points).T[:, :, None]
+        if turn == 0.0:
+            along = row[LENGTH] * row[[TANGENT_X, TANGENT_Y]]
+            parts.append(np.hstack([row[[BEGIN_X, BEGIN_Y]] + share * along, weight * along]))
             continue
-        panels = panels_far_off(row[TURN])
-        half = 0.5 * row[TURN] / panels
-        turn = row[START] + half * (2.0 * np.arange(panels)[:, None] + 1.0 + NODE).ravel()
-        out = row[RADIUS] * np.stack([np.cos(turn), np.sin(turn)], 1)
-        around = half * np.tile(WEIGHT, panels)[:, None] * np.stack([-out[:, 1], out[:, 0]], 1)
+        angle = row[START] + share * turn
+        out = row[RADIUS] * np.hstack([np.cos(angle), np.sin(angle)])
+        around = weight * turn * np.stack([-out[:, 1], out[:, 0]], 1)
         parts.append(np.hstack([row[[ABOUT_X, ABOUT_Y]] + out, around]))
     qx, qy, dx, dy = np.vstack(parts).T
     speed, spin = math.hypot(ux, uy), abs(w)
@@ -280,10 +349,18 @@ def _far(rows: FloatArray, law: FloatArray, axes: Ellipse, ux: float, uy: float,
     slip = np.hypot(vx, vy)
     sign = -1.0 if w < 0.0 else 1.0
     deep = sign * (2.0 * (uy * qx - ux * qy) + w * (qx * qx + qy * qy)) / (slip + speed)
-    s = 0.5 * deep[:, None] * (1.0 + NODE)
-    u = speed + spin * s
-    part = 0.5 * deep[:, None] * WEIGHT * _polynomials(law, u.ravel())[:, 0].reshape(u.shape) * u
-    k0, k1, k2 = ((part * s**power).sum(axis=1) for power in range(3))
+    moments, low, high = np.zeros((3, len(deep))), np.minimum(deep, 0.0), np.maximum(deep, 0.0)
+    first = begin_of(law, float((speed + spin * low).min()))
+    last = begin_of(law, float((speed + spin * high).max()))
+    for piece in range(first, last + 1):  # rays are cut where it ends
+        begin = low if piece == first else np.clip((law[piece] - speed) / spin, low, high)
+        end = high if piece == last else np.clip((law[piece + 1] - speed) / spin, low, high)
+        half = 0.5 * (end - begin)[:, None]
+        s = begin[:, None] + half * (1.0 + NODE)
+        u = speed + spin * s
+        part = half * WEIGHT * _polynomials(law, u.ravel())[:, 0].reshape(u.shape) * u
+        moments += np.sign(deep) * np.array([(part * s**power).sum(axis=1) for power in range(3)])
+    k0, k1, k2 = moments
     weight = sign * (vx * dx + vy * dy) / (slip * slip)
     outx, outy = sign * vy / slip, -sign * vx / slip
     bx, by = qx - deep * outx, qy - deep * outy

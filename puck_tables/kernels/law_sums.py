@@ -14,11 +14,12 @@ A = diag(p, q) in axes (:mod:`puck_tables.kernels.elliptic_sums`).  All along a 
 same, so that the H_k are: in the first of these and the last e becomes A² e/|A e|, and the third,
 of r × T = R f |A e|, has R r |A e| in place of R r.
 
-On a straight side at the distance d from C, r × dr = d ds, and with y = asinh(s/|d|) the integrands
-are entire but for the law and 1/|A e|: Gauss's rule on panels of y.  On an arc panels shrink to
-C.  Panels end where the law bends, those of a side with each of its pieces
+A piece is summed from its point nearest to C, both ways at once as far as it goes both ways: R and
+r × dr are alike there.  On a straight side at the distance d from C, r × dr = d ds, and with
+y = asinh(s/|d|) the integrands are entire but for the law and 1/|A e|: Gauss's rule on panels of y.
+On an arc panels of its angle shrink to C.  None goes across two pieces of the law
 (:mod:`puck_tables.kernels.law_panels`), so that all nodes of one are had at once.  Where C lies far
-away these cancel: there the inner integral runs from the distance of C to the contour.
+away these cancel: :mod:`puck_tables.kernels.law_far_sums`.
 """
 
 from __future__ import annotations
@@ -27,316 +28,136 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.law_moments import DEGREE, MOMENTS
-from puck_tables.kernels.base_sums import NOTHING, Sums, moved, plus
+from puck_tables.kernels.base_sums import NOTHING, Sums, from_slip, moved, plus
 from puck_tables.kernels.compile import arrays_at_first, inlined, inner, kernel, summed
-from puck_tables.kernels.elementary import exp_of, log_of
+from puck_tables.kernels.elementary import cosine_sine_of, exp_of
 from puck_tables.kernels.elliptic_sums import Ellipse
-from puck_tables.kernels.law_axes import (
-    PLAIN,
-    Square,
-    against,
-    branches_of_circle,
-    branches_of_side,
-    by_axes,
-    square_along,
-)
+from puck_tables.kernels.law_axes import PLAIN, Square, by_axes, square_about
+from puck_tables.kernels.law_far_sums import far_sums, on_far_panel
 from puck_tables.kernels.law_panels import (
     FAR,
     NODE,
     NODES,
-    ON_SIDE,
     WEIGHT,
-    arc_from_nearest,
+    Nearest,
     begin_of,
-    circle_end,
+    branches_of,
+    distance_at,
+    goes_on_beyond,
+    interval_of,
     law_sums_at_first,
-    next_end,
-    panels_far_off,
-    side_panel,
+    nearest_to,
+    panel_end,
 )
-from puck_tables.kernels.polygon_sums import (
-    ABOUT_X,
-    ABOUT_Y,
-    BEGIN_X,
-    BEGIN_Y,
-    LENGTH,
-    PIECE_COLUMNS,
-    RADIUS,
-    START,
-    TANGENT_X,
-    TANGENT_Y,
-    TURN,
-    ray_to,
-)
+from puck_tables.kernels.polygon_sums import PIECE_COLUMNS, TURN
 
 _POWERS = DEGREE + 1  # coefficients of a moment on a piece
 _FAR_OF_AXES = 2.5  # times the reach, over the ratio of the axes: a rule goes across the base
 
 
 @inlined
-def _polynomials_at(law: FloatArray, u: float) -> tuple[int, float]:
-    """Where the polynomials of a slip speed begin, and its t."""
-    low = begin_of(law, u)
-    begin, end = law[low], law[low + 1]
-    first = 2 + int(law[0]) + (low - 1) * MOMENTS * _POWERS
-    return first, (2.0 * u - begin - end) / (end - begin)
-
-
-@inlined
-def _moments(law: FloatArray, u: float) -> tuple[float, float, float]:
-    """H₁, H₂ and H₃ at a slip speed."""
-    first, t = _polynomials_at(law, u)
-    h1, h2, h3 = 0.0, 0.0, 0.0
+def coefficient_at_rest(law: FloatArray) -> float:
+    """F at slip zero."""
+    first, f = 2 + int(law[0]), 0.0
     for power in range(_POWERS - 1, -1, -1):
-        h1 = h1 * t + law[first + _POWERS + power]
-        h2 = h2 * t + law[first + 2 * _POWERS + power]
-        h3 = h3 * t + law[first + 3 * _POWERS + power]
-    return h1, h2, h3
-
-
-@inlined
-def coefficient_at(law: FloatArray, u: float) -> float:
-    """F at a slip speed."""
-    first, t = _polynomials_at(law, u)
-    f = 0.0
-    for power in range(_POWERS - 1, -1, -1):
-        f = f * t + law[first + power]
+        f = law[first + power] - f
     return f
-
-
-@inner
-def _at(
-    law: FloatArray, axes: Ellipse, spin: float, rx: float, ry: float, distance: float, area: float
-) -> Sums:
-    """What a point of the contour adds, about C, with r × dr = ``area``; e for ω > 0."""
-    h1, h2, h3 = _moments(law, spin * distance)
-    ex, ey = against(axes, -ry / distance, rx / distance)
-    one, two, three = area * h1, area * h2, area * (rx * ey - ry * ex) * h3
-    return (
-        one * ex, one * ey, two * ex * rx, two * ex * ry, two * ey * rx, two * ey * ry,
-        three * rx, three * ry,
-    )  # fmt: skip
 
 
 @inlined
 def _on_panel(
-    law: FloatArray, spin: float, away: float, piece: int, y: float, half: float, square: Square,
-    directed: bool,
-) -> tuple[float, float, float, float, float, float, float]:  # fmt: skip
-    """∫ of H₁, H₁ s, H₂, H₂ s, H₂ s², H₃ R² and H₃ R² s over y, from y over 2 ``half``.
+    law: FloatArray, spin: float, piece: int, begin: float, half: float, place: Nearest,
+    even: float, odd: float, square: Square, arc: bool, directed: bool,
+) -> Sums:  # fmt: skip
+    """Sums over a panel of 2 ``half``, about C in axes from it to where it is nearest, and across.
 
-    ``directed``, a constant: those of H₁ and H₂ by 1/|A e|, the others by |A e|.
+    ``even``, ``odd``: the weights of both ways and their difference; ``arc``, ``directed``:
+    constants.
     """
     first = 2 + int(law[0]) + (piece - 1) * MOMENTS * _POWERS + _POWERS
-    begin, end = law[piece], law[piece + 1]
-    scale, shift = 2.0 * spin / (end - begin), (begin + end) / (end - begin)
+    low, high = law[piece], law[piece + 1]
+    scale, shift = 2.0 * spin / (high - low), (low + high) / (high - low)
+    off, size = place.off, place.size
+    gap, away, spread = size - off, 0.5 * abs(off), 2.0 * off * size
     a, b, c, d, e, f, g = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for n in range(NODES):
-        up = exp_of(y + half * (1.0 + NODE[n]))
-        down = 1.0 / up
-        s, distance = 0.5 * away * (up - down), 0.5 * away * (up + down)
+        at = begin + half * (1.0 + NODE[n])
+        if arc:
+            cosine, sine = cosine_sine_of(0.5 * at)
+            rise = 2.0 * sine * sine
+            x, y = gap - size * rise, 2.0 * size * sine * cosine
+            distance = math.sqrt(gap * gap + spread * rise)
+            area = half * WEIGHT[n] * size * (gap + off * rise) / distance
+        else:
+            up = exp_of(at)
+            down = 1.0 / up
+            x, y, distance = off, away * (up - down), away * (up + down)
+            area = half * WEIGHT[n] * off
         t = scale * distance - shift
         h1, h2, h3 = 0.0, 0.0, 0.0
         for power in range(_POWERS - 1, -1, -1):
             h1 = h1 * t + law[first + power]
             h2 = h2 * t + law[first + _POWERS + power]
             h3 = h3 * t + law[first + 2 * _POWERS + power]
-        weight = half * WEIGHT[n]
-        h1, h2, h3 = weight * h1, weight * h2, weight * distance * distance * h3
+        h1, h2, h3 = area * h1, area * h2, area * distance * distance * h3
         if directed:
-            whole = math.sqrt(square.one + s * (square.s + s * square.ss)) / distance
+            whole = math.sqrt(x * (x * square.xx + y * square.xy) + y * y * square.yy) / distance
             h1, h2, h3 = h1 / whole, h2 / whole, h3 * whole
-        a, b, c, d = summed(a, h1), summed(b, h1 * s), summed(c, h2), summed(d, h2 * s)
-        e, f, g = summed(e, h2 * s * s), summed(f, h3), summed(g, h3 * s)
-    return a, b, c, d, e, f, g
+        a, b, f, g = summed(a, h1 * y), summed(b, h1 * x), summed(f, h3 * x), summed(g, h3 * y)
+        h2x, h2y = h2 * x, h2 * y
+        c, d, e = summed(c, h2x * y), summed(d, h2x * x), summed(e, h2y * y)
+    return -odd * a, even * b, -odd * c, -even * e, even * d, odd * c, even * f, odd * g
 
 
-@inner
-def _along_side(
-    law: FloatArray, axes: Ellipse, spin: float, px: float, py: float, tx: float, ty: float,
-    length: float, least: float,
+@inlined
+def _along(
+    law: FloatArray, axes: Ellipse, ux: float, uy: float, w: float, place: Nearest, arc: bool,
+    far: bool,
 ) -> Sums:  # fmt: skip
-    """A straight side that begins at p from C, about C: both ways from where it is nearest."""
-    d, begin = px * ty - py * tx, px * tx + py * ty
-    away = abs(d)
-    if away <= least:
-        return NOTHING
-    end = begin + length
-    near, far = math.sqrt(d * d + begin * begin), math.sqrt(d * d + end * end)
-    low = math.copysign(log_of((abs(begin) + near) / away), begin)
-    high = math.copysign(log_of((abs(end) + far) / away), end)
-    one, one_s, two, two_s, two_ss, three, three_s = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    directed = axes.along != axes.across
-    for way in range(2):
-        y, last, side, distance = low, high, 1.0, near
-        if way == 1:
-            y, last, side, distance = -high, -low, -1.0, far
-        if y < 0.0:
-            y, distance = 0.0, away
-        piece = begin_of(law, spin * distance) if y < last else 1
-        branches = branches_of_side(axes, side * d, tx, ty)
-        while y < last:
-            to, after = side_panel(law, spin, away, piece, y, last, branches)
-            half = 0.5 * (to - y)
-            if directed:
-                square = square_along(axes, side * d, tx, ty)
-                a, b, c, e, f, g, h = _on_panel(law, spin, away, piece, y, half, square, True)
-            else:
-                a, b, c, e, f, g, h = _on_panel(law, spin, away, piece, y, half, PLAIN, False)
-            one, one_s, two, two_s = one + a, one_s + side * b, two + c, two_s + side * e
-            two_ss, three, three_s = two_ss + f, three + g, three_s + side * h
-            y, piece = to, after
-    product = tx * ty
-    both = product * (two_ss - d * d * two) + d * (ty * ty - tx * tx) * two_s
-    across, twice = 2.0 * d * product * two_s, d * d * two
-    sums = (
-        d * (d * tx * one - ty * one_s), d * (d * ty * one + tx * one_s), -d * both,
-        -d * (tx * tx * twice - across + ty * ty * two_ss),
-        d * (ty * ty * twice + across + tx * tx * two_ss), d * both,
-        d * (d * ty * three + tx * three_s), d * (ty * three_s - d * tx * three),
-    )  # fmt: skip
-    return by_axes(axes, sums)
-
-
-@inner
-def _along_far_side(
-    law: FloatArray, axes: Ellipse, ux: float, uy: float, w: float, px: float, py: float,
-    tx: float, ty: float, length: float,
-) -> Sums:  # fmt: skip
-    """A straight side that begins at p, far from C, about the centre of mass, as where it bends."""
-    spin, cx, cy, sums = abs(w), -uy / w, ux / w, NOTHING
-    d, begin = (px - cx) * ty - (py - cy) * tx, (px - cx) * tx + (py - cy) * ty
-    away = abs(d)
-    if away == 0.0:
-        return sums
-    low, high = math.asinh(begin / away), math.asinh((begin + length) / away)
-    for way in range(2):
-        y, last, side = max(low, 0.0), high, 1.0
-        if way == 1:
-            y, last, side = max(-high, 0.0), -low, -1.0
-        piece = begin_of(law, spin * away * math.cosh(y)) if y < last else 1
-        branches = branches_of_side(axes, side * d, tx, ty)
-        while y < last:
-            end, piece = side_panel(law, spin, away, piece, y, last, branches)
-            half = 0.5 * (end - y)
-            for n in range(NODES):
-                at = y + half * (1.0 + NODE[n])
-                s, weight = side * away * math.sinh(at) - begin, half * WEIGHT[n]
-                weight *= away * math.cosh(at)
-                part = _from_far(
-                    law, axes, ux, uy, w, px + s * tx, py + s * ty, weight * tx, weight * ty
-                )  # fmt: skip
-                sums = plus(sums, 1.0, part)
-            y = end
-    return sums
-
-
-@inner
-def _along_arc(
-    law: FloatArray, axes: Ellipse, ux: float, uy: float, w: float, far: bool, x: float, y: float,
-    size: float, start: float, turn: float,
-) -> Sums:  # fmt: skip
-    """An arc about a place, from half-turn to half-turn away from where it is nearest to C."""
-    spin, gx, gy, sums = abs(w), x + uy / w, y - ux / w, NOTHING
-    off, nearest = math.sqrt(gx * gx + gy * gy), math.atan2(-gy, -gx)
-    low, high = arc_from_nearest(start, turn, nearest)
-    number = float(math.floor(low / math.pi))
-    while low < high:
-        edge = min(math.pi * (number + 1.0), high)
-        side, begin, last = 1.0, low - math.pi * number, edge - math.pi * number
-        if number % 2.0 == 1.0:  # it leads back
-            side = -1.0
-            begin = math.pi * (number + 1.0) - edge
-            last = math.pi * (number + 1.0) - low
-        branches = branches_of_circle(axes, gx, gy, size, nearest, side)
-        while begin < last:
-            end = circle_end(law, spin, off, size, begin, last, branches)
-            half = 0.5 * (end - begin)
-            for n in range(NODES):
-                angle = nearest + side * (begin + half * (1.0 + NODE[n]))
-                c, s, weight = math.cos(angle), math.sin(angle), half * WEIGHT[n] * size
+    """A piece of the contour, about C; ``far``, a constant as ``arc``: about the centre of mass."""
+    spin, sums, directed = abs(w), NOTHING, axes.along != axes.across
+    for way in range(2 if directed or far else 1):
+        side = 1.0 - 2.0 * way
+        branches = branches_of(place, axes, side, arc)
+        for k in range(3 if arc else 2):
+            begin, last, ahead, back = interval_of(k, place, arc)
+            if directed or far:
+                ahead, back = (ahead, 0.0) if way == 0 else (0.0, back)
+            if not begin < last or ahead + back == 0.0:
+                continue
+            even, odd = ahead + back, ahead - back
+            piece = begin_of(law, spin * distance_at(place, begin, arc))
+            while begin < last:
+                end, after = panel_end(law, spin, place, piece, begin, last, branches, arc)
+                half = 0.5 * (end - begin)
                 if far:
-                    part = _from_far(
-                        law, axes, ux, uy, w, x + size * c, y + size * s, -weight * s, weight * c
-                    )  # fmt: skip
+                    part = on_far_panel(law, axes, ux, uy, w, place, begin, half, side, arc)
+                elif directed:
+                    square = square_about(axes, place.x, place.y, side)
+                    part = _on_panel(
+                        law, spin, piece, begin, half, place, even, odd, square, arc, True
+                    )
                 else:
-                    rx, ry = gx + size * c, gy + size * s
-                    distance = math.sqrt(rx * rx + ry * ry)
-                    area = weight * (size + gx * c + gy * s)
-                    part = _at(law, axes, spin, rx, ry, distance, area)
+                    part = _on_panel(
+                        law, spin, piece, begin, half, place, even, odd, PLAIN, arc, False
+                    )
                 sums = plus(sums, 1.0, part)
-            begin = end
-        low = edge
-        number += 1.0
-    return plus(NOTHING, 1.0 if turn > 0.0 else -1.0, sums)
+                begin, piece = end, after
+    return sums if far else by_axes(axes, from_slip(sums, place.x, place.y, 1.0))
 
 
 @inner
-def _from_far(
-    law: FloatArray, axes: Ellipse, ux: float, uy: float, w: float, qx: float, qy: float,
-    dx: float, dy: float,
+def _along_piece(
+    law: FloatArray, axes: Ellipse, ux: float, uy: float, w: float, place: Nearest, arc: bool,
+    far: bool,
 ) -> Sums:  # fmt: skip
-    """What a point q of the contour adds, about the centre of mass; (dx, dy): dr there."""
-    speed, spin, sign = math.sqrt(ux * ux + uy * uy), abs(w), -1.0 if w < 0.0 else 1.0
-    vx, vy, slip, deep = ray_to(ux, uy, w, qx, qy)
-    k0, k1, k2 = 0.0, 0.0, 0.0
-    begin, last, out = min(deep, 0.0), max(deep, 0.0), 1.0 if deep > 0.0 else -1.0
-    while begin < last:
-        low = speed + spin * begin
-        cut, end = next_end(law, low), last
-        if cut < speed + spin * last:
-            end = min(begin + (cut - low) / spin, last)
-        half = 0.5 * (end - begin)
-        for n in range(NODES):
-            s = begin + half * (1.0 + NODE[n])
-            u = speed + spin * s
-            part = out * half * WEIGHT[n] * coefficient_at(law, u) * u
-            k0, k1, k2 = k0 + part, k1 + part * s, k2 + part * s * s
-        begin = end
-    weight = sign * (vx * dx + vy * dy) / (slip * slip)
-    outx, outy = sign * vy / slip, -sign * vx / slip
-    bx, by = qx - deep * outx, qy - deep * outy
-    tx, ty = against(axes, vx / slip, vy / slip)
-    lever, turning = bx * ty - by * tx, outx * ty - outy * tx
-    fx, fy = weight * tx, weight * ty
-    ax, ay = bx * k0 + outx * k1, by * k0 + outy * k1
-    return (
-        fx * k0, fy * k0, fx * ax, fx * ay, fy * ax, fy * ay,
-        weight * (lever * ax + turning * (bx * k1 + outx * k2)),
-        weight * (lever * ay + turning * (by * k1 + outy * k2)),
-    )  # fmt: skip
-
-
-@inner
-def _far_sums(
-    room: FloatArray, first: int, last: int, law: FloatArray, axes: Ellipse, ux: float, uy: float,
-    w: float,
-) -> Sums:  # fmt: skip
-    sums = NOTHING
-    for i in range(first, last, PIECE_COLUMNS):
-        turn = room[i + TURN]
-        if turn == 0.0:
-            half = 0.5 * room[i + LENGTH]
-            hx, hy = half * room[i + TANGENT_X], half * room[i + TANGENT_Y]
-            mx, my = room[i + BEGIN_X] + hx, room[i + BEGIN_Y] + hy
-            for n in range(NODES):
-                part = _from_far(law, axes, ux, uy, w, mx + NODE[n] * hx, my + NODE[n] * hy, hx, hy)
-                sums = plus(sums, WEIGHT[n], part)
-            continue
-        cx = room[i + ABOUT_X]
-        cy = room[i + ABOUT_Y]
-        size = room[i + RADIUS]
-        panels = panels_far_off(turn)
-        half = 0.5 * turn / panels
-        for k in range(panels * NODES):
-            n = k % NODES
-            angle = room[i + START] + half * (2.0 * (k // NODES) + 1.0 + NODE[n])
-            c, s = math.cos(angle), math.sin(angle)
-            part = _from_far(
-                law, axes, ux, uy, w, cx + size * c, cy + size * s, -size * s, size * c
-            )  # fmt: skip
-            sums = plus(sums, half * WEIGHT[n], part)
-    return sums
+    if far and arc:
+        return _along(law, axes, ux, uy, w, place, True, True)
+    if far:
+        return _along(law, axes, ux, uy, w, place, False, True)
+    if arc:
+        return _along(law, axes, ux, uy, w, place, True, False)
+    return _along(law, axes, ux, uy, w, place, False, False)
 
 
 def _at_first(
@@ -362,7 +183,7 @@ def _has_kinks_far_away(
         return False
     least, most = min(axes.along, axes.across), max(axes.along, axes.across)
     turns = least < most and least * speed < _FAR_OF_AXES * most * rim
-    return turns or next_end(law, speed - rim) < speed + rim
+    return turns or not goes_on_beyond(law, speed - rim, speed + rim)
 
 
 @inlined
@@ -372,27 +193,12 @@ def _as_written(
 ) -> Sums:  # fmt: skip
     """The sums; ``far``: C is far away, and friction bends between the slips under the base."""
     if not far and math.sqrt(ux * ux + uy * uy) > FAR * reach * abs(w):
-        return _far_sums(room, first, last, law, axes, ux, uy, w)
-    sums, cx, cy, least = NOTHING, -uy / w, ux / w, ON_SIDE * reach
+        return far_sums(room, first, last, law, axes, ux, uy, w)
+    sums, cx, cy = NOTHING, -uy / w, ux / w
     for i in range(first, last, PIECE_COLUMNS):
-        if room[i + TURN] != 0.0:
-            x, y, size = room[i + ABOUT_X], room[i + ABOUT_Y], room[i + RADIUS]
-            part = _along_arc(
-                law, axes, ux, uy, w, far, x, y, size, room[i + START], room[i + TURN]
-            )  # fmt: skip
-            sums = plus(sums, 1.0, part)
-            continue
-        px = room[i + BEGIN_X]
-        py = room[i + BEGIN_Y]
-        tx = room[i + TANGENT_X]
-        ty = room[i + TANGENT_Y]
-        if far:
-            part = _along_far_side(law, axes, ux, uy, w, px, py, tx, ty, room[i + LENGTH])
-        else:
-            part = _along_side(
-                law, axes, abs(w), px - cx, py - cy, tx, ty, room[i + LENGTH], least
-            )  # fmt: skip
-        sums = plus(sums, 1.0, part)
+        turn, place = room[i + TURN], nearest_to(room, i, cx, cy, reach)
+        part = _along_piece(law, axes, ux, uy, w, place, turn != 0.0, far)
+        sums = plus(sums, 1.0 if turn >= 0.0 else -1.0, part)
     if far:
         return sums
     return plus(NOTHING, 1.0 if w > 0.0 else -1.0, moved(sums, cx, cy))

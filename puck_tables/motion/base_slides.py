@@ -119,13 +119,8 @@ def fill_slides(
 def local_error(tol: float) -> float:
     """The error of a step that keeps a slide to a tolerance.
 
-    Raises
-    ------
-    AccuracyError
-        If the tolerance is out of reach.
+    Raises AccuracyError if the tolerance is out of reach.
 
-    Examples
-    --------
     >>> local_error(3e-7)
     1e-08
     """
@@ -293,17 +288,9 @@ def slide_of(
 
     ``orientation`` rad: of the body at the launch.
 
-    Raises
-    ------
-    AccuracyError
-        If the tolerance is out of reach.
-    InputError
-        If the motion is too large for floating point.
-    PuckError
-        If the slide does not end in a million steps.
+    Raises AccuracyError if the tolerance is out of reach; InputError if the motion is too large for
+    floating point; PuckError if the slide does not end in a million steps.
 
-    Examples
-    --------
     >>> puck = PuckSpec(base="box:0.2x0.1", friction=0.3)
     >>> slide_of(puck, (1.0, 0.0), 10.0, 1e-9).out[STOP_TIME].round(9).item()
     0.448246266

@@ -23,13 +23,8 @@ _FULL_CONTACT = 1.0  # δ up to which a plain puck lies on its whole base in eve
 def plain_up_to(pressure: str | Law, gyration: float) -> float:
     """The height up to which closed forms and the shipped tables hold for a kind of puck.
 
-    Returns
-    -------
-    float
-        1 for a homogeneous puck under uniform pressure, −inf for any other.
+    Returns float: 1 for a homogeneous puck under uniform pressure, −inf for any other.
 
-    Examples
-    --------
     >>> plain_up_to("uniform", HOMOGENEOUS), plain_up_to("ring", HOMOGENEOUS)
     (1.0, -inf)
     """
@@ -147,15 +142,9 @@ def body_of(
 ) -> UnitPuck:
     """A puck, checked; ``table``: where its friction comes from, if not from the law itself.
 
-    Raises
-    ------
-    InputError
-        If the pressure law is not known, a number is out of range, or the table of another law.
-    ContactError
-        If the puck tips, or its contact is not known or not determined.
+    Raises InputError if the pressure law is not known, a number is out of range, or the table of
+    another law; ContactError if the puck tips, or its contact is not known or not determined.
 
-    Examples
-    --------
     >>> body_of("hertz", 0.5, 0.6).law.name
     'hertz'
     """

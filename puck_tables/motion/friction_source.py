@@ -60,13 +60,8 @@ def closed_form_friction(delta: float) -> Friction:
 def table_friction(delta: float, table: ResultantTable) -> Friction:
     """Friction by a table of uniform pressure.
 
-    Raises
-    ------
-    InputError
-        If δ is outside its range, or it is of another pressure law.
+    Raises InputError if δ is outside its range, or it is of another pressure law.
 
-    Examples
-    --------
     >>> table_friction(0.5, ResultantTable.shipped()).error
     2e-11
     """
@@ -77,13 +72,8 @@ def table_friction(delta: float, table: ResultantTable) -> Friction:
 def section_friction(body: UnitPuck, accuracy: float, coarser: bool = False) -> Friction:
     """Friction by a section; ``coarser``: of half as many cells, to see what the spline adds.
 
-    Raises
-    ------
-    AccuracyError
-        If its pressure law is too rough for it; it says which ``tol`` is not.
+    Raises AccuracyError if its pressure law is too rough for it; it says which ``tol`` is not.
 
-    Examples
-    --------
     >>> from puck_tables.motion.body import body_of
     >>> section_friction(body_of("ring", 0.5, 1.0), 1e-6).error <= 1e-6
     True
@@ -162,9 +152,7 @@ class FullContact:
     def refuse(self, least_log_ratio: float) -> None:
         """Above δ = 1 the linear law of pressure holds state by state: refuse where it does not.
 
-        Raises
-        ------
-        ContactError
+        Raises ContactError.
         """
         u = least_log_ratio
         if self.delta <= 1.0:

@@ -13,9 +13,10 @@ from puck_tables._core.drawn_outlines import SUFFIXES
 from puck_tables._core.fields import Unsaid, of
 from puck_tables._core.own_folder import say
 from puck_tables._core.reading import Reading, entries_in, mark_checked, read_values
-from puck_tables.contact.base import NAMES as BASES
-from puck_tables.contact.base import Base, base_of
+from puck_tables.contact.base import Base
 from puck_tables.contact.laws import HOMOGENEOUS, Law
+from puck_tables.contact.named_base import NAMES as BASES
+from puck_tables.contact.named_base import base_of
 from puck_tables.errors import ContactError, InputError
 from puck_tables.kernels.base_friction import packed
 from puck_tables.motion.body import (

@@ -232,13 +232,8 @@ def at_constant_slip(regime: str, u: float, friction: Friction) -> MotionRun:
 def integrated(u: float, friction: Friction, stepping: Stepping) -> MotionRun:
     """A motion by one setting of the integrator, its error not known.
 
-    Raises
-    ------
-    PuckError
-        If the stop is not reached.
+    Raises PuckError if the stop is not reached.
 
-    Examples
-    --------
     >>> from puck_tables.motion.friction_source import closed_form_friction
     >>> from puck_tables.motion.steppers import RK4
     >>> run = integrated(0.0, closed_form_friction(1.0), Stepping(RK4, 64.0, 1.0))

@@ -42,12 +42,8 @@ _FLASH = 0.2  # s for which an impact is seen
 def checked_movie(path: str | Path) -> str:
     """The ending of a movie's name; refuse before any work is done if it cannot be made.
 
-    Raises
-    ------
-    InputError
-        If movies have no such ending.
-    MissingExtraError
-        If matplotlib or ffmpeg is needed and not installed.
+    Raises InputError if movies have no such ending; MissingExtraError if matplotlib or ffmpeg is
+    needed and not installed.
     """
     kind = ending_of(path, MOVIE_KINDS)
     if kind != ".html":
@@ -66,14 +62,9 @@ def checked_movie(path: str | Path) -> str:
 def save_movie(result: TimedResult, path: str | Path, overwrite: bool = False) -> None:
     """Write a movie whole or not at all, as :meth:`puck_tables.result.TimedResult.movie` has it.
 
-    Raises
-    ------
-    InputError
-        If movies have no such ending.
-    MissingExtraError
-        If matplotlib or ffmpeg is needed and not installed.
-    OutputError
-        If a file is there that is no movie (without ``overwrite``) or cannot be written.
+    Raises InputError if movies have no such ending; MissingExtraError if matplotlib or ffmpeg is
+    needed and not installed; OutputError if a file is there that is no movie (without
+    ``overwrite``) or cannot be written.
     """
     kind = checked_movie(path)
     check_target(path, may_replace(path, overwrite))

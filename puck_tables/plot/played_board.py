@@ -17,15 +17,8 @@ def board_page(scene: Scene) -> str:
     A puck is dragged, and its way and that of all others is seen before it is let go; a mallet is
     led.  The page has what :func:`puck_tables.export_board` writes inside, and the same limits.
 
-    Parameters
-    ----------
-    scene : Scene
-        Which ends by itself, or has a time: what is in sight is chosen by its run.
-
-    Raises
-    ------
-    InputError
-        As :func:`puck_tables.export_board`.
+    ``scene``: Scene, which ends by itself, or has a time: what is in sight is chosen by its run.
+    Raises InputError as :func:`puck_tables.export_board`.
     """
     page = (files("puck_tables.plot") / "played_board.html").read_text(encoding="utf-8")
     film = film_of(scene.simulate())

@@ -24,13 +24,8 @@ def picture(
     What is shown is what the scene covers at its start, whatever the states: all pictures of a
     scene have one size.
 
-    Raises
-    ------
-    MissingExtraError
-        If matplotlib is not installed.
+    Raises MissingExtraError if matplotlib is not installed.
 
-    Examples
-    --------
     >>> from puck_tables import Scene
     >>> world = Scene.load("crokinole").world()
     >>> picture(world.scene, world.state(), world.in_play).shape[2]

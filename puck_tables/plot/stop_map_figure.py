@@ -10,7 +10,7 @@ from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS
 from puck_tables.plot.style import FEW, canvas, draw_over, in_order
 from puck_tables.plot.titles import legend_below, noted, titled
-from puck_tables.stopping.stop_map import StopMap
+from puck_tables.stopping.population import StopMap
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

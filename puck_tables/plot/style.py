@@ -59,12 +59,8 @@ def ramp() -> Colormap:
 def require_matplotlib() -> None:
     """Refuse before any work is done if pictures cannot be drawn.
 
-    Raises
-    ------
-    MissingExtraError
-        If matplotlib is not installed.
-    InputError
-        If its settings keep it from starting.
+    Raises MissingExtraError if matplotlib is not installed; InputError if its settings keep it from
+    starting.
     """
     try:
         import matplotlib  # noqa: F401
@@ -81,10 +77,7 @@ def require_matplotlib() -> None:
 def canvas(width: float, height: float) -> Figure:
     """An empty figure; sizes in inches.
 
-    Raises
-    ------
-    MissingExtraError
-        If matplotlib is not installed.
+    Raises MissingExtraError if matplotlib is not installed.
     """
     require_matplotlib()
     from matplotlib.figure import Figure
@@ -165,12 +158,8 @@ def may_replace(path: str | Path, overwrite: bool = False) -> bool:
 def save_figure(figure: Figure, path: str | Path, overwrite: bool = False) -> None:
     """Write a figure whole or not at all, in the place of a picture, see :func:`may_replace`.
 
-    Raises
-    ------
-    InputError
-        If the ending of the name is none of pictures.
-    OutputError
-        If a file is there that is no picture (without ``overwrite``) or cannot be written.
+    Raises InputError if the ending of the name is none of pictures; OutputError if a file is there
+    that is no picture (without ``overwrite``) or cannot be written.
     """
     kind = checked_kind(path)
     buffer = io.BytesIO()

@@ -23,7 +23,7 @@ from puck_tables.scene.entries import tables_of
 from puck_tables.scene.parts import Floor, Force
 from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.run import Run
-from puck_tables.world.agreement import pucks_of
+from puck_tables.world.named_pucks import pucks_of
 
 STATE = ("x", "y", "orientation", "vx", "vy", "spin")
 ON_FLOOR = ("slip_speed", "epsilon", "slip_ratio", "floor_fx", "floor_fy", "floor_torque")

@@ -250,13 +250,8 @@ CASES = (
 def case_named(name: str) -> ReferenceCase:
     """The case of a name.
 
-    Raises
-    ------
-    InputError
-        If there is none, with the nearest and a list.
+    Raises InputError if there is none, with the nearest and a list.
 
-    Examples
-    --------
     >>> case_named("coin").label
     'coin (version 1)'
     """

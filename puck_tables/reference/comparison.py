@@ -283,13 +283,8 @@ def compare(
 def orders(steps: Sequence[float], errors: Sequence[float]) -> list[float]:
     """The order p of error ~ step^p between neighbours, from the largest step on.
 
-    Returns
-    -------
-    list of float
-        One less than steps; NaN where an error is 0 or not known.
+    Returns list of float: one less than steps; NaN where an error is 0 or not known.
 
-    Examples
-    --------
     >>> orders([0.1, 0.05, 0.025], [4.0, 1.0, 0.25])
     [2.0, 2.0]
     """

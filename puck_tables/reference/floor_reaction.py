@@ -31,8 +31,8 @@ from puck_tables.scene.floor_parts import belts_of
 from puck_tables.scene.over_time import drive_of, moves_at
 from puck_tables.scene.parts import Floor
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.agreement import pucks_of
 from puck_tables.world.floor_forces import friction_at
+from puck_tables.world.named_pucks import pucks_of
 
 
 class SlipVelocity(NamedTuple):

@@ -261,14 +261,8 @@ def _rows_of_one(
 ) -> npt.NDArray[Any] | None:
     """Which rows are of the puck, by columns that say whose a row is; None: they are of one.
 
-    Parameters
-    ----------
-    ids : name of the column, of each row the number of its text, texts
-
-    Raises
-    ------
-    InputError
-        If rows are of several pucks, and none is of this one.
+    ``ids``: name of the column, of each row the number of its text, texts.  Raises InputError if
+    rows are of several pucks, and none is of this one.
     """
     telling = [one for one in ids if len(one[2]) * _FEWEST <= one[1].size]  # more: rows counted
     for mine in (how.puck, None if how.number is None else str(how.number)):

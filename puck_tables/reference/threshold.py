@@ -40,13 +40,8 @@ class Threshold(NamedTuple):
 def threshold_of(text: str) -> Threshold:
     """A threshold of speed or of spin, by its unit.
 
-    Raises
-    ------
-    InputError
-        If it is no positive number with a unit of either.
+    Raises InputError if it is no positive number with a unit of either.
 
-    Examples
-    --------
     >>> threshold_of("0.1rad/s"), threshold_of("2 mm/s")
     (Threshold(of='spin', value=0.1), Threshold(of='speed', value=0.002))
     """

@@ -75,7 +75,7 @@ def _overhang(run: Run) -> str:
     """How those are carried that come over an edge."""
     from puck_tables.scene.acting import CARRIED_BY_REST, OVERHANG
     from puck_tables.scene.map_of_floor import edges_under
-    from puck_tables.world.agreement import pucks_of
+    from puck_tables.world.named_pucks import pucks_of
 
     over = {event.puck for event in run.events if event.what == "overhang"}
     pucks = zip(run.names, pucks_of(run.scene), strict=True)
@@ -166,7 +166,7 @@ def _some(texts: list[str], sign: str = ", ") -> str:
 
 def plainly(run: Run) -> str:
     """How it ends and who leaves the board."""
-    from puck_tables.world.agreement import pucks_of
+    from puck_tables.world.named_pucks import pucks_of
 
     free = [not puck.path for puck in pucks_of(run.scene)]  # none is driven
     counted = _counted(sum(free), "puck")
@@ -201,7 +201,7 @@ def _counted(count: int, noun: str) -> str:
 
 def _pucks(run: Run) -> str:
     """A line for each puck: where it ends, how far from its start, and when."""
-    from puck_tables.world.agreement import pucks_of, start_of
+    from puck_tables.world.named_pucks import pucks_of, start_of
 
     rows = []
     for number, (name, puck) in enumerate(zip(run.names, pucks_of(run.scene), strict=True)):
@@ -276,7 +276,7 @@ def _reaction(run: Run) -> str:
 
 def _error(run: Run) -> str:
     """What times and places may be wrong by; where tol could not be kept, or nobody can know."""
-    from puck_tables.world.agreement import pucks_of
+    from puck_tables.world.named_pucks import pucks_of
 
     tol, several = run.scene.tol, bool(run.scene.pucks)
     time = run.speed_scale / run.rate_scale if run.rate_scale > 0.0 else 0.0

@@ -12,7 +12,7 @@ from puck_tables.world.scene_ends import spread_words
 
 if TYPE_CHECKING:
     from puck_tables.bulk.finish import Stored
-    from puck_tables.stopping.stop_map import StopMap
+    from puck_tables.stopping.population import StopMap
     from puck_tables.world.map import Map
     from puck_tables.world.scene_ends import Sample
 

@@ -32,13 +32,8 @@ FREE = (
 def acting(scene: SceneSpec) -> list[str]:
     """What a scene says that acts, in its order.
 
-    Raises
-    ------
-    PuckError
-        If an entry of the scene does not say what acts with it: it would be left out.
+    Raises PuckError if an entry of the scene does not say what acts with it: it would be left out.
 
-    Examples
-    --------
     >>> from puck_tables import Drag, Puck, Scene
     >>> acting(Scene(Puck(1.0), drag=Drag(sliding=0.1)))
     ['drag']

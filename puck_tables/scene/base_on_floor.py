@@ -18,7 +18,7 @@ from puck_tables.kernels.base_sums import NOTHING, Sums, plus
 from puck_tables.kernels.compile import inlined, inner, on_demand
 from puck_tables.kernels.contour_sums import contour_sums, look_at, whole_sums
 from puck_tables.kernels.elliptic_sums import elliptic_sums
-from puck_tables.kernels.law_sums import coefficient_at, law_sums
+from puck_tables.kernels.law_sums import coefficient_at_rest, law_sums
 from puck_tables.scene.floor_map import (
     ACROSS_X,
     ACROSS_Y,
@@ -75,7 +75,7 @@ def _with(
             )  # fmt: skip
             return plus(sums, load, more)
         if by_speed[0] > 0.0:
-            load *= coefficient_at(by_speed, 0.0)
+            load *= coefficient_at_rest(by_speed)
         if axes.along != axes.across:
             more = elliptic_sums(
                 floor_map, first, last, base[BASE_REACH], axes, slip.x, slip.y, slip.spin

@@ -40,10 +40,7 @@ def law_range(scene: SceneSpec, fastest: float) -> tuple[SpeedLaw | FrictionLaw,
 
     ``fastest``: a slip of a rim for which it must hold, m/s.
 
-    Raises
-    ------
-    InputError
-        If the law cannot be read, or ends below that.
+    Raises InputError if the law cannot be read, or ends below that.
     """
     law, top = law_of(scene.floor.law), law_top(scene, fastest)
     return law, top, law.largest(top)
@@ -52,10 +49,7 @@ def law_range(scene: SceneSpec, fastest: float) -> tuple[SpeedLaw | FrictionLaw,
 def law_top(scene: SceneSpec, fastest: float) -> float:
     """Up to which slip all friction laws of a scene are tabulated, m/s; inf: it has none.
 
-    Raises
-    ------
-    InputError
-        As :func:`law_range`.
+    Raises InputError as :func:`law_range`.
     """
     tops = {name: _first_top(law, fastest) for name, law in laws_in(scene).items()}
     name, top = min(tops.items(), key=lambda one: one[1], default=("", math.inf))
@@ -70,13 +64,8 @@ def law_top(scene: SceneSpec, fastest: float) -> float:
 def laws_in(scene: SceneSpec) -> dict[str, SpeedLaw | FrictionLaw]:
     """All friction laws over the slip speed of a scene, by what they are called in a message.
 
-    Raises
-    ------
-    InputError
-        If one is no such law.
+    Raises InputError if one is no such law.
 
-    Examples
-    --------
     >>> from puck_tables import Floor, Patch, Puck, Scene
     >>> list(laws_in(Scene(Puck(1.0), Floor(patches=[Patch([[0, 0.1], [9, 0.2]], radius=1)]))))
     ['floor.patch[0].friction']
@@ -100,10 +89,7 @@ def laws_in(scene: SceneSpec) -> dict[str, SpeedLaw | FrictionLaw]:
 def end_of_laws(scene: SceneSpec) -> tuple[float, str]:
     """The slip at which the first of the laws that are points ends, m/s, and its name.
 
-    Raises
-    ------
-    InputError
-        As :func:`laws_in`.
+    Raises InputError as :func:`laws_in`.
     """
     ends = [
         (law.top_speed, name) for name, law in laws_in(scene).items() if isinstance(law, SpeedLaw)
@@ -116,10 +102,8 @@ def law_table(
 ) -> SpeedTable:
     """The table of a friction law up to a slip, m/s, that the scene's tolerance asks for.
 
-    Raises
-    ------
-    AccuracyError
-        If the law has too many corners for so fine a tolerance; it says which can be reached.
+    Raises AccuracyError if the law has too many corners for so fine a tolerance; it says which can
+    be reached.
     """
     try:
         with _one_at_a_time:
@@ -166,13 +150,8 @@ def law_error(scene: SceneSpec) -> float:
 def load_under(puck: PuckSpec) -> RoundLoad | None:
     """The round load of a puck; None: its base is another, friction is summed along its contour.
 
-    Raises
-    ------
-    InputError
-        If its pressure law is given by a function.
+    Raises InputError if its pressure law is given by a function.
 
-    Examples
-    --------
     >>> from puck_tables import Puck
     >>> load_under(Puck(base="annulus:0.1x0.05")).law.name, load_under(Puck(base="box:0.2x0.1"))
     ('annulus:0.5', None)

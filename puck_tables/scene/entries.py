@@ -155,13 +155,8 @@ def _plain(value: Any, kind: Any = None) -> Any:
 def columns_of(path: str, values: Any) -> list[tuple[str, Any]]:
     """What ranges along an axis: entries by path, and what they take.
 
-    Raises
-    ------
-    InputError
-        If many launches are not rows of six numbers.
+    Raises InputError if many launches are not rows of six numbers.
 
-    Examples
-    --------
     >>> [path for path, _ in columns_of("launch", np.zeros((2, 6)))][:2]
     ['launch.velocity', 'launch.spin']
     """
@@ -182,13 +177,8 @@ def columns_of(path: str, values: Any) -> list[tuple[str, Any]]:
 def set_path(tables: dict[str, Any], path: str, value: Any) -> None:
     """Put a value at a path such as launch.velocity[0] or wall[1].restitution.
 
-    Raises
-    ------
-    InputError
-        If the path leads nowhere.
+    Raises InputError if the path leads nowhere.
 
-    Examples
-    --------
     >>> tables = {"launch": {"velocity": [1.0, 0.0]}}
     >>> set_path(tables, "launch.velocity[0]", 2.0)
     >>> set_path(tables, "floor.slope", 0.1)

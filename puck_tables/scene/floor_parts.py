@@ -62,13 +62,8 @@ def law_of(entry: str | Rows | FrictionLaw) -> SpeedLaw | FrictionLaw:
 def frictions_on(floor: Floor, own: float) -> list[Friction]:
     """The friction of all stretches; ``own``: of a puck, where the floor has none.
 
-    Raises
-    ------
-    InputError
-        If one is no law.
+    Raises InputError if one is no law.
 
-    Examples
-    --------
     >>> frictions_on(Floor(patches=(Patch(0.1, radius=1.0),)), 0.2)
     [0.2, 0.1]
     """
@@ -139,13 +134,8 @@ def count_parts(floor: Floor) -> int:
 def floor_part(floor: Floor, where: str) -> int:
     """The number of the stretch of a floor that is called so; −1: all of it.
 
-    Raises
-    ------
-    InputError
-        If there is none.
+    Raises InputError if there is none.
 
-    Examples
-    --------
     >>> floor_part(Floor(), "floor")
     -1
     """

@@ -23,13 +23,8 @@ _FLAT = 1e-12  # of the square of its size: the area of a polygon that has none
 def corners_of(part: Patch | Wall) -> FloatArray:
     """The corners (n, 2) of a patch or a wall, counter-clockwise, m; none of a round patch.
 
-    Raises
-    ------
-    InputError
-        If they are no corners of a polygon, or their file cannot be read.
+    Raises InputError if they are no corners of a polygon, or their file cannot be read.
 
-    Examples
-    --------
     >>> from puck_tables import Patch
     >>> corners_of(Patch(0.1, corners=[[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]])).tolist()
     [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]]

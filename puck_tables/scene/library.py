@@ -44,13 +44,8 @@ def shipped_scenes() -> dict[str, str]:
 def shipped_text(name: str) -> str:
     """The file of a scene that comes along, to start one's own from.
 
-    Raises
-    ------
-    InputError
-        If there is none of that name.
+    Raises InputError if there is none of that name.
 
-    Examples
-    --------
     >>> shipped_text("incline").splitlines()[1]
     'title = "Puck on an incline"'
     """
@@ -62,13 +57,8 @@ def shipped_text(name: str) -> str:
 def find_scene(name: str) -> dict[str, Any]:
     """The tables of a scene: a file, or the name of one that comes along.
 
-    Raises
-    ------
-    InputError
-        If there is neither, or it is not TOML.
+    Raises InputError if there is neither, or it is not TOML.
 
-    Examples
-    --------
     >>> find_scene("incline")["puck"]["friction"]
     0.15
     """
@@ -104,13 +94,8 @@ def _names() -> list[str]:
 def toml_in(text: str) -> dict[str, Any]:
     """The tables in a text; keys of very many parts, which take minutes to read, are refused.
 
-    Raises
-    ------
-    ValueError
-        If it is none.
+    Raises ValueError if it is none.
 
-    Examples
-    --------
     >>> toml_in("puck.radius = 0.04")
     {'puck': {'radius': 0.04}}
     """
@@ -123,10 +108,7 @@ def toml_in(text: str) -> dict[str, Any]:
 def read_scene(path: str | Path) -> dict[str, Any]:
     """The tables of a scene file.
 
-    Raises
-    ------
-    InputError
-        If it cannot be read or is not TOML.
+    Raises InputError if it cannot be read or is not TOML.
     """
     try:
         content = read_whole(path, MAX_FILE)
@@ -162,13 +144,8 @@ def _find_in(folder: Path, tables: Any, part: Any) -> None:
 def files_of(scene: SceneSpec) -> dict[str, str]:
     """What stands in the files that a scene names, by the path of the entry that names them.
 
-    Raises
-    ------
-    InputError
-        If one cannot be read.
+    Raises InputError if one cannot be read.
 
-    Examples
-    --------
     >>> from puck_tables import Puck, Scene
     >>> files_of(Scene(Puck(0.04)))
     {}

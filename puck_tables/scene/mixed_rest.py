@@ -14,7 +14,7 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
-from puck_tables.kernels.law_sums import coefficient_at
+from puck_tables.kernels.law_sums import coefficient_at_rest
 from puck_tables.scene.base_balance import friction_held, rub_at_rest
 from puck_tables.scene.floor_map import (
     ACROSS_X,
@@ -53,7 +53,7 @@ def _at_rest(floor_map: FloatArray, part: int) -> float:
     if law == 0:
         return load
     by_speed, least = floor_map[law + AXES :], min(floor_map[law], floor_map[law + 1])
-    return load * least * (coefficient_at(by_speed, 0.0) if by_speed[0] > 0.0 else 1.0)
+    return load * least * (coefficient_at_rest(by_speed) if by_speed[0] > 0.0 else 1.0)
 
 
 @inner

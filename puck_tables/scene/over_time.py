@@ -40,10 +40,7 @@ ON_ALL, ON_PART = 8, 9  # of factors
 def drive_of(path: str | Rows) -> FloatArray:
     """Rows (n, 4) of t, Fx, Fy and torque, given or from a CSV file; they may lack the torque.
 
-    Raises
-    ------
-    InputError
-        If it cannot be read, or is no such file.
+    Raises InputError if it cannot be read, or is no such file.
     """
     return _rows_of(path, (TIME, FORCE_X, FORCE_Y, TORQUE), "force.over_time")
 
@@ -51,10 +48,7 @@ def drive_of(path: str | Rows) -> FloatArray:
 def motion_of(floor: Floor) -> FloatArray:
     """Rows (n, 4) of t, velocity and spin of a floor; they may lack the spin.
 
-    Raises
-    ------
-    InputError
-        If they cannot be read.
+    Raises InputError if they cannot be read.
     """
     return _rows_of(floor.over_time, (TIME, SPEED_X, SPEED_Y, SPIN), "floor.over_time")
 
@@ -96,10 +90,7 @@ def _rows_of(path: str | Rows, columns: tuple[InputColumn, ...], name: str) -> F
 def factors_of(grip: Grip) -> FloatArray:
     """Rows (n, 2) of t and a factor; a time that stands twice is a jump.
 
-    Raises
-    ------
-    InputError
-        If they cannot be read, or a factor is below 0.
+    Raises InputError if they cannot be read, or a factor is below 0.
     """
     numbers = numbers_of(grip.over_time, (TIME, FACTOR), 2, _MOST_BYTES, "over_time")
     numbers.refuse_unless_ascending("the times", equal=True)

@@ -30,10 +30,7 @@ SLICE_SHARE = 0.1  # of the error wanted
 def section_of(puck: PuckSpec, delta: float, tol: float) -> FloatArray:
     """The friction ratios of a puck of any kind at a height, good enough for an error wanted.
 
-    Raises
-    ------
-    AccuracyError
-        If they cannot be tabulated as fine as that.
+    Raises AccuracyError if they cannot be tabulated as fine as that.
     """
     accuracy = max(SLICE_SHARE * tol, FINEST_ACCURACY)
     try:  # how the mass is spread stands in the equations, not in the friction

@@ -226,13 +226,8 @@ LISTED = "'viscoelastic:C', 'plastic:V', or the name of a CSV file of speed in m
 def restitution_law(law: str | Restitution) -> Restitution:
     """A law from its name, as ``"viscoelastic:0.2"``, or from a CSV file.
 
-    Raises
-    ------
-    InputError
-        If there is no such law or file, or a number of it is wrong.
+    Raises InputError if there is no such law or file, or a number of it is wrong.
 
-    Examples
-    --------
     >>> restitution_law("plastic:0.05").yield_speed
     0.05
     >>> restitution_law("viscoelastik:0.1")

@@ -327,13 +327,8 @@ def residual(columns: Mapping[str, Any], least: float = 0.0) -> float:
 def number_of(puck: int | str, names: Sequence[str]) -> int:
     """The number of a puck, from its name or number.
 
-    Raises
-    ------
-    InputError
-        If there is no such puck.
+    Raises InputError if there is no such puck.
 
-    Examples
-    --------
     >>> number_of("man", ("striker", "man")), number_of(0, ("striker", "man"))
     (1, 0)
     """
@@ -348,9 +343,7 @@ def number_of(puck: int | str, names: Sequence[str]) -> int:
 def column_of(result: Any, name: str) -> FloatArray:
     """A column as an attribute of a result of a scene.
 
-    Raises
-    ------
-    AttributeError
+    Raises AttributeError.
     """
     columns: Mapping[str, FloatArray] = result.__dict__.get("columns", {})
     column: FloatArray = columns[name] if name in columns else following(result, name)

@@ -117,7 +117,7 @@ def _root(
 def fill_logs(u: FloatArray, section: FloatArray, limits: FloatArray, out: FloatArray) -> None:
     """Ln v, ln r|ω|, ln t₀, ln θ, and arg Z for ω > 0 at ``u`` (n,) into ``out`` (n, 5); −∞ slides.
 
-    ``section``: of a plain puck, :func:`puck_tables.stopping.axes.at_height`;
+    ``section``: of a plain puck, :func:`puck_tables.stopping.lookup.at_height`;
     ``limits`` (m, 32): of any other; none of a plain one.
     """
     for n in range(u.size):

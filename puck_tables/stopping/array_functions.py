@@ -13,7 +13,7 @@ from puck_tables._core.arrays import FloatArray, broadcast, finite_array, real
 from puck_tables.accuracy.methods import Method
 from puck_tables.contact.laws import HOMOGENEOUS, Law
 from puck_tables.errors import InputError
-from puck_tables.stopping.by_friction import (
+from puck_tables.stopping.jacobian import (
     DEFAULT_DECEL,
     DEFAULT_DELTA,
     DEFAULT_GRAVITY,

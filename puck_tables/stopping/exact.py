@@ -89,18 +89,9 @@ def integrated_stops(
 def exact_stops(u: FloatArray, delta: FloatArray) -> FloatArray:
     """Stops in natural units by the integrator with closed forms, to rounding.
 
-    Parameters
-    ----------
-    u : array (n,), ln(rω/v), infinite for pure sliding (−) and pure spin (+)
-    delta : array (n,)
+    ``u``: array (n,), ln(rω/v), infinite for pure sliding (−) and pure spin (+); ``delta``: array
+    (n,).  Returns array (n, 5): T, X, Y, path length and body angle; error about 1e-15.
 
-    Returns
-    -------
-    array (n, 5)
-        T, X, Y, path length and body angle; error about 1e-15.
-
-    Examples
-    --------
     >>> exact_stops(np.array([0.0]), np.array([1.0])).round(11).tolist()[0][:3]
     [0.98647593897, 0.32409372866, -0.04297450852]
     """

@@ -46,9 +46,8 @@ from puck_tables.stopping.aim_lookup import (
     fill_logs,
     fill_roots,
 )
-from puck_tables.stopping.axes import at_height
 from puck_tables.stopping.exact import integrated_stops
-from puck_tables.stopping.lookup import WIDTH
+from puck_tables.stopping.lookup import WIDTH, at_height
 from puck_tables.stopping.stop_table import StopTable
 
 LARGEST_U = 600.0  # beyond, ratios of spin to speed leave floating point

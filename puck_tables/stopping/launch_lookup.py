@@ -24,7 +24,6 @@ from puck_tables.kernels.compile import (
 from puck_tables.kernels.elementary import log_of
 from puck_tables.kernels.quadratic import basis
 from puck_tables.motion.path import TURN_SHARE
-from puck_tables.stopping.axes import HEIGHTS
 from puck_tables.stopping.launch_arrays import (
     DECEL,
     DELTA,
@@ -38,6 +37,7 @@ from puck_tables.stopping.launch_arrays import (
 from puck_tables.stopping.lookup import (
     EDGE,
     FIRST,
+    HEIGHTS,
     INSIDE,
     LARGEST,
     PLACED,

@@ -2,6 +2,7 @@
 
 A puck has a radius, a height, a friction and a gravity; δ = 2fh/r may stand in place of the height,
 J = fg in place of the gravity.  A velocity has a speed and a heading, or two components.
+A map, or a sample, has the stops of all of them.
 """
 
 from __future__ import annotations
@@ -9,16 +10,22 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray, finite_array
 from puck_tables._core.doubts import OF_A_PUCK, question
 from puck_tables.bulk.spreads import Spread
+from puck_tables.bulk.summary import Summary
 from puck_tables.contact.laws import Law
 from puck_tables.errors import InputError
-from puck_tables.io.columns import COLUMNS, Variable, variable
+from puck_tables.io.columns import COLUMNS, Dataset, Variable, derived, following, variable
+from puck_tables.result import Result
+from puck_tables.stopping.solvers import OUTPUTS
+
+if TYPE_CHECKING:
+    from puck_tables.accuracy.method_errors import Selection
 
 COLUMN = {  # of the arguments, in the order of dimensions
     "pressure": "pressure", "gyration": "gyration", "gravity": "gravity", "decel": "decel",
@@ -134,13 +141,9 @@ _ARGUMENT = {column: name for name, column in COLUMN.items()}
 def ranged(chosen: Mapping[str, Any], laws: Any) -> Population:
     """Launches for all combinations of numbers and lists of them.
 
-    Parameters
-    ----------
-    chosen : by the names of arguments: numbers, or lists (n,)
-    laws : a pressure law, or a list of them
+    ``chosen``: by the names of arguments: numbers, or lists (n,); ``laws``: a pressure law, or a
+    list of them.
 
-    Examples
-    --------
     >>> ranged({"spin": [0.0, 1.0], "speed": 1.0}, "uniform").axes
     {'launch_spin': array([0., 1.])}
     """
@@ -179,10 +182,8 @@ def drawn(chosen: Mapping[str, Any], laws: Any, count: int, seed: int) -> Popula
 def labelled(launches: Any, chosen: Mapping[str, Any], laws: Any) -> Population:
     """Launches of an xarray.Dataset: its coordinates and variables, over its dimensions.
 
-    Parameters
-    ----------
-    launches : xarray.Dataset with variables named as in results: launch_speed, launch_spin, …
-    chosen : further numbers
+    ``launches``: xarray.Dataset with variables named as in results: launch_speed, launch_spin, …;
+    ``chosen``: further numbers.
     """
     arrays = {str(name): one for name, one in launches.variables.items()}
     sizes = {str(dim): int(n) for dim, n in launches.sizes.items()}
@@ -262,3 +263,82 @@ def refuse_outside(name: str, values: FloatArray, words: str) -> None:
 def law_name(law: str | Law) -> str:
     """A pressure law in a word."""
     return law.name if isinstance(law, Law) else law
+
+
+class StopMap(Result):
+    """Stops over a grid of launches.
+
+    ``axes`` maps the ranged quantities, in the order of the arrays' dimensions ``dims``, to their
+    values, by the names of columns: ``launch_speed`` (m/s), ``launch_spin`` (rad/s),
+    ``launch_heading`` (rad), ``radius``, ``height`` (m), ``friction``, ``gravity``, ``decel``
+    (m/s²), ``delta``, ``gyration`` (1), ``pressure`` (numbers of ``laws``).  ``fixed`` holds what
+    is one number for all.
+
+    Arrays: ``stop_time`` s, ``stop_x``, ``stop_y`` m from the launch, ``path_length`` m,
+    ``turn_angle`` rad (until Q has fallen to 1/1000; integrated, to a hundred times the tolerance),
+    ``body_angle`` rad, ``status`` (0: stopped), and what was given one by one.  ``method`` says how
+    ('look-up', 'integrated', or both where pucks differ), ``table`` with which table,
+    ``selections`` what was selected for the tolerance, ``outputs`` the names of the arrays of
+    stops: on a base that is not round there is no ``turn_angle``.
+    """
+
+    picture: ClassVar[str] = "stop_map"
+
+    def __init__(
+        self, launches: Population, tol: float, method: str, table: str,
+        selections: tuple[Selection, ...], explanation: str, own: Dataset,
+    ) -> None:  # fmt: skip
+        self.dims, self.axes, self.fixed = launches.dims, launches.axes, launches.fixed
+        self.laws = tuple(map(law_name, launches.laws))
+        self.tol, self.method, self.table, self.selections = tol, method, table, selections
+        self._explanation, self._own = explanation, own
+        self.outputs = tuple(name for name in OUTPUTS if name in own.columns)
+
+    def __getattr__(self, name: str) -> Any:
+        """A column: of the stops, what was given one by one, or what follows from others."""
+        if name.startswith("_"):
+            raise AttributeError(name)
+        if name in self._own.columns:
+            return self._own.columns[name].values
+        return following(self, name)
+
+    def __repr__(self) -> str:
+        ranged = " x ".join(f"{name} ({n})" for name, n in zip(self.dims, self.status.shape,
+                                                               strict=True))  # fmt: skip
+        return f"{type(self).__name__}({ranged or 'one launch'}, by {self.method})"
+
+    def explain(self) -> str:
+        """Which method was taken, and why."""
+        return self._explanation
+
+    def dataset(self) -> Dataset:
+        """The stops over what was ranged; the rest as attributes."""
+        own = self._own
+        values = {name: one.values for name, one in own.columns.items() if name in OUTPUTS}
+        more = {name: variable(name, one, self.dims) for name, one in derived(values).items()}
+        return Dataset(own.axes, {**own.columns, **more}, own.attributes)
+
+
+class StopSample(StopMap, Summary):
+    """Stops of samples: a :class:`StopMap` over ``sample``, and its summaries.
+
+    Besides the stops, the numbers that were drawn are columns: ``launch_spin``, ….
+    """
+
+    picture: ClassVar[str] = "sample"
+    place = ("stop_x", "stop_y")
+    shown = ("stop_time", "path_length")
+
+    def __init__(self, *parts: Any) -> None:
+        super().__init__(*parts)
+        self.summed = self.outputs
+
+    @property
+    def drawn_words(self) -> str:
+        """What scatters, in words."""
+        found = {
+            name.removeprefix("drawn_"): text
+            for name, text in self._own.attributes.items() if name.startswith("drawn_")
+        }  # fmt: skip
+        said = (f"{name} {text} {COLUMNS[name].unit}" for name, text in found.items())
+        return ", ".join(one.removesuffix(" 1") for one in said)

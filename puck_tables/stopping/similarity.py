@@ -34,7 +34,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.closed_form import shape_integrals
 from puck_tables.contact.laws import law_of, limit_ratio
 from puck_tables.kernels.quadratic import basis
-from puck_tables.stopping.axes import HEIGHTS, SlipAxis, heights, ratio_at
+from puck_tables.stopping.lookup import HEIGHTS, SlipAxis, heights, ratio_at
 from puck_tables.stopping.similarity_lookup import TINY, end_rates
 from puck_tables.table.spline_fit import clamped_coefficients
 

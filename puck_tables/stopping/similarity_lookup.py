@@ -35,8 +35,7 @@ from puck_tables.kernels.compile import inlined, spline_values
 from puck_tables.kernels.elementary import cosine_sine_of, exp_of, log_of
 from puck_tables.kernels.quadratic import basis, cell_at
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED, SPIN
-from puck_tables.stopping.axes import CONSTANT_HEIGHTS, HEIGHTS
-from puck_tables.stopping.lookup import STOP_POWERS, WIDTH, slip_place
+from puck_tables.stopping.lookup import CONSTANT_HEIGHTS, HEIGHTS, STOP_POWERS, WIDTH, slip_place
 
 Numbers = tuple[float, ...]
 

@@ -34,11 +34,16 @@ from puck_tables.kernels.compile import (
 from puck_tables.kernels.elementary import logs_of
 from puck_tables.kernels.quadratic import basis
 from puck_tables.stopping import similarity_lookup as known
-from puck_tables.stopping.axes import CONSTANT_HEIGHTS, HEIGHTS
-from puck_tables.stopping.launch_frame import PLACED_STATES, Numbers, direction, rotated
+from puck_tables.stopping.lookup import CONSTANT_HEIGHTS, HEIGHTS
 from puck_tables.stopping.similarity_lookup import LAUNCH_COLUMNS, TINY, cell_of
 from puck_tables.stopping.slopes import RATE_WIDTH, STATE_WIDTH, STOP_POWERS
-from puck_tables.stopping.stop_jacobian import stop_by_speeds
+from puck_tables.stopping.stop_jacobian import (
+    PLACED_STATES,
+    Numbers,
+    direction,
+    rotated,
+    stop_by_speeds,
+)
 
 PART = 32  # places of a block: with so many rows the nearest cache holds no more
 _SHARED = 2  # rows for each place for which it pays to have them evaluated once

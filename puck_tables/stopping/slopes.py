@@ -26,7 +26,7 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray, aligned
-from puck_tables.stopping.axes import HEIGHTS, SlipAxis, by_power, heights, ratio_at
+from puck_tables.stopping.lookup import HEIGHTS, SlipAxis, by_power, heights, ratio_at
 from puck_tables.stopping.similarity import limits, rates_of_ratio, regular_slopes
 
 STOP_FUNCTIONS = 5  # T, along, across, body, length; then the slopes of each
@@ -58,10 +58,8 @@ class Slopes(NamedTuple):
 def slopes_of(axis: SlipAxis, values: FloatArray) -> Slopes:
     """The slopes of a stop table.
 
-    Parameters
-    ----------
-    axis : SlipAxis
-    values : array (2 cells + 1, 9, 7), as in :class:`puck_tables.stopping.stop_table.StopTable`
+    ``axis``: SlipAxis; ``values``: array (2 cells + 1, 9, 7), as in
+    :class:`puck_tables.stopping.stop_table.StopTable`.
     """
     n = axis.cells
     sides = np.stack([values[: n + 1], values[: n - 1 : -1]])  # both from k = 0 to k = 1

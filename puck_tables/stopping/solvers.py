@@ -39,13 +39,12 @@ from puck_tables.stopping.stop_section import StopSection
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.stopping.stop_values import OTHERS
 
-_CHUNK = 64  # slides that a thread takes at once
+_CHUNK = 64  # motions that a thread takes at once
 Status = npt.NDArray[np.int8]
 
 OUTPUTS = ("stop_time", "stop_x", "stop_y", *OTHERS)
 STATUS_MEANINGS = ("stopped", "step_limit", "overflow")
 _PROBES = 40  # launches over all φ, besides those next to lines, on which a setting is tried
-_INTEGRATED_CHUNK = 64  # motions that a thread takes at once
 _OVERFLOW = STATUS_MEANINGS.index("overflow")
 
 
@@ -121,11 +120,16 @@ def followed(
         )  # fmt: skip
         out[:, start:stop] = part
 
+    _shared(work, count, threads)
+    return out, states, status
+
+
+def _shared(work: Callable[[int, int], None], count: int, threads: int | None) -> None:
+    """Call ``work(start, stop)`` for chunks of motions; on this thread where others cut them."""
     if threads == 1:
         in_slices(work, count)
     else:
         run_chunks(work, count, _CHUNK, threads)
-    return out, states, status
 
 
 class First(NamedTuple):
@@ -172,7 +176,7 @@ class LookUp:
 
     def all(self, launches: FloatArray, threads: int | None = 1) -> tuple[FloatArray, Status]:
         """All of the outputs (6, n) and status (n,)."""
-        out, doubtful = self.table.outputs(launches_in(launches), threads)
+        out, doubtful = self.table.filled(len(OUTPUTS), launches_in(launches), threads)
         status = np.zeros(launches.shape[1], np.int8)
         if doubtful:
             mark_too_large(out, status, launches)
@@ -180,7 +184,7 @@ class LookUp:
 
     def rest(self, launches: Launches, threads: int | None) -> FloatArray:
         """Path length, turn of heading and of the body (3, n)."""
-        return self.table.rest(launches, threads)
+        return self.table.filled(len(OTHERS), launches, threads)[0]
 
 
 @dataclass(frozen=True)
@@ -207,7 +211,7 @@ class SectionLookUp:
     def _filled(
         self, size: int, rows: Callable[[int, int], FloatArray], threads: int | None
     ) -> tuple[FloatArray, Status]:
-        from puck_tables.stopping.section_lookup import fill_section_stops
+        from puck_tables.stopping.stop_section import fill_section_stops
 
         out, status = np.empty((len(OUTPUTS), size)), np.zeros(size, np.int8)
         longest = self.section.body.longest
@@ -256,10 +260,7 @@ class Integration:
             fill_stops(some, *self.stepping, self.columns, self.section, part, status[start:stop])
             out[:, start:stop] = part
 
-        if threads == 1:
-            in_slices(work, launches.shape[1])
-        else:
-            run_chunks(work, launches.shape[1], _INTEGRATED_CHUNK, threads)
+        _shared(work, launches.shape[1], threads)
         if self.longest > 2.0:
             mark_too_large(out, status, launches, self.longest)
         return out, status

@@ -58,10 +58,7 @@ class ResultSpread:
     def ratio(self) -> FloatArray:
         """Standard deviations of the samples over the linear ones, (…, rows); both 0: 1.
 
-        Raises
-        ------
-        InputError
-            If no samples were drawn.
+        Raises InputError if no samples were drawn.
         """
         linear, sampled = self.deviation, _deviation(self._sampled[0])
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -75,10 +72,7 @@ class ResultSpread:
         That is where deviations and means of the samples agree with it to 5 % of a deviation,
         beyond what so few samples scatter by themselves.
 
-        Raises
-        ------
-        InputError
-            If no samples were drawn.
+        Raises InputError if no samples were drawn.
         """
         shift, linear = self._sampled[1], self.deviation
         allowed = _TRUSTED + _NOISE / np.sqrt(2.0 * self.samples)

@@ -41,7 +41,6 @@ from puck_tables.kernels.compile import (
 )
 from puck_tables.kernels.elementary import cosine_sine_of, exp_of, logs_of
 from puck_tables.motion import state
-from puck_tables.stopping.launch_frame import PLACED_STATES, Numbers, placed_state, rotated
 from puck_tables.stopping.similarity_lookup import TINY
 from puck_tables.stopping.similarity_rates import (
     BEND,
@@ -94,7 +93,16 @@ from puck_tables.stopping.similarity_rates import (
     turn_rate,
 )
 from puck_tables.stopping.state_lookup import gather
-from puck_tables.stopping.stop_jacobian import BY_HEIGHT, T, row_by_row, stop_by_speeds
+from puck_tables.stopping.stop_jacobian import (
+    BY_HEIGHT,
+    PLACED_STATES,
+    Numbers,
+    T,
+    placed_state,
+    rotated,
+    row_by_row,
+    stop_by_speeds,
+)
 
 # rows of a block for what is found on the way
 _RATES, _RATES_FOUND, _FALL, _GAP, _POLE = WORK, 9, WORK + 2, WORK + 6, WORK + 7

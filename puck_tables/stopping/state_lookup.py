@@ -21,7 +21,7 @@ from puck_tables.kernels.compile import (
 from puck_tables.kernels.elementary import log_of
 from puck_tables.kernels.quadratic import basis
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED, SPIN, STATE_ROWS
-from puck_tables.stopping.axes import HEIGHTS
+from puck_tables.stopping.lookup import HEIGHTS
 from puck_tables.stopping.similarity_lookup import (
     LAUNCH_COLUMNS,
     LAUNCH_ROWS,

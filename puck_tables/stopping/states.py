@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import lru_cache, partial
-from typing import Any, ClassVar
+from typing import Any, ClassVar, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -18,18 +18,16 @@ from puck_tables.io.columns import Dataset, variable
 from puck_tables.motion.body import UnitPuck, body_of, plain_up_to
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED, SPIN, STATE_ROWS
 from puck_tables.result import Result
-from puck_tables.stopping.by_friction import (
+from puck_tables.stopping.jacobian import (
     DEFAULT_DECEL,
     DEFAULT_DELTA,
     DEFAULT_GRAVITY,
     DEFAULT_HEIGHT,
-    delta_and_decel,
-)
-from puck_tables.stopping.jacobian import (
     FRICTION_NAMES,
     MOMENT_NAMES,
     STATE_NAMES,
     Differentiated,
+    delta_and_decel,
     integrated_jacobians,
 )
 from puck_tables.stopping.launch_arrays import TOO_LARGE, Launches, fits, launches_in, launches_of
@@ -41,6 +39,15 @@ from puck_tables.table.table import refuse_other_kind
 
 # of nothing and of one, made once: to make them takes as long as a look-up
 _NONE, _FIRST = np.empty(0, np.int64), np.zeros(1, np.int64)
+
+
+def _row(index: int, words: str) -> FloatArray:
+    """A row of states by its name."""
+
+    def row(states: States) -> FloatArray:
+        return states.rows[index, ...]
+
+    return cast(FloatArray, property(row, doc=words))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -71,35 +78,12 @@ class States(Differentiated, Result):
     def __repr__(self) -> str:
         return f"States({self.time.size} states of shape {self.time.shape})"
 
-    @property
-    def x(self) -> FloatArray:
-        """Place along x, m from the launch."""
-        return self.rows[PUCK_X, ...]
-
-    @property
-    def y(self) -> FloatArray:
-        """Place along y, m from the launch."""
-        return self.rows[PUCK_Y, ...]
-
-    @property
-    def heading(self) -> FloatArray:
-        """Direction of the velocity, rad."""
-        return self.rows[HEADING, ...]
-
-    @property
-    def orientation(self) -> FloatArray:
-        """How far the body has turned, rad."""
-        return self.rows[ORIENTATION, ...]
-
-    @property
-    def speed(self) -> FloatArray:
-        """V, m/s."""
-        return self.rows[SPEED, ...]
-
-    @property
-    def spin(self) -> FloatArray:
-        """Ω, rad/s."""
-        return self.rows[SPIN, ...]
+    x = _row(PUCK_X, "Place along x, m from the launch.")
+    y = _row(PUCK_Y, "Place along y, m from the launch.")
+    heading = _row(HEADING, "Direction of the velocity, rad.")
+    orientation = _row(ORIENTATION, "How far the body has turned, rad.")
+    speed = _row(SPEED, "V, m/s.")
+    spin = _row(SPIN, "Ω, rad/s.")
 
     @property
     def vx(self) -> FloatArray:

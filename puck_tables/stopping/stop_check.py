@@ -34,9 +34,9 @@ from puck_tables.contact.laws import law_of
 from puck_tables.kernels.quadratic import basis
 from puck_tables.motion.limits import limit_ratio
 from puck_tables.motion.unit_motion import direction
-from puck_tables.stopping.axes import HEIGHTS, SlipAxis, heights, ratio_at
 from puck_tables.stopping.exact import exact_stops
 from puck_tables.stopping.launch_arrays import launches_in
+from puck_tables.stopping.lookup import HEIGHTS, SlipAxis, heights, ratio_at
 from puck_tables.stopping.similarity import limits, regular_parts
 from puck_tables.stopping.similarity_lookup import (
     BODY,

@@ -17,7 +17,7 @@ class StopTable(StopValues):
     Parameters
     ----------
     values : array (2 cells + 1, 9, 7)
-        At the nodes of φ (ascending) and of δ (:func:`puck_tables.stopping.axes.heights`):
+        At the nodes of φ (ascending) and of δ (:func:`puck_tables.stopping.lookup.heights`):
         ``time`` T; ``along`` X/cos φ; ``across`` Y/(δ sin φ cos φ); ``length`` path/cos φ; ``body``
         angle/sin φ (all: :mod:`puck_tables.stopping.lookup`); ``curve`` κR; ``turn`` S/δ
         (:mod:`puck_tables.stopping.similarity`).

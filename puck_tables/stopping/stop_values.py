@@ -16,16 +16,6 @@ from puck_tables.contact.closed_form import checked_delta
 from puck_tables.errors import InputError
 from puck_tables.io.columns import Variable
 from puck_tables.motion.state import STATE_ROWS
-from puck_tables.stopping.axes import (
-    CONSTANT_HEIGHTS,
-    HEIGHTS,
-    SlipAxis,
-    by_power,
-    height_polynomials,
-    heights,
-    section_rows,
-    side_by_side,
-)
 from puck_tables.stopping.launch_arrays import (
     CHUNK,
     TOO_LARGE,
@@ -35,7 +25,18 @@ from puck_tables.stopping.launch_arrays import (
     launches_in,
     smallest_mark,
 )
-from puck_tables.stopping.lookup import STOP_POWERS, stops_kernel
+from puck_tables.stopping.lookup import (
+    CONSTANT_HEIGHTS,
+    HEIGHTS,
+    STOP_POWERS,
+    SlipAxis,
+    by_power,
+    height_polynomials,
+    heights,
+    section_rows,
+    side_by_side,
+    stops_kernel,
+)
 from puck_tables.stopping.similarity import InverseSolution, limits
 from puck_tables.stopping.similarity_lookup import (
     LAUNCH_COLUMNS,
@@ -160,23 +161,16 @@ class StopValues(Table):
         InputError
             If one of them is no launch, or too large for floating point.
         """
-        return self._filled(PUCK_ROWS, launches, threads)[0]
+        return self.filled(PUCK_ROWS, launches, threads)[0]
 
-    def outputs(self, launches: Launches, threads: int | None) -> tuple[FloatArray, int]:
-        """Stop times, x, y and the rest (6, n), and how many may be too large.
+    def filled(self, rows: int, launches: Launches, threads: int | None) -> tuple[FloatArray, int]:
+        """Rows of so many launches as :meth:`fill_pucks` has them, and how many may be too large.
 
         Raises
         ------
         InputError
             If one of them is no launch.
         """
-        return self._filled(3 + len(OTHERS), launches, threads)
-
-    def rest(self, launches: Launches, threads: int | None) -> FloatArray:
-        """Path length, turn of heading and of the body (3, n) of checked launches."""
-        return self._filled(len(OTHERS), launches, threads)[0]
-
-    def _filled(self, rows: int, launches: Launches, threads: int | None) -> tuple[FloatArray, int]:
         if launches.size <= CHUNK:
             return self.fill_pucks(rows, launches, 0, launches.size)
         out, doubtful = np.empty((rows, launches.size)), [0]
@@ -192,6 +186,8 @@ class StopValues(Table):
         self, rows: int, launches: Launches, start: int, stop: int
     ) -> tuple[FloatArray, int]:
         """All that is known of some launches (20, n), or their stops (6, n), or the rest (3, n).
+
+        The rest: path length, turn of heading and of the body.
 
         And how many may be too large for floating point.
 

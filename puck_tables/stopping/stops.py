@@ -19,19 +19,17 @@ from puck_tables.motion.base_slides import LONGEST, WHY_INTEGRATED, local_error
 from puck_tables.motion.puck_spec import ROUND_ONLY, PuckSpec
 from puck_tables.motion.state import STATE_ROWS
 from puck_tables.result import Result
-from puck_tables.stopping.by_friction import (
+from puck_tables.stopping.jacobian import (
     DEFAULT_DECEL,
     DEFAULT_DELTA,
     DEFAULT_GRAVITY,
     DEFAULT_HEIGHT,
-    ByFriction,
-    delta_and_decel,
-)
-from puck_tables.stopping.jacobian import (
     FRICTION_NAMES,
     LAUNCH_NAMES,
     STOP_NAMES,
+    ByFriction,
     Differentiated,
+    delta_and_decel,
     refuse_rest,
     stop_jacobians,
 )

@@ -95,8 +95,8 @@ def stop_slopes_of(body: UnitPuck, launches: FloatArray, threads: int | None = N
     >>> result[0, 1].round(6).tolist()  # x of a slide: v²/2J
     [1.0, 0.0, 0.0, 0.0, -0.5, 0.0]
     """
-    from puck_tables.stopping.section_lookup import fill_section_slopes
     from puck_tables.stopping.stop_jacobian import fill_placed_stops
+    from puck_tables.stopping.stop_section import fill_section_slopes
 
     count, friction = launches.shape[1], variations_of(body)
     own, left = np.empty((count, 5, 4)), np.ones(count, np.bool_)

@@ -23,13 +23,8 @@ def checked_accuracy(
 ) -> float:  # fmt: skip
     """The accuracy that is asked of a table, in these units, or the default.
 
-    Raises
-    ------
-    AccuracyError
-        If it is out of range.
+    Raises AccuracyError if it is out of range.
 
-    Examples
-    --------
     >>> checked_accuracy(None, 1e-9, 1e-12, "an absolute error")
     1e-09
     """

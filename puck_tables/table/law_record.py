@@ -34,10 +34,7 @@ def can_be_known(law: Law) -> bool:
 def known(law: str | Law) -> Law:
     """A pressure law that can be told from others: a profile by its values, whatever its name.
 
-    Raises
-    ------
-    InputError
-        If it is given by a function, or not known.
+    Raises InputError if it is given by a function, or not known.
     """
     one = law if isinstance(law, Law) else law_of(law)
     if not can_be_known(one):
@@ -51,13 +48,8 @@ def known(law: str | Law) -> Law:
 def plain(value: Any) -> Any:
     """A number, an array or a law as JSON has it.
 
-    Raises
-    ------
-    OutputError
-        If it is a function, or a law made of one.
+    Raises OutputError if it is a function, or a law made of one.
 
-    Examples
-    --------
     >>> plain(law_of("ring")), plain(np.array([1.5]))
     ({'pressure': 'ring'}, {'array': [1.5]})
     """

@@ -112,10 +112,7 @@ class ResultantTable(LawTable):
     def section(self, delta: float) -> FloatArray:
         """The friction ratios at one height, as :mod:`puck_tables.kernels.quadratic` reads.
 
-        Raises
-        ------
-        InputError
-            If δ is outside the range of the table, or it is not of uniform pressure.
+        Raises InputError if δ is outside the range of the table, or it is not of uniform pressure.
         """
         from puck_tables.kernels.quadratic import room_for_section, section_at
 
@@ -127,16 +124,9 @@ class ResultantTable(LawTable):
     def checked_range(self, delta: npt.ArrayLike, law: str = _UNIFORM) -> FloatArray:
         """``delta`` as an array, refused outside the range of the table.
 
-        Parameters
-        ----------
-        delta : dimensionless heights
-        law : the pressure law that friction is wanted under
-
-        Raises
-        ------
-        InputError
-            If a height is not finite, negative or above the largest of the table, or the table is
-            of another law.
+        ``delta``: dimensionless heights; ``law``: the pressure law that friction is wanted under.
+        Raises InputError if a height is not finite, negative or above the largest of the table, or
+        the table is of another law.
         """
         if self.law.name != law:
             self.refuse_other(law_of(law))
@@ -264,21 +254,11 @@ class ResultantTable(LawTable):
     def validate(self, progress: Progress | None = None, points: int | None = None) -> CheckReport:
         """Judge the table by the law itself, under uniform pressure also by direct quadrature.
 
-        Parameters
-        ----------
-        progress : callable (done, total), optional
-        points : int, optional
-            Number of random points.
+        ``progress``: callable (done, total), optional; ``points``: int, optional, number of random
+        points.  Returns CheckReport: deviations from the law (closed forms under uniform pressure)
+        at random points, next to the singular lines, in every cell and at every node; under uniform
+        pressure also from direct quadrature.  Other points at every call.
 
-        Returns
-        -------
-        CheckReport
-            Deviations from the law (closed forms under uniform pressure) at random points, next to
-            the singular lines, in every cell and at every node; under uniform pressure also from
-            direct quadrature.  Other points at every call.
-
-        Examples
-        --------
         >>> ResultantTable.shipped().validate(points=50).passed
         True
         """

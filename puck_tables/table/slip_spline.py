@@ -132,13 +132,9 @@ class LawAxis:
 def sides_of(cotangents: Sequence[float], ends_too: bool = False) -> tuple[Side, ...]:
     """The sides of the singular lines with these cot φ, in the order of φ.
 
-    Parameters
-    ----------
-    cotangents : floats > 0, descending
-    ends_too : whether φ = 0 and π/2 are singular lines besides
+    ``cotangents``: floats > 0, descending; ``ends_too``: whether φ = 0 and π/2 are singular lines
+    besides.
 
-    Examples
-    --------
     >>> [round(side.end, 4) for side in sides_of([1.0], ends_too=True)]
     [0.3927, 0.3927, 1.1781, 1.1781]
     """

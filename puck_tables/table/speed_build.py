@@ -124,13 +124,8 @@ def tabulated(
 def load_under(law: Law, pressure: str | PressureLaw, reach: float) -> RoundLoad:
     """The load of a pressure law on a part of the radius.
 
-    Raises
-    ------
-    InputError
-        If it is none, or friction under it is not known.
+    Raises InputError if it is none, or friction under it is not known.
 
-    Examples
-    --------
     >>> load_under(SpeedLaw([0.0, 1.0], [0.2, 0.3]), "annulus:0.5", 1.0).edges
     (0.5, 1.0)
     """

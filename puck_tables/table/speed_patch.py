@@ -150,16 +150,9 @@ def _parts(size: int, each: int) -> Iterator[slice]:
 def quintic_coefficients(values: FloatArray) -> FloatArray:
     """Coefficients of the uniform spline of degree 5 with not-a-knot ends, along two axes.
 
-    Parameters
-    ----------
-    values : array (n + 1, m + 1, functions), n, m ≥ 5
+    ``values``: array (n + 1, m + 1, functions), n, m ≥ 5.  Returns array (n + 5, m + 5, functions),
+    over 120² as the kernel takes them.
 
-    Returns
-    -------
-    array (n + 5, m + 5, functions), over 120² as the kernel takes them
-
-    Examples
-    --------
     >>> bool(np.allclose(120**2 * quintic_coefficients(np.ones((6, 7, 1))), 1.0))
     True
     """

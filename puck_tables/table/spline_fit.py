@@ -73,17 +73,9 @@ _JUMP = (1.0, -4.0, 6.0, -4.0, 1.0)  # of the third derivative at the last inner
 def sided_coefficients(values: FloatArray, even: bool) -> FloatArray:
     """Coefficients on the sides of singular lines: slopes in ξ vanish at the lines.
 
-    Parameters
-    ----------
-    values : array (sides, n + 1, …), from each line outwards
-    even : whether they also vanish at φ = 0 and π/2, where the first and the last side end
+    ``values``: array (sides, n + 1, …), from each line outwards; ``even``: whether they also vanish
+    at φ = 0 and π/2, where the first and the last side end.  Returns array (sides, n + 3, …).
 
-    Returns
-    -------
-    array (sides, n + 3, …)
-
-    Examples
-    --------
     >>> sided_coefficients(np.ones((4, 9, 2)), even=True).round(12).max()
     np.float64(1.0)
     """
@@ -99,18 +91,9 @@ def height_terms(resultants: FloatArray, delta: FloatArray) -> FloatArray:
 
         1/ρ_∥ = a₀ + a₂ δ²,    ρ_⊥/ρ_∥ = b₁ δ,    ρ_ω/ρ_∥ = c₀ + c₂ δ² .
 
-    Parameters
-    ----------
-    resultants : array (…, n, 3)
-        ρ_∥, ρ_⊥, ρ_ω in full contact.
-    delta : array (n,), the heights
+    ``resultants``: array (…, n, 3) ρ_∥, ρ_⊥, ρ_ω in full contact; ``delta``: array (n,), the
+    heights.  Returns array (…, 5).
 
-    Returns
-    -------
-    array (…, 5)
-
-    Examples
-    --------
     >>> delta = np.linspace(0.0, 1.0, 4)
     >>> sliding = np.stack([0 * delta + 1, delta / 4, (4 - delta**2) / 8], axis=-1)  # at φ = 0
     >>> height_terms(sliding, delta).round(12).tolist()

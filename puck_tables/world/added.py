@@ -17,10 +17,10 @@ from puck_tables.scene.parts import Force, Launch
 from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import layout
-from puck_tables.world.agreement import pucks_of
 from puck_tables.world.by_hand import with_integrated
 from puck_tables.world.engine_state import LAUNCHED, N_HISTORY, N_LAUNCHES, N_PIECES, Engine, Whole
 from puck_tables.world.floor_under import law_goes_to
+from puck_tables.world.named_pucks import pucks_of
 from puck_tables.world.paths import START as BEGINS
 from puck_tables.world.prepare import Start, prepared, with_law_up_to
 from puck_tables.world.segment import ANGLE, GONE, PLACE_X, SEGMENT_COLUMNS, START, UNTIL
@@ -29,10 +29,7 @@ from puck_tables.world.segment import ANGLE, GONE, PLACE_X, SEGMENT_COLUMNS, STA
 def board_with(scene: SceneSpec, puck: ScenePuck) -> SceneSpec:
     """A scene with a puck more, which fits its board; its pucks may have moved since.
 
-    Raises
-    ------
-    InputError
-        If the puck does not go with the board, or its name is taken.
+    Raises InputError if the puck does not go with the board, or its name is taken.
     """
     if not isinstance(puck, ScenePuck):
         raise InputError(f"puck must be a Puck, got a {type(puck).__name__}")

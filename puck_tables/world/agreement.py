@@ -21,66 +21,22 @@ from puck_tables.scene.floor_parts import (
 )
 from puck_tables.scene.forces import is_stepped
 from puck_tables.scene.holds import misfits
-from puck_tables.scene.map_of_floor import edges_under, follows_contour, may_lift
+from puck_tables.scene.map_of_floor import follows_contour, may_lift
 from puck_tables.scene.over_time import drive_of, last_factors
 from puck_tables.scene.parts import Drag, Force, Lateral, Launch
 from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.scene.sides import ends_of_floor, gap_along, gap_to, line_of, shape_faults
+from puck_tables.scene.sides import ends_of_floor, shape_faults
 from puck_tables.world.drive import rows_of
+from puck_tables.world.named_pucks import pucks_of, who
+from puck_tables.world.placement import misplaced
 
-TOUCH = 1e-12  # of the radius: pucks that overlap less touch
 CUSHIONS = ("wall", "post", "arc")  # what rims may meet besides pucks
 # of integrated states: coarser steps than for that are as long as the scene lets them, and check
 # runs of the same steps tell nothing (test_no_estimate_is_too_small)
 COARSEST = 1e-6
 TABLE_ERROR = 1e-9  # of looked-up states: of places in Q²/J, of velocities in Q
-# of the reach: nearer to an edge what presses is a line, and friction by rounding known no better;
-# and so little off an edge, in rad, is along it
-_NARROW, _ALONG = 4e-4, 1e-3
 _SMALLEST, _LARGEST = 1e-100, 1e100  # m, kg: squares of both are numbers
-
-
-def pucks_of(scene: SceneSpec) -> tuple[ScenePuck, ...]:
-    """The pucks of a scene; a single one with its launch.
-
-    >>> from puck_tables import Pocket, Puck, Scene
-    >>> pucks_of(Scene(Puck(0.04), pockets=[Pocket((1.0, 0.0), 0.1)]))[0].radius
-    0.04
-    """
-    if scene.pucks:
-        return scene.pucks
-    kept: dict[str, tuple[ScenePuck, ...]] = vars(scene)  # it is asked for often, and checked anew
-    if "_pucks" not in kept:
-        puck = scene.puck
-        kept["_pucks"] = (
-            ScenePuck(
-                puck.radius, puck.height, puck.friction, puck.mass, puck.gravity, puck.pressure,
-                puck.gyration, puck.base, launch=scene.launch, force=scene.force,
-                constraint=scene.constraint,
-            ),
-        )  # fmt: skip
-    return kept["_pucks"]
-
-
-def called(puck: ScenePuck, number: int) -> str:
-    """A puck in a message, a table and a legend.
-
-    >>> from puck_tables import Puck
-    >>> called(Puck(0.1, name="striker"), 3), called(Puck(0.1), 3)
-    ('striker', 'puck 3')
-    """
-    return puck.name or f"puck {number}"
-
-
-def who(scene: SceneSpec, number: int) -> str:
-    """A puck of a scene in a sentence: the only one has no number.
-
-    >>> from puck_tables import Puck, Scene
-    >>> who(Scene(Puck(0.1)), 0)
-    'the puck'
-    """
-    return called(scene.pucks[number], number) if scene.pucks else "the puck"
 
 
 def refuse_endless(scene: SceneSpec) -> None:
@@ -209,10 +165,7 @@ def disagreements(scene: SceneSpec) -> list[str]:
         faults.append(f"frames = {scene.frames:g}: must be a whole number")
     if faults:
         return faults
-    return [
-        *_overlaps(pucks), *_out_of_bounds(scene, pucks), *_driven_through(scene, pucks),
-        *_wide_pockets(scene), *_balancing(scene, pucks),
-    ]  # fmt: skip
+    return misplaced(scene, pucks)
 
 
 def _strange_lines(scene: SceneSpec) -> Iterator[str]:
@@ -351,126 +304,3 @@ def _strange_rims(scene: SceneSpec) -> Iterator[str]:
                     f"rim[{number}].{side} = {given!r}: must be the name of a puck or the colour "
                     f"of pucks{more}{meant(given, sorted(may))}"
                 )
-
-
-def _overlaps(pucks: tuple[ScenePuck, ...]) -> Iterator[str]:
-    """Pucks that overlap at the start."""
-    places = np.array([start_of(puck) for puck in pucks])
-    radii = np.array([puck.radius for puck in pucks])
-    for number in range(len(pucks)):
-        gaps = np.hypot(*(places[:number] - places[number]).T) - radii[:number] - radii[number]
-        for other in np.flatnonzero(gaps < -TOUCH * radii[number]):
-            yield (
-                f"{called(pucks[other], int(other))} and {called(pucks[number], number)} overlap "
-                f"by {-gaps[other]:.3g} m at the start: move one of them"
-            )
-
-
-def start_of(puck: ScenePuck) -> tuple[float, float]:
-    """Where a puck is at first."""
-    if puck.path:
-        rows = rows_of(puck.path)
-        return float(rows[0, 1]), float(rows[0, 2])
-    return puck.launch.position
-
-
-def _out_of_bounds(scene: SceneSpec, pucks: tuple[ScenePuck, ...]) -> Iterator[str]:
-    """Pucks that start in a cushion or a hole."""
-    for number, puck in enumerate(pucks):
-        place, name = start_of(puck), who(scene, number)
-        for path, what, depth in obstructing(scene, place, puck.radius, holes=not puck.path):
-            yield f"{path}: {name} at {list(place)} {what} by {depth:.3g} m: move one of them"
-
-
-def _balancing(scene: SceneSpec, pucks: tuple[ScenePuck, ...]) -> Iterator[str]:
-    """Pucks that set off along an edge, so near to it that whether they fall is rounding."""
-    for number, puck in enumerate(pucks):
-        reach = (puck.shape.reach if puck.shape else puck.radius) * _NARROW
-        (vx, vy), spin = puck.launch.velocity or (0.0, 0.0), puck.launch.spin
-        speed = math.hypot(vx, vy, puck.radius * spin)
-        edges = [] if puck.path else edges_under(scene.alone(puck)).tolist()
-        for k, (nx, ny, at) in zip(ends_of_floor(scene), edges, strict=False):
-            inside = nx * puck.launch.position[0] + ny * puck.launch.position[1] - at
-            if inside < reach and speed > 0.0 and abs(nx * vx + ny * vy) <= _ALONG * speed:
-                yield (
-                    f"edge[{k}]: {who(scene, number)} sets off along it, its centre of mass "
-                    f"{max(inside, 0.0):.3g} m from it: whether it falls is not known there; move "
-                    f"it at least {reach:.3g} m onto the floor"
-                )
-
-
-def _driven_through(scene: SceneSpec, pucks: tuple[ScenePuck, ...]) -> Iterator[str]:
-    """Paths of driven bodies that lead through what stands, at rest at their start or later."""
-    for number, puck in enumerate(pucks):
-        if not puck.path:
-            continue
-        rows = rows_of(puck.path)
-        before, after = rows[:-1, 1:3], rows[1:, 1:3]
-        gaps = {}
-        for k, wall in enumerate(scene.walls):
-            gaps[f"wall[{k}]"] = np.array(
-                [gap_to(wall, tuple(place)) for place in after] if wall.point is not None
-                else [gap_along(wall, *way) for way in zip(before, after, strict=True)]
-            )  # fmt: skip
-        for k, post in enumerate(scene.posts):
-            way, off = after - before, np.array(post.point) - before
-            square = np.maximum((way * way).sum(axis=1), 1e-300)
-            share = np.clip((way * off).sum(axis=1) / square, 0.0, 1.0)
-            gaps[f"post[{k}]"] = np.hypot(*(off - share[:, None] * way).T) - post.radius
-        for k, arc in enumerate(scene.arcs):
-            if arc.span >= 2.0 * math.pi:
-                gaps[f"arc[{k}]"] = arc.radius - np.hypot(*(after - arc.point).T)
-        starts_in = [one for one, *_ in obstructing(scene, start_of(puck), puck.radius, False)]
-        for path, gap in gaps.items():
-            deep = np.flatnonzero(gap - puck.radius < -TOUCH * puck.radius)
-            if deep.size and path not in starts_in:
-                row = int(deep[0])
-                start, end = rows[row : row + 2, 0]
-                yield (
-                    f"{path}: {who(scene, number)} is driven through it between {start:g} s and "
-                    f"{end:g} s, {puck.radius - gap[row]:.3g} m deep: lead its path around it"
-                )
-
-
-def obstructing(
-    scene: SceneSpec, place: tuple[float, float], radius: float, holes: bool
-) -> Iterator[tuple[str, str, float]]:
-    """What keeps a puck from lying at a place: its path, how, and by how much, m.
-
-    ``holes``: whether pockets and edges do.
-
-    >>> from puck_tables import Puck, Scene, Wall
-    >>> board = Scene(pucks=[Puck(0.1)], walls=[Wall((0.0, 0.5), normal=(0.0, -1.0))])
-    >>> list(obstructing(board, (0.0, 0.45), 0.1, holes=True))[0][:2]
-    ('wall[0]', 'reaches through it')
-    """
-    gaps = {f"wall[{k}]": gap_to(one, place) - radius for k, one in enumerate(scene.walls)}
-    for k, post in enumerate(scene.posts):
-        gaps[f"post[{k}]"] = math.dist(place, post.point) - radius - post.radius
-    for k, arc in enumerate(scene.arcs):
-        if arc.span >= 2.0 * math.pi:
-            gaps[f"arc[{k}]"] = arc.radius - radius - math.dist(place, arc.point)
-    if holes:
-        for k, pocket in enumerate(scene.pockets):
-            gaps[f"pocket[{k}]"] = math.dist(place, pocket.point) - pocket.radius
-        for k, edge in enumerate(scene.edges):
-            nx, ny, at = line_of(edge)
-            gaps[f"edge[{k}]"] = nx * place[0] + ny * place[1] - at
-    for path, gap in gaps.items():
-        if gap < -TOUCH * radius:
-            what = "lies in it" if path.startswith(("pocket", "edge")) else "reaches through it"
-            yield path, what, -gap
-
-
-def _wide_pockets(scene: SceneSpec) -> Iterator[str]:
-    """Pockets wider than the board between two facing walls without ends."""
-    lines = [(k, line_of(one), one.point) for k, one in enumerate(scene.walls) if one.point]
-    for k, pocket in enumerate(scene.pockets):
-        for place, (number, (nx, ny, at), _) in enumerate(lines):
-            for other, (ox, oy, _), facing in lines[:place]:
-                width = nx * facing[0] + ny * facing[1] - at
-                if nx * ox + ny * oy < -0.999 and 2.0 * pocket.radius >= width:
-                    yield (
-                        f"pocket[{k}].radius = {pocket.radius:g}: wider than the board, {width:g} "
-                        f"m between wall[{other}] and wall[{number}]"
-                    )

@@ -22,9 +22,9 @@ from puck_tables._core.arrays import (
 from puck_tables._core.executor import Progress
 from puck_tables.errors import InputError
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.agreement import pucks_of, start_of
 from puck_tables.world.aimed import BoardAim, aimed
 from puck_tables.world.engine_state import Whole
+from puck_tables.world.named_pucks import pucks_of, start_of
 from puck_tables.world.shots import Landings, Shots, effort_for, good, headings_for, take_sample
 from puck_tables.world.solving import HEADINGS, Which, stops_at
 from puck_tables.world.targets import Target, lying_there, out_of_reach, target_of, without_pocket
@@ -294,10 +294,7 @@ def _searches(
 def _plenty(scene: SceneSpec, wanted: Target) -> float:
     """A speed that is surely enough: three times that which slides the whole way.
 
-    Raises
-    ------
-    InputError
-        If nothing brakes the striker.
+    Raises InputError if nothing brakes the striker.
     """
     pucks = pucks_of(scene)
     striker, puck = pucks[wanted.striker], pucks[wanted.puck]

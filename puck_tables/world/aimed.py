@@ -17,7 +17,7 @@ from puck_tables.scene.entries import tables_of
 from puck_tables.scene.library import files_of, scene_texts
 from puck_tables.scene.run import Run, column_of
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.agreement import called, pucks_of, start_of
+from puck_tables.world.named_pucks import called, pucks_of, start_of
 from puck_tables.world.simulate import simulate
 from puck_tables.world.targets import Odds, Target, odds_of
 

@@ -34,7 +34,7 @@ from puck_tables.scene.run import (
     residual,
 )
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.agreement import called, pucks_of, refuse_endless
+from puck_tables.world.agreement import refuse_endless
 from puck_tables.world.bulk import Ends, follow_all
 from puck_tables.world.engine_state import Engine, Whole, copy_of
 from puck_tables.world.floor_under import SURE, law_goes_to, moves_along
@@ -42,6 +42,7 @@ from puck_tables.world.floors import velocities_under
 from puck_tables.world.lasting import LEADS_ON, NEVER_ENDS, ROUND
 from puck_tables.world.layout import RADIUS
 from puck_tables.world.ledger import NAMES, energies_of, energy_scale, kinetic_of, ledgers_of
+from puck_tables.world.named_pucks import called, pucks_of
 from puck_tables.world.plan import plan_of
 from puck_tables.world.prepare import prepared, with_law_up_to
 from puck_tables.world.record import reactions
@@ -68,10 +69,7 @@ class BoardCase:
 
     ``model``, ``explanation``: how its pucks are moved.
 
-    Raises
-    ------
-    InputError
-        If nothing on it ever comes to rest, and no time is given.
+    Raises InputError if nothing on it ever comes to rest, and no time is given.
     """
 
     def __init__(self, scene: SceneSpec) -> None:
@@ -132,10 +130,7 @@ class BoardCase:
     ) -> tuple[dict[str, FloatArray], npt.NDArray[np.int8]]:
         """Results (count, …) and how it ended.
 
-        Raises
-        ------
-        InputError
-            If one of these launches is too fast for what can be told.
+        Raises InputError if one of these launches is too fast for what can be told.
         """
         parts = {path: _part(path) for path in launches}
         numbers = sorted({number for number, _ in parts.values()})

@@ -14,7 +14,6 @@ from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.over_time import FORCED, with_angles
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.agreement import pucks_of
 from puck_tables.world.drive import fill_straight
 from puck_tables.world.engine_state import N_PIECES, Engine, Whole
 from puck_tables.world.floor_under import step_onto
@@ -39,6 +38,7 @@ from puck_tables.world.layout import (
     C,
 )
 from puck_tables.world.lone import LONGEST
+from puck_tables.world.named_pucks import pucks_of
 from puck_tables.world.obstacle_shapes import in_span
 from puck_tables.world.paths import on_piece
 from puck_tables.world.segment import ANGLE, FIRST_PIECE, PATH, PLACE_X

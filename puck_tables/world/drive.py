@@ -20,13 +20,8 @@ def rows_of(path: str | Rows) -> FloatArray:
 
     One row, of t = 0, is a body that is led by hand.
 
-    Raises
-    ------
-    InputError
-        If it cannot be read, or is no such table.
+    Raises InputError if it cannot be read, or is no such table.
 
-    Examples
-    --------
     >>> rows_of(((0.0, 1.0, 2.0), (0.5, 1.0, 3.0)))[1].tolist()
     [0.5, 1.0, 3.0, 0.0]
     """

@@ -31,9 +31,10 @@ from puck_tables.scene.over_time import largest_factors
 from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.regions import axes_of, load_limit, of_one_shape, rubs_plainly, section_of
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.agreement import frictions_under, is_integrated, pucks_of
+from puck_tables.world.agreement import frictions_under, is_integrated
 from puck_tables.world.engine_state import Engine
 from puck_tables.world.floor_under import floor_of
+from puck_tables.world.named_pucks import pucks_of
 
 INTEGRATED, NOT_HELD = 1.0, 2.0  # see :mod:`puck_tables.world.layout`
 
@@ -100,12 +101,9 @@ def regions_of(
 
     ``fastest``: the fastest slip of a rim for which a friction law is to hold, m/s.
 
-    Raises
-    ------
-    InputError, ContactError
-        If the friction law cannot be read, ends below the slips at the launches, or lifts a base.
-    AccuracyError
-        If the friction of one cannot be tabulated as fine as the scene asks.
+    Raises InputError, ContactError if the friction law cannot be read, ends below the slips at the
+    launches, or lifts a base; AccuracyError if the friction of one cannot be tabulated as fine as
+    the scene asks.
     """
     normals = np.array([0.0 if puck.path else normal_on(scene, puck) for puck in pucks])
     count, delta = len(floors), floors[:, 1].copy()
@@ -181,10 +179,7 @@ def _by_place(
 ) -> Regions:  # fmt: skip
     """By laws over the slip speed that differ by place: summed over every base, wherever it lies.
 
-    Raises
-    ------
-    InputError, ContactError
-        As :func:`regions_of`.
+    Raises InputError, ContactError as :func:`regions_of`.
     """
     top = law_top(scene, fastest)
     most = np.array([
@@ -206,12 +201,7 @@ def _by_slip(
 ) -> Regions:  # fmt: skip
     """By a friction law over the slip speed: tables under round loads, integrals under others.
 
-    Raises
-    ------
-    InputError, AccuracyError
-        As :func:`regions_of`.
-    ContactError
-        If it lifts a base.
+    Raises InputError, AccuracyError as :func:`regions_of`; ContactError if it lifts a base.
     """
     law, top, largest = law_range(scene, fastest)
     factor = float(largest_factors(scene.floor)[0])

@@ -27,7 +27,7 @@ from puck_tables.world.engine_state import LAUNCH_TIME, N_EVENTS, N_HISTORY, TIM
 from puck_tables.world.floor_under import SURE, floor_of, law_goes_to, law_under, least_slip
 from puck_tables.world.floors import slip_of_rim
 from puck_tables.world.layout import DRAG, LIGHTNESS, PULL_X, PULL_Y, RADIUS, TURNABILITY, TWIST
-from puck_tables.world.lone import model_of
+from puck_tables.world.lone_model import model_of
 from puck_tables.world.paths import DURATION, FOR_EVER
 from puck_tables.world.paths import START as PIECE_START
 from puck_tables.world.prepare import with_law_up_to
@@ -289,10 +289,7 @@ def with_law_for(
 ) -> Engine:
     """The state of the engine with friction that is known at all slips of those that set off now.
 
-    Raises
-    ------
-    InputError
-        If its law ends below one, or lifts part of a base there.
+    Raises InputError if its law ends below one, or lifts part of a base there.
     """
     top = law_goes_to(engine.regions)
     if top == math.inf:

@@ -15,7 +15,6 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, on_demand, patience
 from puck_tables.motion.steppers import times_as_long
-from puck_tables.scene.base_balance import is_rubbed
 from puck_tables.scene.equations import (
     FIRST,
     GIVEN,
@@ -29,7 +28,6 @@ from puck_tables.scene.equations import (
     to_laboratory,
 )
 from puck_tables.scene.explicit import STAGES
-from puck_tables.scene.forces import Forces
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X
 from puck_tables.scene.ingredients import (
     CARRIED,
@@ -38,16 +36,11 @@ from puck_tables.scene.ingredients import (
     PIVOT,
     SLIDES,
     STOPS,
-    Body,
     DryFriction,
-    Hold,
     Model,
     Phase,
-    Surface,
     floor_velocity,
     is_mixed,
-    is_over_belts,
-    surface_at,
     surface_now,
 )
 from puck_tables.scene.moments import (
@@ -67,9 +60,7 @@ from puck_tables.scene.steps import (
 )
 from puck_tables.world.engine_state import Engine
 from puck_tables.world.floor_under import (
-    changes_below,
     choose_belt,
-    floor_of,
     friction_under_disc,
     moves_along,
     nears_another,
@@ -79,27 +70,15 @@ from puck_tables.world.floor_under import (
 from puck_tables.world.layout import (
     BELT_X,
     BELT_Y,
-    DRAG,
     EDGE,
-    HOLD,
-    HOLD_ANGLE,
-    HOLD_REACH,
-    HOLD_VX,
-    HOLD_VY,
-    HOLD_X,
-    HOLD_Y,
     KIND,
     LIES,
-    LIGHTNESS,
-    PULL_X,
-    PULL_Y,
     RADIUS,
-    TURNABILITY,
-    TWIST,
     A,
     B,
     C,
 )
+from puck_tables.world.lone_model import horizon_of, model_of, surface_of, swings
 from puck_tables.world.step_pieces import ENDED, LoneBuffer, buffer_on, write_step
 
 LONGEST = 128  # pieces of a path, before it ends for a new look
@@ -118,64 +97,8 @@ _LAST = 0.03  # of the root of the error of a step: slips as small may go straig
 # one before was implicit), if the slip changes by no more than that share of it
 _STIFF, _MILD, _SLOWLY = 0.8, 0.3, 0.1
 _NEWTON, _FINEST_NEWTON = 1e-3, 1e-15  # of the error of a step: how well implicit ones are solved
-_FARTHER = 0.1  # of the time since the start: so far ahead a path may go
 _SWING = 0.05  # rad that a floor turns under a puck at rest in a step, or half as it spins up
 _OVER = 1e-12  # of a radius: beyond a border
-
-
-@inlined
-def model_of(engine: Engine, i: int) -> Model:
-    """All that acts on a disc but dry friction."""
-    disc = engine.discs[i]
-    mass, inertia = 1.0 / disc[LIGHTNESS], 1.0 / disc[TURNABILITY]
-    drive = engine.forcing[engine.spans[i, 0] : engine.spans[i, 1]]
-    forces = Forces(
-        mass * disc[PULL_X], mass * disc[PULL_Y], inertia * disc[TWIST], drive,
-        disc[DRAG:],
-    )  # fmt: skip
-    hold = Hold(
-        int(disc[HOLD]), disc[HOLD_X], disc[HOLD_Y], disc[HOLD_REACH], disc[HOLD_ANGLE],
-        disc[HOLD_VX], disc[HOLD_VY],
-    )  # fmt: skip
-    return Model(Body(mass, inertia, disc[RADIUS]), floor_of(engine.surface, disc), forces, hold)
-
-
-@inlined
-def _surface_at(model: Model, t: float) -> Surface:
-    """How the floor moves at a time."""
-    drive = model.forces.drive
-    return surface_at(model.surface, drive, rows_passed(drive, 0, len(drive), t), t)
-
-
-@inlined
-def _swings(engine: Engine, i: int, model: Model, friction: DryFriction, rows: int) -> bool:
-    """Whether what the floor has to do for a puck at rest on it changes as it is carried."""
-    surface, drive = model.surface, model.forces.drive
-    if surface.changes != 0.0 and rows < len(drive):
-        return True
-    surface = surface_at(surface, drive, rows, 0.0)  # as it goes on
-    forces = model.forces
-    pulled = forces.x != 0.0 or forces.y != 0.0 or forces.torque != 0.0 or len(drive) > 0
-    if (surface.spin != 0.0 and pulled) or not is_mixed(friction):
-        return surface.spin != 0.0 and pulled
-    floor_map, radius = friction.by_speed.table, model.body.radius
-    if is_over_belts(friction) and is_rubbed(floor_map, radius):
-        return True  # it gets warm
-    return moves_along(surface) and changes_below(floor_map, engine.discs[i], surface)
-
-
-@inlined
-def _horizon(engine: Engine, model: Model, t: float) -> float:
-    """Until when a path is followed: what is pulled or carried may get faster for ever.
-
-    Ever farther, so that what goes on for long takes few paths.
-    """
-    hold, rows = model.hold, len(model.forces.drive)
-    pulled = rows > 0 and model.forces.drive[rows - 1, 0] > t
-    pulled = pulled or model.forces.x != 0.0 or model.forces.y != 0.0 or model.forces.torque != 0.0
-    if pulled or moves_along(engine.surface) or hold.vx != 0.0 or hold.vy != 0.0:
-        return t + max(2.0 * engine.scale[0] / engine.scale[1], _FARTHER * t)
-    return math.inf
 
 
 @inlined
@@ -192,7 +115,7 @@ def _lay_out(
     buffer.scale[THETA] = length / body.radius
     buffer.scale[SPIN] = speed / (slow * body.radius)
     follow_scales(buffer.scale, tol, body, buffer.y)
-    to_laboratory(_surface_at(model, t), buffer.y, -1.0)
+    to_laboratory(surface_of(model, t), buffer.y, -1.0)
 
 
 @inlined
@@ -297,12 +220,12 @@ def _from_rest(
     y[VX] = y[VY] = y[SPIN] = 0.0
     at_rest = Phase(model, friction, rows, CARRIED, NO_WAY, 0.0)
     mode, stiff, q = from_standstill(at_rest, speed, t, y, buffer.stages)
-    sx, sy, turning = floor_velocity(_surface_at(model, t), y[X], y[X + 1])
+    sx, sy, turning = floor_velocity(surface_of(model, t), y[X], y[X + 1])
     rounded = _ROUNDED * (math.hypot(sx, sy) + model.body.radius * abs(turning))
     if mode == SLIDES and begins and slow > max(q, rounded):
         q = _goes_on(Phase(model, friction, rows, SLIDES, NO_WAY, 0.0), t, vx, vy, spin, q, y,
                      buffer.stages)  # fmt: skip
-    rests = mode == CARRIED and not _swings(engine, i, model, friction, rows)
+    rests = mode == CARRIED and not swings(engine, i, model, friction, rows)
     rests = rests and rests_on(model, friction, rows, y)
     return mode, stiff and not _keeps_direction(model), q, rests
 
@@ -336,7 +259,7 @@ def _go_on_from(model: Model, tol: float, buffer: LoneBuffer) -> None:
 @inlined
 def _put_down(model: Model, t: float, state: FloatArray, buffer: LoneBuffer) -> None:
     """Where it rests, in the laboratory, into ``state`` (6,)."""
-    to_laboratory(_surface_at(model, t), buffer.y, 1.0)
+    to_laboratory(surface_of(model, t), buffer.y, 1.0)
     for n in range(GIVEN):
         state[n] = buffer.y[n]
 
@@ -372,7 +295,7 @@ def follow_alone(
     tol, drive, load = max(engine.scale[2], FINEST), model.forces.drive, friction.load
     _lay_out(engine, model, t, state, tol, buffer)
     slow = max(1.0, 2.0 * model.body.inertia / (model.body.mass * radius * radius))
-    straight, horizon = _LAST * math.sqrt(tol) * speed, _horizon(engine, model, t)
+    straight, horizon = _LAST * math.sqrt(tol) * speed, horizon_of(engine, model, t)
     now, passed, h, count, mode, way = t, 0.0, _BEGIN * unit, 0, SLIDES, NO_WAY
     undecided, known, stiff, over, rests, tips = True, False, False, False, False, math.inf
     before, failed, held = math.inf, False, True

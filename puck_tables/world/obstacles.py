@@ -18,7 +18,7 @@ from puck_tables.scene.restitution import Restitution, restitution_law
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.sides import corners_in, cushions_in, ends_of_floor, line_of, sides_in
 from puck_tables.world import layout
-from puck_tables.world.agreement import pucks_of
+from puck_tables.world.named_pucks import pucks_of
 
 
 def _laws_of(scene: SceneSpec, first: int) -> tuple[FloatArray, dict[object, float]]:

@@ -10,14 +10,13 @@ from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import (
     TABLE_ERROR,
-    called,
     frictions_under,
     has_closed_forms,
     is_integrated,
-    pucks_of,
     segment_error,
 )
 from puck_tables.world.floors import may_be_mixed
+from puck_tables.world.named_pucks import called, pucks_of
 from puck_tables.world.obstacles import rule_of
 
 _NAMED = 6  # pucks of one way
@@ -34,13 +33,8 @@ _ON_FLOOR = ("strips", "patches", "belts", "static friction")
 def plan_of(scene: SceneSpec) -> tuple[str, str]:
     """How the pucks of a scene are moved, in a line; and which they are and why, in lines of text.
 
-    Raises
-    ------
-    PuckError
-        If an entry of the scene does not say what acts with it: it would be left out.
+    Raises PuckError if an entry of the scene does not say what acts with it: it would be left out.
 
-    Examples
-    --------
     >>> from puck_tables import Floor, Launch, Puck, Scene
     >>> print(plan_of(Scene(Puck(0.1, friction=0.1), Floor(slope=0.05)))[1])
     1 puck integrated from impact to impact: slope
@@ -97,10 +91,7 @@ def plan_of(scene: SceneSpec) -> tuple[str, str]:
 def _acting_on(scene: SceneSpec, puck: ScenePuck) -> list[str]:
     """What acts on a puck beside dry friction on a level floor that moves steadily or not at all.
 
-    Raises
-    ------
-    PuckError
-        As :func:`puck_tables.scene.acting.acting`.
+    Raises PuckError as :func:`puck_tables.scene.acting.acting`.
     """
     one = scene.alone(puck)
     for spec in specs(type(scene)).values():

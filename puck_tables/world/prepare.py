@@ -28,7 +28,7 @@ from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.world import layout
-from puck_tables.world.agreement import pucks_of, start_of, steps_for
+from puck_tables.world.agreement import steps_for
 from puck_tables.world.drive import pieces_along, rows_of
 from puck_tables.world.engine_state import (
     COUNTS,
@@ -50,6 +50,7 @@ from puck_tables.world.floors import (
     velocities_under,
 )  # fmt: skip
 from puck_tables.world.lone import LONGEST
+from puck_tables.world.named_pucks import pucks_of, start_of
 from puck_tables.world.obstacles import borders_of, number_for, obstacles_of, rims_of
 from puck_tables.world.paths import FIRST, PIECE_COLUMNS
 from puck_tables.world.segment import (
@@ -114,10 +115,8 @@ def _surface_of(floor: Floor) -> Surface:
 def prepared(scene: SceneSpec, order: Whole | None = None) -> Start:
     """A scene without ranges at its start; its pucks in an order, else that of their places.
 
-    Raises
-    ------
-    PuckError
-        If a file or a law that it names does not serve, or numbers in it are too large.
+    Raises PuckError if a file or a law that it names does not serve, or numbers in it are too
+    large.
     """
     order = order_of(scene) if order is None else order
     pucks = [pucks_of(scene)[number] for number in order]
@@ -252,10 +251,8 @@ def scales_of(engine: Engine, speeds: FloatArray) -> FloatArray:
 
     What is at rest on a steep slope has the speed that it gets within a radius.
 
-    Raises
-    ------
-    InputError
-        If a puck would slide so far that its places, good to a share of that, mean nothing here.
+    Raises InputError if a puck would slide so far that its places, good to a share of that, mean
+    nothing here.
     """
     radius, steady = least_scales(engine)
     _refuse_far(engine, float(speeds.max(initial=0.0)), radius)

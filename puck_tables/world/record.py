@@ -47,7 +47,7 @@ from puck_tables.world.engine_state import (
 from puck_tables.world.floor_under import friction_under_disc, least_slip, lie_at
 from puck_tables.world.lasting import STUCK, at_rest_below, middle_of
 from puck_tables.world.layout import DECEL, HOLD, INTEGRATED, KIND, LIGHTNESS, NO_CUSHION, RADIUS
-from puck_tables.world.lone import model_of
+from puck_tables.world.lone_model import model_of
 from puck_tables.world.obstacle_shapes import normal_to
 from puck_tables.world.segment import GONE, LOOKED_UP, PATH, RIDES, ROOM, START, UNTIL, state_at
 from puck_tables.world.step_ledger import (

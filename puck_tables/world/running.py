@@ -17,7 +17,7 @@ from puck_tables.scene.run import Event
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import engine_state as g
 from puck_tables.world import passings
-from puck_tables.world.agreement import called, pucks_of, refuse_endless
+from puck_tables.world.agreement import refuse_endless
 from puck_tables.world.contact_row import FIRST_N, E
 from puck_tables.world.engine import EVERYBODY, NOBODY, THOSE_LEFT, advance, lacks_rows
 from puck_tables.world.lasting import (
@@ -32,6 +32,7 @@ from puck_tables.world.lasting import (
 )
 from puck_tables.world.layout import EDGE, KIND, POCKET
 from puck_tables.world.lone import LONGEST
+from puck_tables.world.named_pucks import called, pucks_of
 from puck_tables.world.obstacles import obstacle_names
 from puck_tables.world.passings import Passings
 from puck_tables.world.prepare import Start, prepared, shipped_lookups

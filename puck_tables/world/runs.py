@@ -26,9 +26,9 @@ from puck_tables.scene.entries import is_batch, launch_paths, tables_of
 from puck_tables.scene.library import files_of, plain_name
 from puck_tables.scene.run import ENDS, LAST_END, REFUSED
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.agreement import pucks_of
 from puck_tables.world.board_case import BoardCase
 from puck_tables.world.map import Map
+from puck_tables.world.named_pucks import pucks_of
 from puck_tables.world.scene_ends import Sample, SceneEnds, axes_of
 
 FEWEST, MOST = 1 << 6, 1 << 13  # runs kept together in a store

@@ -18,6 +18,7 @@ from puck_tables.kernels.compile import kernel
 from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import stored
+from puck_tables.world.bench import FOUND_COLUMNS, LED, LET_GO, TO_DO, WAITS, Bench, Orders, Slots
 from puck_tables.world.engine_state import REMOVED, Whole
 from puck_tables.world.lasting import LONG, braking_of
 from puck_tables.world.layout import RADIUS
@@ -26,7 +27,6 @@ from puck_tables.world.paths import PIECE_COLUMNS
 from puck_tables.world.prepare import fastest_allowed, least_scales
 from puck_tables.world.segment_starts import locate
 from puck_tables.world.setting_off import REACHED
-from puck_tables.world.stored import LED, LET_GO, TO_DO, WAITS, Bench, Orders, Slots
 from puck_tables.world.worlds import Worlds
 
 # what :func:`play_shipped` says beside how many events there were
@@ -56,10 +56,7 @@ class Shipped(NamedTuple):
 def shipped(scene: SceneSpec) -> tuple[Shipped, Worlds]:
     """A scene at its start, ready to be played, and the board as it is played in Python.
 
-    Raises
-    ------
-    InputError
-        If a number of it is a range, its floor moves, or a constraint leads a puck.
+    Raises InputError if a number of it is a range, its floor moves, or a constraint leads a puck.
     """
     board = Worlds(scene, 1)
     if not board._plain:
@@ -84,7 +81,7 @@ def shipped(scene: SceneSpec) -> tuple[Shipped, Worlds]:
         np.zeros((1, 2)), one.copy(), one.copy(), none.copy(),
     )  # fmt: skip
     limits = np.array([radius, steady, fastest_allowed(engine), *braking_of(engine)])
-    found = np.zeros((2 * len(bench.engine.events), stored.FOUND_COLUMNS))
+    found = np.zeros((2 * len(bench.engine.events), FOUND_COLUMNS))
     return Shipped(
         bench, store, orders, limits, found, none.copy(), np.zeros((1, count, 6)),
         np.zeros((1, count), np.int64),

@@ -19,16 +19,11 @@ from puck_tables.errors import PuckError
 from puck_tables.scene.acting import acting
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.stopping.stops import stop_on_base
-from puck_tables.world.agreement import (
-    frictions_under,
-    is_integrated,
-    pucks_of,
-    segment_error,
-    start_of,
-)
+from puck_tables.world.agreement import frictions_under, is_integrated, segment_error
 from puck_tables.world.bulk import FATE, LENGTH, PASSES, PRINT, follow_all, trace
 from puck_tables.world.engine_state import Whole
 from puck_tables.world.floors import may_be_mixed
+from puck_tables.world.named_pucks import pucks_of, start_of
 from puck_tables.world.prepare import STEP_SHARE, Start, order_of, prepared
 from puck_tables.world.setting_off import PUSHING, REACHED
 from puck_tables.world.world import World

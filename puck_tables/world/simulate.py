@@ -34,12 +34,13 @@ from puck_tables.scene.run import (
 )
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import engine_state as g
-from puck_tables.world.agreement import pucks_of, segment_error, steps_for
+from puck_tables.world.agreement import segment_error, steps_for
 from puck_tables.world.floor_under import moves_along
 from puck_tables.world.floors import velocities_under
 from puck_tables.world.lasting import at_rest_below
 from puck_tables.world.layout import HOLD, LIGHTNESS, NORMAL, TURNABILITY
 from puck_tables.world.ledger import energies_of, energy_scale
+from puck_tables.world.named_pucks import pucks_of
 from puck_tables.world.plan import plan_of
 from puck_tables.world.prepare import Start, prepared
 from puck_tables.world.record import floor_under, reactions, rests_of, slips_over

@@ -19,17 +19,10 @@ from puck_tables.scene.parts import Floor, Force
 from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.run import number_of
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.agreement import (
-    TOUCH,
-    called,
-    disagreements,
-    has_closed_forms,
-    obstructing,
-    pucks_of,
-    refuse_endless,
-    start_of,
-)
+from puck_tables.world.agreement import disagreements, has_closed_forms, refuse_endless
+from puck_tables.world.named_pucks import called, pucks_of, start_of
 from puck_tables.world.obstacles import obstacle_names
+from puck_tables.world.placement import TOUCH, obstructing
 from puck_tables.world.worlds import Worlds
 
 _LEAST_SHARE = 0.75  # of f m g, over the way of a puck with δ ≤ 1: what friction takes at least
@@ -58,10 +51,8 @@ def target_of(
 ) -> Target:  # fmt: skip
     """The numbers of what a caller names.
 
-    Raises
-    ------
-    InputError
-        If there is no such thing, it is not clear which is meant, or nothing can lie there.
+    Raises InputError if there is no such thing, it is not clear which is meant, or nothing can lie
+    there.
     """
     faults = disagreements(scene.single())
     if faults:

@@ -19,6 +19,22 @@ from puck_tables.scene.ingredients import FREE
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import engine_state as g
 from puck_tables.world import stored
+from puck_tables.world.bench import (
+    ALONE,
+    FOUND_COLUMNS,
+    LACKS_PIECES,
+    LED,
+    LET_GO,
+    PACE,
+    ROWS,
+    TO_DO,
+    WAITS,
+    Bench,
+    Orders,
+    Slots,
+    bench_for,
+    lay_out,
+)
 from puck_tables.world.engine_state import Whole
 from puck_tables.world.floor_under import law_goes_to, moves_along
 from puck_tables.world.lasting import longest_of
@@ -27,11 +43,10 @@ from puck_tables.world.paths import PIECE_COLUMNS
 from puck_tables.world.prepare import scales_of
 from puck_tables.world.segment_starts import room_for
 from puck_tables.world.setting_off import REACHED
-from puck_tables.world.stored import LED, LET_GO, Bench, Orders, Slots
 from puck_tables.world.world import World, slips_of
 
 _PARTS = 16  # in which threads take boards at least
-_ROWS = 4 * stored.ROWS  # of events that are told at once
+_ROWS = 4 * ROWS  # of events that are told at once
 
 
 class Together:
@@ -92,15 +107,15 @@ class Together:
         source = np.full(count, 2 * n) if anew else self._at[some]
         time = np.zeros(count) if anew else self.time[some]
         target = np.where(self._at[some] == some, some + n, some)
-        how, longest = np.full(count, stored.TO_DO), np.zeros(count)
-        scales = self._store.numbers[source, stored.PACE]
+        how, longest = np.full(count, TO_DO), np.zeros(count)
+        scales = self._store.numbers[source, PACE]
         if what != LET_GO and not self._plain:
-            how[:] = stored.ALONE
+            how[:] = ALONE
         elif rows is not None and discs is not None:
             self._quicken(what, rows, discs, source, time, scales)
         elif span == math.inf:
             longest = longest_of(self._first._engine, scales)
-        how[np.isin(source, list(self._apart))] = stored.ALONE
+        how[np.isin(source, list(self._apart))] = ALONE
         orders = Orders(
             some, source, target, time, time + span, np.zeros(0, int) if discs is None else discs,
             np.zeros((0, 0, 6)) if rows is None else rows, scales, longest, np.empty(count), how,
@@ -108,14 +123,14 @@ class Together:
         told = self._play(what, orders)
         apart: dict[int, g.Engine] = {}
         failed: dict[int, PuckError] = {}
-        for k in np.flatnonzero((how != REACHED) & (how != stored.WAITS)).tolist():
+        for k in np.flatnonzero((how != REACHED) & (how != WAITS)).tolist():
             try:
                 told.append(self._play_alone(orders, k, alone, apart))
             except PuckError as error:
                 failed[int(some[k])] = error
         if failed:
             raise of_boards(failed)
-        self._at[some] = np.where(how == stored.WAITS, source, target)
+        self._at[some] = np.where(how == WAITS, source, target)
         self.time = self.time.copy()
         self.time[some], self._described = orders.after, told
         if self._apart or apart:
@@ -163,12 +178,12 @@ class Together:
                     told.append(out[:used].copy())
             self._free.append((bench, out))
 
-        while (orders.how == stored.TO_DO).any():
+        while (orders.how == TO_DO).any():
             self._on_all_cores(work, len(orders.how))
-            lacking = orders.how == stored.LACKS_PIECES
+            lacking = orders.how == LACKS_PIECES
             if lacking.any():
                 self._grow()
-                orders.how[lacking] = stored.TO_DO
+                orders.how[lacking] = TO_DO
         return told
 
     def _on_all_cores(self, work: Callable[[int, int], None], count: int) -> None:
@@ -211,7 +226,7 @@ class Together:
         if world._engine.floors is not self._first._engine.floors:
             apart[int(orders.target[k])] = world._engine
         passed = world._passings.rows
-        out = np.empty((int(world._engine.counts[g.N_EVENTS]) + len(passed), stored.FOUND_COLUMNS))
+        out = np.empty((int(world._engine.counts[g.N_EVENTS]) + len(passed), FOUND_COLUMNS))
         used = stored.tell(
             board, world._engine, first, bench._replace(found=passed), len(passed), out
         )
@@ -222,7 +237,7 @@ class Together:
 
     def _keep(self, bench: Bench, world: World, slot: int) -> None:
         """Put a world away in a slot."""
-        engine = stored.lay_out(bench, world._engine, world._passings.seen)
+        engine = lay_out(bench, world._engine, world._passings.seen)
         while not stored.put_away(engine, bench, self._store, slot):
             self._grow()
 
@@ -236,9 +251,7 @@ class Together:
     def _bench(self, rows: int) -> Bench:
         """A new one."""
         passings = self._first._passings
-        return stored.bench_for(
-            self._first._engine, self._order, passings.lines, passings.seen, rows
-        )
+        return bench_for(self._first._engine, self._order, passings.lines, passings.seen, rows)
 
     def _a_bench(self) -> tuple[Bench, FloatArray]:
         """One that nobody uses, and rows for what happens."""
@@ -247,7 +260,7 @@ class Together:
         except IndexError:
             bench = self._bench(self._store.pieces.shape[1])
             rows = _ROWS + 2 * len(bench.engine.events)
-            return bench, np.empty((rows, stored.FOUND_COLUMNS))
+            return bench, np.empty((rows, FOUND_COLUMNS))
 
     def _kinds(self, slots: Whole) -> Whole:
         """Of the segments of all discs of boards, (slots, discs)."""

@@ -18,7 +18,6 @@ from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.run import number_of
 from puck_tables.world import engine_state as g
 from puck_tables.world.added import board_with, with_puck
-from puck_tables.world.agreement import pucks_of
 from puck_tables.world.by_hand import (
     lead,
     led_state,
@@ -31,6 +30,7 @@ from puck_tables.world.floor_under import law_goes_to, moves_along
 from puck_tables.world.holds import response
 from puck_tables.world.lasting import refuse_too_fast
 from puck_tables.world.layout import HOLD, LIGHTNESS, RADIUS
+from puck_tables.world.named_pucks import pucks_of
 from puck_tables.world.paths import FOR_EVER
 from puck_tables.world.prepare import set_scales
 from puck_tables.world.record import Reported, pushed_back

@@ -14,12 +14,11 @@ from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.pucks_and_posts import called_line
 from puck_tables.scene.run import Event, number_of
 from puck_tables.world import engine_state as g
-from puck_tables.world import stored
 from puck_tables.world.agreement import refuse_endless
+from puck_tables.world.bench import ALL_PUT, FOUND_COLUMNS, LED, LET_GO
 from puck_tables.world.engine_state import Whole
 from puck_tables.world.layout import LIGHTNESS
 from puck_tables.world.segment import GONE
-from puck_tables.world.stored import ALL_PUT, LED, LET_GO
 from puck_tables.world.together import Together, of_boards
 
 Boards = npt.ArrayLike | None
@@ -100,7 +99,7 @@ class Worlds(Together):
         >>> [worlds.events[name].tolist() for name in ("board", "what", "partner")]
         [[0, 1], ['impact', 'impact'], ['puck 1', 'puck 1']]
         """
-        rows = np.concatenate([np.zeros((0, stored.FOUND_COLUMNS)), *self._described])
+        rows = np.concatenate([np.zeros((0, FOUND_COLUMNS)), *self._described])
         obstacles, lines = self._first._obstacles, self.scene.lines
         late = rows[:, 4] < -len(obstacles)  # a line: sorted in as World does
         order = np.lexsort((-rows[:, 4] * late, rows[:, 3] * late, late, rows[:, 1] * bool(lines),

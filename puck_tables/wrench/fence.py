@@ -235,10 +235,7 @@ def laid_on(
 ) -> Pushing:  # fmt: skip
     """A fence that has been moved up to a base in the state y.
 
-    Raises
-    ------
-    InputError
-        If it moves away, or does not touch with its face.
+    Raises InputError if it moves away, or does not touch with its face.
     """
     normal = cmath.rect(1.0, fence.facing)
     if not (heading / normal).real > 0.0:
