@@ -132,13 +132,15 @@ def test_a_border_that_touches_the_rim_but_for_rounding(pressure):
         (*corners[0], 1.0): pt.Floor(patches=[pt.Patch(0.05, corners=corners)]),
     }
     for (x, y, distance), floor in floors.items():
-        angle, slip = rng.uniform(0.0, 2.0 * np.pi, 300), rng.normal(size=(300, 3))
+        angle, slip = rng.uniform(0.0, 2.0 * np.pi, 3000), rng.normal(size=(3000, 3))
         angle = np.where(angle < np.pi, 0.0, np.pi) if floor.strips else angle
 
         def states(apart, angle=angle, slip=slip, x=x, y=y):
             place = x + apart * np.cos(angle), y + apart * np.sin(angle), 0.0 * angle
             return np.concatenate([np.stack(place, axis=-1), slip], axis=-1)
 
-        at = friction_at(pt.Scene(puck, floor), states(distance + rng.integers(-2, 3, 300) * 1e-16))
+        at = friction_at(
+            pt.Scene(puck, floor), states(distance + rng.integers(-2, 3, 3000) * 1e-16)
+        )
         beside = friction_at(pt.Scene(puck, floor), states(distance - 1e-9))
         assert np.abs(at - beside).max() < (1e-4 if pressure == "ring" else 1e-7), distance

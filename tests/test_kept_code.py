@@ -23,13 +23,31 @@ LIMIT = 1.531389372173909906  # tan φ₀ at δ = 0
 COMMAND = [sys.executable, "-c", "import puck_tables as p; print(float(p.motion.limit_ratio(0.0)))"]
 
 
-def run(folder: Path, **environment: str) -> subprocess.CompletedProcess[str]:
+LINKED = """
+import numpy as np
+from numba import njit
+from puck_tables.kernels.quadratic import HEADER, section_at
+
+@njit
+def mine(coefficients, out):
+    section_at(coefficients, 0.25, out)
+
+coefficients, out = np.ones((1, 1, 5)), np.zeros((1, HEADER + 3))
+section_at(coefficients, 0.5, out)
+mine(coefficients, out)
+print(out[0, HEADER + 1])
+"""
+
+
+def run(
+    folder: Path, command: list[str] = COMMAND, found: float = LIMIT, **environment: str
+) -> subprocess.CompletedProcess[str]:
     ended = subprocess.run(
-        COMMAND,
+        command,
         env={**os.environ, "NUMBA_DISABLE_JIT": "0", "NUMBA_CACHE_DIR": str(folder), **environment},
         capture_output=True, text=True, check=True,
     )  # fmt: skip
-    assert float(ended.stdout) == pytest.approx(LIMIT, abs=1e-14)
+    assert float(ended.stdout) == pytest.approx(found, abs=1e-14)
     return ended
 
 
@@ -74,6 +92,11 @@ def test_what_is_no_compiled_code_is_replaced(content: bytes, folder: Path):
     path.write_bytes(content)
     assert compiled()(6.0) == 2.0
     assert len(path.read_bytes()) > 1000
+
+
+def test_a_function_of_somebody_else_may_call_what_is_kept(tmp_path: Path):
+    for _ in range(2):  # compiled, then read
+        run(tmp_path, [sys.executable, "-c", LINKED], 0.25)
 
 
 def test_code_of_another_function_under_this_name_is_not_taken(folder: Path):

@@ -8,9 +8,7 @@ vanishes, and the part's boundary counter-clockwise,
     ∫ e dA = ∮ h (dx, dy),   ∫ h dA = ⅓ ∮ [h (x dy − y dx) + α k dx],   k = (h + y)/β,
 
 and so on for one power of x and y more, which a tilted pressure needs.  On a straight piece these
-are elementary.  On an arc h is smooth but next to the instantaneous centre of rotation, (0, α/β):
-Gauss's rule on panels that shrink towards it; of a long one the whole disc by the closed forms,
-less the rest.
+are elementary; of a whole disc the sums are closed forms.
 """
 
 from __future__ import annotations
@@ -21,18 +19,13 @@ from typing import Any
 import numpy as np
 
 from puck_tables.contact import closed_form
-from puck_tables.kernels.base_sums import NOTHING, UNIFORM, Sums, added, from_slip, moved, plus
+from puck_tables.kernels.base_sums import NOTHING, Sums, added, from_slip, moved
 from puck_tables.kernels.closed_form_kernel import few_elliptic
 from puck_tables.kernels.compile import inlined, inner
-from puck_tables.kernels.elementary import cosine_sine_of
 
-_NODES = 16  # of Gauss's rule a panel: test_strips_against_scans
+_NODES = 16  # of Gauss's rule a piece: test_friction_is_that_of_points_over_the_base
 _NODE, _WEIGHT = np.polynomial.legendre.leggauss(_NODES)
 _FAR = 2.0  # radii from which on the centre of rotation is no trouble for Gauss's rule
-_PANEL = 2.4  # the length of a panel over its distance from the centre of rotation
-_RING_PANEL = 1.6  # of a ring, where w is divided by
-_LEAST_GAP = 1e-5  # closer than this the centre is on the arc: the square of it is lost
-_RING_GAP = 1e-12  # of a ring it is lost itself
 # of the whole disc; up to a ratio of the two rates few steps are exact to rounding
 _full_integrals: Any = inlined(closed_form.shape_integrals)
 _few_integrals: Any = inlined(closed_form.shape_integrals_by(few_elliptic))
@@ -150,82 +143,3 @@ def line_sums(
     kx = c * (hx + x0 * y0 * length + (x0 * ty + y0 * tx) * l1 + tx * ty * l2)
     ky = c * (hy + y0 * y0 * length + 2.0 * y0 * ty * l1 + ty * ty * l2)
     return _combined(tx, ty, x0 * ty - y0 * tx, h0, hx, hy, k, kx, ky, c * k)
-
-
-@inlined
-def _on_ring(alpha: float, beta: float, x: float, y: float) -> Sums:
-    """What is summed itself, at a point of a thin ring."""
-    across, up = alpha - beta * y, beta * x
-    w = math.sqrt(across * across + up * up)
-    if w == 0.0:
-        return NOTHING
-    ex, ey = across / w, up / w
-    moment = x * ey - y * ex
-    return ex, ey, x * ex, y * ex, x * ey, y * ey, x * moment, y * moment
-
-
-@inlined
-def _panel(
-    alpha: float, beta: float, cx: float, cy: float, radius: float, middle: float, half: float,
-    law: int,
-) -> Sums:  # fmt: skip
-    cosine, sine = cosine_sine_of(middle)
-    cosine, sine = radius * cosine, radius * sine
-    sums = NOTHING
-    if law == UNIFORM:  # a loop each, which can do several nodes at once
-        for i in range(_NODES):
-            c, s = cosine_sine_of(half * _NODE[i])
-            x, y = cosine * c - sine * s, sine * c + cosine * s
-            here = sums_at(alpha, beta, cx + x, cy + y, -y, x)
-            sums = added(sums, half * _WEIGHT[i], here)
-    else:
-        for i in range(_NODES):
-            c, s = cosine_sine_of(half * _NODE[i])
-            x, y = cosine * c - sine * s, sine * c + cosine * s
-            here = _on_ring(alpha, beta, x, y)
-            sums = added(sums, half * _WEIGHT[i], here)
-    return sums
-
-
-@inner
-def arc_sums(
-    alpha: float, beta: float, cx: float, cy: float, radius: float, start: float, turn: float,
-    law: int,
-) -> Sums:  # fmt: skip
-    """An arc about (cx, cy) from the angle ``start`` over ``turn``, clockwise where that is < 0.
-
-    Of a ring the sums over the arc itself, not over what it bounds.
-    """
-    if turn == 0.0:
-        return NOTHING
-    across, up = -beta * cx, alpha - beta * cy  # to the centre of rotation, times β
-    nearest = math.atan2(up, across)
-    reach = math.sqrt(across * across + up * up)
-    gap = 1e3  # of angles: as far as that the arc is from the singularity
-    if beta > 0.0:
-        least = _LEAST_GAP if law == UNIFORM else _RING_GAP
-        gap = min(max(abs(math.log(max(reach, 1e-300) / (beta * radius))), least), gap)
-    whole = 2.0 * math.pi
-    low = (start if turn > 0.0 else start + turn) - nearest
-    low -= whole * float(np.floor(low / whole))  # of a state beyond numbers none
-    high, sums = low + abs(turn), NOTHING
-    reach = _PANEL if law == UNIFORM else _RING_PANEL
-    # from half-turn to half-turn: in the even ones the arc leads away from the centre of rotation
-    number = float(np.floor(low / math.pi))
-    while low < high:
-        edge = min(math.pi * (number + 1.0), high)
-        leads_away = number % 2.0 == 0.0
-        base = math.pi * (number if leads_away else number + 1.0)
-        near, far = (low - base, edge - base) if leads_away else (base - edge, base - low)
-        while near < far:
-            length = reach * math.sqrt(gap * gap + near * near)
-            if length >= 0.7 * (far - near):
-                length = far - near if length >= far - near else 0.5 * (far - near)
-            middle = near + 0.5 * length
-            angle = nearest + (base + middle if leads_away else base - middle)
-            half = 0.5 * length
-            sums = plus(sums, 1.0, _panel(alpha, beta, cx, cy, radius, angle, half, law))
-            near = near + length if length < far - near else far
-        low = edge
-        number += 1.0
-    return plus(NOTHING, 1.0 if turn > 0.0 else -1.0, sums)

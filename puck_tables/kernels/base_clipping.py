@@ -14,6 +14,7 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.base_friction import DISCS, HEAD, SIDES
 from puck_tables.kernels.compile import inlined, inner
+from puck_tables.kernels.elementary import cosine_sine_of, direction_of
 from puck_tables.kernels.polygon_sums import (
     ABOUT_X,
     ABOUT_Y,
@@ -34,6 +35,7 @@ from puck_tables.kernels.polygon_sums import (
 _A_SIDE, _AN_ARC = 8, 32  # pieces that three cuts make of one at most
 _A_FEW, _MORE = 16, 160  # pieces: room for more cuts of the parts of most bases, by corners
 _WHOLE = 2.0 * math.pi  # rad: a whole turn
+_ROUNDING = 1e-7  # rad: a cut that touches a circle is off by the root of what rounding is
 _SLIVER = 1e-9  # of a circle: a base that has less of it, or all but that, is told by its middle
 
 Angles = tuple[int, float, float, float, float]
@@ -101,6 +103,13 @@ def _at_an_end(angle: float, turn: float) -> float:
     return turn if angle - turn < _WHOLE - angle else 0.0
 
 
+@inlined
+def _rounded(angle: float, turn: float) -> float:
+    """An angle, put back on an arc that it is off by no more than rounding takes it."""
+    off = min(angle - turn, _WHOLE - angle)
+    return _at_an_end(angle, turn) if off < _ROUNDING else angle
+
+
 @inner
 def _inside(
     room: FloatArray, at: int, begins: bool, ends: bool, middle: float, cosine: float
@@ -111,7 +120,7 @@ def _inside(
     where they begin and end, both ways counted from 0.
     """
     turn = abs(room[at + TURN])
-    half = math.acos(min(max(cosine, -1.0), 1.0))
+    half = direction_of(math.sqrt(max((1.0 - cosine) * (1.0 + cosine), 0.0)), cosine)
     off = room[at + START] - middle
     off = off if room[at + TURN] > 0.0 else -off
     out, back = _past(half - off), _past(-half - off)
@@ -120,14 +129,16 @@ def _inside(
             return 1, back - turn, back - turn + 2.0 * half, 0.0, 0.0
         return (1 if cosine < 0.0 else 0), 0.0, turn, 0.0, 0.0
     if begins and ends:
-        if out < back and back < turn and abs(cosine) < 1.0:
+        out, back = _rounded(out, turn), _rounded(back, turn)
+        if out < back and back <= turn and abs(cosine) < 1.0:
             return 2, 0.0, out, back, turn
         return 1, 0.0, turn, 0.0, 0.0
     if begins:
         return 1, 0.0, _at_an_end(out, turn), 0.0, 0.0
     if ends:
         return 1, _at_an_end(back, turn), turn, 0.0, 0.0
-    if back < out and out < turn and abs(cosine) < 1.0:
+    out, back = _rounded(out, turn), _rounded(back, turn)
+    if back < out and out <= turn and abs(cosine) < 1.0:
         return 1, back, out, 0.0, 0.0
     return 0, 0.0, 0.0, 0.0, 0.0
 
@@ -141,10 +152,8 @@ def _point_of(room: FloatArray, at: int, angle: float) -> tuple[float, float]:
     if angle == abs(turn):
         return room[at + END_X], room[at + END_Y]
     there = room[at + START] + (angle if turn > 0.0 else -angle)
-    return (
-        room[at + ABOUT_X] + room[at + RADIUS] * math.cos(there),
-        room[at + ABOUT_Y] + room[at + RADIUS] * math.sin(there),
-    )
+    c, s = cosine_sine_of(there)
+    return room[at + ABOUT_X] + room[at + RADIUS] * c, room[at + ABOUT_Y] + room[at + RADIUS] * s
 
 
 @inlined
@@ -198,7 +207,7 @@ def beyond_line(
             continue
         away = place - nx * room[at + ABOUT_X] - ny * room[at + ABOUT_Y]
         pieces, low, high, again, until = _inside(
-            room, at, begins, ends, math.atan2(ny, nx), away / room[at + RADIUS]
+            room, at, begins, ends, direction_of(ny, nx), away / room[at + RADIUS]
         )
         for k in range(pieces):
             if k > 0:
@@ -237,8 +246,8 @@ def _round_to(
 
     Where the next goes, and the angle and the place of f: of the first point that is met.
     """
-    near = math.atan2(-my, -mx)
-    angle = near + _past(math.atan2(y - my, x - mx) - near + math.pi) - math.pi
+    near = direction_of(-my, -mx)
+    angle = near + _past(direction_of(y - my, x - mx) - near + math.pi) - math.pi
     if fx == math.inf:
         return end, angle, x, y
     if out:
@@ -279,7 +288,7 @@ def in_circle(
         apart = math.sqrt(dx * dx + dy * dy)
         cosine = (apart * apart + own * own - radius * radius) / (2.0 * max(apart, 1e-300) * own)
         pieces, low, high, again, until = _inside(
-            room, at, begins, ends, math.atan2(dy, dx), cosine
+            room, at, begins, ends, direction_of(dy, dx), cosine
         )  # fmt: skip
         for k in range(pieces):
             if k > 0:

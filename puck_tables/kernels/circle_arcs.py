@@ -17,41 +17,45 @@ and there is no branch, so that a loop over many points does several at once.
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 from puck_tables.contact import closed_form
 from puck_tables.kernels.base_sums import Sums
 from puck_tables.kernels.compile import inlined
-from puck_tables.kernels.elementary import angle_of
+from puck_tables.kernels.elementary import angle_of, direction_of
 
+_STEPS = 4  # of the mean
 _LEAST = 3e-5  # of √(1 − r²): closer to the circle through C an arc is as one there
 _ON_C = 1e-28  # of the square of the slip: closer to C its direction is lost
+# of √(1 − r²): below each it takes a step more than two, of which the last is but 3e-15 of F
+_MORE_STEPS = (0.6, 0.1, 3e-3, 1e-5)
+_CLOSEST = 1e-8  # of √(1 − r²): what is less is rounding
+_NO_ARC = 1e-13  # rad: of what is shorter rounding says where it ends
 _elliptic: Any = inlined(closed_form.elliptic)
 
 
 @inlined
-def _incomplete(sine: float, cosine: float, delta: float, shorter: float) -> tuple[float, float]:
-    """F and D of an angle between −π and π; ``shorter``: √(1 − r²)."""
+def _incomplete(
+    sine: float, cosine: float, delta: float, shorter: float, steps: int, more: float
+) -> tuple[float, float]:
+    """F and D of an angle between −π and π, or so much more; ``shorter``: √(1 − r²)."""
     a, b = 1.0, shorter
     inverse = 1.0 / delta
     # φ and its double, less by what it falls short: the mean of two directions
     turned_c, turned_s = cosine * inverse, b * sine * inverse
-    mean_c, mean_s = cosine + turned_c, sine + turned_s
-    angle = angle_of(abs(mean_s), abs(mean_c))
-    angle = math.pi - angle if mean_c < 0.0 else angle
-    angle = -angle if sine < 0.0 else angle
+    angle = direction_of(sine + turned_s, cosine + turned_c) + more
     cosine, sine = cosine * turned_c - sine * turned_s, sine * turned_c + cosine * turned_s
     a, b = 0.5 + 0.5 * b, math.sqrt(b)
     c_over = 0.25 / a  # c_n/r²; (1 − b)/2 = r²/(2 (1 + b))
     c = 0.5 * (1.0 - shorter)
     total, swing = c * c_over, c_over * sine
     share, power = 0.25, 2.0
-    for n in range(4):
+    for n in range(steps):
         delta = math.sqrt(a * a * cosine * cosine + b * b * sine * sine)
         inverse = 1.0 / delta
         product = sine * cosine * inverse
         short = (a - b) * product
-        if n < 2:
+        if n < steps - 2:
             short = angle_of(short, (a * cosine * cosine + b * sine * sine) * inverse)
         else:  # its sine is small
             square = short * short
@@ -93,7 +97,7 @@ def arc_to(alpha: float, beta: float, x: float, y: float, rho: float, far: float
     cosine = 1.0 if lost else (short + long * c) * back
     rest = max(math.sqrt((long - short) * (long + short)) * per, _LEAST)
     delta = max((long + short * c) * back, rest)
-    first, d = _incomplete(far * sine, far * cosine, delta, rest)
+    first, d = _incomplete(far * sine, far * cosine, delta, rest, _STEPS, 0.0)
     rr, ss, turn = r * r, sine * sine, sine * cosine * delta
     e = first - rr * d
     t = (d + 2.0 * e - first - turn) / 3.0
@@ -140,3 +144,103 @@ def circle_at(alpha: float, beta: float, rho: float) -> Sums:
         0.0,
         -rho * rho * (mild if outside else hard),
     )
+
+
+class ArcIntegrals(NamedTuple):
+    """Of an arc between any two points, in the longer of its radius and how far C is: (F, D, E, T).
+
+    ``r``, ``rest``: the shorter, and 1 − r²; ``first``, ``third``, ``fifth``: by how much sin φ and
+    its powers differ; ``swing``: sin φ cos φ Δ³; then of its ends the mean of w, by how much w
+    differs over 2 r, which is ``slope``, and the mean of cos η.
+    """
+
+    F: float
+    D: float
+    E: float
+    T: float
+    r: float
+    rest: float
+    first: float
+    third: float
+    fifth: float
+    swing: float
+    mean: float
+    slope: float
+    middle: float
+
+
+@inlined
+def _amplitude_at(
+    r: float, off: float, shorter: float, c: float, s: float
+) -> tuple[float, float, float, float]:
+    """Sin φ, cos φ and Δ of the point at an angle η, and w."""
+    ahead = s * s / (1.0 - c) - off if c < 0.0 else r + c
+    w = math.sqrt(s * s + ahead * ahead)
+    back = 1.0 / w if w > 0.0 else 0.0
+    sine, cosine = s * back, (ahead * back if w > 0.0 else -1.0)
+    return sine, cosine, math.sqrt(cosine * cosine + (shorter * sine) ** 2), w
+
+
+@inlined
+def along_arc(
+    r: float, off: float, bc: float, bs: float, ec: float, es: float, turn: float
+) -> ArcIntegrals:
+    """An arc over 0 < ``turn`` ≤ 2π, from η with a cosine and a sine to another; ``off``: 1 − r.
+
+    F and E of what lies between are those of one angle, by the theorem of addition.
+    """
+    rest = off * (1.0 + r)
+    shorter = max(math.sqrt(rest), _CLOSEST)
+    s0, c0, d0, w0 = _amplitude_at(r, off, shorter, bc, bs)
+    s1, c1, d1, w1 = _amplitude_at(r, off, shorter, ec, es)
+    up, ahead = s1 * c0 * d0 - s0 * c1 * d1, c0 * c1 + s0 * s1 * d0 * d1
+    back = 1.0 / math.sqrt(up * up + ahead * ahead)
+    sine, cosine = up * back, ahead * back
+    # beyond π: told from rounding below 0, and a whole turn from none
+    past = (sine < 0.0 and (sine < -0.2 or cosine < 0.0)) or (turn > 3.0 and sine <= 0.0 < cosine)
+    more, steps = (2.0 * math.pi if past and turn > _NO_ARC else 0.0), 2
+    for k in range(len(_MORE_STEPS)):
+        steps += 1 if shorter < _MORE_STEPS[k] else 0
+    delta = math.sqrt(cosine * cosine + (shorter * sine) ** 2)
+    first, d = _incomplete(sine, cosine, delta, shorter, steps, more)
+    product = sine * s0 * s1
+    e, d = first - r * r * (d + product), d + product
+    one, other = s1 * c1 * d1, s0 * c0 * d0
+    t = (d + 2.0 * e - first - one + other) / 3.0
+    third, fifth = s1 * s1 * s1 - s0 * s0 * s0, s1**5 - s0**5
+    swing, both = one * d1 * d1 - other * d0 * d0, w0 + w1
+    slope = (ec - bc) / both if both > 0.0 else 0.0
+    return ArcIntegrals(
+        first, d, e, t, r, rest, s1 - s0, third, fifth, swing, 0.5 * both, slope, 0.5 * (ec + bc)
+    )  # fmt: skip
+
+
+@inlined
+def slips_along(arc: ArcIntegrals) -> tuple[float, float, float, float, float]:
+    """∫ w dη times 1, cos η, cos² η, sin η and sin η cos η."""
+    F, D, E, T, r, rest, first, third, fifth, swing, mean, g, middle = arc
+    rr = r * r
+    fourth = (swing - E + (2.0 + 4.0 * rr) * T) / 5.0  # r² ∫ sin⁴φ Δ dφ
+    step = 2.0 * r * g  # by which w differs
+    square = mean * mean + step * step / 12.0
+    across = (middle - 0.25 * g * step) * square
+    across += g * step * (5.0 / 12.0 * mean * mean + step * step / 80.0)
+    return (
+        E + 2.0 * r * first + rr * (F - D),
+        (1.0 + rr) * first - 4.0 / 3.0 * rr * third + r * (2.0 * E + rest * D - 4.0 * T),
+        (1.0 + rr) * E - 8.0 * rr * T + 8.0 * fourth - rest * D
+        + 2.0 * r * (first - 2.0 / 3.0 * (1.0 + rr) * third + 0.8 * rr * fifth),
+        -2.0 * g * square,
+        -2.0 * g * across,
+    )  # fmt: skip
+
+
+@inlined
+def slips_under(arc: ArcIntegrals) -> tuple[float, float, float, float, float]:
+    """∫ dη/w times 1, cos η, cos² η, sin η and sin η cos η."""
+    g = arc.slope
+    return (
+        arc.F, arc.first - arc.r * arc.D,
+        arc.E - 2.0 * arc.T + arc.D - 2.0 / 3.0 * arc.r * arc.third,
+        -2.0 * g, -2.0 * g * (arc.middle - arc.r * g * g / 3.0),
+    )  # fmt: skip

@@ -35,7 +35,7 @@ kept_code: Any = None
 quick: Any = contextlib.nullcontext
 fingerprint: Any = None
 with contextlib.suppress(ImportError, AttributeError):
-    from puck_tables.kernels.linking import CALLED_LATE, Called, put_at
+    from puck_tables.kernels.linking import CALLED_LATE, Called, is_for_another, put_at
     from puck_tables.kernels.linking import LinkedAtDoors as linked_at_doors
 with contextlib.suppress(ImportError, AttributeError):
     from puck_tables.kernels.kept_code import KeptCode as kept_code
@@ -77,6 +77,7 @@ _intrinsics: dict[Any, Any] = {patience: vectors.patience} | {
 }
 _dispatchers: dict[tuple[Any, bool], Any] = {}
 _entries: dict[tuple[Any, bytes], Any] = {}
+_whole: dict[Any, Any] = {}  # kernels that functions of others link
 _late: dict[Any, Any] = {}  # types of kernels that are compiled on demand
 
 
@@ -130,10 +131,23 @@ def type_at(door: KernelDoor) -> Any:
     if linked_at_doors is not None and not linked_at_doors.has_doors:
         return types.Dispatcher(dispatcher_of(door.py_func, door.fuses))
     if not (door.returns and linked_at_doors and kept_code):  # numba's cache keeps no cells
-        return types.Dispatcher(door.compiled)
+        return types.Dispatcher(_linked_whole(door) if _is_linked() else door.compiled)
     if door not in _late:
         _late[door] = type_of_call(door.py_func, door.returns, partial(_symbol_for, door))
     return _late[door]
+
+
+def _is_linked() -> bool:
+    """Whether who calls a kernel links it, as functions do that are not of the package."""
+    return bool(linked_at_doors and kept_code) and is_for_another()
+
+
+def _linked_whole(door: KernelDoor) -> Any:
+    """Numba's object for such a kernel: kept code is not there to be linked."""
+    if door not in _whole:
+        _whole[door] = _dispatcher(door.py_func, door.fuses, door=True, counts=door.counts)
+        _whole[door].get_call_template = partial(_at_door, door, _whole[door].get_call_template)
+    return _whole[door]
 
 
 def _symbol_for(door: KernelDoor, kinds: tuple[Any, ...]) -> str:

@@ -11,7 +11,7 @@ import math
 from typing import NamedTuple
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.base_boundary import arc_sums, disc_at, line_sums
+from puck_tables.kernels.base_boundary import disc_at
 from puck_tables.kernels.base_friction import HEAD, PRESSURE, REACH, base_sums
 from puck_tables.kernels.base_sums import (
     NOTHING,
@@ -22,6 +22,7 @@ from puck_tables.kernels.base_sums import (
     plus,
     scaled,
 )
+from puck_tables.kernels.circle_arcs import along_arc, slips_under
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.kernels.polygon_sums import (
     ABOUT_X,
@@ -34,7 +35,7 @@ from puck_tables.kernels.polygon_sums import (
     RADIUS,
     START,
     TURN,
-    polygon_sums,
+    piece_sums,
 )
 from puck_tables.kernels.round_sums import pressed_arc, pressed_line, pressed_whole
 
@@ -66,44 +67,44 @@ def look_at(base: FloatArray, ux: float, uy: float, w: float) -> None:
 
 
 @inlined
-def _arc_under(
-    alpha: float, beta: float, cx: float, cy: float, radius: float, start: float, turn: float
-) -> Sums:
-    """Under uniform pressure: of more than half a circle all of it less the rest."""
-    if abs(turn) <= math.pi:
-        return arc_sums(alpha, beta, cx, cy, radius, start, turn, UNIFORM)
-    way = 1.0 if turn > 0.0 else -1.0
-    rest = 2.0 * math.pi * way - turn
-    rest_sums = arc_sums(alpha, beta, cx, cy, radius, start + turn, rest, UNIFORM)
-    sums = plus(NOTHING, way, disc_at(cx, cy, radius, alpha, 0.0, beta))
-    return plus(sums, -1.0, rest_sums)
-
-
-@inlined
 def _under(base: FloatArray, room: FloatArray, at: int, slip: Slip) -> Sums:
     """Of a piece, in axes along the slip in which the spin is not negative, and radii."""
-    law, unit, alpha, beta = int(base[PRESSURE]), 1.0 / base[REACH], slip.along, slip.turning
+    unit, alpha, beta = 1.0 / base[REACH], slip.along, slip.turning
     c, s, mirrored = unit * slip.cosine, unit * slip.sine, slip.mirrored
     bx, by, ex, ey = room[at + BEGIN_X], room[at + BEGIN_Y], room[at + END_X], room[at + END_Y]
     px, py = c * bx + s * by, mirrored * (c * by - s * bx)
     qx, qy = c * ex + s * ey, mirrored * (c * ey - s * ex)
     turn = mirrored * room[at + TURN]
+    ring = base[PRESSURE] == RING
     if turn == 0.0:
-        if law == UNIFORM:
-            return line_sums(alpha, beta, px, py, qx, qy)
-        return NOTHING if law == RING else pressed_line(base, alpha, beta, px, py, qx, qy)
+        return NOTHING if ring else pressed_line(base, alpha, beta, px, py, qx, qy)
     ax, ay, own = room[at + ABOUT_X], room[at + ABOUT_Y], room[at + RADIUS]
+    on_rim = ax == 0.0 and ay == 0.0 and own == base[REACH]
+    if ring:
+        return _on_ring(alpha, beta, px, py, qx, qy, turn) if on_rim else NOTHING
     cx, cy, radius = c * ax + s * ay, mirrored * (c * ay - s * ax), unit * own
     start = mirrored * (room[at + START] - math.atan2(s, c))
-    if law == UNIFORM:
-        return _arc_under(alpha, beta, cx, cy, radius, start, turn)
-    on_rim = ax == 0.0 and ay == 0.0 and own == base[REACH]
-    if law == RING:
-        if not on_rim:
-            return NOTHING
-        return plus(NOTHING, 0.5, arc_sums(alpha, beta, 0.0, 0.0, 1.0, start, turn, RING))
     radius = 1.0 if on_rim else radius
     return pressed_arc(base, alpha, beta, cx, cy, radius, start, turn, px, py, qx, qy, on_rim)
+
+
+@inlined
+def _on_ring(
+    alpha: float, beta: float, px: float, py: float, qx: float, qy: float, turn: float
+) -> Sums:
+    """Of an arc of the rim itself, by the angle from opposite to C, which is along −y."""
+    if turn < 0.0:
+        px, py, qx, qy = qx, qy, px, py
+    long = max(alpha, beta)
+    a, b = alpha / long, beta / long
+    arc = along_arc(min(a, b), abs(alpha - beta) / long, -py, px, -qy, qx, abs(turn))
+    whole, first, second, aside, both = slips_under(arc)
+    half = math.copysign(0.5, turn)  # of the mean pressure
+    return (
+        half * (a * whole + b * first), half * b * aside, half * (a * aside + b * both),
+        -half * (a * first + b * second), half * b * (whole - second), -half * b * both,
+        half * (b * aside + a * both), -half * (b * first + a * second),
+    )  # fmt: skip
 
 
 @inner
@@ -111,12 +112,15 @@ def contour_sums(
     base: FloatArray, room: FloatArray, first: int, last: int, ux: float, uy: float, w: float
 ) -> Sums:  # fmt: skip
     """Sums over what a contour bounds of a base, at a slip and a spin, not both 0."""
-    straight = base[PRESSURE] == UNIFORM
-    for at in range(first, last, PIECE_COLUMNS):
-        straight = straight and room[at + TURN] == 0.0
-    if straight:
+    if base[PRESSURE] == UNIFORM:
         count = (last - first) // PIECE_COLUMNS
-        return polygon_sums(room, first, count, base[REACH], ux, uy, w)
+        sums = piece_sums(room, first, count, base[REACH], ux, uy, w)
+        for at in range(first, last, PIECE_COLUMNS):
+            if abs(room[at + TURN]) == 2.0 * math.pi:
+                x, y, radius = room[at + ABOUT_X], room[at + ABOUT_Y], room[at + RADIUS]
+                way = math.copysign(1.0, room[at + TURN])
+                sums = plus(sums, way, disc_at(x, y, radius, ux, uy, w))
+        return sums
     slip, sums = _slip_of(base, ux, uy, w), NOTHING
     for at in range(first, last, PIECE_COLUMNS):
         sums = plus(sums, slip.mirrored, _under(base, room, at, slip))

@@ -135,3 +135,11 @@ def angle_of(y: float, x: float) -> float:
     angle = angle + 0.78539816339744830962 if halved else angle
     angle = 1.57079632679489661923 - angle if size > x else angle
     return -angle if y < 0.0 else angle
+
+
+@inlined
+def direction_of(y: float, x: float) -> float:
+    """The angle of (x, y), between −π and π; 0 of the origin."""
+    angle = angle_of(abs(y), abs(x))
+    angle = 3.14159265358979323846 - angle if x < 0.0 else angle
+    return -angle if y < 0.0 else angle

@@ -14,10 +14,12 @@ from typing import Any, NamedTuple
 from llvmlite import binding
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler, Flags
+from numba.core.targetconfig import ConfigStack
 
 Library: Any = JITCodeLibrary
 AnyCompiler: Any = Compiler
 Options: Any = Flags
+_compiled_now: Any = ConfigStack
 
 
 class Called(NamedTuple):
@@ -120,6 +122,12 @@ class QuickOptions(Options):  # type: ignore[misc]
         return mine == theirs or all(
             getattr(self, name) == getattr(other, name) for name in mine.keys() | theirs.keys()
         )
+
+
+def is_for_another() -> bool:
+    """Whether what is compiled now is a function of somebody else's."""
+    options = _compiled_now.top_or_none()
+    return options is not None and not isinstance(options, QuickOptions)
 
 
 class LinkedAtDoors(AnyCompiler):  # type: ignore[misc]
