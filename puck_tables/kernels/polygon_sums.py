@@ -1,17 +1,19 @@
 """Sums of the slip direction over what sides and arcs bound, along these.
 
-With C the instantaneous centre and r = (x, y) from it, R long, the slip direction is e = ∓∇R turned
-by a right angle: e dA is a differential, and so are (Green; for a spin that is not negative)
+With C the instantaneous centre, R the distance from it and (R, t) polar coordinates about it, the
+slip direction e = sgn w (−sin t, cos t) is the same all along a ray.  So the integral over the area
+is one along its boundary, ∫ e g dA = ∮ e [∫ g R dR] dt, and on a straight side that is elementary.
+With the unit tangent t and outward normal n of a side, d, s₀ and s₁ its place along n and its ends
+along t from C, R₀ and R₁ how far these are, L its length,
 
-    ∫ e dA = ∮ R dr,  ∫ R dA = ⅓ ∮ R r × dr,  ∫ R r dA = ¼ ∮ R r (r × dr),
-    ∫ r ⊗ e dA = ∮ R r ⊗ dr, less its part without symmetry:
+    A₀ = ln((R₀ + R₁ + L)/(R₀ + R₁ − L)),  A₁ = R₁ − R₀,  A₂ = ([sR] − d² A₀)/2,
+    B₀ = ([sR] + d² A₀)/2,  B₁ = (R₁³ − R₀³)/3,
 
-that has no trace, as e is across r, and x e_y − y e_x is R.  So seven sums are all.  With the unit
-tangent t and outward normal n of a side, d, s₀ and s₁ its place along n and its ends along t from
-C, R₀ and R₁ how far these are, L its length, they are made of
+    ∫ e dA = ½ Σ d (d A₀ t − A₁ n),  ∫ R r dA = ¼ Σ d (d B₀ n + B₁ t),
+    ∫ e ⊗ r dA = ⅓ Σ d [(d A₀ t − A₁ n) ⊗ d n + (d A₁ t − A₂ n) ⊗ t]     (r from C, sgn w = 1):
 
-    ∫ R ds = ([sR] + d² ln((R₀ + R₁ + L)/(R₀ + R₁ − L)))/2,   ∫ R s ds = (R₁³ − R₀³)/3 :
-
+the last without a trace, as e is across r, and yx − xy = ∫ R dA; where a base is narrow its parts
+across are as exact as it is narrow, which a tall one needs.  So seven sums are all, with
 one logarithm and two roots a side, of four sides at once.  Those of arcs are elliptic
 (:mod:`puck_tables.kernels.circle_arcs`).  Where C lies far away these cancel; there the integral
 of e along a ray runs from the distance of C instead of 0, which is a short polynomial, and Gauss's
@@ -46,10 +48,11 @@ _ARC_NODES = 20  # and on an arc, of half a circle at most: test_strips_against_
 _ARC_NODE, _ARC_WEIGHT = np.polynomial.legendre.leggauss(_ARC_NODES)
 _LANES = 4  # sides at once: as many as a box has, and as registers of most machines hold
 _WHOLE = 2.0 * math.pi  # rad: a whole turn
+_SHORT = 0.05  # of the sum of the distances of its ends: a series of six terms is exact
 LEAST = 1e-17  # of a length: C on a side; what the logarithm loses is multiplied by d² = 0
 
 
-# ∫ e, 3 ∫ R, 4 ∫ R r, and of ∫ r ⊗ e the first and the mean of both others; about C
+# ∫ e, 4 ∫ R r, and of 3 ∫ e ⊗ r the first, xy and yx; about C
 Parts = tuple[float, float, float, float, float, float, float]
 _NO_PARTS: Parts = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
@@ -105,6 +108,18 @@ def piece_sums(
 
 
 @inlined
+def _second(q: float, across: float, both: float) -> float:
+    """A₂ of a side that is short for its distance, where [sR] and d² A₀ cancel.
+
+    With q = L/(R₀ + R₁): ¼ ((s₀ + s₁)² (2q − g) + (R₀ + R₁)² g), g = q − (1 − q²) atanh q.
+    """
+    square = q * q
+    series = 2.0 / 63.0 + square * (2.0 / 99.0 + square * (2.0 / 143.0))
+    g = q * square * (2.0 / 3.0 + square * (2.0 / 15.0 + square * (2.0 / 35.0 + square * series)))
+    return 0.25 * (across * across * (2.0 * q - g) + both * both * g)
+
+
+@inlined
 def _summed(one: Parts, two: Parts) -> Parts:
     return (
         summed(one[0], two[0]), summed(one[1], two[1]), summed(one[2], two[2]),
@@ -122,20 +137,28 @@ def _sides(base: FloatArray, first: int, count: int, cx: float, cy: float) -> Pa
             there = block + lane < count and base[i + TURN] == 0.0
             px, py = base[i + BEGIN_X] - cx, base[i + BEGIN_Y] - cy
             tx, ty, length = base[i + TANGENT_X], base[i + TANGENT_Y], base[i + LENGTH]
-            d, begin = px * ty - py * tx, px * tx + py * ty
+            d, begin = (px * ty - py * tx if there else 0.0), px * tx + py * ty
             end = begin + length
             near, far = math.sqrt(d * d + begin * begin), math.sqrt(d * d + end * end)
-            both, across = near + far, begin + end
-            ratio = (both + length) / max(both - length, LEAST * length)
+            both, sum_of = near + far, begin + end
+            square = d * d * log_of((both + length) / max(both - length, LEAST * length))
             share = length / both
-            b0 = 0.25 * share * (both * both + across * across) + 0.5 * d * d * log_of(ratio)
-            b1 = (1.0 / 3.0) * share * across * (far * far + far * near + near * near)
-            b0, b1 = (b0, b1) if there else (0.0, 0.0)
-            lever, half = d * b0, 0.5 * b1
-            cosine, sine = tx * tx - ty * ty, tx * ty  # of twice the angle of t
+            across = d * share * sum_of
+            product = 0.5 * share * (both * both + sum_of * sum_of)
+            short = _second(share, sum_of, both)
+            a2 = short if share < _SHORT else 0.5 * (product - square)
+            b0, b1 = (
+                0.5 * (product + square),
+                share * sum_of * (far * far + far * near + near * near) / 3.0,
+            )
+            lever, cosine, sine = d * b0, tx * tx - ty * ty, tx * ty
+            twice = 2.0 * across * sine
             parts = _summed(parts, (
-                b0 * tx, b0 * ty, lever, d * (lever * ty + b1 * tx), d * (b1 * ty - lever * tx),
-                lever * sine + half * cosine, b1 * sine - 0.5 * lever * cosine,
+                0.5 * (square * tx - across * ty), 0.5 * (square * ty + across * tx),
+                d * (lever * ty + b1 * tx), d * (b1 * ty - lever * tx),
+                d * ((square - a2) * sine + across * cosine),
+                d * (twice - square * tx * tx - a2 * ty * ty),
+                d * (twice + square * ty * ty + a2 * tx * tx),
             ))  # fmt: skip
     return parts
 
@@ -166,24 +189,38 @@ def _arc(base: FloatArray, at: int, cx: float, cy: float) -> Parts:
     xx = -scale * (0.5 * apart * aside + radius * both)
     mean = 0.5 * scale * (apart * first + radius * (2.0 * second - whole))
     cosine, sine = ox * ox - oy * oy, 2.0 * ox * oy
-    return (
-        ox * ex - oy * ey, oy * ex + ox * ey, scale * (radius * whole + apart * first),
-        ox * rx - oy * ry, oy * rx + ox * ry, xx * cosine - mean * sine, mean * cosine + xx * sine,
+    size = 0.5 * scale * (radius * whole + apart * first)
+    xx, mean = 3.0 * (xx * cosine - mean * sine), 3.0 * (mean * cosine + xx * sine)
+    parts = (
+        ox * ex - oy * ey, oy * ex + ox * ey, ox * rx - oy * ry, oy * rx + ox * ry, xx,
+        mean - size, mean + size,
     )  # fmt: skip
+    begin = _whole_change(base[at + BEGIN_X] - cx, base[at + BEGIN_Y] - cy)
+    end = _whole_change(base[at + END_X] - cx, base[at + END_Y] - cy)
+    return _summed(_summed(parts, begin), (
+        -end[0], -end[1], 0.0, 0.0, -end[4], -end[5], -end[6]
+    ))  # fmt: skip
+
+
+@inlined
+def _whole_change(x: float, y: float) -> Parts:
+    """Of what R dr and R dr ⊗ r are more than as sides have them: ½ R r and R r ⊗ r at an end."""
+    r = math.sqrt(x * x + y * y)
+    return 0.5 * r * x, 0.5 * r * y, 0.0, 0.0, 0.5 * r * (x * x - y * y), r * x * y, r * x * y
 
 
 @inlined
 def _about_origin(parts: Parts, cx: float, cy: float, w: float) -> Sums:
     """Sums about the origin from those about C, of a spin that is not negative."""
     sign = 1.0 if w > 0.0 else -1.0
-    ex, ey, size = sign * parts[0], sign * parts[1], sign * parts[2] / 3.0
-    xx, mean = sign * parts[5], sign * parts[6]
-    xy, yx = mean - 0.5 * size, mean + 0.5 * size
+    ex, ey, xx = sign * parts[0], sign * parts[1], sign * parts[4] / 3.0
+    xy, yx = sign * parts[5] / 3.0, sign * parts[6] / 3.0
+    size = yx - xy
     swing = size + cx * ey - cy * ex
     return (
         ex, ey, xx + ex * cx, xy + ex * cy, yx + ey * cx, ey * cy - xx,
-        0.25 * sign * parts[3] + cx * yx - cy * xx + swing * cx,
-        0.25 * sign * parts[4] - cx * xx - cy * xy + swing * cy,
+        0.25 * sign * parts[2] + cx * yx - cy * xx + swing * cx,
+        0.25 * sign * parts[3] - cx * xx - cy * xy + swing * cy,
     )  # fmt: skip
 
 
