@@ -20,7 +20,7 @@ from puck_tables.fitting.fit_result import Fit
 from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.identifiability import not_identifiable
 from puck_tables.fitting.impact_matching import Line
-from puck_tables.fitting.initial_estimate import initial_estimate, is_clean
+from puck_tables.fitting.initial_estimate import initial_estimate
 from puck_tables.fitting.inputs import (
     Inputs,
     begin_jitter,
@@ -52,7 +52,7 @@ from puck_tables.fitting.other_minima import (
 )
 from puck_tables.fitting.parameters import DRAGS
 from puck_tables.fitting.problem import Problem
-from puck_tables.fitting.residuals import NO_PATTERN, NOISY, drift, runs
+from puck_tables.fitting.residuals import NO_PATTERN, NOISY, drift, is_clean, runs
 from puck_tables.fitting.touches import SlideIndex, slides_apart
 from puck_tables.puck import Puck
 

@@ -17,7 +17,6 @@ piece.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import NamedTuple
@@ -32,16 +31,10 @@ from puck_tables.fitting.certainty import certainty_at, certainty_of
 from puck_tables.fitting.estimate import Estimate, estimate, only_outliers
 from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.least_squares import FROM_SLOWING, ROBUST, multi_start
-from puck_tables.fitting.observations import (
-    GIVE_NOISE,
-    Observations,
-    noise_of,
-    rests_from,
-    turning_of,
-)
+from puck_tables.fitting.observations import GIVE_NOISE, Observations, rests_from, turning_of
 from puck_tables.fitting.parameters import DRAGS, NOTHING
 from puck_tables.fitting.problem import ANGLE, Problem
-from puck_tables.fitting.residuals import NO_PATTERN, NOISY, drift, excess_of, runs
+from puck_tables.fitting.residuals import NO_PATTERN, NOISY, is_clean
 from puck_tables.fitting.speed_motion import shape
 from puck_tables.fitting.starts import minima_of, numbers_with
 from puck_tables.fitting.touches import trimmed, without_ends
@@ -256,13 +249,6 @@ def _of_law(v: FloatArray, rim: FloatArray, law: str, speed: float) -> FloatArra
     pull = shape(law, slip / speed) / slip
     pulls = np.stack([pull * ahead, pull * (across * along - ahead * aside)])
     return np.asarray(pulls.mean(axis=2))
-
-
-def is_clean(result: Estimate, excess: float = 1.2, chance: float = 0.01) -> bool:
-    """Whether what is left of a track is noise, no more than that of a smooth motion."""
-    smooth = noise_of(list(result.problem.films))[0], math.nan  # angles tell whole turns, too
-    noisy = excess_of(result, smooth=smooth) >= excess
-    return not noisy and min(runs(result), drift(result)) > chance
 
 
 _LIFTS = 0.995  # δ from which on a uniform puck is fitted with part of its base lifted

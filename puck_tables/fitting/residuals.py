@@ -19,6 +19,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.certainty import Certainty, shifted_by
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.forward_model import DELTA, RATE, Moving, states_and_slopes, states_of
+from puck_tables.fitting.observations import noise_of
 from puck_tables.fitting.problem import ANGLE, PLACE
 
 NO_PATTERN = 1e-3  # probability of residuals so patterned by chance
@@ -100,6 +101,13 @@ def misfits(result: Estimate, explained: float) -> tuple[str, ...]:
             f"{by_chance:.1g})"
         )
     return tuple(told)
+
+
+def is_clean(result: Estimate, excess: float = 1.2, chance: float = 0.01) -> bool:
+    """Whether what is left of a track is noise, no more than that of a smooth motion."""
+    smooth = noise_of(list(result.problem.films))[0], math.nan  # angles tell whole turns, too
+    noisy = excess_of(result, smooth=smooth) >= excess
+    return not noisy and min(runs(result), drift(result)) > chance
 
 
 def computed(result: Estimate) -> bool:

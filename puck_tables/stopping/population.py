@@ -260,6 +260,23 @@ def refuse_outside(name: str, values: FloatArray, words: str) -> None:
         raise InputError(f"{words} must not be negative, got {low:g}{unit}")
 
 
+def velocities(one: Mapping[str, Any], count: int) -> FloatArray:
+    """Components (2, count) of the velocities of launches by their numbers, m/s.
+
+    >>> velocities({"speed": 2.0}, 1).tolist()
+    [[2.0], [0.0]]
+    """
+    rows = np.empty((2, count))
+    if "speed" not in one:
+        rows[0], rows[1] = one.get("vx", 0.0), one.get("vy", 0.0)
+        return rows
+    rows[0], rows[1] = one["speed"], 0.0
+    if "heading" in one:
+        rows[1] = rows[0] * np.sin(one["heading"])
+        rows[0] *= np.cos(one["heading"])
+    return rows
+
+
 def law_name(law: str | Law) -> str:
     """A pressure law in a word."""
     return law.name if isinstance(law, Law) else law

@@ -29,6 +29,7 @@ from puck_tables.stopping.population import (
     labelled,
     law_name,
     ranged,
+    velocities,
 )
 from puck_tables.stopping.solvers import OUTPUTS, STATUS_MEANINGS, BaseSolver
 
@@ -41,23 +42,6 @@ BLOCKS = (1 << 14, 1 << 18), (1 << 8, 1 << 13)  # launches; the latter where one
 _SLAB = 1 << 20  # pucks whose heights are sorted at once
 Kind = tuple[int, float]  # number of the pressure law, radius of gyration
 By = tuple[float, str | None, Any]  # tolerance, method, table
-
-
-def velocities(one: Mapping[str, Any], count: int) -> FloatArray:
-    """Components (2, count) of the velocities of launches by their numbers, m/s.
-
-    >>> velocities({"speed": 2.0}, 1).tolist()
-    [[2.0], [0.0]]
-    """
-    rows = np.empty((2, count))
-    if "speed" not in one:
-        rows[0], rows[1] = one.get("vx", 0.0), one.get("vy", 0.0)
-        return rows
-    rows[0], rows[1] = one["speed"], 0.0
-    if "heading" in one:
-        rows[1] = rows[0] * np.sin(one["heading"])
-        rows[0] *= np.cos(one["heading"])
-    return rows
 
 
 class StopWork(Work):
