@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from golden.make_scene_ends import FILE, apart, ends_of
@@ -16,13 +18,18 @@ BLOCK = 50
 TOO_SURE = [249]
 
 
+def lying(tables: dict[str, Any]) -> dict[str, Any]:
+    """A scene in which what hangs over an edge is carried as if it lay, as it was then."""
+    return tables | {"edge": [one | {"beyond": "floor"} for one in tables.get("edge", [])]}
+
+
 @pytest.mark.parametrize(
     "first",
     [pytest.param(n, marks=[pytest.mark.thorough] * (n > 0)) for n in range(0, 1000, BLOCK)],
 )
 def test_drawn_scenes_of_one_puck(first: int):
     seeds = range(first, first + BLOCK)
-    now = np.concatenate([ends_of(Scene.from_tables(draw(seed))) for seed in seeds])
+    now = np.concatenate([ends_of(Scene.from_tables(lying(draw(seed)))) for seed in seeds])
     worst = apart(now, BEFORE["drawn"][first : first + BLOCK])
     worst[np.isin(seeds, TOO_SURE)] = 0.0
     assert worst.max() < 1.0, seeds[int(worst.argmax())]

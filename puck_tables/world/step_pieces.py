@@ -224,6 +224,8 @@ def _missed_halfway(
     middle, largest = buffer.states[HALF], 0.0
     error = step(phase, t, 0.5 * h, buffer.y, buffer.scale, buffer.stages, middle)
     if not error < math.inf:
+        for n in range(GIVEN, SIZE):  # as short as it may be, the step is taken all the same
+            middle[n] = 0.5 * (buffer.states[BEGUN, n] + buffer.states[ENDED, n])
         return math.inf
     to_laboratory(surface_now(phase, t + 0.5 * h), middle, 1.0)
     for n in range(GIVEN):

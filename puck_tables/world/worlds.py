@@ -110,7 +110,8 @@ class Worlds(Together):
         things = [called_line(lines, k) for k in range(len(lines))][::-1] + obstacles[::-1]
         found = {"board": board, "time": rows[:, 1], "what": np.array(g.EVENTS)[what],
                  "puck": np.array(pucks)[who]}  # fmt: skip
-        found["partner"] = np.array([*things, *pucks])[partner + len(things)]
+        partners = np.array(["floor", *things, *pucks])
+        found["partner"] = partners[np.where(what == g.TIPS, 0, partner + len(things) + 1)]
         return found | dict(zip(Event._fields[4:], rows[:, 5:].T, strict=True))
 
     def advance(self, duration: float) -> None:

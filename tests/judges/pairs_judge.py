@@ -118,9 +118,8 @@ def draw(seed: int, index: int) -> dict[str, Any]:
     if "edge" in names:
         turn = rng.uniform(-1.4, 1.4)
         n = -np.array([math.cos(way + turn), math.sin(way + turn)])
-        scene["edge"] = [
-            {"point": (-stop * rng.uniform(0.1, 1.0) * n).tolist(), "normal": n.tolist()}
-        ]
+        place = (-stop * rng.uniform(0.1, 1.0) * n).tolist()  # carried by all the floor until then
+        scene["edge"] = [{"point": place, "normal": n.tolist(), "beyond": "floor"}]
     held = [name for name in names if name in _HOLDS]
     if held:
         hold: dict[str, Any] = {"kind": held[0], "angle": float(rng.uniform(-math.pi, math.pi))}
