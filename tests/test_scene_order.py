@@ -10,7 +10,7 @@ from scipy.integrate._ivp import dop853_coefficients as published
 
 from puck_tables import Drag, Floor, Launch, Puck, Scene
 from puck_tables.motion.steppers import DORMAND_PRINCE_8
-from puck_tables.scene import explicit
+from puck_tables.scene import steps
 
 COARSE, FINE = 1e-5, 1e-11
 EIGHTH, FIFTH = (COARSE / FINE) ** (1 / 8), (COARSE / FINE) ** (1 / 5)
@@ -40,24 +40,24 @@ def stopping(tol: float) -> Scene:
 
 
 def test_the_numbers_are_those_that_are_published() -> None:
-    stages = explicit.STAGES
-    assert np.array_equal(explicit._A[:, :stages], published.A[:stages, :stages])
-    assert np.array_equal(explicit._ERROR_5, published.E5)
-    assert np.array_equal(explicit._ERROR_3, published.E3)
-    assert np.allclose(explicit._C[:-1], published.C[: stages - 1], rtol=1e-14, atol=0.0)
+    stages = steps.STAGES
+    assert np.array_equal(steps._A[:, :stages], published.A[:stages, :stages])
+    assert np.array_equal(steps._ERROR_5, published.E5)
+    assert np.array_equal(steps._ERROR_3, published.E3)
+    assert np.allclose(steps._C[:-1], published.C[: stages - 1], rtol=1e-14, atol=0.0)
 
 
 def test_they_are_of_order_8_and_their_estimate_of_no_less_than_3() -> None:
     """Trees without branches: weights times powers of the nodes are 1/(k + 1)."""
-    a, c, b = explicit._A, explicit._C, DORMAND_PRINCE_8.b
+    a, c, b = steps._A, steps._C, DORMAND_PRINCE_8.b
     for k in range(8):
         assert b @ c**k == pytest.approx(1.0 / (k + 1), rel=1e-13)
-    tall = np.ones(explicit.STAGES)
+    tall = np.ones(steps.STAGES)
     for k in range(1, 9):  # the tall trees: b A^(k−1) 1 = 1/k!
         assert b @ tall == pytest.approx(1.0 / math.factorial(k), rel=1e-12)
         tall = a @ tall
     assert abs(b @ tall - 1.0 / math.factorial(9)) > 1e-8
-    for error, order in ((explicit._ERROR_5, 5), (explicit._ERROR_3, 3)):
+    for error, order in ((steps._ERROR_5, 5), (steps._ERROR_3, 3)):
         for k in range(order):
             assert abs(error @ c**k) < 1e-13
         assert abs(error @ c**order) > 1e-6
