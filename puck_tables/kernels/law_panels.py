@@ -71,7 +71,7 @@ def begin_of(law: FloatArray, u: float) -> int:
 
 
 @inlined
-def goes_on_beyond(law: FloatArray, low: float, high: float) -> bool:
+def is_smooth_between(law: FloatArray, low: float, high: float) -> bool:
     """Whether a law is smooth from a slip speed to another, and not steep."""
     count, after = int(law[0]), begin_of(law, low) + _AHEAD
     corners = 2 + count + count * MOMENTS * (DEGREE + 1)

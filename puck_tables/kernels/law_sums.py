@@ -43,8 +43,8 @@ from puck_tables.kernels.law_panels import (
     begin_of,
     branches_of,
     distance_at,
-    goes_on_beyond,
     interval_of,
+    is_smooth_between,
     law_sums_at_first,
     nearest_to,
     panel_end,
@@ -183,7 +183,7 @@ def _has_kinks_far_away(
         return False
     least, most = min(axes.along, axes.across), max(axes.along, axes.across)
     turns = least < most and least * speed < _FAR_OF_AXES * most * rim
-    return turns or not goes_on_beyond(law, speed - rim, speed + rim)
+    return turns or not is_smooth_between(law, speed - rim, speed + rim)
 
 
 @inlined

@@ -195,15 +195,15 @@ def _arc(base: FloatArray, at: int, cx: float, cy: float) -> Parts:
         ox * ex - oy * ey, oy * ex + ox * ey, ox * rx - oy * ry, oy * rx + ox * ry, xx,
         mean - size, mean + size,
     )  # fmt: skip
-    begin = _whole_change(base[at + BEGIN_X] - cx, base[at + BEGIN_Y] - cy)
-    end = _whole_change(base[at + END_X] - cx, base[at + END_Y] - cy)
+    begin = _end_terms(base[at + BEGIN_X] - cx, base[at + BEGIN_Y] - cy)
+    end = _end_terms(base[at + END_X] - cx, base[at + END_Y] - cy)
     return _summed(_summed(parts, begin), (
         -end[0], -end[1], 0.0, 0.0, -end[4], -end[5], -end[6]
     ))  # fmt: skip
 
 
 @inlined
-def _whole_change(x: float, y: float) -> Parts:
+def _end_terms(x: float, y: float) -> Parts:
     """Of what R dr and R dr ⊗ r are more than as sides have them: ½ R r and R r ⊗ r at an end."""
     r = math.sqrt(x * x + y * y)
     return 0.5 * r * x, 0.5 * r * y, 0.0, 0.0, 0.5 * r * (x * x - y * y), r * x * y, r * x * y
