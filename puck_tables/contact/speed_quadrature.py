@@ -57,26 +57,12 @@ def speed_integrals(
 ) -> PatchIntegrals:
     """The five integrals with a friction coefficient inside that depends on the slip speed.
 
-    Parameters
-    ----------
-    phi : array_like, radians, in [−π/2, π/2]
-    speed : array_like, m/s
-        Q = hypot(v, rω), broadcast against ``phi``.
-    law : SpeedLaw, or callable from speeds in m/s to f
-        A callable must be smooth on scales above 1e-4 of the fastest slip.
+    ``phi``: array_like, radians, in [−π/2, π/2]; ``speed``: array_like, m/s, Q = hypot(v, rω),
+    broadcast against ``phi``; ``law``: SpeedLaw, or callable from speeds in m/s to f, a callable
+    must be smooth on scales above 1e-4 of the fastest slip.  Returns PatchIntegrals: p_a … p_e with
+    f inside; error about 1e-13 of the largest f (for φ → 0 and p_c, p_d 1e-10).  Raises InputError
+    if an argument is out of range; the fastest slip v + r|ω| must lie within a ``SpeedLaw``.
 
-    Returns
-    -------
-    PatchIntegrals
-        p_a … p_e with f inside; error about 1e-13 of the largest f (for φ → 0 and p_c, p_d 1e-10).
-
-    Raises
-    ------
-    InputError
-        If an argument is out of range; the fastest slip v + r|ω| must lie within a ``SpeedLaw``.
-
-    Examples
-    --------
     >>> viscous = speed_integrals(0.7, 2.0, lambda u: 0.1 * u)  # linear: p_b = f Q/4 exactly
     >>> float(viscous.a.round(12)), float(viscous.b.round(12)), float(viscous.d.round(12))
     (0.2, 0.05, 0.1)
