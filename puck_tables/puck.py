@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy.typing as npt
 
-from puck_tables.verbs_of_friction import VerbsOfFriction
+from puck_tables.verbs_of_many import VerbsOfMany
 
 if TYPE_CHECKING:
     from puck_tables.stopping.aim_at_targets import Aim
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, repr=False)
-class Puck(VerbsOfFriction):
+class Puck(VerbsOfMany):
     """A flat puck on a rough floor.
 
     Its motion depends, up to scale, on ``delta`` = 2fh/r, the pressure and the gyration; the scale

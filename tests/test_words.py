@@ -14,7 +14,7 @@ from test_layers import modules
 CLEAN = """
     _core accuracy autodiff bulk chetaev cli contact explore export film fitting io kernels
     gym motion plot puck reference report result results scene stopping table tradeoff trajectory
-    verbs_of_friction verbs_of_many warming world wrench
+    verbs_of_many warming world wrench
 """
 # Words that nobody reads who did not write them, and what the field says.
 WORDS = {

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy.typing as npt
 
-from puck_tables.verbs_of_many import VerbsOfMany
+from puck_tables.scene.pucks_and_posts import ScenePuck
 
 if TYPE_CHECKING:
     from puck_tables.wrench.friction_hold import Hold, Twist, Wrench
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, repr=False)
-class VerbsOfFriction(VerbsOfMany):
+class VerbsOfFriction(ScenePuck):
     """A puck, and the questions about forces on it; :class:`puck_tables.Puck` has all."""
 
     def limit_surface(self, n: int | None = None) -> LimitSurface:
