@@ -230,7 +230,9 @@ def _far_sides(
 ) -> Sums:  # fmt: skip
     sums = NOTHING
     for i in range(first, first + PIECE_COLUMNS * count, PIECE_COLUMNS):
-        half = 0.5 * base[i + LENGTH] if base[i + TURN] == 0.0 else 0.0
+        if base[i + TURN] != 0.0:
+            continue
+        half = 0.5 * base[i + LENGTH]
         hx, hy = half * base[i + TANGENT_X], half * base[i + TANGENT_Y]
         mx, my = base[i + BEGIN_X] + hx, base[i + BEGIN_Y] + hy
         for node in range(NODES):
