@@ -44,7 +44,7 @@ def floor_map_of(scene: SceneSpec, normal: float, top: float = 0.0) -> FloatArra
 
     >>> from puck_tables import Floor, Puck, Scene, Strips
     >>> floor = Floor(strips=Strips((0.1,), (0.3, 0.1)))
-    >>> floor_map_of(Scene(Puck(0.04), floor), 2.0)[21:24].tolist()
+    >>> floor_map_of(Scene(Puck(0.04), floor), 2.0)[23:26].tolist()
     [0.1, 0.6, 0.2]
     """
     floor, puck = scene.floor, scene.puck
