@@ -142,7 +142,7 @@ def _held_out(text: str, option: str) -> float | list[str]:
     puck_number("friction", ", if known."),
     puck_number("mass"),
     puck_number("gravity"),
-    *body_options(base=True),
+    *body_options(),
 )  # fmt: skip
 @packed(
     "wanted", dict,

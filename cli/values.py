@@ -189,8 +189,10 @@ def number_or_text(text: str) -> Any:
     >>> number_or_text("0.2"), number_or_text("4cm")
     (0.2, '4cm')
     """
+    from puck_tables._core.units import measured
+
     try:
-        return float(text)
+        return measured(text, "")
     except ValueError:
         return text.strip()
 

@@ -199,11 +199,11 @@ def _panels(edges: FloatArray) -> tuple[FloatArray, FloatArray]:
     return (middle + half * _NODE).reshape(size), (half * _WEIGHT).reshape(size)
 
 
-def _with_breaks(first: float, last: float, breaks: FloatArray) -> FloatArray:
-    """Edges halved towards ``first``, with further breaks (n, k) between the ends."""
-    graded = first + (last - first) * _EDGES
+def _with_breaks(last: float, breaks: FloatArray) -> FloatArray:
+    """Edges halved towards 0, with further breaks (n, k) between it and the last."""
+    graded = last * _EDGES
     every = np.broadcast_to(graded, (len(breaks), graded.size))
-    return np.sort(np.concatenate([every, np.clip(breaks, first, last)], axis=1), axis=1)
+    return np.sort(np.concatenate([every, np.clip(breaks, 0.0, last)], axis=1), axis=1)
 
 
 def _centre_inside(
@@ -221,7 +221,7 @@ def _centre_inside(
     # arcs, R = 1 − s cos τ
     with np.errstate(divide="ignore", invalid="ignore"):
         cosine = np.where(s > 0.0, (1.0 - circles) / s, 1.0)
-    tau, weight = _panels(_with_breaks(0.0, np.pi, np.arccos(np.clip(cosine, -1.0, 1.0))))
+    tau, weight = _panels(_with_breaks(np.pi, np.arccos(np.clip(cosine, -1.0, 1.0))))
     c, sin_tau = np.cos(tau), np.sin(tau)
     R = (1.0 - s) + 2.0 * s * np.sin(0.5 * tau) ** 2
     weight = weight * np.asarray(law(rim * R)) * sin_tau
@@ -249,7 +249,7 @@ def _centre_outside(
     with np.errstate(divide="ignore", invalid="ignore"):
         away = np.abs(breaks - centre) / (centre * kappa)
     away = np.where(np.isfinite(away), away, 1.0)
-    tau, weight = _panels(_with_breaks(0.0, 0.5 * np.pi, np.arccos(np.minimum(away, 1.0))))
+    tau, weight = _panels(_with_breaks(0.5 * np.pi, np.arccos(np.minimum(away, 1.0))))
     c, sin_tau = np.cos(tau), np.sin(tau)
     weight = weight * sin_tau
     f = [np.asarray(law(centre * (1.0 + sign * kappa * c))) for sign in (1.0, -1.0)]
