@@ -11,14 +11,14 @@ import click
 from puck_tables.cli.options import FILE, Outputs, PuckChoice, number, outputs, packed, puck_options
 from puck_tables.cli.printing import progress
 from puck_tables.cli.scene_run import SceneChoice, scene_options, scene_tables
-from puck_tables.cli.values import Vector, named, not_none, numbers_in
+from puck_tables.cli.values import Vector, named, not_none, number_or_text
 
 from puck_tables.errors import InputError
 from puck_tables.kernels.patience import one_question
 
 _LARGEST_FILE = 1 << 30  # bytes: more is no file of targets, and would fill the memory
 _ON_BOARDS = ("pocket", "puck", "striker", "hits", "max_impacts", "odds", "within")
-_SCATTERS = {"heading": "rad", "speed": "", "w0": "rad/s"}  # for --odds
+_SCATTERS = {"heading": "rad", "speed": "1", "w0": "rad/s"}  # for --odds
 
 
 @click.command()
@@ -147,16 +147,16 @@ def _aim_in_scene(
         click.echo(f"\n{odds}")
 
 
-def _scatter_of(odds: Iterable[str]) -> dict[str, Any]:
+def _scatter_of(odds: Iterable[str]) -> dict[str, float]:
     """Deviations by the names that the library has."""
-    scatter: dict[str, Any] = {}
+    from puck_tables._core.arrays import real
+
+    scatter: dict[str, float] = {}
     for name, text in named(odds, "--odds", "NAME=DEVIATION, like heading=0.5deg").items():
         if name not in _SCATTERS:
             raise InputError(f"--odds {name} does not scatter: give {', '.join(_SCATTERS)}")
-        unit = _SCATTERS[name]
-        (scatter["spin" if name == "w0" else name],) = numbers_in(
-            text, f"--odds {name}", "", "DEVIATION", unit
-        )
+        number = real(f"--odds {name}", number_or_text(text), _SCATTERS[name])
+        scatter["spin" if name == "w0" else name] = number
     return scatter
 
 

@@ -18,7 +18,7 @@ from puck_tables.cli.options import (
     puck_number,
 )
 from puck_tables.cli.printing import note, progress, say
-from puck_tables.cli.values import named, names, not_none, numbers_in, read_as
+from puck_tables.cli.values import named, names, not_none, number_or_text, parted, read_as
 
 from puck_tables.errors import InputError
 
@@ -101,67 +101,35 @@ def track(files: tuple[Path, ...], how: dict[str, Any], out: Outputs) -> None:
         say(f"{remark}.")
 
 
-def _unit_of(name: str) -> str:
-    """The unit in which a number of a fit may be written with another behind it."""
-    from puck_tables._core.units import SHOWN
-    from puck_tables.fitting.parameters import ALL
-
-    return ALL[name].unit if name in ALL and ALL[name].unit in SHOWN else ""
-
-
-def _held(texts: tuple[str, ...], option: str) -> dict[str, float]:
+def _held(texts: tuple[str, ...], option: str) -> dict[str, Any]:
     """NAME=VALUE, several times."""
-    return {
-        name: numbers_in(text, f"{option} {name}", "", "VALUE", _unit_of(name))[0]
-        for name, text in named(texts, option).items()
-    }
+    return {name: number_or_text(text) for name, text in named(texts, option).items()}
 
 
-def _pairs(form: str) -> Any:
+def _pairs(texts: tuple[str, ...], option: str) -> dict[str, list[Any]]:
     """NAME=NUMBER:NUMBER, several times."""
-    return read_as(lambda texts, option: {
-        name: numbers_in(text, f"{option} {name}", ":", f"{name}={form}", _unit_of(name))
-        for name, text in named(texts, option).items()
-    })  # fmt: skip
+    given = named(texts, option).items()
+    return {name: parted(text, ":", f"{option} {name}") for name, text in given}
 
 
-def _noise(text: str, option: str) -> tuple[float, float | None]:
+def _noise(text: str, option: str) -> list[Any]:
     """PLACE in m, or with ANGLE in rad."""
-    form = "PLACE or PLACE,ANGLE, like 0.0003,0.005"
-    place, comma, angle = text.partition(",")
-    if "," in angle:
-        raise InputError(f"{option} {text} must be {form}")
-    of_angle = numbers_in(angle, option, "", form, "rad")[0] if comma else None
-    return numbers_in(place, option, "", form, "m")[0], of_angle
+    numbers = [number_or_text(part) for part in text.split(",")]
+    return [*numbers, None] if len(numbers) == 1 else [*numbers]
 
 
-def _jitter(text: str, option: str) -> float | str:
-    """Seconds, or what the library makes of a word."""
-    from puck_tables._core.units import measured
-
-    try:
-        return measured(text, "s")
-    except ValueError:
-        return text
+def _numbers(text: str, option: str) -> list[Any]:
+    return parted(text, ",", option)
 
 
-def _point(text: str, option: str) -> tuple[float, ...]:
-    return numbers_in(text, option, ",", "X,Y: two numbers in m", "m")
-
-
-def _walls(texts: tuple[str, ...], option: str) -> list[tuple[tuple[float, ...], ...]]:
+def _walls(texts: tuple[str, ...], option: str) -> list[Any]:
     """Lines by two points of each."""
-    for text in texts:
-        if text.count(":") != 1:
-            raise InputError(f"{option} '{text}' must be two points on it in m, like 1.5,0:1.5,2")
-    return [tuple(_point(end, option) for end in text.split(":")) for text in texts]
+    return [[_numbers(end, option) for end in text.split(":")] for text in texts]
 
 
 def _held_out(text: str, option: str) -> float | list[str]:
-    try:
-        return float(text)
-    except ValueError:
-        return names(text, option)
+    share = number_or_text(text)
+    return share if isinstance(share, float) else names(text, option)
 
 
 @click.command()
@@ -174,7 +142,7 @@ def _held_out(text: str, option: str) -> float | list[str]:
     puck_number("friction", ", if known."),
     puck_number("mass"),
     puck_number("gravity"),
-    *body_options(base=True),
+    *body_options(),
 )  # fmt: skip
 @packed(
     "wanted", dict,
@@ -187,10 +155,10 @@ def _held_out(text: str, option: str) -> float | list[str]:
     click.option("--fix", "fixed", multiple=True, metavar="NAME=VALUE", callback=read_as(_held),
                  help="Hold a number; also launch_spin and the like."),
     click.option("--prior", multiple=True, metavar="NAME=VALUE:SIGMA",
-                 callback=_pairs("VALUE:SIGMA, a value and its standard deviation (to hold a "
-                 "number, --fix)"), help="What is known of a number besides."),
+                 callback=read_as(_pairs), help="What is known of a number besides: its value "
+                 "and its standard deviation (to hold a number, --fix)."),
     click.option("--bound", "bounds", multiple=True, metavar="NAME=LOW:HIGH",
-                 callback=_pairs("LOW:HIGH"), help="Look for a number within; also for launch_x, "
+                 callback=read_as(_pairs), help="Look for a number within; also for launch_x, "
                  "_y, _vx, _vy, _spin, _angle."),
     click.option("--start", multiple=True, metavar="NAME=VALUE", callback=read_as(_held),
                  help="Begin there, too; also with launch_spin."),
@@ -208,15 +176,14 @@ def _held_out(text: str, option: str) -> float | list[str]:
     click.option("--wall", "walls", multiple=True, metavar="X,Y:X,Y", callback=read_as(_walls),
                  help="A straight wall, by two points on it in m: impacts are then looked for, as "
                  "with --impacts, and other walls are found."),
-    click.option("--jitter", metavar="SECONDS|find", callback=read_as(_jitter),
+    click.option("--jitter", metavar="SECONDS|find",
+                 callback=read_as(lambda text, option: number_or_text(text)),
                  help="Standard deviation of the time stamps of frames, or find it."),
-    click.option("--rows", metavar="FIRST,LAST", callback=read_as(_point),
+    click.option("--rows", metavar="FIRST,LAST", callback=read_as(_numbers),
                  help="Of a rolling shutter: y in m of the first and the last line of the "
                  "picture. Its readout time is found, T/2 +- T/2 of the time T between frames "
                  "unless --prior or --bound say more."),
-    click.option("--slip-speeds", metavar="U,...",
-                 callback=read_as(lambda text, option: [
-                     numbers_in(one, option, "", "U,...", "m/s")[0] for one in text.split(",")]),
+    click.option("--slip-speeds", metavar="U,...", callback=read_as(_numbers),
                  help="Find the friction coefficient at these slip speeds in m/s, from 0 to the "
                  "fastest: two for f0 + f1 u, up to 8."),
     click.option("--between", type=click.Choice(["cubic", "linear"]), default="cubic",

@@ -89,31 +89,27 @@ def puck_options(
         puck_number("gravity", "", kind),
         *([puck_number("mass")] if mass else []),
         number("--decel", "m/s^2", kind, help="f g in m/s^2 instead of --friction.  [default: 1]"),
-        *body_options(True, kind, many),
+        *body_options(kind, many),
     ]  # fmt: skip
 
 
-def body_options(
-    base: bool = False, kind: type[NumberParam] = NumberParam, many: bool = False
-) -> list[Option[Any]]:
-    """The kind of puck: how it presses on the floor, how its mass is spread, perhaps its base."""
+def body_options(kind: type[NumberParam] = NumberParam, many: bool = False) -> list[Option[Any]]:
+    """The kind of puck: how it presses on the floor, how its mass is spread, its base."""
     words = "Contact pressure: uniform, galin, hertz, ring, annulus:INNER, or a CSV file of rho, W."
     if many:
         words += "  As often as wanted; annulus:START:STOP:COUNT is a range of them."
-    options = [
+    return [
         click.option("--pressure", metavar="LAW", shell_complete=laws, multiple=many, help=words,
                      default=("uniform",) if many else "uniform", show_default=True),
         number("--gyration", "", kind, help="Radius of gyration about the vertical axis over r (a "
                "ratio, also with --radius), 0.1 to 10.  [default: 0.7071, homogeneous]"),
-    ]  # fmt: skip
-    if base:
-        options.append(click.option(
+        click.option(
             "--base", metavar="BASE", help="In place of --radius: box:LENGTHxWIDTH, disc:RADIUS, "
             "annulus:RADIUSxINNER, polygon:X,Y;X,Y;X,Y, feet:RADIUS;X,Y;X,Y (or X,Y,LOAD), in m or "
             "with units (box:20cmx10cm), or a CSV file of corners x, y; @X,Y after it is the "
             "centre of mass.  --gyration is then in m.",
-        ))  # fmt: skip
-    return options
+        ),
+    ]  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -196,7 +196,7 @@ def limit_surface(points: int | None, choice: PuckChoice, out: Outputs) -> None:
               )  # fmt: skip
 @number("--tol", default=1e-6, show_default=True,
         help="Largest error, in units of Q/(f g), Q^2/(f g), Q: 1e-9 to 0.01.")  # fmt: skip
-@packed("choice", PuckChoice, *body_options(True))
+@packed("choice", PuckChoice, *body_options())
 @scene_options
 @outputs("The file.", plot=False, required=True)
 @click.pass_context

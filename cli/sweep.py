@@ -23,7 +23,7 @@ from puck_tables.cli.options import (
 )
 from puck_tables.cli.printing import note, progress, say
 from puck_tables.cli.scene_run import SceneChoice, scene_options, scene_tables
-from puck_tables.cli.values import MAX_COUNT, RangeParam, Vector, named, not_none, numbers_in
+from puck_tables.cli.values import MAX_COUNT, RangeParam, Vector, named, not_none, parted
 
 from puck_tables.accuracy.methods import METHODS
 from puck_tables.errors import InputError, OutputError
@@ -60,7 +60,7 @@ def chosen_spreads(
 def samples_checked(
     random: int | None, seed: int | None, spreads: tuple[str, ...], regions: tuple[str, ...],
     name_of_spin: str,
-) -> list[tuple[float, ...]]:  # fmt: skip
+) -> list[list[Any]]:  # fmt: skip
     """The regions asked for; options of samples that stand alone are refused."""
     from puck_tables.bulk.summary import checked_regions
 
@@ -74,7 +74,7 @@ def samples_checked(
         raise InputError(
             f"--random needs a --spread: say what scatters, like {name_of_spin}=normal:5:0.2"
         )
-    numbers = [numbers_in(one, "--inside", ",", one, "m") for one in regions]  # 3 or 4 of each
+    numbers = [parted(one, ",", "--inside") for one in regions]
     checked_regions(numbers)
     return numbers
 
@@ -116,7 +116,7 @@ class Whole:
     threads: int | None
     cluster: str | None
     out: Outputs
-    regions: list[tuple[float, ...]]  # the chances of ending inside which are asked for
+    regions: list[list[Any]]  # the chances of ending inside which are asked for
 
     @property
     def store(self) -> Path | None:

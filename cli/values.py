@@ -183,28 +183,33 @@ def named(
     return result
 
 
-def numbers_in(text: str, option: str, sign: str, form: str, unit: str = "") -> tuple[float, ...]:
-    """Numbers parted by a sign, as many as ``form`` shows, each with its unit or none of them.
+def number_or_text(text: str) -> Any:
+    """A number; with its unit behind it a text, which the library measures.
 
-    >>> numbers_in("0.2:0.05", "--prior friction", ":", "VALUE:SIGMA")
-    (0.2, 0.05)
+    >>> number_or_text("0.2"), number_or_text("4cm")
+    (0.2, '4cm')
     """
-    from puck_tables._core.units import UNIT_EACH, measured, without_unit
+    from puck_tables._core.units import measured
 
-    parts = text.split(sign) if sign else [text]
-    if len(parts) != (form.count(sign) if sign else 0) + 1:
-        raise InputError(f"{option}={text} must be {form}")
-    if bare := without_unit(parts, unit):
-        raise InputError(f"{option}={text}: {UNIT_EACH.format(bare)}")
-    numbers = []
-    for part in parts:
-        try:
-            numbers.append(measured(part, unit))
-        except ValueError:
-            numbers.append(math.nan)
-        if not math.isfinite(numbers[-1]):
-            raise InputError(f"{option}={text}: '{part}' is not a finite number")
-    return tuple(numbers)
+    try:
+        return measured(text, "")
+    except ValueError:
+        return text.strip()
+
+
+def parted(text: str, sign: str, option: str) -> list[Any]:
+    """Numbers parted by a sign, each with its unit or none of them.
+
+    >>> parted("0.2:0.05", ":", "--prior friction")
+    [0.2, 0.05]
+    """
+    numbers = [number_or_text(part) for part in text.split(sign)]
+    bare = [one for one in numbers if isinstance(one, float) and one]
+    if bare and len(bare) < sum(map(bool, numbers)):
+        from puck_tables._core.units import UNIT_EACH
+
+        raise InputError(f"{option} {text}: {UNIT_EACH.format(f'{bare[0]:g}')}")
+    return numbers
 
 
 _LAWS = ("uniform", "galin", "hertz", "ring", "annulus:")

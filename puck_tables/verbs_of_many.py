@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from puck_tables._core.executor import Progress
 from puck_tables.errors import InputError
-from puck_tables.scene.pucks_and_posts import ScenePuck
+from puck_tables.wrench.verbs_of_friction import VerbsOfFriction
 
 if TYPE_CHECKING:
     import xarray
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, repr=False)
-class VerbsOfMany(ScenePuck):
+class VerbsOfMany(VerbsOfFriction):
     """A puck, and the questions about many launches of it; :class:`puck_tables.Puck` has all."""
 
     def sweep(

@@ -75,19 +75,25 @@ def test_what_is_not_determined_is_said(film):
         (("--radius", 0.0381, "--free", "frictoin"), "did you mean 'friction'"),
         (("--radius", 0.0381, "--height", 0.02, "--free", "height"), "leave out one"),
         (("--radius", 0.0381, "--friction", 0.2, "--fix", "friction=0.2"), "say the same"),
-        (("--radius", 0.0381, "--prior", "friction=0.2"), "VALUE:SIGMA"),
+        (
+            ("--radius", 0.0381, "--prior", "friction=0.2"),
+            "prior of friction must be a value and a standard deviation, got [0.2]",
+        ),
         (("--radius", 0.0381, "--prior", "friction=0.2:0"), "standard deviation"),
         (("--radius", 0.0381, "--fix", "delta"), "NAME=VALUE"),
-        (("--radius", 0.0381, "--fix", "delta=x"), "not a finite number"),
-        (("--radius", 0.0381, "--noise", "1,2,3"), "PLACE"),
+        (("--radius", 0.0381, "--fix", "delta=x"), "delta must be a number, got 'x'"),
+        (("--radius", 0.0381, "--fix", "delta=1_0"), "delta must be a number, got '1_0'"),
+        (("--radius", 0.0381, "--fix", "delta=nan"), "delta must be a finite number"),
+        (("--radius", 0.0381, "--bound", "height=1cm:0.02"), "give each of these numbers its unit"),
+        (("--radius", 0.0381, "--noise", "1,2,3"), "of places (m) and of angles (rad)"),
         (("--radius", -1), "radius"),
         (("--radius", 0.0381, "-o", "fit.txt"), "one of .h5, .csv, .json, .jsonl, .parquet\n"),
         (("--radius", 0.0381, "--free", ""), "--free '' must be names with commas"),
         (("--radius", 0.0381, "--laws", "uniform,"), "must be names with commas"),
         (("--radius", 0.0381, "--fix", "friction=0"), "friction must be greater than 0, got 0\n"),
         (("--radius", 0.0381, "--wall", "1,2"), "two points"),
-        (("--radius", 0.0381, "--wall", "1,2:3"), "two numbers"),
-        (("--radius", 0.0381, "--rows", "1"), "two numbers"),
+        (("--radius", 0.0381, "--wall", "1,2:3"), "two points"),
+        (("--radius", 0.0381, "--rows", "1"), "first and of the last line of the picture"),
         (("--radius", 0.0381, "--jitter", "x"), "find"),
         (("--radius", 0.0381, "--hold-out", "1"), "share"),
         (("--radius", 0.0381, "--laws", "foo"), "foo"),
@@ -147,4 +153,6 @@ def test_walls_and_rows_are_read(tmp_path: Path):
         value = found.stdout.split("The friction coefficient is ")[1].split()[0]
         assert float(value) == pytest.approx(0.15, rel=1e-6)
     wrong = CliRunner().invoke(main, ["fit", saved, "--radius", "0.0381", "--rows", "1.0"])
-    assert wrong.exit_code and "--rows=1.0 must be X,Y: two numbers in m" in wrong.stderr
+    assert (
+        wrong.exit_code and "rows must be y in m of the first and of the last line" in wrong.stderr
+    )

@@ -33,7 +33,7 @@ def mine(coefficients, out):
     section_at(coefficients, 0.25, out)
 
 coefficients, out = np.ones((1, 1, 5)), np.zeros((1, HEADER + 3))
-section_at(coefficients, 0.5, out)
+{}
 mine(coefficients, out)
 print(out[0, HEADER + 1])
 """
@@ -95,8 +95,8 @@ def test_what_is_no_compiled_code_is_replaced(content: bytes, folder: Path):
 
 
 def test_a_function_of_somebody_else_may_call_what_is_kept(tmp_path: Path):
-    for _ in range(2):  # compiled, then read
-        run(tmp_path, [sys.executable, "-c", LINKED], 0.25)
+    for first in ("", *["section_at(coefficients, 0.5, out)"] * 2):  # alone, beside, and read
+        run(tmp_path, [sys.executable, "-c", LINKED.format(first)], 0.25)
 
 
 def test_code_of_another_function_under_this_name_is_not_taken(folder: Path):

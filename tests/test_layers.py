@@ -31,8 +31,8 @@ ROOMS = {
     "trajectory": "_core accuracy errors io motion result stopping table",
     "scene": "_core bulk contact errors io kernels motion result stopping table trajectory",
     "wrench": "_core contact errors io kernels motion result scene",
-    "verbs_of_many": "_core bulk contact errors scene stopping table",
-    "puck": "motion stopping table trajectory verbs_of_many wrench",
+    "verbs_of_many": "_core bulk contact errors stopping table wrench",
+    "puck": "motion stopping table trajectory verbs_of_many",
     "world": "_core bulk contact errors io kernels motion puck result scene stopping table",
     "film": "_core errors io",
     "fitting": "_core _version accuracy contact errors film io kernels motion puck result "

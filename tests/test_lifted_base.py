@@ -68,7 +68,8 @@ def test_a_disc_is_the_round_contact_that_opens():
                 assert abs(torque + 0.025 * math.sin(phi) * true.spin) < 1e-12
 
 
-@pytest.mark.parametrize("grip", [None, pytest.param(WOOD, marks=pytest.mark.thorough)])
+@pytest.mark.thorough
+@pytest.mark.parametrize("grip", [None, WOOD])
 def test_motion_is_that_of_the_judge(grip: Any):
     for seed, speed in ((0, 0.5), (1, 0.1)):
         state = np.array([0.0, 0.0, 0.3 + seed, speed, 0.1, 6.0])

@@ -37,14 +37,8 @@ def real_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
 
     Texts are numbers with their unit, such as '2 km/h', where the unit is one of SI.
 
-    Parameters
-    ----------
-    name, unit : str
-        For the message.
-    values : array_like
+    ``name``, ``unit``: for the message; ``values``: array_like.
 
-    Examples
-    --------
     >>> real_array("w0", [1, 2], "rad/s")
     array([1., 2.])
     >>> real_array("velocity", ("36 km/h", 0), "m/s")

@@ -24,14 +24,10 @@ _LARGEST_FILE = 1 << 26  # bytes, 64 MiB: a file that work names is read whole f
 def work_digest(**what: Any) -> str:
     """Digest of everything that determines the bits of a long work.
 
-    Parameters
-    ----------
-    what : numbers, texts, None, arrays, and lists and mappings of them
-        The arguments, by content: not the name of a file, but what :func:`files_named` reads of it.
-        The sources of the package and what compiles and runs them are added here.
+    ``what``: numbers, texts, None, arrays, and lists and mappings of them: the arguments by
+    content, of a file not its name, but what :func:`files_named` reads of it.  The sources of the
+    package and what compiles and runs them are added here.
 
-    Examples
-    --------
     >>> work_digest(tol=1e-8, w0=np.arange(3)) == work_digest(tol=1e-8, w0=np.arange(3.0))
     False
     """

@@ -35,11 +35,9 @@ def unquestioned(numbers: Container[float] | None = None) -> Iterator[None]:
 def question(name: str, number: float, unit: str, usual: float = 0.0) -> None:
     """Say on stderr that a number, which had no unit behind it, is of a doubtful size.
 
-    Parameters
-    ----------
-    name : of what it is; of a path such as puck.radius or wall[0].start[1] the last name
-    number, unit : in this SI unit
-    usual : up to which it is usual, where that differs from others of the unit
+    ``name``: of what it is; of a path such as puck.radius or wall[0].start[1] the last name;
+    ``number``, ``unit``: in this SI unit; ``usual``: up to which it is usual, where that differs
+    from others of the unit.
     """
     limit = usual or _USUAL.get(unit, math.inf)
     taken = getattr(_here, "taken", ())

@@ -25,23 +25,11 @@ def run_chunks(
 ) -> None:  # fmt: skip
     """Call ``work(start, stop)`` for all chunks of ``range(items)``, on several threads.
 
-    Parameters
-    ----------
-    work : callable (start, stop)
-        Must release the GIL to gain anything, and must not depend on the cutting.
-    items, chunk : int
-    threads : int, optional
-        As many as the process may use cores, if left out.
-    progress : callable (done items, all items), optional
+    ``work`` must release the GIL to gain anything, and must not depend on the cutting; ``threads``:
+    as many as the process may use cores, if left out; ``progress``: callable (done items, all
+    items).  Raises what a chunk raises first; chunks not yet begun are dropped, also on Ctrl-C, and
+    those that run end where they next call :func:`keep_on`.
 
-    Raises
-    ------
-    Exception
-        The first that a chunk raises; chunks not yet begun are dropped, also on Ctrl-C, and those
-        that run end where they next call :func:`keep_on`.
-
-    Examples
-    --------
     >>> seen = []
     >>> run_chunks(lambda a, b: seen.append((a, b)), 5, 2, threads=1)
     >>> seen

@@ -15,12 +15,8 @@ def check_memory(
 ) -> None:
     """Refuse a map that would not fit in memory, before anything is allocated.
 
-    Parameters
-    ----------
-    shape : the sizes of the ranges
-    per_item : bytes needed for each launch
-    advice : what to do instead
-    what : that is to be kept, if it is no map of launches
+    ``shape``: the sizes of the ranges; ``per_item``: bytes needed for each launch; ``advice``: what
+    to do instead; ``what``: that is to be kept, if it is no map of launches.
     """
     needed = float(per_item) * math.prod(shape)
     available = _memory()

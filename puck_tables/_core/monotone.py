@@ -61,13 +61,8 @@ def from_rest(speeds: FloatArray, values: FloatArray, name: str) -> tuple[FloatA
     Below the first speed the value there holds; of a speed that is given more than once the mean of
     its values is taken.
 
-    Parameters
-    ----------
-    speeds, values : ndarray (k,)
-    name : of the points, for what is said
+    ``speeds``, ``values``: ndarray (k,); ``name``: of the points, for what is said.
 
-    Examples
-    --------
     >>> xs, ys = from_rest(np.array([0.0, 1.0, 1.0]), np.array([0.3, 0.2, 0.4]), "this law")
     >>> xs.tolist(), ys.round(9).tolist()
     ([0.0, 1.0], [0.3, 0.3])

@@ -24,6 +24,7 @@ except ImportError:  # a system without such locks: parts are of the dead when t
 
 _PREFIX, _SUFFIX = ".puck-", ".part"
 _NAME = re.compile(re.escape(_PREFIX) + "[0-9a-f]{16}" + re.escape(_SUFFIX))
+_PATIENCE = 30.0  # s: renames take milliseconds
 _OLD = 86400.0  # s: a part as old is nobody's, where no locks tell
 _own: set[Path] = set()  # of this process
 
@@ -124,17 +125,17 @@ def remove_own() -> None:
 
 
 @contextlib.contextmanager
-def alone_in(folder: Path, patience: float = 30.0) -> Iterator[None]:
+def alone_in(folder: Path) -> Iterator[None]:
     """Nobody else of this program renames stores in the folder meanwhile, on this machine.
 
-    Raises OSError if the folder cannot be opened, or another holds it for so long, s.
+    Raises OSError if the folder cannot be opened, or another holds it all the time.
     """
     if fcntl is None:
         yield
         return
     descriptor = os.open(folder, os.O_RDONLY)
     try:
-        end = time.monotonic() + patience
+        end = time.monotonic() + _PATIENCE
         while True:
             try:
                 fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)

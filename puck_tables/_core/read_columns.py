@@ -81,22 +81,11 @@ def numbers_of(
     Columns are known by their headings, in any order, beside others; where the headings are not
     known, or there are none, they must be just these in their order.
 
-    Parameters
-    ----------
-    entries : name of a file, or rows in SI units
-    columns : those that are wanted
-    needed : how many of them, the first, must be there
-    most : bytes that a file may have
-    name : of rows that are given, for messages
+    ``entries``: name of a file, or rows in SI units; ``columns``: those that are wanted;
+    ``needed``: how many of them, the first, must be there; ``most``: bytes that a file may have;
+    ``name``: of rows that are given, for messages.  Raises InputError if it cannot be read, a
+    column is missing or its unit is not known, or a cell is no number; with its line.
 
-    Raises
-    ------
-    InputError
-        If it cannot be read, a column is missing or its unit is not known, or a cell is no number;
-        with its line.
-
-    Examples
-    --------
     >>> from puck_tables._core.quantities import FRICTION, SPEED
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:

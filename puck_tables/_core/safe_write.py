@@ -93,13 +93,9 @@ def written_part(
 ) -> Iterator[Path]:
     """A whole file under a name of its own, held while it is renamed; else nothing is left of it.
 
-    Parameters
-    ----------
-    folder : where it is
-    content : of the file
-    private : whether only this user may read it; else the umask says who
-    at : the folder, open, in which it is made whatever that is called meanwhile, for content that
-        carries a checksum: the disk is not waited for
+    ``folder``: where it is; ``content``: of the file; ``private``: whether only this user may read
+    it; else the umask says who; ``at``: the folder, open, in which it is made whatever that is
+    called meanwhile, for content that carries a checksum: the disk is not waited for.
     """
     part = new_part(folder)
     name = part if at is None else part.name

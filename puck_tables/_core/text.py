@@ -50,13 +50,8 @@ class TextForm:
 def text_form_of(path: str | Path, head: bytes) -> TextForm:
     r"""How the table in a text file is written, from how it begins.
 
-    Raises
-    ------
-    InputError
-        If it is no text, or no table of numbers.
+    Raises InputError if it is no text, or no table of numbers.
 
-    Examples
-    --------
     >>> form = text_form_of("a.csv", b"t;x;y\n0;0,5;1\n0,1;0,6;1\n")
     >>> form.separator, form.comma, form.header, form.width
     (';', True, [['t', 'x', 'y']], 3)
@@ -105,13 +100,8 @@ def text_form_of(path: str | Path, head: bytes) -> TextForm:
 def encoding_of(path: str | Path, head: bytes) -> str:
     r"""The encoding of a text.
 
-    Raises
-    ------
-    InputError
-        If it is no text.
+    Raises InputError if it is no text.
 
-    Examples
-    --------
     >>> encoding_of("a.csv", "t,x".encode("utf-16")), encoding_of("a.csv", b"x [\xb5m]")
     ('utf-16', 'cp1252')
     """

@@ -39,20 +39,10 @@ def read_columns(
 ) -> tuple[dict[int, FloatArray], dict[int, tuple[Any, list[str]]]]:  # fmt: skip
     r"""Columns of a table, without its header, comments and empty lines.
 
-    Parameters
-    ----------
-    path : the file
-    form : how it is written
-    numbers, texts : which columns, from 0
-    content : of the file, if it has been read
+    ``path``: the file; ``form``: how it is written; ``numbers``, ``texts``: which columns, from 0;
+    ``content``: of the file, if it has been read.  Returns ``numbers``: dict of ndarray (n,);
+    ``texts``: dict of (codes ndarray (n,), list of the texts that they stand for).
 
-    Returns
-    -------
-    numbers : dict of ndarray (n,)
-    texts : dict of (codes ndarray (n,), list of the texts that they stand for)
-
-    Examples
-    --------
     >>> import tempfile
     >>> from puck_tables._core.text import text_form_of
     >>> with tempfile.TemporaryDirectory() as folder:

@@ -208,13 +208,8 @@ UNIT_EACH = "give each of these numbers its unit: '{}' has none beside one that 
 def pixel_size(scale: str | float) -> float:
     """The size of a pixel in metres.
 
-    Parameters
-    ----------
-    scale : str or float
-        Like '0.5mm' or '0.5 mm/px', or a scale bar, '240px = 30cm'; a number is in metres.
+    ``scale``: like '0.5mm' or '0.5 mm/px', or a scale bar, '240px = 30cm'; a number is in metres.
 
-    Examples
-    --------
     >>> pixel_size("0.5 mm/px"), pixel_size(0.002)
     (0.0005, 0.002)
     >>> pixel_size("240px = 30cm")
@@ -305,14 +300,10 @@ def is_unit(text: str) -> bool:
 def unit_size(unit: str, kind: str) -> float | None:
     """A unit of a kind in SI units, None if it is none.
 
-    Parameters
-    ----------
-    unit : as somebody wrote it
-    kind : length, time, angle, velocity, spin, acceleration, force, torque, mass; ratio: a pure
-        number; radius: a length or a pure number; any: whatever it is, of size 1
+    ``unit``: as somebody wrote it; ``kind``: length, time, angle, velocity, spin, acceleration,
+    force, torque, mass; ratio: a pure number; radius: a length or a pure number; any: whatever it
+    is, of size 1.
 
-    Examples
-    --------
     >>> unit_size("cm/s", "velocity"), unit_size("m", "velocity"), unit_size("deg/s", "spin")
     (0.01, None, 0.017453292519943295)
     >>> unit_size("mN", "force"), unit_size("N mm", "torque"), unit_size("%", "ratio")

@@ -151,21 +151,11 @@ def select(
 ) -> Selection:
     """The cheapest method to a tolerance, by measured errors.
 
-    Parameters
-    ----------
-    question : 'stop' or 'trajectory'
-    tol : largest error wanted, in units of Q/(fg) (times) and Q²/(fg) (places), 1e-13 to 0.01
-    schemes : what may be selected
-    own_table : the name of a table that stands where closed forms were measured, and what it adds
-        to the error
+    ``question``: 'stop' or 'trajectory'; ``tol``: largest error wanted, in units of Q/(fg) (times)
+    and Q²/(fg) (places), 1e-13 to 0.01; ``schemes``: what may be selected; ``own_table``: the name
+    of a table that stands where closed forms were measured, and what it adds to the error.  Raises
+    AccuracyError if the tolerance is out of reach of these schemes.
 
-    Raises
-    ------
-    AccuracyError
-        If the tolerance is out of reach of these schemes.
-
-    Examples
-    --------
     >>> select("stop", 1e-6).scheme.name, select("stop", 1e-12).scheme.name
     ('look-up', 'adaptive, closed forms')
     """

@@ -43,12 +43,8 @@ PLAIN = PuckKind()
 def by_arguments(arguments: Any, kind: PuckKind, jacobian: bool) -> Any:
     """Stops or states of arguments (…, 6) or (…, 7), the order of the columns of Jacobians.
 
-    Raises
-    ------
-    InputError
+    Raises InputError.
 
-    Examples
-    --------
     >>> by_arguments(np.array([1.0, 0.0, 5.0, 0.5, 1.0, 1.0]), PLAIN, False).stop_time.round(6)
     np.float64(3.962992)
     """
@@ -114,11 +110,8 @@ def functions(
 ) -> tuple[Callable[..., Any], Callable[..., Any]]:
     """The functions ``stop`` and ``states`` of a library.
 
-    Parameters
-    ----------
-    of : results of arguments (…, columns), differentiated
-    merged : arguments (…, columns) from a velocity (…, 2) and numbers (…)
-    array : a number (…) in double precision
+    ``of``: results of arguments (…, columns), differentiated; ``merged``: arguments (…, columns)
+    from a velocity (…, 2) and numbers (…); ``array``: a number (…) in double precision.
     """
 
     def puck(

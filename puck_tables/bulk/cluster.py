@@ -78,18 +78,9 @@ def checked_address(where: object) -> int | str:
 def by_cluster(client: Any, store: Store, progress: Progress | None) -> Tally:
     """Do all blocks of a store on a cluster.
 
-    Parameters
-    ----------
-    client : of :func:`client_of`
-    store : made, or gone on with
-    progress : callable (done, total), optional
-
-    Raises
-    ------
-    InputError
-        If the workers run another program, or do not see the store.
-    ClusterError
-        If the scheduler is lost, or has no workers any more.
+    ``client``: of :func:`client_of`; ``store``: made, or gone on with; ``progress``: callable
+    (done, total), optional.  Raises InputError if the workers run another program, or do not see
+    the store; ClusterError if the scheduler is lost, or has no workers any more.
     """
     try:
         with client.as_current():

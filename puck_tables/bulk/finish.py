@@ -86,14 +86,10 @@ class Stored(Result):
 class Doing:
     """How a work is done, and where its result goes.
 
-    Parameters
-    ----------
-    threads : of this process, where there is no cluster
-    chunk : so many items are computed at a time
-    progress : callable (done, total), optional
-    store : path of a Zarr store, made or gone on with, optional
-    cluster : 'local:N' or 'tcp://HOST:PORT', optional; needs a store
-    overwrite : whether it replaces a store of other work, when it is whole
+    ``threads``: of this process, where there is no cluster; ``chunk``: so many items are computed
+    at a time; ``progress``: callable (done, total), optional; ``store``: path of a Zarr store, made
+    or gone on with, optional; ``cluster``: 'local:N' or 'tcp://HOST:PORT', optional; needs a store;
+    ``overwrite``: whether it replaces a store of other work, when it is whole.
     """
 
     threads: int | None

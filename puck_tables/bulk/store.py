@@ -45,19 +45,10 @@ _CRC = 4  # bytes at the end of a file
 class Store:
     """What is done of a work, in a Zarr store.
 
-    Parameters
-    ----------
-    path : where it is, or is to be; a link is followed
-    work : the work
-    begin : whether it is made, or gone on with; else another process did so
-    overwrite : whether it replaces a store of other work, when it is whole
-
-    Raises
-    ------
-    InputError
-        If it holds other work, or is no store of this program.
-    OutputError
-        If it cannot be made, or is not there.
+    ``path``: where it is, or is to be; a link is followed; ``work``: the work; ``begin``: whether
+    it is made, or gone on with; else another process did so; ``overwrite``: whether it replaces a
+    store of other work, when it is whole.  Raises InputError if it holds other work, or is no store
+    of this program; OutputError if it cannot be made, or is not there.
     """
 
     def __init__(

@@ -35,12 +35,8 @@ Content = Mapping[str, bytes]
 class Place:
     """A folder, held open, that holds what is done of a work, or is to.
 
-    ``path``: the name of the store, which another may have by now; ``digest``: which work it is.
-
-    Parameters
-    ----------
-    path : the name of the store, without links
-    folder : where it is now
+    ``path``: the name of the store, without links, which another may have by now; ``folder``: where
+    it is now; ``digest``: which work it is.
     """
 
     def __init__(self, path: Path, folder: Path) -> None:
@@ -162,19 +158,10 @@ def sibling_of(path: Path) -> Path:
 def taken(path: Path, digest: str, overwrite: bool, start: Content) -> Place:
     """The place of a work: gone on with, or new, with what it starts with.
 
-    Parameters
-    ----------
-    path : the name of the store, without links
-    digest : of the work
-    overwrite : whether a store of other work may be replaced, and another work stopped
-    start : the files of a store in which nothing is done, by name
-
-    Raises
-    ------
-    InputError
-        If another work has it, or something else is there.
-    OutputError
-        If it cannot be made.
+    ``path``: the name of the store, without links; ``digest``: of the work; ``overwrite``: whether
+    a store of other work may be replaced, and another work stopped; ``start``: the files of a store
+    in which nothing is done, by name.  Raises InputError if another work has it, or something else
+    is there; OutputError if it cannot be made.
     """
     beside = sibling_of(path)
     remove_dead(path.parent)

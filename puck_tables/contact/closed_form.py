@@ -122,26 +122,12 @@ shape_integrals = shape_integrals_by(elliptic)
 def integrals(phi: npt.ArrayLike) -> PatchIntegrals:
     """The five integrals p_a … p_e by elliptic integrals, uniform pressure.
 
-    Parameters
-    ----------
-    phi : array_like, radians, any shape, in [−π/2, π/2]
-
-    Returns
-    -------
-    PatchIntegrals
-        Dimensionless, each of the shape of ``phi``; error about 2e-15.
-
-    Raises
-    ------
-    InputError
-        If an angle is not finite or lies outside [−π/2, π/2].
-
-    References
-    ----------
     The integrals: Salnikova, Treschev, Gallyamov 2012, eq. 4.3–4.6.
 
-    Examples
-    --------
+    ``phi``: array_like, radians, any shape, in [−π/2, π/2].  Returns PatchIntegrals: dimensionless,
+    each of the shape of ``phi``; error about 2e-15.  Raises InputError if an angle is not finite or
+    lies outside [−π/2, π/2].
+
     >>> float(integrals(np.pi / 4).a.round(14))  # 8√2/(3π)
     1.20042175487614
     """
@@ -210,21 +196,10 @@ class Resultants(NamedTuple):
 def moment_balance(p: PatchIntegrals, direction: SlipDirection, delta: npt.ArrayLike) -> Resultants:
     """Resultants of full contact from the five integrals (uniform pressure).
 
-    Parameters
-    ----------
-    p : PatchIntegrals
-    direction : SlipDirection
-        The direction the integrals belong to, of the same shape.
-    delta : array_like
-        Dimensionless height δ = 2fh/r, broadcast against ``p``.
+    ``direction``: the direction the integrals belong to, of the same shape; ``delta``: array_like,
+    dimensionless height δ = 2fh/r, broadcast against ``p``.  Returns Resultants: dimensionless, of
+    the broadcast shape.
 
-    Returns
-    -------
-    Resultants
-        Dimensionless, of the broadcast shape.
-
-    Examples
-    --------
     >>> from puck_tables.contact import quadrature
     >>> from puck_tables.contact.integrals import slip_direction
     >>> phi = np.pi / 2
@@ -243,20 +218,12 @@ def moment_balance(p: PatchIntegrals, direction: SlipDirection, delta: npt.Array
 def pressure_tilt(rho: Resultants, direction: SlipDirection, delta: npt.ArrayLike) -> FloatArray:
     """Relative tilt of the pressure, hypot(b̂, ĉ): contact is full while it is at most 1.
 
-    Parameters
-    ----------
-    rho, direction
-        Resultants and the slip direction they belong to.
-    delta : array_like
-        Dimensionless height, broadcast.
-
-    Notes
-    -----
     b̂ = δ cos φ ρ_∥ and ĉ = δ cos φ sin φ ρ_⊥, so the tilt is δ times the friction force over fN
     (Salnikova, Treschev, Gallyamov 2012, Prop. 4).
 
-    Examples
-    --------
+    ``rho``, ``direction``: resultants and the slip direction they belong to; ``delta``: array_like,
+    dimensionless height, broadcast.
+
     >>> from puck_tables.contact import closed_form
     >>> from puck_tables.contact.integrals import slip_direction
     >>> rho = moment_balance(closed_form.integrals(0.0), slip_direction(0.0), 1.0)

@@ -300,14 +300,9 @@ def pieces_of_function(
 
     A row is the origin o and the scale s of a piece and then the powers of t = (u − o) s.
 
-    Parameters
-    ----------
-    law : callable, f at speeds in m/s
-    speeds : array, m/s
-        Ascending from 0 to the top; where the law has a scale of its own pieces end.
+    ``law``: callable, f at speeds in m/s; ``speeds``: array, m/s, ascending from 0 to the top;
+    where the law has a scale of its own pieces end.
 
-    Examples
-    --------
     >>> ends, pieces = pieces_of_function(np.exp, np.array([0.0, 1.0]))
     >>> t = (0.3 - pieces[0, 0]) * pieces[0, 1]
     >>> float(np.polynomial.polynomial.polyval(t, pieces[0, 2:]) - np.exp(0.3)) < 1e-15

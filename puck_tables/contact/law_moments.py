@@ -29,13 +29,9 @@ def law_moments(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Ends (n + 1,) of pieces, m/s, their polynomials (n, 4, 10) in t from −1 to 1, and corners.
 
-    Parameters
-    ----------
-    law : f at speeds, m/s
-    speeds : ascending from 0 to the top, m/s; between them the law is smooth
+    ``law``: f at speeds, m/s; ``speeds``: ascending from 0 to the top, m/s; between them the law is
+    smooth.
 
-    Examples
-    --------
     >>> ends, rows, corners = law_moments(lambda u: 0.3 + 0.0 * u, np.array([0.0, 1.0]))
     >>> rows[0, :, 0].round(12).tolist()
     [0.3, 0.15, 0.1, 0.075]

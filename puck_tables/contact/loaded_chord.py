@@ -67,17 +67,8 @@ class Segment(NamedTuple):
 def segment(offset: FloatArray) -> Segment:
     """Area and load of the part of the unit disc beyond chords at distances ``offset``.
 
-    Parameters
-    ----------
-    offset : array (n,)
-        d < 1; the whole disc for d ≤ −1.
+    ``offset``: array (n,), d < 1; the whole disc for d ≤ −1.  Returns Segment, arrays (n,).
 
-    Returns
-    -------
-    Segment, arrays (n,)
-
-    Examples
-    --------
     >>> half = segment(np.array([0.0]))
     >>> float(half.load[0].round(12)), float(half.lever[0].round(12))  # 2/3, 3π/16
     (0.666666666667, 0.589048622548)
@@ -118,15 +109,9 @@ def patch_rule(
 ) -> PatchRule:
     """The rule for sums over the loaded part.
 
-    Parameters
-    ----------
-    ratio, fast : arrays (n,)
-        min(v, r|ω|)/max(v, r|ω|), and whether r|ω| > v.
-    offset, bearing : arrays (n,)
-        d < 1 and γ of the chord.
+    ``ratio``, ``fast``: arrays (n,), min(v, r|ω|)/max(v, r|ω|), and whether r|ω| > v; ``offset``,
+    ``bearing``: arrays (n,), d < 1 and γ of the chord.
 
-    Examples
-    --------
     >>> one = np.ones(1)
     >>> rule = patch_rule(0.0 * one, one < 0.0, 0.0 * one, 0.0 * one)  # pure sliding, half a disc
     >>> float(rule.weight.sum().round(12))  # π/2
@@ -195,13 +180,9 @@ class Chord(NamedTuple):
 def guessed_chord(ratio: FloatArray, fast: npt.NDArray[np.bool_], delta: FloatArray) -> Chord:
     """The tilt of the linear law, as far as the load can move: |⟨(x, y)⟩| = m(d) ≤ δ/4.
 
-    Parameters
-    ----------
-    ratio, fast : arrays (n,), min(v, r|ω|)/max(v, r|ω|), and whether r|ω| > v
-    delta : array (n,), dimensionless height
+    ``ratio``, ``fast``: arrays (n,), min(v, r|ω|)/max(v, r|ω|), and whether r|ω| > v; ``delta``:
+    array (n,), dimensionless height.
 
-    Examples
-    --------
     >>> one = np.ones(1)
     >>> float(guessed_chord(0.5 * one, one < 0.0, 2.0 * one).offset[0].round(3))
     -0.294

@@ -22,23 +22,12 @@ NAMES = (
 def base_of(text: str) -> Base:
     """The base of a text: of a name with lengths, or of a file of corners, or a drawing.
 
-    Parameters
-    ----------
-    text : str
-        box:LENGTHxWIDTH, disc:RADIUS, annulus:RADIUSxINNER, polygon:X,Y;X,Y;X,Y by its corners,
-        feet:RADIUS;X,Y;X,Y by their places (X,Y,LOAD with loads of their own), in m or with units
-        (box:20cmx10cm), or the path of a CSV file with columns x and y or of a drawing (SVG, of an
-        outline and its holes); ``@X,Y`` after it is the centre of mass.
+    ``text``: box:LENGTHxWIDTH, disc:RADIUS, annulus:RADIUSxINNER, polygon:X,Y;X,Y;X,Y by its
+    corners, feet:RADIUS;X,Y;X,Y by their places (X,Y,LOAD with loads of their own), in m or with
+    units (box:20cmx10cm), or the path of a CSV file with columns x and y or of a drawing (SVG, of
+    an outline and its holes); ``@X,Y`` after it is the centre of mass.  Raises InputError if it is
+    not known, or a number is out of range; ContactError if part of it would lift.
 
-    Raises
-    ------
-    InputError
-        If it is not known, or a number is out of range.
-    ContactError
-        If part of it would lift.
-
-    Examples
-    --------
     >>> round(base_of("box:20cmx10cm@1cm,0").middle[0], 6)
     0.01
     >>> round(base_of("polygon:0,0;20cm,0;0,10cm").area, 6)

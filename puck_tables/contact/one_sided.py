@@ -229,28 +229,13 @@ def balanced(direction: SlipDirection, delta: FloatArray) -> tuple[Resultants, C
 def height_slopes(phi: FloatArray, delta: FloatArray) -> tuple[Resultants, Resultants]:
     """The resultants of one-sided contact, and how they change with the height, ∂ρ/∂δ.
 
-    Parameters
-    ----------
-    phi : array (n,), radians, in [0, π/2)
-    delta : array (n,), above ``critical_delta(phi)``
-
-    Returns
-    -------
-    Resultants, Resultants
-        Themselves and their derivatives at the same φ, arrays (n,).
-
-    Raises
-    ------
-    ContactError, AccuracyError
-        As :func:`balance`.
-
-    Notes
-    -----
     The chord (d, γ) moves so that the balance stays solved; with ⟨f⟩ = ∫ξ f/∫ξ, ∂ξ/∂d = −1 and
     ∂ξ/∂γ the position along the chord, where ξ = 0 nothing enters or leaves.
 
-    Examples
-    --------
+    ``phi``: array (n,), radians, in [0, π/2); ``delta``: array (n,), above ``critical_delta(phi)``.
+    Returns Resultants, Resultants: themselves and their derivatives at the same φ, arrays (n,).
+    Raises ContactError, AccuracyError as :func:`balance`.
+
     >>> _, slopes = height_slopes(np.array([0.5]), np.array([2.0]))
     >>> [round(float(slope[0]), 6) for slope in slopes]
     [-0.02685, 0.331562, -0.211668]

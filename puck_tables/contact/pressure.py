@@ -24,17 +24,10 @@ _CHI_WEIGHT = np.pi * _WEIGHTS[24:]
 class PressureLaw:
     """An axisymmetric pressure law on the unit disc.
 
-    Parameters
-    ----------
-    name : str
-        The name a table file carries.
-    weight : callable
-        W(ρ), shape-preserving, for ρ in [0, 1); normalised to ∫ W ρ dρ = 1/2.
-    moments : callable, optional
-        The chord moments as functions of L² = 1 − distance², where they are elementary.
+    ``name``: the name a table file carries; ``weight``: w(ρ), shape-preserving, for ρ in [0, 1);
+    normalised to ∫ W ρ dρ = 1/2; ``moments``: the chord moments as functions of L² = 1 − distance²,
+    where they are elementary.
 
-    Examples
-    --------
     >>> UNIFORM.name
     'uniform'
     """
@@ -46,22 +39,12 @@ class PressureLaw:
     def chord_moments(self, distance: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Moments ∫ W dl and ∫ W l² dl along the chord at a distance from the centre.
 
-        Parameters
-        ----------
-        distance : array, any shape
-            Distance of the chord from the centre of the unit disc, in [0, 1].
-
-        Returns
-        -------
-        tuple of two arrays of the same shape
-
-        Notes
-        -----
         l = L sin χ with L² = 1 − distance² removes the square-root ends of every law that is
         smooth in ρ² and √(1 − ρ²).
 
-        Examples
-        --------
+        ``distance``: array, any shape, distance of the chord from the centre of the unit disc, in
+        [0, 1].  Returns tuple of two arrays of the same shape.
+
         >>> zeroth, second = UNIFORM.chord_moments(np.array([0.6]))
         >>> float(zeroth[0].round(12)), float(second[0].round(12))
         (1.6, 0.341333333333)

@@ -45,28 +45,13 @@ _CHUNK = 64  # points at once: their rules fit the cache
 def integrals(phi: npt.ArrayLike, law: PressureLaw = UNIFORM) -> PatchIntegrals:
     """The five integrals p_a … p_e by direct quadrature.
 
-    Parameters
-    ----------
-    phi : array_like, radians, any shape, in [−π/2, π/2]
-    law : PressureLaw
-        The axisymmetric pressure weight; uniform by default.
-
-    Returns
-    -------
-    PatchIntegrals
-        Dimensionless, each of the shape of ``phi``; error at most 1e-14.
-
-    Raises
-    ------
-    InputError
-        If an angle is not finite or lies outside [−π/2, π/2].
-
-    References
-    ----------
     Salnikova, Treschev, Gallyamov 2012, eq. 4.3–4.6.
 
-    Examples
-    --------
+    ``phi``: array_like, radians, any shape, in [−π/2, π/2]; ``law``: the axisymmetric pressure
+    weight; uniform by default.  Returns PatchIntegrals: dimensionless, each of the shape of
+    ``phi``; error at most 1e-14.  Raises InputError if an angle is not finite or lies outside
+    [−π/2, π/2].
+
     >>> float(integrals(np.pi / 2).d.round(13))  # 2/3 for a puck that only spins
     0.6666666666667
     """

@@ -29,20 +29,10 @@ _THIN = 0.999  # of the radius is the hole: from here on discs cancel, circles d
 class RoundLoad:
     """A pressure law on the inner part of a radius.
 
-    Parameters
-    ----------
-    law : Law
-        uniform, galin, hertz, ring, annulus or a profile.
-    reach : float
-        Where the load ends, in units of the radius at whose rim slips are reckoned, up to 1.
+    ``law``: uniform, galin, hertz, ring, annulus or a profile; ``reach``: where the load ends, in
+    units of the radius at whose rim slips are reckoned, up to 1.  Raises InputError if the law is
+    given by a function of the slip angle.
 
-    Raises
-    ------
-    InputError
-        If the law is given by a function of the slip angle.
-
-    Examples
-    --------
     >>> RoundLoad(law_of("annulus:0.8"), 0.5).edges
     (0.4, 0.5)
     """

@@ -57,26 +57,12 @@ def speed_integrals(
 ) -> PatchIntegrals:
     """The five integrals with a friction coefficient inside that depends on the slip speed.
 
-    Parameters
-    ----------
-    phi : array_like, radians, in [−π/2, π/2]
-    speed : array_like, m/s
-        Q = hypot(v, rω), broadcast against ``phi``.
-    law : SpeedLaw, or callable from speeds in m/s to f
-        A callable must be smooth on scales above 1e-4 of the fastest slip.
+    ``phi``: array_like, radians, in [−π/2, π/2]; ``speed``: array_like, m/s, Q = hypot(v, rω),
+    broadcast against ``phi``; ``law``: SpeedLaw, or callable from speeds in m/s to f, a callable
+    must be smooth on scales above 1e-4 of the fastest slip.  Returns PatchIntegrals: p_a … p_e with
+    f inside; error about 1e-13 of the largest f (for φ → 0 and p_c, p_d 1e-10).  Raises InputError
+    if an argument is out of range; the fastest slip v + r|ω| must lie within a ``SpeedLaw``.
 
-    Returns
-    -------
-    PatchIntegrals
-        p_a … p_e with f inside; error about 1e-13 of the largest f (for φ → 0 and p_c, p_d 1e-10).
-
-    Raises
-    ------
-    InputError
-        If an argument is out of range; the fastest slip v + r|ω| must lie within a ``SpeedLaw``.
-
-    Examples
-    --------
     >>> viscous = speed_integrals(0.7, 2.0, lambda u: 0.1 * u)  # linear: p_b = f Q/4 exactly
     >>> float(viscous.a.round(12)), float(viscous.b.round(12)), float(viscous.d.round(12))
     (0.2, 0.05, 0.1)
@@ -213,11 +199,11 @@ def _panels(edges: FloatArray) -> tuple[FloatArray, FloatArray]:
     return (middle + half * _NODE).reshape(size), (half * _WEIGHT).reshape(size)
 
 
-def _with_breaks(first: float, last: float, breaks: FloatArray) -> FloatArray:
-    """Edges halved towards ``first``, with further breaks (n, k) between the ends."""
-    graded = first + (last - first) * _EDGES
+def _with_breaks(last: float, breaks: FloatArray) -> FloatArray:
+    """Edges halved towards 0, with further breaks (n, k) between it and the last."""
+    graded = last * _EDGES
     every = np.broadcast_to(graded, (len(breaks), graded.size))
-    return np.sort(np.concatenate([every, np.clip(breaks, first, last)], axis=1), axis=1)
+    return np.sort(np.concatenate([every, np.clip(breaks, 0.0, last)], axis=1), axis=1)
 
 
 def _centre_inside(
@@ -235,7 +221,7 @@ def _centre_inside(
     # arcs, R = 1 − s cos τ
     with np.errstate(divide="ignore", invalid="ignore"):
         cosine = np.where(s > 0.0, (1.0 - circles) / s, 1.0)
-    tau, weight = _panels(_with_breaks(0.0, np.pi, np.arccos(np.clip(cosine, -1.0, 1.0))))
+    tau, weight = _panels(_with_breaks(np.pi, np.arccos(np.clip(cosine, -1.0, 1.0))))
     c, sin_tau = np.cos(tau), np.sin(tau)
     R = (1.0 - s) + 2.0 * s * np.sin(0.5 * tau) ** 2
     weight = weight * np.asarray(law(rim * R)) * sin_tau
@@ -263,7 +249,7 @@ def _centre_outside(
     with np.errstate(divide="ignore", invalid="ignore"):
         away = np.abs(breaks - centre) / (centre * kappa)
     away = np.where(np.isfinite(away), away, 1.0)
-    tau, weight = _panels(_with_breaks(0.0, 0.5 * np.pi, np.arccos(np.minimum(away, 1.0))))
+    tau, weight = _panels(_with_breaks(0.5 * np.pi, np.arccos(np.minimum(away, 1.0))))
     c, sin_tau = np.cos(tau), np.sin(tau)
     weight = weight * sin_tau
     f = [np.asarray(law(centre * (1.0 + sign * kappa * c))) for sign in (1.0, -1.0)]

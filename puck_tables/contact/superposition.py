@@ -68,22 +68,11 @@ def annulus_integrals(phi: npt.ArrayLike, inner: float) -> PatchIntegrals:
 def ring_integrals(phi: npt.ArrayLike) -> PatchIntegrals:
     """The five integrals of a thin ring.
 
-    Parameters
-    ----------
-    phi : array_like, radians, in [−π/2, π/2]
-
-    Returns
-    -------
-    PatchIntegrals
-        Error 1e-14.
-
-    Notes
-    -----
     With t the angle from the instantaneous centre, w² = (cos φ − sin φ)² + 2 sin 2φ sin²(t/2); what
     is odd in cos t has been taken off the numerators, so nothing cancels.
 
-    Examples
-    --------
+    ``phi``: array_like, radians, in [−π/2, π/2].  Returns PatchIntegrals: error 1e-14.
+
     >>> p = ring_integrals(np.pi / 4)
     >>> float((p.a - p.d).round(12))
     0.0
@@ -109,15 +98,9 @@ def profile_integrals(
 ) -> PatchIntegrals:
     """The five integrals of a pressure tabulated over the radius, straight in between.
 
-    Parameters
-    ----------
-    phi : array_like, radians, in [−π/2, π/2]
-    radii : array (n,), ascending to 1
-        No pressure inside the first.
-    pressure : array (n,), not negative, in any unit
+    ``phi``: array_like, radians, in [−π/2, π/2]; ``radii``: array (n,), ascending to 1, no pressure
+    inside the first; ``pressure``: array (n,), not negative, in any unit.
 
-    Examples
-    --------
     >>> p = profile_integrals(0.3, np.array([0.0, 1.0]), np.array([1.0, 1.0]))
     >>> float(p.a.round(12)) == float(disc_integrals(0.3, np.ones(()))[0].round(12))
     True

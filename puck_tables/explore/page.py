@@ -41,14 +41,9 @@ LAWS = (
 def explorer_page() -> str:
     """The explorer as one HTML file: it needs no server, no network and no other file.
 
-    Returns
-    -------
-    str
-        Its numbers come from :func:`puck_tables.export_source`, to 1e-6 of Q/J and Q²/J; bases that
-        are drawn on it are integrated, to 5e-6.
+    Its numbers come from :func:`puck_tables.export_source`, to 1e-6 of Q/J and Q²/J;
+    bases that are drawn on it are integrated, to 5e-6.
 
-    Examples
-    --------
     >>> page = explorer_page()
     >>> page[:15], len(page) < 300_000
     ('<!DOCTYPE html>', True)

@@ -46,11 +46,8 @@ _HEIGHTS = (0.0, 1.0)  # dimensionless: both ends of the tables
 def cases_of(functions: Sequence[str], tol: float, kind: Puck | None = None) -> dict[str, Cases]:
     """Width of a vector and all their numbers, by function.
 
-    Parameters
-    ----------
-    functions : of the exported file
-    tol : of it; numbers have as many digits as tell it
-    kind : whose pressure law and gyration; default: homogeneous, under uniform pressure
+    ``functions``: of the exported file; ``tol``: of it; numbers have as many digits as tell it;
+    ``kind``: whose pressure law and gyration; default: homogeneous, under uniform pressure.
     """
     made = {
         "stop": _stops, "state": _states, "turn": _turns, "resultants": _resultants,

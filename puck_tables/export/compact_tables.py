@@ -92,15 +92,10 @@ def spline_fit(
     Cheapest is the least product of the signs that write it and, to the power of ``haste``, of how
     many rows are read for one look-up.
 
-    Parameters
-    ----------
-    values : array (sides, nodes, heights, functions), nodes uniform in ξ from 0 to 1
-    error : in the unit of the values
-    haste : how much speed counts against size
-    degrees : that are tried
+    ``values``: array (sides, nodes, heights, functions), nodes uniform in ξ from 0 to 1; ``error``:
+    in the unit of the values; ``haste``: how much speed counts against size; ``degrees``: that are
+    tried.
 
-    Examples
-    --------
     >>> xi = np.linspace(0.0, 1.0, 101)[None, :, None, None]
     >>> wave = np.cos(3.0 * xi) * (1.0 + heights()[:, None] ** 2) * np.ones((2, 1, 1, 1))
     >>> result = spline_fit(wave, 1e-6)

@@ -79,14 +79,9 @@ def marks_of(law: Law) -> FloatArray:
 class LawValues:
     """What is exported of the pucks of one law and one radius of gyration, made when asked for.
 
-    Parameters
-    ----------
-    law : Law
-    gyration : radius of gyration about the vertical axis in units of r
-    tol : the error that is asked for
+    ``gyration``: radius of gyration about the vertical axis in units of r; ``tol``: the error that
+    is asked for.
 
-    Examples
-    --------
     >>> from puck_tables.contact.laws import law_of
     >>> values = LawValues(law_of("annulus:0.8"), 1.0, 1e-4)
     >>> round(values.tallest, 12), values.patch.shape

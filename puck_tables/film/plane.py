@@ -36,14 +36,8 @@ _FLAT = 1e-4  # triangles of marks, of the square of their extent, that are as g
 class Plane:
     """The homography of a floor.
 
-    Parameters
-    ----------
-    matrix : ndarray (3, 3)
-        H, from pixels to metres.
-    residual : float, m
-        Root mean square of what the marks lie off; 0 with four of them.
-    count : int
-        Of marks.
+    ``matrix``: ndarray (3, 3), h, from pixels to metres; ``residual``: float, m, root mean square
+    of what the marks lie off; 0 with four of them; ``count``: of marks.
     """
 
     matrix: FloatArray
@@ -129,19 +123,10 @@ def plane_of(rows: Sequence[Sequence[float]] | FloatArray) -> Plane:
 def plane_from(marks: Marks) -> Plane:
     """The homography that marks fix, given as rows or in a CSV file.
 
-    Parameters
-    ----------
-    marks : str, Path or array_like (n, 4)
-        A file of columns u, v (pixels) and x, y, whose header says the unit of the last two; or
-        rows of the same in pixels and metres.
+    ``marks``: str, Path or array_like (n, 4), a file of columns u, v (pixels) and x, y, whose
+    header says the unit of the last two; or rows of the same in pixels and metres.  Raises
+    InputError if the file cannot be read or does not say the unit, or as :func:`plane_of`.
 
-    Raises
-    ------
-    InputError
-        If the file cannot be read or does not say the unit, or as :func:`plane_of`.
-
-    Examples
-    --------
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     file = Path(folder, "marks.csv")

@@ -213,11 +213,10 @@ def checked_jitter(raw: Any) -> float | None:
     """The standard deviation of time stamps, s; None if it is to be found, 0 if there is none."""
     if raw is None:
         return 0.0
-    if isinstance(raw, str):
-        if raw != FIND:
-            raise InputError(f"jitter must be a time in s, or '{FIND}', got '{raw}'")
+    if isinstance(raw, str) and raw == FIND:
         return None
-    return positive("jitter", raw, "s")
+    name = f"jitter, if not '{FIND}'," if isinstance(raw, str) else "jitter"
+    return positive(name, raw, "s")
 
 
 def checked_rows(raw: Any) -> tuple[float, float] | None:
@@ -287,7 +286,9 @@ def checked_noise(raw: Any) -> tuple[float | None, float | None]:
     """The noise as given, None for what is to be found."""
     if raw is None:
         return None, None
-    place, angle = pair_of("noise must be (metres, radians), None for what is to be estimated", raw)
+    place, angle = pair_of(
+        "noise must be two numbers, of places (m) and of angles (rad), None: to be found", raw
+    )
     return (
         None if place is None else positive("the noise of places", place, "m"),
         None if angle is None else positive("the noise of angles", angle, "rad"),

@@ -172,6 +172,25 @@ def _part_of_arc(
 
 
 @inlined
+def _part_of_circle(
+    room: FloatArray, at: int, end: int, nx: float, ny: float, away: float
+) -> tuple[int, float, float, float, float]:
+    """Put what of a whole circle lies beyond a line so far from its middle at a place.
+
+    Where the next goes, and its two ends, which do not wait for their angles.
+    """
+    mx, my, radius = room[at + ABOUT_X], room[at + ABOUT_Y], room[at + RADIUS]
+    sign = 1.0 if room[at + TURN] > 0.0 else -1.0
+    half = sign * math.sqrt((radius - away) * (radius + away))
+    fx, fy = mx + away * nx, my + away * ny
+    px, py, qx, qy = fx + half * ny, fy - half * nx, fx - half * ny, fy + half * nx
+    angle = direction_of(half, away)
+    start = direction_of(ny, nx) - angle
+    end = _arc(room, end, mx, my, radius, start, 2.0 * angle, px, py, qx, qy)
+    return end, px, py, qx, qy
+
+
+@inlined
 def _first_met(fx: float, fy: float, x: float, y: float) -> tuple[float, float]:
     """The point of a cut from which all its pieces begin: that given, or the first that is met."""
     return (fx, fy) if fx < math.inf else (x, y)
@@ -206,6 +225,12 @@ def beyond_line(
                     end = _straight(room, end, x, y, qx, qy)
             continue
         away = place - nx * room[at + ABOUT_X] - ny * room[at + ABOUT_Y]
+        if abs(room[at + TURN]) == _WHOLE and abs(away) < room[at + RADIUS]:
+            end, px, py, qx, qy = _part_of_circle(room, at, end, nx, ny, away)
+            fx, fy = _first_met(fx, fy, px, py)
+            end = _straight(room, end, fx, fy, px, py)
+            end = _straight(room, end, qx, qy, fx, fy)
+            continue
         pieces, low, high, again, until = _inside(
             room, at, begins, ends, direction_of(ny, nx), away / room[at + RADIUS]
         )

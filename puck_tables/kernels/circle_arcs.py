@@ -40,10 +40,10 @@ def _incomplete(
 ) -> tuple[float, float]:
     """F and D of an angle between −π and π, or so much more; ``shorter``: √(1 − r²)."""
     a, b = 1.0, shorter
-    inverse = 1.0 / delta
     # φ and its double, less by what it falls short: the mean of two directions
+    angle = direction_of(sine * (delta + b), cosine * (delta + a)) + more
+    inverse = 1.0 / delta
     turned_c, turned_s = cosine * inverse, b * sine * inverse
-    angle = direction_of(sine + turned_s, cosine + turned_c) + more
     cosine, sine = cosine * turned_c - sine * turned_s, sine * turned_c + cosine * turned_s
     a, b = 0.5 + 0.5 * b, math.sqrt(b)
     c_over = 0.25 / a  # c_n/r²; (1 − b)/2 = r²/(2 (1 + b))
@@ -176,9 +176,11 @@ def _amplitude_at(
     """Sin φ, cos φ and Δ of the point at an angle η, and w."""
     ahead = s * s / (1.0 - c) - off if c < 0.0 else r + c
     w = math.sqrt(s * s + ahead * ahead)
-    back = 1.0 / w if w > 0.0 else 0.0
-    sine, cosine = s * back, (ahead * back if w > 0.0 else -1.0)
-    return sine, cosine, math.sqrt(cosine * cosine + (shorter * sine) ** 2), w
+    delta = math.sqrt(ahead * ahead + (shorter * s) ** 2)
+    if not w > 0.0:
+        return 0.0, -1.0, 1.0, 0.0
+    back = 1.0 / w
+    return s * back, ahead * back, delta * back, w
 
 
 @inlined
@@ -201,7 +203,7 @@ def along_arc(
     more, steps = (2.0 * math.pi if past and turn > _NO_ARC else 0.0), 2
     for k in range(len(_MORE_STEPS)):
         steps += 1 if shorter < _MORE_STEPS[k] else 0
-    delta = math.sqrt(cosine * cosine + (shorter * sine) ** 2)
+    delta = math.sqrt(ahead * ahead + (shorter * up) ** 2) * back
     first, d = _incomplete(sine, cosine, delta, shorter, steps, more)
     product = sine * s0 * s1
     e, d = first - r * r * (d + product), d + product

@@ -63,7 +63,8 @@ class _Announcer(event.Listener):
         gc.set_threshold(1_000_000, *self._found[-1][1:])
 
     def on_end(self, event: Any) -> None:
-        gc.set_threshold(*self._found.pop())
+        if self._found:  # none where a function of somebody else's began before this was here
+            gc.set_threshold(*self._found.pop())
 
 
 event.register("numba:compile", _Announcer())  # type: ignore[no-untyped-call]

@@ -86,7 +86,7 @@ def exp_of(x: float) -> float:
 
 @inlined
 def cosine_sine_of(x: float) -> tuple[float, float]:
-    """Cos and sin of |x| ≤ 1e5."""
+    """Cos and sin of |x| ≤ 1e5; beyond, up to 1e15, with the error of x."""
     shifted = x * 0.63661977236758134308 + _SHIFT
     k = shifted - _SHIFT
     r = ((x - k * 1.57079632673412561417) - k * 6.07710050630396597660e-11) - k * (

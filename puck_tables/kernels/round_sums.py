@@ -37,6 +37,7 @@ _BEYOND = 1.2  # of a distance: a path that is as far inside or outside of C's c
 _AT_RIM = 2e-15  # of 1 − ρ²: an end that is as close to the rim is on it
 _CONCENTRIC = 1e-15  # radii: a circle about a point as close to the centre is one about that
 _TOUCHES = 1e-30  # of ρ²: a patch that enters no farther, or by rounding less than not at all
+_AT_ENDS = 1e-9  # rad: rounding says of what is closer to an end of an arc whether it is in
 _NO_SEAM = 1e-8  # rad: a patch as close to the rim touches it
 
 
@@ -234,7 +235,12 @@ def pressed_arc(
         root = math.sqrt((radius - cx) * (radius + cx))
         up, down = math.atan2(root, -cx), math.atan2(-root, -cx)
         up_in, down_in = _depth(up, start, turn), _depth(down, start, turn)
-        if (px < 0.0) == (qx < 0.0):  # as its neighbours have it
+        if max(abs(up_in), abs(down_in)) < _AT_ENDS:  # an end counts as its neighbours have it
+            left = cx + radius * math.cos(start + 0.5 * turn) < 0.0
+            first = 1.0 if (px < 0.0) != left else 0.0
+            last = 1.0 if (qx < 0.0) != left else 0.0
+            up_in, down_in = (first, last) if py > qy else (last, first)
+        elif (px < 0.0) == (qx < 0.0):  # as its neighbours have it
             up_in = down_in = up_in + down_in  # both or none
         else:
             up_in, down_in = up_in - down_in, down_in - up_in

@@ -63,15 +63,10 @@ def is_plain(pressure: str | Law, gyration: float, delta: float) -> bool:
 class UnitPuck:
     """What the motion of a puck depends on besides its scale.
 
-    Parameters
-    ----------
-    law : Law, the pressure law
-    delta : dimensionless height 2fh/r
-    gyration : radius of gyration about the vertical axis in units of r
-    table : of its friction, where one was given; else friction comes from the law itself
+    ``law``: Law, the pressure law; ``delta``: dimensionless height 2fh/r; ``gyration``: radius of
+    gyration about the vertical axis in units of r; ``table``: of its friction, where one was given;
+    else friction comes from the law itself.
 
-    Examples
-    --------
     >>> round(body_of("ring", 0.0, 1.0).limit_ratio, 9)
     1.0
     """

@@ -72,12 +72,9 @@ def to_stop(
 ) -> int:
     """Run from (u, everything else 0) to the stop; returns the number of steps.
 
-    Parameters
-    ----------
-    u : start value, finite
-    steps : about how many steps to take
-    section, delta : friction at this δ, see :mod:`puck_tables.motion.equations_of_motion`
-    state, result : arrays (8,), (8 + 1): work space, and the state at the stop (its ψ: the turn)
+    ``u``: start value, finite; ``steps``: about how many steps to take; ``section``, ``delta``:
+    friction at this δ, see :mod:`puck_tables.motion.equations_of_motion`; ``state``, ``result``:
+    arrays (8,), (8 + 1): work space, and the state at the stop (its ψ: the turn).
     """
     y = (u, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     z, turn, turn_read, count = 0.0, 0.0, False, 0

@@ -96,11 +96,8 @@ def section_friction(body: UnitPuck, accuracy: float, coarser: bool = False) -> 
 class FullContact:
     """Closed forms, or a table where that is cheaper: a plain puck.
 
-    Parameters
-    ----------
-    delta : dimensionless height 2fh/r
-    table : one's own instead of the shipped one and closed forms
-    exact : closed forms only
+    ``delta``: dimensionless height 2fh/r; ``table``: one's own instead of the shipped one and
+    closed forms; ``exact``: closed forms only.
     """
 
     delta: float
@@ -244,19 +241,10 @@ def source_of(
 ) -> FrictionSource:
     """Where the friction of a puck comes from.
 
-    Parameters
-    ----------
-    body : Body
-    table : of resultants under its pressure law, instead of the shipped one or the law itself
-    exact : closed forms only
+    ``table``: of resultants under its pressure law, instead of the shipped one or the law itself;
+    ``exact``: closed forms only.  Raises InputError if the puck has no closed forms, or is outside
+    the range of the table.
 
-    Raises
-    ------
-    InputError
-        If the puck has no closed forms, or is outside the range of the table.
-
-    Examples
-    --------
     >>> from puck_tables.motion.body import body_of
     >>> type(source_of(body_of("ring", 0.5, 1.0))).__name__
     'Sections'

@@ -249,19 +249,10 @@ def regime(
 def regime_of(speed: float, rim_speed: float, limit: float, width: float = LIMIT_WIDTH) -> str:
     """The regime of a launch from v and r|ω|, checked before.
 
-    Parameters
-    ----------
-    speed : v ≥ 0
-    rim_speed : r|ω| ≥ 0
-    limit : ln tan φ₀ of the puck, −inf and inf where there is none between 0 and π/2
-    width : a start this close to it is the limit motion
+    ``speed``: v ≥ 0; ``rim_speed``: r|ω| ≥ 0; ``limit``: ln tan φ₀ of the puck, −inf and inf where
+    there is none between 0 and π/2; ``width``: a start this close to it is the limit motion.
+    Returns a key of :data:`REGIMES`.
 
-    Returns
-    -------
-    str, a key of :data:`REGIMES`
-
-    Examples
-    --------
     >>> regime_of(1.0, 5.0, 0.42), regime_of(1.0, 0.0, 0.42)
     ('B', 'C0')
     """

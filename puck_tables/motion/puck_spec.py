@@ -99,9 +99,7 @@ class PuckSpec(KeepsDefaults):
     def _stand_on(self, shape: Base) -> None:
         """Check a puck on a base, and give it what was left out.
 
-        Raises
-        ------
-        InputError
+        Raises InputError.
         """
         if self.has_rim and not self.radius >= shape.reach:
             raise InputError(

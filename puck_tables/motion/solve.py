@@ -48,25 +48,11 @@ def close_enough(
 ) -> tuple[Result, ErrorEstimate, AnySetting]:  # fmt: skip
     """Compute with finer and finer settings until the estimated error is within the tolerance.
 
-    Parameters
-    ----------
-    setting : to begin with
-    attempt : computes with a setting, and estimates the error of its result
-    finer : the setting to try next; None where there is none
-    tol : the largest error
-    of : what it is about, for the message
+    ``setting``: to begin with; ``attempt``: computes with a setting, and estimates the error of its
+    result; ``finer``: the setting to try next; None where there is none; ``tol``: the largest
+    error; ``of``: what it is about, for the message.  Returns result, its error, the setting.
+    Raises AccuracyError if no setting is fine enough; it says which tolerance is.
 
-    Returns
-    -------
-    result, its error, the setting
-
-    Raises
-    ------
-    AccuracyError
-        If no setting is fine enough; it says which tolerance is.
-
-    Examples
-    --------
     >>> halves = lambda n: (n, ErrorEstimate(0.5**n, 0.0))
     >>> close_enough(1, halves, lambda n, error: n + 1, 0.1, "halves")[0]
     4

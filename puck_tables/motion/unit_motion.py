@@ -101,13 +101,8 @@ class Frame(NamedTuple):
 def frame_of(velocity: tuple[float, float], spin: float, decel: float, radius: float) -> Frame:
     """The frame of a launch.
 
-    Parameters
-    ----------
-    velocity, spin : m/s, rad/s
-    decel, radius : J m/s², r m
+    ``velocity``, ``spin``: m/s, rad/s; ``decel``, ``radius``: J m/s², r m.
 
-    Examples
-    --------
     >>> frame = frame_of((0.0, 3.0), -2.0, 5.0, 2.0)
     >>> frame.slip, frame.time, frame.length
     (5.0, 1.0, 5.0)
@@ -170,15 +165,9 @@ def solve(
 ) -> tuple[MotionRun, Selection]:
     """The motion of a launch with speed v and rim speed r|ω| in natural units, and how it was got.
 
-    Raises
-    ------
-    AccuracyError
-        If the tolerance is out of reach.
-    ContactError
-        If part of the base would be lifted on the way, where that is not computed.
+    Raises AccuracyError if the tolerance is out of reach; ContactError if part of the base would be
+    lifted on the way, where that is not computed.
 
-    Examples
-    --------
     >>> from puck_tables.motion.body import body_of
     >>> from puck_tables.motion.friction_source import source_of
     >>> run, selection = solve(source_of(body_of("uniform", 0.0, 0.5**0.5)), 1.0, 5.0, 1e-9)

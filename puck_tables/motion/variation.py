@@ -133,15 +133,10 @@ def vary(
 ) -> None:  # fmt: skip
     """A motion from u₀ and its variations: at its step ends into ``path`` (n, 21), at the stop.
 
-    Parameters
-    ----------
-    z_path : array (n,), where the steps of the motion end
-    u : ln(rω/v) at the launch
-    section : six functions, see
-        :meth:`puck_tables.table.friction_section.FrictionSlopes.for_slopes`
-    path : array (n, 21), or empty where nobody wants it
-    stop : array (21,)
-    work : room (8, 21)
+    ``z_path``: array (n,), where the steps of the motion end; ``u``: ln(rω/v) at the launch;
+    ``section``: six functions, see
+    :meth:`puck_tables.table.friction_section.FrictionSlopes.for_slopes`; ``path``: array (n, 21),
+    or empty where nobody wants it; ``stop``: array (21,); ``work``: room (8, 21).
     """
     for i in range(VARIED):
         stop[i] = 0.0

@@ -22,21 +22,11 @@ def frame_times(
 ) -> FloatArray:  # fmt: skip
     """Times (n,) in s of the frames of a motion that ends at ``end``.
 
-    Parameters
-    ----------
-    end : s
-    dt : s, between two frames, the first of them at 0; the last is the first at or after the end
-    fps : frames a second, in place of ``dt``
-    times : s, ≥ 0, or a file of them, in place of both
-        Without any of the three: 101 frames from 0 to the end.
+    ``end``: s; ``dt``: s, between two frames, the first of them at 0; the last is the first at or
+    after the end; ``fps``: frames a second, in place of ``dt``; ``times``: s, ≥ 0, or a file of
+    them, in place of both; without any of the three 101 frames from 0 to the end.  Raises
+    InputError if two of them are given, one is not positive, or frames would be more than 1e6.
 
-    Raises
-    ------
-    InputError
-        If two of them are given, one is not positive, or frames would be more than 1e6.
-
-    Examples
-    --------
     >>> frame_times(0.25, fps=10).tolist()
     [0.0, 0.1, 0.2, 0.3]
     """

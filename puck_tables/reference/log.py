@@ -98,14 +98,9 @@ class Log:
 def read_log(path: str | Path, how: LogHow) -> Log:
     r"""Read the log of one run.
 
-    Raises
-    ------
-    InputError
-        If the file cannot be read, its columns, units or axes cannot be told, cells are empty,
-        times do not increase, or quaternions are not normalised.
+    Raises InputError if the file cannot be read, its columns, units or axes cannot be told, cells
+    are empty, times do not increase, or quaternions are not normalised.
 
-    Examples
-    --------
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     file = Path(folder, "a.csv")
@@ -161,13 +156,8 @@ def read_log(path: str | Path, how: LogHow) -> Log:
 def times_in(path: str | Path) -> FloatArray:
     r"""The times (n,) in s of a file: one a line, or the column of times of a table.
 
-    Raises
-    ------
-    InputError
-        If it cannot be read, or holds no such column.
+    Raises InputError if it cannot be read, or holds no such column.
 
-    Examples
-    --------
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     _ = Path(folder, "a.txt").write_text("0\n0.1\n")
@@ -320,20 +310,10 @@ def turned(where: str, quaternions: FloatArray, up: int) -> FloatArray:
 
     Whatever axes the body has, the turn from the first row to another is about the vertical.
 
-    Parameters
-    ----------
-    where : the file, for messages
-    quaternions : ndarray (n, 4), w x y z
-    up : 1 for y, 2 for z: the axis that points up
+    ``where``: the file, for messages; ``quaternions``: ndarray (n, 4), w x y z; ``up``: 1 for y, 2
+    for z: the axis that points up.  Raises InputError if one is not normalised, or the tilt has
+    changed by over 20 degrees since the first row: then their order, or the axis, is another.
 
-    Raises
-    ------
-    InputError
-        If one is not normalised, or the tilt has changed by over 20 degrees since the first row:
-        then their order, or the axis, is another.
-
-    Examples
-    --------
     >>> half = np.array([0.0, 0.4])
     >>> q = np.column_stack([np.cos(half), 0 * half, 0 * half, np.sin(half)])
     >>> turned("a.csv", q, 2).round(9).tolist()

@@ -52,18 +52,9 @@ class LogHeading(NamedTuple):
 def log_heading(text: str, puck: str | None = None) -> LogHeading:
     """Read the heading of a column.
 
-    Parameters
-    ----------
-    text : str
-    puck : name of the puck whose columns are wanted; those without a name are of all
+    ``puck``: name of the puck whose columns are wanted; those without a name are of all.  Raises
+    InputError if it has a unit in square brackets that is none of its kind.
 
-    Raises
-    ------
-    InputError
-        If it has a unit in square brackets that is none of its kind.
-
-    Examples
-    --------
     >>> log_heading("v_x [mm/s]"), log_heading("omega (deg/s)").role, log_heading("quat.w")
     (LogHeading(role='vx', unit=0.001), 'spin', LogHeading(role='qw', unit=None))
     >>> log_heading("red_vx", "red").role, log_heading("red_vx", "yellow").role

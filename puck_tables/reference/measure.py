@@ -67,20 +67,10 @@ def measured(
 ) -> MeasuredRun:  # fmt: skip
     """Hold a run against the answer.
 
-    Parameters
-    ----------
-    log, answer : Log, Answer
-    puck : which of several
-    thresholds : below which it counts as at rest
-    step : s, of the engine; left out, the distance of its rows
+    ``puck``: which of several; ``thresholds``: below which it counts as at rest; ``step``: s, of
+    the engine; left out, the distance of its rows.  Raises InputError if its times do not start at
+    the launch, or its first row is not that of the case.
 
-    Raises
-    ------
-    InputError
-        If its times do not start at the launch, or its first row is not that of the case.
-
-    Examples
-    --------
     >>> from puck_tables.reference.answer import reference_case
     >>> exact = reference_case("slide", dt=0.1)
     >>> log = Log("a", exact.time, exact.x + 1e-3, exact.y, None, None, None, None, 0.1, ())

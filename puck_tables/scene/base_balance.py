@@ -28,10 +28,10 @@ from puck_tables.scene.base_on_floor import friction_sums
 from puck_tables.scene.floor_map import (
     ACROSS_X,
     ACROSS_Y,
-    ANGLE,
     BASE,
     BELTS,
     BORDERS,
+    COSINE,
     LAW,
     LEAST_WIDTH,
     LEFT,
@@ -43,6 +43,7 @@ from puck_tables.scene.floor_map import (
     PLACE_X,
     PLACE_Y,
     SHARE,
+    SINE,
     belt_of,
     border_of,
     distance_to,
@@ -120,7 +121,7 @@ def _sums_over_belts(
 
     And what they take to far off.
     """
-    c, s = math.cos(floor_map[ANGLE]), math.sin(floor_map[ANGLE])
+    c, s = floor_map[COSINE], floor_map[SINE]
     sums, one, two, three = NOTHING, 0.0, 0.0, 0.0
     for area in range(parts_in(floor_map)):
         bx, by = belt_of(floor_map, area)
@@ -192,7 +193,7 @@ def _friction(
     mx: float, my: float,
 ) -> tuple[float, float, float, float]:  # fmt: skip
     """Force, torque and heat; of what is at rest (lever 0) what other belts do."""
-    c, s = math.cos(floor_map[ANGLE]), math.sin(floor_map[ANGLE])
+    c, s = floor_map[COSINE], floor_map[SINE]
     sums, far, a, bx, by = sums_and_pressure(
         floor_map, c * ux + s * uy, c * uy - s * ux, w, moving, lever, c * mx + s * my,
         c * my - s * mx, True,
@@ -231,7 +232,7 @@ def friction_held(
     floor_map: FloatArray, ux: float, uy: float, w: float, mx: float, my: float
 ) -> tuple[float, float, float]:
     """∫ f p e dA and its moment, of the pressure that carries a moment (mx, my) of the load, m."""
-    c, s = math.cos(floor_map[ANGLE]), math.sin(floor_map[ANGLE])
+    c, s = floor_map[COSINE], floor_map[SINE]
     mx, my = c * mx + s * my, c * my - s * mx
     sums, _, a, bx, by = sums_and_pressure(
         floor_map, c * ux + s * uy, c * uy - s * ux, w, 0.0, 0.0, mx, my, False

@@ -22,12 +22,12 @@ from puck_tables.kernels.law_sums import coefficient_at_rest, law_sums
 from puck_tables.scene.floor_map import (
     ACROSS_X,
     ACROSS_Y,
-    ANGLE,
     AXES,
     BASE,
     BORDERS,
     CORNER,
     CORNERS,
+    COSINE,
     MIDDLE_X,
     MIDDLE_Y,
     PATCHES,
@@ -35,6 +35,7 @@ from puck_tables.scene.floor_map import (
     PLACE_Y,
     ROOM,
     SHARE,
+    SINE,
     border_of,
     corner_of,
     distance_to,
@@ -166,7 +167,7 @@ def _left_of(
 @inlined
 def _from_base(floor_map: FloatArray, x: float, y: float) -> tuple[float, float]:
     """A place on the floor in the axes of the base."""
-    c, s = math.cos(floor_map[ANGLE]), math.sin(floor_map[ANGLE])
+    c, s = floor_map[COSINE], floor_map[SINE]
     x, y = x - floor_map[PLACE_X], y - floor_map[PLACE_Y]
     return c * x + s * y, c * y - s * x
 
@@ -207,7 +208,7 @@ def friction_sums(
     """
     base, to = floor_map[int(floor_map[BASE]) :], int(floor_map[ROOM])
     reach, borders = base[BASE_REACH], int(floor_map[BORDERS])
-    c, s = math.cos(floor_map[ANGLE]), math.sin(floor_map[ANGLE])
+    c, s = floor_map[COSINE], floor_map[SINE]
     east, north = floor_map[ACROSS_X], floor_map[ACROSS_Y]
     place = east * floor_map[PLACE_X] + north * floor_map[PLACE_Y]
     nx, ny = c * east + s * north, c * north - s * east

@@ -18,11 +18,11 @@ from puck_tables.kernels.elliptic_sums import Ellipse
 # on all friction now, what holds for all of it, how the base is turned, whether velocities of the
 # floor differ, the one that states are relative to, how many edges cut the base, whether a part
 # of it may lift, of its width how much it has to be pressed on, or tips, and how fast axes of the
-# floor turn, and how far they are now,
+# floor turn, and how far they are now, and cosine and sine of how the base is turned,
 PLACE_X, PLACE_Y, SHARE, LEVER, ACROSS_X, ACROSS_Y, BORDERS, PATCHES = range(8)
 BASE, LAW, ROOM, ANGLE, BELTS, OVER_X, OVER_Y, EDGES, LEFT, LIFTS, LEAST_WIDTH = range(8, 19)
-TURNING, TURNED = 19, 20
-_HEAD = 21
+TURNING, TURNED, COSINE, SINE = range(19, 23)
+_HEAD = 23
 # the places of its borders, f N between them as it is summed now, f N of all strips and then of all
 # patches where no factor changes it, the same with their factors, their velocities, where the law
 # begins by which their f goes (0: none; N then stands for f N), a row for each patch (its middle,
@@ -92,7 +92,7 @@ class FloorMap(NamedTuple):
             len(self.borders), len(self.patches), at, law if self.laws else 0,
             ends[-1] + len(left), 0.0, float((belts != belts[0]).any()), *belts[0],
             len(self.edges), ends[-1], float(self.lifts),
-            self.narrowest, self.turning, 0.0,
+            self.narrowest, self.turning, 0.0, 1.0, 0.0,
         ]  # fmt: skip
         first = np.array(head, np.float64)
         return np.concatenate([first, *tables, self.base, *self.laws, left, room])

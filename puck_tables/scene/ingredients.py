@@ -14,12 +14,15 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
+from puck_tables.kernels.elementary import cosine_sine_of
 from puck_tables.scene.floor_map import (
     ANGLE,
     BELTS,
+    COSINE,
     PLACE_X,
     PLACE_Y,
     SHARE,
+    SINE,
     TURNED,
     TURNING,
     parts_in,
@@ -123,6 +126,7 @@ def put_at(friction: DryFriction, x: float, y: float, angle: float) -> None:
     if is_mixed(friction):
         floor_map = friction.by_speed.table
         floor_map[PLACE_X], floor_map[PLACE_Y], floor_map[ANGLE] = x, y, angle
+        floor_map[COSINE], floor_map[SINE] = cosine_sine_of(angle)
 
 
 @inlined

@@ -44,7 +44,7 @@ def floor_map_of(scene: SceneSpec, normal: float, top: float = 0.0) -> FloatArra
 
     >>> from puck_tables import Floor, Puck, Scene, Strips
     >>> floor = Floor(strips=Strips((0.1,), (0.3, 0.1)))
-    >>> floor_map_of(Scene(Puck(0.04), floor), 2.0)[21:24].tolist()
+    >>> floor_map_of(Scene(Puck(0.04), floor), 2.0)[23:26].tolist()
     [0.1, 0.6, 0.2]
     """
     floor, puck = scene.floor, scene.puck
@@ -103,8 +103,6 @@ def may_lift(scene: SceneSpec, top: float = 0.0) -> bool:
 
     ``top``: up to which slip speed laws are looked at, m/s.
 
-    Examples
-    --------
     >>> from puck_tables import Puck, Scene
     >>> [may_lift(Scene(Puck(base="box:0.2x0.1", friction=0.3, height=h))) for h in (0.05, 0.2)]
     [False, True]
@@ -164,8 +162,6 @@ def shape_under(scene: SceneSpec, top: float = 0.0) -> Base | None:
 
     ``top``: up to which slip speed laws are looked at, m/s.
 
-    Examples
-    --------
     >>> from puck_tables import Floor, Orthotropic, Puck, Scene
     >>> brushed = Orthotropic((0.1, 0.2), fixed_to="body")
     >>> shape_under(Scene(Puck(0.04), Floor(orthotropic=brushed))).reach
@@ -184,8 +180,6 @@ def follows_contour(scene: SceneSpec, top: float = 0.0) -> bool:
     of the base but on a floor of one coefficient, and by a direction that is not the floor's.
     ``top``: up to which slip speed laws are looked at, m/s.
 
-    Examples
-    --------
     >>> from puck_tables import Floor, Puck, Scene, Strips
     >>> halves = Floor(strips=Strips((0.0,), (0.1, 0.2)))
     >>> [follows_contour(Scene(Puck(0.04, height), halves)) for height in (0.02, 0.2)]

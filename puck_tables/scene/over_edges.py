@@ -8,7 +8,17 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.base_clipping import beyond_line, whole_contour
 from puck_tables.kernels.base_friction import REACH
 from puck_tables.kernels.compile import inner
-from puck_tables.scene.floor_map import ANGLE, BASE, EDGES, LEFT, PLACE_X, PLACE_Y, ROOM, edge_of
+from puck_tables.scene.floor_map import (
+    BASE,
+    COSINE,
+    EDGES,
+    LEFT,
+    PLACE_X,
+    PLACE_Y,
+    ROOM,
+    SINE,
+    edge_of,
+)
 
 MOST_EDGES = 6  # under one base: every cut may double the pieces of its contour
 # of the reach: the centre of mass is taken to be this far on the floor at least, for what is
@@ -29,7 +39,7 @@ def left_on_floor(floor_map: FloatArray) -> tuple[int, int, int]:
         east, north, place = edge_of(floor_map, k)
         place -= east * floor_map[PLACE_X] + north * floor_map[PLACE_Y]
         if place > -reach:
-            c, s = math.cos(floor_map[ANGLE]), math.sin(floor_map[ANGLE])
+            c, s = floor_map[COSINE], floor_map[SINE]
             nx, ny = c * east + s * north, c * north - s * east
             place = min(place, -_LEAST * reach)
             end = beyond_line(floor_map, first, last, to, nx, ny, place, math.inf, math.inf)

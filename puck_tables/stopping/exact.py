@@ -52,24 +52,13 @@ def integrated_stops(
 ) -> FloatArray:  # fmt: skip
     """Stops in natural units by the integrator.
 
-    Parameters
-    ----------
-    u : array (n,), ln(rω/v), infinite for pure sliding (−) and pure spin (+)
-    delta : array (n,)
-    section : friction, see :mod:`puck_tables.motion.equations_of_motion`
-    tolerance : local error of a step
-    place_unit : array (n,) or 1, what local errors of the place are measured in
-        With cos φ places next to pure spin, all as small as that, keep their digits.
-    threads : how many share the work
+    ``u``: array (n,), ln(rω/v), infinite for pure sliding (−) and pure spin (+); ``delta``: array
+    (n,); ``section``: friction, see :mod:`puck_tables.motion.equations_of_motion`; ``tolerance``:
+    local error of a step; ``place_unit``: array (n,) or 1, what local errors of the place are
+    measured in, with cos φ places next to pure spin, all as small as that, keep their digits;
+    ``threads``: how many share the work.  Returns array (n, 6): t, X, Y, path length, body angle,
+    and the turn until Q has fallen to 1/1000 (at infinite u 0).
 
-    Returns
-    -------
-    array (n, 6)
-        T, X, Y, path length, body angle, and the turn until Q has fallen to 1/1000 (at infinite u
-        0).
-
-    Examples
-    --------
     >>> integrated_stops(np.array([0.0]), np.array([1.0]), NO_SECTION, 1e-9)[0, :3].round(8)
     array([ 0.98647594,  0.32409373, -0.04297451])
     """

@@ -45,8 +45,6 @@ class ByFriction(NamedTuple):
 
         ``jacobian`` (m, …, 6 or more) is changed where it is; ``each``: of which launch it is.
 
-        Notes
-        -----
         ∂/∂f = (2h/r) ∂/∂δ + g ∂/∂J,  ∂/∂h = (2f/r) ∂/∂δ,  and of r, f and h held, −(δ/r) ∂/∂δ more.
         """
         rows = launches.matrix.copy()

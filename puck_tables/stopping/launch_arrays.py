@@ -35,13 +35,10 @@ Columns = tuple[FloatArray, FloatArray, int, FloatArray, FloatArray, FloatArray,
 class Launches:
     """Launches of one shape.
 
-    Parameters
-    ----------
-    shape : that of all of them
-    vx, vy : flat arrays, of which every ``step``-th number is a component, m/s; ``step`` 0: the
-        first, for all launches
-    spin, delta, decel, radius : arrays (n,), or (1,): the same for all launches
-    is_held : whether some of them is an array of the caller, who may change it
+    ``shape``: that of all of them; ``vx``, ``vy``: flat arrays, of which every ``step``-th number
+    is a component, m/s; ``step`` 0: the first, for all launches; ``spin``, ``delta``, ``decel``,
+    ``radius``: arrays (n,), or (1,): the same for all launches; ``is_held``: whether some of them
+    is an array of the caller, who may change it.
     """
 
     shape: tuple[int, ...]

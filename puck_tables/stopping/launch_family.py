@@ -78,13 +78,9 @@ Indices = npt.NDArray[np.int64]
 class LaunchFamily:
     """Ln v, ln r|ω|, ln t₀ and ln θ of all launches that stop at 1 m, J = 1 m/s², r = 1 m.
 
-    Parameters
-    ----------
-    body : Body
-    u : array (n,), ascending; between two all four quantities are monotonic
-    values : array (n, 4)
-    limits : array (m, 32), see :mod:`puck_tables.stopping.aim_lookup`; none of a plain puck
-    fit : array (m,), which of them fit the curve
+    ``u``: array (n,), ascending; between two all four quantities are monotonic; ``values``: array
+    (n, 4); ``limits``: array (m, 32), see :mod:`puck_tables.stopping.aim_lookup`; none of a plain
+    puck; ``fit``: array (m,), which of them fit the curve.
     """
 
     body: UnitPuck

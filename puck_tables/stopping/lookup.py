@@ -293,13 +293,8 @@ def at_height(rows: FloatArray, delta: float) -> FloatArray:
 class SlipAxis:
     """The nodes of slip, from pure sliding (φ = 0) over φ = π/4 to pure spin (φ = π/2).
 
-    Parameters
-    ----------
-    cells : int
-        Cells on either side of π/4, at least 8; the axis has ``2 cells + 1`` nodes.
+    ``cells``: cells on either side of π/4, at least 8; the axis has ``2 cells + 1`` nodes.
 
-    Examples
-    --------
     >>> SlipAxis(8).phi().round(4).tolist()[:5]
     [0.0, 0.0015, 0.0187, 0.0739, 0.1858]
     """

@@ -63,13 +63,9 @@ HEIGHT_COST = 2000  # launches that take as long as the preparation of a height
 class SolverPerHeight:
     """Stops of the pucks of one pressure law and radius of gyration, of any heights.
 
-    Parameters
-    ----------
-    pressure, gyration, tol, method, table
-        As :func:`puck_tables.stop` takes them.
+    ``pressure``, ``gyration``, ``tol``, ``method``, ``table``: as :func:`puck_tables.stop` takes
+    them.
 
-    Examples
-    --------
     >>> solver = SolverPerHeight("uniform", 0.5**0.5, 1e-6, None, None)
     >>> solver.prepare(np.array([0.5, 1.0, 1.5]))
     >>> solver.method

@@ -51,9 +51,7 @@ _OVERFLOW = STATUS_MEANINGS.index("overflow")
 class BaseSolver:
     """Stops of pucks on one base, any launches, heights and radii of gyration.
 
-    Parameters
-    ----------
-    shape, tol : the base, and the largest error, of Q/(fg) and Q²/(fg), Q = hypot(v, kω)
+    ``shape``, ``tol``: the base, and the largest error, of Q/(fg) and Q²/(fg), Q = hypot(v, kω).
     """
 
     method = "integrated"

@@ -213,19 +213,9 @@ def for_each(
 def states_of(body: UnitPuck, launch: FloatArray, times: FloatArray) -> FloatArray:
     """States of one puck at times (n,) s, integrated.
 
-    Parameters
-    ----------
-    body : Body
-    launch : array (6,): vx, vy, ω, δ, J, r
-    times : array (n,), s, ≥ 0
+    ``launch``: array (6,): vx, vy, ω, δ, J, r; ``times``: array (n,), s, ≥ 0.  Returns array (6,
+    n): x, y, heading from that at the launch, body angle, v, ω.
 
-    Returns
-    -------
-    array (6, n)
-        x, y, heading from that at the launch, body angle, v, ω.
-
-    Examples
-    --------
     >>> from puck_tables.motion.body import body_of
     >>> launch = np.array([1.0, 0.0, 0.0, 2.0, 1.0, 1.0])
     >>> states = states_of(body_of("uniform", 2.0, 0.5**0.5), launch, np.array([0.5, 2.0]))

@@ -63,6 +63,7 @@ K = TypeVar("K", bound=StopValues)  # the kind that is made
 NAMES = StopValues.quantities
 # launches drawn; heights, both ends and between nodes
 _RANDOM, _CURVE_HEIGHTS = 1500, (0.0, 0.05, 0.3, 0.62, 0.9, 0.99, 1.0)
+_MOTIONS = 400  # on which the equations are judged, each by 14 quadratures of friction
 _REFINED = 3  # places looked at in a cell
 _NODES = chebyshev.chebpts1(14)
 # How many times the tolerance an equation between several values may be off.
@@ -227,7 +228,7 @@ def judged(table: StopValues, progress: Progress | None) -> CheckReport:
         checks += _checks(route, NAMES[:STOPS], errors, u, delta, allowed)
     step(1)
     of_curve = _CURVE_CEILING / cells**4 + _CURVE_POLYNOMIAL
-    checks += _equations(table, rng, 400, allowed, of_curve) + _at_nodes(table, of_curve)
+    checks += _equations(table, rng, allowed, of_curve) + _at_nodes(table, of_curve)
     step(2)
     checks += _elementary(table, allowed)
     step(3)
@@ -235,15 +236,15 @@ def judged(table: StopValues, progress: Progress | None) -> CheckReport:
 
 
 def _equations(
-    table: StopValues, rng: np.random.Generator, count: int, allowed: float, by_similarity: float
+    table: StopValues, rng: np.random.Generator, allowed: float, by_similarity: float
 ) -> list[Check]:
-    delta = rng.random(count)
-    start = rng.choice([-1.0, 1.0], count) * np.exp(rng.uniform(-9.0, 3.5, count))
+    delta = rng.random(_MOTIONS)
+    start = rng.choice([-1.0, 1.0], _MOTIONS) * np.exp(rng.uniform(-9.0, 3.5, _MOTIONS))
     limit = np.array([limits(float(d)).u for d in delta])
     # towards the limit, far from its pole and from the singularity at u = 0
     start = np.where(np.abs(start - limit) < 0.02, limit + 0.02, start)
     reach = np.minimum(np.minimum(0.4 * np.abs(start), 0.3 * np.abs(start - limit)), 0.4)
-    end = start + np.sign(limit - start) * reach * rng.random(count)
+    end = start + np.sign(limit - start) * reach * rng.random(_MOTIONS)
     middle, half = 0.5 * (start + end), 0.5 * (end - start)
     u = middle + half * _NODES[:, None]
     phi = np.arctan(np.exp(u))

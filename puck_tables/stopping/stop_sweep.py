@@ -47,12 +47,9 @@ By = tuple[float, str | None, Any]  # tolerance, method, table
 class StopWork(Work):
     """Stops of many launches.
 
-    Parameters
-    ----------
-    launches : their numbers
-    puck : whose base they have, if it is not round, and whose gyration where it is not among them
-    by : tolerance, method and table
-    part : as ``chunk`` of :meth:`puck_tables.Puck.sweep`
+    ``launches``: their numbers; ``puck``: whose base they have, if it is not round, and whose
+    gyration where it is not among them; ``by``: tolerance, method and table; ``part``: as ``chunk``
+    of :meth:`puck_tables.Puck.sweep`.
     """
 
     code = "status"

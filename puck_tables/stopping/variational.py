@@ -68,8 +68,6 @@ class SlopeSection(NamedTuple):
 def slope_section(body: UnitPuck) -> SlopeSection:
     """Tabulate the derivatives of the stops of one kind of puck.
 
-    Notes
-    -----
     The error is measured in the middles of all cells.
     """
     friction = variations_of(body)
@@ -171,19 +169,10 @@ def variations_by(source: FrictionSlopes, gyration: float) -> Variations:
 def unit_stops(friction: Variations, cosine: FloatArray, sine: FloatArray) -> FloatArray:
     """Stops with Q = J = r = 1 and their derivatives.
 
-    Parameters
-    ----------
-    friction : Variations
-    cosine, sine : arrays (n,), of the slip angle of the launch, ≥ 0, one or the other may be 0
+    ``cosine``, ``sine``: arrays (n,), of the slip angle of the launch, ≥ 0, one or the other may be
+    0.  Returns array (n, 5, 4): rows: time, along, to the left, path, body angle.  Columns: itself,
+    for along and left over v; by v, rω, δ.
 
-    Returns
-    -------
-    array (n, 5, 4)
-        Rows: time, along, to the left, path, body angle.  Columns: itself, for along and left over
-        v; by v, rω, δ.
-
-    Examples
-    --------
     >>> from puck_tables.motion.body import body_of
     >>> friction = variations_of(body_of("ring", 0.5, 1.0))
     >>> (unit_stops(friction, np.array([1.0]), np.array([0.0]))[0, 0].round(6) + 0.0).tolist()
@@ -219,17 +208,9 @@ def unit_states(
 ) -> FloatArray:
     """States of one launch with Q = J = r = 1 at times, and their derivatives.
 
-    Parameters
-    ----------
-    friction : Variations
-    cosine, sine : of the slip angle of the launch, ≥ 0
-    times : array (n,), ≥ 0
-    local : the error of a step
-
-    Returns
-    -------
-    array (n, 6, 6)
-        Of x, y, body angle, vx, vy, rω: themselves; by v, v across, rω, δ, time.
+    ``cosine``, ``sine``: of the slip angle of the launch, ≥ 0; ``times``: array (n,), ≥ 0;
+    ``local``: the error of a step.  Returns array (n, 6, 6): of x, y, body angle, vx, vy, rω:
+    themselves; by v, v across, rω, δ, time.
     """
     from puck_tables.motion.variation import BLOCKS, KEPT, VARIED, fill_state_variations, vary
 

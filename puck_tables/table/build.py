@@ -59,19 +59,10 @@ def built(
 ) -> AnyTable:  # fmt: skip
     """A table as exact as asked, or on a grid as fine as asked, with what was measured.
 
-    Parameters
-    ----------
-    at : the table with so many cells on each side of a singular line
-    measured : the errors of such a table
-    goal : what the kind can reach
-    accuracy, cells : one of them, or none for the default accuracy
-
-    Raises
-    ------
-    InputError
-        If both are given or the number of cells is out of range.
-    AccuracyError
-        If the accuracy is out of reach.
+    ``at``: the table with so many cells on each side of a singular line; ``measured``: the errors
+    of such a table; ``goal``: what the kind can reach; ``accuracy``, ``cells``: one of them, or
+    none for the default accuracy.  Raises InputError if both are given or the number of cells is
+    out of range; AccuracyError if the accuracy is out of reach.
     """
     if cells is not None:
         if accuracy is not None:

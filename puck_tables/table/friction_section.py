@@ -69,14 +69,8 @@ class FrictionSlopes:
 def friction_slopes_of(law: Law, delta: float, accuracy: float = FLOW_ACCURACY) -> FrictionSlopes:
     """Tabulate the friction of one puck with its derivatives by the height.
 
-    Parameters
-    ----------
-    law : Law
-    delta : dimensionless height 2fh/r
-    accuracy : the largest error of a friction ratio
+    ``delta``: dimensionless height 2fh/r; ``accuracy``: the largest error of a friction ratio.
 
-    Examples
-    --------
     >>> from puck_tables.contact.laws import law_of
     >>> found = friction_slopes_of(law_of("ring"), 1.0, 1e-6)
     >>> (found.spline.at(np.array([0.0]))[0].round(6) + 0.0).tolist()  # 1, δ/4, 1 − δ²/8 …
@@ -256,14 +250,9 @@ def inertia_of(gyration: float) -> tuple[float, FloatArray]:
 def section_of_table(table: ResultantTable, delta: float, accuracy: float) -> FrictionSection:
     """The section of a table of resultants at one height: the table is all that is asked.
 
-    Parameters
-    ----------
-    table : of the puck's pressure law
-    delta : dimensionless height 2fh/r
-    accuracy : the largest error of a friction ratio
+    ``table``: of the puck's pressure law; ``delta``: dimensionless height 2fh/r; ``accuracy``: the
+    largest error of a friction ratio.
 
-    Examples
-    --------
     >>> table = ResultantTable.build("ring", 1e-8)
     >>> inverse, across, spin = section_of_table(table, 1.0, 1e-6).ratios(np.array([0.0]))[0]
     >>> round(float(across / inverse), 6)  # ρ_⊥

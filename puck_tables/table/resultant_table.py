@@ -351,17 +351,9 @@ def adversarial_points(
 ) -> tuple[FloatArray, FloatArray]:
     """Points where a table is worst, and random ones.
 
-    Parameters
-    ----------
-    table : whose cells are probed
-    count : about how many
-    seed : of the random generator; None: other points at every call
-
-    Returns
-    -------
-    phi, delta : arrays (n,)
-        Random; both sides of the singular lines and of 0 and π/2 at all distances; nodes and
-        middles of cells.
+    ``table``: whose cells are probed; ``count``: about how many; ``seed``: of the random generator;
+    None: other points at every call.  Returns ``phi, delta``: arrays (n,), random; both sides of
+    the singular lines and of 0 and π/2 at all distances; nodes and middles of cells.
     """
     rng = np.random.default_rng(seed)
     part = count // 6

@@ -35,18 +35,10 @@ _SHARP_DELTA = 3.6  # from there on the bend below φ = π/4 is a line of its ow
 def tall_resultants(phi: FloatArray, delta: float) -> Resultants:
     """Friction resultants under uniform pressure of one height above 1.
 
-    Parameters
-    ----------
-    phi : array (n,), radians, in [0, π/2]; quickest where neighbours stand next to each other
-    delta : dimensionless height, 1 < δ ≤ 3.9637
+    ``phi``: array (n,), radians, in [0, π/2]; quickest where neighbours stand next to each other;
+    ``delta``: dimensionless height, 1 < δ ≤ 3.9637.  Returns Resultants: arrays (n,), good to 1e-13
+    for δ ≤ 3.9.
 
-    Returns
-    -------
-    Resultants
-        Arrays (n,), good to 1e-13 for δ ≤ 3.9.
-
-    Examples
-    --------
     >>> rho = tall_resultants(np.array([0.5, 1.5]), 2.0)
     >>> rho.spin.round(7).tolist()
     [0.2196328, 1.3316333]

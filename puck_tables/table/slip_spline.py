@@ -65,17 +65,10 @@ class Side(NamedTuple):
 class LawAxis:
     """The slip angles of a table under a law with these edges, ascending from 0 to π/2.
 
-    Parameters
-    ----------
-    edges : tuple of float
-        Radii of the edges of the load, ascending, the last 1; more generally cot φ of the lines.
-    cells : int
-        Cells on each side of each singular line, at least 4.
-    ends_too : bool
-        Whether φ = 0 and π/2 are singular lines besides.
+    ``edges``: tuple of float, radii of the edges of the load, ascending, the last 1; more generally
+    cot φ of the lines; ``cells``: cells on each side of each singular line, at least 4;
+    ``ends_too``: whether φ = 0 and π/2 are singular lines besides.
 
-    Examples
-    --------
     >>> axis = LawAxis((1.0,), 4)
     >>> axis.size, axis.nodes().round(4).tolist()[:4]
     (9, [0.0, 0.479, 0.723, 0.7815])
@@ -169,14 +162,10 @@ def graded(sides: Sequence[Side], xi: FloatArray) -> FloatArray:
 class SlipSpline:
     """Functions of φ ∈ [0, π/2] by cubic splines between singular lines.
 
-    Parameters
-    ----------
-    sides : tuple of Side
-    values : array (sides, cells + 1, functions)
-        At the nodes, from each line outwards.
-    even : whether the functions are even about φ = 0 and π/2 (and these no singular lines)
-    accuracy : Accuracy, optional
-        The errors in the middles of the cells; none while they are not known.
+    ``sides``: tuple of Side; ``values``: array (sides, cells + 1, functions), at the nodes, from
+    each line outwards; ``even``: whether the functions are even about φ = 0 and π/2 (and these no
+    singular lines); ``accuracy``: the errors in the middles of the cells; none while they are not
+    known.
     """
 
     sides: tuple[Side, ...]
@@ -249,22 +238,13 @@ def slip_spline(
 ) -> SlipSpline:  # fmt: skip
     """Splines of these functions, refined until they are as good as asked.
 
-    Parameters
-    ----------
-    functions : callable, φ (n,) → (n, functions)
-    sides : tuple of Side
-    accuracy : the largest error allowed in the middle of a cell
-    even : see :class:`SlipSpline`
-    counted : of which functions it must hold
-    weights : what the errors of the functions are multiplied with before they are judged
-    finest : the most cells on a side
-
-    Notes
-    -----
     The error falls like cells⁻⁴.
 
-    Examples
-    --------
+    ``functions``: callable, φ (n,) → (n, functions); ``sides``: tuple of Side; ``accuracy``: the
+    largest error allowed in the middle of a cell; ``even``: see :class:`SlipSpline`; ``counted``:
+    of which functions it must hold; ``weights``: what the errors of the functions are multiplied
+    with before they are judged; ``finest``: the most cells on a side.
+
     >>> from puck_tables.table.slip_spline import sides_of
     >>> found = slip_spline(lambda phi: np.cos(phi)[:, None] ** 2, sides_of([1.0]), 1e-6, True)
     >>> found.cells, float(found.at(np.array([0.5]))[0, 0].round(6))

@@ -47,23 +47,13 @@ def tabulated(
 
     The grid is cut at the corners of the law, and every patch is as fine as it needs.
 
-    Parameters
-    ----------
-    law, accuracy, top_speed, scale, pressure, reach : as in :meth:`puck_tables.Table.build`
-    progress : callable (done, total), optional
-        Told how far the errors of all patches have come.
+    ``law``, ``accuracy``, ``top_speed``, ``scale``, ``pressure``, ``reach``: as in
+    :meth:`puck_tables.Table.build`; ``progress``: callable (done, total), optional, told how far
+    the errors of all patches have come.  Raises InputError if a number is out of range or the law
+    gives no f; AccuracyError if the accuracy is out of range or would take more than 2 million
+    nodes (300,000 under Hertz's or Galin's law or a profile); it says which accuracy can be
+    reached.
 
-    Raises
-    ------
-    InputError
-        If a number is out of range or the law gives no f.
-    AccuracyError
-        If the accuracy is out of range or would take more than 2 million nodes (300,000 under
-        Hertz's or Galin's law or a profile); it says which
-        accuracy can be reached.
-
-    Examples
-    --------
     >>> made = tabulated(SpeedLaw([0.0, 0.5, 1.0, 3.0], [0.3, 0.22, 0.2, 0.25]), 1e-8)
     >>> made["accuracy"].worst < 1e-8, float(made["breaks"][-1])
     (True, 3.0)

@@ -58,13 +58,9 @@ class _InSlab:
 class SlipPatch(_InSlab):
     """A part of the plane of slips on which the integrals are smooth.
 
-    Parameters
-    ----------
-    breaks : array (k + 1,), m/s
-    slab : which interval of the breaks U = v + r|ω| lies in
-    part : which part of the slips W = |v − r|ω||, 0 … slab + 1; the last up to W = U
-    fast : whether r|ω| > v
-    grade : how strongly the nodes of the first slab crowd at slip zero
+    ``breaks``: array (k + 1,), m/s; ``slab``: which interval of the breaks U = v + r|ω| lies in;
+    ``part``: which part of the slips W = |v − r|ω||, 0 … slab + 1; the last up to W = U; ``fast``:
+    whether r|ω| > v; ``grade``: how strongly the nodes of the first slab crowd at slip zero.
     """
 
     part: int
@@ -108,10 +104,8 @@ class SlipPatch(_InSlab):
 class RayPatch(_InSlab):
     """A part of the plane of slips between two rays from slip zero.
 
-    Parameters
-    ----------
-    breaks, slab, grade : as of a :class:`SlipPatch`
-    low, high : of (v − r|ω|)/(v + r|ω|)
+    ``breaks``, ``slab``, ``grade``: as of a :class:`SlipPatch`; ``low``, ``high``: of (v − r|ω|)/(v
+    + r|ω|).
     """
 
     low: float
@@ -185,14 +179,9 @@ def breaks_of(
 ) -> FloatArray:
     """Speeds from 0 to the top between which patches lie, m/s.
 
-    Parameters
-    ----------
-    law : SpeedLaw, FrictionLaw or another callable
-    top_speed : m/s; needed for a callable
-    scale : the speed below which a callable is nearly cubic, m/s; default ``top_speed``
+    ``law``: SpeedLaw, FrictionLaw or another callable; ``top_speed``: m/s; needed for a callable;
+    ``scale``: the speed below which a callable is nearly cubic, m/s; default ``top_speed``.
 
-    Examples
-    --------
     >>> breaks_of(SpeedLaw([0.0, 1.0, 9.0], [0.3, 0.2, 0.2]), None, None).round(3).tolist()
     [0.0, 1.0, 3.0, 9.0]
     """

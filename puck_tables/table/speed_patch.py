@@ -50,16 +50,10 @@ def truth_at(
 ) -> FloatArray:  # fmt: skip
     """p_a, p_b, p_d, p_e by quadrature, (…, 4).
 
-    Parameters
-    ----------
-    law, load : of friction and of pressure
-    top : what the slip goes up to, m/s
-    direction, speed : of the slip, of one shape; m/s
-    rules : FINE or COARSE
-    plain : discs by :mod:`puck_tables.contact.speed_quadrature`, as for a law that is a function
+    ``law``, ``load``: of friction and of pressure; ``top``: what the slip goes up to, m/s;
+    ``direction``, ``speed``: of the slip, of one shape; m/s; ``plain``: discs by
+    :mod:`puck_tables.contact.speed_quadrature`, as for a law that is a function.
 
-    Examples
-    --------
     >>> from puck_tables.contact.integrals import slip_direction
     >>> from puck_tables.contact.laws import law_of
     >>> viscous = SpeedLaw([0.0, 2.0], [0.0, 0.2])

@@ -10,22 +10,12 @@ from puck_tables._core.arrays import FloatArray
 def clamped_coefficients(values: FloatArray) -> FloatArray:
     """Coefficients of the uniform cubic spline with zero slope at both ends, along axis 0.
 
-    Parameters
-    ----------
-    values : array (n + 1, …)
-
-    Returns
-    -------
-    array (n + 3, …)
-
-    Notes
-    -----
     Zero slopes make the spline even about both ends: the interpolation conditions
     (c_{i−1} + 4 c_i + c_{i+1})/6 = f_i of the reflected, periodic sequence are a circular
     convolution, divided out by a Fourier transform.
 
-    Examples
-    --------
+    ``values``: array (n + 1, …).  Returns array (n + 3, …).
+
     >>> clamped_coefficients(np.ones(5)).round(12).tolist()
     [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]
     """
@@ -40,21 +30,11 @@ def clamped_coefficients(values: FloatArray) -> FloatArray:
 def half_clamped_coefficients(values: FloatArray) -> FloatArray:
     """Coefficients of the uniform cubic spline with zero slope at its start, not-a-knot at its end.
 
-    Parameters
-    ----------
-    values : array (n + 1, …), n ≥ 3
-
-    Returns
-    -------
-    array (n + 3, …)
-
-    Notes
-    -----
     The clamped spline and a multiple of the one that vanishes at all nodes and is even about the
     start: its coefficients are powers of the root −2 + √3 of 1 + 4x + x² = 0.
 
-    Examples
-    --------
+    ``values``: array (n + 1, …), n ≥ 3.  Returns array (n + 3, …).
+
     >>> c = half_clamped_coefficients(np.arange(6.0) ** 2)
     >>> float(((c[1] + 23 * c[2] + 23 * c[3] + c[4]) / 48).round(12))  # at 1.5
     2.25

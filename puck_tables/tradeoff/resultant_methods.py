@@ -36,6 +36,7 @@ from puck_tables.tradeoff.truth import Contender, Made, Question, Run, filled
 # along φ, doubled, and those of the table that comes along
 _NODES = (17, 33, 65, 129, 257, 513, 991, 2049)
 _BLOCK = 128  # points at once
+_CELLS = 512  # of a model as a table, either side of the line: far less than models err by
 
 
 def contenders(points: Question) -> Iterator[Contender]:
@@ -180,10 +181,10 @@ MODELS = {
 }
 
 
-def as_table(model: str, cells: int = 512) -> ResultantTable:
+def as_table(model: str) -> ResultantTable:
     """One of :data:`MODELS` as a table of resultants, the same at every δ."""
     law = law_of("uniform")
-    phi = LawAxis(law.edges, cells).nodes()
+    phi = LawAxis(law.edges, _CELLS).nodes()
     rho = np.empty((3, phi.size))
     MODELS[model](phi, rho)
     return ResultantTable(np.repeat(rho.T[:, None, :], HEIGHTS, axis=1), law=law)

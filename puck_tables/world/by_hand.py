@@ -7,11 +7,12 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
+from puck_tables._core.arrays import FloatArray, finite_array, real
 from puck_tables.errors import InputError
 from puck_tables.kernels.compile import inlined, kernel
-from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.over_time import FORCED, with_angles
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.drive import fill_straight
@@ -189,3 +190,38 @@ def with_integrated(engine: Engine, scene: SceneSpec, order: Whole, discs: Whole
     for i in discs.tolist():
         step_onto(engine, i)
     return engine
+
+
+def slips_of(discs: FloatArray, states: FloatArray) -> FloatArray:
+    """How fast rims slip on a floor at rest, m/s."""
+    speeds: FloatArray = np.hypot(states[..., VX], states[..., VY])
+    return np.hypot(speeds, discs[..., RADIUS] * states[..., SPIN])
+
+
+def row_of(
+    position: npt.ArrayLike | None, angle: float | None, velocity: npt.ArrayLike | None,
+    spin: float | None,
+) -> FloatArray:  # fmt: skip
+    """A state (6,) of what is given; NaN of the rest."""
+    row = np.full(6, math.nan)
+    if position is not None:
+        row[X : Y + 1] = two_of("position", position, "m")
+    if angle is not None:
+        row[THETA] = real("angle", angle, "rad")
+    if velocity is not None:
+        row[VX : VY + 1] = two_of("velocity", velocity, "m/s")
+    if spin is not None:
+        row[SPIN] = real("spin", spin, "rad/s")
+    return row
+
+
+def two_of(name: str, values: Any, unit: str) -> FloatArray:
+    """Two numbers in a unit, array (2,)."""
+    if type(values) is tuple and len(values) == 2 and type(values[0]) is type(values[1]) is float:
+        pair = np.array(values)  # most are so, and quickly seen to
+        if math.isfinite(values[0]) and math.isfinite(values[1]):
+            return pair
+    pair = finite_array(name, values, unit)
+    if pair.shape != (2,):
+        raise InputError(f"{name} must be two numbers in {unit}, got the shape {pair.shape}")
+    return pair

@@ -40,26 +40,16 @@ def pieces_along(rows: FloatArray) -> FloatArray:
     >>> pieces_along(np.array([[0.0, 0.0, 0.0, 0.0], [2.0, 1.0, 0.0, 0.0]]))[0, 5].item()
     0.5
     """
+    pieces = np.zeros((max(len(rows) - 1, 1), PIECE_COLUMNS))
     if len(rows) == 1:
-        return straight_piece(0.0, 0.0, np.append(rows[0, 1:], np.zeros(3)))[None]
-    pieces = np.zeros((len(rows) - 1, PIECE_COLUMNS))
+        pieces[0, FIRST : FIRST + 3] = pieces[0, FIRST + 9 : FIRST + 12] = rows[0, 1:]
+        return pieces
     times = np.diff(rows[:, 0])
     rates = np.diff(rows[:, 1:], axis=0) / times[:, None]
     pieces[:, START], pieces[:, DURATION] = rows[:-1, 0], times
     pieces[:, FIRST : FIRST + 3], pieces[:, FIRST + 9 : FIRST + 12] = rows[:-1, 1:], rows[1:, 1:]
     pieces[:, FIRST + 3 : FIRST + 6] = pieces[:, FIRST + 12 : FIRST + 15] = rates
     return pieces
-
-
-def straight_piece(start: float, duration: float, state: FloatArray) -> FloatArray:
-    """One straight piece (21,) from a state (6,) on.
-
-    >>> straight_piece(1.0, 2.0, np.array([0.0, 0.0, 0.0, 0.5, 0.0, 0.0]))[[0, 1, 11]].tolist()
-    [1.0, 2.0, 1.0]
-    """
-    piece = np.zeros(PIECE_COLUMNS)
-    fill_straight(start, duration, state, piece)
-    return piece
 
 
 @inlined

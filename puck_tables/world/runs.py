@@ -52,10 +52,7 @@ def sample(
 class Runs(Work):
     """The runs of a scene over its ranges.
 
-    Raises
-    ------
-    InputError
-        If nothing ranges.
+    Raises InputError if nothing ranges.
     """
 
     code = "end"
@@ -131,10 +128,7 @@ class Runs(Work):
     def of(self, start: int, stop: int) -> Columns:
         """The ends of some runs.
 
-        Raises
-        ------
-        InputError
-            If a file that the scene names was changed meanwhile.
+        Raises InputError if a file that the scene names was changed meanwhile.
         """
         numbers, count = self.numbers(start, stop), stop - start
         outer = {path: values.tolist() for path, values in numbers.items()
@@ -250,10 +244,7 @@ class Runs(Work):
 class DrawnRuns(Runs):
     """The runs of a scene of which some numbers are drawn.
 
-    Raises
-    ------
-    InputError
-        If nothing scatters, or what does is no number of the scene.
+    Raises InputError if nothing scatters, or what does is no number of the scene.
     """
 
     is_sample = True

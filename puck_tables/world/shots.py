@@ -178,16 +178,11 @@ class Shots:
 
     ``runs``, ``left_out``: how many were asked for, and how many of them were not followed.
 
-    Parameters
-    ----------
-    scene : SceneSpec
-        Without ranges.
-    striker, puck : numbers of the puck that is sent, and of the one whose end is looked for
-    through : number of a puck that is to be hit on the way, or −1
-    most : impacts that may lead the puck to its end
-    velocities : from launches (n, 2) to vx, vy, spin (n, 3)
-    patient : whether runs in which pucks push each other are followed
-        One by one, which takes a thousand times as long.  Where pucks are integrated it is done.
+    ``scene``: without ranges; ``striker``, ``puck``: numbers of the puck that is sent, and of the
+    one whose end is looked for; ``through``: number of a puck that is to be hit on the way, or −1;
+    ``most``: impacts that may lead the puck to its end; ``velocities``: from launches (n, 2) to vx,
+    vy, spin (n, 3); ``patient``: whether runs in which pucks push each other are followed, one by
+    one, which takes a thousand times as long.  Where pucks are integrated it is done.
     """
 
     def __init__(

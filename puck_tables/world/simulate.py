@@ -108,11 +108,9 @@ def _launches_off(start: Start, alone: bool) -> float:
 def _otherwise(start: Start, coarser: float, share: float, friction: float) -> Start:
     """The start of a check run.
 
-    Parameters
-    ----------
-    coarser : so many times the error of a step
-    share : of their velocities and spins launches are off by so much, and in rad their headings
-    friction : of what is integrated, off by so much
+    ``coarser``: so many times the error of a step; ``share``: of their velocities and spins
+    launches are off by so much, and in rad their headings; ``friction``: of what is integrated, off
+    by so much.
     """
     engine = g.copy_of(start.engine)
     states, launches = start.states.copy(), engine.launches.copy()

@@ -324,7 +324,7 @@ def odds_of(
     within: float | None, count: int, seed: int,
 ) -> Odds:  # fmt: skip
     """The odds of a launch (heading, speed, spin): see ``BoardAim.odds``."""
-    pairs = (("heading", heading, "rad"), ("speed", speed, ""), ("spin", spin, "rad/s"))
+    pairs = (("heading", heading, "rad"), ("speed", speed, "1"), ("spin", spin, "rad/s"))
     scatter = np.array([real(name, value, unit) for name, value, unit in pairs])
     if (scatter < 0.0).any() or not scatter.any():
         raise InputError("heading, speed and spin scatter by 0 or more, and one of them by more")

@@ -35,6 +35,7 @@ from puck_tables.world.bench import (
     bench_for,
     lay_out,
 )
+from puck_tables.world.by_hand import slips_of
 from puck_tables.world.engine_state import Whole
 from puck_tables.world.floor_under import law_goes_to, moves_along
 from puck_tables.world.lasting import longest_of
@@ -43,7 +44,7 @@ from puck_tables.world.paths import PIECE_COLUMNS
 from puck_tables.world.prepare import scales_of
 from puck_tables.world.segment_starts import room_for
 from puck_tables.world.setting_off import REACHED
-from puck_tables.world.world import World, slips_of
+from puck_tables.world.world import World
 
 _PARTS = 16  # in which threads take boards at least
 _ROWS = 4 * ROWS  # of events that are told at once

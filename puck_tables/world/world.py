@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray, finite_array, positive, real
 from puck_tables.errors import InputError
-from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
+from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.holds import misfits
 from puck_tables.scene.ingredients import FREE
 from puck_tables.scene.parts import Launch
@@ -22,6 +21,9 @@ from puck_tables.world.by_hand import (
     lead,
     led_state,
     refuse_off_hold,
+    row_of,
+    slips_of,
+    two_of,
     with_force,
     with_room_to_lead,
 )
@@ -33,7 +35,6 @@ from puck_tables.world.layout import HOLD, LIGHTNESS, RADIUS
 from puck_tables.world.named_pucks import pucks_of
 from puck_tables.world.paths import FOR_EVER
 from puck_tables.world.prepare import set_scales
-from puck_tables.world.record import Reported, pushed_back
 from puck_tables.world.running import Running
 from puck_tables.world.segment import GONE
 from puck_tables.world.segment_starts import CONCERNED, GIVEN, NOT_CONCERNED, room_for
@@ -97,12 +98,12 @@ class World(Running):
         i = self._in_play(puck)
         if self._engine.discs[i, LIGHTNESS] == 0.0:
             raise InputError(f"{self._name(i)} is driven along its path")
-        row = _row(None, None, velocity, spin)
+        row = row_of(None, None, velocity, spin)
         if impulse is not None:
             state, disc = self._all_now()[i], self._engine.discs[i]
             state = np.where(np.isnan(row), state, row)
-            push = _pair("impulse", impulse, "N s")
-            arm = np.zeros(2) if point is None else _pair("point", point, "m") - state[:2]
+            push = two_of("impulse", impulse, "N s")
+            arm = np.zeros(2) if point is None else two_of("point", point, "m") - state[:2]
             if math.hypot(*arm) > disc[RADIUS] * (1.0 + 1e-9):
                 raise InputError(f"point must lie on the puck, at most {disc[RADIUS]:g} m from its "
                                  "centre")  # fmt: skip
@@ -141,7 +142,7 @@ class World(Running):
         ([], 0.520394)
         """
         i = int(self._place[number_of(puck, self.names)])
-        row = _row(position, angle, velocity, spin)
+        row = row_of(position, angle, velocity, spin)
         if self._engine.kinds[i] == GONE and position is None:
             raise InputError(f"{self._name(i)} is not in play: give the position to put it at")
         self._put(g.PLACED, row, i)
@@ -200,7 +201,7 @@ class World(Running):
         >>> world.in_play.tolist(), world.events_since(0.0)[0].what
         ([False], 'removed')
         """
-        self._put(g.REMOVED, _row(None, None, None, None), self._in_play(puck))
+        self._put(g.REMOVED, row_of(None, None, None, None), self._in_play(puck))
 
     def add(self, puck: ScenePuck) -> int:
         """Put a new puck on the board, now, with its launch; its number.  An event says "added".
@@ -271,9 +272,9 @@ class World(Running):
         i = self._led(puck)
         turn, state, duration = real("spin", spin, "rad/s"), led_state(self._engine, i), FOR_EVER
         if velocity is not None and towards is None and speed is None:
-            state[VX : VY + 1] = _pair("velocity", velocity, "m/s")
+            state[VX : VY + 1] = two_of("velocity", velocity, "m/s")
         elif velocity is None and towards is not None and speed is not None:
-            way = _pair("towards", towards, "m") - state[:2]
+            way = two_of("towards", towards, "m") - state[:2]
             far, fast = math.hypot(*way), positive("speed", speed, "m/s")
             duration = far / fast
             state[VX : VY + 1] = fast / far * way if far > 0.0 else 0.0
@@ -285,34 +286,6 @@ class World(Running):
             self._engine.next_time[i], self._engine.next_partner[i] = self.time, g.PATH_ENDS
             self._engine.counts[g.N_AT_ONCE] = 0
             self._advance(self.time)
-
-    def reaction(self, puck: int | str) -> FloatArray:
-        """What pucks gave one that is driven since the last call, array (2,), N s.
-
-        The impulses of impacts, and the forces, over their time, of pucks that it pushes.  NaN
-        where several driven ones pushed the same pucks, for nobody knows how these share it.  What
-        rims without a bound on their friction give as they grip at once is left out where a cushion
-        takes part.
-
-        Raises
-        ------
-        InputError
-            If there is no such puck, or it is not driven.
-
-        Examples
-        --------
-        >>> from puck_tables import Puck, Scene
-        >>> mallet = Puck(0.05, path=[[0, -0.2, 0]], name="mallet")
-        >>> world = Scene(pucks=[mallet, Puck(0.03, mass=0.1, friction=0.1)]).world()
-        >>> world.drive("mallet", (1.0, 0.0))
-        >>> _ = world.advance(0.5)
-        >>> world.reaction("mallet").round(6).tolist()                     # 2 m v, e = 1
-        [-0.2, 0.0]
-        """
-        i = self._led(puck, False)
-        impulse, told = pushed_back(self._engine, i, self._described.get(i, Reported()))
-        self._described = {**self._described, i: told}
-        return impulse
 
     def apply_force(
         self, puck: int | str, force: npt.ArrayLike, torque: float = 0.0, *, duration: float
@@ -344,29 +317,12 @@ class World(Running):
         i = self._in_play(puck)
         if self._engine.discs[i, LIGHTNESS] == 0.0:
             raise InputError(f"{self._name(i)} is driven: no force moves it")
-        push = np.append(_pair("force", force, "N"), real("torque", torque, "N m"))
+        push = np.append(two_of("force", force, "N"), real("torque", torque, "N m"))
         until = self.time + positive("duration", duration, "s")
         with self._or_as_before():
             self._engine = with_force(self._engine, self.scene, self._order, i, push, until)
             set_scales(self._engine, self._all_now())
-            self._put(g.FORCED, _row(None, None, None, None), i)
-
-    def _in_play(self, puck: int | str) -> int:
-        """The disc of a puck."""
-        i = int(self._place[number_of(puck, self.names)])
-        if self._engine.kinds[i] == GONE:
-            raise InputError(f"{self._name(i)} is no longer in play: place puts it back")
-        return i
-
-    def _led(self, puck: int | str, in_play: bool = True) -> int:
-        """The disc of a puck that is led."""
-        i = self._in_play(puck) if in_play else int(self._place[number_of(puck, self.names)])
-        if self._engine.discs[i, LIGHTNESS] > 0.0:
-            raise InputError(
-                f"{self._name(i)} is not led by hand: give it a path of one row, path=[[0, x, y]], "
-                "or strike it"
-            )
-        return i
+            self._put(g.FORCED, row_of(None, None, None, None), i)
 
     def _lead(self, i: int, state: FloatArray, duration: float) -> None:
         """What is led goes on from a state."""
@@ -418,37 +374,3 @@ class World(Running):
         hold = pucks_of(self.scene)[number].constraint
         for fault in misfits(launch, hold, self.scene.floor, ""):
             raise InputError(f"{self.names[number]}: {fault}".replace("launch.", ""))
-
-
-def slips_of(discs: FloatArray, states: FloatArray) -> FloatArray:
-    """How fast rims slip on a floor at rest, m/s."""
-    speeds: FloatArray = np.hypot(states[..., VX], states[..., VY])
-    return np.hypot(speeds, discs[..., RADIUS] * states[..., SPIN])
-
-
-def _row(
-    position: npt.ArrayLike | None, angle: float | None, velocity: npt.ArrayLike | None,
-    spin: float | None,
-) -> FloatArray:  # fmt: skip
-    """A state (6,) of what is given; NaN of the rest."""
-    row = np.full(6, math.nan)
-    if position is not None:
-        row[X : Y + 1] = _pair("position", position, "m")
-    if angle is not None:
-        row[THETA] = real("angle", angle, "rad")
-    if velocity is not None:
-        row[VX : VY + 1] = _pair("velocity", velocity, "m/s")
-    if spin is not None:
-        row[SPIN] = real("spin", spin, "rad/s")
-    return row
-
-
-def _pair(name: str, values: Any, unit: str) -> FloatArray:
-    if type(values) is tuple and len(values) == 2 and type(values[0]) is type(values[1]) is float:
-        pair = np.array(values)  # most are so, and quickly seen to
-        if math.isfinite(values[0]) and math.isfinite(values[1]):
-            return pair
-    pair = finite_array(name, values, unit)
-    if pair.shape != (2,):
-        raise InputError(f"{name} must be two numbers in {unit}, got the shape {pair.shape}")
-    return pair

@@ -8,7 +8,7 @@ from typing import Any, Self
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray, finite_array, real, shown
+from puck_tables._core.arrays import FloatArray, finite_array, shown
 from puck_tables.errors import InputError
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.pucks_and_posts import called_line
@@ -18,6 +18,7 @@ from puck_tables.world.agreement import refuse_endless
 from puck_tables.world.bench import ALL_PUT, FOUND_COLUMNS, LED, LET_GO
 from puck_tables.world.engine_state import Whole
 from puck_tables.world.layout import LIGHTNESS
+from puck_tables.world.running import span_of
 from puck_tables.world.segment import GONE
 from puck_tables.world.together import Together, of_boards
 
@@ -127,11 +128,8 @@ class Worlds(Together):
             As :meth:`puck_tables.World.advance`, with the number of the board; ``boards`` of the
             error are all on which it fails: reset these, or drive them otherwise, and call again.
         """
-        endless = isinstance(duration, float) and duration == math.inf
-        span = math.inf if endless else real("duration", duration, "s")
-        if not span >= 0.0:
-            raise InputError(f"duration must not be negative, got {span:g} s")
-        if endless:
+        span = span_of(duration)
+        if span == math.inf:
             refuse_endless(self.scene)
         self._do(LET_GO, np.arange(self._n), lambda world, k: world.advance(span), span)
 
@@ -146,8 +144,7 @@ class Worlds(Together):
         puck : its number, or its name
         velocity : (2,) or (boards, 2) m/s, spin : one or (boards,) rad/s, optional
             Left out: as they are.
-        boards : numbers, or a mask (n,), optional
-            All if left out.
+        boards : numbers, or a mask (n,); all if left out
 
         Raises
         ------
@@ -184,8 +181,7 @@ class Worlds(Together):
         position : (2,) or (boards, 2) m, angle : one or (boards,) rad, optional
         velocity : (2,) or (boards, 2) m/s, spin : one or (boards,) rad/s, optional
             Left out: as they are.  One that comes back needs a position, and is at rest if left so.
-        boards : numbers, or a mask (n,), optional
-            All if left out.
+        boards : numbers, or a mask (n,); all if left out
 
         Raises
         ------
@@ -232,8 +228,7 @@ class Worlds(Together):
 
         Parameters
         ----------
-        boards : numbers, which may come again, or a mask (n,), optional
-            All if left out.
+        boards : numbers, which may come again, or a mask (n,); all if left out
 
         Raises
         ------
@@ -263,8 +258,7 @@ class Worlds(Together):
         ----------
         puck : its number, or its name
         velocity : (2,) or (boards, 2) m/s, spin : one or (boards,) rad/s
-        boards : numbers, or a mask (n,), optional
-            All if left out.
+        boards : numbers, or a mask (n,); all if left out
 
         Raises
         ------
@@ -299,8 +293,7 @@ class Worlds(Together):
         Parameters
         ----------
         states : (pucks, 6) or (boards, pucks, 6): x, y m, angle rad, vx, vy m/s, spin rad/s
-        boards : numbers, or a mask (n,), optional
-            All if left out.
+        boards : numbers, or a mask (n,); all if left out
 
         Raises
         ------
@@ -314,8 +307,7 @@ class Worlds(Together):
 
         Parameters
         ----------
-        boards : numbers, or a mask (n,), optional
-            All if left out.
+        boards : numbers, or a mask (n,); all if left out
         states : as for :meth:`set_state`, optional
 
         Raises
@@ -373,9 +365,7 @@ class Worlds(Together):
         self._do(what, some, lambda world, k: world._put(what, rows[k, 0], i), 0.0, rows,
                  np.array([i]))  # fmt: skip
 
-    def _rows(
-        self, count: int, position: Any, angle: Any, velocity: Any, spin: Any
-    ) -> FloatArray:  # fmt: skip
+    def _rows(self, count: int, position: Any, angle: Any, velocity: Any, spin: Any) -> FloatArray:
         """States (count, 1, 6) of what is given; NaN of the rest."""
         rows = np.full((count, 1, 6), math.nan)
         if position is not None:
@@ -392,8 +382,9 @@ class Worlds(Together):
         """Refuse boards where a disc has left play."""
         gone = some[self._kinds(self._at[some])[:, i] == GONE].tolist()
         if gone:
-            name = self.names[self._order[i]]
-            error = InputError(f"{name} is no longer in play: place puts it back")
+            error = InputError(
+                f"{self.names[self._order[i]]} is no longer in play: place puts it back"
+            )
             raise of_boards(dict.fromkeys(gone, error))
 
     def _each(self, name: str, values: Any, unit: str, count: int, *width: int) -> FloatArray:
