@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import io
+import os
 import subprocess
 import sys
 import threading
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
 from rarely import few
 
+import puck_tables as pt
 from puck_tables._core.own_folder import say
+from puck_tables.kernels.compile import Door
+from puck_tables.kernels.patience import here
 
 # a question for every public door that computes
 DOORS = {
@@ -103,3 +108,41 @@ def test_lines_of_many_threads_do_not_run_together(monkeypatch: pytest.MonkeyPat
     for thread in threads:
         thread.join()
     assert sorted(written) == sorted({f"{line}\n" for line in lines})
+
+
+FIT = """
+import numpy as np
+import puck_tables as pt
+t = np.arange(60) / 60.0
+path = pt.Puck(radius=0.04, height=0.025, friction=0.15).states((1.5, 0.3), 40.0, t)
+noise = 3e-4 * np.random.default_rng(1).normal(size=(60, 2))
+track = pt.Track(t, np.stack([path.x, path.y], axis=1) + noise, path.orientation, "film")
+found = pt.fit(track, pt.Puck(radius=0.04))
+print(found.summary(), found.estimate.jacobian.tobytes().hex())
+"""
+
+
+@pytest.mark.thorough
+def test_a_first_fit_has_the_bits_of_the_next(tmp_path: Path) -> None:
+    ask = [sys.executable, "-c", FIT]
+    environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path)}
+    first, second = (
+        subprocess.run(ask, capture_output=True, text=True, check=True, env=environment).stdout
+        for _ in range(2)
+    )
+    assert first == second
+
+
+def test_a_fit_runs_nothing_as_it_is_written(monkeypatch: pytest.MonkeyPatch) -> None:
+    called, run = set(), Door.__call__
+
+    def noted(door: Door, *args: object) -> object:
+        called.add((door.__name__, here.at_once))
+        return run(door, *args)
+
+    monkeypatch.setattr(here, "at_once", False)  # as it is outside of tests
+    monkeypatch.setattr(Door, "__call__", noted)
+    times = np.arange(30) / 60.0
+    place = np.stack([times - 0.3 * times**2, np.sin(99.0 * times) * 1e-3], axis=1)
+    pt.fit(pt.Track(times, place, 0.0 * times, "film"), pt.Puck(radius=0.04))
+    assert called and all(at_once for _, at_once in called), called

@@ -144,6 +144,11 @@ def test_places_on_a_grid_are_no_noise_and_that_is_said(seed):
     step = rng.uniform(2e-3, 10e-3)
     found = pt.fit(pt.Track(times, step * np.round(place / step)), pt.Puck(radius=radius))
     assert any(f"rounded to {step:.3g} m" in text for text in found.remarks), found.remarks
+    grid = step * np.round(place / step)
+    near = pt.fit(
+        pt.Track(times, np.nextafter(grid, rng.normal(size=grid.shape))), pt.Puck(radius=radius)
+    )
+    assert near["friction"].value == pytest.approx(found["friction"].value, rel=1e-6)
     number, most = found["friction"], 1.0
     if any("taken for a slide without spin" in text for text in found.remarks):
         most = 1.6  # times as much, if it spun: that is said

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import pickle
 import re
 import tomllib
 from dataclasses import dataclass, replace
@@ -350,6 +351,17 @@ def test_a_scene_made_from_dataclasses_is_checked_like_a_file() -> None:
         "wall[1] = Edge(", "force.constant[1] = masked:", "drag = None: must be a table",
     ):  # fmt: skip
         assert any(line.startswith(said) for line in lines), (said, lines)
+
+
+@pytest.mark.parametrize("again", [copy.deepcopy, lambda one: pickle.loads(pickle.dumps(one))])
+def test_copies_and_pickles_hold_what_was_given(again: Any) -> None:
+    puck = Puck(radius=0.04, height=0.02, friction=0.15)
+    assert repr(again(puck)) == repr(puck) and again(puck) == puck
+    assert again(puck).stop((1.0, 0.2), 5.0) == puck.stop((1.0, 0.2), 5.0)
+    with pytest.raises(InputError, match="this puck has a force"):
+        again(replace(puck, force=parts.Force(torque=0.01))).stop((1.0, 0.2), 5.0)
+    scene = Scene.load("incline")
+    assert "Drag" not in repr(again(scene)) and again(scene) == scene
 
 
 def test_what_disagrees_in_dataclasses_is_told_too() -> None:

@@ -26,6 +26,18 @@ class Unsaid(float):
     __slots__ = ()
 
 
+class KeepsDefaults:
+    """What holds no more in copies and pickles than it was given: the rest stays at its default."""
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What is not the default itself, which is found at the class."""
+        own = type(self)
+        return {
+            name: value for name, value in vars(self).items()
+            if value is not getattr(own, name, MISSING)
+        }  # fmt: skip
+
+
 @dataclass(frozen=True)
 class Kind:
     """What a field takes.

@@ -243,7 +243,8 @@ class Fit(Result):
             said.append(more)
         said += [text for film in problem.films for text in rounded(film)]
         own = len(problem.spec.free) or self.estimate.x.size  # of the puck, if any is found
-        wider = [self.certainty.ratio(k) for k in range(own)]
+        # of several at their most rounding does not choose
+        wider = [round(self.certainty.ratio(k), 6) for k in range(own)]
         told = bool(self.complaints) or computed(self.estimate)
         if self.certainty.widened and max(wider) > _WIDER and not told:
             name = problem.names[int(np.argmax(wider))][1]

@@ -51,13 +51,14 @@ def step_of(*columns: FloatArray) -> float:
     return step if np.abs(deviations).max() < _OFF else 0.0
 
 
-def counting(values: FloatArray) -> npt.NDArray[np.bool_]:
-    """Which of some values in the order of time (n,) count, where they are rounded.
+def counting(values: FloatArray, step: float) -> npt.NDArray[np.bool_]:
+    """Which of some values in the order of time (n,) count, where they are rounded to a step.
 
-    >>> counting(np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 2.0, 1.0])).astype(int)
+    >>> values = np.array([0.0, 1e-16, 0.0, 1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 2.0, 1.0])
+    >>> counting(values, 1.0).astype(int)
     array([1, 0, 1, 1, 1, 1, 1, 0, 0, 1, 1])
     """
-    edges = np.flatnonzero(np.diff(values)) + 1
+    edges = np.flatnonzero(np.abs(np.diff(values)) > 0.5 * step) + 1
     firsts, ends = np.append(0, edges), np.append(edges, values.size)
     counts = np.ones(values.size, bool)
     for k, (first, end) in enumerate(zip(firsts, ends, strict=True)):
@@ -196,9 +197,9 @@ def _on_grid(film: Observations) -> Observations:
         return film
     counts = np.ones((film.time.size, 3), bool)
     for k, rows in enumerate((*film.place.T, turn)):
-        if steps[k // 2]:
+        if step := steps[k // 2]:
             known = np.isfinite(rows)
-            counts[known, k] = counting(rows[known])
+            counts[known, k] = counting(rows[known], step)
     return replace(film, steps=steps, counts=counts)
 
 

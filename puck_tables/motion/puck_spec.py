@@ -10,7 +10,7 @@ from typing import Any, Self
 from puck_tables._core.arrays import FloatArray, positive, real
 from puck_tables._core.doubts import MOST_FRICTION, OF_A_PUCK, question, unquestioned
 from puck_tables._core.drawn_outlines import SUFFIXES
-from puck_tables._core.fields import Unsaid, of
+from puck_tables._core.fields import KeepsDefaults, Unsaid, of
 from puck_tables._core.own_folder import say
 from puck_tables._core.reading import Reading, entries_in, mark_checked, read_values
 from puck_tables.contact.base import Base
@@ -32,7 +32,7 @@ _ROUNDED = 0.01  # of a radius: what a profile and a puck may differ by
 
 
 @dataclass(frozen=True)
-class PuckSpec:
+class PuckSpec(KeepsDefaults):
     """The numbers of a puck, checked when it is made; :class:`puck_tables.Puck` adds its verbs.
 
     What computes takes this class: it stands below all that can be asked of a puck.

@@ -11,7 +11,7 @@ from typing import Any, Self
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray, instance
-from puck_tables._core.fields import Unsaid, of, specs
+from puck_tables._core.fields import KeepsDefaults, Unsaid, of, specs
 from puck_tables._core.reading import MAX_COUNT, Range, Reading, entries_in, read_values, written
 from puck_tables.errors import InputError
 from puck_tables.motion.body import STANDARD_GRAVITY
@@ -104,7 +104,7 @@ def launch_rows(launch: Launch, batch: Mapping[str, FloatArray], owner: str) -> 
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SceneSpec:
+class SceneSpec(KeepsDefaults):
     """What a scene says, part by part, each checked; :class:`puck_tables.Scene` adds its verbs.
 
     What computes takes this class: it stands below all that can be asked of a scene.  Whether the
