@@ -291,7 +291,7 @@ def test_the_command(tmp_path: Path):
     run = pt.fit(pt.read_tracks(file), pt.Puck(base=puck.base, height=puck.height)).simulate()
     assert json.loads(again.stdout)["stop_position"] == pytest.approx(run.stop_position, rel=1e-12)
     prior = CliRunner().invoke(main, [*words[:4], "--prior", "height=0.04"])
-    assert prior.exit_code and "height=VALUE:SIGMA, a value and its" in prior.stderr
+    assert prior.exit_code and "prior of height must be a value and a standard" in prior.stderr
     few = tmp_path / "few.csv"
     few.write_text("".join(file.read_text().splitlines(keepends=True)[:6]))
     short = CliRunner().invoke(main, ["fit", str(few), "--radius", "0.1"])
