@@ -386,6 +386,7 @@ def test_every_slide_keeps_its_tolerance(block: int):
         keeps_its_tolerance(seed)
 
 
+@pytest.mark.thorough
 def test_a_slide_of_a_flywheel_keeps_its_tolerance():
     """It takes 22 Q/J: what steps err by has the time to grow."""
     keeps_its_tolerance(545)

@@ -145,7 +145,7 @@ def slid(seed: int) -> tuple[list[np.ndarray], np.ndarray, Launch]:
     return rows, state, Launch((state[3], state[4]), spin=state[5], orientation=state[2])
 
 
-@pytest.mark.parametrize("grip", [None, WOOD, ICE])
+@pytest.mark.parametrize("grip", [None, WOOD, pytest.param(ICE, marks=pytest.mark.thorough)])
 def test_motion_is_that_of_the_judge(grip: Any):
     ends = set()
     for seed in range(6) if grip is None else (0, 3):

@@ -135,7 +135,8 @@ def test_friction_is_that_of_points_on_rays(name: str, shape: str, height: float
 
 MOTIONS = [("a sole on half of it, felt on the other", "round", 0.03),
            ("felt in a sole beside wood", "box", 0.02),
-           ("ice", "round", 0.03), ("grooves", "box", 0.0)]  # fmt: skip
+           ("ice", "round", 0.03),
+           pytest.param("grooves", "box", 0.0, marks=pytest.mark.thorough)]  # fmt: skip
 
 
 @pytest.mark.parametrize(("name", "shape", "height"), MOTIONS)

@@ -29,6 +29,7 @@ def in_a_corner(tol: float) -> dict[str, Any]:
     }  # fmt: skip
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("tol", [1e-6, 1e-9, 1e-11])
 def test_an_impact_turns_the_slip_of_a_rim_that_leans_elsewhere(tol: float) -> None:
     times = np.array([2.3, 2.38, 2.42, 2.46])

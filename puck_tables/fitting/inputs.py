@@ -271,7 +271,7 @@ def checked_walls(raw: Any) -> tuple[Line, ...]:
         raise InputError("walls must be a list, each wall two points ((x, y), (x, y)) on it in m")
     lines = []
     for wall in raw:
-        what = "a wall must be two points ((x, y), (x, y)) on it in m"
+        what = "a wall must be two points on it in m: ((x, y), (x, y)), or --wall 1.5,0:1.5,2"
         (ax, ay), (bx, by) = (pair_of(what, point) for point in pair_of(what, wall))
         ax, ay, bx, by = (real("a point of a wall", value, "m") for value in (ax, ay, bx, by))
         if (ax, ay) == (bx, by):
@@ -287,8 +287,9 @@ def checked_noise(raw: Any) -> tuple[float | None, float | None]:
     if raw is None:
         return None, None
     place, angle = pair_of(
-        "noise must be two numbers, of places (m) and of angles (rad), None: to be found", raw
-    )
+        "noise must be two numbers, of places (m) and of angles (rad): (0.0003, 0.005), or "
+        "--noise 0.3mm,0.3deg (one alone, or None: the other is found)", raw,
+    )  # fmt: skip
     return (
         None if place is None else positive("the noise of places", place, "m"),
         None if angle is None else positive("the noise of angles", angle, "rad"),
