@@ -109,10 +109,15 @@ def _in(unit: str) -> str:
     return "" if unit == "1" else f" in {unit}"
 
 
+# numbers that BLAS multiplies so; where others work, too, its threads wait for each other for ms
+_ON_ONE_THREAD = 10_000
+
+
 def finite_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
     """Values as an array of finite numbers."""
     array = real_array(name, values, unit)
-    squares = np.vdot(array, array)  # one pass; it may overflow
+    # one pass; it may overflow
+    squares = np.vdot(array, array) if array.size <= _ON_ONE_THREAD else math.nan
     if not (math.isfinite(squares) or np.isfinite(array).all()):
         raise InputError(
             f"{name} must be finite numbers{_in(unit)}, got {array[~np.isfinite(array)].flat[0]}"
