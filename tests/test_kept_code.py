@@ -99,6 +99,25 @@ def test_a_function_of_somebody_else_may_call_what_is_kept(tmp_path: Path):
         run(tmp_path, [sys.executable, "-c", LINKED.format(first)], 0.25)
 
 
+INNER = """
+from numba import njit
+from puck_tables.kernels.base_boundary import line_sums
+from puck_tables.kernels.quadratic import section_at
+section_at.compiled
+
+@njit
+def mine(x):
+    return line_sums(1.0, 1.0, x, 0.0, 0.0, x)[0]
+
+mine(1.0)
+"""
+
+
+def test_what_only_kernels_call_is_no_name_to_a_function_of_somebody_else():
+    ended = subprocess.run([sys.executable, "-c", INNER], capture_output=True, text=True)
+    assert ended.returncode == 1 and "Untyped global name 'line_sums'" in ended.stderr
+
+
 def test_code_of_another_function_under_this_name_is_not_taken(folder: Path):
     compiled()(6.0)
     (path,) = folder.iterdir()

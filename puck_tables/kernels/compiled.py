@@ -179,7 +179,7 @@ def _target() -> Any:
 @typeof_impl.register(FunctionType)
 def _type_of_function(function: Any, purpose: Any) -> Any:
     """A kernel is its compiled code, where kernels call it."""
-    if function in behind:
+    if function in behind and not _is_linked():  # it has no address that others could call
         return types.Dispatcher(dispatcher_of(function, vectors.fuses))
     if function in _intrinsics:
         context: Any = cpu_target.typing_context
