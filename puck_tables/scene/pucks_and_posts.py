@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -46,7 +47,7 @@ class ScenePuck(PuckSpec):
         """What it was given."""
         return written(self)
 
-    @property
+    @cached_property
     def only_on_boards(self) -> dict[str, Any]:
         """What it was given besides the numbers of a free puck, by name.
 
