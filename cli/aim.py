@@ -147,11 +147,11 @@ def _aim_in_scene(
         click.echo(f"\n{odds}")
 
 
-def _scatter_of(odds: Iterable[str]) -> dict[str, float]:
+def _scatter_of(odds: Iterable[str]) -> dict[str, Any]:
     """Deviations by the names that the library has."""
     from puck_tables._core.arrays import real
 
-    scatter: dict[str, float] = {}
+    scatter: dict[str, Any] = {}
     for name, text in named(odds, "--odds", "NAME=DEVIATION, like heading=0.5deg").items():
         if name not in _SCATTERS:
             raise InputError(f"--odds {name} does not scatter: give {', '.join(_SCATTERS)}")
