@@ -24,7 +24,7 @@ _CHI_WEIGHT = np.pi * _WEIGHTS[24:]
 class PressureLaw:
     """An axisymmetric pressure law on the unit disc.
 
-    ``name``: the name a table file carries; ``weight``: w(ρ), shape-preserving, for ρ in [0, 1);
+    ``name``: the name a table file carries; ``weight``: W(ρ), shape-preserving, for ρ in [0, 1);
     normalised to ∫ W ρ dρ = 1/2; ``moments``: the chord moments as functions of L² = 1 − distance²,
     where they are elementary.
 

@@ -36,7 +36,7 @@ _FLAT = 1e-4  # triangles of marks, of the square of their extent, that are as g
 class Plane:
     """The homography of a floor.
 
-    ``matrix``: ndarray (3, 3), h, from pixels to metres; ``residual``: float, m, root mean square
+    ``matrix``: ndarray (3, 3), H, from pixels to metres; ``residual``: float, m, root mean square
     of what the marks lie off; 0 with four of them; ``count``: of marks.
     """
 

@@ -56,7 +56,7 @@ def integrated_stops(
     (n,); ``section``: friction, see :mod:`puck_tables.motion.equations_of_motion`; ``tolerance``:
     local error of a step; ``place_unit``: array (n,) or 1, what local errors of the place are
     measured in, with cos φ places next to pure spin, all as small as that, keep their digits;
-    ``threads``: how many share the work.  Returns array (n, 6): t, X, Y, path length, body angle,
+    ``threads``: how many share the work.  Returns array (n, 6): T, X, Y, path length, body angle,
     and the turn until Q has fallen to 1/1000 (at infinite u 0).
 
     >>> integrated_stops(np.array([0.0]), np.array([1.0]), NO_SECTION, 1e-9)[0, :3].round(8)
