@@ -8,19 +8,17 @@ cannot tell then is said (:mod:`puck_tables.fitting.certainty`).
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
-from puck_tables._core.arrays import instance
 from puck_tables.contact.base import Base
 from puck_tables.contact.laws import law_of
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
 from puck_tables.fitting.forward_model import Moving, Rims
 from puck_tables.fitting.parameters import (
-    ALL,
     DRAGS,
     INTEGRATED,
     LARGEST,
@@ -39,18 +37,13 @@ from puck_tables.fitting.parameters import (
     TALLEST,
     WALL,
     Parameter,
-    bounds_of,
-    in_range,
     parameters_of,
-    prior_of,
-    refuse_unknown,
 )
 from puck_tables.fitting.speed_motion import LAWS, Drags, SpeedFriction, law_named
 from puck_tables.fitting.unit_motions import UnitMotions, unit_motions_of
 from puck_tables.puck import Puck
 
 _KIND = (*OWN_CURVE, "drag", *INTEGRATED)  # change the curve itself
-_CLASHES = (("friction", "decel", ", decel is f g"), ("delta", "height", ""))
 TINY = 1e-30  # step of derivatives along the imaginary axis
 _FARTHEST = 10.0  # radii, of what is tracked from the centre: a stick on the body may be longer
 _LEAST = 1e-9  # in its unit, of what must be more than 0
@@ -80,14 +73,11 @@ class FitSpec:
     Raises
     ------
     InputError
-        If a name is not known (the nearest is told), or named in two ways that clash, or a number
-        is out of range.
+        If the friction is neither free nor known.
 
     Examples
     --------
-    >>> spec = FitSpec.of(Puck(radius=0.0381), None, {}, {}, {}, {})
-    >>> spec.free
-    ('friction', 'delta')
+    >>> spec = FitSpec(Puck(radius=0.0381), ("friction", "delta"), {}, {}, {}, {})
     >>> spec.scales({"friction": 0.2, "delta": 0.5})[0]
     1.96133
     """
@@ -104,86 +94,6 @@ class FitSpec:
     between: str = "cubic"
     law: str = ""
     base: Base | None = None
-
-    @classmethod
-    def of(
-        cls, puck: Puck, free: Iterable[str] | None, fixed: Mapping[str, Any],
-        priors: Mapping[str, Any], bounds: Mapping[str, Any], start: Mapping[str, Any],
-        impacts: bool = False, rows: bool = False,
-    ) -> FitSpec:  # fmt: skip
-        """Checked, with what is free where nothing is said: f, and δ of a puck without height."""
-        instance("puck", puck, Puck)
-        puck.refuse_moved()
-        if not SMALLEST <= puck.radius <= LARGEST:
-            raise InputError(
-                f"the radius of a puck on a film is from {SMALLEST:g} to {LARGEST:g} m, got "
-                f"{puck.radius:g}: say it in m"
-            )
-        puck.refuse_lift()
-        base, puck = puck.shape, _round(puck)
-        every = parameters_of(None if base is None else base.reach)
-        known = {name: in_range(name, value, every) for name, value in fixed.items()}
-        freed: tuple[str, ...] = ()
-        if free is None:
-            scale = () if {"friction", "decel"} & {*known} else ("friction",)
-            if "decel" in priors or "decel" in bounds:
-                scale = ("decel",)
-            tilt = () if {"delta", "height"} & {*known} or puck.height else ("delta",)
-            if tilt and ("height" in priors or "height" in bounds):
-                tilt = ("height",)
-            wanted = (*scale, *tilt)
-            named = dict.fromkeys((*priors, *bounds))
-            freed = tuple(name for name in named if name in PUCK and name not in wanted)
-            wanted += freed
-        else:
-            wanted = tuple([free] if isinstance(free, str) else free)
-        if rows and "readout" not in (*wanted, *known):
-            wanted += ("readout",)
-        for name in wanted:
-            refuse_unknown(name, PUCK, "free")
-            if name in known:
-                raise InputError(
-                    f"{name} is both free and fixed at {known[name]:g}: leave out one of the two"
-                )
-        if len(set(wanted)) < len(wanted):
-            raise InputError(f"free names {', '.join(wanted)}: name each parameter once")
-        for name in (*wanted, *known):
-            if name in NODES:
-                raise InputError(
-                    f"{name} is found where slip speeds are given (--slip-speeds, slip_speeds=), "
-                    "and cannot be named"
-                )
-            if name == "readout" and not rows:
-                raise InputError(
-                    "readout is of a rolling shutter: say which y (m) the first and the last line "
-                    "of the picture show (--rows, rows=)"
-                )
-            if name in OF_IMPACTS and not impacts:
-                raise InputError(
-                    f"{name} is a number of impacts, which are not looked for: ask for them "
-                    "(--impacts, impacts=True)"
-                )
-        for given, what in ((priors, "prior"), (bounds, "bounds"), (start, "start")):
-            for name in given:
-                refuse_unknown(name, ALL, what)
-                if name in known:
-                    raise InputError(f"{name} is fixed at {known[name]:g}: leave out its {what}")
-                if name in PUCK and name not in wanted and not (impacts and name in OF_IMPACTS):
-                    raise InputError(f"{name} is not free: name it in free to give it a {what}")
-        for one, other, since in _CLASHES:
-            if {one, other} <= {*wanted, *known}:
-                raise InputError(f"{one} and {other} say the same{since}: leave out one of them")
-        if base is not None:
-            _refuse_for_base({*wanted, *known}, impacts)
-        if "inner" in (*wanted, *known) and not _is_annulus(puck):
-            raise InputError(
-                "inner is the inner radius of an annulus: give the puck the pressure 'annulus:0.8'"
-            )
-        return cls(
-            puck, wanted, known, {n: prior_of(n, v, every) for n, v in priors.items()},
-            {n: bounds_of(n, v, every) for n, v in bounds.items()},
-            {n: in_range(n, v, every) for n, v in start.items()}, freed, base=base,
-        )  # fmt: skip
 
     def __post_init__(self) -> None:
         scale = {"friction", "decel"} & {*self.free, *self.fixed}
@@ -215,7 +125,7 @@ class FitSpec:
         numbers = {name: float(getattr(puck, name)) for name in names}
         numbers["gyration"] *= self._unit
         numbers.update(dict.fromkeys(NOTHING, 0.0))
-        if _is_annulus(puck):
+        if is_annulus(puck):
             numbers["inner"] = float(puck.body.law.name.partition(":")[2])
         return {**numbers, **self.of_impacts, **{n: v for n, v in self.fixed.items() if n in PUCK}}
 
@@ -435,25 +345,6 @@ class FitSpec:
         return self.parameters[name].plausible
 
 
-def _round(puck: Puck) -> Puck:
-    """A round puck that reaches as far, whose numbers stand for those of a puck on a base."""
-    if puck.shape is None:
-        return puck
-    reach = puck.shape.reach
-    return Puck(
-        reach, height=puck.height, friction=puck.friction, mass=puck.mass, gravity=puck.gravity,
-        gyration=puck.gyration / reach,
-    )  # fmt: skip
-
-
-def _refuse_for_base(named: Collection[str], impacts: bool) -> None:
-    """Refuse what is of round pucks alone."""
-    if impacts:
-        raise InputError("impacts are fitted of round pucks: cut the film before the first")
-    for name in ("radius", "drag", "inner", *INTEGRATED):
-        if name in named:
-            raise InputError(f"{name} is found, or held, of round pucks: leave it out with a base")
-
-
-def _is_annulus(puck: Puck) -> bool:
+def is_annulus(puck: Puck) -> bool:
+    """Whether it presses on a ring of some width."""
     return puck.body.law.name.startswith("annulus:")

@@ -14,10 +14,10 @@ from typing import NamedTuple
 
 from puck_tables._core.arrays import instance
 from puck_tables.film.film import Track
+from puck_tables.fitting.asked import spec_of
 from puck_tables.fitting.coupled_fit import Impact, couple, impacts_apart, impacts_coupled, not_met
 from puck_tables.fitting.estimate import Estimate, estimate
 from puck_tables.fitting.fit_result import Fit
-from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.identifiability import not_identifiable
 from puck_tables.fitting.impact_matching import Line
 from puck_tables.fitting.initial_estimate import initial_estimate
@@ -166,7 +166,7 @@ def fit(
     """
     instance("puck", puck, Puck)
     lines = checked_walls(walls)
-    spec = FitSpec.of(
+    spec = spec_of(
         puck, free, fixed or {}, prior or {}, bounds or {}, start or {}, impacts or bool(lines),
         rows is not None,
     )  # fmt: skip

@@ -11,9 +11,9 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray, instance, one_velocity, positive, real
 from puck_tables.errors import InputError
+from puck_tables.fitting.asked import spec_of
 from puck_tables.fitting.certainty import Certainty, certainty_of
 from puck_tables.fitting.estimate import Estimate
-from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.identifiability import minimum_sentence, mirror_sentence
 from puck_tables.fitting.observations import FEWEST, Observations
 from puck_tables.fitting.other_minima import mirrored, other_minima
@@ -223,7 +223,7 @@ def _forecast_estimate(
     puck: Puck, velocity: tuple[float, float], spin: float, camera: Camera, free: Iterable[str]
 ) -> tuple[Estimate, Certainty]:
     """What would be found of a film of a launch without noise, and how well it is told."""
-    spec = FitSpec.of(puck, free, {}, {}, {}, {})
+    spec = spec_of(puck, free, {}, {}, {}, {})
     if spec.base is not None and camera.angle_noise is None:
         raise InputError(
             "a film of a puck on a base tells something by its angles: give angle_noise"

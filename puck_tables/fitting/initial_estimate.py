@@ -76,12 +76,12 @@ def starts_from_slowing(problem: Problem) -> list[tuple[Problem, FloatArray]]:
     that of one friction and nothing else, which leaves no more in the end than that alone would.
 
     >>> from puck_tables.film.film import Track
-    >>> from puck_tables.fitting.fit_spec import FitSpec
+    >>> from puck_tables.fitting.asked import spec_of
     >>> from puck_tables.fitting.observations import observations_in
     >>> from puck_tables.puck import Puck
     >>> t = 0.01 * np.arange(90)
     >>> track = Track(t, np.stack([2.0 * t - 0.49 * t**2, 0.0 * t], axis=1), 0.0 * t)
-    >>> spec = FitSpec.of(Puck(0.03, gravity=9.8), ["friction", "air"], {}, {}, {}, {})
+    >>> spec = spec_of(Puck(0.03, gravity=9.8), ["friction", "air"], {}, {}, {}, {})
     >>> starts = starts_from_slowing(Problem(spec, (observations_in(track),), (1e-4, 1e-3)))
     >>> starts[0][1][:2].round(4)
     array([0.1, 0. ])

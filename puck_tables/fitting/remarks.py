@@ -1,0 +1,81 @@
+"""What to know of the numbers of a fit before they are used."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from puck_tables.fitting.identifiability import rounded, spin_would_tell, taken_for_granted
+from puck_tables.fitting.residuals import (
+    JITTERY,
+    NO_PATTERN,
+    computed,
+    lengthways,
+)
+
+if TYPE_CHECKING:
+    from puck_tables.fitting.fit_result import Fit
+
+_WIDER = 1.5  # times: an error that is told to be widened
+
+
+def said_of(fit: Fit) -> list[str]:
+    """What is said of a fit, sentence by sentence, without their full stops."""
+    problem = fit.estimate.problem
+    said = [
+        f"{name} is found, too, since it has a prior or bounds: without them it is known, "
+        f"{float(getattr(fit.given, name)):g}"
+        for name in problem.spec.freed if hasattr(fit.given, name)
+    ]  # fmt: skip
+    every = zip(problem.films, problem.spinless, strict=True)
+    if straight := [film.name for film, spinless in every if spinless]:
+        others = f" and {len(straight) - 1} more lie" if len(straight) > 1 else " lies"
+        said.append(
+            f"{straight[0]}{others} along a line and without angles: taken for a slide without "
+            "spin. If it spun, friction may be up to 1.6 times as much (bounds or a start of "
+            "launch_spin look for that)"
+        )
+    if all(problem.spinless) and (more := spin_would_tell(fit.estimate)):
+        said.append(more)
+    said += [text for film in problem.films for text in rounded(film)]
+    own = len(problem.spec.free) or fit.estimate.x.size  # of the puck, if any is found
+    # of several at their most rounding does not choose
+    wider = [round(fit.certainty.ratio(k), 6) for k in range(own)]
+    told = bool(fit.complaints) or computed(fit.estimate)
+    if fit.certainty.widened and max(wider) > _WIDER and not told:
+        name = problem.names[int(np.argmax(wider))][1]
+        said.append(
+            "What is left may be no noise, though that is hardly seen: standard errors are "
+            f"widened by what parts of the frames do to the numbers, {max(wider):.2g} times "
+            f"that of {name}"
+        )
+    for k, side in enumerate(fit.certainty.pinned):
+        if side:
+            end, way = problem.limits[side > 0][k], "above" if side > 0 else "below"
+            name = problem.names[k][1]
+            if side > 0 and name == "friction" and end == problem.spec.steepest(name):
+                way += " (with more part of the base would lift: is the height right?)"
+            said.append(
+                f"{problem.names[k][1]} lies on the end of its range, {end:.6g}: what fits "
+                f"best may be {way}. So it has no standard error, and its interval, and errors "
+                "and intervals of the rest, may mislead"
+            )
+    air, mass = fit.numbers.get("air"), fit.given.mass
+    if air is not None and mass != 1.0 and math.isfinite(air.error):
+        said.append(
+            f"air is {air.value * mass:.4g} +- {air.error * mass:.2g} kg/m over the mass of "
+            f"{mass:g} kg: drag.quadratic of a scene"
+        )
+    said += (*fit.not_met, *fit.doubts)
+    # stamps that jitter leave no drift, as another law does
+    if fit.jitter == 0.0 and fit.noise[0] > 0.0 and fit.drift > NO_PATTERN:
+        ratio = lengthways(fit.estimate)
+        if ratio > JITTERY:
+            said.append(
+                f"Residuals along the motion are {ratio:.3g} times those across it: the time "
+                "stamps may jitter (--jitter find)"
+            )
+    said += taken_for_granted(fit.forces, fit.numbers)
+    return said
