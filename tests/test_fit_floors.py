@@ -13,7 +13,7 @@ from disc_judge import slid
 from film_judge import G
 
 import puck_tables as pt
-from puck_tables.fitting.asked import spec_of
+from puck_tables.fitting.checked_spec import spec_of
 from puck_tables.fitting.forward_model import RADIUS, SPIN, VX, VY, states_and_slopes
 from puck_tables.fitting.parameters import LAW_NUMBERS
 from puck_tables.fitting.speed_motion import law_named

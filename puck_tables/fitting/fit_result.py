@@ -26,16 +26,14 @@ from puck_tables.fitting.fit_files import (
     numbers_as_json,
     refuse_unplayable,
 )
-from puck_tables.fitting.identifiability import doubts
 from puck_tables.fitting.model_comparison import HeldOut, LawScore, law_over, verdict
 from puck_tables.fitting.numbers import EstimatedLaunch, Number
 from puck_tables.fitting.observations import Observations
 from puck_tables.fitting.parameters import INTEGRATED
 from puck_tables.fitting.problem import Known
-from puck_tables.fitting.remarks import said_of
+from puck_tables.fitting.remarks import Remarked
 from puck_tables.fitting.residuals import (
     SideForces,
-    misfits,
 )
 from puck_tables.io.columns import Dataset
 from puck_tables.io.formats import FORMATS, ending_of
@@ -47,7 +45,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Fit(Result):
+class Fit(Remarked, Result):
     """A puck and its launches, found from tracks.
 
     ``numbers``: :class:`Number` by name (``fit["friction"]``): found, following from what was
@@ -197,30 +195,6 @@ class Fit(Result):
     def verdict(self) -> str:
         """Which of the laws compared the film supports, in a sentence; '' where none were."""
         return verdict(self.laws)
-
-    @property
-    def complaints(self) -> tuple[str, ...]:
-        """Signs that the tracks are not those of such a puck."""
-        found = [*misfits(self.estimate, self.forces.chance)]
-        if found:
-            found.append(
-                "Standard errors are widened by what parts of the frames do to the numbers: they "
-                "may still be too small"
-            )
-        found += filter(None, (self.untied, self.misfit))
-        if self.outliers > 0.2:
-            found.append(f"{100.0 * self.outliers:.3g} % of the observations had to be left out")
-        return tuple(found)
-
-    @property
-    def doubts(self) -> list[str]:
-        """What was found that nobody would believe."""
-        return list(doubts(self.numbers, self.launches, self.given.radius))
-
-    @property
-    def remarks(self) -> tuple[str, ...]:
-        """What to know of the numbers before they are used."""
-        return tuple(f"{text}." for text in said_of(self))
 
     def explain(self) -> str:
         """How it was found."""

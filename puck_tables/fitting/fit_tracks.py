@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from puck_tables._core.arrays import instance
 from puck_tables.film.film import Track
-from puck_tables.fitting.asked import spec_of
+from puck_tables.fitting.checked_spec import spec_of
 from puck_tables.fitting.coupled_fit import Impact, couple, impacts_apart, impacts_coupled, not_met
 from puck_tables.fitting.estimate import Estimate, estimate
 from puck_tables.fitting.fit_result import Fit

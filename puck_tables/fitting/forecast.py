@@ -11,8 +11,8 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray, instance, one_velocity, positive, real
 from puck_tables.errors import InputError
-from puck_tables.fitting.asked import spec_of
 from puck_tables.fitting.certainty import Certainty, certainty_of
+from puck_tables.fitting.checked_spec import spec_of
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.identifiability import minimum_sentence, mirror_sentence
 from puck_tables.fitting.observations import FEWEST, Observations

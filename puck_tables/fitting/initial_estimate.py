@@ -76,7 +76,7 @@ def starts_from_slowing(problem: Problem) -> list[tuple[Problem, FloatArray]]:
     that of one friction and nothing else, which leaves no more in the end than that alone would.
 
     >>> from puck_tables.film.film import Track
-    >>> from puck_tables.fitting.asked import spec_of
+    >>> from puck_tables.fitting.checked_spec import spec_of
     >>> from puck_tables.fitting.observations import observations_in
     >>> from puck_tables.puck import Puck
     >>> t = 0.01 * np.arange(90)
