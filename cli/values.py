@@ -205,7 +205,8 @@ def parted(text: str, sign: str, option: str) -> list[Any]:
     """
     numbers = [number_or_text(part) for part in text.split(sign)]
     bare = [one for one in numbers if isinstance(one, float) and one]
-    if bare and len(bare) < sum(map(bool, numbers)):
+    # what is no number at all the library refuses
+    if bare and any(isinstance(one, str) and one.lstrip("+-.")[:1].isdigit() for one in numbers):
         from puck_tables._core.units import UNIT_EACH
 
         raise InputError(f"{option} {text}: {UNIT_EACH.format(f'{bare[0]:g}')}")

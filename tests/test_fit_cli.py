@@ -85,6 +85,7 @@ def test_what_is_not_determined_is_said(film):
         (("--radius", 0.0381, "--fix", "delta=1_0"), "delta must be a number, got '1_0'"),
         (("--radius", 0.0381, "--fix", "delta=nan"), "delta must be a finite number"),
         (("--radius", 0.0381, "--bound", "height=1cm:0.02"), "give each of these numbers its unit"),
+        (("--radius", 0.0381, "--prior", "friction=0.2:x"), "must be a number, got 'x'"),
         (("--radius", 0.0381, "--noise", "1,2,3"), "of places (m) and of angles (rad)"),
         (("--radius", -1), "radius"),
         (("--radius", 0.0381, "-o", "fit.txt"), "one of .h5, .csv, .json, .jsonl, .parquet\n"),

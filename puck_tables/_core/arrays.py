@@ -63,19 +63,23 @@ def _measured(name: str, texts: npt.NDArray[np.str_], unit: str) -> FloatArray:
     written = texts.ravel().tolist()
     if bare := without_unit(written, unit):
         raise InputError(f"{name}: {UNIT_EACH.format(bare)}")
+    plain = [_plain(text) for text in written]
+    for text, value in zip(written, plain, strict=True):
+        if value != value:  # what is no number is named, not one beside it
+            number_in(name, text, unit)
     numbers = [
-        number_in(name, text, unit) if quantity(text, unit) is not None or not _is_0(text) else 0.0
-        for text in written
+        value if value == 0.0 else number_in(name, text, unit)
+        for text, value in zip(written, plain, strict=True)
     ]
     return np.array(numbers).reshape(texts.shape)
 
 
-def _is_0(text: str) -> bool:
-    """Whether a text is 0, which is so in any unit."""
+def _plain(text: str) -> float:
+    """A number without a unit; NaN: it is none."""
     try:
-        return float(text) == 0.0
+        return float(text)
     except ValueError:
-        return False
+        return math.nan
 
 
 def number_in(name: str, text: str, unit: str) -> float:
