@@ -63,15 +63,12 @@ def _measured(name: str, texts: npt.NDArray[np.str_], unit: str) -> FloatArray:
     written = texts.ravel().tolist()
     if bare := without_unit(written, unit):
         raise InputError(f"{name}: {UNIT_EACH.format(bare)}")
-    plain = [_plain(text) for text in written]
-    for text, value in zip(written, plain, strict=True):
-        if value != value:  # what is no number is named, not one beside it
-            number_in(name, text, unit)
-    numbers = [
-        value if value == 0.0 else number_in(name, text, unit)
-        for text, value in zip(written, plain, strict=True)
-    ]
-    return np.array(numbers).reshape(texts.shape)
+    # what is no number is named, not one beside it that lacks a unit
+    found = {text: number_in(name, text, unit) for text in written if math.isnan(_plain(text))}
+    for text in written:
+        if text not in found:
+            found[text] = 0.0 if _plain(text) == 0.0 else number_in(name, text, unit)
+    return np.array([found[text] for text in written]).reshape(texts.shape)
 
 
 def _plain(text: str) -> float:

@@ -32,9 +32,7 @@ from puck_tables.fitting.observations import Observations
 from puck_tables.fitting.parameters import INTEGRATED
 from puck_tables.fitting.problem import Known
 from puck_tables.fitting.remarks import Remarked
-from puck_tables.fitting.residuals import (
-    SideForces,
-)
+from puck_tables.fitting.residuals import SideForces
 from puck_tables.io.columns import Dataset
 from puck_tables.io.formats import FORMATS, ending_of
 from puck_tables.puck import Puck

@@ -16,9 +16,7 @@ from puck_tables.world import engine_state as g
 from puck_tables.world.contact_row import FIRST_N, E
 from puck_tables.world.engine import NOBODY, THOSE_LEFT, advance, lacks_rows
 from puck_tables.world.engine_state import Whole
-from puck_tables.world.lasting import (
-    with_law_for,
-)
+from puck_tables.world.lasting import with_law_for
 from puck_tables.world.layout import EDGE, KIND, POCKET
 from puck_tables.world.lone import LONGEST
 from puck_tables.world.named_pucks import pucks_of
