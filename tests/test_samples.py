@@ -194,9 +194,9 @@ def test_many_samples_of_a_store_are_not_read_unasked(
     quiet = CliRunner().invoke(main, words)
     assert (quiet.exit_code, quiet.stdout) == (0, "")
     assert "summed up only with --plot or --inside" in quiet.stderr
-    asked = CliRunner().invoke(main, [*words, "--inside", "2.2,-0.16,0.1"])
+    asked = CliRunner().invoke(main, [*words, "--inside", "2.2m,-16cm,10cm"])
     assert asked.exit_code == 0, asked.stderr
-    assert "ends inside" in asked.stdout and "stop_x m  " in asked.stdout
+    assert "ends inside (2.2, -0.16, 0.1) m" in asked.stdout and "stop_x m  " in asked.stdout
     assert "at decel = 1 m/s^2, radius = 1 m, delta = 0.5, launch" in asked.stderr
     for more in (["--inside", "2.2,-0.16,0.1"], ["--plot", "s.png"]):
         vast = [*words[:1], "--random", "1000000000", *words[3:5], "-o", "vast.zarr", *more]

@@ -157,7 +157,8 @@ class Summary:
             lines.append(f"correlation of {self.place[0]} and {self.place[1]}: {tied:.4g}")
         for region in listed("regions", regions, "regions"):
             one = self.chance(region)
-            words = ", ".join(f"{number:g}" for number in np.ravel(region))
+            numbers = finite_array("region", region, "m").ravel()
+            words = ", ".join(f"{number:g}" for number in numbers)
             lines.append(
                 f"ends inside ({words}) m with a chance of {one.value:.6g} "
                 f"(95 %: {one.low:.6g} to {one.high:.6g})"
