@@ -189,7 +189,7 @@ def surface_at(surface: Surface, drive: FloatArray, piece: int, t: float) -> Sur
     )  # fmt: skip
 
 
-class Hold(NamedTuple):
+class VelocityConstraint(NamedTuple):
     """A linear constraint on the velocities.
 
     ``kind`` FREE: none.  RAIL: the centre stays on a line with the unit normal (ax, ay).  PIVOT:
@@ -213,7 +213,7 @@ class Model(NamedTuple):
     body: Body
     surface: Surface
     forces: Forces
-    hold: Hold
+    hold: VelocityConstraint
 
 
 class Phase(NamedTuple):
@@ -233,7 +233,7 @@ class Phase(NamedTuple):
     newton: float
 
 
-def hold_of(hold: Constraint | None, launch: Launch) -> Hold:
+def hold_of(hold: Constraint | None, launch: Launch) -> VelocityConstraint:
     """The constraint, fixed to where the puck is launched.
 
     >>> from puck_tables import Constraint, Launch
@@ -241,16 +241,16 @@ def hold_of(hold: Constraint | None, launch: Launch) -> Hold:
     0.5
     """
     if hold is None:
-        return Hold(FREE, *[0.0] * 6)
+        return VelocityConstraint(FREE, *[0.0] * 6)
     if hold.kind == "rail":
         nx, ny = -math.sin(hold.angle), math.cos(hold.angle)
-        return Hold(RAIL, nx, ny, 0.0, 0.0, *hold.velocity)
+        return VelocityConstraint(RAIL, nx, ny, 0.0, 0.0, *hold.velocity)
     if hold.kind == "blade":
-        return Hold(BLADE, 0.0, 0.0, 0.0, hold.angle, hold.side_slip, 0.0)
+        return VelocityConstraint(BLADE, 0.0, 0.0, 0.0, hold.angle, hold.side_slip, 0.0)
     bearing = launch.orientation + hold.angle
     ex, ey = math.cos(bearing), math.sin(bearing)
     x, y = launch.position
-    return Hold(
+    return VelocityConstraint(
         PIVOT, x + hold.reach * ex, y + hold.reach * ey, hold.reach, hold.angle, *hold.velocity
     )
 
@@ -285,7 +285,8 @@ def surface_now(phase: Phase, t: float) -> Surface:
 
 @inlined
 def held(
-    hold: Hold, body: Body, surface: Surface, y: FloatArray, fx: float, fy: float, torque: float
+    hold: VelocityConstraint, body: Body, surface: Surface, y: FloatArray,
+    fx: float, fy: float, torque: float,
 ) -> tuple[float, float, float, float, float, float]:  # fmt: skip
     """Force and torque of the constraint, its multipliers, and the power it puts in.
 

@@ -27,9 +27,9 @@ from puck_tables.scene.ingredients import (
     RAIL,
     Body,
     DryFriction,
-    Hold,
     Phase,
     Surface,
+    VelocityConstraint,
     floor_acceleration,
     floor_velocity,
     friction_at,
@@ -49,8 +49,8 @@ Yield = tuple[float, float, float, float]
 
 @inlined
 def _pivot_yield(
-    friction: DryFriction, hold: Hold, radius: float, theta: float, fx: float, fy: float,
-    torque: float,
+    friction: DryFriction, hold: VelocityConstraint, radius: float, theta: float,
+    fx: float, fy: float, torque: float,
 ) -> Yield:  # fmt: skip
     """The yield where the only slip is a turn about the pivot: one direction, φ = atan(r/reach)."""
     cosine, sine = math.cos(theta + hold.angle), math.sin(theta + hold.angle)
@@ -125,7 +125,7 @@ def free_yield(
 
 
 @inlined
-def slip_led(hold: Hold, surface: Surface, y: FloatArray) -> float:
+def slip_led(hold: VelocityConstraint, surface: Surface, y: FloatArray) -> float:
     """How fast a constraint leads a puck past its floor that slips no more than it must, m/s."""
     sx, sy, turning = floor_velocity(surface, y[X], y[Y])
     vx, vy = hold.vx - sx, hold.vy - sy
@@ -141,7 +141,7 @@ def slip_led(hold: Hold, surface: Surface, y: FloatArray) -> float:
 
 @inlined
 def constrained_yield(
-    friction: DryFriction, hold: Hold, body: Body, theta: float, ax: float, ay: float,
+    friction: DryFriction, hold: VelocityConstraint, body: Body, theta: float, ax: float, ay: float,
     turning: float, fx: float, fy: float, torque: float, guided: bool,
 ) -> Yield:  # fmt: skip
     """By kind of constraint; a floor whose motion a constraint forbids never holds the puck."""

@@ -37,9 +37,9 @@ from puck_tables.scene.ingredients import (
     RAIL,
     SLIDES,
     Body,
-    Hold,
     Phase,
     Surface,
+    VelocityConstraint,
     floor_acceleration,
     floor_velocity,
 )
@@ -181,7 +181,7 @@ def up_to_the_stop(
 
 
 @inlined
-def _put_right(hold: Hold, surface: Surface, t: float, y: FloatArray) -> None:
+def _put_right(hold: VelocityConstraint, surface: Surface, t: float, y: FloatArray) -> None:
     """Position and velocity onto the constraint, from which rounding and step errors lead away."""
     if hold.kind == RAIL:
         sx, sy, _ = floor_velocity(surface, y[X], y[Y])

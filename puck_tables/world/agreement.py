@@ -10,8 +10,8 @@ import numpy as np
 from puck_tables._core.wording import meant
 from puck_tables.errors import InputError
 from puck_tables.motion.body import is_plain
-from puck_tables.scene.agreement import floor_faults
 from puck_tables.scene.by_speed import laws_in
+from puck_tables.scene.floor_faults import floor_faults
 from puck_tables.scene.floor_parts import (
     belts_of,
     frictions_on,
@@ -20,7 +20,7 @@ from puck_tables.scene.floor_parts import (
     needs_sums,
 )
 from puck_tables.scene.forces import is_stepped
-from puck_tables.scene.holds import misfits
+from puck_tables.scene.launch_constraints import misfits
 from puck_tables.scene.map_of_floor import follows_contour, may_lift
 from puck_tables.scene.over_time import drive_of, last_factors
 from puck_tables.scene.parts import Drag, Force, Lateral, Launch

@@ -41,7 +41,7 @@ PLENTY_SPIN = 2.0  # the greatest rim speed over the speed
 _LEAST = 1e-6  # of the greatest speed
 
 
-class Regions(NamedTuple):
+class LaunchRegions(NamedTuple):
     """Launches (n, 2) in the middle, the widths (n, 2) of the intervals there, where they land."""
 
     launches: FloatArray
@@ -66,7 +66,7 @@ class Pocketing:
         """Which of them end there."""
         return good(landings, self.most, self.asked) & (landings.fates == self.fate)
 
-    def regions(self, launches: FloatArray) -> Regions:
+    def regions(self, launches: FloatArray) -> LaunchRegions:
         """The regions in which some of these launches lie, the widest first.
 
         Each is given by a launch half-way between the ends of both intervals through it, of the
@@ -93,7 +93,7 @@ class Pocketing:
             same = landings.prints[kept] == landings.prints[n]
             if not (same & (np.abs(gaps) < 0.5 * widths[kept]).all(axis=1)).any():
                 kept.append(n)
-        return Regions(middles[kept], widths[kept], landings.at(np.array(kept, np.int64)))
+        return LaunchRegions(middles[kept], widths[kept], landings.at(np.array(kept, np.int64)))
 
     def _some(self, inside: Whole, prints: Whole) -> Whole:
         """A few of each course in turn."""

@@ -9,7 +9,7 @@ from puck_tables.kernels.compile import inlined
 from puck_tables.motion.impact_law import along_normal
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.world.engine_state import Engine
-from puck_tables.world.forces import acceleration
+from puck_tables.world.group_forces import acceleration
 from puck_tables.world.holds import response
 from puck_tables.world.layout import (
     HOLD,

@@ -10,9 +10,9 @@ from puck_tables.scene.forces import Forces
 from puck_tables.scene.ingredients import (
     Body,
     DryFriction,
-    Hold,
     Model,
     Surface,
+    VelocityConstraint,
     is_mixed,
     is_over_belts,
     surface_at,
@@ -54,7 +54,7 @@ def model_of(engine: Engine, i: int) -> Model:
         mass * disc[PULL_X], mass * disc[PULL_Y], inertia * disc[TWIST], drive,
         disc[DRAG:],
     )  # fmt: skip
-    hold = Hold(
+    hold = VelocityConstraint(
         int(disc[HOLD]), disc[HOLD_X], disc[HOLD_Y], disc[HOLD_REACH], disc[HOLD_ANGLE],
         disc[HOLD_VX], disc[HOLD_VY],
     )  # fmt: skip

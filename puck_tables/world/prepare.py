@@ -13,8 +13,8 @@ from puck_tables.scene.by_speed import load_under
 from puck_tables.scene.floor_parts import belts_of
 from puck_tables.scene.forces import drags_of
 from puck_tables.scene.friction import SPIN, THETA, VX, VY
-from puck_tables.scene.holds import allowed_velocity
 from puck_tables.scene.ingredients import RAIL, Surface, hold_of
+from puck_tables.scene.launch_constraints import allowed_velocity
 from puck_tables.scene.over_time import (
     FLOOR_SPIN,
     FLOOR_X,

@@ -18,17 +18,6 @@ from puck_tables.scene.rest import SLACK
 from puck_tables.world.complementarity import find_modes, rim_mode
 from puck_tables.world.contact_search import HARDLY
 from puck_tables.world.floor_under import choose_belt, over_floor
-from puck_tables.world.forces import (
-    act,
-    can_rest,
-    count_rows,
-    excess_on,
-    gain_of,
-    load_on,
-    place_driven,
-    rest_on_floor,
-    slip_of,
-)
 from puck_tables.world.group import (
     APART,
     APPROACH,
@@ -54,6 +43,17 @@ from puck_tables.world.group import (
     look_at_ties,
     small_slip,
 )  # fmt: skip
+from puck_tables.world.group_forces import (
+    act,
+    can_rest,
+    count_rows,
+    excess_on,
+    gain_of,
+    load_on,
+    place_driven,
+    rest_on_floor,
+    slip_of,
+)
 from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY, write_over
 from puck_tables.world.multipliers import leads, push_and_move, stop_slips
 from puck_tables.world.step_ledger import DRIVE_WORK, RIM_HEAT

@@ -18,7 +18,6 @@ from puck_tables.kernels.compile import inlined, inner, patience
 from puck_tables.motion.steppers import times_as_long
 from puck_tables.scene.friction import VX, VY, X, Y
 from puck_tables.world.floor_under import is_over, moves_along, nears_another, room_on_floor
-from puck_tables.world.forces import can_rest, count_rows, slip_at
 from puck_tables.world.group import (
     DRIVEN,
     FULL,
@@ -42,6 +41,7 @@ from puck_tables.world.group import (
     look,
     small_slip,
 )
+from puck_tables.world.group_forces import can_rest, count_rows, slip_at
 from puck_tables.world.layout import LIES, LIGHTNESS, RADIUS, ROUNDED, write_over
 from puck_tables.world.paths import DURATION, START, on_piece, piece_at
 from puck_tables.world.stepping import (

@@ -19,16 +19,6 @@ from puck_tables.scene.friction import X, Y, size
 from puck_tables.scene.ingredients import floor_acceleration
 from puck_tables.world.complementarity import load_of, most
 from puck_tables.world.floor_under import floor_of
-from puck_tables.world.forces import (
-    act,
-    can_rest,
-    gain_of,
-    load_on,
-    place_driven,
-    power_of_contacts,
-    rest_on_floor,
-    slip_of,
-)
 from puck_tables.world.group import (
     APART,
     DRIVEN,
@@ -53,6 +43,16 @@ from puck_tables.world.group import (
     Scales,
     look,
     look_at_ties,
+)
+from puck_tables.world.group_forces import (
+    act,
+    can_rest,
+    gain_of,
+    load_on,
+    place_driven,
+    power_of_contacts,
+    rest_on_floor,
+    slip_of,
 )
 from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY, write_over
 from puck_tables.world.multipliers import close_gaps, leads, push_and_move, stop_slips

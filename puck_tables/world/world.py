@@ -10,8 +10,8 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray, finite_array, positive, real
 from puck_tables.errors import InputError
 from puck_tables.scene.friction import SPIN, VX, VY
-from puck_tables.scene.holds import misfits
 from puck_tables.scene.ingredients import FREE
+from puck_tables.scene.launch_constraints import misfits
 from puck_tables.scene.parts import Launch
 from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.run import number_of

@@ -1,4 +1,4 @@
-"""What the parts of a scene say together: what is wrong between them, and what follows."""
+"""What is wrong with the floor of a scene: its friction, strips, belts, patches and motion."""
 
 from __future__ import annotations
 
@@ -17,7 +17,6 @@ from puck_tables.scene.floor_parts import (
     law_of,
 )
 from puck_tables.scene.floor_patches import patch_faults
-from puck_tables.scene.holds import allowed_velocity
 from puck_tables.scene.orthotropic import LEAST_RATIO
 from puck_tables.scene.over_time import (
     does_turn,
@@ -211,8 +210,3 @@ def _bad_rows(scene: SceneSpec) -> list[str]:
             except InputError as error:
                 faults.append(str(error) if name in str(error) else f"{name}: {error}")
     return faults
-
-
-def launch_velocity(scene: SceneSpec) -> tuple[float, float]:
-    """The velocity of the centre at the launch, as the constraint allows it."""
-    return allowed_velocity(scene.launch, scene.constraint, scene.floor)

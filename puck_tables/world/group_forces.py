@@ -16,7 +16,7 @@ from puck_tables.scene.ingredients import (
     FREE,
     Body,
     DryFriction,
-    Hold,
+    VelocityConstraint,
     floor_acceleration,
     floor_velocity,
 )
@@ -335,7 +335,7 @@ def excess_on(
     if kind == FREE:
         excess, ux, uy, w = free_yield(friction, disc[RADIUS], fx, fy, torque, False)
         return excess / load, ux, uy, w
-    hold = Hold(
+    hold = VelocityConstraint(
         kind, disc[HOLD_X], disc[HOLD_Y], disc[HOLD_REACH], disc[HOLD_ANGLE], disc[HOLD_VX],
         disc[HOLD_VY],
     )  # fmt: skip
