@@ -6,6 +6,7 @@ Truth: closed forms of a box, and a judge that shares no code (:mod:`tests.judge
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
@@ -145,10 +146,16 @@ def slid(seed: int) -> tuple[list[np.ndarray], np.ndarray, Launch]:
     return rows, state, Launch((state[3], state[4]), spin=state[5], orientation=state[2])
 
 
-@pytest.mark.parametrize("grip", [None, WOOD, pytest.param(ICE, marks=pytest.mark.thorough)])
-def test_motion_is_that_of_the_judge(grip: Any):
+@pytest.mark.parametrize(
+    ("grip", "seeds"),
+    [
+        (None, (0, 3)), (WOOD, (0, 3)), pytest.param(ICE, (0, 3), marks=pytest.mark.thorough),
+        pytest.param(None, range(6), marks=pytest.mark.thorough),
+    ],
+)  # fmt: skip
+def test_motion_is_that_of_the_judge(grip: Any, seeds: Iterable[int]):
     ends = set()
-    for seed in range(6) if grip is None else (0, 3):
+    for seed in seeds:
         rows, state, launch = slid(seed)
         run: Any = Scene(BOX, BY_GRIP[grip], edges=as_edges(rows), launch=launch).simulate()
         numbers = DECEL if grip is None else 9.80665, BOX.gyration, state, 0.0, grip
@@ -344,12 +351,13 @@ FLOORS = [
 
 @pytest.mark.parametrize("floor", FLOORS)
 @pytest.mark.parametrize("inner", [0.0, 0.7])
-def test_a_round_puck_is_the_disc_or_the_ring_of_its_radius(inner: float, floor: Floor):
+@pytest.mark.parametrize("first", [0, pytest.param(2, marks=pytest.mark.thorough)])
+def test_a_round_puck_is_the_disc_or_the_ring_of_its_radius(first: int, inner: float, floor: Floor):
     """It is looked up, or integrated, and comes over an edge, back from it, and over another."""
     law, hangs = f"annulus:{inner}" if inner else "uniform", 0
     tall = () if floor.grips else (0.05,)
     for height in (0.0, *tall):
-        for seed in range(4):
+        for seed in (first, first + 1):
             rng = np.random.default_rng(seed)
             puck = Puck(0.06, friction=0.3, height=height, pressure=law)
             base = Base.annulus(0.06, inner * 0.06) if inner else Base.disc(0.06)
@@ -374,7 +382,7 @@ def test_a_round_puck_is_the_disc_or_the_ring_of_its_radius(inner: float, floor:
                 scale = 1.0 if name in ("x", "y", "vx", "vy") else 1.0 / 0.06
                 assert abs(one.last[name] - other.last[name]) < 2e-6 * scale, (height, seed, name)
             hangs += sum(event.what == "overhang" for event in one.events)
-    assert hangs > 2
+    assert hangs > 0
 
 
 def test_a_map_of_throws_has_the_ends_of_its_runs():

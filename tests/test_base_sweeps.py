@@ -145,7 +145,10 @@ def test_the_command_line_refuses(command: str, more: str, words: str):
     assert "Traceback" not in said
 
 
-@pytest.mark.parametrize("body", [{"base": "box:0.2x0.1"}, {"radius": 0.05}])
+@pytest.mark.parametrize(
+    "body",
+    [{"base": "box:0.2x0.1"}, pytest.param({"radius": 0.05}, marks=pytest.mark.thorough)],
+)
 def test_under_a_law_fast_launches_end_with_the_others_as_they_do_alone(
     body: dict[str, Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:

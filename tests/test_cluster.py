@@ -174,7 +174,10 @@ def test_ctrl_c_leaves_a_cluster_of_its_own_within_a_second_and_goes_on(
     waited_for(lambda: subprocess.run(["pgrep", "-g", str(client.pid)]).returncode != 0, 20.0)
 
 
-def test_what_is_no_cluster_is_refused_and_nothing_is_begun(tmp_path: Path):
+def test_what_is_no_cluster_is_refused_and_nothing_is_begun(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr("puck_tables.bulk.cluster._REACH", 0.5)  # s
     for where in ("local:0", "local:99999", "here", "tcp://nowhere", "http://127.0.0.1:9", 4):
         with pytest.raises(InputError, match="must be local:N"):
             PUCK.sweep([1.0], 1.0, store=tmp_path / "m.zarr", cluster=where)

@@ -29,6 +29,7 @@ PUCKS = {
     "feet": pt.Puck(base=FEET, friction=0.2, height=0.02, gyration=0.08),
     "loaded feet": pt.Puck(base=SMALL_FEET, friction=0.3),
 }
+SLID = ("tall box", "disc")  # by every run
 LAUNCHES = np.array([[1.0, 0.3, 2.0], [0.2, -0.4, -25.0], [0.0, 0.0, 3.0], [0.5, 0.0, 0.0]])
 
 
@@ -80,20 +81,21 @@ def slides(name: str) -> np.ndarray:
 
 
 @pytest.mark.parametrize("language", RUNNERS)
-def test_steps_lead_to_the_stop_of_the_judge(language: str, tmp_path: Path) -> None:
-    for name, puck in PUCKS.items():
-        folder = tmp_path / name
-        folder.mkdir()
-        run, k, steps = runner(language, puck, folder), puck.gyration, 7
-        stops, places = slides(name)[:, 0], slides(name)[:, [1, 2, 4]]
-        state = np.zeros((len(LAUNCHES), 8))
-        state[:, 3:6], state[:, 6], state[:, 7] = LAUNCHES, 2.0, 1.1 * stops / steps
-        for _ in range(steps):
-            state[:, :6], codes = run("step", state.copy())
-            assert not codes.any()
-        assert not state[:, 3:6].any()
-        within = 0.5e-6 * np.sum((LAUNCHES * [1.0, 1.0, k]) ** 2, axis=1)[:, None] / [1.0, 1.0, k]
-        assert (np.abs(state[:, :3] - places) <= within).all(), name
+@pytest.mark.parametrize(
+    "name", [pytest.param(one, marks=[pytest.mark.thorough] * (one not in SLID)) for one in PUCKS]
+)
+def test_steps_lead_to_the_stop_of_the_judge(name: str, language: str, tmp_path: Path) -> None:
+    puck = PUCKS[name]
+    run, k, steps = runner(language, puck, tmp_path), puck.gyration, 7
+    stops, places = slides(name)[:, 0], slides(name)[:, [1, 2, 4]]
+    state = np.zeros((len(LAUNCHES), 8))
+    state[:, 3:6], state[:, 6], state[:, 7] = LAUNCHES, 2.0, 1.1 * stops / steps
+    for _ in range(steps):
+        state[:, :6], codes = run("step", state.copy())
+        assert not codes.any()
+    assert not state[:, 3:6].any()
+    within = 0.5e-6 * np.sum((LAUNCHES * [1.0, 1.0, k]) ** 2, axis=1)[:, None] / [1.0, 1.0, k]
+    assert (np.abs(state[:, :3] - places) <= within).all()
 
 
 @pytest.mark.parametrize("language", RUNNERS)

@@ -14,6 +14,7 @@ from rarely import few
 from test_fit_speed import FLAT, film, slid
 
 import puck_tables as pt
+from puck_tables.fitting.problem import Problem
 
 NOISE = (0.3e-3, 5e-3)
 
@@ -141,3 +142,18 @@ def test_what_slows_a_puck_is_named_before_jitter_radius_or_a_hand(seed, spinnin
     told = ("--free", "--slip-speeds") if spinning else ("air",)
     assert any(words in found.misfit for words in told), found.misfit
     assert not any("jitter" in text for text in found.remarks)
+
+
+def test_other_readings_are_followed_about_as_far_as_they_tell(monkeypatch):
+    """Angles without noise: a law over slip speed led along a valley for thousands of steps."""
+    puck = pt.Puck(radius=0.0381, height=0.0254, friction=0.15)
+    times = np.arange(120) / 60.0
+    path = puck.states((2.0, 0.5), 40.0, times)
+    place = np.stack([path.x, path.y], axis=1)
+    place += np.random.default_rng(1).normal(0.0, 3e-4, place.shape)
+    steps, step = [], Problem.residuals_and_jacobian
+    counted = lambda *args: steps.append(1) or step(*args)  # noqa: E731
+    monkeypatch.setattr(Problem, "residuals_and_jacobian", counted)
+    found = pt.fit(pt.Track(times, place, path.orientation), pt.Puck(radius=0.0381))
+    assert found["friction"].value == pytest.approx(0.15, abs=1e-8)
+    assert len(steps) < 1500

@@ -15,7 +15,7 @@ from puck_tables import Scene
 from puck_tables.world import groups
 
 POST = {"post": [{"point": [900.0, 900.0], "radius": 0.01}]}
-BLOCK = 10
+BLOCK = 4
 
 
 def varied(seed: int, folder: Path) -> dict[str, Any]:

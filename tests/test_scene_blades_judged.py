@@ -5,7 +5,7 @@ from blade_judge import STEPS, draw, judged, known
 from rarely import few
 
 
-@pytest.mark.parametrize("index", few(4, [3, 8, 32, 36, *range(40)]))
+@pytest.mark.parametrize("index", few(3, [8, 32, 36, 3, *range(40)]))
 def test_blades_on_turntables(index, tmp_path):
     scene = draw(1, index)
     radians = abs(scene["launch"]["spin"]) * scene["time"]  # a piece of a path is an eighth or so

@@ -12,7 +12,7 @@ from random_scenes import draw
 from puck_tables import Scene
 
 BEFORE = np.load(FILE)
-BLOCK = 50
+BLOCK = 20
 # a blade that spins 230 turns over a border: 1e-13 of its launch moves its end by 5e-7 m, and the
 # engine before, 1e-6 m away from all that followed it, said 1.6e-8
 TOO_SURE = [249]

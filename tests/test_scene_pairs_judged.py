@@ -10,6 +10,7 @@ from scene_truth import LEANS, truth
 from verdicts import judged, known
 
 
+@pytest.mark.thorough
 def test_the_judge_sums_rebounds_on_a_slope():
     scene = {
         "puck": {"radius": 0.04, "friction": 0.1}, "floor": {"slope": 0.4},

@@ -20,7 +20,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
-from puck_tables.fitting.problem import ANGLE, PLACE, PRIOR, Problem
+from puck_tables.fitting.problem import ANGLE, PLACE, PRIOR, ROUGH, Problem
 
 
 class Compact(NamedTuple):
@@ -75,8 +75,8 @@ FROM_BESIDE = ((4, 2), (30, 1))
 FROM_SLOWING = ((3, 3), (8, 2), (30, 1))
 _DAMPED, _EASED, _HARDER = 1e-3, 0.1, 10.0
 _LEAST = 1e-9  # damping: what is not seen stays where it is
-_LEVEL, _HARDEST = 1e-4, 1e6  # what costs fall by, or the damping, where a start has arrived
-_EXACT, _STEPS = 1e-12, 300  # the same of a minimum; a curved valley takes a hundred
+_HARDEST = 1e6  # the damping where a start has arrived
+_STEPS = 300  # to a minimum: a curved valley takes a hundred
 _NOTHING = 1e-12  # of a cost, or of 1: what a last step would gain
 _ROUNDING = 1e-24  # of the largest square of slopes
 _APART = 1e-2  # starts that are nearer have met
@@ -123,7 +123,7 @@ def minimise(
 
     ``kept``: residuals that count, all where it is left out.
     """
-    walker = _Walker(problem, x, math.inf, kept, None, _EXACT)
+    walker = _Walker(problem, x, math.inf, kept, None, problem.level)
     for _ in range(_STEPS):
         if not walker.arrived:
             walker.step()
@@ -141,7 +141,7 @@ class _Walker:
 
     def __init__(
         self, problem: Problem, x: FloatArray, scale: float,
-        kept: npt.NDArray[np.bool_] | None, held: int | None, level: float = _LEVEL,
+        kept: npt.NDArray[np.bool_] | None, held: int | None, level: float = ROUGH,
     ) -> None:  # fmt: skip
         self.problem, self.scale, self.held, self.level = problem, scale, held, level
         self.weights = 1.0 if kept is None else kept.astype(np.float64)

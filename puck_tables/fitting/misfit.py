@@ -24,7 +24,7 @@ from puck_tables.fitting.initial_estimate import (
 )
 from puck_tables.fitting.model_comparison import FLOORS, tried
 from puck_tables.fitting.parameters import INTEGRATED, MARK, NODES, NOTHING
-from puck_tables.fitting.problem import TURN, Problem
+from puck_tables.fitting.problem import ROUGH, TURN, Problem
 from puck_tables.fitting.residuals import NO_PATTERN, SideForces
 
 _FAR = 1.5  # times smaller are residuals of a reading that is told
@@ -109,6 +109,7 @@ def misfit(result: Estimate, problem: Problem, forces: SideForces, speeds: bool)
     A floor is named before angles or a radius that fit about as well.  ``problem``: what was asked,
     with all frames; ``speeds``: whether a friction over slip speed does not fit, either.
     """
+    problem = replace(problem, level=ROUGH)
     for film, launch in zip(problem.films, result.problem.launches(result.x), strict=False):
         _, _, vx, vy, spin, _ = launch.tolist()
         spins = problem.spec.known()["radius"] * abs(spin) > _SPINS * math.hypot(vx, vy)

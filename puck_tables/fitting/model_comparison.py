@@ -29,7 +29,7 @@ from puck_tables.fitting.initial_estimate import (
 from puck_tables.fitting.least_squares import minimise_robustly
 from puck_tables.fitting.observations import FEWEST, MEDIAN, Observations, rests_from
 from puck_tables.fitting.parameters import LAW_NUMBERS, NODES
-from puck_tables.fitting.problem import ANGLE, PLACE, UNSEEN, Known, Problem
+from puck_tables.fitting.problem import ANGLE, PLACE, ROUGH, UNSEEN, Known, Problem
 from puck_tables.fitting.speed_motion import LAWS
 from puck_tables.fitting.whole_turns import on_another_floor
 
@@ -77,7 +77,7 @@ def tried(result: Estimate) -> Estimate:
     top = problem.fastest(result.x)
     speeds = tuple(float(f"{1.1 * top * share:.2g}") for share in _SHARES)
     fewer = problem.with_films(tuple(film.thinned(_FRAMES) for film in problem.films))
-    fewer = replace(fewer, known=_ALL_GIVEN)
+    fewer = replace(fewer, known=_ALL_GIVEN, level=ROUGH)
     return over_speeds(replace(result, problem=fewer), speeds, "cubic")
 
 

@@ -43,6 +43,8 @@ class Known(NamedTuple):
 
 
 _NONE_GIVEN = Known()
+EXACT = 1e-12  # of a cost: what a step still gains where a minimum is found
+ROUGH = 1e-4  # of it, where only the size of residuals is asked
 
 
 def weights_of(
@@ -141,6 +143,7 @@ class Problem(Slides):
     weights : what makes residuals of each track's frames independent (n, 3, 3); empty: the noise
     known : which noise is given, and not that of the residuals
     smooth : noise of places (m) and angles (rad) that no model judged
+    level : what a step lowers the cost by, of it, where a minimum counts as found
     """
 
     spec: FitSpec
@@ -155,6 +158,7 @@ class Problem(Slides):
     weights: tuple[FloatArray, ...] = ()
     known: Known = _NONE_GIVEN
     smooth: tuple[float, float] = (math.nan, math.nan)
+    level: float = EXACT
 
     @cached_property
     def angled(self) -> bool:
