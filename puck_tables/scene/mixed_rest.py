@@ -155,6 +155,9 @@ def mixed_yield(
     ex, ey = (fx / force, fy / force) if force > 0.0 else (1.0, 0.0)
     px, pw = force / size, rim / size
     n = (px * ex, px * ey, pw)
+    gx, gy, gw = _held(floor_map, radius, n[0], n[1], n[2], bx, by)
+    if math.isnan(gx):  # no pressure carries it: nothing is to be looked for
+        return math.nan, n[0], n[1], n[2] / radius
     level, turns = (-ey, ex, 0.0), (-pw * ex, -pw * ey, px)
     for _ in range(_TRIALS):
         a = _least_along(floor_map, radius, bx, by, n, turns, 1.0)
